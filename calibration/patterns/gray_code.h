@@ -1,0 +1,18 @@
+#pragma once
+
+#include <vector>
+
+#include <opencv2/core/mat.hpp>
+
+namespace lumorph {
+
+/// Stripe images for finding, for each camera pixel, the projector pixel that lights it: first the
+/// column bits, then the row bits, most significant first, each image followed by its inverse; the
+/// code is the binary-reflected Gray code of the pixel's index. 8-bit grey, `size` projector pixels.
+/// Throws InvalidInput for an empty size.
+[[nodiscard]] std::vector<cv::Mat> grayCodePatterns(cv::Size size);
+
+/// How many bits tell `count` indices apart.
+[[nodiscard]] int grayCodeBits(int count);
+
+} // namespace lumorph

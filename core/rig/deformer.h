@@ -1,0 +1,64 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include <glm/gtc/quaternion.hpp>
+#include <glm/vec3.hpp>
+
+#include "core/base/units.h"
+
+namespace lumorph {
+
+/// Turns its part rigidly about a line, right-handed about `axis`.
+struct Hinge {
+    glm::vec3 origin{0.0F}; ///< a point of the axis, device coordinates, metres
+    glm::vec3 axis{1.0F, 0.0F, 0.0F};
+    Angle min;
+    Angle max;
+};
+
+/// Bends like a flexible sheet: straight up to the bend line, an arc of `length` metres, straight
+/// again. Distances along the neutral surface and across it are kept (a developable bend).
+/// `direction` is the way from the bend line to the free end and is perpendicular to `axis`; the
+/// rotation is right-handed about `axis`. The neutral surface passes through `origin`.
+struct Bend {
+    glm::vec3 origin{0.0F};
+    glm::vec3 axis{1.0F, 0.0F, 0.0F};
+    glm::vec3 direction{0.0F, 0.0F, 1.0F};
+    double length = 0.01; ///< metres of arc
+    Angle min;
+    Angle max;
+};
+
+/// Moves its part along a line.
+struct Slide {
+    glm::vec3 direction{0.0F, 1.0F, 0.0F};
+    double min = 0.0; ///< metres
+    double max = 0.0;
+};
+
+/// Moves each vertex along a polyline of its own: a morph target (one key at stroke 1) or one mesh
+/// per deformation state (a key for each). Displacements are from the rest mesh and linear between
+/// the keys; strokes before the first key run linearly from rest.
+struct MorphTarget {
+    std::string target;       ///< its name in the file
+    std::vector<float> keys;  ///< strokes in (0, 1], ascending
+    /// displacements[k][i] belongs to keys[k] and the i-th influence of the actuator, metres.
+    std::vector<std::vector<glm::vec3>> displacements;
+};
+
+/// Turns or moves one joint of the model's skin; the vertices follow by linear blend skinning.
+struct SkinJoint {
+    int joint = -1; ///< index into Skeleton::joints
+    enum class Motion { rotate, translate } motion = Motion::rotate;
+    glm::vec3 axis{1.0F, 0.0F, 0.0F}; ///< in the joint's local frame
+    double min = 0.0;                 ///< radians or metres
+    double max = 0.0;
+};
+
+using Deformer = std::variant<Hinge, Bend, Slide, MorphTarget, SkinJoint>;
+
+} // namespace lumorph

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/rig/rig.h"
+
+namespace lumorph {
+
+/// Reads a rig from `.glb`/`.gltf`, or from a folder of one mesh per state.
+///
+/// In glTF an actuator is an object `lumorph` in the `extras` of a node (hinge, bend, slide, joint)
+/// or, for morph targets, in the list `extras.lumorph` of the mesh. Keys: `actuator` (its name, required),
+/// `deformer` ("hinge" | "bend" | "slide" | "morph" | "joint"), `axis`, `direction` (3 numbers in
+/// the node's frame), `length` (metres), `range` (two numbers: degrees for hinge, bend and a
+/// turning joint, metres for slide and a moving joint, weights for morph), `motion` ("rotate" | "translate",
+/// joint), `target` (morph target's name), `levels`, `maxVelocity` (degrees, metres or weight a
+/// second), `damping`, `channel`, `pulse` (two numbers, microseconds).
+/// Which vertices an actuator moves: those of the vertex attributes `_ACTUATORS_0` (up to four
+/// actuator indices a vertex in the order of `order`, else of the nodes; -1 for none) and `_INFLUENCES_0` (their weights) where
+/// present; else all vertices of the node's own mesh and of its descendants.
+/// The scene's `extras.lumorph.pathInside` states that the solid holds its own path.
+///
+/// A folder holds `rest.obj` and `ACTUATOR_KEY.obj` (any mesh format; KEY 1, 2, ... evenly spaced
+/// strokes), all with the same triangles.
+///
+/// A rig without actuators of its own but with skin or morph targets gets them as actuators: each
+/// morph target one (weight 0 to 1); of a skin, each joint turned by an animation, over the range
+/// the animations use.
+/// Throws DataError naming the file, the node and the remedy.
+[[nodiscard]] Rig readRig(const std::filesystem::path& path);
+
+/// The same from a GLB in memory, as a .mdf file holds it.
+[[nodiscard]] Rig readRigGlb(std::span<const std::byte> bytes, const std::string& name);
+
+/// The rig as GLB; `readRigGlb` gives back the same rig (bit-equal rest positions, equal deformation).
+[[nodiscard]] std::vector<std::byte> writeRigGlb(const Rig& rig);
+
+} // namespace lumorph

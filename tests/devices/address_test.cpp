@@ -1,0 +1,32 @@
+#include "devices/transport/address.h"
+
+#include <gtest/gtest.h>
+
+#include "core/base/error.h"
+
+namespace lumorph {
+namespace {
+
+TEST(DeviceAddress, ReadsEveryKind) {
+    EXPECT_EQ(parseDeviceAddress("serial:///dev/rfcomm0?baud=9600"), DeviceAddress(SerialAddress{"/dev/rfcomm0", 9600}));
+    EXPECT_EQ(parseDeviceAddress("serial:///dev/ttyUSB0"), DeviceAddress(SerialAddress{"/dev/ttyUSB0", 57600}));
+    EXPECT_EQ(parseDeviceAddress("bt://98:d3:31:F4:12:AB"), DeviceAddress(BluetoothAddress{"98:D3:31:F4:12:AB"}));
+    EXPECT_EQ(parseDeviceAddress("hid://0483:5750?product=LOBOT"), DeviceAddress(HidAddress{0x0483, 0x5750, "LOBOT"}));
+    EXPECT_EQ(parseDeviceAddress("sim://tablet?jitter=5&drop=0.1"),
+              DeviceAddress(SimulatedAddress{"tablet", {{"jitter", "5"}, {"drop", "0.1"}}}));
+}
+
+TEST(DeviceAddress, RefusesWhatItCannotReachAndNamesIt) {
+    for (const char* uri : {"", "tablet", "ftp://x", "serial://", "serial:///dev/ttyUSB0?baud=fast",
+                            "serial:///dev/ttyUSB0?baud=-9600", "bt://98:D3:31", "hid://483:5750", "sim://"}) {
+        try {
+            (void)parseDeviceAddress(uri);
+            FAIL() << uri;
+        } catch (const InvalidInput& error) {
+            EXPECT_NE(std::string(error.what()).find(std::string("'") + uri + "'"), std::string::npos);
+        }
+    }
+}
+
+} // namespace
+} // namespace lumorph
