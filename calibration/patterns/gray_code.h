@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include <opencv2/core/mat.hpp>
+#include <opencv2/core.hpp>
 
 namespace lumorph {
 
