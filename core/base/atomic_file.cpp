@@ -89,7 +89,10 @@ fs::path temporaryBeside(const fs::path& file) {
 
 void writeFileAtomically(const fs::path& file, std::span<const std::byte> bytes) {
     std::error_code error;
-    const fs::path resolved = fs::is_symlink(file, error) ? fs::weakly_canonical(file, error) : file;
+    // A file that is not there yet is no error here.
+    const bool linked = fs::is_symlink(file, error);
+    error.clear();
+    const fs::path resolved = linked ? fs::weakly_canonical(file, error) : file;
     if (error) fail(file, error.value());
     struct stat old {};
     const bool exists = ::stat(resolved.c_str(), &old) == 0;

@@ -79,9 +79,7 @@ private:
         return before;
     }
 
-    [[nodiscard]] double brakingDistance() const noexcept {
-        return 2.0 * mean_ * limit_ / (frequency_ * frequency_);
-    }
+    [[nodiscard]] double brakingDistance() const noexcept { return 2.0 * mean_ * limit_ / (frequency_ * frequency_); }
 
     double frequency_;
     double mean_;
@@ -102,9 +100,7 @@ void requireValid(const MotionLimits& limits) {
     requireWithin("settle time", limits.settleSeconds, 1e-6, 1e6, "use 1e-6 to 1e6 seconds");
 }
 
-void requirePosition(const char* what, double value) {
-    requireWithin(what, value, 0.0, 1.0, "use a stroke in [0, 1]");
-}
+void requirePosition(const char* what, double value) { requireWithin(what, value, 0.0, 1.0, "use a stroke in [0, 1]"); }
 
 void requireTime(double seconds) {
     requireWithin("time step", seconds, 0.0, std::numeric_limits<double>::max(),

@@ -31,7 +31,8 @@ Ink inkOf(Theme theme) {
 struct GridScale {
     float step; // metres
     std::string square;
-    std::string bar; // five squares
+    int barSquares; // five, or one where the scene is narrow
+    std::string bar;
 };
 
 GridScale gridScaleOf(const Box& scene) {
@@ -43,7 +44,9 @@ GridScale gridScaleOf(const Box& scene) {
         if (power == -3) return std::to_string(count) + " mm";
         return std::to_string(count * static_cast<int>(std::lround(std::pow(10, power + 6)))) + " µm";
     };
-    return {static_cast<float>(std::pow(10.0, power)), named(1), named(5)};
+    const auto step = static_cast<float>(std::pow(10.0, power));
+    const int squares = 5.0F * step <= 0.6F * scene.size().x ? 5 : 1;
+    return {step, named(1), squares, named(squares)};
 }
 
 Box boxOf(const Figure& figure) {
@@ -61,10 +64,10 @@ StudioGround groundOf(const Box& scene, const GridScale& scale) {
     ground.radius = 0.5F * glm::length(glm::vec2(scene.size().x, scene.size().z));
     ground.radius = std::max(ground.radius, 0.25F * scene.size().y);
     ground.gridStep = scale.step;
-    // On the grid, in front of everything.
+    // On the grid, in front of everything, near the left.
+    const float left = scene.min.x + 0.12F * scene.size().x;
     const float front = scene.max.z + 0.04F * ground.radius;
-    ground.barStart = glm::vec2(std::floor(scene.min.x / scale.step) * scale.step,
-                                (std::ceil(front / scale.step) + 1.0F) * scale.step);
+    ground.barStart = glm::ceil(glm::vec2(left, front) / scale.step) * scale.step;
     return ground;
 }
 
@@ -135,8 +138,7 @@ struct FigureRenderer::Data {
         for (const FigureItem& item : panel.items) {
             if (item.mesh.empty()) continue;
             meshes.emplace_back(shade(item.mesh, item.crease));
-            surfaces.push_back(
-                {&meshes.back(), item.color, item.opacity, boundingBox(item.mesh.positions).centre()});
+            surfaces.push_back({&meshes.back(), item.color, item.opacity, boundingBox(item.mesh.positions).centre()});
         }
         studio.draw(target.framebuffer(), target.size(), view, surfaces);
     }
@@ -146,8 +148,8 @@ struct FigureRenderer::Data {
         for (std::size_t i = 0; i < figure.panels.size(); ++i)
             writeCentred(image, font, figure.panels[i].caption, layout.captions[i], layout.em, ink.caption);
         const float em = 0.68F * layout.em;
-        const float baseline = static_cast<float>(layout.footer.origin.y) +
-                               0.5F * static_cast<float>(layout.footer.size.y) + 0.36F * em;
+        const float baseline =
+            static_cast<float>(layout.footer.origin.y) + 0.5F * static_cast<float>(layout.footer.size.y) + 0.36F * em;
         const std::string grid = "Grid " + scale.square;
         const float right = static_cast<float>(image.size().x) - layout.em;
         const float gridLeft = right - font.width(grid, em);
@@ -157,12 +159,14 @@ struct FigureRenderer::Data {
     }
 
     // Under the bar, in the plane of the picture.
-    void labelBar(Image& image, const StudioView& view, const std::string& text, float em) const {
+    void labelBar(Image& image, const StudioView& view, const GridScale& scale, float em) const {
         const StudioGround& ground = view.ground;
-        const glm::vec2 middle = ground.barStart + glm::vec2(2.5F * ground.gridStep, 0.0F);
+        const glm::vec2 middle =
+            ground.barStart + glm::vec2(0.5F * static_cast<float>(scale.barSquares) * scale.step, 0.0F);
         const glm::vec2 at = glm::vec2(view.viewOrigin) +
                              pixelOf(view.camera, {middle.x, ground.height, middle.y}, glm::vec2(view.viewSize));
-        const glm::vec2 origin(at.x - 0.5F * font.width(text, em), at.y + 1.25F * em);
+        const std::string& text = scale.bar;
+        const glm::vec2 origin(at.x - 0.5F * font.width(text, em), at.y + 1.6F * em);
         const glm::vec2 low(view.viewOrigin);
         const glm::vec2 high = low + glm::vec2(view.viewSize) - glm::vec2(0.0F, 0.4F * em);
         font.write(image, text, glm::clamp(origin, low, high), em, inkOf(view.theme).footer);
@@ -192,14 +196,14 @@ Image FigureRenderer::render(const Figure& figure, glm::ivec2 size) {
         view.viewSize = layout.views[i].size;
         view.regionOrigin = view.viewOrigin;
         view.regionSize = {view.viewSize.x, size.y};
-        view.ground.bar = i == 0;
+        view.ground.barSquares = i == 0 ? scale.barSquares : 0;
         data_->drawPanel(target, view, figure.panels[i]);
     }
     requireNoError();
     Image image = target.read();
     view.viewOrigin = layout.views[0].origin;
     view.viewSize = layout.views[0].size;
-    data_->labelBar(image, view, scale.bar, 0.68F * layout.em);
+    data_->labelBar(image, view, scale, 0.68F * layout.em);
     data_->write(image, figure, layout, scale);
     return image;
 }

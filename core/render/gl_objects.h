@@ -8,8 +8,7 @@ namespace lumorph::gl {
 
 /// Owns one OpenGL name; move-only. Made and destroyed while its context, or for what contexts share
 /// (not vertex arrays and framebuffers) one of its group, is current.
-template <class Kind>
-class Object {
+template <class Kind> class Object {
 public:
     Object() : name_(Kind::create()) {}
     ~Object() {
@@ -74,8 +73,7 @@ struct ProgramKind {
     static GLuint create() { return glCreateProgram(); }
     static void destroy(GLuint name) { glDeleteProgram(name); }
 };
-template <GLenum Stage>
-struct ShaderKind {
+template <GLenum Stage> struct ShaderKind {
     static GLuint create() { return glCreateShader(Stage); }
     static void destroy(GLuint name) { glDeleteShader(name); }
 };

@@ -7,8 +7,7 @@ namespace {
 
 using Vertex = ShadedMesh::Vertex;
 
-template <class Value>
-void upload(GLenum target, const std::vector<Value>& values) {
+template <class Value> void upload(GLenum target, const std::vector<Value>& values) {
     glBufferData(target, static_cast<GLsizeiptr>(values.size() * sizeof(Value)), values.data(), GL_STATIC_DRAW);
 }
 

@@ -1,5 +1,6 @@
 #include "core/render/program.h"
 
+#include <algorithm>
 #include <fstream>
 #include <iterator>
 #include <regex>
@@ -11,8 +12,6 @@
 namespace lumorph {
 namespace {
 
-using Pieces = std::vector<std::filesystem::path>;
-
 constexpr const char* kRemedy = "correct the shader, or install Lumorph again if you did not change it";
 
 std::string textOf(const std::filesystem::path& file) {
@@ -21,16 +20,16 @@ std::string textOf(const std::filesystem::path& file) {
     return {std::istreambuf_iterator<char>(stream), {}};
 }
 
-// The pieces after the first get a #line, so that the log counts lines within each file.
-void compile(GLuint shader, const Pieces& pieces) {
-    std::vector<std::string> texts;
-    for (const auto& piece : pieces) {
-        const std::string line = texts.empty() ? "" : "#line 1 " + std::to_string(texts.size()) + "\n";
-        texts.push_back(line + textOf(piece) + "\n");
+void compile(GLuint shader, const std::vector<std::filesystem::path>& files) {
+    std::vector<ShaderPiece> pieces;
+    std::string text;
+    for (const auto& file : files) {
+        const std::string piece = textOf(file) + "\n";
+        pieces.push_back({file, static_cast<int>(std::count(piece.begin(), piece.end(), '\n'))});
+        text += piece;
     }
-    std::vector<const char*> pointers;
-    for (const std::string& text : texts) pointers.push_back(text.c_str());
-    glShaderSource(shader, static_cast<GLsizei>(pointers.size()), pointers.data(), nullptr);
+    const char* pointer = text.c_str();
+    glShaderSource(shader, 1, &pointer, nullptr);
     glCompileShader(shader);
     GLint compiled = GL_FALSE;
     glGetShaderiv(shader, GL_COMPILE_STATUS, &compiled);
@@ -71,20 +70,22 @@ ShaderFiles shaderFiles(const std::vector<std::string>& vertex, const std::vecto
 }
 
 // Drivers write "0:12(3): error: why" (Mesa), "0(12) : error C1: why" (NVIDIA) or "ERROR: 0:12: why".
-ShaderFault firstFault(const std::string& log, const Pieces& pieces) {
-    static const std::regex mesa(R"(^(\d+):(\d+)\(\d+\): error: (.*)$)");
-    static const std::regex nvidia(R"(^(\d+)\((\d+)\) : error \w+: (.*)$)");
-    static const std::regex others(R"(^ERROR: (\d+):(\d+): (.*)$)");
+ShaderFault firstFault(const std::string& log, const std::vector<ShaderPiece>& pieces) {
+    static const std::regex mesa(R"(^\d+:(\d{1,9})\(\d+\): error: (.*)$)");
+    static const std::regex nvidia(R"(^\d+\((\d{1,9})\) : error \w+: (.*)$)");
+    static const std::regex others(R"(^ERROR: \d+:(\d{1,9}): (.*)$)");
     std::istringstream lines(log);
     for (std::string line; std::getline(lines, line);) {
         std::smatch match;
         if (!std::regex_match(line, match, mesa) && !std::regex_match(line, match, nvidia) &&
             !std::regex_match(line, match, others))
             continue;
-        const std::size_t piece = std::min<std::size_t>(std::stoul(match[1]), pieces.size() - 1);
-        return {pieces[piece].string() + ":" + match[2].str(), match[3]};
+        int left = std::stoi(match[1]);
+        auto piece = pieces.begin();
+        for (; piece + 1 != pieces.end() && left > piece->lines; ++piece) left -= piece->lines;
+        return {piece->file.string() + ":" + std::to_string(left), match[2]};
     }
-    return {pieces.front().string(), log.empty() ? "the driver gives no reason" : log};
+    return {pieces.front().file.string(), log.empty() ? "the driver gives no reason" : log};
 }
 
 void Program::use() {

@@ -26,13 +26,18 @@ struct ShaderFiles {
 /// Names of files in resources/shaders. Throws DataError when one is missing.
 [[nodiscard]] ShaderFiles shaderFiles(const std::vector<std::string>& vertex, const std::vector<std::string>& fragment);
 
-/// Replaces the driver's "0:12(3): error: ..." by "file:12: ..." for the first error of a log, where
-/// the number before the line is the piece.
+/// A piece of a stage, as far as it matters for an error's place.
+struct ShaderPiece {
+    std::filesystem::path file;
+    int lines = 0;
+};
+
+/// Where and why a stage does not compile, from the driver's log, which counts lines over all pieces.
 struct ShaderFault {
     std::string place; ///< "file:line", or the first file when the log names no line
     std::string message;
 };
-[[nodiscard]] ShaderFault firstFault(const std::string& log, const std::vector<std::filesystem::path>& pieces);
+[[nodiscard]] ShaderFault firstFault(const std::string& log, const std::vector<ShaderPiece>& pieces);
 
 /// A program from shader files, built when first used.
 class Program {

@@ -29,8 +29,7 @@ void ShadowMaps::draw(std::span<const glm::vec3> directions, const Box& scene,
                       const std::function<void()>& drawCasters) {
     const float radius = 0.502F * glm::length(scene.size());
     texel_ = 2.0F * radius / static_cast<float>(side_);
-    const glm::mat4 mapFromClip =
-        glm::scale(glm::translate(glm::mat4(1.0F), glm::vec3(0.5F)), glm::vec3(0.5F));
+    const glm::mat4 mapFromClip = glm::scale(glm::translate(glm::mat4(1.0F), glm::vec3(0.5F)), glm::vec3(0.5F));
 
     glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_.name());
     glDrawBuffer(GL_NONE);

@@ -27,10 +27,19 @@ struct Palette {
 
 Palette paletteOf(Theme theme) {
     if (theme == Theme::light)
-        return {{0.90F, 0.915F, 0.935F}, {0.80F, 0.82F, 0.85F}, {0.28F, 0.33F, 0.42F}, glm::vec3(0.07F), 0.3F, 0.45F,
+        return {{0.90F, 0.915F, 0.935F},
+                {0.80F, 0.82F, 0.85F},
+                {0.28F, 0.33F, 0.42F},
+                glm::vec3(0.07F),
+                0.3F,
+                0.45F,
                 1.12F};
-    return {{0.066F, 0.074F, 0.09F},       {0.135F, 0.15F, 0.18F}, {0.62F, 0.70F, 0.82F},
-            {0.115F, 0.125F, 0.145F}, 0.26F,                  0.72F,
+    return {{0.066F, 0.074F, 0.09F},
+            {0.135F, 0.15F, 0.18F},
+            {0.62F, 0.70F, 0.82F},
+            {0.115F, 0.125F, 0.145F},
+            0.26F,
+            0.72F,
             1.0F};
 }
 
@@ -65,9 +74,7 @@ glm::mat4 regionFromView(const StudioView& view) {
     return matrix;
 }
 
-float distanceTo(const glm::vec3& eye, const StudioSurface& surface) {
-    return glm::distance(eye, surface.centre);
-}
+float distanceTo(const glm::vec3& eye, const StudioSurface& surface) { return glm::distance(eye, surface.centre); }
 
 } // namespace
 
@@ -99,9 +106,9 @@ struct StudioPass::Data {
         program.set("skyMapFromWorld", sky.mapFromWorld());
         program.set("skyShadow", kSkyUnit);
         // Along the normal by more than what the soft edge spans in depth on a sloping surface.
-        program.set("shadowBias", glm::vec2(2.0F * key.texel() + 0.6F * kKeySoftness * key.texel() *
-                                                                     static_cast<float>(key.side()),
-                                            1.8F * sky.texel()));
+        program.set("shadowBias",
+                    glm::vec2(2.0F * key.texel() + 0.6F * kKeySoftness * key.texel() * static_cast<float>(key.side()),
+                              1.8F * sky.texel()));
         program.set("sceneSphere", glm::vec4(view.scene.centre(), 0.5F * glm::length(view.scene.size())));
         program.set("keyShadowOn", view.lighting.keyShadow ? 1 : 0);
         program.set("skyOcclusionOn", view.lighting.skyOcclusion ? 1 : 0);
@@ -114,7 +121,8 @@ struct StudioPass::Data {
         ground.set("groundExtent", 12.0F * place.radius);
         ground.set("sceneRadius", place.radius);
         ground.set("gridStep", place.gridStep);
-        ground.set("bar", glm::vec4(place.barStart, 5.0F * place.gridStep, place.bar ? 1.0F : 0.0F));
+        ground.set("bar", glm::vec4(place.barStart, static_cast<float>(place.barSquares) * place.gridStep,
+                                    place.barSquares > 0 ? 1.0F : 0.0F));
         ground.set("lineColor", palette.line);
         ground.set("lineStrength", palette.lineStrength);
         ground.set("shade", palette.shade);
@@ -180,8 +188,8 @@ void StudioPass::draw(GLuint framebuffer, glm::ivec2 frameSize, const StudioView
             if (item.opacity >= 1.0F) item.mesh->draw();
     };
     const glm::vec3 key = keyLightDirection();
-    data_->key.draw({&key, 1}, view.scene, drawCasters);
-    data_->sky.draw(data_->skyDirections, view.scene, drawCasters);
+    if (view.lighting.keyShadow) data_->key.draw({&key, 1}, view.scene, drawCasters);
+    if (view.lighting.skyOcclusion) data_->sky.draw(data_->skyDirections, view.scene, drawCasters);
 
     glBindFramebuffer(GL_FRAMEBUFFER, framebuffer);
     glViewport(view.regionOrigin.x, frameSize.y - view.regionOrigin.y - view.regionSize.y, view.regionSize.x,

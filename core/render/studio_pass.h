@@ -33,14 +33,14 @@ struct StudioSurface {
 };
 
 /// The ground the surfaces stand on: a plane with a square grid, each fifth line stronger, and a bar
-/// of five squares as its scale.
+/// of some squares as its scale.
 struct StudioGround {
-    float height = 0.0F;   ///< world y, metres
-    glm::vec2 centre{0.0F}; ///< x and z of what stands on it
-    float radius = 0.1F;   ///< of what stands on it; the grid fades beyond
-    float gridStep = 0.01F; ///< metres
+    float height = 0.0F;      ///< world y, metres
+    glm::vec2 centre{0.0F};   ///< x and z of what stands on it
+    float radius = 0.1F;      ///< of what stands on it; the grid fades beyond
+    float gridStep = 0.01F;   ///< metres
     glm::vec2 barStart{0.0F}; ///< x and z; the bar leads along +x
-    bool bar = false;
+    int barSquares = 0;
 };
 
 /// One view: where in the frame, and how. `view` is what the camera frames, `region` the larger part
@@ -70,7 +70,8 @@ public:
     /// Fills the whole frame of `frameSize` and clears its depth.
     void drawBackdrop(GLuint framebuffer, glm::ivec2 frameSize, Theme theme);
     /// Draws one view over the backdrop.
-    void draw(GLuint framebuffer, glm::ivec2 frameSize, const StudioView& view, std::span<const StudioSurface> surfaces);
+    void draw(GLuint framebuffer, glm::ivec2 frameSize, const StudioView& view,
+              std::span<const StudioSurface> surfaces);
 
 private:
     struct Data;

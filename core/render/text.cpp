@@ -49,8 +49,7 @@ struct Font::Data {
     stbtt_fontinfo info{};
 
     // Calls back with every glyph and its pen position along the line; returns the line's width.
-    template <class Glyph>
-    float layOut(std::string_view text, float pixels, Glyph&& glyph) const {
+    template <class Glyph> float layOut(std::string_view text, float pixels, Glyph&& glyph) const {
         const float scale = stbtt_ScaleForMappingEmToPixels(&info, pixels);
         float pen = 0.0F;
         int before = 0;
@@ -99,7 +98,8 @@ void Font::write(Image& image, std::string_view text, glm::vec2 origin, float pi
             for (int x = 0; x < width; ++x) {
                 const glm::ivec2 at(static_cast<int>(left) + x0 + x, baseline + y0 + y);
                 if (at.x < 0 || at.y < 0 || at.x >= image.size().x || at.y >= image.size().y) continue;
-                blend(image.at(at.x, at.y), color, opacity * static_cast<float>(coverage.get()[y * width + x]) / 255.0F);
+                blend(image.at(at.x, at.y), color,
+                      opacity * static_cast<float>(coverage.get()[y * width + x]) / 255.0F);
             }
     });
 }

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "core/base/error.h"
-#include "tests/core/render/temporary_folder.h"
+#include "tests/core/temporary_folder.h"
 
 namespace lumorph {
 namespace {

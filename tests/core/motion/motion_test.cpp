@@ -101,10 +101,10 @@ TEST(Motion, IsTheDampedSecondOrderResponse) { // R19
     const MotionLimits critical{1.0, 1.0, 0.15};
     const MotionLimits damped{0.8, 2.5, 0.1};
     for (const double seconds : {0.05, 0.3, 0.9, 1.6}) {
-        EXPECT_NEAR(advance({0.0, 0.0}, 1.0, seconds, critical).position,
-                    integrated(0.0, 0.0, 1.0, seconds, critical), 2e-5);
-        EXPECT_NEAR(advance({0.9, -0.5}, 0.1, seconds, damped).position,
-                    integrated(0.9, -0.5, 0.1, seconds, damped), 2e-5);
+        EXPECT_NEAR(advance({0.0, 0.0}, 1.0, seconds, critical).position, integrated(0.0, 0.0, 1.0, seconds, critical),
+                    2e-5);
+        EXPECT_NEAR(advance({0.9, -0.5}, 0.1, seconds, damped).position, integrated(0.9, -0.5, 0.1, seconds, damped),
+                    2e-5);
     }
 }
 
@@ -128,7 +128,8 @@ TEST(Motion, HoldsItsPromisesOver100000RandomSteps) {
     int faults = 0;
     for (int i = 0; i < 100'000; ++i) {
         if (i % 1000 == 0)
-            limits = {std::pow(10.0, between(-2, 2)), random() % 2 ? 1.0 : between(1, 20), std::pow(10.0, between(-3, 1))};
+            limits = {std::pow(10.0, between(-2, 2)), random() % 2 ? 1.0 : between(1, 20),
+                      std::pow(10.0, between(-3, 1))};
         if (random() % 5 == 0) target = random() % 4 == 0 ? static_cast<double>(random() % 2) : between(0, 1);
         const double seconds = random() % 500 == 0 ? 3600.0 : std::pow(10.0, between(-4, 0));
         const MotionState next = advance(state, target, seconds, limits);

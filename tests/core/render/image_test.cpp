@@ -1,5 +1,6 @@
 #include "core/render/image.h"
 
+#include <fstream>
 #include <random>
 
 #include <gtest/gtest.h>
@@ -7,10 +8,15 @@
 #include "core/base/error.h"
 #include "core/base/resources.h"
 #include "core/render/text.h"
-#include "tests/core/render/temporary_folder.h"
+#include "tests/core/temporary_folder.h"
 
 namespace lumorph {
 namespace {
+
+std::filesystem::path writeText(const std::filesystem::path& file, const std::string& text) {
+    std::ofstream(file, std::ios::binary) << text;
+    return file;
+}
 
 TEST(Image, APngComesBackAsItWas) {
     const TemporaryFolder folder;
@@ -27,7 +33,7 @@ TEST(Image, BrokenFilesAreRefusedByName) {
     writePng(Image({50, 50}), folder.path() / "good.png");
     const auto bytes = std::filesystem::file_size(folder.path() / "good.png");
     std::filesystem::resize_file(folder.path() / "good.png", bytes / 2);
-    folder.write("text.png", "not a picture");
+    writeText(folder / "text.png", "not a picture");
     for (const char* name : {"good.png", "text.png", "absent.png"}) {
         try {
             (void)readPng(folder.path() / name);
@@ -99,7 +105,7 @@ TEST(Font, TextOutsideTheImageIsCutOff) {
 
 TEST(Font, RefusesWhatIsNoFont) {
     const TemporaryFolder folder;
-    EXPECT_THROW(Font(folder.write("a.otf", std::string(100, 'x'))), DataError);
+    EXPECT_THROW(Font(writeText(folder / "a.otf", std::string(100, 'x'))), DataError);
     EXPECT_THROW(Font(folder.path() / "absent.otf"), DataError);
 }
 

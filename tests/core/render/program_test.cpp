@@ -1,6 +1,7 @@
 #include "core/render/program.h"
 
 #include <cmath>
+#include <fstream>
 
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
@@ -9,10 +10,15 @@
 #include "core/render/camera.h"
 #include "core/render/frame_target.h"
 #include "core/render/headless_context.h"
-#include "tests/core/render/temporary_folder.h"
+#include "tests/core/temporary_folder.h"
 
 namespace lumorph {
 namespace {
+
+std::filesystem::path writeText(const std::filesystem::path& file, const std::string& text) {
+    std::ofstream(file, std::ios::binary) << text;
+    return file;
+}
 
 TEST(HeadlessContext, OffersOpenGl41Core) {
     const HeadlessContext context;
@@ -56,10 +62,11 @@ TEST(GlObjects, AreReleasedOnceWhateverTheMoves) {
 TEST(Program, AnErrorNamesFileAndLine) {
     const HeadlessContext context;
     const TemporaryFolder folder;
-    const auto vertex = folder.write("good.vert", "#version 410 core\nvoid main() { gl_Position = vec4(0.0); }\n");
-    const auto first = folder.write("first.frag", "#version 410 core\n\nout vec4 color;\n");
-    const auto good = folder.write("good.glsl", "float one() { return 1.0; }\n");
-    const auto bad = folder.write("bad.glsl", "\n\nvoid main() {\n    color = vec4(nothing);\n}\n");
+    const auto vertex =
+        writeText(folder / "good.vert", "#version 410 core\nvoid main() { gl_Position = vec4(0.0); }\n");
+    const auto first = writeText(folder / "first.frag", "#version 410 core\n\nout vec4 color;\n");
+    const auto good = writeText(folder / "good.glsl", "float one() { return 1.0; }\n");
+    const auto bad = writeText(folder / "bad.glsl", "\n\nvoid main() {\n    color = vec4(nothing);\n}\n");
     Program program({{vertex}, {first, good, bad}});
     try {
         program.use();
@@ -73,7 +80,7 @@ TEST(Program, AnErrorNamesFileAndLine) {
 }
 
 TEST(Program, UnderstandsTheLogsOfOtherDrivers) {
-    const std::vector<std::filesystem::path> pieces{"a.frag", "b.glsl"};
+    const std::vector<ShaderPiece> pieces{{"a.frag", 20}, {"b.glsl", 30}};
     struct Row {
         const char* log;
         const char* place;
@@ -82,8 +89,8 @@ TEST(Program, UnderstandsTheLogsOfOtherDrivers) {
     // clang-format off
     const Row rows[] = {
         {"0:12(3): error: `x' undeclared\n",                            "a.frag:12", "`x' undeclared"},
-        {"1:7(10): warning: unused\n1:9(1): error: syntax error\n",     "b.glsl:9",  "syntax error"},
-        {"1(34) : error C1008: undefined variable \"x\"\n",             "b.glsl:34", "undefined variable \"x\""},
+        {"0:7(10): warning: unused\n0:29(1): error: syntax error\n",    "b.glsl:9",  "syntax error"},
+        {"0(34) : error C1008: undefined variable \"x\"\n",             "b.glsl:14", "undefined variable \"x\""},
         {"ERROR: 0:5: 'x' : undeclared identifier\n",                   "a.frag:5",  "'x' : undeclared identifier"},
         {"out of luck",                                                 "a.frag",    "out of luck"}};
     // clang-format on
@@ -108,14 +115,14 @@ glm::dvec2 onPlane(const Camera& camera, glm::dvec2 pixel, glm::dvec2 size) {
 TEST(Program, AQuadCoversThePredictedPixels) {
     const HeadlessContext context;
     const TemporaryFolder folder;
-    const auto vertex = folder.write("quad.vert", R"(#version 410 core
+    const auto vertex = writeText(folder / "quad.vert", R"(#version 410 core
 uniform mat4 clipFromWorld;
 void main() {
     vec2 corner = vec2((gl_VertexID & 1) == 0 ? -0.1 : 0.2, (gl_VertexID & 2) == 0 ? -0.05 : 0.12);
     gl_Position = clipFromWorld * vec4(corner, 0.0, 1.0);
 }
 )");
-    const auto fragment = folder.write("quad.frag", R"(#version 410 core
+    const auto fragment = writeText(folder / "quad.frag", R"(#version 410 core
 uniform vec4 tint;
 out vec4 color;
 void main() { color = tint; }
@@ -150,8 +157,7 @@ void main() { color = tint; }
         for (int x = 0; x < size.x; ++x) {
             const int corners = inside(x, y) + inside(x + 1, y) + inside(x, y + 1) + inside(x + 1, y + 1);
             if (corners != 0 && corners != 4) continue; // on the edge
-            const Image::Pixel expected =
-                corners == 4 ? Image::Pixel{51, 102, 204, 255} : Image::Pixel{0, 0, 0, 255};
+            const Image::Pixel expected = corners == 4 ? Image::Pixel{51, 102, 204, 255} : Image::Pixel{0, 0, 0, 255};
             wrong += image.at(x, y) != expected;
             covered += corners == 4;
         }
