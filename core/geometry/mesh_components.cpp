@@ -72,8 +72,7 @@ std::vector<MeshComponent> meshComponents(const TriangleMesh& mesh, const MeshTo
     return components;
 }
 
-int windingNumber(const TriangleMesh& mesh, std::span<const std::uint32_t> triangles,
-                  const glm::vec3& point) noexcept {
+int windingNumber(const TriangleMesh& mesh, std::span<const std::uint32_t> triangles, const glm::vec3& point) noexcept {
     // A ray along +x from the point: each triangle whose shadow on the yz plane holds the point and
     // that lies in front of it adds the turn its shadow makes.
     int winding = 0;
@@ -83,8 +82,7 @@ int windingNumber(const TriangleMesh& mesh, std::span<const std::uint32_t> trian
         const glm::dvec3 a = glm::dvec3(mesh.positions[corners.x]) - origin;
         const glm::dvec3 b = glm::dvec3(mesh.positions[corners.y]) - origin;
         const glm::dvec3 c = glm::dvec3(mesh.positions[corners.z]) - origin;
-        if ((a.x < 0.0 && b.x < 0.0 && c.x < 0.0) || std::min({a.y, b.y, c.y}) > 0.0 ||
-            std::max({a.y, b.y, c.y}) < 0.0)
+        if ((a.x < 0.0 && b.x < 0.0 && c.x < 0.0) || std::min({a.y, b.y, c.y}) > 0.0 || std::max({a.y, b.y, c.y}) < 0.0)
             continue;
         const Point2 pa{a.y, a.z};
         const Point2 pb{b.y, b.z};
@@ -103,7 +101,8 @@ int nesting(const TriangleMesh& mesh, const MeshComponent& inner, const MeshComp
     std::array<int, 3> turns{};
     for (std::size_t i = 0; i < turns.size(); ++i) {
         const glm::uvec3& corners = mesh.triangles[inner.triangles[i * (inner.triangles.size() - 1) / 2]];
-        const glm::vec3 middle = (mesh.positions[corners.x] + mesh.positions[corners.y] + mesh.positions[corners.z]) / 3.0F;
+        const glm::vec3 middle =
+            (mesh.positions[corners.x] + mesh.positions[corners.y] + mesh.positions[corners.z]) / 3.0F;
         if (glm::all(glm::lessThanEqual(outer.box.min, middle)) && glm::all(glm::lessThanEqual(middle, outer.box.max)))
             turns[i] = windingNumber(mesh, outer.triangles, middle);
     }
