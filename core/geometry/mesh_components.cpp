@@ -97,6 +97,9 @@ int windingNumber(const TriangleMesh& mesh, std::span<const std::uint32_t> trian
 }
 
 int nesting(const TriangleMesh& mesh, const MeshComponent& inner, const MeshComponent& outer) noexcept {
+    if (!glm::all(glm::lessThan(inner.box.min, outer.box.max)) ||
+        !glm::all(glm::lessThan(outer.box.min, inner.box.max)))
+        return 0;
     // Three points, as one may happen to lie on the outer surface.
     std::array<int, 3> turns{};
     for (std::size_t i = 0; i < turns.size(); ++i) {
@@ -111,13 +114,15 @@ int nesting(const TriangleMesh& mesh, const MeshComponent& inner, const MeshComp
 }
 
 std::vector<std::size_t> inwardComponents(const TriangleMesh& mesh, std::span<const MeshComponent> components) {
+    std::vector<const MeshComponent*> outward;
+    for (const MeshComponent& component : components)
+        if (component.closed && component.coherent && component.volume > 0.0) outward.push_back(&component);
     std::vector<std::size_t> inward;
     for (std::size_t i = 0; i < components.size(); ++i) {
         const MeshComponent& piece = components[i];
         if (!piece.closed || !piece.coherent || !(piece.volume < 0.0)) continue;
-        const bool cavity = std::ranges::any_of(components, [&](const MeshComponent& outer) {
-            return outer.closed && outer.coherent && outer.volume > 0.0 && nesting(mesh, piece, outer) > 0;
-        });
+        const bool cavity =
+            std::ranges::any_of(outward, [&](const MeshComponent* outer) { return nesting(mesh, piece, *outer) > 0; });
         if (!cavity) inward.push_back(i);
     }
     return inward;
