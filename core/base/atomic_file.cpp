@@ -89,10 +89,9 @@ fs::path temporaryBeside(const fs::path& file) {
 
 void writeFileAtomically(const fs::path& file, std::span<const std::byte> bytes) {
     std::error_code error;
-    // A file that is not there yet is no error here.
-    const bool linked = fs::is_symlink(file, error);
+    const bool link = fs::is_symlink(file, error); // an error here shows again when the file is opened
     error.clear();
-    const fs::path resolved = linked ? fs::weakly_canonical(file, error) : file;
+    const fs::path resolved = link ? fs::weakly_canonical(file, error) : file;
     if (error) fail(file, error.value());
     struct stat old {};
     const bool exists = ::stat(resolved.c_str(), &old) == 0;

@@ -23,8 +23,7 @@ std::vector<std::string> MeshReport::findings() const {
         return sentences;
     }
     if (boundaryEdges > 0)
-        sentences.push_back("The surface has holes (" +
-                            counted(boundaryEdges, "edge has", "edges have") +
+        sentences.push_back("The surface has holes (" + counted(boundaryEdges, "edge has", "edges have") +
                             " a triangle on one side only); repair the mesh, or close it in a modelling program.");
     if (nonManifoldEdges > 0)
         sentences.push_back(counted(nonManifoldEdges, "edge joins", "edges join") +

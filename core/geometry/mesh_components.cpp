@@ -72,8 +72,7 @@ std::vector<MeshComponent> meshComponents(const TriangleMesh& mesh, const MeshTo
     return components;
 }
 
-int windingNumber(const TriangleMesh& mesh, std::span<const std::uint32_t> triangles,
-                  const glm::vec3& point) noexcept {
+int windingNumber(const TriangleMesh& mesh, std::span<const std::uint32_t> triangles, const glm::vec3& point) noexcept {
     // A ray along +x from the point: each triangle whose shadow on the yz plane holds the point and
     // that lies in front of it adds the turn its shadow makes.
     int winding = 0;
@@ -83,8 +82,7 @@ int windingNumber(const TriangleMesh& mesh, std::span<const std::uint32_t> trian
         const glm::dvec3 a = glm::dvec3(mesh.positions[corners.x]) - origin;
         const glm::dvec3 b = glm::dvec3(mesh.positions[corners.y]) - origin;
         const glm::dvec3 c = glm::dvec3(mesh.positions[corners.z]) - origin;
-        if ((a.x < 0.0 && b.x < 0.0 && c.x < 0.0) || std::min({a.y, b.y, c.y}) > 0.0 ||
-            std::max({a.y, b.y, c.y}) < 0.0)
+        if ((a.x < 0.0 && b.x < 0.0 && c.x < 0.0) || std::min({a.y, b.y, c.y}) > 0.0 || std::max({a.y, b.y, c.y}) < 0.0)
             continue;
         const Point2 pa{a.y, a.z};
         const Point2 pb{b.y, b.z};
@@ -99,11 +97,15 @@ int windingNumber(const TriangleMesh& mesh, std::span<const std::uint32_t> trian
 }
 
 int nesting(const TriangleMesh& mesh, const MeshComponent& inner, const MeshComponent& outer) noexcept {
+    if (!glm::all(glm::lessThan(inner.box.min, outer.box.max)) ||
+        !glm::all(glm::lessThan(outer.box.min, inner.box.max)))
+        return 0;
     // Three points, as one may happen to lie on the outer surface.
     std::array<int, 3> turns{};
     for (std::size_t i = 0; i < turns.size(); ++i) {
         const glm::uvec3& corners = mesh.triangles[inner.triangles[i * (inner.triangles.size() - 1) / 2]];
-        const glm::vec3 middle = (mesh.positions[corners.x] + mesh.positions[corners.y] + mesh.positions[corners.z]) / 3.0F;
+        const glm::vec3 middle =
+            (mesh.positions[corners.x] + mesh.positions[corners.y] + mesh.positions[corners.z]) / 3.0F;
         if (glm::all(glm::lessThanEqual(outer.box.min, middle)) && glm::all(glm::lessThanEqual(middle, outer.box.max)))
             turns[i] = windingNumber(mesh, outer.triangles, middle);
     }
@@ -112,13 +114,15 @@ int nesting(const TriangleMesh& mesh, const MeshComponent& inner, const MeshComp
 }
 
 std::vector<std::size_t> inwardComponents(const TriangleMesh& mesh, std::span<const MeshComponent> components) {
+    std::vector<const MeshComponent*> outward;
+    for (const MeshComponent& component : components)
+        if (component.closed && component.coherent && component.volume > 0.0) outward.push_back(&component);
     std::vector<std::size_t> inward;
     for (std::size_t i = 0; i < components.size(); ++i) {
         const MeshComponent& piece = components[i];
         if (!piece.closed || !piece.coherent || !(piece.volume < 0.0)) continue;
-        const bool cavity = std::ranges::any_of(components, [&](const MeshComponent& outer) {
-            return outer.closed && outer.coherent && outer.volume > 0.0 && nesting(mesh, piece, outer) > 0;
-        });
+        const bool cavity =
+            std::ranges::any_of(outward, [&](const MeshComponent* outer) { return nesting(mesh, piece, *outer) > 0; });
         if (!cavity) inward.push_back(i);
     }
     return inward;

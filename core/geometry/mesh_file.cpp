@@ -36,7 +36,8 @@ void checkWritable(const TriangleMesh& mesh, const std::filesystem::path& file) 
     if (mesh.empty()) throw InvalidInput(file.string(), "the mesh to write has no triangles", "give it some");
     for (const glm::vec3& p : mesh.positions)
         if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z))
-            throw InvalidInput(file.string(), "the mesh to write has a coordinate that is not finite", "repair it first");
+            throw InvalidInput(file.string(), "the mesh to write has a coordinate that is not finite",
+                               "repair it first");
     for (const glm::uvec3& t : mesh.triangles)
         if (std::max({t.x, t.y, t.z}) >= mesh.positions.size())
             throw InvalidInput(file.string(), "the mesh to write refers to a vertex it does not have",

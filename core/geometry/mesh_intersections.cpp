@@ -24,8 +24,7 @@ struct Face {
 /// Whether the other two corners of `face` lie strictly on one side of the plane of `plane`.
 bool beside(const Face& plane, const Point& p, const Point& q) {
     const CGAL::Orientation side = CGAL::orientation(plane.points[0], plane.points[1], plane.points[2], p);
-    return side != CGAL::COPLANAR &&
-           side == CGAL::orientation(plane.points[0], plane.points[1], plane.points[2], q);
+    return side != CGAL::COPLANAR && side == CGAL::orientation(plane.points[0], plane.points[1], plane.points[2], q);
 }
 
 Triangle triangleOf(const Face& face) { return {face.points[0], face.points[1], face.points[2]}; }
@@ -45,8 +44,7 @@ bool crossBesidesCorner(const Face& a, std::size_t cornerA, const Face& b, std::
 
 /// Faces that share the edge from `from` to `to` overlap when they are folded flat onto each other.
 bool overlapAtEdge(const Point& from, const Point& to, const Point& tipA, const Point& tipB) {
-    return CGAL::coplanar(from, to, tipA, tipB) &&
-           CGAL::coplanar_orientation(from, to, tipA, tipB) == CGAL::POSITIVE;
+    return CGAL::coplanar(from, to, tipA, tipB) && CGAL::coplanar_orientation(from, to, tipA, tipB) == CGAL::POSITIVE;
 }
 
 bool cross(const Face& a, const Face& b) {
@@ -95,8 +93,9 @@ std::size_t countSelfIntersections(const TriangleMesh& mesh) {
         if (!face) continue;
         Box bounds;
         for (std::uint32_t k = 0; k < 3; ++k) bounds.include(mesh.positions[vertexAt(mesh, 3 * t + k)]);
-        boxes.emplace_back(CGAL::Bbox_3(bounds.min.x, bounds.min.y, bounds.min.z, bounds.max.x, bounds.max.y, bounds.max.z),
-                           static_cast<std::uint32_t>(faces.size()));
+        boxes.emplace_back(
+            CGAL::Bbox_3(bounds.min.x, bounds.min.y, bounds.min.z, bounds.max.x, bounds.max.y, bounds.max.z),
+            static_cast<std::uint32_t>(faces.size()));
         faces.push_back(*face);
     }
 

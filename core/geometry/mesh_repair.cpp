@@ -30,13 +30,12 @@ std::size_t turnOutwards(TriangleMesh& mesh) {
     for (const std::size_t i : inward) turn[i] = true;
     for (std::size_t k = 0; k < components.size(); ++k) {
         if (turn[k] || !components[k].closed || !components[k].coherent) continue;
-        turn[k] = std::ranges::any_of(
-            inward, [&](std::size_t i) { return nesting(mesh, components[k], components[i]) < 0; });
+        turn[k] =
+            std::ranges::any_of(inward, [&](std::size_t i) { return nesting(mesh, components[k], components[i]) < 0; });
     }
     for (std::size_t i = 0; i < components.size(); ++i)
         if (turn[i])
-            for (const std::uint32_t t : components[i].triangles)
-                std::swap(mesh.triangles[t].y, mesh.triangles[t].z);
+            for (const std::uint32_t t : components[i].triangles) std::swap(mesh.triangles[t].y, mesh.triangles[t].z);
     return inward.size();
 }
 
@@ -70,6 +69,8 @@ MeshRepair repairMesh(const TriangleMesh& mesh, std::size_t maxHoleEdges) {
     note(actions, surface.openHoles, "A hole was left open: it is too large, or its part is a flat sheet.",
          "holes were left open: they are too large, or their parts are flat sheets.");
     work = surface.mesh;
+    // Filling a crack, where a corner of one side lies on an edge of the other, makes a flat triangle.
+    dissolveFlatTriangles(work);
     note(actions, turnOutwards(work), "A piece that was inside out was turned outwards.",
          "pieces that were inside out were turned outwards.");
     repair.mesh = std::move(work);

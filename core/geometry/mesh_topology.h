@@ -17,12 +17,12 @@ namespace lumorph {
 struct MeshTopology {
     static constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
 
-    std::vector<std::uint32_t> places;  ///< one a vertex; equal where positions are equal
-    std::vector<std::uint32_t> partner; ///< one a half-edge: the one across the edge, or kNone
+    std::vector<std::uint32_t> places;                    ///< one a vertex; equal where positions are equal
+    std::vector<std::uint32_t> partner;                   ///< one a half-edge: the one across the edge, or kNone
     std::vector<std::vector<std::uint32_t>> crowdedEdges; ///< half-edges of edges with more than two triangles
     std::vector<std::uint32_t> boundary;                  ///< half-edges whose edge has one triangle
-    std::size_t disagreements = 0;        ///< edges whose two triangles run along them in the same direction
-    std::vector<bool> ignored;            ///< triangles not looked at: not finite, or two corners at one place
+    std::size_t disagreements = 0; ///< edges whose two triangles run along them in the same direction
+    std::vector<bool> ignored;     ///< triangles not looked at: not finite, or two corners at one place
 
     [[nodiscard]] std::uint32_t startPlace(const TriangleMesh& mesh, std::uint32_t halfEdge) const noexcept;
     [[nodiscard]] std::uint32_t endPlace(const TriangleMesh& mesh, std::uint32_t halfEdge) const noexcept;

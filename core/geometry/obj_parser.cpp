@@ -11,11 +11,11 @@ namespace {
 
 /// Statements that say nothing about polygons: attributes, grouping, materials, free-form geometry.
 constexpr std::array kPassedOver = std::to_array<std::string_view>(
-    {"vt",    "vn",    "vp",       "vc",         "g",         "o",          "s",        "mg",       "usemtl",
-     "usemap", "mtllib", "maplib", "lod",        "bevel",     "c_interp",   "d_interp", "shadow_obj", "trace_obj",
-     "cstype", "deg",  "bmat",     "step",       "curv",      "curv2",      "surf",     "parm",     "trim",
-     "hole",  "scrv",  "sp",       "end",        "con",       "ctech",      "stech",    "cdc",      "cdp",
-     "bsp",   "bzp",   "res",      "l",          "p",         "call",       "csh"});
+    {"vt",     "vn",     "vp",     "vc",   "g",     "o",        "s",        "mg",         "usemtl",
+     "usemap", "mtllib", "maplib", "lod",  "bevel", "c_interp", "d_interp", "shadow_obj", "trace_obj",
+     "cstype", "deg",    "bmat",   "step", "curv",  "curv2",    "surf",     "parm",       "trim",
+     "hole",   "scrv",   "sp",     "end",  "con",   "ctech",    "stech",    "cdc",        "cdp",
+     "bsp",    "bzp",    "res",    "l",    "p",     "call",     "csh"});
 
 class ObjParser {
 public:

@@ -32,8 +32,7 @@ std::uint64_t readCount(TextScanner& scanner, std::string_view word, std::string
 void readVertices(TextScanner& scanner, MeshBuilder& builder, std::uint64_t count) {
     for (std::uint64_t i = 0; i < count; ++i) {
         const std::string_view first = scanner.word();
-        if (first.empty())
-            scanner.failTruncated("vertex " + std::to_string(i + 1) + " of " + std::to_string(count));
+        if (first.empty()) scanner.failTruncated("vertex " + std::to_string(i + 1) + " of " + std::to_string(count));
         const float x = scanner.coordinate(first, "x coordinate");
         const float y = scanner.coordinate(scanner.wordOnLine(), "y coordinate");
         const float z = scanner.coordinate(scanner.wordOnLine(), "z coordinate");

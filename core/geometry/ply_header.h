@@ -14,9 +14,9 @@ struct PlyHeader {
     enum class Type { int8, uint8, int16, uint16, int32, uint32, float32, float64 };
     struct Property {
         std::string name;
-        Type type = Type::float32;       ///< of the value, or of a list's items
+        Type type = Type::float32; ///< of the value, or of a list's items
         bool list = false;
-        Type countType = Type::uint8;    ///< of a list's length; an integer
+        Type countType = Type::uint8; ///< of a list's length; an integer
     };
     struct Element {
         std::string name;

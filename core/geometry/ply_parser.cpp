@@ -40,8 +40,7 @@ private:
         const std::string_view word = scanner_.word();
         double value = 0.0;
         if (word.empty())
-            fail("", 0, "the file ends where " + what + " should follow",
-                 "it is cut short; copy or export it again");
+            fail("", 0, "the file ends where " + what + " should follow", "it is cut short; copy or export it again");
         if (!parseReal(word, value)) fail("", 0, quoted(word) + " is not a number", "export the model again");
         return value;
     }
@@ -65,9 +64,12 @@ public:
     double real(Type type) {
         const auto raw = take(sizeOf(type));
         switch (type) {
-        case Type::float32: return readNumber<float>(raw, order_);
-        case Type::float64: return readNumber<double>(raw, order_);
-        default: return static_cast<double>(integerOf(raw, type));
+        case Type::float32:
+            return readNumber<float>(raw, order_);
+        case Type::float64:
+            return readNumber<double>(raw, order_);
+        default:
+            return static_cast<double>(integerOf(raw, type));
         }
     }
     std::int64_t integer(Type type) { return integerOf(take(sizeOf(type)), type); }
@@ -99,13 +101,20 @@ private:
     }
     [[nodiscard]] std::int64_t integerOf(std::span<const std::byte> raw, Type type) const noexcept {
         switch (type) {
-        case Type::int8: return readNumber<std::int8_t>(raw, order_);
-        case Type::uint8: return readNumber<std::uint8_t>(raw, order_);
-        case Type::int16: return readNumber<std::int16_t>(raw, order_);
-        case Type::uint16: return readNumber<std::uint16_t>(raw, order_);
-        case Type::int32: return readNumber<std::int32_t>(raw, order_);
-        case Type::uint32: return readNumber<std::uint32_t>(raw, order_);
-        default: return 0;
+        case Type::int8:
+            return readNumber<std::int8_t>(raw, order_);
+        case Type::uint8:
+            return readNumber<std::uint8_t>(raw, order_);
+        case Type::int16:
+            return readNumber<std::int16_t>(raw, order_);
+        case Type::uint16:
+            return readNumber<std::uint16_t>(raw, order_);
+        case Type::int32:
+            return readNumber<std::int32_t>(raw, order_);
+        case Type::uint32:
+            return readNumber<std::uint32_t>(raw, order_);
+        default:
+            return 0;
         }
     }
 

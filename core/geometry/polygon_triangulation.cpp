@@ -18,7 +18,8 @@ glm::dvec3 newellNormal(std::span<const glm::vec3> positions, std::span<const st
     const glm::dvec3 origin(positions[corners[0]]);
     glm::dvec3 normal(0.0);
     for (std::size_t i = 1; i + 1 < corners.size(); ++i)
-        normal += glm::cross(glm::dvec3(positions[corners[i]]) - origin, glm::dvec3(positions[corners[i + 1]]) - origin);
+        normal +=
+            glm::cross(glm::dvec3(positions[corners[i]]) - origin, glm::dvec3(positions[corners[i + 1]]) - origin);
     return normal;
 }
 
@@ -126,8 +127,7 @@ private:
 };
 
 void fan(std::span<const std::uint32_t> corners, std::vector<glm::uvec3>& triangles) {
-    for (std::size_t i = 1; i + 1 < corners.size(); ++i)
-        triangles.emplace_back(corners[0], corners[i], corners[i + 1]);
+    for (std::size_t i = 1; i + 1 < corners.size(); ++i) triangles.emplace_back(corners[0], corners[i], corners[i + 1]);
 }
 
 } // namespace

@@ -68,7 +68,7 @@ struct Stack {
 
 /// Triangles at an edge once plain repeats are gone.
 struct EdgeUse {
-    std::uint32_t single = 0; ///< that stand alone on their three places
+    std::uint32_t single = 0;         ///< that stand alone on their three places
     std::vector<std::uint32_t> pairs; ///< that stand back to back, by the number of the pair
 };
 
@@ -139,7 +139,7 @@ std::size_t dropRepeatedTriangles(TriangleMesh& mesh) {
     for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
         const glm::uvec3& corners = mesh.triangles[t];
         Places key{places[corners.x], places[corners.y], places[corners.z]};
-        std::ranges::rotate(key, std::ranges::min_element(key));
+        std::rotate(key.begin(), std::ranges::min_element(key), key.end());
         const bool front = key[1] < key[2];
         std::ranges::sort(key);
         Stack& stack = stacks[key];

@@ -92,8 +92,9 @@ glm::vec3 readCorner(std::span<const std::byte> bytes, std::size_t triangle, con
 TriangleMesh parseBinary(std::span<const std::byte> bytes, const std::string& name) {
     const std::size_t count = readNumber<std::uint32_t>(bytes.subspan(80));
     if (count > kMaxTriangles)
-        throw DataError(name, "has " + std::to_string(count) + " triangles, more than the limit of " +
-                                  std::to_string(kMaxTriangles),
+        throw DataError(name,
+                        "has " + std::to_string(count) + " triangles, more than the limit of " +
+                            std::to_string(kMaxTriangles),
                         "reduce its detail (decimate it) before exporting");
     MeshBuilder builder(name, "triangle");
     PositionIndex places;

@@ -204,18 +204,30 @@ private:
         return known->second;
     }
 
-    /// One vertex for each set of joined corners.
-    void collect() {
+    /// One vertex for each set of joined corners, in the order the mesh had them. Gives their numbers
+    /// by the corner that stands for the set.
+    std::vector<std::uint32_t> numberVertices() {
+        std::vector<std::uint32_t> first(cornerCount(), kNone); // vertex of the mesh, by set
+        for (std::uint32_t c = 0; c < cornerCount(); ++c) {
+            std::uint32_t& vertex = first[corners_.find(c)];
+            vertex = std::min(vertex, vertexAt(mesh_, c));
+        }
+        std::vector<std::uint32_t> sets;
+        for (std::uint32_t c = 0; c < cornerCount(); ++c)
+            if (first[c] != kNone) sets.push_back(c);
+        std::ranges::stable_sort(sets, {}, [&](std::uint32_t set) { return first[set]; });
         std::vector<std::uint32_t> number(cornerCount(), kNone);
+        for (const std::uint32_t set : sets) {
+            number[set] = static_cast<std::uint32_t>(result_.mesh.positions.size());
+            result_.mesh.positions.push_back(mesh_.positions[first[set]]);
+        }
+        return number;
+    }
+
+    void collect() {
         TriangleMesh& out = result_.mesh;
-        const auto vertex = [&](std::uint32_t corner) {
-            std::uint32_t& n = number[corners_.find(corner)];
-            if (n == kNone) {
-                n = static_cast<std::uint32_t>(out.positions.size());
-                out.positions.push_back(position(corner));
-            }
-            return n;
-        };
+        const std::vector<std::uint32_t> number = numberVertices();
+        const auto vertex = [&](std::uint32_t corner) { return number[corners_.find(corner)]; };
         for (std::uint32_t t = 0; t < mesh_.triangles.size(); ++t)
             out.triangles.emplace_back(vertex(3 * t), vertex(3 * t + 1), vertex(3 * t + 2));
         for (const glm::uvec3& t : added_) out.triangles.emplace_back(vertex(t.x), vertex(t.y), vertex(t.z));
@@ -237,7 +249,7 @@ private:
     std::unordered_set<std::uint64_t> edges_;     ///< between places, in the direction they run
     std::unordered_map<std::uint32_t, std::vector<std::uint32_t>> members_; ///< triangles, by piece
     std::unordered_map<std::uint32_t, bool> flat_;                          ///< by piece
-    std::vector<glm::uvec3> added_;                ///< as corners
+    std::vector<glm::uvec3> added_;                                         ///< as corners
     StitchedSurface result_;
 };
 

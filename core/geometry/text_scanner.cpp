@@ -103,7 +103,7 @@ float TextScanner::coordinate(std::string_view word, std::string_view what) cons
     if (error == std::errc() && stop == end && std::isfinite(value)) return value;
 
     // Not the plain case: missing, no number, not finite, or beyond a float at either end.
-    if (word.empty()) fail("the " + std::string(what) + " is missing", "export the model again");
+    if (word.empty()) failMissing(what);
     double wide = 0.0;
     if (!parseReal(word, wide))
         fail(quoted(word) + " is not a number, for the " + std::string(what), "write numbers like 1.5 or -2e-3");
@@ -115,7 +115,7 @@ float TextScanner::coordinate(std::string_view word, std::string_view what) cons
 }
 
 std::int64_t TextScanner::integer(std::string_view word, std::string_view what) const {
-    if (word.empty()) fail("the " + std::string(what) + " is missing", "export the model again");
+    if (word.empty()) failMissing(what);
     const std::string_view digits = withoutPlus(word);
     const char* const end = digits.data() + digits.size();
     std::int64_t value = 0;
@@ -129,9 +129,13 @@ void TextScanner::fail(const std::string& why, const std::string& remedy) const 
     throw DataError(name_ + ", line " + std::to_string(line_), why, remedy);
 }
 
+void TextScanner::failMissing(std::string_view what) const {
+    if (atEnd()) failTruncated("the " + std::string(what));
+    fail("the " + std::string(what) + " is missing", "export the model again");
+}
+
 void TextScanner::failTruncated(std::string_view expected) const {
-    fail("the file ends where " + std::string(expected) + " should follow",
-         "it is cut short; copy or export it again");
+    fail("the file ends where " + std::string(expected) + " should follow", "it is cut short; copy or export it again");
 }
 
 } // namespace lumorph

@@ -36,6 +36,7 @@ public:
     [[noreturn]] void failTruncated(std::string_view expected) const;
 
 private:
+    [[noreturn]] void failMissing(std::string_view what) const;
     /// Length of the line end at `position`, 0 when there is none.
     [[nodiscard]] std::size_t lineEnd(std::size_t position) const noexcept;
 
