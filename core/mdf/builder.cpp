@@ -255,6 +255,7 @@ Field buildField(const Rig& rig, const BuildOptions& options, const Progress& pr
 
     Field field;
     field.frame = frameOf(rig.reach(), options.resolution);
+    field.restSurface = boundingBox(rig.restMesh().positions).max.y;
     field.levels = options.levels;
     field.seed = options.seed;
     field.rigName = rig.name();

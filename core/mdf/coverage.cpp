@@ -1,6 +1,7 @@
 #include "core/mdf/coverage.h"
 
 #include <algorithm>
+#include <cmath>
 #include <mutex>
 #include <string>
 
@@ -53,10 +54,10 @@ struct Coverage::Pieces {
     std::span<const std::uint64_t> sweepAtLevel(std::size_t body, int level, CoverageScratch& scratch) const;
     void parityOfBody(const Window::Part& part, std::span<const Level> state, CoverageScratch& scratch) const;
     void parityOfBodyAt(std::size_t body, std::span<const double> strokes, const ColumnRange& range, CoverageScratch& scratch) const;
-    void sweepOfBody(std::size_t body, std::span<const Level> state, const ColumnRange& range,
+    void sweepOfBody(std::size_t body, std::span<const double> strokes, const ColumnRange& range,
                      std::span<std::uint64_t> out, CoverageScratch& scratch) const;
     [[nodiscard]] Window windowOver(const ColumnRange& range) const;
-    [[nodiscard]] int stepsOfBody(const RigBody& b, std::span<const Level> state) const noexcept;
+    [[nodiscard]] int stepsOfBody(const RigBody& b, std::span<const double> strokes) const noexcept;
     void removeBodyAndTail(const ColumnRange& range, std::span<std::uint64_t> out) const;
 
     /// Calls row(source words, target words, count) for each row of columns that two ranges share.
@@ -233,20 +234,20 @@ Coverage::Window Coverage::Pieces::windowOver(const ColumnRange& range) const {
     return made;
 }
 
-int Coverage::Pieces::stepsOfBody(const RigBody& b, std::span<const Level> state) const noexcept {
-    int highest = 0;
-    for (const std::uint16_t a : b.actuators) highest = std::max(highest, state[a].index);
-    return b.stepsPerLevel * highest;
+int Coverage::Pieces::stepsOfBody(const RigBody& b, std::span<const double> strokes) const noexcept {
+    double longest = 0.0;
+    for (const std::uint16_t a : b.actuators) longest = std::max(longest, strokes[a]);
+    // The slack keeps whole levels at whole multiples of the steps between two levels.
+    return static_cast<int>(std::ceil(b.stepsPerLevel * longest * (levels - 1) - 1e-6));
 }
 
-void Coverage::Pieces::sweepOfBody(std::size_t b, std::span<const Level> state, const ColumnRange& range,
+void Coverage::Pieces::sweepOfBody(std::size_t b, std::span<const double> strokes, const ColumnRange& range,
                                    std::span<std::uint64_t> out, CoverageScratch& scratch) const {
-    const int steps = stepsOfBody(bodies[b], state);
-    std::vector<double> strokes(rig.actuatorCount(), 0.0);
+    const int steps = stepsOfBody(bodies[b], strokes);
+    std::vector<double> onTheWay(rig.actuatorCount(), 0.0);
     for (int step = 1; step <= steps; ++step) {
-        for (const std::uint16_t a : bodies[b].actuators)
-            strokes[a] = strokeOf(state[a], levels) * (static_cast<double>(step) / steps);
-        parityOfBodyAt(b, strokes, range, scratch);
+        for (const std::uint16_t a : bodies[b].actuators) onTheWay[a] = strokes[a] * (static_cast<double>(step) / steps);
+        parityOfBodyAt(b, onTheWay, range, scratch);
         for (std::size_t i = 0; i < out.size(); ++i) out[i] |= scratch.parity[i];
     }
 }
@@ -307,34 +308,35 @@ void Coverage::covered(std::span<const Level> state, const Window& window, std::
             unite(of.range, pieces_->sweepAtLevel(part.body, state[of.actuators.front()].index, scratch));
         } else {
             scratch.swept.assign(part.range.size() * pieces_->wordsPerColumn, 0);
-            pieces_->sweepOfBody(part.body, state, part.range, scratch.swept, scratch);
+            std::vector<double> strokes(state.size());
+            for (std::size_t i = 0; i < state.size(); ++i) strokes[i] = strokeOf(state[i], pieces_->levels);
+            pieces_->sweepOfBody(part.body, strokes, part.range, scratch.swept, scratch);
             unite(part.range, scratch.swept);
         }
     }
     pieces_->removeBodyAndTail(window.range, out);
 }
 
-void Coverage::coveredAfresh(std::span<const Level> state, BitColumns& out, CoverageScratch& scratch) const {
+void Coverage::coveredAt(std::span<const double> strokes, BitColumns& out, CoverageScratch& scratch) const {
     if (out.dimensions() != pieces_->frame.dimensions) out = BitColumns(pieces_->frame.dimensions);
     out.clear();
     const ColumnRange all = columnsOf(pieces_->frame);
-    std::vector<double> strokes(state.size());
     for (std::size_t b = 0; b < pieces_->bodies.size(); ++b) {
         const RigBody& of = pieces_->bodies[b];
+        if (of.actuators.empty()) continue;
         if (of.stepsPerLevel > 0) {
-            pieces_->sweepOfBody(b, state, all, out.words(), scratch);
+            pieces_->sweepOfBody(b, strokes, all, out.words(), scratch);
             continue;
         }
-        for (std::size_t i = 0; i < state.size(); ++i) strokes[i] = strokeOf(state[i], pieces_->levels);
         pieces_->parityOfBodyAt(b, strokes, all, scratch);
         for (std::size_t i = 0; i < out.words().size(); ++i) out.words()[i] |= scratch.parity[i];
     }
     pieces_->removeBodyAndTail(all, out.words());
 }
 
-int Coverage::pathSteps(std::span<const Level> state) const noexcept {
+int Coverage::pathSteps(std::span<const double> strokes) const noexcept {
     int steps = 1;
-    for (const RigBody& b : pieces_->bodies) steps = std::max(steps, pieces_->stepsOfBody(b, state));
+    for (const RigBody& b : pieces_->bodies) steps = std::max(steps, pieces_->stepsOfBody(b, strokes));
     return steps;
 }
 

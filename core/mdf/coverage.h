@@ -63,13 +63,14 @@ public:
     /// V(s) of a window's columns only: `out` gets `window.range.size()` x words per column, rows along x.
     void covered(std::span<const Level> state, const Window& window, std::span<std::uint64_t> out,
                  CoverageScratch& scratch) const;
-    /// The same, everything deformed and rasterised anew without any kept piece; for measuring.
-    void coveredAfresh(std::span<const Level> state, BitColumns& out, CoverageScratch& scratch) const;
+    /// V at any strokes (each in [0, 1]), between the levels too; everything is deformed and rasterised
+    /// anew without any kept piece.
+    void coveredAt(std::span<const double> strokes, BitColumns& out, CoverageScratch& scratch) const;
 
     /// The columns whose coverage this actuator can change, at least.
     [[nodiscard]] const ColumnRange& columnsMovedBy(std::size_t actuator) const noexcept;
-    /// In how many equal steps the path from rest to `state` is sampled; 1 when the solid holds its path.
-    [[nodiscard]] int pathSteps(std::span<const Level> state) const noexcept;
+    /// In how many equal steps the path from rest to `strokes` is sampled; 1 when the solid holds its path.
+    [[nodiscard]] int pathSteps(std::span<const double> strokes) const noexcept;
     /// Memory held in kept pieces, bytes.
     [[nodiscard]] std::size_t bytes() const noexcept;
 

@@ -46,6 +46,7 @@ struct Field {
     bool exhaustive = false;   ///< those were all joint states
     std::string rigName;
     std::vector<std::byte> rigGlb; ///< the rig itself, as writeRigGlb gives it
+    float restSurface = 0.0F;      ///< highest point of the rig at rest, metres: what targets stand on
     BitColumns body;               ///< the zero-state body; the domain is everything else
     /// P(v) in 1/255: mean coverage over the sampled states; index = column x height + y.
     std::vector<std::uint8_t> background;

@@ -27,7 +27,7 @@ std::vector<State> quasiRandomStates(std::size_t actuators, int levels, std::siz
                            "split the rig into parts that do not touch");
     std::vector<State> states(count, State(actuators));
     if (actuators == 0) return states;
-    boost::random::sobol_64 sequence(actuators);
+    boost::random::sobol sequence(actuators);
     for (State& state : states)
         for (std::size_t i = 0; i < actuators; ++i) {
             const std::uint64_t bits = sequence() ^ mixed(seed * kDimensions + i);

@@ -96,8 +96,9 @@ glm::ivec3 readSizes(const Header& header) {
         if (!(size >= 1.0) || size != std::floor(size)) header.fail("field 'sizes'", "a size is not a whole number above 0");
         product *= size;
     }
-    if (product > static_cast<double>(kMaxVoxels))
-        header.fail("field 'sizes'", "the grid has more than " + std::to_string(kMaxVoxels) + " voxels");
+    if (product > static_cast<double>(kMaxVoxels) || sizes[0] * sizes[2] > static_cast<double>(kMaxColumns))
+        header.fail("field 'sizes'", "the grid has more than " + std::to_string(kMaxVoxels) + " voxels or " +
+                                         std::to_string(kMaxColumns) + " columns");
     return {static_cast<int>(sizes[0]), static_cast<int>(sizes[1]), static_cast<int>(sizes[2])};
 }
 
