@@ -1,9 +1,9 @@
 #pragma once
 
-#include <filesystem>
 #include <string>
 #include <vector>
 
+#include "core/base/clock.h"
 #include "core/base/progress.h"
 #include "core/geometry/model.h"
 #include "core/mdf/coverage.h"

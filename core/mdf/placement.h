@@ -1,12 +1,10 @@
 #pragma once
 
-#include <filesystem>
 #include <string>
 #include <vector>
 
 #include <glm/mat4x4.hpp>
 
-#include "core/base/progress.h"
 #include "core/base/units.h"
 #include "core/geometry/triangle_mesh.h"
 #include "core/mdf/field.h"
