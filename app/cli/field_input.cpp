@@ -22,12 +22,14 @@ TargetVoxels readGrid(const Field& field, const std::string& path) {
     const ByteGrid grid = parseNrrd(readInput(path), path);
     const VoxelFrame& frame = field.frame;
     if (grid.frame.dimensions != frame.dimensions)
-        throw DataError(path, "its grid has another shape than the field's", "make it with 'lumorph voxelize --like' that field");
-    const double shift = static_cast<double>(std::max({std::abs(grid.frame.origin.x - frame.origin.x),
-                                                       std::abs(grid.frame.origin.y - frame.origin.y),
-                                                       std::abs(grid.frame.origin.z - frame.origin.z)}));
+        throw DataError(path, "its grid has another shape than the field's",
+                        "make it with 'lumorph voxelize --like' that field");
+    const double shift = static_cast<double>(
+        std::max({std::abs(grid.frame.origin.x - frame.origin.x), std::abs(grid.frame.origin.y - frame.origin.y),
+                  std::abs(grid.frame.origin.z - frame.origin.z)}));
     if (std::abs(grid.frame.voxelSize / frame.voxelSize - 1.0) > 1e-4 || shift > 0.01 * frame.voxelSize)
-        throw DataError(path, "its grid lies elsewhere than the field's", "make it with 'lumorph voxelize --like' that field");
+        throw DataError(path, "its grid lies elsewhere than the field's",
+                        "make it with 'lumorph voxelize --like' that field");
     return {bitsOf(grid), {}, 0.0, {}};
 }
 

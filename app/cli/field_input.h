@@ -13,7 +13,7 @@ namespace lumorph::cli {
 /// A target as voxels of a field's frame.
 struct TargetVoxels {
     BitColumns bits;
-    TriangleMesh mesh; ///< placed, device coordinates; empty when the target came as voxels
+    TriangleMesh mesh;                 ///< placed, device coordinates; empty when the target came as voxels
     double voxelizeMilliseconds = 0.0; ///< median
     std::vector<std::string> warnings;
 };

@@ -38,9 +38,11 @@ struct Matcher {
     Voting voting;
 
     explicit Matcher(const std::string& path)
-        : field(readFieldFile(path)), coverage(readRigGlb(field.rigGlb, path), field.frame, field.levels), voting(field) {
+        : field(readFieldFile(path)), coverage(readRigGlb(field.rigGlb, path), field.frame, field.levels),
+          voting(field) {
         if (coverage.rig().actuatorCount() != field.actuators.size())
-            throw DataError(path, "the field and the rig in it do not agree", "build the field again with 'lumorph mdf build'");
+            throw DataError(path, "the field and the rig in it do not agree",
+                            "build the field again with 'lumorph mdf build'");
     }
 };
 
@@ -89,10 +91,12 @@ Result matchVoxels(const Matcher& matcher, const TargetVoxels& target, const Arg
         result.quality = refiner.qualityOf(wanted, result.state);
     }
     if (result.votes.targetVoxels == 0)
-        result.warnings.emplace_back("The target does not overlap the space above the device; place it there or use --fit.");
+        result.warnings.emplace_back(
+            "The target does not overlap the space above the device; place it there or use --fit.");
     for (std::size_t i = 0; i < result.votes.actuators.size() && result.votes.targetVoxels > 0; ++i)
         if (!result.votes.actuators[i].reached)
-            result.warnings.push_back("The target does not meet what '" + matcher.field.actuators[i].name + "' can change; it rests.");
+            result.warnings.push_back("The target does not meet what '" + matcher.field.actuators[i].name +
+                                      "' can change; it rests.");
     return result;
 }
 
@@ -114,17 +118,17 @@ nlohmann::json resultJson(const Matcher& matcher, const Result& result, const Ar
                              {"errors", vote.errors},
                              {"intersections", vote.intersections}});
     }
-    nlohmann::json json = {{"method", arguments.method},
-                           {"state", stateJson(result.state)},
-                           {"actuators", actuators},
-                           {"iou", result.quality.iou()},
-                           {"targetVoxels", result.votes.targetVoxels},
-                           {"unmatchedVolume", static_cast<double>(result.quality.unmatched) * volume},
-                           {"overfilledVolume", static_cast<double>(result.quality.overfilled) * volume},
-                           {"ms",
-                            {{"voxelize", {{"median", result.voxelizeMilliseconds}}},
-                             {"match", {{"median", result.matchMilliseconds}}}}},
-                           {"warnings", result.warnings}};
+    nlohmann::json json = {
+        {"method", arguments.method},
+        {"state", stateJson(result.state)},
+        {"actuators", actuators},
+        {"iou", result.quality.iou()},
+        {"targetVoxels", result.votes.targetVoxels},
+        {"unmatchedVolume", static_cast<double>(result.quality.unmatched) * volume},
+        {"overfilledVolume", static_cast<double>(result.quality.overfilled) * volume},
+        {"ms",
+         {{"voxelize", {{"median", result.voxelizeMilliseconds}}}, {"match", {{"median", result.matchMilliseconds}}}}},
+        {"warnings", result.warnings}};
     if (result.refinement) {
         json["ms"]["refine"] = {{"median", result.refineMilliseconds}};
         json["iouBefore"] = result.refinement->before.iou();
@@ -158,8 +162,8 @@ void printResult(const Matcher& matcher, const Result& result) {
                 static_cast<double>(result.quality.overfilled) * cubicCentimetres);
     std::printf("  voxelise %.3f ms, match %.3f ms", result.voxelizeMilliseconds, result.matchMilliseconds);
     if (result.refinement)
-        std::printf(", refine %.3f ms over %d states (IoU %.3f by voting)", result.refineMilliseconds, result.refinement->statesSeen,
-                    result.refinement->before.iou());
+        std::printf(", refine %.3f ms over %d states (IoU %.3f by voting)", result.refineMilliseconds,
+                    result.refinement->statesSeen, result.refinement->before.iou());
     std::printf("\n");
     for (const std::string& warning : result.warnings) std::printf("  ! %s\n", warning.c_str());
 }
@@ -180,7 +184,8 @@ void matchAnimation(const Matcher& matcher, const Arguments& arguments, const Se
     options.framesPerSecond = arguments.framesPerSecond;
     options.refined = arguments.method == "refined";
     options.budget = Microseconds(static_cast<std::int64_t>(1000.0 * arguments.budgetMilliseconds));
-    const auto frames = matchClip(matcher.field, matcher.coverage, matcher.voting, model, animation, options, session.progress());
+    const auto frames =
+        matchClip(matcher.field, matcher.coverage, matcher.voting, model, animation, options, session.progress());
     Session::endProgress();
     if (!arguments.csv.empty()) writeOutput(arguments.csv, bytesOfText(clipCsv(matcher.field, frames)));
     double wanted = 0.0;
@@ -189,14 +194,17 @@ void matchAnimation(const Matcher& matcher, const Arguments& arguments, const Se
     for (const ClipFrame& frame : frames) {
         wanted += frame.iouWanted / static_cast<double>(frames.size());
         reached += frame.iouReached / static_cast<double>(frames.size());
-        list.push_back({{"seconds", frame.seconds}, {"state", stateJson(frame.wanted)}, {"strokes", frame.strokes},
-                        {"iouWanted", frame.iouWanted}, {"iouReached", frame.iouReached}});
+        list.push_back({{"seconds", frame.seconds},
+                        {"state", stateJson(frame.wanted)},
+                        {"strokes", frame.strokes},
+                        {"iouWanted", frame.iouWanted},
+                        {"iouReached", frame.iouReached}});
     }
     if (arguments.json)
         printJson({{"animation", animation.name}, {"frames", list}, {"iouWanted", wanted}, {"iouReached", reached}});
     else if (arguments.csv != "-")
-        std::printf("  %zu frames of '%s': mean IoU %.3f wanted, %.3f reached under the velocity limits\n", frames.size(),
-                    animation.name.c_str(), wanted, reached);
+        std::printf("  %zu frames of '%s': mean IoU %.3f wanted, %.3f reached under the velocity limits\n",
+                    frames.size(), animation.name.c_str(), wanted, reached);
 }
 
 void match(const Arguments& arguments, const Session& session) {
@@ -218,8 +226,9 @@ void match(const Arguments& arguments, const Session& session) {
     Result result = matchVoxels(matcher, target, arguments);
     result.placement = placement;
     if (!arguments.picture.empty())
-        drawMatch(matcher.coverage.rig(), target.mesh, strokesOf(matcher.coverage.rig(), result.state, matcher.field.levels),
-                  result.quality.iou(), result.matchMilliseconds, arguments.picture);
+        drawMatch(matcher.coverage.rig(), target.mesh,
+                  strokesOf(matcher.coverage.rig(), result.state, matcher.field.levels), result.quality.iou(),
+                  result.matchMilliseconds, arguments.picture);
     arguments.json ? printJson(resultJson(matcher, result, arguments)) : printResult(matcher, result);
 }
 
@@ -229,17 +238,29 @@ void addMatchCommand(CLI::App& app, Session& session) {
     auto a = std::make_shared<Arguments>();
     CLI::App* command = app.add_subcommand("match", "Find the state in which the device looks most like a target");
     command->add_option("field", a->field, "A .mdf file")->required();
-    command->add_option("target", a->target.path, "A mesh, or an .nrrd grid in the field's frame (- for standard input)")->required();
+    command
+        ->add_option("target", a->target.path, "A mesh, or an .nrrd grid in the field's frame (- for standard input)")
+        ->required();
     command->add_flag("--fit", a->target.fit, "Largest scale inside the frame, centred, standing on the rest surface");
-    CLI::Option* place = command->add_flag("--auto-place", a->autoPlace, "Search heading, scale and position for the best IoU");
+    CLI::Option* place =
+        command->add_flag("--auto-place", a->autoPlace, "Search heading, scale and position for the best IoU");
     place->excludes("--fit");
-    command->add_option("--method", a->method, "voting or refined")->check(CLI::IsMember({"voting", "refined"}))->capture_default_str();
-    command->add_option("--budget-ms", a->budgetMilliseconds, "Time for refinement")->check(CLI::Range(0.001, 1e6))->capture_default_str();
-    command->add_option("--repeat", a->target.repeat, "Repeat each stage and give the median")->check(CLI::Range(1, 100000))->capture_default_str();
+    command->add_option("--method", a->method, "voting or refined")
+        ->check(CLI::IsMember({"voting", "refined"}))
+        ->capture_default_str();
+    command->add_option("--budget-ms", a->budgetMilliseconds, "Time for refinement")
+        ->check(CLI::Range(0.001, 1e6))
+        ->capture_default_str();
+    command->add_option("--repeat", a->target.repeat, "Repeat each stage and give the median")
+        ->check(CLI::Range(1, 100000))
+        ->capture_default_str();
     command->add_option("--animation", a->animation, "Match an animation of the file over time: its name, or first");
-    command->add_option("--fps", a->framesPerSecond, "Frames a second of that")->check(CLI::Range(1.0, 240.0))->capture_default_str();
+    command->add_option("--fps", a->framesPerSecond, "Frames a second of that")
+        ->check(CLI::Range(1.0, 240.0))
+        ->capture_default_str();
     command->add_option("--csv", a->csv, "Write the matched animation as a table, or -")->needs("--animation");
-    command->add_option("--picture", a->picture, "Write a picture of rest, target and fit (.png)")->excludes("--animation");
+    command->add_option("--picture", a->picture, "Write a picture of rest, target and fit (.png)")
+        ->excludes("--animation");
     command->add_flag("--json", a->json, "Print one JSON value");
     command->callback([a, &session] { match(*a, session); });
 }

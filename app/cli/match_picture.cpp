@@ -19,7 +19,8 @@ void drawMatch(const Rig& rig, const TriangleMesh& target, std::span<const doubl
     figure.panels.push_back({"Target", {atRest, {target, kAccentColor}}});
     figure.panels.push_back({"Fit", {fitted, {target, kAccentColor, kVeil}}});
     char footer[128];
-    std::snprintf(footer, sizeof footer, "%s \u00b7 IoU %.3f \u00b7 matched in %.3f ms", rig.name().c_str(), iou, milliseconds);
+    std::snprintf(footer, sizeof footer, "%s \u00b7 IoU %.3f \u00b7 matched in %.3f ms", rig.name().c_str(), iou,
+                  milliseconds);
     figure.footer = footer;
     const HeadlessContext context;
     writePng(renderFigure(figure, {1920, 760}), file);

@@ -50,16 +50,18 @@ nlohmann::json infoJson(const Field& field, std::size_t bytes) {
 
 void printInfo(const Field& field, std::size_t bytes) {
     const glm::ivec3& d = field.frame.dimensions;
-    std::printf("%s: %d x %d x %d voxels of %.3f mm, %zu actuators with %d levels\n", field.rigName.c_str(), d.x, d.y, d.z,
-                1000 * field.frame.voxelSize, field.actuators.size(), field.levels);
-    std::printf("  expectation over %u joint states%s, seed %llu\n", field.samples, field.exhaustive ? " (all there are)" : "",
-                static_cast<unsigned long long>(field.seed));
+    std::printf("%s: %d x %d x %d voxels of %.3f mm, %zu actuators with %d levels\n", field.rigName.c_str(), d.x, d.y,
+                d.z, 1000 * field.frame.voxelSize, field.actuators.size(), field.levels);
+    std::printf("  expectation over %u joint states%s, seed %llu\n", field.samples,
+                field.exhaustive ? " (all there are)" : "", static_cast<unsigned long long>(field.seed));
     std::printf("  body %zu voxels; %zu of the other %zu can be reached\n", field.body.count(), reachableVoxels(field),
                 field.frame.voxelCount() - field.body.count());
-    std::printf("  ramp error mean %.4f, max %.4f; %llu monotonicity violations; %zu bytes\n", field.report.rampErrorMean,
-                field.report.rampErrorMax, static_cast<unsigned long long>(field.report.monotonicityViolations), bytes);
+    std::printf("  ramp error mean %.4f, max %.4f; %llu monotonicity violations; %zu bytes\n",
+                field.report.rampErrorMean, field.report.rampErrorMax,
+                static_cast<unsigned long long>(field.report.monotonicityViolations), bytes);
     if (field.report.rampErrorMean > 0.02)
-        std::printf("  ! The ramps are far from the sampled expectation: matching by voting will be coarse; use 'refined'.\n");
+        std::printf(
+            "  ! The ramps are far from the sampled expectation: matching by voting will be coarse; use 'refined'.\n");
 }
 
 struct BuildArguments {
@@ -111,11 +113,20 @@ void addMdfCommands(CLI::App& app, Session& session) {
     CLI::App* buildCommand = group->add_subcommand("build", "Build the field of a rig");
     buildCommand->add_option("rig", b->rig, "A .glb or .gltf file, or a folder of one mesh per state")->required();
     buildCommand->add_option("-o,--output", b->output, "The .mdf file to write, or -")->required();
-    buildCommand->add_option("--resolution", b->build.resolution, "Voxels along the shortest side")->check(CLI::Range(1, 4096))->capture_default_str();
-    buildCommand->add_option("--levels", b->build.levels, "Levels an actuator")->check(CLI::Range(2, kMaxLevels))->capture_default_str();
-    buildCommand->add_option("--samples", b->build.samples, "Joint states of the others to average over")->check(CLI::Range(1, 65535))->capture_default_str();
-    buildCommand->add_option("--seed", b->build.seed, "Which states; equal seeds give equal files")->capture_default_str();
-    buildCommand->add_option("--threads", b->build.threads, "Threads (0: one a core)")->check(CLI::Range(0, 1024))->capture_default_str();
+    buildCommand->add_option("--resolution", b->build.resolution, "Voxels along the shortest side")
+        ->check(CLI::Range(1, 4096))
+        ->capture_default_str();
+    buildCommand->add_option("--levels", b->build.levels, "Levels an actuator")
+        ->check(CLI::Range(2, kMaxLevels))
+        ->capture_default_str();
+    buildCommand->add_option("--samples", b->build.samples, "Joint states of the others to average over")
+        ->check(CLI::Range(1, 65535))
+        ->capture_default_str();
+    buildCommand->add_option("--seed", b->build.seed, "Which states; equal seeds give equal files")
+        ->capture_default_str();
+    buildCommand->add_option("--threads", b->build.threads, "Threads (0: one a core)")
+        ->check(CLI::Range(0, 1024))
+        ->capture_default_str();
     buildCommand->add_flag("--json", b->json, "Print the report as one JSON value");
     buildCommand->callback([b, &session] { build(*b, session); });
 
@@ -126,7 +137,8 @@ void addMdfCommands(CLI::App& app, Session& session) {
     infoCommand->callback([i] { info(*i); });
 
     auto e = std::make_shared<FieldArguments>();
-    CLI::App* exportCommand = group->add_subcommand("export", "Write the field as NRRD files for ParaView or 3D Slicer");
+    CLI::App* exportCommand =
+        group->add_subcommand("export", "Write the field as NRRD files for ParaView or 3D Slicer");
     exportCommand->add_option("field", e->field, "A .mdf file")->required();
     exportCommand->add_option("-o,--output", e->output, "The folder to write into")->required();
     exportCommand->callback([e] { exportField(readFieldFile(e->field), e->output); });

@@ -74,7 +74,8 @@ nlohmann::json reportJson(const Rig& rig, const ShapeReport& report) {
 
 void printRange(const ShapeReport::PerActuator& a) {
     if (a.unit == "rad")
-        std::printf("%6.1f to %5.1f deg", Angle::radians(a.rangeMin).inDegrees(), Angle::radians(a.rangeMax).inDegrees());
+        std::printf("%6.1f to %5.1f deg", Angle::radians(a.rangeMin).inDegrees(),
+                    Angle::radians(a.rangeMax).inDegrees());
     else if (a.unit == "m")
         std::printf("%6.1f to %5.1f mm ", 1000 * a.rangeMin, 1000 * a.rangeMax);
     else
@@ -83,9 +84,9 @@ void printRange(const ShapeReport::PerActuator& a) {
 
 void printReport(const Rig& rig, const ShapeReport& report) {
     const glm::vec3 size = 1000.0F * report.reach.size();
-    std::printf("%s: %zu triangles, %s, %.0f x %.0f x %.0f mm over all states\n\n", rig.name().c_str(), report.rest.triangles,
-                report.rest.solid() ? "a clean closed solid" : "not a clean solid", static_cast<double>(size.x),
-                static_cast<double>(size.y), static_cast<double>(size.z));
+    std::printf("%s: %zu triangles, %s, %.0f x %.0f x %.0f mm over all states\n\n", rig.name().c_str(),
+                report.rest.triangles, report.rest.solid() ? "a clean closed solid" : "not a clean solid",
+                static_cast<double>(size.x), static_cast<double>(size.y), static_cast<double>(size.z));
     constexpr std::size_t kMost = 24;
     std::printf("  %-22s %-8s %-22s %10s %10s %9s\n", "actuator", "moves by", "range", "amplitude", "area", "stroke");
     for (std::size_t i = 0; i < std::min(kMost, report.actuators.size()); ++i) {
@@ -95,8 +96,10 @@ void printReport(const Rig& rig, const ShapeReport& report) {
         std::printf(" %7.1f mm %6.1f cm2 %7.2f s\n", 1000 * a.amplitude, 1e4 * a.sweptArea, a.fullStrokeSeconds);
     }
     if (report.actuators.size() > kMost) std::printf("  ... and %zu more\n", report.actuators.size() - kMost);
-    std::printf("\n  In %d random states: %d open, %d crossing themselves, %d turned inside out; edges stretch by at most %.1f %%.\n",
-                report.sampledStates, report.openStates, report.intersectingStates, report.invertedStates, 100 * report.maxStretch);
+    std::printf("\n  In %d random states: %d open, %d crossing themselves, %d turned inside out; edges stretch by at "
+                "most %.1f %%.\n",
+                report.sampledStates, report.openStates, report.intersectingStates, report.invertedStates,
+                100 * report.maxStretch);
     for (const std::string& finding : report.rest.findings()) std::printf("  ! %s\n", finding.c_str());
     for (const std::string& warning : report.warnings) std::printf("  ! %s\n", warning.c_str());
 }
@@ -117,7 +120,9 @@ struct DeformOptions {
 
 void deform(const DeformOptions& options) {
     const Rig rig = readRig(options.rig);
-    const int levels = options.levels > 0 ? options.levels : rig.actuatorCount() > 0 ? rig.actuators().front().levels : 33;
+    const int levels = options.levels > 0        ? options.levels
+                       : rig.actuatorCount() > 0 ? rig.actuators().front().levels
+                                                 : 33;
     const std::vector<double> strokes = strokesOf(rig, parseState(options.state), levels);
     const TriangleMesh mesh = deformed(rig, strokes);
     if (options.output == "-")
@@ -133,10 +138,14 @@ void addRigCommands(CLI::App& app, Session& session) {
     group->require_subcommand(1);
 
     auto infoOptions = std::make_shared<InfoOptions>();
-    CLI::App* infoCommand = group->add_subcommand("info", "Actuators, ranges, mesh checks and the shape-resolution report");
-    infoCommand->add_option("rig", infoOptions->rig, "A .glb or .gltf file, or a folder of one mesh per state")->required();
+    CLI::App* infoCommand =
+        group->add_subcommand("info", "Actuators, ranges, mesh checks and the shape-resolution report");
+    infoCommand->add_option("rig", infoOptions->rig, "A .glb or .gltf file, or a folder of one mesh per state")
+        ->required();
     infoCommand->add_flag("--json", infoOptions->json, "Print one JSON value");
-    infoCommand->add_option("--states", infoOptions->states, "Random joint states to check")->check(CLI::Range(0, 100000))->capture_default_str();
+    infoCommand->add_option("--states", infoOptions->states, "Random joint states to check")
+        ->check(CLI::Range(0, 100000))
+        ->capture_default_str();
     infoCommand->add_option("--seed", infoOptions->seed, "Which random states")->capture_default_str();
     infoCommand->callback([infoOptions, &session] { info(*infoOptions, session); });
 
@@ -144,8 +153,12 @@ void addRigCommands(CLI::App& app, Session& session) {
     CLI::App* deformCommand = group->add_subcommand("deform", "Write the mesh of a joint state, in metres");
     deformCommand->add_option("rig", deformOptions->rig, "The rig")->required();
     deformCommand->add_option("--state", deformOptions->state, "One level for each actuator: 0,12,...")->required();
-    deformCommand->add_option("--levels", deformOptions->levels, "Levels an actuator (default: the rig's own)")->check(CLI::Range(2, kMaxLevels));
-    deformCommand->add_option("-o,--output", deformOptions->output, "An .obj, .stl or .glb file, or - for OBJ on standard output")->required();
+    deformCommand->add_option("--levels", deformOptions->levels, "Levels an actuator (default: the rig's own)")
+        ->check(CLI::Range(2, kMaxLevels));
+    deformCommand
+        ->add_option("-o,--output", deformOptions->output,
+                     "An .obj, .stl or .glb file, or - for OBJ on standard output")
+        ->required();
     deformCommand->callback([deformOptions] { deform(*deformOptions); });
 }
 

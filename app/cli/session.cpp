@@ -105,7 +105,8 @@ State parseState(const std::string& text) {
         int level = 0;
         const auto parsed = std::from_chars(part.data(), part.data() + part.size(), level);
         if (part.empty() || parsed.ec != std::errc() || parsed.ptr != part.data() + part.size())
-            throw InvalidInput("--state", "'" + part + "' is not a whole number", "give one level for each actuator, such as 0,12,33");
+            throw InvalidInput("--state", "'" + part + "' is not a whole number",
+                               "give one level for each actuator, such as 0,12,33");
         state.push_back(Level{level});
         begin = end + 1;
     }

@@ -31,7 +31,8 @@ public:
         std::vector<std::pair<double, Pose>> starts{{fitIou, poseOf(fitPlacement(field_, box_))}};
         for (int i = 0; i < options_.yaws; ++i)
             for (const double share : {1.0, 0.8, 0.65}) {
-                Placement start = fitPlacement(field_, box_, Angle::radians(2.0 * std::numbers::pi * i / options_.yaws));
+                Placement start =
+                    fitPlacement(field_, box_, Angle::radians(2.0 * std::numbers::pi * i / options_.yaws));
                 start = shrunk(start, share);
                 starts.emplace_back(scoreOf(poseOf(start)), poseOf(start));
                 progress_.report(0.4 * (i + 1) / options_.yaws, "trying headings");

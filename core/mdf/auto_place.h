@@ -8,10 +8,10 @@
 namespace lumorph {
 
 struct AutoPlaceOptions {
-    int yaws = 12;             ///< headings that the search starts from
-    double minScale = 0.4;     ///< relative to the largest scale that fits
+    int yaws = 12;         ///< headings that the search starts from
+    double minScale = 0.4; ///< relative to the largest scale that fits
     double maxScale = 1.5;
-    double minInside = 0.9;    ///< share of the target's volume that must stay in the frame, outside the body
+    double minInside = 0.9; ///< share of the target's volume that must stay in the frame, outside the body
 };
 
 struct AutoPlacement {

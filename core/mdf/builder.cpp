@@ -96,7 +96,8 @@ FirstLevels countFirstLevels(const Coverage& coverage, const Slab& slab, const s
                 violations += static_cast<std::uint64_t>(std::popcount(seen[w] & ~words[w]));
                 std::uint64_t fresh = words[w] & ~seen[w];
                 seen[w] |= words[w];
-                const std::size_t voxel = (w / wordsPerColumn) * static_cast<std::size_t>(height) + (w % wordsPerColumn) * 64;
+                const std::size_t voxel =
+                    (w / wordsPerColumn) * static_cast<std::size_t>(height) + (w % wordsPerColumn) * 64;
                 for (; fresh != 0; fresh &= fresh - 1)
                     first.add(voxel + static_cast<std::size_t>(std::countr_zero(fresh)), level);
             }
@@ -149,7 +150,8 @@ SlabResult fitSlab(const Coverage& coverage, const Slab& slab, const FirstLevels
 }
 
 /// Mean coverage over the sampled states, in 1/255.
-std::vector<std::uint8_t> meanCoverage(const Coverage& coverage, const std::vector<State>& states, const Progress& progress) {
+std::vector<std::uint8_t> meanCoverage(const Coverage& coverage, const std::vector<State>& states,
+                                       const Progress& progress) {
     const glm::ivec3 size = coverage.frame().dimensions;
     const auto height = static_cast<std::size_t>(size.y);
     const auto wordsPerColumn = static_cast<std::size_t>((size.y + 63) / 64);
@@ -236,7 +238,8 @@ SampledField sampleField(const Coverage& coverage, const std::vector<State>& sta
         std::vector<double> expectation;
         for (std::size_t v = 0; v < slabs[s].range.size() * height; ++v)
             if (first.expectation(v, states.size(), expectation))
-                parts[s].push_back({frameColumn(coverage, slabs[s].range, v / height), static_cast<int>(v % height), expectation});
+                parts[s].push_back(
+                    {frameColumn(coverage, slabs[s].range, v / height), static_cast<int>(v % height), expectation});
     });
     SampledField sampled;
     sampled.actuators.resize(coverage.rig().actuatorCount());
@@ -249,8 +252,9 @@ SampledField sampleField(const Coverage& coverage, const std::vector<State>& sta
 
 Field buildField(const Rig& rig, const BuildOptions& options, const Progress& progress) {
     check(rig, options);
-    const std::size_t threads = options.threads > 0 ? static_cast<std::size_t>(options.threads)
-                                                    : tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
+    const std::size_t threads = options.threads > 0
+                                    ? static_cast<std::size_t>(options.threads)
+                                    : tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
     const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
 
     Field field;

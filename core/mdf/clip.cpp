@@ -48,7 +48,8 @@ std::string number(double value, const char* format) {
 } // namespace
 
 std::vector<ClipFrame> matchClip(const Field& field, const Coverage& coverage, const Voting& voting, const Model& model,
-                                 const Model::Animation& animation, const ClipOptions& options, const Progress& progress) {
+                                 const Model::Animation& animation, const ClipOptions& options,
+                                 const Progress& progress) {
     const double fps = options.framesPerSecond;
     if (!(fps >= 1.0 && fps <= 240.0))
         throw InvalidInput("frame rate", "it must be 1 to 240 frames a second", "give a rate in that range");
@@ -72,7 +73,8 @@ std::vector<ClipFrame> matchClip(const Field& field, const Coverage& coverage, c
         progress.throwIfCancelled();
         ClipFrame frame;
         frame.seconds = k / fps;
-        voxelizeTarget(field.frame, {placed(flatten(model, animation, frame.seconds), placement), closed, {}}, voxelizer, target);
+        voxelizeTarget(field.frame, {placed(flatten(model, animation, frame.seconds), placement), closed, {}},
+                       voxelizer, target);
         target &= coverage.domain();
         voting.match(target, votes, workspace, result.empty() ? nullptr : &result.back().wanted);
         frame.wanted = votes.state();
@@ -100,7 +102,8 @@ std::string clipCsv(const Field& field, const std::vector<ClipFrame>& frames) {
         csv += "," + quoted(actuator.name + " level") + "," + quoted(actuator.name + " stroke");
     csv += "\n";
     for (const ClipFrame& frame : frames) {
-        csv += number(frame.seconds, "%.6f") + "," + number(frame.iouWanted, "%.6f") + "," + number(frame.iouReached, "%.6f");
+        csv += number(frame.seconds, "%.6f") + "," + number(frame.iouWanted, "%.6f") + "," +
+               number(frame.iouReached, "%.6f");
         for (std::size_t i = 0; i < frame.wanted.size(); ++i)
             csv += "," + std::to_string(frame.wanted[i].index) + "," + number(frame.strokes[i], "%.6f");
         csv += "\n";

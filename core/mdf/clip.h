@@ -14,8 +14,8 @@ namespace lumorph {
 
 struct ClipOptions {
     double framesPerSecond = 30.0;
-    bool refined = true;                  ///< false: by voting alone
-    Microseconds budget{10'000};          ///< for refinement, each frame
+    bool refined = true;         ///< false: by voting alone
+    Microseconds budget{10'000}; ///< for refinement, each frame
 };
 
 /// One frame of a matched animation.

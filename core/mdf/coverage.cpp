@@ -28,7 +28,7 @@ struct Coverage::Pieces {
     std::size_t wordsPerColumn = 0;
     std::uint64_t lastWordMask = 0;
     std::vector<RigBody> bodies;
-    std::vector<std::vector<std::uint64_t>> still; ///< one a body: parity of the part that stays, over body.range
+    std::vector<std::vector<std::uint64_t>> still;     ///< one a body: parity of the part that stays, over body.range
     mutable std::vector<std::vector<Kept>> keptGroups; ///< [body][group]
     mutable std::vector<Kept> keptSweeps;              ///< [body], where one actuator sweeps it
     std::vector<ColumnRange> movedBy;
@@ -50,10 +50,12 @@ struct Coverage::Pieces {
 
     void rasterGroup(const RigGroup& group, std::span<const double> strokes, const ColumnRange& range,
                      std::span<std::uint64_t> out, CoverageScratch& scratch) const;
-    std::span<const std::uint64_t> groupAtLevel(std::size_t body, std::size_t group, int level, CoverageScratch& scratch) const;
+    std::span<const std::uint64_t> groupAtLevel(std::size_t body, std::size_t group, int level,
+                                                CoverageScratch& scratch) const;
     std::span<const std::uint64_t> sweepAtLevel(std::size_t body, int level, CoverageScratch& scratch) const;
     void parityOfBody(const Window::Part& part, std::span<const Level> state, CoverageScratch& scratch) const;
-    void parityOfBodyAt(std::size_t body, std::span<const double> strokes, const ColumnRange& range, CoverageScratch& scratch) const;
+    void parityOfBodyAt(std::size_t body, std::span<const double> strokes, const ColumnRange& range,
+                        CoverageScratch& scratch) const;
     void sweepOfBody(std::size_t body, std::span<const double> strokes, const ColumnRange& range,
                      std::span<std::uint64_t> out, CoverageScratch& scratch) const;
     [[nodiscard]] Window windowOver(const ColumnRange& range) const;
@@ -61,8 +63,7 @@ struct Coverage::Pieces {
     void removeBodyAndTail(const ColumnRange& range, std::span<std::uint64_t> out) const;
 
     /// Calls row(source words, target words, count) for each row of columns that two ranges share.
-    template <typename Row>
-    void eachSharedRow(const ColumnRange& source, const ColumnRange& target, Row&& row) const {
+    template <typename Row> void eachSharedRow(const ColumnRange& source, const ColumnRange& target, Row&& row) const {
         const ColumnRange shared = source.intersect(target);
         if (shared.empty()) return;
         const std::size_t count = static_cast<std::size_t>(shared.width()) * wordsPerColumn;
@@ -71,7 +72,8 @@ struct Coverage::Pieces {
     }
     [[nodiscard]] std::size_t offsetIn(const ColumnRange& range, int x, int z) const noexcept {
         return (static_cast<std::size_t>(z - range.z0) * static_cast<std::size_t>(range.width()) +
-                static_cast<std::size_t>(x - range.x0)) * wordsPerColumn;
+                static_cast<std::size_t>(x - range.x0)) *
+               wordsPerColumn;
     }
 };
 
@@ -146,7 +148,8 @@ void Coverage::Pieces::rasterGroup(const RigGroup& group, std::span<const double
         const int first = std::max(level, 0);
         std::uint64_t* column = &out[offsetIn(range, x, z)];
         std::uint64_t above = ~std::uint64_t{0} << (static_cast<unsigned>(first) & 63U);
-        for (std::size_t word = static_cast<std::size_t>(first) >> 6U; word < wordsPerColumn; ++word, above = ~std::uint64_t{0})
+        for (std::size_t word = static_cast<std::size_t>(first) >> 6U; word < wordsPerColumn;
+             ++word, above = ~std::uint64_t{0})
             column[word] ^= above;
     };
     const GridVertex* v = scratch.vertices.data();
@@ -168,7 +171,8 @@ std::span<const std::uint64_t> Coverage::Pieces::groupAtLevel(std::size_t b, std
 }
 
 /// Everything a body with one actuator passed on its way to `level`.
-std::span<const std::uint64_t> Coverage::Pieces::sweepAtLevel(std::size_t b, int level, CoverageScratch& scratch) const {
+std::span<const std::uint64_t> Coverage::Pieces::sweepAtLevel(std::size_t b, int level,
+                                                              CoverageScratch& scratch) const {
     const RigBody& swept = bodies[b];
     Kept& kept = keptSweeps[b];
     const std::size_t size = swept.range.size() * wordsPerColumn;
@@ -179,7 +183,8 @@ std::span<const std::uint64_t> Coverage::Pieces::sweepAtLevel(std::size_t b, int
         std::copy(before.begin(), before.end(), words.begin());
         std::vector<double> strokes(rig.actuatorCount(), 0.0);
         for (int step = 1; step <= swept.stepsPerLevel; ++step) {
-            strokes[swept.actuators.front()] = (level - 1 + static_cast<double>(step) / swept.stepsPerLevel) / (levels - 1);
+            strokes[swept.actuators.front()] =
+                (level - 1 + static_cast<double>(step) / swept.stepsPerLevel) / (levels - 1);
             parityOfBodyAt(b, strokes, swept.range, scratch);
             for (std::size_t i = 0; i < size; ++i) words[i] |= scratch.parity[i];
         }
@@ -246,7 +251,8 @@ void Coverage::Pieces::sweepOfBody(std::size_t b, std::span<const double> stroke
     const int steps = stepsOfBody(bodies[b], strokes);
     std::vector<double> onTheWay(rig.actuatorCount(), 0.0);
     for (int step = 1; step <= steps; ++step) {
-        for (const std::uint16_t a : bodies[b].actuators) onTheWay[a] = strokes[a] * (static_cast<double>(step) / steps);
+        for (const std::uint16_t a : bodies[b].actuators)
+            onTheWay[a] = strokes[a] * (static_cast<double>(step) / steps);
         parityOfBodyAt(b, onTheWay, range, scratch);
         for (std::size_t i = 0; i < out.size(); ++i) out[i] |= scratch.parity[i];
     }
@@ -260,7 +266,8 @@ void Coverage::Pieces::removeBodyAndTail(const ColumnRange& range, std::span<std
 
 Coverage::Coverage(Rig rig, const VoxelFrame& frame, int levels) {
     if (levels < 2 || levels > kMaxLevels)
-        throw InvalidInput(std::to_string(levels) + " levels", "an actuator has 2 to " + std::to_string(kMaxLevels) + " levels",
+        throw InvalidInput(std::to_string(levels) + " levels",
+                           "an actuator has 2 to " + std::to_string(kMaxLevels) + " levels",
                            "give a number in that range");
     pieces_ = std::make_unique<Pieces>(std::move(rig), frame, levels);
     const int height = frame.dimensions.y;

@@ -29,7 +29,7 @@ struct ActuatorField {
 
 /// How well the stored ramps stand for the sampled expectation.
 struct FieldReport {
-    double rampErrorMean = 0.0;               ///< over changed voxels and levels, in coverage
+    double rampErrorMean = 0.0; ///< over changed voxels and levels, in coverage
     double rampErrorMax = 0.0;
     std::uint64_t changedVoxels = 0;          ///< (actuator, voxel) pairs
     std::uint64_t monotonicityViolations = 0; ///< covered at a level, not at a higher one; by sample (R10)

@@ -12,8 +12,7 @@ namespace lumorph {
 namespace {
 
 /// Reorders from Field::voxelIndex (y fastest) to NRRD's order (x fastest).
-template <typename Value>
-ByteGrid gridOf(const Field& field, Value&& value) {
+template <typename Value> ByteGrid gridOf(const Field& field, Value&& value) {
     const glm::ivec3& d = field.frame.dimensions;
     ByteGrid grid{field.frame, {}};
     grid.values.reserve(field.frame.voxelCount());
@@ -28,7 +27,9 @@ ByteGrid gridOf(const Field& field, Value&& value) {
 void exportField(const Field& field, const std::filesystem::path& folder) {
     std::error_code error;
     std::filesystem::create_directories(folder, error);
-    if (error) throw DeviceError(folder.string(), "the folder cannot be made (" + error.message() + ")", "choose another place");
+    if (error)
+        throw DeviceError(folder.string(), "the folder cannot be made (" + error.message() + ")",
+                          "choose another place");
     const auto save = [&](const ByteGrid& grid, const std::string& name) {
         writeFileAtomically(folder / (name + ".nrrd"), writeNrrd(grid, name));
     };

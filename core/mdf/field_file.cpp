@@ -20,7 +20,8 @@ static_assert(std::endian::native == std::endian::little, "the file is little-en
 
 namespace {
 
-constexpr std::array<char, 16> kMagic{'L', 'U', 'M', 'O', 'R', 'P', 'H', '\0', 'M', 'D', 'F', '\0', '\0', '\0', '\0', '\0'};
+constexpr std::array<char, 16> kMagic{'L', 'U', 'M', 'O',  'R',  'P',  'H',  '\0',
+                                      'M', 'D', 'F', '\0', '\0', '\0', '\0', '\0'};
 constexpr std::uint32_t kVersion = 1;
 constexpr std::size_t kMaxName = 4096;
 constexpr std::size_t kMaxActuators = 65'000;
@@ -110,7 +111,8 @@ void putBlock(Writer& file, Block kind, std::vector<std::byte> content) {
     const std::size_t size = ZSTD_compress(packed.data(), packed.size(), content.data(), content.size(), 9);
     if (ZSTD_isError(size)) throw DeviceError("mdf file", ZSTD_getErrorName(size), "free some memory and try again");
     packed.resize(size);
-    file.put(BlockHeader{static_cast<std::uint32_t>(kind), 0, content.size(), packed.size(), XXH64(packed.data(), packed.size(), 0)});
+    file.put(BlockHeader{static_cast<std::uint32_t>(kind), 0, content.size(), packed.size(),
+                         XXH64(packed.data(), packed.size(), 0)});
     file.putAll(std::span<const std::byte>(packed));
 }
 
@@ -188,10 +190,12 @@ void readHeader(Reader r, Field& field) {
     r.expect(d.x > 0 && d.y > 0 && d.z > 0, "the frame is empty");
     r.expect(fitsLimits(d) && d.y <= 65535, "the frame is too large");
     r.expect(std::isfinite(field.frame.voxelSize) && field.frame.voxelSize > 0.0, "the voxel side is not positive");
-    r.expect(std::isfinite(field.frame.origin.x + field.frame.origin.y + field.frame.origin.z), "the origin is not finite");
+    r.expect(std::isfinite(field.frame.origin.x + field.frame.origin.y + field.frame.origin.z),
+             "the origin is not finite");
     r.expect(std::isfinite(field.restSurface), "the rest surface is not finite");
     r.expect(field.levels >= 2 && field.levels <= kMaxLevels, "the level count is out of range");
-    r.expect(std::isfinite(field.report.rampErrorMean) && std::isfinite(field.report.rampErrorMax), "the report is not finite");
+    r.expect(std::isfinite(field.report.rampErrorMean) && std::isfinite(field.report.rampErrorMax),
+             "the report is not finite");
 }
 
 void readBody(Reader r, Field& field) {
@@ -237,7 +241,8 @@ void readActuator(Reader r, const Field& field, ActuatorField& actuator) {
     std::uint64_t next = 0;
     std::int64_t lastColumn = -1;
     for (const ActuatorField::Run& run : actuator.runs) {
-        r.expect(run.column < field.body.columnCount() && static_cast<std::int64_t>(run.column) > lastColumn, "a column is out of order");
+        r.expect(run.column < field.body.columnCount() && static_cast<std::int64_t>(run.column) > lastColumn,
+                 "a column is out of order");
         r.expect(run.count > 0 && run.firstY + run.count <= field.frame.dimensions.y, "a run leaves the frame");
         r.expect(run.firstRamp == next, "a run does not follow the one before it");
         lastColumn = run.column;
@@ -245,7 +250,8 @@ void readActuator(Reader r, const Field& field, ActuatorField& actuator) {
         for (int i = 0; i < run.count && next <= ramps; ++i) {
             const Ramp& ramp = actuator.ramps[run.firstRamp + static_cast<std::size_t>(i)];
             if (ramp.v0 == kUnchanged) continue;
-            r.expect(ramp.v0 >= 1 && ramp.v0 <= ramp.v1 && ramp.v1 < field.levels && ramp.base < ramp.top, "a ramp is out of range");
+            r.expect(ramp.v0 >= 1 && ramp.v0 <= ramp.v1 && ramp.v1 < field.levels && ramp.base < ramp.top,
+                     "a ramp is out of range");
             r.expect(!insideBody(field, run.column, run.firstY + i), "a ramp lies inside the body");
         }
     }
@@ -278,7 +284,9 @@ Field parseField(std::span<const std::byte> bytes, const std::string& name) {
     file.take(kMagic.size());
     const auto version = file.get<std::uint32_t>();
     if (version != kVersion)
-        throw DataError(name, "its format version is " + std::to_string(version) + ", this program reads version " + std::to_string(kVersion),
+        throw DataError(name,
+                        "its format version is " + std::to_string(version) + ", this program reads version " +
+                            std::to_string(kVersion),
                         "build the field again with 'lumorph mdf build'");
     file.get<std::uint32_t>();
 

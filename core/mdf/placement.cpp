@@ -17,8 +17,9 @@ Target makeTarget(TriangleMesh mesh) {
     Target target{std::move(mesh), report.closed() && report.manifold(), {}};
     if (!target.closed) {
         target.warnings = report.findings();
-        target.warnings.push_back("The target is not a closed solid; what counts as inside is estimated by winding numbers, "
-                                  "which is slower and may differ near the holes.");
+        target.warnings.push_back(
+            "The target is not a closed solid; what counts as inside is estimated by winding numbers, "
+            "which is slower and may differ near the holes.");
     }
     return target;
 }
@@ -48,17 +49,20 @@ Placement fitPlacement(const Field& field, const Box& box, Angle yaw) {
     Placement placement{1.0, yaw, glm::vec3(0.0F)};
     const glm::mat4 turn = placement.deviceFromTarget();
     for (int corner = 0; corner < 8 && !box.empty(); ++corner)
-        turned.include(glm::vec3(turn * glm::vec4(corner & 1 ? box.max.x : box.min.x, corner & 2 ? box.max.y : box.min.y,
-                                                  corner & 4 ? box.max.z : box.min.z, 1.0F)));
+        turned.include(
+            glm::vec3(turn * glm::vec4(corner & 1 ? box.max.x : box.min.x, corner & 2 ? box.max.y : box.min.y,
+                                       corner & 4 ? box.max.z : box.min.z, 1.0F)));
     const glm::vec3 size = turned.size();
     if (box.empty() || !(std::max({size.x, size.y, size.z}) > 0.0F) || !std::isfinite(size.x + size.y + size.z))
         throw InvalidInput("target", "it has no extent", "give a mesh with a volume");
     const Box frame = field.frame.box();
     const glm::vec3 room(frame.max.x - frame.min.x, frame.max.y - field.restSurface, frame.max.z - frame.min.z);
-    if (!(room.y > 0.0F)) throw InvalidInput("field", "its frame has no room above the rest surface", "use a rig that lifts");
+    if (!(room.y > 0.0F))
+        throw InvalidInput("field", "its frame has no room above the rest surface", "use a rig that lifts");
     double scale = std::numeric_limits<double>::infinity();
     for (int axis = 0; axis < 3; ++axis)
-        if (size[axis] > 0.0F) scale = std::min(scale, static_cast<double>(room[axis]) / static_cast<double>(size[axis]));
+        if (size[axis] > 0.0F)
+            scale = std::min(scale, static_cast<double>(room[axis]) / static_cast<double>(size[axis]));
     placement.scale = scale;
     const glm::vec3 stand = static_cast<float>(scale) * glm::vec3(turned.centre().x, turned.min.y, turned.centre().z);
     placement.translation = glm::vec3(frame.centre().x, field.restSurface, frame.centre().z) - stand;

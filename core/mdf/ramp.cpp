@@ -12,7 +12,8 @@ namespace {
 /// Sums over the first levels of a rise g, so that the error of any ramp takes constant time.
 class RiseSums {
 public:
-    RiseSums(std::span<const double> expectation, double base) noexcept : levels_(static_cast<int>(expectation.size())) {
+    RiseSums(std::span<const double> expectation, double base) noexcept
+        : levels_(static_cast<int>(expectation.size())) {
         for (int j = 0; j < levels_; ++j) {
             const double g = expectation[static_cast<std::size_t>(j)] - base;
             const auto at = static_cast<std::size_t>(j);
@@ -30,7 +31,8 @@ public:
         const double middleMoment = between(moment_, v0, v1) + (1 - v0) * between(sum_, v0, v1);
         const double middleSquares = n * (n + 1) * (2 * n + 1) / 6.0;
         const double middle = between(square_, v0, v1) - 2 * slope * middleMoment + slope * slope * middleSquares;
-        const double upper = between(square_, v1, levels_) - 2 * rise * between(sum_, v1, levels_) + rise * rise * (levels_ - v1);
+        const double upper =
+            between(square_, v1, levels_) - 2 * rise * between(sum_, v1, levels_) + rise * rise * (levels_ - v1);
         return square_[static_cast<std::size_t>(v0)] + middle + upper;
     }
 

@@ -47,7 +47,8 @@ public:
     bool moveBy(int step) {
         bool moved = false;
         for (std::size_t i = 0; i < windows_.size() && !outOfTime(); ++i)
-            while (!outOfTime() && (tryLevel(i, state_[i].index + step) || tryLevel(i, state_[i].index - step))) moved = true;
+            while (!outOfTime() && (tryLevel(i, state_[i].index + step) || tryLevel(i, state_[i].index - step)))
+                moved = true;
         return moved;
     }
 
@@ -60,20 +61,26 @@ public:
     }
 
     [[nodiscard]] bool outOfTime() const { return hasDeadline_ && clock_->now() >= deadline_; }
-    [[nodiscard]] FitQuality quality() const { return {total_.both, wanted_ - total_.both, total_.covered - total_.both}; }
+    [[nodiscard]] FitQuality quality() const {
+        return {total_.both, wanted_ - total_.both, total_.covered - total_.both};
+    }
     [[nodiscard]] const State& state() const { return state_; }
     [[nodiscard]] int statesSeen() const { return statesSeen_; }
 
 private:
     void check(const BitColumns& target, const State& state) const {
         if (target.dimensions() != coverage_.frame().dimensions)
-            throw InvalidInput("target", "its voxel grid has another shape than the field's", "voxelise it into the field's own frame");
+            throw InvalidInput("target", "its voxel grid has another shape than the field's",
+                               "voxelise it into the field's own frame");
         if (state.size() != windows_.size())
-            throw InvalidInput("state", "it has " + std::to_string(state.size()) + " levels for " + std::to_string(windows_.size()) + " actuators",
+            throw InvalidInput("state",
+                               "it has " + std::to_string(state.size()) + " levels for " +
+                                   std::to_string(windows_.size()) + " actuators",
                                "give one level for each actuator");
         for (const Level level : state)
             if (level.index < 0 || level.index >= coverage_.levels())
-                throw InvalidInput("level " + std::to_string(level.index), "levels run from 0 to " + std::to_string(coverage_.levels() - 1),
+                throw InvalidInput("level " + std::to_string(level.index),
+                                   "levels run from 0 to " + std::to_string(coverage_.levels() - 1),
                                    "give levels in that range");
     }
 
@@ -147,7 +154,8 @@ Refinement Refiner::refine(const BitColumns& target, const State& start, Microse
     result.before = search_->quality();
     do {
         for (const int step : {4, 2, 1})
-            while (search_->moveBy(step)) {}
+            while (search_->moveBy(step)) {
+            }
     } while (!search_->outOfTime() && search_->scanAll());
     result.state = search_->state();
     result.after = search_->quality();

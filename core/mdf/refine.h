@@ -33,7 +33,8 @@ public:
     /// `target` has the frame's shape; voxels inside the body are ignored. A budget of zero or less
     /// means no limit; the time is looked at after each state.
     /// Throws InvalidInput when target or state do not fit the coverage.
-    [[nodiscard]] Refinement refine(const BitColumns& target, const State& start, Microseconds budget, const Clock& clock);
+    [[nodiscard]] Refinement refine(const BitColumns& target, const State& start, Microseconds budget,
+                                    const Clock& clock);
 
     /// Quality of one joint state, nothing moved.
     [[nodiscard]] FitQuality qualityOf(const BitColumns& target, const State& state);

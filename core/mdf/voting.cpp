@@ -145,7 +145,8 @@ void Voting::Compiled::addRun(CompiledActuator& to, std::map<std::uint64_t, std:
     for (std::size_t i = 0; i < ramps.size(); ++i) {
         if (!backgroundOnly && ramps[i].v0 == kUnchanged) continue;
         const int y = firstY + static_cast<int>(i);
-        const std::size_t voxel = column * static_cast<std::size_t>(field.frame.dimensions.y) + static_cast<std::size_t>(y);
+        const std::size_t voxel =
+            column * static_cast<std::size_t>(field.frame.dimensions.y) + static_cast<std::size_t>(y);
         if (backgroundOnly && (owned[voxel] || field.background[voxel] == 0)) continue;
         const RampClass made{ramps[i], field.background[voxel], !owned[voxel]};
         owned[voxel] = true;
@@ -157,7 +158,8 @@ void Voting::Compiled::addRun(CompiledActuator& to, std::map<std::uint64_t, std:
                                                      static_cast<std::size_t>(y >> 6));
         if (to.cells.empty() || to.cells.back().word != word) {
             const auto wordFirstY = static_cast<std::uint32_t>(y & ~63);
-            to.cells.push_back({word, static_cast<std::uint32_t>(start) + wordFirstY - static_cast<std::uint32_t>(firstY), 0});
+            to.cells.push_back(
+                {word, static_cast<std::uint32_t>(start) + wordFirstY - static_cast<std::uint32_t>(firstY), 0});
         }
         to.cells.back().mask |= std::uint64_t{1} << (static_cast<unsigned>(y) & 63U);
     }
@@ -181,7 +183,8 @@ Voting::Compiled::Compiled(const Field& field) : levels(field.levels), domain(fi
         CompiledActuator& to = actuators.emplace_back();
         std::map<std::uint64_t, std::uint32_t> known;
         for (const ActuatorField::Run& run : from.runs)
-            addRun(to, known, field, run.column, run.firstY, std::span(from.ramps).subspan(run.firstRamp, run.count), owned);
+            addRun(to, known, field, run.column, run.firstY, std::span(from.ramps).subspan(run.firstRamp, run.count),
+                   owned);
     }
     addShared(field, owned);
     double background = 0.0;
@@ -239,7 +242,8 @@ void Voting::match(const BitColumns& target, Votes& votes, Workspace& workspace,
         workspace.reachable[i] = workspace.sums.voxels;
         std::vector<double>& intersections = votes.actuators[i].intersections;
         intersections.resize(levels);
-        for (std::size_t j = 0; j < levels; ++j) intersections[j] = workspace.sums.values[j] - workspace.sums.background;
+        for (std::size_t j = 0; j < levels; ++j)
+            intersections[j] = workspace.sums.values[j] - workspace.sums.background;
     }
     for (std::size_t i = 0; i < c.actuators.size(); ++i) {
         ActuatorVote& vote = votes.actuators[i];

@@ -7,8 +7,8 @@ namespace lumorph {
 
 /// Limits of one actuator's motion (R19), in strokes: 1 is the full range.
 struct MotionLimits {
-    double maxVelocity = 1.0;  ///< strokes a second, > 0
-    double dampingRatio = 1.0; ///< >= 1 so that it cannot oscillate; 1 is critical
+    double maxVelocity = 1.0;    ///< strokes a second, > 0
+    double dampingRatio = 1.0;   ///< >= 1 so that it cannot oscillate; 1 is critical
     double settleSeconds = 0.15; ///< time constant of the approach, > 0
 };
 

@@ -136,7 +136,8 @@ inline void rasterizeTriangle(const GridVertex& a, const GridVertex& b, const Gr
         std::int64_t v2 = e2.value;
         for (int x = x0; x <= x1; ++x) {
             if ((v0 | v1 | v2) >= 0) {
-                const float y = p.y + (static_cast<float>(v1) * (q.y - p.y) + static_cast<float>(v2) * (r.y - p.y)) * inverse;
+                const float y =
+                    p.y + (static_cast<float>(v1) * (q.y - p.y) + static_cast<float>(v2) * (r.y - p.y)) * inverse;
                 crossing(x, z, static_cast<int>(std::ceil(std::min(std::max(y, -1.0F), 1e8F))), entering);
             }
             v0 -= e0.dz;

@@ -33,12 +33,12 @@ std::string_view trimmed(std::string_view text) {
 class Header {
 public:
     Header(std::string_view file, const std::string& name) : name_(name) {
-        if (!file.starts_with("NRRD000"))
-            fail("line 1", "it does not begin with NRRD000n, so it is no NRRD file");
+        if (!file.starts_with("NRRD000")) fail("line 1", "it does not begin with NRRD000n, so it is no NRRD file");
         std::size_t position = 0;
         for (int line = 1;; ++line) {
             const std::size_t end = file.find('\n', position);
-            if (end == std::string_view::npos) fail("line " + std::to_string(line), "the header has no end (an empty line)");
+            if (end == std::string_view::npos)
+                fail("line " + std::to_string(line), "the header has no end (an empty line)");
             const std::string_view text = trimmed(file.substr(position, end - position));
             position = end + 1;
             if (text.empty()) break;
@@ -69,7 +69,8 @@ public:
     [[nodiscard]] std::vector<double> numbers(const std::string& field) const {
         std::vector<double> result;
         std::string text = require(field);
-        std::replace_if(text.begin(), text.end(), [](char c) { return c == '(' || c == ')' || c == ','; }, ' ');
+        std::replace_if(
+            text.begin(), text.end(), [](char c) { return c == '(' || c == ')' || c == ','; }, ' ');
         std::istringstream words(text);
         for (std::string word; words >> word;) {
             double value = 0.0;
@@ -93,7 +94,8 @@ glm::ivec3 readSizes(const Header& header) {
         header.fail("field 'sizes'", "the grid is not three-dimensional");
     double product = 1.0;
     for (const double size : sizes) {
-        if (!(size >= 1.0) || size != std::floor(size)) header.fail("field 'sizes'", "a size is not a whole number above 0");
+        if (!(size >= 1.0) || size != std::floor(size))
+            header.fail("field 'sizes'", "a size is not a whole number above 0");
         product *= size;
     }
     if (product > static_cast<double>(kMaxVoxels) || sizes[0] * sizes[2] > static_cast<double>(kMaxColumns))
@@ -127,11 +129,12 @@ std::vector<std::byte> writeNrrd(const ByteGrid& grid, const std::string& conten
     const VoxelFrame& f = grid.frame;
     const std::string side = shortest(f.voxelSize);
     const glm::dvec3 first = f.centre(0, 0, 0);
-    const std::string header =
-        "NRRD0004\ntype: uint8\ndimension: 3\ncontent: " + content + "\nsizes: " + std::to_string(f.dimensions.x) + " " +
-        std::to_string(f.dimensions.y) + " " + std::to_string(f.dimensions.z) + "\nspace dimension: 3\nspace directions: (" +
-        side + ",0,0) (0," + side + ",0) (0,0," + side + ")\nspace origin: (" + shortest(first.x) + "," + shortest(first.y) +
-        "," + shortest(first.z) + ")\nspace units: \"m\" \"m\" \"m\"\nencoding: raw\n\n";
+    const std::string header = "NRRD0004\ntype: uint8\ndimension: 3\ncontent: " + content +
+                               "\nsizes: " + std::to_string(f.dimensions.x) + " " + std::to_string(f.dimensions.y) +
+                               " " + std::to_string(f.dimensions.z) + "\nspace dimension: 3\nspace directions: (" +
+                               side + ",0,0) (0," + side + ",0) (0,0," + side + ")\nspace origin: (" +
+                               shortest(first.x) + "," + shortest(first.y) + "," + shortest(first.z) +
+                               ")\nspace units: \"m\" \"m\" \"m\"\nencoding: raw\n\n";
     std::vector<std::byte> file(header.size() + grid.values.size());
     std::memcpy(file.data(), header.data(), header.size());
     std::copy(reinterpret_cast<const std::byte*>(grid.values.data()),
@@ -163,8 +166,8 @@ ByteGrid parseNrrd(std::span<const std::byte> bytes, const std::string& name) {
     grid.frame.origin = glm::vec3(first - 0.5 * grid.frame.voxelSize);
     const std::size_t count = grid.frame.voxelCount();
     if (bytes.size() - header.dataStart() != count)
-        header.fail("data", "it holds " + std::to_string(bytes.size() - header.dataStart()) + " bytes where the sizes ask for " +
-                                std::to_string(count));
+        header.fail("data", "it holds " + std::to_string(bytes.size() - header.dataStart()) +
+                                " bytes where the sizes ask for " + std::to_string(count));
     grid.values.resize(count);
     std::memcpy(grid.values.data(), bytes.data() + header.dataStart(), count);
     return grid;

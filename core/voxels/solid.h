@@ -20,8 +20,8 @@ namespace lumorph {
 class SolidVoxelizer {
 public:
     /// `out` gets the frame's shape. Allocates only while buffers grow.
-    void voxelize(const VoxelFrame& frame, std::span<const glm::vec3> positions,
-                  std::span<const glm::uvec3> triangles, BitColumns& out);
+    void voxelize(const VoxelFrame& frame, std::span<const glm::vec3> positions, std::span<const glm::uvec3> triangles,
+                  BitColumns& out);
 
 private:
     static constexpr int kPlanes = 8;

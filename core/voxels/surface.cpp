@@ -64,7 +64,8 @@ private:
         // The rounding of the dot products must not part what touches.
         const double slack = 1e-12 * (std::abs(a) + std::abs(b) + std::abs(c));
         const double radius = 0.5 * (std::abs(direction.x) + std::abs(direction.y) + std::abs(direction.z));
-        axes_[static_cast<std::size_t>(axisCount_++)] = {direction, std::min({a, b, c}), std::max({a, b, c}), radius + slack};
+        axes_[static_cast<std::size_t>(axisCount_++)] = {direction, std::min({a, b, c}), std::max({a, b, c}),
+                                                         radius + slack};
     }
 
     std::array<glm::dvec3, 3> t_;

@@ -10,8 +10,8 @@ namespace lumorph {
 
 /// A regular grid of cubic voxels in device coordinates; voxel (0,0,0) touches `origin`.
 struct VoxelFrame {
-    glm::vec3 origin{0.0F};      ///< lowest corner, metres
-    double voxelSize = 0.0;      ///< metres
+    glm::vec3 origin{0.0F}; ///< lowest corner, metres
+    double voxelSize = 0.0; ///< metres
     glm::ivec3 dimensions{0};
 
     [[nodiscard]] std::size_t voxelCount() const noexcept {
