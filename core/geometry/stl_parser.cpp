@@ -67,7 +67,7 @@ private:
 
     void expect(std::string_view keyword) {
         const std::string_view word = scanner_.word();
-        if (!equalsIgnoringCase(word, keyword)) failUnexpected(word, "'" + std::string(keyword) + "'");
+        if (!equalsIgnoringCase(word, keyword)) failUnexpected(word, std::string("'").append(keyword).append("'"));
     }
 
     [[noreturn]] void failUnexpected(std::string_view word, const std::string& expected) const {
