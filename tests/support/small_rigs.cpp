@@ -61,11 +61,11 @@ TriangleMesh boxMesh(const glm::vec3& min, const glm::vec3& max, int cells) {
 Rig cushionRig() {
     RigParts parts;
     parts.name = "cushion";
-    parts.restMesh = boxMesh({0.0F, 0.0F, 0.0F}, {0.101F, 0.0203F, 0.0807F}, 8);
+    parts.restMesh = boxMesh({0.0F, 0.0F, 0.0F}, {0.1013F, 0.0207F, 0.0811F}, 8);
     parts.pathInside = true;
     const glm::vec2 centres[] = {{0.02F, 0.02F}, {0.08F, 0.03F}, {0.05F, 0.07F}};
     for (int k = 0; k < 3; ++k) {
-        Actuator actuator = slide("lift " + std::to_string(k), 0.02F + 0.005F * static_cast<float>(k));
+        Actuator actuator = slide("lift " + std::to_string(k), 0.0209F + 0.0053F * static_cast<float>(k));
         for (std::size_t v = 0; v < parts.restMesh.positions.size(); ++v) {
             const glm::vec3& p = parts.restMesh.positions[v];
             if (p.y <= 0.0F) continue;

@@ -118,8 +118,9 @@ TEST_P(BuilderOracle, FieldEqualsTheExpectationOverAllStates) {
         }
         // What the field does not list must indeed be the same at every level.
         for (std::size_t index = 0; index < listed.size(); ++index)
-            if (!listed[index])
+            if (!listed[index]) {
                 ASSERT_DOUBLE_EQ(expectation(states, actuator, 0, index), expectation(states, actuator, kLevels - 1, index));
+            }
     }
     EXPECT_GT(coupled, 100U) << "the rig does not couple its actuators, so this test would prove little";
 }
