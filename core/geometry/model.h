@@ -32,10 +32,10 @@ struct Model {
     };
     struct Primitive {
         std::vector<glm::vec3> positions;
-        std::vector<glm::vec3> normals;            ///< empty or one a vertex
-        std::vector<glm::vec2> texcoords;          ///< empty or one a vertex (TEXCOORD_0)
-        std::vector<glm::u16vec4> joints;          ///< empty or one a vertex (JOINTS_0)
-        std::vector<glm::vec4> weights;            ///< empty or one a vertex (WEIGHTS_0), normalised
+        std::vector<glm::vec3> normals;   ///< empty or one a vertex
+        std::vector<glm::vec2> texcoords; ///< empty or one a vertex (TEXCOORD_0)
+        std::vector<glm::u16vec4> joints; ///< empty or one a vertex (JOINTS_0)
+        std::vector<glm::vec4> weights;   ///< empty or one a vertex (WEIGHTS_0), normalised
         std::map<std::string, CustomAttribute> custom;
         std::vector<std::vector<glm::vec3>> morphTargets; ///< position deltas, one vector a target
         std::vector<glm::uvec3> triangles;
@@ -66,7 +66,7 @@ struct Model {
     };
     struct Skin {
         std::string name;
-        std::vector<int> joints; ///< nodes
+        std::vector<int> joints;                    ///< nodes
         std::vector<glm::mat4> inverseBindMatrices; ///< one a joint
         bool operator==(const Skin&) const = default;
     };
@@ -142,7 +142,8 @@ struct Model {
 /// `worldFromNode` for every node, at the rest pose or posed by `animation` at `seconds`
 /// (held beyond its ends).
 [[nodiscard]] std::vector<glm::mat4> nodeTransforms(const Model& model);
-[[nodiscard]] std::vector<glm::mat4> nodeTransforms(const Model& model, const Model::Animation& animation, double seconds);
+[[nodiscard]] std::vector<glm::mat4> nodeTransforms(const Model& model, const Model::Animation& animation,
+                                                    double seconds);
 
 /// All triangles of the default scene in world space with skins and morph targets applied, at the
 /// rest pose or posed by `animation` at `seconds`. The triangles are the same at every time; where the rest pose mirrors

@@ -45,8 +45,8 @@ struct Slide {
 /// per deformation state (a key for each). Displacements are from the rest mesh and linear between
 /// the keys; strokes before the first key run linearly from rest.
 struct MorphTarget {
-    std::string target;       ///< its name in the file
-    std::vector<float> keys;  ///< strokes in (0, 1], ascending
+    std::string target;      ///< its name in the file
+    std::vector<float> keys; ///< strokes in (0, 1], ascending
     /// displacements[k][i] belongs to keys[k] and the i-th influence of the actuator, metres.
     std::vector<std::vector<glm::vec3>> displacements;
 };

@@ -1,0 +1,83 @@
+#include "core/geometry/mesh_file.h"
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <string>
+
+#include "core/base/atomic_file.h"
+#include "core/base/error.h"
+#include "core/base/file.h"
+#include "core/geometry/mesh_file_gltf.h"
+#include "core/geometry/mesh_parsers.h"
+#include "core/geometry/mesh_writers.h"
+
+namespace lumorph {
+namespace {
+
+std::string lowerExtension(const std::filesystem::path& file) {
+    std::string extension = file.extension().string();
+    std::ranges::transform(extension, extension.begin(),
+                           [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    return extension;
+}
+
+using Parser = TriangleMesh (*)(std::span<const std::byte>, const std::string&);
+
+Parser parserOf(const std::string& extension) {
+    if (extension == ".obj") return parseObj;
+    if (extension == ".stl") return parseStl;
+    if (extension == ".ply") return parsePly;
+    if (extension == ".off") return parseOff;
+    return nullptr;
+}
+
+void checkWritable(const TriangleMesh& mesh, const std::filesystem::path& file) {
+    if (mesh.empty()) throw InvalidInput(file.string(), "the mesh to write has no triangles", "give it some");
+    for (const glm::vec3& p : mesh.positions)
+        if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z))
+            throw InvalidInput(file.string(), "the mesh to write has a coordinate that is not finite",
+                               "repair it first");
+    for (const glm::uvec3& t : mesh.triangles)
+        if (std::max({t.x, t.y, t.z}) >= mesh.positions.size())
+            throw InvalidInput(file.string(), "the mesh to write refers to a vertex it does not have",
+                               "repair it first");
+}
+
+} // namespace
+
+TriangleMesh readMesh(const std::filesystem::path& file) {
+    const std::string extension = lowerExtension(file);
+    if (const Parser parse = parserOf(extension)) {
+        const std::vector<std::byte> bytes = readFile(file, kMaxFileBytes);
+        if (bytes.empty()) throw DataError(file.string(), "the file is empty", "export the model again");
+        return parse(bytes, file.string());
+    }
+    if (extension != ".gltf" && extension != ".glb")
+        throw DataError(file.string(), "is of no kind known by its extension",
+                        "use .gltf, .glb, .obj, .stl, .ply or .off");
+    TriangleMesh mesh = readGltfMesh(file);
+    if (mesh.empty()) throw DataError(file.string(), "holds no mesh", "export the model as a surface of polygons");
+    if (mesh.triangles.size() > kMaxTriangles)
+        throw DataError(file.string(), "has more than " + std::to_string(kMaxTriangles) + " triangles, the limit",
+                        "reduce its detail (decimate it) before exporting");
+    return mesh;
+}
+
+void writeMesh(const TriangleMesh& mesh, const std::filesystem::path& file) {
+    checkWritable(mesh, file);
+    const std::string extension = lowerExtension(file);
+    if (extension == ".obj") {
+        const std::string text = writeObj(mesh);
+        writeFileAtomically(file, std::as_bytes(std::span(text)));
+    } else if (extension == ".stl") {
+        writeFileAtomically(file, writeStl(mesh));
+    } else if (extension == ".glb") {
+        writeFileAtomically(file, writeGlbMesh(mesh, file.stem().string()));
+    } else {
+        throw InvalidInput(file.string(), "meshes are not written in the kind its extension names",
+                           "use .obj, .stl or .glb");
+    }
+}
+
+} // namespace lumorph

@@ -1,0 +1,236 @@
+#include "core/render/studio_pass.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <vector>
+
+#include <glm/common.hpp>
+#include <glm/exponential.hpp>
+#include <glm/geometric.hpp>
+
+#include "core/render/program.h"
+#include "core/render/shadow_maps.h"
+
+namespace lumorph {
+namespace {
+
+constexpr int kSkyCount = 24; // as in studio_light.glsl
+constexpr int kKeyUnit = 0;
+constexpr int kSkyUnit = 1;
+constexpr float kKeySoftness = 0.011F; // radius of the shadow's edge, shares of the shadow map
+
+struct Palette {
+    glm::vec3 top, bottom, line, pool; // sRGB-encoded
+    float lineStrength, shade, exposure;
+};
+
+Palette paletteOf(Theme theme) {
+    if (theme == Theme::light)
+        return {{0.90F, 0.915F, 0.935F},
+                {0.80F, 0.82F, 0.85F},
+                {0.28F, 0.33F, 0.42F},
+                glm::vec3(0.07F),
+                0.3F,
+                0.45F,
+                1.12F};
+    return {{0.066F, 0.074F, 0.09F},
+            {0.135F, 0.15F, 0.18F},
+            {0.62F, 0.70F, 0.82F},
+            {0.115F, 0.125F, 0.145F},
+            0.26F,
+            0.72F,
+            1.0F};
+}
+
+// Evenly over the upper hemisphere, on a spiral.
+std::array<glm::vec3, kSkyCount> skyDirections() {
+    std::array<glm::vec3, kSkyCount> directions;
+    for (int i = 0; i < kSkyCount; ++i) {
+        const float y = (static_cast<float>(i) + 0.5F) / kSkyCount;
+        const float around = 2.39996323F * static_cast<float>(i);
+        const float r = std::sqrt(1.0F - y * y);
+        directions[static_cast<std::size_t>(i)] = {r * std::cos(around), y, r * std::sin(around)};
+    }
+    return directions;
+}
+
+glm::vec3 linear(const glm::vec3& encoded) {
+    return glm::mix(encoded / 12.92F, glm::pow((encoded + 0.055F) / 1.055F, glm::vec3(2.4F)),
+                    glm::vec3(glm::step(glm::vec3(0.04045F), encoded)));
+}
+
+// Takes the camera's view to its place in the larger region.
+glm::mat4 regionFromView(const StudioView& view) {
+    const glm::vec2 region(view.regionSize);
+    const glm::vec2 scale = glm::vec2(view.viewSize) / region;
+    const glm::vec2 viewCentre = glm::vec2(view.viewOrigin) + 0.5F * glm::vec2(view.viewSize);
+    const glm::vec2 shift = 2.0F * (viewCentre - glm::vec2(view.regionOrigin) - 0.5F * region) / region;
+    glm::mat4 matrix(1.0F);
+    matrix[0][0] = scale.x;
+    matrix[1][1] = scale.y;
+    matrix[3][0] = shift.x;
+    matrix[3][1] = -shift.y;
+    return matrix;
+}
+
+float distanceTo(const glm::vec3& eye, const StudioSurface& surface) { return glm::distance(eye, surface.centre); }
+
+} // namespace
+
+glm::vec3 keyLightDirection() { return glm::normalize(glm::vec3(-0.55F, 1.0F, 0.42F)); }
+
+struct StudioPass::Data {
+    ShadowMaps key{768, 1};
+    ShadowMaps sky{128, kSkyCount};
+    Program backdrop{shaderFiles({"full_frame.vert"}, {"version.glsl", "backdrop.glsl", "backdrop.frag"})};
+    Program ground{shaderFiles({"ground.vert"}, {"version.glsl", "backdrop.glsl", "studio_light.glsl", "ground.frag"})};
+    Program surface{
+        shaderFiles({"surface.vert"}, {"version.glsl", "backdrop.glsl", "studio_light.glsl", "surface.frag"})};
+    gl::VertexArray empty;
+    std::array<glm::vec3, kSkyCount> skyDirections = lumorph::skyDirections();
+
+    static void setBackdrop(Program& program, glm::ivec2 frameSize, const Palette& palette) {
+        program.set("frameSize", glm::vec2(frameSize));
+        program.set("backdropTop", palette.top);
+        program.set("backdropBottom", palette.bottom);
+    }
+
+    void setLight(Program& program, const StudioView& view, const glm::mat4& clipFromScene) const {
+        program.set("clipFromWorld", clipFromScene);
+        program.set("keyDirection", keyLightDirection());
+        program.set("keyMapFromWorld", key.mapFromWorld()[0]);
+        program.set("keyShadow", kKeyUnit);
+        program.set("keySoftness", kKeySoftness);
+        program.set("skyDirections", std::span<const glm::vec3>(skyDirections));
+        program.set("skyMapFromWorld", sky.mapFromWorld());
+        program.set("skyShadow", kSkyUnit);
+        // Along the normal by more than what the soft edge spans in depth on a sloping surface.
+        program.set("shadowBias",
+                    glm::vec2(2.0F * key.texel() + 0.6F * kKeySoftness * key.texel() * static_cast<float>(key.side()),
+                              1.8F * sky.texel()));
+        program.set("sceneSphere", glm::vec4(view.scene.centre(), 0.5F * glm::length(view.scene.size())));
+        program.set("keyShadowOn", view.lighting.keyShadow ? 1 : 0);
+        program.set("skyOcclusionOn", view.lighting.skyOcclusion ? 1 : 0);
+    }
+
+    void drawGround(const StudioView& view, const Palette& palette) {
+        const StudioGround& place = view.ground;
+        ground.set("groundCentre", place.centre);
+        ground.set("groundHeight", place.height);
+        ground.set("groundExtent", 12.0F * place.radius);
+        ground.set("sceneRadius", place.radius);
+        ground.set("gridStep", place.gridStep);
+        ground.set("bar", glm::vec4(place.barStart, static_cast<float>(place.barSquares) * place.gridStep,
+                                    place.barSquares > 0 ? 1.0F : 0.0F));
+        ground.set("lineColor", palette.line);
+        ground.set("lineStrength", palette.lineStrength);
+        ground.set("shade", palette.shade);
+        ground.set("pool", palette.pool);
+        ground.set("regionSpan", glm::vec2(view.regionOrigin.x, view.regionOrigin.x + view.regionSize.x));
+        glDisable(GL_CULL_FACE);
+        glBindVertexArray(empty.name());
+        glDrawArrays(GL_TRIANGLE_STRIP, 0, 4);
+        glBindVertexArray(0);
+    }
+
+    void setMaterial(const StudioSurface& item) {
+        surface.set("baseColor", linear(item.color));
+        surface.set("opacity", item.opacity);
+        surface.set("rim", item.opacity < 1.0F ? 1.0F : 0.0F);
+    }
+
+    // Pulled a little towards the eye, so that where it lies on an opaque surface it tints that evenly.
+    void drawTranslucent(const StudioSurface& item) {
+        setMaterial(item);
+        glEnable(GL_CULL_FACE);
+        glEnable(GL_POLYGON_OFFSET_FILL);
+        glPolygonOffset(-1.0F, -2.0F);
+        glDepthMask(GL_FALSE);
+        glCullFace(GL_FRONT);
+        item.mesh->draw();
+        // Only the nearest front face: its depth first, then its colour.
+        glCullFace(GL_BACK);
+        glDepthMask(GL_TRUE);
+        glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
+        item.mesh->draw();
+        glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+        item.mesh->draw();
+        glDisable(GL_POLYGON_OFFSET_FILL);
+        glDisable(GL_CULL_FACE);
+    }
+};
+
+StudioPass::StudioPass() : data_(std::make_unique<Data>()) {}
+StudioPass::~StudioPass() = default;
+StudioPass::StudioPass(StudioPass&&) noexcept = default;
+StudioPass& StudioPass::operator=(StudioPass&&) noexcept = default;
+
+void StudioPass::drawBackdrop(GLuint framebuffer, glm::ivec2 frameSize, Theme theme) {
+    glBindFramebuffer(GL_FRAMEBUFFER, framebuffer);
+    glViewport(0, 0, frameSize.x, frameSize.y);
+    glDisable(GL_SCISSOR_TEST);
+    glDisable(GL_DEPTH_TEST);
+    glDisable(GL_BLEND);
+    glDepthMask(GL_TRUE);
+    glClear(GL_DEPTH_BUFFER_BIT);
+    data_->backdrop.use();
+    Data::setBackdrop(data_->backdrop, frameSize, paletteOf(theme));
+    glBindVertexArray(data_->empty.name());
+    glDrawArrays(GL_TRIANGLES, 0, 3);
+    glBindVertexArray(0);
+}
+
+void StudioPass::draw(GLuint framebuffer, glm::ivec2 frameSize, const StudioView& view,
+                      std::span<const StudioSurface> surfaces) {
+    const auto drawCasters = [&] {
+        for (const StudioSurface& item : surfaces)
+            if (item.opacity >= 1.0F) item.mesh->draw();
+    };
+    const glm::vec3 key = keyLightDirection();
+    if (view.lighting.keyShadow) data_->key.draw({&key, 1}, view.scene, drawCasters);
+    if (view.lighting.skyOcclusion) data_->sky.draw(data_->skyDirections, view.scene, drawCasters);
+
+    glBindFramebuffer(GL_FRAMEBUFFER, framebuffer);
+    glViewport(view.regionOrigin.x, frameSize.y - view.regionOrigin.y - view.regionSize.y, view.regionSize.x,
+               view.regionSize.y);
+    glEnable(GL_DEPTH_TEST);
+    glDepthFunc(GL_LEQUAL);
+    data_->key.bind(kKeyUnit);
+    data_->sky.bind(kSkyUnit);
+    const Palette palette = paletteOf(view.theme);
+    const glm::mat4 clipFromScene = regionFromView(view) * clipFromWorld(view.camera);
+
+    data_->surface.use();
+    Data::setBackdrop(data_->surface, frameSize, palette);
+    data_->setLight(data_->surface, view, clipFromScene);
+    data_->surface.set("eye", view.camera.eye);
+    data_->surface.set("exposure", palette.exposure);
+    std::vector<StudioSurface> translucent;
+    for (const StudioSurface& item : surfaces) {
+        if (item.opacity < 1.0F) {
+            translucent.push_back(item);
+            continue;
+        }
+        data_->setMaterial(item);
+        item.mesh->draw();
+    }
+
+    data_->ground.use();
+    Data::setBackdrop(data_->ground, frameSize, palette);
+    data_->setLight(data_->ground, view, clipFromScene);
+    data_->drawGround(view, palette);
+
+    std::stable_sort(translucent.begin(), translucent.end(), [&](const StudioSurface& a, const StudioSurface& b) {
+        return distanceTo(view.camera.eye, a) > distanceTo(view.camera.eye, b);
+    });
+    data_->surface.use();
+    glEnable(GL_BLEND);
+    glBlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ONE, GL_ONE);
+    for (const StudioSurface& item : translucent) data_->drawTranslucent(item);
+    glDisable(GL_BLEND);
+    glDisable(GL_DEPTH_TEST);
+    glUseProgram(0);
+}
+
+} // namespace lumorph

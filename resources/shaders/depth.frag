@@ -1,0 +1,4 @@
+#version 410 core
+// Writes depth only.
+
+void main() {}

@@ -1,0 +1,17 @@
+#version 410 core
+// A surface in the scene. In: position and normal (world, metres), clipFromWorld of the camera.
+// Out: worldPosition, worldNormal (world); clip space.
+
+layout(location = 0) in vec3 position;
+layout(location = 1) in vec3 normal;
+
+uniform mat4 clipFromWorld;
+
+out vec3 worldPosition;
+out vec3 worldNormal;
+
+void main() {
+    worldPosition = position;
+    worldNormal = normal;
+    gl_Position = clipFromWorld * vec4(position, 1.0);
+}

@@ -1,0 +1,2 @@
+#version 410 core
+// First piece of every fragment shader that shares others.

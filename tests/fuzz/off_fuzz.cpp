@@ -1,0 +1,14 @@
+#include <cstddef>
+#include <cstdint>
+
+#include "core/base/error.h"
+#include "core/geometry/mesh_parsers.h"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+    try {
+        (void)lumorph::parseOff(std::as_bytes(std::span(data, size)), "fuzz.off");
+    } catch (const lumorph::Error&) {
+        return 0;
+    }
+    return 0;
+}
