@@ -1,1 +1,51 @@
-int main() { return 0; }
+#include <cstdio>
+#include <exception>
+#include <new>
+
+#include <CLI/CLI.hpp>
+
+#include "app/cli/commands.h"
+#include "core/base/error.h"
+
+namespace {
+
+constexpr int kDone = 0;
+constexpr int kFailed = 1;
+constexpr int kWrongUsage = 2;
+
+int complain(const char* message, int status) {
+    lumorph::cli::Session::endProgress();
+    std::fprintf(stderr, "lumorph: %s\n", message);
+    return status;
+}
+
+} // namespace
+
+int main(int argc, char** argv) {
+    lumorph::cli::Session session;
+    CLI::App app("Lumorph: objects that change shape and are painted with light.", "lumorph");
+    app.set_version_flag("--version", LUMORPH_VERSION);
+    app.require_subcommand(1);
+    lumorph::cli::addRigCommands(app, session);
+    lumorph::cli::addMdfCommands(app, session);
+    lumorph::cli::addVoxelizeCommand(app, session);
+    lumorph::cli::addMatchCommand(app, session);
+    lumorph::cli::addBenchCommand(app);
+    try {
+        app.parse(argc, argv); // runs the command
+        lumorph::cli::Session::endProgress();
+        return kDone;
+    } catch (const CLI::ParseError& error) {
+        if (error.get_exit_code() == 0) return app.exit(error);
+        const std::string message = "arguments: " + std::string(error.what()) + "; see 'lumorph --help'";
+        return complain(message.c_str(), kWrongUsage);
+    } catch (const lumorph::InvalidInput& error) {
+        return complain(error.what(), kWrongUsage);
+    } catch (const lumorph::Cancelled&) {
+        return complain("stopped: it was asked to; nothing was written", kFailed);
+    } catch (const std::bad_alloc&) {
+        return complain("memory: there is not enough for this; use a lower resolution or fewer levels", kFailed);
+    } catch (const std::exception& error) {
+        return complain(error.what(), kFailed);
+    }
+}

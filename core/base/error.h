@@ -10,8 +10,8 @@ namespace lumorph {
 class Error : public std::runtime_error {
 public:
     Error(std::string subject, std::string why, std::string remedy)
-        : std::runtime_error(subject + ": " + why + "; " + remedy), subject_(std::move(subject)),
-          why_(std::move(why)), remedy_(std::move(remedy)) {}
+        : std::runtime_error(subject + ": " + why + "; " + remedy), subject_(std::move(subject)), why_(std::move(why)),
+          remedy_(std::move(remedy)) {}
 
     [[nodiscard]] const std::string& subject() const noexcept { return subject_; }
     [[nodiscard]] const std::string& why() const noexcept { return why_; }

@@ -17,8 +17,7 @@ public:
     using Report = std::function<void(double fraction, std::string_view stage)>;
 
     Progress() = default;
-    explicit Progress(Report report, std::stop_token stop = {})
-        : report_(std::move(report)), stop_(std::move(stop)) {}
+    explicit Progress(Report report, std::stop_token stop = {}) : report_(std::move(report)), stop_(std::move(stop)) {}
 
     void report(double fraction, std::string_view stage) const {
         if (report_) report_(fraction, stage);

@@ -28,17 +28,19 @@ struct Model {
     struct CustomAttribute {
         int components = 1; ///< 1 to 4 floats a vertex
         std::vector<float> values;
+        bool operator==(const CustomAttribute&) const = default;
     };
     struct Primitive {
         std::vector<glm::vec3> positions;
-        std::vector<glm::vec3> normals;            ///< empty or one a vertex
-        std::vector<glm::vec2> texcoords;          ///< empty or one a vertex (TEXCOORD_0)
-        std::vector<glm::u16vec4> joints;          ///< empty or one a vertex (JOINTS_0)
-        std::vector<glm::vec4> weights;            ///< empty or one a vertex (WEIGHTS_0), normalised
+        std::vector<glm::vec3> normals;   ///< empty or one a vertex
+        std::vector<glm::vec2> texcoords; ///< empty or one a vertex (TEXCOORD_0)
+        std::vector<glm::u16vec4> joints; ///< empty or one a vertex (JOINTS_0)
+        std::vector<glm::vec4> weights;   ///< empty or one a vertex (WEIGHTS_0), normalised
         std::map<std::string, CustomAttribute> custom;
         std::vector<std::vector<glm::vec3>> morphTargets; ///< position deltas, one vector a target
         std::vector<glm::uvec3> triangles;
         int material = -1;
+        bool operator==(const Primitive&) const = default;
     };
     struct Mesh {
         std::string name;
@@ -46,6 +48,7 @@ struct Model {
         std::vector<std::string> targetNames; ///< from extras.targetNames; empty or one a morph target
         std::vector<float> weights;           ///< default morph weights
         nlohmann::json extras;
+        bool operator==(const Mesh&) const = default;
     };
     struct Node {
         std::string name;
@@ -59,11 +62,13 @@ struct Model {
         int skin = -1;
         std::vector<float> weights; ///< overrides the mesh's where present
         nlohmann::json extras;
+        bool operator==(const Node&) const = default;
     };
     struct Skin {
         std::string name;
-        std::vector<int> joints; ///< nodes
+        std::vector<int> joints;                    ///< nodes
         std::vector<glm::mat4> inverseBindMatrices; ///< one a joint
+        bool operator==(const Skin&) const = default;
     };
     enum class Path { translation, rotation, scale, weights };
     enum class Interpolation { linear, step, cubicSpline };
@@ -73,17 +78,20 @@ struct Model {
         Interpolation interpolation = Interpolation::linear;
         std::vector<float> times;  ///< seconds, ascending
         std::vector<float> values; ///< glTF's layout: components x keys (x3 for cubic splines)
+        bool operator==(const Channel&) const = default;
     };
     struct Animation {
         std::string name;
         std::vector<Channel> channels;
         [[nodiscard]] double duration() const noexcept; ///< seconds
+        bool operator==(const Animation&) const = default;
     };
     /// A picture still in its file form (PNG or JPEG), not decoded.
     struct Image {
         std::string name;
         std::string mimeType;
         std::vector<std::byte> bytes;
+        bool operator==(const Image&) const = default;
     };
     struct Material {
         std::string name;
@@ -100,9 +108,10 @@ struct Model {
         int normalImage = -1;
         int emissiveImage = -1;
         nlohmann::json extras;
+        bool operator==(const Material&) const = default;
     };
 
-    std::string name;
+    std::string name;        ///< of the default scene, or of the file where the scene has none
     std::vector<Node> nodes; ///< a parent stands before its children
     std::vector<int> roots;  ///< of the default scene
     std::vector<Mesh> meshes;
@@ -110,17 +119,21 @@ struct Model {
     std::vector<Animation> animations;
     std::vector<Material> materials;
     std::vector<Image> images;
-    nlohmann::json extras; ///< of the asset
+    nlohmann::json extras; ///< of the asset; of the default scene too, where the asset has no such key
+
+    bool operator==(const Model&) const = default;
 };
 
 /// Reads `.gltf` or `.glb`. Buffers and images beside the file are read, but only inside its folder.
-/// Throws DataError naming the file, the place in it and the remedy.
+/// Of what glTF can hold, cameras, lights, further texture coordinates and joint sets, texture transforms, points and
+/// lines are left out. Throws DataError naming the file, the place in it and the remedy.
 [[nodiscard]] Model readModel(const std::filesystem::path& file);
 
 /// Reads a GLB held in memory; nothing outside it is opened. `name` stands in errors.
 [[nodiscard]] Model readGlb(std::span<const std::byte> bytes, const std::string& name);
 
-/// The model as one binary glTF 2.0 file. Lossless for everything a Model holds.
+/// The model as one binary glTF 2.0 file. Lossless for everything a Model holds. Throws InvalidInput where the model
+/// contradicts itself: no nodes, an attribute whose length is not the number of vertices, an index out of range.
 [[nodiscard]] std::vector<std::byte> writeGlb(const Model& model);
 
 /// A model holding just this mesh on one node.
@@ -129,10 +142,13 @@ struct Model {
 /// `worldFromNode` for every node, at the rest pose or posed by `animation` at `seconds`
 /// (held beyond its ends).
 [[nodiscard]] std::vector<glm::mat4> nodeTransforms(const Model& model);
-[[nodiscard]] std::vector<glm::mat4> nodeTransforms(const Model& model, const Model::Animation& animation, double seconds);
+[[nodiscard]] std::vector<glm::mat4> nodeTransforms(const Model& model, const Model::Animation& animation,
+                                                    double seconds);
 
 /// All triangles of the default scene in world space with skins and morph targets applied, at the
-/// rest pose or posed by `animation` at `seconds`. The triangles are the same at every time.
+/// rest pose or posed by `animation` at `seconds`. The triangles are the same at every time; where the rest pose mirrors
+/// a mesh its triangles are turned, so that outside stays outside. Throws InvalidInput when a transform carries a vertex
+/// beyond the range of float.
 [[nodiscard]] TriangleMesh flatten(const Model& model);
 [[nodiscard]] TriangleMesh flatten(const Model& model, const Model::Animation& animation, double seconds);
 

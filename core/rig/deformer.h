@@ -12,7 +12,7 @@
 
 namespace lumorph {
 
-/// Turns its part rigidly about a line, right-handed about `axis`.
+/// Turns its part rigidly about a line, right-handed about `axis`. Lengths of axes do not matter.
 struct Hinge {
     glm::vec3 origin{0.0F}; ///< a point of the axis, device coordinates, metres
     glm::vec3 axis{1.0F, 0.0F, 0.0F};
@@ -23,7 +23,8 @@ struct Hinge {
 /// Bends like a flexible sheet: straight up to the bend line, an arc of `length` metres, straight
 /// again. Distances along the neutral surface and across it are kept (a developable bend).
 /// `direction` is the way from the bend line to the free end and is perpendicular to `axis`; the
-/// rotation is right-handed about `axis`. The neutral surface passes through `origin`.
+/// rotation is right-handed about `axis`. The neutral surface passes through `origin`. The rest mesh
+/// is the flat sheet, so `min` is 0; a sheet that bends to the other side has its axis turned round.
 struct Bend {
     glm::vec3 origin{0.0F};
     glm::vec3 axis{1.0F, 0.0F, 0.0F};
@@ -44,8 +45,8 @@ struct Slide {
 /// per deformation state (a key for each). Displacements are from the rest mesh and linear between
 /// the keys; strokes before the first key run linearly from rest.
 struct MorphTarget {
-    std::string target;       ///< its name in the file
-    std::vector<float> keys;  ///< strokes in (0, 1], ascending
+    std::string target;      ///< its name in the file
+    std::vector<float> keys; ///< strokes in (0, 1], ascending
     /// displacements[k][i] belongs to keys[k] and the i-th influence of the actuator, metres.
     std::vector<std::vector<glm::vec3>> displacements;
 };

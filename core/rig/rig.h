@@ -1,13 +1,16 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <glm/mat4x4.hpp>
+#include <glm/vec4.hpp>
 
 #include "core/base/units.h"
 #include "core/geometry/triangle_mesh.h"
@@ -39,12 +42,14 @@ struct Actuator {
     ActuatorDrive drive;
 };
 
-/// Joints of a skinned model, for SkinJoint actuators. A parent stands before its children.
+/// Joints of a skinned model, for SkinJoint actuators. A parent stands before its children. The rest
+/// mesh is the bind pose: with every joint at `localRest` each vertex is where the mesh says.
 struct Skeleton {
     struct Joint {
         int parent = -1;
+        /// `parentFromJoint` at rest (`deviceFromJoint` without a parent); a rotation, a translation
+        /// and a uniform scale.
         glm::mat4 localRest{1.0F};
-        glm::mat4 inverseBind{1.0F};
     };
     std::vector<Joint> joints;
     std::vector<glm::u16vec4> vertexJoints; ///< one a vertex of the rest mesh
@@ -58,52 +63,70 @@ struct RigParts {
     std::vector<Actuator> actuators;
     std::optional<Skeleton> skeleton;
     /// True when the solid at a state holds all it passed on the way from rest (its skirt follows
-    /// the path), so that the covered volume needs no sweep. Checked by `checkPathInside`.
+    /// the path), so that the covered volume needs no sweep. `shapeReport` measures it.
     bool pathInside = false;
 };
 
+class DeformProgram;
+
 /// A shape-changing device: a closed mesh and the actuators that deform it (R4).
 ///
-/// Deformation order: morph targets (added to the rest positions), then the skin, then hinges, bends
-/// and slides in the actuators' order, each acting on what came before as a map of space.
-/// Immutable; safe to share between threads. Copies share their data.
+/// The rest mesh is the shape at the lower end of every range; a stroke x weight of 1 has moved a
+/// vertex by max - min. Deformation order: morph targets (added to the rest positions), then the skin,
+/// then hinges, bends and slides in the actuators' order, each acting on what came before as a map of
+/// space. Immutable; safe to share between threads. Copies share their data.
 class Rig {
+    struct Compiled;
+
 public:
     /// Throws InvalidInput when the parts do not fit together (indices, weights, axes, ranges).
     explicit Rig(RigParts parts);
 
-    [[nodiscard]] const std::string& name() const noexcept { return data_->parts.name; }
-    [[nodiscard]] const TriangleMesh& restMesh() const noexcept { return data_->parts.restMesh; }
-    [[nodiscard]] std::span<const Actuator> actuators() const noexcept { return data_->parts.actuators; }
-    [[nodiscard]] std::size_t actuatorCount() const noexcept { return data_->parts.actuators.size(); }
-    [[nodiscard]] const std::optional<Skeleton>& skeleton() const noexcept { return data_->parts.skeleton; }
-    [[nodiscard]] bool pathInside() const noexcept { return data_->parts.pathInside; }
+    [[nodiscard]] const RigParts& parts() const noexcept;
+    [[nodiscard]] const std::string& name() const noexcept { return parts().name; }
+    [[nodiscard]] const TriangleMesh& restMesh() const noexcept { return parts().restMesh; }
+    [[nodiscard]] std::span<const Actuator> actuators() const noexcept { return parts().actuators; }
+    [[nodiscard]] std::size_t actuatorCount() const noexcept { return parts().actuators.size(); }
+    [[nodiscard]] const std::optional<Skeleton>& skeleton() const noexcept { return parts().skeleton; }
+    [[nodiscard]] bool pathInside() const noexcept { return parts().pathInside; }
 
     /// The actuators that can move this vertex, ascending.
     [[nodiscard]] std::span<const std::uint16_t> actuatorsOf(std::uint32_t vertex) const noexcept;
+    /// The vertices that this actuator can move, ascending.
+    [[nodiscard]] std::span<const std::uint32_t> verticesOf(std::size_t actuator) const noexcept;
 
-    /// Positions of all vertices. `strokes` has one entry an actuator, `out` one a vertex.
+    /// Positions of all vertices. `strokes` has one entry in [0, 1] an actuator, `out` one a vertex.
     void deform(std::span<const double> strokes, std::span<glm::vec3> out) const noexcept;
-    /// Positions of the listed vertices only: out[k] is that of vertices[k].
+    /// Positions of the listed vertices only: out[k] is that of vertices[k]. Costs in proportion to
+    /// their number; for a list used again and again a Subset is several times as fast.
     void deform(std::span<const double> strokes, std::span<const std::uint32_t> vertices,
                 std::span<glm::vec3> out) const noexcept;
 
-    /// A box that holds this vertex in every joint state (conservative: never too small).
-    [[nodiscard]] const Box& reachOf(std::uint32_t vertex) const noexcept { return data_->reach[vertex]; }
-    /// The box of the whole rig over all joint states (R7).
-    [[nodiscard]] const Box& reach() const noexcept { return data_->totalReach; }
+    /// A list of vertices, compiled once to be deformed many times: bit for bit what `Rig::deform`
+    /// gives. Shares the rig's data; immutable, safe to share between threads.
+    class Subset {
+    public:
+        [[nodiscard]] std::size_t size() const noexcept;
+        /// out[k] is the position of the k-th listed vertex.
+        void deform(std::span<const double> strokes, std::span<glm::vec3> out) const noexcept;
 
-    struct Data; ///< the compiled form; see rig.cpp
+    private:
+        friend class Rig;
+        explicit Subset(std::shared_ptr<const DeformProgram> program) : program_(std::move(program)) {}
+        std::shared_ptr<const DeformProgram> program_;
+    };
+    /// Throws InvalidInput when a vertex is out of range.
+    [[nodiscard]] Subset subset(std::span<const std::uint32_t> vertices) const;
+
+    /// A box that holds this vertex in every joint state (conservative: never too small).
+    [[nodiscard]] const Box& reachOf(std::uint32_t vertex) const noexcept { return reaches()[vertex]; }
+    /// The same for all vertices.
+    [[nodiscard]] std::span<const Box> reaches() const noexcept;
+    /// The box of the whole rig over all joint states (R7).
+    [[nodiscard]] const Box& reach() const noexcept;
 
 private:
-    struct Base {
-        RigParts parts;
-        std::vector<Box> reach;
-        Box totalReach;
-        std::vector<std::uint32_t> dependencyStart; ///< vertices + 1
-        std::vector<std::uint16_t> dependencies;
-    };
-    std::shared_ptr<const Base> data_;
+    std::shared_ptr<const Compiled> compiled_;
 };
 
 /// The mesh at the given strokes.

@@ -20,9 +20,9 @@ namespace lumorph {
 /// joint), `target` (morph target's name), `levels`, `maxVelocity` (degrees, metres or weight a
 /// second), `damping`, `channel`, `pulse` (two numbers, microseconds).
 /// Which vertices an actuator moves: those of the vertex attributes `_ACTUATORS_0` (up to four
-/// actuator indices a vertex in the order of `order`, else of the nodes; -1 for none) and `_INFLUENCES_0` (their weights) where
-/// present; else all vertices of the node's own mesh and of its descendants.
-/// The scene's `extras.lumorph.pathInside` states that the solid holds its own path.
+/// actuator indices a vertex in the order of `order`, else of the nodes; -1 for none) and `_INFLUENCES_0` (their
+/// weights) where present; else all vertices of the node's own mesh and of its descendants. The scene's
+/// `extras.lumorph.pathInside` states that the solid holds its own path.
 ///
 /// A folder holds `rest.obj` and `ACTUATOR_KEY.obj` (any mesh format; KEY 1, 2, ... evenly spaced
 /// strokes), all with the same triangles.

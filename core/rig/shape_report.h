@@ -21,25 +21,25 @@ struct ShapeReport {
         std::string deformer;
         double rangeMin = 0.0; ///< radians, metres or weight
         double rangeMax = 0.0;
-        std::string unit;      ///< "rad", "m" or ""
+        std::string unit; ///< "rad", "m" or ""
         std::size_t vertices = 0;
-        double amplitude = 0.0;    ///< metres, longest way a vertex moves at full stroke
-        double sweptArea = 0.0;    ///< square metres of rest surface that it moves
-        double maxCurvature = 0.0; ///< 1/metres at full stroke (0 where rigid)
+        double amplitude = 0.0;         ///< metres, longest way a vertex moves at full stroke
+        double sweptArea = 0.0;         ///< square metres of rest surface that it moves
+        double maxCurvature = 0.0;      ///< 1/metres at full stroke (0 where rigid)
         double fullStrokeSeconds = 0.0; ///< at its velocity limit
     };
     std::vector<PerActuator> actuators;
-    double area = 0.0;               ///< square metres of rest surface that any actuator moves
-    double granularity = 0.0;        ///< actuators a square metre of that
-    double maxStretch = 0.0;         ///< largest relative change of a triangle edge over the sampled states
-    double volumeMin = 0.0;          ///< cubic metres over the sampled states
+    double area = 0.0;        ///< square metres of rest surface that any actuator moves
+    double granularity = 0.0; ///< actuators a square metre of that
+    double maxStretch = 0.0;  ///< largest relative change of a triangle edge over the sampled states
+    double volumeMin = 0.0;   ///< cubic metres over the sampled states
     double volumeMax = 0.0;
     int sampledStates = 0;
-    int openStates = 0;              ///< sampled states in which the mesh is not closed
-    int intersectingStates = 0;      ///< ... crosses itself
-    int invertedStates = 0;          ///< ... has triangles turned inside out: negative volume or zero area
+    int openStates = 0;         ///< sampled states in which the mesh is not closed
+    int intersectingStates = 0; ///< ... crosses itself
+    int invertedStates = 0;     ///< ... has triangles turned inside out: negative volume or zero area
     bool pathInside = false;
-    double pathOutsideShare = 0.0;   ///< volume passed but not held, relative, over sampled states
+    double pathOutsideShare = 0.0;     ///< volume passed but not held, relative, over sampled states
     std::vector<std::string> warnings; ///< plain sentences (R42)
 };
 

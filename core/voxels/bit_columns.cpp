@@ -21,13 +21,13 @@ void BitColumns::clear() noexcept { std::fill(words_.begin(), words_.end(), 0); 
 
 namespace {
 
-LUMORPH_COUNTING std::size_t countBits(const std::uint64_t* words, std::size_t size) noexcept {
+LUMORPH_COUNTING std::size_t countWords(const std::uint64_t* words, std::size_t size) noexcept {
     std::size_t sum = 0;
     for (std::size_t i = 0; i < size; ++i) sum += static_cast<std::size_t>(__builtin_popcountll(words[i]));
     return sum;
 }
 
-LUMORPH_COUNTING std::size_t countBitsAnd(const std::uint64_t* a, const std::uint64_t* b, std::size_t size) noexcept {
+LUMORPH_COUNTING std::size_t countWordsAnd(const std::uint64_t* a, const std::uint64_t* b, std::size_t size) noexcept {
     std::size_t sum = 0;
     for (std::size_t i = 0; i < size; ++i) sum += static_cast<std::size_t>(__builtin_popcountll(a[i] & b[i]));
     return sum;
@@ -35,11 +35,15 @@ LUMORPH_COUNTING std::size_t countBitsAnd(const std::uint64_t* a, const std::uin
 
 } // namespace
 
-std::size_t BitColumns::count() const noexcept { return countBits(words_.data(), words_.size()); }
+std::size_t countBits(std::span<const std::uint64_t> words) noexcept { return countWords(words.data(), words.size()); }
 
-std::size_t BitColumns::countAnd(const BitColumns& other) const noexcept {
-    return countBitsAnd(words_.data(), other.words_.data(), words_.size());
+std::size_t countBitsAnd(std::span<const std::uint64_t> a, std::span<const std::uint64_t> b) noexcept {
+    return countWordsAnd(a.data(), b.data(), a.size());
 }
+
+std::size_t BitColumns::count() const noexcept { return countBits(words_); }
+
+std::size_t BitColumns::countAnd(const BitColumns& other) const noexcept { return countBitsAnd(words_, other.words_); }
 
 BitColumns& BitColumns::operator|=(const BitColumns& other) noexcept {
     for (std::size_t i = 0; i < words_.size(); ++i) words_[i] |= other.words_[i];

@@ -56,6 +56,10 @@ private:
     std::vector<std::uint64_t> words_;
 };
 
+/// Number of set bits in a run of words, and in what two runs of equal length share.
+[[nodiscard]] std::size_t countBits(std::span<const std::uint64_t> words) noexcept;
+[[nodiscard]] std::size_t countBitsAnd(std::span<const std::uint64_t> a, std::span<const std::uint64_t> b) noexcept;
+
 /// Intersection over union of two grids of equal shape; 1 when both are empty.
 [[nodiscard]] double intersectionOverUnion(const BitColumns& a, const BitColumns& b) noexcept;
 

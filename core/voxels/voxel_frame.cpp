@@ -10,6 +10,11 @@
 
 namespace lumorph {
 
+bool fitsLimits(const glm::ivec3& dimensions) noexcept {
+    const double columns = static_cast<double>(dimensions.x) * dimensions.z;
+    return columns <= static_cast<double>(kMaxColumns) && columns * dimensions.y <= static_cast<double>(kMaxVoxels);
+}
+
 VoxelFrame frameOf(const Box& box, int resolution) {
     const glm::dvec3 size(box.size());
     const double smallest = std::min({size.x, size.y, size.z});
@@ -22,9 +27,11 @@ VoxelFrame frameOf(const Box& box, int resolution) {
     const double voxel = smallest / resolution;
     const auto voxelsAlong = [&](double side) { return std::max(1.0, std::ceil(side / voxel - 1e-6)); };
     const glm::dvec3 counts(voxelsAlong(size.x), voxelsAlong(size.y), voxelsAlong(size.z));
-    if (counts.x * counts.y * counts.z > static_cast<double>(kMaxVoxels))
+    if (counts.x * counts.y * counts.z > static_cast<double>(kMaxVoxels) ||
+        counts.x * counts.z > static_cast<double>(kMaxColumns))
         throw InvalidInput("resolution " + std::to_string(resolution),
-                           "the frame would have more than " + std::to_string(kMaxVoxels) + " voxels",
+                           "the frame would have more than " + std::to_string(kMaxVoxels) + " voxels or " +
+                               std::to_string(kMaxColumns) + " columns",
                            "use a lower resolution");
     VoxelFrame frame{box.min, voxel, glm::ivec3(counts)};
     // The smallest side must get exactly the resolution asked for, whatever the rounding.

@@ -10,8 +10,8 @@ namespace lumorph {
 
 /// A regular grid of cubic voxels in device coordinates; voxel (0,0,0) touches `origin`.
 struct VoxelFrame {
-    glm::vec3 origin{0.0F};      ///< lowest corner, metres
-    double voxelSize = 0.0;      ///< metres
+    glm::vec3 origin{0.0F}; ///< lowest corner, metres
+    double voxelSize = 0.0; ///< metres
     glm::ivec3 dimensions{0};
 
     [[nodiscard]] std::size_t voxelCount() const noexcept {
@@ -28,11 +28,16 @@ struct VoxelFrame {
     bool operator==(const VoxelFrame&) const = default;
 };
 
-inline constexpr std::size_t kMaxVoxels = std::size_t{1} << 28;
+/// Limits of a frame, so that a wrong number is refused instead of filling the memory.
+inline constexpr std::size_t kMaxVoxels = std::size_t{1} << 26;
+inline constexpr std::size_t kMaxColumns = std::size_t{1} << 22;
+
+/// Whether a grid of this shape (each size at least 1) stays within the limits.
+[[nodiscard]] bool fitsLimits(const glm::ivec3& dimensions) noexcept;
 
 /// The frame of a box (paper, Computational considerations; R7): voxel side = smallest side /
 /// resolution; the smallest axis gets `resolution` voxels, the others ceil(side / voxel - 1e-6).
-/// Throws InvalidInput for an empty or flat box, a resolution below 1 or more than kMaxVoxels.
+/// Throws InvalidInput for an empty or flat box, a resolution below 1 or a frame beyond the limits.
 [[nodiscard]] VoxelFrame frameOf(const Box& box, int resolution);
 
 } // namespace lumorph

@@ -17,11 +17,13 @@ namespace {
 
 SerialAddress parseSerial(std::string_view uri, const QUrl& url, const QUrlQuery& query) {
     SerialAddress address{url.path().toStdString()};
-    if (address.path.size() < 2 || !url.host().isEmpty()) refuse(uri, "a serial address needs a path such as /dev/ttyUSB0");
+    if (address.path.size() < 2 || !url.host().isEmpty())
+        refuse(uri, "a serial address needs a path such as /dev/ttyUSB0");
     if (query.hasQueryItem("baud")) {
         bool isNumber = false;
         address.baud = query.queryItemValue("baud").toInt(&isNumber);
-        if (!isNumber || address.baud < 300 || address.baud > 4'000'000) refuse(uri, "the baud rate must be 300 to 4000000");
+        if (!isNumber || address.baud < 300 || address.baud > 4'000'000)
+            refuse(uri, "the baud rate must be 300 to 4000000");
     }
     return address;
 }

@@ -8,7 +8,8 @@ namespace lumorph {
 namespace {
 
 TEST(DeviceAddress, ReadsEveryKind) {
-    EXPECT_EQ(parseDeviceAddress("serial:///dev/rfcomm0?baud=9600"), DeviceAddress(SerialAddress{"/dev/rfcomm0", 9600}));
+    EXPECT_EQ(parseDeviceAddress("serial:///dev/rfcomm0?baud=9600"),
+              DeviceAddress(SerialAddress{"/dev/rfcomm0", 9600}));
     EXPECT_EQ(parseDeviceAddress("serial:///dev/ttyUSB0"), DeviceAddress(SerialAddress{"/dev/ttyUSB0", 57600}));
     EXPECT_EQ(parseDeviceAddress("bt://98:d3:31:F4:12:AB"), DeviceAddress(BluetoothAddress{"98:D3:31:F4:12:AB"}));
     EXPECT_EQ(parseDeviceAddress("hid://0483:5750?product=LOBOT"), DeviceAddress(HidAddress{0x0483, 0x5750, "LOBOT"}));

@@ -1,0 +1,16 @@
+#pragma once
+
+#include <CLI/App.hpp>
+
+#include "app/cli/session.h"
+
+namespace lumorph::cli {
+
+/// Each adds its group to the program; the session outlives the parsing.
+void addRigCommands(CLI::App& app, Session& session);
+void addMdfCommands(CLI::App& app, Session& session);
+void addVoxelizeCommand(CLI::App& app, Session& session);
+void addMatchCommand(CLI::App& app, Session& session);
+void addBenchCommand(CLI::App& app);
+
+} // namespace lumorph::cli

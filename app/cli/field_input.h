@@ -1,0 +1,36 @@
+#pragma once
+
+#include <string>
+
+#include "core/mdf/field.h"
+#include "core/mdf/placement.h"
+
+namespace lumorph::cli {
+
+/// Reads a .mdf file, or stdin for "-".
+[[nodiscard]] Field readFieldFile(const std::string& path);
+
+/// A target as voxels of a field's frame.
+struct TargetVoxels {
+    BitColumns bits;
+    TriangleMesh mesh;                 ///< placed, device coordinates; empty when the target came as voxels
+    double voxelizeMilliseconds = 0.0; ///< median
+    std::vector<std::string> warnings;
+};
+
+struct TargetArguments {
+    std::string path;
+    bool fit = false;
+    int repeat = 1; ///< how often to voxelise, for the median
+};
+
+/// Reads a mesh, or an NRRD grid in the field's own frame, and turns it into voxels.
+[[nodiscard]] TargetVoxels readTarget(const Field& field, const TargetArguments& arguments);
+
+/// The same for a mesh that has been read already.
+[[nodiscard]] TargetVoxels voxelsOf(const Field& field, const Target& target, const Placement& placement, int repeat);
+
+/// The middle of some measurements; 0 for none.
+[[nodiscard]] double medianOf(std::vector<double> values);
+
+} // namespace lumorph::cli

@@ -1,0 +1,268 @@
+#include <chrono>
+#include <cstdio>
+#include <memory>
+#include <optional>
+
+#include "app/cli/commands.h"
+#include "app/cli/field_input.h"
+#include "app/cli/match_picture.h"
+#include "core/base/error.h"
+#include "core/geometry/mesh_file.h"
+#include "core/mdf/auto_place.h"
+#include "core/mdf/clip.h"
+#include "core/mdf/refine.h"
+#include "core/mdf/voting.h"
+#include "core/rig/rig_file.h"
+
+namespace lumorph::cli {
+
+namespace {
+
+struct Arguments {
+    std::string field;
+    TargetArguments target;
+    std::string method = "voting";
+    double budgetMilliseconds = 10.0;
+    bool autoPlace = false;
+    std::string animation;
+    double framesPerSecond = 30.0;
+    std::string csv;
+    std::string picture;
+    bool json = false;
+};
+
+/// Everything a match needs of a field, made once.
+struct Matcher {
+    Field field;
+    Coverage coverage;
+    Voting voting;
+
+    explicit Matcher(const std::string& path)
+        : field(readFieldFile(path)), coverage(readRigGlb(field.rigGlb, path), field.frame, field.levels),
+          voting(field) {
+        if (coverage.rig().actuatorCount() != field.actuators.size())
+            throw DataError(path, "the field and the rig in it do not agree",
+                            "build the field again with 'lumorph mdf build'");
+    }
+};
+
+struct Result {
+    Votes votes;
+    State state;
+    FitQuality quality;
+    std::optional<Refinement> refinement;
+    std::optional<AutoPlacement> placement;
+    double voxelizeMilliseconds = 0.0;
+    double matchMilliseconds = 0.0;
+    double refineMilliseconds = 0.0;
+    std::vector<std::string> warnings;
+};
+
+template <typename Work> double medianMilliseconds(int repeat, Work&& work) {
+    std::vector<double> times;
+    for (int i = 0; i < repeat; ++i) {
+        const auto start = std::chrono::steady_clock::now();
+        work();
+        times.push_back(std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count());
+    }
+    return medianOf(times);
+}
+
+Result matchVoxels(const Matcher& matcher, const TargetVoxels& target, const Arguments& arguments) {
+    Result result;
+    result.warnings = target.warnings;
+    result.voxelizeMilliseconds = target.voxelizeMilliseconds;
+    BitColumns wanted = target.bits;
+    wanted &= matcher.coverage.domain();
+    Voting::Workspace workspace;
+    result.matchMilliseconds =
+        medianMilliseconds(arguments.target.repeat, [&] { matcher.voting.match(wanted, result.votes, workspace); });
+    result.state = result.votes.state();
+    Refiner refiner(matcher.coverage);
+    if (arguments.method == "refined") {
+        const SteadyClock clock;
+        const Microseconds budget(static_cast<std::int64_t>(1000.0 * arguments.budgetMilliseconds));
+        result.refineMilliseconds = medianMilliseconds(arguments.target.repeat, [&] {
+            result.refinement = refiner.refine(wanted, result.votes.state(), budget, clock);
+        });
+        result.state = result.refinement->state;
+        result.quality = result.refinement->after;
+    } else {
+        result.quality = refiner.qualityOf(wanted, result.state);
+    }
+    if (result.votes.targetVoxels == 0)
+        result.warnings.emplace_back(
+            "The target does not overlap the space above the device; place it there or use --fit.");
+    for (std::size_t i = 0; i < result.votes.actuators.size() && result.votes.targetVoxels > 0; ++i)
+        if (!result.votes.actuators[i].reached)
+            result.warnings.push_back("The target does not meet what '" + matcher.field.actuators[i].name +
+                                      "' can change; it rests.");
+    return result;
+}
+
+nlohmann::json stateJson(const State& state) {
+    nlohmann::json levels = nlohmann::json::array();
+    for (const Level level : state) levels.push_back(level.index);
+    return levels;
+}
+
+nlohmann::json resultJson(const Matcher& matcher, const Result& result, const Arguments& arguments) {
+    const double volume = matcher.field.frame.voxelVolume();
+    nlohmann::json actuators = nlohmann::json::array();
+    for (std::size_t i = 0; i < result.votes.actuators.size(); ++i) {
+        const ActuatorVote& vote = result.votes.actuators[i];
+        actuators.push_back({{"name", matcher.field.actuators[i].name},
+                             {"level", result.state[i].index},
+                             {"voted", vote.level.index},
+                             {"reached", vote.reached},
+                             {"errors", vote.errors},
+                             {"intersections", vote.intersections}});
+    }
+    nlohmann::json json = {
+        {"method", arguments.method},
+        {"state", stateJson(result.state)},
+        {"actuators", actuators},
+        {"iou", result.quality.iou()},
+        {"targetVoxels", result.votes.targetVoxels},
+        {"unmatchedVolume", static_cast<double>(result.quality.unmatched) * volume},
+        {"overfilledVolume", static_cast<double>(result.quality.overfilled) * volume},
+        {"ms",
+         {{"voxelize", {{"median", result.voxelizeMilliseconds}}}, {"match", {{"median", result.matchMilliseconds}}}}},
+        {"warnings", result.warnings}};
+    if (result.refinement) {
+        json["ms"]["refine"] = {{"median", result.refineMilliseconds}};
+        json["iouBefore"] = result.refinement->before.iou();
+        json["statesSeen"] = result.refinement->statesSeen;
+        json["converged"] = result.refinement->converged;
+    }
+    if (result.placement) {
+        const Placement& p = result.placement->placement;
+        json["placement"] = {{"scale", p.scale},
+                             {"yawDegrees", p.yaw.inDegrees()},
+                             {"translation", {p.translation.x, p.translation.y, p.translation.z}},
+                             {"iouAtFit", result.placement->iouAtFit},
+                             {"placementsSeen", result.placement->placementsSeen}};
+    }
+    return json;
+}
+
+void printResult(const Matcher& matcher, const Result& result) {
+    const int top = matcher.field.levels - 1;
+    constexpr std::size_t kMost = 24;
+    for (std::size_t i = 0; i < std::min(kMost, result.state.size()); ++i) {
+        const int level = result.state[i].index;
+        const std::string bar(static_cast<std::size_t>(20 * level / top), '=');
+        std::printf("  %-22s %3d of %d  |%-20s|%s\n", matcher.field.actuators[i].name.c_str(), level, top, bar.c_str(),
+                    result.votes.actuators[i].reached ? "" : "  not reached");
+    }
+    if (result.state.size() > kMost) std::printf("  ... and %zu more\n", result.state.size() - kMost);
+    const double cubicCentimetres = 1e6 * matcher.field.frame.voxelVolume();
+    std::printf("\n  IoU %.3f; %.1f cm3 of the target unmatched, %.1f cm3 overfilled\n", result.quality.iou(),
+                static_cast<double>(result.quality.unmatched) * cubicCentimetres,
+                static_cast<double>(result.quality.overfilled) * cubicCentimetres);
+    std::printf("  voxelise %.3f ms, match %.3f ms", result.voxelizeMilliseconds, result.matchMilliseconds);
+    if (result.refinement)
+        std::printf(", refine %.3f ms over %d states (IoU %.3f by voting)", result.refineMilliseconds,
+                    result.refinement->statesSeen, result.refinement->before.iou());
+    std::printf("\n");
+    for (const std::string& warning : result.warnings) std::printf("  ! %s\n", warning.c_str());
+}
+
+const Model::Animation& chooseAnimation(const Model& model, const std::string& path, const std::string& name) {
+    if (model.animations.empty())
+        throw DataError(path, "it holds no animation", "export it from the modeller with its animation");
+    for (const Model::Animation& animation : model.animations)
+        if (animation.name == name || name == "first") return animation;
+    throw InvalidInput("--animation '" + name + "'", "the file has no animation of that name",
+                       "use 'first' or '" + model.animations.front().name + "'");
+}
+
+void matchAnimation(const Matcher& matcher, const Arguments& arguments, const Session& session) {
+    const Model model = readModel(arguments.target.path);
+    const Model::Animation& animation = chooseAnimation(model, arguments.target.path, arguments.animation);
+    ClipOptions options;
+    options.framesPerSecond = arguments.framesPerSecond;
+    options.refined = arguments.method == "refined";
+    options.budget = Microseconds(static_cast<std::int64_t>(1000.0 * arguments.budgetMilliseconds));
+    const auto frames =
+        matchClip(matcher.field, matcher.coverage, matcher.voting, model, animation, options, session.progress());
+    Session::endProgress();
+    if (!arguments.csv.empty()) writeOutput(arguments.csv, bytesOfText(clipCsv(matcher.field, frames)));
+    double wanted = 0.0;
+    double reached = 0.0;
+    nlohmann::json list = nlohmann::json::array();
+    for (const ClipFrame& frame : frames) {
+        wanted += frame.iouWanted / static_cast<double>(frames.size());
+        reached += frame.iouReached / static_cast<double>(frames.size());
+        list.push_back({{"seconds", frame.seconds},
+                        {"state", stateJson(frame.wanted)},
+                        {"strokes", frame.strokes},
+                        {"iouWanted", frame.iouWanted},
+                        {"iouReached", frame.iouReached}});
+    }
+    if (arguments.json)
+        printJson({{"animation", animation.name}, {"frames", list}, {"iouWanted", wanted}, {"iouReached", reached}});
+    else if (arguments.csv != "-")
+        std::printf("  %zu frames of '%s': mean IoU %.3f wanted, %.3f reached under the velocity limits\n",
+                    frames.size(), animation.name.c_str(), wanted, reached);
+}
+
+void match(const Arguments& arguments, const Session& session) {
+    const Matcher matcher(arguments.field);
+    if (!arguments.animation.empty()) {
+        matchAnimation(matcher, arguments, session);
+        return;
+    }
+    std::optional<AutoPlacement> placement;
+    TargetVoxels target;
+    if (arguments.autoPlace) {
+        const Target mesh = makeTarget(readMesh(arguments.target.path));
+        placement = autoPlace(matcher.field, matcher.coverage, matcher.voting, mesh, {}, session.progress());
+        Session::endProgress();
+        target = voxelsOf(matcher.field, mesh, placement->placement, arguments.target.repeat);
+    } else {
+        target = readTarget(matcher.field, arguments.target);
+    }
+    Result result = matchVoxels(matcher, target, arguments);
+    result.placement = placement;
+    if (!arguments.picture.empty())
+        drawMatch(matcher.coverage.rig(), target.mesh,
+                  strokesOf(matcher.coverage.rig(), result.state, matcher.field.levels), result.quality.iou(),
+                  result.matchMilliseconds, arguments.picture);
+    arguments.json ? printJson(resultJson(matcher, result, arguments)) : printResult(matcher, result);
+}
+
+} // namespace
+
+void addMatchCommand(CLI::App& app, Session& session) {
+    auto a = std::make_shared<Arguments>();
+    CLI::App* command = app.add_subcommand("match", "Find the state in which the device looks most like a target");
+    command->add_option("field", a->field, "A .mdf file")->required();
+    command
+        ->add_option("target", a->target.path, "A mesh, or an .nrrd grid in the field's frame (- for standard input)")
+        ->required();
+    command->add_flag("--fit", a->target.fit, "Largest scale inside the frame, centred, standing on the rest surface");
+    CLI::Option* place =
+        command->add_flag("--auto-place", a->autoPlace, "Search heading, scale and position for the best IoU");
+    place->excludes("--fit");
+    command->add_option("--method", a->method, "voting or refined")
+        ->check(CLI::IsMember({"voting", "refined"}))
+        ->capture_default_str();
+    command->add_option("--budget-ms", a->budgetMilliseconds, "Time for refinement")
+        ->check(CLI::Range(0.001, 1e6))
+        ->capture_default_str();
+    command->add_option("--repeat", a->target.repeat, "Repeat each stage and give the median")
+        ->check(CLI::Range(1, 100000))
+        ->capture_default_str();
+    command->add_option("--animation", a->animation, "Match an animation of the file over time: its name, or first");
+    command->add_option("--fps", a->framesPerSecond, "Frames a second of that")
+        ->check(CLI::Range(1.0, 240.0))
+        ->capture_default_str();
+    command->add_option("--csv", a->csv, "Write the matched animation as a table, or -")->needs("--animation");
+    command->add_option("--picture", a->picture, "Write a picture of rest, target and fit (.png)")
+        ->excludes("--animation");
+    command->add_flag("--json", a->json, "Print one JSON value");
+    command->callback([a, &session] { match(*a, session); });
+}
+
+} // namespace lumorph::cli

@@ -1,0 +1,147 @@
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <memory>
+
+#include "app/cli/commands.h"
+#include "app/cli/field_input.h"
+#include "core/mdf/builder.h"
+#include "core/mdf/field_export.h"
+#include "core/mdf/field_file.h"
+#include "core/rig/rig_file.h"
+
+namespace lumorph::cli {
+
+namespace {
+
+/// Voxels that some actuator changes, each counted once.
+std::size_t reachableVoxels(const Field& field) {
+    std::vector<bool> reachable(field.frame.voxelCount());
+    for (std::size_t i = 0; i < field.actuators.size(); ++i) {
+        const std::vector<Ramp> ramps = denseRamps(field, i);
+        for (std::size_t v = 0; v < ramps.size(); ++v)
+            if (ramps[v].v0 != kUnchanged) reachable[v] = true;
+    }
+    return static_cast<std::size_t>(std::count(reachable.begin(), reachable.end(), true));
+}
+
+nlohmann::json infoJson(const Field& field, std::size_t bytes) {
+    nlohmann::json names = nlohmann::json::array();
+    for (const ActuatorField& actuator : field.actuators) names.push_back(actuator.name);
+    const VoxelFrame& f = field.frame;
+    return {{"rig", field.rigName},
+            {"dims", {f.dimensions.x, f.dimensions.y, f.dimensions.z}},
+            {"origin", {f.origin.x, f.origin.y, f.origin.z}},
+            {"voxelSize", f.voxelSize},
+            {"restSurface", field.restSurface},
+            {"levels", field.levels},
+            {"samples", field.samples},
+            {"exhaustive", field.exhaustive},
+            {"seed", field.seed},
+            {"actuators", names},
+            {"voxels", f.voxelCount()},
+            {"bodyVoxels", field.body.count()},
+            {"reachable", reachableVoxels(field)},
+            {"changedVoxels", field.report.changedVoxels},
+            {"rampError", {{"mean", field.report.rampErrorMean}, {"max", field.report.rampErrorMax}}},
+            {"monotonicityViolations", field.report.monotonicityViolations},
+            {"bytes", bytes}};
+}
+
+void printInfo(const Field& field, std::size_t bytes) {
+    const glm::ivec3& d = field.frame.dimensions;
+    std::printf("%s: %d x %d x %d voxels of %.3f mm, %zu actuators with %d levels\n", field.rigName.c_str(), d.x, d.y,
+                d.z, 1000 * field.frame.voxelSize, field.actuators.size(), field.levels);
+    std::printf("  expectation over %u joint states%s, seed %llu\n", field.samples,
+                field.exhaustive ? " (all there are)" : "", static_cast<unsigned long long>(field.seed));
+    std::printf("  body %zu voxels; %zu of the other %zu can be reached\n", field.body.count(), reachableVoxels(field),
+                field.frame.voxelCount() - field.body.count());
+    std::printf("  ramp error mean %.4f, max %.4f; %llu monotonicity violations; %zu bytes\n",
+                field.report.rampErrorMean, field.report.rampErrorMax,
+                static_cast<unsigned long long>(field.report.monotonicityViolations), bytes);
+    if (field.report.rampErrorMean > 0.02)
+        std::printf(
+            "  ! The ramps are far from the sampled expectation: matching by voting will be coarse; use 'refined'.\n");
+}
+
+struct BuildArguments {
+    std::string rig;
+    std::string output;
+    BuildOptions build;
+    bool json = false;
+};
+
+void build(const BuildArguments& arguments, const Session& session) {
+    const Rig rig = readRig(arguments.rig);
+    const auto start = std::chrono::steady_clock::now();
+    const Field field = buildField(rig, arguments.build, session.progress());
+    const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    Session::endProgress();
+    const std::vector<std::byte> bytes = writeField(field);
+    writeOutput(arguments.output, bytes);
+    if (arguments.json) {
+        nlohmann::json json = infoJson(field, bytes.size());
+        json["seconds"] = seconds;
+        printJson(json);
+    } else if (arguments.output != "-") {
+        printInfo(field, bytes.size());
+        std::printf("  built in %.2f s: %s\n", seconds, arguments.output.c_str());
+    }
+}
+
+struct FieldArguments {
+    std::string field;
+    std::string output;
+    bool json = false;
+};
+
+void info(const FieldArguments& arguments) {
+    const std::vector<std::byte> bytes = readInput(arguments.field);
+    const Field field = parseField(bytes, arguments.field);
+    arguments.json ? printJson(infoJson(field, bytes.size())) : printInfo(field, bytes.size());
+}
+
+} // namespace
+
+Field readFieldFile(const std::string& path) { return parseField(readInput(path), path); }
+
+void addMdfCommands(CLI::App& app, Session& session) {
+    CLI::App* group = app.add_subcommand("mdf", "Build and look at mechanical distance fields");
+    group->require_subcommand(1);
+
+    auto b = std::make_shared<BuildArguments>();
+    CLI::App* buildCommand = group->add_subcommand("build", "Build the field of a rig");
+    buildCommand->add_option("rig", b->rig, "A .glb or .gltf file, or a folder of one mesh per state")->required();
+    buildCommand->add_option("-o,--output", b->output, "The .mdf file to write, or -")->required();
+    buildCommand->add_option("--resolution", b->build.resolution, "Voxels along the shortest side")
+        ->check(CLI::Range(1, 4096))
+        ->capture_default_str();
+    buildCommand->add_option("--levels", b->build.levels, "Levels an actuator")
+        ->check(CLI::Range(2, kMaxLevels))
+        ->capture_default_str();
+    buildCommand->add_option("--samples", b->build.samples, "Joint states of the others to average over")
+        ->check(CLI::Range(1, 65535))
+        ->capture_default_str();
+    buildCommand->add_option("--seed", b->build.seed, "Which states; equal seeds give equal files")
+        ->capture_default_str();
+    buildCommand->add_option("--threads", b->build.threads, "Threads (0: one a core)")
+        ->check(CLI::Range(0, 1024))
+        ->capture_default_str();
+    buildCommand->add_flag("--json", b->json, "Print the report as one JSON value");
+    buildCommand->callback([b, &session] { build(*b, session); });
+
+    auto i = std::make_shared<FieldArguments>();
+    CLI::App* infoCommand = group->add_subcommand("info", "What a field holds");
+    infoCommand->add_option("field", i->field, "A .mdf file")->required();
+    infoCommand->add_flag("--json", i->json, "Print one JSON value");
+    infoCommand->callback([i] { info(*i); });
+
+    auto e = std::make_shared<FieldArguments>();
+    CLI::App* exportCommand =
+        group->add_subcommand("export", "Write the field as NRRD files for ParaView or 3D Slicer");
+    exportCommand->add_option("field", e->field, "A .mdf file")->required();
+    exportCommand->add_option("-o,--output", e->output, "The folder to write into")->required();
+    exportCommand->callback([e] { exportField(readFieldFile(e->field), e->output); });
+}
+
+} // namespace lumorph::cli

@@ -1,0 +1,165 @@
+#include <cstdio>
+#include <memory>
+
+#include "app/cli/commands.h"
+#include "core/geometry/mesh_file.h"
+#include "core/geometry/mesh_writers.h"
+#include "core/rig/rig_file.h"
+#include "core/rig/shape_report.h"
+
+namespace lumorph::cli {
+
+namespace {
+
+struct InfoOptions {
+    std::string rig;
+    bool json = false;
+    int states = 100;
+    std::uint64_t seed = 1;
+};
+
+nlohmann::json vectorJson(const glm::vec3& v) { return {v.x, v.y, v.z}; }
+
+nlohmann::json meshJson(const MeshReport& mesh) {
+    return {{"vertices", mesh.vertices},
+            {"triangles", mesh.triangles},
+            {"components", mesh.components},
+            {"closed", mesh.closed()},
+            {"manifold", mesh.manifold()},
+            {"boundaryEdges", mesh.boundaryEdges},
+            {"nonManifoldEdges", mesh.nonManifoldEdges},
+            {"degenerateTriangles", mesh.degenerateTriangles},
+            {"selfIntersections", mesh.selfIntersections},
+            {"inwardComponents", mesh.inwardComponents},
+            {"volume", mesh.volume},
+            {"findings", mesh.findings()}};
+}
+
+nlohmann::json reportJson(const Rig& rig, const ShapeReport& report) {
+    nlohmann::json actuators = nlohmann::json::array();
+    for (std::size_t i = 0; i < report.actuators.size(); ++i) {
+        const ShapeReport::PerActuator& a = report.actuators[i];
+        const Actuator& actuator = rig.actuators()[i];
+        actuators.push_back({{"name", a.name},
+                             {"deformer", a.deformer},
+                             {"range", {a.rangeMin, a.rangeMax}},
+                             {"unit", a.unit},
+                             {"levels", actuator.levels},
+                             {"maxVelocity", actuator.maxVelocity},
+                             {"channel", actuator.drive.channel},
+                             {"pulse", {actuator.drive.pulseMin, actuator.drive.pulseMax}},
+                             {"vertices", a.vertices},
+                             {"amplitude", a.amplitude},
+                             {"sweptArea", a.sweptArea},
+                             {"maxCurvature", a.maxCurvature},
+                             {"fullStrokeSeconds", a.fullStrokeSeconds}});
+    }
+    return {{"name", rig.name()},
+            {"actuators", actuators},
+            {"mesh", meshJson(report.rest)},
+            {"reach", {{"min", vectorJson(report.reach.min)}, {"max", vectorJson(report.reach.max)}}},
+            {"shape",
+             {{"area", report.area},
+              {"granularity", report.granularity},
+              {"maxStretch", report.maxStretch},
+              {"volume", {report.volumeMin, report.volumeMax}},
+              {"sampledStates", report.sampledStates},
+              {"openStates", report.openStates},
+              {"intersectingStates", report.intersectingStates},
+              {"invertedStates", report.invertedStates},
+              {"pathInside", report.pathInside},
+              {"pathOutsideShare", report.pathOutsideShare}}},
+            {"warnings", report.warnings}};
+}
+
+void printRange(const ShapeReport::PerActuator& a) {
+    if (a.unit == "rad")
+        std::printf("%6.1f to %5.1f deg", Angle::radians(a.rangeMin).inDegrees(),
+                    Angle::radians(a.rangeMax).inDegrees());
+    else if (a.unit == "m")
+        std::printf("%6.1f to %5.1f mm ", 1000 * a.rangeMin, 1000 * a.rangeMax);
+    else
+        std::printf("%6.2f to %5.2f    ", a.rangeMin, a.rangeMax);
+}
+
+void printReport(const Rig& rig, const ShapeReport& report) {
+    const glm::vec3 size = 1000.0F * report.reach.size();
+    std::printf("%s: %zu triangles, %s, %.0f x %.0f x %.0f mm over all states\n\n", rig.name().c_str(),
+                report.rest.triangles, report.rest.solid() ? "a clean closed solid" : "not a clean solid",
+                static_cast<double>(size.x), static_cast<double>(size.y), static_cast<double>(size.z));
+    constexpr std::size_t kMost = 24;
+    std::printf("  %-22s %-8s %-22s %10s %10s %9s\n", "actuator", "moves by", "range", "amplitude", "area", "stroke");
+    for (std::size_t i = 0; i < std::min(kMost, report.actuators.size()); ++i) {
+        const ShapeReport::PerActuator& a = report.actuators[i];
+        std::printf("  %-22s %-8s ", a.name.c_str(), a.deformer.c_str());
+        printRange(a);
+        std::printf(" %7.1f mm %6.1f cm2 %7.2f s\n", 1000 * a.amplitude, 1e4 * a.sweptArea, a.fullStrokeSeconds);
+    }
+    if (report.actuators.size() > kMost) std::printf("  ... and %zu more\n", report.actuators.size() - kMost);
+    std::printf("\n  In %d random states: %d open, %d crossing themselves, %d turned inside out; edges stretch by at "
+                "most %.1f %%.\n",
+                report.sampledStates, report.openStates, report.intersectingStates, report.invertedStates,
+                100 * report.maxStretch);
+    for (const std::string& finding : report.rest.findings()) std::printf("  ! %s\n", finding.c_str());
+    for (const std::string& warning : report.warnings) std::printf("  ! %s\n", warning.c_str());
+}
+
+void info(const InfoOptions& options, const Session& session) {
+    const Rig rig = readRig(options.rig);
+    const ShapeReport report = shapeReport(rig, options.states, options.seed, session.progress());
+    Session::endProgress();
+    options.json ? printJson(reportJson(rig, report)) : printReport(rig, report);
+}
+
+struct DeformOptions {
+    std::string rig;
+    std::string state;
+    std::string output;
+    int levels = 0;
+};
+
+void deform(const DeformOptions& options) {
+    const Rig rig = readRig(options.rig);
+    const int levels = options.levels > 0        ? options.levels
+                       : rig.actuatorCount() > 0 ? rig.actuators().front().levels
+                                                 : 33;
+    const std::vector<double> strokes = strokesOf(rig, parseState(options.state), levels);
+    const TriangleMesh mesh = deformed(rig, strokes);
+    if (options.output == "-")
+        writeOutput("-", bytesOfText(writeObj(mesh)));
+    else
+        writeMesh(mesh, options.output);
+}
+
+} // namespace
+
+void addRigCommands(CLI::App& app, Session& session) {
+    CLI::App* group = app.add_subcommand("rig", "Look at a rig and deform it");
+    group->require_subcommand(1);
+
+    auto infoOptions = std::make_shared<InfoOptions>();
+    CLI::App* infoCommand =
+        group->add_subcommand("info", "Actuators, ranges, mesh checks and the shape-resolution report");
+    infoCommand->add_option("rig", infoOptions->rig, "A .glb or .gltf file, or a folder of one mesh per state")
+        ->required();
+    infoCommand->add_flag("--json", infoOptions->json, "Print one JSON value");
+    infoCommand->add_option("--states", infoOptions->states, "Random joint states to check")
+        ->check(CLI::Range(0, 100000))
+        ->capture_default_str();
+    infoCommand->add_option("--seed", infoOptions->seed, "Which random states")->capture_default_str();
+    infoCommand->callback([infoOptions, &session] { info(*infoOptions, session); });
+
+    auto deformOptions = std::make_shared<DeformOptions>();
+    CLI::App* deformCommand = group->add_subcommand("deform", "Write the mesh of a joint state, in metres");
+    deformCommand->add_option("rig", deformOptions->rig, "The rig")->required();
+    deformCommand->add_option("--state", deformOptions->state, "One level for each actuator: 0,12,...")->required();
+    deformCommand->add_option("--levels", deformOptions->levels, "Levels an actuator (default: the rig's own)")
+        ->check(CLI::Range(2, kMaxLevels));
+    deformCommand
+        ->add_option("-o,--output", deformOptions->output,
+                     "An .obj, .stl or .glb file, or - for OBJ on standard output")
+        ->required();
+    deformCommand->callback([deformOptions] { deform(*deformOptions); });
+}
+
+} // namespace lumorph::cli

@@ -1,0 +1,37 @@
+#include <cstdio>
+#include <memory>
+
+#include "app/cli/commands.h"
+#include "app/cli/field_input.h"
+#include "core/voxels/nrrd.h"
+
+namespace lumorph::cli {
+
+namespace {
+
+struct Arguments {
+    TargetArguments target;
+    std::string like;
+    std::string output;
+};
+
+void voxelize(const Arguments& arguments) {
+    const Field field = readFieldFile(arguments.like);
+    const TargetVoxels voxels = readTarget(field, arguments.target);
+    for (const std::string& warning : voxels.warnings) std::fprintf(stderr, "lumorph: warning: %s\n", warning.c_str());
+    writeOutput(arguments.output, writeNrrd(bytesOf(field.frame, voxels.bits), "target"));
+}
+
+} // namespace
+
+void addVoxelizeCommand(CLI::App& app, Session&) {
+    auto a = std::make_shared<Arguments>();
+    CLI::App* command = app.add_subcommand("voxelize", "Turn a mesh into voxels of a field's frame");
+    command->add_option("mesh", a->target.path, "A .glb, .gltf, .obj, .stl, .ply or .off file")->required();
+    command->add_option("--like", a->like, "The field whose frame to use")->required();
+    command->add_flag("--fit", a->target.fit, "Largest scale inside the frame, centred, standing on the rest surface");
+    command->add_option("-o,--output", a->output, "The .nrrd file to write, or -")->required();
+    command->callback([a] { voxelize(*a); });
+}
+
+} // namespace lumorph::cli

@@ -1,0 +1,129 @@
+#include <cmath>
+#include <limits>
+
+#include <glm/gtc/type_ptr.hpp>
+
+#include "core/base/error.h"
+#include "core/geometry/gltf_parts.h"
+#include "core/geometry/mesh_file.h"
+#include "core/geometry/model.h"
+
+namespace lumorph {
+
+using nlohmann::json;
+
+namespace gltf {
+
+int Source::checked(int index, std::size_t size, const std::string& place, const char* what) const {
+    if (index < -1 || (index >= 0 && static_cast<std::size_t>(index) >= size))
+        refuse(place + ": there is no " + what + " " + std::to_string(index));
+    return index;
+}
+
+float Source::number(double value, const std::string& place) const {
+    if (!(std::abs(value) <= static_cast<double>(std::numeric_limits<float>::max())))
+        refuse(place + ": a number is beyond the range of float");
+    return static_cast<float>(value);
+}
+
+std::vector<float> Source::numbers(const std::vector<double>& values, const std::string& place) const {
+    std::vector<float> floats;
+    floats.reserve(values.size());
+    for (const double value : values) floats.push_back(number(value, place));
+    return floats;
+}
+
+json Source::extras(const char* list, std::size_t index) const {
+    const json& element = document[list][index];
+    const auto extras = element.find("extras");
+    return extras == element.end() ? json() : *extras;
+}
+
+namespace {
+
+/// Image of a texture, -1 for none.
+int imageOf(const Source& source, int texture, std::size_t images, const std::string& place) {
+    const int index = source.checked(texture, source.structure.textures.size(), place, "texture");
+    if (index < 0) return -1;
+    return source.checked(source.structure.textures[static_cast<std::size_t>(index)].source, images, place, "image");
+}
+
+Model::Material readMaterial(const Source& source, std::size_t index, std::size_t images) {
+    const tinygltf::Material& from = source.structure.materials[index];
+    const auto& surface = from.pbrMetallicRoughness;
+    const std::string place = "material " + std::to_string(index);
+    const auto list = [&](const std::vector<double>& values, std::size_t count) {
+        if (values.size() != count) source.refuse(place + ": a factor has the wrong number of values");
+        return source.numbers(values, place);
+    };
+    Model::Material material;
+    material.name = from.name;
+    material.baseColor = glm::make_vec4(list(surface.baseColorFactor, 4).data());
+    material.emissive = glm::make_vec3(list(from.emissiveFactor, 3).data());
+    material.metallic = source.number(surface.metallicFactor, place);
+    material.roughness = source.number(surface.roughnessFactor, place);
+    material.normalScale = source.number(from.normalTexture.scale, place);
+    material.alphaCutoff = source.number(from.alphaCutoff, place);
+    material.alphaMode = from.alphaMode;
+    material.doubleSided = from.doubleSided;
+    material.baseColorImage = imageOf(source, surface.baseColorTexture.index, images, place);
+    material.metallicRoughnessImage = imageOf(source, surface.metallicRoughnessTexture.index, images, place);
+    material.normalImage = imageOf(source, from.normalTexture.index, images, place);
+    material.emissiveImage = imageOf(source, from.emissiveTexture.index, images, place);
+    if (material.normalImage < 0) material.normalScale = 1.0F;
+    material.extras = source.extras("materials", index);
+    return material;
+}
+
+/// Extras of the asset, and of the default scene under the names the asset leaves free.
+json documentExtras(const Source& source) {
+    const json& asset = source.document["asset"];
+    json extras = asset.contains("extras") ? asset["extras"] : json();
+    if (source.structure.scenes.empty()) return extras;
+    json scene = source.extras("scenes", static_cast<std::size_t>(std::max(source.structure.defaultScene, 0)));
+    if (extras.is_null()) return scene;
+    if (!extras.is_object() || !scene.is_object()) return extras;
+    scene.update(extras);
+    return scene;
+}
+
+Model readDocument(const Container& container, const Folder& folder, std::size_t sourceBytes, const std::string& file) {
+    const json document = parseBounded(container.json, file);
+    const tinygltf::Model structure = structureOf(document, file);
+    const Buffers buffers = readBuffers(document, container, folder, file);
+    for (const std::vector<std::byte>& owned : buffers.owned) sourceBytes += owned.size();
+    MemoryBudget budget(file, sourceBytes);
+    const Accessors accessors(structure, buffers, budget, file);
+    const Source source{document, structure, accessors};
+
+    Model model;
+    model.images = readImages(document, structure, buffers, folder, budget, file);
+    for (std::size_t i = 0; i < structure.materials.size(); ++i)
+        model.materials.push_back(readMaterial(source, i, model.images.size()));
+    model.meshes = readMeshes(source);
+    readScene(source, model);
+    model.extras = documentExtras(source);
+    return model;
+}
+
+} // namespace
+} // namespace gltf
+
+Model readModel(const std::filesystem::path& file) {
+    const std::string name = file.string();
+    const std::vector<std::byte> bytes = gltf::readFile(file, kMaxFileBytes, name);
+    const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+    const bool binary = text.starts_with("glTF") || file.extension() == ".glb" || file.extension() == ".GLB";
+    const gltf::Container container = binary ? gltf::splitGlb(bytes, name) : gltf::Container{text, std::nullopt};
+    Model model = gltf::readDocument(container, gltf::Folder(file.parent_path()), bytes.size(), name);
+    if (model.name.empty()) model.name = file.stem().string();
+    return model;
+}
+
+Model readGlb(std::span<const std::byte> bytes, const std::string& name) {
+    if (bytes.size() > kMaxFileBytes)
+        gltf::refuse(name, "is larger than " + std::to_string(kMaxFileBytes >> 20) + " MiB", "split the model into parts");
+    return gltf::readDocument(gltf::splitGlb(bytes, name), gltf::Folder(), bytes.size(), name);
+}
+
+} // namespace lumorph

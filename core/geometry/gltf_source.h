@@ -1,0 +1,90 @@
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+#include <tiny_gltf.h>
+
+#include "core/geometry/model.h"
+
+/// How a glTF file is taken in before its content is looked at: bounded, confined and with every reference resolved.
+/// Private to core/geometry.
+namespace lumorph::gltf {
+
+inline constexpr std::size_t kMaxJsonBytes = std::size_t{64} << 20;
+inline constexpr std::size_t kMaxJsonDepth = 64;
+inline constexpr std::size_t kMaxJsonValues = 1'000'000;
+inline constexpr std::size_t kMaxElements = 100'000; ///< of one kind: nodes, meshes, accessors and so on
+inline constexpr std::size_t kMaxImageBytes = std::size_t{256} << 20;
+
+inline constexpr const char* kExportAgain = "export the model again, or check it with a glTF validator";
+
+[[noreturn]] void refuse(const std::string& file, const std::string& why, const std::string& remedy = kExportAgain);
+
+/// Memory a file may ask for, tied to its size: accessors may share or omit their data, so that a few bytes of JSON
+/// could otherwise demand gigabytes.
+class MemoryBudget {
+public:
+    MemoryBudget(std::string file, std::size_t sourceBytes);
+    void charge(std::size_t count, std::size_t bytesEach, const std::string& place);
+
+private:
+    std::string file_;
+    std::size_t left_;
+};
+
+/// The two chunks of a GLB.
+struct Container {
+    std::string_view json;
+    std::optional<std::span<const std::byte>> binary;
+};
+[[nodiscard]] Container splitGlb(std::span<const std::byte> bytes, const std::string& file);
+
+/// Parses JSON after a pass without recursion has bounded its length, depth and number of values.
+[[nodiscard]] nlohmann::json parseBounded(std::string_view text, const std::string& file);
+
+/// The typed structure of `document`: everything but buffers, images, extras and extensions, which tinygltf never sees.
+/// Refuses unknown required extensions and indices that are not whole numbers.
+[[nodiscard]] tinygltf::Model structureOf(const nlohmann::json& document, const std::string& file);
+
+/// Where relative URIs lead: a folder, or nowhere for a model held in memory.
+class Folder {
+public:
+    Folder() = default;
+    explicit Folder(std::filesystem::path path) : path_(std::move(path)) {}
+
+    /// Bytes of the file `uri` names. Refuses whatever does not lie inside the folder, links followed.
+    [[nodiscard]] std::vector<std::byte> read(const std::string& uri, std::size_t maxBytes, const std::string& place,
+                                              const std::string& file) const;
+
+private:
+    std::optional<std::filesystem::path> path_;
+};
+
+/// Bytes of a whole regular file. Throws DataError when it cannot be read or is longer than `maxBytes`.
+[[nodiscard]] std::vector<std::byte> readFile(const std::filesystem::path& path, std::size_t maxBytes,
+                                              const std::string& subject);
+
+/// Buffers by index. `owned` holds those that are not part of the file itself.
+struct Buffers {
+    std::vector<std::vector<std::byte>> owned;
+    std::vector<std::span<const std::byte>> bytes;
+};
+[[nodiscard]] Buffers readBuffers(const nlohmann::json& document, const Container& container, const Folder& folder,
+                                  const std::string& file);
+
+/// The bytes of a buffer view. Refuses an index or a range that does not exist.
+[[nodiscard]] std::span<const std::byte> viewBytes(const tinygltf::Model& structure, const Buffers& buffers, int view,
+                                                   const std::string& place, const std::string& file);
+
+[[nodiscard]] std::vector<Model::Image> readImages(const nlohmann::json& document, const tinygltf::Model& structure,
+                                                   const Buffers& buffers, const Folder& folder, MemoryBudget& budget,
+                                                   const std::string& file);
+
+} // namespace lumorph::gltf

@@ -1,0 +1,114 @@
+#include "core/mdf/clip.h"
+
+#include <cmath>
+#include <cstdio>
+
+#include "core/base/error.h"
+#include "core/mdf/refine.h"
+#include "core/motion/motion.h"
+
+namespace lumorph {
+
+namespace {
+
+Box boxOverAnimation(const Model& model, const Model::Animation& animation, int frames, double framesPerSecond,
+                     const Progress& progress) {
+    Box box;
+    for (int k = 0; k <= frames; ++k) {
+        progress.throwIfCancelled();
+        box.include(boundingBox(flatten(model, animation, k / framesPerSecond).positions));
+        progress.report(0.3 * (k + 1) / (frames + 1), "measuring the animation");
+    }
+    return box;
+}
+
+MotionModel motionOf(const Rig& rig) {
+    std::vector<MotionLimits> limits;
+    for (const Actuator& actuator : rig.actuators()) {
+        MotionLimits limit;
+        limit.maxVelocity = actuator.maxVelocity;
+        limit.dampingRatio = actuator.dampingRatio;
+        limits.push_back(limit);
+    }
+    return MotionModel(limits);
+}
+
+std::string quoted(const std::string& text) {
+    std::string result = "\"";
+    for (const char c : text) result += c == '"' ? std::string("\"\"") : std::string(1, c);
+    return result + "\"";
+}
+
+std::string number(double value, const char* format) {
+    char text[64];
+    std::snprintf(text, sizeof text, format, value);
+    return text;
+}
+
+} // namespace
+
+std::vector<ClipFrame> matchClip(const Field& field, const Coverage& coverage, const Voting& voting, const Model& model,
+                                 const Model::Animation& animation, const ClipOptions& options,
+                                 const Progress& progress) {
+    const double fps = options.framesPerSecond;
+    if (!(fps >= 1.0 && fps <= 240.0))
+        throw InvalidInput("frame rate", "it must be 1 to 240 frames a second", "give a rate in that range");
+    if (!(animation.duration() > 0.0))
+        throw InvalidInput("animation '" + animation.name + "'", "it has no duration", "choose another animation");
+    const int frames = static_cast<int>(std::ceil(animation.duration() * fps));
+    const Placement placement = fitPlacement(field, boxOverAnimation(model, animation, frames, fps, progress));
+
+    MotionModel motion = motionOf(coverage.rig());
+    Refiner refiner(coverage);
+    const SteadyClock clock;
+    SolidVoxelizer voxelizer;
+    CoverageScratch scratch;
+    Voting::Workspace workspace;
+    Votes votes;
+    BitColumns target;
+    BitColumns reached;
+    const bool closed = makeTarget(flatten(model)).closed;
+    std::vector<ClipFrame> result;
+    for (int k = 0; k <= frames; ++k) {
+        progress.throwIfCancelled();
+        ClipFrame frame;
+        frame.seconds = k / fps;
+        voxelizeTarget(field.frame, {placed(flatten(model, animation, frame.seconds), placement), closed, {}},
+                       voxelizer, target);
+        target &= coverage.domain();
+        voting.match(target, votes, workspace, result.empty() ? nullptr : &result.back().wanted);
+        frame.wanted = votes.state();
+        if (options.refined) {
+            const Refinement refined = refiner.refine(target, frame.wanted, options.budget, clock);
+            frame.wanted = refined.state;
+            frame.iouWanted = refined.after.iou();
+        } else {
+            frame.iouWanted = refiner.qualityOf(target, frame.wanted).iou();
+        }
+        const std::vector<double> wantedStrokes = strokesOf(coverage.rig(), frame.wanted, coverage.levels());
+        const auto strokes = motion.step(wantedStrokes, k == 0 ? 0.0 : 1.0 / fps);
+        frame.strokes.assign(strokes.begin(), strokes.end());
+        coverage.coveredAt(frame.strokes, reached, scratch);
+        frame.iouReached = compareVolumes(reached, target).iou();
+        result.push_back(std::move(frame));
+        progress.report(0.3 + 0.7 * (k + 1) / (frames + 1), "matching the animation");
+    }
+    return result;
+}
+
+std::string clipCsv(const Field& field, const std::vector<ClipFrame>& frames) {
+    std::string csv = "seconds,iou wanted,iou reached";
+    for (const ActuatorField& actuator : field.actuators)
+        csv += "," + quoted(actuator.name + " level") + "," + quoted(actuator.name + " stroke");
+    csv += "\n";
+    for (const ClipFrame& frame : frames) {
+        csv += number(frame.seconds, "%.6f") + "," + number(frame.iouWanted, "%.6f") + "," +
+               number(frame.iouReached, "%.6f");
+        for (std::size_t i = 0; i < frame.wanted.size(); ++i)
+            csv += "," + std::to_string(frame.wanted[i].index) + "," + number(frame.strokes[i], "%.6f");
+        csv += "\n";
+    }
+    return csv;
+}
+
+} // namespace lumorph

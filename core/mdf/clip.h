@@ -1,0 +1,40 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/base/clock.h"
+#include "core/base/progress.h"
+#include "core/geometry/model.h"
+#include "core/mdf/coverage.h"
+#include "core/mdf/placement.h"
+#include "core/mdf/voting.h"
+
+namespace lumorph {
+
+struct ClipOptions {
+    double framesPerSecond = 30.0;
+    bool refined = true;         ///< false: by voting alone
+    Microseconds budget{10'000}; ///< for refinement, each frame
+};
+
+/// One frame of a matched animation.
+struct ClipFrame {
+    double seconds = 0.0;
+    State wanted;                ///< what matching asks for
+    std::vector<double> strokes; ///< where the actuators are under their velocity limits
+    double iouWanted = 0.0;      ///< of V(wanted) with the frame's target
+    double iouReached = 0.0;     ///< of the volume really covered with the frame's target
+};
+
+/// Matches an animation frame by frame and moves the actuators after it under their limits (R19),
+/// starting at rest. The target is placed once, so that it fits over the whole animation.
+/// Throws InvalidInput for a frame rate outside 1..240 or an animation without duration, Cancelled.
+[[nodiscard]] std::vector<ClipFrame> matchClip(const Field& field, const Coverage& coverage, const Voting& voting,
+                                               const Model& model, const Model::Animation& animation,
+                                               const ClipOptions& options = {}, const Progress& progress = {});
+
+/// One line a frame: time, IoU wanted and reached, then level and stroke of each actuator by name.
+[[nodiscard]] std::string clipCsv(const Field& field, const std::vector<ClipFrame>& frames);
+
+} // namespace lumorph

@@ -1,0 +1,367 @@
+#include "core/mdf/coverage.h"
+
+#include <algorithm>
+#include <cmath>
+#include <mutex>
+#include <string>
+
+#include "core/base/error.h"
+#include "core/mdf/rig_bodies.h"
+
+namespace lumorph {
+
+namespace {
+
+/// The words of one group or body at each level of its only actuator, filled when first asked for.
+struct Kept {
+    std::vector<std::uint64_t> words; ///< levels x range.size() x words per column
+    std::unique_ptr<std::once_flag[]> ready;
+};
+
+} // namespace
+
+struct Coverage::Pieces {
+    Rig rig;
+    VoxelFrame frame;
+    int levels;
+    GridSnap snap;
+    std::size_t wordsPerColumn = 0;
+    std::uint64_t lastWordMask = 0;
+    std::vector<RigBody> bodies;
+    std::vector<std::vector<std::uint64_t>> still;     ///< one a body: parity of the part that stays, over body.range
+    mutable std::vector<std::vector<Kept>> keptGroups; ///< [body][group]
+    mutable std::vector<Kept> keptSweeps;              ///< [body], where one actuator sweeps it
+    std::vector<ColumnRange> movedBy;
+    Window everything;
+    BitColumns body;
+    BitColumns domain;
+
+    Pieces(Rig rigIn, const VoxelFrame& frameIn, int levelsIn)
+        : rig(std::move(rigIn)), frame(frameIn), levels(levelsIn), snap(frameIn, reachWithFrame()) {}
+
+    [[nodiscard]] Box reachWithFrame() const {
+        Box box = rig.reach();
+        box.include(frame.box());
+        return box;
+    }
+    void findMovedColumns();
+    void allocateKept();
+    void findBody();
+
+    void rasterGroup(const RigGroup& group, std::span<const double> strokes, const ColumnRange& range,
+                     std::span<std::uint64_t> out, CoverageScratch& scratch) const;
+    std::span<const std::uint64_t> groupAtLevel(std::size_t body, std::size_t group, int level,
+                                                CoverageScratch& scratch) const;
+    std::span<const std::uint64_t> sweepAtLevel(std::size_t body, int level, CoverageScratch& scratch) const;
+    void parityOfBody(const Window::Part& part, std::span<const Level> state, CoverageScratch& scratch) const;
+    void parityOfBodyAt(std::size_t body, std::span<const double> strokes, const ColumnRange& range,
+                        CoverageScratch& scratch) const;
+    void sweepOfBody(std::size_t body, std::span<const double> strokes, const ColumnRange& range,
+                     std::span<std::uint64_t> out, CoverageScratch& scratch) const;
+    [[nodiscard]] Window windowOver(const ColumnRange& range) const;
+    [[nodiscard]] int stepsOfBody(const RigBody& b, std::span<const double> strokes) const noexcept;
+    void removeBodyAndTail(const ColumnRange& range, std::span<std::uint64_t> out) const;
+
+    /// Calls row(source words, target words, count) for each row of columns that two ranges share.
+    template <typename Row> void eachSharedRow(const ColumnRange& source, const ColumnRange& target, Row&& row) const {
+        const ColumnRange shared = source.intersect(target);
+        if (shared.empty()) return;
+        const std::size_t count = static_cast<std::size_t>(shared.width()) * wordsPerColumn;
+        for (int z = shared.z0; z <= shared.z1; ++z)
+            row(offsetIn(source, shared.x0, z), offsetIn(target, shared.x0, z), count);
+    }
+    [[nodiscard]] std::size_t offsetIn(const ColumnRange& range, int x, int z) const noexcept {
+        return (static_cast<std::size_t>(z - range.z0) * static_cast<std::size_t>(range.width()) +
+                static_cast<std::size_t>(x - range.x0)) *
+               wordsPerColumn;
+    }
+};
+
+void Coverage::Pieces::findMovedColumns() {
+    movedBy.resize(rig.actuatorCount());
+    for (const RigBody& b : bodies) {
+        if (b.stepsPerLevel > 0) {
+            // A sweep mixes what all actuators of the body do on the way.
+            for (const std::uint16_t actuator : b.actuators) movedBy[actuator].include(b.range);
+            continue;
+        }
+        for (const RigGroup& group : b.groups)
+            for (const std::uint16_t actuator : group.actuators) movedBy[actuator].include(group.range);
+    }
+}
+
+void Coverage::Pieces::allocateKept() {
+    const auto make = [&](const ColumnRange& range) {
+        return Kept{std::vector<std::uint64_t>(static_cast<std::size_t>(levels) * range.size() * wordsPerColumn),
+                    std::make_unique<std::once_flag[]>(static_cast<std::size_t>(levels))};
+    };
+    CoverageScratch scratch;
+    const std::vector<double> rest(rig.actuatorCount(), 0.0);
+    keptGroups.resize(bodies.size());
+    keptSweeps.resize(bodies.size());
+    still.resize(bodies.size());
+    for (std::size_t b = 0; b < bodies.size(); ++b) {
+        still[b].resize(bodies[b].range.size() * wordsPerColumn);
+        rasterGroup(bodies[b].groups.front(), rest, bodies[b].range, still[b], scratch);
+        keptGroups[b].resize(bodies[b].groups.size());
+        if (bodies[b].stepsPerLevel > 0) {
+            if (bodies[b].actuators.size() == 1) keptSweeps[b] = make(bodies[b].range);
+            continue;
+        }
+        for (std::size_t g = 1; g < bodies[b].groups.size(); ++g)
+            if (bodies[b].groups[g].actuators.size() == 1) keptGroups[b][g] = make(bodies[b].groups[g].range);
+    }
+}
+
+void Coverage::Pieces::findBody() {
+    body = BitColumns(frame.dimensions);
+    CoverageScratch scratch;
+    const std::vector<double> rest(rig.actuatorCount(), 0.0);
+    const ColumnRange all = columnsOf(frame);
+    for (std::size_t b = 0; b < bodies.size(); ++b) {
+        parityOfBodyAt(b, rest, bodies[b].range, scratch);
+        eachSharedRow(bodies[b].range, all, [&](std::size_t from, std::size_t to, std::size_t count) {
+            for (std::size_t i = 0; i < count; ++i) body.words()[to + i] |= scratch.parity[from + i];
+        });
+    }
+    domain = BitColumns(frame.dimensions);
+    for (std::size_t i = 0; i < domain.words().size(); ++i) {
+        const bool last = (i + 1) % wordsPerColumn == 0;
+        const std::uint64_t valid = last ? lastWordMask : ~std::uint64_t{0};
+        body.words()[i] &= valid;
+        domain.words()[i] = valid & ~body.words()[i];
+    }
+}
+
+/// Adds (XOR) the crossings of one group to `out`, laid out over `range`.
+void Coverage::Pieces::rasterGroup(const RigGroup& group, std::span<const double> strokes, const ColumnRange& range,
+                                   std::span<std::uint64_t> out, CoverageScratch& scratch) const {
+    const ColumnRange shared = group.range.intersect(range);
+    if (shared.empty()) return;
+    scratch.positions.resize(group.vertices.size());
+    scratch.vertices.resize(group.vertices.size());
+    rig.deform(strokes, group.vertices, scratch.positions);
+    for (std::size_t i = 0; i < group.vertices.size(); ++i) scratch.vertices[i] = snap(scratch.positions[i]);
+    const int height = frame.dimensions.y;
+    const auto toggle = [&](int x, int z, int level, bool) noexcept {
+        if (level >= height) return;
+        const int first = std::max(level, 0);
+        std::uint64_t* column = &out[offsetIn(range, x, z)];
+        std::uint64_t above = ~std::uint64_t{0} << (static_cast<unsigned>(first) & 63U);
+        for (std::size_t word = static_cast<std::size_t>(first) >> 6U; word < wordsPerColumn;
+             ++word, above = ~std::uint64_t{0})
+            column[word] ^= above;
+    };
+    const GridVertex* v = scratch.vertices.data();
+    for (const glm::uvec3& t : group.triangles) rasterizeTriangle(v[t.x], v[t.y], v[t.z], snap.shift(), shared, toggle);
+}
+
+std::span<const std::uint64_t> Coverage::Pieces::groupAtLevel(std::size_t b, std::size_t g, int level,
+                                                              CoverageScratch& scratch) const {
+    const RigGroup& group = bodies[b].groups[g];
+    Kept& kept = keptGroups[b][g];
+    const std::size_t size = group.range.size() * wordsPerColumn;
+    const std::span<std::uint64_t> words(kept.words.data() + static_cast<std::size_t>(level) * size, size);
+    std::call_once(kept.ready[static_cast<std::size_t>(level)], [&] {
+        scratch.strokes.assign(rig.actuatorCount(), 0.0);
+        scratch.strokes[group.actuators.front()] = strokeOf(Level{level}, levels);
+        rasterGroup(group, scratch.strokes, group.range, words, scratch);
+    });
+    return words;
+}
+
+/// Everything a body with one actuator passed on its way to `level`.
+std::span<const std::uint64_t> Coverage::Pieces::sweepAtLevel(std::size_t b, int level,
+                                                              CoverageScratch& scratch) const {
+    const RigBody& swept = bodies[b];
+    Kept& kept = keptSweeps[b];
+    const std::size_t size = swept.range.size() * wordsPerColumn;
+    const std::span<std::uint64_t> words(kept.words.data() + static_cast<std::size_t>(level) * size, size);
+    if (level == 0) return words;
+    const std::span<const std::uint64_t> before = sweepAtLevel(b, level - 1, scratch);
+    std::call_once(kept.ready[static_cast<std::size_t>(level)], [&] {
+        std::copy(before.begin(), before.end(), words.begin());
+        std::vector<double> strokes(rig.actuatorCount(), 0.0);
+        for (int step = 1; step <= swept.stepsPerLevel; ++step) {
+            strokes[swept.actuators.front()] =
+                (level - 1 + static_cast<double>(step) / swept.stepsPerLevel) / (levels - 1);
+            parityOfBodyAt(b, strokes, swept.range, scratch);
+            for (std::size_t i = 0; i < size; ++i) words[i] |= scratch.parity[i];
+        }
+    });
+    return words;
+}
+
+/// scratch.parity = the body's solid at a joint state over part.range, from kept pieces where there are any.
+void Coverage::Pieces::parityOfBody(const Window::Part& part, std::span<const Level> state,
+                                    CoverageScratch& scratch) const {
+    const RigBody& of = bodies[part.body];
+    scratch.parity.resize(part.range.size() * wordsPerColumn);
+    eachSharedRow(of.range, part.range, [&](std::size_t from, std::size_t to, std::size_t count) {
+        std::copy_n(&still[part.body][from], count, &scratch.parity[to]);
+    });
+    for (const std::size_t g : part.groups) {
+        const RigGroup& group = of.groups[g];
+        if (group.actuators.size() == 1) {
+            const auto words = groupAtLevel(part.body, g, state[group.actuators.front()].index, scratch);
+            eachSharedRow(group.range, part.range, [&](std::size_t from, std::size_t to, std::size_t count) {
+                for (std::size_t i = 0; i < count; ++i) scratch.parity[to + i] ^= words[from + i];
+            });
+            continue;
+        }
+        scratch.strokes.resize(rig.actuatorCount());
+        for (const std::uint16_t a : group.actuators) scratch.strokes[a] = strokeOf(state[a], levels);
+        rasterGroup(group, scratch.strokes, part.range, scratch.parity, scratch);
+    }
+}
+
+/// scratch.parity = the body's solid at any strokes, all of it rasterised.
+void Coverage::Pieces::parityOfBodyAt(std::size_t b, std::span<const double> strokes, const ColumnRange& range,
+                                      CoverageScratch& scratch) const {
+    scratch.parity.assign(range.size() * wordsPerColumn, 0);
+    eachSharedRow(bodies[b].range, range, [&](std::size_t from, std::size_t to, std::size_t count) {
+        std::copy_n(still[b].begin() + static_cast<std::ptrdiff_t>(from), count,
+                    scratch.parity.begin() + static_cast<std::ptrdiff_t>(to));
+    });
+    for (std::size_t g = 1; g < bodies[b].groups.size(); ++g)
+        rasterGroup(bodies[b].groups[g], strokes, range, scratch.parity, scratch);
+}
+
+Coverage::Window Coverage::Pieces::windowOver(const ColumnRange& range) const {
+    Window made{range.intersect(columnsOf(frame)), {}};
+    for (std::size_t b = 0; b < bodies.size(); ++b) {
+        Window::Part part{b, bodies[b].range.intersect(made.range), {}};
+        if (part.range.empty() || bodies[b].actuators.empty()) continue;
+        for (std::size_t g = 1; g < bodies[b].groups.size(); ++g)
+            if (!bodies[b].groups[g].range.intersect(part.range).empty()) part.groups.push_back(g);
+        made.parts.push_back(std::move(part));
+    }
+    return made;
+}
+
+int Coverage::Pieces::stepsOfBody(const RigBody& b, std::span<const double> strokes) const noexcept {
+    double longest = 0.0;
+    for (const std::uint16_t a : b.actuators) longest = std::max(longest, strokes[a]);
+    // The slack keeps whole levels at whole multiples of the steps between two levels.
+    return static_cast<int>(std::ceil(b.stepsPerLevel * longest * (levels - 1) - 1e-6));
+}
+
+void Coverage::Pieces::sweepOfBody(std::size_t b, std::span<const double> strokes, const ColumnRange& range,
+                                   std::span<std::uint64_t> out, CoverageScratch& scratch) const {
+    const int steps = stepsOfBody(bodies[b], strokes);
+    std::vector<double> onTheWay(rig.actuatorCount(), 0.0);
+    for (int step = 1; step <= steps; ++step) {
+        for (const std::uint16_t a : bodies[b].actuators)
+            onTheWay[a] = strokes[a] * (static_cast<double>(step) / steps);
+        parityOfBodyAt(b, onTheWay, range, scratch);
+        for (std::size_t i = 0; i < out.size(); ++i) out[i] |= scratch.parity[i];
+    }
+}
+
+void Coverage::Pieces::removeBodyAndTail(const ColumnRange& range, std::span<std::uint64_t> out) const {
+    eachSharedRow(columnsOf(frame), range, [&](std::size_t from, std::size_t to, std::size_t count) {
+        for (std::size_t i = 0; i < count; ++i) out[to + i] &= domain.words()[from + i];
+    });
+}
+
+Coverage::Coverage(Rig rig, const VoxelFrame& frame, int levels) {
+    if (levels < 2 || levels > kMaxLevels)
+        throw InvalidInput(std::to_string(levels) + " levels",
+                           "an actuator has 2 to " + std::to_string(kMaxLevels) + " levels",
+                           "give a number in that range");
+    pieces_ = std::make_unique<Pieces>(std::move(rig), frame, levels);
+    const int height = frame.dimensions.y;
+    pieces_->wordsPerColumn = static_cast<std::size_t>((height + 63) / 64);
+    pieces_->lastWordMask = height % 64 == 0 ? ~std::uint64_t{0} : (std::uint64_t{1} << (height % 64)) - 1;
+    pieces_->bodies = bodiesOf(pieces_->rig, frame, levels);
+    pieces_->findMovedColumns();
+    pieces_->allocateKept();
+    pieces_->findBody();
+    pieces_->everything = pieces_->windowOver(columnsOf(frame));
+}
+
+Coverage::~Coverage() = default;
+Coverage::Coverage(Coverage&&) noexcept = default;
+Coverage& Coverage::operator=(Coverage&&) noexcept = default;
+
+const Rig& Coverage::rig() const noexcept { return pieces_->rig; }
+const VoxelFrame& Coverage::frame() const noexcept { return pieces_->frame; }
+int Coverage::levels() const noexcept { return pieces_->levels; }
+const BitColumns& Coverage::body() const noexcept { return pieces_->body; }
+const BitColumns& Coverage::domain() const noexcept { return pieces_->domain; }
+const ColumnRange& Coverage::columnsMovedBy(std::size_t actuator) const noexcept { return pieces_->movedBy[actuator]; }
+
+void Coverage::covered(std::span<const Level> state, BitColumns& out, CoverageScratch& scratch) const {
+    if (out.dimensions() != pieces_->frame.dimensions) out = BitColumns(pieces_->frame.dimensions);
+    covered(state, pieces_->everything, out.words(), scratch);
+}
+
+Coverage::Window Coverage::window(const ColumnRange& range) const { return pieces_->windowOver(range); }
+
+void Coverage::covered(std::span<const Level> state, const Window& window, std::span<std::uint64_t> out,
+                       CoverageScratch& scratch) const {
+    std::fill(out.begin(), out.end(), 0);
+    const auto unite = [&](const ColumnRange& source, std::span<const std::uint64_t> words) {
+        pieces_->eachSharedRow(source, window.range, [&](std::size_t from, std::size_t to, std::size_t count) {
+            for (std::size_t i = 0; i < count; ++i) out[to + i] |= words[from + i];
+        });
+    };
+    for (const Window::Part& part : window.parts) {
+        const RigBody& of = pieces_->bodies[part.body];
+        if (of.stepsPerLevel == 0) {
+            pieces_->parityOfBody(part, state, scratch);
+            unite(part.range, scratch.parity);
+        } else if (of.actuators.size() == 1) {
+            unite(of.range, pieces_->sweepAtLevel(part.body, state[of.actuators.front()].index, scratch));
+        } else {
+            scratch.swept.assign(part.range.size() * pieces_->wordsPerColumn, 0);
+            std::vector<double> strokes(state.size());
+            for (std::size_t i = 0; i < state.size(); ++i) strokes[i] = strokeOf(state[i], pieces_->levels);
+            pieces_->sweepOfBody(part.body, strokes, part.range, scratch.swept, scratch);
+            unite(part.range, scratch.swept);
+        }
+    }
+    pieces_->removeBodyAndTail(window.range, out);
+}
+
+void Coverage::coveredAt(std::span<const double> strokes, BitColumns& out, CoverageScratch& scratch) const {
+    if (out.dimensions() != pieces_->frame.dimensions) out = BitColumns(pieces_->frame.dimensions);
+    out.clear();
+    const ColumnRange all = columnsOf(pieces_->frame);
+    for (std::size_t b = 0; b < pieces_->bodies.size(); ++b) {
+        const RigBody& of = pieces_->bodies[b];
+        if (of.actuators.empty()) continue;
+        if (of.stepsPerLevel > 0) {
+            pieces_->sweepOfBody(b, strokes, all, out.words(), scratch);
+            continue;
+        }
+        pieces_->parityOfBodyAt(b, strokes, all, scratch);
+        for (std::size_t i = 0; i < out.words().size(); ++i) out.words()[i] |= scratch.parity[i];
+    }
+    pieces_->removeBodyAndTail(all, out.words());
+}
+
+int Coverage::pathSteps(std::span<const double> strokes) const noexcept {
+    int steps = 1;
+    for (const RigBody& b : pieces_->bodies) steps = std::max(steps, pieces_->stepsOfBody(b, strokes));
+    return steps;
+}
+
+std::size_t Coverage::bytes() const noexcept {
+    std::size_t words = 0;
+    for (const auto& body : pieces_->still) words += body.size();
+    for (const auto& body : pieces_->keptGroups)
+        for (const Kept& kept : body) words += kept.words.size();
+    for (const Kept& kept : pieces_->keptSweeps) words += kept.words.size();
+    return words * sizeof(std::uint64_t);
+}
+
+FitQuality compareVolumes(const BitColumns& covered, const BitColumns& target) noexcept {
+    FitQuality quality;
+    quality.both = covered.countAnd(target);
+    quality.unmatched = target.count() - quality.both;
+    quality.overfilled = covered.count() - quality.both;
+    return quality;
+}
+
+} // namespace lumorph

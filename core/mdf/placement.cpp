@@ -1,0 +1,72 @@
+#include "core/mdf/placement.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <glm/gtc/matrix_transform.hpp>
+
+#include "core/base/error.h"
+#include "core/geometry/mesh_check.h"
+#include "core/voxels/winding.h"
+
+namespace lumorph {
+
+Target makeTarget(TriangleMesh mesh) {
+    const MeshReport report = checkMesh(mesh, IntersectionTest::skip);
+    Target target{std::move(mesh), report.closed() && report.manifold(), {}};
+    if (!target.closed) {
+        target.warnings = report.findings();
+        target.warnings.push_back(
+            "The target is not a closed solid; what counts as inside is estimated by winding numbers, "
+            "which is slower and may differ near the holes.");
+    }
+    return target;
+}
+
+void voxelizeTarget(const VoxelFrame& frame, const Target& target, SolidVoxelizer& voxelizer, BitColumns& out) {
+    if (target.closed)
+        voxelizer.voxelize(frame, target.mesh.positions, target.mesh.triangles, out);
+    else
+        out = voxelizeWinding(frame, target.mesh);
+}
+
+glm::mat4 Placement::deviceFromTarget() const {
+    glm::mat4 m = glm::translate(glm::mat4(1.0F), translation);
+    m = glm::rotate(m, static_cast<float>(yaw.inRadians()), glm::vec3(0.0F, 1.0F, 0.0F));
+    return glm::scale(m, glm::vec3(static_cast<float>(scale)));
+}
+
+TriangleMesh placed(const TriangleMesh& mesh, const Placement& placement) {
+    TriangleMesh result = mesh;
+    const glm::mat4 m = placement.deviceFromTarget();
+    for (glm::vec3& p : result.positions) p = glm::vec3(m * glm::vec4(p, 1.0F));
+    return result;
+}
+
+Placement fitPlacement(const Field& field, const Box& box, Angle yaw) {
+    Box turned;
+    Placement placement{1.0, yaw, glm::vec3(0.0F)};
+    const glm::mat4 turn = placement.deviceFromTarget();
+    for (int corner = 0; corner < 8 && !box.empty(); ++corner)
+        turned.include(
+            glm::vec3(turn * glm::vec4(corner & 1 ? box.max.x : box.min.x, corner & 2 ? box.max.y : box.min.y,
+                                       corner & 4 ? box.max.z : box.min.z, 1.0F)));
+    const glm::vec3 size = turned.size();
+    if (box.empty() || !(std::max({size.x, size.y, size.z}) > 0.0F) || !std::isfinite(size.x + size.y + size.z))
+        throw InvalidInput("target", "it has no extent", "give a mesh with a volume");
+    const Box frame = field.frame.box();
+    const glm::vec3 room(frame.max.x - frame.min.x, frame.max.y - field.restSurface, frame.max.z - frame.min.z);
+    if (!(room.y > 0.0F))
+        throw InvalidInput("field", "its frame has no room above the rest surface", "use a rig that lifts");
+    double scale = std::numeric_limits<double>::infinity();
+    for (int axis = 0; axis < 3; ++axis)
+        if (size[axis] > 0.0F)
+            scale = std::min(scale, static_cast<double>(room[axis]) / static_cast<double>(size[axis]));
+    placement.scale = scale;
+    const glm::vec3 stand = static_cast<float>(scale) * glm::vec3(turned.centre().x, turned.min.y, turned.centre().z);
+    placement.translation = glm::vec3(frame.centre().x, field.restSurface, frame.centre().z) - stand;
+    return placement;
+}
+
+} // namespace lumorph

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <glm/mat4x4.hpp>
+
+#include "core/base/units.h"
+#include "core/geometry/triangle_mesh.h"
+#include "core/mdf/field.h"
+#include "core/voxels/bit_columns.h"
+#include "core/voxels/solid.h"
+
+namespace lumorph {
+
+/// A mesh to be matched, and whether scan conversion can be trusted with it.
+struct Target {
+    TriangleMesh mesh;
+    bool closed = true;
+    std::vector<std::string> warnings; ///< plain sentences
+};
+
+/// Looks at the mesh once, so that voxelising it every frame need not.
+[[nodiscard]] Target makeTarget(TriangleMesh mesh);
+
+/// Voxels of the frame inside the target: scan conversion when it is closed, else generalised winding
+/// numbers. The frame's zero-state body is not taken out.
+void voxelizeTarget(const VoxelFrame& frame, const Target& target, SolidVoxelizer& voxelizer, BitColumns& out);
+
+/// Where a target stands: scaled and turned about its own origin, then moved; device coordinates.
+struct Placement {
+    double scale = 1.0;
+    Angle yaw; ///< about +Y
+    glm::vec3 translation{0.0F};
+
+    [[nodiscard]] glm::mat4 deviceFromTarget() const;
+};
+
+/// The mesh with the placement applied.
+[[nodiscard]] TriangleMesh placed(const TriangleMesh& mesh, const Placement& placement);
+
+/// The largest uniform scale at which a box fits into the frame above the rest surface, centred in x
+/// and z and standing on the rest surface. Throws InvalidInput for an empty or flat box, or a frame
+/// with no room above the rest surface.
+[[nodiscard]] Placement fitPlacement(const Field& field, const Box& box, Angle yaw = {});
+
+} // namespace lumorph

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "core/base/clock.h"
+#include "core/base/units.h"
+#include "core/mdf/coverage.h"
+
+namespace lumorph {
+
+struct Refinement {
+    State state;
+    FitQuality before; ///< of the start
+    FitQuality after;
+    int statesSeen = 0;     ///< joint states whose true coverage was looked at
+    bool converged = false; ///< no change of a single actuator helps any more; else the time ran out
+};
+
+/// Improves a joint state by the true coverage of the deformed rig (DESIGN: `refined`): coordinate
+/// moves of 4, 2, 1 levels while they raise the IoU, then every level of every actuator once more, so
+/// that the result is best with respect to any single actuator.
+///
+/// Only the columns that the moved actuator reaches are evaluated again. Keeps its buffers; one object
+/// for each thread. The coverage must outlive it.
+class Refiner {
+public:
+    explicit Refiner(const Coverage& coverage);
+    ~Refiner();
+    Refiner(Refiner&&) noexcept;
+    Refiner& operator=(Refiner&&) noexcept;
+
+    /// `target` has the frame's shape; voxels inside the body are ignored. A budget of zero or less
+    /// means no limit; the time is looked at after each state.
+    /// Throws InvalidInput when target or state do not fit the coverage.
+    [[nodiscard]] Refinement refine(const BitColumns& target, const State& start, Microseconds budget,
+                                    const Clock& clock);
+
+    /// Quality of one joint state, nothing moved.
+    [[nodiscard]] FitQuality qualityOf(const BitColumns& target, const State& state);
+
+private:
+    class Search;
+    std::unique_ptr<Search> search_;
+};
+
+} // namespace lumorph

@@ -1,0 +1,168 @@
+#include "core/rig/rig_validation.h"
+
+#include <cmath>
+#include <numbers>
+#include <set>
+
+#include <glm/geometric.hpp>
+
+#include "core/base/error.h"
+#include "core/rig/motion_setup.h"
+
+namespace lumorph {
+namespace {
+
+bool finite(const glm::vec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
+
+void require(bool good, const std::string& subject, const char* why, const char* remedy) {
+    if (!good) throw InvalidInput(subject, why, remedy);
+}
+
+void requireAxis(const glm::vec3& axis, const std::string& subject, const char* what) {
+    require(finite(axis) && glm::length(axis) > 1e-6F, subject, what, "give three finite numbers, not all zero");
+}
+
+void requireRange(double min, double max, const std::string& subject) {
+    require(std::isfinite(min) && std::isfinite(max), subject, "the range is not finite", "give two finite numbers");
+    require(min < max, subject, "the range is empty or runs backwards",
+            "put the smaller number first; to move the other way turn the axis round");
+}
+
+void requireTurn(double min, double max, const std::string& subject) {
+    requireRange(min, max, subject);
+    require(max - min <= 2.0 * std::numbers::pi + 1e-9, subject, "the range is more than a full turn",
+            "use at most 360 degrees");
+}
+
+struct DeformerCheck {
+    const RigParts& parts;
+    const Actuator& actuator;
+    const std::string& subject;
+
+    void operator()(const Hinge& hinge) const {
+        requireAxis(hinge.axis, subject, "the axis has no direction");
+        require(finite(hinge.origin), subject, "the origin is not finite", "give three finite numbers");
+        requireTurn(hinge.min.inRadians(), hinge.max.inRadians(), subject);
+    }
+    void operator()(const Bend& bend) const {
+        requireAxis(bend.axis, subject, "the axis has no direction");
+        requireAxis(bend.direction, subject, "the direction to the free end is missing");
+        require(finite(bend.origin), subject, "the origin is not finite", "give three finite numbers");
+        require(std::abs(glm::dot(glm::normalize(bend.axis), glm::normalize(bend.direction))) < 1e-3F, subject,
+                "axis and direction are not perpendicular", "let the direction point straight away from the bend line");
+        require(std::isfinite(bend.length) && bend.length > 1e-6, subject, "the arc has no length",
+                "give the length of the arc in metres, or use a hinge");
+        requireTurn(bend.min.inRadians(), bend.max.inRadians(), subject);
+        require(bend.min.inRadians() == 0.0, subject, "the range of a bend does not start at 0",
+                "draw the sheet flat and start at 0; to bend the other way turn the axis round");
+    }
+    void operator()(const Slide& slide) const {
+        requireAxis(slide.direction, subject, "the direction is zero");
+        requireRange(slide.min, slide.max, subject);
+    }
+    void operator()(const MorphTarget& morph) const {
+        require(!morph.keys.empty() && morph.keys.size() == morph.displacements.size(), subject,
+                "the morph target has no keys or not one set of displacements a key", "give displacements for every key");
+        float last = 0.0F;
+        for (const float key : morph.keys) {
+            require(key > last && key <= 1.0F, subject, "the keys are not ascending within 0 and 1", "sort the keys");
+            last = key;
+        }
+        for (const auto& displacements : morph.displacements) {
+            require(displacements.size() == actuator.influences.size(), subject,
+                    "there is not one displacement an influence", "give each influenced vertex its displacement");
+            for (const glm::vec3& d : displacements)
+                require(finite(d), subject, "a displacement is not finite", "export the shape again");
+        }
+    }
+    void operator()(const SkinJoint& joint) const {
+        require(parts.skeleton.has_value(), subject, "the rig has no skeleton", "give the model a skin");
+        require(joint.joint >= 0 && static_cast<std::size_t>(joint.joint) < parts.skeleton->joints.size(), subject,
+                "the joint does not exist", "name a joint of the skin");
+        requireAxis(joint.axis, subject, "the axis has no direction");
+        if (joint.motion == SkinJoint::Motion::rotate) requireTurn(joint.min, joint.max, subject);
+        else requireRange(joint.min, joint.max, subject);
+    }
+};
+
+void checkActuator(const RigParts& parts, const Actuator& actuator, const std::string& subject) {
+    std::visit(DeformerCheck{parts, actuator, subject}, actuator.deformer);
+    const std::size_t vertices = parts.restMesh.positions.size();
+    for (std::size_t i = 0; i < actuator.influences.size(); ++i) {
+        const Influence& influence = actuator.influences[i];
+        require(influence.vertex < vertices, subject, "an influence names a vertex that does not exist",
+                "use vertices of the rest mesh");
+        require(i == 0 || actuator.influences[i - 1].vertex < influence.vertex, subject,
+                "the influences are not ascending by vertex", "sort them and name each vertex once");
+        require(influence.weight >= 0.0F && influence.weight <= 1.0F, subject, "an influence is not within 0 and 1",
+                "use weights from 0 to 1");
+    }
+    require(actuator.levels >= 2 && actuator.levels <= kMaxLevels, subject, "the level count is out of range",
+            "use 2 to 200 levels");
+    require(std::isfinite(actuator.maxVelocity) && actuator.maxVelocity > 0.0, subject,
+            "the maximum velocity is not a positive number", "give the speed of the servo");
+    require(std::isfinite(actuator.dampingRatio) && actuator.dampingRatio >= 1.0, subject,
+            "the damping ratio is below 1, so that the device would oscillate", "use 1 (critical) or more");
+    require(std::isfinite(actuator.drive.pulseMin) && std::isfinite(actuator.drive.pulseMax), subject,
+            "a pulse width is not finite", "give microseconds, for example 1000 and 2000");
+}
+
+void checkSkeleton(const Skeleton& skeleton, std::size_t vertices) {
+    const std::string subject = "skeleton";
+    require(skeleton.joints.size() <= kMaxJoints, subject, "there are more than 256 joints",
+            "remove joints that move nothing");
+    for (std::size_t j = 0; j < skeleton.joints.size(); ++j) {
+        const Skeleton::Joint& joint = skeleton.joints[j];
+        require(joint.parent < static_cast<int>(j), subject, "a joint stands before its parent", "put parents first");
+        const glm::mat3 m(joint.localRest);
+        const float scale = glm::length(m[0]);
+        const glm::mat3 gram = glm::transpose(m) * m;
+        require(scale > 1e-6F && std::isfinite(scale) && finite(glm::vec3(joint.localRest[3])), subject,
+                "a joint's place is not finite or its scale is zero", "export the model again");
+        for (int column = 0; column < 3; ++column)
+            for (int row = 0; row < 3; ++row)
+                require(std::abs(gram[column][row] - (row == column ? scale * scale : 0.0F)) < 1e-3F * scale * scale,
+                        subject, "a joint is sheared or scaled unevenly", "apply the scale in the modelling tool");
+    }
+    require(skeleton.vertexJoints.size() == vertices && skeleton.vertexWeights.size() == vertices, subject,
+            "there is not one set of joints and weights a vertex", "give every vertex its joints and weights");
+    for (std::size_t v = 0; v < vertices; ++v) {
+        float sum = 0.0F;
+        for (int k = 0; k < 4; ++k) {
+            const float weight = skeleton.vertexWeights[v][k];
+            require(weight >= 0.0F, subject, "a skin weight is negative or not a number", "normalise the weights");
+            require(weight == 0.0F || skeleton.vertexJoints[v][k] < skeleton.joints.size(), subject,
+                    "a vertex names a joint that does not exist", "export the model again");
+            sum += weight;
+        }
+        require(std::abs(sum - 1.0F) < 1e-3F, subject, "the skin weights of a vertex do not add up to 1",
+                "normalise the weights");
+    }
+}
+
+} // namespace
+
+void validate(const RigParts& parts) {
+    const std::string rig = parts.name.empty() ? "rig" : parts.name;
+    require(!parts.restMesh.positions.empty() && !parts.restMesh.triangles.empty(), rig, "the mesh is empty",
+            "give the device a closed mesh");
+    for (const glm::vec3& p : parts.restMesh.positions)
+        require(finite(p), rig, "a vertex is not finite", "export the mesh again");
+    for (const glm::uvec3& t : parts.restMesh.triangles)
+        for (int corner = 0; corner < 3; ++corner)
+            require(t[corner] < parts.restMesh.positions.size(), rig, "a triangle names a vertex that does not exist",
+                    "export the mesh again");
+    require(parts.actuators.size() <= kMaxActuators, rig, "there are more than 65,000 actuators",
+            "join actuators that move together");
+    if (parts.skeleton) checkSkeleton(*parts.skeleton, parts.restMesh.positions.size());
+    std::set<std::string> names;
+    for (const Actuator& actuator : parts.actuators) {
+        require(!actuator.name.empty(), rig, "an actuator has no name", "give every actuator a name");
+        const std::string subject = rig + ", actuator \"" + actuator.name + "\"";
+        require(names.insert(actuator.name).second, subject, "the name is used twice",
+                "give every actuator a name of its own");
+        checkActuator(parts, actuator, subject);
+    }
+}
+
+} // namespace lumorph

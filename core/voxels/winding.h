@@ -1,0 +1,20 @@
+#pragma once
+
+#include "core/base/progress.h"
+#include "core/geometry/triangle_mesh.h"
+#include "core/voxels/bit_columns.h"
+#include "core/voxels/voxel_frame.h"
+
+namespace lumorph {
+
+/// Solid voxelisation for meshes with holes: a voxel is in when the generalised winding number of its
+/// centre (Jacobson et al. 2013) is at least one half. Far clusters of triangles are summed as one
+/// dipole each (after Barill et al. 2018), so the cost is about voxels x log(triangles); tens of
+/// milliseconds where the scan conversion takes one. Runs on all cores. Throws Cancelled.
+[[nodiscard]] BitColumns voxelizeWinding(const VoxelFrame& frame, const TriangleMesh& mesh,
+                                         const Progress& progress = {});
+
+/// The generalised winding number of one point, summed exactly over all triangles.
+[[nodiscard]] double windingNumber(const TriangleMesh& mesh, const glm::dvec3& point) noexcept;
+
+} // namespace lumorph

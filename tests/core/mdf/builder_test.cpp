@@ -1,0 +1,219 @@
+#include "core/mdf/builder.h"
+
+#include <cmath>
+#include <map>
+
+#include <gtest/gtest.h>
+
+#include "core/base/error.h"
+#include "core/mdf/field_file.h"
+#include "core/mdf/sampling.h"
+#include "tests/support/cgal_oracle.h"
+#include "tests/support/small_rigs.h"
+
+namespace lumorph {
+namespace {
+
+constexpr int kLevels = 5;
+
+/// V(s) by CGAL alone: each voxel centre asked against the deformed mesh along the path (R6).
+std::vector<bool> coveredByOracle(const Coverage& coverage, const State& state, const std::vector<bool>& body) {
+    const Rig& rig = coverage.rig();
+    const VoxelFrame& frame = coverage.frame();
+    const std::vector<double> full = strokesOf(rig, state, kLevels);
+    const int steps = rig.pathInside() ? 1 : coverage.pathSteps(full);
+    std::vector<bool> covered(frame.voxelCount());
+    for (int step = 1; step <= steps; ++step) {
+        std::vector<double> strokes = full;
+        for (double& stroke : strokes) stroke *= static_cast<double>(step) / steps;
+        const test::InsideOracle inside(deformed(rig, strokes));
+        std::size_t i = 0;
+        for (int z = 0; z < frame.dimensions.z; ++z)
+            for (int x = 0; x < frame.dimensions.x; ++x)
+                for (int y = 0; y < frame.dimensions.y; ++y, ++i)
+                    if (!covered[i] && !body[i]) covered[i] = inside(frame.centre(x, y, z));
+    }
+    return covered;
+}
+
+struct RigCase {
+    const char* name;
+    Rig (*make)();
+    int resolution;
+};
+
+class BuilderOracle : public testing::TestWithParam<RigCase> {
+protected:
+    void SetUp() override {
+        const Rig rig = GetParam().make();
+        coverage_ = std::make_unique<Coverage>(rig, frameOf(rig.reach(), GetParam().resolution), kLevels);
+        const test::InsideOracle inside(rig.restMesh());
+        std::size_t i = 0;
+        const VoxelFrame& frame = coverage_->frame();
+        body_.assign(frame.voxelCount(), false);
+        for (int z = 0; z < frame.dimensions.z; ++z)
+            for (int x = 0; x < frame.dimensions.x; ++x)
+                for (int y = 0; y < frame.dimensions.y; ++y, ++i) body_[i] = inside(frame.centre(x, y, z));
+        for (const State& state : allStates(3, kLevels)) {
+            auto& v = volumes_[key(state)] = coveredByOracle(*coverage_, state, body_);
+            reachable_ += static_cast<std::size_t>(std::count(v.begin(), v.end(), true));
+        }
+    }
+    static int key(const State& s) { return s[0].index + kLevels * (s[1].index + kLevels * s[2].index); }
+
+    /// Mean over the given states, actuator at a level, coverage OR-ed over lower levels first (R8, R10).
+    [[nodiscard]] double expectation(const std::vector<State>& states, std::size_t actuator, int level, std::size_t voxel) const {
+        std::size_t count = 0;
+        for (State state : states) {
+            bool covered = false;
+            for (int j = 0; j <= level && !covered; ++j) {
+                state[actuator] = Level{j};
+                covered = volumes_.at(key(state))[voxel];
+            }
+            count += covered;
+        }
+        return static_cast<double>(count) / static_cast<double>(states.size());
+    }
+
+    std::unique_ptr<Coverage> coverage_;
+    std::vector<bool> body_;
+    std::map<int, std::vector<bool>> volumes_;
+    std::size_t reachable_ = 0;
+};
+
+// R6: the coverage of every one of the 125 states is what CGAL says, voxel by voxel.
+TEST_P(BuilderOracle, CoverageOfEveryStateIsWhatCgalSays) {
+    CoverageScratch scratch;
+    BitColumns kept;
+    BitColumns afresh;
+    std::size_t different = 0;
+    for (const State& state : allStates(3, kLevels)) {
+        coverage_->covered(state, kept, scratch);
+        coverage_->coveredAt(strokesOf(coverage_->rig(), state, kLevels), afresh, scratch);
+        ASSERT_EQ(kept, afresh) << "kept pieces give another volume than rasterising afresh";
+        const std::vector<bool>& expected = volumes_.at(key(state));
+        std::size_t i = 0;
+        for (int z = 0; z < kept.dimensions().z; ++z)
+            for (int x = 0; x < kept.dimensions().x; ++x)
+                for (int y = 0; y < kept.dimensions().y; ++y, ++i) different += kept.test(x, y, z) != expected[i];
+    }
+    ASSERT_GT(reachable_, 10'000U);
+    EXPECT_EQ(different, 0U);
+}
+
+// R8, R9: with all states sampled the field is the expectation itself, exactly.
+TEST_P(BuilderOracle, FieldEqualsTheExpectationOverAllStates) {
+    const std::vector<State> states = allStates(3, kLevels);
+    const SampledField sampled = sampleField(*coverage_, states);
+    std::size_t coupled = 0;
+    const auto height = static_cast<std::size_t>(coverage_->frame().dimensions.y);
+    for (std::size_t actuator = 0; actuator < 3; ++actuator) {
+        std::vector<bool> listed(volumes_.begin()->second.size());
+        for (const SampledField::Voxel& voxel : sampled.actuators[actuator]) {
+            const std::size_t index = voxel.column * height + static_cast<std::size_t>(voxel.y);
+            listed[index] = true;
+            for (int level = 0; level < kLevels; ++level)
+                ASSERT_DOUBLE_EQ(voxel.expectation[static_cast<std::size_t>(level)], expectation(states, actuator, level, index));
+            coupled += voxel.expectation.front() > 0.0;
+        }
+        // What the field does not list must indeed be the same at every level.
+        for (std::size_t index = 0; index < listed.size(); ++index)
+            if (!listed[index]) {
+                ASSERT_DOUBLE_EQ(expectation(states, actuator, 0, index), expectation(states, actuator, kLevels - 1, index));
+            }
+    }
+    EXPECT_GT(coupled, 100U) << "the rig does not couple its actuators, so this test would prove little";
+}
+
+// R8: with fewer samples the expectation is met within three standard errors nearly everywhere.
+TEST_P(BuilderOracle, SampledFieldIsWithinThreeSigma) {
+    constexpr std::size_t kSamples = 48;
+    const std::vector<State> all = allStates(3, kLevels);
+    const SampledField sampled = sampleField(*coverage_, quasiRandomStates(3, kLevels, kSamples, 7));
+    const auto height = static_cast<std::size_t>(coverage_->frame().dimensions.y);
+    std::size_t compared = 0;
+    for (std::size_t actuator = 0; actuator < 3; ++actuator)
+        for (const SampledField::Voxel& voxel : sampled.actuators[actuator])
+            for (int level = 0; level < kLevels; ++level) {
+                const double p = expectation(all, actuator, level, voxel.column * height + static_cast<std::size_t>(voxel.y));
+                const double sigma = std::sqrt(p * (1.0 - p) / kSamples);
+                ASSERT_NEAR(voxel.expectation[static_cast<std::size_t>(level)], p, 3.0 * sigma + 1e-12);
+                ++compared;
+            }
+    EXPECT_GT(compared, 1000U);
+}
+
+// R8, R11: what is stored stands for the oracle's expectation as well as its own report says.
+TEST_P(BuilderOracle, StoredRampsAndBackgroundFitTheExpectation) {
+    BuildOptions options;
+    options.resolution = GetParam().resolution;
+    options.levels = kLevels;
+    options.samples = 1000; // more than there are states: all are used
+    const Field field = buildField(coverage_->rig(), options);
+    ASSERT_TRUE(field.exhaustive);
+    ASSERT_EQ(field.samples, 125U);
+    const std::vector<State> states = allStates(3, kLevels);
+    double error = 0.0;
+    std::size_t terms = 0;
+    for (std::size_t actuator = 0; actuator < 3; ++actuator) {
+        const std::vector<Ramp> ramps = denseRamps(field, actuator);
+        for (std::size_t voxel = 0; voxel < ramps.size(); ++voxel) {
+            if (ramps[voxel].v0 == kUnchanged) continue;
+            for (int level = 0; level < kLevels; ++level, ++terms)
+                error += std::abs(expectationAt(ramps[voxel], level) - expectation(states, actuator, level, voxel));
+            ASSERT_NEAR(ramps[voxel].base / 255.0, expectation(states, actuator, 0, voxel), 0.5 / 255.0 + 1e-9);
+            ASSERT_NEAR(ramps[voxel].top / 255.0, expectation(states, actuator, kLevels - 1, voxel), 0.5 / 255.0 + 1e-9);
+        }
+    }
+    EXPECT_NEAR(error / static_cast<double>(terms), field.report.rampErrorMean, 1e-9);
+    EXPECT_EQ(terms, field.report.changedVoxels * kLevels);
+    for (std::size_t voxel = 0; voxel < field.background.size(); ++voxel) {
+        std::size_t covered = 0;
+        for (const State& state : states) covered += volumes_.at(key(state))[voxel];
+        ASSERT_NEAR(field.background[voxel] / 255.0, static_cast<double>(covered) / 125.0, 0.5 / 255.0 + 1e-9);
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(SmallRigs, BuilderOracle,
+                         testing::Values(RigCase{"cushion", &test::cushionRig, 14}, RigCase{"arm", &test::armRig, 7},
+                                         RigCase{"lifter", &test::lifterRig, 14}),
+                         [](const auto& rig) { return rig.param.name; });
+
+TEST(Builder, TheSameSeedGivesTheSameBytesOnAnyNumberOfThreads) {
+    BuildOptions options;
+    options.resolution = 16;
+    options.levels = 9;
+    options.samples = 20;
+    options.threads = 1;
+    const std::vector<std::byte> one = writeField(buildField(test::cushionRig(), options));
+    options.threads = 4;
+    EXPECT_EQ(writeField(buildField(test::cushionRig(), options)), one);
+    options.seed = 2;
+    EXPECT_NE(writeField(buildField(test::cushionRig(), options)), one);
+}
+
+TEST(Builder, ReportsProgressAndStopsWhenAsked) {
+    std::stop_source stop;
+    double highest = 0.0;
+    const Progress progress(
+        [&](double fraction, std::string_view) {
+            highest = std::max(highest, fraction);
+            stop.request_stop();
+        },
+        stop.get_token());
+    BuildOptions options;
+    options.threads = 1;
+    EXPECT_THROW((void)buildField(test::cushionRig(), options, progress), Cancelled);
+    EXPECT_GT(highest, 0.0);
+}
+
+TEST(Builder, RefusesOptionsOutOfRange) {
+    const Rig rig = test::cushionRig();
+    EXPECT_THROW((void)buildField(rig, {.levels = 1}), InvalidInput);
+    EXPECT_THROW((void)buildField(rig, {.levels = 201}), InvalidInput);
+    EXPECT_THROW((void)buildField(rig, {.samples = 0}), InvalidInput);
+    EXPECT_THROW((void)buildField(rig, {.resolution = 0}), InvalidInput);
+}
+
+} // namespace
+} // namespace lumorph
