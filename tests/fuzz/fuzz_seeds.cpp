@@ -58,7 +58,9 @@ int main(int argc, char** argv) {
         std::ofstream(file, std::ios::binary)
             .write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
     };
-    const auto writeText = [&](const char* name, const std::string& text) { write(name, std::as_bytes(std::span(text))); };
+    const auto writeText = [&](const char* name, const std::string& text) {
+        write(name, std::as_bytes(std::span(text)));
+    };
     using namespace lumorph;
     write("gltf/full.glb", writeGlb(support::fullModel()));
     write("gltf/triangle.glb", GltfBuilder::triangle().glb());
@@ -67,12 +69,15 @@ int main(int argc, char** argv) {
 
     const TriangleMesh box = test::boxMesh({0, 0, 0}, {1, 2, 3});
     writeText("obj/box.obj", writeObj(box));
-    writeText("obj/rich.obj", "o part\nv 0 0 0 1 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvn 0 0 1\ng a\nf 1/1/1 2//1 3 -1\n");
+    writeText("obj/rich.obj",
+              "o part\nv 0 0 0 1 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvn 0 0 1\ng a\nf 1/1/1 2//1 3 -1\n");
     write("stl/box.stl", writeStl(box));
-    writeText("stl/text.stl", "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\nendsolid a\n");
+    writeText("stl/text.stl", "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 "
+                              "0\nendloop\nendfacet\nendsolid a\n");
     writeText("off/box.off", "OFF\n4 2 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n3 0 1 2\n3 0 2 3\n");
-    writeText("ply/box.ply", "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
-                             "element face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n");
+    writeText("ply/box.ply",
+              "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
+              "element face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n");
     const VoxelFrame frame{{0, 0, 0}, 0.5, {2, 4, 6}};
     write("nrrd/box.nrrd", writeNrrd(bytesOf(frame, voxelizeSolid(frame, box)), "box"));
     BuildOptions options;
