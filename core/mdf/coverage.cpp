@@ -138,10 +138,11 @@ void Coverage::Pieces::rasterGroup(const RigGroup& group, std::span<const double
                                    std::span<std::uint64_t> out, CoverageScratch& scratch) const {
     const ColumnRange shared = group.range.intersect(range);
     if (shared.empty()) return;
-    scratch.positions.resize(group.vertices.size());
-    scratch.vertices.resize(group.vertices.size());
-    rig.deform(strokes, group.vertices, scratch.positions);
-    for (std::size_t i = 0; i < group.vertices.size(); ++i) scratch.vertices[i] = snap(scratch.positions[i]);
+    const std::size_t count = group.vertices->size();
+    scratch.positions.resize(count);
+    scratch.vertices.resize(count);
+    group.vertices->deform(strokes, scratch.positions);
+    for (std::size_t i = 0; i < count; ++i) scratch.vertices[i] = snap(scratch.positions[i]);
     const int height = frame.dimensions.y;
     const auto toggle = [&](int x, int z, int level, bool) noexcept {
         if (level >= height) return;

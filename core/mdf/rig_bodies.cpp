@@ -118,20 +118,24 @@ std::vector<RigBody> groupTriangles(const Rig& rig, const VoxelFrame& frame) {
     for (auto& [owner, groups] : sorted) {
         RigBody& made = bodies.emplace_back();
         for (auto& [key, triangles] : groups) { // the empty key comes first
-            RigGroup& group = made.groups.emplace_back(RigGroup{key, {}, std::move(triangles), {}});
+            RigGroup& group = made.groups.emplace_back(RigGroup{key, std::nullopt, std::move(triangles), {}});
             for (const glm::uvec3& t : group.triangles)
                 for (const std::uint32_t v : {t.x, t.y, t.z}) local[v] = kUnseen;
             Box box;
+            std::vector<std::uint32_t> vertices;
             const auto number = [&](std::uint32_t v) {
                 if (local[v] == kUnseen) {
-                    local[v] = static_cast<std::uint32_t>(group.vertices.size());
-                    group.vertices.push_back(v);
+                    local[v] = static_cast<std::uint32_t>(vertices.size());
+                    vertices.push_back(v);
                     box.include(rig.reachOf(v));
                 }
                 return local[v];
             };
             for (glm::uvec3& t : group.triangles) t = {number(t.x), number(t.y), number(t.z)};
-            if (!box.empty()) group.range = columnsOfBox(frame, box);
+            if (!vertices.empty()) {
+                group.vertices = rig.subset(vertices);
+                group.range = columnsOfBox(frame, box);
+            }
             made.range.include(group.range);
             made.actuators.insert(made.actuators.end(), key.begin(), key.end());
         }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "core/rig/rig.h"
@@ -12,8 +13,8 @@ namespace lumorph {
 /// Triangles moved by the same actuators, with their vertices numbered afresh.
 struct RigGroup {
     std::vector<std::uint16_t> actuators; ///< ascending; none: the part that stays
-    std::vector<std::uint32_t> vertices;  ///< of the rig
-    std::vector<glm::uvec3> triangles;    ///< into `vertices`
+    std::optional<Rig::Subset> vertices;  ///< of the rig; none without triangles
+    std::vector<glm::uvec3> triangles;    ///< into the subset
     ColumnRange range;                    ///< columns it can reach
 };
 
