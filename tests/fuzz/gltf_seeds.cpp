@@ -1,8 +1,12 @@
 // Writes small valid GLB files into the folder given, for gltf_fuzz to start from.
 #include <array>
+#include <cstdint>
 #include <cstdio>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <string>
+#include <vector>
 
 #include "core/geometry/model.h"
 #include "tests/support/full_model.h"
@@ -36,6 +40,17 @@ GltfBuilder strip() {
     return builder;
 }
 
+/// JSON, a zero byte and the binary data of a GLB.
+std::vector<std::byte> partsOf(const std::vector<std::byte>& glb) {
+    std::uint32_t jsonBytes = 0;
+    std::memcpy(&jsonBytes, glb.data() + 12, sizeof(jsonBytes));
+    const auto text = glb.begin() + 20;
+    std::vector<std::byte> parts(text, text + jsonBytes);
+    parts.push_back(std::byte{0});
+    parts.insert(parts.end(), text + jsonBytes + 8, glb.end());
+    return parts;
+}
+
 } // namespace
 
 int main(int argc, char** argv) {
@@ -45,13 +60,17 @@ int main(int argc, char** argv) {
     }
     const std::filesystem::path folder = argv[1];
     std::filesystem::create_directories(folder);
-    const auto write = [&](const char* name, const std::vector<std::byte>& bytes) {
+    const auto write = [&](const std::string& name, const std::vector<std::byte>& bytes) {
         std::ofstream(folder / name, std::ios::binary)
             .write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
     };
-    write("full.glb", lumorph::writeGlb(lumorph::support::fullModel()));
-    write("triangle.glb", GltfBuilder::triangle().glb());
-    write("sparse.glb", sparse().glb());
-    write("strip.glb", strip().glb());
+    const auto writeBoth = [&](const std::string& name, const std::vector<std::byte>& glb) {
+        write(name + ".glb", glb);
+        write(name + ".parts", partsOf(glb));
+    };
+    writeBoth("full", lumorph::writeGlb(lumorph::support::fullModel()));
+    writeBoth("triangle", GltfBuilder::triangle().glb());
+    writeBoth("sparse", sparse().glb());
+    writeBoth("strip", strip().glb());
     return 0;
 }
