@@ -41,7 +41,8 @@ void expectRefused(const std::vector<std::byte>& file, const std::string& what) 
 TEST(FieldFile, TruncatedAnywhereItIsRefused) {
     const std::vector<std::byte> file = writeField(smallField());
     for (std::size_t size = 0; size < file.size(); size += 1 + size / 7)
-        expectRefused({file.begin(), file.begin() + static_cast<std::ptrdiff_t>(size)}, "cut at " + std::to_string(size));
+        expectRefused({file.begin(), file.begin() + static_cast<std::ptrdiff_t>(size)},
+                      "cut at " + std::to_string(size));
     std::vector<std::byte> longer = file;
     longer.push_back(std::byte{0});
     expectRefused(longer, "a byte too many");

@@ -69,7 +69,8 @@ TEST_P(RefineOnRig, ReportsTrueQualityAndEndsWhereNoSingleActuatorHelps) {
     EXPECT_NEAR(refined.after.iou(), intersectionOverUnion(volumeOf(refined.state), wanted), 1e-12);
     EXPECT_EQ(refined.after.both + refined.after.unmatched, wanted.count());
     double best = 0.0;
-    for (const State& state : allStates(3, kLevels)) best = std::max(best, intersectionOverUnion(volumeOf(state), wanted));
+    for (const State& state : allStates(3, kLevels))
+        best = std::max(best, intersectionOverUnion(volumeOf(state), wanted));
     EXPECT_GE(refined.after.iou(), 0.98 * best) << "exhaustive search finds " << best;
     for (std::size_t i = 0; i < 3; ++i)
         for (int level = 0; level < kLevels; ++level) {
@@ -113,7 +114,8 @@ TEST(Refine, RefusesStatesAndTargetsThatDoNotFit) {
     const SteadyClock clock;
     const BitColumns target(coverage.frame().dimensions);
     EXPECT_THROW((void)refiner.refine(target, State(2), Microseconds{0}, clock), InvalidInput);
-    EXPECT_THROW((void)refiner.refine(target, {Level{0}, Level{0}, Level{kLevels}}, Microseconds{0}, clock), InvalidInput);
+    EXPECT_THROW((void)refiner.refine(target, {Level{0}, Level{0}, Level{kLevels}}, Microseconds{0}, clock),
+                 InvalidInput);
     EXPECT_THROW((void)refiner.refine(BitColumns({1, 1, 1}), State(3), Microseconds{0}, clock), InvalidInput);
 }
 

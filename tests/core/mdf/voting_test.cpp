@@ -96,7 +96,8 @@ TEST_P(VotingOnRig, AgreesWithTheLiteralEquation) {
     const Voting voting(field);
     const Coverage coverage(GetParam()(), field.frame, field.levels);
     CoverageScratch scratch;
-    std::vector<BitColumns> targets{wave(field, 6, 5, 0), wave(field, 3, 9, 1), wave(field, 11, 2, 2), randomBits(field, 1, 50),
+    std::vector<BitColumns> targets{wave(field, 6, 5, 0),    wave(field, 3, 9, 1),
+                                    wave(field, 11, 2, 2),   randomBits(field, 1, 50),
                                     randomBits(field, 2, 3), BitColumns(field.frame.dimensions)};
     std::mt19937 random(5);
     for (int i = 0; i < 12; ++i) {
@@ -144,7 +145,8 @@ TEST(Voting, TargetVoxelsInsideTheBodyDoNotCount) {
     target |= field.body;
     const Votes with = voting.match(target);
     EXPECT_EQ(with.targetVoxels, without.targetVoxels);
-    for (std::size_t i = 0; i < with.actuators.size(); ++i) EXPECT_EQ(with.actuators[i].errors, without.actuators[i].errors);
+    for (std::size_t i = 0; i < with.actuators.size(); ++i)
+        EXPECT_EQ(with.actuators[i].errors, without.actuators[i].errors);
 }
 
 TEST(Voting, HysteresisKeepsALevelThatIsNearlyAsGoodAndLeavesOneThatIsNot) {
@@ -225,7 +227,8 @@ TEST(Ramp, FitIsTheLeastSquaresOptimum) {
         std::sort(expectation.begin(), expectation.end());
         const auto errorOf = [&](const Ramp& ramp) {
             double sum = 0.0;
-            for (int j = 0; j < 12; ++j) sum += std::pow(expectationAt(ramp, j) - expectation[static_cast<std::size_t>(j)], 2);
+            for (int j = 0; j < 12; ++j)
+                sum += std::pow(expectationAt(ramp, j) - expectation[static_cast<std::size_t>(j)], 2);
             return sum;
         };
         const Ramp fitted = fitRamp(expectation);
