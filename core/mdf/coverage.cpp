@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <mutex>
+#include <set>
 #include <string>
 
 #include "core/base/error.h"
@@ -340,6 +341,19 @@ void Coverage::coveredAt(std::span<const double> strokes, BitColumns& out, Cover
         for (std::size_t i = 0; i < out.words().size(); ++i) out.words()[i] |= scratch.parity[i];
     }
     pieces_->removeBodyAndTail(all, out.words());
+}
+
+std::vector<std::pair<std::size_t, std::size_t>> Coverage::coupledPairs() const {
+    std::set<std::pair<std::size_t, std::size_t>> pairs;
+    const auto add = [&](const std::vector<std::uint16_t>& actuators) {
+        for (std::size_t i = 0; i < actuators.size(); ++i)
+            for (std::size_t j = i + 1; j < actuators.size(); ++j) pairs.emplace(actuators[i], actuators[j]);
+    };
+    for (const RigBody& body : pieces_->bodies) {
+        if (body.stepsPerLevel > 0) add(body.actuators);
+        for (const RigGroup& group : body.groups) add(group.actuators);
+    }
+    return {pairs.begin(), pairs.end()};
 }
 
 int Coverage::pathSteps(std::span<const double> strokes) const noexcept {
