@@ -13,12 +13,16 @@ namespace {
 std::size_t componentBytes(int type) {
     switch (type) {
     case TINYGLTF_COMPONENT_TYPE_BYTE:
-    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE: return 1;
+    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE:
+        return 1;
     case TINYGLTF_COMPONENT_TYPE_SHORT:
-    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT: return 2;
+    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT:
+        return 2;
     case TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT:
-    case TINYGLTF_COMPONENT_TYPE_FLOAT: return 4;
-    default: return 0;
+    case TINYGLTF_COMPONENT_TYPE_FLOAT:
+        return 4;
+    default:
+        return 0;
     }
 }
 
@@ -45,7 +49,8 @@ template <typename Stored, typename Out> void copy(const Elements& from, Out* ou
     for (std::size_t i = 0; i < from.count; ++i)
         for (int c = 0; c < from.components; ++c) {
             Stored value;
-            std::memcpy(&value, from.first + i * from.stride + static_cast<std::size_t>(c) * sizeof(Stored), sizeof(Stored));
+            std::memcpy(&value, from.first + i * from.stride + static_cast<std::size_t>(c) * sizeof(Stored),
+                        sizeof(Stored));
             *out++ = converted<Stored, Out>(value, from.normalized);
         }
 }
@@ -54,17 +59,31 @@ template <typename Stored, typename Out> void copy(const Elements& from, Out* ou
 template <typename Out> bool copyAs(int type, const Elements& from, Out* out) {
     constexpr bool real = std::is_same_v<Out, float>;
     switch (type) {
-    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE: copy<std::uint8_t>(from, out); return true;
-    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT: copy<std::uint16_t>(from, out); return true;
-    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT: copy<std::uint32_t>(from, out); return true;
-    default: break;
+    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE:
+        copy<std::uint8_t>(from, out);
+        return true;
+    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT:
+        copy<std::uint16_t>(from, out);
+        return true;
+    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT:
+        copy<std::uint32_t>(from, out);
+        return true;
+    default:
+        break;
     }
     if constexpr (real) {
         switch (type) {
-        case TINYGLTF_COMPONENT_TYPE_BYTE: copy<std::int8_t>(from, out); return true;
-        case TINYGLTF_COMPONENT_TYPE_SHORT: copy<std::int16_t>(from, out); return true;
-        case TINYGLTF_COMPONENT_TYPE_FLOAT: copy<float>(from, out); return true;
-        default: break;
+        case TINYGLTF_COMPONENT_TYPE_BYTE:
+            copy<std::int8_t>(from, out);
+            return true;
+        case TINYGLTF_COMPONENT_TYPE_SHORT:
+            copy<std::int16_t>(from, out);
+            return true;
+        case TINYGLTF_COMPONENT_TYPE_FLOAT:
+            copy<float>(from, out);
+            return true;
+        default:
+            break;
         }
     }
     return false;
@@ -81,7 +100,9 @@ Elements located(std::span<const std::byte> bytes, std::size_t offset, std::size
     return {bytes.data() + offset, stride, count, 1, false};
 }
 
-std::string named(int accessor, const std::string& place) { return place + " (accessor " + std::to_string(accessor) + ")"; }
+std::string named(int accessor, const std::string& place) {
+    return place + " (accessor " + std::to_string(accessor) + ")";
+}
 
 } // namespace
 
@@ -89,18 +110,25 @@ int Accessors::components(int accessor, const std::string& place) const {
     if (accessor < 0 || static_cast<std::size_t>(accessor) >= structure_.accessors.size())
         refuse(file_, place + ": there is no accessor " + std::to_string(accessor));
     switch (structure_.accessors[static_cast<std::size_t>(accessor)].type) {
-    case TINYGLTF_TYPE_SCALAR: return 1;
-    case TINYGLTF_TYPE_VEC2: return 2;
-    case TINYGLTF_TYPE_VEC3: return 3;
-    case TINYGLTF_TYPE_VEC4: return 4;
-    case TINYGLTF_TYPE_MAT4: return 16;
-    default: refuse(file_, named(accessor, place) + ": is of a matrix type that has no place here");
+    case TINYGLTF_TYPE_SCALAR:
+        return 1;
+    case TINYGLTF_TYPE_VEC2:
+        return 2;
+    case TINYGLTF_TYPE_VEC3:
+        return 3;
+    case TINYGLTF_TYPE_VEC4:
+        return 4;
+    case TINYGLTF_TYPE_MAT4:
+        return 16;
+    default:
+        refuse(file_, named(accessor, place) + ": is of a matrix type that has no place here");
     }
 }
 
 std::size_t Accessors::open(int accessor, int expected, const std::string& place) const {
     if (const int found = components(accessor, place); found != expected)
-        refuse(file_, named(accessor, place) + ": has " + std::to_string(found) + " components, not " + std::to_string(expected));
+        refuse(file_, named(accessor, place) + ": has " + std::to_string(found) + " components, not " +
+                          std::to_string(expected));
     const std::size_t count = structure_.accessors[static_cast<std::size_t>(accessor)].count;
     if (count == 0) refuse(file_, named(accessor, place) + ": is empty");
     budget_.charge(count, static_cast<std::size_t>(expected) * sizeof(float), named(accessor, place));
@@ -120,8 +148,9 @@ void Accessors::copySparse(int accessor, int components, Out* out, const std::st
     const std::string indexPlace = place + " sparse indices";
     budget_.charge(count, sizeof(std::uint32_t) + bytes * 4, place);
     if (indexBytes == 0) refuse(file_, indexPlace + ": are of an unknown type");
-    const Elements indices = located(viewBytes(structure_, buffers_, sparse.indices.bufferView, indexPlace, file_),
-                                     static_cast<std::size_t>(sparse.indices.byteOffset), 0, indexBytes, count, indexPlace, file_);
+    const Elements indices =
+        located(viewBytes(structure_, buffers_, sparse.indices.bufferView, indexPlace, file_),
+                static_cast<std::size_t>(sparse.indices.byteOffset), 0, indexBytes, count, indexPlace, file_);
     std::vector<std::uint32_t> targets(count);
     if (!copyAs(sparse.indices.componentType, indices, targets.data()))
         refuse(file_, indexPlace + ": are not unsigned integers");
@@ -135,7 +164,8 @@ void Accessors::copySparse(int accessor, int components, Out* out, const std::st
     std::vector<Out> replaced(count * width);
     copyAs(source.componentType, values, replaced.data());
     for (std::size_t i = 0; i < count; ++i) {
-        if (targets[i] >= source.count) refuse(file_, indexPlace + ": " + std::to_string(targets[i]) + " is out of range");
+        if (targets[i] >= source.count)
+            refuse(file_, indexPlace + ": " + std::to_string(targets[i]) + " is out of range");
         std::copy_n(replaced.data() + i * width, width, out + targets[i] * width);
     }
 }
@@ -162,9 +192,11 @@ void Accessors::copyAll(int accessor, int components, Out* out, const std::strin
 void Accessors::fill(int accessor, int components, float* out, const std::string& place) const {
     const std::string where = named(accessor, place);
     copyAll(accessor, components, out, where);
-    const std::size_t size = structure_.accessors[static_cast<std::size_t>(accessor)].count * static_cast<std::size_t>(components);
+    const std::size_t size =
+        structure_.accessors[static_cast<std::size_t>(accessor)].count * static_cast<std::size_t>(components);
     const float* end = out + size;
-    const float* bad = std::find_if(static_cast<const float*>(out), end, [](float value) { return !std::isfinite(value); });
+    const float* bad =
+        std::find_if(static_cast<const float*>(out), end, [](float value) { return !std::isfinite(value); });
     if (bad != end)
         refuse(file_, where + ": element " + std::to_string((bad - out) / components) + " is not a finite number",
                "remove the faulty vertices or keys in the modelling program and export again");

@@ -30,8 +30,7 @@ namespace {
 
 std::uint32_t readU32(std::span<const std::byte> bytes, std::size_t offset) {
     std::uint32_t value = 0;
-    for (std::size_t i = 0; i < 4; ++i)
-        value |= std::to_integer<std::uint32_t>(bytes[offset + i]) << (8 * i);
+    for (std::size_t i = 0; i < 4; ++i) value |= std::to_integer<std::uint32_t>(bytes[offset + i]) << (8 * i);
     return value;
 }
 
@@ -85,9 +84,10 @@ template <std::size_t size> bool contains(const std::array<std::string_view, siz
 
 // tinygltf takes a member of the wrong type for a missing one, which would turn a typing error into another shape.
 constexpr std::array<std::string_view, 19> kWholeNumbers = {
-    "buffer", "bufferView", "byteLength", "byteOffset", "byteStride", "componentType", "count",
-    "index",  "input",      "inverseBindMatrices",      "material",   "mesh",          "mode",
-    "node",   "output",     "sampler",    "scene",      "skin",       "source"};
+    "buffer",        "bufferView", "byteLength", "byteOffset", "byteStride",
+    "componentType", "count",      "index",      "input",      "inverseBindMatrices",
+    "material",      "mesh",       "mode",       "node",       "output",
+    "sampler",       "scene",      "skin",       "source"};
 constexpr std::array<std::string_view, 2> kWholeNumberLists = {"children", "joints"};
 constexpr std::array<std::string_view, 5> kNumberLists = {"matrix", "translation", "rotation", "scale", "weights"};
 
@@ -153,7 +153,8 @@ json structureJson(const json& document, const std::string& file) {
         if (list == document.end()) continue;
         if (!list->is_array()) refuse(file, std::string("\"") + kind.list + "\" is not a list");
         if (list->size() > kMaxElements)
-            refuse(file, "holds more than " + std::to_string(kMaxElements) + " " + kind.list, "split the model into parts");
+            refuse(file, "holds more than " + std::to_string(kMaxElements) + " " + kind.list,
+                   "split the model into parts");
         json& copy = structure[kind.list] = json::array();
         for (std::size_t i = 0; i < list->size(); ++i) {
             const std::string place = std::string(kind.element) + " " + std::to_string(i);
@@ -220,7 +221,8 @@ Container splitGlb(std::span<const std::byte> bytes, const std::string& file) {
         refuse(file, "is of GLB version " + std::to_string(version), "export it as glTF 2.0");
     const std::size_t length = readU32(bytes, 8);
     if (length > bytes.size() || length < 20)
-        refuse(file, "is " + std::to_string(bytes.size()) + " bytes long, but its header says " + std::to_string(length),
+        refuse(file,
+               "is " + std::to_string(bytes.size()) + " bytes long, but its header says " + std::to_string(length),
                "copy or download the file again");
 
     Container container;
@@ -230,7 +232,8 @@ Container splitGlb(std::span<const std::byte> bytes, const std::string& file) {
         const std::uint32_t type = readU32(bytes, offset + 4);
         offset += 8;
         if (size > length - offset)
-            refuse(file, "chunk " + std::to_string(chunk) + ": is longer than the file", "copy or download the file again");
+            refuse(file, "chunk " + std::to_string(chunk) + ": is longer than the file",
+                   "copy or download the file again");
         if (chunk == 0 && type != jsonChunk) refuse(file, "chunk 0: is not JSON");
         const std::span<const std::byte> content = bytes.subspan(offset, size);
         if (chunk == 0) container.json = {reinterpret_cast<const char*>(content.data()), content.size()};
@@ -260,9 +263,11 @@ tinygltf::Model structureOf(const json& document, const std::string& file) {
     tinygltf::Model model;
     std::string errors;
     std::string warnings;
-    if (!loader.LoadASCIIFromString(&model, &errors, &warnings, text.data(), static_cast<unsigned int>(text.size()), "")) {
+    if (!loader.LoadASCIIFromString(&model, &errors, &warnings, text.data(), static_cast<unsigned int>(text.size()),
+                                    "")) {
         const std::size_t end = std::min(errors.find('\n'), std::size_t{200});
-        refuse(file, "is not valid glTF: " + (errors.empty() ? std::string("unknown structure") : errors.substr(0, end)));
+        refuse(file,
+               "is not valid glTF: " + (errors.empty() ? std::string("unknown structure") : errors.substr(0, end)));
     }
     checkNothingDropped(structure, model, file);
     return model;

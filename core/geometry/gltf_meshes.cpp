@@ -16,7 +16,8 @@ namespace {
 constexpr std::uint32_t kMaxJointIndex = 0xFFFF;
 
 bool isTriangles(int mode) {
-    return mode == TINYGLTF_MODE_TRIANGLES || mode == TINYGLTF_MODE_TRIANGLE_STRIP || mode == TINYGLTF_MODE_TRIANGLE_FAN;
+    return mode == TINYGLTF_MODE_TRIANGLES || mode == TINYGLTF_MODE_TRIANGLE_STRIP ||
+           mode == TINYGLTF_MODE_TRIANGLE_FAN;
 }
 
 /// Triangle `i` of `corners` read in `mode`, in the order of the specification.
@@ -50,7 +51,8 @@ private:
 
     void checkCount(std::size_t count, const std::string& place) const {
         if (count != vertices())
-            source_.refuse(place + ": is for " + std::to_string(count) + " vertices, not " + std::to_string(vertices()));
+            source_.refuse(place + ": is for " + std::to_string(count) + " vertices, not " +
+                           std::to_string(vertices()));
     }
 
     template <typename Vector> std::vector<Vector> perVertex(const std::string& name) const {
@@ -71,8 +73,9 @@ private:
         const std::vector<std::uint32_t> corner = corners();
         const auto bad = std::find_if(corner.begin(), corner.end(), [&](std::uint32_t i) { return i >= vertices(); });
         if (bad != corner.end())
-            source_.refuse(place_ + " indices: index " + std::to_string(*bad) + " at " + std::to_string(bad - corner.begin()) +
-                           " is out of range, there are " + std::to_string(vertices()) + " vertices");
+            source_.refuse(place_ + " indices: index " + std::to_string(*bad) + " at " +
+                           std::to_string(bad - corner.begin()) + " is out of range, there are " +
+                           std::to_string(vertices()) + " vertices");
         const bool list = primitive_.mode == TINYGLTF_MODE_TRIANGLES;
         if (list && corner.size() % 3 != 0)
             source_.refuse(place_ + ": " + std::to_string(corner.size()) + " corners are not whole triangles");
@@ -125,7 +128,8 @@ private:
             const std::string place = place_ + " " + name;
             Model::CustomAttribute custom;
             custom.components = accessors_.components(accessor, place);
-            if (custom.components > 4) source_.refuse(place + ": matrices are not supported as attributes", "store it as vectors");
+            if (custom.components > 4)
+                source_.refuse(place + ": matrices are not supported as attributes", "store it as vectors");
             custom.values = accessors_.floats(accessor, custom.components, place);
             checkCount(custom.values.size() / static_cast<std::size_t>(custom.components), place);
             out_.custom.emplace(name, std::move(custom));
@@ -183,8 +187,8 @@ Model::Mesh readMesh(const Source& source, std::size_t index) {
     mesh.weights = source.numbers(from.weights, place + " weights");
     if (mesh.primitives.empty()) mesh.weights.clear();
     if (!mesh.weights.empty() && mesh.weights.size() != targets)
-        source.refuse(place + ": has " + std::to_string(mesh.weights.size()) + " weights for " + std::to_string(targets) +
-                      " morph targets");
+        source.refuse(place + ": has " + std::to_string(mesh.weights.size()) + " weights for " +
+                      std::to_string(targets) + " morph targets");
     mesh.extras = source.extras("meshes", index);
     mesh.targetNames = takeTargetNames(mesh.extras, targets);
     return mesh;
@@ -199,7 +203,8 @@ std::vector<Model::Mesh> readMeshes(const Source& source) {
         meshes.push_back(readMesh(source, i));
         for (const Model::Primitive& primitive : meshes.back().primitives) triangles += primitive.triangles.size();
         if (triangles > kMaxTriangles)
-            source.refuse("has more than " + std::to_string(kMaxTriangles) + " triangles", "reduce the mesh and export it again");
+            source.refuse("has more than " + std::to_string(kMaxTriangles) + " triangles",
+                          "reduce the mesh and export it again");
     }
     return meshes;
 }

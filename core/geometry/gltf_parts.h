@@ -7,8 +7,8 @@ namespace lumorph::gltf {
 
 /// One open file.
 struct Source {
-    const nlohmann::json& document;    ///< whole, for extras
-    const tinygltf::Model& structure;  ///< typed, everything else
+    const nlohmann::json& document;   ///< whole, for extras
+    const tinygltf::Model& structure; ///< typed, everything else
     const Accessors& accessors;
 
     [[noreturn]] void refuse(const std::string& why, const std::string& remedy = kExportAgain) const {

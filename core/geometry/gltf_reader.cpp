@@ -122,7 +122,8 @@ Model readModel(const std::filesystem::path& file) {
 
 Model readGlb(std::span<const std::byte> bytes, const std::string& name) {
     if (bytes.size() > kMaxFileBytes)
-        gltf::refuse(name, "is larger than " + std::to_string(kMaxFileBytes >> 20) + " MiB", "split the model into parts");
+        gltf::refuse(name, "is larger than " + std::to_string(kMaxFileBytes >> 20) + " MiB",
+                     "split the model into parts");
     return gltf::readDocument(gltf::splitGlb(bytes, name), gltf::Folder(), bytes.size(), name);
 }
 

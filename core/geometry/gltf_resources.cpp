@@ -97,7 +97,8 @@ const json& listOf(const json& document, const char* name, const std::string& fi
     const auto list = document.find(name);
     if (list == document.end()) return none;
     if (!list->is_array() || list->size() > kMaxElements)
-        refuse(file, std::string("\"") + name + "\" is not a list of at most " + std::to_string(kMaxElements) + " elements");
+        refuse(file,
+               std::string("\"") + name + "\" is not a list of at most " + std::to_string(kMaxElements) + " elements");
     return *list;
 }
 
@@ -153,15 +154,15 @@ std::vector<std::byte> readFile(const std::filesystem::path& path, std::size_t m
 std::vector<std::byte> Folder::read(const std::string& uri, std::size_t maxBytes, const std::string& place,
                                     const std::string& file) const {
     if (!path_)
-        refuse(file, place + ": refers to " + quoted(uri) + " outside the file", "export as .glb with everything inside");
+        refuse(file, place + ": refers to " + quoted(uri) + " outside the file",
+               "export as .glb with everything inside");
     const std::filesystem::path relative = percentDecoded(uri);
     const bool climbs = std::find(relative.begin(), relative.end(), "..") != relative.end();
     if (relative.empty() || relative.is_absolute() || climbs || relative.native().find('\0') != std::string::npos)
         refuse(file, place + ": " + quoted(uri) + " leads out of the folder of the model", kKeepBeside);
     std::error_code failed;
     const std::filesystem::path folder = std::filesystem::weakly_canonical(path_->empty() ? "." : *path_, failed);
-    const std::filesystem::path target =
-        failed ? folder : std::filesystem::weakly_canonical(folder / relative, failed);
+    const std::filesystem::path target = failed ? folder : std::filesystem::weakly_canonical(folder / relative, failed);
     if (failed) refuse(file, place + ": " + quoted(uri) + " cannot be read", kKeepBeside);
     if (!liesWithin(folder, target))
         refuse(file, place + ": " + quoted(uri) + " leads out of the folder of the model", kKeepBeside);

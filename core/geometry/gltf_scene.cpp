@@ -93,7 +93,8 @@ private:
         node.parent = parents_[index] < 0 ? -1 : place_[static_cast<std::size_t>(parents_[index])];
         for (const int child : from.children) node.children.push_back(moved(child, place));
         if (!from.matrix.empty()) node.matrix = glm::make_mat4(numbers(from.matrix, 16, place + " matrix").data());
-        if (!from.translation.empty()) node.translation = glm::make_vec3(numbers(from.translation, 3, place + " translation").data());
+        if (!from.translation.empty())
+            node.translation = glm::make_vec3(numbers(from.translation, 3, place + " translation").data());
         if (!from.scale.empty()) node.scale = glm::make_vec3(numbers(from.scale, 3, place + " scale").data());
         if (!from.rotation.empty()) node.rotation = rotation(from.rotation, place);
         node.mesh = source_.checked(from.mesh, model_.meshes.size(), place, "mesh");
@@ -106,7 +107,9 @@ private:
         return node;
     }
 
-    const Model::Mesh& mesh(const Model::Node& node) const { return model_.meshes[static_cast<std::size_t>(node.mesh)]; }
+    const Model::Mesh& mesh(const Model::Node& node) const {
+        return model_.meshes[static_cast<std::size_t>(node.mesh)];
+    }
 
     std::size_t targets(const Model::Node& node) const {
         if (node.mesh < 0 || mesh(node).primitives.empty()) return 0;
@@ -129,14 +132,16 @@ private:
                 if (model_.nodes[i].parent < 0) model_.roots.push_back(static_cast<int>(i));
             return;
         }
-        const int index = source_.checked(std::max(structure_.defaultScene, 0), structure_.scenes.size(), "default scene", "scene");
+        const int index =
+            source_.checked(std::max(structure_.defaultScene, 0), structure_.scenes.size(), "default scene", "scene");
         const std::string place = "scene " + std::to_string(index);
         const tinygltf::Scene& scene = structure_.scenes[static_cast<std::size_t>(index)];
         model_.name = scene.name;
         std::vector<bool> listed(model_.nodes.size(), false);
         for (const int root : scene.nodes) {
             const int node = moved(root, place);
-            if (node < 0 || model_.nodes[static_cast<std::size_t>(node)].parent >= 0 || listed[static_cast<std::size_t>(node)])
+            if (node < 0 || model_.nodes[static_cast<std::size_t>(node)].parent >= 0 ||
+                listed[static_cast<std::size_t>(node)])
                 source_.refuse(place + ": node " + std::to_string(root) + " is not a root, or listed twice");
             listed[static_cast<std::size_t>(node)] = true;
             model_.roots.push_back(node);
@@ -155,7 +160,8 @@ private:
             skin.inverseBindMatrices = source_.accessors.vectors<glm::mat4>(from.inverseBindMatrices, place);
         else
             skin.inverseBindMatrices.assign(skin.joints.size(), glm::mat4(1.0F));
-        if (skin.inverseBindMatrices.size() < skin.joints.size()) source_.refuse(place + ": has fewer matrices than joints");
+        if (skin.inverseBindMatrices.size() < skin.joints.size())
+            source_.refuse(place + ": has fewer matrices than joints");
         skin.inverseBindMatrices.resize(skin.joints.size());
         return skin;
     }
@@ -186,7 +192,8 @@ private:
         const bool weights = channel.path == Model::Path::weights;
         if (!weights && node.matrix) source_.refuse(place + ": moves a node that has a matrix");
         channel.times = source_.accessors.floats(sampler.input, 1, place + " input");
-        if (!std::is_sorted(channel.times.begin(), channel.times.end())) source_.refuse(place + " input: its times are not ascending");
+        if (!std::is_sorted(channel.times.begin(), channel.times.end()))
+            source_.refuse(place + " input: its times are not ascending");
         const int components = weights ? 1 : channel.path == Model::Path::rotation ? 4 : 3;
         channel.values = source_.accessors.floats(sampler.output, components, place + " output");
         const std::size_t each = (weights ? targets(node) : static_cast<std::size_t>(components)) *

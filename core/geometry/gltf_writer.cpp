@@ -32,11 +32,16 @@ template <typename Vector> json listOf(const Vector& vector) {
 
 const char* typeName(int components) {
     switch (components) {
-    case 1: return "SCALAR";
-    case 2: return "VEC2";
-    case 3: return "VEC3";
-    case 4: return "VEC4";
-    default: return "MAT4";
+    case 1:
+        return "SCALAR";
+    case 2:
+        return "VEC2";
+    case 3:
+        return "VEC3";
+    case 4:
+        return "VEC4";
+    default:
+        return "MAT4";
     }
 }
 
@@ -70,7 +75,8 @@ public:
     }
 
 private:
-    [[noreturn]] void refuse(const std::string& why, const std::string& remedy = "mend the model before saving it") const {
+    [[noreturn]] void refuse(const std::string& why,
+                             const std::string& remedy = "mend the model before saving it") const {
         throw InvalidInput(model_.name.empty() ? "model" : model_.name, why, remedy);
     }
 
@@ -94,7 +100,8 @@ private:
         return static_cast<int>(views.size()) - 1;
     }
 
-    int addAccessor(const void* data, std::size_t bytes, std::size_t count, int componentType, int components, int target = 0) {
+    int addAccessor(const void* data, std::size_t bytes, std::size_t count, int componentType, int components,
+                    int target = 0) {
         json& accessors = document_["accessors"];
         accessors.push_back({{"bufferView", addView(data, bytes, target)},
                              {"componentType", componentType},
@@ -163,7 +170,8 @@ private:
         if (!from.weights.empty()) to["weights"] = listOf(from.weights.data(), from.weights.size());
         json extras = from.extras;
         if (!from.targetNames.empty()) {
-            check(extras.is_null() || extras.is_object(), place, "has names for its morph targets, but extras that hold no names");
+            check(extras.is_null() || extras.is_object(), place,
+                  "has names for its morph targets, but extras that hold no names");
             extras["targetNames"] = from.targetNames;
         }
         setExtras(to, extras);
@@ -171,9 +179,7 @@ private:
     }
 
     // A glTF mesh needs a primitive; an empty one is written as a single point, which reading leaves out.
-    json placeholder() {
-        return {{"mode", 0}, {"attributes", {{"POSITION", addPositions({glm::vec3(0.0F)})}}}};
-    }
+    json placeholder() { return {{"mode", 0}, {"attributes", {{"POSITION", addPositions({glm::vec3(0.0F)})}}}}; }
 
     void checkPrimitive(const Model::Primitive& from, const std::string& place) const {
         const std::size_t count = from.positions.size();
@@ -210,8 +216,8 @@ private:
             attributes[name] = addFloats(custom.values.data(), from.positions.size(), custom.components, kVertexData);
         const std::size_t corners = from.triangles.size() * 3;
         json to = {{"attributes", std::move(attributes)},
-                   {"indices", addAccessor(from.triangles.data(), corners * sizeof(std::uint32_t), corners, kUnsignedInt, 1,
-                                           kIndexData)}};
+                   {"indices", addAccessor(from.triangles.data(), corners * sizeof(std::uint32_t), corners,
+                                           kUnsignedInt, 1, kIndexData)}};
         for (const std::vector<glm::vec3>& target : from.morphTargets)
             to["targets"].push_back({{"POSITION", addPositions(target)}});
         if (from.material >= 0) to["material"] = from.material;
@@ -220,8 +226,8 @@ private:
 
     json skin(std::size_t index) {
         const Model::Skin& from = model_.skins[index];
-        check(!from.joints.empty() && from.joints.size() == from.inverseBindMatrices.size(), "skin " + std::to_string(index),
-              "joints and matrices differ in number, or are none");
+        check(!from.joints.empty() && from.joints.size() == from.inverseBindMatrices.size(),
+              "skin " + std::to_string(index), "joints and matrices differ in number, or are none");
         json to = {{"joints", from.joints}, {"inverseBindMatrices", addVectors(from.inverseBindMatrices)}};
         setName(to, from.name);
         return to;
@@ -248,27 +254,36 @@ private:
             to["samplers"].push_back(
                 {{"input", addTimes(channel.times)},
                  {"interpolation", interpolationOf(channel.interpolation)},
-                 {"output", addFloats(channel.values.data(), channel.values.size() / static_cast<std::size_t>(components), components)}});
-            to["channels"].push_back({{"sampler", to["samplers"].size() - 1}, {"target", {{"node", channel.node}, {"path", path}}}});
+                 {"output", addFloats(channel.values.data(),
+                                      channel.values.size() / static_cast<std::size_t>(components), components)}});
+            to["channels"].push_back(
+                {{"sampler", to["samplers"].size() - 1}, {"target", {{"node", channel.node}, {"path", path}}}});
         }
         document_["animations"].push_back(std::move(to));
     }
 
     static std::pair<const char*, int> pathOf(Model::Path path) {
         switch (path) {
-        case Model::Path::translation: return {"translation", 3};
-        case Model::Path::rotation: return {"rotation", 4};
-        case Model::Path::scale: return {"scale", 3};
-        case Model::Path::weights: break;
+        case Model::Path::translation:
+            return {"translation", 3};
+        case Model::Path::rotation:
+            return {"rotation", 4};
+        case Model::Path::scale:
+            return {"scale", 3};
+        case Model::Path::weights:
+            break;
         }
         return {"weights", 1};
     }
 
     static const char* interpolationOf(Model::Interpolation interpolation) {
         switch (interpolation) {
-        case Model::Interpolation::step: return "STEP";
-        case Model::Interpolation::cubicSpline: return "CUBICSPLINE";
-        case Model::Interpolation::linear: break;
+        case Model::Interpolation::step:
+            return "STEP";
+        case Model::Interpolation::cubicSpline:
+            return "CUBICSPLINE";
+        case Model::Interpolation::linear:
+            break;
         }
         return "LINEAR";
     }
@@ -286,7 +301,8 @@ private:
                         {"metallicFactor", from.metallic},
                         {"roughnessFactor", from.roughness}};
         if (from.baseColorImage >= 0) surface["baseColorTexture"] = textureOf(from.baseColorImage);
-        if (from.metallicRoughnessImage >= 0) surface["metallicRoughnessTexture"] = textureOf(from.metallicRoughnessImage);
+        if (from.metallicRoughnessImage >= 0)
+            surface["metallicRoughnessTexture"] = textureOf(from.metallicRoughnessImage);
         json to = {{"pbrMetallicRoughness", std::move(surface)},
                    {"emissiveFactor", listOf(from.emissive)},
                    {"alphaMode", from.alphaMode},
@@ -323,7 +339,8 @@ private:
         const auto word = [&](std::size_t value) {
             for (int shift = 0; shift < 32; shift += 8) glb.push_back(static_cast<std::byte>((value >> shift) & 0xFFU));
         };
-        for (const std::size_t value : {std::size_t{0x46546C67}, std::size_t{2}, length, text.size(), std::size_t{0x4E4F534A}})
+        for (const std::size_t value :
+             {std::size_t{0x46546C67}, std::size_t{2}, length, text.size(), std::size_t{0x4E4F534A}})
             word(value);
         const auto* characters = reinterpret_cast<const std::byte*>(text.data());
         glb.insert(glb.end(), characters, characters + text.size());

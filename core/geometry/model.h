@@ -146,9 +146,9 @@ struct Model {
                                                     double seconds);
 
 /// All triangles of the default scene in world space with skins and morph targets applied, at the
-/// rest pose or posed by `animation` at `seconds`. The triangles are the same at every time; where the rest pose mirrors
-/// a mesh its triangles are turned, so that outside stays outside. Throws InvalidInput when a transform carries a vertex
-/// beyond the range of float.
+/// rest pose or posed by `animation` at `seconds`. The triangles are the same at every time; where the rest pose
+/// mirrors a mesh its triangles are turned, so that outside stays outside. Throws InvalidInput when a transform carries
+/// a vertex beyond the range of float.
 [[nodiscard]] TriangleMesh flatten(const Model& model);
 [[nodiscard]] TriangleMesh flatten(const Model& model, const Model::Animation& animation, double seconds);
 

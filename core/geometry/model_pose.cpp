@@ -45,11 +45,14 @@ std::vector<glm::mat4> chained(const Model& model, const std::vector<Local>& loc
 std::vector<Local> restLocals(const Model& model) {
     std::vector<Local> locals;
     locals.reserve(model.nodes.size());
-    for (const Model::Node& node : model.nodes) locals.push_back({node.translation, node.rotation, node.scale, node.matrix});
+    for (const Model::Node& node : model.nodes)
+        locals.push_back({node.translation, node.rotation, node.scale, node.matrix});
     return locals;
 }
 
-Pose restPose(const Model& model) { return {nodeTransforms(model), std::vector<std::vector<float>>(model.nodes.size())}; }
+Pose restPose(const Model& model) {
+    return {nodeTransforms(model), std::vector<std::vector<float>>(model.nodes.size())};
+}
 
 /// Where a time lies between two keys.
 struct Span {
@@ -113,7 +116,8 @@ std::vector<float> sampled(const Model::Channel& channel, double seconds) {
     const std::size_t perKey = channel.values.size() / channel.times.size();
     const std::size_t width = channel.interpolation == Model::Interpolation::cubicSpline ? perKey / 3 : perKey;
     const Span at = locate(channel.times, seconds);
-    if (at.fraction > 0.0F && channel.interpolation == Model::Interpolation::cubicSpline) return cubic(channel, at, width);
+    if (at.fraction > 0.0F && channel.interpolation == Model::Interpolation::cubicSpline)
+        return cubic(channel, at, width);
     if (at.fraction > 0.0F && channel.interpolation == Model::Interpolation::linear) return linear(channel, at, width);
     const auto held = keyValues(channel, at.key, 1, width);
     return {held.begin(), held.end()};
@@ -129,10 +133,18 @@ Pose posed(const Model& model, const Model::Animation& animation, double seconds
         Local& local = locals[index];
         std::vector<float> value = sampled(channel, seconds);
         switch (channel.path) {
-        case Model::Path::translation: local.translation = glm::make_vec3(value.data()); break;
-        case Model::Path::rotation: local.rotation = quaternion(value); break;
-        case Model::Path::scale: local.scale = glm::make_vec3(value.data()); break;
-        case Model::Path::weights: pose.weights[index] = std::move(value); break;
+        case Model::Path::translation:
+            local.translation = glm::make_vec3(value.data());
+            break;
+        case Model::Path::rotation:
+            local.rotation = quaternion(value);
+            break;
+        case Model::Path::scale:
+            local.scale = glm::make_vec3(value.data());
+            break;
+        case Model::Path::weights:
+            pose.weights[index] = std::move(value);
+            break;
         }
         if (channel.path != Model::Path::weights) local.matrix.reset();
     }
@@ -160,7 +172,9 @@ public:
         reserve(shown);
         for (std::size_t i = 0; i < model_.nodes.size(); ++i)
             if (shown[i]) addNode(i);
-        const auto finite = [](const glm::vec3& p) { return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z); };
+        const auto finite = [](const glm::vec3& p) {
+            return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
+        };
         if (!std::all_of(mesh_.positions.begin(), mesh_.positions.end(), finite))
             throw InvalidInput(model_.name.empty() ? "model" : model_.name, "a vertex lies beyond the range of numbers",
                                "look for nodes with a huge scale or translation");
@@ -210,8 +224,10 @@ private:
             const std::size_t first = mesh_.positions.size();
             addMorphed(primitive, weights);
             const std::span<glm::vec3> points = std::span(mesh_.positions).subspan(first);
-            if (skinned) bend(primitive, joints, points);
-            else place(pose_.worldFromNode[index], points);
+            if (skinned)
+                bend(primitive, joints, points);
+            else
+                place(pose_.worldFromNode[index], points);
             addTriangles(primitive, first, skinned ? mostlyMirrored(*skin) : mirrors(rest_.worldFromNode[index]));
         }
     }
@@ -233,7 +249,8 @@ private:
         for (glm::vec3& p : points) p = affine * glm::vec4(p, 1.0F);
     }
 
-    static void bend(const Model::Primitive& primitive, const std::vector<glm::mat4>& joints, std::span<glm::vec3> points) noexcept {
+    static void bend(const Model::Primitive& primitive, const std::vector<glm::mat4>& joints,
+                     std::span<glm::vec3> points) noexcept {
         const std::vector<glm::mat4x3> affine(joints.begin(), joints.end());
         for (std::size_t i = 0; i < points.size(); ++i) {
             const glm::vec4 bound(points[i], 1.0F);

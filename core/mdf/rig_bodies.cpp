@@ -118,20 +118,24 @@ std::vector<RigBody> groupTriangles(const Rig& rig, const VoxelFrame& frame) {
     for (auto& [owner, groups] : sorted) {
         RigBody& made = bodies.emplace_back();
         for (auto& [key, triangles] : groups) { // the empty key comes first
-            RigGroup& group = made.groups.emplace_back(RigGroup{key, {}, std::move(triangles), {}});
+            RigGroup& group = made.groups.emplace_back(RigGroup{key, std::nullopt, std::move(triangles), {}});
             for (const glm::uvec3& t : group.triangles)
                 for (const std::uint32_t v : {t.x, t.y, t.z}) local[v] = kUnseen;
             Box box;
+            std::vector<std::uint32_t> vertices;
             const auto number = [&](std::uint32_t v) {
                 if (local[v] == kUnseen) {
-                    local[v] = static_cast<std::uint32_t>(group.vertices.size());
-                    group.vertices.push_back(v);
+                    local[v] = static_cast<std::uint32_t>(vertices.size());
+                    vertices.push_back(v);
                     box.include(rig.reachOf(v));
                 }
                 return local[v];
             };
             for (glm::uvec3& t : group.triangles) t = {number(t.x), number(t.y), number(t.z)};
-            if (!box.empty()) group.range = columnsOfBox(frame, box);
+            if (!vertices.empty()) {
+                group.vertices = rig.subset(vertices);
+                group.range = columnsOfBox(frame, box);
+            }
             made.range.include(group.range);
             made.actuators.insert(made.actuators.end(), key.begin(), key.end());
         }
@@ -143,15 +147,17 @@ std::vector<RigBody> groupTriangles(const Rig& rig, const VoxelFrame& frame) {
 
 } // namespace
 
-std::vector<RigBody> bodiesOf(const Rig& rig, const VoxelFrame& frame, int levels) {
+int RigBody::stepsPerLevel(int levels) const noexcept {
+    return std::max(1, static_cast<int>(std::ceil(fullStrokeSteps.front() / (levels - 1))));
+}
+
+std::vector<RigBody> bodiesOf(const Rig& rig, const VoxelFrame& frame) {
     std::vector<RigBody> bodies = groupTriangles(rig, frame);
     for (RigBody& b : bodies) {
         if (rig.pathInside() || b.actuators.empty()) continue;
-        double path = 0.0;
-        for (const std::uint16_t actuator : b.actuators) path += longestPath(rig, actuator);
-        // Half a voxel between samples: no voxel centre that the solid passes over is missed by a
-        // part thicker than that.
-        b.stepsPerLevel = std::max(1, static_cast<int>(std::ceil(path / (levels - 1) / (0.5 * frame.voxelSize))));
+        // A voxel's side between samples: what is thicker than that misses no centre on its way.
+        for (const std::uint16_t actuator : b.actuators)
+            b.fullStrokeSteps.push_back(longestPath(rig, actuator) / frame.voxelSize);
     }
     return bodies;
 }

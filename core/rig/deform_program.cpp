@@ -12,7 +12,8 @@ RigCore::RigCore(RigParts rigParts) : parts(std::move(rigParts)) {
     const std::size_t vertexCount = parts.restMesh.positions.size();
     for (std::size_t a = 0; a < parts.actuators.size(); ++a) {
         actuators.push_back(compileActuator(parts.actuators[a]));
-        if (actuators.back().kind == CompiledActuator::Kind::skin) skinActuators.push_back(static_cast<std::uint16_t>(a));
+        if (actuators.back().kind == CompiledActuator::Kind::skin)
+            skinActuators.push_back(static_cast<std::uint16_t>(a));
     }
     stepStart.assign(vertexCount + 1, 0);
     const auto forEachStep = [&](auto&& visit) {
@@ -123,8 +124,10 @@ void DeformProgram::run(std::span<const double> strokes, std::span<glm::vec3> ou
         const MotionSetup setup =
             setUp(core_->parts.actuators[run.actuator], core_->actuators[run.actuator], stroke, run.weight);
         if (setup.still) continue;
-        if (run.zone == Zone::whole) runSpace(run, setup, out);
-        else runBend(run, setup, out);
+        if (run.zone == Zone::whole)
+            runSpace(run, setup, out);
+        else
+            runBend(run, setup, out);
     }
 }
 
@@ -206,7 +209,8 @@ void deformListed(const RigCore& core, std::span<const double> strokes, std::spa
             if (entry.setup.still) continue;
             if (morphs)
                 point += morphDisplacement(std::get<MorphTarget>(actuator.deformer), entry.setup.keys, step.influence);
-            else point = applySpace(compiled, entry.setup, point);
+            else
+                point = applySpace(compiled, entry.setup, point);
         }
         if (skinDue) applySkin();
         out[k] = point;

@@ -103,7 +103,8 @@ MotionSetup setUp(const Actuator& actuator, const CompiledActuator& compiled, do
         setup.still = amount == 0.0;
         setup.keys = placeOf(std::get<MorphTarget>(actuator.deformer), amount);
         break;
-    case CompiledActuator::Kind::skin: break; // posed as a whole, see poseSkin
+    case CompiledActuator::Kind::skin:
+        break; // posed as a whole, see poseSkin
     }
     return setup;
 }
@@ -125,8 +126,8 @@ glm::vec3 applySpace(const CompiledActuator& compiled, const MotionSetup& setup,
     return base + bent.x * compiled.direction + bent.y * compiled.normal;
 }
 
-void poseSkin(const Skeleton& skeleton, std::span<const Actuator> actuators, std::span<const std::uint16_t> skinActuators,
-              std::span<const double> strokes, SkinPose& pose) noexcept {
+void poseSkin(const Skeleton& skeleton, std::span<const Actuator> actuators,
+              std::span<const std::uint16_t> skinActuators, std::span<const double> strokes, SkinPose& pose) noexcept {
     pose.still = std::all_of(skinActuators.begin(), skinActuators.end(), [&](auto a) { return strokes[a] == 0.0; });
     if (pose.still) return;
     std::array<glm::dmat4, kMaxJoints> rest;

@@ -16,8 +16,8 @@ namespace lumorph {
 struct CompiledActuator {
     enum class Kind : std::uint8_t { morph, skin, hinge, bend, slide };
     Kind kind = Kind::slide;
-    double range = 0.0;       ///< max - min: radians, metres; 1 for morph targets
-    double length = 0.0;      ///< metres of arc (bend)
+    double range = 0.0;  ///< max - min: radians, metres; 1 for morph targets
+    double length = 0.0; ///< metres of arc (bend)
     glm::vec3 origin{0.0F};
     glm::vec3 axis{0.0F};      ///< unit
     glm::vec3 direction{0.0F}; ///< unit; of the slide, or from the bend line to the free end
@@ -34,14 +34,14 @@ struct KeyPlace {
 
 /// An actuator at one stroke and weight: the sines and cosines, worked out once for many vertices.
 struct MotionSetup {
-    bool still = true;  ///< nothing moves
+    bool still = true; ///< nothing moves
     glm::mat3 turn{1.0F};
     glm::vec3 shift{0.0F};
-    float radius = 0.0F;     ///< of the neutral surface
-    float curvature = 0.0F;  ///< 1/metres
+    float radius = 0.0F;    ///< of the neutral surface
+    float curvature = 0.0F; ///< 1/metres
     float length = 0.0F;
     float sinEnd = 0.0F;
-    float versinEnd = 0.0F;  ///< 1 - cos
+    float versinEnd = 0.0F; ///< 1 - cos
     KeyPlace keys;
 };
 
@@ -57,10 +57,12 @@ inline void sinVersin(float angle, float& sine, float& versine) noexcept {
     // Taylor series at a quarter of the angle (at most pi/2), doubled twice.
     const float q = 0.25F * angle;
     const float q2 = q * q;
-    const float s = q * (1.0F + q2 * (-1.0F / 6.0F + q2 * (1.0F / 120.0F + q2 * (-1.0F / 5040.0F +
-                    q2 * (1.0F / 362880.0F + q2 * (-1.0F / 39916800.0F))))));
-    const float v = q2 * (0.5F + q2 * (-1.0F / 24.0F + q2 * (1.0F / 720.0F + q2 * (-1.0F / 40320.0F +
-                    q2 * (1.0F / 3628800.0F)))));
+    const float s =
+        q * (1.0F +
+             q2 * (-1.0F / 6.0F + q2 * (1.0F / 120.0F + q2 * (-1.0F / 5040.0F +
+                                                              q2 * (1.0F / 362880.0F + q2 * (-1.0F / 39916800.0F))))));
+    const float v =
+        q2 * (0.5F + q2 * (-1.0F / 24.0F + q2 * (1.0F / 720.0F + q2 * (-1.0F / 40320.0F + q2 * (1.0F / 3628800.0F)))));
     const float halfSine = 2.0F * s * (1.0F - v);
     const float halfCosine = 1.0F - 2.0F * s * s;
     sine = 2.0F * halfSine * halfCosine;
@@ -84,7 +86,8 @@ inline glm::vec2 bendStraight(const MotionSetup& setup, float u, float h) noexce
 }
 
 /// A hinge, bend or slide on one point.
-[[nodiscard]] glm::vec3 applySpace(const CompiledActuator& compiled, const MotionSetup& setup, const glm::vec3& point) noexcept;
+[[nodiscard]] glm::vec3 applySpace(const CompiledActuator& compiled, const MotionSetup& setup,
+                                   const glm::vec3& point) noexcept;
 
 inline constexpr std::size_t kMaxJoints = 256;
 
@@ -95,8 +98,8 @@ struct SkinPose {
 };
 
 /// Only the joints' share of the strokes is read.
-void poseSkin(const Skeleton& skeleton, std::span<const Actuator> actuators, std::span<const std::uint16_t> skinActuators,
-              std::span<const double> strokes, SkinPose& pose) noexcept;
+void poseSkin(const Skeleton& skeleton, std::span<const Actuator> actuators,
+              std::span<const std::uint16_t> skinActuators, std::span<const double> strokes, SkinPose& pose) noexcept;
 
 [[nodiscard]] inline glm::vec3 skinned(const SkinPose& pose, const glm::u16vec4& joints, const glm::vec4& weights,
                                        const glm::vec3& point) noexcept {

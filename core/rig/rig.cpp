@@ -116,10 +116,12 @@ TriangleMesh deformed(const Rig& rig, std::span<const double> strokes) {
 
 std::vector<double> strokesOf(const Rig& rig, const State& state, int levels) {
     if (levels < 2 || levels > kMaxLevels)
-        throw InvalidInput(std::to_string(levels) + " levels", "the level count is out of range", "use 2 to 200 levels");
+        throw InvalidInput(std::to_string(levels) + " levels", "the level count is out of range",
+                           "use 2 to 200 levels");
     if (state.size() != rig.actuatorCount())
-        throw InvalidInput("state", std::to_string(state.size()) + " levels for " + std::to_string(rig.actuatorCount()) +
-                           " actuators", "give one level an actuator");
+        throw InvalidInput(
+            "state", std::to_string(state.size()) + " levels for " + std::to_string(rig.actuatorCount()) + " actuators",
+            "give one level an actuator");
     std::vector<double> strokes;
     for (std::size_t a = 0; a < state.size(); ++a) {
         if (state[a].index < 0 || state[a].index >= levels)

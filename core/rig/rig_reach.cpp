@@ -43,15 +43,23 @@ private:
     void add(const MotionStep& step, const CompiledActuator& actuator) {
         const double amount = actuator.range * static_cast<double>(step.weight);
         switch (actuator.kind) {
-        case CompiledActuator::Kind::morph: morph(step); break;
-        case CompiledActuator::Kind::slide: push({step.actuator, amount, 0.0, false}); break;
+        case CompiledActuator::Kind::morph:
+            morph(step);
+            break;
+        case CompiledActuator::Kind::slide:
+            push({step.actuator, amount, 0.0, false});
+            break;
         case CompiledActuator::Kind::hinge: {
-            const double radius = glm::length(glm::cross(rest_ - glm::dvec3(actuator.origin), glm::dvec3(actuator.axis))) + way_;
+            const double radius =
+                glm::length(glm::cross(rest_ - glm::dvec3(actuator.origin), glm::dvec3(actuator.axis))) + way_;
             push({step.actuator, amount * radius, amount * amount * radius, false});
             break;
         }
-        case CompiledActuator::Kind::bend: bend(step.actuator, actuator, amount); break;
-        case CompiledActuator::Kind::skin: break;
+        case CompiledActuator::Kind::bend:
+            bend(step.actuator, actuator, amount);
+            break;
+        case CompiledActuator::Kind::skin:
+            break;
         }
     }
 
@@ -95,7 +103,8 @@ private:
         const Skeleton& skeleton = *core_.parts.skeleton;
         std::vector<glm::dmat4> rest;
         for (const Skeleton::Joint& joint : skeleton.joints)
-            rest.push_back(joint.parent < 0 ? glm::dmat4(joint.localRest) : rest[joint.parent] * glm::dmat4(joint.localRest));
+            rest.push_back(joint.parent < 0 ? glm::dmat4(joint.localRest)
+                                            : rest[joint.parent] * glm::dmat4(joint.localRest));
         std::map<std::uint16_t, Sensitivity> sums;
         for (int k = 0; k < 4; ++k) {
             const double weight = skeleton.vertexWeights[vertex_][k];
@@ -171,7 +180,8 @@ Box additiveBox(const RigCore& core, std::uint32_t vertex) {
     }
     if (steps.size() == 1 && std::holds_alternative<Slide>(core.parts.actuators[steps.front().actuator].deformer))
         return {low, high}; // the same two roundings as in deformation: nothing to allow for
-    const glm::vec3 slack = 1e-6F * (rounding + glm::abs(rest) * glm::vec3(glm::greaterThan(rounding, glm::vec3(0.0F))));
+    const glm::vec3 slack =
+        1e-6F * (rounding + glm::abs(rest) * glm::vec3(glm::greaterThan(rounding, glm::vec3(0.0F))));
     return {low - slack, high + slack};
 }
 
@@ -191,7 +201,8 @@ void searchGrid(const std::shared_ptr<const RigCore>& core, const std::vector<st
     const int intervals = kIntervals[actuators.size()];
     std::vector<int> at(actuators.size(), 0);
     while (true) {
-        for (std::size_t k = 0; k < actuators.size(); ++k) strokes[actuators[k]] = static_cast<double>(at[k]) / intervals;
+        for (std::size_t k = 0; k < actuators.size(); ++k)
+            strokes[actuators[k]] = static_cast<double>(at[k]) / intervals;
         program.run(strokes, positions);
         for (std::size_t v = 0; v < positions.size(); ++v) boxes[group.vertices[v]].include(positions[v]);
         std::size_t digit = 0;

@@ -62,7 +62,8 @@ struct DeformerCheck {
     }
     void operator()(const MorphTarget& morph) const {
         require(!morph.keys.empty() && morph.keys.size() == morph.displacements.size(), subject,
-                "the morph target has no keys or not one set of displacements a key", "give displacements for every key");
+                "the morph target has no keys or not one set of displacements a key",
+                "give displacements for every key");
         float last = 0.0F;
         for (const float key : morph.keys) {
             require(key > last && key <= 1.0F, subject, "the keys are not ascending within 0 and 1", "sort the keys");
@@ -80,8 +81,10 @@ struct DeformerCheck {
         require(joint.joint >= 0 && static_cast<std::size_t>(joint.joint) < parts.skeleton->joints.size(), subject,
                 "the joint does not exist", "name a joint of the skin");
         requireAxis(joint.axis, subject, "the axis has no direction");
-        if (joint.motion == SkinJoint::Motion::rotate) requireTurn(joint.min, joint.max, subject);
-        else requireRange(joint.min, joint.max, subject);
+        if (joint.motion == SkinJoint::Motion::rotate)
+            requireTurn(joint.min, joint.max, subject);
+        else
+            requireRange(joint.min, joint.max, subject);
     }
 };
 

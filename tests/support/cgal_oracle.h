@@ -22,7 +22,7 @@ private:
 };
 
 /// Whether a closed box and a triangle share a point, by CGAL's exact predicates.
-[[nodiscard]] bool boxMeetsTriangle(const glm::dvec3& low, const glm::dvec3& high, const glm::dvec3& a, const glm::dvec3& b,
-                                    const glm::dvec3& c);
+[[nodiscard]] bool boxMeetsTriangle(const glm::dvec3& low, const glm::dvec3& high, const glm::dvec3& a,
+                                    const glm::dvec3& b, const glm::dvec3& c);
 
 } // namespace lumorph::test

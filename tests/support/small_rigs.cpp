@@ -12,7 +12,8 @@ namespace {
 class Builder {
 public:
     std::uint32_t vertex(const glm::vec3& p) {
-        const auto [it, isNew] = known_.try_emplace({p.x, p.y, p.z}, static_cast<std::uint32_t>(mesh_.positions.size()));
+        const auto [it, isNew] =
+            known_.try_emplace({p.x, p.y, p.z}, static_cast<std::uint32_t>(mesh_.positions.size()));
         if (isNew) mesh_.positions.push_back(p);
         return it->second;
     }
@@ -61,11 +62,11 @@ TriangleMesh boxMesh(const glm::vec3& min, const glm::vec3& max, int cells) {
 Rig cushionRig() {
     RigParts parts;
     parts.name = "cushion";
-    parts.restMesh = boxMesh({0.0F, 0.0F, 0.0F}, {0.101F, 0.0203F, 0.0807F}, 8);
+    parts.restMesh = boxMesh({0.0F, 0.0F, 0.0F}, {0.1013F, 0.0207F, 0.0811F}, 8);
     parts.pathInside = true;
     const glm::vec2 centres[] = {{0.02F, 0.02F}, {0.08F, 0.03F}, {0.05F, 0.07F}};
     for (int k = 0; k < 3; ++k) {
-        Actuator actuator = slide("lift " + std::to_string(k), 0.02F + 0.005F * static_cast<float>(k));
+        Actuator actuator = slide("lift " + std::to_string(k), 0.0209F + 0.0053F * static_cast<float>(k));
         for (std::size_t v = 0; v < parts.restMesh.positions.size(); ++v) {
             const glm::vec3& p = parts.restMesh.positions[v];
             if (p.y <= 0.0F) continue;
@@ -104,7 +105,8 @@ Rig armRig() {
         // Turning about -z lowers; about +z the free end of the beam rises.
         actuator.deformer = Hinge{{xs[k], 0.0F, 0.0F}, {0.0F, 0.0F, 1.0F}, Angle{}, Angle::degrees(35.0)};
         for (std::size_t v = 0; v < parts.restMesh.positions.size(); ++v)
-            if (parts.restMesh.positions[v].x > xs[k] + 1e-4F || (k == 0)) actuator.influences.push_back(influence(v, 1.0F));
+            if (parts.restMesh.positions[v].x > xs[k] + 1e-4F || (k == 0))
+                actuator.influences.push_back(influence(v, 1.0F));
         parts.actuators.push_back(std::move(actuator));
     }
     return Rig(std::move(parts));
@@ -121,7 +123,8 @@ Rig lifterRig() {
         Actuator actuator = slide("box " + std::to_string(k), 0.025F + 0.006F * static_cast<float>(k));
         const TriangleMesh box = boxMesh(low[k], high[k]);
         for (std::size_t v = 0; v < box.positions.size(); ++v)
-            if (box.positions[v].y > 0.01F) actuator.influences.push_back(influence(parts.restMesh.positions.size() + v, 1.0F));
+            if (box.positions[v].y > 0.01F)
+                actuator.influences.push_back(influence(parts.restMesh.positions.size() + v, 1.0F));
         append(parts.restMesh, box);
         parts.actuators.push_back(std::move(actuator));
     }

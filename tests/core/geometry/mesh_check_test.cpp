@@ -1,6 +1,5 @@
 #include "core/geometry/mesh_check.h"
 
-#include <chrono>
 #include <filesystem>
 #include <limits>
 

@@ -62,7 +62,8 @@ protected:
     static int key(const State& s) { return s[0].index + kLevels * (s[1].index + kLevels * s[2].index); }
 
     /// Mean over the given states, actuator at a level, coverage OR-ed over lower levels first (R8, R10).
-    [[nodiscard]] double expectation(const std::vector<State>& states, std::size_t actuator, int level, std::size_t voxel) const {
+    [[nodiscard]] double expectation(const std::vector<State>& states, std::size_t actuator, int level,
+                                     std::size_t voxel) const {
         std::size_t count = 0;
         for (State state : states) {
             bool covered = false;
@@ -113,13 +114,16 @@ TEST_P(BuilderOracle, FieldEqualsTheExpectationOverAllStates) {
             const std::size_t index = voxel.column * height + static_cast<std::size_t>(voxel.y);
             listed[index] = true;
             for (int level = 0; level < kLevels; ++level)
-                ASSERT_DOUBLE_EQ(voxel.expectation[static_cast<std::size_t>(level)], expectation(states, actuator, level, index));
+                ASSERT_DOUBLE_EQ(voxel.expectation[static_cast<std::size_t>(level)],
+                                 expectation(states, actuator, level, index));
             coupled += voxel.expectation.front() > 0.0;
         }
         // What the field does not list must indeed be the same at every level.
         for (std::size_t index = 0; index < listed.size(); ++index)
-            if (!listed[index])
-                ASSERT_DOUBLE_EQ(expectation(states, actuator, 0, index), expectation(states, actuator, kLevels - 1, index));
+            if (!listed[index]) {
+                ASSERT_DOUBLE_EQ(expectation(states, actuator, 0, index),
+                                 expectation(states, actuator, kLevels - 1, index));
+            }
     }
     EXPECT_GT(coupled, 100U) << "the rig does not couple its actuators, so this test would prove little";
 }
@@ -134,7 +138,8 @@ TEST_P(BuilderOracle, SampledFieldIsWithinThreeSigma) {
     for (std::size_t actuator = 0; actuator < 3; ++actuator)
         for (const SampledField::Voxel& voxel : sampled.actuators[actuator])
             for (int level = 0; level < kLevels; ++level) {
-                const double p = expectation(all, actuator, level, voxel.column * height + static_cast<std::size_t>(voxel.y));
+                const double p =
+                    expectation(all, actuator, level, voxel.column * height + static_cast<std::size_t>(voxel.y));
                 const double sigma = std::sqrt(p * (1.0 - p) / kSamples);
                 ASSERT_NEAR(voxel.expectation[static_cast<std::size_t>(level)], p, 3.0 * sigma + 1e-12);
                 ++compared;
@@ -161,7 +166,8 @@ TEST_P(BuilderOracle, StoredRampsAndBackgroundFitTheExpectation) {
             for (int level = 0; level < kLevels; ++level, ++terms)
                 error += std::abs(expectationAt(ramps[voxel], level) - expectation(states, actuator, level, voxel));
             ASSERT_NEAR(ramps[voxel].base / 255.0, expectation(states, actuator, 0, voxel), 0.5 / 255.0 + 1e-9);
-            ASSERT_NEAR(ramps[voxel].top / 255.0, expectation(states, actuator, kLevels - 1, voxel), 0.5 / 255.0 + 1e-9);
+            ASSERT_NEAR(ramps[voxel].top / 255.0, expectation(states, actuator, kLevels - 1, voxel),
+                        0.5 / 255.0 + 1e-9);
         }
     }
     EXPECT_NEAR(error / static_cast<double>(terms), field.report.rampErrorMean, 1e-9);

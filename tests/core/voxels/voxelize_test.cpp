@@ -23,7 +23,8 @@ TriangleMesh bumpyBall(int rings, float radius, const glm::vec3& centre) {
         const double polar = std::numbers::pi * ring / rings;
         const double around = 2.0 * std::numbers::pi * segment / segments;
         const double r = static_cast<double>(radius) * (1.0 + 0.2 * std::sin(5.0 * around) * std::sin(4.0 * polar));
-        return centre + glm::vec3(static_cast<float>(r * std::sin(polar) * std::cos(around)), static_cast<float>(r * std::cos(polar)),
+        return centre + glm::vec3(static_cast<float>(r * std::sin(polar) * std::cos(around)),
+                                  static_cast<float>(r * std::cos(polar)),
                                   static_cast<float>(r * std::sin(polar) * std::sin(around)));
     };
     mesh.positions.push_back(point(0, 0));
@@ -31,17 +32,22 @@ TriangleMesh bumpyBall(int rings, float radius, const glm::vec3& centre) {
         for (int s = 0; s < segments; ++s) mesh.positions.push_back(point(ring, s));
     mesh.positions.push_back(point(rings, 0));
     const auto index = [&](int ring, int s) {
-        return static_cast<std::uint32_t>(ring == 0 ? 0 : ring == rings ? 1 + (rings - 1) * segments : 1 + (ring - 1) * segments + s % segments);
+        return static_cast<std::uint32_t>(ring == 0       ? 0
+                                          : ring == rings ? 1 + (rings - 1) * segments
+                                                          : 1 + (ring - 1) * segments + s % segments);
     };
     for (int ring = 0; ring < rings; ++ring)
         for (int s = 0; s < segments; ++s) {
             if (ring > 0) mesh.triangles.emplace_back(index(ring, s), index(ring, s + 1), index(ring + 1, s));
-            if (ring < rings - 1) mesh.triangles.emplace_back(index(ring, s + 1), index(ring + 1, s + 1), index(ring + 1, s));
+            if (ring < rings - 1)
+                mesh.triangles.emplace_back(index(ring, s + 1), index(ring + 1, s + 1), index(ring + 1, s));
         }
     return mesh;
 }
 
-VoxelFrame frameAround(const TriangleMesh& mesh, int resolution) { return frameOf(boundingBox(mesh.positions), resolution); }
+VoxelFrame frameAround(const TriangleMesh& mesh, int resolution) {
+    return frameOf(boundingBox(mesh.positions), resolution);
+}
 
 std::size_t differences(const VoxelFrame& frame, const BitColumns& bits, const TriangleMesh& mesh) {
     const test::InsideOracle inside(mesh);
@@ -79,7 +85,8 @@ TEST(SolidVoxelizer, InwardFacingCavitiesStayEmpty) {
         for (int y = 0; y < 50; ++y)
             for (int x = 0; x < 50; ++x) {
                 const glm::dvec3 p = frame.centre(x, y, z);
-                const bool hollow = p.x > 0.0201 && p.x < 0.0502 && p.y > 0.0203 && p.y < 0.0604 && p.z > 0.0205 && p.z < 0.0706;
+                const bool hollow =
+                    p.x > 0.0201 && p.x < 0.0502 && p.y > 0.0203 && p.y < 0.0604 && p.z > 0.0205 && p.z < 0.0706;
                 expected += !hollow;
             }
     EXPECT_EQ(voxelizeSolid(frame, mesh).count(), expected);
@@ -99,7 +106,8 @@ TEST(SolidVoxelizer, FacesOnColumnCentresNeverLeak) {
 
 TEST(SolidVoxelizer, AMeshThatReachesBeyondTheFrameIsCutAtIt) {
     const VoxelFrame frame{{0, 0, 0}, 0.01, {10, 10, 10}};
-    const BitColumns bits = voxelizeSolid(frame, test::boxMesh({-5000.0F, -5000.0F, 0.0449F}, {5000.0F, 0.0551F, 5000.0F}));
+    const BitColumns bits =
+        voxelizeSolid(frame, test::boxMesh({-5000.0F, -5000.0F, 0.0449F}, {5000.0F, 0.0551F, 5000.0F}));
     EXPECT_EQ(bits.count(), 10U * 6U * 6U); // y up to 5.51 voxels: centres 0.5..5.5 minus rounding
 }
 
@@ -196,10 +204,12 @@ std::vector<std::byte> bytesOfText(const std::string& text) {
 }
 
 TEST(Nrrd, ReadsWhatOtherProgramsWrite) {
-    const ByteGrid grid = parseNrrd(bytesOfText("NRRD0005\r\n# a comment\r\ntype: unsigned char\r\ndimension: 3\r\nspace: left-posterior-superior\r\n"
-                                                "sizes: 2 1 2\r\nspace directions: (0.5,0,0) (0,0.5,0) (0,0,0.5)\r\nkinds: domain domain domain\r\n"
-                                                "encoding: raw\r\nspace origin: (1,2,3)\r\nnote:=anything\r\n\r\nabcd"),
-                                    "slicer.nrrd");
+    const ByteGrid grid = parseNrrd(
+        bytesOfText(
+            "NRRD0005\r\n# a comment\r\ntype: unsigned char\r\ndimension: 3\r\nspace: left-posterior-superior\r\n"
+            "sizes: 2 1 2\r\nspace directions: (0.5,0,0) (0,0.5,0) (0,0,0.5)\r\nkinds: domain domain domain\r\n"
+            "encoding: raw\r\nspace origin: (1,2,3)\r\nnote:=anything\r\n\r\nabcd"),
+        "slicer.nrrd");
     EXPECT_EQ(grid.values, (std::vector<std::uint8_t>{'a', 'b', 'c', 'd'}));
     EXPECT_DOUBLE_EQ(grid.frame.voxelSize, 0.5);
     EXPECT_FLOAT_EQ(grid.frame.origin.x, 0.75F);
@@ -208,14 +218,25 @@ TEST(Nrrd, ReadsWhatOtherProgramsWrite) {
 
 TEST(Nrrd, BrokenFilesAreRefusedByNameWithARemedy) {
     const std::string head = "NRRD0004\ntype: uint8\ndimension: 3\nencoding: raw\n";
-    const std::string files[] = {
-        "", "NRRD", "garbage", "NRRD0004\n", head + "sizes: 2 2 2\n", head + "sizes: 2 2 2\n\n1234567",
-        head + "sizes: 2 2 2\n\n123456789", head + "sizes: 2 2\n\n1234", head + "sizes: 2 x 2\n\n12345678",
-        head + "sizes: -1 -1 8\n\n12345678", head + "sizes: 99999999 99999999 99999999\n\n1", head + "sizes: nan 1 1\n\n1",
-        head + "sizes: 1 1 1\nspacings: 1 2 3\n\n1", head + "sizes: 1 1 1\nspace directions: (0,1,0) (1,0,0) (0,0,1)\n\n1",
-        head + "sizes: 1 1 1\nspacings: -1 -1 -1\n\n1", head + "sizes: 1 1 1\ndata file: /etc/passwd\n\n1",
-        "NRRD0004\ntype: float\ndimension: 3\nencoding: raw\nsizes: 1 1 1\n\n1234",
-        "NRRD0004\ntype: uint8\ndimension: 3\nencoding: gzip\nsizes: 1 1 1\n\n1", head + "sizes: 1 1 1\nspace origin: (1,inf,0)\n\n1"};
+    const std::string files[] = {"",
+                                 "NRRD",
+                                 "garbage",
+                                 "NRRD0004\n",
+                                 head + "sizes: 2 2 2\n",
+                                 head + "sizes: 2 2 2\n\n1234567",
+                                 head + "sizes: 2 2 2\n\n123456789",
+                                 head + "sizes: 2 2\n\n1234",
+                                 head + "sizes: 2 x 2\n\n12345678",
+                                 head + "sizes: -1 -1 8\n\n12345678",
+                                 head + "sizes: 99999999 99999999 99999999\n\n1",
+                                 head + "sizes: nan 1 1\n\n1",
+                                 head + "sizes: 1 1 1\nspacings: 1 2 3\n\n1",
+                                 head + "sizes: 1 1 1\nspace directions: (0,1,0) (1,0,0) (0,0,1)\n\n1",
+                                 head + "sizes: 1 1 1\nspacings: -1 -1 -1\n\n1",
+                                 head + "sizes: 1 1 1\ndata file: /etc/passwd\n\n1",
+                                 "NRRD0004\ntype: float\ndimension: 3\nencoding: raw\nsizes: 1 1 1\n\n1234",
+                                 "NRRD0004\ntype: uint8\ndimension: 3\nencoding: gzip\nsizes: 1 1 1\n\n1",
+                                 head + "sizes: 1 1 1\nspace origin: (1,inf,0)\n\n1"};
     for (const std::string& file : files) {
         try {
             (void)parseNrrd(bytesOfText(file), "target.nrrd");

@@ -1,0 +1,107 @@
+// Writes small valid files of every format into folders of the folder given, for the fuzzers to start from.
+#include <array>
+#include <cstdint>
+#include <cstdio>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/geometry/mesh_writers.h"
+#include "core/geometry/model.h"
+#include "core/mdf/builder.h"
+#include "core/mdf/field_file.h"
+#include "core/voxels/nrrd.h"
+#include "core/voxels/solid.h"
+#include "tests/support/full_model.h"
+#include "tests/support/gltf_builder.h"
+#include "tests/support/small_rigs.h"
+
+namespace {
+
+using lumorph::support::GltfBuilder;
+
+GltfBuilder sparse() {
+    GltfBuilder builder = GltfBuilder::triangle();
+    const std::array<std::uint16_t, 2> indices = {0, 2};
+    const std::array<float, 6> values = {1, 2, 3, 4, 5, 6};
+    const int indexView = builder.view(indices.data(), sizeof(indices));
+    const int valueView = builder.view(values.data(), sizeof(values));
+    builder.document["accessors"][0]["sparse"] = {{"count", 2},
+                                                  {"indices", {{"bufferView", indexView}, {"componentType", 5123}}},
+                                                  {"values", {{"bufferView", valueView}}}};
+    builder.document["images"] = {{{"uri", "data:image/png;base64,iVBORw=="}}};
+    return builder;
+}
+
+GltfBuilder strip() {
+    GltfBuilder builder = GltfBuilder::triangle();
+    builder.primitive()["mode"] = 5;
+    builder.primitive()["attributes"]["_LEVEL"] =
+        builder.accessor(std::vector<std::uint8_t>{0, 128, 255}, "SCALAR", 5121);
+    builder.document["accessors"].back()["normalized"] = true;
+    builder.document["nodes"] = {{{"children", {1}}},
+                                 {{"mesh", 0}, {"matrix", {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 1, 2, 3, 1}}}};
+    return builder;
+}
+
+/// JSON, a zero byte and the binary data of a GLB.
+std::vector<std::byte> partsOf(const std::vector<std::byte>& glb) {
+    std::uint32_t jsonBytes = 0;
+    std::memcpy(&jsonBytes, glb.data() + 12, sizeof(jsonBytes));
+    const auto text = glb.begin() + 20;
+    std::vector<std::byte> parts(text, text + jsonBytes);
+    parts.push_back(std::byte{0});
+    parts.insert(parts.end(), text + jsonBytes + 8, glb.end());
+    return parts;
+}
+
+} // namespace
+
+int main(int argc, char** argv) {
+    if (argc != 2) {
+        std::fprintf(stderr, "usage: fuzz_seeds <folder>\n");
+        return 2;
+    }
+    const std::filesystem::path root = argv[1];
+    const auto write = [&](const char* name, std::span<const std::byte> bytes) {
+        const std::filesystem::path file = root / name;
+        std::filesystem::create_directories(file.parent_path());
+        std::ofstream(file, std::ios::binary)
+            .write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+    };
+    const auto writeText = [&](const char* name, const std::string& text) {
+        write(name, std::as_bytes(std::span(text)));
+    };
+    const auto writeBoth = [&](const std::string& name, const std::vector<std::byte>& glb) {
+        write((name + ".glb").c_str(), glb);
+        write((name + ".parts").c_str(), partsOf(glb));
+    };
+    using namespace lumorph;
+    writeBoth("gltf/full", writeGlb(support::fullModel()));
+    writeBoth("gltf/triangle", GltfBuilder::triangle().glb());
+    writeBoth("gltf/sparse", sparse().glb());
+    writeBoth("gltf/strip", strip().glb());
+
+    const TriangleMesh box = test::boxMesh({0, 0, 0}, {1, 2, 3});
+    writeText("obj/box.obj", writeObj(box));
+    writeText("obj/rich.obj",
+              "o part\nv 0 0 0 1 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvn 0 0 1\ng a\nf 1/1/1 2//1 3 -1\n");
+    write("stl/box.stl", writeStl(box));
+    writeText("stl/text.stl", "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 "
+                              "0\nendloop\nendfacet\nendsolid a\n");
+    writeText("off/box.off", "OFF\n4 2 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n3 0 1 2\n3 0 2 3\n");
+    writeText("ply/box.ply",
+              "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
+              "element face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n");
+    const VoxelFrame frame{{0, 0, 0}, 0.5, {2, 4, 6}};
+    write("nrrd/box.nrrd", writeNrrd(bytesOf(frame, voxelizeSolid(frame, box)), "box"));
+    BuildOptions options;
+    options.resolution = 3;
+    options.levels = 4;
+    options.samples = 8;
+    write("mdf/cushion.mdf", writeField(buildField(test::cushionRig(), options)));
+    return 0;
+}
