@@ -23,7 +23,7 @@ void drawMatch(const Rig& rig, const TriangleMesh& target, std::span<const doubl
                   milliseconds);
     figure.footer = footer;
     const HeadlessContext context;
-    writePng(renderFigure(figure, {1920, 760}), file);
+    writePng(renderFigure(figure, {1920, 640}), file);
 }
 
 } // namespace lumorph::cli

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <mutex>
+#include <set>
 #include <string>
 
 #include "core/base/error.h"
@@ -80,7 +81,7 @@ struct Coverage::Pieces {
 void Coverage::Pieces::findMovedColumns() {
     movedBy.resize(rig.actuatorCount());
     for (const RigBody& b : bodies) {
-        if (b.stepsPerLevel > 0) {
+        if (b.sweeps()) {
             // A sweep mixes what all actuators of the body do on the way.
             for (const std::uint16_t actuator : b.actuators) movedBy[actuator].include(b.range);
             continue;
@@ -104,7 +105,7 @@ void Coverage::Pieces::allocateKept() {
         still[b].resize(bodies[b].range.size() * wordsPerColumn);
         rasterGroup(bodies[b].groups.front(), rest, bodies[b].range, still[b], scratch);
         keptGroups[b].resize(bodies[b].groups.size());
-        if (bodies[b].stepsPerLevel > 0) {
+        if (bodies[b].sweeps()) {
             if (bodies[b].actuators.size() == 1) keptSweeps[b] = make(bodies[b].range);
             continue;
         }
@@ -183,9 +184,9 @@ std::span<const std::uint64_t> Coverage::Pieces::sweepAtLevel(std::size_t b, int
     std::call_once(kept.ready[static_cast<std::size_t>(level)], [&] {
         std::copy(before.begin(), before.end(), words.begin());
         std::vector<double> strokes(rig.actuatorCount(), 0.0);
-        for (int step = 1; step <= swept.stepsPerLevel; ++step) {
-            strokes[swept.actuators.front()] =
-                (level - 1 + static_cast<double>(step) / swept.stepsPerLevel) / (levels - 1);
+        const int steps = swept.stepsPerLevel(levels);
+        for (int step = 1; step <= steps; ++step) {
+            strokes[swept.actuators.front()] = (level - 1 + static_cast<double>(step) / steps) / (levels - 1);
             parityOfBodyAt(b, strokes, swept.range, scratch);
             for (std::size_t i = 0; i < size; ++i) words[i] |= scratch.parity[i];
         }
@@ -241,10 +242,15 @@ Coverage::Window Coverage::Pieces::windowOver(const ColumnRange& range) const {
 }
 
 int Coverage::Pieces::stepsOfBody(const RigBody& b, std::span<const double> strokes) const noexcept {
-    double longest = 0.0;
-    for (const std::uint16_t a : b.actuators) longest = std::max(longest, strokes[a]);
     // The slack keeps whole levels at whole multiples of the steps between two levels.
-    return static_cast<int>(std::ceil(b.stepsPerLevel * longest * (levels - 1) - 1e-6));
+    constexpr double kSlack = 1e-6;
+    if (!b.sweeps()) return 1;
+    if (b.actuators.size() == 1)
+        return static_cast<int>(
+            std::ceil(b.stepsPerLevel(levels) * strokes[b.actuators.front()] * (levels - 1) - kSlack));
+    double steps = 0.0;
+    for (std::size_t i = 0; i < b.actuators.size(); ++i) steps += b.fullStrokeSteps[i] * strokes[b.actuators[i]];
+    return static_cast<int>(std::ceil(steps - kSlack));
 }
 
 void Coverage::Pieces::sweepOfBody(std::size_t b, std::span<const double> strokes, const ColumnRange& range,
@@ -274,7 +280,7 @@ Coverage::Coverage(Rig rig, const VoxelFrame& frame, int levels) {
     const int height = frame.dimensions.y;
     pieces_->wordsPerColumn = static_cast<std::size_t>((height + 63) / 64);
     pieces_->lastWordMask = height % 64 == 0 ? ~std::uint64_t{0} : (std::uint64_t{1} << (height % 64)) - 1;
-    pieces_->bodies = bodiesOf(pieces_->rig, frame, levels);
+    pieces_->bodies = bodiesOf(pieces_->rig, frame);
     pieces_->findMovedColumns();
     pieces_->allocateKept();
     pieces_->findBody();
@@ -309,7 +315,7 @@ void Coverage::covered(std::span<const Level> state, const Window& window, std::
     };
     for (const Window::Part& part : window.parts) {
         const RigBody& of = pieces_->bodies[part.body];
-        if (of.stepsPerLevel == 0) {
+        if (!of.sweeps()) {
             pieces_->parityOfBody(part, state, scratch);
             unite(part.range, scratch.parity);
         } else if (of.actuators.size() == 1) {
@@ -332,7 +338,7 @@ void Coverage::coveredAt(std::span<const double> strokes, BitColumns& out, Cover
     for (std::size_t b = 0; b < pieces_->bodies.size(); ++b) {
         const RigBody& of = pieces_->bodies[b];
         if (of.actuators.empty()) continue;
-        if (of.stepsPerLevel > 0) {
+        if (of.sweeps()) {
             pieces_->sweepOfBody(b, strokes, all, out.words(), scratch);
             continue;
         }
@@ -340,6 +346,19 @@ void Coverage::coveredAt(std::span<const double> strokes, BitColumns& out, Cover
         for (std::size_t i = 0; i < out.words().size(); ++i) out.words()[i] |= scratch.parity[i];
     }
     pieces_->removeBodyAndTail(all, out.words());
+}
+
+std::vector<std::pair<std::size_t, std::size_t>> Coverage::coupledPairs() const {
+    std::set<std::pair<std::size_t, std::size_t>> pairs;
+    const auto add = [&](const std::vector<std::uint16_t>& actuators) {
+        for (std::size_t i = 0; i < actuators.size(); ++i)
+            for (std::size_t j = i + 1; j < actuators.size(); ++j) pairs.emplace(actuators[i], actuators[j]);
+    };
+    for (const RigBody& body : pieces_->bodies) {
+        if (body.sweeps()) add(body.actuators);
+        for (const RigGroup& group : body.groups) add(group.actuators);
+    }
+    return {pairs.begin(), pairs.end()};
 }
 
 int Coverage::pathSteps(std::span<const double> strokes) const noexcept {

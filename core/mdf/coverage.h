@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <memory>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "core/base/units.h"
@@ -69,6 +70,8 @@ public:
 
     /// The columns whose coverage this actuator can change, at least.
     [[nodiscard]] const ColumnRange& columnsMovedBy(std::size_t actuator) const noexcept;
+    /// Pairs of actuators that move the same triangles or sweep the same body, the lower index first.
+    [[nodiscard]] std::vector<std::pair<std::size_t, std::size_t>> coupledPairs() const;
     /// In how many equal steps the path from rest to `strokes` is sampled; 1 when the solid holds its path.
     [[nodiscard]] int pathSteps(std::span<const double> strokes) const noexcept;
     /// Memory held in kept pieces, bytes.

@@ -24,6 +24,11 @@ public:
     explicit Search(const Coverage& coverage) : coverage_(coverage) {
         for (std::size_t i = 0; i < coverage.rig().actuatorCount(); ++i)
             windows_.push_back(coverage.window(coverage.columnsMovedBy(i)));
+        for (const auto& [i, j] : coverage.coupledPairs()) {
+            ColumnRange range = coverage.columnsMovedBy(i);
+            range.include(coverage.columnsMovedBy(j));
+            pairs_.push_back({i, j, coverage.window(range)});
+        }
     }
 
     void begin(const BitColumns& target, const State& state) {
@@ -50,6 +55,23 @@ public:
             while (!outOfTime() && (tryLevel(i, state_[i].index + step) || tryLevel(i, state_[i].index - step)))
                 moved = true;
         return moved;
+    }
+
+    /// Tries moving coupled actuators together: where one must give way for the other to gain, no
+    /// single move helps. True when anything moved.
+    bool moveInPairs() {
+        constexpr int kSteps[] = {1, -1, 2, -2, 4, -4};
+        for (const Pair& pair : pairs_)
+            for (const int a : kSteps)
+                for (const int b : kSteps) {
+                    if (outOfTime()) return false;
+                    State next = state_;
+                    next[pair.first].index += a;
+                    next[pair.second].index += b;
+                    if (inRange(next[pair.first]) && inRange(next[pair.second]) && tryState(next, pair.window))
+                        return true;
+                }
+        return false;
     }
 
     /// Tries every level of every actuator; true when anything moved.
@@ -92,14 +114,21 @@ private:
             row(static_cast<std::size_t>(z - range.z0) * count, current_.columnIndex(range.x0, z) * words, count);
     }
 
+    [[nodiscard]] bool inRange(Level level) const { return level.index >= 0 && level.index < coverage_.levels(); }
+
     /// Goes to the level if that raises the IoU.
     bool tryLevel(std::size_t actuator, int level) {
         const Level was = state_[actuator];
-        if (level < 0 || level >= coverage_.levels() || level == was.index) return false;
-        const Coverage::Window& window = windows_[actuator];
+        if (!inRange(Level{level}) || level == was.index) return false;
+        State next = state_;
+        next[actuator] = Level{level};
+        return tryState(next, windows_[actuator]);
+    }
+
+    /// Goes to a state that differs only within the window, if that raises the IoU.
+    bool tryState(const State& state, const Coverage::Window& window) {
         moved_.resize(window.range.size() * static_cast<std::size_t>(current_.wordsPerColumn()));
-        state_[actuator] = Level{level};
-        coverage_.covered(state_, window, moved_, scratch_);
+        coverage_.covered(state, window, moved_, scratch_);
         ++statesSeen_;
         Counts next = total_;
         eachRow(window.range, [&](std::size_t here, std::size_t there, std::size_t count) {
@@ -109,11 +138,9 @@ private:
             next.covered += countBits(now) - countBits(before);
             next.both += countBitsAnd(now, wanted) - countBitsAnd(before, wanted);
         });
-        if (!better(next)) {
-            state_[actuator] = was;
-            return false;
-        }
+        if (!better(next)) return false;
         total_ = next;
+        state_ = state;
         eachRow(window.range, [&](std::size_t here, std::size_t there, std::size_t count) {
             std::copy_n(&moved_[here], count, &current_.words()[there]);
         });
@@ -127,8 +154,15 @@ private:
         return next.both * eitherNow > total_.both * eitherNext;
     }
 
+    struct Pair {
+        std::size_t first;
+        std::size_t second;
+        Coverage::Window window;
+    };
+
     const Coverage& coverage_;
     std::vector<Coverage::Window> windows_;
+    std::vector<Pair> pairs_;
     CoverageScratch scratch_;
     BitColumns target_;
     BitColumns current_;
@@ -156,7 +190,7 @@ Refinement Refiner::refine(const BitColumns& target, const State& start, Microse
         for (const int step : {4, 2, 1})
             while (search_->moveBy(step)) {
             }
-    } while (!search_->outOfTime() && search_->scanAll());
+    } while (!search_->outOfTime() && (search_->scanAll() || search_->moveInPairs()));
     result.state = search_->state();
     result.after = search_->quality();
     result.statesSeen = search_->statesSeen();

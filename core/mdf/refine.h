@@ -18,8 +18,8 @@ struct Refinement {
 };
 
 /// Improves a joint state by the true coverage of the deformed rig (DESIGN: `refined`): coordinate
-/// moves of 4, 2, 1 levels while they raise the IoU, then every level of every actuator once more, so
-/// that the result is best with respect to any single actuator.
+/// moves of 4, 2, 1 levels while they raise the IoU, then every level of every actuator once more, then
+/// moves of two coupled actuators at a time. The result is best with respect to any single actuator.
 ///
 /// Only the columns that the moved actuator reaches are evaluated again. Keeps its buffers; one object
 /// for each thread. The coverage must outlive it.

@@ -147,15 +147,17 @@ std::vector<RigBody> groupTriangles(const Rig& rig, const VoxelFrame& frame) {
 
 } // namespace
 
-std::vector<RigBody> bodiesOf(const Rig& rig, const VoxelFrame& frame, int levels) {
+int RigBody::stepsPerLevel(int levels) const noexcept {
+    return std::max(1, static_cast<int>(std::ceil(fullStrokeSteps.front() / (levels - 1))));
+}
+
+std::vector<RigBody> bodiesOf(const Rig& rig, const VoxelFrame& frame) {
     std::vector<RigBody> bodies = groupTriangles(rig, frame);
     for (RigBody& b : bodies) {
         if (rig.pathInside() || b.actuators.empty()) continue;
-        double path = 0.0;
-        for (const std::uint16_t actuator : b.actuators) path += longestPath(rig, actuator);
-        // Half a voxel between samples: no voxel centre that the solid passes over is missed by a
-        // part thicker than that.
-        b.stepsPerLevel = std::max(1, static_cast<int>(std::ceil(path / (levels - 1) / (0.5 * frame.voxelSize))));
+        // A voxel's side between samples: what is thicker than that misses no centre on its way.
+        for (const std::uint16_t actuator : b.actuators)
+            b.fullStrokeSteps.push_back(longestPath(rig, actuator) / frame.voxelSize);
     }
     return bodies;
 }

@@ -23,11 +23,16 @@ struct RigBody {
     std::vector<RigGroup> groups; ///< the first is the part that stays, maybe without triangles
     std::vector<std::uint16_t> actuators;
     ColumnRange range;
-    int stepsPerLevel = 0; ///< path samples between neighbouring levels; 0: no sweep needed
+    /// For a body that does not hold its path: in how many steps the full stroke of each of its
+    /// actuators must be sampled. Empty: no sweep needed.
+    std::vector<double> fullStrokeSteps;
+
+    [[nodiscard]] bool sweeps() const noexcept { return !fullStrokeSteps.empty(); }
+    /// Path samples between neighbouring levels, for a body with one actuator.
+    [[nodiscard]] int stepsPerLevel(int levels) const noexcept;
 };
 
-/// Takes a rig apart into bodies and groups. `levels` sets how finely the path of a rig that does not
-/// hold its path must be sampled.
-[[nodiscard]] std::vector<RigBody> bodiesOf(const Rig& rig, const VoxelFrame& frame, int levels);
+/// Takes a rig apart into bodies and groups.
+[[nodiscard]] std::vector<RigBody> bodiesOf(const Rig& rig, const VoxelFrame& frame);
 
 } // namespace lumorph

@@ -37,7 +37,7 @@ struct GridScale {
 
 GridScale gridScaleOf(const Box& scene) {
     const float longest = std::max({scene.size().x, scene.size().y, scene.size().z});
-    const int power = std::clamp(static_cast<int>(std::ceil(std::log10(longest / 0.6F))) - 2, -6, 3);
+    const int power = std::clamp(static_cast<int>(std::ceil(std::log10(longest / 0.5F))) - 2, -6, 3);
     const auto named = [&](int count) -> std::string {
         if (power >= 0) return std::to_string(count * static_cast<int>(std::lround(std::pow(10, power)))) + " m";
         if (power >= -2) return std::to_string(count * (power == -1 ? 10 : 1)) + " cm";

@@ -68,7 +68,8 @@ public:
     FigureRenderer(FigureRenderer&&) noexcept;
     FigureRenderer& operator=(FigureRenderer&&) noexcept;
 
-    /// Opaque, `size` pixels, 4x anti-aliased. Throws InvalidInput for a figure without panels or
+    /// Opaque, `size` pixels, 4x anti-aliased. Leaves no framebuffer and no program bound, and depth
+    /// test, blending and culling off. Throws InvalidInput for a figure without panels or
     /// meshes, an opacity outside [0, 1] and a size that is too small or too large; DeviceError when
     /// the driver has no memory for it.
     [[nodiscard]] Image render(const Figure& figure, glm::ivec2 size);

@@ -15,7 +15,7 @@
 namespace lumorph {
 namespace {
 
-constexpr int kSkyCount = 24; // as in studio_light.glsl
+constexpr int kSkyCount = 16; // as in studio_light.glsl
 constexpr int kKeyUnit = 0;
 constexpr int kSkyUnit = 1;
 constexpr float kKeySoftness = 0.011F; // radius of the shadow's edge, shares of the shadow map
@@ -82,7 +82,7 @@ glm::vec3 keyLightDirection() { return glm::normalize(glm::vec3(-0.55F, 1.0F, 0.
 
 struct StudioPass::Data {
     ShadowMaps key{768, 1};
-    ShadowMaps sky{128, kSkyCount};
+    ShadowMaps sky{112, kSkyCount};
     Program backdrop{shaderFiles({"full_frame.vert"}, {"version.glsl", "backdrop.glsl", "backdrop.frag"})};
     Program ground{shaderFiles({"ground.vert"}, {"version.glsl", "backdrop.glsl", "studio_light.glsl", "ground.frag"})};
     Program surface{

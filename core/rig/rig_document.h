@@ -26,7 +26,8 @@ struct JointTable {
 
 /// Joints that an animation turns, as actuators over the range it uses; the table is set to the
 /// lower end of every range.
-[[nodiscard]] std::vector<ActuatorEntry> jointsOfAnimations(const Model& model, const std::string& file, JointTable& table);
+[[nodiscard]] std::vector<ActuatorEntry> jointsOfAnimations(const Model& model, const std::string& file,
+                                                            JointTable& table);
 
 /// Gathers the model's meshes into one, in device coordinates, with the skin and the influences of
 /// the actuators, whose entries it completes. Throws DataError.

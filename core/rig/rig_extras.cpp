@@ -45,8 +45,7 @@ public:
             place_.fail(std::string("\"") + key + "\" is not a whole number", "give a whole number");
         return static_cast<int>(value);
     }
-    template <std::size_t N>
-    [[nodiscard]] std::array<double, N> numbers(const char* key, const char* remedy) const {
+    template <std::size_t N> [[nodiscard]] std::array<double, N> numbers(const char* key, const char* remedy) const {
         if (!has(key)) place_.fail(std::string("\"") + key + "\" is missing", remedy);
         const json& list = object_[key];
         if (!list.is_array() || list.size() != N)
@@ -97,16 +96,18 @@ double readDeformer(const std::string& kind, const Members& members, const glm::
     const glm::vec3 origin(world[3]);
     if (kind == "hinge") {
         const auto range = members.range(kDegrees);
-        entry.actuator.deformer = Hinge{origin, turned(world, members.direction("axis")), Angle::degrees(range[0]),
-                                        Angle::degrees(range[1])};
+        entry.actuator.deformer =
+            Hinge{origin, turned(world, members.direction("axis")), Angle::degrees(range[0]), Angle::degrees(range[1])};
         return range[1] - range[0];
     }
     if (kind == "bend") {
         const auto range = members.range(kDegrees);
-        entry.actuator.deformer =
-            Bend{origin, turned(world, members.direction("axis")), turned(world, members.direction("direction")),
-                 members.number("length", "give the length of the arc in metres"), Angle::degrees(range[0]),
-                 Angle::degrees(range[1])};
+        entry.actuator.deformer = Bend{origin,
+                                       turned(world, members.direction("axis")),
+                                       turned(world, members.direction("direction")),
+                                       members.number("length", "give the length of the arc in metres"),
+                                       Angle::degrees(range[0]),
+                                       Angle::degrees(range[1])};
         return range[1] - range[0];
     }
     if (kind == "slide") {
@@ -115,16 +116,16 @@ double readDeformer(const std::string& kind, const Members& members, const glm::
         return range[1] - range[0];
     }
     if (kind == "joint") {
-        if (joint < 0) entry.place.fail("it is not a joint of the model's skin", "put the entry on a joint, or use a hinge");
+        if (joint < 0)
+            entry.place.fail("it is not a joint of the model's skin", "put the entry on a joint, or use a hinge");
         const std::string motion = members.has("motion") ? members.text("motion", "use rotate or translate") : "rotate";
         if (motion != "rotate" && motion != "translate")
             entry.place.fail("the motion \"" + motion + "\" is not known", "use rotate or translate");
         const bool turns = motion == "rotate";
         const auto range = members.range(turns ? kDegrees : kMetres);
         const auto inside = [&](double value) { return turns ? Angle::degrees(value).inRadians() : value; };
-        entry.actuator.deformer =
-            SkinJoint{joint, turns ? SkinJoint::Motion::rotate : SkinJoint::Motion::translate, members.direction("axis"),
-                      inside(range[0]), inside(range[1])};
+        entry.actuator.deformer = SkinJoint{joint, turns ? SkinJoint::Motion::rotate : SkinJoint::Motion::translate,
+                                            members.direction("axis"), inside(range[0]), inside(range[1])};
         return range[1] - range[0];
     }
     if (kind != "morph")
@@ -135,7 +136,8 @@ double readDeformer(const std::string& kind, const Members& members, const glm::
         const json& targets = members.raw("targets");
         const json keys = members.has("keys") ? members.raw("keys") : json();
         if (!targets.is_array() || !keys.is_array() || targets.size() != keys.size() || targets.empty())
-            entry.place.fail("\"targets\" and \"keys\" are not two lists of the same length", "give each target its stroke");
+            entry.place.fail("\"targets\" and \"keys\" are not two lists of the same length",
+                             "give each target its stroke");
         morph.keys.clear();
         for (std::size_t k = 0; k < targets.size(); ++k) {
             if (!targets[k].is_string() || !keys[k].is_number())
@@ -214,8 +216,10 @@ struct DeformerWriter {
 
 } // namespace
 
-ActuatorEntry readActuatorEntry(const json& extras, const EntryPlace& place, const glm::mat4& worldFromNode, int joint) {
-    if (!extras.is_object()) place.fail("\"lumorph\" is not an object", "write it as {\"actuator\": ..., \"deformer\": ...}");
+ActuatorEntry readActuatorEntry(const json& extras, const EntryPlace& place, const glm::mat4& worldFromNode,
+                                int joint) {
+    if (!extras.is_object())
+        place.fail("\"lumorph\" is not an object", "write it as {\"actuator\": ..., \"deformer\": ...}");
     const Members members(extras, place);
     ActuatorEntry entry;
     entry.place = place;
@@ -231,7 +235,8 @@ ActuatorEntry readActuatorEntry(const json& extras, const EntryPlace& place, con
         entry.place.fail("\"levels\" is out of range", "use 2 to 200 levels");
     actuator.maxVelocity = named.number("maxVelocity", range) / range;
     if (!(actuator.maxVelocity > 0.0))
-        entry.place.fail("\"maxVelocity\" is not above zero", "give the speed of the servo, as much as the range a second");
+        entry.place.fail("\"maxVelocity\" is not above zero",
+                         "give the speed of the servo, as much as the range a second");
     actuator.dampingRatio = named.number("damping", 1.0);
     actuator.drive.channel = named.integer("channel", -1);
     if (named.has("pulse")) {
@@ -243,7 +248,8 @@ ActuatorEntry readActuatorEntry(const json& extras, const EntryPlace& place, con
 }
 
 json actuatorExtras(const Actuator& actuator, std::size_t order) {
-    json out{{"actuator", actuator.name}, {"order", order}, {"levels", actuator.levels}, {"damping", actuator.dampingRatio}};
+    json out{
+        {"actuator", actuator.name}, {"order", order}, {"levels", actuator.levels}, {"damping", actuator.dampingRatio}};
     const double range = std::visit(DeformerWriter{out}, actuator.deformer);
     out["maxVelocity"] = tidyVelocity(actuator.maxVelocity, range);
     out["channel"] = actuator.drive.channel;

@@ -130,7 +130,8 @@ Rig rigOf(Model model, const std::string& file) {
     if (entries.size() > kMaxActuators)
         throw DataError(file, "there are more than 65,000 actuators", "join actuators that move together");
     RigParts parts = gatherParts(model, file, std::move(entries), table);
-    if (parts.restMesh.triangles.empty()) throw DataError(file, "the scene has no triangles", "give the device a closed mesh");
+    if (parts.restMesh.triangles.empty())
+        throw DataError(file, "the scene has no triangles", "give the device a closed mesh");
     return checkedRig(std::move(parts), file);
 }
 

@@ -59,11 +59,13 @@ StateFiles listStates(const std::filesystem::path& folder) {
     return files;
 }
 
-Actuator readStates(const std::string& name, const std::map<int, std::filesystem::path>& states, const TriangleMesh& rest) {
+Actuator readStates(const std::string& name, const std::map<int, std::filesystem::path>& states,
+                    const TriangleMesh& rest) {
     std::vector<std::vector<glm::vec3>> moved;
     for (const auto& [key, file] : states) {
         if (key != static_cast<int>(moved.size()) + 1)
-            throw DataError(file.string(), "state " + std::to_string(moved.size() + 1) + " of \"" + name + "\" is missing",
+            throw DataError(file.string(),
+                            "state " + std::to_string(moved.size() + 1) + " of \"" + name + "\" is missing",
                             "number the states 1, 2, ... without gaps");
         const TriangleMesh mesh = readMesh(file);
         if (mesh.positions.size() != rest.positions.size() || mesh.triangles != rest.triangles)
@@ -95,7 +97,8 @@ RigParts readRigFolder(const std::filesystem::path& folder) {
     RigParts parts;
     parts.name = folder.filename().empty() ? folder.parent_path().filename().string() : folder.filename().string();
     parts.restMesh = readMesh(files.rest);
-    for (const auto& [name, states] : files.actuators) parts.actuators.push_back(readStates(name, states, parts.restMesh));
+    for (const auto& [name, states] : files.actuators)
+        parts.actuators.push_back(readStates(name, states, parts.restMesh));
     return parts;
 }
 

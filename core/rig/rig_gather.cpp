@@ -20,11 +20,13 @@ struct Vertex {
     glm::u16vec4 joints{0};
     glm::vec4 weights{0.0F};
     std::vector<std::pair<std::uint32_t, float>> influences; ///< actuator, weight
-    std::vector<glm::vec3> displacements; ///< morph actuators' keys, one after the other
+    std::vector<glm::vec3> displacements;                    ///< morph actuators' keys, one after the other
 
     [[nodiscard]] std::string key(std::size_t node) const {
         std::string bytes;
-        const auto add = [&](const void* from, std::size_t size) { bytes.append(static_cast<const char*>(from), size); };
+        const auto add = [&](const void* from, std::size_t size) {
+            bytes.append(static_cast<const char*>(from), size);
+        };
         const glm::vec3 place = position + glm::vec3(0.0F); // -0 and 0 are the same place
         add(&node, sizeof node);
         add(&place, sizeof place);
@@ -138,12 +140,14 @@ private:
             const int width = actuators->second.components;
             if (weights == primitive.custom.end() || weights->second.components != width)
                 place.fail("\"_ACTUATORS_" + std::to_string(set) + "\" has no \"_INFLUENCES_" + std::to_string(set) +
-                               "\" of its shape", "give every listed actuator its weight");
+                               "\" of its shape",
+                           "give every listed actuator its weight");
             for (int k = 0; k < width; ++k) {
                 const float actuator = actuators->second.values[v * width + k];
                 const float weight = weights->second.values[v * width + k];
                 if (actuator == -1.0F) continue;
-                if (!(actuator >= 0.0F && actuator < static_cast<float>(entries_.size())) || actuator != std::floor(actuator))
+                if (!(actuator >= 0.0F && actuator < static_cast<float>(entries_.size())) ||
+                    actuator != std::floor(actuator))
                     place.fail("vertex " + std::to_string(v) + " names an actuator that does not exist",
                                "use 0 to " + std::to_string(entries_.size() - 1) + ", or -1 for none");
                 if (!(weight >= 0.0F && weight <= 1.0F))

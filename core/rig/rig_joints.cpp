@@ -38,7 +38,8 @@ Turning turningOf(const Model::Node& node, const std::vector<const Model::Channe
         const std::size_t skip = cubic ? 4 : 0; // a spline's key stands between its tangents
         for (std::size_t k = 0; (k + 1) * stride <= channel->values.size(); ++k) {
             const float* const v = channel->values.data() + k * stride + skip;
-            glm::dquat turn = glm::inverse(glm::dquat(node.rotation)) * glm::normalize(glm::dquat(v[3], v[0], v[1], v[2]));
+            glm::dquat turn =
+                glm::inverse(glm::dquat(node.rotation)) * glm::normalize(glm::dquat(v[3], v[0], v[1], v[2]));
             turns.push_back(turn.w < 0.0 ? -turn : turn);
         }
     }
@@ -52,7 +53,8 @@ Turning turningOf(const Model::Node& node, const std::vector<const Model::Channe
     }
     if (widest < 1e-4) return {};
     for (const glm::dquat& turn : turns) {
-        const double angle = 2.0 * std::atan2(glm::dot(glm::dvec3(turn.x, turn.y, turn.z), glm::dvec3(turning.axis)), turn.w);
+        const double angle =
+            2.0 * std::atan2(glm::dot(glm::dvec3(turn.x, turn.y, turn.z), glm::dvec3(turning.axis)), turn.w);
         turning.min = std::min(turning.min, angle);
         turning.max = std::max(turning.max, angle);
     }
@@ -75,7 +77,8 @@ JointTable tableOfJoints(const Model& model, const std::string& file) {
     bool unskinned = false;
     for (const Model::Node& node : model.nodes) {
         if (node.mesh < 0) continue;
-        if (node.skin < 0) unskinned = true;
+        if (node.skin < 0)
+            unskinned = true;
         else
             for (const int joint : model.skins[node.skin].joints) isJoint[joint] = true;
     }
@@ -109,7 +112,8 @@ std::vector<ActuatorEntry> jointsOfAnimations(const Model& model, const std::str
         std::vector<const Model::Channel*> channels;
         for (const Model::Animation& animation : model.animations)
             for (const Model::Channel& channel : animation.channels)
-                if (channel.node == static_cast<int>(n) && channel.path == Model::Path::rotation) channels.push_back(&channel);
+                if (channel.node == static_cast<int>(n) && channel.path == Model::Path::rotation)
+                    channels.push_back(&channel);
         const Turning turning = turningOf(model.nodes[n], channels);
         if (!(turning.min < turning.max)) continue;
         ActuatorEntry entry;

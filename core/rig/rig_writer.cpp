@@ -14,7 +14,8 @@ namespace {
 using nlohmann::json;
 
 /// A name of its own for the morph target of every key, so that a viewer shows each.
-std::string keyName(const Actuator& actuator, std::size_t key, std::size_t keys, const std::vector<std::string>& taken) {
+std::string keyName(const Actuator& actuator, std::size_t key, std::size_t keys,
+                    const std::vector<std::string>& taken) {
     std::string name = keys == 1 ? actuator.name : actuator.name + " " + std::to_string(key + 1);
     while (std::ranges::find(taken, name) != taken.end()) name += '\'';
     return name;
@@ -57,8 +58,10 @@ private:
 
     int addNode(Model::Node node) {
         const int index = static_cast<int>(model_.nodes.size());
-        if (node.parent < 0) model_.roots.push_back(index);
-        else model_.nodes[node.parent].children.push_back(index);
+        if (node.parent < 0)
+            model_.roots.push_back(index);
+        else
+            model_.nodes[node.parent].children.push_back(index);
         model_.nodes.push_back(std::move(node));
         return index;
     }

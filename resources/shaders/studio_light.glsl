@@ -3,7 +3,7 @@
 // 1), shadowBias (metres along the normal for key and sky), keySoftness (radius of the soft edge, map
 // units), sceneSphere (centre and radius of what casts shadows). Space: world, metres; light is linear.
 
-const int kSkyCount = 24;
+const int kSkyCount = 16;
 const int kKeyTaps = 20;
 const mat2 kGoldenTurn = mat2(-0.73736888, 0.67549029, -0.67549029, -0.73736888);
 
@@ -40,7 +40,7 @@ float keyVisibility(vec3 position, vec3 normal) {
 float skyLight(vec3 position, vec3 normal) {
     float away = distance(position, sceneSphere.xyz) / sceneSphere.w;
     float open = 0.5 + 0.5 * normal.y;
-    int count = skyOcclusionOn == 0 || away > 2.4 ? 0 : kSkyCount;
+    int count = skyOcclusionOn == 0 || away > 2.0 ? 0 : kSkyCount;
     float sum = 0.0;
     float whole = 0.0;
     for (int i = 0; i < count; ++i) {
@@ -49,5 +49,5 @@ float skyLight(vec3 position, vec3 normal) {
         sum += max(dot(normal, skyDirections[i]), 0.0) * lit;
         whole += skyDirections[i].y;
     }
-    return count == 0 ? open : mix(sum / whole, open, smoothstep(1.6, 2.4, away));
+    return count == 0 ? open : mix(sum / whole, open, smoothstep(1.4, 2.0, away));
 }

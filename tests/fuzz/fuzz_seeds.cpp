@@ -1,10 +1,13 @@
 // Writes small valid files of every format into folders of the folder given, for the fuzzers to start from.
 #include <array>
+#include <cstdint>
 #include <cstdio>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "core/geometry/mesh_writers.h"
 #include "core/geometry/model.h"
@@ -44,6 +47,17 @@ GltfBuilder strip() {
     return builder;
 }
 
+/// JSON, a zero byte and the binary data of a GLB.
+std::vector<std::byte> partsOf(const std::vector<std::byte>& glb) {
+    std::uint32_t jsonBytes = 0;
+    std::memcpy(&jsonBytes, glb.data() + 12, sizeof(jsonBytes));
+    const auto text = glb.begin() + 20;
+    std::vector<std::byte> parts(text, text + jsonBytes);
+    parts.push_back(std::byte{0});
+    parts.insert(parts.end(), text + jsonBytes + 8, glb.end());
+    return parts;
+}
+
 } // namespace
 
 int main(int argc, char** argv) {
@@ -61,11 +75,15 @@ int main(int argc, char** argv) {
     const auto writeText = [&](const char* name, const std::string& text) {
         write(name, std::as_bytes(std::span(text)));
     };
+    const auto writeBoth = [&](const std::string& name, const std::vector<std::byte>& glb) {
+        write((name + ".glb").c_str(), glb);
+        write((name + ".parts").c_str(), partsOf(glb));
+    };
     using namespace lumorph;
-    write("gltf/full.glb", writeGlb(support::fullModel()));
-    write("gltf/triangle.glb", GltfBuilder::triangle().glb());
-    write("gltf/sparse.glb", sparse().glb());
-    write("gltf/strip.glb", strip().glb());
+    writeBoth("gltf/full", writeGlb(support::fullModel()));
+    writeBoth("gltf/triangle", GltfBuilder::triangle().glb());
+    writeBoth("gltf/sparse", sparse().glb());
+    writeBoth("gltf/strip", strip().glb());
 
     const TriangleMesh box = test::boxMesh({0, 0, 0}, {1, 2, 3});
     writeText("obj/box.obj", writeObj(box));

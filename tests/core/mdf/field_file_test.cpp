@@ -1,0 +1,94 @@
+#include "core/mdf/field_file.h"
+
+#include <cstring>
+#include <random>
+
+#include <gtest/gtest.h>
+
+#include "core/base/error.h"
+#include "core/mdf/builder.h"
+#include "tests/support/small_rigs.h"
+
+namespace lumorph {
+namespace {
+
+Field smallField() {
+    BuildOptions options;
+    options.resolution = 10;
+    options.levels = 7;
+    options.samples = 30;
+    return buildField(test::cushionRig(), options);
+}
+
+// R13
+TEST(FieldFile, ComesBackAsItWas) {
+    const Field field = smallField();
+    ASSERT_GT(field.report.changedVoxels, 500U);
+    const Field read = parseField(writeField(field), "cushion.mdf");
+    EXPECT_EQ(read, field);
+}
+
+void expectRefused(const std::vector<std::byte>& file, const std::string& what) {
+    try {
+        (void)parseField(file, "bad.mdf");
+        ADD_FAILURE() << what << " was accepted";
+    } catch (const DataError& error) {
+        EXPECT_EQ(error.subject(), "bad.mdf") << what;
+        EXPECT_FALSE(error.remedy().empty()) << what;
+    }
+}
+
+TEST(FieldFile, TruncatedAnywhereItIsRefused) {
+    const std::vector<std::byte> file = writeField(smallField());
+    for (std::size_t size = 0; size < file.size(); size += 1 + size / 7)
+        expectRefused({file.begin(), file.begin() + static_cast<std::ptrdiff_t>(size)},
+                      "cut at " + std::to_string(size));
+    std::vector<std::byte> longer = file;
+    longer.push_back(std::byte{0});
+    expectRefused(longer, "a byte too many");
+}
+
+TEST(FieldFile, AnyFlippedByteIsNoticed) {
+    const std::vector<std::byte> file = writeField(smallField());
+    std::mt19937 random(8);
+    for (int round = 0; round < 400; ++round) {
+        // The four reserved bytes of headers carry nothing; every other byte counts.
+        const std::size_t at = round < 24 ? static_cast<std::size_t>(round) : random() % file.size();
+        std::vector<std::byte> changed = file;
+        changed[at] ^= std::byte{0x41};
+        try {
+            EXPECT_EQ(parseField(changed, "bad.mdf"), parseField(file, "good.mdf")) << "byte " << at;
+        } catch (const DataError&) {
+            // noticed
+        }
+    }
+}
+
+TEST(FieldFile, WrongMagicAndVersionAreNamed) {
+    std::vector<std::byte> file = writeField(smallField());
+    std::vector<std::byte> magic = file;
+    magic[0] = std::byte{'X'};
+    expectRefused(magic, "magic");
+    file[16] = std::byte{9};
+    try {
+        (void)parseField(file, "new.mdf");
+        FAIL();
+    } catch (const DataError& error) {
+        EXPECT_NE(error.why().find("version is 9"), std::string::npos);
+    }
+}
+
+/// A length that claims terabytes must not be believed.
+TEST(FieldFile, HostileLengthsDoNotTakeMemory) {
+    const std::vector<std::byte> file = writeField(smallField());
+    for (const std::size_t offset : {std::size_t{24 + 8}, std::size_t{24 + 16}}) {
+        for (const std::uint64_t value : {std::uint64_t{1} << 30, std::uint64_t{1} << 40, ~std::uint64_t{0}}) {
+            std::vector<std::byte> changed = file;
+            std::memcpy(&changed[offset], &value, sizeof value);
+            expectRefused(changed, "length " + std::to_string(value));
+        }
+    }
+}
+
+} // namespace
+} // namespace lumorph

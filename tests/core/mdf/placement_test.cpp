@@ -1,0 +1,136 @@
+#include "core/mdf/placement.h"
+
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "core/base/error.h"
+#include "core/mdf/auto_place.h"
+#include "core/mdf/builder.h"
+#include "core/mdf/clip.h"
+#include "core/mdf/refine.h"
+#include "tests/support/small_rigs.h"
+
+namespace lumorph {
+namespace {
+
+class Placing : public testing::Test {
+protected:
+    Placing()
+        : rig_(test::cushionRig()), field_(buildField(rig_, options())), coverage_(rig_, field_.frame, field_.levels),
+          voting_(field_) {}
+    static BuildOptions options() {
+        BuildOptions o;
+        o.resolution = 14;
+        o.levels = 11;
+        o.samples = 30;
+        return o;
+    }
+    Rig rig_;
+    Field field_;
+    Coverage coverage_;
+    Voting voting_;
+};
+
+TEST_F(Placing, FitIsTheLargestScaleThatStandsOnTheRestSurface) {
+    const Box frame = field_.frame.box();
+    const float room = frame.max.y - field_.restSurface;
+    struct Case {
+        glm::vec3 low, high;
+        Angle yaw;
+    };
+    for (const Case& c :
+         {Case{{-3, 5, 2}, {1, 6, 3}, {}}, Case{{0, 0, 0}, {0.001F, 0.2F, 0.001F}, {}},
+          Case{{0, 0, 0}, {4, 1, 1}, Angle::degrees(90)}, Case{{-1, -1, -1}, {1, 1, 1}, Angle::degrees(45)}}) {
+        const TriangleMesh mesh = test::boxMesh(c.low, c.high);
+        const Placement placement = fitPlacement(field_, boundingBox(mesh.positions), c.yaw);
+        const Box box = boundingBox(placed(mesh, placement).positions);
+        EXPECT_NEAR(box.min.y, field_.restSurface, 1e-6);
+        EXPECT_NEAR(box.centre().x, frame.centre().x, 1e-6);
+        EXPECT_NEAR(box.centre().z, frame.centre().z, 1e-6);
+        const glm::vec3 share = box.size() / glm::vec3(frame.size().x, room, frame.size().z);
+        EXPECT_NEAR(std::max({share.x, share.y, share.z}), 1.0, 1e-4) << "it could be larger, or sticks out";
+    }
+    EXPECT_THROW((void)fitPlacement(field_, Box{}), InvalidInput);
+}
+
+TEST_F(Placing, OpenMeshesAreMatchedWithAWarningAndNearlyTheSameVoxels) {
+    TriangleMesh mesh = test::boxMesh({0.011F, 0.021F, 0.012F}, {0.073F, 0.041F, 0.061F}, 8);
+    SolidVoxelizer voxelizer;
+    BitColumns whole;
+    const Target closed = makeTarget(mesh);
+    EXPECT_TRUE(closed.closed);
+    EXPECT_TRUE(closed.warnings.empty());
+    voxelizeTarget(field_.frame, closed, voxelizer, whole);
+    mesh.triangles.erase(mesh.triangles.begin() + 30, mesh.triangles.begin() + 34);
+    const Target open = makeTarget(mesh);
+    EXPECT_FALSE(open.closed);
+    EXPECT_FALSE(open.warnings.empty());
+    BitColumns nearly;
+    voxelizeTarget(field_.frame, open, voxelizer, nearly);
+    EXPECT_GT(intersectionOverUnion(whole, nearly), 0.97);
+}
+
+// A device shape moved away, turned and shrunk is found again.
+TEST_F(Placing, AutoPlaceFindsAMatchAtLeastAsGoodAsTheFit) {
+    const std::vector<double> strokes{1.0, 0.2, 0.5};
+    TriangleMesh mesh = deformed(rig_, strokes);
+    for (glm::vec3& p : mesh.positions) p = glm::vec3(3.0F * p.z + 1.0F, 3.0F * p.y, -3.0F * p.x);
+    const AutoPlacement found = autoPlace(field_, coverage_, voting_, makeTarget(mesh), {.minInside = 0.2});
+    EXPECT_GE(found.iou, found.iouAtFit);
+    EXPECT_GT(found.iou, 0.75);
+    // The reported figure is that of the reported placement and state.
+    SolidVoxelizer voxelizer;
+    BitColumns target;
+    voxelizeTarget(field_.frame, {placed(mesh, found.placement), true, {}}, voxelizer, target);
+    EXPECT_NEAR(Refiner(coverage_).qualityOf(target, found.state).iou(), found.iou, 1e-12);
+    EXPECT_GT(found.placementsSeen, 36);
+}
+
+TEST_F(Placing, AutoPlaceCanBeStopped) {
+    std::stop_source stop;
+    int reports = 0;
+    const Progress progress(
+        [&](double, std::string_view) {
+            if (++reports == 3) stop.request_stop();
+        },
+        stop.get_token());
+    const Target target = makeTarget(test::boxMesh({0, 0, 0}, {1, 1, 1}));
+    EXPECT_THROW((void)autoPlace(field_, coverage_, voting_, target, {}, progress), Cancelled);
+    EXPECT_EQ(reports, 3);
+}
+
+/// A box that grows from low to high within a second.
+Model growingBox() {
+    Model model = modelOf(test::boxMesh({0.01F, 0.0F, 0.01F}, {0.09F, 0.03F, 0.07F}), "box");
+    Model::Animation animation;
+    animation.name = "grow";
+    animation.channels.push_back(
+        {0, Model::Path::scale, Model::Interpolation::linear, {0.0F, 1.0F}, {1, 0.1F, 1, 1, 1, 1}});
+    model.animations.push_back(animation);
+    return model;
+}
+
+// R19: the device follows an animation under its velocity limits.
+TEST_F(Placing, AClipFollowsItsAnimationUnderTheVelocityLimits) {
+    const Model model = growingBox();
+    const auto frames =
+        matchClip(field_, coverage_, voting_, model, model.animations.front(), {.framesPerSecond = 20.0});
+    ASSERT_EQ(frames.size(), 21U);
+    for (std::size_t k = 1; k < frames.size(); ++k)
+        for (std::size_t i = 0; i < 3; ++i)
+            EXPECT_LE(std::abs(frames[k].strokes[i] - frames[k - 1].strokes[i]),
+                      rig_.actuators()[i].maxVelocity / 20.0 + 1e-9);
+    int rising = 0;
+    for (std::size_t i = 0; i < 3; ++i) rising += frames.back().strokes[i] > frames.front().strokes[i] + 0.2;
+    EXPECT_GE(rising, 2);
+    const std::string csv = clipCsv(field_, frames);
+    EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 22);
+    EXPECT_NE(csv.find("\"lift 0 level\",\"lift 0 stroke\""), std::string::npos);
+    EXPECT_THROW((void)matchClip(field_, coverage_, voting_, model, model.animations.front(), {.framesPerSecond = 0.0}),
+                 InvalidInput);
+    EXPECT_THROW((void)matchClip(field_, coverage_, voting_, model, Model::Animation{}), InvalidInput);
+}
+
+} // namespace
+} // namespace lumorph

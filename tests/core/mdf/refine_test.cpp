@@ -1,0 +1,141 @@
+#include "core/mdf/refine.h"
+
+#include <cmath>
+#include <random>
+
+#include <gtest/gtest.h>
+
+#include "core/base/error.h"
+#include "core/mdf/builder.h"
+#include "core/mdf/sampling.h"
+#include "core/mdf/voting.h"
+#include "tests/support/small_rigs.h"
+
+namespace lumorph {
+namespace {
+
+constexpr int kLevels = 9;
+
+struct RefineCase {
+    const char* name;
+    Rig (*make)();
+};
+
+class RefineOnRig : public testing::TestWithParam<RefineCase> {
+protected:
+    void SetUp() override {
+        const Rig rig = GetParam().make();
+        coverage_ = std::make_unique<Coverage>(rig, frameOf(rig.reach(), 12), kLevels);
+    }
+    BitColumns volumeOf(const State& state) {
+        BitColumns bits;
+        coverage_->covered(state, bits, scratch_);
+        return bits;
+    }
+    std::unique_ptr<Coverage> coverage_;
+    CoverageScratch scratch_;
+    SteadyClock clock_;
+};
+
+TEST_P(RefineOnRig, FindsHiddenStatesFromRest) {
+    Refiner refiner(*coverage_);
+    std::mt19937 random(11);
+    double worst = 1.0;
+    for (int i = 0; i < 20; ++i) {
+        State hidden(3);
+        for (Level& level : hidden) level.index = static_cast<int>(random() % kLevels);
+        const BitColumns target = volumeOf(hidden);
+        if (target.count() < 20) continue;
+        const Refinement refined = refiner.refine(target, State(3), Microseconds{0}, clock_);
+        EXPECT_TRUE(refined.converged);
+        EXPECT_GE(refined.after.iou(), refined.before.iou());
+        worst = std::min(worst, refined.after.iou());
+    }
+    EXPECT_GE(worst, 0.9);
+}
+
+// Every reported figure is checked against the volume itself, and the end is a local optimum.
+TEST_P(RefineOnRig, ReportsTrueQualityAndEndsWhereNoSingleActuatorHelps) {
+    Refiner refiner(*coverage_);
+    BitColumns target(coverage_->frame().dimensions);
+    const glm::ivec3 d = target.dimensions();
+    for (int z = 0; z < d.z; ++z)
+        for (int x = 0; x < d.x; ++x)
+            for (int y = 0; y < d.y * (0.6 + 0.3 * std::sin(x / 3.0 + z / 5.0)); ++y) target.set(x, y, z);
+    BitColumns wanted = target;
+    wanted &= coverage_->domain();
+    const Refinement refined = refiner.refine(target, {Level{2}, Level{7}, Level{1}}, Microseconds{0}, clock_);
+    EXPECT_NEAR(refined.before.iou(), intersectionOverUnion(volumeOf({Level{2}, Level{7}, Level{1}}), wanted), 1e-12);
+    EXPECT_NEAR(refined.after.iou(), intersectionOverUnion(volumeOf(refined.state), wanted), 1e-12);
+    EXPECT_EQ(refined.after.both + refined.after.unmatched, wanted.count());
+    double best = 0.0;
+    for (const State& state : allStates(3, kLevels))
+        best = std::max(best, intersectionOverUnion(volumeOf(state), wanted));
+    EXPECT_GE(refined.after.iou(), 0.98 * best) << "exhaustive search finds " << best;
+    for (std::size_t i = 0; i < 3; ++i)
+        for (int level = 0; level < kLevels; ++level) {
+            State other = refined.state;
+            other[i] = Level{level};
+            EXPECT_LE(intersectionOverUnion(volumeOf(other), wanted), refined.after.iou() + 1e-12);
+        }
+}
+
+INSTANTIATE_TEST_SUITE_P(SmallRigs, RefineOnRig,
+                         testing::Values(RefineCase{"cushion", &test::cushionRig}, RefineCase{"arm", &test::armRig},
+                                         RefineCase{"lifter", &test::lifterRig}),
+                         [](const auto& rig) { return rig.param.name; });
+
+/// A clock that moves on by a millisecond each time it is looked at.
+class TickingClock final : public Clock {
+public:
+    [[nodiscard]] Microseconds now() const override { return now_ += Microseconds{1000}; }
+
+private:
+    mutable Microseconds now_{0};
+};
+
+TEST(Refine, StopsWhenItsTimeIsUp) {
+    const Rig rig = test::cushionRig();
+    const Coverage coverage(rig, frameOf(rig.reach(), 12), kLevels);
+    CoverageScratch scratch;
+    BitColumns target;
+    coverage.covered(State{Level{8}, Level{8}, Level{8}}, target, scratch);
+    Refiner refiner(coverage);
+    const Refinement refined = refiner.refine(target, State(3), Microseconds{5000}, TickingClock());
+    EXPECT_FALSE(refined.converged);
+    EXPECT_LE(refined.statesSeen, 6);
+    EXPECT_GE(refined.after.iou(), refined.before.iou());
+}
+
+TEST(Refine, RefusesStatesAndTargetsThatDoNotFit) {
+    const Rig rig = test::cushionRig();
+    const Coverage coverage(rig, frameOf(rig.reach(), 12), kLevels);
+    Refiner refiner(coverage);
+    const SteadyClock clock;
+    const BitColumns target(coverage.frame().dimensions);
+    EXPECT_THROW((void)refiner.refine(target, State(2), Microseconds{0}, clock), InvalidInput);
+    EXPECT_THROW((void)refiner.refine(target, {Level{0}, Level{0}, Level{kLevels}}, Microseconds{0}, clock),
+                 InvalidInput);
+    EXPECT_THROW((void)refiner.refine(BitColumns({1, 1, 1}), State(3), Microseconds{0}, clock), InvalidInput);
+}
+
+// R6: what a flap passes on its way stays covered, though the solid itself has moved on.
+TEST(Coverage, WhatASweepPassedStaysCovered) {
+    const Rig rig = test::armRig();
+    ASSERT_FALSE(rig.pathInside());
+    const Coverage coverage(rig, frameOf(rig.reach(), 12), kLevels);
+    CoverageScratch scratch;
+    BitColumns before(coverage.frame().dimensions);
+    for (int level = 0; level < kLevels; ++level) {
+        BitColumns now;
+        coverage.covered(State{Level{level}, Level{0}, Level{0}}, now, scratch);
+        BitColumns lost = before;
+        lost -= now;
+        EXPECT_LE(lost.count(), before.count() / 200) << level;
+        before = now;
+    }
+    EXPECT_GT(before.count(), coverage.body().count()) << "a sweep covers more than the beam itself holds";
+}
+
+} // namespace
+} // namespace lumorph

@@ -1,0 +1,212 @@
+#include "core/rig/rig.h"
+
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <numeric>
+#include <random>
+
+#include <gtest/gtest.h>
+
+#include "core/base/error.h"
+#include "resources/models/generator/models.h"
+#include "tests/core/rig/point_rig.h"
+#include "tests/support/small_rigs.h"
+
+namespace lumorph {
+namespace {
+
+using test::pointParts;
+
+std::vector<double> randomStrokes(std::size_t count, std::mt19937& random) {
+    std::uniform_real_distribution<double> uniform(0.0, 1.0);
+    std::vector<double> strokes(count);
+    for (double& stroke : strokes) stroke = uniform(random);
+    return strokes;
+}
+
+/// Rigs of every kind of deformer, alone and one upon the other.
+std::vector<Rig> allKinds() {
+    const Bend bend{{0.0F, 0.01F, 0.0F}, {0.0F, 0.0F, 1.0F}, {1.0F, 0.0F, 0.0F}, 0.03, Angle(), Angle::degrees(120.0)};
+    const Hinge hinge{{0.02F, 0.0F, 0.0F}, {0.0F, 0.3F, 1.0F}, Angle(), Angle::degrees(70.0)};
+    const Slide slide{{1.0F, 0.5F, 0.0F}, 0.0, 0.02};
+    std::mt19937 random(5);
+    std::uniform_real_distribution<float> place(-0.05F, 0.08F);
+    std::vector<glm::vec3> points(300);
+    for (glm::vec3& p : points) p = {place(random), place(random), place(random)};
+    MorphTarget morph{"m", {0.3F, 0.8F}, {points, points}};
+    for (glm::vec3& d : morph.displacements[0]) d *= 0.1F;
+    for (glm::vec3& d : morph.displacements[1]) d *= -0.2F;
+    RigParts weighted = pointParts(points, {slide, hinge, bend, morph});
+    for (Actuator& actuator : weighted.actuators)
+        for (Influence& influence : actuator.influences)
+            influence.weight = static_cast<float>(random() % 5) / 4.0F;
+    return {tabletRig(),
+            pinDisplayRig(),
+            ribbonRig(),
+            hillsRig(),
+            test::cushionRig(),
+            test::armRig(),
+            test::lifterRig(),
+            Rig(pointParts(points, {bend, hinge})),
+            Rig(pointParts(points, {slide, bend})),
+            Rig(pointParts(points, {morph, hinge, bend, slide})),
+            Rig(std::move(weighted))};
+}
+
+TEST(Rig, AtRestIsItsRestMeshBitForBit) {
+    for (const Rig& rig : allKinds())
+        EXPECT_EQ(deformed(rig, std::vector<double>(rig.actuatorCount(), 0.0)).positions, rig.restMesh().positions) << rig.name();
+}
+
+TEST(Rig, ListsAndSubsetsDeformAsTheWhole) {
+    std::mt19937 random(7);
+    for (const Rig& rig : allKinds()) {
+        std::vector<std::uint32_t> list(rig.restMesh().positions.size());
+        std::iota(list.begin(), list.end(), 0U);
+        std::shuffle(list.begin(), list.end(), random);
+        list.resize(list.size() / 3);
+        list.push_back(list.front()); // a vertex may be listed twice
+        const Rig::Subset subset = rig.subset(list);
+        ASSERT_EQ(subset.size(), list.size());
+        for (int state = 0; state < 10; ++state) {
+            const auto strokes = randomStrokes(rig.actuatorCount(), random);
+            const auto whole = deformed(rig, strokes).positions;
+            std::vector<glm::vec3> listed(list.size());
+            std::vector<glm::vec3> compiled(list.size());
+            rig.deform(strokes, list, listed);
+            subset.deform(strokes, compiled);
+            for (std::size_t k = 0; k < list.size(); ++k) {
+                ASSERT_EQ(listed[k], whole[list[k]]) << rig.name();
+                ASSERT_EQ(compiled[k], whole[list[k]]) << rig.name();
+            }
+        }
+    }
+}
+
+TEST(Rig, KnowsWhichActuatorMovesWhat) {
+    std::mt19937 random(11);
+    for (const Rig& rig : allKinds()) {
+        if (rig.actuatorCount() > 10) continue;
+        for (std::size_t a = 0; a < rig.actuatorCount(); ++a) {
+            auto strokes = randomStrokes(rig.actuatorCount(), random);
+            const auto before = deformed(rig, strokes).positions;
+            strokes[a] = 0.9 * strokes[a] + 0.05;
+            const auto after = deformed(rig, strokes).positions;
+            const auto moved = rig.verticesOf(a);
+            for (std::uint32_t v = 0; v < before.size(); ++v) {
+                const auto known = rig.actuatorsOf(v);
+                const bool listed = std::ranges::binary_search(moved, v);
+                EXPECT_EQ(std::ranges::find(known, a) != known.end(), listed);
+                if (!listed) EXPECT_EQ(before[v], after[v]) << rig.name() << ' ' << v;
+            }
+        }
+    }
+}
+
+// R7: the frame must hold every joint state.
+TEST(Rig, ReachHoldsEveryJointState) {
+    std::mt19937 random(3);
+    for (const Rig& rig : allKinds()) {
+        std::size_t outside = 0;
+        std::vector<glm::vec3> positions(rig.restMesh().positions.size());
+        const int states = rig.actuatorCount() > 10 ? 100 : 2000;
+        for (int state = 0; state < states; ++state) {
+            auto strokes = randomStrokes(rig.actuatorCount(), random);
+            if (state % 4 == 0) // corners and edges of the space of states
+                for (double& stroke : strokes) stroke = random() % 3 == 0 ? stroke : std::round(stroke);
+            rig.deform(strokes, positions);
+            for (std::uint32_t v = 0; v < positions.size(); ++v) {
+                const Box& box = rig.reachOf(v);
+                const glm::vec3& p = positions[v];
+                for (int axis = 0; axis < 3; ++axis)
+                    if (p[axis] < box.min[axis] || p[axis] > box.max[axis]) ++outside;
+            }
+        }
+        EXPECT_EQ(outside, 0U) << rig.name();
+    }
+}
+
+TEST(Rig, ReachIsExactForSlides) {
+    const Rig rig(pointParts({{0, 0, 0}, {0.1F, 0, 0}, {0, 0, 0.1F}}, {Slide{{0.0F, 2.0F, 0.0F}, 0.01, 0.06}}));
+    EXPECT_EQ(rig.reachOf(1).min, glm::vec3(0.1F, 0.0F, 0.0F));
+    EXPECT_EQ(rig.reachOf(1).max, glm::vec3(0.1F, static_cast<float>(0.06 - 0.01), 0.0F));
+}
+
+TEST(Rig, StrokesOfAState) {
+    const Rig rig(pointParts({{0, 0, 0}, {0.1F, 0, 0}, {0, 0, 0.1F}}, {Slide{{0, 1, 0}, 0, 0.1}, Slide{{0, 1, 0}, 0, 0.1}}));
+    EXPECT_EQ(strokesOf(rig, {Level{0}, Level{8}}, 33), (std::vector<double>{0.0, 0.25}));
+    EXPECT_EQ(strokesOf(rig, {Level{32}, Level{16}}, 33), (std::vector<double>{1.0, 0.5}));
+    EXPECT_THROW((void)strokesOf(rig, {Level{0}}, 33), InvalidInput);
+    EXPECT_THROW((void)strokesOf(rig, {Level{0}, Level{33}}, 33), InvalidInput);
+    EXPECT_THROW((void)strokesOf(rig, {Level{-1}, Level{0}}, 33), InvalidInput);
+    EXPECT_THROW((void)strokesOf(rig, {Level{0}, Level{0}}, 1), InvalidInput);
+    EXPECT_THROW((void)strokesOf(rig, {Level{0}, Level{0}}, 201), InvalidInput);
+    EXPECT_THROW((void)rig.subset(std::vector<std::uint32_t>{3}), InvalidInput);
+}
+
+struct BadParts {
+    const char* name;
+    const char* why; ///< part of the message
+    std::function<void(RigParts&)> spoil;
+};
+
+class RefusedParts : public testing::TestWithParam<BadParts> {};
+
+TEST_P(RefusedParts, AreRefusedWithTheirCause) {
+    RigParts parts = pointParts({{0, 0, 0}, {0.1F, 0, 0}, {0, 0, 0.1F}},
+                                {Hinge{{}, {1, 0, 0}, Angle(), Angle::degrees(90)},
+                                 Bend{{}, {1, 0, 0}, {0, 0, 1}, 0.01, Angle(), Angle::degrees(90)}, Slide{{0, 1, 0}, 0, 0.1},
+                                 MorphTarget{"m", {1.0F}, {{{}, {}, {}}}}});
+    ASSERT_NO_THROW(Rig{parts});
+    GetParam().spoil(parts);
+    try {
+        const Rig rig(std::move(parts));
+        FAIL() << "accepted";
+    } catch (const InvalidInput& error) {
+        EXPECT_NE(error.why().find(GetParam().why), std::string::npos) << error.what();
+        EXPECT_FALSE(error.remedy().empty());
+    }
+}
+
+constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
+template <class T>
+T& deformer(RigParts& parts) {
+    for (Actuator& actuator : parts.actuators)
+        if (auto* found = std::get_if<T>(&actuator.deformer)) return *found;
+    throw std::logic_error("no such deformer");
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Rig, RefusedParts,
+    testing::Values(
+        BadParts{"NoTriangles", "mesh is empty", [](RigParts& p) { p.restMesh.triangles.clear(); }},
+        BadParts{"NaNVertex", "not finite", [](RigParts& p) { p.restMesh.positions[1].y = kNaN; }},
+        BadParts{"TriangleIndex", "does not exist", [](RigParts& p) { p.restMesh.triangles[0].z = 3; }},
+        BadParts{"NoName", "no name", [](RigParts& p) { p.actuators[0].name.clear(); }},
+        BadParts{"SameName", "twice", [](RigParts& p) { p.actuators[0].name = p.actuators[1].name; }},
+        BadParts{"HingeAxis", "no direction", [](RigParts& p) { deformer<Hinge>(p).axis = glm::vec3(0.0F); }},
+        BadParts{"HingeNaN", "no direction", [](RigParts& p) { deformer<Hinge>(p).axis.x = kNaN; }},
+        BadParts{"HingeRange", "backwards", [](RigParts& p) { deformer<Hinge>(p).max = Angle::degrees(-1); }},
+        BadParts{"HingeTurns", "full turn", [](RigParts& p) { deformer<Hinge>(p).max = Angle::degrees(361); }},
+        BadParts{"BendStart", "start at 0", [](RigParts& p) { deformer<Bend>(p).min = Angle::degrees(-5); }},
+        BadParts{"BendLength", "no length", [](RigParts& p) { deformer<Bend>(p).length = 0.0; }},
+        BadParts{"BendFrame", "perpendicular", [](RigParts& p) { deformer<Bend>(p).direction = {1, 0, 1}; }},
+        BadParts{"SlideRange", "backwards", [](RigParts& p) { deformer<Slide>(p).max = 0.0; }},
+        BadParts{"SlideNaN", "not finite", [](RigParts& p) { deformer<Slide>(p).max = kNaN; }},
+        BadParts{"MorphKeys", "ascending", [](RigParts& p) { deformer<MorphTarget>(p).keys = {1.5F}; }},
+        BadParts{"MorphSize", "one displacement", [](RigParts& p) { deformer<MorphTarget>(p).displacements[0].pop_back(); }},
+        BadParts{"NoSkeleton", "no skeleton", [](RigParts& p) { p.actuators[0].deformer = SkinJoint{0, {}, {1, 0, 0}, 0, 1}; }},
+        BadParts{"Vertex", "does not exist", [](RigParts& p) { p.actuators[0].influences[2].vertex = 3; }},
+        BadParts{"Order", "ascending", [](RigParts& p) { p.actuators[0].influences[1].vertex = 0; }},
+        BadParts{"Weight", "within 0 and 1", [](RigParts& p) { p.actuators[0].influences[1].weight = 1.5F; }},
+        BadParts{"WeightNaN", "within 0 and 1", [](RigParts& p) { p.actuators[0].influences[1].weight = kNaN; }},
+        BadParts{"Levels", "level count", [](RigParts& p) { p.actuators[0].levels = 1; }},
+        BadParts{"ManyLevels", "level count", [](RigParts& p) { p.actuators[0].levels = 201; }},
+        BadParts{"Velocity", "velocity", [](RigParts& p) { p.actuators[0].maxVelocity = 0.0; }},
+        BadParts{"Damping", "oscillate", [](RigParts& p) { p.actuators[0].dampingRatio = 0.5; }},
+        BadParts{"Pulse", "pulse", [](RigParts& p) { p.actuators[0].drive.pulseMin = kNaN; }}),
+    [](const auto& info) { return std::string(info.param.name); });
+
+} // namespace
+} // namespace lumorph
