@@ -1,0 +1,165 @@
+#include <algorithm>
+#include <map>
+
+#include <glm/matrix.hpp>
+
+#include "core/base/error.h"
+#include "core/geometry/model.h"
+#include "core/rig/rig_extras.h"
+#include "core/rig/rig_file.h"
+
+namespace lumorph {
+namespace {
+
+using nlohmann::json;
+
+/// A name of its own for the morph target of every key, so that a viewer shows each.
+std::string keyName(const Actuator& actuator, std::size_t key, std::size_t keys, const std::vector<std::string>& taken) {
+    std::string name = keys == 1 ? actuator.name : actuator.name + " " + std::to_string(key + 1);
+    while (std::ranges::find(taken, name) != taken.end()) name += '\'';
+    return name;
+}
+
+/// True when reading back the displacements alone finds the same influences.
+bool influencesFollow(const Actuator& actuator, const MorphTarget& morph) {
+    for (std::size_t i = 0; i < actuator.influences.size(); ++i) {
+        bool moves = false;
+        for (const auto& displacements : morph.displacements) moves = moves || displacements[i] != glm::vec3(0.0F);
+        if (!moves || actuator.influences[i].weight != 1.0F) return false;
+    }
+    return !actuator.influences.empty();
+}
+
+class Writer {
+public:
+    explicit Writer(const Rig& rig) : rig_(rig) {}
+
+    std::vector<std::byte> write() {
+        model_.name = rig_.name();
+        model_.extras["lumorph"] = {{"pathInside", rig_.pathInside()}, {"uniqueVertices", true}};
+        model_.meshes.emplace_back();
+        model_.meshes.front().name = rig_.name();
+        model_.meshes.front().primitives.emplace_back();
+        primitive().positions = rig_.restMesh().positions;
+        primitive().triangles = rig_.restMesh().triangles;
+        Model::Node meshNode;
+        meshNode.name = rig_.name();
+        meshNode.mesh = 0;
+        addNode(std::move(meshNode));
+        if (rig_.skeleton()) addSkeleton(*rig_.skeleton());
+        for (std::size_t a = 0; a < rig_.actuatorCount(); ++a) addActuator(rig_.actuators()[a], a);
+        addInfluences();
+        return writeGlb(model_);
+    }
+
+private:
+    Model::Primitive& primitive() { return model_.meshes.front().primitives.front(); }
+
+    int addNode(Model::Node node) {
+        const int index = static_cast<int>(model_.nodes.size());
+        if (node.parent < 0) model_.roots.push_back(index);
+        else model_.nodes[node.parent].children.push_back(index);
+        model_.nodes.push_back(std::move(node));
+        return index;
+    }
+
+    void addSkeleton(const Skeleton& skeleton) {
+        Model::Skin skin;
+        skin.name = rig_.name();
+        std::vector<glm::dmat4> rest;
+        for (const Skeleton::Joint& joint : skeleton.joints) {
+            Model::Node node;
+            node.name = "joint " + std::to_string(rest.size());
+            node.parent = joint.parent < 0 ? -1 : jointNodes_[joint.parent];
+            node.matrix = joint.localRest;
+            jointNodes_.push_back(addNode(std::move(node)));
+            const glm::dmat4 local(joint.localRest);
+            rest.push_back(joint.parent < 0 ? local : rest[joint.parent] * local);
+            skin.joints.push_back(jointNodes_.back());
+            skin.inverseBindMatrices.emplace_back(glm::inverse(rest.back()));
+        }
+        primitive().joints = skeleton.vertexJoints;
+        primitive().weights = skeleton.vertexWeights;
+        model_.skins.push_back(std::move(skin));
+        model_.nodes.front().skin = 0;
+    }
+
+    void addActuator(const Actuator& actuator, std::size_t order) {
+        json extras = actuatorExtras(actuator, order);
+        if (const auto* morph = std::get_if<MorphTarget>(&actuator.deformer)) {
+            addMorph(actuator, *morph, order, std::move(extras));
+            return;
+        }
+        if (const auto* joint = std::get_if<SkinJoint>(&actuator.deformer)) {
+            json& at = model_.nodes[jointNodes_[joint->joint]].extras["lumorph"];
+            at.push_back(std::move(extras));
+            return;
+        }
+        Model::Node node;
+        node.name = actuator.name;
+        if (const auto* hinge = std::get_if<Hinge>(&actuator.deformer)) node.translation = hinge->origin;
+        if (const auto* bend = std::get_if<Bend>(&actuator.deformer)) node.translation = bend->origin;
+        node.extras["lumorph"] = std::move(extras);
+        addNode(std::move(node));
+        listInfluences(actuator, order);
+    }
+
+    void addMorph(const Actuator& actuator, const MorphTarget& morph, std::size_t order, json extras) {
+        Model::Mesh& mesh = model_.meshes.front();
+        json names = json::array();
+        json keys = json::array();
+        for (std::size_t k = 0; k < morph.keys.size(); ++k) {
+            std::vector<glm::vec3> deltas(rig_.restMesh().positions.size(), glm::vec3(0.0F));
+            for (std::size_t i = 0; i < actuator.influences.size(); ++i)
+                deltas[actuator.influences[i].vertex] = morph.displacements[k][i];
+            primitive().morphTargets.push_back(std::move(deltas));
+            mesh.targetNames.push_back(keyName(actuator, k, morph.keys.size(), mesh.targetNames));
+            mesh.weights.push_back(0.0F);
+            names.push_back(mesh.targetNames.back());
+            keys.push_back(morph.keys[k]);
+        }
+        extras["target"] = morph.target;
+        extras["targets"] = std::move(names);
+        extras["keys"] = std::move(keys);
+        mesh.extras["lumorph"].push_back(std::move(extras));
+        if (!influencesFollow(actuator, morph)) listInfluences(actuator, order);
+    }
+
+    void listInfluences(const Actuator& actuator, std::size_t order) {
+        for (const Influence& influence : actuator.influences)
+            influences_[influence.vertex].push_back({static_cast<float>(order), influence.weight});
+    }
+
+    void addInfluences() {
+        const std::size_t vertices = rig_.restMesh().positions.size();
+        std::size_t sets = 0;
+        bool spatial = false;
+        for (const auto& [vertex, list] : influences_) sets = std::max(sets, (list.size() + 3) / 4);
+        for (const Actuator& actuator : rig_.actuators())
+            spatial = spatial || !(std::holds_alternative<MorphTarget>(actuator.deformer) ||
+                                   std::holds_alternative<SkinJoint>(actuator.deformer));
+        if (spatial) sets = std::max<std::size_t>(sets, 1); // else the reader would take whole nodes
+        for (std::size_t set = 0; set < sets; ++set) {
+            Model::CustomAttribute actuators{4, std::vector<float>(4 * vertices, -1.0F)};
+            Model::CustomAttribute weights{4, std::vector<float>(4 * vertices, 0.0F)};
+            for (const auto& [vertex, list] : influences_)
+                for (std::size_t k = 4 * set; k < std::min(list.size(), 4 * set + 4); ++k) {
+                    actuators.values[4 * vertex + k % 4] = list[k].first;
+                    weights.values[4 * vertex + k % 4] = list[k].second;
+                }
+            primitive().custom["_ACTUATORS_" + std::to_string(set)] = std::move(actuators);
+            primitive().custom["_INFLUENCES_" + std::to_string(set)] = std::move(weights);
+        }
+    }
+
+    const Rig& rig_;
+    Model model_;
+    std::vector<int> jointNodes_;
+    std::map<std::uint32_t, std::vector<std::pair<float, float>>> influences_; ///< by vertex
+};
+
+} // namespace
+
+std::vector<std::byte> writeRigGlb(const Rig& rig) { return Writer(rig).write(); }
+
+} // namespace lumorph
