@@ -43,7 +43,7 @@ struct ShapeReport {
     std::vector<std::string> warnings; ///< plain sentences (R42)
 };
 
-/// Samples `states` random joint states (seeded). Throws Cancelled.
+/// Samples `states` joint states: full stroke of all, then random ones (seeded). Throws Cancelled.
 [[nodiscard]] ShapeReport shapeReport(const Rig& rig, int states, std::uint64_t seed, const Progress& progress = {});
 
 } // namespace lumorph
