@@ -17,11 +17,11 @@
 
 namespace lumorph::bench {
 
-namespace {
-
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(FieldJob, model, resolution, levels, samples, driven)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(FieldMeasurement, voxels, actuators, changedVoxels, fileBytes, peakBytes,
                                    buildSeconds, matchSeconds, changedTargetVoxels, rampErrorMean)
+
+namespace {
 
 Rig withDriven(const Rig& rig, std::size_t count) {
     if (count == 0 || count >= rig.actuatorCount()) return rig;
