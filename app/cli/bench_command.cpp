@@ -1,4 +1,4 @@
-#include <array>
+#include <cerrno>
 #include <cstring>
 #include <filesystem>
 #include <memory>
@@ -26,6 +26,7 @@ void runBench(std::vector<std::string> arguments) {
     argv.push_back(name.data());
     for (std::string& argument : arguments) argv.push_back(argument.data());
     argv.push_back(nullptr);
+    Session::releaseSignals();
     execv(name.c_str(), argv.data());
     throw DeviceError(name, std::strerror(errno), "check that it may be run");
 }

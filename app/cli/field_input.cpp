@@ -3,23 +3,38 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <string_view>
 
-#include "app/cli/session.h"
 #include "core/base/error.h"
 #include "core/geometry/mesh_file.h"
+#include "core/geometry/mesh_parsers.h"
+#include "core/geometry/model.h"
 #include "core/voxels/nrrd.h"
 
 namespace lumorph::cli {
 
 namespace {
 
-bool isNrrd(const std::string& path) {
+bool hasGridExtension(const std::string& path) {
     const std::string extension = std::filesystem::path(path).extension().string();
-    return path == "-" || extension == ".nrrd" || extension == ".NRRD";
+    return extension == ".nrrd" || extension == ".NRRD";
 }
 
-TargetVoxels readGrid(const Field& field, const std::string& path) {
-    const ByteGrid grid = parseNrrd(readInput(path), path);
+bool beginsWith(std::span<const std::byte> bytes, std::string_view magic) {
+    return bytes.size() >= magic.size() &&
+           std::equal(magic.begin(), magic.end(), bytes.begin(),
+                      [](char a, std::byte b) { return std::byte(static_cast<unsigned char>(a)) == b; });
+}
+
+TriangleMesh parseMesh(std::span<const std::byte> bytes, const std::string& name) {
+    if (!beginsWith(bytes, "glTF")) return parseObj(bytes, name);
+    TriangleMesh mesh = flatten(readGlb(bytes, name));
+    if (mesh.empty()) throw DataError(name, "holds no mesh", "export the model as a surface of polygons");
+    return mesh;
+}
+
+TargetVoxels gridVoxels(const Field& field, std::span<const std::byte> bytes, const std::string& path) {
+    const ByteGrid grid = parseNrrd(bytes, path);
     const VoxelFrame& frame = field.frame;
     if (grid.frame.dimensions != frame.dimensions)
         throw DataError(path, "its grid has another shape than the field's",
@@ -56,13 +71,21 @@ TargetVoxels voxelsOf(const Field& field, const Target& target, const Placement&
     return voxels;
 }
 
-TargetVoxels readTarget(const Field& field, const TargetArguments& arguments) {
-    if (isNrrd(arguments.path)) {
+Target readTargetMesh(const Session& session, const std::string& path) {
+    if (path == "-") return makeTarget(parseMesh(session.readInput(path), inputName(path)));
+    return makeTarget(readMesh(path));
+}
+
+TargetVoxels readTarget(const Session& session, const Field& field, const TargetArguments& arguments) {
+    const std::string name = inputName(arguments.path);
+    std::vector<std::byte> bytes;
+    if (arguments.path == "-" || hasGridExtension(arguments.path)) bytes = session.readInput(arguments.path);
+    if (hasGridExtension(arguments.path) || beginsWith(bytes, "NRRD")) {
         if (arguments.fit)
             throw InvalidInput("--fit", "a voxel grid stands where it is", "leave --fit out, or give the mesh");
-        return readGrid(field, arguments.path);
+        return gridVoxels(field, bytes, name);
     }
-    const Target target = makeTarget(readMesh(arguments.path));
+    const Target target = makeTarget(arguments.path == "-" ? parseMesh(bytes, name) : readMesh(arguments.path));
     const Placement placement = arguments.fit ? fitPlacement(field, boundingBox(target.mesh.positions)) : Placement{};
     return voxelsOf(field, target, placement, arguments.repeat);
 }

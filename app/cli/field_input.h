@@ -1,14 +1,16 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
+#include "app/cli/session.h"
 #include "core/mdf/field.h"
 #include "core/mdf/placement.h"
 
 namespace lumorph::cli {
 
 /// Reads a .mdf file, or stdin for "-".
-[[nodiscard]] Field readFieldFile(const std::string& path);
+[[nodiscard]] Field readFieldFile(const Session& session, const std::string& path);
 
 /// A target as voxels of a field's frame.
 struct TargetVoxels {
@@ -24,10 +26,13 @@ struct TargetArguments {
     int repeat = 1; ///< how often to voxelise, for the median
 };
 
-/// Reads a mesh, or an NRRD grid in the field's own frame, and turns it into voxels.
-[[nodiscard]] TargetVoxels readTarget(const Field& field, const TargetArguments& arguments);
+/// Reads a mesh, or an NRRD grid in the field's own frame, and turns it into voxels. On stdin ("-") it
+/// may be NRRD, GLB or OBJ, told apart by how it begins.
+[[nodiscard]] TargetVoxels readTarget(const Session& session, const Field& field, const TargetArguments& arguments);
 
-/// The same for a mesh that has been read already.
+/// Reads a mesh from a file, or from stdin for "-".
+[[nodiscard]] Target readTargetMesh(const Session& session, const std::string& path);
+/// Turns a mesh that has been read already into voxels.
 [[nodiscard]] TargetVoxels voxelsOf(const Field& field, const Target& target, const Placement& placement, int repeat);
 
 /// The middle of some measurements; 0 for none.

@@ -33,6 +33,7 @@ int main(int argc, char** argv) {
     lumorph::cli::addBenchCommand(app);
     try {
         app.parse(argc, argv); // runs the command
+        lumorph::cli::finishOutput();
         lumorph::cli::Session::endProgress();
         return kDone;
     } catch (const CLI::ParseError& error) {

@@ -37,11 +37,11 @@ struct Matcher {
     Coverage coverage;
     Voting voting;
 
-    explicit Matcher(const std::string& path)
-        : field(readFieldFile(path)), coverage(readRigGlb(field.rigGlb, path), field.frame, field.levels),
-          voting(field) {
+    Matcher(const Session& session, const std::string& path)
+        : field(readFieldFile(session, path)),
+          coverage(readRigGlb(field.rigGlb, inputName(path)), field.frame, field.levels), voting(field) {
         if (coverage.rig().actuatorCount() != field.actuators.size())
-            throw DataError(path, "the field and the rig in it do not agree",
+            throw DataError(inputName(path), "the field and the rig in it do not agree",
                             "build the field again with 'lumorph mdf build'");
     }
 };
@@ -58,9 +58,10 @@ struct Result {
     std::vector<std::string> warnings;
 };
 
-template <typename Work> double medianMilliseconds(int repeat, Work&& work) {
+template <typename Work> double medianMilliseconds(int repeat, const Session& session, Work&& work) {
     std::vector<double> times;
     for (int i = 0; i < repeat; ++i) {
+        session.throwIfCancelled();
         const auto start = std::chrono::steady_clock::now();
         work();
         times.push_back(std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count());
@@ -68,23 +69,24 @@ template <typename Work> double medianMilliseconds(int repeat, Work&& work) {
     return medianOf(times);
 }
 
-Result matchVoxels(const Matcher& matcher, const TargetVoxels& target, const Arguments& arguments) {
+Result matchVoxels(const Matcher& matcher, const TargetVoxels& target, const Arguments& arguments,
+                   const Session& session) {
     Result result;
     result.warnings = target.warnings;
     result.voxelizeMilliseconds = target.voxelizeMilliseconds;
     BitColumns wanted = target.bits;
     wanted &= matcher.coverage.domain();
     Voting::Workspace workspace;
+    const int repeat = arguments.target.repeat;
     result.matchMilliseconds =
-        medianMilliseconds(arguments.target.repeat, [&] { matcher.voting.match(wanted, result.votes, workspace); });
+        medianMilliseconds(repeat, session, [&] { matcher.voting.match(wanted, result.votes, workspace); });
     result.state = result.votes.state();
     Refiner refiner(matcher.coverage);
     if (arguments.method == "refined") {
         const SteadyClock clock;
         const Microseconds budget(static_cast<std::int64_t>(1000.0 * arguments.budgetMilliseconds));
-        result.refineMilliseconds = medianMilliseconds(arguments.target.repeat, [&] {
-            result.refinement = refiner.refine(wanted, result.votes.state(), budget, clock);
-        });
+        result.refineMilliseconds = medianMilliseconds(
+            repeat, session, [&] { result.refinement = refiner.refine(wanted, result.votes.state(), budget, clock); });
         result.state = result.refinement->state;
         result.quality = result.refinement->after;
     } else {
@@ -118,19 +120,19 @@ nlohmann::json resultJson(const Matcher& matcher, const Result& result, const Ar
                              {"errors", vote.errors},
                              {"intersections", vote.intersections}});
     }
-    nlohmann::json json = {
-        {"method", arguments.method},
-        {"state", stateJson(result.state)},
-        {"actuators", actuators},
-        {"iou", result.quality.iou()},
-        {"targetVoxels", result.votes.targetVoxels},
-        {"unmatchedVolume", static_cast<double>(result.quality.unmatched) * volume},
-        {"overfilledVolume", static_cast<double>(result.quality.overfilled) * volume},
-        {"ms",
-         {{"voxelize", {{"median", result.voxelizeMilliseconds}}}, {"match", {{"median", result.matchMilliseconds}}}}},
-        {"warnings", result.warnings}};
+    nlohmann::json json = {{"method", arguments.method},
+                           {"state", stateJson(result.state)},
+                           {"actuators", actuators},
+                           {"iou", result.quality.iou()},
+                           {"targetVoxels", result.votes.targetVoxels},
+                           {"unmatchedVolume", static_cast<double>(result.quality.unmatched) * volume},
+                           {"overfilledVolume", static_cast<double>(result.quality.overfilled) * volume},
+                           {"ms",
+                            {{"voxelize", {{"median", result.voxelizeMilliseconds}}},
+                             {"match", {{"median", result.matchMilliseconds}}},
+                             {"refine", {{"median", result.refineMilliseconds}}}}},
+                           {"warnings", result.warnings}};
     if (result.refinement) {
-        json["ms"]["refine"] = {{"median", result.refineMilliseconds}};
         json["iouBefore"] = result.refinement->before.iou();
         json["statesSeen"] = result.refinement->statesSeen;
         json["converged"] = result.refinement->converged;
@@ -165,7 +167,6 @@ void printResult(const Matcher& matcher, const Result& result) {
         std::printf(", refine %.3f ms over %d states (IoU %.3f by voting)", result.refineMilliseconds,
                     result.refinement->statesSeen, result.refinement->before.iou());
     std::printf("\n");
-    for (const std::string& warning : result.warnings) std::printf("  ! %s\n", warning.c_str());
 }
 
 const Model::Animation& chooseAnimation(const Model& model, const std::string& path, const std::string& name) {
@@ -207,8 +208,19 @@ void matchAnimation(const Matcher& matcher, const Arguments& arguments, const Se
                     frames.size(), animation.name.c_str(), wanted, reached);
 }
 
+void checkArguments(const Arguments& arguments) {
+    if (arguments.json && arguments.csv == "-")
+        throw InvalidInput("--json", "standard output would hold the table and the JSON value",
+                           "name a file with --csv");
+    if (arguments.picture == "-")
+        throw InvalidInput("--picture", "a picture is not written to standard output", "name a .png file");
+    for (const std::string& output : {arguments.csv, arguments.picture})
+        if (!output.empty()) checkOutput(output, arguments.target.path);
+}
+
 void match(const Arguments& arguments, const Session& session) {
-    const Matcher matcher(arguments.field);
+    checkArguments(arguments);
+    const Matcher matcher(session, arguments.field);
     if (!arguments.animation.empty()) {
         matchAnimation(matcher, arguments, session);
         return;
@@ -216,15 +228,16 @@ void match(const Arguments& arguments, const Session& session) {
     std::optional<AutoPlacement> placement;
     TargetVoxels target;
     if (arguments.autoPlace) {
-        const Target mesh = makeTarget(readMesh(arguments.target.path));
+        const Target mesh = readTargetMesh(session, arguments.target.path);
         placement = autoPlace(matcher.field, matcher.coverage, matcher.voting, mesh, {}, session.progress());
         Session::endProgress();
         target = voxelsOf(matcher.field, mesh, placement->placement, arguments.target.repeat);
     } else {
-        target = readTarget(matcher.field, arguments.target);
+        target = readTarget(session, matcher.field, arguments.target);
     }
-    Result result = matchVoxels(matcher, target, arguments);
+    Result result = matchVoxels(matcher, target, arguments, session);
     result.placement = placement;
+    printWarnings(result.warnings);
     if (!arguments.picture.empty())
         drawMatch(matcher.coverage.rig(), target.mesh,
                   strokesOf(matcher.coverage.rig(), result.state, matcher.field.levels), result.quality.iou(),
@@ -254,7 +267,8 @@ void addMatchCommand(CLI::App& app, Session& session) {
     command->add_option("--repeat", a->target.repeat, "Repeat each stage and give the median")
         ->check(CLI::Range(1, 100000))
         ->capture_default_str();
-    command->add_option("--animation", a->animation, "Match an animation of the file over time: its name, or first");
+    command->add_option("--animation", a->animation, "Match an animation of the file over time: its name, or first")
+        ->excludes("--auto-place");
     command->add_option("--fps", a->framesPerSecond, "Frames a second of that")
         ->check(CLI::Range(1.0, 240.0))
         ->capture_default_str();

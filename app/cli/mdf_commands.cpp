@@ -5,6 +5,7 @@
 
 #include "app/cli/commands.h"
 #include "app/cli/field_input.h"
+#include "core/base/error.h"
 #include "core/mdf/builder.h"
 #include "core/mdf/field_export.h"
 #include "core/mdf/field_file.h"
@@ -72,12 +73,16 @@ struct BuildArguments {
 };
 
 void build(const BuildArguments& arguments, const Session& session) {
+    if (arguments.json && arguments.output == "-")
+        throw InvalidInput("--json", "standard output would hold the field and the report", "name a file with -o");
+    checkOutput(arguments.output, arguments.rig);
     const Rig rig = readRig(arguments.rig);
     const auto start = std::chrono::steady_clock::now();
     const Field field = buildField(rig, arguments.build, session.progress());
     const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     Session::endProgress();
     const std::vector<std::byte> bytes = writeField(field);
+    session.throwIfCancelled();
     writeOutput(arguments.output, bytes);
     if (arguments.json) {
         nlohmann::json json = infoJson(field, bytes.size());
@@ -95,15 +100,17 @@ struct FieldArguments {
     bool json = false;
 };
 
-void info(const FieldArguments& arguments) {
-    const std::vector<std::byte> bytes = readInput(arguments.field);
-    const Field field = parseField(bytes, arguments.field);
+void info(const FieldArguments& arguments, const Session& session) {
+    const std::vector<std::byte> bytes = session.readInput(arguments.field);
+    const Field field = parseField(bytes, inputName(arguments.field));
     arguments.json ? printJson(infoJson(field, bytes.size())) : printInfo(field, bytes.size());
 }
 
 } // namespace
 
-Field readFieldFile(const std::string& path) { return parseField(readInput(path), path); }
+Field readFieldFile(const Session& session, const std::string& path) {
+    return parseField(session.readInput(path), inputName(path));
+}
 
 void addMdfCommands(CLI::App& app, Session& session) {
     CLI::App* group = app.add_subcommand("mdf", "Build and look at mechanical distance fields");
@@ -132,16 +139,16 @@ void addMdfCommands(CLI::App& app, Session& session) {
 
     auto i = std::make_shared<FieldArguments>();
     CLI::App* infoCommand = group->add_subcommand("info", "What a field holds");
-    infoCommand->add_option("field", i->field, "A .mdf file")->required();
+    infoCommand->add_option("field", i->field, "A .mdf file (- for standard input)")->required();
     infoCommand->add_flag("--json", i->json, "Print one JSON value");
-    infoCommand->callback([i] { info(*i); });
+    infoCommand->callback([i, &session] { info(*i, session); });
 
     auto e = std::make_shared<FieldArguments>();
     CLI::App* exportCommand =
         group->add_subcommand("export", "Write the field as NRRD files for ParaView or 3D Slicer");
-    exportCommand->add_option("field", e->field, "A .mdf file")->required();
+    exportCommand->add_option("field", e->field, "A .mdf file (- for standard input)")->required();
     exportCommand->add_option("-o,--output", e->output, "The folder to write into")->required();
-    exportCommand->callback([e] { exportField(readFieldFile(e->field), e->output); });
+    exportCommand->callback([e, &session] { exportField(readFieldFile(session, e->field), e->output); });
 }
 
 } // namespace lumorph::cli

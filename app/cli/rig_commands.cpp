@@ -119,6 +119,7 @@ struct DeformOptions {
 };
 
 void deform(const DeformOptions& options) {
+    checkOutput(options.output, options.rig);
     const Rig rig = readRig(options.rig);
     const int levels = options.levels > 0        ? options.levels
                        : rig.actuatorCount() > 0 ? rig.actuators().front().levels

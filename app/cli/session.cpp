@@ -1,14 +1,16 @@
 #include "app/cli/session.h"
 
+#include <array>
+#include <cerrno>
 #include <charconv>
 #include <csignal>
 #include <cstdio>
-#include <cstdlib>
+#include <filesystem>
 #include <iostream>
-#include <iterator>
 #include <memory>
 #include <mutex>
 
+#include <poll.h>
 #include <unistd.h>
 
 #include "core/base/atomic_file.h"
@@ -39,6 +41,25 @@ void drawBar(double fraction, std::string_view stage) {
     std::fflush(stderr);
 }
 
+std::vector<std::byte> readStandardInput(const Session& session) {
+    constexpr int kPauseMilliseconds = 100;
+    std::vector<std::byte> bytes;
+    std::array<std::byte, 1U << 16U> chunk{};
+    for (;;) {
+        session.throwIfCancelled();
+        pollfd input{STDIN_FILENO, POLLIN, 0};
+        if (poll(&input, 1, kPauseMilliseconds) == 0) continue;
+        const ssize_t got = read(STDIN_FILENO, chunk.data(), chunk.size());
+        if (got < 0 && errno == EINTR) continue;
+        if (got < 0) throw DeviceError("standard input", "it cannot be read", "check where it comes from");
+        if (got == 0) return bytes;
+        bytes.insert(bytes.end(), chunk.begin(), chunk.begin() + got);
+        if (bytes.size() > kMaxInput) throw DataError("standard input", "it is larger than 2 GiB", "give a file");
+    }
+}
+
+[[noreturn]] void failOutput() { throw DeviceError("standard output", "it cannot be written", "check where it goes"); }
+
 } // namespace
 
 Session::Session() {
@@ -46,16 +67,29 @@ Session::Session() {
     const sigset_t signals = stopSignals();
     pthread_sigmask(SIG_BLOCK, &signals, nullptr);
     watcher_ = std::jthread([this, signals](const std::stop_token& end) {
-        const timespec pause{0, 200'000'000};
-        while (!end.stop_requested()) {
-            if (sigtimedwait(&signals, nullptr, &pause) < 0) continue;
+        for (;;) {
+            const int signal = sigwaitinfo(&signals, nullptr);
+            if (end.stop_requested()) return;
+            if (signal < 0) continue;
             if (stop_.stop_requested()) _exit(1);
             stop_.request_stop();
         }
     });
 }
 
-Session::~Session() = default;
+Session::~Session() {
+    watcher_.request_stop();
+    pthread_kill(watcher_.native_handle(), SIGTERM); // only wakes it
+}
+
+void Session::releaseSignals() noexcept {
+    const sigset_t signals = stopSignals();
+    pthread_sigmask(SIG_UNBLOCK, &signals, nullptr);
+}
+
+void Session::throwIfCancelled() const {
+    if (stop_.stop_requested()) throw Cancelled();
+}
 
 Progress Session::progress() const {
     if (isatty(STDERR_FILENO) == 0) return Progress({}, stop_.get_token());
@@ -76,24 +110,45 @@ void Session::endProgress() {
     if (isatty(STDERR_FILENO) != 0) std::fputs("\r\033[K", stderr);
 }
 
+std::string inputName(const std::string& path) { return path == "-" ? "standard input" : path; }
+
+std::vector<std::byte> Session::readInput(const std::string& path) const {
+    return path == "-" ? readStandardInput(*this) : readFile(path, kMaxInput);
+}
+
+void checkOutput(const std::string& path, const std::string& input) {
+    namespace fs = std::filesystem;
+    if (path == "-") return;
+    std::error_code ignored;
+    if (path.empty()) throw InvalidInput("--output", "it is empty", "name a file");
+    if (fs::is_directory(path, ignored)) throw DeviceError(path, "it is a folder", "name a file in it");
+    const fs::path folder = fs::path(path).has_parent_path() ? fs::path(path).parent_path() : fs::path(".");
+    if (!fs::is_directory(folder, ignored))
+        throw DeviceError(path, "there is no folder " + folder.string(), "make it first, or choose another place");
+    if (fs::equivalent(path, input, ignored))
+        throw InvalidInput(path, "it would replace what is read", "choose another name");
+}
+
 void writeOutput(const std::string& path, std::span<const std::byte> bytes) {
     if (path != "-") {
         writeFileAtomically(path, bytes);
         return;
     }
     std::fwrite(bytes.data(), 1, bytes.size(), stdout);
-    if (std::fflush(stdout) != 0) throw DeviceError("standard output", "it cannot be written", "check where it goes");
-}
-
-std::vector<std::byte> readInput(const std::string& path) {
-    if (path != "-") return readFile(path, kMaxInput);
-    const std::string text{std::istreambuf_iterator<char>(std::cin), {}};
-    return bytesOfText(text);
+    finishOutput();
 }
 
 void printJson(const nlohmann::json& value) {
-    std::cout << value.dump() << "\n" << std::flush;
-    if (!std::cout) throw DeviceError("standard output", "it cannot be written", "check where it goes");
+    std::cout << value.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace) << "\n" << std::flush;
+    if (!std::cout) failOutput();
+}
+
+void printWarnings(const std::vector<std::string>& warnings) {
+    for (const std::string& warning : warnings) std::fprintf(stderr, "lumorph: warning: %s\n", warning.c_str());
+}
+
+void finishOutput() {
+    if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) failOutput();
 }
 
 State parseState(const std::string& text) {

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstddef>
-#include <filesystem>
 #include <span>
 #include <string>
 #include <thread>
@@ -24,22 +23,38 @@ public:
     Session(const Session&) = delete;
     Session& operator=(const Session&) = delete;
 
-    /// Draws a bar on stderr while it is a terminal; nothing else where it is not.
+    /// Draws a bar on stderr while it is a terminal; nothing where it is not.
     [[nodiscard]] Progress progress() const;
     /// Ends the line of a progress bar, if there is one.
     static void endProgress();
+    /// Throws Cancelled once Ctrl-C was pressed; for between the stages of a command.
+    void throwIfCancelled() const;
+
+    /// Reads a file, or stdin for "-". Throws Cancelled when stopped while it waits.
+    [[nodiscard]] std::vector<std::byte> readInput(const std::string& path) const;
+
+    /// Gives SIGINT and SIGTERM back to the system, for a program that takes the place of this one.
+    static void releaseSignals() noexcept;
 
 private:
     std::stop_source stop_;
     std::jthread watcher_;
 };
 
+/// What errors call a file: its path, or "standard input" for "-".
+[[nodiscard]] std::string inputName(const std::string& path);
+
+/// Refuses, before any work is done, an output that cannot become a file or that would replace `input`.
+/// Throws DeviceError or InvalidInput.
+void checkOutput(const std::string& path, const std::string& input);
 /// Writes to a file, whole or not at all, or to stdout for "-".
 void writeOutput(const std::string& path, std::span<const std::byte> bytes);
-/// Reads a file, or stdin for "-".
-[[nodiscard]] std::vector<std::byte> readInput(const std::string& path);
-/// One JSON value on stdout.
+/// One JSON value on stdout. Text that is no UTF-8 gets replacement characters.
 void printJson(const nlohmann::json& value);
+/// Warnings on stderr, one a line.
+void printWarnings(const std::vector<std::string>& warnings);
+/// Throws DeviceError when what was printed could not be written.
+void finishOutput();
 
 /// Parses "0,12,33". Throws InvalidInput naming the part that is no whole number.
 [[nodiscard]] State parseState(const std::string& text);

@@ -1,4 +1,3 @@
-#include <cstdio>
 #include <memory>
 
 #include "app/cli/commands.h"
@@ -15,23 +14,28 @@ struct Arguments {
     std::string output;
 };
 
-void voxelize(const Arguments& arguments) {
-    const Field field = readFieldFile(arguments.like);
-    const TargetVoxels voxels = readTarget(field, arguments.target);
-    for (const std::string& warning : voxels.warnings) std::fprintf(stderr, "lumorph: warning: %s\n", warning.c_str());
+void voxelize(const Arguments& arguments, const Session& session) {
+    checkOutput(arguments.output, arguments.target.path);
+    const Field field = readFieldFile(session, arguments.like);
+    const TargetVoxels voxels = readTarget(session, field, arguments.target);
+    printWarnings(voxels.warnings);
+    session.throwIfCancelled();
     writeOutput(arguments.output, writeNrrd(bytesOf(field.frame, voxels.bits), "target"));
 }
 
 } // namespace
 
-void addVoxelizeCommand(CLI::App& app, Session&) {
+void addVoxelizeCommand(CLI::App& app, Session& session) {
     auto a = std::make_shared<Arguments>();
     CLI::App* command = app.add_subcommand("voxelize", "Turn a mesh into voxels of a field's frame");
-    command->add_option("mesh", a->target.path, "A .glb, .gltf, .obj, .stl, .ply or .off file")->required();
+    command
+        ->add_option("mesh", a->target.path,
+                     "A .glb, .gltf, .obj, .stl, .ply or .off file (- for GLB or OBJ on standard input)")
+        ->required();
     command->add_option("--like", a->like, "The field whose frame to use")->required();
     command->add_flag("--fit", a->target.fit, "Largest scale inside the frame, centred, standing on the rest surface");
     command->add_option("-o,--output", a->output, "The .nrrd file to write, or -")->required();
-    command->callback([a] { voxelize(*a); });
+    command->callback([a, &session] { voxelize(*a, session); });
 }
 
 } // namespace lumorph::cli

@@ -1,0 +1,14 @@
+#pragma once
+
+#include "core/geometry/model.h"
+
+namespace lumorph {
+
+/// Soft dunes of different heights over the corners and edges of a 21 x 15 cm tablet.
+[[nodiscard]] Model dunesModel();
+
+/// A long wave that travels across such a tablet, as the animation "swell" of four seconds: two
+/// standing waves a quarter of a wavelength apart, as morph targets, and their changing shares.
+[[nodiscard]] Model swellModel();
+
+} // namespace lumorph
