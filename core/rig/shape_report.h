@@ -31,8 +31,9 @@ struct ShapeReport {
     std::vector<PerActuator> actuators;
     double area = 0.0;        ///< square metres of rest surface that any actuator moves
     double granularity = 0.0; ///< actuators a square metre of that
-    double maxStretch = 0.0;  ///< largest relative change of a triangle edge over the sampled states
-    double volumeMin = 0.0;   ///< cubic metres over the sampled states
+    double maxStretch =
+        0.0; ///< largest relative change of an edge of the surface that looks up at rest, over the sampled states
+    double volumeMin = 0.0; ///< cubic metres over the sampled states
     double volumeMax = 0.0;
     int sampledStates = 0;
     int openStates = 0;         ///< sampled states in which the mesh is not closed

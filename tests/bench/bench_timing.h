@@ -1,0 +1,53 @@
+#pragma once
+
+#include <algorithm>
+#include <chrono>
+#include <functional>
+#include <vector>
+
+namespace lumorph::bench {
+
+using Seconds = std::chrono::duration<double>;
+
+[[nodiscard]] inline double medianOf(std::vector<double> values) {
+    if (values.empty()) return 0.0;
+    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+    std::nth_element(values.begin(), middle, values.end());
+    return *middle;
+}
+
+[[nodiscard]] inline double smallestOf(const std::vector<double>& values) {
+    return *std::min_element(values.begin(), values.end());
+}
+
+[[nodiscard]] inline double meanOf(const std::vector<double>& values) {
+    double sum = 0.0;
+    for (const double value : values) sum += value;
+    return values.empty() ? 0.0 : sum / static_cast<double>(values.size());
+}
+
+template <typename Work> [[nodiscard]] double secondsOf(Work&& work) {
+    const auto start = std::chrono::steady_clock::now();
+    work();
+    return Seconds(std::chrono::steady_clock::now() - start).count();
+}
+
+/// Something to be timed; a short one is called several times in its turn, each call a sample.
+struct TimedWork {
+    std::function<void()> run;
+    int callsPerTurn = 1;
+};
+
+/// Median seconds of each work. The works take turns, so that whatever else the machine does meets
+/// all of them alike and their ratio stands.
+[[nodiscard]] inline std::vector<double> interleavedMedians(int turns, const std::vector<TimedWork>& works) {
+    std::vector<std::vector<double>> samples(works.size());
+    for (int turn = 0; turn < turns; ++turn)
+        for (std::size_t w = 0; w < works.size(); ++w)
+            for (int call = 0; call < works[w].callsPerTurn; ++call) samples[w].push_back(secondsOf(works[w].run));
+    std::vector<double> medians;
+    for (std::vector<double>& of : samples) medians.push_back(medianOf(std::move(of)));
+    return medians;
+}
+
+} // namespace lumorph::bench

@@ -1,0 +1,97 @@
+#include <set>
+#include <stdexcept>
+
+#include "tests/bench/bench_groups.h"
+#include "tests/bench/bench_inputs.h"
+#include "tests/bench/bench_timing.h"
+#include "tests/bench/literal_voting.h"
+
+namespace lumorph::bench {
+
+namespace {
+
+constexpr std::size_t kDistinctLevels = 4;
+
+/// Medians for one target, seconds.
+struct Measured {
+    double literal = 0.0;
+    double vectorised = 0.0;
+    double voting = 0.0;
+};
+
+std::vector<TargetVolume> variedTargets(const Device& device) {
+    std::vector<TargetVolume> targets = hiddenStates(device.coverage, 8, 11);
+    for (TargetVolume& target : wavesAndReliefs(device.field, device.coverage.domain())) targets.push_back(target);
+    for (TargetVolume& target : meshTargets(device.field, device.coverage.domain())) targets.push_back(target);
+    std::erase_if(targets, [&](const TargetVolume& target) {
+        const State state = device.voting.match(target.voxels).state();
+        return std::set<Level>(state.begin(), state.end()).size() < kDistinctLevels;
+    });
+    return targets;
+}
+
+Measured measure(const Device& device, const DenseField& dense, const TargetVolume& target) {
+    const std::vector<float> wanted = denseTarget(device.field, target.voxels);
+    const std::vector<std::size_t> reachable = reachableVoxels(dense, wanted);
+    EquationSums sums;
+    State literal;
+    State vectorised;
+    Votes votes;
+    Voting::Workspace workspace;
+    const std::vector<double> medians = interleavedMedians(
+        5, {{[&] {
+                 literalSums(dense, wanted, sums);
+                 literal = chosenState(dense, sums, reachable);
+             }},
+            {[&] {
+                 vectorisedSums(dense, wanted, sums);
+                 vectorised = chosenState(dense, sums, reachable);
+             }},
+            {[&] { device.voting.match(target.voxels, votes, workspace); }, 50}});
+    const State voted = votes.state();
+    if (literal != voted) throw std::runtime_error("the literal loop finds another state for " + target.name);
+    if (vectorised != voted) throw std::runtime_error("the vectorised loop finds another state for " + target.name);
+    return {medians[0], medians[1], medians[2]};
+}
+
+} // namespace
+
+void benchVoting(const Filter& filter, Report& report) {
+    const std::string names[] = {"voting-literal", "voting-vectorised", "voting-match", "voting-baseline"};
+    if (std::none_of(std::begin(names), std::end(names), [&](const auto& name) { return filter.wants(name); })) return;
+    const auto device = makeTablet(33);
+    const DenseField dense(device->field);
+    const std::vector<TargetVolume> targets = variedTargets(*device);
+    if (targets.empty()) throw std::runtime_error("no target has an answer of four distinct levels");
+
+    std::vector<double> literalRatios;
+    std::vector<double> vectorisedRatios;
+    std::vector<double> milliseconds;
+    std::vector<double> nanoseconds;
+    for (const TargetVolume& target : targets) {
+        const Measured of = measure(*device, dense, target);
+        literalRatios.push_back(of.literal / of.voting);
+        vectorisedRatios.push_back(of.vectorised / of.voting);
+        milliseconds.push_back(1e3 * of.voting);
+        nanoseconds.push_back(1e9 * of.literal / static_cast<double>(dense.expectation.size()));
+    }
+    const glm::ivec3 size = device->field.frame.dimensions;
+    const std::string inputs = std::to_string(size.x) + "x" + std::to_string(size.y) + "x" + std::to_string(size.z) +
+                               ", " + std::to_string(dense.voxels) + " voxels outside the body, " +
+                               std::to_string(dense.actuators) + " actuators, " + std::to_string(dense.levels) +
+                               " levels; " + std::to_string(targets.size()) +
+                               " targets with at least four distinct levels; same states on both sides";
+    const auto add = [&](Row row) {
+        if (filter.wants(row.name)) report.add(std::move(row));
+    };
+    add({names[0], "Eq. 1 against the literal loop (worst target)", smallestOf(literalRatios), "x", atLeast(400.0),
+         atLeast(1000.0), {inputs, "median over the targets " + std::to_string(medianOf(literalRatios)) + "x"}});
+    add({names[1], "Eq. 1 against dense vector sums (worst target)", smallestOf(vectorisedRatios), "x", {}, {},
+         {"median over the targets " + std::to_string(medianOf(vectorisedRatios)) + "x"}});
+    add({names[2], "one match (slowest target)", *std::max_element(milliseconds.begin(), milliseconds.end()), "ms", {},
+         atMost(0.1), {"median over the targets " + std::to_string(medianOf(milliseconds)) + " ms"}});
+    add({names[3], "literal loop, a voxel, actuator and level", medianOf(nanoseconds), "ns", atMost(1.4), {},
+         {"slower than this, the ratio would be bought by a slow baseline"}});
+}
+
+} // namespace lumorph::bench
