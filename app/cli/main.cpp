@@ -1,6 +1,8 @@
 #include <cstdio>
 #include <exception>
 #include <new>
+#include <string>
+#include <vector>
 
 #include <CLI/CLI.hpp>
 
@@ -17,6 +19,22 @@ int complain(const char* message, int status) {
     lumorph::cli::Session::endProgress();
     std::fprintf(stderr, "lumorph: %s\n", message);
     return status;
+}
+
+/// What was wrong with the arguments, in whose help to look, and the word that is no command, if any.
+std::string usageMessage(const CLI::App& program, const CLI::ParseError& error) {
+    const CLI::App* group = &program;
+    std::string name = program.get_name();
+    while (!group->get_subcommands().empty()) {
+        group = group->get_subcommands().front();
+        name += " " + group->get_name();
+    }
+    std::string what = error.what();
+    const std::vector<std::string> words = group->remaining();
+    if (dynamic_cast<const CLI::RequiredError*>(&error) != nullptr && !words.empty() &&
+        !group->get_subcommands([](const CLI::App*) { return true; }).empty())
+        what = "'" + words.front() + "' is no command";
+    return "arguments: " + what + "; see '" + name + " --help'";
 }
 
 } // namespace
@@ -38,8 +56,7 @@ int main(int argc, char** argv) {
         return kDone;
     } catch (const CLI::ParseError& error) {
         if (error.get_exit_code() == 0) return app.exit(error);
-        const std::string message = "arguments: " + std::string(error.what()) + "; see 'lumorph --help'";
-        return complain(message.c_str(), kWrongUsage);
+        return complain(usageMessage(app, error).c_str(), kWrongUsage);
     } catch (const lumorph::InvalidInput& error) {
         return complain(error.what(), kWrongUsage);
     } catch (const lumorph::Cancelled&) {

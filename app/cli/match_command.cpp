@@ -3,6 +3,7 @@
 #include <memory>
 #include <optional>
 
+#include "app/cli/checks.h"
 #include "app/cli/commands.h"
 #include "app/cli/field_input.h"
 #include "app/cli/match_picture.h"
@@ -262,7 +263,7 @@ void addMatchCommand(CLI::App& app, Session& session) {
         ->check(CLI::IsMember({"voting", "refined"}))
         ->capture_default_str();
     command->add_option("--budget-ms", a->budgetMilliseconds, "Time for refinement")
-        ->check(CLI::Range(0.001, 1e6))
+        ->check(numberBetween(0.001, 1e6))
         ->capture_default_str();
     command->add_option("--repeat", a->target.repeat, "Repeat each stage and give the median")
         ->check(CLI::Range(1, 100000))
@@ -270,7 +271,7 @@ void addMatchCommand(CLI::App& app, Session& session) {
     command->add_option("--animation", a->animation, "Match an animation of the file over time: its name, or first")
         ->excludes("--auto-place");
     command->add_option("--fps", a->framesPerSecond, "Frames a second of that")
-        ->check(CLI::Range(1.0, 240.0))
+        ->check(numberBetween(1.0, 240.0))
         ->capture_default_str();
     command->add_option("--csv", a->csv, "Write the matched animation as a table, or -")->needs("--animation");
     command->add_option("--picture", a->picture, "Write a picture of rest, target and fit (.png)")

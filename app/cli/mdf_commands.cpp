@@ -3,6 +3,7 @@
 #include <cstdio>
 #include <memory>
 
+#include "app/cli/checks.h"
 #include "app/cli/commands.h"
 #include "app/cli/field_input.h"
 #include "core/base/error.h"
@@ -130,6 +131,7 @@ void addMdfCommands(CLI::App& app, Session& session) {
         ->check(CLI::Range(1, 65535))
         ->capture_default_str();
     buildCommand->add_option("--seed", b->build.seed, "Which states; equal seeds give equal files")
+        ->check(seedNumber())
         ->capture_default_str();
     buildCommand->add_option("--threads", b->build.threads, "Threads (0: one a core)")
         ->check(CLI::Range(0, 1024))

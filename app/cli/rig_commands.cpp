@@ -1,6 +1,7 @@
 #include <cstdio>
 #include <memory>
 
+#include "app/cli/checks.h"
 #include "app/cli/commands.h"
 #include "core/geometry/mesh_file.h"
 #include "core/geometry/mesh_writers.h"
@@ -147,7 +148,9 @@ void addRigCommands(CLI::App& app, Session& session) {
     infoCommand->add_option("--states", infoOptions->states, "Random joint states to check")
         ->check(CLI::Range(0, 100000))
         ->capture_default_str();
-    infoCommand->add_option("--seed", infoOptions->seed, "Which random states")->capture_default_str();
+    infoCommand->add_option("--seed", infoOptions->seed, "Which random states")
+        ->check(seedNumber())
+        ->capture_default_str();
     infoCommand->callback([infoOptions, &session] { info(*infoOptions, session); });
 
     auto deformOptions = std::make_shared<DeformOptions>();

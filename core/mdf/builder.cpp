@@ -57,6 +57,25 @@ private:
     std::vector<std::uint16_t> counts_;
 };
 
+/// How far the sampling is; one unit is one state of one slab at one level.
+class SamplingProgress {
+public:
+    SamplingProgress(const Progress& progress, std::size_t units) : progress_(progress), units_(units) {}
+    void done(std::size_t units) {
+        constexpr std::size_t kReports = 1000;
+        const std::size_t after = done_ += units;
+        if (after * kReports / units_ != (after - units) * kReports / units_)
+            progress_.report(static_cast<double>(after) / static_cast<double>(units_), "sampling the field");
+    }
+    [[nodiscard]] bool cancelled() const noexcept { return progress_.cancelled(); }
+    void throwIfCancelled() const { progress_.throwIfCancelled(); }
+
+private:
+    const Progress& progress_;
+    std::size_t units_;
+    std::atomic<std::size_t> done_{0};
+};
+
 /// Parts small enough that the level counts of one take at most this much memory.
 constexpr std::size_t kSlabBytes = std::size_t{8} << 20U;
 
@@ -78,7 +97,7 @@ std::vector<Slab> slabsOf(const Coverage& coverage) {
 /// Runs the actuator of a slab through its levels for every sampled state of the others. Coverage is
 /// OR-ed over the levels within each sample, before anything is averaged (R10).
 FirstLevels countFirstLevels(const Coverage& coverage, const Slab& slab, const std::vector<State>& states,
-                             std::uint64_t& violations, CoverageScratch& scratch, const Progress& progress) {
+                             std::uint64_t& violations, CoverageScratch& scratch, SamplingProgress& progress) {
     const int height = coverage.frame().dimensions.y;
     const auto wordsPerColumn = static_cast<std::size_t>((height + 63) / 64);
     FirstLevels first(slab.range.size() * static_cast<std::size_t>(height), coverage.levels());
@@ -102,6 +121,7 @@ FirstLevels countFirstLevels(const Coverage& coverage, const Slab& slab, const s
                     first.add(voxel + static_cast<std::size_t>(std::countr_zero(fresh)), level);
             }
         }
+        progress.done(static_cast<std::size_t>(coverage.levels()));
     }
     return first;
 }
@@ -151,7 +171,7 @@ SlabResult fitSlab(const Coverage& coverage, const Slab& slab, const FirstLevels
 
 /// Mean coverage over the sampled states, in 1/255.
 std::vector<std::uint8_t> meanCoverage(const Coverage& coverage, const std::vector<State>& states,
-                                       const Progress& progress) {
+                                       SamplingProgress& progress) {
     const glm::ivec3 size = coverage.frame().dimensions;
     const auto height = static_cast<std::size_t>(size.y);
     const auto wordsPerColumn = static_cast<std::size_t>((size.y + 63) / 64);
@@ -168,6 +188,7 @@ std::vector<std::uint8_t> meanCoverage(const Coverage& coverage, const std::vect
                 for (std::uint64_t bits = words[w]; bits != 0; bits &= bits - 1)
                     ++counts[(w / wordsPerColumn) * height + (w % wordsPerColumn) * 64 +
                              static_cast<std::size_t>(std::countr_zero(bits))];
+            progress.done(1);
         }
         const std::size_t start = coverage.body().columnIndex(0, z) * height;
         for (std::size_t i = 0; i < counts.size(); ++i)
@@ -177,14 +198,12 @@ std::vector<std::uint8_t> meanCoverage(const Coverage& coverage, const std::vect
     return background;
 }
 
-/// Calls work(slab index, scratch) for every slab on all cores, with progress.
-template <typename Work> void forEachSlab(std::size_t count, const Progress& progress, Work&& work) {
-    std::atomic<std::size_t> done{0};
+/// Calls work(slab index, scratch) for every slab on all cores.
+template <typename Work> void forEachSlab(std::size_t count, const SamplingProgress& progress, Work&& work) {
     tbb::enumerable_thread_specific<CoverageScratch> scratches;
     tbb::parallel_for(std::size_t{0}, count, [&](std::size_t s) {
         if (progress.cancelled()) return;
         work(s, scratches.local());
-        progress.report(static_cast<double>(++done) / static_cast<double>(count), "sampling the field");
     });
     progress.throwIfCancelled();
 }
@@ -230,11 +249,12 @@ std::vector<State> sampledStates(const Rig& rig, const BuildOptions& options) {
 
 SampledField sampleField(const Coverage& coverage, const std::vector<State>& states, const Progress& progress) {
     const std::vector<Slab> slabs = slabsOf(coverage);
+    SamplingProgress sampling(progress, slabs.size() * states.size() * static_cast<std::size_t>(coverage.levels()));
     std::vector<std::vector<SampledField::Voxel>> parts(slabs.size());
     const auto height = static_cast<std::size_t>(coverage.frame().dimensions.y);
-    forEachSlab(slabs.size(), progress, [&](std::size_t s, CoverageScratch& scratch) {
+    forEachSlab(slabs.size(), sampling, [&](std::size_t s, CoverageScratch& scratch) {
         std::uint64_t violations = 0;
-        const FirstLevels first = countFirstLevels(coverage, slabs[s], states, violations, scratch, progress);
+        const FirstLevels first = countFirstLevels(coverage, slabs[s], states, violations, scratch, sampling);
         std::vector<double> expectation;
         for (std::size_t v = 0; v < slabs[s].range.size() * height; ++v)
             if (first.expectation(v, states.size(), expectation))
@@ -271,14 +291,16 @@ Field buildField(const Rig& rig, const BuildOptions& options, const Progress& pr
     field.exhaustive = jointStateCount(rig.actuatorCount(), options.levels, states.size() + 1) == states.size();
 
     const std::vector<Slab> slabs = slabsOf(coverage);
+    SamplingProgress sampling(progress, states.size() * (slabs.size() * static_cast<std::size_t>(options.levels) +
+                                                         static_cast<std::size_t>(field.frame.dimensions.z)));
     std::vector<SlabResult> results(slabs.size());
-    forEachSlab(slabs.size(), progress, [&](std::size_t s, CoverageScratch& scratch) {
+    forEachSlab(slabs.size(), sampling, [&](std::size_t s, CoverageScratch& scratch) {
         std::uint64_t violations = 0;
-        const FirstLevels first = countFirstLevels(coverage, slabs[s], states, violations, scratch, progress);
+        const FirstLevels first = countFirstLevels(coverage, slabs[s], states, violations, scratch, sampling);
         results[s] = fitSlab(coverage, slabs[s], first, states.size());
         results[s].violations = violations;
     });
-    field.background = meanCoverage(coverage, states, progress);
+    field.background = meanCoverage(coverage, states, sampling);
     progress.throwIfCancelled();
     assemble(field, rig, slabs, results);
     return field;

@@ -65,7 +65,9 @@ TEST_F(CommandLineErrors, WrongUsageExitsWithTwo) {
     expectRefused({
         {2, {}, "subcommand"},
         {2, {"mdf"}, "subcommand"},
-        {2, {"shake"}, "shake"},
+        {2, {"shake"}, "'shake' is no command"},
+        {2, {"mdf", "shake"}, "'shake' is no command"},
+        {2, {"mdf", "info", "{field.mdf}", "--colour"}, "see 'lumorph mdf info --help'"},
         {2, {"rig", "info"}, "rig is required"},
         {2, {"rig", "info", "{rig.glb}", "--states", "-3"}, "--states"},
         {2, {"rig", "deform", "{rig.glb}", "--state", "1,2,3"}, "--output"},
@@ -91,6 +93,7 @@ TEST_F(CommandLineErrors, WrongUsageExitsWithTwo) {
         {2, {"match", "{field.mdf}", "{good.nrrd}", "--fit"}, "--fit"},
         {2, {"match", "{field.mdf}", "{target.obj}", "--fit", "--auto-place"}, "--fit"},
         {2, {"match", "{field.mdf}", "{target.obj}", "--budget-ms", "nan"}, "--budget-ms"},
+        {2, {"match", "{field.mdf}", "{target.obj}", "--budget-ms", "0"}, "--budget-ms"},
         {2, {"match", "{field.mdf}", "{target.obj}", "--repeat", "0"}, "--repeat"},
         {2, {"match", "{field.mdf}", "{target.obj}", "--csv", "{x.csv}"}, "--animation"},
         {2, {"match", "{field.mdf}", "{target.obj}", "--picture", "-"}, "--picture"},

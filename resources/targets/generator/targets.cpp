@@ -38,7 +38,7 @@ double heightOf(const Dune& dune, double x, double z) {
 }
 
 double dunesAt(double x, double z) {
-    constexpr std::array<Dune, 6> kDunes{{{-0.070, -0.038, 224.0, 48.0, 0.064, 0.036},
+    constexpr std::array<Dune, 6> kDunes{{{-0.070, -0.038, 224.0, 54.0, 0.080, 0.036},
                                           {0.070, -0.038, 316.0, 20.0, 0.064, 0.036},
                                           {-0.070, 0.038, 136.0, 12.0, 0.064, 0.036},
                                           {0.070, 0.038, 44.0, 33.0, 0.064, 0.036},
