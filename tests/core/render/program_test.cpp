@@ -2,9 +2,9 @@
 
 #include <cmath>
 #include <fstream>
+#include <optional>
 
 #include <glm/geometric.hpp>
-#include <optional>
 
 #include <gtest/gtest.h>
 
