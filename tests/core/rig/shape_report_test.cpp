@@ -91,7 +91,7 @@ TEST(ShapeReport, IsTheSameForTheSameSeedAndCanBeStopped) {
     EXPECT_EQ(a.volumeMax, b.volumeMax);
     EXPECT_EQ(a.maxStretch, b.maxStretch);
     EXPECT_GT(a.actuators[0].maxCurvature, 1.0);
-    EXPECT_GT(a.maxStretch, 0.01);
+    EXPECT_GT(a.maxStretch, 0.001);
     std::stop_source stop;
     const Progress progress(
         [&](double fraction, std::string_view) {
