@@ -16,7 +16,7 @@ struct Sensitivity {
     std::uint16_t actuator = 0;
     double first = 0.0;  ///< metres a stroke
     double second = 0.0; ///< metres a stroke squared, between kinks
-    bool kinked = false; ///< a polyline with corners inside the range
+    double kink = 0.0;   ///< metres a stroke: how much the first derivative may jump within a grid step
 };
 
 /// Follows a vertex along its steps and bounds the first and second derivative of its position by
@@ -47,12 +47,12 @@ private:
             morph(step);
             break;
         case CompiledActuator::Kind::slide:
-            push({step.actuator, amount, 0.0, false});
+            push({step.actuator, amount, 0.0, 0.0});
             break;
         case CompiledActuator::Kind::hinge: {
             const double radius =
                 glm::length(glm::cross(rest_ - glm::dvec3(actuator.origin), glm::dvec3(actuator.axis))) + way_;
-            push({step.actuator, amount * radius, amount * amount * radius, false});
+            push({step.actuator, amount * radius, amount * amount * radius, 0.0});
             break;
         }
         case CompiledActuator::Kind::bend:
@@ -75,11 +75,13 @@ private:
             at = next;
         }
         const bool kinked = target.keys.size() > 1 || target.keys.back() < step.weight;
-        push({step.actuator, speed * static_cast<double>(step.weight), 0.0, kinked});
+        const double first = speed * static_cast<double>(step.weight);
+        push({step.actuator, first, 0.0, kinked ? 2.0 * first : 0.0});
     }
 
-    // A bend changes what earlier strokes do: its own first derivative is at most 1 + h * curvature,
-    // its second at most curvature * (2 + h * curvature).
+    // A bend changes what earlier strokes do: its first derivative by place is at most 1 + h * curvature,
+    // its second at most curvature * (2 + h * curvature), and off the neutral surface the first one
+    // jumps by h * curvature at either end of the arc.
     void bend(std::uint16_t index, const CompiledActuator& bend, double amount) {
         const double u = glm::dot(rest_ - glm::dvec3(bend.origin), glm::dvec3(bend.direction)) + way_;
         if (u <= 0.0) return;
@@ -87,6 +89,7 @@ private:
         const double curvature = amount / bend.length;
         const double stretch = 1.0 + h * curvature;
         for (Sensitivity& part : parts_) {
+            part.kink = stretch * part.kink + 2.0 * h * curvature * part.first;
             part.second = stretch * part.second + curvature * (1.0 + stretch) * part.first * part.first;
             part.first *= stretch;
         }
@@ -94,7 +97,7 @@ private:
         const double share = arc / bend.length;
         const double beyond = u - arc;
         push({index, amount * (0.5 * arc * share + beyond + h * share),
-              amount * amount * (arc * share * share / 3.0 + beyond + h * share * share), false});
+              amount * amount * (arc * share * share / 3.0 + beyond + h * share * share), 0.0});
     }
 
     // Linear blending takes the mean of rigid motions; turning a joint moves the vertex about its
@@ -251,8 +254,8 @@ std::vector<Box> reachBoxes(const std::shared_ptr<const RigCore>& core) {
             }
             actuators.push_back(parts[k].actuator);
             // Multilinear interpolation between the grid's states errs by h^2/8 * |second derivative|,
-            // and at a kink by no more than half a step's way.
-            slack += step * step / 8.0 * parts[k].second + (parts[k].kinked ? 0.5 * step * parts[k].first : 0.0);
+            // and at a kink by a quarter of a step's jump.
+            slack += step * step / 8.0 * parts[k].second + 0.25 * step * parts[k].kink;
         }
         std::ranges::sort(actuators);
         Group& group = groups[actuators];

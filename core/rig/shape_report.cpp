@@ -208,7 +208,7 @@ private:
             const double length =
                 glm::distance(glm::dvec3(mesh.positions[edge.from]), glm::dvec3(mesh.positions[edge.to]));
             // Skirts and bellows stretch by design; what counts is the sheet that is looked at.
-            const bool shown = std::ranges::all_of(edge.triangles, [&](auto t) { return facesUp(rig_.restMesh(), t); });
+            const bool shown = std::ranges::any_of(edge.triangles, [&](auto t) { return facesUp(rig_.restMesh(), t); });
             if (rest > 0.0 && shown) report_.maxStretch = std::max(report_.maxStretch, std::abs(length / rest - 1.0));
         }
     }

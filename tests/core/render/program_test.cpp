@@ -2,8 +2,10 @@
 
 #include <cmath>
 #include <fstream>
+#include <optional>
 
 #include <glm/geometric.hpp>
+
 #include <gtest/gtest.h>
 
 #include "core/base/error.h"
@@ -31,16 +33,17 @@ TEST(HeadlessContext, OffersOpenGl41Core) {
 
 TEST(HeadlessContext, SeveralLiveSideBySideAndCanBeMoved) {
     HeadlessContext first;
-    const gl::Buffer inFirst;
-    glBindBuffer(GL_ARRAY_BUFFER, inFirst.name());
-    EXPECT_TRUE(glIsBuffer(inFirst.name()));
+    std::optional<gl::Buffer> inFirst(std::in_place);
+    glBindBuffer(GL_ARRAY_BUFFER, inFirst->name());
+    EXPECT_TRUE(glIsBuffer(inFirst->name()));
     {
         const HeadlessContext second;
-        EXPECT_FALSE(glIsBuffer(inFirst.name())); // nothing is shared
+        EXPECT_FALSE(glIsBuffer(inFirst->name())); // nothing is shared
     }
     const HeadlessContext moved(std::move(first));
     moved.makeCurrent();
-    EXPECT_TRUE(glIsBuffer(inFirst.name()));
+    EXPECT_TRUE(glIsBuffer(inFirst->name()));
+    inFirst.reset(); // while its context is current
 }
 
 TEST(GlObjects, AreReleasedOnceWhateverTheMoves) {

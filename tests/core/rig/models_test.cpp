@@ -38,8 +38,8 @@ TEST_P(BundledModels, AreClosedSolidsInEveryCorner) {
 INSTANTIATE_TEST_SUITE_P(Models, BundledModels,
                          testing::Values(Bundled{"tablet.glb", tabletRig}, Bundled{"pin_display.glb", pinDisplayRig},
                                          Bundled{"ribbon.glb", ribbonRig}, Bundled{"hills.glb", hillsRig}),
-                         [](const auto& info) {
-                             const std::string file = info.param.file;
+                         [](const auto& kind) {
+                             const std::string file = kind.param.file;
                              return file.substr(0, file.find('.'));
                          });
 

@@ -1,5 +1,6 @@
 #include "core/rig/rig.h"
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <limits>
@@ -98,7 +99,9 @@ TEST(Rig, KnowsWhichActuatorMovesWhat) {
                 const auto known = rig.actuatorsOf(v);
                 const bool listed = std::ranges::binary_search(moved, v);
                 EXPECT_EQ(std::ranges::find(known, a) != known.end(), listed);
-                if (!listed) EXPECT_EQ(before[v], after[v]) << rig.name() << ' ' << v;
+                if (!listed) {
+                    EXPECT_EQ(before[v], after[v]) << rig.name() << ' ' << v;
+                }
             }
         }
     }
@@ -206,7 +209,7 @@ INSTANTIATE_TEST_SUITE_P(
         BadParts{"Velocity", "velocity", [](RigParts& p) { p.actuators[0].maxVelocity = 0.0; }},
         BadParts{"Damping", "oscillate", [](RigParts& p) { p.actuators[0].dampingRatio = 0.5; }},
         BadParts{"Pulse", "pulse", [](RigParts& p) { p.actuators[0].drive.pulseMin = kNaN; }}),
-    [](const auto& info) { return std::string(info.param.name); });
+    [](const auto& kind) { return std::string(kind.param.name); });
 
 } // namespace
 } // namespace lumorph
