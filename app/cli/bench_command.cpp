@@ -19,7 +19,7 @@ void runBench(std::vector<std::string> arguments) {
     const std::filesystem::path self = std::filesystem::read_symlink("/proc/self/exe", error);
     const std::filesystem::path program = self.parent_path() / "lumorph-bench";
     if (error || !std::filesystem::exists(program))
-        throw DeviceError("lumorph bench", "the program lumorph-bench is not beside this one",
+        throw DeviceError("bench", "the program lumorph-bench is not beside this one",
                           "install the packages of the section 'bench' in packaging/dependencies.txt and build again");
     std::vector<char*> argv;
     std::string name = program.string();
