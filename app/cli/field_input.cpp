@@ -68,6 +68,11 @@ TargetVoxels voxelsOf(const Field& field, const Target& target, const Placement&
         times.push_back(std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count());
     }
     voxels.voxelizeMilliseconds = medianOf(times);
+    const double beyond = shareBeyondFrame(field.frame, standing, voxels.bits);
+    if (beyond > 0.01)
+        voxels.warnings.push_back(
+            std::to_string(std::lround(100.0 * beyond)) +
+            " % of the target lies beyond the space the device can show and is ignored; use --fit.");
     return voxels;
 }
 

@@ -51,6 +51,7 @@ struct Result {
     Votes votes;
     State state;
     FitQuality quality;
+    std::size_t unreachable = 0; ///< target voxels that no actuator can cover
     std::optional<Refinement> refinement;
     std::optional<AutoPlacement> placement;
     double voxelizeMilliseconds = 0.0;
@@ -68,6 +69,25 @@ template <typename Work> double medianMilliseconds(int repeat, const Session& se
         times.push_back(std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count());
     }
     return medianOf(times);
+}
+
+/// Tells the author what the device cannot show of this target (R42).
+void addWarnings(const Matcher& matcher, const BitColumns& wanted, Result& result) {
+    const std::size_t voxels = result.votes.targetVoxels;
+    if (voxels == 0) {
+        result.warnings.emplace_back(
+            "The target does not overlap the space above the device; place it there or use --fit.");
+        return;
+    }
+    const std::size_t reachable = wanted.countAnd(reachableVoxels(matcher.field));
+    result.unreachable = voxels - reachable;
+    if (100 * result.unreachable >= voxels)
+        result.warnings.push_back(std::to_string(100 * result.unreachable / voxels) +
+                                  " % of the target lies where no actuator reaches; try --auto-place.");
+    for (std::size_t i = 0; i < result.votes.actuators.size(); ++i)
+        if (!result.votes.actuators[i].reached)
+            result.warnings.push_back("The target does not meet what '" + matcher.field.actuators[i].name +
+                                      "' can change; it rests.");
 }
 
 Result matchVoxels(const Matcher& matcher, const TargetVoxels& target, const Arguments& arguments,
@@ -93,13 +113,7 @@ Result matchVoxels(const Matcher& matcher, const TargetVoxels& target, const Arg
     } else {
         result.quality = refiner.qualityOf(wanted, result.state);
     }
-    if (result.votes.targetVoxels == 0)
-        result.warnings.emplace_back(
-            "The target does not overlap the space above the device; place it there or use --fit.");
-    for (std::size_t i = 0; i < result.votes.actuators.size() && result.votes.targetVoxels > 0; ++i)
-        if (!result.votes.actuators[i].reached)
-            result.warnings.push_back("The target does not meet what '" + matcher.field.actuators[i].name +
-                                      "' can change; it rests.");
+    addWarnings(matcher, wanted, result);
     return result;
 }
 
@@ -126,6 +140,7 @@ nlohmann::json resultJson(const Matcher& matcher, const Result& result, const Ar
                            {"actuators", actuators},
                            {"iou", result.quality.iou()},
                            {"targetVoxels", result.votes.targetVoxels},
+                           {"unreachableVolume", static_cast<double>(result.unreachable) * volume},
                            {"unmatchedVolume", static_cast<double>(result.quality.unmatched) * volume},
                            {"overfilledVolume", static_cast<double>(result.quality.overfilled) * volume},
                            {"ms",

@@ -16,17 +16,6 @@ namespace lumorph::cli {
 
 namespace {
 
-/// Voxels that some actuator changes, each counted once.
-std::size_t reachableVoxels(const Field& field) {
-    std::vector<bool> reachable(field.frame.voxelCount());
-    for (std::size_t i = 0; i < field.actuators.size(); ++i) {
-        const std::vector<Ramp> ramps = denseRamps(field, i);
-        for (std::size_t v = 0; v < ramps.size(); ++v)
-            if (ramps[v].v0 != kUnchanged) reachable[v] = true;
-    }
-    return static_cast<std::size_t>(std::count(reachable.begin(), reachable.end(), true));
-}
-
 nlohmann::json infoJson(const Field& field, std::size_t bytes) {
     nlohmann::json names = nlohmann::json::array();
     for (const ActuatorField& actuator : field.actuators) names.push_back(actuator.name);
@@ -43,7 +32,7 @@ nlohmann::json infoJson(const Field& field, std::size_t bytes) {
             {"actuators", names},
             {"voxels", f.voxelCount()},
             {"bodyVoxels", field.body.count()},
-            {"reachable", reachableVoxels(field)},
+            {"reachable", reachableVoxels(field).count()},
             {"changedVoxels", field.report.changedVoxels},
             {"rampError", {{"mean", field.report.rampErrorMean}, {"max", field.report.rampErrorMax}}},
             {"monotonicityViolations", field.report.monotonicityViolations},
@@ -56,8 +45,8 @@ void printInfo(const Field& field, std::size_t bytes) {
                 d.z, 1000 * field.frame.voxelSize, field.actuators.size(), field.levels);
     std::printf("  expectation over %u joint states%s, seed %llu\n", field.samples,
                 field.exhaustive ? " (all there are)" : "", static_cast<unsigned long long>(field.seed));
-    std::printf("  body %zu voxels; %zu of the other %zu can be reached\n", field.body.count(), reachableVoxels(field),
-                field.frame.voxelCount() - field.body.count());
+    std::printf("  body %zu voxels; %zu of the other %zu can be reached\n", field.body.count(),
+                reachableVoxels(field).count(), field.frame.voxelCount() - field.body.count());
     std::printf("  ramp error mean %.4f, max %.4f; %llu monotonicity violations; %zu bytes\n",
                 field.report.rampErrorMean, field.report.rampErrorMax,
                 static_cast<unsigned long long>(field.report.monotonicityViolations), bytes);

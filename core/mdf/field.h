@@ -62,4 +62,7 @@ struct Field {
 /// A dense copy of one actuator's ramps, one a voxel in Field::voxelIndex order; for export and display.
 [[nodiscard]] std::vector<Ramp> denseRamps(const Field& field, std::size_t actuator);
 
+/// The voxels that at least one actuator changes.
+[[nodiscard]] BitColumns reachableVoxels(const Field& field);
+
 } // namespace lumorph

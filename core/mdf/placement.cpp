@@ -5,6 +5,7 @@
 #include <limits>
 
 #include <glm/gtc/matrix_transform.hpp>
+#include <glm/vector_relational.hpp>
 
 #include "core/base/error.h"
 #include "core/geometry/mesh_check.h"
@@ -29,6 +30,15 @@ void voxelizeTarget(const VoxelFrame& frame, const Target& target, SolidVoxelize
         voxelizer.voxelize(frame, target.mesh.positions, target.mesh.triangles, out);
     else
         out = voxelizeWinding(frame, target.mesh);
+}
+
+double shareBeyondFrame(const VoxelFrame& frame, const Target& target, const BitColumns& bits) noexcept {
+    const Box box = boundingBox(target.mesh.positions);
+    const Box room = frame.box();
+    const bool beyond = glm::any(glm::lessThan(box.min, room.min)) || glm::any(glm::greaterThan(box.max, room.max));
+    const double volume = std::abs(signedVolume(target.mesh));
+    if (!beyond || !target.closed || !(volume > 0.0)) return 0.0;
+    return std::clamp(1.0 - static_cast<double>(bits.count()) * frame.voxelVolume() / volume, 0.0, 1.0);
 }
 
 glm::mat4 Placement::deviceFromTarget() const {

@@ -27,6 +27,10 @@ struct Target {
 /// numbers. The frame's zero-state body is not taken out.
 void voxelizeTarget(const VoxelFrame& frame, const Target& target, SolidVoxelizer& voxelizer, BitColumns& out);
 
+/// Share of a target's volume, in [0, 1], that its voxels `bits` leave out because it reaches beyond
+/// the frame (R42). 0 for an open target, whose volume is not known.
+[[nodiscard]] double shareBeyondFrame(const VoxelFrame& frame, const Target& target, const BitColumns& bits) noexcept;
+
 /// Where a target stands: scaled and turned about its own origin, then moved; device coordinates.
 struct Placement {
     double scale = 1.0;

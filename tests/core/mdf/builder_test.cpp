@@ -7,7 +7,9 @@
 
 #include "core/base/error.h"
 #include "core/mdf/field_file.h"
+#include "core/mdf/refine.h"
 #include "core/mdf/sampling.h"
+#include "core/mdf/voting.h"
 #include "tests/support/cgal_oracle.h"
 #include "tests/support/small_rigs.h"
 
@@ -177,6 +179,90 @@ TEST_P(BuilderOracle, StoredRampsAndBackgroundFitTheExpectation) {
         for (const State& state : states) covered += volumes_.at(key(state))[voxel];
         ASSERT_NEAR(field.background[voxel] / 255.0, static_cast<double>(covered) / 125.0, 0.5 / 255.0 + 1e-9);
     }
+}
+
+// R10: every time a sample's voxel is uncovered again at a higher level is counted, and the field still
+// never falls.
+TEST_P(BuilderOracle, MonotonicityIsEnforcedAndItsViolationsAreCounted) {
+    BuildOptions options;
+    options.resolution = GetParam().resolution;
+    options.levels = kLevels;
+    options.samples = 1000;
+    const Field field = buildField(coverage_->rig(), options);
+    std::uint64_t violations = 0;
+    for (std::size_t actuator = 0; actuator < 3; ++actuator)
+        for (State state : allStates(3, kLevels)) {
+            std::vector<bool> seen(field.frame.voxelCount());
+            for (int level = 0; level < kLevels; ++level) {
+                state[actuator] = Level{level};
+                const std::vector<bool>& now = volumes_.at(key(state));
+                for (std::size_t voxel = 0; voxel < seen.size(); ++voxel) {
+                    violations += seen[voxel] && !now[voxel];
+                    seen[voxel] = seen[voxel] || now[voxel];
+                }
+            }
+        }
+    EXPECT_EQ(field.report.monotonicityViolations, violations);
+    EXPECT_EQ(violations > 0, GetParam().make == &test::armRig) << "only the arm's way depends on its other joints";
+    for (const ActuatorField& actuator : field.actuators)
+        for (const Ramp& ramp : actuator.ramps)
+            if (ramp.v0 != kUnchanged) {
+                ASSERT_LT(ramp.base, ramp.top);
+            }
+}
+
+// R11: matching by the stored ramps is as good as matching by the sampled expectation itself.
+TEST_P(BuilderOracle, VotingByRampsIsAsGoodAsByTheSampledField) {
+    constexpr int kFineLevels = 21;
+    const Rig& rig = coverage_->rig();
+    BuildOptions options;
+    options.resolution = GetParam().resolution;
+    options.levels = kFineLevels;
+    const Field field = buildField(rig, options);
+    EXPECT_LE(field.report.rampErrorMean, 0.02);
+    const Coverage coverage(rig, field.frame, kFineLevels);
+    const SampledField sampled = sampleField(coverage, sampledStates(rig, options));
+    const Voting voting(field);
+    Refiner refiner(coverage);
+    CoverageScratch scratch;
+    const auto height = static_cast<std::size_t>(field.frame.dimensions.y);
+    double worst = 1.0;
+    for (const State& hidden : quasiRandomStates(3, kFineLevels, 12, 99)) {
+        BitColumns target;
+        coverage.covered(hidden, target, scratch);
+        if (target.count() < 30) continue;
+        double background = 0.0;
+        for (int z = 0; z < target.dimensions().z; ++z)
+            for (int x = 0; x < target.dimensions().x; ++x)
+                for (int y = 0; y < target.dimensions().y; ++y)
+                    if (target.test(x, y, z)) background += field.background[field.voxelIndex(x, y, z)] / 255.0;
+        double total = 0.0;
+        for (const std::uint8_t p : field.background) total += p / 255.0;
+        State best(3);
+        for (std::size_t i = 0; i < 3; ++i) {
+            double bestRatio = INFINITY;
+            for (std::size_t level = 0; level < kFineLevels; ++level) {
+                double sum = total;
+                double shared = background;
+                for (const SampledField::Voxel& v : sampled.actuators[i]) {
+                    const double p = field.background[v.column * height + static_cast<std::size_t>(v.y)] / 255.0;
+                    const int width = field.frame.dimensions.x;
+                    const bool wanted =
+                        target.test(static_cast<int>(v.column) % width, v.y, static_cast<int>(v.column) / width);
+                    sum += v.expectation[level] - p;
+                    if (wanted) shared += v.expectation[level] - p;
+                }
+                const double ratio = (sum + static_cast<double>(target.count()) - 2.0 * shared) / shared;
+                if (shared < 1.0 || ratio >= bestRatio) continue;
+                bestRatio = ratio;
+                best[i] = Level{static_cast<int>(level)};
+            }
+        }
+        const double bySamples = refiner.qualityOf(target, best).iou();
+        const double byRamps = refiner.qualityOf(target, voting.match(target).state()).iou();
+        worst = std::min(worst, byRamps - bySamples);
+    }
+    EXPECT_GE(worst, -0.02);
 }
 
 INSTANTIATE_TEST_SUITE_P(SmallRigs, BuilderOracle,
