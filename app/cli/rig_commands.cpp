@@ -97,10 +97,11 @@ void printReport(const Rig& rig, const ShapeReport& report) {
         std::printf(" %7.1f mm %6.1f cm2 %7.2f s\n", 1000 * a.amplitude, 1e4 * a.sweptArea, a.fullStrokeSeconds);
     }
     if (report.actuators.size() > kMost) std::printf("  ... and %zu more\n", report.actuators.size() - kMost);
-    std::printf("\n  In %d random states: %d open, %d crossing themselves, %d turned inside out; the top stretches by at "
-                "most %.1f %%.\n",
-                report.sampledStates, report.openStates, report.intersectingStates, report.invertedStates,
-                100 * report.maxStretch);
+    std::printf(
+        "\n  In %d random states: %d open, %d crossing themselves, %d turned inside out; the top stretches by at "
+        "most %.1f %%.\n",
+        report.sampledStates, report.openStates, report.intersectingStates, report.invertedStates,
+        100 * report.maxStretch);
     for (const std::string& finding : report.rest.findings()) std::printf("  ! %s\n", finding.c_str());
     for (const std::string& warning : report.warnings) std::printf("  ! %s\n", warning.c_str());
 }
