@@ -144,18 +144,29 @@ void Coverage::Pieces::rasterGroup(const RigGroup& group, std::span<const double
     scratch.vertices.resize(count);
     group.vertices->deform(strokes, scratch.positions);
     for (std::size_t i = 0; i < count; ++i) scratch.vertices[i] = snap(scratch.positions[i]);
-    const int height = frame.dimensions.y;
-    const auto toggle = [&](int x, int z, int level, bool) noexcept {
-        if (level >= height) return;
-        const int first = std::max(level, 0);
-        std::uint64_t* column = &out[offsetIn(range, x, z)];
-        std::uint64_t above = ~std::uint64_t{0} << (static_cast<unsigned>(first) & 63U);
-        for (std::size_t word = static_cast<std::size_t>(first) >> 6U; word < wordsPerColumn;
-             ++word, above = ~std::uint64_t{0})
-            column[word] ^= above;
-    };
     const GridVertex* v = scratch.vertices.data();
-    for (const glm::uvec3& t : group.triangles) rasterizeTriangle(v[t.x], v[t.y], v[t.z], snap.shift(), shared, toggle);
+    const auto rasterWith = [&](auto&& toggle) {
+        for (const glm::uvec3& t : group.triangles)
+            rasterizeTriangle(v[t.x], v[t.y], v[t.z], snap.shift(), shared, toggle);
+    };
+    const int height = frame.dimensions.y;
+    const auto width = static_cast<std::size_t>(range.width());
+    std::uint64_t* const first = out.data();
+    const auto columnAt = [=](int x, int z) noexcept {
+        return static_cast<std::size_t>(z - range.z0) * width + static_cast<std::size_t>(x - range.x0);
+    };
+    if (wordsPerColumn == 1) // the usual height, and this is the inner loop of every evaluation
+        rasterWith([=](int x, int z, int level, bool) noexcept {
+            if (level < height) first[columnAt(x, z)] ^= ~std::uint64_t{0} << static_cast<unsigned>(std::max(level, 0));
+        });
+    else
+        rasterWith([=, words = wordsPerColumn](int x, int z, int level, bool) noexcept {
+            if (level >= height) return;
+            const auto bit = static_cast<unsigned>(std::max(level, 0));
+            std::uint64_t* const column = first + columnAt(x, z) * words;
+            column[bit >> 6U] ^= ~std::uint64_t{0} << (bit & 63U);
+            for (std::size_t word = (bit >> 6U) + 1; word < words; ++word) column[word] = ~column[word];
+        });
 }
 
 std::span<const std::uint64_t> Coverage::Pieces::groupAtLevel(std::size_t b, std::size_t g, int level,

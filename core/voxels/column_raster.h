@@ -91,6 +91,12 @@ struct ColumnRange {
     return {0, frame.dimensions.x - 1, 0, frame.dimensions.z - 1};
 }
 
+/// std::ceil as an int for y in [-1, 1e8]; the x86-64 baseline has no instruction for it.
+[[nodiscard]] inline int ceilToInt(float y) noexcept {
+    const int towardsZero = static_cast<int>(y);
+    return towardsZero + static_cast<int>(static_cast<float>(towardsZero) < y);
+}
+
 /// Calls `crossing(x, z, level, entering)` for every column centre of `range` that the triangle
 /// covers seen along y: voxels with index >= level lie above the triangle there (level may be
 /// outside the grid), and `entering` tells whether going up means going into the solid.
@@ -138,7 +144,7 @@ inline void rasterizeTriangle(const GridVertex& a, const GridVertex& b, const Gr
             if ((v0 | v1 | v2) >= 0) {
                 const float y =
                     p.y + (static_cast<float>(v1) * (q.y - p.y) + static_cast<float>(v2) * (r.y - p.y)) * inverse;
-                crossing(x, z, static_cast<int>(std::ceil(std::min(std::max(y, -1.0F), 1e8F))), entering);
+                crossing(x, z, ceilToInt(std::min(std::max(y, -1.0F), 1e8F)), entering);
             }
             v0 -= e0.dz;
             v1 -= e1.dz;

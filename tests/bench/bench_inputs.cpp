@@ -48,10 +48,10 @@ double bump(double u, double w, double centreU, double centreW, double radius) {
 Device::Device(Rig rig, const BuildOptions& options)
     : field(buildField(rig, options)), coverage(std::move(rig), field.frame, options.levels), voting(field) {}
 
-std::unique_ptr<Device> makeTablet(int levels) {
+std::unique_ptr<Device> makeDevice(const std::string& model, int levels) {
     BuildOptions options;
     options.levels = levels;
-    return std::make_unique<Device>(readRig(resourceFile("models/tablet.glb")), options);
+    return std::make_unique<Device>(readRig(resourceFile("models/" + model)), options);
 }
 
 std::optional<TriangleMesh> sharedMesh(const std::string& fileName) {
@@ -138,8 +138,8 @@ std::vector<TargetVolume> wavesAndReliefs(const Field& field, const BitColumns& 
     };
     std::vector<TargetVolume> targets;
     for (const HeightField& height : waves)
-        targets.push_back({"wave " + std::to_string(targets.size()), TargetVolume::Kind::wave,
-                           under(field, domain, height)});
+        targets.push_back(
+            {"wave " + std::to_string(targets.size()), TargetVolume::Kind::wave, under(field, domain, height)});
     for (const HeightField& height : reliefs)
         targets.push_back({"relief " + std::to_string(targets.size() - std::size(waves)), TargetVolume::Kind::relief,
                            under(field, domain, height)});

@@ -31,8 +31,8 @@ struct Device {
     Voting voting;
 };
 
-/// The bundled tablet at 33 voxels, with 64 samples.
-[[nodiscard]] std::unique_ptr<Device> makeTablet(int levels);
+/// A rig of resources/models at 33 voxels, with 64 samples.
+[[nodiscard]] std::unique_ptr<Device> makeDevice(const std::string& model, int levels);
 
 /// A mesh of the shared folder beside the tree; none when it is not there.
 [[nodiscard]] std::optional<TriangleMesh> sharedMesh(const std::string& fileName);

@@ -6,17 +6,21 @@
 
 namespace lumorph::bench {
 
+std::string fixed(double value, int digits) {
+    char text[64];
+    std::snprintf(text, sizeof text, "%.*f", digits, value);
+    return text;
+}
+
 namespace {
 
 using Cells = std::vector<std::string>;
 
 /// Three significant digits, without exponent.
 std::string numberText(double value) {
-    char text[64];
     const double size = std::abs(value);
-    const int digits = value == std::round(value) || size >= 100.0 ? 0 : size >= 10.0 ? 1 : size >= 1.0 ? 2 : 3;
-    std::snprintf(text, sizeof text, "%.*f", size > 0.0 && size < 0.1 && digits > 0 ? 4 : digits, value);
-    return text;
+    if (value == std::round(value) || size >= 100.0) return fixed(value, 0);
+    return fixed(value, size >= 10.0 ? 1 : size >= 1.0 ? 2 : size >= 0.1 ? 3 : 4);
 }
 
 std::string withUnit(double value, const std::string& unit) {
@@ -87,9 +91,8 @@ void Report::printText() const {
 }
 
 void Report::printJson() const {
-    nlohmann::json all{{"rows", nlohmann::json::array()},
-                       {"series", nlohmann::json::array()},
-                       {"errors", nlohmann::json::array()}};
+    nlohmann::json all{
+        {"rows", nlohmann::json::array()}, {"series", nlohmann::json::array()}, {"errors", nlohmann::json::array()}};
     for (const Row& row : rows_)
         all["rows"].push_back({{"name", row.name},
                                {"what", row.what},

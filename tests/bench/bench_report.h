@@ -22,6 +22,9 @@ struct Limit {
 [[nodiscard]] inline Limit atLeast(double value) { return {Limit::Sense::atLeast, value}; }
 [[nodiscard]] inline Limit atMost(double value) { return {Limit::Sense::atMost, value}; }
 
+/// A number for a note, with so many digits after the point.
+[[nodiscard]] std::string fixed(double value, int digits);
+
 /// One measured figure beside its bar and its aim.
 struct Row {
     std::string name;

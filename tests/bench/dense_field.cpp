@@ -39,9 +39,8 @@ DenseField::DenseField(const Field& field)
 
 std::vector<float> denseTarget(const Field& field, const BitColumns& target) {
     std::vector<float> dense(field.frame.voxelCount() - field.body.count());
-    eachDomainVoxel(field, [&](const glm::ivec3& at, std::size_t v) {
-        dense[v] = target.test(at.x, at.y, at.z) ? 1.0F : 0.0F;
-    });
+    eachDomainVoxel(
+        field, [&](const glm::ivec3& at, std::size_t v) { dense[v] = target.test(at.x, at.y, at.z) ? 1.0F : 0.0F; });
     return dense;
 }
 
@@ -59,15 +58,16 @@ State chosenState(const DenseField& field, const EquationSums& sums, const std::
     for (std::size_t i = 0; i < field.actuators; ++i) {
         if (reachable[i] == 0) continue;
         const double least = std::max(1.0, 0.01 * static_cast<double>(reachable[i]));
-        double best = std::numeric_limits<double>::infinity();
+        std::vector<double> ratios(field.levels, std::numeric_limits<double>::infinity());
         for (std::size_t j = 0; j < field.levels; ++j) {
-            const double intersection = sums.intersections[i * field.levels + j];
-            if (intersection < least) continue;
-            const double ratio = sums.differences[i * field.levels + j] / intersection;
-            if (ratio >= best * (1.0 - kTie)) continue;
-            best = ratio;
-            state[i] = Level{static_cast<int>(j)};
+            const std::size_t at = i * field.levels + j;
+            if (sums.intersections[at] >= least) ratios[j] = sums.differences[at] / sums.intersections[at];
         }
+        const double best = *std::min_element(ratios.begin(), ratios.end());
+        if (!std::isfinite(best)) continue;
+        const auto chosen =
+            std::find_if(ratios.begin(), ratios.end(), [&](double ratio) { return ratio <= best * (1.0 + kTie); });
+        state[i] = Level{static_cast<int>(chosen - ratios.begin())};
     }
     return state;
 }

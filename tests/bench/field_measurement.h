@@ -22,9 +22,9 @@ struct FieldMeasurement {
     std::size_t actuators = 0;
     std::size_t changedVoxels = 0; ///< (actuator, voxel) pairs
     std::size_t fileBytes = 0;
-    std::size_t peakBytes = 0; ///< resident, of building and packing the file
-    double buildSeconds = 0.0; ///< two threads
-    double matchSeconds = 0.0; ///< voting, the slowest of some targets; median
+    std::size_t peakBytes = 0;        ///< resident, of building and packing the file
+    double buildSeconds = 0.0;        ///< two threads
+    double matchSeconds = 0.0;        ///< voting, the slowest of some targets; median
     double changedTargetVoxels = 0.0; ///< (actuator, voxel) pairs within that target
     double rampErrorMean = 0.0;
 };

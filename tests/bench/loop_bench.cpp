@@ -21,9 +21,8 @@ public:
 
     explicit Loop(const Device& device)
         : device_(device), target_(modelOf(bumpyEllipsoid(), "target")),
-          placement_(fitPlacement(device.field, boundingBox(flatten(target_).positions))),
-          refiner_(device.coverage), motion_(limitsOf(device.coverage.rig())),
-          deformed_(device.coverage.rig().restMesh().positions.size()) {}
+          placement_(fitPlacement(device.field, boundingBox(flatten(target_).positions))), refiner_(device.coverage),
+          motion_(limitsOf(device.coverage.rig())), deformed_(device.coverage.rig().restMesh().positions.size()) {}
 
     /// Seconds of each stage; a refinement budget of zero leaves refinement out.
     std::vector<double> frame(int number, Microseconds budget) {
@@ -34,8 +33,8 @@ public:
             target_.nodes.front().matrix = placement_.deviceFromTarget();
             mesh = flatten(target_);
         });
-        seconds[1] = secondsOf(
-            [&] { voxelizer_.voxelize(device_.field.frame, mesh.positions, mesh.triangles, wanted_); });
+        seconds[1] =
+            secondsOf([&] { voxelizer_.voxelize(device_.field.frame, mesh.positions, mesh.triangles, wanted_); });
         seconds[2] = secondsOf([&] { device_.voting.match(wanted_, votes_, workspace_); });
         State state = votes_.state();
         if (budget > Microseconds{0})
@@ -80,7 +79,7 @@ Row measure(Loop& loop, const std::string& name, const std::string& what, Micros
     }
     std::string note = "medians of " + std::to_string(kFrames) + " frames, ms:";
     for (std::size_t s = 0; s < stages.size(); ++s)
-        note += std::string(" ") + Loop::kStages[s] + " " + std::to_string(medianOf(stages[s]));
+        note += std::string(" ") + Loop::kStages[s] + " " + fixed(medianOf(stages[s]), 3);
     return {name, what, medianOf(whole), "ms", atMost(3.0), {}, {note}};
 }
 
@@ -88,10 +87,11 @@ Row measure(Loop& loop, const std::string& name, const std::string& what, Micros
 
 void benchLoop(const Filter& filter, Report& report) {
     if (!filter.wants("loop-voting") && !filter.wants("loop-refined")) return;
-    const auto device = makeTablet(33);
+    const auto device = makeDevice("tablet.glb", 33);
     Loop loop(*device);
     if (filter.wants("loop-voting"))
-        report.add(measure(loop, "loop-voting", "one frame without rendering, 70,000-triangle target", Microseconds{0}));
+        report.add(
+            measure(loop, "loop-voting", "one frame without rendering, 70,000-triangle target", Microseconds{0}));
     if (filter.wants("loop-refined"))
         report.add(measure(loop, "loop-refined", "the same, refined for at most 0.5 ms", Microseconds{500}));
 }

@@ -54,7 +54,8 @@ Outcome refineOne(const Device& device, Refiner& refiner, const TargetVolume& ta
     return outcome;
 }
 
-double bestOfRandomStarts(const Coverage& coverage, Refiner& refiner, const BitColumns& target, std::mt19937_64& random) {
+double bestOfRandomStarts(const Coverage& coverage, Refiner& refiner, const BitColumns& target,
+                          std::mt19937_64& random) {
     const SteadyClock clock;
     std::uniform_int_distribution<int> level(0, coverage.levels() - 1);
     double best = 0.0;
@@ -81,51 +82,72 @@ Summary summarise(const std::vector<Outcome>& outcomes) {
         slowest = std::max(slowest, of.seconds);
         if (!of.counts()) continue;
         if (shares.empty() || of.share() < smallestOf(shares))
-            worst = of.name + " (voting " + std::to_string(of.voted) + ", refined " + std::to_string(of.refined) +
-                    ", best " + std::to_string(of.best) + ")";
+            worst = of.name + " (voting " + fixed(of.voted, 4) + ", refined " + fixed(of.refined, 4) + ", best " +
+                    fixed(of.best, 4) + ")";
         shares.push_back(of.share());
         states.push_back(of.states);
     }
     if (shares.empty()) return {0.0, {"no target counts"}};
     summary.worst = smallestOf(shares);
     summary.notes = {std::to_string(shares.size()) + " of " + std::to_string(outcomes.size()) +
-                         " targets count; mean " + std::to_string(meanOf(shares)) + "; worst " + worst,
+                         " targets count; mean " + fixed(meanOf(shares), 4) + "; worst " + worst,
                      "median " + std::to_string(static_cast<int>(medianOf(states))) + " states looked at; at most " +
-                         std::to_string(1e3 * slowest) + " ms"};
+                         fixed(1e3 * slowest, 2) + " ms"};
     return summary;
+}
+
+/// Refines every target and compares with the best of many unbudgeted starts.
+std::vector<Outcome> compareWithStarts(const Device& device) {
+    Refiner refiner(device.coverage);
+    std::mt19937_64 random(3);
+    std::vector<Outcome> outcomes;
+    for (const TargetVolume& target : allTargets(device)) {
+        Outcome outcome = refineOne(device, refiner, target);
+        outcome.best = std::max(outcome.best, bestOfRandomStarts(device.coverage, refiner, target.voxels, random));
+        if (target.kind == TargetVolume::Kind::hidden) outcome.best = 1.0; // by the state that made the target
+        outcomes.push_back(outcome);
+    }
+    return outcomes;
 }
 
 void benchStarts(const Filter& filter, Report& report) {
     const std::string best = "refine-best";
     const std::string hidden = "refine-hidden";
-    if (!filter.wants(best) && !filter.wants(hidden)) return;
-    const auto device = makeTablet(33);
-    Refiner refiner(device->coverage);
-    std::mt19937_64 random(3);
-    std::vector<Outcome> outcomes;
-    double worstHidden = 1.0;
-    for (const TargetVolume& target : allTargets(*device)) {
-        Outcome outcome = refineOne(*device, refiner, target);
-        outcome.best = std::max(outcome.best, bestOfRandomStarts(device->coverage, refiner, target.voxels, random));
-        if (target.kind == TargetVolume::Kind::hidden) {
-            outcome.best = 1.0; // the state that made the target
-            worstHidden = std::min(worstHidden, outcome.refined);
-        }
-        outcomes.push_back(outcome);
+    const std::string coupled = "refine-coupled";
+    if (filter.wants(best) || filter.wants(hidden)) {
+        const std::vector<Outcome> outcomes = compareWithStarts(*makeDevice("tablet.glb", 33));
+        const Summary summary = summarise(outcomes);
+        double worstHidden = 1.0;
+        for (const Outcome& of : outcomes)
+            if (of.kind == TargetVolume::Kind::hidden) worstHidden = std::min(worstHidden, of.refined);
+        if (filter.wants(best))
+            report.add(Row{best,
+                           "refined within 10 ms, share of the best of 50 unbudgeted starts (worst)",
+                           summary.worst,
+                           "",
+                           atLeast(0.98),
+                           {},
+                           summary.notes});
+        if (filter.wants(hidden))
+            report.add(Row{hidden, "IoU of 20 hidden states (worst)", worstHidden, "", atLeast(0.97), {}, {}});
     }
-    const Summary summary = summarise(outcomes);
-    if (filter.wants(best))
-        report.add(Row{best, "refined within 10 ms against the best of 50 unbudgeted starts (worst)", summary.worst, "",
-                       atLeast(0.98), {}, summary.notes});
-    if (filter.wants(hidden))
-        report.add(Row{hidden, "IoU of 20 hidden states (worst)", worstHidden, "", atLeast(0.97), {}, {}});
+    if (filter.wants(coupled)) {
+        const Summary summary = summarise(compareWithStarts(*makeDevice("hills.glb", 33)));
+        report.add(Row{coupled,
+                       "the same with three hills that overlap (worst)",
+                       summary.worst,
+                       "",
+                       atLeast(0.98),
+                       {},
+                       summary.notes});
+    }
 }
 
 void benchExhaustive(const Filter& filter, Report& report) {
     const std::string name = "refine-exhaustive";
     if (!filter.wants(name)) return;
     constexpr int kLevels = 5;
-    const auto device = makeTablet(kLevels);
+    const auto device = makeDevice("tablet.glb", kLevels);
     const std::vector<TargetVolume> targets = allTargets(*device);
     Refiner refiner(device->coverage);
     std::vector<Outcome> outcomes;
@@ -140,15 +162,20 @@ void benchExhaustive(const Filter& filter, Report& report) {
             outcomes[t].best = std::max(outcomes[t].best, compareVolumes(covered, targets[t].voxels).iou());
     }
     Summary summary = summarise(outcomes);
-    report.add(Row{name, "m = 5, refined against all " + std::to_string(states.size()) + " joint states (worst)",
-                   summary.worst, "", atLeast(0.98), {}, std::move(summary.notes)});
+    report.add(Row{name,
+                   "m = 5, refined, share of the best of all " + std::to_string(states.size()) + " states (worst)",
+                   summary.worst,
+                   "",
+                   atLeast(0.98),
+                   {},
+                   std::move(summary.notes)});
 }
 
 void benchEvaluation(const Filter& filter, Report& report) {
     const std::string anew = "evaluation-lean";
     const std::string kept = "evaluation-kept";
     if (!filter.wants(anew) && !filter.wants(kept)) return;
-    const auto device = makeTablet(33);
+    const auto device = makeDevice("tablet.glb", 33);
     const BitColumns target = hiddenStates(device->coverage, 1, 9).front().voxels;
     const std::vector<State> states = quasiRandomStates(device->coverage.rig().actuatorCount(), 33, 64, 2);
     CoverageScratch scratch;
@@ -171,13 +198,22 @@ void benchEvaluation(const Filter& filter, Report& report) {
                                   },
                                   5}});
     if (filter.wants(anew))
-        report.add(Row{anew, "one joint state of the tablet: deform, voxelise, IoU", 1e3 * medians[0], "ms",
-                       atMost(0.15), {},
+        report.add(Row{anew,
+                       "one joint state of the tablet: deform, voxelise, IoU",
+                       1e3 * medians[0],
+                       "ms",
+                       atMost(0.15),
+                       {},
                        {std::to_string(device->coverage.rig().restMesh().triangles.size()) + " triangles, " +
                         std::to_string(device->coverage.rig().restMesh().positions.size()) + " vertices"}});
     if (filter.wants(kept))
-        report.add(Row{kept, "the same from the pieces kept for each level", 1e3 * medians[1], "ms", {}, {},
-                       {"kept pieces: " + std::to_string(static_cast<double>(device->coverage.bytes()) / 1e6) + " MB"}});
+        report.add(Row{kept,
+                       "the same from the pieces kept for each level",
+                       1e3 * medians[1],
+                       "ms",
+                       {},
+                       {},
+                       {"kept pieces: " + fixed(static_cast<double>(device->coverage.bytes()) / 1e6, 1) + " MB"}});
 }
 
 } // namespace

@@ -6,7 +6,8 @@ namespace lumorph::bench {
 namespace {
 
 Series emptySeries(const std::string& name, const std::string& title, const std::string& first) {
-    return {name, title,
+    return {name,
+            title,
             {first, "voxels", "changed voxels", "build s", "ns/changed voxel, sample", "peak MB", "file MB", "match ms",
              "changed target voxels", "match ns/changed target voxel"},
             {}};
@@ -30,8 +31,8 @@ std::vector<double> lineOf(double first, const FieldJob& job, const FieldMeasure
 
 void benchScaling(const Filter& filter, Report& report) {
     if (filter.wants("scaling-resolution")) {
-        Series series = emptySeries("scaling-resolution",
-                                    "the tablet, 33 levels, two cores; 64 samples, 16 at r = 129", "r");
+        Series series =
+            emptySeries("scaling-resolution", "the tablet, 33 levels, two cores; 64 samples, 16 at r = 129", "r");
         for (const int resolution : {17, 33, 65, 129}) {
             FieldJob job{"tablet.glb"};
             job.resolution = resolution;
@@ -41,9 +42,9 @@ void benchScaling(const Filter& filter, Report& report) {
         report.add(std::move(series));
     }
     if (filter.wants("scaling-actuators")) {
-        Series series = emptySeries("scaling-actuators",
-                                    "the pin display with only some pins driven, 101 levels, 64 samples, two cores",
-                                    "actuators");
+        Series series =
+            emptySeries("scaling-actuators",
+                        "the pin display with only some pins driven, 101 levels, 64 samples, two cores", "actuators");
         FieldJob job{"pin_display.glb"};
         job.levels = 101;
         job.resolution = resolutionFor(job.model, 1'000'000);

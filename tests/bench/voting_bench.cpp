@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <set>
 #include <stdexcept>
 
@@ -38,16 +39,16 @@ Measured measure(const Device& device, const DenseField& dense, const TargetVolu
     State vectorised;
     Votes votes;
     Voting::Workspace workspace;
-    const std::vector<double> medians = interleavedMedians(
-        5, {{[&] {
-                 literalSums(dense, wanted, sums);
-                 literal = chosenState(dense, sums, reachable);
-             }},
-            {[&] {
-                 vectorisedSums(dense, wanted, sums);
-                 vectorised = chosenState(dense, sums, reachable);
-             }},
-            {[&] { device.voting.match(target.voxels, votes, workspace); }, 50}});
+    const std::vector<double> medians =
+        interleavedMedians(5, {{[&] {
+                                   literalSums(dense, wanted, sums);
+                                   literal = chosenState(dense, sums, reachable);
+                               }},
+                               {[&] {
+                                   vectorisedSums(dense, wanted, sums);
+                                   vectorised = chosenState(dense, sums, reachable);
+                               }},
+                               {[&] { device.voting.match(target.voxels, votes, workspace); }, 50}});
     const State voted = votes.state();
     if (literal != voted) throw std::runtime_error("the literal loop finds another state for " + target.name);
     if (vectorised != voted) throw std::runtime_error("the vectorised loop finds another state for " + target.name);
@@ -57,9 +58,10 @@ Measured measure(const Device& device, const DenseField& dense, const TargetVolu
 } // namespace
 
 void benchVoting(const Filter& filter, Report& report) {
-    const std::string names[] = {"voting-literal", "voting-vectorised", "voting-match", "voting-baseline"};
+    const std::string names[] = {"voting-literal", "voting-literal-worst", "voting-vectorised", "voting-match",
+                                 "voting-baseline"};
     if (std::none_of(std::begin(names), std::end(names), [&](const auto& name) { return filter.wants(name); })) return;
-    const auto device = makeTablet(33);
+    const auto device = makeDevice("tablet.glb", 33);
     const DenseField dense(device->field);
     const std::vector<TargetVolume> targets = variedTargets(*device);
     if (targets.empty()) throw std::runtime_error("no target has an answer of four distinct levels");
@@ -84,14 +86,41 @@ void benchVoting(const Filter& filter, Report& report) {
     const auto add = [&](Row row) {
         if (filter.wants(row.name)) report.add(std::move(row));
     };
-    add({names[0], "Eq. 1 against the literal loop (worst target)", smallestOf(literalRatios), "x", atLeast(400.0),
-         atLeast(1000.0), {inputs, "median over the targets " + std::to_string(medianOf(literalRatios)) + "x"}});
-    add({names[1], "Eq. 1 against dense vector sums (worst target)", smallestOf(vectorisedRatios), "x", {}, {},
-         {"median over the targets " + std::to_string(medianOf(vectorisedRatios)) + "x"}});
-    add({names[2], "one match (slowest target)", *std::max_element(milliseconds.begin(), milliseconds.end()), "ms", {},
-         atMost(0.1), {"median over the targets " + std::to_string(medianOf(milliseconds)) + " ms"}});
-    add({names[3], "literal loop, a voxel, actuator and level", medianOf(nanoseconds), "ns", atMost(1.4), {},
-         {"slower than this, the ratio would be bought by a slow baseline"}});
+    add({names[0],
+         "Eq. 1 against the literal loop (median target)",
+         medianOf(literalRatios),
+         "x",
+         atLeast(400.0),
+         atLeast(1000.0),
+         {inputs}});
+    add({names[1],
+         "Eq. 1 against the literal loop (worst target)",
+         smallestOf(literalRatios),
+         "x",
+         atLeast(400.0),
+         atLeast(1000.0),
+         {}});
+    add({names[2],
+         "Eq. 1 against dense vector sums (median target)",
+         medianOf(vectorisedRatios),
+         "x",
+         {},
+         {},
+         {"worst target " + fixed(smallestOf(vectorisedRatios), 0) + "x"}});
+    add({names[3],
+         "one match (slowest target)",
+         *std::max_element(milliseconds.begin(), milliseconds.end()),
+         "ms",
+         {},
+         atMost(0.1),
+         {"median target " + fixed(medianOf(milliseconds), 4) + " ms"}});
+    add({names[4],
+         "literal loop, a voxel, actuator and level (slowest target)",
+         *std::max_element(nanoseconds.begin(), nanoseconds.end()),
+         "ns",
+         atMost(1.4),
+         {},
+         {"where this is missed the baseline is too slow, and the ratios above say too much"}});
 }
 
 } // namespace lumorph::bench

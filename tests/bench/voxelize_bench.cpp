@@ -1,3 +1,6 @@
+#include <algorithm>
+#include <cmath>
+
 #include <openvdb/openvdb.h>
 #include <openvdb/tools/MeshToVolume.h>
 #include <tbb/global_control.h>
@@ -62,14 +65,13 @@ Measured measure(const std::string& name, const VoxelFrame& frame, const Triangl
     const std::size_t fromOracle =
         differences(frame, bits, [&](int x, int y, int z) { return oracle(frame.centre(x, y, z)); });
     const auto values = grid->getConstAccessor();
-    const std::size_t fromVdb = differences(
-        frame, bits, [&](int x, int y, int z) { return values.getValue(openvdb::Coord(x, y, z)) < 0.0F; });
+    const std::size_t fromVdb =
+        differences(frame, bits, [&](int x, int y, int z) { return values.getValue(openvdb::Coord(x, y, z)) < 0.0F; });
     return {medians[0], medians[1],
             name + ": " + std::to_string(mesh.triangles.size()) + " triangles, " + std::to_string(bits.count()) +
-                " voxels set; " + std::to_string(1e3 * medians[0]) + " ms, OpenVDB " +
-                std::to_string(1e3 * medians[1]) + " ms; of " + std::to_string(frame.voxelCount()) + " voxels " +
-                std::to_string(fromOracle) + " differ from CGAL Side_of_triangle_mesh, " + std::to_string(fromVdb) +
-                " from OpenVDB"};
+                " voxels set; " + fixed(1e3 * medians[0], 3) + " ms, OpenVDB " + fixed(1e3 * medians[1], 0) +
+                " ms; of " + std::to_string(frame.voxelCount()) + " voxels " + std::to_string(fromOracle) +
+                " differ from CGAL Side_of_triangle_mesh, " + std::to_string(fromVdb) + " from OpenVDB"};
 }
 
 } // namespace
@@ -101,9 +103,13 @@ void benchVoxelize(const Filter& filter, Report& report) {
         report.add(Row{ratio, "70,000 triangles, against meshToLevelSet, one thread (worst mesh)", worstRatio, "x",
                        atLeast(150.0), atLeast(300.0), notes});
     if (filter.wants(absolute))
-        report.add(
-            Row{absolute, "solid voxelisation of 70,000 triangles (slowest mesh)", 1e3 * slowest, "ms", {}, atMost(1.5),
-                {}});
+        report.add(Row{absolute,
+                       "solid voxelisation of 70,000 triangles (slowest mesh)",
+                       1e3 * slowest,
+                       "ms",
+                       {},
+                       atMost(1.5),
+                       {}});
 }
 
 } // namespace lumorph::bench

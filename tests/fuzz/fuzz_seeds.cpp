@@ -13,6 +13,7 @@
 #include "core/geometry/model.h"
 #include "core/mdf/builder.h"
 #include "core/mdf/field_file.h"
+#include "core/rig/rig_file.h"
 #include "core/voxels/nrrd.h"
 #include "core/voxels/solid.h"
 #include "tests/support/full_model.h"
@@ -84,6 +85,10 @@ int main(int argc, char** argv) {
     writeBoth("gltf/triangle", GltfBuilder::triangle().glb());
     writeBoth("gltf/sparse", sparse().glb());
     writeBoth("gltf/strip", strip().glb());
+
+    writeBoth("rig/cushion", writeRigGlb(test::cushionRig()));
+    writeBoth("rig/arm", writeRigGlb(test::armRig()));
+    writeBoth("rig/model", writeGlb(support::fullModel()));
 
     const TriangleMesh box = test::boxMesh({0, 0, 0}, {1, 2, 3});
     writeText("obj/box.obj", writeObj(box));

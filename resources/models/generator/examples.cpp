@@ -98,8 +98,8 @@ Rig ribbonRig() {
     parts.name = "ribbon";
     parts.skeleton.emplace();
     for (int joint = 0; joint < 4; ++joint) {
-        const glm::vec3 step = joint == 0 ? glm::vec3(-0.5 * kRibbonLength, 0.5 * kRibbonThickness, 0.0)
-                                          : glm::vec3(kLink, 0.0F, 0.0F);
+        const glm::vec3 step =
+            joint == 0 ? glm::vec3(-0.5 * kRibbonLength, 0.5 * kRibbonThickness, 0.0) : glm::vec3(kLink, 0.0F, 0.0F);
         parts.skeleton->joints.push_back({joint - 1, glm::translate(glm::mat4(1.0F), step)});
     }
     for (int ring = 0; ring < kRings; ++ring) addRing(ring, parts);
@@ -117,8 +117,8 @@ Rig ribbonRig() {
     for (int joint = 1; joint <= 3; ++joint) {
         Actuator actuator;
         actuator.name = "joint " + std::to_string(joint);
-        actuator.deformer = SkinJoint{joint, SkinJoint::Motion::rotate, {0.0F, 0.0F, 1.0F}, 0.0,
-                                      Angle::degrees(50.0).inRadians()};
+        actuator.deformer =
+            SkinJoint{joint, SkinJoint::Motion::rotate, {0.0F, 0.0F, 1.0F}, 0.0, Angle::degrees(50.0).inRadians()};
         actuator.drive.channel = joint - 1;
         parts.actuators.push_back(std::move(actuator));
     }

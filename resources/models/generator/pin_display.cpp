@@ -27,8 +27,10 @@ public:
             for (int i = 0; i < kLines; ++i) mesh_.positions.emplace_back(line(i), kPlate, line(j));
         for (int j = 0; j + 1 < kLines; ++j)
             for (int i = 0; i + 1 < kLines; ++i)
-                if (i % 2 == 0 && j % 2 == 0) addPin(i, j);
-                else addQuad(foot(i, j + 1), foot(i + 1, j + 1), foot(i + 1, j), foot(i, j));
+                if (i % 2 == 0 && j % 2 == 0)
+                    addPin(i, j);
+                else
+                    addQuad(foot(i, j + 1), foot(i + 1, j + 1), foot(i + 1, j), foot(i, j));
         addPlate();
         parts_.name = "pin display";
         parts_.restMesh = std::move(mesh_);
@@ -89,14 +91,19 @@ private:
             // Along this side the border is a fan from the next corner, closed by one triangle.
             const auto along = [&](int step) {
                 switch (k) {
-                case 0: return foot(step, last);
-                case 1: return foot(last, last - step);
-                case 2: return foot(last - step, 0);
-                default: return foot(0, step);
+                case 0:
+                    return foot(step, last);
+                case 1:
+                    return foot(last, last - step);
+                case 2:
+                    return foot(last - step, 0);
+                default:
+                    return foot(0, step);
                 }
             };
             mesh_.triangles.emplace_back(high[k], high[next], along(0));
-            for (int step = 0; step < last; ++step) mesh_.triangles.emplace_back(along(step), high[next], along(step + 1));
+            for (int step = 0; step < last; ++step)
+                mesh_.triangles.emplace_back(along(step), high[next], along(step + 1));
         }
         addQuad(low[0], low[3], low[2], low[1]);
     }

@@ -12,9 +12,10 @@ namespace lumorph {
 
 /// A constrained Delaunay triangulation of the points; the triangles, counter-clockwise, whose
 /// centroid `keep` accepts. Edges must not cross. Uses exact predicates: the same on every machine.
-[[nodiscard]] std::vector<glm::uvec3> triangulatePlane(const std::vector<glm::dvec2>& points,
-                                                       const std::vector<std::pair<std::uint32_t, std::uint32_t>>& edges,
-                                                       const std::function<bool(const glm::dvec2&)>& keep);
+[[nodiscard]] std::vector<glm::uvec3>
+triangulatePlane(const std::vector<glm::dvec2>& points,
+                 const std::vector<std::pair<std::uint32_t, std::uint32_t>>& edges,
+                 const std::function<bool(const glm::dvec2&)>& keep);
 
 /// True inside the polygon (even-odd).
 [[nodiscard]] bool insidePolygon(const std::vector<glm::dvec2>& polygon, const glm::dvec2& point);

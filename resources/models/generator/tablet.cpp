@@ -41,8 +41,7 @@ constexpr double kSheetZ = kHalfWidth - kInset;
 
 /// The bend line of the edge flaps: at 90 degrees an arc of kArc rises by kArc * 2 / pi and the rest
 /// of the flap stands upright on it.
-constexpr double kEdgeLine =
-    kSheetZ - (kFullHeight - kNeutral + kArc * (1.0 - 2.0 / std::numbers::pi));
+constexpr double kEdgeLine = kSheetZ - (kFullHeight - kNeutral + kArc * (1.0 - 2.0 / std::numbers::pi));
 
 struct Flap {
     const char* name;
@@ -102,7 +101,8 @@ Quarter firstQuarter(int edgeFlap, int cornerFlap) {
     const double altitude = kCornerAlongX * kCornerAlongZ / std::hypot(kCornerAlongX, kCornerAlongZ);
     distances = columnDistances(altitude);
     for (const double u : distances)
-        columns.push_back({{u == altitude ? kSheetX : lineX + kCornerAlongX * u / altitude, kSheetZ}, cornerFlap, true, {}});
+        columns.push_back(
+            {{u == altitude ? kSheetX : lineX + kCornerAlongX * u / altitude, kSheetZ}, cornerFlap, true, {}});
     columns.back().place.x = kSheetX;
     for (auto u = distances.rbegin() + 1; u != distances.rend(); ++u)
         columns.push_back({{kSheetX, kSheetZ - kCornerAlongZ * (1.0 - *u / altitude)}, cornerFlap, true, {}});
@@ -118,10 +118,14 @@ public:
         const auto at = [&](double x, double z) {
             return Flap{"", {x * (kSheetX - kCornerAlongX), z * kSheetZ}, {x * corner.x, z * corner.y}};
         };
-        flaps_ = {at(-1, 1), at(1, 1), at(-1, -1), at(1, -1), Flap{"", {0, kEdgeLine}, {0, 1}},
+        flaps_ = {at(-1, 1),
+                  at(1, 1),
+                  at(-1, -1),
+                  at(1, -1),
+                  Flap{"", {0, kEdgeLine}, {0, 1}},
                   Flap{"", {0, -kEdgeLine}, {0, -1}}};
         constexpr std::array kNames{"corner front left", "corner front right", "corner back left",
-                                    "corner back right", "edge front", "edge back"};
+                                    "corner back right", "edge front",         "edge back"};
         for (std::size_t f = 0; f < flaps_.size(); ++f) flaps_[f].name = kNames[f];
         influences_.resize(flaps_.size());
     }
@@ -149,8 +153,8 @@ private:
     }
 
     void layOutline() {
-        for (const auto& [sx, sz, edge, corner] : {std::tuple(1, 1, 4, 1), std::tuple(1, -1, 5, 3), std::tuple(-1, -1, 5, 2),
-                                                   std::tuple(-1, 1, 4, 0)}) {
+        for (const auto& [sx, sz, edge, corner] :
+             {std::tuple(1, 1, 4, 1), std::tuple(1, -1, 5, 3), std::tuple(-1, -1, 5, 2), std::tuple(-1, 1, 4, 0)}) {
             Quarter quarter = firstQuarter(edge, corner);
             for (Column& column : quarter.columns) column.place *= glm::dvec2(sx, sz);
             const std::size_t first = outline_.size();
@@ -255,7 +259,8 @@ private:
             std::size_t j = 0;
             while (i + 1 < a.size() || j + 1 < b.size()) {
                 // Climb where the lower share of the way has been gone, so that rows meet rows.
-                const bool climbB = i + 1 == a.size() || (j + 1 < b.size() && (j + 1) * (a.size() - 1) <= (i + 1) * (b.size() - 1));
+                const bool climbB =
+                    i + 1 == a.size() || (j + 1 < b.size() && (j + 1) * (a.size() - 1) <= (i + 1) * (b.size() - 1));
                 if (climbB) {
                     mesh_.triangles.emplace_back(a[i], b[j], b[j + 1]);
                     ++j;
@@ -277,8 +282,9 @@ private:
         }
         for (std::size_t k = 0; k < outline_.size(); ++k)
             lines.push_back({vertices[k], vertices[(k + 1) % outline_.size()]});
-        const std::array<glm::dvec2, 4> corners{glm::dvec2(-kHalfLength, kHalfWidth), glm::dvec2(kHalfLength, kHalfWidth),
-                                                glm::dvec2(kHalfLength, -kHalfWidth), glm::dvec2(-kHalfLength, -kHalfWidth)};
+        const std::array<glm::dvec2, 4> corners{
+            glm::dvec2(-kHalfLength, kHalfWidth), glm::dvec2(kHalfLength, kHalfWidth),
+            glm::dvec2(kHalfLength, -kHalfWidth), glm::dvec2(-kHalfLength, -kHalfWidth)};
         std::array<std::uint32_t, 4> high{};
         std::array<std::uint32_t, 4> low{};
         for (std::size_t k = 0; k < 4; ++k) {
@@ -304,8 +310,11 @@ private:
         Actuator actuator;
         actuator.name = flap.name;
         actuator.deformer = Bend{glm::vec3(1e-3 * glm::dvec3(flap.origin.x, kNeutral, flap.origin.y)),
-                                 glm::vec3(glm::cross(direction, glm::dvec3(0.0, 1.0, 0.0))), glm::vec3(direction),
-                                 1e-3 * kArc, Angle(), Angle::degrees(90.0)};
+                                 glm::vec3(glm::cross(direction, glm::dvec3(0.0, 1.0, 0.0))),
+                                 glm::vec3(direction),
+                                 1e-3 * kArc,
+                                 Angle(),
+                                 Angle::degrees(90.0)};
         actuator.influences = influences_[f];
         std::ranges::sort(actuator.influences, {}, &Influence::vertex);
         actuator.levels = 33;

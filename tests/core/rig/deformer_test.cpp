@@ -61,7 +61,8 @@ TEST_P(Bends, FollowTheIntegratedCurvature) {
     std::vector<glm::vec3> points;
     for (const double u : {-0.03, -0.001, 0.0, 0.001, 0.004, 0.0099, 0.01, 0.0101, 0.02, 0.05})
         for (const double h : {-0.003, 0.0, 0.002}) points.emplace_back(0.01 + u, 0.019 + h, 0.5 * u);
-    const Bend bend{{0.01F, 0.019F, 0.0F}, {0.0F, 0.0F, 1.0F}, {1.0F, 0.0F, 0.0F}, length, Angle(), Angle::degrees(degrees)};
+    const Bend bend{{0.01F, 0.019F, 0.0F},  {0.0F, 0.0F, 1.0F}, {1.0F, 0.0F, 0.0F}, length, Angle(),
+                    Angle::degrees(degrees)};
     const Rig rig(pointParts(points, {bend}));
     for (const double stroke : {1e-4, 0.03, 0.5, 1.0}) {
         const auto positions = positionsAt(rig, {stroke});
@@ -126,7 +127,8 @@ TEST(Deformers, AWeightIsAShareOfTheStroke) {
     parts.actuators[0].influences = {{0, 1.0F}, {1, 0.25F}};
     const auto moved = positionsAt(Rig(std::move(parts)), {0.5});
     const auto turned = [](const glm::vec3& p, double degrees) {
-        return glm::dvec3(glm::rotate(glm::dmat4(1.0), glm::radians(degrees), glm::dvec3(0, 1, 0)) * glm::dvec4(p, 1.0));
+        return glm::dvec3(glm::rotate(glm::dmat4(1.0), glm::radians(degrees), glm::dvec3(0, 1, 0)) *
+                          glm::dvec4(p, 1.0));
     };
     expectNear(moved[0], turned(kSomePoints[0], 40.0));
     expectNear(moved[1], turned(kSomePoints[1], 10.0));
@@ -152,13 +154,13 @@ TEST(Deformers, MorphTargetsPassThroughTheirKeys) {
 
 // Two links of 0.1 along x, worked out by hand: the first turns about z, the second slides in its own frame.
 TEST(Deformers, ASkinBlendsItsJoints) {
-    RigParts parts = pointParts({{0.1F, 0.0F, 0.0F}, {0.2F, 0.0F, 0.0F}, {-0.1F, 0.0F, 0.0F}},
-                                {SkinJoint{1, SkinJoint::Motion::rotate, {0.0F, 0.0F, 1.0F}, 0.0, std::numbers::pi / 2.0},
-                                 SkinJoint{2, SkinJoint::Motion::translate, {1.0F, 0.0F, 0.0F}, 0.0, 0.05}});
+    RigParts parts =
+        pointParts({{0.1F, 0.0F, 0.0F}, {0.2F, 0.0F, 0.0F}, {-0.1F, 0.0F, 0.0F}},
+                   {SkinJoint{1, SkinJoint::Motion::rotate, {0.0F, 0.0F, 1.0F}, 0.0, std::numbers::pi / 2.0},
+                    SkinJoint{2, SkinJoint::Motion::translate, {1.0F, 0.0F, 0.0F}, 0.0, 0.05}});
     Skeleton& skeleton = parts.skeleton.emplace();
-    skeleton.joints = {{-1, glm::mat4(1.0F)},
-                       {0, glm::mat4(1.0F)},
-                       {1, glm::translate(glm::mat4(1.0F), glm::vec3(0.1F, 0.0F, 0.0F))}};
+    skeleton.joints = {
+        {-1, glm::mat4(1.0F)}, {0, glm::mat4(1.0F)}, {1, glm::translate(glm::mat4(1.0F), glm::vec3(0.1F, 0.0F, 0.0F))}};
     skeleton.vertexJoints = {{0, 1, 0, 0}, {2, 0, 0, 0}, {0, 0, 0, 0}};
     skeleton.vertexWeights = {{0.5F, 0.5F, 0, 0}, {1, 0, 0, 0}, {1, 0, 0, 0}};
     const Rig rig(std::move(parts));
@@ -167,7 +169,7 @@ TEST(Deformers, ASkinBlendsItsJoints) {
     expectNear(moved[1], {0.0, 0.25, 0.0});
     expectNear(moved[2], {-0.1, 0.0, 0.0});
     EXPECT_EQ(std::vector<std::uint16_t>(rig.actuatorsOf(0).begin(), rig.actuatorsOf(0).end()),
-                (std::vector<std::uint16_t>{0}));
+              (std::vector<std::uint16_t>{0}));
     EXPECT_EQ(rig.actuatorsOf(1).size(), 2U);
     EXPECT_TRUE(rig.actuatorsOf(2).empty());
 }

@@ -17,7 +17,8 @@ inline RigParts pointParts(std::vector<glm::vec3> points, std::vector<Deformer> 
         Actuator actuator;
         actuator.name = "actuator " + std::to_string(parts.actuators.size());
         if (!std::holds_alternative<SkinJoint>(deformer))
-            for (std::uint32_t v = 0; v < parts.restMesh.positions.size(); ++v) actuator.influences.push_back({v, 1.0F});
+            for (std::uint32_t v = 0; v < parts.restMesh.positions.size(); ++v)
+                actuator.influences.push_back({v, 1.0F});
         actuator.deformer = std::move(deformer);
         parts.actuators.push_back(std::move(actuator));
     }

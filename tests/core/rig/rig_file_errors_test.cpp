@@ -20,7 +20,8 @@ using nlohmann::json;
 Model validModel() {
     Model model = modelOf(test::boxMesh({0, 0, 0}, {0.1F, 0.1F, 0.1F}), "box");
     model.nodes[0].name = "Flap";
-    model.nodes[0].extras["lumorph"] = {{"actuator", "flap"}, {"deformer", "hinge"}, {"axis", {0, 0, 1}}, {"range", {0, 90}}};
+    model.nodes[0].extras["lumorph"] = {
+        {"actuator", "flap"}, {"deformer", "hinge"}, {"axis", {0, 0, 1}}, {"range", {0, 90}}};
     return model;
 }
 
@@ -60,13 +61,31 @@ INSTANTIATE_TEST_SUITE_P(
                     Broken{"NoDeformer", "\"deformer\" is missing", [](json& e) { e.erase("deformer"); }},
                     Broken{"UnknownDeformer", "\"twist\" is not known", [](json& e) { e["deformer"] = "twist"; }},
                     Broken{"NoRange", "\"range\" is missing", [](json& e) { e.erase("range"); }},
-                    Broken{"RangeBackwards", "backwards", [](json& e) { e["range"] = {90, 0}; }},
-                    Broken{"RangeEmpty", "empty", [](json& e) { e["range"] = {10, 10}; }},
-                    Broken{"RangeOfThree", "list of 2", [](json& e) { e["range"] = {0, 1, 2}; }},
+                    Broken{"RangeBackwards", "backwards",
+                           [](json& e) {
+                               e["range"] = {90, 0};
+                           }},
+                    Broken{"RangeEmpty", "empty",
+                           [](json& e) {
+                               e["range"] = {10, 10};
+                           }},
+                    Broken{"RangeOfThree", "list of 2",
+                           [](json& e) {
+                               e["range"] = {0, 1, 2};
+                           }},
                     Broken{"NoAxis", "\"axis\" is missing", [](json& e) { e.erase("axis"); }},
-                    Broken{"ZeroAxis", "no direction", [](json& e) { e["axis"] = {0, 0, 0}; }},
-                    Broken{"AxisText", "not a finite number", [](json& e) { e["axis"] = {"x", 0, 0}; }},
-                    Broken{"HugeAxis", "no direction", [](json& e) { e["axis"] = {1e300, 0, 0}; }},
+                    Broken{"ZeroAxis", "no direction",
+                           [](json& e) {
+                               e["axis"] = {0, 0, 0};
+                           }},
+                    Broken{"AxisText", "not a finite number",
+                           [](json& e) {
+                               e["axis"] = {"x", 0, 0};
+                           }},
+                    Broken{"HugeAxis", "no direction",
+                           [](json& e) {
+                               e["axis"] = {1e300, 0, 0};
+                           }},
                     Broken{"BendLength", "\"length\" is missing",
                            [](json& e) {
                                e["deformer"] = "bend";

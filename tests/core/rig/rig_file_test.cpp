@@ -25,7 +25,8 @@ using nlohmann::json;
 Rig crowdedRig() {
     std::vector<Deformer> deformers;
     for (int k = 0; k < 6; ++k) // more influences a vertex than one attribute holds
-        deformers.push_back(Hinge{{0.01F * k, 0, 0}, {0.1F, 1, 0.3F * k}, Angle::degrees(-7.3 * k), Angle::degrees(33.3)});
+        deformers.push_back(
+            Hinge{{0.01F * k, 0, 0}, {0.1F, 1, 0.3F * k}, Angle::degrees(-7.3 * k), Angle::degrees(33.3)});
     deformers.push_back(MorphTarget{"shape", {0.5F, 1.0F}, {{{}, {0, 0.1F, 0}, {}, {}}, {{}, {0, 0, 0.1F}, {}, {}}}});
     RigParts parts = test::pointParts({{0.1F, 0, 0}, {0, 0.2F, 0}, {0, 0, 0.3F}, {0.1F, 0, 0}}, std::move(deformers));
     parts.actuators[2].influences = {{0, 0.1F}, {3, 0.7F}};
@@ -88,9 +89,10 @@ TEST_P(RoundTrips, GiveTheSameRig) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Rigs, RoundTrips,
-                         testing::Values(Kind{"Tablet", tabletRig}, Kind{"PinDisplay", pinDisplayRig}, Kind{"Ribbon", ribbonRig},
-                                         Kind{"Hills", hillsRig}, Kind{"Cushion", test::cushionRig},
-                                         Kind{"Arm", test::armRig}, Kind{"Crowded", crowdedRig}),
+                         testing::Values(Kind{"Tablet", tabletRig}, Kind{"PinDisplay", pinDisplayRig},
+                                         Kind{"Ribbon", ribbonRig}, Kind{"Hills", hillsRig},
+                                         Kind{"Cushion", test::cushionRig}, Kind{"Arm", test::armRig},
+                                         Kind{"Crowded", crowdedRig}),
                          [](const auto& kind) { return std::string(kind.param.name); });
 
 /// As a modelling tool exports it: a cube whose corners are split for normals, a hinge on its node.
@@ -111,8 +113,8 @@ Model importedCube() {
     node.name = "Flap";
     node.mesh = 0;
     node.translation = {0.2F, 0.0F, 0.0F};
-    node.extras["lumorph"] = {{"actuator", "flap"}, {"deformer", "hinge"}, {"axis", {0, 0, 1}}, {"range", {0, 90}},
-                              {"maxVelocity", 180}, {"channel", 3}, {"pulse", {600, 2300}}, {"levels", 17}};
+    node.extras["lumorph"] = {{"actuator", "flap"}, {"deformer", "hinge"}, {"axis", {0, 0, 1}},    {"range", {0, 90}},
+                              {"maxVelocity", 180}, {"channel", 3},        {"pulse", {600, 2300}}, {"levels", 17}};
     model.nodes = {node};
     model.roots = {0};
     return model;
@@ -181,7 +183,8 @@ TEST(RigFile, MorphTargetsAloneAreActuators) {
     EXPECT_NEAR(boundingBox(deformed(rig, std::vector<double>{0.5}).positions).max.y, 0.12, 1e-6);
 
     // Stated with a range of weights: rest is the lower one.
-    mesh.extras["lumorph"] = {{{"actuator", "height"}, {"deformer", "morph"}, {"target", "rise"}, {"range", {0.5, 2.0}}}};
+    mesh.extras["lumorph"] = {
+        {{"actuator", "height"}, {"deformer", "morph"}, {"target", "rise"}, {"range", {0.5, 2.0}}}};
     const Rig stated = rigOf(model);
     EXPECT_EQ(stated.actuators()[0].name, "height");
     EXPECT_NEAR(boundingBox(stated.restMesh().positions).max.y, 0.12, 1e-6);

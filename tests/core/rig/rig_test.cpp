@@ -40,8 +40,7 @@ std::vector<Rig> allKinds() {
     for (glm::vec3& d : morph.displacements[1]) d *= -0.2F;
     RigParts weighted = pointParts(points, {slide, hinge, bend, morph});
     for (Actuator& actuator : weighted.actuators)
-        for (Influence& influence : actuator.influences)
-            influence.weight = static_cast<float>(random() % 5) / 4.0F;
+        for (Influence& influence : actuator.influences) influence.weight = static_cast<float>(random() % 5) / 4.0F;
     return {tabletRig(),
             pinDisplayRig(),
             ribbonRig(),
@@ -57,7 +56,8 @@ std::vector<Rig> allKinds() {
 
 TEST(Rig, AtRestIsItsRestMeshBitForBit) {
     for (const Rig& rig : allKinds())
-        EXPECT_EQ(deformed(rig, std::vector<double>(rig.actuatorCount(), 0.0)).positions, rig.restMesh().positions) << rig.name();
+        EXPECT_EQ(deformed(rig, std::vector<double>(rig.actuatorCount(), 0.0)).positions, rig.restMesh().positions)
+            << rig.name();
 }
 
 TEST(Rig, ListsAndSubsetsDeformAsTheWhole) {
@@ -137,7 +137,8 @@ TEST(Rig, ReachIsExactForSlides) {
 }
 
 TEST(Rig, StrokesOfAState) {
-    const Rig rig(pointParts({{0, 0, 0}, {0.1F, 0, 0}, {0, 0, 0.1F}}, {Slide{{0, 1, 0}, 0, 0.1}, Slide{{0, 1, 0}, 0, 0.1}}));
+    const Rig rig(
+        pointParts({{0, 0, 0}, {0.1F, 0, 0}, {0, 0, 0.1F}}, {Slide{{0, 1, 0}, 0, 0.1}, Slide{{0, 1, 0}, 0, 0.1}}));
     EXPECT_EQ(strokesOf(rig, {Level{0}, Level{8}}, 33), (std::vector<double>{0.0, 0.25}));
     EXPECT_EQ(strokesOf(rig, {Level{32}, Level{16}}, 33), (std::vector<double>{1.0, 0.5}));
     EXPECT_THROW((void)strokesOf(rig, {Level{0}}, 33), InvalidInput);
@@ -159,8 +160,8 @@ class RefusedParts : public testing::TestWithParam<BadParts> {};
 TEST_P(RefusedParts, AreRefusedWithTheirCause) {
     RigParts parts = pointParts({{0, 0, 0}, {0.1F, 0, 0}, {0, 0, 0.1F}},
                                 {Hinge{{}, {1, 0, 0}, Angle(), Angle::degrees(90)},
-                                 Bend{{}, {1, 0, 0}, {0, 0, 1}, 0.01, Angle(), Angle::degrees(90)}, Slide{{0, 1, 0}, 0, 0.1},
-                                 MorphTarget{"m", {1.0F}, {{{}, {}, {}}}}});
+                                 Bend{{}, {1, 0, 0}, {0, 0, 1}, 0.01, Angle(), Angle::degrees(90)},
+                                 Slide{{0, 1, 0}, 0, 0.1}, MorphTarget{"m", {1.0F}, {{{}, {}, {}}}}});
     ASSERT_NO_THROW(Rig{parts});
     GetParam().spoil(parts);
     try {
@@ -173,8 +174,7 @@ TEST_P(RefusedParts, AreRefusedWithTheirCause) {
 }
 
 constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
-template <class T>
-T& deformer(RigParts& parts) {
+template <class T> T& deformer(RigParts& parts) {
     for (Actuator& actuator : parts.actuators)
         if (auto* found = std::get_if<T>(&actuator.deformer)) return *found;
     throw std::logic_error("no such deformer");
@@ -194,12 +194,19 @@ INSTANTIATE_TEST_SUITE_P(
         BadParts{"HingeTurns", "full turn", [](RigParts& p) { deformer<Hinge>(p).max = Angle::degrees(361); }},
         BadParts{"BendStart", "start at 0", [](RigParts& p) { deformer<Bend>(p).min = Angle::degrees(-5); }},
         BadParts{"BendLength", "no length", [](RigParts& p) { deformer<Bend>(p).length = 0.0; }},
-        BadParts{"BendFrame", "perpendicular", [](RigParts& p) { deformer<Bend>(p).direction = {1, 0, 1}; }},
+        BadParts{"BendFrame", "perpendicular",
+                 [](RigParts& p) {
+                     deformer<Bend>(p).direction = {1, 0, 1};
+                 }},
         BadParts{"SlideRange", "backwards", [](RigParts& p) { deformer<Slide>(p).max = 0.0; }},
         BadParts{"SlideNaN", "not finite", [](RigParts& p) { deformer<Slide>(p).max = kNaN; }},
         BadParts{"MorphKeys", "ascending", [](RigParts& p) { deformer<MorphTarget>(p).keys = {1.5F}; }},
-        BadParts{"MorphSize", "one displacement", [](RigParts& p) { deformer<MorphTarget>(p).displacements[0].pop_back(); }},
-        BadParts{"NoSkeleton", "no skeleton", [](RigParts& p) { p.actuators[0].deformer = SkinJoint{0, {}, {1, 0, 0}, 0, 1}; }},
+        BadParts{"MorphSize", "one displacement",
+                 [](RigParts& p) { deformer<MorphTarget>(p).displacements[0].pop_back(); }},
+        BadParts{"NoSkeleton", "no skeleton",
+                 [](RigParts& p) {
+                     p.actuators[0].deformer = SkinJoint{0, {}, {1, 0, 0}, 0, 1};
+                 }},
         BadParts{"Vertex", "does not exist", [](RigParts& p) { p.actuators[0].influences[2].vertex = 3; }},
         BadParts{"Order", "ascending", [](RigParts& p) { p.actuators[0].influences[1].vertex = 0; }},
         BadParts{"Weight", "within 0 and 1", [](RigParts& p) { p.actuators[0].influences[1].weight = 1.5F; }},

@@ -195,7 +195,8 @@ TEST(Tablet, BendsKeepLengthAndThicknessAndReachNinetyDegrees) {
                     spans += rest[from->first] != bent[from->first];
                 }
             EXPECT_GT(spans, 20);
-            for (const auto& [top, bottom] : pairs) EXPECT_NEAR(glm::distance(bent[top], bent[bottom]), 0.002, 0.02 * 0.002);
+            for (const auto& [top, bottom] : pairs)
+                EXPECT_NEAR(glm::distance(bent[top], bent[bottom]), 0.002, 0.02 * 0.002);
         }
         std::vector<double> full(6, 0.0);
         full[a] = 1.0;
