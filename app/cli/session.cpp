@@ -79,7 +79,7 @@ Session::Session() {
 
 Session::~Session() {
     watcher_.request_stop();
-    pthread_kill(watcher_.native_handle(), SIGTERM); // only wakes it
+    pthread_kill(watcher_.native_handle(), SIGINT); // only wakes it
 }
 
 void Session::releaseSignals() noexcept {

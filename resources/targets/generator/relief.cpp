@@ -16,6 +16,7 @@ std::uint32_t topVertex(const Relief& relief, int i, int j) {
 /// The border of the top, counter-clockwise seen from above.
 std::vector<std::uint32_t> borderOf(const Relief& relief) {
     std::vector<std::uint32_t> border;
+    border.reserve(2 * static_cast<std::size_t>(relief.columns + relief.rows));
     for (int i = 0; i < relief.columns; ++i) border.push_back(topVertex(relief, i, relief.rows));
     for (int j = relief.rows; j > 0; --j) border.push_back(topVertex(relief, relief.columns, j));
     for (int i = relief.columns; i > 0; --i) border.push_back(topVertex(relief, i, 0));
