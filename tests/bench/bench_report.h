@@ -52,6 +52,7 @@ public:
     /// A group of rows that could not be measured, or whose two sides disagree.
     void fail(const std::string& name, const std::string& why) { failures_.push_back({name, why}); }
 
+    [[nodiscard]] bool empty() const { return rows_.empty() && series_.empty() && failures_.empty(); }
     [[nodiscard]] bool failed() const { return !failures_.empty(); }
     void printText() const;
     void printJson() const;

@@ -42,6 +42,7 @@ int main(int argc, char** argv) {
                 report.fail(group.name, error.what());
             }
         }
+        if (report.empty()) report.fail("filter", "no row's name holds '" + filter.text + "'");
         json ? report.printJson() : report.printText();
         return report.failed() ? 1 : 0;
     } catch (const std::exception& error) {

@@ -40,7 +40,7 @@ Measured measure(const Device& device, const DenseField& dense, const TargetVolu
     Votes votes;
     Voting::Workspace workspace;
     const std::vector<double> medians =
-        interleavedMedians(5, {{[&] {
+        interleavedMedians(7, {{[&] {
                                    literalSums(dense, wanted, sums);
                                    literal = chosenState(dense, sums, reachable);
                                }},
