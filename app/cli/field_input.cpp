@@ -69,7 +69,7 @@ TargetVoxels voxelsOf(const Field& field, const Target& target, const Placement&
     }
     voxels.voxelizeMilliseconds = medianOf(times);
     const double beyond = shareBeyondFrame(field.frame, standing, voxels.bits);
-    if (beyond > 0.01)
+    if (beyond > 0.01 && voxels.bits.count() > 0)
         voxels.warnings.push_back(
             std::to_string(std::lround(100.0 * beyond)) +
             " % of the target lies beyond the space the device can show and is ignored; use --fit.");

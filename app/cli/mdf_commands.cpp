@@ -16,6 +16,12 @@ namespace lumorph::cli {
 
 namespace {
 
+/// Monotonicity violations among all that were looked for: changed voxels x sampled states x levels.
+double violationShare(const Field& field) {
+    const double looked = static_cast<double>(field.report.changedVoxels) * field.samples * field.levels;
+    return looked > 0.0 ? static_cast<double>(field.report.monotonicityViolations) / looked : 0.0;
+}
+
 nlohmann::json infoJson(const Field& field, std::size_t bytes) {
     nlohmann::json names = nlohmann::json::array();
     for (const ActuatorField& actuator : field.actuators) names.push_back(actuator.name);
@@ -36,6 +42,7 @@ nlohmann::json infoJson(const Field& field, std::size_t bytes) {
             {"changedVoxels", field.report.changedVoxels},
             {"rampError", {{"mean", field.report.rampErrorMean}, {"max", field.report.rampErrorMax}}},
             {"monotonicityViolations", field.report.monotonicityViolations},
+            {"monotonicityViolationShare", violationShare(field)},
             {"bytes", bytes}};
 }
 
@@ -47,9 +54,8 @@ void printInfo(const Field& field, std::size_t bytes) {
                 field.exhaustive ? " (all there are)" : "", static_cast<unsigned long long>(field.seed));
     std::printf("  body %zu voxels; %zu of the other %zu can be reached\n", field.body.count(),
                 reachableVoxels(field).count(), field.frame.voxelCount() - field.body.count());
-    std::printf("  ramp error mean %.4f, max %.4f; %llu monotonicity violations; %zu bytes\n",
-                field.report.rampErrorMean, field.report.rampErrorMax,
-                static_cast<unsigned long long>(field.report.monotonicityViolations), bytes);
+    std::printf("  ramp error mean %.4f, max %.4f; uncovered again at a higher level: %.2f %%; %zu bytes\n",
+                field.report.rampErrorMean, field.report.rampErrorMax, 100.0 * violationShare(field), bytes);
     if (field.report.rampErrorMean > 0.02)
         std::printf(
             "  ! The ramps are far from the sampled expectation: matching by voting will be coarse; use 'refined'.\n");

@@ -226,7 +226,8 @@ TEST_P(BuilderOracle, VotingByRampsIsAsGoodAsByTheSampledField) {
     Refiner refiner(coverage);
     CoverageScratch scratch;
     const auto height = static_cast<std::size_t>(field.frame.dimensions.y);
-    double worst = 1.0;
+    double difference = 0.0;
+    int compared = 0;
     for (const State& hidden : quasiRandomStates(3, kFineLevels, 12, 99)) {
         BitColumns target;
         coverage.covered(hidden, target, scratch);
@@ -260,9 +261,11 @@ TEST_P(BuilderOracle, VotingByRampsIsAsGoodAsByTheSampledField) {
         }
         const double bySamples = refiner.qualityOf(target, best).iou();
         const double byRamps = refiner.qualityOf(target, voting.match(target).state()).iou();
-        worst = std::min(worst, byRamps - bySamples);
+        difference += byRamps - bySamples;
+        ++compared;
     }
-    EXPECT_GE(worst, -0.02);
+    ASSERT_GE(compared, 6);
+    EXPECT_NEAR(difference / compared, 0.0, 0.02);
 }
 
 INSTANTIATE_TEST_SUITE_P(SmallRigs, BuilderOracle,
