@@ -79,7 +79,8 @@ Session::Session() {
 
 Session::~Session() {
     watcher_.request_stop();
-    pthread_kill(watcher_.native_handle(), SIGINT); // only wakes it
+    // The signal is blocked everywhere, so this only wakes the wait above.
+    pthread_kill(watcher_.native_handle(), SIGINT); // NOLINT(bugprone-bad-signal-to-kill-thread)
 }
 
 void Session::releaseSignals() noexcept {

@@ -31,16 +31,16 @@ std::filesystem::path resourcesFolder(const ResourcePlaces& places) {
         if (holdsResources(places.chosen)) return places.chosen;
         throw DataError(places.chosen.string(), "the folder in LUMORPH_RESOURCES holds no resources", remedy);
     }
-    const auto installed = places.executableFolder.empty()
-                               ? std::filesystem::path()
-                               : (places.executableFolder / "../share/lumorph").lexically_normal();
+    auto installed = places.executableFolder.empty()
+                         ? std::filesystem::path()
+                         : (places.executableFolder / "../share/lumorph").lexically_normal();
     if (holdsResources(installed)) return installed;
     if (holdsResources(places.sourceFolder)) return places.sourceFolder;
     throw DataError(installed.string(), "the resources of Lumorph are missing", remedy);
 }
 
 std::filesystem::path resourceFile(std::string_view name) {
-    const std::filesystem::path file = resourcesFolder() / name;
+    std::filesystem::path file = resourcesFolder() / name;
     std::error_code error;
     if (std::filesystem::is_regular_file(file, error)) return file;
     throw DataError(file.string(), "the resource is missing", "install Lumorph again");

@@ -17,7 +17,7 @@ struct Refinement {
     bool converged = false; ///< no change of a single actuator helps any more; else the time ran out
 };
 
-/// Improves a joint state by the true coverage of the deformed rig (DESIGN: `refined`): coordinate
+/// Improves a joint state by the true coverage of the deformed rig: coordinate
 /// moves of 4, 2, 1 levels while they raise the IoU, then every level of every actuator once more, then
 /// moves of two coupled actuators at a time. The result is best with respect to any single actuator.
 ///
