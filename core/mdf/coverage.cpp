@@ -15,8 +15,8 @@ namespace {
 
 /// The words of one group or body at each level of its only actuator, filled when first asked for.
 struct Kept {
-    std::vector<std::uint64_t> words; ///< levels x range.size() x words per column
-    std::unique_ptr<std::once_flag[]> ready;
+    std::vector<std::vector<std::uint64_t>> words; ///< [level][range.size() x words per column]
+    std::unique_ptr<std::once_flag[]> ready;       ///< one a level
 };
 
 } // namespace
@@ -92,8 +92,8 @@ void Coverage::Pieces::findMovedColumns() {
 }
 
 void Coverage::Pieces::allocateKept() {
-    const auto make = [&](const ColumnRange& range) {
-        return Kept{std::vector<std::uint64_t>(static_cast<std::size_t>(levels) * range.size() * wordsPerColumn),
+    const auto make = [&] {
+        return Kept{std::vector<std::vector<std::uint64_t>>(static_cast<std::size_t>(levels)),
                     std::make_unique<std::once_flag[]>(static_cast<std::size_t>(levels))};
     };
     CoverageScratch scratch;
@@ -106,11 +106,11 @@ void Coverage::Pieces::allocateKept() {
         rasterGroup(bodies[b].groups.front(), rest, bodies[b].range, still[b], scratch);
         keptGroups[b].resize(bodies[b].groups.size());
         if (bodies[b].sweeps()) {
-            if (bodies[b].actuators.size() == 1) keptSweeps[b] = make(bodies[b].range);
+            if (bodies[b].actuators.size() == 1) keptSweeps[b] = make();
             continue;
         }
         for (std::size_t g = 1; g < bodies[b].groups.size(); ++g)
-            if (bodies[b].groups[g].actuators.size() == 1) keptGroups[b][g] = make(bodies[b].groups[g].range);
+            if (bodies[b].groups[g].actuators.size() == 1) keptGroups[b][g] = make();
     }
 }
 
@@ -173,9 +173,9 @@ std::span<const std::uint64_t> Coverage::Pieces::groupAtLevel(std::size_t b, std
                                                               CoverageScratch& scratch) const {
     const RigGroup& group = bodies[b].groups[g];
     Kept& kept = keptGroups[b][g];
-    const std::size_t size = group.range.size() * wordsPerColumn;
-    const std::span<std::uint64_t> words(kept.words.data() + static_cast<std::size_t>(level) * size, size);
+    std::vector<std::uint64_t>& words = kept.words[static_cast<std::size_t>(level)];
     std::call_once(kept.ready[static_cast<std::size_t>(level)], [&] {
+        words.resize(group.range.size() * wordsPerColumn);
         scratch.strokes.assign(rig.actuatorCount(), 0.0);
         scratch.strokes[group.actuators.front()] = strokeOf(Level{level}, levels);
         rasterGroup(group, scratch.strokes, group.range, words, scratch);
@@ -188,18 +188,18 @@ std::span<const std::uint64_t> Coverage::Pieces::sweepAtLevel(std::size_t b, int
                                                               CoverageScratch& scratch) const {
     const RigBody& swept = bodies[b];
     Kept& kept = keptSweeps[b];
-    const std::size_t size = swept.range.size() * wordsPerColumn;
-    const std::span<std::uint64_t> words(kept.words.data() + static_cast<std::size_t>(level) * size, size);
-    if (level == 0) return words;
-    const std::span<const std::uint64_t> before = sweepAtLevel(b, level - 1, scratch);
+    std::vector<std::uint64_t>& words = kept.words[static_cast<std::size_t>(level)];
     std::call_once(kept.ready[static_cast<std::size_t>(level)], [&] {
+        words.resize(swept.range.size() * wordsPerColumn);
+        if (level == 0) return;
+        const std::span<const std::uint64_t> before = sweepAtLevel(b, level - 1, scratch);
         std::copy(before.begin(), before.end(), words.begin());
         std::vector<double> strokes(rig.actuatorCount(), 0.0);
         const int steps = swept.stepsPerLevel(levels);
         for (int step = 1; step <= steps; ++step) {
             strokes[swept.actuators.front()] = (level - 1 + static_cast<double>(step) / steps) / (levels - 1);
             parityOfBodyAt(b, strokes, swept.range, scratch);
-            for (std::size_t i = 0; i < size; ++i) words[i] |= scratch.parity[i];
+            for (std::size_t i = 0; i < words.size(); ++i) words[i] |= scratch.parity[i];
         }
     });
     return words;
@@ -380,10 +380,13 @@ int Coverage::pathSteps(std::span<const double> strokes) const noexcept {
 
 std::size_t Coverage::bytes() const noexcept {
     std::size_t words = 0;
+    const auto add = [&](const Kept& kept) {
+        for (const auto& level : kept.words) words += level.size();
+    };
     for (const auto& body : pieces_->still) words += body.size();
     for (const auto& body : pieces_->keptGroups)
-        for (const Kept& kept : body) words += kept.words.size();
-    for (const Kept& kept : pieces_->keptSweeps) words += kept.words.size();
+        for (const Kept& kept : body) add(kept);
+    for (const Kept& kept : pieces_->keptSweeps) add(kept);
     return words * sizeof(std::uint64_t);
 }
 

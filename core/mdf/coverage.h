@@ -74,7 +74,7 @@ public:
     [[nodiscard]] std::vector<std::pair<std::size_t, std::size_t>> coupledPairs() const;
     /// In how many equal steps the path from rest to `strokes` is sampled; 1 when the solid holds its path.
     [[nodiscard]] int pathSteps(std::span<const double> strokes) const noexcept;
-    /// Memory held in kept pieces, bytes.
+    /// Memory held in kept pieces so far, bytes. Not while another thread evaluates.
     [[nodiscard]] std::size_t bytes() const noexcept;
 
 private:

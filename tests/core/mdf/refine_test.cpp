@@ -119,23 +119,5 @@ TEST(Refine, RefusesStatesAndTargetsThatDoNotFit) {
     EXPECT_THROW((void)refiner.refine(BitColumns({1, 1, 1}), State(3), Microseconds{0}, clock), InvalidInput);
 }
 
-// R6: what a flap passes on its way stays covered, though the solid itself has moved on.
-TEST(Coverage, WhatASweepPassedStaysCovered) {
-    const Rig rig = test::armRig();
-    ASSERT_FALSE(rig.pathInside());
-    const Coverage coverage(rig, frameOf(rig.reach(), 12), kLevels);
-    CoverageScratch scratch;
-    BitColumns before(coverage.frame().dimensions);
-    for (int level = 0; level < kLevels; ++level) {
-        BitColumns now;
-        coverage.covered(State{Level{level}, Level{0}, Level{0}}, now, scratch);
-        BitColumns lost = before;
-        lost -= now;
-        EXPECT_LE(lost.count(), before.count() / 200) << level;
-        before = now;
-    }
-    EXPECT_GT(before.count(), coverage.body().count()) << "a sweep covers more than the beam itself holds";
-}
-
 } // namespace
 } // namespace lumorph

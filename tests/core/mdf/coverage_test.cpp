@@ -1,0 +1,116 @@
+#include "core/mdf/coverage.h"
+
+#include <gtest/gtest.h>
+
+#include "core/base/error.h"
+#include "core/voxels/solid.h"
+#include "tests/support/cgal_oracle.h"
+#include "tests/support/small_rigs.h"
+
+namespace lumorph {
+namespace {
+
+constexpr int kLevels = 9;
+
+// R6: what a flap passes on its way stays covered, though the solid itself has moved on.
+TEST(Coverage, WhatASweepPassedStaysCovered) {
+    const Rig rig = test::armRig();
+    ASSERT_FALSE(rig.pathInside());
+    const Coverage coverage(rig, frameOf(rig.reach(), 12), kLevels);
+    CoverageScratch scratch;
+    BitColumns before(coverage.frame().dimensions);
+    for (int level = 0; level < kLevels; ++level) {
+        BitColumns now;
+        coverage.covered(State{Level{level}, Level{0}, Level{0}}, now, scratch);
+        BitColumns lost = before;
+        lost -= now;
+        EXPECT_LE(lost.count(), before.count() / 200) << level;
+        before = now;
+    }
+    EXPECT_GT(before.count(), coverage.body().count()) << "a sweep covers more than the beam itself holds";
+}
+
+/// A flap that stands beside a post and turns up about its edge, on its own.
+Rig gateRig() {
+    RigParts parts;
+    parts.name = "gate";
+    parts.restMesh = test::boxMesh({0.0F, 0.0F, 0.0F}, {0.0203F, 0.0107F, 0.0309F});
+    const TriangleMesh flap = test::boxMesh({0.0211F, 0.0F, 0.0F}, {0.0817F, 0.0052F, 0.0309F}, 3);
+    Actuator actuator;
+    actuator.name = "gate";
+    actuator.deformer = Hinge{{0.0211F, 0.0F, 0.0F}, {0.0F, 0.0F, 1.0F}, Angle{}, Angle::degrees(80.0)};
+    for (std::size_t v = 0; v < flap.positions.size(); ++v)
+        actuator.influences.push_back({static_cast<std::uint32_t>(parts.restMesh.positions.size() + v), 1.0F});
+    append(parts.restMesh, flap);
+    parts.actuators.push_back(std::move(actuator));
+    return Rig(std::move(parts));
+}
+
+// R6: the sweep of one actuator, kept level by level, against a sweep five times as fine judged by CGAL.
+TEST(Coverage, ASweptFlapAgreesWithAFineSweep) {
+    const Rig rig = gateRig();
+    const Coverage coverage(rig, frameOf(rig.reach(), 10), kLevels);
+    const VoxelFrame& frame = coverage.frame();
+    CoverageScratch scratch;
+    BitColumns fine(frame.dimensions);
+    std::vector<double> strokes{0.0};
+    BitColumns kept;
+    BitColumns afresh;
+    std::size_t wrong = 0;
+    for (int level = 0; level < kLevels; ++level) {
+        const double from = std::max(0, level - 1) / 8.0;
+        const int steps = level == 0 ? 1 : 5 * coverage.pathSteps(std::vector<double>{1.0 / 8.0});
+        for (int step = 1; step <= steps; ++step) {
+            strokes[0] = level == 0 ? 0.0 : from + step / (8.0 * steps);
+            const test::InsideOracle inside(deformed(rig, strokes));
+            for (int z = 0; z < frame.dimensions.z; ++z)
+                for (int x = 0; x < frame.dimensions.x; ++x)
+                    for (int y = 0; y < frame.dimensions.y; ++y)
+                        if (!coverage.body().test(x, y, z) && !fine.test(x, y, z) && inside(frame.centre(x, y, z)))
+                            fine.set(x, y, z);
+        }
+        coverage.covered(State{Level{level}}, kept, scratch);
+        coverage.coveredAt(std::vector<double>{level / 8.0}, afresh, scratch);
+        EXPECT_EQ(kept, afresh) << level;
+        BitColumns missed = fine;
+        missed -= kept;
+        BitColumns extra = kept;
+        extra -= fine;
+        wrong += extra.count();
+        EXPECT_LE(missed.count(), fine.count() / 100) << level;
+    }
+    EXPECT_GT(fine.count(), 1000U);
+    EXPECT_LE(wrong, fine.count() / 100);
+}
+
+TEST(Coverage, ACavityInThePartThatStaysIsNotBody) {
+    RigParts parts;
+    parts.name = "hollow";
+    parts.pathInside = true;
+    parts.restMesh = test::boxMesh({0, 0, 0}, {0.1F, 0.1F, 0.1F});
+    TriangleMesh cavity = test::boxMesh({0.031F, 0.031F, 0.031F}, {0.071F, 0.072F, 0.073F});
+    for (glm::uvec3& t : cavity.triangles) std::swap(t.y, t.z);
+    append(parts.restMesh, cavity);
+    Actuator lift;
+    lift.name = "lift";
+    lift.deformer = Slide{{0.0F, 1.0F, 0.0F}, 0.0, 0.05};
+    for (std::uint32_t v = 0; v < 8; ++v)
+        if (parts.restMesh.positions[v].y > 0.05F) lift.influences.push_back({v, 1.0F});
+    parts.actuators.push_back(std::move(lift));
+    const Rig rig(std::move(parts));
+    const VoxelFrame frame = frameOf(rig.reach(), 25);
+    const Coverage coverage(rig, frame, kLevels);
+    EXPECT_EQ(coverage.body(), voxelizeSolid(frame, rig.restMesh()));
+    EXPECT_FALSE(coverage.body().test(12, 12, 12));
+    EXPECT_TRUE(coverage.domain().test(12, 12, 12));
+}
+
+TEST(Coverage, RefusesLevelCountsOutOfRange) {
+    const Rig rig = gateRig();
+    const VoxelFrame frame = frameOf(rig.reach(), 10);
+    EXPECT_THROW((void)Coverage(rig, frame, 1), InvalidInput);
+    EXPECT_THROW((void)Coverage(rig, frame, kMaxLevels + 1), InvalidInput);
+}
+
+} // namespace
+} // namespace lumorph
