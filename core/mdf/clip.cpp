@@ -67,7 +67,7 @@ std::vector<ClipFrame> matchClip(const Field& field, const Coverage& coverage, c
     Votes votes;
     BitColumns target;
     BitColumns reached;
-    const bool closed = makeTarget(flatten(model)).closed;
+    const bool closed = isClosedSolid(flatten(model));
     std::vector<ClipFrame> result;
     for (int k = 0; k <= frames; ++k) {
         progress.throwIfCancelled();

@@ -13,15 +13,23 @@
 
 namespace lumorph {
 
-Target makeTarget(TriangleMesh mesh) {
+bool isClosedSolid(const TriangleMesh& mesh) {
     const MeshReport report = checkMesh(mesh, IntersectionTest::skip);
-    Target target{std::move(mesh), report.closed() && report.manifold(), {}};
-    if (!target.closed) {
-        target.warnings = report.findings();
-        target.warnings.push_back(
-            "The target is not a closed solid; what counts as inside is estimated by winding numbers, "
-            "which is slower and may differ near the holes.");
+    return report.closed() && report.manifold();
+}
+
+Target makeTarget(TriangleMesh mesh) {
+    if (isClosedSolid(mesh)) return {std::move(mesh), true, {}};
+    MeshRepair repair = repairMesh(mesh);
+    if (repair.after.closed() && repair.after.manifold()) {
+        Target target{
+            std::move(repair.mesh), true, {"The target was no closed solid and has been repaired for matching."}};
+        target.warnings.insert(target.warnings.end(), repair.actions.begin(), repair.actions.end());
+        return target;
     }
+    Target target{std::move(mesh), false, repair.before.findings()};
+    target.warnings.emplace_back("The target is not a closed solid; what counts as inside is estimated by winding "
+                                 "numbers, which is slower and may differ near the holes.");
     return target;
 }
 

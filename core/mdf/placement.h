@@ -20,8 +20,12 @@ struct Target {
     std::vector<std::string> warnings; ///< plain sentences
 };
 
-/// Looks at the mesh once, so that voxelising it every frame need not.
+/// Looks at the mesh once, so that voxelising it every frame need not. One that is not closed is
+/// repaired where that is safe (`repairMesh`) and stays open where it is not; the warnings say so.
 [[nodiscard]] Target makeTarget(TriangleMesh mesh);
+
+/// Whether scan conversion can be trusted with a mesh as it is: closed, and two triangles an edge.
+[[nodiscard]] bool isClosedSolid(const TriangleMesh& mesh);
 
 /// Voxels of the frame inside the target: scan conversion when it is closed, else generalised winding
 /// numbers. The frame's zero-state body is not taken out.

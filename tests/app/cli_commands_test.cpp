@@ -161,12 +161,12 @@ TEST_F(CommandLine, MatchWarnsOnStandardError) {
     EXPECT_THAT(outcome.err, HasSubstr("lumorph: warning: The target does not overlap"));
 }
 
-TEST_F(CommandLine, MatchTellsWhatItWasToldOfAnOpenTarget) {
+TEST_F(CommandLine, MatchRepairsAnOpenTargetAndSaysSo) {
     writeFile(w["open.obj"], "v 0.01 0.021 0.01\nv 0.06 0.021 0.01\nv 0.01 0.04 0.01\nv 0.01 0.021 0.06\n"
                              "f 1 3 2\nf 1 4 3\nf 2 3 4\n");
     const Outcome outcome = lumorph({"match", w["field.mdf"], w["open.obj"], "--json"});
     EXPECT_EQ(outcome.exitCode, 0);
-    EXPECT_THAT(outcome.err, HasSubstr("not a closed solid"));
+    EXPECT_THAT(outcome.err, HasSubstr("has been repaired"));
 }
 
 } // namespace
