@@ -1,5 +1,8 @@
 #include "core/mdf/coverage.h"
 
+#include <array>
+#include <thread>
+
 #include <gtest/gtest.h>
 
 #include "core/base/error.h"
@@ -103,6 +106,33 @@ TEST(Coverage, ACavityInThePartThatStaysIsNotBody) {
     EXPECT_EQ(coverage.body(), voxelizeSolid(frame, rig.restMesh()));
     EXPECT_FALSE(coverage.body().test(12, 12, 12));
     EXPECT_TRUE(coverage.domain().test(12, 12, 12));
+}
+
+// The kept pieces are filled by whoever asks first; several threads may ask at once.
+TEST(Coverage, ThreadsShareOne) {
+    const Rig rig = test::lifterRig();
+    const VoxelFrame frame = frameOf(rig.reach(), 14);
+    const Coverage alone(rig, frame, kLevels);
+    const Coverage shared(rig, frame, kLevels);
+    std::array<std::vector<BitColumns>, 4> seen;
+    {
+        std::vector<std::jthread> threads;
+        for (std::size_t t = 0; t < seen.size(); ++t)
+            threads.emplace_back([&, t] {
+                CoverageScratch scratch;
+                for (int i = 0; i < 60; ++i)
+                    shared.covered(State{Level{i % 9}, Level{(i / 3 + static_cast<int>(t)) % 9}, Level{i * 7 % 9}},
+                                   seen[t].emplace_back(), scratch);
+            });
+    }
+    CoverageScratch scratch;
+    BitColumns expected;
+    for (std::size_t t = 0; t < seen.size(); ++t)
+        for (int i = 0; i < 60; ++i) {
+            alone.covered(State{Level{i % 9}, Level{(i / 3 + static_cast<int>(t)) % 9}, Level{i * 7 % 9}}, expected,
+                          scratch);
+            ASSERT_EQ(seen[t][static_cast<std::size_t>(i)], expected) << t << " " << i;
+        }
 }
 
 TEST(Coverage, RefusesLevelCountsOutOfRange) {
