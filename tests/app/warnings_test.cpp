@@ -44,9 +44,10 @@ TEST_F(MatchWarnings, TellHowMuchNoActuatorReaches) {
 
 TEST_F(MatchWarnings, AreNoneForATargetInReachOfAll) {
     const Outcome fit = lumorph({"match", w.field(), resource("targets/dunes.glb"), "--fit", "--json"});
-    for (const std::string warning : fit.json()["warnings"])
+    const nlohmann::json result = fit.json();
+    for (const std::string warning : result["warnings"])
         EXPECT_EQ(warning.find("beyond"), std::string::npos) << warning;
-    for (const nlohmann::json& actuator : fit.json()["actuators"]) EXPECT_TRUE(actuator["reached"]);
+    for (const nlohmann::json& actuator : result["actuators"]) EXPECT_TRUE(actuator["reached"]);
 }
 
 } // namespace

@@ -55,7 +55,8 @@ TEST(GltfWriter, ChunksAreAlignedAndLengthsAgree) {
     EXPECT_EQ(wordAt(glb, 16), 0x4E4F534AU);
     EXPECT_EQ(wordAt(glb, 24 + jsonBytes), 0x004E4942U);
     EXPECT_EQ(28 + jsonBytes + wordAt(glb, 20 + jsonBytes), glb.size());
-    for (const json& view : jsonOf(glb)["bufferViews"]) EXPECT_EQ(view["byteOffset"].get<std::size_t>() % 4, 0U);
+    const json document = jsonOf(glb);
+    for (const json& view : document["bufferViews"]) EXPECT_EQ(view["byteOffset"].get<std::size_t>() % 4, 0U);
 }
 
 TEST(GltfWriter, PositionsAndTimesCarryTheirRange) {
