@@ -57,8 +57,8 @@ double medianOf(std::vector<double> values) {
     return *middle;
 }
 
-TargetVoxels voxelsOf(const Field& field, const Target& target, const Placement& placement, int repeat) {
-    TargetVoxels voxels{{}, placed(target.mesh, placement), 0.0, target.warnings};
+TargetVoxels voxelsOf(const Field& field, const Target& target, const std::optional<Placement>& placement, int repeat) {
+    TargetVoxels voxels{{}, placed(target.mesh, placement.value_or(Placement{})), 0.0, target.warnings};
     const Target standing{voxels.mesh, target.closed, {}};
     SolidVoxelizer voxelizer;
     std::vector<double> times;
@@ -70,9 +70,9 @@ TargetVoxels voxelsOf(const Field& field, const Target& target, const Placement&
     voxels.voxelizeMilliseconds = medianOf(times);
     const double beyond = shareBeyondFrame(field.frame, standing, voxels.bits);
     if (beyond > 0.01 && voxels.bits.count() > 0)
-        voxels.warnings.push_back(
-            std::to_string(std::lround(100.0 * beyond)) +
-            " % of the target lies beyond the space the device can show and is ignored; use --fit.");
+        voxels.warnings.push_back(std::to_string(std::lround(100.0 * beyond)) +
+                                  " % of the target lies beyond the space the device can show and is ignored" +
+                                  (placement ? "." : "; use --fit."));
     return voxels;
 }
 
@@ -91,7 +91,8 @@ TargetVoxels readTarget(const Session& session, const Field& field, const Target
         return gridVoxels(field, bytes, name);
     }
     const Target target = makeTarget(arguments.path == "-" ? parseMesh(bytes, name) : readMesh(arguments.path));
-    const Placement placement = arguments.fit ? fitPlacement(field, boundingBox(target.mesh.positions)) : Placement{};
+    std::optional<Placement> placement;
+    if (arguments.fit) placement = fitPlacement(field, boundingBox(target.mesh.positions));
     return voxelsOf(field, target, placement, arguments.repeat);
 }
 

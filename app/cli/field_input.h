@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -32,8 +33,9 @@ struct TargetArguments {
 
 /// Reads a mesh from a file, or from stdin for "-".
 [[nodiscard]] Target readTargetMesh(const Session& session, const std::string& path);
-/// Turns a mesh that has been read already into voxels.
-[[nodiscard]] TargetVoxels voxelsOf(const Field& field, const Target& target, const Placement& placement, int repeat);
+/// Turns a mesh that has been read already into voxels; without a placement it stands where it is.
+[[nodiscard]] TargetVoxels voxelsOf(const Field& field, const Target& target, const std::optional<Placement>& placement,
+                                    int repeat);
 
 /// The middle of some measurements; 0 for none.
 [[nodiscard]] double medianOf(std::vector<double> values);

@@ -72,7 +72,7 @@ template <typename Work> double medianMilliseconds(int repeat, const Session& se
 }
 
 /// Tells the author what the device cannot show of this target (R42).
-void addWarnings(const Matcher& matcher, const BitColumns& wanted, Result& result) {
+void addWarnings(const Matcher& matcher, const BitColumns& wanted, bool autoPlaced, Result& result) {
     const std::size_t voxels = result.votes.targetVoxels;
     if (voxels == 0) {
         result.warnings.emplace_back(
@@ -83,7 +83,8 @@ void addWarnings(const Matcher& matcher, const BitColumns& wanted, Result& resul
     result.unreachable = voxels - reachable;
     if (100 * result.unreachable >= voxels)
         result.warnings.push_back(std::to_string(100 * result.unreachable / voxels) +
-                                  " % of the target lies where no actuator reaches; try --auto-place.");
+                                  " % of the target lies where no actuator reaches" +
+                                  (autoPlaced ? "." : "; try --auto-place."));
     for (std::size_t i = 0; i < result.votes.actuators.size(); ++i)
         if (!result.votes.actuators[i].reached)
             result.warnings.push_back("The target does not meet what '" + matcher.field.actuators[i].name +
@@ -113,7 +114,7 @@ Result matchVoxels(const Matcher& matcher, const TargetVoxels& target, const Arg
     } else {
         result.quality = refiner.qualityOf(wanted, result.state);
     }
-    addWarnings(matcher, wanted, result);
+    addWarnings(matcher, wanted, arguments.autoPlace, result);
     return result;
 }
 

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/base/error.h"
 #include "core/mdf/refine.h"
 
 namespace lumorph {
@@ -27,7 +28,7 @@ public:
     AutoPlacement run() {
         const double fitIou = scoreOf(poseOf(fitPlacement(field_, box_)));
         AutoPlacement result;
-        result.iouAtFit = fitIou;
+        result.iouAtFit = std::max(0.0, fitIou);
         std::vector<std::pair<double, Pose>> starts{{fitIou, poseOf(fitPlacement(field_, box_))}};
         for (int i = 0; i < options_.yaws; ++i)
             for (const double share : {1.0, 0.8, 0.65}) {
@@ -50,6 +51,9 @@ public:
             }
             progress_.report(0.4 + 0.6 * static_cast<double>(k + 1) / kClimbs, "improving the placement");
         }
+        if (best < 0.0)
+            throw InvalidInput("target", "no placement shows enough of it: it is thinner than a voxel or has no volume",
+                               "give a solid target, or build the field with a higher resolution");
         result.placement = placementOf(bestPose);
         result.iou = scoreOf(bestPose);
         result.state = lastState_;

@@ -25,7 +25,8 @@ struct AutoPlacement {
 /// Searches heading, scale and position of a target for the best IoU of its refined match: coarse
 /// starts over all headings and some scales, then a pattern search of the best ones down to a quarter
 /// of a voxel. Placements that leave less than `minInside` of the target's volume where the device
-/// could show it do not count. Reports progress. Throws Cancelled.
+/// could show it do not count. Reports progress. Throws InvalidInput when none counts (a target thinner
+/// than a voxel), Cancelled.
 [[nodiscard]] AutoPlacement autoPlace(const Field& field, const Coverage& coverage, const Voting& voting,
                                       const Target& target, const AutoPlaceOptions& options = {},
                                       const Progress& progress = {});

@@ -35,7 +35,16 @@ struct Edge {
     std::uint32_t from;
     std::uint32_t to;
     std::vector<std::uint32_t> triangles;
+    bool shown = false; ///< borders the surface that looks up at rest
 };
+
+/// Whether a triangle is part of the surface that shows: it looks up at rest, by 45 degrees or more.
+bool facesUp(const TriangleMesh& mesh, std::uint32_t triangle) {
+    const glm::uvec3& t = mesh.triangles[triangle];
+    const glm::vec3 normal =
+        glm::cross(mesh.positions[t.y] - mesh.positions[t.x], mesh.positions[t.z] - mesh.positions[t.x]);
+    return normal.y > 0.70F * glm::length(normal);
+}
 
 std::vector<Edge> edgesOf(const TriangleMesh& mesh) {
     std::map<std::pair<std::uint32_t, std::uint32_t>, std::vector<std::uint32_t>> found;
@@ -46,16 +55,11 @@ std::vector<Edge> edgesOf(const TriangleMesh& mesh) {
             found[std::minmax(a, b)].push_back(t);
         }
     std::vector<Edge> edges;
-    for (auto& [ends, triangles] : found) edges.push_back({ends.first, ends.second, std::move(triangles)});
+    for (auto& [ends, triangles] : found) {
+        const bool shown = std::ranges::any_of(triangles, [&](auto t) { return facesUp(mesh, t); });
+        edges.push_back({ends.first, ends.second, std::move(triangles), shown});
+    }
     return edges;
-}
-
-/// Whether a triangle is part of the surface that shows: it looks up at rest, by 45 degrees or more.
-bool facesUp(const TriangleMesh& mesh, std::uint32_t triangle) {
-    const glm::uvec3& t = mesh.triangles[triangle];
-    const glm::vec3 normal =
-        glm::cross(mesh.positions[t.y] - mesh.positions[t.x], mesh.positions[t.z] - mesh.positions[t.x]);
-    return normal.y > 0.70F * glm::length(normal);
 }
 
 struct Description {
@@ -203,13 +207,13 @@ private:
         report_.volumeMin = std::min(report_.volumeMin, now.volume);
         report_.volumeMax = std::max(report_.volumeMax, now.volume);
         for (const Edge& edge : edges_) {
+            // Skirts and bellows stretch by design; what counts is the sheet that is looked at.
+            if (!edge.shown) continue;
             const double rest = glm::distance(glm::dvec3(rig_.restMesh().positions[edge.from]),
                                               glm::dvec3(rig_.restMesh().positions[edge.to]));
             const double length =
                 glm::distance(glm::dvec3(mesh.positions[edge.from]), glm::dvec3(mesh.positions[edge.to]));
-            // Skirts and bellows stretch by design; what counts is the sheet that is looked at.
-            const bool shown = std::ranges::any_of(edge.triangles, [&](auto t) { return facesUp(rig_.restMesh(), t); });
-            if (rest > 0.0 && shown) report_.maxStretch = std::max(report_.maxStretch, std::abs(length / rest - 1.0));
+            if (rest > 0.0) report_.maxStretch = std::max(report_.maxStretch, std::abs(length / rest - 1.0));
         }
     }
 

@@ -105,6 +105,11 @@ TEST_F(Placing, AutoPlaceFindsAMatchAtLeastAsGoodAsTheFit) {
     EXPECT_GT(found.placementsSeen, 36);
 }
 
+TEST_F(Placing, AutoPlaceRefusesATargetThinnerThanAVoxel) {
+    const Target sliver = makeTarget(test::boxMesh({0, 0, 0}, {1.0F, 0.0005F, 1.0F}));
+    EXPECT_THROW((void)autoPlace(field_, coverage_, voting_, sliver), InvalidInput);
+}
+
 TEST_F(Placing, AutoPlaceCanBeStopped) {
     std::stop_source stop;
     int reports = 0;
