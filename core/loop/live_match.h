@@ -1,0 +1,134 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/base/clock.h"
+#include "core/base/units.h"
+#include "core/loop/match_target.h"
+#include "core/mdf/coverage.h"
+#include "core/mdf/field.h"
+#include "core/mdf/refine.h"
+#include "core/mdf/voting.h"
+#include "core/motion/motion.h"
+#include "core/rig/rig.h"
+
+namespace lumorph {
+
+/// A field and all that matching needs of it. Immutable; shared between threads.
+struct MatchField {
+    explicit MatchField(Field built); ///< reads the rig out of the field; throws DataError when it is not there
+    Field field;
+    Rig rig;
+    Coverage coverage;
+    Voting voting;
+};
+
+enum class MatchMethod { voting, refined };
+
+/// What the user wants now; the loop takes the newest one for each frame.
+struct MatchWish {
+    std::shared_ptr<const Rig> rig;            ///< always there
+    std::shared_ptr<const MatchField> field;   ///< empty until it is built; then its rig is the rig
+    std::shared_ptr<const MatchTarget> target; ///< may be empty
+    Placement placement;
+    bool live = true; ///< follow the target; false: hold `strokes`
+    MatchMethod method = MatchMethod::refined;
+    Microseconds budget{8'000};  ///< for refinement, each frame
+    std::vector<double> strokes; ///< held while not live or without a target; one an actuator
+    bool playing = true;         ///< the target's animation runs
+    std::optional<double> seek;  ///< animation time to show while not playing, seconds
+    double spin = 0.0;           ///< radians a second that the target turns about +Y
+    bool dancing = false;        ///< random moves, while not live
+    bool stopped = false;        ///< STOP: servos stay where they are until it is taken back
+    bool showTint = true;        ///< work out which voxels are unmatched and overfilled
+};
+
+/// Milliseconds of each stage of one frame.
+struct MatchTimes {
+    double pose = 0.0, voxelize = 0.0, match = 0.0, refine = 0.0, motion = 0.0, deform = 0.0, total = 0.0;
+};
+
+/// Classes of MatchFrame::classes.
+inline constexpr std::uint8_t kVoxelMatched = 1, kVoxelUnmatched = 2, kVoxelOverfilled = 3;
+
+/// What one frame found, as a value that never changes again.
+struct MatchFrame {
+    std::uint64_t number = 0;
+    Microseconds time{0};
+    std::shared_ptr<const Rig> rig;
+    std::shared_ptr<const MatchField> field;
+    std::shared_ptr<const MatchTarget> target;
+    bool matched = false; ///< a target was matched in this frame
+    double seconds = 0.0; ///< of the target's animation
+    Angle turned;         ///< by spinning, on top of the placement's yaw
+    glm::mat4 deviceFromTarget{1.0F};
+    std::shared_ptr<const std::vector<glm::vec3>>
+        targetPositions; ///< target's own frame; the same object while it stands still
+    std::shared_ptr<const std::vector<glm::vec3>> devicePositions; ///< at the estimated state, device metres
+
+    State wanted;                         ///< levels asked for (of the field; empty without one)
+    std::vector<double> wantedStrokes;    ///< what the actuators are asked for, one each
+    std::vector<double> estimatedStrokes; ///< where they are under their velocity limits
+    std::shared_ptr<const Votes> votes;   ///< error curves; only when matched
+    double iouVoting = 0.0;               ///< of V(s) by voting alone
+    double iouWanted = 0.0;               ///< of V(wanted)
+    double iouEstimated = 0.0;            ///< of the volume really covered now
+    int statesSeen = 0;                   ///< joint states that refinement looked at
+    double unmatchedVolume = 0.0;         ///< cubic metres of the target that V(wanted) leaves out
+    double overfilledVolume = 0.0;        ///< cubic metres of V(wanted) outside the target
+    double targetVolume = 0.0;            ///< cubic metres of the target in the frame, outside the body
+    double shareBeyondFrame = 0.0;        ///< of the target's volume
+    double shareUnreachable = 0.0;        ///< of the target's voxels that no actuator changes
+    std::shared_ptr<const std::vector<std::uint8_t>> classes; ///< one a voxel, x fastest; empty unless asked for
+    MatchTimes ms;
+};
+
+/// One frame after another: pose of the target -> voxels -> levels -> motion limits -> estimated state -> deformed
+/// device. Keeps what one frame hands to the next: last levels, motion, dance, buffers. One thread at a time.
+class MatchLoop {
+public:
+    explicit MatchLoop(const Clock& clock);
+    ~MatchLoop();
+    MatchLoop(MatchLoop&&) noexcept;
+    MatchLoop& operator=(MatchLoop&&) noexcept;
+
+    /// `sinceLast` seconds have passed since the frame before. An actuator starts where it is when rig and actuator
+    /// count stay the same, else at rest. Throws InvalidInput when the wish contradicts itself.
+    [[nodiscard]] std::shared_ptr<const MatchFrame> step(const MatchWish& wish, double sinceLast);
+
+private:
+    struct Data;
+    std::unique_ptr<Data> data_;
+};
+
+/// Runs a MatchLoop in a thread of its own at a fixed rate: the newest wish goes in, the newest frame comes out. Idle
+/// (nothing moves, no new wish) it costs next to nothing.
+class MatchThread {
+public:
+    /// `onFrame` is called in the loop's thread after each frame; it must return at once.
+    explicit MatchThread(std::function<void()> onFrame, double framesPerSecond = 60.0);
+    ~MatchThread();
+    MatchThread(const MatchThread&) = delete;
+    MatchThread& operator=(const MatchThread&) = delete;
+
+    void wish(MatchWish wish);
+    void setRate(double framesPerSecond);
+    /// The newest frame; empty before the first.
+    [[nodiscard]] std::shared_ptr<const MatchFrame> latest() const;
+    /// Frames a second over the last second; 0 while idle.
+    [[nodiscard]] double rate() const noexcept;
+    /// What went wrong in the loop, once; the loop holds still until the next wish.
+    [[nodiscard]] std::optional<std::string> takeError();
+
+private:
+    struct Data;
+    std::unique_ptr<Data> data_;
+};
+
+} // namespace lumorph

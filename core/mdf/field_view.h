@@ -1,0 +1,42 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include <glm/vec3.hpp>
+
+#include "core/geometry/triangle_mesh.h"
+#include "core/mdf/field.h"
+#include "core/voxels/bit_columns.h"
+
+namespace lumorph {
+
+/// Which part of a field is looked at (R14).
+struct FieldViewOptions {
+    std::optional<std::size_t> actuator; ///< empty: all combined, each voxel by the lowest level of any actuator
+    int lowestLevel = 0;                 ///< only voxels first covered at these levels
+    int highestLevel = 255;
+    glm::ivec3 sliceFrom{0}; ///< only voxels in this box of the frame, both ends included
+    glm::ivec3 sliceTo{0x7FFF};
+    const BitColumns* touchedBy = nullptr; ///< only voxels of this target
+    bool surfaceOnly = true;               ///< leave out voxels whose six neighbours are all shown: they cannot be seen
+};
+
+/// A voxel to show and the level at which the actuator first covers it (v0 of its ramp).
+struct FieldVoxel {
+    glm::ivec3 voxel{0};
+    int level = 0;
+};
+[[nodiscard]] std::vector<FieldVoxel> fieldVoxels(const Field& field, const FieldViewOptions& options);
+
+/// The boundary of what is expected to be covered by at least one half at `level` (an actuator alone, or all at that
+/// level), as a closed mesh in device metres: marching over voxel centres, the body not included. Empty where nothing
+/// is.
+[[nodiscard]] TriangleMesh levelSurface(const Field& field, std::optional<std::size_t> actuator, int level);
+
+/// Expected coverage of one voxel by each actuator at each level, in [0, 1]: [actuator][level]. Throws InvalidInput
+/// outside the frame.
+[[nodiscard]] std::vector<std::vector<double>> rampsAt(const Field& field, const glm::ivec3& voxel);
+
+} // namespace lumorph
