@@ -10,10 +10,9 @@
 #include "core/geometry/triangle_mesh.h"
 #include "core/render/camera.h"
 #include "core/render/gpu_mesh.h"
+#include "core/render/theme.h"
 
 namespace lumorph {
-
-enum class Theme { dark, light };
 
 /// What of the light is drawn; without shadows every surface is lit as if it stood alone.
 struct Lighting {

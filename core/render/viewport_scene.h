@@ -12,8 +12,8 @@
 #include <glm/vec4.hpp>
 
 #include "core/geometry/triangle_mesh.h"
-#include "core/render/studio_pass.h"
 #include "core/render/surface_shading.h"
+#include "core/render/theme.h"
 #include "core/voxels/voxel_frame.h"
 
 namespace lumorph {

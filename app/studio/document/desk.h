@@ -1,0 +1,64 @@
+#pragma once
+
+#include <filesystem>
+#include <functional>
+
+#include <QObject>
+#include <QString>
+
+#include "app/studio/document/jobs.h"
+#include "app/studio/document/notices.h"
+#include "app/studio/document/studio_document.h"
+#include "core/mdf/builder.h"
+
+namespace lumorph::studio {
+
+/// Opens, builds, saves and keeps: whatever turns files into document and back. Each takes its time as a job and tells
+/// failures as notices with a remedy; the document changes only when all went well, by one step of undo.
+class Desk : public QObject {
+    Q_OBJECT
+public:
+    Desk(StudioDocument& document, Jobs& jobs, Notices& notices, QObject* parent = nullptr);
+
+    /// Opens a file by what it is: a project, a field, a rig (a glTF with actuators, a folder) or a target. For files
+    /// dropped on the window and the command line.
+    void open(const std::filesystem::path& file);
+    void openProject(const std::filesystem::path& file);
+    /// Opens a rig, and the field that lies beside it or was built for it last; else builds one.
+    void openRig(const std::filesystem::path& path);
+    /// A field of another rig is refused; the notice offers to open the field's own rig.
+    void openField(const std::filesystem::path& file);
+    /// Opens a target and places it: as large as fits the frame (`fitPlacement`).
+    void openTarget(const std::filesystem::path& file);
+    void removeTarget();
+    void buildField(const BuildOptions& options);
+    void fit();       ///< the largest size that fits, standing on the device
+    void autoPlace(); ///< searches heading, size and place
+
+    void newProject(); ///< the bundled tablet, no target
+    void openDemo();   ///< the bundled tablet with an animated target, matched live
+    /// Saves to the project's file. False when it has none; ask for one and use saveAs.
+    bool save();
+    void saveAs(const std::filesystem::path& file);
+
+    /// Goes on where the last session ended; the demo when there was none. `onReady` runs when it is there or failed.
+    void restoreSession(std::function<void()> onReady = {});
+    /// Keeps the session now; blocks until it is on disk. Called at the end; while running it is kept some seconds
+    /// after each change.
+    void keepSession();
+    /// Where sessions are kept; for tests.
+    static std::filesystem::path sessionFolder();
+
+signals:
+    void opened(const QString& path); ///< for the list of recent files
+    void saved(const QString& path);
+
+private:
+    struct Data;
+    std::unique_ptr<Data> data_;
+
+public:
+    ~Desk() override;
+};
+
+} // namespace lumorph::studio

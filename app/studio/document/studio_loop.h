@@ -1,0 +1,60 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+
+#include <QObject>
+#include <QTimer>
+
+#include "app/studio/document/studio_document.h"
+#include "core/loop/live_match.h"
+
+namespace lumorph::studio {
+
+/// The match loop as the window sees it: the document and what the user does right now go in, frames come out as a
+/// signal. Lives in the window's thread; the work is done in the loop's.
+class StudioLoop : public QObject {
+    Q_OBJECT
+public:
+    explicit StudioLoop(StudioDocument& document, QObject* parent = nullptr);
+    ~StudioLoop() override;
+
+    /// The newest frame; empty before the first.
+    [[nodiscard]] const std::shared_ptr<const MatchFrame>& frame() const noexcept { return frame_; }
+    [[nodiscard]] double rate() const noexcept;      ///< frames a second
+    [[nodiscard]] double matchRate() const noexcept; ///< matches a second that were handed to the window
+
+    [[nodiscard]] bool stopped() const noexcept { return stopped_; }
+    /// STOP: the servos stay where they are until `resume`.
+    void stop();
+    void resume();
+    [[nodiscard]] bool dancing() const noexcept { return dancing_; }
+    /// Random smooth moves; takes the rig off the target.
+    void setDancing(bool dancing);
+    /// Time of the target's animation to show while it does not play.
+    void seek(double seconds);
+    void setTint(bool shown);
+    void setRate(double framesPerSecond);
+
+signals:
+    /// A new frame, newest only: frames that come faster than the window takes them are left out.
+    void framed();
+    void stoppedChanged();
+    void dancingChanged();
+    void failed(const QString& why);
+
+private:
+    void send();
+    void take();
+
+    StudioDocument& document_;
+    std::shared_ptr<const MatchFrame> frame_;
+    bool stopped_ = false;
+    bool dancing_ = false;
+    bool tint_ = true;
+    std::optional<double> seek_;
+    std::vector<std::int64_t> shownAt_; ///< when matched frames were handed over, milliseconds
+    std::unique_ptr<MatchThread> thread_;
+};
+
+} // namespace lumorph::studio

@@ -1,0 +1,53 @@
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <vector>
+
+#include "core/loop/live_match.h"
+#include "core/loop/match_target.h"
+#include "core/mdf/placement.h"
+#include "core/rig/rig.h"
+
+namespace lumorph::studio {
+
+/// What is open, as one plain value: large parts are shared and never change, so a copy is cheap and an undo step is a
+/// copy from before.
+struct StudioState {
+    struct RigAsset {
+        std::filesystem::path path; ///< a file, or a folder of one mesh per state
+        std::shared_ptr<const Rig> rig;
+        bool operator==(const RigAsset&) const = default;
+    };
+    struct FieldAsset {
+        std::filesystem::path path; ///< empty while it was built here and not saved
+        std::shared_ptr<const MatchField> field;
+        bool operator==(const FieldAsset&) const = default;
+    };
+    struct TargetAsset {
+        std::filesystem::path path;
+        std::shared_ptr<const MatchTarget> target;
+        bool operator==(const TargetAsset&) const = default;
+    };
+    struct Matching {
+        bool live = true; ///< the rig follows the target; false: it holds `strokes`
+        MatchMethod method = MatchMethod::refined;
+        Microseconds budget{8'000};
+        bool operator==(const Matching&) const = default;
+    };
+    struct Playback {
+        bool playing = true;
+        double spin = 0.0; ///< radians a second
+        bool operator==(const Playback&) const = default;
+    };
+
+    RigAsset rig;
+    FieldAsset field; ///< of this rig, or empty
+    TargetAsset target;
+    Placement placement;
+    std::vector<double> strokes; ///< set by hand; one an actuator of the rig, each in [0, 1]
+    Matching matching;
+    Playback playback;
+};
+
+} // namespace lumorph::studio

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include <QMainWindow>
+
+#include "app/studio/shell/studio.h"
+#include "app/studio/shell/workspace.h"
+
+namespace lumorph::studio {
+
+/// The one window: workspaces as tabs in a slim top bar, STOP always in sight, each workspace's docks and central view
+/// below with a layout of their own, and the status line.
+class MainWindow : public QMainWindow {
+    Q_OBJECT
+public:
+    MainWindow(Studio& studio, std::vector<std::unique_ptr<Workspace>> workspaces);
+    ~MainWindow() override;
+
+    void showWorkspace(const QString& id);
+    [[nodiscard]] QString workspace() const;
+    /// The first-run tour, from its first step.
+    void startTour();
+
+protected:
+    void closeEvent(QCloseEvent* event) override;
+    void dragEnterEvent(QDragEnterEvent* event) override;
+    void dropEvent(QDropEvent* event) override;
+    void changeEvent(QEvent* event) override;
+    bool eventFilter(QObject* watched, QEvent* event) override;
+
+private:
+    struct Data;
+    std::unique_ptr<Data> data_;
+};
+
+} // namespace lumorph::studio

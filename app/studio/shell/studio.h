@@ -1,0 +1,26 @@
+#pragma once
+
+#include "app/studio/document/desk.h"
+#include "app/studio/document/jobs.h"
+#include "app/studio/document/notices.h"
+#include "app/studio/document/studio_document.h"
+#include "app/studio/document/studio_loop.h"
+#include "app/studio/shell/commands.h"
+#include "app/studio/shell/settings.h"
+#include "app/studio/viewport/render_thread.h"
+
+namespace lumorph::studio {
+
+/// What every workspace may use; made once by the program, in this order.
+struct Studio {
+    Settings settings;
+    Notices notices;
+    Jobs jobs;
+    StudioDocument document;
+    StudioLoop loop{document};
+    Desk desk{document, jobs, notices};
+    Commands commands;
+    RenderThread renderer;
+};
+
+} // namespace lumorph::studio

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <vector>
+
+#include <QKeySequence>
+#include <QObject>
+#include <QString>
+#include <QWidget>
+
+namespace lumorph::studio {
+
+/// A dock that a workspace brings. The main window owns it once handed over.
+struct WorkspaceDock {
+    QString id;    ///< objectName, such as "dock.actuators"
+    QString title; ///< what the user sees
+    QString icon;
+    QWidget* content = nullptr;
+    Qt::DockWidgetArea area = Qt::LeftDockWidgetArea;
+    bool tabbedWithPrevious = false; ///< behind the dock before it, in the first layout
+};
+
+/// One of the tabs in the top bar: a central view, docks, and actions of its own. The main window never names a panel.
+class Workspace : public QObject {
+    Q_OBJECT
+public:
+    using QObject::QObject;
+    ~Workspace() override = default;
+
+    [[nodiscard]] virtual QString id() const = 0;    ///< "field"
+    [[nodiscard]] virtual QString title() const = 0; ///< "Field"
+    /// Made once, when the workspace is first shown; the main window takes them over.
+    [[nodiscard]] virtual QWidget* makeCentralView() = 0;
+    [[nodiscard]] virtual std::vector<WorkspaceDock> makeDocks() = 0;
+    /// Shown, or another one is; a hidden workspace draws nothing.
+    virtual void setActive(bool active) = 0;
+};
+
+} // namespace lumorph::studio

@@ -1,0 +1,74 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <optional>
+
+#include <QImage>
+#include <QObject>
+#include <QSize>
+#include <QString>
+
+#include "core/render/view_camera.h"
+#include "core/render/viewport_scene.h"
+
+namespace lumorph::studio {
+
+/// What a viewport wants drawn.
+struct FrameRequest {
+    std::shared_ptr<const ViewportScene> scene;
+    ViewCamera camera;
+    QSize pixels;       ///< of the framebuffer, not of the desktop
+    double scale = 1.0; ///< desktop scale
+    bool refine = true; ///< when nothing newer comes, draw it again in full quality
+};
+
+/// A frame that was drawn. The image belongs to the receiver; no OpenGL context is needed to show it.
+struct DrawnFrame {
+    QImage image;
+    std::shared_ptr<const ViewportScene> scene;
+    ViewCamera camera;
+    bool still = false; ///< in full quality
+    double milliseconds = 0.0;
+};
+
+/// Draws all viewports in a thread of its own with a context of its own that shares with the program's others. The
+/// newest request of each viewport counts; frames are read back and handed over, so that the window's thread only
+/// paints a picture and a dock that moves loses nothing.
+class RenderThread : public QObject {
+    Q_OBJECT
+public:
+    explicit RenderThread(QObject* parent = nullptr);
+    ~RenderThread() override;
+
+    /// Why nothing can be drawn here (OpenGL 4.1 is missing, with the version found); empty when all is well. Known
+    /// once `ready` was emitted.
+    [[nodiscard]] std::optional<QString> failure() const;
+
+    /// `viewport` is any number that tells viewports apart.
+    void request(int viewport, FrameRequest request);
+    /// Forgets a viewport and what was asked for it.
+    void forget(int viewport);
+    /// Draws one picture of any size in full quality; `done` runs in the window's thread with a null image and a reason
+    /// when that failed.
+    void picture(FrameRequest request, std::function<void(QImage, QString)> done);
+
+    /// For tests: OpenGL objects held by the renderer, and OpenGL errors since the start.
+    [[nodiscard]] std::size_t objectCount() const;
+    [[nodiscard]] std::size_t errorCount() const;
+
+signals:
+    void ready();
+    void drawn(int viewport); ///< take it with `takeFrame`
+    void broke(const QString& why);
+
+public:
+    /// The newest frame of a viewport that was not taken yet.
+    [[nodiscard]] std::optional<DrawnFrame> takeFrame(int viewport);
+
+private:
+    struct Data;
+    std::unique_ptr<Data> data_;
+};
+
+} // namespace lumorph::studio

@@ -1,0 +1,7 @@
+#pragma once
+
+namespace lumorph {
+
+enum class Theme { dark, light };
+
+} // namespace lumorph
