@@ -58,8 +58,8 @@ AssetFiles filesOfFolder(const fs::path& folder) {
         throw DataError(folder.string(), "holds no meshes", "choose a folder of one mesh per state");
     // Several glTF files may share a buffer.
     std::ranges::sort(asset.files, {}, &AssetFiles::File::name);
-    const auto doubled = std::ranges::unique(asset.files, {}, &AssetFiles::File::name);
-    asset.files.erase(doubled.begin(), doubled.end());
+    const auto sameName = [](const AssetFiles::File& a, const AssetFiles::File& b) { return a.name == b.name; };
+    asset.files.erase(std::unique(asset.files.begin(), asset.files.end(), sameName), asset.files.end());
     return asset;
 }
 
