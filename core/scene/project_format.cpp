@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "core/base/error.h"
 #include "core/rig/rig_validation.h"
@@ -165,7 +166,7 @@ Project projectOf(json document, const std::string& file) {
     readAsset(root, "field", project.field);
     readAsset(root, "target", project.target);
     root.wholeNumber("animation", project.animation, kMaxAnimation);
-    root.section("placement", [&](Section section) { project.placement = readPlacement(section); });
+    root.section("placement", [&](Section section) { project.placement = readPlacement(std::move(section)); });
     root.numbers("strokes", project.strokes, 0.0, 1.0, kMaxActuators);
     root.section("matching", [&](Section section) {
         section.flag("live", project.matching.live);
