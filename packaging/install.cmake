@@ -1,0 +1,36 @@
+# What an installed Lumorph consists of, and the Debian package made of it (packaging/deb).
+include(GNUInstallDirs)
+
+install(TARGETS lumorph RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+# core/base/resources.cpp looks for ../share/lumorph beside the program.
+install(DIRECTORY resources/fonts resources/icons resources/models resources/shaders resources/targets
+        DESTINATION ${CMAKE_INSTALL_DATADIR}/lumorph
+        PATTERN generator EXCLUDE PATTERN CMakeLists.txt EXCLUDE)
+install(FILES README.md CHANGELOG.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
+install(FILES packaging/desktop/copyright DESTINATION ${CMAKE_INSTALL_DOCDIR})
+
+if(TARGET lumorph-studio)
+    install(TARGETS lumorph-studio RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+    install(FILES packaging/desktop/io.lumorph.Studio.desktop DESTINATION ${CMAKE_INSTALL_DATADIR}/applications)
+    install(FILES packaging/desktop/io.lumorph.Studio.metainfo.xml DESTINATION ${CMAKE_INSTALL_DATADIR}/metainfo)
+    install(FILES packaging/desktop/lumorph.xml DESTINATION ${CMAKE_INSTALL_DATADIR}/mime/packages)
+    install(FILES resources/icons/lumorph.svg
+            DESTINATION ${CMAKE_INSTALL_DATADIR}/icons/hicolor/scalable/apps)
+    install(FILES resources/icons/application-x-lumorph.svg
+            DESTINATION ${CMAKE_INSTALL_DATADIR}/icons/hicolor/scalable/mimetypes)
+endif()
+
+set(CPACK_GENERATOR DEB)
+set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
+set(CPACK_PACKAGE_NAME lumorph)
+set(CPACK_PACKAGE_VENDOR "Lumorph")
+set(CPACK_PACKAGE_CONTACT "The Lumorph developers <developers@lumorph.io>")
+set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "${PROJECT_DESCRIPTION}")
+set(CPACK_STRIP_FILES ON)
+set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
+set(CPACK_DEBIAN_PACKAGE_SECTION graphics)
+# Libraries are found by what the programs link; these are loaded at run time.
+set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
+set(CPACK_DEBIAN_PACKAGE_DEPENDS "libegl1, libgl1-mesa-dri | libgl1-nvidia-glvnd-glx, qt6-qpa-plugins, shared-mime-info, hicolor-icon-theme")
+set(CPACK_DEBIAN_PACKAGE_CONTROL_STRICT_PERMISSION ON)
+include(CPack)
