@@ -14,8 +14,9 @@ namespace lumorph {
 
 /// Which part of a field is looked at (R14).
 struct FieldViewOptions {
-    std::optional<std::size_t> actuator; ///< empty: all combined, each voxel by the lowest level of any actuator
-    int lowestLevel = 0;                 ///< only voxels first covered at these levels
+    std::optional<std::size_t> actuator =
+        std::nullopt;    ///< empty: all combined, each voxel by the lowest level of any actuator
+    int lowestLevel = 0; ///< only voxels first covered at these levels
     int highestLevel = 255;
     glm::ivec3 sliceFrom{0}; ///< only voxels in this box of the frame, both ends included
     glm::ivec3 sliceTo{0x7FFF};
