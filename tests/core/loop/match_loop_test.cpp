@@ -94,7 +94,7 @@ TEST_F(MatchLoopTest, FollowsAnAnimationWithoutFlicker) {
             ++changes;
         }
         last = frame->wanted;
-        EXPECT_NEAR(frame->seconds, std::fmod(k * kFrame, 2.0), 1e-9);
+        EXPECT_NEAR(std::remainder(frame->seconds - k * kFrame, 2.0), 0.0, 1e-9);
     }
     EXPECT_GT(changes, 3);
 }
