@@ -18,6 +18,7 @@ void benchVoting(const Filter& filter, Report& report);
 void benchVoxelize(const Filter& filter, Report& report);
 void benchBuild(const Filter& filter, Report& report);
 void benchLoop(const Filter& filter, Report& report);
+void benchLive(const Filter& filter, Report& report);
 void benchRefine(const Filter& filter, Report& report);
 void benchScaling(const Filter& filter, Report& report);
 

@@ -54,6 +54,33 @@ TEST_P(RefineOnRig, FindsHiddenStatesFromRest) {
     EXPECT_GE(worst, 0.9);
 }
 
+/// Runs out of time after so many looks at it.
+class CountingClock final : public Clock {
+public:
+    [[nodiscard]] Microseconds now() const override { return ++looks_; }
+
+private:
+    mutable Microseconds looks_{0};
+};
+
+TEST_P(RefineOnRig, ManyShortBudgetsDoWhatOneLongOneDoes) {
+    const BitColumns target = volumeOf({Level{6}, Level{1}, Level{4}});
+    const Refinement whole = Refiner(*coverage_).refine(target, State(3), Microseconds{0}, clock_);
+    const CountingClock counting;
+    Refiner refiner(*coverage_);
+    Refinement part = refiner.refine(target, State(3), Microseconds{5}, counting);
+    int seen = part.statesSeen;
+    for (int k = 0; k < 2000 && !part.converged; ++k) {
+        EXPECT_LE(part.statesSeen, 12);
+        part = refiner.resume(Microseconds{5}, counting);
+        seen += part.statesSeen;
+    }
+    EXPECT_TRUE(part.converged);
+    EXPECT_EQ(part.state, whole.state);
+    EXPECT_EQ(part.after.iou(), whole.after.iou());
+    EXPECT_LE(seen, 2 * whole.statesSeen);
+}
+
 // Every reported figure is checked against the volume itself, and the end is a local optimum.
 TEST_P(RefineOnRig, ReportsTrueQualityAndEndsWhereNoSingleActuatorHelps) {
     Refiner refiner(*coverage_);

@@ -1,0 +1,174 @@
+#include <algorithm>
+#include <chrono>
+#include <condition_variable>
+#include <functional>
+#include <limits>
+#include <mutex>
+
+#include <gtest/gtest.h>
+
+#include "core/base/error.h"
+#include "tests/core/loop/loop_fixture.h"
+
+namespace lumorph {
+namespace {
+
+/// Counts frames and waits for conditions on them.
+class Frames {
+public:
+    std::function<void()> counter() {
+        return [this] {
+            {
+                const std::scoped_lock lock(mutex_);
+                ++count_;
+            }
+            changed_.notify_all();
+        };
+    }
+    [[nodiscard]] int count() const {
+        const std::scoped_lock lock(mutex_);
+        return count_;
+    }
+    /// False after half a minute.
+    bool wait(const std::function<bool()>& holds) {
+        std::unique_lock lock(mutex_);
+        const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(30);
+        while (std::chrono::steady_clock::now() < end) {
+            lock.unlock();
+            const bool done = holds();
+            lock.lock();
+            if (done) return true;
+            changed_.wait_for(lock, std::chrono::milliseconds(5));
+        }
+        return false;
+    }
+    /// Waits as long as frames come.
+    bool waitForRest() {
+        return wait([this, last = -1, since = std::chrono::steady_clock::now()]() mutable {
+            const auto now = std::chrono::steady_clock::now();
+            if (count() != last) since = now;
+            last = count();
+            return now - since > std::chrono::milliseconds(250);
+        });
+    }
+
+private:
+    mutable std::mutex mutex_;
+    std::condition_variable changed_;
+    int count_ = 0;
+};
+
+class MatchThreadTest : public testing::Test {
+protected:
+    MatchWish held(double stroke) const {
+        MatchWish wish = test::wishFor(field_, nullptr);
+        wish.strokes.assign(wish.strokes.size(), stroke);
+        return wish;
+    }
+
+    std::shared_ptr<const MatchField> field_ = test::matchFieldOf(test::cushionRig());
+    Frames frames_;
+};
+
+TEST_F(MatchThreadTest, TheNewestWishWins) {
+    MatchThread thread(frames_.counter(), 20.0);
+    EXPECT_EQ(thread.latest(), nullptr);
+    for (int k = 0; k <= 100; ++k) thread.wish(held(0.01 * k));
+    ASSERT_TRUE(frames_.wait([&] { return thread.latest() && thread.latest()->wantedStrokes[0] == 1.0; }));
+    EXPECT_LT(frames_.count(), 50) << "wishes in between are passed over";
+}
+
+TEST_F(MatchThreadTest, RestsWhenNothingMovesAndWakesUp) {
+    MatchThread thread(frames_.counter(), 250.0);
+    thread.wish(held(0.2));
+    ASSERT_TRUE(frames_.wait([&] { return thread.rate() > 0.0; }));
+    ASSERT_TRUE(frames_.waitForRest());
+    const auto rested = thread.latest();
+    EXPECT_EQ(rested->estimatedStrokes, rested->wantedStrokes);
+    EXPECT_EQ(rested->number, static_cast<std::uint64_t>(frames_.count()));
+    EXPECT_EQ(thread.rate(), 0.0);
+    EXPECT_EQ(thread.latest(), rested);
+
+    thread.wish(held(0.9));
+    ASSERT_TRUE(frames_.wait([&] { return thread.latest()->wantedStrokes[0] == 0.9; }));
+    const auto woken = thread.latest();
+    EXPECT_GT(woken->number, rested->number);
+    EXPECT_LT(woken->estimatedStrokes[0], 0.5) << "the rest counts as no time for moving";
+    thread.wish(held(0.9));
+    ASSERT_TRUE(frames_.waitForRest());
+    EXPECT_EQ(thread.latest()->estimatedStrokes[0], 0.9);
+}
+
+TEST_F(MatchThreadTest, KeepsItsRate) {
+    MatchThread thread(frames_.counter(), 100.0);
+    thread.wish(test::wishFor(field_, test::movingTarget()));
+    ASSERT_TRUE(frames_.wait([&] { return frames_.count() >= 40; }));
+    const auto first = thread.latest();
+    const int count = frames_.count();
+    ASSERT_TRUE(frames_.wait([&] { return frames_.count() >= count + 20; }));
+    const auto last = thread.latest();
+    const double seconds = 1e-6 * static_cast<double>((last->time - first->time).count());
+    EXPECT_LE(static_cast<double>(last->number - first->number), 100.0 * seconds + 1.5) << "never faster";
+    EXPECT_LE(thread.rate(), 101.0);
+    EXPECT_GT(thread.rate(), 0.0);
+    EXPECT_THROW(thread.setRate(0.0), InvalidInput);
+    EXPECT_THROW(thread.setRate(std::numeric_limits<double>::quiet_NaN()), InvalidInput);
+    EXPECT_THROW(MatchThread({}, -1.0), InvalidInput);
+}
+
+TEST_F(MatchThreadTest, AnErrorComesOutOnceAndTheNextWishRecovers) {
+    MatchThread thread(frames_.counter(), 250.0);
+    MatchWish wrong = held(0.5);
+    wrong.strokes.pop_back();
+    thread.wish(wrong);
+    std::optional<std::string> error;
+    ASSERT_TRUE(frames_.wait([&] {
+        if (!error) error = thread.takeError();
+        return error.has_value();
+    }));
+    EXPECT_NE(error->find("2 for 3 actuators"), std::string::npos) << *error;
+    EXPECT_EQ(thread.takeError(), std::nullopt);
+    EXPECT_EQ(thread.latest(), nullptr);
+    thread.wish(held(0.5));
+    ASSERT_TRUE(frames_.wait([&] { return thread.latest() && thread.latest()->wantedStrokes[0] == 0.5; }));
+    EXPECT_EQ(thread.takeError(), std::nullopt);
+}
+
+TEST_F(MatchThreadTest, AnErrorOfTheListenerDoesNotEndTheThread) {
+    int calls = 0;
+    MatchThread thread(
+        [&] {
+            if (++calls == 1) throw DeviceError("window", "it is gone", "open it again");
+        },
+        250.0);
+    thread.wish(held(0.5));
+    std::optional<std::string> error;
+    ASSERT_TRUE(frames_.wait([&] {
+        if (!error) error = thread.takeError();
+        return error.has_value();
+    }));
+    EXPECT_EQ(*error, "window: it is gone; open it again");
+    thread.wish(held(0.4));
+    EXPECT_TRUE(frames_.wait([&] { return thread.latest() && thread.latest()->wantedStrokes[0] == 0.4; }));
+}
+
+TEST_F(MatchThreadTest, TwoThousandFramesKeepNothing) {
+    const auto target = test::movingTarget();
+    {
+        MatchThread thread(frames_.counter(), 1000.0);
+        std::weak_ptr<const MatchFrame> early;
+        MatchWish wish = test::wishFor(field_, target);
+        wish.budget = Microseconds{200};
+        thread.wish(wish);
+        ASSERT_TRUE(frames_.wait([&] { return thread.latest() != nullptr; }));
+        early = thread.latest();
+        ASSERT_TRUE(frames_.wait([&] { return frames_.count() >= 2000; }));
+        EXPECT_TRUE(early.expired()) << "a frame lives no longer than someone looks at it";
+        EXPECT_LT(target.use_count(), 12);
+    }
+    EXPECT_EQ(target.use_count(), 1);
+    EXPECT_EQ(field_.use_count(), 1);
+}
+
+} // namespace
+} // namespace lumorph
