@@ -138,7 +138,6 @@ SurfaceShading::SurfaceShading(const TriangleMesh& mesh, Angle crease)
             if (leaderOf[normal] == kNone) leaderOf[normal] = drawn;
             sources_.push_back(source);
             leaders_.push_back(leaderOf[normal]);
-            restPositions_.push_back(mesh.positions[source]);
         }
         triangles_[corner / 3][static_cast<int>(corner % 3)] = static_cast<std::uint32_t>(sources_.size() - 1);
     }

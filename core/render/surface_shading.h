@@ -29,8 +29,6 @@ public:
     [[nodiscard]] std::size_t meshVertexCount() const noexcept { return meshVertexCount_; }
     /// Whether the mesh it was made from is closed and looks outwards: its back faces are never seen.
     [[nodiscard]] bool closed() const noexcept { return closed_; }
-    /// The drawn vertices of the mesh it was made from, metres: what sticks to the surface is placed by them.
-    [[nodiscard]] std::span<const glm::vec3> restPositions() const noexcept { return restPositions_; }
 
     /// Positions and normals of all drawn vertices for these positions of the mesh's vertices (metres,
     /// one a mesh vertex); normals are the mean of the faces around, weighted by area. `out` has one
@@ -41,7 +39,6 @@ private:
     std::vector<glm::uvec3> triangles_;
     std::vector<std::uint32_t> sources_;
     std::vector<std::uint32_t> leaders_; // for each drawn vertex the first one with the same normal
-    std::vector<glm::vec3> restPositions_;
     bool closed_ = false;
     std::size_t meshVertexCount_ = 0;
 };

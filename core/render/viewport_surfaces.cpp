@@ -51,9 +51,6 @@ ViewportSurfaces::Entry& ViewportSurfaces::add(const ViewportSurface& surface) {
     glBindBuffer(GL_ARRAY_BUFFER, entry.vertices.name());
     attribute(0, sizeof(Vertex), offsetof(Vertex, position));
     attribute(1, sizeof(Vertex), offsetof(Vertex, normal));
-    glBindBuffer(GL_ARRAY_BUFFER, entry.rest.name());
-    fill(GL_ARRAY_BUFFER, surface.shading->restPositions(), GL_STATIC_DRAW);
-    attribute(2, sizeof(glm::vec3), 0);
     glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, entry.indices.name());
     fill(GL_ELEMENT_ARRAY_BUFFER, surface.shading->triangles(), GL_STATIC_DRAW);
     glBindVertexArray(0);

@@ -25,14 +25,14 @@ public:
     [[nodiscard]] std::uint64_t version(std::size_t surface) const noexcept { return shown_[surface]->version; }
     [[nodiscard]] bool closed(std::size_t surface) const noexcept { return shown_[surface]->shading->closed(); }
 
-    [[nodiscard]] std::size_t objectCount() const noexcept { return 4 * entries_.size(); }
+    [[nodiscard]] std::size_t objectCount() const noexcept { return 3 * entries_.size(); }
 
 private:
     struct Entry {
         std::shared_ptr<const SurfaceShading> shading;
         std::shared_ptr<const std::vector<glm::vec3>> positions;
         gl::VertexArray array;
-        gl::Buffer vertices, rest, indices;
+        gl::Buffer vertices, indices;
         Box box; // of the positions
         std::uint64_t version = 0;
         std::uint64_t lastFrame = 0;
