@@ -1,0 +1,36 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "core/render/gl_objects.h"
+#include "core/render/program.h"
+#include "core/render/viewport_frame.h"
+
+namespace lumorph {
+
+/// The class volume of a viewport's tint as a texture of the current context.
+class ViewportTintVolume {
+public:
+    /// Uploads classes that are another object than last time; drops them when there is no tint. A tint whose
+    /// number of classes does not fit its frame, or that the driver cannot hold, counts as none.
+    void update(const std::optional<ViewportTint>& tint);
+
+    [[nodiscard]] bool there() const noexcept { return volume_.has_value(); }
+    /// Sets and binds what tint.glsl needs. There must be a tint.
+    void apply(Program& program, const ViewportFrame& frame, int textureUnit) const;
+
+    [[nodiscard]] std::size_t objectCount() const noexcept { return volume_ ? 1 : 0; }
+
+private:
+    struct Volume {
+        gl::Texture texture;
+        std::shared_ptr<const std::vector<std::uint8_t>> classes;
+        glm::ivec3 dimensions{0};
+    };
+    std::optional<Volume> volume_;
+};
+
+} // namespace lumorph
