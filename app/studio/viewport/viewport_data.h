@@ -19,6 +19,9 @@ namespace lumorph::studio {
 struct ViewportWidget::Data {
     using Clock = std::chrono::steady_clock;
 
+    /// The pointer is not over the view.
+    static constexpr QPointF kNowhere{-1e4, -1e4};
+
     /// What a pressed button does.
     enum class Drag { none, undecided, orbit, pan, cube, gizmo };
 
@@ -92,7 +95,7 @@ struct ViewportWidget::Data {
     Drag dragging = Drag::none;
     Qt::MouseButton button = Qt::NoButton;
     QPointF pressedAt;
-    QPointF pointer;
+    QPointF pointer = kNowhere;
     std::optional<Grip> grip;
     std::optional<GizmoHandle> hotHandle;
     std::optional<CubeSide> hotSide;

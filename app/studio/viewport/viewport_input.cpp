@@ -120,7 +120,7 @@ void ViewportWidget::Data::showCursor() {
 
 void ViewportWidget::Data::hover(const QPointF& at) {
     if (dragging != Drag::none) return;
-    const bool inside = self.rect().contains(at.toPoint()) && self.underMouse();
+    const bool inside = QRectF(self.rect()).contains(at);
     const auto side = inside ? cubeAt(at) : std::nullopt;
     std::optional<GizmoHandle> handle;
     if (inside && gizmo && !side) handle = gizmoAt(*gizmo, motion.camera(), toVec(at), size(), 1.0);
@@ -338,7 +338,10 @@ void ViewportWidget::keyReleaseEvent(QKeyEvent* event) {
 }
 
 void ViewportWidget::leaveEvent(QEvent* event) {
-    if (data_->dragging == Data::Drag::none) data_->setHot(std::nullopt, std::nullopt);
+    if (data_->dragging == Data::Drag::none) {
+        data_->pointer = Data::kNowhere;
+        data_->hover(data_->pointer);
+    }
     QWidget::leaveEvent(event);
 }
 
