@@ -1,7 +1,10 @@
 #pragma once
 
+#include <atomic>
+#include <cstdint>
 #include <memory>
 #include <optional>
+#include <vector>
 
 #include <QObject>
 #include <QTimer>
@@ -44,8 +47,11 @@ signals:
     void failed(const QString& why);
 
 private:
+    void heed(StateParts parts);
+    void sendSoon();
     void send();
     void take();
+    void takeError();
 
     StudioDocument& document_;
     std::shared_ptr<const MatchFrame> frame_;
@@ -53,7 +59,10 @@ private:
     bool dancing_ = false;
     bool tint_ = true;
     std::optional<double> seek_;
+    bool sending_ = false;              ///< a wish goes out when the event loop comes round
     std::vector<std::int64_t> shownAt_; ///< when matched frames were handed over, milliseconds
+    std::atomic<bool> posted_ = false;  ///< the window has been told of a frame that it did not take yet
+    QTimer errors_;
     std::unique_ptr<MatchThread> thread_;
 };
 
