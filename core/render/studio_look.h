@@ -4,9 +4,9 @@
 
 #include <glm/vec3.hpp>
 
-namespace lumorph {
+#include "core/render/theme.h"
 
-enum class Theme { dark, light };
+namespace lumorph {
 
 /// The studio's colours in a theme, sRGB-encoded.
 struct StudioPalette {

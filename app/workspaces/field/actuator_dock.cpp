@@ -4,7 +4,6 @@
 #include <vector>
 
 #include <QStackedWidget>
-#include <QToolButton>
 #include <QVBoxLayout>
 
 #include "app/studio/widgets/panel.h"
@@ -25,7 +24,8 @@ class ActuatorDock : public QWidget {
 public:
     explicit ActuatorDock(Studio& studio)
         : studio_(studio), hand_(studio.document, studio.loop),
-          refresh_(new Throttle(kRefreshMilliseconds, [this] { refresh(); }, this)) {
+          refresh_(new Throttle(
+              kRefreshMilliseconds, [this] { refresh(); }, this)) {
         auto* layout = new QVBoxLayout(this);
         layout->setContentsMargins(0, 0, 0, 0);
         layout->setSpacing(0);
@@ -47,11 +47,9 @@ private:
         auto* layout = new QHBoxLayout(bar);
         layout->setContentsMargins(16, 12, 16, 4);
         layout->setSpacing(8);
-        for (const char* id : {"rig.rest", "rig.random", "rig.dance"}) {
-            QToolButton* button = makeActionButton(studio_.commands.find(id), true, bar);
-            button->setObjectName(QString("actuators.%1").arg(QString(id).section('.', 1)));
-            layout->addWidget(button, 1);
-        }
+        for (const char* id : {"rest", "random", "dance"})
+            layout->addWidget(
+                makeCommandButton(studio_.commands.find(QString("rig.") + id), QString("actuators.") + id, bar), 1);
         return bar;
     }
 
@@ -60,10 +58,9 @@ private:
         hint_->setObjectName("actuators.hint");
         auto* text = new QLabel("Moved by hand: the device no longer follows the target.", hint_);
         text->setWordWrap(true);
-        text->setProperty("muted", true);
-        QToolButton* button = makeActionButton(studio_.commands.find("match.live"), true, hint_);
-        button->setObjectName("actuators.matchLive");
-        button->setProperty("accent", true);
+        text->setProperty("look", "muted");
+        QPushButton* button = makeCommandButton(studio_.commands.find("match.live"), "actuators.matchLive", hint_);
+        button->setProperty("look", "primary");
         auto* layout = new QHBoxLayout(hint_);
         layout->setContentsMargins(16, 8, 16, 12);
         layout->setSpacing(8);
@@ -134,7 +131,7 @@ private:
         hint_->setVisible(byHand);
         const auto& frame = studio_.loop.frame();
         const std::vector<double> wanted = hand_.strokes();
-        const bool known = frame && frame->rig == rig_ && frame->estimatedStrokes.size() == wanted.size();
+        const bool known = frame && isOf(*frame, state) && frame->estimatedStrokes.size() == wanted.size();
         const std::vector<double>& estimated = known ? frame->estimatedStrokes : wanted;
         for (const Row& row : rows_) {
             row.widget->setLive(driven || studio_.loop.dancing());

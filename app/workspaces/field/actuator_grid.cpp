@@ -122,13 +122,20 @@ void ActuatorGrid::mouseMoveEvent(QMouseEvent* event) {
 
 void ActuatorGrid::keyPressEvent(QKeyEvent* event) {
     switch (event->key()) {
-    case Qt::Key_Left: return setCurrent(current_ - 1);
-    case Qt::Key_Right: return setCurrent(current_ + 1);
-    case Qt::Key_Up: return setCurrent(current_ - columns());
-    case Qt::Key_Down: return setCurrent(current_ + columns());
-    case Qt::Key_Home: return setCurrent(0);
-    case Qt::Key_End: return setCurrent(static_cast<int>(names_.size()) - 1);
-    default: QWidget::keyPressEvent(event);
+    case Qt::Key_Left:
+        return setCurrent(current_ - 1);
+    case Qt::Key_Right:
+        return setCurrent(current_ + 1);
+    case Qt::Key_Up:
+        return setCurrent(current_ - columns());
+    case Qt::Key_Down:
+        return setCurrent(current_ + columns());
+    case Qt::Key_Home:
+        return setCurrent(0);
+    case Qt::Key_End:
+        return setCurrent(static_cast<int>(names_.size()) - 1);
+    default:
+        QWidget::keyPressEvent(event);
     }
 }
 

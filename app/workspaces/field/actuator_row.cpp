@@ -7,8 +7,8 @@
 
 namespace lumorph::studio {
 
-ActuatorRow::ActuatorRow(HandControl& hand, const QString& name, std::size_t index, const Actuator& actuator, int levels,
-                         QWidget* parent)
+ActuatorRow::ActuatorRow(HandControl& hand, const QString& name, std::size_t index, const Actuator& actuator,
+                         int levels, QWidget* parent)
     : QWidget(parent), index_(index), scale_(scaleOf(actuator)), title_(new QLabel(this)), level_(new QLabel(this)),
       value_(new ValueField(scale_.quantity, std::min(scale_.atRest, scale_.atEnd),
                             std::max(scale_.atRest, scale_.atEnd), scale_.atRest, this)),
@@ -26,7 +26,7 @@ void ActuatorRow::arrange() {
     title_->setTextFormat(Qt::PlainText);
     title_->setSizePolicy(QSizePolicy::Ignored, QSizePolicy::Preferred);
     title_->setBuddy(slider_);
-    level_->setProperty("muted", true);
+    level_->setProperty("look", "muted");
     level_->setAlignment(Qt::AlignRight | Qt::AlignVCenter);
     level_->setMinimumWidth(level_->fontMetrics().horizontalAdvance("level 200"));
     value_->setFixedWidth(80);
@@ -44,7 +44,8 @@ void ActuatorRow::arrange() {
 }
 
 void ActuatorRow::connectControls(HandControl& hand) {
-    connect(slider_, &LevelSlider::previewed, this, [this, &hand](int level) { hand.preview(index_, strokeOf(level)); });
+    connect(slider_, &LevelSlider::previewed, this,
+            [this, &hand](int level) { hand.preview(index_, strokeOf(level)); });
     connect(slider_, &LevelSlider::committed, this, [this, &hand](int level) { hand.commit(index_, strokeOf(level)); });
     connect(slider_, &LevelSlider::reverted, this, [&hand] { hand.cancel(); });
     connect(value_, &ValueField::previewed, this,
@@ -66,7 +67,7 @@ void ActuatorRow::describe(const QString& actuator) {
 void ActuatorRow::show(double wanted, double estimated) {
     slider_->show(wanted, estimated);
     level_->setText(QString("level %1").arg(nearestLevel(wanted, slider_->maximum() + 1)));
-    if (!(value_->hasFocus() && value_->isModified())) value_->setValue(scale_.valueOf(wanted));
+    value_->setValue(scale_.valueOf(wanted));
 }
 
 } // namespace lumorph::studio

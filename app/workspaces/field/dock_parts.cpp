@@ -7,13 +7,36 @@
 
 namespace lumorph::studio {
 
-QToolButton* makeActionButton(QAction* action, bool withText, QWidget* parent) {
+QPushButton* makeCommandButton(QAction* command, const QString& name, QWidget* parent) {
+    auto* button = new QPushButton(parent);
+    button->setObjectName(name);
+    button->setEnabled(false);
+    if (!command) return button;
+    const auto follow = [button, command] {
+        button->setText(command->iconText());
+        button->setIcon(command->icon());
+        button->setToolTip(command->toolTip());
+        button->setEnabled(command->isEnabled());
+        button->setCheckable(command->isCheckable());
+        button->setChecked(command->isChecked());
+    };
+    follow();
+    QObject::connect(command, &QAction::changed, button, follow);
+    QObject::connect(button, &QPushButton::clicked, command, [command, follow] {
+        command->trigger();
+        follow(); // a click on what is on already, such as the chosen one of two, changes nothing
+    });
+    return button;
+}
+
+QToolButton* makeCommandIcon(QAction* command, const QString& name, QWidget* parent) {
     auto* button = new QToolButton(parent);
-    button->setToolButtonStyle(withText ? Qt::ToolButtonTextBesideIcon : Qt::ToolButtonIconOnly);
-    button->setSizePolicy(withText ? QSizePolicy::Expanding : QSizePolicy::Fixed, QSizePolicy::Fixed);
+    button->setObjectName(name);
+    button->setToolButtonStyle(Qt::ToolButtonIconOnly);
+    button->setIconSize({20, 20});
     button->setFocusPolicy(Qt::StrongFocus);
-    if (action)
-        button->setDefaultAction(action);
+    if (command)
+        button->setDefaultAction(command);
     else
         button->setEnabled(false);
     return button;
@@ -28,6 +51,14 @@ QLabel* makeNumber(const QString& name, const QString& widest, QWidget* parent) 
     return label;
 }
 
+void makeLarge(QLabel* label, int pixels, const QString& widest) {
+    QFont large = label->font();
+    large.setPixelSize(pixels);
+    large.setWeight(QFont::DemiBold);
+    label->setFont(large);
+    label->setMinimumWidth(QFontMetrics(large).horizontalAdvance(widest) + 2);
+}
+
 QString volumeText(double cubicMetres) {
     const double cubicCentimetres = cubicMetres * 1e6;
     return QString("%1 cm³").arg(cubicCentimetres, 0, 'f', cubicCentimetres < 9.95 ? 1 : 0);
@@ -39,8 +70,6 @@ QString sizeText(double x, double y, double z) {
 
 QString shareText(double share) { return QString("%1 %").arg(std::round(100.0 * share), 0, 'f', 0); }
 
-QString countText(std::size_t count) {
-    return QLocale(QLocale::English).toString(static_cast<qulonglong>(count));
-}
+QString countText(std::size_t count) { return QLocale(QLocale::English).toString(static_cast<qulonglong>(count)); }
 
 } // namespace lumorph::studio

@@ -6,19 +6,24 @@
 
 namespace lumorph::studio {
 
+bool isOf(const MatchFrame& frame, const StudioState& state) {
+    const bool sameField = frame.field && frame.field == state.field.field;
+    return state.rig.rig && frame.wantedStrokes.size() == state.rig.rig->actuatorCount() &&
+           (sameField || frame.rig == state.rig.rig);
+}
+
 std::vector<double> HandControl::strokes() const {
     const StudioState& state = document_.state();
     if (!state.rig.rig) return {};
     const auto& frame = loop_.frame();
     const bool driven = state.matching.live || loop_.dancing();
-    const bool known = frame && frame->rig == state.rig.rig && !frame->wantedStrokes.empty();
+    const bool known = frame && isOf(*frame, state);
     return strokesFor(*state.rig.rig, driven && known ? frame->wantedStrokes : state.strokes);
 }
 
 void HandControl::preview(std::size_t actuator, double stroke) {
     if (!document_.previewing() || base_.size() <= actuator) {
         base_ = strokes();
-        if (loop_.dancing()) loop_.setDancing(false);
     }
     if (actuator >= base_.size()) return;
     document_.preview([this, actuator, stroke](StudioState& state) {
@@ -37,7 +42,6 @@ void HandControl::moveAll(const QString& what, std::vector<double> strokes) {
     const StudioState& state = document_.state();
     if (!state.rig.rig) return;
     if (document_.previewing()) document_.cancelPreview();
-    if (loop_.dancing()) loop_.setDancing(false);
     document_.change(what, [moved = strokesFor(*state.rig.rig, std::move(strokes))](StudioState& next) {
         next.matching.live = false;
         next.strokes = moved;

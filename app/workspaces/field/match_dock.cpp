@@ -32,15 +32,12 @@ public:
         setObjectName(name);
         text_->setObjectName(name + ".text");
         text_->setWordWrap(true);
-        text_->setProperty("warning", true);
+        text_->setProperty("look", "warning");
         auto* layout = new QHBoxLayout(this);
         layout->setContentsMargins(0, 0, 0, 0);
         layout->setSpacing(8);
         layout->addWidget(text_, 1);
-        QToolButton* button = makeActionButton(remedy, true, this);
-        button->setObjectName(name + ".remedy");
-        button->setSizePolicy(QSizePolicy::Fixed, QSizePolicy::Fixed);
-        layout->addWidget(button, 0, Qt::AlignTop);
+        layout->addWidget(makeCommandButton(remedy, name + ".remedy", this), 0, Qt::AlignTop);
         hide();
     }
     void show(double share) {
@@ -57,7 +54,8 @@ private:
 class MatchDock : public QWidget {
 public:
     explicit MatchDock(Studio& studio)
-        : studio_(studio), refresh_(new Throttle(kRefreshMilliseconds, [this] { refresh(); }, this)),
+        : studio_(studio), refresh_(new Throttle(
+                               kRefreshMilliseconds, [this] { refresh(); }, this)),
           stack_(new QStackedLayout(this)) {
         const auto empty = [&](const char* icon, const char* title, const char* text, const char* command) {
             stack_->addWidget(makeEmptyState(icon, title, text, studio.commands.find(command), this));
@@ -92,19 +90,13 @@ private:
         auto* layout = new QHBoxLayout(bar);
         layout->setContentsMargins(0, 0, 0, 0);
         layout->setSpacing(0);
-        const auto add = [&](const char* command, const char* name, const char* segment) {
-            QToolButton* button = makeActionButton(studio_.commands.find(command), true, bar);
-            button->setToolButtonStyle(Qt::ToolButtonTextOnly);
-            button->setObjectName(name);
-            button->setProperty("segment", segment);
-            layout->addWidget(button, 1);
+        const auto add = [&](const char* command, const char* name) {
+            layout->addWidget(makeCommandButton(studio_.commands.find(command), name, bar), 1);
         };
-        add("match.refined", "match.method.refined", "first");
-        add("match.voting", "match.method.voting", "last");
+        add("match.refined", "match.method.refined");
+        add("match.voting", "match.method.voting");
         layout->addSpacing(8);
-        QToolButton* live = makeActionButton(studio_.commands.find("match.live"), true, bar);
-        live->setObjectName("match.live");
-        layout->addWidget(live, 1);
+        add("match.live", "match.live");
         column_.layout->addWidget(bar);
 
         budget_ = new ValueField(Quantity::plain, 1.0, 100.0, 8.0, column_.widget);
@@ -154,7 +146,7 @@ private:
 
         times_ = new QLabel(column_.widget);
         times_->setObjectName("match.times");
-        times_->setProperty("muted", true);
+        times_->setProperty("look", "muted");
         times_->setWordWrap(true);
         times_->setToolTip("Milliseconds of each stage of the newest frame");
         column_.layout->addWidget(times_);
@@ -174,8 +166,7 @@ private:
         beyond_->show(frame->matched ? frame->shareBeyondFrame : 0.0);
         unreachable_->show(frame->matched ? frame->shareUnreachable : 0.0);
         budget_->setEnabled(state.matching.method == MatchMethod::refined);
-        if (!(budget_->hasFocus() && budget_->isModified()))
-            budget_->setValue(static_cast<double>(state.matching.budget.count()) / 1000.0);
+        budget_->setValue(static_cast<double>(state.matching.budget.count()) / 1000.0);
         showActuators(frame);
         showTimes(frame->ms);
     }

@@ -32,7 +32,7 @@ QString iouText(double iou) { return QString::number(iou, 'f', 2); }
 
 QLabel* muted(const QString& text, QWidget* parent) {
     auto* label = new QLabel(text, parent);
-    label->setProperty("muted", true);
+    label->setProperty("look", "muted");
     return label;
 }
 
@@ -60,12 +60,7 @@ MatchNumbers::MatchNumbers(QWidget* parent)
       overfilled_(makeNumber("match.overfilled", "0000 cm³", this)) {
     iou_->setObjectName("match.iou");
     iou_->setToolTip("Intersection over union of the target and the volume that the device covers: 1 is a perfect fit");
-    iou_->setProperty("display", true);
-    QFont large = font();
-    large.setPixelSize(44);
-    large.setWeight(QFont::DemiBold);
-    iou_->setFont(large);
-    iou_->setMinimumWidth(QFontMetrics(large).horizontalAdvance("0.00") + 2);
+    makeLarge(iou_, 44, "0.00");
 
     auto* grid = new QGridLayout(this);
     grid->setContentsMargins(0, 0, 0, 0);
@@ -87,8 +82,8 @@ MatchNumbers::MatchNumbers(QWidget* parent)
     grid->addWidget(makeVolume(true, "Unmatched", "Volume of the target that the device leaves out", unmatched_, this),
                     4, 0, 1, 4);
     grid->addWidget(
-        makeVolume(false, "Overfilled", "Volume that the device covers outside the target", overfilled_, this), 5, 0,
-        1, 4);
+        makeVolume(false, "Overfilled", "Volume that the device covers outside the target", overfilled_, this), 5, 0, 1,
+        4);
 }
 
 void MatchNumbers::show(const MatchFrame& frame, MatchMethod method) {

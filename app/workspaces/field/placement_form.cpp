@@ -25,10 +25,12 @@ public:
         addLength("x", "&X", "To the right of the device's middle", 0);
         addLength("y", "&Y", "Above the table", 1);
         addLength("z", "&Z", "Towards the front of the device", 2);
-        add({"turn", "T&urn", "Heading about the upright axis"}, Quantity::angle, -kTurn, kTurn, 0.0,
+        add(
+            {"turn", "T&urn", "Heading about the upright axis"}, Quantity::angle, -kTurn, kTurn, 0.0,
             std::numbers::pi / 180.0, [](const Placement& placement) { return placement.yaw.inRadians(); },
             [](Placement& placement, double value) { placement.yaw = Angle::radians(value); });
-        add({"size", "Si&ze", "100 % is the size the file says"}, Quantity::share, 1e-6, 1e6, 1.0, 0.01,
+        add(
+            {"size", "Si&ze", "100 % is the size the file says"}, Quantity::share, 1e-6, 1e6, 1.0, 0.01,
             [](const Placement& placement) { return placement.scale; },
             [](Placement& placement, double value) { placement.scale = value; });
         connect(&document, &StudioDocument::changed, this, [this](StateParts parts) {
@@ -49,7 +51,8 @@ private:
     };
 
     void addLength(const QString& name, const QString& label, const QString& hint, int axis) {
-        add({name, label, hint}, Quantity::length, -kFarthest, kFarthest, 0.0, 0.001,
+        add(
+            {name, label, hint}, Quantity::length, -kFarthest, kFarthest, 0.0, 0.001,
             [axis](const Placement& placement) { return static_cast<double>(placement.translation[axis]); },
             [axis](Placement& placement, double value) { placement.translation[axis] = static_cast<float>(value); });
     }
@@ -74,9 +77,7 @@ private:
     }
 
     void refresh() {
-        for (const Line& line : lines_)
-            if (!(line.field->hasFocus() && line.field->isModified()))
-                line.field->setValue(line.get(document_.state().placement));
+        for (const Line& line : lines_) line.field->setValue(line.get(document_.state().placement));
     }
 
     StudioDocument& document_;

@@ -18,12 +18,12 @@ namespace {
 
 constexpr double kFastestSpin = 2.0 * std::numbers::pi;
 
-QLabel* makeText(const QString& name, bool muted, QWidget* parent) {
+QLabel* makeText(const QString& name, const char* look, QWidget* parent) {
     auto* label = new QLabel(parent);
     label->setObjectName(name);
     label->setTextFormat(Qt::PlainText);
     label->setWordWrap(true);
-    label->setProperty("muted", muted);
+    label->setProperty("look", look);
     return label;
 }
 
@@ -60,42 +60,37 @@ public:
     }
 
 private:
-    QToolButton* button(const QString& command, const QString& name, QWidget* parent) {
-        QToolButton* made = makeActionButton(studio_.commands.find(command), true, parent);
-        made->setObjectName(name);
-        return made;
+    QPushButton* button(const QString& command, QWidget* parent) {
+        return makeCommandButton(studio_.commands.find(command), "button." + command, parent);
     }
 
-    QWidget* makeButtons(const QString& firstCommand, const QString& first, const QString& secondCommand,
-                         const QString& second) {
+    QWidget* makeButtons(const QString& first, const QString& second) {
         auto* bar = new QWidget(column_.widget);
         auto* layout = new QHBoxLayout(bar);
         layout->setContentsMargins(0, 0, 0, 0);
         layout->setSpacing(8);
-        layout->addWidget(button(firstCommand, first, bar), 1);
-        layout->addWidget(button(secondCommand, second, bar), 1);
+        layout->addWidget(button(first, bar), 1);
+        layout->addWidget(button(second, bar), 1);
         return bar;
     }
 
     void addAbout() {
-        name_ = makeText("target.name", false, column_.widget);
-        name_->setProperty("heading", true);
-        about_ = makeText("target.about", true, column_.widget);
-        size_ = makeText("target.extent", true, column_.widget);
+        name_ = makeText("target.name", "heading", column_.widget);
+        about_ = makeText("target.about", "muted", column_.widget);
+        size_ = makeText("target.extent", "muted", column_.widget);
         size_->setToolTip("Width, height and depth as placed");
-        warnings_ = makeText("target.warnings", false, column_.widget);
-        warnings_->setProperty("warning", true);
+        warnings_ = makeText("target.warnings", "warning", column_.widget);
         column_.layout->addWidget(name_);
         column_.layout->addWidget(about_);
         column_.layout->addWidget(size_);
         column_.layout->addWidget(warnings_);
-        column_.layout->addWidget(makeButtons("target.open", "target.open", "target.remove", "target.remove"));
+        column_.layout->addWidget(makeButtons("target.open", "target.remove"));
     }
 
     void addPlace() {
         column_.layout->addWidget(makeHeading("Place", column_.widget));
         column_.layout->addWidget(makePlacementForm(studio_.document, column_.widget));
-        column_.layout->addWidget(makeButtons("target.fit", "target.fit", "target.autoPlace", "target.autoPlace"));
+        column_.layout->addWidget(makeButtons("target.fit", "target.autoPlace"));
     }
 
     void addMotion() {
@@ -120,7 +115,7 @@ private:
         connect(animations_, &QComboBox::activated, this, [this](int index) { choose(index); });
         animationRow_ = makeRow("&Animation", animations_, column_.widget);
         column_.layout->addWidget(animationRow_);
-        play_ = button("target.play", "target.play", column_.widget);
+        play_ = button("target.play", column_.widget);
         column_.layout->addWidget(play_);
     }
 
@@ -152,7 +147,7 @@ private:
         }
         const glm::vec3 size = target->box.size() * static_cast<float>(state.placement.scale);
         size_->setText(sizeText(size.x, size.y, size.z));
-        if (!spin_->hasFocus() || !spin_->isModified()) spin_->setValue(state.playback.spin);
+        spin_->setValue(state.playback.spin);
         if (target != shown_) describe(*target);
         shown_ = target;
     }
@@ -191,7 +186,7 @@ private:
     ValueField* spin_ = nullptr;
     QComboBox* animations_ = nullptr;
     QWidget* animationRow_ = nullptr;
-    QToolButton* play_ = nullptr;
+    QPushButton* play_ = nullptr;
     std::shared_ptr<const MatchTarget> shown_;
 };
 

@@ -45,8 +45,10 @@ int VoteModel::columnCount(const QModelIndex& parent) const { return parent.isVa
 QString VoteModel::textOf(std::size_t actuator, int column) const {
     const ActuatorVote* vote = frame_->matched ? voteOf(*frame_, actuator) : nullptr;
     switch (column) {
-    case nameColumn: return QString::fromStdString(frame_->rig->actuators()[actuator].name);
-    case votedColumn: return vote ? QString::number(vote->level.index) : QString("–");
+    case nameColumn:
+        return QString::fromStdString(frame_->rig->actuators()[actuator].name);
+    case votedColumn:
+        return vote ? QString::number(vote->level.index) : QString("–");
     case levelColumn:
         return actuator < frame_->wanted.size() ? QString::number(frame_->wanted[actuator].index) : QString("–");
     default:
