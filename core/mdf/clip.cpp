@@ -56,7 +56,9 @@ std::vector<ClipFrame> matchClip(const Field& field, const Coverage& coverage, c
     if (!(animation.duration() > 0.0))
         throw InvalidInput("animation '" + animation.name + "'", "it has no duration", "choose another animation");
     const int frames = static_cast<int>(std::ceil(animation.duration() * fps));
-    const Placement placement = fitPlacement(field, boxOverAnimation(model, animation, frames, fps, progress));
+    const Placement placement = options.placement
+                                    ? *options.placement
+                                    : fitPlacement(field, boxOverAnimation(model, animation, frames, fps, progress));
 
     MotionModel motion = motionOf(coverage.rig());
     Refiner refiner(coverage);
