@@ -22,6 +22,13 @@ public:
     void report(double fraction, std::string_view stage) const {
         if (report_) report_(fraction, stage);
     }
+    /// For a part of the job: its 0 and 1 are `from` and `to` here.
+    [[nodiscard]] Progress part(double from, double to) const {
+        if (!report_) return Progress({}, stop_);
+        return Progress([report = report_, from,
+                         to](double fraction, std::string_view stage) { report(from + fraction * (to - from), stage); },
+                        stop_);
+    }
     [[nodiscard]] bool cancelled() const noexcept { return stop_.stop_requested(); }
     /// Throws Cancelled once the user has asked for it.
     void throwIfCancelled() const {

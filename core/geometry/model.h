@@ -16,6 +16,7 @@
 #include <glm/vec4.hpp>
 #include <nlohmann/json.hpp>
 
+#include "core/base/progress.h"
 #include "core/geometry/triangle_mesh.h"
 
 namespace lumorph {
@@ -151,5 +152,10 @@ struct Model {
 /// a vertex beyond the range of float.
 [[nodiscard]] TriangleMesh flatten(const Model& model);
 [[nodiscard]] TriangleMesh flatten(const Model& model, const Model::Animation& animation, double seconds);
+
+/// The box of the flattened model over `frames` + 1 times of an animation, k / framesPerSecond each. Throws
+/// InvalidInput as `flatten` does, Cancelled.
+[[nodiscard]] Box boxOverAnimation(const Model& model, const Model::Animation& animation, int frames,
+                                   double framesPerSecond, const Progress& progress = {});
 
 } // namespace lumorph

@@ -321,4 +321,15 @@ TriangleMesh flatten(const Model& model, const Model::Animation& animation, doub
     return Flattener(model, restPose(model), posed(model, animation, seconds)).run();
 }
 
+Box boxOverAnimation(const Model& model, const Model::Animation& animation, int frames, double framesPerSecond,
+                     const Progress& progress) {
+    Box box;
+    for (int k = 0; k <= frames; ++k) {
+        progress.throwIfCancelled();
+        box.include(boundingBox(flatten(model, animation, k / framesPerSecond).positions));
+        progress.report((k + 1.0) / (frames + 1), "measuring the animation");
+    }
+    return box;
+}
+
 } // namespace lumorph

@@ -102,6 +102,10 @@ public:
     /// count stay the same, else at rest. Throws InvalidInput when the wish contradicts itself.
     [[nodiscard]] std::shared_ptr<const MatchFrame> step(const MatchWish& wish, double sinceLast);
 
+    /// Whether another step with the last wish would change nothing: nothing plays, turns or dances, the actuators have
+    /// arrived (within 1e-5 strokes; or are stopped) and refinement has nothing left to try.
+    [[nodiscard]] bool settled() const noexcept;
+
 private:
     struct Data;
     std::unique_ptr<Data> data_;

@@ -30,6 +30,9 @@ struct MatchTarget {
                                                                  std::optional<int> animation = std::nullopt,
                                                                  const Progress& progress = {});
 
+/// A time in [0, duration] at which a target repeated without end looks as it does at `seconds`.
+[[nodiscard]] double animationTime(const MatchTarget& target, double seconds);
+
 /// The target's mesh at a time of its animation (repeated without end), in its own frame. The triangles are the same at
 /// every time.
 [[nodiscard]] TriangleMesh meshAt(const MatchTarget& target, double seconds);

@@ -4,34 +4,12 @@
 #include <cstdio>
 
 #include "core/base/error.h"
-#include "core/mdf/refine.h"
-#include "core/motion/motion.h"
+#include "core/mdf/frame_matcher.h"
+#include "core/motion/rig_motion.h"
 
 namespace lumorph {
 
 namespace {
-
-Box boxOverAnimation(const Model& model, const Model::Animation& animation, int frames, double framesPerSecond,
-                     const Progress& progress) {
-    Box box;
-    for (int k = 0; k <= frames; ++k) {
-        progress.throwIfCancelled();
-        box.include(boundingBox(flatten(model, animation, k / framesPerSecond).positions));
-        progress.report(0.3 * (k + 1) / (frames + 1), "measuring the animation");
-    }
-    return box;
-}
-
-MotionModel motionOf(const Rig& rig) {
-    std::vector<MotionLimits> limits;
-    for (const Actuator& actuator : rig.actuators()) {
-        MotionLimits limit;
-        limit.maxVelocity = actuator.maxVelocity;
-        limit.dampingRatio = actuator.dampingRatio;
-        limits.push_back(limit);
-    }
-    return MotionModel(limits);
-}
 
 std::string quoted(const std::string& text) {
     std::string result = "\"";
@@ -56,16 +34,16 @@ std::vector<ClipFrame> matchClip(const Field& field, const Coverage& coverage, c
     if (!(animation.duration() > 0.0))
         throw InvalidInput("animation '" + animation.name + "'", "it has no duration", "choose another animation");
     const int frames = static_cast<int>(std::ceil(animation.duration() * fps));
-    const Placement placement = options.placement
-                                    ? *options.placement
-                                    : fitPlacement(field, boxOverAnimation(model, animation, frames, fps, progress));
+    const Placement placement =
+        options.placement
+            ? *options.placement
+            : fitPlacement(field, boxOverAnimation(model, animation, frames, fps, progress.part(0.0, 0.3)));
 
-    MotionModel motion = motionOf(coverage.rig());
-    Refiner refiner(coverage);
+    MotionModel motion(motionLimits(coverage.rig()));
+    FrameMatcher matcher(coverage, voting);
     const SteadyClock clock;
     SolidVoxelizer voxelizer;
     CoverageScratch scratch;
-    Voting::Workspace workspace;
     Votes votes;
     BitColumns target;
     BitColumns reached;
@@ -78,15 +56,10 @@ std::vector<ClipFrame> matchClip(const Field& field, const Coverage& coverage, c
         voxelizeTarget(field.frame, {placed(flatten(model, animation, frame.seconds), placement), closed, {}},
                        voxelizer, target);
         target &= coverage.domain();
-        voting.match(target, votes, workspace, result.empty() ? nullptr : &result.back().wanted);
-        frame.wanted = votes.state();
-        if (options.refined) {
-            const Refinement refined = refiner.refine(target, frame.wanted, options.budget, clock);
-            frame.wanted = refined.state;
-            frame.iouWanted = refined.after.iou();
-        } else {
-            frame.iouWanted = refiner.qualityOf(target, frame.wanted).iou();
-        }
+        matcher.vote(target, votes);
+        options.refined ? matcher.refine(target, options.budget, clock) : matcher.keepVotes(target);
+        frame.wanted = matcher.found().wanted;
+        frame.iouWanted = matcher.found().quality.iou();
         const std::vector<double> wantedStrokes = strokesOf(coverage.rig(), frame.wanted, coverage.levels());
         const auto strokes = motion.step(wantedStrokes, k == 0 ? 0.0 : 1.0 / fps);
         frame.strokes.assign(strokes.begin(), strokes.end());

@@ -28,15 +28,20 @@ struct FieldVoxel {
     glm::ivec3 voxel{0};
     int level = 0;
 };
+
+/// The voxels to show, column by column. Throws InvalidInput for an actuator that is not there or a target of another
+/// shape.
 [[nodiscard]] std::vector<FieldVoxel> fieldVoxels(const Field& field, const FieldViewOptions& options);
 
-/// The boundary of what is expected to be covered by at least one half at `level` (an actuator alone, or all at that
-/// level), as a closed mesh in device metres: marching over voxel centres, the body not included. Empty where nothing
-/// is.
+/// The boundary of what is expected to be covered by at least one half at `level` by an actuator alone, or where any
+/// actuator at that level does so: a closed mesh in device metres with two triangles an edge, marching over voxel
+/// centres. Of the voxels that those actuators change; so without the body. Empty where nothing is. Throws InvalidInput
+/// for an actuator or a level that is not there.
 [[nodiscard]] TriangleMesh levelSurface(const Field& field, std::optional<std::size_t> actuator, int level);
 
-/// Expected coverage of one voxel by each actuator at each level, in [0, 1]: [actuator][level]. Throws InvalidInput
-/// outside the frame.
+/// Expected coverage of one voxel as each actuator goes through its levels, in [0, 1]: [actuator][level]. For an
+/// actuator that does not change the voxel it is the mean over the states of the others. Throws InvalidInput outside
+/// the frame.
 [[nodiscard]] std::vector<std::vector<double>> rampsAt(const Field& field, const glm::ivec3& voxel);
 
 } // namespace lumorph

@@ -55,10 +55,15 @@ glm::mat4 Placement::deviceFromTarget() const {
     return glm::scale(m, glm::vec3(static_cast<float>(scale)));
 }
 
+void placePoints(std::span<const glm::vec3> points, const glm::mat4& deviceFromTarget, std::vector<glm::vec3>& out) {
+    out.resize(points.size());
+    for (std::size_t i = 0; i < points.size(); ++i) out[i] = glm::vec3(deviceFromTarget * glm::vec4(points[i], 1.0F));
+}
+
 TriangleMesh placed(const TriangleMesh& mesh, const Placement& placement) {
-    TriangleMesh result = mesh;
-    const glm::mat4 m = placement.deviceFromTarget();
-    for (glm::vec3& p : result.positions) p = glm::vec3(m * glm::vec4(p, 1.0F));
+    TriangleMesh result;
+    placePoints(mesh.positions, placement.deviceFromTarget(), result.positions);
+    result.triangles = mesh.triangles;
     return result;
 }
 

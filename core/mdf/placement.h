@@ -1,5 +1,6 @@
 #pragma once
 
+#include <span>
 #include <string>
 #include <vector>
 
@@ -43,6 +44,9 @@ struct Placement {
 
     [[nodiscard]] glm::mat4 deviceFromTarget() const;
 };
+
+/// Writes the points carried over by `deviceFromTarget`; reuses the memory of `out`.
+void placePoints(std::span<const glm::vec3> points, const glm::mat4& deviceFromTarget, std::vector<glm::vec3>& out);
 
 /// The mesh with the placement applied.
 [[nodiscard]] TriangleMesh placed(const TriangleMesh& mesh, const Placement& placement);

@@ -39,55 +39,39 @@ public:
         state_ = state;
         coverage_.covered(state_, current_, scratch_);
         total_ = {current_.count(), current_.countAnd(target_)};
-        statesSeen_ = 1;
+        ++statesSeen_;
+        phase_ = cursor_ = 0;
+        helped_ = false;
     }
 
     void start(Microseconds budget, const Clock& clock) {
+        statesSeen_ = 0;
         clock_ = &clock;
         hasDeadline_ = budget > Microseconds{0};
         deadline_ = clock.now() + budget;
     }
 
-    /// Moves every actuator by `step` up or down while that helps; true when anything moved.
-    bool moveBy(int step) {
-        bool moved = false;
-        for (std::size_t i = 0; i < windows_.size() && !outOfTime(); ++i)
-            while (!outOfTime() && (tryLevel(i, state_[i].index + step) || tryLevel(i, state_[i].index - step)))
-                moved = true;
-        return moved;
-    }
-
-    /// Tries moving coupled actuators together: where one must give way for the other to gain, no
-    /// single move helps. True when anything moved.
-    bool moveInPairs() {
-        constexpr int kSteps[] = {1, -1, 2, -2, 4, -4};
-        for (const Pair& pair : pairs_)
-            for (const int a : kSteps)
-                for (const int b : kSteps) {
-                    if (outOfTime()) return false;
-                    State next = state_;
-                    next[pair.first].index += a;
-                    next[pair.second].index += b;
-                    if (inRange(next[pair.first]) && inRange(next[pair.second]) && tryState(next, pair.window))
-                        return true;
-                }
-        return false;
-    }
-
-    /// Tries every level of every actuator; true when anything moved.
-    bool scanAll() {
-        bool moved = false;
-        for (std::size_t i = 0; i < windows_.size(); ++i)
-            for (int level = 0; level < coverage_.levels() && !outOfTime(); ++level) moved |= tryLevel(i, level);
-        return moved;
+    /// Searches until nothing helps any more or the time is out, from where the last call was stopped.
+    Refinement finish() {
+        Refinement result;
+        result.before = quality();
+        while (phase_ < kPhases && finishPhase()) {
+            const std::size_t again = phase_ < kScan ? phase_ : 0;
+            phase_ = helped_ ? again : phase_ + 1;
+            cursor_ = 0;
+            helped_ = false;
+        }
+        result.state = state_;
+        result.after = quality();
+        result.statesSeen = statesSeen_;
+        result.converged = phase_ == kPhases;
+        return result;
     }
 
     [[nodiscard]] bool outOfTime() const { return hasDeadline_ && clock_->now() >= deadline_; }
     [[nodiscard]] FitQuality quality() const {
         return {total_.both, wanted_ - total_.both, total_.covered - total_.both};
     }
-    [[nodiscard]] const State& state() const { return state_; }
-    [[nodiscard]] int statesSeen() const { return statesSeen_; }
 
 private:
     void check(const BitColumns& target, const State& state) const {
@@ -112,6 +96,52 @@ private:
         const std::size_t count = static_cast<std::size_t>(std::max(0, range.width())) * words;
         for (int z = range.z0; z <= range.z1; ++z)
             row(static_cast<std::size_t>(z - range.z0) * count, current_.columnIndex(range.x0, z) * words, count);
+    }
+
+    /// Tries what is left of the current phase; false when the time ran out before its end.
+    bool finishPhase() {
+        if (phase_ < kScan) return moveBy(kSteps[phase_]);
+        return phase_ == kScan ? scanAll() : moveInPairs();
+    }
+
+    /// Moves every actuator by `step` up or down while that helps.
+    bool moveBy(int step) {
+        for (; cursor_ < windows_.size(); ++cursor_) do {
+                if (outOfTime()) return false;
+            } while (note(tryLevel(cursor_, state_[cursor_].index + step) ||
+                          tryLevel(cursor_, state_[cursor_].index - step)));
+        return true;
+    }
+
+    /// Tries every level of every actuator.
+    bool scanAll() {
+        const auto levels = static_cast<std::size_t>(coverage_.levels());
+        for (; cursor_ < windows_.size() * levels; ++cursor_) {
+            if (outOfTime()) return false;
+            note(tryLevel(cursor_ / levels, static_cast<int>(cursor_ % levels)));
+        }
+        return true;
+    }
+
+    /// Tries moving coupled actuators together, up to the first move that helps: where one must give way for the
+    /// other to gain, no single move does.
+    bool moveInPairs() {
+        constexpr int kPairSteps[] = {1, -1, 2, -2, 4, -4};
+        constexpr std::size_t kCount = std::size(kPairSteps);
+        for (; cursor_ < pairs_.size() * kCount * kCount && !helped_; ++cursor_) {
+            if (outOfTime()) return false;
+            const Pair& pair = pairs_[cursor_ / (kCount * kCount)];
+            State next = state_;
+            next[pair.first].index += kPairSteps[cursor_ / kCount % kCount];
+            next[pair.second].index += kPairSteps[cursor_ % kCount];
+            if (inRange(next[pair.first]) && inRange(next[pair.second])) note(tryState(next, pair.window));
+        }
+        return true;
+    }
+
+    bool note(bool moved) {
+        helped_ |= moved;
+        return moved;
     }
 
     [[nodiscard]] bool inRange(Level level) const { return level.index >= 0 && level.index < coverage_.levels(); }
@@ -160,6 +190,11 @@ private:
         Coverage::Window window;
     };
 
+    // The phases of the search: moves by each step, every level, coupled pairs.
+    static constexpr int kSteps[] = {4, 2, 1};
+    static constexpr std::size_t kScan = std::size(kSteps);
+    static constexpr std::size_t kPhases = kScan + 2;
+
     const Coverage& coverage_;
     std::vector<Coverage::Window> windows_;
     std::vector<Pair> pairs_;
@@ -171,6 +206,9 @@ private:
     Counts total_;
     State state_;
     int statesSeen_ = 0;
+    std::size_t phase_ = kPhases; ///< nothing to resume before the first state
+    std::size_t cursor_ = 0;      ///< the next candidate of the phase
+    bool helped_ = false;         ///< something moved in this phase
     const Clock* clock_ = nullptr;
     bool hasDeadline_ = false;
     Microseconds deadline_{0};
@@ -184,18 +222,12 @@ Refiner& Refiner::operator=(Refiner&&) noexcept = default;
 Refinement Refiner::refine(const BitColumns& target, const State& start, Microseconds budget, const Clock& clock) {
     search_->start(budget, clock);
     search_->begin(target, start);
-    Refinement result;
-    result.before = search_->quality();
-    do {
-        for (const int step : {4, 2, 1})
-            while (search_->moveBy(step)) {
-            }
-    } while (!search_->outOfTime() && (search_->scanAll() || search_->moveInPairs()));
-    result.state = search_->state();
-    result.after = search_->quality();
-    result.statesSeen = search_->statesSeen();
-    result.converged = !search_->outOfTime();
-    return result;
+    return search_->finish();
+}
+
+Refinement Refiner::resume(Microseconds budget, const Clock& clock) {
+    search_->start(budget, clock);
+    return search_->finish();
 }
 
 FitQuality Refiner::qualityOf(const BitColumns& target, const State& state) {

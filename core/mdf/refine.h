@@ -36,6 +36,10 @@ public:
     [[nodiscard]] Refinement refine(const BitColumns& target, const State& start, Microseconds budget,
                                     const Clock& clock);
 
+    /// Goes on with the same target where `refine` or `resume` last ran out of time (from a state given to `qualityOf`,
+    /// if that came later), so that many short budgets do what one long one does.
+    [[nodiscard]] Refinement resume(Microseconds budget, const Clock& clock);
+
     /// Quality of one joint state, nothing moved.
     [[nodiscard]] FitQuality qualityOf(const BitColumns& target, const State& state);
 

@@ -1,0 +1,146 @@
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <utility>
+
+#include "core/base/error.h"
+#include "core/loop/dance.h"
+#include "core/loop/live_match.h"
+#include "core/loop/match_stage.h"
+#include "core/loop/motion_stage.h"
+#include "core/loop/stage_timer.h"
+#include "core/loop/target_stage.h"
+#include "core/rig/rig_file.h"
+
+namespace lumorph {
+
+namespace {
+
+bool follows(const MatchWish& wish) { return wish.live && wish.target && wish.field; }
+
+void requireFinite(const char* what, double value) {
+    if (!std::isfinite(value)) throw InvalidInput(what, "it is not a finite number", "give a finite number");
+}
+
+void checkPlacement(const Placement& placement) {
+    requireFinite("yaw of the target", placement.yaw.inRadians());
+    for (int axis = 0; axis < 3; ++axis)
+        requireFinite("position of the target", static_cast<double>(placement.translation[axis]));
+    if (!(placement.scale > 0.0) || !std::isfinite(placement.scale))
+        throw InvalidInput("scale of the target", "it must be a finite number above zero", "give a larger scale");
+}
+
+void checkStrokes(const MatchWish& wish) {
+    const std::size_t count = wish.rig->actuatorCount();
+    if (wish.strokes.size() != count)
+        throw InvalidInput("strokes",
+                           std::to_string(wish.strokes.size()) + " for " + std::to_string(count) + " actuators",
+                           "give one for each actuator");
+    for (const double stroke : wish.strokes) requireFinite("stroke", stroke);
+}
+
+void checkWish(const MatchWish& wish, double sinceLast) {
+    if (!wish.rig) throw InvalidInput("device", "there is no rig", "open one first");
+    if (wish.field && wish.field->rig.actuatorCount() != wish.rig->actuatorCount())
+        throw InvalidInput("field", "it belongs to a rig with another number of actuators",
+                           "build the field of this rig");
+    if (!(sinceLast >= 0.0) || !std::isfinite(sinceLast))
+        throw InvalidInput("time step", "it is negative or not finite",
+                           "use a finite time that does not run backwards");
+    requireFinite("spin", wish.spin);
+    if (wish.seek) requireFinite("animation time", *wish.seek);
+    if (wish.target) checkPlacement(wish.placement);
+    if (wish.budget <= Microseconds{0})
+        throw InvalidInput("time for refinement", "it must be more than zero", "give it at least a microsecond");
+    if (!follows(wish)) checkStrokes(wish);
+}
+
+State nearestLevels(const std::vector<double>& strokes, int levels) {
+    State state;
+    for (const double stroke : strokes) state.push_back(Level{static_cast<int>(std::lround(stroke * (levels - 1)))});
+    return state;
+}
+
+Rig rigOf(const Field& field) {
+    Rig rig = readRigGlb(field.rigGlb, field.rigName);
+    if (rig.actuatorCount() != field.actuators.size())
+        throw DataError(field.rigName, "the field and the rig in it do not agree", "build the field again");
+    return rig;
+}
+
+} // namespace
+
+MatchField::MatchField(Field built)
+    : field(std::move(built)), rig(rigOf(field)), coverage(rig, field.frame, field.levels), voting(field) {}
+
+struct MatchLoop::Data {
+    explicit Data(const Clock& c) : clock(c) {}
+
+    void fill(const MatchWish& wish, double sinceLast, MatchFrame& frame);
+    void hold(const MatchWish& wish, double sinceLast, MatchFrame& frame);
+    void move(const MatchWish& wish, double sinceLast, MatchFrame& frame);
+
+    const Clock& clock;
+    TargetStage target;
+    MatchStage matching;
+    MotionStage motion;
+    Dance dance;
+    std::uint64_t number = 0;
+    bool settled = false;
+};
+
+void MatchLoop::Data::fill(const MatchWish& wish, double sinceLast, MatchFrame& frame) {
+    const StageTimer timer(clock, frame.ms.total);
+    target.play(wish, sinceLast);
+    const bool newVoxels = target.show(wish, clock, frame.ms);
+    target.describe(frame);
+    matching.use(wish.field);
+    if (follows(wish))
+        dance.end();
+    else
+        hold(wish, sinceLast, frame);
+    if (frame.matched) matching.match(wish, target, newVoxels, clock, frame);
+    move(wish, sinceLast, frame);
+    if (frame.matched) matching.judge(wish, target, frame);
+    settled = !TargetStage::moves(wish) && (wish.stopped || motion.arrived(frame.wantedStrokes)) &&
+              (follows(wish) ? matching.converged() : !wish.dancing);
+}
+
+void MatchLoop::Data::hold(const MatchWish& wish, double sinceLast, MatchFrame& frame) {
+    if (!wish.dancing) dance.end();
+    frame.wantedStrokes = wish.dancing ? dance.step(wish.strokes, sinceLast) : wish.strokes;
+    for (double& stroke : frame.wantedStrokes) stroke = std::clamp(stroke, 0.0, 1.0);
+    if (wish.field) frame.wanted = nearestLevels(frame.wantedStrokes, wish.field->field.levels);
+}
+
+void MatchLoop::Data::move(const MatchWish& wish, double sinceLast, MatchFrame& frame) {
+    {
+        const StageTimer timer(clock, frame.ms.motion);
+        motion.follow(wish.rig);
+        motion.move(frame.wantedStrokes, sinceLast, wish.stopped);
+        frame.estimatedStrokes.assign(motion.strokes().begin(), motion.strokes().end());
+    }
+    const StageTimer timer(clock, frame.ms.deform);
+    frame.devicePositions = motion.deformed();
+}
+
+MatchLoop::MatchLoop(const Clock& clock) : data_(std::make_unique<Data>(clock)) {}
+MatchLoop::~MatchLoop() = default;
+MatchLoop::MatchLoop(MatchLoop&&) noexcept = default;
+MatchLoop& MatchLoop::operator=(MatchLoop&&) noexcept = default;
+
+std::shared_ptr<const MatchFrame> MatchLoop::step(const MatchWish& wish, double sinceLast) {
+    checkWish(wish, sinceLast);
+    data_->settled = false;
+    auto frame = std::make_shared<MatchFrame>();
+    frame->number = ++data_->number;
+    frame->time = data_->clock.now();
+    frame->rig = wish.rig;
+    frame->field = wish.field;
+    data_->fill(wish, sinceLast, *frame);
+    return frame;
+}
+
+bool MatchLoop::settled() const noexcept { return data_->settled; }
+
+} // namespace lumorph

@@ -1,0 +1,128 @@
+#include "core/loop/match_stage.h"
+
+#include <algorithm>
+#include <bit>
+
+namespace lumorph {
+
+namespace {
+
+/// A target that has no voxel in the frame is not met by anything.
+double iouOf(const FitQuality& quality, std::size_t targetVoxels) { return targetVoxels == 0 ? 0.0 : quality.iou(); }
+
+} // namespace
+
+void MatchStage::use(const std::shared_ptr<const MatchField>& field) {
+    if (field == field_) return;
+    matcher_.reset();
+    field_ = nullptr;
+    if (field) matcher_.emplace(field->coverage, field->voting);
+    field_ = field;
+    target_ = nullptr;
+    votes_ = nullptr;
+    decided_ = Decided::nothing;
+    newVoxels_ = true;
+    coveredState_.clear();
+    reachedStrokes_.clear();
+}
+
+void MatchStage::match(const MatchWish& wish, const TargetStage& target, bool newVoxels, const Clock& clock,
+                       MatchFrame& frame) {
+    newVoxels_ |= newVoxels;
+    if (newVoxels || target_ != wish.target) votes_ = nullptr;
+    if (!votes_) vote(wish, target, clock, frame.ms);
+    decide(wish, target, clock, frame.ms);
+    const FrameMatch& found = matcher_->found();
+    frame.votes = votes_;
+    frame.iouVoting = iouOf(found.votedQuality, target.voxels());
+    if (!wish.live) return;
+    frame.statesSeen = found.statesSeen;
+    frame.wanted = found.wanted;
+    frame.wantedStrokes.clear();
+    const bool refined = wish.method == MatchMethod::refined;
+    for (std::size_t i = 0; i < found.wanted.size(); ++i)
+        frame.wantedStrokes.push_back(refined ? strokeOf(found.wanted[i], field_->field.levels)
+                                              : std::clamp(votes_->actuators[i].stroke, 0.0, 1.0));
+}
+
+void MatchStage::vote(const MatchWish& wish, const TargetStage& target, const Clock& clock, MatchTimes& ms) {
+    const StageTimer timer(clock, ms.match);
+    if (target_ != wish.target) matcher_->forget();
+    auto votes = std::make_shared<Votes>();
+    matcher_->vote(target.bits(), *votes);
+    decided_ = Decided::nothing;
+    target_ = wish.target;
+    votes_ = std::move(votes);
+}
+
+void MatchStage::decide(const MatchWish& wish, const TargetStage& target, const Clock& clock, MatchTimes& ms) {
+    const bool refined = wish.live && wish.method == MatchMethod::refined && target.voxels() > 0;
+    const Decided how = refined ? Decided::byRefinement : Decided::byVoting;
+    if (decided_ == how && matcher_->found().converged) return;
+    const StageTimer timer(clock, refined ? ms.refine : ms.match);
+    if (!refined)
+        matcher_->keepVotes(target.bits());
+    else if (decided_ == how)
+        matcher_->resume(target.bits(), wish.budget, clock);
+    else
+        matcher_->refine(target.bits(), wish.budget, clock);
+    decided_ = how;
+}
+
+void MatchStage::judge(const MatchWish& wish, const TargetStage& target, MatchFrame& frame) {
+    judgeWanted(target, frame);
+    judgeEstimated(target, frame);
+    newVoxels_ = false;
+    if (!wish.showTint) return;
+    if (!classes_) classify(target);
+    frame.classes = classes_;
+}
+
+void MatchStage::judgeWanted(const TargetStage& target, MatchFrame& frame) {
+    const bool moved = coveredState_ != frame.wanted;
+    if (moved) field_->coverage.covered(frame.wanted, covered_, scratch_);
+    coveredState_ = frame.wanted;
+    if (moved || newVoxels_) {
+        quality_ = compareVolumes(covered_, target.bits());
+        classes_ = nullptr;
+    }
+    const double voxelVolume = field_->field.frame.voxelVolume();
+    frame.iouWanted = iouOf(quality_, target.voxels());
+    frame.unmatchedVolume = static_cast<double>(quality_.unmatched) * voxelVolume;
+    frame.overfilledVolume = static_cast<double>(quality_.overfilled) * voxelVolume;
+}
+
+void MatchStage::judgeEstimated(const TargetStage& target, MatchFrame& frame) {
+    const bool moved = reachedStrokes_ != frame.estimatedStrokes;
+    if (moved) field_->coverage.coveredAt(frame.estimatedStrokes, reached_, scratch_);
+    reachedStrokes_ = frame.estimatedStrokes;
+    if (moved || newVoxels_) iouReached_ = iouOf(compareVolumes(reached_, target.bits()), target.voxels());
+    frame.iouEstimated = iouReached_;
+}
+
+void MatchStage::classify(const TargetStage& target) {
+    const glm::ivec3 size = covered_.dimensions();
+    const auto rowLength = static_cast<std::size_t>(size.x);
+    auto classes = std::make_shared<std::vector<std::uint8_t>>(field_->field.frame.voxelCount(), std::uint8_t{0});
+    const auto words = static_cast<std::size_t>(covered_.wordsPerColumn());
+    for (int z = 0; z < size.z; ++z)
+        for (int x = 0; x < size.x; ++x)
+            for (std::size_t w = 0; w < words; ++w) {
+                const std::size_t word = covered_.columnIndex(x, z) * words + w;
+                const std::uint64_t covered = std::as_const(covered_).words()[word];
+                const std::uint64_t wanted = target.bits().words()[word];
+                for (std::uint64_t left = covered | wanted; left != 0; left &= left - 1) {
+                    const auto bit = static_cast<std::size_t>(std::countr_zero(left));
+                    const std::size_t y = 64 * w + bit;
+                    const bool in = (covered >> bit) & 1U;
+                    const bool asked = (wanted >> bit) & 1U;
+                    const std::size_t row = static_cast<std::size_t>(z) * static_cast<std::size_t>(size.y) + y;
+                    (*classes)[row * rowLength + static_cast<std::size_t>(x)] = in && asked ? kVoxelMatched
+                                                                                : asked     ? kVoxelUnmatched
+                                                                                            : kVoxelOverfilled;
+                }
+            }
+    classes_ = std::move(classes);
+}
+
+} // namespace lumorph

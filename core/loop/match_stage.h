@@ -1,0 +1,53 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "core/loop/live_match.h"
+#include "core/loop/target_stage.h"
+#include "core/mdf/frame_matcher.h"
+
+namespace lumorph {
+
+/// Middle stages of a frame: the state that fits the target's voxels best, and how well volumes meet them. What has not
+/// changed since the frame before is kept.
+class MatchStage {
+public:
+    /// Gets ready for a field; an empty one lets go of the last.
+    void use(const std::shared_ptr<const MatchField>& field);
+    /// Matches the voxels of a target (`newVoxels`: they are other ones than before) and writes votes, wanted state and
+    /// strokes into the frame. When the wish is not live the state is left alone.
+    void match(const MatchWish& wish, const TargetStage& target, bool newVoxels, const Clock& clock, MatchFrame& frame);
+    /// Compares V(wanted) and what is covered at the estimated strokes with the target's voxels.
+    void judge(const MatchWish& wish, const TargetStage& target, MatchFrame& frame);
+    /// Whether refinement has nothing left to try on these voxels.
+    [[nodiscard]] bool converged() const noexcept { return !matcher_ || matcher_->found().converged; }
+
+private:
+    enum class Decided { nothing, byVoting, byRefinement };
+
+    void vote(const MatchWish& wish, const TargetStage& target, const Clock& clock, MatchTimes& ms);
+    void decide(const MatchWish& wish, const TargetStage& target, const Clock& clock, MatchTimes& ms);
+    void judgeWanted(const TargetStage& target, MatchFrame& frame);
+    void judgeEstimated(const TargetStage& target, MatchFrame& frame);
+    void classify(const TargetStage& target);
+
+    std::shared_ptr<const MatchField> field_;
+    std::optional<FrameMatcher> matcher_;
+    std::shared_ptr<const MatchTarget> target_;
+    std::shared_ptr<const Votes> votes_;
+    Decided decided_ = Decided::nothing;
+
+    bool newVoxels_ = true; ///< since the volumes below were compared with them
+    CoverageScratch scratch_;
+    State coveredState_;
+    BitColumns covered_; ///< V(coveredState_)
+    FitQuality quality_;
+    std::shared_ptr<const std::vector<std::uint8_t>> classes_;
+    std::vector<double> reachedStrokes_;
+    BitColumns reached_; ///< covered at `reachedStrokes_`
+    double iouReached_ = 0.0;
+};
+
+} // namespace lumorph

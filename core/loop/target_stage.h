@@ -1,0 +1,56 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "core/loop/live_match.h"
+#include "core/loop/stage_timer.h"
+#include "core/voxels/solid.h"
+
+namespace lumorph {
+
+/// First stages of a frame: where the target's animation and its spin stand, its pose, its voxels in a field. What has
+/// not changed since the frame before is kept.
+class TargetStage {
+public:
+    /// Moves animation and spin on; a target shown for the first time starts at 0.
+    void play(const MatchWish& wish, double sinceLast);
+    /// Poses the target of the wish and voxelises it when there is a field. True when the voxels are other ones than
+    /// those of the frame before.
+    bool show(const MatchWish& wish, const Clock& clock, MatchTimes& ms);
+    /// What there is to say about the target, written into a frame.
+    void describe(MatchFrame& frame) const;
+
+    /// Voxels of the target in the domain of the field; only with a target and a field.
+    [[nodiscard]] const BitColumns& bits() const noexcept { return bits_; }
+    [[nodiscard]] std::size_t voxels() const noexcept { return voxels_; }
+    /// Whether the target will stand elsewhere in the next frame with the same wish.
+    [[nodiscard]] static bool moves(const MatchWish& wish) noexcept;
+
+private:
+    void pose(const MatchWish& wish);
+    void voxelize(const std::shared_ptr<const MatchField>& field);
+
+    std::shared_ptr<const MatchTarget> target_;
+    double seconds_ = 0.0;
+    Angle turned_;
+    glm::mat4 deviceFromTarget_{1.0F};
+
+    std::shared_ptr<const MatchTarget> posed_; ///< that `positions_` are of, at `posedSeconds_`
+    double posedSeconds_ = 0.0;
+    std::shared_ptr<const std::vector<glm::vec3>> positions_;
+
+    std::shared_ptr<const MatchField> field_; ///< that `bits_` are in; empty while they are not worked out
+    glm::mat4 voxelizedAt_{1.0F};
+    Target placed_; ///< the posed mesh in device coordinates; a buffer
+    SolidVoxelizer voxelizer_;
+    BitColumns bits_;
+    BitColumns reachable_;
+    std::shared_ptr<const MatchField> reachableOf_;
+    std::size_t voxels_ = 0;
+    double shareBeyondFrame_ = 0.0;
+    double shareUnreachable_ = 0.0;
+};
+
+} // namespace lumorph
