@@ -1,6 +1,7 @@
 #pragma once
 
 #include <any>
+#include <exception>
 #include <functional>
 #include <map>
 #include <memory>
@@ -54,6 +55,8 @@ signals:
 private:
     Id start(const QString& place, const QString& title, std::function<std::any(const Progress&)> work,
              std::function<void(std::any)> done, std::function<void(const std::exception&)> failed);
+    void hear(Id id);
+    void end(Id id, std::any result, const std::exception_ptr& error);
 
     struct Job;
     std::map<Id, std::unique_ptr<Job>> jobs_;

@@ -1,10 +1,12 @@
 #pragma once
 
+#include <atomic>
+#include <cstdint>
 #include <memory>
 #include <optional>
+#include <vector>
 
 #include <QObject>
-#include <QTimer>
 
 #include "app/studio/document/studio_document.h"
 #include "core/loop/live_match.h"
@@ -44,6 +46,8 @@ signals:
     void failed(const QString& why);
 
 private:
+    void heed(StateParts parts);
+    void sendSoon();
     void send();
     void take();
 
@@ -53,7 +57,9 @@ private:
     bool dancing_ = false;
     bool tint_ = true;
     std::optional<double> seek_;
+    bool sending_ = false;              ///< a wish goes out when the event loop comes round
     std::vector<std::int64_t> shownAt_; ///< when matched frames were handed over, milliseconds
+    std::atomic<bool> posted_ = false;  ///< the window has been told of a frame that it did not take yet
     std::unique_ptr<MatchThread> thread_;
 };
 

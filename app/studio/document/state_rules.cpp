@@ -1,0 +1,70 @@
+#include "app/studio/document/state_rules.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/rig/rig_file.h"
+
+namespace lumorph::studio {
+
+namespace {
+
+bool samePlacement(const Placement& a, const Placement& b) {
+    return a.scale == b.scale && a.yaw == b.yaw && a.translation == b.translation;
+}
+
+double soundNumber(double before, double value, double low, double high) {
+    return std::isfinite(value) ? std::clamp(value, low, high) : before;
+}
+
+Placement soundPlacement(const Placement& before, const Placement& edited) {
+    constexpr double kFar = 1e6;
+    Placement sound;
+    sound.scale = soundNumber(before.scale, edited.scale, 1e-6, 1e6);
+    sound.yaw = Angle::radians(soundNumber(before.yaw.inRadians(), edited.yaw.inRadians(), -kFar, kFar));
+    for (int axis = 0; axis < 3; ++axis)
+        sound.translation[axis] =
+            static_cast<float>(soundNumber(before.translation[axis], edited.translation[axis], -kFar, kFar));
+    return sound;
+}
+
+std::vector<double> soundStrokes(const std::vector<double>& before, const std::vector<double>& edited,
+                                 std::size_t count) {
+    std::vector<double> sound(count, 0.0);
+    for (std::size_t i = 0; i < std::min(count, edited.size()); ++i)
+        sound[i] = soundNumber(i < before.size() ? before[i] : 0.0, edited[i], 0.0, 1.0);
+    return sound;
+}
+
+} // namespace
+
+StateParts differenceOf(const StudioState& a, const StudioState& b) {
+    StateParts parts;
+    parts.setFlag(StatePart::rig, !(a.rig == b.rig));
+    parts.setFlag(StatePart::field, !(a.field == b.field));
+    parts.setFlag(StatePart::target, !(a.target == b.target));
+    parts.setFlag(StatePart::placement, !samePlacement(a.placement, b.placement));
+    parts.setFlag(StatePart::strokes, a.strokes != b.strokes);
+    parts.setFlag(StatePart::matching, !(a.matching == b.matching));
+    parts.setFlag(StatePart::playback, !(a.playback == b.playback));
+    return parts;
+}
+
+bool isFieldOf(const MatchField& field, const Rig& rig) {
+    return &field.rig.parts() == &rig.parts() || writeRigGlb(rig) == field.field.rigGlb;
+}
+
+StudioState settled(const StudioState& before, StudioState edited) {
+    const bool asBefore = edited.rig.rig == before.rig.rig && edited.field.field == before.field.field;
+    if (edited.field.field && !asBefore && (!edited.rig.rig || !isFieldOf(*edited.field.field, *edited.rig.rig)))
+        edited.field = {};
+    if (!edited.field.field) edited.field.path.clear();
+    if (!edited.target.target) edited.target.path.clear();
+    edited.placement = soundPlacement(before.placement, edited.placement);
+    edited.strokes = soundStrokes(before.strokes, edited.strokes, edited.rig.rig ? edited.rig.rig->actuatorCount() : 0);
+    edited.matching.budget = std::clamp(edited.matching.budget, Microseconds{100}, Microseconds{10'000'000});
+    edited.playback.spin = soundNumber(before.playback.spin, edited.playback.spin, -100.0, 100.0);
+    return edited;
+}
+
+} // namespace lumorph::studio

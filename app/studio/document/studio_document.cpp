@@ -1,0 +1,111 @@
+#include "app/studio/document/studio_document.h"
+
+#include <utility>
+
+#include <QUndoCommand>
+
+#include "app/studio/document/state_rules.h"
+
+namespace lumorph::studio {
+
+namespace {
+
+// A step may hold a whole field; without a limit a long session would fill the memory.
+constexpr int kMostSteps = 200;
+
+} // namespace
+
+/// The one command: what was before and what is after. It has happened already when it is pushed.
+class StudioDocument::ChangeState : public QUndoCommand {
+public:
+    ChangeState(StudioDocument& document, const QString& what, StudioState before, StudioState after)
+        : QUndoCommand(what), document_(document), before_(std::move(before)), after_(std::move(after)) {}
+
+    void undo() override {
+        document_.previewing_ = false;
+        document_.exchange(before_);
+    }
+    void redo() override {
+        if (!std::exchange(pushed_, true)) return;
+        document_.previewing_ = false;
+        document_.exchange(after_);
+    }
+
+private:
+    StudioDocument& document_;
+    StudioState before_;
+    StudioState after_;
+    bool pushed_ = false;
+};
+
+StudioDocument::StudioDocument(QObject* parent) : QObject(parent) {
+    undo_.setUndoLimit(kMostSteps);
+    connect(&undo_, &QUndoStack::cleanChanged, this, &StudioDocument::titleChanged);
+}
+
+void StudioDocument::change(const QString& what, const std::function<void(StudioState&)>& edit) {
+    const StudioState before = previewing_ ? beforePreview_ : state_;
+    StudioState after = before;
+    edit(after);
+    after = settled(before, std::move(after));
+    if (!differenceOf(before, after)) return;
+    // A result that arrives during a drag is a step of its own below the drag, which goes on.
+    StudioState shown = after;
+    if (previewing_) {
+        shown = state_;
+        edit(shown);
+        shown = settled(state_, std::move(shown));
+        beforePreview_ = after;
+    }
+    undo_.push(new ChangeState(*this, what, before, std::move(after)));
+    exchange(shown);
+}
+
+void StudioDocument::preview(const std::function<void(StudioState&)>& edit) {
+    if (!previewing_) beforePreview_ = state_;
+    previewing_ = true;
+    StudioState next = state_;
+    edit(next);
+    exchange(settled(state_, std::move(next)));
+}
+
+void StudioDocument::commitPreview(const QString& what) {
+    if (!std::exchange(previewing_, false)) return;
+    if (!differenceOf(beforePreview_, state_)) return;
+    undo_.push(new ChangeState(*this, what, std::exchange(beforePreview_, {}), state_));
+}
+
+void StudioDocument::cancelPreview() {
+    if (std::exchange(previewing_, false)) exchange(std::exchange(beforePreview_, {}));
+}
+
+void StudioDocument::reset(StudioState state, const std::filesystem::path& file) {
+    previewing_ = false;
+    beforePreview_ = {};
+    state_ = settled({}, std::move(state));
+    file_ = file;
+    undo_.clear();
+    emit changed(StatePart::all);
+    emit titleChanged();
+}
+
+void StudioDocument::setSaved(const std::filesystem::path& file) {
+    file_ = file;
+    undo_.setClean();
+    emit titleChanged();
+}
+
+bool StudioDocument::modified() const noexcept { return !undo_.isClean(); }
+
+QString StudioDocument::name() const {
+    return file_.empty() ? tr("Untitled") : QString::fromStdString(file_.stem().string());
+}
+
+void StudioDocument::exchange(const StudioState& next) {
+    const StateParts parts = differenceOf(state_, next);
+    if (!parts) return;
+    state_ = next;
+    emit changed(parts);
+}
+
+} // namespace lumorph::studio

@@ -1,0 +1,123 @@
+#include "app/studio/document/studio_loop.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <utility>
+
+namespace lumorph::studio {
+
+namespace {
+
+std::int64_t nowMilliseconds() {
+    return std::chrono::duration_cast<std::chrono::milliseconds>(SteadyClock().now()).count();
+}
+
+MatchWish wishOf(const StudioState& state) {
+    MatchWish wish;
+    wish.rig = state.rig.rig;
+    wish.field = state.field.field;
+    // The loop wants one rig: the field brings an equal one of its own.
+    if (wish.field) wish.rig = std::shared_ptr<const Rig>(wish.field, &wish.field->rig);
+    wish.target = state.target.target;
+    wish.placement = state.placement;
+    wish.live = state.matching.live;
+    wish.method = state.matching.method;
+    wish.budget = state.matching.budget;
+    wish.strokes = state.strokes;
+    wish.playing = state.playback.playing;
+    wish.spin = state.playback.spin;
+    return wish;
+}
+
+} // namespace
+
+StudioLoop::StudioLoop(StudioDocument& document, QObject* parent) : QObject(parent), document_(document) {
+    thread_ = std::make_unique<MatchThread>([this] {
+        if (!posted_.exchange(true))
+            QMetaObject::invokeMethod(
+                this, [this] { take(); }, Qt::QueuedConnection);
+    });
+    connect(&document_, &StudioDocument::changed, this, &StudioLoop::heed);
+    sendSoon();
+}
+
+StudioLoop::~StudioLoop() { thread_.reset(); }
+
+double StudioLoop::rate() const noexcept { return thread_->rate(); }
+
+double StudioLoop::matchRate() const noexcept {
+    const std::int64_t since = nowMilliseconds() - 1000;
+    return static_cast<double>(
+        std::count_if(shownAt_.begin(), shownAt_.end(), [&](std::int64_t at) { return at > since; }));
+}
+
+void StudioLoop::stop() {
+    if (std::exchange(stopped_, true)) return;
+    send(); // not a turn of the event loop later
+    emit stoppedChanged();
+}
+
+void StudioLoop::resume() {
+    if (!std::exchange(stopped_, false)) return;
+    send();
+    emit stoppedChanged();
+}
+
+void StudioLoop::setDancing(bool dancing) {
+    if (std::exchange(dancing_, dancing) == dancing) return;
+    sendSoon();
+    emit dancingChanged();
+}
+
+void StudioLoop::seek(double seconds) {
+    if (!std::isfinite(seconds)) return;
+    seek_ = seconds;
+    sendSoon();
+}
+
+void StudioLoop::setTint(bool shown) {
+    if (std::exchange(tint_, shown) != shown) sendSoon();
+}
+
+void StudioLoop::setRate(double framesPerSecond) { thread_->setRate(framesPerSecond); }
+
+void StudioLoop::heed(StateParts parts) {
+    // Whoever takes the rig in hand, or back to the target, ends the dance.
+    if (parts & (StatePart::strokes | StatePart::matching | StatePart::rig)) setDancing(false);
+    if (parts & StatePart::target || document_.state().playback.playing) seek_.reset();
+    sendSoon();
+}
+
+void StudioLoop::sendSoon() {
+    if (std::exchange(sending_, true)) return;
+    QMetaObject::invokeMethod(this, &StudioLoop::send, Qt::QueuedConnection);
+}
+
+void StudioLoop::send() {
+    sending_ = false;
+    if (!document_.state().rig.rig) return;
+    MatchWish wish = wishOf(document_.state());
+    wish.live = wish.live && !dancing_;
+    wish.dancing = dancing_;
+    wish.stopped = stopped_;
+    wish.seek = seek_;
+    wish.showTint = tint_;
+    thread_->wish(std::move(wish));
+}
+
+void StudioLoop::take() {
+    posted_ = false;
+    if (const auto error = thread_->takeError()) emit failed(QString::fromStdString(*error));
+    std::shared_ptr<const MatchFrame> latest = thread_->latest();
+    if (!latest || latest == frame_) return;
+    frame_ = std::move(latest);
+    if (frame_->matched) {
+        const std::int64_t now = nowMilliseconds();
+        std::erase_if(shownAt_, [&](std::int64_t at) { return at <= now - 1000; });
+        shownAt_.push_back(now);
+    }
+    emit framed();
+}
+
+} // namespace lumorph::studio
