@@ -36,6 +36,14 @@ struct Palette {
 
 [[nodiscard]] const Palette& paletteOf(Theme theme);
 
+/// `share` of the way from one colour to another, in [0, 1].
+[[nodiscard]] QColor blend(const QColor& from, const QColor& to, double share);
+/// What a selected item of a list or menu lies on.
+[[nodiscard]] QColor selectedColor(const Palette& palette);
+[[nodiscard]] QColor disabledText(const Palette& palette);
+[[nodiscard]] QColor hoveredAccent(const Palette& palette);
+[[nodiscard]] QColor hoveredDanger(const Palette& palette);
+
 /// A text colour and what it is written on, by name; the contrast test walks this list.
 struct TextPair {
     QString name;

@@ -1,0 +1,112 @@
+#include <QElapsedTimer>
+#include <QLabel>
+#include <QMap>
+#include <QProgressBar>
+#include <QTimer>
+#include <QToolButton>
+#include <QVBoxLayout>
+
+#include "app/studio/look/icons.h"
+#include "app/studio/widgets/panel.h"
+
+namespace lumorph::studio {
+namespace {
+
+constexpr int kPatienceMilliseconds = 200; ///< a shorter job would only flicker
+
+struct JobRow {
+    QWidget* widget = nullptr;
+    QLabel* text = nullptr;
+    QProgressBar* bar = nullptr;
+};
+
+JobRow makeJobRow(Jobs& jobs, Jobs::Id id, QWidget* parent) {
+    JobRow row;
+    row.widget = new QWidget(parent);
+    row.widget->setObjectName("job");
+    auto* layout = new QHBoxLayout(row.widget);
+    layout->setContentsMargins(0, 0, 0, 0);
+    layout->setSpacing(8);
+    auto* column = new QVBoxLayout;
+    column->setSpacing(6);
+    row.text = new QLabel(row.widget);
+    row.text->setTextFormat(Qt::PlainText);
+    row.text->setProperty("look", "muted");
+    row.text->setMinimumWidth(1); // a long stage must not widen the dock
+    row.bar = new QProgressBar(row.widget);
+    row.bar->setRange(0, 1000);
+    row.bar->setTextVisible(false);
+    column->addWidget(row.text);
+    column->addWidget(row.bar);
+    layout->addLayout(column, 1);
+    auto* cancel = new QToolButton(row.widget);
+    cancel->setObjectName("job.cancel");
+    cancel->setIcon(icon("cancel", IconRole::muted));
+    cancel->setToolTip("Cancel");
+    cancel->setAccessibleName("Cancel");
+    QObject::connect(cancel, &QToolButton::clicked, &jobs, [&jobs, id] { jobs.cancel(id); });
+    layout->addWidget(cancel);
+    return row;
+}
+
+class JobBar : public QWidget {
+public:
+    JobBar(Jobs& jobs, QString place, QWidget* parent) : QWidget(parent), jobs_(jobs), place_(std::move(place)) {
+        setObjectName("jobs." + place_);
+        layout_ = new QVBoxLayout(this);
+        layout_->setContentsMargins(0, 0, 0, 0);
+        layout_->setSpacing(8);
+        hide();
+        connect(&jobs, &Jobs::started, this, [this](int id) { wait(id); });
+        connect(&jobs, &Jobs::progressed, this, [this] { refresh(); });
+        connect(&jobs, &Jobs::finished, this, [this](int id) { remove(id); });
+        for (const auto& status : jobs.running()) wait(status.id);
+    }
+
+private:
+    void wait(int id) {
+        QTimer::singleShot(kPatienceMilliseconds, this, [this, id] {
+            for (const auto& status : jobs_.running())
+                if (status.id == id && (place_.isEmpty() || status.place == place_)) show(status);
+        });
+    }
+
+    void show(const Jobs::Status& status) {
+        if (rows_.contains(status.id)) return;
+        const JobRow row = makeJobRow(jobs_, status.id, this);
+        rows_.insert(status.id, row);
+        layout_->addWidget(row.widget);
+        setVisible(true);
+        refresh();
+    }
+
+    void remove(int id) {
+        if (!rows_.contains(id)) return;
+        QWidget* row = rows_.take(id).widget;
+        row->hide();
+        row->deleteLater();
+        setVisible(!rows_.isEmpty());
+    }
+
+    void refresh() {
+        if (rows_.isEmpty()) return;
+        for (const auto& status : jobs_.running()) {
+            const auto row = rows_.constFind(status.id);
+            if (row == rows_.constEnd()) continue;
+            row->text->setText(status.stage.isEmpty() ? status.title : status.title + ": " + status.stage);
+            row->text->setToolTip(row->text->text());
+            row->bar->setValue(static_cast<int>(status.fraction * 1000));
+        }
+    }
+
+    Jobs& jobs_;
+    QString place_;
+    QVBoxLayout* layout_ = nullptr;
+    QMap<int, JobRow> rows_;
+};
+
+} // namespace
+
+QWidget* makeJobBar(Jobs& jobs, const QString& place, QWidget* parent) { return new JobBar(jobs, place, parent); }
+
+} // namespace lumorph::studio

@@ -1,0 +1,14 @@
+#pragma once
+
+#include <QWidget>
+
+#include "app/studio/document/notices.h"
+
+namespace lumorph::studio {
+
+/// One notice: what it is about, why, the remedy in words and as buttons, and a button that dismisses it. `heading`
+/// stands above it when it is told away from its place, such as in the list of all.
+[[nodiscard]] QWidget* makeNoticeCard(Notices& notices, const QString& place, const Notice& notice,
+                                      const QString& heading = {}, QWidget* parent = nullptr);
+
+} // namespace lumorph::studio

@@ -1,0 +1,137 @@
+#include "app/studio/widgets/plot.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <QMouseEvent>
+#include <QPainter>
+
+#include "app/studio/look/palette.h"
+#include "app/studio/widgets/plot_axes.h"
+
+namespace lumorph::studio {
+namespace {
+
+/// Curves as polylines that break at NaN.
+void drawCurve(QPainter& painter, const Plot::Curve& curve, const PlotAxes& axes) {
+    QPen pen(curve.color, 1.8, curve.dashed ? Qt::DashLine : Qt::SolidLine, Qt::RoundCap, Qt::RoundJoin);
+    painter.setPen(pen);
+    QPolygonF run;
+    for (std::size_t x = 0; x <= curve.values.size(); ++x) {
+        if (x < curve.values.size() && std::isfinite(curve.values[x])) {
+            run << axes.pointOf(static_cast<double>(x), curve.values[x]);
+            continue;
+        }
+        if (run.size() == 1) painter.drawPoint(run.front());
+        if (run.size() > 1) painter.drawPolyline(run);
+        run.clear();
+    }
+}
+
+std::size_t stepsOf(const std::vector<Plot::Curve>& curves) {
+    std::size_t steps = 0;
+    for (const auto& curve : curves) steps = std::max(steps, curve.values.size());
+    return steps;
+}
+
+PlotAxes axesOf(const std::vector<Plot::Curve>& curves, double low, double high, const QRectF& box,
+                const QFontMetricsF& metrics) {
+    const bool given = low != high;
+    if (!given) {
+        low = std::numeric_limits<double>::infinity();
+        high = -low;
+        for (const auto& curve : curves)
+            for (const double value : curve.values)
+                if (std::isfinite(value)) {
+                    low = std::min(low, value);
+                    high = std::max(high, value);
+                }
+    }
+    return makeAxes(static_cast<int>(stepsOf(curves)) - 1, low, high, given, box, metrics);
+}
+
+} // namespace
+
+Plot::Plot(QWidget* parent) : QWidget(parent) {
+    setMouseTracking(true);
+    setSizePolicy(QSizePolicy::Expanding, QSizePolicy::Preferred);
+}
+
+void Plot::setAxes(const QString& x, const QString& y) {
+    x_ = x;
+    y_ = y;
+    update();
+}
+
+void Plot::setCurves(std::vector<Curve> curves) {
+    curves_ = std::move(curves);
+    if (hover_ >= static_cast<int>(stepsOf(curves_))) hover_ = -1;
+    update();
+}
+
+void Plot::setMark(double x) {
+    if (x == mark_) return;
+    mark_ = x;
+    update();
+}
+
+void Plot::setRange(double low, double high) {
+    low_ = low;
+    high_ = high;
+    update();
+}
+
+void Plot::setEmptyText(const QString& text) {
+    empty_ = text;
+    update();
+}
+
+QSize Plot::sizeHint() const { return {280, 180}; }
+
+QSize Plot::minimumSizeHint() const { return {160, 128}; }
+
+QPointF Plot::pointOf(double x, double y) const {
+    return axesOf(curves_, low_, high_, rect(), QFontMetricsF(plotFont(font()))).pointOf(x, y);
+}
+
+void Plot::paintEvent(QPaintEvent* /*event*/) {
+    const Palette& colors = currentPalette();
+    QPainter painter(this);
+    painter.setRenderHint(QPainter::Antialiasing);
+    painter.setFont(plotFont(font()));
+    painter.setPen(QPen(colors.line, 1));
+    painter.setBrush(colors.sunken);
+    painter.drawRoundedRect(QRectF(rect()).adjusted(0.5, 0.5, -0.5, -0.5), 4, 4);
+    if (stepsOf(curves_) < 2) {
+        painter.setPen(colors.textMuted);
+        painter.drawText(rect().adjusted(16, 8, -16, -8), Qt::AlignCenter | Qt::TextWordWrap, empty_);
+        return;
+    }
+    const PlotAxes axes = axesOf(curves_, low_, high_, rect(), QFontMetricsF(painter.font()));
+    drawAxes(painter, axes, x_, y_);
+    if (mark_ >= 0.0 && mark_ <= axes.steps) drawUpright(painter, axes, mark_, QPen(colors.accent, 1.5));
+    painter.setClipRect(axes.area.adjusted(-2, -2, 2, 2));
+    for (const auto& curve : curves_) drawCurve(painter, curve, axes);
+    painter.setClipping(false);
+    if (hover_ >= 0) drawReadout(painter, axes, x_, hover_, curves_);
+    drawLegend(painter, axes, curves_, hover_);
+}
+
+void Plot::mouseMoveEvent(QMouseEvent* event) {
+    const PlotAxes axes = axesOf(curves_, low_, high_, rect(), QFontMetricsF(plotFont(font())));
+    const int now = stepsOf(curves_) < 2 ? -1 : axes.stepAt(event->position());
+    if (now != hover_) {
+        hover_ = now;
+        update();
+    }
+    if (now >= 0 && event->buttons().testFlag(Qt::LeftButton)) emit clicked(now);
+}
+
+void Plot::mousePressEvent(QMouseEvent* event) { mouseMoveEvent(event); }
+
+void Plot::leaveEvent(QEvent* /*event*/) {
+    hover_ = -1;
+    update();
+}
+
+} // namespace lumorph::studio

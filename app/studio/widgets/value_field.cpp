@@ -1,0 +1,216 @@
+#include "app/studio/widgets/value_field.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <QKeyEvent>
+#include <QMouseEvent>
+#include <QStyle>
+#include <QWheelEvent>
+
+namespace lumorph::studio {
+namespace {
+
+constexpr int kScrubDistance = 3; ///< pixels before a press is a drag
+
+double pace(Qt::KeyboardModifiers modifiers) {
+    if (modifiers.testFlag(Qt::ShiftModifier)) return 0.1;
+    return modifiers.testFlag(Qt::ControlModifier) ? 10.0 : 1.0;
+}
+
+} // namespace
+
+ValueField::ValueField(Quantity quantity, double minimum, double maximum, double resetTo, QWidget* parent)
+    : QLineEdit(parent), quantity_(quantity), minimum_(minimum), maximum_(maximum), resetTo_(resetTo),
+      step_(usualStep(quantity)), value_(std::clamp(resetTo, minimum, maximum)) {
+    setFocusPolicy(Qt::TabFocus); // a click gives it the keyboard when the button is released, a drag does not
+    setCursor(Qt::SizeHorCursor);
+    setContextMenuPolicy(Qt::NoContextMenu);
+    setAlignment(Qt::AlignRight);
+    const QString accepted = unitsOf(quantity);
+    setToolTip("Drag sideways to change, click to type, double click to reset to " + formatQuantity(resetTo, quantity) +
+               (accepted.isEmpty() ? QString() : ".\nUnits: " + accepted));
+    connect(this, &QLineEdit::returnPressed, this, &ValueField::enter);
+    connect(this, &QLineEdit::textEdited, this, [this] { mark(!parseQuantity(text(), quantity_)); });
+    show(value_);
+}
+
+void ValueField::setValue(double value) {
+    const double held = std::clamp(value, minimum_, maximum_);
+    if (scrubbing_) return;
+    value_ = held;
+    if (!(hasFocus() && isModified())) show(held);
+}
+
+void ValueField::setRange(double minimum, double maximum) {
+    minimum_ = minimum;
+    maximum_ = std::max(minimum, maximum);
+    setValue(value_);
+}
+
+void ValueField::setStep(double step) { step_ = step; }
+
+QSize ValueField::sizeHint() const { return {88, QLineEdit::sizeHint().height()}; }
+
+void ValueField::show(double value) {
+    const QString shown = formatQuantity(value, quantity_);
+    if (shown != text()) setText(shown);
+    setModified(false);
+    mark(false);
+}
+
+void ValueField::mark(bool wrong) {
+    if (property("wrong").toBool() == wrong) return;
+    setProperty("wrong", wrong);
+    style()->unpolish(this);
+    style()->polish(this);
+}
+
+void ValueField::commit(double value) {
+    value = std::clamp(value, minimum_, maximum_);
+    const bool other = value != value_;
+    value_ = value;
+    show(value);
+    if (other) emit committed(value);
+}
+
+/// A text that was not touched keeps the value's hidden digits.
+void ValueField::enter() {
+    if (!isModified()) return;
+    const auto typed = parseQuantity(text(), quantity_);
+    if (!typed) {
+        mark(true);
+        return;
+    }
+    commit(*typed);
+    if (hasFocus()) selectAll();
+}
+
+void ValueField::step(double steps, Qt::KeyboardModifiers modifiers) {
+    const double from = isModified() ? parseQuantity(text(), quantity_).value_or(value_) : value_;
+    commit(from + steps * step_ * pace(modifiers));
+    if (hasFocus()) selectAll();
+}
+
+void ValueField::mousePressEvent(QMouseEvent* event) {
+    if (hasFocus() || event->button() != Qt::LeftButton) {
+        QLineEdit::mousePressEvent(event);
+        return;
+    }
+    pressed_ = true;
+    pressX_ = lastX_ = event->position().toPoint().x();
+    scrubStart_ = scrubbed_ = value_;
+    event->accept();
+}
+
+void ValueField::mouseMoveEvent(QMouseEvent* event) {
+    if (!pressed_) {
+        QLineEdit::mouseMoveEvent(event);
+        return;
+    }
+    const int x = event->position().toPoint().x();
+    if (!scrubbing_ && std::abs(x - pressX_) < kScrubDistance) return;
+    if (!scrubbing_) {
+        scrubbing_ = true;
+        grabKeyboard(); // for Esc, without taking the keyboard from the field being edited elsewhere
+    }
+    scrubbed_ += 0.5 * (x - lastX_) * step_ * pace(event->modifiers());
+    lastX_ = x;
+    value_ = std::clamp(scrubbed_, minimum_, maximum_);
+    show(value_);
+    emit previewed(value_);
+}
+
+void ValueField::endScrub() {
+    if (scrubbing_) releaseKeyboard();
+    pressed_ = scrubbing_ = false;
+}
+
+void ValueField::mouseReleaseEvent(QMouseEvent* event) {
+    if (!pressed_) {
+        QLineEdit::mouseReleaseEvent(event);
+        return;
+    }
+    const bool moved = scrubbing_;
+    endScrub();
+    if (moved)
+        emit committed(value_);
+    else if (event->button() == Qt::LeftButton)
+        setFocus(Qt::MouseFocusReason);
+}
+
+void ValueField::mouseDoubleClickEvent(QMouseEvent* event) {
+    if (event->button() != Qt::LeftButton) return;
+    setModified(false);
+    commit(resetTo_);
+    if (hasFocus()) selectAll();
+}
+
+void ValueField::keyPressEvent(QKeyEvent* event) {
+    switch (event->key()) {
+    case Qt::Key_Up:
+        step(1.0, event->modifiers());
+        return;
+    case Qt::Key_Down:
+        step(-1.0, event->modifiers());
+        return;
+    case Qt::Key_PageUp:
+        step(10.0, event->modifiers());
+        return;
+    case Qt::Key_PageDown:
+        step(-10.0, event->modifiers());
+        return;
+    case Qt::Key_Escape:
+        if (scrubbing_) {
+            endScrub();
+            value_ = scrubStart_;
+            show(value_);
+            emit reverted();
+            return;
+        }
+        if (isModified()) {
+            show(value_);
+            selectAll();
+            return;
+        }
+        break;
+    default:
+        break;
+    }
+    QLineEdit::keyPressEvent(event);
+}
+
+/// Only while it has the keyboard: else a wheel that scrolls a column would change what passes under the pointer.
+void ValueField::wheelEvent(QWheelEvent* event) {
+    if (!hasFocus() || event->angleDelta().y() == 0) {
+        event->ignore();
+        return;
+    }
+    step(event->angleDelta().y() / 120.0, event->modifiers());
+    event->accept();
+}
+
+void ValueField::focusOutEvent(QFocusEvent* event) {
+    const bool valid = parseQuantity(text(), quantity_).has_value();
+    if (isModified() && valid) enter();
+    show(value_);
+    deselect();
+    setCursor(Qt::SizeHorCursor);
+    QLineEdit::focusOutEvent(event);
+}
+
+void ValueField::focusInEvent(QFocusEvent* event) {
+    QLineEdit::focusInEvent(event);
+    setCursor(Qt::IBeamCursor);
+    selectAll();
+}
+
+bool ValueField::event(QEvent* event) {
+    // Esc in a field takes back what is typed; it must not close the dialog around it before.
+    if (event->type() == QEvent::ShortcutOverride && static_cast<QKeyEvent*>(event)->key() == Qt::Key_Escape &&
+        (scrubbing_ || isModified()))
+        event->accept();
+    return QLineEdit::event(event);
+}
+
+} // namespace lumorph::studio
