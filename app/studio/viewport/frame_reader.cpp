@@ -11,9 +11,7 @@ namespace {
 
 constexpr GLuint64 kPatience = 2'000'000'000; // nanoseconds for a frame that is on its way
 
-DeviceError noMemory() {
-    return {"OpenGL", "the driver cannot hold a frame of this size", "make the window smaller"};
-}
+DeviceError noMemory() { return {"OpenGL", "the driver cannot hold a frame of this size", "make the window smaller"}; }
 
 void turnOver(QImage& picture) {
     const auto stride = static_cast<std::size_t>(picture.bytesPerLine());
@@ -31,7 +29,7 @@ void turnOver(QImage& picture) {
 
 } // namespace
 
-FrameReader::Surface::Surface(QSize wanted, bool withDepth) : size(wanted) {
+FrameReader::Surface::Surface(QSize wanted) : size(wanted) {
     glBindTexture(GL_TEXTURE_2D, color.name());
     // The order of the bytes in a QImage: drivers that heed it need not swap them when the frame is read.
     glTexImage2D(GL_TEXTURE_2D, 0, GL_RGBA8, size.width(), size.height(), 0, GL_BGRA, GL_UNSIGNED_INT_8_8_8_8_REV,
@@ -41,13 +39,6 @@ FrameReader::Surface::Surface(QSize wanted, bool withDepth) : size(wanted) {
     glBindTexture(GL_TEXTURE_2D, 0);
     glBindFramebuffer(GL_FRAMEBUFFER, framebuffer.name());
     glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, color.name(), 0);
-    if (withDepth) {
-        depth.emplace();
-        glBindRenderbuffer(GL_RENDERBUFFER, depth->name());
-        glRenderbufferStorage(GL_RENDERBUFFER, GL_DEPTH_COMPONENT24, size.width(), size.height());
-        glBindRenderbuffer(GL_RENDERBUFFER, 0);
-        glFramebufferRenderbuffer(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_RENDERBUFFER, depth->name());
-    }
     const bool complete = glCheckFramebufferStatus(GL_FRAMEBUFFER) == GL_FRAMEBUFFER_COMPLETE;
     glBindFramebuffer(GL_FRAMEBUFFER, 0);
     if (!complete) throw noMemory();
@@ -60,7 +51,7 @@ FrameReader::~FrameReader() {
 unsigned FrameReader::framebuffer(QSize drawn) {
     if (!drawn_ || drawn_->size != drawn) {
         drawn_.reset();
-        drawn_.emplace(drawn, true);
+        drawn_.emplace(drawn);
     }
     return drawn_->framebuffer.name();
 }
@@ -82,7 +73,7 @@ void FrameReader::start(QSize pixels) {
 void FrameReader::scaleInto(QSize pixels) {
     if (!scaled_ || scaled_->size != pixels) {
         scaled_.reset();
-        scaled_.emplace(pixels, false);
+        scaled_.emplace(pixels);
     }
     glBindFramebuffer(GL_READ_FRAMEBUFFER, drawn_->framebuffer.name());
     glBindFramebuffer(GL_DRAW_FRAMEBUFFER, scaled_->framebuffer.name());
@@ -131,7 +122,7 @@ QImage FrameReader::collect() {
 }
 
 std::size_t FrameReader::objectCount() const noexcept {
-    return (drawn_ ? 3U : 0U) + (scaled_ ? 2U : 0U) + (buffer_ ? 1U : 0U);
+    return (drawn_ ? 2U : 0U) + (scaled_ ? 2U : 0U) + (buffer_ ? 1U : 0U);
 }
 
 } // namespace lumorph::studio

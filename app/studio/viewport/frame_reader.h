@@ -23,7 +23,7 @@ public:
     FrameReader(const FrameReader&) = delete;
     FrameReader& operator=(const FrameReader&) = delete;
 
-    /// A framebuffer with colour and depth to draw into.
+    /// A framebuffer with colour to draw into.
     [[nodiscard]] unsigned framebuffer(QSize drawn);
     /// Begins to read what was drawn, as a picture of `pixels`. The picture before it must have been collected.
     void start(QSize pixels);
@@ -35,10 +35,9 @@ public:
 
 private:
     struct Surface {
-        explicit Surface(QSize wanted, bool withDepth);
+        explicit Surface(QSize wanted);
         QSize size;
         gl::Texture color;
-        std::optional<gl::Renderbuffer> depth;
         gl::Framebuffer framebuffer;
     };
     void scaleInto(QSize pixels);

@@ -28,7 +28,7 @@ void FrameSchedule::request(int viewport, FrameRequest request, Time now) {
 void FrameSchedule::forget(int viewport) { slots_.erase(viewport); }
 
 std::optional<FrameSchedule::Work> FrameSchedule::next(Time now) {
-    const auto take = [&](bool Slot::* wanted, ViewportQuality quality) -> std::optional<Work> {
+    const auto take = [&](bool Slot::*wanted, ViewportQuality quality) -> std::optional<Work> {
         // In turn: first those after the one served last.
         for (const bool after : {true, false})
             for (auto& [viewport, slot] : slots_) {

@@ -20,11 +20,16 @@ constexpr float kCubePixels = 12.0F;
 
 glm::vec3 colorOf(GizmoHandle handle) {
     switch (handle) {
-    case GizmoHandle::moveX: return kRed;
-    case GizmoHandle::moveY: return kGreen;
-    case GizmoHandle::moveZ: return kBlue;
-    case GizmoHandle::turn: return kYellow;
-    default: return kNeutral;
+    case GizmoHandle::moveX:
+        return kRed;
+    case GizmoHandle::moveY:
+        return kGreen;
+    case GizmoHandle::moveZ:
+        return kBlue;
+    case GizmoHandle::turn:
+        return kYellow;
+    default:
+        return kNeutral;
     }
 }
 

@@ -188,10 +188,14 @@ GizmoDrag dragGizmo(const Gizmo& start, GizmoHandle handle, const ViewCamera& ca
     // What has come to lie behind the eye cannot be dragged.
     if (!view.parallel() && !(view.depthOf(start.centre) > 1e-6)) return {start.placement, "", start.centre};
     switch (handle) {
-    case GizmoHandle::moveGround: return movedOnGround(view, start, from, to, coarse);
-    case GizmoHandle::turn: return turned(view, start, from, to, coarse);
-    case GizmoHandle::size: return sized(view, start, from, to, coarse);
-    default: return movedAlong(view, start, handle, camera, from, to, coarse);
+    case GizmoHandle::moveGround:
+        return movedOnGround(view, start, from, to, coarse);
+    case GizmoHandle::turn:
+        return turned(view, start, from, to, coarse);
+    case GizmoHandle::size:
+        return sized(view, start, from, to, coarse);
+    default:
+        return movedAlong(view, start, handle, camera, from, to, coarse);
     }
 }
 

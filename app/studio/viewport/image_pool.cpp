@@ -57,8 +57,7 @@ QImage ImagePool::take(QSize size) {
         auto loan = std::make_unique<Data::Loan>(
             Data::Loan{data_, data_->fetch(static_cast<std::size_t>(stride * size.height()))});
         uchar* const bytes = loan->buffer.bytes.get();
-        return {bytes,          size.width(), size.height(), stride, QImage::Format_RGB32, &Data::bringBack,
-                loan.release()};
+        return {bytes, size.width(), size.height(), stride, QImage::Format_RGB32, &Data::bringBack, loan.release()};
     } catch (const std::bad_alloc&) {
         throw DeviceError("picture", "there is no memory for it", "choose a smaller size");
     }

@@ -27,7 +27,7 @@ QString reasonOf(const std::exception& error) { return QString::fromUtf8(error.w
 } // namespace
 
 struct RenderThread::Data {
-    explicit Data(RenderThread& thread) : owner(thread) {}
+    explicit Data(RenderThread& whole) : owner(whole) {}
 
     // In the render thread:
     void run();
@@ -88,9 +88,8 @@ void RenderThread::Data::run() {
 
 void RenderThread::Data::serve() {
     tell(std::nullopt);
-    FrameDrawer drawer(currentDriver(), [this](const FrameSchedule::Work& work, DrawnFrame frame) {
-        deliver(work, std::move(frame));
-    });
+    FrameDrawer drawer(currentDriver(),
+                       [this](const FrameSchedule::Work& work, DrawnFrame frame) { deliver(work, std::move(frame)); });
     std::unique_lock lock(mutex);
     while (!stop) step(drawer, lock);
 }

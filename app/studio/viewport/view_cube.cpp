@@ -139,8 +139,7 @@ void paintViewCube(QPainter& painter, const QRectF& box, const ViewCamera& camer
         }
         const bool onAccent = lit && CubeSide(face.normal) == *hot;
         // Letters that lie almost flat cannot be read and only flicker.
-        if (normal.z > 0.25F)
-            paintName(painter, outline, face.name, onAccent ? palette.onAccent : palette.text);
+        if (normal.z > 0.25F) paintName(painter, outline, face.name, onAccent ? palette.onAccent : palette.text);
     }
     painter.restore();
 }
