@@ -11,6 +11,7 @@ void addRigCommands(CLI::App& app, Session& session);
 void addMdfCommands(CLI::App& app, Session& session);
 void addVoxelizeCommand(CLI::App& app, Session& session);
 void addMatchCommand(CLI::App& app, Session& session);
+void addProjectCommand(CLI::App& app, Session& session);
 void addBenchCommand(CLI::App& app);
 
 } // namespace lumorph::cli

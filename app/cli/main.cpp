@@ -48,6 +48,7 @@ int main(int argc, char** argv) {
     lumorph::cli::addMdfCommands(app, session);
     lumorph::cli::addVoxelizeCommand(app, session);
     lumorph::cli::addMatchCommand(app, session);
+    lumorph::cli::addProjectCommand(app, session);
     lumorph::cli::addBenchCommand(app);
     try {
         app.parse(argc, argv); // runs the command

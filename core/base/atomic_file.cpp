@@ -16,12 +16,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-[[noreturn]] void fail(const fs::path& file, int reason) {
-    throw DeviceError(file.string(), "cannot be written: " + std::generic_category().message(reason),
-                      reason == ENOSPC || reason == EDQUOT ? "free some disk space, or save to another place"
-                                                           : "choose another place, or check its permissions");
-}
-
 /// An open file descriptor, closed at the end of its life.
 class Descriptor {
 public:
@@ -73,9 +67,9 @@ private:
 
 void writeDirectly(const fs::path& file, std::span<const std::byte> bytes) {
     Descriptor descriptor(::open(file.c_str(), O_WRONLY | O_CLOEXEC));
-    if (!descriptor.valid()) fail(file, errno);
-    if (const int reason = writeAll(descriptor.get(), bytes)) fail(file, reason);
-    if (!descriptor.close()) fail(file, errno);
+    if (!descriptor.valid()) throwWriteError(file, errno);
+    if (const int reason = writeAll(descriptor.get(), bytes)) throwWriteError(file, reason);
+    if (!descriptor.close()) throwWriteError(file, errno);
 }
 
 /// The name is short and its own, so that a long target name and two writers at once both work.
@@ -87,27 +81,33 @@ fs::path temporaryBeside(const fs::path& file) {
 
 } // namespace
 
+void throwWriteError(const fs::path& file, int reason) {
+    throw DeviceError(file.string(), "cannot be written: " + std::generic_category().message(reason),
+                      reason == ENOSPC || reason == EDQUOT ? "free some disk space, or save to another place"
+                                                           : "choose another place, or check its permissions");
+}
+
 void writeFileAtomically(const fs::path& file, std::span<const std::byte> bytes) {
     std::error_code error;
     const bool link = fs::is_symlink(file, error); // an error here shows again when the file is opened
     error.clear();
     const fs::path resolved = link ? fs::weakly_canonical(file, error) : file;
-    if (error) fail(file, error.value());
+    if (error) throwWriteError(file, error.value());
     struct stat old {};
     const bool exists = ::stat(resolved.c_str(), &old) == 0;
-    if (exists && S_ISDIR(old.st_mode)) fail(file, EISDIR);
+    if (exists && S_ISDIR(old.st_mode)) throwWriteError(file, EISDIR);
     if (exists && !S_ISREG(old.st_mode)) return writeDirectly(file, bytes);
 
     const fs::path temporary = temporaryBeside(resolved);
     Descriptor descriptor(::open(temporary.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666));
-    if (!descriptor.valid()) fail(file, errno);
+    if (!descriptor.valid()) throwWriteError(file, errno);
     Leftover leftover(temporary);
     // A replaced file keeps its permissions; where that is not allowed the new ones are good enough.
     if (exists) (void)!::fchmod(descriptor.get(), old.st_mode & 07777U);
-    if (const int reason = writeAll(descriptor.get(), bytes)) fail(file, reason);
-    if (::fsync(descriptor.get()) != 0 && errno != EINVAL) fail(file, errno);
-    if (!descriptor.close()) fail(file, errno);
-    if (::rename(temporary.c_str(), resolved.c_str()) != 0) fail(file, errno);
+    if (const int reason = writeAll(descriptor.get(), bytes)) throwWriteError(file, reason);
+    if (::fsync(descriptor.get()) != 0 && errno != EINVAL) throwWriteError(file, errno);
+    if (!descriptor.close()) throwWriteError(file, errno);
+    if (::rename(temporary.c_str(), resolved.c_str()) != 0) throwWriteError(file, errno);
     leftover.keep();
 
     // The rename survives a power cut only once the folder is flushed too; a folder that cannot be

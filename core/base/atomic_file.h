@@ -12,4 +12,7 @@ namespace lumorph {
 /// Throws DeviceError naming the file and the system's reason.
 void writeFileAtomically(const std::filesystem::path& file, std::span<const std::byte> bytes);
 
+/// Throws the DeviceError of a file that cannot be written; `reason` is the system's error number.
+[[noreturn]] void throwWriteError(const std::filesystem::path& file, int reason);
+
 } // namespace lumorph

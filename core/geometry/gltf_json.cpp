@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "core/base/error.h"
+#include "core/base/json_check.h"
 
 namespace lumorph::gltf {
 
@@ -33,50 +34,6 @@ std::uint32_t readU32(std::span<const std::byte> bytes, std::size_t offset) {
     for (std::size_t i = 0; i < 4; ++i) value |= std::to_integer<std::uint32_t>(bytes[offset + i]) << (8 * i);
     return value;
 }
-
-// Counts while parsing and keeps nothing; returning false stops the parser.
-class Bounds : public nlohmann::json_sax<json> {
-public:
-    bool null() override { return value(); }
-    bool boolean(bool) override { return value(); }
-    bool number_integer(number_integer_t) override { return value(); }
-    bool number_unsigned(number_unsigned_t) override { return value(); }
-    bool number_float(number_float_t, const string_t&) override { return value(); }
-    bool string(string_t&) override { return value(); }
-    bool binary(binary_t&) override { return value(); }
-    bool key(string_t&) override { return true; }
-    bool start_object(std::size_t) override { return open(); }
-    bool start_array(std::size_t) override { return open(); }
-    bool end_object() override { return close(); }
-    bool end_array() override { return close(); }
-    bool parse_error(std::size_t position, const std::string&, const nlohmann::detail::exception&) override {
-        problem = "is not valid JSON at byte " + std::to_string(position);
-        return false;
-    }
-
-    std::string problem;
-
-private:
-    bool value() {
-        if (++values_ <= kMaxJsonValues) return true;
-        problem = "holds more than " + std::to_string(kMaxJsonValues) + " JSON values";
-        return false;
-    }
-    bool open() {
-        if (++depth_ > kMaxJsonDepth) {
-            problem = "nests JSON deeper than " + std::to_string(kMaxJsonDepth) + " levels";
-            return false;
-        }
-        return value();
-    }
-    bool close() {
-        --depth_;
-        return true;
-    }
-
-    std::size_t values_ = 0;
-    std::size_t depth_ = 0;
-};
 
 template <std::size_t size> bool contains(const std::array<std::string_view, size>& names, std::string_view name) {
     return std::find(names.begin(), names.end(), name) != names.end();
@@ -115,7 +72,7 @@ void checkMember(const std::string& key, const json& value, const std::string& p
         refuse(file, place + ": \"" + key + "\" is not a list of numbers");
 }
 
-/// A copy without extras and extensions, the members with a fixed type checked. At most kMaxJsonDepth deep.
+/// A copy without extras and extensions, the members with a fixed type checked. As deep as parseBounded lets it be.
 json stripped(const json& value, const std::string& place, const std::string& file) {
     json copy = value.is_object() ? json::object() : json::array();
     if (value.is_array()) {
@@ -243,12 +200,17 @@ Container splitGlb(std::span<const std::byte> bytes, const std::string& file) {
     return container;
 }
 
+Container splitFile(std::span<const std::byte> bytes, const std::filesystem::path& file) {
+    const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+    const bool binary = text.starts_with("glTF") || file.extension() == ".glb" || file.extension() == ".GLB";
+    return binary ? splitGlb(bytes, file.string()) : Container{text, std::nullopt};
+}
+
 json parseBounded(std::string_view text, const std::string& file) {
-    if (text.size() > kMaxJsonBytes)
-        refuse(file, "holds more than " + std::to_string(kMaxJsonBytes >> 20) + " MiB of JSON",
-               "export it as .glb, with its data in the binary part");
-    Bounds bounds;
-    if (!json::sax_parse(text, &bounds)) refuse(file, bounds.problem);
+    const JsonLimits limits;
+    if (const std::string problem = jsonProblem(text, limits); !problem.empty())
+        refuse(file, problem,
+               text.size() > limits.bytes ? "export it as .glb, with its data in the binary part" : kExportAgain);
     json document = json::parse(text);
     if (!document.is_object()) refuse(file, "its JSON is not an object");
     return document;

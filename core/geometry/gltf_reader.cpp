@@ -112,9 +112,7 @@ Model readDocument(const Container& container, const Folder& folder, std::size_t
 Model readModel(const std::filesystem::path& file) {
     const std::string name = file.string();
     const std::vector<std::byte> bytes = gltf::readFile(file, kMaxFileBytes, name);
-    const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-    const bool binary = text.starts_with("glTF") || file.extension() == ".glb" || file.extension() == ".GLB";
-    const gltf::Container container = binary ? gltf::splitGlb(bytes, name) : gltf::Container{text, std::nullopt};
+    const gltf::Container container = gltf::splitFile(bytes, file);
     Model model = gltf::readDocument(container, gltf::Folder(file.parent_path()), bytes.size(), name);
     if (model.name.empty()) model.name = file.stem().string();
     return model;

@@ -6,6 +6,7 @@
 #include <fstream>
 #include <system_error>
 
+#include "core/base/confined_path.h"
 #include "core/geometry/mesh_file.h"
 
 namespace lumorph::gltf {
@@ -21,17 +22,6 @@ int hexDigit(char c) {
     if (c >= 'a' && c <= 'f') return c - 'a' + 10;
     if (c >= 'A' && c <= 'F') return c - 'A' + 10;
     return -1;
-}
-
-std::string percentDecoded(std::string_view text) {
-    std::string decoded;
-    for (std::size_t i = 0; i < text.size(); ++i) {
-        const int high = i + 2 < text.size() && text[i] == '%' ? hexDigit(text[i + 1]) : -1;
-        const int low = high >= 0 ? hexDigit(text[i + 2]) : -1;
-        decoded += low >= 0 ? static_cast<char>(high * 16 + low) : text[i];
-        if (low >= 0) i += 2;
-    }
-    return decoded;
 }
 
 int base64Digit(char c) {
@@ -65,8 +55,6 @@ struct DataUri {
     std::string_view payload;
 };
 
-bool isData(std::string_view uri) { return uri.starts_with("data:"); }
-
 DataUri splitDataUri(std::string_view uri, const std::string& place, const std::string& file) {
     const std::size_t comma = uri.find(',');
     const std::string_view head = uri.substr(5, comma == std::string_view::npos ? 0 : comma - 5);
@@ -78,33 +66,12 @@ DataUri splitDataUri(std::string_view uri, const std::string& place, const std::
 // A URI inside data can be megabytes long; a message shows its beginning.
 std::string quoted(const std::string& uri) { return "\"" + uri.substr(0, 80) + (uri.size() > 80 ? "...\"" : "\""); }
 
-bool liesWithin(const std::filesystem::path& folder, const std::filesystem::path& path) {
-    const auto [end, unused] = std::mismatch(folder.begin(), folder.end(), path.begin(), path.end());
-    return end == folder.end();
-}
-
 std::vector<std::byte> uriBytes(const std::string& uri, std::size_t maxBytes, const Folder& folder,
                                 const std::string& place, const std::string& file) {
     if (!isData(uri)) return folder.read(uri, maxBytes, place, file);
     const std::string_view payload = splitDataUri(uri, place, file).payload;
     if (payload.size() / 4 * 3 > maxBytes) refuse(file, place + ": is too large");
     return base64Decoded(payload, place, file);
-}
-
-/// Elements of a top-level list, none where it is missing.
-const json& listOf(const json& document, const char* name, const std::string& file) {
-    static const json none = json::array();
-    const auto list = document.find(name);
-    if (list == document.end()) return none;
-    if (!list->is_array() || list->size() > kMaxElements)
-        refuse(file,
-               std::string("\"") + name + "\" is not a list of at most " + std::to_string(kMaxElements) + " elements");
-    return *list;
-}
-
-std::string stringMember(const json& object, const char* key) {
-    const auto member = object.find(key);
-    return member != object.end() && member->is_string() ? member->get<std::string>() : std::string();
 }
 
 template <std::size_t size>
@@ -151,24 +118,49 @@ std::vector<std::byte> readFile(const std::filesystem::path& path, std::size_t m
     return bytes;
 }
 
-std::vector<std::byte> Folder::read(const std::string& uri, std::size_t maxBytes, const std::string& place,
-                                    const std::string& file) const {
+std::string percentDecoded(std::string_view uri) {
+    std::string decoded;
+    for (std::size_t i = 0; i < uri.size(); ++i) {
+        const int high = i + 2 < uri.size() && uri[i] == '%' ? hexDigit(uri[i + 1]) : -1;
+        const int low = high >= 0 ? hexDigit(uri[i + 2]) : -1;
+        decoded += low >= 0 ? static_cast<char>(high * 16 + low) : uri[i];
+        if (low >= 0) i += 2;
+    }
+    return decoded;
+}
+
+bool isData(std::string_view uri) noexcept { return uri.starts_with("data:"); }
+
+const json& listOf(const json& document, const char* name, const std::string& file) {
+    static const json none = json::array();
+    const auto list = document.find(name);
+    if (list == document.end()) return none;
+    if (!list->is_array() || list->size() > kMaxElements)
+        refuse(file,
+               std::string("\"") + name + "\" is not a list of at most " + std::to_string(kMaxElements) + " elements");
+    return *list;
+}
+
+std::string stringMember(const json& object, const char* key) {
+    const auto member = object.find(key);
+    return member != object.end() && member->is_string() ? member->get<std::string>() : std::string();
+}
+
+std::filesystem::path Folder::find(const std::string& uri, const std::string& place, const std::string& file) const {
     if (!path_)
         refuse(file, place + ": refers to " + quoted(uri) + " outside the file",
                "export as .glb with everything inside");
-    const std::filesystem::path relative = percentDecoded(uri);
-    const bool climbs = std::find(relative.begin(), relative.end(), "..") != relative.end();
-    if (relative.empty() || relative.is_absolute() || climbs || relative.native().find('\0') != std::string::npos)
-        refuse(file, place + ": " + quoted(uri) + " leads out of the folder of the model", kKeepBeside);
+    const auto target = confinedPath(*path_, percentDecoded(uri));
+    if (!target) refuse(file, place + ": " + quoted(uri) + " leads out of the folder of the model", kKeepBeside);
     std::error_code failed;
-    const std::filesystem::path folder = std::filesystem::weakly_canonical(path_->empty() ? "." : *path_, failed);
-    const std::filesystem::path target = failed ? folder : std::filesystem::weakly_canonical(folder / relative, failed);
-    if (failed) refuse(file, place + ": " + quoted(uri) + " cannot be read", kKeepBeside);
-    if (!liesWithin(folder, target))
-        refuse(file, place + ": " + quoted(uri) + " leads out of the folder of the model", kKeepBeside);
-    if (!std::filesystem::is_regular_file(target, failed))
+    if (!std::filesystem::is_regular_file(*target, failed))
         refuse(file, place + ": " + quoted(uri) + " is not there", kKeepBeside);
-    return readFile(target, maxBytes, file);
+    return *target;
+}
+
+std::vector<std::byte> Folder::read(const std::string& uri, std::size_t maxBytes, const std::string& place,
+                                    const std::string& file) const {
+    return readFile(find(uri, place, file), maxBytes, file);
 }
 
 Buffers readBuffers(const json& document, const Container& container, const Folder& folder, const std::string& file) {

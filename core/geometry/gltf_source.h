@@ -17,9 +17,6 @@
 /// Private to core/geometry.
 namespace lumorph::gltf {
 
-inline constexpr std::size_t kMaxJsonBytes = std::size_t{64} << 20;
-inline constexpr std::size_t kMaxJsonDepth = 64;
-inline constexpr std::size_t kMaxJsonValues = 1'000'000;
 inline constexpr std::size_t kMaxElements = 100'000; ///< of one kind: nodes, meshes, accessors and so on
 inline constexpr std::size_t kMaxImageBytes = std::size_t{256} << 20;
 
@@ -46,6 +43,9 @@ struct Container {
 };
 [[nodiscard]] Container splitGlb(std::span<const std::byte> bytes, const std::string& file);
 
+/// The two chunks of a GLB, or the whole of a text file as JSON, told apart by how they begin and by the file's name.
+[[nodiscard]] Container splitFile(std::span<const std::byte> bytes, const std::filesystem::path& file);
+
 /// Parses JSON after a pass without recursion has bounded its length, depth and number of values.
 [[nodiscard]] nlohmann::json parseBounded(std::string_view text, const std::string& file);
 
@@ -59,13 +59,28 @@ public:
     Folder() = default;
     explicit Folder(std::filesystem::path path) : path_(std::move(path)) {}
 
-    /// Bytes of the file `uri` names. Refuses whatever does not lie inside the folder, links followed.
+    /// The file `uri` names, links followed. Refuses whatever does not lie inside the folder, and what is no file.
+    [[nodiscard]] std::filesystem::path find(const std::string& uri, const std::string& place,
+                                             const std::string& file) const;
+    /// Its bytes.
     [[nodiscard]] std::vector<std::byte> read(const std::string& uri, std::size_t maxBytes, const std::string& place,
                                               const std::string& file) const;
 
 private:
     std::optional<std::filesystem::path> path_;
 };
+
+/// A URI without its percent signs.
+[[nodiscard]] std::string percentDecoded(std::string_view uri);
+
+/// Elements of a top-level list, none where it is missing. Refuses what is no list, and one that is too long.
+[[nodiscard]] const nlohmann::json& listOf(const nlohmann::json& document, const char* name, const std::string& file);
+
+/// The string under a key of an object; empty where there is none.
+[[nodiscard]] std::string stringMember(const nlohmann::json& object, const char* key);
+
+/// Whether a URI holds its data itself.
+[[nodiscard]] bool isData(std::string_view uri) noexcept;
 
 /// Bytes of a whole regular file. Throws DataError when it cannot be read or is longer than `maxBytes`.
 [[nodiscard]] std::vector<std::byte> readFile(const std::filesystem::path& path, std::size_t maxBytes,

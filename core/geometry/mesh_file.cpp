@@ -46,6 +46,15 @@ void checkWritable(const TriangleMesh& mesh, const std::filesystem::path& file) 
 
 } // namespace
 
+bool isGltfFile(const std::filesystem::path& file) {
+    const std::string extension = lowerExtension(file);
+    return extension == ".gltf" || extension == ".glb";
+}
+
+bool isMeshFile(const std::filesystem::path& file) {
+    return parserOf(lowerExtension(file)) != nullptr || isGltfFile(file);
+}
+
 TriangleMesh readMesh(const std::filesystem::path& file) {
     const std::string extension = lowerExtension(file);
     if (const Parser parse = parserOf(extension)) {
@@ -53,7 +62,7 @@ TriangleMesh readMesh(const std::filesystem::path& file) {
         if (bytes.empty()) throw DataError(file.string(), "the file is empty", "export the model again");
         return parse(bytes, file.string());
     }
-    if (extension != ".gltf" && extension != ".glb")
+    if (!isGltfFile(file))
         throw DataError(file.string(), "is of no kind known by its extension",
                         "use .gltf, .glb, .obj, .stl, .ply or .off");
     TriangleMesh mesh = readGltfMesh(file);

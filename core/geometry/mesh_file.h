@@ -10,6 +10,10 @@ namespace lumorph {
 inline constexpr std::size_t kMaxTriangles = 10'000'000;
 inline constexpr std::size_t kMaxFileBytes = std::size_t{2} << 30;
 
+/// Whether the extension is one that `readMesh` knows, and whether it is one of glTF.
+[[nodiscard]] bool isMeshFile(const std::filesystem::path& file);
+[[nodiscard]] bool isGltfFile(const std::filesystem::path& file);
+
 /// Reads a mesh of any supported kind by its extension: .gltf .glb .obj .stl .ply .off (any case).
 /// Polygons are triangulated; vertices of .stl files at the same place are merged. Units and axes
 /// are the file's own.

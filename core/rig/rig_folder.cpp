@@ -1,8 +1,6 @@
 #include "core/rig/rig_folder.h"
 
 #include <algorithm>
-#include <array>
-#include <cctype>
 #include <charconv>
 #include <map>
 
@@ -11,13 +9,6 @@
 
 namespace lumorph {
 namespace {
-
-bool isMesh(const std::filesystem::path& file) {
-    std::string extension = file.extension().string();
-    std::ranges::transform(extension, extension.begin(), [](unsigned char c) { return std::tolower(c); });
-    constexpr std::array kKnown{".obj", ".stl", ".ply", ".off", ".glb", ".gltf"};
-    return std::ranges::find(kKnown, extension) != kKnown.end();
-}
 
 struct StateFiles {
     std::filesystem::path rest;
@@ -48,7 +39,7 @@ StateFiles listStates(const std::filesystem::path& folder) {
     std::vector<std::filesystem::path> found;
     std::filesystem::directory_iterator at(folder, error);
     for (; !error && at != std::filesystem::directory_iterator(); at.increment(error))
-        if (isMesh(at->path())) found.push_back(at->path());
+        if (isMeshFile(at->path())) found.push_back(at->path());
     if (error) throw DataError(folder.string(), "the folder cannot be read: " + error.message(), "check the path");
     std::ranges::sort(found);
     for (const auto& file : found) addState(file, files);

@@ -1,14 +1,14 @@
 #pragma once
 
 #include <filesystem>
-#include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <nlohmann/json.hpp>
 
-#include "core/base/progress.h"
 #include "core/mdf/placement.h"
+#include "core/scene/project_assets.h"
 
 namespace lumorph {
 
@@ -19,12 +19,12 @@ inline constexpr int kProjectSchema = 1;
 /// not leave it, or name a bundled resource as `resource:models/tablet.glb`. Keys that this version does not know are
 /// kept.
 struct Project {
-    std::string rig;    ///< asset: .glb, .gltf or a folder of one mesh per state
+    std::string rig;    ///< asset, always there: .glb, .gltf or a folder of one mesh per state
     std::string field;  ///< asset: .mdf; empty when it has not been built
     std::string target; ///< asset: a mesh or an animated glTF; empty without one
     int animation = 0;  ///< of the target
     Placement placement;
-    std::vector<double> strokes; ///< the state set by hand; one an actuator
+    std::vector<double> strokes; ///< the state set by hand, in [0, 1]; one an actuator, or none for rest
     struct Matching {
         bool live = true;
         bool refined = true;
@@ -36,25 +36,25 @@ struct Project {
         double spin = 0.0; ///< radians a second
         bool operator==(const Playback&) const = default;
     } playback;
-    nlohmann::json view;    ///< what a window wants to remember about how it shows the project
-    nlohmann::json unknown; ///< the rest of the file, written back as it was
+    nlohmann::json view;    ///< what a window wants to remember about how it shows the project; an object or null
+    nlohmann::json unknown; ///< the rest of the file, nested as it was, written back as it was
 };
 
-/// Reads a project. Throws DataError naming the file, the JSON key and the remedy: not readable, no JSON, too deep or
-/// too large, a newer schema, a value of the wrong kind or out of range, a path that leaves the folder.
+/// A project from the text of its file; `name` stands in errors. Older schemas are migrated, links are not looked at.
+/// Throws DataError as `readProject` does.
+[[nodiscard]] Project parseProject(std::string_view text, const std::string& name);
+
+/// The text of its file. Equal projects give equal bytes, and `parseProject` gives back the same project. Throws
+/// InvalidInput for a value that `parseProject` would refuse.
+[[nodiscard]] std::string projectText(const Project& project);
+
+/// Reads a project. Its assets need not be there. Throws DataError naming the file, the JSON key and the remedy: not
+/// readable, no JSON, too deep or too large, a newer schema, no rig, a value of the wrong kind or out of range, a path
+/// that leaves the folder, also through links.
 [[nodiscard]] Project readProject(const std::filesystem::path& file);
 
-/// Writes it whole or not at all. Throws DeviceError when the disk refuses, and InvalidInput for a path that leaves the
-/// folder.
+/// Writes it whole or not at all. Throws DeviceError when the disk refuses, and InvalidInput for a value that could not
+/// be read back: no rig, a number out of range, a path that leaves the folder.
 void writeProject(const Project& project, const std::filesystem::path& file);
-
-/// Where an asset of a project lies. Throws DataError when it leaves the folder, also through links, or is not there.
-[[nodiscard]] std::filesystem::path assetPath(const std::filesystem::path& projectFile, const std::string& asset);
-
-/// Takes a file (or a folder) into the folder beside the project, `NAME files/`, unless it lies in the project's folder
-/// or is a bundled resource, and gives the asset's name. A glTF takes its buffers and images with it. A file of the
-/// same name with other contents is not replaced: the newcomer gets a number. Throws DeviceError when the disk refuses.
-[[nodiscard]] std::string takeAsset(const std::filesystem::path& projectFile, const std::filesystem::path& source,
-                                    const Progress& progress = {});
 
 } // namespace lumorph

@@ -14,6 +14,7 @@
 #include "core/mdf/builder.h"
 #include "core/mdf/field_file.h"
 #include "core/rig/rig_file.h"
+#include "core/scene/project.h"
 #include "core/voxels/nrrd.h"
 #include "core/voxels/solid.h"
 #include "tests/support/full_model.h"
@@ -108,5 +109,15 @@ int main(int argc, char** argv) {
     options.levels = 4;
     options.samples = 8;
     write("mdf/cushion.mdf", writeField(buildField(test::cushionRig(), options)));
+
+    Project project;
+    project.rig = "resource:models/tablet.glb";
+    project.field = "p files/tablet.mdf";
+    project.target = "p files/cow/cow.gltf";
+    project.strokes = {0.0, 0.25, 1.0};
+    project.view = {{"camera", {{"yaw", 0.5}}}};
+    writeText("project/whole.lumorph", projectText(project));
+    writeText("project/draft.lumorph",
+              R"({"model": "a.glb", "author": "b", "matching": {"live": false, "more": [1]}})");
     return 0;
 }

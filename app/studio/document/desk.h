@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <functional>
+#include <memory>
 
 #include <QObject>
 #include <QString>
@@ -37,7 +38,8 @@ public:
 
     void newProject(); ///< the bundled tablet, no target
     void openDemo();   ///< the bundled tablet with an animated target, matched live
-    /// Saves to the project's file. False when it has none; ask for one and use saveAs.
+    /// Saves to the project's file; it is on disk when this returns, or the document is still modified and a notice
+    /// says why. False when it has no file; ask for one and use saveAs.
     bool save();
     void saveAs(const std::filesystem::path& file);
 
@@ -52,6 +54,11 @@ public:
 signals:
     void opened(const QString& path); ///< for the list of recent files
     void saved(const QString& path);
+    /// The remedy of a notice: ask for another file of this place ("target", "rig", "field", "project"; "viewport" for
+    /// any kind) and open it.
+    void chooseFile(const QString& place);
+    /// The remedy of a notice: ask where to save, and `saveAs`.
+    void saveElsewhere();
 
 private:
     struct Data;

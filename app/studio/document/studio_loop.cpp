@@ -9,6 +9,9 @@ namespace lumorph::studio {
 
 namespace {
 
+// A frame that fails is not told of, so errors are asked for.
+constexpr int kErrorMilliseconds = 200;
+
 std::int64_t nowMilliseconds() {
     return std::chrono::duration_cast<std::chrono::milliseconds>(SteadyClock().now()).count();
 }
@@ -17,8 +20,6 @@ MatchWish wishOf(const StudioState& state) {
     MatchWish wish;
     wish.rig = state.rig.rig;
     wish.field = state.field.field;
-    // The loop wants one rig: the field brings an equal one of its own.
-    if (wish.field) wish.rig = std::shared_ptr<const Rig>(wish.field, &wish.field->rig);
     wish.target = state.target.target;
     wish.placement = state.placement;
     wish.live = state.matching.live;
@@ -39,6 +40,8 @@ StudioLoop::StudioLoop(StudioDocument& document, QObject* parent) : QObject(pare
                 this, [this] { take(); }, Qt::QueuedConnection);
     });
     connect(&document_, &StudioDocument::changed, this, &StudioLoop::heed);
+    connect(&errors_, &QTimer::timeout, this, &StudioLoop::takeError);
+    errors_.start(kErrorMilliseconds);
     sendSoon();
 }
 
@@ -80,7 +83,9 @@ void StudioLoop::setTint(bool shown) {
     if (std::exchange(tint_, shown) != shown) sendSoon();
 }
 
-void StudioLoop::setRate(double framesPerSecond) { thread_->setRate(framesPerSecond); }
+void StudioLoop::setRate(double framesPerSecond) {
+    if (std::isfinite(framesPerSecond)) thread_->setRate(std::clamp(framesPerSecond, 1.0, 1000.0));
+}
 
 void StudioLoop::heed(StateParts parts) {
     // Whoever takes the rig in hand, or back to the target, ends the dance.
@@ -106,9 +111,12 @@ void StudioLoop::send() {
     thread_->wish(std::move(wish));
 }
 
+void StudioLoop::takeError() {
+    if (const auto error = thread_->takeError()) emit failed(QString::fromStdString(*error));
+}
+
 void StudioLoop::take() {
     posted_ = false;
-    if (const auto error = thread_->takeError()) emit failed(QString::fromStdString(*error));
     std::shared_ptr<const MatchFrame> latest = thread_->latest();
     if (!latest || latest == frame_) return;
     frame_ = std::move(latest);

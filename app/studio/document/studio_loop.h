@@ -7,6 +7,7 @@
 #include <vector>
 
 #include <QObject>
+#include <QTimer>
 
 #include "app/studio/document/studio_document.h"
 #include "core/loop/live_match.h"
@@ -50,6 +51,7 @@ private:
     void sendSoon();
     void send();
     void take();
+    void takeError();
 
     StudioDocument& document_;
     std::shared_ptr<const MatchFrame> frame_;
@@ -60,6 +62,7 @@ private:
     bool sending_ = false;              ///< a wish goes out when the event loop comes round
     std::vector<std::int64_t> shownAt_; ///< when matched frames were handed over, milliseconds
     std::atomic<bool> posted_ = false;  ///< the window has been told of a frame that it did not take yet
+    QTimer errors_;
     std::unique_ptr<MatchThread> thread_;
 };
 

@@ -80,12 +80,12 @@ ValueField* numberField(const QString& id, Quantity quantity, double low, double
 } // namespace
 
 void askFile(QWidget* parent, Settings& settings, const QString& id, const QString& title, const QString& name,
-             const std::vector<FileKind>& kinds, std::function<void(const QString&)> chosen) {
+             const std::vector<SaveKind>& kinds, std::function<void(const QString&)> chosen) {
     QFileDialog* dialog = makeFileDialog(parent, settings, id, title);
     dialog->setAcceptMode(QFileDialog::AcceptSave);
     dialog->setFileMode(QFileDialog::AnyFile);
     QStringList filters;
-    for (const FileKind& kind : kinds) filters += QObject::tr("%1 (*.%2)").arg(kind.text, kind.suffix);
+    for (const SaveKind& kind : kinds) filters += QObject::tr("%1 (*.%2)").arg(kind.text, kind.suffix);
     dialog->setNameFilters(filters);
     dialog->setDefaultSuffix(kinds.front().suffix);
     dialog->selectFile(name + "." + kinds.front().suffix);

@@ -17,13 +17,13 @@ namespace lumorph::studio {
 /// hand over what was chosen when they are accepted.
 
 /// One kind of file in a file dialog.
-struct FileKind {
+struct SaveKind {
     QString text;   ///< "Wavefront OBJ"
     QString suffix; ///< "obj"
 };
 /// Asks where to save; asks again before it replaces a file. `id` names the dialog; the folder used last is kept.
 void askFile(QWidget* parent, Settings& settings, const QString& id, const QString& title, const QString& name,
-             const std::vector<FileKind>& kinds, std::function<void(const QString&)> chosen);
+             const std::vector<SaveKind>& kinds, std::function<void(const QString&)> chosen);
 /// Asks for a folder that is there.
 void askFolder(QWidget* parent, Settings& settings, const QString& id, const QString& title,
                std::function<void(const QString&)> chosen);

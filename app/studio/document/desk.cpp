@@ -1,0 +1,135 @@
+#include "app/studio/document/desk.h"
+
+#include <cstdlib>
+
+#include <QStandardPaths>
+
+#include "app/studio/document/desk_data.h"
+
+namespace lumorph::studio {
+
+Desk::Data::Data(Desk& owner, StudioDocument& openDocument, Jobs& allJobs, Notices& allNotices)
+    : desk(owner), document(openDocument), jobs(allJobs), notices(allNotices), cache(sessionFolder() / "fields"),
+      keeper(sessionFolder(), [this] { return session(); }) {
+    connect(&document, &StudioDocument::changed, &desk, [this](StateParts parts) {
+        if (parts & (StatePart::rig | StatePart::field | StatePart::target)) watchFiles();
+        keeper.touch();
+    });
+    connect(&document, &StudioDocument::titleChanged, &desk, [this] { keeper.touch(); });
+    connect(&watch, &FileWatch::changed, &desk,
+            [this](const QString& place, const QString& path) { tellChanged(place, path); });
+    connect(&watch, &FileWatch::vanished, &desk,
+            [this](const QString& place, const QString& path) { tellVanished(place, path); });
+    connect(&watch, &FileWatch::restored, &desk, [this](const QString& place, const QString& path) {
+        notices.dismiss(place, fileName(path.toStdString()));
+    });
+    connect(&keeper, &SessionKeeper::failed, &desk, [this](const QString& why) {
+        notices.post("project", {Notice::Level::warning, tr("Session"), why, tr("save the project"), {}});
+    });
+}
+
+Desk::Desk(StudioDocument& document, Jobs& jobs, Notices& notices, QObject* parent)
+    : QObject(parent), data_(std::make_unique<Data>(*this, document, jobs, notices)) {}
+
+Desk::~Desk() {
+    for (const auto& [slot, id] : data_->slots_) data_->jobs.cancel(id);
+}
+
+void Desk::open(const std::filesystem::path& file) { data_->openAsWhatItIs(file); }
+void Desk::openProject(const std::filesystem::path& file) { data_->openProject(file); }
+void Desk::openRig(const std::filesystem::path& path) { data_->openRig(path); }
+void Desk::openField(const std::filesystem::path& file) { data_->openField(file); }
+void Desk::openTarget(const std::filesystem::path& file) { data_->openTarget(file); }
+
+void Desk::removeTarget() {
+    data_->stop("target");
+    data_->notices.dismissAll("target");
+    data_->document.change(tr("Remove target"), [](StudioState& state) { state.target = {}; });
+}
+
+void Desk::buildField(const BuildOptions& options) { data_->build(options, true); }
+void Desk::fit() { data_->fit(); }
+void Desk::autoPlace() { data_->autoPlace(); }
+void Desk::newProject() { data_->openBundled(false, {}); }
+void Desk::openDemo() { data_->openBundled(true, {}); }
+
+bool Desk::save() {
+    const std::filesystem::path file = data_->document.file();
+    if (file.empty()) return false;
+    data_->saveTo(file);
+    return true;
+}
+
+void Desk::saveAs(const std::filesystem::path& file) {
+    std::filesystem::path named = file;
+    if (named.extension() != ".lumorph") named += ".lumorph";
+    data_->saveTo(named);
+}
+
+void Desk::restoreSession(std::function<void()> onReady) { data_->restore(std::move(onReady)); }
+
+void Desk::keepSession() {
+    try {
+        data_->keeper.keepNow();
+    } catch (const std::exception& error) {
+        data_->fail("project", error);
+    }
+}
+
+std::filesystem::path Desk::sessionFolder() {
+    if (const char* chosen = std::getenv("LUMORPH_SESSION"); chosen && *chosen) return chosen;
+    const QString data = QStandardPaths::writableLocation(QStandardPaths::GenericDataLocation);
+    return std::filesystem::path(data.toStdString()) / "lumorph" / "session";
+}
+
+void Desk::Data::watchFiles() {
+    const StudioState& state = document.state();
+    const AssetStamps stamps = read.of(state);
+    std::map<QString, FileWatch::Watched> files;
+    const auto add = [&](const QString& place, const std::filesystem::path& path,
+                         const std::optional<FileStamp>& stamp) {
+        if (!path.empty() && stamp) files[place] = {path, *stamp};
+    };
+    add("rig", state.rig.path, stamps.rig);
+    add("field", state.field.path, stamps.field);
+    add("target", state.target.path, stamps.target);
+    watch.watch(std::move(files));
+}
+
+void Desk::Data::tellChanged(const QString& place, const QString& path) {
+    const std::filesystem::path file = path.toStdString();
+    const auto again = [this, place, file] {
+        if (place == "target")
+            readTargetAgain(file);
+        else if (place == "rig")
+            openRig(file);
+        else
+            openField(file);
+    };
+    notices.post(place, {Notice::Level::warning,
+                         fileName(file),
+                         tr("has changed on disk"),
+                         tr("read it again, or keep what is open"),
+                         {{tr("Read again"), again}, {tr("Keep"), [] {}}}});
+}
+
+void Desk::Data::tellVanished(const QString& place, const QString& path) {
+    const auto saveCopy = [this] { emit desk.saveElsewhere(); };
+    notices.post(place, {Notice::Level::warning,
+                         fileName(path.toStdString()),
+                         tr("is no longer on the disk; what is open stays"),
+                         tr("save the project, which then holds a copy of it"),
+                         {{tr("Save a copy..."), saveCopy}, {tr("Dismiss"), [] {}}}});
+}
+
+void Desk::Data::fail(const QString& place, const std::exception& error, std::vector<Notice::Action> actions) {
+    Notice notice = noticeOf(error);
+    notice.actions = std::move(actions);
+    notices.post(place, std::move(notice));
+}
+
+Notice::Action Desk::Data::chooseAnother(const QString& place) {
+    return {tr("Choose another file..."), [this, place] { emit desk.chooseFile(place); }};
+}
+
+} // namespace lumorph::studio

@@ -1,0 +1,91 @@
+#include "app/studio/document/desk_data.h"
+#include "core/base/error.h"
+#include "core/mdf/auto_place.h"
+
+namespace lumorph::studio {
+
+namespace {
+
+/// Building itself, then what matching needs of it, then a copy for the next time.
+std::shared_ptr<const MatchField> built(const Rig& rig, const BuildOptions& options, const FieldCache& cache,
+                                        const Progress& progress) {
+    auto field = std::make_shared<const MatchField>(buildField(rig, options, progress));
+    progress.throwIfCancelled();
+    cache.keep(field->field);
+    return field;
+}
+
+} // namespace
+
+void Desk::Data::build(const BuildOptions& options, bool asked) {
+    const std::shared_ptr<const Rig> rig = document.state().rig.rig;
+    if (!rig) {
+        notices.post("field", {Notice::Level::error,
+                               tr("Field"),
+                               tr("there is no rig to build it for"),
+                               tr("open a rig first"),
+                               {{tr("Open a rig..."), [this] { emit desk.chooseFile("rig"); }}}});
+        return;
+    }
+    std::vector<Notice::Action> remedies;
+    if (asked) remedies.push_back({tr("Build with the usual settings"), [this] { build({}, false); }});
+    run<std::shared_ptr<const MatchField>>(
+        "field", "field", tr("Building the field"),
+        [rig, options, cache = cache](const Progress& progress) { return built(*rig, options, cache, progress); },
+        [this, rig, asked](const std::shared_ptr<const MatchField>& field) {
+            if (document.state().rig.rig != rig) return;
+            notices.dismissAll("field");
+            const auto put = [&](StudioState& state) { state.field = {{}, field}; };
+            // A field that comes with a project just opened is part of opening it, not the user's change.
+            if (!asked && !document.modified() && document.undoStack().count() == 0 && !document.previewing()) {
+                StudioState state = document.state();
+                put(state);
+                document.reset(std::move(state), document.file());
+            } else {
+                document.change(tr("Build the field"), put);
+            }
+        },
+        std::move(remedies));
+}
+
+void Desk::Data::buildMissing() {
+    if (document.state().rig.rig && !document.state().field.field) build({}, false);
+}
+
+void Desk::Data::fit() {
+    const StudioState& state = document.state();
+    if (!state.rig.rig || !state.target.target) return;
+    try {
+        const Placement placement =
+            placementThatFits(*state.rig.rig, state.field.field.get(), state.target.target->box, state.placement.yaw);
+        document.change(tr("Fit target"), [&](StudioState& next) { next.placement = placement; });
+    } catch (const InvalidInput& error) {
+        fail("target", error, {chooseAnother("target")});
+    }
+}
+
+void Desk::Data::autoPlace() {
+    const StudioState::TargetAsset target = document.state().target;
+    const std::shared_ptr<const MatchField> field = document.state().field.field;
+    if (!target.target) return;
+    if (!field) {
+        notices.post("target", {Notice::Level::error,
+                                tr("Auto-place"),
+                                tr("the field of this rig has not been built yet"),
+                                tr("build it first"),
+                                {{tr("Build the field"), [this] { build({}, false); }}}});
+        return;
+    }
+    run<AutoPlacement>(
+        "place", "target", tr("Placing the target"),
+        [target, field](const Progress& progress) {
+            return lumorph::autoPlace(field->field, field->coverage, field->voting, target.target->solid, {}, progress);
+        },
+        [this, target, field](const AutoPlacement& found) {
+            if (document.state().target.target != target.target || document.state().field.field != field) return;
+            document.change(tr("Auto-place target"), [&](StudioState& state) { state.placement = found.placement; });
+        },
+        {{tr("Fit"), [this] { fit(); }}});
+}
+
+} // namespace lumorph::studio

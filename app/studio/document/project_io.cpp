@@ -1,0 +1,148 @@
+#include "app/studio/document/project_io.h"
+
+#include <cmath>
+#include <functional>
+
+#include <QTemporaryDir>
+
+#include "app/studio/document/state_rules.h"
+#include "core/base/atomic_file.h"
+#include "core/base/error.h"
+#include "core/geometry/model.h"
+#include "core/mdf/field_file.h"
+#include "core/rig/rig_file.h"
+#include "core/scene/project.h"
+
+namespace lumorph::studio {
+
+namespace {
+
+namespace fs = std::filesystem;
+using Bytes = std::vector<std::byte>;
+
+void loadField(const fs::path& file, const std::string& asset, LoadedProject& loaded) {
+    try {
+        auto field = readFieldAsset(assetPath(file, asset));
+        if (isFieldOf(*field.asset.field, *loaded.state.rig.rig)) {
+            loaded.state.field = std::move(field.asset);
+            loaded.stamps.field = field.stamp;
+        } else {
+            loaded.warnings.emplace_back("Its field was built for another rig and is built again.");
+        }
+    } catch (const DataError& error) {
+        loaded.warnings.push_back("Its field is built again: " + error.why() + ".");
+    }
+}
+
+StudioState stateOf(const Project& project) {
+    StudioState state;
+    state.placement = project.placement;
+    state.strokes = project.strokes;
+    state.matching.live = project.matching.live;
+    state.matching.method = project.matching.refined ? MatchMethod::refined : MatchMethod::voting;
+    state.matching.budget = Microseconds(std::llround(1000.0 * project.matching.budgetMilliseconds));
+    state.playback = {project.playback.playing, project.playback.spin};
+    return state;
+}
+
+Project projectOf(const ProjectSource& source) {
+    const StudioState& state = source.state;
+    Project project;
+    if (state.target.target) project.animation = std::max(0, state.target.target->animation);
+    project.placement = state.placement;
+    project.strokes = state.strokes;
+    project.matching = {state.matching.live, state.matching.method == MatchMethod::refined,
+                        static_cast<double>(state.matching.budget.count()) / 1000.0};
+    project.playback = {state.playback.playing, state.playback.spin};
+    project.view = source.extras.view;
+    project.unknown = source.extras.unknown;
+    return project;
+}
+
+/// A name that is safe in any folder.
+std::string fileStem(const fs::path& path, const std::string& name) {
+    std::string stem = path.empty() ? name : path.stem().string();
+    std::erase_if(stem, [](unsigned char c) { return c < ' ' || c == '/' || c == '\\' || c == ':'; });
+    return stem.empty() || stem.front() == '.' ? "asset" : stem;
+}
+
+/// Takes the file where it is still what was read; else what is in memory.
+std::string take(const fs::path& project, const fs::path& path, const std::optional<FileStamp>& stamp,
+                 const std::string& name, const std::function<Bytes()>& bytes, const Progress& progress) {
+    if (!path.empty() && stamp && stamp->there && stampOf(path) == *stamp) return takeAsset(project, path, progress);
+    const QTemporaryDir folder;
+    if (!folder.isValid())
+        throw DeviceError("temporary folder", folder.errorString().toStdString(), "free some disk space");
+    const fs::path copy = fs::path(folder.path().toStdString()) / name;
+    writeFileAtomically(copy, bytes());
+    return takeAsset(project, copy, progress);
+}
+
+Bytes targetBytes(const MatchTarget& target) {
+    return writeGlb(target.model ? *target.model : modelOf(target.solid.mesh, target.name));
+}
+
+/// A field that was saved with this project before and that nothing names any more.
+void dropOldField(const fs::path& file, const std::string& before, const std::string& now) {
+    const std::string own = file.stem().string() + " files/";
+    if (before.empty() || before == now || !before.starts_with(own)) return;
+    std::error_code ignored;
+    fs::remove(file.parent_path() / before, ignored);
+}
+
+std::string fieldNamedBy(const fs::path& file) {
+    try {
+        return readProject(file).field;
+    } catch (const Error&) {
+        return {};
+    }
+}
+
+} // namespace
+
+LoadedProject loadProject(const fs::path& file, const Progress& progress) {
+    const Project project = readProject(file);
+    LoadedProject loaded;
+    loaded.state = stateOf(project);
+    loaded.extras = {project.view, project.unknown};
+    progress.report(0.1, "reading the rig");
+    auto rig = readRigAsset(assetPath(file, project.rig));
+    loaded.state.rig = std::move(rig.asset);
+    loaded.stamps.rig = rig.stamp;
+    progress.throwIfCancelled();
+    progress.report(0.3, "reading the field");
+    if (!project.field.empty()) loadField(file, project.field, loaded);
+    progress.throwIfCancelled();
+    progress.report(0.6, "reading the target");
+    if (!project.target.empty()) {
+        // 0 is also what a target without animations says.
+        const std::optional<int> animation = project.animation > 0 ? std::optional(project.animation) : std::nullopt;
+        auto target = readTargetAsset(assetPath(file, project.target), animation, progress.part(0.6, 1.0));
+        loaded.state.target = std::move(target.asset);
+        loaded.stamps.target = target.stamp;
+    }
+    return loaded;
+}
+
+void saveProject(const ProjectSource& source, const fs::path& file, const Progress& progress) {
+    const StudioState& state = source.state;
+    if (!state.rig.rig) throw InvalidInput(file.string(), "there is no rig to save", "open a rig first");
+    Project project = projectOf(source);
+    const std::string rigName = fileStem(state.rig.path, state.rig.rig->name());
+    project.rig = take(
+        file, state.rig.path, source.stamps.rig, rigName + ".glb", [&] { return writeRigGlb(*state.rig.rig); },
+        progress);
+    if (state.field.field)
+        project.field = take(
+            file, state.field.path, source.stamps.field, fileStem(state.field.path, rigName) + ".mdf",
+            [&] { return writeField(state.field.field->field); }, progress);
+    if (const auto& target = state.target.target)
+        project.target = take(
+            file, state.target.path, source.stamps.target, fileStem(state.target.path, target->name) + ".glb",
+            [&] { return targetBytes(*target); }, progress);
+    const std::string oldField = fieldNamedBy(file);
+    writeProject(project, file);
+    dropOldField(file, oldField, project.field);
+}
+
+} // namespace lumorph::studio

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include "app/studio/document/assets.h"
+
+namespace lumorph::studio {
+
+/// What a project file holds beside the state; read, kept and written back.
+struct ProjectExtras {
+    nlohmann::json view;
+    nlohmann::json unknown;
+};
+
+/// A project and everything it names, read into memory.
+struct LoadedProject {
+    StudioState state;
+    AssetStamps stamps;
+    ProjectExtras extras;
+    std::vector<std::string> warnings; ///< plain sentences, such as about a field that has to be built again
+};
+
+/// Reads a project with its rig, field and target. A field that cannot be read, or is another rig's, is left out with a
+/// warning: it can be built again. Throws DataError for anything else that is wrong; Cancelled.
+[[nodiscard]] LoadedProject loadProject(const std::filesystem::path& file, const Progress& progress);
+
+/// What is to be saved; a value, for any thread.
+struct ProjectSource {
+    StudioState state;
+    AssetStamps stamps;
+    ProjectExtras extras;
+};
+
+/// Saves a project: assets are taken into the folder beside it, then the file is replaced at once. What has vanished or
+/// changed on disk since it was read is written as it is in memory. Throws DeviceError when the disk refuses; the old
+/// project is as it was then.
+void saveProject(const ProjectSource& source, const std::filesystem::path& file, const Progress& progress = {});
+
+} // namespace lumorph::studio

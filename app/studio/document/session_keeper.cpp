@@ -1,0 +1,202 @@
+#include "app/studio/document/session_keeper.h"
+
+#include <algorithm>
+#include <charconv>
+#include <fstream>
+#include <iterator>
+#include <utility>
+
+#include "core/base/error.h"
+
+namespace lumorph::studio {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int kSoonMilliseconds = 3000;
+constexpr const char* kProjectName = "session.lumorph";
+constexpr const char* kPartial = "partial";
+constexpr const char* kKey = "session"; // in the project's view
+
+std::optional<int> numberOf(const fs::path& folder) {
+    const std::string name = folder.filename().string();
+    int number = 0;
+    const auto [end, error] = std::from_chars(name.data(), name.data() + name.size(), number);
+    if (error != std::errc() || end != name.data() + name.size()) return std::nullopt;
+    return number;
+}
+
+/// Numbers of the complete sessions, newest first.
+std::vector<int> numbersIn(const fs::path& folder) {
+    std::vector<int> numbers;
+    std::error_code failed;
+    for (fs::directory_iterator at(folder, failed), end; !failed && at != end; at.increment(failed))
+        if (const auto number = numberOf(at->path())) numbers.push_back(*number);
+    std::sort(numbers.rbegin(), numbers.rend());
+    return numbers;
+}
+
+fs::path placeOf(const fs::path& folder, int number) { return folder / std::to_string(number); }
+
+/// Json holds nothing but UTF-8; a name that is none gets replacement characters.
+std::string textOf(const fs::path& path) { return QString::fromStdString(path.string()).toStdString(); }
+
+ProjectSource withMemory(const SessionState& session) {
+    ProjectSource source = session.source;
+    if (!source.extras.view.is_object()) source.extras.view = nlohmann::json::object();
+    const StudioState& state = source.state;
+    source.extras.view[kKey] = {{"file", textOf(session.file)},
+                                {"modified", session.modified},
+                                {"rig", textOf(state.rig.path)},
+                                {"field", textOf(state.field.path)},
+                                {"target", textOf(state.target.path)}};
+    return source;
+}
+
+/// A new number: complete under another name first, then renamed, then the older ones go.
+int writeAnew(const fs::path& folder, const SessionState& session) {
+    fs::create_directories(folder);
+    const std::vector<int> old = numbersIn(folder);
+    const int number = old.empty() ? 1 : old.front() + 1;
+    const fs::path partial = folder / kPartial;
+    fs::remove_all(partial);
+    fs::create_directories(partial);
+    saveProject(withMemory(session), partial / kProjectName);
+    fs::rename(partial, placeOf(folder, number));
+    for (const int older : old) fs::remove_all(placeOf(folder, older));
+    return number;
+}
+
+bool sameAssets(const StudioState& a, const StudioState& b) {
+    return a.rig == b.rig && a.field == b.field && a.target == b.target;
+}
+
+void write(const fs::path& folder, const SessionState& session, SessionKeeper::Written& last) {
+    try {
+        const bool same = last.number > 0 && sameAssets(last.assets, session.source.state) &&
+                          fs::exists(placeOf(folder, last.number) / kProjectName);
+        if (same) { // the large files are there already; the project's file is replaced at once
+            saveProject(withMemory(session), placeOf(folder, last.number) / kProjectName);
+        } else {
+            last.number = writeAnew(folder, session);
+            last.assets = session.source.state;
+        }
+    } catch (const fs::filesystem_error& error) {
+        throw DeviceError("session", "it cannot be kept in " + folder.string() + ": " + error.code().message(),
+                          "free some disk space, or check the folder's permissions");
+    }
+}
+
+bool sameBytes(const fs::path& a, const fs::path& b) {
+    std::error_code failed;
+    if (fs::file_size(a, failed) != fs::file_size(b, failed) || failed) return false;
+    std::ifstream first(a, std::ios::binary), second(b, std::ios::binary);
+    return first && second &&
+           std::equal(std::istreambuf_iterator<char>(first), std::istreambuf_iterator<char>(),
+                      std::istreambuf_iterator<char>(second));
+}
+
+bool sameContents(const fs::path& a, const fs::path& b) {
+    std::error_code failed;
+    if (!fs::is_directory(a, failed) || !fs::is_directory(b, failed)) return sameBytes(a, b);
+    for (fs::directory_iterator at(a, failed), end; !failed && at != end; at.increment(failed))
+        if (!sameBytes(at->path(), b / at->path().filename())) return false;
+    return !failed;
+}
+
+/// An asset was read from the session's copy and goes by the name it had. Where that file is another one by now its
+/// stamp says so.
+void rename(fs::path& path, std::optional<FileStamp>& stamp, const std::string& original, const fs::path& session) {
+    const std::string copies = session.string() + "/";
+    if (!path.string().starts_with(copies)) return; // bundled
+    if (original.empty())
+        stamp.reset();
+    else
+        stamp = sameContents(path, original) ? stampOf(original) : FileStamp{true, 0, fs::file_time_type::min()};
+    path = original;
+}
+
+std::string textIn(const nlohmann::json& object, const char* key) {
+    const auto found = object.find(key);
+    return found != object.end() && found->is_string() ? found->get<std::string>() : std::string();
+}
+
+} // namespace
+
+SessionKeeper::SessionKeeper(fs::path folder, std::function<std::optional<SessionState>()> snapshot, QObject* parent)
+    : QObject(parent), folder_(std::move(folder)), snapshot_(std::move(snapshot)) {
+    soon_.setSingleShot(true);
+    soon_.setInterval(kSoonMilliseconds);
+    connect(&soon_, &QTimer::timeout, this, &SessionKeeper::keepBeside);
+    std::error_code ignored;
+    fs::create_directories(folder_, ignored);
+    lock_ = std::make_unique<QLockFile>(QString::fromStdString((folder_ / "lock").string()));
+    lock_->setStaleLockTime(0); // only that of a program that is gone
+    if (!lock_->tryLock()) lock_.reset();
+}
+
+void SessionKeeper::touch() {
+    if (lock_ && !soon_.isActive()) soon_.start();
+}
+
+void SessionKeeper::keepBeside() {
+    if (writing_) { // a large target on a slow disk
+        soon_.start();
+        return;
+    }
+    std::optional<SessionState> session = snapshot_();
+    if (!session) return;
+    writing_ = true;
+    writer_ = std::jthread([this, kept = std::move(*session)] {
+        try {
+            write(folder_, kept, written_);
+        } catch (const Error& error) {
+            const QString why = QString::fromStdString(error.why() + "; " + error.remedy());
+            QMetaObject::invokeMethod(
+                this, [this, why] { emit failed(why); }, Qt::QueuedConnection);
+        }
+        writing_ = false;
+    });
+}
+
+void SessionKeeper::keepNow() {
+    soon_.stop();
+    if (writer_.joinable()) writer_.join();
+    const std::optional<SessionState> session = snapshot_();
+    if (lock_ && session) write(folder_, *session, written_);
+}
+
+std::optional<SessionState> SessionKeeper::restore(const fs::path& folder, const Progress& progress) {
+    const std::vector<int> numbers = numbersIn(folder);
+    if (numbers.empty()) return std::nullopt;
+    const fs::path place = placeOf(folder, numbers.front());
+    LoadedProject loaded = loadProject(place / kProjectName, progress);
+    const nlohmann::json memory = loaded.extras.view.is_object() && loaded.extras.view.contains(kKey)
+                                      ? loaded.extras.view[kKey]
+                                      : nlohmann::json::object();
+    SessionState session;
+    session.file = textIn(memory, "file");
+    session.modified = memory.is_object() && memory.value("modified", true);
+    if (loaded.extras.view.is_object()) loaded.extras.view.erase(kKey);
+    StudioState& state = loaded.state;
+    rename(state.rig.path, loaded.stamps.rig, textIn(memory, "rig"), place);
+    rename(state.field.path, loaded.stamps.field, textIn(memory, "field"), place);
+    rename(state.target.path, loaded.stamps.target, textIn(memory, "target"), place);
+    session.source = {std::move(loaded.state), loaded.stamps, std::move(loaded.extras)};
+    return session;
+}
+
+fs::path SessionKeeper::moveAside(const fs::path& folder) {
+    const std::vector<int> numbers = numbersIn(folder);
+    std::error_code ignored;
+    for (int i = 1; !numbers.empty() && i < 10'000; ++i) {
+        const fs::path aside = folder / ("broken-" + std::to_string(i));
+        if (fs::exists(aside, ignored)) continue;
+        fs::rename(placeOf(folder, numbers.front()), aside, ignored);
+        return aside;
+    }
+    return {};
+}
+
+} // namespace lumorph::studio
