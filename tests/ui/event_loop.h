@@ -1,0 +1,38 @@
+#pragma once
+
+#include <chrono>
+#include <functional>
+
+#include <QCoreApplication>
+#include <QElapsedTimer>
+#include <QEventLoop>
+
+namespace lumorph::test {
+
+/// Timers and queued calls need an application; the first to ask makes one where the program has none.
+inline void needApplication() {
+    if (QCoreApplication::instance()) return;
+    static int count = 1;
+    static char name[] = "test";
+    static char* arguments[] = {name, nullptr};
+    static const QCoreApplication application(count, arguments);
+}
+
+/// Lets events run until a condition holds; false when it never did.
+[[nodiscard]] inline bool eventually(const std::function<bool()>& holds,
+                                     std::chrono::milliseconds patience = std::chrono::seconds(60)) {
+    QElapsedTimer since;
+    since.start();
+    while (!holds()) {
+        if (since.elapsed() > patience.count()) return false;
+        QCoreApplication::processEvents(QEventLoop::AllEvents | QEventLoop::WaitForMoreEvents, 10);
+    }
+    return true;
+}
+
+/// Lets events run for a while, to see that something does not happen.
+inline void pass(std::chrono::milliseconds time) {
+    (void)eventually([] { return false; }, time);
+}
+
+} // namespace lumorph::test
