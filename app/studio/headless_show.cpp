@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <iomanip>
+#include <ostream>
 #include <span>
 #include <system_error>
 
@@ -141,7 +142,9 @@ void tellNumbers(const std::vector<Frame>& frames, std::ostream& out) {
         << " ms a match (median)" << std::endl;
 }
 
-void show(const fs::path& folder, double seconds, std::ostream& out) {
+} // namespace
+
+void runHeadlessShow(const fs::path& folder, double seconds, std::ostream& out) {
     if (!(seconds > 0.0 && seconds <= kMaxSeconds))
         throw InvalidInput("--seconds", "the show lasts more than 0 and at most 600 seconds",
                            "give a number in that range");
@@ -160,18 +163,6 @@ void show(const fs::path& folder, double seconds, std::ostream& out) {
     saveVideo(stage, frames, folder / "swell.mp4");
     saveTable(frames, folder / "swell.csv");
     out << "Pictures, video and table are in " << fs::absolute(folder).lexically_normal().string() << std::endl;
-}
-
-} // namespace
-
-int runHeadlessShow(const fs::path& folder, double seconds, std::ostream& out) {
-    try {
-        show(folder, seconds, out);
-        return 0;
-    } catch (const std::exception& error) {
-        out << "lumorph-studio: " << error.what() << std::endl;
-        return 1;
-    }
 }
 
 } // namespace lumorph::studio

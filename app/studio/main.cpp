@@ -1,5 +1,7 @@
 #include <cstdio>
+#include <iostream>
 
+#include "app/studio/headless_show.h"
 #include "app/studio/look/palette.h"
 #include "app/studio/shell/arguments.h"
 #include "app/studio/shell/main_window.h"
@@ -51,6 +53,17 @@ int run(int argc, char** argv, const Arguments& arguments) {
     return status;
 }
 
+/// Needs no display, and so no application.
+int showHeadless(const Arguments& arguments) {
+    try {
+        runHeadlessShow(arguments.headless, arguments.seconds, std::cout);
+        return 0;
+    } catch (const std::exception& error) {
+        std::fprintf(stderr, "lumorph-studio: %s\n", error.what());
+        return 1;
+    }
+}
+
 } // namespace
 
 int main(int argc, char** argv) {
@@ -59,6 +72,7 @@ int main(int argc, char** argv) {
         std::fputs(parsed.message.c_str(), parsed.status == 0 ? stdout : stderr);
         return parsed.status;
     }
+    if (!parsed.arguments->headless.empty()) return showHeadless(*parsed.arguments);
     const QString noDisplay = prepareApplication(argc, argv);
     if (!noDisplay.isEmpty()) {
         std::fputs(noDisplay.toUtf8().constData(), stderr);

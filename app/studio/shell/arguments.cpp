@@ -42,6 +42,13 @@ ParsedArguments parseArguments(int argc, const char* const* argv) {
     app.add_option("--demo", arguments.demo, "start a demonstration: " + listed(kDemos));
     app.add_option("--workspace", arguments.workspace, "the workspace to show first, such as field");
     app.add_flag("--kiosk", arguments.kiosk, "full screen for visitors: the view and STOP alone");
+    std::string headless;
+    CLI::Option* folder =
+        app.add_option("--headless", headless, "no window: draw a live match into this folder and end");
+    app.add_option("--seconds", arguments.seconds, "how long that lasts")
+        ->check(CLI::Range(0.1, 600.0))
+        ->needs(folder)
+        ->capture_default_str();
     try {
         app.parse(withoutQtOptions(argc, argv));
     } catch (const CLI::CallForHelp&) {
@@ -56,6 +63,7 @@ ParsedArguments parseArguments(int argc, const char* const* argv) {
     if (!arguments.demo.empty() && !project.empty())
         return wrongUsage("a demo and '" + project + "' cannot both be opened; leave one out");
     arguments.project = project;
+    arguments.headless = headless;
     return {arguments, {}, 0};
 }
 

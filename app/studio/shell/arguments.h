@@ -6,12 +6,15 @@
 
 namespace lumorph::studio {
 
-/// What the program was started with: `lumorph-studio [PROJECT] [--demo NAME] [--kiosk] [--workspace ID]`.
+/// What the program was started with: `lumorph-studio [PROJECT] [--demo NAME] [--kiosk] [--workspace ID]`, or
+/// `lumorph-studio --headless FOLDER [--seconds S]`, which opens no window.
 struct Arguments {
     std::filesystem::path project; ///< or a rig, a field or a target; empty: none
     std::string demo;
     std::string workspace;
     bool kiosk = false;
+    std::filesystem::path headless; ///< where to draw the show without a display; empty: open the window
+    double seconds = 6.0;           ///< that the show lasts
 };
 
 /// Either arguments to start with, or what to print and with which status to exit: 0 for help and version, 2 for wrong

@@ -6,6 +6,7 @@
 #include <QComboBox>
 #include <QDialog>
 #include <QDialogButtonBox>
+#include <QKeyEvent>
 #include <QLabel>
 #include <QPushButton>
 #include <QVBoxLayout>
@@ -39,7 +40,8 @@ struct Entry {
 
     /// What is wrong with the text as it stands; empty when it is fine.
     [[nodiscard]] QString fault() const {
-        const auto value = parseQuantity(field->text(), Quantity::plain);
+        if (!field->isModified()) return {}; // scrubbed, not typed: always in range, and rounded at the end
+        const auto value = parseQuantity(field->text(), Quantity::level);
         if (!value || *value != std::floor(*value)) return QObject::tr("%1 is a whole number.").arg(name);
         if (*value >= low && *value <= high) return {};
         return QObject::tr("Choose a number from %1 to %2.").arg(low, 0, 'f', 0).arg(high, 0, 'f', 0);
@@ -51,6 +53,8 @@ public:
     BuildDialog(Studio& studio, QWidget* parent);
 
 private:
+    /// Enter on a number that is refused must neither correct it silently nor build.
+    bool eventFilter(QObject* watched, QEvent* event) override;
     Entry addEntry(QVBoxLayout& layout, const QString& id, const QString& label, const QString& name,
                    const QString& hint, double low, double high, double value);
     void addButtons(QVBoxLayout& layout);
@@ -114,7 +118,7 @@ BuildDialog::BuildDialog(Studio& studio, QWidget* parent)
 
 Entry BuildDialog::addEntry(QVBoxLayout& layout, const QString& id, const QString& label, const QString& name,
                             const QString& hint, double low, double high, double value) {
-    Entry entry{new ValueField(Quantity::plain, low, high, value), new QLabel, name, low, high};
+    Entry entry{new ValueField(Quantity::level, low, high, value), new QLabel, name, low, high};
     entry.field->setObjectName(id);
     entry.field->setStep(1.0);
     entry.field->setToolTip(hint);
@@ -128,7 +132,16 @@ Entry BuildDialog::addEntry(QVBoxLayout& layout, const QString& id, const QStrin
     layout.addWidget(row);
     layout.addWidget(entry.wrong);
     connect(entry.field, &QLineEdit::textChanged, this, &BuildDialog::check);
+    connect(entry.field, &ValueField::committed, this,
+            [field = entry.field](double number) { field->setValue(std::round(number)); });
+    entry.field->installEventFilter(this);
     return entry;
+}
+
+bool BuildDialog::eventFilter(QObject* watched, QEvent* event) {
+    if (event->type() != QEvent::KeyPress) return QDialog::eventFilter(watched, event);
+    const int key = static_cast<QKeyEvent*>(event)->key();
+    return (key == Qt::Key_Return || key == Qt::Key_Enter) && !build_->isEnabled();
 }
 
 void BuildDialog::addButtons(QVBoxLayout& layout) {
@@ -145,7 +158,7 @@ void BuildDialog::addButtons(QVBoxLayout& layout) {
 
 BuildOptions BuildDialog::options() const {
     const auto number = [](const Entry& entry) {
-        return parseQuantity(entry.field->text(), Quantity::plain).value_or(entry.field->value());
+        return std::round(parseQuantity(entry.field->text(), Quantity::level).value_or(entry.field->value()));
     };
     BuildOptions options;
     options.resolution = static_cast<int>(number(resolution_));

@@ -29,7 +29,7 @@ public:
         grid_->setColumnStretch(1, 1);
     }
 
-    void show(const FieldSummary& summary) {
+    void tell(const FieldSummary& summary) {
         while (QLayoutItem* item = grid_->takeAt(0)) {
             // Children that are being asked about right now must not vanish under the caller.
             item->widget()->hide();
@@ -75,7 +75,7 @@ private:
     void addBuildCommand();
     QWidget* makeContents(FieldDisplayModel& display);
     void watchBuilds();
-    void show();
+    void refresh();
 
     Studio& studio_;
     QAction* build_ = nullptr;
@@ -101,16 +101,16 @@ FieldDock::FieldDock(Studio& studio, FieldDisplayModel& display) : studio_(studi
     pages_->addWidget(makeContents(display));
     watchBuilds();
     connect(&studio.document, &StudioDocument::changed, this, [this](StateParts parts) {
-        if (parts & (StateParts(StatePart::field) | StatePart::rig)) show();
+        if (parts & (StateParts(StatePart::field) | StatePart::rig)) refresh();
     });
-    show();
+    refresh();
 }
 
 void FieldDock::addBuildCommand() {
     build_ = studio_.commands.find("field.build");
     if (build_ != nullptr) return;
     Commands::Options options;
-    options.icon = "field";
+    options.icon = "build";
     options.menu = "Field";
     options.workspace = "field";
     build_ = studio_.commands.add("field.build", tr("Build the Field..."), options,
@@ -144,7 +144,7 @@ void FieldDock::watchBuilds() {
     });
 }
 
-void FieldDock::show() {
+void FieldDock::refresh() {
     const StudioState& state = studio_.document.state();
     const auto& field = state.field.field;
     build_->setEnabled(state.rig.rig != nullptr);
@@ -152,7 +152,7 @@ void FieldDock::show() {
     if (!field || field == shown_.lock()) return;
     shown_ = field;
     const bool built = state.field.path.empty() && since_.isValid();
-    facts_->show(summaryOf(field->field, state.field.path,
+    facts_->tell(summaryOf(field->field, state.field.path,
                            built ? std::optional(static_cast<double>(since_.elapsed()) / 1000.0) : std::nullopt));
     since_.invalidate();
 }

@@ -62,7 +62,8 @@ public:
     void addCommands();
 
 private:
-    void add(const QString& id, const QString& text, std::function<void()> run, std::function<bool()> possible);
+    void add(const QString& id, const QString& text, const QString& icon, std::function<void()> run,
+             std::function<bool()> possible);
     void showPossible();
     void exportShape();
     void exportField();
@@ -78,6 +79,8 @@ private:
     void tellFailed(const std::exception& error, const QString& again);
     [[nodiscard]] PreviewPainter preview() const;
     [[nodiscard]] QString suggestedName(const QString& ending = {}) const;
+    /// What dialogs belong to.
+    [[nodiscard]] QWidget* window() const { return context_.parent ? context_.parent : QApplication::activeWindow(); }
     [[nodiscard]] Frame frame() const { return studio().loop.frame(); }
     [[nodiscard]] Studio& studio() const { return context_.studio; }
 
@@ -96,28 +99,28 @@ void FieldExports::addCommands() {
     const auto haveField = [this] { return frame() && frame()->field; };
     const auto haveBoth = [this] { return frame() && frame()->field && frame()->target; };
     add(
-        "export.mesh", tr("Export the Shape..."), [this] { exportShape(); }, haveFrame);
+        "export.mesh", tr("Export the Shape..."), "device", [this] { exportShape(); }, haveFrame);
     add(
-        "export.picture", tr("Export a Picture..."), [this] { exportPicture(); }, haveFrame);
+        "export.picture", tr("Export a Picture..."), "picture", [this] { exportPicture(); }, haveFrame);
     add(
-        "export.turntable", tr("Export a Turntable Video..."), [this] { exportTurntable(); }, haveFrame);
+        "export.turntable", tr("Export a Turntable Video..."), "video", [this] { exportTurntable(); }, haveFrame);
     add(
-        "export.csv", tr("Export the Match as a Table..."), [this] { exportTable(); }, haveField);
+        "export.csv", tr("Export the Match as a Table..."), "file", [this] { exportTable(); }, haveField);
     add(
-        "export.target", tr("Export the Target's Voxels..."), [this] { exportTarget(); }, haveBoth);
+        "export.target", tr("Export the Target's Voxels..."), "target", [this] { exportTarget(); }, haveBoth);
     add(
-        "export.field", tr("Export the Field..."), [this] { exportField(); }, haveField);
+        "export.field", tr("Export the Field..."), "field", [this] { exportField(); }, haveField);
     add(
-        "export.grids", tr("Export the Field as NRRD Grids..."), [this] { exportGrids(); }, haveField);
+        "export.grids", tr("Export the Field as NRRD Grids..."), "voxels", [this] { exportGrids(); }, haveField);
     connect(&studio().loop, &StudioLoop::framed, this, [this] { showPossible(); });
     connect(&studio().document, &StudioDocument::changed, this, [this] { showPossible(); });
     showPossible();
 }
 
-void FieldExports::add(const QString& id, const QString& text, std::function<void()> run,
+void FieldExports::add(const QString& id, const QString& text, const QString& icon, std::function<void()> run,
                        std::function<bool()> possible) {
     Commands::Options options;
-    options.icon = QStringLiteral("export");
+    options.icon = icon;
     options.menu = QStringLiteral("File");
     options.workspace = QStringLiteral("field");
     offers_.push_back({studio().commands.add(id, text, options, std::move(run)), std::move(possible)});
@@ -170,8 +173,8 @@ void FieldExports::tellFailed(const std::exception& error, const QString& again)
 }
 
 void FieldExports::exportShape() {
-    askShape(context_.parent, [this](bool estimated) {
-        askFile(context_.parent, studio().settings, "export.mesh", tr("Export the shape"),
+    askShape(window(), [this](bool estimated) {
+        askFile(window(), studio().settings, "export.mesh", tr("Export the shape"),
                 suggestedName(estimated ? tr("shape") : tr("wanted shape")),
                 {{tr("Wavefront OBJ"), "obj"}, {tr("Binary glTF"), "glb"}, {tr("STL"), "stl"}},
                 [this, estimated, now = frame()](const QString& file) {
@@ -184,7 +187,7 @@ void FieldExports::exportShape() {
 }
 
 void FieldExports::exportField() {
-    askFile(context_.parent, studio().settings, "export.field", tr("Export the field"), suggestedName(),
+    askFile(window(), studio().settings, "export.field", tr("Export the field"), suggestedName(),
             {{tr("Mechanical distance field"), "mdf"}}, [this, field = frame()->field](const QString& file) {
                 run(tr("Writing the field"), "export.field", [field, path = pathOf(file)](const Progress&) {
                     writeFieldFile(field->field, path);
@@ -194,7 +197,7 @@ void FieldExports::exportField() {
 }
 
 void FieldExports::exportGrids() {
-    askFolder(context_.parent, studio().settings, "export.grids", tr("Where to put the folder of NRRD grids"),
+    askFolder(window(), studio().settings, "export.grids", tr("Where to put the folder of NRRD grids"),
               [this, field = frame()->field](const QString& folder) {
                   run(tr("Writing the grids"), "export.grids",
                       [field, path = pathOf(folder)](const Progress& progress) {
@@ -204,8 +207,8 @@ void FieldExports::exportGrids() {
 }
 
 void FieldExports::exportTarget() {
-    askFile(context_.parent, studio().settings, "export.target", tr("Export the target's voxels"),
-            suggestedName(tr("target")), {{tr("NRRD grid"), "nrrd"}}, [this, now = frame()](const QString& file) {
+    askFile(window(), studio().settings, "export.target", tr("Export the target's voxels"), suggestedName(tr("target")),
+            {{tr("NRRD grid"), "nrrd"}}, [this, now = frame()](const QString& file) {
                 run(tr("Writing the target's voxels"), "export.target", [now, path = pathOf(file)](const Progress&) {
                     writeTargetVoxels(*now, path);
                     return path;
@@ -216,7 +219,7 @@ void FieldExports::exportTarget() {
 void FieldExports::exportTable() {
     const Frame now = frame();
     const bool clip = now->target && now->target->model && now->target->animation >= 0;
-    askFile(context_.parent, studio().settings, "export.csv",
+    askFile(window(), studio().settings, "export.csv",
             clip ? tr("Export the match of the whole animation") : tr("Export the match"),
             suggestedName(clip ? tr("animation") : tr("match")), {{tr("Table"), "csv"}},
             [this, now, clip, state = studio().document.state()](const QString& file) {
@@ -248,9 +251,9 @@ void FieldExports::exportPicture() {
     const ExportView view = context_.view();
     if (!view.scene) return;
     if (picture_.size.isEmpty()) picture_.theme = view.scene->theme;
-    askPicture(context_.parent, picture_, view.ratio, preview(), [this, view](const PictureStyle& style) {
+    askPicture(window(), picture_, view.ratio, preview(), [this, view](const PictureStyle& style) {
         picture_ = style;
-        askFile(context_.parent, studio().settings, "export.picture", tr("Export a picture"), suggestedName(),
+        askFile(window(), studio().settings, "export.picture", tr("Export a picture"), suggestedName(),
                 {{tr("PNG picture"), "png"}}, [this, view, style](const QString& file) {
                     run(tr("Drawing the picture"), "export.picture",
                         [view, style, paint = painterOf(studio()), path = pathOf(file)](const Progress& progress) {
@@ -271,9 +274,9 @@ void FieldExports::exportTurntable() {
     const ExportView view = context_.view();
     if (!view.scene) return;
     turntable_.style.theme = view.scene->theme;
-    askTurntable(context_.parent, turntable_, preview(), [this, view](const Turntable& turntable) {
+    askTurntable(window(), turntable_, preview(), [this, view](const Turntable& turntable) {
         turntable_ = turntable;
-        askFile(context_.parent, studio().settings, "export.turntable", tr("Export a turntable video"),
+        askFile(window(), studio().settings, "export.turntable", tr("Export a turntable video"),
                 suggestedName(tr("turntable")), {{tr("MP4 video"), "mp4"}},
                 [this, view, turntable](const QString& file) {
                     run(tr("Drawing the turntable"), "export.turntable",

@@ -22,13 +22,13 @@ struct ExportView {
 struct ExportContext {
     Studio& studio;
     std::function<ExportView()> view;
-    QWidget* parent = nullptr; ///< of dialogs
+    QWidget* parent = nullptr; ///< of dialogs; the active window when null
 };
 
-/// Adds the commands export.mesh, export.field, export.target, export.csv, export.picture and export.turntable to the
-/// menu "File". Each asks for a file first, then works as a job of the place "export" that can be cancelled, writes
-/// whole or not at all, and tells in a notice of that place what was written or what went wrong. A command is enabled
-/// while there is something to export.
+/// Adds the commands export.mesh, export.field, export.grids, export.target, export.csv, export.picture and
+/// export.turntable to the menu "File". Each asks for a file first, then works as a job of the place "export" that can
+/// be cancelled, writes whole or not at all, and tells in a notice of that place what was written or what went wrong. A
+/// command is enabled while there is something to export.
 void addFieldExports(const ExportContext& context);
 
 } // namespace lumorph::studio

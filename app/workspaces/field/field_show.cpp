@@ -124,7 +124,7 @@ void FieldShow::addVoxels(QVBoxLayout& layout) {
     auto* column = plainColumn(voxels_);
     legend_ = new LevelLegend;
     legend_->setObjectName("field.legend");
-    levels_ = new RangeRow("field.levels", tr("Levels"), tr("Levels"), Quantity::level);
+    levels_ = new RangeRow("field.levels", tr("Levels"), tr("Levels"));
     column->addWidget(legend_);
     column->addWidget(levels_);
     connect(levels_, &RangeRow::changed, this, [this](int from, int to) {
@@ -137,7 +137,7 @@ void FieldShow::addVoxels(QVBoxLayout& layout) {
     const std::array labels{tr("Slice x"), tr("Slice y"), tr("Slice z")};
     for (std::size_t axis = 0; axis < slices_.size(); ++axis) {
         const QString id = QStringLiteral("field.slice.") + QChar::fromLatin1("xyz"[axis]);
-        slices_[axis] = new RangeRow(id, labels[axis], names[axis], Quantity::plain);
+        slices_[axis] = new RangeRow(id, labels[axis], names[axis]);
         slices_[axis]->setToolTip(names[axis]);
         column->addWidget(slices_[axis]);
         connect(slices_[axis], &RangeRow::changed, this, [this, k = static_cast<int>(axis)](int from, int to) {

@@ -11,8 +11,8 @@ namespace {
 constexpr int kFieldWidth = 56;
 constexpr int kLabelWidth = 48;
 
-ValueField* endField(const QString& id, const QString& name, Quantity quantity) {
-    auto* field = new ValueField(quantity, 0, 1, 0);
+ValueField* endField(const QString& id, const QString& name) {
+    auto* field = new ValueField(Quantity::level, 0, 1, 0);
     field->setObjectName(id);
     field->setAccessibleName(name);
     field->setFixedWidth(kFieldWidth);
@@ -24,9 +24,9 @@ int whole(double value) { return static_cast<int>(std::lround(value)); }
 
 } // namespace
 
-RangeRow::RangeRow(const QString& id, const QString& label, const QString& name, Quantity quantity, QWidget* parent)
-    : QWidget(parent), from_(endField(id + ".from", tr("%1 from").arg(name), quantity)), slider_(new RangeSlider),
-      to_(endField(id + ".to", tr("%1 to").arg(name), quantity)) {
+RangeRow::RangeRow(const QString& id, const QString& label, const QString& name, QWidget* parent)
+    : QWidget(parent), from_(endField(id + ".from", tr("%1 from").arg(name))), slider_(new RangeSlider),
+      to_(endField(id + ".to", tr("%1 to").arg(name))) {
     slider_->setObjectName(id + ".slider");
     slider_->setAccessibleName(name);
     auto* text = new QLabel(label);
@@ -42,18 +42,18 @@ RangeRow::RangeRow(const QString& id, const QString& label, const QString& name,
     setFocusProxy(from_);
 
     connect(slider_, &RangeSlider::changed, this, [this](int from, int to) {
-        show();
+        showValues();
         emit changed(from, to);
     });
     // A value typed beyond the other end takes that end along.
     const auto fromChanged = [this](double value) {
         slider_->setRange(whole(value), std::max(whole(value), slider_->to()));
-        show();
+        showValues();
         emit changed(slider_->from(), slider_->to());
     };
     const auto toChanged = [this](double value) {
         slider_->setRange(std::min(whole(value), slider_->from()), whole(value));
-        show();
+        showValues();
         emit changed(slider_->from(), slider_->to());
     };
     connect(from_, &ValueField::previewed, this, fromChanged);
@@ -66,15 +66,15 @@ void RangeRow::setLimits(int lowest, int highest) {
     from_->setRange(lowest, highest);
     to_->setRange(lowest, highest);
     slider_->setLimits(lowest, highest);
-    show();
+    showValues();
 }
 
 void RangeRow::setRange(int from, int to) {
     slider_->setRange(from, to);
-    show();
+    showValues();
 }
 
-void RangeRow::show() {
+void RangeRow::showValues() {
     from_->setValue(slider_->from());
     to_->setValue(slider_->to());
 }

@@ -13,8 +13,7 @@ class RangeRow : public QWidget {
     Q_OBJECT
 public:
     /// `name` is what a screen reader says, such as "Slice across".
-    RangeRow(const QString& id, const QString& label, const QString& name, Quantity quantity,
-             QWidget* parent = nullptr);
+    RangeRow(const QString& id, const QString& label, const QString& name, QWidget* parent = nullptr);
 
     /// New limits; a range that was the whole stays the whole.
     void setLimits(int lowest, int highest);
@@ -25,7 +24,7 @@ signals:
     void changed(int from, int to);
 
 private:
-    void show();
+    void showValues();
 
     ValueField* from_;
     RangeSlider* slider_;

@@ -16,7 +16,7 @@ constexpr double kMinSide = 64.0;
 constexpr double kMaxSide = 8192.0;
 
 ValueField* sideField(const QString& id, int value, const QString& name) {
-    auto* field = new ValueField(Quantity::plain, kMinSide, kMaxSide, value);
+    auto* field = new ValueField(Quantity::level, kMinSide, kMaxSide, value);
     field->setObjectName(id);
     field->setAccessibleName(name);
     field->setStep(2.0);

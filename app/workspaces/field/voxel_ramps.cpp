@@ -38,15 +38,15 @@ public:
         layout->setSpacing(8);
         layout->addWidget(where_);
         layout->addWidget(plot_);
-        connect(&display_, &FieldDisplayModel::changed, this, [this] { show(); });
+        connect(&display_, &FieldDisplayModel::changed, this, [this] { refresh(); });
         connect(&studio_.document, &StudioDocument::changed, this, [this](StateParts parts) {
-            if (parts & StatePart::field) show();
+            if (parts & StatePart::field) refresh();
         });
         connect(&studio_.settings, &Settings::themeChanged, this, [this] {
             shown_.reset();
-            show();
+            refresh();
         });
-        show();
+        refresh();
     }
 
 private:
@@ -58,7 +58,7 @@ private:
         bool operator==(const Shown&) const = default;
     };
 
-    void show() {
+    void refresh() {
         const auto& field = studio_.document.state().field.field;
         const FieldDisplay& value = display_.value();
         const Shown now{field.get(), value.voxel, value.show == FieldDisplay::Show::voxels};
