@@ -110,17 +110,16 @@ void ViewportShading::drawTranslucent(bool outlined, std::size_t surface) const 
     glDisable(GL_POLYGON_OFFSET_FILL);
 }
 
-void ViewportShading::drawCasters(Program& depth, const ViewportScene& scene) const {
-    for (std::size_t i = 0; i < scene.surfaces.size(); ++i) {
-        if (!surfaces_.drawable(i) || scene.surfaces[i].opacity < 1.0F) continue;
-        depth.set("worldFromMesh", scene.surfaces[i].worldFromSurface);
-        setFrontFace(scene.surfaces[i].worldFromSurface);
-        if (surfaces_.closed(i)) glEnable(GL_CULL_FACE);
-        glCullFace(GL_BACK);
-        surfaces_.draw(i);
-        glDisable(GL_CULL_FACE);
+void ViewportShading::drawCasters(Program& depth, const ViewportFrame& frame) const {
+    const std::vector<ViewportSurface>& surfaces = frame.scene.surfaces;
+    for (std::size_t i = 0; i < surfaces.size(); ++i) {
+        if (!surfaces_.drawable(i) || surfaces[i].opacity < 1.0F) continue;
+        depth.set("worldFromMesh", surfaces[i].worldFromSurface);
+        if (frame.quality == ViewportQuality::moving)
+            surfaces_.drawCoarse(i);
+        else
+            surfaces_.draw(i);
     }
-    glFrontFace(GL_CCW);
 }
 
 std::size_t ViewportShading::objectCount() const noexcept {
