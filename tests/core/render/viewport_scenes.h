@@ -1,5 +1,7 @@
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 
 #include <glm/geometric.hpp>
@@ -45,6 +47,33 @@ inline Image draw(ViewportRenderer& renderer, const ViewportScene& scene, const 
     (void)renderer.draw(target.framebuffer(), size, scene, camera, quality, scale);
     return target.read();
 }
+
+inline const glm::ivec2 kSize(400, 320);
+inline constexpr std::array kBoth{ViewportQuality::moving, ViewportQuality::still};
+
+inline ViewCamera cameraAt(double distance, double yaw = 20.0, double pitch = 30.0) {
+    ViewCamera camera;
+    camera.yaw = Angle::degrees(yaw);
+    camera.pitch = Angle::degrees(pitch);
+    camera.distance = distance;
+    return camera;
+}
+
+inline ViewportScene sphereScene(const glm::vec3& color = {0.9F, 0.2F, 0.2F}) {
+    ViewportScene scene;
+    scene.surfaces = {surfaceOf(sphereMesh(0.05F, 5), color)};
+    scene.bounds = {glm::vec3(-0.05F), glm::vec3(0.05F)};
+    scene.groundHeight = -0.06F;
+    scene.grid = false;
+    return scene;
+}
+
+inline glm::ivec2 at(const ViewCamera& camera, const glm::vec3& point) {
+    return {pixelOf(camera, point, glm::vec2(kSize)).value()};
+}
+
+inline int grey(const Image::Pixel& p) { return (p[0] + p[1] + p[2]) / 3; }
+inline bool reddish(const Image::Pixel& p) { return p[0] > 1.6 * p[1] && p[0] > 1.6 * p[2]; }
 
 /// How far two colours are apart, 0 to 255.
 inline int apart(const Image::Pixel& a, const Image::Pixel& b) {
