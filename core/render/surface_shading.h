@@ -23,6 +23,11 @@ public:
 
     /// Triangles over the drawn vertices.
     [[nodiscard]] std::span<const glm::uvec3> triangles() const noexcept { return triangles_; }
+    /// A coarser form of the same surface over some of the drawn vertices, for shadows: at most some thousand
+    /// triangles.
+    [[nodiscard]] std::span<const glm::uvec3> coarseTriangles() const noexcept {
+        return coarse_.empty() ? triangles() : std::span<const glm::uvec3>(coarse_);
+    }
     /// For each drawn vertex, the vertex of the mesh it shows.
     [[nodiscard]] std::span<const std::uint32_t> sources() const noexcept { return sources_; }
     /// Vertices of the mesh.
@@ -37,6 +42,7 @@ public:
 
 private:
     std::vector<glm::uvec3> triangles_;
+    std::vector<glm::uvec3> coarse_; // empty: the triangles are few
     std::vector<std::uint32_t> sources_;
     std::vector<std::uint32_t> leaders_; // for each drawn vertex the first one with the same normal
     bool closed_ = false;

@@ -3,7 +3,7 @@
 namespace lumorph {
 namespace {
 
-constexpr float kWidth = 2.5F; // pixels at 100 % scaling
+constexpr float kWidth = 2.9F; // pixels at 100 % scaling
 
 } // namespace
 

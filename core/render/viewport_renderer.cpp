@@ -171,7 +171,7 @@ struct ViewportRenderer::Data {
             if (shading.surfaces().drawable(i) && frame.scene.surfaces[i].opacity >= 1.0F)
                 casters.casters.emplace_back(shading.surfaces().version(i), frame.scene.surfaces[i].worldFromSurface);
         return light.update(
-            frame.quality, casters, [&](Program& depth) { shading.drawCasters(depth, frame.scene); }, pieceDone);
+            frame.quality, casters, [&](Program& depth) { shading.drawCasters(depth, frame); }, pieceDone);
     }
 
     // The background of a camera at rest is drawn once.
@@ -247,7 +247,7 @@ bool ViewportRenderer::draw(unsigned framebuffer, glm::ivec2 size, const Viewpor
     data_->shading.update(scene);
     data_->voxels.update(scene.voxels);
     data_->lines.update(scene.lines, scale);
-    data_->target.resize(size);
+    if (data_->target.resize(size)) data_->background = {};
     bool whole = data_->updateLight(frame, pieceDone);
     if (whole && still) whole = data_->drawInPieces(frame, pieceDone);
     if (whole && !still) data_->drawWhole(frame);

@@ -13,25 +13,28 @@ constexpr int kFibreUnit = 3;
 constexpr int kFibreSide = 512;
 constexpr float kFibreTile = 0.06F; // metres of paper that the picture covers
 
-Program surfaceProgram(ViewportQuality quality, bool tinted) {
-    const bool still = quality == ViewportQuality::still;
-    std::vector<std::string> pieces{"version.glsl", "backdrop.glsl", still ? "studio_light.glsl" : "moving_light.glsl",
-                                    "light_colors.glsl", still ? "tone.glsl" : "moving_tone.glsl"};
-    if (tinted) pieces.emplace_back("tint.glsl");
-    pieces.emplace_back("viewport_surface.frag");
-    return Program(shaderFiles({"viewport_surface.vert"}, pieces));
+std::array<Program, 2> movingPrograms() {
+    const std::vector<std::string> vertex{"version.glsl", "light_colors.glsl", "moving_tone.glsl",
+                                          "moving_surface.vert"};
+    return {Program(shaderFiles(vertex, {"moving_surface.frag"})),
+            Program(shaderFiles(vertex, {"version.glsl", "moving_tone.glsl", "moving_tinted.frag"}))};
 }
 
-std::array<Program, 2> surfacePrograms(ViewportQuality quality) {
-    return {surfaceProgram(quality, false), surfaceProgram(quality, true)};
+std::array<Program, 2> stillPrograms() {
+    const std::vector<std::string> vertex{"viewport_surface.vert"};
+    std::vector<std::string> light{"version.glsl", "backdrop.glsl", "studio_light.glsl", "light_colors.glsl",
+                                   "tone.glsl"};
+    std::vector<std::string> tinted = light;
+    light.emplace_back("viewport_surface.frag");
+    tinted.insert(tinted.end(), {"tint.glsl", "viewport_surface.frag"});
+    return {Program(shaderFiles(vertex, light)), Program(shaderFiles(vertex, tinted))};
 }
 
 void setFrontFace(const glm::mat4& world) { glFrontFace(glm::determinant(glm::mat3(world)) < 0.0F ? GL_CW : GL_CCW); }
 
 } // namespace
 
-ViewportShading::ViewportShading()
-    : moving_(surfacePrograms(ViewportQuality::moving)), still_(surfacePrograms(ViewportQuality::still)) {
+ViewportShading::ViewportShading() : moving_(movingPrograms()), still_(stillPrograms()) {
     const std::vector<std::uint8_t> grey = paperFibre(kFibreSide);
     glBindTexture(GL_TEXTURE_2D, fibre_.name());
     glTexImage2D(GL_TEXTURE_2D, 0, GL_R8, kFibreSide, kFibreSide, 0, GL_RED, GL_UNSIGNED_BYTE, grey.data());
@@ -74,6 +77,7 @@ void ViewportShading::draw(const ViewportFrame& frame, const FramePiece& piece, 
     program.set("opacity", item.opacity);
     program.set("rim", opaque ? 0.0F : 1.0F);
     program.set("paper", item.paper);
+    program.set("twoSided", opaque && surfaces_.closed(surface) ? 0.0F : 1.0F);
     // What is outlined marks its pixels by an alpha of 0.
     program.set("keepAlpha", item.outlined && opaque ? 0.0F : 1.0F);
     setFrontFace(item.worldFromSurface);
@@ -110,17 +114,16 @@ void ViewportShading::drawTranslucent(bool outlined, std::size_t surface) const 
     glDisable(GL_POLYGON_OFFSET_FILL);
 }
 
-void ViewportShading::drawCasters(Program& depth, const ViewportScene& scene) const {
-    for (std::size_t i = 0; i < scene.surfaces.size(); ++i) {
-        if (!surfaces_.drawable(i) || scene.surfaces[i].opacity < 1.0F) continue;
-        depth.set("worldFromMesh", scene.surfaces[i].worldFromSurface);
-        setFrontFace(scene.surfaces[i].worldFromSurface);
-        if (surfaces_.closed(i)) glEnable(GL_CULL_FACE);
-        glCullFace(GL_BACK);
-        surfaces_.draw(i);
-        glDisable(GL_CULL_FACE);
+void ViewportShading::drawCasters(Program& depth, const ViewportFrame& frame) const {
+    const std::vector<ViewportSurface>& surfaces = frame.scene.surfaces;
+    for (std::size_t i = 0; i < surfaces.size(); ++i) {
+        if (!surfaces_.drawable(i) || surfaces[i].opacity < 1.0F) continue;
+        depth.set("worldFromMesh", surfaces[i].worldFromSurface);
+        if (frame.quality == ViewportQuality::moving)
+            surfaces_.drawCoarse(i);
+        else
+            surfaces_.draw(i);
     }
-    glFrontFace(GL_CCW);
 }
 
 std::size_t ViewportShading::objectCount() const noexcept {

@@ -24,8 +24,8 @@ public:
     /// faces.
     void draw(const ViewportFrame& frame, const FramePiece& piece, const ViewportLight& light, std::size_t surface);
 
-    /// Draws all opaque surfaces with a depth program.
-    void drawCasters(Program& depth, const ViewportScene& scene) const;
+    /// Draws all opaque surfaces with a depth program; in motion a coarser form of them.
+    void drawCasters(Program& depth, const ViewportFrame& frame) const;
 
     [[nodiscard]] std::size_t objectCount() const noexcept;
 

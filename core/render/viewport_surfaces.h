@@ -19,6 +19,7 @@ public:
     /// Of the surfaces of the last update, by their place in it.
     [[nodiscard]] bool drawable(std::size_t surface) const noexcept { return shown_[surface] != nullptr; }
     void draw(std::size_t surface) const;
+    void drawCoarse(std::size_t surface) const;
     /// Box in the world.
     [[nodiscard]] const Box& box(std::size_t surface) const noexcept { return boxes_[surface]; }
     /// Another number for other positions.
@@ -32,8 +33,8 @@ private:
         std::shared_ptr<const SurfaceShading> shading;
         std::shared_ptr<const std::vector<glm::vec3>> positions;
         gl::VertexArray array;
-        gl::Buffer vertices, indices;
-        Box box; // of the positions
+        gl::Buffer vertices, indices; // those of the coarse triangles last
+        Box box;                      // of the positions
         std::uint64_t version = 0;
         std::uint64_t lastFrame = 0;
     };

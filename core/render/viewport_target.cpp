@@ -33,8 +33,8 @@ void copy(GLuint from, GLuint to, glm::ivec2 size) {
 
 } // namespace
 
-void ViewportTarget::resize(glm::ivec2 size) {
-    if (whole_ && size == size_) return;
+bool ViewportTarget::resize(glm::ivec2 size) {
+    if (whole_ && size == size_) return false;
     moving_.reset();
     whole_.reset();
     whole_.emplace();
@@ -49,6 +49,7 @@ void ViewportTarget::resize(glm::ivec2 size) {
     glBindFramebuffer(GL_FRAMEBUFFER, whole_->framebuffer.name());
     glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, whole_->color.name(), 0);
     requireComplete();
+    return true;
 }
 
 void ViewportTarget::beginBackground() {

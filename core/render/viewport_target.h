@@ -15,8 +15,9 @@ public:
     /// Largest piece, pixels.
     static constexpr glm::ivec2 kPiece{1024, 128};
 
-    /// Throws DeviceError when the driver has no memory for it.
-    void resize(glm::ivec2 size);
+    /// Whether the size is another one, so that all that was drawn is lost. Throws DeviceError when the driver has no
+    /// memory for it.
+    bool resize(glm::ivec2 size);
 
     /// Binds a second picture of the whole frame, without depth: what can be drawn over again and again.
     void beginBackground();

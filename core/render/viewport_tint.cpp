@@ -77,7 +77,6 @@ void ViewportTintVolume::apply(Program& program, const ViewportFrame& frame, int
     for (std::size_t i = 0; i < tint.colors.size(); ++i)
         program.set("tintColors[" + std::to_string(i) + "]",
                     glm::vec4(linearFromSrgb(glm::vec3(tint.colors[i])), tint.colors[i].a));
-    program.set("tintTaps", frame.quality == ViewportQuality::still ? 8 : 1);
 }
 
 } // namespace lumorph

@@ -1,6 +1,4 @@
-#define MOVING
-// Shared piece: the light of a viewport in motion, cheap enough for software GL; the same functions as
-// studio_light.glsl. In: keyDirection (towards the light, world), keyShadow (depth map, 1 is lit) with
+// Shared piece: the light of a viewport in motion, cheap enough for software GL. In: keyDirection (towards the light, world), keyShadow (depth map, 1 is lit) with
 // its matrix (world to map, 0 to 1), shadowBias (metres along the normal). Space: world, metres.
 
 uniform vec3 keyDirection;
@@ -13,6 +11,3 @@ float keyVisibility(vec3 position, vec3 normal) {
     vec3 map = (keyMapFromWorld * vec4(position + shadowBias.x * normal, 1.0)).xyz;
     return texture(keyShadow, vec4(map.xy, 0.0, map.z));
 }
-
-// Light of an even sky on a surface, 1 on open level ground.
-float skyLight(vec3 position, vec3 normal) { return 0.5 + 0.5 * normal.y; }
