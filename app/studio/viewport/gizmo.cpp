@@ -91,14 +91,14 @@ private:
     }
     void drawSize() {
         const glm::vec3 middle = sizeCube(gizmo_, camera_, length_);
-        const float half = (hot_ == GizmoHandle::size ? 6.5F : 5.5F) * pixel_;
+        const float half = (hot_ == GizmoHandle::size ? 7.5F : 6.5F) * pixel_;
         const glm::vec3 inwards = glm::normalize(gizmo_.centre - middle);
         add(GizmoHandle::size, gizmo_.centre - kArrowStart * length_ * inwards, middle + 1.5F * half * inwards, 1.5F);
         for (unsigned corner = 0; corner < 8; ++corner)
             for (unsigned bit = 1; bit < 8; bit *= 2)
                 if (!(corner & bit))
                     add(GizmoHandle::size, middle + half * cubeCorner(corner), middle + half * cubeCorner(corner | bit),
-                        2.5F);
+                        2.0F);
     }
 
     const Gizmo& gizmo_;
