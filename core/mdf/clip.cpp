@@ -35,7 +35,9 @@ std::vector<ClipFrame> matchClip(const Field& field, const Coverage& coverage, c
         throw InvalidInput("animation '" + animation.name + "'", "it has no duration", "choose another animation");
     const int frames = static_cast<int>(std::ceil(animation.duration() * fps));
     const Placement placement =
-        fitPlacement(field, boxOverAnimation(model, animation, frames, fps, progress.part(0.0, 0.3)));
+        options.placement
+            ? *options.placement
+            : fitPlacement(field, boxOverAnimation(model, animation, frames, fps, progress.part(0.0, 0.3)));
 
     MotionModel motion(motionLimits(coverage.rig()));
     FrameMatcher matcher(coverage, voting);

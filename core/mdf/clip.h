@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -16,6 +17,8 @@ struct ClipOptions {
     double framesPerSecond = 30.0;
     bool refined = true;         ///< false: by voting alone
     Microseconds budget{10'000}; ///< for refinement, each frame
+    std::optional<Placement>
+        placement; ///< where the target stands; as large as fits over the whole animation when empty
 };
 
 /// One frame of a matched animation.
@@ -28,7 +31,7 @@ struct ClipFrame {
 };
 
 /// Matches an animation frame by frame and moves the actuators after it under their limits (R19),
-/// starting at rest. The target is placed once, so that it fits over the whole animation.
+/// starting at rest. The target is placed once.
 /// Throws InvalidInput for a frame rate outside 1..240 or an animation without duration, Cancelled.
 [[nodiscard]] std::vector<ClipFrame> matchClip(const Field& field, const Coverage& coverage, const Voting& voting,
                                                const Model& model, const Model::Animation& animation,

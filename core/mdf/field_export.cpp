@@ -24,7 +24,7 @@ template <typename Value> ByteGrid gridOf(const Field& field, Value&& value) {
 
 } // namespace
 
-void exportField(const Field& field, const std::filesystem::path& folder) {
+void exportField(const Field& field, const std::filesystem::path& folder, const Progress& progress) {
     std::error_code error;
     std::filesystem::create_directories(folder, error);
     if (error)
@@ -34,6 +34,8 @@ void exportField(const Field& field, const std::filesystem::path& folder) {
         writeFileAtomically(folder / (name + ".nrrd"), writeNrrd(grid, name));
     };
     for (std::size_t i = 0; i < field.actuators.size(); ++i) {
+        progress.throwIfCancelled();
+        progress.report(static_cast<double>(i) / static_cast<double>(field.actuators.size() + 1), "writing the grids");
         const std::vector<Ramp> ramps = denseRamps(field, i);
         const std::string prefix = "actuator-" + std::to_string(i) + "-";
         save(gridOf(field, [&](std::size_t v) { return ramps[v].v0; }), prefix + "v0");

@@ -57,6 +57,8 @@ public:
     void set(const std::string& uniform, const glm::mat4& value);
     void set(const std::string& uniform, std::span<const glm::vec3> values);
     void set(const std::string& uniform, std::span<const glm::mat4> values);
+    /// OpenGL objects held now: none before it is first used.
+    [[nodiscard]] std::size_t objectCount() const noexcept { return program_ ? 1 : 0; }
 
 private:
     [[nodiscard]] GLint location(const std::string& uniform);

@@ -26,7 +26,7 @@ ShadowMaps::ShadowMaps(int side, int layers)
 }
 
 void ShadowMaps::draw(std::span<const glm::vec3> directions, const Box& scene,
-                      const std::function<void()>& drawCasters) {
+                      const std::function<void(Program&)>& drawCasters) {
     const float radius = 0.502F * glm::length(scene.size());
     texel_ = 2.0F * radius / static_cast<float>(side_);
     const glm::mat4 mapFromClip = glm::scale(glm::translate(glm::mat4(1.0F), glm::vec3(0.5F)), glm::vec3(0.5F));
@@ -50,7 +50,7 @@ void ShadowMaps::draw(std::span<const glm::vec3> directions, const Box& scene,
         glFramebufferTextureLayer(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, depth_.name(), 0, static_cast<GLint>(i));
         glClear(GL_DEPTH_BUFFER_BIT);
         program_.set("clipFromWorld", clipFromScene);
-        drawCasters();
+        drawCasters(program_);
     }
 }
 

@@ -21,8 +21,10 @@ public:
     ShadowMaps(int side, int layers);
 
     /// Draws all maps. `directions` lead towards the light, one a layer; what `drawCasters` draws must
-    /// lie in `scene`. Leaves its own framebuffer bound.
-    void draw(std::span<const glm::vec3> directions, const Box& scene, const std::function<void()>& drawCasters);
+    /// lie in `scene`; it is called once a map with the depth program, whose `worldFromMesh` it sets. Leaves its own
+    /// framebuffer bound.
+    void draw(std::span<const glm::vec3> directions, const Box& scene,
+              const std::function<void(Program&)>& drawCasters);
 
     /// For each layer: world position to map coordinates and depth, all 0 to 1.
     [[nodiscard]] std::span<const glm::mat4> mapFromWorld() const noexcept { return mapFromWorld_; }
@@ -30,6 +32,8 @@ public:
     [[nodiscard]] float texel() const noexcept { return texel_; }
     [[nodiscard]] int side() const noexcept { return side_; }
     void bind(int textureUnit) const;
+    /// OpenGL objects held now.
+    [[nodiscard]] std::size_t objectCount() const noexcept { return 2 + program_.objectCount(); }
 
 private:
     int side_;

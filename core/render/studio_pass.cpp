@@ -2,63 +2,19 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <vector>
 
-#include <glm/common.hpp>
-#include <glm/exponential.hpp>
 #include <glm/geometric.hpp>
 
 #include "core/render/program.h"
 #include "core/render/shadow_maps.h"
+#include "core/render/studio_look.h"
 
 namespace lumorph {
 namespace {
 
-constexpr int kSkyCount = 16; // as in studio_light.glsl
 constexpr int kKeyUnit = 0;
 constexpr int kSkyUnit = 1;
-constexpr float kKeySoftness = 0.011F; // radius of the shadow's edge, shares of the shadow map
-
-struct Palette {
-    glm::vec3 top, bottom, line, pool; // sRGB-encoded
-    float lineStrength, shade, exposure;
-};
-
-Palette paletteOf(Theme theme) {
-    if (theme == Theme::light)
-        return {{0.90F, 0.915F, 0.935F},
-                {0.80F, 0.82F, 0.85F},
-                {0.28F, 0.33F, 0.42F},
-                glm::vec3(0.07F),
-                0.3F,
-                0.45F,
-                1.12F};
-    return {{0.066F, 0.074F, 0.09F},
-            {0.135F, 0.15F, 0.18F},
-            {0.62F, 0.70F, 0.82F},
-            {0.115F, 0.125F, 0.145F},
-            0.26F,
-            0.72F,
-            1.0F};
-}
-
-// Evenly over the upper hemisphere, on a spiral.
-std::array<glm::vec3, kSkyCount> skyDirections() {
-    std::array<glm::vec3, kSkyCount> directions;
-    for (int i = 0; i < kSkyCount; ++i) {
-        const float y = (static_cast<float>(i) + 0.5F) / kSkyCount;
-        const float around = 2.39996323F * static_cast<float>(i);
-        const float r = std::sqrt(1.0F - y * y);
-        directions[static_cast<std::size_t>(i)] = {r * std::cos(around), y, r * std::sin(around)};
-    }
-    return directions;
-}
-
-glm::vec3 linear(const glm::vec3& encoded) {
-    return glm::mix(encoded / 12.92F, glm::pow((encoded + 0.055F) / 1.055F, glm::vec3(2.4F)),
-                    glm::vec3(glm::step(glm::vec3(0.04045F), encoded)));
-}
 
 // Takes the camera's view to its place in the larger region.
 glm::mat4 regionFromView(const StudioView& view) {
@@ -78,19 +34,17 @@ float distanceTo(const glm::vec3& eye, const StudioSurface& surface) { return gl
 
 } // namespace
 
-glm::vec3 keyLightDirection() { return glm::normalize(glm::vec3(-0.55F, 1.0F, 0.42F)); }
-
 struct StudioPass::Data {
     ShadowMaps key{768, 1};
     ShadowMaps sky{112, kSkyCount};
     Program backdrop{shaderFiles({"full_frame.vert"}, {"version.glsl", "backdrop.glsl", "backdrop.frag"})};
     Program ground{shaderFiles({"ground.vert"}, {"version.glsl", "backdrop.glsl", "studio_light.glsl", "ground.frag"})};
-    Program surface{
-        shaderFiles({"surface.vert"}, {"version.glsl", "backdrop.glsl", "studio_light.glsl", "surface.frag"})};
+    Program surface{shaderFiles({"surface.vert"},
+                                {"version.glsl", "backdrop.glsl", "studio_light.glsl", "tone.glsl", "surface.frag"})};
     gl::VertexArray empty;
     std::array<glm::vec3, kSkyCount> skyDirections = lumorph::skyDirections();
 
-    static void setBackdrop(Program& program, glm::ivec2 frameSize, const Palette& palette) {
+    static void setBackdrop(Program& program, glm::ivec2 frameSize, const StudioPalette& palette) {
         program.set("frameSize", glm::vec2(frameSize));
         program.set("backdropTop", palette.top);
         program.set("backdropBottom", palette.bottom);
@@ -114,7 +68,7 @@ struct StudioPass::Data {
         program.set("skyOcclusionOn", view.lighting.skyOcclusion ? 1 : 0);
     }
 
-    void drawGround(const StudioView& view, const Palette& palette) {
+    void drawGround(const StudioView& view, const StudioPalette& palette) {
         const StudioGround& place = view.ground;
         ground.set("groundCentre", place.centre);
         ground.set("groundHeight", place.height);
@@ -135,7 +89,7 @@ struct StudioPass::Data {
     }
 
     void setMaterial(const StudioSurface& item) {
-        surface.set("baseColor", linear(item.color));
+        surface.set("baseColor", linearFromSrgb(item.color));
         surface.set("opacity", item.opacity);
         surface.set("rim", item.opacity < 1.0F ? 1.0F : 0.0F);
     }
@@ -175,7 +129,7 @@ void StudioPass::drawBackdrop(GLuint framebuffer, glm::ivec2 frameSize, Theme th
     glDepthMask(GL_TRUE);
     glClear(GL_DEPTH_BUFFER_BIT);
     data_->backdrop.use();
-    Data::setBackdrop(data_->backdrop, frameSize, paletteOf(theme));
+    Data::setBackdrop(data_->backdrop, frameSize, studioPalette(theme));
     glBindVertexArray(data_->empty.name());
     glDrawArrays(GL_TRIANGLES, 0, 3);
     glBindVertexArray(0);
@@ -183,7 +137,8 @@ void StudioPass::drawBackdrop(GLuint framebuffer, glm::ivec2 frameSize, Theme th
 
 void StudioPass::draw(GLuint framebuffer, glm::ivec2 frameSize, const StudioView& view,
                       std::span<const StudioSurface> surfaces) {
-    const auto drawCasters = [&] {
+    const auto drawCasters = [&](Program& program) {
+        program.set("worldFromMesh", glm::mat4(1.0F));
         for (const StudioSurface& item : surfaces)
             if (item.opacity >= 1.0F) item.mesh->draw();
     };
@@ -198,7 +153,7 @@ void StudioPass::draw(GLuint framebuffer, glm::ivec2 frameSize, const StudioView
     glDepthFunc(GL_LEQUAL);
     data_->key.bind(kKeyUnit);
     data_->sky.bind(kSkyUnit);
-    const Palette palette = paletteOf(view.theme);
+    const StudioPalette palette = studioPalette(view.theme);
     const glm::mat4 clipFromScene = regionFromView(view) * clipFromWorld(view.camera);
 
     data_->surface.use();

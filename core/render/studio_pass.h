@@ -10,7 +10,7 @@
 #include "core/geometry/triangle_mesh.h"
 #include "core/render/camera.h"
 #include "core/render/gpu_mesh.h"
-#include "core/render/theme.h"
+#include "core/render/studio_look.h"
 
 namespace lumorph {
 
@@ -19,9 +19,6 @@ struct Lighting {
     bool keyShadow = true;    ///< soft shadow of the key light
     bool skyOcclusion = true; ///< the sky does not reach into corners and under objects
 };
-
-/// Direction towards the key light, of length 1: from the left, above, a little in front.
-[[nodiscard]] glm::vec3 keyLightDirection();
 
 /// A surface to draw: its mesh in world metres and its sRGB colour, 0 to 1.
 struct StudioSurface {

@@ -3,7 +3,6 @@
 #include <QApplication>
 #include <QComboBox>
 #include <QPainter>
-#include <QPainterPath>
 #include <QStyleFactory>
 #include <QStyleOption>
 

@@ -18,19 +18,31 @@ public:
     MainWindow(Studio& studio, std::vector<std::unique_ptr<Workspace>> workspaces);
     ~MainWindow() override;
 
+    /// Does nothing when there is no such workspace.
     void showWorkspace(const QString& id);
     [[nodiscard]] QString workspace() const;
     /// The first-run tour, from its first step.
     void startTour();
+    /// Full screen with the view, STOP and the status line alone; a still pointer is hidden.
+    void enterKiosk();
 
 protected:
     void closeEvent(QCloseEvent* event) override;
     void dragEnterEvent(QDragEnterEvent* event) override;
+    void dragLeaveEvent(QDragLeaveEvent* event) override;
     void dropEvent(QDropEvent* event) override;
     void changeEvent(QEvent* event) override;
     bool eventFilter(QObject* watched, QEvent* event) override;
 
 private:
+    void addCommands();
+    void addMenus();
+    void joinMenu(QAction* action);
+    void showCommands();
+    void showTitle();
+    void retheme();
+    void acceptDrag(QDropEvent& event);
+
     struct Data;
     std::unique_ptr<Data> data_;
 };

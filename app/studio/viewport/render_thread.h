@@ -34,18 +34,22 @@ struct DrawnFrame {
 
 /// Draws all viewports in a thread of its own with a context of its own that shares with the program's others. The
 /// newest request of each viewport counts; frames are read back and handed over, so that the window's thread only
-/// paints a picture and a dock that moves loses nothing.
+/// paints a picture and a dock that moves loses nothing. Made, used and destroyed in the window's thread.
 class RenderThread : public QObject {
     Q_OBJECT
 public:
     explicit RenderThread(QObject* parent = nullptr);
     ~RenderThread() override;
 
-    /// Why nothing can be drawn here (OpenGL 4.1 is missing, with the version found); empty when all is well. Known
-    /// once `ready` was emitted.
+    /// Why nothing can be drawn here (OpenGL 4.1 is missing, with the version found, and what to do); empty when all is
+    /// well. Known once `ready` was emitted.
     [[nodiscard]] std::optional<QString> failure() const;
+    /// After a failure, for example when a driver was installed: looks again and emits `ready`.
+    void retry();
 
-    /// `viewport` is any number that tells viewports apart.
+    /// A number for a new viewport.
+    [[nodiscard]] int newViewport();
+    /// `viewport` is any number that tells viewports apart. A request without a scene or without pixels is ignored.
     void request(int viewport, FrameRequest request);
     /// Forgets a viewport and what was asked for it.
     void forget(int viewport);
@@ -57,18 +61,19 @@ public:
     [[nodiscard]] std::size_t objectCount() const;
     [[nodiscard]] std::size_t errorCount() const;
 
+    /// The newest frame of a viewport that was not taken yet.
+    [[nodiscard]] std::optional<DrawnFrame> takeFrame(int viewport);
+
 signals:
     void ready();
     void drawn(int viewport); ///< take it with `takeFrame`
+    /// A frame could not be drawn; emitted once for a cause, not for every frame. Drawing goes on.
     void broke(const QString& why);
-
-public:
-    /// The newest frame of a viewport that was not taken yet.
-    [[nodiscard]] std::optional<DrawnFrame> takeFrame(int viewport);
 
 private:
     struct Data;
     std::unique_ptr<Data> data_;
+    int viewports_ = 0;
 };
 
 } // namespace lumorph::studio

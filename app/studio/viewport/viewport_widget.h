@@ -3,7 +3,6 @@
 #include <memory>
 #include <optional>
 
-#include <QElapsedTimer>
 #include <QString>
 #include <QWidget>
 
@@ -19,24 +18,26 @@ namespace lumorph::studio {
 ///
 /// Left drag on empty space or middle drag turns, with Shift (or right drag) it pans, the wheel zooms at the pointer; F
 /// frames what is selected, Home everything, 1/3/7 front, right, top, 5 perspective or orthographic. A click picks.
-/// Arrow keys turn, with Shift they pan, + and - zoom.
+/// Arrow keys turn, with Shift they pan, + and - zoom. A left drag on a handle of the gizmo drags that, coarsely with
+/// Ctrl; Esc takes it back.
 class ViewportWidget : public QWidget {
     Q_OBJECT
 public:
     explicit ViewportWidget(RenderThread& renderer, QWidget* parent = nullptr);
     ~ViewportWidget() override;
 
+    /// The first scene with an extent is framed, unless a camera was set before.
     void setScene(std::shared_ptr<const ViewportScene> scene);
     [[nodiscard]] const std::shared_ptr<const ViewportScene>& scene() const noexcept;
     [[nodiscard]] const ViewCamera& camera() const noexcept;
     void setCamera(const ViewCamera& camera, bool glide = false);
     /// The box that F frames; everything when empty.
     void setSelectionBox(const Box& box);
-    /// Shows or hides the gizmo.
+    /// Shows or hides the gizmo. During a drag it follows the pointer by itself; the owner may set it all the same.
     void setGizmo(std::optional<Gizmo> gizmo);
     /// A hidden viewport asks for no frames.
     void setActive(bool active);
-    /// Frames that were painted, matched frames among them counted by the scene's owner; for rates and tests.
+    /// Frames that were painted; for rates and tests.
     [[nodiscard]] std::uint64_t framesPainted() const noexcept;
     /// The frame now on screen, without marks; for tests and pictures of the view.
     [[nodiscard]] QImage frameImage() const;
@@ -57,6 +58,7 @@ signals:
     void gizmoCancelled();                                  ///< Esc during a drag
 
 protected:
+    bool event(QEvent* event) override;
     void paintEvent(QPaintEvent* event) override;
     void resizeEvent(QResizeEvent* event) override;
     void showEvent(QShowEvent* event) override;
@@ -66,6 +68,9 @@ protected:
     void mouseReleaseEvent(QMouseEvent* event) override;
     void wheelEvent(QWheelEvent* event) override;
     void keyPressEvent(QKeyEvent* event) override;
+    void keyReleaseEvent(QKeyEvent* event) override;
+    void focusInEvent(QFocusEvent* event) override;
+    void focusOutEvent(QFocusEvent* event) override;
     void leaveEvent(QEvent* event) override;
 
 private:

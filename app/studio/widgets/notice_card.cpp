@@ -80,7 +80,7 @@ void addButtons(QHBoxLayout* row, Notices& notices, const QString& place, const 
 } // namespace
 
 QWidget* makeNoticeCard(Notices& notices, const QString& place, const Notice& notice, const QString& heading,
-                        QWidget* parent) {
+                        QWidget* parent, bool dismissible) {
     auto* card = new Card(notice.level, parent);
     card->setObjectName("notice");
     auto* row = new QHBoxLayout(card);
@@ -102,6 +102,7 @@ QWidget* makeNoticeCard(Notices& notices, const QString& place, const Notice& no
         texts->addLayout(buttons);
     }
     row->addLayout(texts, 1);
+    if (!dismissible) return card;
     auto* close = new QToolButton(card);
     close->setObjectName("notice.dismiss");
     close->setIcon(icon("close", IconRole::muted));

@@ -21,6 +21,7 @@ struct FieldSceneColors {
     glm::vec3 levelLow{0.0F};
     glm::vec3 levelHigh{0.0F};
     glm::vec3 accent{0.16F, 0.72F, 0.80F};
+    glm::vec3 wish{0.62F, 0.70F, 0.86F}; ///< ghost of where the device is asked to be
 };
 
 /// Turns frames of the loop into scenes; keeps shadings, voxel clouds and level surfaces while what they come from
@@ -31,6 +32,13 @@ public:
     ~FieldSceneBuilder();
 
     void setColors(const FieldSceneColors& colors);
+    /// Patient (the default): `build` waits until everything is ready. Else large surfaces are prepared in a thread of
+    /// their own and left out, or the last one kept, while `pending`: for a window that must not stall.
+    void setPatient(bool patient);
+    /// Something is still being prepared: build again soon.
+    [[nodiscard]] bool pending() const;
+    /// The scene of a frame; shadings, clouds and surfaces in it are the same objects as in the last scene while what
+    /// they come from is. `targetSelected` outlines the target.
     [[nodiscard]] std::shared_ptr<const ViewportScene> build(const MatchFrame& frame, const FieldDisplay& display,
                                                              bool targetSelected);
 

@@ -1,0 +1,177 @@
+#include "app/studio/headless_show.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <iomanip>
+#include <span>
+#include <system_error>
+
+#include "app/output/video_writer.h"
+#include "app/workspaces/field/field_colors.h"
+#include "app/workspaces/field/field_scene.h"
+#include "core/base/atomic_file.h"
+#include "core/base/error.h"
+#include "core/base/resources.h"
+#include "core/loop/live_match.h"
+#include "core/mdf/builder.h"
+#include "core/mdf/clip.h"
+#include "core/render/frame_target.h"
+#include "core/render/headless_context.h"
+#include "core/render/viewport_renderer.h"
+#include "core/rig/rig_file.h"
+
+namespace lumorph::studio {
+namespace {
+
+namespace fs = std::filesystem;
+using Frame = std::shared_ptr<const MatchFrame>;
+
+constexpr double kLoopRate = 60.0;
+constexpr int kStepsAPicture = 2; ///< 30 pictures a second
+constexpr glm::ivec2 kPictureSize{1600, 1000};
+constexpr glm::ivec2 kVideoSize{960, 600};
+constexpr double kMaxSeconds = 600.0;
+
+MatchWish showWish(std::ostream& out) {
+    MatchWish wish;
+    wish.rig = std::make_shared<Rig>(readRig(resourceFile("models/tablet.glb")));
+    out << "Building the field of the tablet..." << std::endl;
+    wish.field = std::make_shared<MatchField>(buildField(*wish.rig, BuildOptions{}));
+    wish.target = readMatchTarget(resourceFile("targets/swell.glb"));
+    wish.placement = fitPlacement(wish.field->field, wish.target->box);
+    return wish;
+}
+
+/// All frames of the show, one a picture of the video. The clock stands still while a frame is worked out, so that
+/// refinement always comes to its end and the same show gives the same numbers.
+std::vector<Frame> playShow(const MatchWish& wish, double seconds) {
+    ManualClock clock;
+    MatchLoop loop(clock);
+    std::vector<Frame> frames;
+    const int steps = std::max(kStepsAPicture, static_cast<int>(std::lround(seconds * kLoopRate)));
+    for (int k = 0; k < steps; ++k) {
+        const Frame frame = loop.step(wish, k == 0 ? 0.0 : 1.0 / kLoopRate);
+        clock.advance(Microseconds(static_cast<std::int64_t>(1e6 / kLoopRate)));
+        if (k % kStepsAPicture == 0) frames.push_back(frame);
+    }
+    return frames;
+}
+
+/// Scenes as the Field workspace shows them, drawn without a window.
+class Stage {
+public:
+    explicit Stage(const Box& box) { // everything seen from the front right and above
+        builder_.setColors(fieldSceneColors(Theme::dark));
+        camera_.yaw = Angle::degrees(32.0);
+        camera_.pitch = Angle::degrees(28.0);
+        camera_ = framed(camera_, box, static_cast<float>(kVideoSize.x) / static_cast<float>(kVideoSize.y), 0.72F);
+    }
+
+    void savePicture(const MatchFrame& frame, const FieldDisplay& display, const fs::path& file) {
+        writePng(renderViewport(renderer_, *builder_.build(frame, display, false), camera_, kPictureSize), file);
+    }
+
+    /// A picture of a video, drawn as the window draws while things move.
+    [[nodiscard]] Image videoPicture(const MatchFrame& frame) {
+        renderer_.draw(target_.framebuffer(), kVideoSize, *builder_.build(frame, {}, false), camera_,
+                       ViewportQuality::moving);
+        return target_.read();
+    }
+
+private:
+    HeadlessContext context_;
+    ViewportRenderer renderer_;
+    FrameTarget target_{kVideoSize, 0};
+    FieldSceneBuilder builder_;
+    ViewCamera camera_;
+};
+
+FieldDisplay displayOf(FieldDisplay::Show show, bool mismatch) {
+    FieldDisplay display;
+    display.show = show;
+    display.showMismatch = mismatch;
+    return display;
+}
+
+void savePictures(Stage& stage, const std::vector<Frame>& frames, const fs::path& folder) {
+    const FieldDisplay plain = displayOf(FieldDisplay::Show::nothing, false);
+    stage.savePicture(*frames.front(), plain, folder / "start.png");
+    stage.savePicture(*frames[frames.size() / 2], plain, folder / "middle.png");
+    stage.savePicture(*frames.back(), plain, folder / "end.png");
+    stage.savePicture(*frames.back(), displayOf(FieldDisplay::Show::nothing, true), folder / "unmatched.png");
+    FieldDisplay voxels = displayOf(FieldDisplay::Show::voxels, false);
+    voxels.showTarget = false;
+    voxels.sliceTo.z = frames.back()->field->field.frame.dimensions.z / 2; // cut open, so that the inside shows
+    stage.savePicture(*frames.back(), voxels, folder / "voxels.png");
+    FieldDisplay surface = displayOf(FieldDisplay::Show::surface, false);
+    surface.showTarget = false;
+    surface.surfaceLevel = frames.back()->field->field.levels / 2;
+    stage.savePicture(*frames.back(), surface, folder / "level-surface.png");
+}
+
+void saveVideo(Stage& stage, const std::vector<Frame>& frames, const fs::path& file) {
+    VideoWriter video(file, kVideoSize, kLoopRate / kStepsAPicture);
+    for (const Frame& frame : frames) video.add(stage.videoPicture(*frame));
+    video.finish();
+}
+
+void saveTable(const std::vector<Frame>& frames, const fs::path& file) {
+    std::vector<ClipFrame> rows;
+    for (std::size_t k = 0; k < frames.size(); ++k)
+        rows.push_back({static_cast<double>(k) * kStepsAPicture / kLoopRate, frames[k]->wanted,
+                        frames[k]->estimatedStrokes, frames[k]->iouWanted, frames[k]->iouEstimated});
+    const std::string table = clipCsv(frames.front()->field->field, rows);
+    writeFileAtomically(file, std::as_bytes(std::span(table)));
+}
+
+void tellNumbers(const std::vector<Frame>& frames, std::ostream& out) {
+    double wanted = 0.0;
+    double reached = 0.0;
+    std::vector<double> milliseconds;
+    for (const Frame& frame : frames) {
+        wanted += frame->iouWanted / static_cast<double>(frames.size());
+        reached += frame->iouEstimated / static_cast<double>(frames.size());
+        milliseconds.push_back(frame->ms.voxelize + frame->ms.match + frame->ms.refine);
+    }
+    std::nth_element(milliseconds.begin(), milliseconds.begin() + static_cast<std::ptrdiff_t>(milliseconds.size() / 2),
+                     milliseconds.end());
+    out << std::fixed << std::setprecision(3) << "Mean IoU " << wanted << " wanted, " << reached
+        << " reached under the velocity limits; " << std::setprecision(1) << milliseconds[milliseconds.size() / 2]
+        << " ms a match (median)" << std::endl;
+}
+
+void show(const fs::path& folder, double seconds, std::ostream& out) {
+    if (!(seconds > 0.0 && seconds <= kMaxSeconds))
+        throw InvalidInput("--seconds", "the show lasts more than 0 and at most 600 seconds",
+                           "give a number in that range");
+    std::error_code error;
+    fs::create_directories(folder, error);
+    if (error)
+        throw DeviceError(folder.string(), "the folder cannot be made (" + error.message() + ")",
+                          "choose another place");
+    const MatchWish wish = showWish(out);
+    out << "Matching " << wish.target->name << " for " << seconds << " s..." << std::endl;
+    const std::vector<Frame> frames = playShow(wish, seconds);
+    tellNumbers(frames, out);
+    out << "Drawing " << frames.size() << " pictures..." << std::endl;
+    Stage stage(wish.field->field.frame.box());
+    savePictures(stage, frames, folder);
+    saveVideo(stage, frames, folder / "swell.mp4");
+    saveTable(frames, folder / "swell.csv");
+    out << "Pictures, video and table are in " << fs::absolute(folder).lexically_normal().string() << std::endl;
+}
+
+} // namespace
+
+int runHeadlessShow(const fs::path& folder, double seconds, std::ostream& out) {
+    try {
+        show(folder, seconds, out);
+        return 0;
+    } catch (const std::exception& error) {
+        out << "lumorph-studio: " << error.what() << std::endl;
+        return 1;
+    }
+}
+
+} // namespace lumorph::studio

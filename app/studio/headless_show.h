@@ -1,0 +1,15 @@
+#pragma once
+
+#include <filesystem>
+#include <ostream>
+
+namespace lumorph::studio {
+
+/// The studio's first minutes without a display: the bundled tablet follows an animated target for `seconds`, by the
+/// same loop and in the same scene as in the window. Writes into `folder` (made if needed) pictures of the start, the
+/// middle and the end, of what is left unmatched, of the field's voxels and of a level surface, a video and the table
+/// swell.csv, and tells on `out` what it does and where things are. Gives the exit status of the program: 0, or 1 after
+/// it has said on `out` what went wrong.
+[[nodiscard]] int runHeadlessShow(const std::filesystem::path& folder, double seconds, std::ostream& out);
+
+} // namespace lumorph::studio

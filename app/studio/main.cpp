@@ -1,0 +1,73 @@
+#include <cstdio>
+
+#include "app/studio/look/palette.h"
+#include "app/studio/shell/arguments.h"
+#include "app/studio/shell/main_window.h"
+#include "app/studio/shell/studio.h"
+#include "app/studio/shell/studio_application.h"
+#include "app/workspaces/workspaces.h"
+#include "core/base/error.h"
+
+namespace {
+
+using namespace lumorph::studio;
+
+bool hasWorkspace(const std::vector<std::unique_ptr<Workspace>>& workspaces, const std::string& id) {
+    return id.empty() || std::any_of(workspaces.begin(), workspaces.end(),
+                                     [&id](const auto& one) { return one->id().toStdString() == id; });
+}
+
+/// What was asked for, else what was there last time; the tour once, when that is ready.
+void openFirst(Studio& studio, MainWindow& window, const Arguments& arguments) {
+    const auto tourOnce = [&studio, &window] {
+        if (!studio.settings.tourSeen()) window.startTour();
+    };
+    if (!arguments.project.empty())
+        studio.desk.open(arguments.project);
+    else if (!arguments.demo.empty())
+        studio.desk.openDemo();
+    else
+        studio.desk.restoreSession(arguments.kiosk ? std::function<void()>() : tourOnce);
+}
+
+int run(int argc, char** argv, const Arguments& arguments) {
+    StudioApplication application(argc, argv);
+    Studio studio;
+    application.setOnError([&studio](const std::exception& error) { studio.notices.post("project", noticeOf(error)); });
+    applyTheme(application, studio.settings.theme());
+    auto workspaces = makeWorkspaces(studio);
+    if (!hasWorkspace(workspaces, arguments.workspace)) {
+        std::fprintf(stderr, "lumorph-studio: arguments: there is no workspace '%s'; see 'lumorph-studio --help'\n",
+                     arguments.workspace.c_str());
+        return 2;
+    }
+    MainWindow window(studio, std::move(workspaces));
+    application.closeOnInterrupt(window);
+    window.showWorkspace(QString::fromStdString(arguments.workspace.empty() ? "field" : arguments.workspace));
+    arguments.kiosk ? window.enterKiosk() : window.show();
+    openFirst(studio, window, arguments);
+    const int status = QApplication::exec();
+    application.setOnError({});
+    return status;
+}
+
+} // namespace
+
+int main(int argc, char** argv) {
+    const ParsedArguments parsed = parseArguments(argc, argv);
+    if (!parsed.arguments) {
+        std::fputs(parsed.message.c_str(), parsed.status == 0 ? stdout : stderr);
+        return parsed.status;
+    }
+    const QString noDisplay = prepareApplication(argc, argv);
+    if (!noDisplay.isEmpty()) {
+        std::fputs(noDisplay.toUtf8().constData(), stderr);
+        return 1;
+    }
+    try {
+        return run(argc, argv, *parsed.arguments);
+    } catch (const std::exception& error) {
+        std::fprintf(stderr, "lumorph-studio: %s\n", error.what());
+        return 1;
+    }
+}

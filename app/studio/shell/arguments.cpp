@@ -1,0 +1,62 @@
+#include "app/studio/shell/arguments.h"
+
+#include <CLI/CLI.hpp>
+
+namespace lumorph::studio {
+namespace {
+
+const std::vector<std::string> kDemos{"field"};
+
+std::string listed(const std::vector<std::string>& names) {
+    std::string text;
+    for (const auto& name : names) text += (text.empty() ? "" : ", ") + name;
+    return text;
+}
+
+ParsedArguments wrongUsage(const std::string& what) {
+    return {std::nullopt, "lumorph-studio: arguments: " + what + "; see 'lumorph-studio --help'\n", 2};
+}
+
+/// Qt's options have one dash and a long name; each takes the next word.
+std::vector<std::string> withoutQtOptions(int argc, const char* const* argv) {
+    const std::vector<std::string> qt{"-platform", "-style", "-qwindowgeometry", "-geometry", "-display", "-name"};
+    std::vector<std::string> rest;
+    for (int i = 1; i < argc; ++i) {
+        if (std::find(qt.begin(), qt.end(), argv[i]) != qt.end())
+            ++i;
+        else
+            rest.emplace_back(argv[i]);
+    }
+    std::reverse(rest.begin(), rest.end()); // CLI11 takes words from the back
+    return rest;
+}
+
+} // namespace
+
+ParsedArguments parseArguments(int argc, const char* const* argv) {
+    Arguments arguments;
+    std::string project;
+    CLI::App app("Lumorph Studio: objects that change shape and are painted with light.", "lumorph-studio");
+    app.set_version_flag("--version", "lumorph-studio " LUMORPH_VERSION);
+    app.add_option("PROJECT", project, "a project, rig, field or 3D model to open");
+    app.add_option("--demo", arguments.demo, "start a demonstration: " + listed(kDemos));
+    app.add_option("--workspace", arguments.workspace, "the workspace to show first, such as field");
+    app.add_flag("--kiosk", arguments.kiosk, "full screen for visitors: the view and STOP alone");
+    try {
+        app.parse(withoutQtOptions(argc, argv));
+    } catch (const CLI::CallForHelp&) {
+        return {std::nullopt, app.help(), 0};
+    } catch (const CLI::CallForVersion& version) {
+        return {std::nullopt, std::string(version.what()) + "\n", 0};
+    } catch (const CLI::ParseError& error) {
+        return wrongUsage(error.what());
+    }
+    if (!arguments.demo.empty() && std::find(kDemos.begin(), kDemos.end(), arguments.demo) == kDemos.end())
+        return wrongUsage("there is no demo '" + arguments.demo + "'; there are: " + listed(kDemos));
+    if (!arguments.demo.empty() && !project.empty())
+        return wrongUsage("a demo and '" + project + "' cannot both be opened; leave one out");
+    arguments.project = project;
+    return {arguments, {}, 0};
+}
+
+} // namespace lumorph::studio

@@ -1,0 +1,13 @@
+#pragma once
+
+#include <QWidget>
+
+#include "app/studio/shell/commands.h"
+
+namespace lumorph::studio {
+
+/// Shows the command palette over a window: type to find a command, Enter runs it, Esc or a click beside it closes it.
+/// One that is open is closed instead.
+void toggleCommandPalette(QWidget& window, Commands& commands);
+
+} // namespace lumorph::studio

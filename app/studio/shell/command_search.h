@@ -1,0 +1,22 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include <QString>
+
+#include "app/studio/shell/commands.h"
+
+namespace lumorph::studio {
+
+/// How well typed letters fit a text; larger is better. Letters must come in order; those at the start of words and
+/// next to each other count more. Empty when they do not fit; 0 for nothing typed.
+[[nodiscard]] std::optional<double> searchScore(const QString& typed, const QString& text);
+
+/// What a command is called in lists: without mnemonic and dots.
+[[nodiscard]] QString commandTitle(const QAction& action);
+
+/// Commands that can be seen now and fit what is typed, best first; of equal ones in the order they were added.
+[[nodiscard]] std::vector<Commands::Entry> searchCommands(const Commands& commands, const QString& typed);
+
+} // namespace lumorph::studio

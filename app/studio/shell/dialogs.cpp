@@ -1,0 +1,180 @@
+#include "app/studio/shell/dialogs.h"
+
+#include <QCheckBox>
+#include <QComboBox>
+#include <QDialog>
+#include <QDialogButtonBox>
+#include <QLabel>
+#include <QPushButton>
+#include <QSpinBox>
+#include <QVBoxLayout>
+
+#include "app/studio/shell/command_search.h"
+#include "app/studio/widgets/panel.h"
+
+namespace lumorph::studio {
+namespace {
+
+/// Null when it is open already.
+QDialog* makeDialog(QWidget& window, const QString& name, const QString& title) {
+    if (auto* open = window.findChild<QDialog*>(name)) {
+        open->raise();
+        open->activateWindow();
+        return nullptr;
+    }
+    auto* dialog = new QDialog(&window);
+    dialog->setObjectName(name);
+    dialog->setWindowTitle(title);
+    dialog->setAttribute(Qt::WA_DeleteOnClose);
+    auto* column = new QVBoxLayout(dialog);
+    column->setContentsMargins(24, 16, 24, 16);
+    column->setSpacing(8);
+    return dialog;
+}
+
+void addClose(QDialog& dialog) {
+    auto* buttons = new QDialogButtonBox(QDialogButtonBox::Close, &dialog);
+    QObject::connect(buttons, &QDialogButtonBox::rejected, &dialog, &QDialog::close);
+    dialog.layout()->addWidget(buttons);
+}
+
+QLabel* muted(const QString& text, QWidget* parent) {
+    auto* label = new QLabel(text, parent);
+    label->setProperty("look", "muted");
+    label->setWordWrap(true);
+    return label;
+}
+
+void addLook(Studio& studio, QDialog& dialog) {
+    dialog.layout()->addWidget(makeHeading("Look", &dialog));
+    auto* theme = new QComboBox(&dialog);
+    theme->setObjectName("settings.theme");
+    theme->addItems({"Dark", "Light"});
+    theme->setCurrentIndex(studio.settings.theme() == Theme::light ? 1 : 0);
+    QObject::connect(theme, &QComboBox::currentIndexChanged, &dialog, [&studio](int index) {
+        studio.settings.setTheme(index == 1 ? Theme::light : Theme::dark);
+    });
+    QObject::connect(&studio.settings, &Settings::themeChanged, theme, [theme, &studio] {
+        theme->setCurrentIndex(studio.settings.theme() == Theme::light ? 1 : 0);
+    });
+    dialog.layout()->addWidget(makeRow("&Theme", theme, &dialog));
+    auto* still = new QCheckBox("&Draw a still view in full quality", &dialog);
+    still->setObjectName("settings.stillQuality");
+    still->setChecked(studio.settings.stillQuality());
+    still->setToolTip("Soft shadows and smooth edges as soon as nothing moves. Takes a moment without a graphics card.");
+    QObject::connect(still, &QCheckBox::toggled, &studio.settings, &Settings::setStillQuality);
+    dialog.layout()->addWidget(still);
+}
+
+void addMatching(Studio& studio, QDialog& dialog) {
+    dialog.layout()->addWidget(makeHeading("Matching", &dialog));
+    auto* rate = new QSpinBox(&dialog);
+    rate->setObjectName("settings.loopRate");
+    rate->setRange(10, 120);
+    rate->setSuffix(" Hz");
+    rate->setValue(static_cast<int>(studio.settings.loopRate()));
+    rate->setKeyboardTracking(false);
+    QObject::connect(rate, &QSpinBox::valueChanged, &studio.settings, [&studio](int hertz) {
+        studio.settings.setLoopRate(hertz);
+    });
+    dialog.layout()->addWidget(makeRow("Loop &rate", rate, &dialog));
+    dialog.layout()->addWidget(muted("How often a second the device looks at the target anew.", &dialog));
+}
+
+void addMemory(Studio& studio, QDialog& dialog) {
+    dialog.layout()->addWidget(makeHeading("Memory", &dialog));
+    auto* row = new QWidget(&dialog);
+    auto* buttons = new QHBoxLayout(row);
+    buttons->setContentsMargins(0, 0, 0, 0);
+    const auto add = [&](const char* text, std::function<void()> run) {
+        auto* button = new QPushButton(text, row);
+        button->setAutoDefault(false);
+        QObject::connect(button, &QPushButton::clicked, &studio.settings, [button, run = std::move(run)] {
+            run();
+            button->setEnabled(false); // done; the change itself is elsewhere on the screen
+        });
+        buttons->addWidget(button);
+    };
+    add("Forget recent &files", [&studio] { studio.settings.clearRecentFiles(); });
+    add("Reset &layout", [&studio] {
+        if (QAction* reset = studio.commands.find("view.resetLayout")) reset->trigger();
+    });
+    buttons->addStretch(1);
+    dialog.layout()->addWidget(row);
+}
+
+struct KeyLine {
+    const char* keys;
+    const char* does;
+};
+
+/// Keys and gestures that are no commands.
+constexpr KeyLine kGestures[] = {
+    {"Esc Esc", "STOP: every actuator holds where it is"},
+    {"Left drag, middle drag", "Turn the view"},
+    {"Shift drag, right drag", "Move the view"},
+    {"Wheel, + and -", "Zoom"},
+    {"F, Home", "Frame what is selected, frame everything"},
+    {"1, 3, 7, 5", "Front, right, top; perspective or orthographic"},
+    {"Drag on a number", "Change it; Shift fine, Ctrl coarse"},
+    {"Double click on a number", "Reset it"},
+    {"Tab, Shift Tab", "Next and previous control"},
+};
+
+void addKeyLine(QVBoxLayout& column, const QString& keys, const QString& does, QWidget* parent) {
+    auto* row = new QWidget(parent);
+    auto* line = new QHBoxLayout(row);
+    line->setContentsMargins(0, 0, 0, 0);
+    line->addWidget(new QLabel(does, row), 1);
+    auto* badge = new QLabel(keys, row);
+    badge->setProperty("look", "badge");
+    line->addWidget(badge);
+    column.addWidget(row);
+}
+
+} // namespace
+
+void openSettings(Studio& studio, QWidget& window) {
+    QDialog* dialog = makeDialog(window, "dialog.settings", "Settings");
+    if (dialog == nullptr) return;
+    addLook(studio, *dialog);
+    addMatching(studio, *dialog);
+    addMemory(studio, *dialog);
+    static_cast<QVBoxLayout*>(dialog->layout())->addStretch(1);
+    addClose(*dialog);
+    dialog->resize(440, dialog->sizeHint().height());
+    dialog->show();
+}
+
+void openShortcuts(Studio& studio, QWidget& window) {
+    QDialog* dialog = makeDialog(window, "dialog.shortcuts", "Keyboard and mouse");
+    if (dialog == nullptr) return;
+    const Column column = makeColumn(dialog);
+    column.layout->addWidget(makeHeading("Commands", dialog));
+    for (const auto& entry : studio.commands.all())
+        if (!entry.action->shortcut().isEmpty())
+            addKeyLine(*column.layout, entry.action->shortcut().toString(QKeySequence::NativeText),
+                       commandTitle(*entry.action), dialog);
+    column.layout->addWidget(makeHeading("View and numbers", dialog));
+    for (const KeyLine& line : kGestures) addKeyLine(*column.layout, line.keys, line.does, dialog);
+    dialog->layout()->addWidget(column.widget);
+    addClose(*dialog);
+    dialog->resize(560, 640);
+    dialog->show();
+}
+
+void openAbout(QWidget& window) {
+    QDialog* dialog = makeDialog(window, "dialog.about", "About Lumorph");
+    if (dialog == nullptr) return;
+    auto* name = new QLabel("Lumorph " LUMORPH_VERSION, dialog);
+    name->setProperty("look", "title");
+    dialog->layout()->addWidget(name);
+    dialog->layout()->addWidget(new QLabel("Studio for objects that change shape and are painted with light.", dialog));
+    dialog->layout()->addWidget(
+        muted("Free software under the GNU General Public License, version 3 or later. Drawn with Qt, set in Inter.",
+              dialog));
+    addClose(*dialog);
+    dialog->show();
+}
+
+} // namespace lumorph::studio

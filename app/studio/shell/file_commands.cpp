@@ -1,0 +1,149 @@
+#include "app/studio/shell/file_commands.h"
+
+#include <algorithm>
+
+#include <QAbstractFileIconProvider>
+#include <QDir>
+#include <QFileDialog>
+#include <QFileInfo>
+#include <QMenu>
+
+#include "app/studio/look/icons.h"
+
+namespace lumorph::studio {
+namespace {
+
+std::filesystem::path pathOf(const QString& text) { return std::filesystem::path(text.toStdString()); }
+
+/// Icons of our own set for folders and files.
+class FileIcons : public QAbstractFileIconProvider {
+public:
+    [[nodiscard]] QIcon icon(IconType type) const override {
+        return studio::icon(type == File ? "file" : "folder", type == File ? IconRole::muted : IconRole::control);
+    }
+    [[nodiscard]] QIcon icon(const QFileInfo& file) const override { return icon(file.isDir() ? Folder : File); }
+};
+
+/// Qt's own dialog: it wears our look, and a test can type into it.
+class StudioFileDialog : public QFileDialog {
+public:
+    StudioFileDialog(QWidget& window, const QString& title, const QString& name) : QFileDialog(&window, title) {
+        setObjectName(name);
+        setOption(QFileDialog::DontUseNativeDialog);
+        setOption(QFileDialog::DontUseCustomDirectoryIcons);
+        setIconProvider(&icons_);
+        setAttribute(Qt::WA_DeleteOnClose);
+        resize(860, 560);
+    }
+    ~StudioFileDialog() override { setIconProvider(nullptr); }
+
+private:
+    FileIcons icons_;
+};
+
+QString lastFolder(const Studio& studio) {
+    return studio.settings.value("files/folder", QDir::homePath()).toString();
+}
+
+void openWithDialog(Studio& studio, QWidget& window) {
+    auto* dialog = new StudioFileDialog(window, "Open", "dialog.open");
+    dialog->setFileMode(QFileDialog::ExistingFile);
+    dialog->setDirectory(lastFolder(studio));
+    dialog->setNameFilters({"Everything Lumorph opens (*.lumorph *.mdf *.glb *.gltf *.obj *.stl *.ply *.off)",
+                            "Projects (*.lumorph)", "Fields (*.mdf)",
+                            "3D models and rigs (*.glb *.gltf *.obj *.stl *.ply *.off)", "All files (*)"});
+    QObject::connect(dialog, &QFileDialog::fileSelected, &studio.desk, [&studio](const QString& file) {
+        studio.settings.setValue("files/folder", QFileInfo(file).absolutePath());
+        studio.desk.open(pathOf(file));
+    });
+    dialog->show();
+}
+
+void saveWithDialog(Studio& studio, QWidget& window) {
+    auto* dialog = new StudioFileDialog(window, "Save project as", "dialog.saveAs");
+    dialog->setAcceptMode(QFileDialog::AcceptSave);
+    dialog->setFileMode(QFileDialog::AnyFile);
+    dialog->setDefaultSuffix("lumorph");
+    dialog->setNameFilter("Projects (*.lumorph)");
+    const auto& file = studio.document.file();
+    dialog->setDirectory(file.empty() ? lastFolder(studio) : QString::fromStdString(file.parent_path().string()));
+    dialog->selectFile(file.empty() ? "Untitled.lumorph" : QString::fromStdString(file.filename().string()));
+    QObject::connect(dialog, &QFileDialog::fileSelected, &studio.desk, [&studio](const QString& chosen) {
+        studio.settings.setValue("files/folder", QFileInfo(chosen).absolutePath());
+        studio.desk.saveAs(pathOf(chosen));
+    });
+    dialog->show();
+}
+
+/// These say what the device is; everything else is taken for a target, or a rig, by what is in it.
+bool saysDevice(const std::filesystem::path& file) {
+    const QString suffix = QString::fromStdString(file.extension().string()).toLower();
+    std::error_code error;
+    return suffix == ".lumorph" || suffix == ".mdf" || std::filesystem::is_directory(file, error);
+}
+
+void tellLeftOver(Notices& notices, const std::vector<std::filesystem::path>& left) {
+    if (left.empty()) return;
+    QStringList names;
+    for (const auto& file : left) names << QString::fromStdString(file.filename().string());
+    Notice notice;
+    notice.level = Notice::Level::info;
+    notice.subject = names.mid(0, 3).join(", ") + (names.size() > 3 ? " and more" : "");
+    notice.why = "One target at a time: the first file was opened, these were not.";
+    notices.post("project", notice);
+}
+
+} // namespace
+
+void addFileCommands(Studio& studio, QWidget& window) {
+    Commands& commands = studio.commands;
+    const auto add = [&commands](const char* id, const char* text, const char* iconName, QKeySequence keys,
+                                 std::function<void()> run) {
+        Commands::Options options;
+        options.icon = iconName;
+        options.shortcut = keys;
+        options.menu = "File";
+        commands.add(id, text, options, std::move(run));
+    };
+    add("file.new", "&New project", "file", QKeySequence::New, [&studio] { studio.desk.newProject(); });
+    add("file.open", "&Open...", "open", QKeySequence::Open, [&studio, &window] { openWithDialog(studio, window); });
+    add("file.save", "&Save", "save", QKeySequence::Save, [&studio, &window] {
+        if (!studio.desk.save()) saveWithDialog(studio, window);
+    });
+    add("file.saveAs", "Save &as...", "save", QKeySequence(Qt::CTRL | Qt::SHIFT | Qt::Key_S),
+        [&studio, &window] { saveWithDialog(studio, window); });
+    add("file.quit", "&Quit", "", QKeySequence(Qt::CTRL | Qt::Key_Q), [&window] { window.close(); });
+    const auto remember = [&studio](const QString& path) { studio.settings.addRecentFile(path); };
+    QObject::connect(&studio.desk, &Desk::opened, &window, remember);
+    QObject::connect(&studio.desk, &Desk::saved, &window, remember);
+}
+
+void fillRecentMenu(Studio& studio, QMenu& menu) {
+    menu.clear();
+    for (const QString& path : studio.settings.recentFiles()) {
+        const QFileInfo file(path);
+        QAction* action = menu.addAction(icon(file.isDir() ? "folder" : "file"), file.fileName().replace('&', "&&"));
+        action->setToolTip(path);
+        QObject::connect(action, &QAction::triggered, &studio.desk, [&studio, path] { studio.desk.open(pathOf(path)); });
+    }
+    if (menu.isEmpty()) {
+        menu.addAction("No recent files")->setEnabled(false);
+        return;
+    }
+    menu.addSeparator();
+    QObject::connect(menu.addAction("Clear this list"), &QAction::triggered, &studio.settings,
+                     &Settings::clearRecentFiles);
+}
+
+void openDropped(Studio& studio, const std::vector<std::filesystem::path>& files) {
+    const auto device = std::find_if(files.begin(), files.end(), saysDevice);
+    const auto target = std::find_if_not(files.begin(), files.end(), saysDevice);
+    std::vector<std::filesystem::path> left;
+    for (auto file = files.begin(); file != files.end(); ++file)
+        if (file != device && file != target) left.push_back(*file);
+    if (device != files.end()) studio.desk.open(*device);
+    if (target != files.end()) studio.desk.open(*target);
+    tellLeftOver(studio.notices, left);
+}
+
+} // namespace lumorph::studio

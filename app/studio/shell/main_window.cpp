@@ -1,0 +1,267 @@
+#include "app/studio/shell/main_window.h"
+
+#include <map>
+
+#include <QApplication>
+#include <QCloseEvent>
+#include <QDropEvent>
+#include <QMenu>
+#include <QScreen>
+#include <QStackedWidget>
+#include <QTimer>
+#include <QVBoxLayout>
+
+#include "app/studio/look/icons.h"
+#include "app/studio/look/palette.h"
+#include "app/studio/shell/command_palette.h"
+#include "app/studio/shell/drop_overlay.h"
+#include "app/studio/shell/escape_twice.h"
+#include "app/studio/shell/file_commands.h"
+#include "app/studio/shell/idle_cursor.h"
+#include "app/studio/shell/shell_commands.h"
+#include "app/studio/shell/status_line.h"
+#include "app/studio/shell/top_bar.h"
+#include "app/studio/shell/tour.h"
+#include "app/studio/shell/workspace_page.h"
+
+namespace lumorph::studio {
+namespace {
+
+constexpr QSize kUsualSize{1440, 900};
+constexpr auto kGeometryKey = "window/geometry";
+
+/// In the order of the work; menus without a command in sight are hidden.
+const QStringList kMenus{"File", "Edit", "View", "Target", "Rig", "Field", "Help"};
+
+/// Commands of one kind stand together: "view.dock.target" is of the kind "view.dock".
+QString kindOf(const QString& id) { return id.section('.', 0, -2); }
+
+bool startsGroup(const QMenu& menu, const QString& id) {
+    if (menu.isEmpty()) return false;
+    return id == "file.save" || id == "file.quit" || kindOf(menu.actions().back()->objectName()) != kindOf(id);
+}
+
+bool belongsTo(const QObject* watched, const QWidget* window) {
+    for (const QObject* object = watched; object != nullptr; object = object->parent())
+        if (object == window) return true;
+    return false;
+}
+
+} // namespace
+
+struct MainWindow::Data {
+    Studio& studio;
+    std::vector<std::unique_ptr<Workspace>> workspaces;
+    SteadyClock clock;
+    std::map<QString, WorkspacePage*> pages; ///< those that were shown
+    std::map<QString, QMenu*> menus;
+    TopBar* bar = nullptr;
+    StatusLine* status = nullptr;
+    QStackedWidget* stack = nullptr;
+    QPointer<DropOverlay> drop;
+    QString present;
+    bool kiosk = false;
+};
+
+MainWindow::MainWindow(Studio& studio, std::vector<std::unique_ptr<Workspace>> workspaces)
+    : data_(new Data{studio, std::move(workspaces), {}, {}, {}, nullptr, nullptr, nullptr, {}, {}, false}) {
+    setObjectName("mainWindow");
+    setAcceptDrops(true);
+    setContextMenuPolicy(Qt::NoContextMenu);
+    setMinimumSize(640, 400);
+    connect(&studio.commands, &Commands::added, this, &MainWindow::joinMenu);
+    addCommands();
+    data_->bar = new TopBar(studio, data_->workspaces, this);
+    addMenus();
+    setMenuWidget(data_->bar);
+    auto* body = new QWidget(this);
+    auto* column = new QVBoxLayout(body);
+    column->setContentsMargins(0, 0, 0, 0);
+    column->setSpacing(0);
+    data_->stack = new QStackedWidget(body);
+    data_->status = new StatusLine(studio, body);
+    column->addWidget(data_->stack, 1);
+    column->addWidget(data_->status);
+    setCentralWidget(body);
+    connect(data_->bar, &TopBar::workspaceChosen, this, &MainWindow::showWorkspace);
+    connect(&studio.document, &StudioDocument::titleChanged, this, &MainWindow::showTitle);
+    connect(&studio.settings, &Settings::themeChanged, this, &MainWindow::retheme);
+    const auto setRate = [&studio] { studio.loop.setRate(studio.settings.loopRate()); };
+    connect(&studio.settings, &Settings::loopRateChanged, this, setRate);
+    setRate();
+    connect(new EscapeTwice(data_->clock, this), &EscapeTwice::pressed, &studio.loop, &StudioLoop::stop);
+    qApp->installEventFilter(this);
+    resize(kUsualSize.boundedTo(screen()->availableSize()));
+    restoreGeometry(studio.settings.value(kGeometryKey).toByteArray());
+    if (!data_->workspaces.empty()) showWorkspace(data_->workspaces.front()->id());
+    showTitle();
+}
+
+MainWindow::~MainWindow() {
+    qApp->removeEventFilter(this);
+    // Views and docks refer to their workspace, so they go first.
+    delete takeCentralWidget();
+}
+
+void MainWindow::addCommands() {
+    addFileCommands(data_->studio, *this);
+    ShellActions does;
+    does.startTour = [this] { startTour(); };
+    does.resetLayout = [this] {
+        if (const auto page = data_->pages.find(data_->present); page != data_->pages.end()) page->second->resetLayout();
+    };
+    for (const auto& workspace : data_->workspaces)
+        does.workspaces.push_back({workspace->title(), [this, id = workspace->id()] { showWorkspace(id); }});
+    addShellCommands(data_->studio, *this, does);
+}
+
+void MainWindow::addMenus() {
+    for (const QString& name : kMenus) {
+        QMenu* menu = data_->bar->menuBar().addMenu('&' + name);
+        menu->setObjectName("menu." + name);
+        menu->setToolTipsVisible(true);
+        data_->menus[name] = menu;
+    }
+    for (const auto& entry : data_->studio.commands.all()) joinMenu(entry.action);
+    auto* recent = new QMenu("Open &recent", this);
+    recent->setObjectName("file.openRecent");
+    recent->setIcon(icon("clock"));
+    recent->setToolTipsVisible(true);
+    connect(recent, &QMenu::aboutToShow, this, [this, recent] { fillRecentMenu(data_->studio, *recent); });
+    data_->menus["File"]->insertMenu(data_->studio.commands.find("file.save"), recent);
+}
+
+/// Each command joins its menu; its keys work while any part of the window has the keyboard.
+void MainWindow::joinMenu(QAction* action) {
+    addAction(action);
+    for (const auto& entry : data_->studio.commands.all()) {
+        if (entry.action != action) continue;
+        const auto menu = data_->menus.find(entry.options.menu);
+        if (menu == data_->menus.end()) continue;
+        if (startsGroup(*menu->second, action->objectName())) menu->second->addSeparator();
+        menu->second->addAction(action);
+    }
+    showCommands();
+}
+
+/// Commands of another workspace than the present one are out of sight, and their keys sleep.
+void MainWindow::showCommands() {
+    for (const auto& entry : data_->studio.commands.all())
+        entry.action->setVisible(entry.options.workspace.isEmpty() || entry.options.workspace == data_->present);
+    for (const auto& [name, menu] : data_->menus) {
+        const auto actions = menu->actions();
+        const bool any = std::any_of(actions.begin(), actions.end(), [](const QAction* a) { return a->isVisible(); });
+        menu->menuAction()->setVisible(any);
+    }
+}
+
+void MainWindow::showWorkspace(const QString& id) {
+    const auto& all = data_->workspaces;
+    const auto found = std::find_if(all.begin(), all.end(), [&id](const auto& one) { return one->id() == id; });
+    if (found == all.end()) return;
+    data_->bar->setWorkspace(id);
+    if (id == data_->present) return;
+    if (const auto old = data_->pages.find(data_->present); old != data_->pages.end()) old->second->setActive(false);
+    data_->present = id;
+    WorkspacePage*& page = data_->pages[id];
+    if (page == nullptr) {
+        page = new WorkspacePage(**found, data_->studio.settings, data_->studio.commands, data_->stack);
+        data_->stack->addWidget(page);
+        if (data_->kiosk) page->setKiosk();
+    }
+    showCommands();
+    data_->stack->setCurrentWidget(page);
+    page->setActive(true);
+}
+
+QString MainWindow::workspace() const { return data_->present; }
+
+void MainWindow::startTour() {
+    showWorkspace("field");
+    const auto seen = [this] { data_->studio.settings.setTourSeen(true); };
+    showTour(*this, tourSteps(data_->studio), seen);
+}
+
+void MainWindow::enterKiosk() {
+    data_->kiosk = true;
+    data_->bar->setKiosk();
+    for (const auto& [id, page] : data_->pages) page->setKiosk();
+    new IdleCursor(this);
+    showFullScreen();
+}
+
+void MainWindow::showTitle() {
+    const StudioDocument& document = data_->studio.document;
+    setWindowTitle(document.name() + (document.modified() ? "*" : "") + " - Lumorph");
+}
+
+void MainWindow::retheme() { applyTheme(*qApp, data_->studio.settings.theme()); }
+
+void MainWindow::closeEvent(QCloseEvent* event) {
+    for (const auto& [id, page] : data_->pages)
+        if (id == data_->present) page->keepLayout();
+    if (!data_->kiosk) data_->studio.settings.setValue(kGeometryKey, saveGeometry());
+    data_->studio.desk.keepSession();
+    event->accept();
+    QTimer::singleShot(0, qApp, &QApplication::quit); // floating docks and dialogs are windows too
+}
+
+void MainWindow::acceptDrag(QDropEvent& event) {
+    event.setDropAction(Qt::CopyAction);
+    event.accept();
+}
+
+void MainWindow::dragEnterEvent(QDragEnterEvent* event) {
+    if (!event->mimeData()->hasUrls()) return;
+    acceptDrag(*event);
+    if (data_->drop) return;
+    data_->drop = new DropOverlay(*this, *event->mimeData());
+    data_->drop->open();
+}
+
+void MainWindow::dragLeaveEvent(QDragLeaveEvent* /*event*/) {
+    if (data_->drop) data_->drop->leave();
+    data_->drop = nullptr;
+}
+
+void MainWindow::dropEvent(QDropEvent* event) {
+    dragLeaveEvent(nullptr);
+    if (!event->mimeData()->hasUrls()) return;
+    acceptDrag(*event);
+    const auto files = localFiles(*event->mimeData());
+    if (!files.empty()) {
+        openDropped(data_->studio, files);
+        return;
+    }
+    Notice notice;
+    notice.subject = "What was dropped";
+    notice.why = "It is not a file on this computer.";
+    notice.remedy = "Save it to a folder first, then drop the file.";
+    data_->studio.notices.post("project", notice);
+}
+
+void MainWindow::changeEvent(QEvent* event) {
+    QMainWindow::changeEvent(event);
+    if (event->type() == QEvent::WindowStateChange)
+        if (QAction* full = data_->studio.commands.find("view.fullScreen")) full->setChecked(isFullScreen());
+}
+
+/// Fields inside the window would take a dropped file as text; files are the window's, wherever they are dropped.
+bool MainWindow::eventFilter(QObject* watched, QEvent* event) {
+    const auto type = event->type();
+    if (type != QEvent::DragEnter && type != QEvent::DragMove && type != QEvent::DragLeave && type != QEvent::Drop)
+        return QMainWindow::eventFilter(watched, event);
+    if (watched == this || !watched->isWidgetType() || !belongsTo(watched, this)) return false;
+    if (type == QEvent::DragLeave) {
+        dragLeaveEvent(static_cast<QDragLeaveEvent*>(event));
+        return false;
+    }
+    auto* drag = static_cast<QDropEvent*>(event);
+    if (!drag->mimeData()->hasUrls()) return false;
+    if (type == QEvent::DragEnter) dragEnterEvent(static_cast<QDragEnterEvent*>(event));
+    if (type == QEvent::DragMove) acceptDrag(*drag);
+    if (type == QEvent::Drop) dropEvent(drag);
+    return true;
+}
+
+} // namespace lumorph::studio

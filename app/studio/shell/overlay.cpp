@@ -1,0 +1,46 @@
+#include "app/studio/shell/overlay.h"
+
+#include <QApplication>
+#include <QEvent>
+#include <QPainter>
+
+#include "app/studio/look/palette.h"
+
+namespace lumorph::studio {
+
+Overlay::Overlay(QWidget& window) : QWidget(&window), hadKeyboard_(QApplication::focusWidget()) {
+    setFocusPolicy(Qt::StrongFocus);
+    setProperty("noFocusRing", true);
+    window.installEventFilter(this);
+}
+
+void Overlay::open() {
+    setGeometry(parentWidget()->rect());
+    arrange();
+    show();
+    raise();
+}
+
+void Overlay::leave() {
+    if (isHidden()) return;
+    hide();
+    if (hadKeyboard_) hadKeyboard_->setFocus(Qt::PopupFocusReason);
+    setObjectName({}); // one that is on its way out is not found
+    deleteLater();
+}
+
+bool Overlay::eventFilter(QObject* watched, QEvent* event) {
+    if (watched == parentWidget() && event->type() == QEvent::Resize && isVisible()) {
+        setGeometry(parentWidget()->rect());
+        arrange();
+    }
+    return QWidget::eventFilter(watched, event);
+}
+
+void Overlay::paintEvent(QPaintEvent* /*event*/) {
+    QPainter painter(this);
+    QColor dim = currentTheme() == Theme::dark ? QColor(0, 0, 0, 120) : QColor(20, 26, 32, 70);
+    painter.fillRect(rect(), dim);
+}
+
+} // namespace lumorph::studio

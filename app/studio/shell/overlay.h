@@ -1,0 +1,28 @@
+#pragma once
+
+#include <QPointer>
+#include <QWidget>
+
+namespace lumorph::studio {
+
+/// A sheet over a whole window that dims it; follows the window's size, gives the keyboard back when it leaves, and
+/// deletes itself.
+class Overlay : public QWidget {
+    Q_OBJECT
+public:
+    explicit Overlay(QWidget& window);
+
+    void open();
+    void leave();
+
+protected:
+    bool eventFilter(QObject* watched, QEvent* event) override;
+    void paintEvent(QPaintEvent* event) override;
+    /// Lays out what is on it for its size now.
+    virtual void arrange() {}
+
+private:
+    QPointer<QWidget> hadKeyboard_;
+};
+
+} // namespace lumorph::studio

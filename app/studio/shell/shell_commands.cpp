@@ -1,0 +1,98 @@
+#include "app/studio/shell/shell_commands.h"
+
+#include <QUndoStack>
+
+#include "app/studio/look/icons.h"
+#include "app/studio/shell/command_palette.h"
+#include "app/studio/shell/dialogs.h"
+
+namespace lumorph::studio {
+namespace {
+
+QAction* add(Studio& studio, const char* id, const QString& text, const char* iconName, const QKeySequence& keys,
+             const char* menu, std::function<void()> run) {
+    Commands::Options options;
+    options.icon = iconName;
+    options.shortcut = keys;
+    options.menu = menu;
+    return studio.commands.add(id, text, options, std::move(run));
+}
+
+/// "Undo Move target", greyed while there is nothing to take back.
+void addUndo(Studio& studio) {
+    QUndoStack& stack = studio.document.undoStack();
+    QAction* undo = add(studio, "edit.undo", "&Undo", "undo", QKeySequence::Undo, "Edit", [&stack] { stack.undo(); });
+    QAction* redo = add(studio, "edit.redo", "&Redo", "redo", QKeySequence(Qt::CTRL | Qt::SHIFT | Qt::Key_Z), "Edit",
+                        [&stack] { stack.redo(); });
+    const auto follow = [&stack, undo, redo] {
+        undo->setEnabled(stack.canUndo());
+        redo->setEnabled(stack.canRedo());
+        undo->setText(("&Undo " + stack.undoText()).trimmed());
+        redo->setText(("&Redo " + stack.redoText()).trimmed());
+    };
+    QObject::connect(&stack, &QUndoStack::indexChanged, undo, follow);
+    QObject::connect(&stack, &QUndoStack::canUndoChanged, undo, follow);
+    QObject::connect(&stack, &QUndoStack::canRedoChanged, undo, follow);
+    follow();
+}
+
+void addStop(Studio& studio) {
+    QAction* stop = add(studio, "loop.stop", "STOP: hold every actuator", "stop", {}, "Rig", [&studio] {
+        studio.loop.stopped() ? studio.loop.resume() : studio.loop.stop();
+    });
+    const auto follow = [&studio, stop] {
+        stop->setText(studio.loop.stopped() ? "Resume after STOP" : "STOP: hold every actuator");
+        stop->setIcon(icon(studio.loop.stopped() ? "play" : "stop"));
+    };
+    QObject::connect(&studio.loop, &StudioLoop::stoppedChanged, stop, follow);
+}
+
+void addTheme(Studio& studio) {
+    QAction* theme = add(studio, "view.theme", {}, "sun", {}, "View", [&studio] {
+        studio.settings.setTheme(studio.settings.theme() == Theme::dark ? Theme::light : Theme::dark);
+    });
+    const auto follow = [&studio, theme] {
+        const bool dark = studio.settings.theme() == Theme::dark;
+        theme->setText(dark ? "&Light theme" : "Dark &theme");
+        theme->setIcon(icon(dark ? "sun" : "moon"));
+    };
+    QObject::connect(&studio.settings, &Settings::themeChanged, theme, follow);
+    follow();
+}
+
+void addView(Studio& studio, QMainWindow& window, const ShellActions& does) {
+    int number = 1;
+    for (const auto& [title, show] : does.workspaces) {
+        const QString id = "workspace." + QString::number(number);
+        const QKeySequence keys(Qt::CTRL | static_cast<Qt::Key>(Qt::Key_0 + number++));
+        add(studio, id.toLatin1().constData(), title + " workspace", "", keys, "View", show);
+    }
+    add(studio, "view.commandPalette", "&Search commands", "search", QKeySequence(Qt::CTRL | Qt::Key_K), "View",
+        [&studio, &window] { toggleCommandPalette(window, studio.commands); });
+    addTheme(studio);
+    Commands::Options options;
+    options.icon = "frame";
+    options.shortcut = QKeySequence(Qt::Key_F11);
+    options.menu = "View";
+    options.checkable = true;
+    studio.commands.add("view.fullScreen", "&Full screen", options, [&window] {
+        window.isFullScreen() ? window.showNormal() : window.showFullScreen();
+    });
+    add(studio, "view.resetLayout", "&Reset layout", "reset", {}, "View", does.resetLayout);
+}
+
+} // namespace
+
+void addShellCommands(Studio& studio, QMainWindow& window, const ShellActions& does) {
+    addUndo(studio);
+    add(studio, "settings", "&Settings...", "settings", QKeySequence(Qt::CTRL | Qt::Key_Comma), "Edit",
+        [&studio, &window] { openSettings(studio, window); });
+    addView(studio, window, does);
+    addStop(studio);
+    add(studio, "help.tour", "&Tour", "tour", {}, "Help", does.startTour);
+    add(studio, "help.shortcuts", "&Keyboard and mouse", "help", QKeySequence(Qt::Key_F1), "Help",
+        [&studio, &window] { openShortcuts(studio, window); });
+    add(studio, "help.about", "&About Lumorph", "info", {}, "Help", [&window] { openAbout(window); });
+}
+
+} // namespace lumorph::studio

@@ -1,0 +1,126 @@
+#include "app/studio/shell/status_line.h"
+
+#include <QHBoxLayout>
+#include <QLabel>
+#include <QPushButton>
+#include <QTimer>
+
+#include "app/studio/look/icons.h"
+#include "app/studio/shell/loop_text.h"
+#include "app/studio/shell/notice_list.h"
+#include "app/studio/widgets/icon_label.h"
+#include "app/studio/widgets/panel.h"
+
+namespace lumorph::studio {
+namespace {
+
+constexpr int kRefreshMilliseconds = 250;
+
+QLabel* addText(QHBoxLayout& row, const char* name, const QString& iconName, const QString& toolTip, QWidget* parent) {
+    if (!iconName.isEmpty()) {
+        row.addWidget(new IconLabel(iconName, IconRole::muted, 14, parent));
+        row.addSpacing(6);
+    }
+    auto* label = new QLabel(parent);
+    label->setObjectName(name);
+    label->setTextFormat(Qt::PlainText);
+    label->setToolTip(toolTip);
+    row.addWidget(label);
+    row.addSpacing(24);
+    return label;
+}
+
+QString counted(int count, const QString& one) {
+    return QString::number(count) + ' ' + one + (count == 1 ? QString() : QString("s"));
+}
+
+} // namespace
+
+StatusLine::StatusLine(Studio& studio, QWidget* parent)
+    : QWidget(parent), studio_(studio),
+      places_{"viewport", "rig", "field", "target", "match", "export", "project"} {
+    setObjectName("statusLine");
+    setAttribute(Qt::WA_StyledBackground);
+    setFixedHeight(28);
+    auto* row = new QHBoxLayout(this);
+    row->setContentsMargins(12, 0, 8, 0);
+    row->setSpacing(0);
+    project_ = addText(*row, "status.project", "file", {}, this);
+    hardware_ = addText(*row, "status.hardware", "device",
+                        "The tablet, its servos and their speed limits are simulated here; nothing real moves.", this);
+    hardware_->setText("Virtual lab");
+    loop_ = addText(*row, "status.loop", "speed",
+                    "How often the device follows the target, and how long finding its levels takes", this);
+    row->addStretch(1);
+    auto* jobs = makeJobBar(studio.jobs, {}, this);
+    jobs->setObjectName("status.jobs");
+    jobs->setFixedWidth(280);
+    row->addWidget(jobs);
+    row->addSpacing(16);
+    warnings_ = new QPushButton(this);
+    warnings_->setObjectName("status.warnings");
+    warnings_->setProperty("look", "status");
+    row->addWidget(warnings_);
+    connect(warnings_, &QPushButton::clicked, this, &StatusLine::listWarnings);
+    connect(&studio.document, &StudioDocument::titleChanged, this, &StatusLine::showProject);
+    connect(&studio.notices, &Notices::changed, this, [this](const QString& place) {
+        if (!place.isEmpty()) places_.insert(place);
+        showWarnings();
+    });
+    auto* timer = new QTimer(this);
+    connect(timer, &QTimer::timeout, this, [this] {
+        showLoop();
+        showWarnings();
+    });
+    timer->start(kRefreshMilliseconds);
+    showProject();
+    showLoop();
+    showWarnings();
+}
+
+void StatusLine::showProject() {
+    const StudioDocument& document = studio_.document;
+    const QString dot = document.modified() ? QString(" ") + QChar(0x2022) : QString();
+    project_->setText(document.name() + dot);
+    const QString where = document.file().empty() ? QString("Not saved as a project yet.")
+                                                  : QString::fromStdString(document.file().string());
+    project_->setToolTip(where + (document.modified() ? "\nChanged since it was saved." : "") +
+                         "\nWhat is not saved is kept when you quit, and comes back when you start again.");
+}
+
+void StatusLine::showLoop() {
+    const auto& frame = studio_.loop.frame();
+    const QString text = loopText(frame.get(), studio_.loop.rate(), studio_.loop.stopped());
+    if (text != loop_->text()) loop_->setText(text);
+}
+
+void StatusLine::showWarnings() {
+    int errors = 0, warnings = static_cast<int>(frameWarnings(studio_.loop.frame().get()).size()), notes = 0;
+    for (const Notice& notice : studio_.notices.at()) {
+        errors += notice.level == Notice::Level::error ? 1 : 0;
+        warnings += notice.level == Notice::Level::warning ? 1 : 0;
+        notes += notice.level == Notice::Level::info ? 1 : 0;
+    }
+    QStringList parts;
+    if (errors > 0) parts << counted(errors, "error");
+    if (warnings > 0) parts << counted(warnings, "warning");
+    if (parts.isEmpty() && notes > 0) parts << counted(notes, "note");
+    const QString text = parts.isEmpty() ? "No warnings" : parts.join(", ");
+    if (text == warnings_->text()) return;
+    warnings_->setText(text);
+    warnings_->setIcon(errors > 0     ? icon("error", IconRole::danger)
+                       : warnings > 0 ? icon("warning", IconRole::warning)
+                                      : icon(notes > 0 ? "info" : "check", IconRole::muted));
+}
+
+void StatusLine::listWarnings() {
+    if (list_) {
+        list_->close();
+        return;
+    }
+    list_ = makeNoticeList(studio_.notices, places_, frameWarnings(studio_.loop.frame().get()), window());
+    const QPoint corner = warnings_->mapTo(window(), QPoint(warnings_->width(), 0));
+    openNoticeList(*list_, corner);
+}
+
+} // namespace lumorph::studio

@@ -1,0 +1,111 @@
+#include "app/studio/shell/studio_application.h"
+
+#include <array>
+#include <csignal>
+#include <cstdio>
+#include <cstdlib>
+#include <string_view>
+
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <QSocketNotifier>
+#include <QSurfaceFormat>
+#include <QWidget>
+
+namespace lumorph::studio {
+namespace {
+
+/// A signal handler may touch nothing but this: it writes a byte, and the event loop wakes up.
+std::array<int, 2> interruptSockets{-1, -1};
+
+extern "C" void wakeOnSignal(int /*signal*/) {
+    const char byte = 1;
+    [[maybe_unused]] const auto written = ::write(interruptSockets[0], &byte, 1);
+}
+
+constexpr auto kNoDisplay = "lumorph-studio: display: no window can be shown here (%s); start it in a desktop session, "
+                            "connect by `ssh -X`, or use `lumorph render` and `lumorph match`, which need no display\n";
+
+/// Qt ends the program when it finds no display; it should say what to do, and exit like any other failure.
+void tellNoDisplay(QtMsgType type, const QMessageLogContext& /*context*/, const QString& message) {
+    if (type != QtFatalMsg) return;
+    std::fprintf(stderr, kNoDisplay, message.section('\n', 0, 0).toUtf8().constData());
+    std::_Exit(1);
+}
+
+bool choosesPlatform(int argc, char** argv) {
+    for (int i = 1; i < argc; ++i)
+        if (std::string_view(argv[i]) == "-platform") return true;
+    return !qEnvironmentVariableIsEmpty("QT_QPA_PLATFORM");
+}
+
+/// While the application is being made its complaints are ours to word; afterwards they go where they always go.
+class DisplayWatch {
+public:
+    DisplayWatch() : before_(qInstallMessageHandler(tellNoDisplay)) {}
+    ~DisplayWatch() { qInstallMessageHandler(before_); }
+
+private:
+    QtMessageHandler before_;
+};
+
+} // namespace
+
+QString prepareApplication(int argc, char** argv) {
+    QSurfaceFormat format;
+    format.setVersion(4, 1);
+    format.setProfile(QSurfaceFormat::CoreProfile);
+    QSurfaceFormat::setDefaultFormat(format);
+    QCoreApplication::setAttribute(Qt::AA_ShareOpenGLContexts);
+    QCoreApplication::setOrganizationName("lumorph");
+    QCoreApplication::setApplicationName("lumorph");
+    QCoreApplication::setApplicationVersion(LUMORPH_VERSION);
+    if (choosesPlatform(argc, argv)) return {};
+    if (!qEnvironmentVariableIsEmpty("DISPLAY") || !qEnvironmentVariableIsEmpty("WAYLAND_DISPLAY")) return {};
+    return QString::asprintf(kNoDisplay, "DISPLAY is not set");
+}
+
+// The watch lives as long as the base class is being made.
+StudioApplication::StudioApplication(int& argc, char** argv)
+    : QApplication((static_cast<void>(DisplayWatch{}), argc), argv) {}
+
+void StudioApplication::setOnError(std::function<void(const std::exception&)> told) { told_ = std::move(told); }
+
+bool StudioApplication::notify(QObject* receiver, QEvent* event) {
+    try {
+        return QApplication::notify(receiver, event);
+    } catch (const std::exception& error) {
+        tell(error);
+    } catch (...) {
+        tell(std::runtime_error("something unknown was thrown"));
+    }
+    return false;
+}
+
+void StudioApplication::tell(const std::exception& error) {
+    try {
+        if (told_) {
+            told_(error);
+            return;
+        }
+    } catch (const std::exception& further) {
+        std::fprintf(stderr, "lumorph-studio: %s\n", further.what());
+    }
+    std::fprintf(stderr, "lumorph-studio: %s\n", error.what());
+}
+
+void StudioApplication::closeOnInterrupt(QWidget& window) {
+    if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, interruptSockets.data()) != 0) return;
+    auto* notifier = new QSocketNotifier(interruptSockets[1], QSocketNotifier::Read, this);
+    connect(notifier, &QSocketNotifier::activated, &window, [notifier, &window] {
+        notifier->setEnabled(false);
+        window.close();
+    });
+    struct sigaction action {};
+    action.sa_handler = wakeOnSignal;
+    action.sa_flags = SA_RESTART | static_cast<int>(SA_RESETHAND);
+    for (const int signal : {SIGINT, SIGTERM, SIGHUP}) ::sigaction(signal, &action, nullptr);
+}
+
+} // namespace lumorph::studio

@@ -1,0 +1,169 @@
+#include "app/studio/shell/top_bar.h"
+
+#include <QButtonGroup>
+#include <QHBoxLayout>
+#include <QPainter>
+#include <QPainterPath>
+#include <QPushButton>
+#include <QStyle>
+
+#include "app/studio/look/icons.h"
+#include "app/studio/look/palette.h"
+
+namespace lumorph::studio {
+namespace {
+
+constexpr int kHeight = 40;
+constexpr int kSearchWidth = 240;
+
+/// The mark of the program: a sheet that three actuators lift.
+class AppMark : public QWidget {
+public:
+    explicit AppMark(QWidget* parent) : QWidget(parent) {
+        setFixedSize(24, 24);
+        setToolTip("Lumorph");
+    }
+
+protected:
+    void paintEvent(QPaintEvent* /*event*/) override {
+        const Palette& colors = currentPalette();
+        QPainter painter(this);
+        painter.setRenderHint(QPainter::Antialiasing);
+        painter.setPen(QPen(colors.accent, 2.2, Qt::SolidLine, Qt::RoundCap, Qt::RoundJoin));
+        QPainterPath sheet(QPointF(2.5, 14));
+        sheet.cubicTo(7, 14, 7.5, 4.5, 12, 4.5);
+        sheet.cubicTo(16.5, 4.5, 16, 10.5, 21.5, 10.5);
+        painter.drawPath(sheet);
+        painter.setPen(QPen(blend(colors.panel, colors.text, 0.75), 2.2, Qt::SolidLine, Qt::RoundCap));
+        for (const auto& [x, top] : {std::pair(4.5, 18.0), std::pair(12.0, 10.0), std::pair(19.5, 15.0)})
+            painter.drawLine(QPointF(x, top), QPointF(x, 20.5));
+    }
+};
+
+QToolButton* makeTool(QAction* action, QWidget* parent) {
+    auto* button = new QToolButton(parent);
+    button->setDefaultAction(action);
+    button->setObjectName("bar." + action->objectName());
+    button->setToolButtonStyle(Qt::ToolButtonIconOnly);
+    button->setIconSize(QSize(18, 18));
+    button->setFocusPolicy(Qt::StrongFocus);
+    return button;
+}
+
+void relook(QWidget& widget, const char* look) {
+    widget.setProperty("look", look);
+    widget.style()->unpolish(&widget);
+    widget.style()->polish(&widget);
+}
+
+} // namespace
+
+TopBar::TopBar(Studio& studio, const std::vector<std::unique_ptr<Workspace>>& workspaces, QWidget* parent)
+    : QWidget(parent), studio_(studio) {
+    setObjectName("topBar");
+    setAttribute(Qt::WA_StyledBackground);
+    setFixedHeight(kHeight);
+    auto* row = new QHBoxLayout(this);
+    row->setContentsMargins(12, 0, 8, 0);
+    row->setSpacing(4);
+    row->addWidget(new AppMark(this));
+    row->addSpacing(4);
+    menus_ = new QMenuBar(this);
+    menus_->setNativeMenuBar(false);
+    menus_->setSizePolicy(QSizePolicy::Maximum, QSizePolicy::Fixed);
+    row->addWidget(menus_, 0, Qt::AlignVCenter);
+    row->addSpacing(16);
+    addTabs(workspaces, *row);
+    row->addStretch(1);
+    addTools(*row);
+    row->addSpacing(8);
+    addStop(*row);
+}
+
+void TopBar::addTabs(const std::vector<std::unique_ptr<Workspace>>& workspaces, QHBoxLayout& row) {
+    auto* group = new QButtonGroup(this);
+    for (const auto& workspace : workspaces) {
+        auto* tab = new QToolButton(this);
+        tab->setObjectName("tab." + workspace->id());
+        tab->setProperty("look", "tab");
+        tab->setProperty("workspace", workspace->id());
+        tab->setText(workspace->title());
+        tab->setToolButtonStyle(Qt::ToolButtonTextOnly);
+        tab->setCheckable(true);
+        tab->setFixedHeight(kHeight - 1);
+        tab->setFocusPolicy(Qt::StrongFocus);
+        group->addButton(tab);
+        row.addWidget(tab);
+        tabs_.push_back(tab);
+        connect(tab, &QToolButton::clicked, this, [this, id = workspace->id()] { emit workspaceChosen(id); });
+    }
+}
+
+void TopBar::addTools(QHBoxLayout& row) {
+    Commands& commands = studio_.commands;
+    for (const char* id : {"edit.undo", "edit.redo"}) {
+        tools_.push_back(makeTool(commands.find(id), this));
+        row.addWidget(tools_.back());
+    }
+    row.addSpacing(8);
+    search_ = new QPushButton(icon("search", IconRole::muted), {}, this);
+    search_->setObjectName("bar.search");
+    search_->setProperty("look", "search");
+    search_->setAccessibleName("Search commands");
+    QAction* palette = commands.find("view.commandPalette");
+    search_->setToolTip("Search commands (" + palette->shortcut().toString(QKeySequence::NativeText) + ")");
+    connect(search_, &QPushButton::clicked, palette, &QAction::trigger);
+    row.addWidget(search_);
+    tools_.push_back(search_);
+    row.addSpacing(8);
+    tools_.push_back(makeTool(commands.find("view.theme"), this));
+    row.addWidget(tools_.back());
+}
+
+void TopBar::addStop(QHBoxLayout& row) {
+    stop_ = new QPushButton(this);
+    stop_->setObjectName("stop");
+    row.addWidget(stop_);
+    connect(stop_, &QPushButton::clicked, this, [this] {
+        studio_.loop.stopped() ? studio_.loop.resume() : studio_.loop.stop();
+    });
+    connect(&studio_.loop, &StudioLoop::stoppedChanged, this, &TopBar::showStopped);
+    showStopped();
+}
+
+void TopBar::showStopped() {
+    const bool stopped = studio_.loop.stopped();
+    stop_->setText(stopped ? "Stopped - resume" : "STOP");
+    stop_->setIcon(stopped ? icon("play") : icon("stop", IconRole::onDanger));
+    stop_->setToolTip(stopped ? "Every actuator holds where it is. Click to let them move again."
+                              : "Every actuator holds where it is, at once (Esc Esc)");
+    relook(*stop_, stopped ? "latched" : "danger");
+    stop_->setMinimumWidth(stopped ? 144 : 96);
+    fitSearch();
+}
+
+void TopBar::setWorkspace(const QString& id) {
+    for (QToolButton* tab : tabs_) tab->setChecked(tab->property("workspace").toString() == id);
+}
+
+void TopBar::setKiosk() {
+    menus_->hide();
+    for (QToolButton* tab : tabs_) tab->hide();
+    for (QWidget* tool : tools_) tool->hide();
+}
+
+void TopBar::resizeEvent(QResizeEvent* event) {
+    QWidget::resizeEvent(event);
+    fitSearch();
+}
+
+/// The field with its words where there is room, else the glass alone.
+void TopBar::fitSearch() {
+    int others = 220 + stop_->minimumWidth() + menus_->sizeHint().width();
+    for (const QToolButton* tab : tabs_) others += tab->sizeHint().width() + 4;
+    const bool roomy = width() - others > kSearchWidth;
+    search_->setFixedWidth(roomy ? kSearchWidth : 32);
+    search_->setText(roomy ? "Search commands    Ctrl+K" : QString());
+}
+
+} // namespace lumorph::studio

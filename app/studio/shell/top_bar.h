@@ -1,0 +1,50 @@
+#pragma once
+
+#include <vector>
+
+#include <QMenuBar>
+#include <QToolButton>
+#include <QWidget>
+
+#include "app/studio/shell/studio.h"
+#include "app/studio/shell/workspace.h"
+
+class QHBoxLayout;
+class QPushButton;
+
+namespace lumorph::studio {
+
+/// The slim bar at the top: mark, menus, workspaces, undo and redo, search, theme, and STOP, which never leaves it.
+class TopBar : public QWidget {
+    Q_OBJECT
+public:
+    /// The commands edit.undo, edit.redo, view.commandPalette and view.theme must be there.
+    TopBar(Studio& studio, const std::vector<std::unique_ptr<Workspace>>& workspaces, QWidget* parent);
+
+    [[nodiscard]] QMenuBar& menuBar() noexcept { return *menus_; }
+    void setWorkspace(const QString& id);
+    /// Only the mark and STOP stay.
+    void setKiosk();
+
+signals:
+    void workspaceChosen(const QString& id);
+
+protected:
+    void resizeEvent(QResizeEvent* event) override;
+
+private:
+    void addTabs(const std::vector<std::unique_ptr<Workspace>>& workspaces, QHBoxLayout& row);
+    void addTools(QHBoxLayout& row);
+    void addStop(QHBoxLayout& row);
+    void showStopped();
+    void fitSearch();
+
+    Studio& studio_;
+    QMenuBar* menus_ = nullptr;
+    std::vector<QToolButton*> tabs_;
+    std::vector<QWidget*> tools_;
+    QPushButton* search_ = nullptr;
+    QPushButton* stop_ = nullptr;
+};
+
+} // namespace lumorph::studio

@@ -1,0 +1,127 @@
+#include "app/studio/shell/workspace_page.h"
+
+#include <algorithm>
+
+#include <QDockWidget>
+#include <QTimer>
+
+#include "app/studio/shell/dock_title.h"
+
+namespace lumorph::studio {
+namespace {
+
+constexpr int kLayoutVersion = 1;
+constexpr int kUsualDockWidth = 312;
+
+} // namespace
+
+WorkspacePage::WorkspacePage(Workspace& workspace, Settings& settings, Commands& commands, QWidget* parent)
+    : QMainWindow(parent, Qt::Widget), workspace_(workspace), settings_(settings) {
+    setObjectName("workspace." + workspace.id());
+    setDockOptions(QMainWindow::AllowNestedDocks | QMainWindow::AllowTabbedDocks);
+    setTabPosition(Qt::AllDockWidgetAreas, QTabWidget::North);
+    setCorner(Qt::BottomLeftCorner, Qt::LeftDockWidgetArea);
+    setCorner(Qt::BottomRightCorner, Qt::RightDockWidgetArea);
+    setContextMenuPolicy(Qt::NoContextMenu);
+    setCentralWidget(workspace.makeCentralView());
+    QDockWidget* before = nullptr;
+    for (const WorkspaceDock& brought : workspace.makeDocks()) {
+        addDock(brought, brought.tabbedWithPrevious ? before : nullptr);
+        before = docks_.back();
+        addCommands(commands, before, brought);
+    }
+    for (QDockWidget* dock : docks_) // of docks behind each other the first one is in front
+        if (!tabifiedDockWidgets(dock).isEmpty()) {
+            dock->raise();
+            break;
+        }
+    firstLayout_ = saveState(kLayoutVersion);
+    const QByteArray kept = settings.layout(workspace.id());
+    sized_ = !kept.isEmpty() && restoreState(kept, kLayoutVersion);
+}
+
+void WorkspacePage::addDock(const WorkspaceDock& brought, QDockWidget* before) {
+    auto* dock = new QDockWidget(brought.title, this);
+    dock->setObjectName(brought.id);
+    dock->setTitleBarWidget(makeDockTitle(*dock, brought.icon));
+    dock->setWidget(brought.content);
+    addDockWidget(brought.area, dock);
+    if (before != nullptr) tabifyDockWidget(before, dock);
+    docks_.push_back(dock);
+}
+
+void WorkspacePage::addCommands(Commands& commands, QDockWidget* dock, const WorkspaceDock& brought) {
+    Commands::Options options;
+    options.menu = "View";
+    options.workspace = workspace_.id();
+    options.checkable = true;
+    options.icon = brought.icon;
+    QAction* toggle = dock->toggleViewAction();
+    QAction* command = commands.add("view." + brought.id, "Show " + brought.title, options, [dock] {
+        dock->toggleViewAction()->trigger();
+        if (dock->isVisible()) dock->raise();
+    });
+    const auto follow = [command, toggle] { command->setChecked(toggle->isChecked()); };
+    follow();
+    connect(toggle, &QAction::toggled, command, follow);
+    connect(dock, &QObject::destroyed, command, &QObject::deleteLater);
+}
+
+void WorkspacePage::setActive(bool active) {
+    if (active == active_) return;
+    active_ = active;
+    if (active) {
+        for (const auto& dock : hiddenFloats_)
+            if (dock) dock->show();
+        hiddenFloats_.clear();
+    } else {
+        keepLayout();
+        for (QDockWidget* dock : docks_)
+            if (dock->isFloating() && dock->isVisible()) {
+                hiddenFloats_.emplace_back(dock);
+                dock->hide();
+            }
+    }
+    workspace_.setActive(active);
+}
+
+/// While the page is hidden its floating docks are too, and that is not what the user chose.
+void WorkspacePage::keepLayout() {
+    if (!kiosk_ && hiddenFloats_.empty()) settings_.setLayout(workspace_.id(), saveState(kLayoutVersion));
+}
+
+void WorkspacePage::resetLayout() {
+    hiddenFloats_.clear();
+    restoreState(firstLayout_, kLayoutVersion);
+    applyFirstSizes();
+    keepLayout();
+}
+
+void WorkspacePage::setKiosk() {
+    kiosk_ = true;
+    for (QDockWidget* dock : docks_) dock->hide();
+}
+
+void WorkspacePage::showEvent(QShowEvent* event) {
+    QMainWindow::showEvent(event);
+    if (sized_) return;
+    sized_ = true;
+    QTimer::singleShot(0, this, [this] { applyFirstSizes(); }); // the layout has its size only after this event
+}
+
+
+/// A column of docks is as wide as suits numbers, and leaves more than half of a small window to the view.
+void WorkspacePage::applyFirstSizes() {
+    const int width = std::min(kUsualDockWidth, this->width() / 4);
+    QList<QDockWidget*> sideways;
+    QList<int> widths;
+    for (QDockWidget* dock : docks_) {
+        const auto area = dockWidgetArea(dock);
+        if (dock->isFloating() || (area != Qt::LeftDockWidgetArea && area != Qt::RightDockWidgetArea)) continue;
+        sideways << dock;
+        widths << width;
+    }
+    if (!sideways.isEmpty()) resizeDocks(sideways, widths, Qt::Horizontal);
+}
+
+} // namespace lumorph::studio

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <QMainWindow>
+#include <QPointer>
+
+#include "app/studio/shell/studio.h"
+#include "app/studio/shell/workspace.h"
+
+class QDockWidget;
+
+namespace lumorph::studio {
+
+/// The page of one workspace: its central view with its docks around, and their layout, which is remembered. Docks that
+/// float are hidden with the page and come back with it.
+class WorkspacePage : public QMainWindow {
+    Q_OBJECT
+public:
+    /// Makes view and docks. `settings` and `commands` outlive the page.
+    WorkspacePage(Workspace& workspace, Settings& settings, Commands& commands, QWidget* parent);
+
+    [[nodiscard]] const std::vector<QDockWidget*>& docks() const noexcept { return docks_; }
+    /// Shows or hides what belongs to the page beside itself, and tells the workspace.
+    void setActive(bool active);
+    void keepLayout();
+    void resetLayout();
+    /// Only the central view; nothing of it is remembered.
+    void setKiosk();
+
+protected:
+    void showEvent(QShowEvent* event) override;
+
+private:
+    void addDock(const WorkspaceDock& brought, QDockWidget* before);
+    void addCommands(Commands& commands, QDockWidget* dock, const WorkspaceDock& brought);
+    void applyFirstSizes();
+
+    Workspace& workspace_;
+    Settings& settings_;
+    std::vector<QDockWidget*> docks_;
+    std::vector<QPointer<QDockWidget>> hiddenFloats_;
+    QByteArray firstLayout_;
+    bool sized_ = false;  ///< the docks' first widths were given
+    bool active_ = false;
+    bool kiosk_ = false;
+};
+
+} // namespace lumorph::studio

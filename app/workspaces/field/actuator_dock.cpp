@@ -1,0 +1,166 @@
+#include "app/workspaces/field/actuator_dock.h"
+
+#include <memory>
+#include <vector>
+
+#include <QStackedWidget>
+#include <QVBoxLayout>
+
+#include "app/studio/widgets/panel.h"
+#include "app/workspaces/field/actuator_grid.h"
+#include "app/workspaces/field/actuator_row.h"
+#include "app/workspaces/field/dock_parts.h"
+#include "app/workspaces/field/throttle.h"
+
+namespace lumorph::studio {
+
+namespace {
+
+/// More actuators than this do not have a row each.
+constexpr std::size_t kMostRows = 24;
+constexpr int kRefreshMilliseconds = 40;
+
+class ActuatorDock : public QWidget {
+public:
+    explicit ActuatorDock(Studio& studio)
+        : studio_(studio), hand_(studio.document, studio.loop),
+          refresh_(new Throttle(
+              kRefreshMilliseconds, [this] { refresh(); }, this)) {
+        auto* layout = new QVBoxLayout(this);
+        layout->setContentsMargins(0, 0, 0, 0);
+        layout->setSpacing(0);
+        layout->addWidget(makeButtons());
+        layout->addWidget(column_.widget, 1);
+        layout->addWidget(makeHint());
+        connect(&studio.loop, &StudioLoop::framed, this, [this] { refresh_->request(); });
+        connect(&studio.document, &StudioDocument::changed, this, [this](StateParts parts) {
+            if (parts & (StatePart::rig | StatePart::field)) rebuild();
+            refresh();
+        });
+        rebuild();
+        refresh();
+    }
+
+private:
+    QWidget* makeButtons() {
+        auto* bar = new QWidget(this);
+        auto* layout = new QHBoxLayout(bar);
+        layout->setContentsMargins(16, 12, 16, 4);
+        layout->setSpacing(8);
+        for (const char* id : {"rest", "random", "dance"})
+            layout->addWidget(
+                makeCommandButton(studio_.commands.find(QString("rig.") + id), QString("actuators.") + id, bar), 1);
+        return bar;
+    }
+
+    QWidget* makeHint() {
+        hint_ = new QWidget(this);
+        hint_->setObjectName("actuators.hint");
+        auto* text = new QLabel("Moved by hand: the device no longer follows the target.", hint_);
+        text->setWordWrap(true);
+        text->setProperty("look", "muted");
+        QPushButton* button = makeCommandButton(studio_.commands.find("match.live"), "actuators.matchLive", hint_);
+        button->setProperty("look", "primary");
+        auto* layout = new QHBoxLayout(hint_);
+        layout->setContentsMargins(16, 8, 16, 12);
+        layout->setSpacing(8);
+        layout->addWidget(text, 1);
+        layout->addWidget(button);
+        return hint_;
+    }
+
+    [[nodiscard]] int levelsOf(const Actuator& actuator) const {
+        const auto& field = studio_.document.state().field.field;
+        return field ? field->field.levels : actuator.levels;
+    }
+
+    void rebuild() {
+        const auto& rig = studio_.document.state().rig.rig;
+        const auto& field = studio_.document.state().field.field;
+        if (rig == rig_ && field == field_ && built_) return;
+        rig_ = rig;
+        field_ = field;
+        built_ = true;
+        clear();
+        if (!rig) return;
+        if (rig->actuatorCount() > kMostRows)
+            makeGrid();
+        else
+            for (std::size_t i = 0; i < rig->actuatorCount(); ++i) addRow(i, QString::number(i));
+        column_.layout->addStretch(1);
+    }
+
+    void clear() {
+        rows_.clear();
+        grid_ = nullptr;
+        while (QLayoutItem* item = column_.layout->takeAt(0)) {
+            delete item->widget();
+            delete item;
+        }
+    }
+
+    void addRow(std::size_t index, const QString& name, int at = -1) {
+        const Actuator& actuator = rig_->actuators()[index];
+        auto* row = new ActuatorRow(hand_, name, index, actuator, levelsOf(actuator), column_.widget);
+        column_.layout->insertWidget(at, row);
+        rows_.push_back({index, row});
+    }
+
+    void makeGrid() {
+        QStringList names;
+        for (const Actuator& actuator : rig_->actuators()) names << QString::fromStdString(actuator.name);
+        grid_ = new ActuatorGrid(column_.widget);
+        grid_->setObjectName("actuators.grid");
+        grid_->setAccessibleName("Levels of all actuators");
+        grid_->setNames(names);
+        addRow(0, "current");
+        column_.layout->addWidget(grid_);
+        connect(grid_, &ActuatorGrid::currentChanged, this, [this](int index) {
+            delete rows_.front().widget;
+            rows_.clear();
+            addRow(static_cast<std::size_t>(index), "current", 0);
+            refresh();
+        });
+    }
+
+    void refresh() {
+        if (!rig_) return;
+        const StudioState& state = studio_.document.state();
+        const bool driven = state.matching.live && state.target.target && state.field.field;
+        const bool byHand = !state.matching.live && state.target.target && !studio_.loop.dancing();
+        hint_->setVisible(byHand);
+        const auto& frame = studio_.loop.frame();
+        const std::vector<double> wanted = hand_.strokes();
+        const bool known = frame && isOf(*frame, state) && frame->estimatedStrokes.size() == wanted.size();
+        const std::vector<double>& estimated = known ? frame->estimatedStrokes : wanted;
+        for (const Row& row : rows_) {
+            row.widget->setLive(driven || studio_.loop.dancing());
+            row.widget->show(wanted[row.actuator], estimated[row.actuator]);
+        }
+        if (!grid_) return;
+        grid_->setLive(driven || studio_.loop.dancing());
+        grid_->setStrokes(wanted, estimated);
+    }
+
+    struct Row {
+        std::size_t actuator = 0;
+        ActuatorRow* widget = nullptr;
+    };
+
+    Studio& studio_;
+    HandControl hand_;
+    Throttle* refresh_;
+    Column column_ = makeColumn(this);
+    QWidget* hint_ = nullptr;
+    ActuatorGrid* grid_ = nullptr;
+    std::vector<Row> rows_;
+    std::shared_ptr<const Rig> rig_;
+    std::shared_ptr<const MatchField> field_;
+    bool built_ = false;
+};
+
+} // namespace
+
+QWidget* makeActuatorDock(Studio& studio) { return new ActuatorDock(studio); }
+
+} // namespace lumorph::studio

@@ -1,0 +1,36 @@
+#pragma once
+
+#include "app/studio/shell/studio.h"
+#include "app/studio/viewport/viewport_widget.h"
+#include "app/workspaces/field/fit_readout.h"
+#include "app/workspaces/field/timeline.h"
+
+namespace lumorph::studio {
+
+/// The central view of the Field workspace: the viewport with what floats over it: tools, the readout of the match, the
+/// timeline, notices and jobs, and, while there is no target, what to do first.
+class FieldStage : public QWidget {
+    Q_OBJECT
+public:
+    explicit FieldStage(Studio& studio, QWidget* parent = nullptr);
+
+    [[nodiscard]] ViewportWidget* viewport() const noexcept { return viewport_; }
+    /// Follows the newest frame.
+    void refresh();
+    /// Notices about the target stand over the view while no dock shows them.
+    void setTargetNoticesShown(bool shown);
+
+private:
+    [[nodiscard]] QWidget* makeTools();
+    [[nodiscard]] QWidget* makeHint();
+    [[nodiscard]] QWidget* makeNotices();
+
+    Studio& studio_;
+    ViewportWidget* viewport_;
+    FitReadout* readout_;
+    Timeline* timeline_;
+    QWidget* hint_ = nullptr;
+    QWidget* targetNotices_ = nullptr;
+};
+
+} // namespace lumorph::studio

@@ -1,0 +1,239 @@
+#include "app/workspaces/field/field_workspace.h"
+
+#include <algorithm>
+#include <functional>
+#include <optional>
+#include <utility>
+
+#include <QAction>
+#include <QPointer>
+#include <QTimer>
+
+#include "app/workspaces/field/actuator_dock.h"
+#include "app/workspaces/field/field_colors.h"
+#include "app/workspaces/field/field_commands.h"
+#include "app/workspaces/field/field_dock.h"
+#include "app/workspaces/field/field_exports.h"
+#include "app/workspaces/field/field_stage.h"
+#include "app/workspaces/field/hand_control.h"
+#include "app/workspaces/field/match_dock.h"
+#include "app/workspaces/field/target_dock.h"
+#include "app/workspaces/field/view_commands.h"
+
+namespace lumorph::studio {
+
+namespace {
+
+/// How long until the scene is made again while part of it is still being prepared.
+constexpr int kPendingMilliseconds = 30;
+
+/// Tells when a widget appears or goes.
+class Watch : public QObject {
+public:
+    Watch(QWidget* watched, std::function<void(bool)> shown) : QObject(watched), shown_(std::move(shown)) {
+        watched->installEventFilter(this);
+    }
+
+protected:
+    bool eventFilter(QObject* watched, QEvent* event) override {
+        if (event->type() == QEvent::Show || event->type() == QEvent::Hide) shown_(event->type() == QEvent::Show);
+        return QObject::eventFilter(watched, event);
+    }
+
+private:
+    std::function<void(bool)> shown_;
+};
+
+/// The first look at a device: from the front, a little from the right and from above.
+ViewCamera firstCamera() {
+    ViewCamera camera;
+    camera.yaw = Angle::degrees(32.0);
+    camera.pitch = Angle::degrees(28.0);
+    return camera;
+}
+
+/// The box of a target as placed, in device coordinates.
+Box placedBox(const MatchTarget& target, const glm::mat4& deviceFromTarget) {
+    Box box;
+    for (int i = 0; i < 8; ++i) {
+        const glm::vec3 corner((i & 1) != 0 ? target.box.max.x : target.box.min.x,
+                               (i & 2) != 0 ? target.box.max.y : target.box.min.y,
+                               (i & 4) != 0 ? target.box.max.z : target.box.min.z);
+        box.include(glm::vec3(deviceFromTarget * glm::vec4(corner, 1.0F)));
+    }
+    return box;
+}
+
+/// Where the gizmo's handles meet: the middle of the target's foot.
+glm::vec3 footOf(const MatchTarget& target, const glm::mat4& deviceFromTarget) {
+    glm::vec3 foot = target.box.centre();
+    foot.y = target.box.min.y;
+    return glm::vec3(deviceFromTarget * glm::vec4(foot, 1.0F));
+}
+
+} // namespace
+
+struct FieldWorkspace::Data : public QObject {
+    explicit Data(Studio& shared) : studio(shared) {}
+
+    Studio& studio;
+    FieldDisplayModel display;
+    FieldSceneBuilder builder;
+    QPointer<FieldStage> stage;
+    QAction* gizmoShown = nullptr;
+    bool active = false;
+    bool targetSelected = false;
+    bool unframed = true; ///< another device came: the view has to find it
+    QTimer pending;
+
+    [[nodiscard]] ViewportWidget* view() const { return stage ? stage->viewport() : nullptr; }
+    void listen();
+    void refresh();
+    void frameOnce(const ViewportScene& scene);
+    void showGizmo();
+    void select(bool target);
+    void pick(const ViewportHit& hit);
+    void useTheme();
+    void connectView();
+};
+
+void FieldWorkspace::Data::listen() {
+    builder.setPatient(false);
+    useTheme();
+    pending.setSingleShot(true);
+    pending.setInterval(kPendingMilliseconds);
+    connect(&pending, &QTimer::timeout, this, &Data::refresh);
+    connect(&studio.loop, &StudioLoop::framed, this, &Data::refresh);
+    connect(&studio.settings, &Settings::themeChanged, this, [this] {
+        useTheme();
+        refresh();
+    });
+    connect(&display, &FieldDisplayModel::changed, this, [this] {
+        studio.loop.setTint(display.value().showMismatch || display.value().touchedOnly);
+        refresh();
+    });
+    connect(&studio.document, &StudioDocument::changed, this, [this](StateParts parts) {
+        if (parts & StatePart::rig) unframed = true;
+        if (!studio.document.state().target.target) targetSelected = false;
+        refresh();
+    });
+}
+
+void FieldWorkspace::Data::useTheme() { builder.setColors(fieldSceneColors(studio.settings.theme())); }
+
+void FieldWorkspace::Data::refresh() {
+    if (!active || !stage) return;
+    stage->refresh();
+    const auto& frame = studio.loop.frame();
+    if (!frame) return;
+    const auto scene = builder.build(*frame, display.value(), targetSelected);
+    view()->setScene(scene);
+    if (unframed && frame->rig && isOf(*frame, studio.document.state())) frameOnce(*scene);
+    showGizmo();
+    if (builder.pending()) pending.start();
+}
+
+void FieldWorkspace::Data::frameOnce(const ViewportScene& scene) {
+    if (view()->width() < 2 || view()->height() < 2) return;
+    unframed = false;
+    const float aspect = static_cast<float>(view()->width()) / static_cast<float>(view()->height());
+    view()->setCamera(framed(firstCamera(), scene.bounds, aspect));
+}
+
+void FieldWorkspace::Data::showGizmo() {
+    const auto& target = studio.document.state().target.target;
+    const auto& frame = studio.loop.frame();
+    if (!targetSelected || !target || !frame) {
+        view()->setGizmo(std::nullopt);
+        view()->setSelectionBox({});
+        return;
+    }
+    const Placement& placement = studio.document.state().placement;
+    // A target that spins has turned away from where its placement puts it.
+    const bool spinning = frame->target == target && frame->turned != Angle();
+    const glm::mat4 deviceFromTarget = spinning ? frame->deviceFromTarget : placement.deviceFromTarget();
+    view()->setSelectionBox(placedBox(*target, deviceFromTarget));
+    if (gizmoShown && !gizmoShown->isChecked()) return view()->setGizmo(std::nullopt);
+    view()->setGizmo(Gizmo{placement, footOf(*target, deviceFromTarget)});
+}
+
+void FieldWorkspace::Data::select(bool target) {
+    targetSelected = target && studio.document.state().target.target != nullptr;
+    refresh();
+}
+
+void FieldWorkspace::Data::pick(const ViewportHit& hit) {
+    if (hit.id != kFieldId) return select(hit.id == kTargetId);
+    const auto& field = studio.document.state().field.field;
+    if (!field) return;
+    FieldDisplay shown = display.value();
+    const VoxelFrame& voxels = field->field.frame;
+    const auto at = glm::ivec3(glm::floor((hit.point - voxels.origin) / static_cast<float>(voxels.voxelSize)));
+    shown.voxel = hit.voxel ? *hit.voxel : glm::clamp(at, glm::ivec3(0), voxels.dimensions - 1);
+    display.set(shown);
+}
+
+void FieldWorkspace::Data::connectView() {
+    ViewportWidget* shown = view();
+    connect(shown, &ViewportWidget::picked, this, &Data::pick);
+    connect(shown, &ViewportWidget::gizmoDragged, this, [this](const Placement& placement) {
+        studio.document.preview([placement](StudioState& state) { state.placement = placement; });
+    });
+    connect(shown, &ViewportWidget::gizmoDropped, this,
+            [this](const QString& what) { studio.document.commitPreview(what); });
+    connect(shown, &ViewportWidget::gizmoCancelled, this, [this] { studio.document.cancelPreview(); });
+}
+
+FieldWorkspace::FieldWorkspace(Studio& studio) : data_(std::make_unique<Data>(studio)) {
+    Data& data = *data_;
+    addFieldCommands(studio, [&data] { return data.stage ? data.stage->window() : nullptr; });
+    data.gizmoShown = addViewCommands(studio.commands, [&data] { return data.view(); });
+    connect(data.gizmoShown, &QAction::toggled, &data, &Data::refresh);
+    addFieldExports({studio,
+                     [&data] {
+                         ExportView view;
+                         if (!data.view()) return view;
+                         view.scene = data.view()->scene();
+                         view.camera = data.view()->camera();
+                         view.ratio = static_cast<double>(data.view()->width()) / std::max(data.view()->height(), 1);
+                         return view;
+                     },
+                     nullptr});
+    data.listen();
+}
+
+FieldWorkspace::~FieldWorkspace() = default;
+
+QString FieldWorkspace::id() const { return "field"; }
+QString FieldWorkspace::title() const { return "Field"; }
+
+QWidget* FieldWorkspace::makeCentralView() {
+    data_->stage = new FieldStage(data_->studio);
+    data_->connectView();
+    bindViewShortcuts(data_->studio.commands, data_->view());
+    data_->view()->setActive(data_->active);
+    return data_->stage;
+}
+
+std::vector<WorkspaceDock> FieldWorkspace::makeDocks() {
+    Studio& studio = data_->studio;
+    // The field dock first: it adds the command that the match dock offers.
+    QWidget* field = makeFieldDock(studio, data_->display);
+    QWidget* target = makeTargetDock(studio);
+    new Watch(target, [this](bool shown) {
+        if (data_->stage) data_->stage->setTargetNoticesShown(!shown);
+    });
+    return {{"dock.actuators", "Actuators", "actuators", makeActuatorDock(studio), Qt::LeftDockWidgetArea, false},
+            {"dock.field", "Field", "field", field, Qt::LeftDockWidgetArea, true},
+            {"dock.target", "Target", "target", target, Qt::RightDockWidgetArea, false},
+            {"dock.match", "Match", "match", makeMatchDock(studio), Qt::RightDockWidgetArea, false}};
+}
+
+void FieldWorkspace::setActive(bool active) {
+    data_->active = active;
+    if (!data_->view()) return;
+    data_->view()->setActive(active);
+    data_->refresh();
+}
+
+} // namespace lumorph::studio

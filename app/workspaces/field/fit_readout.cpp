@@ -1,0 +1,49 @@
+#include "app/workspaces/field/fit_readout.h"
+
+#include <QGridLayout>
+
+#include "app/workspaces/field/dock_parts.h"
+#include "app/workspaces/field/match_numbers.h"
+
+namespace lumorph::studio {
+
+FitReadout::FitReadout(QWidget* parent)
+    : FloatingCard(parent), iou_(new QLabel(this)), unmatched_(makeNumber("field.unmatched", "0000 cm³", this)),
+      overfilled_(makeNumber("field.overfilled", "0000 cm³", this)) {
+    setObjectName("field.readout");
+    iou_->setObjectName("field.iou");
+    makeLarge(iou_, 36, "0.00");
+    auto* unit = new QLabel("IoU", this);
+    unit->setProperty("look", "muted");
+    unit->setToolTip("Intersection over union of the target and the volume that the device covers: 1 is a perfect fit");
+    auto* grid = new QGridLayout(this);
+    grid->setContentsMargins(16, 8, 16, 12);
+    grid->setHorizontalSpacing(8);
+    grid->setVerticalSpacing(4);
+    auto* top = new QHBoxLayout;
+    top->setSpacing(8);
+    top->addWidget(iou_);
+    top->addWidget(unit, 0, Qt::AlignBottom);
+    top->addStretch(1);
+    grid->addLayout(top, 0, 0, 1, 3);
+    const auto chip = [&](int row, bool unmatched, const QString& text, const QString& hint, QLabel* number) {
+        auto* label = new QLabel(text, this);
+        label->setToolTip(hint);
+        grid->addWidget(makeChip(unmatched, this), row, 0, Qt::AlignVCenter);
+        grid->addWidget(label, row, 1);
+        grid->addWidget(number, row, 2);
+    };
+    chip(1, true, "unmatched", "This colour on the target: volume that the device leaves out", unmatched_);
+    chip(2, false, "overfilled", "This colour on the device: volume outside the target", overfilled_);
+    hide();
+}
+
+void FitReadout::show(const MatchFrame& frame) {
+    setVisible(frame.matched);
+    if (!frame.matched) return;
+    iou_->setText(QString::number(frame.iouWanted, 'f', 2));
+    unmatched_->setText(volumeText(frame.unmatchedVolume));
+    overfilled_->setText(volumeText(frame.overfilledVolume));
+}
+
+} // namespace lumorph::studio

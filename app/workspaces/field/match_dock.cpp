@@ -1,0 +1,232 @@
+#include "app/workspaces/field/match_dock.h"
+
+#include <QHeaderView>
+#include <QStackedLayout>
+#include <QTreeView>
+#include <QVBoxLayout>
+
+#include "app/studio/look/palette.h"
+#include "app/studio/widgets/panel.h"
+#include "app/studio/widgets/plot.h"
+#include "app/studio/widgets/value_field.h"
+#include "app/workspaces/field/dock_parts.h"
+#include "app/workspaces/field/match_numbers.h"
+#include "app/workspaces/field/throttle.h"
+#include "app/workspaces/field/vote_table.h"
+
+namespace lumorph::studio {
+
+namespace {
+
+constexpr int kRefreshMilliseconds = 70;
+constexpr int kRowHeight = 24;
+constexpr int kMostRowsShown = 8;
+/// A warning appears above the first share and goes below the second, so that it does not flicker.
+constexpr double kWarnAbove = 0.02, kWarnBelow = 0.01;
+
+/// One sentence of warning with its remedy as a button; R42.
+class ShareWarning : public QWidget {
+public:
+    ShareWarning(const QString& name, const QString& sentence, QAction* remedy, QWidget* parent)
+        : QWidget(parent), sentence_(sentence), text_(new QLabel(this)) {
+        setObjectName(name);
+        text_->setObjectName(name + ".text");
+        text_->setWordWrap(true);
+        text_->setProperty("look", "warning");
+        auto* layout = new QHBoxLayout(this);
+        layout->setContentsMargins(0, 0, 0, 0);
+        layout->setSpacing(8);
+        layout->addWidget(text_, 1);
+        layout->addWidget(makeCommandButton(remedy, name + ".remedy", this), 0, Qt::AlignTop);
+        hide();
+    }
+    void show(double share) {
+        const bool wanted = share > (isHidden() ? kWarnAbove : kWarnBelow);
+        if (wanted) text_->setText(sentence_.arg(shareText(share)));
+        setVisible(wanted);
+    }
+
+private:
+    QString sentence_;
+    QLabel* text_;
+};
+
+class MatchDock : public QWidget {
+public:
+    explicit MatchDock(Studio& studio)
+        : studio_(studio), refresh_(new Throttle(
+                               kRefreshMilliseconds, [this] { refresh(); }, this)),
+          stack_(new QStackedLayout(this)) {
+        const auto empty = [&](const char* icon, const char* title, const char* text, const char* command) {
+            stack_->addWidget(makeEmptyState(icon, title, text, studio.commands.find(command), this));
+        };
+        empty("target", "Nothing to match yet",
+              "With a target the device takes its shape, and here stands how well it fits.", "target.open");
+        empty("field", "No field yet",
+              "Matching asks the mechanical distance field of the device. It takes a moment to build.", "field.build");
+        stack_->addWidget(column_.widget);
+        column_.layout->addWidget(numbers_);
+        addWarnings();
+        addMethod();
+        addActuators();
+        column_.layout->addStretch(1);
+        connect(&studio.loop, &StudioLoop::framed, this, [this] { refresh_->request(); });
+        connect(&studio.document, &StudioDocument::changed, this, [this] { refresh(); });
+        refresh();
+    }
+
+private:
+    void addWarnings() {
+        QAction* remedy = studio_.commands.find("target.autoPlace");
+        beyond_ = new ShareWarning("match.beyond", "%1 of the target reaches beyond the frame.", remedy, this);
+        unreachable_ =
+            new ShareWarning("match.unreachable", "%1 of the target is where no actuator reaches.", remedy, this);
+        column_.layout->addWidget(beyond_);
+        column_.layout->addWidget(unreachable_);
+    }
+
+    void addMethod() {
+        auto* bar = new QWidget(column_.widget);
+        auto* layout = new QHBoxLayout(bar);
+        layout->setContentsMargins(0, 0, 0, 0);
+        layout->setSpacing(0);
+        const auto add = [&](const char* command, const char* name) {
+            layout->addWidget(makeCommandButton(studio_.commands.find(command), name, bar), 1);
+        };
+        add("match.refined", "match.method.refined");
+        add("match.voting", "match.method.voting");
+        layout->addSpacing(8);
+        add("match.live", "match.live");
+        column_.layout->addWidget(bar);
+
+        budget_ = new ValueField(Quantity::plain, 1.0, 100.0, 8.0, column_.widget);
+        budget_->setObjectName("match.budget");
+        budget_->setStep(1.0);
+        budget_->setToolTip("Milliseconds that refinement may take for each frame");
+        const auto edit = [](double milliseconds) {
+            return [budget = Microseconds(static_cast<std::int64_t>(milliseconds * 1000.0))](StudioState& state) {
+                state.matching.budget = budget;
+            };
+        };
+        connect(budget_, &ValueField::previewed, this,
+                [this, edit](double value) { studio_.document.preview(edit(value)); });
+        connect(budget_, &ValueField::committed, this, [this, edit](double value) {
+            studio_.document.preview(edit(value));
+            studio_.document.commitPreview("Change the budget");
+        });
+        connect(budget_, &ValueField::reverted, this, [this] { studio_.document.cancelPreview(); });
+        column_.layout->addWidget(makeRow("&Budget in ms", budget_, column_.widget));
+    }
+
+    void addActuators() {
+        column_.layout->addWidget(makeHeading("Actuators", column_.widget));
+        model_ = new VoteModel(this);
+        table_ = new QTreeView(column_.widget);
+        table_->setObjectName("match.actuators");
+        table_->setAccessibleName("What the match says for each actuator");
+        table_->setModel(model_);
+        table_->setRootIsDecorated(false);
+        table_->setUniformRowHeights(true);
+        table_->setFrameShape(QFrame::NoFrame);
+        table_->setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
+        table_->header()->setStretchLastSection(false);
+        table_->header()->setSectionResizeMode(VoteModel::nameColumn, QHeaderView::Stretch);
+        for (const int column : {VoteModel::votedColumn, VoteModel::levelColumn}) fixWidth(column, "Voted 0");
+        fixWidth(VoteModel::stateColumn, "out of reach 0");
+        connect(table_->selectionModel(), &QItemSelectionModel::currentChanged, this, [this] { plotSelected(); });
+        column_.layout->addWidget(table_);
+
+        plot_ = new Plot(column_.widget);
+        plot_->setObjectName("match.plot");
+        plot_->setAxes("level", "error");
+        plot_->setToolTip("Eq. 1: symmetric difference over intersection with the target, for each level of the chosen "
+                          "actuator. The lowest point is its vote.");
+        plot_->setEmptyText("No level of this actuator touches the target.");
+        column_.layout->addWidget(plot_);
+
+        times_ = new QLabel(column_.widget);
+        times_->setObjectName("match.times");
+        times_->setProperty("look", "muted");
+        times_->setWordWrap(true);
+        times_->setToolTip("Milliseconds of each stage of the newest frame");
+        column_.layout->addWidget(times_);
+    }
+
+    void fixWidth(int column, const QString& widest) {
+        table_->header()->setSectionResizeMode(column, QHeaderView::Fixed);
+        table_->header()->resizeSection(column, table_->fontMetrics().horizontalAdvance(widest) + 12);
+    }
+
+    void refresh() {
+        const StudioState& state = studio_.document.state();
+        stack_->setCurrentIndex(!state.target.target ? 0 : !state.field.field ? 1 : 2);
+        const auto& frame = studio_.loop.frame();
+        if (!isVisible() || !frame) return;
+        numbers_->show(*frame, state.matching.method);
+        beyond_->show(frame->matched ? frame->shareBeyondFrame : 0.0);
+        unreachable_->show(frame->matched ? frame->shareUnreachable : 0.0);
+        budget_->setEnabled(state.matching.method == MatchMethod::refined);
+        budget_->setValue(static_cast<double>(state.matching.budget.count()) / 1000.0);
+        showActuators(frame);
+        showTimes(frame->ms);
+    }
+
+    void showActuators(const std::shared_ptr<const MatchFrame>& frame) {
+        const int before = model_->rowCount();
+        model_->setFrame(frame);
+        const int rows = model_->rowCount();
+        if (rows != before || table_->height() <= kRowHeight)
+            table_->setFixedHeight(table_->header()->sizeHint().height() + 4 +
+                                   std::min(rows, kMostRowsShown) * std::max(kRowHeight, table_->sizeHintForRow(0)));
+        if (!table_->currentIndex().isValid() && rows > 0) table_->setCurrentIndex(model_->index(0, 0));
+        plotSelected();
+    }
+
+    void plotSelected() {
+        const auto& frame = studio_.loop.frame();
+        const int row = table_->currentIndex().row();
+        const bool known = frame && frame->matched && frame->votes && row >= 0 &&
+                           static_cast<std::size_t>(row) < frame->votes->actuators.size();
+        const ActuatorVote* vote = known ? &frame->votes->actuators[static_cast<std::size_t>(row)] : nullptr;
+        if (!vote || !vote->reached) {
+            plot_->setCurves({});
+            plot_->setMark(-1.0);
+            return;
+        }
+        const QString name = model_->index(row, VoteModel::nameColumn).data().toString();
+        plot_->setCurves({{name, currentPalette().accent, errorCurve(*vote)}});
+        const auto at = static_cast<std::size_t>(row);
+        plot_->setMark(at < frame->wanted.size() ? frame->wanted[at].index : vote->level.index);
+    }
+
+    void showTimes(const MatchTimes& ms) {
+        const auto number = [](double value) { return QString::number(value, 'f', 1); };
+        times_->setText(QString("pose %1 · voxels %2 · voting %3 · refine %4 · deform %5 · frame %6 ms")
+                            .arg(number(ms.pose), number(ms.voxelize), number(ms.match), number(ms.refine),
+                                 number(ms.deform), number(ms.total)));
+    }
+
+    void showEvent(QShowEvent* event) override {
+        QWidget::showEvent(event);
+        refresh_->request();
+    }
+
+    Studio& studio_;
+    Throttle* refresh_;
+    QStackedLayout* stack_;
+    Column column_ = makeColumn(this);
+    MatchNumbers* numbers_ = new MatchNumbers(column_.widget);
+    ShareWarning* beyond_ = nullptr;
+    ShareWarning* unreachable_ = nullptr;
+    ValueField* budget_ = nullptr;
+    VoteModel* model_ = nullptr;
+    QTreeView* table_ = nullptr;
+    Plot* plot_ = nullptr;
+    QLabel* times_ = nullptr;
+};
+
+} // namespace
+
+QWidget* makeMatchDock(Studio& studio) { return new MatchDock(studio); }
+
+} // namespace lumorph::studio

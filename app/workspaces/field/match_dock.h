@@ -1,0 +1,14 @@
+#pragma once
+
+#include <QWidget>
+
+#include "app/studio/shell/studio.h"
+
+namespace lumorph::studio {
+
+/// The content of the dock "dock.match": how well the device fits the target, what is left out and what sticks out, how
+/// it is matched, and what Eq. 1 says for each actuator. Uses the commands target.open, target.autoPlace, field.build,
+/// match.live, match.refined and match.voting.
+[[nodiscard]] QWidget* makeMatchDock(Studio& studio);
+
+} // namespace lumorph::studio

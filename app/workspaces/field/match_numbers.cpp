@@ -1,0 +1,100 @@
+#include "app/workspaces/field/match_numbers.h"
+
+#include <QGridLayout>
+#include <QLabel>
+#include <QPainter>
+
+#include "app/studio/look/palette.h"
+#include "app/workspaces/field/dock_parts.h"
+
+namespace lumorph::studio {
+
+namespace {
+
+class Chip : public QWidget {
+public:
+    Chip(bool unmatched, QWidget* parent) : QWidget(parent), unmatched_(unmatched) { setFixedSize(10, 10); }
+
+protected:
+    void paintEvent(QPaintEvent* /*event*/) override {
+        QPainter painter(this);
+        painter.setRenderHint(QPainter::Antialiasing);
+        painter.setPen(Qt::NoPen);
+        painter.setBrush(unmatched_ ? currentPalette().unmatched : currentPalette().overfilled);
+        painter.drawRoundedRect(rect(), 2.0, 2.0);
+    }
+
+private:
+    bool unmatched_;
+};
+
+QString iouText(double iou) { return QString::number(iou, 'f', 2); }
+
+QLabel* muted(const QString& text, QWidget* parent) {
+    auto* label = new QLabel(text, parent);
+    label->setProperty("look", "muted");
+    return label;
+}
+
+/// A chip, a word and a number in one row.
+QWidget* makeVolume(bool unmatched, const QString& text, const QString& hint, QLabel* number, QWidget* parent) {
+    auto* row = new QWidget(parent);
+    row->setToolTip(hint);
+    auto* layout = new QHBoxLayout(row);
+    layout->setContentsMargins(0, 0, 0, 0);
+    layout->setSpacing(8);
+    layout->addWidget(makeChip(unmatched, row));
+    layout->addWidget(new QLabel(text, row), 1);
+    layout->addWidget(number);
+    return row;
+}
+
+} // namespace
+
+QWidget* makeChip(bool unmatched, QWidget* parent) { return new Chip(unmatched, parent); }
+
+MatchNumbers::MatchNumbers(QWidget* parent)
+    : QWidget(parent), iou_(new QLabel(this)), voting_(makeNumber("match.iou.voting", "0.00", this)),
+      wanted_(makeNumber("match.iou.wanted", "0.00", this)), reached_(makeNumber("match.iou.reached", "0.00", this)),
+      unmatched_(makeNumber("match.unmatched", "0000 cm³", this)),
+      overfilled_(makeNumber("match.overfilled", "0000 cm³", this)) {
+    iou_->setObjectName("match.iou");
+    iou_->setToolTip("Intersection over union of the target and the volume that the device covers: 1 is a perfect fit");
+    makeLarge(iou_, 44, "0.00");
+
+    auto* grid = new QGridLayout(this);
+    grid->setContentsMargins(0, 0, 0, 0);
+    grid->setHorizontalSpacing(8);
+    grid->setVerticalSpacing(2);
+    grid->addWidget(iou_, 0, 0, 3, 1);
+    grid->addWidget(muted("IoU", this), 0, 1, 3, 1, Qt::AlignLeft | Qt::AlignVCenter);
+    grid->setColumnStretch(1, 1);
+    const auto step = [&](int row, const QString& text, const QString& hint, QLabel* number) {
+        QLabel* label = muted(text, this);
+        label->setToolTip(hint);
+        grid->addWidget(label, row, 2);
+        grid->addWidget(number, row, 3);
+    };
+    step(0, "voting", "By Eq. 1 alone", voting_);
+    step(1, "refined", "After refinement", wanted_);
+    step(2, "reached", "Of what the servos have reached by now", reached_);
+    grid->setRowMinimumHeight(3, 8);
+    grid->addWidget(makeVolume(true, "Unmatched", "Volume of the target that the device leaves out", unmatched_, this),
+                    4, 0, 1, 4);
+    grid->addWidget(
+        makeVolume(false, "Overfilled", "Volume that the device covers outside the target", overfilled_, this), 5, 0, 1,
+        4);
+}
+
+void MatchNumbers::show(const MatchFrame& frame, MatchMethod method) {
+    const QString none = "–";
+    const bool known = frame.matched;
+    iou_->setText(known ? iouText(frame.iouWanted) : none);
+    voting_->setText(known ? iouText(frame.iouVoting) : none);
+    wanted_->setText(known && method == MatchMethod::refined ? iouText(frame.iouWanted) : none);
+    reached_->setText(known ? iouText(frame.iouEstimated) : none);
+    unmatched_->setText(known ? volumeText(frame.unmatchedVolume) : none);
+    overfilled_->setText(known ? volumeText(frame.overfilledVolume) : none);
+}
+
+} // namespace lumorph::studio

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <QLabel>
+#include <QWidget>
+
+#include "core/loop/live_match.h"
+
+namespace lumorph::studio {
+
+/// How well the device fits the target: the IoU large, the steps to it, and the volumes that do not fit. Numbers are
+/// "match.iou", "match.iou.voting", "match.iou.wanted", "match.iou.reached", "match.unmatched" and "match.overfilled".
+class MatchNumbers : public QWidget {
+    Q_OBJECT
+public:
+    explicit MatchNumbers(QWidget* parent = nullptr);
+    /// A dash everywhere while nothing is matched.
+    void show(const MatchFrame& frame, MatchMethod method);
+    using QWidget::show;
+
+private:
+    QLabel* iou_ = nullptr;
+    QLabel* voting_ = nullptr;
+    QLabel* wanted_ = nullptr;
+    QLabel* reached_ = nullptr;
+    QLabel* unmatched_ = nullptr;
+    QLabel* overfilled_ = nullptr;
+};
+
+/// A square in the colour of unmatched or overfilled volume, in any theme.
+[[nodiscard]] QWidget* makeChip(bool unmatched, QWidget* parent);
+
+} // namespace lumorph::studio

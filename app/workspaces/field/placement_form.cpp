@@ -1,0 +1,91 @@
+#include "app/workspaces/field/placement_form.h"
+
+#include <functional>
+#include <numbers>
+#include <vector>
+
+#include <QVBoxLayout>
+
+#include "app/studio/widgets/panel.h"
+#include "app/studio/widgets/value_field.h"
+
+namespace lumorph::studio {
+
+namespace {
+
+constexpr double kFarthest = 10.0; ///< metres
+constexpr double kTurn = 2.0 * std::numbers::pi;
+
+class PlacementForm : public QWidget {
+public:
+    PlacementForm(StudioDocument& document, QWidget* parent) : QWidget(parent), document_(document) {
+        auto* layout = new QVBoxLayout(this);
+        layout->setContentsMargins(0, 0, 0, 0);
+        layout->setSpacing(8);
+        addLength("x", "&X", "To the right of the device's middle", 0);
+        addLength("y", "&Y", "Above the table", 1);
+        addLength("z", "&Z", "Towards the front of the device", 2);
+        add(
+            {"turn", "T&urn", "Heading about the upright axis"}, Quantity::angle, -kTurn, kTurn, 0.0,
+            std::numbers::pi / 180.0, [](const Placement& placement) { return placement.yaw.inRadians(); },
+            [](Placement& placement, double value) { placement.yaw = Angle::radians(value); });
+        add(
+            {"size", "Si&ze", "100 % is the size the file says"}, Quantity::share, 1e-6, 1e6, 1.0, 0.01,
+            [](const Placement& placement) { return placement.scale; },
+            [](Placement& placement, double value) { placement.scale = value; });
+        connect(&document, &StudioDocument::changed, this, [this](StateParts parts) {
+            if (parts & (StatePart::placement | StatePart::target)) refresh();
+        });
+        refresh();
+    }
+
+private:
+    using Get = std::function<double(const Placement&)>;
+    using Set = std::function<void(Placement&, double)>;
+    struct Words {
+        QString name, label, hint;
+    };
+    struct Line {
+        ValueField* field = nullptr;
+        Get get;
+    };
+
+    void addLength(const QString& name, const QString& label, const QString& hint, int axis) {
+        add(
+            {name, label, hint}, Quantity::length, -kFarthest, kFarthest, 0.0, 0.001,
+            [axis](const Placement& placement) { return static_cast<double>(placement.translation[axis]); },
+            [axis](Placement& placement, double value) { placement.translation[axis] = static_cast<float>(value); });
+    }
+
+    void add(const Words& words, Quantity quantity, double low, double high, double reset, double step, Get get,
+             const Set& set) {
+        auto* field = new ValueField(quantity, low, high, reset, this);
+        field->setObjectName("target." + words.name);
+        field->setToolTip(words.hint + ". Type a value, or drag sideways.");
+        field->setStep(step);
+        const auto edit = [set](double value) {
+            return [set, value](StudioState& state) { set(state.placement, value); };
+        };
+        connect(field, &ValueField::previewed, this, [this, edit](double value) { document_.preview(edit(value)); });
+        connect(field, &ValueField::committed, this, [this, edit](double value) {
+            document_.preview(edit(value));
+            document_.commitPreview("Place the target");
+        });
+        connect(field, &ValueField::reverted, this, [this] { document_.cancelPreview(); });
+        layout()->addWidget(makeRow(words.label, field, this));
+        lines_.push_back({field, std::move(get)});
+    }
+
+    void refresh() {
+        for (const Line& line : lines_) line.field->setValue(line.get(document_.state().placement));
+    }
+
+    StudioDocument& document_;
+    std::vector<Line> lines_;
+};
+
+} // namespace
+
+QWidget* makePlacementForm(StudioDocument& document, QWidget* parent) { return new PlacementForm(document, parent); }
+
+} // namespace lumorph::studio

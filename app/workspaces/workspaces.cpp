@@ -1,0 +1,15 @@
+#include "app/workspaces/workspaces.h"
+
+#include "app/workspaces/field/field_workspace.h"
+#include "app/workspaces/rig/rig_workspace.h"
+
+namespace lumorph::studio {
+
+std::vector<std::unique_ptr<Workspace>> makeWorkspaces(Studio& studio) {
+    std::vector<std::unique_ptr<Workspace>> workspaces;
+    workspaces.push_back(std::make_unique<RigWorkspace>(studio));
+    workspaces.push_back(std::make_unique<FieldWorkspace>(studio));
+    return workspaces;
+}
+
+} // namespace lumorph::studio

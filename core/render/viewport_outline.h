@@ -1,0 +1,23 @@
+#pragma once
+
+#include "core/render/gl_objects.h"
+#include "core/render/program.h"
+#include "core/render/viewport_frame.h"
+
+namespace lumorph {
+
+/// The outline of the selected surfaces in the accent colour.
+class ViewportOutline {
+public:
+    /// Blends it into the bound framebuffer around what an alpha of 0 marks in `picture`, within a piece of the frame,
+    /// and makes the frame opaque.
+    void draw(GLuint picture, const FramePiece& piece, const ViewportFrame& frame);
+
+    [[nodiscard]] std::size_t objectCount() const noexcept { return 1 + program_.objectCount(); }
+
+private:
+    Program program_{shaderFiles({"full_frame.vert"}, {"outline.frag"})};
+    gl::VertexArray empty_;
+};
+
+} // namespace lumorph

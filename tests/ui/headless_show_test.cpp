@@ -1,0 +1,75 @@
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <string>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <opencv2/core.hpp>
+#include <opencv2/videoio.hpp>
+
+#include "app/studio/headless_show.h"
+#include "core/render/image.h"
+
+namespace lumorph::studio {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Share of pixels whose green stands out by this much, as field voxels and level surfaces do.
+double greenShare(const Image& image) {
+    std::size_t green = 0;
+    for (const Image::Pixel& p : image.pixels()) green += p[1] > p[0] + 20 && p[1] > p[2] + 12 ? 1 : 0;
+    return static_cast<double>(green) / static_cast<double>(image.pixels().size());
+}
+
+/// Share of pixels that two pictures of one size differ in.
+double differentShare(const Image& a, const Image& b) {
+    std::size_t different = 0;
+    for (std::size_t k = 0; k < a.pixels().size(); ++k) {
+        int distance = 0;
+        for (std::size_t c = 0; c < 3; ++c) distance += std::abs(int(a.pixels()[k][c]) - int(b.pixels()[k][c]));
+        different += distance > 24 ? 1 : 0;
+    }
+    return static_cast<double>(different) / static_cast<double>(a.pixels().size());
+}
+
+TEST(HeadlessShow, DrawsPicturesAVideoAndATableWithoutADisplay) {
+    const fs::path folder = fs::temp_directory_path() / ("lumorph-show-" + std::to_string(::getpid()));
+    std::ostringstream out;
+    ASSERT_EQ(runHeadlessShow(folder, 0.5, out), 0) << out.str();
+    EXPECT_THAT(out.str(), testing::HasSubstr(folder.string()));
+
+    const auto picture = [&](const char* name) { return readPng(folder / name); };
+    const Image start = picture("start.png");
+    EXPECT_EQ(start.size(), glm::ivec2(1600, 1000));
+    EXPECT_GT(differentShare(start, picture("end.png")), 0.01) << "the device moved";
+    EXPECT_GT(differentShare(picture("end.png"), picture("unmatched.png")), 0.002) << "what does not match is tinted";
+    EXPECT_GT(greenShare(picture("voxels.png")), greenShare(start) + 0.03);
+    EXPECT_GT(greenShare(picture("level-surface.png")), greenShare(start) + 0.01);
+
+    cv::VideoCapture video((folder / "swell.mp4").string(), cv::CAP_FFMPEG);
+    int frames = 0;
+    for (cv::Mat frame; video.read(frame); ++frames) EXPECT_EQ(frame.size(), cv::Size(960, 600));
+    EXPECT_EQ(frames, 15);
+
+    std::ifstream table(folder / "swell.csv");
+    int lines = 0;
+    for (std::string line; std::getline(table, line); ++lines) EXPECT_EQ(std::count(line.begin(), line.end(), ','), 14);
+    EXPECT_EQ(lines, 16) << "a line of names and one for each picture";
+    fs::remove_all(folder);
+}
+
+TEST(HeadlessShow, SaysWhatIsWrongAndFails) {
+    std::ostringstream out;
+    EXPECT_EQ(runHeadlessShow("/proc/nowhere", 1.0, out), 1);
+    EXPECT_THAT(out.str(), testing::HasSubstr("/proc/nowhere"));
+    std::ostringstream none;
+    EXPECT_EQ(runHeadlessShow(fs::temp_directory_path(), 0.0, none), 1);
+    EXPECT_THAT(none.str(), testing::HasSubstr("--seconds"));
+}
+
+} // namespace
+} // namespace lumorph::studio
