@@ -26,6 +26,7 @@ namespace {
 
 /// How long until the scene is made again while part of it is still being prepared.
 constexpr int kPendingMilliseconds = 30;
+constexpr int kNumbersMilliseconds = 70;
 
 /// Tells when a widget appears or goes.
 class Watch : public QObject {
@@ -85,6 +86,7 @@ struct FieldWorkspace::Data : public QObject {
     bool targetSelected = false;
     bool unframed = true; ///< another device came: the view has to find it
     QTimer pending;
+    Throttle numbers{kNumbersMilliseconds};
 
     [[nodiscard]] ViewportWidget* view() const { return stage ? stage->viewport() : nullptr; }
     void listen();
@@ -104,6 +106,7 @@ void FieldWorkspace::Data::listen() {
     pending.setInterval(kPendingMilliseconds);
     connect(&pending, &QTimer::timeout, this, &Data::refresh);
     connect(&studio.loop, &StudioLoop::framed, this, &Data::refresh);
+    connect(&studio.loop, &StudioLoop::framed, &numbers, &Throttle::request);
     connect(&studio.settings, &Settings::themeChanged, this, [this] {
         useTheme();
         refresh();
@@ -208,7 +211,7 @@ QString FieldWorkspace::id() const { return "field"; }
 QString FieldWorkspace::title() const { return "Field"; }
 
 QWidget* FieldWorkspace::makeCentralView() {
-    data_->stage = new FieldStage(data_->studio);
+    data_->stage = new FieldStage(data_->studio, data_->numbers);
     data_->connectView();
     bindViewShortcuts(data_->studio.commands, data_->view());
     data_->view()->setActive(data_->active);
@@ -226,7 +229,7 @@ std::vector<WorkspaceDock> FieldWorkspace::makeDocks() {
     return {{"dock.actuators", "Actuators", "actuator", makeActuatorDock(studio), Qt::LeftDockWidgetArea, false},
             {"dock.field", "Field", "field", field, Qt::LeftDockWidgetArea, true},
             {"dock.target", "Target", "target", target, Qt::RightDockWidgetArea, false},
-            {"dock.match", "Match", "live", makeMatchDock(studio), Qt::RightDockWidgetArea, false}};
+            {"dock.match", "Match", "live", makeMatchDock(studio, data_->numbers), Qt::RightDockWidgetArea, false}};
 }
 
 void FieldWorkspace::setActive(bool active) {
