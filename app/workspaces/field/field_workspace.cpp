@@ -95,6 +95,7 @@ struct FieldWorkspace::Data : public QObject {
     void showGizmo();
     void select(bool target);
     void pick(const ViewportHit& hit);
+    [[nodiscard]] bool targetBehind(const ViewportHit& hit) const;
     void useTheme();
     void connectView();
 };
@@ -165,8 +166,21 @@ void FieldWorkspace::Data::select(bool target) {
     refresh();
 }
 
+/// Whether the target lies under the pointer behind what was hit: device and target run through one another, and only
+/// the target can be selected.
+bool FieldWorkspace::Data::targetBehind(const ViewportHit& hit) const {
+    if (!view() || !view()->scene() || hit.id == 0) return false;
+    const ViewCamera& camera = view()->camera();
+    const glm::vec3 eye = eyeOf(camera);
+    const glm::vec3 along = camera.orthographic ? camera.pivot - eye : hit.point - eye;
+    ViewportScene only;
+    for (const ViewportSurface& surface : view()->scene()->surfaces)
+        if (surface.id == kTargetId) only.surfaces.push_back(surface);
+    return lumorph::pick(only, Ray{hit.point, glm::normalize(along)}).has_value();
+}
+
 void FieldWorkspace::Data::pick(const ViewportHit& hit) {
-    if (hit.id != kFieldId) return select(hit.id == kTargetId);
+    if (hit.id != kFieldId) return select(hit.id == kTargetId || targetBehind(hit));
     const auto& field = studio.document.state().field.field;
     if (!field) return;
     FieldDisplay shown = display.value();
