@@ -17,6 +17,7 @@ constexpr int kUsualDockWidth = 312;
 
 WorkspacePage::WorkspacePage(Workspace& workspace, Settings& settings, Commands& commands, QWidget* parent)
     : QMainWindow(parent, Qt::Widget), workspace_(workspace), settings_(settings) {
+    setWindowFlags(Qt::Widget); // QMainWindow makes itself a window whatever it is told when it is made
     setObjectName("workspace." + workspace.id());
     setDockOptions(QMainWindow::AllowNestedDocks | QMainWindow::AllowTabbedDocks);
     setTabPosition(Qt::AllDockWidgetAreas, QTabWidget::North);

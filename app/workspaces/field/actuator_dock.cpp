@@ -23,16 +23,15 @@ constexpr int kRefreshMilliseconds = 40;
 class ActuatorDock : public QWidget {
 public:
     explicit ActuatorDock(Studio& studio)
-        : studio_(studio), hand_(studio.document, studio.loop),
-          refresh_(new Throttle(
-              kRefreshMilliseconds, [this] { refresh(); }, this)) {
+        : studio_(studio), hand_(studio.document, studio.loop), refresh_(new Throttle(kRefreshMilliseconds, this)) {
         auto* layout = new QVBoxLayout(this);
         layout->setContentsMargins(0, 0, 0, 0);
         layout->setSpacing(0);
         layout->addWidget(makeButtons());
         layout->addWidget(column_.widget, 1);
         layout->addWidget(makeHint());
-        connect(&studio.loop, &StudioLoop::framed, this, [this] { refresh_->request(); });
+        connect(&studio.loop, &StudioLoop::framed, refresh_, &Throttle::request);
+        connect(refresh_, &Throttle::due, this, [this] { refresh(); });
         connect(&studio.document, &StudioDocument::changed, this, [this](StateParts parts) {
             if (parts & (StatePart::rig | StatePart::field)) rebuild();
             refresh();

@@ -184,7 +184,7 @@ void FieldSceneBuilder::Data::addTarget(ViewportScene& scene, const MatchFrame& 
     surface.positions = posed ? frame.targetPositions : shaped.positions;
     surface.worldFromSurface = frame.deviceFromTarget;
     surface.color = colors.target;
-    surface.opacity = frame.matched ? 0.42F : 0.6F;
+    surface.opacity = frame.matched ? 0.5F : 0.6F;
     surface.tinted = true;
     surface.outlined = selected;
     scene.surfaces.push_back(std::move(surface));

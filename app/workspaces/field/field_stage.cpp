@@ -22,7 +22,7 @@ QFrame* makeBar(QWidget* parent) {
 
 } // namespace
 
-FieldStage::FieldStage(Studio& studio, QWidget* parent)
+FieldStage::FieldStage(Studio& studio, Throttle& numbers, QWidget* parent)
     : QWidget(parent), studio_(studio), viewport_(new ViewportWidget(studio.renderer, this)),
       readout_(new FitReadout(this)), timeline_(new Timeline(studio, this)) {
     setObjectName("field.stage");
@@ -47,6 +47,9 @@ FieldStage::FieldStage(Studio& studio, QWidget* parent)
     lay(readout_, 2, 2, Qt::AlignRight | Qt::AlignBottom);
     grid->setColumnStretch(1, 1);
     grid->setRowStretch(1, 1);
+    connect(&numbers, &Throttle::due, this, [this] {
+        if (studio_.loop.frame()) readout_->show(*studio_.loop.frame());
+    });
     refresh();
 }
 
@@ -124,7 +127,7 @@ void FieldStage::refresh() {
     const StudioState& state = studio_.document.state();
     hint_->setVisible(!state.target.target && state.rig.rig);
     timeline_->refresh();
-    if (studio_.loop.frame()) readout_->show(*studio_.loop.frame());
+    if (!state.target.target) readout_->hide();
 }
 
 } // namespace lumorph::studio

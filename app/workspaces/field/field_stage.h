@@ -3,6 +3,7 @@
 #include "app/studio/shell/studio.h"
 #include "app/studio/viewport/viewport_widget.h"
 #include "app/workspaces/field/fit_readout.h"
+#include "app/workspaces/field/throttle.h"
 #include "app/workspaces/field/timeline.h"
 
 namespace lumorph::studio {
@@ -12,10 +13,11 @@ namespace lumorph::studio {
 class FieldStage : public QWidget {
     Q_OBJECT
 public:
-    explicit FieldStage(Studio& studio, QWidget* parent = nullptr);
+    /// Numbers follow the newest frame whenever `numbers` are due.
+    FieldStage(Studio& studio, Throttle& numbers, QWidget* parent = nullptr);
 
     [[nodiscard]] ViewportWidget* viewport() const noexcept { return viewport_; }
-    /// Follows the newest frame.
+    /// What is there and what is not, and the time of the animation.
     void refresh();
     /// Notices about the target stand over the view while no dock shows them.
     void setTargetNoticesShown(bool shown);

@@ -26,6 +26,7 @@ namespace {
 
 /// How long until the scene is made again while part of it is still being prepared.
 constexpr int kPendingMilliseconds = 30;
+constexpr int kNumbersMilliseconds = 70;
 
 /// Tells when a widget appears or goes.
 class Watch : public QObject {
@@ -85,6 +86,7 @@ struct FieldWorkspace::Data : public QObject {
     bool targetSelected = false;
     bool unframed = true; ///< another device came: the view has to find it
     QTimer pending;
+    Throttle numbers{kNumbersMilliseconds};
 
     [[nodiscard]] ViewportWidget* view() const { return stage ? stage->viewport() : nullptr; }
     void listen();
@@ -93,6 +95,7 @@ struct FieldWorkspace::Data : public QObject {
     void showGizmo();
     void select(bool target);
     void pick(const ViewportHit& hit);
+    [[nodiscard]] bool targetBehind(const ViewportHit& hit) const;
     void useTheme();
     void connectView();
 };
@@ -104,6 +107,7 @@ void FieldWorkspace::Data::listen() {
     pending.setInterval(kPendingMilliseconds);
     connect(&pending, &QTimer::timeout, this, &Data::refresh);
     connect(&studio.loop, &StudioLoop::framed, this, &Data::refresh);
+    connect(&studio.loop, &StudioLoop::framed, &numbers, &Throttle::request);
     connect(&studio.settings, &Settings::themeChanged, this, [this] {
         useTheme();
         refresh();
@@ -162,8 +166,21 @@ void FieldWorkspace::Data::select(bool target) {
     refresh();
 }
 
+/// Whether the target lies under the pointer behind what was hit: device and target run through one another, and only
+/// the target can be selected.
+bool FieldWorkspace::Data::targetBehind(const ViewportHit& hit) const {
+    if (!view() || !view()->scene() || hit.id == 0) return false;
+    const ViewCamera& camera = view()->camera();
+    const glm::vec3 eye = eyeOf(camera);
+    const glm::vec3 along = camera.orthographic ? camera.pivot - eye : hit.point - eye;
+    ViewportScene only;
+    for (const ViewportSurface& surface : view()->scene()->surfaces)
+        if (surface.id == kTargetId) only.surfaces.push_back(surface);
+    return lumorph::pick(only, Ray{hit.point, glm::normalize(along)}).has_value();
+}
+
 void FieldWorkspace::Data::pick(const ViewportHit& hit) {
-    if (hit.id != kFieldId) return select(hit.id == kTargetId);
+    if (hit.id != kFieldId) return select(hit.id == kTargetId || targetBehind(hit));
     const auto& field = studio.document.state().field.field;
     if (!field) return;
     FieldDisplay shown = display.value();
@@ -208,7 +225,7 @@ QString FieldWorkspace::id() const { return "field"; }
 QString FieldWorkspace::title() const { return "Field"; }
 
 QWidget* FieldWorkspace::makeCentralView() {
-    data_->stage = new FieldStage(data_->studio);
+    data_->stage = new FieldStage(data_->studio, data_->numbers);
     data_->connectView();
     bindViewShortcuts(data_->studio.commands, data_->view());
     data_->view()->setActive(data_->active);
@@ -226,7 +243,7 @@ std::vector<WorkspaceDock> FieldWorkspace::makeDocks() {
     return {{"dock.actuators", "Actuators", "actuator", makeActuatorDock(studio), Qt::LeftDockWidgetArea, false},
             {"dock.field", "Field", "field", field, Qt::LeftDockWidgetArea, true},
             {"dock.target", "Target", "target", target, Qt::RightDockWidgetArea, false},
-            {"dock.match", "Match", "live", makeMatchDock(studio), Qt::RightDockWidgetArea, false}};
+            {"dock.match", "Match", "live", makeMatchDock(studio, data_->numbers), Qt::RightDockWidgetArea, false}};
 }
 
 void FieldWorkspace::setActive(bool active) {

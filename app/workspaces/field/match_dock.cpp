@@ -18,7 +18,6 @@ namespace lumorph::studio {
 
 namespace {
 
-constexpr int kRefreshMilliseconds = 70;
 constexpr int kRowHeight = 24;
 constexpr int kMostRowsShown = 8;
 /// A warning appears above the first share and goes below the second, so that it does not flicker.
@@ -53,10 +52,7 @@ private:
 
 class MatchDock : public QWidget {
 public:
-    explicit MatchDock(Studio& studio)
-        : studio_(studio), refresh_(new Throttle(
-                               kRefreshMilliseconds, [this] { refresh(); }, this)),
-          stack_(new QStackedLayout(this)) {
+    MatchDock(Studio& studio, Throttle& numbers) : studio_(studio), due_(numbers), stack_(new QStackedLayout(this)) {
         const auto empty = [&](const char* icon, const char* title, const char* text, const char* command) {
             stack_->addWidget(makeEmptyState(icon, title, text, studio.commands.find(command), this));
         };
@@ -69,8 +65,10 @@ public:
         addWarnings();
         addMethod();
         addActuators();
+        addBudget();
+        addTimes();
         column_.layout->addStretch(1);
-        connect(&studio.loop, &StudioLoop::framed, this, [this] { refresh_->request(); });
+        connect(&numbers, &Throttle::due, this, [this] { refresh(); });
         connect(&studio.document, &StudioDocument::changed, this, [this] { refresh(); });
         refresh();
     }
@@ -98,7 +96,9 @@ private:
         layout->addSpacing(8);
         add("match.live", "match.live");
         column_.layout->addWidget(bar);
+    }
 
+    void addBudget() {
         budget_ = new ValueField(Quantity::plain, 1.0, 100.0, 8.0, column_.widget);
         budget_->setObjectName("match.budget");
         budget_->setStep(1.0);
@@ -131,8 +131,8 @@ private:
         table_->setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
         table_->header()->setStretchLastSection(false);
         table_->header()->setSectionResizeMode(VoteModel::nameColumn, QHeaderView::Stretch);
-        for (const int column : {VoteModel::votedColumn, VoteModel::levelColumn}) fixWidth(column, "Voted 0");
-        fixWidth(VoteModel::stateColumn, "out of reach 0");
+        table_->header()->setSectionResizeMode(VoteModel::levelColumn, QHeaderView::Fixed);
+        table_->header()->resizeSection(VoteModel::levelColumn, fontMetrics().horizontalAdvance("out of reach") + 24);
         connect(table_->selectionModel(), &QItemSelectionModel::currentChanged, this, [this] { plotSelected(); });
         column_.layout->addWidget(table_);
 
@@ -143,18 +143,15 @@ private:
                           "actuator. The lowest point is its vote.");
         plot_->setEmptyText("No level of this actuator touches the target.");
         column_.layout->addWidget(plot_);
+    }
 
+    void addTimes() {
         times_ = new QLabel(column_.widget);
         times_->setObjectName("match.times");
         times_->setProperty("look", "muted");
         times_->setWordWrap(true);
         times_->setToolTip("Milliseconds of each stage of the newest frame");
         column_.layout->addWidget(times_);
-    }
-
-    void fixWidth(int column, const QString& widest) {
-        table_->header()->setSectionResizeMode(column, QHeaderView::Fixed);
-        table_->header()->resizeSection(column, table_->fontMetrics().horizontalAdvance(widest) + 12);
     }
 
     void refresh() {
@@ -208,11 +205,11 @@ private:
 
     void showEvent(QShowEvent* event) override {
         QWidget::showEvent(event);
-        refresh_->request();
+        due_.request();
     }
 
     Studio& studio_;
-    Throttle* refresh_;
+    Throttle& due_;
     QStackedLayout* stack_;
     Column column_ = makeColumn(this);
     MatchNumbers* numbers_ = new MatchNumbers(column_.widget);
@@ -227,6 +224,6 @@ private:
 
 } // namespace
 
-QWidget* makeMatchDock(Studio& studio) { return new MatchDock(studio); }
+QWidget* makeMatchDock(Studio& studio, Throttle& numbers) { return new MatchDock(studio, numbers); }
 
 } // namespace lumorph::studio

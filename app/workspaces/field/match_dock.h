@@ -3,12 +3,13 @@
 #include <QWidget>
 
 #include "app/studio/shell/studio.h"
+#include "app/workspaces/field/throttle.h"
 
 namespace lumorph::studio {
 
 /// The content of the dock "dock.match": how well the device fits the target, what is left out and what sticks out, how
 /// it is matched, and what Eq. 1 says for each actuator. Uses the commands target.open, target.autoPlace, field.build,
-/// match.live, match.refined and match.voting.
-[[nodiscard]] QWidget* makeMatchDock(Studio& studio);
+/// match.live, match.refined and match.voting. Shows the newest frame whenever `numbers` are due; it outlives the dock.
+[[nodiscard]] QWidget* makeMatchDock(Studio& studio, Throttle& numbers);
 
 } // namespace lumorph::studio

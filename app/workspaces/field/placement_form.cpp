@@ -4,9 +4,9 @@
 #include <numbers>
 #include <vector>
 
-#include <QVBoxLayout>
+#include <QGridLayout>
+#include <QLabel>
 
-#include "app/studio/widgets/panel.h"
 #include "app/studio/widgets/value_field.h"
 
 namespace lumorph::studio {
@@ -14,14 +14,16 @@ namespace lumorph::studio {
 namespace {
 
 constexpr double kFarthest = 10.0; ///< metres
+constexpr int kColumns = 3;
 constexpr double kTurn = 2.0 * std::numbers::pi;
 
 class PlacementForm : public QWidget {
 public:
     PlacementForm(StudioDocument& document, QWidget* parent) : QWidget(parent), document_(document) {
-        auto* layout = new QVBoxLayout(this);
-        layout->setContentsMargins(0, 0, 0, 0);
-        layout->setSpacing(8);
+        grid_->setContentsMargins(0, 0, 0, 0);
+        grid_->setHorizontalSpacing(8);
+        grid_->setVerticalSpacing(4);
+        for (int column = 0; column < kColumns; ++column) grid_->setColumnStretch(column, 1);
         addLength("x", "&X", "To the right of the device's middle", 0);
         addLength("y", "&Y", "Above the table", 1);
         addLength("z", "&Z", "Towards the front of the device", 2);
@@ -72,7 +74,14 @@ private:
             document_.commitPreview("Place the target");
         });
         connect(field, &ValueField::reverted, this, [this] { document_.cancelPreview(); });
-        layout()->addWidget(makeRow(words.label, field, this));
+        auto* label = new QLabel(words.label, this);
+        label->setProperty("look", "muted");
+        label->setBuddy(field);
+        field->setAccessibleName(QString(words.label).remove('&'));
+        field->setMinimumWidth(0);
+        const int cell = static_cast<int>(lines_.size());
+        grid_->addWidget(label, 2 * (cell / kColumns), cell % kColumns);
+        grid_->addWidget(field, 2 * (cell / kColumns) + 1, cell % kColumns);
         lines_.push_back({field, std::move(get)});
     }
 
@@ -81,6 +90,7 @@ private:
     }
 
     StudioDocument& document_;
+    QGridLayout* grid_ = new QGridLayout(this);
     std::vector<Line> lines_;
 };
 

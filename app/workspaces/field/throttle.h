@@ -1,25 +1,26 @@
 #pragma once
 
-#include <functional>
-#include <utility>
-
 #include <QObject>
 #include <QTimer>
 
 namespace lumorph::studio {
 
-/// Calls `update` soon after a request, at most once in so many milliseconds: numbers that change faster than anyone
-/// reads them cost the window its time.
+/// Says when to show numbers anew: soon after a request, at most once in so many milliseconds. Numbers that change
+/// faster than anyone reads them cost the window its time; those that share a throttle always agree.
 class Throttle : public QObject {
+    Q_OBJECT
 public:
-    Throttle(int milliseconds, std::function<void()> update, QObject* parent) : QObject(parent) {
+    explicit Throttle(int milliseconds, QObject* parent = nullptr) : QObject(parent) {
         timer_.setSingleShot(true);
         timer_.setInterval(milliseconds);
-        connect(&timer_, &QTimer::timeout, this, std::move(update));
+        connect(&timer_, &QTimer::timeout, this, &Throttle::due);
     }
     void request() {
         if (!timer_.isActive()) timer_.start();
     }
+
+signals:
+    void due();
 
 private:
     QTimer timer_;

@@ -1,7 +1,6 @@
 #include "app/workspaces/field/vote_table.h"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <utility>
 
@@ -19,13 +18,6 @@ const ActuatorVote* voteOf(const MatchFrame& frame, std::size_t actuator) {
     return &frame.votes->actuators[actuator];
 }
 
-/// Still on its way by more than half a level.
-bool onItsWay(const MatchFrame& frame, std::size_t actuator) {
-    if (actuator >= frame.wantedStrokes.size() || actuator >= frame.estimatedStrokes.size()) return false;
-    const int levels = frame.field ? frame.field->field.levels : 33;
-    return std::abs(frame.wantedStrokes[actuator] - frame.estimatedStrokes[actuator]) > 0.5 / levels;
-}
-
 } // namespace
 
 void VoteModel::setFrame(std::shared_ptr<const MatchFrame> frame) {
@@ -33,7 +25,7 @@ void VoteModel::setFrame(std::shared_ptr<const MatchFrame> frame) {
     if (!same) beginResetModel();
     frame_ = std::move(frame);
     if (!same) return endResetModel();
-    if (rowCount() > 0) emit dataChanged(index(0, votedColumn), index(rowCount() - 1, stateColumn));
+    if (rowCount() > 0) emit dataChanged(index(0, levelColumn), index(rowCount() - 1, levelColumn));
 }
 
 int VoteModel::rowCount(const QModelIndex& parent) const {
@@ -42,40 +34,41 @@ int VoteModel::rowCount(const QModelIndex& parent) const {
 
 int VoteModel::columnCount(const QModelIndex& parent) const { return parent.isValid() ? 0 : columnCountOf; }
 
-QString VoteModel::textOf(std::size_t actuator, int column) const {
+bool VoteModel::missed(std::size_t actuator) const {
     const ActuatorVote* vote = frame_->matched ? voteOf(*frame_, actuator) : nullptr;
-    switch (column) {
-    case nameColumn:
-        return QString::fromStdString(frame_->rig->actuators()[actuator].name);
-    case votedColumn:
-        return vote ? QString::number(vote->level.index) : QString("–");
-    case levelColumn:
-        return actuator < frame_->wanted.size() ? QString::number(frame_->wanted[actuator].index) : QString("–");
-    default:
-        if (vote && !vote->reached) return "out of reach";
-        return onItsWay(*frame_, actuator) ? "moving" : "there";
-    }
+    return vote && !vote->reached;
+}
+
+QString VoteModel::levelText(std::size_t actuator) const {
+    if (actuator >= frame_->wanted.size()) return "–";
+    const int level = frame_->wanted[actuator].index;
+    const ActuatorVote* vote = frame_->matched ? voteOf(*frame_, actuator) : nullptr;
+    if (missed(actuator) && level == 0) return "out of reach";
+    if (!vote || vote->level.index == level) return QString::number(level);
+    return QString("%1 → %2").arg(vote->level.index).arg(level);
 }
 
 QVariant VoteModel::data(const QModelIndex& index, int role) const {
     if (!index.isValid() || index.row() >= rowCount()) return {};
     const auto actuator = static_cast<std::size_t>(index.row());
-    if (role == Qt::DisplayRole) return textOf(actuator, index.column());
-    if (role == Qt::TextAlignmentRole && (index.column() == votedColumn || index.column() == levelColumn))
+    const bool level = index.column() == levelColumn;
+    if (role == Qt::DisplayRole)
+        return level ? levelText(actuator) : QString::fromStdString(frame_->rig->actuators()[actuator].name);
+    if (role == Qt::TextAlignmentRole && level)
         return QVariant::fromValue(Qt::Alignment(Qt::AlignRight | Qt::AlignVCenter));
-    if (role != Qt::ForegroundRole || index.column() == nameColumn || index.column() == levelColumn) return {};
-    const ActuatorVote* vote = voteOf(*frame_, actuator);
-    const bool missed = index.column() == stateColumn && frame_->matched && vote && !vote->reached;
-    return missed ? currentPalette().warning : currentPalette().textMuted;
+    if (role == Qt::ForegroundRole && level && missed(actuator)) return currentPalette().warning;
+    if (role == Qt::ToolTipRole && missed(actuator))
+        return QString("No level of this actuator covers enough of the target, so Eq. 1 leaves it at rest.");
+    return {};
 }
 
 QVariant VoteModel::headerData(int section, Qt::Orientation orientation, int role) const {
-    if (orientation != Qt::Horizontal) return {};
-    static const char* const names[] = {"Actuator", "Voted", "Level", ""};
-    static const char* const hints[] = {"", "The level that Eq. 1 gives this actuator on its own",
-                                        "The level it is asked for, refined where that is on", "Whether it is there"};
-    if (role == Qt::DisplayRole && section >= 0 && section < columnCountOf) return QString(names[section]);
-    if (role == Qt::ToolTipRole && section >= 0 && section < columnCountOf) return QString(hints[section]);
+    if (orientation != Qt::Horizontal || section < 0 || section >= columnCountOf) return {};
+    if (role == Qt::DisplayRole) return section == nameColumn ? "Actuator" : "Level";
+    if (role == Qt::TextAlignmentRole && section == levelColumn)
+        return QVariant::fromValue(Qt::Alignment(Qt::AlignRight | Qt::AlignVCenter));
+    if (role == Qt::ToolTipRole && section == levelColumn)
+        return "The level it is asked for; with an arrow where refinement moved it off its vote by Eq. 1";
     return {};
 }
 

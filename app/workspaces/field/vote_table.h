@@ -10,11 +10,12 @@
 
 namespace lumorph::studio {
 
-/// What a match says for each actuator: name, level, and whether it is reached.
+/// What a match says for each actuator: its name, and its level ("9 → 6" where refinement moved it off its vote), or
+/// that the target is out of its reach.
 class VoteModel : public QAbstractTableModel {
     Q_OBJECT
 public:
-    enum Column { nameColumn, votedColumn, levelColumn, stateColumn, columnCountOf };
+    enum Column { nameColumn, levelColumn, columnCountOf };
 
     using QAbstractTableModel::QAbstractTableModel;
     void setFrame(std::shared_ptr<const MatchFrame> frame);
@@ -25,7 +26,8 @@ public:
     [[nodiscard]] QVariant headerData(int section, Qt::Orientation orientation, int role) const override;
 
 private:
-    [[nodiscard]] QString textOf(std::size_t actuator, int column) const;
+    [[nodiscard]] QString levelText(std::size_t actuator) const;
+    [[nodiscard]] bool missed(std::size_t actuator) const;
     std::shared_ptr<const MatchFrame> frame_;
 };
 
