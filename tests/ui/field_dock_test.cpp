@@ -60,7 +60,7 @@ protected:
         window_->setCentralWidget(makeFieldDock(*studio_, display_));
         window_->resize(340, 900);
         window_->show();
-        QTest::qWaitForWindowExposed(window_.get());
+        ASSERT_TRUE(QTest::qWaitForWindowExposed(window_.get()));
     }
 
     template <class Widget> Widget* find(const char* name) {
@@ -78,7 +78,7 @@ protected:
         if (enter) QTest::keyClick(field, Qt::Key_Return);
     }
 
-    test::TemporaryFolder folder_;
+    TemporaryFolder folder_;
     FieldDisplayModel display_;
     std::unique_ptr<Studio> studio_;
     std::unique_ptr<QMainWindow> window_;
