@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include <QLocale>
-
 namespace lumorph::studio {
 
 QPushButton* makeCommandButton(QAction* command, const QString& name, QWidget* parent) {
@@ -69,7 +67,5 @@ QString sizeText(double x, double y, double z) {
 }
 
 QString shareText(double share) { return QString("%1 %").arg(std::round(100.0 * share), 0, 'f', 0); }
-
-QString countText(std::size_t count) { return QLocale(QLocale::English).toString(static_cast<qulonglong>(count)); }
 
 } // namespace lumorph::studio

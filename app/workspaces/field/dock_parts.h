@@ -23,10 +23,9 @@ namespace lumorph::studio {
 /// Sets a label in large digits of `pixels` height, wide enough for `widest`.
 void makeLarge(QLabel* label, int pixels, const QString& widest);
 
-/// "98 cm³" of cubic metres, "18.2 x 4.1 x 12.0 cm" of metres, "12 %" of a share, "69,998" of a count.
+/// "98 cm³" of cubic metres, "18.2 × 4.1 × 12.0 cm" of metres, "12 %" of a share.
 [[nodiscard]] QString volumeText(double cubicMetres);
 [[nodiscard]] QString sizeText(double x, double y, double z);
 [[nodiscard]] QString shareText(double share);
-[[nodiscard]] QString countText(std::size_t count);
 
 } // namespace lumorph::studio

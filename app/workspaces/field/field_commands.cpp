@@ -19,7 +19,6 @@ namespace lumorph::studio {
 namespace {
 
 constexpr double kSpin = std::numbers::pi / 6.0; ///< radians a second, when it is switched on
-constexpr const char* kModels = "3D models (*.obj *.stl *.ply *.off *.glb *.gltf);;All files (*)";
 constexpr const char* kTargetFolder = "folders/target";
 
 /// The commands and what they need; lives as long as the commands do.
@@ -32,6 +31,9 @@ public:
         addMatch();
         connect(&studio.document, &StudioDocument::changed, this, [this] { follow(); });
         connect(&studio.loop, &StudioLoop::dancingChanged, this, [this] { follow(); });
+        connect(&studio.desk, &Desk::chooseFile, this, [this](const QString& place) {
+            if (place == "target") openTarget();
+        });
         follow();
     }
 
@@ -58,13 +60,13 @@ private:
     }
 
     void addTarget() {
-        add({"target.open", "Open target...", "Open a 3D model to be matched", "target-open", "Ctrl+T"}, "Target",
-            false, [this] { openTarget(); });
-        add({"target.dunes", "Try the dunes", "Open a bundled model that the tablet can show well", "dunes", ""},
+        add({"target.open", "Open target...", "Open a 3D model to be matched", "open", "Ctrl+T"}, "Target", false,
+            [this] { openTarget(); });
+        add({"target.dunes", "Try the dunes", "Open a bundled model that the tablet can show well", "target", ""},
             "Target", false, [this] { studio_.desk.openTarget(resourceFile("targets/dunes.glb")); });
-        add({"target.swell", "Try the swell", "Open a bundled model that moves", "swell", ""}, "Target", false,
+        add({"target.swell", "Try the swell", "Open a bundled model that moves", "target", ""}, "Target", false,
             [this] { studio_.desk.openTarget(resourceFile("targets/swell.glb")); });
-        remove_ = add({"target.remove", "Remove", "Take the target away", "remove", "Ctrl+Shift+T"}, "Target", false,
+        remove_ = add({"target.remove", "Remove", "Take the target away", "close", "Ctrl+Shift+T"}, "Target", false,
                       [this] { studio_.desk.removeTarget(); });
         fit_ = add({"target.fit", "Fit", "As large as the device can show, in its middle", "fit", "Ctrl+Shift+F"},
                    "Target", false, [this] { studio_.desk.fit(); });
@@ -114,12 +116,21 @@ private:
         methods->addAction(voting_);
     }
 
+    /// Without blocking: the loop goes on and STOP stays in reach.
     void openTarget() {
-        const QString folder = studio_.settings.value(kTargetFolder).toString();
-        const QString file = QFileDialog::getOpenFileName(parent_(), "Open target", folder, kModels);
-        if (file.isEmpty()) return;
-        studio_.settings.setValue(kTargetFolder, QFileInfo(file).absolutePath());
-        studio_.desk.openTarget(std::filesystem::path(file.toStdU16String()));
+        QWidget* window = parent_();
+        if (auto* open = window ? window->findChild<QFileDialog*>("dialog.target") : nullptr) return open->raise();
+        auto* dialog = new QFileDialog(window, "Open target", studio_.settings.value(kTargetFolder).toString());
+        dialog->setObjectName("dialog.target");
+        dialog->setOption(QFileDialog::DontUseNativeDialog);
+        dialog->setAttribute(Qt::WA_DeleteOnClose);
+        dialog->setFileMode(QFileDialog::ExistingFile);
+        dialog->setNameFilters({"3D models (*.obj *.stl *.ply *.off *.glb *.gltf)", "All files (*)"});
+        connect(dialog, &QFileDialog::fileSelected, this, [this](const QString& file) {
+            studio_.settings.setValue(kTargetFolder, QFileInfo(file).absolutePath());
+            studio_.desk.openTarget(std::filesystem::path(file.toStdU16String()));
+        });
+        dialog->open();
     }
 
     void moveAtRandom() {

@@ -223,10 +223,10 @@ std::vector<WorkspaceDock> FieldWorkspace::makeDocks() {
     new Watch(target, [this](bool shown) {
         if (data_->stage) data_->stage->setTargetNoticesShown(!shown);
     });
-    return {{"dock.actuators", "Actuators", "actuators", makeActuatorDock(studio), Qt::LeftDockWidgetArea, false},
+    return {{"dock.actuators", "Actuators", "actuator", makeActuatorDock(studio), Qt::LeftDockWidgetArea, false},
             {"dock.field", "Field", "field", field, Qt::LeftDockWidgetArea, true},
             {"dock.target", "Target", "target", target, Qt::RightDockWidgetArea, false},
-            {"dock.match", "Match", "match", makeMatchDock(studio), Qt::RightDockWidgetArea, false}};
+            {"dock.match", "Match", "live", makeMatchDock(studio), Qt::RightDockWidgetArea, false}};
 }
 
 void FieldWorkspace::setActive(bool active) {

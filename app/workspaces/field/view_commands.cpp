@@ -28,8 +28,8 @@ QAction* addViewCommands(Commands& commands, std::function<ViewportWidget*()> vi
             if (ViewportWidget* shown = view()) run(*shown);
         });
     };
-    add({"view.frameAll", "Frame all", "frame-all", "Home"}, false, [](ViewportWidget& shown) { shown.frameAll(); });
-    add({"view.frameSelected", "Frame selected", "frame-selected", "F"}, false,
+    add({"view.frameAll", "Frame all", "frame", "Home"}, false, [](ViewportWidget& shown) { shown.frameAll(); });
+    add({"view.frameSelected", "Frame selected", "target", "F"}, false,
         [](ViewportWidget& shown) { shown.frameSelected(); });
     add({"view.front", "From the front", "view-front", "1"}, false, [](ViewportWidget& shown) {
         shown.viewFrom({0.0F, 0.0F, 1.0F});
@@ -40,9 +40,9 @@ QAction* addViewCommands(Commands& commands, std::function<ViewportWidget*()> vi
     add({"view.top", "From above", "view-top", "7"}, false, [](ViewportWidget& shown) {
         shown.viewFrom({0.0F, 1.0F, 0.0F});
     });
-    add({"view.orthographic", "Orthographic", "orthographic", "5"}, true,
+    add({"view.orthographic", "Orthographic", "ortho", "5"}, true,
         [](ViewportWidget& shown) { shown.setOrthographic(!shown.camera().orthographic); });
-    QAction* gizmo = add({"view.gizmo", "Handles on the target", "gizmo", "Ctrl+G"}, true, [](ViewportWidget&) {});
+    QAction* gizmo = add({"view.gizmo", "Handles on the target", "move", "Ctrl+G"}, true, [](ViewportWidget&) {});
     gizmo->setToolTip("Show handles to move, turn and size the target when it is selected (Ctrl+G)");
     gizmo->setChecked(true);
     return gizmo;
