@@ -39,8 +39,8 @@ struct StudioPass::Data {
     ShadowMaps sky{112, kSkyCount};
     Program backdrop{shaderFiles({"full_frame.vert"}, {"version.glsl", "backdrop.glsl", "backdrop.frag"})};
     Program ground{shaderFiles({"ground.vert"}, {"version.glsl", "backdrop.glsl", "studio_light.glsl", "ground.frag"})};
-    Program surface{shaderFiles({"surface.vert"},
-                                {"version.glsl", "backdrop.glsl", "studio_light.glsl", "tone.glsl", "surface.frag"})};
+    Program surface{shaderFiles({"surface.vert"}, {"version.glsl", "backdrop.glsl", "studio_light.glsl",
+                                                   "light_colors.glsl", "tone.glsl", "surface.frag"})};
     gl::VertexArray empty;
     std::array<glm::vec3, kSkyCount> skyDirections = lumorph::skyDirections();
 

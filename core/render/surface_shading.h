@@ -23,14 +23,17 @@ public:
 
     /// Triangles over the drawn vertices.
     [[nodiscard]] std::span<const glm::uvec3> triangles() const noexcept { return triangles_; }
+    /// A coarser form of the same surface over some of the drawn vertices, for shadows: at most some thousand
+    /// triangles.
+    [[nodiscard]] std::span<const glm::uvec3> coarseTriangles() const noexcept {
+        return coarse_.empty() ? triangles() : std::span<const glm::uvec3>(coarse_);
+    }
     /// For each drawn vertex, the vertex of the mesh it shows.
     [[nodiscard]] std::span<const std::uint32_t> sources() const noexcept { return sources_; }
     /// Vertices of the mesh.
     [[nodiscard]] std::size_t meshVertexCount() const noexcept { return meshVertexCount_; }
     /// Whether the mesh it was made from is closed and looks outwards: its back faces are never seen.
     [[nodiscard]] bool closed() const noexcept { return closed_; }
-    /// The drawn vertices of the mesh it was made from, metres: what sticks to the surface is placed by them.
-    [[nodiscard]] std::span<const glm::vec3> restPositions() const noexcept { return restPositions_; }
 
     /// Positions and normals of all drawn vertices for these positions of the mesh's vertices (metres,
     /// one a mesh vertex); normals are the mean of the faces around, weighted by area. `out` has one
@@ -39,9 +42,9 @@ public:
 
 private:
     std::vector<glm::uvec3> triangles_;
+    std::vector<glm::uvec3> coarse_; // empty: the triangles are few
     std::vector<std::uint32_t> sources_;
     std::vector<std::uint32_t> leaders_; // for each drawn vertex the first one with the same normal
-    std::vector<glm::vec3> restPositions_;
     bool closed_ = false;
     std::size_t meshVertexCount_ = 0;
 };

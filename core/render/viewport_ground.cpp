@@ -23,6 +23,21 @@ float radiusOf(const Box& bounds) {
     return std::max(across, 0.25F * bounds.size().y);
 }
 
+bool below(const ViewportFrame& frame) { return frame.eye.y < frame.eye.w * frame.scene.groundHeight; }
+
+// Where the bounds may throw a shadow on the ground.
+Box shadowReach(const ViewportFrame& frame) {
+    const glm::vec3 light = keyLightDirection();
+    Box reach;
+    for (const float top : {frame.bounds.min.y, frame.bounds.max.y}) {
+        const glm::vec3 shift = (frame.scene.groundHeight - top) / light.y * light;
+        for (const glm::vec3& corner : {frame.bounds.min, frame.bounds.max})
+            reach.include(glm::vec3(corner.x, top, corner.z) + shift);
+    }
+    const glm::vec3 margin = 0.02F * reach.size();
+    return {reach.min - margin, reach.max + margin};
+}
+
 } // namespace
 
 ViewportGrid gridOf(const ViewCamera& camera, glm::vec2 size) {
@@ -50,12 +65,52 @@ void applyBackdrop(Program& program, const ViewportFrame& frame, const FramePiec
 }
 
 void ViewportGround::draw(const ViewportFrame& frame, const FramePiece& piece, const ViewportLight& light) {
-    const float above = frame.eye.y - frame.eye.w * frame.scene.groundHeight;
-    glBindVertexArray(empty_.name());
-    if (above >= 0.0F) drawPlane(frame, piece, light, false);
+    if (!below(frame)) drawPlane(frame, piece, &light);
     drawBackdrop(frame, piece);
-    if (above < 0.0F && frame.scene.grid) drawPlane(frame, piece, light, true);
+    if (below(frame) && frame.scene.grid) drawPlane(frame, piece, &light);
+}
+
+void ViewportGround::drawBackground(const ViewportFrame& frame) {
+    const FramePiece whole{glm::ivec2(0), frame.size};
+    glDisable(GL_DEPTH_TEST);
+    drawBackdrop(frame, whole);
+    if (!below(frame)) drawPlane(frame, whole, nullptr);
+    glEnable(GL_DEPTH_TEST);
+}
+
+void ViewportGround::drawDepth(const ViewportFrame& frame) {
+    const float slack = 1e-3F * glm::length(frame.bounds.size());
+    if (below(frame) || frame.bounds.min.y > frame.scene.groundHeight - slack) return;
+    glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
+    drawPlane(frame, {glm::ivec2(0), frame.size}, nullptr);
+    glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+}
+
+void ViewportGround::drawShadow(const ViewportFrame& frame, const ViewportLight& light) {
+    const FramePiece whole{glm::ivec2(0), frame.size};
+    if (below(frame)) {
+        if (frame.scene.grid) drawPlane(frame, whole, nullptr);
+        return;
+    }
+    const Box reach = shadowReach(frame);
+    shadow_.use();
+    light.apply(shadow_, frame);
+    shadow_.set("clipFromWorld", frame.clipFromWorld);
+    shadow_.set("groundHeight", frame.scene.groundHeight);
+    shadow_.set("groundCentre", glm::vec2(reach.centre().x, reach.centre().z));
+    shadow_.set("groundExtent", 0.5F * std::max(reach.size().x, reach.size().z));
+    shadow_.set("shade", frame.palette.shade);
+    glEnable(GL_BLEND);
+    glBlendFunc(GL_DST_COLOR, GL_ZERO);
+    glDepthMask(GL_FALSE);
+    glEnable(GL_POLYGON_OFFSET_FILL);
+    glPolygonOffset(1.0F, 2.0F);
+    glBindVertexArray(empty_.name());
+    glDrawArrays(GL_TRIANGLE_STRIP, 0, 4);
     glBindVertexArray(0);
+    glDisable(GL_POLYGON_OFFSET_FILL);
+    glDepthMask(GL_TRUE);
+    glDisable(GL_BLEND);
 }
 
 void ViewportGround::drawBackdrop(const ViewportFrame& frame, const FramePiece& piece) {
@@ -63,18 +118,19 @@ void ViewportGround::drawBackdrop(const ViewportFrame& frame, const FramePiece& 
     applyBackdrop(backdrop_, frame, piece);
     glDepthMask(GL_FALSE);
     glDepthRange(1.0, 1.0); // where nothing else is
+    glBindVertexArray(empty_.name());
     glDrawArrays(GL_TRIANGLES, 0, 3);
+    glBindVertexArray(0);
     glDepthRange(0.0, 1.0);
     glDepthMask(GL_TRUE);
 }
 
-void ViewportGround::drawPlane(const ViewportFrame& frame, const FramePiece& piece, const ViewportLight& light,
-                               bool below) {
-    Program& program = frame.quality == ViewportQuality::still ? still_ : moving_;
+void ViewportGround::drawPlane(const ViewportFrame& frame, const FramePiece& piece, const ViewportLight* light) {
+    Program& program = light != nullptr ? still_ : open_;
     const ViewportGroundPlace place = groundPlace(frame.camera, frame.bounds);
     program.use();
     applyBackdrop(program, frame, piece);
-    light.apply(program, frame);
+    if (light != nullptr) light->apply(program, frame);
     program.set("clipFromWorld", frame.clipFromWorld);
     program.set("groundHeight", frame.scene.groundHeight);
     program.set("groundCentre", place.centre);
@@ -87,15 +143,18 @@ void ViewportGround::drawPlane(const ViewportFrame& frame, const FramePiece& pie
     program.set("lineColor", frame.palette.line);
     program.set("shade", frame.palette.shade);
     program.set("pool", frame.palette.pool);
-    program.set("below", below ? 1.0F : 0.0F);
+    program.set("below", below(frame) ? 1.0F : 0.0F);
     // What stands on the ground lies in it with its lowest faces; they win.
     glEnable(GL_POLYGON_OFFSET_FILL);
     glPolygonOffset(1.0F, 4.0F);
-    if (below) {
+    if (below(frame)) {
         glEnable(GL_BLEND);
+        glBlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ZERO, GL_ONE);
         glDepthMask(GL_FALSE);
     }
+    glBindVertexArray(empty_.name());
     glDrawArrays(GL_TRIANGLE_STRIP, 0, 4);
+    glBindVertexArray(0);
     glDisable(GL_BLEND);
     glDepthMask(GL_TRUE);
     glDisable(GL_POLYGON_OFFSET_FILL);

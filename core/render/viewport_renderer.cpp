@@ -21,7 +21,7 @@
 namespace lumorph {
 namespace {
 
-constexpr double kPieceSeconds = 0.018; // of a still frame, about
+constexpr double kPieceSeconds = 0.022; // of a still frame, about
 constexpr int kFirstRows = 32;
 
 Box boundsOf(const ViewportScene& scene) {
@@ -105,6 +105,18 @@ struct ViewportRenderer::Data {
     ViewportLineSet lines;
     ViewportOutline outline;
 
+    // What the background depends on.
+    struct Background {
+        ViewCamera camera;
+        glm::ivec2 size{0};
+        glm::vec3 low{0.0F}, high{0.0F};
+        float groundHeight = 0.0F;
+        bool grid = false;
+        Theme theme = Theme::dark;
+        bool operator==(const Background&) const = default;
+    };
+    Background background;
+
     // Something in the scene that is drawn on its own, by its place in its list.
     struct Thing {
         bool isSurface;
@@ -129,26 +141,24 @@ struct ViewportRenderer::Data {
         return found;
     }
 
-    void drawThing(const ViewportFrame& frame, const FramePiece& piece, const Thing& thing, bool opaque) {
+    void drawThing(const ViewportFrame& frame, const FramePiece& piece, const Thing& thing) {
         if (!thing.isSurface) {
             glBlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ZERO, GL_ONE);
             voxels.begin(frame);
             voxels.draw(frame, thing.index);
             return;
         }
-        shading.begin(frame, piece, light);
-        if (opaque)
-            shading.drawOpaque(frame, thing.index);
-        else
-            shading.drawTranslucent(frame, thing.index);
+        shading.draw(frame, piece, light, thing.index);
     }
 
     void drawPiece(const ViewportFrame& frame, const FramePiece& piece) {
-        for (const Thing& thing : things(frame, piece, true)) drawThing(frame, piece, thing, true);
-        glBlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ZERO, GL_ONE);
-        ground.draw(frame, piece, light);
+        for (const Thing& thing : things(frame, piece, true)) drawThing(frame, piece, thing);
+        if (frame.quality == ViewportQuality::still)
+            ground.draw(frame, piece, light);
+        else
+            ground.drawShadow(frame, light);
         glEnable(GL_BLEND);
-        for (const Thing& thing : things(frame, piece, false)) drawThing(frame, piece, thing, false);
+        for (const Thing& thing : things(frame, piece, false)) drawThing(frame, piece, thing);
         glBlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ZERO, GL_ONE);
         lines.draw(frame);
         glDisable(GL_BLEND);
@@ -161,7 +171,24 @@ struct ViewportRenderer::Data {
             if (shading.surfaces().drawable(i) && frame.scene.surfaces[i].opacity >= 1.0F)
                 casters.casters.emplace_back(shading.surfaces().version(i), frame.scene.surfaces[i].worldFromSurface);
         return light.update(
-            frame.quality, casters, [&](Program& depth) { shading.drawCasters(depth, frame.scene); }, pieceDone);
+            frame.quality, casters, [&](Program& depth) { shading.drawCasters(depth, frame); }, pieceDone);
+    }
+
+    // The background of a camera at rest is drawn once.
+    void drawBackground(const ViewportFrame& frame) {
+        target.beginBackground();
+        const Background wanted{
+            frame.camera,     frame.size,       frame.bounds.min, frame.bounds.max, frame.scene.groundHeight,
+            frame.scene.grid, frame.scene.theme};
+        if (background != wanted) ground.drawBackground(frame);
+        background = wanted;
+    }
+
+    void drawWhole(const ViewportFrame& frame) {
+        drawBackground(frame);
+        target.beginWhole();
+        ground.drawDepth(frame);
+        drawPiece(frame, {glm::ivec2(0), frame.size});
     }
 
     bool drawInPieces(const ViewportFrame& frame, const std::function<bool()>& pieceDone) {
@@ -220,13 +247,10 @@ bool ViewportRenderer::draw(unsigned framebuffer, glm::ivec2 size, const Viewpor
     data_->shading.update(scene);
     data_->voxels.update(scene.voxels);
     data_->lines.update(scene.lines, scale);
-    data_->target.resize(size);
+    if (data_->target.resize(size)) data_->background = {};
     bool whole = data_->updateLight(frame, pieceDone);
     if (whole && still) whole = data_->drawInPieces(frame, pieceDone);
-    if (whole && !still) {
-        data_->target.beginWhole();
-        data_->drawPiece(frame, {glm::ivec2(0), size});
-    }
+    if (whole && !still) data_->drawWhole(frame);
     if (whole) data_->finish(frame, framebuffer);
     resetState();
     glDisable(GL_DEPTH_TEST);

@@ -13,9 +13,17 @@ constexpr int kFibreUnit = 3;
 constexpr int kFibreSide = 512;
 constexpr float kFibreTile = 0.06F; // metres of paper that the picture covers
 
-Program surfaceProgram(const char* light) {
-    return Program(shaderFiles({"viewport_surface.vert"}, {"version.glsl", "backdrop.glsl", light, "tone.glsl",
-                                                           "tint.glsl", "viewport_surface.frag"}));
+Program surfaceProgram(ViewportQuality quality, bool tinted) {
+    const bool still = quality == ViewportQuality::still;
+    std::vector<std::string> pieces{"version.glsl", "backdrop.glsl", still ? "studio_light.glsl" : "moving_light.glsl",
+                                    "light_colors.glsl", still ? "tone.glsl" : "moving_tone.glsl"};
+    if (tinted) pieces.emplace_back("tint.glsl");
+    pieces.emplace_back("viewport_surface.frag");
+    return Program(shaderFiles({"viewport_surface.vert"}, pieces));
+}
+
+std::array<Program, 2> surfacePrograms(ViewportQuality quality) {
+    return {surfaceProgram(quality, false), surfaceProgram(quality, true)};
 }
 
 void setFrontFace(const glm::mat4& world) { glFrontFace(glm::determinant(glm::mat3(world)) < 0.0F ? GL_CW : GL_CCW); }
@@ -23,7 +31,7 @@ void setFrontFace(const glm::mat4& world) { glFrontFace(glm::determinant(glm::ma
 } // namespace
 
 ViewportShading::ViewportShading()
-    : moving_(surfaceProgram("moving_light.glsl")), still_(surfaceProgram("studio_light.glsl")) {
+    : moving_(surfacePrograms(ViewportQuality::moving)), still_(surfacePrograms(ViewportQuality::still)) {
     const std::vector<std::uint8_t> grey = paperFibre(kFibreSide);
     glBindTexture(GL_TEXTURE_2D, fibre_.name());
     glTexImage2D(GL_TEXTURE_2D, 0, GL_R8, kFibreSide, kFibreSide, 0, GL_RED, GL_UNSIGNED_BYTE, grey.data());
@@ -38,48 +46,53 @@ void ViewportShading::update(const ViewportScene& scene) {
     tint_.update(scene.tint);
 }
 
-void ViewportShading::begin(const ViewportFrame& frame, const FramePiece& piece, const ViewportLight& light) {
-    current_ = frame.quality == ViewportQuality::still ? &still_ : &moving_;
-    current_->use();
-    applyBackdrop(*current_, frame, piece);
-    light.apply(*current_, frame);
-    tint_.apply(*current_, frame, kTintUnit);
+Program& ViewportShading::begin(const ViewportFrame& frame, const FramePiece& piece, const ViewportLight& light,
+                                bool tinted) {
+    Program& program = (frame.quality == ViewportQuality::still ? still_ : moving_)[tinted ? 1 : 0];
+    program.use();
+    applyBackdrop(program, frame, piece);
+    light.apply(program, frame);
+    if (tinted) tint_.apply(program, frame, kTintUnit);
     glActiveTexture(GL_TEXTURE0 + kFibreUnit);
     glBindTexture(GL_TEXTURE_2D, fibre_.name());
-    current_->set("fibre", kFibreUnit);
-    current_->set("fibreTile", kFibreTile);
-    current_->set("clipFromWorld", frame.clipFromWorld);
-    current_->set("eye", frame.eye);
-    current_->set("exposure", frame.palette.exposure);
+    program.set("fibre", kFibreUnit);
+    program.set("fibreTile", kFibreTile);
+    program.set("clipFromWorld", frame.clipFromWorld);
+    program.set("eye", frame.eye);
+    program.set("exposure", frame.palette.exposure);
+    return program;
 }
 
-void ViewportShading::setMaterial(const ViewportFrame& frame, std::size_t surface) {
+void ViewportShading::draw(const ViewportFrame& frame, const FramePiece& piece, const ViewportLight& light,
+                           std::size_t surface) {
     const ViewportSurface& item = frame.scene.surfaces[surface];
-    current_->set("worldFromMesh", item.worldFromSurface);
-    current_->set("normalFromMesh", glm::mat4(glm::transpose(glm::inverse(glm::mat3(item.worldFromSurface)))));
-    current_->set("baseColor", linearFromSrgb(item.color));
-    current_->set("opacity", item.opacity);
-    current_->set("rim", item.opacity < 1.0F ? 1.0F : 0.0F);
-    current_->set("paper", item.paper);
-    current_->set("keepAlpha", item.outlined && item.opacity >= 1.0F ? 0.0F : 1.0F);
-    tint_.setTinted(*current_, frame, item.tinted);
+    const bool opaque = item.opacity >= 1.0F;
+    Program& program = begin(frame, piece, light, item.tinted && tint_.there());
+    program.set("worldFromMesh", item.worldFromSurface);
+    program.set("normalFromMesh", glm::mat4(glm::transpose(glm::inverse(glm::mat3(item.worldFromSurface)))));
+    program.set("baseColor", linearFromSrgb(item.color));
+    program.set("opacity", item.opacity);
+    program.set("rim", opaque ? 0.0F : 1.0F);
+    program.set("paper", item.paper);
+    // What is outlined marks its pixels by an alpha of 0.
+    program.set("keepAlpha", item.outlined && opaque ? 0.0F : 1.0F);
     setFrontFace(item.worldFromSurface);
-}
-
-void ViewportShading::drawOpaque(const ViewportFrame& frame, std::size_t surface) {
-    setMaterial(frame, surface);
-    if (surfaces_.closed(surface)) glEnable(GL_CULL_FACE);
-    glCullFace(GL_BACK);
-    surfaces_.draw(surface);
+    if (opaque)
+        drawOpaque(surface);
+    else
+        drawTranslucent(item.outlined, surface);
     glDisable(GL_CULL_FACE);
     glFrontFace(GL_CCW);
 }
 
+void ViewportShading::drawOpaque(std::size_t surface) const {
+    if (surfaces_.closed(surface)) glEnable(GL_CULL_FACE);
+    glCullFace(GL_BACK);
+    surfaces_.draw(surface);
+}
+
 // Pulled a little towards the eye, so that where it lies on an opaque surface it tints that evenly.
-void ViewportShading::drawTranslucent(const ViewportFrame& frame, std::size_t surface) {
-    setMaterial(frame, surface);
-    // What is outlined marks its pixels by an alpha of 0.
-    const bool outlined = frame.scene.surfaces[surface].outlined;
+void ViewportShading::drawTranslucent(bool outlined, std::size_t surface) const {
     glBlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ZERO, outlined ? GL_ZERO : GL_ONE);
     glEnable(GL_CULL_FACE);
     glEnable(GL_POLYGON_OFFSET_FILL);
@@ -95,25 +108,25 @@ void ViewportShading::drawTranslucent(const ViewportFrame& frame, std::size_t su
     glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
     surfaces_.draw(surface);
     glDisable(GL_POLYGON_OFFSET_FILL);
-    glDisable(GL_CULL_FACE);
-    glFrontFace(GL_CCW);
 }
 
-void ViewportShading::drawCasters(Program& depth, const ViewportScene& scene) const {
-    for (std::size_t i = 0; i < scene.surfaces.size(); ++i) {
-        if (!surfaces_.drawable(i) || scene.surfaces[i].opacity < 1.0F) continue;
-        depth.set("worldFromMesh", scene.surfaces[i].worldFromSurface);
-        setFrontFace(scene.surfaces[i].worldFromSurface);
-        if (surfaces_.closed(i)) glEnable(GL_CULL_FACE);
-        glCullFace(GL_BACK);
-        surfaces_.draw(i);
-        glDisable(GL_CULL_FACE);
+void ViewportShading::drawCasters(Program& depth, const ViewportFrame& frame) const {
+    const std::vector<ViewportSurface>& surfaces = frame.scene.surfaces;
+    for (std::size_t i = 0; i < surfaces.size(); ++i) {
+        if (!surfaces_.drawable(i) || surfaces[i].opacity < 1.0F) continue;
+        depth.set("worldFromMesh", surfaces[i].worldFromSurface);
+        if (frame.quality == ViewportQuality::moving)
+            surfaces_.drawCoarse(i);
+        else
+            surfaces_.draw(i);
     }
-    glFrontFace(GL_CCW);
 }
 
 std::size_t ViewportShading::objectCount() const noexcept {
-    return 1 + surfaces_.objectCount() + tint_.objectCount() + moving_.objectCount() + still_.objectCount();
+    std::size_t count = 1 + surfaces_.objectCount() + tint_.objectCount();
+    for (const Program& program : moving_) count += program.objectCount();
+    for (const Program& program : still_) count += program.objectCount();
+    return count;
 }
 
 } // namespace lumorph

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <functional>
+#include <array>
 
 #include "core/render/gl_objects.h"
 #include "core/render/program.h"
@@ -20,26 +20,26 @@ public:
     void update(const ViewportScene& scene);
     [[nodiscard]] const ViewportSurfaces& surfaces() const noexcept { return surfaces_; }
 
-    /// Sets what all surfaces of a piece share and makes the program current.
-    void begin(const ViewportFrame& frame, const FramePiece& piece, const ViewportLight& light);
-    void drawOpaque(const ViewportFrame& frame, std::size_t surface);
-    /// Blending is on. Back faces first, then the nearest front faces.
-    void drawTranslucent(const ViewportFrame& frame, std::size_t surface);
+    /// Draws one surface of the scene; a translucent one with blending on, back faces first, then the nearest front
+    /// faces.
+    void draw(const ViewportFrame& frame, const FramePiece& piece, const ViewportLight& light, std::size_t surface);
 
-    /// Draws all opaque surfaces with a depth program.
-    void drawCasters(Program& depth, const ViewportScene& scene) const;
+    /// Draws all opaque surfaces with a depth program; in motion a coarser form of them.
+    void drawCasters(Program& depth, const ViewportFrame& frame) const;
 
     [[nodiscard]] std::size_t objectCount() const noexcept;
 
 private:
-    void setMaterial(const ViewportFrame& frame, std::size_t surface);
+    Program& begin(const ViewportFrame& frame, const FramePiece& piece, const ViewportLight& light, bool tinted);
+    void drawOpaque(std::size_t surface) const;
+    void drawTranslucent(bool outlined, std::size_t surface) const;
 
     ViewportSurfaces surfaces_;
     ViewportTintVolume tint_;
     gl::Texture fibre_;
-    Program moving_;
-    Program still_;
-    Program* current_ = nullptr;
+    // Plain and tinted.
+    std::array<Program, 2> moving_;
+    std::array<Program, 2> still_;
 };
 
 } // namespace lumorph

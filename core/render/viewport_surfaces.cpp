@@ -18,6 +18,12 @@ void attribute(GLuint index, std::size_t stride, std::size_t offset) {
                           reinterpret_cast<const void*>(offset));
 }
 
+std::vector<glm::uvec3> withCoarse(const SurfaceShading& shading) {
+    std::vector<glm::uvec3> all(shading.triangles().begin(), shading.triangles().end());
+    all.insert(all.end(), shading.coarseTriangles().begin(), shading.coarseTriangles().end());
+    return all;
+}
+
 bool sound(const ViewportSurface& surface) {
     return surface.shading && surface.positions && !surface.shading->triangles().empty() && surface.opacity > 0.0F &&
            surface.positions->size() == surface.shading->meshVertexCount();
@@ -51,11 +57,8 @@ ViewportSurfaces::Entry& ViewportSurfaces::add(const ViewportSurface& surface) {
     glBindBuffer(GL_ARRAY_BUFFER, entry.vertices.name());
     attribute(0, sizeof(Vertex), offsetof(Vertex, position));
     attribute(1, sizeof(Vertex), offsetof(Vertex, normal));
-    glBindBuffer(GL_ARRAY_BUFFER, entry.rest.name());
-    fill(GL_ARRAY_BUFFER, surface.shading->restPositions(), GL_STATIC_DRAW);
-    attribute(2, sizeof(glm::vec3), 0);
     glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, entry.indices.name());
-    fill(GL_ELEMENT_ARRAY_BUFFER, surface.shading->triangles(), GL_STATIC_DRAW);
+    fill(GL_ELEMENT_ARRAY_BUFFER, withCoarse(*surface.shading), GL_STATIC_DRAW);
     glBindVertexArray(0);
     return entry;
 }
@@ -95,9 +98,17 @@ void ViewportSurfaces::update(const std::vector<ViewportSurface>& surfaces) {
 }
 
 void ViewportSurfaces::draw(std::size_t surface) const {
+    const SurfaceShading& shading = *shown_[surface]->shading;
     glBindVertexArray(shown_[surface]->array.name());
-    glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(3 * shown_[surface]->shading->triangles().size()),
-                   GL_UNSIGNED_INT, nullptr);
+    glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(3 * shading.triangles().size()), GL_UNSIGNED_INT, nullptr);
+    glBindVertexArray(0);
+}
+
+void ViewportSurfaces::drawCoarse(std::size_t surface) const {
+    const SurfaceShading& shading = *shown_[surface]->shading;
+    glBindVertexArray(shown_[surface]->array.name());
+    glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(3 * shading.coarseTriangles().size()), GL_UNSIGNED_INT,
+                   reinterpret_cast<const void*>(shading.triangles().size_bytes()));
     glBindVertexArray(0);
 }
 

@@ -19,21 +19,22 @@ public:
     /// Of the surfaces of the last update, by their place in it.
     [[nodiscard]] bool drawable(std::size_t surface) const noexcept { return shown_[surface] != nullptr; }
     void draw(std::size_t surface) const;
+    void drawCoarse(std::size_t surface) const;
     /// Box in the world.
     [[nodiscard]] const Box& box(std::size_t surface) const noexcept { return boxes_[surface]; }
     /// Another number for other positions.
     [[nodiscard]] std::uint64_t version(std::size_t surface) const noexcept { return shown_[surface]->version; }
     [[nodiscard]] bool closed(std::size_t surface) const noexcept { return shown_[surface]->shading->closed(); }
 
-    [[nodiscard]] std::size_t objectCount() const noexcept { return 4 * entries_.size(); }
+    [[nodiscard]] std::size_t objectCount() const noexcept { return 3 * entries_.size(); }
 
 private:
     struct Entry {
         std::shared_ptr<const SurfaceShading> shading;
         std::shared_ptr<const std::vector<glm::vec3>> positions;
         gl::VertexArray array;
-        gl::Buffer vertices, rest, indices;
-        Box box; // of the positions
+        gl::Buffer vertices, indices; // those of the coarse triangles last
+        Box box;                      // of the positions
         std::uint64_t version = 0;
         std::uint64_t lastFrame = 0;
     };

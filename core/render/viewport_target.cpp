@@ -25,10 +25,17 @@ void clear() {
     glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
 }
 
+void copy(GLuint from, GLuint to, glm::ivec2 size) {
+    glBindFramebuffer(GL_READ_FRAMEBUFFER, from);
+    glBindFramebuffer(GL_DRAW_FRAMEBUFFER, to);
+    glBlitFramebuffer(0, 0, size.x, size.y, 0, 0, size.x, size.y, GL_COLOR_BUFFER_BIT, GL_NEAREST);
+}
+
 } // namespace
 
-void ViewportTarget::resize(glm::ivec2 size) {
-    if (whole_ && size == size_) return;
+bool ViewportTarget::resize(glm::ivec2 size) {
+    if (whole_ && size == size_) return false;
+    moving_.reset();
     whole_.reset();
     whole_.emplace();
     size_ = size;
@@ -42,16 +49,28 @@ void ViewportTarget::resize(glm::ivec2 size) {
     glBindFramebuffer(GL_FRAMEBUFFER, whole_->framebuffer.name());
     glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, whole_->color.name(), 0);
     requireComplete();
+    return true;
+}
+
+void ViewportTarget::beginBackground() {
+    if (!moving_) {
+        moving_.emplace();
+        glBindFramebuffer(GL_FRAMEBUFFER, moving_->framebuffer.name());
+        attach(GL_COLOR_ATTACHMENT0, moving_->background, GL_RGBA8, size_, 0);
+        requireComplete();
+        glBindFramebuffer(GL_FRAMEBUFFER, whole_->framebuffer.name());
+        attach(GL_DEPTH_ATTACHMENT, moving_->depth, GL_DEPTH_COMPONENT24, size_, 0);
+        requireComplete();
+    }
+    glBindFramebuffer(GL_FRAMEBUFFER, moving_->framebuffer.name());
+    glViewport(0, 0, size_.x, size_.y);
 }
 
 void ViewportTarget::beginWhole() {
+    copy(moving_->framebuffer.name(), whole_->framebuffer.name(), size_);
     glBindFramebuffer(GL_FRAMEBUFFER, whole_->framebuffer.name());
-    if (!whole_->depth) {
-        attach(GL_DEPTH_ATTACHMENT, whole_->depth.emplace(), GL_DEPTH_COMPONENT24, size_, 0);
-        requireComplete();
-    }
     glViewport(0, 0, size_.x, size_.y);
-    clear();
+    glClear(GL_DEPTH_BUFFER_BIT);
 }
 
 void ViewportTarget::beginPiece(const FramePiece& piece) {
@@ -79,15 +98,13 @@ void ViewportTarget::endPiece(const FramePiece& piece) {
 }
 
 void ViewportTarget::copyTo(GLuint framebuffer) const {
-    glBindFramebuffer(GL_READ_FRAMEBUFFER, whole_->framebuffer.name());
-    glBindFramebuffer(GL_DRAW_FRAMEBUFFER, framebuffer);
-    glBlitFramebuffer(0, 0, size_.x, size_.y, 0, 0, size_.x, size_.y, GL_COLOR_BUFFER_BIT, GL_NEAREST);
+    copy(whole_->framebuffer.name(), framebuffer, size_);
     glBindFramebuffer(GL_FRAMEBUFFER, framebuffer);
     glViewport(0, 0, size_.x, size_.y);
 }
 
 std::size_t ViewportTarget::objectCount() const noexcept {
-    return (whole_ ? 2U : 0U) + (whole_ && whole_->depth ? 1U : 0U) + (piece_ ? 3U : 0U);
+    return (whole_ ? 2U : 0U) + (moving_ ? 3U : 0U) + (piece_ ? 3U : 0U);
 }
 
 } // namespace lumorph

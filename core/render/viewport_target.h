@@ -15,10 +15,13 @@ public:
     /// Largest piece, pixels.
     static constexpr glm::ivec2 kPiece{1024, 128};
 
-    /// Throws DeviceError when the driver has no memory for it.
-    void resize(glm::ivec2 size);
+    /// Whether the size is another one, so that all that was drawn is lost. Throws DeviceError when the driver has no
+    /// memory for it.
+    bool resize(glm::ivec2 size);
 
-    /// Binds the whole frame for drawing with depth and clears it.
+    /// Binds a second picture of the whole frame, without depth: what can be drawn over again and again.
+    void beginBackground();
+    /// Binds the whole frame for drawing with depth, over a copy of the background.
     void beginWhole();
     /// Binds a piece, not larger than kPiece, for drawing with samples and depth, and clears it; the viewport is
     /// shifted so that clip space is still that of the whole frame.
@@ -37,7 +40,10 @@ private:
     struct Whole {
         gl::Texture color;
         gl::Framebuffer framebuffer;
-        std::optional<gl::Renderbuffer> depth; // made when first drawn into
+    };
+    struct Moving { // made when first drawn into
+        gl::Renderbuffer depth, background;
+        gl::Framebuffer framebuffer; // of the background
     };
     struct Piece {
         gl::Renderbuffer color, depth;
@@ -45,6 +51,7 @@ private:
     };
     glm::ivec2 size_{0};
     std::optional<Whole> whole_;
+    std::optional<Moving> moving_;
     std::optional<Piece> piece_;
 };
 

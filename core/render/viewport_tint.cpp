@@ -28,28 +28,47 @@ bool fits(const ViewportTint& tint) {
            tint.classes->size() == tint.frame.voxelCount() && tint.frame.voxelSize > 0.0;
 }
 
+// A surface cuts its outermost voxels, so that some of its points lie in voxels that do not count as inside:
+// each coloured class reaches one voxel into class 0.
+std::vector<std::uint8_t> widened(const std::vector<std::uint8_t>& classes, const glm::ivec3& size) {
+    std::vector<std::uint8_t> wide = classes;
+    const auto reach = [&](std::size_t from, int place, int length, std::ptrdiff_t stride) {
+        for (const int step : {-1, 1}) {
+            if (place + step < 0 || place + step >= length) continue;
+            std::uint8_t& next = wide[static_cast<std::size_t>(static_cast<std::ptrdiff_t>(from) + step * stride)];
+            if (next == 0) next = classes[from];
+        }
+    };
+    std::size_t i = 0;
+    for (int z = 0; z < size.z; ++z)
+        for (int y = 0; y < size.y; ++y)
+            for (int x = 0; x < size.x; ++x, ++i) {
+                if (classes[i] == 0) continue;
+                reach(i, x, size.x, 1);
+                reach(i, y, size.y, size.x);
+                reach(i, z, size.z, static_cast<std::ptrdiff_t>(size.x) * size.y);
+            }
+    return wide;
+}
+
 } // namespace
 
 void ViewportTintVolume::update(const std::optional<ViewportTint>& tint) {
     if (!tint || !fits(*tint)) {
-        // A texture of one voxel, so that the program always has one to sample.
-        const std::uint8_t none = 0;
-        if (classes_ || dimensions_ == glm::ivec3(0)) store(texture_.name(), glm::ivec3(1), &none);
-        classes_.reset();
-        dimensions_ = glm::ivec3(1);
+        volume_.reset();
         return;
     }
-    if (classes_ == tint->classes && dimensions_ == tint->frame.dimensions) return;
-    classes_ = tint->classes;
-    dimensions_ = tint->frame.dimensions;
-    store(texture_.name(), dimensions_, classes_->data());
+    if (!volume_) volume_.emplace();
+    if (volume_->classes == tint->classes && volume_->dimensions == tint->frame.dimensions) return;
+    volume_->classes = tint->classes;
+    volume_->dimensions = tint->frame.dimensions;
+    store(volume_->texture.name(), volume_->dimensions, widened(*volume_->classes, volume_->dimensions).data());
 }
 
 void ViewportTintVolume::apply(Program& program, const ViewportFrame& frame, int textureUnit) const {
     glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(textureUnit));
-    glBindTexture(GL_TEXTURE_3D, texture_.name());
+    glBindTexture(GL_TEXTURE_3D, volume_->texture.name());
     program.set("tintClasses", textureUnit);
-    if (!classes_) return;
     const ViewportTint& tint = *frame.scene.tint;
     const auto voxel = static_cast<float>(tint.frame.voxelSize);
     program.set("tintFromWorld", glm::scale(glm::mat4(1.0F), glm::vec3(1.0F / voxel)) *
@@ -58,11 +77,7 @@ void ViewportTintVolume::apply(Program& program, const ViewportFrame& frame, int
     for (std::size_t i = 0; i < tint.colors.size(); ++i)
         program.set("tintColors[" + std::to_string(i) + "]",
                     glm::vec4(linearFromSrgb(glm::vec3(tint.colors[i])), tint.colors[i].a));
-}
-
-void ViewportTintVolume::setTinted(Program& program, const ViewportFrame& frame, bool tinted) const {
-    const int taps = frame.quality == ViewportQuality::still ? 8 : 1;
-    program.set("tintTaps", tinted && classes_ ? taps : 0);
+    program.set("tintTaps", frame.quality == ViewportQuality::still ? 8 : 1);
 }
 
 } // namespace lumorph

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "core/render/gl_objects.h"
@@ -17,16 +18,19 @@ public:
     /// number of classes does not fit its frame, or that the driver cannot hold, counts as none.
     void update(const std::optional<ViewportTint>& tint);
 
-    /// Sets and binds what tint.glsl needs; call setTinted for each surface after it.
+    [[nodiscard]] bool there() const noexcept { return volume_.has_value(); }
+    /// Sets and binds what tint.glsl needs. There must be a tint.
     void apply(Program& program, const ViewportFrame& frame, int textureUnit) const;
-    void setTinted(Program& program, const ViewportFrame& frame, bool tinted) const;
 
-    [[nodiscard]] std::size_t objectCount() const noexcept { return 1; }
+    [[nodiscard]] std::size_t objectCount() const noexcept { return volume_ ? 1 : 0; }
 
 private:
-    std::shared_ptr<const std::vector<std::uint8_t>> classes_;
-    glm::ivec3 dimensions_{0};
-    gl::Texture texture_;
+    struct Volume {
+        gl::Texture texture;
+        std::shared_ptr<const std::vector<std::uint8_t>> classes;
+        glm::ivec3 dimensions{0};
+    };
+    std::optional<Volume> volume_;
 };
 
 } // namespace lumorph

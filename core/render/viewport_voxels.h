@@ -47,7 +47,8 @@ private:
     static void upload(Entry& entry, const ViewportVoxels& cloud);
     static void drawFaces(const Entry& entry, const ViewportFrame& frame);
 
-    Program program_{shaderFiles({"version.glsl", "tone.glsl", "voxel.vert"}, {"version.glsl", "voxel.frag"})};
+    Program program_{
+        shaderFiles({"version.glsl", "light_colors.glsl", "tone.glsl", "voxel.vert"}, {"version.glsl", "voxel.frag"})};
     std::vector<std::unique_ptr<Entry>> entries_;
     std::vector<const Entry*> shown_;
     std::uint64_t frame_ = 0;

@@ -1,4 +1,5 @@
-// A matte, paper-like surface; follows version.glsl, backdrop.glsl, studio_light.glsl and tone.glsl.
+// A matte, paper-like surface; follows version.glsl, backdrop.glsl, studio_light.glsl,
+// light_colors.glsl and tone.glsl.
 // In: worldPosition, worldNormal (world), eye (world), baseColor (linear), opacity, rim (0 or 1: a
 // translucent surface grows denser where it is seen edge-on). Out: color, sRGB-encoded.
 
@@ -26,5 +27,5 @@ void main() {
     // Paper is a little brighter seen edge-on.
     float grazing = pow(1.0 - abs(dot(normal, toEye)), 3.0);
     vec3 shaded = baseColor * light * (1.0 + 0.15 * grazing);
-    color = vec4(dithered(encoded(toneMapped(exposure * shaded))), mix(opacity, 1.0, rim * 0.55 * grazing));
+    color = vec4(dithered(shown(exposure * shaded)), mix(opacity, 1.0, rim * 0.55 * grazing));
 }

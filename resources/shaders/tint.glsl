@@ -1,6 +1,8 @@
+#define TINTED
 // Shared piece: the tint at a world position. In: tintClasses (class of each voxel), tintFromWorld
 // (world to voxels: a voxel's corner is whole), tintColors (linear, strength), tintNudge (metres
-// inwards), tintTaps (0: none, 1: nearest voxel, 8: the edge between classes runs smoothly).
+// inwards), tintTaps (1: nearest voxel,
+// 8: the edge between classes runs smoothly).
 
 uniform usampler3D tintClasses;
 uniform mat4 tintFromWorld;
@@ -24,8 +26,6 @@ vec4 tintAt(vec3 position, vec3 normal) {
         uint found = inside ? min(texelFetch(tintClasses, at, 0).r, 3u) : 0u;
         weight += w.x * w.y * w.z * vec4(equal(uvec4(0u, 1u, 2u, 3u), uvec4(found)));
     }
-    // At a surface half of the voxels around lie outside; they say little.
-    weight.x *= 0.35;
     weight *= weight;
     weight *= weight;
     float sum = weight.x + weight.y + weight.z + weight.w;

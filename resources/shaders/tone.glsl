@@ -1,10 +1,4 @@
-// Shared piece: the colours of the studio's lights and the way from light to an sRGB-encoded colour.
-
-// Light on a surface from the shares of key light, sky and ground that reach it.
-vec3 studioLight(float key, float sky, float bounce) {
-    return vec3(1.0, 0.95, 0.88) * 1.05 * key + vec3(0.86, 0.93, 1.0) * 0.42 * sky +
-           vec3(1.0, 0.96, 0.92) * 0.08 * bounce;
-}
+// Shared piece: the way from light to an sRGB-encoded colour.
 
 // Bright tones roll off softly instead of clipping; dark and middle tones stay nearly as they are.
 vec3 toneMapped(vec3 light) {
@@ -15,3 +9,5 @@ vec3 encoded(vec3 light) {
     vec3 c = clamp(light, 0.0, 1.0);
     return mix(12.92 * c, 1.055 * pow(c, vec3(1.0 / 2.4)) - 0.055, step(vec3(0.0031308), c));
 }
+
+vec3 shown(vec3 light) { return encoded(toneMapped(light)); }

@@ -1,12 +1,13 @@
-// A surface in a viewport; follows version.glsl, backdrop.glsl, a light, tone.glsl and tint.glsl.
-// In: worldPosition, worldNormal (world), fibrePlace (metres), eye (world; w is 0 for the direction
+// A surface in a viewport; follows version.glsl, backdrop.glsl, a light with its tone, light_colors.glsl
+// and, where it is tinted, tint.glsl. In motion paper is plain.
+// In: worldPosition, worldNormal (world), fibrePlace (mesh, metres), eye (world; w is 0 for the direction
 // towards a parallel eye), baseColor (linear), opacity, rim (0 or 1: a translucent surface grows denser
 // where it is seen edge-on), fibre (texture, 0.5 is plain), paper (0 to 1), fibreTile (metres), exposure,
 // keepAlpha (0 marks outlined surfaces). Out: color, sRGB-encoded.
 
 in vec3 worldPosition;
 in vec3 worldNormal;
-in vec2 fibrePlace;
+in vec3 fibrePlace;
 
 uniform vec4 eye;
 uniform vec3 baseColor;
@@ -30,13 +31,24 @@ void main() {
     float sky = skyLight(worldPosition, normal);
     vec3 light = studioLight(key, sky, 0.5 - 0.5 * normal.y);
 
+    vec3 base = baseColor;
+#ifdef TINTED
     vec4 tint = tintAt(worldPosition, normal);
-    vec3 base = mix(baseColor, tint.rgb / max(tint.a, 1e-4), tint.a);
-    base *= 1.0 + paper * 0.22 * (texture(fibre, fibrePlace / fibreTile).r - 0.5);
+    base = mix(base, tint.rgb / max(tint.a, 1e-4), tint.a);
+#endif
+#ifndef MOVING
+    // Seen along the axis that the surface faces most.
+    vec3 side = abs(normal);
+    vec2 place = side.y >= max(side.x, side.z) ? fibrePlace.xz : side.x > side.z ? fibrePlace.zy : fibrePlace.xy;
+    base *= 1.0 + paper * 0.2 * (texture(fibre, place / fibreTile).r - 0.5);
+#endif
     // Paper is a little brighter seen edge-on.
     float edge = 1.0 - abs(dot(normal, toEye));
     float grazing = edge * edge * edge;
     vec3 shaded = base * light * (1.0 + 0.15 * grazing);
     float alpha = mix(opacity, 1.0, rim * 0.55 * grazing);
-    color = vec4(dithered(encoded(toneMapped(exposure * shaded))), keepAlpha * alpha);
+    color = vec4(shown(exposure * shaded), keepAlpha * alpha);
+#ifndef MOVING
+    color.rgb = dithered(color.rgb);
+#endif
 }

@@ -1,4 +1,5 @@
-// A corner of an exposed face of a voxel; follows version.glsl and tone.glsl. In: corner (x, y, z of the voxel; face, place and sides packed
+// A corner of an exposed face of a voxel; follows version.glsl,
+// light_colors.glsl and tone.glsl. In: corner (x, y, z of the voxel; face, place and sides packed
 // as in viewport_voxels.cpp), tone (sRGB-encoded), worldFromVoxels (a voxel's corner is whole), inset
 // (half the gap between two cubes, voxels), clipFromWorld, keyDirection (world), exposure. Out: faceColor
 // (sRGB-encoded), facePlace (voxels from the middle of the face), sides; clip space.
@@ -44,5 +45,5 @@ void main() {
     normal[axis] = outwards;
     float key = max(dot(normal, keyDirection), 0.0);
     vec3 light = studioLight(key, 0.5 + 0.5 * normal.y, 0.5 - 0.5 * normal.y);
-    faceColor = encoded(toneMapped(exposure * linear(tone.rgb) * (light + 0.08)));
+    faceColor = shown(exposure * linear(tone.rgb) * (light + 0.08));
 }

@@ -110,16 +110,16 @@ TEST_P(GizmoFrom, TheSizeCubeScalesAboutTheGizmo) {
     const glm::vec2 centre = seen(camera, kCentre);
     const glm::vec2 held = centre + 0.95F * 90.0F * glm::normalize(glm::vec2(1, -1));
     ASSERT_EQ(gizmoAt(someGizmo(), camera, held, kSize, 1.0), GizmoHandle::size);
-    const GizmoDrag drag = dragGizmo(someGizmo(), GizmoHandle::size, camera, held, centre + 1.2F * (held - centre),
-                                     kSize, false);
+    const GizmoDrag drag =
+        dragGizmo(someGizmo(), GizmoHandle::size, camera, held, centre + 1.2F * (held - centre), kSize, false);
     EXPECT_NEAR(drag.placement.scale, 0.8 * 1.2, 1e-4);
     EXPECT_EQ(drag.label, "120 %");
     const glm::mat4 before = glm::inverse(someGizmo().placement.deviceFromTarget());
     const auto atCentre = glm::vec3(before * glm::vec4(kCentre, 1.0F));
     EXPECT_LT(glm::distance(placedPoint(drag.placement, atCentre), kCentre), 1e-6F);
     // Pulled through the centre and out at the other side it is tiny, not inside out.
-    const GizmoDrag through = dragGizmo(someGizmo(), GizmoHandle::size, camera, held, centre - 3.0F * (held - centre),
-                                        kSize, false);
+    const GizmoDrag through =
+        dragGizmo(someGizmo(), GizmoHandle::size, camera, held, centre - 3.0F * (held - centre), kSize, false);
     EXPECT_GT(through.placement.scale, 0.0);
 }
 
@@ -131,8 +131,8 @@ TEST_P(GizmoFrom, CoarseDragsSnap) {
     EXPECT_EQ(up.label, "y 1.5 cm");
     const glm::vec2 centre = seen(camera, kCentre);
     const glm::vec2 cube = centre + 0.95F * 90.0F * glm::normalize(glm::vec2(1, -1));
-    const GizmoDrag larger = dragGizmo(someGizmo(), GizmoHandle::size, camera, cube, centre + 1.27F * (cube - centre),
-                                       kSize, true);
+    const GizmoDrag larger =
+        dragGizmo(someGizmo(), GizmoHandle::size, camera, cube, centre + 1.27F * (cube - centre), kSize, true);
     EXPECT_NEAR(larger.placement.scale, 0.8 * 1.3, 1e-6);
     EXPECT_EQ(larger.label, "130 %");
 }

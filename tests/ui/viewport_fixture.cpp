@@ -29,8 +29,7 @@ std::shared_ptr<ViewportScene> cubeScene(const glm::vec3& centre, float side, co
                                          std::uint32_t id) {
     TriangleMesh mesh;
     for (unsigned i = 0; i < 8; ++i)
-        mesh.positions.push_back(
-            centre + 0.5F * side * glm::vec3(i & 1U ? 1 : -1, i & 2U ? 1 : -1, i & 4U ? 1 : -1));
+        mesh.positions.push_back(centre + 0.5F * side * glm::vec3(i & 1U ? 1 : -1, i & 2U ? 1 : -1, i & 4U ? 1 : -1));
     mesh.triangles = {{0, 2, 3}, {0, 3, 1}, {4, 5, 7}, {4, 7, 6}, {0, 1, 5}, {0, 5, 4},
                       {2, 6, 7}, {2, 7, 3}, {0, 4, 6}, {0, 6, 2}, {1, 3, 7}, {1, 7, 5}};
     return sceneOf(mesh, color, id);
@@ -44,8 +43,9 @@ std::shared_ptr<ViewportScene> sphereScene(int triangles, float radius) {
         for (unsigned column = 0; column < columns; ++column) {
             const double polar = std::numbers::pi * row / rows;
             const double around = 2.0 * std::numbers::pi * column / columns;
-            mesh.positions.emplace_back(static_cast<double>(radius) * glm::dvec3(std::sin(polar) * std::sin(around), std::cos(polar),
-                                                            std::sin(polar) * std::cos(around)));
+            mesh.positions.emplace_back(static_cast<double>(radius) * glm::dvec3(std::sin(polar) * std::sin(around),
+                                                                                 std::cos(polar),
+                                                                                 std::sin(polar) * std::cos(around)));
         }
     for (unsigned row = 0; row < rows; ++row)
         for (unsigned column = 0; column < columns; ++column) {
@@ -63,8 +63,7 @@ QRect redPart(const QImage& image) {
     for (int y = 0; y < image.height(); ++y)
         for (int x = 0; x < image.width(); ++x) {
             const QRgb pixel = image.pixel(x, y);
-            if (qRed(pixel) > 2 * qGreen(pixel) + 10 && qRed(pixel) > 2 * qBlue(pixel) + 10)
-                found |= QRect(x, y, 1, 1);
+            if (qRed(pixel) > 2 * qGreen(pixel) + 10 && qRed(pixel) > 2 * qBlue(pixel) + 10) found |= QRect(x, y, 1, 1);
         }
     return found;
 }
@@ -73,8 +72,7 @@ QRectF cubePart(const ViewCamera& camera, const glm::vec3& centre, float side, g
     glm::vec2 low(1e9F);
     glm::vec2 high(-1e9F);
     for (unsigned i = 0; i < 8; ++i) {
-        const glm::vec3 corner =
-            centre + 0.5F * side * glm::vec3(i & 1U ? 1 : -1, i & 2U ? 1 : -1, i & 4U ? 1 : -1);
+        const glm::vec3 corner = centre + 0.5F * side * glm::vec3(i & 1U ? 1 : -1, i & 2U ? 1 : -1, i & 4U ? 1 : -1);
         const glm::vec2 seen = pixelOf(camera, corner, size).value();
         low = glm::min(low, seen);
         high = glm::max(high, seen);

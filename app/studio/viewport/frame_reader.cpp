@@ -62,7 +62,10 @@ void FrameReader::start(QSize pixels) {
     // OpenGL's row 0 is the lowest. Drawing it upside down costs a graphics card nothing; the processor rather swaps
     // the rows itself.
     const bool scale = way_ == ReadBack::buffered || drawn_->size != pixels;
-    if (scale) scaleInto(pixels);
+    if (scale)
+        scaleInto(pixels);
+    else
+        scaled_.reset();
     if (way_ == ReadBack::buffered)
         readIntoBuffer(pixels);
     else

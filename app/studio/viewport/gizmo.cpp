@@ -16,7 +16,7 @@ constexpr glm::vec3 kNeutral{0.92F, 0.92F, 0.92F};
 constexpr glm::vec3 kYellow{0.94F, 0.78F, 0.35F};
 constexpr int kRingSegments = 72;
 constexpr float kHeadPixels = 17.0F;
-constexpr float kCubePixels = 12.0F;
+constexpr int kHeadLines = 16;
 
 glm::vec3 colorOf(GizmoHandle handle) {
     switch (handle) {
@@ -31,6 +31,10 @@ glm::vec3 colorOf(GizmoHandle handle) {
     default:
         return kNeutral;
     }
+}
+
+glm::vec3 cubeCorner(unsigned corner) {
+    return {corner & 1U ? 1.0F : -1.0F, corner & 2U ? 1.0F : -1.0F, corner & 4U ? 1.0F : -1.0F};
 }
 
 // Collects the lines of the handles; `pixel` is the length of a pixel of 100 % at the centre.
@@ -65,29 +69,36 @@ private:
         for (std::size_t i = 0; i < 4; ++i)
             add(GizmoHandle::moveGround, square[i], square[(i + 1) % 4], widthOf(GizmoHandle::moveGround));
     }
-    // A head of lines that get thinner towards the tip: a cone's outline from everywhere.
+    // The head is a cone of lines from its rim to its tip.
     void drawArrow(GizmoHandle arrow) {
         const glm::vec3 axis = axisOf(arrow);
         if (pointsAtCamera(axis, gizmo_.centre, camera_)) return;
-        const float neck = length_ - kHeadPixels * pixel_;
-        add(arrow, gizmo_.centre + kArrowStart * length_ * axis, gizmo_.centre + neck * axis, widthOf(arrow));
-        constexpr int steps = 12;
-        const float base = arrow == hot_ ? 13.0F : 11.0F;
-        for (int i = 0; i < steps; ++i) {
-            const float t = static_cast<float>(i) / steps;
-            const float next = static_cast<float>(i + 1) / steps;
-            add(arrow, gizmo_.centre + (neck + t * kHeadPixels * pixel_) * axis,
-                gizmo_.centre + (neck + next * kHeadPixels * pixel_) * axis, std::max(1.0F, base * (1.0F - t)));
+        const glm::vec3 tip = gizmo_.centre + length_ * axis;
+        const glm::vec3 base = tip - kHeadPixels * pixel_ * axis;
+        add(arrow, gizmo_.centre + kArrowStart * length_ * axis, base, widthOf(arrow));
+        const glm::vec3 u(axis.y, axis.z, axis.x);
+        const glm::vec3 v = glm::cross(axis, u);
+        const float radius = (arrow == hot_ ? 6.5F : 5.5F) * pixel_;
+        const auto rim = [&](int i) {
+            const float angle = 2.0F * std::numbers::pi_v<float> * static_cast<float>(i) / kHeadLines;
+            return base + radius * (std::cos(angle) * u + std::sin(angle) * v);
+        };
+        for (int i = 0; i < kHeadLines; ++i) {
+            add(arrow, rim(i), tip, 2.0F);
+            add(arrow, rim(i), rim(i + 1), 2.0F);
+            add(arrow, rim(i), base, 2.0F);
         }
     }
     void drawSize() {
-        const glm::vec3 cube = sizeCube(gizmo_, camera_, length_);
-        const PictureAxes axes = pictureAxes(camera_);
-        const float half = 0.5F * kCubePixels * pixel_;
-        const glm::vec3 inwards = glm::normalize(gizmo_.centre - cube);
-        add(GizmoHandle::size, gizmo_.centre - kArrowStart * length_ * inwards, cube + half * inwards,
-            hot_ == GizmoHandle::size ? 2.5F : 1.5F);
-        add(GizmoHandle::size, cube - half * axes.right, cube + half * axes.right, kCubePixels);
+        const glm::vec3 middle = sizeCube(gizmo_, camera_, length_);
+        const float half = (hot_ == GizmoHandle::size ? 6.5F : 5.5F) * pixel_;
+        const glm::vec3 inwards = glm::normalize(gizmo_.centre - middle);
+        add(GizmoHandle::size, gizmo_.centre - kArrowStart * length_ * inwards, middle + 1.5F * half * inwards, 1.5F);
+        for (unsigned corner = 0; corner < 8; ++corner)
+            for (unsigned bit = 1; bit < 8; bit *= 2)
+                if (!(corner & bit))
+                    add(GizmoHandle::size, middle + half * cubeCorner(corner), middle + half * cubeCorner(corner | bit),
+                        2.5F);
     }
 
     const Gizmo& gizmo_;

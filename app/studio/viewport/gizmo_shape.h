@@ -15,7 +15,7 @@ namespace lumorph::studio {
 /// Where the handles are, in arrow lengths from the centre.
 inline constexpr float kArrowStart = 0.12F;
 inline constexpr float kSquareFrom = 0.24F;
-inline constexpr float kSquareTo = 0.46F;
+inline constexpr float kSquareTo = 0.50F;
 inline constexpr float kRingRadius = 0.74F;
 /// The size cube hangs in the picture's plane, up and to the right, so that no view hides it.
 inline constexpr float kSizeOffset = 0.95F;

@@ -1,6 +1,10 @@
 #include "app/studio/viewport/gl_page.h"
 
+#include <algorithm>
+#include <cmath>
+
 #include <QBoxLayout>
+#include <QFontInfo>
 #include <QPainter>
 #include <QPushButton>
 
@@ -10,15 +14,15 @@ namespace lumorph::studio {
 namespace {
 
 constexpr int kTextWidth = 440;
+constexpr int kMargin = 24;
 
 QLabel* label(const QString& text, double size, QFont::Weight weight) {
     auto* made = new QLabel(text);
     QFont font = made->font();
-    font.setPointSizeF(font.pointSizeF() * size);
+    font.setPixelSize(static_cast<int>(std::lround(QFontInfo(font).pixelSize() * size)));
     font.setWeight(weight);
     made->setFont(font);
     made->setWordWrap(true);
-    made->setMaximumWidth(kTextWidth);
     made->setTextInteractionFlags(Qt::TextSelectableByMouse);
     return made;
 }
@@ -27,33 +31,39 @@ QLabel* label(const QString& text, double size, QFont::Weight weight) {
 
 GlPage::GlPage(std::function<void()> retry, QWidget* parent) : QWidget(parent) {
     setObjectName(QStringLiteral("viewport.failure"));
-    auto* title = label(tr("The 3D view cannot be drawn here"), 1.4, QFont::DemiBold);
+    title_ = label(tr("The 3D view cannot be drawn here"), 1.4, QFont::DemiBold);
     reason_ = label({}, 1.0, QFont::Normal);
     reason_->setObjectName(QStringLiteral("viewport.failure.reason"));
-    auto* rest = label(tr("Everything else in this window works."), 1.0, QFont::Normal);
+    rest_ = label(tr("Everything else in this window works."), 1.0, QFont::Normal);
     auto* button = new QPushButton(tr("Try again"));
     button->setObjectName(QStringLiteral("viewport.retry"));
     connect(button, &QPushButton::clicked, this, [retry = std::move(retry)] { retry(); });
 
     auto* column = new QVBoxLayout;
     column->setSpacing(8);
-    column->addWidget(title);
+    column->addWidget(title_);
     column->addWidget(reason_);
-    column->addWidget(rest);
+    column->addWidget(rest_);
     column->addSpacing(8);
     column->addWidget(button, 0, Qt::AlignLeft);
     auto* across = new QHBoxLayout;
     across->addStretch(1);
-    across->addLayout(column, 4);
+    across->addLayout(column);
     across->addStretch(1);
     auto* down = new QVBoxLayout(this);
-    down->setContentsMargins(24, 24, 24, 24);
+    down->setContentsMargins(kMargin, kMargin, kMargin, kMargin);
     down->addStretch(2);
     down->addLayout(across);
     down->addStretch(3);
 }
 
 void GlPage::setReason(const QString& why) { reason_->setText(why); }
+
+void GlPage::resizeEvent(QResizeEvent* /*event*/) {
+    // Labels that wrap know their height only for a width that is settled.
+    for (QLabel* text : {title_, reason_, rest_})
+        text->setFixedWidth(std::clamp(width() - 2 * kMargin, 60, kTextWidth));
+}
 
 void GlPage::paintEvent(QPaintEvent* /*event*/) { QPainter(this).fillRect(rect(), currentPalette().window); }
 

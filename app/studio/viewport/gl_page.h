@@ -17,9 +17,12 @@ public:
 
 protected:
     void paintEvent(QPaintEvent* event) override;
+    void resizeEvent(QResizeEvent* event) override;
 
 private:
+    QLabel* title_;
     QLabel* reason_;
+    QLabel* rest_;
 };
 
 } // namespace lumorph::studio

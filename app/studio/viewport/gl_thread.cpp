@@ -41,7 +41,7 @@ QString whatIsMissing(const GlDriver& driver) {
     return QStringLiteral("This graphics driver offers OpenGL %1.%2 (%3); 4.1 is needed. %4")
         .arg(driver.version / 10)
         .arg(driver.version % 10)
-        .arg(QString::fromStdString(driver.renderer), remedy);
+        .arg(QString::fromStdString(driver.renderer).section(QStringLiteral(" ("), 0, 0), remedy);
 }
 
 QString nothingThere() {

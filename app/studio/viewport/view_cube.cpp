@@ -15,11 +15,11 @@
 namespace lumorph::studio {
 namespace {
 
-constexpr double kBoxSide = 92.0;
-constexpr double kMargin = 14.0;
-constexpr float kHalfEdge = 26.0F;
+constexpr double kBoxSide = 104.0;
+constexpr double kMargin = 12.0;
+constexpr float kHalfEdge = 30.0F;
 // From here to the rim a face belongs to its edges and corners.
-constexpr float kRim = 0.62F;
+constexpr float kRim = 0.7F;
 
 // A face: where it looks and the directions of its lettering, seen from outside.
 struct Face {
@@ -76,7 +76,7 @@ void paintName(QPainter& painter, const QPolygonF& face, const char* name, const
     painter.save();
     painter.setTransform(onto, true);
     QFont font = painter.font();
-    font.setPixelSize(28);
+    font.setPixelSize(24);
     font.setWeight(QFont::DemiBold);
     painter.setFont(font);
     painter.setPen(color);

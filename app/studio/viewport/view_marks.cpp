@@ -90,7 +90,7 @@ void paintLegend(QPainter& painter, const QSize& view, const ViewCamera& camera,
     const QPointF middle(kMargin + 26.0, view.height() - kMargin - 26.0);
     paintAxes(painter, middle, camera, palette);
     painter.setFont(smallFont(painter));
-    const double left = middle.x() + 40.0;
+    const double left = middle.x() + 46.0;
     paintReadable(painter, {left, middle.y() + 8.0, 240.0, 18.0}, projectionName(camera), palette.text, palette.window);
     if (!grid.isEmpty())
         paintReadable(painter, {left, middle.y() - 10.0, 240.0, 18.0}, word("Grid ") + grid, palette.textMuted,

@@ -13,6 +13,8 @@ namespace lumorph::studio {
 namespace {
 
 constexpr int kTickMilliseconds = 12;
+// Degrees of pitch below which the ground is a line without squares.
+constexpr double kGridOnEdge = 0.5;
 
 // From the front, right and above: where a new view looks from.
 ViewCamera firstCamera() {
@@ -145,7 +147,9 @@ void ViewportWidget::Data::paintMarks(QPainter& painter) const {
     const QSize view = self.size();
     // A view smaller than its marks shows only the picture.
     if (view.width() > 220 && view.height() > 160) {
-        const QString grid = scene && scene->grid ? QString::fromStdString(gridOf(camera, size()).label) : QString();
+        const bool onEdge = std::abs(camera.pitch.inDegrees()) < kGridOnEdge;
+        const QString grid =
+            scene && scene->grid && !onEdge ? QString::fromStdString(gridOf(camera, size()).label) : QString();
         paintLegend(painter, view, camera, grid, colors);
         paintViewCube(painter, viewCubeBox(view), camera, hotSide, colors);
     }
