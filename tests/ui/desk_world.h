@@ -30,9 +30,7 @@ public:
     void writeRig(const Rig& rig, const std::string& name) const {
         writeFileAtomically(folder_ / name, writeRigGlb(rig));
     }
-    void writeMesh(const TriangleMesh& mesh, const std::string& name) const {
-        writeText(name, writeObj(mesh));
-    }
+    void writeMesh(const TriangleMesh& mesh, const std::string& name) const { writeText(name, writeObj(mesh)); }
     void writeText(const std::string& name, const std::string& text) const {
         std::ofstream(folder_ / name, std::ios::binary) << text;
     }

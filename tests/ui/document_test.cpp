@@ -51,12 +51,30 @@ TEST_F(DocumentTest, EachPartIsToldAloneAndComesBackExactlyByUndoAndRedo) {
     const auto field = smallField(*document.state().rig.rig);
     const std::vector<std::pair<StatePart, Edit>> edits = {
         {StatePart::rig, [](StudioState& s) { s.rig.path = "elsewhere.glb"; }},
-        {StatePart::field, [&](StudioState& s) { s.field = {"cushion.mdf", field}; }},
-        {StatePart::target, [&](StudioState& s) { s.target = {"block.obj", target}; }},
-        {StatePart::placement, [](StudioState& s) { s.placement = {2.5, Angle::radians(0.1), {1, 2, 3}}; }},
-        {StatePart::strokes, [](StudioState& s) { s.strokes = {0.25, 0.5, 1.0}; }},
-        {StatePart::matching, [](StudioState& s) { s.matching = {false, MatchMethod::voting, Microseconds(5000)}; }},
-        {StatePart::playback, [](StudioState& s) { s.playback = {false, 0.7}; }},
+        {StatePart::field,
+         [&](StudioState& s) {
+             s.field = {"cushion.mdf", field};
+         }},
+        {StatePart::target,
+         [&](StudioState& s) {
+             s.target = {"block.obj", target};
+         }},
+        {StatePart::placement,
+         [](StudioState& s) {
+             s.placement = {2.5, Angle::radians(0.1), {1, 2, 3}};
+         }},
+        {StatePart::strokes,
+         [](StudioState& s) {
+             s.strokes = {0.25, 0.5, 1.0};
+         }},
+        {StatePart::matching,
+         [](StudioState& s) {
+             s.matching = {false, MatchMethod::voting, Microseconds(5000)};
+         }},
+        {StatePart::playback,
+         [](StudioState& s) {
+             s.playback = {false, 0.7};
+         }},
     };
     std::vector<StudioState> states = {document.state()};
     for (const auto& [part, edit] : edits) {

@@ -86,7 +86,8 @@ TEST_F(JobsTest, TheSameJobAgainTakesThePlaceOfTheOneThatRuns) {
     Jobs jobs;
     jobs.run<int>("field", "Building", untilStopped, give, tell);
     jobs.run<int>("target", "Building", untilStopped, give, tell);
-    jobs.run<int>("field", "Building", [](const Progress&) { return 2; }, give, tell);
+    jobs.run<int>(
+        "field", "Building", [](const Progress&) { return 2; }, give, tell);
     EXPECT_EQ(jobs.running().size(), 2U) << "the target's job is another one";
     ASSERT_TRUE(eventually([&] { return !got.empty(); }));
     EXPECT_EQ(got, std::vector{2});
@@ -101,7 +102,8 @@ TEST_F(JobsTest, AJobMayCancelItselfAndStartOthersWhenItIsHandedOver) {
         [&](int value) {
             got.push_back(value);
             jobs.cancel(id);
-            jobs.run<int>("field", "First", [](const Progress&) { return 2; }, give, tell);
+            jobs.run<int>(
+                "field", "First", [](const Progress&) { return 2; }, give, tell);
         },
         tell);
     ASSERT_TRUE(eventually([&] { return got.size() == 2; }));

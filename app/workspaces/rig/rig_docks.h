@@ -1,0 +1,16 @@
+#pragma once
+
+#include <QWidget>
+
+#include "app/studio/shell/studio.h"
+#include "app/workspaces/rig/rig_selection.h"
+
+namespace lumorph::studio {
+
+/// The actuators of the rig; choosing one shows what it is and, in the view, what it moves.
+[[nodiscard]] QWidget* makeRigActuators(Studio& studio, RigSelection& selection);
+
+/// Checks of the mesh and the shape report of the rig. Adds the command "rig.check".
+[[nodiscard]] QWidget* makeRigReport(Studio& studio);
+
+} // namespace lumorph::studio

@@ -1,0 +1,161 @@
+#include "app/workspaces/rig/rig_facts.h"
+
+#include <algorithm>
+#include <array>
+
+#include <QGridLayout>
+#include <QLabel>
+#include <glm/geometric.hpp>
+
+#include "app/workspaces/field/dock_parts.h"
+
+namespace lumorph::studio {
+
+namespace {
+
+enum class Motion { turning, moving, blending };
+
+struct Range {
+    Motion motion;
+    double min, max; ///< radians, metres or weight
+};
+
+Range rangeOf(const Deformer& deformer) {
+    struct {
+        Range operator()(const Hinge& d) const { return {Motion::turning, d.min.inRadians(), d.max.inRadians()}; }
+        Range operator()(const Bend& d) const { return {Motion::turning, d.min.inRadians(), d.max.inRadians()}; }
+        Range operator()(const Slide& d) const { return {Motion::moving, d.min, d.max}; }
+        Range operator()(const MorphTarget&) const { return {Motion::blending, 0.0, 1.0}; }
+        Range operator()(const SkinJoint& d) const {
+            return {d.motion == SkinJoint::Motion::rotate ? Motion::turning : Motion::moving, d.min, d.max};
+        }
+    } visitor;
+    return std::visit(visitor, deformer);
+}
+
+/// A number with at most one decimal.
+QString shortNumber(double value) {
+    QString text = QString::number(value, 'f', 1);
+    if (text.endsWith(".0")) text.chop(2);
+    return text == "-0" ? "0" : text;
+}
+
+QString lengthText(double metres) { return shortNumber(1000.0 * metres) + " mm"; }
+QString percentText(double share) { return shortNumber(100.0 * share) + " %"; }
+
+QString statesText(int count, int of) {
+    return count == 0 ? QString("none of %1").arg(of) : QString("%1 of %2").arg(count).arg(of);
+}
+
+} // namespace
+
+QString deformerText(const Actuator& actuator) {
+    constexpr std::array kNames = {"Hinge", "Bend", "Slide", "Morph target", "Joint"};
+    return kNames.at(actuator.deformer.index());
+}
+
+QString rangeText(const Actuator& actuator) {
+    const Range range = rangeOf(actuator.deformer);
+    switch (range.motion) {
+    case Motion::turning:
+        return QString("%1° to %2°")
+            .arg(shortNumber(Angle::radians(range.min).inDegrees()),
+                 shortNumber(Angle::radians(range.max).inDegrees()));
+    case Motion::moving:
+        return shortNumber(1000.0 * range.min) + " to " + lengthText(range.max);
+    case Motion::blending:
+        break;
+    }
+    return shortNumber(range.min) + " to " + shortNumber(range.max);
+}
+
+double amplitudeOf(const Rig& rig, std::size_t actuator) {
+    const auto vertices = rig.verticesOf(actuator);
+    std::vector<double> strokes(rig.actuatorCount(), 0.0);
+    std::vector<glm::vec3> rest(vertices.size()), moved(vertices.size());
+    rig.deform(strokes, vertices, rest);
+    strokes[actuator] = 1.0;
+    rig.deform(strokes, vertices, moved);
+    double amplitude = 0.0;
+    for (std::size_t i = 0; i < vertices.size(); ++i)
+        amplitude = std::max(amplitude, static_cast<double>(glm::distance(rest[i], moved[i])));
+    return amplitude;
+}
+
+std::vector<RigFact> factsOf(const Rig& rig, std::size_t index) {
+    const Actuator& actuator = rig.actuators()[index];
+    const ActuatorDrive& drive = actuator.drive;
+    return {
+        {"Moves by", deformerText(actuator), "How its part changes shape"},
+        {"Range", rangeText(actuator), "From rest to full stroke"},
+        {"Amplitude", lengthText(amplitudeOf(rig, index)), "The longest way a point of the surface goes"},
+        {"Full stroke", QString("%1 s").arg(1.0 / actuator.maxVelocity, 0, 'f', 2),
+         "Time from rest to full stroke at its velocity limit"},
+        {"Levels", QString::number(actuator.levels), "Steps that the rig suggests for a field"},
+        {"Moves", countText(rig.verticesOf(index).size()) + " vertices", "How much of the mesh follows it"},
+        {"Channel", drive.channel < 0 ? QString("none") : QString::number(drive.channel),
+         "Where its servo is connected to the controller"},
+        {"Pulse", shortNumber(drive.pulseMin) + " to " + shortNumber(drive.pulseMax) + " µs",
+         "What the servo is sent at rest and at full stroke"},
+    };
+}
+
+std::vector<RigFact> meshFacts(const ShapeReport& report) {
+    const MeshReport& mesh = report.rest;
+    return {
+        {"Triangles", countText(mesh.triangles), "Of the device's surface"},
+        {"Pieces", countText(mesh.components), "Parts of the mesh that are not connected"},
+        {"Open edges", countText(mesh.boundaryEdges), "Edges of holes; a solid has none"},
+        {"Edges shared wrongly", countText(mesh.nonManifoldEdges),
+         "Edges with more than two triangles, or two that disagree"},
+        {"Flat triangles", countText(mesh.degenerateTriangles), "Triangles without area"},
+        {"Crossings", countText(mesh.selfIntersections), "Pairs of triangles that cross each other"},
+        {"Pieces turned inwards", countText(mesh.inwardComponents), "Closed pieces whose surface looks inside"},
+        {"Volume", volumeText(mesh.volume), "Enclosed at rest"},
+    };
+}
+
+std::vector<RigFact> shapeFacts(const ShapeReport& report) {
+    const glm::vec3 size = report.reach.size();
+    const int states = report.sampledStates;
+    return {
+        {"Size", sizeText(size.x, size.y, size.z), "Over all states"},
+        {"Moving surface", shortNumber(1e4 * report.area) + " cm²", "Surface at rest that any actuator moves"},
+        {"Granularity", shortNumber(1e-2 * report.granularity) + " per dm²",
+         "Actuators for each square decimetre of that"},
+        {"Most stretch", percentText(report.maxStretch), "Largest change of an edge of the upper surface"},
+        {"Volume range", volumeText(report.volumeMin) + " to " + volumeText(report.volumeMax),
+         "Over the states looked at"},
+        {"Open states", statesText(report.openStates, states), "Joint states in which the mesh is not closed"},
+        {"Crossing states", statesText(report.intersectingStates, states),
+         "Joint states in which the mesh crosses itself"},
+        {"Inverted states", statesText(report.invertedStates, states), "Joint states with triangles turned inside out"},
+        {"Holds its path",
+         report.pathInside ? QString("yes") : QString("no, %1 outside").arg(percentText(report.pathOutsideShare)),
+         "Whether the solid at a state holds all that it passed on its way"},
+    };
+}
+
+QWidget* makeFacts(const std::vector<RigFact>& facts, const QString& prefix, QWidget* parent) {
+    auto* widget = new QWidget(parent);
+    auto* grid = new QGridLayout(widget);
+    grid->setContentsMargins(0, 0, 0, 0);
+    grid->setHorizontalSpacing(16);
+    grid->setVerticalSpacing(4);
+    grid->setColumnStretch(1, 1);
+    for (int row = 0; const RigFact& fact : facts) {
+        auto* name = new QLabel(fact.name, widget);
+        name->setProperty("look", "muted");
+        auto* value = new QLabel(fact.value, widget);
+        value->setObjectName(prefix + fact.name.toLower().replace(' ', '-'));
+        value->setTextInteractionFlags(Qt::TextSelectableByMouse);
+        value->setWordWrap(true);
+        name->setToolTip(fact.why);
+        value->setToolTip(fact.why);
+        grid->addWidget(name, row, 0, Qt::AlignTop);
+        grid->addWidget(value, row++, 1);
+    }
+    return widget;
+}
+
+} // namespace lumorph::studio

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <vector>
+
+#include <QString>
+#include <QWidget>
+
+#include "core/rig/shape_report.h"
+
+namespace lumorph::studio {
+
+/// One thing to know about a rig, in plain words.
+struct RigFact {
+    QString name;
+    QString value;
+    QString why; ///< what it means, for a tooltip
+};
+
+/// "Hinge", "Bend", "Slide", "Morph target" or "Joint".
+[[nodiscard]] QString deformerText(const Actuator& actuator);
+/// "0° to 45°", "0 to 20 mm" or "0 to 1".
+[[nodiscard]] QString rangeText(const Actuator& actuator);
+/// What a maker and a controller need to know of an actuator. Deforms the rig once.
+[[nodiscard]] std::vector<RigFact> factsOf(const Rig& rig, std::size_t actuator);
+/// The longest way that a vertex goes at full stroke of this actuator alone, metres.
+[[nodiscard]] double amplitudeOf(const Rig& rig, std::size_t actuator);
+
+[[nodiscard]] std::vector<RigFact> meshFacts(const ShapeReport& report);
+[[nodiscard]] std::vector<RigFact> shapeFacts(const ShapeReport& report);
+
+/// Rows of a name and a value that can be selected; a value is called `prefix` and its name in small letters.
+[[nodiscard]] QWidget* makeFacts(const std::vector<RigFact>& facts, const QString& prefix, QWidget* parent);
+
+} // namespace lumorph::studio

@@ -1,0 +1,186 @@
+#include "app/workspaces/rig/rig_workspace.h"
+
+#include <optional>
+
+#include <QElapsedTimer>
+#include <QFileDialog>
+#include <QPointer>
+
+#include "app/studio/viewport/viewport_widget.h"
+#include "app/workspaces/field/field_colors.h"
+#include "app/workspaces/rig/moved_part.h"
+#include "app/workspaces/rig/rig_docks.h"
+
+namespace lumorph::studio {
+
+namespace {
+
+constexpr int kWiggleMilliseconds = 33;
+constexpr const char* kRigFolder = "folders/rig";
+
+ViewCamera firstCamera() {
+    ViewCamera camera;
+    camera.yaw = Angle::degrees(32.0);
+    camera.pitch = Angle::degrees(28.0);
+    return camera;
+}
+
+} // namespace
+
+struct RigWorkspace::Data : public QObject {
+    explicit Data(Studio& shared) : studio(shared) {}
+
+    void listen();
+    void addCommands();
+    void openRig();
+    void refresh();
+    void select();
+    void wiggle();
+    void frameOnce(const ViewportScene& scene);
+    /// The frame as shown: the loop's, with the selected actuator wiggling on top.
+    [[nodiscard]] MatchFrame shownFrame(const MatchFrame& frame);
+
+    Studio& studio;
+    RigSelection selection;
+    FieldSceneBuilder builder;
+    QPointer<ViewportWidget> view;
+    std::optional<MovedPart> part;
+    QAction* wiggleCommand = nullptr;
+    QElapsedTimer wiggling;
+    QTimer tick;
+    bool active = false;
+    bool unframed = true;
+};
+
+void RigWorkspace::Data::listen() {
+    builder.setPatient(false);
+    builder.setColors(fieldSceneColors(studio.settings.theme()));
+    tick.setInterval(kWiggleMilliseconds);
+    connect(&tick, &QTimer::timeout, this, &Data::refresh);
+    connect(&studio.loop, &StudioLoop::framed, this, &Data::refresh);
+    connect(&selection, &RigSelection::changed, this, &Data::select);
+    connect(&selection, &RigSelection::wiggleWanted, this, &Data::wiggle);
+    connect(&studio.settings, &Settings::themeChanged, this, [this] {
+        builder.setColors(fieldSceneColors(studio.settings.theme()));
+        refresh();
+    });
+    connect(&studio.document, &StudioDocument::changed, this, [this](StateParts parts) {
+        if (!(parts & StatePart::rig)) return;
+        unframed = true;
+        selection.select(std::nullopt);
+    });
+}
+
+void RigWorkspace::Data::addCommands() {
+    Commands::Options options;
+    options.icon = "open";
+    options.menu = "Rig";
+    studio.commands.add("rig.open", "Open rig...", options, [this] { openRig(); });
+    options.icon = "actuator";
+    options.workspace = "rig";
+    options.shortcut = QKeySequence("Ctrl+Shift+W");
+    wiggleCommand = studio.commands.add("rig.wiggle", "Show what it moves", options, [this] { wiggle(); });
+    wiggleCommand->setToolTip("Move the chosen actuator in this view alone; the device stays where it is");
+    wiggleCommand->setEnabled(false);
+}
+
+void RigWorkspace::Data::openRig() {
+    const QString folder = studio.settings.value(kRigFolder).toString();
+    QWidget* parent = view ? view->window() : nullptr;
+    const QString file = QFileDialog::getOpenFileName(parent, "Open rig", folder, "Rigs (*.glb *.gltf);;All files (*)");
+    if (file.isEmpty()) return;
+    studio.settings.setValue(kRigFolder, QFileInfo(file).absolutePath());
+    studio.desk.openRig(file.toStdString());
+}
+
+void RigWorkspace::Data::select() {
+    const auto& rig = studio.document.state().rig.rig;
+    const auto chosen = selection.actuator();
+    part.reset();
+    tick.stop();
+    if (rig && chosen && *chosen < rig->actuatorCount()) {
+        part.emplace(*rig, *chosen);
+        wiggle();
+    }
+    wiggleCommand->setEnabled(part.has_value());
+    refresh();
+}
+
+void RigWorkspace::Data::wiggle() {
+    if (!part) return;
+    wiggling.start();
+    tick.start();
+}
+
+MatchFrame RigWorkspace::Data::shownFrame(const MatchFrame& frame) {
+    MatchFrame shown = frame;
+    const auto chosen = selection.actuator();
+    const double stroke = tick.isActive() ? wiggleStroke(1e-3 * static_cast<double>(wiggling.elapsed())) : -1.0;
+    if (stroke < 0.0) tick.stop();
+    if (stroke < 0.0 || !chosen || *chosen >= shown.estimatedStrokes.size()) return shown;
+    shown.estimatedStrokes[*chosen] = stroke;
+    std::vector<glm::vec3> positions(shown.rig->restMesh().positions.size());
+    shown.rig->deform(shown.estimatedStrokes, positions);
+    shown.devicePositions = std::make_shared<const std::vector<glm::vec3>>(std::move(positions));
+    return shown;
+}
+
+void RigWorkspace::Data::refresh() {
+    if (!active || !view) return;
+    const auto& frame = studio.loop.frame();
+    // A frame of the rig before would be marked with the parts of this one.
+    if (!frame || frame->rig != studio.document.state().rig.rig) return;
+    FieldDisplay display;
+    display.showTarget = false;
+    display.showMismatch = false;
+    const MatchFrame shown = shownFrame(*frame);
+    auto scene = std::make_shared<ViewportScene>(*builder.build(shown, display, false));
+    if (part && shown.devicePositions) {
+        const auto lines = part->lines(*shown.devicePositions, scene->accent);
+        scene->lines.insert(scene->lines.end(), lines.begin(), lines.end());
+    }
+    if (unframed) frameOnce(*scene);
+    view->setScene(std::move(scene));
+    if (builder.pending()) QTimer::singleShot(kWiggleMilliseconds, this, &Data::refresh);
+}
+
+void RigWorkspace::Data::frameOnce(const ViewportScene& scene) {
+    if (view->width() < 2 || view->height() < 2) return;
+    unframed = false;
+    const float aspect = static_cast<float>(view->width()) / static_cast<float>(view->height());
+    view->setCamera(framed(firstCamera(), scene.bounds, aspect));
+}
+
+RigWorkspace::RigWorkspace(Studio& studio) : data_(std::make_unique<Data>(studio)) {
+    data_->addCommands();
+    data_->listen();
+}
+
+RigWorkspace::~RigWorkspace() = default;
+
+QString RigWorkspace::id() const { return "rig"; }
+QString RigWorkspace::title() const { return "Rig"; }
+
+QWidget* RigWorkspace::makeCentralView() {
+    data_->view = new ViewportWidget(data_->studio.renderer);
+    data_->view->setObjectName("rig.viewport");
+    data_->view->setAccessibleName("Device");
+    data_->view->setActive(data_->active);
+    return data_->view;
+}
+
+std::vector<WorkspaceDock> RigWorkspace::makeDocks() {
+    Studio& studio = data_->studio;
+    return {{"dock.rig.actuators", "Actuators", "actuator", makeRigActuators(studio, data_->selection),
+             Qt::LeftDockWidgetArea, false},
+            {"dock.rig.report", "Report", "check", makeRigReport(studio), Qt::RightDockWidgetArea, false}};
+}
+
+void RigWorkspace::setActive(bool active) {
+    data_->active = active;
+    if (!data_->view) return;
+    data_->view->setActive(active);
+    data_->refresh();
+}
+
+} // namespace lumorph::studio

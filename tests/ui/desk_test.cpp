@@ -1,0 +1,406 @@
+#include <fstream>
+#include <iterator>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/mount.h>
+
+#include "app/studio/document/state_rules.h"
+#include "core/mdf/builder.h"
+#include "core/mdf/field_file.h"
+#include "core/scene/project.h"
+#include "tests/ui/desk_world.h"
+
+namespace lumorph::studio {
+namespace {
+
+namespace fs = std::filesystem;
+using test::DeskFiles;
+using test::DeskWorld;
+using test::eventually;
+using testing::HasSubstr;
+
+Field smallField(const Rig& rig) {
+    BuildOptions options;
+    options.resolution = 8;
+    options.levels = 5;
+    options.samples = 4;
+    return buildField(rig, options);
+}
+
+std::string textOf(const fs::path& file) {
+    std::ifstream in(file, std::ios::binary);
+    return {std::istreambuf_iterator<char>(in), {}};
+}
+
+struct DeskTest : testing::Test {
+    DeskFiles files; // before the desk, which keeps its session among them
+    DeskWorld world;
+
+    /// Nothing happened but that `place` says something about `subject`.
+    void expectRefused(const StudioState& before, int steps, const QString& place, const QString& subject) {
+        ASSERT_TRUE(world.rest());
+        EXPECT_FALSE(differenceOf(before, world.state()));
+        EXPECT_EQ(world.document.undoStack().count(), steps);
+        const Notice notice = world.notice(place);
+        EXPECT_THAT(notice.subject.toStdString(), testing::StartsWith(subject.toStdString()));
+        EXPECT_FALSE(notice.why.isEmpty());
+        EXPECT_FALSE(notice.remedy.isEmpty());
+    }
+};
+
+TEST_F(DeskTest, OpensEachFileByWhatItIs) {
+    world.desk.open(files / "cushion.glb");
+    ASSERT_TRUE(eventually([&] { return world.jobs.running().empty() && world.state().field.field; }));
+    EXPECT_EQ(world.state().rig.path, files / "cushion.glb");
+    EXPECT_EQ(world.state().field.field->field.frame.dimensions.y, 33) << "built with the usual options";
+
+    world.desk.open(files / "block.obj");
+    ASSERT_TRUE(world.rest());
+    ASSERT_TRUE(world.state().target.target);
+    EXPECT_EQ(world.document.undoStack().undoText(), "Open block");
+    world.desk.open(fs::path(LUMORPH_SOURCE_DIR) / "resources/targets/dunes.glb");
+    ASSERT_TRUE(world.rest());
+    EXPECT_EQ(world.state().target.path.filename(), "dunes.glb") << "a glTF without actuators is a target";
+    EXPECT_EQ(world.state().rig.path, files / "cushion.glb");
+
+    world.desk.saveAs(files / "garden");
+    const StudioState saved = world.state();
+    world.desk.newProject();
+    ASSERT_TRUE(eventually([&] { return world.state().rig.path.filename() == "tablet.glb"; }));
+    EXPECT_EQ(world.state().target.target, nullptr);
+    world.desk.open(files / "garden.lumorph");
+    ASSERT_TRUE(eventually([&] { return world.document.name() == "garden"; }));
+    EXPECT_EQ(world.state().placement.scale, saved.placement.scale);
+    EXPECT_EQ(world.state().field.field->field, saved.field.field->field);
+    EXPECT_FALSE(world.document.modified());
+}
+
+TEST_F(DeskTest, ATargetIsAsLargeAsFitsAndStandsOnTheDevice) {
+    world.openRig(files / "cushion.glb");
+    world.openTarget(files / "block.obj");
+    const Field& field = world.state().field.field->field;
+    // 4 x 3 x 2 cm, turned by nothing: each side against the room of the frame above the rest surface.
+    const Box frame = field.frame.box();
+    const double scale = std::min({(frame.max.x - frame.min.x) / 0.04F, (frame.max.y - field.restSurface) / 0.03F,
+                                   (frame.max.z - frame.min.z) / 0.02F});
+    EXPECT_NEAR(world.state().placement.scale, scale, 1e-5 * scale);
+    EXPECT_FLOAT_EQ(world.state().placement.translation.y, field.restSurface);
+    world.document.change("Elsewhere", [](StudioState& s) { s.placement = {0.1, {}, {1, 1, 1}}; });
+    world.desk.fit();
+    EXPECT_NEAR(world.state().placement.scale, scale, 1e-5 * scale);
+    EXPECT_EQ(world.document.undoStack().undoText(), "Fit target");
+}
+
+TEST_F(DeskTest, WrongFilesAreRefusedWhereTheyBelongAndNothingChanges) {
+    world.openRig(files / "cushion.glb");
+    world.openTarget(files / "block.obj");
+    files.writeText("broken.obj", "v 0 0 0\nv 1 0 0\nf 1 2 9\n");
+    files.writeText("empty.stl", "");
+    files.writeText("flat.obj", "v 0 0 0\nv 1 0 0\nv 0 0 1\nf 1 2 3\n");
+    files.writeText("huge.ply", "ply\nformat binary_little_endian 1.0\nelement vertex 4000000000\nproperty float x\n"
+                                "property float y\nproperty float z\nend_header\n");
+    files.writeText("nan.obj", "v nan 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+    files.writeText("broken.mdf", "LUMORPH");
+    files.writeText("broken.lumorph", "{\"rig\":");
+    files.writeText("broken.glb", "glTF nonsense");
+    files.writeText("grid.nrrd", "NRRD0004\n");
+    files.writeText("song.mp3", "la");
+    struct Wrong {
+        const char* file;
+        const char* place;
+    };
+    for (const Wrong& wrong :
+         {Wrong{"broken.obj", "target"}, Wrong{"empty.stl", "target"}, Wrong{"flat.obj", "target"},
+          Wrong{"huge.ply", "target"}, Wrong{"nan.obj", "target"}, Wrong{"gone.obj", "target"},
+          Wrong{"broken.mdf", "field"}, Wrong{"broken.lumorph", "project"}, Wrong{"broken.glb", "viewport"},
+          Wrong{"grid.nrrd", "target"}, Wrong{"song.mp3", "viewport"}}) {
+        SCOPED_TRACE(wrong.file);
+        const StudioState before = world.state();
+        const int steps = world.document.undoStack().count();
+        world.desk.open(files / wrong.file);
+        expectRefused(before, steps, wrong.place, wrong.file);
+        QString asked;
+        const auto connection = QObject::connect(&world.desk, &Desk::chooseFile, [&](const QString& p) { asked = p; });
+        EXPECT_TRUE(world.press(wrong.place, "Choose another file..."));
+        EXPECT_EQ(asked, wrong.place);
+        QObject::disconnect(connection);
+    }
+}
+
+TEST_F(DeskTest, AnOpenMeshIsTakenAndTheUserTold) {
+    world.openRig(files / "cushion.glb");
+    TriangleMesh open = test::boxMesh({0, 0, 0}, {0.02F, 0.02F, 0.02F}, 40);
+    open.triangles.resize(open.triangles.size() / 2); // far more than a hole to be filled
+    files.writeMesh(open, "open.obj");
+    world.openTarget(files / "open.obj");
+    ASSERT_TRUE(world.state().target.target);
+    EXPECT_FALSE(world.state().target.target->solid.closed);
+    EXPECT_EQ(world.notice("target").subject, "open.obj");
+    EXPECT_EQ(world.notice("target").level, Notice::Level::warning);
+}
+
+TEST_F(DeskTest, AFieldBesideTheRigIsUsedWhenItIsTheRigs) {
+    writeFileAtomically(files / "cushion.mdf", writeField(smallField(test::cushionRig())));
+    world.desk.openRig(files / "cushion.glb");
+    ASSERT_TRUE(world.rest());
+    EXPECT_EQ(world.state().field.path, files / "cushion.mdf");
+    EXPECT_EQ(world.state().field.field->field.levels, 5);
+    EXPECT_EQ(world.document.undoStack().count(), 1);
+
+    writeFileAtomically(files / "lifter.mdf", writeField(smallField(test::cushionRig())));
+    world.openRig(files / "lifter.glb");
+    EXPECT_TRUE(world.state().field.path.empty());
+    EXPECT_EQ(world.state().field.field->field.levels, 33) << "another rig's field is no use: it was built";
+}
+
+TEST_F(DeskTest, AFieldThatWasBuiltOnceNeedNotBeBuiltAgain) {
+    world.openRig(files / "cushion.glb");
+    const auto first = world.state().field.field;
+    DeskWorld later;
+    later.desk.openRig(files / "cushion.glb");
+    ASSERT_TRUE(later.rest());
+    ASSERT_TRUE(later.state().field.field);
+    EXPECT_EQ(later.state().field.field->field, first->field);
+    EXPECT_EQ(later.document.undoStack().count(), 1) << "it came with the rig";
+}
+
+TEST_F(DeskTest, CancellingABuildLeavesEverythingAsItWas) {
+    world.openRig(files / "cushion.glb");
+    const StudioState before = world.state();
+    const int steps = world.document.undoStack().count();
+    BuildOptions fine;
+    fine.resolution = 120;
+    fine.samples = 4096;
+    fine.levels = 100;
+    world.desk.buildField(fine);
+    ASSERT_EQ(world.jobs.running().size(), 1U);
+    const Jobs::Id id = world.jobs.running().front().id;
+    ASSERT_TRUE(eventually([&] { return world.jobs.running().front().fraction > 0.0; }));
+    world.jobs.cancel(id);
+    test::pass(std::chrono::milliseconds(300));
+    EXPECT_EQ(world.state().field.field, before.field.field);
+    EXPECT_FALSE(differenceOf(before, world.state()));
+    EXPECT_EQ(world.document.undoStack().count(), steps);
+    EXPECT_TRUE(world.notices.at().empty());
+}
+
+TEST_F(DeskTest, ABuildIsOneStepOfUndo) {
+    world.openRig(files / "cushion.glb");
+    const auto before = world.state().field.field;
+    BuildOptions options;
+    options.resolution = 10;
+    options.levels = 7;
+    world.desk.buildField(options);
+    ASSERT_TRUE(world.rest());
+    EXPECT_EQ(world.state().field.field->field, buildField(test::cushionRig(), options));
+    world.document.undoStack().undo();
+    EXPECT_EQ(world.state().field.field, before);
+    world.document.undoStack().redo();
+    EXPECT_EQ(world.state().field.field->field.levels, 7);
+}
+
+TEST_F(DeskTest, OptionsOutOfRangeAreRefusedWithARemedy) {
+    world.openRig(files / "cushion.glb");
+    struct Wrong {
+        int resolution, levels, samples;
+    };
+    for (const Wrong& wrong :
+         {Wrong{0, 33, 64}, Wrong{5000, 33, 64}, Wrong{33, 1, 64}, Wrong{33, 500, 64}, Wrong{33, 33, 0}}) {
+        const StudioState before = world.state();
+        const int steps = world.document.undoStack().count();
+        BuildOptions options;
+        options.resolution = wrong.resolution;
+        options.levels = wrong.levels;
+        options.samples = wrong.samples;
+        world.notices.dismissAll("field");
+        world.desk.buildField(options);
+        ASSERT_TRUE(world.rest());
+        expectRefused(before, steps, "field", world.notice("field").subject);
+    }
+    EXPECT_TRUE(world.press("field", "Build with the usual settings"));
+    ASSERT_TRUE(world.rest());
+    EXPECT_TRUE(world.notices.at("field").empty());
+}
+
+TEST_F(DeskTest, AFieldOfAnotherRigIsRefusedAndItsRigOffered) {
+    world.openRig(files / "cushion.glb");
+    const Field other = smallField(test::lifterRig());
+    writeFileAtomically(files / "other.mdf", writeField(other));
+    const StudioState before = world.state();
+    world.desk.open(files / "other.mdf");
+    expectRefused(before, world.document.undoStack().count(), "field", "other.mdf");
+    EXPECT_TRUE(world.press("field", "Keep mine"));
+    EXPECT_FALSE(differenceOf(before, world.state()));
+    EXPECT_TRUE(world.notices.at("field").empty());
+
+    world.desk.openField(files / "other.mdf");
+    ASSERT_TRUE(world.rest());
+    EXPECT_TRUE(world.press("field", "Open its rig"));
+    EXPECT_EQ(world.state().field.field->field, other);
+    EXPECT_EQ(writeRigGlb(*world.state().rig.rig), other.rigGlb);
+    world.document.undoStack().undo();
+    EXPECT_FALSE(differenceOf(before, world.state()));
+}
+
+TEST_F(DeskTest, AutoPlaceIsOneStepAndNeverWorseThanFitting) {
+    world.openRig(files / "cushion.glb");
+    world.openTarget(files / "block.obj");
+    const int steps = world.document.undoStack().count();
+    world.desk.autoPlace();
+    ASSERT_TRUE(world.rest());
+    ASSERT_TRUE(world.notices.at("target").empty()) << world.notice("target").why.toStdString();
+    EXPECT_EQ(world.document.undoStack().count(), steps + 1);
+    EXPECT_EQ(world.document.undoStack().undoText(), "Auto-place target");
+}
+
+TEST_F(DeskTest, TheDemoPlaysAndLeavesNothingToSave) {
+    world.desk.openDemo();
+    ASSERT_TRUE(eventually([&] { return world.jobs.running().empty() && world.state().field.field; }));
+    EXPECT_GT(world.state().target.target->duration, 0.0);
+    EXPECT_TRUE(world.state().playback.playing);
+    EXPECT_TRUE(world.state().matching.live);
+    EXPECT_EQ(world.state().matching.method, MatchMethod::refined);
+    EXPECT_FALSE(world.document.modified()) << "the field that was built for it is no change of the user's";
+    EXPECT_EQ(world.document.undoStack().count(), 0);
+}
+
+TEST_F(DeskTest, ChangesThatAnotherProjectReplacesCanBeBroughtBack) {
+    world.openRig(files / "cushion.glb");
+    const StudioState before = world.state();
+    world.desk.newProject();
+    ASSERT_TRUE(eventually([&] { return world.jobs.running().empty() && world.state().field.field; }));
+    EXPECT_NE(world.state().rig.path, before.rig.path);
+    EXPECT_TRUE(world.press("project", "Bring it back"));
+    EXPECT_FALSE(differenceOf(before, world.state()));
+    EXPECT_TRUE(world.document.modified());
+}
+
+TEST_F(DeskTest, AProjectHoldsCopiesSoThatItOpensElsewhere) {
+    world.openRig(files / "cushion.glb");
+    world.openTarget(files / "block.obj");
+    world.document.change("Hold", [](StudioState& s) {
+        s.strokes = {0.1, 0.2, 1.0 / 3.0};
+        s.matching = {false, MatchMethod::voting, Microseconds(5250)};
+        s.playback = {false, 0.3};
+        s.placement = {0.7, Angle::radians(1.1), {0.01F, 0.02F, 0.03F}};
+    });
+    fs::create_directories(files / "here");
+    EXPECT_FALSE(world.desk.save()) << "it has no file yet";
+    world.desk.saveAs(files / "here/garden.lumorph");
+    EXPECT_FALSE(world.document.modified());
+    fs::rename(files / "here", files / "there");
+    for (const char* name : {"cushion.glb", "block.obj"}) fs::remove(files / name);
+
+    DeskWorld other;
+    other.desk.openProject(files / "there/garden.lumorph");
+    ASSERT_TRUE(other.rest());
+    const StudioState& was = world.state();
+    const StudioState& is = other.state();
+    EXPECT_EQ(is.strokes, was.strokes);
+    EXPECT_EQ(is.matching, was.matching);
+    EXPECT_EQ(is.playback, was.playback);
+    EXPECT_EQ(is.placement.deviceFromTarget(), was.placement.deviceFromTarget());
+    EXPECT_EQ(is.field.field->field, was.field.field->field);
+    EXPECT_EQ(is.target.target->solid.mesh.positions, was.target.target->solid.mesh.positions);
+    EXPECT_EQ(writeRigGlb(*is.rig.rig), writeRigGlb(*was.rig.rig));
+}
+
+TEST_F(DeskTest, WhatVanishedIsSavedFromMemory) {
+    world.openRig(files / "cushion.glb");
+    world.openTarget(files / "block.obj");
+    const TriangleMesh open = world.state().target.target->solid.mesh;
+    fs::remove(files / "block.obj");
+    ASSERT_TRUE(eventually([&] { return world.notice("target").subject == "block.obj"; }));
+    EXPECT_THAT(world.notice("target").why.toStdString(), HasSubstr("no longer"));
+    bool asked = false;
+    QObject::connect(&world.desk, &Desk::saveElsewhere, [&] { asked = true; });
+    EXPECT_TRUE(world.press("target", "Save a copy..."));
+    EXPECT_TRUE(asked);
+    ASSERT_TRUE(world.state().target.target);
+    world.desk.saveAs(files / "garden.lumorph");
+    EXPECT_FALSE(world.document.modified());
+    DeskWorld other;
+    other.desk.openProject(files / "garden.lumorph");
+    ASSERT_TRUE(other.rest());
+    ASSERT_TRUE(other.state().target.target);
+    EXPECT_EQ(other.state().target.target->solid.mesh.triangles.size(), open.triangles.size());
+    EXPECT_EQ(boundingBox(other.state().target.target->solid.mesh.positions).max, boundingBox(open.positions).max);
+}
+
+TEST_F(DeskTest, AChangedTargetIsToldOfAndReadAgainOnRequest) {
+    world.openRig(files / "cushion.glb");
+    world.openTarget(files / "block.obj");
+    world.document.change("Turn", [](StudioState& s) { s.placement.yaw = Angle::radians(0.5); });
+    const StudioState before = world.state();
+    files.writeMesh(test::boxMesh({0, 0, 0}, {0.01F, 0.05F, 0.01F}, 3), "block.obj");
+    ASSERT_TRUE(eventually([&] { return world.notice("target").subject == "block.obj"; }));
+    EXPECT_THAT(world.notice("target").why.toStdString(), HasSubstr("changed on disk"));
+    EXPECT_FALSE(differenceOf(before, world.state()));
+    EXPECT_TRUE(world.press("target", "Read again"));
+    ASSERT_TRUE(world.rest());
+    EXPECT_FLOAT_EQ(world.state().target.target->box.max.y, 0.05F);
+    EXPECT_EQ(world.state().placement.yaw.inRadians(), 0.5) << "it stays where it is";
+    EXPECT_EQ(world.document.undoStack().undoText(), "Read block again");
+
+    // What is kept although the file has changed is saved as it is open, not as it is on disk.
+    const fs::path next = files / "next.obj";
+    files.writeMesh(test::boxMesh({0, 0, 0}, {0.09F, 0.09F, 0.09F}), "next.obj");
+    fs::rename(next, files / "block.obj");
+    ASSERT_TRUE(eventually([&] { return world.notice("target").subject == "block.obj"; }));
+    EXPECT_TRUE(world.press("target", "Keep"));
+    world.desk.saveAs(files / "garden.lumorph");
+    DeskWorld other;
+    other.desk.openProject(files / "garden.lumorph");
+    ASSERT_TRUE(other.rest());
+    EXPECT_FLOAT_EQ(other.state().target.target->box.max.y, 0.05F);
+}
+
+/// A file system of some kilobytes.
+class SmallDisk {
+public:
+    explicit SmallDisk(const fs::path& place) : place_(place) {
+        fs::create_directories(place_);
+        mounted_ = ::mount("tmpfs", place_.c_str(), "tmpfs", 0, "size=16k") == 0;
+    }
+    ~SmallDisk() {
+        if (mounted_) ::umount2(place_.c_str(), MNT_DETACH);
+    }
+    SmallDisk(const SmallDisk&) = delete;
+    SmallDisk& operator=(const SmallDisk&) = delete;
+    [[nodiscard]] bool mounted() const { return mounted_; }
+
+private:
+    fs::path place_;
+    bool mounted_ = false;
+};
+
+TEST_F(DeskTest, AFullDiskOnSaveIsToldWithRemediesAndNothingIsLost) {
+    const SmallDisk disk(files / "disk");
+    if (!disk.mounted()) GTEST_SKIP() << "needs the right to mount a file system";
+    world.openRig(files / "cushion.glb");
+    std::ofstream(files / "disk/garden.lumorph") << "the old project";
+    world.desk.saveAs(files / "disk/garden.lumorph");
+    EXPECT_TRUE(world.document.modified());
+    EXPECT_TRUE(world.document.file().empty());
+    EXPECT_EQ(textOf(files / "disk/garden.lumorph"), "the old project");
+    EXPECT_THAT(world.notice("project").why.toStdString(), HasSubstr("No space left"));
+    bool asked = false;
+    QObject::connect(&world.desk, &Desk::saveElsewhere, [&] { asked = true; });
+    EXPECT_TRUE(world.press("project", "Save somewhere else..."));
+    EXPECT_TRUE(asked);
+    world.desk.saveAs(files / "garden.lumorph");
+    EXPECT_FALSE(world.document.modified());
+    EXPECT_TRUE(world.notices.at("project").empty());
+}
+
+TEST_F(DeskTest, AFolderThatIsAFileRefusesToBeSavedIn) {
+    world.openRig(files / "cushion.glb");
+    world.desk.saveAs(files / "block.obj/garden.lumorph");
+    EXPECT_TRUE(world.document.modified());
+    EXPECT_EQ(world.notice("project").actions.size(), 2U);
+    EXPECT_FALSE(world.notice("project").why.isEmpty());
+}
+
+} // namespace
+} // namespace lumorph::studio
