@@ -2,6 +2,7 @@
 #include <cstdlib>
 
 #include <QAction>
+#include <QApplication>
 #include <QComboBox>
 #include <QDialog>
 #include <QLabel>
@@ -12,6 +13,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "app/studio/look/palette.h"
 #include "app/studio/shell/studio.h"
 #include "app/studio/widgets/plot.h"
 #include "app/studio/widgets/value_field.h"
@@ -34,10 +36,22 @@ std::shared_ptr<const MatchField> cushionField() {
     return field;
 }
 
+/// Widgets need an application with a screen; the first to ask makes one where the program has none.
+void needWindows() {
+    if (QCoreApplication::instance()) return;
+    if (qEnvironmentVariableIsEmpty("DISPLAY")) qputenv("QT_QPA_PLATFORM", "offscreen");
+    static int count = 1;
+    static char name[] = "test";
+    static char* arguments[] = {name, nullptr};
+    static QApplication application(count, arguments);
+    applyTheme(application, Theme::dark);
+}
+
 /// The dock in a window of its own, with a studio that has a rig and, where asked, its field.
 class FieldDockTest : public testing::Test {
 protected:
     FieldDockTest() {
+        needWindows();
         ::setenv("LUMORPH_SESSION", (folder_ / "session").c_str(), 1);
         studio_ = std::make_unique<Studio>();
     }
@@ -60,7 +74,7 @@ protected:
         window_->setCentralWidget(makeFieldDock(*studio_, display_));
         window_->resize(340, 900);
         window_->show();
-        QTest::qWaitForWindowExposed(window_.get());
+        ASSERT_TRUE(QTest::qWaitForWindowExposed(window_.get()));
     }
 
     template <class Widget> Widget* find(const char* name) {
@@ -78,7 +92,7 @@ protected:
         if (enter) QTest::keyClick(field, Qt::Key_Return);
     }
 
-    test::TemporaryFolder folder_;
+    TemporaryFolder folder_;
     FieldDisplayModel display_;
     std::unique_ptr<Studio> studio_;
     std::unique_ptr<QMainWindow> window_;
