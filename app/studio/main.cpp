@@ -45,7 +45,7 @@ int run(int argc, char** argv, const Arguments& arguments) {
     }
     MainWindow window(studio, std::move(workspaces));
     application.closeOnInterrupt(window);
-    window.showWorkspace(QString::fromStdString(arguments.workspace.empty() ? "field" : arguments.workspace));
+    window.showWorkspace(QString::fromStdString(arguments.workspace)); // none given: stays as it is
     arguments.kiosk ? window.enterKiosk() : window.show();
     openFirst(studio, window, arguments);
     const int status = QApplication::exec();

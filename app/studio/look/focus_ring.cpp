@@ -24,10 +24,10 @@ bool ringSuits(const QWidget* widget) {
 FocusRing::FocusRing(QObject* parent) : QObject(parent) {
     setObjectName("focus ring");
     qApp->installEventFilter(this);
+    // The application's other children outlive its widgets; the frame must not.
+    connect(qApp, &QCoreApplication::aboutToQuit, this, [this] { delete frame_; });
     connect(qApp, &QApplication::focusChanged, this, [this](QWidget*, QWidget* now) { follow(now); });
 }
-
-FocusRing::~FocusRing() { delete frame_; }
 
 bool FocusRing::eventFilter(QObject* watched, QEvent* event) {
     if (event->type() == QEvent::KeyPress) {

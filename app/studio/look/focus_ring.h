@@ -11,7 +11,6 @@ class FocusRing : public QObject {
     Q_OBJECT
 public:
     explicit FocusRing(QObject* parent);
-    ~FocusRing() override;
 
 protected:
     bool eventFilter(QObject* watched, QEvent* event) override;

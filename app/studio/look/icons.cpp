@@ -69,22 +69,26 @@ QColor colorOf(IconRole role, QIcon::Mode mode, QIcon::State state) {
 /// Draws the SVG anew for each size and colour; the pixmaps are kept by Qt's pixmap cache.
 class ThemedIconEngine : public QIconEngine {
 public:
-    ThemedIconEngine(QString name, IconRole role) : name_(std::move(name)), role_(role) {}
+    ThemedIconEngine(QString name, IconRole role, double degrees)
+        : name_(std::move(name)), role_(role), degrees_(degrees) {}
 
     void paint(QPainter* painter, const QRect& rect, QIcon::Mode mode, QIcon::State state) override {
-        paintIcon(*painter, rect, name_, colorOf(role_, mode, state));
+        paintIcon(*painter, rect, name_, colorOf(role_, mode, state), degrees_);
     }
 
     QPixmap pixmap(const QSize& size, QIcon::Mode mode, QIcon::State state) override {
         const QColor color = colorOf(role_, mode, state);
-        const QString key =
-            QString("lumorph/%1/%2/%3x%4").arg(name_, color.name()).arg(size.width()).arg(size.height());
+        const QString key = QString("lumorph/%1/%2/%3x%4/%5")
+                                .arg(name_, color.name())
+                                .arg(size.width())
+                                .arg(size.height())
+                                .arg(degrees_);
         QPixmap found;
         if (QPixmapCache::find(key, &found)) return found;
         QPixmap drawn(size);
         drawn.fill(Qt::transparent);
         QPainter painter(&drawn);
-        paintIcon(painter, QRect(QPoint(), size), name_, color);
+        paintIcon(painter, QRect(QPoint(), size), name_, color, degrees_);
         painter.end();
         QPixmapCache::insert(key, drawn);
         return drawn;
@@ -97,11 +101,12 @@ public:
     bool isNull() override { return false; }
     QString iconName() override { return name_; }
     QString key() const override { return "lumorph"; }
-    QIconEngine* clone() const override { return new ThemedIconEngine(name_, role_); }
+    QIconEngine* clone() const override { return new ThemedIconEngine(name_, role_, degrees_); }
 
 private:
     QString name_;
     IconRole role_;
+    double degrees_;
 };
 
 } // namespace
@@ -114,7 +119,9 @@ QByteArray iconSource(const QString& name) {
     return file.readAll();
 }
 
-QIcon icon(const QString& name, IconRole role) { return QIcon(new ThemedIconEngine(name, role)); }
+QIcon icon(const QString& name, IconRole role, double degrees) {
+    return QIcon(new ThemedIconEngine(name, role, degrees));
+}
 
 void paintIcon(QPainter& painter, const QRectF& box, const QString& name, const QColor& color, double degrees) {
     QByteArray source = drawing(name);

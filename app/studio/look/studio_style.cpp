@@ -1,5 +1,6 @@
 #include "app/studio/look/studio_style.h"
 
+#include <QAbstractSpinBox>
 #include <QApplication>
 #include <QComboBox>
 #include <QPainter>
@@ -11,6 +12,15 @@
 #include "app/studio/look/style_drawing.h"
 
 namespace lumorph::studio {
+namespace {
+
+/// The field around it draws the box.
+bool liesInField(const QWidget& edit) {
+    return qobject_cast<const QAbstractSpinBox*>(edit.parentWidget()) != nullptr ||
+           qobject_cast<const QComboBox*>(edit.parentWidget()) != nullptr;
+}
+
+} // namespace
 
 StudioStyle::StudioStyle() : QProxyStyle(QStyleFactory::create("Fusion")) { setObjectName("lumorph"); }
 
@@ -104,6 +114,10 @@ void StudioStyle::drawPrimitive(PrimitiveElement element, const QStyleOption* op
     case PE_IndicatorDockWidgetResizeHandle:
         drawSeparator(*painter, *option);
         return;
+    case PE_PanelLineEdit:
+        if (widget != nullptr && liesInField(*widget)) return;
+        QProxyStyle::drawPrimitive(element, option, painter, widget);
+        return;
     case PE_FrameFocusRect:
         return; // the ring is a widget of its own
     default:
@@ -147,7 +161,9 @@ void StudioStyle::drawComplexControl(ComplexControl control, const QStyleOptionC
         return;
     }
     if (control == CC_SpinBox) {
-        drawField(*painter, *option, true);
+        QStyleOptionComplex field = *option;
+        field.state.setFlag(State_HasFocus, widget != nullptr && widget->hasFocus());
+        drawField(*painter, field, true);
         drawChevronIn(*painter, *option, subControlRect(control, option, SC_SpinBoxUp, widget), 180);
         drawChevronIn(*painter, *option, subControlRect(control, option, SC_SpinBoxDown, widget), 0);
         return;
@@ -208,6 +224,16 @@ QIcon StudioStyle::standardIcon(StandardPixmap pixmap, const QStyleOption* optio
         return icon("file");
     case SP_FileDialogNewFolder:
         return icon("plus");
+    case SP_ArrowBack:
+    case SP_ArrowLeft:
+    case SP_FileDialogBack:
+        return icon("chevron-right", IconRole::control, 180);
+    case SP_ArrowForward:
+    case SP_ArrowRight:
+        return icon("chevron-right");
+    case SP_ArrowUp:
+    case SP_FileDialogToParent:
+        return icon("chevron-down", IconRole::control, 180);
     case SP_ToolBarHorizontalExtensionButton:
         return icon("chevron-right");
     default:

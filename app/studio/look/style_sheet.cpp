@@ -28,7 +28,7 @@ QToolTip { background: @raised; color: @text; border: 1px solid @border; padding
 
 constexpr auto kButtons = R"(
 QPushButton { background: @raised; border: 1px solid @border; border-radius: 4px; padding: 0 12px;
-    min-height: 26px; font-weight: 500; }
+    min-height: 26px; font-weight: 500; qproperty-iconSize: 22px 16px; }
 QPushButton:hover { background: @hovered; border-color: @muted; }
 QPushButton:pressed { background: @sunken; }
 QPushButton:checked { background: @selection; border-color: @accent; color: @accentText; }
@@ -48,7 +48,7 @@ QPushButton[look="flat"]:disabled { color: @disabled; }
 QPushButton[look="link"] { background: transparent; border: none; padding: 0; color: @accentText; text-align: left; }
 QPushButton[look="link"]:hover { text-decoration: underline; }
 QPushButton[look="search"] { background: @sunken; border: 1px solid @line; color: @muted; font-weight: 400;
-    text-align: left; padding: 0 8px; }
+    text-align: left; padding: 0 4px; }
 QPushButton[look="search"]:hover { border-color: @border; color: @text; }
 QPushButton[look="status"] { background: transparent; border: none; border-radius: 4px; padding: 0 8px; min-height: 22px;
     color: @muted; font-weight: 400; }
@@ -60,8 +60,8 @@ QToolButton:pressed { background: @sunken; }
 QToolButton:checked { background: @selection; color: @accentText; }
 QToolButton:disabled { color: @disabled; }
 QToolButton::menu-indicator { image: none; }
-QToolButton[look="tab"] { border-radius: 0; border: none; border-bottom: 2px solid transparent; padding: 0 12px;
-    color: @muted; min-height: 36px; }
+QToolButton[look="tab"] { border-radius: 0; border: none; border-top: 2px solid transparent;
+    border-bottom: 2px solid transparent; padding: 0 12px; color: @muted; min-height: 34px; }
 QToolButton[look="tab"]:hover { background: transparent; color: @text; }
 QToolButton[look="tab"]:checked { background: transparent; color: @text; border-bottom: 2px solid @accent; }
 QToolButton[look="title"] { padding: 1px; min-width: 16px; min-height: 16px; border: none; }
@@ -71,11 +71,13 @@ constexpr auto kFields = R"(
 QLineEdit, QPlainTextEdit, QTextEdit { background: @raised; border: 1px solid @border; border-radius: 4px;
     padding: 0 7px; min-height: 26px; selection-background-color: @selectionStrong; }
 QLineEdit:hover { background: @hovered; }
+QLineEdit[look="large"] { min-height: 34px; font-size: 14px; }
 QLineEdit:focus, QPlainTextEdit:focus, QTextEdit:focus { border-color: @accent; background: @sunken; }
 QLineEdit:disabled { background: @panel; border-color: @line; color: @disabled; }
 QLineEdit:read-only { background: transparent; border-color: @line; }
 QLineEdit[wrong="true"] { border: 1px solid @danger; background: @wrong; }
-QComboBox QLineEdit, QAbstractSpinBox QLineEdit { background: transparent; border: none; padding: 0; min-height: 20px; }
+QComboBox QLineEdit, QAbstractSpinBox QLineEdit, QComboBox QLineEdit:focus, QAbstractSpinBox QLineEdit:focus,
+QAbstractSpinBox QLineEdit:hover { background: transparent; border: none; padding: 0; min-height: 20px; }
 QComboBox QAbstractItemView { background: @panel; border: 1px solid @border; padding: 4px; }
 QCheckBox, QRadioButton { background: transparent; min-height: 24px; }
 QCheckBox:disabled, QRadioButton:disabled { color: @disabled; }

@@ -40,12 +40,18 @@ public:
     [[nodiscard]] QVariant data(const QModelIndex& index, int role) const override {
         const auto& entry = entries_[static_cast<std::size_t>(index.row())];
         switch (role) {
-        case Qt::DisplayRole: return commandTitle(*entry.action);
-        case Qt::DecorationRole: return entry.action->icon();
-        case Qt::CheckStateRole: return {};
-        case kShortcut: return entry.action->shortcut().toString(QKeySequence::NativeText);
-        case kMenu: return entry.options.menu;
-        default: return {};
+        case Qt::DisplayRole:
+            return commandTitle(*entry.action);
+        case Qt::DecorationRole:
+            return entry.action->icon();
+        case Qt::CheckStateRole:
+            return {};
+        case kShortcut:
+            return entry.action->shortcut().toString(QKeySequence::NativeText);
+        case kMenu:
+            return entry.options.menu;
+        default:
+            return {};
         }
     }
     [[nodiscard]] Qt::ItemFlags flags(const QModelIndex& index) const override {
@@ -75,8 +81,9 @@ public:
             painter->drawRoundedRect(row, 4, 4);
         }
         const QRect mark(row.left() + 10, row.center().y() - 8, 16, 16);
-        index.data(Qt::DecorationRole).value<QIcon>().paint(painter, mark, Qt::AlignCenter,
-                                                            enabled ? QIcon::Normal : QIcon::Disabled);
+        index.data(Qt::DecorationRole)
+            .value<QIcon>()
+            .paint(painter, mark, Qt::AlignCenter, enabled ? QIcon::Normal : QIcon::Disabled);
         QRect text = row.adjusted(38, 0, -12, 0);
         const QString title = index.data().toString();
         painter->setPen(enabled ? colors.text : disabledText(colors));
@@ -104,15 +111,14 @@ public:
 
 protected:
     bool eventFilter(QObject* watched, QEvent* event) override {
-        if (watched == input_ && event->type() == QEvent::KeyPress &&
-            handleKey(*static_cast<QKeyEvent*>(event)))
+        if (watched == input_ && event->type() == QEvent::KeyPress && handleKey(*static_cast<QKeyEvent*>(event)))
             return true;
         return Overlay::eventFilter(watched, event);
     }
     void mousePressEvent(QMouseEvent* /*event*/) override { leave(); }
     void arrange() override {
         const int width = std::min(600, this->width() - 32);
-        const int height = 64 + kRowHeight * std::clamp(model_.rowCount(), 1, kRows);
+        const int height = 62 + kRowHeight * std::clamp(model_.rowCount(), 1, kRows);
         card_->setGeometry((this->width() - width) / 2, std::min(96, this->height() / 8), width, height);
     }
 
@@ -127,7 +133,7 @@ private:
         input_->setObjectName("palette.input");
         input_->setPlaceholderText("Type what you want to do");
         input_->addAction(icon("search", IconRole::muted), QLineEdit::LeadingPosition);
-        input_->setMinimumHeight(36);
+        input_->setProperty("look", "large");
         list_ = new QListView(card_);
         list_->setObjectName("palette.list");
         list_->setModel(&model_);
@@ -152,14 +158,27 @@ private:
 
     bool handleKey(const QKeyEvent& key) {
         switch (key.key()) {
-        case Qt::Key_Escape: leave(); return true;
+        case Qt::Key_Escape:
+            leave();
+            return true;
         case Qt::Key_Return:
-        case Qt::Key_Enter: run(list_->currentIndex()); return true;
-        case Qt::Key_Down: move(1); return true;
-        case Qt::Key_Up: move(-1); return true;
-        case Qt::Key_PageDown: move(kRows); return true;
-        case Qt::Key_PageUp: move(-kRows); return true;
-        default: return false;
+        case Qt::Key_Enter:
+            run(list_->currentIndex());
+            return true;
+        case Qt::Key_Down:
+            move(1);
+            return true;
+        case Qt::Key_Up:
+            move(-1);
+            return true;
+        case Qt::Key_PageDown:
+            move(kRows);
+            return true;
+        case Qt::Key_PageUp:
+            move(-kRows);
+            return true;
+        default:
+            return false;
         }
     }
 

@@ -6,6 +6,7 @@ namespace lumorph::studio {
 namespace {
 
 constexpr double kLetter = 1.0, kWordStart = 4.0, kNextToEachOther = 3.0, kFromTheStart = 3.0, kPerLetterLeft = 0.02;
+constexpr double kWorthShowing = 0.4; ///< of the best score; less is letters found by chance
 
 bool startsWord(const QString& text, qsizetype at) { return at == 0 || !text[at - 1].isLetterOrNumber(); }
 
@@ -58,6 +59,10 @@ std::vector<Commands::Entry> searchCommands(const Commands& commands, const QStr
         if (score) found.emplace_back(*score, entry);
     }
     std::stable_sort(found.begin(), found.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
+    if (!found.empty()) {
+        const double worst = found.front().first * kWorthShowing;
+        std::erase_if(found, [worst](const auto& one) { return one.first < worst; });
+    }
     std::vector<Commands::Entry> entries;
     entries.reserve(found.size());
     for (auto& [score, entry] : found) entries.push_back(std::move(entry));

@@ -51,17 +51,16 @@ void addLook(Studio& studio, QDialog& dialog) {
     theme->setObjectName("settings.theme");
     theme->addItems({"Dark", "Light"});
     theme->setCurrentIndex(studio.settings.theme() == Theme::light ? 1 : 0);
-    QObject::connect(theme, &QComboBox::currentIndexChanged, &dialog, [&studio](int index) {
-        studio.settings.setTheme(index == 1 ? Theme::light : Theme::dark);
-    });
-    QObject::connect(&studio.settings, &Settings::themeChanged, theme, [theme, &studio] {
-        theme->setCurrentIndex(studio.settings.theme() == Theme::light ? 1 : 0);
-    });
+    QObject::connect(theme, &QComboBox::currentIndexChanged, &dialog,
+                     [&studio](int index) { studio.settings.setTheme(index == 1 ? Theme::light : Theme::dark); });
+    QObject::connect(&studio.settings, &Settings::themeChanged, theme,
+                     [theme, &studio] { theme->setCurrentIndex(studio.settings.theme() == Theme::light ? 1 : 0); });
     dialog.layout()->addWidget(makeRow("&Theme", theme, &dialog));
     auto* still = new QCheckBox("&Draw a still view in full quality", &dialog);
     still->setObjectName("settings.stillQuality");
     still->setChecked(studio.settings.stillQuality());
-    still->setToolTip("Soft shadows and smooth edges as soon as nothing moves. Takes a moment without a graphics card.");
+    still->setToolTip(
+        "Soft shadows and smooth edges as soon as nothing moves. Takes a moment without a graphics card.");
     QObject::connect(still, &QCheckBox::toggled, &studio.settings, &Settings::setStillQuality);
     dialog.layout()->addWidget(still);
 }
@@ -74,9 +73,8 @@ void addMatching(Studio& studio, QDialog& dialog) {
     rate->setSuffix(" Hz");
     rate->setValue(static_cast<int>(studio.settings.loopRate()));
     rate->setKeyboardTracking(false);
-    QObject::connect(rate, &QSpinBox::valueChanged, &studio.settings, [&studio](int hertz) {
-        studio.settings.setLoopRate(hertz);
-    });
+    QObject::connect(rate, &QSpinBox::valueChanged, &studio.settings,
+                     [&studio](int hertz) { studio.settings.setLoopRate(hertz); });
     dialog.layout()->addWidget(makeRow("Loop &rate", rate, &dialog));
     dialog.layout()->addWidget(muted("How often a second the device looks at the target anew.", &dialog));
 }

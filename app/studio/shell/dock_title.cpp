@@ -18,8 +18,12 @@ public:
     DockTitle() {
         setObjectName("dockTitle");
         setAttribute(Qt::WA_StyledBackground);
-        setFixedHeight(32);
     }
+    [[nodiscard]] QSize sizeHint() const override { return {QWidget::sizeHint().width(), kHeight}; }
+    [[nodiscard]] QSize minimumSizeHint() const override { return {QWidget::minimumSizeHint().width(), kHeight}; }
+
+private:
+    static constexpr int kHeight = 33; ///< with the hairline below
 };
 
 QToolButton* makeTitleButton(const QString& name, const QString& does, QWidget* parent) {

@@ -33,6 +33,8 @@ public:
         setOption(QFileDialog::DontUseCustomDirectoryIcons);
         setIconProvider(&icons_);
         setAttribute(Qt::WA_DeleteOnClose);
+        for (const char* mode : {"listModeButton", "detailModeButton"}) // one way to look at files is enough
+            if (auto* button = findChild<QWidget*>(mode)) button->hide();
         resize(860, 560);
     }
     ~StudioFileDialog() override { setIconProvider(nullptr); }
@@ -41,9 +43,7 @@ private:
     FileIcons icons_;
 };
 
-QString lastFolder(const Studio& studio) {
-    return studio.settings.value("files/folder", QDir::homePath()).toString();
-}
+QString lastFolder(const Studio& studio) { return studio.settings.value("files/folder", QDir::homePath()).toString(); }
 
 void openWithDialog(Studio& studio, QWidget& window) {
     auto* dialog = new StudioFileDialog(window, "Open", "dialog.open");
@@ -124,7 +124,8 @@ void fillRecentMenu(Studio& studio, QMenu& menu) {
         const QFileInfo file(path);
         QAction* action = menu.addAction(icon(file.isDir() ? "folder" : "file"), file.fileName().replace('&', "&&"));
         action->setToolTip(path);
-        QObject::connect(action, &QAction::triggered, &studio.desk, [&studio, path] { studio.desk.open(pathOf(path)); });
+        QObject::connect(action, &QAction::triggered, &studio.desk,
+                         [&studio, path] { studio.desk.open(pathOf(path)); });
     }
     if (menu.isEmpty()) {
         menu.addAction("No recent files")->setEnabled(false);

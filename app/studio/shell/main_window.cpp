@@ -29,6 +29,7 @@ namespace {
 
 constexpr QSize kUsualSize{1440, 900};
 constexpr auto kGeometryKey = "window/geometry";
+constexpr auto kWorkspaceKey = "window/workspace";
 
 /// In the order of the work; menus without a command in sight are hidden.
 const QStringList kMenus{"File", "Edit", "View", "Target", "Rig", "Field", "Help"};
@@ -93,7 +94,7 @@ MainWindow::MainWindow(Studio& studio, std::vector<std::unique_ptr<Workspace>> w
     qApp->installEventFilter(this);
     resize(kUsualSize.boundedTo(screen()->availableSize()));
     restoreGeometry(studio.settings.value(kGeometryKey).toByteArray());
-    if (!data_->workspaces.empty()) showWorkspace(data_->workspaces.front()->id());
+    showFirstWorkspace();
     showTitle();
 }
 
@@ -108,7 +109,8 @@ void MainWindow::addCommands() {
     ShellActions does;
     does.startTour = [this] { startTour(); };
     does.resetLayout = [this] {
-        if (const auto page = data_->pages.find(data_->present); page != data_->pages.end()) page->second->resetLayout();
+        if (const auto page = data_->pages.find(data_->present); page != data_->pages.end())
+            page->second->resetLayout();
     };
     for (const auto& workspace : data_->workspaces)
         does.workspaces.push_back({workspace->title(), [this, id = workspace->id()] { showWorkspace(id); }});
@@ -174,6 +176,13 @@ void MainWindow::showWorkspace(const QString& id) {
     page->setActive(true);
 }
 
+/// The one of last time; at first the one where a target is matched.
+void MainWindow::showFirstWorkspace() {
+    if (data_->workspaces.empty()) return;
+    showWorkspace(data_->studio.settings.value(kWorkspaceKey, "field").toString());
+    if (data_->present.isEmpty()) showWorkspace(data_->workspaces.front()->id());
+}
+
 QString MainWindow::workspace() const { return data_->present; }
 
 void MainWindow::startTour() {
@@ -200,7 +209,10 @@ void MainWindow::retheme() { applyTheme(*qApp, data_->studio.settings.theme()); 
 void MainWindow::closeEvent(QCloseEvent* event) {
     for (const auto& [id, page] : data_->pages)
         if (id == data_->present) page->keepLayout();
-    if (!data_->kiosk) data_->studio.settings.setValue(kGeometryKey, saveGeometry());
+    if (!data_->kiosk) {
+        data_->studio.settings.setValue(kGeometryKey, saveGeometry());
+        data_->studio.settings.setValue(kWorkspaceKey, data_->present);
+    }
     data_->studio.desk.keepSession();
     event->accept();
     QTimer::singleShot(0, qApp, &QApplication::quit); // floating docks and dialogs are windows too

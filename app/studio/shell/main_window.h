@@ -39,6 +39,7 @@ private:
     void addMenus();
     void joinMenu(QAction* action);
     void showCommands();
+    void showFirstWorkspace();
     void showTitle();
     void retheme();
     void acceptDrag(QDropEvent& event);

@@ -16,9 +16,17 @@ Overlay::Overlay(QWidget& window) : QWidget(&window), hadKeyboard_(QApplication:
 
 void Overlay::open() {
     setGeometry(parentWidget()->rect());
+    coverAllBut({});
     arrange();
     show();
     raise();
+}
+
+void Overlay::coverAllBut(const QRegion& open) {
+    QRegion lit = open;
+    if (const auto* stop = parentWidget()->findChild<QWidget*>("stop"); stop != nullptr && stop->isVisible())
+        lit += QRect(stop->mapTo(parentWidget(), QPoint()), stop->size());
+    setMask(QRegion(rect()) - lit);
 }
 
 void Overlay::leave() {
@@ -32,6 +40,7 @@ void Overlay::leave() {
 bool Overlay::eventFilter(QObject* watched, QEvent* event) {
     if (watched == parentWidget() && event->type() == QEvent::Resize && isVisible()) {
         setGeometry(parentWidget()->rect());
+        coverAllBut({});
         arrange();
     }
     return QWidget::eventFilter(watched, event);

@@ -6,7 +6,7 @@
 namespace lumorph::studio {
 
 /// A sheet over a whole window that dims it; follows the window's size, gives the keyboard back when it leaves, and
-/// deletes itself.
+/// deletes itself. STOP shows through.
 class Overlay : public QWidget {
     Q_OBJECT
 public:
@@ -20,6 +20,8 @@ protected:
     void paintEvent(QPaintEvent* event) override;
     /// Lays out what is on it for its size now.
     virtual void arrange() {}
+    /// Everything but `open` and STOP, which stays lit and in reach whatever lies over the window.
+    void coverAllBut(const QRegion& open);
 
 private:
     QPointer<QWidget> hadKeyboard_;

@@ -17,9 +17,7 @@ QString layoutKey(const QString& workspace) { return "layout/" + workspace; }
 Settings::Settings(QObject* parent)
     : QObject(parent), store_(QSettings::IniFormat, QSettings::UserScope, "lumorph", "studio") {}
 
-Theme Settings::theme() const {
-    return store_.value("look/theme").toString() == "light" ? Theme::light : Theme::dark;
-}
+Theme Settings::theme() const { return store_.value("look/theme").toString() == "light" ? Theme::light : Theme::dark; }
 
 void Settings::setTheme(Theme theme) {
     if (theme == this->theme()) return;

@@ -37,9 +37,8 @@ void addUndo(Studio& studio) {
 }
 
 void addStop(Studio& studio) {
-    QAction* stop = add(studio, "loop.stop", "STOP: hold every actuator", "stop", {}, "Rig", [&studio] {
-        studio.loop.stopped() ? studio.loop.resume() : studio.loop.stop();
-    });
+    QAction* stop = add(studio, "loop.stop", "STOP: hold every actuator", "stop", {}, "Rig",
+                        [&studio] { studio.loop.stopped() ? studio.loop.resume() : studio.loop.stop(); });
     const auto follow = [&studio, stop] {
         stop->setText(studio.loop.stopped() ? "Resume after STOP" : "STOP: hold every actuator");
         stop->setIcon(icon(studio.loop.stopped() ? "play" : "stop"));
@@ -75,9 +74,8 @@ void addView(Studio& studio, QMainWindow& window, const ShellActions& does) {
     options.shortcut = QKeySequence(Qt::Key_F11);
     options.menu = "View";
     options.checkable = true;
-    studio.commands.add("view.fullScreen", "&Full screen", options, [&window] {
-        window.isFullScreen() ? window.showNormal() : window.showFullScreen();
-    });
+    studio.commands.add("view.fullScreen", "&Full screen", options,
+                        [&window] { window.isFullScreen() ? window.showNormal() : window.showFullScreen(); });
     add(studio, "view.resetLayout", "&Reset layout", "reset", {}, "View", does.resetLayout);
 }
 

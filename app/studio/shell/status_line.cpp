@@ -37,8 +37,7 @@ QString counted(int count, const QString& one) {
 } // namespace
 
 StatusLine::StatusLine(Studio& studio, QWidget* parent)
-    : QWidget(parent), studio_(studio),
-      places_{"viewport", "rig", "field", "target", "match", "export", "project"} {
+    : QWidget(parent), studio_(studio), places_{"viewport", "rig", "field", "target", "match", "export", "project"} {
     setObjectName("statusLine");
     setAttribute(Qt::WA_StyledBackground);
     setFixedHeight(28);
@@ -51,11 +50,9 @@ StatusLine::StatusLine(Studio& studio, QWidget* parent)
     hardware_->setText("Virtual lab");
     loop_ = addText(*row, "status.loop", "speed",
                     "How often the device follows the target, and how long finding its levels takes", this);
+    loop_->setMinimumWidth(64);
     row->addStretch(1);
-    auto* jobs = makeJobBar(studio.jobs, {}, this);
-    jobs->setObjectName("status.jobs");
-    jobs->setFixedWidth(280);
-    row->addWidget(jobs);
+    row->addWidget(makeJobLine(studio.jobs, this));
     row->addSpacing(16);
     warnings_ = new QPushButton(this);
     warnings_->setObjectName("status.warnings");

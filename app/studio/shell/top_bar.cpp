@@ -124,9 +124,8 @@ void TopBar::addStop(QHBoxLayout& row) {
     stop_ = new QPushButton(this);
     stop_->setObjectName("stop");
     row.addWidget(stop_);
-    connect(stop_, &QPushButton::clicked, this, [this] {
-        studio_.loop.stopped() ? studio_.loop.resume() : studio_.loop.stop();
-    });
+    connect(stop_, &QPushButton::clicked, this,
+            [this] { studio_.loop.stopped() ? studio_.loop.resume() : studio_.loop.stop(); });
     connect(&studio_.loop, &StudioLoop::stoppedChanged, this, &TopBar::showStopped);
     showStopped();
 }

@@ -19,10 +19,15 @@ namespace {
 constexpr int kCardWidth = 344;
 constexpr int kGap = 16;
 
+/// One in sight before one of another workspace that has the same name; a dock that is closed can be shown.
 QWidget* widgetOf(const QWidget& window, const TourStep& step) {
+    QWidget* hidden = nullptr;
     for (const QString& name : step.widgets)
-        if (auto* widget = window.findChild<QWidget*>(name)) return widget;
-    return nullptr;
+        for (QWidget* widget : window.findChildren<QWidget*>(name)) {
+            if (widget->isVisible()) return widget;
+            if (hidden == nullptr) hidden = widget;
+        }
+    return hidden;
 }
 
 /// One dot a step; the present one is filled.
@@ -83,12 +88,21 @@ public:
 protected:
     void keyPressEvent(QKeyEvent* event) override {
         switch (event->key()) {
-        case Qt::Key_Escape: end(); return;
-        case Qt::Key_Right: go(step_ + 1); return;
-        case Qt::Key_Left: go(step_ - 1); return;
+        case Qt::Key_Escape:
+            end();
+            return;
+        case Qt::Key_Right:
+            go(step_ + 1);
+            return;
+        case Qt::Key_Left:
+            go(step_ - 1);
+            return;
         case Qt::Key_Return:
-        case Qt::Key_Enter: pressButton(); return;
-        default: Overlay::keyPressEvent(event);
+        case Qt::Key_Enter:
+            next_->click();
+            return;
+        default:
+            Overlay::keyPressEvent(event);
         }
     }
 
@@ -100,7 +114,7 @@ protected:
         card_->setFixedWidth(std::min(kCardWidth, width() - 2 * kGap));
         card_->adjustSize();
         card_->move(besideSpot(card_->size()));
-        setMask(QRegion(rect()) - open + QRegion(card_->geometry()));
+        coverAllBut(open - QRegion(card_->geometry()));
         update();
     }
 
@@ -156,11 +170,6 @@ private:
         return button;
     }
 
-    void pressButton() {
-        auto* focused = qobject_cast<QPushButton*>(focusWidget());
-        focused != nullptr && focused->hasFocus() ? focused->click() : next_->click();
-    }
-
     void go(int step) {
         if (step < 0) return;
         if (step >= static_cast<int>(steps_.size())) {
@@ -183,7 +192,7 @@ private:
         skip_->setVisible(!last);
         dots_->setPresent(step);
         arrange();
-        next_->setFocus(Qt::OtherFocusReason);
+        setFocus(Qt::OtherFocusReason); // not the button: it would take the arrow keys
     }
 
     /// Of the present step's widget, in this window; empty while it is hidden or floats.
@@ -221,7 +230,8 @@ private:
 } // namespace
 
 void showTour(QMainWindow& window, std::vector<TourStep> steps, std::function<void()> finished) {
-    if (auto* open = window.findChild<QWidget*>("tour", Qt::FindDirectChildrenOnly)) static_cast<Overlay*>(open)->leave();
+    if (auto* open = window.findChild<QWidget*>("tour", Qt::FindDirectChildrenOnly))
+        static_cast<Overlay*>(open)->leave();
     (new Tour(window, std::move(steps), std::move(finished)))->begin();
 }
 

@@ -16,8 +16,8 @@ constexpr int kUsualDockWidth = 312;
 } // namespace
 
 WorkspacePage::WorkspacePage(Workspace& workspace, Settings& settings, Commands& commands, QWidget* parent)
-    : QMainWindow(parent, Qt::Widget), workspace_(workspace), settings_(settings) {
-    setWindowFlags(Qt::Widget); // QMainWindow makes itself a window whatever it is told when it is made
+    : QMainWindow(parent), workspace_(workspace), settings_(settings) {
+    setWindowFlags(Qt::Widget); // a main window is a window of its own unless told after it is made
     setObjectName("workspace." + workspace.id());
     setDockOptions(QMainWindow::AllowNestedDocks | QMainWindow::AllowTabbedDocks);
     setTabPosition(Qt::AllDockWidgetAreas, QTabWidget::North);
@@ -109,7 +109,6 @@ void WorkspacePage::showEvent(QShowEvent* event) {
     sized_ = true;
     QTimer::singleShot(0, this, [this] { applyFirstSizes(); }); // the layout has its size only after this event
 }
-
 
 /// A column of docks is as wide as suits numbers, and leaves more than half of a small window to the view.
 void WorkspacePage::applyFirstSizes() {

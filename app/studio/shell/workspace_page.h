@@ -39,7 +39,7 @@ private:
     std::vector<QDockWidget*> docks_;
     std::vector<QPointer<QDockWidget>> hiddenFloats_;
     QByteArray firstLayout_;
-    bool sized_ = false;  ///< the docks' first widths were given
+    bool sized_ = false; ///< the docks' first widths were given
     bool active_ = false;
     bool kiosk_ = false;
 };

@@ -1,4 +1,3 @@
-#include <QElapsedTimer>
 #include <QLabel>
 #include <QMap>
 #include <QProgressBar>
@@ -20,6 +19,22 @@ struct JobRow {
     QProgressBar* bar = nullptr;
 };
 
+QProgressBar* makeBar(QWidget* parent) {
+    auto* bar = new QProgressBar(parent);
+    bar->setRange(0, 1000);
+    bar->setTextVisible(false);
+    return bar;
+}
+
+QToolButton* makeCancel(QWidget* parent) {
+    auto* cancel = new QToolButton(parent);
+    cancel->setObjectName("job.cancel");
+    cancel->setIcon(icon("cancel", IconRole::muted));
+    cancel->setToolTip("Cancel");
+    cancel->setAccessibleName("Cancel");
+    return cancel;
+}
+
 JobRow makeJobRow(Jobs& jobs, Jobs::Id id, QWidget* parent) {
     JobRow row;
     row.widget = new QWidget(parent);
@@ -33,17 +48,11 @@ JobRow makeJobRow(Jobs& jobs, Jobs::Id id, QWidget* parent) {
     row.text->setTextFormat(Qt::PlainText);
     row.text->setProperty("look", "muted");
     row.text->setMinimumWidth(1); // a long stage must not widen the dock
-    row.bar = new QProgressBar(row.widget);
-    row.bar->setRange(0, 1000);
-    row.bar->setTextVisible(false);
+    row.bar = makeBar(row.widget);
     column->addWidget(row.text);
     column->addWidget(row.bar);
     layout->addLayout(column, 1);
-    auto* cancel = new QToolButton(row.widget);
-    cancel->setObjectName("job.cancel");
-    cancel->setIcon(icon("cancel", IconRole::muted));
-    cancel->setToolTip("Cancel");
-    cancel->setAccessibleName("Cancel");
+    QToolButton* cancel = makeCancel(row.widget);
     QObject::connect(cancel, &QToolButton::clicked, &jobs, [&jobs, id] { jobs.cancel(id); });
     layout->addWidget(cancel);
     return row;
@@ -67,7 +76,7 @@ private:
     void wait(int id) {
         QTimer::singleShot(kPatienceMilliseconds, this, [this, id] {
             for (const auto& status : jobs_.running())
-                if (status.id == id && (place_.isEmpty() || status.place == place_)) show(status);
+                if (status.id == id && status.place == place_) show(status);
         });
     }
 
@@ -105,7 +114,55 @@ private:
     QMap<int, JobRow> rows_;
 };
 
+/// The newest job with a short bar, in the height of a line.
+class JobLine : public QWidget {
+public:
+    JobLine(Jobs& jobs, QWidget* parent) : QWidget(parent), jobs_(jobs) {
+        setObjectName("status.jobs");
+        auto* row = new QHBoxLayout(this);
+        row->setContentsMargins(0, 0, 0, 0);
+        row->setSpacing(8);
+        text_ = new QLabel(this);
+        text_->setTextFormat(Qt::PlainText);
+        bar_ = makeBar(this);
+        bar_->setMaximumWidth(120);
+        text_->setMinimumWidth(1); // the other three things of the line come first
+        QToolButton* cancel = makeCancel(this);
+        cancel->setProperty("look", "title");
+        row->addWidget(text_);
+        row->addWidget(bar_);
+        row->addWidget(cancel);
+        hide();
+        connect(cancel, &QToolButton::clicked, this, [this] { jobs_.cancel(shown_); });
+        connect(&jobs, &Jobs::started, this,
+                [this] { QTimer::singleShot(kPatienceMilliseconds, this, [this] { refresh(); }); });
+        connect(&jobs, &Jobs::progressed, this, [this] {
+            if (isVisible()) refresh();
+        });
+        connect(&jobs, &Jobs::finished, this, [this] { refresh(); });
+    }
+
+private:
+    void refresh() {
+        const auto running = jobs_.running();
+        setVisible(!running.empty());
+        if (running.empty()) return;
+        const Jobs::Status& newest = running.back();
+        shown_ = newest.id;
+        text_->setText(newest.title);
+        text_->setToolTip(newest.stage);
+        bar_->setValue(static_cast<int>(newest.fraction * 1000));
+    }
+
+    Jobs& jobs_;
+    int shown_ = 0;
+    QLabel* text_ = nullptr;
+    QProgressBar* bar_ = nullptr;
+};
+
 } // namespace
+
+QWidget* makeJobLine(Jobs& jobs, QWidget* parent) { return new JobLine(jobs, parent); }
 
 QWidget* makeJobBar(Jobs& jobs, const QString& place, QWidget* parent) { return new JobBar(jobs, place, parent); }
 

@@ -10,7 +10,6 @@ namespace lumorph::studio {
 /// stands above it when it is told away from its place, such as in the list of all. One that is not `dismissible` goes
 /// by itself when its cause does.
 [[nodiscard]] QWidget* makeNoticeCard(Notices& notices, const QString& place, const Notice& notice,
-                                      const QString& heading = {}, QWidget* parent = nullptr,
-                                      bool dismissible = true);
+                                      const QString& heading = {}, QWidget* parent = nullptr, bool dismissible = true);
 
 } // namespace lumorph::studio

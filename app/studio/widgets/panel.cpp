@@ -44,6 +44,13 @@ public:
         const QSize content = widget() == nullptr ? QSize(240, 240) : widget()->sizeHint();
         return {std::max(240, content.width() + 14), content.height()};
     }
+
+protected:
+    /// A notice that comes up may need more width than the dock has.
+    bool eventFilter(QObject* watched, QEvent* event) override {
+        if (event->type() == QEvent::LayoutRequest) updateGeometry();
+        return QScrollArea::eventFilter(watched, event);
+    }
 };
 
 } // namespace

@@ -30,8 +30,10 @@ struct Column {
 /// Shows the newest notice of a place where its cause is, with the remedy as buttons; nothing while there is none.
 [[nodiscard]] QWidget* makeNoticeBar(Notices& notices, const QString& place, QWidget* parent = nullptr);
 
-/// Shows the jobs of a place (of all when empty) that take longer than 0.2 s: title, stage, bar, cancel; nothing while
-/// there are none.
+/// Shows the jobs of a place that take longer than 0.2 s: title, stage, bar, cancel; nothing while there are none.
 [[nodiscard]] QWidget* makeJobBar(Jobs& jobs, const QString& place, QWidget* parent = nullptr);
+
+/// The same for the newest job of all places, in one line: for the status line.
+[[nodiscard]] QWidget* makeJobLine(Jobs& jobs, QWidget* parent = nullptr);
 
 } // namespace lumorph::studio

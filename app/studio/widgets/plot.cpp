@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include <QMouseEvent>
 #include <QPainter>
@@ -34,7 +35,7 @@ std::size_t stepsOf(const std::vector<Plot::Curve>& curves) {
     return steps;
 }
 
-PlotAxes axesOf(const std::vector<Plot::Curve>& curves, double low, double high, const QRectF& box,
+PlotAxes axesOf(const std::vector<Plot::Curve>& curves, const QString& y, double low, double high, const QRectF& box,
                 const QFontMetricsF& metrics) {
     const bool given = low != high;
     if (!given) {
@@ -47,7 +48,9 @@ PlotAxes axesOf(const std::vector<Plot::Curve>& curves, double low, double high,
                     high = std::max(high, value);
                 }
     }
-    return makeAxes(static_cast<int>(stepsOf(curves)) - 1, low, high, given, box, metrics);
+    const auto names = legendBoxes(y, curves, box, metrics);
+    const double top = (names.empty() ? metrics.height() : names.back().bottom() - box.top()) + 4;
+    return makeAxes(static_cast<int>(stepsOf(curves)) - 1, low, high, given, box, top, metrics);
 }
 
 } // namespace
@@ -91,7 +94,7 @@ QSize Plot::sizeHint() const { return {280, 180}; }
 QSize Plot::minimumSizeHint() const { return {160, 128}; }
 
 QPointF Plot::pointOf(double x, double y) const {
-    return axesOf(curves_, low_, high_, rect(), QFontMetricsF(plotFont(font()))).pointOf(x, y);
+    return axesOf(curves_, y_, low_, high_, rect(), QFontMetricsF(plotFont(font()))).pointOf(x, y);
 }
 
 void Plot::paintEvent(QPaintEvent* /*event*/) {
@@ -107,18 +110,18 @@ void Plot::paintEvent(QPaintEvent* /*event*/) {
         painter.drawText(rect().adjusted(16, 8, -16, -8), Qt::AlignCenter | Qt::TextWordWrap, empty_);
         return;
     }
-    const PlotAxes axes = axesOf(curves_, low_, high_, rect(), QFontMetricsF(painter.font()));
+    const PlotAxes axes = axesOf(curves_, y_, low_, high_, rect(), QFontMetricsF(painter.font()));
     drawAxes(painter, axes, x_, y_);
     if (mark_ >= 0.0 && mark_ <= axes.steps) drawUpright(painter, axes, mark_, QPen(colors.accent, 1.5));
     painter.setClipRect(axes.area.adjusted(-2, -2, 2, 2));
     for (const auto& curve : curves_) drawCurve(painter, curve, axes);
     painter.setClipping(false);
+    drawLegend(painter, legendBoxes(y_, curves_, rect(), QFontMetricsF(painter.font())), curves_);
     if (hover_ >= 0) drawReadout(painter, axes, x_, hover_, curves_);
-    drawLegend(painter, axes, curves_, hover_);
 }
 
 void Plot::mouseMoveEvent(QMouseEvent* event) {
-    const PlotAxes axes = axesOf(curves_, low_, high_, rect(), QFontMetricsF(plotFont(font())));
+    const PlotAxes axes = axesOf(curves_, y_, low_, high_, rect(), QFontMetricsF(plotFont(font())));
     const int now = stepsOf(curves_) < 2 ? -1 : axes.stepAt(event->position());
     if (now != hover_) {
         hover_ = now;

@@ -42,20 +42,38 @@ double niceTick(double span, int most) {
     return 10.0 * power;
 }
 
-PlotAxes makeAxes(int steps, double low, double high, bool exact, const QRectF& box, const QFontMetricsF& metrics) {
+std::vector<QRectF> legendBoxes(const QString& y, const std::vector<Plot::Curve>& curves, const QRectF& box,
+                                const QFontMetricsF& metrics) {
+    std::vector<QRectF> boxes;
+    const double line = metrics.height(), left = box.left() + 8, right = box.right() - 8;
+    double x = left + metrics.horizontalAdvance(y) + 16, top = box.top() + 4;
+    for (const auto& curve : curves) {
+        const double width = metrics.horizontalAdvance(curve.name) + 16;
+        if (x + width > right && x > left) {
+            x = left;
+            top += line + 1;
+        }
+        boxes.emplace_back(x, top, width, line);
+        x += width + 10;
+    }
+    return boxes;
+}
+
+PlotAxes makeAxes(int steps, double low, double high, bool exact, const QRectF& box, double top,
+                  const QFontMetricsF& metrics) {
     PlotAxes axes;
     axes.steps = std::max(0, steps);
     if (!(low <= high)) low = 0.0, high = 1.0; // no values at all
     if (low == high) low -= 0.5, high += 0.5;
     const double line = metrics.height();
-    const double height = std::max(16.0, box.height() - 2.6 * line - 20);
+    const double height = std::max(16.0, box.height() - top - 2 * line - 14);
     axes.tick = niceTick(high - low, std::max(1, static_cast<int>(height / (2.2 * line))));
     axes.low = exact ? low : std::floor(low / axes.tick + 1e-9) * axes.tick;
     axes.high = exact ? high : std::ceil(high / axes.tick - 1e-9) * axes.tick;
     axes.decimals = std::clamp(static_cast<int>(std::ceil(-std::log10(axes.tick) - 1e-9)), 0, 6);
     const double labels = std::max(metrics.horizontalAdvance(number(axes.low, axes.decimals)),
                                    metrics.horizontalAdvance(number(axes.high, axes.decimals)));
-    axes.area = QRectF(box.left() + labels + 14, box.top() + line + 10, 0, height);
+    axes.area = QRectF(box.left() + labels + 14, box.top() + top + 6, 0, height);
     axes.area.setRight(box.right() - 12);
     const double room = metrics.horizontalAdvance(QString::number(axes.steps)) + 16;
     const int most = std::max(1, static_cast<int>(axes.area.width() / room));
@@ -93,20 +111,14 @@ void drawUpright(QPainter& painter, const PlotAxes& axes, double x, const QPen& 
     painter.drawLine(QPointF(across, axes.area.top()), QPointF(across, axes.area.bottom()));
 }
 
-void drawLegend(QPainter& painter, const PlotAxes& axes, const std::vector<Plot::Curve>& curves, int hover) {
-    if (hover >= 0) return; // the readout names the curves
-    const QFontMetricsF metrics(painter.font());
-    double right = axes.area.right();
-    for (auto curve = curves.rbegin(); curve != curves.rend(); ++curve) {
-        if (curve->name.isEmpty()) continue;
-        const double width = metrics.horizontalAdvance(curve->name);
-        if (right - width - 22 < axes.area.left() + axes.area.width() * 0.35) return; // hovering still names them
-        const QRectF box(right - width, 4, width, metrics.height());
+void drawLegend(QPainter& painter, const std::vector<QRectF>& boxes, const std::vector<Plot::Curve>& curves) {
+    for (std::size_t i = 0; i < boxes.size() && i < curves.size(); ++i) {
+        if (curves[i].name.isEmpty()) continue;
+        const QRectF& box = boxes[i];
         painter.setPen(currentPalette().textMuted);
-        painter.drawText(box, Qt::AlignLeft | Qt::AlignVCenter, curve->name);
-        painter.setPen(QPen(curve->color, 2, curve->dashed ? Qt::DotLine : Qt::SolidLine));
-        painter.drawLine(QPointF(box.left() - 14, box.center().y()), QPointF(box.left() - 4, box.center().y()));
-        right -= width + 24;
+        painter.drawText(box.adjusted(16, 0, 8, 0), Qt::AlignLeft | Qt::AlignVCenter, curves[i].name);
+        painter.setPen(QPen(curves[i].color, 2, curves[i].dashed ? Qt::DotLine : Qt::SolidLine));
+        painter.drawLine(QPointF(box.left(), box.center().y()), QPointF(box.left() + 11, box.center().y()));
     }
 }
 

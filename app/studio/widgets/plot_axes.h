@@ -25,14 +25,18 @@ struct PlotAxes {
 
 /// 1, 2 or 5 times a power of ten: at most `most` of them in the span.
 [[nodiscard]] double niceTick(double span, int most);
-/// Axes of `steps` steps and values from `low` to `high`; widened to whole ticks unless `exact`.
-[[nodiscard]] PlotAxes makeAxes(int steps, double low, double high, bool exact, const QRectF& box,
+/// Where the names of the curves stand, after the label of y, in as many rows as they need.
+[[nodiscard]] std::vector<QRectF> legendBoxes(const QString& y, const std::vector<Plot::Curve>& curves,
+                                              const QRectF& box, const QFontMetricsF& metrics);
+/// Axes of `steps` steps and values from `low` to `high`; widened to whole ticks unless `exact`. `top` is how much of
+/// the box the labels above take.
+[[nodiscard]] PlotAxes makeAxes(int steps, double low, double high, bool exact, const QRectF& box, double top,
                                 const QFontMetricsF& metrics);
 [[nodiscard]] QFont plotFont(const QFont& font);
 
 void drawAxes(QPainter& painter, const PlotAxes& axes, const QString& x, const QString& y);
 void drawUpright(QPainter& painter, const PlotAxes& axes, double x, const QPen& pen);
-void drawLegend(QPainter& painter, const PlotAxes& axes, const std::vector<Plot::Curve>& curves, int hover);
+void drawLegend(QPainter& painter, const std::vector<QRectF>& boxes, const std::vector<Plot::Curve>& curves);
 void drawReadout(QPainter& painter, const PlotAxes& axes, const QString& x, int hover,
                  const std::vector<Plot::Curve>& curves);
 
