@@ -25,11 +25,12 @@ struct ViewportSurface {
     std::shared_ptr<const SurfaceShading> shading;
     std::shared_ptr<const std::vector<glm::vec3>> positions; ///< one a mesh vertex, metres, in the surface's own frame
     glm::mat4 worldFromSurface{1.0F};
-    glm::vec3 color{0.8F}; ///< sRGB
-    float opacity = 1.0F;  ///< below 1 it is drawn after the opaque ones and casts no shadow
-    float paper = 0.0F;    ///< 0 smooth, 1 the fine fibre of paper
-    bool tinted = false;   ///< coloured by the scene's tint
-    bool outlined = false; ///< selected: drawn with an outline in the accent colour
+    glm::vec3 color{0.8F};        ///< sRGB
+    float opacity = 1.0F;         ///< below 1 it is drawn after the opaque ones and casts no shadow
+    float paper = 0.0F;           ///< 0 smooth, 1 the fine fibre of paper
+    bool tinted = false;          ///< coloured by the scene's tint,
+    std::uint8_t tintedBy = 0xFF; ///< but only by these of its classes, one a bit
+    bool outlined = false;        ///< selected: drawn with an outline in the accent colour
 };
 
 /// Classes of voxels that tint surfaces where they pass through them; class 0 leaves the colour as it is.

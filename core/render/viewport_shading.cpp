@@ -55,7 +55,6 @@ Program& ViewportShading::begin(const ViewportFrame& frame, const FramePiece& pi
     program.use();
     applyBackdrop(program, frame, piece);
     light.apply(program, frame);
-    if (tinted) tint_.apply(program, frame, kTintUnit);
     glActiveTexture(GL_TEXTURE0 + kFibreUnit);
     glBindTexture(GL_TEXTURE_2D, fibre_.name());
     program.set("fibre", kFibreUnit);
@@ -70,7 +69,9 @@ void ViewportShading::draw(const ViewportFrame& frame, const FramePiece& piece, 
                            std::size_t surface) {
     const ViewportSurface& item = frame.scene.surfaces[surface];
     const bool opaque = item.opacity >= 1.0F;
-    Program& program = begin(frame, piece, light, item.tinted && tint_.there());
+    const bool tinted = item.tinted && tint_.there();
+    Program& program = begin(frame, piece, light, tinted);
+    if (tinted) tint_.apply(program, frame, item.tintedBy, kTintUnit);
     program.set("worldFromMesh", item.worldFromSurface);
     program.set("normalFromMesh", glm::mat4(glm::transpose(glm::inverse(glm::mat3(item.worldFromSurface)))));
     program.set("baseColor", linearFromSrgb(item.color));

@@ -65,7 +65,8 @@ void ViewportTintVolume::update(const std::optional<ViewportTint>& tint) {
     store(volume_->texture.name(), volume_->dimensions, widened(*volume_->classes, volume_->dimensions).data());
 }
 
-void ViewportTintVolume::apply(Program& program, const ViewportFrame& frame, int textureUnit) const {
+void ViewportTintVolume::apply(Program& program, const ViewportFrame& frame, std::uint8_t classes,
+                               int textureUnit) const {
     glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(textureUnit));
     glBindTexture(GL_TEXTURE_3D, volume_->texture.name());
     program.set("tintClasses", textureUnit);
@@ -75,8 +76,9 @@ void ViewportTintVolume::apply(Program& program, const ViewportFrame& frame, int
                                      glm::translate(glm::mat4(1.0F), -tint.frame.origin));
     program.set("tintNudge", static_cast<float>(kNudge * tint.frame.voxelSize));
     for (std::size_t i = 0; i < tint.colors.size(); ++i)
-        program.set("tintColors[" + std::to_string(i) + "]",
-                    glm::vec4(linearFromSrgb(glm::vec3(tint.colors[i])), tint.colors[i].a));
+        program.set(
+            "tintColors[" + std::to_string(i) + "]",
+            glm::vec4(linearFromSrgb(glm::vec3(tint.colors[i])), (classes >> i & 1) != 0 ? tint.colors[i].a : 0.0F));
 }
 
 } // namespace lumorph

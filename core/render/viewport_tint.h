@@ -19,8 +19,8 @@ public:
     void update(const std::optional<ViewportTint>& tint);
 
     [[nodiscard]] bool there() const noexcept { return volume_.has_value(); }
-    /// Sets and binds what tint.glsl needs. There must be a tint.
-    void apply(Program& program, const ViewportFrame& frame, int textureUnit) const;
+    /// Sets and binds what tint.glsl needs; only the given classes (one a bit) tint. There must be a tint.
+    void apply(Program& program, const ViewportFrame& frame, std::uint8_t classes, int textureUnit) const;
 
     [[nodiscard]] std::size_t objectCount() const noexcept { return volume_ ? 1 : 0; }
 

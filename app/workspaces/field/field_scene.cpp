@@ -148,6 +148,7 @@ void FieldSceneBuilder::Data::addDevice(ViewportScene& scene, const MatchFrame& 
     surface.color = colors.device;
     surface.paper = 1.0F;
     surface.tinted = tinted;
+    surface.tintedBy = 1U << kVoxelOverfilled; // what the target lacks is seen on the target
     scene.surfaces.push_back(std::move(surface));
 }
 
@@ -186,6 +187,7 @@ void FieldSceneBuilder::Data::addTarget(ViewportScene& scene, const MatchFrame& 
     surface.color = colors.target;
     surface.opacity = frame.matched ? 0.5F : 0.6F;
     surface.tinted = true;
+    surface.tintedBy = 1U << kVoxelUnmatched;
     surface.outlined = selected;
     scene.surfaces.push_back(std::move(surface));
 }
@@ -194,8 +196,8 @@ void FieldSceneBuilder::Data::addTint(ViewportScene& scene, const MatchFrame& fr
     ViewportTint tint;
     tint.frame = frame.field->field.frame;
     tint.classes = frame.classes;
-    tint.colors[kVoxelUnmatched] = glm::vec4(colors.unmatched, 0.85F);
-    tint.colors[kVoxelOverfilled] = glm::vec4(colors.overfilled, 0.85F);
+    tint.colors[kVoxelUnmatched] = glm::vec4(colors.unmatched, 0.75F);
+    tint.colors[kVoxelOverfilled] = glm::vec4(colors.overfilled, 0.75F);
     scene.tint = std::move(tint);
 }
 
