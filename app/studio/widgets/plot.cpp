@@ -13,6 +13,14 @@
 namespace lumorph::studio {
 namespace {
 
+/// Whether a curve may go straight from one point to another past the one between; nobody sees a fifth of a pixel.
+bool straightPast(const QPointF& from, const QPointF& between, const QPointF& to) {
+    const QPointF way = to - from, aside = between - from;
+    const double length = std::hypot(way.x(), way.y());
+    constexpr double kLongest = 12.0; // so that small errors do not add up along a gentle bend
+    return length < kLongest && std::abs(way.x() * aside.y() - way.y() * aside.x()) < 0.2 * length;
+}
+
 /// One run of a curve without gaps. Qt draws single lines with square ends many times faster than one long path.
 void drawRun(QPainter& painter, const QPolygonF& run, bool dashed) {
     if (run.size() == 1) painter.drawPoint(run.front());
@@ -23,7 +31,12 @@ void drawRun(QPainter& painter, const QPolygonF& run, bool dashed) {
     }
     QList<QLineF> lines;
     lines.reserve(run.size());
-    for (qsizetype i = 1; i < run.size(); ++i) lines.emplace_back(run[i - 1], run[i]);
+    QPointF from = run.front();
+    for (qsizetype i = 1; i < run.size(); ++i) {
+        if (i + 1 < run.size() && straightPast(from, run[i], run[i + 1])) continue;
+        lines.emplace_back(from, run[i]);
+        from = run[i];
+    }
     painter.drawLines(lines);
 }
 
