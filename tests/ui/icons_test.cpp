@@ -11,10 +11,12 @@
 namespace lumorph::studio {
 namespace {
 
+/// Those of the set; the program's own icon and that of its files have colours of their own.
 QStringList iconNames() {
     const QDir folder(QString::fromStdString((resourcesFolder() / "icons").string()));
     QStringList names;
-    for (const QString& file : folder.entryList({"*.svg"})) names << file.chopped(4);
+    for (const QString& file : folder.entryList({"*.svg"}))
+        if (!file.contains("lumorph")) names << file.chopped(4);
     return names;
 }
 

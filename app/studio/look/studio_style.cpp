@@ -50,7 +50,7 @@ int StudioStyle::pixelMetric(PixelMetric metric, const QStyleOption* option, con
     case PM_SplitterWidth:
         return 5;
     case PM_DockWidgetFrameWidth:
-        return 0;
+        return 1; // of floating docks
     case PM_CheckBoxLabelSpacing:
     case PM_RadioButtonLabelSpacing:
         return 8;

@@ -1,6 +1,7 @@
 #include <filesystem>
 
 #include <QFontDatabase>
+#include <QIcon>
 #include <QPalette>
 #include <QVariant>
 
@@ -66,6 +67,7 @@ void applyTheme(QApplication& application, Theme theme) {
         application.setFont(typeface());
         QApplication::setStyle(new StudioStyle);
         new FocusRing(&application);
+        QApplication::setWindowIcon(QIcon(QString::fromStdString((resourcesFolder() / "icons/lumorph.svg").string())));
     }
     const Palette& colors = paletteOf(theme);
     QApplication::setPalette(qtPalette(colors));

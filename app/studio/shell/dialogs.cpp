@@ -157,7 +157,7 @@ void openShortcuts(Studio& studio, QWidget& window) {
     for (const KeyLine& line : kGestures) addKeyLine(*column.layout, line.keys, line.does, dialog);
     dialog->layout()->addWidget(column.widget);
     addClose(*dialog);
-    dialog->resize(560, 640);
+    dialog->resize(QSize(560, 640).boundedTo(window.size() * 0.9));
     dialog->show();
 }
 

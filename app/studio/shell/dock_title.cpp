@@ -51,7 +51,11 @@ QWidget* makeDockTitle(QDockWidget& dock, const QString& iconName) {
     title->setMinimumWidth(1);
     row->addWidget(title, 1);
     auto* floating = makeTitleButton("frame", "Float or dock", bar);
-    QObject::connect(floating, &QToolButton::clicked, &dock, [&dock] { dock.setFloating(!dock.isFloating()); });
+    QObject::connect(floating, &QToolButton::clicked, &dock, [&dock] {
+        dock.setFloating(!dock.isFloating());
+        if (dock.isFloating())
+            dock.move(dock.pos() + QPoint(-32, 32)); // off its old place, so that it is seen to float
+    });
     auto* close = makeTitleButton("close", "Close; the View menu shows it again", bar);
     QObject::connect(close, &QToolButton::clicked, &dock, &QDockWidget::close);
     row->addWidget(floating);

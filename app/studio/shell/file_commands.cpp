@@ -24,23 +24,24 @@ public:
     [[nodiscard]] QIcon icon(const QFileInfo& file) const override { return icon(file.isDir() ? Folder : File); }
 };
 
+/// The dialog reads icons in a thread until it is gone, so what makes them is a base that outlives it.
+struct HoldsFileIcons {
+    FileIcons icons;
+};
+
 /// Qt's own dialog: it wears our look, and a test can type into it.
-class StudioFileDialog : public QFileDialog {
+class StudioFileDialog : private HoldsFileIcons, public QFileDialog {
 public:
     StudioFileDialog(QWidget& window, const QString& title, const QString& name) : QFileDialog(&window, title) {
         setObjectName(name);
         setOption(QFileDialog::DontUseNativeDialog);
         setOption(QFileDialog::DontUseCustomDirectoryIcons);
-        setIconProvider(&icons_);
+        setIconProvider(&icons);
         setAttribute(Qt::WA_DeleteOnClose);
         for (const char* mode : {"listModeButton", "detailModeButton"}) // one way to look at files is enough
             if (auto* button = findChild<QWidget*>(mode)) button->hide();
         resize(860, 560);
     }
-    ~StudioFileDialog() override { setIconProvider(nullptr); }
-
-private:
-    FileIcons icons_;
 };
 
 QString lastFolder(const Studio& studio) { return studio.settings.value("files/folder", QDir::homePath()).toString(); }
@@ -105,6 +106,12 @@ void addFileCommands(Studio& studio, QWidget& window) {
         options.menu = "File";
         commands.add(id, text, options, std::move(run));
     };
+    // What a notice offers. Targets have a dialog of their own, with the bundled ones in it.
+    QObject::connect(&studio.desk, &Desk::saveElsewhere, &window,
+                     [&studio, &window] { saveWithDialog(studio, window); });
+    QObject::connect(&studio.desk, &Desk::chooseFile, &window, [&studio, &window](const QString& place) {
+        if (place != "target") openWithDialog(studio, window);
+    });
     add("file.new", "&New project", "file", QKeySequence::New, [&studio] { studio.desk.newProject(); });
     add("file.open", "&Open...", "open", QKeySequence::Open, [&studio, &window] { openWithDialog(studio, window); });
     add("file.save", "&Save", "save", QKeySequence::Save, [&studio, &window] {

@@ -215,7 +215,7 @@ void MainWindow::closeEvent(QCloseEvent* event) {
     }
     data_->studio.desk.keepSession();
     event->accept();
-    QTimer::singleShot(0, qApp, &QApplication::quit); // floating docks and dialogs are windows too
+    QTimer::singleShot(0, qApp, [] { QCoreApplication::exit(0); }); // floating docks and dialogs are windows too
 }
 
 void MainWindow::acceptDrag(QDropEvent& event) {

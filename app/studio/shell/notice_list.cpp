@@ -102,9 +102,9 @@ private:
         const int width = std::min(kWidth, parentWidget()->width() - 16);
         QWidget* content = area_->widget();
         content->ensurePolished();
-        const int wish = content->layout()->hasHeightForWidth() ? content->layout()->totalHeightForWidth(width - 2)
+        const int wish = content->layout()->hasHeightForWidth() ? content->layout()->totalHeightForWidth(width - 8)
                                                                 : content->sizeHint().height();
-        const int height = std::min(wish + 2, corner_.y() - 48);
+        const int height = std::min(wish + 8, corner_.y() - 48);
         setGeometry(corner_.x() - width, corner_.y() - 8 - height, width, height);
     }
 

@@ -28,9 +28,11 @@ constexpr auto kNoDisplay = "lumorph-studio: display: no window can be shown her
                             "connect by `ssh -X`, or use `lumorph render` and `lumorph match`, which need no display\n";
 
 /// Qt ends the program when it finds no display; it should say what to do, and exit like any other failure.
-void tellNoDisplay(QtMsgType type, const QMessageLogContext& /*context*/, const QString& message) {
+void tellNoDisplay(QtMsgType type, const QMessageLogContext& /*context*/, const QString& /*message*/) {
     if (type != QtFatalMsg) return;
-    std::fprintf(stderr, kNoDisplay, message.section('\n', 0, 0).toUtf8().constData());
+    // Qt's own words advise to install it again, which helps nobody whose display does not answer.
+    const QString display = qEnvironmentVariable("DISPLAY", qEnvironmentVariable("WAYLAND_DISPLAY"));
+    std::fprintf(stderr, kNoDisplay, ("display '" + display + "' does not answer").toUtf8().constData());
     std::_Exit(1);
 }
 

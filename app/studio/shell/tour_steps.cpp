@@ -27,7 +27,7 @@ void matchLive(Studio& studio) {
 
 std::vector<TourStep> tourSteps(Studio& studio) {
     return {
-        {{"viewport", "centralView"},
+        {{"field.viewport"},
          "This is the tablet",
          "A sheet of paper over six flaps, each lifted by a servo. Everything here is simulated, so nothing can break. "
          "Drag to turn it, scroll to come closer.",

@@ -3,12 +3,30 @@
 #include <algorithm>
 
 #include <QDockWidget>
+#include <QPainter>
 #include <QTimer>
 
+#include "app/studio/look/palette.h"
 #include "app/studio/shell/dock_title.h"
 
 namespace lumorph::studio {
 namespace {
+
+/// Has an edge while it floats, since it then has no frame of the desktop's.
+class StudioDock : public QDockWidget {
+public:
+    using QDockWidget::QDockWidget;
+
+protected:
+    void paintEvent(QPaintEvent* event) override {
+        QDockWidget::paintEvent(event);
+        if (!isFloating()) return;
+        QPainter painter(this);
+        painter.setPen(currentPalette().border);
+        painter.setBrush(currentPalette().panel);
+        painter.drawRect(rect().adjusted(0, 0, -1, -1));
+    }
+};
 
 constexpr int kLayoutVersion = 1;
 constexpr int kUsualDockWidth = 312;
@@ -42,8 +60,9 @@ WorkspacePage::WorkspacePage(Workspace& workspace, Settings& settings, Commands&
 }
 
 void WorkspacePage::addDock(const WorkspaceDock& brought, QDockWidget* before) {
-    auto* dock = new QDockWidget(brought.title, this);
+    auto* dock = new StudioDock(brought.title, this);
     dock->setObjectName(brought.id);
+    dock->setAcceptDrops(true); // while it floats it is a window of its own
     dock->setTitleBarWidget(makeDockTitle(*dock, brought.icon));
     dock->setWidget(brought.content);
     addDockWidget(brought.area, dock);
@@ -56,7 +75,6 @@ void WorkspacePage::addCommands(Commands& commands, QDockWidget* dock, const Wor
     options.menu = "View";
     options.workspace = workspace_.id();
     options.checkable = true;
-    options.icon = brought.icon;
     QAction* toggle = dock->toggleViewAction();
     QAction* command = commands.add("view." + brought.id, "Show " + brought.title, options, [dock] {
         dock->toggleViewAction()->trigger();

@@ -1,0 +1,80 @@
+#include "app/studio/shell/settings.h"
+
+#include <QDir>
+#include <QSignalSpy>
+#include <QTemporaryDir>
+#include <gtest/gtest.h>
+
+namespace lumorph::studio {
+namespace {
+
+class Settings : public ::testing::Test {
+protected:
+    void SetUp() override { QSettings(QSettings::IniFormat, QSettings::UserScope, "lumorph", "studio").clear(); }
+
+    QString makeFile(const QString& name) {
+        const QString path = folder.filePath(name);
+        QFile file(path);
+        EXPECT_TRUE(file.open(QIODevice::WriteOnly));
+        return path;
+    }
+
+    QTemporaryDir folder;
+};
+
+TEST_F(Settings, AreKeptFromOneStartToTheNext) {
+    {
+        studio::Settings settings;
+        EXPECT_EQ(settings.theme(), Theme::dark);
+        EXPECT_FALSE(settings.tourSeen());
+        settings.setTheme(Theme::light);
+        settings.setLoopRate(30.0);
+        settings.setStillQuality(false);
+        settings.setTourSeen(true);
+        settings.setLayout("field", QByteArray("\0\1\2", 3));
+    }
+    const studio::Settings settings;
+    EXPECT_EQ(settings.theme(), Theme::light);
+    EXPECT_DOUBLE_EQ(settings.loopRate(), 30.0);
+    EXPECT_FALSE(settings.stillQuality());
+    EXPECT_TRUE(settings.tourSeen());
+    EXPECT_EQ(settings.layout("field"), QByteArray("\0\1\2", 3));
+    EXPECT_TRUE(settings.layout("rig").isEmpty());
+}
+
+TEST_F(Settings, TellAChangeOnce) {
+    studio::Settings settings;
+    QSignalSpy told(&settings, &studio::Settings::themeChanged);
+    settings.setTheme(Theme::light);
+    settings.setTheme(Theme::light);
+    EXPECT_EQ(told.count(), 1);
+}
+
+TEST_F(Settings, TheLoopRateStaysInItsRangeWhateverTheFileSays) {
+    studio::Settings settings;
+    settings.setLoopRate(5000.0);
+    EXPECT_DOUBLE_EQ(settings.loopRate(), 120.0);
+    settings.setValue("loop/rate", "often");
+    EXPECT_DOUBLE_EQ(settings.loopRate(), 60.0);
+}
+
+TEST_F(Settings, RecentFilesAreTheNewestTenThatAreStillThere) {
+    studio::Settings settings;
+    QStringList paths;
+    for (int i = 0; i < 12; ++i) {
+        paths << makeFile(QString("f%1.lumorph").arg(i));
+        settings.addRecentFile(paths.last());
+    }
+    ASSERT_EQ(settings.recentFiles().size(), 10);
+    EXPECT_EQ(settings.recentFiles().first(), paths[11]);
+    settings.addRecentFile(paths[5]);
+    EXPECT_EQ(settings.recentFiles().first(), paths[5]);
+    EXPECT_EQ(settings.recentFiles().count(paths[5]), 1);
+    QFile::remove(paths[11]);
+    EXPECT_FALSE(settings.recentFiles().contains(paths[11]));
+    settings.clearRecentFiles();
+    EXPECT_TRUE(settings.recentFiles().isEmpty());
+}
+
+} // namespace
+} // namespace lumorph::studio
