@@ -58,8 +58,8 @@ private:
         auto* text = new QLabel("Moved by hand: the device no longer follows the target.", hint_);
         text->setWordWrap(true);
         text->setProperty("look", "muted");
-        QPushButton* button = makeCommandButton(studio_.commands.find("match.live"), "actuators.matchLive", hint_);
-        button->setProperty("look", "primary");
+        QPushButton* button =
+            makeCommandButton(studio_.commands.find("match.live"), "actuators.matchLive", hint_, true);
         auto* layout = new QHBoxLayout(hint_);
         layout->setContentsMargins(16, 8, 16, 12);
         layout->setSpacing(8);

@@ -57,7 +57,7 @@ public:
             stack_->addWidget(makeEmptyState(icon, title, text, studio.commands.find(command), this));
         };
         empty("target", "Nothing to match yet",
-              "With a target the device takes its shape, and here stands how well it fits.", "target.open");
+              "With a target the device takes its shape, and here stands how well it fits.", "");
         empty("field", "No field yet",
               "Matching asks the mechanical distance field of the device. It takes a moment to build.", "field.build");
         stack_->addWidget(column_.widget);
