@@ -159,7 +159,8 @@ private:
         stack_->setCurrentIndex(!state.target.target ? 0 : !state.field.field ? 1 : 2);
         const auto& frame = studio_.loop.frame();
         if (!isVisible() || !frame) return;
-        numbers_->show(*frame, state.matching.method);
+        const bool follows = state.matching.live && !studio_.loop.dancing();
+        numbers_->show(*frame, follows && state.matching.method == MatchMethod::refined);
         beyond_->show(frame->matched ? frame->shareBeyondFrame : 0.0);
         unreachable_->show(frame->matched ? frame->shareUnreachable : 0.0);
         budget_->setEnabled(state.matching.method == MatchMethod::refined);
