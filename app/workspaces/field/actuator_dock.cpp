@@ -58,8 +58,8 @@ private:
         auto* text = new QLabel("Moved by hand: the device no longer follows the target.", hint_);
         text->setWordWrap(true);
         text->setProperty("look", "muted");
-        QPushButton* button = makeCommandButton(studio_.commands.find("match.live"), "actuators.matchLive", hint_);
-        button->setProperty("look", "primary");
+        QPushButton* button =
+            makeCommandButton(studio_.commands.find("match.live"), "actuators.matchLive", hint_, true);
         auto* layout = new QHBoxLayout(hint_);
         layout->setContentsMargins(16, 8, 16, 12);
         layout->setSpacing(8);
@@ -81,7 +81,12 @@ private:
         field_ = field;
         built_ = true;
         clear();
-        if (!rig) return;
+        if (!rig) {
+            column_.layout->addWidget(makeEmptyState("actuator", "No device yet",
+                                                     "Open a rig, or begin a new project with the tablet.",
+                                                     studio_.commands.find("file.new"), column_.widget));
+            return;
+        }
         if (rig->actuatorCount() > kMostRows)
             makeGrid();
         else
@@ -123,11 +128,11 @@ private:
     }
 
     void refresh() {
-        if (!rig_) return;
         const StudioState& state = studio_.document.state();
         const bool driven = state.matching.live && state.target.target && state.field.field;
         const bool byHand = !state.matching.live && state.target.target && !studio_.loop.dancing();
-        hint_->setVisible(byHand);
+        hint_->setVisible(rig_ && byHand);
+        if (!rig_) return;
         const auto& frame = studio_.loop.frame();
         const std::vector<double> wanted = hand_.strokes();
         const bool known = frame && isOf(*frame, state) && frame->estimatedStrokes.size() == wanted.size();

@@ -13,6 +13,13 @@
 
 namespace lumorph::studio {
 
+namespace {
+
+/// Strokes that are nearer than this are drawn as one.
+constexpr double kArrived = 0.02;
+
+} // namespace
+
 ActuatorGrid::ActuatorGrid(QWidget* parent) : QWidget(parent) {
     setFocusPolicy(Qt::StrongFocus);
     QSizePolicy policy(QSizePolicy::Expanding, QSizePolicy::Preferred);
@@ -89,6 +96,7 @@ void ActuatorGrid::paintEvent(QPaintEvent* /*event*/) {
         painter.fillRect(QRectF(cell.left(), cell.bottom() - estimated_[at] * cell.height(), cell.width(),
                                 estimated_[at] * cell.height()),
                          fill);
+        if (std::abs(wanted_[at] - estimated_[at]) < kArrived) continue;
         const double line = cell.bottom() - wanted_[at] * (cell.height() - 1.0) - 1.0;
         painter.fillRect(QRectF(cell.left(), line, cell.width(), 1.0), colors.text);
     }

@@ -5,14 +5,15 @@
 
 namespace lumorph::studio {
 
-QPushButton* makeCommandButton(QAction* command, const QString& name, QWidget* parent) {
+QPushButton* makeCommandButton(QAction* command, const QString& name, QWidget* parent, bool primary) {
     auto* button = new QPushButton(parent);
     button->setObjectName(name);
     button->setEnabled(false);
+    if (primary) button->setProperty("look", "primary");
     if (!command) return button;
-    const auto follow = [button, command] {
+    const auto follow = [button, command, primary] {
         button->setText(command->iconText());
-        button->setIcon(command->icon());
+        if (!primary) button->setIcon(command->icon());
         button->setToolTip(command->toolTip());
         button->setEnabled(command->isEnabled());
         button->setCheckable(command->isCheckable());

@@ -11,8 +11,9 @@
 namespace lumorph::studio {
 
 /// A button with the text of a command, and its icon, that follows the command. A command that is not there gives a
-/// button that is disabled.
-[[nodiscard]] QPushButton* makeCommandButton(QAction* command, const QString& name, QWidget* parent);
+/// button that is disabled. A primary one is filled with the accent colour: the next sensible step.
+[[nodiscard]] QPushButton* makeCommandButton(QAction* command, const QString& name, QWidget* parent,
+                                             bool primary = false);
 
 /// A button with the icon of a command alone, for tool bars; its text is in the tool tip.
 [[nodiscard]] QToolButton* makeCommandIcon(QAction* command, const QString& name, QWidget* parent);

@@ -21,26 +21,6 @@ ViewportVoxel voxelAt(int x, int y, int z, const std::array<std::uint8_t, 4>& co
     return {static_cast<std::uint16_t>(x), static_cast<std::uint16_t>(y), static_cast<std::uint16_t>(z), 0, color};
 }
 
-/// Whether all six neighbours are there and of the same class, so that the voxel cannot be seen.
-class Buried {
-public:
-    Buried(const glm::ivec3& size, const std::vector<std::uint8_t>& classes) noexcept
-        : size_(size), classes_(classes.data()), row_(size.x), layer_(static_cast<std::ptrdiff_t>(size.x) * size.y) {}
-
-    bool operator()(int x, int y, int z, std::ptrdiff_t index) const noexcept {
-        const std::uint8_t own = classes_[index];
-        return x > 0 && y > 0 && z > 0 && x + 1 < size_.x && y + 1 < size_.y && z + 1 < size_.z &&
-               classes_[index - 1] == own && classes_[index + 1] == own && classes_[index - row_] == own &&
-               classes_[index + row_] == own && classes_[index - layer_] == own && classes_[index + layer_] == own;
-    }
-
-private:
-    glm::ivec3 size_;
-    const std::uint8_t* classes_;
-    std::ptrdiff_t row_;
-    std::ptrdiff_t layer_;
-};
-
 /// Calls `visit(x, y, z, index)` for every voxel, x fastest.
 template <class Visit> void eachVoxel(const glm::ivec3& size, Visit visit) {
     std::ptrdiff_t index = 0;
@@ -86,21 +66,6 @@ BitColumns targetVoxels(const VoxelFrame& frame, const std::vector<std::uint8_t>
         if (own == kVoxelMatched || own == kVoxelUnmatched) bits.set(x, y, z);
     });
     return bits;
-}
-
-std::vector<ViewportVoxel> mismatchCloud(const VoxelFrame& frame, const std::vector<std::uint8_t>& classes,
-                                         const glm::vec3& unmatched, const glm::vec3& overfilled) {
-    std::vector<ViewportVoxel> cloud;
-    if (classes.size() != frame.voxelCount()) return cloud;
-    const auto unmatchedBytes = bytesOf(unmatched);
-    const auto overfilledBytes = bytesOf(overfilled);
-    const Buried buried(frame.dimensions, classes);
-    eachVoxel(frame.dimensions, [&](int x, int y, int z, std::ptrdiff_t index) {
-        const std::uint8_t own = classes[static_cast<std::size_t>(index)];
-        if ((own != kVoxelUnmatched && own != kVoxelOverfilled) || buried(x, y, z, index)) return;
-        cloud.push_back(voxelAt(x, y, z, own == kVoxelUnmatched ? unmatchedBytes : overfilledBytes));
-    });
-    return cloud;
 }
 
 void addBox(std::vector<ViewportLine>& lines, const Box& box, const glm::vec3& color, float width, bool onTop) {

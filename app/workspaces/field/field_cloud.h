@@ -25,11 +25,6 @@ namespace lumorph::studio {
 /// The voxels of a target as MatchFrame::classes tells them: matched and unmatched ones.
 [[nodiscard]] BitColumns targetVoxels(const VoxelFrame& frame, const std::vector<std::uint8_t>& classes);
 
-/// The unmatched and overfilled voxels that can be seen from outside their own kind. `classes` as in MatchFrame.
-[[nodiscard]] std::vector<ViewportVoxel> mismatchCloud(const VoxelFrame& frame,
-                                                       const std::vector<std::uint8_t>& classes,
-                                                       const glm::vec3& unmatched, const glm::vec3& overfilled);
-
 /// The twelve edges of a box.
 void addBox(std::vector<ViewportLine>& lines, const Box& box, const glm::vec3& color, float width, bool onTop = false);
 

@@ -33,19 +33,18 @@ FieldStage::FieldStage(Studio& studio, Throttle& numbers, QWidget* parent)
     grid->setContentsMargins(0, 0, 0, 0);
     grid->setSpacing(0);
     grid->addWidget(viewport_, 0, 0, 3, 3);
-    const auto lay = [grid](QWidget* widget, int row, int column, Qt::Alignment alignment) {
+    const auto lay = [grid](QWidget* widget, int row, Qt::Alignment alignment) {
         auto* padded = new QVBoxLayout;
         padded->setContentsMargins(kMargin, kMargin, kMargin, kMargin);
         padded->addWidget(widget);
-        grid->addLayout(padded, row, column, alignment);
+        grid->addLayout(padded, row, 0, 1, 3, alignment);
         widget->raise();
     };
-    lay(makeTools(), 0, 0, Qt::AlignLeft | Qt::AlignTop);
-    lay(makeNotices(), 0, 1, Qt::AlignHCenter | Qt::AlignTop);
-    lay(makeHint(), 1, 1, Qt::AlignCenter);
-    lay(timeline_, 2, 1, Qt::AlignHCenter | Qt::AlignBottom);
-    lay(readout_, 2, 2, Qt::AlignRight | Qt::AlignBottom);
-    grid->setColumnStretch(1, 1);
+    lay(makeTools(), 0, Qt::AlignLeft | Qt::AlignTop);
+    lay(makeHint(), 1, Qt::AlignCenter);
+    lay(makeNotices(), 1, Qt::AlignHCenter | Qt::AlignTop);
+    lay(timeline_, 2, Qt::AlignHCenter | Qt::AlignBottom);
+    lay(readout_, 2, Qt::AlignRight | Qt::AlignBottom);
     grid->setRowStretch(1, 1);
     connect(&numbers, &Throttle::due, this, [this] {
         if (studio_.loop.frame()) readout_->show(*studio_.loop.frame());
@@ -85,8 +84,7 @@ QWidget* FieldStage::makeHint() {
     text->setProperty("look", "muted");
     text->setAlignment(Qt::AlignHCenter);
     text->setWordWrap(true);
-    auto* open = makeCommandButton(studio_.commands.find("target.open"), "hint.open", hint_);
-    open->setProperty("look", "primary");
+    auto* open = makeCommandButton(studio_.commands.find("target.open"), "hint.open", hint_, true);
     auto* buttons = new QHBoxLayout;
     buttons->setSpacing(8);
     buttons->addStretch(1);

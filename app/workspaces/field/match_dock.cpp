@@ -36,7 +36,8 @@ public:
         layout->setContentsMargins(0, 0, 0, 0);
         layout->setSpacing(8);
         layout->addWidget(text_, 1);
-        layout->addWidget(makeCommandButton(remedy, name + ".remedy", this), 0, Qt::AlignTop);
+        remedy_ = makeCommandButton(remedy, name + ".remedy", this);
+        layout->addWidget(remedy_, 0, Qt::AlignTop);
         hide();
     }
     void show(double share) {
@@ -45,9 +46,13 @@ public:
         setVisible(wanted);
     }
 
+    /// One button is enough where two warnings have the same remedy.
+    void offerRemedy(bool offered) { remedy_->setVisible(offered); }
+
 private:
     QString sentence_;
     QLabel* text_;
+    QPushButton* remedy_ = nullptr;
 };
 
 class MatchDock : public QWidget {
@@ -57,7 +62,7 @@ public:
             stack_->addWidget(makeEmptyState(icon, title, text, studio.commands.find(command), this));
         };
         empty("target", "Nothing to match yet",
-              "With a target the device takes its shape, and here stands how well it fits.", "target.open");
+              "With a target the device takes its shape, and here stands how well it fits.", "");
         empty("field", "No field yet",
               "Matching asks the mechanical distance field of the device. It takes a moment to build.", "field.build");
         stack_->addWidget(column_.widget);
@@ -159,9 +164,11 @@ private:
         stack_->setCurrentIndex(!state.target.target ? 0 : !state.field.field ? 1 : 2);
         const auto& frame = studio_.loop.frame();
         if (!isVisible() || !frame) return;
-        numbers_->show(*frame, state.matching.method);
+        const bool follows = state.matching.live && !studio_.loop.dancing();
+        numbers_->show(*frame, follows && state.matching.method == MatchMethod::refined);
         beyond_->show(frame->matched ? frame->shareBeyondFrame : 0.0);
         unreachable_->show(frame->matched ? frame->shareUnreachable : 0.0);
+        unreachable_->offerRemedy(beyond_->isHidden());
         budget_->setEnabled(state.matching.method == MatchMethod::refined);
         budget_->setValue(static_cast<double>(state.matching.budget.count()) / 1000.0);
         showActuators(frame);

@@ -86,12 +86,12 @@ MatchNumbers::MatchNumbers(QWidget* parent)
         4);
 }
 
-void MatchNumbers::show(const MatchFrame& frame, MatchMethod method) {
+void MatchNumbers::show(const MatchFrame& frame, bool refined) {
     const QString none = "–";
     const bool known = frame.matched;
     iou_->setText(known ? iouText(frame.iouWanted) : none);
     voting_->setText(known ? iouText(frame.iouVoting) : none);
-    wanted_->setText(known && method == MatchMethod::refined ? iouText(frame.iouWanted) : none);
+    wanted_->setText(known && refined ? iouText(frame.iouWanted) : none);
     reached_->setText(known ? iouText(frame.iouEstimated) : none);
     unmatched_->setText(known ? volumeText(frame.unmatchedVolume) : none);
     overfilled_->setText(known ? volumeText(frame.overfilledVolume) : none);

@@ -13,8 +13,8 @@ class MatchNumbers : public QWidget {
     Q_OBJECT
 public:
     explicit MatchNumbers(QWidget* parent = nullptr);
-    /// A dash everywhere while nothing is matched.
-    void show(const MatchFrame& frame, MatchMethod method);
+    /// A dash everywhere while nothing is matched; and for refinement unless the levels come from there.
+    void show(const MatchFrame& frame, bool refined);
     using QWidget::show;
 
 private:

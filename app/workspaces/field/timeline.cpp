@@ -12,6 +12,7 @@ namespace lumorph::studio {
 namespace {
 
 constexpr int kSteps = 1000;
+constexpr int kWidth = 400;
 
 QString timeText(double seconds, double duration) {
     return QString("%1 / %2 s").arg(seconds, 0, 'f', 1).arg(duration, 0, 'f', 1);
@@ -29,7 +30,6 @@ Timeline::Timeline(Studio& studio, QWidget* parent)
     slider_->setRange(0, kSteps);
     slider_->setPageStep(kSteps / 10);
     slider_->setSingleStep(kSteps / 100);
-    slider_->setMinimumWidth(200);
     auto* layout = new QHBoxLayout(this);
     layout->setContentsMargins(8, 4, 16, 4);
     layout->setSpacing(8);
@@ -37,6 +37,7 @@ Timeline::Timeline(Studio& studio, QWidget* parent)
     layout->addWidget(slider_, 1);
     layout->addWidget(time_);
     connect(slider_, &QSlider::valueChanged, this, &Timeline::scrub);
+    setFixedWidth(kWidth);
     hide();
 }
 
