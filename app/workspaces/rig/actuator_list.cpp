@@ -6,6 +6,7 @@
 
 #include "app/studio/widgets/panel.h"
 #include "app/workspaces/field/dock_parts.h"
+#include "app/workspaces/field/field_summary.h"
 #include "app/workspaces/rig/rig_docks.h"
 #include "app/workspaces/rig/rig_facts.h"
 

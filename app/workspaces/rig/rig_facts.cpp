@@ -8,6 +8,7 @@
 #include <glm/geometric.hpp>
 
 #include "app/workspaces/field/dock_parts.h"
+#include "app/workspaces/field/field_summary.h"
 
 namespace lumorph::studio {
 
