@@ -31,8 +31,9 @@ public:
 
     void tell(const FieldSummary& summary) {
         while (QLayoutItem* item = grid_->takeAt(0)) {
-            // Children that are being asked about right now must not vanish under the caller.
+            // A label may be what the keyboard is on while undo brings us here, so it goes a little later.
             item->widget()->hide();
+            item->widget()->setObjectName({});
             item->widget()->deleteLater();
             delete item;
         }
