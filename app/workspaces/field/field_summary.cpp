@@ -20,6 +20,10 @@ QString shareText(double share) {
                                             : tr("%1 %").arg(percent, 0, 'f', percent < 10 ? 2 : 0);
 }
 
+QString errorText(double error) {
+    return error > 0.0 && error < 0.001 ? QStringLiteral("< 0.001") : QString::number(error, 'f', 3);
+}
+
 QString dimensionsText(const glm::ivec3& d) { return tr("%1 × %2 × %3").arg(d.x).arg(d.y).arg(d.z); }
 
 /// Covered at a level but not at a higher one: share of all that were looked at, as R10 is measured.
@@ -71,7 +75,7 @@ FieldSummary summaryOf(const Field& field, const std::filesystem::path& file, st
         {tr("Averaged over"), samplesText(field),
          tr("States of the other actuators that the expectation is taken over")},
         {tr("Ramp error"),
-         tr("%1 mean, %2 at most").arg(field.report.rampErrorMean, 0, 'f', 4).arg(field.report.rampErrorMax, 0, 'f', 2),
+         tr("%1 mean, %2 most").arg(errorText(field.report.rampErrorMean), errorText(field.report.rampErrorMax)),
          tr("How far the stored ramps are from the sampled coverage, where 1 is fully covered")},
         {tr("Uncovered again"), shareText(uncoveredShare(field)),
          tr("Space that is filled at a level and free again at a higher one")},

@@ -8,7 +8,7 @@
 namespace lumorph::studio {
 namespace {
 
-constexpr int kFieldWidth = 56;
+constexpr int kFieldWidth = 44;
 constexpr int kLabelWidth = 48;
 
 ValueField* endField(const QString& id, const QString& name) {

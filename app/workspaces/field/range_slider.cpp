@@ -12,7 +12,7 @@
 namespace lumorph::studio {
 namespace {
 
-constexpr int kRadius = 6;
+constexpr int kRadius = 7;
 constexpr int kEdge = kRadius + 2; ///< room for the ring around a handle that has the focus
 
 } // namespace

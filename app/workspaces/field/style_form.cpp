@@ -39,6 +39,8 @@ StyleForm::StyleForm(const QString& id, const PictureStyle& start, const std::ve
     picture_->setFixedSize(kPreview);
     picture_->setAlignment(Qt::AlignCenter);
     picture_->setAccessibleName(tr("Preview"));
+    picture_->setProperty("look", "muted");
+    picture_->setText(tr("Drawing the preview..."));
     sizes_->setObjectName(id + ".size");
     for (const Size& size : sizes)
         sizes_->addItem(tr("%1  (%2 × %3)").arg(size.text).arg(size.pixels.width()).arg(size.pixels.height()),
