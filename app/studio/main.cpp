@@ -19,13 +19,18 @@ bool hasWorkspace(const std::vector<std::unique_ptr<Workspace>>& workspaces, con
                                      [&id](const auto& one) { return one->id().toStdString() == id; });
 }
 
+/// A project brings everything; a target or a field needs the device that was there last time.
+bool isProject(const std::filesystem::path& file) { return file.extension() == ".lumorph"; }
+
 /// What was asked for, else what was there last time; the tour once, when that is ready.
 void openFirst(Studio& studio, MainWindow& window, const Arguments& arguments) {
     const auto tourOnce = [&studio, &window] {
         if (!studio.settings.tourSeen()) window.startTour();
     };
-    if (!arguments.project.empty())
+    if (isProject(arguments.project))
         studio.desk.open(arguments.project);
+    else if (!arguments.project.empty())
+        studio.desk.restoreSession([&studio, file = arguments.project] { studio.desk.open(file); });
     else if (!arguments.demo.empty())
         studio.desk.openDemo();
     else

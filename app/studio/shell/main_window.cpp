@@ -90,6 +90,9 @@ MainWindow::MainWindow(Studio& studio, std::vector<std::unique_ptr<Workspace>> w
     const auto setRate = [&studio] { studio.loop.setRate(studio.settings.loopRate()); };
     connect(&studio.settings, &Settings::loopRateChanged, this, setRate);
     setRate();
+    const auto setQuality = [&studio] { studio.renderer.setStillQuality(studio.settings.stillQuality()); };
+    connect(&studio.settings, &Settings::qualityChanged, this, setQuality);
+    setQuality();
     connect(new EscapeTwice(data_->clock, this), &EscapeTwice::pressed, &studio.loop, &StudioLoop::stop);
     qApp->installEventFilter(this);
     resize(kUsualSize.boundedTo(screen()->availableSize()));

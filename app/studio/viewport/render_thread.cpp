@@ -29,6 +29,8 @@ QString reasonOf(const std::exception& error) { return QString::fromUtf8(error.w
 struct RenderThread::Data {
     explicit Data(RenderThread& whole) : owner(whole) {}
 
+    bool stillQuality = true; // the window thread's alone
+
     // In the render thread:
     void run();
     void serve();
@@ -190,8 +192,11 @@ void RenderThread::retry() {
 
 int RenderThread::newViewport() { return ++viewports_; }
 
+void RenderThread::setStillQuality(bool on) { data_->stillQuality = on; }
+
 void RenderThread::request(int viewport, FrameRequest request) {
     if (!request.scene || request.pixels.isEmpty()) return;
+    request.refine = request.refine && data_->stillQuality;
     request.pixels = request.pixels.boundedTo({kMaxImageSide, kMaxImageSide});
     {
         const std::lock_guard lock(data_->mutex);

@@ -51,6 +51,8 @@ public:
     [[nodiscard]] int newViewport();
     /// `viewport` is any number that tells viewports apart. A request without a scene or without pixels is ignored.
     void request(int viewport, FrameRequest request);
+    /// Whether views at rest are drawn again in full quality; on at first.
+    void setStillQuality(bool on);
     /// Forgets a viewport and what was asked for it.
     void forget(int viewport);
     /// Draws one picture of any size in full quality; `done` runs in the window's thread with a null image and a reason
