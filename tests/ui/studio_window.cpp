@@ -1,0 +1,141 @@
+#include "tests/ui/studio_window.h"
+
+#include <cstdlib>
+
+#include <QAbstractButton>
+#include <QAbstractSlider>
+#include <QDragEnterEvent>
+#include <QDropEvent>
+#include <QLineEdit>
+#include <QMimeData>
+#include <QUrl>
+
+#include "app/workspaces/workspaces.h"
+
+namespace lumorph::test {
+
+using namespace std::chrono_literals;
+using Steady = std::chrono::steady_clock;
+
+int soakFactor() {
+    const char* factor = std::getenv("LUMORPH_SOAK");
+    return factor ? std::max(1, std::atoi(factor)) : 1;
+}
+
+struct StallWatch::Ping : QObject {
+    explicit Ping(StallWatch& owner) : watch(owner) {}
+    bool event(QEvent* event) override {
+        if (event->type() != QEvent::User) return QObject::event(event);
+        const double waited = std::chrono::duration<double, std::milli>(Steady::now() - sent).count();
+        if (waited > watch.longest_) watch.longest_ = waited;
+        watch.answered_ = true;
+        return true;
+    }
+    StallWatch& watch;
+    Steady::time_point sent;
+};
+
+StallWatch::StallWatch() : receiver_(std::make_unique<Ping>(*this)) {
+    thread_ = std::jthread([this](const std::stop_token& stop) {
+        while (!stop.stop_requested()) {
+            if (answered_.exchange(false)) {
+                static_cast<Ping*>(receiver_.get())->sent = Steady::now();
+                QCoreApplication::postEvent(receiver_.get(), new QEvent(QEvent::User));
+            }
+            std::this_thread::sleep_for(2ms);
+        }
+    });
+}
+
+StallWatch::~StallWatch() {
+    thread_.request_stop();
+    thread_.join();
+}
+
+double StallWatch::takeLongest() { return longest_.exchange(0.0); }
+
+StudioWindow::StudioWindow(const std::filesystem::path& session) {
+    ::setenv("LUMORPH_SESSION", session.c_str(), 1);
+    studio_ = std::make_unique<studio::Studio>();
+    studio_->settings.setTourSeen(true);
+    window_ = std::make_unique<studio::MainWindow>(*studio_, studio::makeWorkspaces(*studio_));
+    window_->showWorkspace("field");
+    window_->resize(1600, 1000);
+    window_->show();
+    (void)QTest::qWaitForWindowExposed(window_.get());
+    bool there = false;
+    studio_->desk.restoreSession([&there] { there = true; });
+    EXPECT_TRUE(eventually([&] { return there && state().field.field && studio_->loop.frame(); }));
+}
+
+StudioWindow::~StudioWindow() {
+    window_.reset();
+    studio_.reset();
+    ::unsetenv("LUMORPH_SESSION");
+}
+
+void StudioWindow::click(const QString& name) {
+    if (auto* button = find<QWidget>(name)) QTest::mouseClick(button, Qt::LeftButton);
+}
+
+void StudioWindow::enter(const QString& name, const QString& text, Qt::Key then) {
+    auto* field = find<QLineEdit>(name);
+    if (!field) return;
+    field->setFocus();
+    QTest::keyClick(field, Qt::Key_A, Qt::ControlModifier);
+    QTest::keyClicks(field, text);
+    QTest::keyClick(field, then);
+}
+
+void StudioWindow::command(const QString& words) {
+    window_->activateWindow();
+    QTest::keyClick(window_.get(), Qt::Key_K, Qt::ControlModifier);
+    auto* input = find<QLineEdit>("palette.input");
+    if (!input) return;
+    QTest::keyClicks(input, words);
+    QTest::keyClick(input, Qt::Key_Return);
+}
+
+void StudioWindow::drop(const std::filesystem::path& file) {
+    QMimeData data;
+    data.setUrls({QUrl::fromLocalFile(QString::fromStdString(file.string()))});
+    const QPoint at = view().mapTo(window_.get(), view().rect().center());
+    QDragEnterEvent enters(at, Qt::CopyAction, &data, Qt::LeftButton, Qt::NoModifier);
+    QApplication::sendEvent(window_.get(), &enters);
+    EXPECT_TRUE(enters.isAccepted());
+    pass(50ms);
+    QDropEvent drops(at, Qt::CopyAction, &data, Qt::LeftButton, Qt::NoModifier);
+    QApplication::sendEvent(window_.get(), &drops);
+}
+
+void StudioWindow::slide(const QString& name, double share) {
+    auto* slider = find<QAbstractSlider>(name);
+    if (!slider) return;
+    const auto at = [slider](double value) {
+        return QPoint(10 + static_cast<int>(value * (slider->width() - 20)), slider->height() / 2);
+    };
+    const double now =
+        static_cast<double>(slider->value() - slider->minimum()) / std::max(1, slider->maximum() - slider->minimum());
+    QTest::mousePress(slider, Qt::LeftButton, {}, at(now));
+    for (int step = 1; step <= 20; ++step) {
+        QTest::mouseMove(slider, at(now + (share - now) * step / 20.0));
+        pass(5ms);
+    }
+    QTest::mouseRelease(slider, Qt::LeftButton, {}, at(share));
+}
+
+QString StudioWindow::text(const QString& label) {
+    const auto* found = find<QLabel>(label);
+    return found ? found->text() : QString();
+}
+
+bool StudioWindow::settles() {
+    return eventually([this] { return studio_->jobs.running().empty() && view().settled(); });
+}
+
+void StudioWindow::screenshot(const QString& name) {
+    const char* folder = std::getenv("LUMORPH_SCREENSHOTS");
+    if (folder) window_->grab().save(QString(folder) + '/' + name + ".png");
+}
+
+} // namespace lumorph::test
