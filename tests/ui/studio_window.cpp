@@ -8,6 +8,7 @@
 #include <QDropEvent>
 #include <QLineEdit>
 #include <QMimeData>
+#include <QScreen>
 #include <QUrl>
 
 #include "app/workspaces/workspaces.h"
@@ -135,7 +136,9 @@ bool StudioWindow::settles() {
 
 void StudioWindow::screenshot(const QString& name) {
     const char* folder = std::getenv("LUMORPH_SCREENSHOTS");
-    if (folder) window_->grab().save(QString(folder) + '/' + name + ".png");
+    if (!folder) return;
+    pass(100ms); // dialogs and menus appear
+    QGuiApplication::primaryScreen()->grabWindow(0).save(QString(folder) + '/' + name + ".png");
 }
 
 } // namespace lumorph::test

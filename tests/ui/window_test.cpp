@@ -6,6 +6,7 @@
 #include <QFileDialog>
 #include <QImage>
 #include <QLineEdit>
+#include <QPointer>
 #include <QProcess>
 
 #include "app/workspaces/field/field_scene.h"
@@ -64,15 +65,28 @@ double difference(const QImage& a, const QImage& b) {
     return static_cast<double>(differing) / (a.width() * a.height());
 }
 
-/// The name in a file dialog, then Enter.
+/// Types a name into a file dialog and saves. The dialog looks folders up while one types, so Save is pressed when
+/// it has caught up.
 void answerFileDialog(StudioWindow& window, const QString& dialog, const std::filesystem::path& file) {
-    auto* found = window.find<QFileDialog>(dialog);
-    if (!found) return;
+    QPointer<QFileDialog> found = window.find<QFileDialog>(dialog);
+    ASSERT_TRUE(found);
+    found->setDirectory(QString::fromStdString(file.parent_path().string()));
     auto* name = found->findChild<QLineEdit*>("fileNameEdit");
     ASSERT_NE(name, nullptr);
+    pass(300ms);
+    name->setFocus();
     name->selectAll();
-    QTest::keyClicks(name, QString::fromStdString(file.string()));
-    QTest::keyClick(name, Qt::Key_Return);
+    QTest::keyClicks(name, QString::fromStdString(file.filename().string()));
+    window.screenshot("file-dialog");
+    EXPECT_TRUE(eventually(
+        [&] {
+            if (!found || !found->isVisible()) return true;
+            for (auto* button : found->findChildren<QAbstractButton*>())
+                if (button->isVisible() && button->isEnabled() && button->text().contains("Save"))
+                    QTest::mouseClick(button, Qt::LeftButton);
+            return !found || !found->isVisible();
+        },
+        10s));
 }
 
 bool matchesTarget(StudioWindow& window, const std::string& name) {
