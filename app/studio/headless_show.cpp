@@ -39,7 +39,7 @@ MatchWish showWish(std::ostream& out) {
     wish.rig = std::make_shared<Rig>(readRig(resourceFile("models/tablet.glb")));
     out << "Building the field of the tablet..." << std::endl;
     wish.field = std::make_shared<MatchField>(buildField(*wish.rig, BuildOptions{}));
-    wish.target = readMatchTarget(resourceFile("targets/swell.glb"));
+    wish.target = readMatchTarget(resourceFile("targets/bloom.glb"));
     wish.placement = fitPlacement(wish.field->field, wish.target->box);
     return wish;
 }
@@ -155,8 +155,8 @@ void runHeadlessShow(const fs::path& folder, double seconds, std::ostream& out) 
     out << "Drawing " << frames.size() << " pictures..." << std::endl;
     Stage stage(wish.field->field.frame.box());
     savePictures(stage, frames, folder);
-    saveVideo(stage, frames, folder / "swell.mp4");
-    saveTable(frames, folder / "swell.csv");
+    saveVideo(stage, frames, folder / "bloom.mp4");
+    saveTable(frames, folder / "bloom.csv");
     out << "Pictures, video and table are in " << fs::absolute(folder).lexically_normal().string() << std::endl;
 }
 

@@ -1,4 +1,8 @@
+#include <algorithm>
 #include <cmath>
+#include <cstdio>
+#include <sstream>
+#include <string>
 
 #include <gtest/gtest.h>
 
@@ -17,7 +21,7 @@ TEST(BundledTargets, AreWhatTheGeneratorWrites) {
     const TemporaryFolder folder;
     const Outcome made = Process(LUMORPH_BIN_DIR "/lumorph_targets", {folder.path().string()}).wait();
     ASSERT_EQ(made.exitCode, 0) << made.err;
-    for (const char* name : {"dunes.glb", "swell.glb"}) {
+    for (const char* name : {"dunes.glb", "swell.glb", "bloom.glb"}) {
         const std::vector<std::byte> committed = bytesOfFile(resource(std::string("targets/") + name));
         EXPECT_TRUE(bytesOfFile(folder / name) == committed) << name << ": run lumorph_targets and commit the result";
         EXPECT_LT(committed.size(), kMegabyte) << name;
@@ -57,6 +61,60 @@ TEST(BundledTargets, SwellIsAWaveThatTravelsAndComesBack) {
     EXPECT_NEAR(later.x - start.x, 0.8 / 4.0 * 0.26 / std::cos(0.35), 0.005);
     EXPECT_NEAR(later.y, start.y, 0.001F);
     EXPECT_EQ(crest(4.0), start);
+}
+
+TEST(BundledTargets, BloomIsASolidWhosePetalsRiseOneAfterAnotherAndComeBack) {
+    const Model model = bloomModel();
+    ASSERT_EQ(model.animations.size(), 1U);
+    const Model::Animation& bloom = model.animations.front();
+    EXPECT_DOUBLE_EQ(bloom.duration(), 6.0);
+    /// How high the petal at a place stands.
+    const auto height = [&](double seconds, glm::vec2 place) {
+        float highest = 0.0F;
+        for (const glm::vec3& p : flatten(model, bloom, seconds).positions)
+            if (glm::distance(glm::vec2(p.x, p.z), place) < 0.02F) highest = std::max(highest, p.y);
+        return highest;
+    };
+    // Corners and long edges in the order of the wave, which passes one each second.
+    const glm::vec2 petals[] = {{-0.09F, 0.06F}, {0.0F, 0.06F},  {0.09F, 0.06F},
+                                {0.09F, -0.06F}, {0.0F, -0.06F}, {-0.09F, -0.06F}};
+    for (std::size_t k = 0; k < 6; ++k) {
+        SCOPED_TRACE(k);
+        const auto now = static_cast<double>(k);
+        const MeshReport report = checkMesh(flatten(model, bloom, now));
+        EXPECT_TRUE(report.solid()) << ::testing::PrintToString(report.findings());
+        EXPECT_LE(report.triangles, 8'000U);
+        const float high = height(now, petals[k]);
+        EXPECT_GT(high, 0.02F);
+        EXPECT_GT(high, height(now + 1.0, petals[k]));
+        EXPECT_GT(high, height(now + (k == 0 ? 5.0 : -1.0), petals[k]));
+        EXPECT_LT(height(now < 3.0 ? now + 3.0 : now - 3.0, petals[k]), 0.3F * high);
+        EXPECT_LT(height(now, {0.0F, 0.0F}), 0.4F * high) << "the middle stays low";
+    }
+    EXPECT_EQ(flatten(model, bloom, 6.0).positions, flatten(model, bloom, 0.0).positions);
+}
+
+// R19: the demo is worth looking at.
+TEST(BundledTargets, TheTabletFollowsTheBloom) {
+    const TabletWorkspace w;
+    const Outcome outcome = lumorph({"match", w.field(), resource("targets/bloom.glb"), "--animation", "first",
+                                     "--method", "refined", "--budget-ms", "1000", "--fps", "10", "--csv", "-"});
+    ASSERT_EQ(outcome.exitCode, 0) << outcome.err;
+    std::istringstream table(outcome.out);
+    std::string line;
+    double wanted = 0.0, reached = 0.0;
+    int frames = -1; // the first line names the columns
+    for (; std::getline(table, line); ++frames) {
+        if (frames < 0) continue;
+        double seconds = 0.0, w1 = 0.0, r1 = 0.0;
+        ASSERT_EQ(std::sscanf(line.c_str(), "%lf,%lf,%lf", &seconds, &w1, &r1), 3) << line;
+        EXPECT_GE(w1, 0.7) << "at " << seconds << " s";
+        wanted += w1;
+        reached += r1;
+    }
+    ASSERT_EQ(frames, 61);
+    EXPECT_GE(wanted / frames, 0.75);
+    EXPECT_GE(reached / frames, 0.65);
 }
 
 } // namespace

@@ -53,12 +53,12 @@ TEST(HeadlessShow, DrawsPicturesAVideoAndATableWithoutADisplay) {
     EXPECT_GT(greenShare(picture("voxels.png")), greenShare(start) + 0.03);
     EXPECT_GT(greenShare(picture("level-surface.png")), greenShare(start) + 0.01);
 
-    cv::VideoCapture video((folder / "swell.mp4").string(), cv::CAP_FFMPEG);
+    cv::VideoCapture video((folder / "bloom.mp4").string(), cv::CAP_FFMPEG);
     int frames = 0;
     for (cv::Mat frame; video.read(frame); ++frames) EXPECT_EQ(frame.size(), cv::Size(960, 600));
     EXPECT_EQ(frames, 15);
 
-    std::ifstream table(folder / "swell.csv");
+    std::ifstream table(folder / "bloom.csv");
     int lines = 0;
     for (std::string line; std::getline(table, line); ++lines) EXPECT_EQ(std::count(line.begin(), line.end(), ','), 14);
     EXPECT_EQ(lines, 16) << "a line of names and one for each picture";

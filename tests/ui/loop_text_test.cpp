@@ -16,15 +16,34 @@ MatchFrame matchedFrame() {
 
 TEST(LoopText, SaysRateAndTimes) {
     MatchFrame frame = matchedFrame();
-    EXPECT_EQ(loopText(&frame, 59.8, false), "60 Hz, matched in 0.02 ms + refined 3.1 ms");
+    EXPECT_EQ(loopText(&frame, frame.ms, 59.8, false), "60 Hz, matched in 0.02 ms + refined 3.1 ms");
     frame.ms.refine = 0.0;
-    EXPECT_EQ(loopText(&frame, 59.8, false), "60 Hz, matched in 0.02 ms");
-    EXPECT_EQ(loopText(&frame, 59.8, true), "Stopped, matched in 0.02 ms");
+    EXPECT_EQ(loopText(&frame, frame.ms, 59.8, false), "60 Hz, matched in 0.02 ms");
+    EXPECT_EQ(loopText(&frame, frame.ms, 59.8, true), "Stopped, matched in 0.02 ms");
     frame.matched = false;
-    EXPECT_EQ(loopText(&frame, 30.0, false), "30 Hz, not matching");
+    EXPECT_EQ(loopText(&frame, frame.ms, 30.0, false), "30 Hz, not matching");
     frame.target = nullptr;
-    EXPECT_EQ(loopText(&frame, 0.0, false), "Idle, no target");
-    EXPECT_EQ(loopText(nullptr, 0.0, false), "Idle");
+    EXPECT_EQ(loopText(&frame, frame.ms, 0.0, false), "Idle, no target");
+    EXPECT_EQ(loopText(nullptr, {}, 0.0, false), "Idle");
+}
+
+TEST(LoopText, KeepsTheTimesOfTheLastMatchWhileNothingChanges) {
+    MatchFrame frame = matchedFrame();
+    MatchTimes last = lastMatch({}, frame);
+    frame.ms = {}; // the device moves on to what was found
+    last = lastMatch(last, frame);
+    EXPECT_EQ(loopText(&frame, last, 0.0, false), "Idle, matched in 0.02 ms + refined 3.1 ms");
+    frame.ms.refine = 1.5; // refinement goes on where its time had ended
+    last = lastMatch(last, frame);
+    EXPECT_EQ(loopText(&frame, last, 0.0, false), "Idle, matched in 0.02 ms + refined 1.5 ms");
+    frame.ms = {};
+    frame.ms.match = 0.04; // a new match by voting
+    last = lastMatch(last, frame);
+    EXPECT_EQ(loopText(&frame, last, 60.0, false), "60 Hz, matched in 0.04 ms");
+    frame.matched = false;
+    EXPECT_EQ(lastMatch(last, frame).match, 0.0) << "what comes next is another match";
+    frame.matched = true;
+    EXPECT_EQ(loopText(&frame, {}, 0.0, false), "Idle, matched");
 }
 
 TEST(LoopText, WarnsOfWhatTheDeviceCannotShow) {

@@ -60,7 +60,7 @@ TEST_F(SessionTest, TheDemoOpensWhereThereWasNoSession) {
     DeskWorld world;
     restore(world);
     EXPECT_EQ(world.state().rig.path.filename(), "tablet.glb");
-    EXPECT_EQ(world.state().target.path.filename(), "swell.glb");
+    EXPECT_EQ(world.state().target.path.filename(), "bloom.glb");
     EXPECT_FALSE(world.document.modified());
     EXPECT_TRUE(world.notices.at().empty());
 }

@@ -30,6 +30,8 @@ TEST_F(Settings, AreKeptFromOneStartToTheNext) {
         settings.setTheme(Theme::light);
         settings.setLoopRate(30.0);
         settings.setStillQuality(false);
+        EXPECT_TRUE(settings.placesNewTargets());
+        settings.setPlacesNewTargets(false);
         settings.setTourSeen(true);
         settings.setLayout("field", QByteArray("\0\1\2", 3));
     }
@@ -37,6 +39,7 @@ TEST_F(Settings, AreKeptFromOneStartToTheNext) {
     EXPECT_EQ(settings.theme(), Theme::light);
     EXPECT_DOUBLE_EQ(settings.loopRate(), 30.0);
     EXPECT_FALSE(settings.stillQuality());
+    EXPECT_FALSE(settings.placesNewTargets());
     EXPECT_TRUE(settings.tourSeen());
     EXPECT_EQ(settings.layout("field"), QByteArray("\0\1\2", 3));
     EXPECT_TRUE(settings.layout("rig").isEmpty());

@@ -13,6 +13,7 @@ Desk::Data::Data(Desk& owner, StudioDocument& openDocument, Jobs& allJobs, Notic
       keeper(sessionFolder(), [this] { return session(); }) {
     connect(&document, &StudioDocument::changed, &desk, [this](StateParts parts) {
         if (parts & (StatePart::rig | StatePart::field | StatePart::target)) watchFiles();
+        if (parts & StatePart::field) placeNew();
         keeper.touch();
     });
     connect(&document, &StudioDocument::titleChanged, &desk, [this] { keeper.touch(); });
@@ -41,8 +42,11 @@ void Desk::openRig(const std::filesystem::path& path) { data_->openRig(path); }
 void Desk::openField(const std::filesystem::path& file) { data_->openField(file); }
 void Desk::openTarget(const std::filesystem::path& file) { data_->openTarget(file); }
 
+void Desk::setPlacesNewTargets(bool places) { data_->placesNewTargets = places; }
+
 void Desk::removeTarget() {
     data_->stop("target");
+    data_->stop("place");
     data_->notices.dismissAll("target");
     data_->document.change(tr("Remove target"), [](StudioState& state) { state.target = {}; });
 }

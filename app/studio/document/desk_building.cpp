@@ -1,6 +1,4 @@
 #include "app/studio/document/desk_data.h"
-#include "core/base/error.h"
-#include "core/mdf/auto_place.h"
 
 namespace lumorph::studio {
 
@@ -50,42 +48,6 @@ void Desk::Data::build(const BuildOptions& options, bool asked) {
 
 void Desk::Data::buildMissing() {
     if (document.state().rig.rig && !document.state().field.field) build({}, false);
-}
-
-void Desk::Data::fit() {
-    const StudioState& state = document.state();
-    if (!state.rig.rig || !state.target.target) return;
-    try {
-        const Placement placement =
-            placementThatFits(*state.rig.rig, state.field.field.get(), state.target.target->box, state.placement.yaw);
-        document.change(tr("Fit target"), [&](StudioState& next) { next.placement = placement; });
-    } catch (const InvalidInput& error) {
-        fail("target", error, {chooseAnother("target")});
-    }
-}
-
-void Desk::Data::autoPlace() {
-    const StudioState::TargetAsset target = document.state().target;
-    const std::shared_ptr<const MatchField> field = document.state().field.field;
-    if (!target.target) return;
-    if (!field) {
-        notices.post("target", {Notice::Level::error,
-                                tr("Auto-place"),
-                                tr("the field of this rig has not been built yet"),
-                                tr("build it first"),
-                                {{tr("Build the field"), [this] { build({}, false); }}}});
-        return;
-    }
-    run<AutoPlacement>(
-        "place", "target", tr("Placing the target"),
-        [target, field](const Progress& progress) {
-            return lumorph::autoPlace(field->field, field->coverage, field->voting, target.target->solid, {}, progress);
-        },
-        [this, target, field](const AutoPlacement& found) {
-            if (document.state().target.target != target.target || document.state().field.field != field) return;
-            document.change(tr("Auto-place target"), [&](StudioState& state) { state.placement = found.placement; });
-        },
-        {{tr("Fit"), [this] { fit(); }}});
 }
 
 } // namespace lumorph::studio

@@ -30,8 +30,12 @@ struct Desk::Data {
     // desk_building.cpp
     void build(const BuildOptions& options, bool asked);
     void buildMissing();
+
+    // desk_placing.cpp
     void fit();
     void autoPlace();
+    void placeNew();
+    void glideTo(const Placement& place, const QString& what);
 
     // desk_saving.cpp
     void openProject(const std::filesystem::path& file);
@@ -87,6 +91,13 @@ struct Desk::Data {
     FieldCache cache;
     FileWatch watch;
     SessionKeeper keeper;
+    bool placesNewTargets = false;
+    /// A target that was just opened and waits for its better place, and where it stands until then.
+    struct Unplaced {
+        std::shared_ptr<const MatchTarget> target;
+        Placement placement;
+    };
+    Unplaced unplaced;
     std::map<QString, Jobs::Id> slots_;
 };
 

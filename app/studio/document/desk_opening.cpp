@@ -165,6 +165,7 @@ void Desk::Data::openTarget(const fs::path& file) {
         "target", "target", tr("Opening %1").arg(fileName(file)),
         [file](const Progress& progress) { return readTargetAsset(file, std::nullopt, progress); },
         [this, file](const Stamped<StudioState::TargetAsset>& target) {
+            stop("place");
             read.remember(target.asset.target, target.stamp);
             document.change(tr("Open %1").arg(fullName(file.stem())), [&](StudioState& state) {
                 state.target = target.asset;
@@ -173,6 +174,9 @@ void Desk::Data::openTarget(const fs::path& file) {
             });
             tellTarget(target.asset);
             emit desk.opened(fullName(file));
+            if (!placesNewTargets || target.asset.target->duration > 0.0) return;
+            unplaced = {target.asset.target, document.state().placement};
+            placeNew();
         },
         {chooseAnother("target")});
 }

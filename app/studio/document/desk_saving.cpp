@@ -15,7 +15,7 @@ LoadedProject readBundled(bool demo, const FieldCache& cache, const Progress& pr
     loaded.stamps.rig = rig.stamp;
     loaded.state.field.field = cache.find(*loaded.state.rig.rig);
     if (!demo) return loaded;
-    auto target = readTargetAsset(resourceFile("targets/swell.glb"), std::nullopt, progress);
+    auto target = readTargetAsset(resourceFile("targets/bloom.glb"), std::nullopt, progress);
     loaded.state.target = std::move(target.asset);
     loaded.stamps.target = target.stamp;
     loaded.state.placement =

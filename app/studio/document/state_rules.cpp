@@ -9,10 +9,6 @@ namespace lumorph::studio {
 
 namespace {
 
-bool samePlacement(const Placement& a, const Placement& b) {
-    return a.scale == b.scale && a.yaw == b.yaw && a.translation == b.translation;
-}
-
 double soundNumber(double before, double value, double low, double high) {
     return std::isfinite(value) ? std::clamp(value, low, high) : before;
 }
@@ -37,6 +33,10 @@ std::vector<double> soundStrokes(const std::vector<double>& before, const std::v
 }
 
 } // namespace
+
+bool samePlacement(const Placement& a, const Placement& b) {
+    return a.scale == b.scale && a.yaw == b.yaw && a.translation == b.translation;
+}
 
 StateParts differenceOf(const StudioState& a, const StudioState& b) {
     StateParts parts;

@@ -7,6 +7,8 @@ namespace lumorph::studio {
 /// The parts in which two states differ; rigs, fields and targets differ when they are other objects.
 [[nodiscard]] StateParts differenceOf(const StudioState& a, const StudioState& b);
 
+[[nodiscard]] bool samePlacement(const Placement& a, const Placement& b);
+
 /// Whether a field was built for this rig.
 [[nodiscard]] bool isFieldOf(const MatchField& field, const Rig& rig);
 

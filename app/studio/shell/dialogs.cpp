@@ -77,6 +77,12 @@ void addMatching(Studio& studio, QDialog& dialog) {
                      [&studio](int hertz) { studio.settings.setLoopRate(hertz); });
     dialog.layout()->addWidget(makeRow("Loop &rate", rate, &dialog));
     dialog.layout()->addWidget(muted("How often a second the device looks at the target anew.", &dialog));
+    auto* place = new QCheckBox("&Place new targets where they match best", &dialog);
+    place->setObjectName("settings.placesNewTargets");
+    place->setChecked(studio.settings.placesNewTargets());
+    place->setToolTip("A model in the middle is out of the tablet's reach. Undo brings a target back to where it was.");
+    QObject::connect(place, &QCheckBox::toggled, &studio.settings, &Settings::setPlacesNewTargets);
+    dialog.layout()->addWidget(place);
 }
 
 void addMemory(Studio& studio, QDialog& dialog) {

@@ -14,12 +14,21 @@ QString percent(double share) { return QString::number(std::lround(share * 100.0
 
 } // namespace
 
-QString loopText(const MatchFrame* frame, double rate, bool stopped) {
+MatchTimes lastMatch(const MatchTimes& before, const MatchFrame& frame) {
+    if (!frame.matched) return {};
+    if (frame.ms.match > 0.0) return frame.ms;
+    MatchTimes times = before;
+    if (frame.ms.refine > 0.0) times.refine = frame.ms.refine; // it went on where its time had ended
+    return times;
+}
+
+QString loopText(const MatchFrame* frame, const MatchTimes& lastMatch, double rate, bool stopped) {
     QString text = stopped ? "Stopped" : rate > 0.0 ? QString::number(std::lround(rate)) + " Hz" : "Idle";
     if (frame == nullptr) return text;
     if (!frame->matched) return text + (frame->target ? ", not matching" : ", no target");
-    text += ", matched in " + milliseconds(frame->ms.match);
-    if (frame->ms.refine > 0.0) text += " + refined " + milliseconds(frame->ms.refine);
+    if (lastMatch.match <= 0.0) return text + ", matched";
+    text += ", matched in " + milliseconds(lastMatch.match);
+    if (lastMatch.refine > 0.0) text += " + refined " + milliseconds(lastMatch.refine);
     return text;
 }
 

@@ -93,6 +93,9 @@ MainWindow::MainWindow(Studio& studio, std::vector<std::unique_ptr<Workspace>> w
     const auto setQuality = [&studio] { studio.renderer.setStillQuality(studio.settings.stillQuality()); };
     connect(&studio.settings, &Settings::qualityChanged, this, setQuality);
     setQuality();
+    const auto setPlacing = [&studio] { studio.desk.setPlacesNewTargets(studio.settings.placesNewTargets()); };
+    connect(&studio.settings, &Settings::placesNewTargetsChanged, this, setPlacing);
+    setPlacing();
     connect(new EscapeTwice(data_->clock, this), &EscapeTwice::pressed, &studio.loop, &StudioLoop::stop);
     qApp->installEventFilter(this);
     resize(kUsualSize.boundedTo(screen()->availableSize()));

@@ -46,6 +46,14 @@ void Settings::setStillQuality(bool on) {
     emit qualityChanged();
 }
 
+bool Settings::placesNewTargets() const { return store_.value("target/placeNew", true).toBool(); }
+
+void Settings::setPlacesNewTargets(bool on) {
+    if (on == placesNewTargets()) return;
+    store_.setValue("target/placeNew", on);
+    emit placesNewTargetsChanged();
+}
+
 bool Settings::tourSeen() const { return store_.value("tour/seen", false).toBool(); }
 
 void Settings::setTourSeen(bool seen) { store_.setValue("tour/seen", seen); }

@@ -22,6 +22,8 @@ public:
     void setLoopRate(double framesPerSecond);
     [[nodiscard]] bool stillQuality() const; ///< draw a still view in full quality
     void setStillQuality(bool on);
+    [[nodiscard]] bool placesNewTargets() const; ///< a new target is moved where it matches best
+    void setPlacesNewTargets(bool on);
     [[nodiscard]] bool tourSeen() const;
     void setTourSeen(bool seen);
     [[nodiscard]] QStringList recentFiles() const; ///< newest first, at most ten, those that are still there
@@ -36,6 +38,7 @@ signals:
     void themeChanged();
     void loopRateChanged();
     void qualityChanged();
+    void placesNewTargetsChanged();
     void recentFilesChanged();
 
 private:

@@ -64,6 +64,8 @@ StatusLine::StatusLine(Studio& studio, QWidget* parent)
         if (!place.isEmpty()) places_.insert(place);
         showWarnings();
     });
+    connect(&studio.loop, &StudioLoop::framed, this,
+            [this] { lastMatch_ = lastMatch(lastMatch_, *studio_.loop.frame()); });
     auto* timer = new QTimer(this);
     connect(timer, &QTimer::timeout, this, [this] {
         showLoop();
@@ -87,7 +89,7 @@ void StatusLine::showProject() {
 
 void StatusLine::showLoop() {
     const auto& frame = studio_.loop.frame();
-    const QString text = loopText(frame.get(), studio_.loop.rate(), studio_.loop.stopped());
+    const QString text = loopText(frame.get(), lastMatch_, studio_.loop.rate(), studio_.loop.stopped());
     if (text != loop_->text()) loop_->setText(text);
 }
 

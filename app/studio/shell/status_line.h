@@ -32,6 +32,7 @@ private:
     QLabel* hardware_ = nullptr;
     QLabel* loop_ = nullptr;
     QPushButton* warnings_ = nullptr;
+    MatchTimes lastMatch_;
     QPointer<QWidget> list_;
 };
 

@@ -8,7 +8,7 @@ namespace {
 
 void openBundledTarget(Studio& studio) {
     try {
-        studio.desk.openTarget(resourceFile("targets/swell.glb"));
+        studio.desk.openTarget(resourceFile("targets/bloom.glb"));
     } catch (const Error& error) {
         studio.notices.post("target", noticeOf(error));
     }
@@ -37,7 +37,7 @@ std::vector<TourStep> tourSteps(Studio& studio) {
          "Give it a shape",
          "Drop a 3D model anywhere on the window, or open one here. It becomes the target: the shape that the tablet "
          "tries to take.",
-         "Use a wave that swells",
+         "Use petals that open and close",
          [&studio] { openBundledTarget(studio); }},
         {{"dock.match"},
          "Watch it match",

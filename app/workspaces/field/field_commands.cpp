@@ -64,7 +64,9 @@ private:
             [this] { openTarget(); });
         add({"target.dunes", "Try the dunes", "Open a bundled model that the tablet can show well", "target", ""},
             "Target", false, [this] { studio_.desk.openTarget(resourceFile("targets/dunes.glb")); });
-        add({"target.swell", "Try the swell", "Open a bundled model that moves", "target", ""}, "Target", false,
+        add({"target.bloom", "Try the bloom", "Open a bundled model that moves as the tablet can", "target", ""},
+            "Target", false, [this] { studio_.desk.openTarget(resourceFile("targets/bloom.glb")); });
+        add({"target.swell", "Try the swell", "Open a bundled wave that moves", "target", ""}, "Target", false,
             [this] { studio_.desk.openTarget(resourceFile("targets/swell.glb")); });
         remove_ = add({"target.remove", "Remove", "Take the target away", "close", "Ctrl+Shift+T"}, "Target", false,
                       [this] { studio_.desk.removeTarget(); });

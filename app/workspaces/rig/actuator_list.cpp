@@ -7,6 +7,7 @@
 #include "app/studio/widgets/panel.h"
 #include "app/workspaces/field/dock_parts.h"
 #include "app/workspaces/field/field_summary.h"
+#include "app/workspaces/rig/actuator_item.h"
 #include "app/workspaces/rig/rig_docks.h"
 #include "app/workspaces/rig/rig_facts.h"
 
@@ -53,6 +54,8 @@ private:
         list_->setObjectName("rig.list");
         list_->setAccessibleName("Actuators");
         list_->setUniformItemSizes(true);
+        list_->setMouseTracking(true);
+        list_->setItemDelegate(new ActuatorItem(list_));
         layout->addWidget(summary_);
         layout->addWidget(list_, 1);
         layout->addLayout(details_);
@@ -68,10 +71,12 @@ private:
         list_->clear();
         pages_->setCurrentIndex(rig ? 1 : 0);
         if (!rig) return;
-        for (const Actuator& actuator : rig->actuators())
-            list_->addItem(
-                QString("%1\n%2, %3")
-                    .arg(QString::fromStdString(actuator.name), deformerText(actuator), rangeText(actuator)));
+        for (const Actuator& actuator : rig->actuators()) {
+            auto* item = new QListWidgetItem(QString::fromStdString(actuator.name), list_);
+            const QString detail = deformerText(actuator) + ", " + rangeText(actuator);
+            item->setData(kActuatorDetail, detail);
+            item->setData(Qt::AccessibleDescriptionRole, detail);
+        }
         const std::size_t count = rig->actuatorCount();
         summary_->setText(
             QString("%1: %2 %3. Choose one to see what it moves.")

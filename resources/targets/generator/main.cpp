@@ -13,6 +13,7 @@ int main(int argc, char** argv) {
     try {
         const std::filesystem::path folder = argv[1];
         lumorph::writeFileAtomically(folder / "dunes.glb", lumorph::writeGlb(lumorph::dunesModel()));
+        lumorph::writeFileAtomically(folder / "bloom.glb", lumorph::writeGlb(lumorph::bloomModel()));
         lumorph::writeFileAtomically(folder / "swell.glb", lumorph::writeGlb(lumorph::swellModel()));
     } catch (const std::exception& error) {
         std::fprintf(stderr, "lumorph_targets: %s\n", error.what());

@@ -11,4 +11,8 @@ namespace lumorph {
 /// standing waves a quarter of a wavelength apart, as morph targets, and their changing shares.
 [[nodiscard]] Model swellModel();
 
+/// Six petals over the corners and the long edges of such a tablet, which rise and sink one after another, as the
+/// animation "bloom" of six seconds: the mean shape, and the first harmonics of the loop as morph targets.
+[[nodiscard]] Model bloomModel();
+
 } // namespace lumorph
