@@ -114,11 +114,32 @@ TEST_F(FieldScene, BoundsHoldFrameAndTargetAndDoNotFollowTheMotion) {
     EXPECT_EQ(builder.build(frame, {}, false)->bounds.max, scene->bounds.max) << "shadows would swim";
 }
 
+TEST_F(FieldScene, LayersOneVoxelThinAreNotTinted) {
+    VoxelFrame frame;
+    frame.dimensions = {6, 5, 4};
+    std::vector<std::uint8_t> classes(frame.voxelCount(), 0);
+    const auto at = [&](int x, int y, int z) -> std::uint8_t& {
+        return classes[static_cast<std::size_t>(x + 6 * (y + 5 * z))];
+    };
+    for (int z = 0; z < 4; ++z)
+        for (int x = 0; x < 6; ++x) at(x, 4, z) = kVoxelUnmatched; // a lid
+    for (int z = 0; z < 2; ++z)
+        for (int y = 0; y < 2; ++y)
+            for (int x = 0; x < 2; ++x) at(x, y, z) = kVoxelOverfilled; // a block
+    at(5, 0, 3) = kVoxelMatched;
+    const auto thick = thickClasses(frame, classes);
+    EXPECT_EQ(std::count(thick.begin(), thick.end(), kVoxelUnmatched), 0);
+    EXPECT_EQ(std::count(thick.begin(), thick.end(), kVoxelOverfilled), 8);
+    EXPECT_EQ(std::count(thick.begin(), thick.end(), kVoxelMatched), 0);
+    EXPECT_EQ(thick[0], kVoxelOverfilled);
+}
+
 TEST_F(FieldScene, TintsUnmatchedAndOverfilledOnlyWhileTheyAreShown) {
     MatchFrame frame = matchedFrame();
     const auto scene = builder.build(frame, {}, false);
     ASSERT_TRUE(scene->tint);
-    EXPECT_EQ(scene->tint->classes, frame.classes);
+    EXPECT_EQ(*scene->tint->classes, *frame.classes); // all of one class: thick everywhere
+    EXPECT_EQ(builder.build(frame, {}, false)->tint->classes, scene->tint->classes) << "worked out again";
     EXPECT_EQ(scene->tint->frame, frame.field->field.frame);
     EXPECT_EQ(glm::vec3(scene->tint->colors[kVoxelUnmatched]), glm::vec3(1.0F, 0.5F, 0.0F));
     EXPECT_EQ(glm::vec3(scene->tint->colors[kVoxelOverfilled]), glm::vec3(0.6F, 0.0F, 1.0F));

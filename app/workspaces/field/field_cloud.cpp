@@ -1,6 +1,7 @@
 #include "app/workspaces/field/field_cloud.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include <glm/common.hpp>
@@ -56,6 +57,28 @@ std::vector<ViewportVoxel> fieldCloud(const Field& field, const FieldDisplay& di
         cloud.push_back(voxelAt(voxel.voxel.x, voxel.voxel.y, voxel.voxel.z, colors[level]));
     }
     return cloud;
+}
+
+std::vector<std::uint8_t> thickClasses(const VoxelFrame& frame, const std::vector<std::uint8_t>& classes) {
+    const glm::ivec3 size = frame.dimensions;
+    const std::array<int, 3> steps{1, size.x, size.x * size.y};
+    std::vector<std::uint8_t> thick(classes.size(), 0);
+    int index = 0;
+    for (int z = 0; z < size.z; ++z)
+        for (int y = 0; y < size.y; ++y)
+            for (int x = 0; x < size.x; ++x, ++index) {
+                const std::uint8_t own = classes[static_cast<std::size_t>(index)];
+                if (own != kVoxelUnmatched && own != kVoxelOverfilled) continue;
+                const glm::ivec3 at(x, y, z);
+                bool among = true;
+                for (int axis = 0; axis < 3 && among; ++axis) {
+                    const auto same = [&](int other) { return classes[static_cast<std::size_t>(other)] == own; };
+                    const int step = steps[static_cast<std::size_t>(axis)];
+                    among = (at[axis] > 0 && same(index - step)) || (at[axis] + 1 < size[axis] && same(index + step));
+                }
+                if (among) thick[static_cast<std::size_t>(index)] = own;
+            }
+    return thick;
 }
 
 BitColumns targetVoxels(const VoxelFrame& frame, const std::vector<std::uint8_t>& classes) {

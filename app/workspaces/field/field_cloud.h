@@ -22,6 +22,10 @@ namespace lumorph::studio {
                                                     const BitColumns* touchedBy, const glm::vec3& low,
                                                     const glm::vec3& high);
 
+/// The classes that are worth a colour: unmatched and overfilled voxels with a neighbour of their class along each
+/// axis. A layer one voxel thin is the grid's own error; on two surfaces that nearly meet it would show as stripes.
+[[nodiscard]] std::vector<std::uint8_t> thickClasses(const VoxelFrame& frame, const std::vector<std::uint8_t>& classes);
+
 /// The voxels of a target as MatchFrame::classes tells them: matched and unmatched ones.
 [[nodiscard]] BitColumns targetVoxels(const VoxelFrame& frame, const std::vector<std::uint8_t>& classes);
 

@@ -118,6 +118,8 @@ struct FieldSceneBuilder::Data {
     Prepared<SurfaceKey> levelShape;
     std::optional<CloudKey> cloudKey;
     std::shared_ptr<const std::vector<std::uint8_t>> cloudClasses;
+    std::shared_ptr<const std::vector<std::uint8_t>> tintOf;
+    std::shared_ptr<const std::vector<std::uint8_t>> thick;
     BitColumns touched;
     std::shared_ptr<const std::vector<ViewportVoxel>> cloud;
     std::vector<double> wishStrokes;
@@ -127,7 +129,7 @@ struct FieldSceneBuilder::Data {
     void addDevice(ViewportScene& scene, const MatchFrame& frame, bool tinted);
     void addWish(ViewportScene& scene, const MatchFrame& frame);
     void addTarget(ViewportScene& scene, const MatchFrame& frame, bool selected);
-    void addTint(ViewportScene& scene, const MatchFrame& frame) const;
+    void addTint(ViewportScene& scene, const MatchFrame& frame);
     void addField(ViewportScene& scene, const MatchFrame& frame, const FieldDisplay& display);
     void addLevelSurface(ViewportScene& scene, const MatchFrame& frame, const FieldDisplay& display);
     void addFrameLines(ViewportScene& scene, const MatchFrame& frame, const FieldDisplay& display) const;
@@ -192,10 +194,14 @@ void FieldSceneBuilder::Data::addTarget(ViewportScene& scene, const MatchFrame& 
     scene.surfaces.push_back(std::move(surface));
 }
 
-void FieldSceneBuilder::Data::addTint(ViewportScene& scene, const MatchFrame& frame) const {
+void FieldSceneBuilder::Data::addTint(ViewportScene& scene, const MatchFrame& frame) {
     ViewportTint tint;
     tint.frame = frame.field->field.frame;
-    tint.classes = frame.classes;
+    if (tintOf != frame.classes) {
+        tintOf = frame.classes;
+        thick = std::make_shared<const std::vector<std::uint8_t>>(thickClasses(tint.frame, *frame.classes));
+    }
+    tint.classes = thick;
     tint.colors[kVoxelUnmatched] = glm::vec4(colors.unmatched, 0.75F);
     tint.colors[kVoxelOverfilled] = glm::vec4(colors.overfilled, 0.75F);
     scene.tint = std::move(tint);
