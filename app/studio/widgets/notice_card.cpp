@@ -38,6 +38,12 @@ QLabel* makeText(const QString& text, const char* look, QWidget* parent) {
     return label;
 }
 
+/// Errors are worded as parts of one sentence; on a card each has a line of its own.
+QString capitalised(QString text) {
+    if (!text.isEmpty()) text[0] = text[0].toUpper();
+    return text;
+}
+
 /// A card with a stripe in the colour of its level at the left edge.
 class Card : public QFrame {
 public:
@@ -92,8 +98,8 @@ QWidget* makeNoticeCard(Notices& notices, const QString& place, const Notice& no
     texts->setSpacing(4);
     if (!heading.isEmpty()) texts->addWidget(makeText(heading, "muted", card));
     texts->addWidget(makeText(notice.subject, "heading", card));
-    if (!notice.why.isEmpty()) texts->addWidget(makeText(notice.why, nullptr, card));
-    if (!notice.remedy.isEmpty()) texts->addWidget(makeText(notice.remedy, "muted", card));
+    if (!notice.why.isEmpty()) texts->addWidget(makeText(capitalised(notice.why), nullptr, card));
+    if (!notice.remedy.isEmpty()) texts->addWidget(makeText(capitalised(notice.remedy), "muted", card));
     if (!notice.actions.empty()) {
         auto* buttons = new QHBoxLayout;
         buttons->setContentsMargins(0, 4, 0, 0);
