@@ -112,8 +112,8 @@ TEST_F(FieldDockTest, SaysWhatTheFieldIs) {
     const QString space = find<QLabel>("field.fact.space")->text();
     EXPECT_THAT(space.toStdString(),
                 testing::HasSubstr(QString("%1 × %2 × %3").arg(d.x).arg(d.y).arg(d.z).toStdString()));
-    EXPECT_THAT(space.toStdString(),
-                testing::HasSubstr(QString::number(1000.0 * field.frame.voxelSize, 'f', 2).toStdString() + " mm"));
+    EXPECT_EQ(find<QLabel>("field.fact.voxel")->text(),
+              QString::number(1000.0 * field.frame.voxelSize, 'f', 2) + " mm");
     EXPECT_THAT(find<QLabel>("field.fact.levels")->text().toStdString(), testing::HasSubstr("6 for each of 3"));
 }
 

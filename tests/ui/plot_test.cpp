@@ -133,5 +133,23 @@ TEST(Plot, RepaintsInLessThanTwoMilliseconds) {
     EXPECT_LT(milliseconds[2], 2.0); // the quickest: others may be using this machine
 }
 
+TEST(Plot, IsReadByTheKeysFromTheMarkOn) {
+    const auto plot = makePlot({0.0, 1.0, 0.5, 0.25, 0.75});
+    plot->setMark(2.0);
+    QSignalSpy chosen(plot.get(), &studio::Plot::clicked);
+    EXPECT_NE(plot->focusPolicy() & Qt::TabFocus, 0);
+    QTest::keyClick(plot.get(), Qt::Key_Right);
+    EXPECT_EQ(plot->accessibleDescription(), "Level 2: Flap 1 0.5");
+    QTest::keyClick(plot.get(), Qt::Key_Right);
+    EXPECT_EQ(plot->accessibleDescription(), "Level 3: Flap 1 0.25");
+    QTest::keyClick(plot.get(), Qt::Key_End);
+    QTest::keyClick(plot.get(), Qt::Key_Right);
+    QTest::keyClick(plot.get(), Qt::Key_Return);
+    ASSERT_EQ(chosen.count(), 1);
+    EXPECT_EQ(chosen.front().front().toInt(), 4) << "there is no step after the last";
+    QTest::keyClick(plot.get(), Qt::Key_Home);
+    EXPECT_EQ(plot->accessibleDescription(), "Level 0: Flap 1 0");
+}
+
 } // namespace
 } // namespace lumorph::studio

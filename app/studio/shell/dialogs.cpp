@@ -1,5 +1,7 @@
 #include "app/studio/shell/dialogs.h"
 
+#include <utility>
+
 #include <QCheckBox>
 #include <QComboBox>
 #include <QDialog>
@@ -136,6 +138,17 @@ void addKeyLine(QVBoxLayout& column, const QString& keys, const QString& does, Q
     column.addWidget(row);
 }
 
+/// The commands of one menu that have keys.
+void addKeysOf(Studio& studio, const QString& menu, const Column& column) {
+    bool begun = false;
+    for (const auto& entry : studio.commands.all()) {
+        if (entry.options.menu != menu || entry.action->shortcut().isEmpty()) continue;
+        if (!std::exchange(begun, true)) column.layout->addWidget(makeHeading(menu, column.widget));
+        addKeyLine(*column.layout, entry.action->shortcut().toString(QKeySequence::NativeText),
+                   commandTitle(*entry.action), column.widget);
+    }
+}
+
 } // namespace
 
 void openSettings(Studio& studio, QWidget& window) {
@@ -154,11 +167,7 @@ void openShortcuts(Studio& studio, QWidget& window) {
     QDialog* dialog = makeDialog(window, "dialog.shortcuts", "Keyboard and mouse");
     if (dialog == nullptr) return;
     const Column column = makeColumn(dialog);
-    column.layout->addWidget(makeHeading("Commands", dialog));
-    for (const auto& entry : studio.commands.all())
-        if (!entry.action->shortcut().isEmpty())
-            addKeyLine(*column.layout, entry.action->shortcut().toString(QKeySequence::NativeText),
-                       commandTitle(*entry.action), dialog);
+    for (const char* menu : {"File", "Edit", "View", "Target", "Rig", "Field", "Help"}) addKeysOf(studio, menu, column);
     column.layout->addWidget(makeHeading("View and numbers", dialog));
     for (const KeyLine& line : kGestures) addKeyLine(*column.layout, line.keys, line.does, dialog);
     dialog->layout()->addWidget(column.widget);

@@ -45,6 +45,13 @@ public:
         qApp->installEventFilter(this);
     }
 
+    void setWarnings(const std::vector<QString>& warnings) {
+        // Shares of a moving target change all the time; cards that are made anew under the pointer help nobody.
+        if (warnings.size() == warnings_.size()) return;
+        warnings_ = warnings;
+        fill();
+    }
+
     void openAt(const QPoint& corner) {
         corner_ = corner;
         place();
@@ -120,6 +127,10 @@ private:
 QWidget* makeNoticeList(Notices& notices, const std::set<QString>& places, const std::vector<QString>& warnings,
                         QWidget* window) {
     return new NoticeList(notices, places, warnings, window);
+}
+
+void updateNoticeList(QWidget& list, const std::vector<QString>& warnings) {
+    static_cast<NoticeList&>(list).setWarnings(warnings);
 }
 
 void openNoticeList(QWidget& list, const QPoint& corner) { static_cast<NoticeList&>(list).openAt(corner); }

@@ -13,6 +13,8 @@ namespace lumorph::studio {
 /// or a click elsewhere. objectName "notices.list".
 [[nodiscard]] QWidget* makeNoticeList(Notices& notices, const std::set<QString>& places,
                                       const std::vector<QString>& warnings, QWidget* window);
+/// The further warnings as they are now.
+void updateNoticeList(QWidget& list, const std::vector<QString>& warnings);
 /// Shows it with its bottom right corner at a point of its window.
 void openNoticeList(QWidget& list, const QPoint& corner);
 

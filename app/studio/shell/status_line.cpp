@@ -94,7 +94,9 @@ void StatusLine::showLoop() {
 }
 
 void StatusLine::showWarnings() {
-    int errors = 0, warnings = static_cast<int>(frameWarnings(studio_.loop.frame().get()).size()), notes = 0;
+    const std::vector<QString> ofFrame = frameWarnings(studio_.loop.frame().get());
+    if (list_) updateNoticeList(*list_, ofFrame);
+    int errors = 0, warnings = static_cast<int>(ofFrame.size()), notes = 0;
     for (const Notice& notice : studio_.notices.at()) {
         errors += notice.level == Notice::Level::error ? 1 : 0;
         warnings += notice.level == Notice::Level::warning ? 1 : 0;

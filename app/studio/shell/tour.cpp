@@ -206,7 +206,7 @@ private:
     /// Beside what is lit, where there is most room; inside it when it fills the window.
     [[nodiscard]] QPoint besideSpot(const QSize& card) const {
         const QRect inside = rect().adjusted(kGap, 56, -kGap, -44);
-        QPoint at(lit_.center().x() - card.width() / 2, lit_.bottom() - card.height() - 2 * kGap);
+        QPoint at(lit_.center().x() - card.width() / 2, lit_.bottom() - card.height() - 6 * kGap);
         if (lit_.isEmpty())
             at = rect().center() - QPoint(card.width() / 2, card.height() / 2);
         else if (inside.right() - lit_.right() >= card.width() + kGap)

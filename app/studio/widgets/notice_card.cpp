@@ -29,14 +29,6 @@ LevelLook lookOf(Notice::Level level) {
     return {"info", IconRole::accent};
 }
 
-/// Errors say what follows a colon; on a card it stands by itself.
-QString sentence(QString text) {
-    text = text.trimmed();
-    if (text.isEmpty()) return text;
-    text[0] = text[0].toUpper();
-    return text.back().isPunct() ? text : text + '.';
-}
-
 QLabel* makeText(const QString& text, const char* look, QWidget* parent) {
     auto* label = new QLabel(text, parent);
     label->setTextFormat(Qt::PlainText); // a file's name is no markup
@@ -44,6 +36,12 @@ QLabel* makeText(const QString& text, const char* look, QWidget* parent) {
     label->setTextInteractionFlags(Qt::TextSelectableByMouse);
     if (look != nullptr) label->setProperty("look", look);
     return label;
+}
+
+/// Errors are worded as parts of one sentence; on a card each has a line of its own.
+QString capitalised(QString text) {
+    if (!text.isEmpty()) text[0] = text[0].toUpper();
+    return text;
 }
 
 /// A card with a stripe in the colour of its level at the left edge.
@@ -100,8 +98,8 @@ QWidget* makeNoticeCard(Notices& notices, const QString& place, const Notice& no
     texts->setSpacing(4);
     if (!heading.isEmpty()) texts->addWidget(makeText(heading, "muted", card));
     texts->addWidget(makeText(notice.subject, "heading", card));
-    if (!notice.why.isEmpty()) texts->addWidget(makeText(sentence(notice.why), nullptr, card));
-    if (!notice.remedy.isEmpty()) texts->addWidget(makeText(sentence(notice.remedy), "muted", card));
+    if (!notice.why.isEmpty()) texts->addWidget(makeText(capitalised(notice.why), nullptr, card));
+    if (!notice.remedy.isEmpty()) texts->addWidget(makeText(capitalised(notice.remedy), "muted", card));
     if (!notice.actions.empty()) {
         auto* buttons = new QHBoxLayout;
         buttons->setContentsMargins(0, 4, 0, 0);

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include <QKeyEvent>
 #include <QMouseEvent>
 #include <QPainter>
 
@@ -78,10 +79,22 @@ PlotAxes axesOf(const std::vector<Plot::Curve>& curves, const QString& y, double
     return makeAxes(static_cast<int>(stepsOf(curves)) - 1, low, high, given, box, top, metrics);
 }
 
+/// What a screen reader says of a step: "level 5: Flap 1 0.25, Flap 2 0.5".
+QString readoutOf(const std::vector<Plot::Curve>& curves, const QString& x, int step) {
+    QStringList values;
+    for (const auto& curve : curves) {
+        const auto at = static_cast<std::size_t>(step);
+        if (at < curve.values.size() && std::isfinite(curve.values[at]))
+            values << curve.name + ' ' + QString::number(curve.values[at], 'g', 3);
+    }
+    return x + ' ' + QString::number(step) + ": " + (values.isEmpty() ? QString("no value") : values.join(", "));
+}
+
 } // namespace
 
 Plot::Plot(QWidget* parent) : QWidget(parent) {
     setMouseTracking(true);
+    setFocusPolicy(Qt::StrongFocus);
     setSizePolicy(QSizePolicy::Expanding, QSizePolicy::Preferred);
 }
 
@@ -148,18 +161,46 @@ void Plot::paintEvent(QPaintEvent* /*event*/) {
 void Plot::mouseMoveEvent(QMouseEvent* event) {
     const PlotAxes axes = axesOf(curves_, y_, low_, high_, rect(), QFontMetricsF(plotFont(font())));
     const int now = stepsOf(curves_) < 2 ? -1 : axes.stepAt(event->position());
-    if (now != hover_) {
-        hover_ = now;
-        update();
-    }
+    read(now);
     if (now >= 0 && event->buttons().testFlag(Qt::LeftButton)) emit clicked(now);
 }
 
 void Plot::mousePressEvent(QMouseEvent* event) { mouseMoveEvent(event); }
 
-void Plot::leaveEvent(QEvent* /*event*/) {
-    hover_ = -1;
+void Plot::read(int step) {
+    if (step == hover_) return;
+    hover_ = step;
+    setAccessibleDescription(step < 0 ? QString() : readoutOf(curves_, x_, step));
     update();
+}
+
+void Plot::leaveEvent(QEvent* /*event*/) { read(-1); }
+
+void Plot::focusOutEvent(QFocusEvent* event) {
+    read(-1);
+    QWidget::focusOutEvent(event);
+}
+
+void Plot::keyPressEvent(QKeyEvent* event) {
+    const int last = static_cast<int>(stepsOf(curves_)) - 1;
+    if (last < 1) return QWidget::keyPressEvent(event);
+    const int start = std::clamp(static_cast<int>(std::lround(mark_)), 0, last); // where reading begins
+    switch (event->key()) {
+    case Qt::Key_Left:
+        return read(hover_ < 0 ? start : std::max(0, hover_ - 1));
+    case Qt::Key_Right:
+        return read(hover_ < 0 ? start : std::min(last, hover_ + 1));
+    case Qt::Key_Home:
+        return read(0);
+    case Qt::Key_End:
+        return read(last);
+    case Qt::Key_Return:
+    case Qt::Key_Enter:
+        if (hover_ >= 0) emit clicked(hover_);
+        return;
+    default:
+        QWidget::keyPressEvent(event);
+    }
 }
 
 } // namespace lumorph::studio

@@ -8,7 +8,8 @@
 
 namespace lumorph::studio {
 
-/// Curves over a common axis, as small as a hand: axes with units, a legend, the values under the pointer, a mark.
+/// Curves over a common axis, as small as a hand: axes with units, a legend, the values under the pointer, a mark. By
+/// keyboard the arrow keys, Home and End read the values step by step, and Enter chooses one.
 class Plot : public QWidget {
     Q_OBJECT
 public:
@@ -37,15 +38,20 @@ public:
     [[nodiscard]] QPointF pointOf(double x, double y) const;
 
 signals:
-    void clicked(int x); ///< the step under the pointer
+    void clicked(int x); ///< the step under the pointer, or read by the keys
 
 protected:
     void paintEvent(QPaintEvent* event) override;
     void mouseMoveEvent(QMouseEvent* event) override;
     void mousePressEvent(QMouseEvent* event) override;
+    void keyPressEvent(QKeyEvent* event) override;
+    void focusOutEvent(QFocusEvent* event) override;
     void leaveEvent(QEvent* event) override;
 
 private:
+    /// Shows the values at a step; negative: none.
+    void read(int step);
+
     std::vector<Curve> curves_;
     QString x_, y_, empty_;
     double mark_ = -1.0, low_ = 0.0, high_ = 0.0;

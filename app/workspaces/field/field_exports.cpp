@@ -99,19 +99,19 @@ void FieldExports::addCommands() {
     const auto haveField = [this] { return frame() && frame()->field; };
     const auto haveBoth = [this] { return frame() && frame()->field && frame()->target; };
     add(
-        "export.mesh", tr("Export the Shape..."), "device", [this] { exportShape(); }, haveFrame);
+        "export.mesh", tr("Export the shape..."), "device", [this] { exportShape(); }, haveFrame);
     add(
-        "export.picture", tr("Export a Picture..."), "picture", [this] { exportPicture(); }, haveFrame);
+        "export.picture", tr("Export a picture..."), "picture", [this] { exportPicture(); }, haveFrame);
     add(
-        "export.turntable", tr("Export a Turntable Video..."), "video", [this] { exportTurntable(); }, haveFrame);
+        "export.turntable", tr("Export a turntable video..."), "video", [this] { exportTurntable(); }, haveFrame);
     add(
-        "export.csv", tr("Export the Match as a Table..."), "file", [this] { exportTable(); }, haveField);
+        "export.csv", tr("Export the match as a table..."), "file", [this] { exportTable(); }, haveField);
     add(
-        "export.target", tr("Export the Target's Voxels..."), "target", [this] { exportTarget(); }, haveBoth);
+        "export.target", tr("Export the target's voxels..."), "target", [this] { exportTarget(); }, haveBoth);
     add(
-        "export.field", tr("Export the Field..."), "field", [this] { exportField(); }, haveField);
+        "export.field", tr("Export the field..."), "field", [this] { exportField(); }, haveField);
     add(
-        "export.grids", tr("Export the Field as NRRD Grids..."), "voxels", [this] { exportGrids(); }, haveField);
+        "export.grids", tr("Export the field as NRRD grids..."), "voxels", [this] { exportGrids(); }, haveField);
     connect(&studio().loop, &StudioLoop::framed, this, [this] { showPossible(); });
     connect(&studio().document, &StudioDocument::changed, this, [this] { showPossible(); });
     showPossible();

@@ -161,6 +161,7 @@ void FieldShow::addSurface(QVBoxLayout& layout) {
     surfaceSlider_->setAccessibleName(tr("Level of the surface"));
     surfaceLevel_ = new ValueField(Quantity::level, 0, 1, 0);
     surfaceLevel_->setObjectName("field.surface.level");
+    surfaceLevel_->setAccessibleName(tr("Level of the surface"));
     surfaceLevel_->setFixedWidth(56);
     surfaceLevel_->setStep(1.0);
     auto* both = new QWidget;

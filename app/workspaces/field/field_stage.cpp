@@ -89,7 +89,7 @@ QWidget* FieldStage::makeHint() {
     buttons->setSpacing(8);
     buttons->addStretch(1);
     buttons->addWidget(open);
-    buttons->addWidget(makeCommandButton(studio_.commands.find("target.dunes"), "hint.dunes", hint_));
+    buttons->addWidget(makeCommandButton(studio_.commands.find("target.bloom"), "hint.bloom", hint_));
     buttons->addStretch(1);
     auto* layout = new QVBoxLayout(hint_);
     layout->setContentsMargins(24, 24, 24, 24);

@@ -63,11 +63,9 @@ FieldSummary summaryOf(const Field& field, const std::filesystem::path& file, st
         outside == 0 ? 0.0 : static_cast<double>(reachableVoxels(field).count()) / static_cast<double>(outside);
     FieldSummary summary;
     summary.facts = {
-        {tr("Space"),
-         tr("%1 voxels of %2 mm")
-             .arg(dimensionsText(field.frame.dimensions))
-             .arg(1000.0 * field.frame.voxelSize, 0, 'f', 2),
+        {tr("Space"), tr("%1 voxels").arg(dimensionsText(field.frame.dimensions)),
          tr("The box around everything the device can reach, divided into cubes")},
+        {tr("Voxel"), tr("%1 mm").arg(1000.0 * field.frame.voxelSize, 0, 'f', 2), tr("The side of one cube")},
         {tr("Within reach"), tr("%1 of %2 voxels").arg(shareText(reachable), countText(field.frame.voxelCount())),
          tr("Voxels outside the resting device that at least one actuator can fill")},
         {tr("Levels"), tr("%1 for each of %2 actuators").arg(field.levels).arg(field.actuators.size()),

@@ -65,7 +65,7 @@ void LevelSlider::paintEvent(QPaintEvent* /*event*/) {
     const double middle = 0.5 * height();
     const double from = xOf(0.0), to = xOf(1.0);
     painter.setPen(Qt::NoPen);
-    painter.setBrush(colors.sunken);
+    painter.setBrush(blend(colors.panel, colors.border, 0.4));
     painter.drawRoundedRect(QRectF(from - 2.0, middle - 3.0, to - from + 4.0, 6.0), 3.0, 3.0);
     if (maximum() < kMostTicks) {
         painter.setBrush(colors.border);

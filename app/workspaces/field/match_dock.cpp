@@ -143,6 +143,7 @@ private:
 
         plot_ = new Plot(column_.widget);
         plot_->setObjectName("match.plot");
+        plot_->setAccessibleName("Error at each level of the chosen actuator");
         plot_->setAxes("level", "error");
         plot_->setToolTip("Eq. 1: symmetric difference over intersection with the target, for each level of the chosen "
                           "actuator. The lowest point is its vote.");

@@ -31,6 +31,7 @@ public:
         where_->setWordWrap(true);
         where_->setProperty("look", "muted");
         plot_->setObjectName("field.ramps");
+        plot_->setAccessibleName(tr("Ramps of a voxel"));
         plot_->setAxes(tr("level"), tr("expected coverage"));
         plot_->setRange(0.0, 1.0);
         auto* layout = new QVBoxLayout(this);

@@ -14,7 +14,7 @@ constexpr float kWidth = 0.21F; ///< the tablet's sides, metres
 constexpr float kDepth = 0.15F;
 constexpr double kSeconds = 6.0;
 constexpr int kHarmonics = 3; ///< of the loop; what lies above them is too quick to be seen
-constexpr double kCalm = 0.0012;
+constexpr double kCalm = 0.0005;
 
 /// A petal: lies flat, or lifts its free end while its root stays down.
 struct Petal {
