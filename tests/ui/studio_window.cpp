@@ -61,7 +61,7 @@ StudioWindow::StudioWindow(const std::filesystem::path& session) {
     studio_->settings.setTourSeen(true);
     window_ = std::make_unique<studio::MainWindow>(*studio_, studio::makeWorkspaces(*studio_));
     window_->showWorkspace("field");
-    window_->resize(1600, 1000);
+    window_->resize(QSize(1600, 1000).boundedTo(window_->screen()->availableSize())); // less at 200 % scaling
     window_->show();
     (void)QTest::qWaitForWindowExposed(window_.get());
     bool there = false;
