@@ -6,13 +6,12 @@
 #include <numeric>
 #include <string>
 #include <tuple>
-#include <unordered_map>
 
-#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
 #include "core/base/error.h"
 #include "core/geometry/disjoint_sets.h"
+#include "core/render/coarse_surface.h"
 
 namespace lumorph {
 namespace {
@@ -118,35 +117,6 @@ bool closedOutwards(const TriangleMesh& mesh, const std::vector<HalfEdge>& edges
     return closed && signedVolume(mesh) > 0.0;
 }
 
-// The triangles that are left when all vertices in a cell of a grid become one; the cells are as large as leaves about
-// kCoarseTriangles.
-std::vector<glm::uvec3> clustered(const std::vector<glm::uvec3>& triangles, const std::vector<std::uint32_t>& sources,
-                                  const std::vector<glm::vec3>& positions) {
-    if (triangles.size() <= kCoarseTriangles) return {};
-    double area = 0.0;
-    for (const glm::uvec3& t : triangles) {
-        const glm::vec3 a = positions[sources[t.x]];
-        area += 0.5 *
-                static_cast<double>(glm::length(glm::cross(positions[sources[t.y]] - a, positions[sources[t.z]] - a)));
-    }
-    const auto cell = static_cast<float>(std::sqrt(2.0 * area / static_cast<double>(kCoarseTriangles)));
-    if (!(cell > 0.0F) || !std::isfinite(cell)) return {};
-    const glm::vec3 low = boundingBox(positions).min;
-    std::unordered_map<std::uint64_t, std::uint32_t> firstIn;
-    std::vector<std::uint32_t> merged(sources.size());
-    for (std::uint32_t i = 0; i < sources.size(); ++i) {
-        const glm::uvec3 at = glm::min((positions[sources[i]] - low) / cell, glm::vec3(1e6F));
-        const std::uint64_t key = at.x | std::uint64_t{at.y} << 21 | std::uint64_t{at.z} << 42;
-        merged[i] = firstIn.try_emplace(key, i).first->second;
-    }
-    std::vector<glm::uvec3> coarse;
-    for (const glm::uvec3& t : triangles) {
-        const glm::uvec3 c(merged[t.x], merged[t.y], merged[t.z]);
-        if (c.x != c.y && c.y != c.z && c.z != c.x) coarse.push_back(c);
-    }
-    return coarse;
-}
-
 } // namespace
 
 SurfaceShading::SurfaceShading(const TriangleMesh& mesh, Angle crease)
@@ -172,7 +142,21 @@ SurfaceShading::SurfaceShading(const TriangleMesh& mesh, Angle crease)
         }
         triangles_[corner / 3][static_cast<int>(corner % 3)] = static_cast<std::uint32_t>(sources_.size() - 1);
     }
-    coarse_ = clustered(triangles_, sources_, mesh.positions);
+    addCoarseForm(mesh.positions);
+}
+
+// Its vertices come after those of the fine form and follow them.
+void SurfaceShading::addCoarseForm(std::span<const glm::vec3> positions) {
+    std::vector<ShadedMesh::Vertex> fine(sources_.size());
+    shade(positions, fine);
+    CoarseSurface coarse = coarseSurface(fine, triangles_, kCoarseTriangles);
+    const auto first = static_cast<std::uint32_t>(sources_.size());
+    for (const auto& [position, normal] : coarse.vertices) {
+        sources_.push_back(sources_[position]);
+        leaders_.push_back(leaders_[normal]);
+    }
+    for (glm::uvec3& t : coarse.triangles) t += first;
+    coarse_ = std::move(coarse.triangles);
 }
 
 void SurfaceShading::shade(std::span<const glm::vec3> positions, std::span<ShadedMesh::Vertex> out) const noexcept {

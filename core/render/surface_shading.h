@@ -23,8 +23,8 @@ public:
 
     /// Triangles over the drawn vertices.
     [[nodiscard]] std::span<const glm::uvec3> triangles() const noexcept { return triangles_; }
-    /// A coarser form of the same surface over some of the drawn vertices, for shadows: at most some thousand
-    /// triangles.
+    /// A coarser form of the same surface over drawn vertices of its own, for pictures in motion: at most some ten
+    /// thousand triangles.
     [[nodiscard]] std::span<const glm::uvec3> coarseTriangles() const noexcept {
         return coarse_.empty() ? triangles() : std::span<const glm::uvec3>(coarse_);
     }
@@ -41,6 +41,8 @@ public:
     void shade(std::span<const glm::vec3> positions, std::span<ShadedMesh::Vertex> out) const noexcept;
 
 private:
+    void addCoarseForm(std::span<const glm::vec3> positions);
+
     std::vector<glm::uvec3> triangles_;
     std::vector<glm::uvec3> coarse_; // empty: the triangles are few
     std::vector<std::uint32_t> sources_;

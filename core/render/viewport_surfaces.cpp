@@ -20,6 +20,7 @@ void attribute(GLuint index, std::size_t stride, std::size_t offset) {
 
 std::vector<glm::uvec3> withCoarse(const SurfaceShading& shading) {
     std::vector<glm::uvec3> all(shading.triangles().begin(), shading.triangles().end());
+    if (shading.coarseTriangles().data() == shading.triangles().data()) return all;
     all.insert(all.end(), shading.coarseTriangles().begin(), shading.coarseTriangles().end());
     return all;
 }
@@ -97,18 +98,16 @@ void ViewportSurfaces::update(const std::vector<ViewportSurface>& surfaces) {
     if (entries_.empty()) shaded_ = {};
 }
 
-void ViewportSurfaces::draw(std::size_t surface) const {
+void ViewportSurfaces::draw(std::size_t surface, Form form) const {
     const SurfaceShading& shading = *shown_[surface]->shading;
+    const bool fine = form == Form::fine;
+    const std::span<const glm::uvec3> triangles = fine ? shading.triangles() : shading.coarseTriangles();
+    // The coarse triangles lie behind the fine ones; a surface of few triangles has only those.
+    const bool behind = triangles.data() != shading.triangles().data();
+    const std::size_t start = behind ? shading.triangles().size_bytes() : 0;
     glBindVertexArray(shown_[surface]->array.name());
-    glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(3 * shading.triangles().size()), GL_UNSIGNED_INT, nullptr);
-    glBindVertexArray(0);
-}
-
-void ViewportSurfaces::drawCoarse(std::size_t surface) const {
-    const SurfaceShading& shading = *shown_[surface]->shading;
-    glBindVertexArray(shown_[surface]->array.name());
-    glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(3 * shading.coarseTriangles().size()), GL_UNSIGNED_INT,
-                   reinterpret_cast<const void*>(shading.triangles().size_bytes()));
+    glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(3 * triangles.size()), GL_UNSIGNED_INT,
+                   reinterpret_cast<const void*>(start));
     glBindVertexArray(0);
 }
 

@@ -18,8 +18,8 @@ public:
 
     /// Of the surfaces of the last update, by their place in it.
     [[nodiscard]] bool drawable(std::size_t surface) const noexcept { return shown_[surface] != nullptr; }
-    void draw(std::size_t surface) const;
-    void drawCoarse(std::size_t surface) const;
+    enum class Form { fine, coarse };
+    void draw(std::size_t surface, Form form) const;
     /// Box in the world.
     [[nodiscard]] const Box& box(std::size_t surface) const noexcept { return boxes_[surface]; }
     /// Another number for other positions.

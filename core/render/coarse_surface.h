@@ -1,0 +1,29 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include <glm/vec3.hpp>
+
+#include "core/render/shaded_mesh.h"
+
+/// A coarser form of a surface. Private to core/render.
+namespace lumorph {
+
+struct CoarseSurface {
+    /// Takes its position and its normal from vertices of the fine form, so that it moves with them.
+    struct Vertex {
+        std::uint32_t position, normal;
+    };
+    std::vector<Vertex> vertices;
+    std::vector<glm::uvec3> triangles; ///< over `vertices`
+};
+
+/// What is left of a surface when all vertices in a cell of a grid become one; the cells are as large as leaves about
+/// `wanted` triangles. Vertices whose normals are more than 40 degrees apart stay two vertices at one place, so that
+/// edges stay sharp. Empty where that would gain little. Metres; triangles index `vertices`.
+[[nodiscard]] CoarseSurface coarseSurface(std::span<const ShadedMesh::Vertex> vertices,
+                                          std::span<const glm::uvec3> triangles, std::size_t wanted);
+
+} // namespace lumorph
