@@ -66,15 +66,17 @@ Grid gridOf(Vertices vertices, float cell) {
 std::vector<std::uint32_t> merge(Vertices vertices, const Grid& grid, CoarseSurface& coarse) {
     std::vector<std::vector<std::uint32_t>> sides(grid.nearest.size()); // coarse vertices of each cell
     std::vector<std::uint32_t> merged(vertices.size());
+    std::vector<glm::vec3> normals; // of the coarse vertices
     const auto take = [&](std::uint32_t i) {
         std::vector<std::uint32_t>& there = sides[grid.cells[i]];
         const auto found = std::find_if(there.begin(), there.end(), [&](std::uint32_t side) {
-            return glm::dot(vertices[coarse.vertices[side].normal].normal, vertices[i].normal) > kSameSide;
+            return glm::dot(normals[side], vertices[i].normal) > kSameSide;
         });
         if (found == there.end()) {
             merged[i] = static_cast<std::uint32_t>(coarse.vertices.size());
             there.push_back(merged[i]);
-            coarse.vertices.push_back({grid.nearest[grid.cells[i]], i});
+            coarse.vertices.push_back(grid.nearest[grid.cells[i]]);
+            normals.push_back(vertices[i].normal);
         } else {
             merged[i] = *found;
         }

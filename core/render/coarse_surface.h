@@ -12,11 +12,8 @@
 namespace lumorph {
 
 struct CoarseSurface {
-    /// Takes its position and its normal from vertices of the fine form, so that it moves with them.
-    struct Vertex {
-        std::uint32_t position, normal;
-    };
-    std::vector<Vertex> vertices;
+    std::vector<std::uint32_t>
+        vertices;                      ///< those of the fine form whose positions it takes, so that it moves with them
     std::vector<glm::uvec3> triangles; ///< over `vertices`
 };
 

@@ -119,8 +119,8 @@ bool closedOutwards(const TriangleMesh& mesh, const std::vector<HalfEdge>& edges
 
 } // namespace
 
-SurfaceShading::SurfaceShading(const TriangleMesh& mesh, Angle crease)
-    : triangles_(mesh.triangles.size()), meshVertexCount_(mesh.positions.size()) {
+SurfaceShading::SurfaceShading(const TriangleMesh& mesh, Angle crease) : meshVertexCount_(mesh.positions.size()) {
+    fine_.triangles.resize(mesh.triangles.size());
     requireSound(mesh);
     const std::vector<HalfEdge> edges = halfEdgesOf(mesh, placesOf(mesh.positions));
     closed_ = closedOutwards(mesh, edges);
@@ -135,43 +135,42 @@ SurfaceShading::SurfaceShading(const TriangleMesh& mesh, Angle crease)
     for (std::size_t i = 0; i < corners.size(); ++i) {
         const auto& [source, normal, corner] = corners[i];
         if (i == 0 || source != corners[i - 1].source || normal != corners[i - 1].normal) {
-            const auto drawn = static_cast<std::uint32_t>(sources_.size());
+            const auto drawn = static_cast<std::uint32_t>(fine_.sources.size());
             if (leaderOf[normal] == kNone) leaderOf[normal] = drawn;
-            sources_.push_back(source);
-            leaders_.push_back(leaderOf[normal]);
+            fine_.sources.push_back(source);
+            fine_.leaders.push_back(leaderOf[normal]);
         }
-        triangles_[corner / 3][static_cast<int>(corner % 3)] = static_cast<std::uint32_t>(sources_.size() - 1);
+        fine_.triangles[corner / 3][static_cast<int>(corner % 3)] =
+            static_cast<std::uint32_t>(fine_.sources.size() - 1);
     }
     addCoarseForm(mesh.positions);
 }
 
-// Its vertices come after those of the fine form and follow them.
 void SurfaceShading::addCoarseForm(std::span<const glm::vec3> positions) {
-    std::vector<ShadedMesh::Vertex> fine(sources_.size());
-    shade(positions, fine);
-    CoarseSurface coarse = coarseSurface(fine, triangles_, kCoarseTriangles);
-    const auto first = static_cast<std::uint32_t>(sources_.size());
-    for (const auto& [position, normal] : coarse.vertices) {
-        sources_.push_back(sources_[position]);
-        leaders_.push_back(leaders_[normal]);
-    }
-    for (glm::uvec3& t : coarse.triangles) t += first;
-    coarse_ = std::move(coarse.triangles);
+    std::vector<ShadedMesh::Vertex> vertices(fine_.sources.size());
+    shade(positions, vertices);
+    CoarseSurface coarse = coarseSurface(vertices, fine_.triangles, kCoarseTriangles);
+    coarse_.triangles = std::move(coarse.triangles);
+    for (const std::uint32_t vertex : coarse.vertices) coarse_.sources.push_back(fine_.sources[vertex]);
+    coarse_.leaders.resize(coarse_.sources.size());
+    std::iota(coarse_.leaders.begin(), coarse_.leaders.end(), 0U);
 }
 
-void SurfaceShading::shade(std::span<const glm::vec3> positions, std::span<ShadedMesh::Vertex> out) const noexcept {
-    for (std::size_t i = 0; i < sources_.size(); ++i) out[i] = {positions[sources_[i]], glm::vec3(0.0F)};
-    for (const glm::uvec3& t : triangles_) {
+void SurfaceShading::shade(std::span<const glm::vec3> positions, std::span<ShadedMesh::Vertex> out,
+                           Detail detail) const noexcept {
+    const auto& [triangles, sources, leaders] = form(detail);
+    for (std::size_t i = 0; i < sources.size(); ++i) out[i] = {positions[sources[i]], glm::vec3(0.0F)};
+    for (const glm::uvec3& t : triangles) {
         const glm::vec3 a = out[t.x].position;
         const glm::vec3 area = glm::cross(out[t.y].position - a, out[t.z].position - a);
-        out[leaders_[t.x]].normal += area;
-        out[leaders_[t.y]].normal += area;
-        out[leaders_[t.z]].normal += area;
+        out[leaders[t.x]].normal += area;
+        out[leaders[t.y]].normal += area;
+        out[leaders[t.z]].normal += area;
     }
     // A leader stands before those it leads.
-    for (std::size_t i = 0; i < sources_.size(); ++i) {
-        if (leaders_[i] != i) {
-            out[i].normal = out[leaders_[i]].normal;
+    for (std::size_t i = 0; i < sources.size(); ++i) {
+        if (leaders[i] != i) {
+            out[i].normal = out[leaders[i]].normal;
             continue;
         }
         const float length = glm::length(out[i].normal);

@@ -30,10 +30,6 @@ std::array<Program, 2> stillPrograms() {
     return {Program(shaderFiles(vertex, light)), Program(shaderFiles(vertex, tinted))};
 }
 
-ViewportSurfaces::Form formOf(ViewportQuality quality) {
-    return quality == ViewportQuality::moving ? ViewportSurfaces::Form::coarse : ViewportSurfaces::Form::fine;
-}
-
 void setFrontFace(const glm::mat4& world) { glFrontFace(glm::determinant(glm::mat3(world)) < 0.0F ? GL_CW : GL_CCW); }
 
 } // namespace
@@ -49,8 +45,9 @@ ViewportShading::ViewportShading()
     glBindTexture(GL_TEXTURE_2D, 0);
 }
 
-void ViewportShading::update(const ViewportScene& scene) {
-    surfaces_.update(scene.surfaces);
+void ViewportShading::update(const ViewportScene& scene, ViewportQuality quality) {
+    using Detail = SurfaceShading::Detail;
+    surfaces_.update(scene.surfaces, quality == ViewportQuality::moving ? Detail::coarse : Detail::fine);
     tint_.update(scene.tint);
 }
 
@@ -88,30 +85,29 @@ void ViewportShading::draw(const ViewportFrame& frame, const FramePiece& piece, 
     program.set("keepAlpha", item.outlined && opaque ? 0.0F : 1.0F);
     setFrontFace(item.worldFromSurface);
     if (opaque)
-        drawOpaque(surface, frame.quality);
+        drawOpaque(surface);
     else
         drawTranslucent(frame, program, surface);
     glDisable(GL_CULL_FACE);
     glFrontFace(GL_CCW);
 }
 
-void ViewportShading::drawOpaque(std::size_t surface, ViewportQuality quality) const {
+void ViewportShading::drawOpaque(std::size_t surface) const {
     if (surfaces_.closed(surface)) glEnable(GL_CULL_FACE);
     glCullFace(GL_BACK);
-    surfaces_.draw(surface, formOf(quality));
+    surfaces_.draw(surface);
 }
 
 // Pulled a little towards the eye, so that where it lies on an opaque surface it tints that evenly.
 void ViewportShading::drawTranslucent(const ViewportFrame& frame, Program& program, std::size_t surface) {
     const ViewportSurface& item = frame.scene.surfaces[surface];
-    const ViewportSurfaces::Form form = formOf(frame.quality);
     glBlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ZERO, item.outlined ? GL_ZERO : GL_ONE);
     glEnable(GL_CULL_FACE);
     glEnable(GL_POLYGON_OFFSET_FILL);
     glPolygonOffset(-1.0F, -2.0F);
     glDepthMask(GL_FALSE);
     glCullFace(GL_FRONT);
-    surfaces_.draw(surface, form);
+    surfaces_.draw(surface);
     // Only the nearest front face: its depth first, a trace further away, then its colour.
     glCullFace(GL_BACK);
     glDepthMask(GL_TRUE);
@@ -120,11 +116,11 @@ void ViewportShading::drawTranslucent(const ViewportFrame& frame, Program& progr
     depth_.use();
     depth_.set("worldFromMesh", item.worldFromSurface);
     depth_.set("clipFromWorld", frame.clipFromWorld);
-    surfaces_.draw(surface, form);
+    surfaces_.draw(surface);
     glPolygonOffset(-1.0F, -2.0F);
     glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
     program.use();
-    surfaces_.draw(surface, form);
+    surfaces_.draw(surface);
     glDisable(GL_POLYGON_OFFSET_FILL);
 }
 
@@ -133,7 +129,7 @@ void ViewportShading::drawCasters(Program& depth, const ViewportFrame& frame) co
     for (std::size_t i = 0; i < surfaces.size(); ++i) {
         if (!surfaces_.drawable(i) || surfaces[i].opacity < 1.0F) continue;
         depth.set("worldFromMesh", surfaces[i].worldFromSurface);
-        surfaces_.draw(i, formOf(frame.quality));
+        surfaces_.draw(i);
     }
 }
 

@@ -17,7 +17,7 @@ public:
     ViewportShading();
 
     /// Uploads what is new in the scene.
-    void update(const ViewportScene& scene);
+    void update(const ViewportScene& scene, ViewportQuality quality);
     [[nodiscard]] const ViewportSurfaces& surfaces() const noexcept { return surfaces_; }
 
     /// Draws one surface of the scene, in motion in a coarser form; a translucent one with blending on, back faces
@@ -31,7 +31,7 @@ public:
 
 private:
     Program& begin(const ViewportFrame& frame, const FramePiece& piece, const ViewportLight& light, bool tinted);
-    void drawOpaque(std::size_t surface, ViewportQuality quality) const;
+    void drawOpaque(std::size_t surface) const;
     void drawTranslucent(const ViewportFrame& frame, Program& program, std::size_t surface);
 
     ViewportSurfaces surfaces_;
