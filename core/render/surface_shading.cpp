@@ -6,13 +6,12 @@
 #include <numeric>
 #include <string>
 #include <tuple>
-#include <unordered_map>
 
-#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
 #include "core/base/error.h"
 #include "core/geometry/disjoint_sets.h"
+#include "core/render/coarse_surface.h"
 
 namespace lumorph {
 namespace {
@@ -118,39 +117,10 @@ bool closedOutwards(const TriangleMesh& mesh, const std::vector<HalfEdge>& edges
     return closed && signedVolume(mesh) > 0.0;
 }
 
-// The triangles that are left when all vertices in a cell of a grid become one; the cells are as large as leaves about
-// kCoarseTriangles.
-std::vector<glm::uvec3> clustered(const std::vector<glm::uvec3>& triangles, const std::vector<std::uint32_t>& sources,
-                                  const std::vector<glm::vec3>& positions) {
-    if (triangles.size() <= kCoarseTriangles) return {};
-    double area = 0.0;
-    for (const glm::uvec3& t : triangles) {
-        const glm::vec3 a = positions[sources[t.x]];
-        area += 0.5 *
-                static_cast<double>(glm::length(glm::cross(positions[sources[t.y]] - a, positions[sources[t.z]] - a)));
-    }
-    const auto cell = static_cast<float>(std::sqrt(2.0 * area / static_cast<double>(kCoarseTriangles)));
-    if (!(cell > 0.0F) || !std::isfinite(cell)) return {};
-    const glm::vec3 low = boundingBox(positions).min;
-    std::unordered_map<std::uint64_t, std::uint32_t> firstIn;
-    std::vector<std::uint32_t> merged(sources.size());
-    for (std::uint32_t i = 0; i < sources.size(); ++i) {
-        const glm::uvec3 at = glm::min((positions[sources[i]] - low) / cell, glm::vec3(1e6F));
-        const std::uint64_t key = at.x | std::uint64_t{at.y} << 21 | std::uint64_t{at.z} << 42;
-        merged[i] = firstIn.try_emplace(key, i).first->second;
-    }
-    std::vector<glm::uvec3> coarse;
-    for (const glm::uvec3& t : triangles) {
-        const glm::uvec3 c(merged[t.x], merged[t.y], merged[t.z]);
-        if (c.x != c.y && c.y != c.z && c.z != c.x) coarse.push_back(c);
-    }
-    return coarse;
-}
-
 } // namespace
 
-SurfaceShading::SurfaceShading(const TriangleMesh& mesh, Angle crease)
-    : triangles_(mesh.triangles.size()), meshVertexCount_(mesh.positions.size()) {
+SurfaceShading::SurfaceShading(const TriangleMesh& mesh, Angle crease) : meshVertexCount_(mesh.positions.size()) {
+    fine_.triangles.resize(mesh.triangles.size());
     requireSound(mesh);
     const std::vector<HalfEdge> edges = halfEdgesOf(mesh, placesOf(mesh.positions));
     closed_ = closedOutwards(mesh, edges);
@@ -165,29 +135,42 @@ SurfaceShading::SurfaceShading(const TriangleMesh& mesh, Angle crease)
     for (std::size_t i = 0; i < corners.size(); ++i) {
         const auto& [source, normal, corner] = corners[i];
         if (i == 0 || source != corners[i - 1].source || normal != corners[i - 1].normal) {
-            const auto drawn = static_cast<std::uint32_t>(sources_.size());
+            const auto drawn = static_cast<std::uint32_t>(fine_.sources.size());
             if (leaderOf[normal] == kNone) leaderOf[normal] = drawn;
-            sources_.push_back(source);
-            leaders_.push_back(leaderOf[normal]);
+            fine_.sources.push_back(source);
+            fine_.leaders.push_back(leaderOf[normal]);
         }
-        triangles_[corner / 3][static_cast<int>(corner % 3)] = static_cast<std::uint32_t>(sources_.size() - 1);
+        fine_.triangles[corner / 3][static_cast<int>(corner % 3)] =
+            static_cast<std::uint32_t>(fine_.sources.size() - 1);
     }
-    coarse_ = clustered(triangles_, sources_, mesh.positions);
+    addCoarseForm(mesh.positions);
 }
 
-void SurfaceShading::shade(std::span<const glm::vec3> positions, std::span<ShadedMesh::Vertex> out) const noexcept {
-    for (std::size_t i = 0; i < sources_.size(); ++i) out[i] = {positions[sources_[i]], glm::vec3(0.0F)};
-    for (const glm::uvec3& t : triangles_) {
+void SurfaceShading::addCoarseForm(std::span<const glm::vec3> positions) {
+    std::vector<ShadedMesh::Vertex> vertices(fine_.sources.size());
+    shade(positions, vertices);
+    CoarseSurface coarse = coarseSurface(vertices, fine_.triangles, kCoarseTriangles);
+    coarse_.triangles = std::move(coarse.triangles);
+    for (const std::uint32_t vertex : coarse.vertices) coarse_.sources.push_back(fine_.sources[vertex]);
+    coarse_.leaders.resize(coarse_.sources.size());
+    std::iota(coarse_.leaders.begin(), coarse_.leaders.end(), 0U);
+}
+
+void SurfaceShading::shade(std::span<const glm::vec3> positions, std::span<ShadedMesh::Vertex> out,
+                           Detail detail) const noexcept {
+    const auto& [triangles, sources, leaders] = form(detail);
+    for (std::size_t i = 0; i < sources.size(); ++i) out[i] = {positions[sources[i]], glm::vec3(0.0F)};
+    for (const glm::uvec3& t : triangles) {
         const glm::vec3 a = out[t.x].position;
         const glm::vec3 area = glm::cross(out[t.y].position - a, out[t.z].position - a);
-        out[leaders_[t.x]].normal += area;
-        out[leaders_[t.y]].normal += area;
-        out[leaders_[t.z]].normal += area;
+        out[leaders[t.x]].normal += area;
+        out[leaders[t.y]].normal += area;
+        out[leaders[t.z]].normal += area;
     }
     // A leader stands before those it leads.
-    for (std::size_t i = 0; i < sources_.size(); ++i) {
-        if (leaders_[i] != i) {
-            out[i].normal = out[leaders_[i]].normal;
+    for (std::size_t i = 0; i < sources.size(); ++i) {
+        if (leaders[i] != i) {
+            out[i].normal = out[leaders[i]].normal;
             continue;
         }
         const float length = glm::length(out[i].normal);

@@ -21,15 +21,19 @@ public:
     /// InvalidInput for an index beyond the positions.
     SurfaceShading(const TriangleMesh& mesh, Angle crease);
 
+    /// The surface itself, or a form of at most some ten thousand triangles for pictures in motion. The two are one
+    /// where the triangles are few.
+    enum class Detail { fine, coarse };
+    [[nodiscard]] bool hasCoarse() const noexcept { return !coarse_.triangles.empty(); }
+
     /// Triangles over the drawn vertices.
-    [[nodiscard]] std::span<const glm::uvec3> triangles() const noexcept { return triangles_; }
-    /// A coarser form of the same surface over some of the drawn vertices, for shadows: at most some thousand
-    /// triangles.
-    [[nodiscard]] std::span<const glm::uvec3> coarseTriangles() const noexcept {
-        return coarse_.empty() ? triangles() : std::span<const glm::uvec3>(coarse_);
+    [[nodiscard]] std::span<const glm::uvec3> triangles(Detail detail = Detail::fine) const noexcept {
+        return form(detail).triangles;
     }
     /// For each drawn vertex, the vertex of the mesh it shows.
-    [[nodiscard]] std::span<const std::uint32_t> sources() const noexcept { return sources_; }
+    [[nodiscard]] std::span<const std::uint32_t> sources(Detail detail = Detail::fine) const noexcept {
+        return form(detail).sources;
+    }
     /// Vertices of the mesh.
     [[nodiscard]] std::size_t meshVertexCount() const noexcept { return meshVertexCount_; }
     /// Whether the mesh it was made from is closed and looks outwards: its back faces are never seen.
@@ -38,13 +42,22 @@ public:
     /// Positions and normals of all drawn vertices for these positions of the mesh's vertices (metres,
     /// one a mesh vertex); normals are the mean of the faces around, weighted by area. `out` has one
     /// entry a drawn vertex. A vertex without area around it gets a normal of length 0.
-    void shade(std::span<const glm::vec3> positions, std::span<ShadedMesh::Vertex> out) const noexcept;
+    void shade(std::span<const glm::vec3> positions, std::span<ShadedMesh::Vertex> out,
+               Detail detail = Detail::fine) const noexcept;
 
 private:
-    std::vector<glm::uvec3> triangles_;
-    std::vector<glm::uvec3> coarse_; // empty: the triangles are few
-    std::vector<std::uint32_t> sources_;
-    std::vector<std::uint32_t> leaders_; // for each drawn vertex the first one with the same normal
+    struct Form {
+        std::vector<glm::uvec3> triangles;
+        std::vector<std::uint32_t> sources;
+        std::vector<std::uint32_t> leaders; // for each drawn vertex the first one with the same normal
+    };
+    [[nodiscard]] const Form& form(Detail detail) const noexcept {
+        return detail == Detail::coarse && hasCoarse() ? coarse_ : fine_;
+    }
+    void addCoarseForm(std::span<const glm::vec3> positions);
+
+    Form fine_;
+    Form coarse_; // empty: the triangles are few
     bool closed_ = false;
     std::size_t meshVertexCount_ = 0;
 };

@@ -13,10 +13,11 @@ public:
     /// and makes the frame opaque.
     void draw(GLuint picture, const FramePiece& piece, const ViewportFrame& frame);
 
-    [[nodiscard]] std::size_t objectCount() const noexcept { return 1 + program_.objectCount(); }
+    [[nodiscard]] std::size_t objectCount() const noexcept { return 1 + still_.objectCount() + moving_.objectCount(); }
 
 private:
-    Program program_{shaderFiles({"full_frame.vert"}, {"outline.frag"})};
+    Program still_{shaderFiles({"full_frame.vert"}, {"outline.frag"})};
+    Program moving_{shaderFiles({"full_frame.vert"}, {"moving_outline.frag"})};
     gl::VertexArray empty_;
 };
 

@@ -244,7 +244,7 @@ bool ViewportRenderer::draw(unsigned framebuffer, glm::ivec2 size, const Viewpor
         return !interrupted || !interrupted();
     };
     resetState();
-    data_->shading.update(scene);
+    data_->shading.update(scene, quality);
     data_->voxels.update(scene.voxels);
     data_->lines.update(scene.lines, scale);
     if (data_->target.resize(size)) data_->background = {};

@@ -34,7 +34,8 @@ void setFrontFace(const glm::mat4& world) { glFrontFace(glm::determinant(glm::ma
 
 } // namespace
 
-ViewportShading::ViewportShading() : moving_(movingPrograms()), still_(stillPrograms()) {
+ViewportShading::ViewportShading()
+    : moving_(movingPrograms()), still_(stillPrograms()), depth_(shaderFiles({"depth.vert"}, {"depth.frag"})) {
     const std::vector<std::uint8_t> grey = paperFibre(kFibreSide);
     glBindTexture(GL_TEXTURE_2D, fibre_.name());
     glTexImage2D(GL_TEXTURE_2D, 0, GL_R8, kFibreSide, kFibreSide, 0, GL_RED, GL_UNSIGNED_BYTE, grey.data());
@@ -44,8 +45,9 @@ ViewportShading::ViewportShading() : moving_(movingPrograms()), still_(stillProg
     glBindTexture(GL_TEXTURE_2D, 0);
 }
 
-void ViewportShading::update(const ViewportScene& scene) {
-    surfaces_.update(scene.surfaces);
+void ViewportShading::update(const ViewportScene& scene, ViewportQuality quality) {
+    using Detail = SurfaceShading::Detail;
+    surfaces_.update(scene.surfaces, quality == ViewportQuality::moving ? Detail::coarse : Detail::fine);
     tint_.update(scene.tint);
 }
 
@@ -85,7 +87,7 @@ void ViewportShading::draw(const ViewportFrame& frame, const FramePiece& piece, 
     if (opaque)
         drawOpaque(surface);
     else
-        drawTranslucent(item.outlined, surface);
+        drawTranslucent(frame, program, surface);
     glDisable(GL_CULL_FACE);
     glFrontFace(GL_CCW);
 }
@@ -97,20 +99,27 @@ void ViewportShading::drawOpaque(std::size_t surface) const {
 }
 
 // Pulled a little towards the eye, so that where it lies on an opaque surface it tints that evenly.
-void ViewportShading::drawTranslucent(bool outlined, std::size_t surface) const {
-    glBlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ZERO, outlined ? GL_ZERO : GL_ONE);
+void ViewportShading::drawTranslucent(const ViewportFrame& frame, Program& program, std::size_t surface) {
+    const ViewportSurface& item = frame.scene.surfaces[surface];
+    glBlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ZERO, item.outlined ? GL_ZERO : GL_ONE);
     glEnable(GL_CULL_FACE);
     glEnable(GL_POLYGON_OFFSET_FILL);
     glPolygonOffset(-1.0F, -2.0F);
     glDepthMask(GL_FALSE);
     glCullFace(GL_FRONT);
     surfaces_.draw(surface);
-    // Only the nearest front face: its depth first, then its colour.
+    // Only the nearest front face: its depth first, a trace further away, then its colour.
     glCullFace(GL_BACK);
     glDepthMask(GL_TRUE);
     glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
+    glPolygonOffset(-1.0F, -1.0F);
+    depth_.use();
+    depth_.set("worldFromMesh", item.worldFromSurface);
+    depth_.set("clipFromWorld", frame.clipFromWorld);
     surfaces_.draw(surface);
+    glPolygonOffset(-1.0F, -2.0F);
     glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+    program.use();
     surfaces_.draw(surface);
     glDisable(GL_POLYGON_OFFSET_FILL);
 }
@@ -120,15 +129,12 @@ void ViewportShading::drawCasters(Program& depth, const ViewportFrame& frame) co
     for (std::size_t i = 0; i < surfaces.size(); ++i) {
         if (!surfaces_.drawable(i) || surfaces[i].opacity < 1.0F) continue;
         depth.set("worldFromMesh", surfaces[i].worldFromSurface);
-        if (frame.quality == ViewportQuality::moving)
-            surfaces_.drawCoarse(i);
-        else
-            surfaces_.draw(i);
+        surfaces_.draw(i);
     }
 }
 
 std::size_t ViewportShading::objectCount() const noexcept {
-    std::size_t count = 1 + surfaces_.objectCount() + tint_.objectCount();
+    std::size_t count = 1 + surfaces_.objectCount() + tint_.objectCount() + depth_.objectCount();
     for (const Program& program : moving_) count += program.objectCount();
     for (const Program& program : still_) count += program.objectCount();
     return count;

@@ -17,11 +17,11 @@ public:
     ViewportShading();
 
     /// Uploads what is new in the scene.
-    void update(const ViewportScene& scene);
+    void update(const ViewportScene& scene, ViewportQuality quality);
     [[nodiscard]] const ViewportSurfaces& surfaces() const noexcept { return surfaces_; }
 
-    /// Draws one surface of the scene; a translucent one with blending on, back faces first, then the nearest front
-    /// faces.
+    /// Draws one surface of the scene, in motion in a coarser form; a translucent one with blending on, back faces
+    /// first, then the nearest front faces.
     void draw(const ViewportFrame& frame, const FramePiece& piece, const ViewportLight& light, std::size_t surface);
 
     /// Draws all opaque surfaces with a depth program; in motion a coarser form of them.
@@ -32,7 +32,7 @@ public:
 private:
     Program& begin(const ViewportFrame& frame, const FramePiece& piece, const ViewportLight& light, bool tinted);
     void drawOpaque(std::size_t surface) const;
-    void drawTranslucent(bool outlined, std::size_t surface) const;
+    void drawTranslucent(const ViewportFrame& frame, Program& program, std::size_t surface);
 
     ViewportSurfaces surfaces_;
     ViewportTintVolume tint_;
@@ -40,6 +40,7 @@ private:
     // Plain and tinted.
     std::array<Program, 2> moving_;
     std::array<Program, 2> still_;
+    Program depth_;
 };
 
 } // namespace lumorph

@@ -18,12 +18,6 @@ void attribute(GLuint index, std::size_t stride, std::size_t offset) {
                           reinterpret_cast<const void*>(offset));
 }
 
-std::vector<glm::uvec3> withCoarse(const SurfaceShading& shading) {
-    std::vector<glm::uvec3> all(shading.triangles().begin(), shading.triangles().end());
-    all.insert(all.end(), shading.coarseTriangles().begin(), shading.coarseTriangles().end());
-    return all;
-}
-
 bool sound(const ViewportSurface& surface) {
     return surface.shading && surface.positions && !surface.shading->triangles().empty() && surface.opacity > 0.0F &&
            surface.positions->size() == surface.shading->meshVertexCount();
@@ -41,10 +35,14 @@ Box moved(const Box& box, const glm::mat4& world) {
 
 } // namespace
 
+SurfaceShading::Detail ViewportSurfaces::detailOf(const ViewportSurface& surface) const {
+    return surface.shading->hasCoarse() ? detail_ : SurfaceShading::Detail::fine;
+}
+
 // An entry of this frame is taken; exact ones may be shown several times.
 ViewportSurfaces::Entry* ViewportSurfaces::reuse(const ViewportSurface& surface, bool exact) {
     const auto found = std::find_if(entries_.begin(), entries_.end(), [&](const auto& entry) {
-        if (entry->shading != surface.shading) return false;
+        if (entry->shading != surface.shading || entry->detail != detailOf(surface)) return false;
         return exact ? entry->positions == surface.positions : entry->lastFrame != frame_;
     });
     return found == entries_.end() ? nullptr : found->get();
@@ -53,12 +51,13 @@ ViewportSurfaces::Entry* ViewportSurfaces::reuse(const ViewportSurface& surface,
 ViewportSurfaces::Entry& ViewportSurfaces::add(const ViewportSurface& surface) {
     Entry& entry = *entries_.emplace_back(std::make_unique<Entry>());
     entry.shading = surface.shading;
+    entry.detail = detailOf(surface);
     glBindVertexArray(entry.array.name());
     glBindBuffer(GL_ARRAY_BUFFER, entry.vertices.name());
     attribute(0, sizeof(Vertex), offsetof(Vertex, position));
     attribute(1, sizeof(Vertex), offsetof(Vertex, normal));
     glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, entry.indices.name());
-    fill(GL_ELEMENT_ARRAY_BUFFER, withCoarse(*surface.shading), GL_STATIC_DRAW);
+    fill(GL_ELEMENT_ARRAY_BUFFER, surface.shading->triangles(entry.detail), GL_STATIC_DRAW);
     glBindVertexArray(0);
     return entry;
 }
@@ -67,14 +66,15 @@ void ViewportSurfaces::upload(Entry& entry, const ViewportSurface& surface) {
     entry.positions = surface.positions;
     entry.box = boundingBox(*surface.positions);
     entry.version = ++versions_;
-    shaded_.resize(surface.shading->sources().size());
-    surface.shading->shade(*surface.positions, shaded_);
+    shaded_.resize(surface.shading->sources(entry.detail).size());
+    surface.shading->shade(*surface.positions, shaded_, entry.detail);
     glBindBuffer(GL_ARRAY_BUFFER, entry.vertices.name());
     fill(GL_ARRAY_BUFFER, shaded_, GL_STREAM_DRAW);
     glBindBuffer(GL_ARRAY_BUFFER, 0);
 }
 
-void ViewportSurfaces::update(const std::vector<ViewportSurface>& surfaces) {
+void ViewportSurfaces::update(const std::vector<ViewportSurface>& surfaces, SurfaceShading::Detail detail) {
+    detail_ = detail;
     ++frame_;
     shown_.assign(surfaces.size(), nullptr);
     boxes_.assign(surfaces.size(), Box());
@@ -98,17 +98,10 @@ void ViewportSurfaces::update(const std::vector<ViewportSurface>& surfaces) {
 }
 
 void ViewportSurfaces::draw(std::size_t surface) const {
-    const SurfaceShading& shading = *shown_[surface]->shading;
-    glBindVertexArray(shown_[surface]->array.name());
-    glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(3 * shading.triangles().size()), GL_UNSIGNED_INT, nullptr);
-    glBindVertexArray(0);
-}
-
-void ViewportSurfaces::drawCoarse(std::size_t surface) const {
-    const SurfaceShading& shading = *shown_[surface]->shading;
-    glBindVertexArray(shown_[surface]->array.name());
-    glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(3 * shading.coarseTriangles().size()), GL_UNSIGNED_INT,
-                   reinterpret_cast<const void*>(shading.triangles().size_bytes()));
+    const Entry& entry = *shown_[surface];
+    glBindVertexArray(entry.array.name());
+    glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(3 * entry.shading->triangles(entry.detail).size()),
+                   GL_UNSIGNED_INT, nullptr);
     glBindVertexArray(0);
 }
 

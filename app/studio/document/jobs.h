@@ -37,7 +37,8 @@ public:
     /// of the same place and title that still runs is cancelled first.
     template <class Result>
     Id run(const QString& place, const QString& title, std::function<Result(const Progress&)> work,
-           std::function<void(Result)> done, std::function<void(const std::exception&)> failed) {
+           std::function<void(Result)> done,
+           std::function<void(const std::exception&)> failed) { // NOLINT(performance-unnecessary-value-param): moved
         return start(
             place, title, [work = std::move(work)](const Progress& progress) { return std::any(work(progress)); },
             [done = std::move(done)](std::any result) { done(std::any_cast<Result>(std::move(result))); },

@@ -54,6 +54,7 @@ struct FrameDrawer::Data {
         frame.scene = viewport.work.request.scene;
         frame.camera = viewport.work.request.camera;
         frame.still = viewport.work.quality == ViewportQuality::still;
+        frame.resolution = viewport.work.resolution;
         // Frames overlap on a graphics card: what counts is how long this one kept the next from coming.
         const auto now = Clock::now();
         const auto from = std::max(viewport.begun, delivered);

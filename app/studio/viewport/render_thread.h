@@ -28,7 +28,8 @@ struct DrawnFrame {
     QImage image;
     std::shared_ptr<const ViewportScene> scene;
     ViewCamera camera;
-    bool still = false; ///< in full quality
+    bool still = false;      ///< in full quality
+    double resolution = 1.0; ///< share of each side that it was drawn with
     double milliseconds = 0.0;
 };
 

@@ -69,24 +69,26 @@ TEST(SurfaceShading, ASlitMayOpen) {
     }
 }
 
+constexpr auto kCoarse = SurfaceShading::Detail::coarse;
+
 TEST(SurfaceShading, TheCoarseFormIsSmallAndNearTheSurface) {
     const TriangleMesh torus = torusMesh(0.06F, 0.02F, 264);
     const SurfaceShading shading(torus, kCrease);
     ASSERT_GT(torus.triangles.size(), 65'000U);
-    EXPECT_LT(shading.coarseTriangles().size(), 20'000U);
-    EXPECT_GT(shading.coarseTriangles().size(), 3'000U);
+    EXPECT_LT(shading.triangles(kCoarse).size(), 20'000U);
+    EXPECT_GT(shading.triangles(kCoarse).size(), 3'000U);
     double area = 0.0;
     double coarse = 0.0;
-    const auto areaOf = [&](const glm::uvec3& t) {
-        const glm::vec3 a = torus.positions[shading.sources()[t.x]];
-        return 0.5 * static_cast<double>(glm::length(glm::cross(torus.positions[shading.sources()[t.y]] - a,
-                                                                torus.positions[shading.sources()[t.z]] - a)));
+    const auto areaOf = [&](const glm::uvec3& t, SurfaceShading::Detail detail) {
+        const glm::vec3 a = torus.positions[shading.sources(detail)[t.x]];
+        return 0.5 * static_cast<double>(glm::length(glm::cross(torus.positions[shading.sources(detail)[t.y]] - a,
+                                                                torus.positions[shading.sources(detail)[t.z]] - a)));
     };
-    for (const glm::uvec3& t : shading.triangles()) area += areaOf(t);
-    for (const glm::uvec3& t : shading.coarseTriangles()) coarse += areaOf(t);
+    for (const glm::uvec3& t : shading.triangles()) area += areaOf(t, SurfaceShading::Detail::fine);
+    for (const glm::uvec3& t : shading.triangles(kCoarse)) coarse += areaOf(t, kCoarse);
     EXPECT_NEAR(coarse / area, 1.0, 0.08);
     const SurfaceShading small(boxMesh(glm::vec3(0.0F), glm::vec3(1.0F)), kCrease);
-    EXPECT_EQ(small.coarseTriangles().size(), 12U);
+    EXPECT_EQ(small.triangles(kCoarse).size(), 12U);
 }
 
 TEST(SurfaceShading, RefusesAnIndexBeyondThePositions) {

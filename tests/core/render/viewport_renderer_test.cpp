@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "core/render/headless_context.h"
+#include "core/render/studio_look.h"
 #include "tests/core/render/viewport_scenes.h"
 
 namespace lumorph {

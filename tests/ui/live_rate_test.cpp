@@ -1,0 +1,125 @@
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <cstdio>
+#include <memory>
+#include <thread>
+#include <vector>
+
+#include <QApplication>
+#include <QEventLoop>
+#include <QTimer>
+#include <gtest/gtest.h>
+
+#include "app/studio/shell/main_window.h"
+#include "app/studio/viewport/viewport_widget.h"
+#include "app/workspaces/workspaces.h"
+#include "core/base/atomic_file.h"
+#include "core/geometry/model.h"
+#include "tests/support/animated_target.h"
+#include "tests/ui/desk_world.h"
+
+namespace lumorph::studio {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+/// Knocks at the window's thread from another one and keeps how long it took to answer.
+class StallWatch {
+public:
+    StallWatch()
+        : thread_([this](const std::stop_token& stop) {
+              while (!stop.stop_requested()) {
+                  std::this_thread::sleep_for(std::chrono::milliseconds(2));
+                  if (waiting_.exchange(true)) continue;
+                  QMetaObject::invokeMethod(
+                      &here_, [this, asked = Clock::now()] { answer(asked); }, Qt::QueuedConnection);
+              }
+          }) {}
+    void begin() { longest_ = {}; }
+    [[nodiscard]] double longestMilliseconds() const {
+        return std::chrono::duration<double, std::milli>(longest_).count();
+    }
+
+private:
+    void answer(Clock::time_point asked) {
+        longest_ = std::max(longest_, Clock::now() - asked);
+        waiting_ = false;
+    }
+    QObject here_;
+    Clock::duration longest_{};
+    std::atomic<bool> waiting_ = false;
+    std::jthread thread_; ///< last: ends before what it uses
+};
+
+/// The whole studio in a window of 1600 x 1000 with the bundled tablet, and a target of 70,000 triangles that moves.
+class LiveRate : public testing::Test {
+protected:
+    LiveRate() : window_(studio_, makeWorkspaces(studio_)) {
+        writeFileAtomically(files_ / "swim.glb", writeGlb(test::animatedEllipsoid()));
+        window_.resize(1600, 1000);
+        window_.showWorkspace("field");
+        window_.show();
+        studio_.desk.newProject();
+    }
+
+    [[nodiscard]] bool openTarget() {
+        const auto idle = [&] { return studio_.jobs.running().empty(); };
+        if (!test::eventually([&] { return idle() && studio_.document.state().field.field; })) return false;
+        studio_.desk.openTarget(files_ / "swim.glb");
+        return test::eventually([&] { return idle() && studio_.loop.frame() && studio_.loop.frame()->matched; });
+    }
+
+    test::DeskFiles files_;
+    Studio studio_;
+    MainWindow window_;
+};
+
+/// Of `seconds` in which the target played.
+struct Rates {
+    double matched = 0.0; ///< matches a second that reached the window
+    double painted = 0.0; ///< frames a second, each of a newer match
+    double drawn = 0.0;   ///< share of each side that the last frame was drawn with
+    double stall = 0.0;   ///< milliseconds
+};
+
+/// The event loop as the program runs it: asleep while nothing happens.
+void run(std::chrono::milliseconds time) {
+    QEventLoop loop;
+    QTimer::singleShot(time, Qt::PreciseTimer, &loop, &QEventLoop::quit);
+    loop.exec();
+}
+
+Rates measure(Studio& studio, const ViewportWidget& view, std::chrono::milliseconds time) {
+    int matches = 0;
+    const auto count = QObject::connect(&studio.loop, &StudioLoop::framed, [&] { ++matches; });
+    StallWatch watch;
+    run(std::chrono::milliseconds(200));
+    watch.begin();
+    matches = 0;
+    const std::uint64_t before = view.framesPainted();
+    const auto start = Clock::now();
+    run(time);
+    const double seconds = std::chrono::duration<double>(Clock::now() - start).count();
+    QObject::disconnect(count);
+    return {matches / seconds, static_cast<double>(view.framesPainted() - before) / seconds, view.frameResolution(),
+            watch.longestMilliseconds()};
+}
+
+TEST_F(LiveRate, ThirtyMatchesASecondAreSeenWhileALargeTargetMoves) {
+    ASSERT_TRUE(openTarget());
+    auto* view = window_.findChild<ViewportWidget*>("field.viewport");
+    ASSERT_TRUE(view);
+    ASSERT_EQ(studio_.document.state().target.target->solid.mesh.triangles.size(), 70'000U);
+    run(std::chrono::seconds(2)); // until the picture has found its resolution
+    const Rates rates = measure(studio_, *view, std::chrono::seconds(5));
+    std::printf("viewport %dx%d: %.1f matches/s to the window, %.1f painted/s, drawn at %.2f, longest stall %.1f ms\n",
+                view->width(), view->height(), rates.matched, rates.painted, rates.drawn, rates.stall);
+    RecordProperty("painted", static_cast<int>(rates.painted));
+    EXPECT_GE(rates.painted, 30.0);
+    EXPECT_LE(rates.painted, rates.matched + 1.0) << "no match is painted twice";
+    EXPECT_LE(rates.stall, 100.0);
+}
+
+} // namespace
+} // namespace lumorph::studio
