@@ -15,6 +15,7 @@ namespace {
 
 constexpr int kHeight = 40;
 constexpr int kSearchWidth = 240;
+constexpr int kNarrow = 880;
 
 /// The mark of the program: a sheet that three actuators lift.
 class AppMark : public QWidget {
@@ -146,6 +147,7 @@ void TopBar::setWorkspace(const QString& id) {
 }
 
 void TopBar::setKiosk() {
+    kiosk_ = true;
     menus_->hide();
     for (QToolButton* tab : tabs_) tab->hide();
     for (QWidget* tool : tools_) tool->hide();
@@ -156,8 +158,10 @@ void TopBar::resizeEvent(QResizeEvent* event) {
     fitSearch();
 }
 
-/// The field with its words where there is room, else the glass alone.
+/// The field with its words where there is room, else the glass alone; in a narrow window undo and redo are left to
+/// the menu, so that all menus are in sight.
 void TopBar::fitSearch() {
+    for (std::size_t k = 0; k < 2 && !kiosk_; ++k) tools_[k]->setVisible(width() >= kNarrow);
     int others = 220 + stop_->minimumWidth() + menus_->sizeHint().width();
     for (const QToolButton* tab : tabs_) others += tab->sizeHint().width() + 4;
     const bool roomy = width() - others > kSearchWidth;

@@ -43,6 +43,7 @@ private:
     QMenuBar* menus_ = nullptr;
     std::vector<QToolButton*> tabs_;
     std::vector<QWidget*> tools_;
+    bool kiosk_ = false;
     QPushButton* search_ = nullptr;
     QPushButton* stop_ = nullptr;
 };

@@ -1,5 +1,7 @@
 #include "app/studio/shell/workspace_page.h"
 
+#include <utility>
+
 #include <algorithm>
 
 #include <QDockWidget>
@@ -30,6 +32,7 @@ protected:
 
 constexpr int kLayoutVersion = 1;
 constexpr int kUsualDockWidth = 312;
+constexpr int kNarrow = 960; ///< below it two columns of docks would leave no room for the view
 
 } // namespace
 
@@ -106,13 +109,16 @@ void WorkspacePage::setActive(bool active) {
 
 /// While the page is hidden its floating docks are too, and that is not what the user chose.
 void WorkspacePage::keepLayout() {
-    if (!kiosk_ && hiddenFloats_.empty()) settings_.setLayout(workspace_.id(), saveState(kLayoutVersion));
+    if (kiosk_ || !hiddenFloats_.empty()) return;
+    settings_.setLayout(workspace_.id(), wideLayout_.isEmpty() ? saveState(kLayoutVersion) : wideLayout_);
 }
 
 void WorkspacePage::resetLayout() {
     hiddenFloats_.clear();
+    wideLayout_.clear();
     restoreState(firstLayout_, kLayoutVersion);
     applyFirstSizes();
+    fitColumns();
     keepLayout();
 }
 
@@ -123,9 +129,38 @@ void WorkspacePage::setKiosk() {
 
 void WorkspacePage::showEvent(QShowEvent* event) {
     QMainWindow::showEvent(event);
+    fitColumns();
     if (sized_) return;
     sized_ = true;
-    QTimer::singleShot(0, this, [this] { applyFirstSizes(); }); // the layout has its size only after this event
+    QTimer::singleShot(0, this, [this] { // the layout has its size only after this event
+        if (wideLayout_.isEmpty()) applyFirstSizes();
+    });
+}
+
+void WorkspacePage::resizeEvent(QResizeEvent* event) {
+    QMainWindow::resizeEvent(event);
+    if (isVisible()) fitColumns();
+}
+
+/// In a narrow window all docks lie behind each other in one column, until it is wide again.
+void WorkspacePage::fitColumns() {
+    const bool narrow = width() < kNarrow;
+    if (kiosk_ || narrow == !wideLayout_.isEmpty()) return;
+    if (!narrow) {
+        restoreState(std::exchange(wideLayout_, {}), kLayoutVersion);
+        return;
+    }
+    wideLayout_ = saveState(kLayoutVersion);
+    QDockWidget* first = nullptr;
+    for (QDockWidget* dock : docks_) {
+        if (dock->isFloating()) continue;
+        if (first == nullptr)
+            addDockWidget(Qt::LeftDockWidgetArea, dock);
+        else
+            tabifyDockWidget(first, dock);
+        if (first == nullptr) first = dock;
+    }
+    if (first != nullptr) first->raise();
 }
 
 /// A column of docks is as wide as suits numbers, and leaves more than half of a small window to the view.

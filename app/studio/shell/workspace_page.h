@@ -28,18 +28,21 @@ public:
 
 protected:
     void showEvent(QShowEvent* event) override;
+    void resizeEvent(QResizeEvent* event) override;
 
 private:
     void addDock(const WorkspaceDock& brought, QDockWidget* before);
     void addCommands(Commands& commands, QDockWidget* dock, const WorkspaceDock& brought);
     void applyFirstSizes();
+    void fitColumns();
 
     Workspace& workspace_;
     Settings& settings_;
     std::vector<QDockWidget*> docks_;
     std::vector<QPointer<QDockWidget>> hiddenFloats_;
     QByteArray firstLayout_;
-    bool sized_ = false; ///< the docks' first widths were given
+    QByteArray wideLayout_; ///< what it was before the window became narrow; empty while it is wide
+    bool sized_ = false;    ///< the docks' first widths were given
     bool active_ = false;
     bool kiosk_ = false;
 };

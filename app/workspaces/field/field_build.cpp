@@ -114,6 +114,8 @@ BuildDialog::BuildDialog(Studio& studio, QWidget* parent)
     connect(presets_, &QComboBox::activated, this, &BuildDialog::applyPreset);
     check();
     resolution_.field->setFocus();
+    ensurePolished();
+    resize(minimumWidth(), layout->totalHeightForWidth(minimumWidth())); // Qt would cut it to two thirds of the screen
 }
 
 Entry BuildDialog::addEntry(QVBoxLayout& layout, const QString& id, const QString& label, const QString& name,

@@ -12,6 +12,8 @@ namespace {
 
 constexpr int kMargin = 16;
 constexpr int kNoticeWidth = 480;
+constexpr int kNarrow = 800;
+constexpr int kMarksHeight = 56; ///< of the axes and the words beside them
 
 QFrame* makeBar(QWidget* parent) {
     auto* bar = new QFrame(parent);
@@ -39,17 +41,29 @@ FieldStage::FieldStage(Studio& studio, Throttle& numbers, QWidget* parent)
         padded->addWidget(widget);
         grid->addLayout(padded, row, 0, 1, 3, alignment);
         widget->raise();
+        return padded;
     };
     lay(makeTools(), 0, Qt::AlignLeft | Qt::AlignTop);
     lay(makeHint(), 1, Qt::AlignCenter);
     lay(makeNotices(), 1, Qt::AlignHCenter | Qt::AlignTop);
-    lay(timeline_, 2, Qt::AlignHCenter | Qt::AlignBottom);
-    lay(readout_, 2, Qt::AlignRight | Qt::AlignBottom);
+    timelineMargins_ = lay(timeline_, 2, Qt::AlignHCenter | Qt::AlignBottom);
+    readoutMargins_ = lay(readout_, 2, Qt::AlignRight | Qt::AlignBottom);
     grid->setRowStretch(1, 1);
     connect(&numbers, &Throttle::due, this, [this] {
         if (studio_.loop.frame()) readout_->show(*studio_.loop.frame());
     });
     refresh();
+}
+
+void FieldStage::resizeEvent(QResizeEvent* event) {
+    QWidget::resizeEvent(event);
+    // Side by side where there is room; else above each other, and above the marks in the corner.
+    const bool narrow = width() < kNarrow;
+    const int below = narrow ? kMargin + kMarksHeight : kMargin;
+    timelineMargins_->setContentsMargins(kMargin, kMargin, kMargin, below);
+    readout_->setCompact(narrow);
+    const int timeline = narrow ? timeline_->sizeHint().height() + kMargin / 2 : 0;
+    readoutMargins_->setContentsMargins(kMargin, kMargin, kMargin, below + timeline);
 }
 
 QWidget* FieldStage::makeTools() {

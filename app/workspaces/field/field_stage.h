@@ -1,5 +1,7 @@
 #pragma once
 
+#include <QLayout>
+
 #include "app/studio/shell/studio.h"
 #include "app/studio/viewport/viewport_widget.h"
 #include "app/workspaces/field/fit_readout.h"
@@ -22,6 +24,9 @@ public:
     /// Notices about the target stand over the view while no dock shows them.
     void setTargetNoticesShown(bool shown);
 
+protected:
+    void resizeEvent(QResizeEvent* event) override;
+
 private:
     [[nodiscard]] QWidget* makeTools();
     [[nodiscard]] QWidget* makeHint();
@@ -31,6 +36,8 @@ private:
     ViewportWidget* viewport_;
     FitReadout* readout_;
     Timeline* timeline_;
+    QLayout* timelineMargins_ = nullptr;
+    QLayout* readoutMargins_ = nullptr;
     QWidget* hint_ = nullptr;
     QWidget* targetNotices_ = nullptr;
 };

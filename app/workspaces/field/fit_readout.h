@@ -16,11 +16,14 @@ public:
     /// Hidden while nothing is matched.
     void show(const MatchFrame& frame);
     using QWidget::show;
+    /// The IoU alone, for a small view.
+    void setCompact(bool compact);
 
 private:
     QLabel* iou_;
     QLabel* unmatched_;
     QLabel* overfilled_;
+    QWidget* volumes_ = nullptr;
 };
 
 } // namespace lumorph::studio

@@ -2,7 +2,9 @@
 
 #include <cmath>
 
+#include <QGuiApplication>
 #include <QPointer>
+#include <QScreen>
 #include <QShowEvent>
 #include <QVBoxLayout>
 
@@ -11,7 +13,13 @@
 namespace lumorph::studio {
 namespace {
 
-constexpr QSize kPreview(384, 240);
+/// Smaller on a small screen, so that the buttons below stay on it.
+QSize previewBox() {
+    constexpr QSize kUsual(384, 240);
+    constexpr int kSmallScreen = 680;
+    const bool small = QGuiApplication::primaryScreen()->availableSize().height() < kSmallScreen;
+    return small ? kUsual * 0.38 : kUsual;
+}
 constexpr double kMinSide = 64.0;
 constexpr double kMaxSide = 8192.0;
 
@@ -25,7 +33,9 @@ ValueField* sideField(const QString& id, int value, const QString& name) {
 }
 
 /// The largest size of this shape inside the preview.
-QSize previewSize(const QSize& size) { return size.scaled(kPreview, Qt::KeepAspectRatio).expandedTo(QSize(16, 16)); }
+QSize previewSize(const QSize& size) {
+    return size.scaled(previewBox(), Qt::KeepAspectRatio).expandedTo(QSize(16, 16));
+}
 
 } // namespace
 
@@ -36,7 +46,7 @@ StyleForm::StyleForm(const QString& id, const PictureStyle& start, const std::ve
       height_(sideField(id + ".height", start.size.height(), tr("Height in pixels"))), theme_(new QComboBox),
       grid_(new QCheckBox(tr("&Grid on the ground"))), label_(new QCheckBox(tr("Write how &large its squares are"))) {
     picture_->setObjectName(id + ".preview");
-    picture_->setFixedSize(kPreview);
+    picture_->setFixedSize(previewBox());
     picture_->setAlignment(Qt::AlignCenter);
     picture_->setAccessibleName(tr("Preview"));
     picture_->setProperty("look", "muted");

@@ -43,23 +43,25 @@ public:
 
 private:
     QWidget* makeContents() {
-        auto* contents = new QWidget;
-        auto* layout = new QVBoxLayout(contents);
+        const Column column = makeColumn();
+        QWidget* contents = column.widget;
+        QVBoxLayout* layout = column.layout;
         layout->setContentsMargins(16, 12, 16, 16);
-        layout->setSpacing(8);
-        summary_ = new QLabel(contents);
+        layout->setAlignment({}); // the list takes what height there is
+        summary_ = new QLabel;
         summary_->setObjectName("rig.summary");
         summary_->setProperty("look", "muted");
         summary_->setWordWrap(true);
         list_->setObjectName("rig.list");
         list_->setAccessibleName("Actuators");
         list_->setUniformItemSizes(true);
+        list_->setMinimumHeight(160); // of three rows; a lower dock scrolls
         list_->setMouseTracking(true);
         list_->setItemDelegate(new ActuatorItem(list_));
         layout->addWidget(summary_);
         layout->addWidget(list_, 1);
         layout->addLayout(details_);
-        layout->addWidget(makeCommandButton(studio_.commands.find("rig.wiggle"), "rig.wiggleButton", contents));
+        layout->addWidget(makeCommandButton(studio_.commands.find("rig.wiggle"), "rig.wiggleButton", nullptr));
         return contents;
     }
 

@@ -1,6 +1,7 @@
 #include "app/workspaces/rig/rig_workspace.h"
 
 #include <optional>
+#include <utility>
 
 #include <QElapsedTimer>
 #include <QFileDialog>
@@ -15,6 +16,7 @@ namespace lumorph::studio {
 
 namespace {
 
+constexpr int kSettleMilliseconds = 200;
 constexpr int kWiggleMilliseconds = 33;
 constexpr const char* kRigFolder = "folders/rig";
 
@@ -50,6 +52,8 @@ struct RigWorkspace::Data : public QObject {
     QTimer tick;
     bool active = false;
     bool unframed = true;
+    QSize framedSize;
+    QElapsedTimer sinceSized;
 };
 
 void RigWorkspace::Data::listen() {
@@ -146,7 +150,10 @@ void RigWorkspace::Data::refresh() {
 
 void RigWorkspace::Data::frameOnce(const ViewportScene& scene) {
     if (view->width() < 2 || view->height() < 2) return;
-    unframed = false;
+    // Until the docks beside it have their widths, the view has not its own.
+    if (std::exchange(framedSize, view->size()) != view->size() || !sinceSized.isValid()) sinceSized.start();
+    unframed = sinceSized.elapsed() < kSettleMilliseconds;
+    if (unframed) QTimer::singleShot(kSettleMilliseconds, this, &Data::refresh);
     const float aspect = static_cast<float>(view->width()) / static_cast<float>(view->height());
     view->setCamera(framed(firstCamera(), scene.bounds, aspect));
 }
