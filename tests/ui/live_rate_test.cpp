@@ -111,7 +111,7 @@ TEST_F(LiveRate, ThirtyMatchesASecondAreSeenWhileALargeTargetMoves) {
     auto* view = window_.findChild<ViewportWidget*>("field.viewport");
     ASSERT_TRUE(view);
     ASSERT_EQ(studio_.document.state().target.target->solid.mesh.triangles.size(), 70'000U);
-    run(std::chrono::seconds(2)); // until the picture has found its resolution
+    run(std::chrono::seconds(3)); // until the picture has found its resolution
     const Rates rates = measure(studio_, *view, std::chrono::seconds(5));
     std::printf("viewport %dx%d: %.1f matches/s to the window, %.1f painted/s, drawn at %.2f, longest stall %.1f ms\n",
                 view->width(), view->height(), rates.matched, rates.painted, rates.drawn, rates.stall);

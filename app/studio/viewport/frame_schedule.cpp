@@ -5,7 +5,7 @@
 namespace lumorph::studio {
 namespace {
 
-constexpr double kStep = 0.84; // of a side; about 0.7 of the pixels
+constexpr double kStep = 0.92; // of a side; about 0.85 of the pixels
 constexpr std::size_t kRemembered = 5;
 
 double median(std::vector<double> values) {
@@ -79,7 +79,7 @@ void FrameSchedule::adapt(Slot& slot, double milliseconds) {
     // Upwards only when the larger frame will surely be in time, so that it does not swing.
     if (usual > kBudgetMilliseconds)
         wanted = std::max(kLowestResolution, slot.resolution * kStep);
-    else if (usual < 0.85 * kBudgetMilliseconds * kStep * kStep)
+    else if (usual < 0.92 * kBudgetMilliseconds * kStep * kStep)
         wanted = std::min(1.0, slot.resolution / kStep);
     if (wanted == slot.resolution) return;
     slot.resolution = wanted;

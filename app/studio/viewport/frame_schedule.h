@@ -20,7 +20,7 @@ public:
     /// How long a viewport must be quiet before it is drawn in full quality.
     static constexpr std::chrono::milliseconds kQuiet{120};
     /// A moving frame may take this long.
-    static constexpr double kBudgetMilliseconds = 28.0;
+    static constexpr double kBudgetMilliseconds = 27.0;
     static constexpr double kLowestResolution = 0.5;
 
     struct Work {

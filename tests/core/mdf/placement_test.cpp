@@ -137,8 +137,8 @@ Model growingBox() {
 // R19: the device follows an animation under its velocity limits.
 TEST_F(Placing, AClipFollowsItsAnimationUnderTheVelocityLimits) {
     const Model model = growingBox();
-    const auto frames =
-        matchClip(field_, coverage_, voting_, model, model.animations.front(), {.framesPerSecond = 20.0, .placement = {}});
+    const auto frames = matchClip(field_, coverage_, voting_, model, model.animations.front(),
+                                  {.framesPerSecond = 20.0, .placement = {}});
     ASSERT_EQ(frames.size(), 21U);
     for (std::size_t k = 1; k < frames.size(); ++k)
         for (std::size_t i = 0; i < 3; ++i)
@@ -150,7 +150,8 @@ TEST_F(Placing, AClipFollowsItsAnimationUnderTheVelocityLimits) {
     const std::string csv = clipCsv(field_, frames);
     EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 22);
     EXPECT_NE(csv.find("\"lift 0 level\",\"lift 0 stroke\""), std::string::npos);
-    EXPECT_THROW((void)matchClip(field_, coverage_, voting_, model, model.animations.front(), {.framesPerSecond = 0.0, .placement = {}}),
+    EXPECT_THROW((void)matchClip(field_, coverage_, voting_, model, model.animations.front(),
+                                 {.framesPerSecond = 0.0, .placement = {}}),
                  InvalidInput);
     EXPECT_THROW((void)matchClip(field_, coverage_, voting_, model, Model::Animation{}), InvalidInput);
 }
