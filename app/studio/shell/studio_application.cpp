@@ -24,8 +24,9 @@ extern "C" void wakeOnSignal(int /*signal*/) {
     [[maybe_unused]] const auto written = ::write(interruptSockets[0], &byte, 1);
 }
 
-constexpr auto kNoDisplay = "lumorph-studio: display: no window can be shown here (%s); start it in a desktop session, "
-                            "connect by `ssh -X`, or use `lumorph render` and `lumorph match`, which need no display\n";
+constexpr auto kNoDisplay =
+    "lumorph-studio: display: no window can be shown here (%s); start it in a desktop session, "
+    "connect by `ssh -X`, or use `lumorph-studio --headless FOLDER` and `lumorph match`, which need no display\n";
 
 /// Qt ends the program when it finds no display; it should say what to do, and exit like any other failure.
 void tellNoDisplay(QtMsgType type, const QMessageLogContext& /*context*/, const QString& /*message*/) {
