@@ -125,6 +125,8 @@ void ViewportWidget::Data::tick() {
 void ViewportWidget::Data::paintFrame(QPainter& painter) const {
     if (frame.image.isNull()) {
         painter.fillRect(self.rect(), currentPalette().window);
+        painter.setPen(currentPalette().textMuted);
+        painter.drawText(self.rect(), Qt::AlignCenter, tr("Preparing the view..."));
         return;
     }
     const QSize wanted = pixels();
