@@ -18,9 +18,9 @@ FileWatch::FileWatch(QObject* parent) : QObject(parent) {
     connect(&watcher_, &QFileSystemWatcher::directoryChanged, &rest_, qOverload<>(&QTimer::start));
 }
 
-void FileWatch::watch(std::map<QString, Watched> files) {
+void FileWatch::watch(const std::map<QString, Watched>& files) {
     std::map<QString, Entry> next;
-    for (auto& [place, file] : files) {
+    for (const auto& [place, file] : files) {
         const auto old = files_.find(place);
         if (old != files_.end() && old->second.file.path == file.path && old->second.file.stamp == file.stamp)
             next[place] = std::move(old->second);

@@ -23,7 +23,7 @@ public:
     explicit FileWatch(QObject* parent = nullptr);
 
     /// Watches these instead of the ones before, by place.
-    void watch(std::map<QString, Watched> files);
+    void watch(const std::map<QString, Watched>& files);
 
 signals:
     /// Once for each new state of the file.

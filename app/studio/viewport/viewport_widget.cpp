@@ -199,7 +199,7 @@ void ViewportWidget::setSelectionBox(const Box& box) { data_->selection = box; }
 
 void ViewportWidget::setGizmo(std::optional<Gizmo> gizmo) {
     if (!gizmo && data_->grip) data_->cancelGrip(false);
-    data_->gizmo = std::move(gizmo);
+    data_->gizmo = gizmo;
     if (!data_->gizmo) data_->setHot(std::nullopt, data_->hotSide);
     data_->changed();
 }
