@@ -58,7 +58,7 @@ void ViewportTintVolume::update(const std::optional<ViewportTint>& tint) {
         volume_.reset();
         return;
     }
-    if (!volume_) volume_.emplace();
+    if (!volume_) volume_ = std::make_unique<Volume>();
     if (volume_->classes == tint->classes && volume_->dimensions == tint->frame.dimensions) return;
     volume_->classes = tint->classes;
     volume_->dimensions = tint->frame.dimensions;

@@ -18,7 +18,7 @@ public:
     /// number of classes does not fit its frame, or that the driver cannot hold, counts as none.
     void update(const std::optional<ViewportTint>& tint);
 
-    [[nodiscard]] bool there() const noexcept { return volume_.has_value(); }
+    [[nodiscard]] bool there() const noexcept { return volume_ != nullptr; }
     /// Sets and binds what tint.glsl needs; only the given classes (one a bit) tint. There must be a tint.
     void apply(Program& program, const ViewportFrame& frame, std::uint8_t classes, int textureUnit) const;
 
@@ -30,7 +30,7 @@ private:
         std::shared_ptr<const std::vector<std::uint8_t>> classes;
         glm::ivec3 dimensions{0};
     };
-    std::optional<Volume> volume_;
+    std::unique_ptr<Volume> volume_;
 };
 
 } // namespace lumorph
