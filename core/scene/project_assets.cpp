@@ -31,7 +31,7 @@ std::optional<std::string> resourceName(const fs::path& file) {
 }
 
 /// The name as a project file can hold it.
-std::string checkedName(std::string name, const fs::path& source) {
+std::string checkedName(const std::string& name, const fs::path& source) {
     try {
         (void)nlohmann::json(name).dump();
     } catch (const nlohmann::json::exception&) {
