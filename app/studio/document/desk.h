@@ -31,8 +31,8 @@ public:
     void openField(const std::filesystem::path& file);
     /// Opens a target and places it: as large as fits the frame (`fitPlacement`).
     void openTarget(const std::filesystem::path& file);
-    /// Whether a target that stands still is then moved where it matches best, by a second step of undo. It shows at
-    /// once where it fits; whoever moves it or takes it back meanwhile is not interfered with. Off at first.
+    /// Whether a closed target that stands still is then moved where it matches best, by a second step of undo. It
+    /// shows at once where it fits; whoever moves it or takes it back meanwhile is not interfered with. Off at first.
     void setPlacesNewTargets(bool places);
     void removeTarget();
     void buildField(const BuildOptions& options);

@@ -174,7 +174,9 @@ void Desk::Data::openTarget(const fs::path& file) {
             });
             tellTarget(target.asset);
             emit desk.opened(fullName(file));
-            if (!placesNewTargets || target.asset.target->duration > 0.0) return;
+            // Each look at an open mesh takes tens of milliseconds, and the search needs hundreds of them.
+            const MatchTarget& opened = *target.asset.target;
+            if (!placesNewTargets || opened.duration > 0.0 || !opened.solid.closed) return;
             unplaced = {target.asset.target, document.state().placement};
             placeNew();
         },
