@@ -147,7 +147,8 @@ private:
         const std::uint64_t first = numberOf(in.voxel);
         const std::uint64_t second = numberOf(out.voxel);
         const glm::ivec3 step = glm::abs(in.voxel - out.voxel);
-        const auto direction = static_cast<std::uint64_t>(step.x + 2 * step.y + 4 * step.z);
+        const int way = step.x + 2 * step.y + 4 * step.z;
+        const auto direction = static_cast<std::uint64_t>(way);
         const auto [known, isNew] = vertices_.try_emplace(8 * std::min(first, second) + direction,
                                                           static_cast<std::uint32_t>(mesh_.positions.size()));
         if (isNew) {

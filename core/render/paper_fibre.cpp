@@ -12,7 +12,8 @@ std::vector<std::uint8_t> paperFibre(int side) {
     const auto share = [&] { return static_cast<float>(random()) / 4294967296.0F; };
     const auto at = [&](float x, float y) -> float& {
         const auto wrapped = [&](float v) { return (static_cast<int>(std::floor(v)) % side + side) % side; };
-        return light[static_cast<std::size_t>(wrapped(y) * side + wrapped(x))];
+        const int index = wrapped(y) * side + wrapped(x);
+        return light[static_cast<std::size_t>(index)];
     };
     const auto size = static_cast<float>(side);
     for (int fibre = 0; fibre < side * side / 28; ++fibre) {

@@ -22,7 +22,7 @@ constexpr std::size_t kCoarseTriangles = 9000;
 // A corner of a face: the vertex of the mesh and the normal it shows.
 struct Corner {
     std::uint32_t source, normal, corner;
-    auto operator<=>(const Corner&) const = default;
+    auto operator<=>(const Corner&) const = default; // NOLINT(modernize-use-nullptr): misread by clang-tidy 14
 };
 
 struct HalfEdge {
