@@ -97,7 +97,7 @@ void Desk::Data::watchFiles() {
     add("rig", state.rig.path, stamps.rig);
     add("field", state.field.path, stamps.field);
     add("target", state.target.path, stamps.target);
-    watch.watch(std::move(files));
+    watch.watch(files);
 }
 
 void Desk::Data::tellChanged(const QString& place, const QString& path) {
