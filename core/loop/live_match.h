@@ -11,12 +11,15 @@
 #include "core/base/clock.h"
 #include "core/base/units.h"
 #include "core/loop/match_target.h"
+#include "core/loop/pose_stream.h"
 #include "core/mdf/coverage.h"
 #include "core/mdf/field.h"
 #include "core/mdf/refine.h"
 #include "core/mdf/voting.h"
 #include "core/motion/motion.h"
 #include "core/rig/rig.h"
+#include "core/scene/scene.h"
+#include "core/scene/scene_assets.h"
 
 namespace lumorph {
 
@@ -47,11 +50,18 @@ struct MatchWish {
     bool dancing = false;        ///< random moves, while not live
     bool stopped = false;        ///< STOP: servos stay where they are until it is taken back
     bool showTint = true;        ///< work out which voxels are unmatched and overfilled
+
+    std::shared_ptr<const Scene> scene; ///< what light shows, and what of it servos follow; may be empty
+    std::shared_ptr<const SceneAssets> assets;
+    std::shared_ptr<const PoseBoard> poses; ///< tracked heads and device; without a head the scene's own eye
+    bool scenePlaying = true;               ///< the scene's time runs
+    std::optional<double> sceneSeek;        ///< scene time to go to, seconds; heeded once for each new value
 };
 
 /// Milliseconds of each stage of one frame.
 struct MatchTimes {
     double pose = 0.0, voxelize = 0.0, match = 0.0, refine = 0.0, motion = 0.0, deform = 0.0, total = 0.0;
+    double track = 0.0, rule = 0.0; ///< poses and viewer; view dependence and frequency split
 };
 
 /// Classes of MatchFrame::classes.
@@ -86,6 +96,15 @@ struct MatchFrame {
     double shareBeyondFrame = 0.0;        ///< of the target's volume
     double shareUnreachable = 0.0;        ///< of the target's voxels that no actuator changes
     std::shared_ptr<const std::vector<std::uint8_t>> classes; ///< one a voxel, x fastest; empty unless asked for
+
+    std::shared_ptr<const Scene> scene; ///< of the wish
+    std::shared_ptr<const SceneAssets> assets;
+    double sceneSeconds = 0.0;
+    glm::mat4 worldFromDevice{1.0F};  ///< predicted for the moment at which the frame is seen
+    std::optional<glm::vec3> eye;     ///< of the viewer who is followed, predicted likewise; world metres
+    std::string viewer;               ///< his name; empty for the scene's own eye
+    std::vector<double> viewStrokes;  ///< what view dependence asks for; empty while it is off
+    std::vector<double> splitStrokes; ///< what the frequency split asks for; empty without a split item
     MatchTimes ms;
 };
 

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <glm/vec2.hpp>
+
+#include "core/geometry/calibrated_camera.h"
+#include "core/render/show_frame.h"
+
+namespace lumorph {
+
+/// Draws the virtual scene: the device's skin, the table and all items, lit, shadowed, in fog, with holes. Keeps
+/// programs, buffers and textures between frames.
+class EyePass {
+public:
+    EyePass();
+    ~EyePass();
+    EyePass(EyePass&&) noexcept;
+    EyePass& operator=(EyePass&&) noexcept;
+
+    /// Uploads what changed since the last frame and draws the shadow map. Before the two below.
+    void prepare(const ShowFrame& frame);
+
+    /// The picture that the eye should see, through an undistorted camera, into a framebuffer of the camera's size with
+    /// depth: linear light in [0, 1] after tone mapping (a format of at least 16 bits, or sRGB encoded by the
+    /// framebuffer with GL_FRAMEBUFFER_SRGB); alpha is 1. All of the frame is filled.
+    void draw(const ShowFrame& frame, const CalibratedCamera& camera, unsigned framebuffer);
+
+    /// Device and table alone as they are, physically, through any camera, shaded by what does not depend on a viewer:
+    /// their materials in diffuse light with shadows, without reflection, refraction, holes and items above them. For
+    /// places that no eye sees. Linear light as above; black where neither is.
+    void drawUnseen(const ShowFrame& frame, const CalibratedCamera& camera, unsigned framebuffer);
+
+    /// Programs this driver refused, with file and line, and the plain one that stands in for them.
+    [[nodiscard]] std::vector<std::string> warnings() const;
+    [[nodiscard]] std::size_t objectCount() const noexcept;
+
+private:
+    struct Data;
+    std::unique_ptr<Data> data_;
+};
+
+} // namespace lumorph

@@ -1,0 +1,66 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <glm/vec2.hpp>
+
+#include "core/geometry/calibrated_camera.h"
+#include "core/render/image.h"
+#include "core/render/show_frame.h"
+
+namespace lumorph {
+
+/// Milliseconds of the passes of the last frame, on the CPU's clock up to the end of the drawing (`glFinish`) where
+/// measuring is on.
+struct SpatialTimes {
+    double upload = 0.0, shadow = 0.0, eye = 0.0, projectors = 0.0, total = 0.0;
+};
+
+/// The two passes of spatial augmented reality (R26-R35) in the current OpenGL 4.1 context: what the eye should see,
+/// and what each projector sends out so that it does. Everything it holds dies with it, the same context being current.
+class SpatialRenderer {
+public:
+    SpatialRenderer();
+    ~SpatialRenderer();
+    SpatialRenderer(SpatialRenderer&&) noexcept;
+    SpatialRenderer& operator=(SpatialRenderer&&) noexcept;
+
+    /// Pixels of the eye pass, 1280 x 800 at first.
+    void setEyeSize(glm::ivec2 size);
+    /// `glFinish` between the passes, so that `times` are true ones.
+    void setMeasuring(bool on);
+
+    /// Uploads what changed and draws shadow map, eye pass and all enabled projectors. Afterwards the others below show
+    /// this frame.
+    void draw(const ShowFrame& frame);
+    /// The same without projectors, for a preview of the eye alone.
+    void drawEye(const ShowFrame& frame);
+
+    /// Textures of the last frame (sRGB encoded, row 0 at the bottom as OpenGL has it), valid until the next; 0: none.
+    [[nodiscard]] unsigned eyeTexture() const;
+    [[nodiscard]] unsigned projectorTexture(std::size_t projector) const;
+
+    /// Draws what an observer sees of the lit device and table into a framebuffer: the live form of the virtual lab.
+    /// `ambient` is light of the room that no projector makes, linear.
+    void drawLab(unsigned framebuffer, const CalibratedCamera& observer, float ambient = 0.0F);
+
+    [[nodiscard]] Image readEye() const;
+    [[nodiscard]] Image readProjector(std::size_t projector) const;
+    [[nodiscard]] Image readLab(const CalibratedCamera& observer, float ambient = 0.0F);
+    /// White where the surface that the eye pass's camera sees is seen by an enabled projector too.
+    [[nodiscard]] Image readMask();
+
+    [[nodiscard]] SpatialTimes times() const;
+    /// Programs that this driver would not compile, with file, line and what stands in for them; empty when all is
+    /// well.
+    [[nodiscard]] std::vector<std::string> warnings() const;
+    [[nodiscard]] std::size_t objectCount() const noexcept;
+
+private:
+    struct Data;
+    std::unique_ptr<Data> data_;
+};
+
+} // namespace lumorph

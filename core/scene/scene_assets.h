@@ -1,0 +1,42 @@
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <string>
+
+#include "core/base/progress.h"
+#include "core/geometry/model.h"
+#include "core/render/image.h"
+#include "core/scene/scene.h"
+
+namespace lumorph {
+
+/// A glTF ready to be posed. Its pictures stand in SceneAssets::images under `imageName`.
+struct SceneModel {
+    Model model;
+    std::vector<Material> materials; ///< one a material of the glTF
+};
+
+/// What a scene names, read into memory. Immutable; shared between threads.
+struct SceneAssets {
+    std::map<std::string, std::shared_ptr<const Image>> images; ///< by asset name; a placeholder where it is broken
+    std::map<std::string, std::shared_ptr<const SceneModel>> models; ///< missing where it is broken
+    std::map<std::string, std::string> problems;                     ///< by asset name: what is wrong, and what to do
+};
+
+/// The name under which a picture inside a glTF stands.
+[[nodiscard]] std::string imageName(const std::string& model, int image);
+
+/// Reads everything that a scene names. A broken or missing file is no error: it gets a placeholder and a line in
+/// `problems`. What `before` holds and has not changed is taken over. `projectFile` may be empty: then only `resource:`
+/// names and absolute paths are found. Throws Cancelled.
+[[nodiscard]] std::shared_ptr<const SceneAssets> loadSceneAssets(const Scene& scene,
+                                                                 const std::filesystem::path& projectFile,
+                                                                 const SceneAssets* before = nullptr,
+                                                                 const Progress& progress = {});
+
+/// All asset names of a scene, each once.
+[[nodiscard]] std::vector<std::string> assetNames(const Scene& scene);
+
+} // namespace lumorph
