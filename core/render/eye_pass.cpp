@@ -149,6 +149,11 @@ void EyePass::Data::drawShadow(const ShowFrame& frame) {
             materials.applyDepth(program, *thing.material, features);
             if ((features & eye_feature::skin) != 0 && frame.rig)
                 applySkin(program, frame.scene->device, boundingBox(frame.rig->restMesh().positions));
+            // Of closed things the far side casts the shadow: then the near side is clear of it by their thickness.
+            const bool closed = (thing.features & (eye_feature::twoSided | eye_feature::skin)) == eye_feature::skin;
+            (closed ? glEnable : glDisable)(GL_CULL_FACE);
+            glCullFace(GL_FRONT);
+            setFrontFace(thing.world);
             thing.mesh->draw();
         };
         if (surfaces.hasSkin() && frame.scene->device.show == DeviceSkin::Show::material)
@@ -308,7 +313,7 @@ std::vector<std::string> EyePass::warnings() const { return data_->programs.warn
 
 std::size_t EyePass::objectCount() const noexcept {
     return data_->programs.objectCount() + data_->materials.objectCount() + data_->surfaces.objectCount() +
-           EyeShadow::kObjects + EyeMesh::kObjects;
+           data_->shadow.objectCount() + EyeMesh::kObjects;
 }
 
 } // namespace lumorph

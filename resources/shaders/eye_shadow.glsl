@@ -1,11 +1,13 @@
 // Shared piece: the share of the first light that reaches a surface. In: shadowPlace and shadowSlope from the vertex
-// stage. Blockers are looked for around the place; only where there are both some and none lies an edge, and the light's
-// size over their distance gives its width. Loops that do not run cost nothing, which branches do not promise.
+// stage. Most places are told lit or dark by the tile of the map they fall into. Elsewhere blockers are looked for; only
+// where there are both some and none lies an edge, and the light's size over their distance gives its width. Loops that
+// do not run cost nothing, which branches do not promise.
 
 in vec4 shadowPlace;
 in vec2 shadowSlope;
 uniform sampler2DShadow shadowMap; // 1 is lit
 uniform sampler2D shadowDepth;     // the same map as plain depth
+uniform sampler2D shadowTiles;     // least and greatest depth within reach of a place
 uniform vec2 shadowReach;          // radius of the search, and least radius of an edge, map units
 uniform float shadowSpread;        // radius of an edge, map units, for each unit of depth from blocker to surface
 
@@ -39,12 +41,20 @@ float shadowLit(vec3 at, float radius, int taps) {
 
 // `facing`: whether the surface looks at the light at all.
 float shadowVisibility(bool facing) {
+#ifdef LAMP
     vec3 at = shadowPlace.xyz / shadowPlace.w;
+    facing = facing && shadowPlace.w > 0.0;
+#else
+    vec3 at = shadowPlace.xyz;
+#endif
     at.z = min(at.z, 1.0);
-    bool covered = facing && all(lessThan(abs(at.xy - 0.5), vec2(0.5 + shadowReach.x))) && shadowPlace.w > 0.0;
-    vec2 blockers = shadowBlockers(at, covered ? kSearchTaps : 0);
+    vec2 tile = textureLod(shadowTiles, at.xy, 0.0).rg;
+    float margin = shadowReach.x * length(shadowSlope);
+    bool dark = at.z - margin > tile.y;
+    bool open = at.z + margin <= tile.x || !facing;
+    vec2 blockers = shadowBlockers(at, dark || open ? 0 : kSearchTaps);
     bool edge = blockers.x > 0.0 && blockers.x < float(kSearchTaps);
     float radius = clamp(shadowSpread * blockers.y, shadowReach.y, shadowReach.x);
     float lit = shadowLit(at, radius, edge ? kEdgeTaps : 0);
-    return edge ? lit : (blockers.x > 0.0 ? 0.0 : 1.0);
+    return edge ? lit : (blockers.x > 0.0 || dark ? 0.0 : 1.0);
 }
