@@ -139,8 +139,8 @@ void EyePass::Data::drawShadow(const ShowFrame& frame) {
     shadow.aim(*lighting.shadowed(), casters(frame));
     shadow.draw([&](const glm::mat4& clipFromWorld) {
         const auto drawCaster = [&](const Thing& thing) {
-            std::uint32_t features = thing.features & (eye_feature::skin | eye_feature::holes | eye_feature::holeList |
-                                                       eye_feature::holeMask | eye_feature::cutout);
+            std::uint32_t features = thing.features & (eye_feature::skin | eye_feature::holes | eye_feature::holeMask |
+                                                       eye_feature::cutout | kMostRoundHoles << eye_feature::holeShift);
             if (thing.opacity < 1.0F) features |= eye_feature::dither;
             Program& program = programs.use(Stage::depth, features);
             program.set("clipFromWorld", clipFromWorld);

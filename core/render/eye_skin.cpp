@@ -11,7 +11,6 @@
 namespace lumorph {
 namespace {
 
-constexpr std::size_t kMostHoles = 32; // as in eye_holes.glsl
 constexpr float kEverywhere = 1e9F;
 
 } // namespace
@@ -20,7 +19,8 @@ std::uint32_t skinFeatures(const DeviceSkin& skin) {
     using namespace eye_feature;
     std::uint32_t bits = eye_feature::skin;
     if (skin.shrink > 0.0) bits |= holes;
-    if (!skin.holes.empty()) bits |= holes | holeList;
+    const auto count = std::min(static_cast<std::uint32_t>(skin.holes.size()), kMostRoundHoles);
+    if (count > 0) bits |= holes | count << holeShift;
     return bits;
 }
 
@@ -35,11 +35,10 @@ void applySkin(Program& program, const DeviceSkin& skin, const Box& rest) {
     program.set("shrunkOutline", outline);
     std::vector<glm::vec3> holes;
     for (const DeviceSkin::Hole& hole : skin.holes) {
-        if (holes.size() == kMostHoles) break;
+        if (holes.size() == kMostRoundHoles) break;
         const auto radius = static_cast<float>(hole.radius);
         holes.emplace_back(hole.centre, radius * radius);
     }
-    program.set("holeCount", static_cast<int>(holes.size()));
     if (!holes.empty()) program.set("holes", std::span<const glm::vec3>(holes));
 }
 

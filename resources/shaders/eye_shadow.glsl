@@ -1,7 +1,7 @@
 // Shared piece: the share of the first light that reaches a surface. In: shadowPlace and shadowSlope from the vertex
 // stage. Most places are told lit or dark by the tile of the map they fall into. Elsewhere blockers are looked for; only
-// where there are both some and none lies an edge, and the light's size over their distance gives its width. Loops that
-// do not run cost nothing, which branches do not promise.
+// where there are both some and none lies an edge, and the light's size over their distance gives its width. Software GL
+// walks through both sides of a branch, and once through a loop that does not run: so the loops have one tap a turn.
 
 in vec4 shadowPlace;
 in vec2 shadowSlope;
@@ -13,14 +13,15 @@ uniform float shadowSpread;        // radius of an edge, map units, for each uni
 
 const int kSearchTaps = 8;
 const int kEdgeTaps = 16;
+// Taps in sunflower order: each is turned by the golden angle against the one before.
 const mat2 kGoldenTurn = mat2(-0.73736888, 0.67549029, -0.67549029, -0.73736888);
 
 // How many of the taps around a place are blocked, and by how much depth on average.
 vec2 shadowBlockers(vec3 at, int taps) {
     vec2 found = vec2(0.0);
-    vec2 around = vec2(0.9, 0.43588989);
+    vec2 around = vec2(shadowReach.x, 0.0);
     for (int i = 0; i < taps; ++i) {
-        vec2 away = shadowReach.x * sqrt((float(i) + 0.5) / float(kSearchTaps)) * around;
+        vec2 away = sqrt((float(i) + 0.5) / float(kSearchTaps)) * around;
         float gap = at.z + dot(shadowSlope, away) - textureLod(shadowDepth, at.xy + away, 0.0).r;
         found += gap > 0.0 ? vec2(1.0, gap) : vec2(0.0);
         around = kGoldenTurn * around;
@@ -30,9 +31,9 @@ vec2 shadowBlockers(vec3 at, int taps) {
 
 float shadowLit(vec3 at, float radius, int taps) {
     float lit = 0.0;
-    vec2 around = vec2(1.0, 0.0);
+    vec2 around = vec2(radius, 0.0);
     for (int i = 0; i < taps; ++i) {
-        vec2 away = radius * sqrt((float(i) + 0.5) / float(kEdgeTaps)) * around;
+        vec2 away = sqrt((float(i) + 0.5) / float(kEdgeTaps)) * around;
         lit += textureLod(shadowMap, vec3(at.xy + away, at.z + dot(shadowSlope, away)), 0.0);
         around = kGoldenTurn * around;
     }
@@ -56,5 +57,5 @@ float shadowVisibility(bool facing) {
     bool edge = blockers.x > 0.0 && blockers.x < float(kSearchTaps);
     float radius = clamp(shadowSpread * blockers.y, shadowReach.y, shadowReach.x);
     float lit = shadowLit(at, radius, edge ? kEdgeTaps : 0);
-    return edge ? lit : (blockers.x > 0.0 || dark ? 0.0 : 1.0);
+    return edge ? lit : (dark || blockers.x > 0.0 ? 0.0 : 1.0);
 }
