@@ -13,6 +13,26 @@ uniform float shadowSpread;        // radius of an edge, map units, for each uni
 
 const int kSearchTaps = 8;
 const int kEdgeTaps = 16;
+#ifdef HOLES_BELOW
+uniform mat4 shadowFromWorld;
+uniform mat4 worldFromDevice;
+uniform mat4 deviceFromWorld;
+uniform vec4 deviceOutline; // x, z from and to, of the device's top as it appears
+uniform float deviceTop;
+const float kRim = 0.008; // metres over which the light of a hole becomes that beside the device
+
+// Through holes a viewer shall see the table, not the dark inside of a box: there it has the light of the place on the
+// device's top that the eye looks through, as if the device were thin.
+vec4 placeThroughHoles(vec3 world, vec3 eye) {
+    vec3 from = (deviceFromWorld * vec4(world, 1.0)).xyz;
+    vec3 to = (deviceFromWorld * vec4(eye, 1.0)).xyz;
+    vec3 crossing = mix(from, to, clamp((deviceTop - from.y) / max(to.y - from.y, 1e-4), 0.0, 1.0));
+    vec2 inside = min(crossing.xz - deviceOutline.xy, deviceOutline.zw - crossing.xz);
+    float share = smoothstep(0.0, kRim, min(inside.x, inside.y));
+    return mix(shadowPlace, shadowFromWorld * (worldFromDevice * vec4(crossing, 1.0)), share);
+}
+#endif
+
 // Taps in sunflower order: each is turned by the golden angle against the one before.
 const mat2 kGoldenTurn = mat2(-0.73736888, 0.67549029, -0.67549029, -0.73736888);
 
@@ -40,13 +60,13 @@ float shadowLit(vec3 at, float radius, int taps) {
     return lit / float(kEdgeTaps);
 }
 
-// `facing`: whether the surface looks at the light at all.
-float shadowVisibility(bool facing) {
+// `facing`: whether the surface looks at the light at all. `place`: its shadowPlace.
+float shadowVisibility(bool facing, vec4 place) {
 #ifdef LAMP
-    vec3 at = shadowPlace.xyz / shadowPlace.w;
-    facing = facing && shadowPlace.w > 0.0;
+    vec3 at = place.xyz / place.w;
+    facing = facing && place.w > 0.0;
 #else
-    vec3 at = shadowPlace.xyz;
+    vec3 at = place.xyz;
 #endif
     at.z = min(at.z, 1.0);
     vec2 tile = textureLod(shadowTiles, at.xy, 0.0).rg;
