@@ -16,7 +16,7 @@ constexpr float kGap = 0.006F; ///< between boards, in widths of the picture
 /// A place on a board.
 struct Place {
     int board = 0;
-    float along = 0.0F; ///< in [0, 1) from end to end
+    float along = 0.0F;  ///< in [0, 1) from end to end
     float across = 0.0F; ///< in [0, 1) over the board
     float edge = 0.0F;   ///< distance to the next edge, in widths of the picture
 };
@@ -28,8 +28,8 @@ Place placeOf(glm::vec2 at) {
     place.across = row - static_cast<float>(place.board);
     const float end = hashed(static_cast<std::uint32_t>(place.board), 3, 11);
     place.along = at.x - end + (at.x < end ? 1.0F : 0.0F);
-    place.edge = std::min(std::min(place.across, 1.0F - place.across) / kBoards,
-                          std::min(place.along, 1.0F - place.along));
+    place.edge =
+        std::min(std::min(place.across, 1.0F - place.across) / kBoards, std::min(place.along, 1.0F - place.along));
     return place;
 }
 
@@ -67,7 +67,8 @@ float lateWood(float rings) {
 
 float pores(const Place& place) {
     const auto board = static_cast<std::uint32_t>(place.board);
-    const float streaks = noise({place.along, (place.across + static_cast<float>(board)) / kBoards}, {22, 190}, 90 + board);
+    const float streaks =
+        noise({place.along, (place.across + static_cast<float>(board)) / kBoards}, {22, 190}, 90 + board);
     return smooth(0.28F, 0.75F, streaks);
 }
 
