@@ -66,9 +66,11 @@ float meltOrder(glm::vec2 at) {
     const glm::vec2 rough = warped(at, 0.03F);
     float order = 1.0F;
     for (const auto& [cells, seed] : {std::pair{5, 15U}, {9, 25U}}) {
-        const Scatter hole = scattered(rough, cells, seed, 0.8F);
-        const float start = 0.06F + 0.75F * hashed(hole.id, 7, seed);
-        order = std::min(order, start + 1.1F * hole.nearest);
+        forPointsAround(rough, cells, seed, 0.8F,
+                        [&order, cells = cells, seed = seed](std::uint32_t id, glm::vec2 way) {
+                            const float start = 0.06F + 0.85F * hashed(id, 7, seed);
+                            order = std::min(order, start + (cells < 9 ? 1.1F : 0.7F) * glm::length(way));
+                        });
     }
     const Scatter floe = scattered(warped(at, 0.045F), 4, 51, 0.95F);
     return std::min(order, 0.48F + 1.1F * (floe.second - floe.nearest));
@@ -82,7 +84,7 @@ std::vector<NamedPicture> icePictures() {
     order = blurred(order, 2);
     normalize(order);
     return {{"ice", painted([&](int x, int y) { return iceColor(middle(x, y)); })},
-            {"ice_normal", normalsOf(blurred(drawn(iceHeight), 1), 0.010F)},
+            {"ice_normal", normalsOf(blurred(drawn(iceHeight), 1), 0.012F)},
             {"ice_holes", painted([&](int x, int y) { return glm::vec3(order.at(x, y)); })}};
 }
 

@@ -75,7 +75,7 @@ Heights rivers(const Heights& heights) {
     for (int y = 0; y < kSide; ++y) {
         for (int x = 0; x < kSide; ++x) {
             const std::size_t index = heights.index(x, y);
-            if (to[index].x < 0 || water[index] < 420.0F) continue;
+            if (to[index].x < 0 || water[index] < 640.0F) continue;
             width.at(x, y) = std::min(3.2F, 0.75F + 0.022F * std::sqrt(water[index]));
         }
     }

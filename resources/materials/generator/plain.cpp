@@ -37,25 +37,6 @@ glm::vec3 stoneColor(glm::vec2 at) {
     return glm::mix(joint, stone, smooth(0.02F, 0.12F, cell.second - cell.nearest));
 }
 
-/// Short blades: streaks in a few directions, one over the other.
-float grassHeight(glm::vec2 at) {
-    float best = -1.0F;
-    int layer = 0;
-    for (const glm::ivec2 cells : {glm::ivec2(72, 20), glm::ivec2(20, 72), glm::ivec2(58, 34)}) {
-        const float sway = 0.01F * noise(at, {9, 9}, 14);
-        const float blade = noise(at + glm::vec2(sway, -sway), cells, 20 + static_cast<std::uint32_t>(layer++));
-        best = std::max(best, blade);
-    }
-    return best;
-}
-
-glm::vec3 grassColor(glm::vec2 at) {
-    const float blade = smooth(-0.1F, 0.9F, grassHeight(at));
-    const float patch = 0.5F + 0.5F * cloudy(at, {4, 4}, 3, 30);
-    const glm::vec3 tip = glm::mix(glm::vec3(0.48F, 0.62F, 0.22F), glm::vec3(0.60F, 0.66F, 0.30F), patch);
-    return glm::mix(glm::vec3(0.14F, 0.26F, 0.09F), tip, blade);
-}
-
 float metalHeight(glm::vec2 at) { return 0.6F * noise(at, {3, 200}, 3) + 0.4F * noise(at, {7, 128}, 4); }
 
 glm::vec3 metalColor(glm::vec2 at) {
@@ -69,8 +50,7 @@ std::vector<NamedPicture> plainPictures() {
         return painted([paint](int x, int y) { return paint(middle(x, y)); });
     };
     return {{"paper", color(paperColor)}, {"paper_normal", normalsOf(drawn(paperHeight), 0.0012F)},
-            {"stone", color(stoneColor)}, {"stone_normal", normalsOf(drawn(stoneHeight), 0.012F)},
-            {"grass", color(grassColor)}, {"grass_normal", normalsOf(drawn(grassHeight), 0.004F)},
+            {"stone", color(stoneColor)}, {"stone_normal", normalsOf(blurred(drawn(stoneHeight), 1), 0.012F)},
             {"metal", color(metalColor)}, {"metal_normal", normalsOf(drawn(metalHeight), 0.0006F)}};
 }
 

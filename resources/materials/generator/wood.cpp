@@ -82,7 +82,7 @@ glm::vec3 woodColor(glm::vec2 at) {
     const auto board = static_cast<std::uint32_t>(place.board);
     const float late = lateWood(ringsOf(place));
     const float tone = hashed(board, 9, 21);
-    const glm::vec3 light = glm::mix(glm::vec3(0.80F, 0.62F, 0.43F), glm::vec3(0.73F, 0.53F, 0.34F), tone);
+    const glm::vec3 light = glm::mix(glm::vec3(0.83F, 0.66F, 0.47F), glm::vec3(0.70F, 0.49F, 0.31F), tone);
     const glm::vec3 dark = glm::mix(glm::vec3(0.62F, 0.42F, 0.25F), glm::vec3(0.53F, 0.34F, 0.19F), tone);
     glm::vec3 color = glm::mix(light, dark, 0.85F * late);
     color *= 1.0F + 0.07F * fibres(place);
