@@ -88,6 +88,7 @@ struct EyePass::Data {
     void begin(const ShowFrame& frame, const View& view, unsigned framebuffer) const;
     void draw(const ShowFrame& frame, const View& view, const Thing& thing);
     void drawTable(const ShowFrame& frame, const View& view);
+    void drawCreases(const ShowFrame& frame, const View& view);
     void drawBlended(const ShowFrame& frame, const View& view, std::vector<Thing> things);
     [[nodiscard]] Box everything(const ShowFrame& frame) const;
 };
@@ -152,7 +153,7 @@ void EyePass::Data::drawShadow(const ShowFrame& frame) {
             if ((features & eye_feature::skin) != 0)
                 applySkin(program, frame.scene->device, surfaces.skinBoxAtRest());
             // Of closed things the far side casts the shadow: then the near side is clear of it by their thickness.
-            const bool closed = (thing.features & (eye_feature::twoSided | eye_feature::skin)) == eye_feature::skin;
+            const bool closed = (thing.features & (eye_feature::twoSided | eye_feature::holes)) == 0;
             (closed ? glEnable : glDisable)(GL_CULL_FACE);
             glCullFace(GL_FRONT);
             setFrontFace(thing.world);
@@ -165,7 +166,7 @@ void EyePass::Data::drawShadow(const ShowFrame& frame) {
                 const PosedSurface& surface = frame.posed.surfaces[item.surface];
                 const float own = surface.material.alpha == Material::Alpha::blend ? surface.material.opacity : 1.0F;
                 drawCaster({item.mesh, surface.worldFromSurface, &surface.material, own * surface.opacity,
-                            materials.features(surface.material), 0.0F});
+                            materials.features(surface.material) | eye_feature::twoSided, 0.0F});
             }
     });
 }
@@ -265,6 +266,32 @@ void EyePass::Data::drawTable(const ShowFrame& frame, const View& view) {
     draw(frame, view, {&table, glm::mat4(1.0F), &material, 1.0F, features, 0.0F});
 }
 
+// Ink upon the skin, a hair above it.
+void EyePass::Data::drawCreases(const ShowFrame& frame, const View& view) {
+    const EyeMesh* lines = surfaces.creases();
+    if (lines == nullptr || !surfaces.hasSkin()) return;
+    const std::uint32_t features = view.unseen ? eye_feature::skin : skinFeatures(frame.scene->device);
+    const DeviceSkin::Creases& creases = frame.scene->device.creases;
+    Program& program = programs.use(Stage::crease, features);
+    setCamera(program, *view.camera, view.depth.near, view.depth.far);
+    program.set("worldFromSurface", frame.worldFromDevice);
+    program.set("ink", glm::vec4(linearLight(creases.color), static_cast<float>(std::min(creases.emphasis, 1.0))));
+    lighting.apply(program);
+    applySkin(program, frame.scene->device, surfaces.skinBoxAtRest());
+    setFrontFace(frame.worldFromDevice);
+    glEnable(GL_CULL_FACE);
+    glCullFace(GL_BACK);
+    glEnable(GL_POLYGON_OFFSET_FILL);
+    glPolygonOffset(-1.0F, -2.0F);
+    glDepthMask(GL_FALSE);
+    glEnable(GL_BLEND);
+    glBlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ZERO, GL_ONE);
+    lines->draw();
+    glDisable(GL_BLEND);
+    glDepthMask(GL_TRUE);
+    glDisable(GL_POLYGON_OFFSET_FILL);
+}
+
 // Farthest first; each fills the depth before its colour, so that its own far side does not shine through it.
 void EyePass::Data::drawBlended(const ShowFrame& frame, const View& view, std::vector<Thing> things) {
     std::sort(things.begin(), things.end(), [](const Thing& a, const Thing& b) { return a.distance > b.distance; });
@@ -304,6 +331,7 @@ void EyePass::draw(const ShowFrame& frame, const CalibratedCamera& camera, unsig
         things.begin(), things.end(), [](const Thing& thing) { return (thing.features & eye_feature::blend) == 0; });
     for (auto thing = things.begin(); thing != opaqueEnd; ++thing) data_->draw(frame, view, *thing);
     data_->drawTable(frame, view);
+    if (showsSkin(frame)) data_->drawCreases(frame, view);
     data_->drawBlended(frame, view, {opaqueEnd, things.end()});
     finishDrawing();
 }
@@ -314,6 +342,7 @@ void EyePass::drawUnseen(const ShowFrame& frame, const CalibratedCamera& camera,
     data_->begin(frame, view, framebuffer);
     if (data_->surfaces.hasSkin()) data_->draw(frame, view, data_->skinThing(frame, true));
     data_->drawTable(frame, view);
+    data_->drawCreases(frame, view);
     finishDrawing();
 }
 
