@@ -50,7 +50,8 @@ glm::vec2 bubbles(glm::vec2 at) {
 
 glm::vec3 iceColor(glm::vec2 at) {
     const float depth = 0.5F + 0.5F * cloudy(warped(at, 0.06F), {3, 3}, 5, 21);
-    glm::vec3 color = glm::mix(glm::vec3(0.36F, 0.60F, 0.74F), glm::vec3(0.74F, 0.88F, 0.94F), smooth(0.22F, 0.82F, depth));
+    glm::vec3 color =
+        glm::mix(glm::vec3(0.36F, 0.60F, 0.74F), glm::vec3(0.74F, 0.88F, 0.94F), smooth(0.22F, 0.82F, depth));
     color = glm::mix(color, glm::vec3(0.90F, 0.96F, 0.98F), 0.5F * veils(at));
     const glm::vec2 bubble = bubbles(at);
     color = glm::mix(color, glm::vec3(0.55F, 0.75F, 0.85F), 0.35F * bubble.x);
@@ -58,18 +59,18 @@ glm::vec3 iceColor(glm::vec2 at) {
     return glm::mix(color, glm::vec3(0.97F, 0.99F, 1.0F), 0.85F * cracks(at));
 }
 
-float iceHeight(glm::vec2 at) {
-    return 0.5F * cloudy(at, {5, 5}, 4, 23) - 0.35F * cracks(at) + 0.10F * bubbles(at).x;
-}
+float iceHeight(glm::vec2 at) { return 0.5F * cloudy(at, {5, 5}, 4, 23) - 0.35F * cracks(at) + 0.10F * bubbles(at).x; }
 
 /// What melts first is dark: round holes that grow, then the joints between floes.
 float meltOrder(glm::vec2 at) {
     const glm::vec2 rough = warped(at, 0.03F);
     float order = 1.0F;
     for (const auto& [cells, seed] : {std::pair{5, 15U}, {9, 25U}}) {
-        const Scatter hole = scattered(rough, cells, seed, 0.8F);
-        const float start = 0.06F + 0.75F * hashed(hole.id, 7, seed);
-        order = std::min(order, start + 1.1F * hole.nearest);
+        forPointsAround(rough, cells, seed, 0.8F,
+                        [&order, cells = cells, seed = seed](std::uint32_t id, glm::vec2 way) {
+                            const float start = 0.06F + 0.85F * hashed(id, 7, seed);
+                            order = std::min(order, start + (cells < 9 ? 1.1F : 0.7F) * glm::length(way));
+                        });
     }
     const Scatter floe = scattered(warped(at, 0.045F), 4, 51, 0.95F);
     return std::min(order, 0.48F + 1.1F * (floe.second - floe.nearest));
@@ -83,7 +84,7 @@ std::vector<NamedPicture> icePictures() {
     order = blurred(order, 2);
     normalize(order);
     return {{"ice", painted([&](int x, int y) { return iceColor(middle(x, y)); })},
-            {"ice_normal", normalsOf(blurred(drawn(iceHeight), 1), 0.010F)},
+            {"ice_normal", normalsOf(blurred(drawn(iceHeight), 1), 0.012F)},
             {"ice_holes", painted([&](int x, int y) { return glm::vec3(order.at(x, y)); })}};
 }
 

@@ -16,9 +16,7 @@ float paperHeight(glm::vec2 at) {
     return 0.4F * cloudy(at, {24, 24}, 3, 5) + 0.3F * noise(at, {70, 18}, 6) + 0.3F * noise(at, {18, 70}, 7);
 }
 
-glm::vec3 paperColor(glm::vec2 at) {
-    return glm::vec3(0.965F, 0.955F, 0.93F) * (1.0F + 0.012F * paperHeight(at));
-}
+glm::vec3 paperColor(glm::vec2 at) { return glm::vec3(0.965F, 0.955F, 0.93F) * (1.0F + 0.012F * paperHeight(at)); }
 
 /// Cobbles with sandy joints.
 float stoneDome(const Scatter& cell) { return smooth(0.03F, 0.34F, cell.second - cell.nearest); }
@@ -27,9 +25,7 @@ Scatter cobble(glm::vec2 at) {
     return scattered(at + 0.012F * glm::vec2(noise(at, {14, 14}, 3), noise(at, {14, 14}, 4)), 9, 41, 0.75F);
 }
 
-float stoneHeight(glm::vec2 at) {
-    return stoneDome(cobble(at)) + 0.05F * cloudy(at, {32, 32}, 3, 8);
-}
+float stoneHeight(glm::vec2 at) { return stoneDome(cobble(at)) + 0.05F * cloudy(at, {32, 32}, 3, 8); }
 
 glm::vec3 stoneColor(glm::vec2 at) {
     const Scatter cell = cobble(at);
@@ -41,28 +37,7 @@ glm::vec3 stoneColor(glm::vec2 at) {
     return glm::mix(joint, stone, smooth(0.02F, 0.12F, cell.second - cell.nearest));
 }
 
-/// Short blades: streaks in a few directions, one over the other.
-float grassHeight(glm::vec2 at) {
-    float best = -1.0F;
-    int layer = 0;
-    for (const glm::ivec2 cells : {glm::ivec2(72, 20), glm::ivec2(20, 72), glm::ivec2(58, 34)}) {
-        const float sway = 0.01F * noise(at, {9, 9}, 14);
-        const float blade = noise(at + glm::vec2(sway, -sway), cells, 20 + static_cast<std::uint32_t>(layer++));
-        best = std::max(best, blade);
-    }
-    return best;
-}
-
-glm::vec3 grassColor(glm::vec2 at) {
-    const float blade = smooth(-0.1F, 0.9F, grassHeight(at));
-    const float patch = 0.5F + 0.5F * cloudy(at, {4, 4}, 3, 30);
-    const glm::vec3 tip = glm::mix(glm::vec3(0.48F, 0.62F, 0.22F), glm::vec3(0.60F, 0.66F, 0.30F), patch);
-    return glm::mix(glm::vec3(0.14F, 0.26F, 0.09F), tip, blade);
-}
-
-float metalHeight(glm::vec2 at) {
-    return 0.6F * noise(at, {3, 200}, 3) + 0.4F * noise(at, {7, 128}, 4);
-}
+float metalHeight(glm::vec2 at) { return 0.6F * noise(at, {3, 200}, 3) + 0.4F * noise(at, {7, 128}, 4); }
 
 glm::vec3 metalColor(glm::vec2 at) {
     return glm::vec3(0.76F, 0.77F, 0.78F) * (1.0F + 0.05F * metalHeight(at) + 0.03F * cloudy(at, {3, 3}, 3, 5));
@@ -74,14 +49,9 @@ std::vector<NamedPicture> plainPictures() {
     const auto color = [](glm::vec3 (*paint)(glm::vec2)) {
         return painted([paint](int x, int y) { return paint(middle(x, y)); });
     };
-    return {{"paper", color(paperColor)},
-            {"paper_normal", normalsOf(drawn(paperHeight), 0.0012F)},
-            {"stone", color(stoneColor)},
-            {"stone_normal", normalsOf(drawn(stoneHeight), 0.012F)},
-            {"grass", color(grassColor)},
-            {"grass_normal", normalsOf(drawn(grassHeight), 0.004F)},
-            {"metal", color(metalColor)},
-            {"metal_normal", normalsOf(drawn(metalHeight), 0.0006F)}};
+    return {{"paper", color(paperColor)}, {"paper_normal", normalsOf(drawn(paperHeight), 0.0012F)},
+            {"stone", color(stoneColor)}, {"stone_normal", normalsOf(blurred(drawn(stoneHeight), 1), 0.012F)},
+            {"metal", color(metalColor)}, {"metal_normal", normalsOf(drawn(metalHeight), 0.0006F)}};
 }
 
 } // namespace lumorph

@@ -18,7 +18,7 @@ struct NamedPicture {
 [[nodiscard]] std::vector<NamedPicture> mapPictures();
 [[nodiscard]] std::vector<NamedPicture> icePictures();
 [[nodiscard]] std::vector<NamedPicture> waterPictures();
-/// Paper, stone, grass and metal.
+/// Paper, stone and metal.
 [[nodiscard]] std::vector<NamedPicture> plainPictures();
 
 } // namespace lumorph

@@ -31,6 +31,10 @@ struct Scatter {
 };
 [[nodiscard]] Scatter scattered(glm::vec2 at, int cells, std::uint32_t seed, float jitter = 1.0F);
 
+/// Calls `see` with the id of, and the way from (in squares), all such points near by.
+void forPointsAround(glm::vec2 at, int cells, std::uint32_t seed, float jitter,
+                     const std::function<void(std::uint32_t, glm::vec2)>& see);
+
 /// A number a pixel; reading wraps round.
 class Heights {
 public:

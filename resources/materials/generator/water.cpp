@@ -28,7 +28,7 @@ std::vector<Ripple> ripples(int count, float shortest, float longest, std::uint3
         const glm::vec2 crests = glm::round(number * glm::vec2(std::cos(angle), std::sin(angle)));
         const float length = glm::length(crests);
         if (length < 1.0F) continue;
-        all.push_back({crests, std::pow(length, -1.35F), kTurn * hashed(i, 2, seed),
+        all.push_back({crests, std::pow(length, -1.15F), kTurn * hashed(i, 2, seed),
                        std::round(0.5F + 2.0F * hashed(i, 3, seed))});
     }
     return all;
@@ -62,7 +62,7 @@ Heights caustics(float loop) {
     for (int y = 0; y < kSide * kRays; ++y) {
         for (int x = 0; x < kSide * kRays; ++x) {
             const glm::vec2 from = (glm::vec2(x, y) + 0.5F) / static_cast<float>(kSide * kRays);
-            const glm::vec2 to = (from - 0.042F * slope(waves, from, loop)) * static_cast<float>(kSide) - 0.5F;
+            const glm::vec2 to = (from - 0.034F * slope(waves, from, loop)) * static_cast<float>(kSide) - 0.5F;
             const glm::vec2 low = glm::floor(to);
             const glm::vec2 f = to - low;
             const int column = static_cast<int>(low.x);
@@ -92,10 +92,10 @@ Image causticsSheet() {
 } // namespace
 
 std::vector<NamedPicture> waterPictures() {
-    const std::vector<Ripple> waves = ripples(46, 2.0F, 22.0F, 2);
+    const std::vector<Ripple> waves = ripples(60, 3.0F, 24.0F, 2);
     Heights heights = drawn([&](glm::vec2 at) { return surface(waves, at); });
     normalize(heights);
-    return {{"water_normal", normalsOf(heights, 0.10F)}, {"caustics", causticsSheet()}};
+    return {{"water_normal", normalsOf(heights, 0.075F)}, {"caustics", causticsSheet()}};
 }
 
 } // namespace lumorph

@@ -16,7 +16,7 @@ constexpr float kGap = 0.006F; ///< between boards, in widths of the picture
 /// A place on a board.
 struct Place {
     int board = 0;
-    float along = 0.0F; ///< in [0, 1) from end to end
+    float along = 0.0F;  ///< in [0, 1) from end to end
     float across = 0.0F; ///< in [0, 1) over the board
     float edge = 0.0F;   ///< distance to the next edge, in widths of the picture
 };
@@ -28,8 +28,8 @@ Place placeOf(glm::vec2 at) {
     place.across = row - static_cast<float>(place.board);
     const float end = hashed(static_cast<std::uint32_t>(place.board), 3, 11);
     place.along = at.x - end + (at.x < end ? 1.0F : 0.0F);
-    place.edge = std::min(std::min(place.across, 1.0F - place.across) / kBoards,
-                          std::min(place.along, 1.0F - place.along));
+    place.edge =
+        std::min(std::min(place.across, 1.0F - place.across) / kBoards, std::min(place.along, 1.0F - place.along));
     return place;
 }
 
@@ -67,7 +67,8 @@ float lateWood(float rings) {
 
 float pores(const Place& place) {
     const auto board = static_cast<std::uint32_t>(place.board);
-    const float streaks = noise({place.along, (place.across + static_cast<float>(board)) / kBoards}, {22, 190}, 90 + board);
+    const float streaks =
+        noise({place.along, (place.across + static_cast<float>(board)) / kBoards}, {22, 190}, 90 + board);
     return smooth(0.28F, 0.75F, streaks);
 }
 
@@ -81,7 +82,7 @@ glm::vec3 woodColor(glm::vec2 at) {
     const auto board = static_cast<std::uint32_t>(place.board);
     const float late = lateWood(ringsOf(place));
     const float tone = hashed(board, 9, 21);
-    const glm::vec3 light = glm::mix(glm::vec3(0.80F, 0.62F, 0.43F), glm::vec3(0.73F, 0.53F, 0.34F), tone);
+    const glm::vec3 light = glm::mix(glm::vec3(0.83F, 0.66F, 0.47F), glm::vec3(0.70F, 0.49F, 0.31F), tone);
     const glm::vec3 dark = glm::mix(glm::vec3(0.62F, 0.42F, 0.25F), glm::vec3(0.53F, 0.34F, 0.19F), tone);
     glm::vec3 color = glm::mix(light, dark, 0.85F * late);
     color *= 1.0F + 0.07F * fibres(place);
