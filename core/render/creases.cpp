@@ -10,6 +10,7 @@
 #include <glm/geometric.hpp>
 
 #include "core/base/error.h"
+#include "core/geometry/disjoint_sets.h"
 
 namespace lumorph {
 namespace {
@@ -18,6 +19,8 @@ constexpr int kMostSteps = 64;           // of one walk
 constexpr float kFlat = 1e-4F;           // radians: what turns less is no part of a fold
 constexpr float kOwnShare = 0.5F;        // an edge that does this much of the turning is a fold by itself
 constexpr float kAlong = 0.7F;           // cosine up to which two edges run along each other
+constexpr float kSharp = 0.5F;           // radians of turning at one edge, at which a walk ends
+constexpr double kShortest = 2.0;        // radii that a fold runs at least, unless it is sharp
 constexpr int kSofteningRounds = 8;
 
 std::vector<std::uint32_t> placesOf(const std::vector<glm::vec3>& positions) {
@@ -110,6 +113,7 @@ private:
             at += way * direction;
             const auto crossed = static_cast<std::size_t>(next);
             const glm::vec3 along = glm::cross(turning_.normals[triangle], direction);
+            if (std::abs(turning_.angles[crossed]) > kSharp) return; // that is a fold of its own
             visit(crossed, gone, std::abs(glm::dot(along, turning_.directions[crossed])));
             // Straight on: the share along the crossed edge stays, that across it goes on in the next triangle.
             const glm::vec3& line = turning_.directions[crossed];
@@ -152,39 +156,69 @@ private:
     float radius_;
 };
 
+// The turning around each edge, and the same with more weight for what is near.
+struct CreaseFinder::Sums {
+    std::vector<float> whole, near;
+};
+
+CreaseFinder::Sums CreaseFinder::sumsOf(const Turning& turning, float radius) const {
+    const Walk walk(*this, turning, radius);
+    Sums sums{turning.angles, turning.angles};
+    for (std::size_t e = 0; e < edges_.size(); ++e) {
+        if (!(std::abs(turning.angles[e]) > kFlat)) continue;
+        walk.across(e, [&](std::size_t crossed, float distance, float along) {
+            sums.whole[e] += along * turning.angles[crossed];
+            sums.near[e] += along * turning.angles[crossed] * (1.0F - distance / radius);
+        });
+    }
+    return sums;
+}
+
+// Of edges along one bend, the one with the most turning near it.
+bool CreaseFinder::isMiddle(const Turning& turning, const std::vector<float>& near, float radius,
+                            std::size_t edge) const {
+    bool middle = true;
+    Walk(*this, turning, radius).across(edge, [&](std::size_t other, float, float along) {
+        const bool stronger =
+            std::abs(near[other]) > std::abs(near[edge]) || (near[other] == near[edge] && other < edge);
+        if (along > kAlong && near[other] * near[edge] > 0.0F && stronger) middle = false;
+    });
+    return middle;
+}
+
 std::vector<Crease> CreaseFinder::find(std::span<const glm::vec3> positions, const CreaseSearch& search) const {
     const Turning turning(*this, positions);
     const auto radius = static_cast<float>(search.radius);
     const auto threshold = static_cast<float>(search.threshold.inRadians());
-    const Walk walk(*this, turning, radius);
-    // For each edge the whole turning around it, and the same with more weight for what is near.
-    std::vector<float> whole(edges_.size(), 0.0F);
-    std::vector<float> near(edges_.size(), 0.0F);
-    for (std::size_t e = 0; e < edges_.size(); ++e) {
-        const float own = turning.angles[e];
-        if (!(std::abs(own) > kFlat)) continue;
-        whole[e] = near[e] = own;
-        walk.across(e, [&](std::size_t crossed, float distance, float along) {
-            whole[e] += along * turning.angles[crossed];
-            near[e] += along * turning.angles[crossed] * (1.0F - distance / radius);
-        });
-    }
+    const Sums sums = sumsOf(turning, radius);
     std::vector<Crease> creases;
+    std::vector<bool> sharp;
     for (std::size_t e = 0; e < edges_.size(); ++e) {
         const float own = turning.angles[e];
-        const bool sharp = std::abs(own) >= kOwnShare * std::abs(whole[e]);
-        const float angle = sharp && std::abs(own) > std::abs(whole[e]) ? own : whole[e];
+        const bool alone = std::abs(own) >= kOwnShare * std::abs(sums.whole[e]);
+        const float angle = alone && std::abs(own) > std::abs(sums.whole[e]) ? own : sums.whole[e];
         if (!(std::abs(own) > kFlat) || !(std::abs(angle) >= threshold)) continue;
-        bool middle = true;
-        if (!sharp)
-            walk.across(e, [&](std::size_t other, float, float along) {
-                const bool stronger =
-                    std::abs(near[other]) > std::abs(near[e]) || (near[other] == near[e] && other < e);
-                if (along > kAlong && near[other] * near[e] > 0.0F && stronger) middle = false;
-            });
-        if (middle)
-            creases.push_back({{edges_[e].a, edges_[e].b}, {edges_[e].left, edges_[e].right}, Angle::radians(angle)});
+        if (!alone && !isMiddle(turning, sums.near, radius, e)) continue;
+        creases.push_back({{edges_[e].a, edges_[e].b}, {edges_[e].left, edges_[e].right}, Angle::radians(angle)});
+        sharp.push_back(alone);
     }
+    return withoutScraps(positions, std::move(creases), sharp, kShortest * search.radius);
+}
+
+// Where a bend meets a border, single edges beside its middle may seem folds of their own.
+std::vector<Crease> CreaseFinder::withoutScraps(std::span<const glm::vec3> positions, std::vector<Crease> creases,
+                                                const std::vector<bool>& sharp, double shortest) const {
+    DisjointSets chains(positions.size());
+    for (const Crease& crease : creases) chains.join(places_[crease.vertices[0]], places_[crease.vertices[1]]);
+    std::map<std::uint32_t, double> lengths;
+    for (std::size_t i = 0; i < creases.size(); ++i) {
+        const auto& [a, b] = creases[i].vertices;
+        lengths[chains.find(places_[a])] +=
+            sharp[i] ? 2.0 * shortest : static_cast<double>(glm::distance(positions[a], positions[b]));
+    }
+    std::erase_if(creases, [&](const Crease& crease) {
+        return lengths[chains.find(places_[crease.vertices[0]])] < shortest;
+    });
     return creases;
 }
 

@@ -47,7 +47,13 @@ private:
         float restLength;
     };
     struct Turning;
+    struct Sums;
     class Walk;
+    [[nodiscard]] Sums sumsOf(const Turning& turning, float radius) const;
+    [[nodiscard]] bool isMiddle(const Turning& turning, const std::vector<float>& near, float radius,
+                                std::size_t edge) const;
+    [[nodiscard]] std::vector<Crease> withoutScraps(std::span<const glm::vec3> positions, std::vector<Crease> creases,
+                                                    const std::vector<bool>& sharp, double shortest) const;
 
     std::vector<glm::uvec3> triangles_; ///< of the mesh's vertices
     std::vector<std::uint32_t> places_; ///< for each vertex the first at its place

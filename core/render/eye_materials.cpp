@@ -142,4 +142,10 @@ void EyeMaterials::applyTable(Program& program, const Material& table) {
     program.set("tableColor", linearLight(table.color));
 }
 
+glm::vec3 EyeMaterials::meanColor(const Material& material) {
+    const glm::vec3 color = linearLight(material.color);
+    if (!has(material.colorTexture)) return color;
+    return color * pictures_.picture(assets_->images.at(material.colorTexture.image), PictureTextures::Use::color).mean;
+}
+
 } // namespace lumorph

@@ -12,6 +12,7 @@
 
 #include "core/base/error.h"
 #include "core/render/camera_uniforms.h"
+#include "core/render/eye_fog.h"
 #include "core/render/eye_lighting.h"
 #include "core/render/eye_materials.h"
 #include "core/render/eye_programs.h"
@@ -25,6 +26,8 @@ namespace {
 using Stage = EyePrograms::Stage;
 
 constexpr glm::ivec2 kTableGrid{48, 36};
+constexpr float kBlurredLift = 0.004F;        // metres by which blurred folds keep off their own shadow
+constexpr float kNearSideStepsBack = 0.0025F; // metres
 constexpr float kFarthestCaster = 1.5F; // metres from the device's middle
 
 /// One thing to draw: a mesh, where it stands, and what it looks like.
@@ -77,6 +80,7 @@ struct EyePass::Data {
     EyeSurfaces surfaces;
     EyeShadow shadow;
     EyeLighting lighting;
+    EyeFog fog;
     EyeMesh table;
     glm::vec2 tableSize{0.0F};
 
@@ -152,11 +156,19 @@ void EyePass::Data::drawShadow(const ShowFrame& frame) {
             materials.applyDepth(program, *thing.material, features);
             if ((features & eye_feature::skin) != 0)
                 applySkin(program, frame.scene->device, surfaces.skinBoxAtRest());
-            // Of closed things the far side casts the shadow: then the near side is clear of it by their thickness.
-            const bool closed = (thing.features & (eye_feature::twoSided | eye_feature::holes)) == 0;
-            (closed ? glEnable : glDisable)(GL_CULL_FACE);
-            glCullFace(GL_FRONT);
             setFrontFace(thing.world);
+            // The near side of closed things steps back: then most places of it are told lit at first sight, and what
+            // it covers its far side covers too.
+            const bool closed = (thing.features & (eye_feature::twoSided | eye_feature::holes)) == 0;
+            glDisable(GL_CULL_FACE);
+            program.set("stepBack", 0.0F);
+            if (closed) {
+                glEnable(GL_CULL_FACE);
+                glCullFace(GL_FRONT);
+                thing.mesh->draw();
+                glCullFace(GL_BACK);
+                program.set("stepBack", shadow.depthOf(kNearSideStepsBack));
+            }
             thing.mesh->draw();
         };
         if (surfaces.hasSkin() && showsSkin(frame))
@@ -229,7 +241,8 @@ void EyePass::Data::begin(const ShowFrame& frame, const View& view, unsigned fra
 
 void EyePass::Data::draw(const ShowFrame& frame, const View& view, const Thing& thing) {
     const bool lit = (thing.features & eye_feature::unlit) == 0;
-    const std::uint32_t features = thing.features | (lit ? lighting.features() : 0U);
+    std::uint32_t features = thing.features | (lit ? lighting.features() : 0U);
+    if (fog.any() && !view.unseen) features |= eye_feature::fog;
     Program& program = programs.use(Stage::surface, features);
     setCamera(program, *view.camera, view.depth.near, view.depth.far);
     program.set("eyePosition", glm::vec3(positionOf(*view.camera)));
@@ -237,6 +250,9 @@ void EyePass::Data::draw(const ShowFrame& frame, const View& view, const Thing& 
     program.set("normalFromSurface", glm::mat4(glm::inverseTranspose(glm::mat3(thing.world))));
     lighting.apply(program);
     if ((features & eye_feature::shadow) != 0) shadow.apply(program);
+    if ((features & eye_feature::fog) != 0) fog.apply(program);
+    const double blur = (features & eye_feature::skin) != 0 ? -frame.scene->device.creases.emphasis : 0.0;
+    program.set("shadowLift", kBlurredLift * static_cast<float>(std::clamp(blur, 0.0, 1.0)));
     materials.apply(program, *thing.material, (features & eye_feature::blend) != 0 ? thing.opacity : 1.0F, features);
     if ((features & (eye_feature::reflection | eye_feature::refraction)) != 0) {
         materials.applyTable(program, frame.scene->table.material);
@@ -314,6 +330,9 @@ void EyePass::prepare(const ShowFrame& frame) {
     data_->surfaces.update(frame);
     data_->updateTable(frame.scene->table.size);
     data_->lighting = EyeLighting(*frame.scene, frame.posed.lights);
+    data_->lighting.setBounce(data_->lighting.onTable(glm::vec3(frame.worldFromDevice[3])) *
+                              data_->materials.meanColor(frame.scene->table.material));
+    data_->fog.update(frame.posed.fogs, data_->lighting.onTable(glm::vec3(frame.worldFromDevice[3])));
     data_->drawShadow(frame);
 }
 
@@ -350,7 +369,7 @@ std::vector<std::string> EyePass::warnings() const { return data_->programs.warn
 
 std::size_t EyePass::objectCount() const noexcept {
     return data_->programs.objectCount() + data_->materials.objectCount() + data_->surfaces.objectCount() +
-           data_->shadow.objectCount() + EyeMesh::kObjects;
+           data_->shadow.objectCount() + data_->fog.objectCount() + EyeMesh::kObjects;
 }
 
 } // namespace lumorph

@@ -13,10 +13,6 @@ namespace {
 constexpr float kGlossy = 0.4F;
 constexpr float kFadeRoom = 0.025F; // metres, as far as eye_lookup.glsl fades out around an area
 
-bool looksDifferentFromEverywhere(const Material& table) {
-    return table.reflection > 0.0F || table.refraction > 0.0F || table.metallic > 0.3F || table.roughness < kGlossy;
-}
-
 // Where things of a box appear on the table, seen from the eye; false: beyond all bounds.
 bool includeOnTable(Box& onTable, const Box& box, const glm::mat4& worldFromBox, const glm::vec3& eye) {
     for (unsigned i = 0; i < 8; ++i) {
@@ -39,10 +35,14 @@ bool holds(const CalibratedCamera& camera, const glm::vec3& point) {
 
 } // namespace
 
+bool dependsOnEye(const Material& table) {
+    return table.reflection > 0.0F || table.refraction > 0.0F || table.metallic > 0.3F || table.roughness < kGlossy;
+}
+
 std::optional<TableArea> lookupArea(const ShowFrame& frame, const glm::vec3& eye) {
     const glm::vec2 half = 0.5F * frame.scene->table.size;
     const TableArea all{-half - kFadeRoom, half + kFadeRoom};
-    if (looksDifferentFromEverywhere(frame.scene->table.material)) return all;
+    if (dependsOnEye(frame.scene->table.material)) return all;
     Box seen;
     bool bounded = true;
     for (const PosedSurface& surface : frame.posed.surfaces)

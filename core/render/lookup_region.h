@@ -17,6 +17,10 @@ struct PixelRectangle {
     [[nodiscard]] bool empty() const noexcept { return low.x >= high.x || low.y >= high.y; }
 };
 
+/// Whether a table of this material looks different to every eye: it mirrors, bends light or shines. What does not must
+/// be drawn the same by both of the eye pass's ways, because the projector pass then takes the cheap one.
+[[nodiscard]] bool dependsOnEye(const Material& table);
+
 /// A part of the table, metres in x and z.
 struct TableArea {
     glm::vec2 low{0.0F};

@@ -8,6 +8,7 @@ out vec2 restPlace;
 #endif
 uniform mat4 clipFromWorld;
 uniform mat4 worldFromMesh;
+uniform float stepBack; // clip depth
 out vec2 place;
 
 void main() {
@@ -16,4 +17,5 @@ void main() {
     restPlace = restPosition.xz;
 #endif
     gl_Position = clipFromWorld * (worldFromMesh * vec4(position, 1.0));
+    gl_Position.z += stepBack * gl_Position.w;
 }

@@ -8,7 +8,8 @@ out vec4 color;
 uniform vec3 eyePosition;
 uniform vec4 baseColor; // linear, opacity
 uniform vec3 emitted;
-uniform vec3 skyLight;
+uniform vec3 skyLight;    // on a surface that looks up
+uniform vec3 bounceLight; // on one that looks down
 #ifdef COLOR_TEXTURE
 uniform sampler2D colorPicture;
 uniform vec4 colorTurn; // texture coordinates are mat2(colorTurn) * place + colorShift
@@ -97,7 +98,7 @@ void main() {
     n = bentNormal(n);
 #endif
     vec3 view = normalize(eyePosition - worldPosition);
-    vec3 diffuse = skyLight * (0.65 + 0.35 * n.y);
+    vec3 diffuse = mix(bounceLight, skyLight, 0.5 + 0.5 * n.y);
     vec3 shine = vec3(0.0);
 #if LIGHTS > 0
     for (int i = 0; i < LIGHTS; ++i) {
@@ -148,7 +149,7 @@ void main() {
     light += emitted;
 #endif
 #ifdef FOG
-    light = fogged(light, worldPosition);
+    light = fogged(light, worldPosition, eyePosition);
 #endif
     color = shown(light, base.a);
 }
