@@ -10,35 +10,32 @@
 #include <glm/matrix.hpp>
 
 #include "core/render/eye_materials.h"
+#include "core/render/eye_programs.h"
 
 namespace lumorph {
 namespace {
 
 constexpr std::size_t kMost = 2; // as in eye_fog.glsl
-constexpr int kSide = 32;        // of the grain's cube, which repeats
+constexpr int kSide = 64;        // of the grain's picture, which repeats
 constexpr float kGrainsAcross = 4.0F;
 
 // Random values on a lattice of `cells` a side, smoothly between.
 std::vector<float> valueNoise(int cells, std::mt19937& random) {
     std::uniform_real_distribution<float> uniform(0.0F, 1.0F);
-    std::vector<float> lattice(static_cast<std::size_t>(cells * cells * cells));
+    std::vector<float> lattice(static_cast<std::size_t>(cells * cells));
     for (float& value : lattice) value = uniform(random);
     std::vector<float> noise;
-    noise.reserve(static_cast<std::size_t>(kSide) * kSide * kSide);
-    for (int i = 0; i < kSide * kSide * kSide; ++i) {
-        const glm::vec3 at = glm::vec3(i % kSide, i / kSide % kSide, i / (kSide * kSide)) *
-                             (static_cast<float>(cells) / static_cast<float>(kSide));
-        const glm::vec3 cell = glm::floor(at);
-        const glm::vec3 share = glm::smoothstep(glm::vec3(0.0F), glm::vec3(1.0F), at - cell);
-        float sum = 0.0F;
-        for (unsigned corner = 0; corner < 8; ++corner) {
-            const glm::ivec3 step(corner & 1U, corner >> 1U & 1U, corner >> 2U);
-            const glm::ivec3 place = (glm::ivec3(cell) + step) % cells;
-            const glm::vec3 weight = glm::mix(1.0F - share, share, glm::vec3(step));
-            sum += weight.x * weight.y * weight.z *
-                   lattice[static_cast<std::size_t>((place.z * cells + place.y) * cells + place.x)];
-        }
-        noise.push_back(sum);
+    noise.reserve(static_cast<std::size_t>(kSide) * kSide);
+    for (int i = 0; i < kSide * kSide; ++i) {
+        const glm::vec2 at = glm::vec2(i % kSide, i / kSide) * (static_cast<float>(cells) / static_cast<float>(kSide));
+        const glm::vec2 cell = glm::floor(at);
+        const glm::vec2 share = glm::smoothstep(glm::vec2(0.0F), glm::vec2(1.0F), at - cell);
+        const auto value = [&](int right, int down) {
+            const glm::ivec2 place = (glm::ivec2(cell) + glm::ivec2(right, down)) % cells;
+            return lattice[static_cast<std::size_t>(place.y * cells + place.x)];
+        };
+        noise.push_back(glm::mix(glm::mix(value(0, 0), value(1, 0), share.x),
+                                 glm::mix(value(0, 1), value(1, 1), share.x), share.y));
     }
     return noise;
 }
@@ -58,11 +55,11 @@ void EyeFog::makeGrain() {
         bytes.push_back(static_cast<std::uint8_t>(
             std::lround(255.0F * (0.55F * octaves[0][i] + 0.3F * octaves[1][i] + 0.15F * octaves[2][i]))));
     grain_.emplace();
-    glBindTexture(GL_TEXTURE_3D, grain_->name());
+    glBindTexture(GL_TEXTURE_2D, grain_->name());
     glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
-    glTexImage3D(GL_TEXTURE_3D, 0, GL_R8, kSide, kSide, kSide, 0, GL_RED, GL_UNSIGNED_BYTE, bytes.data());
-    glTexParameteri(GL_TEXTURE_3D, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
-    glBindTexture(GL_TEXTURE_3D, 0);
+    glTexImage2D(GL_TEXTURE_2D, 0, GL_R8, kSide, kSide, 0, GL_RED, GL_UNSIGNED_BYTE, bytes.data());
+    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
+    glBindTexture(GL_TEXTURE_2D, 0);
 }
 
 void EyeFog::update(std::span<const PosedFog> fogs, const glm::vec3& light) {
@@ -70,30 +67,34 @@ void EyeFog::update(std::span<const PosedFog> fogs, const glm::vec3& light) {
     light_ = light;
     std::copy_if(fogs.begin(), fogs.end(), std::back_inserter(fogs_), visible);
     fogs_.resize(std::min(fogs_.size(), kMost));
-    if (any() && !grain_) makeGrain();
+    if (!fogs_.empty() && !grain_) makeGrain();
+}
+
+std::uint32_t EyeFog::features() const noexcept {
+    return fogs_.empty() ? 0U : eye_feature::fog | (fogs_.size() > 1 ? eye_feature::secondFog : 0U);
 }
 
 void EyeFog::apply(Program& program) const {
-    std::array<glm::mat4, kMost> boxFromWorld{glm::mat4(0.0F), glm::mat4(0.0F)};
-    std::array<glm::vec4, kMost> colors{glm::vec4(0.0F), glm::vec4(0.0F)};
-    std::array<glm::vec4, kMost> grains{glm::vec4(1.0F), glm::vec4(1.0F)};
-    for (std::size_t i = 0; i < fogs_.size(); ++i) {
-        const PosedFog& fog = fogs_[i];
-        boxFromWorld[i] = glm::inverse(fog.worldFromBox);
-        colors[i] = glm::vec4(light_ * fog.color, fog.density);
+    std::vector<glm::mat4> fromWorld;
+    std::vector<glm::vec4> colors;
+    std::vector<glm::vec3> grains;
+    std::vector<glm::vec2> drifts;
+    for (const PosedFog& fog : fogs_) {
+        const glm::mat4& box = fog.worldFromBox;
         const float repeat = kGrainsAcross * std::max(fog.grain, 1e-3F);
         const glm::vec2 gone = fog.offset / repeat;
-        const glm::vec3 size(glm::length(glm::vec3(fog.worldFromBox[0])), glm::length(glm::vec3(fog.worldFromBox[1])),
-                             glm::length(glm::vec3(fog.worldFromBox[2])));
-        grains[i] = glm::vec4(size / repeat, 0.0F);
-        program.set("fogDrift[" + std::to_string(i) + "]", gone - glm::floor(gone));
+        fromWorld.push_back(glm::inverse(box));
+        colors.emplace_back(light_ * fog.color, fog.density);
+        grains.push_back(glm::vec3(glm::length(box[0]), glm::length(box[1]), glm::length(box[2])) / repeat);
+        drifts.push_back(gone - glm::floor(gone));
     }
-    program.set("fogFromWorld", std::span<const glm::mat4>(boxFromWorld));
+    program.set("fogFromWorld", std::span<const glm::mat4>(fromWorld));
     program.set("fogColors", std::span<const glm::vec4>(colors));
-    program.set("fogGrains", std::span<const glm::vec4>(grains));
+    program.set("fogGrains", std::span<const glm::vec3>(grains));
+    program.set("fogDrifts", std::span<const glm::vec2>(drifts));
     program.set("fogGrain", static_cast<int>(eye_unit::fog));
     glActiveTexture(GL_TEXTURE0 + eye_unit::fog);
-    glBindTexture(GL_TEXTURE_3D, grain_->name());
+    glBindTexture(GL_TEXTURE_2D, grain_->name());
 }
 
 } // namespace lumorph

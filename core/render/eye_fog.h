@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <span>
 #include <vector>
@@ -15,8 +16,8 @@ class EyeFog {
 public:
     /// Takes what a frame has; `light` is what falls on the fog, linear. More than two are left out.
     void update(std::span<const PosedFog> fogs, const glm::vec3& light);
-    /// Whether there is any fog to see.
-    [[nodiscard]] bool any() const noexcept { return !fogs_.empty(); }
+    /// Bits of eye_feature; none where there is no fog to see.
+    [[nodiscard]] std::uint32_t features() const noexcept;
     void apply(Program& program) const;
     [[nodiscard]] std::size_t objectCount() const noexcept { return grain_ ? 1 : 0; }
 

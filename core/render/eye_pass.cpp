@@ -242,7 +242,7 @@ void EyePass::Data::begin(const ShowFrame& frame, const View& view, unsigned fra
 void EyePass::Data::draw(const ShowFrame& frame, const View& view, const Thing& thing) {
     const bool lit = (thing.features & eye_feature::unlit) == 0;
     std::uint32_t features = thing.features | (lit ? lighting.features() : 0U);
-    if (fog.any() && !view.unseen) features |= eye_feature::fog;
+    if (!view.unseen) features |= fog.features();
     Program& program = programs.use(Stage::surface, features);
     setCamera(program, *view.camera, view.depth.near, view.depth.far);
     program.set("eyePosition", glm::vec3(positionOf(*view.camera)));
