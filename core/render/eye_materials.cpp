@@ -77,10 +77,11 @@ PictureTextures::Picture EyeMaterials::bind(Program& program, int unit, const Sc
                                             const char* shift) {
     const PicturePlacement placement = placementOf(texture, seconds_);
     const bool there = has(texture);
+    // A picture that is new is uploaded into the unit it is for: no other unit may lose its own.
+    glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(unit));
     const auto picture = pictures_.picture(there ? assets_->images.at(texture.image) : white_, use,
                                            there ? glm::ivec2(texture.columns, texture.rows) : glm::ivec2(1),
                                            placement.cell);
-    glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(unit));
     glBindTexture(GL_TEXTURE_2D, picture.texture);
     program.set(sampler, unit);
     program.set(turn, placement.turn);
