@@ -108,7 +108,11 @@ const char* nameOf(TruthContent content) {
 }
 
 ShowFrame truthFrame(const TruthDevice& device, const TruthState& state, const glm::vec3& eye, TruthContent content) {
-    static const SceneAssets assets{{{"bricks", pictureOf(brickAt)}, {"lines", pictureOf(lineAt)}}, {}, {}, {}};
+    static const SceneAssets assets = [] {
+        SceneAssets made;
+        made.images = {{"bricks", pictureOf(brickAt)}, {"lines", pictureOf(lineAt)}};
+        return made;
+    }();
     Scene scene = device.scene;
     setSkin(scene, content == TruthContent::lines ? "lines" : "bricks");
     if (content == TruthContent::water) addWater(scene);
