@@ -38,6 +38,7 @@ struct Thing {
     float opacity = 1.0F;
     std::uint32_t features = 0;
     float distance = 0.0F;
+    bool skin = false;
 };
 
 /// Where a frame is drawn to.
@@ -155,7 +156,7 @@ void EyePass::Data::drawShadow(const ShowFrame& frame) {
             program.set("castShare", thing.opacity);
             materials.applyDepth(program, *thing.material, features);
             if ((features & eye_feature::skin) != 0)
-                applySkin(program, frame.scene->device, surfaces.skinBoxAtRest());
+                applySkin(program, frame.scene->device, surfaces.skinBoxAtRest(), frame.worldFromDevice);
             setFrontFace(thing.world);
             // The near side of closed things steps back: then most places of it are told lit at first sight, and what
             // it covers its far side covers too.
@@ -186,7 +187,7 @@ void EyePass::Data::drawShadow(const ShowFrame& frame) {
 Thing EyePass::Data::skinThing(const ShowFrame& frame, bool unseen) const {
     const DeviceSkin& skin = frame.scene->device;
     Thing thing{&surfaces.skin(), frame.worldFromDevice, &skin.material, 1.0F, materials.features(skin.material, unseen),
-                0.0F};
+                0.0F, true};
     if (!unseen) thing.features |= skinFeatures(skin);
     if (!unseen && skin.material.alpha == Material::Alpha::blend) {
         thing.opacity = skin.material.opacity;
@@ -261,14 +262,18 @@ void EyePass::Data::draw(const ShowFrame& frame, const View& view, const Thing& 
         program.set("sky", frame.scene->sky);
     }
     if ((features & eye_feature::skin) != 0)
-        applySkin(program, frame.scene->device, surfaces.skinBoxAtRest());
+        applySkin(program, frame.scene->device, surfaces.skinBoxAtRest(), frame.worldFromDevice);
     if ((features & eye_feature::holesBelow) != 0)
         applyHolesAbove(program, frame.scene->device, surfaces.skinBoxAtRest(), frame.worldFromDevice);
     setFrontFace(thing.world);
     const bool cull = (features & eye_feature::twoSided) == 0;
     (cull ? glEnable : glDisable)(GL_CULL_FACE);
     glCullFace(GL_BACK);
+    // Where an item lies in the device's own surface, the item is seen.
+    (thing.skin ? glEnable : glDisable)(GL_POLYGON_OFFSET_FILL);
+    glPolygonOffset(1.0F, 8.0F);
     thing.mesh->draw();
+    glDisable(GL_POLYGON_OFFSET_FILL);
 }
 
 void EyePass::Data::drawTable(const ShowFrame& frame, const View& view) {
@@ -293,12 +298,12 @@ void EyePass::Data::drawCreases(const ShowFrame& frame, const View& view) {
     program.set("worldFromSurface", frame.worldFromDevice);
     program.set("ink", glm::vec4(linearLight(creases.color), static_cast<float>(std::min(creases.emphasis, 1.0))));
     lighting.apply(program);
-    applySkin(program, frame.scene->device, surfaces.skinBoxAtRest());
+    applySkin(program, frame.scene->device, surfaces.skinBoxAtRest(), frame.worldFromDevice);
     setFrontFace(frame.worldFromDevice);
     glEnable(GL_CULL_FACE);
     glCullFace(GL_BACK);
     glEnable(GL_POLYGON_OFFSET_FILL);
-    glPolygonOffset(-1.0F, -2.0F);
+    glPolygonOffset(0.5F, 4.0F); // between the items and the skin, which steps back more
     glDepthMask(GL_FALSE);
     glEnable(GL_BLEND);
     glBlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ZERO, GL_ONE);
