@@ -16,13 +16,6 @@ namespace {
 const CalibratedCamera kAbove = cameraLookingAt({0.02, 1.1, 0.25}, {0.0, 0.0, 0.0}, {360, 260}, 620.0);
 constexpr double kSteepest = 65.0 * 3.14159265358979 / 180.0;
 
-std::vector<double> lifted() {
-    std::vector<double> strokes(tabletRig()->actuatorCount(), 0.0);
-    strokes[0] = 0.9;
-    strokes[2] = 0.6;
-    return strokes;
-}
-
 // Two projectors from left and right that both hold the device, with borders in the other's image.
 std::vector<SceneProjector> pair() {
     return {projectorAt({-0.7, 1.4, 0.1}, {-0.06, 0.0, 0.0}, {640, 400}, 1700.0),
@@ -114,7 +107,7 @@ TEST(SpatialRenderer, OneProjectorMakesABentDeviceUniform) {
     const HeadlessContext context;
     SpatialRenderer renderer;
     const std::vector<SceneProjector> projectors{pair()[0]};
-    const ShowFrame frame = frameOf(uniformScene(0.7F, projectors), lifted());
+    const ShowFrame frame = frameOf(unlitScene(glm::vec3(0.7F), glm::vec3(0.7F), projectors), liftedFlaps());
     renderer.draw(frame);
     const Lab lab(labOf(frame, renderer));
     const Flatness flat = flatnessOf(lab, projectors, linear(0.7));
@@ -127,9 +120,9 @@ TEST(SpatialRenderer, OneProjectorMakesABentDeviceUniform) {
 TEST(SpatialRenderer, WithoutCompensationTheValueIsTheContent) {
     const HeadlessContext context;
     SpatialRenderer renderer;
-    Scene scene = uniformScene(0.7F, {pair()[0]});
+    Scene scene = unlitScene(glm::vec3(0.7F), glm::vec3(0.7F), {pair()[0]});
     scene.compensation = false;
-    const ShowFrame frame = frameOf(scene, lifted());
+    const ShowFrame frame = frameOf(scene, liftedFlaps());
     renderer.draw(frame);
     const Image sent = renderer.readProjector(0);
     const double value = linear(0.7) / scene.projectors[0].peak;
@@ -141,7 +134,7 @@ TEST(SpatialRenderer, TwoProjectorsShareTheWorkWithoutASeam) {
     const HeadlessContext context;
     SpatialRenderer renderer;
     const std::vector<SceneProjector> projectors = pair();
-    const ShowFrame frame = frameOf(uniformScene(0.7F, projectors), lifted());
+    const ShowFrame frame = frameOf(unlitScene(glm::vec3(0.7F), glm::vec3(0.7F), projectors), liftedFlaps());
     renderer.draw(frame);
     const Lab lab(labOf(frame, renderer));
     const Flatness flat = flatnessOf(lab, projectors, linear(0.7));
@@ -156,7 +149,7 @@ TEST(SpatialRenderer, TwoProjectorsShareTheWorkWithoutASeam) {
     const double value = linear(first.at(int(pixel->x), int(pixel->y))[1] / 255.0);
     Scene alone = *frame.scene;
     alone.projectors[1].enabled = false;
-    renderer.draw(frameOf(alone, lifted()));
+    renderer.draw(frameOf(alone, liftedFlaps()));
     const double whole = linear(renderer.readProjector(0).at(int(pixel->x), int(pixel->y))[1] / 255.0);
     EXPECT_GT(value, 0.2 * whole);
     EXPECT_LT(value, 0.8 * whole);
@@ -168,12 +161,73 @@ TEST(SpatialRenderer, GammaOfAProjectorIsAnswered) {
     SpatialRenderer renderer;
     std::vector<SceneProjector> projectors{pair()[0]};
     projectors[0].gamma = 2.6;
-    const ShowFrame frame = frameOf(uniformScene(0.7F, projectors), lifted());
+    const ShowFrame frame = frameOf(unlitScene(glm::vec3(0.7F), glm::vec3(0.7F), projectors), liftedFlaps());
     renderer.draw(frame);
     const Lab lab(labOf(frame, renderer));
     const Flatness flat = flatnessOf(lab, projectors, linear(0.7));
     EXPECT_GT(flat.judged, 20'000);
     EXPECT_LE(flat.worse, flat.judged / 500) << flat.worst;
+}
+
+// How different two pictures are on average, and at how many pixels they differ much.
+struct Difference {
+    double mean = 0.0;
+    double muchShare = 0.0;
+};
+
+Difference between(const Image& first, const Image& second) {
+    Difference difference;
+    for (std::size_t i = 0; i < first.pixels().size(); ++i) {
+        const double step = std::abs(first.pixels()[i][1] - second.pixels()[i][1]);
+        difference.mean += step / static_cast<double>(first.pixels().size());
+        difference.muchShare += (step > 20 ? 1.0 : 0.0) / static_cast<double>(first.pixels().size());
+    }
+    return difference;
+}
+
+TEST(SpatialRenderer, PreviewOfTheLabShowsWhatTheLabShows) {
+    const HeadlessContext context;
+    SpatialRenderer renderer;
+    std::vector<SceneProjector> projectors = pair();
+    projectors[1].gamma = 1.8;
+    projectors[0].gain = {0.8F, 0.9F, 0.7F};
+    Scene scene = unlitScene({0.9F, 0.5F, 0.2F}, {0.1F, 0.4F, 0.6F}, projectors);
+    scene.compensation = false; // so that the light falls off visibly
+    const ShowFrame frame = frameOf(scene, liftedFlaps());
+    renderer.draw(frame);
+    const Lab lab(labOf(frame, renderer));
+    const CalibratedCamera low = cameraLookingAt({-0.5, 0.35, 0.5}, {0.0, 0.0, 0.0}, {400, 300}, 500.0);
+    for (const CalibratedCamera& observer : {kAbove, low}) {
+        const Difference difference = between(renderer.readLab(observer), lab.view(observer, 1));
+        EXPECT_LT(difference.mean, 0.6);
+        EXPECT_LT(difference.muchShare, 0.01);
+    }
+}
+
+TEST(SpatialRenderer, MaskIsWhiteWhereEyeAndProjectorMeet) {
+    const HeadlessContext context;
+    SpatialRenderer renderer;
+    renderer.setEyeSize({320, 200});
+    const std::vector<SceneProjector> projectors{pair()[0]};
+    const ShowFrame frame = frameOf(unlitScene(glm::vec3(0.7F), glm::vec3(0.7F), projectors), liftedFlaps());
+    renderer.draw(frame);
+    const Image mask = renderer.readMask();
+    const Lab lab(labOf(frame, renderer));
+    const CalibratedCamera eye = deviceView(frame, *frame.eye, {320, 200});
+    int white = 0;
+    int black = 0;
+    int wrong = 0;
+    for (int y = 0; y < 200; ++y)
+        for (int x = 0; x < 320; ++x) {
+            const auto hit = lab.trace(positionOf(eye), directionOf(eye, {x, y}));
+            const bool lit = hit && lab.lit(0, hit->point, hit->normal);
+            const bool shown = mask.at(x, y)[0] > 127;
+            (lit ? white : black) += 1;
+            wrong += lit == shown ? 0 : 1;
+        }
+    EXPECT_GT(white, 20'000);
+    EXPECT_GT(black, 3'000);
+    EXPECT_LT(wrong, 64'000 / 100);
 }
 
 } // namespace
