@@ -21,10 +21,6 @@ namespace {
 namespace fs = std::filesystem;
 using Bytes = std::vector<std::byte>;
 
-/// Until the project file holds a scene, everyone starts with the same.
-Scene sceneOf(const Project& /*project*/) { return defaultScene(); }
-void setScene(Project& /*project*/, const Scene& /*scene*/) {}
-
 void loadField(const fs::path& file, const std::string& asset, LoadedProject& loaded) {
     try {
         auto field = readFieldAsset(assetPath(file, asset));
@@ -126,7 +122,7 @@ LoadedProject loadProjectWithoutAssets(const fs::path& file, const Progress& pro
         loaded.state.target = std::move(target.asset);
         loaded.stamps.target = target.stamp;
     }
-    loaded.state.scene = std::make_shared<const Scene>(withWholePaths(sceneOf(project), file));
+    loaded.state.scene = std::make_shared<const Scene>(withWholePaths(project.scene, file));
     return loaded;
 }
 
@@ -156,7 +152,7 @@ void saveProject(const ProjectSource& source, const fs::path& file, const Progre
         project.target = take(
             file, state.target.path, source.stamps.target, fileStem(state.target.path, target->name) + ".glb",
             [&] { return targetBytes(*target); }, progress);
-    if (state.scene) setScene(project, withTakenFiles(*state.scene, state.assets.get(), file, progress));
+    if (state.scene) project.scene = withTakenFiles(*state.scene, state.assets.get(), file, progress);
     const std::string oldField = fieldNamedBy(file);
     writeProject(project, file);
     dropOldField(file, oldField, project.field);
