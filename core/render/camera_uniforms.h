@@ -1,6 +1,7 @@
 #pragma once
 
 #include "core/geometry/calibrated_camera.h"
+#include "core/geometry/triangle_mesh.h"
 #include "core/render/program.h"
 
 namespace lumorph {
