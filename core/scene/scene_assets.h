@@ -4,6 +4,7 @@
 #include <map>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "core/base/progress.h"
 #include "core/geometry/model.h"
@@ -38,5 +39,8 @@ struct SceneAssets {
 
 /// All asset names of a scene, each once.
 [[nodiscard]] std::vector<std::string> assetNames(const Scene& scene);
+
+/// Calls an asset by another name wherever the scene names it.
+void renameAsset(Scene& scene, const std::string& from, const std::string& to);
 
 } // namespace lumorph
