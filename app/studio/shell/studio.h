@@ -7,6 +7,7 @@
 #include "app/studio/document/studio_loop.h"
 #include "app/studio/shell/commands.h"
 #include "app/studio/shell/settings.h"
+#include "app/studio/show/show_feed.h"
 #include "app/studio/viewport/render_thread.h"
 
 namespace lumorph::studio {
@@ -21,6 +22,7 @@ struct Studio {
     Desk desk{document, jobs, notices};
     Commands commands;
     RenderThread renderer;
+    ShowFeed show{loop, renderer, notices};
 };
 
 } // namespace lumorph::studio

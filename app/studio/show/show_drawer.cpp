@@ -11,6 +11,7 @@
 #include "app/studio/show/show_frames.h"
 #include "app/studio/viewport/frame_reader.h"
 #include "core/loop/show_stage.h"
+#include "core/render/color_target.h"
 #include "core/render/spatial_renderer.h"
 
 namespace lumorph::studio {
@@ -80,7 +81,8 @@ QImage toQImage(const Image& image, QSize pixels) {
 /// What holds OpenGL objects.
 struct Objects {
     SpatialRenderer renderer;
-    gl::Framebuffer source; ///< a texture of the renderer is attached to it while it is copied
+    gl::Framebuffer source;         ///< a texture is attached to it while it is copied
+    std::map<int, ColorTarget> labs; ///< what lab views are drawn into
     std::map<int, FrameReader> readers;
 };
 
@@ -91,6 +93,7 @@ struct ShowDrawer::Data {
 
     void pose(const ShowPace::Work& work);
     void drawBend(const ShowPace::Work& work, Bend bend);
+    const ColorTarget& drawLab(const WantedView& wanted, const ShowFrame& frame, glm::ivec2 size);
     void drawView(const WantedView& wanted, const ShowFrame& frame, double resolution);
     void drawProjector(const WantedView& wanted, FrameReader& reader, const ShowFrame& frame);
     void copyTexture(FrameReader& reader, unsigned texture, glm::ivec2 size, QSize pixels);
@@ -115,10 +118,12 @@ ShowDrawer::ShowDrawer(const GlDriver& driver, Deliver deliver)
 ShowDrawer::~ShowDrawer() = default;
 
 void ShowDrawer::Data::dropUnwanted(const ShowRequest& request) {
-    std::erase_if(objects->readers, [&](const auto& reader) {
+    const auto unwanted = [&](const auto& entry) {
         return std::none_of(request.views.begin(), request.views.end(),
-                            [&](const WantedView& wanted) { return wanted.id == reader.first; });
-    });
+                            [&](const WantedView& wanted) { return wanted.id == entry.first; });
+    };
+    std::erase_if(objects->readers, unwanted);
+    std::erase_if(objects->labs, unwanted);
 }
 
 /// Posing costs a millisecond or two. It is done here, not in the loop: the loop makes more frames than are drawn, and
@@ -158,6 +163,17 @@ void ShowDrawer::Data::drawProjector(const WantedView& wanted, FrameReader& read
     copyTexture(reader, objects->renderer.projectorTexture(number), own, toSize(shown));
 }
 
+const ColorTarget& ShowDrawer::Data::drawLab(const WantedView& wanted, const ShowFrame& frame, glm::ivec2 size) {
+    auto found = objects->labs.find(wanted.id);
+    if (found != objects->labs.end() && found->second.size() != size) {
+        objects->labs.erase(found);
+        found = objects->labs.end();
+    }
+    if (found == objects->labs.end()) found = objects->labs.emplace(wanted.id, ColorTarget(size)).first;
+    objects->renderer.drawLab(found->second.framebuffer(), labCamera(frame, wanted.view.observer, size));
+    return found->second;
+}
+
 void ShowDrawer::Data::drawView(const WantedView& wanted, const ShowFrame& frame, double resolution) {
     SpatialRenderer& renderer = objects->renderer;
     if (wanted.view.kind == ShowView::Kind::mask) {
@@ -167,11 +183,10 @@ void ShowDrawer::Data::drawView(const WantedView& wanted, const ShowFrame& frame
     FrameReader& reader = objects->readers.try_emplace(wanted.id, way, pool).first->second;
     auto from = Clock::now();
     if (wanted.view.kind == ShowView::Kind::lab) {
-        const glm::ivec2 size = scaled(toVec(wanted.pixels), resolution);
-        renderer.drawLab(reader.framebuffer(toSize(size)), labCamera(frame, wanted.view.observer, size));
+        const ColorTarget& lab = drawLab(wanted, frame, scaled(toVec(wanted.pixels), resolution));
         drawn.ms.lab += since(from);
         from = Clock::now();
-        reader.start(wanted.pixels);
+        copyTexture(reader, lab.texture(), lab.size(), wanted.pixels);
     } else if (wanted.view.kind == ShowView::Kind::eye) {
         copyTexture(reader, renderer.eyeTexture(), eyePixels, wanted.pixels);
     } else {
@@ -250,6 +265,7 @@ void ShowDrawer::clear() {
 std::size_t ShowDrawer::objectCount() const {
     if (!data_->objects) return 0;
     std::size_t count = data_->objects->renderer.objectCount() + 1;
+    count += data_->objects->labs.size() * ColorTarget::kObjects;
     for (const auto& [id, reader] : data_->objects->readers) count += reader.objectCount();
     return count;
 }

@@ -75,7 +75,6 @@ struct RenderThread::Data {
     ShowPace pace;
     std::optional<DrawnShow> shown;
     Clock::time_point showAgain; ///< after it failed
-    bool showForgotten = false;
     bool showsTurn = true; ///< viewports and the show take turns
     std::optional<QString> failure;
     bool stop = false;
@@ -123,7 +122,6 @@ bool RenderThread::Data::showIsNext() const { return pace.pressing() && (showsTu
 
 void RenderThread::Data::step(Drawers& drawers, std::unique_lock<std::mutex>& lock) {
     for (const int viewport : std::exchange(forgotten, {})) drawers.frames.forget(viewport);
-    if (std::exchange(showForgotten, false)) drawers.show.clear();
     const auto now = Clock::now();
     // Frames on the screen come before pictures, those before full quality.
     if (!pressing() && !pictures.empty()) {
@@ -160,7 +158,7 @@ void RenderThread::Data::step(Drawers& drawers, std::unique_lock<std::mutex>& lo
 
 void RenderThread::Data::sleep(std::unique_lock<std::mutex>& lock) {
     const auto wanted = [&] {
-        return stop || pressing() || !pictures.empty() || !forgotten.empty() || showForgotten;
+        return stop || pressing() || !pictures.empty() || !forgotten.empty();
     };
     auto until = schedule.nextAt();
     if (const auto still = pace.stillAt()) until = until ? std::min(*until, *still) : *still;
@@ -310,7 +308,6 @@ void RenderThread::requestShow(ShowRequest request) {
         if (nothing) {
             data_->pace.forget();
             data_->shown.reset();
-            data_->showForgotten = true;
         } else if (Clock::now() >= data_->showAgain) {
             data_->pace.request(std::move(request), Clock::now());
         }
