@@ -9,6 +9,7 @@
 #include "core/base/file.h"
 #include "core/base/json_check.h"
 #include "core/scene/project_format.h"
+#include "core/scene/scene_assets.h"
 
 namespace lumorph {
 namespace {
@@ -20,13 +21,16 @@ constexpr const char* kReplace = "choose another file, or restore this one from 
 
 /// What a project names may have become a link since.
 void refuseLinksOutside(const Project& project, const fs::path& file) {
-    for (const auto& [key, asset] :
-         {std::pair{"rig", &project.rig}, std::pair{"field", &project.field}, std::pair{"target", &project.target}}) {
-        if (asset->empty() || asset->starts_with("resource:") || confinedPath(projectFolder(file), *asset)) continue;
+    const auto refuse = [&file](const char* key, const std::string& asset) {
+        if (asset.empty() || asset.starts_with("resource:") || confinedPath(projectFolder(file), asset)) return;
         throw DataError(file.string(),
-                        std::string(key) + ": \"" + *asset + "\" leads out of the project's folder through a link",
+                        std::string(key) + ": \"" + asset + "\" leads out of the project's folder through a link",
                         "put the file itself beside the project");
-    }
+    };
+    refuse("rig", project.rig);
+    refuse("field", project.field);
+    refuse("target", project.target);
+    for (const std::string& asset : assetNames(project.scene)) refuse("scene", asset);
 }
 
 } // namespace

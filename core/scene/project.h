@@ -9,15 +9,16 @@
 
 #include "core/mdf/placement.h"
 #include "core/scene/project_assets.h"
+#include "core/scene/scene.h"
 
 namespace lumorph {
 
 /// Schema version that this program writes; older ones are migrated step by step, newer ones are refused.
-inline constexpr int kProjectSchema = 1;
+inline constexpr int kProjectSchema = 2;
 
 /// A project as its file `name.lumorph` (JSON) holds it. Paths of assets are relative to the project's folder and may
 /// not leave it, or name a bundled resource as `resource:models/tablet.glb`. Keys that this version does not know are
-/// kept.
+/// kept, but in the entries of lists.
 struct Project {
     std::string rig;    ///< asset, always there: .glb, .gltf or a folder of one mesh per state
     std::string field;  ///< asset: .mdf; empty when it has not been built
@@ -36,8 +37,9 @@ struct Project {
         double spin = 0.0; ///< radians a second
         bool operator==(const Playback&) const = default;
     } playback;
-    nlohmann::json view;    ///< what a window wants to remember about how it shows the project; an object or null
-    nlohmann::json unknown; ///< the rest of the file, nested as it was, written back as it was
+    Scene scene = defaultScene(); ///< what is shown
+    nlohmann::json view;          ///< what a window wants to remember about how it shows the project; an object or null
+    nlohmann::json unknown;       ///< the rest of the file, nested as it was, written back as it was
 };
 
 /// A project from the text of its file; `name` stands in errors. Older schemas are migrated, links are not looked at.

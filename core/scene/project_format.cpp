@@ -1,12 +1,12 @@
 #include "core/scene/project_format.h"
 
 #include <array>
-#include <cmath>
-#include <limits>
 #include <utility>
 
 #include "core/base/error.h"
 #include "core/rig/rig_validation.h"
+#include "core/scene/json_section.h"
+#include "core/scene/scene_format.h"
 
 namespace lumorph {
 namespace {
@@ -22,97 +22,25 @@ void fromDraft(json& document) {
     document["rig"] = std::move(rig);
 }
 
+/// The first schema knew no scene: what it matched is drawn, and the servos go on following it.
+void addScene(json& document) {
+    if (document.contains("scene")) return;
+    Scene scene = defaultScene();
+    const auto target = document.find("target");
+    if (target != document.end() && target->is_string() && !target->get_ref<const std::string&>().empty()) {
+        SceneItem item;
+        item.id = scene.items.back().id + 1;
+        item.name = "Target";
+        item.role = ItemRole::physical;
+        item.kind = TargetItem{};
+        scene.items.push_back(std::move(item));
+    }
+    document["scene"] = documentOf(scene);
+}
+
 using Migration = void (*)(json& document);
 /// The step at index i takes a document from schema i to i + 1.
-constexpr std::array<Migration, kProjectSchema> kMigrations = {&fromDraft};
-
-std::string shortest(double value) { return json(value).dump(); }
-
-/// One JSON object of a project and where it stands. What has been read is taken out, so that the rest is what this
-/// version does not know.
-class Section {
-public:
-    Section(json& object, std::string prefix, const std::string& file)
-        : object_(object), prefix_(std::move(prefix)), file_(file) {}
-
-    void text(const char* key, std::string& value) {
-        if (const json* found = find(key)) {
-            if (!found->is_string()) refuse(key, "is not a text", "put it in quotes, or remove it");
-            value = found->get<std::string>();
-            object_.erase(key);
-        }
-    }
-    void flag(const char* key, bool& value) {
-        if (const json* found = find(key)) {
-            if (!found->is_boolean()) refuse(key, "is neither true nor false", "write true or false, or remove it");
-            value = found->get<bool>();
-            object_.erase(key);
-        }
-    }
-    void number(const char* key, double& value, double min, double max) {
-        if (const json* found = find(key)) {
-            value = numberIn(*found, key, min, max);
-            object_.erase(key);
-        }
-    }
-    void wholeNumber(const char* key, int& value, int max) {
-        if (const json* found = find(key)) {
-            if (!found->is_number_integer() || !(found->get<double>() >= 0.0 && found->get<double>() <= max))
-                refuse(key, "is not a whole number from 0 to " + std::to_string(max), "correct it, or remove it");
-            value = found->get<int>();
-            object_.erase(key);
-        }
-    }
-    /// Numbers; `count` of them where it is given, at most `most` where not.
-    void numbers(const char* key, std::vector<double>& values, double min, double max, std::size_t most,
-                 bool exactly = false) {
-        const json* found = find(key);
-        if (!found) return;
-        if (!found->is_array() || found->size() > most || (exactly && found->size() != most))
-            refuse(key,
-                   "is not a list of " + std::string(exactly ? "" : "at most ") + std::to_string(most) + " numbers",
-                   "correct it, or remove it");
-        values.clear();
-        for (const json& value : *found)
-            values.push_back(numberIn(value, std::string(key) + "[" + std::to_string(values.size()) + "]", min, max));
-        object_.erase(key);
-    }
-    /// Reads what lies under `key`; of that object only what is not known stays.
-    template <typename Read> void section(const char* key, Read read) {
-        if (!find(key)) return;
-        json& inner = object_[key];
-        if (!inner.is_object()) refuse(key, "is not an object", "write it in { }, or remove it");
-        read(Section(inner, prefix_ + key + ".", file_));
-        if (inner.empty()) object_.erase(key);
-    }
-
-    [[noreturn]] void refuse(const std::string& key, const std::string& why, const std::string& remedy) const {
-        throw DataError(file_, prefix_ + key + ": " + why, remedy);
-    }
-
-private:
-    [[nodiscard]] const json* find(const char* key) const {
-        const auto found = object_.find(key);
-        return found == object_.end() ? nullptr : &*found;
-    }
-    [[nodiscard]] double numberIn(const json& value, const std::string& key, double min, double max) const {
-        const double number = value.is_number() ? value.get<double>() : std::numeric_limits<double>::quiet_NaN();
-        if (!(number >= min && number <= max))
-            refuse(key, "is not a number from " + shortest(min) + " to " + shortest(max), "correct it, or remove it");
-        return number;
-    }
-
-    json& object_;
-    std::string prefix_;
-    const std::string& file_;
-};
-
-void readAsset(Section& section, const char* key, std::string& asset) {
-    section.text(key, asset);
-    if (asset.empty() || isAssetName(asset)) return;
-    section.refuse(key, "\"" + asset.substr(0, 80) + "\" leads out of the project's folder",
-                   "put the file beside the project and name it relative to it");
-}
+constexpr std::array<Migration, kProjectSchema> kMigrations = {&fromDraft, &addScene};
 
 Placement readPlacement(Section section) {
     constexpr double kFar = 1e6; // metres, and radians: many turns
@@ -127,11 +55,11 @@ Placement readPlacement(Section section) {
     return placement;
 }
 
-/// `values` over what `document` holds under `key`: what is not known there stays.
+/// `values` over what `document` holds under `key`, object by object: what is not known there stays.
 void merge(json& document, const char* key, const json& values) {
     json& section = document[key];
     if (!section.is_object()) section = json::object();
-    section.update(values);
+    section.update(values, true);
 }
 
 } // namespace
@@ -160,12 +88,12 @@ Project projectOf(json document, const std::string& file) {
     Project project;
     Section root(document, "", file);
     document.erase("schemaVersion");
-    readAsset(root, "rig", project.rig);
+    root.asset("rig", project.rig);
     if (project.rig.empty())
         root.refuse("rig", "is missing", "name the rig, for example \"resource:models/tablet.glb\"");
-    readAsset(root, "field", project.field);
-    readAsset(root, "target", project.target);
-    root.wholeNumber("animation", project.animation, kMaxAnimation);
+    root.asset("field", project.field);
+    root.asset("target", project.target);
+    root.wholeNumber("animation", project.animation, 0, kMaxAnimation);
     root.section("placement", [&](Section section) { project.placement = readPlacement(std::move(section)); });
     root.numbers("strokes", project.strokes, 0.0, 1.0, kMaxActuators);
     root.section("matching", [&](Section section) {
@@ -177,6 +105,7 @@ Project projectOf(json document, const std::string& file) {
         section.flag("playing", project.playback.playing);
         section.number("spin", project.playback.spin, -100.0, 100.0);
     });
+    root.section("scene", [&](Section section) { readScene(std::move(section), project.scene); });
     if (const auto view = document.find("view"); view != document.end()) {
         if (!view->is_object()) root.refuse("view", "is not an object", "write it in { }, or remove it");
         project.view = std::move(*view);
@@ -204,6 +133,7 @@ json documentOf(const Project& project) {
            {"refined", project.matching.refined},
            {"budgetMilliseconds", project.matching.budgetMilliseconds}});
     merge(document, "playback", {{"playing", project.playback.playing}, {"spin", project.playback.spin}});
+    merge(document, "scene", documentOf(project.scene));
     document.erase("view");
     if (!project.view.is_null()) document["view"] = project.view;
     return document;
