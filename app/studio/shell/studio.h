@@ -5,6 +5,7 @@
 #include "app/studio/document/notices.h"
 #include "app/studio/document/studio_document.h"
 #include "app/studio/document/studio_loop.h"
+#include "app/studio/output/projector_outputs.h"
 #include "app/studio/shell/commands.h"
 #include "app/studio/shell/settings.h"
 #include "app/studio/show/show_feed.h"
@@ -23,6 +24,7 @@ struct Studio {
     Commands commands;
     RenderThread renderer;
     ShowFeed show{loop, renderer, notices};
+    ProjectorOutputs outputs{document, show, commands, notices};
 };
 
 } // namespace lumorph::studio

@@ -81,7 +81,7 @@ QImage toQImage(const Image& image, QSize pixels) {
 /// What holds OpenGL objects.
 struct Objects {
     SpatialRenderer renderer;
-    gl::Framebuffer source;         ///< a texture is attached to it while it is copied
+    gl::Framebuffer source;          ///< a texture is attached to it while it is copied
     std::map<int, ColorTarget> labs; ///< what lab views are drawn into
     std::map<int, FrameReader> readers;
 };
@@ -208,8 +208,7 @@ void ShowDrawer::Data::drawBend(const ShowPace::Work& work, Bend bend) {
     for (const WantedView& wanted : request.views)
         if (wanted.view.bend == bend) some.views.push_back(wanted);
     if (some.views.empty()) return;
-    const ShowFrame frame =
-        withProjectorRoom(withBend(*drawn.frame, bend), projectorRoom(request), work.resolution);
+    const ShowFrame frame = withProjectorRoom(withBend(*drawn.frame, bend), projectorRoom(request), work.resolution);
     if (needsProjectors(some))
         objects->renderer.draw(frame);
     else

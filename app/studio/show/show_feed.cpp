@@ -84,7 +84,8 @@ void ShowFeed::take() {
     if (!drawn) return;
     for (const DrawnShow::Picture& picture : drawn->pictures) {
         const auto wanted = wanted_.find(picture.id);
-        if (wanted != wanted_.end() && answers(picture.view, wanted->second.view)) pictures_[picture.id] = picture.image;
+        if (wanted != wanted_.end() && answers(picture.view, wanted->second.view))
+            pictures_[picture.id] = picture.image;
     }
     tellWarnings(drawn->warnings);
     drawn->pictures.clear();

@@ -38,8 +38,8 @@ public:
     [[nodiscard]] QImage picture(int id) const;
     /// What the newest pictures show: frame, times, resolution. Empty frame before the first.
     [[nodiscard]] const DrawnShow& newest() const noexcept { return newest_; }
-    [[nodiscard]] double rate() const;        ///< pictures a second
-    [[nodiscard]] double endToEnd() const;    ///< milliseconds from the loop's frame to its pictures, the last one
+    [[nodiscard]] double rate() const;     ///< pictures a second
+    [[nodiscard]] double endToEnd() const; ///< milliseconds from the loop's frame to its pictures, the last one
     [[nodiscard]] std::uint64_t count() const noexcept { return count_; } ///< frames shown so far
 
 signals:

@@ -75,7 +75,7 @@ struct RenderThread::Data {
     ShowPace pace;
     std::optional<DrawnShow> shown;
     Clock::time_point showAgain; ///< after it failed
-    bool showsTurn = true; ///< viewports and the show take turns
+    bool showsTurn = true;       ///< viewports and the show take turns
     std::optional<QString> failure;
     bool stop = false;
 
@@ -157,9 +157,7 @@ void RenderThread::Data::step(Drawers& drawers, std::unique_lock<std::mutex>& lo
 }
 
 void RenderThread::Data::sleep(std::unique_lock<std::mutex>& lock) {
-    const auto wanted = [&] {
-        return stop || pressing() || !pictures.empty() || !forgotten.empty();
-    };
+    const auto wanted = [&] { return stop || pressing() || !pictures.empty() || !forgotten.empty(); };
     auto until = schedule.nextAt();
     if (const auto still = pace.stillAt()) until = until ? std::min(*until, *still) : *still;
     if (until)

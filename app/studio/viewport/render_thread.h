@@ -62,8 +62,8 @@ public:
     /// when that failed.
     void picture(FrameRequest request, std::function<void(QImage, QString)> done);
 
-    /// Draws a frame of the show, all views of it; it takes turns with the viewports. Views without pixels are left out;
-    /// a request without views, scene or assets only takes the one before back.
+    /// Draws a frame of the show, all views of it; it takes turns with the viewports. Views without pixels are left
+    /// out; a request without views, scene or assets only takes the one before back.
     void requestShow(ShowRequest request);
     /// The newest frame of the show that was not taken yet.
     [[nodiscard]] std::optional<DrawnShow> takeShow();
