@@ -44,11 +44,11 @@ void Desk::Data::readAssets(std::shared_ptr<const SceneAssets> before) {
         [scene, project = document.file(), before = std::move(before)](const Progress& progress) {
             return readScene(*scene, project, before.get(), progress);
         },
-        [this](const ReadAssets& read) {
+        [this](const ReadAssets& result) {
             reading.clear();
-            assetStamps = read.stamps;
-            takeAssets(read.assets);
-            document.setAssets(read.assets);
+            assetStamps = result.stamps;
+            takeAssets(result.assets);
+            document.setAssets(result.assets);
         },
         [this, alive = QPointer<Desk>(&desk)](const std::exception& error) {
             if (!alive) return;
