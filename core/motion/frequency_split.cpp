@@ -129,6 +129,8 @@ std::vector<double> FrequencySplit::strokes(const Wish& wish, double seconds) {
     return strokes;
 }
 
+void FrequencySplit::restart() noexcept { data_->lastStrokes.clear(); }
+
 std::vector<double> FrequencySplit::fit(std::span<const float> heights) {
     Data& data = *data_;
     if (heights.size() != data.lifts.size())

@@ -39,6 +39,9 @@ public:
     /// InvalidInput for a time beyond 1e9 seconds.
     [[nodiscard]] std::vector<double> strokes(const Wish& wish, double seconds);
 
+    /// Begins anew: the next strokes may be anywhere.
+    void restart() noexcept;
+
     /// Strokes that fit these heights best, whatever the time they need. Throws InvalidInput for another number of
     /// heights than of points.
     [[nodiscard]] std::vector<double> fit(std::span<const float> heights);
