@@ -56,12 +56,21 @@ struct MatchWish {
     std::shared_ptr<const PoseBoard> poses; ///< tracked heads and device; without a head the scene's own eye
     bool scenePlaying = true;               ///< the scene's time runs
     std::optional<double> sceneSeek;        ///< scene time to go to, seconds; heeded once for each new value
+
+    // With a scene: `virtualOnly` holds the servos at rest; else, while `live`, they follow the scene's visible driving
+    // item (a TargetItem with the role physical is the target, matched as ever), or without one what they would follow
+    // without a scene. View dependence is joined to all of it by the larger stroke.
 };
 
 /// Milliseconds of each stage of one frame.
 struct MatchTimes {
     double pose = 0.0, voxelize = 0.0, match = 0.0, refine = 0.0, motion = 0.0, deform = 0.0, total = 0.0;
-    double track = 0.0, rule = 0.0; ///< poses and viewer; view dependence and frequency split
+    double track = 0.0; ///< poses and viewer
+    double rule = 0.0;  ///< view dependence, and the servos' part of a scene's item
+    // Not parts of `total`:
+    double poseAge = 0.0; ///< of the oldest pose used when the frame began; 0 without a tracker
+    double latency =
+        0.0; ///< from that pose being measured to the light for which it was predicted; 0 without a tracker
 };
 
 /// Classes of MatchFrame::classes.
@@ -103,13 +112,15 @@ struct MatchFrame {
     glm::mat4 worldFromDevice{1.0F};  ///< predicted for the moment at which the frame is seen
     std::optional<glm::vec3> eye;     ///< of the viewer who is followed, predicted likewise; world metres
     std::string viewer;               ///< his name; empty for the scene's own eye
-    std::vector<double> viewStrokes;  ///< what view dependence asks for; empty while it is off
+    bool handingOver = false;         ///< the eye glides from one viewer to the next
+    std::vector<double> viewStrokes;  ///< what view dependence asks for; empty while it is off or servos rest
     std::vector<double> splitStrokes; ///< what the frequency split asks for; empty without a split item
     MatchTimes ms;
 };
 
-/// One frame after another: pose of the target -> voxels -> levels -> motion limits -> estimated state -> deformed
-/// device. Keeps what one frame hands to the next: last levels, motion, dance, buffers. One thread at a time.
+/// One frame after another: tracked poses -> viewer -> scene time -> pose of the target -> voxels -> levels, or heights
+/// -> strokes -> view dependence -> motion limits -> estimated state -> deformed device. Keeps what one frame hands to
+/// the next: last levels, motion, dance, buffers. One thread at a time.
 class MatchLoop {
 public:
     explicit MatchLoop(const Clock& clock);
@@ -121,8 +132,8 @@ public:
     /// count stay the same, else at rest. Throws InvalidInput when the wish contradicts itself.
     [[nodiscard]] std::shared_ptr<const MatchFrame> step(const MatchWish& wish, double sinceLast);
 
-    /// Whether another step with the last wish would change nothing: nothing plays, turns or dances, the actuators have
-    /// arrived (within 1e-5 strokes; or are stopped) and refinement has nothing left to try.
+    /// Whether another step with the last wish would change nothing: nothing plays, turns or dances, nobody is tracked,
+    /// the actuators have arrived (within 1e-5 strokes; or are stopped) and refinement has nothing left to try.
     [[nodiscard]] bool settled() const noexcept;
 
 private:
@@ -131,7 +142,8 @@ private:
 };
 
 /// Runs a MatchLoop in a thread of its own at a fixed rate: the newest wish goes in, the newest frame comes out. Idle
-/// (nothing moves, no new wish) it costs next to nothing.
+/// (nothing moves, no new wish, nobody tracked) it costs next to nothing; a body that is tracked again wakes it within
+/// a tenth of a second.
 class MatchThread {
 public:
     /// `onFrame` is called in the loop's thread after each frame; it must return at once.

@@ -5,11 +5,14 @@
 
 #include "core/base/error.h"
 #include "core/loop/dance.h"
+#include "core/loop/drive_stage.h"
 #include "core/loop/live_match.h"
 #include "core/loop/match_stage.h"
 #include "core/loop/motion_stage.h"
+#include "core/loop/scene_clock.h"
 #include "core/loop/stage_timer.h"
 #include "core/loop/target_stage.h"
+#include "core/loop/viewer_stage.h"
 #include "core/rig/rig_file.h"
 
 namespace lumorph {
@@ -49,10 +52,11 @@ void checkWish(const MatchWish& wish, double sinceLast) {
                            "use a finite time that does not run backwards");
     requireFinite("spin", wish.spin);
     if (wish.seek) requireFinite("animation time", *wish.seek);
+    if (wish.sceneSeek) requireFinite("scene time", *wish.sceneSeek);
     if (wish.target) checkPlacement(wish.placement);
     if (wish.budget <= Microseconds{0})
         throw InvalidInput("time for refinement", "it must be more than zero", "give it at least a microsecond");
-    if (!follows(wish)) checkStrokes(wish);
+    if (!follows(wish) && DriveStage::modeOf(wish) == DriveStage::Mode::asWished) checkStrokes(wish);
 }
 
 State nearestLevels(const std::vector<double>& strokes, int levels) {
@@ -77,11 +81,20 @@ struct MatchLoop::Data {
     explicit Data(const Clock& c) : clock(c) {}
 
     void fill(const MatchWish& wish, double sinceLast, MatchFrame& frame);
+    /// The scene's part of a frame: poses, viewer, time.
+    void look(const MatchWish& wish, double sinceLast, MatchFrame& frame);
+    /// What the scene makes of what the servos are to do.
+    MatchWish driven(const MatchWish& wish, double sinceLast, MatchFrame& frame);
     void hold(const MatchWish& wish, double sinceLast, MatchFrame& frame);
+    void joinBends(const MatchWish& wish, MatchFrame& frame);
     void move(const MatchWish& wish, double sinceLast, MatchFrame& frame);
+    [[nodiscard]] bool restsAfter(const MatchWish& wish, const MatchFrame& frame) const;
 
     const Clock& clock;
+    ViewerStage viewer;
+    SceneClock time;
     TargetStage target;
+    DriveStage drive;
     MatchStage matching;
     MotionStage motion;
     Dance dance;
@@ -91,19 +104,61 @@ struct MatchLoop::Data {
 
 void MatchLoop::Data::fill(const MatchWish& wish, double sinceLast, MatchFrame& frame) {
     const StageTimer timer(clock, frame.ms.total);
+    look(wish, sinceLast, frame);
     target.play(wish, sinceLast);
     const bool newVoxels = target.show(wish, clock, frame.ms);
     target.describe(frame);
     matching.use(wish.field);
-    if (follows(wish))
+    const MatchWish servos = driven(wish, sinceLast, frame);
+    if (follows(servos))
         dance.end();
     else
-        hold(wish, sinceLast, frame);
-    if (frame.matched) matching.match(wish, target, newVoxels, clock, frame);
+        hold(servos, sinceLast, frame);
+    if (frame.matched) matching.match(servos, target, newVoxels, clock, frame);
+    joinBends(wish, frame);
     move(wish, sinceLast, frame);
     if (frame.matched) matching.judge(wish, target, frame);
-    settled = !TargetStage::moves(wish) && (wish.stopped || motion.arrived(frame.wantedStrokes)) &&
-              (follows(wish) ? matching.converged() : !wish.dancing);
+    settled = restsAfter(servos, frame);
+}
+
+void MatchLoop::Data::look(const MatchWish& wish, double sinceLast, MatchFrame& frame) {
+    if (!wish.scene) return;
+    const StageTimer timer(clock, frame.ms.track);
+    frame.scene = wish.scene;
+    frame.assets = wish.assets;
+    viewer.look(wish, sinceLast, frame);
+    time.step(wish, sinceLast);
+    frame.sceneSeconds = time.seconds();
+}
+
+MatchWish MatchLoop::Data::driven(const MatchWish& wish, double sinceLast, MatchFrame& frame) {
+    MatchWish servos = wish;
+    const DriveStage::Mode mode = DriveStage::modeOf(wish);
+    if (mode == DriveStage::Mode::asWished) return servos;
+    servos.live = servos.dancing = false;
+    servos.strokes.assign(wish.rig->actuatorCount(), 0.0);
+    if (mode == DriveStage::Mode::atRest) return servos;
+    const StageTimer timer(clock, frame.ms.rule);
+    servos.strokes = drive.strokes(wish, frame, sinceLast);
+    if (drivingItem(*wish.scene)->role == ItemRole::split) frame.splitStrokes = servos.strokes;
+    return servos;
+}
+
+void MatchLoop::Data::joinBends(const MatchWish& wish, MatchFrame& frame) {
+    const StageTimer timer(clock, frame.ms.rule);
+    frame.viewStrokes = drive.bends(wish, frame);
+    for (std::size_t i = 0; i < frame.viewStrokes.size(); ++i)
+        frame.wantedStrokes[i] = std::max(frame.wantedStrokes[i], frame.viewStrokes[i]);
+    if (frame.viewStrokes.empty() || !wish.field) return;
+    const State levels = nearestLevels(frame.viewStrokes, wish.field->field.levels);
+    for (std::size_t i = 0; i < levels.size(); ++i) frame.wanted[i] = std::max(frame.wanted[i], levels[i]);
+}
+
+bool MatchLoop::Data::restsAfter(const MatchWish& wish, const MatchFrame& frame) const {
+    if (wish.scene && (viewer.moves() || time.moves())) return false;
+    if (TargetStage::moves(wish)) return false;
+    if (!wish.stopped && !motion.arrived(frame.wantedStrokes)) return false;
+    return follows(wish) ? matching.converged() : !wish.dancing;
 }
 
 void MatchLoop::Data::hold(const MatchWish& wish, double sinceLast, MatchFrame& frame) {

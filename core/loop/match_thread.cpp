@@ -10,10 +10,13 @@
 
 #include "core/base/error.h"
 #include "core/loop/live_match.h"
+#include "core/loop/viewer_stage.h"
 
 namespace lumorph {
 
 namespace {
+
+constexpr std::chrono::milliseconds kGlance{100};
 
 void requireRate(double framesPerSecond) {
     if (!(framesPerSecond >= 1.0 && framesPerSecond <= 1000.0))
@@ -50,6 +53,7 @@ struct MatchThread::Data {
     bool fresh = false;  ///< the newest wish has not been looked at
     bool resting = true; ///< another frame of the last wish would show nothing new
     bool rested = true;  ///< there was a rest before this turn
+    bool failed = false; ///< the last wish could not be fulfilled
     Microseconds started{0};
     std::shared_ptr<const MatchFrame> latest;
     std::optional<std::string> error;
@@ -61,7 +65,11 @@ struct MatchThread::Data {
 std::optional<MatchWish> MatchThread::Data::nextTurn(const std::stop_token& stop) {
     std::unique_lock lock(mutex);
     rested = resting;
-    if (!changed.wait(lock, stop, [&] { return fresh || !resting; })) return std::nullopt;
+    // Trackers do not call: while the loop rests, it looks now and then whether they see somebody again.
+    while (!changed.wait_for(lock, stop, kGlance, [&] { return fresh || !resting; })) {
+        if (stop.stop_requested()) return std::nullopt;
+        if (newest && newest->scene && newest->poses && !failed && anyTracked(*newest->poses, clock.now())) break;
+    }
     while (!stop.stop_requested() && clock.now() < started + period) {
         const Microseconds before = period;
         changed.wait_until(lock, stop, pointOf(started + period), [&] { return period != before; });
@@ -82,7 +90,8 @@ void MatchThread::Data::run(const std::stop_token& stop) {
         started = now;
         const bool done = frame(loop, *wish, secondsOf(sinceLast));
         const std::scoped_lock lock(mutex);
-        resting = !done || loop.settled();
+        failed = !done;
+        resting = failed || loop.settled();
     }
 }
 

@@ -16,26 +16,37 @@ namespace lumorph {
 /// over a window of time around now, as long as their velocity limits need (reach in time).
 class FrequencySplit {
 public:
-    /// Samples the rig's top surface on a grid of about `spacing` metres. Costs milliseconds.
+    /// Samples the rig's top surface on a grid of about `spacing` metres (coarser where that were more than 4000
+    /// points). Costs tens of milliseconds. Throws InvalidInput for a spacing that is no finite number above zero.
     explicit FrequencySplit(const Rig& rig, double spacing = 0.006);
     ~FrequencySplit();
     FrequencySplit(FrequencySplit&&) noexcept;
     FrequencySplit& operator=(FrequencySplit&&) noexcept;
 
-    /// Where heights are wanted: x and z of the top surface at rest, device metres.
+    /// Where heights are wanted: x and z of places over which the device at rest has a top, device metres. Heights are
+    /// those of the uppermost surface over such a place, whatever part of the device lies there.
     [[nodiscard]] std::span<const glm::vec2> points() const noexcept;
     /// Height of the top at rest at those points, device metres.
     [[nodiscard]] std::span<const float> restHeights() const noexcept;
 
-    /// Writes the wished height of the surface at `points()` at a time, device metres.
+    /// Writes the wished height of the surface at `points()` at a time, device metres. It finds the heights at rest,
+    /// which it may leave where it wishes nothing; NaN counts as rest.
     using Wish = std::function<void(double seconds, std::span<float> heights)>;
 
     /// Strokes that carry the slow, long part of the wish at a time; where the wish lies below what a device can do, 0.
-    /// What they ask for never moves faster than the rig's velocity limits.
+    /// The wish is asked for at times around this one, whole multiples of one step. From call to call, with times that
+    /// do not fall, no stroke moves faster than its actuator's velocity limit; an earlier time begins anew. Throws
+    /// InvalidInput for a time beyond 1e9 seconds.
     [[nodiscard]] std::vector<double> strokes(const Wish& wish, double seconds);
 
-    /// Height of the surface at `points()` for these strokes, device metres: the model of the fit, and the estimated
-    /// physical state.
+    /// Begins anew: the next strokes may be anywhere.
+    void restart() noexcept;
+
+    /// Strokes that fit these heights best, whatever the time they need. Throws InvalidInput for another number of
+    /// heights than of points.
+    [[nodiscard]] std::vector<double> fit(std::span<const float> heights);
+
+    /// Height of the surface at `points()` for these strokes, device metres: the deformed rig seen from above.
     void heights(std::span<const double> strokes, std::span<float> out) const;
 
 private:

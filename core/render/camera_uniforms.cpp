@@ -12,16 +12,17 @@ constexpr double kNearest = 1e-3;
 
 } // namespace
 
-void setCamera(Program& program, const CalibratedCamera& camera, double near, double far) {
+void setCamera(Program& program, const CalibratedCamera& camera, double near, double far, const std::string& lens) {
     const auto& k = camera.distortion;
     const glm::dmat4 clip = clipFromCamera(camera, near, far);
     const bool distorts = k != std::array<double, 5>{};
-    program.set("lensCameraFromWorld", glm::mat4(camera.cameraFromWorld));
-    program.set("lensClip", glm::vec4(clip[0][0], clip[1][1], clip[2][0], clip[2][1]));
-    program.set("lensDepth", glm::vec2(clip[2][2], clip[3][2]));
-    program.set("lensRadial", glm::vec3(k[0], k[1], k[4]));
-    program.set("lensTangential", glm::vec2(k[2], k[3]));
-    program.set("lensLimit", distorts ? static_cast<float>(std::min(distortionLimit(camera), kWidestSquare)) : 0.0F);
+    program.set(lens + ".cameraFromWorld", glm::mat4(camera.cameraFromWorld));
+    program.set(lens + ".clip", glm::vec4(clip[0][0], clip[1][1], clip[2][0], clip[2][1]));
+    program.set(lens + ".depth", glm::vec2(clip[2][2], clip[3][2]));
+    program.set(lens + ".radial", glm::vec3(k[0], k[1], k[4]));
+    program.set(lens + ".tangential", glm::vec2(k[2], k[3]));
+    program.set(lens + ".limit",
+                distorts ? static_cast<float>(std::min(distortionLimit(camera), kWidestSquare)) : 0.0F);
 }
 
 DepthRange depthRange(const CalibratedCamera& camera, const Box& box) {

@@ -1,0 +1,144 @@
+#include "core/loop/pose_filter.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+#include <glm/gtc/matrix_access.hpp>
+
+namespace lumorph {
+
+namespace {
+
+// A hand or a head: up to 2 Hz and 0.3 m/s, now and then much faster. A tracker: a few tenths of a millimetre.
+constexpr MotionFilter::Noise kMoving{0.25e-3, 6.0, 0.3, 3.0};
+constexpr MotionFilter::Noise kTurning{2e-3, 30.0, 1.5, 15.0};
+constexpr double kRestWay = 0.6e-3;   // metres
+constexpr double kRestSpeed = 0.03;   // metres a second
+constexpr double kRestTurn = 5e-3;    // radians
+constexpr double kRestTurning = 0.25; // radians a second
+
+constexpr double kRestSeconds = 0.15;      // over which samples are averaged at rest
+constexpr double kCalmSeconds = 0.12;      // in which motion is forgotten
+constexpr double kFadeSeconds = 0.35;      // in which an acceleration fades
+constexpr double kJump = 0.02;             // metres that no motion makes between two samples
+constexpr double kJumpTurn = 0.5;          // radians, likewise
+constexpr double kMostAcceleration = 30.0; // metres a second squared
+constexpr double kMostTurning = 300.0;     // radians a second squared
+
+glm::dvec3 turnBetween(const glm::dquat& from, const glm::dquat& to) {
+    glm::dquat way = to * glm::conjugate(from);
+    if (way.w < 0.0) way = -way;
+    const glm::dvec3 axis(way.x, way.y, way.z);
+    const double sine = glm::length(axis);
+    return sine > 1e-12 ? axis * (2.0 * std::atan2(sine, way.w) / sine) : 2.0 * axis;
+}
+
+glm::dquat turned(const glm::dvec3& turn, const glm::dquat& rotation) {
+    const double angle = glm::length(turn);
+    if (!(angle > 0.0)) return rotation;
+    return glm::normalize(glm::angleAxis(angle, turn / angle) * rotation);
+}
+
+double restShare(double seconds) { return 1.0 - std::exp(-seconds / kRestSeconds); }
+
+} // namespace
+
+void MotionFilter::restart() {
+    velocity_ = acceleration_ = glm::dvec3(0.0);
+    covariance_ = glm::dmat3(0.0);
+    covariance_[0][0] = noise_.measured * noise_.measured;
+    covariance_[1][1] = noise_.velocity * noise_.velocity;
+    covariance_[2][2] = noise_.acceleration * noise_.acceleration;
+}
+
+glm::dvec3 MotionFilter::wayIn(double seconds) const {
+    return seconds * velocity_ + 0.5 * seconds * seconds * acceleration_;
+}
+
+glm::dvec3 MotionFilter::advance(double t) {
+    const glm::dvec3 way = wayIn(t);
+    const double fade = std::exp(-t / kFadeSeconds);
+    velocity_ += t * acceleration_;
+    acceleration_ *= fade;
+    const glm::dmat3 step(1.0, 0.0, 0.0, t, 1.0, 0.0, 0.5 * t * t, t, fade); // by columns
+    const double q = noise_.jerk * noise_.jerk;
+    const double t2 = t * t;
+    const double t3 = t2 * t;
+    const glm::dmat3 wander(t3 * t2 / 20.0, t2 * t2 / 8.0, t3 / 6.0, t2 * t2 / 8.0, t3 / 3.0, t2 / 2.0, t3 / 6.0,
+                            t2 / 2.0, t);
+    covariance_ = step * covariance_ * glm::transpose(step) + q * wander;
+    return way;
+}
+
+glm::dvec3 MotionFilter::correct(const glm::dvec3& off) {
+    const glm::dvec3 gain = covariance_[0] / (covariance_[0][0] + noise_.measured * noise_.measured);
+    velocity_ += gain[1] * off;
+    acceleration_ += gain[2] * off;
+    covariance_ -= glm::outerProduct(gain, glm::row(covariance_, 0));
+    return gain[0] * off;
+}
+
+void RestJudge::look(double way, double speed, double seconds) {
+    excess_ = std::max({way / way_, speed / speed_, excess_ * std::exp(-seconds / kCalmSeconds)});
+}
+
+double RestJudge::motion() const {
+    const double share = std::clamp(0.5 * (excess_ - 1.0), 0.0, 1.0);
+    return share * share * (3.0 - 2.0 * share);
+}
+
+PoseFilter::PoseFilter()
+    : moving_(kMoving), moves_(kRestWay, kRestSpeed), turning_(kTurning), turns_(kRestTurn, kRestTurning) {}
+
+void PoseFilter::restart(const Pose& pose) {
+    moving_.restart();
+    moves_.restart();
+    position_ = restPosition_ = pose.position;
+    turning_.restart();
+    turns_.restart();
+    rotation_ = restRotation_ = pose.rotation;
+}
+
+void PoseFilter::add(const Pose& pose, double seconds) {
+    addPosition(pose.position, seconds);
+    addRotation(pose.rotation, seconds);
+}
+
+void PoseFilter::addPosition(const glm::dvec3& measured, double seconds) {
+    position_ += moving_.advance(seconds);
+    const glm::dvec3 off = measured - position_;
+    if (glm::length(off) > kJump + 0.5 * kMostAcceleration * seconds * seconds) {
+        moving_.restart();
+        moves_.restart();
+        position_ = restPosition_ = measured;
+        return;
+    }
+    position_ += moving_.correct(off);
+    restPosition_ += restShare(seconds) * (measured - restPosition_);
+    moves_.look(glm::distance(position_, restPosition_), glm::length(moving_.velocity()), seconds);
+}
+
+void PoseFilter::addRotation(const glm::dquat& measured, double seconds) {
+    rotation_ = turned(turning_.advance(seconds), rotation_);
+    const glm::dvec3 off = turnBetween(rotation_, measured);
+    if (glm::length(off) > kJumpTurn + 0.5 * kMostTurning * seconds * seconds) {
+        turning_.restart();
+        turns_.restart();
+        rotation_ = restRotation_ = measured;
+        return;
+    }
+    rotation_ = turned(turning_.correct(off), rotation_);
+    restRotation_ = turned(restShare(seconds) * turnBetween(restRotation_, measured), restRotation_);
+    turns_.look(glm::length(turnBetween(restRotation_, rotation_)), glm::length(turning_.velocity()), seconds);
+}
+
+Pose PoseFilter::at(double seconds) const {
+    const glm::dvec3 moved = position_ + moving_.wayIn(seconds);
+    const glm::dquat turnedTo = turned(turning_.wayIn(seconds), rotation_);
+    return {glm::mix(restPosition_, moved, moves_.motion()),
+            turned(turns_.motion() * turnBetween(restRotation_, turnedTo), restRotation_)};
+}
+
+} // namespace lumorph

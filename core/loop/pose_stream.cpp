@@ -1,0 +1,70 @@
+#include "core/loop/pose_stream.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+
+#include "core/loop/pose_filter.h"
+
+namespace lumorph {
+
+namespace {
+
+constexpr double kFarthest = 1000.0; // metres; what lies beyond is no room
+constexpr double kBehind = -0.05;    // seconds
+constexpr double kAhead = 0.15;
+
+double secondsOf(Microseconds time) { return 1e-6 * static_cast<double>(time.count()); }
+
+bool isSound(const Pose& pose) {
+    const glm::dvec3 p = glm::abs(pose.position);
+    const double length = glm::length(pose.rotation);
+    return p.x <= kFarthest && p.y <= kFarthest && p.z <= kFarthest && length > 0.1 && length < 10.0;
+}
+
+} // namespace
+
+struct PoseStream::Filter {
+    std::optional<PoseSample> newest;
+    bool tracked = false; ///< the newest sample is valid
+    bool found = false;   ///< there was a valid one
+    Microseconds measured{0};
+    PoseFilter poses;
+};
+
+PoseStream::PoseStream(Microseconds staleAfter) : staleAfter_(staleAfter), filter_(std::make_shared<Filter>()) {}
+
+bool PoseStream::push(const PoseSample& sample) {
+    const std::scoped_lock lock(mutex_);
+    Filter& filter = *filter_;
+    if (sample.valid && !isSound(sample.pose)) return false;
+    if (filter.newest && sample.time <= filter.newest->time) return false;
+    filter.newest = sample;
+    filter.tracked = sample.valid;
+    if (!sample.valid) return true;
+    const Pose pose{sample.pose.position, glm::normalize(sample.pose.rotation)};
+    const Microseconds gap = sample.time - filter.measured;
+    if (filter.found && gap <= staleAfter_)
+        filter.poses.add(pose, secondsOf(gap));
+    else
+        filter.poses.restart(pose);
+    filter.found = true;
+    filter.measured = sample.time;
+    return true;
+}
+
+std::optional<PoseSample> PoseStream::latest() const {
+    const std::scoped_lock lock(mutex_);
+    return filter_->newest;
+}
+
+std::optional<Pose> PoseStream::at(Microseconds time, Microseconds now) const {
+    const std::scoped_lock lock(mutex_);
+    const Filter& filter = *filter_;
+    if (!filter.tracked || now - filter.measured > staleAfter_) return std::nullopt;
+    return filter.poses.at(std::clamp(secondsOf(time - filter.measured), kBehind, kAhead));
+}
+
+} // namespace lumorph

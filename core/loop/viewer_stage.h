@@ -1,0 +1,24 @@
+#pragma once
+
+#include "core/loop/live_match.h"
+#include "core/loop/viewer_choice.h"
+
+namespace lumorph {
+
+/// First stage of a frame with a scene: where device and viewer are when its light is seen.
+class ViewerStage {
+public:
+    /// Writes `worldFromDevice`, eye and viewer into a frame that began at its `time`.
+    void look(const MatchWish& wish, double sinceLast, MatchFrame& frame);
+    /// Whether they will be elsewhere in the next frame with the same wish.
+    [[nodiscard]] bool moves() const noexcept { return moves_; }
+
+private:
+    ViewerDirector director_;
+    bool moves_ = false;
+};
+
+/// Whether a tracker has seen one of the board's bodies lately.
+[[nodiscard]] bool anyTracked(const PoseBoard& board, Microseconds now);
+
+} // namespace lumorph

@@ -1,0 +1,17 @@
+#pragma once
+
+#include <cstdint>
+
+#include "core/geometry/triangle_mesh.h"
+#include "core/render/program.h"
+#include "core/scene/scene.h"
+
+namespace lumorph {
+
+/// Bits of eye_feature for the holes and the apparent size of the device's skin.
+[[nodiscard]] std::uint32_t skinFeatures(const DeviceSkin& skin);
+
+/// Sets them in the current program; `rest` is the box of the device at rest.
+void applySkin(Program& program, const DeviceSkin& skin, const Box& rest);
+
+} // namespace lumorph

@@ -1,0 +1,19 @@
+// Vertex stage of shadow maps. In: positions in the surface's frame. Out: clip space of the light.
+
+layout(location = 0) in vec3 position;
+layout(location = 2) in vec2 coordinates;
+#ifdef SKIN
+layout(location = 3) in vec3 restPosition;
+out vec2 restPlace;
+#endif
+uniform mat4 clipFromWorld;
+uniform mat4 worldFromMesh;
+out vec2 place;
+
+void main() {
+    place = coordinates;
+#ifdef SKIN
+    restPlace = restPosition.xz;
+#endif
+    gl_Position = clipFromWorld * (worldFromMesh * vec4(position, 1.0));
+}
