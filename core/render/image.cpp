@@ -1,5 +1,6 @@
 #include "core/render/image.h"
 
+#include <cstring>
 #include <memory>
 #include <string>
 
@@ -7,6 +8,7 @@
 #define STB_IMAGE_IMPLEMENTATION
 #define STB_IMAGE_STATIC
 #define STBI_ONLY_PNG
+#define STBI_ONLY_JPEG
 #define STBI_MAX_DIMENSIONS 16384
 #include <stb/stb_image.h>
 #define STB_IMAGE_WRITE_IMPLEMENTATION
@@ -45,6 +47,29 @@ void writePng(const Image& image, const std::filesystem::path& file) {
     writeFileAtomically(file, bytes);
 }
 
+Image decodeImage(std::span<const std::byte> bytes, const std::string& name) {
+    const auto fail = [&name](const std::string& why) {
+        throw DataError(name, why, "save it again as PNG or JPEG, or choose another picture");
+    };
+    constexpr std::size_t kMaxBytes = std::size_t{1} << 30; // stb counts in int
+    if (bytes.empty()) fail("is empty");
+    if (bytes.size() > kMaxBytes) fail("is larger than 1 GiB");
+    const auto* data = reinterpret_cast<const stbi_uc*>(bytes.data());
+    const auto length = static_cast<int>(bytes.size());
+    int width = 0;
+    int height = 0;
+    if (!stbi_info_from_memory(data, length, &width, &height, nullptr))
+        fail(std::string("is no PNG or JPEG that can be read (") + stbi_failure_reason() + ")");
+    if (width < 1 || height < 1 || std::int64_t{width} * height > kMaxDecodedPixels)
+        fail("has " + std::to_string(width) + " x " + std::to_string(height) + " pixels, too many to unpack");
+    const std::unique_ptr<stbi_uc, void (*)(void*)> pixels(
+        stbi_load_from_memory(data, length, &width, &height, nullptr, 4), stbi_image_free);
+    if (!pixels) fail(std::string("is broken (") + stbi_failure_reason() + ")");
+    Image image({width, height});
+    std::memcpy(image.pixels().data(), pixels.get(), image.pixels().size() * sizeof(Image::Pixel));
+    return image;
+}
+
 Image readPng(const std::filesystem::path& file) {
     const std::vector<std::byte> bytes = readFile(file, std::size_t{1} << 30);
     int width = 0;
@@ -57,8 +82,7 @@ Image readPng(const std::filesystem::path& file) {
         throw DataError(file.string(), std::string("not a PNG that can be read (") + stbi_failure_reason() + ")",
                         "save it again as PNG");
     Image image({width, height});
-    for (std::size_t i = 0; i < image.pixels().size(); ++i)
-        for (std::size_t c = 0; c < 4; ++c) image.pixels()[i][c] = data.get()[4 * i + c];
+    std::memcpy(image.pixels().data(), data.get(), image.pixels().size() * sizeof(Image::Pixel));
     return image;
 }
 

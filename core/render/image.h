@@ -4,6 +4,8 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <span>
+#include <string>
 #include <vector>
 
 #include <glm/vec2.hpp>
@@ -41,6 +43,13 @@ private:
 /// The image as a PNG file. Written beside the target and renamed, so that a failure leaves no half
 /// file. Throws InvalidInput for an empty image, DeviceError when the disk refuses.
 void writePng(const Image& image, const std::filesystem::path& file);
+
+/// Most pixels of a picture that is decoded: 8192 x 8192.
+inline constexpr std::int64_t kMaxDecodedPixels = std::int64_t{1} << 26;
+
+/// A PNG or JPEG held in memory; missing alpha becomes 255. `name` stands in errors. Its size is looked at before
+/// anything is unpacked. Throws DataError when it is neither, is broken, or has more than kMaxDecodedPixels.
+[[nodiscard]] Image decodeImage(std::span<const std::byte> bytes, const std::string& name);
 
 /// Reads a PNG of 8 bits a channel or more; missing alpha becomes 255. Throws DataError when the file
 /// is missing, broken or larger than kMaxImageSide.

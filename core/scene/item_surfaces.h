@@ -1,19 +1,40 @@
 #pragma once
 
+#include <cstdint>
 #include <memory>
+#include <optional>
+#include <span>
 #include <vector>
 
+#include "core/geometry/model.h"
 #include "core/render/image.h"
+#include "core/render/surface_shading.h"
 #include "core/scene/posed_scene.h"
 
-/// Surfaces made from numbers. Private to core/scene.
+/// The surfaces of items, each in its item's frame. Private to core/scene.
 namespace lumorph {
 
-/// A surface in its item's frame.
+/// An item with its motion in the frame of its group, or of its anchor.
+[[nodiscard]] glm::mat4 parentFromItem(const SceneItem& item, double seconds);
+
 struct ItemSurface {
     std::shared_ptr<const SurfaceTopology> topology;
     std::shared_ptr<const std::vector<glm::vec3>> positions;
     std::shared_ptr<const std::vector<glm::vec3>> normals;
+};
+
+/// The normals of triangles that have none, or that deform: smooth but at creases. Vertices are split there, so it has
+/// a topology of its own.
+class ShadedSurface {
+public:
+    /// `coordinates` is empty or has one a vertex of the mesh.
+    ShadedSurface(const TriangleMesh& mesh, std::span<const glm::vec2> coordinates);
+    /// The surface at these positions of the mesh's vertices.
+    [[nodiscard]] ItemSurface at(std::span<const glm::vec3> positions) const;
+
+private:
+    std::shared_ptr<const SurfaceShading> shading_;
+    std::shared_ptr<const SurfaceTopology> topology_;
 };
 
 /// A solid around the origin; a plane lies in x and z and faces up. Coordinates are metres along its faces.
@@ -52,6 +73,45 @@ private:
     };
     std::vector<WallVertex> walls_;
     std::shared_ptr<const SurfaceTopology> topology_;
+};
+
+/// A surface of a model and where it is.
+struct ModelSurface {
+    ItemSurface surface;
+    glm::mat4 itemFromSurface{1.0F};
+    int material = -1; ///< of the model
+};
+
+/// A glTF in motion. What does not deform keeps its surface and only moves.
+class ModelSurfaces {
+public:
+    /// `animation` is -1 or one of the model's.
+    ModelSurfaces(std::shared_ptr<const SceneModel> model, int animation);
+    /// The surfaces at a time of the animation, which repeats without end.
+    [[nodiscard]] const std::vector<ModelSurface>& at(double seconds);
+    [[nodiscard]] const std::shared_ptr<const SceneModel>& model() const noexcept { return model_; }
+    [[nodiscard]] int animation() const noexcept { return animation_; }
+
+private:
+    /// A primitive of a shown node.
+    struct Part {
+        std::size_t node = 0;
+        std::size_t first = 0; ///< of its vertices among those of the flattened model
+        std::size_t count = 0;
+        bool follows = false; ///< its node's transform moves it
+        bool deforms = false;
+        std::optional<ShadedSurface> shaded;
+    };
+    void addPart(std::size_t node, const Model::Primitive& primitive, const TriangleMesh& rest, std::size_t first,
+                 std::size_t firstTriangle);
+    [[nodiscard]] const Model::Animation* motion() const noexcept;
+    void deform(const TriangleMesh& posed);
+
+    std::shared_ptr<const SceneModel> model_;
+    int animation_ = -1;
+    bool anyDeforms_ = false;
+    std::vector<Part> parts_;
+    std::vector<ModelSurface> surfaces_; ///< one a part
 };
 
 } // namespace lumorph

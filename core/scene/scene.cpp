@@ -6,10 +6,9 @@
 
 #include <glm/gtc/matrix_transform.hpp>
 
-#include "core/scene/posed_scene.h"
+#include "core/scene/item_surfaces.h"
 
 namespace lumorph {
-namespace {
 
 glm::mat4 parentFromItem(const SceneItem& item, double seconds) {
     glm::vec3 position = item.position;
@@ -21,8 +20,6 @@ glm::mat4 parentFromItem(const SceneItem& item, double seconds) {
     const glm::mat4 spin = glm::rotate(glm::mat4(1.0F), static_cast<float>(turn), {0.0F, 1.0F, 0.0F});
     return glm::scale(glm::translate(glm::mat4(1.0F), position) * spin * glm::mat4_cast(item.rotation), item.scale);
 }
-
-} // namespace
 
 const SceneItem* findItem(const Scene& scene, int id) {
     const auto found = std::ranges::find(scene.items, id, &SceneItem::id);
