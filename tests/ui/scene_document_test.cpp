@@ -6,6 +6,7 @@
 #include "app/studio/document/scene_files.h"
 #include "app/workspaces/scene/euler.h"
 #include "app/workspaces/scene/projector_pose.h"
+#include "app/workspaces/scene/projector_reach.h"
 #include "app/workspaces/scene/sun_path.h"
 #include "core/scene/project.h"
 #include "tests/ui/desk_world.h"
@@ -238,6 +239,25 @@ TEST(ProjectorPose, IsCarriedAndTurnedAsTyped) {
     EXPECT_NEAR(lookPoint(camera)->y, -0.12, 1e-7);
     EXPECT_NEAR(glm::length(positionOf(camera) - position), 0.0, 1e-9);
     EXPECT_NO_THROW(checkCamera(camera));
+}
+
+// R42: what the light does not reach well is told.
+TEST(ProjectorReach, TellsWhatIsMissedAndWhatIsMetAtTooSteepAnAngle) {
+    const std::vector<glm::vec3> positions = {{0, 0, 0}, {0.1F, 0, 0}, {0.1F, 0, 0.1F}, {0, 0, 0.1F}};
+    const std::vector<glm::uvec3> flat = {{0, 3, 2}, {0, 2, 1}};
+    CalibratedCamera above = cameraLookingAt({0.05, 2.0, 0.05}, {0.05, 0.0, 0.05}, {1280, 800}, 3000.0);
+    const ProjectorReach met = reachOf(above, positions, flat, glm::mat4(1.0F));
+    EXPECT_NEAR(met.missed, 0.0, 1e-9);
+    EXPECT_NEAR(met.steep, 0.0, 1e-9);
+    // Carried 7 m to the side it meets the flat square at 74 degrees.
+    lookAt(above, {0.05, 0.05});
+    carryTo(above, {7.05, 2.0, 0.05});
+    EXPECT_NEAR(reachOf(above, positions, flat, glm::mat4(1.0F)).missed, 1.0, 1e-9);
+    lookAt(above, {0.05, 0.05});
+    EXPECT_NEAR(reachOf(above, positions, flat, glm::mat4(1.0F)).steep, 1.0, 1e-9);
+    carryTo(above, {4.05, 2.0, 0.05});
+    lookAt(above, {0.05, 0.05});
+    EXPECT_NEAR(reachOf(above, positions, flat, glm::mat4(1.0F)).steep, 0.0, 1e-9) << "63 degrees are not steep";
 }
 
 /// A picture of its own colour.

@@ -192,7 +192,7 @@ void MainWindow::showFirstWorkspace() {
 QString MainWindow::workspace() const { return data_->present; }
 
 void MainWindow::startTour() {
-    showWorkspace("field");
+    showWorkspace("scene");
     const auto seen = [this] { data_->studio.settings.setTourSeen(true); };
     showTour(*this, tourSteps(data_->studio), seen);
 }

@@ -144,7 +144,7 @@ private:
         case Kind::table:
             return addTableRows(form, studio_);
         case Kind::projector:
-            return addProjectorRows(form, chosenProjector());
+            return addProjectorRows(form, studio_, chosenProjector());
         case Kind::viewer:
             return addViewerRows(form, studio_);
         case Kind::room:

@@ -21,6 +21,11 @@ glm::vec3 display(const glm::vec3& light) {
     return glm::pow(glm::clamp(light / (1.0F + 0.25F * light), 0.0F, 1.0F), glm::vec3(1.0F / 2.2F));
 }
 
+bool hasAlpha(const Image& image) {
+    return std::any_of(image.pixels().begin(), image.pixels().end(),
+                       [](const Image::Pixel& pixel) { return pixel[3] < 255; });
+}
+
 /// The first picture of a texture, sRGB; empty where it has none.
 class Sampler {
 public:
@@ -43,7 +48,16 @@ public:
         return glm::vec4(value[0], value[1], value[2], value[3]) / 255.0F;
     }
 
+    /// What says where holes are: alpha, or red where there is no alpha.
+    [[nodiscard]] std::optional<float> coverAt(const glm::vec2& metres) const {
+        const std::optional<glm::vec4> value = at(metres);
+        if (!value) return std::nullopt;
+        return hasAlpha_ ? value->w : value->x;
+    }
+    void lookForAlpha() { hasAlpha_ = image_ && hasAlpha(*image_); }
+
 private:
+    bool hasAlpha_ = false;
     const SceneTexture& texture_;
     const Image* image_ = nullptr;
 };
@@ -53,7 +67,9 @@ public:
     Ball(const Material& material, const SceneAssets* assets)
         : material_(material), color_(material.colorTexture, assets), bumps_{Sampler(material.normalMaps[0], assets),
                                                                              Sampler(material.normalMaps[1], assets)},
-          holes_(material.holes, assets) {}
+          holes_(material.holes, assets) {
+        holes_.lookForAlpha();
+    }
 
     /// Colour (sRGB) and coverage at a place of the unit disc, y up.
     [[nodiscard]] glm::vec4 at(const glm::vec2& place) const {
@@ -63,7 +79,7 @@ public:
         // As if a sheet were bent over it: lengths along the surface stay what they are.
         const float reach = std::asin(std::sqrt(squared)) / std::max(std::sqrt(squared), 1e-4F);
         const glm::vec2 metres = kBallRadius * reach * glm::vec2(place.x, -place.y);
-        if (const auto hole = holes_.at(metres); hole && std::min(hole->x, hole->w) < material_.holeThreshold)
+        if (const auto cover = holes_.coverAt(metres); cover && *cover < material_.holeThreshold)
             return glm::vec4(0.0F);
         const std::optional<glm::vec4> picture = color_.at(metres);
         glm::vec3 base = linear(material_.color);

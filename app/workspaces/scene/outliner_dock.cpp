@@ -1,5 +1,6 @@
 #include <set>
 
+#include <QDockWidget>
 #include <QMenu>
 #include <QPointer>
 #include <QToolButton>
@@ -34,10 +35,17 @@ public:
         prepareTree();
         connect(&selection, &SceneSelection::changed, this, [this] { showChosen(); });
         connect(model_, &OutlinerModel::rebuilt, this, [this] { unfold(); });
+        connect(&studio.notices, &Notices::changed, this, [this](const QString& place) { showNotice(place); });
         unfold();
     }
 
 private:
+    /// A notice of the scene stands here, so the dock comes to the front of those behind which it lies.
+    void showNotice(const QString& place) {
+        if (place != "scene" || studio_.notices.at("scene").empty()) return;
+        if (auto* dock = qobject_cast<QDockWidget*>(parentWidget())) dock->raise();
+    }
+
     /// Fig. 2 of the paper as a switch: servos, light, or both.
     QWidget* makeSwitch() {
         auto* bar = new QWidget(this);
@@ -68,7 +76,7 @@ private:
         fillAddMenu(studio_.commands, *menu);
         add->setMenu(menu);
         row->addWidget(add, 1);
-        for (const char* command : {"scene.duplicate", "scene.delete", "scene.play"})
+        for (const char* command : {"scene.duplicate", "scene.delete"})
             row->addWidget(makeCommandIcon(studio_.commands.find(command), QString(command) + ".button", bar));
         return bar;
     }

@@ -1,8 +1,11 @@
-#include <numbers>
+#include <algorithm>
+#include <cmath>
 
 #include <QLabel>
+#include <QTimer>
 
 #include "app/workspaces/scene/projector_pose.h"
+#include "app/workspaces/scene/projector_reach.h"
 #include "app/workspaces/scene/setup_rows.h"
 
 namespace lumorph::studio {
@@ -10,6 +13,8 @@ namespace lumorph::studio {
 namespace {
 
 constexpr double kFar = 20.0; ///< metres
+constexpr int kLookMilliseconds = 500;
+constexpr double kWorthTelling = 0.01; ///< share of the device
 
 SceneForm::NumberRow placeRow(const Part<SceneProjector>& projector, int axis) {
     const QString letter(QChar::fromLatin1("xyz"[axis]));
@@ -46,6 +51,41 @@ SceneForm::NumberRow lookRow(const Part<SceneProjector>& projector, int axis) {
                 point[axis] = value;
                 lookAt(found->camera, point);
             }};
+}
+
+QString warningOf(const ProjectorReach& reach) {
+    const auto percent = [](double share) { return QString::number(std::max(1.0, std::round(100.0 * share)), 'f', 0); };
+    if (reach.missed > 1.0 - kWorthTelling) return QObject::tr("Its light does not meet the device at all.");
+    QStringList told;
+    if (reach.missed > kWorthTelling)
+        told << QObject::tr("%1 % of the device lies outside its picture.").arg(percent(reach.missed));
+    if (reach.steep > kWorthTelling)
+        told << QObject::tr("%1 % is met at more than %2°, where light is dim and blurred.")
+                    .arg(percent(reach.steep))
+                    .arg(kSteepDegrees);
+    return told.join(' ');
+}
+
+/// What its light does not reach well, as the device stands now.
+void addWarning(SceneForm& form, Studio& studio, const Part<SceneProjector>& projector) {
+    QLabel* warning = form.sentence("projector.warning");
+    warning->setProperty("look", "warning");
+    const auto look = [warning, &studio, projector] {
+        const SceneProjector* found = projector.read(*studio.document.state().scene);
+        const auto& frame = studio.loop.frame();
+        QString text;
+        if (found && found->enabled && frame && frame->rig && frame->devicePositions)
+            text = warningOf(reachOf(found->camera, *frame->devicePositions, frame->rig->restMesh().triangles,
+                                     frame->worldFromDevice));
+        warning->setText(text);
+        warning->setVisible(!text.isEmpty());
+    };
+    auto* often = new QTimer(&form);
+    QObject::connect(often, &QTimer::timeout, &form, [&form, look] {
+        if (form.isVisible()) look();
+    });
+    often->start(kLookMilliseconds);
+    form.onRefresh([look](const Scene&) { look(); });
 }
 
 void addPlace(SceneForm& form, const Part<SceneProjector>& projector) {
@@ -101,10 +141,11 @@ void addLight(SceneForm& form, const Part<SceneProjector>& projector) {
 
 } // namespace
 
-void addProjectorRows(SceneForm& form, const Part<SceneProjector>& projector) {
+void addProjectorRows(SceneForm& form, Studio& studio, const Part<SceneProjector>& projector) {
     form.check(
         {"projector.enabled", QObject::tr("In use"), {}}, projector,
         [](auto& found) -> auto& { return found.enabled; });
+    addWarning(form, studio, projector);
     addPlace(form, projector);
     addLens(form, projector);
     addLight(form, projector);

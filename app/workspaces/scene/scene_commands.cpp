@@ -5,6 +5,7 @@
 
 #include "app/studio/document/scene_edit.h"
 #include "app/studio/look/icons.h"
+#include "app/workspaces/scene/projector_pose.h"
 #include "app/workspaces/scene/scene_words.h"
 #include "app/workspaces/scene/texture_rows.h"
 
@@ -28,7 +29,9 @@ const QStringList kAdded{"scene.add.model",
                          "scene.add.sun",
                          "scene.add.lamp",
                          "",
-                         "scene.add.group"};
+                         "scene.add.group",
+                         "",
+                         "scene.add.projector"};
 
 constexpr float kAboveDevice = 0.035F; ///< metres: where a solid is seen to stand on the tablet
 
@@ -96,7 +99,6 @@ public:
         connect(&studio.document, &StudioDocument::changed, this, [this](StateParts parts) {
             if (parts & StatePart::scene) follow();
         });
-        connect(&studio.loop, &StudioLoop::scenePlayingChanged, this, [this] { follow(); });
         connect(&studio.desk, &Desk::chooseAsset, this, [this](const QString& asset) { relink(asset); });
         follow();
     }
@@ -144,8 +146,24 @@ private:
             [] { return light(LightItem::Kind::sun); });
         one("lamp", tr("Add a lamp"), tr("Light from a place near by"), "lamp",
             [] { return light(LightItem::Kind::lamp); });
+        add("scene.add.projector", tr("Add a projector"), tr("Another one that lights the device"), "projector", {},
+            false, [this] { addProjector(); });
         one("group", tr("Add a group"), tr("Holds others together"), "group",
             [] { return plain("Group", GroupItem{}); });
+    }
+
+    void addProjector() {
+        SceneProjector projector = defaultScene().projectors.front();
+        const auto& all = studio_.document.state().scene->projectors;
+        projector.name = "Projector " + std::to_string(all.size() + 1);
+        // Beside the others, so that it is seen to be another.
+        carryTo(projector.camera,
+                positionOf(projector.camera) + glm::dvec3(0.5 * static_cast<double>(all.size()), 0, 0));
+        lookAt(projector.camera, glm::dvec2(0.0));
+        editScene(studio_.document, tr("Add a projector"),
+                  [&projector](Scene& scene) { scene.projectors.push_back(projector); });
+        selection_.choose(
+            {SceneChoice::Kind::projector, static_cast<int>(studio_.document.state().scene->projectors.size()) - 1});
     }
 
     void addChanging() {
@@ -155,8 +173,6 @@ private:
                       [this] { remove(); });
         hide_ = add("scene.hide", tr("Hide"), tr("Hide or show what is chosen"), "eye-off", "Ctrl+H", false,
                     [this] { toggleVisible(); });
-        play_ = add("scene.play", tr("Play the scene"), tr("Waves, animations and moving pictures"), "play",
-                    "Ctrl+Space", false, [this] { studio_.loop.setScenePlaying(!studio_.loop.scenePlaying()); });
     }
 
     void addShowing() {
@@ -236,7 +252,21 @@ private:
         selection_.chooseItem(copy);
     }
 
+    [[nodiscard]] bool projectorChosen() const {
+        const SceneChoice& choice = selection_.choice();
+        return choice.kind == SceneChoice::Kind::projector &&
+               static_cast<std::size_t>(choice.index) < studio_.document.state().scene->projectors.size();
+    }
+
+    void removeProjector() {
+        const int index = selection_.choice().index;
+        selection_.choose({});
+        editScene(studio_.document, tr("Delete a projector"),
+                  [index](Scene& scene) { scene.projectors.erase(scene.projectors.begin() + index); });
+    }
+
     void remove() {
+        if (projectorChosen()) return removeProjector();
         const SceneItem* item = chosen();
         if (!item) return;
         editScene(studio_.document, tr("Delete %1").arg(QString::fromStdString(item->name)),
@@ -257,19 +287,19 @@ private:
     void follow() {
         const Scene& scene = *studio_.document.state().scene;
         const SceneItem* item = chosen();
-        if (!item && selection_.item() != 0) selection_.choose({}); // it was deleted, or undone
-        for (QAction* action : {duplicate_, remove_, hide_}) action->setEnabled(item != nullptr);
+        const bool gone = selection_.choice().kind == SceneChoice::Kind::projector && !projectorChosen();
+        if (gone || (!item && selection_.item() != 0)) selection_.choose({}); // it was deleted, or undone
+        for (QAction* action : {duplicate_, hide_}) action->setEnabled(item != nullptr);
+        remove_->setEnabled(item != nullptr || projectorChosen());
         hide_->setText(item && !item->visible ? tr("Show") : tr("Hide"));
         hide_->setIcon(icon(item && !item->visible ? "eye" : "eye-off"));
-        play_->setText(studio_.loop.scenePlaying() ? tr("Pause the scene") : tr("Play the scene"));
-        play_->setIcon(icon(studio_.loop.scenePlaying() ? "pause" : "play"));
         for (const auto& [showing, action] : showing_) action->setChecked(scene.showing == showing);
     }
 
     Studio& studio_;
     SceneSelection& selection_;
     std::function<QWidget*()> parent_;
-    QAction *duplicate_ = nullptr, *remove_ = nullptr, *hide_ = nullptr, *play_ = nullptr;
+    QAction *duplicate_ = nullptr, *remove_ = nullptr, *hide_ = nullptr;
     QActionGroup* showings_ = nullptr;
     std::vector<std::pair<Showing, QAction*>> showing_;
 };

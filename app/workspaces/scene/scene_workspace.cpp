@@ -3,9 +3,13 @@
 #include <algorithm>
 
 #include <QApplication>
+#include <QDropEvent>
+#include <QMimeData>
 #include <QPointer>
 
 #include "app/studio/document/scene_edit.h"
+#include "app/workspaces/scene/material_shelf.h"
+#include "app/workspaces/scene/outliner_model.h"
 #include "app/workspaces/scene/scene_commands.h"
 #include "app/workspaces/scene/scene_docks.h"
 #include "app/workspaces/scene/scene_stage.h"
@@ -26,6 +30,8 @@ struct SceneWorkspace::Data : public QObject {
 
     void takeModel(const std::filesystem::path& file);
     void takePicture(const std::filesystem::path& file);
+    /// A material of the library that is dropped on the stage.
+    bool eventFilter(QObject* watched, QEvent* event) override;
 
     Studio& studio;
     SceneSelection selection;
@@ -50,7 +56,22 @@ void SceneWorkspace::Data::takeModel(const std::filesystem::path& file) {
                                   {{tr("Make it the target"), drive}, {tr("Keep as light"), [] {}}}});
 }
 
-/// On what is chosen where that has a material, else on the device.
+/// It goes to what is chosen where that has a surface, else to the device.
+bool SceneWorkspace::Data::eventFilter(QObject* watched, QEvent* event) {
+    const auto type = event->type();
+    if (type != QEvent::DragEnter && type != QEvent::DragMove && type != QEvent::Drop)
+        return QObject::eventFilter(watched, event);
+    auto* drop = static_cast<QDropEvent*>(event);
+    if (!drop->mimeData()->hasFormat(kMaterialMime)) return QObject::eventFilter(watched, event);
+    drop->acceptProposedAction();
+    const std::vector<Material> all = shelfMaterials();
+    const auto number = static_cast<std::size_t>(drop->mimeData()->data(kMaterialMime).toUInt());
+    if (type == QEvent::Drop && number < all.size() && !applyMaterial(studio, selection.choice(), all[number]))
+        applyMaterial(studio, {SceneChoice::Kind::device, 0}, all[number]);
+    return true;
+}
+
+/// It covers the device once.
 void SceneWorkspace::Data::takePicture(const std::filesystem::path& file) {
     editScene(studio.document, tr("Show %1 on the device").arg(QString::fromStdString(file.filename().string())),
               [&file](Scene& scene) {
@@ -79,6 +100,8 @@ QWidget* SceneWorkspace::makeCentralView() {
     Data& data = *data_;
     data.stage = new SceneStage(data.studio);
     data.stage->setActive(data.active);
+    data.stage->setAcceptDrops(true);
+    data.stage->installEventFilter(&data);
     connect(data.stage, &SceneStage::picked, &data.selection, &SceneSelection::chooseItem);
     const auto mark = [&data] {
         if (data.stage) data.stage->setSelected(data.selection.item());
