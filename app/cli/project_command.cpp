@@ -3,6 +3,7 @@
 #include <optional>
 
 #include "app/cli/commands.h"
+#include "app/cli/scene_report.h"
 #include "core/base/error.h"
 #include "core/base/file.h"
 #include "core/geometry/mesh_file.h"
@@ -30,6 +31,7 @@ public:
         field_ = look(project_.field, [this](const std::filesystem::path& path) { return readFieldAsset(path); });
         target_ = look(project_.target, [this](const std::filesystem::path& path) { return readTargetAsset(path); });
         checkStrokes();
+        checkScenery();
     }
 
     void printText() const {
@@ -39,6 +41,7 @@ public:
         std::printf("  target  %s\n", target_.text.c_str());
         std::printf("  matching %s, %s, within %g ms\n", project_.matching.live ? "live" : "on demand",
                     project_.matching.refined ? "refined" : "voting", project_.matching.budgetMilliseconds);
+        std::printf("  scene   %s\n", scene_.text.c_str());
         for (const Error& problem : problems_) std::printf("  ! %s\n", problem.what());
     }
 
@@ -47,7 +50,8 @@ public:
         for (const Error& problem : problems_)
             problems.push_back({{"subject", problem.subject()}, {"why", problem.why()}, {"remedy", problem.remedy()}});
         return {{"ok", problems_.empty()}, {"schemaVersion", kProjectSchema}, {"rig", rig_.json},
-                {"field", field_.json},    {"target", target_.json},          {"problems", problems}};
+                {"field", field_.json},    {"target", target_.json},          {"scene", scene_.json},
+                {"problems", problems}};
     }
 
     void throwIfBroken() const {
@@ -115,11 +119,18 @@ private:
                                "give one an actuator, or remove them");
     }
 
+    void checkScenery() {
+        session_.throwIfCancelled();
+        const SceneReport report = sceneReport(project_.scene, file_);
+        scene_ = {report.json, report.text};
+        problems_.insert(problems_.end(), report.problems.begin(), report.problems.end());
+    }
+
     std::string file_;
     const Session& session_;
     Project project_;
     std::optional<std::vector<std::string>> actuators_; ///< of the rig, once it has been read
-    AssetReport rig_, field_, target_;
+    AssetReport rig_, field_, target_, scene_;
     std::vector<DataError> problems_;
 };
 

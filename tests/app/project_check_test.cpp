@@ -1,3 +1,5 @@
+#include <algorithm>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -81,6 +83,57 @@ TEST_F(ProjectCheck, NamesWhatIsWrongWithEachAsset) {
     project = whole;
     project.animation = 1;
     expectProblem("animation");
+}
+
+TEST_F(ProjectCheck, TellsWhatTheSceneHolds) {
+    project.scene.items.push_back({});
+    project.scene.items.back().id = 2;
+    project.scene.items.back().name = "Waves";
+    project.scene.items.back().role = ItemRole::split;
+    project.scene.items.back().kind = HeightItem{};
+    const nlohmann::json scene = check({"--json"}).json()["scene"];
+    EXPECT_EQ(scene["items"]["light"], 1);
+    EXPECT_EQ(scene["items"]["heights"], 1);
+    EXPECT_EQ(scene["items"]["mesh"], 0);
+    EXPECT_EQ(scene["servosFollow"], "Waves");
+    ASSERT_EQ(scene["projectors"].size(), 1U);
+    EXPECT_EQ(scene["projectors"][0]["size"], nlohmann::json({1920, 1080}));
+    EXPECT_EQ(scene["projectors"][0]["enabled"], true);
+    ASSERT_GE(scene["assets"].size(), 1U);
+    for (const nlohmann::json& asset : scene["assets"]) EXPECT_EQ(asset["ok"], true) << asset;
+    EXPECT_THAT(check().out, HasSubstr("2 items, 1 projector"));
+}
+
+TEST_F(ProjectCheck, NamesWhatOfTheSceneIsBroken) {
+    const Project whole = project;
+    project.scene.device.material.colorTexture.image = "missing.png";
+    expectProblem("missing.png");
+    project = whole;
+    writeFile(w["broken.jpg"], std::string("\xff\xd8\xff"));
+    project.scene.device.material.holes.image = "broken.jpg";
+    expectProblem("broken.jpg");
+    const nlohmann::json assets = check({"--json"}).json()["scene"]["assets"];
+    const auto broken = std::ranges::find_if(assets, [](const auto& asset) { return asset["asset"] == "broken.jpg"; });
+    ASSERT_NE(broken, assets.end());
+    EXPECT_EQ((*broken)["ok"], false);
+    EXPECT_FALSE((*broken)["why"].get<std::string>().empty());
+    EXPECT_FALSE((*broken)["remedy"].get<std::string>().empty());
+    project = whole;
+    SceneItem fish;
+    fish.id = 2;
+    fish.kind = MeshItem{"fish.glb"};
+    project.scene.items.push_back(fish);
+    writeFile(w["fish.glb"], std::string("glTF"));
+    expectProblem("fish.glb");
+}
+
+TEST_F(ProjectCheck, TheBundledProjectsAreWhole) {
+    for (const char* name : {"water", "techniques"}) {
+        const std::string file = std::string(LUMORPH_SOURCE_DIR) + "/resources/projects/" + name + ".lumorph";
+        const Outcome outcome = lumorph({"project", "check", file, "--json"});
+        EXPECT_EQ(outcome.exitCode, 0) << outcome.err;
+        EXPECT_FALSE(outcome.json()["scene"]["servosFollow"].is_null());
+    }
 }
 
 TEST_F(ProjectCheck, RefusesAFileThatIsNoProject) {
