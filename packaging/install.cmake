@@ -3,7 +3,8 @@ include(GNUInstallDirs)
 
 install(TARGETS lumorph RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 # core/base/resources.cpp looks for ../share/lumorph beside the program.
-install(DIRECTORY resources/fonts resources/icons resources/models resources/shaders resources/targets
+install(DIRECTORY resources/fonts resources/icons resources/materials resources/models resources/projects
+                  resources/shaders resources/targets
         DESTINATION ${CMAKE_INSTALL_DATADIR}/lumorph
         PATTERN generator EXCLUDE PATTERN CMakeLists.txt EXCLUDE)
 install(FILES README.md CHANGELOG.md DESTINATION ${CMAKE_INSTALL_DOCDIR})

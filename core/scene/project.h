@@ -46,8 +46,9 @@ struct Project {
 /// Throws DataError as `readProject` does.
 [[nodiscard]] Project parseProject(std::string_view text, const std::string& name);
 
-/// The text of its file. Equal projects give equal bytes, and `parseProject` gives back the same project. Throws
-/// InvalidInput for a value that `parseProject` would refuse.
+/// The text of its file. Equal projects give equal bytes, and `parseProject` gives back the same project (an angle of
+/// the scene that no number of degrees gives changes in its last bit, once). Throws InvalidInput for a value that
+/// `parseProject` would refuse.
 [[nodiscard]] std::string projectText(const Project& project);
 
 /// Reads a project. Its assets need not be there. Throws DataError naming the file, the JSON key and the remedy: not

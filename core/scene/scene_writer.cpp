@@ -1,6 +1,7 @@
 #include <charconv>
 #include <cmath>
 #include <cstdlib>
+#include <optional>
 #include <string>
 #include <type_traits>
 #include <vector>
@@ -23,14 +24,20 @@ double shortest(float value) {
 double shortest(double value) { return value; }
 int shortest(int value) { return value; }
 
-/// The degrees, round where that is possible, that give this very angle when read. Not every number of radians has
-/// them; the nearest is written then, and what has been read once stays as it is.
-double exactDegrees(Angle angle) {
+/// The degrees, round where that is possible, that give this very angle when read; nothing where none do.
+std::optional<double> exactDegrees(Angle angle) {
     const double degrees = angle.inDegrees();
     const double rounded = std::round(degrees * 1e9) / 1e9;
     for (const double candidate : {rounded, degrees, std::nextafter(degrees, 1e300), std::nextafter(degrees, -1e300)})
         if (Angle::degrees(candidate) == angle) return candidate;
-    return degrees;
+    return std::nullopt;
+}
+
+/// Not every number of radians has degrees of its own. The nearest are written then, those that would be written of
+/// what will be read, so that the text of a project stays as it is from save to save.
+double writtenDegrees(Angle angle) {
+    if (const auto exact = exactDegrees(angle)) return *exact;
+    return exactDegrees(Angle::degrees(angle.inDegrees())).value_or(angle.inDegrees());
 }
 
 class Writer {
@@ -51,7 +58,7 @@ public:
     void rotation(const char* key, const glm::quat& value) {
         vector(key, glm::vec4(value.x, value.y, value.z, value.w), kShare);
     }
-    void degrees(const char* key, Angle value, Range /*range*/ = {}) { document[key] = exactDegrees(value); }
+    void degrees(const char* key, Angle value, Range /*range*/ = {}) { document[key] = writtenDegrees(value); }
     void turnRate(const char* key, double radians, Range /*range*/) { degrees(key, Angle::radians(radians)); }
     template <typename Enumeration, std::size_t Count>
     void word(const char* key, Enumeration value, const Words<Count>& words) {

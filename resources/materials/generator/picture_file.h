@@ -1,0 +1,12 @@
+#pragma once
+
+#include <filesystem>
+
+#include "core/render/image.h"
+
+namespace lumorph {
+
+/// Writes an opaque picture as a PNG of three channels, packed as small as it gets.
+void writeOpaquePng(const Image& image, const std::filesystem::path& file);
+
+} // namespace lumorph
