@@ -11,7 +11,7 @@ namespace {
 
 // A table less rough than this shows the eye highlights worth a picture of their own.
 constexpr float kGlossy = 0.4F;
-constexpr double kFarAway = 100.0; // metres
+constexpr float kFadeRoom = 0.025F; // metres, as far as eye_lookup.glsl fades out around an area
 
 bool looksDifferentFromEverywhere(const Material& table) {
     return table.reflection > 0.0F || table.refraction > 0.0F || table.metallic > 0.3F || table.roughness < kGlossy;
@@ -39,27 +39,53 @@ bool holds(const CalibratedCamera& camera, const glm::vec3& point) {
 
 } // namespace
 
-void PixelRectangle::include(const PixelRectangle& other) noexcept {
-    if (other.empty()) return;
-    low = empty() ? other.low : glm::min(low, other.low);
-    high = glm::max(high, other.high);
+std::optional<TableArea> lookupArea(const ShowFrame& frame, const glm::vec3& eye) {
+    const glm::vec2 half = 0.5F * frame.scene->table.size;
+    const TableArea all{-half - kFadeRoom, half + kFadeRoom};
+    if (looksDifferentFromEverywhere(frame.scene->table.material)) return all;
+    Box seen;
+    bool bounded = true;
+    for (const PosedSurface& surface : frame.posed.surfaces)
+        if (!surface.positions->empty())
+            bounded = bounded && includeOnTable(seen, boundingBox(*surface.positions), surface.worldFromSurface, eye);
+    for (const PosedFog& fog : frame.posed.fogs)
+        bounded = bounded && includeOnTable(seen, {glm::vec3(-0.5F), glm::vec3(0.5F)}, fog.worldFromBox, eye);
+    if (!bounded) return all;
+    if (seen.empty()) return std::nullopt;
+    const TableArea area{glm::max(glm::vec2(seen.min.x, seen.min.z), all.low),
+                         glm::min(glm::vec2(seen.max.x, seen.max.z), all.high)};
+    if (area.low.x >= area.high.x || area.low.y >= area.high.y) return std::nullopt;
+    return area;
 }
 
-PixelRectangle tableRegion(const CalibratedCamera& eye, const CalibratedCamera& projector) {
+std::optional<CalibratedCamera> tableLookup(const ShowFrame& frame, const glm::vec3& eye, const TableArea& area,
+                                            const CalibratedCamera& first, glm::ivec2 size) {
+    const glm::vec2 half = 0.5F * frame.scene->table.size;
+    const glm::vec2 low = glm::max(area.low - kFadeRoom, -half);
+    const glm::vec2 high = glm::min(area.high + kFadeRoom, half);
+    const std::array<glm::vec3, 4> corners{
+        {{low.x, 0.0F, low.y}, {high.x, 0.0F, low.y}, {low.x, 0.0F, high.y}, {high.x, 0.0F, high.y}}};
+    if (std::all_of(corners.begin(), corners.end(), [&](const glm::vec3& at) { return holds(first, at); }))
+        return std::nullopt;
+    try {
+        return eyeCamera(glm::dvec3(eye), corners, size);
+    } catch (const InvalidInput&) { // the eye stands above part of it
+        return tableView(frame, eye, size);
+    }
+}
+
+PixelRectangle pixelsOf(const TableArea& area, const CalibratedCamera& projector) {
     constexpr int kSteps = 8;
-    constexpr double kRoom = 3.0;
-    const PixelRectangle all{glm::ivec2(0), projector.size};
-    const glm::dvec3 from = positionOf(eye);
+    constexpr double kRoom = 2.0;
+    const glm::dvec2 from(area.low - kFadeRoom);
+    const glm::dvec2 way(area.high - area.low + 2.0F * kFadeRoom);
     glm::dvec2 low(1e9);
     glm::dvec2 high(-1e9);
     for (int i = 0; i <= kSteps; ++i)
         for (int j = 0; j <= kSteps; ++j) {
-            const glm::dvec2 pixel = glm::dvec2(i, j) / double{kSteps} * glm::dvec2(eye.size) - 0.5;
-            const glm::dvec3 direction = directionOf(eye, pixel);
-            const double way = -from.y / direction.y;
-            if (!(way > 0.0) || !(way < kFarAway)) return all;
-            const auto at = pixelOf(projector, from + way * direction);
-            if (!at) return all;
+            const glm::dvec2 place = from + way * glm::dvec2(i, j) / double{kSteps};
+            const auto at = pixelOf(projector, {place.x, 0.0, place.y});
+            if (!at) return {glm::ivec2(0), projector.size};
             low = glm::min(low, *at);
             high = glm::max(high, *at);
         }
@@ -76,32 +102,6 @@ std::array<PixelRectangle, 4> around(const PixelRectangle& area, glm::ivec2 size
              {{0, area.high.y}, {size.x, size.y}},
              {{0, area.low.y}, {area.low.x, area.high.y}},
              {{area.high.x, area.low.y}, {size.x, area.high.y}}}};
-}
-
-std::optional<CalibratedCamera> tableLookup(const ShowFrame& frame, const glm::vec3& eye, const CalibratedCamera& first,
-                                            glm::ivec2 size) {
-    if (looksDifferentFromEverywhere(frame.scene->table.material)) return tableView(frame, eye, size);
-    Box seen;
-    bool bounded = true;
-    for (const PosedSurface& surface : frame.posed.surfaces)
-        if (!surface.positions->empty())
-            bounded = bounded && includeOnTable(seen, boundingBox(*surface.positions), surface.worldFromSurface, eye);
-    for (const PosedFog& fog : frame.posed.fogs)
-        bounded = bounded && includeOnTable(seen, {glm::vec3(-0.5F), glm::vec3(0.5F)}, fog.worldFromBox, eye);
-    if (!bounded) return tableView(frame, eye, size);
-    const glm::vec2 half = 0.5F * frame.scene->table.size;
-    const glm::vec2 low = glm::max(glm::vec2(seen.min.x, seen.min.z), -half);
-    const glm::vec2 high = glm::min(glm::vec2(seen.max.x, seen.max.z), half);
-    if (seen.empty() || low.x >= high.x || low.y >= high.y) return std::nullopt;
-    const std::array<glm::vec3, 4> corners{
-        {{low.x, 0.0F, low.y}, {high.x, 0.0F, low.y}, {low.x, 0.0F, high.y}, {high.x, 0.0F, high.y}}};
-    if (std::all_of(corners.begin(), corners.end(), [&](const glm::vec3& at) { return holds(first, at); }))
-        return std::nullopt;
-    try {
-        return eyeCamera(glm::dvec3(eye), corners, size);
-    } catch (const InvalidInput&) { // the eye stands above part of it
-        return tableView(frame, eye, size);
-    }
 }
 
 } // namespace lumorph

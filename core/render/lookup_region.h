@@ -15,19 +15,27 @@ struct PixelRectangle {
     glm::ivec2 low{0};
     glm::ivec2 high{0};
     [[nodiscard]] bool empty() const noexcept { return low.x >= high.x || low.y >= high.y; }
-    void include(const PixelRectangle& other) noexcept;
 };
 
-/// Where the part of the table that lies in one camera's image lies in another's: a rectangle that holds it all.
-[[nodiscard]] PixelRectangle tableRegion(const CalibratedCamera& eye, const CalibratedCamera& projector);
+/// A part of the table, metres in x and z.
+struct TableArea {
+    glm::vec2 low{0.0F};
+    glm::vec2 high{0.0F};
+};
+
+/// Where on the table an eye sees another picture than the view-independent one: things that stand on the table or
+/// reach beyond the device, fog, a mirroring table. None: nowhere.
+[[nodiscard]] std::optional<TableArea> lookupArea(const ShowFrame& frame, const glm::vec3& eye);
+
+/// The camera of a second eye picture, of `size`, for an area that the first does not hold; none: it does.
+[[nodiscard]] std::optional<CalibratedCamera> tableLookup(const ShowFrame& frame, const glm::vec3& eye,
+                                                          const TableArea& area, const CalibratedCamera& first,
+                                                          glm::ivec2 size);
+
+/// A rectangle that holds the area, with room to fade out around it, in a projector's image.
+[[nodiscard]] PixelRectangle pixelsOf(const TableArea& area, const CalibratedCamera& projector);
 
 /// What is left of an image around a rectangle in it.
 [[nodiscard]] std::array<PixelRectangle, 4> around(const PixelRectangle& area, glm::ivec2 size);
-
-/// The camera of a second eye picture, of `size`, for what on the table looks different to an eye and lies outside the
-/// first picture: things that stand on the table or reach beyond the device, fog, a mirroring table. None: nothing
-/// does.
-[[nodiscard]] std::optional<CalibratedCamera> tableLookup(const ShowFrame& frame, const glm::vec3& eye,
-                                                          const CalibratedCamera& first, glm::ivec2 size);
 
 } // namespace lumorph

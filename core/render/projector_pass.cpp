@@ -1,7 +1,6 @@
 #include "core/render/projector_pass.h"
 
 #include "core/render/draw_state.h"
-#include "core/render/lookup_region.h"
 
 namespace lumorph {
 namespace {
@@ -27,6 +26,13 @@ void setLens(Program& program, const ProjectorTarget& target) {
     setCamera(program, target.projector.camera, target.range.near, target.range.far);
 }
 
+std::vector<std::string> outputDefines(const ProjectorTarget& target) {
+    std::vector<std::string> defines;
+    if (target.blend) defines.emplace_back("SHARED");
+    if (target.projector.gamma > 0.0) defines.emplace_back("GAMMA");
+    return defines;
+}
+
 void scissor(const PixelRectangle& area) {
     glScissor(area.low.x, area.low.y, area.high.x - area.low.x, area.high.y - area.low.y);
 }
@@ -39,7 +45,8 @@ ProjectorPass::ProjectorPass()
       distance_(shaderFiles({"full_frame.vert"}, {"version.glsl", "projector_distance.frag"})),
       deviceWeight_(weightFiles({})), tableWeight_(weightFiles({"TABLE"})) {}
 
-void ProjectorPass::drawDepth(ProjectorTarget& target, const ShowFrame& frame, const DeviceSurface& device) {
+void ProjectorPass::drawDepth(ProjectorTarget& target, const ShowFrame& frame, const DeviceSurface& device,
+                              bool withTable) {
     target.range = depthRange(target.projector.camera, physicalBounds(frame));
     target.table.fit(target.projector.camera, frame.scene->table.size);
     beginSurfaces(target.sent.framebuffer(), target.sent.size());
@@ -48,7 +55,7 @@ void ProjectorPass::drawDepth(ProjectorTarget& target, const ShowFrame& frame, c
     depth_.use();
     setLens(depth_, target);
     device.draw(depth_);
-    drawTableOf(target, depth_);
+    if (withTable) drawTableOf(target, depth_);
     glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
 }
 
@@ -127,14 +134,15 @@ Program& ProjectorPass::colorProgram(std::vector<std::string> defines, bool tabl
     return colors_.try_emplace(defines, physicalFiles(fragment, defines)).first->second;
 }
 
-Program& ProjectorPass::beginColor(const ProjectorTarget& target, const ShowFrame& frame, const EyeViews& views,
-                                   bool table) {
+Program& ProjectorPass::plainProgram(std::vector<std::string> defines) {
+    ShaderFiles files = shaderFiles({"version.glsl", "camera.glsl", "projector_light.glsl", "projector_plain.vert"},
+                                    {"version.glsl", "projector_plain.frag"});
+    files.defines = defines;
+    return plain_.try_emplace(std::move(defines), std::move(files)).first->second;
+}
+
+void ProjectorPass::setColor(Program& program, const ProjectorTarget& target, const ShowFrame& frame) const {
     const SceneProjector& projector = target.projector;
-    std::vector<std::string> defines;
-    if (views.device != nullptr) defines.emplace_back(views.table != nullptr ? "EYE 2" : "EYE 1");
-    if (target.blend) defines.emplace_back("SHARED");
-    if (projector.gamma > 0.0) defines.emplace_back("GAMMA");
-    Program& program = colorProgram(std::move(defines), table);
     program.use();
     setLens(program, target);
     setLight(program, projector);
@@ -142,30 +150,39 @@ Program& ProjectorPass::beginColor(const ProjectorTarget& target, const ShowFram
     if (projector.gamma > 0.0) program.set("inverseGamma", static_cast<float>(1.0 / projector.gamma));
     bindTexture(0, target.unseen.texture());
     program.set("unseen", 0);
-    if (target.blend) {
-        bindTexture(1, target.blend->weights());
-        program.set("weights", 1);
-    }
+    if (!target.blend) return;
+    bindTexture(1, target.blend->weights());
+    program.set("weights", 1);
+}
+
+Program& ProjectorPass::beginLookup(const ProjectorTarget& target, const ShowFrame& frame, const EyeViews& views,
+                                    bool table) {
+    std::vector<std::string> defines = outputDefines(target);
+    if (views.device != nullptr) defines.emplace_back(table && views.table != nullptr ? "EYE 2" : "EYE 1");
+    Program& program = colorProgram(std::move(defines), table);
+    setColor(program, target, frame);
     if (views.device != nullptr) views.device->set(program, "device", 2);
+    if (!table) return program;
     if (views.table != nullptr) views.table->set(program, "table", 4);
+    program.set("lookupArea", glm::vec4(views.tableArea->low, views.tableArea->high));
     return program;
 }
 
-// Looking things up in the eye's pictures is dear, and most of the table lies outside them.
+// Looking things up in the eye's pictures is dear, and most of the table shows every eye the same.
 void ProjectorPass::drawTable(const ProjectorTarget& target, const ShowFrame& frame, const EyeViews& views) {
     PixelRectangle area;
-    if (views.device != nullptr) area.include(tableRegion(views.device->camera(), target.projector.camera));
-    if (views.table != nullptr) area.include(tableRegion(views.table->camera(), target.projector.camera));
     glEnable(GL_SCISSOR_TEST);
+    if (views.device != nullptr && views.tableArea) area = pixelsOf(*views.tableArea, target.projector.camera);
     if (!area.empty()) {
         scissor(area);
-        drawTableOf(target, beginColor(target, frame, views, true));
+        drawTableOf(target, beginLookup(target, frame, views, true));
     }
-    Program& plain = beginColor(target, frame, {}, true);
+    Program& plain = plainProgram(outputDefines(target));
+    setColor(plain, target, frame);
     for (const PixelRectangle& rest : around(area, target.sent.size())) {
         if (rest.empty()) continue;
         scissor(rest);
-        drawTableOf(target, plain);
+        target.table.draw();
     }
     glDisable(GL_SCISSOR_TEST);
 }
@@ -174,15 +191,13 @@ void ProjectorPass::draw(const ProjectorTarget& target, const ShowFrame& frame, 
                          const EyeViews& views) {
     beginSurfaces(target.sent.framebuffer(), target.sent.size());
     glClear(GL_COLOR_BUFFER_BIT);
-    glDepthMask(GL_FALSE);
     if (target.projector.gamma > 0.0)
         glDisable(GL_FRAMEBUFFER_SRGB);
     else
         glEnable(GL_FRAMEBUFFER_SRGB);
-    Program& program = beginColor(target, frame, views, false);
+    Program& program = beginLookup(target, frame, views, false);
     device.draw(program);
     drawTable(target, frame, views);
-    glDepthMask(GL_TRUE);
     glDisable(GL_FRAMEBUFFER_SRGB);
 }
 
@@ -190,7 +205,8 @@ std::size_t ProjectorPass::objectCount() const noexcept {
     std::size_t count = 1;
     for (const Program* program : {&depth_, &edges_, &distance_, &deviceWeight_, &tableWeight_})
         count += program->objectCount();
-    for (const auto& [defines, program] : colors_) count += program.objectCount();
+    for (const auto* programs : {&colors_, &plain_})
+        for (const auto& [defines, program] : *programs) count += program.objectCount();
     return count;
 }
 

@@ -46,6 +46,7 @@ struct SpatialRenderer::Data {
     std::optional<EyeView> eye;
     std::optional<EyeView> table;
     bool tableShown = false;
+    std::optional<TableArea> tableArea;
     std::vector<std::optional<ProjectorTarget>> projectors;
     std::optional<ShowFrame> frame;
     bool eyeShown = false;
@@ -87,6 +88,7 @@ void SpatialRenderer::Data::drawEye(const glm::vec3& from) {
     auto since = std::chrono::steady_clock::now();
     eyeShown = false;
     tableShown = false;
+    tableArea.reset();
     eyeProblem.clear();
     if (!eye) eye.emplace(eyeSize);
     try {
@@ -101,11 +103,13 @@ void SpatialRenderer::Data::drawEye(const glm::vec3& from) {
 void SpatialRenderer::Data::drawTableView(const glm::vec3& from) {
     auto since = std::chrono::steady_clock::now();
     const glm::ivec2 size = glm::max(eyeSize / 2, 1);
-    if (const auto camera = tableLookup(*frame, from, eye->camera(), size)) {
-        if (!table) table.emplace(size);
-        table->draw(pass, *frame, *camera, device, depthProgram);
-        tableShown = true;
-    }
+    tableArea = lookupArea(*frame, from);
+    if (!tableArea) return;
+    const auto camera = tableLookup(*frame, from, *tableArea, eye->camera(), size);
+    if (!camera) return;
+    if (!table) table.emplace(size);
+    table->draw(pass, *frame, *camera, device, depthProgram);
+    tableShown = true;
     times.eye += finish(since);
 }
 
@@ -143,13 +147,14 @@ void SpatialRenderer::Data::drawProjectors() {
     for (ProjectorTarget* target : targets) {
         glEnable(GL_FRAMEBUFFER_SRGB);
         pass.drawUnseen(*frame, target->projector.camera, target->unseen.framebuffer());
-        projectorPass.drawDepth(*target, *frame, device);
+        projectorPass.drawDepth(*target, *frame, device, targets.size() > 1);
         if (targets.size() < 2) target->blend.reset();
     }
     if (targets.size() > 1) projectorPass.drawWeights(targets, device);
     EyeViews views;
     if (frame->eye && eyeShown) views.device = &*eye;
     if (views.device != nullptr && tableShown) views.table = &*table;
+    if (views.device != nullptr) views.tableArea = tableArea;
     for (const ProjectorTarget* target : targets) projectorPass.draw(*target, *frame, device, views);
     times.projectors = finish(since);
 }

@@ -13,7 +13,8 @@
 namespace lumorph {
 namespace {
 
-constexpr int kMostCells = 256;          // a side
+constexpr int kMostCells = 256; // a side
+constexpr int kLeastCells = 32; // so that what changes slowly over the table may be interpolated
 constexpr double kStraightEnough = 0.02; // pixels
 
 struct Rectangle {
@@ -51,18 +52,18 @@ double bendOf(const CalibratedCamera& camera, const glm::dvec2& from, const glm:
     const glm::dvec2 middle = 0.5 * (from + to);
     const auto start = pixelOf(camera, place(from));
     const auto end = pixelOf(camera, place(to));
-    const auto true_ = pixelOf(camera, place(middle));
-    if (!start || !end || !true_) return 0.0;
+    const auto expected = pixelOf(camera, place(middle));
+    if (!start || !end || !expected) return 0.0;
     const double startDepth = (camera.cameraFromWorld * glm::dvec4(place(from), 1.0)).z;
     const double endDepth = (camera.cameraFromWorld * glm::dvec4(place(to), 1.0)).z;
     const glm::dvec2 drawn = (startDepth * *start + endDepth * *end) / (startDepth + endDepth);
-    return glm::distance(drawn, *true_);
+    return glm::distance(drawn, *expected);
 }
 
 int cellsFor(const CalibratedCamera& camera, const Rectangle& area) {
-    if (camera.distortion == std::array<double, 5>{}) return 1;
+    if (camera.distortion == std::array<double, 5>{}) return kLeastCells;
     constexpr int kProbes = 6;
-    int cells = 4;
+    int cells = kLeastCells;
     for (; cells < kMostCells; cells *= 2) {
         const glm::dvec2 cell = (area.high - area.low) / static_cast<double>(cells);
         double worst = 0.0;
@@ -83,8 +84,7 @@ void TableGrid::fit(const CalibratedCamera& camera, glm::vec2 size) {
     camera_ = camera;
     size_ = size;
     const glm::dvec2 half = 0.5 * glm::dvec2(size);
-    const bool bent = camera.distortion != std::array<double, 5>{};
-    const Rectangle area = bent ? seenRectangle(camera, half) : Rectangle{-half, half};
+    const Rectangle area = seenRectangle(camera, half);
     const int cells = cellsFor(camera, area);
     std::vector<glm::vec3> vertices;
     std::vector<glm::uvec3> triangles;

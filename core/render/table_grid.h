@@ -9,8 +9,7 @@
 
 namespace lumorph {
 
-/// The table as triangles for one camera: of what the camera sees of it, as few as its lens allows. Without distortion
-/// that is one rectangle.
+/// The table as triangles for one camera: of what the camera sees of it, as few as its lens allows.
 class TableGrid {
 public:
     /// Builds it anew where the camera or the table is another one than before. `size`: metres in x and z.

@@ -36,8 +36,7 @@ void main() {
     vec4 onDevice = seenByEye(devicePicture, deviceViewDepth, deviceView, worldPosition, normal);
     radiance = mix(radiance, onDevice.rgb, onDevice.a);
 #endif
-    vec3 light = mix(projectorPeak, fullLight(worldPosition, normal), compensation);
-    vec3 value = radiance / max(light, vec3(1e-6));
+    vec3 value = radiance * valueFor(worldPosition, normal, compensation);
 #ifdef SHARED
     vec2 weight = texelFetch(weights, pixel, 0).rg;
     value *= weight.g > 0.0 ? weight.r / weight.g : 1.0;
