@@ -13,5 +13,7 @@ void addVoxelizeCommand(CLI::App& app, Session& session);
 void addMatchCommand(CLI::App& app, Session& session);
 void addProjectCommand(CLI::App& app, Session& session);
 void addBenchCommand(CLI::App& app);
+/// Not part of a build of the core alone: the virtual lab stands on calibration.
+void addRenderCommand(CLI::App& app, Session& session);
 
 } // namespace lumorph::cli

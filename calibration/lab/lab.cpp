@@ -151,6 +151,7 @@ void Lab::Data::look(const LabLens& lens, int samples, int first, int last, LabS
                 const auto direction = rayThrough(lens, glm::dvec2(x, y) + within);
                 const auto hit = direction ? trace(lens.position, *direction) : std::nullopt;
                 sight.surfaces[ray] = hit ? hit->surface : -1;
+                sight.triangles[ray] = hit ? hit->triangle : 0;
                 for (std::size_t lamp = 0; lamp < lamps.size(); ++lamp)
                     sight.gleams[ray * lamps.size() + lamp] =
                         hit && hit->surface >= 0 ? gleam(lamps[lamp], *hit) : LabSight::Gleam{};
@@ -177,7 +178,8 @@ namespace {
 LabSight emptySight(glm::ivec2 size, int samples, std::size_t lamps) {
     const std::size_t rays = static_cast<std::size_t>(size.x) * static_cast<std::size_t>(size.y) *
                              static_cast<std::size_t>(samples * samples);
-    return {size, samples, std::vector<std::int32_t>(rays, -1), std::vector<LabSight::Gleam>(rays * lamps)};
+    return {size, samples, std::vector<std::int32_t>(rays, -1), std::vector<std::uint32_t>(rays),
+            std::vector<LabSight::Gleam>(rays * lamps)};
 }
 
 void checkSamples(int samples) {
@@ -258,6 +260,7 @@ LabSight Lab::look(const CalibratedCamera& observer, int samples) const {
         data_->look(lens, samples, y, y + 1, row);
         const auto first = static_cast<std::ptrdiff_t>(rowRays * static_cast<std::size_t>(y));
         std::copy(row.surfaces.begin(), row.surfaces.end(), sight.surfaces.begin() + first);
+        std::copy(row.triangles.begin(), row.triangles.end(), sight.triangles.begin() + first);
         std::copy(row.gleams.begin(), row.gleams.end(),
                   sight.gleams.begin() + first * static_cast<std::ptrdiff_t>(data_->lamps.size()));
     });

@@ -42,9 +42,10 @@ struct LabSight {
         float share = 0.0F;    ///< of the picture's light that comes back from white; 0 in shadow
     };
     glm::ivec2 size{0};
-    int samples = 1;                    ///< `samples` x `samples` rays a pixel, row after row
-    std::vector<std::int32_t> surfaces; ///< one a ray: of LabWorld::surfaces; -1 where there is nothing, or a blocker
-    std::vector<Gleam> gleams;          ///< one a ray and projector
+    int samples = 1;                      ///< `samples` x `samples` rays a pixel, row after row
+    std::vector<std::int32_t> surfaces;   ///< one a ray: of LabWorld::surfaces; -1 where there is nothing, or a blocker
+    std::vector<std::uint32_t> triangles; ///< one a ray, of the surface's mesh
+    std::vector<Gleam> gleams;            ///< one a ray and projector
 };
 
 /// The virtual lab's truth: a CPU ray caster (Embree) that lights surfaces by projectors and looks at them, for judging

@@ -12,8 +12,10 @@ namespace lumorph {
 namespace {
 
 // A hand or a head: up to 2 Hz and 0.3 m/s, now and then much faster. A tracker: a few tenths of a millimetre.
-constexpr MotionFilter::Noise kMoving{0.25e-3, 6.0, 0.3, 3.0};
-constexpr MotionFilter::Noise kTurning{2e-3, 30.0, 1.5, 15.0};
+constexpr MotionFilter::Noise kMoving{
+    .measured = 0.25e-3, .jerk = 1.0, .lively = 3.0, .velocity = 0.3, .acceleration = 3.0};
+constexpr MotionFilter::Noise kTurning{
+    .measured = 2e-3, .jerk = 8.0, .lively = 0.4, .velocity = 1.5, .acceleration = 15.0};
 constexpr double kRestWay = 0.6e-3;   // metres
 constexpr double kRestSpeed = 0.03;   // metres a second
 constexpr double kRestTurn = 5e-3;    // radians
@@ -21,7 +23,9 @@ constexpr double kRestTurning = 0.25; // radians a second
 
 constexpr double kRestSeconds = 0.15;      // over which samples are averaged at rest
 constexpr double kCalmSeconds = 0.12;      // in which motion is forgotten
-constexpr double kFadeSeconds = 0.35;      // in which an acceleration fades
+constexpr double kFadeSeconds = 0.15;      // in which an acceleration fades
+constexpr double kUsualSeconds = 0.25;     // over which the usual acceleration is averaged
+constexpr double kJolt = 10.0;             // mean square off, as a multiple of what is expected
 constexpr double kJump = 0.02;             // metres that no motion makes between two samples
 constexpr double kJumpTurn = 0.5;          // radians, likewise
 constexpr double kMostAcceleration = 30.0; // metres a second squared
@@ -47,6 +51,7 @@ double restShare(double seconds) { return 1.0 - std::exp(-seconds / kRestSeconds
 
 void MotionFilter::restart() {
     velocity_ = acceleration_ = glm::dvec3(0.0);
+    usual_ = 0.0;
     covariance_ = glm::dmat3(0.0);
     covariance_[0][0] = noise_.measured * noise_.measured;
     covariance_[1][1] = noise_.velocity * noise_.velocity;
@@ -60,20 +65,31 @@ glm::dvec3 MotionFilter::wayIn(double seconds) const {
 glm::dvec3 MotionFilter::advance(double t) {
     const glm::dvec3 way = wayIn(t);
     const double fade = std::exp(-t / kFadeSeconds);
+    usual_ += (1.0 - std::exp(-t / kUsualSeconds)) * (glm::length(acceleration_) - usual_);
     velocity_ += t * acceleration_;
     acceleration_ *= fade;
+    step_ = t;
     const glm::dmat3 step(1.0, 0.0, 0.0, t, 1.0, 0.0, 0.5 * t * t, t, fade); // by columns
-    const double q = noise_.jerk * noise_.jerk;
+    const double jerk = noise_.jerk * (1.0 + noise_.lively * usual_);
     const double t2 = t * t;
     const double t3 = t2 * t;
     const glm::dmat3 wander(t3 * t2 / 20.0, t2 * t2 / 8.0, t3 / 6.0, t2 * t2 / 8.0, t3 / 3.0, t2 / 2.0, t3 / 6.0,
                             t2 / 2.0, t);
-    covariance_ = step * covariance_ * glm::transpose(step) + q * wander;
+    covariance_ = step * covariance_ * glm::transpose(step) + jerk * jerk * wander;
     return way;
 }
 
 glm::dvec3 MotionFilter::correct(const glm::dvec3& off) {
-    const glm::dvec3 gain = covariance_[0] / (covariance_[0][0] + noise_.measured * noise_.measured);
+    const double noise = noise_.measured * noise_.measured;
+    const double square = glm::dot(off, off) / 3.0;
+    if (step_ > 0.0 && square > kJolt * (covariance_[0][0] + noise)) {
+        acceleration_ = glm::dvec3(0.0);
+        covariance_[0][0] += square;
+        covariance_[0][1] += square / step_;
+        covariance_[1][0] += square / step_;
+        covariance_[1][1] += square / (step_ * step_);
+    }
+    const glm::dvec3 gain = covariance_[0] / (covariance_[0][0] + noise);
     velocity_ += gain[1] * off;
     acceleration_ += gain[2] * off;
     covariance_ -= glm::outerProduct(gain, glm::row(covariance_, 0));

@@ -8,13 +8,15 @@
 
 namespace lumorph {
 
-/// Kalman filter of a point in space whose acceleration wanders (white jerk, acceleration that fades): its state is how
-/// far it is from a moving origin, its velocity and its acceleration. The same for each of the three axes.
+/// Kalman filter of a point in space whose acceleration wanders and fades: the more, the livelier it has been of late.
+/// Its state is where it is, seen from where it was thought to be, its velocity and its acceleration. The same for each
+/// of the three axes. A jolt that the state cannot explain opens the velocity, so that it is found again at once.
 class MotionFilter {
 public:
     struct Noise {
         double measured = 0.0; ///< standard deviation of a sample, per axis
-        double jerk = 0.0;     ///< square root of its spectral density
+        double jerk = 0.0;     ///< square root of its spectral density, of slow motion
+        double lively = 0.0;   ///< by how much the jerk grows with each unit of acceleration, as a share
         double velocity = 0.0; ///< what is expected of a thing just found, standard deviation
         double acceleration = 0.0;
     };
@@ -36,6 +38,8 @@ private:
     glm::dvec3 velocity_{0.0};
     glm::dvec3 acceleration_{0.0};
     glm::dmat3 covariance_{0.0}; ///< of place, velocity and acceleration along one axis
+    double usual_ = 0.0;         ///< length of the acceleration of late
+    double step_ = 0.0;          ///< seconds of the last advance
 };
 
 /// Tells rest from motion, so that a thing at rest is still: its samples are averaged for long, and nothing is

@@ -6,9 +6,8 @@
 #include "core/base/error.h"
 
 namespace lumorph {
-namespace {
 
-glm::ivec2 checked(glm::ivec2 size) {
+glm::ivec2 checkedTextureSize(glm::ivec2 size) {
     GLint largest = 0;
     glGetIntegerv(GL_MAX_TEXTURE_SIZE, &largest);
     largest = std::min(largest, kMaxImageSide);
@@ -17,9 +16,7 @@ glm::ivec2 checked(glm::ivec2 size) {
                        "the driver cannot hold it", "use 1 to " + std::to_string(largest) + " pixels a side");
 }
 
-} // namespace
-
-ColorTarget::ColorTarget(glm::ivec2 size, GLenum format) : size_(checked(size)) {
+ColorTarget::ColorTarget(glm::ivec2 size, GLenum format) : depth_(size) {
     glActiveTexture(GL_TEXTURE0);
     glBindTexture(GL_TEXTURE_2D, color_.name());
     glTexImage2D(GL_TEXTURE_2D, 0, static_cast<GLint>(format), size.x, size.y, 0, GL_RGBA, GL_UNSIGNED_BYTE, nullptr);
@@ -28,26 +25,24 @@ ColorTarget::ColorTarget(glm::ivec2 size, GLenum format) : size_(checked(size)) 
     glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
     glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
     glBindTexture(GL_TEXTURE_2D, 0);
-    glBindRenderbuffer(GL_RENDERBUFFER, depth_.name());
-    glRenderbufferStorage(GL_RENDERBUFFER, GL_DEPTH_COMPONENT32F, size.x, size.y);
-    glBindRenderbuffer(GL_RENDERBUFFER, 0);
     glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_.name());
     glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, color_.name(), 0);
-    glFramebufferRenderbuffer(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_RENDERBUFFER, depth_.name());
+    glFramebufferTexture2D(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_TEXTURE_2D, depth_.texture(), 0);
     const bool complete = glCheckFramebufferStatus(GL_FRAMEBUFFER) == GL_FRAMEBUFFER_COMPLETE;
     glBindFramebuffer(GL_FRAMEBUFFER, 0);
     if (!complete) throw DeviceError("OpenGL", "the driver cannot hold a picture of this size", "use a smaller size");
 }
 
 Image ColorTarget::read() const {
-    Image image(size_);
+    const glm::ivec2 size = depth_.size();
+    Image image(size);
     glBindFramebuffer(GL_READ_FRAMEBUFFER, framebuffer_.name());
     glPixelStorei(GL_PACK_ALIGNMENT, 1);
-    glReadPixels(0, 0, size_.x, size_.y, GL_RGBA, GL_UNSIGNED_BYTE, image.pixels().data());
+    glReadPixels(0, 0, size.x, size.y, GL_RGBA, GL_UNSIGNED_BYTE, image.pixels().data());
     glBindFramebuffer(GL_READ_FRAMEBUFFER, 0);
     // OpenGL's row 0 is the lowest.
-    for (int y = 0; y < size_.y / 2; ++y)
-        std::swap_ranges(&image.at(0, y), &image.at(0, y) + size_.x, &image.at(0, size_.y - 1 - y));
+    for (int y = 0; y < size.y / 2; ++y)
+        std::swap_ranges(&image.at(0, y), &image.at(0, y) + size.x, &image.at(0, size.y - 1 - y));
     return image;
 }
 

@@ -34,7 +34,7 @@ EyeLighting::EyeLighting(const Scene& scene, std::span<const PosedLight> lights)
         shadowed_ = shining.front();
         features_ = eye_feature::shadow | (shadowed_->parallel ? 0U : eye_feature::lamp);
     }
-    shining.resize(std::min(shining.size(), static_cast<std::size_t>(kMostEyeLights)));
+    shining.resize(std::min(shining.size(), std::size_t{kMostEyeLights}));
     for (const PosedLight& light : shining) {
         places_.push_back(light.parallel ? glm::vec4(glm::normalize(light.position), 0.0F)
                                          : glm::vec4(light.position, 1.0F));

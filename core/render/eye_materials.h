@@ -28,7 +28,7 @@ struct PicturePlacement {
 
 /// Texture units of the eye pass.
 namespace eye_unit {
-enum Unit : int { color, normalA, normalB, holes, table, shadowMap, shadowDepth, fog };
+enum Unit : int { color, normalA, normalB, holes, table, shadowMap, shadowDepth, shadowTiles, fog };
 } // namespace eye_unit
 
 /// Sets materials in the programs of the eye pass.

@@ -50,6 +50,8 @@ glm::vec3 encodedClear(const Scene& scene, bool unseen) {
     return unseen ? glm::vec3(0.0F) : glm::clamp(0.5F * scene.sky * static_cast<float>(scene.exposure), 0.0F, 0.7F);
 }
 
+bool showsSkin(const ShowFrame& frame) { return frame.scene->device.show == DeviceSkin::Show::material; }
+
 void requireSize(glm::ivec2 size) {
     if (size.x >= 1 && size.y >= 1) return;
     throw InvalidInput("picture size " + std::to_string(size.x) + "x" + std::to_string(size.y),
@@ -139,19 +141,24 @@ void EyePass::Data::drawShadow(const ShowFrame& frame) {
     shadow.aim(*lighting.shadowed(), casters(frame));
     shadow.draw([&](const glm::mat4& clipFromWorld) {
         const auto drawCaster = [&](const Thing& thing) {
-            std::uint32_t features = thing.features & (eye_feature::skin | eye_feature::holes | eye_feature::holeList |
-                                                       eye_feature::holeMask | eye_feature::cutout);
+            std::uint32_t features = thing.features & (eye_feature::skin | eye_feature::holes | eye_feature::holeMask |
+                                                       eye_feature::cutout | kMostRoundHoles << eye_feature::holeShift);
             if (thing.opacity < 1.0F) features |= eye_feature::dither;
             Program& program = programs.use(Stage::depth, features);
             program.set("clipFromWorld", clipFromWorld);
             program.set("worldFromMesh", thing.world);
             program.set("castShare", thing.opacity);
             materials.applyDepth(program, *thing.material, features);
-            if ((features & eye_feature::skin) != 0 && frame.rig)
-                applySkin(program, frame.scene->device, boundingBox(frame.rig->restMesh().positions));
+            if ((features & eye_feature::skin) != 0)
+                applySkin(program, frame.scene->device, surfaces.skinBoxAtRest());
+            // Of closed things the far side casts the shadow: then the near side is clear of it by their thickness.
+            const bool closed = (thing.features & (eye_feature::twoSided | eye_feature::skin)) == eye_feature::skin;
+            (closed ? glEnable : glDisable)(GL_CULL_FACE);
+            glCullFace(GL_FRONT);
+            setFrontFace(thing.world);
             thing.mesh->draw();
         };
-        if (surfaces.hasSkin() && frame.scene->device.show == DeviceSkin::Show::material)
+        if (surfaces.hasSkin() && showsSkin(frame))
             drawCaster(skinThing(frame, false));
         for (const auto& item : surfaces.items())
             if (frame.posed.surfaces[item.surface].castsShadow) {
@@ -237,7 +244,9 @@ void EyePass::Data::draw(const ShowFrame& frame, const View& view, const Thing& 
         program.set("sky", frame.scene->sky);
     }
     if ((features & eye_feature::skin) != 0)
-        applySkin(program, frame.scene->device, boundingBox(frame.rig->restMesh().positions));
+        applySkin(program, frame.scene->device, surfaces.skinBoxAtRest());
+    if ((features & eye_feature::holesBelow) != 0)
+        applyHolesAbove(program, frame.scene->device, surfaces.skinBoxAtRest(), frame.worldFromDevice);
     setFrontFace(thing.world);
     const bool cull = (features & eye_feature::twoSided) == 0;
     (cull ? glEnable : glDisable)(GL_CULL_FACE);
@@ -247,9 +256,13 @@ void EyePass::Data::draw(const ShowFrame& frame, const View& view, const Thing& 
 
 void EyePass::Data::drawTable(const ShowFrame& frame, const View& view) {
     const Material& material = frame.scene->table.material;
-    draw(frame, view,
-         {&table, glm::mat4(1.0F), &material, 1.0F,
-          materials.features(material, view.unseen) | eye_feature::planar | eye_feature::twoSided, 0.0F});
+    std::uint32_t features =
+        materials.features(material, view.unseen) | eye_feature::planar | eye_feature::twoSided;
+    const bool throughHoles = surfaces.hasSkin() && showsSkin(frame) &&
+                              (skinThing(frame, view.unseen).features & eye_feature::holes) != 0;
+    if (throughHoles && lighting.shadowed() && (features & eye_feature::unlit) == 0)
+        features |= eye_feature::holesBelow;
+    draw(frame, view, {&table, glm::mat4(1.0F), &material, 1.0F, features, 0.0F});
 }
 
 // Farthest first; each fills the depth before its colour, so that its own far side does not shine through it.
@@ -283,7 +296,7 @@ void EyePass::draw(const ShowFrame& frame, const CalibratedCamera& camera, unsig
     const View view{&camera, depthRange(camera, data_->everything(frame)), false};
     data_->begin(frame, view, framebuffer);
     std::vector<Thing> things = data_->itemThings(frame, eye);
-    if (data_->surfaces.hasSkin() && frame.scene->device.show == DeviceSkin::Show::material) {
+    if (data_->surfaces.hasSkin() && showsSkin(frame)) {
         things.push_back(data_->skinThing(frame, false));
         things.back().distance = glm::distance(glm::vec3(frame.worldFromDevice[3]), eye);
     }
@@ -308,7 +321,7 @@ std::vector<std::string> EyePass::warnings() const { return data_->programs.warn
 
 std::size_t EyePass::objectCount() const noexcept {
     return data_->programs.objectCount() + data_->materials.objectCount() + data_->surfaces.objectCount() +
-           EyeShadow::kObjects + EyeMesh::kObjects;
+           data_->shadow.objectCount() + EyeMesh::kObjects;
 }
 
 } // namespace lumorph

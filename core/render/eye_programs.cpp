@@ -14,7 +14,6 @@ using Stage = EyePrograms::Stage;
 constexpr std::pair<std::uint32_t, const char*> kNames[] = {
     {skin, "SKIN"},
     {holes, "HOLES"},
-    {holeList, "HOLE_LIST"},
     {holeMask, "HOLE_MASK"},
     {cutout, "CUTOUT"},
     {colorTexture, "COLOR_TEXTURE"},
@@ -38,7 +37,8 @@ std::vector<std::string> definesOf(std::uint32_t features) {
     std::vector<std::string> defines;
     for (const auto& [bit, name] : kNames)
         if ((features & bit) != 0) defines.emplace_back(name);
-    defines.push_back("LIGHTS " + std::to_string(features >> lightShift));
+    defines.push_back("LIGHTS " + std::to_string((features >> lightShift) & 7U));
+    defines.push_back("HOLE_COUNT " + std::to_string(features >> holeShift));
     return defines;
 }
 

@@ -15,7 +15,6 @@ namespace eye_feature {
 enum Bit : std::uint32_t {
     skin = 1U << 0U,
     holes = 1U << 1U, ///< some of those below
-    holeList = 1U << 2U,
     holeMask = 1U << 3U,
     cutout = 1U << 4U,
     colorTexture = 1U << 5U,
@@ -33,11 +32,13 @@ enum Bit : std::uint32_t {
     planar = 1U << 17U, ///< the table: it lies in y = 0
     dither = 1U << 18U,
     holesBelow = 1U << 19U, ///< the table under a device with holes
-    lightShift = 24U        ///< their number stands above this bit
+    lightShift = 24U, ///< the number of lights stands above this bit, in three bits
+    holeShift = 27U   ///< the number of the skin's round holes
 };
 } // namespace eye_feature
 
-inline constexpr int kMostEyeLights = 4;
+inline constexpr std::uint32_t kMostEyeLights = 4;
+inline constexpr std::uint32_t kMostRoundHoles = 31;
 
 /// The programs of the eye pass, built when first used. One that the driver refuses is named once, and a plain one
 /// stands in for it.

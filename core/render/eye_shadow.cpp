@@ -12,6 +12,7 @@ namespace lumorph {
 namespace {
 
 constexpr int kSide = 1024;
+constexpr int kTiles = 128; // of 8 pixels, as in eye_tiles.frag
 constexpr float kRadiusStep = 1.15F;
 constexpr float kSmallestRadius = 0.02F;   // metres
 constexpr float kWidestLamp = 1.3F;        // radians from its middle to its rim
@@ -19,12 +20,22 @@ constexpr float kWidestSearch = 0.06F;     // map units
 constexpr float kSteepest = 6.0F;          // metres of depth a metre across
 constexpr float kPixelsOfBias = 0.75F;
 
-void store(const gl::Texture& depth) {
-    glBindTexture(GL_TEXTURE_2D, depth.name());
-    glTexImage2D(GL_TEXTURE_2D, 0, GL_DEPTH_COMPONENT32F, kSide, kSide, 0, GL_DEPTH_COMPONENT, GL_FLOAT, nullptr);
+void store(const gl::Texture& texture, GLint format, int side, GLenum pixels) {
+    glBindTexture(GL_TEXTURE_2D, texture.name());
+    glTexImage2D(GL_TEXTURE_2D, 0, format, side, side, 0, pixels, GL_FLOAT, nullptr);
+    const float lit[] = {1.0F, 1.0F, 1.0F, 1.0F};
     glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
     glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
+    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_BORDER);
+    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_BORDER);
+    glTexParameterfv(GL_TEXTURE_2D, GL_TEXTURE_BORDER_COLOR, lit);
     glBindTexture(GL_TEXTURE_2D, 0);
+}
+
+ShaderFiles tileFiles(const std::vector<std::string>& defines) {
+    ShaderFiles files = shaderFiles({"full_frame.vert"}, {"version.glsl", "eye_tiles.frag"});
+    files.defines = defines;
+    return files;
 }
 
 void setSampler(const gl::Sampler& sampler, GLint filter) {
@@ -43,8 +54,9 @@ glm::vec3 acrossFrom(const glm::vec3& direction) {
 
 } // namespace
 
-EyeShadow::EyeShadow() {
-    store(depth_);
+EyeShadow::EyeShadow() : gather_(tileFiles({"GATHER"})), spread_(tileFiles({})) {
+    store(depth_, GL_DEPTH_COMPONENT32F, kSide, GL_DEPTH_COMPONENT);
+    for (const gl::Texture& tiles : tiles_) store(tiles, GL_RG32F, kTiles, GL_RG);
     setSampler(compared_, GL_LINEAR);
     glSamplerParameteri(compared_.name(), GL_TEXTURE_COMPARE_MODE, GL_COMPARE_REF_TO_TEXTURE);
     glSamplerParameteri(compared_.name(), GL_TEXTURE_COMPARE_FUNC, GL_LEQUAL);
@@ -107,7 +119,48 @@ void EyeShadow::draw(const std::function<void(const glm::mat4& clipFromWorld)>& 
     glClear(GL_DEPTH_BUFFER_BIT);
     drawCasters(clipFromWorld_);
     glDisable(GL_DEPTH_CLAMP);
+    glDisable(GL_CULL_FACE);
+    drawTiles();
 }
+
+// The border's tiles see a little beyond the map, where nothing is.
+void EyeShadow::drawTiles() {
+    const auto pass = [&](Program& program, GLuint from, const gl::Texture& to) {
+        glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, to.name(), 0);
+        glBindTexture(GL_TEXTURE_2D, from);
+        glBindSampler(0, plain_.name());
+        program.set("depth", 0);
+        program.set("tiles", 0);
+        glDrawArrays(GL_TRIANGLES, 0, 3);
+    };
+    glBindFramebuffer(GL_FRAMEBUFFER, tileFramebuffer_.name());
+    glViewport(0, 0, kTiles, kTiles);
+    glDisable(GL_DEPTH_TEST);
+    glActiveTexture(GL_TEXTURE0);
+    glBindVertexArray(frame_.name());
+    gather_.use();
+    pass(gather_, depth_.name(), tiles_[0]);
+    spread_.use();
+    spread_.set("reach", static_cast<int>(std::ceil(reach().x * static_cast<float>(kTiles))));
+    spread_.set("axis", glm::vec2(1.0F, 0.0F));
+    pass(spread_, tiles_[0].name(), tiles_[1]);
+    spread_.set("axis", glm::vec2(0.0F, 1.0F));
+    pass(spread_, tiles_[1].name(), tiles_[0]);
+    glBindVertexArray(0);
+    glBindSampler(0, 0);
+    glEnable(GL_DEPTH_TEST);
+}
+
+// Radius of the search, as far as an edge can spread while blocker and surface are at most a third of the map's depth
+// apart, and the least radius of an edge.
+glm::vec2 EyeShadow::reach() const {
+    const float pixel = 1.0F / static_cast<float>(kSide);
+    return {std::clamp(0.33F * spread(), 1.5F * pixel, kWidestSearch), 0.75F * pixel};
+}
+
+float EyeShadow::spread() const { return 0.5F * std::max(light_.softness, 0.0F) * depthRange_ * perMetre_; }
+
+std::size_t EyeShadow::objectCount() const noexcept { return 8 + gather_.objectCount() + spread_.objectCount(); }
 
 void EyeShadow::apply(Program& program) const {
     const float metresOfBias = kPixelsOfBias * texel_ * distance_;
@@ -120,13 +173,13 @@ void EyeShadow::apply(Program& program) const {
     program.set("shadowLight", light_.parallel ? glm::normalize(light_.position) : light_.position);
     program.set("shadowTexel", texel_);
     program.set("shadowSteepest", kSteepest / (perMetre_ * depthRange_));
-    const float pixel = 1.0F / static_cast<float>(kSide);
-    const float spread = 0.5F * std::max(light_.softness, 0.0F) * depthRange_ * perMetre_;
-    // As far as an edge can spread: blocker and surface are at most a third of the map's depth apart.
-    program.set("shadowReach", glm::vec2(std::clamp(0.33F * spread, 1.5F * pixel, kWidestSearch), 0.75F * pixel));
-    program.set("shadowSpread", spread);
+    program.set("shadowReach", reach());
+    program.set("shadowSpread", spread());
     program.set("shadowMap", static_cast<int>(eye_unit::shadowMap));
     program.set("shadowDepth", static_cast<int>(eye_unit::shadowDepth));
+    program.set("shadowTiles", static_cast<int>(eye_unit::shadowTiles));
+    glActiveTexture(GL_TEXTURE0 + eye_unit::shadowTiles);
+    glBindTexture(GL_TEXTURE_2D, tiles_[0].name());
     for (const auto& [unit, sampler] : {std::pair(eye_unit::shadowMap, compared_.name()),
                                         std::pair(eye_unit::shadowDepth, plain_.name())}) {
         glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(unit));

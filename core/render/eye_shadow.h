@@ -1,8 +1,7 @@
 #pragma once
 
-#include <cstdint>
+#include <array>
 #include <functional>
-#include <vector>
 
 #include <glm/mat4x4.hpp>
 
@@ -19,7 +18,7 @@ public:
     EyeShadow();
 
     /// Looks from the light at a box that holds all casters. While the box moves a little the map's pixels stay where
-    /// they are in the world, so that edges do not swim. Returns whether anything changed.
+    /// they are in the world, so that edges do not swim. Returns whether the map is to be drawn anew.
     bool aim(const PosedLight& light, const Box& casters);
     /// Clears the map and calls `drawCasters` with the light's clip space, depth alone bound.
     void draw(const std::function<void(const glm::mat4& clipFromWorld)>& drawCasters);
@@ -27,14 +26,20 @@ public:
     void apply(Program& program) const;
 
     [[nodiscard]] bool parallel() const noexcept { return light_.parallel; }
-    static constexpr std::size_t kObjects = 4;
+    [[nodiscard]] std::size_t objectCount() const noexcept;
 
 private:
+    void drawTiles();
+    [[nodiscard]] glm::vec2 reach() const;
+    [[nodiscard]] float spread() const;
     void aimParallel(const glm::vec3& centre, float radius);
     void aimLamp(const glm::vec3& centre, float radius);
 
     gl::Texture depth_;
-    gl::Framebuffer framebuffer_;
+    std::array<gl::Texture, 2> tiles_;
+    gl::Framebuffer framebuffer_, tileFramebuffer_;
+    gl::VertexArray frame_;
+    Program gather_, spread_;
     gl::Sampler compared_, plain_;
     PosedLight light_;
     glm::mat4 clipFromWorld_{1.0F};

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <vector>
 
+#include <glm/matrix.hpp>
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
 
@@ -11,8 +12,16 @@
 namespace lumorph {
 namespace {
 
-constexpr std::size_t kMostHoles = 32; // as in eye_holes.glsl
 constexpr float kEverywhere = 1e9F;
+constexpr float kClearance = 0.002F; // metres above the top, so that it casts no shadow on its own holes
+
+// Of the device as it appears: x and z from and to.
+glm::vec4 outlineOf(const DeviceSkin& skin, const Box& rest) {
+    const float share = 1.0F - static_cast<float>(std::clamp(skin.shrink, 0.0, 1.0));
+    const glm::vec3 centre = rest.centre();
+    const glm::vec3 half = 0.5F * share * rest.size();
+    return {centre.x - half.x, centre.z - half.z, centre.x + half.x, centre.z + half.z};
+}
 
 } // namespace
 
@@ -20,27 +29,28 @@ std::uint32_t skinFeatures(const DeviceSkin& skin) {
     using namespace eye_feature;
     std::uint32_t bits = eye_feature::skin;
     if (skin.shrink > 0.0) bits |= holes;
-    if (!skin.holes.empty()) bits |= holes | holeList;
+    const auto count = std::min(static_cast<std::uint32_t>(skin.holes.size()), kMostRoundHoles);
+    if (count > 0) bits |= holes | count << holeShift;
     return bits;
 }
 
 void applySkin(Program& program, const DeviceSkin& skin, const Box& rest) {
-    glm::vec4 outline(-kEverywhere, -kEverywhere, kEverywhere, kEverywhere);
-    if (skin.shrink > 0.0) {
-        const float share = 1.0F - static_cast<float>(std::min(skin.shrink, 1.0));
-        const glm::vec3 centre = rest.centre();
-        const glm::vec3 half = 0.5F * share * rest.size();
-        outline = {centre.x - half.x, centre.z - half.z, centre.x + half.x, centre.z + half.z};
-    }
-    program.set("shrunkOutline", outline);
+    const glm::vec4 everywhere(-kEverywhere, -kEverywhere, kEverywhere, kEverywhere);
+    program.set("shrunkOutline", skin.shrink > 0.0 ? outlineOf(skin, rest) : everywhere);
     std::vector<glm::vec3> holes;
     for (const DeviceSkin::Hole& hole : skin.holes) {
-        if (holes.size() == kMostHoles) break;
+        if (holes.size() == kMostRoundHoles) break;
         const auto radius = static_cast<float>(hole.radius);
         holes.emplace_back(hole.centre, radius * radius);
     }
-    program.set("holeCount", static_cast<int>(holes.size()));
     if (!holes.empty()) program.set("holes", std::span<const glm::vec3>(holes));
+}
+
+void applyHolesAbove(Program& program, const DeviceSkin& skin, const Box& rest, const glm::mat4& worldFromDevice) {
+    program.set("worldFromDevice", worldFromDevice);
+    program.set("deviceFromWorld", glm::inverse(worldFromDevice));
+    program.set("deviceOutline", outlineOf(skin, rest));
+    program.set("deviceTop", rest.max.y + kClearance);
 }
 
 } // namespace lumorph

@@ -2,6 +2,8 @@
 
 #include <cstdint>
 
+#include <glm/mat4x4.hpp>
+
 #include "core/geometry/triangle_mesh.h"
 #include "core/render/program.h"
 #include "core/scene/scene.h"
@@ -13,5 +15,8 @@ namespace lumorph {
 
 /// Sets them in the current program; `rest` is the box of the device at rest.
 void applySkin(Program& program, const DeviceSkin& skin, const Box& rest);
+
+/// For the table beneath: where the eye looks at it through holes.
+void applyHolesAbove(Program& program, const DeviceSkin& skin, const Box& rest, const glm::mat4& worldFromDevice);
 
 } // namespace lumorph

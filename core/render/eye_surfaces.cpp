@@ -122,6 +122,7 @@ void EyeSurfaces::updateSkin(const ShowFrame& frame) {
         rig_ = frame.rig;
         devicePositions_.reset();
         skinSource_ = std::make_unique<SkinMesh>(rig_->restMesh());
+        skinBoxAtRest_ = boundingBox(rig_->restMesh().positions);
         skinMesh_ = std::make_unique<EyeMesh>();
         skinMesh_->setTopology(skinSource_->triangles(), skinSource_->coordinates(), &skinSource_->restPositions());
     }

@@ -46,6 +46,7 @@ public:
     [[nodiscard]] bool hasSkin() const noexcept { return skinBoxAtDevice_.max.x >= skinBoxAtDevice_.min.x; }
     [[nodiscard]] const EyeMesh& skin() const noexcept { return *skinMesh_; }
     [[nodiscard]] const SkinMesh& skinSource() const noexcept { return *skinSource_; }
+    [[nodiscard]] const Box& skinBoxAtRest() const noexcept { return skinBoxAtRest_; }
     [[nodiscard]] const Box& skinBoxAtDevice() const noexcept { return skinBoxAtDevice_; }
     [[nodiscard]] std::uint64_t skinVersion() const noexcept { return skinVersion_; }
     [[nodiscard]] std::size_t objectCount() const noexcept;
@@ -72,7 +73,7 @@ private:
     std::unique_ptr<SkinMesh> skinSource_;
     std::unique_ptr<EyeMesh> skinMesh_;
     std::vector<glm::vec3> skinPositions_, skinNormals_;
-    Box skinBoxAtDevice_;
+    Box skinBoxAtRest_, skinBoxAtDevice_;
     std::uint64_t skinVersion_ = 0;
     std::uint64_t frame_ = 0;
     std::uint64_t versions_ = 0;

@@ -6,10 +6,8 @@ in vec2 place;
 #ifdef SKIN
 in vec2 restPlace;
 uniform vec4 shrunkOutline; // x, z from and to, outside which the skin is cut off
-#ifdef HOLE_LIST
-const int kMostHoles = 32;
-uniform int holeCount;
-uniform vec3 holes[kMostHoles]; // x, z, square of the radius
+#if HOLE_COUNT > 0
+uniform vec3 holes[HOLE_COUNT]; // x, z, square of the radius
 #endif
 #endif
 
@@ -25,8 +23,8 @@ bool isHole() {
     bool hole = false;
 #ifdef SKIN
     hole = any(lessThan(restPlace, shrunkOutline.xy)) || any(greaterThan(restPlace, shrunkOutline.zw));
-#ifdef HOLE_LIST
-    for (int i = 0; i < holeCount; ++i) {
+#if HOLE_COUNT > 0
+    for (int i = 0; i < HOLE_COUNT; ++i) {
         vec2 away = restPlace - holes[i].xy;
         hole = hole || dot(away, away) < holes[i].z;
     }

@@ -107,7 +107,12 @@ void main() {
         towards *= inversesqrt(max(square, 1e-12));
         float facing = max(dot(n, towards), 0.0);
 #ifdef SHADOW
-        if (i == 0) facing *= shadowVisibility(dot(smoothNormal, towards) > 0.0 && facing > 0.0);
+#ifdef HOLES_BELOW
+        vec4 at = placeThroughHoles(worldPosition, eyePosition);
+#else
+        vec4 at = shadowPlace;
+#endif
+        if (i == 0) facing *= shadowVisibility(dot(smoothNormal, towards) > 0.0 && facing > 0.0, at);
 #endif
         vec3 arriving = lightRadiances[i] * (fall * facing);
         diffuse += arriving;

@@ -6,7 +6,7 @@ uniform float shoulder;
 
 vec4 shown(vec3 light, float opacity) {
     vec3 x = max(light * exposure, 0.0);
-    float room = max(1.0 - shoulder, 1e-4);
+    float room = 1.0 - shoulder;
     vec3 above = max(x - shoulder, 0.0);
-    return vec4(min(x, shoulder) + room * (1.0 - exp(-above / room)), opacity);
+    return vec4(min(x, shoulder) + room * above / (above + max(room, 1e-4)), opacity);
 }

@@ -14,11 +14,13 @@
 #include "app/workspaces/field/field_colors.h"
 #include "app/workspaces/field/field_scene.h"
 #include "app/workspaces/scene/eye_orbit.h"
+#include "app/workspaces/scene/item_handles.h"
 #include "app/workspaces/scene/item_pick.h"
 #include "app/workspaces/scene/latency_card.h"
 #include "app/workspaces/scene/simulated_eye.h"
 #include "app/workspaces/scene/stage_bar.h"
 #include "app/workspaces/scene/stage_pane.h"
+#include "core/base/error.h"
 
 namespace lumorph::studio {
 namespace {
@@ -60,6 +62,7 @@ struct SceneStage::Data {
     void click(StagePart part, const QPointF& at);
     void setObserver(std::optional<glm::vec3> eye);
     [[nodiscard]] QWidget* widgetOf(StagePart part) const;
+    [[nodiscard]] std::optional<CalibratedCamera> cameraOf(StagePart part, const QSize& size) const;
     [[nodiscard]] QString eyeState() const;
     [[nodiscard]] QString labState() const;
 
@@ -70,6 +73,7 @@ struct SceneStage::Data {
     StageBar* bar;
     QWidget* views;
     std::map<StagePart, StagePane*> panes;
+    std::map<StagePart, std::unique_ptr<ItemHandles>> handles;
     ViewportWidget* device = nullptr;
     PaneCaption* deviceCaption = nullptr;
     GlPage* page = nullptr;
@@ -116,6 +120,9 @@ StagePane* SceneStage::Data::addPane(StagePart part, const ShowView& view, const
     connect(pane, &StagePane::dragEnded, &self, [this](bool taken) { endDrag(taken); });
     connect(pane, &StagePane::wheeled, &self, [this, part](double notches) { zoom(part, notches); });
     connect(pane, &StagePane::clicked, &self, [this, part](const QPointF& at) { click(part, at); });
+    const auto camera = [this, part](const QSize& size) { return cameraOf(part, size); };
+    handles[part] = std::make_unique<ItemHandles>(studio.document, camera);
+    pane->setOverlay(handles[part].get());
     return pane;
 }
 
@@ -150,7 +157,11 @@ void SceneStage::Data::addFloating() {
     notices->setMaximumWidth(kNoticeWidth);
     connect(&studio.notices, &Notices::changed, &self, [this] { arrange(); });
     connect(&studio.renderer, &RenderThread::ready, &self, [this] { showReason(); });
-    connect(&studio.show, &ShowFeed::shown, &self, [this] { showCaptions(); });
+    connect(&studio.show, &ShowFeed::shown, &self, [this] {
+        const double seconds = studio.show.newest().match->sceneSeconds;
+        for (const auto& [part, one] : handles) one->setSeconds(seconds);
+        showCaptions();
+    });
     connect(bar, &StageBar::modeChanged, &self, [this] {
         alone.reset();
         arrange();
@@ -305,12 +316,20 @@ void SceneStage::Data::zoom(StagePart part, double notches) {
 
 void SceneStage::Data::click(StagePart part, const QPointF& at) {
     const auto& frame = studio.show.newest().frame;
-    if (!frame) return;
-    const StagePane* pane = panes.at(part);
-    const glm::ivec2 size(pane->width(), pane->height());
-    const auto from = part == StagePart::lab ? observer : std::nullopt;
-    const CalibratedCamera camera = labCamera(*frame, from, size);
-    emit self.picked(pickItem(*frame, rayThrough(camera, {static_cast<float>(at.x()), static_cast<float>(at.y())})));
+    const auto camera = cameraOf(part, panes.at(part)->size());
+    if (!frame || !camera) return;
+    emit self.picked(pickItem(*frame, rayThrough(*camera, {static_cast<float>(at.x()), static_cast<float>(at.y())})));
+}
+
+/// Of the newest picture, in pixels of the desktop; empty while there is none or nothing can be seen from there.
+std::optional<CalibratedCamera> SceneStage::Data::cameraOf(StagePart part, const QSize& size) const {
+    const auto& frame = studio.show.newest().frame;
+    if (!frame || size.isEmpty()) return std::nullopt;
+    try {
+        return labCamera(*frame, part == StagePart::lab ? observer : std::nullopt, {size.width(), size.height()});
+    } catch (const InvalidInput&) { // among what is to be seen
+        return std::nullopt;
+    }
 }
 
 SceneStage::SceneStage(Studio& studio, QWidget* parent) : QWidget(parent) {
@@ -319,7 +338,11 @@ SceneStage::SceneStage(Studio& studio, QWidget* parent) : QWidget(parent) {
     data_->showReason();
 }
 
-SceneStage::~SceneStage() = default;
+SceneStage::~SceneStage() {
+    // The panes outlive the handles over them.
+    setActive(false);
+    for (const auto& [part, pane] : data_->panes) pane->setOverlay(nullptr);
+}
 
 void SceneStage::setActive(bool active) {
     data_->active = active;
@@ -328,7 +351,12 @@ void SceneStage::setActive(bool active) {
     data_->showScene();
 }
 
-void SceneStage::setSelected(int /*item*/) {}
+void SceneStage::setSelected(int item) {
+    for (const auto& [part, handles] : data_->handles) {
+        handles->setItem(item);
+        data_->panes.at(part)->update();
+    }
+}
 
 void SceneStage::resizeEvent(QResizeEvent* event) {
     QWidget::resizeEvent(event);

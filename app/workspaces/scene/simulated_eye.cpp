@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "app/studio/document/scene_edit.h"
 #include "app/workspaces/scene/eye_orbit.h"
 
 namespace lumorph::studio {
@@ -27,11 +28,7 @@ glm::vec3 SimulatedEye::centre() const {
 
 void SimulatedEye::set(const glm::vec3& eye) {
     moving_ = true;
-    document_.preview([&eye](StudioState& state) {
-        auto scene = std::make_shared<Scene>(*state.scene);
-        scene->eye = eye;
-        state.scene = std::move(scene);
-    });
+    previewScene(document_, [&eye](Scene& scene) { scene.eye = eye; });
 }
 
 void SimulatedEye::drag(const QPointF& by, const QSize& view) {

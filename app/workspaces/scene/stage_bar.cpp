@@ -52,8 +52,6 @@ StageBar::StageBar(Studio& studio, QWidget* parent) : QWidget(parent), studio_(s
     row->setSpacing(4);
     addModes();
     addToggles();
-    connect(&studio_.loop, &StudioLoop::scenePlayingChanged, this, &StageBar::showPlaying);
-    showPlaying();
 }
 
 QAction* StageBar::add(const QString& id, const QString& text, const QString& icon, const QString& tip, bool checkable,
@@ -87,9 +85,7 @@ void StageBar::addModes() {
 void StageBar::addToggles() {
     auto* row = static_cast<QHBoxLayout*>(layout());
     row->addStretch(1);
-    play_ = add("scene.play", tr("Play the scene"), "play", tr("Play or stop the scene's time"), false, "Ctrl+Space");
-    connect(play_, &QAction::triggered, this, [this] { studio_.loop.setScenePlaying(!studio_.loop.scenePlaying()); });
-    row->addWidget(makeCommandIcon(play_, "bar.scene.play", this));
+    row->addWidget(makeCommandIcon(studio_.commands.find("scene.play"), "bar.scene.play", this));
     time_ = makeNumber("scene.time", "0000.0 s", this);
     row->addWidget(time_);
     row->addWidget(makeLine(this));
@@ -135,12 +131,6 @@ void StageBar::setElsewhere(bool on) { elsewhere_->setChecked(on); }
 bool StageBar::latencyShown() const { return latency_->isChecked(); }
 
 void StageBar::setSeconds(double seconds) { time_->setText(tr("%1 s").arg(seconds, 0, 'f', 1)); }
-
-void StageBar::showPlaying() {
-    const bool playing = studio_.loop.scenePlaying();
-    play_->setText(playing ? tr("Stop the scene") : tr("Play the scene"));
-    play_->setIcon(icon(playing ? "pause" : "play"));
-}
 
 void StageBar::paintEvent(QPaintEvent* /*event*/) {
     QPainter painter(this);

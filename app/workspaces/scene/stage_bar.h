@@ -13,7 +13,7 @@ namespace lumorph::studio {
 class StageBar : public QWidget {
     Q_OBJECT
 public:
-    /// `studio` outlives it. Its commands are added to the studio's.
+    /// `studio` outlives it. Its commands are added to the studio's; `scene.play` is there before.
     explicit StageBar(Studio& studio, QWidget* parent = nullptr);
 
     [[nodiscard]] StageMode mode() const noexcept { return mode_; }
@@ -38,14 +38,12 @@ private:
     void addToggles();
     QAction* add(const QString& id, const QString& text, const QString& icon, const QString& tip, bool checkable,
                  const QString& shortcut = {});
-    void showPlaying();
 
     Studio& studio_;
     StageMode mode_ = StageMode::pair;
     std::vector<std::pair<StageMode, QAction*>> modes_;
     QAction* elsewhere_ = nullptr;
     QAction* latency_ = nullptr;
-    QAction* play_ = nullptr;
     QLabel* time_ = nullptr;
 };
 

@@ -173,5 +173,36 @@ TEST_F(MatchThreadTest, TwoThousandFramesKeepNothing) {
     EXPECT_EQ(field_.use_count(), 1);
 }
 
+// R25: a tracker does not call the loop, which follows it all the same.
+TEST_F(MatchThreadTest, RunsWhileAHeadIsTrackedAndWakesWhenOneComes) {
+    MatchWish wish = held(0.0);
+    Scene scene;
+    scene.predictionSeconds = 0.0;
+    wish.scene = std::make_shared<const Scene>(scene);
+    wish.assets = std::make_shared<const SceneAssets>();
+    const auto board = std::make_shared<PoseBoard>();
+    wish.poses = board;
+    const auto head = board->stream("Ada", PoseRole::head);
+    const auto push = [&](double x) { return head->push({SteadyClock().now(), true, {{x, 0.5, 0.5}, {1, 0, 0, 0}}}); };
+    MatchThread thread(frames_.counter(), 100.0);
+    thread.wish(wish);
+    ASSERT_TRUE(frames_.wait([&] { return thread.latest() != nullptr; }));
+    ASSERT_TRUE(frames_.waitForRest());
+    EXPECT_FALSE(thread.latest()->eye);
+
+    for (const double x : {0.1, 0.4}) {
+        const int before = frames_.count();
+        ASSERT_TRUE(frames_.wait([&] {
+            (void)push(x);
+            return frames_.count() > before + 20;
+        })) << "frames come without a wish";
+        ASSERT_TRUE(thread.latest()->eye);
+        EXPECT_NEAR(thread.latest()->eye->x, x, 0.02);
+        ASSERT_TRUE(frames_.waitForRest()) << "and end when the tracker does";
+        EXPECT_FALSE(thread.latest()->eye) << "the last of them says that nobody is there";
+        EXPECT_EQ(thread.rate(), 0.0);
+    }
+}
+
 } // namespace
 } // namespace lumorph
