@@ -19,6 +19,12 @@ bool hasWorkspace(const std::vector<std::unique_ptr<Workspace>>& workspaces, con
                                      [&id](const auto& one) { return one->id().toStdString() == id; });
 }
 
+/// The one asked for; else that in which a demo is seen.
+QString firstWorkspace(const Arguments& arguments) {
+    if (!arguments.workspace.empty() || arguments.demo.empty()) return QString::fromStdString(arguments.workspace);
+    return arguments.demo == "field" ? "field" : "scene";
+}
+
 /// A project brings everything; a target or a field needs the device that was there last time.
 bool isProject(const std::filesystem::path& file) { return file.extension() == ".lumorph"; }
 
@@ -32,7 +38,7 @@ void openFirst(Studio& studio, MainWindow& window, const Arguments& arguments) {
     else if (!arguments.project.empty())
         studio.desk.restoreSession([&studio, file = arguments.project] { studio.desk.open(file); });
     else if (!arguments.demo.empty())
-        studio.desk.openDemo();
+        studio.desk.openDemo(arguments.demo);
     else
         studio.desk.restoreSession(arguments.kiosk ? std::function<void()>() : tourOnce);
 }
@@ -50,7 +56,7 @@ int run(int argc, char** argv, const Arguments& arguments) {
     }
     MainWindow window(studio, std::move(workspaces));
     application.closeOnInterrupt(window);
-    window.showWorkspace(QString::fromStdString(arguments.workspace)); // none given: stays as it is
+    window.showWorkspace(firstWorkspace(arguments)); // empty: stays as it is
     arguments.kiosk ? window.enterKiosk() : window.show();
     openFirst(studio, window, arguments);
     const int status = QApplication::exec();

@@ -28,6 +28,8 @@ MatchWish wishOf(const StudioState& state) {
     wish.strokes = state.strokes;
     wish.playing = state.playback.playing;
     wish.spin = state.playback.spin;
+    wish.scene = state.scene;
+    wish.assets = state.assets;
     return wish;
 }
 
@@ -83,6 +85,23 @@ void StudioLoop::setTint(bool shown) {
     if (std::exchange(tint_, shown) != shown) sendSoon();
 }
 
+void StudioLoop::setScenePlaying(bool playing) {
+    if (std::exchange(scenePlaying_, playing) == playing) return;
+    sendSoon();
+    emit scenePlayingChanged();
+}
+
+void StudioLoop::seekScene(double seconds) {
+    if (!std::isfinite(seconds)) return;
+    sceneSeek_ = seconds;
+    sendSoon();
+}
+
+void StudioLoop::setPoses(std::shared_ptr<const PoseBoard> poses) {
+    poses_ = std::move(poses);
+    sendSoon();
+}
+
 void StudioLoop::setRate(double framesPerSecond) {
     if (std::isfinite(framesPerSecond)) thread_->setRate(std::clamp(framesPerSecond, 1.0, 1000.0));
 }
@@ -108,6 +127,9 @@ void StudioLoop::send() {
     wish.stopped = stopped_;
     wish.seek = seek_;
     wish.showTint = tint_;
+    wish.poses = poses_;
+    wish.scenePlaying = scenePlaying_;
+    wish.sceneSeek = sceneSeek_;
     thread_->wish(std::move(wish));
 }
 

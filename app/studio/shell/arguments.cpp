@@ -5,7 +5,7 @@
 namespace lumorph::studio {
 namespace {
 
-const std::vector<std::string> kDemos{"field"};
+const std::vector<std::string> kDemos{"water", "techniques", "field"};
 
 std::string listed(const std::vector<std::string>& names) {
     std::string text;
