@@ -122,7 +122,8 @@ void EyeMaterials::apply(Program& program, const Material& material, float opaci
     if ((features & holeMask) != 0) bindHoles(program, material);
     if ((features & specular) != 0) {
         const float alpha = std::max(material.roughness * material.roughness, 0.02F);
-        program.set("gloss", glm::vec4(alpha * alpha, material.roughness + 0.5F, material.metallic, 0.0F));
+        program.set("gloss", glm::vec2(alpha * alpha, material.roughness + 0.5F));
+        program.set("metal", material.metallic);
     }
     if ((features & (reflection | refraction)) != 0)
         program.set("optics", glm::vec4(material.reflection, material.refraction,

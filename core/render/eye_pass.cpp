@@ -19,6 +19,7 @@
 #include "core/render/eye_shadow.h"
 #include "core/render/eye_skin.h"
 #include "core/render/eye_surfaces.h"
+#include "core/render/lookup_region.h"
 
 namespace lumorph {
 namespace {
@@ -28,7 +29,7 @@ using Stage = EyePrograms::Stage;
 constexpr glm::ivec2 kTableGrid{48, 36};
 constexpr float kBlurredLift = 0.004F;        // metres by which blurred folds keep off their own shadow
 constexpr float kNearSideStepsBack = 0.0025F; // metres
-constexpr float kFarthestCaster = 1.5F; // metres from the device's middle
+constexpr float kFarthestCaster = 1.5F;       // metres from the device's middle
 
 /// One thing to draw: a mesh, where it stands, and what it looks like.
 struct Thing {
@@ -38,6 +39,7 @@ struct Thing {
     float opacity = 1.0F;
     std::uint32_t features = 0;
     float distance = 0.0F;
+    bool skin = false;
 };
 
 /// Where a frame is drawn to.
@@ -155,7 +157,7 @@ void EyePass::Data::drawShadow(const ShowFrame& frame) {
             program.set("castShare", thing.opacity);
             materials.applyDepth(program, *thing.material, features);
             if ((features & eye_feature::skin) != 0)
-                applySkin(program, frame.scene->device, surfaces.skinBoxAtRest());
+                applySkin(program, frame.scene->device, surfaces.skinBoxAtRest(), frame.worldFromDevice);
             setFrontFace(thing.world);
             // The near side of closed things steps back: then most places of it are told lit at first sight, and what
             // it covers its far side covers too.
@@ -171,8 +173,7 @@ void EyePass::Data::drawShadow(const ShowFrame& frame) {
             }
             thing.mesh->draw();
         };
-        if (surfaces.hasSkin() && showsSkin(frame))
-            drawCaster(skinThing(frame, false));
+        if (surfaces.hasSkin() && showsSkin(frame)) drawCaster(skinThing(frame, false));
         for (const auto& item : surfaces.items())
             if (frame.posed.surfaces[item.surface].castsShadow) {
                 const PosedSurface& surface = frame.posed.surfaces[item.surface];
@@ -185,8 +186,13 @@ void EyePass::Data::drawShadow(const ShowFrame& frame) {
 
 Thing EyePass::Data::skinThing(const ShowFrame& frame, bool unseen) const {
     const DeviceSkin& skin = frame.scene->device;
-    Thing thing{&surfaces.skin(), frame.worldFromDevice, &skin.material, 1.0F, materials.features(skin.material, unseen),
-                0.0F};
+    Thing thing{&surfaces.skin(),
+                frame.worldFromDevice,
+                &skin.material,
+                1.0F,
+                materials.features(skin.material, unseen),
+                0.0F,
+                true};
     if (!unseen) thing.features |= skinFeatures(skin);
     if (!unseen && skin.material.alpha == Material::Alpha::blend) {
         thing.opacity = skin.material.opacity;
@@ -202,7 +208,10 @@ std::vector<Thing> EyePass::Data::itemThings(const ShowFrame& frame, const glm::
     for (const auto& item : surfaces.items()) {
         if (item.surface >= frame.posed.surfaces.size()) continue;
         const PosedSurface& surface = frame.posed.surfaces[item.surface];
-        Thing thing{item.mesh, surface.worldFromSurface, &surface.material, surface.opacity,
+        Thing thing{item.mesh,
+                    surface.worldFromSurface,
+                    &surface.material,
+                    surface.opacity,
                     materials.features(surface.material) | eye_feature::twoSided,
                     glm::distance(item.box.centre(), eye)};
         if (surface.opacity < 1.0F || surface.material.alpha == Material::Alpha::blend)
@@ -261,22 +270,27 @@ void EyePass::Data::draw(const ShowFrame& frame, const View& view, const Thing& 
         program.set("sky", frame.scene->sky);
     }
     if ((features & eye_feature::skin) != 0)
-        applySkin(program, frame.scene->device, surfaces.skinBoxAtRest());
+        applySkin(program, frame.scene->device, surfaces.skinBoxAtRest(), frame.worldFromDevice);
     if ((features & eye_feature::holesBelow) != 0)
         applyHolesAbove(program, frame.scene->device, surfaces.skinBoxAtRest(), frame.worldFromDevice);
     setFrontFace(thing.world);
     const bool cull = (features & eye_feature::twoSided) == 0;
     (cull ? glEnable : glDisable)(GL_CULL_FACE);
     glCullFace(GL_BACK);
+    // Where an item lies in the device's own surface, the item is seen.
+    (thing.skin ? glEnable : glDisable)(GL_POLYGON_OFFSET_FILL);
+    glPolygonOffset(1.0F, 8.0F);
     thing.mesh->draw();
+    glDisable(GL_POLYGON_OFFSET_FILL);
 }
 
 void EyePass::Data::drawTable(const ShowFrame& frame, const View& view) {
     const Material& material = frame.scene->table.material;
-    std::uint32_t features =
-        materials.features(material, view.unseen) | eye_feature::planar | eye_feature::twoSided;
-    const bool throughHoles = surfaces.hasSkin() && showsSkin(frame) &&
-                              (skinThing(frame, view.unseen).features & eye_feature::holes) != 0;
+    std::uint32_t features = materials.features(material, view.unseen) | eye_feature::planar | eye_feature::twoSided;
+    // The projector pass shows such a table alike to every eye.
+    if (!dependsOnEye(material)) features &= ~eye_feature::specular;
+    const bool throughHoles =
+        surfaces.hasSkin() && showsSkin(frame) && (skinThing(frame, view.unseen).features & eye_feature::holes) != 0;
     if (throughHoles && lighting.shadowed() && (features & eye_feature::unlit) == 0)
         features |= eye_feature::holesBelow;
     draw(frame, view, {&table, glm::mat4(1.0F), &material, 1.0F, features, 0.0F});
@@ -293,12 +307,12 @@ void EyePass::Data::drawCreases(const ShowFrame& frame, const View& view) {
     program.set("worldFromSurface", frame.worldFromDevice);
     program.set("ink", glm::vec4(linearLight(creases.color), static_cast<float>(std::min(creases.emphasis, 1.0))));
     lighting.apply(program);
-    applySkin(program, frame.scene->device, surfaces.skinBoxAtRest());
+    applySkin(program, frame.scene->device, surfaces.skinBoxAtRest(), frame.worldFromDevice);
     setFrontFace(frame.worldFromDevice);
     glEnable(GL_CULL_FACE);
     glCullFace(GL_BACK);
     glEnable(GL_POLYGON_OFFSET_FILL);
-    glPolygonOffset(-1.0F, -2.0F);
+    glPolygonOffset(0.5F, 4.0F); // between the items and the skin, which steps back more
     glDepthMask(GL_FALSE);
     glEnable(GL_BLEND);
     glBlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ZERO, GL_ONE);

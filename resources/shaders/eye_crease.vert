@@ -7,12 +7,12 @@ layout(location = 2) in vec2 across;
 layout(location = 3) in vec3 restPosition;
 uniform mat4 worldFromSurface;
 out vec2 place;
-out vec2 restPlace;
+out vec3 restPlace;
 
 const float kAbove = 0.0001; // metres
 
 void main() {
     place = across;
-    restPlace = restPosition.xz;
+    restPlace = restPosition.xzy;
     gl_Position = clipOf((worldFromSurface * vec4(position + kAbove * normal, 1.0)).xyz);
 }

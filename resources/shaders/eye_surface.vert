@@ -7,7 +7,7 @@ layout(location = 1) in vec3 normal;
 layout(location = 2) in vec2 coordinates;
 #ifdef SKIN
 layout(location = 3) in vec3 restPosition;
-out vec2 restPlace;
+out vec3 restPlace;
 #endif
 
 uniform mat4 worldFromSurface;
@@ -51,7 +51,7 @@ void main() {
     worldNormal = (normalFromSurface * vec4(normal, 0.0)).xyz;
     place = coordinates;
 #ifdef SKIN
-    restPlace = restPosition.xz;
+    restPlace = restPosition.xzy;
 #endif
 #ifdef SHADOW
     placeInShadow();
