@@ -19,6 +19,7 @@
 #include "core/render/eye_shadow.h"
 #include "core/render/eye_skin.h"
 #include "core/render/eye_surfaces.h"
+#include "core/render/lookup_region.h"
 
 namespace lumorph {
 namespace {
@@ -28,7 +29,7 @@ using Stage = EyePrograms::Stage;
 constexpr glm::ivec2 kTableGrid{48, 36};
 constexpr float kBlurredLift = 0.004F;        // metres by which blurred folds keep off their own shadow
 constexpr float kNearSideStepsBack = 0.0025F; // metres
-constexpr float kFarthestCaster = 1.5F; // metres from the device's middle
+constexpr float kFarthestCaster = 1.5F;       // metres from the device's middle
 
 /// One thing to draw: a mesh, where it stands, and what it looks like.
 struct Thing {
@@ -172,8 +173,7 @@ void EyePass::Data::drawShadow(const ShowFrame& frame) {
             }
             thing.mesh->draw();
         };
-        if (surfaces.hasSkin() && showsSkin(frame))
-            drawCaster(skinThing(frame, false));
+        if (surfaces.hasSkin() && showsSkin(frame)) drawCaster(skinThing(frame, false));
         for (const auto& item : surfaces.items())
             if (frame.posed.surfaces[item.surface].castsShadow) {
                 const PosedSurface& surface = frame.posed.surfaces[item.surface];
@@ -186,8 +186,13 @@ void EyePass::Data::drawShadow(const ShowFrame& frame) {
 
 Thing EyePass::Data::skinThing(const ShowFrame& frame, bool unseen) const {
     const DeviceSkin& skin = frame.scene->device;
-    Thing thing{&surfaces.skin(), frame.worldFromDevice, &skin.material, 1.0F, materials.features(skin.material, unseen),
-                0.0F, true};
+    Thing thing{&surfaces.skin(),
+                frame.worldFromDevice,
+                &skin.material,
+                1.0F,
+                materials.features(skin.material, unseen),
+                0.0F,
+                true};
     if (!unseen) thing.features |= skinFeatures(skin);
     if (!unseen && skin.material.alpha == Material::Alpha::blend) {
         thing.opacity = skin.material.opacity;
@@ -203,7 +208,10 @@ std::vector<Thing> EyePass::Data::itemThings(const ShowFrame& frame, const glm::
     for (const auto& item : surfaces.items()) {
         if (item.surface >= frame.posed.surfaces.size()) continue;
         const PosedSurface& surface = frame.posed.surfaces[item.surface];
-        Thing thing{item.mesh, surface.worldFromSurface, &surface.material, surface.opacity,
+        Thing thing{item.mesh,
+                    surface.worldFromSurface,
+                    &surface.material,
+                    surface.opacity,
                     materials.features(surface.material) | eye_feature::twoSided,
                     glm::distance(item.box.centre(), eye)};
         if (surface.opacity < 1.0F || surface.material.alpha == Material::Alpha::blend)
@@ -278,10 +286,11 @@ void EyePass::Data::draw(const ShowFrame& frame, const View& view, const Thing& 
 
 void EyePass::Data::drawTable(const ShowFrame& frame, const View& view) {
     const Material& material = frame.scene->table.material;
-    std::uint32_t features =
-        materials.features(material, view.unseen) | eye_feature::planar | eye_feature::twoSided;
-    const bool throughHoles = surfaces.hasSkin() && showsSkin(frame) &&
-                              (skinThing(frame, view.unseen).features & eye_feature::holes) != 0;
+    std::uint32_t features = materials.features(material, view.unseen) | eye_feature::planar | eye_feature::twoSided;
+    // The projector pass shows such a table alike to every eye.
+    if (!dependsOnEye(material)) features &= ~eye_feature::specular;
+    const bool throughHoles =
+        surfaces.hasSkin() && showsSkin(frame) && (skinThing(frame, view.unseen).features & eye_feature::holes) != 0;
     if (throughHoles && lighting.shadowed() && (features & eye_feature::unlit) == 0)
         features |= eye_feature::holesBelow;
     draw(frame, view, {&table, glm::mat4(1.0F), &material, 1.0F, features, 0.0F});
