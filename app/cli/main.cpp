@@ -49,7 +49,11 @@ int main(int argc, char** argv) {
     lumorph::cli::addVoxelizeCommand(app, session);
     lumorph::cli::addMatchCommand(app, session);
     lumorph::cli::addProjectCommand(app, session);
+#ifdef LUMORPH_WITH_CALIBRATION
+    lumorph::cli::addRenderCommand(app, session);
+#endif
     lumorph::cli::addBenchCommand(app);
+    lumorph::cli::addDemoCommand(app);
     try {
         app.parse(argc, argv); // runs the command
         lumorph::cli::finishOutput();

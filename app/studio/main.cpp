@@ -1,6 +1,7 @@
 #include <cstdio>
 #include <iostream>
 
+#include "app/studio/headless_scene.h"
 #include "app/studio/headless_show.h"
 #include "app/studio/look/palette.h"
 #include "app/studio/shell/arguments.h"
@@ -19,6 +20,12 @@ bool hasWorkspace(const std::vector<std::unique_ptr<Workspace>>& workspaces, con
                                      [&id](const auto& one) { return one->id().toStdString() == id; });
 }
 
+/// The one asked for; else that in which a demo is seen.
+QString firstWorkspace(const Arguments& arguments) {
+    if (!arguments.workspace.empty() || arguments.demo.empty()) return QString::fromStdString(arguments.workspace);
+    return arguments.demo == "field" ? "field" : "scene";
+}
+
 /// A project brings everything; a target or a field needs the device that was there last time.
 bool isProject(const std::filesystem::path& file) { return file.extension() == ".lumorph"; }
 
@@ -32,7 +39,7 @@ void openFirst(Studio& studio, MainWindow& window, const Arguments& arguments) {
     else if (!arguments.project.empty())
         studio.desk.restoreSession([&studio, file = arguments.project] { studio.desk.open(file); });
     else if (!arguments.demo.empty())
-        studio.desk.openDemo();
+        studio.desk.openDemo(arguments.demo);
     else
         studio.desk.restoreSession(arguments.kiosk ? std::function<void()>() : tourOnce);
 }
@@ -50,7 +57,7 @@ int run(int argc, char** argv, const Arguments& arguments) {
     }
     MainWindow window(studio, std::move(workspaces));
     application.closeOnInterrupt(window);
-    window.showWorkspace(QString::fromStdString(arguments.workspace)); // none given: stays as it is
+    window.showWorkspace(firstWorkspace(arguments)); // empty: stays as it is
     arguments.kiosk ? window.enterKiosk() : window.show();
     openFirst(studio, window, arguments);
     const int status = QApplication::exec();
@@ -61,7 +68,10 @@ int run(int argc, char** argv, const Arguments& arguments) {
 /// Needs no display, and so no application.
 int showHeadless(const Arguments& arguments) {
     try {
-        runHeadlessShow(arguments.headless, arguments.seconds, std::cout);
+        if (arguments.play > 0.0)
+            playDemo(arguments.demo, arguments.play, arguments.record, arguments.json, std::cout);
+        else
+            runHeadlessShow(arguments.headless, arguments.seconds, std::cout);
         return 0;
     } catch (const std::exception& error) {
         std::fprintf(stderr, "lumorph-studio: %s\n", error.what());
@@ -77,7 +87,7 @@ int main(int argc, char** argv) {
         std::fputs(parsed.message.c_str(), parsed.status == 0 ? stdout : stderr);
         return parsed.status;
     }
-    if (!parsed.arguments->headless.empty()) return showHeadless(*parsed.arguments);
+    if (!parsed.arguments->headless.empty() || parsed.arguments->play > 0.0) return showHeadless(*parsed.arguments);
     const QString noDisplay = prepareApplication(argc, argv);
     if (!noDisplay.isEmpty()) {
         std::fputs(noDisplay.toUtf8().constData(), stderr);

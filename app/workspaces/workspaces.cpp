@@ -2,6 +2,7 @@
 
 #include "app/workspaces/field/field_workspace.h"
 #include "app/workspaces/rig/rig_workspace.h"
+#include "app/workspaces/scene/scene_workspace.h"
 
 namespace lumorph::studio {
 
@@ -9,6 +10,7 @@ std::vector<std::unique_ptr<Workspace>> makeWorkspaces(Studio& studio) {
     std::vector<std::unique_ptr<Workspace>> workspaces;
     workspaces.push_back(std::make_unique<RigWorkspace>(studio));
     workspaces.push_back(std::make_unique<FieldWorkspace>(studio));
+    workspaces.push_back(std::make_unique<SceneWorkspace>(studio));
     return workspaces;
 }
 

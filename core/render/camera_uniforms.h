@@ -1,6 +1,9 @@
 #pragma once
 
+#include <string>
+
 #include "core/geometry/calibrated_camera.h"
+#include "core/geometry/triangle_mesh.h"
 #include "core/render/program.h"
 
 namespace lumorph {
@@ -8,7 +11,9 @@ namespace lumorph {
 /// Sets what `camera.glsl` needs in the current program: `vec4 clipOf(vec3 world)`, lens distortion included, depth
 /// from `near` to `far` metres. Straight edges stay straight between vertices, so a surface drawn through a distorting
 /// lens wants triangles of a few pixels. The viewport must have the camera's size.
-void setCamera(Program& program, const CalibratedCamera& camera, double near, double far);
+/// `lens` names another uniform of type Lens, for programs with more than one.
+void setCamera(Program& program, const CalibratedCamera& camera, double near, double far,
+               const std::string& lens = "lens");
 
 /// Near and far that hold a box seen by a camera as tightly as precision needs.
 struct DepthRange {

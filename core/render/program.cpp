@@ -20,14 +20,24 @@ std::string textOf(const std::filesystem::path& file) {
     return {std::istreambuf_iterator<char>(stream), {}};
 }
 
-void compile(GLuint shader, const std::vector<std::filesystem::path>& files) {
-    std::vector<ShaderPiece> pieces;
+// The defines are a piece of their own, so that the lines of those after them still count right.
+std::string join(const std::vector<std::filesystem::path>& files, const std::vector<std::string>& defines,
+                 std::vector<ShaderPiece>& pieces) {
     std::string text;
     for (const auto& file : files) {
         const std::string piece = textOf(file) + "\n";
         pieces.push_back({file, static_cast<int>(std::count(piece.begin(), piece.end(), '\n'))});
         text += piece;
+        if (pieces.size() > 1 || defines.empty()) continue;
+        for (const std::string& define : defines) text += "#define " + define + "\n";
+        pieces.push_back({file, static_cast<int>(defines.size())});
     }
+    return text;
+}
+
+void compile(GLuint shader, const std::vector<std::filesystem::path>& files, const std::vector<std::string>& defines) {
+    std::vector<ShaderPiece> pieces;
+    const std::string text = join(files, defines, pieces);
     const char* pointer = text.c_str();
     glShaderSource(shader, 1, &pointer, nullptr);
     glCompileShader(shader);
@@ -45,8 +55,8 @@ void compile(GLuint shader, const std::vector<std::filesystem::path>& files) {
 void link(GLuint program, const ShaderFiles& files) {
     gl::VertexShader vertex;
     gl::FragmentShader fragment;
-    compile(vertex.name(), files.vertex);
-    compile(fragment.name(), files.fragment);
+    compile(vertex.name(), files.vertex, files.defines);
+    compile(fragment.name(), files.fragment, files.defines);
     glAttachShader(program, vertex.name());
     glAttachShader(program, fragment.name());
     glLinkProgram(program);
@@ -109,6 +119,14 @@ void Program::set(const std::string& uniform, const glm::vec2& value) { glUnifor
 void Program::set(const std::string& uniform, const glm::vec3& value) { glUniform3fv(location(uniform), 1, &value.x); }
 void Program::set(const std::string& uniform, const glm::vec4& value) { glUniform4fv(location(uniform), 1, &value.x); }
 void Program::set(const std::string& uniform, const glm::mat4& value) { set(uniform, std::span(&value, 1)); }
+
+void Program::set(const std::string& uniform, std::span<const glm::vec2> values) {
+    glUniform2fv(location(uniform), static_cast<GLsizei>(values.size()), &values.front().x);
+}
+
+void Program::set(const std::string& uniform, std::span<const glm::vec4> values) {
+    glUniform4fv(location(uniform), static_cast<GLsizei>(values.size()), &values.front().x);
+}
 
 void Program::set(const std::string& uniform, std::span<const glm::vec3> values) {
     glUniform3fv(location(uniform), static_cast<GLsizei>(values.size()), &values.front().x);

@@ -17,10 +17,12 @@
 namespace lumorph {
 
 /// The files of a program. The pieces of a stage are compiled one after the other as one text; the
-/// first begins with `#version 410 core`.
+/// first begins with `#version 410 core`. `defines` ("NAME" or "NAME value") stand between the first piece, which then
+/// is best version.glsl alone, and the others of both stages.
 struct ShaderFiles {
     std::vector<std::filesystem::path> vertex;
     std::vector<std::filesystem::path> fragment;
+    std::vector<std::string> defines = {};
 };
 
 /// Names of files in resources/shaders. Throws DataError when one is missing.
@@ -55,7 +57,9 @@ public:
     void set(const std::string& uniform, const glm::vec3& value);
     void set(const std::string& uniform, const glm::vec4& value);
     void set(const std::string& uniform, const glm::mat4& value);
+    void set(const std::string& uniform, std::span<const glm::vec2> values);
     void set(const std::string& uniform, std::span<const glm::vec3> values);
+    void set(const std::string& uniform, std::span<const glm::vec4> values);
     void set(const std::string& uniform, std::span<const glm::mat4> values);
     /// OpenGL objects held now: none before it is first used.
     [[nodiscard]] std::size_t objectCount() const noexcept { return program_ ? 1 : 0; }

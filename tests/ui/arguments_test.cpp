@@ -19,7 +19,7 @@ TEST(Arguments, AreWhatWasAskedFor) {
     EXPECT_EQ(parsed.arguments->workspace, "rig");
     EXPECT_TRUE(parsed.arguments->kiosk);
     EXPECT_TRUE(parse({}).arguments->project.empty());
-    EXPECT_EQ(parse({"--demo", "field"}).arguments->demo, "field");
+    for (const char* demo : {"water", "techniques", "field"}) EXPECT_EQ(parse({"--demo", demo}).arguments->demo, demo);
 }
 
 TEST(Arguments, OptionsOfQtAreLeftToIt) {

@@ -337,7 +337,7 @@ TEST_F(PlacingTest, ATargetThatMovesStaysWhereItFits) {
 }
 
 TEST_F(DeskTest, TheDemoPlaysAndLeavesNothingToSave) {
-    world.desk.openDemo();
+    world.desk.openDemo("field");
     ASSERT_TRUE(eventually([&] { return world.jobs.running().empty() && world.state().field.field; }));
     EXPECT_GT(world.state().target.target->duration, 0.0);
     EXPECT_TRUE(world.state().playback.playing);

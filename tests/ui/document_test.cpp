@@ -71,6 +71,12 @@ TEST_F(DocumentTest, EachPartIsToldAloneAndComesBackExactlyByUndoAndRedo) {
          [](StudioState& s) {
              s.matching = {false, MatchMethod::voting, Microseconds(5000)};
          }},
+        {StatePart::scene,
+         [](StudioState& s) {
+             Scene scene = *s.scene;
+             scene.table.size.x += 0.1F;
+             s.scene = std::make_shared<const Scene>(scene);
+         }},
         {StatePart::playback,
          [](StudioState& s) {
              s.playback = {false, 0.7};

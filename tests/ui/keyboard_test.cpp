@@ -14,6 +14,7 @@
 #include <QLineEdit>
 #include <QScrollBar>
 #include <QTest>
+#include <QTreeView>
 #include <gtest/gtest.h>
 
 #include "app/studio/shell/main_window.h"
@@ -22,6 +23,7 @@
 #include "app/studio/widgets/plot.h"
 #include "app/workspaces/field/actuator_grid.h"
 #include "app/workspaces/field/range_slider.h"
+#include "app/workspaces/scene/direction_dial.h"
 #include "app/workspaces/workspaces.h"
 #include "tests/ui/desk_world.h"
 #include "tests/ui/event_loop.h"
@@ -50,7 +52,8 @@ bool isControl(const QWidget& widget) {
            qobject_cast<const QComboBox*>(&widget) || qobject_cast<const QAbstractSlider*>(&widget) ||
            qobject_cast<const QAbstractSpinBox*>(&widget) || qobject_cast<const QAbstractItemView*>(&widget) ||
            qobject_cast<const Plot*>(&widget) || qobject_cast<const RangeSlider*>(&widget) ||
-           qobject_cast<const ActuatorGrid*>(&widget) || qobject_cast<const ViewportWidget*>(&widget);
+           qobject_cast<const ActuatorGrid*>(&widget) || qobject_cast<const DirectionDial*>(&widget) ||
+           qobject_cast<const ViewportWidget*>(&widget);
 }
 
 std::vector<QWidget*> controlsOf(const QWidget& window) {
@@ -117,7 +120,7 @@ protected:
         window->resize(1500, 950);
         window->show();
         ASSERT_TRUE(QTest::qWaitForWindowActive(window.get()));
-        studio->desk.openDemo();
+        studio->desk.openDemo("field");
         ASSERT_TRUE(eventually([&] {
             const auto& frame = studio->loop.frame();
             return frame && frame->matched && studio->jobs.running().empty();
@@ -136,6 +139,17 @@ protected:
             expectReachable(*window);
             expectNames(*window);
         }
+    }
+
+    /// The inspector with all its sections unfolded.
+    void expectFoldsAway() {
+        auto* dock = window->findChild<QDockWidget*>("dock.scene.inspector");
+        for (auto* section : dock->findChildren<QAbstractButton*>())
+            if (section->objectName().contains(".section.") && section->isVisible() && !section->isChecked())
+                section->click();
+        test::pass(std::chrono::milliseconds(100));
+        expectReachable(*window);
+        expectNames(*window);
     }
 
     void expectDialog(const char* command) {
@@ -165,6 +179,23 @@ protected:
 TEST_F(Keyboard, ReachesEveryControlOfTheFieldWorkspace) { expectAll("field"); }
 
 TEST_F(Keyboard, ReachesEveryControlOfTheRigWorkspace) { expectAll("rig"); }
+
+TEST_F(Keyboard, ReachesEveryControlOfTheSceneWorkspace) { expectAll("scene"); }
+
+TEST_F(Keyboard, ReachesEverythingOfWhatIsChosen) {
+    window->showWorkspace("scene");
+    auto* tree = window->findChild<QTreeView*>("scene.outliner");
+    ASSERT_NE(tree, nullptr);
+    window->findChild<QDockWidget*>("dock.scene.outliner")->raise();
+    for (const char* command : {"scene.add.water", "scene.add.sun", "scene.add.box"}) {
+        studio->commands.find(command)->trigger();
+        expectFoldsAway();
+    }
+    for (const QModelIndex setup = tree->model()->index(1, 0); const int row : {0, 2, 3}) {
+        tree->setCurrentIndex(tree->model()->index(row, 0, setup)); // device, projector, viewer
+        expectFoldsAway();
+    }
+}
 
 TEST_F(Keyboard, ReachesTheFieldsControlsInEveryView) {
     window->showWorkspace("field");

@@ -55,17 +55,23 @@ StallWatch::~StallWatch() {
 
 double StallWatch::takeLongest() { return longest_.exchange(0.0); }
 
-StudioWindow::StudioWindow(const std::filesystem::path& session) {
+StudioWindow::StudioWindow(const std::filesystem::path& session, const QString& workspace) {
+    const bool again = std::filesystem::exists(session);
     ::setenv("LUMORPH_SESSION", session.c_str(), 1);
     studio_ = std::make_unique<studio::Studio>();
     studio_->settings.setTourSeen(true);
     window_ = std::make_unique<studio::MainWindow>(*studio_, studio::makeWorkspaces(*studio_));
-    window_->showWorkspace("field");
+    window_->showWorkspace(workspace);
     window_->resize(QSize(1600, 1000).boundedTo(window_->screen()->availableSize())); // less at 200 % scaling
     window_->show();
     (void)QTest::qWaitForWindowExposed(window_.get());
     bool there = false;
-    studio_->desk.restoreSession([&there] { there = true; });
+    if (again) {
+        studio_->desk.restoreSession([&there] { there = true; });
+    } else {
+        studio_->desk.openDemo("field");
+        there = true;
+    }
     EXPECT_TRUE(eventually([&] { return there && state().field.field && studio_->loop.frame(); }));
 }
 
@@ -97,10 +103,11 @@ void StudioWindow::command(const QString& words) {
     QTest::keyClick(input, Qt::Key_Return);
 }
 
-void StudioWindow::drop(const std::filesystem::path& file) {
+void StudioWindow::drop(const std::filesystem::path& file, QWidget* onto) {
+    QWidget& aim = onto ? *onto : view();
     QMimeData data;
     data.setUrls({QUrl::fromLocalFile(QString::fromStdString(file.string()))});
-    const QPoint at = view().mapTo(window_.get(), view().rect().center());
+    const QPoint at = aim.mapTo(window_.get(), aim.rect().center());
     QDragEnterEvent enters(at, Qt::CopyAction, &data, Qt::LeftButton, Qt::NoModifier);
     QApplication::sendEvent(window_.get(), &enters);
     EXPECT_TRUE(enters.isAccepted());

@@ -45,8 +45,8 @@ private:
 /// objectName, and what a user would do is done with mouse and keys.
 class StudioWindow {
 public:
-    /// Restores the session in `session`, or opens the demo where there is none; waits for the first field.
-    explicit StudioWindow(const std::filesystem::path& session);
+    /// Restores the session in `session`, or opens the field's demo where there is none; waits for the first field.
+    explicit StudioWindow(const std::filesystem::path& session, const QString& workspace = "field");
     ~StudioWindow();
 
     studio::Studio& studio() { return *studio_; }
@@ -77,8 +77,8 @@ public:
     void enter(const QString& name, const QString& text, Qt::Key then = Qt::Key_Return);
     /// Ctrl+K, the words, Enter.
     void command(const QString& words);
-    /// Drags a file from a file manager onto the view.
-    void drop(const std::filesystem::path& file);
+    /// Drags a file from a file manager onto the view, or onto another widget.
+    void drop(const std::filesystem::path& file, QWidget* onto = nullptr);
     /// Moves a slider's handle from where it is to a share of its length, by the mouse.
     void slide(const QString& name, double share);
     [[nodiscard]] QString text(const QString& label);

@@ -12,7 +12,8 @@ Desk::Data::Data(Desk& owner, StudioDocument& openDocument, Jobs& allJobs, Notic
     : desk(owner), document(openDocument), jobs(allJobs), notices(allNotices), cache(sessionFolder() / "fields"),
       keeper(sessionFolder(), [this] { return session(); }) {
     connect(&document, &StudioDocument::changed, &desk, [this](StateParts parts) {
-        if (parts & (StatePart::rig | StatePart::field | StatePart::target)) watchFiles();
+        if (parts & (StatePart::rig | StatePart::field | StatePart::target | StatePart::scene)) watchFiles();
+        if (parts & StatePart::scene) readMissingAssets();
         if (parts & StatePart::field) placeNew();
         keeper.touch();
     });
@@ -22,7 +23,7 @@ Desk::Data::Data(Desk& owner, StudioDocument& openDocument, Jobs& allJobs, Notic
     connect(&watch, &FileWatch::vanished, &desk,
             [this](const QString& place, const QString& path) { tellVanished(place, path); });
     connect(&watch, &FileWatch::restored, &desk, [this](const QString& place, const QString& path) {
-        notices.dismiss(place, fileName(path.toStdString()));
+        notices.dismiss(place.startsWith(kScenePlace) ? QString("scene") : place, fileName(path.toStdString()));
     });
     connect(&keeper, &SessionKeeper::failed, &desk, [this](const QString& why) {
         notices.post("project", {Notice::Level::warning, tr("Session"), why, tr("save the project"), {}});
@@ -54,8 +55,9 @@ void Desk::removeTarget() {
 void Desk::buildField(const BuildOptions& options) { data_->build(options, true); }
 void Desk::fit() { data_->fit(); }
 void Desk::autoPlace() { data_->autoPlace(); }
-void Desk::newProject() { data_->openBundled(false, {}); }
-void Desk::openDemo() { data_->openBundled(true, {}); }
+void Desk::relink(const std::string& asset, const std::filesystem::path& file) { data_->relink(asset, file); }
+void Desk::newProject() { data_->openBundled({}, {}); }
+void Desk::openDemo(const std::string& name) { data_->openBundled(name, {}); }
 
 bool Desk::save() {
     const std::filesystem::path file = data_->document.file();
@@ -97,11 +99,13 @@ void Desk::Data::watchFiles() {
     add("rig", state.rig.path, stamps.rig);
     add("field", state.field.path, stamps.field);
     add("target", state.target.path, stamps.target);
+    for (const auto& [asset, stamp] : sceneStamps()) add(kScenePlace + QString::fromStdString(asset), asset, stamp);
     watch.watch(files);
 }
 
 void Desk::Data::tellChanged(const QString& place, const QString& path) {
     const std::filesystem::path file = path.toStdString();
+    if (place.startsWith(kScenePlace)) return readAssetAgain(file.string());
     const auto again = [this, place, file] {
         if (place == "target")
             readTargetAgain(file);
@@ -118,6 +122,7 @@ void Desk::Data::tellChanged(const QString& place, const QString& path) {
 }
 
 void Desk::Data::tellVanished(const QString& place, const QString& path) {
+    if (place.startsWith(kScenePlace)) return tellVanishedAsset(path);
     const auto saveCopy = [this] { emit desk.saveElsewhere(); };
     notices.post(place, {Notice::Level::warning,
                          fileName(path.toStdString()),

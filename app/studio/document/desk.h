@@ -39,8 +39,13 @@ public:
     void fit();       ///< the largest size that fits, standing on the device
     void autoPlace(); ///< searches heading, size and place
 
+    /// Names another file where the scene names `asset`, by one step of undo.
+    void relink(const std::string& asset, const std::filesystem::path& file);
+
     void newProject(); ///< the bundled tablet, no target
-    void openDemo();   ///< the bundled tablet with an animated target, matched live
+    /// "water", "techniques", or "field": the bundled tablet with an animated target, matched live.
+    void openDemo(const std::string& name = kFirstDemo);
+    static constexpr const char* kFirstDemo = "field";
     /// Saves to the project's file; it is on disk when this returns, or the document is still modified and a notice
     /// says why. False when it has no file; ask for one and use saveAs.
     bool save();
@@ -60,6 +65,8 @@ signals:
     /// The remedy of a notice: ask for another file of this place ("target", "rig", "field", "project"; "viewport" for
     /// any kind) and open it.
     void chooseFile(const QString& place);
+    /// The remedy of a notice: ask for another file, and `relink` this asset of the scene.
+    void chooseAsset(const QString& asset);
     /// The remedy of a notice: ask where to save, and `saveAs`.
     void saveElsewhere();
 

@@ -37,9 +37,20 @@ struct Desk::Data {
     void placeNew();
     void glideTo(const Placement& place, const QString& what);
 
+    // desk_scene.cpp
+    void readMissingAssets();
+    void readAssetAgain(const std::string& asset);
+    void readAssets(std::shared_ptr<const SceneAssets> before);
+    void takeAssets(const std::shared_ptr<const SceneAssets>& assets);
+    void tellVanishedAsset(const QString& path);
+    void relink(const std::string& asset, const std::filesystem::path& file);
+    [[nodiscard]] std::map<std::string, FileStamp> sceneStamps();
+    [[nodiscard]] Notice::Action offerRelink(const std::string& asset);
+
     // desk_saving.cpp
     void openProject(const std::filesystem::path& file);
-    void openBundled(bool demo, std::function<void()> onReady);
+    /// A demo by its name, or a new project.
+    void openBundled(const std::string& demo, std::function<void()> onReady);
     void saveTo(const std::filesystem::path& file);
     void restore(std::function<void()> onReady);
     void replaceAll(LoadedProject loaded, const std::filesystem::path& file);
@@ -92,6 +103,8 @@ struct Desk::Data {
     FileWatch watch;
     SessionKeeper keeper;
     bool placesNewTargets = false;
+    std::vector<std::string> reading;             ///< what the scene names of which is being read
+    std::map<std::string, FileStamp> assetStamps; ///< of the scene's files as they were read
     /// A target that was just opened and waits for its better place, and where it stands until then.
     struct Unplaced {
         std::shared_ptr<const MatchTarget> target;
@@ -100,6 +113,9 @@ struct Desk::Data {
     Unplaced unplaced;
     std::map<QString, Jobs::Id> slots_;
 };
+
+/// What the scene's files are watched as, before their names.
+inline constexpr const char* kScenePlace = "scene:";
 
 /// The last part of a path, as a user knows it.
 [[nodiscard]] inline QString fileName(const std::filesystem::path& path) {

@@ -8,13 +8,23 @@ namespace {
 
 namespace fs = std::filesystem;
 
-LoadedProject readBundled(bool demo, const FieldCache& cache, const Progress& progress) {
+constexpr const char* kFieldDemo = "field";
+
+/// A demo that is a project of its own; it belongs to no file of the user's.
+LoadedProject readDemoProject(const std::string& name, const FieldCache& cache, const Progress& progress) {
+    LoadedProject loaded = loadProject(resourceFile("projects/" + name + ".lumorph"), progress);
+    if (!loaded.state.field.field) loaded.state.field.field = cache.find(*loaded.state.rig.rig);
+    return loaded;
+}
+
+LoadedProject readBundled(const std::string& demo, const FieldCache& cache, const Progress& progress) {
+    if (!demo.empty() && demo != kFieldDemo) return readDemoProject(demo, cache, progress);
     LoadedProject loaded;
     auto rig = readRigAsset(resourceFile("models/tablet.glb"));
     loaded.state.rig = std::move(rig.asset);
     loaded.stamps.rig = rig.stamp;
     loaded.state.field.field = cache.find(*loaded.state.rig.rig);
-    if (!demo) return loaded;
+    if (demo.empty()) return loaded;
     auto target = readTargetAsset(resourceFile("targets/bloom.glb"), std::nullopt, progress);
     loaded.state.target = std::move(target.asset);
     loaded.stamps.target = target.stamp;
@@ -39,11 +49,11 @@ void Desk::Data::openProject(const fs::path& file) {
         {chooseAnother("project")});
 }
 
-void Desk::Data::openBundled(bool demo, std::function<void()> onReady) {
+void Desk::Data::openBundled(const std::string& demo, std::function<void()> onReady) {
     const auto ready = std::make_shared<std::function<void()>>(std::move(onReady));
     const QPointer<Desk> alive(&desk);
     runWith<LoadedProject>(
-        "project", "project", demo ? tr("Opening the demo") : tr("Opening the tablet"),
+        "project", "project", demo.empty() ? tr("Opening the tablet") : tr("Opening the demo"),
         [demo, cache = cache](const Progress& progress) { return readBundled(demo, cache, progress); },
         [this, ready](const LoadedProject& loaded) {
             replaceAll(loaded, {});
@@ -57,14 +67,17 @@ void Desk::Data::openBundled(bool demo, std::function<void()> onReady) {
 }
 
 void Desk::Data::replaceAll(LoadedProject loaded, const fs::path& file) {
-    for (const char* slot : {"rig", "field", "target", "place"}) stop(slot);
-    for (const char* place : {"rig", "field", "target", "match", "project"}) notices.dismissAll(place);
+    for (const char* slot : {"rig", "field", "target", "place", "scene"}) stop(slot);
+    for (const char* place : {"rig", "field", "target", "match", "project", "scene"}) notices.dismissAll(place);
     const bool unsaved = document.modified();
     const SessionState before{source(), document.file(), unsaved};
     const QString name = document.name();
     read.remember(loaded.state, loaded.stamps);
     extras = std::move(loaded.extras);
+    assetStamps.clear();
+    reading.clear();
     document.reset(std::move(loaded.state), file);
+    if (const auto& assets = document.state().assets) takeAssets(assets);
     buildMissing();
     if (!unsaved || !before.source.state.rig.rig) return;
     const auto bringBack = [this, before] {
@@ -107,7 +120,7 @@ void Desk::Data::restore(std::function<void()> onReady) {
         [folder = sessionFolder()](const Progress& progress) { return SessionKeeper::restore(folder, progress); },
         [this, ready](const std::optional<SessionState>& session) {
             if (!session) {
-                openBundled(true, *ready);
+                openBundled(kFirstDemo, *ready);
                 return;
             }
             replaceAll({session->source.state, session->source.stamps, session->source.extras, {}}, session->file);
@@ -121,7 +134,7 @@ void Desk::Data::restore(std::function<void()> onReady) {
             notice.why = tr("the last session could not be opened: %1").arg(notice.why);
             notice.remedy = tr("what is left of it lies in %1").arg(fullName(aside));
             // Told when the demo is there: what opens clears the notices of what was open.
-            openBundled(true, [this, notice, ready] {
+            openBundled(kFirstDemo, [this, notice, ready] {
                 notices.post("project", notice);
                 if (*ready) (*ready)();
             });

@@ -5,6 +5,7 @@
 
 #include <QTemporaryDir>
 
+#include "app/studio/document/scene_files.h"
 #include "app/studio/document/state_rules.h"
 #include "core/base/atomic_file.h"
 #include "core/base/error.h"
@@ -100,7 +101,7 @@ std::string fieldNamedBy(const fs::path& file) {
 
 } // namespace
 
-LoadedProject loadProject(const fs::path& file, const Progress& progress) {
+LoadedProject loadProjectWithoutAssets(const fs::path& file, const Progress& progress) {
     const Project project = readProject(file);
     LoadedProject loaded;
     loaded.state = stateOf(project);
@@ -121,6 +122,17 @@ LoadedProject loadProject(const fs::path& file, const Progress& progress) {
         loaded.state.target = std::move(target.asset);
         loaded.stamps.target = target.stamp;
     }
+    loaded.state.scene = std::make_shared<const Scene>(withWholePaths(project.scene, file));
+    return loaded;
+}
+
+void loadAssets(LoadedProject& loaded, const fs::path& file, const Progress& progress) {
+    loaded.state.assets = loadSceneAssets(*loaded.state.scene, file, nullptr, progress);
+}
+
+LoadedProject loadProject(const fs::path& file, const Progress& progress) {
+    LoadedProject loaded = loadProjectWithoutAssets(file, progress.part(0.0, 0.8));
+    loadAssets(loaded, file, progress.part(0.8, 1.0));
     return loaded;
 }
 
@@ -140,6 +152,7 @@ void saveProject(const ProjectSource& source, const fs::path& file, const Progre
         project.target = take(
             file, state.target.path, source.stamps.target, fileStem(state.target.path, target->name) + ".glb",
             [&] { return targetBytes(*target); }, progress);
+    if (state.scene) project.scene = withTakenFiles(*state.scene, state.assets.get(), file, progress);
     const std::string oldField = fieldNamedBy(file);
     writeProject(project, file);
     dropOldField(file, oldField, project.field);

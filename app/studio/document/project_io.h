@@ -24,9 +24,15 @@ struct LoadedProject {
     std::vector<std::string> warnings; ///< plain sentences, such as about a field that has to be built again
 };
 
-/// Reads a project with its rig, field and target. A field that cannot be read, or is another rig's, is left out with a
-/// warning: it can be built again. Throws DataError for anything else that is wrong; Cancelled.
+/// Reads a project with its rig, field, target and what its scene names. A field that cannot be read, or is another
+/// rig's, is left out with a warning: it can be built again; a picture or model of the scene that cannot be read is
+/// told in `StudioState::assets`. In memory the scene names its files by whole paths. Throws DataError for anything
+/// else that is wrong; Cancelled.
 [[nodiscard]] LoadedProject loadProject(const std::filesystem::path& file, const Progress& progress);
+
+/// The same without what the scene names, and that alone: for a session, whose scene goes by other names.
+[[nodiscard]] LoadedProject loadProjectWithoutAssets(const std::filesystem::path& file, const Progress& progress);
+void loadAssets(LoadedProject& loaded, const std::filesystem::path& file, const Progress& progress);
 
 /// What is to be saved; a value, for any thread.
 struct ProjectSource {

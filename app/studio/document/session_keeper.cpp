@@ -6,7 +6,10 @@
 #include <iterator>
 #include <utility>
 
+#include "app/studio/document/scene_edit.h"
+#include "app/studio/document/scene_files.h"
 #include "core/base/error.h"
+#include "core/scene/project_assets.h"
 
 namespace lumorph::studio {
 
@@ -42,15 +45,25 @@ fs::path placeOf(const fs::path& folder, int number) { return folder / std::to_s
 /// Json holds nothing but UTF-8; a name that is none gets replacement characters.
 std::string textOf(const fs::path& path) { return QString::fromStdString(path.string()).toStdString(); }
 
+/// Where each file that the scene names lies, in the order in which the scene names them.
+nlohmann::json sceneFiles(const StudioState& state) {
+    nlohmann::json files = nlohmann::json::array();
+    if (!state.scene) return files;
+    Scene scene = *state.scene;
+    renameAssets(scene, [&files](const std::string& asset) {
+        files.push_back(textOf(asset));
+        return asset;
+    });
+    return files;
+}
+
 ProjectSource withMemory(const SessionState& session) {
     ProjectSource source = session.source;
     if (!source.extras.view.is_object()) source.extras.view = nlohmann::json::object();
     const StudioState& state = source.state;
-    source.extras.view[kKey] = {{"file", textOf(session.file)},
-                                {"modified", session.modified},
-                                {"rig", textOf(state.rig.path)},
-                                {"field", textOf(state.field.path)},
-                                {"target", textOf(state.target.path)}};
+    source.extras.view[kKey] = {{"file", textOf(session.file)},        {"modified", session.modified},
+                                {"rig", textOf(state.rig.path)},       {"field", textOf(state.field.path)},
+                                {"target", textOf(state.target.path)}, {"scene", sceneFiles(state)}};
     return source;
 }
 
@@ -69,7 +82,7 @@ int writeAnew(const fs::path& folder, const SessionState& session) {
 }
 
 bool sameAssets(const StudioState& a, const StudioState& b) {
-    return a.rig == b.rig && a.field == b.field && a.target == b.target;
+    return a.rig == b.rig && a.field == b.field && a.target == b.target && sceneFiles(a) == sceneFiles(b);
 }
 
 void write(const fs::path& folder, const SessionState& session, SessionKeeper::Written& last) {
@@ -115,6 +128,29 @@ void rename(fs::path& path, std::optional<FileStamp>& stamp, const std::string& 
     else
         stamp = sameContents(path, original) ? stampOf(original) : FileStamp{true, 0, fs::file_time_type::min()};
     path = original;
+}
+
+/// The scene's files go by the names they had. A copy whose original has gone moves to where no later session clears
+/// it away.
+void renameScene(StudioState& state, const nlohmann::json& memory, const fs::path& session) {
+    const auto files = memory.find("scene");
+    if (files == memory.end() || !files->is_array()) return;
+    Scene scene = *state.scene;
+    std::size_t next = 0;
+    renameAssets(scene, [&](const std::string& asset) {
+        const std::string copies = session.string() + "/";
+        const std::size_t at = next++;
+        const std::string original =
+            at < files->size() && (*files)[at].is_string() ? (*files)[at].get<std::string>() : std::string();
+        std::error_code ignored;
+        if (!asset.starts_with(copies)) return asset; // bundled
+        if (fs::exists(original, ignored)) return original;
+        if (!fs::exists(asset, ignored)) return original.empty() ? asset : original;
+        const fs::path kept = session.parent_path() / "kept" / "kept.lumorph";
+        fs::create_directories(kept.parent_path(), ignored);
+        return (kept.parent_path() / takeAsset(kept, asset)).string();
+    });
+    state.scene = std::make_shared<const Scene>(std::move(scene));
 }
 
 std::string textIn(const nlohmann::json& object, const char* key) {
@@ -171,7 +207,7 @@ std::optional<SessionState> SessionKeeper::restore(const fs::path& folder, const
     const std::vector<int> numbers = numbersIn(folder);
     if (numbers.empty()) return std::nullopt;
     const fs::path place = placeOf(folder, numbers.front());
-    LoadedProject loaded = loadProject(place / kProjectName, progress);
+    LoadedProject loaded = loadProjectWithoutAssets(place / kProjectName, progress.part(0.0, 0.8));
     const nlohmann::json memory = loaded.extras.view.is_object() && loaded.extras.view.contains(kKey)
                                       ? loaded.extras.view[kKey]
                                       : nlohmann::json::object();
@@ -183,6 +219,8 @@ std::optional<SessionState> SessionKeeper::restore(const fs::path& folder, const
     rename(state.rig.path, loaded.stamps.rig, textIn(memory, "rig"), place);
     rename(state.field.path, loaded.stamps.field, textIn(memory, "field"), place);
     rename(state.target.path, loaded.stamps.target, textIn(memory, "target"), place);
+    renameScene(state, memory, place);
+    loadAssets(loaded, place / kProjectName, progress.part(0.8, 1.0));
     session.source = {std::move(loaded.state), loaded.stamps, std::move(loaded.extras)};
     return session;
 }

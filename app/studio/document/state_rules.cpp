@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/base/error.h"
 #include "core/rig/rig_file.h"
 
 namespace lumorph::studio {
@@ -32,6 +33,23 @@ std::vector<double> soundStrokes(const std::vector<double>& before, const std::v
     return sound;
 }
 
+bool sameScene(const std::shared_ptr<const Scene>& a, const std::shared_ptr<const Scene>& b) {
+    return a == b || (a && b && *a == *b);
+}
+
+std::shared_ptr<const Scene> soundScene(const std::shared_ptr<const Scene>& before,
+                                        const std::shared_ptr<const Scene>& edited) {
+    if (edited && edited == before) return edited;
+    try {
+        if (edited) {
+            checkScene(*edited);
+            return edited;
+        }
+    } catch (const InvalidInput&) {
+    } // it stays as it was
+    return before ? before : std::make_shared<const Scene>(defaultScene());
+}
+
 } // namespace
 
 bool samePlacement(const Placement& a, const Placement& b) {
@@ -47,6 +65,7 @@ StateParts differenceOf(const StudioState& a, const StudioState& b) {
     parts.setFlag(StatePart::strokes, a.strokes != b.strokes);
     parts.setFlag(StatePart::matching, !(a.matching == b.matching));
     parts.setFlag(StatePart::playback, !(a.playback == b.playback));
+    parts.setFlag(StatePart::scene, !sameScene(a.scene, b.scene));
     return parts;
 }
 
@@ -64,6 +83,7 @@ StudioState settled(const StudioState& before, StudioState edited) {
     edited.strokes = soundStrokes(before.strokes, edited.strokes, edited.rig.rig ? edited.rig.rig->actuatorCount() : 0);
     edited.matching.budget = std::clamp(edited.matching.budget, Microseconds{100}, Microseconds{10'000'000});
     edited.playback.spin = soundNumber(before.playback.spin, edited.playback.spin, -100.0, 100.0);
+    edited.scene = soundScene(before.scene, edited.scene);
     return edited;
 }
 

@@ -4,7 +4,8 @@
 
 namespace lumorph::studio {
 
-/// The parts in which two states differ; rigs, fields and targets differ when they are other objects.
+/// The parts in which two states differ; rigs, fields and targets differ when they are other objects, scenes when they
+/// hold something else.
 [[nodiscard]] StateParts differenceOf(const StudioState& a, const StudioState& b);
 
 [[nodiscard]] bool samePlacement(const Placement& a, const Placement& b);
@@ -14,7 +15,7 @@ namespace lumorph::studio {
 
 /// The one place where a state is made sound after an edit of `before`: a field of another rig is dropped, there is one
 /// stroke an actuator, and every number is finite and within what a project file can hold. A number that is not finite
-/// is refused: it stays what it was.
+/// is refused: it stays what it was; so does a scene that is not sound.
 [[nodiscard]] StudioState settled(const StudioState& before, StudioState edited);
 
 } // namespace lumorph::studio

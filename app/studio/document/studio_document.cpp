@@ -19,7 +19,11 @@ constexpr int kMostSteps = 200;
 class StudioDocument::ChangeState : public QUndoCommand {
 public:
     ChangeState(StudioDocument& document, const QString& what, StudioState before, StudioState after)
-        : QUndoCommand(what), document_(document), before_(std::move(before)), after_(std::move(after)) {}
+        : QUndoCommand(what), document_(document), before_(std::move(before)), after_(std::move(after)) {
+        // Pictures that only undo would hold can be read again.
+        before_.assets.reset();
+        after_.assets.reset();
+    }
 
     void undo() override {
         document_.previewing_ = false;
@@ -39,6 +43,7 @@ private:
 };
 
 StudioDocument::StudioDocument(QObject* parent) : QObject(parent) {
+    state_ = settled({}, {});
     undo_.setUndoLimit(kMostSteps);
     connect(&undo_, &QUndoStack::cleanChanged, this, &StudioDocument::titleChanged);
 }
@@ -79,6 +84,12 @@ void StudioDocument::cancelPreview() {
     if (std::exchange(previewing_, false)) exchange(std::exchange(beforePreview_, {}));
 }
 
+void StudioDocument::setAssets(std::shared_ptr<const SceneAssets> assets) {
+    if (state_.assets == assets) return;
+    state_.assets = std::move(assets);
+    emit changed(StatePart::scene);
+}
+
 void StudioDocument::reset(StudioState state, const std::filesystem::path& file) {
     previewing_ = false;
     beforePreview_ = {};
@@ -104,7 +115,9 @@ QString StudioDocument::name() const {
 void StudioDocument::exchange(const StudioState& next) {
     const StateParts parts = differenceOf(state_, next);
     if (!parts) return;
+    const auto assets = state_.assets;
     state_ = next;
+    state_.assets = assets;
     emit changed(parts);
 }
 

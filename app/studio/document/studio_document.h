@@ -19,7 +19,8 @@ enum class StatePart : unsigned {
     strokes = 16,
     matching = 32,
     playback = 64,
-    all = 127,
+    scene = 128,
+    all = 255,
 };
 Q_DECLARE_FLAGS(StateParts, StatePart)
 Q_DECLARE_OPERATORS_FOR_FLAGS(StateParts)
@@ -42,6 +43,9 @@ public:
     /// Takes all previews back, as when Esc is pressed during a drag.
     void cancelPreview();
     [[nodiscard]] bool previewing() const noexcept { return previewing_; }
+
+    /// Hands over what the scene names; no step of undo, and told as a change of the scene.
+    void setAssets(std::shared_ptr<const SceneAssets> assets);
 
     /// Replaces everything and forgets undo: a project was opened, or a new one begun.
     void reset(StudioState state, const std::filesystem::path& file);

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <utility>
 
+#include "app/studio/document/match_wish.h"
+
 namespace lumorph::studio {
 
 namespace {
@@ -14,21 +16,6 @@ constexpr int kErrorMilliseconds = 200;
 
 std::int64_t nowMilliseconds() {
     return std::chrono::duration_cast<std::chrono::milliseconds>(SteadyClock().now()).count();
-}
-
-MatchWish wishOf(const StudioState& state) {
-    MatchWish wish;
-    wish.rig = state.rig.rig;
-    wish.field = state.field.field;
-    wish.target = state.target.target;
-    wish.placement = state.placement;
-    wish.live = state.matching.live;
-    wish.method = state.matching.method;
-    wish.budget = state.matching.budget;
-    wish.strokes = state.strokes;
-    wish.playing = state.playback.playing;
-    wish.spin = state.playback.spin;
-    return wish;
 }
 
 } // namespace
@@ -83,6 +70,23 @@ void StudioLoop::setTint(bool shown) {
     if (std::exchange(tint_, shown) != shown) sendSoon();
 }
 
+void StudioLoop::setScenePlaying(bool playing) {
+    if (std::exchange(scenePlaying_, playing) == playing) return;
+    sendSoon();
+    emit scenePlayingChanged();
+}
+
+void StudioLoop::seekScene(double seconds) {
+    if (!std::isfinite(seconds)) return;
+    sceneSeek_ = seconds;
+    sendSoon();
+}
+
+void StudioLoop::setPoses(std::shared_ptr<const PoseBoard> poses) {
+    poses_ = std::move(poses);
+    sendSoon();
+}
+
 void StudioLoop::setRate(double framesPerSecond) {
     if (std::isfinite(framesPerSecond)) thread_->setRate(std::clamp(framesPerSecond, 1.0, 1000.0));
 }
@@ -108,6 +112,9 @@ void StudioLoop::send() {
     wish.stopped = stopped_;
     wish.seek = seek_;
     wish.showTint = tint_;
+    wish.poses = poses_;
+    wish.scenePlaying = scenePlaying_;
+    wish.sceneSeek = sceneSeek_;
     thread_->wish(std::move(wish));
 }
 

@@ -37,6 +37,12 @@ public:
     /// Time of the target's animation to show while it does not play.
     void seek(double seconds);
     void setTint(bool shown);
+    /// The scene's own time, of which animations, waves and moving textures go by.
+    [[nodiscard]] bool scenePlaying() const noexcept { return scenePlaying_; }
+    void setScenePlaying(bool playing);
+    void seekScene(double seconds);
+    /// Tracked heads and device; empty: the scene's own eye and place.
+    void setPoses(std::shared_ptr<const PoseBoard> poses);
     void setRate(double framesPerSecond);
 
 signals:
@@ -44,6 +50,7 @@ signals:
     void framed();
     void stoppedChanged();
     void dancingChanged();
+    void scenePlayingChanged();
     void failed(const QString& why);
 
 private:
@@ -59,6 +66,9 @@ private:
     bool dancing_ = false;
     bool tint_ = true;
     std::optional<double> seek_;
+    bool scenePlaying_ = true;
+    std::optional<double> sceneSeek_;
+    std::shared_ptr<const PoseBoard> poses_;
     bool sending_ = false;              ///< a wish goes out when the event loop comes round
     std::vector<std::int64_t> shownAt_; ///< when matched frames were handed over, milliseconds
     std::atomic<bool> posted_ = false;  ///< the window has been told of a frame that it did not take yet

@@ -8,6 +8,8 @@
 #include "core/loop/match_target.h"
 #include "core/mdf/placement.h"
 #include "core/rig/rig.h"
+#include "core/scene/scene.h"
+#include "core/scene/scene_assets.h"
 
 namespace lumorph::studio {
 
@@ -48,6 +50,9 @@ struct StudioState {
     std::vector<double> strokes; ///< set by hand; one an actuator of the rig, each in [0, 1]
     Matching matching;
     Playback playback;
+    std::shared_ptr<const Scene> scene; ///< in a document never empty
+    /// What the scene names, as far as it has been read; no edit changes it, and undo leaves it as it is.
+    std::shared_ptr<const SceneAssets> assets;
 };
 
 } // namespace lumorph::studio

@@ -47,6 +47,11 @@ QPushButton[look="flat"]:hover { background: @hovered; border-color: transparent
 QPushButton[look="flat"]:disabled { color: @disabled; }
 QPushButton[look="link"] { background: transparent; border: none; padding: 0; color: @accentText; text-align: left; }
 QPushButton[look="link"]:hover { text-decoration: underline; }
+QPushButton[look="segment"] { padding: 0 4px; }
+QPushButton[look="color"] { padding: 0 8px 0 52px; text-align: left; font-weight: 400; }
+QToolButton[look="section"] { font-weight: 600; padding: 2px 4px 2px 0; border: none; }
+QToolButton[look="section"]:hover { background: transparent; color: @accentText; }
+QToolButton[look="section"]:checked { background: transparent; color: @text; }
 QPushButton[look="search"] { background: @sunken; border: 1px solid @line; color: @muted; font-weight: 400;
     text-align: left; padding: 0 4px; }
 QPushButton[look="search"]:hover { border-color: @border; color: @text; }

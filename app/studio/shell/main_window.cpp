@@ -32,7 +32,7 @@ constexpr auto kGeometryKey = "window/geometry";
 constexpr auto kWorkspaceKey = "window/workspace";
 
 /// In the order of the work; menus without a command in sight are hidden.
-const QStringList kMenus{"File", "Edit", "View", "Target", "Rig", "Field", "Help"};
+const QStringList kMenus{"File", "Edit", "View", "Target", "Rig", "Field", "Scene", "Help"};
 
 /// Commands of one kind stand together: "view.dock.target" is of the kind "view.dock".
 QString kindOf(const QString& id) { return id.section('.', 0, -2); }
@@ -182,17 +182,17 @@ void MainWindow::showWorkspace(const QString& id) {
     page->setActive(true);
 }
 
-/// The one of last time; at first the one where a target is matched.
+/// The one of last time; at first the one where light and shape come together.
 void MainWindow::showFirstWorkspace() {
     if (data_->workspaces.empty()) return;
-    showWorkspace(data_->studio.settings.value(kWorkspaceKey, "field").toString());
+    showWorkspace(data_->studio.settings.value(kWorkspaceKey, "scene").toString());
     if (data_->present.isEmpty()) showWorkspace(data_->workspaces.front()->id());
 }
 
 QString MainWindow::workspace() const { return data_->present; }
 
 void MainWindow::startTour() {
-    showWorkspace("field");
+    showWorkspace("scene");
     const auto seen = [this] { data_->studio.settings.setTourSeen(true); };
     showTour(*this, tourSteps(data_->studio), seen);
 }
@@ -248,6 +248,8 @@ void MainWindow::dropEvent(QDropEvent* event) {
     acceptDrag(*event);
     const auto files = localFiles(*event->mimeData());
     if (!files.empty()) {
+        for (const auto& one : data_->workspaces)
+            if (one->id() == data_->present && one->takeDrop(files)) return;
         openDropped(data_->studio, files);
         return;
     }

@@ -5,8 +5,10 @@
 #include "app/studio/document/notices.h"
 #include "app/studio/document/studio_document.h"
 #include "app/studio/document/studio_loop.h"
+#include "app/studio/output/projector_outputs.h"
 #include "app/studio/shell/commands.h"
 #include "app/studio/shell/settings.h"
+#include "app/studio/show/show_feed.h"
 #include "app/studio/viewport/render_thread.h"
 
 namespace lumorph::studio {
@@ -21,6 +23,8 @@ struct Studio {
     Desk desk{document, jobs, notices};
     Commands commands;
     RenderThread renderer;
+    ShowFeed show{loop, renderer, notices};
+    ProjectorOutputs outputs{document, show, commands, notices};
 };
 
 } // namespace lumorph::studio

@@ -18,7 +18,7 @@ struct TourStep {
     std::function<void()> run;
 };
 
-/// The first-run tour over the Field workspace, five steps.
+/// The first-run tour over the Scene workspace, five steps.
 [[nodiscard]] std::vector<TourStep> tourSteps(Studio& studio);
 
 /// Shows a tour over a window: each step lights its widget, which stays usable, beside a card with Back, Next and Skip

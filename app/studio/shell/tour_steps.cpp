@@ -1,59 +1,51 @@
+#include "app/studio/document/scene_edit.h"
 #include "app/studio/shell/tour.h"
-
-#include "core/base/error.h"
-#include "core/base/resources.h"
 
 namespace lumorph::studio {
 namespace {
 
-void openBundledTarget(Studio& studio) {
-    try {
-        studio.desk.openTarget(resourceFile("targets/bloom.glb"));
-    } catch (const Error& error) {
-        studio.notices.post("target", noticeOf(error));
-    }
+void showBoth(Studio& studio) {
+    studio.loop.resume();
+    studio.loop.setScenePlaying(true);
+    editScene(studio.document, "Show both", [](Scene& scene) { scene.showing = Showing::both; });
 }
 
-void matchLive(Studio& studio) {
-    studio.loop.setDancing(false);
-    studio.loop.resume();
-    studio.document.change("Match live", [](StudioState& state) {
-        state.matching.live = true;
-        state.playback.playing = true;
-    });
+void run(Studio& studio, const char* command) {
+    if (QAction* action = studio.commands.find(command)) action->trigger();
 }
 
 } // namespace
 
 std::vector<TourStep> tourSteps(Studio& studio) {
     return {
-        {{"field.viewport"},
-         "This is the tablet",
-         "A sheet of paper over six flaps, each lifted by a servo. Everything here is simulated, so nothing can break. "
-         "Drag to turn it, scroll to come closer.",
+        {{"scene.stage"},
+         "This is the show",
+         "A sheet of paper over six flaps, each lifted by a servo, and a projector that paints it. Everything here is "
+         "simulated, so nothing can break. Drag in a picture to lead the viewer around the device.",
          {},
          {}},
-        {{"dock.target"},
-         "Give it a shape",
-         "Drop a 3D model anywhere on the window, or open one here. It becomes the target: the shape that the tablet "
-         "tries to take.",
-         "Use petals that open and close",
-         [&studio] { openBundledTarget(studio); }},
-        {{"dock.match"},
-         "Watch it match",
-         "These numbers say how well the tablet takes the target's shape right now, and how long finding it took. "
-         "Colour on the model shows what is left out.",
-         "Match live",
-         [&studio] { matchLive(studio); }},
-        {{"dock.actuators"},
-         "Move it by hand",
-         "Each actuator has a slider. Pull one: the tablet stops following the target and holds what you set.",
-         "Let it dance",
-         [&studio] { studio.loop.setDancing(true); }},
-        {{"dock.field"},
-         "Look into the field",
-         "The field knows which places each actuator reaches at which level. Show it as voxels, cut it open, and click "
-         "a voxel to see its ramp.",
+        {{"scene.showing"},
+         "Servos, light, or both",
+         "Physical shows what the servos alone can do, Light what light alone can do. Together the servos take the "
+         "coarse shape, and light adds all that is too fine or too fast for them.",
+         "Show both",
+         [&studio] { showBoth(studio); }},
+        {{"dock.scene.outliner"},
+         "What is in the scene",
+         "Things that light draws, and below them device, table, projector and viewer. Add more here, or drop a glTF "
+         "model or a picture anywhere on the window.",
+         "Add a box",
+         [&studio] { run(studio, "scene.add.box"); }},
+        {{"dock.scene.inspector"},
+         "Change what you choose",
+         "What is chosen shows all its numbers here. Drag one sideways, or click and type it with its unit. Everything "
+         "can be taken back with Ctrl+Z.",
+         {},
+         {}},
+        {{"tab.field"},
+         "Match a shape",
+         "In the Field workspace the device takes the shape of any 3D model, and you see how well it can. The Rig "
+         "workspace tells what its actuators reach.",
          {},
          {}},
     };

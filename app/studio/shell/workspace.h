@@ -1,5 +1,6 @@
 #pragma once
 
+#include <filesystem>
 #include <vector>
 
 #include <QKeySequence>
@@ -33,6 +34,11 @@ public:
     [[nodiscard]] virtual std::vector<WorkspaceDock> makeDocks() = 0;
     /// Shown, or another one is; a hidden workspace draws nothing.
     virtual void setActive(bool active) = 0;
+    /// Files were dropped while it is shown; false: it has no use for them of its own.
+    virtual bool takeDrop(const std::vector<std::filesystem::path>& files) {
+        static_cast<void>(files);
+        return false;
+    }
 };
 
 } // namespace lumorph::studio

@@ -7,6 +7,7 @@
 #include <mutex>
 #include <vector>
 
+#include "app/studio/show/show_drawer.h"
 #include "app/studio/viewport/frame_drawer.h"
 #include "app/studio/viewport/gl_thread.h"
 #include "core/base/error.h"
@@ -24,6 +25,9 @@ struct PictureJob {
 
 QString reasonOf(const std::exception& error) { return QString::fromUtf8(error.what()); }
 
+/// After a frame of the show failed, frames are left out for so long: making the renderer anew takes time.
+constexpr std::chrono::seconds kShowPause{1};
+
 } // namespace
 
 struct RenderThread::Data {
@@ -31,21 +35,32 @@ struct RenderThread::Data {
 
     bool stillQuality = true; // the window thread's alone
 
+    /// In the render thread, the context being current.
+    struct Drawers {
+        FrameDrawer frames;
+        ShowDrawer show;
+    };
+
     // In the render thread:
     void run();
     void serve();
     void tell(std::optional<QString> why);
-    void step(FrameDrawer& drawer, std::unique_lock<std::mutex>& lock);
+    void step(Drawers& drawers, std::unique_lock<std::mutex>& lock);
+    [[nodiscard]] bool showIsNext() const;
+    /// Draws or collects; what is thrown becomes a complaint.
+    void serveShow(const std::function<void()>& draw);
+    void deliverShow(const ShowPace::Work& work, DrawnShow frame);
     void drawFrame(FrameDrawer& drawer, const FrameSchedule::Work& work);
     void drawPicture(FrameDrawer& drawer, const PictureJob& job);
     void deliver(const FrameSchedule::Work& work, DrawnFrame frame);
     void sleep(std::unique_lock<std::mutex>& lock);
     void complain(const QString& why);
-    void count(const FrameDrawer& drawer);
+    void count(const Drawers& drawers);
     bool shallGiveUp() {
         const std::lock_guard lock(mutex);
-        return stop || schedule.pressing();
+        return stop || pressing();
     }
+    [[nodiscard]] bool pressing() const { return schedule.pressing() || pace.pressing(); }
 
     void start(); ///< in the window's thread
 
@@ -57,12 +72,17 @@ struct RenderThread::Data {
     std::deque<PictureJob> pictures;
     std::map<int, DrawnFrame> frames;
     std::vector<int> forgotten;
+    ShowPace pace;
+    std::optional<DrawnShow> shown;
+    Clock::time_point showAgain; ///< after it failed
+    bool showsTurn = true;       ///< viewports and the show take turns
     std::optional<QString> failure;
     bool stop = false;
 
     std::atomic<std::size_t> objects{0};
     std::atomic<std::size_t> errors{0};
-    QString lastComplaint; ///< of the render thread only
+    QString lastComplaint;     ///< of the render thread only
+    QString lastShowComplaint; ///< likewise
     std::unique_ptr<GlThread> thread;
 };
 
@@ -90,41 +110,84 @@ void RenderThread::Data::run() {
 
 void RenderThread::Data::serve() {
     tell(std::nullopt);
-    FrameDrawer drawer(currentDriver(),
-                       [this](const FrameSchedule::Work& work, DrawnFrame frame) { deliver(work, std::move(frame)); });
+    const GlDriver driver = currentDriver();
+    Drawers drawers{
+        {driver, [this](const FrameSchedule::Work& work, DrawnFrame frame) { deliver(work, std::move(frame)); }},
+        {driver, [this](const ShowPace::Work& work, DrawnShow frame) { deliverShow(work, std::move(frame)); }}};
     std::unique_lock lock(mutex);
-    while (!stop) step(drawer, lock);
+    while (!stop) step(drawers, lock);
 }
 
-void RenderThread::Data::step(FrameDrawer& drawer, std::unique_lock<std::mutex>& lock) {
-    for (const int viewport : std::exchange(forgotten, {})) drawer.forget(viewport);
+bool RenderThread::Data::showIsNext() const { return pace.pressing() && (showsTurn || !schedule.pressing()); }
+
+void RenderThread::Data::step(Drawers& drawers, std::unique_lock<std::mutex>& lock) {
+    for (const int viewport : std::exchange(forgotten, {})) drawers.frames.forget(viewport);
+    const auto now = Clock::now();
     // Frames on the screen come before pictures, those before full quality.
-    if (!schedule.pressing() && !pictures.empty()) {
+    if (!pressing() && !pictures.empty()) {
         const PictureJob job = std::move(pictures.front());
         pictures.pop_front();
         lock.unlock();
-        drawPicture(drawer, job);
-    } else if (const auto work = schedule.next(Clock::now())) {
+        drawPicture(drawers.frames, job);
+    } else if (const auto show = showIsNext() ? pace.nextMoving() : std::nullopt) {
+        showsTurn = false;
         lock.unlock();
-        drawFrame(drawer, *work);
+        serveShow([&] { drawers.show.draw(*show); });
+        // The show may go on without a pause: what viewports have begun is not to wait for one.
+        drawers.frames.collect();
+    } else if (const auto work = schedule.next(now)) {
+        showsTurn = true;
+        lock.unlock();
+        drawFrame(drawers.frames, *work);
+        serveShow([&] { drawers.show.collect(); });
+    } else if (const auto still = pace.nextStill(now)) {
+        lock.unlock();
+        serveShow([&] { drawers.show.draw(*still); });
     } else {
         lock.unlock();
-        drawer.collect();
-        count(drawer);
+        drawers.frames.collect();
+        serveShow([&] { drawers.show.collect(); });
+        count(drawers);
         lock.lock();
         sleep(lock);
         return;
     }
-    count(drawer);
+    count(drawers);
     lock.lock();
 }
 
 void RenderThread::Data::sleep(std::unique_lock<std::mutex>& lock) {
-    const auto wanted = [&] { return stop || schedule.pressing() || !pictures.empty() || !forgotten.empty(); };
-    if (const auto until = schedule.nextAt())
+    const auto wanted = [&] { return stop || pressing() || !pictures.empty() || !forgotten.empty(); };
+    auto until = schedule.nextAt();
+    if (const auto still = pace.stillAt()) until = until ? std::min(*until, *still) : *still;
+    if (until)
         wake.wait_until(lock, *until, wanted);
     else
         wake.wait(lock, wanted);
+}
+
+void RenderThread::Data::serveShow(const std::function<void()>& draw) {
+    try {
+        draw();
+    } catch (const std::exception& error) {
+        const QString why = reasonOf(error);
+        {
+            const std::lock_guard lock(mutex);
+            showAgain = Clock::now() + kShowPause;
+            pace.forget();
+        }
+        if (why != std::exchange(lastShowComplaint, why)) emit owner.showBroke(why);
+    }
+}
+
+void RenderThread::Data::deliverShow(const ShowPace::Work& work, DrawnShow frame) {
+    lastShowComplaint.clear();
+    const std::lock_guard lock(mutex);
+    pace.finished(work, frame.ms.total);
+    // Told once for all frames that wait to be taken.
+    const bool told = shown.has_value();
+    shown = std::move(frame);
+    if (!told) emit owner.showDrawn();
 }
 
 void RenderThread::Data::drawFrame(FrameDrawer& drawer, const FrameSchedule::Work& work) {
@@ -165,8 +228,8 @@ void RenderThread::Data::complain(const QString& why) {
     emit owner.broke(why);
 }
 
-void RenderThread::Data::count(const FrameDrawer& drawer) {
-    objects = drawer.objectCount();
+void RenderThread::Data::count(const Drawers& drawers) {
+    objects = drawers.frames.objectCount() + drawers.show.objectCount();
     errors += FrameDrawer::takeErrors();
 }
 
@@ -231,6 +294,28 @@ void RenderThread::picture(FrameRequest request, std::function<void(QImage, QStr
         data_->pictures.push_back({std::move(request), std::move(done)});
     }
     data_->wake.notify_one();
+}
+
+void RenderThread::requestShow(ShowRequest request) {
+    std::erase_if(request.views, [](const WantedView& wanted) { return wanted.pixels.isEmpty(); });
+    for (WantedView& wanted : request.views) wanted.pixels = wanted.pixels.boundedTo({kMaxImageSide, kMaxImageSide});
+    request.refine = request.refine && data_->stillQuality;
+    const bool nothing = request.views.empty() || !request.match || !request.match->scene || !request.match->assets;
+    {
+        const std::lock_guard lock(data_->mutex);
+        if (nothing) {
+            data_->pace.forget();
+            data_->shown.reset();
+        } else if (Clock::now() >= data_->showAgain) {
+            data_->pace.request(std::move(request), Clock::now());
+        }
+    }
+    data_->wake.notify_one();
+}
+
+std::optional<DrawnShow> RenderThread::takeShow() {
+    const std::lock_guard lock(data_->mutex);
+    return std::exchange(data_->shown, std::nullopt);
 }
 
 std::size_t RenderThread::objectCount() const { return data_->objects; }

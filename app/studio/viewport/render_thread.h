@@ -9,6 +9,7 @@
 #include <QSize>
 #include <QString>
 
+#include "app/studio/show/show_request.h"
 #include "core/render/view_camera.h"
 #include "core/render/viewport_scene.h"
 
@@ -33,9 +34,10 @@ struct DrawnFrame {
     double milliseconds = 0.0;
 };
 
-/// Draws all viewports in a thread of its own with a context of its own that shares with the program's others. The
-/// newest request of each viewport counts; frames are read back and handed over, so that the window's thread only
-/// paints a picture and a dock that moves loses nothing. Made, used and destroyed in the window's thread.
+/// Draws all viewports, and the show, in a thread of its own with a context of its own that shares with the program's
+/// others. The newest request of each viewport and of the show counts; frames are read back and handed over, so that
+/// the window's thread only paints a picture and a dock that moves loses nothing. Made, used and destroyed in the
+/// window's thread.
 class RenderThread : public QObject {
     Q_OBJECT
 public:
@@ -60,6 +62,12 @@ public:
     /// when that failed.
     void picture(FrameRequest request, std::function<void(QImage, QString)> done);
 
+    /// Draws a frame of the show, all views of it; it takes turns with the viewports. Views without pixels are left
+    /// out; a request without views, scene or assets only takes the one before back.
+    void requestShow(ShowRequest request);
+    /// The newest frame of the show that was not taken yet.
+    [[nodiscard]] std::optional<DrawnShow> takeShow();
+
     /// For tests: OpenGL objects held by the renderer, and OpenGL errors since the start.
     [[nodiscard]] std::size_t objectCount() const;
     [[nodiscard]] std::size_t errorCount() const;
@@ -72,6 +80,9 @@ signals:
     void drawn(int viewport); ///< take it with `takeFrame`
     /// A frame could not be drawn; emitted once for a cause, not for every frame. Drawing goes on.
     void broke(const QString& why);
+    void showDrawn(); ///< take it with `takeShow`
+    /// The same as `broke` for a frame of the show. The next request tries again.
+    void showBroke(const QString& why);
 
 private:
     struct Data;

@@ -1,0 +1,272 @@
+#include "core/render/gl_objects.h"
+
+#include "app/studio/show/show_drawer.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <optional>
+
+#include "app/studio/show/show_frames.h"
+#include "app/studio/viewport/frame_reader.h"
+#include "core/loop/show_stage.h"
+#include "core/render/color_target.h"
+#include "core/render/spatial_renderer.h"
+
+namespace lumorph::studio {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+using Bend = ShowView::Bend;
+
+// What the eye pass needs so that a projector of usual size has a pixel for each of its own.
+constexpr double kExactEyePixels = 1280.0 * 800.0;
+constexpr glm::ivec2 kUsualEye{1280, 800};
+
+double since(Clock::time_point begun) {
+    return std::chrono::duration<double, std::milli>(Clock::now() - begun).count();
+}
+
+glm::ivec2 toVec(QSize size) { return {size.width(), size.height()}; }
+QSize toSize(glm::ivec2 size) { return {size.x, size.y}; }
+
+glm::ivec2 scaled(glm::ivec2 size, double share) {
+    return glm::max(glm::ivec2(glm::round(glm::dvec2(size) * share)), glm::ivec2(1));
+}
+
+bool showsEye(const WantedView& wanted) {
+    return wanted.view.kind == ShowView::Kind::eye || wanted.view.kind == ShowView::Kind::mask;
+}
+
+/// Pixels of the eye pass: those of its largest view, else of the largest view of the lab; more where a projector is
+/// wanted in all its pixels.
+glm::ivec2 eyeSize(const ShowPace::Work& work) {
+    glm::ivec2 size(0);
+    bool exact = false;
+    for (const bool eyes : {true, false})
+        for (const WantedView& wanted : work.request.views) {
+            exact = exact || wanted.view.exact;
+            if (wanted.view.kind == ShowView::Kind::projector || showsEye(wanted) != eyes) continue;
+            if (eyes || size == glm::ivec2(0)) size = glm::max(size, toVec(wanted.pixels));
+        }
+    if (size == glm::ivec2(0)) size = kUsualEye;
+    const double pixels = static_cast<double>(size.x) * size.y;
+    const double enough = exact ? std::max(1.0, std::sqrt(kExactEyePixels / pixels)) : 1.0;
+    return scaled(size, enough * work.resolution);
+}
+
+/// Room for the pictures of all projectors: that of the largest that is wanted; zero where one is wanted exactly.
+glm::ivec2 projectorRoom(const ShowRequest& request) {
+    glm::ivec2 room(0);
+    for (const WantedView& wanted : request.views) {
+        if (wanted.view.exact) return glm::ivec2(0);
+        room = glm::max(room, toVec(wanted.pixels));
+    }
+    return room;
+}
+
+bool needsProjectors(const ShowRequest& request) {
+    return std::any_of(request.views.begin(), request.views.end(),
+                       [](const WantedView& wanted) { return wanted.view.kind != ShowView::Kind::eye; });
+}
+
+QImage toQImage(const Image& image, QSize pixels) {
+    const QImage seen(reinterpret_cast<const uchar*>(image.pixels().data()), image.size().x, image.size().y,
+                      4 * static_cast<qsizetype>(image.size().x), QImage::Format_RGBX8888);
+    const QImage shown = seen.convertToFormat(QImage::Format_RGB32);
+    return shown.size() == pixels ? shown : shown.scaled(pixels);
+}
+
+/// What holds OpenGL objects.
+struct Objects {
+    SpatialRenderer renderer;
+    gl::Framebuffer source;          ///< a texture is attached to it while it is copied
+    std::map<int, ColorTarget> labs; ///< what lab views are drawn into
+    std::map<int, FrameReader> readers;
+};
+
+} // namespace
+
+struct ShowDrawer::Data {
+    Data(ReadBack how, Deliver told) : way(how), deliver(std::move(told)) {}
+
+    void pose(const ShowPace::Work& work);
+    void drawBend(const ShowPace::Work& work, Bend bend);
+    const ColorTarget& drawLab(const WantedView& wanted, const ShowFrame& frame, glm::ivec2 size);
+    void drawView(const WantedView& wanted, const ShowFrame& frame, double resolution);
+    void drawProjector(const WantedView& wanted, FrameReader& reader, const ShowFrame& frame);
+    void copyTexture(FrameReader& reader, unsigned texture, glm::ivec2 size, QSize pixels);
+    void addTimes(const SpatialTimes& times);
+    void dropUnwanted(const ShowRequest& request);
+    void collect();
+
+    ReadBack way;
+    Deliver deliver;
+    ImagePool pool;
+    ShowStage stage;
+    std::optional<Objects> objects;
+    std::optional<ShowPace::Work> under; ///< the work of the frame that is on its way
+    DrawnShow drawn;                     ///< that frame, as far as it has come
+    glm::ivec2 eyePixels{0};             ///< of its eye pass
+    Clock::time_point begun;
+    Clock::time_point delivered;
+};
+
+ShowDrawer::ShowDrawer(const GlDriver& driver, Deliver deliver)
+    : data_(std::make_unique<Data>(driver.software ? ReadBack::direct : ReadBack::buffered, std::move(deliver))) {}
+ShowDrawer::~ShowDrawer() = default;
+
+void ShowDrawer::Data::dropUnwanted(const ShowRequest& request) {
+    const auto unwanted = [&](const auto& entry) {
+        return std::none_of(request.views.begin(), request.views.end(),
+                            [&](const WantedView& wanted) { return wanted.id == entry.first; });
+    };
+    std::erase_if(objects->readers, unwanted);
+    std::erase_if(objects->labs, unwanted);
+}
+
+/// Posing costs a millisecond or two. It is done here, not in the loop: the loop makes more frames than are drawn, and
+/// must not wait; the window's thread must wait even less.
+void ShowDrawer::Data::pose(const ShowPace::Work& work) {
+    const auto from = Clock::now();
+    drawn = {};
+    drawn.match = work.request.match;
+    drawn.frame = std::make_shared<ShowFrame>(stage.frame(*work.request.match));
+    drawn.resolution = work.resolution;
+    drawn.still = work.still || work.resolution >= 1.0;
+    drawn.ms.pose = since(from);
+}
+
+void ShowDrawer::Data::copyTexture(FrameReader& reader, unsigned texture, glm::ivec2 size, QSize pixels) {
+    const unsigned target = reader.framebuffer(toSize(size));
+    glBindFramebuffer(GL_READ_FRAMEBUFFER, objects->source.name());
+    glFramebufferTexture2D(GL_READ_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, texture, 0);
+    glBindFramebuffer(GL_DRAW_FRAMEBUFFER, target);
+    if (texture == 0) {
+        // A projector that is switched off sends black.
+        constexpr std::array<float, 4> kBlack{0.0F, 0.0F, 0.0F, 1.0F};
+        glClearBufferfv(GL_COLOR, 0, kBlack.data());
+    } else {
+        glBlitFramebuffer(0, 0, size.x, size.y, 0, 0, size.x, size.y, GL_COLOR_BUFFER_BIT, GL_NEAREST);
+    }
+    glFramebufferTexture2D(GL_READ_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, 0, 0);
+    glBindFramebuffer(GL_FRAMEBUFFER, 0);
+    reader.start(pixels);
+}
+
+void ShowDrawer::Data::drawProjector(const WantedView& wanted, FrameReader& reader, const ShowFrame& frame) {
+    const std::size_t number = wanted.view.projector;
+    if (number >= frame.scene->projectors.size()) return;
+    const glm::ivec2 own = frame.scene->projectors[number].camera.size;
+    const glm::ivec2 shown = wanted.view.exact ? own : fittingSize(own, toVec(wanted.pixels));
+    copyTexture(reader, objects->renderer.projectorTexture(number), own, toSize(shown));
+}
+
+const ColorTarget& ShowDrawer::Data::drawLab(const WantedView& wanted, const ShowFrame& frame, glm::ivec2 size) {
+    auto found = objects->labs.find(wanted.id);
+    if (found != objects->labs.end() && found->second.size() != size) {
+        objects->labs.erase(found);
+        found = objects->labs.end();
+    }
+    if (found == objects->labs.end()) found = objects->labs.emplace(wanted.id, ColorTarget(size)).first;
+    objects->renderer.drawLab(found->second.framebuffer(), labCamera(frame, wanted.view.observer, size));
+    return found->second;
+}
+
+void ShowDrawer::Data::drawView(const WantedView& wanted, const ShowFrame& frame, double resolution) {
+    SpatialRenderer& renderer = objects->renderer;
+    if (wanted.view.kind == ShowView::Kind::mask) {
+        drawn.pictures.push_back({wanted.id, wanted.view, toQImage(renderer.readMask(), wanted.pixels)});
+        return;
+    }
+    FrameReader& reader = objects->readers.try_emplace(wanted.id, way, pool).first->second;
+    auto from = Clock::now();
+    if (wanted.view.kind == ShowView::Kind::lab) {
+        const ColorTarget& lab = drawLab(wanted, frame, scaled(toVec(wanted.pixels), resolution));
+        drawn.ms.lab += since(from);
+        from = Clock::now();
+        copyTexture(reader, lab.texture(), lab.size(), wanted.pixels);
+    } else if (wanted.view.kind == ShowView::Kind::eye) {
+        copyTexture(reader, renderer.eyeTexture(), eyePixels, wanted.pixels);
+    } else {
+        drawProjector(wanted, reader, frame);
+    }
+    drawn.ms.readBack += since(from);
+}
+
+void ShowDrawer::Data::addTimes(const SpatialTimes& times) {
+    drawn.ms.upload += times.upload;
+    drawn.ms.shadow += times.shadow;
+    drawn.ms.eye += times.eye;
+    drawn.ms.projectors += times.projectors;
+}
+
+void ShowDrawer::Data::drawBend(const ShowPace::Work& work, Bend bend) {
+    const ShowRequest& request = work.request;
+    ShowRequest some;
+    for (const WantedView& wanted : request.views)
+        if (wanted.view.bend == bend) some.views.push_back(wanted);
+    if (some.views.empty()) return;
+    const ShowFrame frame = withProjectorRoom(withBend(*drawn.frame, bend), projectorRoom(request), work.resolution);
+    if (needsProjectors(some))
+        objects->renderer.draw(frame);
+    else
+        objects->renderer.drawEye(frame);
+    addTimes(objects->renderer.times());
+    for (const WantedView& wanted : some.views) drawView(wanted, frame, work.resolution);
+}
+
+void ShowDrawer::Data::collect() {
+    if (!under) return;
+    const ShowPace::Work work = *std::exchange(under, std::nullopt);
+    const auto from = Clock::now();
+    for (const WantedView& wanted : work.request.views) {
+        const auto reader = objects->readers.find(wanted.id);
+        if (reader == objects->readers.end() || !reader->second.started()) continue;
+        drawn.pictures.push_back({wanted.id, wanted.view, reader->second.collect()});
+    }
+    drawn.ms.readBack += since(from);
+    drawn.warnings = objects->renderer.warnings();
+    // Frames overlap on a graphics card: what counts is how long this one kept the next from coming.
+    drawn.ms.total = since(std::max(begun, delivered));
+    delivered = Clock::now();
+    deliver(work, std::exchange(drawn, {}));
+}
+
+void ShowDrawer::draw(const ShowPace::Work& work) {
+    Data& data = *data_;
+    data.collect();
+    data.begun = Clock::now();
+    try {
+        if (!data.objects) data.objects.emplace();
+        data.dropUnwanted(work.request);
+        data.pose(work);
+        data.eyePixels = eyeSize(work);
+        data.objects->renderer.setMeasuring(work.request.measure);
+        data.objects->renderer.setEyeSize(data.eyePixels);
+        for (const Bend bend : {Bend::asItIs, Bend::atRest, Bend::forViewer}) data.drawBend(work, bend);
+    } catch (...) {
+        clear();
+        throw;
+    }
+    data.under = work;
+    if (data.way == ReadBack::direct) data.collect();
+}
+
+void ShowDrawer::collect() { data_->collect(); }
+
+void ShowDrawer::clear() {
+    data_->under.reset();
+    data_->objects.reset();
+}
+
+std::size_t ShowDrawer::objectCount() const {
+    if (!data_->objects) return 0;
+    std::size_t count = data_->objects->renderer.objectCount() + 1;
+    count += data_->objects->labs.size() * ColorTarget::kObjects;
+    for (const auto& [id, reader] : data_->objects->readers) count += reader.objectCount();
+    return count;
+}
+
+} // namespace lumorph::studio

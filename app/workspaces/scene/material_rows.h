@@ -1,0 +1,14 @@
+#pragma once
+
+#include "app/studio/shell/studio.h"
+#include "app/workspaces/scene/scene_form.h"
+
+namespace lumorph::studio {
+
+/// Everything of a material, in sections. `prefix` begins the names of its controls; `metres` says whether its pictures
+/// are mapped in metres; the sections are there only while `shown`.
+void addMaterialRows(SceneForm& form, Studio& studio, const QString& prefix, const Part<Material>& part,
+                     const std::function<bool(const Scene&)>& metres,
+                     const std::function<bool(const Scene&)>& shown = {});
+
+} // namespace lumorph::studio

@@ -1,0 +1,155 @@
+#include <algorithm>
+#include <cmath>
+
+#include <QLabel>
+#include <QTimer>
+
+#include "app/workspaces/scene/projector_pose.h"
+#include "app/workspaces/scene/projector_reach.h"
+#include "app/workspaces/scene/setup_rows.h"
+
+namespace lumorph::studio {
+
+namespace {
+
+constexpr double kFar = 20.0; ///< metres
+constexpr int kLookMilliseconds = 500;
+constexpr double kWorthTelling = 0.01; ///< share of the device
+
+SceneForm::NumberRow placeRow(const Part<SceneProjector>& projector, int axis) {
+    const QString letter(QChar::fromLatin1("xyz"[axis]));
+    return {
+        {"projector.position." + letter, QObject::tr("Position %1").arg(letter), QObject::tr("y is above the table")},
+        {Quantity::length, -kFar, kFar, axis == 1 ? 2.0 : 0.0, 0.01},
+        [projector, axis](const Scene& scene) -> std::optional<double> {
+            const SceneProjector* found = projector.read(scene);
+            return found ? std::optional(positionOf(found->camera)[axis]) : std::nullopt;
+        },
+        [projector, axis](Scene& scene, double value) {
+            SceneProjector* found = projector.write(scene);
+            if (!found) return;
+            glm::dvec3 position = positionOf(found->camera);
+            position[axis] = value;
+            carryTo(found->camera, position);
+        }};
+}
+
+SceneForm::NumberRow lookRow(const Part<SceneProjector>& projector, int axis) {
+    const QString letter(QChar::fromLatin1("xz"[axis]));
+    return {{"projector.look." + letter, QObject::tr("Looks at %1").arg(letter),
+             QObject::tr("Where the middle of its picture falls on the table")},
+            {Quantity::length, -kFar, kFar, 0.0, 0.01},
+            [projector, axis](const Scene& scene) -> std::optional<double> {
+                const SceneProjector* found = projector.read(scene);
+                const auto point = found ? lookPoint(found->camera) : std::nullopt;
+                return point ? std::optional((*point)[axis]) : std::nullopt;
+            },
+            [projector, axis](Scene& scene, double value) {
+                SceneProjector* found = projector.write(scene);
+                if (!found) return;
+                glm::dvec2 point = lookPoint(found->camera).value_or(glm::dvec2(0.0));
+                point[axis] = value;
+                lookAt(found->camera, point);
+            }};
+}
+
+QString warningOf(const ProjectorReach& reach) {
+    const auto percent = [](double share) { return QString::number(std::max(1.0, std::round(100.0 * share)), 'f', 0); };
+    if (reach.missed > 1.0 - kWorthTelling) return QObject::tr("Its light does not meet the device at all.");
+    QStringList told;
+    if (reach.missed > kWorthTelling)
+        told << QObject::tr("%1 % of the device lies outside its picture.").arg(percent(reach.missed));
+    if (reach.steep > kWorthTelling)
+        told << QObject::tr("%1 % is met at more than %2°, where light is dim and blurred.")
+                    .arg(percent(reach.steep))
+                    .arg(kSteepDegrees);
+    return told.join(' ');
+}
+
+/// What its light does not reach well, as the device stands now.
+void addWarning(SceneForm& form, Studio& studio, const Part<SceneProjector>& projector) {
+    QLabel* warning = form.sentence("projector.warning");
+    warning->setProperty("look", "warning");
+    const auto look = [warning, &studio, projector] {
+        const SceneProjector* found = projector.read(*studio.document.state().scene);
+        const auto& frame = studio.loop.frame();
+        QString text;
+        if (found && found->enabled && frame && frame->rig && frame->devicePositions)
+            text = warningOf(reachOf(found->camera, *frame->devicePositions, frame->rig->restMesh().triangles,
+                                     frame->worldFromDevice));
+        warning->setText(text);
+        warning->setVisible(!text.isEmpty());
+    };
+    auto* often = new QTimer(&form);
+    QObject::connect(often, &QTimer::timeout, &form, [&form, look] {
+        if (form.isVisible()) look();
+    });
+    often->start(kLookMilliseconds);
+    form.onRefresh([look](const Scene&) { look(); });
+}
+
+void addPlace(SceneForm& form, const Part<SceneProjector>& projector) {
+    form.section("projector.section.place", QObject::tr("Place"));
+    form.addNumbers(QObject::tr("Position"), {placeRow(projector, 0), placeRow(projector, 1), placeRow(projector, 2)});
+    form.addNumbers(QObject::tr("Looks at"), {lookRow(projector, 0), lookRow(projector, 1)});
+}
+
+void addLens(SceneForm& form, const Part<SceneProjector>& projector) {
+    form.section("projector.section.lens", QObject::tr("Lens"), false);
+    const auto camera = memberOf<CalibratedCamera>(
+        projector, [](auto& found) -> auto& { return found.camera; });
+    form.vector(
+        {"projector.size", QObject::tr("Pixels"), QObject::tr("Width and height of its picture")},
+        {Quantity::level, 16.0, 8192.0, 1920.0, 1.0}, "xy", camera, [](auto& lens) -> auto& { return lens.size; });
+    form.vector(
+        {"projector.focal", QObject::tr("Focal length"), QObject::tr("In pixels")},
+        {Quantity::plain, 1.0, 1e5, 1500.0, 10.0}, "xy", camera, [](auto& lens) -> auto& { return lens.focal; });
+    form.vector(
+        {"projector.principal", QObject::tr("Principal point"),
+         QObject::tr("In pixels from the middle of the top left one; a lens shift puts it outside")},
+        {Quantity::plain, -1e5, 1e5, 639.5, 1.0}, "xy", camera, [](auto& lens) -> auto& { return lens.principal; });
+    const char* const names[] = {"k1", "k2", "p1", "p2", "k3"};
+    for (std::size_t i = 0; i < 5; ++i)
+        form.number(
+            {QString("projector.distortion.") + names[i], QObject::tr("Distortion %1").arg(names[i]), {}},
+            {Quantity::plain, -10.0, 10.0, 0.0, 0.001},
+            camera, [i](auto& lens) -> auto& { return lens.distortion[i]; });
+}
+
+void addLight(SceneForm& form, const Part<SceneProjector>& projector) {
+    form.section("projector.section.light", QObject::tr("Light"), false);
+    form.number(
+        {"projector.peak", QObject::tr("Peak"),
+         QObject::tr("Full white, where 1 is white paper in the picture; more reaches slanting places")},
+        {Quantity::plain, 0.01, 100.0, 3.0, 0.1}, projector, [](auto& found) -> auto& { return found.peak; });
+    form.number(
+        {"projector.reference", QObject::tr("Measured at"), QObject::tr("The distance at which that holds")},
+        {Quantity::length, 0.05, kFar, 2.0, 0.01}, projector,
+        [](auto& found) -> auto& { return found.referenceDistance; });
+    form.number(
+        {"projector.gamma", QObject::tr("Gamma"), QObject::tr("0 is the curve of sRGB")},
+        {Quantity::plain, 0.0, 5.0, 0.0, 0.05}, projector, [](auto& found) -> auto& { return found.gamma; });
+    form.vector(
+        {"projector.gain", QObject::tr("Gain"), QObject::tr("Of red, green and blue, one against the others")},
+        {Quantity::share, 0.01, 10.0, 1.0}, "rgb", projector, [](auto& found) -> auto& { return found.gain; });
+    const auto scene = makePart<Scene>([](auto& all) { return &all; });
+    form.check(
+        {"projector.compensation", QObject::tr("Even out slant and distance"),
+         QObject::tr("Slanting and far places get more light, for all projectors")},
+        scene, [](auto& all) -> auto& { return all.compensation; });
+}
+
+} // namespace
+
+void addProjectorRows(SceneForm& form, Studio& studio, const Part<SceneProjector>& projector) {
+    form.check(
+        {"projector.enabled", QObject::tr("In use"), {}}, projector,
+        [](auto& found) -> auto& { return found.enabled; });
+    addWarning(form, studio, projector);
+    addPlace(form, projector);
+    addLens(form, projector);
+    addLight(form, projector);
+    form.endSection();
+}
+
+} // namespace lumorph::studio

@@ -1,0 +1,142 @@
+#include "app/workspaces/scene/scene_workspace.h"
+
+#include <algorithm>
+
+#include <QApplication>
+#include <QDropEvent>
+#include <QMimeData>
+#include <QPointer>
+
+#include "app/studio/document/scene_edit.h"
+#include "app/workspaces/scene/material_shelf.h"
+#include "app/workspaces/scene/outliner_model.h"
+#include "app/workspaces/scene/scene_commands.h"
+#include "app/workspaces/scene/scene_docks.h"
+#include "app/workspaces/scene/scene_stage.h"
+
+namespace lumorph::studio {
+
+namespace {
+
+bool endsWith(const std::filesystem::path& file, std::initializer_list<const char*> extensions) {
+    const QString extension = QString::fromStdString(file.extension().string()).toLower();
+    return std::any_of(extensions.begin(), extensions.end(), [&](const char* one) { return extension == one; });
+}
+
+} // namespace
+
+struct SceneWorkspace::Data : public QObject {
+    explicit Data(Studio& shared) : studio(shared) {}
+
+    void takeModel(const std::filesystem::path& file);
+    void takePicture(const std::filesystem::path& file);
+    /// A material of the library that is dropped on the stage.
+    bool eventFilter(QObject* watched, QEvent* event) override;
+
+    Studio& studio;
+    SceneSelection selection;
+    QPointer<SceneStage> stage;
+    bool active = false;
+};
+
+/// It comes in as light alone, and may become what the servos follow.
+void SceneWorkspace::Data::takeModel(const std::filesystem::path& file) {
+    int id = 0;
+    const QString name = QString::fromStdString(file.stem().string());
+    editScene(studio.document, tr("Add %1").arg(name), [&](Scene& scene) { id = addItem(scene, modelItem(file)); });
+    selection.chooseItem(id);
+    const auto drive = [this, id, name] {
+        editScene(studio.document, tr("Let the servos follow %1").arg(name),
+                  [id](Scene& scene) { setItemRole(scene, id, ItemRole::physical); });
+    };
+    studio.notices.post("scene", {Notice::Level::info,
+                                  name,
+                                  tr("Added as light only."),
+                                  tr("Shall the servos take its shape too?"),
+                                  {{tr("Make it the target"), drive}, {tr("Keep as light"), [] {}}}});
+}
+
+/// It goes to what is chosen where that has a surface, else to the device.
+bool SceneWorkspace::Data::eventFilter(QObject* watched, QEvent* event) {
+    const auto type = event->type();
+    if (type != QEvent::DragEnter && type != QEvent::DragMove && type != QEvent::Drop)
+        return QObject::eventFilter(watched, event);
+    auto* drop = static_cast<QDropEvent*>(event);
+    if (!drop->mimeData()->hasFormat(kMaterialMime)) return QObject::eventFilter(watched, event);
+    drop->acceptProposedAction();
+    const std::vector<Material> all = shelfMaterials();
+    const auto number = static_cast<std::size_t>(drop->mimeData()->data(kMaterialMime).toUInt());
+    if (type == QEvent::Drop && number < all.size() && !applyMaterial(studio, selection.choice(), all[number]))
+        applyMaterial(studio, {SceneChoice::Kind::device, 0}, all[number]);
+    return true;
+}
+
+/// It covers the device once.
+void SceneWorkspace::Data::takePicture(const std::filesystem::path& file) {
+    editScene(studio.document, tr("Show %1 on the device").arg(QString::fromStdString(file.filename().string())),
+              [&file](Scene& scene) {
+                  SceneTexture& texture = scene.device.material.colorTexture;
+                  texture = {};
+                  texture.image = std::filesystem::absolute(file).string();
+                  texture.tile = {0.21F, 0.15F};
+                  scene.device.material.color = glm::vec3(1.0F);
+                  scene.device.show = DeviceSkin::Show::material;
+              });
+    selection.choose({SceneChoice::Kind::device, 0});
+}
+
+SceneWorkspace::SceneWorkspace(Studio& studio) : data_(std::make_unique<Data>(studio)) {
+    addSceneCommands(studio, data_->selection, [this]() -> QWidget* {
+        return data_->stage ? data_->stage->window() : QApplication::activeWindow();
+    });
+}
+
+SceneWorkspace::~SceneWorkspace() = default;
+
+QString SceneWorkspace::id() const { return "scene"; }
+QString SceneWorkspace::title() const { return "Scene"; }
+
+QWidget* SceneWorkspace::makeCentralView() {
+    Data& data = *data_;
+    data.stage = new SceneStage(data.studio);
+    data.stage->setActive(data.active);
+    data.stage->setAcceptDrops(true);
+    data.stage->installEventFilter(&data);
+    connect(data.stage, &SceneStage::picked, &data.selection, &SceneSelection::chooseItem);
+    const auto mark = [&data] {
+        if (data.stage) data.stage->setSelected(data.selection.item());
+    };
+    connect(&data.selection, &SceneSelection::changed, data.stage, mark);
+    mark();
+    return data.stage;
+}
+
+std::vector<WorkspaceDock> SceneWorkspace::makeDocks() {
+    Data& data = *data_;
+    return {{"dock.scene.outliner", "Outliner", "scene", makeOutlinerDock(data.studio, data.selection),
+             Qt::LeftDockWidgetArea, false},
+            {"dock.scene.library", "Library", "library", makeLibraryDock(data.studio, data.selection),
+             Qt::LeftDockWidgetArea, true},
+            {"dock.scene.inspector", "Inspector", "settings", makeInspectorDock(data.studio, data.selection),
+             Qt::RightDockWidgetArea, false}};
+}
+
+void SceneWorkspace::setActive(bool active) {
+    data_->active = active;
+    if (data_->stage) data_->stage->setActive(active);
+}
+
+bool SceneWorkspace::takeDrop(const std::vector<std::filesystem::path>& files) {
+    const auto isModel = [](const auto& file) { return endsWith(file, {".glb", ".gltf"}); };
+    const auto isPicture = [](const auto& file) { return endsWith(file, {".png", ".jpg", ".jpeg"}); };
+    if (!std::all_of(files.begin(), files.end(), [&](const auto& file) { return isModel(file) || isPicture(file); }))
+        return false;
+    for (const auto& file : files)
+        if (isModel(file))
+            data_->takeModel(file);
+        else
+            data_->takePicture(file);
+    return true;
+}
+
+} // namespace lumorph::studio

@@ -1,0 +1,180 @@
+#include "app/workspaces/scene/setup_rows.h"
+
+#include <numbers>
+
+#include <QLabel>
+
+#include "app/workspaces/scene/euler.h"
+#include "app/workspaces/scene/material_rows.h"
+#include "app/workspaces/scene/repeated_rows.h"
+
+namespace lumorph::studio {
+
+namespace {
+
+constexpr double kFar = 20.0; ///< metres
+constexpr double kTurn = 2.0 * std::numbers::pi;
+
+Part<DeviceSkin> devicePart() {
+    return makePart<DeviceSkin>([](auto& scene) { return &scene.device; });
+}
+
+Part<Scene> whole() {
+    return makePart<Scene>([](auto& scene) { return &scene; });
+}
+
+bool always(const Scene& /*scene*/) { return true; }
+
+void addShrink(SceneForm& form, const Part<DeviceSkin>& device) {
+    form.section("device.section.optics", QObject::tr("Shrinking and holes"), false);
+    form.number(
+        {"device.shrink", QObject::tr("Shrink by"),
+         QObject::tr("The rim shows the table, so that the device looks smaller")},
+        {Quantity::share, 0.0, 0.9, 0.0}, device, [](auto& skin) -> auto& { return skin.shrink; });
+    addRepeatedRows<DeviceSkin::Hole>(
+        form, {"device.hole", QObject::tr("Hole"), QObject::tr("Add a hole")},
+        within<std::vector<DeviceSkin::Hole>>(device, [](auto& skin) { return &skin.holes; }),
+        [](SceneForm& rows, const Part<DeviceSkin::Hole>& hole, const QString& name) {
+            rows.vector(
+                {name + ".centre", QObject::tr("Middle"), QObject::tr("On the device at rest")},
+                {Quantity::length, -1.0, 1.0}, "xz", hole, [](auto& one) -> auto& { return one.centre; });
+            rows.number(
+                {name + ".radius", QObject::tr("Radius"), {}}, {Quantity::length, 1e-4, 1.0, 0.015}, hole,
+                [](auto& one) -> auto& { return one.radius; });
+        });
+}
+
+void addCreases(SceneForm& form, const Part<DeviceSkin>& device) {
+    form.section("device.section.creases", QObject::tr("Edges"), false);
+    const auto creases = memberOf<DeviceSkin::Creases>(
+        device, [](auto& skin) -> auto& { return skin.creases; });
+    form.number(
+        {"device.creases.emphasis", QObject::tr("Emphasis"),
+         QObject::tr("Above 0 edges are drawn sharp, below 0 they are blurred away")},
+        {Quantity::share, -1.0, 1.0, 0.0}, creases, [](auto& edge) -> auto& { return edge.emphasis; });
+    form.number(
+        {"device.creases.threshold", QObject::tr("From an angle of"), QObject::tr("What counts as an edge")},
+        {Quantity::angle, 0.0, std::numbers::pi, 8.0 * std::numbers::pi / 180.0}, creases,
+        [](auto& edge) -> auto& { return edge.threshold; });
+    form.number(
+        {"device.creases.width", QObject::tr("Width"), {}}, {Quantity::length, 1e-4, 0.1, 0.002, 0.0005}, creases,
+        [](auto& edge) -> auto& { return edge.width; });
+    form.color(
+        {"device.creases.color", QObject::tr("Edge colour"), {}}, creases,
+        [](auto& edge) -> auto& { return edge.color; });
+}
+
+/// Where the device lies while no tracker says so.
+void addDevicePlace(SceneForm& form) {
+    form.section("device.section.place", QObject::tr("Where it lies"), false);
+    std::vector<SceneForm::NumberRow> position;
+    std::vector<SceneForm::NumberRow> rotation;
+    const QStringList turns{QObject::tr("Heading"), QObject::tr("tilt"), QObject::tr("roll")};
+    for (int axis = 0; axis < 3; ++axis) {
+        const QString letter(QChar::fromLatin1("xyz"[axis]));
+        position.push_back(
+            {{"device.position." + letter, QObject::tr("Position %1").arg(letter), QObject::tr("On the table")},
+             {Quantity::length, -kFar, kFar},
+             [axis](const Scene& scene) { return std::optional<double>(scene.worldFromDevice[3][axis]); },
+             [axis](Scene& scene, double value) { scene.worldFromDevice[3][axis] = static_cast<float>(value); }});
+        rotation.push_back({{"device.rotation." + letter, turns[axis], {}},
+                            {Quantity::angle, -kTurn, kTurn},
+                            [axis](const Scene& scene) {
+                                const glm::dquat turned(glm::quat_cast(glm::mat3(scene.worldFromDevice)));
+                                return std::optional(headingTiltRoll(turned)[axis]);
+                            },
+                            [axis](Scene& scene, double value) {
+                                glm::dvec3 angles =
+                                    headingTiltRoll(glm::dquat(glm::quat_cast(glm::mat3(scene.worldFromDevice))));
+                                angles[axis] = value;
+                                const glm::vec4 origin = scene.worldFromDevice[3];
+                                scene.worldFromDevice = glm::mat4(glm::mat4_cast(fromHeadingTiltRoll(angles)));
+                                scene.worldFromDevice[3] = origin;
+                            }});
+    }
+    form.addNumbers(QObject::tr("Position"), position);
+    form.addNumbers(QObject::tr("Rotation"), rotation);
+    form.sentence("device.place.sentence", QObject::tr("A tracker that sees the device takes this over."));
+}
+
+} // namespace
+
+void addDeviceRows(SceneForm& form, Studio& studio) {
+    const auto device = devicePart();
+    form.segments(
+        {"device.show", QObject::tr("What the device shows"), {}},
+        {{"device.show.material", QObject::tr("Its material"), QObject::tr("And what lies on it")},
+         {"device.show.content", QObject::tr("Things alone"), QObject::tr("The device is a mere screen")}},
+        device, [](auto& skin) -> auto& { return skin.show; });
+    addMaterialRows(form, studio, "device.material",
+                    memberOf<Material>(
+                        device, [](auto& skin) -> auto& { return skin.material; }),
+                    always);
+    addCreases(form, device);
+    addShrink(form, device);
+    addDevicePlace(form);
+    form.endSection();
+}
+
+void addTableRows(SceneForm& form, Studio& studio) {
+    const auto table = makePart<Table>([](auto& scene) { return &scene.table; });
+    form.vector(
+        {"table.size", QObject::tr("Measures"), QObject::tr("Width and depth")},
+        {Quantity::length, 0.01, kFar, 1.0, 0.01}, "xz", table, [](auto& found) -> auto& { return found.size; });
+    addMaterialRows(form, studio, "table.material",
+                    memberOf<Material>(
+                        table, [](auto& found) -> auto& { return found.material; }),
+                    always);
+}
+
+void addViewerRows(SceneForm& form, Studio& studio) {
+    const auto scene = whole();
+    form.section("viewer.section.eye", QObject::tr("Simulated eye"));
+    form.vector(
+        {"viewer.eye", QObject::tr("Eye"), QObject::tr("Above the table; z towards the front")},
+        {Quantity::length, -kFar, kFar, 0.4, 0.01}, "xyz", scene, [](auto& all) -> auto& { return all.eye; });
+    QLabel* who = form.sentence("viewer.who");
+    const auto tell = [who, &studio] {
+        const auto& frame = studio.loop.frame();
+        who->setText(frame && !frame->viewer.empty()
+                         ? QObject::tr("The show follows %1.").arg(QString::fromStdString(frame->viewer))
+                         : QObject::tr("Nobody is tracked, so the show follows this eye."));
+    };
+    form.onRefresh([tell](const Scene&) { tell(); });
+    form.section("viewer.section.tracking", QObject::tr("Tracked viewers"));
+    form.choice(
+        {"viewer.choice", QObject::tr("Follow"), {}},
+        {QObject::tr("The nearest, calmly"), QObject::tr("The first who came"), QObject::tr("Always the nearest"),
+         QObject::tr("Nobody")},
+        scene, [](auto& all) -> auto& { return all.viewer; });
+    form.number(
+        {"viewer.prediction", QObject::tr("Look ahead"),
+         QObject::tr("The delay from tracker to light; heads are expected where they will be by then")},
+        {Quantity::seconds, 0.0, 0.15, 0.06, 0.005}, scene, [](auto& all) -> auto& { return all.predictionSeconds; });
+    form.section("viewer.section.dependence", QObject::tr("View-dependent shape"));
+    const auto rule = makePart<ViewDependence>([](auto& all) { return &all.viewDependence; });
+    form.check(
+        {"viewer.dependence", QObject::tr("The device bends towards the viewer"),
+         QObject::tr("Its far side rises while it is seen at a low angle")},
+        rule, [](auto& view) -> auto& { return view.on; });
+    form.number(
+        {"viewer.theta", QObject::tr("Largest bend"), QObject::tr("At grazing view; from above nothing bends")},
+        {Quantity::angle, 0.01, std::numbers::pi / 2.0, std::numbers::pi / 2.0}, rule,
+        [](auto& view) -> auto& { return view.theta; });
+    form.endSection();
+}
+
+void addRoomRows(SceneForm& form) {
+    const auto scene = whole();
+    form.color(
+        {"room.sky", QObject::tr("Sky"), QObject::tr("Light from everywhere")}, scene,
+        [](auto& all) -> auto& { return all.sky; });
+    form.number(
+        {"room.exposure", QObject::tr("Exposure"), {}}, {Quantity::plain, 0.01, 100.0, 1.0, 0.05}, scene,
+        [](auto& all) -> auto& { return all.exposure; });
+    form.check(
+        {"room.toneMapping", QObject::tr("Soft highlights"), QObject::tr("Else what is too bright is white")}, scene,
+        [](auto& all) -> auto& { return all.toneMapping; });
+}
+
+} // namespace lumorph::studio

@@ -1,0 +1,20 @@
+#pragma once
+
+#include <span>
+
+#include "calibration/lab/lab.h"
+#include "core/render/show_frame.h"
+
+namespace lumorph {
+
+/// The lab of a frame: the device as it is and its table, both white, and the scene's projectors with what they send
+/// out, one picture each (an empty one for a projector that is off). Surface 0 is the device, 1 the table. Throws
+/// InvalidInput when pictures and projectors do not agree.
+[[nodiscard]] LabWorld labWorld(const ShowFrame& frame, std::span<const Image> pictures);
+
+/// The device of a frame, world metres.
+[[nodiscard]] TriangleMesh deviceMesh(const ShowFrame& frame);
+/// The table as a flat mesh, world metres.
+[[nodiscard]] TriangleMesh tableMesh(const Table& table);
+
+} // namespace lumorph

@@ -1,0 +1,380 @@
+#include "core/render/eye_pass.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <string>
+
+#include <epoxy/gl.h>
+#include <glm/geometric.hpp>
+#include <glm/gtc/matrix_inverse.hpp>
+
+#include "core/base/error.h"
+#include "core/render/camera_uniforms.h"
+#include "core/render/eye_fog.h"
+#include "core/render/eye_lighting.h"
+#include "core/render/eye_materials.h"
+#include "core/render/eye_programs.h"
+#include "core/render/eye_shadow.h"
+#include "core/render/eye_skin.h"
+#include "core/render/eye_surfaces.h"
+
+namespace lumorph {
+namespace {
+
+using Stage = EyePrograms::Stage;
+
+constexpr glm::ivec2 kTableGrid{48, 36};
+constexpr float kBlurredLift = 0.004F;        // metres by which blurred folds keep off their own shadow
+constexpr float kNearSideStepsBack = 0.0025F; // metres
+constexpr float kFarthestCaster = 1.5F; // metres from the device's middle
+
+/// One thing to draw: a mesh, where it stands, and what it looks like.
+struct Thing {
+    const EyeMesh* mesh = nullptr;
+    glm::mat4 world{1.0F};
+    const Material* material = nullptr;
+    float opacity = 1.0F;
+    std::uint32_t features = 0;
+    float distance = 0.0F;
+    bool skin = false;
+};
+
+/// Where a frame is drawn to.
+struct View {
+    const CalibratedCamera* camera = nullptr;
+    DepthRange depth;
+    bool unseen = false;
+};
+
+void setFrontFace(const glm::mat4& world) { glFrontFace(glm::determinant(glm::mat3(world)) < 0.0F ? GL_CW : GL_CCW); }
+
+glm::vec3 encodedClear(const Scene& scene, bool unseen) {
+    return unseen ? glm::vec3(0.0F) : glm::clamp(0.5F * scene.sky * static_cast<float>(scene.exposure), 0.0F, 0.7F);
+}
+
+bool showsSkin(const ShowFrame& frame) { return frame.scene->device.show == DeviceSkin::Show::material; }
+
+void requireSize(glm::ivec2 size) {
+    if (size.x >= 1 && size.y >= 1) return;
+    throw InvalidInput("picture size " + std::to_string(size.x) + "x" + std::to_string(size.y),
+                       "the eye pass draws at least one pixel", "use 1 pixel a side or more");
+}
+
+// Others find the state as they know it.
+void finishDrawing() {
+    glBindSampler(eye_unit::shadowMap, 0);
+    glBindSampler(eye_unit::shadowDepth, 0);
+    glActiveTexture(GL_TEXTURE0);
+    glDisable(GL_FRAMEBUFFER_SRGB);
+    glDisable(GL_CULL_FACE);
+    glFrontFace(GL_CCW);
+    glUseProgram(0);
+}
+
+} // namespace
+
+struct EyePass::Data {
+    EyePrograms programs;
+    EyeMaterials materials;
+    EyeSurfaces surfaces;
+    EyeShadow shadow;
+    EyeLighting lighting;
+    EyeFog fog;
+    EyeMesh table;
+    glm::vec2 tableSize{0.0F};
+
+    void updateTable(glm::vec2 size);
+    [[nodiscard]] Box casters(const ShowFrame& frame) const;
+    void drawShadow(const ShowFrame& frame);
+    [[nodiscard]] Thing skinThing(const ShowFrame& frame, bool unseen) const;
+    [[nodiscard]] std::vector<Thing> itemThings(const ShowFrame& frame, const glm::vec3& eye) const;
+    void begin(const ShowFrame& frame, const View& view, unsigned framebuffer) const;
+    void draw(const ShowFrame& frame, const View& view, const Thing& thing);
+    void drawTable(const ShowFrame& frame, const View& view);
+    void drawCreases(const ShowFrame& frame, const View& view);
+    void drawBlended(const ShowFrame& frame, const View& view, std::vector<Thing> things);
+    [[nodiscard]] Box everything(const ShowFrame& frame) const;
+};
+
+EyePass::EyePass() : data_(std::make_unique<Data>()) {}
+EyePass::~EyePass() = default;
+EyePass::EyePass(EyePass&&) noexcept = default;
+EyePass& EyePass::operator=(EyePass&&) noexcept = default;
+
+// A grid, because a lens bends what is straight.
+void EyePass::Data::updateTable(glm::vec2 size) {
+    if (size == tableSize) return;
+    tableSize = size;
+    std::vector<glm::vec3> positions;
+    std::vector<glm::vec2> coordinates;
+    std::vector<glm::uvec3> triangles;
+    for (int row = 0; row <= kTableGrid.y; ++row)
+        for (int column = 0; column <= kTableGrid.x; ++column) {
+            const glm::vec2 at = size * (glm::vec2(column, row) / glm::vec2(kTableGrid) - 0.5F);
+            positions.emplace_back(at.x, 0.0F, at.y);
+            coordinates.push_back(at);
+        }
+    const auto width = static_cast<std::uint32_t>(kTableGrid.x) + 1;
+    for (std::uint32_t row = 0; row + 1 <= static_cast<std::uint32_t>(kTableGrid.y); ++row)
+        for (std::uint32_t column = 0; column + 1 < width; ++column) {
+            const std::uint32_t a = row * width + column;
+            triangles.emplace_back(a, a + width, a + width + 1);
+            triangles.emplace_back(a, a + width + 1, a + 1);
+        }
+    table.setTopology(triangles, coordinates);
+    table.setShape(positions, std::vector<glm::vec3>(positions.size(), glm::vec3(0.0F, 1.0F, 0.0F)));
+}
+
+// The device counts with all it can reach, so that its shadow does not swim while it moves.
+Box EyePass::Data::casters(const ShowFrame& frame) const {
+    Box box;
+    glm::vec3 middle(frame.worldFromDevice[3]);
+    if (frame.rig) {
+        box = movedBox(frame.rig->reach(), frame.worldFromDevice);
+        middle = box.centre();
+    }
+    for (const auto& item : surfaces.items()) box.include(item.box);
+    if (box.empty()) box.include(middle);
+    box.min = glm::max(box.min, middle - kFarthestCaster);
+    box.max = glm::min(box.max, middle + kFarthestCaster);
+    return box;
+}
+
+void EyePass::Data::drawShadow(const ShowFrame& frame) {
+    if (!lighting.shadowed()) return;
+    shadow.aim(*lighting.shadowed(), casters(frame));
+    shadow.draw([&](const glm::mat4& clipFromWorld) {
+        const auto drawCaster = [&](const Thing& thing) {
+            std::uint32_t features = thing.features & (eye_feature::skin | eye_feature::holes | eye_feature::holeMask |
+                                                       eye_feature::cutout | kMostRoundHoles << eye_feature::holeShift);
+            if (thing.opacity < 1.0F) features |= eye_feature::dither;
+            Program& program = programs.use(Stage::depth, features);
+            program.set("clipFromWorld", clipFromWorld);
+            program.set("worldFromMesh", thing.world);
+            program.set("castShare", thing.opacity);
+            materials.applyDepth(program, *thing.material, features);
+            if ((features & eye_feature::skin) != 0)
+                applySkin(program, frame.scene->device, surfaces.skinBoxAtRest(), frame.worldFromDevice);
+            setFrontFace(thing.world);
+            // The near side of closed things steps back: then most places of it are told lit at first sight, and what
+            // it covers its far side covers too.
+            const bool closed = (thing.features & (eye_feature::twoSided | eye_feature::holes)) == 0;
+            glDisable(GL_CULL_FACE);
+            program.set("stepBack", 0.0F);
+            if (closed) {
+                glEnable(GL_CULL_FACE);
+                glCullFace(GL_FRONT);
+                thing.mesh->draw();
+                glCullFace(GL_BACK);
+                program.set("stepBack", shadow.depthOf(kNearSideStepsBack));
+            }
+            thing.mesh->draw();
+        };
+        if (surfaces.hasSkin() && showsSkin(frame))
+            drawCaster(skinThing(frame, false));
+        for (const auto& item : surfaces.items())
+            if (frame.posed.surfaces[item.surface].castsShadow) {
+                const PosedSurface& surface = frame.posed.surfaces[item.surface];
+                const float own = surface.material.alpha == Material::Alpha::blend ? surface.material.opacity : 1.0F;
+                drawCaster({item.mesh, surface.worldFromSurface, &surface.material, own * surface.opacity,
+                            materials.features(surface.material) | eye_feature::twoSided, 0.0F});
+            }
+    });
+}
+
+Thing EyePass::Data::skinThing(const ShowFrame& frame, bool unseen) const {
+    const DeviceSkin& skin = frame.scene->device;
+    Thing thing{&surfaces.skin(), frame.worldFromDevice, &skin.material, 1.0F, materials.features(skin.material, unseen),
+                0.0F, true};
+    if (!unseen) thing.features |= skinFeatures(skin);
+    if (!unseen && skin.material.alpha == Material::Alpha::blend) {
+        thing.opacity = skin.material.opacity;
+        thing.features |= eye_feature::blend;
+    }
+    if (!surfaces.skinSource().closed()) thing.features |= eye_feature::twoSided;
+    return thing;
+}
+
+// Nearest first.
+std::vector<Thing> EyePass::Data::itemThings(const ShowFrame& frame, const glm::vec3& eye) const {
+    std::vector<Thing> things;
+    for (const auto& item : surfaces.items()) {
+        if (item.surface >= frame.posed.surfaces.size()) continue;
+        const PosedSurface& surface = frame.posed.surfaces[item.surface];
+        Thing thing{item.mesh, surface.worldFromSurface, &surface.material, surface.opacity,
+                    materials.features(surface.material) | eye_feature::twoSided,
+                    glm::distance(item.box.centre(), eye)};
+        if (surface.opacity < 1.0F || surface.material.alpha == Material::Alpha::blend)
+            thing.features |= eye_feature::blend;
+        things.push_back(thing);
+    }
+    std::sort(things.begin(), things.end(), [](const Thing& a, const Thing& b) { return a.distance < b.distance; });
+    return things;
+}
+
+Box EyePass::Data::everything(const ShowFrame& frame) const {
+    Box box;
+    const glm::vec2 half = 0.5F * frame.scene->table.size;
+    box.include(glm::vec3(-half.x, 0.0F, -half.y));
+    box.include(glm::vec3(half.x, 0.0F, half.y));
+    if (surfaces.hasSkin()) box.include(movedBox(surfaces.skinBoxAtDevice(), frame.worldFromDevice));
+    for (const auto& item : surfaces.items()) box.include(item.box);
+    return box;
+}
+
+void EyePass::Data::begin(const ShowFrame& frame, const View& view, unsigned framebuffer) const {
+    glBindFramebuffer(GL_FRAMEBUFFER, framebuffer);
+    glViewport(0, 0, view.camera->size.x, view.camera->size.y);
+    glDisable(GL_SCISSOR_TEST);
+    glDisable(GL_BLEND);
+    glEnable(GL_DEPTH_TEST);
+    glDepthFunc(GL_LESS);
+    glDepthMask(GL_TRUE);
+    glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+    glEnable(GL_FRAMEBUFFER_SRGB);
+    glClearDepth(1.0);
+    const glm::vec3 background = encodedClear(*frame.scene, view.unseen);
+    glClearColor(background.r, background.g, background.b, 1.0F);
+    glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+}
+
+void EyePass::Data::draw(const ShowFrame& frame, const View& view, const Thing& thing) {
+    const bool lit = (thing.features & eye_feature::unlit) == 0;
+    std::uint32_t features = thing.features | (lit ? lighting.features() : 0U);
+    if (!view.unseen) features |= fog.features();
+    Program& program = programs.use(Stage::surface, features);
+    setCamera(program, *view.camera, view.depth.near, view.depth.far);
+    program.set("eyePosition", glm::vec3(positionOf(*view.camera)));
+    program.set("worldFromSurface", thing.world);
+    program.set("normalFromSurface", glm::mat4(glm::inverseTranspose(glm::mat3(thing.world))));
+    lighting.apply(program);
+    if ((features & eye_feature::shadow) != 0) shadow.apply(program);
+    if ((features & eye_feature::fog) != 0) fog.apply(program);
+    const double blur = (features & eye_feature::skin) != 0 ? -frame.scene->device.creases.emphasis : 0.0;
+    program.set("shadowLift", kBlurredLift * static_cast<float>(std::clamp(blur, 0.0, 1.0)));
+    materials.apply(program, *thing.material, (features & eye_feature::blend) != 0 ? thing.opacity : 1.0F, features);
+    if ((features & (eye_feature::reflection | eye_feature::refraction)) != 0) {
+        materials.applyTable(program, frame.scene->table.material);
+        program.set("tableLight", lighting.onTable(glm::vec3(frame.worldFromDevice[3])));
+        program.set("tableHalf", 0.5F * frame.scene->table.size);
+        program.set("sky", frame.scene->sky);
+    }
+    if ((features & eye_feature::skin) != 0)
+        applySkin(program, frame.scene->device, surfaces.skinBoxAtRest(), frame.worldFromDevice);
+    if ((features & eye_feature::holesBelow) != 0)
+        applyHolesAbove(program, frame.scene->device, surfaces.skinBoxAtRest(), frame.worldFromDevice);
+    setFrontFace(thing.world);
+    const bool cull = (features & eye_feature::twoSided) == 0;
+    (cull ? glEnable : glDisable)(GL_CULL_FACE);
+    glCullFace(GL_BACK);
+    // Where an item lies in the device's own surface, the item is seen.
+    (thing.skin ? glEnable : glDisable)(GL_POLYGON_OFFSET_FILL);
+    glPolygonOffset(1.0F, 8.0F);
+    thing.mesh->draw();
+    glDisable(GL_POLYGON_OFFSET_FILL);
+}
+
+void EyePass::Data::drawTable(const ShowFrame& frame, const View& view) {
+    const Material& material = frame.scene->table.material;
+    std::uint32_t features =
+        materials.features(material, view.unseen) | eye_feature::planar | eye_feature::twoSided;
+    const bool throughHoles = surfaces.hasSkin() && showsSkin(frame) &&
+                              (skinThing(frame, view.unseen).features & eye_feature::holes) != 0;
+    if (throughHoles && lighting.shadowed() && (features & eye_feature::unlit) == 0)
+        features |= eye_feature::holesBelow;
+    draw(frame, view, {&table, glm::mat4(1.0F), &material, 1.0F, features, 0.0F});
+}
+
+// Ink upon the skin, a hair above it.
+void EyePass::Data::drawCreases(const ShowFrame& frame, const View& view) {
+    const EyeMesh* lines = surfaces.creases();
+    if (lines == nullptr || !surfaces.hasSkin()) return;
+    const std::uint32_t features = view.unseen ? eye_feature::skin : skinFeatures(frame.scene->device);
+    const DeviceSkin::Creases& creases = frame.scene->device.creases;
+    Program& program = programs.use(Stage::crease, features);
+    setCamera(program, *view.camera, view.depth.near, view.depth.far);
+    program.set("worldFromSurface", frame.worldFromDevice);
+    program.set("ink", glm::vec4(linearLight(creases.color), static_cast<float>(std::min(creases.emphasis, 1.0))));
+    lighting.apply(program);
+    applySkin(program, frame.scene->device, surfaces.skinBoxAtRest(), frame.worldFromDevice);
+    setFrontFace(frame.worldFromDevice);
+    glEnable(GL_CULL_FACE);
+    glCullFace(GL_BACK);
+    glEnable(GL_POLYGON_OFFSET_FILL);
+    glPolygonOffset(0.5F, 4.0F); // between the items and the skin, which steps back more
+    glDepthMask(GL_FALSE);
+    glEnable(GL_BLEND);
+    glBlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ZERO, GL_ONE);
+    lines->draw();
+    glDisable(GL_BLEND);
+    glDepthMask(GL_TRUE);
+    glDisable(GL_POLYGON_OFFSET_FILL);
+}
+
+// Farthest first; each fills the depth before its colour, so that its own far side does not shine through it.
+void EyePass::Data::drawBlended(const ShowFrame& frame, const View& view, std::vector<Thing> things) {
+    std::sort(things.begin(), things.end(), [](const Thing& a, const Thing& b) { return a.distance > b.distance; });
+    glBlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ZERO, GL_ONE);
+    for (const Thing& thing : things) {
+        glDisable(GL_BLEND);
+        glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
+        draw(frame, view, thing);
+        glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+        glEnable(GL_BLEND);
+        glDepthFunc(GL_LEQUAL);
+        draw(frame, view, thing);
+        glDepthFunc(GL_LESS);
+    }
+    glDisable(GL_BLEND);
+}
+
+void EyePass::prepare(const ShowFrame& frame) {
+    data_->materials.begin(frame.assets, frame.posed.seconds);
+    data_->surfaces.update(frame);
+    data_->updateTable(frame.scene->table.size);
+    data_->lighting = EyeLighting(*frame.scene, frame.posed.lights);
+    data_->lighting.setBounce(data_->lighting.onTable(glm::vec3(frame.worldFromDevice[3])) *
+                              data_->materials.meanColor(frame.scene->table.material));
+    data_->fog.update(frame.posed.fogs, data_->lighting.onTable(glm::vec3(frame.worldFromDevice[3])));
+    data_->drawShadow(frame);
+}
+
+void EyePass::draw(const ShowFrame& frame, const CalibratedCamera& camera, unsigned framebuffer) {
+    requireSize(camera.size);
+    const glm::vec3 eye(positionOf(camera));
+    const View view{&camera, depthRange(camera, data_->everything(frame)), false};
+    data_->begin(frame, view, framebuffer);
+    std::vector<Thing> things = data_->itemThings(frame, eye);
+    if (data_->surfaces.hasSkin() && showsSkin(frame)) {
+        things.push_back(data_->skinThing(frame, false));
+        things.back().distance = glm::distance(glm::vec3(frame.worldFromDevice[3]), eye);
+    }
+    const auto opaqueEnd = std::stable_partition(
+        things.begin(), things.end(), [](const Thing& thing) { return (thing.features & eye_feature::blend) == 0; });
+    for (auto thing = things.begin(); thing != opaqueEnd; ++thing) data_->draw(frame, view, *thing);
+    data_->drawTable(frame, view);
+    if (showsSkin(frame)) data_->drawCreases(frame, view);
+    data_->drawBlended(frame, view, {opaqueEnd, things.end()});
+    finishDrawing();
+}
+
+void EyePass::drawUnseen(const ShowFrame& frame, const CalibratedCamera& camera, unsigned framebuffer) {
+    requireSize(camera.size);
+    const View view{&camera, depthRange(camera, data_->everything(frame)), true};
+    data_->begin(frame, view, framebuffer);
+    if (data_->surfaces.hasSkin()) data_->draw(frame, view, data_->skinThing(frame, true));
+    data_->drawTable(frame, view);
+    data_->drawCreases(frame, view);
+    finishDrawing();
+}
+
+std::vector<std::string> EyePass::warnings() const { return data_->programs.warnings(); }
+
+std::size_t EyePass::objectCount() const noexcept {
+    return data_->programs.objectCount() + data_->materials.objectCount() + data_->surfaces.objectCount() +
+           data_->shadow.objectCount() + data_->fog.objectCount() + EyeMesh::kObjects;
+}
+
+} // namespace lumorph

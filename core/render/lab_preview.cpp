@@ -1,0 +1,115 @@
+#include "core/render/lab_preview.h"
+
+#include "core/render/draw_state.h"
+
+namespace lumorph {
+namespace {
+
+ShaderFiles litFiles(std::vector<std::string> defines) {
+    ShaderFiles files = shaderFiles({"version.glsl", "camera.glsl", "physical.vert"},
+                                    {"version.glsl", "camera.glsl", "physical_normal.glsl", "projector_light.glsl",
+                                     "projector_sight.glsl", "lab.frag"});
+    files.defines = std::move(defines);
+    return files;
+}
+
+ShaderFiles outFiles(std::vector<std::string> defines) {
+    ShaderFiles files = shaderFiles({"full_frame.vert"}, {"version.glsl", "lab_out.frag"});
+    files.defines = std::move(defines);
+    return files;
+}
+
+bool encodes(GLuint framebuffer) {
+    GLint encoding = GL_LINEAR;
+    glBindFramebuffer(GL_FRAMEBUFFER, framebuffer);
+    glGetFramebufferAttachmentParameteriv(GL_FRAMEBUFFER, framebuffer == 0 ? GL_BACK_LEFT : GL_COLOR_ATTACHMENT0,
+                                          GL_FRAMEBUFFER_ATTACHMENT_COLOR_ENCODING, &encoding);
+    return encoding == GL_SRGB;
+}
+
+} // namespace
+
+LabPreview::LabPreview()
+    : flat_(shaderFiles({"version.glsl", "camera.glsl", "physical.vert"}, {"version.glsl", "flat.frag"})),
+      deviceLight_(litFiles({})), tableLight_(litFiles({"TABLE"})), deviceMask_(litFiles({"MASK"})),
+      tableMask_(litFiles({"MASK", "TABLE"})), out_(outFiles({})), encodedOut_(outFiles({"ENCODE"})) {}
+
+void LabPreview::drawSurfaces(const Observer& observer, const DeviceSurface& device, float flat) {
+    glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+    flat_.use();
+    setCamera(flat_, observer.camera, observer.range.near, observer.range.far);
+    flat_.set("flatColor", glm::vec3(flat));
+    device.draw(flat_);
+    flat_.set("worldFromMesh", glm::mat4(1.0F));
+    table_.draw();
+}
+
+void LabPreview::addProjector(const Observer& observer, const DeviceSurface& device, const ProjectorTarget& projector,
+                              Program& deviceProgram, Program& tableProgram) {
+    for (Program* program : {&deviceProgram, &tableProgram}) {
+        program->use();
+        setCamera(*program, observer.camera, observer.range.near, observer.range.far);
+        program->set("viewerPosition", glm::vec3(positionOf(observer.camera)));
+        setLight(*program, projector.projector);
+        setSight(*program, projector, 0);
+        bindTexture(1, projector.sent.texture());
+        program->set("sent", 1);
+        program->set("gamma", static_cast<float>(projector.projector.gamma));
+        if (program == &deviceProgram) device.draw(*program);
+        if (program == &deviceProgram) continue;
+        program->set("worldFromMesh", glm::mat4(1.0F));
+        table_.draw();
+    }
+}
+
+void LabPreview::draw(GLuint framebuffer, const CalibratedCamera& observer, float ambient, const ShowFrame& frame,
+                      const DeviceSurface& device, std::span<const ProjectorTarget* const> projectors) {
+    if (!radiance_ || radiance_->size() != observer.size) radiance_.emplace(observer.size, GL_RGBA16F);
+    table_.fit(observer, frame.scene->table.size);
+    const Observer seen{observer, depthRange(observer, physicalBounds(frame))};
+    beginSurfaces(radiance_->framebuffer(), observer.size);
+    drawSurfaces(seen, device, ambient);
+    glDepthMask(GL_FALSE);
+    glEnable(GL_BLEND);
+    glBlendEquation(GL_FUNC_ADD);
+    glBlendFunc(GL_ONE, GL_ONE);
+    for (const ProjectorTarget* projector : projectors)
+        addProjector(seen, device, *projector, deviceLight_, tableLight_);
+
+    const bool encoding = encodes(framebuffer);
+    beginSurfaces(framebuffer, observer.size);
+    glDisable(GL_DEPTH_TEST);
+    if (encoding) glEnable(GL_FRAMEBUFFER_SRGB);
+    Program& out = encoding ? out_ : encodedOut_;
+    out.use();
+    bindTexture(0, radiance_->texture());
+    out.set("radiance", 0);
+    glBindVertexArray(noAttributes_.name());
+    glDrawArrays(GL_TRIANGLES, 0, 3);
+    glBindVertexArray(0);
+    glDisable(GL_FRAMEBUFFER_SRGB);
+}
+
+void LabPreview::drawMask(GLuint framebuffer, const CalibratedCamera& observer, const ShowFrame& frame,
+                          const DeviceSurface& device, std::span<const ProjectorTarget* const> projectors) {
+    table_.fit(observer, frame.scene->table.size);
+    const Observer seen{observer, depthRange(observer, physicalBounds(frame))};
+    beginSurfaces(framebuffer, observer.size);
+    drawSurfaces(seen, device, 0.0F);
+    glDepthMask(GL_FALSE);
+    glEnable(GL_BLEND);
+    glBlendEquation(GL_MAX);
+    for (const ProjectorTarget* projector : projectors) addProjector(seen, device, *projector, deviceMask_, tableMask_);
+    glBlendEquation(GL_FUNC_ADD);
+    glDisable(GL_BLEND);
+    glDepthMask(GL_TRUE);
+}
+
+std::size_t LabPreview::objectCount() const noexcept {
+    std::size_t count = 1 + TableGrid::kObjects + (radiance_ ? ColorTarget::kObjects : 0);
+    for (const Program* program : {&flat_, &deviceLight_, &tableLight_, &deviceMask_, &tableMask_, &out_, &encodedOut_})
+        count += program->objectCount();
+    return count;
+}
+
+} // namespace lumorph

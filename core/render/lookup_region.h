@@ -1,0 +1,45 @@
+#pragma once
+
+#include <array>
+#include <optional>
+
+#include <glm/vec2.hpp>
+
+#include "core/geometry/calibrated_camera.h"
+#include "core/render/show_frame.h"
+
+namespace lumorph {
+
+/// Pixels of an image, as OpenGL counts them: row 0 is the lowest, `high` is not included.
+struct PixelRectangle {
+    glm::ivec2 low{0};
+    glm::ivec2 high{0};
+    [[nodiscard]] bool empty() const noexcept { return low.x >= high.x || low.y >= high.y; }
+};
+
+/// Whether a table of this material looks different to every eye: it mirrors, bends light or shines. What does not must
+/// be drawn the same by both of the eye pass's ways, because the projector pass then takes the cheap one.
+[[nodiscard]] bool dependsOnEye(const Material& table);
+
+/// A part of the table, metres in x and z.
+struct TableArea {
+    glm::vec2 low{0.0F};
+    glm::vec2 high{0.0F};
+};
+
+/// Where on the table an eye sees another picture than the view-independent one: things that stand on the table or
+/// reach beyond the device, fog, a mirroring table. None: nowhere.
+[[nodiscard]] std::optional<TableArea> lookupArea(const ShowFrame& frame, const glm::vec3& eye);
+
+/// The camera of a second eye picture, of `size`, for an area that the first does not hold; none: it does.
+[[nodiscard]] std::optional<CalibratedCamera> tableLookup(const ShowFrame& frame, const glm::vec3& eye,
+                                                          const TableArea& area, const CalibratedCamera& first,
+                                                          glm::ivec2 size);
+
+/// A rectangle that holds the area, with room to fade out around it, in a projector's image.
+[[nodiscard]] PixelRectangle pixelsOf(const TableArea& area, const CalibratedCamera& projector);
+
+/// What is left of an image around a rectangle in it.
+[[nodiscard]] std::array<PixelRectangle, 4> around(const PixelRectangle& area, glm::ivec2 size);
+
+} // namespace lumorph

@@ -1,0 +1,107 @@
+#include "core/render/picture_textures.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string_view>
+#include <utility>
+
+#include <epoxy/gl.h>
+#include <glm/common.hpp>
+
+namespace lumorph {
+namespace {
+
+constexpr std::uint64_t kRoundsKept = 240; // a flip-book comes round again
+constexpr float kAnisotropy = 8.0F;
+
+Image cutOut(const Image& image, glm::ivec2 grid, int cell) {
+    const glm::ivec2 size = glm::max(image.size() / grid, glm::ivec2(1));
+    const glm::ivec2 corner = size * glm::ivec2(cell % grid.x, cell / grid.x);
+    Image piece(size);
+    for (int y = 0; y < size.y; ++y)
+        for (int x = 0; x < size.x; ++x)
+            piece.at(x, y) = image.at(std::min(corner.x + x, image.size().x - 1),
+                                      std::min(corner.y + y, image.size().y - 1));
+    return piece;
+}
+
+Image halved(const Image& image) {
+    Image half(glm::max(image.size() / 2, glm::ivec2(1)));
+    for (int y = 0; y < half.size().y; ++y)
+        for (int x = 0; x < half.size().x; ++x)
+            for (std::size_t c = 0; c < 4; ++c) {
+                const int right = std::min(2 * x + 1, image.size().x - 1);
+                const int below = std::min(2 * y + 1, image.size().y - 1);
+                half.at(x, y)[c] = static_cast<std::uint8_t>(
+                    (image.at(2 * x, 2 * y)[c] + image.at(right, 2 * y)[c] + image.at(2 * x, below)[c] +
+                     image.at(right, below)[c] + 2) /
+                    4);
+            }
+    return half;
+}
+
+// A processor that draws pays for every texel: a quarter of the frame between the finest filter and a plain one.
+bool drawnByProcessor() {
+    const auto* renderer = reinterpret_cast<const char*>(glGetString(GL_RENDERER));
+    const std::string_view name = renderer == nullptr ? "" : renderer;
+    return name.find("llvmpipe") != std::string_view::npos || name.find("softpipe") != std::string_view::npos;
+}
+
+void upload(GLuint texture, const Image& image, PictureTextures::Use use) {
+    const GLint format = use == PictureTextures::Use::color ? GL_SRGB8_ALPHA8 : GL_RGBA8;
+    glBindTexture(GL_TEXTURE_2D, texture);
+    glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
+    glTexImage2D(GL_TEXTURE_2D, 0, format, image.size().x, image.size().y, 0, GL_RGBA, GL_UNSIGNED_BYTE,
+                 image.pixels().data());
+    glGenerateMipmap(GL_TEXTURE_2D);
+    const bool slow = drawnByProcessor();
+    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, slow ? GL_LINEAR_MIPMAP_NEAREST : GL_LINEAR_MIPMAP_LINEAR);
+    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
+    if (!slow && epoxy_has_gl_extension("GL_EXT_texture_filter_anisotropic"))
+        glTexParameterf(GL_TEXTURE_2D, GL_TEXTURE_MAX_ANISOTROPY_EXT, kAnisotropy);
+    glBindTexture(GL_TEXTURE_2D, 0);
+}
+
+bool anyClear(const Image& image) {
+    return std::any_of(image.pixels().begin(), image.pixels().end(), [](const auto& pixel) { return pixel[3] < 255; });
+}
+
+// Some thousand pixels tell it well enough.
+glm::vec3 meanOf(const Image& image) {
+    const auto& pixels = image.pixels();
+    const std::size_t step = std::max<std::size_t>(pixels.size() / 4093, 1);
+    glm::dvec3 sum(0.0);
+    double count = 0.0;
+    for (std::size_t i = 0; i < pixels.size(); i += step, count += 1.0)
+        for (int c = 0; c < 3; ++c) sum[c] += std::pow(pixels[i][static_cast<std::size_t>(c)] / 255.0, 2.2);
+    return glm::vec3(sum / count);
+}
+
+} // namespace
+
+PictureTextures::Picture PictureTextures::picture(const std::shared_ptr<const Image>& image, Use use, glm::ivec2 grid,
+                                                  int cell) {
+    if (!image || image->size().x < 1 || image->size().y < 1) return {};
+    grid = glm::max(grid, glm::ivec2(1));
+    const bool whole = grid == glm::ivec2(1);
+    const auto [found, added] =
+        entries_.try_emplace({image.get(), use, whole ? 0 : grid.x, whole ? 0 : grid.y, whole ? 0 : cell});
+    Entry& entry = found->second;
+    entry.lastUse = round_;
+    if (!added) return entry.picture;
+    entry.image = image;
+    GLint largest = 0;
+    glGetIntegerv(GL_MAX_TEXTURE_SIZE, &largest);
+    Image shown = whole ? *image : cutOut(*image, grid, cell);
+    while (std::max(shown.size().x, shown.size().y) > largest) shown = halved(shown);
+    upload(entry.texture.name(), shown, use);
+    entry.picture = {entry.texture.name(), shown.size(), anyClear(*image), meanOf(shown)};
+    return entry.picture;
+}
+
+void PictureTextures::sweep() {
+    std::erase_if(entries_, [&](const auto& entry) { return entry.second.lastUse + kRoundsKept < round_; });
+    ++round_;
+}
+
+} // namespace lumorph

@@ -1,0 +1,54 @@
+#pragma once
+
+#include <map>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/render/eye_view.h"
+#include "core/render/lookup_region.h"
+#include "core/render/projector_target.h"
+
+namespace lumorph {
+
+/// The eye's pictures that a frame has: none in the view-independent mode, the table's only where it can differ from
+/// the view-independent picture.
+struct EyeViews {
+    const EyeView* device = nullptr;
+    const EyeView* table = nullptr;       ///< only with `device`
+    std::optional<TableArea> tableArea{}; ///< where the table is looked up in them; none: nowhere
+};
+
+/// Draws what projectors send out so that the eye sees its picture on device and table.
+class ProjectorPass {
+public:
+    ProjectorPass();
+
+    /// Fits the target's table grid and depth range to the frame and draws the depth of the device, and of the table
+    /// where others must know it.
+    void drawDepth(ProjectorTarget& target, const ShowFrame& frame, const DeviceSurface& device, bool withTable);
+    /// Weighs projectors against one another; all their depths are drawn.
+    void drawWeights(std::span<ProjectorTarget* const> targets, const DeviceSurface& device);
+    /// Draws the picture of one projector; depth, weights and `unseen` are drawn.
+    void draw(const ProjectorTarget& target, const ShowFrame& frame, const DeviceSurface& device,
+              const EyeViews& views);
+
+    [[nodiscard]] std::size_t objectCount() const noexcept;
+
+private:
+    /// A program for the device or the table; `defines` of projector.frag.
+    [[nodiscard]] Program& colorProgram(std::vector<std::string> defines, bool table);
+    [[nodiscard]] Program& plainProgram(std::vector<std::string> defines);
+    void setColor(Program& program, const ProjectorTarget& target, const ShowFrame& frame) const;
+    Program& beginLookup(const ProjectorTarget& target, const ShowFrame& frame, const EyeViews& views, bool table);
+    void drawTable(const ProjectorTarget& target, const ShowFrame& frame, const EyeViews& views);
+    void drawDistance(ProjectorTarget& target);
+    void addWeight(const ProjectorTarget& shown, const ProjectorTarget& weighed, const DeviceSurface& device);
+
+    gl::VertexArray noAttributes_;
+    Program depth_, edges_, distance_, deviceWeight_, tableWeight_;
+    std::map<std::vector<std::string>, Program> colors_, plain_;
+};
+
+} // namespace lumorph

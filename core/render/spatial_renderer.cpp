@@ -1,0 +1,252 @@
+#include "core/render/spatial_renderer.h"
+
+#include <chrono>
+#include <optional>
+
+#include "core/base/error.h"
+#include "core/render/draw_state.h"
+#include "core/render/lab_preview.h"
+#include "core/render/lookup_region.h"
+#include "core/render/projector_pass.h"
+
+namespace lumorph {
+namespace {
+
+void check(const ShowFrame& frame) {
+    if (frame.scene && frame.assets && frame.rig && frame.devicePositions) return;
+    throw InvalidInput("frame", "it lacks its scene, its pictures, its rig or the device's positions",
+                       "fill in all of them");
+}
+
+// Every name of GL this file draws with is given back in the state that Qt and the eye pass expect.
+void restoreState() {
+    glDisable(GL_FRAMEBUFFER_SRGB);
+    glDisable(GL_SCISSOR_TEST);
+    glDisable(GL_BLEND);
+    glDepthMask(GL_TRUE);
+    glDepthFunc(GL_LESS);
+    glUseProgram(0);
+    bindTexture(0, 0);
+    glBindFramebuffer(GL_FRAMEBUFFER, 0);
+}
+
+ShaderFiles depthFiles() {
+    return shaderFiles({"version.glsl", "camera.glsl", "physical.vert"}, {"version.glsl", "nothing.frag"});
+}
+
+} // namespace
+
+struct SpatialRenderer::Data {
+    EyePass pass;
+    glm::ivec2 eyeSize{1280, 800};
+    Program depthProgram{depthFiles()};
+    DeviceSurface device;
+    ProjectorPass projectorPass;
+    LabPreview lab;
+    std::optional<EyeView> eye;
+    std::optional<EyeView> table;
+    bool tableShown = false;
+    std::optional<TableArea> tableArea;
+    std::vector<std::optional<ProjectorTarget>> projectors;
+    std::optional<ShowFrame> frame;
+    bool eyeShown = false;
+    bool measuring = false;
+    SpatialTimes times;
+    std::string eyeProblem;
+
+    void beginFrame(const ShowFrame& next);
+    void drawEye(const glm::vec3& from);
+    void drawTableView(const glm::vec3& from);
+    void fitProjectors();
+    void drawProjectors();
+    [[nodiscard]] std::vector<ProjectorTarget*> enabled();
+    [[nodiscard]] std::vector<const ProjectorTarget*> lit() const;
+    double finish(std::chrono::steady_clock::time_point& since) const;
+};
+
+// Milliseconds since a moment, which becomes now.
+double SpatialRenderer::Data::finish(std::chrono::steady_clock::time_point& since) const {
+    if (measuring) glFinish();
+    const auto now = std::chrono::steady_clock::now();
+    const double took = std::chrono::duration<double, std::milli>(now - since).count();
+    since = now;
+    return took;
+}
+
+void SpatialRenderer::Data::beginFrame(const ShowFrame& next) {
+    check(next);
+    auto since = std::chrono::steady_clock::now();
+    device.update(next);
+    frame = next;
+    times = {};
+    times.upload = finish(since);
+    pass.prepare(next);
+    times.shadow = finish(since);
+}
+
+void SpatialRenderer::Data::drawEye(const glm::vec3& from) {
+    auto since = std::chrono::steady_clock::now();
+    eyeShown = false;
+    tableShown = false;
+    tableArea.reset();
+    eyeProblem.clear();
+    if (!eye) eye.emplace(eyeSize);
+    try {
+        eye->draw(pass, *frame, deviceView(*frame, from, eyeSize), device, depthProgram);
+        eyeShown = true;
+    } catch (const InvalidInput& error) { // too close to the device, or among it
+        eyeProblem = error.what();
+    }
+    times.eye = finish(since);
+}
+
+void SpatialRenderer::Data::drawTableView(const glm::vec3& from) {
+    auto since = std::chrono::steady_clock::now();
+    const glm::ivec2 size = glm::max(eyeSize / 2, 1);
+    tableArea = lookupArea(*frame, from);
+    if (!tableArea) return;
+    const auto camera = tableLookup(*frame, from, *tableArea, eye->camera(), size);
+    if (!camera) return;
+    if (!table) table.emplace(size);
+    table->draw(pass, *frame, *camera, device, depthProgram);
+    tableShown = true;
+    times.eye += finish(since);
+}
+
+void SpatialRenderer::Data::fitProjectors() {
+    const auto& wanted = frame->scene->projectors;
+    projectors.resize(wanted.size());
+    for (std::size_t i = 0; i < wanted.size(); ++i) {
+        if (!wanted[i].enabled) {
+            projectors[i].reset();
+            continue;
+        }
+        checkCamera(wanted[i].camera);
+        if (!projectors[i] || projectors[i]->sent.size() != wanted[i].camera.size) projectors[i].emplace(wanted[i]);
+        projectors[i]->projector = wanted[i];
+    }
+}
+
+std::vector<ProjectorTarget*> SpatialRenderer::Data::enabled() {
+    std::vector<ProjectorTarget*> targets;
+    for (auto& target : projectors)
+        if (target) targets.push_back(&*target);
+    return targets;
+}
+
+std::vector<const ProjectorTarget*> SpatialRenderer::Data::lit() const {
+    std::vector<const ProjectorTarget*> targets;
+    for (const auto& target : projectors)
+        if (target) targets.push_back(&*target);
+    return targets;
+}
+
+void SpatialRenderer::Data::drawProjectors() {
+    auto since = std::chrono::steady_clock::now();
+    const std::vector<ProjectorTarget*> targets = enabled();
+    for (ProjectorTarget* target : targets) {
+        glEnable(GL_FRAMEBUFFER_SRGB);
+        pass.drawUnseen(*frame, target->projector.camera, target->unseen.framebuffer());
+        projectorPass.drawDepth(*target, *frame, device, targets.size() > 1);
+        if (targets.size() < 2) target->blend.reset();
+    }
+    if (targets.size() > 1) projectorPass.drawWeights(targets, device);
+    EyeViews views;
+    if (frame->eye && eyeShown) views.device = &*eye;
+    if (views.device != nullptr && tableShown) views.table = &*table;
+    if (views.device != nullptr) views.tableArea = tableArea;
+    for (const ProjectorTarget* target : targets) projectorPass.draw(*target, *frame, device, views);
+    times.projectors = finish(since);
+}
+
+SpatialRenderer::SpatialRenderer() : data_(std::make_unique<Data>()) {}
+SpatialRenderer::~SpatialRenderer() = default;
+SpatialRenderer::SpatialRenderer(SpatialRenderer&&) noexcept = default;
+SpatialRenderer& SpatialRenderer::operator=(SpatialRenderer&&) noexcept = default;
+
+void SpatialRenderer::setEyeSize(glm::ivec2 size) {
+    if (size == data_->eyeSize) return;
+    data_->eyeSize = checkedTextureSize(size);
+    data_->eye.reset();
+    data_->table.reset();
+    data_->eyeShown = false;
+}
+
+void SpatialRenderer::setMeasuring(bool on) { data_->measuring = on; }
+
+void SpatialRenderer::drawEye(const ShowFrame& frame) {
+    auto since = std::chrono::steady_clock::now();
+    data_->beginFrame(frame);
+    data_->drawEye(frame.eye.value_or(frame.scene->eye));
+    restoreState();
+    data_->times.total = data_->finish(since);
+}
+
+void SpatialRenderer::draw(const ShowFrame& frame) {
+    auto since = std::chrono::steady_clock::now();
+    data_->beginFrame(frame);
+    data_->fitProjectors();
+    const glm::vec3 from = frame.eye.value_or(frame.scene->eye);
+    data_->drawEye(from);
+    if (frame.eye && data_->eyeShown && !data_->enabled().empty()) data_->drawTableView(from);
+    data_->drawProjectors();
+    restoreState();
+    data_->times.total = data_->finish(since);
+}
+
+unsigned SpatialRenderer::eyeTexture() const { return data_->eye ? data_->eye->picture().texture() : 0; }
+
+unsigned SpatialRenderer::projectorTexture(std::size_t projector) const {
+    const auto& targets = data_->projectors;
+    return projector < targets.size() && targets[projector] ? targets[projector]->sent.texture() : 0;
+}
+
+void SpatialRenderer::drawLab(unsigned framebuffer, const CalibratedCamera& observer, float ambient) {
+    if (!data_->frame) throw InvalidInput("lab", "no frame has been drawn yet", "draw one first");
+    checkCamera(observer);
+    data_->lab.draw(framebuffer, observer, ambient, *data_->frame, data_->device, data_->lit());
+    restoreState();
+}
+
+Image SpatialRenderer::readEye() const {
+    if (!data_->eye) throw InvalidInput("eye picture", "no frame has been drawn yet", "draw one first");
+    return data_->eye->picture().read();
+}
+
+Image SpatialRenderer::readProjector(std::size_t projector) const {
+    if (projectorTexture(projector) == 0)
+        throw InvalidInput("projector " + std::to_string(projector), "it has no picture", "enable it and draw a frame");
+    return data_->projectors[projector]->sent.read();
+}
+
+Image SpatialRenderer::readLab(const CalibratedCamera& observer, float ambient) {
+    const ColorTarget target(observer.size);
+    drawLab(target.framebuffer(), observer, ambient);
+    return target.read();
+}
+
+Image SpatialRenderer::readMask() {
+    if (!data_->eyeShown) throw InvalidInput("mask", "no picture for an eye has been drawn", "draw a frame first");
+    const ColorTarget target(data_->eyeSize);
+    data_->lab.drawMask(target.framebuffer(), data_->eye->camera(), *data_->frame, data_->device, data_->lit());
+    restoreState();
+    return target.read();
+}
+
+SpatialTimes SpatialRenderer::times() const { return data_->times; }
+
+std::vector<std::string> SpatialRenderer::warnings() const {
+    std::vector<std::string> warnings = data_->pass.warnings();
+    if (!data_->eyeProblem.empty()) warnings.push_back(data_->eyeProblem);
+    return warnings;
+}
+
+std::size_t SpatialRenderer::objectCount() const noexcept {
+    std::size_t count = data_->pass.objectCount() + data_->projectorPass.objectCount() + data_->lab.objectCount() +
+                        data_->depthProgram.objectCount() + DeviceSurface::kObjects;
+    for (const auto* view : {&data_->eye, &data_->table}) count += *view ? EyeView::kObjects : 0;
+    for (const auto& target : data_->projectors) count += target ? target->objectCount() : 0;
+    return count;
+}
+
+} // namespace lumorph

@@ -1,0 +1,3 @@
+// Depth alone. Piece before: version.glsl.
+
+void main() {}

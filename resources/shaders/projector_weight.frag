@@ -1,0 +1,25 @@
+// The weight of one projector (its sight and its light) at what another one shows, to be added up over all. Pieces
+// before: version.glsl, camera.glsl, physical_normal.glsl, projector_light.glsl, projector_sight.glsl. In: where the
+// projector that shows it stands; the distance from depth edges in the image of the one that is weighed (0 to 1); `own`
+// is 1 where they are the same. Out: its weight where they are the same, and its weight.
+
+uniform vec3 viewerPosition;
+uniform sampler2D openness;
+uniform float own;
+
+const float kBorder = 0.08; // of the image's shorter side, over which a projector fades out
+const float kLeast = 0.01;  // so that a point which only one projector reaches still gets its light
+
+out vec2 weight;
+
+void main() {
+    vec3 normal = faceTowards(viewerPosition);
+    Sight sight = sightOf(worldPosition, normal);
+    vec3 light = fullLight(worldPosition, normal);
+    float strength = max(light.r, max(light.g, light.b));
+    vec2 border = min(sight.uv, 1.0 - sight.uv) * sightSize / (kBorder * min(sightSize.x, sightSize.y));
+    float fade = smoothstep(0.0, 1.0, border.x) * smoothstep(0.0, 1.0, border.y) *
+                 smoothstep(0.25, 1.0, textureLod(openness, sight.uv, 0.0).r);
+    float value = strength * strength * (kLeast + fade) * max(sight.reached, own);
+    weight = vec2(own * value, value);
+}

@@ -1,0 +1,209 @@
+#include "app/studio/output/projector_window.h"
+
+#include <QGuiApplication>
+#include <QScreen>
+#include <QSignalSpy>
+#include <QTest>
+#include <QWindow>
+#include <gtest/gtest.h>
+
+#include "app/studio/output/projector_outputs.h"
+#include "app/studio/shell/escape_twice.h"
+#include "event_loop.h"
+#include "show_fixture.h"
+
+// Runs again at desktop scales 1.25 and 1.5.
+
+namespace lumorph::studio {
+namespace {
+
+using namespace std::chrono_literals;
+using test::eventually;
+
+/// The studio's parts that projector outputs need, without its window.
+class ProjectorOutput : public testing::Test {
+protected:
+    void SetUp() override {
+        StudioState state;
+        state.rig.rig = showFrame()->rig;
+        state.scene = showFrame()->scene;
+        state.assets = showFrame()->assets;
+        document.reset(state, {});
+        setProjectorSize(screenPixels());
+    }
+    void setProjectorSize(QSize size) {
+        document.change("Size", [size](StudioState& state) {
+            auto scene = std::make_shared<Scene>(*state.scene);
+            scene->projectors.front().camera.size = {size.width(), size.height()};
+            state.scene = scene;
+        });
+    }
+    /// What really is on the screen, asked from the display server.
+    static QImage onScreen() {
+        return QGuiApplication::primaryScreen()->grabWindow(0).toImage().convertToFormat(QImage::Format_RGB32);
+    }
+    static QSize screenPixels() { return onScreen().size(); }
+    static QString screenName() { return QGuiApplication::primaryScreen()->name(); }
+    ProjectorWindow* cover() {
+        outputs.showOnScreen(0, screenName());
+        ProjectorWindow* window = outputs.window(0);
+        if (window == nullptr) return nullptr;
+        EXPECT_TRUE(QTest::qWaitForWindowActive(window));
+        EXPECT_TRUE(eventually([&] { return window->isFullScreen(); }, 5s));
+        return window;
+    }
+
+    StudioDocument document;
+    StudioLoop loop{document};
+    Notices notices;
+    Commands commands;
+    RenderThread renderer;
+    ShowFeed feed{loop, renderer, notices};
+    ProjectorOutputs outputs{document, feed, commands, notices};
+};
+
+/// The grab without its dots per inch, which are none of our business.
+bool samePixels(const QImage& a, const QImage& b) {
+    if (a.size() != b.size()) return false;
+    for (int y = 0; y < a.height(); ++y)
+        for (int x = 0; x < a.width(); ++x)
+            if (((a.pixel(x, y) ^ b.pixel(x, y)) & 0xFFFFFFU) != 0) return false;
+    return true;
+}
+
+TEST_F(ProjectorOutput, OnePixelOfThePictureIsOnePixelOfTheScreen) {
+    outputs.setPattern(TestPattern::checkerboard);
+    ASSERT_NE(cover(), nullptr);
+    const QImage wanted = testPattern(TestPattern::checkerboard, screenPixels());
+    EXPECT_TRUE(eventually([&] { return samePixels(onScreen(), wanted); }, 5s))
+        << "at scale " << QGuiApplication::primaryScreen()->devicePixelRatio();
+    // The frame of the grid lies at the very edge.
+    outputs.setPattern(TestPattern::grid);
+    EXPECT_TRUE(eventually([&] { return samePixels(onScreen(), testPattern(TestPattern::grid, screenPixels())); }, 5s));
+    EXPECT_TRUE(notices.at("output").empty());
+}
+
+TEST_F(ProjectorOutput, AnotherSizeIsCentredAndNotScaled) {
+    const QSize screen = screenPixels();
+    const QSize small(screen.width() - 400, screen.height() - 200);
+    setProjectorSize(small);
+    outputs.setPattern(TestPattern::checkerboard);
+    ASSERT_NE(cover(), nullptr);
+    const QImage wanted = testPattern(TestPattern::checkerboard, small);
+    EXPECT_TRUE(
+        eventually([&] { return samePixels(onScreen().copy(200, 100, small.width(), small.height()), wanted); }, 5s));
+    EXPECT_EQ(onScreen().pixelColor(199, 500), QColor(Qt::black));
+    // The studio says so; the picture does not.
+    const auto told = notices.at("output");
+    ASSERT_EQ(told.size(), 1U);
+    EXPECT_TRUE(told.front().why.contains(QString::number(small.width()))) << told.front().why.toStdString();
+    // On request it is scaled.
+    outputs.setScaled(true);
+    EXPECT_TRUE(eventually([&] { return onScreen().pixelColor(screen.width() / 2, 20) != QColor(Qt::black); }, 5s));
+}
+
+TEST_F(ProjectorOutput, EscapeLeavesTheScreenAndTwiceStops) {
+    SteadyClock clock;
+    EscapeTwice escape(clock);
+    QSignalSpy stops(&escape, &EscapeTwice::pressed);
+    ProjectorWindow* window = cover();
+    ASSERT_NE(window, nullptr);
+    EXPECT_EQ(window->cursor().shape(), Qt::BlankCursor);
+    QTest::keyClick(window, Qt::Key_Escape);
+    EXPECT_TRUE(eventually([&] { return !window->isFullScreen(); }, 5s));
+    EXPECT_NE(window->cursor().shape(), Qt::BlankCursor);
+    EXPECT_TRUE(stops.isEmpty());
+    QTest::keyClick(window, Qt::Key_Escape);
+    EXPECT_EQ(stops.size(), 1);
+}
+
+TEST_F(ProjectorOutput, CommandsWorkWhileItHasTheKeyboard) {
+    int before = 0, after = 0;
+    commands.add("test.before", "Before", {{}, QKeySequence("Ctrl+J"), {}, {}, false}, [&] { ++before; });
+    ProjectorWindow* window = cover();
+    ASSERT_NE(window, nullptr);
+    commands.add("test.after", "After", {{}, QKeySequence("Ctrl+L"), {}, {}, false}, [&] { ++after; });
+    QTest::keyClick(window, Qt::Key_J, Qt::ControlModifier);
+    QTest::keyClick(window, Qt::Key_L, Qt::ControlModifier);
+    EXPECT_EQ(before, 1);
+    EXPECT_EQ(after, 1);
+}
+
+TEST_F(ProjectorOutput, AnUnpluggedScreenTurnsItIntoAWindowWithAWayBack) {
+    ProjectorWindow* window = cover();
+    ASSERT_NE(window, nullptr);
+    outputs.screenGone("another");
+    EXPECT_TRUE(window->isFullScreen());
+    outputs.screenGone(screenName());
+    EXPECT_TRUE(eventually([&] { return !window->isFullScreen() && window->isVisible(); }, 5s));
+    const auto told = notices.at("output");
+    ASSERT_EQ(told.size(), 1U);
+    EXPECT_TRUE(told.front().why.contains(screenName()));
+    ASSERT_EQ(told.front().actions.size(), 1U);
+    told.front().actions.front().run();
+    EXPECT_TRUE(eventually([&] { return window->isFullScreen(); }, 5s));
+}
+
+TEST_F(ProjectorOutput, TheStudiosOwnScreenIsNotCoveredWithoutAsking) {
+    QWidget studio;
+    studio.show();
+    ASSERT_TRUE(QTest::qWaitForWindowExposed(&studio));
+    outputs.showOnScreen(0, screenName());
+    EXPECT_EQ(outputs.window(0), nullptr);
+    const auto told = notices.at("output");
+    ASSERT_EQ(told.size(), 1U);
+    ASSERT_EQ(told.front().actions.size(), 2U);
+    told.front().actions.front().run();
+    ASSERT_NE(outputs.window(0), nullptr);
+    EXPECT_TRUE(eventually([&] { return outputs.window(0)->isFullScreen(); }, 5s));
+    // Once is enough.
+    outputs.close(0);
+    outputs.showOnScreen(0, screenName());
+    EXPECT_NE(outputs.window(0), nullptr);
+}
+
+TEST_F(ProjectorOutput, ItsNumberIsShownForAWhile) {
+    outputs.showInWindow(0);
+    outputs.setPattern(TestPattern::white);
+    ProjectorWindow* window = outputs.window(0);
+    ASSERT_NE(window, nullptr);
+    window->identify(50);
+    EXPECT_EQ(window->picture(), numberPicture(1, screenPixels()));
+    EXPECT_TRUE(eventually([&] { return window->picture() == testPattern(TestPattern::white, screenPixels()); }, 5s));
+}
+
+TEST_F(ProjectorOutput, TheScenesPictureComesInTheProjectorsPixels) {
+    setProjectorSize({800, 500});
+    outputs.showInWindow(0);
+    ProjectorWindow* window = outputs.window(0);
+    ASSERT_NE(window, nullptr);
+    EXPECT_TRUE(eventually([&] { return window->picture().size() == QSize(800, 500); }));
+    // The scene loses its projector, and gets it back.
+    document.change("Remove", [](StudioState& state) {
+        auto scene = std::make_shared<Scene>(*state.scene);
+        scene->projectors.clear();
+        state.scene = scene;
+    });
+    EXPECT_TRUE(eventually([&] { return window->picture().isNull(); }, 5s));
+    document.undoStack().undo();
+    EXPECT_TRUE(eventually([&] { return window->picture().size() == QSize(800, 500); }));
+    // Whoever closes the window closes the output.
+    window->close();
+    EXPECT_EQ(outputs.window(0), nullptr);
+}
+
+TEST(TestPatterns, AreWhatTheySay) {
+    const QImage ramp = testPattern(TestPattern::ramp, {1024, 4});
+    EXPECT_EQ(qRed(ramp.pixel(0, 0)), 0);
+    EXPECT_EQ(qRed(ramp.pixel(1023, 3)), 255);
+    EXPECT_EQ(qRed(ramp.pixel(512, 1)), 128);
+    const QImage board = testPattern(TestPattern::checkerboard, {5, 3});
+    for (int y = 0; y < 3; ++y)
+        for (int x = 0; x < 5; ++x) EXPECT_EQ(qRed(board.pixel(x, y)), (x + y) % 2 == 0 ? 255 : 0);
+    const QImage grid = testPattern(TestPattern::grid, {200, 100});
+    for (const QPoint corner : {QPoint(0, 0), QPoint(199, 0), QPoint(0, 99), QPoint(199, 99), QPoint(77, 0)})
+        EXPECT_EQ(grid.pixelColor(corner), QColor(Qt::white));
+}
+
+} // namespace
+} // namespace lumorph::studio

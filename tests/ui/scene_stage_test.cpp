@@ -1,0 +1,199 @@
+#include "app/workspaces/scene/scene_stage.h"
+
+#include <cmath>
+
+#include <QSignalSpy>
+
+#include "app/workspaces/scene/eye_orbit.h"
+#include "app/workspaces/scene/stage_bar.h"
+#include "app/workspaces/scene/stage_pane.h"
+#include "tests/ui/studio_window.h"
+
+namespace lumorph::test {
+namespace {
+
+using namespace std::chrono_literals;
+using studio::StagePane;
+
+class SceneStageTest : public testing::Test {
+protected:
+    void SetUp() override { window.window().showWorkspace("scene"); }
+
+    StagePane* pane(const char* name) {
+        auto* found = window.find<StagePane>(name);
+        EXPECT_TRUE(found && eventually([&] { return !found->picture().isNull(); })) << name;
+        return found;
+    }
+    void drag(StagePane* on, QPoint by, Qt::KeyboardModifiers held = {}, bool release = true) {
+        const QPoint from = on->rect().center();
+        QTest::mousePress(on, Qt::LeftButton, held, from);
+        for (int step = 1; step <= 10; ++step) {
+            QMouseEvent move(QEvent::MouseMove, QPointF(from + by * step / 10), on->mapToGlobal(from + by * step / 10),
+                             Qt::NoButton, Qt::LeftButton, held);
+            QApplication::sendEvent(on, &move);
+        }
+        if (release) QTest::mouseRelease(on, Qt::LeftButton, held, from + by);
+    }
+    glm::vec3 eye() { return window.state().scene->eye; }
+    glm::vec3 centre() {
+        return glm::vec3(window.state().scene->worldFromDevice *
+                         glm::vec4(window.state().rig.rig->reach().centre(), 1.0F));
+    }
+    void stopTime() {
+        window.studio().loop.setScenePlaying(false);
+        pass(300ms);
+    }
+
+    TemporaryFolder folder;
+    StudioWindow window{folder.path()};
+};
+
+double difference(const QImage& a, const QImage& b) {
+    if (a.size() != b.size()) return 1.0;
+    int differing = 0;
+    for (int y = 0; y < a.height(); ++y)
+        for (int x = 0; x < a.width(); ++x) {
+            const QRgb p = a.pixel(x, y), q = b.pixel(x, y);
+            differing +=
+                std::abs(qRed(p) - qRed(q)) + std::abs(qGreen(p) - qGreen(q)) + std::abs(qBlue(p) - qBlue(q)) > 24;
+        }
+    return static_cast<double>(differing) / (a.width() * a.height());
+}
+
+TEST_F(SceneStageTest, ADragLeadsTheEyeAroundAndIsOneStepOfUndo) {
+    auto* lab = pane("scene.lab");
+    stopTime();
+    const glm::vec3 before = eye();
+    const studio::EyePlace from = studio::placeOf(before, centre());
+    const QImage picture = lab->picture().copy();
+    const int steps = window.studio().document.undoStack().index();
+    // A drag over the view's height is half a turn.
+    const QPoint by(-lab->height() / 6, -lab->height() / 18);
+    drag(lab, by);
+    const studio::EyePlace to = studio::placeOf(eye(), centre());
+    EXPECT_NEAR(to.azimuth.inDegrees() - from.azimuth.inDegrees(), 30.0, 0.5);
+    EXPECT_NEAR(to.elevation.inDegrees() - from.elevation.inDegrees(), -10.0, 0.5);
+    EXPECT_NEAR(to.distance, from.distance, 1e-4);
+    EXPECT_TRUE(eventually([&] { return difference(lab->picture(), picture) > 0.05; }, 10s));
+    EXPECT_EQ(window.studio().document.undoStack().index(), steps + 1);
+    window.studio().document.undoStack().undo();
+    EXPECT_EQ(eye(), before);
+    EXPECT_TRUE(eventually([&] { return difference(lab->picture(), picture) < 0.02; }, 10s));
+}
+
+TEST_F(SceneStageTest, EscapeTakesADragBack) {
+    auto* picture = pane("scene.eye");
+    const glm::vec3 before = eye();
+    const int steps = window.studio().document.undoStack().index();
+    drag(picture, {60, -20}, {}, false);
+    EXPECT_NE(eye(), before);
+    picture->setFocus();
+    QTest::keyClick(picture, Qt::Key_Escape);
+    EXPECT_EQ(eye(), before);
+    QTest::mouseRelease(picture, Qt::LeftButton, {}, picture->rect().center());
+    EXPECT_EQ(window.studio().document.undoStack().index(), steps);
+}
+
+TEST_F(SceneStageTest, TheEyeStaysAboveTheTableAndWithinReach) {
+    auto* picture = pane("scene.eye");
+    drag(picture, {0, -3 * picture->height()});
+    EXPECT_NEAR(studio::placeOf(eye(), centre()).elevation.inDegrees(), studio::kLowestElevation, 0.01);
+    drag(picture, {0, 3 * picture->height()});
+    EXPECT_NEAR(studio::placeOf(eye(), centre()).elevation.inDegrees(), studio::kHighestElevation, 0.01);
+    for (const int notches : {-40, 40}) {
+        QWheelEvent wheel(picture->rect().center(), picture->mapToGlobal(picture->rect().center()), {},
+                          QPoint(0, 120 * notches), {}, {}, Qt::NoScrollPhase, false);
+        QApplication::sendEvent(picture, &wheel);
+        EXPECT_NEAR(studio::placeOf(eye(), centre()).distance, notches > 0 ? studio::kNearestEye : studio::kFarthestEye,
+                    1e-4);
+    }
+}
+
+TEST_F(SceneStageTest, TheObserverMovesAloneInTheLab) {
+    auto* lab = pane("scene.lab");
+    auto* seen = pane("scene.eye");
+    stopTime();
+    ASSERT_TRUE(eventually([&] { return window.studio().show.newest().still; }, 10s));
+    const glm::vec3 before = eye();
+    const QImage labBefore = lab->picture().copy(), eyeBefore = seen->picture().copy();
+    drag(lab, {lab->height() / 4, -20}, Qt::ControlModifier);
+    EXPECT_EQ(eye(), before);
+    EXPECT_TRUE(eventually([&] { return difference(lab->picture(), labBefore) > 0.05; }, 10s));
+    ASSERT_TRUE(eventually([&] { return window.studio().show.newest().still; }, 10s));
+    EXPECT_LT(difference(seen->picture(), eyeBefore), 0.02);
+    // Back to the viewer's own eye.
+    window.studio().commands.find("scene.elsewhere")->setChecked(false);
+    EXPECT_TRUE(eventually([&] { return difference(lab->picture(), labBefore) < 0.02; }, 10s));
+}
+
+TEST_F(SceneStageTest, EveryArrangementShowsItsPictures) {
+    const auto shown = [&](const char* name) { return window.findNow<QWidget>(name) != nullptr; };
+    (void)pane("scene.lab");
+    struct Row {
+        const char* command;
+        std::vector<const char*> visible;
+        std::vector<const char*> hidden;
+    };
+    for (const Row& row : {Row{"scene.showEye", {"scene.eye"}, {"scene.lab", "scene.projector", "scene.viewport"}},
+                           Row{"scene.showProjector", {"scene.projector"}, {"scene.lab", "scene.eye"}},
+                           Row{"scene.showDevice", {"scene.viewport"}, {"scene.lab", "scene.eye"}},
+                           Row{"scene.showAll", {"scene.lab", "scene.eye", "scene.projector", "scene.viewport"}, {}},
+                           Row{"scene.compare", {"scene.cropped", "scene.uncropped"}, {"scene.lab", "scene.eye"}},
+                           Row{"scene.showLab", {"scene.lab", "scene.eye"}, {"scene.projector", "scene.viewport"}}}) {
+        window.studio().commands.find(row.command)->trigger();
+        for (const char* name : row.visible) EXPECT_TRUE(shown(name)) << row.command << " " << name;
+        for (const char* name : row.hidden) EXPECT_FALSE(shown(name)) << row.command << " " << name;
+        for (const char* name : row.visible)
+            if (std::string(name) != "scene.viewport") (void)pane(name);
+        window.screenshot(QString("stage-") + row.command);
+    }
+    auto* lab = pane("scene.lab");
+    QTest::mouseDClick(lab, Qt::LeftButton, {}, lab->rect().center());
+    EXPECT_FALSE(shown("scene.eye"));
+    QTest::mouseDClick(lab, Qt::LeftButton, {}, lab->rect().center());
+    EXPECT_TRUE(shown("scene.eye"));
+}
+
+TEST_F(SceneStageTest, AHiddenStageDrawsNothing) {
+    (void)pane("scene.lab");
+    window.window().showWorkspace("field");
+    pass(500ms);
+    const auto count = window.studio().show.count();
+    pass(500ms);
+    EXPECT_EQ(window.studio().show.count(), count);
+}
+
+TEST_F(SceneStageTest, PlayingAndOrbitingNeverStallTheWindow) {
+    auto* lab = pane("scene.lab");
+    window.studio().commands.find("scene.showAll")->trigger();
+    window.studio().outputs.showInWindow(0);
+    window.studio().loop.setScenePlaying(true);
+    pass(2s);
+    StallWatch watch;
+    (void)watch.takeLongest();
+    const auto before = window.studio().show.count();
+    QElapsedTimer time;
+    time.start();
+    const QPoint from = lab->rect().center();
+    QTest::mousePress(lab, Qt::LeftButton, {}, from);
+    const int seconds = 6 * soakFactor();
+    for (int step = 0; time.elapsed() < 1000 * seconds; ++step) {
+        const QPoint at = from + QPoint(step % 200 - 100, (step / 3) % 60 - 30);
+        QMouseEvent move(QEvent::MouseMove, QPointF(at), lab->mapToGlobal(at), Qt::NoButton, Qt::LeftButton, {});
+        QApplication::sendEvent(lab, &move);
+        pass(10ms);
+    }
+    QTest::mouseRelease(lab, Qt::LeftButton, {}, from);
+    const double rate = static_cast<double>(window.studio().show.count() - before) * 1000.0 / time.elapsed();
+    const double stall = watch.takeLongest();
+    RecordProperty("pictures_per_second", std::to_string(rate));
+    RecordProperty("longest_stall_ms", std::to_string(stall));
+    std::printf("%.1f pictures a second, longest stall %.0f ms\n", rate, stall);
+    EXPECT_LE(stall, 100.0);
+    EXPECT_GT(rate, 3.0);
+    EXPECT_EQ(window.studio().renderer.errorCount(), 0U);
+    window.screenshot("stage-orbiting");
+}
+
+} // namespace
+} // namespace lumorph::test

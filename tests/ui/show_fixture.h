@@ -1,0 +1,46 @@
+#pragma once
+
+#include <memory>
+
+#include "app/studio/show/show_request.h"
+#include "core/base/resources.h"
+#include "core/rig/rig_file.h"
+#include "core/scene/scene_assets.h"
+
+namespace lumorph::studio {
+
+/// The bundled tablet in the default scene with one red box above it, as a frame of the loop. `shift` moves the box
+/// along x, metres.
+[[nodiscard]] inline std::shared_ptr<MatchFrame> showFrame(float shift = 0.0F, std::uint64_t number = 1) {
+    static const auto rig = std::make_shared<const Rig>(readRig(resourceFile("models/tablet.glb")));
+    static const auto rest = std::make_shared<const std::vector<glm::vec3>>(rig->restMesh().positions);
+    auto scene = std::make_shared<Scene>(defaultScene());
+    SceneItem box;
+    box.id = 900;
+    box.name = "Box";
+    box.position = {shift, rig->reach().max.y + 0.02F, 0.0F};
+    box.material.color = {0.9F, 0.02F, 0.02F};
+    box.kind = ShapeItem{ShapeItem::Form::box, glm::vec3(0.03F)};
+    scene->items.push_back(box);
+    auto frame = std::make_shared<MatchFrame>();
+    frame->number = number;
+    frame->time = SteadyClock().now();
+    frame->rig = rig;
+    frame->devicePositions = rest;
+    frame->estimatedStrokes.assign(rig->actuatorCount(), 0.0);
+    frame->worldFromDevice = scene->worldFromDevice;
+    frame->eye = scene->eye;
+    frame->assets = loadSceneAssets(*scene, {});
+    frame->scene = std::move(scene);
+    return frame;
+}
+
+[[nodiscard]] inline WantedView wantedView(int id, ShowView::Kind kind, QSize pixels) {
+    WantedView wanted;
+    wanted.id = id;
+    wanted.view.kind = kind;
+    wanted.pixels = pixels;
+    return wanted;
+}
+
+} // namespace lumorph::studio

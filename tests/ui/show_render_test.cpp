@@ -1,0 +1,254 @@
+#include "app/studio/viewport/render_thread.h"
+
+#include <cmath>
+#include <cstdlib>
+#include <map>
+
+#include <QSignalSpy>
+
+#include "app/studio/show/show_frames.h"
+#include "app/studio/show/show_pace.h"
+#include "app/workspaces/scene/item_pick.h"
+#include "core/geometry/calibrated_camera.h"
+#include "core/loop/show_stage.h"
+#include "show_fixture.h"
+#include "studio_window.h"
+#include "viewport_fixture.h"
+
+namespace lumorph::studio {
+namespace {
+
+using Kind = ShowView::Kind;
+
+class ShowRender : public testing::Test {
+protected:
+    void SetUp() override { ASSERT_TRUE(ready.wait() || !ready.isEmpty()); }
+
+    DrawnShow still(ShowRequest request) {
+        DrawnShow last;
+        const auto match = request.match;
+        thread.requestShow(std::move(request));
+        EXPECT_TRUE(waitFor([&] {
+            if (auto shown = thread.takeShow()) last = std::move(*shown);
+            return last.still && last.match == match;
+        }));
+        return last;
+    }
+
+    RenderThread thread;
+    QSignalSpy ready{&thread, &RenderThread::ready};
+    QSignalSpy broke{&thread, &RenderThread::showBroke};
+};
+
+ShowRequest requestOf(std::shared_ptr<const MatchFrame> match, std::vector<WantedView> views) {
+    ShowRequest request;
+    request.match = std::move(match);
+    request.views = std::move(views);
+    return request;
+}
+
+QImage pictureOf(const DrawnShow& shown, int id) {
+    for (const DrawnShow::Picture& picture : shown.pictures)
+        if (picture.id == id) return picture.image;
+    return {};
+}
+
+double meanDifference(const QImage& a, const QImage& b) {
+    if (a.size() != b.size()) return 255.0;
+    double sum = 0.0;
+    for (int y = 0; y < a.height(); ++y)
+        for (int x = 0; x < a.width(); ++x) {
+            const QRgb p = a.pixel(x, y), q = b.pixel(x, y);
+            sum += std::abs(qRed(p) - qRed(q)) + std::abs(qGreen(p) - qGreen(q)) + std::abs(qBlue(p) - qBlue(q));
+        }
+    return sum / (3.0 * a.width() * a.height());
+}
+
+/// Where the corners of the fixture's box fall, by the calibrated camera's own arithmetic.
+QRectF boxPart(const ShowFrame& frame, const CalibratedCamera& camera) {
+    const Box box = boxOf(frame, 900);
+    QRectF part;
+    for (unsigned i = 0; i < 8; ++i) {
+        const glm::vec3 corner(i & 1U ? box.max.x : box.min.x, i & 2U ? box.max.y : box.min.y,
+                               i & 4U ? box.max.z : box.min.z);
+        const glm::dvec2 at = pixelOf(camera, glm::dvec3(corner)).value() + 0.5;
+        const QRectF point(at.x, at.y, 1e-3, 1e-3);
+        part = part.isNull() ? point : part.united(point);
+    }
+    return part;
+}
+
+TEST_F(ShowRender, TheEyeSeesTheBoxWhereItsCameraSays) {
+    // Off the middle: a picture that is upside down or mirrored would show.
+    const auto match = showFrame(0.05F);
+    const DrawnShow shown = still(requestOf(match, {wantedView(1, Kind::eye, {640, 400})}));
+    const QImage eye = pictureOf(shown, 1);
+    ASSERT_EQ(eye.size(), QSize(640, 400));
+    ASSERT_TRUE(shown.frame);
+    const QRect seen = redPart(eye);
+    const QRectF expected = boxPart(*shown.frame, deviceView(*shown.frame, viewerOf(*shown.frame), {640, 400}));
+    EXPECT_NEAR(seen.left(), expected.left(), 3.0);
+    EXPECT_NEAR(seen.right() + 1, expected.right(), 3.0);
+    EXPECT_NEAR(seen.top(), expected.top(), 3.0);
+    EXPECT_NEAR(seen.bottom() + 1, expected.bottom(), 3.0);
+    EXPECT_EQ(thread.errorCount(), 0U);
+    EXPECT_TRUE(broke.isEmpty());
+}
+
+TEST_F(ShowRender, EachViewHasItsOwnSizeAndTheProjectorAllItsPixels) {
+    WantedView exact = wantedView(3, Kind::projector, {300, 300});
+    exact.view.exact = true;
+    const auto match = showFrame();
+    const glm::ivec2 own = match->scene->projectors.front().camera.size;
+    const DrawnShow shown =
+        still(requestOf(match, {wantedView(1, Kind::eye, {500, 301}), wantedView(2, Kind::projector, {300, 300}), exact,
+                                wantedView(4, Kind::lab, {411, 333})}));
+    EXPECT_EQ(pictureOf(shown, 1).size(), QSize(500, 301));
+    EXPECT_EQ(pictureOf(shown, 2).width(), 300);
+    EXPECT_NEAR(pictureOf(shown, 2).height(), 300.0 * own.y / own.x, 1.0);
+    EXPECT_EQ(pictureOf(shown, 3).size(), QSize(own.x, own.y));
+    EXPECT_EQ(pictureOf(shown, 4).size(), QSize(411, 333));
+    EXPECT_EQ(thread.errorCount(), 0U);
+}
+
+TEST_F(ShowRender, ViewsOfOneFrameAgree) {
+    const auto match = showFrame();
+    const DrawnShow shown =
+        still(requestOf(match, {wantedView(1, Kind::eye, {480, 300}), wantedView(2, Kind::eye, {480, 300}),
+                                wantedView(3, Kind::lab, {480, 300})}));
+    EXPECT_EQ(pictureOf(shown, 1), pictureOf(shown, 2));
+    // What is lit looks like what is to be seen, as far as a projector can make it.
+    EXPECT_LT(meanDifference(pictureOf(shown, 1), pictureOf(shown, 3)), 40.0);
+    const DrawnShow alone = still(requestOf(showFrame(), {wantedView(1, Kind::eye, {480, 300})}));
+    EXPECT_LT(meanDifference(pictureOf(shown, 1), pictureOf(alone, 1)), 0.5);
+}
+
+TEST_F(ShowRender, OnlyTheNewestFrameCounts) {
+    std::shared_ptr<MatchFrame> last;
+    for (std::uint64_t i = 1; i <= 60; ++i) {
+        last = showFrame(0.001F * static_cast<float>(i), i);
+        thread.requestShow(requestOf(last, {wantedView(1, Kind::eye, {320, 200})}));
+    }
+    int frames = 0;
+    ASSERT_TRUE(waitFor([&] {
+        const auto shown = thread.takeShow();
+        frames += shown ? 1 : 0;
+        return shown && shown->still && shown->match == last;
+    }));
+    EXPECT_LT(frames, 20);
+}
+
+TEST_F(ShowRender, ZeroSizesAndEmptyRequestsAskForNothing) {
+    thread.requestShow(requestOf(showFrame(), {wantedView(1, Kind::eye, {0, 200})}));
+    thread.requestShow(requestOf(nullptr, {wantedView(1, Kind::eye, {320, 200})}));
+    auto noScene = showFrame();
+    noScene->scene.reset();
+    thread.requestShow(requestOf(noScene, {wantedView(1, Kind::eye, {320, 200})}));
+    EXPECT_FALSE(waitFor([&] { return thread.takeShow().has_value(); }, 300));
+    EXPECT_TRUE(broke.isEmpty());
+}
+
+TEST_F(ShowRender, ComparingBendsChangesTheDeviceAlone) {
+    auto match = showFrame();
+    WantedView flat = wantedView(1, Kind::lab, {480, 300}), bent = wantedView(2, Kind::lab, {480, 300});
+    flat.view.bend = ShowView::Bend::atRest;
+    bent.view.bend = ShowView::Bend::forViewer;
+    match->eye = glm::vec3(0.0F, 0.15F, 0.7F); // low: much is bent
+    const DrawnShow shown = still(requestOf(match, {flat, bent, wantedView(3, Kind::lab, {480, 300})}));
+    // At rest is how it stands in this frame.
+    EXPECT_LT(meanDifference(pictureOf(shown, 1), pictureOf(shown, 3)), 0.5);
+    EXPECT_GT(meanDifference(pictureOf(shown, 1), pictureOf(shown, 2)), 2.0);
+}
+
+TEST_F(ShowRender, AFrameThatCannotBeDrawnIsToldOnceAndTheNextIsDrawn) {
+    auto broken = showFrame();
+    auto scene = std::make_shared<Scene>(*broken->scene);
+    scene->projectors.front().camera.size = {0, 0};
+    broken->scene = scene;
+    thread.requestShow(requestOf(broken, {wantedView(1, Kind::lab, {320, 200})}));
+    ASSERT_TRUE(waitFor([&] { return !broke.isEmpty(); }));
+    EXPECT_FALSE(broke.front().front().toString().isEmpty());
+    const auto good = showFrame();
+    ASSERT_TRUE(waitFor([&] {
+        thread.requestShow(requestOf(good, {wantedView(1, Kind::lab, {320, 200})}));
+        const auto shown = thread.takeShow();
+        return shown && shown->match == good;
+    }));
+    EXPECT_EQ(broke.size(), 1);
+}
+
+TEST_F(ShowRender, ManyFramesKeepNoOpenGlObjects) {
+    const int frames = 500 * (test::soakFactor() > 1 ? 20 : 1);
+    std::size_t first = 0;
+    for (int i = 0; i < frames; ++i) {
+        const auto match = showFrame(0.0001F * static_cast<float>(i % 300), static_cast<std::uint64_t>(i));
+        ShowRequest request =
+            requestOf(match, {wantedView(1, Kind::eye, {160, 100}), wantedView(2, Kind::lab, {120, 90}),
+                              wantedView(3, Kind::projector, {160, 100})});
+        request.refine = false;
+        thread.requestShow(request);
+        ASSERT_TRUE(waitFor([&] {
+            const auto shown = thread.takeShow();
+            return shown && shown->match == match;
+        })) << i;
+        if (i == 40) first = thread.objectCount();
+    }
+    EXPECT_GT(first, 0U);
+    EXPECT_TRUE(waitFor([&] { return thread.objectCount() <= first; }, 2000)) << thread.objectCount() << " " << first;
+    EXPECT_EQ(thread.errorCount(), 0U);
+}
+
+TEST(ShowPaceTest, CoarserWhileItTakesLongAndFullWhenQuiet) {
+    ShowPace pace;
+    const auto start = ShowPace::Time(std::chrono::seconds(10));
+    const auto ask = [&](int at) {
+        ShowRequest request;
+        request.views.push_back(wantedView(1, Kind::eye, {100, 100}));
+        pace.request(std::move(request), start + std::chrono::milliseconds(at));
+    };
+    // Three times what there is: a third of the pixels, at once.
+    for (int i = 0; i < 3; ++i) {
+        ask(i);
+        const auto work = pace.nextMoving();
+        ASSERT_TRUE(work);
+        EXPECT_EQ(work->resolution, 1.0);
+        pace.finished(*work, 3.0 * ShowPace::kBudgetMilliseconds);
+    }
+    ask(3);
+    const auto work = pace.nextMoving();
+    ASSERT_TRUE(work);
+    EXPECT_NEAR(work->resolution, 0.97 / std::sqrt(3.0), 0.03);
+    EXPECT_FALSE(pace.pressing());
+    EXPECT_FALSE(pace.nextStill(start + std::chrono::milliseconds(100)));
+    const auto full = pace.nextStill(start + std::chrono::milliseconds(3) + ShowPace::kQuiet);
+    ASSERT_TRUE(full);
+    EXPECT_EQ(full->resolution, 1.0);
+    EXPECT_FALSE(pace.nextStill(start + std::chrono::seconds(60)));
+    // It never goes below half, and comes back when there is time.
+    for (int i = 0; i < 40; ++i) {
+        ask(i);
+        const auto slow = pace.nextMoving();
+        pace.finished(*slow, 400.0);
+        EXPECT_GE(slow->resolution, ShowPace::kLowestResolution);
+    }
+    for (int i = 0; i < 40; ++i) {
+        ask(i);
+        pace.finished(*pace.nextMoving(), 5.0);
+    }
+    ask(99);
+    EXPECT_EQ(pace.nextMoving()->resolution, 1.0);
+}
+
+TEST(ShowFrames, AResizedCameraSeesTheSame) {
+    CalibratedCamera camera = defaultScene().projectors.front().camera;
+    const CalibratedCamera half = resized(camera, camera.size / 2);
+    for (const glm::dvec3 point : {glm::dvec3(0.1, 0.0, 0.05), glm::dvec3(-0.1, 0.03, 0.0)}) {
+        const glm::dvec2 whole = (pixelOf(camera, point).value() + 0.5) / glm::dvec2(camera.size);
+        const glm::dvec2 small = (pixelOf(half, point).value() + 0.5) / glm::dvec2(half.size);
+        EXPECT_NEAR(whole.x, small.x, 1e-9);
+        EXPECT_NEAR(whole.y, small.y, 1e-9);
+    }
+}
+
+} // namespace
+} // namespace lumorph::studio
