@@ -5,6 +5,8 @@
 #include <QColorDialog>
 #include <QFileDialog>
 #include <QListWidget>
+#include <QMimeData>
+#include <QPushButton>
 #include <QSlider>
 #include <QTreeView>
 
@@ -16,6 +18,7 @@
 #include "app/workspaces/scene/outliner_model.h"
 #include "app/workspaces/scene/scene_words.h"
 #include "core/base/resources.h"
+#include "core/scene/techniques.h"
 #include "tests/ui/studio_window.h"
 
 // The Scene workspace as its user has it: the real window, driven by mouse and keys.
@@ -284,6 +287,39 @@ TEST_F(SceneDocks, EverythingAlwaysThereHasItsPage) {
         EXPECT_FALSE(scene() == was) << page.field;
         window.screenshot(page.picture);
     }
+}
+
+TEST_F(SceneDocks, TheNumberKeysShowTheTechniquesOfTheirDemoAlone) {
+    const Scene before = scene();
+    QTest::keyClick(&window.window(), Qt::Key_3);
+    EXPECT_TRUE(scene() == before) << "elsewhere a number changes nothing";
+    EXPECT_EQ(window.findNow<QWidget>("technique.3.button"), nullptr);
+    window.studio().desk.openDemo("techniques");
+    ASSERT_NE(window.find<QAbstractButton>("technique.3.button"), nullptr);
+    ASSERT_TRUE(eventually([&] { return window.studio().jobs.running().empty(); }));
+    for (const Technique& technique : techniques()) {
+        QTest::keyClick(&window.window(), static_cast<Qt::Key>(Qt::Key_0 + technique.key));
+        EXPECT_TRUE(scene().items == techniqueScene(technique.key).items) << technique.name;
+        EXPECT_TRUE(window.find<QAbstractButton>(QString("technique.%1.button").arg(technique.key))->isChecked());
+        EXPECT_TRUE(window.text("technique.sentence").contains(QString::fromStdString(technique.name)));
+        pass(1s);
+        window.screenshot(QString("technique-%1").arg(technique.key));
+    }
+    undo();
+    EXPECT_TRUE(scene().items == techniqueScene(5).items);
+}
+
+TEST_F(SceneDocks, TheWaterDemoIsWhatAVisitorSeesFirst) {
+    window.studio().desk.openDemo();
+    ASSERT_TRUE(eventually([&] { return drivingItem(scene()) != nullptr && window.studio().jobs.running().empty(); }));
+    EXPECT_TRUE(window.studio().notices.at("scene").empty());
+    EXPECT_TRUE(window.state().assets->problems.empty());
+    EXPECT_FALSE(window.studio().document.modified());
+    pass(3s);
+    window.screenshot("scene-water-demo");
+    const auto strokes = window.studio().loop.frame()->wantedStrokes;
+    EXPECT_TRUE(eventually([&] { return window.studio().loop.frame()->wantedStrokes != strokes; }))
+        << "its long waves move the servos";
 }
 
 /// Visible texts that do not fit their widgets.

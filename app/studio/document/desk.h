@@ -45,7 +45,7 @@ public:
     void newProject(); ///< the bundled tablet, no target
     /// "water", "techniques", or "field": the bundled tablet with an animated target, matched live.
     void openDemo(const std::string& name = kFirstDemo);
-    static constexpr const char* kFirstDemo = "field";
+    static constexpr const char* kFirstDemo = "water";
     /// Saves to the project's file; it is on disk when this returns, or the document is still modified and a notice
     /// says why. False when it has no file; ask for one and use saveAs.
     bool save();

@@ -10,6 +10,7 @@
 #include "app/workspaces/scene/scene_commands.h"
 #include "app/workspaces/scene/scene_docks.h"
 #include "app/workspaces/scene/scene_words.h"
+#include "core/scene/material_library.h"
 
 namespace lumorph::studio {
 
@@ -58,7 +59,7 @@ public:
         layout->addWidget(hint_);
         layout->addWidget(makeJobBar(studio.jobs, "library", this));
         layout->addWidget(shelf_, 1);
-        for (const Material& material : shelfMaterials()) {
+        for (const Material& material : readyMaterials()) {
             auto* item = new QListWidgetItem(QString::fromStdString(material.name), shelf_);
             item->setTextAlignment(Qt::AlignHCenter | Qt::AlignTop);
             item->setToolTip(tr("Click: use it for what is chosen. Drag: drop it on a row of the outliner."));
@@ -98,7 +99,7 @@ private:
 
     /// A double click, or Enter after a click, finds it in use already and changes nothing.
     void use(int row) {
-        const std::vector<Material> all = shelfMaterials();
+        const std::vector<Material> all = readyMaterials();
         if (row >= 0 && row < static_cast<int>(all.size()))
             applyMaterial(studio_, selection_.choice(), all[static_cast<std::size_t>(row)]);
     }

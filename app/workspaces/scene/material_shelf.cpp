@@ -1,19 +1,13 @@
 #include "app/workspaces/scene/material_shelf.h"
 
 #include "app/workspaces/scene/material_picture.h"
+#include "core/scene/material_library.h"
 #include "core/scene/scene_assets.h"
 
 namespace lumorph::studio {
 
-std::vector<Material> shelfMaterials() {
-    const Scene scene = defaultScene();
-    Material plain;
-    plain.name = "Plain";
-    return {scene.device.material, scene.table.material, plain};
-}
-
 std::vector<QImage> paintShelf(int side, const Progress& progress) {
-    const std::vector<Material> materials = shelfMaterials();
+    const std::vector<Material> materials = readyMaterials();
     Scene holder; // only to name what they need
     for (const Material& material : materials) {
         SceneItem item;

@@ -9,11 +9,12 @@
 #include "app/studio/look/icons.h"
 #include "app/studio/widgets/panel.h"
 #include "app/workspaces/field/dock_parts.h"
-#include "app/workspaces/scene/material_shelf.h"
 #include "app/workspaces/scene/outliner_item.h"
 #include "app/workspaces/scene/outliner_model.h"
 #include "app/workspaces/scene/scene_commands.h"
 #include "app/workspaces/scene/scene_docks.h"
+#include "app/workspaces/scene/technique_commands.h"
+#include "core/scene/material_library.h"
 
 namespace lumorph::studio {
 
@@ -30,6 +31,7 @@ public:
         layout->addWidget(makeNoticeBar(studio.notices, "scene", this));
         layout->addWidget(makeJobBar(studio.jobs, "scene", this));
         layout->addWidget(makeSwitch());
+        layout->addWidget(makeTechniqueBar(studio, this));
         layout->addWidget(makeTools());
         layout->addWidget(tree_, 1);
         prepareTree();
@@ -111,7 +113,7 @@ private:
         connect(tree_, &QTreeView::expanded, this,
                 [this](const QModelIndex& index) { folded_.erase(model_->choiceAt(index).index); });
         connect(model_, &OutlinerModel::materialDropped, this, [this](const SceneChoice& onto, int number) {
-            const std::vector<Material> all = shelfMaterials();
+            const std::vector<Material> all = readyMaterials();
             if (number >= 0 && number < static_cast<int>(all.size()))
                 applyMaterial(studio_, onto, all[static_cast<std::size_t>(number)]);
         });

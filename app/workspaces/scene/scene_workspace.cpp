@@ -8,11 +8,12 @@
 #include <QPointer>
 
 #include "app/studio/document/scene_edit.h"
-#include "app/workspaces/scene/material_shelf.h"
 #include "app/workspaces/scene/outliner_model.h"
 #include "app/workspaces/scene/scene_commands.h"
 #include "app/workspaces/scene/scene_docks.h"
 #include "app/workspaces/scene/scene_stage.h"
+#include "app/workspaces/scene/technique_commands.h"
+#include "core/scene/material_library.h"
 
 namespace lumorph::studio {
 
@@ -64,7 +65,7 @@ bool SceneWorkspace::Data::eventFilter(QObject* watched, QEvent* event) {
     auto* drop = static_cast<QDropEvent*>(event);
     if (!drop->mimeData()->hasFormat(kMaterialMime)) return QObject::eventFilter(watched, event);
     drop->acceptProposedAction();
-    const std::vector<Material> all = shelfMaterials();
+    const std::vector<Material> all = readyMaterials();
     const auto number = static_cast<std::size_t>(drop->mimeData()->data(kMaterialMime).toUInt());
     if (type == QEvent::Drop && number < all.size() && !applyMaterial(studio, selection.choice(), all[number]))
         applyMaterial(studio, {SceneChoice::Kind::device, 0}, all[number]);
@@ -89,6 +90,7 @@ SceneWorkspace::SceneWorkspace(Studio& studio) : data_(std::make_unique<Data>(st
     addSceneCommands(studio, data_->selection, [this]() -> QWidget* {
         return data_->stage ? data_->stage->window() : QApplication::activeWindow();
     });
+    addTechniqueCommands(studio);
 }
 
 SceneWorkspace::~SceneWorkspace() = default;

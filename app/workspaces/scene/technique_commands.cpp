@@ -1,0 +1,153 @@
+#include "app/workspaces/scene/technique_commands.h"
+
+#include <optional>
+#include <utility>
+
+#include <QLabel>
+
+#include "app/studio/document/scene_edit.h"
+#include "app/workspaces/scene/segments.h"
+#include "core/scene/techniques.h"
+
+namespace lumorph::studio {
+
+namespace {
+
+constexpr const char* kDemo = "techniques";
+
+/// Whether a scene holds the things of the techniques' demo.
+bool isTechniqueScene(const Scene& scene, const Scene& plain) {
+    if (scene.items.size() != plain.items.size()) return false;
+    for (std::size_t i = 0; i < scene.items.size(); ++i)
+        if (scene.items[i].id != plain.items[i].id || scene.items[i].kind.index() != plain.items[i].kind.index() ||
+            scene.items[i].name != plain.items[i].name)
+            return false;
+    return true;
+}
+
+/// What the technique shows, before the same viewer, on the same device, by the same projectors.
+void takeTechnique(Scene& scene, int key) {
+    Scene next = techniqueScene(key);
+    next.projectors = scene.projectors;
+    next.eye = scene.eye;
+    next.worldFromDevice = scene.worldFromDevice;
+    next.viewer = scene.viewer;
+    next.predictionSeconds = scene.predictionSeconds;
+    next.compensation = scene.compensation;
+    scene = std::move(next);
+}
+
+QString titleOf(const Technique& technique) {
+    return QObject::tr("Technique: %1").arg(QString::fromStdString(technique.name).toLower());
+}
+
+class TechniqueCommands : public QObject {
+public:
+    explicit TechniqueCommands(Studio& studio) : QObject(&studio.commands), studio_(studio), plain_(techniqueScene(0)) {
+        for (const Technique& technique : techniques()) add(technique);
+        connect(&studio.document, &StudioDocument::changed, this, [this](StateParts parts) {
+            if (parts & StatePart::scene) follow();
+        });
+        follow();
+    }
+
+private:
+    void add(const Technique& technique) {
+        Commands::Options options;
+        options.icon = "light";
+        options.workspace = "scene";
+        const QString id = QString("technique.%1").arg(technique.key);
+        QAction* action = studio_.commands.add(id, titleOf(technique), options, [this, technique] { show(technique); });
+        action->setToolTip(QString::fromStdString(technique.sentence));
+        actions_.emplace_back(technique.key, action);
+    }
+
+    void show(const Technique& technique) {
+        if (!open_) { // its demo first
+            wanted_ = technique;
+            studio_.desk.openDemo(kDemo);
+            return;
+        }
+        editScene(studio_.document, titleOf(technique), [&](Scene& scene) { takeTechnique(scene, technique.key); });
+    }
+
+    /// The number keys belong to the demo: elsewhere a stray key must not change a scene.
+    void follow() {
+        const bool open = isTechniqueScene(*studio_.document.state().scene, plain_);
+        if (open == open_) return;
+        open_ = open;
+        for (const auto& [key, action] : actions_)
+            action->setShortcut(open ? QKeySequence(Qt::Key_0 + key) : QKeySequence());
+        if (open && wanted_)
+            QTimer::singleShot(0, this, [this, technique = *std::exchange(wanted_, std::nullopt)] { show(technique); });
+    }
+
+    Studio& studio_;
+    Scene plain_;
+    bool open_ = false;
+    std::optional<Technique> wanted_; ///< as soon as the demo is there
+    std::vector<std::pair<int, QAction*>> actions_;
+};
+
+class TechniqueBar : public QWidget {
+public:
+    TechniqueBar(Studio& studio, QWidget* parent) : QWidget(parent), studio_(studio), sentence_(new QLabel(this)) {
+        setObjectName("scene.techniques");
+        std::vector<Segments::Segment> segments;
+        for (const Technique& technique : techniques()) {
+            scenes_.push_back(techniqueScene(technique.key));
+            segments.push_back({QString("technique.%1.button").arg(technique.key), QString::number(technique.key),
+                                QString::fromStdString(technique.name)});
+        }
+        numbers_ = new Segments(segments, this);
+        numbers_->setAccessibleName(tr("Techniques"));
+        sentence_->setObjectName("technique.sentence");
+        sentence_->setWordWrap(true);
+        auto* column = new QVBoxLayout(this);
+        column->setContentsMargins(0, 0, 0, 0);
+        column->setSpacing(4);
+        column->addWidget(numbers_);
+        column->addWidget(sentence_);
+        connect(numbers_, &Segments::chosen, this, [this](int index) {
+            if (QAction* action =
+                    studio_.commands.find(QString("technique.%1").arg(all_.at(static_cast<std::size_t>(index)).key)))
+                action->trigger();
+        });
+        connect(&studio.document, &StudioDocument::changed, this, [this](StateParts parts) {
+            if (parts & StatePart::scene) refresh();
+        });
+        refresh();
+    }
+
+private:
+    void refresh() {
+        const Scene& scene = *studio_.document.state().scene;
+        const bool open = isTechniqueScene(scene, scenes_.front());
+        setVisible(open);
+        if (!open) return;
+        for (std::size_t i = 0; i < scenes_.size(); ++i) {
+            Scene same = scene;
+            takeTechnique(same, all_[i].key);
+            if (!(same == scene)) continue;
+            numbers_->setChosen(static_cast<int>(i));
+            sentence_->setText(QString("<b>%1</b><br>%2")
+                                   .arg(QString::fromStdString(all_[i].name).toHtmlEscaped(),
+                                        QString::fromStdString(all_[i].sentence).toHtmlEscaped()));
+            return;
+        }
+    }
+
+    Studio& studio_;
+    const std::vector<Technique> all_ = techniques();
+    std::vector<Scene> scenes_;
+    Segments* numbers_ = nullptr;
+    QLabel* sentence_;
+};
+
+} // namespace
+
+void addTechniqueCommands(Studio& studio) { new TechniqueCommands(studio); }
+
+QWidget* makeTechniqueBar(Studio& studio, QWidget* parent) { return new TechniqueBar(studio, parent); }
+
+} // namespace lumorph::studio
