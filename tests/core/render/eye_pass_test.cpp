@@ -124,8 +124,8 @@ TEST(EyePass, BumpMapsChangeLightOnTheDeviceAndNothingElse) {
 TEST(EyePass, MovingTexturesMoveOnTheDeviceAlone) {
     EyeStage stage;
     stage.assets->images["checks"] = checks({64, 64}, 8, {250, 250, 250, 255}, {20, 20, 20, 255});
-    stage.scene.device.material.colorTexture = textured("checks", 0.08F);
-    stage.scene.device.material.colorTexture.velocity = {0.02F, 0.01F};
+    stage.scene.device.material.colorTexture = textured("checks", 0.0625F);
+    stage.scene.device.material.colorTexture.velocity = {0.03125F, 0.015625F};
     const LinearPicture before = stage.draw();
     stage.seconds = 0.7;
     const LinearPicture after = stage.draw();
@@ -133,9 +133,8 @@ TEST(EyePass, MovingTexturesMoveOnTheDeviceAlone) {
     const Change change = changeOf(before, after, region);
     EXPECT_EQ(change.outside, 0);
     EXPECT_GT(change.inside, change.area / 5);
-    stage.seconds = 8.0; // 0.16 and 0.08 metres: whole tiles
-    const LinearPicture round = stage.draw();
-    EXPECT_EQ(before.pixels, round.pixels);
+    stage.seconds = 8.0; // four tiles, and two
+    EXPECT_TRUE(before.pixels == stage.draw().pixels);
 }
 
 // R28
@@ -159,12 +158,10 @@ TEST(EyePass, AFlipBookShowsItsPicturesInOrder) {
         for (int y = 0; y < 32; ++y)
             for (int x = 0; x < 32; ++x) page->at(x, y) = book->at(32 * (cell % 3) + x, 32 * (cell / 3) + y);
         stage.assets->images["page"] = page;
-        EyeStage other;
-        other.assets = stage.assets;
-        other.scene = stage.scene;
-        other.scene.device.material.colorTexture = textured("page", 0.05F);
-        EXPECT_EQ(shown.pixels, other.draw().pixels) << cell;
-        stage.context.makeCurrent();
+        const Scene flipBook = stage.scene;
+        stage.scene.device.material.colorTexture = textured("page", 0.05F);
+        EXPECT_TRUE(shown.pixels == stage.draw().pixels) << cell;
+        stage.scene = flipBook;
     }
 }
 
@@ -258,7 +255,7 @@ TEST(EyePass, AHoleIsTheTableAlongTheEyesRay) {
     }
     ASSERT_GT(count, 3'000);
     EXPECT_GE(-10.0 * std::log10(squares / (3.0 * count) + 1e-12), 30.0);
-    const Change change = changeOf(whole, holed, near(met, stage.size, 1, within(radius)));
+    const Change change = changeOf(whole, holed, near(met, stage.size, 2, within(radius)));
     EXPECT_EQ(change.outside, 0);
     EXPECT_GT(change.inside, count / 2);
 }
@@ -334,7 +331,7 @@ TEST(EyePass, FogVeilsWhatIsBehindIt) {
     EXPECT_GT(middle(veiled), middle(clear) + 0.1F);
     EXPECT_EQ(veiled.at(2, 2), clear.at(2, 2)); // the box ends there
     stage.seconds = 1.0;
-    EXPECT_NE(stage.draw().pixels, veiled.pixels); // it drifts
+    EXPECT_FALSE(stage.draw().pixels == veiled.pixels); // it drifts
 }
 
 TEST(EyePass, ABrokenShaderIsNamedAndAPlainOneStandsIn) {
@@ -367,9 +364,9 @@ TEST(EyePass, BrokenInputIsLeftOutOrRefused) {
     surface.positions = positions;
     frame.posed.lights.push_back(frame.posed.lights.front());
     frame.posed.lights.back().position.x = std::numeric_limits<float>::infinity();
-    EXPECT_EQ(stage.draw(frame, stage.camera()).pixels, before.pixels);
+    EXPECT_TRUE(stage.draw(frame, stage.camera()).pixels == before.pixels);
     frame.posed.surfaces.front().topology = nullptr;
-    EXPECT_EQ(stage.draw(frame, stage.camera()).pixels, before.pixels);
+    EXPECT_TRUE(stage.draw(frame, stage.camera()).pixels == before.pixels);
     CalibratedCamera camera = stage.camera();
     camera.size = {0, 400};
     EXPECT_THROW(stage.pass.draw(frame, camera, 0), InvalidInput);
