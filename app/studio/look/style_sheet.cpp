@@ -47,6 +47,7 @@ QPushButton[look="flat"]:hover { background: @hovered; border-color: transparent
 QPushButton[look="flat"]:disabled { color: @disabled; }
 QPushButton[look="link"] { background: transparent; border: none; padding: 0; color: @accentText; text-align: left; }
 QPushButton[look="link"]:hover { text-decoration: underline; }
+QPushButton::menu-indicator { image: none; width: 0; }
 QPushButton[look="segment"] { padding: 0 4px; }
 QPushButton[look="color"] { padding: 0 8px 0 52px; text-align: left; font-weight: 400; }
 QToolButton[look="section"] { font-weight: 600; padding: 2px 4px 2px 0; border: none; }

@@ -2,6 +2,7 @@
 
 #include <QColorDialog>
 #include <QPainter>
+#include <QSpinBox>
 
 #include "app/studio/look/palette.h"
 
@@ -11,6 +12,7 @@ namespace {
 
 constexpr int kPatch = 18;
 constexpr int kMargin = 6;
+constexpr int kNumberWidth = 72;
 
 } // namespace
 
@@ -32,7 +34,9 @@ void ColorField::choose() {
     dialog->setObjectName("dialog.color");
     dialog->setWindowTitle(accessibleName());
     dialog->setOption(QColorDialog::DontUseNativeDialog);
+    dialog->setOption(QColorDialog::NoEyeDropperButton);
     dialog->setAttribute(Qt::WA_DeleteOnClose);
+    for (auto* number : dialog->findChildren<QSpinBox*>()) number->setMinimumWidth(kNumberWidth); // else cut off
     connect(dialog, &QColorDialog::currentColorChanged, this, [this](const QColor& color) {
         setColor(color);
         emit previewed(color);

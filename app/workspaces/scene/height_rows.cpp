@@ -42,8 +42,8 @@ void addHeightRows(SceneForm& form, Studio& studio, const Part<SceneItem>& item)
     form.showWhile(&form.section("item.section.height", QObject::tr("Water and heights")),
                    [part](const Scene& scene) { return part.read(scene) != nullptr; });
     form.vector(
-        {"item.height.size", QObject::tr("Measures"), QObject::tr("Width and depth")},
-        {Quantity::length, 1e-3, 10.0, 0.2}, "xz", part, [](auto& height) -> auto& { return height.size; });
+        {"item.height.size", QObject::tr("Size"), QObject::tr("Width and depth")}, {Quantity::length, 1e-3, 10.0, 0.2},
+        "xz", part, [](auto& height) -> auto& { return height.size; });
     addFileSlot(form, studio,
                 {"item.height.image", QObject::tr("Picture of heights"), pictureFilter(),
                  [part](const Scene& scene) {

@@ -44,7 +44,7 @@ public:
         } else if (choice.kind == Kind::projector) {
             const auto index = static_cast<std::size_t>(choice.index);
             if (index < scene.projectors.size())
-                show(QString::fromStdString(scene.projectors[index].name), tr("Projector"), "projector", true);
+                show(QString::fromStdString(scene.projectors[index].name), {}, "projector", true);
         } else if (choice.kind == Kind::device) {
             show(tr("Device"), {}, "device", false);
         } else if (choice.kind == Kind::table) {
@@ -59,7 +59,10 @@ public:
 private:
     void show(const QString& name, const QString& kind, const QString& iconName, bool editable) {
         icon_->setIcon(iconName, IconRole::accent);
-        if (!name_->hasFocus() || !name_->isModified()) name_->setText(name);
+        if (!(name_->hasFocus() && name_->isModified()) && name_->text() != name) {
+            name_->setText(name);
+            name_->setCursorPosition(0); // a long name shows how it begins
+        }
         name_->setReadOnly(!editable);
         name_->setFocusPolicy(editable ? Qt::StrongFocus : Qt::NoFocus);
         kind_->setText(kind);

@@ -99,7 +99,7 @@ void addPlace(SceneForm& form, const Part<SceneItem>& item) {
         [item](const Scene& scene) { return !isSun(item.read(scene)); });
     form.showWhile(addRotation(form, item), standsStill);
     QWidget* scale = form.vector(
-        {"item.scale", QObject::tr("Size"), QObject::tr("100 % is as it was made")},
+        {"item.scale", QObject::tr("Scale"), QObject::tr("100 % is as it was made")},
         {Quantity::share, 0.001, 1000.0, 1.0, 0.01}, "xyz", item, [](auto& found) -> auto& { return found.scale; });
     form.showWhile(scale, standsStill);
     Segments* anchor = form.segments(

@@ -74,7 +74,7 @@ void addShape(SceneForm& form, const Part<SceneItem>& item) {
         {QObject::tr("Box"), QObject::tr("Sphere"), QObject::tr("Cylinder"), QObject::tr("Plane")}, part,
         [](auto& shape) -> auto& { return shape.form; });
     form.vector(
-        {"item.size", QObject::tr("Measures"), QObject::tr("Width, height and depth")},
+        {"item.size", QObject::tr("Size"), QObject::tr("Width, height and depth")},
         {Quantity::length, 1e-4, kLargest, 0.03}, kSizeEnds, part, [](auto& shape) -> auto& { return shape.size; });
 }
 

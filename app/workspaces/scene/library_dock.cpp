@@ -61,6 +61,7 @@ public:
         layout->addWidget(shelf_, 1);
         for (const Material& material : readyMaterials()) {
             auto* item = new QListWidgetItem(QString::fromStdString(material.name), shelf_);
+            item->setSizeHint({kCellWidth - 4, kCellHeight - 4});
             item->setTextAlignment(Qt::AlignHCenter | Qt::AlignTop);
             item->setToolTip(tr("Click: use it for what is chosen. Drag: drop it on a row of the outliner."));
         }
@@ -76,7 +77,14 @@ public:
 protected:
     void showEvent(QShowEvent* event) override {
         QWidget::showEvent(event);
-        if (std::exchange(painted_, true)) return;
+        // A dock that lies behind another is shown for a moment before it is put there.
+        QTimer::singleShot(0, this, [this] {
+            if (isVisible() && !std::exchange(painted_, true)) paint();
+        });
+    }
+
+private:
+    void paint() {
         studio_.jobs.run<std::vector<QImage>>(
             "library", tr("Painting the materials"),
             [](const Progress& progress) { return paintShelf(2 * kPicture, progress); },
@@ -86,7 +94,6 @@ protected:
             [&notices = studio_.notices](const std::exception& error) { notices.post("scene", noticeOf(error)); });
     }
 
-private:
     void show(const std::vector<QImage>& pictures) {
         for (std::size_t i = 0; i < pictures.size(); ++i) {
             QPixmap picture = QPixmap::fromImage(pictures[i]);

@@ -7,6 +7,7 @@
 #include <QTreeView>
 
 #include "app/studio/look/icons.h"
+#include "app/studio/look/palette.h"
 #include "app/studio/widgets/panel.h"
 #include "app/workspaces/field/dock_parts.h"
 #include "app/workspaces/scene/outliner_item.h"
@@ -20,11 +21,26 @@ namespace lumorph::studio {
 
 namespace {
 
+/// What is chosen is drawn by its row; beside it there are only the marks that fold groups.
+class Tree : public QTreeView {
+public:
+    using QTreeView::QTreeView;
+
+protected:
+    void drawBranches(QPainter* painter, const QRect& rect, const QModelIndex& index) const override {
+        const Palette& colors = currentPalette();
+        painter->fillRect(rect, colors.sunken);
+        if (!model()->hasChildren(index)) return;
+        const QRectF box(rect.right() - indentation() + 1, rect.center().y() - 6, 12, 12);
+        paintIcon(*painter, box, isExpanded(index) ? "chevron-down" : "chevron-right", colors.textMuted);
+    }
+};
+
 class OutlinerDock : public QWidget {
 public:
     OutlinerDock(Studio& studio, SceneSelection& selection)
         : studio_(studio), selection_(selection), model_(new OutlinerModel(studio.document, this)),
-          tree_(new QTreeView(this)) {
+          tree_(new Tree(this)) {
         auto* layout = new QVBoxLayout(this);
         layout->setContentsMargins(16, 12, 16, 12);
         layout->setSpacing(8);

@@ -119,8 +119,8 @@ void addDeviceRows(SceneForm& form, Studio& studio) {
 void addTableRows(SceneForm& form, Studio& studio) {
     const auto table = makePart<Table>([](auto& scene) { return &scene.table; });
     form.vector(
-        {"table.size", QObject::tr("Measures"), QObject::tr("Width and depth")},
-        {Quantity::length, 0.01, kFar, 1.0, 0.01}, "xz", table, [](auto& found) -> auto& { return found.size; });
+        {"table.size", QObject::tr("Size"), QObject::tr("Width and depth")}, {Quantity::length, 0.01, kFar, 1.0, 0.01},
+        "xz", table, [](auto& found) -> auto& { return found.size; });
     addMaterialRows(form, studio, "table.material",
                     memberOf<Material>(
                         table, [](auto& found) -> auto& { return found.material; }),
