@@ -79,9 +79,9 @@ PictureTextures::Picture EyeMaterials::bind(Program& program, int unit, const Sc
     const bool there = has(texture);
     // A picture that is new is uploaded into the unit it is for: no other unit may lose its own.
     glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(unit));
-    const auto picture = pictures_.picture(there ? assets_->images.at(texture.image) : white_, use,
-                                           there ? glm::ivec2(texture.columns, texture.rows) : glm::ivec2(1),
-                                           placement.cell);
+    const auto picture =
+        pictures_.picture(there ? assets_->images.at(texture.image) : white_, use,
+                          there ? glm::ivec2(texture.columns, texture.rows) : glm::ivec2(1), placement.cell);
     glBindTexture(GL_TEXTURE_2D, picture.texture);
     program.set(sampler, unit);
     program.set(turn, placement.turn);
@@ -103,8 +103,8 @@ void EyeMaterials::bindNormalMap(Program& program, const Material& material, std
 }
 
 void EyeMaterials::bindHoles(Program& program, const Material& material) {
-    const auto picture = bind(program, eye_unit::holes, material.holes, PictureTextures::Use::data, "holeMask",
-                              "holeTurn", "holeShift");
+    const auto picture =
+        bind(program, eye_unit::holes, material.holes, PictureTextures::Use::data, "holeMask", "holeTurn", "holeShift");
     program.set("holeChannel", picture.hasAlpha ? glm::vec4(0, 0, 0, 1) : glm::vec4(1, 0, 0, 0));
     program.set("holeThreshold", material.holeThreshold);
 }
@@ -126,9 +126,9 @@ void EyeMaterials::apply(Program& program, const Material& material, float opaci
         program.set("metal", material.metallic);
     }
     if ((features & (reflection | refraction)) != 0)
-        program.set("optics", glm::vec4(material.reflection, material.refraction,
-                                        1.0F / std::max(material.refractiveIndex, 1.0F),
-                                        kRoughBlur * material.roughness));
+        program.set("optics",
+                    glm::vec4(material.reflection, material.refraction, 1.0F / std::max(material.refractiveIndex, 1.0F),
+                              kRoughBlur * material.roughness));
 }
 
 void EyeMaterials::applyDepth(Program& program, const Material& material, std::uint32_t features) {
