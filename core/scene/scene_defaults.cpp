@@ -5,12 +5,12 @@
 namespace lumorph {
 namespace {
 
-/// A full-HD projector on a shelf, 2 m above the table and a little beyond the device, so that the viewer's head stays
-/// out of its light and flaps lifted up to 60 degrees are lit on either side. Like most projectors it has a lens shift:
-/// its axis leaves through the lower edge of the picture. 0.62 x 0.35 m around the device are lit, a third of a
-/// millimetre a pixel.
+/// A full-HD projector 2 m above the table and a little on the viewer's side, so that a far flap that bends up for him is
+/// lit on the side he sees, while his head stays out of the light. Like most projectors it has a lens shift: its axis
+/// leaves through the lower edge of the picture. 0.62 x 0.35 m around the device are lit, a third of a millimetre a
+/// pixel.
 SceneProjector defaultProjector() {
-    const glm::dvec3 position(0.0, 2.0, -0.25);
+    const glm::dvec3 position(0.0, 2.0, 0.4);
     const double focal = 6080.0;
     const double shift = 620.0; // pixels from the picture's middle down to the axis
     SceneProjector projector;
@@ -19,9 +19,9 @@ SceneProjector defaultProjector() {
     projector.camera.focal = {focal, focal + 6.0};
     projector.camera.principal = {959.5 + 7.0, 539.5 + shift};
     projector.camera.distortion = {-0.052, 0.031, 0.0006, -0.0004, 0.0};
-    // The picture's middle lies on the device, so the axis leans back by the angle of the shift.
+    // The picture's middle lies on the device, so the axis leans towards the viewer by the angle of the shift.
     const double toDevice = std::atan2(-position.z, position.y - 0.02);
-    const double lean = toDevice - std::atan2(shift, focal);
+    const double lean = toDevice + std::atan2(shift, focal);
     projector.camera.cameraFromWorld =
         cameraLookingAt(position, position + glm::dvec3(0.0, -std::cos(lean), std::sin(lean)), projector.camera.size,
                         focal)
