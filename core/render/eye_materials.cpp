@@ -78,9 +78,9 @@ PictureTextures::Picture EyeMaterials::bind(Program& program, int unit, const Sc
     const PicturePlacement placement = placementOf(texture, seconds_);
     const bool there = has(texture);
     glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(unit)); // a picture's upload unbinds what is bound there
-    const auto picture = pictures_.picture(there ? assets_->images.at(texture.image) : white_, use,
-                                           there ? glm::ivec2(texture.columns, texture.rows) : glm::ivec2(1),
-                                           placement.cell);
+    const auto picture =
+        pictures_.picture(there ? assets_->images.at(texture.image) : white_, use,
+                          there ? glm::ivec2(texture.columns, texture.rows) : glm::ivec2(1), placement.cell);
     glBindTexture(GL_TEXTURE_2D, picture.texture);
     program.set(sampler, unit);
     program.set(turn, placement.turn);
@@ -102,8 +102,8 @@ void EyeMaterials::bindNormalMap(Program& program, const Material& material, std
 }
 
 void EyeMaterials::bindHoles(Program& program, const Material& material) {
-    const auto picture = bind(program, eye_unit::holes, material.holes, PictureTextures::Use::data, "holeMask",
-                              "holeTurn", "holeShift");
+    const auto picture =
+        bind(program, eye_unit::holes, material.holes, PictureTextures::Use::data, "holeMask", "holeTurn", "holeShift");
     program.set("holeChannel", picture.hasAlpha ? glm::vec4(0, 0, 0, 1) : glm::vec4(1, 0, 0, 0));
     program.set("holeThreshold", material.holeThreshold);
 }
@@ -125,9 +125,9 @@ void EyeMaterials::apply(Program& program, const Material& material, float opaci
         program.set("metal", material.metallic);
     }
     if ((features & (reflection | refraction)) != 0)
-        program.set("optics", glm::vec4(material.reflection, material.refraction,
-                                        1.0F / std::max(material.refractiveIndex, 1.0F),
-                                        kRoughBlur * material.roughness));
+        program.set("optics",
+                    glm::vec4(material.reflection, material.refraction, 1.0F / std::max(material.refractiveIndex, 1.0F),
+                              kRoughBlur * material.roughness));
 }
 
 void EyeMaterials::applyDepth(Program& program, const Material& material, std::uint32_t features) {
@@ -135,6 +135,13 @@ void EyeMaterials::applyDepth(Program& program, const Material& material, std::u
         bind(program, eye_unit::color, material.colorTexture, PictureTextures::Use::color, "colorPicture", "colorTurn",
              "colorShift");
     if ((features & eye_feature::holeMask) != 0) bindHoles(program, material);
+}
+
+std::pair<const Image*, PicturePlacement> EyeMaterials::cutter(const Material& material, std::uint32_t features) const {
+    if ((features & (eye_feature::holeMask | eye_feature::cutout)) == 0) return {};
+    const bool mask = (features & eye_feature::holeMask) != 0;
+    const SceneTexture& texture = mask ? material.holes : material.colorTexture;
+    return {assets_->images.at(texture.image).get(), placementOf(texture, seconds_)};
 }
 
 void EyeMaterials::applyTable(Program& program, const Material& table) {
