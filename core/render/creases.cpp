@@ -15,12 +15,12 @@
 namespace lumorph {
 namespace {
 
-constexpr int kMostSteps = 64;           // of one walk
-constexpr float kFlat = 1e-4F;           // radians: what turns less is no part of a fold
-constexpr float kOwnShare = 0.5F;        // an edge that does this much of the turning is a fold by itself
-constexpr float kAlong = 0.7F;           // cosine up to which two edges run along each other
-constexpr float kSharp = 0.5F;           // radians of turning at one edge, at which a walk ends
-constexpr double kShortest = 2.0;        // radii that a fold runs at least, unless it is sharp
+constexpr int kMostSteps = 64;    // of one walk
+constexpr float kFlat = 1e-4F;    // radians: what turns less is no part of a fold
+constexpr float kOwnShare = 0.5F; // an edge that does this much of the turning is a fold by itself
+constexpr float kAlong = 0.7F;    // cosine up to which two edges run along each other
+constexpr float kSharp = 0.5F;    // radians of turning at one edge, at which a walk ends
+constexpr double kShortest = 2.0; // radii that a fold runs at least, unless it is sharp
 constexpr int kSofteningRounds = 8;
 
 std::vector<std::uint32_t> placesOf(const std::vector<glm::vec3>& positions) {
@@ -71,8 +71,7 @@ struct CreaseFinder::Turning {
     Turning(const CreaseFinder& finder, std::span<const glm::vec3> shape) : positions(shape) {
         normals.reserve(finder.triangles_.size());
         for (const glm::uvec3& t : finder.triangles_)
-            normals.push_back(
-                unit(glm::cross(shape[t.y] - shape[t.x], shape[t.z] - shape[t.x])));
+            normals.push_back(unit(glm::cross(shape[t.y] - shape[t.x], shape[t.z] - shape[t.x])));
         for (const Edge& edge : finder.edges_) {
             directions.push_back(unit(shape[edge.b] - shape[edge.a]));
             const glm::vec3& left = normals[edge.left];
@@ -121,8 +120,8 @@ private:
             const float share = glm::dot(direction, line);
             const Edge& e = finder_.edges_[crossed];
             triangle = e.left == triangle ? e.right : e.left;
-            direction = unit(share * line +
-                             std::sqrt(std::max(1.0F - share * share, 0.0F)) * inwards(crossed, triangle));
+            direction =
+                unit(share * line + std::sqrt(std::max(1.0F - share * share, 0.0F)) * inwards(crossed, triangle));
             edge = crossed;
         }
     }
@@ -217,9 +216,8 @@ std::vector<Crease> CreaseFinder::withoutScraps(std::span<const glm::vec3> posit
         lengths[chains.find(places_[a])] +=
             sharp[i] ? 2.0 * shortest : static_cast<double>(glm::distance(positions[a], positions[b]));
     }
-    std::erase_if(creases, [&](const Crease& crease) {
-        return lengths[chains.find(places_[crease.vertices[0]])] < shortest;
-    });
+    std::erase_if(creases,
+                  [&](const Crease& crease) { return lengths[chains.find(places_[crease.vertices[0]])] < shortest; });
     return creases;
 }
 
@@ -227,8 +225,7 @@ std::vector<Crease> CreaseFinder::withoutScraps(std::span<const glm::vec3> posit
 std::vector<glm::vec3> CreaseFinder::softNormals(std::span<const glm::vec3> positions, double radius) const {
     std::vector<glm::vec3> normals(positions.size(), glm::vec3(0.0F));
     for (const glm::uvec3& t : triangles_) {
-        const glm::vec3 area =
-            glm::cross(positions[t.y] - positions[t.x], positions[t.z] - positions[t.x]);
+        const glm::vec3 area = glm::cross(positions[t.y] - positions[t.x], positions[t.z] - positions[t.x]);
         for (int k = 0; k < 3; ++k) normals[places_[t[k]]] += area;
     }
     for (glm::vec3& normal : normals) normal = unit(normal);
@@ -258,8 +255,7 @@ CreaseStrips creaseStrips(std::span<const Crease> creases, std::span<const glm::
         const auto strength = static_cast<float>(std::clamp(2.0 * above, 0.0, 1.0));
         for (int side = 0; side < 2; ++side) {
             const glm::uvec3& t = triangles[crease.triangles[static_cast<std::size_t>(side)]];
-            const glm::vec3 normal =
-                unit(glm::cross(positions[t.y] - positions[t.x], positions[t.z] - positions[t.x]));
+            const glm::vec3 normal = unit(glm::cross(positions[t.y] - positions[t.x], positions[t.z] - positions[t.x]));
             const glm::vec3 along = unit(ends[1] - ends[0]);
             const glm::vec3 out = (side == 0 ? half : -half) * glm::cross(normal, along);
             const auto first = static_cast<std::uint32_t>(strips.positions.size());

@@ -17,7 +17,7 @@ namespace lumorph {
 struct Crease {
     std::array<std::uint32_t, 2> vertices{};  ///< of the mesh
     std::array<std::uint32_t, 2> triangles{}; ///< beside it, to the left seen from the first vertex, and to the right
-    Angle angle; ///< by which the surface turns across it; negative in a valley
+    Angle angle;                              ///< by which the surface turns across it; negative in a valley
 };
 
 /// How a fold is told from a curve.
@@ -63,14 +63,14 @@ private:
     std::vector<std::uint32_t> places_; ///< for each vertex the first at its place
     std::vector<Edge> edges_;           ///< between two triangles
     std::vector<Link> links_;
-    std::vector<glm::ivec3> edgesOf_;   ///< for each triangle its edges, -1 at the border
+    std::vector<glm::ivec3> edgesOf_; ///< for each triangle its edges, -1 at the border
 };
 
 /// Vertices of strips along creases, to be drawn upon the surface.
 struct CreaseStrips {
     std::vector<glm::vec3> positions;
     std::vector<glm::vec3> normals;
-    std::vector<glm::vec2> across; ///< -1 to 1 over the width, and the strength in [0, 1]
+    std::vector<glm::vec2> across;       ///< -1 to 1 over the width, and the strength in [0, 1]
     std::vector<std::uint32_t> vertices; ///< of the mesh that each is nearest to
     std::vector<glm::uvec3> triangles;
 };

@@ -19,15 +19,14 @@ constexpr float kLampSquare = 0.25F; // of the 0.5 m at which a lamp has its int
 bool finite(const glm::vec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
 
 bool shines(const PosedLight& light) {
-    return finite(light.position) && finite(light.radiance) && (!light.parallel || glm::length(light.position) > 0.0F) &&
-           light.radiance != glm::vec3(0.0F);
+    return finite(light.position) && finite(light.radiance) &&
+           (!light.parallel || glm::length(light.position) > 0.0F) && light.radiance != glm::vec3(0.0F);
 }
 
 } // namespace
 
 EyeLighting::EyeLighting(const Scene& scene, std::span<const PosedLight> lights)
-    : sky_(scene.sky), exposure_(static_cast<float>(scene.exposure)),
-      shoulder_(scene.toneMapping ? kShoulder : kClip) {
+    : sky_(scene.sky), exposure_(static_cast<float>(scene.exposure)), shoulder_(scene.toneMapping ? kShoulder : kClip) {
     std::vector<PosedLight> shining;
     std::copy_if(lights.begin(), lights.end(), std::back_inserter(shining), shines);
     const auto first = std::find_if(shining.begin(), shining.end(), [](const auto& light) { return light.shadows; });

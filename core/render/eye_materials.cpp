@@ -138,6 +138,13 @@ void EyeMaterials::applyDepth(Program& program, const Material& material, std::u
     if ((features & eye_feature::holeMask) != 0) bindHoles(program, material);
 }
 
+std::pair<const Image*, PicturePlacement> EyeMaterials::cutter(const Material& material, std::uint32_t features) const {
+    if ((features & (eye_feature::holeMask | eye_feature::cutout)) == 0) return {};
+    const bool mask = (features & eye_feature::holeMask) != 0;
+    const SceneTexture& texture = mask ? material.holes : material.colorTexture;
+    return {assets_->images.at(texture.image).get(), placementOf(texture, seconds_)};
+}
+
 void EyeMaterials::applyTable(Program& program, const Material& table) {
     bind(program, eye_unit::table, table.colorTexture, PictureTextures::Use::color, "tablePicture", "tableTurn",
          "tableShift");

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <memory>
 #include <string>
+#include <utility>
 
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
@@ -20,6 +21,7 @@ struct PicturePlacement {
     glm::vec4 turn{1.0F, 0.0F, 0.0F, 1.0F}; ///< two columns
     glm::vec2 shift{0.0F};
     int cell = 0; ///< of a flip-book, along the rows from the top left
+    bool operator==(const PicturePlacement&) const = default;
 };
 [[nodiscard]] PicturePlacement placementOf(const SceneTexture& texture, double seconds);
 
@@ -42,6 +44,9 @@ public:
     void apply(Program& program, const Material& material, float opacity, std::uint32_t features);
     /// Only what a shadow needs.
     void applyDepth(Program& program, const Material& material, std::uint32_t features);
+    /// The picture that cuts holes into its shadow, if any, and how it lies.
+    [[nodiscard]] std::pair<const Image*, PicturePlacement> cutter(const Material& material,
+                                                                   std::uint32_t features) const;
     /// The table, as mirrors and clear things show it.
     void applyTable(Program& program, const Material& table);
 

@@ -40,6 +40,7 @@ struct Thing {
     std::uint32_t features = 0;
     float distance = 0.0F;
     bool skin = false;
+    std::uint64_t version = 0; ///< of its shape
 };
 
 /// Where a frame is drawn to.
@@ -88,7 +89,9 @@ struct EyePass::Data {
 
     void updateTable(glm::vec2 size);
     [[nodiscard]] Box casters(const ShowFrame& frame) const;
+    [[nodiscard]] std::vector<Thing> shadowThings(const ShowFrame& frame) const;
     void drawShadow(const ShowFrame& frame);
+    void drawCaster(const ShowFrame& frame, const Thing& thing, const glm::mat4& clipFromWorld);
     [[nodiscard]] Thing skinThing(const ShowFrame& frame, bool unseen) const;
     [[nodiscard]] std::vector<Thing> itemThings(const ShowFrame& frame, const glm::vec3& eye) const;
     void begin(const ShowFrame& frame, const View& view, unsigned framebuffer) const;
@@ -143,45 +146,60 @@ Box EyePass::Data::casters(const ShowFrame& frame) const {
     return box;
 }
 
+std::vector<Thing> EyePass::Data::shadowThings(const ShowFrame& frame) const {
+    std::vector<Thing> things;
+    if (surfaces.hasSkin() && showsSkin(frame)) things.push_back(skinThing(frame, false));
+    for (const auto& item : surfaces.items()) {
+        const PosedSurface& surface = frame.posed.surfaces[item.surface];
+        if (!surface.castsShadow) continue;
+        const float own = surface.material.alpha == Material::Alpha::blend ? surface.material.opacity : 1.0F;
+        things.push_back({item.mesh, surface.worldFromSurface, &surface.material, own * surface.opacity,
+                          materials.features(surface.material) | eye_feature::twoSided, 0.0F, false, item.version});
+    }
+    for (Thing& thing : things) {
+        thing.features &= eye_feature::skin | eye_feature::holes | eye_feature::holeMask | eye_feature::cutout |
+                          eye_feature::twoSided | kMostRoundHoles << eye_feature::holeShift;
+        if (thing.opacity < 1.0F) thing.features |= eye_feature::dither;
+    }
+    return things;
+}
+
 void EyePass::Data::drawShadow(const ShowFrame& frame) {
     if (!lighting.shadowed()) return;
+    const std::vector<Thing> things = shadowThings(frame);
+    std::vector<CasterState> states;
+    for (const Thing& thing : things) {
+        const auto [picture, placement] = materials.cutter(*thing.material, thing.features);
+        states.push_back({thing.version, thing.world, thing.opacity, thing.features, picture, placement,
+                          thing.material->holeThreshold});
+    }
     shadow.aim(*lighting.shadowed(), casters(frame));
+    if (!shadow.changed(std::move(states), frame.scene->device)) return;
     shadow.draw([&](const glm::mat4& clipFromWorld) {
-        const auto drawCaster = [&](const Thing& thing) {
-            std::uint32_t features = thing.features & (eye_feature::skin | eye_feature::holes | eye_feature::holeMask |
-                                                       eye_feature::cutout | kMostRoundHoles << eye_feature::holeShift);
-            if (thing.opacity < 1.0F) features |= eye_feature::dither;
-            Program& program = programs.use(Stage::depth, features);
-            program.set("clipFromWorld", clipFromWorld);
-            program.set("worldFromMesh", thing.world);
-            program.set("castShare", thing.opacity);
-            materials.applyDepth(program, *thing.material, features);
-            if ((features & eye_feature::skin) != 0)
-                applySkin(program, frame.scene->device, surfaces.skinBoxAtRest(), frame.worldFromDevice);
-            setFrontFace(thing.world);
-            // The near side of closed things steps back: then most places of it are told lit at first sight, and what
-            // it covers its far side covers too.
-            const bool closed = (thing.features & eye_feature::twoSided) == 0;
-            glDisable(GL_CULL_FACE);
-            program.set("stepBack", 0.0F);
-            if (closed) {
-                glEnable(GL_CULL_FACE);
-                glCullFace(GL_FRONT);
-                thing.mesh->draw();
-                glCullFace(GL_BACK);
-                program.set("stepBack", shadow.depthOf(kNearSideStepsBack));
-            }
-            thing.mesh->draw();
-        };
-        if (surfaces.hasSkin() && showsSkin(frame)) drawCaster(skinThing(frame, false));
-        for (const auto& item : surfaces.items())
-            if (frame.posed.surfaces[item.surface].castsShadow) {
-                const PosedSurface& surface = frame.posed.surfaces[item.surface];
-                const float own = surface.material.alpha == Material::Alpha::blend ? surface.material.opacity : 1.0F;
-                drawCaster({item.mesh, surface.worldFromSurface, &surface.material, own * surface.opacity,
-                            materials.features(surface.material) | eye_feature::twoSided, 0.0F});
-            }
+        for (const Thing& thing : things) drawCaster(frame, thing, clipFromWorld);
     });
+}
+
+void EyePass::Data::drawCaster(const ShowFrame& frame, const Thing& thing, const glm::mat4& clipFromWorld) {
+    Program& program = programs.use(Stage::depth, thing.features & ~eye_feature::twoSided);
+    program.set("clipFromWorld", clipFromWorld);
+    program.set("worldFromMesh", thing.world);
+    program.set("castShare", thing.opacity);
+    program.set("stepBack", 0.0F);
+    materials.applyDepth(program, *thing.material, thing.features);
+    if (thing.skin) applySkin(program, frame.scene->device, surfaces.skinBoxAtRest(), frame.worldFromDevice);
+    setFrontFace(thing.world);
+    // The near side of closed things steps back: then most places of it are told lit at first sight, and what it covers
+    // its far side covers too.
+    const bool closed = (thing.features & eye_feature::twoSided) == 0;
+    (closed ? glEnable : glDisable)(GL_CULL_FACE);
+    if (closed) {
+        glCullFace(GL_FRONT);
+        thing.mesh->draw();
+        glCullFace(GL_BACK);
+        program.set("stepBack", shadow.depthOf(kNearSideStepsBack));
+    }
+    thing.mesh->draw();
 }
 
 Thing EyePass::Data::skinThing(const ShowFrame& frame, bool unseen) const {
@@ -192,7 +210,8 @@ Thing EyePass::Data::skinThing(const ShowFrame& frame, bool unseen) const {
                 1.0F,
                 materials.features(skin.material, unseen),
                 0.0F,
-                true};
+                true,
+                surfaces.skinVersion()};
     if (!unseen) thing.features |= skinFeatures(skin);
     if (!unseen && skin.material.alpha == Material::Alpha::blend) {
         thing.opacity = skin.material.opacity;

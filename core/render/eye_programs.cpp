@@ -64,8 +64,7 @@ ShaderFiles filesOf(Stage stage, std::uint32_t features) {
 }
 
 ShaderFiles plainFiles(Stage stage) {
-    if (stage == Stage::depth)
-        return shaderFiles({"depth.vert"}, {"depth.frag"});
+    if (stage == Stage::depth) return shaderFiles({"depth.vert"}, {"depth.frag"});
     return shaderFiles({"version.glsl", "camera.glsl", "eye_plain.vert"}, {"version.glsl", "eye_plain.frag"});
 }
 

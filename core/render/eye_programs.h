@@ -9,8 +9,8 @@
 
 namespace lumorph {
 
-/// What a surface needs of the eye pass's shaders; bits that add up. A program holds only what its surface needs, because
-/// in software every operation counts.
+/// What a surface needs of the eye pass's shaders; bits that add up. A program holds only what its surface needs,
+/// because in software every operation counts.
 namespace eye_feature {
 enum Bit : std::uint32_t {
     skin = 1U << 0U,

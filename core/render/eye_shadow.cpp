@@ -6,18 +6,16 @@
 #include <glm/geometric.hpp>
 #include <glm/gtc/matrix_transform.hpp>
 
-#include "core/render/eye_materials.h"
-
 namespace lumorph {
 namespace {
 
 constexpr int kSide = 1024;
 constexpr int kTiles = 128; // of 8 pixels, as in eye_tiles.frag
 constexpr float kRadiusStep = 1.15F;
-constexpr float kSmallestRadius = 0.02F;   // metres
-constexpr float kWidestLamp = 1.3F;        // radians from its middle to its rim
-constexpr float kWidestSearch = 0.06F;     // map units
-constexpr float kSteepest = 6.0F;          // metres of depth a metre across
+constexpr float kSmallestRadius = 0.02F; // metres
+constexpr float kWidestLamp = 1.3F;      // radians from its middle to its rim
+constexpr float kWidestSearch = 0.06F;   // map units
+constexpr float kSteepest = 6.0F;        // metres of depth a metre across
 constexpr float kPixelsOfBias = 0.75F;
 
 void store(const gl::Texture& texture, GLint format, int side, GLenum pixels) {
@@ -63,16 +61,26 @@ EyeShadow::EyeShadow() : gather_(tileFiles({"GATHER"})), spread_(tileFiles({})) 
     setSampler(plain_, GL_NEAREST);
 }
 
-bool EyeShadow::aim(const PosedLight& light, const Box& casters) {
-    const glm::mat4 before = clipFromWorld_;
+void EyeShadow::aim(const PosedLight& light, const Box& casters) {
     light_ = light;
     float radius = std::max(0.5F * glm::length(casters.size()), kSmallestRadius);
-    radius = kSmallestRadius * std::pow(kRadiusStep, std::ceil(std::log(radius / kSmallestRadius) / std::log(kRadiusStep)));
+    radius =
+        kSmallestRadius * std::pow(kRadiusStep, std::ceil(std::log(radius / kSmallestRadius) / std::log(kRadiusStep)));
     if (light.parallel)
         aimParallel(casters.centre(), radius);
     else
         aimLamp(casters.centre(), radius);
-    return clipFromWorld_ != before;
+}
+
+bool EyeShadow::changed(std::vector<CasterState> casters, const DeviceSkin& skin) {
+    const bool same = drawnClip_ == clipFromWorld_ && drawnSoftness_ == light_.softness && drawn_ == casters &&
+                      drawnHoles_ == skin.holes && drawnShrink_ == skin.shrink;
+    drawnClip_ = clipFromWorld_;
+    drawnSoftness_ = light_.softness;
+    drawn_ = std::move(casters);
+    drawnHoles_ = skin.holes;
+    drawnShrink_ = skin.shrink;
+    return !same;
 }
 
 void EyeShadow::aimParallel(const glm::vec3& centre, float radius) {
@@ -82,8 +90,8 @@ void EyeShadow::aimParallel(const glm::vec3& centre, float radius) {
     glm::vec3 at(turn * glm::vec4(centre, 1.0F));
     at = texel_ * glm::round(at / texel_);
     const float depth = 1.05F * radius;
-    clipFromWorld_ = glm::ortho(at.x - radius, at.x + radius, at.y - radius, at.y + radius, -at.z - depth, -at.z + depth) *
-                     turn;
+    clipFromWorld_ =
+        glm::ortho(at.x - radius, at.x + radius, at.y - radius, at.y + radius, -at.z - depth, -at.z + depth) * turn;
     perMetre_ = 0.5F / radius;
     depthRange_ = 2.0F * depth;
     distance_ = 1.0F;
@@ -164,9 +172,8 @@ std::size_t EyeShadow::objectCount() const noexcept { return 8 + gather_.objectC
 
 void EyeShadow::apply(Program& program) const {
     const float metresOfBias = kPixelsOfBias * texel_ * distance_;
-    const glm::mat4 mapFromClip =
-        glm::scale(glm::translate(glm::mat4(1.0F), glm::vec3(0.5F, 0.5F, 0.5F - metresOfBias / depthRange_)),
-                   glm::vec3(0.5F));
+    const glm::mat4 mapFromClip = glm::scale(
+        glm::translate(glm::mat4(1.0F), glm::vec3(0.5F, 0.5F, 0.5F - metresOfBias / depthRange_)), glm::vec3(0.5F));
     const glm::mat4 mapFromWorld = mapFromClip * clipFromWorld_;
     program.set("shadowFromWorld", mapFromWorld);
     program.set("shadowPlaneFromWorld", glm::transpose(glm::inverse(mapFromWorld)));
@@ -180,8 +187,8 @@ void EyeShadow::apply(Program& program) const {
     program.set("shadowTiles", static_cast<int>(eye_unit::shadowTiles));
     glActiveTexture(GL_TEXTURE0 + eye_unit::shadowTiles);
     glBindTexture(GL_TEXTURE_2D, tiles_[0].name());
-    for (const auto& [unit, sampler] : {std::pair(eye_unit::shadowMap, compared_.name()),
-                                        std::pair(eye_unit::shadowDepth, plain_.name())}) {
+    for (const auto& [unit, sampler] :
+         {std::pair(eye_unit::shadowMap, compared_.name()), std::pair(eye_unit::shadowDepth, plain_.name())}) {
         glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(unit));
         glBindTexture(GL_TEXTURE_2D, depth_.name());
         glBindSampler(static_cast<GLuint>(unit), sampler);

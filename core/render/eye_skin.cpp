@@ -13,8 +13,7 @@ namespace lumorph {
 namespace {
 
 constexpr float kEverywhere = 1e9F;
-constexpr float kWall = 0.0015F;     // metres: what is thinner is the skin itself
-constexpr float kClearance = 0.002F; // metres above the top, so that it casts no shadow on its own holes
+constexpr float kWall = 0.0015F; // metres: what is thinner is the skin itself
 
 // Of the device as it appears: x and z from and to.
 glm::vec4 outlineOf(const DeviceSkin& skin, const Box& rest) {
@@ -39,7 +38,8 @@ void applySkin(Program& program, const DeviceSkin& skin, const Box& rest, const 
     program.set("deviceFromWorld", glm::inverse(worldFromDevice));
     const glm::vec4 everywhere(-kEverywhere, -kEverywhere, kEverywhere, kEverywhere);
     program.set("shrunkOutline", skin.shrink > 0.0 ? outlineOf(skin, rest) : everywhere);
-    program.set("insideOutline", glm::vec4(rest.min.x + kWall, rest.min.z + kWall, rest.max.x - kWall, rest.max.z - kWall));
+    program.set("insideOutline",
+                glm::vec4(rest.min.x + kWall, rest.min.z + kWall, rest.max.x - kWall, rest.max.z - kWall));
     program.set("insideTop", glm::vec2(rest.max.y, rest.max.y - kWall));
     std::vector<glm::vec3> holes;
     for (const DeviceSkin::Hole& hole : skin.holes) {
@@ -54,7 +54,7 @@ void applyHolesAbove(Program& program, const DeviceSkin& skin, const Box& rest, 
     program.set("worldFromDevice", worldFromDevice);
     program.set("deviceFromWorld", glm::inverse(worldFromDevice));
     program.set("deviceOutline", outlineOf(skin, rest));
-    program.set("deviceTop", rest.max.y + kClearance);
+    program.set("deviceTop", rest.max.y);
 }
 
 } // namespace lumorph

@@ -20,8 +20,9 @@ void attribute(GLuint index, const gl::Buffer& buffer, GLint components) {
 }
 
 bool finite(const std::vector<glm::vec3>& points) {
-    return std::all_of(points.begin(), points.end(),
-                       [](const glm::vec3& p) { return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z); });
+    return std::all_of(points.begin(), points.end(), [](const glm::vec3& p) {
+        return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
+    });
 }
 
 bool soundTopology(const SurfaceTopology& topology) {

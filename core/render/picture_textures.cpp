@@ -20,8 +20,8 @@ Image cutOut(const Image& image, glm::ivec2 grid, int cell) {
     Image piece(size);
     for (int y = 0; y < size.y; ++y)
         for (int x = 0; x < size.x; ++x)
-            piece.at(x, y) = image.at(std::min(corner.x + x, image.size().x - 1),
-                                      std::min(corner.y + y, image.size().y - 1));
+            piece.at(x, y) =
+                image.at(std::min(corner.x + x, image.size().x - 1), std::min(corner.y + y, image.size().y - 1));
     return piece;
 }
 
@@ -32,10 +32,10 @@ Image halved(const Image& image) {
             for (std::size_t c = 0; c < 4; ++c) {
                 const int right = std::min(2 * x + 1, image.size().x - 1);
                 const int below = std::min(2 * y + 1, image.size().y - 1);
-                half.at(x, y)[c] = static_cast<std::uint8_t>(
-                    (image.at(2 * x, 2 * y)[c] + image.at(right, 2 * y)[c] + image.at(2 * x, below)[c] +
-                     image.at(right, below)[c] + 2) /
-                    4);
+                half.at(x, y)[c] =
+                    static_cast<std::uint8_t>((image.at(2 * x, 2 * y)[c] + image.at(right, 2 * y)[c] +
+                                               image.at(2 * x, below)[c] + image.at(right, below)[c] + 2) /
+                                              4);
             }
     return half;
 }

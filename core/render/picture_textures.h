@@ -21,7 +21,7 @@ public:
     enum class Use { color, data };
     struct Picture {
         GLuint texture = 0;
-        glm::ivec2 size{1};     ///< of the texture
+        glm::ivec2 size{1};    ///< of the texture
         bool hasAlpha = false; ///< some of it is not opaque
         glm::vec3 mean{1.0F};  ///< linear, of a colour picture
     };

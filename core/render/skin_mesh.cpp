@@ -27,11 +27,16 @@ Side sideOf(const glm::vec3& normal) {
 glm::vec2 placeOnPage(const glm::vec3& rest, Side side, const Box& box) {
     const float below = box.max.y - rest.y;
     switch (side) {
-    case Side::left: return {box.min.x - below, rest.z};
-    case Side::right: return {box.max.x + below, rest.z};
-    case Side::back: return {rest.x, box.min.z - below};
-    case Side::front: return {rest.x, box.max.z + below};
-    case Side::top: break;
+    case Side::left:
+        return {box.min.x - below, rest.z};
+    case Side::right:
+        return {box.max.x + below, rest.z};
+    case Side::back:
+        return {rest.x, box.min.z - below};
+    case Side::front:
+        return {rest.x, box.max.z + below};
+    case Side::top:
+        break;
     }
     return {rest.x, rest.z};
 }
@@ -57,7 +62,8 @@ void addPieces(const glm::uvec3& t, const std::array<std::uint32_t, 3>& middle, 
     }
     // Turned so that edge 0 is cut, and edge 2 is not.
     int turn = 0;
-    while (middle[static_cast<std::size_t>(turn)] == kWhole || middle[static_cast<std::size_t>((turn + 2) % 3)] != kWhole)
+    while (middle[static_cast<std::size_t>(turn)] == kWhole ||
+           middle[static_cast<std::size_t>((turn + 2) % 3)] != kWhole)
         ++turn;
     const auto corner = [&](int k) { return t[(k + turn) % 3]; };
     const std::uint32_t first = middle[static_cast<std::size_t>(turn)];
@@ -100,8 +106,7 @@ TriangleMesh SkinMesh::refined(const TriangleMesh& rest, std::vector<Midpoint>& 
 }
 
 SkinMesh::SkinMesh(const TriangleMesh& rest)
-    : meshVertexCount_(rest.positions.size()), cut_(refined(rest, midpoints_)),
-      shading_(cut_, Angle::degrees(30.0)) {
+    : meshVertexCount_(rest.positions.size()), cut_(refined(rest, midpoints_)), shading_(cut_, Angle::degrees(30.0)) {
     split();
 }
 

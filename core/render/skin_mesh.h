@@ -13,8 +13,8 @@
 namespace lumorph {
 
 /// The device's surface as it is textured: mapped in metres of its rest shape (the top by x and z, the sides hanging
-/// from it like cloth), so that a picture sticks to the sheet while it bends. Large triangles are cut so that a lens may
-/// distort them. Immutable.
+/// from it like cloth), so that a picture sticks to the sheet while it bends. Large triangles are cut so that a lens
+/// may distort them. Immutable.
 class SkinMesh {
 public:
     /// Throws InvalidInput for an index beyond the positions.

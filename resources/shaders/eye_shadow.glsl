@@ -19,6 +19,7 @@ uniform mat4 worldFromDevice;
 uniform mat4 deviceFromWorld;
 uniform vec4 deviceOutline; // x, z from and to, of the device's top as it appears
 uniform float deviceTop;
+const float kClearance = 0.002; // metres above the top, so that it casts no shadow on its own holes
 const float kRim = 0.008; // metres over which the light of a hole becomes that beside the device
 
 // Through holes a viewer shall see the table, not the dark inside of a box: there it has the light of the place on the
@@ -28,7 +29,8 @@ vec4 placeThroughHoles(vec3 world, vec3 eye) {
     vec3 to = (deviceFromWorld * vec4(eye, 1.0)).xyz;
     vec3 crossing = mix(from, to, clamp((deviceTop - from.y) / max(to.y - from.y, 1e-4), 0.0, 1.0));
     vec2 inside = min(crossing.xz - deviceOutline.xy, deviceOutline.zw - crossing.xz);
-    float share = smoothstep(0.0, kRim, min(inside.x, inside.y));
+    crossing.y += kClearance;
+    float share = smoothstep(kClearance, kRim, min(inside.x, inside.y));
     return mix(shadowPlace, shadowFromWorld * (worldFromDevice * vec4(crossing, 1.0)), share);
 }
 #endif

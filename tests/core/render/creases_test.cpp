@@ -62,8 +62,7 @@ TEST(Creases, OfAStripAreWhereItFolds) {
     for (const Row& row : rows) {
         const TriangleMesh flat = strip(100, 0.0, 0.0);
         const TriangleMesh bent = strip(100, row.degrees, row.arc);
-        const auto creases =
-            CreaseFinder(flat).find(bent.positions, {Angle::degrees(row.threshold)});
+        const auto creases = CreaseFinder(flat).find(bent.positions, {Angle::degrees(row.threshold)});
         SCOPED_TRACE(std::to_string(row.degrees) + " over " + std::to_string(row.arc));
         ASSERT_EQ(!creases.empty(), row.found);
         double length = 0.0;
@@ -99,7 +98,8 @@ TEST(Creases, SoftNormalsTurnGradually) {
     const auto normals = CreaseFinder(bent).softNormals(bent.positions, 0.015);
     float steepest = 0.0F;
     for (std::size_t column = 0; column + 1 < 101; ++column)
-        steepest = std::max(steepest, std::acos(std::min(glm::dot(normals[3 * column], normals[3 * column + 3]), 1.0F)));
+        steepest =
+            std::max(steepest, std::acos(std::min(glm::dot(normals[3 * column], normals[3 * column + 3]), 1.0F)));
     EXPECT_LT(steepest, 0.21F); // radians, of the 1.05 at once before
     EXPECT_GT(glm::dot(normals.front(), {0.0F, 1.0F, 0.0F}), 0.999F);
 }

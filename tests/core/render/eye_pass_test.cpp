@@ -143,8 +143,8 @@ TEST(EyePass, AFlipBookShowsItsPicturesInOrder) {
     auto book = std::make_shared<Image>(glm::ivec2(96, 64));
     for (int y = 0; y < 64; ++y)
         for (int x = 0; x < 96; ++x)
-            book->at(x, y) = {static_cast<std::uint8_t>(40 * (x / 32) + x % 32), static_cast<std::uint8_t>(90 * (y / 32)),
-                              static_cast<std::uint8_t>(4 * (y % 32)), 255};
+            book->at(x, y) = {static_cast<std::uint8_t>(40 * (x / 32) + x % 32),
+                              static_cast<std::uint8_t>(90 * (y / 32)), static_cast<std::uint8_t>(4 * (y % 32)), 255};
     stage.assets->images["book"] = book;
     SceneTexture& texture = stage.scene.device.material.colorTexture;
     texture = textured("book", 0.05F);

@@ -7,7 +7,7 @@
 namespace lumorph {
 namespace {
 
-constexpr int kBand = 2;         // pixels around every edge that are not judged
+constexpr int kBand = 2;          // pixels around every edge that are not judged
 constexpr double kGrazing = 0.08; // cosine to the light below which lit and dark look alike
 
 /// What a ray caster says of a pixel.
@@ -36,8 +36,8 @@ std::vector<Seen> look(const ShowFrame& frame, const CalibratedCamera& camera) {
                 pixel.facing = glm::dot(hit->normal, glm::normalize(way));
                 pixel.direct = light.radiance.g * pixel.facing * (light.parallel ? 1.0 : 0.25 / glm::dot(way, way));
                 const auto blocker = rays.cast(at, glm::normalize(way));
-                pixel.lit = pixel.facing > 0.0 &&
-                            !(blocker && (light.parallel || blocker->distance < glm::length(way)));
+                pixel.lit =
+                    pixel.facing > 0.0 && !(blocker && (light.parallel || blocker->distance < glm::length(way)));
             }
             seen.push_back(pixel);
         }
@@ -131,8 +131,7 @@ TEST(EyeShadow, LeavesLitSheetsWhole) {
             const ShowFrame frame = stage.frame();
             const LinearPicture picture = stage.draw(frame, stage.camera());
             const std::vector<Seen> seen = look(frame, stage.camera());
-            const auto expected =
-                static_cast<float>(frame.posed.lights.front().radiance.g * glm::normalize(sun).y);
+            const auto expected = static_cast<float>(frame.posed.lights.front().radiance.g * glm::normalize(sun).y);
             int tops = 0;
             int specks = 0;
             for (int y = 0; y < stage.size.y; ++y)

@@ -17,7 +17,7 @@ class RayOracle {
 public:
     struct Hit {
         double distance = 0.0;
-        glm::dvec3 normal{0.0}; ///< of the triangle, towards where the ray came from
+        glm::dvec3 normal{0.0};  ///< of the triangle, towards where the ray came from
         glm::dvec3 outside{0.0}; ///< of the triangle, as it winds
         int thing = 0;
     };
