@@ -50,9 +50,10 @@ TEST(DeviceView, HoldsEveryStateTightly) {
         const CalibratedCamera view = deviceView(at(plainScene(), 0.0, 0.0), eye, kSize);
         EXPECT_LT(glm::distance(positionOf(view), glm::dvec3(eye)), 1e-9);
         EXPECT_EQ(view.size, kSize);
-        for (const double stroke : {0.0, 0.5, 1.0})
-            for (const glm::vec3& point : *at(plainScene(), stroke, 0.0).devicePositions)
-                ASSERT_TRUE(holds(view, point)) << stroke;
+        for (const double stroke : {0.0, 0.5, 1.0}) {
+            const ShowFrame frame = at(plainScene(), stroke, 0.0);
+            for (const glm::vec3& point : *frame.devicePositions) ASSERT_TRUE(holds(view, point)) << stroke;
+        }
         // Tight: the box of all states fills the frame in one direction.
         const Box& reach = tabletRig()->reach();
         glm::dvec2 low(1e9);
@@ -86,11 +87,12 @@ TEST(DeviceView, HoldsWhatFloatsAboveAndFollowsTheDevice) {
     scene.items.push_back(floating(0.13F));
     scene.worldFromDevice[3] = glm::vec4(0.2F, 0.1F, -0.1F, 1.0F);
     const glm::vec3 eye(0.1F, 0.6F, 0.7F);
-    const CalibratedCamera view = deviceView(at(scene, 1.0, 0.0), eye, kSize);
+    const ShowFrame frame = at(scene, 1.0, 0.0);
+    const CalibratedCamera view = deviceView(frame, eye, kSize);
     EXPECT_TRUE(holds(view, {0.2F, 0.1F + 0.145F, -0.1F}));
-    for (const glm::vec3& point : *at(scene, 1.0, 0.0).devicePositions)
+    for (const glm::vec3& point : *frame.devicePositions)
         ASSERT_TRUE(holds(view, glm::vec3(scene.worldFromDevice * glm::vec4(point, 1.0F))));
-    EXPECT_THROW((void)deviceView(at(scene, 1.0, 0.0), {0.2F, 0.12F, -0.1F}, kSize), InvalidInput);
+    EXPECT_THROW((void)deviceView(frame, {0.2F, 0.12F, -0.1F}, kSize), InvalidInput);
 }
 
 TEST(TableView, HoldsTheTableAsFarAsAnEyeCan) {
