@@ -13,6 +13,8 @@ void addVoxelizeCommand(CLI::App& app, Session& session);
 void addMatchCommand(CLI::App& app, Session& session);
 void addProjectCommand(CLI::App& app, Session& session);
 void addBenchCommand(CLI::App& app);
+/// Like the benchmarks, demonstrations are another program's, which is executed.
+void addDemoCommand(CLI::App& app);
 /// Not part of a build of the core alone: the virtual lab stands on calibration.
 void addRenderCommand(CLI::App& app, Session& session);
 

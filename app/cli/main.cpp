@@ -53,6 +53,7 @@ int main(int argc, char** argv) {
     lumorph::cli::addRenderCommand(app, session);
 #endif
     lumorph::cli::addBenchCommand(app);
+    lumorph::cli::addDemoCommand(app);
     try {
         app.parse(argc, argv); // runs the command
         lumorph::cli::finishOutput();

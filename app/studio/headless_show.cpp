@@ -9,6 +9,7 @@
 #include <system_error>
 
 #include "app/output/video_writer.h"
+#include "app/studio/headless_scene.h"
 #include "app/workspaces/field/field_colors.h"
 #include "app/workspaces/field/field_scene.h"
 #include "core/base/atomic_file.h"
@@ -137,6 +138,20 @@ void tellNumbers(const std::vector<Frame>& frames, std::ostream& out) {
         << " reached under the velocity limits" << std::endl;
 }
 
+/// The same minutes of the bundled water: what eye, projector and lab see.
+void showWater(const fs::path& folder, double seconds, std::ostream& out) {
+    out << "Painting the water for " << seconds << " s..." << std::endl;
+    SceneShow show;
+    show.project = resourceFile("projects/water.lumorph");
+    show.seconds = seconds;
+    show.video = kVideoSize;
+    show.picture = kPictureSize;
+    const SceneShowReport report = playScene(show, folder, folder / "water.mp4");
+    out << std::setprecision(1) << "Both passes and the lab: " << report.framesPerSecond << " frames/s here"
+        << std::endl;
+    for (const std::string& warning : report.warnings) out << warning << std::endl;
+}
+
 } // namespace
 
 void runHeadlessShow(const fs::path& folder, double seconds, std::ostream& out) {
@@ -157,6 +172,7 @@ void runHeadlessShow(const fs::path& folder, double seconds, std::ostream& out) 
     savePictures(stage, frames, folder);
     saveVideo(stage, frames, folder / "bloom.mp4");
     saveTable(frames, folder / "bloom.csv");
+    showWater(folder, seconds, out);
     out << "Pictures, video and table are in " << fs::absolute(folder).lexically_normal().string() << std::endl;
 }
 

@@ -1,6 +1,7 @@
 #include <cstdio>
 #include <iostream>
 
+#include "app/studio/headless_scene.h"
 #include "app/studio/headless_show.h"
 #include "app/studio/look/palette.h"
 #include "app/studio/shell/arguments.h"
@@ -67,7 +68,10 @@ int run(int argc, char** argv, const Arguments& arguments) {
 /// Needs no display, and so no application.
 int showHeadless(const Arguments& arguments) {
     try {
-        runHeadlessShow(arguments.headless, arguments.seconds, std::cout);
+        if (arguments.play > 0.0)
+            playDemo(arguments.demo, arguments.play, arguments.record, arguments.json, std::cout);
+        else
+            runHeadlessShow(arguments.headless, arguments.seconds, std::cout);
         return 0;
     } catch (const std::exception& error) {
         std::fprintf(stderr, "lumorph-studio: %s\n", error.what());
@@ -83,7 +87,7 @@ int main(int argc, char** argv) {
         std::fputs(parsed.message.c_str(), parsed.status == 0 ? stdout : stderr);
         return parsed.status;
     }
-    if (!parsed.arguments->headless.empty()) return showHeadless(*parsed.arguments);
+    if (!parsed.arguments->headless.empty() || parsed.arguments->play > 0.0) return showHeadless(*parsed.arguments);
     const QString noDisplay = prepareApplication(argc, argv);
     if (!noDisplay.isEmpty()) {
         std::fputs(noDisplay.toUtf8().constData(), stderr);

@@ -4,10 +4,12 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <optional>
 
 #include <glm/common.hpp>
 
 #include "core/base/error.h"
+#include "core/motion/joint_fit.h"
 #include "core/motion/stroke_fit.h"
 
 namespace lumorph {
@@ -19,7 +21,13 @@ constexpr double kLongestStep = 0.05;  // seconds between samples of the wish
 constexpr double kFewestSteps = 16.0;  // in a window
 constexpr double kMostPoints = 4000.0;
 constexpr double kLongestTime = 1e9; // seconds
-constexpr double kHighest = 10.0;    // metres; beyond lies no wish
+// States that a fit of joints in a row may look at: from one frame to the next it goes on from where it was.
+constexpr int kStatesScanned = 100;
+constexpr int kStatesAnew = 250;
+constexpr int kStatesOn = 40;
+constexpr double kStepAnew = 0.25; // strokes
+constexpr double kStepOn = 0.03;
+constexpr double kHighest = 10.0; // metres; beyond lies no wish
 
 /// The middles of a grid's cells over a box in x and z.
 std::vector<glm::vec2> gridOver(const Box& box, double spacing) {
@@ -58,15 +66,20 @@ double windowOf(const std::vector<double>& speeds) {
 struct FrequencySplit::Data {
     Data(const Rig& rig, double spacing)
         : surface(surfaceOf(rig, spacing)), fit(surface), speeds(speedsOf(rig)), window(windowOf(speeds)),
-          wished(surface.points().size()), lifts(surface.points().size()) {}
+          wished(surface.points().size()), lifts(surface.points().size()) {
+        joint.emplace(surface);
+        if (!joint->differsFrom(fit)) joint.reset();
+    }
 
     void average(const Wish& wish, double seconds);
     void add(std::span<const float> heights, double weight);
+    [[nodiscard]] std::vector<double> best(std::span<const double> from);
 
     TopSurface surface;
     StrokeFit fit;
-    std::vector<double> speeds; ///< strokes a second
-    double window;              ///< seconds
+    std::optional<JointFit> joint; ///< where the sum that `fit` takes is not what the actuators do together
+    std::vector<double> speeds;    ///< strokes a second
+    double window;                 ///< seconds
 
     std::vector<float> wished; ///< buffers
     std::vector<double> lifts;
@@ -101,6 +114,19 @@ void FrequencySplit::Data::add(std::span<const float> heights, double weight) {
                         std::clamp(static_cast<double>(heights[p]) - static_cast<double>(rest[p]), -kHighest, kHighest);
 }
 
+/// The strokes for `lifts`; `from` are those of the call before, or none.
+std::vector<double> FrequencySplit::Data::best(std::span<const double> from) {
+    std::vector<double> strokes(from.begin(), from.end());
+    strokes.resize(speeds.size(), 0.0);
+    const std::vector<double> before = strokes;
+    fit.improve(lifts, strokes);
+    if (!joint) return strokes;
+    if (joint->errorAt(lifts, before) < joint->errorAt(lifts, strokes)) strokes = before;
+    if (from.empty()) joint->scan(lifts, strokes, kStatesScanned);
+    joint->improve(lifts, strokes, from.empty() ? kStepAnew : kStepOn, from.empty() ? kStatesAnew : kStatesOn);
+    return strokes;
+}
+
 FrequencySplit::FrequencySplit(const Rig& rig, double spacing) : data_(std::make_unique<Data>(rig, spacing)) {}
 FrequencySplit::~FrequencySplit() = default;
 FrequencySplit::FrequencySplit(FrequencySplit&&) noexcept = default;
@@ -116,8 +142,8 @@ std::vector<double> FrequencySplit::strokes(const Wish& wish, double seconds) {
     Data& data = *data_;
     data.average(wish, seconds);
     const bool goesOn = !data.lastStrokes.empty() && seconds >= data.lastSeconds;
-    std::vector<double> strokes = goesOn ? data.lastStrokes : std::vector<double>(data.speeds.size(), 0.0);
-    data.fit.improve(data.lifts, strokes);
+    std::vector<double> strokes =
+        data.best(goesOn ? std::span<const double>(data.lastStrokes) : std::span<const double>());
     if (goesOn)
         for (std::size_t i = 0; i < strokes.size(); ++i) {
             const double most = data.speeds[i] * (seconds - data.lastSeconds);
@@ -137,9 +163,7 @@ std::vector<double> FrequencySplit::fit(std::span<const float> heights) {
         throw InvalidInput("heights", "their number is not that of the points", "give one for each point");
     std::ranges::fill(data.lifts, 0.0);
     data.add(heights, 1.0);
-    std::vector<double> strokes(data.speeds.size(), 0.0);
-    data.fit.improve(data.lifts, strokes);
-    return strokes;
+    return data.best({});
 }
 
 void FrequencySplit::heights(std::span<const double> strokes, std::span<float> out) const {

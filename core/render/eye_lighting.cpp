@@ -12,6 +12,8 @@ namespace {
 
 constexpr float kShoulder = 0.7F;
 constexpr float kClip = 1.0F;
+constexpr float kBounceShare = 0.3F; // things stand in their own shadow
+constexpr float kDarkestSky = 0.2F;  // of it that reaches what looks down
 constexpr float kLampSquare = 0.25F; // of the 0.5 m at which a lamp has its intensity
 
 bool finite(const glm::vec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
@@ -45,6 +47,7 @@ EyeLighting::EyeLighting(const Scene& scene, std::span<const PosedLight> lights)
 
 void EyeLighting::apply(Program& program) const {
     program.set("skyLight", sky_);
+    program.set("bounceLight", kBounceShare * bounce_ + kDarkestSky * sky_);
     program.set("exposure", exposure_);
     program.set("shoulder", shoulder_);
     if (places_.empty()) return;

@@ -25,11 +25,14 @@ public:
     /// Bits of eye_feature.
     [[nodiscard]] std::uint32_t features() const noexcept { return features_; }
     void apply(Program& program) const;
+    /// Light that the table throws back upwards, linear.
+    void setBounce(const glm::vec3& light) { bounce_ = light; }
     /// That falls on the open table at a place, linear, of a white diffuse surface.
     [[nodiscard]] glm::vec3 onTable(const glm::vec3& at) const;
 
 private:
     glm::vec3 sky_{0.0F};
+    glm::vec3 bounce_{0.0F};
     std::optional<PosedLight> shadowed_;
     std::vector<glm::vec4> places_;
     std::vector<glm::vec3> radiances_;

@@ -77,10 +77,11 @@ PictureTextures::Picture EyeMaterials::bind(Program& program, int unit, const Sc
                                             const char* shift) {
     const PicturePlacement placement = placementOf(texture, seconds_);
     const bool there = has(texture);
-    const auto picture = pictures_.picture(there ? assets_->images.at(texture.image) : white_, use,
-                                           there ? glm::ivec2(texture.columns, texture.rows) : glm::ivec2(1),
-                                           placement.cell);
+    // A picture that is new is uploaded into the unit it is for: no other unit may lose its own.
     glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(unit));
+    const auto picture =
+        pictures_.picture(there ? assets_->images.at(texture.image) : white_, use,
+                          there ? glm::ivec2(texture.columns, texture.rows) : glm::ivec2(1), placement.cell);
     glBindTexture(GL_TEXTURE_2D, picture.texture);
     program.set(sampler, unit);
     program.set(turn, placement.turn);
@@ -102,8 +103,8 @@ void EyeMaterials::bindNormalMap(Program& program, const Material& material, std
 }
 
 void EyeMaterials::bindHoles(Program& program, const Material& material) {
-    const auto picture = bind(program, eye_unit::holes, material.holes, PictureTextures::Use::data, "holeMask",
-                              "holeTurn", "holeShift");
+    const auto picture =
+        bind(program, eye_unit::holes, material.holes, PictureTextures::Use::data, "holeMask", "holeTurn", "holeShift");
     program.set("holeChannel", picture.hasAlpha ? glm::vec4(0, 0, 0, 1) : glm::vec4(1, 0, 0, 0));
     program.set("holeThreshold", material.holeThreshold);
 }
@@ -121,12 +122,13 @@ void EyeMaterials::apply(Program& program, const Material& material, float opaci
     if ((features & holeMask) != 0) bindHoles(program, material);
     if ((features & specular) != 0) {
         const float alpha = std::max(material.roughness * material.roughness, 0.02F);
-        program.set("gloss", glm::vec4(alpha * alpha, material.roughness + 0.5F, material.metallic, 0.0F));
+        program.set("gloss", glm::vec2(alpha * alpha, material.roughness + 0.5F));
+        program.set("metal", material.metallic);
     }
     if ((features & (reflection | refraction)) != 0)
-        program.set("optics", glm::vec4(material.reflection, material.refraction,
-                                        1.0F / std::max(material.refractiveIndex, 1.0F),
-                                        kRoughBlur * material.roughness));
+        program.set("optics",
+                    glm::vec4(material.reflection, material.refraction, 1.0F / std::max(material.refractiveIndex, 1.0F),
+                              kRoughBlur * material.roughness));
 }
 
 void EyeMaterials::applyDepth(Program& program, const Material& material, std::uint32_t features) {
@@ -140,6 +142,12 @@ void EyeMaterials::applyTable(Program& program, const Material& table) {
     bind(program, eye_unit::table, table.colorTexture, PictureTextures::Use::color, "tablePicture", "tableTurn",
          "tableShift");
     program.set("tableColor", linearLight(table.color));
+}
+
+glm::vec3 EyeMaterials::meanColor(const Material& material) {
+    const glm::vec3 color = linearLight(material.color);
+    if (!has(material.colorTexture)) return color;
+    return color * pictures_.picture(assets_->images.at(material.colorTexture.image), PictureTextures::Use::color).mean;
 }
 
 } // namespace lumorph

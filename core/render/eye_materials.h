@@ -45,7 +45,9 @@ public:
     /// The table, as mirrors and clear things show it.
     void applyTable(Program& program, const Material& table);
 
-    /// Whether it shows another picture from frame to frame.
+    /// Its colour on average, linear.
+    [[nodiscard]] glm::vec3 meanColor(const Material& material);
+
     [[nodiscard]] std::size_t objectCount() const noexcept { return pictures_.objectCount(); }
 
 private:

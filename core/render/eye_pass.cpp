@@ -12,12 +12,14 @@
 
 #include "core/base/error.h"
 #include "core/render/camera_uniforms.h"
+#include "core/render/eye_fog.h"
 #include "core/render/eye_lighting.h"
 #include "core/render/eye_materials.h"
 #include "core/render/eye_programs.h"
 #include "core/render/eye_shadow.h"
 #include "core/render/eye_skin.h"
 #include "core/render/eye_surfaces.h"
+#include "core/render/lookup_region.h"
 
 namespace lumorph {
 namespace {
@@ -25,7 +27,9 @@ namespace {
 using Stage = EyePrograms::Stage;
 
 constexpr glm::ivec2 kTableGrid{48, 36};
-constexpr float kFarthestCaster = 1.5F; // metres from the device's middle
+constexpr float kBlurredLift = 0.004F;        // metres by which blurred folds keep off their own shadow
+constexpr float kNearSideStepsBack = 0.0025F; // metres
+constexpr float kFarthestCaster = 1.5F;       // metres from the device's middle
 
 /// One thing to draw: a mesh, where it stands, and what it looks like.
 struct Thing {
@@ -35,6 +39,7 @@ struct Thing {
     float opacity = 1.0F;
     std::uint32_t features = 0;
     float distance = 0.0F;
+    bool skin = false;
 };
 
 /// Where a frame is drawn to.
@@ -77,6 +82,7 @@ struct EyePass::Data {
     EyeSurfaces surfaces;
     EyeShadow shadow;
     EyeLighting lighting;
+    EyeFog fog;
     EyeMesh table;
     glm::vec2 tableSize{0.0F};
 
@@ -88,6 +94,7 @@ struct EyePass::Data {
     void begin(const ShowFrame& frame, const View& view, unsigned framebuffer) const;
     void draw(const ShowFrame& frame, const View& view, const Thing& thing);
     void drawTable(const ShowFrame& frame, const View& view);
+    void drawCreases(const ShowFrame& frame, const View& view);
     void drawBlended(const ShowFrame& frame, const View& view, std::vector<Thing> things);
     [[nodiscard]] Box everything(const ShowFrame& frame) const;
 };
@@ -150,30 +157,42 @@ void EyePass::Data::drawShadow(const ShowFrame& frame) {
             program.set("castShare", thing.opacity);
             materials.applyDepth(program, *thing.material, features);
             if ((features & eye_feature::skin) != 0)
-                applySkin(program, frame.scene->device, surfaces.skinBoxAtRest());
-            // Of closed things the far side casts the shadow: then the near side is clear of it by their thickness.
-            const bool closed = (thing.features & (eye_feature::twoSided | eye_feature::skin)) == eye_feature::skin;
-            (closed ? glEnable : glDisable)(GL_CULL_FACE);
-            glCullFace(GL_FRONT);
+                applySkin(program, frame.scene->device, surfaces.skinBoxAtRest(), frame.worldFromDevice);
             setFrontFace(thing.world);
+            // The near side of closed things steps back: then most places of it are told lit at first sight, and what
+            // it covers its far side covers too.
+            const bool closed = (thing.features & eye_feature::twoSided) == 0;
+            glDisable(GL_CULL_FACE);
+            program.set("stepBack", 0.0F);
+            if (closed) {
+                glEnable(GL_CULL_FACE);
+                glCullFace(GL_FRONT);
+                thing.mesh->draw();
+                glCullFace(GL_BACK);
+                program.set("stepBack", shadow.depthOf(kNearSideStepsBack));
+            }
             thing.mesh->draw();
         };
-        if (surfaces.hasSkin() && showsSkin(frame))
-            drawCaster(skinThing(frame, false));
+        if (surfaces.hasSkin() && showsSkin(frame)) drawCaster(skinThing(frame, false));
         for (const auto& item : surfaces.items())
             if (frame.posed.surfaces[item.surface].castsShadow) {
                 const PosedSurface& surface = frame.posed.surfaces[item.surface];
                 const float own = surface.material.alpha == Material::Alpha::blend ? surface.material.opacity : 1.0F;
                 drawCaster({item.mesh, surface.worldFromSurface, &surface.material, own * surface.opacity,
-                            materials.features(surface.material), 0.0F});
+                            materials.features(surface.material) | eye_feature::twoSided, 0.0F});
             }
     });
 }
 
 Thing EyePass::Data::skinThing(const ShowFrame& frame, bool unseen) const {
     const DeviceSkin& skin = frame.scene->device;
-    Thing thing{&surfaces.skin(), frame.worldFromDevice, &skin.material, 1.0F, materials.features(skin.material, unseen),
-                0.0F};
+    Thing thing{&surfaces.skin(),
+                frame.worldFromDevice,
+                &skin.material,
+                1.0F,
+                materials.features(skin.material, unseen),
+                0.0F,
+                true};
     if (!unseen) thing.features |= skinFeatures(skin);
     if (!unseen && skin.material.alpha == Material::Alpha::blend) {
         thing.opacity = skin.material.opacity;
@@ -189,7 +208,10 @@ std::vector<Thing> EyePass::Data::itemThings(const ShowFrame& frame, const glm::
     for (const auto& item : surfaces.items()) {
         if (item.surface >= frame.posed.surfaces.size()) continue;
         const PosedSurface& surface = frame.posed.surfaces[item.surface];
-        Thing thing{item.mesh, surface.worldFromSurface, &surface.material, surface.opacity,
+        Thing thing{item.mesh,
+                    surface.worldFromSurface,
+                    &surface.material,
+                    surface.opacity,
                     materials.features(surface.material) | eye_feature::twoSided,
                     glm::distance(item.box.centre(), eye)};
         if (surface.opacity < 1.0F || surface.material.alpha == Material::Alpha::blend)
@@ -228,7 +250,8 @@ void EyePass::Data::begin(const ShowFrame& frame, const View& view, unsigned fra
 
 void EyePass::Data::draw(const ShowFrame& frame, const View& view, const Thing& thing) {
     const bool lit = (thing.features & eye_feature::unlit) == 0;
-    const std::uint32_t features = thing.features | (lit ? lighting.features() : 0U);
+    std::uint32_t features = thing.features | (lit ? lighting.features() : 0U);
+    if (!view.unseen) features |= fog.features();
     Program& program = programs.use(Stage::surface, features);
     setCamera(program, *view.camera, view.depth.near, view.depth.far);
     program.set("eyePosition", glm::vec3(positionOf(*view.camera)));
@@ -236,6 +259,9 @@ void EyePass::Data::draw(const ShowFrame& frame, const View& view, const Thing& 
     program.set("normalFromSurface", glm::mat4(glm::inverseTranspose(glm::mat3(thing.world))));
     lighting.apply(program);
     if ((features & eye_feature::shadow) != 0) shadow.apply(program);
+    if ((features & eye_feature::fog) != 0) fog.apply(program);
+    const double blur = (features & eye_feature::skin) != 0 ? -frame.scene->device.creases.emphasis : 0.0;
+    program.set("shadowLift", kBlurredLift * static_cast<float>(std::clamp(blur, 0.0, 1.0)));
     materials.apply(program, *thing.material, (features & eye_feature::blend) != 0 ? thing.opacity : 1.0F, features);
     if ((features & (eye_feature::reflection | eye_feature::refraction)) != 0) {
         materials.applyTable(program, frame.scene->table.material);
@@ -244,25 +270,56 @@ void EyePass::Data::draw(const ShowFrame& frame, const View& view, const Thing& 
         program.set("sky", frame.scene->sky);
     }
     if ((features & eye_feature::skin) != 0)
-        applySkin(program, frame.scene->device, surfaces.skinBoxAtRest());
+        applySkin(program, frame.scene->device, surfaces.skinBoxAtRest(), frame.worldFromDevice);
     if ((features & eye_feature::holesBelow) != 0)
         applyHolesAbove(program, frame.scene->device, surfaces.skinBoxAtRest(), frame.worldFromDevice);
     setFrontFace(thing.world);
     const bool cull = (features & eye_feature::twoSided) == 0;
     (cull ? glEnable : glDisable)(GL_CULL_FACE);
     glCullFace(GL_BACK);
+    // Where an item lies in the device's own surface, the item is seen.
+    (thing.skin ? glEnable : glDisable)(GL_POLYGON_OFFSET_FILL);
+    glPolygonOffset(1.0F, 8.0F);
     thing.mesh->draw();
+    glDisable(GL_POLYGON_OFFSET_FILL);
 }
 
 void EyePass::Data::drawTable(const ShowFrame& frame, const View& view) {
     const Material& material = frame.scene->table.material;
-    std::uint32_t features =
-        materials.features(material, view.unseen) | eye_feature::planar | eye_feature::twoSided;
-    const bool throughHoles = surfaces.hasSkin() && showsSkin(frame) &&
-                              (skinThing(frame, view.unseen).features & eye_feature::holes) != 0;
+    std::uint32_t features = materials.features(material, view.unseen) | eye_feature::planar | eye_feature::twoSided;
+    // The projector pass shows such a table alike to every eye.
+    if (!dependsOnEye(material)) features &= ~eye_feature::specular;
+    const bool throughHoles =
+        surfaces.hasSkin() && showsSkin(frame) && (skinThing(frame, view.unseen).features & eye_feature::holes) != 0;
     if (throughHoles && lighting.shadowed() && (features & eye_feature::unlit) == 0)
         features |= eye_feature::holesBelow;
     draw(frame, view, {&table, glm::mat4(1.0F), &material, 1.0F, features, 0.0F});
+}
+
+// Ink upon the skin, a hair above it.
+void EyePass::Data::drawCreases(const ShowFrame& frame, const View& view) {
+    const EyeMesh* lines = surfaces.creases();
+    if (lines == nullptr || !surfaces.hasSkin()) return;
+    const std::uint32_t features = view.unseen ? eye_feature::skin : skinFeatures(frame.scene->device);
+    const DeviceSkin::Creases& creases = frame.scene->device.creases;
+    Program& program = programs.use(Stage::crease, features);
+    setCamera(program, *view.camera, view.depth.near, view.depth.far);
+    program.set("worldFromSurface", frame.worldFromDevice);
+    program.set("ink", glm::vec4(linearLight(creases.color), static_cast<float>(std::min(creases.emphasis, 1.0))));
+    lighting.apply(program);
+    applySkin(program, frame.scene->device, surfaces.skinBoxAtRest(), frame.worldFromDevice);
+    setFrontFace(frame.worldFromDevice);
+    glEnable(GL_CULL_FACE);
+    glCullFace(GL_BACK);
+    glEnable(GL_POLYGON_OFFSET_FILL);
+    glPolygonOffset(0.5F, 4.0F); // between the items and the skin, which steps back more
+    glDepthMask(GL_FALSE);
+    glEnable(GL_BLEND);
+    glBlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ZERO, GL_ONE);
+    lines->draw();
+    glDisable(GL_BLEND);
+    glDepthMask(GL_TRUE);
+    glDisable(GL_POLYGON_OFFSET_FILL);
 }
 
 // Farthest first; each fills the depth before its colour, so that its own far side does not shine through it.
@@ -287,6 +344,9 @@ void EyePass::prepare(const ShowFrame& frame) {
     data_->surfaces.update(frame);
     data_->updateTable(frame.scene->table.size);
     data_->lighting = EyeLighting(*frame.scene, frame.posed.lights);
+    data_->lighting.setBounce(data_->lighting.onTable(glm::vec3(frame.worldFromDevice[3])) *
+                              data_->materials.meanColor(frame.scene->table.material));
+    data_->fog.update(frame.posed.fogs, data_->lighting.onTable(glm::vec3(frame.worldFromDevice[3])));
     data_->drawShadow(frame);
 }
 
@@ -304,6 +364,7 @@ void EyePass::draw(const ShowFrame& frame, const CalibratedCamera& camera, unsig
         things.begin(), things.end(), [](const Thing& thing) { return (thing.features & eye_feature::blend) == 0; });
     for (auto thing = things.begin(); thing != opaqueEnd; ++thing) data_->draw(frame, view, *thing);
     data_->drawTable(frame, view);
+    if (showsSkin(frame)) data_->drawCreases(frame, view);
     data_->drawBlended(frame, view, {opaqueEnd, things.end()});
     finishDrawing();
 }
@@ -314,6 +375,7 @@ void EyePass::drawUnseen(const ShowFrame& frame, const CalibratedCamera& camera,
     data_->begin(frame, view, framebuffer);
     if (data_->surfaces.hasSkin()) data_->draw(frame, view, data_->skinThing(frame, true));
     data_->drawTable(frame, view);
+    data_->drawCreases(frame, view);
     finishDrawing();
 }
 
@@ -321,7 +383,7 @@ std::vector<std::string> EyePass::warnings() const { return data_->programs.warn
 
 std::size_t EyePass::objectCount() const noexcept {
     return data_->programs.objectCount() + data_->materials.objectCount() + data_->surfaces.objectCount() +
-           data_->shadow.objectCount() + EyeMesh::kObjects;
+           data_->shadow.objectCount() + data_->fog.objectCount() + EyeMesh::kObjects;
 }
 
 } // namespace lumorph

@@ -31,6 +31,7 @@ constexpr std::pair<std::uint32_t, const char*> kNames[] = {
     {planar, "PLANAR"},
     {dither, "DITHER"},
     {holesBelow, "HOLES_BELOW"},
+    {secondFog, "SECOND_FOG"},
 };
 
 std::vector<std::string> definesOf(std::uint32_t features) {

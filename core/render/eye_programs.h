@@ -32,6 +32,7 @@ enum Bit : std::uint32_t {
     planar = 1U << 17U, ///< the table: it lies in y = 0
     dither = 1U << 18U,
     holesBelow = 1U << 19U, ///< the table under a device with holes
+    secondFog = 1U << 20U,
     lightShift = 24U, ///< the number of lights stands above this bit, in three bits
     holeShift = 27U   ///< the number of the skin's round holes
 };

@@ -25,6 +25,8 @@ public:
     /// Sets what eye_surface.vert and eye_shadow.glsl need in the current program.
     void apply(Program& program) const;
 
+    /// In clip depth, near the middle of the casters.
+    [[nodiscard]] float depthOf(float metres) const noexcept { return 2.0F * metres / depthRange_; }
     [[nodiscard]] bool parallel() const noexcept { return light_.parallel; }
     [[nodiscard]] std::size_t objectCount() const noexcept;
 

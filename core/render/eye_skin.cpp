@@ -13,6 +13,7 @@ namespace lumorph {
 namespace {
 
 constexpr float kEverywhere = 1e9F;
+constexpr float kWall = 0.0015F;     // metres: what is thinner is the skin itself
 constexpr float kClearance = 0.002F; // metres above the top, so that it casts no shadow on its own holes
 
 // Of the device as it appears: x and z from and to.
@@ -34,9 +35,12 @@ std::uint32_t skinFeatures(const DeviceSkin& skin) {
     return bits;
 }
 
-void applySkin(Program& program, const DeviceSkin& skin, const Box& rest) {
+void applySkin(Program& program, const DeviceSkin& skin, const Box& rest, const glm::mat4& worldFromDevice) {
+    program.set("deviceFromWorld", glm::inverse(worldFromDevice));
     const glm::vec4 everywhere(-kEverywhere, -kEverywhere, kEverywhere, kEverywhere);
     program.set("shrunkOutline", skin.shrink > 0.0 ? outlineOf(skin, rest) : everywhere);
+    program.set("insideOutline", glm::vec4(rest.min.x + kWall, rest.min.z + kWall, rest.max.x - kWall, rest.max.z - kWall));
+    program.set("insideTop", glm::vec2(rest.max.y, rest.max.y - kWall));
     std::vector<glm::vec3> holes;
     for (const DeviceSkin::Hole& hole : skin.holes) {
         if (holes.size() == kMostRoundHoles) break;

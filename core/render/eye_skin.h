@@ -14,7 +14,7 @@ namespace lumorph {
 [[nodiscard]] std::uint32_t skinFeatures(const DeviceSkin& skin);
 
 /// Sets them in the current program; `rest` is the box of the device at rest.
-void applySkin(Program& program, const DeviceSkin& skin, const Box& rest);
+void applySkin(Program& program, const DeviceSkin& skin, const Box& rest, const glm::mat4& worldFromDevice);
 
 /// For the table beneath: where the eye looks at it through holes.
 void applyHolesAbove(Program& program, const DeviceSkin& skin, const Box& rest, const glm::mat4& worldFromDevice);

@@ -6,6 +6,8 @@
 namespace lumorph {
 namespace {
 
+constexpr double kSoftFold = 0.015; // metres over which blurred folds are round
+
 template <class Values> void fill(GLenum target, const gl::Buffer& buffer, const Values& values, GLenum usage) {
     glBindBuffer(target, buffer.name());
     glBufferData(target, static_cast<GLsizeiptr>(values.size() * sizeof(*values.data())), values.data(), usage);
@@ -113,27 +115,56 @@ void EyeSurfaces::upload(Entry& entry, const PosedSurface& surface) {
     entry.mesh.setShape(*surface.positions, *surface.normals);
 }
 
-void EyeSurfaces::updateSkin(const ShowFrame& frame) {
+// Whether there is a device, and its shape or what is done to its folds is another than before.
+bool EyeSurfaces::takeRig(const ShowFrame& frame) {
     if (!frame.rig || !frame.devicePositions) {
         skinBoxAtDevice_ = Box();
-        return;
+        devicePositions_.reset();
+        return false;
     }
     if (frame.rig != rig_) {
         rig_ = frame.rig;
         devicePositions_.reset();
+        creaseFinder_.reset();
         skinSource_ = std::make_unique<SkinMesh>(rig_->restMesh());
         skinBoxAtRest_ = boundingBox(rig_->restMesh().positions);
         skinMesh_ = std::make_unique<EyeMesh>();
         skinMesh_->setTopology(skinSource_->triangles(), skinSource_->coordinates(), &skinSource_->restPositions());
     }
-    if (frame.devicePositions == devicePositions_) return;
+    const DeviceSkin::Creases& creases = frame.scene->device.creases;
+    if (frame.devicePositions == devicePositions_ && creases == creases_) return false;
     devicePositions_ = frame.devicePositions;
+    creases_ = creases;
+    return true;
+}
+
+void EyeSurfaces::updateSkin(const ShowFrame& frame) {
+    if (!takeRig(frame)) return;
     skinVersion_ = ++versions_;
     skinBoxAtDevice_ = Box();
+    creaseMesh_.reset();
     if (devicePositions_->size() != skinSource_->meshVertexCount() || !finite(*devicePositions_)) return;
-    skinSource_->shade(*devicePositions_, skinPositions_, skinNormals_);
+    const std::vector<glm::vec3> positions = skinSource_->cutPositions(*devicePositions_);
+    if (creases_.emphasis != 0.0 && !creaseFinder_)
+        creaseFinder_ = std::make_unique<CreaseFinder>(skinSource_->cutMesh());
+    std::vector<glm::vec3> soft;
+    if (creases_.emphasis < 0.0) soft = creaseFinder_->softNormals(positions, kSoftFold);
+    skinSource_->shade(positions, soft, static_cast<float>(-creases_.emphasis), skinPositions_, skinNormals_);
     skinMesh_->setShape(skinPositions_, skinNormals_);
     skinBoxAtDevice_ = boundingBox(skinPositions_);
+    if (creases_.emphasis > 0.0) updateCreases(positions);
+}
+
+void EyeSurfaces::updateCreases(const std::vector<glm::vec3>& positions) {
+    const TriangleMesh& rest = skinSource_->cutMesh();
+    const std::vector<Crease> creases = creaseFinder_->find(positions, {creases_.threshold});
+    const CreaseStrips strips = creaseStrips(creases, rest.triangles, positions, creases_.width, creases_.threshold);
+    if (strips.triangles.empty()) return;
+    std::vector<glm::vec3> restPositions;
+    for (const std::uint32_t vertex : strips.vertices) restPositions.push_back(rest.positions[vertex]);
+    creaseMesh_ = std::make_unique<EyeMesh>();
+    creaseMesh_->setTopology(strips.triangles, strips.across, &restPositions);
+    creaseMesh_->setShape(strips.positions, strips.normals);
 }
 
 void EyeSurfaces::update(const ShowFrame& frame) {
@@ -152,7 +183,7 @@ void EyeSurfaces::update(const ShowFrame& frame) {
 }
 
 std::size_t EyeSurfaces::objectCount() const noexcept {
-    return EyeMesh::kObjects * (entries_.size() + (skinMesh_ ? 1 : 0));
+    return EyeMesh::kObjects * (entries_.size() + (skinMesh_ ? 1 : 0) + (creaseMesh_ ? 1 : 0));
 }
 
 } // namespace lumorph

@@ -7,6 +7,7 @@
 #include <glm/mat4x4.hpp>
 
 #include "core/geometry/triangle_mesh.h"
+#include "core/render/creases.h"
 #include "core/render/gl_objects.h"
 #include "core/render/show_frame.h"
 #include "core/render/skin_mesh.h"
@@ -45,6 +46,8 @@ public:
     /// Whether there is a skin to draw.
     [[nodiscard]] bool hasSkin() const noexcept { return skinBoxAtDevice_.max.x >= skinBoxAtDevice_.min.x; }
     [[nodiscard]] const EyeMesh& skin() const noexcept { return *skinMesh_; }
+    /// Lines along its folds; null where none are drawn.
+    [[nodiscard]] const EyeMesh* creases() const noexcept { return creaseMesh_.get(); }
     [[nodiscard]] const SkinMesh& skinSource() const noexcept { return *skinSource_; }
     [[nodiscard]] const Box& skinBoxAtRest() const noexcept { return skinBoxAtRest_; }
     [[nodiscard]] const Box& skinBoxAtDevice() const noexcept { return skinBoxAtDevice_; }
@@ -64,7 +67,9 @@ private:
     };
     [[nodiscard]] Entry& entryOf(const PosedSurface& surface);
     void upload(Entry& entry, const PosedSurface& surface);
+    [[nodiscard]] bool takeRig(const ShowFrame& frame);
     void updateSkin(const ShowFrame& frame);
+    void updateCreases(const std::vector<glm::vec3>& positions);
 
     std::vector<std::unique_ptr<Entry>> entries_;
     std::vector<Shown> shown_;
@@ -72,6 +77,9 @@ private:
     std::shared_ptr<const std::vector<glm::vec3>> devicePositions_;
     std::unique_ptr<SkinMesh> skinSource_;
     std::unique_ptr<EyeMesh> skinMesh_;
+    std::unique_ptr<CreaseFinder> creaseFinder_;
+    std::unique_ptr<EyeMesh> creaseMesh_;
+    DeviceSkin::Creases creases_;
     std::vector<glm::vec3> skinPositions_, skinNormals_;
     Box skinBoxAtRest_, skinBoxAtDevice_;
     std::uint64_t skinVersion_ = 0;

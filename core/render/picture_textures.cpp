@@ -1,6 +1,7 @@
 #include "core/render/picture_textures.h"
 
 #include <algorithm>
+#include <cmath>
 #include <string_view>
 #include <utility>
 
@@ -65,6 +66,17 @@ bool anyClear(const Image& image) {
     return std::any_of(image.pixels().begin(), image.pixels().end(), [](const auto& pixel) { return pixel[3] < 255; });
 }
 
+// Some thousand pixels tell it well enough.
+glm::vec3 meanOf(const Image& image) {
+    const auto& pixels = image.pixels();
+    const std::size_t step = std::max<std::size_t>(pixels.size() / 4093, 1);
+    glm::dvec3 sum(0.0);
+    double count = 0.0;
+    for (std::size_t i = 0; i < pixels.size(); i += step, count += 1.0)
+        for (int c = 0; c < 3; ++c) sum[c] += std::pow(pixels[i][static_cast<std::size_t>(c)] / 255.0, 2.2);
+    return glm::vec3(sum / count);
+}
+
 } // namespace
 
 PictureTextures::Picture PictureTextures::picture(const std::shared_ptr<const Image>& image, Use use, glm::ivec2 grid,
@@ -83,7 +95,7 @@ PictureTextures::Picture PictureTextures::picture(const std::shared_ptr<const Im
     Image shown = whole ? *image : cutOut(*image, grid, cell);
     while (std::max(shown.size().x, shown.size().y) > largest) shown = halved(shown);
     upload(entry.texture.name(), shown, use);
-    entry.picture = {entry.texture.name(), shown.size(), anyClear(*image)};
+    entry.picture = {entry.texture.name(), shown.size(), anyClear(*image), meanOf(shown)};
     return entry.picture;
 }
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
 
 #include "core/render/gl_objects.h"
 #include "core/render/image.h"
@@ -22,6 +23,7 @@ public:
         GLuint texture = 0;
         glm::ivec2 size{1};     ///< of the texture
         bool hasAlpha = false; ///< some of it is not opaque
+        glm::vec3 mean{1.0F};  ///< linear, of a colour picture
     };
 
     /// A whole picture, or one of the `columns` x `rows` of a flip-book counted along the rows from the top left.

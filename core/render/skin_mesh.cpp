@@ -100,18 +100,17 @@ TriangleMesh SkinMesh::refined(const TriangleMesh& rest, std::vector<Midpoint>& 
 }
 
 SkinMesh::SkinMesh(const TriangleMesh& rest)
-    : meshVertexCount_(rest.positions.size()), shading_(TriangleMesh{}, Angle::degrees(30.0)) {
-    const TriangleMesh mesh = refined(rest, midpoints_);
-    shading_ = SurfaceShading(mesh, Angle::degrees(30.0));
-    split(mesh);
+    : meshVertexCount_(rest.positions.size()), cut_(refined(rest, midpoints_)),
+      shading_(cut_, Angle::degrees(30.0)) {
+    split();
 }
 
 // A drawn vertex is one of the shading's on one side of the box.
-void SkinMesh::split(const TriangleMesh& mesh) {
-    const Box box = boundingBox(mesh.positions);
+void SkinMesh::split() {
+    const Box box = boundingBox(cut_.positions);
     std::map<std::pair<std::uint32_t, Side>, std::uint32_t> numbers;
     for (const glm::uvec3& t : shading_.triangles()) {
-        const auto at = [&](int k) { return mesh.positions[shading_.sources()[t[k]]]; };
+        const auto at = [&](int k) { return cut_.positions[shading_.sources()[t[k]]]; };
         const Side side = sideOf(glm::cross(at(1) - at(0), at(2) - at(0)));
         glm::uvec3 drawn(0U);
         for (int k = 0; k < 3; ++k) {
@@ -126,18 +125,23 @@ void SkinMesh::split(const TriangleMesh& mesh) {
     }
 }
 
-void SkinMesh::shade(std::span<const glm::vec3> positions, std::vector<glm::vec3>& outPositions,
-                     std::vector<glm::vec3>& outNormals) const {
+std::vector<glm::vec3> SkinMesh::cutPositions(std::span<const glm::vec3> positions) const {
     std::vector<glm::vec3> all(positions.begin(), positions.end());
     all.reserve(positions.size() + midpoints_.size());
     for (const auto& [a, b] : midpoints_) all.push_back(0.5F * (all[a] + all[b]));
+    return all;
+}
+
+void SkinMesh::shade(std::span<const glm::vec3> cutPositions, std::span<const glm::vec3> soft, float share,
+                     std::vector<glm::vec3>& outPositions, std::vector<glm::vec3>& outNormals) const {
     std::vector<ShadedMesh::Vertex> shaded(shading_.sources().size());
-    shading_.shade(all, shaded);
+    shading_.shade(cutPositions, shaded);
     outPositions.resize(sources_.size());
     outNormals.resize(sources_.size());
     for (std::size_t i = 0; i < sources_.size(); ++i) {
         outPositions[i] = shaded[sources_[i]].position;
         outNormals[i] = shaded[sources_[i]].normal;
+        if (!soft.empty()) outNormals[i] = glm::mix(outNormals[i], soft[shading_.sources()[sources_[i]]], share);
     }
 }
 

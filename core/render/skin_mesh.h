@@ -27,9 +27,15 @@ public:
     [[nodiscard]] std::size_t meshVertexCount() const noexcept { return meshVertexCount_; }
     [[nodiscard]] bool closed() const noexcept { return shading_.closed(); }
 
-    /// Positions and normals of all drawn vertices for these positions of the mesh's vertices.
-    void shade(std::span<const glm::vec3> positions, std::vector<glm::vec3>& outPositions,
-               std::vector<glm::vec3>& outNormals) const;
+    /// The mesh at rest with its large triangles cut.
+    [[nodiscard]] const TriangleMesh& cutMesh() const noexcept { return cut_; }
+    /// Its positions for these of the mesh's vertices.
+    [[nodiscard]] std::vector<glm::vec3> cutPositions(std::span<const glm::vec3> positions) const;
+
+    /// Positions and normals of all drawn vertices for these positions of the cut mesh. Where `soft` is not empty it
+    /// holds other normals of the cut mesh's vertices, of which `share` is mixed in.
+    void shade(std::span<const glm::vec3> cutPositions, std::span<const glm::vec3> soft, float share,
+               std::vector<glm::vec3>& outPositions, std::vector<glm::vec3>& outNormals) const;
 
 private:
     /// A point halfway between two earlier ones.
@@ -37,10 +43,11 @@ private:
         std::uint32_t a, b;
     };
     static TriangleMesh refined(const TriangleMesh& rest, std::vector<Midpoint>& midpoints);
-    void split(const TriangleMesh& mesh);
+    void split();
 
     std::size_t meshVertexCount_ = 0;
     std::vector<Midpoint> midpoints_;
+    TriangleMesh cut_;
     SurfaceShading shading_;
     std::vector<std::uint32_t> sources_; ///< of a drawn vertex in the shading
     std::vector<glm::uvec3> triangles_;

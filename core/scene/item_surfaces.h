@@ -52,7 +52,7 @@ public:
 
 private:
     [[nodiscard]] std::size_t index(int column, int row) const noexcept {
-        return static_cast<std::size_t>(row * (quads_.x + 1) + column);
+        return static_cast<std::size_t>(row) * xs_.size() + static_cast<std::size_t>(column);
     }
     void addTop(SurfaceTopology& topology) const;
     void addWalls(SurfaceTopology& topology);

@@ -29,23 +29,23 @@ Material pictured(const std::string& title, const std::string& name, float metre
 Material water() {
     Material material;
     material.name = "Water";
-    material.color = {0.16F, 0.45F, 0.55F};
+    material.color = {0.11F, 0.50F, 0.65F};
     material.normalMaps[0] = picture("water_normal", 0.11F);
     material.normalMaps[0].velocity = {0.016F, 0.005F};
     material.normalMaps[1] = picture("water_normal", 0.064F);
     material.normalMaps[1].turn = Angle::degrees(65.0);
     material.normalMaps[1].velocity = {0.013F, -0.004F};
-    material.normalStrength = 0.6F;
+    material.normalStrength = 0.35F;
     material.roughness = 0.08F;
-    material.reflection = 0.6F;
-    material.refraction = 0.55F;
+    material.reflection = 0.08F;
+    material.refraction = 0.3F;
     return material;
 }
 
 Material ice() {
     Material material = pictured("Ice", "ice", 0.16F, 0.18F);
-    material.reflection = 0.35F;
-    material.refraction = 0.15F;
+    material.reflection = 0.10F;
+    material.refraction = 0.12F;
     material.refractiveIndex = 1.31F;
     return material;
 }

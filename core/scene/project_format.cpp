@@ -105,7 +105,7 @@ Project projectOf(json document, const std::string& file) {
         section.flag("playing", project.playback.playing);
         section.number("spin", project.playback.spin, -100.0, 100.0);
     });
-    root.section("scene", [&](Section section) { readScene(std::move(section), project.scene); });
+    root.section("scene", [&](const Section& section) { readScene(section, project.scene); });
     if (const auto view = document.find("view"); view != document.end()) {
         if (!view->is_object()) root.refuse("view", "is not an object", "write it in { }, or remove it");
         project.view = std::move(*view);

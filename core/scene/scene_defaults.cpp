@@ -1,22 +1,9 @@
 #include <cmath>
 
-#include <glm/geometric.hpp>
-
 #include "core/scene/scene.h"
 
 namespace lumorph {
 namespace {
-
-/// OpenCV's frame of a camera that looks along `forward`, the picture's upper side towards the viewer: a projector that
-/// hangs beyond the table shows the picture's top there.
-glm::dmat4 cameraFromWorld(const glm::dvec3& position, const glm::dvec3& forward) {
-    const glm::dvec3 ahead = glm::normalize(forward);
-    const glm::dvec3 right = glm::normalize(glm::cross(ahead, glm::dvec3(0.0, 1.0, 0.0)));
-    const glm::dvec3 down = glm::cross(ahead, right);
-    glm::dmat4 matrix(glm::transpose(glm::dmat3(right, down, ahead)));
-    matrix[3] = glm::dvec4(-(glm::dmat3(matrix) * position), 1.0);
-    return matrix;
-}
 
 /// A full-HD projector on a shelf, 2 m above the table and a little beyond the device, so that the viewer's head stays
 /// out of its light and flaps lifted up to 60 degrees are lit on either side. Like most projectors it has a lens shift:
@@ -35,7 +22,10 @@ SceneProjector defaultProjector() {
     // The picture's middle lies on the device, so the axis leans back by the angle of the shift.
     const double toDevice = std::atan2(-position.z, position.y - 0.02);
     const double lean = toDevice - std::atan2(shift, focal);
-    projector.camera.cameraFromWorld = cameraFromWorld(position, {0.0, -std::cos(lean), std::sin(lean)});
+    projector.camera.cameraFromWorld =
+        cameraLookingAt(position, position + glm::dvec3(0.0, -std::cos(lean), std::sin(lean)), projector.camera.size,
+                        focal)
+            .cameraFromWorld;
     return projector;
 }
 

@@ -177,7 +177,9 @@ private:
     void addSurface(const SceneItem& item, const ItemSurface& surface, const glm::mat4& worldFromSurface,
                     const Material& material, float opacity) {
         if (!usable(worldFromSurface)) return;
-        const bool casts = material.alpha != Material::Alpha::blend || material.opacity * opacity >= 0.5F;
+        // What is hardly there throws no shadow.
+        const float own = material.alpha == Material::Alpha::blend ? material.opacity : 1.0F;
+        const bool casts = own * opacity >= 0.5F;
         posed_.surfaces.push_back({item.id, surface.topology, surface.positions, surface.normals, worldFromSurface,
                                    material, opacity, casts});
     }

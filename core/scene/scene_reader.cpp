@@ -134,7 +134,7 @@ private:
 
 } // namespace
 
-void readScene(Section section, Scene& scene) {
+void readScene(const Section& section, Scene& scene) {
     Reader reader(section);
     fields(reader, scene);
     try {

@@ -27,9 +27,17 @@ int shortest(int value) { return value; }
 /// The degrees, round where that is possible, that give this very angle when read; nothing where none do.
 std::optional<double> exactDegrees(Angle angle) {
     const double degrees = angle.inDegrees();
-    const double rounded = std::round(degrees * 1e9) / 1e9;
-    for (const double candidate : {rounded, degrees, std::nextafter(degrees, 1e300), std::nextafter(degrees, -1e300)})
-        if (Angle::degrees(candidate) == angle) return candidate;
+    const auto gives = [angle](double candidate) { return Angle::degrees(candidate) == angle; };
+    if (const double rounded = std::round(degrees * 1e9) / 1e9; gives(rounded)) return rounded;
+    // There and back costs four roundings.
+    double above = degrees;
+    double below = degrees;
+    for (int step = 0; step < 4; ++step) {
+        if (gives(above)) return above;
+        if (gives(below)) return below;
+        above = std::nextafter(above, 1e300);
+        below = std::nextafter(below, -1e300);
+    }
     return std::nullopt;
 }
 

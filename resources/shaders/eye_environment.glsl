@@ -15,18 +15,21 @@ vec3 tableAt(vec2 at, float blur) {
     return tableColor * picture * tableLight / (1.0 + 40.0 * dot(beyond, beyond));
 }
 
+const vec3 kSkyTint = vec3(0.86, 0.98, 1.16);
+
 // A room at daylight: bright above the horizon, with a soft window overhead to one side.
 vec3 skyAt(vec3 direction) {
     float rise = clamp(direction.y, 0.0, 1.0);
     float window = clamp(dot(direction, vec3(-0.41, 0.78, -0.47)), 0.0, 1.0);
     window *= window;
     window *= window;
-    return sky * (0.75 + 1.1 * (1.0 - rise) * (1.0 - rise) + 2.2 * window * window);
+    return sky * kSkyTint * (0.6 + 1.3 * (1.0 - rise) * (1.0 - rise) + 2.6 * window * window);
 }
 
+// What ripples mirror of the table near the horizon fades into the sky: hard edges would look like stains.
 vec3 environmentAt(vec3 from, vec3 direction, float blur) {
     float down = max(-direction.y, 1e-3);
     float way = max(from.y, 0.0) / down;
     vec3 table = tableAt(from.xz + min(way, 4.0) * direction.xz, blur);
-    return mix(skyAt(direction), table, smoothstep(0.0, 0.06, -direction.y));
+    return mix(skyAt(direction), table, 0.7 * smoothstep(0.05, 0.8, -direction.y));
 }

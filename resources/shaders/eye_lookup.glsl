@@ -18,7 +18,7 @@ uniform vec4 lookupArea; // least and largest x, z, metres
 const float kFeather = 0.025; // of the picture's side, over which it fades out at its border
 const float kAreaFade = 0.02; // metres, over which it fades out around the area of the table
 const float kSlack = 0.0004;  // metres between a point and the depth that stands for it
-const float kTapSpacing = 2.0; // texels
+const float kTapSpacing = 1.0; // texels
 const float kMostTaps = 8.0;  // along one side of a footprint
 
 // Weights of the four texels of a bilinear tap, in textureGather's order.
@@ -65,8 +65,14 @@ vec4 seenByEye(sampler2D picture, sampler2D deviceDepth, EyeView view, vec3 worl
 #endif
     vec2 place = at.xy * view.size - 0.5;
     vec4 weights = tapWeights(fract(place));
-    vec4 behind = behindPlane(textureGather(deviceDepth, at.xy), at.xy, view.size, at, slope);
-    if (dot(weights, vec4(greaterThan(behind, vec4(-slack)))) < 0.5) share = 0.0;
+    vec4 stored = textureGather(deviceDepth, at.xy);
+    vec4 behind = behindPlane(stored, at.xy, view.size, at, slope);
+    vec4 clear = behind;
+#ifndef TABLE
+    // What lies in front of the plane drawn on beyond its rim but behind the point itself, hides nothing.
+    clear = max(behind, stored - at.z);
+#endif
+    if (dot(weights, vec4(greaterThan(clear, vec4(-slack)))) < 0.5) share = 0.0;
 
     // The nearest of its own texels, for points so close to an edge that no whole tap fits.
     weights *= vec4(lessThan(abs(behind), vec4(2.0 * slack)));

@@ -8,7 +8,8 @@ out vec4 color;
 uniform vec3 eyePosition;
 uniform vec4 baseColor; // linear, opacity
 uniform vec3 emitted;
-uniform vec3 skyLight;
+uniform vec3 skyLight;    // on a surface that looks up
+uniform vec3 bounceLight; // on one that looks down
 #ifdef COLOR_TEXTURE
 uniform sampler2D colorPicture;
 uniform vec4 colorTurn; // texture coordinates are mat2(colorTurn) * place + colorShift
@@ -31,10 +32,14 @@ uniform vec4 lightPlaces[LIGHTS]; // towards it and 0, or where it stands and 1
 uniform vec3 lightRadiances[LIGHTS];
 #endif
 #ifdef SPECULAR
-uniform vec4 gloss; // roughness to the 4th power, roughness + 0.5, metallic, unused
+uniform vec2 gloss; // roughness to the 4th power, roughness + 0.5
+uniform float metal;
+#endif
+#if defined(REFLECTION) && !defined(SPECULAR)
+const float metal = 0.0;
 #endif
 #if defined(REFLECTION) || defined(REFRACTION)
-uniform vec4 optics; // reflection head on, refraction, 1 / refractive index, blur of pictures seen through it
+uniform vec4 optics; // reflection, refraction, 1 / refractive index, blur of pictures seen through it
 #endif
 
 #if defined(NORMAL_A) || defined(NORMAL_B)
@@ -73,6 +78,9 @@ vec3 bentNormal(vec3 n) {
 void main() {
 #ifdef HOLES
     if (isHole()) discard;
+#ifdef SKIN
+    if (isInside(worldPosition, eyePosition)) discard;
+#endif
 #endif
     vec4 base = baseColor;
 #ifdef COLOR_TEXTURE
@@ -97,7 +105,7 @@ void main() {
     n = bentNormal(n);
 #endif
     vec3 view = normalize(eyePosition - worldPosition);
-    vec3 diffuse = skyLight * (0.65 + 0.35 * n.y);
+    vec3 diffuse = mix(bounceLight, skyLight, 0.5 + 0.5 * n.y);
     vec3 shine = vec3(0.0);
 #if LIGHTS > 0
     for (int i = 0; i < LIGHTS; ++i) {
@@ -127,7 +135,7 @@ void main() {
 #endif
     vec3 light = base.rgb * diffuse;
 #ifdef SPECULAR
-    light *= 1.0 - gloss.z;
+    light *= 1.0 - 0.6 * metal;
 #endif
 #ifdef REFRACTION
     vec3 inward = refract(-view, n, optics.z);
@@ -138,17 +146,18 @@ void main() {
 #ifdef REFLECTION
     float grazing = 1.0 - clamp(dot(n, view), 0.0, 1.0);
     float square = grazing * grazing;
-    float share = optics.x + (1.0 - optics.x) * square * square * grazing;
+    // More than clear water mirrors from above, because a viewer takes it for water by its mirror.
+    float share = optics.x * mix(0.15 + 0.85 * square * square * grazing, 1.0, metal);
     vec3 mirrored = environmentAt(worldPosition, reflect(-view, n), optics.w);
-    light = mix(light, mirrored, share);
+    light = mix(light, mirrored * mix(vec3(1.0), base.rgb, metal), share);
 #endif
 #ifdef SPECULAR
-    light += shine * mix(vec3(0.04), base.rgb, gloss.z);
+    light += shine * mix(vec3(0.04), base.rgb, metal);
 #endif
     light += emitted;
 #endif
 #ifdef FOG
-    light = fogged(light, worldPosition);
+    light = fogged(light, worldPosition, eyePosition);
 #endif
     color = shown(light, base.a);
 }

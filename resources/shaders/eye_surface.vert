@@ -7,7 +7,7 @@ layout(location = 1) in vec3 normal;
 layout(location = 2) in vec2 coordinates;
 #ifdef SKIN
 layout(location = 3) in vec3 restPosition;
-out vec2 restPlace;
+out vec3 restPlace;
 #endif
 
 uniform mat4 worldFromSurface;
@@ -23,6 +23,7 @@ uniform mat4 shadowPlaneFromWorld; // of planes
 uniform vec3 shadowLight;          // towards a parallel light, or where a lamp stands
 uniform float shadowTexel;         // metres a pixel of the map covers; of a lamp's: at a distance of 1 m
 uniform float shadowSteepest;      // largest slope, depth over map units
+uniform float shadowLift;          // metres off the surface, where its normals are not its own
 out vec4 shadowPlace;
 out vec2 shadowSlope;
 
@@ -37,7 +38,7 @@ void placeInShadow() {
     float reach = shadowTexel;
 #endif
     float facing = dot(n, towards);
-    vec3 at = worldPosition + n * (reach * 1.2 * sqrt(max(1.0 - facing * facing, 0.0)));
+    vec3 at = worldPosition + n * (shadowLift + reach * 1.2 * sqrt(max(1.0 - facing * facing, 0.0)));
     shadowPlace = shadowFromWorld * vec4(at, 1.0);
     vec4 plane = shadowPlaneFromWorld * vec4(n, -dot(n, at));
     vec2 slope = -plane.xy / (abs(plane.z) > 1e-6 ? plane.z : 1e-6);
@@ -50,7 +51,7 @@ void main() {
     worldNormal = (normalFromSurface * vec4(normal, 0.0)).xyz;
     place = coordinates;
 #ifdef SKIN
-    restPlace = restPosition.xz;
+    restPlace = restPosition.xzy;
 #endif
 #ifdef SHADOW
     placeInShadow();

@@ -27,7 +27,8 @@ Sight sightOf(vec3 world, vec3 normal) {
     vec2 high = low + 1.0 / sightSize;
     vec4 expected = at.z + slope.x * vec4(low.x, high.x, high.x, low.x) + slope.y * vec4(high.y, high.y, low.y, low.y);
     float slack = sightDepthSlope / (clip.w * clip.w) * (kSightSlack + 2.0 * sightTexel * clip.w);
-    vec4 lit = vec4(greaterThan(textureGather(sightDepth, at.xy), expected - slack));
+    // What lies in front of the plane drawn on beyond its rim but behind the point itself, shadows nothing.
+    vec4 lit = vec4(greaterThan(textureGather(sightDepth, at.xy), min(expected, at.z) - slack));
     vec2 part = fract(at.xy * sightSize - 0.5);
     float reached = mix(mix(lit.w, lit.z, part.x), mix(lit.x, lit.y, part.x), part.y);
     return Sight(at.xy, reached);

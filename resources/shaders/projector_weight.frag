@@ -8,7 +8,7 @@ uniform sampler2D openness;
 uniform float own;
 
 const float kBorder = 0.08; // of the image's shorter side, over which a projector fades out
-const float kLeast = 1e-3;  // so that a point which only one projector reaches still gets its light
+const float kLeast = 0.01;  // so that a point which only one projector reaches still gets its light
 
 out vec2 weight;
 
@@ -20,6 +20,6 @@ void main() {
     vec2 border = min(sight.uv, 1.0 - sight.uv) * sightSize / (kBorder * min(sightSize.x, sightSize.y));
     float fade = smoothstep(0.0, 1.0, border.x) * smoothstep(0.0, 1.0, border.y) *
                  smoothstep(0.25, 1.0, textureLod(openness, sight.uv, 0.0).r);
-    float value = strength * strength * max(fade, kLeast) * max(sight.reached, own);
+    float value = strength * strength * (kLeast + fade) * max(sight.reached, own);
     weight = vec2(own * value, value);
 }

@@ -21,5 +21,6 @@ void benchLoop(const Filter& filter, Report& report);
 void benchLive(const Filter& filter, Report& report);
 void benchRefine(const Filter& filter, Report& report);
 void benchScaling(const Filter& filter, Report& report);
+void benchFrame(const Filter& filter, Report& report);
 
 } // namespace lumorph::bench

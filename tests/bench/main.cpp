@@ -16,9 +16,9 @@ struct Group {
     void (*run)(const Filter&, Report&);
 };
 
-constexpr Group kGroups[] = {{"voting", benchVoting},  {"voxelize", benchVoxelize}, {"build", benchBuild},
-                             {"loop", benchLoop},      {"live", benchLive},         {"refine", benchRefine},
-                             {"scaling", benchScaling}};
+constexpr Group kGroups[] = {{"voting", benchVoting},   {"voxelize", benchVoxelize}, {"build", benchBuild},
+                             {"loop", benchLoop},       {"live", benchLive},         {"refine", benchRefine},
+                             {"scaling", benchScaling}, {"frame", benchFrame}};
 
 } // namespace
 

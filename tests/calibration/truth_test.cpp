@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cstdio>
+#include <cstdlib>
 #include <memory>
 
 #include <glm/geometric.hpp>
@@ -15,13 +16,43 @@
 namespace lumorph::test {
 namespace {
 
-/// A renderer in a context of its own, the tablet, and the benches of one state.
-class TruthTest : public testing::TestWithParam<TruthState> {
+/// All eyes in the long run (packaging/soak); else two of each state, so that every eye has its turn.
+std::vector<TruthEye> eyesOf(const TruthState& state) {
+    const auto eyes = truthEyes();
+    if (std::getenv("LUMORPH_SOAK") != nullptr) return {eyes.begin(), eyes.end()};
+    const auto states = truthStates();
+    const auto number = static_cast<std::size_t>(
+        std::find_if(states.begin(), states.end(), [&](const TruthState& s) { return s.name == state.name; }) -
+        states.begin());
+    return {eyes[number % eyes.size()], eyes[(number + 3) % eyes.size()]};
+}
+
+/// A renderer in a context of its own, and the tablet.
+class TruthShow : public testing::Test {
 protected:
-    TruthBench benchOf(const TruthState& state, const ShowFrame& frame, const glm::vec3& observer) const {
+    [[nodiscard]] TruthSetup setupOf(const TruthState& state, const ShowFrame& frame, const glm::vec3& observer) const {
         TruthSetup setup = truthSetup(device, state, observer);
         setup.eye = deviceView(frame, observer, setup.eye.size);
-        return TruthBench(setup);
+        return setup;
+    }
+    /// Where balls are to be: 3 and 35 mm above the device, `spacing` projector pixels apart.
+    [[nodiscard]] std::vector<glm::dvec3> ballPlaces(const TruthState& state, const glm::vec3& eye, int spacing) const {
+        TruthSetup setup = setupOf(state, ballsFrame(device, state, eye, {}), eye);
+        setup.fine = 1;
+        std::vector<glm::dvec3> points = TruthBench(setup).devicePoints(spacing);
+        for (std::size_t i = 0; i < points.size(); ++i) points[i].y += i % 3 == 0 ? 0.035 : 0.003;
+        return points;
+    }
+    /// How far balls are from their places in the eye's picture, as `bench` sees them, in windows of `reach` pixels to
+    /// either side on marked pixels.
+    [[nodiscard]] std::vector<double> ballErrors(TruthBench& bench, const std::vector<glm::dvec3>& points,
+                                                 const Image& projected, const Image& eyePicture, int reach,
+                                                 std::span<const std::uint8_t> marked) const {
+        std::vector<glm::dvec2> places;
+        const LabLens lens = lensOf(bench.eye(), "eye");
+        for (const glm::dvec3& point : points)
+            if (const auto place = imageOf(lens, point)) places.push_back(*place);
+        return spotErrors(bench.seen(projected), lightOf(eyePicture), places, reach, marked);
     }
 
     HeadlessContext context;
@@ -29,15 +60,17 @@ protected:
     SpatialRenderer renderer;
 };
 
+class TruthTest : public TruthShow, public testing::WithParamInterface<TruthState> {};
+
 TEST_P(TruthTest, TheLitDeviceLooksAsTheEyePassSays) {
     const TruthState& state = GetParam();
-    for (const TruthEye& eye : truthEyes()) {
-        const ShowFrame first = truthFrame(device, state, positionOf(eye), kTruthContents.front());
-        TruthBench bench = benchOf(state, first, positionOf(eye));
+    for (const TruthEye& eye : eyesOf(state)) {
+        const glm::vec3 from = positionOf(eye);
+        TruthBench bench(setupOf(state, truthFrame(device, state, from, kTruthContents.front()), from));
         ASSERT_GT(bench.judgedPixels(), 100'000U);
         for (const TruthContent content : kTruthContents) {
-            const ShowFrame frame = truthFrame(device, state, positionOf(eye), content);
-            ASSERT_EQ(deviceView(frame, positionOf(eye), bench.eye().size), bench.eye());
+            const ShowFrame frame = truthFrame(device, state, from, content);
+            ASSERT_EQ(deviceView(frame, from, bench.eye().size), bench.eye());
             renderer.draw(frame);
             const TruthFigure figure = judge(bench, renderer.readEye(), renderer.readProjector(0));
             std::printf("truth %-11s | %-11s | %-7s | rendered %5.1f dB | ideal %5.1f dB\n", state.name, eye.name,
@@ -55,23 +88,17 @@ TEST_P(TruthTest, TheLitDeviceLooksAsTheEyePassSays) {
 
 TEST_P(TruthTest, PointsAreSeenWhereTheEyePassHasThem) {
     const TruthState& state = GetParam();
-    std::vector<double> all;
-    for (const TruthEye& eye : truthEyes()) {
+    for (const TruthEye& eye : eyesOf(state)) {
         const glm::vec3 from = positionOf(eye);
-        std::vector<glm::dvec3> points = benchOf(state, ballsFrame(device, state, from, {}), from).devicePoints(42);
-        for (std::size_t i = 0; i < points.size(); ++i) points[i].y += i % 3 == 0 ? 0.035 : 0.003;
+        const std::vector<glm::dvec3> points = ballPlaces(state, from, 40);
         const ShowFrame frame = ballsFrame(device, state, from, points);
-        TruthBench bench = benchOf(state, frame, from);
+        TruthBench bench(setupOf(state, frame, from));
         renderer.draw(frame);
-        std::vector<glm::dvec2> places;
-        const LabLens lens = lensOf(bench.eye(), "eye");
-        for (const glm::dvec3& point : points)
-            if (const auto place = imageOf(lens, point)) places.push_back(*place);
         const auto errors =
-            spotErrors(bench.seen(renderer.readProjector(0)), lightOf(renderer.readEye()), places, 16, bench.judged());
+            ballErrors(bench, points, renderer.readProjector(0), renderer.readEye(), 16, bench.judged());
         std::printf("place %-11s | %-11s | mean %.3f | 95 %% %.3f pixels | %zu balls\n", state.name, eye.name,
                     meanOf(errors), quantileOf(errors, 0.95), errors.size());
-        EXPECT_GE(errors.size(), 15U) << eye.name;
+        EXPECT_GE(errors.size(), 10U) << eye.name;
         EXPECT_LE(meanOf(errors), 0.5) << eye.name;
         EXPECT_LE(quantileOf(errors, 0.95), 1.5) << eye.name;
     }
@@ -84,6 +111,53 @@ std::string testName(const testing::TestParamInfo<TruthState>& state) {
 }
 
 INSTANTIATE_TEST_SUITE_P(States, TruthTest, testing::ValuesIn(truthStates().begin(), truthStates().end()), testName);
+
+// The bars are no mere formality: who stands 5 cm beside the tracked eye sees what floats above the device elsewhere.
+TEST_F(TruthShow, WhoStandsBesideTheEyeSeesAnotherPicture) {
+    const TruthState& state = truthState("rest");
+    const glm::vec3 tracked = truthEye("front");
+    const glm::vec3 beside = tracked + glm::vec3(0.05F, 0.0F, 0.0F);
+    const auto projectedFor = [&](const ShowFrame& frame) {
+        renderer.draw(frame);
+        return renderer.readProjector(0);
+    };
+    const auto eyePictureFor = [&](const ShowFrame& frame) {
+        renderer.drawEye(frame);
+        return renderer.readEye();
+    };
+    const Image objects = projectedFor(truthFrame(device, state, tracked, TruthContent::objects));
+    const ShowFrame wanted = truthFrame(device, state, beside, TruthContent::objects);
+    TruthBench bench(setupOf(state, wanted, beside));
+    const TruthFigure figure = judge(bench, eyePictureFor(wanted), objects);
+    std::printf("beside the eye: rendered %.1f dB | ideal %.1f dB\n", figure.rendered, figure.ideal);
+    EXPECT_LT(figure.rendered, figure.bar() - 6.0);
+
+    const std::vector<glm::dvec3> points = ballPlaces(state, tracked, 130);
+    const Image balls = projectedFor(ballsFrame(device, state, tracked, points));
+    const ShowFrame ballsWanted = ballsFrame(device, state, beside, points);
+    TruthBench ballBench(setupOf(state, ballsWanted, beside));
+    const std::vector<std::uint8_t> everywhere(ballBench.judged().size(), 1);
+    const auto errors = ballErrors(ballBench, points, balls, eyePictureFor(ballsWanted), 40, everywhere);
+    std::printf("beside the eye: %zu balls, mean %.2f pixels\n", errors.size(), meanOf(errors));
+    ASSERT_GE(errors.size(), 5U);
+    EXPECT_GT(meanOf(errors), 0.5);
+    EXPECT_GT(quantileOf(errors, 0.95), 1.5);
+}
+
+// The studio's live view of the lab is drawn by OpenGL; it must show what the ray caster computes.
+TEST_F(TruthShow, TheLivePreviewShowsWhatTheLabComputes) {
+    for (const char* name : {"rest", "mixed", "all"}) {
+        const TruthState& state = truthState(name);
+        const glm::vec3 eye = truthEye("front right");
+        const ShowFrame frame = truthFrame(device, state, eye, TruthContent::objects);
+        renderer.draw(frame);
+        TruthBench bench(setupOf(state, frame, eye));
+        const LabPicture preview = lightOf(renderer.readLab(bench.eye()));
+        const double figure = psnr(preview, bench.seen(renderer.readProjector(0)), bench.judged());
+        std::printf("preview %-6s %.1f dB\n", name, figure);
+        EXPECT_GE(figure, 35.0) << name;
+    }
+}
 
 } // namespace
 } // namespace lumorph::test

@@ -17,6 +17,7 @@
 #include "core/scene/project.h"
 #include "core/voxels/nrrd.h"
 #include "core/voxels/solid.h"
+#include "tests/core/scene/scenes.h"
 #include "tests/support/full_model.h"
 #include "tests/support/gltf_builder.h"
 #include "tests/support/small_rigs.h"
@@ -117,6 +118,12 @@ int main(int argc, char** argv) {
     project.strokes = {0.0, 0.25, 1.0};
     project.view = {{"camera", {{"yaw", 0.5}}}};
     writeText("project/whole.lumorph", projectText(project));
+    project.scene = test::fullScene();
+    writeText("project/scene.lumorph", projectText(project));
+    writeText("project/first.lumorph", R"({"schemaVersion": 1, "rig": "a.glb", "target": "cow.obj"})");
+    writeText("project/bare.lumorph",
+              R"({"schemaVersion": 2, "rig": "a.glb", "scene": {"items": [{"id": 1, "kind": "group"}, {"id": 2,
+              "parent": 1, "kind": "heights", "heights": {"waves": [{"phaseDegrees": 1e-9}]}}], "projectors": []}})");
     writeText("project/draft.lumorph",
               R"({"model": "a.glb", "author": "b", "matching": {"live": false, "more": [1]}})");
     return 0;

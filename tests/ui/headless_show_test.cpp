@@ -58,6 +58,20 @@ TEST(HeadlessShow, DrawsPicturesAVideoAndATableWithoutADisplay) {
     for (cv::Mat frame; video.read(frame); ++frames) EXPECT_EQ(frame.size(), cv::Size(960, 600));
     EXPECT_EQ(frames, 15);
 
+    // The water as eye, projector and lab see it.
+    const Image eye = picture("water-eye.png"), lab = picture("water-lab.png");
+    EXPECT_EQ(eye.size(), glm::ivec2(1600, 1000));
+    EXPECT_EQ(lab.size(), eye.size());
+    EXPECT_LT(differentShare(eye, lab), 0.6) << "what is lit looks like what is to be seen";
+    EXPECT_EQ(picture("water-projector.png").size(), glm::ivec2(1280, 800));
+    cv::VideoCapture water((folder / "water.mp4").string(), cv::CAP_FFMPEG);
+    cv::Mat first, last;
+    ASSERT_TRUE(water.read(first));
+    frames = 1;
+    for (cv::Mat frame; water.read(frame); ++frames) last = frame.clone();
+    EXPECT_EQ(frames, 15);
+    EXPECT_GT(cv::norm(first, last, cv::NORM_L1) / static_cast<double>(first.total()), 1.0) << "it moves";
+
     std::ifstream table(folder / "bloom.csv");
     int lines = 0;
     for (std::string line; std::getline(table, line); ++lines) EXPECT_EQ(std::count(line.begin(), line.end(), ','), 14);

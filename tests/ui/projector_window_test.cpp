@@ -94,9 +94,10 @@ TEST_F(ProjectorOutput, AnotherSizeIsCentredAndNotScaled) {
         eventually([&] { return samePixels(onScreen().copy(200, 100, small.width(), small.height()), wanted); }, 5s));
     EXPECT_EQ(onScreen().pixelColor(199, 500), QColor(Qt::black));
     // The studio says so; the picture does not.
+    ASSERT_TRUE(eventually([&] { return !notices.at("output").empty(); }, 5s));
     const auto told = notices.at("output");
     ASSERT_EQ(told.size(), 1U);
-    EXPECT_TRUE(told.front().why.contains(QString::number(small.width()))) << told.front().why.toStdString();
+    EXPECT_TRUE(told.front().why.contains(QString::number(small.height()))) << told.front().why.toStdString();
     // On request it is scaled.
     outputs.setScaled(true);
     EXPECT_TRUE(eventually([&] { return onScreen().pixelColor(screen.width() / 2, 20) != QColor(Qt::black); }, 5s));

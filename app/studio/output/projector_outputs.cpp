@@ -1,7 +1,6 @@
 #include "app/studio/output/projector_outputs.h"
 
 #include <algorithm>
-#include <cstdlib>
 
 #include <QApplication>
 #include <QGuiApplication>
@@ -165,9 +164,10 @@ void ProjectorOutputs::heedSize(std::size_t projector) {
     const QSize there = found->second.window->pixels();
     const QSize wanted = sizeOf(document_.state().scene->projectors[projector]);
     const QString subject = tr("Size of %1").arg(titleOf(projector));
-    // At some desktop scales a screen is counted a pixel larger than it is.
-    if (std::abs(there.width() - wanted.width()) <= 1 && std::abs(there.height() - wanted.height()) <= 1)
-        return notices_.dismiss(kPlace, subject);
+    // At some desktop scales a screen is counted a pixel larger than it is; a smaller one would lose its last row.
+    const QSize more = there - wanted;
+    const auto fits = [](int pixels) { return pixels == 0 || pixels == 1; };
+    if (fits(more.width()) && fits(more.height())) return notices_.dismiss(kPlace, subject);
     Notice notice;
     notice.level = Notice::Level::warning;
     notice.subject = subject;
@@ -176,7 +176,8 @@ void ProjectorOutputs::heedSize(std::size_t projector) {
                      .arg(there.height())
                      .arg(wanted.width())
                      .arg(wanted.height());
-    notice.remedy = tr("Set the screen to the projector's own resolution.");
+    notice.remedy = tr("Set the screen to the projector's own resolution, and the desktop to a scale that fits it, "
+                       "such as 100 %.");
     notices_.post(kPlace, std::move(notice));
 }
 

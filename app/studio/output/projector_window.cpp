@@ -135,8 +135,11 @@ void ProjectorWindow::resizeEvent(QResizeEvent* event) {
 
 void ProjectorWindow::changeEvent(QEvent* event) {
     QWidget::changeEvent(event);
+    if (event->type() != QEvent::WindowStateChange) return;
     // The pointer would be projected.
-    if (event->type() == QEvent::WindowStateChange) isFullScreen() ? setCursor(Qt::BlankCursor) : unsetCursor();
+    isFullScreen() ? setCursor(Qt::BlankCursor) : unsetCursor();
+    // The size may have come before the state.
+    if (isFullScreen()) QMetaObject::invokeMethod(this, &ProjectorWindow::covered, Qt::QueuedConnection);
 }
 
 bool ProjectorWindow::event(QEvent* event) {

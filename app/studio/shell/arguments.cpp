@@ -49,6 +49,12 @@ ParsedArguments parseArguments(int argc, const char* const* argv) {
         ->check(CLI::Range(0.1, 600.0))
         ->needs(folder)
         ->capture_default_str();
+    std::string record;
+    CLI::Option* play = app.add_option("--play", arguments.play, "no window: play the demo for so many seconds and end")
+                            ->check(CLI::Range(0.1, 600.0))
+                            ->needs("--demo");
+    app.add_option("--record", record, "a video of what is played (.mp4)")->needs(play);
+    app.add_flag("--json", arguments.json, "print its rates as one JSON value")->needs(play);
     try {
         app.parse(withoutQtOptions(argc, argv));
     } catch (const CLI::CallForHelp&) {
@@ -64,6 +70,7 @@ ParsedArguments parseArguments(int argc, const char* const* argv) {
         return wrongUsage("a demo and '" + project + "' cannot both be opened; leave one out");
     arguments.project = project;
     arguments.headless = headless;
+    arguments.record = record;
     return {arguments, {}, 0};
 }
 

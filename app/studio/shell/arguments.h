@@ -7,7 +7,8 @@
 namespace lumorph::studio {
 
 /// What the program was started with: `lumorph-studio [PROJECT] [--demo NAME] [--kiosk] [--workspace ID]`, or
-/// `lumorph-studio --headless FOLDER [--seconds S]`, which opens no window.
+/// `lumorph-studio --headless FOLDER [--seconds S]`, which opens no window, nor does `--demo NAME --play S [--record
+/// OUT.mp4] [--json]`.
 struct Arguments {
     std::filesystem::path project; ///< or a rig, a field or a target; empty: none
     std::string demo;
@@ -15,6 +16,9 @@ struct Arguments {
     bool kiosk = false;
     std::filesystem::path headless; ///< where to draw the show without a display; empty: open the window
     double seconds = 6.0;           ///< that the show lasts
+    double play = 0.0;              ///< seconds of the demo without a window; 0: in a window
+    std::filesystem::path record;   ///< a video of that; empty: none
+    bool json = false;              ///< its rates as JSON
 };
 
 /// Either arguments to start with, or what to print and with which status to exit: 0 for help and version, 2 for wrong

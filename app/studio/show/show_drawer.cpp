@@ -24,6 +24,9 @@ using Bend = ShowView::Bend;
 constexpr double kExactEyePixels = 1280.0 * 800.0;
 constexpr glm::ivec2 kUsualEye{1280, 800};
 
+// Of the lab's room, linear: what no projector reaches is dim, not gone.
+constexpr float kRoomLight = 0.03F;
+
 double since(Clock::time_point begun) {
     return std::chrono::duration<double, std::milli>(Clock::now() - begun).count();
 }
@@ -56,14 +59,18 @@ glm::ivec2 eyeSize(const ShowPace::Work& work) {
     return scaled(size, enough * work.resolution);
 }
 
-/// Room for the pictures of all projectors: that of the largest that is wanted; zero where one is wanted exactly.
-glm::ivec2 projectorRoom(const ShowRequest& request) {
+/// How many of its pixels each projector is drawn with.
+ShowFrame withProjectorPixels(ShowFrame frame, const ShowPace::Work& work) {
+    const auto any = [&](auto holds) {
+        return std::any_of(work.request.views.begin(), work.request.views.end(), holds);
+    };
+    if (any([](const WantedView& wanted) { return wanted.view.exact; })) return frame;
+    // In the lab the device fills the view, but only a part of what the projector covers.
+    if (any([](const WantedView& wanted) { return wanted.view.kind == ShowView::Kind::lab; }))
+        return withProjectorShare(std::move(frame), work.resolution);
     glm::ivec2 room(0);
-    for (const WantedView& wanted : request.views) {
-        if (wanted.view.exact) return glm::ivec2(0);
-        room = glm::max(room, toVec(wanted.pixels));
-    }
-    return room;
+    for (const WantedView& wanted : work.request.views) room = glm::max(room, toVec(wanted.pixels));
+    return withProjectorRoom(std::move(frame), scaled(room, work.resolution));
 }
 
 bool needsProjectors(const ShowRequest& request) {
@@ -170,7 +177,7 @@ const ColorTarget& ShowDrawer::Data::drawLab(const WantedView& wanted, const Sho
         found = objects->labs.end();
     }
     if (found == objects->labs.end()) found = objects->labs.emplace(wanted.id, ColorTarget(size)).first;
-    objects->renderer.drawLab(found->second.framebuffer(), labCamera(frame, wanted.view.observer, size));
+    objects->renderer.drawLab(found->second.framebuffer(), labCamera(frame, wanted.view.observer, size), kRoomLight);
     return found->second;
 }
 
@@ -208,7 +215,7 @@ void ShowDrawer::Data::drawBend(const ShowPace::Work& work, Bend bend) {
     for (const WantedView& wanted : request.views)
         if (wanted.view.bend == bend) some.views.push_back(wanted);
     if (some.views.empty()) return;
-    const ShowFrame frame = withProjectorRoom(withBend(*drawn.frame, bend), projectorRoom(request), work.resolution);
+    const ShowFrame frame = withProjectorPixels(withBend(*drawn.frame, bend), work);
     if (needsProjectors(some))
         objects->renderer.draw(frame);
     else

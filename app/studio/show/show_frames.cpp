@@ -39,11 +39,19 @@ CalibratedCamera resized(CalibratedCamera camera, glm::ivec2 size) {
     return camera;
 }
 
-ShowFrame withProjectorRoom(ShowFrame frame, glm::ivec2 room, double share) {
-    if (room.x <= 0 || room.y <= 0) return frame;
+ShowFrame withProjectorShare(ShowFrame frame, double share) {
+    if (share >= 1.0) return frame;
+    auto scene = std::make_shared<Scene>(*frame.scene);
+    for (SceneProjector& projector : scene->projectors)
+        projector.camera = resized(projector.camera, scaledSize(projector.camera.size, share));
+    frame.scene = std::move(scene);
+    return frame;
+}
+
+ShowFrame withProjectorRoom(ShowFrame frame, glm::ivec2 room) {
     auto scene = std::make_shared<Scene>(*frame.scene);
     for (SceneProjector& projector : scene->projectors) {
-        const glm::ivec2 fitting = scaledSize(fittingSize(projector.camera.size, room), share);
+        const glm::ivec2 fitting = fittingSize(projector.camera.size, room);
         if (fitting.x < projector.camera.size.x) projector.camera = resized(projector.camera, fitting);
     }
     frame.scene = std::move(scene);

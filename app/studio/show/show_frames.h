@@ -12,9 +12,10 @@ namespace lumorph::studio {
 /// The same camera with fewer pixels of the same picture.
 [[nodiscard]] CalibratedCamera resized(CalibratedCamera camera, glm::ivec2 size);
 
-/// The frame with all projectors resized so that each, by `share` of a side, fits into `room`. A zero `room` gives them
-/// all their pixels.
-[[nodiscard]] ShowFrame withProjectorRoom(ShowFrame frame, glm::ivec2 room, double share);
+/// The frame with all projectors drawn with a share of their pixels, of each side.
+[[nodiscard]] ShowFrame withProjectorShare(ShowFrame frame, double share);
+/// The same so that each fits into `room` pixels; none gets larger.
+[[nodiscard]] ShowFrame withProjectorRoom(ShowFrame frame, glm::ivec2 room);
 
 /// The frame with the device as a comparison wants it (R23): flat as at rest, or bent for the viewer as the rule of
 /// view dependence says. Without an eye it stays as it is.

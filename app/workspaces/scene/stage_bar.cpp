@@ -90,11 +90,11 @@ void StageBar::addToggles() {
     row->addWidget(time_);
     row->addWidget(makeLine(this));
     elsewhere_ = add("scene.elsewhere", tr("Look from elsewhere"), "elsewhere",
-                     tr("Somebody else walks around the lab: the illusion holds for the viewer alone"), true, "Alt+E");
+                     tr("Somebody else walks around the lab: the illusion holds for the viewer alone"), true, "Alt+L");
     connect(elsewhere_, &QAction::toggled, this, &StageBar::elsewhereChanged);
     row->addWidget(makeCommandIcon(elsewhere_, "bar.scene.elsewhere", this));
     latency_ = add("scene.latency", tr("Show where the time goes"), "speed",
-                   tr("Milliseconds of each stage of a frame"), true, "Alt+T");
+                   tr("Milliseconds of each stage of a frame"), true, "Alt+M");
     connect(latency_, &QAction::toggled, this, &StageBar::latencyChanged);
     row->addWidget(makeCommandIcon(latency_, "bar.scene.latency", this));
     auto* output = new QToolButton(this);

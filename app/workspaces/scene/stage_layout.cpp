@@ -5,8 +5,10 @@ namespace {
 
 constexpr int kGap = 2;
 constexpr double kLarger = 0.6; ///< of the lab beside the eye
+/// Pictures of the device are wider than high: two are side by side only where there is room for both.
+constexpr double kWide = 1.4;
 
-/// Cuts a box in two, side by side or, where it is higher than wide, above each other.
+/// Cuts a box in two, side by side or above each other.
 std::pair<QRect, QRect> cut(const QRect& box, bool sideways, double share) {
     const int length = (sideways ? box.width() : box.height()) - kGap;
     const int first = static_cast<int>(share * length);
@@ -21,7 +23,7 @@ std::pair<QRect, QRect> cut(const QRect& box, bool sideways, double share) {
 
 std::vector<StagePlace> stageLayout(StageMode mode, const QSize& size) {
     const QRect whole(QPoint(0, 0), size);
-    const bool wide = size.width() >= size.height();
+    const bool wide = size.width() >= kWide * size.height();
     switch (mode) {
     case StageMode::eye:
         return {{StagePart::eye, whole}};

@@ -391,6 +391,20 @@ TEST(ScenePoser, TheTargetStandsWhereTheMatcherHasIt) {
     EXPECT_TRUE(poser.pose(sceneOf({item}), {}, input).surfaces.empty()) << "positions of another mesh";
 }
 
+TEST(ScenePoser, WhatIsHardlyThereThrowsNoShadow) {
+    const auto casts = [](float opacity, Material::Alpha alpha, float ownOpacity) {
+        SceneItem item = itemOf(1, ShapeItem{});
+        item.opacity = opacity;
+        item.material.alpha = alpha;
+        item.material.opacity = ownOpacity;
+        return posed(sceneOf({item})).surfaces.at(0).castsShadow;
+    };
+    EXPECT_TRUE(casts(1.0F, Material::Alpha::opaque, 0.1F)) << "an opaque material has no opacity of its own";
+    EXPECT_TRUE(casts(0.9F, Material::Alpha::blend, 0.8F));
+    EXPECT_FALSE(casts(0.0F, Material::Alpha::opaque, 1.0F));
+    EXPECT_FALSE(casts(1.0F, Material::Alpha::blend, 0.3F));
+}
+
 TEST(ScenePoser, WhatIsGoneIsForgotten) {
     ScenePoser poser;
     const Scene scene = sceneOf({itemOf(1, ShapeItem{})});

@@ -1,0 +1,22 @@
+#include "app/studio/document/match_wish.h"
+
+namespace lumorph::studio {
+
+MatchWish wishOf(const StudioState& state) {
+    MatchWish wish;
+    wish.rig = state.rig.rig;
+    wish.field = state.field.field;
+    wish.target = state.target.target;
+    wish.placement = state.placement;
+    wish.live = state.matching.live;
+    wish.method = state.matching.method;
+    wish.budget = state.matching.budget;
+    wish.strokes = state.strokes;
+    wish.playing = state.playback.playing;
+    wish.spin = state.playback.spin;
+    wish.scene = state.scene;
+    wish.assets = state.assets;
+    return wish;
+}
+
+} // namespace lumorph::studio

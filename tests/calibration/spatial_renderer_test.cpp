@@ -1,0 +1,283 @@
+#include "core/render/spatial_renderer.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <glm/geometric.hpp>
+#include <gmock/gmock.h>
+
+#include "core/base/error.h"
+#include "core/render/headless_context.h"
+#include "tests/calibration/show_world.h"
+
+namespace lumorph {
+namespace {
+
+const CalibratedCamera kAbove = cameraLookingAt({0.02, 1.1, 0.25}, {0.0, 0.0, 0.0}, {360, 260}, 620.0);
+constexpr double kSteepest = 65.0 * 3.14159265358979 / 180.0;
+
+// Two projectors from left and right that both hold the device, with borders in the other's image.
+std::vector<SceneProjector> pair() {
+    return {projectorAt({-0.7, 1.4, 0.1}, {-0.06, 0.0, 0.0}, {640, 400}, 1700.0),
+            projectorAt({0.75, 1.3, -0.1}, {0.07, 0.0, 0.02}, {600, 420}, 1600.0)};
+}
+
+// Whether the surface is smooth for three pixels around: at creases and rims light of one face spills onto the other.
+bool smoothAround(const Lab& lab, const glm::dvec2& pixel, const Lab::Hit& hit) {
+    for (int k = 0; k < 9; ++k) {
+        const glm::dvec2 beside = pixel + 3.0 * glm::dvec2(k % 3 - 1, k / 3 - 1);
+        const auto other = lab.trace(positionOf(kAbove), directionOf(kAbove, beside));
+        if (!other || glm::dot(other->normal, hit.normal) < 0.97) return false;
+        if (std::abs(glm::dot(other->point - hit.point, hit.normal)) > 0.0015) return false;
+    }
+    return true;
+}
+
+// What a point of the lab looks like to its projectors.
+enum class Reach { none, some, edge };
+
+// The nine points around one, `aside` metres away, that a projector lights.
+int litAround(const Lab& lab, std::size_t projector, const Lab::Hit& hit, double aside) {
+    const glm::dvec3 helper = std::abs(hit.normal.y) > 0.9 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 1, 0);
+    const glm::dvec3 across = glm::normalize(glm::cross(hit.normal, helper));
+    const glm::dvec3 along = glm::cross(hit.normal, across);
+    int lit = 0;
+    for (int k = 0; k < 9; ++k)
+        lit +=
+            lab.lit(projector, hit.point + aside * (double(k % 3 - 1) * across + double(k / 3 - 1) * along), hit.normal)
+                ? 1
+                : 0;
+    return lit;
+}
+
+// `edge`: no projector reaches it for sure and not too steeply, or the edge of a shadow is so near that the pixels
+// blur it.
+Reach reachOf(const Lab& lab, const std::vector<SceneProjector>& projectors, const Lab::Hit& hit) {
+    constexpr double kPixel = 0.0011; // and a bit: 1.5 m at 1600 pixels
+    bool sure = false;
+    bool ever = false;
+    for (std::size_t i = 0; i < projectors.size(); ++i) {
+        const glm::dvec3 way = glm::normalize(positionOf(projectors[i].camera) - hit.point);
+        const int near = litAround(lab, i, hit, kPixel);
+        if (near > 0 && near < 9) return Reach::edge;
+        const bool steep = glm::dot(way, hit.normal) < std::cos(kSteepest);
+        sure = sure || (!steep && near == 9 && litAround(lab, i, hit, 2.5 * kPixel) == 9);
+        ever = ever || litAround(lab, i, hit, 2.5 * kPixel) > 0;
+    }
+    return sure ? Reach::some : ever ? Reach::edge : Reach::none;
+}
+
+struct Flatness {
+    int judged = 0;
+    int worse = 0; // than 3 %
+    double worst = 0.0;
+    int dark = 0; // unreached places that are dark
+    int unreached = 0;
+};
+
+Flatness flatnessOf(const Lab& lab, const std::vector<SceneProjector>& projectors, double expected) {
+    Flatness result;
+    const std::vector<glm::vec3> seen = lab.radiance(kAbove, 1);
+    for (int y = 0; y < kAbove.size.y; ++y)
+        for (int x = 0; x < kAbove.size.x; ++x) {
+            const auto hit = lab.trace(positionOf(kAbove), directionOf(kAbove, {x, y}));
+            if (!hit || !smoothAround(lab, {x, y}, *hit)) continue;
+            const float value = seen[static_cast<std::size_t>(y * kAbove.size.x + x)].g;
+            switch (reachOf(lab, projectors, *hit)) {
+            case Reach::none:
+                ++result.unreached;
+                result.dark += value == 0.0F ? 1 : 0;
+                break;
+            case Reach::edge:
+                break;
+            case Reach::some: {
+                const double error = std::abs(double(value) / expected - 1.0);
+                ++result.judged;
+                result.worse += error > 0.03 ? 1 : 0;
+                result.worst = std::max(result.worst, error);
+            }
+            }
+        }
+    return result;
+}
+
+double linear(double value) { return value <= 0.04045 ? value / 12.92 : std::pow((value + 0.055) / 1.055, 2.4); }
+
+TEST(SpatialRenderer, OneProjectorMakesABentDeviceUniform) {
+    const HeadlessContext context;
+    SpatialRenderer renderer;
+    const std::vector<SceneProjector> projectors{pair()[0]};
+    const ShowFrame frame = frameOf(unlitScene(glm::vec3(0.7F), glm::vec3(0.7F), projectors), liftedFlaps());
+    renderer.draw(frame);
+    const Lab lab(labOf(frame, renderer));
+    const Flatness flat = flatnessOf(lab, projectors, linear(0.7));
+    EXPECT_GT(flat.judged, 20'000);
+    EXPECT_LE(flat.worse, flat.judged / 500) << flat.worst;
+    EXPECT_EQ(flat.dark, flat.unreached);
+    EXPECT_GT(flat.unreached, 1000);
+}
+
+TEST(SpatialRenderer, WithoutCompensationTheValueIsTheContent) {
+    const HeadlessContext context;
+    SpatialRenderer renderer;
+    Scene scene = unlitScene(glm::vec3(0.7F), glm::vec3(0.7F), {pair()[0]});
+    scene.compensation = false;
+    const ShowFrame frame = frameOf(scene, liftedFlaps());
+    renderer.draw(frame);
+    const Image sent = renderer.readProjector(0);
+    const double value = linear(0.7) / scene.projectors[0].peak;
+    for (const glm::ivec2& at : {glm::ivec2(320, 200), glm::ivec2(40, 60), glm::ivec2(600, 380)})
+        EXPECT_NEAR(linear(sent.at(at.x, at.y)[1] / 255.0), value, 0.004);
+}
+
+TEST(SpatialRenderer, TwoProjectorsShareTheWorkWithoutASeam) {
+    const HeadlessContext context;
+    SpatialRenderer renderer;
+    const std::vector<SceneProjector> projectors = pair();
+    const ShowFrame frame = frameOf(unlitScene(glm::vec3(0.7F), glm::vec3(0.7F), projectors), liftedFlaps());
+    renderer.draw(frame);
+    const Lab lab(labOf(frame, renderer));
+    const Flatness flat = flatnessOf(lab, projectors, linear(0.7));
+    EXPECT_GT(flat.judged, 25'000);
+    EXPECT_LE(flat.worse, flat.judged / 500) << flat.worst;
+    EXPECT_EQ(flat.dark, flat.unreached);
+
+    // Both really work where both reach: neither does it alone.
+    const Image first = renderer.readProjector(0);
+    const auto pixel = pixelOf(projectors[0].camera, {0.0, 0.0, 0.16});
+    ASSERT_TRUE(pixel);
+    const double value = linear(first.at(int(pixel->x), int(pixel->y))[1] / 255.0);
+    Scene alone = *frame.scene;
+    alone.projectors[1].enabled = false;
+    renderer.draw(frameOf(alone, liftedFlaps()));
+    const double whole = linear(renderer.readProjector(0).at(int(pixel->x), int(pixel->y))[1] / 255.0);
+    EXPECT_GT(value, 0.2 * whole);
+    EXPECT_LT(value, 0.8 * whole);
+    EXPECT_EQ(renderer.projectorTexture(1), 0U);
+}
+
+// The share of the light at a table's point that a projector brings, from the value it sends there.
+double shareOf(const SceneProjector& projector, const Image& sent, glm::ivec2 pixel, const glm::dvec3& point) {
+    const glm::dvec3 way = positionOf(projector.camera) - point;
+    const double distance = glm::length(way);
+    const double full = projector.peak * way.y / distance * std::pow(projector.referenceDistance / distance, 2.0);
+    return linear(sent.at(pixel.x, pixel.y)[1] / 255.0) * full / linear(0.7);
+}
+
+TEST(SpatialRenderer, WeightsFallSmoothlyTowardsShadowsAndBorders) {
+    const HeadlessContext context;
+    SpatialRenderer renderer;
+    const std::vector<SceneProjector> projectors = pair();
+    const ShowFrame frame = frameOf(unlitScene(glm::vec3(0.7F), glm::vec3(0.7F), projectors), liftedFlaps());
+    renderer.draw(frame);
+    const Lab lab(labOf(frame, renderer));
+    const CalibratedCamera& camera = projectors[0].camera;
+    const Image sent = renderer.readProjector(0);
+    const glm::dvec3 up(0.0, 1.0, 0.0);
+    int shared = 0;
+    int atShadows = 0;
+    int atBorders = 0;
+    double before = -1.0; // the share of the pixel to the left
+    for (int y = 0; y < camera.size.y; y += 3)
+        for (int x = 0; x < camera.size.x; ++x) {
+            const auto hit = lab.trace(positionOf(camera), directionOf(camera, {x, y}));
+            const bool both = hit && hit->surface == 1 && lab.lit(1, hit->point, up);
+            if (!both || x == 0) before = -1.0;
+            if (!both) continue;
+            const double share = shareOf(projectors[0], sent, {x, y}, hit->point);
+            if (share > 0.1 && share < 0.9) ++shared;
+            if (before >= 0.0) {
+                EXPECT_LT(std::abs(share - before), 0.13) << x << ", " << y;
+            }
+            before = share;
+            const auto beside = lab.trace(positionOf(camera), directionOf(camera, {x - 1, y}));
+            if (beside && beside->surface == 0 &&
+                lab.trace(positionOf(camera), directionOf(camera, {x - 4, y}))->surface == 0) {
+                EXPECT_LT(share, 0.15) << "beside the device at " << x << ", " << y;
+                ++atShadows;
+            }
+            if (x != 1 && x != camera.size.x - 2) continue;
+            EXPECT_LT(share, 0.1) << "at the border, row " << y;
+            ++atBorders;
+        }
+    EXPECT_GT(shared, 20'000);
+    EXPECT_GT(atShadows, 10);
+    EXPECT_GT(atBorders, 50);
+}
+
+TEST(SpatialRenderer, GammaOfAProjectorIsAnswered) {
+    const HeadlessContext context;
+    SpatialRenderer renderer;
+    std::vector<SceneProjector> projectors{pair()[0]};
+    projectors[0].gamma = 2.6;
+    const ShowFrame frame = frameOf(unlitScene(glm::vec3(0.7F), glm::vec3(0.7F), projectors), liftedFlaps());
+    renderer.draw(frame);
+    const Lab lab(labOf(frame, renderer));
+    const Flatness flat = flatnessOf(lab, projectors, linear(0.7));
+    EXPECT_GT(flat.judged, 20'000);
+    EXPECT_LE(flat.worse, flat.judged / 500) << flat.worst;
+}
+
+// How different two pictures are on average, and at how many pixels they differ much.
+struct Difference {
+    double mean = 0.0;
+    double muchShare = 0.0;
+};
+
+Difference between(const Image& first, const Image& second) {
+    Difference difference;
+    for (std::size_t i = 0; i < first.pixels().size(); ++i) {
+        const double step = std::abs(first.pixels()[i][1] - second.pixels()[i][1]);
+        difference.mean += step / static_cast<double>(first.pixels().size());
+        difference.muchShare += (step > 20 ? 1.0 : 0.0) / static_cast<double>(first.pixels().size());
+    }
+    return difference;
+}
+
+TEST(SpatialRenderer, PreviewOfTheLabShowsWhatTheLabShows) {
+    const HeadlessContext context;
+    SpatialRenderer renderer;
+    std::vector<SceneProjector> projectors = pair();
+    projectors[1].gamma = 1.8;
+    projectors[0].gain = {0.8F, 0.9F, 0.7F};
+    Scene scene = unlitScene({0.9F, 0.5F, 0.2F}, {0.1F, 0.4F, 0.6F}, projectors);
+    scene.compensation = false; // so that the light falls off visibly
+    const ShowFrame frame = frameOf(scene, liftedFlaps());
+    renderer.draw(frame);
+    const Lab lab(labOf(frame, renderer));
+    const CalibratedCamera low = cameraLookingAt({-0.5, 0.35, 0.5}, {0.0, 0.0, 0.0}, {400, 300}, 500.0);
+    for (const CalibratedCamera& observer : {kAbove, low}) {
+        const Difference difference = between(renderer.readLab(observer), lab.view(observer, 1));
+        EXPECT_LT(difference.mean, 0.6);
+        EXPECT_LT(difference.muchShare, 0.01);
+    }
+}
+
+TEST(SpatialRenderer, MaskIsWhiteWhereEyeAndProjectorMeet) {
+    const HeadlessContext context;
+    SpatialRenderer renderer;
+    renderer.setEyeSize({320, 200});
+    const std::vector<SceneProjector> projectors{pair()[0]};
+    const ShowFrame frame = frameOf(unlitScene(glm::vec3(0.7F), glm::vec3(0.7F), projectors), liftedFlaps());
+    renderer.draw(frame);
+    const Image mask = renderer.readMask();
+    const Lab lab(labOf(frame, renderer));
+    const CalibratedCamera eye = deviceView(frame, *frame.eye, {320, 200});
+    int white = 0;
+    int black = 0;
+    int wrong = 0;
+    for (int y = 0; y < 200; ++y)
+        for (int x = 0; x < 320; ++x) {
+            const auto hit = lab.trace(positionOf(eye), directionOf(eye, {x, y}));
+            const bool lit = hit && lab.lit(0, hit->point, hit->normal);
+            const bool shown = mask.at(x, y)[0] > 127;
+            (lit ? white : black) += 1;
+            wrong += lit == shown ? 0 : 1;
+        }
+    EXPECT_GT(white, 20'000);
+    EXPECT_GT(black, 3'000);
+    EXPECT_LT(wrong, 64'000 / 100);
+}
+
+} // namespace
+} // namespace lumorph
