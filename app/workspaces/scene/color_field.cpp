@@ -34,7 +34,6 @@ void ColorField::choose() {
     dialog->setObjectName("dialog.color");
     dialog->setWindowTitle(accessibleName());
     dialog->setOption(QColorDialog::DontUseNativeDialog);
-    dialog->setOption(QColorDialog::NoEyeDropperButton);
     dialog->setAttribute(Qt::WA_DeleteOnClose);
     for (auto* number : dialog->findChildren<QSpinBox*>()) number->setMinimumWidth(kNumberWidth); // else cut off
     connect(dialog, &QColorDialog::currentColorChanged, this, [this](const QColor& color) {

@@ -22,9 +22,13 @@ class Heading : public QWidget {
 public:
     Heading(Studio& studio, SceneSelection& selection, QWidget* parent)
         : QWidget(parent), studio_(studio), selection_(selection),
-          icon_(new IconLabel("box", IconRole::accent, 20, this)), name_(new QLineEdit(this)), kind_(new QLabel(this)) {
+          icon_(new IconLabel("box", IconRole::accent, 20, this)), name_(new QLineEdit(this)), title_(new QLabel(this)),
+          kind_(new QLabel(this)) {
         name_->setObjectName("inspector.name");
         name_->setAccessibleName(tr("Name"));
+        title_->setObjectName("inspector.title");
+        title_->setProperty("look", "title");
+        title_->setMinimumHeight(name_->sizeHint().height());
         kind_->setObjectName("inspector.kind");
         kind_->setProperty("look", "badge");
         auto* row = new QHBoxLayout(this);
@@ -32,6 +36,7 @@ public:
         row->setSpacing(8);
         row->addWidget(icon_);
         row->addWidget(name_, 1);
+        row->addWidget(title_, 1);
         row->addWidget(kind_);
         connect(name_, &QLineEdit::editingFinished, this, [this] { rename(); });
     }
@@ -63,8 +68,9 @@ private:
             name_->setText(name);
             name_->setCursorPosition(0); // a long name shows how it begins
         }
-        name_->setReadOnly(!editable);
-        name_->setFocusPolicy(editable ? Qt::StrongFocus : Qt::NoFocus);
+        name_->setVisible(editable);
+        title_->setVisible(!editable);
+        title_->setText(name);
         kind_->setText(kind);
         kind_->setVisible(!kind.isEmpty() && kind != name);
     }
@@ -88,6 +94,7 @@ private:
     SceneSelection& selection_;
     IconLabel* icon_;
     QLineEdit* name_;
+    QLabel* title_; ///< of what keeps its name
     QLabel* kind_;
 };
 
