@@ -42,6 +42,7 @@ protected:
     }
     void stopTime() {
         window.studio().loop.setScenePlaying(false);
+        window.studio().document.change("Pause", [](studio::StudioState& state) { state.playback.playing = false; });
         EXPECT_TRUE(settles());
     }
     /// Until nothing moves and the newest frame is there in full quality.

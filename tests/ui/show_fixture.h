@@ -30,7 +30,9 @@ namespace lumorph::studio {
     frame->estimatedStrokes.assign(rig->actuatorCount(), 0.0);
     frame->worldFromDevice = scene->worldFromDevice;
     frame->eye = scene->eye;
-    frame->assets = loadSceneAssets(*scene, {});
+    // Read once, as a document reads them: pictures that are other objects are uploaded again.
+    static const auto assets = loadSceneAssets(*scene, {});
+    frame->assets = assets;
     frame->scene = std::move(scene);
     return frame;
 }

@@ -22,7 +22,7 @@ using Kind = ShowView::Kind;
 
 class ShowRender : public testing::Test {
 protected:
-    void SetUp() override { ASSERT_TRUE(ready.wait() || !ready.isEmpty()); }
+    void SetUp() override { ASSERT_TRUE(waitFor([&] { return !ready.isEmpty(); })); }
 
     DrawnShow still(ShowRequest request) {
         DrawnShow last;

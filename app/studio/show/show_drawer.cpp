@@ -42,21 +42,22 @@ bool showsEye(const WantedView& wanted) {
     return wanted.view.kind == ShowView::Kind::eye || wanted.view.kind == ShowView::Kind::mask;
 }
 
-/// Pixels of the eye pass: those of its largest view, else of the largest view of the lab; more where a projector is
-/// wanted in all its pixels.
+/// Pixels of the eye pass: its shape is that of its largest view, else of the lab's. A view of the lab that is larger,
+/// or a projector that is wanted in all its pixels, needs more of them; the lab can wait until nothing moves.
 glm::ivec2 eyeSize(const ShowPace::Work& work) {
     glm::ivec2 size(0);
-    bool exact = false;
+    double enough = 0.0;
     for (const bool eyes : {true, false})
         for (const WantedView& wanted : work.request.views) {
-            exact = exact || wanted.view.exact;
+            if (wanted.view.exact) enough = std::max(enough, kExactEyePixels);
             if (wanted.view.kind == ShowView::Kind::projector || showsEye(wanted) != eyes) continue;
-            if (eyes || size == glm::ivec2(0)) size = glm::max(size, toVec(wanted.pixels));
+            const glm::ivec2 pixels = toVec(wanted.pixels);
+            if (eyes || size == glm::ivec2(0)) size = glm::max(size, pixels);
+            if (work.resolution >= 1.0) enough = std::max(enough, static_cast<double>(pixels.x) * pixels.y);
         }
     if (size == glm::ivec2(0)) size = kUsualEye;
     const double pixels = static_cast<double>(size.x) * size.y;
-    const double enough = exact ? std::max(1.0, std::sqrt(kExactEyePixels / pixels)) : 1.0;
-    return scaled(size, enough * work.resolution);
+    return scaled(size, std::max(1.0, std::sqrt(enough / pixels)) * work.resolution);
 }
 
 /// How many of its pixels each projector is drawn with.
