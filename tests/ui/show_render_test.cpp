@@ -22,7 +22,9 @@ using Kind = ShowView::Kind;
 
 class ShowRender : public testing::Test {
 protected:
-    void SetUp() override { ASSERT_TRUE(waitFor([&] { return !ready.isEmpty(); })); }
+    void SetUp() override {
+        ASSERT_TRUE(waitFor([&] { return !ready.isEmpty(); }));
+    }
 
     DrawnShow still(ShowRequest request) {
         DrawnShow last;
@@ -191,7 +193,7 @@ TEST_F(ShowRender, ManyFramesKeepNoOpenGlObjects) {
             const auto shown = thread.takeShow();
             return shown && shown->match == match;
         })) << i;
-        if (i == 40) first = thread.objectCount();
+        if (i == 300) first = thread.objectCount(); // pictures are kept for 240 frames after their last use
     }
     EXPECT_GT(first, 0U);
     EXPECT_TRUE(waitFor([&] { return thread.objectCount() <= first; }, 2000)) << thread.objectCount() << " " << first;
