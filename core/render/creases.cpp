@@ -55,13 +55,14 @@ CreaseFinder::CreaseFinder(const TriangleMesh& rest) : triangles_(rest.triangles
             if (key.first != key.second) sides[key].push_back({t, k});
         }
     for (const auto& [key, beside] : sides) {
+        links_.push_back({key.first, key.second, glm::distance(rest.positions[key.first], rest.positions[key.second])});
         if (beside.size() != 2) continue;
         const Side& left = beside[0];
         const std::uint32_t a = triangles_[left.triangle][left.corner];
         const std::uint32_t b = triangles_[left.triangle][(left.corner + 1) % 3];
         if (places_[triangles_[beside[1].triangle][beside[1].corner]] == places_[a]) continue; // one of them is flipped
         for (const Side& side : beside) edgesOf_[side.triangle][side.corner] = static_cast<int>(edges_.size());
-        edges_.push_back({a, b, left.triangle, beside[1].triangle, glm::distance(rest.positions[a], rest.positions[b])});
+        edges_.push_back({a, b, left.triangle, beside[1].triangle});
     }
 }
 
@@ -235,11 +236,11 @@ std::vector<glm::vec3> CreaseFinder::softNormals(std::span<const glm::vec3> posi
     std::vector<glm::vec3> sums;
     for (int round = 0; round < kSofteningRounds; ++round) {
         sums = normals;
-        for (const Edge& edge : edges_) {
-            const float share = edge.restLength / reach;
+        for (const Link& link : links_) {
+            const float share = link.length / reach;
             const float weight = std::exp(-share * share);
-            sums[places_[edge.a]] += weight * normals[places_[edge.b]];
-            sums[places_[edge.b]] += weight * normals[places_[edge.a]];
+            sums[link.a] += weight * normals[link.b];
+            sums[link.b] += weight * normals[link.a];
         }
         for (std::size_t i = 0; i < normals.size(); ++i) normals[i] = unit(sums[i]);
     }

@@ -42,9 +42,13 @@ public:
 
 private:
     struct Edge {
-        std::uint32_t a, b;         ///< places, as the left triangle walks along them
-        std::uint32_t left, right;  ///< triangles
-        float restLength;
+        std::uint32_t a, b;        ///< vertices, as the left triangle walks along them
+        std::uint32_t left, right; ///< triangles
+    };
+    /// Two places side by side, with or without two triangles between them.
+    struct Link {
+        std::uint32_t a, b;
+        float length; ///< at rest
     };
     struct Turning;
     struct Sums;
@@ -58,6 +62,7 @@ private:
     std::vector<glm::uvec3> triangles_; ///< of the mesh's vertices
     std::vector<std::uint32_t> places_; ///< for each vertex the first at its place
     std::vector<Edge> edges_;           ///< between two triangles
+    std::vector<Link> links_;
     std::vector<glm::ivec3> edgesOf_;   ///< for each triangle its edges, -1 at the border
 };
 

@@ -77,8 +77,7 @@ PictureTextures::Picture EyeMaterials::bind(Program& program, int unit, const Sc
                                             const char* shift) {
     const PicturePlacement placement = placementOf(texture, seconds_);
     const bool there = has(texture);
-    // A picture that is new is uploaded into the unit it is for: no other unit may lose its own.
-    glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(unit));
+    glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(unit)); // a picture's upload unbinds what is bound there
     const auto picture = pictures_.picture(there ? assets_->images.at(texture.image) : white_, use,
                                            there ? glm::ivec2(texture.columns, texture.rows) : glm::ivec2(1),
                                            placement.cell);

@@ -161,7 +161,7 @@ void EyePass::Data::drawShadow(const ShowFrame& frame) {
             setFrontFace(thing.world);
             // The near side of closed things steps back: then most places of it are told lit at first sight, and what
             // it covers its far side covers too.
-            const bool closed = (thing.features & (eye_feature::twoSided | eye_feature::holes)) == 0;
+            const bool closed = (thing.features & eye_feature::twoSided) == 0;
             glDisable(GL_CULL_FACE);
             program.set("stepBack", 0.0F);
             if (closed) {

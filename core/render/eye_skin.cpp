@@ -40,7 +40,7 @@ void applySkin(Program& program, const DeviceSkin& skin, const Box& rest, const 
     const glm::vec4 everywhere(-kEverywhere, -kEverywhere, kEverywhere, kEverywhere);
     program.set("shrunkOutline", skin.shrink > 0.0 ? outlineOf(skin, rest) : everywhere);
     program.set("insideOutline", glm::vec4(rest.min.x + kWall, rest.min.z + kWall, rest.max.x - kWall, rest.max.z - kWall));
-    program.set("insideTop", rest.max.y - kWall);
+    program.set("insideTop", glm::vec2(rest.max.y, rest.max.y - kWall));
     std::vector<glm::vec3> holes;
     for (const DeviceSkin::Hole& hole : skin.holes) {
         if (holes.size() == kMostRoundHoles) break;

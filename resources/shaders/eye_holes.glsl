@@ -49,14 +49,14 @@ bool isHole() {
 #if defined(SKIN) && defined(HOLES)
 uniform mat4 deviceFromWorld;
 uniform vec4 insideOutline; // x, z from and to, within which only the top is seen from outside
-uniform float insideTop;    // height above which it is the top
+uniform vec2 insideTop;     // height of the top, and that beneath which it is not the top any more
 
 // What lies beneath the top is not seen where the way to it leads through a hole: nobody looks into the device.
 bool isInside(vec3 world, vec3 eye) {
     vec3 from = (deviceFromWorld * vec4(world, 1.0)).xyz;
     vec3 to = (deviceFromWorld * vec4(eye, 1.0)).xyz;
-    vec2 crossing = mix(from, to, clamp((insideTop - from.y) / max(to.y - from.y, 1e-4), 0.0, 1.0)).xz;
-    bool beneath = restPlace.z < insideTop && all(greaterThan(crossing, insideOutline.xy)) &&
+    vec2 crossing = mix(from, to, clamp((insideTop.x - from.y) / max(to.y - from.y, 1e-4), 0.0, 1.0)).xz;
+    bool beneath = restPlace.z < insideTop.y && all(greaterThan(crossing, insideOutline.xy)) &&
                    all(lessThan(crossing, insideOutline.zw));
     return beneath && isHoleAt(crossing, crossing);
 }
