@@ -3,6 +3,7 @@
 #include <string>
 
 #include "core/base/error.h"
+#include "core/render/eye_surfaces.h"
 
 namespace lumorph {
 
@@ -41,15 +42,7 @@ void DeviceSurface::draw(Program& program) const {
     glBindVertexArray(0);
 }
 
-Box deviceBounds(const ShowFrame& frame) {
-    const Box& reach = frame.rig->reach();
-    Box box;
-    for (unsigned i = 0; i < 8; ++i)
-        box.include(glm::vec3(frame.worldFromDevice * glm::vec4((i & 1U) != 0 ? reach.max.x : reach.min.x,
-                                                                (i & 2U) != 0 ? reach.max.y : reach.min.y,
-                                                                (i & 4U) != 0 ? reach.max.z : reach.min.z, 1.0F)));
-    return box;
-}
+Box deviceBounds(const ShowFrame& frame) { return movedBox(frame.rig->reach(), frame.worldFromDevice); }
 
 Box physicalBounds(const ShowFrame& frame) {
     const glm::vec2 half = 0.5F * frame.scene->table.size;

@@ -35,6 +35,20 @@ bool holds(const CalibratedCamera& camera, const glm::vec3& point) {
 
 } // namespace
 
+void PixelRectangle::include(const PixelRectangle& other) noexcept {
+    if (other.empty()) return;
+    low = empty() ? other.low : glm::min(low, other.low);
+    high = glm::max(high, other.high);
+}
+
+PixelRectangle pixelRectangle(const glm::dvec2& low, const glm::dvec2& high, glm::ivec2 size) {
+    const glm::dvec2 whole(size);
+    const glm::dvec2 least = glm::clamp(low, glm::dvec2(0.0), whole);
+    const glm::dvec2 most = glm::clamp(high, glm::dvec2(0.0), whole);
+    return {{static_cast<int>(least.x), static_cast<int>(whole.y - most.y)},
+            {static_cast<int>(std::ceil(most.x)), static_cast<int>(std::ceil(whole.y - least.y))}};
+}
+
 bool dependsOnEye(const Material& table) {
     return table.reflection > 0.0F || table.refraction > 0.0F || table.metallic > 0.3F || table.roughness < kGlossy;
 }
@@ -89,19 +103,17 @@ PixelRectangle pixelsOf(const TableArea& area, const CalibratedCamera& projector
             low = glm::min(low, *at);
             high = glm::max(high, *at);
         }
-    const glm::dvec2 size(projector.size);
-    low = glm::clamp(low - kRoom, glm::dvec2(0.0), size);
-    high = glm::clamp(high + kRoom, glm::dvec2(0.0), size);
-    return {{static_cast<int>(low.x), static_cast<int>(size.y - high.y)},
-            {static_cast<int>(std::ceil(high.x)), static_cast<int>(std::ceil(size.y - low.y))}};
+    return pixelRectangle(low - kRoom, high + kRoom, projector.size);
 }
 
-std::array<PixelRectangle, 4> around(const PixelRectangle& area, glm::ivec2 size) {
-    if (area.empty()) return {{{glm::ivec2(0), size}, {}, {}, {}}};
-    return {{{{0, 0}, {size.x, area.low.y}},
-             {{0, area.high.y}, {size.x, size.y}},
-             {{0, area.low.y}, {area.low.x, area.high.y}},
-             {{area.high.x, area.low.y}, {size.x, area.high.y}}}};
+std::array<PixelRectangle, 4> around(const PixelRectangle& area, const PixelRectangle& whole) {
+    const PixelRectangle inner{glm::clamp(area.low, whole.low, whole.high),
+                               glm::clamp(area.high, whole.low, whole.high)};
+    if (inner.empty()) return {{whole, {}, {}, {}}};
+    return {{{whole.low, {whole.high.x, inner.low.y}},
+             {{whole.low.x, inner.high.y}, whole.high},
+             {{whole.low.x, inner.low.y}, {inner.low.x, inner.high.y}},
+             {{inner.high.x, inner.low.y}, {whole.high.x, inner.high.y}}}};
 }
 
 } // namespace lumorph

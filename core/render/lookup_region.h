@@ -15,7 +15,11 @@ struct PixelRectangle {
     glm::ivec2 low{0};
     glm::ivec2 high{0};
     [[nodiscard]] bool empty() const noexcept { return low.x >= high.x || low.y >= high.y; }
+    void include(const PixelRectangle& other) noexcept;
 };
+
+/// The pixels between two places of an image, as calibration counts them (row 0 at the top), within its size.
+[[nodiscard]] PixelRectangle pixelRectangle(const glm::dvec2& low, const glm::dvec2& high, glm::ivec2 size);
 
 /// Whether a table of this material looks different to every eye: it mirrors, bends light or shines. What does not must
 /// be drawn the same by both of the eye pass's ways, because the projector pass then takes the cheap one.
@@ -39,7 +43,7 @@ struct TableArea {
 /// A rectangle that holds the area, with room to fade out around it, in a projector's image.
 [[nodiscard]] PixelRectangle pixelsOf(const TableArea& area, const CalibratedCamera& projector);
 
-/// What is left of an image around a rectangle in it.
-[[nodiscard]] std::array<PixelRectangle, 4> around(const PixelRectangle& area, glm::ivec2 size);
+/// What is left of a rectangle around another one.
+[[nodiscard]] std::array<PixelRectangle, 4> around(const PixelRectangle& area, const PixelRectangle& whole);
 
 } // namespace lumorph

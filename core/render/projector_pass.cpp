@@ -50,6 +50,8 @@ void ProjectorPass::drawDepth(ProjectorTarget& target, const ShowFrame& frame, c
     target.range = depthRange(target.projector.camera, physicalBounds(frame));
     target.table.fit(target.projector.camera, frame.scene->table.size);
     beginSurfaces(target.sent.framebuffer(), target.sent.size());
+    glEnable(GL_SCISSOR_TEST);
+    scissor(target.area);
     glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
     glClear(GL_DEPTH_BUFFER_BIT);
     depth_.use();
@@ -57,6 +59,7 @@ void ProjectorPass::drawDepth(ProjectorTarget& target, const ShowFrame& frame, c
     device.draw(depth_);
     if (withTable) drawTableOf(target, depth_);
     glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+    glDisable(GL_SCISSOR_TEST);
 }
 
 void ProjectorPass::drawDistance(ProjectorTarget& target) {
@@ -150,6 +153,7 @@ void ProjectorPass::setColor(Program& program, const ProjectorTarget& target, co
     if (projector.gamma > 0.0) program.set("inverseGamma", static_cast<float>(1.0 / projector.gamma));
     bindTexture(0, target.unseen.texture());
     program.set("unseen", 0);
+    program.set("unseenCorner", glm::vec2(target.area.low));
     if (!target.blend) return;
     bindTexture(1, target.blend->weights());
     program.set("weights", 1);
@@ -171,7 +175,6 @@ Program& ProjectorPass::beginLookup(const ProjectorTarget& target, const ShowFra
 // Looking things up in the eye's pictures is dear, and most of the table shows every eye the same.
 void ProjectorPass::drawTable(const ProjectorTarget& target, const ShowFrame& frame, const EyeViews& views) {
     PixelRectangle area;
-    glEnable(GL_SCISSOR_TEST);
     if (views.device != nullptr && views.tableArea) area = pixelsOf(*views.tableArea, target.projector.camera);
     if (!area.empty()) {
         scissor(area);
@@ -179,17 +182,18 @@ void ProjectorPass::drawTable(const ProjectorTarget& target, const ShowFrame& fr
     }
     Program& plain = plainProgram(outputDefines(target));
     setColor(plain, target, frame);
-    for (const PixelRectangle& rest : around(area, target.sent.size())) {
+    for (const PixelRectangle& rest : around(area, target.area)) {
         if (rest.empty()) continue;
         scissor(rest);
         target.table.draw();
     }
-    glDisable(GL_SCISSOR_TEST);
 }
 
 void ProjectorPass::draw(const ProjectorTarget& target, const ShowFrame& frame, const DeviceSurface& device,
                          const EyeViews& views) {
     beginSurfaces(target.sent.framebuffer(), target.sent.size());
+    glEnable(GL_SCISSOR_TEST);
+    scissor(target.area);
     glClear(GL_COLOR_BUFFER_BIT);
     if (target.projector.gamma > 0.0)
         glDisable(GL_FRAMEBUFFER_SRGB);
@@ -198,6 +202,7 @@ void ProjectorPass::draw(const ProjectorTarget& target, const ShowFrame& frame, 
     Program& program = beginLookup(target, frame, views, false);
     device.draw(program);
     drawTable(target, frame, views);
+    glDisable(GL_SCISSOR_TEST);
     glDisable(GL_FRAMEBUFFER_SRGB);
 }
 

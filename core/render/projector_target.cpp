@@ -6,6 +6,13 @@
 
 namespace lumorph {
 
+CalibratedCamera cropped(const CalibratedCamera& camera, const PixelRectangle& area) {
+    CalibratedCamera part = camera;
+    part.size = area.high - area.low;
+    part.principal -= glm::dvec2(area.low.x, camera.size.y - area.high.y);
+    return part;
+}
+
 void setLight(Program& program, const SceneProjector& projector) {
     program.set("projectorPosition", glm::vec3(positionOf(projector.camera)));
     program.set("projectorPeak", static_cast<float>(projector.peak) * projector.gain);

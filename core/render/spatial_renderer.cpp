@@ -143,19 +143,27 @@ std::vector<const ProjectorTarget*> SpatialRenderer::Data::lit() const {
 
 void SpatialRenderer::Data::drawProjectors() {
     auto since = std::chrono::steady_clock::now();
-    const std::vector<ProjectorTarget*> targets = enabled();
-    for (ProjectorTarget* target : targets) {
-        glEnable(GL_FRAMEBUFFER_SRGB);
-        pass.drawUnseen(*frame, target->projector.camera, target->unseen.framebuffer());
-        projectorPass.drawDepth(*target, *frame, device, targets.size() > 1);
-        if (targets.size() < 2) target->blend.reset();
-    }
-    if (targets.size() > 1) projectorPass.drawWeights(targets, device);
     EyeViews views;
     if (frame->eye && eyeShown) views.device = &*eye;
     if (views.device != nullptr && tableShown) views.table = &*table;
     if (views.device != nullptr) views.tableArea = tableArea;
-    for (const ProjectorTarget* target : targets) projectorPass.draw(*target, *frame, device, views);
+    const std::vector<ProjectorTarget*> targets = enabled();
+    const bool shared = targets.size() > 1;
+    for (ProjectorTarget* target : targets) {
+        const CalibratedCamera& camera = target->projector.camera;
+        if (!shared) target->blend.reset();
+        target->area = target->changes.begin(*frame, camera, views.tableArea);
+        // Weights of several projectors change far beyond what moves.
+        if (shared) target->area = {glm::ivec2(0), camera.size};
+        if (target->area.empty()) continue;
+        pass.drawUnseen(*frame, cropped(camera, target->area), target->unseen.framebuffer());
+        projectorPass.drawDepth(*target, *frame, device, shared);
+    }
+    if (shared) projectorPass.drawWeights(targets, device);
+    for (ProjectorTarget* target : targets) {
+        if (!target->area.empty()) projectorPass.draw(*target, *frame, device, views);
+        if (!shared) target->changes.finish(*frame);
+    }
     times.projectors = finish(since);
 }
 

@@ -4,6 +4,7 @@
 // of all. Out: the value, linear for an sRGB framebuffer or, where GAMMA is defined, encoded.
 
 uniform sampler2D unseen;
+uniform vec2 unseenCorner;  // the pixel of the projector at which that picture begins
 uniform float compensation; // 1: of incidence and distance; 0: none
 #ifdef EYE
 uniform EyeView deviceView;
@@ -27,7 +28,7 @@ out vec4 color;
 void main() {
     vec3 normal = faceTowards(projectorPosition);
     ivec2 pixel = ivec2(gl_FragCoord.xy);
-    vec3 radiance = texelFetch(unseen, pixel, 0).rgb;
+    vec3 radiance = texelFetch(unseen, pixel - ivec2(unseenCorner), 0).rgb;
 #ifdef EYE
 #if EYE == 2
     vec4 onTable = seenByEye(tablePicture, tableViewDepth, tableView, worldPosition, normal);

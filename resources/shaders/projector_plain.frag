@@ -4,6 +4,7 @@
 in vec3 valueOfWhite;
 
 uniform sampler2D unseen;
+uniform vec2 unseenCorner;  // the pixel of the projector at which that picture begins
 #ifdef SHARED
 uniform sampler2D weights;
 #endif
@@ -15,7 +16,7 @@ out vec4 color;
 
 void main() {
     ivec2 pixel = ivec2(gl_FragCoord.xy);
-    vec3 value = texelFetch(unseen, pixel, 0).rgb * valueOfWhite;
+    vec3 value = texelFetch(unseen, pixel - ivec2(unseenCorner), 0).rgb * valueOfWhite;
 #ifdef SHARED
     vec2 weight = texelFetch(weights, pixel, 0).rg;
     value *= weight.g > 0.0 ? weight.r / weight.g : 1.0;

@@ -156,6 +156,73 @@ TEST(SpatialRenderer, TwoProjectorsShareTheWorkWithoutASeam) {
     EXPECT_EQ(renderer.projectorTexture(1), 0U);
 }
 
+// The share of the light at a table's point that a projector brings, from the value it sends there.
+double shareOf(const SceneProjector& projector, const Image& sent, glm::ivec2 pixel, const glm::dvec3& point) {
+    const glm::dvec3 way = positionOf(projector.camera) - point;
+    const double distance = glm::length(way);
+    const double full = projector.peak * way.y / distance * std::pow(projector.referenceDistance / distance, 2.0);
+    return linear(sent.at(pixel.x, pixel.y)[1] / 255.0) * full / linear(0.7);
+}
+
+// Whether a projector sees nothing but table far around a point, so that it could do all the work there.
+bool seesOpenTable(const Lab& lab, const CalibratedCamera& camera, const glm::dvec3& point) {
+    const auto pixel = pixelOf(camera, point);
+    const glm::dvec2 room = glm::dvec2(camera.size) - 34.0;
+    if (!pixel || pixel->x < 33.0 || pixel->y < 33.0 || pixel->x > room.x || pixel->y > room.y) return false;
+    for (int k = 0; k < 24; ++k) {
+        const double turn = 0.25 * 3.14159265 * k;
+        const double radius = 15.0 * (1 + k / 8);
+        const auto hit = lab.trace(positionOf(camera),
+                                   directionOf(camera, *pixel + radius * glm::dvec2(std::cos(turn), std::sin(turn))));
+        if (!hit || hit->surface != 1) return false;
+    }
+    return true;
+}
+
+TEST(SpatialRenderer, WeightsFallSmoothlyTowardsShadowsAndBorders) {
+    const HeadlessContext context;
+    SpatialRenderer renderer;
+    const std::vector<SceneProjector> projectors = pair();
+    Scene scene = unlitScene(glm::vec3(0.7F), glm::vec3(0.7F), projectors);
+    scene.worldFromDevice[3].y = 0.12F; // held up, so that its shadows lie apart
+    const ShowFrame frame = frameOf(scene, liftedFlaps());
+    renderer.draw(frame);
+    const Lab lab(labOf(frame, renderer));
+    const CalibratedCamera& camera = projectors[0].camera;
+    const Image sent = renderer.readProjector(0);
+    const glm::dvec3 up(0.0, 1.0, 0.0);
+    int shared = 0;
+    int atShadows = 0;
+    int atBorders = 0;
+    double before = -1.0; // the share of the pixel to the left
+    for (int y = 0; y < camera.size.y; y += 4)
+        for (int x = 0; x < camera.size.x; ++x) {
+            const auto hit = lab.trace(positionOf(camera), directionOf(camera, {x, y}));
+            const bool both = hit && hit->surface == 1 && lab.lit(1, hit->point, up) &&
+                              seesOpenTable(lab, projectors[1].camera, hit->point);
+            if (!both || x == 0) before = -1.0;
+            if (!both) continue;
+            const double share = shareOf(projectors[0], sent, {x, y}, hit->point);
+            if (share > 0.1 && share < 0.9) ++shared;
+            if (before >= 0.0) {
+                EXPECT_LT(std::abs(share - before), 0.13) << x << ", " << y;
+            }
+            before = share;
+            const auto beside = lab.trace(positionOf(camera), directionOf(camera, {x - 1, y}));
+            if (beside && beside->surface == 0 &&
+                lab.trace(positionOf(camera), directionOf(camera, {x - 4, y}))->surface == 0) {
+                EXPECT_LT(share, 0.15) << "beside the device at " << x << ", " << y;
+                ++atShadows;
+            }
+            if (x != 1 && x != camera.size.x - 2) continue;
+            EXPECT_LT(share, 0.1) << "at the border, row " << y;
+            ++atBorders;
+        }
+    EXPECT_GT(shared, 10'000);
+    EXPECT_GT(atShadows, 5);
+    EXPECT_GT(atBorders, 20);
+}
+
 TEST(SpatialRenderer, GammaOfAProjectorIsAnswered) {
     const HeadlessContext context;
     SpatialRenderer renderer;

@@ -50,7 +50,8 @@ inline std::vector<double> liftedFlaps() {
 inline ShowFrame frameOf(const Scene& scene, const std::vector<double>& strokes) {
     ShowFrame frame;
     frame.scene = std::make_shared<const Scene>(scene);
-    frame.assets = std::make_shared<const SceneAssets>();
+    static const auto assets = std::make_shared<const SceneAssets>();
+    frame.assets = assets;
     frame.rig = tabletRig();
     frame.devicePositions = std::make_shared<const std::vector<glm::vec3>>(deformed(*frame.rig, strokes).positions);
     frame.worldFromDevice = scene.worldFromDevice;
