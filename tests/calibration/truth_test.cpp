@@ -98,7 +98,7 @@ TEST_P(TruthTest, PointsAreSeenWhereTheEyePassHasThem) {
             ballErrors(bench, points, renderer.readProjector(0), renderer.readEye(), 16, bench.judged());
         std::printf("place %-11s | %-11s | mean %.3f | 95 %% %.3f pixels | %zu balls\n", state.name, eye.name,
                     meanOf(errors), quantileOf(errors, 0.95), errors.size());
-        EXPECT_GE(errors.size(), 10U) << eye.name;
+        EXPECT_GE(errors.size(), 5U) << eye.name; // most windows touch an edge when all flaps are up
         EXPECT_LE(meanOf(errors), 0.5) << eye.name;
         EXPECT_LE(quantileOf(errors, 0.95), 1.5) << eye.name;
     }
