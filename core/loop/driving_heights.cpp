@@ -70,6 +70,12 @@ void DrivingHeights::workOut(double seconds, std::span<float> heights) {
         ofSurfaces(seconds, heights);
 }
 
+const Image* DrivingHeights::pictureOf(const HeightItem& item) const {
+    if (!source_.assets) return nullptr;
+    const auto found = source_.assets->images.find(item.image);
+    return found == source_.assets->images.end() ? nullptr : found->second.get();
+}
+
 void DrivingHeights::ofHeightField(const HeightItem& item, double seconds, std::span<float> heights) const {
     glm::dmat4 deviceFromItem(anchorFromItem(alone_, alone_.items.back(), seconds));
     if (alone_.items.front().anchor == Anchor::world)
@@ -83,10 +89,8 @@ void DrivingHeights::ofHeightField(const HeightItem& item, double seconds, std::
         const glm::dvec3 met = foot - up * (foot.y / up.y);
         places.emplace_back(met.x, met.z);
     }
-    const auto* images = source_.assets ? &source_.assets->images : nullptr;
-    const auto image = images ? images->find(item.image) : decltype(images->end()){};
     std::vector<float> lifts(points_.size(), 0.0F);
-    sampleHeights(item, images && image != images->end() ? image->second.get() : nullptr, seconds, places, lifts);
+    sampleHeights(item, pictureOf(item), seconds, places, lifts);
     for (std::size_t k = 0; k < heights.size(); ++k) {
         const glm::vec2 inset = 0.5F * item.size - glm::abs(places[k]);
         if (!(inset.x >= 0.0F && inset.y >= 0.0F)) continue;

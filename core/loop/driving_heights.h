@@ -39,6 +39,7 @@ public:
 private:
     void workOut(double seconds, std::span<float> heights);
     void ofHeightField(const HeightItem& item, double seconds, std::span<float> heights) const;
+    [[nodiscard]] const Image* pictureOf(const HeightItem& item) const;
     void ofSurfaces(double seconds, std::span<float> heights);
     void ofTarget(double seconds, std::span<float> heights);
     void raise(std::span<const glm::vec3> positions, const glm::mat4& deviceFromSurface,
