@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <ostream>
 #include <span>
 #include <string>
 #include <vector>
@@ -23,6 +24,7 @@ struct TruthDevice {
 struct TruthState {
     const char* name;
     std::vector<double> strokes;
+    friend std::ostream& operator<<(std::ostream& out, const TruthState& state) { return out << state.name; }
 };
 [[nodiscard]] std::span<const TruthState> truthStates();
 [[nodiscard]] const TruthState& truthState(const std::string& name);

@@ -24,6 +24,8 @@ TEST(LoopText, SaysRateAndTimes) {
     EXPECT_EQ(loopText(&frame, frame.ms, 30.0, false), "30 Hz, not matching");
     frame.target = nullptr;
     EXPECT_EQ(loopText(&frame, frame.ms, 0.0, false), "Idle, no target");
+    frame.splitStrokes = {0.5};
+    EXPECT_EQ(loopText(&frame, frame.ms, 59.8, false), "60 Hz, servos follow the scene");
     EXPECT_EQ(loopText(nullptr, {}, 0.0, false), "Idle");
 }
 

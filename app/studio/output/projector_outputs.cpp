@@ -76,7 +76,7 @@ void ProjectorOutputs::addScreenCommands() {
                 [this, projector] { showInWindow(projector); });
         for (const QScreen* screen : QGuiApplication::screens())
             if (const QString name = screen->name(); !commands_.find(id + "screen." + name))
-                add(id + "screen." + name, tr("%1 on screen %2").arg(titleOf(projector), name),
+                add(id + "screen." + name, tr("%1, full screen on %2").arg(titleOf(projector), name),
                     [this, projector, name] { showOnScreen(projector, name); });
     }
     for (const Commands::Entry& entry : commands_.all()) {
@@ -137,7 +137,7 @@ void ProjectorOutputs::ask(std::size_t projector, const QString& screen) {
     Notice notice;
     notice.level = Notice::Level::info;
     notice.subject = titleOf(projector);
-    notice.why = tr("The studio itself is on screen %1 and would be covered.").arg(screen);
+    notice.why = tr("The studio itself is on the screen %1 and would be covered.").arg(screen);
     notice.remedy = tr("Esc brings it back.");
     notice.actions.push_back({tr("Cover it"), [this, projector, screen] {
                                   allowed_.insert(screen);

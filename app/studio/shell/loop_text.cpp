@@ -25,6 +25,7 @@ MatchTimes lastMatch(const MatchTimes& before, const MatchFrame& frame) {
 QString loopText(const MatchFrame* frame, const MatchTimes& lastMatch, double rate, bool stopped) {
     QString text = stopped ? "Stopped" : rate > 0.0 ? QString::number(std::lround(rate)) + " Hz" : "Idle";
     if (frame == nullptr) return text;
+    if (!frame->splitStrokes.empty()) return text + ", servos follow the scene";
     if (!frame->matched) return text + (frame->target ? ", not matching" : ", no target");
     if (lastMatch.match <= 0.0) return text + ", matched";
     text += ", matched in " + milliseconds(lastMatch.match);

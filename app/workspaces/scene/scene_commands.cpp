@@ -95,6 +95,7 @@ public:
         addAdding();
         addChanging();
         addShowing();
+        addPlaying();
         connect(&selection, &SceneSelection::changed, this, [this] { follow(); });
         connect(&studio.document, &StudioDocument::changed, this, [this](StateParts parts) {
             if (parts & StatePart::scene) follow();
@@ -192,6 +193,22 @@ private:
         one("light", tr("Light"), tr("Light alone: the device stays flat"), "Ctrl+Alt+2", Showing::virtualOnly);
         one("both", tr("Both"), tr("Servos take the coarse shape, light adds all that is fine"), "Ctrl+Alt+3",
             Showing::both);
+    }
+
+    void addPlaying() {
+        play_ = add("scene.play", {}, {}, {}, "Alt+P", false,
+                    [this] { studio_.loop.setScenePlaying(!studio_.loop.scenePlaying()); });
+        connect(&studio_.loop, &StudioLoop::scenePlayingChanged, this, [this] { followPlaying(); });
+        followPlaying();
+    }
+
+    void followPlaying() {
+        const bool playing = studio_.loop.scenePlaying();
+        play_->setText(playing ? tr("Pause the scene") : tr("Play the scene"));
+        play_->setToolTip((playing ? tr("Waves, animations and moving light hold still")
+                                   : tr("Waves, animations and moving light go on")) +
+                          " (" + play_->shortcut().toString(QKeySequence::NativeText) + ")");
+        play_->setIcon(icon(playing ? "pause" : "play"));
     }
 
     void put(SceneItem item) {
@@ -299,7 +316,7 @@ private:
     Studio& studio_;
     SceneSelection& selection_;
     std::function<QWidget*()> parent_;
-    QAction *duplicate_ = nullptr, *remove_ = nullptr, *hide_ = nullptr;
+    QAction *duplicate_ = nullptr, *remove_ = nullptr, *hide_ = nullptr, *play_ = nullptr;
     QActionGroup* showings_ = nullptr;
     std::vector<std::pair<Showing, QAction*>> showing_;
 };
