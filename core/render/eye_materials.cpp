@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cmath>
+#include <set>
 
 #include "core/render/eye_programs.h"
 
@@ -43,7 +44,14 @@ glm::vec3 linearLight(const glm::vec3& color) {
 
 void EyeMaterials::begin(std::shared_ptr<const SceneAssets> assets, double seconds) {
     if (!white_) white_ = std::make_shared<Image>(glm::ivec2(1), Image::Pixel{255, 255, 255, 255});
-    assets_ = std::move(assets);
+    if (assets != assets_) {
+        // A picture that was read anew is another object: the old one is not asked for again.
+        std::set<const Image*> held{white_.get()};
+        if (assets)
+            for (const auto& [name, image] : assets->images) held.insert(image.get());
+        pictures_.keepOnly(held);
+        assets_ = std::move(assets);
+    }
     seconds_ = seconds;
     pictures_.sweep();
 }

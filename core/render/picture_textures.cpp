@@ -11,7 +11,7 @@
 namespace lumorph {
 namespace {
 
-constexpr std::uint64_t kRoundsKept = 240; // a flip-book comes round again
+constexpr std::uint64_t kRoundsKept = 240; // what is hidden is often shown again
 constexpr float kAnisotropy = 8.0F;
 
 Image cutOut(const Image& image, glm::ivec2 grid, int cell) {
@@ -77,31 +77,50 @@ glm::vec3 meanOf(const Image& image) {
     return glm::vec3(sum / count);
 }
 
+PictureTextures::Picture uploaded(const gl::Texture& texture, const Image& image, PictureTextures::Use use,
+                                  glm::ivec2 grid, int cell) {
+    GLint largest = 0;
+    glGetIntegerv(GL_MAX_TEXTURE_SIZE, &largest);
+    Image shown = grid == glm::ivec2(1) ? image : cutOut(image, grid, cell);
+    while (std::max(shown.size().x, shown.size().y) > largest) shown = halved(shown);
+    upload(texture.name(), shown, use);
+    return {texture.name(), shown.size(), anyClear(image), meanOf(shown)};
+}
+
 } // namespace
 
 PictureTextures::Picture PictureTextures::picture(const std::shared_ptr<const Image>& image, Use use, glm::ivec2 grid,
                                                   int cell) {
     if (!image || image->size().x < 1 || image->size().y < 1) return {};
     grid = glm::max(grid, glm::ivec2(1));
-    const bool whole = grid == glm::ivec2(1);
-    const auto [found, added] =
-        entries_.try_emplace({image.get(), use, whole ? 0 : grid.x, whole ? 0 : grid.y, whole ? 0 : cell});
-    Entry& entry = found->second;
-    entry.lastUse = round_;
-    if (!added) return entry.picture;
-    entry.image = image;
-    GLint largest = 0;
-    glGetIntegerv(GL_MAX_TEXTURE_SIZE, &largest);
-    Image shown = whole ? *image : cutOut(*image, grid, cell);
-    while (std::max(shown.size().x, shown.size().y) > largest) shown = halved(shown);
-    upload(entry.texture.name(), shown, use);
-    entry.picture = {entry.texture.name(), shown.size(), anyClear(*image), meanOf(shown)};
-    return entry.picture;
+    if (grid == glm::ivec2(1)) cell = 0;
+    Sheet& sheet = sheets_[{image.get(), use, grid.x, grid.y}];
+    sheet.image = image;
+    sheet.lastUse = round_;
+    if (!sheet.cells.contains(cell) && sheet.cells.size() >= kMostCells)
+        sheet.cells.erase(std::min_element(sheet.cells.begin(), sheet.cells.end(), [](const auto& a, const auto& b) {
+            return a.second.lastUse < b.second.lastUse;
+        }));
+    const auto [found, added] = sheet.cells.try_emplace(cell);
+    Cell& shown = found->second;
+    shown.lastUse = round_;
+    if (added) shown.picture = uploaded(shown.texture, *image, use, grid, cell);
+    return shown.picture;
 }
 
 void PictureTextures::sweep() {
-    std::erase_if(entries_, [&](const auto& entry) { return entry.second.lastUse + kRoundsKept < round_; });
+    std::erase_if(sheets_, [&](const auto& entry) { return entry.second.lastUse + kRoundsKept < round_; });
     ++round_;
+}
+
+void PictureTextures::keepOnly(const std::set<const Image*>& images) {
+    std::erase_if(sheets_, [&](const auto& entry) { return !images.contains(entry.second.image.get()); });
+}
+
+std::size_t PictureTextures::objectCount() const noexcept {
+    std::size_t count = 0;
+    for (const auto& [key, sheet] : sheets_) count += sheet.cells.size();
+    return count;
 }
 
 } // namespace lumorph

@@ -3,8 +3,8 @@
 #include <cstdint>
 #include <map>
 #include <memory>
+#include <set>
 #include <tuple>
-#include <vector>
 
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
@@ -30,20 +30,30 @@ public:
     /// Larger pictures than the driver holds are halved.
     [[nodiscard]] Picture picture(const std::shared_ptr<const Image>& image, Use use, glm::ivec2 grid = glm::ivec2(1),
                                   int cell = 0);
-    /// Forgets the pictures that were not asked for since the last call but one.
+    /// Begins a round; forgets the pictures that nobody asked for in the last 240.
     void sweep();
-    [[nodiscard]] std::size_t objectCount() const noexcept { return entries_.size(); }
+    /// Forgets all pictures but these.
+    void keepOnly(const std::set<const Image*>& images);
+    [[nodiscard]] std::size_t objectCount() const noexcept;
+
+    /// Of one flip-book; of a longer one the cells shown last are kept.
+    static constexpr std::size_t kMostCells = 256;
 
 private:
-    struct Entry {
-        std::shared_ptr<const Image> image; ///< held, so that its address stays its own
+    struct Cell {
         gl::Texture texture;
         Picture picture;
         std::uint64_t lastUse = 0;
     };
-    using Key = std::tuple<const Image*, Use, int, int, int>;
+    /// A flip-book comes round again, so its cells are kept as long as it is in use.
+    struct Sheet {
+        std::shared_ptr<const Image> image; ///< held, so that its address stays its own
+        std::map<int, Cell> cells;
+        std::uint64_t lastUse = 0;
+    };
+    using Key = std::tuple<const Image*, Use, int, int>;
 
-    std::map<Key, Entry> entries_;
+    std::map<Key, Sheet> sheets_;
     std::uint64_t round_ = 1;
 };
 

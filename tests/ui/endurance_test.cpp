@@ -1,5 +1,3 @@
-#include <fstream>
-
 #include <QAbstractButton>
 #include <QApplication>
 
@@ -14,13 +12,6 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr double kLongestStall = 100.0; // milliseconds
-
-double residentMegabytes() {
-    std::ifstream file("/proc/self/statm");
-    double pages = 0.0;
-    file >> pages >> pages;
-    return pages * 4096.0 / 1e6;
-}
 
 QList<QDockWidget*> docks(StudioWindow& window) {
     QList<QDockWidget*> found;

@@ -1,6 +1,7 @@
 #include "tests/ui/studio_window.h"
 
 #include <cstdlib>
+#include <fstream>
 
 #include <QAbstractButton>
 #include <QAbstractSlider>
@@ -21,6 +22,13 @@ using Steady = std::chrono::steady_clock;
 int soakFactor() {
     const char* factor = std::getenv("LUMORPH_SOAK");
     return factor ? std::max(1, std::atoi(factor)) : 1;
+}
+
+double residentMegabytes() {
+    std::ifstream file("/proc/self/statm");
+    double pages = 0.0;
+    file >> pages >> pages;
+    return pages * 4096.0 / 1e6;
 }
 
 struct StallWatch::Ping : QObject {

@@ -25,6 +25,9 @@ namespace lumorph::test {
 /// How many times as long the endurance tests run: LUMORPH_SOAK, 10 in packaging/soak.
 [[nodiscard]] int soakFactor();
 
+/// What this process holds of the machine's memory.
+[[nodiscard]] double residentMegabytes();
+
 /// The longest time an event had to wait for the window's thread, as a thread beside it sees it.
 class StallWatch {
 public:

@@ -85,12 +85,17 @@ SceneItem box(const glm::vec3& position, Anchor anchor, const glm::vec3& color, 
     return item;
 }
 
-ShowFrame posed(ShowFrame frame) {
-    ScenePoser poser;
+ShowFrame posedBy(ScenePoser& poser, ShowFrame frame, double seconds) {
     PoseInput input;
+    input.seconds = seconds;
     input.worldFromDevice = frame.worldFromDevice;
     frame.posed = poser.pose(*frame.scene, *frame.assets, input);
     return frame;
+}
+
+ShowFrame posed(ShowFrame frame) {
+    ScenePoser poser;
+    return posedBy(poser, std::move(frame), 0.0);
 }
 
 /// Whether the way between two points leads through a box around `centre`, grown by `more`.
@@ -335,35 +340,104 @@ TEST(SpatialRenderer, PictureIsTheSameWhateverWasDrawnBefore) {
     }
 }
 
-TEST(SpatialRenderer, ManyFramesKeepAsManyObjects) {
-    const HeadlessContext context;
-    SpatialRenderer renderer;
-    renderer.setEyeSize({64, 40});
+SceneTexture texture(const std::string& image, int columns = 1) {
+    SceneTexture texture;
+    texture.image = image;
+    texture.columns = columns;
+    texture.framesPerSecond = columns > 1 ? 20.0 : 0.0;
+    return texture;
+}
+
+/// A scene of everything: pictures, a flip-book, waves, fog, two projectors.
+Scene busyScene() {
     Scene scene = unlitScene({0.9F, 0.2F, 0.0F}, {0.0F, 0.3F, 0.9F}, {overhead(), overhead()});
+    scene.device.material.colorTexture = texture("flip-book", 4);
+    scene.device.creases.emphasis = 0.5;
+    scene.table.material.colorTexture = texture("wood");
     scene.items.push_back(box({0.25F, 0.03F, 0.2F}, Anchor::world, {0.0F, 1.0F, 0.0F}));
+    scene.items.back().material.unlit = false;
+    scene.items.back().material.normalMaps[0] = texture("bumps");
+    SceneItem water = box({0.0F, 0.04F, 0.0F}, Anchor::device, {0.2F, 0.4F, 0.9F});
+    water.id = 2;
+    HeightItem waves;
+    waves.waves.emplace_back();
+    water.kind = waves;
+    scene.items.push_back(water);
+    SceneItem fog = box({0.0F, 0.05F, 0.0F}, Anchor::device, {1.0F, 1.0F, 1.0F});
+    fog.id = 3;
+    fog.kind = FogItem{};
+    scene.items.push_back(fog);
+    SceneItem sun = box({0.3F, 0.8F, 0.3F}, Anchor::world, {1.0F, 1.0F, 1.0F});
+    sun.id = 4;
+    sun.kind = LightItem{};
+    std::get<LightItem>(sun.kind).shadows = false; // their maps take most of a frame
+    scene.items.push_back(sun);
     for (SceneProjector& projector : scene.projectors) {
         projector.camera.size = {48, 32};
         projector.camera.focal *= 0.1;
         projector.camera.principal = {23.5, 15.5};
     }
+    return scene;
+}
+
+/// The pictures of that scene; all but the flip-book are read anew.
+std::shared_ptr<const SceneAssets> readAnew() {
+    static const auto sheet = std::make_shared<const Image>(glm::ivec2(16, 4), Image::Pixel{90, 200, 40, 255});
+    auto assets = std::make_shared<SceneAssets>();
+    assets->images["flip-book"] = sheet;
+    assets->images["wood"] = std::make_shared<const Image>(glm::ivec2(8), Image::Pixel{120, 80, 40, 255});
+    assets->images["bumps"] = std::make_shared<const Image>(glm::ivec2(8), Image::Pixel{128, 128, 255, 255});
+    return assets;
+}
+
+/// What the driver itself has, by kind.
+std::array<std::size_t, 6> liveObjects() {
+    constexpr GLuint kNames = 500000; // a driver need not use a name twice
+    std::array<std::size_t, 6> count{};
+    for (GLuint name = 1; name < kNames; ++name) {
+        count[0] += glIsTexture(name);
+        count[1] += glIsBuffer(name);
+        count[2] += glIsVertexArray(name);
+        count[3] += glIsFramebuffer(name);
+        count[4] += glIsRenderbuffer(name);
+        count[5] += glIsProgram(name);
+    }
+    return count;
+}
+
+TEST(SpatialRenderer, ManyFramesKeepAsManyObjects) {
+    const HeadlessContext context;
+    SpatialRenderer renderer;
+    renderer.setEyeSize({64, 40});
+    Scene scene = busyScene();
+    ScenePoser poser;
     const char* soak = std::getenv("LUMORPH_SOAK");
     const int frames = 500 * (soak != nullptr ? std::max(1, std::atoi(soak)) : 1);
     const CalibratedCamera observer = cameraLookingAt({0.0, 0.5, 0.5}, {0.0, 0.0, 0.0}, {32, 24}, 40.0);
     std::size_t settled = 0;
+    std::array<std::size_t, 6> live{};
+    auto assets = readAnew();
     for (int i = 0; i < frames; ++i) {
         std::vector<double> strokes(tabletRig()->actuatorCount());
         for (std::size_t k = 0; k < strokes.size(); ++k) strokes[k] = 0.5 + 0.5 * std::sin(0.1 * i + double(k));
         scene.eye.x = 0.3F * std::sin(0.05F * static_cast<float>(i));
-        ShowFrame frame = posed(frameOf(scene, strokes));
+        ShowFrame frame = frameOf(scene, strokes);
+        if (i % 5 == 4) assets = readAnew();
+        frame.assets = assets;
+        frame = posedBy(poser, std::move(frame), 0.05 * i);
         if (i % 10 == 9) frame.eye.reset();
         renderer.draw(frame);
         if (i % 50 == 0) (void)renderer.readLab(observer);
         if (i % 50 == 1 && frame.eye) (void)renderer.readMask();
-        if (i == 60) settled = renderer.objectCount();
+        if (i == 60) {
+            settled = renderer.objectCount();
+            live = liveObjects();
+        }
         if (i > 60) {
             ASSERT_EQ(renderer.objectCount(), settled) << i;
         }
     }
+    EXPECT_EQ(liveObjects(), live);
     EXPECT_EQ(glGetError(), unsigned{GL_NO_ERROR});
 }
 
