@@ -102,6 +102,7 @@ class InspectorDock : public QWidget {
 public:
     InspectorDock(Studio& studio, SceneSelection& selection)
         : studio_(studio), selection_(selection), stack_(new QStackedWidget(this)) {
+        setMinimumWidth(kLeastDockWidth);
         auto* layout = new QVBoxLayout(this);
         layout->setContentsMargins(0, 0, 0, 0);
         layout->addWidget(stack_);

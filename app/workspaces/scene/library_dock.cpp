@@ -53,6 +53,7 @@ public:
         hint_->setObjectName("library.hint");
         hint_->setProperty("look", "muted");
         hint_->setWordWrap(true);
+        setMinimumWidth(kLeastDockWidth);
         auto* layout = new QVBoxLayout(this);
         layout->setContentsMargins(16, 12, 12, 12);
         layout->setSpacing(8);

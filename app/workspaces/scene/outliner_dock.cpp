@@ -41,6 +41,7 @@ public:
     OutlinerDock(Studio& studio, SceneSelection& selection)
         : studio_(studio), selection_(selection), model_(new OutlinerModel(studio.document, this)),
           tree_(new Tree(this)) {
+        setMinimumWidth(kLeastDockWidth);
         auto* layout = new QVBoxLayout(this);
         layout->setContentsMargins(16, 12, 16, 12);
         layout->setSpacing(8);

@@ -7,6 +7,9 @@
 
 namespace lumorph::studio {
 
+/// Below this a dock of the Scene workspace cannot be read, points.
+inline constexpr int kLeastDockWidth = 220;
+
 /// What light shows, as a tree, with the switch of which layer works.
 [[nodiscard]] QWidget* makeOutlinerDock(Studio& studio, SceneSelection& selection);
 /// Ready materials to give to what is chosen.
