@@ -44,7 +44,7 @@ vec2 shadowBlockers(vec3 at, int taps) {
     vec2 around = vec2(shadowReach.x, 0.0);
     for (int i = 0; i < taps; ++i) {
         vec2 away = sqrt((float(i) + 0.5) / float(kSearchTaps)) * around;
-        float gap = at.z + dot(shadowSlope, away) - textureLod(shadowDepth, at.xy + away, 0.0).r;
+        float gap = min(at.z + dot(shadowSlope, away), 1.0) - textureLod(shadowDepth, at.xy + away, 0.0).r;
         found += gap > 0.0 ? vec2(1.0, gap) : vec2(0.0);
         around = kGoldenTurn * around;
     }
@@ -56,7 +56,7 @@ float shadowLit(vec3 at, float radius, int taps) {
     vec2 around = vec2(radius, 0.0);
     for (int i = 0; i < taps; ++i) {
         vec2 away = sqrt((float(i) + 0.5) / float(kEdgeTaps)) * around;
-        lit += textureLod(shadowMap, vec3(at.xy + away, at.z + dot(shadowSlope, away)), 0.0);
+        lit += textureLod(shadowMap, vec3(at.xy + away, min(at.z + dot(shadowSlope, away), 1.0)), 0.0);
         around = kGoldenTurn * around;
     }
     return lit / float(kEdgeTaps);
@@ -70,11 +70,11 @@ float shadowVisibility(bool facing, vec4 place) {
 #else
     vec3 at = place.xyz;
 #endif
-    at.z = min(at.z, 1.0);
+    at.z = min(at.z, 1.0); // what lies beyond the map's far plane counts as on it, and so do the taps around it
     vec2 tile = textureLod(shadowTiles, at.xy, 0.0).rg;
     float margin = shadowReach.x * length(shadowSlope);
     bool dark = at.z - margin > tile.y;
-    bool open = at.z + margin <= tile.x || !facing;
+    bool open = min(at.z + margin, 1.0) <= tile.x || !facing;
     vec2 blockers = shadowBlockers(at, dark || open ? 0 : kSearchTaps);
     bool edge = blockers.x > 0.0 && blockers.x < float(kSearchTaps);
     float radius = clamp(shadowSpread * blockers.y, shadowReach.y, shadowReach.x);
