@@ -19,6 +19,7 @@
 #include "core/render/eye_shadow.h"
 #include "core/render/eye_skin.h"
 #include "core/render/eye_surfaces.h"
+#include "core/render/eye_table.h"
 #include "core/render/lookup_region.h"
 
 namespace lumorph {
@@ -26,7 +27,6 @@ namespace {
 
 using Stage = EyePrograms::Stage;
 
-constexpr glm::ivec2 kTableGrid{48, 36};
 constexpr float kBlurredLift = 0.004F;        // metres by which blurred folds keep off their own shadow
 constexpr float kNearSideStepsBack = 0.0025F; // metres
 constexpr float kFarthestCaster = 1.5F;       // metres from the device's middle
@@ -107,28 +107,10 @@ EyePass::~EyePass() = default;
 EyePass::EyePass(EyePass&&) noexcept = default;
 EyePass& EyePass::operator=(EyePass&&) noexcept = default;
 
-// A grid, because a lens bends what is straight.
 void EyePass::Data::updateTable(glm::vec2 size) {
     if (size == tableSize) return;
     tableSize = size;
-    std::vector<glm::vec3> positions;
-    std::vector<glm::vec2> coordinates;
-    std::vector<glm::uvec3> triangles;
-    for (int row = 0; row <= kTableGrid.y; ++row)
-        for (int column = 0; column <= kTableGrid.x; ++column) {
-            const glm::vec2 at = size * (glm::vec2(column, row) / glm::vec2(kTableGrid) - 0.5F);
-            positions.emplace_back(at.x, 0.0F, at.y);
-            coordinates.push_back(at);
-        }
-    const auto width = static_cast<std::uint32_t>(kTableGrid.x) + 1;
-    for (std::uint32_t row = 0; row + 1 <= static_cast<std::uint32_t>(kTableGrid.y); ++row)
-        for (std::uint32_t column = 0; column + 1 < width; ++column) {
-            const std::uint32_t a = row * width + column;
-            triangles.emplace_back(a, a + width, a + width + 1);
-            triangles.emplace_back(a, a + width + 1, a + 1);
-        }
-    table.setTopology(triangles, coordinates);
-    table.setShape(positions, std::vector<glm::vec3>(positions.size(), glm::vec3(0.0F, 1.0F, 0.0F)));
+    shapeTable(table, size);
 }
 
 // The device counts with all it can reach, so that its shadow does not swim while it moves.
