@@ -34,14 +34,14 @@ inline Scene unlitScene(const glm::vec3& device, const glm::vec3& table,
     return scene;
 }
 
-inline std::shared_ptr<const Rig> tabletRig() {
+inline std::shared_ptr<const Rig> bundledTablet() {
     static const auto rig = std::make_shared<const Rig>(readRig(LUMORPH_SOURCE_DIR "/resources/models/tablet.glb"));
     return rig;
 }
 
 /// The tablet with two flaps lifted.
 inline std::vector<double> liftedFlaps() {
-    std::vector<double> strokes(tabletRig()->actuatorCount(), 0.0);
+    std::vector<double> strokes(bundledTablet()->actuatorCount(), 0.0);
     strokes[0] = 0.9;
     strokes[2] = 0.6;
     return strokes;
@@ -52,7 +52,7 @@ inline ShowFrame frameOf(const Scene& scene, const std::vector<double>& strokes)
     frame.scene = std::make_shared<const Scene>(scene);
     static const auto assets = std::make_shared<const SceneAssets>();
     frame.assets = assets;
-    frame.rig = tabletRig();
+    frame.rig = bundledTablet();
     frame.devicePositions = std::make_shared<const std::vector<glm::vec3>>(deformed(*frame.rig, strokes).positions);
     frame.worldFromDevice = scene.worldFromDevice;
     frame.eye = scene.eye;
