@@ -13,8 +13,8 @@
 namespace lumorph {
 namespace {
 
-constexpr int kMostCells = 256; // a side
-constexpr int kLeastCells = 32; // so that what changes slowly over the table may be interpolated
+constexpr int kMostCells = 256;          // a side
+constexpr int kLeastCells = 32;          // so that what changes slowly over the table may be interpolated
 constexpr double kStraightEnough = 0.02; // pixels
 
 struct Rectangle {

@@ -5,10 +5,10 @@
 namespace lumorph {
 namespace {
 
-/// A full-HD projector 2 m above the table and a little on the viewer's side, so that a far flap that bends up for him is
-/// lit on the side he sees, while his head stays out of the light. Like most projectors it has a lens shift: its axis
-/// leaves through the lower edge of the picture. 0.62 x 0.35 m around the device are lit, a third of a millimetre a
-/// pixel.
+/// A full-HD projector 2 m above the table and a little on the viewer's side, so that a far flap that bends up for him
+/// is lit on the side he sees, while his head stays out of the light. Like most projectors it has a lens shift: its
+/// axis leaves through the lower edge of the picture. 0.62 x 0.35 m around the device are lit, a third of a millimetre
+/// a pixel.
 SceneProjector defaultProjector() {
     const glm::dvec3 position(0.0, 2.0, 0.4);
     const double focal = 6080.0;
