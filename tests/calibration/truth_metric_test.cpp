@@ -17,6 +17,8 @@
 namespace lumorph::test {
 namespace {
 
+constexpr double kLean = 0.0240; // of the projector's axis; its lens shift does the rest, so that it lights the device
+
 double stripes(double x) { return std::sin(x) > 0.0 ? 1.0 : 0.0; }
 
 glm::vec3 bricks(const Lab::Hit& hit) {
@@ -41,7 +43,13 @@ Image shifted(const Image& image, int dx, int dy) {
 class TruthMetric : public testing::Test {
 protected:
     static TruthBench benchOf(const char* state, const char* eye) {
-        const TruthDevice device = truthDevice();
+        TruthDevice device = truthDevice();
+        // Beyond the device, so that the figures below do not follow the default projector about.
+        CalibratedCamera& camera = device.scene.projectors.at(0).camera;
+        const glm::dvec3 position(0.0, 2.0, -0.25);
+        camera.cameraFromWorld =
+            cameraLookingAt(position, position + glm::dvec3(0.0, -1.0, kLean), camera.size, camera.focal.x)
+                .cameraFromWorld;
         return TruthBench(truthSetup(device, truthState(state), truthEye(eye)));
     }
 };
@@ -56,7 +64,7 @@ TEST_F(TruthMetric, TheIdealPictureComesThroughAndAShiftedOneDoesNot) {
             double ideal;  // decibels that the right picture reaches at least
             double beside; // and that the picture beside it stays below; what is soft hides a pixel's shift
         };
-        for (const Row& row : {Row{"ripples", ripples, 48.0, 45.0}, Row{"bricks", bricks, 40.0, 30.0}}) {
+        for (const Row& row : {Row{"ripples", ripples, 50.0, 47.0}, Row{"bricks", bricks, 40.0, 30.0}}) {
             const LabPicture eye = painted(bench.lab(), bench.eye(), row.color);
             const LabPicture wanted = bench.lowPassed(eye);
             const Image ideal = bench.ideal(eye);
