@@ -17,10 +17,6 @@ const SceneItem* drivingItemShown(const Scene& scene) {
     return item && isShown(scene, *item) ? item : nullptr;
 }
 
-bool samePlacement(const Placement& a, const Placement& b) {
-    return a.scale == b.scale && a.yaw == b.yaw && a.translation == b.translation;
-}
-
 bool isTarget(const SceneItem& item) { return std::holds_alternative<TargetItem>(item.kind); }
 
 /// By how much the actuators' soft approach lies behind a slow wish, seconds: a critically damped one follows a ramp by
@@ -86,7 +82,7 @@ void DriveStage::followTarget(const MatchWish& wish, const MatchFrame& frame, do
     const auto differs = [](double a, double b, double period) {
         return std::abs(period > 0.0 ? std::remainder(a - b, period) : a - b) > 1e-6;
     };
-    const bool goesOn = source_.target == wish.target && samePlacement(placement_, wish.placement) &&
+    const bool goesOn = source_.target == wish.target && placement_ == wish.placement &&
                         source_.playing == wish.playing && source_.spin == wish.spin && wish.target &&
                         !differs(source_.targetSeconds + played, frame.seconds, wish.target->duration) &&
                         !differs(turned_, turned, 2.0 * std::numbers::pi);

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <tuple>
 
 #include <glm/matrix.hpp>
 
@@ -27,8 +26,7 @@ Scene aloneIn(const Scene& scene, int id) {
 }
 
 bool sameTarget(const DrivingHeights::Source& a, const DrivingHeights::Source& b) {
-    const auto parts = [](const Placement& p) { return std::tuple(p.scale, p.yaw, p.translation); };
-    return a.target == b.target && parts(a.placement) == parts(b.placement) && a.targetSeconds == b.targetSeconds &&
+    return a.target == b.target && a.placement == b.placement && a.targetSeconds == b.targetSeconds &&
            a.playing == b.playing && a.spin == b.spin;
 }
 

@@ -43,6 +43,7 @@ struct Placement {
     glm::vec3 translation{0.0F};
 
     [[nodiscard]] glm::mat4 deviceFromTarget() const;
+    bool operator==(const Placement&) const = default;
 };
 
 /// Writes the points carried over by `deviceFromTarget`; reuses the memory of `out`.

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "core/base/error.h"
+#include "core/render/pixel_reading.h"
 
 namespace lumorph {
 
@@ -33,17 +34,6 @@ ColorTarget::ColorTarget(glm::ivec2 size, GLenum format) : depth_(size) {
     if (!complete) throw DeviceError("OpenGL", "the driver cannot hold a picture of this size", "use a smaller size");
 }
 
-Image ColorTarget::read() const {
-    const glm::ivec2 size = depth_.size();
-    Image image(size);
-    glBindFramebuffer(GL_READ_FRAMEBUFFER, framebuffer_.name());
-    glPixelStorei(GL_PACK_ALIGNMENT, 1);
-    glReadPixels(0, 0, size.x, size.y, GL_RGBA, GL_UNSIGNED_BYTE, image.pixels().data());
-    glBindFramebuffer(GL_READ_FRAMEBUFFER, 0);
-    // OpenGL's row 0 is the lowest.
-    for (int y = 0; y < size.y / 2; ++y)
-        std::swap_ranges(&image.at(0, y), &image.at(0, y) + size.x, &image.at(0, size.y - 1 - y));
-    return image;
-}
+Image ColorTarget::read() const { return readPixels(framebuffer_.name(), depth_.size()); }
 
 } // namespace lumorph

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "core/base/error.h"
+#include "core/render/pixel_reading.h"
 
 namespace lumorph {
 namespace {
@@ -47,14 +48,8 @@ Image FrameTarget::read() const {
     glBindFramebuffer(GL_READ_FRAMEBUFFER, drawn_.name());
     glBindFramebuffer(GL_DRAW_FRAMEBUFFER, resolved_.name());
     glBlitFramebuffer(0, 0, size_.x, size_.y, 0, 0, size_.x, size_.y, GL_COLOR_BUFFER_BIT, GL_NEAREST);
-    Image image(size_);
-    glBindFramebuffer(GL_READ_FRAMEBUFFER, resolved_.name());
-    glPixelStorei(GL_PACK_ALIGNMENT, 1);
-    glReadPixels(0, 0, size_.x, size_.y, GL_RGBA, GL_UNSIGNED_BYTE, image.pixels().data());
-    glBindFramebuffer(GL_FRAMEBUFFER, 0);
-    // OpenGL's row 0 is the lowest.
-    for (int y = 0; y < size_.y / 2; ++y)
-        std::swap_ranges(&image.at(0, y), &image.at(0, y) + size_.x, &image.at(0, size_.y - 1 - y));
+    Image image = readPixels(resolved_.name(), size_);
+    glBindFramebuffer(GL_DRAW_FRAMEBUFFER, 0);
     return image;
 }
 

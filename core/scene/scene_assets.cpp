@@ -167,11 +167,11 @@ std::vector<std::string> assetNames(const Scene& scene) {
     return {names.begin(), names.end()};
 }
 
-void renameAsset(Scene& scene, const std::string& from, const std::string& to) {
-    const auto rename = [&from, &to](std::string& name) {
-        if (name == from) name = to;
+void renameAssets(Scene& scene, const std::function<std::string(const std::string&)>& rename) {
+    const auto visit = [&rename](std::string& name) {
+        if (!name.empty()) name = rename(name);
     };
-    if (!from.empty()) forEachAsset(scene, rename, rename);
+    forEachAsset(scene, visit, visit);
 }
 
 std::shared_ptr<const SceneAssets> loadSceneAssets(const Scene& scene, const std::filesystem::path& projectFile,

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <memory>
 #include <string>
@@ -50,7 +51,8 @@ struct SceneAssets {
 /// All asset names of a scene, each once.
 [[nodiscard]] std::vector<std::string> assetNames(const Scene& scene);
 
-/// Calls an asset by another name wherever the scene names it.
-void renameAsset(Scene& scene, const std::string& from, const std::string& to);
+/// Gives every file that a scene names, pictures and models alike, the name that `rename` returns for it; what names
+/// nothing goes on naming nothing.
+void renameAssets(Scene& scene, const std::function<std::string(const std::string&)>& rename);
 
 } // namespace lumorph

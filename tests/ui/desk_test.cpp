@@ -294,7 +294,7 @@ TEST_F(PlacingTest, ANewTargetShowsWhereItFitsAndThenMovesWhereItMatchesBest) {
     EXPECT_EQ(world.document.undoStack().undoText(), "Auto-place wall");
     EXPECT_GT(iou(world.state().placement), iou(fitted));
     world.document.undoStack().undo();
-    EXPECT_TRUE(samePlacement(world.state().placement, fitted));
+    EXPECT_TRUE(world.state().placement == fitted);
     EXPECT_TRUE(world.state().target.target) << "only its place was taken back";
 }
 
@@ -304,13 +304,13 @@ TEST_F(PlacingTest, WhoMovesItMeanwhileWins) {
     const Placement moved = world.state().placement;
     ASSERT_TRUE(world.rest());
     test::pass(std::chrono::milliseconds(100));
-    EXPECT_TRUE(samePlacement(world.state().placement, moved));
+    EXPECT_TRUE(world.state().placement == moved);
     EXPECT_EQ(world.document.undoStack().undoText(), "Move");
 }
 
 TEST_F(PlacingTest, WhoMovesItWhileItGlidesWins) {
     open("wall.obj");
-    ASSERT_TRUE(eventually([&] { return !samePlacement(world.state().placement, fitted); }));
+    ASSERT_TRUE(eventually([&] { return world.state().placement != fitted; }));
     ASSERT_EQ(world.document.undoStack().count(), before + 1) << "it is on its way";
     world.document.preview([](StudioState& s) { s.placement.translation = {0.001F, 0.002F, 0.003F}; });
     test::pass(std::chrono::milliseconds(100));

@@ -63,8 +63,7 @@ void Desk::Data::autoPlace() {
 
 void Desk::Data::placeNew() {
     const StudioState& state = document.state();
-    if (!unplaced.target || state.target.target != unplaced.target ||
-        !samePlacement(state.placement, unplaced.placement)) {
+    if (!unplaced.target || state.target.target != unplaced.target || state.placement != unplaced.placement) {
         unplaced = {}; // someone else has moved it, or taken it away
         return;
     }
@@ -79,8 +78,7 @@ void Desk::Data::placeNew() {
         },
         [this, target = target, placement = placement, field, what](const AutoPlacement& found) {
             const StudioState& now = document.state();
-            if (now.target.target != target || !samePlacement(now.placement, placement) || now.field.field != field)
-                return;
+            if (now.target.target != target || now.placement != placement || now.field.field != field) return;
             if (!document.previewing() && found.iou > found.iouAtFit) glideTo(found.placement, what);
         },
         [](const std::exception&) {}); // nobody asked for it, and it stays where it fits
@@ -95,7 +93,7 @@ void Desk::Data::glideTo(const Placement& place, const QString& what) {
     const auto target = document.state().target.target;
     const auto shown = std::make_shared<Placement>(document.state().placement);
     const auto stillOurs = [this, target, shown] {
-        return document.state().target.target == target && samePlacement(document.state().placement, *shown);
+        return document.state().target.target == target && document.state().placement == *shown;
     };
     QObject::connect(glide, &QVariantAnimation::valueChanged, &desk,
                      [this, glide, stillOurs, shown, from = *shown, place](const QVariant& share) {

@@ -60,16 +60,6 @@ void putIn(Scene& scene, std::vector<SceneItem> items, std::ptrdiff_t place) {
                        std::make_move_iterator(items.end()));
 }
 
-void renameIn(std::string& name, const std::function<std::string(const std::string&)>& rename) {
-    if (!name.empty()) name = rename(name);
-}
-
-void renameIn(Material& material, const std::function<std::string(const std::string&)>& rename) {
-    renameIn(material.colorTexture.image, rename);
-    for (SceneTexture& map : material.normalMaps) renameIn(map.image, rename);
-    renameIn(material.holes.image, rename);
-}
-
 } // namespace
 
 void editScene(StudioDocument& document, const QString& what, const SceneEdit& edit) {
@@ -164,16 +154,6 @@ void setItemRole(Scene& scene, int id, ItemRole role) {
             item.role = role;
         else if (role != ItemRole::virtualOnly)
             item.role = ItemRole::virtualOnly;
-}
-
-void renameAssets(Scene& scene, const std::function<std::string(const std::string&)>& rename) {
-    for (SceneItem& item : scene.items) {
-        if (auto* mesh = std::get_if<MeshItem>(&item.kind)) renameIn(mesh->model, rename);
-        if (auto* height = std::get_if<HeightItem>(&item.kind)) renameIn(height->image, rename);
-        renameIn(item.material, rename);
-    }
-    renameIn(scene.device.material, rename);
-    renameIn(scene.table.material, rename);
 }
 
 } // namespace lumorph::studio

@@ -36,7 +36,4 @@ bool moveItem(Scene& scene, int id, int parent, int before = 0);
 /// One item at a time moves the servos: whichever did before becomes light alone.
 void setItemRole(Scene& scene, int id, ItemRole role);
 
-/// Calls `rename` with every asset name that is not empty and puts back what it gives.
-void renameAssets(Scene& scene, const std::function<std::string(const std::string&)>& rename);
-
 } // namespace lumorph::studio

@@ -52,16 +52,12 @@ std::shared_ptr<const Scene> soundScene(const std::shared_ptr<const Scene>& befo
 
 } // namespace
 
-bool samePlacement(const Placement& a, const Placement& b) {
-    return a.scale == b.scale && a.yaw == b.yaw && a.translation == b.translation;
-}
-
 StateParts differenceOf(const StudioState& a, const StudioState& b) {
     StateParts parts;
     parts.setFlag(StatePart::rig, !(a.rig == b.rig));
     parts.setFlag(StatePart::field, !(a.field == b.field));
     parts.setFlag(StatePart::target, !(a.target == b.target));
-    parts.setFlag(StatePart::placement, !samePlacement(a.placement, b.placement));
+    parts.setFlag(StatePart::placement, a.placement != b.placement);
     parts.setFlag(StatePart::strokes, a.strokes != b.strokes);
     parts.setFlag(StatePart::matching, !(a.matching == b.matching));
     parts.setFlag(StatePart::playback, !(a.playback == b.playback));

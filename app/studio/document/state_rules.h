@@ -8,8 +8,6 @@ namespace lumorph::studio {
 /// hold something else.
 [[nodiscard]] StateParts differenceOf(const StudioState& a, const StudioState& b);
 
-[[nodiscard]] bool samePlacement(const Placement& a, const Placement& b);
-
 /// Whether a field was built for this rig.
 [[nodiscard]] bool isFieldOf(const MatchField& field, const Rig& rig);
 

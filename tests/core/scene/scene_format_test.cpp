@@ -271,9 +271,11 @@ TEST(SceneFormat, FollowsNoLinkOutOfItsFolder) {
 TEST(SceneAssets, AreNamedOnceEachAndRenamedEverywhere) {
     Scene scene = test::fullScene();
     EXPECT_THAT(assetNames(scene), testing::ElementsAre("models/fish.glb", "pictures/relief.png", "pictures/sea.png"));
-    renameAsset(scene, "pictures/sea.png", "p files/sea.png");
-    renameAsset(scene, "models/fish.glb", "p files/fish.glb");
-    renameAsset(scene, "", "nonsense");
+    renameAssets(scene, [](const std::string& name) -> std::string {
+        if (name == "pictures/sea.png") return "p files/sea.png";
+        if (name == "models/fish.glb") return "p files/fish.glb";
+        return name.empty() ? "nonsense" : name;
+    });
     EXPECT_THAT(assetNames(scene), testing::ElementsAre("p files/fish.glb", "p files/sea.png", "pictures/relief.png"));
     EXPECT_EQ(scene.table.material.holes.image, "p files/sea.png");
     EXPECT_EQ(scene.items[4].material.normalMaps[1].image, "p files/sea.png");
