@@ -1,0 +1,53 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "core/rig/rig.h"
+
+namespace lumorph {
+
+/// How one actuator of a rig hangs on a controller.
+struct ServoSetup {
+    int channel = 0;
+    double pulseMin = 1000.0; ///< microseconds; least and greatest that may ever be sent, 500 to 2500
+    double pulseMax = 2000.0;
+    bool reversed = false;        ///< rest at pulseMax
+    double trim = 0.0;            ///< microseconds added, within the limits
+    double maxVelocity = 1.0;     ///< strokes a second
+    double maxAcceleration = 8.0; ///< strokes a second, a second
+    bool operator==(const ServoSetup&) const = default;
+};
+
+enum class ControllerKind { firmata, lewansoul, maestro };
+
+/// A device as its technician has set it up; saved by name.
+struct DeviceProfile {
+    std::string name;
+    std::string address; ///< URI
+    ControllerKind controller = ControllerKind::firmata;
+    int controllerNumber = 12;       ///< of a Maestro: its device number
+    bool maestroCrc = false;         ///< it expects a checksum
+    std::string identity;            ///< of the very board it was set up with; empty: any
+    std::vector<ServoSetup> servos;  ///< one an actuator
+    double commandsPerSecond = 50.0; ///< at most; the link's own limit holds too
+    double staggerSeconds = 0.4;     ///< between one servo's start and the next
+    double slowShare = 0.25;         ///< of all velocities, in slow mode
+    bool restOnExit = true;
+    bool operator==(const DeviceProfile&) const = default;
+};
+
+/// A profile for a rig as its file describes its drives; channels that it does not tell are counted from `first`.
+[[nodiscard]] DeviceProfile profileFor(const Rig& rig, int first = 0);
+/// Width of the pulse for a stroke in [0, 1], within pulseMin and pulseMax whatever the trim; and back.
+[[nodiscard]] double pulseOf(const ServoSetup& servo, double stroke);
+[[nodiscard]] double strokeOf(const ServoSetup& servo, double pulse);
+/// Throws InvalidInput that names the servo and the value: out of range, not finite, two servos on one channel.
+void checkProfile(const DeviceProfile& profile);
+
+/// JSON files. Throw DataError with file and place; writing is atomic.
+[[nodiscard]] DeviceProfile readProfile(const std::filesystem::path& file);
+void writeProfile(const DeviceProfile& profile, const std::filesystem::path& file);
+
+} // namespace lumorph

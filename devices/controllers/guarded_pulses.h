@@ -1,0 +1,29 @@
+#pragma once
+
+#include <span>
+#include <utility>
+#include <vector>
+
+namespace lumorph {
+
+/// What one servo shall do.
+struct GuardedPulse {
+    int channel = 0;           ///< of the controller
+    double microseconds = 0.0; ///< width of its pulse
+    bool attached = false;     ///< false: no pulse at all, the servo is limp
+    bool operator==(const GuardedPulse&) const = default;
+};
+
+/// One command to all servos of a device. Only the ServoGuard makes one: whatever holds it may trust that it breaks no
+/// limit.
+class GuardedPulses {
+public:
+    [[nodiscard]] std::span<const GuardedPulse> servos() const noexcept { return servos_; }
+
+private:
+    friend class ServoGuard;
+    explicit GuardedPulses(std::vector<GuardedPulse> servos) : servos_(std::move(servos)) {}
+    std::vector<GuardedPulse> servos_;
+};
+
+} // namespace lumorph

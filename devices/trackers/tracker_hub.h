@@ -1,0 +1,35 @@
+#pragma once
+
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "devices/trackers/tracker.h"
+
+namespace lumorph {
+
+/// Who a tracked body is in the show. Remembered by the body's name.
+using RoleMap = std::map<std::string, PoseRole>;
+
+/// All open trackers of a session: poses go to the board under the roles that their names have. Any thread.
+class TrackerHub {
+public:
+    explicit TrackerHub(std::shared_ptr<PoseBoard> board, std::shared_ptr<const Clock> clock);
+    ~TrackerHub();
+
+    /// Throws as openTracker; then all stays as it was. One tracker an address.
+    void open(const std::string& uri, bool openToNetwork);
+    void close(const std::string& uri);
+    void setRoles(RoleMap roles);
+    [[nodiscard]] RoleMap roles() const;
+    [[nodiscard]] std::vector<TrackerStatus> status() const;
+    /// Poses from elsewhere (a camera that sees a board, a replay) take the same way.
+    void take(const std::string& source, const TrackerFrame& frame);
+
+private:
+    struct Data;
+    std::unique_ptr<Data> data_;
+};
+
+} // namespace lumorph

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+
+#include "core/base/clock.h"
+#include "devices/transport/transport.h"
+
+namespace lumorph {
+
+/// Keeps a link open: reopens it with growing pauses (0.2 s, doubling, at most 2 s; at once where the device has just
+/// come back), and finds a device again whose port has another name by its serial number or, without one, by VID:PID. A
+/// dead link floods errors: it is closed at the first. Lives in the transport's thread.
+class LinkKeeper {
+public:
+    struct Events {
+        std::function<void()> opened; ///< all that was known of the device may have changed
+        std::function<void(std::span<const std::uint8_t>)> received;
+        std::function<void(const LinkTrouble&)> lost; ///< once for each new trouble, not for each attempt
+    };
+    LinkKeeper(DeviceAddress address, Events events, SimulatedBench* bench);
+    ~LinkKeeper();
+
+    void start(Microseconds now);
+    void stop();
+    /// Does what is due; call it every 50 ms or more often.
+    void tick(Microseconds now);
+    /// The device does not answer: closes the link and begins anew. `why` is told as any other trouble.
+    void drop(const LinkTrouble& why, Microseconds now);
+    void write(std::span<const std::uint8_t> message);
+
+    [[nodiscard]] bool isOpen() const;
+    [[nodiscard]] std::size_t unsent() const;
+    [[nodiscard]] std::string identity() const;
+    [[nodiscard]] std::string product() const;
+    [[nodiscard]] std::optional<LinkTrouble> trouble() const; ///< empty while open
+
+private:
+    struct Data;
+    std::unique_ptr<Data> data_;
+};
+
+} // namespace lumorph
