@@ -56,7 +56,8 @@ struct Channel {
         double fastest = speed > 0.0 ? std::min(speed, std::abs(way)) : std::abs(way);
         if (acceleration > 0.0) {
             const double change = acceleration / kTicksOfAcceleration;
-            fastest = std::min(fastest, std::sqrt(2.0 * change * std::abs(way))); // it must be able to stop there
+            // That it can stop there, slower by `change` with each tick.
+            fastest = std::min(fastest, change * (std::sqrt(0.25 + 2.0 * std::abs(way) / change) - 0.5));
             velocity += std::clamp(std::copysign(fastest, way) - velocity, -change, change);
         } else {
             velocity = std::copysign(fastest, way);
