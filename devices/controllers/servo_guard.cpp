@@ -12,6 +12,7 @@
 namespace lumorph {
 namespace {
 
+constexpr double kHoldSeconds = 0.1;     // a slow link may be so late with a servo's first pulse
 constexpr double kJumpSeconds = 0.5;     // a servo that jumped to its place gets this long to come there
 constexpr double kReadingError = 0.02;   // strokes beyond its limits that a servo read back may seem to stand
 constexpr double kRounding = 1e-9;       // strokes
@@ -160,7 +161,7 @@ struct ServoGuard::Data {
     void attachNext() noexcept {
         const auto next = std::ranges::find_if(servos, [this](const Servo& servo) { return mayStart(servo); });
         if (pause > 0.0 || next == servos.end()) return;
-        next->hold = next->known ? profile.staggerSeconds : std::max(profile.staggerSeconds, kJumpSeconds);
+        next->hold = std::max(profile.staggerSeconds, next->known ? kHoldSeconds : kJumpSeconds);
         next->attach();
         pause = profile.staggerSeconds;
     }
@@ -275,6 +276,12 @@ bool ServoGuard::want(std::span<const double> strokes) {
         data_->servos[i].wanted = stroke;
     }
     return true;
+}
+
+double ServoGuard::wanted(std::size_t servo) const noexcept {
+    if (servo >= data_->servos.size()) return 0.0;
+    const Servo& one = data_->servos[servo];
+    return one.wanted.value_or(one.known ? one.motion.position : 0.0);
 }
 
 bool ServoGuard::wiggle(std::size_t servo) {

@@ -62,6 +62,8 @@ public:
     /// start at rest). Values beyond [0, 1] are clamped. False, and nothing
     /// changes, where one is not finite or the count is wrong.
     bool want(std::span<const double> strokes);
+    /// What is wanted of one servo, stroke; where it stays, while nothing is.
+    [[nodiscard]] double wanted(std::size_t servo) const noexcept;
     /// Of one servo alone, around where it is: for "wiggle this one". Ends by itself; refused (false) unless live.
     bool wiggle(std::size_t servo);
     /// Everything slower by the profile's share, as long as it is on.
