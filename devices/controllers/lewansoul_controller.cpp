@@ -1,6 +1,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <optional>
+#include <utility>
 
 #include "devices/controllers/controller_base.h"
 #include "devices/protocol/lewansoul.h"
@@ -82,6 +84,7 @@ private:
     [[nodiscard]] Messages changes(std::span<const PulsePlan::Change> changes) override;
     [[nodiscard]] LinkTrouble silence(bool never) const override;
 
+    [[nodiscard]] int durationOfMove();
     [[nodiscard]] bool draining(Microseconds now) const;
     [[nodiscard]] bool namesItself() const { return product_.find("LOBOT") != std::string::npos; }
     void hear(const lewansoul::Voltage& voltage, Microseconds now);
@@ -93,7 +96,9 @@ private:
 
     bool hid_;
     int baud_;
-    int moveTime_ = 20; ///< ms
+    int moveTime_ = 20; ///< ms, at least
+    Microseconds workedAt_{0};
+    std::optional<Microseconds> movedAt_; ///< when a move was sent last
     lewansoul::Parser parser_;
     std::vector<Read> reads_;
     Microseconds opened_{0};
@@ -170,6 +175,7 @@ void LewansoulController::hearPlace(const lewansoul::Place& place, Microseconds 
 }
 
 void LewansoulController::work(Microseconds now) {
+    workedAt_ = now;
     if (draining(now)) return;
     forgetStale(now);
     if (state_.phase == ControllerPhase::handshake && hid_ && !namesItself() && !everHeard() &&
@@ -213,7 +219,19 @@ ControllerBase::Messages LewansoulController::detachments(std::span<const std::s
     return messages;
 }
 
+/// A servo goes its way in the time that it is told, so that must not be less than the way was made for: since the last
+/// move, or, out of rest, the longest steps of the guard.
+int LewansoulController::durationOfMove() {
+    constexpr Microseconds kOutOfRest{200'000};
+    constexpr Microseconds kFirst{100'000};
+    const std::optional<Microseconds> before = std::exchange(movedAt_, workedAt_);
+    const bool isFirst = !before || workedAt_ < *before || workedAt_ - *before > kOutOfRest;
+    const Microseconds time = isFirst ? kFirst : workedAt_ - *before;
+    return std::max(moveTime_, static_cast<int>((time.count() + 999) / 1000));
+}
+
 ControllerBase::Messages LewansoulController::changes(std::span<const PulsePlan::Change> changes) {
+    const int duration = durationOfMove();
     Messages messages;
     for (std::size_t first = 0; first < changes.size(); first += kServosPerReport) {
         std::vector<lewansoul::Place> places;
@@ -223,7 +241,7 @@ ControllerBase::Messages LewansoulController::changes(std::span<const PulsePlan:
             places.push_back({plan_.servos()[change.servo].channel, value});
             reads_[change.servo].target = value;
         }
-        messages.push_back(lewansoul::move(places, moveTime_));
+        messages.push_back(lewansoul::move(places, duration));
     }
     return messages;
 }
