@@ -86,6 +86,17 @@ struct ServoLink::Data {
         }
         timer->start(std::chrono::duration_cast<std::chrono::milliseconds>(worker->pause()));
     }
+    /// Whatever fails in the thread is told; servos are stopped then.
+    template <typename Work> bool tried(Work work) {
+        try {
+            work();
+            return true;
+        } catch (const std::exception& error) {
+            keep({SteadyClock{}.now(), LinkEvent::Kind::failure, std::string("The link has failed: ") + error.what(),
+                  "Servos were stopped; connect the device again."});
+            return false;
+        }
+    }
     [[nodiscard]] DeviceProfile profileNow() {
         const std::scoped_lock lock(mutex);
         return profile;

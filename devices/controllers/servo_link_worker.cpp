@@ -23,6 +23,7 @@ constexpr Microseconds kRestAtMost{2'000'000};
 constexpr Microseconds kCloseAfter{250'000};  // detaching is repeated meanwhile
 constexpr Microseconds kCloseAtLast{600'000}; // though not all was sent
 constexpr Microseconds kTrustedRest{2'000'000};
+constexpr Microseconds kSilencePatience{4'000'000};
 constexpr Microseconds kStallTold{200'000};
 constexpr std::size_t kMostUnsent = 128; // bytes
 constexpr std::size_t kLatencies = 101;
@@ -41,10 +42,10 @@ bool serves(const DeviceProfile& made, const DeviceProfile& wanted) {
            std::ranges::equal(made.servos, wanted.servos, sameServo);
 }
 
-std::string listOf(const std::vector<std::size_t>& servos) {
+std::string placesOf(const std::vector<std::size_t>& servos) {
     std::string text;
     for (const std::size_t servo : servos) text += (text.empty() ? "" : ", ") + std::to_string(servo + 1);
-    return (servos.size() == 1 ? "servo " : "servos ") + text;
+    return servos.size() == 1 ? "servo " + text + " stands, so it was" : "servos " + text + " stand, so they were";
 }
 
 /// When commands went out, for the live table.
@@ -117,6 +118,8 @@ struct LinkWorker::Data {
     std::optional<DeviceProfile> next; ///< for after the closing
     std::optional<Microseconds> stalledSince;
     bool stallTold = false;
+    std::optional<Microseconds> silentSince;
+    bool silenceTold = false;
     Microseconds busyUntil{0};
     Microseconds movedAt{0};
     std::uint64_t reboots = 0;
@@ -132,7 +135,7 @@ struct LinkWorker::Data {
         return guard.phase() == ServoGuard::Phase::starting || guard.phase() == ServoGuard::Phase::live;
     }
     [[nodiscard]] bool ready() const {
-        return keeper->isOpen() && !foreign && controller->state().phase == ControllerPhase::ready;
+        return keeper->isOpen() && !foreign && !silentSince && controller->state().phase == ControllerPhase::ready;
     }
 
     // Events of the link.
@@ -158,6 +161,7 @@ struct LinkWorker::Data {
     void noticeReboot();
     void readPositions();
     bool stalled();
+    bool waitOutSilence();
     void forget();
     void send();
     void flush();
@@ -215,6 +219,10 @@ void LinkWorker::Data::onLost(const LinkTrouble& why) {
     // What was sent last may never have arrived.
     if (wasArmed && now() - movedAt < kTrustedRest) forget();
     guard.disarm();
+    stalledSince.reset();
+    silentSince.reset();
+    stallTold = false;
+    if (std::exchange(silenceTold, false)) return; // it was told
     tell(wasArmed ? Kind::failure : Kind::warning,
          std::string(everOpen ? "The link is lost: " : "There is no link: ") + why.why + ".",
          why.remedy + (wasArmed
@@ -255,8 +263,8 @@ void LinkWorker::Data::order(const link_request::Confirm&) {
 }
 
 void LinkWorker::Data::order(const link_request::Arm& arm) {
-    if (closeAfter || quitting) return;
-    if (!ready()) {
+    if (quitting) return;
+    if (!ready() || closeAfter) {
         tell(Kind::warning, "The servos cannot be started: the board is not ready.",
              foreign || controller->state().phase == ControllerPhase::unidentified
                  ? "Confirm first that it is the right board."
@@ -324,6 +332,7 @@ void LinkWorker::Data::noticeReboot() {
     guard.disarm();
     forget();
     written.clear();
+    silenceTold = false;
     tell(Kind::failure, "The board has restarted; its servos are limp, and nobody knows where they are.",
          "Check its battery and power supply, then start the servos again.");
 }
@@ -350,15 +359,34 @@ bool LinkWorker::Data::stalled() {
     return true;
 }
 
+/// At a second of silence servos are taken for lost. But a board that starts anew is silent for longer, and on USB it
+/// does so whenever its port is opened: it must be left the time, or it would never come to its end. False: dropped.
+bool LinkWorker::Data::waitOutSilence() {
+    const ControllerState& state = controller->state();
+    if (state.answering) {
+        if (std::exchange(silentSince, std::nullopt) && silenceTold)
+            tell(Kind::information, "The board answers again.");
+        silenceTold = false;
+        return true;
+    }
+    const LinkTrouble why = state.trouble.value_or(LinkTrouble{"the board does not answer", "check its power"});
+    if (!silentSince) {
+        silentSince = steadyNow();
+        silenceTold = state.phase != ControllerPhase::handshake;
+        if (silenceTold) tell(Kind::failure, "The link is lost: " + why.why + ".", why.remedy);
+        if (armed() && now() - movedAt < kTrustedRest) forget();
+        guard.disarm();
+    }
+    if (steadyNow() - *silentSince < kSilencePatience) return true;
+    keeper->drop(why, now());
+    return false;
+}
+
 void LinkWorker::Data::drive() {
     controller->tick(now());
     noticeReboot();
     const ControllerState& state = controller->state();
-    if (!state.answering) {
-        const LinkTrouble why = state.trouble.value_or(LinkTrouble{"the board does not answer", "check its power"});
-        keeper->drop(why, now());
-        return;
-    }
+    if (!waitOutSilence()) return;
     if (armed() && !ready()) guard.disarm();
     watch.look(state, now());
     readPositions();
@@ -432,13 +460,14 @@ void LinkWorker::Data::tellWaiting() {
     const std::vector<std::size_t> waiting = guard.waiting();
     if (waiting.empty()) return;
     waitingTold = true;
-    tell(Kind::warning, "Nobody knows where " + listOf(waiting) + " stands, so it was not started.",
-         "Allow it to jump to the wanted position, with hands away, and start again.");
+    tell(Kind::warning, "Nobody knows where " + placesOf(waiting) + " not started.",
+         "Take hands away, and start again with jumps to the wanted positions allowed.");
 }
 
 LinkPhase LinkWorker::Data::phase() const {
-    if (!connected && !keeper->isOpen()) return LinkPhase::off;
+    if (closeAfter || !connected) return connected ? LinkPhase::connecting : LinkPhase::off;
     if (!keeper->isOpen()) return everOpen ? LinkPhase::lost : LinkPhase::connecting;
+    if (silenceTold) return LinkPhase::lost;
     switch (controller->state().phase) {
     case ControllerPhase::handshake:
     case ControllerPhase::refused:

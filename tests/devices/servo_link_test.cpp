@@ -42,6 +42,7 @@ DeviceProfile tabletProfile(const std::string& board = "tablet", int first = 2) 
     DeviceProfile profile;
     profile.address = "sim://" + board;
     profile.staggerSeconds = 0.02;
+    profile.restOnExit = false;
     profile.servos = {{.channel = first}, {.channel = first + 1}, {.channel = first + 2}};
     for (ServoSetup& servo : profile.servos) servo.maxAcceleration = 20.0;
     return profile;
@@ -128,6 +129,7 @@ TEST_F(ServoLinkTest, TakesServosWhereTheyAreWanted) {
     EXPECT_TRUE(arrives(1, 1200.0));
     EXPECT_TRUE(arrives(2, 1500.0));
     EXPECT_EQ(pulse(3), 0.0) << "of no concern";
+    EXPECT_TRUE(waitFor([&] { return std::abs(link_->status().servos[0].microseconds - 1900.0) < 0.1; }));
     const LinkStatus status = link_->status();
     EXPECT_NEAR(status.servos[0].commanded, 0.9, 1e-3);
     EXPECT_NEAR(status.servos[0].microseconds, 1900.0, 1.0);
@@ -141,7 +143,7 @@ TEST_F(ServoLinkTest, StartsNoServoWithoutAWordWhosePlaceIsUnknown) {
     open(tabletProfile());
     ASSERT_TRUE(reaches(LinkPhase::disarmed));
     link_->arm(false);
-    ASSERT_TRUE(hears("Nobody knows where servos 1, 2, 3 stands"));
+    ASSERT_TRUE(hears("Nobody knows where servos 1, 2, 3 stand"));
     EXPECT_EQ(link_->status().waiting.size(), 3U);
     EXPECT_TRUE(allLimp());
 }
@@ -187,7 +189,7 @@ TEST_F(ServoLinkTest, ToldOfARebootItDoesNotMoveAgainByItself) {
     board_->reboot();
     ASSERT_TRUE(hears("The board has restarted")) << said_;
     ASSERT_TRUE(reaches(LinkPhase::disarmed));
-    EXPECT_EQ(times("battery"), 1) << said_;
+    EXPECT_EQ(times("Check its battery and power supply"), 1) << said_;
     link_->command(std::vector<double>(3, 0.1));
     std::this_thread::sleep_for(200ms);
     EXPECT_TRUE(allLimp());
@@ -226,7 +228,9 @@ TEST_F(ServoLinkTest, DropsABoardThatHasFallenSilent) {
     goLive();
     fault([](BoardFaults& faults) { faults.silent = true; });
     ASSERT_TRUE(waitFor([&] { return link_->status().phase != LinkPhase::live; }));
-    EXPECT_TRUE(hears("silent")) << said_;
+    EXPECT_TRUE(hears("The link is lost: the board has fallen silent")) << said_;
+    EXPECT_EQ(link_->status().phase, LinkPhase::lost);
+    EXPECT_FALSE(link_->status().servos[0].attached);
     fault([](BoardFaults& faults) { faults.silent = false; });
     EXPECT_TRUE(reaches(LinkPhase::disarmed));
 }
@@ -278,7 +282,9 @@ TEST_F(ServoLinkTest, AddsNothingToAQueueThatStands) {
 }
 
 TEST_F(ServoLinkTest, GoesToRestAndLetsGoAtTheEnd) {
-    open(tabletProfile());
+    DeviceProfile profile = tabletProfile();
+    profile.restOnExit = true;
+    open(profile);
     goLive();
     link_.reset();
     EXPECT_NEAR(board_->servos()[0].position, 1000.0, 30.0);
@@ -333,6 +339,8 @@ TEST_F(ServoLinkTest, TakesNarrowerLimitsAtOnceAndAsksAgainForWiderOnes) {
     narrow.servos[0].pulseMax = 1800.0;
     link_->setProfile(narrow);
     EXPECT_TRUE(arrives(0, 1800.0));
+    // It is known where it stands once it is within its limits.
+    EXPECT_TRUE(waitFor([&] { return std::abs(link_->status().servos[0].commanded - 1.0) < 1e-9; }));
     EXPECT_EQ(link_->status().phase, LinkPhase::live);
     DeviceProfile wide = narrow;
     wide.servos[0].pulseMax = 2300.0;
@@ -341,7 +349,7 @@ TEST_F(ServoLinkTest, TakesNarrowerLimitsAtOnceAndAsksAgainForWiderOnes) {
     ASSERT_TRUE(reaches(LinkPhase::disarmed));
     link_->arm(false);
     ASSERT_TRUE(reaches(LinkPhase::live));
-    EXPECT_TRUE(arrives(0, 2300.0));
+    EXPECT_TRUE(arrives(0, 2300.0)) << said();
     wide.servos[0].pulseMax = NAN;
     EXPECT_THROW(link_->setProfile(wide), InvalidInput);
     EXPECT_EQ(link_->profile().servos[0].pulseMax, 2300.0);
