@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <deque>
 #include <string>
 #include <utility>
 
 #include "core/base/error.h"
+#include "devices/controllers/servo_link_traffic.h"
 #include "devices/controllers/servo_link_watch.h"
 #include "devices/simulator/simulated_bench.h"
 #include "devices/transport/link_keeper.h"
@@ -26,7 +26,6 @@ constexpr Microseconds kTrustedRest{2'000'000};
 constexpr Microseconds kSilencePatience{4'000'000};
 constexpr Microseconds kStallTold{200'000};
 constexpr std::size_t kMostUnsent = 128; // bytes
-constexpr std::size_t kLatencies = 101;
 
 Microseconds steadyNow() { return SteadyClock{}.now(); }
 
@@ -48,42 +47,6 @@ std::string placesOf(const std::vector<std::size_t>& servos) {
     return servos.size() == 1 ? "servo " + text + " stands, so it was" : "servos " + text + " stand, so they were";
 }
 
-/// When commands went out, for the live table.
-class Traffic {
-public:
-    void commanded(Microseconds at) {
-        if (!waiting_) waiting_ = at;
-    }
-    void settled() { waiting_.reset(); }
-    /// Pulses were written. What the rate cap made them wait does not count.
-    void wrote(Microseconds now, Microseconds period) {
-        if (waiting_) {
-            latencies_.push_back(now - std::max(*waiting_, last_ ? *last_ + period : *waiting_));
-            if (latencies_.size() > kLatencies) latencies_.pop_front();
-            waiting_.reset();
-        }
-        last_ = now;
-        written_.push_back(now);
-    }
-    double perSecond(Microseconds now) {
-        while (!written_.empty() && now - written_.front() > Microseconds{1'000'000}) written_.pop_front();
-        return static_cast<double>(written_.size());
-    }
-    [[nodiscard]] double medianMilliseconds() const {
-        if (latencies_.empty()) return 0.0;
-        std::vector<Microseconds> sorted(latencies_.begin(), latencies_.end());
-        const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
-        std::nth_element(sorted.begin(), middle, sorted.end());
-        return std::max(0.0, 1e-3 * static_cast<double>(middle->count()));
-    }
-
-private:
-    std::optional<Microseconds> waiting_; ///< since when a command waits for its bytes
-    std::optional<Microseconds> last_;
-    std::deque<Microseconds> latencies_;
-    std::deque<Microseconds> written_;
-};
-
 } // namespace
 
 struct LinkWorker::Data {
@@ -104,7 +67,7 @@ struct LinkWorker::Data {
     std::unique_ptr<LinkKeeper> keeper;
     ServoGuard guard;
     LinkWatch watch;
-    Traffic traffic;
+    LinkTraffic traffic;
 
     bool connected = false; ///< its user wants it to be
     bool everOpen = false;

@@ -247,7 +247,7 @@ TEST_F(ServoLinkTest, TellsOfALowBatteryOnce) {
     EXPECT_TRUE(hears("The battery is well again: 7.4 V")) << said_;
 }
 
-TEST_F(ServoLinkTest, TellsOfNoiseAndKeepsLimits) {
+TEST_F(ServoLinkTest, TellsOfNoiseAndStillStops) {
     open(tabletProfile());
     goLive();
     fault([](BoardFaults& faults) { faults.noise = 0.05; });
