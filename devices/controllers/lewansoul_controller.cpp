@@ -231,6 +231,7 @@ ControllerBase::Messages LewansoulController::detachments(std::span<const std::s
             channels.push_back(plan_.servos()[servo].channel);
         messages.push_back(lewansoul::unload(channels));
     }
+    positions_.reset(); // did it work?
     return messages;
 }
 

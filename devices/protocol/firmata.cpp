@@ -82,6 +82,7 @@ std::optional<Message> mappingOf(View body) {
 }
 
 std::optional<Message> pinStateOf(View body) {
+    if (body.size() == 1) return PinState{body[0], -1, 0};
     if (body.size() < 3 || body.size() > 6) return std::nullopt;
     PinState state{body[0], body[1], 0};
     for (std::size_t i = 2; i < body.size(); ++i) state.value |= static_cast<std::uint32_t>(body[i]) << 7 * (i - 2);

@@ -60,7 +60,8 @@ struct AnalogMapping {
     bool operator==(const AnalogMapping&) const = default;
 };
 struct PinState {
-    int pin = 0, mode = 0;
+    int pin = 0;
+    int mode = 0; ///< -1: the board has no such pin
     std::uint32_t value = 0;
     bool operator==(const PinState&) const = default;
 };

@@ -1,6 +1,5 @@
 #include "devices/simulator/faulty_line.h"
 
-#include <algorithm>
 #include <utility>
 
 namespace lumorph {
@@ -17,9 +16,8 @@ void FaultyLine::send(std::vector<std::uint8_t> message, const BoardFaults& faul
     const double delay = faults.jitterMilliseconds > 0.0 ? 1000.0 * faults.jitterMilliseconds * chance() : 0.0;
     if (message.empty() || queued_ + message.size() > kBuffer) return;
     queued_ += message.size();
-    Microseconds arrives = now + Microseconds(static_cast<Microseconds::rep>(delay));
-    if (!messages_.empty()) arrives = std::max(arrives, messages_.back().arrives);
-    messages_.push_back({arrives, std::move(message)});
+    // One that is faster waits for the slower one before it: only the first can be taken.
+    messages_.push_back({now + Microseconds(static_cast<Microseconds::rep>(delay)), std::move(message)});
 }
 
 void FaultyLine::lose(std::vector<std::uint8_t>& message, double share) {

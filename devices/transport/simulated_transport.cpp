@@ -1,17 +1,15 @@
 #include "devices/transport/simulated_transport.h"
 
-#include <algorithm>
 #include <charconv>
-#include <cmath>
 #include <deque>
 #include <optional>
-#include <random>
 #include <utility>
 #include <vector>
 
 #include <QTimer>
 
 #include "core/base/error.h"
+#include "devices/simulator/faulty_line.h"
 #include "devices/simulator/simulated_bench.h"
 
 namespace lumorph {
@@ -23,13 +21,6 @@ constexpr std::size_t kHidReport = 64;
 constexpr int kMostGiven = 64; // pieces from the board in one step: a mad board must not hold up the thread
 
 using Bytes = std::vector<std::uint8_t>;
-
-/// What a wire does to bytes by chance.
-struct WireFaults {
-    double noise = 0.0;
-    double drop = 0.0;
-    double jitterMilliseconds = 0.0;
-};
 
 double readOption(const SimulatedAddress& address, const std::string& key, double largest) {
     const auto option = address.options.find(key);
@@ -43,54 +34,17 @@ double readOption(const SimulatedAddress& address, const std::string& key, doubl
                        "write a number from 0 to " + std::to_string(static_cast<int>(largest)));
 }
 
-WireFaults faultsOf(const SimulatedAddress& address) {
+BoardFaults faultsOf(const SimulatedAddress& address) {
     for (const auto& [key, value] : address.options)
         if (key != "jitter" && key != "drop" && key != "noise")
             throw InvalidInput("simulated device '" + address.device + "'", "it has no option '" + key + "'",
                                "use jitter (milliseconds), drop and noise (shares of bytes, 0 to 1)");
-    return {readOption(address, "noise", 1.0), readOption(address, "drop", 1.0), readOption(address, "jitter", 1000.0)};
+    BoardFaults faults;
+    faults.noise = readOption(address, "noise", 1.0);
+    faults.drop = readOption(address, "drop", 1.0);
+    faults.jitterMilliseconds = readOption(address, "jitter", 1000.0);
+    return faults;
 }
-
-/// Bytes on their way in one direction; they keep their order.
-class Wire {
-public:
-    Wire(bool isHid, std::uint32_t seed) : isHid_(isHid), random_(seed) {}
-
-    void push(Bytes bytes, const WireFaults& faults, Microseconds now) {
-        spoil(bytes, faults);
-        if (bytes.empty()) return;
-        const double delay = 1000.0 * faults.jitterMilliseconds * chance_(random_);
-        latest_ = std::max(latest_, now + Microseconds(std::llround(delay)));
-        onTheWay_.push_back({latest_, std::move(bytes)});
-    }
-    std::optional<Bytes> pop(Microseconds now) {
-        if (onTheWay_.empty() || onTheWay_.front().due > now) return std::nullopt;
-        Bytes bytes = std::move(onTheWay_.front().bytes);
-        onTheWay_.pop_front();
-        return bytes;
-    }
-    void clear() { onTheWay_.clear(); }
-
-private:
-    struct Piece {
-        Microseconds due;
-        Bytes bytes;
-    };
-
-    void spoil(Bytes& bytes, const WireFaults& faults) {
-        const auto happens = [&](double share) { return share > 0.0 && chance_(random_) < share; };
-        if (isHid_ && happens(faults.drop)) bytes.clear(); // reports come whole or not at all
-        if (!isHid_) std::erase_if(bytes, [&](std::uint8_t) { return happens(faults.drop); });
-        for (std::uint8_t& byte : bytes)
-            if (happens(faults.noise)) byte ^= static_cast<std::uint8_t>(1 + random_() % 255);
-    }
-
-    bool isHid_;
-    std::mt19937 random_;
-    std::uniform_real_distribution<double> chance_{0.0, 1.0};
-    Microseconds latest_{0};
-    std::deque<Piece> onTheWay_;
-};
 
 class SimulatedTransport final : public Transport {
 public:
@@ -111,20 +65,19 @@ public:
     [[nodiscard]] std::string product() const override { return board_->product(); }
 
 private:
-    [[nodiscard]] WireFaults worst(const BoardFaults& faults) const;
     void step();
-    void carryOut(const BoardFaults& faults, Microseconds now);
-    void carryIn(const BoardFaults& faults, Microseconds now);
+    void carryOut(Microseconds now);
+    void carryIn(Microseconds now);
 
     std::shared_ptr<SimulatedBoard> board_;
-    WireFaults options_;
+    BoardFaults options_;
     Events events_;
     std::function<Microseconds()> now_;
     QTimer timer_;
     bool open_ = false;
     std::deque<Bytes> unsent_; ///< held back by a stalled link
-    Wire out_{board_->isHid(), 1};
-    Wire in_{board_->isHid(), 2};
+    FaultyLine out_{1, board_->isHid()};
+    FaultyLine in_{2, board_->isHid()};
 };
 
 void SimulatedTransport::open() {
@@ -156,18 +109,13 @@ void SimulatedTransport::write(std::span<const std::uint8_t> message) {
     if (board_->isHid()) bytes.resize(kHidReport);
     unsent_.push_back(std::move(bytes));
     const BoardFaults faults = board_->faults();
-    if (!faults.unplugged) carryOut(faults, now_());
+    if (!faults.unplugged && !faults.stalled) carryOut(now_());
 }
 
 std::size_t SimulatedTransport::unsent() const {
     std::size_t sum = 0;
     for (const Bytes& bytes : unsent_) sum += bytes.size();
     return sum;
-}
-
-WireFaults SimulatedTransport::worst(const BoardFaults& faults) const {
-    return {std::max(options_.noise, faults.noise), std::max(options_.drop, faults.drop),
-            std::max(options_.jitterMilliseconds, faults.jitterMilliseconds)};
 }
 
 void SimulatedTransport::step() {
@@ -179,27 +127,23 @@ void SimulatedTransport::step() {
     }
     if (faults.stalled) return;
     const Microseconds now = now_();
-    carryOut(faults, now);
-    carryIn(faults, now);
+    carryOut(now);
+    carryIn(now);
 }
 
-void SimulatedTransport::carryOut(const BoardFaults& faults, Microseconds now) {
-    if (faults.stalled) return;
-    for (; !unsent_.empty(); unsent_.pop_front()) out_.push(std::move(unsent_.front()), worst(faults), now);
-    while (const std::optional<Bytes> bytes = out_.pop(now)) board_->take(*bytes, now);
+void SimulatedTransport::carryOut(Microseconds now) {
+    for (; !unsent_.empty(); unsent_.pop_front()) out_.send(std::move(unsent_.front()), options_, now);
+    while (out_.next() && *out_.next() <= now) board_->take(out_.take(), now);
 }
 
-void SimulatedTransport::carryIn(const BoardFaults& faults, Microseconds now) {
+void SimulatedTransport::carryIn(Microseconds now) {
     for (int i = 0; i < kMostGiven; ++i) {
         Bytes bytes = board_->give(now);
         if (bytes.empty()) break;
-        in_.push(std::move(bytes), worst(faults), now);
+        in_.send(std::move(bytes), options_, now);
     }
-    while (open_) { // whoever receives may close it
-        const std::optional<Bytes> bytes = in_.pop(now);
-        if (!bytes) return;
-        events_.received(*bytes);
-    }
+    // Whoever receives may close it.
+    while (open_ && in_.next() && *in_.next() <= now) events_.received(in_.take());
 }
 
 } // namespace

@@ -47,6 +47,7 @@ const Bytes kStream = {
     0xF0, 0x6C, 0x7F, 0x00, 0x01, 0x04, 0x0E, 0x7F, 0x02, 0x0A, 0x7F, 0xF7, // three pins
     0xF0, 0x6A, 0x7F, 0x7F, 0x00, 0x01, 0xF7,                               // analog mapping
     0xF0, 0x6E, 0x09, 0x04, 0x5C, 0x0B, 0xF7,                               // pin 9 is a servo at 1500
+    0xF0, 0x6E, 0x63, 0xF7,                                                 // there is no pin 99
     0xF0, 0x71, 'n',  0x00, 'o',  0x00, 0xF7,                               // "no"
     0xF0, 0x02, 0x68, 0x39, 0x00, 0xF7,                                     // 7400 mV = 57 x 128 + 104
     0xE3, 0x7F, 0x07, 0x91, 0x05, 0x01,                                     // readings
@@ -58,6 +59,7 @@ const std::vector<Message> kMeant = {
     Capabilities{{{}, {{0, 1}, {4, 14}}, {{2, 10}}}},
     AnalogMapping{{-1, -1, 0, 1}},
     PinState{9, 4, 1500},
+    PinState{99, -1, 0},
     Text{"no"},
     Voltage{7.4},
     Reading{false, 3, 1023},

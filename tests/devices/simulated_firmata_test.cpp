@@ -110,6 +110,7 @@ TEST(SimulatedFirmata, UnoIgnoresEarlyWritesAndJumpsToTheMiddle) {
     wire.send({0xF4, 0x09, 0x01});
     EXPECT_NEAR(wire.servo(7).position, 1000.0, 1e-9);
     wire.send({0xE9, 0x68, 0x07});
+    EXPECT_EQ(wire.ask({0xF0, 0x6D, 0x09, 0xF7}), (Bytes{0xF0, 0x6E, 0x09, 0x01, 0x00, 0xF7}));
     wire.send({0xF4, 0x09, 0x04});
     EXPECT_EQ(wire.servo(7).pulse, 1502.0);
     EXPECT_NEAR(wire.servo(7).largestJump, 502.0, 1e-9);
@@ -138,6 +139,8 @@ TEST(SimulatedFirmata, ResetDetaches) {
         EXPECT_EQ(wire.ask({0xFF}), Bytes{}) << name;
         EXPECT_EQ(wire.servo(2).pulse, 0.0) << name;
         EXPECT_EQ(wire.ask({0xF0, 0x6D, 0x04, 0xF7}), (Bytes{0xF0, 0x6E, 0x04, 0x01, 0x00, 0xF7})) << name;
+        wire.send({0xF4, 0x04, 0x04});
+        EXPECT_EQ(wire.servo(2).pulse, name == std::string("uno") ? 1502.0 : 0.0) << "the pulse is forgotten";
     }
 }
 

@@ -54,6 +54,14 @@ TEST(SimulatedMaestro, TakesTargetsInEveryForm) {
     EXPECT_EQ(wire.ask(kErrors), kNoError);
 }
 
+TEST(SimulatedMaestro, AHornStopsAtItsEnd) {
+    SimulatedWire wire("maestro");
+    wire.send({0x84, 0x00, 0x7F, 0x7F});
+    wire.wait(1s);
+    EXPECT_EQ(wire.servo(0).pulse, 16383 / 4.0);
+    EXPECT_EQ(wire.servo(0).position, 2500.0);
+}
+
 TEST(SimulatedMaestro, LeavesTheOrdersOfOthersAlone) {
     SimulatedWire wire("maestro");
     wire.send({0xAA, 0x0D, 0x04, 0x00, 0x70, 0x2E});

@@ -89,6 +89,13 @@ TEST(SimulatedXarm, EveryFifthUnloadFailsSilently) {
     }
 }
 
+TEST(SimulatedXarm, IgnoresAFrameThatLacksItsEnd) {
+    SimulatedWire wire("xarm");
+    wire.send(report({0x55, 0x55, 0x08, 0x03, 0x01, 0x00, 0x00, 0x03, 0xF4, 0x01}));
+    wire.send({0x55, 0x55, 0x05, 0x14, 0x02, 0x03});
+    EXPECT_EQ(wire.servo(2).pulse, 1500.0);
+}
+
 TEST(SimulatedXarm, IgnoresWhatIsNoFrame) {
     SimulatedWire wire("xarm");
     const Bytes broken[] = {
