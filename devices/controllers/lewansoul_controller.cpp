@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <vector>
 
 #include "devices/controllers/controller_base.h"
 #include "devices/protocol/lewansoul.h"
@@ -11,6 +12,7 @@ namespace {
 
 using lewansoul::kServosPerReport;
 
+constexpr double kAttachSeconds = 0.1; // no longer than the guard leaves a new servo in peace
 constexpr double kHidPerSecond = 30.0; // what real boards follow
 constexpr double kHidStep = 2.0;       // 500 to 2500 us are 0 to 1000
 constexpr double kHidZero = 500.0;
@@ -66,6 +68,7 @@ private:
         : ControllerBase(profile, lewansoulScale(profile, traits), traits), hid_(isHid(address)),
           baud_(baudOf(address)), reads_(profile.servos.size()) {
         moveTime_ = static_cast<int>(std::clamp(1000.0 / setsPerSecond(profile, traits), kLeastMoveTime, 1000.0));
+        moves_.resize(profile.servos.size());
     }
 
     /// What is known of one servo's position.
@@ -75,6 +78,20 @@ private:
         Microseconds at{0};
     };
 
+    /// What a servo does since it was told, in the controller's steps.
+    struct Move {
+        double from = 0.0;
+        double to = 0.0;
+        Microseconds begins{0};
+        Microseconds takes{0};
+
+        [[nodiscard]] double at(Microseconds now) const noexcept {
+            if (now < begins || now - begins >= takes) return to;
+            return from +
+                   (to - from) * static_cast<double>((now - begins).count()) / static_cast<double>(takes.count());
+        }
+    };
+
     void begin(Microseconds now) override;
     void take(std::span<const std::uint8_t> bytes, Microseconds now) override;
     void work(Microseconds now) override;
@@ -82,6 +99,7 @@ private:
     [[nodiscard]] Messages changes(std::span<const PulsePlan::Change> changes) override;
     [[nodiscard]] LinkTrouble silence(bool never) const override;
 
+    [[nodiscard]] int durationOf(std::span<const PulsePlan::Change> changes) const;
     [[nodiscard]] bool draining(Microseconds now) const;
     [[nodiscard]] bool namesItself() const { return product_.find("LOBOT") != std::string::npos; }
     void hear(const lewansoul::Voltage& voltage, Microseconds now);
@@ -93,7 +111,9 @@ private:
 
     bool hid_;
     int baud_;
-    int moveTime_ = 20; ///< ms
+    int moveTime_ = 20; ///< ms, at least
+    Microseconds workedAt_{0};
+    std::vector<Move> moves_; ///< by servo
     lewansoul::Parser parser_;
     std::vector<Read> reads_;
     Microseconds opened_{0};
@@ -170,6 +190,7 @@ void LewansoulController::hearPlace(const lewansoul::Place& place, Microseconds 
 }
 
 void LewansoulController::work(Microseconds now) {
+    workedAt_ = now;
     if (draining(now)) return;
     forgetStale(now);
     if (state_.phase == ControllerPhase::handshake && hid_ && !namesItself() && !everHeard() &&
@@ -214,7 +235,25 @@ ControllerBase::Messages LewansoulController::detachments(std::span<const std::s
     return messages;
 }
 
+/// A servo goes its way in the time that it is told, so a way that has become longer than usual (a late tick, a move
+/// that was not at its end) must get more of it: as much as the servo needs at the velocity of its profile.
+int LewansoulController::durationOf(std::span<const PulsePlan::Change> changes) const {
+    double seconds = 1e-3 * moveTime_;
+    for (const PulsePlan::Change& change : changes) {
+        const ServoSetup& setup = plan_.servos()[change.servo];
+        const double velocity = setup.maxVelocity * (setup.pulseMax - setup.pulseMin) / state_.traits.pulseStep;
+        const double way = static_cast<double>(change.value) - moves_[change.servo].at(workedAt_);
+        // It may have come to rest a little beside where it was told to be last.
+        if (change.attach)
+            seconds = std::max(seconds, kAttachSeconds);
+        else if (velocity > 0.0)
+            seconds = std::max(seconds, std::abs(way) / velocity);
+    }
+    return static_cast<int>(std::min(std::ceil(1e3 * seconds - 1e-6), 30'000.0));
+}
+
 ControllerBase::Messages LewansoulController::changes(std::span<const PulsePlan::Change> changes) {
+    const int duration = durationOf(changes);
     Messages messages;
     for (std::size_t first = 0; first < changes.size(); first += kServosPerReport) {
         std::vector<lewansoul::Place> places;
@@ -223,8 +262,11 @@ ControllerBase::Messages LewansoulController::changes(std::span<const PulsePlan:
             const int value = static_cast<int>(change.value);
             places.push_back({plan_.servos()[change.servo].channel, value});
             reads_[change.servo].target = value;
+            Move& move = moves_[change.servo];
+            const double from = change.attach ? value : move.at(workedAt_);
+            move = {from, static_cast<double>(value), workedAt_, std::chrono::milliseconds(duration)};
         }
-        messages.push_back(lewansoul::move(places, moveTime_));
+        messages.push_back(lewansoul::move(places, duration));
     }
     return messages;
 }

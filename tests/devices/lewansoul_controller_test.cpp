@@ -109,13 +109,19 @@ TEST(LewansoulController, NeverMovesOnUsbNumbersAlone) {
 TEST(LewansoulController, MapsPulsesToPositionsAndBack) {
     ControllerTrial trial = readyTrial({1, 2});
     trial.send({{1, 500.0, true}, {2, 2500.0, true}});
-    // A move of both in 33 ms, the time of one command at 30 Hz.
+    // A start takes 100 ms: the servo may stand a little beside where it was left.
     EXPECT_THAT(trial.writtenBut(kQuestions),
-                ElementsAre(Bytes{0x55, 0x55, 0x0B, 0x03, 0x02, 33, 0x00, 0x01, 0x00, 0x00, 0x02, 0xE8, 0x03}));
-    trial.wait(40);
+                ElementsAre(Bytes{0x55, 0x55, 0x0B, 0x03, 0x02, 100, 0x00, 0x01, 0x00, 0x00, 0x02, 0xE8, 0x03}));
+    trial.wait(120);
+    // Half a stroke at one stroke a second: it must not be told to go faster than it may.
     trial.send({{1, 1500.9, true}, {2, 2500.0, true}});
     EXPECT_THAT(trial.writtenBut(kQuestions),
-                ElementsAre(Bytes{0x55, 0x55, 0x08, 0x03, 0x01, 33, 0x00, 0x01, 0xF4, 0x01}));
+                ElementsAre(Bytes{0x55, 0x55, 0x08, 0x03, 0x01, 0xF4, 0x01, 0x01, 0xF4, 0x01}));
+    trial.wait(520);
+    // A short way in 33 ms, the time of one command at 30 Hz.
+    trial.send({{1, 1510.0, true}, {2, 2500.0, true}});
+    EXPECT_THAT(trial.writtenBut(kQuestions),
+                ElementsAre(Bytes{0x55, 0x55, 0x08, 0x03, 0x01, 33, 0x00, 0x01, 0xF9, 0x01}));
     trial.hear(report({0x55, 0x55, 0x09, 0x15, 0x02, 0x01, 0xF4, 0x01, 0x02, 0xFB, 0xFF}));
     EXPECT_EQ(trial.state().readPulses[0], 1500.0);
     EXPECT_EQ(trial.state().readPulses[1], 490.0) << "turned by hand beyond its end";
