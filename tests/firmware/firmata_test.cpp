@@ -235,7 +235,7 @@ TEST_F(Firmata, BrokenOffMessagesMoveNothing) {
 TEST_F(Firmata, MeasuresTheBattery) {
     for (const int pin : {200, 764, 1000}) { // millivolts behind the divider of 11 to 1
         board_.setPinMillivolts(pin);
-        for (int i = 0; i < 20; ++i) board_.run(100.0);
+        board_.run(700.0);
         const Bytes answer = answerTo({0xF0, 0x02, 0xF7});
         ASSERT_EQ(answer.size(), 6U);
         EXPECT_EQ(answer[0], 0xF0);

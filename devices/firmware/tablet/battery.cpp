@@ -6,10 +6,13 @@
 
 namespace {
 
-// A sliding mean over 16 measurements, in sixteenths: 0.3 s, longer than a servo's start pulls the voltage down.
-uint16_t sum;
-uint8_t frames;
+// Measurements are told as a mean of 16: 0.3 s, longer than a servo's start pulls the voltage down.
+constexpr uint8_t kMeasurements = 16;
 constexpr uint8_t kSettling = 5; // frames until the reference stands after its capacitor was charged
+uint16_t sum;
+uint16_t lastSum;
+uint8_t count;
+uint8_t settled;
 
 } // namespace
 
@@ -21,18 +24,24 @@ void batteryBegin() {
 void batteryFrame() {
     if (ADCSRA & _BV(ADSC)) return;
     const uint16_t value = ADC;
-    if (frames <= kSettling) {
-        ++frames;
-        sum = value * 16;
+    if (settled < kSettling) {
+        ++settled;
+        lastSum = value * kMeasurements;
     } else {
-        sum += value - (sum + 8) / 16;
+        sum += value;
+        if (++count == kMeasurements) {
+            lastSum = sum;
+            sum = 0;
+            count = 0;
+        }
     }
     ADCSRA |= _BV(ADSC);
 }
 
 uint32_t batteryMillivolts() {
-    // In steps that neither overflow nor lose: the divider's ratio in thousandths.
-    const uint32_t pin = uint32_t(sum) * kReferenceMillivolts / 1024; // sixteenths of a millivolt
+    // In steps that neither overflow nor lose; the converter rounds down, so half a step is added.
+    const uint32_t pin = (uint32_t(lastSum) + kMeasurements / 2) * kReferenceMillivolts / 1024; // mV / 16
     constexpr uint32_t kRatio = (kBatteryTopOhms + kBatteryBottomOhms) * 64 / kBatteryBottomOhms;
+    static_assert(kBatteryTopOhms / kBatteryBottomOhms < 100 && kBatteryTopOhms < 10000000, "a divider within reason");
     return (pin * kRatio + 512) / 1024;
 }

@@ -10,18 +10,19 @@ static_assert(F_CPU == 8000000UL || F_CPU == 16000000UL, "a Pro Mini of 8 or 16 
 
 namespace {
 
-// Timer1 counts an eighth of the clock: 1 us at 8 MHz, 0.5 us at 16 MHz. One round is one frame.
+// Timer1 counts an eighth of the clock: 1 us at 8 MHz, 0.5 us at 16 MHz. One round is one frame: first a time in which
+// the next frame is laid out and taken over, then the pulses.
 constexpr uint16_t kTick = F_CPU / 8000000UL; // ticks a microsecond
 constexpr uint16_t kTop = kFrameMilliseconds * 1000U * kTick - 1;
-constexpr uint16_t kFrameStart = 50 * kTick;
-constexpr uint16_t kFirstEdge = 200 * kTick;
+constexpr uint16_t kFrameStart = 3000 * kTick;
+constexpr uint16_t kFirstEdge = 3200 * kTick;
 constexpr uint16_t kSecondGroup = 250 * kTick; // later than the first, so that fewer edges meet
-constexpr uint16_t kPlanTime = 17000U * kTick; // all pulses are over: 200 + 250 + 6 x 2500 us
 constexpr uint16_t kAhead = 20 * kTick;        // longer than another interrupt and our own entry take together
 constexpr uint16_t kNear = 30 * kTick;         // too near to leave the interrupt and come back in time
 constexpr uint16_t kLeaving = 4 * kTick;       // what leaving takes
 constexpr uint16_t kNever = 0xFFFF;
 constexpr uint8_t kGroup = 6; // channels whose pulses fit into a frame one after the other
+static_assert(kFirstEdge + kSecondGroup + kGroup * (kGreatestPulse * kTick) + 500 < kTop, "a frame holds all pulses");
 constexpr uint8_t kMostEdges = 2 * (kGroup + 1);
 
 struct Ports {
@@ -114,12 +115,12 @@ const Edge* beginFrame() {
 
 // An edge must not wait for another interrupt to end: this one comes early enough to outlast any of them, and then
 // waits for the very tick. Where edges of the two groups lie near each other, both are served in one go.
-ISR(TIMER1_COMPA_vect) {
+ISR(TIMER1_COMPB_vect) {
     const Edge* edge = nextEdge;
     if (edge == nullptr) edge = beginFrame();
     while (edge->time != kNever) {
         if (int16_t(edge->wake - TCNT1) > int16_t(kLeaving)) {
-            OCR1A = edge->wake;
+            OCR1B = edge->wake;
             nextEdge = edge;
             return;
         }
@@ -137,10 +138,11 @@ ISR(TIMER1_COMPA_vect) {
         } while (more);
     }
     nextEdge = nullptr;
-    OCR1A = kFrameStart;
+    OCR1B = kFrameStart;
 }
 
-ISR(TIMER1_COMPB_vect) { planIsDue = true; }
+// The round's end.
+ISR(TIMER1_COMPA_vect) { planIsDue = true; }
 
 void pulsesBegin() {
     for (uint8_t i = 0; i < kChannelCount; ++i) {
@@ -155,13 +157,12 @@ void pulsesBegin() {
     pulsesPlan();
     TCCR1A = 0;
     TCCR1B = 0;
-    ICR1 = kTop;
     TCNT1 = 0;
-    OCR1A = kFrameStart;
-    OCR1B = kPlanTime;
+    OCR1A = kTop;
+    OCR1B = kFrameStart;
     TIFR1 = 0xFF;
     TIMSK1 = _BV(OCIE1A) | _BV(OCIE1B);
-    TCCR1B = _BV(WGM13) | _BV(WGM12) | _BV(CS11);
+    TCCR1B = _BV(WGM12) | _BV(CS11);
 }
 
 void setPulse(uint8_t channel, uint16_t microseconds) {
