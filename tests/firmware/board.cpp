@@ -155,7 +155,7 @@ void Board::setPinMillivolts(int millivolts) {
                   static_cast<std::uint32_t>(millivolts));
 }
 
-void Board::hang(bool withInterrupts) {
+void Board::hang(bool timerRuns) {
     // `rjmp .-2` where no code is; the main loop is between two instructions.
     constexpr std::uint32_t kFree = 0x7000;
     data_->avr->flash[kFree] = 0xFF;
@@ -163,7 +163,8 @@ void Board::hang(bool withInterrupts) {
     while (data_->avr->sreg[S_I] == 0) avr_run(data_->avr); // not within an interrupt
     if (data_->avr->state == cpu_Sleeping) data_->avr->state = cpu_Running;
     data_->avr->pc = kFree;
-    if (!withInterrupts) data_->avr->sreg[S_I] = 0;
+    constexpr std::size_t kTimsk1 = 0x6F;
+    if (!timerRuns) data_->avr->data[kTimsk1] = 0;
 }
 
 } // namespace lumorph::firmware_test

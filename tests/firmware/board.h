@@ -41,8 +41,8 @@ public:
     [[nodiscard]] bool isHigh(int pin) const;
 
     void setPinMillivolts(int millivolts); ///< on A0
-    /// The processor goes round in one instruction for ever; with interrupts or without.
-    void hang(bool withInterrupts);
+    /// The processor goes round in one instruction for ever; the interrupts of the pulses' timer go on or end too.
+    void hang(bool timerRuns);
     /// Called with each byte as it is said.
     void onSaid(std::function<void(std::uint8_t)> say);
 

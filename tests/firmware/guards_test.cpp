@@ -96,6 +96,22 @@ TEST_P(Guards, AHangLetsServosGoAndStartsAnew) {
     for (const Pulse& pulse : pulses) EXPECT_NEAR(pulse.width, 1500.0, 4.0);
 }
 
+TEST_P(Guards, AHangWithAStandingTimerEndsInAReset) {
+    board_.run(33.3);
+    while (board_.isHigh(9) || board_.isHigh(10)) board_.run(0.1);
+    (void)board_.takePulses();
+    (void)board_.takeSaid();
+    board_.hang(false);
+    board_.run(700.0);
+    EXPECT_TRUE(board_.takePulses().empty());
+    EXPECT_TRUE(says(board_.takeSaid(), "Started anew: it hung"));
+    board_.send(write(9, 1500));
+    board_.send(attach(9));
+    board_.runUntilSent();
+    board_.run(60.0);
+    EXPECT_FALSE(board_.takePulses().empty());
+}
+
 INSTANTIATE_TEST_SUITE_P(Clocks, Guards, testing::Values(8, 16),
                          [](const auto& clock) { return std::to_string(clock.param) + "MHz"; });
 
