@@ -1,0 +1,31 @@
+#pragma once
+
+#include <stdint.h>
+
+// Pulses of all servos by Timer1, 50 times a second. Channels are counted as in channels.h.
+
+constexpr uint16_t kLeastPulse = 500; // microseconds; no pulse is ever shorter or longer, whatever is asked
+constexpr uint16_t kGreatestPulse = 2500;
+constexpr uint8_t kFrameMilliseconds = 20;
+
+void pulsesBegin();
+/// Width from the next frame on, microseconds; clamped to the channel's limits.
+void setPulse(uint8_t channel, uint16_t microseconds);
+/// A channel that is on but was never given a width stays without pulse.
+void setOn(uint8_t channel, bool on);
+bool isOn(uint8_t channel);
+/// 0: it was never given one.
+uint16_t pulseOf(uint8_t channel);
+/// All off, widths forgotten.
+void forgetPulses();
+void allOff();
+bool anyOn();
+
+/// True once a frame, when the last pulse is over and the next frame must be planned.
+bool pulsesFrameIsDue();
+/// The same, and it stays so.
+bool pulsesFrameWaits();
+/// Lays the next frame out. A frame is taken over as a whole, between two frames: no pulse is ever cut short.
+void pulsesPlan();
+/// Makes the next frame's begin the processor's start, for one that hangs.
+void restartAfterThisFrame();

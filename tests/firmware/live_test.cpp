@@ -1,0 +1,121 @@
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include <QByteArray>
+#include <QSerialPort>
+#include <gtest/gtest.h>
+
+#include "devices/controllers/servo_link.h"
+#include "tests/firmware/firmata_bytes.h"
+#include "tests/firmware/live_board.h"
+#include "tests/firmware/twelve.h"
+
+namespace lumorph::firmware_test {
+namespace {
+
+using namespace std::chrono_literals;
+
+template <typename Condition> bool comesTrue(Condition condition, std::chrono::milliseconds limit = 20s) {
+    const auto end = std::chrono::steady_clock::now() + limit;
+    while (!condition()) {
+        if (std::chrono::steady_clock::now() > end) return false;
+        std::this_thread::sleep_for(5ms);
+    }
+    return true;
+}
+
+bool allAre(const LiveBoard& board, const DeviceProfile& profile, double stroke) {
+    return std::all_of(profile.servos.begin(), profile.servos.end(), [&](const ServoSetup& servo) {
+        return std::abs(board.widthNow(servo.channel) - pulseOf(servo, stroke)) <= 4.0;
+    });
+}
+
+bool noneMoves(const LiveBoard& board, const DeviceProfile& profile) {
+    return std::all_of(profile.servos.begin(), profile.servos.end(),
+                       [&](const ServoSetup& servo) { return board.widthNow(servo.channel) == 0.0; });
+}
+
+TEST(LiveFirmware, ASerialPortDrivesItAndItsEndLetsServosGo) {
+    const EventLoop loop;
+    LiveBoard board;
+    QSerialPort port;
+    port.setPortName(QString::fromStdString(board.path()));
+    port.setBaudRate(57600);
+    ASSERT_TRUE(port.open(QIODevice::ReadWrite)) << port.errorString().toStdString();
+    const auto send = [&](const Bytes& bytes) {
+        port.write(reinterpret_cast<const char*>(bytes.data()), static_cast<qint64>(bytes.size()));
+    };
+    QByteArray heard;
+    send({0xF0, 0x6D, 9, 0xF7});
+    const QByteArray state = QByteArray::fromHex("f06e09010000f7");
+    ASSERT_TRUE(EventLoop::runUntil(
+        [&] {
+            heard += port.readAll();
+            return heard.contains(state);
+        },
+        20s));
+    send(write(9, 1650));
+    send(attach(9));
+    ASSERT_TRUE(EventLoop::runUntil([&] { return board.widthNow(9) > 0.0; }, 20s));
+    for (const Pulse& pulse : board.pulses()) EXPECT_NEAR(pulse.width, 1650.0, 4.0) << "from the first on";
+    port.close();
+    ASSERT_TRUE(comesTrue([&] { return board.widthNow(9) == 0.0; }));
+}
+
+class LiveLink : public testing::Test {
+protected:
+    LiveLink() : profile_(sixServos()) {
+        profile_.address = "serial://" + board_.path() + "?baud=57600";
+        profile_.staggerSeconds = 0.05;
+        profile_.restOnExit = false;
+        for (ServoSetup& servo : profile_.servos) servo.maxVelocity = 4.0;
+    }
+    bool isLive(ServoLink& link) {
+        link.connect();
+        if (!comesTrue([&] { return link.status().phase == LinkPhase::disarmed; })) return false;
+        link.command(std::vector<double>(6, 0.25));
+        link.arm(true);
+        return comesTrue([&] { return link.status().phase == LinkPhase::live; });
+    }
+    EventLoop loop_; // the link's thread needs a program of Qt
+    LiveBoard board_;
+    DeviceProfile profile_;
+};
+
+TEST_F(LiveLink, TheStudioKnowsTheSketchAndDrivesIt) {
+    ServoLink link(profile_, {});
+    ASSERT_TRUE(isLive(link));
+    EXPECT_EQ(link.status().controller.firmware, "LumorphTablet 1.0");
+    EXPECT_TRUE(link.status().controller.traits.failsafe);
+    EXPECT_FALSE(link.status().controller.traits.jumpsOnAttach);
+    ASSERT_TRUE(comesTrue([&] { return allAre(board_, profile_, 0.25); }));
+    for (const Pulse& pulse : board_.pulses())
+        EXPECT_NEAR(pulse.width, 1250.0, 4.0) << "servos start where they are wanted, without a jump";
+    link.command(std::vector<double>(6, 0.8));
+    EXPECT_TRUE(comesTrue([&] { return allAre(board_, profile_, 0.8); }));
+    EXPECT_TRUE(comesTrue([&] { return link.status().controller.volts.has_value(); }));
+    EXPECT_NEAR(link.status().controller.volts.value_or(0.0), 7.7, 0.02);
+    // It stands still for longer than the sketch waits: heartbeats keep it awake.
+    const double rest = board_.now();
+    ASSERT_TRUE(comesTrue([&] { return board_.now() > rest + 1200.0; }));
+    EXPECT_TRUE(allAre(board_, profile_, 0.8));
+    link.stop();
+    EXPECT_TRUE(comesTrue([&] { return noneMoves(board_, profile_); }, 5s));
+    EXPECT_EQ(link.status().phase, LinkPhase::stopped);
+}
+
+TEST_F(LiveLink, ACutLineLetsServosGo) {
+    ServoLink link(profile_, {});
+    ASSERT_TRUE(isLive(link));
+    ASSERT_TRUE(comesTrue([&] { return allAre(board_, profile_, 0.25); }));
+    board_.cutTheLine();
+    EXPECT_TRUE(comesTrue([&] { return noneMoves(board_, profile_); }));
+    EXPECT_TRUE(comesTrue([&] { return link.status().phase == LinkPhase::lost; }));
+}
+
+} // namespace
+} // namespace lumorph::firmware_test

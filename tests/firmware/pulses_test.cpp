@@ -1,0 +1,162 @@
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <random>
+#include <string>
+#include <tuple>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "tests/firmware/board.h"
+#include "tests/firmware/firmata_bytes.h"
+#include "tests/firmware/twelve.h"
+
+namespace lumorph::firmware_test {
+namespace {
+
+constexpr double kTolerance = 4.0; // microseconds
+
+/// Every pulse on the six or twelve pins against what was commanded, at 8 and 16 MHz.
+class Pulses : public testing::TestWithParam<std::tuple<const char*, int>> {
+protected:
+    Pulses() : board_(std::get<0>(GetParam()), std::get<1>(GetParam())) {
+        const bool six = std::string(std::get<0>(GetParam())) == "six";
+        servos_ = (six ? sixServos() : twelveServos()).servos;
+        board_.run(100.0);
+    }
+
+    int inLimits(std::size_t servo, int value) const {
+        return std::clamp(value, static_cast<int>(servos_[servo].pulseMin), static_cast<int>(servos_[servo].pulseMax));
+    }
+    int randomPulse(std::size_t servo) {
+        const auto& limit = servos_[servo];
+        return std::uniform_int_distribution<int>(std::max(544, static_cast<int>(limit.pulseMin)),
+                                                  static_cast<int>(limit.pulseMax))(random_);
+    }
+    void attachAll() {
+        for (const ServoSetup& servo : servos_) {
+            board_.send(write(servo.channel, 1500));
+            board_.send(attach(servo.channel));
+        }
+        board_.runUntilSent();
+        board_.run(60.0);
+        (void)board_.takePulses();
+    }
+    /// Commands all, waits for the frame that has them, and looks at the frame after it.
+    double worstOf(const std::vector<int>& wanted) {
+        for (std::size_t i = 0; i < servos_.size(); ++i) board_.send(write(servos_[i].channel, wanted[i]));
+        board_.runUntilSent();
+        board_.run(40.0);
+        (void)board_.takePulses();
+        board_.run(25.0);
+        std::map<int, int> counts;
+        double worst = 0.0;
+        for (const Pulse& pulse : board_.takePulses()) {
+            ++counts[pulse.pin];
+            for (std::size_t i = 0; i < servos_.size(); ++i)
+                if (servos_[i].channel == pulse.pin)
+                    worst = std::max(worst, std::abs(pulse.width - inLimits(i, wanted[i])));
+        }
+        for (const ServoSetup& servo : servos_) EXPECT_GE(counts[servo.channel], 1) << "pin " << servo.channel;
+        return worst;
+    }
+
+    Board board_;
+    std::vector<ServoSetup> servos_;
+    std::mt19937 random_{7};
+};
+
+TEST_P(Pulses, MatchTheCommandsAllAtOnce) {
+    attachAll();
+    double worst = 0.0;
+    for (int round = 0; round < 150; ++round) {
+        std::vector<int> wanted;
+        for (std::size_t i = 0; i < servos_.size(); ++i)
+            wanted.push_back(round == 0 ? 544 : round == 1 ? 2500 : randomPulse(i));
+        worst = std::max(worst, worstOf(wanted));
+    }
+    RecordProperty("worst_us", std::to_string(worst));
+    std::printf("worst error %.2f us\n", worst);
+    EXPECT_LE(worst, kTolerance);
+}
+
+// With twelve servos two pulses run at a time; their ends are led past each other in steps of a microsecond.
+TEST_P(Pulses, MatchWhereTwoEndsMeet) {
+    attachAll();
+    double worst = 0.0;
+    for (int shift = -40; shift <= 40; ++shift) {
+        std::vector<int> wanted(servos_.size(), 1500);
+        if (servos_.size() == 12) wanted[6] = 1250 + shift;
+        worst = std::max(worst, worstOf(wanted));
+    }
+    std::printf("worst error %.2f us\n", worst);
+    EXPECT_LE(worst, kTolerance);
+}
+
+TEST_P(Pulses, MatchWhileTheLineIsFlooded) {
+    attachAll();
+    std::vector<int> wanted;
+    for (std::size_t i = 0; i < servos_.size(); ++i) {
+        wanted.push_back(randomPulse(i));
+        board_.send(write(servos_[i].channel, wanted[i]));
+    }
+    board_.runUntilSent();
+    board_.run(45.0);
+    (void)board_.takePulses();
+    (void)board_.takeSaid();
+    // The same writes, and questions, with no pause between two bytes for three seconds; all bytes are answered.
+    for (int round = 0; round < 480; ++round) {
+        const std::size_t i = static_cast<std::size_t>(round) % servos_.size();
+        board_.send({0xF0, 0x6D, servos_[i].channel, 0xF7});
+        for (int times = 0; times < 10; ++times) board_.send(write(servos_[i].channel, wanted[i]));
+        board_.send({0xF9});
+    }
+    double worst = 0.0;
+    std::map<int, double> lastStart;
+    std::size_t count = 0;
+    while (board_.isSending()) {
+        board_.run(50.0);
+        for (const Pulse& pulse : board_.takePulses()) {
+            const auto servo =
+                std::find_if(servos_.begin(), servos_.end(), [&](const auto& s) { return s.channel == pulse.pin; });
+            ASSERT_NE(servo, servos_.end());
+            worst = std::max(worst, std::abs(pulse.width - wanted[static_cast<std::size_t>(servo - servos_.begin())]));
+            if (lastStart.contains(pulse.pin))
+                worst = std::max(worst, std::abs(1e3 * (pulse.start - lastStart[pulse.pin]) - 20'000.0));
+            lastStart[pulse.pin] = pulse.start;
+            ++count;
+        }
+    }
+    std::printf("worst error of width or period %.2f us in %zu pulses\n", worst, count);
+    EXPECT_GT(count, 140U * servos_.size());
+    EXPECT_LE(worst, kTolerance);
+    const Bytes said = board_.takeSaid();
+    int answers = 0;
+    for (std::size_t i = 1; i < said.size(); ++i) answers += said[i - 1] == 0xF0 && said[i] == 0x6E ? 1 : 0;
+    EXPECT_EQ(answers, 480);
+}
+
+TEST_P(Pulses, ComeFiftyTimesASecond) {
+    attachAll();
+    std::map<int, int> counts;
+    for (int i = 0; i < 20; ++i) {
+        board_.send({0xF9});
+        board_.run(100.0);
+        for (const Pulse& pulse : board_.takePulses()) ++counts[pulse.pin];
+    }
+    for (const ServoSetup& servo : servos_) {
+        EXPECT_GE(counts[servo.channel], 2 * 45);
+        EXPECT_LE(counts[servo.channel], 2 * 55);
+    }
+    EXPECT_EQ(counts.size(), servos_.size());
+}
+
+INSTANTIATE_TEST_SUITE_P(Boards, Pulses, testing::Combine(testing::Values("six", "twelve"), testing::Values(8, 16)),
+                         [](const auto& board) {
+                             return std::string(std::get<0>(board.param)) + std::to_string(std::get<1>(board.param)) +
+                                    "MHz";
+                         });
+
+} // namespace
+} // namespace lumorph::firmware_test
