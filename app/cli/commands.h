@@ -17,5 +17,7 @@ void addBenchCommand(CLI::App& app);
 void addDemoCommand(CLI::App& app);
 /// Not part of a build of the core alone: the virtual lab stands on calibration.
 void addRenderCommand(CLI::App& app, Session& session);
+/// Nor is this: trackers come over sockets.
+void addTrackCommand(CLI::App& app, Session& session);
 
 } // namespace lumorph::cli

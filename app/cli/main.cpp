@@ -52,6 +52,9 @@ int main(int argc, char** argv) {
 #ifdef LUMORPH_WITH_CALIBRATION
     lumorph::cli::addRenderCommand(app, session);
 #endif
+#ifdef LUMORPH_WITH_DEVICES
+    lumorph::cli::addTrackCommand(app, session);
+#endif
     lumorph::cli::addBenchCommand(app);
     lumorph::cli::addDemoCommand(app);
     try {
