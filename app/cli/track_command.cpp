@@ -7,7 +7,6 @@
 #include <string>
 #include <utility>
 
-#include <CLI/Validators.hpp>
 #include <QCoreApplication>
 
 #include "app/cli/commands.h"
