@@ -83,7 +83,14 @@ glm::dvec3 floatsOf(Bytes message) {
         lo_message_deserialise(copy.data(), message.size(), &result), lo_message_free);
     if (parsed == nullptr || lo_message_get_argc(parsed.get()) != 3) refuse("a message in it cannot be read");
     lo_arg** arguments = lo_message_get_argv(parsed.get());
-    return {arguments[0]->f, arguments[1]->f, arguments[2]->f};
+    // Arguments lie at multiples of four bytes, which is too little for the library's own type.
+    glm::dvec3 value;
+    for (int axis = 0; axis < 3; ++axis) {
+        float number = 0.0F;
+        std::memcpy(&number, static_cast<const void*>(arguments[axis]), sizeof number);
+        value[axis] = number;
+    }
+    return value;
 }
 
 void readMessage(Bytes message, std::vector<PosePart>& parts) {
