@@ -18,5 +18,7 @@ void addDemoCommand(CLI::App& app);
 /// Not part of a build of the core alone: recordings need SQLite, and the virtual lab stands on calibration.
 void addRecordingCommands(CLI::App& app);
 void addRenderCommand(CLI::App& app, Session& session);
+/// Nor is this: trackers come over sockets.
+void addTrackCommand(CLI::App& app, Session& session);
 
 } // namespace lumorph::cli

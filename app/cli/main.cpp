@@ -53,6 +53,9 @@ int main(int argc, char** argv) {
     lumorph::cli::addRecordingCommands(app);
     lumorph::cli::addRenderCommand(app, session);
 #endif
+#ifdef LUMORPH_WITH_DEVICES
+    lumorph::cli::addTrackCommand(app, session);
+#endif
     lumorph::cli::addBenchCommand(app);
     lumorph::cli::addDemoCommand(app);
     try {

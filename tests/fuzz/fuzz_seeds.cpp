@@ -20,6 +20,8 @@
 #include "tests/core/scene/scenes.h"
 #include "tests/support/full_model.h"
 #include "tests/support/gltf_builder.h"
+#include "tests/support/natnet_frames.h"
+#include "tests/support/natnet_writer.h"
 #include "tests/support/small_rigs.h"
 
 namespace {
@@ -59,6 +61,28 @@ std::vector<std::byte> partsOf(const std::vector<std::byte>& glb) {
     parts.push_back(std::byte{0});
     parts.insert(parts.end(), text + jsonBytes + 8, glb.end());
     return parts;
+}
+
+/// A byte that chooses the version, and a datagram of it.
+template <typename Write> void writeNatNet(Write write) {
+    using namespace lumorph;
+    constexpr std::size_t kVersions = test::kNatNetVersions.size();
+    for (std::size_t i = 0; i < kVersions; ++i) {
+        const natnet::Version version = test::kNatNetVersions[i];
+        test::NatNetWriter writer(version);
+        test::RandomFrames frames(i);
+        natnet::ServerInfo info{"Motive", {2, 1, 0, 0}, version, {}};
+        if (version.major >= 3) info.connection.emplace();
+        const std::vector<std::byte> datagrams[] = {writer.frame(frames.frame(version)),
+                                                    writer.frame(frames.frame(version)),
+                                                    writer.models(test::allModels(version)), writer.serverInfo(info)};
+        int number = 0;
+        for (const std::vector<std::byte>& datagram : datagrams) {
+            std::vector<std::byte> seed{std::byte(i)};
+            seed.insert(seed.end(), datagram.begin(), datagram.end());
+            write(("natnet/" + std::to_string(i) + "-" + std::to_string(number++)).c_str(), seed);
+        }
+    }
 }
 
 } // namespace
@@ -136,5 +160,11 @@ int main(int argc, char** argv) {
     writeBytes("lewansoul/board", {5,    0x55, 0x55, 0x04, 0x0F, 0xE8, 0x1C, 0x55, 0x55, 0x09, 0x15, 0x02, 0x01,
                                    0xF4, 0x01, 0x02, 0xFB, 0xFF, 0x00, 0x55, 0x55, 0x05, 0x08, 0x01, 0x01, 0x00});
     writeBytes("maestro/board", {0, 1, 2, 3, 0x70, 0x17, 0x01, 0x28, 0x00});
+    writeNatNet(write);
+    write("opentrack/rest", std::vector<std::byte>(48));
+    using namespace std::string_literals;
+    const std::string position = "/tracking/trackers/head/position\0\0\0\0,fff\0\0\0\0\x3f\x80\0\0\x40\0\0\0\0\0\0\0"s;
+    writeText("osc/position", position);
+    writeText("osc/bundle", "#bundle\0\0\0\0\0\0\0\0\x01\0\0\0\x38"s + position);
     return 0;
 }

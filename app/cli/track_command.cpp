@@ -1,0 +1,138 @@
+#include <chrono>
+#include <condition_variable>
+#include <cstdio>
+#include <deque>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <utility>
+
+#include <QCoreApplication>
+
+#include "app/cli/commands.h"
+#include "devices/trackers/tracker.h"
+
+namespace lumorph::cli {
+
+namespace {
+
+constexpr std::chrono::milliseconds kPause{50}; ///< how soon Ctrl-C is seen
+constexpr std::chrono::milliseconds kLineEvery{1000};
+constexpr std::size_t kMostWaiting = 4096;
+
+struct MonitorArguments {
+    std::string uri;
+    int frames = 0; ///< 0: until it is stopped
+    bool json = false;
+    bool open = false;
+};
+
+/// Frames on their way from the tracker's thread to the one that prints.
+class FrameQueue {
+public:
+    void put(const TrackerFrame& frame) {
+        const std::scoped_lock lock(mutex_);
+        if (frames_.size() == kMostWaiting) frames_.pop_front(); // whoever reads does not keep up
+        frames_.push_back(frame);
+        arrived_.notify_one();
+    }
+    /// All that have come, after a short wait for the first.
+    std::deque<TrackerFrame> take() {
+        std::unique_lock lock(mutex_);
+        arrived_.wait_for(lock, kPause, [this] { return !frames_.empty(); });
+        return std::exchange(frames_, {});
+    }
+
+private:
+    std::mutex mutex_;
+    std::condition_variable arrived_;
+    std::deque<TrackerFrame> frames_;
+};
+
+nlohmann::json jsonOf(const TrackedBody& body) {
+    const Pose& pose = body.pose;
+    return {{"id", body.id},
+            {"name", body.name},
+            {"valid", body.valid},
+            {"position", {pose.position.x, pose.position.y, pose.position.z}},
+            {"rotation", {pose.rotation.x, pose.rotation.y, pose.rotation.z, pose.rotation.w}}};
+}
+
+nlohmann::json jsonOf(const TrackerFrame& frame) {
+    nlohmann::json bodies = nlohmann::json::array();
+    for (const TrackedBody& body : frame.bodies) bodies.push_back(jsonOf(body));
+    return {{"frame", frame.number}, {"time", 1e-6 * static_cast<double>(frame.measured.count())}, {"bodies", bodies}};
+}
+
+void printBody(const TrackedBody& body) {
+    const glm::dvec3& p = body.pose.position;
+    std::printf("  %-20s %5d  %-5s  %8.3f %8.3f %8.3f m\n", body.name.c_str(), body.id, body.valid ? "seen" : "lost",
+                p.x, p.y, p.z);
+}
+
+void printStatus(const TrackerStatus& status) {
+    std::printf("%s%s: %.1f frames/s, %.1f packets/s, %llu rejected",
+                status.source.empty() ? "nobody yet" : status.source.c_str(),
+                status.verified ? "" : " (a version that was never tried with real software)", status.framesPerSecond,
+                status.packetsPerSecond, static_cast<unsigned long long>(status.rejected));
+    if (status.latencyMilliseconds) std::printf(", %.1f ms late", *status.latencyMilliseconds);
+    std::printf("\n");
+    if (!status.advice.empty()) std::printf("  ! %s\n", status.advice.c_str());
+    for (const TrackedBody& body : status.bodies) printBody(body);
+    finishOutput();
+}
+
+/// Where only frames go to standard output, advice goes beside it, each once.
+void printAdvice(const std::string& advice, std::string& before) {
+    if (advice == before) return;
+    before = advice;
+    if (!advice.empty()) printWarnings({advice});
+}
+
+void monitor(const MonitorArguments& arguments, const Session& session) {
+    int count = 1;
+    char name[] = "lumorph";
+    char* words[] = {name, nullptr};
+    const QCoreApplication application(count, words); // sockets need it
+    FrameQueue queue;
+    TrackerOptions options;
+    options.openToNetwork = arguments.open;
+    options.onFrame = [&queue](const TrackerFrame& frame) { queue.put(frame); };
+    const std::unique_ptr<Tracker> tracker = openTracker(arguments.uri, std::move(options));
+    std::string advice;
+    int seen = 0;
+    const auto isDone = [&] { return arguments.frames > 0 && seen >= arguments.frames; };
+    for (auto next = std::chrono::steady_clock::now() + kLineEvery; !isDone();) {
+        session.throwIfCancelled();
+        for (const TrackerFrame& frame : queue.take()) {
+            if (isDone()) break;
+            ++seen;
+            if (arguments.json) printJson(jsonOf(frame));
+        }
+        if (std::chrono::steady_clock::now() < next && !isDone()) continue;
+        next += kLineEvery;
+        const TrackerStatus status = tracker->status();
+        arguments.json ? printAdvice(status.advice, advice) : printStatus(status);
+    }
+}
+
+} // namespace
+
+void addTrackCommand(CLI::App& app, Session& session) {
+    CLI::App* group = app.add_subcommand("track", "Look at what trackers send");
+    group->require_subcommand(1);
+
+    auto arguments = std::make_shared<MonitorArguments>();
+    CLI::App* command = group->add_subcommand("monitor", "Print what a tracker sends, and why nothing arrives");
+    command
+        ->add_option("uri", arguments->uri,
+                     "natnet://HOST, opentrack://127.0.0.1:4242, osc://127.0.0.1:9000 or sim://head")
+        ->required();
+    command->add_option("--frames", arguments->frames, "Stop after so many frames")
+        ->check(CLI::Range(1, 1'000'000'000));
+    command->add_flag("--json", arguments->json, "Print one JSON value a frame, a line each");
+    command->add_flag("--open", arguments->open, "Take packets from other machines as well");
+    command->callback([arguments, &session] { monitor(*arguments, session); });
+}
+
+} // namespace lumorph::cli

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "core/base/clock.h"
+#include "devices/trackers/tracker_address.h"
+
+namespace lumorph {
+
+/// What a tracker's thread has seen, from which it can be told why nothing arrives.
+struct TrackerSituation {
+    bool openToNetwork = false;
+    bool localMissing = false; ///< the address says local=, and this machine has no such address
+    std::string ownAddresses;
+    std::string trouble; ///< a socket that could not be had; a sentence
+    Microseconds sinceOpened{0};
+    std::optional<Microseconds> sinceFrame;    ///< the newest good frame
+    std::optional<Microseconds> sinceRejected; ///< the newest packet that was wrong
+    std::string lastRejected;                  ///< why, and from whom
+    std::uint64_t dropped = 0;                 ///< packets of other machines, while not open
+    std::string lastDropped;                   ///< from whom
+    std::optional<Microseconds> sinceDropped;
+};
+
+struct NatNetSituation : TrackerSituation {
+    bool hostIsHere = false;
+    std::optional<natnet::ServerInfo> server;
+    bool framesWithoutVersion = false;
+};
+
+// Plain sentences on what to check, in order; empty while all is well or it is too early to tell.
+[[nodiscard]] std::string adviceFor(const NatNetAddress& address, const NatNetSituation& situation);
+[[nodiscard]] std::string adviceFor(const OpenTrackAddress& address, const TrackerSituation& situation);
+/// `onlyRotations`: positions are what is missing.
+[[nodiscard]] std::string adviceFor(const OscAddress& address, const TrackerSituation& situation, bool onlyRotations);
+
+} // namespace lumorph

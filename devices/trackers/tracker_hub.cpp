@@ -1,0 +1,137 @@
+#include "devices/trackers/tracker_hub.h"
+
+#include <algorithm>
+#include <iterator>
+#include <mutex>
+#include <set>
+#include <utility>
+
+#include "core/base/error.h"
+
+namespace lumorph {
+
+struct TrackerHub::Data {
+    struct Fed {
+        std::shared_ptr<PoseStream> stream;
+        std::set<std::string> sources;
+    };
+    std::shared_ptr<PoseBoard> board;
+    std::shared_ptr<const Clock> clock;
+
+    mutable std::mutex mutex; ///< never held while a tracker is opened or ended: its thread may be in take()
+    RoleMap roles;
+    std::map<std::string, Fed, std::less<>> fed; ///< streams that are on the board because of us
+    std::map<std::string, std::shared_ptr<Tracker>> trackers;
+
+    Fed& feed(const std::string& name, PoseRole role, const std::string& source) {
+        Fed& entry = fed[name];
+        if (!entry.stream) entry.stream = board->stream(name, role);
+        if (!entry.sources.contains(source)) entry.sources.insert(source);
+        return entry;
+    }
+
+    void forget(const std::string& source) {
+        for (auto entry = fed.begin(); entry != fed.end();) {
+            auto& [name, streamed] = *entry;
+            const bool wasLast = streamed.sources.erase(source) > 0 && streamed.sources.empty();
+            if (wasLast) board->remove(name);
+            entry = wasLast ? fed.erase(entry) : std::next(entry);
+        }
+    }
+};
+
+TrackerHub::TrackerHub(std::shared_ptr<PoseBoard> board, std::shared_ptr<const Clock> clock)
+    : data_(std::make_unique<Data>()) {
+    data_->board = std::move(board);
+    data_->clock = std::move(clock);
+}
+
+TrackerHub::~TrackerHub() {
+    std::map<std::string, std::shared_ptr<Tracker>> ending;
+    {
+        const std::scoped_lock lock(data_->mutex);
+        ending.swap(data_->trackers);
+    }
+    ending.clear();
+    for (const auto& [name, fed] : data_->fed) data_->board->remove(name);
+}
+
+void TrackerHub::open(const std::string& uri, bool openToNetwork) {
+    {
+        const std::scoped_lock lock(data_->mutex);
+        // Its place is kept while it opens, so that nobody else opens it meanwhile.
+        if (!data_->trackers.try_emplace(uri).second)
+            throw InvalidInput("tracker " + uri, "it is open already", "close it first, or use another address");
+    }
+    try {
+        TrackerOptions options;
+        options.clock = data_->clock;
+        options.openToNetwork = openToNetwork;
+        options.onFrame = [this, uri](const TrackerFrame& frame) { take(uri, frame); };
+        std::shared_ptr<Tracker> tracker = openTracker(uri, std::move(options));
+        const std::scoped_lock lock(data_->mutex);
+        data_->trackers[uri] = std::move(tracker);
+    } catch (...) {
+        const std::scoped_lock lock(data_->mutex);
+        data_->trackers.erase(uri);
+        throw;
+    }
+}
+
+void TrackerHub::close(const std::string& uri) {
+    std::shared_ptr<Tracker> ending;
+    {
+        const std::scoped_lock lock(data_->mutex);
+        const auto found = data_->trackers.find(uri);
+        if (found == data_->trackers.end() || !found->second) return;
+        ending = std::move(found->second);
+        data_->trackers.erase(found);
+    }
+    ending.reset();
+    const std::scoped_lock lock(data_->mutex);
+    data_->forget(uri);
+}
+
+void TrackerHub::setRoles(RoleMap roles) {
+    const std::scoped_lock lock(data_->mutex);
+    std::erase_if(data_->fed, [&](const auto& entry) {
+        const auto kept = roles.find(entry.first);
+        if (kept == roles.end()) {
+            data_->board->remove(entry.first);
+            return true;
+        }
+        (void)data_->board->stream(entry.first, kept->second); // the same stream under its new role
+        return false;
+    });
+    data_->roles = std::move(roles);
+}
+
+RoleMap TrackerHub::roles() const {
+    const std::scoped_lock lock(data_->mutex);
+    return data_->roles;
+}
+
+std::vector<TrackerStatus> TrackerHub::status() const {
+    std::vector<std::shared_ptr<Tracker>> trackers;
+    {
+        const std::scoped_lock lock(data_->mutex);
+        for (const auto& [uri, tracker] : data_->trackers)
+            if (tracker) trackers.push_back(tracker);
+    }
+    std::vector<TrackerStatus> status;
+    for (const auto& tracker : trackers) status.push_back(tracker->status());
+    return status;
+}
+
+void TrackerHub::take(const std::string& source, const TrackerFrame& frame) {
+    // A time to come would make all that is measured before it come too late.
+    const Microseconds measured = std::min(frame.measured, data_->clock->now());
+    const std::scoped_lock lock(data_->mutex);
+    for (const TrackedBody& body : frame.bodies) {
+        const auto role = data_->roles.find(body.name);
+        if (role == data_->roles.end()) continue;
+        data_->feed(body.name, role->second, source).stream->push({measured, body.valid, body.pose});
+    }
+}
+
+} // namespace lumorph
