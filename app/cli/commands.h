@@ -18,7 +18,8 @@ void addDemoCommand(CLI::App& app);
 /// Not part of a build of the core alone: recordings need SQLite, and the virtual lab stands on calibration.
 void addRecordingCommands(CLI::App& app);
 void addRenderCommand(CLI::App& app, Session& session);
-/// Nor is this: trackers come over sockets.
+/// Nor are these: devices and trackers are reached through Qt.
+void addDeviceCommands(CLI::App& app, Session& session);
 void addTrackCommand(CLI::App& app, Session& session);
 
 } // namespace lumorph::cli

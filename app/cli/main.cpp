@@ -54,6 +54,7 @@ int main(int argc, char** argv) {
     lumorph::cli::addRenderCommand(app, session);
 #endif
 #ifdef LUMORPH_WITH_DEVICES
+    lumorph::cli::addDeviceCommands(app, session);
     lumorph::cli::addTrackCommand(app, session);
 #endif
     lumorph::cli::addBenchCommand(app);

@@ -9,6 +9,7 @@
 #include <opencv2/aruco.hpp>
 #include <opencv2/aruco/charuco.hpp>
 #include <opencv2/calib3d.hpp>
+#include <opencv2/imgproc.hpp>
 
 #include "core/base/error.h"
 
@@ -49,7 +50,12 @@ int markersOf(const MarkerBoard& board) {
     return board.kind == MarkerBoard::Kind::charuco ? board.columns * board.rows / 2 : board.columns * board.rows;
 }
 
-// OpenCV's boards hold their points as floats; both kinds lie with +Y up the page.
+// OpenCV's boards have their origin at the upper left corner, and +Y down the page.
+cv::Point3f upThePage(const MarkerBoard& board, const cv::Point3f& point) {
+    const double gap = board.kind == MarkerBoard::Kind::charuco ? 0.0 : board.square - board.marker;
+    return {point.x, static_cast<float>(board.rows * board.square - gap) - point.y, 0.0F};
+}
+
 cv::Ptr<cv::aruco::CharucoBoard> charucoBoard(const MarkerBoard& board) {
     return cv::aruco::CharucoBoard::create(board.columns, board.rows, static_cast<float>(board.square),
                                            static_cast<float>(board.marker),
@@ -67,6 +73,22 @@ struct Matches {
     std::vector<cv::Point3f> board;
     std::vector<cv::Point2f> seen;
 };
+
+// Metres around a corner in which nothing else is printed.
+double clearAround(const MarkerBoard& board) {
+    if (board.kind == MarkerBoard::Kind::charuco) return 0.5 * (board.square - board.marker);
+    return std::min(board.marker / 8.0, board.square - board.marker);
+}
+
+// Markers give their corners to the pixel, and half a pixel off; a corner's own edges give it to a fraction.
+void refine(const cv::Mat& picture, const MarkerBoard& board, Matches& matches) {
+    if (matches.seen.size() < 2) return;
+    const double seen = cv::norm(matches.seen.front() - matches.seen.back());
+    const double apart = cv::norm(matches.board.front() - matches.board.back());
+    const int room = std::clamp(static_cast<int>(0.8 * clearAround(board) * seen / std::max(apart, 1e-6)), 2, 8);
+    cv::cornerSubPix(picture, matches.seen, {room, room}, {-1, -1},
+                     {cv::TermCriteria::COUNT | cv::TermCriteria::EPS, 40, 0.005});
+}
 
 double errorOf(const Matches& matches, const cv::Mat& intrinsics, const cv::Mat& distortion, const cv::Mat& turn,
                const cv::Mat& way) {
@@ -132,7 +154,7 @@ struct BoardFinder::Data {
             (cv::Mat_<double>(3, 3) << from.focal.x, 0, from.principal.x, 0, from.focal.y, from.principal.y, 0, 0, 1);
         distortion = cv::Mat(1, 5, CV_64F);
         std::copy(from.distortion.begin(), from.distortion.end(), distortion.begin<double>());
-        parameters->cornerRefinementMethod = cv::aruco::CORNER_REFINE_SUBPIX;
+        parameters->cornerRefinementMethod = cv::aruco::CORNER_REFINE_NONE; // `refine` knows how much room there is
         if (which.kind == MarkerBoard::Kind::charuco)
             charuco = charucoBoard(which);
         else
@@ -165,14 +187,14 @@ Matches BoardFinder::Data::matches(const cv::Mat& picture) const {
         std::vector<int> numbers;
         cv::aruco::interpolateCornersCharuco(corners, ids, picture, charuco, found.seen, numbers);
         for (const int number : numbers)
-            found.board.push_back(charuco->chessboardCorners[static_cast<std::size_t>(number)]);
+            found.board.push_back(upThePage(board, charuco->chessboardCorners[static_cast<std::size_t>(number)]));
         return found;
     }
     for (std::size_t i = 0; i < ids.size(); ++i) {
         const auto which = std::find(grid->ids.begin(), grid->ids.end(), ids[i]);
         if (which == grid->ids.end()) continue;
         const auto& points = grid->objPoints[static_cast<std::size_t>(which - grid->ids.begin())];
-        found.board.insert(found.board.end(), points.begin(), points.end());
+        for (const cv::Point3f& point : points) found.board.push_back(upThePage(board, point));
         found.seen.insert(found.seen.end(), corners[i].begin(), corners[i].end());
     }
     return found;
@@ -213,7 +235,9 @@ std::optional<BoardSighting> BoardFinder::find(std::span<const std::uint8_t> gre
     // OpenCV only reads it.
     const cv::Mat picture(size.y, size.x, CV_8UC1, const_cast<std::uint8_t*>(grey.data()));
     try {
-        return data_->sighting(data_->matches(picture));
+        Matches matches = data_->matches(picture);
+        refine(picture, data_->board, matches);
+        return data_->sighting(matches);
     } catch (const cv::Exception&) { // corners that lie in one line have no pose
         return std::nullopt;
     }

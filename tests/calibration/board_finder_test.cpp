@@ -71,12 +71,13 @@ struct Case {
     const char* name;
     MarkerBoard board;
     bool distorted;
+    double millimetres; ///< of 700 between camera and board; a marker's corner is less sharp than one of a chessboard
 };
 
 class BoardFinderPose : public ::testing::TestWithParam<Case> {};
 
-TEST_P(BoardFinderPose, IsTheTruthWithinAThirdOfAMillimetre) {
-    const auto& [name, board, distorted] = GetParam();
+TEST_P(BoardFinderPose, IsTheTruth) {
+    const auto& [name, board, distorted, millimetres] = GetParam();
     const CalibratedCamera camera = webcam(distorted);
     BoardFinder finder(board, camera);
     const Photographer photographer(board, camera);
@@ -92,7 +93,7 @@ TEST_P(BoardFinderPose, IsTheTruthWithinAThirdOfAMillimetre) {
         const auto sighting = finder.find(picture);
         ASSERT_TRUE(sighting) << number;
         const Pose found = worldFromDevice(*sighting, camera, deviceFromBoard);
-        EXPECT_LT(glm::distance(found.position, truth.position), 0.0008) << number;
+        EXPECT_LT(glm::distance(found.position, truth.position), 1e-3 * millimetres) << number;
         EXPECT_LT(degreesBetween(found.rotation, truth.rotation), 0.25) << number;
         EXPECT_LT(sighting->reprojectionError, 0.5);
         EXPECT_GT(sighting->coverage, 0.9);
@@ -101,8 +102,8 @@ TEST_P(BoardFinderPose, IsTheTruthWithinAThirdOfAMillimetre) {
 
 INSTANTIATE_TEST_SUITE_P(
     Boards, BoardFinderPose,
-    ::testing::Values(Case{"charuco", {}, false}, Case{"charucoThroughALens", {}, true},
-                      Case{"aruco", {MarkerBoard::Kind::aruco, 4, 5, 0.035, 0.028, "6X6_250"}, true}),
+    ::testing::Values(Case{"charuco", {}, false, 0.8}, Case{"charucoThroughALens", {}, true, 0.8},
+                      Case{"aruco", {MarkerBoard::Kind::aruco, 4, 5, 0.035, 0.028, "6X6_250"}, true, 1.5}),
     [](const auto& one) { return one.param.name; });
 
 TEST(BoardFinder, SeesNothingWhereThereIsNoBoard) {

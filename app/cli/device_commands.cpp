@@ -1,0 +1,363 @@
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <thread>
+#include <variant>
+#include <vector>
+
+#include <QCoreApplication>
+
+#include "app/cli/checks.h"
+#include "app/cli/commands.h"
+#include "core/base/error.h"
+#include "core/base/resources.h"
+#include "core/rig/rig_file.h"
+#include "devices/controllers/servo_link.h"
+#include "devices/simulator/simulated_bench.h"
+#include "devices/transport/address.h"
+#include "devices/transport/discovery.h"
+
+namespace lumorph::cli {
+
+namespace {
+
+using std::chrono::milliseconds;
+using Clock = std::chrono::steady_clock;
+
+constexpr milliseconds kPause{20};
+constexpr std::chrono::seconds kAnswerWithin{8}; // an Arduino starts anew when its port is opened
+constexpr std::chrono::seconds kMoveWithin{60};
+
+struct Arguments {
+    std::string uri;
+    std::string controller;
+    std::string profile;
+    std::string rig;
+    int actuator = 0;
+    int level = 0;
+    int levels = 33;
+    double seconds = 0.0;
+    bool mayJump = false;
+    bool confirmed = false;
+    bool json = false;
+};
+
+const char* phaseText(LinkPhase phase) {
+    switch (phase) {
+    case LinkPhase::off:
+        return "off";
+    case LinkPhase::connecting:
+        return "connecting";
+    case LinkPhase::handshake:
+        return "handshake";
+    case LinkPhase::unidentified:
+        return "unidentified";
+    case LinkPhase::disarmed:
+        return "ready";
+    case LinkPhase::starting:
+        return "starting";
+    case LinkPhase::live:
+        return "live";
+    case LinkPhase::stopped:
+        return "stopped";
+    case LinkPhase::lost:
+        return "lost";
+    }
+    return "";
+}
+
+ControllerKind kindNamed(const std::string& name) {
+    if (name == "lewansoul") return ControllerKind::lewansoul;
+    return name == "maestro" ? ControllerKind::maestro : ControllerKind::firmata;
+}
+
+// Rigs count their channels from 0; boards do not.
+void countFrom(DeviceProfile& profile, int first) {
+    if (profile.servos.empty()) return;
+    const auto least = std::ranges::min(profile.servos, {}, &ServoSetup::channel).channel;
+    for (ServoSetup& servo : profile.servos) servo.channel += first - least;
+}
+
+// What usually is at such an address.
+ControllerKind usualKind(const DeviceAddress& address) {
+    if (std::holds_alternative<HidAddress>(address)) return ControllerKind::lewansoul;
+    const auto* simulated = std::get_if<SimulatedAddress>(&address);
+    if (simulated != nullptr && simulated->device == "xarm") return ControllerKind::lewansoul;
+    if (simulated != nullptr && simulated->device == "maestro") return ControllerKind::maestro;
+    return ControllerKind::firmata;
+}
+
+int firstChannel(ControllerKind kind) {
+    if (kind == ControllerKind::firmata) return 2; // pins 0 and 1 are the serial line
+    return kind == ControllerKind::lewansoul ? 1 : 0;
+}
+
+DeviceProfile profileOf(const Arguments& arguments) {
+    const DeviceAddress address = parseDeviceAddress(arguments.uri);
+    DeviceProfile profile;
+    if (!arguments.profile.empty()) {
+        profile = readProfile(arguments.profile);
+    } else {
+        const ControllerKind kind = arguments.controller.empty() ? usualKind(address) : kindNamed(arguments.controller);
+        const std::string rig = arguments.rig.empty() ? resourceFile("models/tablet.glb").string() : arguments.rig;
+        profile = profileFor(readRig(rig), firstChannel(kind));
+        profile.controller = kind;
+        countFrom(profile, firstChannel(kind));
+    }
+    profile.address = arguments.uri;
+    profile.restOnExit = false; // a command leaves things where it was told to
+    return profile;
+}
+
+/// A link for the time of a command; what it tells goes to stderr as it comes.
+class Link {
+public:
+    Link(const Arguments& arguments, const Session& session,
+         std::function<void(std::span<const std::uint8_t>, bool)> onWire = {})
+        : session_(session), link_(profileOf(arguments), options(std::move(onWire))), confirmed_(arguments.confirmed) {
+        link_.connect();
+    }
+
+    ServoLink& operator*() noexcept { return link_; }
+    ServoLink* operator->() noexcept { return &link_; }
+
+    /// Waits until a condition on the status holds; false when the time is over.
+    template <class Condition> bool until(Condition condition, Clock::duration limit) {
+        const auto end = Clock::now() + limit;
+        while (!condition(link_.status())) {
+            if (limit > Clock::duration::zero() && Clock::now() > end) return false;
+            session_.throwIfCancelled();
+            tell();
+            std::this_thread::sleep_for(kPause);
+        }
+        tell();
+        return true;
+    }
+
+    /// Throws DeviceError with what the link says is wrong.
+    void untilReady() {
+        const auto answered = [](const LinkStatus& status) {
+            return status.controller.phase == ControllerPhase::refused ||
+                   (status.phase >= LinkPhase::unidentified && status.phase != LinkPhase::lost);
+        };
+        if (!until(answered, kAnswerWithin) || link_.status().controller.phase == ControllerPhase::refused)
+            throwTrouble();
+        if (link_.status().phase != LinkPhase::unidentified || !confirmed_) return;
+        link_.confirmIdentity();
+        if (!until([](const LinkStatus& status) { return status.phase == LinkPhase::disarmed; }, kAnswerWithin))
+            throwTrouble();
+    }
+
+    [[noreturn]] void throwTrouble() {
+        const LinkStatus status = link_.status();
+        const std::string subject = link_.profile().address;
+        if (status.trouble) throw DeviceError(subject, status.trouble->why, status.trouble->remedy);
+        throw DeviceError(subject, "it does not answer", "check its power, the address and the kind of controller");
+    }
+
+private:
+    LinkOptions options(std::function<void(std::span<const std::uint8_t>, bool)> onWire) {
+        LinkOptions options;
+        options.bench = &bench_;
+        options.onWire = std::move(onWire);
+        return options;
+    }
+    void tell() {
+        for (const LinkEvent& event : link_.takeEvents())
+            std::fprintf(stderr, "%s%s%s\n", event.text.c_str(),
+                         event.remedy.empty() ? "" : " Remedy: ", event.remedy.c_str());
+    }
+
+    const Session& session_;
+    SimulatedBench bench_;
+    ServoLink link_;
+    bool confirmed_;
+};
+
+/// Links and trackers live in threads of Qt, which wants to know of a program.
+struct QtProgram {
+    int count = 1;
+    char name[8] = "lumorph";
+    char* words[2] = {name, nullptr};
+    QCoreApplication application{count, words};
+};
+
+nlohmann::json jsonOf(const LinkStatus& status) {
+    nlohmann::json servos = nlohmann::json::array();
+    for (const ServoStatus& servo : status.servos) {
+        nlohmann::json one = {
+            {"wanted", servo.wanted},     {"commanded", servo.commanded}, {"microseconds", servo.microseconds},
+            {"attached", servo.attached}, {"known", servo.known},         {"readBack", nullptr}};
+        if (servo.readBack) one["readBack"] = *servo.readBack;
+        servos.push_back(std::move(one));
+    }
+    const ControllerState& controller = status.controller;
+    nlohmann::json json = {{"phase", phaseText(status.phase)},
+                           {"controller", controller.traits.name},
+                           {"firmware", controller.firmware},
+                           {"product", status.product},
+                           {"identity", status.identity},
+                           {"readsPosition", controller.traits.readsPosition},
+                           {"jumpsOnAttach", controller.traits.jumpsOnAttach},
+                           {"failsafe", controller.traits.failsafe},
+                           {"volts", nullptr},
+                           {"servos", servos}};
+    if (controller.volts) json["volts"] = *controller.volts;
+    return json;
+}
+
+void printText(const std::string& uri, const LinkStatus& status) {
+    const ControllerState& controller = status.controller;
+    std::printf("%s: %s%s%s, %s\n", uri.c_str(), controller.traits.name.c_str(),
+                controller.firmware.empty() ? "" : ", ", controller.firmware.c_str(), phaseText(status.phase));
+    if (controller.volts) std::printf("  battery   %.2f V\n", *controller.volts);
+    std::printf("  failsafe  %s\n", controller.traits.failsafeWord.c_str());
+    if (controller.traits.jumpsOnAttach) std::printf("  ! servos jump to their middle when they are started\n");
+    for (std::size_t i = 0; i < status.servos.size(); ++i) {
+        const ServoStatus& servo = status.servos[i];
+        std::printf("  servo %-3zu %s", i, servo.attached ? "on " : "off");
+        if (servo.attached) std::printf("  %.0f us", servo.microseconds);
+        if (servo.readBack) std::printf("  stands at %.3f of its way", *servo.readBack);
+        std::printf("\n");
+    }
+}
+
+void list(const Arguments& arguments) {
+    const QtProgram program;
+    const SimulatedBench bench;
+    const std::vector<FoundDevice> found = findDevices(&bench);
+    if (arguments.json) {
+        nlohmann::json devices = nlohmann::json::array();
+        for (const FoundDevice& device : found)
+            devices.push_back({{"address", device.address},
+                               {"name", device.name},
+                               {"hint", device.hint},
+                               {"identity", device.identity},
+                               {"trouble", device.trouble.why},
+                               {"remedy", device.trouble.remedy}});
+        printJson(devices);
+        return;
+    }
+    for (const FoundDevice& device : found) {
+        std::printf("%-36s %s%s%s\n", device.address.c_str(), device.name.c_str(), device.hint.empty() ? "" : "; ",
+                    device.hint.c_str());
+        if (!device.trouble.why.empty())
+            std::printf("  ! %s; %s\n", device.trouble.why.c_str(), device.trouble.remedy.c_str());
+    }
+}
+
+void probe(const Arguments& arguments, const Session& session) {
+    const QtProgram program;
+    Link link(arguments, session);
+    link.untilReady();
+    // Voltages and positions are asked for after the handshake.
+    static_cast<void>(link.until([](const LinkStatus& status) { return status.controller.volts.has_value(); },
+                                 std::chrono::seconds(1)));
+    if (arguments.json)
+        printJson(jsonOf(link->status()));
+    else
+        printText(arguments.uri, link->status());
+}
+
+void monitor(const Arguments& arguments, const Session& session) {
+    const QtProgram program;
+    std::mutex output;
+    const auto begun = Clock::now();
+    const auto print = [&](std::span<const std::uint8_t> bytes, bool sent) {
+        const std::scoped_lock lock(output);
+        std::printf("%9.3f %s", std::chrono::duration<double>(Clock::now() - begun).count(), sent ? "->" : "<-");
+        for (const std::uint8_t byte : bytes) std::printf(" %02X", byte);
+        std::printf("\n");
+        std::fflush(stdout);
+    };
+    Link link(arguments, session, print);
+    const auto seconds = std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(arguments.seconds));
+    static_cast<void>(link.until([](const LinkStatus&) { return false; }, seconds));
+}
+
+void move(const Arguments& arguments, const Session& session) {
+    const QtProgram program;
+    Link link(arguments, session);
+    const std::size_t count = link->profile().servos.size();
+    if (arguments.actuator < 0 || static_cast<std::size_t>(arguments.actuator) >= count)
+        throw InvalidInput("actuator " + std::to_string(arguments.actuator),
+                           "the profile has " + std::to_string(count) + " of them", "count from 0");
+    if (arguments.levels < 2 || arguments.levels > kMaxLevels || arguments.level < 0 ||
+        arguments.level >= arguments.levels)
+        throw InvalidInput("level " + std::to_string(arguments.level),
+                           "there are " + std::to_string(arguments.levels) + " levels", "count from 0");
+    link.untilReady();
+    if (link->status().phase == LinkPhase::unidentified)
+        throw DeviceError(arguments.uri, "it is not certain what this board is",
+                          "look at it with 'lumorph device probe', and say --is-right if it is");
+    const auto allKnown = [](const LinkStatus& status) {
+        return !status.controller.traits.readsPosition || std::ranges::all_of(status.servos, &ServoStatus::known);
+    };
+    static_cast<void>(link.until(allKnown, std::chrono::seconds(2)));
+    std::vector<double> strokes(count, 0.0);
+    const auto servo = static_cast<std::size_t>(arguments.actuator);
+    const LinkStatus before = link->status();
+    for (std::size_t i = 0; i < count; ++i)
+        if (before.servos[i].known) strokes[i] = before.servos[i].commanded;
+    strokes[servo] = strokeOf(Level{arguments.level}, arguments.levels);
+    link->command(strokes);
+    link->arm(arguments.mayJump);
+    const auto there = [&](const LinkStatus& status) {
+        return (status.phase == LinkPhase::live && std::abs(status.servos[servo].commanded - strokes[servo]) < 1e-3) ||
+               !status.waiting.empty();
+    };
+    if (!link.until(there, kMoveWithin)) link.throwTrouble();
+    const LinkStatus after = link->status();
+    if (!after.waiting.empty())
+        throw DeviceError(arguments.uri, "nobody knows where its servos stand, so they may jump when they start",
+                          "keep hands off, and say --may-jump");
+    if (arguments.json)
+        printJson(jsonOf(after));
+    else
+        printText(arguments.uri, after);
+}
+
+CLI::App* addCommand(CLI::App& group, const char* name, const char* what, Arguments& arguments) {
+    CLI::App* command = group.add_subcommand(name, what);
+    command
+        ->add_option("uri", arguments.uri,
+                     "serial:///dev/NAME?baud=N, bt://MAC, hid://VENDOR:PRODUCT?product=TEXT or sim://tablet")
+        ->required();
+    command
+        ->add_option("--controller", arguments.controller, "What it speaks (default: what such an address usually has)")
+        ->check(CLI::IsMember({"firmata", "lewansoul", "maestro"}));
+    command->add_option("--profile", arguments.profile, "A device profile: channels, pulses, limits");
+    command->add_option("--rig", arguments.rig, "The rig whose servos they are (default: the tablet)");
+    command->add_flag("--is-right", arguments.confirmed, "It is what it seems to be");
+    return command;
+}
+
+} // namespace
+
+void addDeviceCommands(CLI::App& app, Session& session) {
+    CLI::App* group = app.add_subcommand("device", "Servo controllers");
+    group->require_subcommand(1);
+    auto arguments = std::make_shared<Arguments>();
+    CLI::App* lists = group->add_subcommand("list", "What is connected to this machine, and the simulated boards");
+    lists->add_flag("--json", arguments->json, "Print one JSON value");
+    lists->callback([arguments] { list(*arguments); });
+    CLI::App* probes = addCommand(*group, "probe", "Ask a controller what it is; nothing moves", *arguments);
+    probes->add_flag("--json", arguments->json, "Print one JSON value");
+    probes->callback([arguments, &session] { probe(*arguments, session); });
+    CLI::App* monitors = addCommand(*group, "monitor", "Print every byte, both ways; nothing moves", *arguments);
+    monitors->add_option("--seconds", arguments->seconds, "How long (default: until Ctrl-C)")
+        ->check(numberBetween(0.0, 1e6));
+    monitors->callback([arguments, &session] { monitor(*arguments, session); });
+    CLI::App* moves = addCommand(*group, "move", "Start the servos softly and lead one to a level", *arguments);
+    moves->add_option("--actuator", arguments->actuator, "Which, from 0")->required();
+    moves->add_option("--level", arguments->level, "Where to, from 0")->required();
+    moves->add_option("--levels", arguments->levels, "How many levels there are (default 33)");
+    moves->add_flag("--may-jump", arguments->mayJump, "Servos whose place is unknown may jump when they start");
+    moves->add_flag("--json", arguments->json, "Print one JSON value");
+    moves->callback([arguments, &session] { move(*arguments, session); });
+}
+
+} // namespace lumorph::cli

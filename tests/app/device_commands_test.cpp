@@ -1,0 +1,111 @@
+#include <sstream>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/app/process.h"
+
+namespace lumorph::test {
+namespace {
+
+using ::testing::HasSubstr;
+
+const nlohmann::json* servoOf(const nlohmann::json& report, std::size_t number) { return &report["servos"][number]; }
+
+TEST(DeviceCommands, ListNamesTheSimulatedBoards) {
+    const nlohmann::json devices = lumorph({"device", "list", "--json"}).json();
+    std::vector<std::string> addresses;
+    for (const auto& device : devices) addresses.push_back(device["address"]);
+    for (const char* name : {"sim://tablet", "sim://uno", "sim://xarm", "sim://maestro"})
+        EXPECT_THAT(addresses, ::testing::Contains(name));
+}
+
+TEST(DeviceCommands, ProbeSaysWhatABoardIsAndMovesNothing) {
+    const nlohmann::json tablet = lumorph({"device", "probe", "sim://tablet", "--json"}).json();
+    EXPECT_EQ(tablet["phase"], "ready");
+    EXPECT_EQ(tablet["firmware"], "LumorphTablet 1.0");
+    EXPECT_EQ(tablet["failsafe"], true);
+    EXPECT_EQ(tablet["volts"], 7.4);
+    for (const auto& servo : tablet["servos"]) EXPECT_EQ(servo["attached"], false);
+    const nlohmann::json uno = lumorph({"device", "probe", "sim://uno", "--json"}).json();
+    EXPECT_EQ(uno["jumpsOnAttach"], true);
+    EXPECT_EQ(uno["failsafe"], false);
+}
+
+TEST(DeviceCommands, MoveLeadsOneServoToItsLevel) {
+    const Outcome refused = lumorph({"device", "move", "sim://tablet", "--actuator", "1", "--level", "16"});
+    EXPECT_EQ(refused.exitCode, 1);
+    EXPECT_THAT(refused.err, HasSubstr("they may jump"));
+    const Outcome outcome =
+        lumorph({"device", "move", "sim://tablet", "--actuator", "1", "--level", "16", "--may-jump", "--json"});
+    ASSERT_EQ(outcome.exitCode, 0) << outcome.err;
+    EXPECT_NEAR((*servoOf(outcome.json(), 1))["microseconds"].get<double>(), 1500.0, 1.0);
+    EXPECT_EQ((*servoOf(outcome.json(), 0))["microseconds"], 1000.0);
+    // This arm reads where its servos stand, so nobody has to be asked.
+    const Outcome arm = lumorph({"device", "move", "sim://xarm", "--actuator", "2", "--level", "8", "--json"});
+    ASSERT_EQ(arm.exitCode, 0) << arm.err;
+    EXPECT_NEAR((*servoOf(arm.json(), 2))["commanded"].get<double>(), 0.25, 0.002);
+}
+
+TEST(DeviceCommands, MonitorPrintsTheBytes) {
+    const Outcome outcome = lumorph({"device", "monitor", "sim://tablet", "--seconds", "0.5"});
+    EXPECT_EQ(outcome.exitCode, 0) << outcome.err;
+    EXPECT_THAT(outcome.out, HasSubstr("-> F0 79 F7\n"));
+    EXPECT_THAT(outcome.out, HasSubstr("<- F9 02 05"));
+    EXPECT_THAT(outcome.out, ::testing::Not(HasSubstr("-> E")));
+}
+
+struct Wrong {
+    std::vector<std::string> arguments;
+    int exitCode;
+    const char* says;
+};
+
+TEST(DeviceCommands, WrongArgumentsAreTold) {
+    const Wrong cases[] = {
+        {{"probe", "serial:///dev/ttyNothing"}, 1, "there is no port /dev/ttyNothing"},
+        {{"probe", "nonsense"}, 2, "its scheme is unknown"},
+        {{"probe", "sim://nobody"}, 1, "nobody"},
+        {{"move", "sim://tablet", "--actuator", "6", "--level", "1"}, 2, "the profile has 6 of them"},
+        {{"move", "sim://tablet", "--actuator", "0", "--level", "33"}, 2, "there are 33 levels"},
+        {{"move", "sim://tablet", "--actuator", "0", "--level", "-1"}, 2, "level -1"},
+        {{"probe", "sim://tablet", "--profile", "/nowhere.json"}, 1, "/nowhere.json"},
+        {{"probe", "sim://tablet", "--controller", "magic"}, 2, "magic"},
+    };
+    for (const Wrong& wrong : cases) {
+        SCOPED_TRACE(wrong.says);
+        std::vector<std::string> arguments{"device"};
+        arguments.insert(arguments.end(), wrong.arguments.begin(), wrong.arguments.end());
+        const Outcome outcome = lumorph(arguments);
+        EXPECT_EQ(outcome.exitCode, wrong.exitCode) << outcome.err;
+        EXPECT_THAT(outcome.err, HasSubstr(wrong.says));
+    }
+}
+
+TEST(TrackCommand, PrintsOneJsonObjectAFrame) {
+    const Outcome outcome = lumorph({"track", "monitor", "sim://head?rate=100", "--frames", "5", "--json"});
+    ASSERT_EQ(outcome.exitCode, 0) << outcome.err;
+    std::istringstream lines(outcome.out);
+    int count = 0;
+    for (std::string line; std::getline(lines, line); ++count) {
+        const nlohmann::json frame = nlohmann::json::parse(line);
+        ASSERT_EQ(frame["bodies"].size(), 1U);
+        const auto& body = frame["bodies"][0];
+        EXPECT_EQ(body["name"], "head");
+        EXPECT_EQ(body["position"].size(), 3U);
+        const auto& q = body["rotation"];
+        double length = 0.0;
+        for (const auto& part : q) length += part.get<double>() * part.get<double>();
+        EXPECT_NEAR(length, 1.0, 1e-9);
+    }
+    EXPECT_EQ(count, 5);
+}
+
+TEST(TrackCommand, SaysWhatIsWrongWithAnAddress) {
+    const Outcome outcome = lumorph({"track", "monitor", "opentrack://nonsense:x"});
+    EXPECT_EQ(outcome.exitCode, 2);
+    EXPECT_THAT(outcome.err, HasSubstr("opentrack"));
+}
+
+} // namespace
+} // namespace lumorph::test
