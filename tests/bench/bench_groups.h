@@ -22,5 +22,6 @@ void benchLive(const Filter& filter, Report& report);
 void benchRefine(const Filter& filter, Report& report);
 void benchScaling(const Filter& filter, Report& report);
 void benchFrame(const Filter& filter, Report& report);
+void benchDevices(const Filter& filter, Report& report);
 
 } // namespace lumorph::bench

@@ -18,7 +18,7 @@ struct Group {
 
 constexpr Group kGroups[] = {{"voting", benchVoting},   {"voxelize", benchVoxelize}, {"build", benchBuild},
                              {"loop", benchLoop},       {"live", benchLive},         {"refine", benchRefine},
-                             {"scaling", benchScaling}, {"frame", benchFrame}};
+                             {"scaling", benchScaling}, {"frame", benchFrame},       {"devices", benchDevices}};
 
 } // namespace
 
