@@ -2,14 +2,28 @@
 
 #include <algorithm>
 #include <chrono>
+#include <filesystem>
+
+#include <unistd.h>
 
 namespace lumorph::firmware_test {
 
-LiveBoard::LiveBoard() : thread_([this] { live(); }) {}
+LiveBoard::LiveBoard()
+    : path_(std::filesystem::temp_directory_path() / ("lumorph-board-" + std::to_string(::getpid()))) {
+    plug();
+    thread_ = std::thread([this] { live(); });
+}
 
 LiveBoard::~LiveBoard() {
     ends_ = true;
     thread_.join();
+    std::filesystem::remove(path_);
+}
+
+void LiveBoard::plug() {
+    pty_ = std::make_unique<Pty>();
+    std::filesystem::remove(path_);
+    std::filesystem::create_symlink(pty_->path(), path_);
 }
 
 void LiveBoard::live() {
@@ -19,19 +33,16 @@ void LiveBoard::live() {
     Bytes said;
     board.onSaid([&](std::uint8_t byte) { said.push_back(byte); });
     auto last = Clock::now();
-    bool plugged = true;
     while (!ends_) {
         std::this_thread::sleep_for(std::chrono::milliseconds(2));
         const auto now = Clock::now();
         board.run(std::min(20.0, std::chrono::duration<double, std::milli>(now - last).count()));
         last = now;
-        if (plugged && cut_) {
-            pty_.unplug();
-            plugged = false;
-        }
-        if (plugged) {
-            if (!said.empty()) pty_.send(said);
-            board.send(pty_.receive());
+        if (pty_ && !plugged_) pty_.reset();
+        if (!pty_ && plugged_) plug();
+        if (pty_) {
+            if (!said.empty()) pty_->send(said);
+            board.send(pty_->receive());
         }
         said.clear();
         const std::vector<Pulse> fresh = board.takePulses();

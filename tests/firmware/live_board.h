@@ -1,6 +1,7 @@
 #pragma once
 
 #include <atomic>
+#include <memory>
 #include <mutex>
 #include <string>
 #include <thread>
@@ -18,8 +19,10 @@ public:
     LiveBoard();
     ~LiveBoard();
 
-    [[nodiscard]] const std::string& path() const { return pty_.path(); }
-    void cutTheLine() { cut_ = true; }
+    /// A link to the pseudo-terminal there is now; it stays the same when the line is cut and mended.
+    [[nodiscard]] const std::string& path() const { return path_; }
+    void cutTheLine() { plugged_ = false; }
+    void mendTheLine() { plugged_ = true; }
     [[nodiscard]] std::vector<Pulse> pulses() const; ///< all until now
     /// Width of the newest pulse on a pin, if it is no older than two frames; 0: no pulse.
     [[nodiscard]] double widthNow(int pin) const;
@@ -27,12 +30,14 @@ public:
 
 private:
     void live();
+    void plug();
 
-    Pty pty_;
+    std::string path_;
+    std::unique_ptr<Pty> pty_; ///< of the board's thread
     mutable std::mutex mutex_;
     std::vector<Pulse> pulses_;
     double now_ = 0.0;
-    std::atomic<bool> cut_{false};
+    std::atomic<bool> plugged_{true};
     std::atomic<bool> ends_{false};
     std::thread thread_;
 };

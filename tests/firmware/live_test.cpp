@@ -1,6 +1,10 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <map>
+#include <random>
 #include <string>
 #include <thread>
 #include <vector>
@@ -115,6 +119,64 @@ TEST_F(LiveLink, ACutLineLetsServosGo) {
     board_.cutTheLine();
     EXPECT_TRUE(comesTrue([&] { return noneMoves(board_, profile_); }));
     EXPECT_TRUE(comesTrue([&] { return link.status().phase == LinkPhase::lost; }));
+}
+
+/// Largest step of a pulse's width from one frame to the next, microseconds; starts after a pause do not count.
+double largestStep(const std::vector<Pulse>& pulses) {
+    std::map<int, Pulse> before;
+    double largest = 0.0;
+    for (const Pulse& pulse : pulses) {
+        const auto last = before.find(pulse.pin);
+        if (last != before.end() && pulse.start - last->second.start < 30.0)
+            largest = std::max(largest, std::abs(pulse.width - last->second.width));
+        before[pulse.pin] = pulse;
+    }
+    return largest;
+}
+
+// Two cuts here; twenty in ten minutes where LUMORPH_SOAK is set.
+TEST_F(LiveLink, TheLineIsCutAndMendedAgainAndAgain) {
+    const bool soak = std::getenv("LUMORPH_SOAK") != nullptr;
+    const int cuts = soak ? 20 : 2;
+    const auto between = soak ? 26s : 1s;
+    ServoLink link(profile_, {});
+    ASSERT_TRUE(isLive(link));
+    std::mt19937 random(5);
+    std::uniform_real_distribution<double> any(0.0, 1.0);
+    double slowest = 0.0;
+    for (int cut = 0; cut < cuts; ++cut) {
+        const auto until = std::chrono::steady_clock::now() + between;
+        while (std::chrono::steady_clock::now() < until) {
+            std::vector<double> strokes(6);
+            for (double& stroke : strokes) stroke = any(random);
+            link.command(strokes);
+            std::this_thread::sleep_for(100ms);
+        }
+        board_.cutTheLine();
+        ASSERT_TRUE(comesTrue([&] { return link.status().phase == LinkPhase::lost; })) << cut;
+        ASSERT_TRUE(comesTrue([&] { return noneMoves(board_, profile_); })) << cut;
+        const auto mended = std::chrono::steady_clock::now();
+        board_.mendTheLine();
+        ASSERT_TRUE(comesTrue([&] { return link.status().phase == LinkPhase::disarmed; })) << cut;
+        slowest = std::max(slowest, std::chrono::duration<double>(std::chrono::steady_clock::now() - mended).count());
+        EXPECT_TRUE(noneMoves(board_, profile_)) << "nothing starts by itself";
+        link.arm(true);
+        ASSERT_TRUE(comesTrue([&] { return link.status().phase == LinkPhase::live; })) << cut;
+    }
+    const std::vector<Pulse> pulses = board_.pulses();
+    for (const Pulse& pulse : pulses) {
+        ASSERT_GE(pulse.width, 1000.0 - 4.0);
+        ASSERT_LE(pulse.width, 2000.0 + 4.0);
+    }
+    // A frame lasts 20 ms; on a busy machine the studio's time and the board's differ by some more.
+    const double frame = 4.0 * 1000.0 * 0.020;
+    const double largest = largestStep(pulses);
+    EXPECT_LE(largest, 3.0 * frame) << "1000 us are a stroke, and 4 strokes a second the limit";
+    if (soak) {
+        EXPECT_LE(slowest, 3.0) << "seconds until it was found again";
+    }
+    std::printf("%d cuts, found again within %.2f s; %zu pulses, largest step %.1f us a frame (limit %.0f)\n", cuts,
+                slowest, pulses.size(), largest, frame);
 }
 
 } // namespace
