@@ -32,7 +32,7 @@ constexpr auto kGeometryKey = "window/geometry";
 constexpr auto kWorkspaceKey = "window/workspace";
 
 /// In the order of the work; menus without a command in sight are hidden.
-const QStringList kMenus{"File", "Edit", "View", "Target", "Rig", "Field", "Scene", "Help"};
+const QStringList kMenus{"File", "Edit", "View", "Target", "Rig", "Field", "Scene", "Device", "Help"};
 
 /// Commands of one kind stand together: "view.dock.target" is of the kind "view.dock".
 QString kindOf(const QString& id) { return id.section('.', 0, -2); }
