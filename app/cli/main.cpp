@@ -50,6 +50,7 @@ int main(int argc, char** argv) {
     lumorph::cli::addMatchCommand(app, session);
     lumorph::cli::addProjectCommand(app, session);
 #ifdef LUMORPH_WITH_CALIBRATION
+    lumorph::cli::addRecordingCommands(app);
     lumorph::cli::addRenderCommand(app, session);
 #endif
     lumorph::cli::addBenchCommand(app);

@@ -23,7 +23,7 @@ bool EscapeTwice::eventFilter(QObject* watched, QEvent* event) {
     const auto* key = static_cast<QKeyEvent*>(event);
     if (key->isAutoRepeat()) return false;
     if (key->key() != Qt::Key_Escape) {
-        if (type == QEvent::KeyPress) firstAt_.reset();
+        if (type == QEvent::KeyPress) twice_.reset();
         return false;
     }
     if (type == QEvent::KeyRelease)
@@ -37,12 +37,7 @@ void EscapeTwice::press() {
     const Microseconds now = clock_.now();
     down_ = true;
     downAt_ = now;
-    if (firstAt_ && now - *firstAt_ <= kWithin) {
-        firstAt_.reset();
-        emit pressed();
-        return;
-    }
-    firstAt_ = now;
+    if (twice_.press(now)) emit pressed();
 }
 
 } // namespace lumorph::studio

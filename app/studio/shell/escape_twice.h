@@ -1,10 +1,8 @@
 #pragma once
 
-#include <optional>
-
 #include <QObject>
 
-#include "core/base/clock.h"
+#include "app/studio/shell/press_twice.h"
 
 namespace lumorph::studio {
 
@@ -12,8 +10,6 @@ namespace lumorph::studio {
 class EscapeTwice : public QObject {
     Q_OBJECT
 public:
-    static constexpr Microseconds kWithin{600'000};
-
     /// `clock` outlives it.
     explicit EscapeTwice(const Clock& clock, QObject* parent = nullptr);
 
@@ -29,7 +25,7 @@ private:
     const Clock& clock_;
     bool down_ = false;
     Microseconds downAt_{0};
-    std::optional<Microseconds> firstAt_;
+    PressTwice twice_;
 };
 
 } // namespace lumorph::studio

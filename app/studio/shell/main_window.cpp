@@ -28,6 +28,7 @@ namespace lumorph::studio {
 namespace {
 
 constexpr QSize kUsualSize{1440, 900};
+constexpr QSize kFrame{8, 40}; // what a desktop puts around a window
 constexpr auto kGeometryKey = "window/geometry";
 constexpr auto kWorkspaceKey = "window/workspace";
 
@@ -98,7 +99,7 @@ MainWindow::MainWindow(Studio& studio, std::vector<std::unique_ptr<Workspace>> w
     setPlacing();
     connect(new EscapeTwice(data_->clock, this), &EscapeTwice::pressed, &studio.loop, &StudioLoop::stop);
     qApp->installEventFilter(this);
-    resize(kUsualSize.boundedTo(screen()->availableSize()));
+    resize(kUsualSize.boundedTo(screen()->availableSize() - kFrame));
     restoreGeometry(studio.settings.value(kGeometryKey).toByteArray());
     showFirstWorkspace();
     showTitle();

@@ -6,7 +6,6 @@
 #include <QMenu>
 #include <QPainter>
 #include <QSignalBlocker>
-#include <QToolButton>
 
 #include "app/studio/look/icons.h"
 #include "app/studio/look/palette.h"
@@ -47,6 +46,7 @@ constexpr ModeWords kModes[] = {
 StageBar::StageBar(Studio& studio, QWidget* parent) : QWidget(parent), studio_(studio) {
     setObjectName("scene.bar");
     setFixedHeight(kHeight);
+    setSizePolicy(QSizePolicy::Ignored, QSizePolicy::Fixed); // words give way, not the pictures
     auto* row = new QHBoxLayout(this);
     row->setContentsMargins(8, 0, 8, 0);
     row->setSpacing(4);
@@ -76,7 +76,7 @@ void StageBar::addModes() {
         auto* button = new QToolButton(this);
         button->setObjectName(QString("bar.") + words.id);
         button->setDefaultAction(action);
-        button->setToolButtonStyle(Qt::ToolButtonTextBesideIcon);
+        worded_.push_back(button);
         layout()->addWidget(button);
         action->setChecked(words.mode == mode_);
     }
@@ -103,7 +103,7 @@ void StageBar::addToggles() {
     output->setIconSize({20, 20});
     output->setText(tr("Output"));
     output->setToolTip(tr("Where each projector's picture goes: a window, a screen, a test pattern"));
-    output->setToolButtonStyle(Qt::ToolButtonTextBesideIcon);
+    worded_.push_back(output);
     output->setPopupMode(QToolButton::InstantPopup);
     auto* menu = new QMenu(output);
     menu->setObjectName("output.menu");
@@ -123,7 +123,25 @@ void StageBar::setMode(StageMode mode) {
     // Blocked actions do not tell their buttons.
     for (QToolButton* button : findChildren<QToolButton*>())
         if (button->defaultAction() != nullptr) button->setChecked(button->defaultAction()->isChecked());
+    fitWords();
     if (std::exchange(mode_, mode) != mode) emit modeChanged();
+}
+
+void StageBar::fitWords() {
+    const auto word = [this](auto wanted) {
+        for (QToolButton* button : worded_)
+            button->setToolButtonStyle(wanted(*button) ? Qt::ToolButtonTextBesideIcon : Qt::ToolButtonIconOnly);
+        layout()->invalidate();
+        return layout()->sizeHint().width() <= width();
+    };
+    if (word([](const QToolButton&) { return true; })) return;
+    if (word([](const QToolButton& button) { return button.isChecked(); })) return;
+    word([](const QToolButton&) { return false; });
+}
+
+void StageBar::resizeEvent(QResizeEvent* event) {
+    QWidget::resizeEvent(event);
+    fitWords();
 }
 
 bool StageBar::elsewhere() const { return elsewhere_->isChecked(); }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <QLabel>
+#include <QToolButton>
 #include <QWidget>
 
 #include "app/studio/shell/studio.h"
@@ -32,8 +33,11 @@ signals:
 
 protected:
     void paintEvent(QPaintEvent* event) override;
+    void resizeEvent(QResizeEvent* event) override;
 
 private:
+    /// Words stand beside the icons as long as there is room: first that of the chosen view alone is left, then none.
+    void fitWords();
     void addModes();
     void addToggles();
     QAction* add(const QString& id, const QString& text, const QString& icon, const QString& tip, bool checkable,
@@ -45,6 +49,7 @@ private:
     QAction* elsewhere_ = nullptr;
     QAction* latency_ = nullptr;
     QLabel* time_ = nullptr;
+    std::vector<QToolButton*> worded_; ///< buttons with a word beside their icon
 };
 
 } // namespace lumorph::studio

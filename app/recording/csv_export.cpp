@@ -1,0 +1,117 @@
+#include <algorithm>
+#include <charconv>
+#include <span>
+#include <sstream>
+
+#include "app/recording/recording.h"
+#include "core/base/atomic_file.h"
+#include "core/base/error.h"
+
+namespace lumorph {
+namespace {
+
+// The shortest text that gives the same number again, with a point in every language.
+std::string number(double value) {
+    char text[32];
+    const auto end = std::to_chars(std::begin(text), std::end(text), value).ptr;
+    return {std::begin(text), end};
+}
+
+std::string seconds(Microseconds time) { return number(static_cast<double>(time.count()) / 1e6); }
+
+std::string quoted(const std::string& text) {
+    if (text.find_first_of(",\"\n\r") == std::string::npos) return text;
+    std::string result = "\"";
+    for (const char c : text) result += c == '"' ? std::string("\"\"") : std::string(1, c);
+    return result + '"';
+}
+
+std::string numbered(const char* name, std::size_t count) {
+    std::string header;
+    for (std::size_t i = 0; i < count; ++i) header += ',' + (name + std::to_string(i));
+    return header;
+}
+
+template <class Values> std::string cells(const Values& values, std::size_t count) {
+    std::string text;
+    for (std::size_t i = 0; i < count; ++i) {
+        text += ',';
+        if (i < values.size()) text += number(static_cast<double>(values[i]));
+    }
+    return text;
+}
+
+std::string framesCsv(const std::vector<FrameRow>& frames) {
+    std::size_t servos = 0;
+    std::size_t levels = 0;
+    for (const FrameRow& row : frames) {
+        servos = std::max(servos, row.wanted.size());
+        levels = std::max(levels, row.levels.size());
+    }
+    std::ostringstream out;
+    out << "time_s,number,animation_s,turned_rad,scene_s" << numbered("level_", levels) << numbered("wanted_", servos)
+        << numbered("estimated_", servos)
+        << ",device_x_m,device_y_m,device_z_m,eye_x_m,eye_y_m,eye_z_m,viewer,iou,frame_ms,latency_ms\n";
+    for (const FrameRow& row : frames) {
+        out << seconds(row.time) << ',' << row.number << ',' << number(row.seconds) << ',' << number(row.turned) << ','
+            << number(row.sceneSeconds) << cells(row.levels, levels) << cells(row.wanted, servos)
+            << cells(row.estimated, servos);
+        for (int axis = 0; axis < 3; ++axis) out << ',' << number(row.worldFromDevice[3][axis]);
+        for (int axis = 0; axis < 3; ++axis) out << ',' << (row.eye ? number((*row.eye)[axis]) : std::string());
+        out << ',' << quoted(row.viewer) << ',' << number(row.iou) << ',' << number(row.milliseconds) << ','
+            << number(row.latency) << '\n';
+    }
+    return out.str();
+}
+
+std::string posesCsv(const std::vector<PoseRow>& poses) {
+    std::ostringstream out;
+    out << "time_s,measured_s,source,name,id,valid,x_m,y_m,z_m,qx,qy,qz,qw\n";
+    for (const PoseRow& row : poses) {
+        const auto& [p, q] = row.pose;
+        out << seconds(row.time) << ',' << seconds(row.measured) << ',' << quoted(row.source) << ',' << quoted(row.name)
+            << ',' << row.id << ',' << (row.valid ? 1 : 0);
+        for (const double value : {p.x, p.y, p.z, q.x, q.y, q.z, q.w}) out << ',' << number(value);
+        out << '\n';
+    }
+    return out.str();
+}
+
+std::string eventsCsv(const std::vector<EventRow>& events) {
+    std::ostringstream out;
+    out << "time_s,kind,text,remedy\n";
+    for (const EventRow& row : events)
+        out << seconds(row.time) << ',' << quoted(row.kind) << ',' << quoted(row.text) << ',' << quoted(row.remedy)
+            << '\n';
+    return out.str();
+}
+
+std::string servoCsv(const std::vector<ServoRow>& rows) {
+    constexpr auto kDigits = "0123456789ABCDEF";
+    std::ostringstream out;
+    out << "time_s,kind,bytes\n";
+    for (const ServoRow& row : rows) {
+        out << seconds(row.time) << ',' << quoted(row.kind) << ',';
+        for (const std::uint8_t byte : row.bytes) out << kDigits[byte >> 4] << kDigits[byte & 15];
+        out << '\n';
+    }
+    return out.str();
+}
+
+void write(const std::filesystem::path& file, const std::string& text) {
+    writeFileAtomically(file, std::as_bytes(std::span(text)));
+}
+
+} // namespace
+
+void exportCsv(const Recording& recording, const std::filesystem::path& folder) {
+    std::error_code problem;
+    std::filesystem::create_directories(folder, problem);
+    if (problem) throw DeviceError(folder.string(), problem.message(), "choose a folder that you may write to");
+    write(folder / "frames.csv", framesCsv(recording.frames));
+    write(folder / "poses.csv", posesCsv(recording.poses));
+    write(folder / "events.csv", eventsCsv(recording.events));
+    write(folder / "servo.csv", servoCsv(recording.servo));
+}
+
+} // namespace lumorph

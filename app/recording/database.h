@@ -1,0 +1,65 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+struct sqlite3;
+struct sqlite3_stmt;
+
+namespace lumorph {
+
+/// One prepared statement. Columns and parameters count from 0.
+class Statement {
+public:
+    Statement(sqlite3& database, std::string_view sql, std::string file);
+
+    void bind(int parameter, std::int64_t value);
+    void bind(int parameter, double value);
+    void bind(int parameter, const std::string& value);
+    void bind(int parameter, std::span<const std::uint8_t> value);
+    void bindNothing(int parameter);
+    /// True while there is a row. Throws DeviceError when the disk refuses, DataError when the file is damaged.
+    bool step();
+    /// Ready to be run again.
+    void reset();
+
+    [[nodiscard]] std::int64_t integer(int column) const;
+    [[nodiscard]] double real(int column) const;
+    [[nodiscard]] std::string text(int column) const;
+    [[nodiscard]] std::vector<std::uint8_t> bytes(int column) const;
+    [[nodiscard]] bool isNothing(int column) const;
+
+private:
+    struct Finish {
+        void operator()(sqlite3_stmt* statement) const;
+    };
+    std::unique_ptr<sqlite3_stmt, Finish> statement_;
+    sqlite3& database_;
+    std::string file_;
+};
+
+/// An SQLite file. Errors name it.
+class Database {
+public:
+    enum class Mode { readOnly, create };
+    /// `create` throws DeviceError for a file that is there already.
+    Database(const std::filesystem::path& file, Mode mode);
+
+    void run(const char* sql);
+    [[nodiscard]] Statement prepare(std::string_view sql);
+
+private:
+    struct Close {
+        void operator()(sqlite3* database) const;
+    };
+    std::unique_ptr<sqlite3, Close> database_;
+    std::string file_;
+};
+
+} // namespace lumorph
