@@ -9,6 +9,8 @@ install(DIRECTORY resources/fonts resources/icons resources/materials resources/
         PATTERN generator EXCLUDE PATTERN CMakeLists.txt EXCLUDE)
 install(FILES README.md CHANGELOG.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
 install(FILES packaging/desktop/copyright DESTINATION ${CMAKE_INSTALL_DOCDIR})
+# Who may open servo controllers. udev looks in /usr/lib and /usr/local/lib, not in the folders of an architecture.
+install(FILES packaging/udev/60-lumorph.rules DESTINATION lib/udev/rules.d)
 
 if(TARGET lumorph-studio)
     install(TARGETS lumorph-studio RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})

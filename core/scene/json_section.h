@@ -6,7 +6,7 @@
 
 #include <nlohmann/json.hpp>
 
-/// Reading the JSON of a project file. Private to core/scene.
+/// Reading the JSON of a project file or a device profile. Private to the sources that do.
 namespace lumorph {
 
 /// One JSON object of a project and where it stands. What has been read is taken out, so that the rest is what this

@@ -36,11 +36,15 @@ public:
     ServoGuard(ServoGuard&&) noexcept;
     ServoGuard& operator=(ServoGuard&&) noexcept;
 
-    /// Other limits or channels; servos whose channel or direction changed are detached and must be armed again.
+    /// Other limits or channels; servos whose channel or direction changed are detached and must be armed again, all of
+    /// them where their number changed. A servo that moves brakes to a stop by the limits it had before it takes the
+    /// new ones over. Where its limits were drawn in past it, it comes back within them as slowly as it moves
+    /// otherwise, and goes no farther out meanwhile. Throws as checkProfile; then all stays as it was.
     void setProfile(const DeviceProfile& profile);
 
     /// A servo's position was read, or is remembered from before, strokes; nothing: it is not known any more (after a
-    /// reboot, or when it was moved by hand). Not finite: as nothing.
+    /// reboot, or when it was moved by hand). Not finite, or clearly outside its limits: as nothing. Of an attached
+    /// servo only "not known" counts, and detaches it.
     void setKnown(std::size_t servo, std::optional<double> stroke);
     [[nodiscard]] std::optional<double> known(std::size_t servo) const;
 
@@ -54,9 +58,12 @@ public:
     /// Latched: all servos are detached with the next step.
     void stop();
 
-    /// What is wanted of all servos, strokes; latest wins. Values beyond [0, 1] are clamped. False, and nothing
+    /// What is wanted of all servos, strokes; latest wins. Until the first, servos stay where they are (unknown ones
+    /// start at rest). Values beyond [0, 1] are clamped. False, and nothing
     /// changes, where one is not finite or the count is wrong.
     bool want(std::span<const double> strokes);
+    /// What is wanted of one servo, stroke; where it stays, while nothing is.
+    [[nodiscard]] double wanted(std::size_t servo) const noexcept;
     /// Of one servo alone, around where it is: for "wiggle this one". Ends by itself; refused (false) unless live.
     bool wiggle(std::size_t servo);
     /// Everything slower by the profile's share, as long as it is on.

@@ -64,7 +64,7 @@ struct LinkOptions {
 
 /// A device with its servos: transport, controller and guard in a thread of their own, and a hand for it. Everything
 /// here may be called from any thread and returns at once. While the window's thread is stuck, servos go on to the last
-/// command and stop() still works.
+/// command and stop() still works. A QCoreApplication must be there.
 class ServoLink {
 public:
     /// Throws as checkProfile and parseDeviceAddress.

@@ -45,6 +45,8 @@ public:
     virtual void setFaults(const BoardFaults& faults) = 0;
     /// Brown-out: servos go limp, all state is lost, and it starts anew (Firmata says so unasked).
     virtual void reboot() = 0;
+    /// In the order of the board's numbers: pins from 2 (`tablet`, `uno`), ids from 1 (`xarm`), channels from 0
+    /// (`maestro`).
     [[nodiscard]] virtual std::vector<SimulatedServo> servos() const = 0;
 
     // For the transport: the far end of the wire. Times are of the bench's clock.

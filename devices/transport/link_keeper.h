@@ -4,21 +4,26 @@
 #include <optional>
 
 #include "core/base/clock.h"
+#include "devices/transport/link_world.h"
 #include "devices/transport/transport.h"
 
 namespace lumorph {
 
 /// Keeps a link open: reopens it with growing pauses (0.2 s, doubling, at most 2 s; at once where the device has just
 /// come back), and finds a device again whose port has another name by its serial number or, without one, by VID:PID. A
-/// dead link floods errors: it is closed at the first. Lives in the transport's thread.
+/// dead link floods errors: it is closed at the first. Lives in the transport's thread. Its events may call all of it,
+/// but not destroy it.
 class LinkKeeper {
 public:
     struct Events {
         std::function<void()> opened; ///< all that was known of the device may have changed
         std::function<void(std::span<const std::uint8_t>)> received;
-        std::function<void(const LinkTrouble&)> lost; ///< once for each new trouble, not for each attempt
+        /// An open link is gone, or an attempt failed for another reason than the one before: once for each new
+        /// trouble, not for each attempt. What makeTransport refuses is told here too.
+        std::function<void(const LinkTrouble&)> lost;
     };
     LinkKeeper(DeviceAddress address, Events events, SimulatedBench* bench);
+    LinkKeeper(DeviceAddress address, Events events, LinkWorld world);
     ~LinkKeeper();
 
     void start(Microseconds now);

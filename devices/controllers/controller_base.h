@@ -1,0 +1,114 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "devices/controllers/pulse_plan.h"
+#include "devices/controllers/servo_controller.h"
+
+namespace lumorph {
+
+/// Tells when something that repeats is due. A clock that was set back makes it due.
+class Repeater {
+public:
+    explicit Repeater(Microseconds interval) : interval_(interval) {}
+    [[nodiscard]] bool due(Microseconds now) const noexcept {
+        return !last_ || now < *last_ || now - *last_ >= interval_;
+    }
+    void done(Microseconds now) noexcept { last_ = now; }
+    /// Due at once.
+    void reset() noexcept { last_.reset(); }
+    bool take(Microseconds now) noexcept {
+        if (!due(now)) return false;
+        done(now);
+        return true;
+    }
+
+private:
+    Microseconds interval_;
+    std::optional<Microseconds> last_;
+};
+
+/// What all controllers have in common: the plan of pulses, messages in the order of their urgency, silence, troubles
+/// and the battery.
+class ControllerBase : public ServoController {
+public:
+    /// A controller that has said nothing for so long is taken for silent.
+    static constexpr Microseconds kSilence{1'000'000};
+    static constexpr double kLowBattery = 6.0; ///< volts; a pack of two lithium cells is empty there
+
+    void opened(const std::string& product, Microseconds now) final;
+    void received(std::span<const std::uint8_t> bytes, Microseconds now) final;
+    void tick(Microseconds now) final;
+    void confirm() final;
+    void send(const GuardedPulses& pulses, Microseconds now) final { command(pulses.servos(), now); }
+    [[nodiscard]] std::vector<std::vector<std::uint8_t>> takeOutput() final;
+    [[nodiscard]] const ControllerState& state() const final { return state_; }
+
+protected:
+    using Messages = std::vector<std::vector<std::uint8_t>>;
+    enum class Concern { refusal, silence, board, battery }; ///< the first that there is, is told
+
+    ControllerBase(const DeviceProfile& profile, const PulseScale& scale, ControllerTraits traits);
+
+    virtual void begin(Microseconds now) = 0;
+    virtual void take(std::span<const std::uint8_t> bytes, Microseconds now) = 0;
+    virtual void work(Microseconds now) = 0;
+    [[nodiscard]] virtual Messages detachments(std::span<const std::size_t> servos) = 0;
+    [[nodiscard]] virtual Messages changes(std::span<const PulsePlan::Change> changes) = 0;
+    /// Why it may be silent: it never answered since the link was opened, or has fallen silent.
+    [[nodiscard]] virtual LinkTrouble silence(bool never) const = 0;
+
+    /// Dropped where dozens wait already: nobody takes them.
+    void ask(std::vector<std::uint8_t> message);
+    /// A sound answer came.
+    void heard(Microseconds now);
+    [[nodiscard]] bool everHeard() const noexcept { return everHeard_; }
+    void becomeReady();
+    void refuse(LinkTrouble why);
+    /// It started anew, or let go of its servos by itself.
+    void rebooted();
+    void trouble(Concern concern, std::optional<LinkTrouble> trouble);
+    void takeVoltage(double volts);
+    /// When something was last written.
+    [[nodiscard]] Microseconds lastWritten() const noexcept { return lastWritten_; }
+    [[nodiscard]] std::optional<std::size_t> servoOn(int channel) const;
+
+    ControllerState state_;
+    PulsePlan plan_;
+    std::string product_;
+
+private:
+    friend struct UnguardedAccess; // of tests, which have no guard
+    void command(std::span<const GuardedPulse> pulses, Microseconds now);
+
+    Messages questions_;
+    std::array<std::optional<LinkTrouble>, 4> troubles_;
+    Microseconds now_{0};
+    Microseconds heard_{0};
+    Microseconds lastWritten_{0};
+    bool everHeard_ = false;
+};
+
+/// Baud rate of a link as far as its address tells it: 9600 over Bluetooth (HC-06), 57600 where nobody says.
+[[nodiscard]] int baudOf(const DeviceAddress& address);
+/// Sets of so many bytes that a serial link takes a second, half of it left for everything else.
+[[nodiscard]] double setsPerSecond(int baud, std::size_t bytes);
+/// Sets a second that the profile wants and the link takes.
+[[nodiscard]] double setsPerSecond(const DeviceProfile& profile, const ControllerTraits& traits);
+/// Throws InvalidInput that names the first servo whose channel is not 0 to `last`.
+void checkChannels(const DeviceProfile& profile, int last);
+
+// The three kinds; makeController chooses.
+[[nodiscard]] std::unique_ptr<ServoController> makeFirmata(const DeviceProfile& profile, const DeviceAddress& address);
+[[nodiscard]] std::unique_ptr<ServoController> makeLewansoul(const DeviceProfile& profile,
+                                                             const DeviceAddress& address);
+[[nodiscard]] std::unique_ptr<ServoController> makeMaestro(const DeviceProfile& profile, const DeviceAddress& address);
+
+} // namespace lumorph

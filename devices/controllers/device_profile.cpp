@@ -1,0 +1,298 @@
+#include "devices/controllers/device_profile.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <set>
+#include <string_view>
+#include <utility>
+
+#include <nlohmann/json.hpp>
+
+#include "core/base/atomic_file.h"
+#include "core/base/error.h"
+#include "core/base/file.h"
+#include "core/base/json_check.h"
+#include "core/scene/json_section.h"
+
+namespace lumorph {
+namespace {
+
+using nlohmann::json;
+namespace fs = std::filesystem;
+
+constexpr const char* kFormat = "lumorph device";
+constexpr int kSchema = 1;
+constexpr const char* kReplace = "choose another file, or restore this one from a copy";
+constexpr JsonLimits kLimits{1U << 20, 8, 4096};
+
+// Beyond these, hobby servos run into their end stops or are driven by nobody.
+constexpr double kLeastPulse = 500.0;
+constexpr double kGreatestPulse = 2500.0;
+constexpr std::size_t kMostServos = 64;
+constexpr std::size_t kLongestText = 500;
+
+struct Bounds {
+    double min;
+    double max;
+};
+constexpr Bounds kVelocity{0.001, 20.0};       // strokes a second
+constexpr Bounds kAcceleration{0.001, 1000.0}; // strokes a second, a second
+constexpr Bounds kCommandRate{1.0, 400.0};
+constexpr Bounds kStagger{0.0, 10.0};
+constexpr Bounds kSlowShare{0.01, 1.0};
+constexpr Bounds kControllerNumber{0, 127};
+
+constexpr std::array<std::pair<ControllerKind, std::string_view>, 3> kKinds = {
+    {{ControllerKind::firmata, "firmata"},
+     {ControllerKind::lewansoul, "lewansoul"},
+     {ControllerKind::maestro, "maestro"}}};
+
+/// What a controller of this kind can number: pins, servo ids (254 means all) or channels.
+int greatestChannel(ControllerKind kind) {
+    switch (kind) {
+    case ControllerKind::firmata:
+        return 127;
+    case ControllerKind::lewansoul:
+        return 253;
+    case ControllerKind::maestro:
+        return 23;
+    }
+    return 0;
+}
+
+std::string numberText(double value) { return std::isfinite(value) ? json(value).dump() : std::to_string(value); }
+
+void requireWithin(const std::string& subject, const char* what, double value, Bounds bounds) {
+    if (value >= bounds.min && value <= bounds.max) return;
+    throw InvalidInput(subject, std::string(what) + " is " + numberText(value),
+                       "use " + numberText(bounds.min) + " to " + numberText(bounds.max));
+}
+
+void checkServo(const ServoSetup& servo, const std::string& subject, ControllerKind kind) {
+    requireWithin(subject, "the channel", servo.channel, {0.0, static_cast<double>(greatestChannel(kind))});
+    requireWithin(subject, "the least pulse", servo.pulseMin, {kLeastPulse, kGreatestPulse});
+    requireWithin(subject, "the greatest pulse", servo.pulseMax, {kLeastPulse, kGreatestPulse});
+    const double span = servo.pulseMax - servo.pulseMin;
+    if (!(span >= 1.0))
+        throw InvalidInput(
+            subject, "its pulses run from " + numberText(servo.pulseMin) + " to " + numberText(servo.pulseMax),
+            "let the greatest be greater than the least, and reverse the servo if it turns the wrong way");
+    requireWithin(subject, "the trim", servo.trim, {-0.5 * span, 0.5 * span});
+    requireWithin(subject, "the velocity", servo.maxVelocity, kVelocity);
+    requireWithin(subject, "the acceleration", servo.maxAcceleration, kAcceleration);
+}
+
+void requireShort(const char* what, const std::string& text) {
+    if (text.size() > kLongestText)
+        throw InvalidInput("device profile", std::string(what) + " is longer than 500 characters", "use a shorter one");
+}
+
+json documentOf(const ServoSetup& servo) {
+    return {{"channel", servo.channel},
+            {"pulseMin", servo.pulseMin},
+            {"pulseMax", servo.pulseMax},
+            {"reversed", servo.reversed},
+            {"trim", servo.trim},
+            {"maxVelocity", servo.maxVelocity},
+            {"maxAcceleration", servo.maxAcceleration}};
+}
+
+std::string_view nameOf(ControllerKind kind) {
+    return std::ranges::find(kKinds, kind, &std::pair<ControllerKind, std::string_view>::first)->second;
+}
+
+json documentOf(const DeviceProfile& profile) {
+    json servos = json::array();
+    for (const ServoSetup& servo : profile.servos) servos.push_back(documentOf(servo));
+    return {{"format", kFormat},
+            {"schema", kSchema},
+            {"name", profile.name},
+            {"address", profile.address},
+            {"controller", nameOf(profile.controller)},
+            {"controllerNumber", profile.controllerNumber},
+            {"maestroCrc", profile.maestroCrc},
+            {"identity", profile.identity},
+            {"servos", std::move(servos)},
+            {"commandsPerSecond", profile.commandsPerSecond},
+            {"staggerSeconds", profile.staggerSeconds},
+            {"slowShare", profile.slowShare},
+            {"restOnExit", profile.restOnExit}};
+}
+
+void require(const Section& section, const char* key) {
+    if (!section.has(key)) section.refuse(key, "is missing", "add it");
+}
+
+/// A limit whose name is misspelt would silently be another limit: what is not known is an error.
+void refuseUnknown(const json& object, const Section& section) {
+    if (!object.empty())
+        section.refuse(object.begin().key().substr(0, 80), "is not known here", "correct its name, or remove it");
+}
+
+ServoSetup readServo(json& object, Section section, ControllerKind kind) {
+    for (const char* key : {"channel", "pulseMin", "pulseMax"}) require(section, key);
+    ServoSetup servo;
+    section.wholeNumber("channel", servo.channel, 0, greatestChannel(kind));
+    section.number("pulseMin", servo.pulseMin, kLeastPulse, kGreatestPulse);
+    section.number("pulseMax", servo.pulseMax, kLeastPulse, kGreatestPulse);
+    section.flag("reversed", servo.reversed);
+    section.number("trim", servo.trim, -kGreatestPulse, kGreatestPulse);
+    section.number("maxVelocity", servo.maxVelocity, kVelocity.min, kVelocity.max);
+    section.number("maxAcceleration", servo.maxAcceleration, kAcceleration.min, kAcceleration.max);
+    refuseUnknown(object, section);
+    return servo;
+}
+
+std::vector<ServoSetup> readServos(json& document, const Section& section, ControllerKind kind,
+                                   const std::string& file) {
+    require(section, "servos");
+    json list = std::move(document["servos"]);
+    document.erase("servos");
+    if (!list.is_array() || list.size() > kMostServos)
+        section.refuse("servos", "is not a list of at most 64 servos", "write it in [ ], and remove what is too much");
+    std::vector<ServoSetup> servos;
+    for (json& object : list) {
+        const std::string name = "servos[" + std::to_string(servos.size()) + "]";
+        if (!object.is_object()) section.refuse(name, "is not an object", "write it in { }, or remove it");
+        servos.push_back(readServo(object, Section(object, name + ".", file), kind));
+    }
+    return servos;
+}
+
+ControllerKind readKind(Section& section) {
+    std::string name(nameOf(ControllerKind::firmata));
+    section.text("controller", name);
+    const auto* const found = std::ranges::find(kKinds, name, &std::pair<ControllerKind, std::string_view>::second);
+    if (found == kKinds.end())
+        section.refuse("controller", "\"" + name.substr(0, 80) + "\" is no controller that is known here",
+                       "write firmata, lewansoul or maestro");
+    return found->first;
+}
+
+void requireFormat(Section& section, const std::string& file) {
+    std::string format;
+    section.text("format", format);
+    if (format != kFormat) throw DataError(file, "is not a device profile", "choose a file that was saved as one");
+    int schema = kSchema;
+    section.wholeNumber("schema", schema, 1, 1'000'000);
+    if (schema != kSchema) throw DataError(file, "is of a newer version", "open it with a newer version of Lumorph");
+}
+
+DeviceProfile profileOf(json& document, const std::string& file) {
+    Section section(document, "", file);
+    requireFormat(section, file);
+    DeviceProfile profile;
+    section.text("name", profile.name);
+    section.text("address", profile.address);
+    profile.controller = readKind(section);
+    section.wholeNumber("controllerNumber", profile.controllerNumber, 0, 127);
+    section.flag("maestroCrc", profile.maestroCrc);
+    section.text("identity", profile.identity);
+    section.number("commandsPerSecond", profile.commandsPerSecond, kCommandRate.min, kCommandRate.max);
+    section.number("staggerSeconds", profile.staggerSeconds, kStagger.min, kStagger.max);
+    section.number("slowShare", profile.slowShare, kSlowShare.min, kSlowShare.max);
+    section.flag("restOnExit", profile.restOnExit);
+    profile.servos = readServos(document, section, profile.controller, file);
+    refuseUnknown(document, section);
+    try {
+        checkProfile(profile);
+    } catch (const InvalidInput& error) {
+        throw DataError(file, error.subject() + ": " + error.why(), error.remedy());
+    }
+    return profile;
+}
+
+} // namespace
+
+DeviceProfile profileFor(const Rig& rig, int first) {
+    DeviceProfile profile;
+    profile.name = rig.name().substr(0, kLongestText);
+    std::set<int> taken;
+    for (const Actuator& actuator : rig.actuators()) taken.insert(actuator.drive.channel);
+    for (const Actuator& actuator : rig.actuators()) {
+        ServoSetup servo;
+        servo.channel = actuator.drive.channel;
+        if (servo.channel < 0) {
+            while (taken.contains(first)) ++first;
+            servo.channel = first++;
+        }
+        // A rig that tells the greater pulse for rest means a servo that turns the other way.
+        servo.reversed = actuator.drive.pulseMin > actuator.drive.pulseMax;
+        const auto [least, greatest] = std::minmax(actuator.drive.pulseMin, actuator.drive.pulseMax);
+        servo.pulseMin = std::clamp(least, kLeastPulse, kGreatestPulse - 1.0);
+        servo.pulseMax = std::clamp(greatest, servo.pulseMin + 1.0, kGreatestPulse);
+        servo.maxVelocity = std::clamp(actuator.maxVelocity, kVelocity.min, kVelocity.max);
+        profile.servos.push_back(servo);
+    }
+    return profile;
+}
+
+double pulseOf(const ServoSetup& servo, double stroke) {
+    const double share = std::clamp(servo.reversed ? 1.0 - stroke : stroke, 0.0, 1.0);
+    const double pulse = servo.pulseMin + share * (servo.pulseMax - servo.pulseMin) + servo.trim;
+    return std::clamp(pulse, servo.pulseMin, servo.pulseMax);
+}
+
+double strokeOf(const ServoSetup& servo, double pulse) {
+    const double share = (pulse - servo.trim - servo.pulseMin) / (servo.pulseMax - servo.pulseMin);
+    return servo.reversed ? 1.0 - share : share;
+}
+
+void checkProfile(const DeviceProfile& profile) {
+    requireShort("the name", profile.name);
+    requireShort("the address", profile.address);
+    requireShort("the identity", profile.identity);
+    if (profile.servos.size() > kMostServos)
+        throw InvalidInput("device profile", std::to_string(profile.servos.size()) + " servos, and 64 is the most",
+                           "spread them over several controllers");
+    const std::string all = "device profile";
+    requireWithin(all, "the controller's number", profile.controllerNumber, kControllerNumber);
+    requireWithin(all, "the rate of commands", profile.commandsPerSecond, kCommandRate);
+    requireWithin(all, "the pause between servo starts", profile.staggerSeconds, kStagger);
+    requireWithin(all, "the share of slow mode", profile.slowShare, kSlowShare);
+    std::vector<int> channels;
+    for (const ServoSetup& servo : profile.servos) {
+        const std::string subject = "servo " + std::to_string(channels.size() + 1);
+        checkServo(servo, subject, profile.controller);
+        const auto twin = std::ranges::find(channels, servo.channel);
+        if (twin != channels.end())
+            throw InvalidInput(subject,
+                               "channel " + std::to_string(servo.channel) + " is already that of servo " +
+                                   std::to_string(twin - channels.begin() + 1),
+                               "give each servo a channel of its own");
+        channels.push_back(servo.channel);
+    }
+}
+
+DeviceProfile readProfile(const fs::path& file) {
+    const std::string name = file.string();
+    std::error_code failed;
+    // Reading a pipe or a device might never end.
+    if (fs::exists(file, failed) && fs::is_other(file, failed))
+        throw DataError(name, "is not a file", "choose a device profile");
+    const std::vector<std::byte> bytes = readFile(file, kLimits.bytes);
+    const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+    if (const std::string problem = jsonProblem(text, kLimits); !problem.empty())
+        throw DataError(name, problem, kReplace);
+    try {
+        json document = json::parse(text);
+        if (!document.is_object()) throw DataError(name, "is not a device profile", kReplace);
+        return profileOf(document, name);
+    } catch (const json::exception&) {
+        throw DataError(name, "is not sound JSON", kReplace);
+    }
+}
+
+void writeProfile(const DeviceProfile& profile, const fs::path& file) {
+    checkProfile(profile);
+    std::string text;
+    try {
+        text = documentOf(profile).dump(2) + "\n";
+    } catch (const json::exception&) {
+        throw InvalidInput("device profile", "a name or address holds text that is not UTF-8", "write it anew");
+    }
+    writeFileAtomically(file, std::as_bytes(std::span(text)));
+}
+
+} // namespace lumorph

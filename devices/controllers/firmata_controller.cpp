@@ -1,0 +1,307 @@
+#include <algorithm>
+#include <array>
+#include <deque>
+#include <string_view>
+
+#include "core/base/error.h"
+#include "devices/controllers/controller_base.h"
+#include "devices/protocol/firmata.h"
+
+namespace lumorph {
+
+namespace {
+
+constexpr std::string_view kOwnFirmware = "LumorphTablet";
+constexpr std::array<std::string_view, 4> kKnown = {kOwnFirmware, "StandardFirmata", "ConfigurableFirmata",
+                                                    "ServoFirmata"};
+constexpr Microseconds kAskAgain{500'000};
+constexpr Microseconds kHeartbeat{200'000}; // our firmware's watchdog waits for 500 ms
+constexpr Microseconds kStateAtLeast{400'000};
+constexpr Microseconds kVoltageEvery{2'000'000};
+constexpr Microseconds kWordsLast{10'000'000};
+constexpr std::size_t kLongestWords = 80;
+
+/// Sketches call themselves by their file.
+std::string withoutSuffix(std::string name) {
+    for (const char* suffix : {".ino", ".cpp"})
+        if (name.ends_with(suffix)) name.resize(name.size() - 4);
+    return name;
+}
+
+/// What a device says, fit for a user's eyes.
+std::string readable(std::string text) {
+    text.resize(std::min(text.size(), kLongestWords));
+    std::replace_if(
+        text.begin(), text.end(), [](unsigned char c) { return c < 0x20 || c > 0x7E; }, '?');
+    return text;
+}
+
+std::size_t bytesOfSet(const DeviceProfile& profile) {
+    std::size_t bytes = 0;
+    for (const ServoSetup& servo : profile.servos) bytes += servo.channel < 16 ? 3 : 6;
+    return bytes;
+}
+
+ControllerTraits firmataTraits(const DeviceProfile& profile, const DeviceAddress& address) {
+    ControllerTraits traits;
+    traits.name = "Firmata";
+    traits.commandsPerSecond = setsPerSecond(baudOf(address), bytesOfSet(profile));
+    return traits;
+}
+
+PulseScale firmataScale(const DeviceProfile& profile, const ControllerTraits& traits) {
+    PulseScale scale;
+    scale.least = firmata::kLeastMicroseconds;
+    scale.perSecond = setsPerSecond(profile, traits);
+    return scale;
+}
+
+class FirmataController final : public ControllerBase {
+public:
+    FirmataController(const DeviceProfile& profile, const DeviceAddress& address)
+        : FirmataController(profile, address, firmataTraits(profile, address)) {}
+
+private:
+    FirmataController(const DeviceProfile& profile, const DeviceAddress& address, const ControllerTraits& traits)
+        : ControllerBase(profile, firmataScale(profile, traits), traits), address_(address) {
+        becomeKind(false);
+    }
+
+    void begin(Microseconds now) override;
+    void take(std::span<const std::uint8_t> bytes, Microseconds now) override;
+    void work(Microseconds now) override;
+    [[nodiscard]] Messages detachments(std::span<const std::size_t> servos) override;
+    [[nodiscard]] Messages changes(std::span<const PulsePlan::Change> changes) override;
+    [[nodiscard]] LinkTrouble silence(bool never) const override;
+
+    void startHandshake();
+    void hear(const firmata::Version& version);
+    void hear(const firmata::Firmware& firmware);
+    void hear(const firmata::Capabilities& capabilities);
+    void hear(const firmata::PinState& pin);
+    void hear(const firmata::Text& text);
+    void hear(const firmata::Voltage& voltage);
+    void hear(const firmata::AnalogMapping&) {}
+    void hear(const firmata::Reading&) {}
+    void askCapabilitiesOnce();
+    void askState(Microseconds now);
+    void becomeKind(bool own);
+
+    DeviceAddress address_;
+    firmata::Parser parser_;
+    Microseconds heardAt_{0}; ///< of the message that is being heard
+    std::optional<firmata::Version> version_;
+    std::optional<std::string> firmware_; ///< its name
+    bool capabilitiesAsked_ = false;
+    bool own_ = false;
+    Repeater question_{kAskAgain};
+    Repeater heartbeat_{kHeartbeat};
+    Repeater stateAtLeast_{kStateAtLeast};
+    Repeater voltage_{kVoltageEvery};
+    std::deque<Microseconds> statesAsked_; ///< when the open questions for a pin's state were asked
+    int contrary_ = 0;                     ///< answers in a row that tell of a servo that was let go
+    std::optional<Microseconds> words_;    ///< when the board said something
+};
+
+void FirmataController::begin(Microseconds now) {
+    parser_.clear();
+    words_.reset();
+    becomeKind(false);
+    startHandshake();
+    work(now);
+}
+
+void FirmataController::startHandshake() {
+    version_.reset();
+    firmware_.reset();
+    capabilitiesAsked_ = false;
+    question_.reset();
+    voltage_.reset();
+    statesAsked_.clear();
+    contrary_ = 0;
+    state_.firmware.clear();
+    state_.volts.reset();
+}
+
+void FirmataController::becomeKind(bool own) {
+    own_ = own;
+    state_.traits.failsafe = own;
+    state_.traits.readsVoltage = own;
+    state_.traits.jumpsOnAttach = !own;
+    state_.traits.failsafeWord =
+        own ? "when the studio has been silent for half a second, the board holds its servos and then lets go of them"
+            : "none: when the studio dies, servos stay under power where they are; switch them off by hand";
+}
+
+void FirmataController::take(std::span<const std::uint8_t> bytes, Microseconds now) {
+    const std::uint64_t broken = parser_.broken();
+    for (const firmata::Message& message : parser_.feed(bytes)) {
+        heardAt_ = now;
+        heard(now);
+        std::visit([this](const auto& m) { hear(m); }, message);
+    }
+    state_.errors += parser_.broken() - broken;
+}
+
+void FirmataController::hear(const firmata::Version& version) {
+    if (version.major < 1 || version.major > 3) { // no such thing exists: noise
+        ++state_.errors;
+        return;
+    }
+    if (state_.phase != ControllerPhase::handshake) { // nobody asked
+        rebooted();
+        startHandshake();
+    }
+    version_ = version;
+    if (version.major != 2) {
+        refuse({"the board speaks Firmata " + std::to_string(version.major) + "." + std::to_string(version.minor),
+                "upload StandardFirmata 2.x, or the firmware of the studio"});
+        return;
+    }
+    askCapabilitiesOnce();
+}
+
+void FirmataController::hear(const firmata::Firmware& firmware) {
+    if (state_.phase != ControllerPhase::handshake) {
+        rebooted();
+        startHandshake();
+    }
+    firmware_ = withoutSuffix(firmware.name);
+    state_.firmware =
+        readable(*firmware_) + " " + std::to_string(firmware.major) + "." + std::to_string(firmware.minor);
+    becomeKind(*firmware_ == kOwnFirmware);
+    askCapabilitiesOnce();
+}
+
+/// Both names are known: what remains is asked at once, and again with the next question.
+void FirmataController::askCapabilitiesOnce() {
+    if (!version_ || !firmware_ || capabilitiesAsked_) return;
+    capabilitiesAsked_ = true;
+    ask(firmata::askCapabilities());
+    question_.done(heardAt_);
+}
+
+void FirmataController::hear(const firmata::Capabilities& capabilities) {
+    if (state_.phase != ControllerPhase::handshake || !version_ || !firmware_) return;
+    for (const ServoSetup& servo : plan_.servos()) {
+        const auto pin = static_cast<std::size_t>(servo.channel);
+        const auto drivesServo = [](const firmata::PinMode& mode) { return mode.mode == firmata::kServoMode; };
+        if (pin < capabilities.pins.size() &&
+            std::any_of(capabilities.pins[pin].begin(), capabilities.pins[pin].end(), drivesServo))
+            continue;
+        refuse({"pin " + std::to_string(servo.channel) + " of the board cannot drive a servo",
+                "put the servo on another pin and tell its channel, or upload a firmware that drives servos there"});
+        return;
+    }
+    if (std::find(kKnown.begin(), kKnown.end(), *firmware_) != kKnown.end())
+        becomeReady();
+    else
+        state_.phase = ControllerPhase::unidentified;
+}
+
+/// Nothing else tells that a command has arrived, or that the watchdog has let go of the servos.
+void FirmataController::hear(const firmata::PinState& pin) {
+    if (statesAsked_.empty()) return;
+    const Microseconds asked = statesAsked_.front();
+    statesAsked_.pop_front();
+    const std::optional<std::size_t> servo = servoOn(pin.pin);
+    if (!servo || asked <= plan_.since(*servo)) return;
+    const bool drives = pin.mode == firmata::kServoMode;
+    if (plan_.limp(*servo) && drives) plan_.detachAgain(*servo);
+    if (!plan_.attached(*servo)) return;
+    contrary_ = drives ? 0 : contrary_ + 1;
+    if (contrary_ < 2) return;
+    rebooted();
+    startHandshake();
+    words_ = heardAt_;
+    trouble(Concern::board, LinkTrouble{"the board has let go of its servos by itself",
+                                        "see that the link is not interrupted, then start the servos again"});
+}
+
+void FirmataController::hear(const firmata::Text& text) {
+    if (text.text.empty()) return;
+    if (state_.phase != ControllerPhase::handshake) ++state_.errors;
+    words_ = heardAt_;
+    trouble(Concern::board, LinkTrouble{"the board says '" + readable(text.text) + "'",
+                                        "see that the channels of the profile are those of the wiring"});
+}
+
+void FirmataController::hear(const firmata::Voltage& voltage) {
+    if (own_) takeVoltage(voltage.volts);
+}
+
+void FirmataController::work(Microseconds now) {
+    if (words_ && (now < *words_ || now - *words_ >= kWordsLast)) {
+        words_.reset();
+        trouble(Concern::board, std::nullopt);
+    }
+    if (state_.phase == ControllerPhase::handshake) {
+        if (!question_.take(now)) return;
+        if (!version_) ask(firmata::askVersion());
+        if (!firmware_) ask(firmata::askFirmware());
+        if (version_ && firmware_) ask(firmata::askCapabilities());
+        return;
+    }
+    if (own_ && voltage_.take(now)) ask(firmata::askVoltage());
+    const bool quiet = now - lastWritten() >= kHeartbeat;
+    if ((quiet && heartbeat_.due(now)) || stateAtLeast_.due(now)) askState(now);
+}
+
+void FirmataController::askState(Microseconds now) {
+    if (plan_.servos().empty()) return;
+    std::size_t servo = 0;
+    for (std::size_t i = plan_.servos().size(); i-- > 0;)
+        if (plan_.attached(i)) servo = i;
+    ask(firmata::askPinState(plan_.servos()[servo].channel));
+    heartbeat_.done(now);
+    stateAtLeast_.done(now);
+    statesAsked_.push_back(now);
+    if (statesAsked_.size() > 8) statesAsked_.pop_front();
+}
+
+ControllerBase::Messages FirmataController::detachments(std::span<const std::size_t> servos) {
+    Messages messages;
+    for (const std::size_t servo : servos) messages.push_back(firmata::detachServo(plan_.servos()[servo].channel));
+    return messages;
+}
+
+/// Our firmware takes the pulse first and starts from it; a stock one ignores it until the servo is attached, so it
+/// comes right behind, to end the jump to the middle.
+ControllerBase::Messages FirmataController::changes(std::span<const PulsePlan::Change> changes) {
+    Messages messages;
+    for (const PulsePlan::Change& change : changes) {
+        const int pin = plan_.servos()[change.servo].channel;
+        const int pulse = static_cast<int>(change.value);
+        if (change.attach && own_) {
+            messages.push_back(firmata::writeValue(pin, pulse));
+            const int least = static_cast<int>(plan_.valueOf(change.servo, 0.0));
+            const int greatest = static_cast<int>(plan_.valueOf(change.servo, 1e5));
+            messages.push_back(firmata::configureServo(pin, least, greatest));
+        }
+        if (change.attach) messages.push_back(firmata::attachServo(pin));
+        messages.push_back(firmata::writeValue(pin, pulse));
+    }
+    return messages;
+}
+
+LinkTrouble FirmataController::silence(bool never) const {
+    if (!never) return {"the board has fallen silent", "check its cable, its power and the battery of its servos"};
+    const std::string where = std::holds_alternative<BluetoothAddress>(address_)
+                                  ? "over Bluetooth"
+                                  : "at " + std::to_string(baudOf(address_)) + " baud";
+    return {"no answer " + where + (parser_.broken() > 0 ? ", only bytes that make no sense" : ""),
+            "try 57600 baud (StandardFirmata), 115200 (ConfigurableFirmata) or 9600 (most HC-06), and see that the "
+            "board has power and runs Firmata"};
+}
+
+} // namespace
+
+std::unique_ptr<ServoController> makeFirmata(const DeviceProfile& profile, const DeviceAddress& address) {
+    if (std::holds_alternative<HidAddress>(address))
+        throw InvalidInput("device address '" + profile.address + "'", "Firmata is not spoken over HID",
+                           "use a serial or a Bluetooth address");
+    checkChannels(profile, 127);
+    return std::make_unique<FirmataController>(profile, address);
+}
+
+} // namespace lumorph

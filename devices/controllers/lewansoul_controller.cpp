@@ -1,0 +1,245 @@
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+
+#include "devices/controllers/controller_base.h"
+#include "devices/protocol/lewansoul.h"
+
+namespace lumorph {
+
+namespace {
+
+using lewansoul::kServosPerReport;
+
+constexpr double kHidPerSecond = 30.0; // what real boards follow
+constexpr double kHidStep = 2.0;       // 500 to 2500 us are 0 to 1000
+constexpr double kHidZero = 500.0;
+constexpr Microseconds kDrain{50'000};
+constexpr Microseconds kAskAgain{400'000};
+constexpr Microseconds kPositionsEvery{250'000};
+constexpr Microseconds kVoltageEvery{800'000}; // a sign of life where positions are not told
+constexpr Microseconds kStale{1'000'000};
+constexpr Microseconds kFrameGap{100'000};
+constexpr int kSag = 5;              // of 1000: away from its target by so much more, a servo is limp
+constexpr int kLeastPosition = -100; // servos turned by hand go a little beyond 0 to 1000
+constexpr int kMostPosition = 1100;
+constexpr double kLeastMoveTime = 20.0; // ms
+
+/// xArm boards speak HID; LSC boards serial. Simulated ones are xArms.
+bool isHid(const DeviceAddress& address) {
+    return std::holds_alternative<HidAddress>(address) || std::holds_alternative<SimulatedAddress>(address);
+}
+
+ControllerTraits lewansoulTraits(const DeviceProfile& profile, const DeviceAddress& address) {
+    const std::size_t servos = std::max<std::size_t>(profile.servos.size(), 1);
+    ControllerTraits traits;
+    const bool hid = isHid(address);
+    traits.name = hid ? "LewanSoul xArm" : "LewanSoul LSC";
+    traits.pulseStep = hid ? kHidStep : 1.0;
+    traits.readsPosition = hid;
+    traits.readsVoltage = true;
+    const auto reports = static_cast<double>((servos + kServosPerReport - 1) / kServosPerReport);
+    traits.commandsPerSecond =
+        hid ? kHidPerSecond / reports : std::min(kHidPerSecond, setsPerSecond(baudOf(address), 7 + 3 * servos));
+    traits.failsafeWord = "none: when the studio dies or the cable is pulled, servos stay under power where they are; "
+                          "switch the board off to free them";
+    return traits;
+}
+
+PulseScale lewansoulScale(const DeviceProfile& profile, const ControllerTraits& traits) {
+    PulseScale scale;
+    scale.step = traits.pulseStep;
+    scale.zero = traits.readsPosition ? kHidZero : 0.0;
+    scale.least = 500.0;
+    scale.greatest = 2500.0;
+    scale.perSecond = setsPerSecond(profile, traits);
+    return scale;
+}
+
+class LewansoulController final : public ControllerBase {
+public:
+    LewansoulController(const DeviceProfile& profile, const DeviceAddress& address)
+        : LewansoulController(profile, address, lewansoulTraits(profile, address)) {}
+
+private:
+    LewansoulController(const DeviceProfile& profile, const DeviceAddress& address, const ControllerTraits& traits)
+        : ControllerBase(profile, lewansoulScale(profile, traits), traits), hid_(isHid(address)),
+          baud_(baudOf(address)), reads_(profile.servos.size()) {
+        moveTime_ = static_cast<int>(std::clamp(1000.0 / setsPerSecond(profile, traits), kLeastMoveTime, 1000.0));
+    }
+
+    /// What is known of one servo's position.
+    struct Read {
+        int target = 0; ///< last told
+        std::optional<int> before;
+        Microseconds at{0};
+    };
+
+    void begin(Microseconds now) override;
+    void take(std::span<const std::uint8_t> bytes, Microseconds now) override;
+    void work(Microseconds now) override;
+    [[nodiscard]] Messages detachments(std::span<const std::size_t> servos) override;
+    [[nodiscard]] Messages changes(std::span<const PulsePlan::Change> changes) override;
+    [[nodiscard]] LinkTrouble silence(bool never) const override;
+
+    [[nodiscard]] bool draining(Microseconds now) const;
+    [[nodiscard]] bool namesItself() const { return product_.find("LOBOT") != std::string::npos; }
+    void hear(const lewansoul::Voltage& voltage, Microseconds now);
+    void hear(const lewansoul::Positions& positions, Microseconds now);
+    void hear(const lewansoul::Other&, Microseconds) {}
+    void hearPlace(const lewansoul::Place& place, Microseconds now);
+    void askAll();
+    void forgetStale(Microseconds now);
+
+    bool hid_;
+    int baud_;
+    int moveTime_ = 20; ///< ms
+    lewansoul::Parser parser_;
+    std::vector<Read> reads_;
+    Microseconds opened_{0};
+    Microseconds lastBytes_{0};
+    bool voltageAsked_ = false;
+    std::size_t positionsAsked_ = 0; ///< questions that are open
+    Repeater voltage_{kVoltageEvery};
+    Repeater question_{kAskAgain};
+    Repeater positions_{kPositionsEvery};
+};
+
+void LewansoulController::begin(Microseconds now) {
+    parser_.clear();
+    opened_ = lastBytes_ = now;
+    voltageAsked_ = false;
+    positionsAsked_ = 0;
+    voltage_.reset();
+    question_.reset();
+    positions_.reset();
+    std::fill(reads_.begin(), reads_.end(), Read{});
+}
+
+/// Reports that were waiting in the system when the link was opened are of another time.
+bool LewansoulController::draining(Microseconds now) const { return now >= opened_ && now - opened_ < kDrain; }
+
+void LewansoulController::take(std::span<const std::uint8_t> bytes, Microseconds now) {
+    if (draining(now)) return;
+    if (!hid_ && parser_.waiting() && now - lastBytes_ >= kFrameGap) { // the rest of a frame is not coming any more
+        parser_.clear();
+        ++state_.errors;
+    }
+    lastBytes_ = now;
+    const std::uint64_t broken = parser_.broken();
+    for (const lewansoul::Message& message : hid_ ? parser_.report(bytes) : parser_.feed(bytes))
+        std::visit([&](const auto& m) { hear(m, now); }, message);
+    state_.errors += parser_.broken() - broken;
+}
+
+/// That it knows its voltage tells a servo controller from all else under the same USB numbers.
+void LewansoulController::hear(const lewansoul::Voltage& voltage, Microseconds now) {
+    if (!voltageAsked_) return;
+    voltageAsked_ = false;
+    heard(now);
+    takeVoltage(voltage.volts);
+    if (state_.phase != ControllerPhase::handshake && state_.phase != ControllerPhase::refused) return;
+    trouble(Concern::refusal, std::nullopt);
+    voltage_.done(now);
+    if (namesItself())
+        becomeReady();
+    else
+        state_.phase = ControllerPhase::unidentified;
+}
+
+void LewansoulController::hear(const lewansoul::Positions& positions, Microseconds now) {
+    if (positionsAsked_ == 0) return;
+    --positionsAsked_;
+    heard(now);
+    for (const lewansoul::Place& place : positions.places) hearPlace(place, now);
+}
+
+void LewansoulController::hearPlace(const lewansoul::Place& place, Microseconds now) {
+    const std::optional<std::size_t> servo = servoOn(place.servo);
+    if (!servo || place.position < kLeastPosition || place.position > kMostPosition) {
+        ++state_.errors;
+        return;
+    }
+    state_.readPulses[*servo] = kHidZero + kHidStep * place.position;
+    Read& read = reads_[*servo];
+    const int far = std::abs(place.position - read.target);
+    if (plan_.limp(*servo) && read.before && far - std::abs(*read.before - read.target) >= kSag)
+        plan_.knownLimp(*servo);
+    read.before = place.position;
+    read.at = now;
+}
+
+void LewansoulController::work(Microseconds now) {
+    if (draining(now)) return;
+    forgetStale(now);
+    if (state_.phase == ControllerPhase::handshake && hid_ && !namesItself() && !everHeard() &&
+        now - opened_ >= kSilence) {
+        refuse({"this is no LewanSoul controller, though it has the same USB numbers: it calls itself '" + product_ +
+                    "' and does not tell a battery voltage",
+                "choose another device"});
+    }
+    const bool ready = state_.phase == ControllerPhase::ready;
+    if (ready && hid_ ? voltage_.take(now) : question_.take(now)) {
+        ask(lewansoul::askVoltage());
+        voltageAsked_ = true;
+    }
+    if (ready && hid_ && positions_.take(now)) askAll();
+}
+
+void LewansoulController::askAll() {
+    std::vector<int> channels;
+    for (const ServoSetup& servo : plan_.servos()) channels.push_back(servo.channel);
+    positionsAsked_ = 0;
+    for (std::size_t first = 0; first < channels.size(); first += kServosPerReport) {
+        const std::size_t count = std::min(kServosPerReport, channels.size() - first);
+        ask(lewansoul::askPositions(std::span(channels).subspan(first, count)));
+        ++positionsAsked_;
+    }
+}
+
+void LewansoulController::forgetStale(Microseconds now) {
+    for (std::size_t i = 0; i < reads_.size(); ++i)
+        if (now < reads_[i].at || now - reads_[i].at >= kStale) state_.readPulses[i].reset();
+}
+
+ControllerBase::Messages LewansoulController::detachments(std::span<const std::size_t> servos) {
+    Messages messages;
+    for (std::size_t first = 0; first < servos.size(); first += kServosPerReport) {
+        std::vector<int> channels;
+        for (const std::size_t servo : servos.subspan(first, std::min(kServosPerReport, servos.size() - first)))
+            channels.push_back(plan_.servos()[servo].channel);
+        messages.push_back(lewansoul::unload(channels));
+    }
+    return messages;
+}
+
+ControllerBase::Messages LewansoulController::changes(std::span<const PulsePlan::Change> changes) {
+    Messages messages;
+    for (std::size_t first = 0; first < changes.size(); first += kServosPerReport) {
+        std::vector<lewansoul::Place> places;
+        for (const PulsePlan::Change& change :
+             changes.subspan(first, std::min(kServosPerReport, changes.size() - first))) {
+            const int value = static_cast<int>(change.value);
+            places.push_back({plan_.servos()[change.servo].channel, value});
+            reads_[change.servo].target = value;
+        }
+        messages.push_back(lewansoul::move(places, moveTime_));
+    }
+    return messages;
+}
+
+LinkTrouble LewansoulController::silence(bool never) const {
+    if (!never) return {"the board has fallen silent", "check its cable, its power and its switch"};
+    if (hid_) return {"the board does not answer", "switch its power on: USB alone does not feed it"};
+    return {"no answer at " + std::to_string(baud_) + " baud",
+            "LSC boards speak at 9600 baud; switch the power of its servos on, and cross RX and TX"};
+}
+
+} // namespace
+
+std::unique_ptr<ServoController> makeLewansoul(const DeviceProfile& profile, const DeviceAddress& address) {
+    checkChannels(profile, 253);
+    return std::make_unique<LewansoulController>(profile, address);
+}
+
+} // namespace lumorph

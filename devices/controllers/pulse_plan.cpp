@@ -1,0 +1,134 @@
+#include "devices/controllers/pulse_plan.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "core/base/error.h"
+
+namespace lumorph {
+
+namespace {
+
+struct Limits {
+    long least, greatest;
+};
+
+/// Values whose pulses lie within a servo's limits.
+Limits limitsOf(const ServoSetup& servo, const PulseScale& scale) {
+    const double least = std::max(servo.pulseMin, scale.least) - scale.zero;
+    const double greatest = std::min(servo.pulseMax, scale.greatest) - scale.zero;
+    return {static_cast<long>(std::ceil(least / scale.step)), static_cast<long>(std::floor(greatest / scale.step))};
+}
+
+} // namespace
+
+PulsePlan::PulsePlan(std::vector<ServoSetup> servos, const PulseScale& scale)
+    : servos_(std::move(servos)), scale_(scale), states_(servos_.size()) {
+    const double perSecond = std::isfinite(scale.perSecond) ? std::clamp(scale.perSecond, 0.1, 1000.0) : 50.0;
+    period_ = Microseconds(std::lround(1e6 / perSecond));
+    for (std::size_t i = 0; i < servos_.size(); ++i) {
+        const ServoSetup& servo = servos_[i];
+        const bool sound = servo.pulseMin >= 0.0 && servo.pulseMin <= servo.pulseMax && servo.pulseMax <= 1e6;
+        if (!sound || limitsOf(servo, scale_).least > limitsOf(servo, scale_).greatest)
+            throw InvalidInput("servo " + std::to_string(i + 1),
+                               "its controller can send no pulse from " + std::to_string(servo.pulseMin) + " to " +
+                                   std::to_string(servo.pulseMax) + " us",
+                               "widen its range, or choose one that this controller knows");
+    }
+}
+
+long PulsePlan::valueOf(std::size_t servo, double microseconds) const {
+    const Limits limits = limitsOf(servos_[servo], scale_);
+    return std::clamp(std::lround((microseconds - scale_.zero) / scale_.step), limits.least, limits.greatest);
+}
+
+void PulsePlan::restart() {
+    for (State& state : states_) {
+        state.held = state.held || state.attach || state.told == Told::attached;
+        state.attach = false;
+        state.told = Told::nothing;
+        state.detachments = 0;
+    }
+    pending_ = due_ = false;
+}
+
+void PulsePlan::want(std::span<const GuardedPulse> pulses, Microseconds now, bool ready) {
+    for (const GuardedPulse& pulse : pulses)
+        for (std::size_t i = 0; i < servos_.size(); ++i)
+            if (servos_[i].channel == pulse.channel) wantOne(i, pulse, ready);
+    tick(now);
+}
+
+void PulsePlan::wantOne(std::size_t servo, const GuardedPulse& pulse, bool ready) {
+    State& state = states_[servo];
+    if (!pulse.attached) {
+        state.attach = state.held = false;
+        if (state.told == Told::limp) return;
+        state.told = Told::limp;
+        state.detachments = kDetachments;
+        state.nextDetachment = Microseconds::min();
+        return;
+    }
+    if (!ready || state.held || !std::isfinite(pulse.microseconds)) return;
+    state.attach = true;
+    state.value = valueOf(servo, pulse.microseconds);
+    pending_ = pending_ || state.told != Told::attached || state.toldValue != state.value;
+}
+
+void PulsePlan::tick(Microseconds now) {
+    now_ = now;
+    if (!pending_ || due_) return;
+    if (now < nextSlot_ && nextSlot_ - now <= period_) return; // further ahead: the clock was set back
+    due_ = true;
+    pending_ = false;
+    nextSlot_ = now + period_;
+}
+
+void PulsePlan::knownLimp(std::size_t servo) {
+    if (states_[servo].told == Told::limp) states_[servo].detachments = 0;
+}
+
+void PulsePlan::detachAgain(std::size_t servo) {
+    State& state = states_[servo];
+    if (state.told != Told::limp || state.detachments > 0) return;
+    state.detachments = 1;
+    state.nextDetachment = Microseconds::min();
+}
+
+std::vector<std::size_t> PulsePlan::takeDetachments() {
+    std::vector<std::size_t> servos;
+    for (std::size_t i = 0; i < states_.size(); ++i) {
+        State& state = states_[i];
+        const bool first = state.nextDetachment == Microseconds::min(); // goes out even if it was attached again since
+        if (state.told != Told::limp || state.detachments == 0 || (state.attach && !first)) continue;
+        if (now_ < state.nextDetachment && state.nextDetachment - now_ <= kDetachGap) continue;
+        if (first) state.since = now_;
+        --state.detachments;
+        state.nextDetachment = now_ + kDetachGap;
+        servos.push_back(i);
+    }
+    return servos;
+}
+
+std::vector<PulsePlan::Change> PulsePlan::takeChanges() {
+    std::vector<Change> changes;
+    if (!due_) return changes;
+    due_ = false;
+    for (std::size_t i = 0; i < states_.size(); ++i) {
+        State& state = states_[i];
+        if (!state.attach || (state.told == Told::attached && state.toldValue == state.value)) continue;
+        changes.push_back({i, state.value, state.told != Told::attached});
+        if (state.told != Told::attached) state.since = now_;
+        state.told = Told::attached;
+        state.toldValue = state.value;
+        state.detachments = 0;
+    }
+    return changes;
+}
+
+bool PulsePlan::anyAttached() const {
+    return std::any_of(states_.begin(), states_.end(), [](const State& s) { return s.told == Told::attached; });
+}
+
+} // namespace lumorph
