@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <string_view>
 
 #include "devices/simulator/board_program.h"
@@ -213,7 +214,7 @@ private:
     }
 
     void sayVoltage() {
-        const auto millivolts = static_cast<unsigned>(1000.0 * hardware_.volts + 0.5);
+        const auto millivolts = static_cast<unsigned>(std::lround(1000.0 * hardware_.volts));
         say({0xF0, 0x02, static_cast<std::uint8_t>(millivolts & 0x7F),
              static_cast<std::uint8_t>(millivolts >> 7 & 0x7F), static_cast<std::uint8_t>(millivolts >> 14 & 0x7F),
              0xF7});

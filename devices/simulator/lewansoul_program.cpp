@@ -103,7 +103,7 @@ private:
     static bool hasServo(std::uint8_t id) { return id >= 1 && id <= kServos; }
 
     void sayVoltage() {
-        const auto millivolts = static_cast<unsigned>(1000.0 * hardware_.volts + 0.5);
+        const auto millivolts = static_cast<unsigned>(std::lround(1000.0 * hardware_.volts));
         hardware_.said.push_back({0x55, 0x55, 0x04, 0x0F, static_cast<std::uint8_t>(millivolts & 0xFF),
                                   static_cast<std::uint8_t>(millivolts >> 8)});
     }
