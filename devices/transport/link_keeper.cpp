@@ -77,7 +77,7 @@ void LinkKeeper::Data::attempt(Microseconds now) {
 
 std::optional<DeviceAddress> LinkKeeper::Data::whereIsIt() {
     const auto* serial = std::get_if<SerialAddress>(&address);
-    if (!serial) return address;
+    if (!serial || memory.isEmpty()) return address;
     const std::optional<std::string> path = memory.find(serial->path, world.serialPorts());
     if (!path) return std::nullopt;
     return SerialAddress{*path, serial->baud};

@@ -29,6 +29,8 @@ public:
     /// The device is open at `path`.
     void remember(const std::string& path, std::span<const SerialPort> ports);
     void forget();
+    /// find() would not look at the ports; listing them takes some milliseconds.
+    [[nodiscard]] bool isEmpty() const { return !device_; }
     /// Where it is now: `typed` where nothing but its path is known; empty where it is not there, or where more than
     /// one port may be it.
     [[nodiscard]] std::optional<std::string> find(const std::string& typed, std::span<const SerialPort> ports);

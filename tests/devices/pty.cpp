@@ -1,0 +1,62 @@
+#include "tests/devices/pty.h"
+
+#include <array>
+#include <stdexcept>
+
+#include <QEventLoop>
+#include <fcntl.h>
+#include <pty.h>
+#include <termios.h>
+#include <unistd.h>
+
+namespace lumorph {
+
+Pty::Pty() {
+    int slave = -1;
+    std::array<char, 128> name{};
+    termios raw{};
+    ::cfmakeraw(&raw);
+    if (::openpty(&master_, &slave, name.data(), &raw, nullptr) != 0) throw std::runtime_error("no pseudo-terminal");
+    ::close(slave);
+    ::fcntl(master_, F_SETFL, O_NONBLOCK);
+    path_ = name.data();
+}
+
+void Pty::unplug() {
+    if (master_ >= 0) ::close(master_);
+    master_ = -1;
+}
+
+void Pty::send(const std::vector<std::uint8_t>& bytes) const {
+    if (::write(master_, bytes.data(), bytes.size()) != static_cast<ssize_t>(bytes.size()))
+        throw std::runtime_error("the pseudo-terminal is full");
+}
+
+std::vector<std::uint8_t> Pty::receive() const {
+    std::vector<std::uint8_t> all;
+    std::array<std::uint8_t, 4096> bytes;
+    for (ssize_t count = 0; (count = ::read(master_, bytes.data(), bytes.size())) > 0;)
+        all.insert(all.end(), bytes.begin(), bytes.begin() + count);
+    return all;
+}
+
+EventLoop::EventLoop() {
+    if (!QCoreApplication::instance()) application_ = std::make_unique<QCoreApplication>(count_, names_);
+}
+
+bool EventLoop::runUntil(const std::function<bool()>& isDone, std::chrono::milliseconds limit) {
+    const auto end = std::chrono::steady_clock::now() + limit;
+    QEventLoop loop;
+    while (!isDone()) {
+        if (std::chrono::steady_clock::now() > end) return false;
+        ::usleep(1000);
+        loop.processEvents();
+    }
+    return true;
+}
+
+void EventLoop::runFor(std::chrono::milliseconds time) {
+    (void)runUntil([] { return false; }, time);
+}
+
+} // namespace lumorph
