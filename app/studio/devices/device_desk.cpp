@@ -4,6 +4,8 @@
 #include <atomic>
 #include <chrono>
 #include <future>
+#include <limits>
+#include <thread>
 #include <utility>
 
 #include <QElapsedTimer>
@@ -31,7 +33,37 @@ QDateTime wallTime(Microseconds time) {
     return QDateTime::currentDateTime().addMSecs(-std::clamp<std::int64_t>(ago.count(), 0, 60'000));
 }
 
+/// Rigs count their drives from 0; boards from where their own numbers begin.
+void shiftChannels(DeviceProfile& profile, int first) {
+    int least = std::numeric_limits<int>::max();
+    for (const ServoSetup& servo : profile.servos) least = std::min(least, servo.channel);
+    for (ServoSetup& servo : profile.servos) servo.channel += first - least;
+}
+
+bool sameChannels(const DeviceProfile& a, const DeviceProfile& b) {
+    return std::ranges::equal(a.servos, b.servos, {}, &ServoSetup::channel, &ServoSetup::channel);
+}
+
+/// Wider limits make the link begin anew, which a drag shall not do with every pixel.
+bool widens(const DeviceProfile& before, const DeviceProfile& after) {
+    return !std::ranges::equal(before.servos, after.servos, [](const ServoSetup& a, const ServoSetup& b) {
+        return b.pulseMin >= a.pulseMin && b.pulseMax <= a.pulseMax;
+    });
+}
+
 } // namespace
+
+int firstChannel(ControllerKind controller) {
+    switch (controller) {
+    case ControllerKind::firmata:
+        return 2; // pins 0 and 1 are the serial link's
+    case ControllerKind::lewansoul:
+        return 1;
+    case ControllerKind::maestro:
+        return 0;
+    }
+    return 0;
+}
 
 ControllerKind likelyController(const QString& address, const QString& name) {
     const QString words = (address + ' ' + name).toLower();
@@ -42,9 +74,9 @@ ControllerKind likelyController(const QString& address, const QString& name) {
 }
 
 struct DeviceDesk::Data {
-    Data(DeviceDesk& owner, Settings& hisSettings, StudioDocument& openDocument, StudioLoop& hisLoop, Jobs& allJobs,
+    Data(DeviceDesk& owner, Settings& hisSettings, StudioDocument& openDocument, StudioLoop& hisLoop,
          Notices& allNotices)
-        : desk(owner), settings(hisSettings), document(openDocument), loop(hisLoop), jobs(allJobs), notices(allNotices),
+        : desk(owner), settings(hisSettings), document(openDocument), loop(hisLoop), notices(allNotices),
           shelf(hisSettings.folder() / "devices") {}
 
     void listen();
@@ -59,17 +91,16 @@ struct DeviceDesk::Data {
     void add(DeviceLogLine line);
     void heedStop();
     void look();
+    void takeFound(std::vector<FoundDevice> now);
     void tick();
 
     DeviceDesk& desk;
     Settings& settings;
     StudioDocument& document;
     StudioLoop& loop;
-    Jobs& jobs;
     Notices& notices;
     DeviceShelf shelf;
-    /// Shared with jobs that look for devices: those may end after the desk.
-    std::shared_ptr<SimulatedBench> bench = std::make_shared<SimulatedBench>();
+    std::unique_ptr<SimulatedBench> bench = std::make_unique<SimulatedBench>();
     std::shared_ptr<const Rig> rig;
     DeviceProfile profile;
     ServoFeed feed;
@@ -81,12 +112,13 @@ struct DeviceDesk::Data {
     std::unique_ptr<BluetoothSearch> search;
     std::deque<DeviceLogLine> log;
     std::atomic<bool> posted = false; ///< the window has been told of a change that it did not take yet
+    std::jthread looker;
     QTimer due, poll, lookTimer, testTimer;
     QElapsedTimer sinceTest;
+    QDateTime liveSince;
     bool shown = false;
     bool looking = false;
     bool slow = false;
-    bool wasLive = false; ///< when STOP was pressed
 };
 
 void DeviceDesk::Data::listen() {
@@ -120,6 +152,7 @@ void DeviceDesk::Data::takeRig() {
     profile = DeviceProfile{};
     if (rig) {
         profile = profileFor(*rig);
+        shiftChannels(profile, firstChannel(profile.controller));
         const QString usual = fileNameOf(QString::fromStdString(rig->name()));
         const QString name = settings.value(kProfileKey + usual, usual).toString();
         profile.name = usual.toStdString();
@@ -169,7 +202,6 @@ void DeviceDesk::Data::makeLink() {
 
 void DeviceDesk::Data::retire() {
     feed.attach(nullptr, 0);
-    wasLive = false;
     std::erase_if(leaving,
                   [](const auto& one) { return one.wait_for(std::chrono::seconds(0)) == std::future_status::ready; });
     if (!link) return;
@@ -193,7 +225,9 @@ void DeviceDesk::Data::take() {
     posted = false;
     const bool wasDriven = drives(status.phase);
     takeEvents();
+    const bool wasLive = status.phase == LinkPhase::live;
     status = link ? link->status() : LinkStatus{};
+    if (status.phase == LinkPhase::live && !wasLive) liveSince = QDateTime::currentDateTime();
     if (drives(status.phase) && !wasDriven) notices.dismissAll("device");
     if (!drives(status.phase) && wasDriven) desk.endTest();
     emit desk.changed();
@@ -227,11 +261,8 @@ void DeviceDesk::Data::add(DeviceLogLine line) {
 void DeviceDesk::Data::heedStop() {
     if (!link) return;
     if (loop.stopped()) {
-        const LinkPhase before = link->status().phase;
-        link->stop();
-        wasLive = drives(before);
-        feed.drop();
-    } else if (std::exchange(wasLive, false)) {
+        feed.stop();
+    } else if (feed.takeStoppedLive()) {
         link->arm(false);
     }
     take();
@@ -240,20 +271,24 @@ void DeviceDesk::Data::heedStop() {
 /// Looking at the system's ports may take its time on some machines.
 void DeviceDesk::Data::look() {
     if (std::exchange(looking, true)) return;
-    const auto ended = [this] { looking = false; };
-    jobs.run<std::vector<FoundDevice>>(
-        "devices", "Looking for devices", [shared = bench](const Progress&) { return findDevices(shared.get()); },
-        [this, ended](std::vector<FoundDevice> now) {
-            ended();
-            now.insert(now.end(), ofBluetooth.begin(), ofBluetooth.end());
-            if (now == found) return;
-            found = std::move(now);
-            emit desk.foundChanged();
-        },
-        [this, ended](const std::exception& error) {
-            ended();
-            notices.post("devices", noticeOf(error));
-        });
+    looker = std::jthread([this] {
+        std::vector<FoundDevice> now;
+        try {
+            now = findDevices(bench.get());
+        } catch (const std::exception&) {
+            now.clear(); // a port that vanished meanwhile; the next look comes soon
+        }
+        QMetaObject::invokeMethod(
+            &desk, [this, now]() mutable { takeFound(std::move(now)); }, Qt::QueuedConnection);
+    });
+}
+
+void DeviceDesk::Data::takeFound(std::vector<FoundDevice> now) {
+    looking = false;
+    now.insert(now.end(), ofBluetooth.begin(), ofBluetooth.end());
+    if (now == found) return;
+    found = std::move(now);
+    emit desk.foundChanged();
 }
 
 void DeviceDesk::Data::tick() {
@@ -261,14 +296,15 @@ void DeviceDesk::Data::tick() {
     if (!feed.moving()) testTimer.stop();
 }
 
-DeviceDesk::DeviceDesk(Settings& settings, StudioDocument& document, StudioLoop& loop, Jobs& jobs, Notices& notices)
-    : data_(std::make_unique<Data>(*this, settings, document, loop, jobs, notices)) {
+DeviceDesk::DeviceDesk(Settings& settings, StudioDocument& document, StudioLoop& loop, Notices& notices)
+    : data_(std::make_unique<Data>(*this, settings, document, loop, notices)) {
     data_->listen();
 }
 
 DeviceDesk::~DeviceDesk() {
     data_->loop.setTap({});
     data_->search.reset();
+    data_->looker = {}; // waits
     data_->feed.attach(nullptr, 0);
     data_->link.reset();
     data_->leaving.clear(); // waits: they call `hear`
@@ -280,6 +316,7 @@ bool DeviceDesk::searchingBluetooth() const noexcept { return data_->search != n
 const DeviceProfile& DeviceDesk::profile() const noexcept { return data_->profile; }
 const LinkStatus& DeviceDesk::status() const noexcept { return data_->status; }
 const std::deque<DeviceLogLine>& DeviceDesk::log() const noexcept { return data_->log; }
+const QDateTime& DeviceDesk::liveSince() const noexcept { return data_->liveSince; }
 bool DeviceDesk::slow() const noexcept { return data_->slow; }
 QStringList DeviceDesk::profileNames() const { return data_->shelf.names(); }
 std::optional<double> DeviceDesk::tested(std::size_t servo) const { return data_->feed.held(servo); }
@@ -336,7 +373,10 @@ bool DeviceDesk::setProfile(const DeviceProfile& profile) {
     return true;
 }
 
-bool DeviceDesk::previewProfile(const DeviceProfile& profile) { return data_->force(profile); }
+bool DeviceDesk::previewProfile(const DeviceProfile& profile) {
+    if (data_->link && widens(data_->link->profile(), profile)) return false;
+    return data_->force(profile);
+}
 
 void DeviceDesk::loadProfile(const QString& name) {
     if (!data_->rig) return;
@@ -347,7 +387,13 @@ void DeviceDesk::loadProfile(const QString& name) {
                             "it is for " + std::to_string(loaded.servos.size()) + " servos, the open rig has " +
                                 std::to_string(data_->rig->actuatorCount()),
                             "choose another, or open the rig that it was made for");
-        // What is connected stays connected; where to is chosen anew by the next Connect.
+        if (data_->status.phase == LinkPhase::off) {
+            data_->retire();
+        } else { // what is connected stays connected
+            loaded.address = data_->profile.address;
+            loaded.controller = data_->profile.controller;
+            loaded.identity = data_->profile.identity;
+        }
         setProfile(loaded);
     } catch (const Error& error) {
         data_->notices.post("servo", noticeOf(error));
@@ -365,6 +411,7 @@ void DeviceDesk::resetProfile() {
     if (!data_->rig) return;
     DeviceProfile fresh = data_->profile;
     fresh.servos = profileFor(*data_->rig).servos;
+    shiftChannels(fresh, firstChannel(fresh.controller));
     setProfile(fresh);
 }
 
@@ -375,15 +422,24 @@ void DeviceDesk::connectTo(const QString& address, std::optional<ControllerKind>
     if (next.address != wanted) next.identity.clear(); // it was another board's
     next.address = wanted;
     next.controller = controller.value_or(likelyController(address, {}));
+    if (next.controller != data_->profile.controller) {
+        // Who has not chosen channels has them counted as this kind counts.
+        DeviceProfile counted = data_->profile;
+        counted.servos = profileFor(*data_->rig).servos;
+        shiftChannels(counted, firstChannel(data_->profile.controller));
+        if (sameChannels(counted, data_->profile)) shiftChannels(next, firstChannel(next.controller));
+    }
+    const DeviceProfile before = std::exchange(data_->profile, next);
     try {
         static_cast<void>(parseDeviceAddress(wanted));
-        const bool other = next.address != data_->profile.address || next.controller != data_->profile.controller;
-        data_->profile = next;
-        if (!data_->link || other) data_->makeLink();
+        const bool other = !data_->link || data_->link->profile().address != wanted ||
+                           data_->link->profile().controller != next.controller;
+        if (other) data_->makeLink();
         data_->link->connect();
         data_->notices.dismissAll("devices");
         data_->keep();
     } catch (const Error& error) {
+        data_->profile = before;
         data_->notices.post("devices", noticeOf(error));
     }
     emit profileChanged();
@@ -411,11 +467,13 @@ void DeviceDesk::confirm() {
 
 void DeviceDesk::start(bool jumpAllowed) {
     if (!data_->link) return;
-    data_->wasLive = false;
+    static_cast<void>(data_->feed.takeStoppedLive()); // this start is the one to come
     data_->loop.resume();
     data_->link->arm(jumpAllowed);
     data_->take();
 }
+
+void DeviceDesk::stopNow() { data_->feed.stop(); }
 
 void DeviceDesk::release() {
     if (!data_->link) return;

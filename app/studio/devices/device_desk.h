@@ -10,7 +10,6 @@
 #include <QString>
 #include <QStringList>
 
-#include "app/studio/document/jobs.h"
 #include "app/studio/document/notices.h"
 #include "app/studio/document/studio_document.h"
 #include "app/studio/document/studio_loop.h"
@@ -32,13 +31,16 @@ struct DeviceLogLine {
 /// The kind of controller that an address most likely leads to.
 [[nodiscard]] ControllerKind likelyController(const QString& address, const QString& name);
 
+/// Where a kind of controller begins to count its channels.
+[[nodiscard]] int firstChannel(ControllerKind controller);
+
 /// The servo controller of the studio: what was found, how the rig hangs on it, the link, and what happened. Nothing is
 /// connected until the user says so. Servos follow the match loop from its own thread, whatever the window does. Lives
 /// in the window's thread; nothing here waits for a device.
 class DeviceDesk : public QObject {
     Q_OBJECT
 public:
-    DeviceDesk(Settings& settings, StudioDocument& document, StudioLoop& loop, Jobs& jobs, Notices& notices);
+    DeviceDesk(Settings& settings, StudioDocument& document, StudioLoop& loop, Notices& notices);
     /// Servos go to rest where the profile says so: at most two seconds.
     ~DeviceDesk() override;
 
@@ -54,7 +56,7 @@ public:
     /// At once in force, within the guard's limits, and kept under its name. False, and a notice at "servo", where it
     /// cannot be.
     bool setProfile(const DeviceProfile& profile);
-    /// The same while something is dragged: in force, not kept.
+    /// The same while something is dragged: in force, not kept; limits that grow wait for the end of the drag.
     bool previewProfile(const DeviceProfile& profile);
     [[nodiscard]] QStringList profileNames() const;
     void loadProfile(const QString& name);
@@ -69,6 +71,8 @@ public:
     void confirm();
     /// Soft start, also after STOP, which it ends.
     void start(bool jumpAllowed = false);
+    /// STOP for the servos alone, from any thread, whatever the window does; the loop is to be stopped too.
+    void stopNow();
     /// Servos go limp, without STOP.
     void release();
     void wiggle(std::size_t servo);
@@ -81,6 +85,8 @@ public:
     [[nodiscard]] bool testing() const;
 
     [[nodiscard]] const LinkStatus& status() const noexcept;
+    /// When servos were last all started.
+    [[nodiscard]] const QDateTime& liveSince() const noexcept;
     /// What the user calls the device that is, or would be, connected.
     [[nodiscard]] QString name() const;
     /// The name while servos are driven by it, else empty.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace lumorph::studio {
 
@@ -9,7 +10,22 @@ void ServoFeed::attach(ServoLink* link, std::size_t servos) {
     const std::scoped_lock lock(mutex_);
     link_ = link;
     holds_.assign(servos, std::nullopt);
+    stoppedLive_ = false;
     tell();
+}
+
+void ServoFeed::stop() {
+    const std::scoped_lock lock(mutex_);
+    if (!link_) return;
+    const LinkPhase before = link_->status().phase;
+    link_->stop();
+    stoppedLive_ = stoppedLive_ || before == LinkPhase::live || before == LinkPhase::starting;
+    holds_.assign(holds_.size(), std::nullopt);
+}
+
+bool ServoFeed::takeStoppedLive() {
+    const std::scoped_lock lock(mutex_);
+    return std::exchange(stoppedLive_, false);
 }
 
 void ServoFeed::follow(std::span<const double> strokes) {

@@ -17,6 +17,10 @@ public:
 
     /// Tells this link from now on, at once what was told last; null: none. The link outlives its time here.
     void attach(ServoLink* link, std::size_t servos);
+    /// STOP: the link's servos are detached, whatever the window does.
+    void stop();
+    /// Whether servos were driven when STOP came; forgotten by asking.
+    [[nodiscard]] bool takeStoppedLive();
     /// Where the show has the device now. Told on where it fits the servos.
     void follow(std::span<const double> strokes);
 
@@ -46,6 +50,7 @@ private:
     std::vector<double> show_;
     std::vector<std::optional<Hold>> holds_; ///< one a servo
     std::vector<double> told_;
+    bool stoppedLive_ = false;
 };
 
 } // namespace lumorph::studio

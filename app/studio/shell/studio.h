@@ -22,7 +22,7 @@ struct Studio {
     StudioDocument document;
     StudioLoop loop{document};
     Desk desk{document, jobs, notices};
-    DeviceDesk devices{settings, document, loop, jobs, notices};
+    DeviceDesk devices{settings, document, loop, notices};
     Commands commands;
     RenderThread renderer;
     ShowFeed show{loop, renderer, notices};

@@ -9,7 +9,7 @@
 namespace lumorph::studio {
 namespace {
 
-constexpr int kHeight = 88; ///< the same whatever it says, so that rows do not jump under the pointer
+constexpr int kHeight = 80; ///< the same whatever it says, so that rows do not jump under the pointer
 
 QColor stripeOf(DeviceCard::Tone tone) {
     const Palette& colors = currentPalette();

@@ -2,6 +2,7 @@
 
 #include <QGridLayout>
 #include <QLocale>
+#include <QStyle>
 
 #include "app/workspaces/devices/device_words.h"
 
@@ -10,6 +11,7 @@ namespace {
 
 constexpr int kColumns = 4;
 const QString kUnknown(QChar(0x2013));
+constexpr double kLowVolts = 6.0; ///< of two lithium cells, as the link warns of
 
 struct Fact {
     const char* id;
@@ -44,6 +46,14 @@ const Fact kFacts[] = {
     {"refused", "Refused", "How often a command was no number, or was for other servos",
      [](const LinkStatus& link) { return QLocale::c().toString(static_cast<qulonglong>(link.refused)); }},
 };
+
+void warn(QLabel* label, bool on) {
+    const QString look = on ? "warning" : "";
+    if (label->property("look").toString() == look) return;
+    label->setProperty("look", look);
+    label->style()->unpolish(label);
+    label->style()->polish(label);
+}
 
 } // namespace
 
@@ -84,6 +94,8 @@ void DeviceFacts::show(const LinkStatus& link) {
         if (values_[k]->text() != text) values_[k]->setText(text);
     }
     failsafe_->setText(failsafeText(link));
+    const bool low = link.phase != LinkPhase::off && link.controller.volts && *link.controller.volts < kLowVolts;
+    warn(values_.front(), low);
 }
 
 } // namespace lumorph::studio

@@ -80,7 +80,7 @@ DeviceCard readyCard(const DeviceView& view) {
                 Step::none,
                 {}};
     if (!view.lately.isEmpty())
-        return {Tone::warning, view.name + " is ready again", joined(view.lately, text), Step::start, "Start servos"};
+        return {Tone::warning, view.name + " is ready again", "Just now: " + view.lately, Step::start, "Start servos"};
     return {Tone::quiet, view.name + " is ready", text, Step::start, "Start servos"};
 }
 
@@ -150,9 +150,10 @@ QString servoWord(const LinkStatus& link, std::size_t servo, bool tested) {
 
 QString failsafeText(const LinkStatus& link) {
     const ControllerTraits& traits = link.controller.traits;
-    if (traits.name.empty()) return "When the studio dies: known once a device answers.";
-    if (!traits.failsafeWord.empty())
-        return "When the studio dies: " + QString::fromStdString(traits.failsafeWord) + '.';
+    const bool answered =
+        link.phase != LinkPhase::off && link.phase != LinkPhase::connecting && link.phase != LinkPhase::handshake;
+    if (!answered || traits.name.empty()) return "Failsafe: known once a device answers.";
+    if (!traits.failsafeWord.empty()) return "Failsafe: " + QString::fromStdString(traits.failsafeWord) + '.';
     return traits.failsafe
                ? "When the studio dies, it stops by itself."
                : "When the studio dies, its servos stay where they are, under power. Switch it off by hand.";

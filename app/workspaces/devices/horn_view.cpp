@@ -22,7 +22,8 @@ HornView::HornView(QWidget* parent) : QWidget(parent) {
     setSizePolicy(policy);
 }
 
-void HornView::show(std::vector<SimulatedServo> servos, std::vector<int> channels) {
+void HornView::show(std::vector<SimulatedServo> servos, std::vector<int> channels, int first) {
+    first_ = first;
     const bool other = channels.size() != channels_.size();
     servos_ = std::move(servos);
     channels_ = std::move(channels);
@@ -53,8 +54,9 @@ void HornView::paintEvent(QPaintEvent* /*event*/) {
 
 void HornView::drawHorn(QPainter& painter, const QRectF& box, std::size_t index) const {
     const Palette& colors = currentPalette();
-    const auto channel = static_cast<std::size_t>(channels_[index]);
-    const bool there = channels_[index] >= 0 && channel < servos_.size();
+    const int ofBoard = channels_[index] - first_;
+    const auto channel = static_cast<std::size_t>(ofBoard);
+    const bool there = ofBoard >= 0 && channel < servos_.size();
     const SimulatedServo servo = there ? servos_[channel] : SimulatedServo{};
     const bool powered = servo.pulse > 0.0;
     const QPointF axle(box.center().x(), box.top() + 38.0);

@@ -13,8 +13,8 @@ class HornView : public QWidget {
     Q_OBJECT
 public:
     explicit HornView(QWidget* parent = nullptr);
-    /// `channels` of the board, in the order of the rig's actuators.
-    void show(std::vector<SimulatedServo> servos, std::vector<int> channels);
+    /// `channels` of the board, in the order of the rig's actuators; the board's own begin with `first`.
+    void show(std::vector<SimulatedServo> servos, std::vector<int> channels, int first);
     [[nodiscard]] QSize sizeHint() const override;
     [[nodiscard]] QSize minimumSizeHint() const override;
     [[nodiscard]] bool hasHeightForWidth() const override { return true; }
@@ -29,6 +29,7 @@ private:
 
     std::vector<SimulatedServo> servos_;
     std::vector<int> channels_;
+    int first_ = 0;
 };
 
 } // namespace lumorph::studio

@@ -18,7 +18,7 @@ public:
         list_->setWordWrap(true);
         list_->setSelectionMode(QAbstractItemView::ExtendedSelection);
         list_->setVerticalScrollMode(QAbstractItemView::ScrollPerPixel);
-        list_->setMinimumHeight(72);
+        list_->setMinimumHeight(56);
         empty_->setText("What happens with the device is told here, in plain words.");
         empty_->setProperty("look", "muted");
         empty_->setAlignment(Qt::AlignCenter);
@@ -29,7 +29,7 @@ public:
         take(static_cast<int>(studio.devices.log().size()));
     }
 
-    [[nodiscard]] QSize sizeHint() const override { return {600, 148}; }
+    [[nodiscard]] QSize sizeHint() const override { return {600, 112}; }
 
 private:
     void take(int lines) {

@@ -18,8 +18,10 @@ namespace {
 constexpr qint64 kLatelySeconds = 20;
 
 QString lately(const DeviceDesk& desk) {
+    const bool live = desk.status().phase == LinkPhase::live;
     for (const DeviceLogLine& line : desk.log()) {
         if (line.time.secsTo(QDateTime::currentDateTime()) > kLatelySeconds) break;
+        if (live && line.time < desk.liveSince()) break; // over and done
         if (line.kind != LinkEvent::Kind::information)
             return line.remedy.isEmpty() ? line.text : line.text + ' ' + line.remedy;
     }
@@ -34,13 +36,15 @@ public:
         setProperty("look", "panel");
         setAttribute(Qt::WA_StyledBackground);
         auto* layout = new QVBoxLayout(this);
-        layout->setContentsMargins(16, 16, 16, 12);
-        layout->setSpacing(12);
+        layout->setContentsMargins(16, 12, 16, 8);
+        layout->setSpacing(8);
         layout->addWidget(card_);
         layout->addWidget(makeHint());
         layout->addWidget(makeStrokeLegend(this));
         rows_ = makeColumn(this);
         rows_.layout->setContentsMargins(0, 0, 0, 0);
+        rows_.layout->setSpacing(4);
+        rows_.layout->setAlignment({}); // rows take what height there is, up to their most
         layout->addWidget(rows_.widget, 1);
         layout->addWidget(makeHands());
         layout->addWidget(facts_);
@@ -113,6 +117,7 @@ private:
             delete item;
         }
         for (qsizetype k = 0; k < names.size(); ++k) addRow(static_cast<std::size_t>(k));
+        rows_.layout->addStretch(1);
         selection_.select(names.isEmpty() ? std::nullopt : std::optional<std::size_t>(0));
         refresh();
     }

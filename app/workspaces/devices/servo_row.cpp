@@ -12,7 +12,7 @@
 namespace lumorph::studio {
 namespace {
 
-constexpr int kHeight = 56;
+constexpr int kHeight = 56, kLeastHeight = 40;
 constexpr int kNameWidth = 128;
 
 } // namespace
@@ -25,8 +25,9 @@ ServoRow::ServoRow(std::size_t servo, const QString& name, QWidget* parent)
     setToolTip(name + ": click to set it up on the right");
     setCheckable(true);
     setFocusPolicy(Qt::StrongFocus);
-    setFixedHeight(kHeight);
-    setSizePolicy(QSizePolicy::Expanding, QSizePolicy::Fixed);
+    setMinimumHeight(kLeastHeight);
+    setMaximumHeight(kHeight);
+    setSizePolicy(QSizePolicy::Expanding, QSizePolicy::Preferred);
     auto* title = new QLabel(fontMetrics().elidedText(name, Qt::ElideRight, kNameWidth - 4), this);
     title->setProperty("look", "heading");
     title->setTextFormat(Qt::PlainText);

@@ -219,6 +219,7 @@ private:
         if (!chosen) return;
         std::vector<int> channels;
         for (const ServoSetup& servo : studio_.devices.profile().servos) channels.push_back(servo.channel);
+        const int first = firstChannel(likelyController("sim://" + boards_->currentText(), {}));
         const std::vector<SimulatedServo> servos = chosen->servos();
         double fastest = 0.0, jump = 0.0;
         for (const SimulatedServo& servo : servos) {
@@ -228,7 +229,7 @@ private:
         extremes_->setText(QString("Fastest pulse so far %1 µs a second; largest jump at a start %2 µs.")
                                .arg(fastest, 0, 'f', 0)
                                .arg(jump, 0, 'f', 0));
-        horns_->show(servos, channels);
+        horns_->show(servos, channels, first);
     }
 
     Studio& studio_;
