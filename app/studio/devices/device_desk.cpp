@@ -27,6 +27,13 @@ constexpr auto kProfileKey = "device/profile/"; ///< and the rig's name: which p
 
 bool drives(LinkPhase phase) { return phase == LinkPhase::live || phase == LinkPhase::starting; }
 
+/// Remedies are worded as parts of a sentence; a log has lines.
+QString asSentence(QString text) {
+    if (text.isEmpty()) return text;
+    text[0] = text[0].toUpper();
+    return text.endsWith('.') ? text : text + '.';
+}
+
 /// Links tell the steady clock's time; people read the wall's.
 QDateTime wallTime(Microseconds time) {
     const auto ago = std::chrono::duration_cast<std::chrono::milliseconds>(SteadyClock().now() - time);
@@ -238,7 +245,7 @@ void DeviceDesk::Data::takeEvents() {
     const std::vector<LinkEvent> events = link->takeEvents();
     for (const LinkEvent& event : events) {
         const DeviceLogLine line{wallTime(event.time), event.kind, QString::fromStdString(event.text),
-                                 QString::fromStdString(event.remedy)};
+                                 asSentence(QString::fromStdString(event.remedy))};
         add(line);
         if (event.kind == LinkEvent::Kind::information) continue;
         // For those who are in another workspace: the status line counts and lists it.

@@ -61,6 +61,9 @@ DeviceCard waitingCard(const DeviceView& view) {
     if (waiting.size() == 1)
         return {Tone::warning, servoName(view.servos, waiting.front()) + " may jump when it starts: hands off",
                 "Nobody knows where it stands.", Step::startAnyway, "Start anyway"};
+    if (static_cast<qsizetype>(waiting.size()) == view.servos.size())
+        return {Tone::warning, "All servos may jump when they start: hands off",
+                "Nobody knows where they stand. They start one after the other.", Step::startAnyway, "Start anyway"};
     QStringList numbers;
     for (const std::size_t servo : waiting) numbers << QString::number(servo + 1);
     const QString last = numbers.takeLast();

@@ -18,6 +18,7 @@ public:
         list_->setWordWrap(true);
         list_->setSelectionMode(QAbstractItemView::ExtendedSelection);
         list_->setVerticalScrollMode(QAbstractItemView::ScrollPerPixel);
+        list_->setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
         list_->setMinimumHeight(56);
         empty_->setText("What happens with the device is told here, in plain words.");
         empty_->setProperty("look", "muted");

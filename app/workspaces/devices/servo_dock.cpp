@@ -143,7 +143,7 @@ private:
         follow_->setObjectName("servo.follow");
         connect(follow_, &QPushButton::clicked, this, [this] { studio_.devices.endTest(); });
         rows.addWidget(follow_);
-        testNote_ = new QLabel("Servos must be live for this.");
+        testNote_ = new QLabel("The servo must be live for this.");
         testNote_->setProperty("look", "muted");
         testNote_->setWordWrap(true);
         rows.addWidget(testNote_);
@@ -228,7 +228,9 @@ private:
 
     void refreshTests() {
         const auto servo = selection_.servo();
-        const bool live = studio_.devices.status().phase == LinkPhase::live;
+        const LinkStatus& link = studio_.devices.status();
+        const bool live =
+            link.phase == LinkPhase::live && servo && *servo < link.servos.size() && link.servos[*servo].attached;
         const auto held = servo ? studio_.devices.tested(*servo) : std::nullopt;
         for (const auto& [button, stroke] : tests_) {
             button->setEnabled(live);
