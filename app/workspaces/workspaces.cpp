@@ -1,5 +1,6 @@
 #include "app/workspaces/workspaces.h"
 
+#include "app/workspaces/devices/devices_workspace.h"
 #include "app/workspaces/field/field_workspace.h"
 #include "app/workspaces/rig/rig_workspace.h"
 #include "app/workspaces/scene/scene_workspace.h"
@@ -11,6 +12,7 @@ std::vector<std::unique_ptr<Workspace>> makeWorkspaces(Studio& studio) {
     workspaces.push_back(std::make_unique<RigWorkspace>(studio));
     workspaces.push_back(std::make_unique<FieldWorkspace>(studio));
     workspaces.push_back(std::make_unique<SceneWorkspace>(studio));
+    workspaces.push_back(std::make_unique<DevicesWorkspace>(studio));
     return workspaces;
 }
 

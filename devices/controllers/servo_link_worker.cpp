@@ -37,7 +37,7 @@ bool serves(const DeviceProfile& made, const DeviceProfile& wanted) {
     };
     return made.address == wanted.address && made.controller == wanted.controller &&
            made.controllerNumber == wanted.controllerNumber && made.maestroCrc == wanted.maestroCrc &&
-           made.identity == wanted.identity && made.commandsPerSecond == wanted.commandsPerSecond &&
+           made.commandsPerSecond == wanted.commandsPerSecond &&
            std::ranges::equal(made.servos, wanted.servos, sameServo);
 }
 
@@ -251,7 +251,10 @@ void LinkWorker::Data::order(const link_request::Slow& order) {
 }
 
 void LinkWorker::Data::order(const link_request::Profile& order) {
-    if (next || !serves(made, order.profile)) {
+    // The identity of the very board that is there says nothing new.
+    const bool sameBoard = order.profile.identity == made.identity ||
+                           (keeper->isOpen() && !foreign && order.profile.identity == keeper->identity());
+    if (next || !sameBoard || !serves(made, order.profile)) {
         next = order.profile;
         if (armed())
             tell(Kind::information, "Other wires or wider limits: the servos were let go.", "Start them again.");
@@ -259,6 +262,7 @@ void LinkWorker::Data::order(const link_request::Profile& order) {
         return;
     }
     profile = order.profile;
+    made.identity = profile.identity;
     guard.setProfile(profile);
 }
 

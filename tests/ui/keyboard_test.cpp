@@ -182,6 +182,8 @@ TEST_F(Keyboard, ReachesEveryControlOfTheRigWorkspace) { expectAll("rig"); }
 
 TEST_F(Keyboard, ReachesEveryControlOfTheSceneWorkspace) { expectAll("scene"); }
 
+TEST_F(Keyboard, ReachesEveryControlOfTheDevicesWorkspace) { expectAll("devices"); }
+
 TEST_F(Keyboard, ReachesEverythingOfWhatIsChosen) {
     window->showWorkspace("scene");
     auto* tree = window->findChild<QTreeView*>("scene.outliner");

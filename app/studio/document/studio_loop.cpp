@@ -22,6 +22,7 @@ std::int64_t nowMilliseconds() {
 
 StudioLoop::StudioLoop(StudioDocument& document, QObject* parent) : QObject(parent), document_(document) {
     thread_ = std::make_unique<MatchThread>([this] {
+        tap();
         if (!posted_.exchange(true))
             QMetaObject::invokeMethod(
                 this, [this] { take(); }, Qt::QueuedConnection);
@@ -32,7 +33,10 @@ StudioLoop::StudioLoop(StudioDocument& document, QObject* parent) : QObject(pare
     sendSoon();
 }
 
-StudioLoop::~StudioLoop() { thread_.reset(); }
+StudioLoop::~StudioLoop() {
+    setTap({});
+    thread_.reset();
+}
 
 double StudioLoop::rate() const noexcept { return thread_->rate(); }
 
@@ -89,6 +93,17 @@ void StudioLoop::setPoses(std::shared_ptr<const PoseBoard> poses) {
 
 void StudioLoop::setRate(double framesPerSecond) {
     if (std::isfinite(framesPerSecond)) thread_->setRate(std::clamp(framesPerSecond, 1.0, 1000.0));
+}
+
+void StudioLoop::setTap(std::function<void(const MatchFrame&)> tap) {
+    const std::scoped_lock lock(tapping_);
+    tap_ = std::move(tap);
+}
+
+void StudioLoop::tap() {
+    const std::scoped_lock lock(tapping_);
+    if (!tap_) return;
+    if (const auto frame = thread_->latest()) tap_(*frame);
 }
 
 void StudioLoop::heed(StateParts parts) {

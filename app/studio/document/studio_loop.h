@@ -2,7 +2,9 @@
 
 #include <atomic>
 #include <cstdint>
+#include <functional>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <vector>
 
@@ -44,6 +46,9 @@ public:
     /// Tracked heads and device; empty: the scene's own eye and place.
     void setPoses(std::shared_ptr<const PoseBoard> poses);
     void setRate(double framesPerSecond);
+    /// Called in the loop's thread with every new frame, also while the window is stuck; must return at once. When this
+    /// returns, the one before is called no more.
+    void setTap(std::function<void(const MatchFrame&)> tap);
 
 signals:
     /// A new frame, newest only: frames that come faster than the window takes them are left out.
@@ -59,6 +64,7 @@ private:
     void send();
     void take();
     void takeError();
+    void tap(); ///< in the loop's thread
 
     StudioDocument& document_;
     std::shared_ptr<const MatchFrame> frame_;
@@ -72,6 +78,8 @@ private:
     bool sending_ = false;              ///< a wish goes out when the event loop comes round
     std::vector<std::int64_t> shownAt_; ///< when matched frames were handed over, milliseconds
     std::atomic<bool> posted_ = false;  ///< the window has been told of a frame that it did not take yet
+    std::mutex tapping_;
+    std::function<void(const MatchFrame&)> tap_;
     QTimer errors_;
     std::unique_ptr<MatchThread> thread_;
 };

@@ -20,6 +20,7 @@
 #include "app/studio/shell/idle_cursor.h"
 #include "app/studio/shell/shell_commands.h"
 #include "app/studio/shell/status_line.h"
+#include "app/studio/shell/stop_key_watch.h"
 #include "app/studio/shell/top_bar.h"
 #include "app/studio/shell/tour.h"
 #include "app/studio/shell/workspace_page.h"
@@ -33,7 +34,7 @@ constexpr auto kGeometryKey = "window/geometry";
 constexpr auto kWorkspaceKey = "window/workspace";
 
 /// In the order of the work; menus without a command in sight are hidden.
-const QStringList kMenus{"File", "Edit", "View", "Target", "Rig", "Field", "Scene", "Help"};
+const QStringList kMenus{"File", "Edit", "View", "Target", "Rig", "Field", "Scene", "Device", "Help"};
 
 /// Commands of one kind stand together: "view.dock.target" is of the kind "view.dock".
 QString kindOf(const QString& id) { return id.section('.', 0, -2); }
@@ -61,12 +62,13 @@ struct MainWindow::Data {
     StatusLine* status = nullptr;
     QStackedWidget* stack = nullptr;
     QPointer<DropOverlay> drop;
+    std::unique_ptr<StopKeyWatch> stopKeys;
     QString present;
     bool kiosk = false;
 };
 
 MainWindow::MainWindow(Studio& studio, std::vector<std::unique_ptr<Workspace>> workspaces)
-    : data_(new Data{studio, std::move(workspaces), {}, {}, {}, nullptr, nullptr, nullptr, {}, {}, false}) {
+    : data_(new Data{studio, std::move(workspaces), {}, {}, {}, nullptr, nullptr, nullptr, {}, {}, {}, false}) {
     setObjectName("mainWindow");
     setAcceptDrops(true);
     setContextMenuPolicy(Qt::NoContextMenu);
@@ -98,6 +100,11 @@ MainWindow::MainWindow(Studio& studio, std::vector<std::unique_ptr<Workspace>> w
     connect(&studio.settings, &Settings::placesNewTargetsChanged, this, setPlacing);
     setPlacing();
     connect(new EscapeTwice(data_->clock, this), &EscapeTwice::pressed, &studio.loop, &StudioLoop::stop);
+    // Also while another program has the keyboard, and for the servos while this window is stuck.
+    data_->stopKeys = std::make_unique<StopKeyWatch>([&studio] {
+        studio.devices.stopNow();
+        QMetaObject::invokeMethod(&studio.loop, &StudioLoop::stop, Qt::QueuedConnection);
+    });
     qApp->installEventFilter(this);
     resize(kUsualSize.boundedTo(screen()->availableSize() - kFrame));
     restoreGeometry(studio.settings.value(kGeometryKey).toByteArray());

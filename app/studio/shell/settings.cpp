@@ -85,6 +85,8 @@ void Settings::setLayout(const QString& workspace, const QByteArray& layout) {
     store_.setValue(layoutKey(workspace), layout);
 }
 
+std::filesystem::path Settings::folder() const { return QFileInfo(store_.fileName()).absolutePath().toStdString(); }
+
 QVariant Settings::value(const QString& key, const QVariant& fallback) const { return store_.value(key, fallback); }
 
 void Settings::setValue(const QString& key, const QVariant& value) { store_.setValue(key, value); }

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <filesystem>
+
 #include <QObject>
 #include <QSettings>
 #include <QString>
@@ -31,6 +33,8 @@ public:
     void clearRecentFiles();
     [[nodiscard]] QByteArray layout(const QString& workspace) const;
     void setLayout(const QString& workspace, const QByteArray& layout);
+    /// Where what is too large for a setting lies: the folder of the settings' own file.
+    [[nodiscard]] std::filesystem::path folder() const;
     [[nodiscard]] QVariant value(const QString& key, const QVariant& fallback = {}) const;
     void setValue(const QString& key, const QVariant& value);
 

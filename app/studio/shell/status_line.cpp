@@ -37,7 +37,8 @@ QString counted(int count, const QString& one) {
 } // namespace
 
 StatusLine::StatusLine(Studio& studio, QWidget* parent)
-    : QWidget(parent), studio_(studio), places_{"viewport", "rig", "field", "target", "match", "export", "project"} {
+    : QWidget(parent),
+      studio_(studio), places_{"viewport", "rig", "field", "target", "match", "export", "project", "device"} {
     setObjectName("statusLine");
     setAttribute(Qt::WA_StyledBackground);
     setFixedHeight(28);
@@ -45,9 +46,7 @@ StatusLine::StatusLine(Studio& studio, QWidget* parent)
     row->setContentsMargins(12, 0, 8, 0);
     row->setSpacing(0);
     project_ = addText(*row, "status.project", "file", {}, this);
-    hardware_ = addText(*row, "status.hardware", "device",
-                        "The tablet, its servos and their speed limits are simulated here; nothing real moves.", this);
-    hardware_->setText("Virtual lab");
+    hardware_ = addText(*row, "status.hardware", "device", {}, this);
     loop_ = addText(*row, "status.loop", "speed",
                     "How often the device follows the target, and how long finding its levels takes", this);
     loop_->setMinimumWidth(64);
@@ -60,6 +59,7 @@ StatusLine::StatusLine(Studio& studio, QWidget* parent)
     row->addWidget(warnings_);
     connect(warnings_, &QPushButton::clicked, this, &StatusLine::listWarnings);
     connect(&studio.document, &StudioDocument::titleChanged, this, &StatusLine::showProject);
+    connect(&studio.devices, &DeviceDesk::changed, this, &StatusLine::showHardware);
     connect(&studio.notices, &Notices::changed, this, [this](const QString& place) {
         if (!place.isEmpty()) places_.insert(place);
         showWarnings();
@@ -73,6 +73,7 @@ StatusLine::StatusLine(Studio& studio, QWidget* parent)
     });
     timer->start(kRefreshMilliseconds);
     showProject();
+    showHardware();
     showLoop();
     showWarnings();
 }
@@ -85,6 +86,16 @@ void StatusLine::showProject() {
                                                   : QString::fromStdString(document.file().string());
     project_->setToolTip(where + (document.modified() ? "\nChanged since it was saved." : "") +
                          "\nWhat is not saved is kept when you quit, and comes back when you start again.");
+}
+
+void StatusLine::showHardware() {
+    const QString live = studio_.devices.liveName();
+    const QString text = live.isEmpty() ? QString("Virtual lab") : live;
+    if (text == hardware_->text()) return;
+    hardware_->setText(text);
+    hardware_->setToolTip(live.isEmpty()
+                              ? "The tablet, its servos and their speed limits are simulated here; nothing real moves."
+                              : "Its servos follow the show. The Devices workspace tells all about it.");
 }
 
 void StatusLine::showLoop() {

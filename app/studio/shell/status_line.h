@@ -22,6 +22,7 @@ public:
 
 private:
     void showProject();
+    void showHardware();
     void showLoop();
     void showWarnings();
     void listWarnings();

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "app/studio/devices/device_desk.h"
 #include "app/studio/document/desk.h"
 #include "app/studio/document/jobs.h"
 #include "app/studio/document/notices.h"
@@ -21,6 +22,7 @@ struct Studio {
     StudioDocument document;
     StudioLoop loop{document};
     Desk desk{document, jobs, notices};
+    DeviceDesk devices{settings, document, loop, notices};
     Commands commands;
     RenderThread renderer;
     ShowFeed show{loop, renderer, notices};

@@ -135,8 +135,8 @@ void TopBar::showStopped() {
     const bool stopped = studio_.loop.stopped();
     stop_->setText(stopped ? "Stopped - resume" : "STOP");
     stop_->setIcon(stopped ? icon("play") : icon("stop", IconRole::onDanger));
-    stop_->setToolTip(stopped ? "Every actuator holds where it is. Click to let them move again."
-                              : "Every actuator holds where it is, at once (Esc Esc)");
+    stop_->setToolTip(stopped ? "Every actuator holds where it is. Click to let them move again; servos start softly."
+                              : "Every actuator holds where it is, at once; servos of a device go limp (Esc Esc)");
     relook(*stop_, stopped ? "latched" : "danger");
     stop_->setMinimumWidth(stopped ? 144 : 96);
     fitSearch();

@@ -29,9 +29,10 @@ void ActuatorItem::paint(QPainter* painter, const QStyleOptionViewItem& option, 
         painter->setBrush(chosen ? selectedColor(colors) : colors.hovered);
         painter->drawRoundedRect(QRectF(option.rect).adjusted(1, 1, -1, -1), 4, 4);
     }
+    const QString named = index.data(kActuatorIcon).toString();
     const QRect inside = option.rect.adjusted(kPadding, kPadding, -kPadding, -kPadding);
-    paintIcon(*painter, QRectF(inside.left(), inside.center().y() - kIcon / 2 + 1, kIcon, kIcon), "actuator",
-              chosen ? colors.accentText : colors.textMuted);
+    paintIcon(*painter, QRectF(inside.left(), inside.center().y() - kIcon / 2 + 1, kIcon, kIcon),
+              named.isEmpty() ? QString("actuator") : named, chosen ? colors.accentText : colors.textMuted);
     const QRect words = inside.adjusted(kIcon + kPadding, 0, 0, 0);
     const QFontMetrics metrics(option.font);
     const QRect first(words.topLeft(), QSize(words.width(), metrics.height()));

@@ -1,0 +1,109 @@
+#pragma once
+
+#include <deque>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include <QDateTime>
+#include <QObject>
+#include <QString>
+#include <QStringList>
+
+#include "app/studio/document/notices.h"
+#include "app/studio/document/studio_document.h"
+#include "app/studio/document/studio_loop.h"
+#include "app/studio/shell/settings.h"
+#include "devices/controllers/servo_link.h"
+#include "devices/simulator/simulated_bench.h"
+#include "devices/transport/discovery.h"
+
+namespace lumorph::studio {
+
+/// One line of what happened with the device.
+struct DeviceLogLine {
+    QDateTime time;
+    LinkEvent::Kind kind = LinkEvent::Kind::information;
+    QString text;
+    QString remedy;
+};
+
+/// The kind of controller that an address most likely leads to.
+[[nodiscard]] ControllerKind likelyController(const QString& address, const QString& name);
+
+/// Where a kind of controller begins to count its channels.
+[[nodiscard]] int firstChannel(ControllerKind controller);
+
+/// The servo controller of the studio: what was found, how the rig hangs on it, the link, and what happened. Nothing is
+/// connected until the user says so. Servos follow the match loop from its own thread, whatever the window does. Lives
+/// in the window's thread; nothing here waits for a device.
+class DeviceDesk : public QObject {
+    Q_OBJECT
+public:
+    DeviceDesk(Settings& settings, StudioDocument& document, StudioLoop& loop, Notices& notices);
+    /// Servos go to rest where the profile says so: at most two seconds.
+    ~DeviceDesk() override;
+
+    [[nodiscard]] SimulatedBench& bench() noexcept;
+    /// While somebody looks, devices are looked for every two seconds and the status comes 20 times a second.
+    void setShown(bool shown);
+    [[nodiscard]] const std::vector<FoundDevice>& found() const noexcept;
+    void searchBluetooth();
+    [[nodiscard]] bool searchingBluetooth() const noexcept;
+
+    /// How the open rig hangs on its controller; without servos while no rig is open.
+    [[nodiscard]] const DeviceProfile& profile() const noexcept;
+    /// At once in force, within the guard's limits, and kept under its name. False, and a notice at "servo", where it
+    /// cannot be.
+    bool setProfile(const DeviceProfile& profile);
+    /// The same while something is dragged: in force, not kept; limits that grow wait for the end of the drag.
+    bool previewProfile(const DeviceProfile& profile);
+    [[nodiscard]] QStringList profileNames() const;
+    void loadProfile(const QString& name);
+    void saveProfileAs(const QString& name);
+    /// A fresh one, as the rig's file describes its drives.
+    void resetProfile();
+
+    /// Remembers the address and connects to it; a notice at "devices" where it is none.
+    void connectTo(const QString& address, std::optional<ControllerKind> controller = {});
+    void disconnect();
+    /// The user says that the board is what it seems to be; remembered with the profile.
+    void confirm();
+    /// Soft start, also after STOP, which it ends.
+    void start(bool jumpAllowed = false);
+    /// STOP for the servos alone, from any thread, whatever the window does; the loop is to be stopped too.
+    void stopNow();
+    /// Servos go limp, without STOP.
+    void release();
+    void wiggle(std::size_t servo);
+    void setSlow(bool slow);
+    [[nodiscard]] bool slow() const noexcept;
+    /// Moves one servo slowly to a stroke and keeps it there, until `endTest`.
+    void test(std::size_t servo, double stroke);
+    void endTest();
+    [[nodiscard]] std::optional<double> tested(std::size_t servo) const;
+    [[nodiscard]] bool testing() const;
+
+    [[nodiscard]] const LinkStatus& status() const noexcept;
+    /// When servos were last all started.
+    [[nodiscard]] const QDateTime& liveSince() const noexcept;
+    /// What the user calls the device that is, or would be, connected.
+    [[nodiscard]] QString name() const;
+    /// The name while servos are driven by it, else empty.
+    [[nodiscard]] QString liveName() const;
+    /// Newest first, at most 500.
+    [[nodiscard]] const std::deque<DeviceLogLine>& log() const noexcept;
+    void note(const QString& text);
+
+signals:
+    void changed(); ///< status; at most 20 times a second
+    void foundChanged();
+    void profileChanged();
+    void logged(int lines); ///< so many new ones
+
+private:
+    struct Data;
+    std::unique_ptr<Data> data_;
+};
+
+} // namespace lumorph::studio

@@ -1,0 +1,93 @@
+#include "app/studio/devices/servo_feed.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace lumorph::studio {
+
+void ServoFeed::attach(ServoLink* link, std::size_t servos) {
+    const std::scoped_lock lock(mutex_);
+    link_ = link;
+    holds_.assign(servos, std::nullopt);
+    stoppedLive_ = false;
+    tell();
+}
+
+void ServoFeed::stop() {
+    const std::scoped_lock lock(mutex_);
+    if (!link_) return;
+    const LinkPhase before = link_->status().phase;
+    link_->stop();
+    stoppedLive_ = stoppedLive_ || before == LinkPhase::live || before == LinkPhase::starting;
+    holds_.assign(holds_.size(), std::nullopt);
+}
+
+bool ServoFeed::takeStoppedLive() {
+    const std::scoped_lock lock(mutex_);
+    return std::exchange(stoppedLive_, false);
+}
+
+void ServoFeed::follow(std::span<const double> strokes) {
+    const std::scoped_lock lock(mutex_);
+    show_.assign(strokes.begin(), strokes.end());
+    tell();
+}
+
+void ServoFeed::hold(std::size_t servo, double stroke) {
+    const std::scoped_lock lock(mutex_);
+    if (servo >= holds_.size() || servo >= told_.size() || !std::isfinite(stroke)) return;
+    if (!holds_[servo]) holds_[servo] = Hold{told_[servo], {}};
+    holds_[servo]->aim = std::clamp(stroke, 0.0, 1.0);
+}
+
+void ServoFeed::release() {
+    const std::scoped_lock lock(mutex_);
+    for (auto& hold : holds_)
+        if (hold) hold->aim.reset();
+}
+
+void ServoFeed::drop() {
+    const std::scoped_lock lock(mutex_);
+    holds_.assign(holds_.size(), std::nullopt);
+    tell();
+}
+
+std::optional<double> ServoFeed::held(std::size_t servo) const {
+    const std::scoped_lock lock(mutex_);
+    return servo < holds_.size() && holds_[servo] ? holds_[servo]->aim : std::nullopt;
+}
+
+bool ServoFeed::testing() const {
+    const std::scoped_lock lock(mutex_);
+    return std::any_of(holds_.begin(), holds_.end(), [](const auto& hold) { return hold.has_value(); });
+}
+
+bool ServoFeed::moving() const {
+    const std::scoped_lock lock(mutex_);
+    return std::any_of(holds_.begin(), holds_.end(),
+                       [](const auto& hold) { return hold && (!hold->aim || hold->now != *hold->aim); });
+}
+
+void ServoFeed::advance(double seconds) {
+    const std::scoped_lock lock(mutex_);
+    const double step = kTestVelocity * std::clamp(seconds, 0.0, 0.1);
+    for (std::size_t k = 0; k < holds_.size() && k < show_.size(); ++k) {
+        auto& hold = holds_[k];
+        if (!hold) continue;
+        const double aim = hold->aim.value_or(show_[k]);
+        hold->now += std::clamp(aim - hold->now, -step, step);
+        if (!hold->aim && hold->now == aim) hold.reset();
+    }
+    tell();
+}
+
+void ServoFeed::tell() {
+    if (!link_ || show_.empty() || show_.size() != holds_.size()) return;
+    told_ = show_;
+    for (std::size_t k = 0; k < told_.size(); ++k)
+        if (holds_[k]) told_[k] = holds_[k]->now;
+    link_->command(told_);
+}
+
+} // namespace lumorph::studio

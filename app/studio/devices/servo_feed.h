@@ -1,0 +1,56 @@
+#pragma once
+
+#include <mutex>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "devices/controllers/servo_link.h"
+
+namespace lumorph::studio {
+
+/// What the servos are told: the strokes of the show, except those that are held for a test. Any thread.
+class ServoFeed {
+public:
+    /// Strokes a second at which a servo goes to where a test wants it, and back.
+    static constexpr double kTestVelocity = 0.25;
+
+    /// Tells this link from now on, at once what was told last; null: none. The link outlives its time here.
+    void attach(ServoLink* link, std::size_t servos);
+    /// STOP: the link's servos are detached, whatever the window does.
+    void stop();
+    /// Whether servos were driven when STOP came; forgotten by asking.
+    [[nodiscard]] bool takeStoppedLive();
+    /// Where the show has the device now. Told on where it fits the servos.
+    void follow(std::span<const double> strokes);
+
+    /// Moves one servo slowly from where it was told to be, and keeps it there.
+    void hold(std::size_t servo, double stroke);
+    /// Lets all go back to the show, slowly.
+    void release();
+    /// Forgets all tests at once; for when servos stand without pulses anyway.
+    void drop();
+    [[nodiscard]] std::optional<double> held(std::size_t servo) const;
+    /// Some servo is held, or on its way back.
+    [[nodiscard]] bool testing() const;
+    /// Some servo is on its way to a test or back.
+    [[nodiscard]] bool moving() const;
+    /// Time passes for the tests.
+    void advance(double seconds);
+
+private:
+    struct Hold {
+        double now = 0.0;
+        std::optional<double> aim; ///< nothing: back to the show
+    };
+    void tell();
+
+    mutable std::mutex mutex_;
+    ServoLink* link_ = nullptr;
+    std::vector<double> show_;
+    std::vector<std::optional<Hold>> holds_; ///< one a servo
+    std::vector<double> told_;
+    bool stoppedLive_ = false;
+};
+
+} // namespace lumorph::studio

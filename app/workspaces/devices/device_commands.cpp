@@ -1,0 +1,105 @@
+#include "app/workspaces/devices/device_commands.h"
+
+#include "app/workspaces/devices/servo_board.h"
+
+namespace lumorph::studio {
+namespace {
+
+constexpr auto kFirstAddress = "sim://tablet";
+constexpr auto kMenu = "Device";
+
+QAction* add(Studio& studio, const char* id, const QString& text, const char* icon, const QString& tip,
+             std::function<void()> run, const QKeySequence& keys = {}, bool here = false) {
+    Commands::Options options;
+    options.icon = icon;
+    options.menu = kMenu;
+    options.shortcut = keys;
+    options.workspace = here ? QString("devices") : QString();
+    QAction* action = studio.commands.add(id, text, options, std::move(run));
+    action->setToolTip(tip);
+    return action;
+}
+
+void connectUsual(Studio& studio) {
+    const std::string& address = studio.devices.profile().address;
+    if (address.empty())
+        studio.devices.connectTo(kFirstAddress);
+    else
+        studio.devices.connectTo(QString::fromStdString(address), studio.devices.profile().controller);
+}
+
+void doNext(Studio& studio) {
+    switch (cardOf(deviceViewOf(studio)).step) {
+    case DeviceCard::Step::openRig:
+        if (QAction* open = studio.commands.find("rig.open")) open->trigger();
+        break;
+    case DeviceCard::Step::connect:
+        connectUsual(studio);
+        break;
+    case DeviceCard::Step::confirm:
+        studio.devices.confirm();
+        break;
+    case DeviceCard::Step::start:
+    case DeviceCard::Step::startAgain:
+        studio.devices.start();
+        break;
+    case DeviceCard::Step::startAnyway:
+        studio.devices.start(true);
+        break;
+    case DeviceCard::Step::none:
+        break;
+    }
+}
+
+bool isOff(const LinkStatus& link) { return link.phase == LinkPhase::off; }
+bool canStart(const LinkStatus& link) { return link.phase == LinkPhase::disarmed || link.phase == LinkPhase::stopped; }
+bool isDriven(const LinkStatus& link) { return link.phase == LinkPhase::starting || link.phase == LinkPhase::live; }
+
+void addSlow(Studio& studio) {
+    Commands::Options options;
+    options.icon = "speed";
+    options.menu = kMenu;
+    options.checkable = true;
+    QAction* slow = studio.commands.add("device.slow", "Slow servos", options,
+                                        [&studio] { studio.devices.setSlow(!studio.devices.slow()); });
+    slow->setToolTip("All servos move at a quarter of their speed, or as the profile says: for when hands are near");
+    QObject::connect(&studio.devices, &DeviceDesk::changed, slow,
+                     [slow, &studio] { slow->setChecked(studio.devices.slow()); });
+}
+
+} // namespace
+
+void addDeviceCommands(Studio& studio) {
+    QAction* next = add(
+        studio, "device.next", "Next step", "play", "What the card over the servos offers",
+        [&studio] { doNext(studio); }, QKeySequence(Qt::CTRL | Qt::Key_Return), true);
+    QAction* open =
+        add(studio, "device.connect", "Connect device", "link",
+            "Connects to the device of last time, or to the simulated tablet", [&studio] { connectUsual(studio); });
+    QAction* close = add(studio, "device.disconnect", "Disconnect device", "cancel",
+                         "Lets the servos go and the link too", [&studio] { studio.devices.disconnect(); });
+    QAction* start = add(studio, "device.start", "Start servos", "play", "One after the other, each from where it is",
+                         [&studio] { studio.devices.start(); });
+    QAction* release = add(studio, "device.release", "Let servos go", "pause",
+                           "No pulses: the servos are limp, the link stays", [&studio] { studio.devices.release(); });
+    add(studio, "device.stop", "STOP: let all servos go at once", "stop", "As the red button, and Esc Esc",
+        [&studio] { studio.loop.stop(); });
+    add(
+        studio, "device.bluetooth", "Search Bluetooth devices", "search", "Takes ten seconds or so",
+        [&studio] { studio.devices.searchBluetooth(); }, {}, true);
+    addSlow(studio);
+    const auto follow = [=, &studio] {
+        const LinkStatus& link = studio.devices.status();
+        const bool rig = studio.document.state().rig.rig != nullptr;
+        next->setEnabled(cardOf(deviceViewOf(studio)).step != DeviceCard::Step::none);
+        open->setEnabled(rig && isOff(link));
+        close->setEnabled(!isOff(link));
+        start->setEnabled(canStart(link));
+        release->setEnabled(isDriven(link));
+    };
+    QObject::connect(&studio.devices, &DeviceDesk::changed, next, follow);
+    QObject::connect(&studio.devices, &DeviceDesk::profileChanged, next, follow);
+    follow();
+}
+
+} // namespace lumorph::studio

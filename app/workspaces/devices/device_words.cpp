@@ -1,0 +1,177 @@
+#include "app/workspaces/devices/device_words.h"
+
+namespace lumorph::studio {
+namespace {
+
+using Step = DeviceCard::Step;
+using Tone = DeviceCard::Tone;
+
+QString joined(const QString& first, const QString& second) {
+    if (first.isEmpty() || second.isEmpty()) return first + second;
+    return first + ' ' + second;
+}
+
+QString troubleText(const LinkTrouble& trouble) { return joined(sentence(trouble.why), sentence(trouble.remedy)); }
+
+DeviceCard offCard(const DeviceView& view) {
+    if (view.address.isEmpty())
+        return {Tone::quiet, "Nothing is connected",
+                "Choose a device on the left. The simulated ones behave like real boards, and nothing can break.",
+                Step::connect, "Connect the simulated tablet"};
+    return {Tone::quiet, "Nothing is connected", "The device of last time was " + view.name + '.', Step::connect,
+            "Connect"};
+}
+
+DeviceCard lostCard(const DeviceView& view) {
+    const auto& trouble = view.link.trouble ? view.link.trouble : view.link.controller.trouble;
+    QString text = trouble ? troubleText(*trouble) : QString("It does not answer any more.");
+    return {
+        Tone::failure, view.name + " is not there", joined(text, "The studio tries again by itself."), Step::none, {}};
+}
+
+DeviceCard handshakeCard(const DeviceView& view) {
+    const ControllerState& controller = view.link.controller;
+    if (controller.phase == ControllerPhase::refused || controller.trouble)
+        return {Tone::failure,
+                view.name + " cannot be used as it is",
+                controller.trouble ? troubleText(*controller.trouble) : QString("It is something else."),
+                Step::none,
+                {}};
+    return {Tone::quiet,
+            "Connecting to " + view.name,
+            controller.answering ? "The link is open; the board is asked what it is."
+                                 : "The link is open, but the board says nothing. Is it switched on, and is this its "
+                                   "kind of controller and its speed?",
+            Step::none,
+            {}};
+}
+
+DeviceCard confirmCard(const DeviceView& view) {
+    const QString product = QString::fromStdString(view.link.product);
+    const QString firmware = QString::fromStdString(view.link.controller.firmware);
+    const QString itself = firmware.isEmpty() ? product : firmware;
+    return {Tone::warning, "Is this your device?",
+            (itself.isEmpty() ? QString("It does not say what it is.") : "It calls itself " + itself + '.') +
+                " Nothing moves until you say so.",
+            Step::confirm, "Yes, this is it"};
+}
+
+DeviceCard waitingCard(const DeviceView& view) {
+    const auto& waiting = view.link.waiting;
+    if (waiting.size() == 1)
+        return {Tone::warning, servoName(view.servos, waiting.front()) + " may jump when it starts: hands off",
+                "Nobody knows where it stands.", Step::startAnyway, "Start anyway"};
+    if (static_cast<qsizetype>(waiting.size()) == view.servos.size())
+        return {Tone::warning, "All servos may jump when they start: hands off",
+                "Nobody knows where they stand. They start one after the other.", Step::startAnyway, "Start anyway"};
+    QStringList numbers;
+    for (const std::size_t servo : waiting) numbers << QString::number(servo + 1);
+    const QString last = numbers.takeLast();
+    return {Tone::warning, "Servos " + numbers.join(", ") + " and " + last + " may jump when they start: hands off",
+            "Nobody knows where they stand. They start one after the other.", Step::startAnyway, "Start anyway"};
+}
+
+DeviceCard readyCard(const DeviceView& view) {
+    QString text = "Its servos are limp. They start one after the other, slowly.";
+    if (view.link.controller.traits.jumpsOnAttach)
+        text = "Its firmware lets servos jump to the middle when they start: hands off.";
+    if (!view.link.controller.answering)
+        return {Tone::warning,
+                view.name + " does not answer",
+                "It was there a moment ago. Is it busy, or has it no "
+                "power?",
+                Step::none,
+                {}};
+    if (!view.lately.isEmpty())
+        return {Tone::warning, view.name + " is ready again", "Just now: " + view.lately, Step::start, "Start servos"};
+    return {Tone::quiet, view.name + " is ready", text, Step::start, "Start servos"};
+}
+
+DeviceCard liveCard(const DeviceView& view) {
+    if (!view.link.controller.answering)
+        return {Tone::warning, view.name + " does not answer", "Commands are still sent.", Step::none, {}};
+    if (!view.lately.isEmpty()) return {Tone::warning, "Live, but look at this", view.lately, Step::none, {}};
+    return {Tone::live, "Live", "The servos of " + view.name + " follow the show.", Step::none, {}};
+}
+
+} // namespace
+
+QString sentence(const std::string& words) {
+    QString text = QString::fromStdString(words).trimmed();
+    if (text.isEmpty()) return text;
+    text[0] = text[0].toUpper();
+    return text.back().isPunct() ? text : text + '.';
+}
+
+DeviceCard cardOf(const DeviceView& view) {
+    if (!view.rig)
+        return {Tone::quiet, "No device yet", "A rig says which servos there are and what they move.", Step::openRig,
+                "Open rig..."};
+    switch (view.link.phase) {
+    case LinkPhase::off:
+        return offCard(view);
+    case LinkPhase::connecting:
+        return view.link.trouble
+                   ? lostCard(view)
+                   : DeviceCard{Tone::quiet, "Connecting to " + view.name, "The link is opened.", Step::none, {}};
+    case LinkPhase::handshake:
+        return handshakeCard(view);
+    case LinkPhase::unidentified:
+        return confirmCard(view);
+    case LinkPhase::disarmed:
+        return readyCard(view);
+    case LinkPhase::starting:
+        if (!view.link.waiting.empty()) return waitingCard(view);
+        return {Tone::live, "Servos start", "One after the other, each from where it is.", Step::none, {}};
+    case LinkPhase::live:
+        return view.link.waiting.empty() ? liveCard(view) : waitingCard(view);
+    case LinkPhase::stopped:
+        return {Tone::failure, "Stopped", "All servos are limp, and stay so until you start them again.",
+                Step::startAgain, "Start again"};
+    case LinkPhase::lost:
+        return lostCard(view);
+    }
+    return {};
+}
+
+QString servoName(const QStringList& servos, std::size_t servo) {
+    const QString number = "Servo " + QString::number(servo + 1);
+    const auto index = static_cast<qsizetype>(servo);
+    return index < servos.size() ? number + " (" + servos[index] + ')' : number;
+}
+
+QString servoWord(const LinkStatus& link, std::size_t servo, bool tested) {
+    if (servo >= link.servos.size()) return "No link";
+    const ServoStatus& one = link.servos[servo];
+    for (const std::size_t waits : link.waiting)
+        if (waits == servo) return "Waits for you";
+    if (link.phase == LinkPhase::lost) return "Link lost";
+    if (!one.attached) return link.phase == LinkPhase::starting ? "Comes next" : "Limp";
+    if (tested) return "Test";
+    return "Follows";
+}
+
+QString failsafeText(const LinkStatus& link) {
+    const ControllerTraits& traits = link.controller.traits;
+    const bool answered =
+        link.phase != LinkPhase::off && link.phase != LinkPhase::connecting && link.phase != LinkPhase::handshake;
+    if (!answered || traits.name.empty()) return "Failsafe: known once a device answers.";
+    if (!traits.failsafeWord.empty()) return "Failsafe: " + QString::fromStdString(traits.failsafeWord) + '.';
+    return traits.failsafe
+               ? "When the studio dies, it stops by itself."
+               : "When the studio dies, its servos stay where they are, under power. Switch it off by hand.";
+}
+
+QString controllerText(ControllerKind kind) {
+    switch (kind) {
+    case ControllerKind::firmata:
+        return "Arduino with Firmata";
+    case ControllerKind::lewansoul:
+        return "LewanSoul, Hiwonder";
+    case ControllerKind::maestro:
+        return "Pololu Maestro";
+    }
+    return {};
+}
+
+} // namespace lumorph::studio

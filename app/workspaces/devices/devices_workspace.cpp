@@ -1,0 +1,32 @@
+#include "app/workspaces/devices/devices_workspace.h"
+
+#include "app/workspaces/devices/device_commands.h"
+#include "app/workspaces/devices/devices_docks.h"
+#include "app/workspaces/devices/servo_board.h"
+
+namespace lumorph::studio {
+
+DevicesWorkspace::DevicesWorkspace(Studio& studio) : studio_(studio) { addDeviceCommands(studio); }
+
+QString DevicesWorkspace::id() const { return "devices"; }
+QString DevicesWorkspace::title() const { return "Devices"; }
+
+QWidget* DevicesWorkspace::makeCentralView() { return makeServoBoard(studio_, selection_); }
+
+std::vector<WorkspaceDock> DevicesWorkspace::makeDocks() {
+    return {
+        {"dock.devices.found", "Devices", "device", makeFoundDock(studio_), Qt::LeftDockWidgetArea, false},
+        {"dock.devices.servo", "Servo", "actuator", makeServoDock(studio_, selection_), Qt::RightDockWidgetArea, false},
+        {"dock.devices.simulator", "Simulator", "lab", makeSimulatorDock(studio_), Qt::RightDockWidgetArea, true},
+        {"dock.devices.log", "Log", "clock", makeDeviceLog(studio_), Qt::BottomDockWidgetArea, false}};
+}
+
+void DevicesWorkspace::setActive(bool active) {
+    if (!active) {
+        selection_.assign(std::nullopt);
+        studio_.devices.endTest();
+    }
+    studio_.devices.setShown(active);
+}
+
+} // namespace lumorph::studio

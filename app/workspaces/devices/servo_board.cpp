@@ -1,0 +1,217 @@
+#include "app/workspaces/devices/servo_board.h"
+
+#include <utility>
+
+#include <QCheckBox>
+#include <QVBoxLayout>
+
+#include "app/studio/widgets/panel.h"
+#include "app/workspaces/devices/device_card.h"
+#include "app/workspaces/devices/device_facts.h"
+#include "app/workspaces/devices/servo_row.h"
+#include "app/workspaces/field/dock_parts.h"
+
+namespace lumorph::studio {
+namespace {
+
+/// What went wrong this long ago still belongs to the state of things.
+constexpr qint64 kLatelySeconds = 20;
+
+QString lately(const DeviceDesk& desk) {
+    const bool live = desk.status().phase == LinkPhase::live;
+    for (const DeviceLogLine& line : desk.log()) {
+        if (line.time.secsTo(QDateTime::currentDateTime()) > kLatelySeconds) break;
+        if (live && line.time < desk.liveSince()) break; // over and done
+        if (line.kind != LinkEvent::Kind::information)
+            return line.remedy.isEmpty() ? line.text : line.text + ' ' + line.remedy;
+    }
+    return {};
+}
+
+class ServoBoard : public QWidget {
+public:
+    ServoBoard(Studio& studio, ServoSelection& selection)
+        : studio_(studio), selection_(selection), card_(new DeviceCardWidget(this)), facts_(new DeviceFacts(this)) {
+        setObjectName("devices.board");
+        setProperty("look", "panel");
+        setAttribute(Qt::WA_StyledBackground);
+        auto* layout = new QVBoxLayout(this);
+        layout->setContentsMargins(16, 12, 16, 8);
+        layout->setSpacing(8);
+        layout->addWidget(card_);
+        layout->addWidget(makeHint());
+        layout->addWidget(makeStrokeLegend(this));
+        rows_ = makeColumn(this);
+        rows_.layout->setContentsMargins(0, 0, 0, 0);
+        rows_.layout->setSpacing(4);
+        rows_.layout->setAlignment({}); // rows take what height there is, up to their most
+        layout->addWidget(rows_.widget, 1);
+        layout->addWidget(makeHands());
+        layout->addWidget(facts_);
+        connect(card_, &DeviceCardWidget::nextWanted, studio.commands.find("device.next"), &QAction::trigger);
+        connect(&studio.devices, &DeviceDesk::changed, this, [this] { refresh(); });
+        connect(&studio.devices, &DeviceDesk::foundChanged, this, [this] { refresh(); });
+        connect(&studio.devices, &DeviceDesk::logged, this, [this] { refresh(); });
+        connect(&studio.devices, &DeviceDesk::profileChanged, this, [this] { rebuild(); });
+        connect(&studio.document, &StudioDocument::changed, this, [this](StateParts parts) {
+            if (parts & StatePart::rig) rebuild();
+        });
+        connect(&selection, &ServoSelection::changed, this, [this] { refresh(); });
+        connect(&selection, &ServoSelection::assigningChanged, this, [this] { refresh(); });
+        rebuild();
+    }
+
+private:
+    /// Says what a click on a row does while channels are assigned, or that a servo is held for a test.
+    QWidget* makeHint() {
+        hint_ = new QWidget(this);
+        hint_->setObjectName("devices.hint");
+        hintText_ = new QLabel(hint_);
+        hintText_->setObjectName("devices.hint.text");
+        hintText_->setProperty("look", "warning");
+        hintText_->setWordWrap(true);
+        hintEnd_ = new QPushButton(hint_);
+        hintEnd_->setObjectName("devices.hint.end");
+        auto* row = new QHBoxLayout(hint_);
+        row->setContentsMargins(0, 0, 0, 0);
+        row->setSpacing(8);
+        row->addWidget(hintText_, 1);
+        row->addWidget(hintEnd_);
+        connect(hintEnd_, &QPushButton::clicked, this, [this] {
+            if (selection_.assigning())
+                selection_.assign(std::nullopt);
+            else
+                studio_.devices.endTest();
+        });
+        return hint_;
+    }
+
+    QWidget* makeHands() {
+        auto* hands = new QWidget(this);
+        auto* text = new QLabel("Hands near the device: not sensed", hands);
+        text->setObjectName("devices.hands");
+        text->setToolTip("Nothing here sees hands. Before you reach in, make it slow, or press STOP.");
+        auto* slow = new QCheckBox("Slow", hands);
+        slow->setObjectName("devices.slow");
+        QAction* command = studio_.commands.find("device.slow");
+        slow->setToolTip(command->toolTip());
+        connect(slow, &QCheckBox::clicked, command, &QAction::trigger);
+        connect(command, &QAction::changed, slow, [slow, command] { slow->setChecked(command->isChecked()); });
+        auto* row = new QHBoxLayout(hands);
+        row->setContentsMargins(0, 0, 0, 0);
+        row->setSpacing(16);
+        row->addWidget(text);
+        row->addWidget(slow);
+        row->addStretch(1);
+        row->addWidget(makeCommandButton(studio_.commands.find("device.release"), "devices.release", hands));
+        return hands;
+    }
+
+    void rebuild() {
+        const QStringList names = servoNamesOf(studio_);
+        if (names == names_) return refresh();
+        names_ = names;
+        list_.clear();
+        while (QLayoutItem* item = rows_.layout->takeAt(0)) {
+            delete item->widget();
+            delete item;
+        }
+        for (qsizetype k = 0; k < names.size(); ++k) addRow(static_cast<std::size_t>(k));
+        rows_.layout->addStretch(1);
+        selection_.select(names.isEmpty() ? std::nullopt : std::optional<std::size_t>(0));
+        refresh();
+    }
+
+    void addRow(std::size_t servo) {
+        auto* row = new ServoRow(servo, names_[static_cast<qsizetype>(servo)], rows_.layout->parentWidget());
+        rows_.layout->addWidget(row);
+        list_.push_back(row);
+        connect(row, &ServoRow::clicked, this, [this, servo] { choose(servo); });
+        connect(row, &ServoRow::wiggled, this, [this, servo] { studio_.devices.wiggle(servo); });
+    }
+
+    void choose(std::size_t servo) {
+        if (const auto wiggling = selection_.assigning()) {
+            selection_.assign(std::nullopt);
+            exchangeChannels(*wiggling, servo);
+        }
+        selection_.select(servo);
+        refresh();
+    }
+
+    /// The one that moved has the channel that wiggled.
+    void exchangeChannels(std::size_t wiggled, std::size_t moved) {
+        DeviceProfile profile = studio_.devices.profile();
+        if (wiggled == moved || std::max(wiggled, moved) >= profile.servos.size()) return;
+        std::swap(profile.servos[wiggled].channel, profile.servos[moved].channel);
+        if (studio_.devices.setProfile(profile))
+            studio_.devices.note(
+                QString("%1 has channel %2 now.").arg(servoName(names_, moved)).arg(profile.servos[moved].channel));
+    }
+
+    void refresh() {
+        const DeviceDesk& desk = studio_.devices;
+        card_->show(cardOf(deviceViewOf(studio_)));
+        facts_->show(desk.status());
+        const auto& frame = studio_.loop.frame();
+        const auto& setups = desk.profile().servos;
+        for (std::size_t k = 0; k < list_.size() && k < setups.size(); ++k) {
+            const bool told = frame && k < frame->estimatedStrokes.size();
+            list_[k]->show(desk.status(), setups[k], desk.tested(k).has_value(),
+                           told ? frame->estimatedStrokes[k] : 0.0);
+            list_[k]->setChecked(selection_.servo() == k);
+        }
+        showHint();
+    }
+
+    void showHint() {
+        const auto assigning = selection_.assigning();
+        hint_->setVisible(assigning || studio_.devices.testing());
+        hintText_->setText(assigning ? QString("Channel %1 wiggles. Click the row of the servo that really moved.")
+                                           .arg(channelOf(*assigning))
+                                     : QString("Held for a test: it does not follow the show."));
+        hintEnd_->setText(assigning ? "Leave it" : "Follow the show");
+    }
+
+    [[nodiscard]] int channelOf(std::size_t servo) const {
+        const auto& servos = studio_.devices.profile().servos;
+        return servo < servos.size() ? servos[servo].channel : 0;
+    }
+
+    Studio& studio_;
+    ServoSelection& selection_;
+    DeviceCardWidget* card_;
+    DeviceFacts* facts_;
+    QWidget* hint_ = nullptr;
+    QLabel* hintText_ = nullptr;
+    QPushButton* hintEnd_ = nullptr;
+    Column rows_;
+    std::vector<ServoRow*> list_;
+    QStringList names_;
+};
+
+} // namespace
+
+QStringList servoNamesOf(Studio& studio) {
+    QStringList names;
+    if (const auto& rig = studio.document.state().rig.rig)
+        for (const Actuator& actuator : rig->actuators()) names << QString::fromStdString(actuator.name);
+    return names;
+}
+
+DeviceView deviceViewOf(Studio& studio) {
+    const DeviceDesk& desk = studio.devices;
+    DeviceView view;
+    view.rig = studio.document.state().rig.rig != nullptr;
+    view.link = desk.status();
+    view.name = desk.name();
+    view.address = QString::fromStdString(desk.profile().address);
+    view.stopped = studio.loop.stopped();
+    view.lately = lately(desk);
+    view.servos = servoNamesOf(studio);
+    return view;
+}
+
+QWidget* makeServoBoard(Studio& studio, ServoSelection& selection) { return new ServoBoard(studio, selection); }
+
+} // namespace lumorph::studio
