@@ -5,7 +5,6 @@
 #include <mutex>
 #include <string>
 #include <thread>
-#include <variant>
 #include <vector>
 
 #include <QCoreApplication>
@@ -15,9 +14,9 @@
 #include "core/base/error.h"
 #include "core/base/resources.h"
 #include "core/rig/rig_file.h"
+#include "devices/controllers/controller_kinds.h"
 #include "devices/controllers/servo_link.h"
 #include "devices/simulator/simulated_bench.h"
-#include "devices/transport/address.h"
 #include "devices/transport/discovery.h"
 
 namespace lumorph::cli {
@@ -74,38 +73,17 @@ ControllerKind kindNamed(const std::string& name) {
     return name == "maestro" ? ControllerKind::maestro : ControllerKind::firmata;
 }
 
-// Rigs count their channels from 0; boards do not.
-void countFrom(DeviceProfile& profile, int first) {
-    if (profile.servos.empty()) return;
-    const auto least = std::ranges::min(profile.servos, {}, &ServoSetup::channel).channel;
-    for (ServoSetup& servo : profile.servos) servo.channel += first - least;
-}
-
-// What usually is at such an address.
-ControllerKind usualKind(const DeviceAddress& address) {
-    if (std::holds_alternative<HidAddress>(address)) return ControllerKind::lewansoul;
-    const auto* simulated = std::get_if<SimulatedAddress>(&address);
-    if (simulated != nullptr && simulated->device == "xarm") return ControllerKind::lewansoul;
-    if (simulated != nullptr && simulated->device == "maestro") return ControllerKind::maestro;
-    return ControllerKind::firmata;
-}
-
-int firstChannel(ControllerKind kind) {
-    if (kind == ControllerKind::firmata) return 2; // pins 0 and 1 are the serial line
-    return kind == ControllerKind::lewansoul ? 1 : 0;
-}
-
 DeviceProfile profileOf(const Arguments& arguments) {
-    const DeviceAddress address = parseDeviceAddress(arguments.uri);
     DeviceProfile profile;
     if (!arguments.profile.empty()) {
         profile = readProfile(arguments.profile);
     } else {
-        const ControllerKind kind = arguments.controller.empty() ? usualKind(address) : kindNamed(arguments.controller);
+        const ControllerKind kind =
+            arguments.controller.empty() ? likelyController(arguments.uri) : kindNamed(arguments.controller);
         const std::string rig = arguments.rig.empty() ? resourceFile("models/tablet.glb").string() : arguments.rig;
         profile = profileFor(readRig(rig), firstChannel(kind));
         profile.controller = kind;
-        countFrom(profile, firstChannel(kind));
+        countChannelsFrom(profile, firstChannel(kind));
     }
     profile.address = arguments.uri;
     profile.restOnExit = false; // a command leaves things where it was told to

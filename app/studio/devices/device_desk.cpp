@@ -14,6 +14,7 @@
 #include "app/studio/devices/device_shelf.h"
 #include "app/studio/devices/servo_feed.h"
 #include "core/base/error.h"
+#include "devices/controllers/controller_kinds.h"
 #include "devices/transport/address.h"
 
 namespace lumorph::studio {
@@ -40,13 +41,6 @@ QDateTime wallTime(Microseconds time) {
     return QDateTime::currentDateTime().addMSecs(-std::clamp<std::int64_t>(ago.count(), 0, 60'000));
 }
 
-/// Rigs count their drives from 0; boards from where their own numbers begin.
-void shiftChannels(DeviceProfile& profile, int first) {
-    int least = std::numeric_limits<int>::max();
-    for (const ServoSetup& servo : profile.servos) least = std::min(least, servo.channel);
-    for (ServoSetup& servo : profile.servos) servo.channel += first - least;
-}
-
 bool sameChannels(const DeviceProfile& a, const DeviceProfile& b) {
     return std::ranges::equal(a.servos, b.servos, {}, &ServoSetup::channel, &ServoSetup::channel);
 }
@@ -59,26 +53,6 @@ bool widens(const DeviceProfile& before, const DeviceProfile& after) {
 }
 
 } // namespace
-
-int firstChannel(ControllerKind controller) {
-    switch (controller) {
-    case ControllerKind::firmata:
-        return 2; // pins 0 and 1 are the serial link's
-    case ControllerKind::lewansoul:
-        return 1;
-    case ControllerKind::maestro:
-        return 0;
-    }
-    return 0;
-}
-
-ControllerKind likelyController(const QString& address, const QString& name) {
-    const QString words = (address + ' ' + name).toLower();
-    if (words.contains("maestro") || words.contains("pololu")) return ControllerKind::maestro;
-    for (const char* word : {"hid://", "xarm", "learm", "lobot", "lewansoul", "hiwonder"})
-        if (words.contains(word)) return ControllerKind::lewansoul;
-    return ControllerKind::firmata;
-}
 
 struct DeviceDesk::Data {
     Data(DeviceDesk& owner, Settings& hisSettings, StudioDocument& openDocument, StudioLoop& hisLoop,
@@ -159,7 +133,7 @@ void DeviceDesk::Data::takeRig() {
     profile = DeviceProfile{};
     if (rig) {
         profile = profileFor(*rig);
-        shiftChannels(profile, firstChannel(profile.controller));
+        countChannelsFrom(profile, firstChannel(profile.controller));
         const QString usual = fileNameOf(QString::fromStdString(rig->name()));
         const QString name = settings.value(kProfileKey + usual, usual).toString();
         profile.name = usual.toStdString();
@@ -418,7 +392,7 @@ void DeviceDesk::resetProfile() {
     if (!data_->rig) return;
     DeviceProfile fresh = data_->profile;
     fresh.servos = profileFor(*data_->rig).servos;
-    shiftChannels(fresh, firstChannel(fresh.controller));
+    countChannelsFrom(fresh, firstChannel(fresh.controller));
     setProfile(fresh);
 }
 
@@ -428,13 +402,13 @@ void DeviceDesk::connectTo(const QString& address, std::optional<ControllerKind>
     DeviceProfile next = data_->profile;
     if (next.address != wanted) next.identity.clear(); // it was another board's
     next.address = wanted;
-    next.controller = controller.value_or(likelyController(address, {}));
+    next.controller = controller.value_or(likelyController(wanted));
     if (next.controller != data_->profile.controller) {
         // Who has not chosen channels has them counted as this kind counts.
         DeviceProfile counted = data_->profile;
         counted.servos = profileFor(*data_->rig).servos;
-        shiftChannels(counted, firstChannel(data_->profile.controller));
-        if (sameChannels(counted, data_->profile)) shiftChannels(next, firstChannel(next.controller));
+        countChannelsFrom(counted, firstChannel(data_->profile.controller));
+        if (sameChannels(counted, data_->profile)) countChannelsFrom(next, firstChannel(next.controller));
     }
     const DeviceProfile before = std::exchange(data_->profile, next);
     try {

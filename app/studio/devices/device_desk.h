@@ -28,12 +28,6 @@ struct DeviceLogLine {
     QString remedy;
 };
 
-/// The kind of controller that an address most likely leads to.
-[[nodiscard]] ControllerKind likelyController(const QString& address, const QString& name);
-
-/// Where a kind of controller begins to count its channels.
-[[nodiscard]] int firstChannel(ControllerKind controller);
-
 /// The servo controller of the studio: what was found, how the rig hangs on it, the link, and what happened. Nothing is
 /// connected until the user says so. Servos follow the match loop from its own thread, whatever the window does. Lives
 /// in the window's thread; nothing here waits for a device.

@@ -10,6 +10,7 @@
 #include "app/workspaces/devices/devices_docks.h"
 #include "app/workspaces/field/dock_parts.h"
 #include "app/workspaces/rig/actuator_item.h"
+#include "devices/controllers/controller_kinds.h"
 
 namespace lumorph::studio {
 namespace {
@@ -81,7 +82,7 @@ private:
         layout.addWidget(makeRow("&Speaks", kind_));
         connect(address_, &QLineEdit::returnPressed, this, [this] { connectNow(); });
         connect(address_, &QLineEdit::textEdited, this, [this](const QString& text) {
-            kind_->setCurrentIndex(static_cast<int>(likelyController(text, {})));
+            kind_->setCurrentIndex(static_cast<int>(likelyController(text.toStdString())));
             list_->setCurrentRow(rowOf(text));
             refresh();
         });
@@ -130,8 +131,8 @@ private:
         if (row >= 0 && static_cast<std::size_t>(row) < found.size()) {
             const FoundDevice& device = found[static_cast<std::size_t>(row)];
             address_->setText(QString::fromStdString(device.address));
-            kind_->setCurrentIndex(static_cast<int>(
-                likelyController(address_->text(), QString::fromStdString(device.name + device.hint))));
+            kind_->setCurrentIndex(
+                static_cast<int>(likelyController(address_->text().toStdString() + " " + device.name + device.hint)));
         }
         showTrouble();
         refresh();

@@ -15,6 +15,7 @@
 #include "app/workspaces/devices/horn_view.h"
 #include "app/workspaces/field/dock_parts.h"
 #include "core/base/error.h"
+#include "devices/controllers/controller_kinds.h"
 #include "devices/transport/address.h"
 
 namespace lumorph::studio {
@@ -219,7 +220,7 @@ private:
         if (!chosen) return;
         std::vector<int> channels;
         for (const ServoSetup& servo : studio_.devices.profile().servos) channels.push_back(servo.channel);
-        const int first = firstChannel(likelyController("sim://" + boards_->currentText(), {}));
+        const int first = firstChannel(likelyController("sim://" + boards_->currentText().toStdString()));
         const std::vector<SimulatedServo> servos = chosen->servos();
         double fastest = 0.0, jump = 0.0;
         for (const SimulatedServo& servo : servos) {
