@@ -1,6 +1,13 @@
 #include "app/workspaces/devices/device_commands.h"
 
+#include <span>
+
+#include <QApplication>
+
 #include "app/workspaces/devices/servo_board.h"
+#include "app/workspaces/field/export_dialogs.h"
+#include "core/base/atomic_file.h"
+#include "devices/firmware/pin_header.h"
 
 namespace lumorph::studio {
 namespace {
@@ -51,6 +58,23 @@ void doNext(Studio& studio) {
     }
 }
 
+// The sketch is told by this file which pins drive servos, and within which limits.
+void writeFirmwareHeader(Studio& studio) {
+    try {
+        const std::string header = channelsHeader(studio.devices.profile());
+        askFile(QApplication::activeWindow(), studio.settings, "device.firmware", "Write channels.h", "channels.h",
+                {{"Pins and limits of the firmware", "h"}}, [&studio, header](const QString& file) {
+                    try {
+                        writeFileAtomically(file.toStdString(), std::as_bytes(std::span(header)));
+                    } catch (const std::exception& error) {
+                        studio.notices.post("devices", noticeOf(error));
+                    }
+                });
+    } catch (const std::exception& error) {
+        studio.notices.post("devices", noticeOf(error));
+    }
+}
+
 bool isOff(const LinkStatus& link) { return link.phase == LinkPhase::off; }
 bool canStart(const LinkStatus& link) { return link.phase == LinkPhase::disarmed || link.phase == LinkPhase::stopped; }
 bool isDriven(const LinkStatus& link) { return link.phase == LinkPhase::starting || link.phase == LinkPhase::live; }
@@ -87,6 +111,10 @@ void addDeviceCommands(Studio& studio) {
     add(
         studio, "device.bluetooth", "Search Bluetooth devices", "search", "Takes ten seconds or so",
         [&studio] { studio.devices.searchBluetooth(); }, {}, true);
+    add(
+        studio, "device.firmware", "Write channels.h for the firmware...", "file",
+        "Pins, limits and speed of this profile, for the sketch in devices/firmware/tablet",
+        [&studio] { writeFirmwareHeader(studio); }, {}, true);
     addSlow(studio);
     const auto follow = [=, &studio] {
         const LinkStatus& link = studio.devices.status();
