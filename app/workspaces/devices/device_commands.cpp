@@ -87,6 +87,9 @@ void addDeviceCommands(Studio& studio) {
     add(
         studio, "device.bluetooth", "Search Bluetooth devices", "search", "Takes ten seconds or so",
         [&studio] { studio.devices.searchBluetooth(); }, {}, true);
+    add(studio, "tracker.simulate", "Open a simulated head", "eye",
+        "A head that moves by itself before the device, to try the show without a tracker",
+        [&studio] { studio.trackers.open("sim://head"); });
     addSlow(studio);
     const auto follow = [=, &studio] {
         const LinkStatus& link = studio.devices.status();
