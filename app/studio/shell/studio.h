@@ -1,6 +1,7 @@
 #pragma once
 
 #include "app/studio/devices/device_desk.h"
+#include "app/studio/devices/tracker_desk.h"
 #include "app/studio/document/desk.h"
 #include "app/studio/document/jobs.h"
 #include "app/studio/document/notices.h"
@@ -23,6 +24,7 @@ struct Studio {
     StudioLoop loop{document};
     Desk desk{document, jobs, notices};
     DeviceDesk devices{settings, document, loop, notices};
+    TrackerDesk trackers{settings, loop, notices};
     Commands commands;
     RenderThread renderer;
     ShowFeed show{loop, renderer, notices};

@@ -115,6 +115,9 @@ void addDeviceCommands(Studio& studio) {
         studio, "device.firmware", "Write channels.h for the firmware...", "file",
         "Pins, limits and speed of this profile, for the sketch in devices/firmware/tablet",
         [&studio] { writeFirmwareHeader(studio); }, {}, true);
+    add(studio, "tracker.simulate", "Open a simulated head", "eye",
+        "A head that moves by itself before the device, to try the show without a tracker",
+        [&studio] { studio.trackers.open("sim://head"); });
     addSlow(studio);
     const auto follow = [=, &studio] {
         const LinkStatus& link = studio.devices.status();

@@ -9,6 +9,8 @@ namespace lumorph::studio {
 
 /// What was found, an address by hand, and the link to it.
 [[nodiscard]] QWidget* makeFoundDock(Studio& studio);
+/// Trackers that are open, what they see, and who that is in the show.
+[[nodiscard]] QWidget* makeTrackersDock(Studio& studio);
 /// Channel, range, direction and limits of the chosen servo, and the profile that they are kept in.
 [[nodiscard]] QWidget* makeServoDock(Studio& studio, ServoSelection& selection);
 /// Breaks simulated boards on purpose, and shows what their servos really do.

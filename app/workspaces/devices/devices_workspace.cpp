@@ -16,6 +16,7 @@ QWidget* DevicesWorkspace::makeCentralView() { return makeServoBoard(studio_, se
 std::vector<WorkspaceDock> DevicesWorkspace::makeDocks() {
     return {
         {"dock.devices.found", "Devices", "device", makeFoundDock(studio_), Qt::LeftDockWidgetArea, false},
+        {"dock.devices.trackers", "Trackers", "eye", makeTrackersDock(studio_), Qt::LeftDockWidgetArea, true},
         {"dock.devices.servo", "Servo", "actuator", makeServoDock(studio_, selection_), Qt::RightDockWidgetArea, false},
         {"dock.devices.simulator", "Simulator", "lab", makeSimulatorDock(studio_), Qt::RightDockWidgetArea, true},
         {"dock.devices.log", "Log", "clock", makeDeviceLog(studio_), Qt::BottomDockWidgetArea, false}};

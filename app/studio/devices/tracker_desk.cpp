@@ -1,0 +1,228 @@
+#include "app/studio/devices/tracker_desk.h"
+
+#include <algorithm>
+#include <cctype>
+#include <limits>
+#include <map>
+#include <set>
+#include <utility>
+
+#include <QThreadPool>
+#include <QTimer>
+#include <QVariantMap>
+
+namespace lumorph::studio {
+namespace {
+
+constexpr int kStatusMilliseconds = 100;
+constexpr std::size_t kHistory = 101; ///< ten seconds of it
+constexpr qsizetype kMostAddresses = 8;
+constexpr std::size_t kMostBodies = 200; ///< names come from outside, and may be new ones for ever
+constexpr auto kAddressesKey = "trackers/addresses";
+constexpr auto kRolesKey = "trackers/roles";
+constexpr const char* kExamples[] = {"sim://head", "sim://device", "natnet://192.168.0.2?mode=multicast",
+                                     "opentrack://127.0.0.1:4242", "osc://127.0.0.1:9000"};
+constexpr std::pair<PoseRole, const char*> kRoleWords[] = {
+    {PoseRole::head, "head"}, {PoseRole::device, "device"}, {PoseRole::pointer, "pointer"}};
+
+QString wordOf(std::optional<PoseRole> role) {
+    for (const auto& [one, word] : kRoleWords)
+        if (role == one) return word;
+    return "none";
+}
+
+std::optional<PoseRole> roleOf(const QString& word) {
+    for (const auto& [one, known] : kRoleWords)
+        if (word == known) return one;
+    return std::nullopt;
+}
+
+void keepTenSeconds(std::deque<double>& history, double value) {
+    history.push_back(value);
+    if (history.size() > kHistory) history.pop_front();
+}
+
+} // namespace
+
+std::optional<PoseRole> likelyRole(std::string_view body) {
+    std::string name(body);
+    std::ranges::transform(name, name.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    const auto tells = [&](const char* word) { return name.find(word) != std::string::npos; };
+    if (tells("head") || tells("eye") || tells("glasses") || tells("hat")) return PoseRole::head;
+    if (tells("device") || tells("tablet")) return PoseRole::device;
+    return std::nullopt;
+}
+
+struct TrackerDesk::Data {
+    Data(TrackerDesk& owner, Settings& hisSettings, StudioLoop& hisLoop, Notices& allNotices)
+        : desk(owner), settings(hisSettings), loop(hisLoop), notices(allNotices) {
+        // One after the other, so that a port is free again before it is opened again.
+        worker.setMaxThreadCount(1);
+        worker.setExpiryTimeout(-1);
+        for (const auto& [body, word] : settings.value(kRolesKey).toMap().asKeyValueRange())
+            said[body.toStdString()] = roleOf(word.toString());
+        timer.setInterval(kStatusMilliseconds);
+        connect(&timer, &QTimer::timeout, &desk, [this] { sample(); });
+    }
+
+    void opened(const QString& address);
+    void failed(const QString& address, const Notice& notice);
+    void take();
+    void sample();
+    void meet(const TrackerStatus& status);
+    void tellRoles();
+    void keepRoles();
+
+    TrackerDesk& desk;
+    Settings& settings;
+    StudioLoop& loop;
+    Notices& notices;
+    std::shared_ptr<PoseBoard> board = std::make_shared<PoseBoard>();
+    TrackerHub hub{board, std::make_shared<SteadyClock>()};
+    std::map<std::string, std::optional<PoseRole>> said; ///< by the user
+    std::map<std::string, std::optional<PoseRole>> met;  ///< by name, since the start
+    std::vector<OpenTracker> trackers;
+    std::set<QString> opening;
+    QString trouble;       ///< what the newest notice is about
+    bool followed = false; ///< the loop has the board
+    QTimer timer;
+    QThreadPool worker;
+};
+
+void TrackerDesk::Data::opened(const QString& address) {
+    opening.erase(address);
+    notices.dismiss("devices", trouble);
+    QStringList kept = settings.value(kAddressesKey).toStringList();
+    kept.removeAll(address);
+    kept.prepend(address);
+    settings.setValue(kAddressesKey, QStringList(kept.mid(0, kMostAddresses)));
+    emit desk.addressesChanged();
+    take();
+    emit desk.changed();
+}
+
+void TrackerDesk::Data::failed(const QString& address, const Notice& notice) {
+    opening.erase(address);
+    if (trouble != notice.subject) notices.dismiss("devices", trouble);
+    trouble = notice.subject;
+    notices.post("devices", notice);
+    emit desk.changed();
+}
+
+/// What is open now, each with the history that it had.
+void TrackerDesk::Data::take() {
+    std::vector<OpenTracker> now;
+    for (TrackerStatus& status : hub.status()) {
+        meet(status);
+        OpenTracker& one = now.emplace_back();
+        const auto before = std::ranges::find(trackers, status.address,
+                                              [](const OpenTracker& tracker) { return tracker.status.address; });
+        if (before != trackers.end()) one = std::move(*before);
+        one.status = std::move(status);
+    }
+    trackers = std::move(now);
+    const bool any = !trackers.empty();
+    if (std::exchange(followed, any) != any) loop.setPoses(any ? board : nullptr);
+    if (!any)
+        timer.stop();
+    else if (!timer.isActive())
+        timer.start();
+}
+
+void TrackerDesk::Data::sample() {
+    take();
+    for (OpenTracker& one : trackers) {
+        constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+        keepTenSeconds(one.rate, one.status.framesPerSecond);
+        keepTenSeconds(one.latency, one.status.receiving ? one.status.latencyMilliseconds.value_or(kNone) : kNone);
+    }
+    emit desk.changed();
+}
+
+/// Bodies that are new get the role that they had last time, or the one that their name tells.
+void TrackerDesk::Data::meet(const TrackerStatus& status) {
+    bool any = false;
+    for (const TrackedBody& body : status.bodies) {
+        if (met.size() >= kMostBodies || met.contains(body.name)) continue;
+        const auto known = said.find(body.name);
+        met[body.name] = known == said.end() ? likelyRole(body.name) : known->second;
+        any = true;
+    }
+    if (any) tellRoles();
+}
+
+void TrackerDesk::Data::tellRoles() {
+    RoleMap roles;
+    for (const auto& [body, role] : met)
+        if (role) roles[body] = *role;
+    hub.setRoles(std::move(roles));
+}
+
+void TrackerDesk::Data::keepRoles() {
+    QVariantMap kept;
+    for (const auto& [body, role] : said) kept[QString::fromStdString(body)] = wordOf(role);
+    settings.setValue(kRolesKey, kept);
+}
+
+TrackerDesk::TrackerDesk(Settings& settings, StudioLoop& loop, Notices& notices)
+    : data_(std::make_unique<Data>(*this, settings, loop, notices)) {}
+
+TrackerDesk::~TrackerDesk() {
+    data_->worker.waitForDone();
+    if (data_->followed) data_->loop.setPoses({});
+}
+
+QStringList TrackerDesk::addresses() const {
+    QStringList all = data_->settings.value(kAddressesKey).toStringList().mid(0, kMostAddresses);
+    for (const char* example : kExamples)
+        if (!all.contains(example)) all << example;
+    return all;
+}
+
+void TrackerDesk::open(const QString& address, bool openToNetwork) {
+    const QString wanted = address.trimmed();
+    if (wanted.isEmpty() || !data_->opening.insert(wanted).second) return;
+    data_->worker.start([this, wanted, openToNetwork] {
+        try {
+            data_->hub.open(wanted.toStdString(), openToNetwork);
+            QMetaObject::invokeMethod(
+                this, [this, wanted] { data_->opened(wanted); }, Qt::QueuedConnection);
+        } catch (const std::exception& error) {
+            QMetaObject::invokeMethod(
+                this, [this, wanted, notice = noticeOf(error)] { data_->failed(wanted, notice); },
+                Qt::QueuedConnection);
+        }
+    });
+    emit changed();
+}
+
+void TrackerDesk::close(const QString& address) {
+    data_->worker.start([this, address] {
+        data_->hub.close(address.toStdString());
+        QMetaObject::invokeMethod(
+            this,
+            [this] {
+                data_->take();
+                emit changed();
+            },
+            Qt::QueuedConnection);
+    });
+}
+
+bool TrackerDesk::opening() const noexcept { return !data_->opening.empty(); }
+const std::vector<OpenTracker>& TrackerDesk::trackers() const noexcept { return data_->trackers; }
+
+std::optional<PoseRole> TrackerDesk::role(const std::string& body) const {
+    const auto found = data_->met.find(body);
+    return found == data_->met.end() ? std::nullopt : found->second;
+}
+
+void TrackerDesk::setRole(const std::string& body, std::optional<PoseRole> role) {
+    data_->said[body] = role;
+    data_->met[body] = role;
+    data_->keepRoles();
+    data_->tellRoles();
+    emit changed();
+}
+
+} // namespace lumorph::studio

@@ -1,0 +1,201 @@
+#include "app/workspaces/devices/tracker_card.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include <QPushButton>
+
+#include "app/studio/look/palette.h"
+#include "app/workspaces/devices/device_words.h"
+#include "app/workspaces/field/dock_parts.h"
+
+namespace lumorph::studio {
+namespace {
+
+constexpr std::size_t kMostRows = 12;
+constexpr std::optional<PoseRole> kRoles[] = {std::nullopt, PoseRole::head, PoseRole::device, PoseRole::pointer};
+constexpr const char* kRoleTexts[] = {"Nobody", "Head", "Device", "Pointer"};
+
+int indexOf(std::optional<PoseRole> role) { return static_cast<int>(std::ranges::find(kRoles, role) - kRoles); }
+
+QString asText(const std::string& words) { return QString::fromStdString(words); }
+
+QString headlineOf(const TrackerStatus& status) {
+    QString source = asText(status.source);
+    if (source.isEmpty()) return "Nobody is heard yet";
+    source[0] = source[0].toUpper();
+    return source;
+}
+
+QString placeOf(const Pose& pose) {
+    const auto centimetres = [](double metres) { return QString::number(100.0 * metres, 'f', 1); };
+    return QString("x %1   y %2   z %3 cm")
+        .arg(centimetres(pose.position.x), centimetres(pose.position.y), centimetres(pose.position.z));
+}
+
+QString perSecond(double rate) { return QString::number(rate, 'f', 1) + " /s"; }
+
+} // namespace
+
+TrackerCard::TrackerCard(TrackerDesk& desk, const QString& address, const QString& name, QWidget* parent)
+    : QFrame(parent), desk_(desk), address_(address), name_(name), layout_(new QVBoxLayout(this)) {
+    setProperty("look", "card");
+    setObjectName(name);
+    layout_->setContentsMargins(12, 8, 12, 12);
+    layout_->setSpacing(6);
+    addHead();
+    unproven_ = addText("unproven", "muted");
+    unproven_->setText("Never tried with real software: check a few positions before you trust it.");
+    advice_ = addText("advice", "warning");
+    addFacts();
+    reason_ = addText("reason", "muted");
+    bodies_ = new QVBoxLayout;
+    bodies_->setContentsMargins(0, 4, 0, 0);
+    bodies_->setSpacing(6);
+    layout_->addLayout(bodies_);
+    more_ = addText("more", "muted");
+    plot_ = new Plot;
+    plot_->setObjectName(name + ".plot");
+    plot_->setFixedHeight(120);
+    plot_->setEmptyText("The last ten seconds come here.");
+    layout_->addWidget(plot_);
+}
+
+QLabel* TrackerCard::addText(const QString& part, const char* look) {
+    auto* label = new QLabel;
+    label->setObjectName(name_ + '.' + part);
+    label->setProperty("look", look);
+    label->setTextFormat(Qt::PlainText); // what a network says is no markup
+    label->setWordWrap(true);
+    layout_->addWidget(label);
+    return label;
+}
+
+void TrackerCard::addHead() {
+    source_ = addText("source", "heading");
+    auto* where = addText("address", "muted");
+    where->setText(address_);
+    layout_->removeWidget(where);
+    auto* close = new QPushButton("Close");
+    close->setObjectName(name_ + ".close");
+    close->setToolTip("Ends this tracker. Without one, the show goes back to the scene's own eye.");
+    connect(close, &QPushButton::clicked, this, [this, close] {
+        close->setEnabled(false);
+        desk_.close(address_);
+    });
+    auto* row = new QHBoxLayout;
+    row->setSpacing(8);
+    row->addWidget(where, 1);
+    row->addWidget(close);
+    layout_->addLayout(row);
+}
+
+QLabel* TrackerCard::addFact(QGridLayout& grid, int row, int column, const QString& label, const QString& part,
+                             const QString& tip) {
+    auto* title = new QLabel(label);
+    title->setProperty("look", "muted");
+    QLabel* value = makeNumber(name_ + '.' + part, "1000.0 /s", this);
+    for (QLabel* one : {title, value}) one->setToolTip(tip);
+    value->setAccessibleName(label);
+    grid.addWidget(title, row, 2 * column);
+    grid.addWidget(value, row, 2 * column + 1, Qt::AlignRight);
+    return value;
+}
+
+void TrackerCard::addFacts() {
+    auto* grid = new QGridLayout;
+    grid->setHorizontalSpacing(8);
+    grid->setVerticalSpacing(2);
+    grid->setColumnStretch(0, 1);
+    grid->setColumnStretch(2, 1);
+    frames_ = addFact(*grid, 0, 0, "Frames", "frames", "Pictures of the whole room that were understood, each second");
+    packets_ = addFact(*grid, 0, 1, "Packets", "packets", "All that arrived at the port, each second");
+    latency_ = addFact(*grid, 1, 0, "Latency", "latency",
+                       "From the cameras to here. Known where the tracker tells when its cameras looked.");
+    rejected_ = addFact(*grid, 1, 1, "Rejected", "rejected", "Packets that were wrong, since it was opened");
+    layout_->addLayout(grid);
+}
+
+void TrackerCard::addBodyRow() {
+    const QString name = QString("%1.body.%2").arg(name_).arg(rows_.size());
+    BodyRow row;
+    row.widget = new QWidget;
+    auto* grid = new QGridLayout(row.widget);
+    grid->setContentsMargins(0, 0, 0, 0);
+    grid->setVerticalSpacing(0);
+    grid->setColumnStretch(0, 1);
+    row.name = new QLabel;
+    row.name->setObjectName(name + ".name");
+    row.name->setTextFormat(Qt::PlainText);
+    row.place = makeNumber(name + ".place", "x -100.0   y -100.0   z -100.0 cm", this);
+    row.place->setAlignment(Qt::AlignLeft);
+    row.place->setProperty("look", "muted");
+    row.role = new QComboBox;
+    row.role->setObjectName(name + ".role");
+    row.role->setAccessibleName("Role");
+    row.role->setToolTip("Who this is in the show. A head is what the pictures are drawn for; the device is where the "
+                         "scene stands. Remembered by the body's name.");
+    for (const char* text : kRoleTexts) row.role->addItem(text);
+    const std::size_t index = rows_.size();
+    connect(row.role, &QComboBox::activated, this,
+            [this, index](int chosen) { desk_.setRole(shown_.at(index), kRoles[chosen]); });
+    grid->addWidget(row.name, 0, 0);
+    grid->addWidget(row.role, 0, 1);
+    grid->addWidget(row.place, 1, 0, 1, 2);
+    bodies_->addWidget(row.widget);
+    rows_.push_back(row);
+}
+
+void TrackerCard::show(const OpenTracker& tracker) {
+    const TrackerStatus& status = tracker.status;
+    source_->setText(headlineOf(status));
+    unproven_->setVisible(!status.verified);
+    advice_->setText(sentence(status.advice));
+    advice_->setVisible(!status.advice.empty());
+    frames_->setText(perSecond(status.framesPerSecond));
+    packets_->setText(perSecond(status.packetsPerSecond));
+    rejected_->setText(QString::number(status.rejected));
+    latency_->setText(status.latencyMilliseconds ? QString::number(*status.latencyMilliseconds, 'f', 1) + " ms"
+                                                 : QString("unknown"));
+    reason_->setText("Rejected last: " + asText(status.lastRejected));
+    reason_->setVisible(!status.lastRejected.empty());
+    showBodies(status);
+    showHistory(tracker);
+}
+
+void TrackerCard::showBodies(const TrackerStatus& status) {
+    const std::size_t count = std::min(status.bodies.size(), kMostRows);
+    while (rows_.size() < count) addBodyRow();
+    shown_.resize(rows_.size());
+    for (std::size_t k = 0; k < rows_.size(); ++k) {
+        const BodyRow& row = rows_[k];
+        row.widget->setVisible(k < count);
+        if (k >= count) continue;
+        const TrackedBody& body = status.bodies[k];
+        const bool seen = body.valid && status.receiving;
+        shown_[k] = body.name;
+        row.name->setText(QString("%1 - %2").arg(asText(body.name).left(60), seen ? "seen" : "lost"));
+        row.place->setText(seen ? placeOf(body.pose) : QString("It is not seen now."));
+        const int role = indexOf(desk_.role(body.name));
+        if (row.role->currentIndex() != role) row.role->setCurrentIndex(role);
+    }
+    more_->setText(QString("And %1 more.").arg(status.bodies.size() - count));
+    more_->setVisible(status.bodies.size() > count);
+}
+
+/// Latency where it is known; else whether frames come evenly.
+void TrackerCard::showHistory(const OpenTracker& tracker) {
+    const bool known = std::ranges::any_of(tracker.latency, [](double value) { return std::isfinite(value); });
+    const std::deque<double>& values = known ? tracker.latency : tracker.rate;
+    plot_->setAxes("Tenths of a second", known ? "ms" : "frames/s");
+    plot_->setAccessibleName(known ? "Latency in the last ten seconds" : "Frames a second in the last ten seconds");
+    double most = known ? 1.0 : 10.0;
+    for (const double value : values)
+        if (std::isfinite(value)) most = std::max(most, 1.2 * value);
+    plot_->setRange(0.0, most);
+    plot_->setCurves(
+        {{known ? "Latency" : "Frames", currentPalette().accent, std::vector<double>(values.begin(), values.end())}});
+}
+
+} // namespace lumorph::studio

@@ -1,0 +1,157 @@
+#include <algorithm>
+#include <vector>
+
+#include <QCheckBox>
+#include <QComboBox>
+#include <QLineEdit>
+#include <QPushButton>
+#include <QSignalBlocker>
+#include <QVBoxLayout>
+
+#include "app/studio/widgets/panel.h"
+#include "app/workspaces/devices/devices_docks.h"
+#include "app/workspaces/devices/top_view.h"
+#include "app/workspaces/devices/tracker_card.h"
+
+namespace lumorph::studio {
+namespace {
+
+class TrackersDock : public QWidget {
+public:
+    explicit TrackersDock(Studio& studio) : studio_(studio), addresses_(new QComboBox), open_(new QPushButton("Open")) {
+        setObjectName("trackers");
+        auto* layout = new QVBoxLayout(this);
+        layout->setContentsMargins(0, 0, 0, 0);
+        layout->setSpacing(0);
+        layout->addWidget(makeNoticeBar(studio.notices, "devices"));
+        const Column column = makeColumn(this);
+        layout->addWidget(column.widget, 1);
+        addAddress(*column.layout);
+        addTrackers(*column.layout);
+        empty_ = makeEmptyState("eye", "No tracker is open",
+                                "A tracker tells where heads and the device are, so that the show is drawn for who "
+                                "looks at it. Until then the scene's own eye counts.",
+                                studio.commands.find("tracker.simulate"));
+        column.layout->addWidget(empty_);
+        connect(&studio.trackers, &TrackerDesk::changed, this, [this] { refresh(); });
+        connect(&studio.trackers, &TrackerDesk::addressesChanged, this, [this] { listAddresses(); });
+        listAddresses();
+        refresh();
+    }
+
+protected:
+    void showEvent(QShowEvent* event) override {
+        QWidget::showEvent(event);
+        refresh();
+    }
+
+private:
+    void addAddress(QVBoxLayout& layout) {
+        addresses_->setObjectName("trackers.addresses");
+        addresses_->setEditable(true);
+        addresses_->setInsertPolicy(QComboBox::NoInsert);
+        addresses_->setAccessibleName("Address of a tracker");
+        addresses_->setSizeAdjustPolicy(QComboBox::AdjustToMinimumContentsLengthWithIcon);
+        addresses_->setMinimumContentsLength(16);
+        addresses_->setToolTip(
+            "Where poses come from: OptiTrack Motive (natnet://), opentrack, anything that sends OSC, "
+            "or a simulated body. The list has examples to change.");
+        addresses_->lineEdit()->setObjectName("trackers.address");
+        open_->setObjectName("trackers.open");
+        open_->setToolTip("Starts to listen at this address");
+        auto* row = new QHBoxLayout;
+        row->setSpacing(8);
+        row->addWidget(addresses_, 1);
+        row->addWidget(open_);
+        layout.addLayout(row);
+        network_ = new QCheckBox("Take packets from other machines");
+        network_->setObjectName("trackers.network");
+        network_->setToolTip("Off, only programs on this machine can move the show. Poses are not protected by any "
+                             "password: turn it on where you trust the network, and the tracker runs elsewhere. It "
+                             "counts for the next one that is opened.");
+        layout.addWidget(network_);
+        connect(open_, &QPushButton::clicked, this, [this] { openNow(); });
+        connect(addresses_->lineEdit(), &QLineEdit::returnPressed, this, [this] { openNow(); });
+        connect(addresses_, &QComboBox::currentTextChanged, this, [this] { refreshOpen(); });
+    }
+
+    void addTrackers(QVBoxLayout& layout) {
+        cardsLayout_ = new QVBoxLayout;
+        cardsLayout_->setSpacing(8);
+        layout.addLayout(cardsLayout_);
+        above_ = makeHeading("From above");
+        layout.addWidget(above_);
+        top_ = new TopView;
+        top_->setObjectName("trackers.top");
+        layout.addWidget(top_);
+    }
+
+    void openNow() { studio_.trackers.open(addresses_->currentText(), network_->isChecked()); }
+
+    void listAddresses() {
+        const QString text = addresses_->currentText();
+        const QSignalBlocker quiet(addresses_);
+        addresses_->clear();
+        addresses_->addItems(studio_.trackers.addresses());
+        if (!text.isEmpty()) addresses_->setEditText(text);
+        refreshOpen();
+    }
+
+    void refreshOpen() {
+        open_->setText(studio_.trackers.opening() ? "Opening..." : "Open");
+        open_->setEnabled(!studio_.trackers.opening() && !addresses_->currentText().trimmed().isEmpty());
+    }
+
+    /// Cards stay as long as the same trackers are open, so that a list that hangs open does not close.
+    void matchCards() {
+        const std::vector<OpenTracker>& trackers = studio_.trackers.trackers();
+        const bool same = std::ranges::equal(trackers, cards_, [](const OpenTracker& tracker, const TrackerCard* card) {
+            return QString::fromStdString(tracker.status.address) == card->address();
+        });
+        if (same) return;
+        for (TrackerCard* card : cards_) {
+            card->hide();
+            card->deleteLater(); // it may be in the middle of its own click
+        }
+        cards_.clear();
+        for (const OpenTracker& tracker : trackers) {
+            cards_.push_back(new TrackerCard(studio_.trackers, QString::fromStdString(tracker.status.address),
+                                             QString("tracker.%1").arg(cards_.size())));
+            cardsLayout_->addWidget(cards_.back());
+        }
+    }
+
+    void refresh() {
+        refreshOpen();
+        matchCards();
+        const std::vector<OpenTracker>& trackers = studio_.trackers.trackers();
+        empty_->setVisible(trackers.empty());
+        above_->setVisible(!trackers.empty());
+        top_->setVisible(!trackers.empty());
+        if (!isVisible()) return;
+        std::vector<TopView::Body> bodies;
+        for (std::size_t k = 0; k < trackers.size(); ++k) {
+            const TrackerStatus& status = trackers[k].status;
+            cards_[k]->show(trackers[k]);
+            for (const TrackedBody& body : status.bodies)
+                bodies.push_back({QString::fromStdString(body.name), body.pose, body.valid && status.receiving});
+        }
+        top_->show(std::move(bodies));
+    }
+
+    Studio& studio_;
+    QComboBox* addresses_;
+    QPushButton* open_;
+    QCheckBox* network_ = nullptr;
+    QVBoxLayout* cardsLayout_ = nullptr;
+    std::vector<TrackerCard*> cards_;
+    QWidget* above_ = nullptr;
+    TopView* top_ = nullptr;
+    QWidget* empty_ = nullptr;
+};
+
+} // namespace
+
+QWidget* makeTrackersDock(Studio& studio) { return new TrackersDock(studio); }
+
+} // namespace lumorph::studio
