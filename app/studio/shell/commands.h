@@ -19,7 +19,8 @@ public:
     struct Options {
         QString icon;
         QKeySequence shortcut;
-        QString menu;      ///< "File", "Edit", "View", "Target", "Rig", "Field", "Scene", "Device", "Help"; empty: palette only
+        QString
+            menu; ///< "File", "Edit", "View", "Target", "Rig", "Field", "Scene", "Device", "Help"; empty: palette only
         QString workspace; ///< id of the workspace it belongs to; empty: always there
         bool checkable = false;
     };
