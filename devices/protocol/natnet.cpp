@@ -60,7 +60,7 @@ ServerInfo readServerInfo(std::span<const std::byte> payload) {
     Bytes bytes(payload);
     ServerInfo info = takeIntroduction(bytes);
     if (info.natnet < Version{3, 0}) return info;
-    ServerInfo::Connection connection;
+    Connection connection;
     connection.clockHertz = bytes.take<std::uint64_t>();
     connection.dataPort = bytes.take<std::uint16_t>();
     connection.multicast = bytes.take<std::uint8_t>() != 0;

@@ -48,15 +48,16 @@ struct Packet {
 /// Splits a datagram; its payload must be there whole.
 [[nodiscard]] Packet readPacket(std::span<const std::byte> datagram);
 
+/// How the server sends, told by 3.0 and later.
+struct Connection {
+    std::uint64_t clockHertz = 0;
+    std::uint16_t dataPort = 0;
+    bool multicast = false;
+    std::array<std::uint8_t, 4> address{};
+    bool operator==(const Connection&) const = default;
+};
+
 struct ServerInfo {
-    /// Told by 3.0 and later.
-    struct Connection {
-        std::uint64_t clockHertz = 0;
-        std::uint16_t dataPort = 0;
-        bool multicast = false;
-        std::array<std::uint8_t, 4> address{};
-        bool operator==(const Connection&) const = default;
-    };
     std::string name; ///< "Motive"
     std::array<std::uint8_t, 4> program{};
     Version natnet;

@@ -44,7 +44,7 @@ std::string trimmed(std::string text) {
 
 std::string machineList(const TrackerSituation& s) { return "this machine has " + s.ownAddresses; }
 
-std::string groupOf(const natnet::ServerInfo::Connection& c) {
+std::string groupOf(const natnet::Connection& c) {
     char text[32];
     std::snprintf(text, sizeof text, "%d.%d.%d.%d", c.address[0], c.address[1], c.address[2], c.address[3]);
     return text;

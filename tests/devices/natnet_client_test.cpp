@@ -40,7 +40,7 @@ public:
     }
     void introduce(double seconds) {
         natnet::ServerInfo info{"Motive", {2, 1, 0, 0}, version_, {}};
-        if (version_.major >= 3) info.connection = natnet::ServerInfo::Connection{kHertz, 1511, false, {0, 0, 0, 0}};
+        if (version_.major >= 3) info.connection = natnet::Connection{kHertz, 1511, false, {0, 0, 0, 0}};
         EXPECT_EQ(client.take(writer_.serverInfo(info), at(seconds)), Outcome::answer);
     }
     void name(std::vector<std::pair<std::int32_t, std::string>> names, double seconds) {

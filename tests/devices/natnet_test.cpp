@@ -67,7 +67,7 @@ std::vector<Datagram> packetsOf(Version version) {
     test::NatNetWriter writer(version);
     test::RandomFrames frames(7);
     ServerInfo info{"Motive", {2, 1, 0, 0}, version, {}};
-    if (version.major >= 3) info.connection = ServerInfo::Connection{10'000'000, 1511, true, {239, 255, 42, 99}};
+    if (version.major >= 3) info.connection = Connection{10'000'000, 1511, true, {239, 255, 42, 99}};
     return {writer.frame(frames.frame(version)), writer.frame(frames.frame(version)),
             writer.models(test::allModels(version)), writer.serverInfo(info), writer.echo(1, 2)};
 }
@@ -250,8 +250,7 @@ TEST(NatNet, UnknownKindsAreLeftOutWhereTheirSizeIsTold) {
 
 TEST(NatNet, ServersTellTheirClockSince30) {
     const ServerInfo older{"Motive", {1, 10, 0, 0}, {2, 10}, {}};
-    const ServerInfo newer{
-        "Motive", {3, 1, 0, 0}, {4, 1}, ServerInfo::Connection{10'000'000, 1600, false, {1, 2, 3, 4}}};
+    const ServerInfo newer{"Motive", {3, 1, 0, 0}, {4, 1}, Connection{10'000'000, 1600, false, {1, 2, 3, 4}}};
     for (const ServerInfo& sent : {older, newer})
         EXPECT_EQ(readServerInfo(payloadOf(test::NatNetWriter(sent.natnet).serverInfo(sent), Message::serverInfo)),
                   sent);

@@ -231,8 +231,8 @@ TEST(TrackerAdvice, NatNetKnowsWhatIsWrong) {
 
 TEST(TrackerAdvice, NatNetComparesWhatTheServerSaysWithTheAddress) {
     NatNetSituation s = quiet();
-    s.server = natnet::ServerInfo{
-        "Motive", {2, 1, 0, 0}, {3, 0}, natnet::ServerInfo::Connection{1, 1511, true, {239, 255, 42, 99}}};
+    s.server =
+        natnet::ServerInfo{"Motive", {2, 1, 0, 0}, {3, 0}, natnet::Connection{1, 1511, true, {239, 255, 42, 99}}};
     EXPECT_THAT(adviceFor(remote(), s), HasSubstr("Motive at 192.168.0.5 answers, but sends no frames"));
     s.server->connection->dataPort = 1600;
     EXPECT_THAT(adviceFor(remote(), s), HasSubstr("sends to port 1600, but the address listens to data=1511"));

@@ -48,8 +48,7 @@ public:
     explicit TestServer(Version version, bool multicast = false) : version_(version), writer_(version) {
         EXPECT_TRUE(socket_.bind(QHostAddress::LocalHost, 0));
         info_ = {"Motive", {2, 1, 0, 0}, version, {}};
-        if (version.major >= 3)
-            info_.connection = natnet::ServerInfo::Connection{kHertz, 1511, multicast, {239, 255, 42, 99}};
+        if (version.major >= 3) info_.connection = natnet::Connection{kHertz, 1511, multicast, {239, 255, 42, 99}};
     }
     [[nodiscard]] std::string port() const { return std::to_string(socket_.localPort()); }
     [[nodiscard]] int count(Message message) const { return counts_[static_cast<std::size_t>(message)]; }
