@@ -11,6 +11,7 @@
 #include "core/base/clock.h"
 #include "devices/controllers/servo_controller.h"
 #include "devices/controllers/servo_guard.h"
+#include "devices/controllers/servo_trace.h"
 
 namespace lumorph {
 
@@ -88,6 +89,11 @@ public:
     void command(std::span<const double> strokes);
     void wiggle(std::size_t servo);
     void setSlow(bool slow);
+
+    /// Hands every input and every byte sent to `sink`, in the link's thread, beginning with those since the link was
+    /// made as far as they were kept (the last row of a history that is not whole says so); an empty one ends it. It
+    /// must return at once.
+    void setTrace(std::function<void(const ServoTraceRow&)> sink);
 
     [[nodiscard]] LinkStatus status() const;
     [[nodiscard]] std::vector<LinkEvent> takeEvents();
