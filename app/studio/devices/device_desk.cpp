@@ -5,12 +5,12 @@
 #include <chrono>
 #include <future>
 #include <limits>
-#include <thread>
 #include <utility>
 
 #include <QElapsedTimer>
 #include <QTimer>
 
+#include "app/studio/devices/device_finder.h"
 #include "app/studio/devices/device_shelf.h"
 #include "app/studio/devices/servo_feed.h"
 #include "core/base/error.h"
@@ -21,25 +21,10 @@ namespace lumorph::studio {
 namespace {
 
 constexpr int kStatusMilliseconds = 50;
-constexpr int kLookMilliseconds = 2000;
 constexpr int kTestMilliseconds = 33;
-constexpr std::size_t kMostLines = 500;
 constexpr auto kProfileKey = "device/profile/"; ///< and the rig's name: which profile it had last
 
 bool drives(LinkPhase phase) { return phase == LinkPhase::live || phase == LinkPhase::starting; }
-
-/// Remedies are worded as parts of a sentence; a log has lines.
-QString asSentence(QString text) {
-    if (text.isEmpty()) return text;
-    text[0] = text[0].toUpper();
-    return text.endsWith('.') ? text : text + '.';
-}
-
-/// Links tell the steady clock's time; people read the wall's.
-QDateTime wallTime(Microseconds time) {
-    const auto ago = std::chrono::duration_cast<std::chrono::milliseconds>(SteadyClock().now() - time);
-    return QDateTime::currentDateTime().addMSecs(-std::clamp<std::int64_t>(ago.count(), 0, 60'000));
-}
 
 bool sameChannels(const DeviceProfile& a, const DeviceProfile& b) {
     return std::ranges::equal(a.servos, b.servos, {}, &ServoSetup::channel, &ServoSetup::channel);
@@ -69,10 +54,8 @@ struct DeviceDesk::Data {
     void hear(); ///< in the link's thread
     void take();
     void takeEvents();
-    void add(DeviceLogLine line);
     void heedStop();
-    void look();
-    void takeFound(std::vector<FoundDevice> now);
+    void tellSearch(const LinkTrouble& trouble);
     void tick();
 
     DeviceDesk& desk;
@@ -88,17 +71,12 @@ struct DeviceDesk::Data {
     std::unique_ptr<ServoLink> link;
     std::vector<std::future<void>> leaving; ///< links that go to rest; waiting for them would block the window
     LinkStatus status;
-    std::vector<FoundDevice> found;
-    std::vector<FoundDevice> ofBluetooth;
-    std::unique_ptr<BluetoothSearch> search;
-    std::deque<DeviceLogLine> log;
+    DeviceFinder finder{*bench};
+    DeviceLog log;
     std::atomic<bool> posted = false; ///< the window has been told of a change that it did not take yet
-    std::jthread looker;
-    QTimer due, poll, lookTimer, testTimer;
+    QTimer due, poll, testTimer;
     QElapsedTimer sinceTest;
     QDateTime liveSince;
-    bool shown = false;
-    bool looking = false;
     bool slow = false;
 };
 
@@ -106,13 +84,13 @@ void DeviceDesk::Data::listen() {
     due.setSingleShot(true);
     due.setInterval(kStatusMilliseconds);
     poll.setInterval(kStatusMilliseconds);
-    lookTimer.setInterval(kLookMilliseconds);
     testTimer.setInterval(kTestMilliseconds);
     connect(&due, &QTimer::timeout, &desk, [this] { take(); });
     connect(&poll, &QTimer::timeout, &desk, [this] {
         if (link && !due.isActive()) take();
     });
-    connect(&lookTimer, &QTimer::timeout, &desk, [this] { look(); });
+    connect(&finder, &DeviceFinder::changed, &desk, &DeviceDesk::foundChanged);
+    connect(&finder, &DeviceFinder::searchFailed, &desk, [this](const LinkTrouble& trouble) { tellSearch(trouble); });
     connect(&testTimer, &QTimer::timeout, &desk, [this] { tick(); });
     connect(&document, &StudioDocument::changed, &desk, [this](StateParts parts) {
         if (parts & StatePart::rig) takeRig();
@@ -218,24 +196,12 @@ void DeviceDesk::Data::takeEvents() {
     if (!link) return;
     const std::vector<LinkEvent> events = link->takeEvents();
     for (const LinkEvent& event : events) {
-        const DeviceLogLine line{wallTime(event.time), event.kind, QString::fromStdString(event.text),
-                                 asSentence(QString::fromStdString(event.remedy))};
-        add(line);
+        const DeviceLogLine line = lineOf(event);
+        log.add(line);
         if (event.kind == LinkEvent::Kind::information) continue;
-        // For those who are in another workspace: the status line counts and lists it.
-        Notice notice;
-        notice.level = event.kind == LinkEvent::Kind::failure ? Notice::Level::error : Notice::Level::warning;
-        notice.subject = desk.name();
-        notice.why = line.text;
-        notice.remedy = line.remedy;
-        notices.post("device", notice);
+        notices.post("device", noticeOf(line, desk.name()));
     }
     if (!events.empty()) emit desk.logged(static_cast<int>(events.size()));
-}
-
-void DeviceDesk::Data::add(DeviceLogLine line) {
-    log.push_front(std::move(line));
-    if (log.size() > kMostLines) log.pop_back();
 }
 
 /// STOP is for the servos before it is for anything else; taken back, they start softly where they were live.
@@ -249,27 +215,13 @@ void DeviceDesk::Data::heedStop() {
     take();
 }
 
-/// Looking at the system's ports may take its time on some machines.
-void DeviceDesk::Data::look() {
-    if (std::exchange(looking, true)) return;
-    looker = std::jthread([this] {
-        std::vector<FoundDevice> now;
-        try {
-            now = findDevices(bench.get());
-        } catch (const std::exception&) {
-            now.clear(); // a port that vanished meanwhile; the next look comes soon
-        }
-        QMetaObject::invokeMethod(
-            &desk, [this, now]() mutable { takeFound(std::move(now)); }, Qt::QueuedConnection);
-    });
-}
-
-void DeviceDesk::Data::takeFound(std::vector<FoundDevice> now) {
-    looking = false;
-    now.insert(now.end(), ofBluetooth.begin(), ofBluetooth.end());
-    if (now == found) return;
-    found = std::move(now);
-    emit desk.foundChanged();
+void DeviceDesk::Data::tellSearch(const LinkTrouble& trouble) {
+    Notice notice;
+    notice.level = Notice::Level::warning;
+    notice.subject = "Bluetooth";
+    notice.why = QString::fromStdString(trouble.why);
+    notice.remedy = QString::fromStdString(trouble.remedy);
+    notices.post("devices", notice);
 }
 
 void DeviceDesk::Data::tick() {
@@ -284,19 +236,17 @@ DeviceDesk::DeviceDesk(Settings& settings, StudioDocument& document, StudioLoop&
 
 DeviceDesk::~DeviceDesk() {
     data_->loop.setTap({});
-    data_->search.reset();
-    data_->looker = {}; // waits
     data_->feed.attach(nullptr, 0);
     data_->link.reset();
     data_->leaving.clear(); // waits: they call `hear`
 }
 
 SimulatedBench& DeviceDesk::bench() noexcept { return *data_->bench; }
-const std::vector<FoundDevice>& DeviceDesk::found() const noexcept { return data_->found; }
-bool DeviceDesk::searchingBluetooth() const noexcept { return data_->search != nullptr; }
+const std::vector<FoundDevice>& DeviceDesk::found() const noexcept { return data_->finder.found(); }
+bool DeviceDesk::searchingBluetooth() const noexcept { return data_->finder.searchingBluetooth(); }
 const DeviceProfile& DeviceDesk::profile() const noexcept { return data_->profile; }
 const LinkStatus& DeviceDesk::status() const noexcept { return data_->status; }
-const std::deque<DeviceLogLine>& DeviceDesk::log() const noexcept { return data_->log; }
+const std::deque<DeviceLogLine>& DeviceDesk::log() const noexcept { return data_->log.lines(); }
 const QDateTime& DeviceDesk::liveSince() const noexcept { return data_->liveSince; }
 bool DeviceDesk::slow() const noexcept { return data_->slow; }
 QStringList DeviceDesk::profileNames() const { return data_->shelf.names(); }
@@ -304,48 +254,18 @@ std::optional<double> DeviceDesk::tested(std::size_t servo) const { return data_
 bool DeviceDesk::testing() const { return data_->feed.testing(); }
 
 void DeviceDesk::setShown(bool shown) {
-    data_->shown = shown;
+    data_->finder.setLooking(shown);
     if (!shown) {
         data_->poll.stop();
-        data_->lookTimer.stop();
         return;
     }
     data_->poll.start();
-    data_->lookTimer.start();
-    data_->look();
     data_->take();
 }
 
 void DeviceDesk::searchBluetooth() {
-    if (data_->search) return;
-    data_->ofBluetooth.clear();
-    BluetoothSearch::Events events;
-    events.found = [this](const FoundDevice& one) {
-        data_->ofBluetooth.push_back(one);
-        data_->found.push_back(one);
-        emit foundChanged();
-    };
-    events.ended = [this](const LinkTrouble& trouble) {
-        // The search must not be destroyed inside its own call.
-        QMetaObject::invokeMethod(
-            this,
-            [this, trouble] {
-                data_->search.reset();
-                if (!trouble.why.empty()) {
-                    Notice notice;
-                    notice.level = Notice::Level::warning;
-                    notice.subject = "Bluetooth";
-                    notice.why = QString::fromStdString(trouble.why);
-                    notice.remedy = QString::fromStdString(trouble.remedy);
-                    data_->notices.post("devices", notice);
-                }
-                emit foundChanged();
-            },
-            Qt::QueuedConnection);
-    };
     data_->notices.dismiss("devices", "Bluetooth");
-    data_->search = std::make_unique<BluetoothSearch>(std::move(events));
-    emit foundChanged();
+    data_->finder.searchBluetooth();
 }
 
 bool DeviceDesk::setProfile(const DeviceProfile& profile) {
@@ -491,7 +411,7 @@ void DeviceDesk::endTest() {
 
 QString DeviceDesk::name() const {
     const std::string& address = data_->profile.address;
-    for (const FoundDevice& one : data_->found)
+    for (const FoundDevice& one : data_->finder.found())
         if (one.address == address) return QString::fromStdString(one.name);
     if (!data_->status.product.empty()) return QString::fromStdString(data_->status.product);
     return address.empty() ? QString("Device") : QString::fromStdString(address);
@@ -509,7 +429,7 @@ QString DeviceDesk::liveName() const {
 }
 
 void DeviceDesk::note(const QString& text) {
-    data_->add({QDateTime::currentDateTime(), LinkEvent::Kind::information, text, {}});
+    data_->log.add({QDateTime::currentDateTime(), LinkEvent::Kind::information, text, {}});
     emit logged(1);
 }
 

@@ -10,6 +10,7 @@
 #include <QString>
 #include <QStringList>
 
+#include "app/studio/devices/device_log.h"
 #include "app/studio/document/notices.h"
 #include "app/studio/document/studio_document.h"
 #include "app/studio/document/studio_loop.h"
@@ -19,14 +20,6 @@
 #include "devices/transport/discovery.h"
 
 namespace lumorph::studio {
-
-/// One line of what happened with the device.
-struct DeviceLogLine {
-    QDateTime time;
-    LinkEvent::Kind kind = LinkEvent::Kind::information;
-    QString text;
-    QString remedy;
-};
 
 /// The servo controller of the studio: what was found, how the rig hangs on it, the link, and what happened. Nothing is
 /// connected until the user says so. Servos follow the match loop from its own thread, whatever the window does. Lives

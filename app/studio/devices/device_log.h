@@ -1,0 +1,36 @@
+#pragma once
+
+#include <deque>
+
+#include <QDateTime>
+#include <QString>
+
+#include "app/studio/document/notices.h"
+#include "devices/controllers/servo_link.h"
+
+namespace lumorph::studio {
+
+/// One line of what happened with the device.
+struct DeviceLogLine {
+    QDateTime time;
+    LinkEvent::Kind kind = LinkEvent::Kind::information;
+    QString text;
+    QString remedy;
+};
+
+/// What happened, newest first, at most 500 lines.
+class DeviceLog {
+public:
+    [[nodiscard]] const std::deque<DeviceLogLine>& lines() const noexcept { return lines_; }
+    void add(DeviceLogLine line);
+
+private:
+    std::deque<DeviceLogLine> lines_;
+};
+
+/// An event of a link, in the wall's time, its remedy as a sentence.
+[[nodiscard]] DeviceLogLine lineOf(const LinkEvent& event);
+/// For those who are in another workspace: the status line counts and lists it.
+[[nodiscard]] Notice noticeOf(const DeviceLogLine& line, const QString& device);
+
+} // namespace lumorph::studio
