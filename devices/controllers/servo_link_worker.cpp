@@ -43,7 +43,8 @@ bool serves(const DeviceProfile& made, const DeviceProfile& wanted) {
 
 std::string placesOf(const std::vector<std::size_t>& servos) {
     std::string text;
-    for (const std::size_t servo : servos) text += (text.empty() ? "" : ", ") + std::to_string(servo + 1);
+    for (const std::size_t servo : servos)
+        text += (text.empty() ? "" : servo == servos.back() ? " and " : ", ") + std::to_string(servo + 1);
     return servos.size() == 1 ? "servo " + text + " stands, so it was" : "servos " + text + " stand, so they were";
 }
 
@@ -279,7 +280,9 @@ void LinkWorker::Data::quit() {
     connected = false;
     next.reset();
     if (!profile.restOnExit || !ready() || guard.phase() != ServoGuard::Phase::live) return close();
-    (void)guard.want(std::vector<double>(profile.servos.size(), 0.0));
+    std::vector<double> rest;
+    for (const ServoSetup& servo : profile.servos) rest.push_back(servo.exitStroke);
+    (void)guard.want(rest);
     restUntil = steadyNow() + kRestAtMost;
 }
 
@@ -355,6 +358,8 @@ void LinkWorker::Data::drive() {
     const ControllerState& state = controller->state();
     if (!waitOutSilence()) return;
     if (armed() && !ready()) guard.disarm();
+    // The user's word about this very board was kept with the profile.
+    if (state.phase == ControllerPhase::unidentified && !foreign && !profile.identity.empty()) controller->confirm();
     watch.look(state, now());
     readPositions();
     // Nothing is added to a queue that does not move, and no time passes for the guard: what comes after starts from

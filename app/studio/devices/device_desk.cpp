@@ -11,10 +11,11 @@
 #include <QTimer>
 
 #include "app/studio/devices/device_finder.h"
-#include "app/studio/devices/device_shelf.h"
+#include "app/studio/devices/rig_profiles.h"
 #include "app/studio/devices/servo_feed.h"
 #include "core/base/error.h"
 #include "devices/controllers/controller_kinds.h"
+#include "devices/simulator/simulated_bench.h"
 #include "devices/transport/address.h"
 
 namespace lumorph::studio {
@@ -22,31 +23,20 @@ namespace {
 
 constexpr int kStatusMilliseconds = 50;
 constexpr int kTestMilliseconds = 33;
-constexpr auto kProfileKey = "device/profile/"; ///< and the rig's name: which profile it had last
 
 bool drives(LinkPhase phase) { return phase == LinkPhase::live || phase == LinkPhase::starting; }
-
-bool sameChannels(const DeviceProfile& a, const DeviceProfile& b) {
-    return std::ranges::equal(a.servos, b.servos, {}, &ServoSetup::channel, &ServoSetup::channel);
-}
-
-/// Wider limits make the link begin anew, which a drag shall not do with every pixel.
-bool widens(const DeviceProfile& before, const DeviceProfile& after) {
-    return !std::ranges::equal(before.servos, after.servos, [](const ServoSetup& a, const ServoSetup& b) {
-        return b.pulseMin >= a.pulseMin && b.pulseMax <= a.pulseMax;
-    });
-}
 
 } // namespace
 
 struct DeviceDesk::Data {
     Data(DeviceDesk& owner, Settings& hisSettings, StudioDocument& openDocument, StudioLoop& hisLoop,
          Notices& allNotices)
-        : desk(owner), settings(hisSettings), document(openDocument), loop(hisLoop), notices(allNotices),
-          shelf(hisSettings.folder() / "devices") {}
+        : desk(owner), document(openDocument), loop(hisLoop), notices(allNotices), profiles(hisSettings) {}
 
     void listen();
+    void follow(const MatchFrame& frame); ///< in the loop's thread
     void takeRig();
+    void use(DeviceProfile next);
     bool force(const DeviceProfile& next);
     void keep();
     void makeLink();
@@ -54,19 +44,22 @@ struct DeviceDesk::Data {
     void hear(); ///< in the link's thread
     void take();
     void takeEvents();
+    void tellAll(const std::vector<LinkEvent>& events);
     void heedStop();
+    bool sense();
     void tellSearch(const LinkTrouble& trouble);
     void tick();
 
     DeviceDesk& desk;
-    Settings& settings;
     StudioDocument& document;
     StudioLoop& loop;
     Notices& notices;
-    DeviceShelf shelf;
+    RigProfiles profiles;
     std::unique_ptr<SimulatedBench> bench = std::make_unique<SimulatedBench>();
     std::shared_ptr<const Rig> rig;
     DeviceProfile profile;
+    HandWatch handWatch;
+    HandSense hands;
     ServoFeed feed;
     std::unique_ptr<ServoLink> link;
     std::vector<std::future<void>> leaving; ///< links that go to rest; waiting for them would block the window
@@ -87,7 +80,11 @@ void DeviceDesk::Data::listen() {
     testTimer.setInterval(kTestMilliseconds);
     connect(&due, &QTimer::timeout, &desk, [this] { take(); });
     connect(&poll, &QTimer::timeout, &desk, [this] {
-        if (link && !due.isActive()) take();
+        if (!link) {
+            if (sense()) emit desk.changed();
+        } else if (!due.isActive()) {
+            take();
+        }
     });
     connect(&finder, &DeviceFinder::changed, &desk, &DeviceDesk::foundChanged);
     connect(&finder, &DeviceFinder::searchFailed, &desk, [this](const LinkTrouble& trouble) { tellSearch(trouble); });
@@ -96,7 +93,7 @@ void DeviceDesk::Data::listen() {
         if (parts & StatePart::rig) takeRig();
     });
     connect(&loop, &StudioLoop::stoppedChanged, &desk, [this] { heedStop(); });
-    loop.setTap([this](const MatchFrame& frame) { feed.follow(frame.estimatedStrokes); });
+    loop.setTap([this](const MatchFrame& frame) { follow(frame); });
     takeRig();
 }
 
@@ -108,17 +105,23 @@ void DeviceDesk::Data::takeRig() {
     rig = now;
     if (same) return;
     retire();
-    profile = DeviceProfile{};
-    if (rig) {
-        profile = profileFor(*rig);
-        countChannelsFrom(profile, firstChannel(profile.controller));
-        const QString usual = fileNameOf(QString::fromStdString(rig->name()));
-        const QString name = settings.value(kProfileKey + usual, usual).toString();
-        profile.name = usual.toStdString();
-        if (shelf.has(name)) desk.loadProfile(name);
-    }
+    use(rig ? freshProfile(*rig, ControllerKind::firmata) : DeviceProfile{});
+    if (rig)
+        if (const QString last = profiles.lastOf(*rig); !last.isEmpty()) desk.loadProfile(last);
     emit desk.profileChanged();
     take();
+}
+
+/// A hand that comes near makes servos slow before they are told where to go.
+void DeviceDesk::Data::follow(const MatchFrame& frame) {
+    handWatch.follow(frame);
+    feed.setSlow(SlowCause::hand, handWatch.look(SteadyClock().now()));
+    feed.follow(frame.estimatedStrokes);
+}
+
+void DeviceDesk::Data::use(DeviceProfile next) {
+    profile = std::move(next);
+    handWatch.setLimit(profile.handDistance);
 }
 
 bool DeviceDesk::Data::force(const DeviceProfile& next) {
@@ -132,16 +135,14 @@ bool DeviceDesk::Data::force(const DeviceProfile& next) {
         return false;
     }
     notices.dismissAll("servo");
-    profile = next;
+    use(next);
     emit desk.profileChanged();
     return true;
 }
 
 void DeviceDesk::Data::keep() {
     try {
-        shelf.save(profile);
-        settings.setValue(kProfileKey + fileNameOf(QString::fromStdString(rig->name())),
-                          QString::fromStdString(profile.name));
+        profiles.keep(profile, *rig);
     } catch (const Error& error) {
         notices.post("servo", noticeOf(error));
     }
@@ -155,7 +156,6 @@ void DeviceDesk::Data::makeLink() {
     auto made = std::make_unique<ServoLink>(profile, options);
     retire();
     link = std::move(made);
-    link->setSlow(slow);
     feed.attach(link.get(), profile.servos.size());
 }
 
@@ -171,6 +171,7 @@ void DeviceDesk::Data::retire() {
 }
 
 void DeviceDesk::Data::hear() {
+    feed.feel(SteadyClock().now());
     if (posted.exchange(true)) return;
     QMetaObject::invokeMethod(
         &desk,
@@ -189,17 +190,30 @@ void DeviceDesk::Data::take() {
     if (status.phase == LinkPhase::live && !wasLive) liveSince = QDateTime::currentDateTime();
     if (drives(status.phase) && !wasDriven) notices.dismissAll("device");
     if (!drives(status.phase) && wasDriven) desk.endTest();
+    sense();
     emit desk.changed();
 }
 
+/// Whether something that is shown of hands is different.
+bool DeviceDesk::Data::sense() {
+    const Microseconds now = SteadyClock().now();
+    feed.setSlow(SlowCause::hand, handWatch.look(now));
+    const bool driven = drives(status.phase);
+    const HandSense before = std::exchange(hands, HandSense{handWatch.distance(), handWatch.near(), feed.stuck(),
+                                                            status.controller.traits.readsPosition && driven});
+    if (driven) tellAll(handEvents(before, hands, now));
+    return before != hands;
+}
+
 void DeviceDesk::Data::takeEvents() {
-    if (!link) return;
-    const std::vector<LinkEvent> events = link->takeEvents();
+    if (link) tellAll(link->takeEvents());
+}
+
+void DeviceDesk::Data::tellAll(const std::vector<LinkEvent>& events) {
     for (const LinkEvent& event : events) {
         const DeviceLogLine line = lineOf(event);
         log.add(line);
-        if (event.kind == LinkEvent::Kind::information) continue;
-        notices.post("device", noticeOf(line, desk.name()));
+        if (event.kind != LinkEvent::Kind::information) notices.post("device", noticeOf(line, desk.name()));
     }
     if (!events.empty()) emit desk.logged(static_cast<int>(events.size()));
 }
@@ -248,8 +262,9 @@ const DeviceProfile& DeviceDesk::profile() const noexcept { return data_->profil
 const LinkStatus& DeviceDesk::status() const noexcept { return data_->status; }
 const std::deque<DeviceLogLine>& DeviceDesk::log() const noexcept { return data_->log.lines(); }
 const QDateTime& DeviceDesk::liveSince() const noexcept { return data_->liveSince; }
+const HandSense& DeviceDesk::hands() const noexcept { return data_->hands; }
 bool DeviceDesk::slow() const noexcept { return data_->slow; }
-QStringList DeviceDesk::profileNames() const { return data_->shelf.names(); }
+QStringList DeviceDesk::profileNames() const { return data_->profiles.names(); }
 std::optional<double> DeviceDesk::tested(std::size_t servo) const { return data_->feed.held(servo); }
 bool DeviceDesk::testing() const { return data_->feed.testing(); }
 
@@ -275,19 +290,14 @@ bool DeviceDesk::setProfile(const DeviceProfile& profile) {
 }
 
 bool DeviceDesk::previewProfile(const DeviceProfile& profile) {
-    if (data_->link && widens(data_->link->profile(), profile)) return false;
+    if (data_->link && beginsAnew(data_->link->profile(), profile)) return false;
     return data_->force(profile);
 }
 
 void DeviceDesk::loadProfile(const QString& name) {
     if (!data_->rig) return;
     try {
-        DeviceProfile loaded = data_->shelf.load(name);
-        if (loaded.servos.size() != data_->rig->actuatorCount())
-            throw DataError("profile " + name.toStdString(),
-                            "it is for " + std::to_string(loaded.servos.size()) + " servos, the open rig has " +
-                                std::to_string(data_->rig->actuatorCount()),
-                            "choose another, or open the rig that it was made for");
+        DeviceProfile loaded = data_->profiles.load(name, *data_->rig);
         if (data_->status.phase == LinkPhase::off) {
             data_->retire();
         } else { // what is connected stays connected
@@ -311,25 +321,15 @@ void DeviceDesk::saveProfileAs(const QString& name) {
 void DeviceDesk::resetProfile() {
     if (!data_->rig) return;
     DeviceProfile fresh = data_->profile;
-    fresh.servos = profileFor(*data_->rig).servos;
-    countChannelsFrom(fresh, firstChannel(fresh.controller));
+    fresh.servos = freshProfile(*data_->rig, fresh.controller).servos;
     setProfile(fresh);
 }
 
 void DeviceDesk::connectTo(const QString& address, std::optional<ControllerKind> controller) {
     if (!data_->rig) return;
     const std::string wanted = address.trimmed().toStdString();
-    DeviceProfile next = data_->profile;
-    if (next.address != wanted) next.identity.clear(); // it was another board's
-    next.address = wanted;
-    next.controller = controller.value_or(likelyController(wanted));
-    if (next.controller != data_->profile.controller) {
-        // Who has not chosen channels has them counted as this kind counts.
-        DeviceProfile counted = data_->profile;
-        counted.servos = profileFor(*data_->rig).servos;
-        countChannelsFrom(counted, firstChannel(data_->profile.controller));
-        if (sameChannels(counted, data_->profile)) countChannelsFrom(next, firstChannel(next.controller));
-    }
+    const DeviceProfile next =
+        readdressed(data_->profile, *data_->rig, wanted, controller.value_or(likelyController(wanted)));
     const DeviceProfile before = std::exchange(data_->profile, next);
     try {
         static_cast<void>(parseDeviceAddress(wanted));
@@ -389,7 +389,7 @@ void DeviceDesk::wiggle(std::size_t servo) {
 
 void DeviceDesk::setSlow(bool slow) {
     data_->slow = slow;
-    if (data_->link) data_->link->setSlow(slow);
+    data_->feed.setSlow(SlowCause::user, slow);
     emit changed();
 }
 
@@ -408,6 +408,8 @@ void DeviceDesk::endTest() {
     data_->testTimer.start();
     emit changed();
 }
+
+void DeviceDesk::setPoses(std::shared_ptr<const PoseBoard> poses) { data_->handWatch.setPoses(std::move(poses)); }
 
 QString DeviceDesk::name() const {
     const std::string& address = data_->profile.address;

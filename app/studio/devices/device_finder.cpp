@@ -5,6 +5,8 @@
 
 #include <QTimer>
 
+#include "devices/simulator/simulated_bench.h"
+
 namespace lumorph::studio {
 namespace {
 

@@ -5,7 +5,6 @@
 
 #include <QObject>
 
-#include "devices/simulator/simulated_bench.h"
 #include "devices/transport/discovery.h"
 
 namespace lumorph::studio {

@@ -31,6 +31,13 @@ void DeviceLog::add(DeviceLogLine line) {
     if (lines_.size() > kMostLines) lines_.pop_back();
 }
 
+std::string servosText(const std::vector<std::size_t>& servos) {
+    std::string text = servos.size() == 1 ? "Servo " : "Servos ";
+    for (std::size_t k = 0; k < servos.size(); ++k)
+        text += (k == 0 ? "" : k + 1 == servos.size() ? " and " : ", ") + std::to_string(servos[k] + 1);
+    return text;
+}
+
 DeviceLogLine lineOf(const LinkEvent& event) {
     return {wallTime(event.time), event.kind, QString::fromStdString(event.text),
             asSentence(QString::fromStdString(event.remedy))};

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <deque>
+#include <string>
+#include <vector>
 
 #include <QDateTime>
 #include <QString>
@@ -27,6 +29,9 @@ public:
 private:
     std::deque<DeviceLogLine> lines_;
 };
+
+/// "Servo 3", "Servos 1, 2 and 4" of indices in order.
+[[nodiscard]] std::string servosText(const std::vector<std::size_t>& servos);
 
 /// An event of a link, in the wall's time, its remedy as a sentence.
 [[nodiscard]] DeviceLogLine lineOf(const LinkEvent& event);

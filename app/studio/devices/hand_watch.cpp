@@ -2,9 +2,27 @@
 
 #include <utility>
 
+#include "app/studio/devices/device_log.h"
 #include "core/loop/hand_near.h"
 
 namespace lumorph::studio {
+
+std::vector<LinkEvent> handEvents(const HandSense& before, const HandSense& after, Microseconds now) {
+    using Kind = LinkEvent::Kind;
+    std::vector<LinkEvent> events;
+    if (after.near && !before.near) events.push_back({now, Kind::information, "A hand is near: servos are slow.", ""});
+    if (before.near && !after.near)
+        events.push_back({now, Kind::information, "No hand is near any more: servos are as fast as before.", ""});
+    if (after.held == before.held) return events;
+    if (after.held.empty())
+        events.push_back({now, Kind::information, "All servos follow again, and are as fast as before.", ""});
+    else
+        events.push_back({now, Kind::warning,
+                          servosText(after.held) + (after.held.size() == 1 ? " is" : " are") +
+                              " held or stuck: all servos are slow.",
+                          "Take your hands off it; if none are there, look what it is stuck on."});
+    return events;
+}
 
 void HandWatch::setPoses(std::shared_ptr<const PoseBoard> poses) {
     const std::scoped_lock lock(mutex_);

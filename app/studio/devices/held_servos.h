@@ -15,9 +15,9 @@ namespace lumorph::studio {
 /// the places that it was told of late. Pure.
 class HeldServos {
 public:
-    static constexpr double kFar = 0.1;                ///< strokes
-    static constexpr Microseconds kArrives{600'000};   ///< by then a servo is where it was told to be, and was read there
-    static constexpr Microseconds kHeldFor{300'000};   ///< so long it must be far
+    static constexpr double kFar = 0.1;              ///< strokes
+    static constexpr Microseconds kArrives{600'000}; ///< by then a servo is where it was told to be, and was read there
+    static constexpr Microseconds kHeldFor{300'000}; ///< so long it must be far
     static constexpr Microseconds kFreeFor{1'000'000}; ///< so long it must follow again
 
     /// What the link says `now`; call it ten times a second or more often.

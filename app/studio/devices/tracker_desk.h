@@ -45,6 +45,9 @@ public:
     [[nodiscard]] bool opening() const noexcept;
     [[nodiscard]] const std::vector<OpenTracker>& trackers() const noexcept;
 
+    /// All that the trackers see, as long as this lives and after.
+    [[nodiscard]] std::shared_ptr<const PoseBoard> poses() const noexcept;
+
     /// None: the body is seen, and does nothing.
     [[nodiscard]] std::optional<PoseRole> role(const std::string& body) const;
     /// Remembered by the body's name.

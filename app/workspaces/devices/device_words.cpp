@@ -1,5 +1,7 @@
 #include "app/workspaces/devices/device_words.h"
 
+#include "app/studio/devices/device_log.h"
+
 namespace lumorph::studio {
 namespace {
 
@@ -64,10 +66,7 @@ DeviceCard waitingCard(const DeviceView& view) {
     if (static_cast<qsizetype>(waiting.size()) == view.servos.size())
         return {Tone::warning, "All servos may jump when they start: hands off",
                 "Nobody knows where they stand. They start one after the other.", Step::startAnyway, "Start anyway"};
-    QStringList numbers;
-    for (const std::size_t servo : waiting) numbers << QString::number(servo + 1);
-    const QString last = numbers.takeLast();
-    return {Tone::warning, "Servos " + numbers.join(", ") + " and " + last + " may jump when they start: hands off",
+    return {Tone::warning, QString::fromStdString(servosText(waiting)) + " may jump when they start: hands off",
             "Nobody knows where they stand. They start one after the other.", Step::startAnyway, "Start anyway"};
 }
 
@@ -160,6 +159,26 @@ QString failsafeText(const LinkStatus& link) {
     return traits.failsafe
                ? "When the studio dies, it stops by itself."
                : "When the studio dies, its servos stay where they are, under power. Switch it off by hand.";
+}
+
+QString handsText(const HandSense& hands, const QStringList& servos) {
+    if (hands.held.size() == 1) return "Slow: " + servoName(servos, hands.held.front()) + " is held, or stuck";
+    if (!hands.held.empty()) return "Slow: " + QString::fromStdString(servosText(hands.held)) + " are held, or stuck";
+    const QString distance = hands.distance ? QString("%1 cm").arg(100.0 * *hands.distance, 0, 'f', 0) : QString();
+    if (hands.near && !hands.distance) return "Slow: a hand was near when it was seen last";
+    if (hands.near) return "Slow: a hand is tracked " + distance + " away";
+    if (hands.distance) return "A hand is tracked " + distance + " away";
+    return hands.feels ? "Hands are not tracked; a servo that is held is felt" : "Hands are not sensed";
+}
+
+QString restText(const DeviceProfile& profile, const QStringList& servos) {
+    QStringList raised;
+    for (std::size_t k = 0; k < profile.servos.size(); ++k)
+        if (const double stroke = profile.servos[k].exitStroke; stroke > 0.0)
+            raised << QString("%1 at %2 %").arg(servoName(servos, k)).arg(100.0 * stroke, 0, 'f', 0);
+    if (raised.isEmpty()) return "All servos down.";
+    const bool all = raised.size() == static_cast<qsizetype>(profile.servos.size());
+    return raised.join(", ") + (all ? "." : ", the others down.");
 }
 
 QString controllerText(ControllerKind kind) {
