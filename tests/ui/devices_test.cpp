@@ -43,7 +43,7 @@ TEST_F(DevicesWindow, AnUnpluggedBoardIsToldAndComesBackLimp) {
     showSimulator();
     set("sim.unplugged", true);
     EXPECT_TRUE(reaches(LinkPhase::lost));
-    EXPECT_TRUE(tells("is not there"));
+    EXPECT_TRUE(tells("is lost"));
     EXPECT_TRUE(logs("The link is lost"));
     window.screenshot("devices-unplugged");
     set("sim.unplugged", false);
@@ -198,7 +198,7 @@ TEST(DeviceWords, TheNextStepFitsTheState) {
         {LinkPhase::live, {0, 1, 2}, Step::startAnyway, "All servos may jump when they start: hands off"},
         {LinkPhase::live, {}, Step::none, "Live"},
         {LinkPhase::stopped, {}, Step::startAgain, "Stopped"},
-        {LinkPhase::lost, {}, Step::none, "Tablet is not there"},
+        {LinkPhase::lost, {}, Step::none, "The link to Tablet is lost"},
     };
     for (const auto& row : rows) {
         view.link.phase = row.phase;

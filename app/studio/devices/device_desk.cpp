@@ -213,7 +213,11 @@ void DeviceDesk::Data::tellAll(const std::vector<LinkEvent>& events) {
     for (const LinkEvent& event : events) {
         const DeviceLogLine line = lineOf(event);
         log.add(line);
-        if (event.kind != LinkEvent::Kind::information) notices.post("device", noticeOf(line, desk.name()));
+        // The status line has the newest trouble, until something went well.
+        if (event.kind == LinkEvent::Kind::information)
+            notices.dismissAll("device");
+        else
+            notices.post("device", noticeOf(line, desk.name()));
     }
     if (!events.empty()) emit desk.logged(static_cast<int>(events.size()));
 }
@@ -431,7 +435,7 @@ QString DeviceDesk::liveName() const {
 }
 
 void DeviceDesk::note(const QString& text) {
-    data_->log.add({QDateTime::currentDateTime(), LinkEvent::Kind::information, text, {}});
+    data_->log.add({QDateTime::currentDateTime(), LinkEvent::Kind::information, text, {}, true});
     emit logged(1);
 }
 

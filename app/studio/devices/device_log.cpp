@@ -40,7 +40,7 @@ std::string servosText(const std::vector<std::size_t>& servos) {
 
 DeviceLogLine lineOf(const LinkEvent& event) {
     return {wallTime(event.time), event.kind, QString::fromStdString(event.text),
-            asSentence(QString::fromStdString(event.remedy))};
+            asSentence(QString::fromStdString(event.remedy)), false};
 }
 
 Notice noticeOf(const DeviceLogLine& line, const QString& device) {

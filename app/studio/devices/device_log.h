@@ -18,6 +18,7 @@ struct DeviceLogLine {
     LinkEvent::Kind kind = LinkEvent::Kind::information;
     QString text;
     QString remedy;
+    bool aside = false; ///< by the studio's own panels, not about the link
 };
 
 /// What happened, newest first, at most 500 lines.

@@ -20,8 +20,18 @@ void HeldServos::look(Servo& servo, const ServoStatus& status, Microseconds now)
         servo.changing.reset();
         return;
     }
-    if (!servo.changing) servo.changing = now;
+    if (!servo.changing) {
+        servo.changing = now;
+        servo.went = servo.meant = {};
+    }
+    servo.went.take(status.readBack.value_or(status.commanded));
+    servo.meant.take(status.commanded);
     if (now - *servo.changing < (far ? kHeldFor : kFreeFor)) return;
+    // A show that comes by where a servo is held does not free it.
+    if (servo.held && servo.went.width() < servo.meant.width() - kFar) {
+        servo.changing.reset();
+        return;
+    }
     servo.held = far;
     servo.changing.reset();
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <deque>
 #include <optional>
@@ -18,7 +19,7 @@ public:
     static constexpr double kFar = 0.1;              ///< strokes
     static constexpr Microseconds kArrives{600'000}; ///< by then a servo is where it was told to be, and was read there
     static constexpr Microseconds kHeldFor{300'000}; ///< so long it must be far
-    static constexpr Microseconds kFreeFor{1'000'000}; ///< so long it must follow again
+    static constexpr Microseconds kFreeFor{2'000'000}; ///< so long it must be where it is told again, and go along
 
     /// What the link says `now`; call it ten times a second or more often.
     void look(const LinkStatus& status, Microseconds now);
@@ -27,9 +28,20 @@ public:
     [[nodiscard]] const std::vector<std::size_t>& held() const noexcept { return held_; }
 
 private:
+    /// All places of some time.
+    struct Range {
+        double least = 1e9;
+        double most = -1e9;
+        void take(double place) {
+            least = std::min(least, place);
+            most = std::max(most, place);
+        }
+        [[nodiscard]] double width() const { return most - least; }
+    };
     struct Servo {
         std::deque<std::pair<Microseconds, double>> told; ///< strokes, of the time that it has to arrive
         std::optional<Microseconds> changing;             ///< since when it seems to be what it was not
+        Range went, meant; ///< where it was read, and where it was told to be, since then
         bool held = false;
     };
     static void look(Servo& servo, const ServoStatus& status, Microseconds now);

@@ -27,15 +27,20 @@ DeviceCard offCard(const DeviceView& view) {
 DeviceCard lostCard(const DeviceView& view) {
     const auto& trouble = view.link.trouble ? view.link.trouble : view.link.controller.trouble;
     QString text = trouble ? troubleText(*trouble) : QString("It does not answer any more.");
-    return {
-        Tone::failure, view.name + " is not there", joined(text, "The studio tries again by itself."), Step::none, {}};
+    const bool was = view.link.phase == LinkPhase::lost;
+    return {Tone::failure,
+            (was ? "The link to " + view.name + " is lost" : "No link to " + view.name),
+            joined(text, "The studio tries again by itself."),
+            Step::none,
+            {}};
 }
 
 DeviceCard handshakeCard(const DeviceView& view) {
     const ControllerState& controller = view.link.controller;
-    if (controller.phase == ControllerPhase::refused || controller.trouble)
+    const bool refused = controller.phase == ControllerPhase::refused;
+    if (refused || controller.trouble)
         return {Tone::failure,
-                view.name + " cannot be used as it is",
+                view.name + (refused || controller.answering ? " cannot be used as it is" : " does not answer"),
                 controller.trouble ? troubleText(*controller.trouble) : QString("It is something else."),
                 Step::none,
                 {}};
@@ -162,8 +167,12 @@ QString failsafeText(const LinkStatus& link) {
 }
 
 QString handsText(const HandSense& hands, const QStringList& servos) {
-    if (hands.held.size() == 1) return "Slow: " + servoName(servos, hands.held.front()) + " is held, or stuck";
-    if (!hands.held.empty()) return "Slow: " + QString::fromStdString(servosText(hands.held)) + " are held, or stuck";
+    if (!hands.held.empty()) {
+        const bool one = hands.held.size() == 1;
+        QString who = one ? servoName(servos, hands.held.front()) : QString::fromStdString(servosText(hands.held));
+        who[0] = who[0].toLower();
+        return "Slow: " + who + (one ? " is held, or stuck" : " are held, or stuck");
+    }
     const QString distance = hands.distance ? QString("%1 cm").arg(100.0 * *hands.distance, 0, 'f', 0) : QString();
     if (hands.near && !hands.distance) return "Slow: a hand was near when it was seen last";
     if (hands.near) return "Slow: a hand is tracked " + distance + " away";

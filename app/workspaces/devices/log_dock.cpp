@@ -16,6 +16,8 @@ public:
         list_->setObjectName("devices.log");
         list_->setAccessibleName("What happened, newest first");
         list_->setWordWrap(true);
+        list_->setResizeMode(QListView::Adjust); // a scroll bar makes lines narrower, and more of them
+        list_->setTextElideMode(Qt::ElideNone);
         list_->setSelectionMode(QAbstractItemView::ExtendedSelection);
         list_->setVerticalScrollMode(QAbstractItemView::ScrollPerPixel);
         list_->setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);

@@ -23,8 +23,10 @@ QString lately(const DeviceDesk& desk) {
     for (const DeviceLogLine& line : desk.log()) {
         if (line.time.secsTo(QDateTime::currentDateTime()) > kLatelySeconds) break;
         if (live && line.time < desk.liveSince()) break; // over and done
+        if (line.aside) continue;
+        if (live && line.kind == LinkEvent::Kind::information) break; // it went well after that
         if (line.kind != LinkEvent::Kind::information)
-            return line.remedy.isEmpty() ? line.text : line.text + ' ' + line.remedy;
+            return live && !line.remedy.isEmpty() ? line.text + ' ' + line.remedy : line.text; // it is mended else
     }
     return {};
 }

@@ -53,12 +53,12 @@ private:
         const Column column = makeColumn(this);
         QVBoxLayout& rows = *column.layout;
         rows.addWidget(makeHeading("Speed of all servos"));
-        addNumber(rows, "&Start one by one", "setup.stagger",
+        addNumber(rows, "&Pause at the start", "setup.stagger",
                   "The pause between the start of one servo and of the next, so that the supply can bear it",
                   &DeviceProfile::staggerSeconds, Quantity::seconds, limits::kStaggerSeconds, 0.1);
-        addNumber(rows, "Sl&ow mode", "setup.slowShare", "The share of their velocity that servos have in slow mode",
+        addNumber(rows, "In sl&ow mode", "setup.slowShare", "The share of their velocity that servos have in slow mode",
                   &DeviceProfile::slowShare, Quantity::share, limits::kSlowShare, 0.05);
-        addNumber(rows, "&Commands (/s)", "setup.rate",
+        addNumber(rows, "&Commands a second", "setup.rate",
                   "At most so many commands a second. The servos are let go, and are started again.",
                   &DeviceProfile::commandsPerSecond, Quantity::plain, limits::kCommandsPerSecond, 5.0);
         rate_ = makeMuted("setup.rateNote");
