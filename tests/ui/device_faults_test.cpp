@@ -55,6 +55,7 @@ TEST_P(DeviceFaults, WhatKeepsALinkFromOpeningIsTold) {
         SCOPED_TRACE(row.fault);
         window.click("devices.disconnect");
         ASSERT_TRUE(reaches(LinkPhase::off));
+        pass(1s); // servos are told to let go before the port is closed
         set(row.fault, true);
         clearLog();
         window.studio().devices.connectTo(address());

@@ -58,7 +58,7 @@ private:
                   &DeviceProfile::staggerSeconds, Quantity::seconds, limits::kStaggerSeconds, 0.1);
         addNumber(rows, "In sl&ow mode", "setup.slowShare", "The share of their velocity that servos have in slow mode",
                   &DeviceProfile::slowShare, Quantity::share, limits::kSlowShare, 0.05);
-        addNumber(rows, "&Commands a second", "setup.rate",
+        addNumber(rows, "Command &rate (/s)", "setup.rate",
                   "At most so many commands a second. The servos are let go, and are started again.",
                   &DeviceProfile::commandsPerSecond, Quantity::plain, limits::kCommandsPerSecond, 5.0);
         rate_ = makeMuted("setup.rateNote");
