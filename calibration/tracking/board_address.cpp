@@ -129,8 +129,9 @@ MarkerBoard boardOf(Words& words) {
         board.rows = static_cast<int>(*rows);
     }
     const double proportion = board.marker / board.square;
-    board.square = 1e-3 * words.number("size", 1e3 * board.square, 1.0, 2000.0);
-    board.marker = 1e-3 * words.number("marker", 1e3 * proportion * board.square, 1.0, 2000.0);
+    const double square = words.number("size", 1e3 * board.square, 1.0, 2000.0);
+    board.marker = words.number("marker", proportion * square, 0.5, 2000.0) / 1000.0;
+    board.square = square / 1000.0;
     board.dictionary = words.take("dictionary").value_or(board.dictionary);
     checkBoard(board);
     return board;

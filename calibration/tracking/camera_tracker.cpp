@@ -178,6 +178,7 @@ void CameraTracker::Data::tell(const BoardView& view, glm::ivec2 size) {
 
 CameraTracker::CameraTracker(CameraTrackerOptions options) : data_(std::make_unique<Data>(std::move(options))) {
     data_->asked = data_->options.clock->now().count();
+    data_->status.assumptions = data_->watch.assumptions();
     data_->thread = std::jthread([data = data_.get()](const std::stop_token& stop) { data->run(stop); });
 }
 
