@@ -262,6 +262,22 @@ void checkProfile(const DeviceProfile& profile) {
     }
 }
 
+std::string profileText(const DeviceProfile& profile) {
+    return documentOf(profile).dump(-1, ' ', false, json::error_handler_t::replace);
+}
+
+DeviceProfile parseProfile(std::string_view text, const std::string& subject) {
+    if (const std::string problem = jsonProblem(text, kLimits); !problem.empty())
+        throw DataError(subject, problem, kReplace);
+    try {
+        json document = json::parse(text);
+        if (!document.is_object()) throw DataError(subject, "is not a device profile", kReplace);
+        return profileOf(document, subject);
+    } catch (const json::exception&) {
+        throw DataError(subject, "is not sound JSON", kReplace);
+    }
+}
+
 DeviceProfile readProfile(const fs::path& file) {
     const std::string name = file.string();
     std::error_code failed;
@@ -269,16 +285,7 @@ DeviceProfile readProfile(const fs::path& file) {
     if (fs::exists(file, failed) && fs::is_other(file, failed))
         throw DataError(name, "is not a file", "choose a device profile");
     const std::vector<std::byte> bytes = readFile(file, kLimits.bytes);
-    const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-    if (const std::string problem = jsonProblem(text, kLimits); !problem.empty())
-        throw DataError(name, problem, kReplace);
-    try {
-        json document = json::parse(text);
-        if (!document.is_object()) throw DataError(name, "is not a device profile", kReplace);
-        return profileOf(document, name);
-    } catch (const json::exception&) {
-        throw DataError(name, "is not sound JSON", kReplace);
-    }
+    return parseProfile({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, name);
 }
 
 void writeProfile(const DeviceProfile& profile, const fs::path& file) {

@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/rig/rig.h"
@@ -65,6 +66,9 @@ inline constexpr ProfileLimits kHandDistance{0.0, 1.0};
 /// Throws InvalidInput that names the servo and the value: out of range, not finite, two servos on one channel.
 void checkProfile(const DeviceProfile& profile);
 
+/// As JSON; doubles come back bit for bit. `subject` names it in a DataError. Text that is not UTF-8 is mended.
+[[nodiscard]] std::string profileText(const DeviceProfile& profile);
+[[nodiscard]] DeviceProfile parseProfile(std::string_view text, const std::string& subject);
 /// JSON files. Throw DataError with file and place; writing is atomic.
 [[nodiscard]] DeviceProfile readProfile(const std::filesystem::path& file);
 void writeProfile(const DeviceProfile& profile, const std::filesystem::path& file);

@@ -1,10 +1,10 @@
 #include <chrono>
-#include <cstdlib>
-#include <fcntl.h>
+#include <csignal>
 #include <sstream>
 #include <stdexcept>
 #include <string>
 
+#include <fcntl.h>
 #include <sys/file.h>
 #include <unistd.h>
 
@@ -187,6 +187,40 @@ TEST(TrackCommand, SaysWhatIsWrongWithAnAddress) {
     const Outcome outcome = lumorph({"track", "monitor", "opentrack://nonsense:x"});
     EXPECT_EQ(outcome.exitCode, 2);
     EXPECT_THAT(outcome.err, HasSubstr("opentrack"));
+}
+
+TEST(TrackCommand, CtrlCEndsAMonitorAndIsNoFailure) {
+    using namespace std::chrono_literals;
+    Process monitor(lumorphProgram(), {"track", "monitor", "board://camera99", "--json"});
+    ASSERT_TRUE(monitor.waitForError("There is no camera at /dev/video99", 20s));
+    monitor.send(SIGINT);
+    const Outcome outcome = monitor.wait(10s);
+    EXPECT_EQ(outcome.exitCode, 0);
+    EXPECT_THAT(outcome.err, HasSubstr("lumorph: stopped after "));
+    EXPECT_THAT(outcome.err, HasSubstr(" s: 0 frames in 0 packets, 0 of them rejected"));
+    EXPECT_THAT(outcome.err, ::testing::Not(HasSubstr("nothing was written")));
+    EXPECT_THAT(outcome.err, HasSubstr("taken to see 60 degrees")) << "no lens is known";
+}
+
+TEST(TrackCommand, CtrlCBeforeAllFramesCameIsOne) {
+    using namespace std::chrono_literals;
+    Process monitor(lumorphProgram(), {"track", "monitor", "board://camera99", "--json", "--frames", "3"});
+    ASSERT_TRUE(monitor.waitForError("There is no camera", 20s));
+    monitor.send(SIGINT);
+    const Outcome outcome = monitor.wait(10s);
+    EXPECT_EQ(outcome.exitCode, 1);
+    EXPECT_THAT(outcome.err, HasSubstr("it was stopped after 0 of 3 frames; There is no camera"));
+}
+
+TEST(TrackCommand, WritesABoardToPrint) {
+    const Outcome page = lumorph({"track", "board", "-", "--board", "squares=4x6&size=35&marker=25"});
+    EXPECT_EQ(page.exitCode, 0) << page.err;
+    EXPECT_TRUE(page.out.starts_with("%PDF-1.4"));
+    EXPECT_THAT(page.out, HasSubstr("4 x 6 squares of 35 mm"));
+    const Outcome wrong = lumorph({"track", "board", "-", "--board", "squares=4x6&cow=1"});
+    EXPECT_EQ(wrong.exitCode, 2);
+    EXPECT_THAT(wrong.err, HasSubstr("nothing is known of 'cow'"));
+    EXPECT_TRUE(lumorph({"track", "cameras", "--json"}).json().is_array());
 }
 
 } // namespace
