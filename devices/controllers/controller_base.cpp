@@ -11,10 +11,12 @@ namespace lumorph {
 
 namespace {
 
-constexpr double kRecovered = 0.2;    // volts above the limit that end the warning: under load it sags
-constexpr double kLeastBattery = 0.5; // volts; less is an input that nothing is wired to
-constexpr double kMostBattery = 30.0; // volts; more is a broken answer
-constexpr double kShareOfLink = 0.47; // of its bytes, for pulses; the rest is for questions and hiccups
+constexpr double kRecovered = 0.2;         // volts above the limit that end the warning: under load it sags
+constexpr double kLeastBattery = 0.5;      // volts; less is an input that nothing is wired to
+constexpr double kMostBattery = 30.0;      // volts; more is a broken answer
+constexpr double kShareOfLink = 0.47;      // of its bytes, for pulses; the rest is for questions and hiccups
+constexpr double kDetachShare = 0.65;      // of its bytes, for letting servos go: nothing else matters then
+constexpr Microseconds kDetachGap{25'000}; // at least
 constexpr std::size_t kMostQuestions = 64;
 
 } // namespace
@@ -51,6 +53,7 @@ void ControllerBase::tick(Microseconds now) {
     now_ = now;
     plan_.tick(now);
     work(now);
+    state_.detaching = plan_.detaching();
     if (now - heard_ < kSilence) return;
     state_.answering = false;
     trouble(Concern::silence, silence(!everHeard_));
@@ -135,6 +138,7 @@ std::vector<std::vector<std::uint8_t>> ControllerBase::takeOutput() {
         output.insert(output.end(), std::make_move_iterator(moves.begin()), std::make_move_iterator(moves.end()));
     }
     if (!output.empty()) lastWritten_ = now_;
+    state_.detaching = plan_.detaching();
     return output;
 }
 
@@ -152,6 +156,11 @@ int baudOf(const DeviceAddress& address) {
 
 double setsPerSecond(int baud, std::size_t bytes) {
     return kShareOfLink * baud / 10.0 / static_cast<double>(std::max<std::size_t>(bytes, 1)); // 8N1: ten bits a byte
+}
+
+Microseconds detachGap(int baud, std::size_t bytes) {
+    const double seconds = 10.0 * static_cast<double>(bytes) / (kDetachShare * baud);
+    return std::max(kDetachGap, Microseconds(std::lround(1e6 * seconds)));
 }
 
 double setsPerSecond(const DeviceProfile& profile, const ControllerTraits& traits) {

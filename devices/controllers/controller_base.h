@@ -76,6 +76,8 @@ protected:
     void rebooted();
     void trouble(Concern concern, std::optional<LinkTrouble> trouble);
     void takeVoltage(double volts);
+    /// What it was told last.
+    [[nodiscard]] Microseconds now() const noexcept { return now_; }
     /// When something was last written.
     [[nodiscard]] Microseconds lastWritten() const noexcept { return lastWritten_; }
     [[nodiscard]] std::optional<std::size_t> servoOn(int channel) const;
@@ -100,6 +102,8 @@ private:
 [[nodiscard]] int baudOf(const DeviceAddress& address);
 /// Sets of so many bytes that a serial link takes a second, half of it left for everything else.
 [[nodiscard]] double setsPerSecond(int baud, std::size_t bytes);
+/// Pause between two times that servos are told to let go in so many bytes: a line should be free to carry the answers.
+[[nodiscard]] Microseconds detachGap(int baud, std::size_t bytes);
 /// Sets a second that the profile wants and the link takes.
 [[nodiscard]] double setsPerSecond(const DeviceProfile& profile, const ControllerTraits& traits);
 /// Throws InvalidInput that names the first servo whose channel is not 0 to `last`.

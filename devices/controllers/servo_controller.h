@@ -44,6 +44,7 @@ struct ControllerState {
     std::uint64_t reboots = 0;                     ///< noticed in this session: handshake was begun anew
     std::uint64_t errors = 0;                      ///< broken frames, errors the device told
     bool answering = true;                         ///< false: it has been silent for a second
+    bool detaching = false; ///< servos are told again and again to let go: nobody knows yet whether they have
     std::optional<LinkTrouble> trouble;
 };
 

@@ -20,8 +20,8 @@ constexpr Microseconds kBusyPause{5'000};
 constexpr Microseconds kIdlePause{50'000};
 constexpr Microseconds kStaysBusy{200'000}; // after the last motion: the rate cap may hold its end back
 constexpr Microseconds kRestAtMost{2'000'000};
-constexpr Microseconds kCloseAfter{250'000};  // detaching is repeated meanwhile
-constexpr Microseconds kCloseAtLast{600'000}; // though not all was sent
+constexpr Microseconds kCloseAfter{250'000};    // detaching is repeated meanwhile
+constexpr Microseconds kCloseAtLast{1'000'000}; // though not all was sent, or not all servos are known to be limp
 constexpr Microseconds kTrustedRest{2'000'000};
 constexpr Microseconds kSilencePatience{4'000'000};
 constexpr Microseconds kStallTold{200'000};
@@ -404,7 +404,8 @@ void LinkWorker::Data::finishRest() {
 
 void LinkWorker::Data::finishClosing() {
     if (!closeAfter || steadyNow() < *closeAfter) return;
-    if (keeper->unsent() > 0 && steadyNow() < *closeAfter + kCloseAtLast - kCloseAfter) return;
+    const bool waits = keeper->unsent() > 0 || (keeper->isOpen() && controller->state().detaching);
+    if (waits && steadyNow() < *closeAfter + kCloseAtLast - kCloseAfter) return;
     closeAfter.reset();
     keeper->stop();
     everOpen = false;
@@ -513,7 +514,8 @@ void LinkWorker::work(LinkOrders orders) {
 Microseconds LinkWorker::pause() const {
     const Data& data = *data_;
     const bool waits = data.closeAfter || data.restUntil || data.stalledSince;
-    const bool asks = data.keeper->isOpen() && data.controller->state().phase == ControllerPhase::handshake;
+    const ControllerState& state = data.controller->state();
+    const bool asks = data.keeper->isOpen() && (state.phase == ControllerPhase::handshake || state.detaching);
     const bool moves = data.armed() && (!data.guard.settled() || steadyNow() < data.busyUntil);
     return waits || asks || moves ? kBusyPause : kIdlePause;
 }

@@ -79,6 +79,7 @@ private:
     }
 
     void begin(std::uint8_t status) {
+        if (!ours_ && status == 0xF7) return; // the end of nothing: data of what was begun before may still come
         status_ = status;
         data_.clear();
         inSysex_ = status == 0xF0;
