@@ -309,15 +309,18 @@ std::size_t FirmataController::servoToAskFor() {
     return 0;
 }
 
-/// Where none shall hold, a reset has the last word: it is one byte, so that nothing can be missing in it, and what a
-/// line that loses bytes made of the others is void.
+/// Where none shall hold, a reset says so again and again: it is one byte, so that nothing can be missing in it. Of
+/// other messages a line that loses bytes makes new ones: the mode of one pin and the number of the next may attach a
+/// servo.
 ControllerBase::Messages FirmataController::detachments(std::span<const std::size_t> servos) {
+    const bool ready = state_.phase == ControllerPhase::ready;
+    const bool resets = ready && !plan_.anyAttached();
     Messages messages;
     for (const std::size_t servo : servos)
-        messages.push_back(certain(firmata::detachServo(plan_.servos()[servo].channel)));
-    if (state_.phase != ControllerPhase::ready) return messages;
-    if (!plan_.anyAttached()) messages.push_back(certain(firmata::resetBoard()));
-    askState(now());
+        if (!resets || plan_.since(servo) == now() || !plan_.detaching())
+            messages.push_back(certain(firmata::detachServo(plan_.servos()[servo].channel)));
+    if (resets) messages.push_back(certain(firmata::resetBoard()));
+    if (ready) askState(now());
     return messages;
 }
 
