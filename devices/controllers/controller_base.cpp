@@ -19,10 +19,17 @@ constexpr double kDetachShare = 0.65;      // of its bytes, for letting servos g
 constexpr Microseconds kDetachGap{25'000}; // at least
 constexpr std::size_t kMostQuestions = 64;
 
+/// The scale with what follows from the traits.
+PulseScale scaleOf(PulseScale scale, const DeviceProfile& profile, const ControllerTraits& traits) {
+    scale.step = traits.pulseStep;
+    scale.perSecond = setsPerSecond(profile, traits);
+    return scale;
+}
+
 } // namespace
 
 ControllerBase::ControllerBase(const DeviceProfile& profile, const PulseScale& scale, ControllerTraits traits)
-    : plan_(profile.servos, scale) {
+    : plan_(profile.servos, scaleOf(scale, profile, traits)) {
     state_.traits = std::move(traits);
     state_.readPulses.resize(profile.servos.size());
 }
@@ -166,6 +173,11 @@ Microseconds detachGap(int baud, std::size_t bytes) {
 double setsPerSecond(const DeviceProfile& profile, const ControllerTraits& traits) {
     const double wanted = profile.commandsPerSecond;
     return wanted > 0.0 ? std::min(wanted, traits.commandsPerSecond) : traits.commandsPerSecond;
+}
+
+void refuseHid(const DeviceProfile& profile, const DeviceAddress& address, const char* why, const char* remedy) {
+    if (std::holds_alternative<HidAddress>(address))
+        throw InvalidInput("device address '" + profile.address + "'", why, remedy);
 }
 
 void checkChannels(const DeviceProfile& profile, int last) {

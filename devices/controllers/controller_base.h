@@ -55,6 +55,7 @@ protected:
     using Messages = std::vector<std::vector<std::uint8_t>>;
     enum class Concern { refusal, silence, board, battery }; ///< the first that there is, is told
 
+    /// Step and rate of the scale are those of profile and traits.
     ControllerBase(const DeviceProfile& profile, const PulseScale& scale, ControllerTraits traits);
 
     virtual void begin(Microseconds now) = 0;
@@ -106,6 +107,8 @@ private:
 [[nodiscard]] Microseconds detachGap(int baud, std::size_t bytes);
 /// Sets a second that the profile wants and the link takes.
 [[nodiscard]] double setsPerSecond(const DeviceProfile& profile, const ControllerTraits& traits);
+/// Throws InvalidInput with these words for a HID address.
+void refuseHid(const DeviceProfile& profile, const DeviceAddress& address, const char* why, const char* remedy);
 /// Throws InvalidInput that names the first servo whose channel is not 0 to `last`.
 void checkChannels(const DeviceProfile& profile, int last);
 

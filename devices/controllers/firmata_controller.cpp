@@ -53,10 +53,9 @@ ControllerTraits firmataTraits(const DeviceProfile& profile, const DeviceAddress
     return traits;
 }
 
-PulseScale firmataScale(const DeviceProfile& profile, const DeviceAddress& address, const ControllerTraits& traits) {
+PulseScale firmataScale(const DeviceProfile& profile, const DeviceAddress& address) {
     PulseScale scale;
     scale.least = kOwnLeastPulse; // which firmware it is will be known later
-    scale.perSecond = setsPerSecond(profile, traits);
     scale.detachGap = detachGap(baudOf(address), kBytesOfDetach * profile.servos.size());
     return scale;
 }
@@ -74,7 +73,7 @@ public:
 
 private:
     FirmataController(const DeviceProfile& profile, const DeviceAddress& address, const ControllerTraits& traits)
-        : ControllerBase(profile, firmataScale(profile, address, traits), traits), address_(address) {
+        : ControllerBase(profile, firmataScale(profile, address), traits), address_(address) {
         becomeKind(false);
     }
 
@@ -358,9 +357,7 @@ LinkTrouble FirmataController::silence(bool never) const {
 } // namespace
 
 std::unique_ptr<ServoController> makeFirmata(const DeviceProfile& profile, const DeviceAddress& address) {
-    if (std::holds_alternative<HidAddress>(address))
-        throw InvalidInput("device address '" + profile.address + "'", "Firmata is not spoken over HID",
-                           "use a serial or a Bluetooth address");
+    refuseHid(profile, address, "Firmata is not spoken over HID", "use a serial or a Bluetooth address");
     checkChannels(profile, 127);
     return std::make_unique<FirmataController>(profile, address);
 }

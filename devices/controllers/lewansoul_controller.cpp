@@ -48,13 +48,11 @@ ControllerTraits lewansoulTraits(const DeviceProfile& profile, const DeviceAddre
     return traits;
 }
 
-PulseScale lewansoulScale(const DeviceProfile& profile, const DeviceAddress& address, const ControllerTraits& traits) {
+PulseScale lewansoulScale(const DeviceProfile& profile, const DeviceAddress& address) {
     PulseScale scale;
-    scale.step = traits.pulseStep;
-    scale.zero = traits.readsPosition ? kHidZero : 0.0;
+    scale.zero = isHid(address) ? kHidZero : 0.0;
     scale.least = 500.0;
     scale.greatest = 2500.0;
-    scale.perSecond = setsPerSecond(profile, traits);
     scale.detachGap = isHid(address) ? kHidDetachGap : detachGap(baudOf(address), 5 + profile.servos.size());
     return scale;
 }
@@ -66,7 +64,7 @@ public:
 
 private:
     LewansoulController(const DeviceProfile& profile, const DeviceAddress& address, const ControllerTraits& traits)
-        : ControllerBase(profile, lewansoulScale(profile, address, traits), traits), hid_(isHid(address)),
+        : ControllerBase(profile, lewansoulScale(profile, address), traits), hid_(isHid(address)),
           baud_(baudOf(address)), readAt_(profile.servos.size()) {
         moveTime_ = static_cast<int>(std::clamp(1000.0 / setsPerSecond(profile, traits), kLeastMoveTime, 1000.0));
         moves_.resize(profile.servos.size());

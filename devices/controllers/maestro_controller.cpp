@@ -37,10 +37,8 @@ ControllerTraits maestroTraits(const DeviceProfile& profile, const DeviceAddress
     return traits;
 }
 
-PulseScale maestroScale(const DeviceProfile& profile, const DeviceAddress& address, const ControllerTraits& traits) {
+PulseScale maestroScale(const DeviceProfile& profile, const DeviceAddress& address) {
     PulseScale scale;
-    scale.step = kQuarter;
-    scale.perSecond = setsPerSecond(profile, traits);
     scale.detachGap = detachGap(baudOf(address), bytesOfTarget(profile) * profile.servos.size());
     return scale;
 }
@@ -52,7 +50,7 @@ public:
 
 private:
     MaestroController(const DeviceProfile& profile, const DeviceAddress& address, const ControllerTraits& traits)
-        : ControllerBase(profile, maestroScale(profile, address, traits), traits), form_(formOf(profile)) {}
+        : ControllerBase(profile, maestroScale(profile, address), traits), form_(formOf(profile)) {}
 
     void begin(Microseconds now) override;
     void take(std::span<const std::uint8_t> bytes, Microseconds now) override;
@@ -230,9 +228,8 @@ LinkTrouble MaestroController::silence(bool never) const {
 } // namespace
 
 std::unique_ptr<ServoController> makeMaestro(const DeviceProfile& profile, const DeviceAddress& address) {
-    if (std::holds_alternative<HidAddress>(address))
-        throw InvalidInput("device address '" + profile.address + "'", "a Maestro is not reached over HID",
-                           "use the address of its command port, such as serial:///dev/ttyACM0");
+    refuseHid(profile, address, "a Maestro is not reached over HID",
+              "use the address of its command port, such as serial:///dev/ttyACM0");
     checkChannels(profile, 23);
     return std::make_unique<MaestroController>(profile, address);
 }
