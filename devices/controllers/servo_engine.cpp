@@ -25,7 +25,8 @@ constexpr Microseconds kLongestGap{86'400'000'000};
 
 std::string placesOf(const std::vector<std::size_t>& servos) {
     std::string text;
-    for (const std::size_t servo : servos) text += (text.empty() ? "" : ", ") + std::to_string(servo + 1);
+    for (const std::size_t servo : servos)
+        text += (text.empty() ? "" : servo == servos.back() ? " and " : ", ") + std::to_string(servo + 1);
     return servos.size() == 1 ? "servo " + text + " stands, so it was" : "servos " + text + " stand, so they were";
 }
 
@@ -125,6 +126,8 @@ void ServoEngine::Data::drive() {
     const ControllerState& state = controller->state();
     if (!waitOutSilence()) return;
     if (armed() && !ready()) guard.disarm();
+    // The user's word about this very board was kept with the profile.
+    if (state.phase == ControllerPhase::unidentified && !foreign && !profile.identity.empty()) controller->confirm();
     watch.look(state, now);
     readPositions();
     // Nothing is added to a queue that does not move, and no time passes for the guard: what comes after starts from

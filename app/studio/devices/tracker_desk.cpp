@@ -257,6 +257,7 @@ void TrackerDesk::close(const QString& address) {
     });
 }
 
+std::shared_ptr<const PoseBoard> TrackerDesk::poses() const noexcept { return data_->board; }
 bool TrackerDesk::opening() const noexcept { return !data_->opening.empty(); }
 const std::vector<OpenTracker>& TrackerDesk::trackers() const noexcept { return data_->trackers; }
 

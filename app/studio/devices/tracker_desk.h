@@ -59,6 +59,9 @@ public:
     /// Of all trackers, as of now: newer than the last `changed`. What was never seen is left out.
     [[nodiscard]] std::vector<SeenBody> bodies() const;
 
+    /// All that the trackers see, as long as this lives and after.
+    [[nodiscard]] std::shared_ptr<const PoseBoard> poses() const noexcept;
+
     /// None: the body is seen, and does nothing.
     [[nodiscard]] std::optional<PoseRole> role(const std::string& body) const;
     /// Remembered by the body's name.
