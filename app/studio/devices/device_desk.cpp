@@ -65,6 +65,7 @@ struct DeviceDesk::Data {
     bool force(const DeviceProfile& next);
     void keep();
     void makeLink();
+    void traceLink();
     void retire();
     void hear(); ///< in the link's thread
     void take();
@@ -85,6 +86,9 @@ struct DeviceDesk::Data {
     std::shared_ptr<const Rig> rig;
     DeviceProfile profile;
     ServoFeed feed;
+    int tap = 0;
+    std::function<void(const ServoTraceRow&)> trace;
+    std::shared_ptr<std::atomic<bool>> tracing; ///< false for a link that is no longer the present one
     std::unique_ptr<ServoLink> link;
     std::vector<std::future<void>> leaving; ///< links that go to rest; waiting for them would block the window
     LinkStatus status;
@@ -118,7 +122,7 @@ void DeviceDesk::Data::listen() {
         if (parts & StatePart::rig) takeRig();
     });
     connect(&loop, &StudioLoop::stoppedChanged, &desk, [this] { heedStop(); });
-    loop.setTap([this](const MatchFrame& frame) { feed.follow(frame.estimatedStrokes); });
+    tap = loop.addTap([this](const MatchFrame& frame) { feed.follow(frame.estimatedStrokes); });
     takeRig();
 }
 
@@ -178,7 +182,17 @@ void DeviceDesk::Data::makeLink() {
     retire();
     link = std::move(made);
     link->setSlow(slow);
+    traceLink();
     feed.attach(link.get(), profile.servos.size());
+}
+
+void DeviceDesk::Data::traceLink() {
+    if (!link) return;
+    if (!trace) return link->setTrace({}); // once it has handed over what it still holds
+    tracing = std::make_shared<std::atomic<bool>>(true);
+    link->setTrace([on = tracing, sink = trace](const ServoTraceRow& row) {
+        if (*on) sink(row);
+    });
 }
 
 void DeviceDesk::Data::retire() {
@@ -187,6 +201,8 @@ void DeviceDesk::Data::retire() {
                   [](const auto& one) { return one.wait_for(std::chrono::seconds(0)) == std::future_status::ready; });
     if (!link) return;
     takeEvents();
+    if (tracing) *tracing = false; // the next one's rows may not come between
+    link->setTrace({});
     leaving.push_back(
         std::async(std::launch::async, [old = std::shared_ptr<ServoLink>(std::move(link))]() mutable { old.reset(); }));
     status = {};
@@ -283,7 +299,7 @@ DeviceDesk::DeviceDesk(Settings& settings, StudioDocument& document, StudioLoop&
 }
 
 DeviceDesk::~DeviceDesk() {
-    data_->loop.setTap({});
+    data_->loop.removeTap(data_->tap);
     data_->search.reset();
     data_->looker = {}; // waits
     data_->feed.attach(nullptr, 0);
@@ -506,6 +522,11 @@ QString DeviceDesk::liveName() const {
     default:
         return {};
     }
+}
+
+void DeviceDesk::setTrace(std::function<void(const ServoTraceRow&)> sink) {
+    data_->trace = std::move(sink);
+    data_->traceLink();
 }
 
 void DeviceDesk::note(const QString& text) {
