@@ -315,6 +315,8 @@ void RecordDesk::start(const fs::path& file) {
     if (data_->phase != Phase::idle) return;
     data_->notices.dismissAll(kPlace);
     data_->file = file;
+    data_->lasted = 0.0;
+    data_->bytes = 0;
     data_->settings.setValue(kFolderKey, QString::fromStdString(file.parent_path().string()));
     if (data_->room(file) < kLeastRoom)
         return data_->fail(DeviceError(file.string(),

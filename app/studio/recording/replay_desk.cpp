@@ -89,9 +89,10 @@ struct ReplayDesk::Data {
 void ReplayDesk::Data::listen() {
     moves.setInterval(kMoveMilliseconds);
     connect(&moves, &QTimer::timeout, &replay, [this] {
-        if (!shown()) return;
-        if (std::exchange(position, source->position()) != position) emit replay.moved();
-        if (std::exchange(playing, source->playing()) != playing) emit replay.changed(); // it has come to its end
+        const double at = source->position();
+        const bool plays = source->playing();
+        if (std::exchange(position, at) != at) emit replay.moved();
+        if (std::exchange(playing, plays) != plays) emit replay.changed(); // it has come to its end
     });
     connect(&document, &StudioDocument::changed, &replay, [this](StateParts parts) {
         if (parts & StatePart::rig) heedRig();
@@ -192,6 +193,7 @@ void ReplayDesk::open(const fs::path& file) {
 
 void ReplayDesk::close() {
     data_->hide();
+    data_->notices.dismissAll(kPlace);
     letGo(std::exchange(data_->session, {}).recording);
 }
 
