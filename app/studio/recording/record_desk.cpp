@@ -107,7 +107,9 @@ private:
     bool complete_ = false;
 };
 
+/// One that was begun before the recording is part of what was before.
 void addFrame(Gate& gate, const MatchFrame& frame) {
+    if (frame.time < gate.begin()) return;
     gate.add([&](Microseconds begin) { return rowOf(frame, begin); });
 }
 
@@ -241,7 +243,7 @@ void RecordDesk::Data::look() {
     if (room(file) < kLeastRoom) {
         end(false);
         return fail(DeviceError(file.string(),
-                                "recording stopped: less than " + bytesText(kLeastRoom).toStdString() +
+                                "recording stopped: less than " + std::to_string(kLeastRoom / 1'000'000) + " MB" +
                                     " are left on its disk; what was recorded is kept",
                                 "free some space, or record to another disk"));
     }
@@ -320,7 +322,7 @@ void RecordDesk::start(const fs::path& file) {
     data_->settings.setValue(kFolderKey, QString::fromStdString(file.parent_path().string()));
     if (data_->room(file) < kLeastRoom)
         return data_->fail(DeviceError(file.string(),
-                                       "less than " + bytesText(kLeastRoom).toStdString() + " are left on its disk",
+                                       "less than " + std::to_string(kLeastRoom / 1'000'000) + " MB" + " are left on its disk",
                                        "free some space, or record to another disk"));
     data_->phase = Phase::starting;
     const std::map<std::string, std::string> facts{
