@@ -38,12 +38,13 @@ enum class ControllerPhase {
 struct ControllerState {
     ControllerPhase phase = ControllerPhase::handshake;
     ControllerTraits traits;
-    std::string firmware; ///< "LumorphTablet 1.0", empty while unknown
+    std::string firmware; ///< "LumorphTablet 1.1", empty while unknown
     std::optional<double> volts;
     std::vector<std::optional<double>> readPulses; ///< by servo of the profile, microseconds; where it can be read
     std::uint64_t reboots = 0;                     ///< noticed in this session: handshake was begun anew
     std::uint64_t errors = 0;                      ///< broken frames, errors the device told
     bool answering = true;                         ///< false: it has been silent for a second
+    bool detaching = false; ///< servos are told again and again to let go: nobody knows yet whether they have
     std::optional<LinkTrouble> trouble;
 };
 

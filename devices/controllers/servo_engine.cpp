@@ -12,7 +12,7 @@ namespace {
 constexpr Microseconds kBusyPause{5'000};
 constexpr Microseconds kIdlePause{50'000};
 constexpr Microseconds kStaysBusy{200'000};   // after the last motion: the rate cap may hold its end back
-constexpr Microseconds kCloseAtLast{350'000}; // after the time to close, though not all was sent
+constexpr Microseconds kCloseAtLast{750'000}; // after the time to close: not all was sent, or servos may not be limp
 constexpr Microseconds kTrustedRest{2'000'000};
 constexpr Microseconds kSilencePatience{4'000'000};
 constexpr Microseconds kStallTold{200'000};
@@ -25,7 +25,8 @@ constexpr Microseconds kLongestGap{86'400'000'000};
 
 std::string placesOf(const std::vector<std::size_t>& servos) {
     std::string text;
-    for (const std::size_t servo : servos) text += (text.empty() ? "" : ", ") + std::to_string(servo + 1);
+    for (const std::size_t servo : servos)
+        text += (text.empty() ? "" : servo == servos.back() ? " and " : ", ") + std::to_string(servo + 1);
     return servos.size() == 1 ? "servo " + text + " stands, so it was" : "servos " + text + " stand, so they were";
 }
 
@@ -125,6 +126,8 @@ void ServoEngine::Data::drive() {
     const ControllerState& state = controller->state();
     if (!waitOutSilence()) return;
     if (armed() && !ready()) guard.disarm();
+    // The user's word about this very board was kept with the profile.
+    if (state.phase == ControllerPhase::unidentified && !foreign && !profile.identity.empty()) controller->confirm();
     watch.look(state, now);
     readPositions();
     // Nothing is added to a queue that does not move, and no time passes for the guard: what comes after starts from
@@ -169,7 +172,8 @@ void ServoEngine::Data::finishRest() {
 
 void ServoEngine::Data::finishClosing() {
     if (!closeAfter || passed < *closeAfter) return;
-    if (open && unsent > 0 && passed < *closeAfter + kCloseAtLast) return;
+    const bool waits = open && (unsent > 0 || controller->state().detaching);
+    if (waits && passed < *closeAfter + kCloseAtLast) return;
     closeAfter.reset();
     wanted = open = everOpen = false;
     linkTrouble.reset();
@@ -223,7 +227,8 @@ Microseconds ServoEngine::commandPeriod() const {
 Microseconds ServoEngine::pause() const {
     const Data& data = *data_;
     const bool waits = data.closeAfter || data.restUntil || data.stalledSince;
-    const bool asks = data.open && data.controller->state().phase == ControllerPhase::handshake;
+    const ControllerState& state = data.controller->state();
+    const bool asks = data.open && (state.phase == ControllerPhase::handshake || state.detaching);
     const bool works = data.armed() && (moves() || data.passed < data.busyUntil);
     return waits || asks || works ? kBusyPause : kIdlePause;
 }
