@@ -21,21 +21,35 @@ Limits limitsOf(const ServoSetup& servo, const PulseScale& scale) {
     return {static_cast<long>(std::ceil(least / scale.step)), static_cast<long>(std::floor(greatest / scale.step))};
 }
 
-} // namespace
-
-PulsePlan::PulsePlan(std::vector<ServoSetup> servos, const PulseScale& scale)
-    : servos_(std::move(servos)), scale_(scale), states_(servos_.size()) {
-    const double perSecond = std::isfinite(scale.perSecond) ? std::clamp(scale.perSecond, 0.1, 1000.0) : 50.0;
-    period_ = Microseconds(std::lround(1e6 / perSecond));
-    for (std::size_t i = 0; i < servos_.size(); ++i) {
-        const ServoSetup& servo = servos_[i];
+void checkServos(const std::vector<ServoSetup>& servos, const PulseScale& scale) {
+    for (std::size_t i = 0; i < servos.size(); ++i) {
+        const ServoSetup& servo = servos[i];
         const bool sound = servo.pulseMin >= 0.0 && servo.pulseMin <= servo.pulseMax && servo.pulseMax <= 1e6;
-        if (!sound || limitsOf(servo, scale_).least > limitsOf(servo, scale_).greatest)
+        if (!sound || limitsOf(servo, scale).least > limitsOf(servo, scale).greatest)
             throw InvalidInput("servo " + std::to_string(i + 1),
                                "its controller can send no pulse from " + std::to_string(servo.pulseMin) + " to " +
                                    std::to_string(servo.pulseMax) + " us",
                                "widen its range, or choose one that this controller knows");
     }
+}
+
+} // namespace
+
+PulsePlan::PulsePlan(std::vector<ServoSetup> servos, const PulseScale& scale)
+    : servos_(std::move(servos)), scale_(scale), states_(servos_.size()) {
+    setRate(scale.perSecond);
+    checkServos(servos_, scale_);
+}
+
+void PulsePlan::setRate(double perSecond) {
+    perSecond = std::isfinite(perSecond) ? std::clamp(perSecond, 0.1, 1000.0) : 50.0;
+    period_ = Microseconds(std::lround(1e6 / perSecond));
+}
+
+void PulsePlan::setServos(std::vector<ServoSetup> servos, double perSecond) {
+    checkServos(servos, scale_);
+    servos_ = std::move(servos);
+    setRate(perSecond);
 }
 
 long PulsePlan::valueOf(std::size_t servo, double microseconds) const {
@@ -94,6 +108,14 @@ void PulsePlan::detachAgain(std::size_t servo) {
     if (state.told != Told::limp || state.detachments > 0) return;
     state.detachments = 1;
     state.nextDetachment = Microseconds::min();
+}
+
+void PulsePlan::detachAgain() {
+    for (State& state : states_) {
+        if (state.told != Told::limp) continue;
+        state.detachments = std::max(state.detachments, 1);
+        state.nextDetachment = std::min(state.nextDetachment, now_);
+    }
 }
 
 std::vector<std::size_t> PulsePlan::takeDetachments() {

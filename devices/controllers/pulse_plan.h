@@ -35,6 +35,9 @@ public:
     /// Throws InvalidInput that names a servo between whose limits lies no value.
     PulsePlan(std::vector<ServoSetup> servos, const PulseScale& scale);
 
+    /// Other limits of the same servos, and another rate; what was told stays told. Throws as the constructor.
+    void setServos(std::vector<ServoSetup> servos, double perSecond);
+
     /// Nobody knows any more what the board does (it was opened, it started anew). A servo that was attached stays as
     /// it is until it was let go: what stood in the way of a hand does not come back by itself.
     void restart();
@@ -45,6 +48,8 @@ public:
     void knownLimp(std::size_t servo);
     /// It must be told again, once.
     void detachAgain(std::size_t servo);
+    /// All limp ones must be told again, now.
+    void detachAgain();
 
     /// Servos to detach now, before anything else.
     [[nodiscard]] std::vector<std::size_t> takeDetachments();
@@ -74,6 +79,8 @@ private:
         Microseconds since{0};
     };
     void wantOne(std::size_t servo, const GuardedPulse& pulse, bool ready);
+
+    void setRate(double perSecond);
 
     std::vector<ServoSetup> servos_;
     PulseScale scale_;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "devices/controllers/controller_base.h"
 #include "devices/controllers/servo_engine_data.h"
 #include "devices/transport/address.h"
 
@@ -16,17 +17,22 @@ constexpr Microseconds kCloseAtLast{350'000}; // after the time to close, though
 constexpr Microseconds kTrustedRest{2'000'000};
 constexpr Microseconds kSilencePatience{4'000'000};
 constexpr Microseconds kStallTold{200'000};
-constexpr std::uint64_t kMostUnsent = 128; // bytes
+constexpr double kMostUnsentSeconds = 0.025; // of a serial link: what a STOP may find before it
+constexpr double kMostUnsent = 128.0;        // bytes, whatever the link
+constexpr double kLeastUnsent = 24.0;
 
 // Times of inputs may be anything; differences of these are numbers.
 constexpr Microseconds kFarthest{std::int64_t{1} << 60};
 constexpr Microseconds kBegin{1'000'000'000}; // of the engine's own time: what has never been is long ago
 constexpr Microseconds kLongestGap{86'400'000'000};
 
+/// "where servos 1, 2 and 4 stand, so they were", of one or more.
 std::string placesOf(const std::vector<std::size_t>& servos) {
-    std::string text;
-    for (const std::size_t servo : servos) text += (text.empty() ? "" : ", ") + std::to_string(servo + 1);
-    return servos.size() == 1 ? "servo " + text + " stands, so it was" : "servos " + text + " stand, so they were";
+    const auto number = [](std::size_t servo) { return std::to_string(servo + 1); };
+    if (servos.size() == 1) return "servo " + number(servos.front()) + " stands, so it was";
+    std::string text = number(servos.front());
+    for (std::size_t i = 1; i + 1 < servos.size(); ++i) text += ", " + number(servos[i]);
+    return "servos " + text + " and " + number(servos.back()) + " stand, so they were";
 }
 
 } // namespace
@@ -41,8 +47,11 @@ ServoEngine::Data::Data(const DeviceProfile& its)
 
 void ServoEngine::Data::make() {
     made = profile;
-    controller = makeController(profile, parseDeviceAddress(profile.address));
+    const DeviceAddress address = parseDeviceAddress(profile.address);
+    controller = makeController(profile, address);
     reboots = controller->state().reboots;
+    const double taken = kMostUnsentSeconds * baudOf(address) / 10.0;
+    mostUnsent = static_cast<std::uint64_t>(std::clamp(taken, kLeastUnsent, kMostUnsent));
 }
 
 void ServoEngine::Data::see(Microseconds time) {
@@ -74,7 +83,7 @@ void ServoEngine::Data::readPositions() {
 }
 
 bool ServoEngine::Data::stalled() {
-    if (unsent <= kMostUnsent) {
+    if (unsent <= mostUnsent) {
         stalledSince.reset();
         if (std::exchange(stallTold, false)) tell(Kind::information, "The link takes commands again.");
         return false;
@@ -148,7 +157,7 @@ void ServoEngine::Data::flush(bool urgent) {
     if (messages.empty()) return;
     for (std::vector<std::uint8_t>& message : messages) {
         bytesSent += message.size();
-        output.emplace_back(servo_output::Write{std::move(message), false, urgent});
+        output.emplace_back(servo_output::Write{std::move(message), false, std::exchange(urgent, false)});
     }
     const double step = controller->state().traits.pulseStep;
     std::vector<long> steps;
