@@ -146,6 +146,10 @@ void ServoEngine::Data::drive() {
 void ServoEngine::Data::send() {
     const GuardedPulses step = guard.step(now);
     pulses.assign(step.servos().begin(), step.servos().end());
+    if (made != profile && guard.withinLimits()) {
+        made = profile;
+        controller->setLimits(made);
+    }
     controller->send(step, now);
     if (guard.settled() && guard.phase() != ServoGuard::Phase::starting) return;
     movedAt = passed;

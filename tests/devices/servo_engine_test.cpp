@@ -37,6 +37,7 @@ struct HeardServo {
     double at = 0.0;                  ///< counted time of the pulse
     std::optional<double> velocity{}; ///< mean of the last interval, microseconds a second
     double interval = 0.0;
+    double rounding = 0.0; ///< of that interval's ends
     // Where a board moves by itself.
     double from = 0.0;
     Microseconds begin{0}; ///< by the engine's clock
@@ -251,23 +252,33 @@ private:
         const double limit = servo.greatest(&ServoSetup::maxVelocity);
         const double seconds = counted_ - servo.at;
         const double moved = *order.pulse - servo.pulse;
-        // Two pulses, each rounded to the board's steps.
-        ASSERT_LE(std::abs(moved), limit * seconds + case_.step + 1e-6);
+        const double rounding = errorOf(servo, servo.pulse) + errorOf(servo, *order.pulse);
+        ASSERT_LE(std::abs(moved), limit * seconds + rounding + 1e-6);
         if (seconds > 0.0) {
             const double velocity = moved / seconds;
             if (servo.velocity) {
                 const double change = servo.greatest(&ServoSetup::maxAcceleration) * (seconds + servo.interval);
                 ASSERT_LE(std::abs(velocity - *servo.velocity),
-                          change + case_.step / seconds + case_.step / servo.interval + 1e-6);
+                          change + rounding / seconds + servo.rounding / servo.interval + 1e-6)
+                    << *servo.velocity << " us/s for " << servo.interval << " s, then " << velocity << " for "
+                    << seconds << " s, to " << *order.pulse << " of channel " << order.channel;
             }
             if (servo.setups.size() == 1) nearest = std::max(nearest, (std::abs(moved) - case_.step) / seconds / limit);
             servo.velocity = velocity;
             servo.interval = seconds;
+            servo.rounding = rounding;
         }
         servo.from = servo.place(bench_.now());
         if (order.seconds > 0.0) {
             ASSERT_LE(std::abs(*order.pulse - servo.from), limit * order.seconds + 1e-6);
         }
+    }
+    /// A pulse is rounded to the board's steps; at the ends of its range inwards.
+    [[nodiscard]] double errorOf(const HeardServo& servo, double pulse) const {
+        const bool atEnd = std::ranges::any_of(servo.setups, [&](const ServoSetup& setup) {
+            return std::min(std::abs(pulse - setup.pulseMin), std::abs(pulse - setup.pulseMax)) < case_.step;
+        });
+        return atEnd ? case_.step : 0.5 * case_.step;
     }
     /// What the board was told is what it does: its own limits, told to it, do not stand in the way.
     void compareWithBoard() {

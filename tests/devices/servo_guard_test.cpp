@@ -164,6 +164,19 @@ TEST(ServoGuard, StaysStoppedUntilItIsArmed) {
     EXPECT_NEAR(bench.pulses[0].microseconds, there, 1e-9);
 }
 
+TEST(ServoGuard, LetsGoOfAServoBeforeItStartsItAnew) {
+    Bench bench(oneServo());
+    bench.armAt({0.2});
+    want(bench.guard, {1.0});
+    bench.run(0.3);
+    bench.guard.disarm();
+    bench.guard.arm(false); // before anybody was told
+    bench.step();
+    EXPECT_FALSE(bench.pulses[0].attached) << "else it would stop dead, out of full speed";
+    bench.step();
+    EXPECT_TRUE(bench.pulses[0].attached);
+}
+
 TEST(ServoGuard, WigglesOneServoSlowlyAroundWhereItIs) {
     Bench bench(profileOf({{.channel = 0}, {.channel = 1}}));
     bench.armAt({0.5, 0.5});
