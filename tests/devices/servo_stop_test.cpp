@@ -70,8 +70,13 @@ public:
         link_->connect();
         const auto phase = [this] { return link_->status().phase; };
         if (!waitUntil([&] { return phase() == LinkPhase::disarmed || phase() == LinkPhase::stopped; })) return false;
-        link_->arm(true);
-        if (!waitUntil([&] { return phase() == LinkPhase::live; })) return false;
+        // Where this thread's machine is so busy that the board seems silent for a moment, it is asked again.
+        bool live = false;
+        for (int i = 0; i < 5 && !live; ++i) {
+            link_->arm(true);
+            live = waitUntil([&] { return phase() == LinkPhase::live; }, 3s);
+        }
+        if (!live) return false;
         move();
         std::this_thread::sleep_for(30ms);
         return true;
