@@ -38,12 +38,13 @@ enum class ControllerPhase {
 struct ControllerState {
     ControllerPhase phase = ControllerPhase::handshake;
     ControllerTraits traits;
-    std::string firmware; ///< "LumorphTablet 1.0", empty while unknown
+    std::string firmware; ///< "LumorphTablet 1.1", empty while unknown
     std::optional<double> volts;
     std::vector<std::optional<double>> readPulses; ///< by servo of the profile, microseconds; where it can be read
     std::uint64_t reboots = 0;                     ///< noticed in this session: handshake was begun anew
     std::uint64_t errors = 0;                      ///< broken frames, errors the device told
     bool answering = true;                         ///< false: it has been silent for a second
+    bool detaching = false; ///< servos are told again and again to let go: nobody knows yet whether they have
     std::optional<LinkTrouble> trouble;
 };
 
@@ -57,8 +58,8 @@ public:
     virtual void received(std::span<const std::uint8_t> bytes, Microseconds now) = 0;
     /// Time passes: handshakes are repeated, voltages asked for, heartbeats sent.
     virtual void tick(Microseconds now) = 0;
-    /// Other limits, velocities or rate of the same servos on the same channels; all stay where they are. Throws
-    /// InvalidInput for limits between which it can send no pulse.
+    /// Other limits, velocities or rate of the same servos on the same channels; all stay where they are, and a servo
+    /// between whose limits it can make no pulse stays there.
     virtual void setLimits(const DeviceProfile& profile) = 0;
     /// The user says that it is what it seems to be.
     virtual void confirm() = 0;

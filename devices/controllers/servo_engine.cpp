@@ -13,7 +13,7 @@ namespace {
 constexpr Microseconds kBusyPause{5'000};
 constexpr Microseconds kIdlePause{50'000};
 constexpr Microseconds kStaysBusy{200'000};   // after the last motion: the rate cap may hold its end back
-constexpr Microseconds kCloseAtLast{350'000}; // after the time to close, though not all was sent
+constexpr Microseconds kCloseAtLast{750'000}; // after the time to close: not all was sent, or servos may not be limp
 constexpr Microseconds kTrustedRest{2'000'000};
 constexpr Microseconds kSilencePatience{4'000'000};
 constexpr Microseconds kStallTold{200'000};
@@ -28,11 +28,10 @@ constexpr Microseconds kLongestGap{86'400'000'000};
 
 /// "where servos 1, 2 and 4 stand, so they were", of one or more.
 std::string placesOf(const std::vector<std::size_t>& servos) {
-    const auto number = [](std::size_t servo) { return std::to_string(servo + 1); };
-    if (servos.size() == 1) return "servo " + number(servos.front()) + " stands, so it was";
-    std::string text = number(servos.front());
-    for (std::size_t i = 1; i + 1 < servos.size(); ++i) text += ", " + number(servos[i]);
-    return "servos " + text + " and " + number(servos.back()) + " stand, so they were";
+    std::string text;
+    for (const std::size_t servo : servos)
+        text += (text.empty() ? "" : servo == servos.back() ? " and " : ", ") + std::to_string(servo + 1);
+    return servos.size() == 1 ? "servo " + text + " stands, so it was" : "servos " + text + " stand, so they were";
 }
 
 } // namespace
@@ -134,6 +133,8 @@ void ServoEngine::Data::drive() {
     const ControllerState& state = controller->state();
     if (!waitOutSilence()) return;
     if (armed() && !ready()) guard.disarm();
+    // The user's word about this very board was kept with the profile.
+    if (state.phase == ControllerPhase::unidentified && !foreign && !profile.identity.empty()) controller->confirm();
     watch.look(state, now);
     readPositions();
     // Nothing is added to a queue that does not move, and no time passes for the guard: what comes after starts from
@@ -182,7 +183,8 @@ void ServoEngine::Data::finishRest() {
 
 void ServoEngine::Data::finishClosing() {
     if (!closeAfter || passed < *closeAfter) return;
-    if (open && unsent > 0 && passed < *closeAfter + kCloseAtLast) return;
+    const bool waits = open && (unsent > 0 || controller->state().detaching);
+    if (waits && passed < *closeAfter + kCloseAtLast) return;
     closeAfter.reset();
     wanted = open = everOpen = false;
     linkTrouble.reset();
@@ -236,7 +238,8 @@ Microseconds ServoEngine::commandPeriod() const {
 Microseconds ServoEngine::pause() const {
     const Data& data = *data_;
     const bool waits = data.closeAfter || data.restUntil || data.stalledSince;
-    const bool asks = data.open && data.controller->state().phase == ControllerPhase::handshake;
+    const ControllerState& state = data.controller->state();
+    const bool asks = data.open && (state.phase == ControllerPhase::handshake || state.detaching);
     const bool works = data.armed() && (moves() || data.passed < data.busyUntil);
     return waits || asks || works ? kBusyPause : kIdlePause;
 }

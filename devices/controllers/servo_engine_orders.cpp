@@ -119,7 +119,9 @@ void ServoEngine::Data::take(const servo_input::Quit&) {
     connected = false;
     next.reset();
     if (!profile.restOnExit || !ready() || guard.phase() != ServoGuard::Phase::live) return close();
-    (void)guard.want(std::vector<double>(profile.servos.size(), 0.0));
+    std::vector<double> rest;
+    for (const ServoSetup& servo : profile.servos) rest.push_back(servo.exitStroke);
+    (void)guard.want(rest);
     restUntil = passed + kRestAtMost;
 }
 

@@ -110,6 +110,7 @@ public:
 private:
     void see(std::span<const std::uint8_t> bytes) {
         const std::scoped_lock lock(mutex_);
+        if (!bytes.empty() && bytes[0] == 0xF7) bytes = bytes.subspan(1); // the end of whatever was before
         if (first_.empty()) first_.assign(bytes.begin(), bytes.end());
         if (bytes.size() == 3 && bytes[0] == 0xF4 && bytes[2] == 1 && bytes[1] >= 2 && bytes[1] <= 4)
             told_[bytes[1] - 2U] = steady();

@@ -22,7 +22,7 @@ class WireEar {
 public:
     explicit WireEar(ControllerKind kind) : kind_(kind) {}
 
-    std::vector<WireOrder> hear(const std::vector<std::uint8_t>& message) {
+    std::vector<WireOrder> hear(std::vector<std::uint8_t> message) {
         orders_.clear();
         switch (kind_) {
         case ControllerKind::firmata:
@@ -41,7 +41,13 @@ public:
 private:
     using Bytes = std::vector<std::uint8_t>;
 
-    void hearFirmata(const Bytes& m) {
+    void hearFirmata(Bytes m) {
+        if (!m.empty() && m[0] == 0xF7) m.erase(m.begin()); // the end of whatever was before
+        if (m.size() == 1 && m[0] == 0xFF) {                // reset
+            for (const int pin : driven_) orders_.push_back({pin, std::nullopt});
+            driven_.clear();
+            written_.clear();
+        }
         if (m.size() == 3 && m[0] >= 0xE0 && m[0] <= 0xEF) write(m[0] & 0x0F, m[1] | m[2] << 7);
         if (m.size() >= 6 && m[0] == 0xF0 && m[1] == 0x6F) {
             int value = 0;
