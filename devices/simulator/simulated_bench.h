@@ -54,6 +54,8 @@ public:
     virtual void take(std::span<const std::uint8_t> bytes, Microseconds now) = 0; ///< bytes from the studio
     [[nodiscard]] virtual std::vector<std::uint8_t> give(Microseconds now) = 0;   ///< bytes for the studio that are due
     [[nodiscard]] virtual bool isHid() const = 0; ///< `give` gives one 64-byte report at a time
+    /// A board that is a USB device itself leaves the bus while it starts anew; behind a serial port the port stays.
+    [[nodiscard]] virtual bool isOnTheBus(Microseconds now) = 0;
 };
 
 /// All simulated boards. Outlives every link to them.

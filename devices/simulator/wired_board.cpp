@@ -34,6 +34,7 @@ public:
     Machine& operator=(const Machine&) = delete;
 
     [[nodiscard]] const BoardFaults& faults() const { return faults_; }
+    [[nodiscard]] bool isOnTheBus() const { return program_ || !kind_.isHid; }
     [[nodiscard]] const std::vector<SimulatedServo>& servos() const { return hardware_.servos.servos(); }
 
     void advance(Microseconds now) {
@@ -181,6 +182,12 @@ public:
         const std::scoped_lock lock(mutex_);
         machine_.advance(now);
         machine_.take(bytes);
+    }
+
+    [[nodiscard]] bool isOnTheBus(Microseconds now) override {
+        const std::scoped_lock lock(mutex_);
+        machine_.advance(now);
+        return machine_.isOnTheBus();
     }
 
     [[nodiscard]] std::vector<std::uint8_t> give(Microseconds now) override {

@@ -65,6 +65,7 @@ public:
     [[nodiscard]] std::string product() const override { return board_->product(); }
 
 private:
+    [[nodiscard]] std::optional<LinkTrouble> whyGone(const BoardFaults& faults) const;
     void step();
     void carryOut(Microseconds now);
     void carryIn(Microseconds now);
@@ -82,7 +83,10 @@ private:
 
 void SimulatedTransport::open() {
     if (open_) return;
-    if (const std::optional<LinkTrouble> trouble = simulatedTrouble(board_->name(), board_->faults())) {
+    const BoardFaults faults = board_->faults();
+    std::optional<LinkTrouble> trouble = simulatedTrouble(board_->name(), faults);
+    if (!trouble) trouble = whyGone(faults);
+    if (trouble) {
         events_.closed(*trouble);
         return;
     }
@@ -118,11 +122,18 @@ std::size_t SimulatedTransport::unsent() const {
     return sum;
 }
 
+std::optional<LinkTrouble> SimulatedTransport::whyGone(const BoardFaults& faults) const {
+    if (faults.unplugged) return simulatedTrouble(board_->name(), faults);
+    if (board_->isOnTheBus(now_())) return std::nullopt;
+    return LinkTrouble{"the simulated device '" + board_->name() + "' has left the bus: it starts anew",
+                       "check its battery and its supply; it is connected again when it is back"};
+}
+
 void SimulatedTransport::step() {
     const BoardFaults faults = board_->faults();
-    if (faults.unplugged) {
+    if (const std::optional<LinkTrouble> trouble = whyGone(faults)) {
         close();
-        events_.closed(*simulatedTrouble(board_->name(), faults));
+        events_.closed(*trouble);
         return;
     }
     if (faults.stalled) return;
