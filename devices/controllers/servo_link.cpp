@@ -26,8 +26,8 @@ void checkAll(const DeviceProfile& profile) {
 }
 
 /// STOP takes back what was asked before it and would move something.
-bool movesSomething(const LinkRequest& request) {
-    return std::holds_alternative<link_request::Arm>(request) || std::holds_alternative<link_request::Wiggle>(request);
+bool movesSomething(const ServoInput& request) {
+    return std::holds_alternative<servo_input::Arm>(request) || std::holds_alternative<servo_input::Wiggle>(request);
 }
 
 } // namespace
@@ -134,7 +134,7 @@ struct ServoLink::Data {
         QMetaObject::invokeMethod(
             &here, [this] { work(); }, Qt::QueuedConnection);
     }
-    void request(LinkRequest request) {
+    void request(ServoInput request) {
         order([&](LinkOrders& all) { all.requests.push_back(std::move(request)); });
     }
 };
@@ -155,25 +155,25 @@ ServoLink::~ServoLink() {
     data_->thread.wait();
 }
 
-void ServoLink::connect() { data_->request(link_request::Connect{}); }
-void ServoLink::disconnect() { data_->request(link_request::Disconnect{}); }
-void ServoLink::confirmIdentity() { data_->request(link_request::Confirm{}); }
+void ServoLink::connect() { data_->request(servo_input::Connect{}); }
+void ServoLink::disconnect() { data_->request(servo_input::Disconnect{}); }
+void ServoLink::confirmIdentity() { data_->request(servo_input::Confirm{}); }
 
 void ServoLink::setProfile(DeviceProfile profile) {
     checkAll(profile);
     data_->order([&](LinkOrders& all) {
         data_->profile = profile;
         // A slider gives many in a row, and only the last counts.
-        if (!all.requests.empty() && std::holds_alternative<link_request::Profile>(all.requests.back()))
+        if (!all.requests.empty() && std::holds_alternative<servo_input::Profile>(all.requests.back()))
             all.requests.pop_back();
-        all.requests.emplace_back(link_request::Profile{std::move(profile)});
+        all.requests.emplace_back(servo_input::Profile{std::move(profile)});
     });
 }
 
 DeviceProfile ServoLink::profile() const { return data_->profileNow(); }
 
-void ServoLink::arm(bool jumpAllowed) { data_->request(link_request::Arm{jumpAllowed}); }
-void ServoLink::disarm() { data_->request(link_request::Disarm{}); }
+void ServoLink::arm(bool jumpAllowed) { data_->request(servo_input::Arm{jumpAllowed}); }
+void ServoLink::disarm() { data_->request(servo_input::Disarm{}); }
 
 void ServoLink::stop() {
     data_->order([](LinkOrders& all) {
@@ -191,8 +191,12 @@ void ServoLink::command(std::span<const double> strokes) {
     });
 }
 
-void ServoLink::wiggle(std::size_t servo) { data_->request(link_request::Wiggle{servo}); }
-void ServoLink::setSlow(bool slow) { data_->request(link_request::Slow{slow}); }
+void ServoLink::wiggle(std::size_t servo) { data_->request(servo_input::Wiggle{servo}); }
+void ServoLink::setSlow(bool slow) { data_->request(servo_input::Slow{slow}); }
+
+void ServoLink::setTrace(std::function<void(const ServoTraceRow&)> sink) {
+    data_->order([&](LinkOrders& all) { all.sinks.push_back(std::move(sink)); });
+}
 
 LinkStatus ServoLink::status() const {
     const std::scoped_lock lock(data_->mutex);

@@ -17,6 +17,7 @@ struct TrackerHub::Data {
     };
     std::shared_ptr<PoseBoard> board;
     std::shared_ptr<const Clock> clock;
+    TrackerOpener opener;
 
     mutable std::mutex mutex; ///< never held while a tracker is opened or ended: its thread may be in take()
     RoleMap roles;
@@ -40,10 +41,11 @@ struct TrackerHub::Data {
     }
 };
 
-TrackerHub::TrackerHub(std::shared_ptr<PoseBoard> board, std::shared_ptr<const Clock> clock)
+TrackerHub::TrackerHub(std::shared_ptr<PoseBoard> board, std::shared_ptr<const Clock> clock, TrackerOpener opener)
     : data_(std::make_unique<Data>()) {
     data_->board = std::move(board);
     data_->clock = std::move(clock);
+    data_->opener = std::move(opener);
 }
 
 TrackerHub::~TrackerHub() {
@@ -68,7 +70,7 @@ void TrackerHub::open(const std::string& uri, bool openToNetwork) {
         options.clock = data_->clock;
         options.openToNetwork = openToNetwork;
         options.onFrame = [this, uri](const TrackerFrame& frame) { take(uri, frame); };
-        std::shared_ptr<Tracker> tracker = openTracker(uri, std::move(options));
+        std::shared_ptr<Tracker> tracker = data_->opener(uri, std::move(options));
         const std::scoped_lock lock(data_->mutex);
         data_->trackers[uri] = std::move(tracker);
     } catch (...) {

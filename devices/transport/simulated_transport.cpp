@@ -65,7 +65,7 @@ public:
     [[nodiscard]] std::string product() const override { return board_->product(); }
 
 private:
-    [[nodiscard]] std::optional<LinkTrouble> whyGone(const BoardFaults& faults) const;
+    [[nodiscard]] std::optional<LinkTrouble> away() const;
     void step();
     void carryOut(Microseconds now);
     void carryIn(Microseconds now);
@@ -83,9 +83,8 @@ private:
 
 void SimulatedTransport::open() {
     if (open_) return;
-    const BoardFaults faults = board_->faults();
-    std::optional<LinkTrouble> trouble = simulatedTrouble(board_->name(), faults);
-    if (!trouble) trouble = whyGone(faults);
+    std::optional<LinkTrouble> trouble = simulatedTrouble(board_->name(), board_->faults());
+    if (!trouble) trouble = away();
     if (trouble) {
         events_.closed(*trouble);
         return;
@@ -94,6 +93,14 @@ void SimulatedTransport::open() {
     board_->plugged(now_());
     timer_.start();
     events_.opened();
+}
+
+/// Why an open link is at its end.
+std::optional<LinkTrouble> SimulatedTransport::away() const {
+    if (const BoardFaults faults = board_->faults(); faults.unplugged) return simulatedTrouble(board_->name(), faults);
+    if (board_->present()) return std::nullopt;
+    return LinkTrouble{"the simulated device '" + board_->name() + "' has gone from the USB",
+                       "check its power; it is connected again when it is back"};
 }
 
 void SimulatedTransport::close() {
@@ -122,21 +129,13 @@ std::size_t SimulatedTransport::unsent() const {
     return sum;
 }
 
-std::optional<LinkTrouble> SimulatedTransport::whyGone(const BoardFaults& faults) const {
-    if (faults.unplugged) return simulatedTrouble(board_->name(), faults);
-    if (board_->isOnTheBus(now_())) return std::nullopt;
-    return LinkTrouble{"the simulated device '" + board_->name() + "' has left the bus: it starts anew",
-                       "check its battery and its supply; it is connected again when it is back"};
-}
-
 void SimulatedTransport::step() {
-    const BoardFaults faults = board_->faults();
-    if (const std::optional<LinkTrouble> trouble = whyGone(faults)) {
+    if (const std::optional<LinkTrouble> why = away()) {
         close();
-        events_.closed(*trouble);
+        events_.closed(*why);
         return;
     }
-    if (faults.stalled) return;
+    if (board_->faults().stalled) return;
     const Microseconds now = now_();
     carryOut(now);
     carryIn(now);

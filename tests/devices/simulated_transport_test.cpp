@@ -42,7 +42,6 @@ public:
         return bytes;
     }
     [[nodiscard]] bool isHid() const override { return isHid_; }
-    [[nodiscard]] bool isOnTheBus(Microseconds) override { return true; }
 
     BoardFaults faults_;
     Bytes taken;

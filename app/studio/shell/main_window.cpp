@@ -1,5 +1,6 @@
 #include "app/studio/shell/main_window.h"
 
+#include <algorithm>
 #include <map>
 
 #include <QApplication>
@@ -107,9 +108,19 @@ MainWindow::MainWindow(Studio& studio, std::vector<std::unique_ptr<Workspace>> w
     });
     qApp->installEventFilter(this);
     resize(kUsualSize.boundedTo(screen()->availableSize() - kFrame));
-    restoreGeometry(studio.settings.value(kGeometryKey).toByteArray());
+    if (restoreGeometry(studio.settings.value(kGeometryKey).toByteArray())) keepOnScreen();
     showFirstWorkspace();
     showTitle();
+}
+
+// A window that is kept may come from a larger screen, or from a smaller scale of this one.
+void MainWindow::keepOnScreen() {
+    if (isMaximized() || isFullScreen()) return;
+    const QRect there = screen()->availableGeometry();
+    resize(size().boundedTo(there.size() - kFrame));
+    const QSize space = there.size() - size();
+    move(std::clamp(x(), there.left(), there.left() + std::max(0, space.width())),
+         std::clamp(y(), there.top(), there.top() + std::max(0, space.height())));
 }
 
 MainWindow::~MainWindow() {

@@ -12,7 +12,7 @@
 namespace lumorph::studio {
 namespace {
 
-constexpr int kHeight = 56, kLeastHeight = 40;
+constexpr int kHeight = 56, kLeastHeight = 36;
 constexpr int kNameWidth = 128;
 
 } // namespace

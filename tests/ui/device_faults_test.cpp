@@ -1,0 +1,200 @@
+#include <chrono>
+
+#include <QSlider>
+
+#include "tests/ui/devices_window.h"
+
+// Each simulated board is broken on purpose from the simulator's panel: what its user is told, what is offered next,
+// and what the board's servos get meanwhile.
+
+namespace lumorph::test {
+namespace {
+
+using namespace std::chrono_literals;
+
+class DeviceFaults : public DevicesWindow, public ::testing::WithParamInterface<const char*> {
+protected:
+    DeviceFaults() : DevicesWindow(GetParam()) {}
+
+    void connectNow() {
+        setByHand(0, 0.0); // the show stands still
+        window.studio().devices.connectTo(address());
+        showSimulator();
+    }
+    void setSlider(const QString& name, int steps) {
+        auto* slider = window.find<QSlider>(name);
+        ASSERT_NE(slider, nullptr);
+        slider->setValue(steps);
+    }
+    /// The board is whole again and its user starts the servos, as the card offers it.
+    void goOn() {
+        window.click("sim.mend");
+        ASSERT_TRUE(eventually([&] { return next() == "Start servos" || allDriven(); }, 20s)) << cardText();
+        if (!allDriven()) startServos();
+        EXPECT_TRUE(allDriven());
+        clearLog();
+    }
+    std::string cardText() {
+        return (window.text("devices.card.title") + " | " + window.text("devices.card.text")).toStdString();
+    }
+};
+
+TEST_P(DeviceFaults, WhatKeepsALinkFromOpeningIsTold) {
+    const struct {
+        const char* fault;
+        const char* why;
+        const char* remedy;
+    } rows[] = {
+        {"sim.unplugged", "is unplugged", "Plug it in on the simulator's panel."},
+        {"sim.forbidden", "ermission denied", "Allow access to it on the simulator's panel."},
+        {"sim.busy", "nother program uses", "Let it go on the simulator's panel."},
+    };
+    connectNow();
+    ASSERT_TRUE(offers("Start servos"));
+    for (const auto& row : rows) {
+        SCOPED_TRACE(row.fault);
+        window.click("devices.disconnect");
+        ASSERT_TRUE(reaches(LinkPhase::off));
+        pass(1s); // servos are told to let go before the port is closed
+        set(row.fault, true);
+        clearLog();
+        window.studio().devices.connectTo(address());
+        EXPECT_TRUE(logs("There is no link: "));
+        EXPECT_TRUE(logs(row.why));
+        EXPECT_TRUE(tells("No link to ")) << cardText();
+        EXPECT_TRUE(tells(row.why)) << cardText();
+        EXPECT_TRUE(tells(row.remedy)) << cardText();
+        EXPECT_EQ(phase(), LinkPhase::connecting);
+        EXPECT_EQ(next(), "") << "the studio tries again by itself";
+        set(row.fault, false);
+        EXPECT_TRUE(offers("Start servos")) << cardText();
+        EXPECT_TRUE(allLimp());
+    }
+}
+
+TEST_P(DeviceFaults, APulledCableLetsNothingStartByItself) {
+    connectNow();
+    ASSERT_TRUE(offers("Start servos"));
+    startServos();
+    set("sim.unplugged", true);
+    EXPECT_TRUE(reaches(LinkPhase::lost));
+    EXPECT_TRUE(tells("The link to ")) << cardText();
+    EXPECT_TRUE(tells("is lost")) << cardText();
+    EXPECT_TRUE(tells("Plug it in")) << cardText();
+    EXPECT_TRUE(logs("The link is lost: the simulated device '" + QString(GetParam()) + "' is unplugged."));
+    set("sim.unplugged", false);
+    EXPECT_TRUE(reaches(LinkPhase::disarmed));
+    EXPECT_TRUE(offers("Start servos"));
+    pass(300ms);
+    EXPECT_EQ(phase(), LinkPhase::disarmed);
+    startServos();
+    EXPECT_TRUE(tells("Live"));
+}
+
+TEST_P(DeviceFaults, ARestartIsTold) {
+    connectNow();
+    ASSERT_TRUE(offers("Start servos"));
+    startServos();
+    window.click("sim.reboot");
+    EXPECT_TRUE(eventually([&] { return phase() != LinkPhase::live; })) << cardText();
+    // A board whose USB is its own goes from the bus; others say so, or are seen to have let go of their servos.
+    const QString words = board->name() == "xarm" ? "has gone from the USB" : "The board has restarted";
+    EXPECT_TRUE(logs(words));
+    EXPECT_TRUE(offers("Start servos")) << cardText();
+    pass(300ms);
+    EXPECT_TRUE(allLimp()) << "nothing starts by itself";
+    startServos();
+    EXPECT_TRUE(tells("Live"));
+}
+
+TEST_P(DeviceFaults, ASilentOrStalledBoardIsTold) {
+    connectNow();
+    ASSERT_TRUE(offers("Start servos"));
+    startServos();
+    set("sim.silent", true);
+    EXPECT_TRUE(eventually([&] { return phase() != LinkPhase::live; })) << "within seconds nobody calls it live";
+    EXPECT_TRUE(logs("The link is lost: "));
+    EXPECT_TRUE(tells("is lost") || tells("does not answer")) << cardText();
+    goOn();
+    set("sim.stalled", true);
+    setByHand(0, 1.0); // something to send
+    EXPECT_TRUE(eventually([&] { return phase() != LinkPhase::live; })) << cardText();
+    EXPECT_TRUE(logs("The link"));
+    setByHand(0, 0.0);
+    goOn();
+}
+
+TEST_P(DeviceFaults, NoiseIsToldAndServosStayWithinTheirLimits) {
+    connectNow();
+    ASSERT_TRUE(offers("Start servos"));
+    startServos();
+    clearLog();
+    setSlider("sim.noise", 60); // 6 %
+    for (int k = 0; k < 40 && !logsNow("noisy") && !logsNow("lost") && !logsNow("restarted"); ++k) {
+        setByHand(static_cast<std::size_t>(k % 2), k % 4 < 2 ? 1.0 : 0.0);
+        pass(250ms);
+    }
+    EXPECT_TRUE(logsNow("noisy") || logsNow("lost") || logsNow("restarted"));
+    setByHand(0, 0.0);
+    goOn();
+}
+
+TEST_P(DeviceFaults, ALowBatteryIsToldWhereItIsMeasured) {
+    connectNow();
+    ASSERT_TRUE(offers("Start servos"));
+    const bool measured = window.studio().devices.status().controller.traits.readsVoltage;
+    EXPECT_EQ(measured, std::string(GetParam()) == "tablet" || std::string(GetParam()) == "xarm");
+    setSlider("sim.volts", 15); // 5.5 V
+    if (!measured) {
+        EXPECT_TRUE(eventually([&] { return window.text("devices.fact.battery") == "not measured"; }));
+        return;
+    }
+    EXPECT_TRUE(logs("The battery is low: 5.5 V."));
+    EXPECT_TRUE(logs("Charge it or change it"));
+    EXPECT_TRUE(eventually([&] { return window.text("devices.fact.battery") == "5.5 V"; }));
+    setSlider("sim.volts", 34); // 7.4 V
+    EXPECT_TRUE(logs("The battery is well again: 7.4 V."));
+}
+
+TEST_P(DeviceFaults, TheWordThatThisIsTheBoardIsKeptForThisBoardAlone) {
+    BoardFaults nameless;
+    nameless.nameless = true;
+    board->setFaults(nameless);
+    connectNow();
+    ASSERT_TRUE(eventually([&] { return next() == "Yes, this is it" || next() == "Start servos"; })) << cardText();
+    if (next() == "Start servos") return; // what it says of itself is enough
+    EXPECT_TRUE(tells("Is this your device?"));
+    window.click("devices.next");
+    ASSERT_TRUE(offers("Start servos"));
+    EXPECT_EQ(window.studio().devices.profile().identity, "simulated " + board->name());
+
+    // The same board again: as after a start of the studio, the profile is read from its file.
+    window.click("devices.disconnect");
+    ASSERT_TRUE(reaches(LinkPhase::off));
+    window.studio().devices.loadProfile(QString::fromStdString(window.studio().devices.profile().name));
+    clearLog();
+    window.studio().devices.connectTo(address());
+    ASSERT_TRUE(offers("Start servos")) << cardText();
+    EXPECT_FALSE(logsNow("Confirm"));
+
+    // Another board where this one was.
+    window.click("devices.disconnect");
+    ASSERT_TRUE(reaches(LinkPhase::off));
+    DeviceProfile other = window.studio().devices.profile();
+    other.identity = "A9007Xyz";
+    ASSERT_TRUE(window.studio().devices.setProfile(other));
+    window.studio().devices.connectTo(address());
+    EXPECT_TRUE(offers("Yes, this is it")) << cardText();
+    EXPECT_TRUE(logs("This is not the board that the profile was set up with."));
+    pass(300ms);
+    EXPECT_EQ(phase(), LinkPhase::unidentified);
+    window.click("devices.next");
+    ASSERT_TRUE(offers("Start servos"));
+    EXPECT_EQ(window.studio().devices.profile().identity, "simulated " + board->name());
+}
+
+INSTANTIATE_TEST_SUITE_P(Boards, DeviceFaults, ::testing::Values("tablet", "uno", "xarm", "maestro"),
+                         [](const auto& board) { return std::string(board.param); });
+
+} // namespace
+} // namespace lumorph::test
