@@ -9,6 +9,7 @@
 
 #include "app/studio/look/icons.h"
 #include "app/studio/look/palette.h"
+#include "app/studio/recording/record_chip.h"
 
 namespace lumorph::studio {
 namespace {
@@ -119,6 +120,8 @@ void TopBar::addTools(QHBoxLayout& row) {
     row.addSpacing(8);
     tools_.push_back(makeTool(commands.find("view.theme"), this));
     row.addWidget(tools_.back());
+    tools_.push_back(makeRecordButton(studio_.recorder, commands, this));
+    row.addWidget(tools_.back());
 }
 
 void TopBar::addStop(QHBoxLayout& row) {
@@ -162,7 +165,7 @@ void TopBar::resizeEvent(QResizeEvent* event) {
 /// the menu, so that all menus are in sight.
 void TopBar::fitSearch() {
     for (std::size_t k = 0; k < 2 && !kiosk_; ++k) tools_[k]->setVisible(width() >= kNarrow);
-    int others = 220 + stop_->minimumWidth() + menus_->sizeHint().width();
+    int others = 292 + stop_->minimumWidth() + menus_->sizeHint().width();
     for (const QToolButton* tab : tabs_) others += tab->sizeHint().width() + 4;
     const bool roomy = width() - others > kSearchWidth;
     search_->setFixedWidth(roomy ? kSearchWidth : 32);
