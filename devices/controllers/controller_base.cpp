@@ -77,6 +77,11 @@ void ControllerBase::heard(Microseconds now) {
     trouble(Concern::silence, std::nullopt);
 }
 
+void ControllerBase::setLimits(const DeviceProfile& profile) {
+    plan_.setServos(profile.servos, setsPerSecond(profile, state_.traits));
+    limitsChanged(profile);
+}
+
 void ControllerBase::confirm() {
     if (state_.phase == ControllerPhase::unidentified) becomeReady();
 }

@@ -46,8 +46,10 @@ public:
     void opened(const std::string& product, Microseconds now) final;
     void received(std::span<const std::uint8_t> bytes, Microseconds now) final;
     void tick(Microseconds now) final;
+    void setLimits(const DeviceProfile& profile) final;
     void confirm() final;
     void send(const GuardedPulses& pulses, Microseconds now) final { command(pulses.servos(), now); }
+    void detachAgain() final { plan_.detachAgain(); }
     [[nodiscard]] std::vector<std::vector<std::uint8_t>> takeOutput() final;
     [[nodiscard]] const ControllerState& state() const final { return state_; }
 
@@ -63,6 +65,8 @@ protected:
     virtual void work(Microseconds now) = 0;
     [[nodiscard]] virtual Messages detachments(std::span<const std::size_t> servos) = 0;
     [[nodiscard]] virtual Messages changes(std::span<const PulsePlan::Change> changes) = 0;
+    /// The plan has taken other limits over.
+    virtual void limitsChanged(const DeviceProfile&) {}
     /// Why it may be silent: it never answered since the link was opened, or has fallen silent.
     [[nodiscard]] virtual LinkTrouble silence(bool never) const = 0;
 

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <deque>
 #include <string_view>
+#include <utility>
 
 #include "core/base/error.h"
 #include "devices/controllers/controller_base.h"
@@ -74,6 +75,7 @@ public:
 private:
     FirmataController(const DeviceProfile& profile, const DeviceAddress& address, const ControllerTraits& traits)
         : ControllerBase(profile, firmataScale(profile, address), traits), address_(address) {
+        limitsTold_.resize(profile.servos.size());
         becomeKind(false);
     }
 
@@ -111,10 +113,11 @@ private:
     Repeater heartbeat_{kHeartbeat};
     Repeater stateAtLeast_{kStateAtLeast};
     Repeater voltage_{kVoltageEvery};
-    std::deque<Microseconds> statesAsked_; ///< when the open questions for a pin's state were asked
-    std::size_t asked_ = 0;                ///< servo whose state was asked for last
-    int contrary_ = 0;                     ///< answers in a row that tell of a servo that was let go
-    std::optional<Microseconds> words_;    ///< when the board said something
+    std::deque<Microseconds> statesAsked_;        ///< when the open questions for a pin's state were asked
+    std::size_t asked_ = 0;                       ///< servo whose state was asked for last
+    int contrary_ = 0;                            ///< answers in a row that tell of a servo that was let go
+    std::optional<Microseconds> words_;           ///< when the board said something
+    std::vector<std::pair<int, int>> limitsTold_; ///< by servo, microseconds
 };
 
 void FirmataController::begin(Microseconds now) {
@@ -324,17 +327,19 @@ ControllerBase::Messages FirmataController::detachments(std::span<const std::siz
 }
 
 /// Our firmware takes the pulse first and starts from it; a stock one ignores it until the servo is attached, so it
-/// comes right behind, to end the jump to the middle.
+/// comes right behind, to end the jump to the middle. Ours clamps to the limits that it was told, so other ones go
+/// before the first pulse that they are for.
 ControllerBase::Messages FirmataController::changes(std::span<const PulsePlan::Change> changes) {
     Messages messages;
     for (const PulsePlan::Change& change : changes) {
         const int pin = plan_.servos()[change.servo].channel;
         const int pulse = static_cast<int>(change.value);
-        if (change.attach && own_) {
-            messages.push_back(firmata::writeValue(pin, pulse));
-            const int least = static_cast<int>(plan_.valueOf(change.servo, 0.0));
-            const int greatest = static_cast<int>(plan_.valueOf(change.servo, 1e5));
-            messages.push_back(firmata::configureServo(pin, least, greatest));
+        const std::pair limits(static_cast<int>(plan_.valueOf(change.servo, 0.0)),
+                               static_cast<int>(plan_.valueOf(change.servo, 1e5)));
+        if (change.attach && own_) messages.push_back(firmata::writeValue(pin, pulse));
+        if (own_ && (change.attach || limitsTold_[change.servo] != limits)) {
+            messages.push_back(firmata::configureServo(pin, limits.first, limits.second));
+            limitsTold_[change.servo] = limits;
         }
         if (change.attach) messages.push_back(firmata::attachServo(pin));
         messages.push_back(firmata::writeValue(pin, pulse));

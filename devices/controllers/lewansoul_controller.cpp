@@ -66,7 +66,7 @@ private:
     LewansoulController(const DeviceProfile& profile, const DeviceAddress& address, const ControllerTraits& traits)
         : ControllerBase(profile, lewansoulScale(profile, address), traits), hid_(isHid(address)),
           baud_(baudOf(address)), readAt_(profile.servos.size()) {
-        moveTime_ = static_cast<int>(std::clamp(1000.0 / setsPerSecond(profile, traits), kLeastMoveTime, 1000.0));
+        limitsChanged(profile);
         moves_.resize(profile.servos.size());
     }
 
@@ -89,6 +89,10 @@ private:
     void work(Microseconds now) override;
     [[nodiscard]] Messages detachments(std::span<const std::size_t> servos) override;
     [[nodiscard]] Messages changes(std::span<const PulsePlan::Change> changes) override;
+    void limitsChanged(const DeviceProfile& profile) override {
+        const double period = 1000.0 / setsPerSecond(profile, state_.traits);
+        moveTime_ = static_cast<int>(std::clamp(period, kLeastMoveTime, 1000.0));
+    }
     [[nodiscard]] LinkTrouble silence(bool never) const override;
 
     [[nodiscard]] int durationOf(std::span<const PulsePlan::Change> changes) const;

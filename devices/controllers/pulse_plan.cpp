@@ -21,21 +21,34 @@ Limits limitsOf(const ServoSetup& servo, const PulseScale& scale) {
     return {static_cast<long>(std::ceil(least / scale.step)), static_cast<long>(std::floor(greatest / scale.step))};
 }
 
-} // namespace
-
-PulsePlan::PulsePlan(std::vector<ServoSetup> servos, const PulseScale& scale)
-    : servos_(std::move(servos)), scale_(scale), states_(servos_.size()) {
-    const double perSecond = std::isfinite(scale.perSecond) ? std::clamp(scale.perSecond, 0.1, 1000.0) : 50.0;
-    period_ = Microseconds(std::lround(1e6 / perSecond));
-    for (std::size_t i = 0; i < servos_.size(); ++i) {
-        const ServoSetup& servo = servos_[i];
+void checkServos(const std::vector<ServoSetup>& servos, const PulseScale& scale) {
+    for (std::size_t i = 0; i < servos.size(); ++i) {
+        const ServoSetup& servo = servos[i];
         const bool sound = servo.pulseMin >= 0.0 && servo.pulseMin <= servo.pulseMax && servo.pulseMax <= 1e6;
-        if (!sound || !hasValue(i))
+        if (!sound || limitsOf(servo, scale).least > limitsOf(servo, scale).greatest)
             throw InvalidInput("servo " + std::to_string(i + 1),
                                "its controller can send no pulse from " + std::to_string(servo.pulseMin) + " to " +
                                    std::to_string(servo.pulseMax) + " us",
                                "widen its range, or choose one that this controller knows");
     }
+}
+
+} // namespace
+
+PulsePlan::PulsePlan(std::vector<ServoSetup> servos, const PulseScale& scale)
+    : servos_(std::move(servos)), scale_(scale), states_(servos_.size()) {
+    setRate(scale.perSecond);
+    checkServos(servos_, scale_);
+}
+
+void PulsePlan::setRate(double perSecond) {
+    perSecond = std::isfinite(perSecond) ? std::clamp(perSecond, 0.1, 1000.0) : 50.0;
+    period_ = Microseconds(std::lround(1e6 / perSecond));
+}
+
+void PulsePlan::setServos(std::vector<ServoSetup> servos, double perSecond) {
+    servos_ = std::move(servos);
+    setRate(perSecond);
 }
 
 bool PulsePlan::hasValue(std::size_t servo) const {
@@ -45,7 +58,8 @@ bool PulsePlan::hasValue(std::size_t servo) const {
 
 long PulsePlan::valueOf(std::size_t servo, double microseconds) const {
     const Limits limits = limitsOf(servos_[servo], scale_);
-    return std::clamp(std::lround((microseconds - scale_.zero) / scale_.step), limits.least, limits.greatest);
+    const long nearest = std::lround((microseconds - scale_.zero) / scale_.step);
+    return std::min(std::max(nearest, limits.least), limits.greatest);
 }
 
 void PulsePlan::restart() {
@@ -75,7 +89,7 @@ void PulsePlan::wantOne(std::size_t servo, const GuardedPulse& pulse, bool ready
         state.confirmations = 0;
         return;
     }
-    if (!ready || state.held || !std::isfinite(pulse.microseconds)) return;
+    if (!ready || state.held || !std::isfinite(pulse.microseconds) || !hasValue(servo)) return;
     state.attach = true;
     state.value = valueOf(servo, pulse.microseconds);
     pending_ = pending_ || state.told != Told::attached || state.toldValue != state.value;
@@ -121,6 +135,13 @@ bool PulsePlan::detachmentDue(const State& state) const {
     const bool quickly = isQuick(state);
     if (!quickly && !ready_) return false; // what may be no servo controller is left in peace
     return now_ < state.detachedAt || now_ - state.detachedAt >= (quickly ? scale_.detachGap : kDetachSlowly);
+}
+
+void PulsePlan::detachAgain() {
+    for (std::size_t i = 0; i < states_.size(); ++i) {
+        detachAgain(i);
+        states_[i].detachedAt = std::min(states_[i].detachedAt, now_ - scale_.detachGap);
+    }
 }
 
 std::vector<std::size_t> PulsePlan::takeDetachments() {

@@ -39,6 +39,10 @@ public:
     /// Throws InvalidInput that names a servo between whose limits lies no value.
     PulsePlan(std::vector<ServoSetup> servos, const PulseScale& scale);
 
+    /// Other limits of the same servos, and another rate; what was told stays told. A servo between whose limits lies
+    /// no value stays as it is.
+    void setServos(std::vector<ServoSetup> servos, double perSecond);
+
     /// Nobody knows any more what the board does (it was opened, it started anew). A servo that was attached stays as
     /// it is until it was let go: what stood in the way of a hand does not come back by itself.
     void restart();
@@ -51,6 +55,8 @@ public:
     void confirmLimp(std::size_t servo);
     /// It says the contrary.
     void detachAgain(std::size_t servo);
+    /// All limp ones must be told again, now.
+    void detachAgain();
     /// It was told to be limp, and nobody knows whether it is.
     [[nodiscard]] bool doubtful(std::size_t servo) const;
     /// Some servo is being told to let go again and again.
@@ -88,6 +94,8 @@ private:
     [[nodiscard]] bool isQuick(const State& state) const;
     [[nodiscard]] bool detachmentDue(const State& state) const;
     void wantOne(std::size_t servo, const GuardedPulse& pulse, bool ready);
+
+    void setRate(double perSecond);
 
     std::vector<ServoSetup> servos_;
     PulseScale scale_;

@@ -58,11 +58,16 @@ public:
     virtual void received(std::span<const std::uint8_t> bytes, Microseconds now) = 0;
     /// Time passes: handshakes are repeated, voltages asked for, heartbeats sent.
     virtual void tick(Microseconds now) = 0;
+    /// Other limits, velocities or rate of the same servos on the same channels; all stay where they are, and a servo
+    /// between whose limits it can make no pulse stays there.
+    virtual void setLimits(const DeviceProfile& profile) = 0;
     /// The user says that it is what it seems to be.
     virtual void confirm() = 0;
     /// Writes what is different from what was sent last. Ignored unless ready, except that servos are detached in every
     /// phase.
     virtual void send(const GuardedPulses& pulses, Microseconds now) = 0;
+    /// Servos that were told to be limp are told so once more, now: nobody knows whether it arrived.
+    virtual void detachAgain() = 0;
     /// Messages to write, in order; emptied by taking them.
     [[nodiscard]] virtual std::vector<std::vector<std::uint8_t>> takeOutput() = 0;
     [[nodiscard]] virtual const ControllerState& state() const = 0;

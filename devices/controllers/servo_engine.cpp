@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "devices/controllers/controller_base.h"
 #include "devices/controllers/servo_engine_data.h"
 #include "devices/transport/address.h"
 
@@ -16,13 +17,16 @@ constexpr Microseconds kCloseAtLast{750'000}; // after the time to close: not al
 constexpr Microseconds kTrustedRest{2'000'000};
 constexpr Microseconds kSilencePatience{4'000'000};
 constexpr Microseconds kStallTold{200'000};
-constexpr std::uint64_t kMostUnsent = 128; // bytes
+constexpr double kMostUnsentSeconds = 0.025; // of a serial link: what a STOP may find before it
+constexpr double kMostUnsent = 128.0;        // bytes, whatever the link
+constexpr double kLeastUnsent = 24.0;
 
 // Times of inputs may be anything; differences of these are numbers.
 constexpr Microseconds kFarthest{std::int64_t{1} << 60};
 constexpr Microseconds kBegin{1'000'000'000}; // of the engine's own time: what has never been is long ago
 constexpr Microseconds kLongestGap{86'400'000'000};
 
+/// "where servos 1, 2 and 4 stand, so they were", of one or more.
 std::string placesOf(const std::vector<std::size_t>& servos) {
     std::string text;
     for (const std::size_t servo : servos)
@@ -42,8 +46,11 @@ ServoEngine::Data::Data(const DeviceProfile& its)
 
 void ServoEngine::Data::make() {
     made = profile;
-    controller = makeController(profile, parseDeviceAddress(profile.address));
+    const DeviceAddress address = parseDeviceAddress(profile.address);
+    controller = makeController(profile, address);
     reboots = controller->state().reboots;
+    const double taken = kMostUnsentSeconds * baudOf(address) / 10.0;
+    mostUnsent = static_cast<std::uint64_t>(std::clamp(taken, kLeastUnsent, kMostUnsent));
 }
 
 void ServoEngine::Data::see(Microseconds time) {
@@ -75,7 +82,7 @@ void ServoEngine::Data::readPositions() {
 }
 
 bool ServoEngine::Data::stalled() {
-    if (unsent <= kMostUnsent) {
+    if (unsent <= mostUnsent) {
         stalledSince.reset();
         if (std::exchange(stallTold, false)) tell(Kind::information, "The link takes commands again.");
         return false;
@@ -140,6 +147,10 @@ void ServoEngine::Data::drive() {
 void ServoEngine::Data::send() {
     const GuardedPulses step = guard.step(now);
     pulses.assign(step.servos().begin(), step.servos().end());
+    if (made != profile && guard.withinLimits()) {
+        made = profile;
+        controller->setLimits(made);
+    }
     controller->send(step, now);
     if (guard.settled() && guard.phase() != ServoGuard::Phase::starting) return;
     movedAt = passed;
@@ -151,7 +162,7 @@ void ServoEngine::Data::flush(bool urgent) {
     if (messages.empty()) return;
     for (std::vector<std::uint8_t>& message : messages) {
         bytesSent += message.size();
-        output.emplace_back(servo_output::Write{std::move(message), false, urgent});
+        output.emplace_back(servo_output::Write{std::move(message), false, std::exchange(urgent, false)});
     }
     const double step = controller->state().traits.pulseStep;
     std::vector<long> steps;

@@ -17,7 +17,7 @@ namespace servo_output {
 struct Write {
     std::vector<std::uint8_t> bytes; ///< a whole message
     bool moves = false;              ///< the last of those that tell servos something new
-    bool urgent = false;             ///< past all that waits unsent
+    bool urgent = false;             ///< what waits unsent is dropped before it
 };
 struct Reach { ///< the link leads elsewhere from now on; it is closed
     std::string address;

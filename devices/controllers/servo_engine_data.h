@@ -43,6 +43,7 @@ struct ServoEngine::Data {
     std::string identity;
     std::optional<LinkTrouble> linkTrouble;
     std::uint64_t unsent = 0;
+    std::uint64_t mostUnsent = 0; ///< more means that the link stalls
 
     bool slow = false;
     bool waitingTold = false;

@@ -11,16 +11,25 @@ constexpr Microseconds kRestAtMost{2'000'000};
 constexpr Microseconds kCloseAfter{250'000}; // detaching is repeated meanwhile
 constexpr Microseconds kTrustedRest{2'000'000};
 
-/// Whether a controller made for one profile serves another too: the same board and wires, and limits that are no
-/// wider.
-bool serves(const DeviceProfile& made, const DeviceProfile& wanted) {
-    const auto sameServo = [](const ServoSetup& a, const ServoSetup& b) {
-        return a.channel == b.channel && a.pulseMin <= b.pulseMin && a.pulseMax >= b.pulseMax;
-    };
+/// The same board with the same wires: only limits and manners may differ.
+bool sameWires(const DeviceProfile& made, const DeviceProfile& wanted) {
     return made.address == wanted.address && made.controller == wanted.controller &&
            made.controllerNumber == wanted.controllerNumber && made.maestroCrc == wanted.maestroCrc &&
-           made.commandsPerSecond == wanted.commandsPerSecond &&
-           std::ranges::equal(made.servos, wanted.servos, sameServo);
+           std::ranges::equal(made.servos, wanted.servos, {}, &ServoSetup::channel, &ServoSetup::channel);
+}
+
+/// A profile whose limits hold those of both: where limits are drawn in past a servo, the guard leads it back within
+/// them slowly, and the controller must not cut that short. Velocities are those of `wanted`, in microseconds.
+DeviceProfile hullOf(const DeviceProfile& made, const DeviceProfile& wanted) {
+    DeviceProfile hull = wanted;
+    for (std::size_t i = 0; i < hull.servos.size(); ++i) {
+        ServoSetup& servo = hull.servos[i];
+        const double span = servo.pulseMax - servo.pulseMin;
+        servo.pulseMin = std::min(servo.pulseMin, made.servos[i].pulseMin);
+        servo.pulseMax = std::max(servo.pulseMax, made.servos[i].pulseMax);
+        servo.maxVelocity *= span / (servo.pulseMax - servo.pulseMin);
+    }
+    return hull;
 }
 
 } // namespace
@@ -73,6 +82,7 @@ void ServoEngine::Data::take(const servo_input::Stop&) {
     guard.stop();
     if (!open) return;
     send();
+    controller->detachAgain(); // also those that were let go before: who presses it sees one that is not
     flush(true);
 }
 
@@ -91,15 +101,16 @@ void ServoEngine::Data::take(const servo_input::Profile& order) {
     // The identity of the very board that is there says nothing new.
     const bool sameBoard =
         order.profile.identity == made.identity || (open && !foreign && order.profile.identity == identity);
-    if (next || !sameBoard || !serves(made, order.profile)) {
+    if (next || !sameBoard || !sameWires(made, order.profile)) {
         next = order.profile;
         if (armed())
-            tell(Kind::information, "Other wires or wider limits: the servos were let go.", "Start them again.");
+            tell(Kind::information, "Another board or other wires: the servos were let go.", "Start them again.");
         close();
         return;
     }
     profile = order.profile;
-    made.identity = profile.identity;
+    made = hullOf(made, profile);
+    controller->setLimits(made);
     guard.setProfile(profile);
 }
 
@@ -124,11 +135,16 @@ void ServoEngine::Data::take(const servo_input::Opened& opened) {
     if (foreign)
         tell(Kind::warning, "This is not the board that the profile was set up with.",
              "Plug in the right one, or confirm that its servos have the same limits.");
+    made = profile; // no servo is on its way back within them
+    controller->setLimits(made);
     controller->opened(product, now);
     watch.opened(controller->state());
     stalledSince.reset();
     written.clear();
     unsent = 0;
+    // At once: who pressed STOP meanwhile wants nothing else said first.
+    send();
+    flush();
 }
 
 void ServoEngine::Data::take(const servo_input::Received& received) {

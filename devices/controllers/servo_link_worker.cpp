@@ -93,6 +93,7 @@ void LinkWorker::Data::take(const ServoInput& input) {
 }
 
 void LinkWorker::Data::perform(const servo_output::Write& write) {
+    if (write.urgent) keeper->dropUnsent();
     keeper->write(write.bytes);
     if (options.onWire) options.onWire(write.bytes, true);
     if (write.moves) traffic.wrote(steadyNow(), engine.commandPeriod());
@@ -123,11 +124,12 @@ LinkWorker::LinkWorker(const DeviceProfile& profile, const LinkOptions& options,
 
 LinkWorker::~LinkWorker() = default;
 
+void LinkWorker::stop() { data_->take(servo_input::Stop{}); }
+
 void LinkWorker::work(LinkOrders orders) {
     Data& data = *data_;
-    if (orders.stop) data.take(servo_input::Stop{});
     for (ServoTraceLog::Sink& sink : orders.sinks) data.trace.setSink(std::move(sink));
-    for (const ServoInput& request : orders.requests) data.take(request);
+    for (const LinkRequest& request : orders.requests) data.take(request.input);
     if (orders.command) data.command(std::move(*orders.command), orders.commandedAt);
     if (orders.quit) {
         data.quitBy = steadyNow() + kQuitAtLast;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -11,11 +12,17 @@
 
 namespace lumorph {
 
+/// What was asked for, and how many times STOP had been pressed before.
+struct LinkRequest {
+    ServoInput input;
+    std::uint64_t stops = 0;
+};
+
 /// Everything that was asked for since the worker looked last.
 struct LinkOrders {
-    bool stop = false; ///< comes before all else; what was asked before it, and moves, has been taken out
-    std::vector<ServoInput> requests;
+    std::vector<LinkRequest> requests;
     std::optional<std::vector<double>> command;
+    std::uint64_t commandStops = 0;         ///< as LinkRequest::stops
     Microseconds commandedAt{0};            ///< by the steady clock, of the first command that was not taken yet
     bool quit = false;                      ///< to rest, detach, close
     std::vector<ServoTraceLog::Sink> sinks; ///< of the trace, one after the other
@@ -32,6 +39,8 @@ public:
     LinkWorker(const DeviceProfile& profile, const LinkOptions& options, Events events);
     ~LinkWorker();
 
+    /// All servos are detached, before anything else.
+    void stop();
     /// Does what was ordered and what is due. Call it when there are orders, and after `pause` at the latest.
     void work(LinkOrders orders);
     [[nodiscard]] Microseconds pause() const;

@@ -60,6 +60,7 @@ public:
     void close() override;
     [[nodiscard]] bool isOpen() const override { return open_; }
     void write(std::span<const std::uint8_t> message) override;
+    void dropUnsent() override { unsent_.clear(); }
     [[nodiscard]] std::size_t unsent() const override;
     [[nodiscard]] std::string identity() const override { return "simulated " + board_->name(); }
     [[nodiscard]] std::string product() const override { return board_->product(); }
