@@ -321,9 +321,9 @@ void RecordDesk::start(const fs::path& file) {
     data_->bytes = 0;
     data_->settings.setValue(kFolderKey, QString::fromStdString(file.parent_path().string()));
     if (data_->room(file) < kLeastRoom)
-        return data_->fail(DeviceError(file.string(),
-                                       "less than " + std::to_string(kLeastRoom / 1'000'000) + " MB" + " are left on its disk",
-                                       "free some space, or record to another disk"));
+        return data_->fail(DeviceError(
+            file.string(), "less than " + std::to_string(kLeastRoom / 1'000'000) + " MB" + " are left on its disk",
+            "free some space, or record to another disk"));
     data_->phase = Phase::starting;
     const std::map<std::string, std::string> facts{
         {"program", "Lumorph " LUMORPH_VERSION},

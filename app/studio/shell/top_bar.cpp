@@ -161,10 +161,11 @@ void TopBar::resizeEvent(QResizeEvent* event) {
     fitSearch();
 }
 
-/// The field with its words where there is room, else the glass alone; in a narrow window undo and redo are left to
-/// the menu, so that all menus are in sight.
+/// The field with its words where there is room, else the glass alone; in a narrow window undo, redo and recording are
+/// left to the menu, so that all menus are in sight.
 void TopBar::fitSearch() {
-    for (std::size_t k = 0; k < 2 && !kiosk_; ++k) tools_[k]->setVisible(width() >= kNarrow);
+    if (!kiosk_)
+        for (QWidget* tool : {tools_[0], tools_[1], tools_.back()}) tool->setVisible(width() >= kNarrow);
     int others = 292 + stop_->minimumWidth() + menus_->sizeHint().width();
     for (const QToolButton* tab : tabs_) others += tab->sizeHint().width() + 4;
     const bool roomy = width() - others > kSearchWidth;
