@@ -16,16 +16,9 @@ struct Arguments {
     bool json = false;
 };
 
-double lastSecond(const Recording& recording) {
-    Microseconds last{0};
-    if (!recording.frames.empty()) last = recording.frames.back().time;
-    if (!recording.events.empty()) last = std::max(last, recording.events.back().time);
-    return static_cast<double>(last.count()) / 1e6;
-}
-
 void printInfo(const Arguments& arguments) {
     const Recording recording = readRecording(arguments.file);
-    const double seconds = lastSecond(recording);
+    const double seconds = secondsOf(recording);
     if (arguments.json) {
         nlohmann::json facts(recording.facts);
         printJson({{"seconds", seconds},

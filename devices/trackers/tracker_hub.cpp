@@ -19,6 +19,9 @@ struct TrackerHub::Data {
     std::shared_ptr<const Clock> clock;
     TrackerOpener opener;
 
+    std::mutex tapping;
+    Tap tap;
+
     mutable std::mutex mutex; ///< never held while a tracker is opened or ended: its thread may be in take()
     RoleMap roles;
     std::map<std::string, Fed, std::less<>> fed; ///< streams that are on the board because of us
@@ -125,7 +128,16 @@ std::vector<TrackerStatus> TrackerHub::status() const {
     return status;
 }
 
+void TrackerHub::setTap(Tap tap) {
+    const std::scoped_lock lock(data_->tapping);
+    data_->tap = std::move(tap);
+}
+
 void TrackerHub::take(const std::string& source, const TrackerFrame& frame) {
+    {
+        const std::scoped_lock lock(data_->tapping);
+        if (data_->tap) data_->tap(source, frame);
+    }
     // A time to come would make all that is measured before it come too late.
     const Microseconds measured = std::min(frame.measured, data_->clock->now());
     const std::scoped_lock lock(data_->mutex);

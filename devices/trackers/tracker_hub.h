@@ -31,6 +31,10 @@ public:
     [[nodiscard]] std::vector<TrackerStatus> status() const;
     /// Poses from elsewhere (a camera that sees a board, a replay) take the same way.
     void take(const std::string& source, const TrackerFrame& frame);
+    using Tap = std::function<void(const std::string& source, const TrackerFrame& frame)>;
+    /// Called with all that arrives, whatever role it has, in the thread that brings it; must return at once. When this
+    /// returns, the one before is called no more.
+    void setTap(Tap tap);
 
 private:
     struct Data;

@@ -1,11 +1,10 @@
 #include <chrono>
 #include <csignal>
-#include <cstdlib>
-#include <fcntl.h>
 #include <sstream>
 #include <stdexcept>
 #include <string>
 
+#include <fcntl.h>
 #include <sys/file.h>
 #include <unistd.h>
 

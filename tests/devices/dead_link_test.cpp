@@ -48,13 +48,14 @@ double timeOfOthers() {
 /// A simulated tablet at the far end of a pseudo-terminal or of a simulated link, and a link to it.
 class DeadLink : public testing::Test {
 protected:
-    void open(const std::string& address) {
+    void open(const std::string& address, ControllerKind controller = ControllerKind::firmata, int first = 2) {
         DeviceProfile profile;
+        profile.controller = controller;
         profile.address = address;
         if (address.starts_with("sim://")) board_ = bench_.board(address.substr(6));
         profile.staggerSeconds = 0.0;
         profile.restOnExit = false;
-        for (std::size_t i = 0; i < kServos; ++i) profile.servos.push_back({.channel = 2 + static_cast<int>(i)});
+        for (std::size_t i = 0; i < kServos; ++i) profile.servos.push_back({.channel = first + static_cast<int>(i)});
         LinkOptions options;
         options.bench = &bench_;
         options.onWire = [this](std::span<const std::uint8_t> bytes, bool sent) {
@@ -155,6 +156,53 @@ TEST_F(DeadLink, ADeadPseudoTerminalCostsNoTimeAndFewWords) {
     EXPECT_EQ(events[0].text.find("The link is lost: there is no port"), 0U) << events[0].text;
     EXPECT_NE(events[0].remedy.find("plug the device in"), std::string::npos) << events[0].remedy;
     EXPECT_EQ(link_->status().phase, LinkPhase::lost);
+}
+
+TEST_F(DeadLink, AWrongBaudRateIsNamedWithOthersToTry) {
+    pty_ = std::make_unique<Pty>();
+    stands_ = true; // what is not understood is not answered
+    open("serial://" + pty_->path() + "?baud=38400");
+    std::vector<LinkEvent> events;
+    const auto isNamed = [&] {
+        for (LinkEvent& event : link_->takeEvents()) events.push_back(std::move(event));
+        return std::ranges::any_of(events, [](const LinkEvent& event) {
+            return event.text.find("no answer at 38400 baud") != std::string::npos &&
+                   event.remedy.find("try 57600 baud (StandardFirmata), 115200") != std::string::npos;
+        });
+    };
+    EXPECT_TRUE(runUntil(isNamed, 20s));
+    EXPECT_LE(events.size(), 2U);
+}
+
+// Its battery fails: its servos are limp, and nothing starts them again by itself, whatever board it is.
+TEST_F(DeadLink, ABrownOutIsToldByEveryBoard) {
+    struct Row {
+        const char* address;
+        ControllerKind controller;
+        int first;
+        const char* words;
+    };
+    for (const Row& row : {Row{"sim://tablet", ControllerKind::firmata, 2, "The board has restarted"},
+                           Row{"sim://uno", ControllerKind::firmata, 2, "The board has restarted"},
+                           Row{"sim://maestro", ControllerKind::maestro, 0, "The board has restarted"},
+                           Row{"sim://xarm", ControllerKind::lewansoul, 1, "The link is lost: the simulated device"}}) {
+        open(row.address, row.controller, row.first);
+        goLive();
+        (void)link_->takeEvents();
+        board_->reboot();
+        std::string said;
+        EXPECT_TRUE(runUntil(
+            [&] {
+                for (const LinkEvent& event : link_->takeEvents()) said += event.text + "\n";
+                return said.find(row.words) != std::string::npos;
+            },
+            10s))
+            << row.address << " said " << said;
+        link_->command(std::vector<double>(kServos, 0.9));
+        EXPECT_TRUE(reaches(LinkPhase::disarmed)) << row.address;
+        (void)runUntil([] { return false; }, 300ms);
+        for (const SimulatedServo& servo : board_->servos()) EXPECT_EQ(servo.pulse, 0.0) << row.address;
+    }
 }
 
 TEST_F(DeadLink, AStandstillOfFiveSecondsQueuesNothingAndTheNewestCommandComesOut) {

@@ -48,6 +48,7 @@ void LiveBoard::live() {
         const std::vector<Pulse> fresh = board.takePulses();
         const std::scoped_lock lock(mutex_);
         pulses_.insert(pulses_.end(), fresh.begin(), fresh.end());
+        wallTimes_.resize(pulses_.size(), std::chrono::duration<double, std::milli>(now.time_since_epoch()).count());
         now_ = board.now();
     }
 }
@@ -55,6 +56,11 @@ void LiveBoard::live() {
 std::vector<Pulse> LiveBoard::pulses() const {
     const std::scoped_lock lock(mutex_);
     return pulses_;
+}
+
+std::vector<double> LiveBoard::wallTimes() const {
+    const std::scoped_lock lock(mutex_);
+    return wallTimes_;
 }
 
 double LiveBoard::widthNow(int pin) const {

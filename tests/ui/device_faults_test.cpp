@@ -1,4 +1,9 @@
 #include <chrono>
+#include <cstdlib>
+
+#include <fcntl.h>
+#include <sys/file.h>
+#include <unistd.h>
 
 #include <QSlider>
 
@@ -29,13 +34,10 @@ protected:
     /// The board is whole again and its user starts the servos, as the card offers it.
     void goOn() {
         window.click("sim.mend");
-        ASSERT_TRUE(eventually([&] { return next() == "Start servos" || allDriven(); }, 20s)) << cardText();
+        ASSERT_TRUE(eventually([&] { return next() == "Start servos" || allDriven(); }, 20s)) << story();
         if (!allDriven()) startServos();
         EXPECT_TRUE(allDriven());
         clearLog();
-    }
-    std::string cardText() {
-        return (window.text("devices.card.title") + " | " + window.text("devices.card.text")).toStdString();
     }
 };
 
@@ -61,13 +63,13 @@ TEST_P(DeviceFaults, WhatKeepsALinkFromOpeningIsTold) {
         window.studio().devices.connectTo(address());
         EXPECT_TRUE(logs("There is no link: "));
         EXPECT_TRUE(logs(row.why));
-        EXPECT_TRUE(tells("No link to ")) << cardText();
-        EXPECT_TRUE(tells(row.why)) << cardText();
-        EXPECT_TRUE(tells(row.remedy)) << cardText();
+        EXPECT_TRUE(tells("No link to ")) << story();
+        EXPECT_TRUE(tells(row.why)) << story();
+        EXPECT_TRUE(tells(row.remedy)) << story();
         EXPECT_EQ(phase(), LinkPhase::connecting);
         EXPECT_EQ(next(), "") << "the studio tries again by itself";
         set(row.fault, false);
-        EXPECT_TRUE(offers("Start servos")) << cardText();
+        EXPECT_TRUE(offers("Start servos")) << story();
         EXPECT_TRUE(allLimp());
     }
 }
@@ -78,9 +80,9 @@ TEST_P(DeviceFaults, APulledCableLetsNothingStartByItself) {
     startServos();
     set("sim.unplugged", true);
     EXPECT_TRUE(reaches(LinkPhase::lost));
-    EXPECT_TRUE(tells("The link to ")) << cardText();
-    EXPECT_TRUE(tells("is lost")) << cardText();
-    EXPECT_TRUE(tells("Plug it in")) << cardText();
+    EXPECT_TRUE(tells("The link to ")) << story();
+    EXPECT_TRUE(tells("is lost")) << story();
+    EXPECT_TRUE(tells("Plug it in")) << story();
     EXPECT_TRUE(logs("The link is lost: the simulated device '" + QString(GetParam()) + "' is unplugged."));
     set("sim.unplugged", false);
     EXPECT_TRUE(reaches(LinkPhase::disarmed));
@@ -96,11 +98,11 @@ TEST_P(DeviceFaults, ARestartIsTold) {
     ASSERT_TRUE(offers("Start servos"));
     startServos();
     window.click("sim.reboot");
-    EXPECT_TRUE(eventually([&] { return phase() != LinkPhase::live; })) << cardText();
+    EXPECT_TRUE(eventually([&] { return phase() != LinkPhase::live; })) << story();
     // A board whose USB is its own goes from the bus; others say so, or are seen to have let go of their servos.
     const QString words = board->name() == "xarm" ? "has gone from the USB" : "The board has restarted";
     EXPECT_TRUE(logs(words));
-    EXPECT_TRUE(offers("Start servos")) << cardText();
+    EXPECT_TRUE(offers("Start servos")) << story();
     pass(300ms);
     EXPECT_TRUE(allLimp()) << "nothing starts by itself";
     startServos();
@@ -114,11 +116,11 @@ TEST_P(DeviceFaults, ASilentOrStalledBoardIsTold) {
     set("sim.silent", true);
     EXPECT_TRUE(eventually([&] { return phase() != LinkPhase::live; })) << "within seconds nobody calls it live";
     EXPECT_TRUE(logs("The link is lost: "));
-    EXPECT_TRUE(tells("is lost") || tells("does not answer")) << cardText();
+    EXPECT_TRUE(tells("is lost") || tells("does not answer")) << story();
     goOn();
     set("sim.stalled", true);
     setByHand(0, 1.0); // something to send
-    EXPECT_TRUE(eventually([&] { return phase() != LinkPhase::live; })) << cardText();
+    EXPECT_TRUE(eventually([&] { return phase() != LinkPhase::live; })) << story();
     EXPECT_TRUE(logs("The link"));
     setByHand(0, 0.0);
     goOn();
@@ -161,7 +163,7 @@ TEST_P(DeviceFaults, TheWordThatThisIsTheBoardIsKeptForThisBoardAlone) {
     nameless.nameless = true;
     board->setFaults(nameless);
     connectNow();
-    ASSERT_TRUE(eventually([&] { return next() == "Yes, this is it" || next() == "Start servos"; })) << cardText();
+    ASSERT_TRUE(eventually([&] { return next() == "Yes, this is it" || next() == "Start servos"; })) << story();
     if (next() == "Start servos") return; // what it says of itself is enough
     EXPECT_TRUE(tells("Is this your device?"));
     window.click("devices.next");
@@ -174,7 +176,7 @@ TEST_P(DeviceFaults, TheWordThatThisIsTheBoardIsKeptForThisBoardAlone) {
     window.studio().devices.loadProfile(QString::fromStdString(window.studio().devices.profile().name));
     clearLog();
     window.studio().devices.connectTo(address());
-    ASSERT_TRUE(offers("Start servos")) << cardText();
+    ASSERT_TRUE(offers("Start servos")) << story();
     EXPECT_FALSE(logsNow("Confirm"));
 
     // Another board where this one was.
@@ -184,13 +186,41 @@ TEST_P(DeviceFaults, TheWordThatThisIsTheBoardIsKeptForThisBoardAlone) {
     other.identity = "A9007Xyz";
     ASSERT_TRUE(window.studio().devices.setProfile(other));
     window.studio().devices.connectTo(address());
-    EXPECT_TRUE(offers("Yes, this is it")) << cardText();
+    EXPECT_TRUE(offers("Yes, this is it")) << story();
     EXPECT_TRUE(logs("This is not the board that the profile was set up with."));
     pass(300ms);
     EXPECT_EQ(phase(), LinkPhase::unidentified);
     window.click("devices.next");
     ASSERT_TRUE(offers("Start servos"));
     EXPECT_EQ(window.studio().devices.profile().identity, "simulated " + board->name());
+}
+
+using DeviceConflict = DevicesWindow;
+
+TEST_F(DeviceConflict, APortThatAnotherProgramHasIsToldAndTakenOnceItIsFree) {
+    const int far = ::posix_openpt(O_RDWR | O_NOCTTY);
+    ASSERT_TRUE(far >= 0 && ::grantpt(far) == 0 && ::unlockpt(far) == 0);
+    const QString path = ::ptsname(far);
+    const int other = ::open(path.toLocal8Bit().constData(), O_RDWR | O_NOCTTY);
+    ASSERT_EQ(::flock(other, LOCK_EX | LOCK_NB), 0); // as a program does that uses it
+    window.studio().devices.connectTo("serial://" + path + "?baud=57600");
+    EXPECT_TRUE(logs("There is no link: ")) << story();
+    EXPECT_TRUE(tells("No link to ")) << story();
+    EXPECT_TRUE(tells("uses " + path)) << story();
+    EXPECT_TRUE(tells("lose ")) << "what to close";
+    EXPECT_EQ(phase(), LinkPhase::connecting);
+    EXPECT_EQ(::flock(other, LOCK_UN), 0);
+    EXPECT_TRUE(reaches(LinkPhase::handshake)) << "the studio tries again by itself: " << story();
+    window.click("devices.disconnect");
+    EXPECT_TRUE(reaches(LinkPhase::off));
+    ::close(other);
+    ::close(far);
+}
+
+TEST_F(DeviceConflict, APortThatIsNotThereIsTold) {
+    window.studio().devices.connectTo("serial:///dev/ttyNothing?baud=57600");
+    EXPECT_TRUE(logs("There is no link: there is no port /dev/ttyNothing.")) << story();
+    EXPECT_TRUE(tells("There is no port /dev/ttyNothing. Plug the device in, or choose another port."));
 }
 
 INSTANTIATE_TEST_SUITE_P(Boards, DeviceFaults, ::testing::Values("tablet", "uno", "xarm", "maestro"),

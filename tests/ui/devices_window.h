@@ -77,9 +77,15 @@ protected:
     }
     void startServos() {
         window.click("devices.next");
-        ASSERT_TRUE(eventually([&] { return phase() == LinkPhase::live || next() == "Start anyway"; }));
+        ASSERT_TRUE(eventually([&] { return allDriven() || next() == "Start anyway"; })) << story();
         if (next() == "Start anyway") window.click("devices.next");
-        ASSERT_TRUE(eventually([&] { return allDriven(); }));
+        ASSERT_TRUE(eventually([&] { return allDriven(); })) << story();
+    }
+    /// What the card and the log say, for those who read of a failure.
+    [[nodiscard]] std::string story() {
+        QString text = window.text("devices.card.title") + " [" + next() + "]";
+        for (const studio::DeviceLogLine& line : window.studio().devices.log()) text += "\n" + line.text;
+        return text.toStdString();
     }
     /// Every servo of the rig has its pulse.
     [[nodiscard]] bool allDriven() {

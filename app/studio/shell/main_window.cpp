@@ -14,6 +14,7 @@
 
 #include "app/studio/look/icons.h"
 #include "app/studio/look/palette.h"
+#include "app/studio/recording/replay_bar.h"
 #include "app/studio/shell/command_palette.h"
 #include "app/studio/shell/drop_overlay.h"
 #include "app/studio/shell/escape_twice.h"
@@ -86,6 +87,7 @@ MainWindow::MainWindow(Studio& studio, std::vector<std::unique_ptr<Workspace>> w
     data_->stack = new QStackedWidget(body);
     data_->status = new StatusLine(studio, body);
     column->addWidget(data_->stack, 1);
+    column->addWidget(makeReplayBar(studio, body));
     column->addWidget(data_->status);
     setCentralWidget(body);
     connect(data_->bar, &TopBar::workspaceChosen, this, &MainWindow::showWorkspace);

@@ -39,8 +39,8 @@ public:
         setProperty("look", "panel");
         setAttribute(Qt::WA_StyledBackground);
         auto* layout = new QVBoxLayout(this);
-        layout->setContentsMargins(16, 12, 16, 8);
-        layout->setSpacing(8);
+        layout->setContentsMargins(16, 8, 16, 8);
+        layout->setSpacing(6);
         layout->addWidget(card_);
         layout->addWidget(makeHint());
         layout->addWidget(makeStrokeLegend(this));

@@ -4,8 +4,8 @@
 #include <utility>
 
 #include <QGridLayout>
-#include <QHBoxLayout>
 #include <QSignalBlocker>
+#include <QVBoxLayout>
 
 #include "app/workspaces/field/dock_parts.h"
 
@@ -36,8 +36,12 @@ constexpr Words kWords[] = {
 
 SimulatedPanel::SimulatedPanel(std::shared_ptr<SimulatedSteering> steering, const QString& name, QWidget* parent)
     : QWidget(parent), steering_(std::move(steering)) {
-    auto* grid = new QGridLayout(this);
-    grid->setContentsMargins(0, 4, 0, 0);
+    auto* column = new QVBoxLayout(this);
+    column->setContentsMargins(0, 4, 0, 4);
+    column->setSpacing(8);
+    setSizePolicy(QSizePolicy::Preferred, QSizePolicy::Fixed);
+    auto* grid = new QGridLayout;
+    column->addLayout(grid);
     grid->setHorizontalSpacing(8);
     grid->setVerticalSpacing(4);
     grid->setColumnStretch(1, 1);
@@ -83,7 +87,7 @@ SimulatedPanel::SimulatedPanel(std::shared_ptr<SimulatedSteering> steering, cons
     release_ = button("release", "Move by itself", "Lets go of the body: it goes its own way again",
                       [](SimulatedOrders& orders) { orders.held.reset(); });
     faults->addWidget(release_, 1, 1);
-    grid->addLayout(faults, grid->rowCount(), 0, 1, 3);
+    column->addLayout(faults);
     refresh();
 }
 

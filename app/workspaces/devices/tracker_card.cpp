@@ -7,6 +7,7 @@
 #include <QPushButton>
 
 #include "app/studio/look/palette.h"
+#include "app/studio/widgets/plot_axes.h"
 #include "app/workspaces/devices/device_words.h"
 #include "app/workspaces/field/dock_parts.h"
 
@@ -21,6 +22,13 @@ constexpr const char* kRoleTexts[] = {"Nobody", "Head", "Device", "Pointer"};
 int indexOf(std::optional<PoseRole> role) { return static_cast<int>(std::ranges::find(kRoles, role) - kRoles); }
 
 QString asText(const std::string& words) { return QString::fromStdString(words); }
+
+/// A long address may break after its marks, so that it does not make the dock wide.
+QString breakable(QString text) {
+    constexpr QChar kMayBreak(0x200B);
+    for (const char* mark : {"/", "?", "&", ",", "="}) text.replace(mark, mark + QString(kMayBreak));
+    return text;
+}
 
 QString headlineOf(const TrackerStatus& status) {
     QString source = asText(status.source);
@@ -43,8 +51,8 @@ void showHistory(Plot& plot, const QString& name, double least, const std::deque
     if (!known) return plot.setCurves({});
     double most = least;
     for (const double value : values)
-        if (std::isfinite(value)) most = std::max(most, 1.2 * value);
-    plot.setRange(0.0, most);
+        if (std::isfinite(value)) most = std::max(most, value);
+    plot.setRange(0.0, niceTick(1.02 * most, 1)); // so that the axis is labelled at its end
     plot.setCurves({{name, currentPalette().accent, std::vector<double>(values.begin(), values.end())}});
 }
 
@@ -98,7 +106,7 @@ QLabel* TrackerCard::addText(const QString& part, const char* look) {
 void TrackerCard::addHead() {
     source_ = addText("source", "heading");
     auto* where = addText("address", "muted");
-    where->setText(address_);
+    where->setText(breakable(address_));
     layout_->removeWidget(where);
     auto* close = new QPushButton("Close");
     close->setObjectName(name_ + ".close");
@@ -172,7 +180,7 @@ void TrackerCard::addBodyRow() {
 
 void TrackerCard::show(const OpenTracker& tracker) {
     const TrackerStatus& status = tracker.status;
-    source_->setText(headlineOf(status));
+    source_->setText(breakable(headlineOf(status)));
     unproven_->setVisible(!status.verified);
     advice_->setText(sentence(status.advice));
     advice_->setVisible(!status.advice.empty());
@@ -183,7 +191,7 @@ void TrackerCard::show(const OpenTracker& tracker) {
                                                  : QString("unknown"));
     reason_->setText("Rejected last: " + asText(status.lastRejected));
     reason_->setVisible(!status.lastRejected.empty());
-    event_->setText("Odd last: " + tracker.event);
+    event_->setText("Noticed last: " + tracker.event);
     event_->setVisible(!tracker.event.isEmpty());
     showSource(tracker);
     showBodies(status);
@@ -214,12 +222,12 @@ void TrackerCard::showBodies(const TrackerStatus& status) {
 /// What only cameras and simulated trackers have.
 void TrackerCard::showSource(const OpenTracker& tracker) {
     if (tracker.status.camera) {
-        if (camera_ == nullptr) layout_->insertWidget(sourceRow_, camera_ = new CameraPanel(name_ + ".camera"));
+        if (camera_ == nullptr) layout_->insertWidget(sourceRow_, camera_ = new CameraPanel(name_ + ".camera", this));
         camera_->show(*tracker.status.camera);
     }
     if (tracker.steering) {
         if (simulated_ == nullptr)
-            layout_->insertWidget(sourceRow_, simulated_ = new SimulatedPanel(tracker.steering, name_ + ".sim"));
+            layout_->insertWidget(sourceRow_, simulated_ = new SimulatedPanel(tracker.steering, name_ + ".sim", this));
         simulated_->refresh();
     }
 }

@@ -83,9 +83,6 @@ private:
     }
 
     void addTrackers(QVBoxLayout& layout) {
-        cardsLayout_ = new QVBoxLayout;
-        cardsLayout_->setSpacing(8);
-        layout.addLayout(cardsLayout_);
         above_ = makeHeading("From above");
         layout.addWidget(above_);
         top_ = new TopView;
@@ -100,6 +97,9 @@ private:
         hint_->setWordWrap(true);
         hint_->hide();
         layout.addWidget(hint_);
+        cardsLayout_ = new QVBoxLayout;
+        cardsLayout_->setSpacing(8);
+        layout.addLayout(cardsLayout_);
     }
 
     void openNow() { studio_.trackers.open(addresses_->currentText(), network_->isChecked()); }
