@@ -108,7 +108,7 @@ struct ServoLink::Data {
         std::unique_lock lock(mutex, std::try_to_lock);
         while (!lock.owns_lock()) {
             takeStop();
-            std::this_thread::yield();
+            std::this_thread::sleep_for(std::chrono::microseconds(100)); // whoever holds it may need this processor
             (void)lock.try_lock();
         }
         woken = false;

@@ -24,8 +24,8 @@ struct BoardFaults {
     double noise = 0.0;     ///< share of bytes that arrive broken, both ways
     double drop = 0.0;      ///< share of bytes that are lost, both ways
     double jitterMilliseconds = 0.0;
-    double volts = 7.4;              ///< of its battery
-    std::optional<std::size_t> held; ///< a hand holds the horn of this servo, in the order of `servos`
+    double volts = 7.4;                ///< of its battery
+    std::optional<std::size_t> held{}; ///< a hand holds the horn of this servo, in the order of `servos`
     bool operator==(const BoardFaults&) const = default;
 };
 
