@@ -97,11 +97,12 @@ public:
     /// Empty where the key is not there.
     std::vector<double> numbers(const std::string& key, const std::string& what) {
         const auto text = take(key);
+        const std::string wrong = key + " must be " + what;
         std::vector<double> all;
         if (!text) return all;
         for (const std::string_view part : split(*text, ',')) {
             const auto value = numberOf(part);
-            if (!value || std::abs(*value) > 100.0 * kFarthest) refuse(key + " must be " + what);
+            if (!value || std::abs(*value) > 100.0 * kFarthest) refuse(wrong);
             all.push_back(*value);
         }
         return all;
@@ -197,7 +198,7 @@ BoardAddress parseBoardAddress(std::string_view uri) {
 
 MarkerBoard parseBoardWords(std::string_view query) {
     Words words(query, query);
-    const MarkerBoard board = boardOf(words);
+    MarkerBoard board = boardOf(words);
     words.expectNothingMore();
     return board;
 }

@@ -69,6 +69,7 @@ std::vector<CameraInfo> listCameras(const fs::path& folder) {
         byNumber[std::stoi(node.substr(5))] = {"/dev/" + node, name.empty() ? "a camera" : name};
     }
     std::vector<CameraInfo> cameras;
+    cameras.reserve(byNumber.size());
     for (auto& [number, camera] : byNumber) cameras.push_back(std::move(camera));
     return cameras;
 }

@@ -57,7 +57,11 @@ std::unique_ptr<Tracker> openWith(const SimulatedBodyAddress& address, const std
     steering->order(ordersOf(address));
     const std::chrono::milliseconds step(std::clamp(std::lround(1000.0 / address.rateHertz), 1L, 10L));
     return std::make_unique<TrackerThread>(
-        log, [=] { return std::make_unique<SimulatedWork>(address, log, options, steering); }, step);
+        log,
+        [address, log, options = std::move(options), steering = std::move(steering)] {
+            return std::make_unique<SimulatedWork>(address, log, options, steering);
+        },
+        step);
 }
 
 } // namespace

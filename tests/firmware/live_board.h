@@ -24,8 +24,8 @@ public:
     void cutTheLine() { plugged_ = false; }
     void mendTheLine() { plugged_ = true; }
     [[nodiscard]] std::vector<Pulse> pulses() const; ///< all until now
-    /// When each of them was made by the wall's clock, milliseconds: on a busy machine the board stands still at times,
-    /// and takes what the studio said meanwhile all at once.
+    /// When the board had last heard the studio before each of them, by the wall's clock, milliseconds: on a busy
+    /// machine it stands still at times, and takes what was said meanwhile all at once.
     [[nodiscard]] std::vector<double> wallTimes() const;
     /// Width of the newest pulse on a pin, if it is no older than two frames; 0: no pulse.
     [[nodiscard]] double widthNow(int pin) const;
