@@ -15,6 +15,7 @@ constexpr Microseconds kIdlePause{50'000};
 constexpr Microseconds kStaysBusy{200'000};   // after the last motion: the rate cap may hold its end back
 constexpr Microseconds kCloseAtLast{750'000}; // after the time to close: not all was sent, or servos may not be limp
 constexpr Microseconds kTrustedRest{2'000'000};
+constexpr Microseconds kReadAnew{400'000}; // after its last pulse, a position that is told was read since
 constexpr Microseconds kSilencePatience{4'000'000};
 constexpr Microseconds kStallTold{200'000};
 constexpr double kMostUnsentSeconds = 0.025; // of a serial link: what a STOP may find before it
@@ -75,10 +76,12 @@ void ServoEngine::Data::noticeReboot() {
          "Check its battery and power supply, then start the servos again.");
 }
 
+/// What was read while a servo still moved is not where it was let go.
 void ServoEngine::Data::readPositions() {
     const ControllerState& state = controller->state();
     for (std::size_t i = 0; i < std::min(state.readPulses.size(), profile.servos.size()); ++i)
-        if (state.readPulses[i]) guard.setKnown(i, strokeOf(profile.servos[i], *state.readPulses[i]));
+        if (state.readPulses[i] && (i >= heldAt.size() || passed - heldAt[i] >= kReadAnew))
+            guard.setKnown(i, strokeOf(profile.servos[i], *state.readPulses[i]));
 }
 
 bool ServoEngine::Data::stalled() {
@@ -147,6 +150,9 @@ void ServoEngine::Data::drive() {
 void ServoEngine::Data::send() {
     const GuardedPulses step = guard.step(now);
     pulses.assign(step.servos().begin(), step.servos().end());
+    heldAt.resize(pulses.size(), passed - kReadAnew);
+    for (std::size_t i = 0; i < pulses.size(); ++i)
+        if (pulses[i].attached) heldAt[i] = passed;
     if (made != profile && guard.withinLimits()) {
         made = profile;
         controller->setLimits(made);

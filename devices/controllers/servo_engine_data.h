@@ -62,6 +62,7 @@ struct ServoEngine::Data {
     std::uint64_t reconnects = 0;
     std::uint64_t bytesSent = 0;
     std::vector<GuardedPulse> pulses; ///< of the last step
+    std::vector<Microseconds> heldAt; ///< by servo, when it last got a pulse
     std::vector<long> written;        ///< the same in the controller's steps, when pulses were last written
 
     void see(Microseconds time);

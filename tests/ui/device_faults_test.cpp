@@ -1,8 +1,10 @@
 #include <chrono>
+#include <csignal>
 #include <cstdlib>
 
 #include <fcntl.h>
 #include <sys/file.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include <QSlider>
@@ -195,25 +197,58 @@ TEST_P(DeviceFaults, TheWordThatThisIsTheBoardIsKeptForThisBoardAlone) {
     EXPECT_EQ(window.studio().devices.profile().identity, "simulated " + board->name());
 }
 
+/// Another program that has a port for itself.
+class OtherProgram {
+public:
+    explicit OtherProgram(const std::string& path) {
+        int told[2] = {-1, -1};
+        if (::pipe(told) != 0) return;
+        process_ = ::fork();
+        if (process_ == 0) { // nothing but calls of the system from here on
+            const int port = ::open(path.c_str(), O_RDWR | O_NOCTTY);
+            const char locked = ::flock(port, LOCK_EX | LOCK_NB) == 0 ? 1 : 0;
+            (void)!::write(told[1], &locked, 1);
+            for (;;) ::pause();
+        }
+        char locked = 0;
+        hasIt_ = ::read(told[0], &locked, 1) == 1 && locked == 1;
+        ::close(told[0]);
+        ::close(told[1]);
+    }
+    ~OtherProgram() { end(); }
+    OtherProgram(const OtherProgram&) = delete;
+    OtherProgram& operator=(const OtherProgram&) = delete;
+    [[nodiscard]] bool hasIt() const { return hasIt_; }
+    void end() {
+        if (process_ <= 0) return;
+        ::kill(process_, SIGKILL);
+        ::waitpid(process_, nullptr, 0);
+        process_ = -1;
+    }
+
+private:
+    pid_t process_ = -1;
+    bool hasIt_ = false;
+};
+
 using DeviceConflict = DevicesWindow;
 
 TEST_F(DeviceConflict, APortThatAnotherProgramHasIsToldAndTakenOnceItIsFree) {
     const int far = ::posix_openpt(O_RDWR | O_NOCTTY);
     ASSERT_TRUE(far >= 0 && ::grantpt(far) == 0 && ::unlockpt(far) == 0);
     const QString path = ::ptsname(far);
-    const int other = ::open(path.toLocal8Bit().constData(), O_RDWR | O_NOCTTY);
-    ASSERT_EQ(::flock(other, LOCK_EX | LOCK_NB), 0); // as a program does that uses it
+    OtherProgram other(path.toStdString());
+    ASSERT_TRUE(other.hasIt());
     window.studio().devices.connectTo("serial://" + path + "?baud=57600");
     EXPECT_TRUE(logs("There is no link: ")) << story();
     EXPECT_TRUE(tells("No link to ")) << story();
-    EXPECT_TRUE(tells("uses " + path)) << story();
-    EXPECT_TRUE(tells("lose ")) << "what to close";
+    EXPECT_TRUE(tells("he program ") && tells(" uses " + path)) << story();
+    EXPECT_TRUE(tells("Close ")) << story();
     EXPECT_EQ(phase(), LinkPhase::connecting);
-    EXPECT_EQ(::flock(other, LOCK_UN), 0);
+    other.end();
     EXPECT_TRUE(reaches(LinkPhase::handshake)) << "the studio tries again by itself: " << story();
     window.click("devices.disconnect");
     EXPECT_TRUE(reaches(LinkPhase::off));
-    ::close(other);
     ::close(far);
 }
 
