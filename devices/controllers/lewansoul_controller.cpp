@@ -20,6 +20,7 @@ constexpr double kHidZero = 500.0;
 constexpr Microseconds kDrain{50'000};
 constexpr Microseconds kAskAgain{400'000};
 constexpr Microseconds kPositionsEvery{250'000};
+constexpr Microseconds kStoppedEvery{100'000}; // positions while servos are let go: a start soon after begins there
 constexpr Microseconds kVoltageEvery{800'000}; // a sign of life where positions are not told
 constexpr Microseconds kStale{1'000'000};
 constexpr Microseconds kFrameGap{100'000};
@@ -119,6 +120,7 @@ private:
     Repeater voltage_{kVoltageEvery};
     Repeater question_{kAskAgain};
     Repeater positions_{kPositionsEvery};
+    Repeater stopped_{kStoppedEvery};
 };
 
 void LewansoulController::begin(Microseconds now) {
@@ -129,6 +131,7 @@ void LewansoulController::begin(Microseconds now) {
     voltage_.reset();
     question_.reset();
     positions_.reset();
+    stopped_.reset();
     std::fill(readAt_.begin(), readAt_.end(), Microseconds{0});
 }
 
@@ -223,6 +226,7 @@ ControllerBase::Messages LewansoulController::detachments(std::span<const std::s
             channels.push_back(plan_.servos()[servo].channel);
         messages.push_back(lewansoul::unload(channels));
     }
+    if (stopped_.take(now())) positions_.reset(); // where did they come to rest?
     return messages;
 }
 
