@@ -4,18 +4,17 @@
 #include <memory>
 #include <mutex>
 #include <string>
-#include <thread>
 #include <vector>
 
 #include <QCoreApplication>
 
 #include "app/cli/checks.h"
 #include "app/cli/commands.h"
+#include "app/cli/device_link.h"
 #include "core/base/error.h"
 #include "core/base/resources.h"
 #include "core/rig/rig_file.h"
 #include "devices/controllers/controller_kinds.h"
-#include "devices/controllers/servo_link.h"
 #include "devices/simulator/simulated_bench.h"
 #include "devices/transport/discovery.h"
 
@@ -23,11 +22,8 @@ namespace lumorph::cli {
 
 namespace {
 
-using std::chrono::milliseconds;
 using Clock = std::chrono::steady_clock;
 
-constexpr milliseconds kPause{20};
-constexpr std::chrono::seconds kAnswerWithin{8}; // an Arduino starts anew when its port is opened
 constexpr std::chrono::seconds kMoveWithin{60};
 
 struct Arguments {
@@ -89,71 +85,6 @@ DeviceProfile profileOf(const Arguments& arguments) {
     profile.restOnExit = false; // a command leaves things where it was told to
     return profile;
 }
-
-/// A link for the time of a command; what it tells goes to stderr as it comes.
-class Link {
-public:
-    Link(const Arguments& arguments, const Session& session,
-         std::function<void(std::span<const std::uint8_t>, bool)> onWire = {})
-        : session_(session), link_(profileOf(arguments), options(std::move(onWire))), confirmed_(arguments.confirmed) {
-        link_.connect();
-    }
-
-    ServoLink& operator*() noexcept { return link_; }
-    ServoLink* operator->() noexcept { return &link_; }
-
-    /// Waits until a condition on the status holds; false when the time is over.
-    template <class Condition> bool until(Condition condition, Clock::duration limit) {
-        const auto end = Clock::now() + limit;
-        while (!condition(link_.status())) {
-            if (limit > Clock::duration::zero() && Clock::now() > end) return false;
-            session_.throwIfCancelled();
-            tell();
-            std::this_thread::sleep_for(kPause);
-        }
-        tell();
-        return true;
-    }
-
-    /// Throws DeviceError with what the link says is wrong.
-    void untilReady() {
-        const auto answered = [](const LinkStatus& status) {
-            return status.controller.phase == ControllerPhase::refused ||
-                   (status.phase >= LinkPhase::unidentified && status.phase != LinkPhase::lost);
-        };
-        if (!until(answered, kAnswerWithin) || link_.status().controller.phase == ControllerPhase::refused)
-            throwTrouble();
-        if (link_.status().phase != LinkPhase::unidentified || !confirmed_) return;
-        link_.confirmIdentity();
-        if (!until([](const LinkStatus& status) { return status.phase == LinkPhase::disarmed; }, kAnswerWithin))
-            throwTrouble();
-    }
-
-    [[noreturn]] void throwTrouble() {
-        const LinkStatus status = link_.status();
-        const std::string subject = link_.profile().address;
-        if (status.trouble) throw DeviceError(subject, status.trouble->why, status.trouble->remedy);
-        throw DeviceError(subject, "it does not answer", "check its power, the address and the kind of controller");
-    }
-
-private:
-    LinkOptions options(std::function<void(std::span<const std::uint8_t>, bool)> onWire) {
-        LinkOptions options;
-        options.bench = &bench_;
-        options.onWire = std::move(onWire);
-        return options;
-    }
-    void tell() {
-        for (const LinkEvent& event : link_.takeEvents())
-            std::fprintf(stderr, "%s%s%s\n", event.text.c_str(),
-                         event.remedy.empty() ? "" : " Remedy: ", event.remedy.c_str());
-    }
-
-    const Session& session_;
-    SimulatedBench bench_;
-    ServoLink link_;
-    bool confirmed_;
-};
 
 /// Links and trackers live in threads of Qt, which wants to know of a program.
 struct QtProgram {
@@ -229,8 +160,8 @@ void list(const Arguments& arguments) {
 
 void probe(const Arguments& arguments, const Session& session) {
     const QtProgram program;
-    Link link(arguments, session);
-    link.untilReady();
+    DeviceLink link(profileOf(arguments), session);
+    link.untilReady(arguments.confirmed);
     // Voltages and positions are asked for after the handshake.
     static_cast<void>(link.until([](const LinkStatus& status) { return status.controller.volts.has_value(); },
                                  std::chrono::seconds(1)));
@@ -251,15 +182,15 @@ void monitor(const Arguments& arguments, const Session& session) {
         std::printf("\n");
         std::fflush(stdout);
     };
-    Link link(arguments, session, print);
+    DeviceLink link(profileOf(arguments), session, print);
     const auto seconds = std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(arguments.seconds));
     static_cast<void>(link.until([](const LinkStatus&) { return false; }, seconds));
 }
 
 void move(const Arguments& arguments, const Session& session) {
     const QtProgram program;
-    Link link(arguments, session);
-    const std::size_t count = link->profile().servos.size();
+    const DeviceProfile profile = profileOf(arguments);
+    const std::size_t count = profile.servos.size();
     if (arguments.actuator < 0 || static_cast<std::size_t>(arguments.actuator) >= count)
         throw InvalidInput("actuator " + std::to_string(arguments.actuator),
                            "the profile has " + std::to_string(count) + " of them", "count from 0");
@@ -267,7 +198,8 @@ void move(const Arguments& arguments, const Session& session) {
         arguments.level >= arguments.levels)
         throw InvalidInput("level " + std::to_string(arguments.level),
                            "there are " + std::to_string(arguments.levels) + " levels", "count from 0");
-    link.untilReady();
+    DeviceLink link(profile, session);
+    link.untilReady(arguments.confirmed);
     if (link->status().phase == LinkPhase::unidentified)
         throw DeviceError(arguments.uri, "it is not certain what this board is",
                           "look at it with 'lumorph device probe', and say --is-right if it is");

@@ -2,7 +2,9 @@
 #include <memory>
 
 #include "app/cli/commands.h"
+#include "app/cli/recording_check.h"
 #include "app/recording/recording.h"
+#include "core/base/error.h"
 
 namespace lumorph::cli {
 
@@ -14,16 +16,9 @@ struct Arguments {
     bool json = false;
 };
 
-double lastSecond(const Recording& recording) {
-    Microseconds last{0};
-    if (!recording.frames.empty()) last = recording.frames.back().time;
-    if (!recording.events.empty()) last = std::max(last, recording.events.back().time);
-    return static_cast<double>(last.count()) / 1e6;
-}
-
 void printInfo(const Arguments& arguments) {
     const Recording recording = readRecording(arguments.file);
-    const double seconds = lastSecond(recording);
+    const double seconds = secondsOf(recording);
     if (arguments.json) {
         nlohmann::json facts(recording.facts);
         printJson({{"seconds", seconds},
@@ -42,6 +37,60 @@ void printInfo(const Arguments& arguments) {
                     event.remedy.empty() ? "" : "; ", event.remedy.c_str());
 }
 
+void printJsonOf(const RecordingCheck& check, std::size_t rows) {
+    nlohmann::json difference;
+    if (const auto& found = check.servos.difference)
+        difference = {
+            {"row", found->row}, {"seconds", 1e-6 * static_cast<double>(found->time.count())}, {"text", found->text}};
+    printJson({{"equal", check.equal()},
+               {"rows", rows},
+               {"inputs", check.servos.inputs},
+               {"bytesSent", check.servos.bytesSent},
+               {"difference", difference},
+               {"commands", check.commands},
+               {"commandsOfFrames", check.framed}});
+}
+
+void printTextOf(const RecordingCheck& check, const Arguments& arguments) {
+    std::printf("%s: %llu inputs of the servos were run again, %llu bytes sent\n", arguments.file.c_str(),
+                static_cast<unsigned long long>(check.servos.inputs),
+                static_cast<unsigned long long>(check.servos.bytesSent));
+    if (const auto& found = check.servos.difference)
+        std::printf("  bytes: different in row %zu, at %.6f s: %s\n", found->row,
+                    1e-6 * static_cast<double>(found->time.count()), found->text.c_str());
+    else
+        std::printf("  bytes: equal bit for bit\n");
+    if (check.commands == 0)
+        std::printf("  states: no frames were recorded together with commands\n");
+    else if (check.framed == check.commands)
+        std::printf("  states: all %llu commands are estimated states of the frames, bit for bit\n",
+                    static_cast<unsigned long long>(check.commands));
+    else
+        std::printf("  states: %llu of %llu commands are estimated states of the frames; the first that is none: %s\n",
+                    static_cast<unsigned long long>(check.framed), static_cast<unsigned long long>(check.commands),
+                    check.firstOther.c_str());
+}
+
+void checkFile(const Arguments& arguments) {
+    const Recording recording = readRecording(arguments.file);
+    RecordingCheck check;
+    try {
+        check = checkRecording(recording);
+    } catch (const DataError& error) {
+        throw DataError(arguments.file + ": " + error.subject(), error.why(), error.remedy());
+    }
+    if (arguments.json)
+        printJsonOf(check, recording.servo.size());
+    else
+        printTextOf(check, arguments);
+    if (check.servos.difference)
+        throw DataError(arguments.file, "the same inputs give other bytes than those that were sent",
+                        "the recording was changed, or made by another version of the program");
+    if (!check.equal())
+        throw DataError(arguments.file, "servos were told what no frame says",
+                        "servos tested by hand are told so; else the recording was changed");
+}
+
 } // namespace
 
 void addRecordingCommands(CLI::App& app) {
@@ -56,6 +105,10 @@ void addRecordingCommands(CLI::App& app) {
     table->add_option("recording", arguments->file, "A .lumorphrec file")->required();
     table->add_option("-o,--output", arguments->folder, "Folder for frames.csv, poses.csv, events.csv and servo.csv")
         ->required();
+    CLI::App* check = group->add_subcommand("check", "Run a recording's servos again, and compare bit for bit");
+    check->add_option("recording", arguments->file, "A .lumorphrec file")->required();
+    check->add_flag("--json", arguments->json, "Print one JSON value");
+    check->callback([arguments] { checkFile(*arguments); });
     table->callback([arguments] { exportCsv(readRecording(arguments->file), arguments->folder); });
 }
 

@@ -32,6 +32,25 @@ std::string numbered(const char* name, std::size_t count) {
     return header;
 }
 
+constexpr std::size_t kRowsBetweenLooks = 1024;
+
+/// Tells how far a table is, and stops where the user wants it.
+class Lines {
+public:
+    Lines(const Progress& progress, std::size_t all, const char* name) : progress_(progress), all_(all), name_(name) {}
+    void step() {
+        if (++done_ % kRowsBetweenLooks != 0) return;
+        progress_.throwIfCancelled();
+        progress_.report(static_cast<double>(done_) / static_cast<double>(all_), name_);
+    }
+
+private:
+    const Progress& progress_;
+    std::size_t all_;
+    std::size_t done_ = 0;
+    const char* name_;
+};
+
 template <class Values> std::string cells(const Values& values, std::size_t count) {
     std::string text;
     for (std::size_t i = 0; i < count; ++i) {
@@ -41,7 +60,8 @@ template <class Values> std::string cells(const Values& values, std::size_t coun
     return text;
 }
 
-std::string framesCsv(const std::vector<FrameRow>& frames) {
+std::string framesCsv(const std::vector<FrameRow>& frames, const Progress& progress) {
+    Lines lines(progress, frames.size(), "frames");
     std::size_t servos = 0;
     std::size_t levels = 0;
     for (const FrameRow& row : frames) {
@@ -53,6 +73,7 @@ std::string framesCsv(const std::vector<FrameRow>& frames) {
         << numbered("estimated_", servos)
         << ",device_x_m,device_y_m,device_z_m,eye_x_m,eye_y_m,eye_z_m,viewer,iou,frame_ms,latency_ms\n";
     for (const FrameRow& row : frames) {
+        lines.step();
         out << seconds(row.time) << ',' << row.number << ',' << number(row.seconds) << ',' << number(row.turned) << ','
             << number(row.sceneSeconds) << cells(row.levels, levels) << cells(row.wanted, servos)
             << cells(row.estimated, servos);
@@ -64,10 +85,12 @@ std::string framesCsv(const std::vector<FrameRow>& frames) {
     return out.str();
 }
 
-std::string posesCsv(const std::vector<PoseRow>& poses) {
+std::string posesCsv(const std::vector<PoseRow>& poses, const Progress& progress) {
+    Lines lines(progress, poses.size(), "poses");
     std::ostringstream out;
     out << "time_s,measured_s,source,name,id,valid,x_m,y_m,z_m,qx,qy,qz,qw\n";
     for (const PoseRow& row : poses) {
+        lines.step();
         const auto& [p, q] = row.pose;
         out << seconds(row.time) << ',' << seconds(row.measured) << ',' << quoted(row.source) << ',' << quoted(row.name)
             << ',' << row.id << ',' << (row.valid ? 1 : 0);
@@ -77,20 +100,25 @@ std::string posesCsv(const std::vector<PoseRow>& poses) {
     return out.str();
 }
 
-std::string eventsCsv(const std::vector<EventRow>& events) {
+std::string eventsCsv(const std::vector<EventRow>& events, const Progress& progress) {
+    Lines lines(progress, events.size(), "events");
     std::ostringstream out;
     out << "time_s,kind,text,remedy\n";
-    for (const EventRow& row : events)
+    for (const EventRow& row : events) {
+        lines.step();
         out << seconds(row.time) << ',' << quoted(row.kind) << ',' << quoted(row.text) << ',' << quoted(row.remedy)
             << '\n';
+    }
     return out.str();
 }
 
-std::string servoCsv(const std::vector<ServoRow>& rows) {
+std::string servoCsv(const std::vector<ServoRow>& rows, const Progress& progress) {
+    Lines lines(progress, rows.size(), "servo traffic");
     constexpr auto kDigits = "0123456789ABCDEF";
     std::ostringstream out;
     out << "time_s,kind,bytes\n";
     for (const ServoRow& row : rows) {
+        lines.step();
         out << seconds(row.time) << ',' << quoted(row.kind) << ',';
         for (const std::uint8_t byte : row.bytes) out << kDigits[byte >> 4] << kDigits[byte & 15];
         out << '\n';
@@ -104,14 +132,14 @@ void write(const std::filesystem::path& file, const std::string& text) {
 
 } // namespace
 
-void exportCsv(const Recording& recording, const std::filesystem::path& folder) {
+void exportCsv(const Recording& recording, const std::filesystem::path& folder, const Progress& progress) {
     std::error_code problem;
     std::filesystem::create_directories(folder, problem);
     if (problem) throw DeviceError(folder.string(), problem.message(), "choose a folder that you may write to");
-    write(folder / "frames.csv", framesCsv(recording.frames));
-    write(folder / "poses.csv", posesCsv(recording.poses));
-    write(folder / "events.csv", eventsCsv(recording.events));
-    write(folder / "servo.csv", servoCsv(recording.servo));
+    write(folder / "frames.csv", framesCsv(recording.frames, progress.part(0.0, 0.5)));
+    write(folder / "poses.csv", posesCsv(recording.poses, progress.part(0.5, 0.8)));
+    write(folder / "events.csv", eventsCsv(recording.events, progress.part(0.8, 0.8)));
+    write(folder / "servo.csv", servoCsv(recording.servo, progress.part(0.8, 1.0)));
 }
 
 } // namespace lumorph

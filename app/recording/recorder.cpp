@@ -14,14 +14,16 @@
 
 #include "app/recording/database.h"
 #include "app/recording/session_tables.h"
+#include "core/base/error.h"
 
 namespace lumorph {
 namespace {
 
 using namespace session_tables;
-using Row = std::variant<FrameRow, PoseRow, EventRow, ServoRow>;
+using Row = std::variant<FrameRow, PoseRow, EventRow, ServoRow, FileRow>;
 
 constexpr std::chrono::milliseconds kPause{200}; // what a crash may cost
+constexpr std::size_t kMostWaiting = 1'000'000;  // minutes of a disk that stands still
 
 std::int64_t us(Microseconds time) { return time.count(); }
 
@@ -47,6 +49,7 @@ public:
         pose_.emplace(database_.prepare("INSERT INTO pose VALUES (NULL, ?, ?, ?, ?, ?, ?, ?)"));
         event_.emplace(database_.prepare("INSERT INTO event VALUES (NULL, ?, ?, ?, ?)"));
         servo_.emplace(database_.prepare("INSERT INTO servo VALUES (NULL, ?, ?, ?)"));
+        file_.emplace(database_.prepare("INSERT OR REPLACE INTO file VALUES (?, ?)"));
     }
 
     void write(const std::vector<Row>& rows) {
@@ -60,6 +63,7 @@ private:
     void write(const PoseRow& row);
     void write(const EventRow& row);
     void write(const ServoRow& row);
+    void write(const FileRow& row);
 
     static void run(Statement& statement) {
         statement.step();
@@ -67,7 +71,7 @@ private:
     }
 
     Database database_;
-    std::optional<Statement> frame_, pose_, event_, servo_;
+    std::optional<Statement> frame_, pose_, event_, servo_, file_;
 };
 
 void Writer::write(const FrameRow& row) {
@@ -123,28 +127,39 @@ void Writer::write(const ServoRow& row) {
     run(*servo_);
 }
 
+void Writer::write(const FileRow& row) {
+    file_->bind(0, row.name);
+    file_->bind(1, std::span<const std::uint8_t>(row.bytes));
+    run(*file_);
+}
+
 } // namespace
 
 struct Recorder::Data {
     Data(const std::filesystem::path& where, const std::map<std::string, std::string>& facts)
-        : file(where), writer(where, facts) {}
+        : file(where), writer(std::make_unique<Writer>(where, facts)) {}
 
     void add(Row row);
     void run(const std::stop_token& stop);
 
     std::filesystem::path file;
-    Writer writer;
+    std::unique_ptr<Writer> writer; ///< until it is finished
     mutable std::mutex mutex;
     std::condition_variable_any changed;
     std::vector<Row> waiting;
     std::string trouble;
+    bool ended = false;
     std::atomic<std::uint64_t> rows = 0;
     std::jthread thread; ///< last, so that it ends before what it uses
 };
 
 void Recorder::Data::add(Row row) {
     const std::scoped_lock lock(mutex);
-    if (!trouble.empty()) return;
+    if (!trouble.empty() || ended) return;
+    if (waiting.size() >= kMostWaiting) {
+        trouble = DeviceError(file.string(), "the disk does not keep up", "record to a faster one").what();
+        return;
+    }
     waiting.push_back(std::move(row));
     ++rows;
 }
@@ -161,7 +176,7 @@ void Recorder::Data::run(const std::stop_token& stop) {
         }
         if (due.empty()) continue;
         try {
-            writer.write(due);
+            writer->write(due);
         } catch (const std::exception& error) {
             const std::scoped_lock lock(mutex);
             trouble = error.what();
@@ -175,12 +190,24 @@ Recorder::Recorder(const std::filesystem::path& file, const std::map<std::string
     data_->thread = std::jthread([data = data_.get()](const std::stop_token& stop) { data->run(stop); });
 }
 
-Recorder::~Recorder() = default;
+Recorder::~Recorder() { finish(); }
+
+void Recorder::finish() {
+    if (!data_->thread.joinable()) return;
+    {
+        const std::scoped_lock lock(data_->mutex);
+        data_->ended = true;
+    }
+    data_->thread.request_stop();
+    data_->thread.join();
+    data_->writer.reset();
+}
 
 void Recorder::add(FrameRow row) { data_->add(std::move(row)); }
 void Recorder::add(PoseRow row) { data_->add(std::move(row)); }
 void Recorder::add(EventRow row) { data_->add(std::move(row)); }
 void Recorder::add(ServoRow row) { data_->add(std::move(row)); }
+void Recorder::add(FileRow row) { data_->add(std::move(row)); }
 
 const std::filesystem::path& Recorder::file() const noexcept { return data_->file; }
 std::uint64_t Recorder::rows() const noexcept { return data_->rows; }

@@ -17,13 +17,17 @@ public:
     /// `facts` are kept beside the rows: "project" (JSON), "profile" (JSON), "program", whatever helps to run the
     /// session again. Throws DeviceError where the file cannot be made.
     Recorder(const std::filesystem::path& file, const std::map<std::string, std::string>& facts);
-    /// Writes what is left.
+    /// Finishes.
     ~Recorder();
 
     void add(FrameRow row);
     void add(PoseRow row);
     void add(EventRow row);
     void add(ServoRow row);
+    void add(FileRow row);
+
+    /// Writes what is left and closes the file; may take as long as the disk. Rows that come later are dropped.
+    void finish();
 
     [[nodiscard]] const std::filesystem::path& file() const noexcept;
     [[nodiscard]] std::uint64_t rows() const noexcept; ///< handed over so far

@@ -9,6 +9,7 @@
 #include "app/recording/database.h"
 #include "app/recording/session_tables.h"
 #include "core/base/error.h"
+#include "core/scene/project_assets.h"
 
 namespace lumorph {
 namespace {
@@ -16,12 +17,13 @@ namespace {
 using namespace session_tables;
 
 constexpr std::size_t kMostNumbers = 100'000; // of one row
+constexpr std::size_t kRowsBetweenLooks = 1024;
 
 /// Reads one table; knows where it is, for its errors.
 class Reader {
 public:
     Reader(Database& database, const std::filesystem::path& file, std::string table, const char* columns)
-        : statement_(database.prepare("SELECT " + std::string(columns) + " FROM " + table + " ORDER BY time_us, id")),
+        : statement_(database.prepare("SELECT " + std::string(columns) + " FROM " + table + " ORDER BY id")),
           file_(file.string()), table_(std::move(table)) {}
 
     bool next() {
@@ -100,10 +102,42 @@ EventRow eventRow(const Reader& reader) {
 
 ServoRow servoRow(const Reader& reader) { return {reader.time(), reader.row().text(1), reader.row().bytes(2)}; }
 
-void checkVersion(Database& database, const std::filesystem::path& file) {
+/// How far the reading of all tables is.
+class Share {
+public:
+    Share(Database& database, const Progress& progress) : progress_(progress) {
+        for (const char* table : {"frame", "pose", "event", "servo"}) {
+            // As good as a count, and found at once.
+            Statement last = database.prepare("SELECT max(id) FROM " + std::string(table));
+            if (last.step()) all_ += static_cast<double>(last.integer(0));
+        }
+    }
+    void step() {
+        if (++done_ % kRowsBetweenLooks != 0) return;
+        progress_.throwIfCancelled();
+        progress_.report(std::min(1.0, static_cast<double>(done_) / std::max(1.0, all_)), "reading");
+    }
+
+private:
+    const Progress& progress_;
+    double all_ = 0.0;
+    std::size_t done_ = 0;
+};
+
+template <class Row> void readAll(Reader reader, Row (*rowOf)(const Reader&), std::vector<Row>& rows, Share& share) {
+    for (; reader.next(); share.step()) rows.push_back(rowOf(reader));
+}
+
+/// Rows of several threads come nearly in order.
+template <class Row> void sortByTime(std::vector<Row>& rows) {
+    if (!std::ranges::is_sorted(rows, {}, &Row::time)) std::ranges::stable_sort(rows, {}, &Row::time);
+}
+
+/// Gives the version.
+std::int64_t checkVersion(Database& database, const std::filesystem::path& file) {
     Statement version = database.prepare("PRAGMA user_version");
     const std::int64_t found = version.step() ? version.integer(0) : 0;
-    if (found == kVersion) return;
+    if (found >= 1 && found <= kVersion) return found;
     if (found > kVersion)
         throw DataError(file.string(), "a newer Lumorph recorded it", "open it with that version, or update this one");
     throw DataError(file.string(), "it is a database, but no recording", "choose a file that Lumorph recorded");
@@ -111,23 +145,48 @@ void checkVersion(Database& database, const std::filesystem::path& file) {
 
 } // namespace
 
-Recording readRecording(const std::filesystem::path& file) {
+Recording readRecording(const std::filesystem::path& file, const Progress& progress) {
     Database database(file, Database::Mode::readOnly);
     checkVersion(database, file);
     Recording recording;
     Statement facts = database.prepare("SELECT name, value FROM fact");
     while (facts.step()) recording.facts[facts.text(0)] = facts.text(1);
-    Reader frames(database, file, "frame",
-                  "time_us, number, seconds, turned, scene_seconds, levels, wanted, estimated, world_from_device, "
-                  "device_from_target, eye, viewer, handing_over, iou, milliseconds, latency");
-    while (frames.next()) recording.frames.push_back(frameRow(frames));
-    Reader poses(database, file, "pose", "time_us, measured_us, source, name, body, valid, pose");
-    while (poses.next()) recording.poses.push_back(poseRow(poses));
-    Reader events(database, file, "event", "time_us, kind, text, remedy");
-    while (events.next()) recording.events.push_back(eventRow(events));
-    Reader servo(database, file, "servo", "time_us, kind, bytes");
-    while (servo.next()) recording.servo.push_back(servoRow(servo));
+    Share share(database, progress);
+    readAll(Reader(database, file, "frame",
+                   "time_us, number, seconds, turned, scene_seconds, levels, wanted, estimated, world_from_device, "
+                   "device_from_target, eye, viewer, handing_over, iou, milliseconds, latency"),
+            &frameRow, recording.frames, share);
+    readAll(Reader(database, file, "pose", "time_us, measured_us, source, name, body, valid, pose"), &poseRow,
+            recording.poses, share);
+    readAll(Reader(database, file, "event", "time_us, kind, text, remedy"), &eventRow, recording.events, share);
+    readAll(Reader(database, file, "servo", "time_us, kind, bytes"), &servoRow, recording.servo, share);
+    progress.throwIfCancelled();
+    sortByTime(recording.frames);
+    sortByTime(recording.poses);
+    sortByTime(recording.events);
     return recording;
+}
+
+std::vector<FileRow> readFiles(const std::filesystem::path& file) {
+    Database database(file, Database::Mode::readOnly);
+    if (checkVersion(database, file) < 2) return {};
+    std::vector<FileRow> files;
+    Statement rows = database.prepare("SELECT name, bytes FROM file ORDER BY name");
+    while (rows.step()) {
+        files.push_back({rows.text(0), rows.bytes(1)});
+        const std::string& name = files.back().name;
+        if (!isAssetName(name) || name.find(':') != std::string::npos)
+            throw DataError(file.string(), "a file in it has the name '" + name + "', which leaves its folder",
+                            "choose another recording");
+    }
+    return files;
+}
+
+double secondsOf(const Recording& recording) {
+    Microseconds last{0};
+    if (!recording.frames.empty()) last = recording.frames.back().time;
+    if (!recording.events.empty()) last = std::max(last, recording.events.back().time);
+    return static_cast<double>(last.count()) / 1e6;
 }
 
 const FrameRow* frameAt(const Recording& recording, double seconds) {

@@ -1,8 +1,29 @@
 #include "app/recording/session_rows.h"
 
+#include <algorithm>
+
 #include "core/base/error.h"
 
 namespace lumorph {
+namespace {
+
+/// As the target stood at that time of its animation; nothing: as its file has it.
+std::shared_ptr<const std::vector<glm::vec3>> posed(const MatchTarget* target, double seconds) {
+    if (target == nullptr || !target->model || target->animation < 0 || target->duration <= 0.0) return nullptr;
+    return std::make_shared<const std::vector<glm::vec3>>(meshAt(*target, seconds).positions);
+}
+
+/// One an actuator and within the field's, whatever field it was recorded with.
+State levelsOf(const FrameRow& row, const MatchField* field) {
+    State state;
+    for (const int level : row.levels) state.push_back(Level{level});
+    if (field == nullptr) return state;
+    state.resize(row.estimated.size(), Level{0});
+    for (Level& level : state) level.index = std::clamp(level.index, 0, field->field.levels - 1);
+    return state;
+}
+
+} // namespace
 
 FrameRow rowOf(const MatchFrame& frame, Microseconds begin) {
     FrameRow row;
@@ -41,11 +62,12 @@ MatchFrame frameOf(const FrameRow& row, const MatchWish& like) {
     frame.target = like.target;
     frame.seconds = row.seconds;
     frame.turned = Angle::radians(row.turned);
+    frame.targetPositions = posed(like.target.get(), row.seconds);
     frame.deviceFromTarget = row.deviceFromTarget;
     auto positions = std::make_shared<std::vector<glm::vec3>>(like.rig->restMesh().positions.size());
     like.rig->deform(row.estimated, *positions);
     frame.devicePositions = std::move(positions);
-    for (const int level : row.levels) frame.wanted.push_back(Level{level});
+    frame.wanted = levelsOf(row, like.field.get());
     frame.wantedStrokes = row.wanted;
     frame.estimatedStrokes = row.estimated;
     frame.iouEstimated = row.iou;

@@ -66,9 +66,17 @@ struct ServoRow {
     bool operator==(const ServoRow&) const = default;
 };
 
+/// A file that the session's project needs, by the name that the project has for it.
+struct FileRow {
+    std::string name;
+    std::vector<std::uint8_t> bytes;
+    bool operator==(const FileRow&) const = default;
+};
+
 /// A frame as it is recorded; `begin` is when the recording began, by the frame's clock.
 [[nodiscard]] FrameRow rowOf(const MatchFrame& frame, Microseconds begin);
-/// A frame to show again: of the rig, scene and field of `like`, deformed as the row says.
+/// A frame to show again: of the rig, target, scene and field of `like`, deformed and posed as the row says. Throws
+/// InvalidInput for another rig's row.
 [[nodiscard]] MatchFrame frameOf(const FrameRow& row, const MatchWish& like);
 
 } // namespace lumorph

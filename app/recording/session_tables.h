@@ -9,9 +9,10 @@
 /// How rows lie in the file. Private to app/recording.
 namespace lumorph::session_tables {
 
-inline constexpr int kVersion = 1;
+inline constexpr int kVersion = 2; ///< 1 knew no files
 inline constexpr auto kSchema = R"(
     CREATE TABLE fact (name TEXT PRIMARY KEY, value TEXT NOT NULL) WITHOUT ROWID;
+    CREATE TABLE file (name TEXT PRIMARY KEY, bytes BLOB NOT NULL) WITHOUT ROWID;
     CREATE TABLE frame (id INTEGER PRIMARY KEY, time_us INTEGER NOT NULL, number INTEGER, seconds REAL, turned REAL,
         scene_seconds REAL, levels BLOB, wanted BLOB, estimated BLOB, world_from_device BLOB, device_from_target BLOB,
         eye BLOB, viewer TEXT, handing_over INTEGER, iou REAL, milliseconds REAL, latency REAL);

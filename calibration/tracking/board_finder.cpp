@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <set>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include <opencv2/aruco.hpp>
@@ -19,6 +21,8 @@ namespace {
 constexpr int kFewestPoints = 6;
 constexpr double kWorstFit = 5.0; // pixels
 constexpr int kMostSquares = 50;
+constexpr double kSameTurn = 0.99; // cosine of half the angle: 16 degrees
+constexpr double kDoubt = 2.0;     // a pose that flips over must fit that much better
 
 struct NamedDictionary {
     std::string_view name;
@@ -50,10 +54,14 @@ int markersOf(const MarkerBoard& board) {
     return board.kind == MarkerBoard::Kind::charuco ? board.columns * board.rows / 2 : board.columns * board.rows;
 }
 
+// Between ArUco markers; squares of a chessboard meet.
+double gapOf(const MarkerBoard& board) {
+    return board.kind == MarkerBoard::Kind::charuco ? 0.0 : board.square - board.marker;
+}
+
 // OpenCV's boards have their origin at the upper left corner, and +Y down the page.
 cv::Point3f upThePage(const MarkerBoard& board, const cv::Point3f& point) {
-    const double gap = board.kind == MarkerBoard::Kind::charuco ? 0.0 : board.square - board.marker;
-    return {point.x, static_cast<float>(board.rows * board.square - gap) - point.y, 0.0F};
+    return {point.x, static_cast<float>(board.rows * board.square - gapOf(board)) - point.y, 0.0F};
 }
 
 cv::Ptr<cv::aruco::CharucoBoard> charucoBoard(const MarkerBoard& board) {
@@ -66,6 +74,25 @@ cv::Ptr<cv::aruco::GridBoard> gridBoard(const MarkerBoard& board) {
     return cv::aruco::GridBoard::create(board.columns, board.rows, static_cast<float>(board.marker),
                                         static_cast<float>(board.square - board.marker),
                                         cv::aruco::getPredefinedDictionary(dictionaryOf(board)->id));
+}
+
+glm::dvec2 placeOf(const cv::Point3f& point) { return {point.x, point.y}; }
+
+// Black cells of a marker, those that touch along a row as one box.
+void addMarker(std::vector<BlackBox>& boxes, const cv::aruco::Dictionary& dictionary, int id,
+               const glm::dvec2& upperLeft, double side) {
+    const int cells = dictionary.markerSize + 2;
+    cv::Mat marker;
+    dictionary.drawMarker(id, cells, marker, 1);
+    const double cell = side / cells;
+    for (int row = 0; row < cells; ++row)
+        for (int begin = 0; begin < cells;) {
+            int end = begin;
+            while (end < cells && marker.at<std::uint8_t>(row, end) == 0) ++end;
+            if (end > begin)
+                boxes.push_back({upperLeft + cell * glm::dvec2(begin, -row - 1), cell * glm::dvec2(end - begin, 1)});
+            begin = std::max(end, begin + 1);
+        }
 }
 
 /// Corners of the board and where they were seen.
@@ -148,6 +175,10 @@ void checkBoard(const MarkerBoard& board) {
                "use a larger dictionary");
 }
 
+glm::dvec2 sizeOf(const MarkerBoard& board) {
+    return glm::dvec2(board.columns, board.rows) * board.square - gapOf(board);
+}
+
 struct BoardFinder::Data {
     Data(const MarkerBoard& which, const CalibratedCamera& from) : board(which), camera(from) {
         intrinsics =
@@ -162,7 +193,7 @@ struct BoardFinder::Data {
     }
 
     [[nodiscard]] Matches matches(const cv::Mat& picture) const;
-    [[nodiscard]] std::optional<BoardSighting> sighting(const Matches& matches) const;
+    [[nodiscard]] std::optional<BoardSighting> sighting(const Matches& matches, const std::optional<Pose>& hint) const;
     [[nodiscard]] int pointCount() const {
         return charuco ? (board.columns - 1) * (board.rows - 1) : 4 * board.columns * board.rows;
     }
@@ -173,6 +204,7 @@ struct BoardFinder::Data {
     cv::Ptr<cv::aruco::DetectorParameters> parameters = cv::aruco::DetectorParameters::create();
     cv::Ptr<cv::aruco::CharucoBoard> charuco;
     cv::Ptr<cv::aruco::GridBoard> grid;
+    int cornersSeen = 0;
 };
 
 Matches BoardFinder::Data::matches(const cv::Mat& picture) const {
@@ -200,19 +232,26 @@ Matches BoardFinder::Data::matches(const cv::Mat& picture) const {
     return found;
 }
 
-// A plane seen from afar may look alike in two poses: the one that fits better is refined.
-std::optional<BoardSighting> BoardFinder::Data::sighting(const Matches& matches) const {
+// A plane seen from afar may look alike in two poses: the one that fits better is taken, or, where they fit about as
+// well, the one that goes on from before.
+std::optional<BoardSighting> BoardFinder::Data::sighting(const Matches& matches,
+                                                         const std::optional<Pose>& hint) const {
     if (static_cast<int>(matches.seen.size()) < kFewestPoints) return std::nullopt;
     std::vector<cv::Mat> turns, ways;
     cv::solvePnPGeneric(matches.board, matches.seen, intrinsics, distortion, turns, ways, false, cv::SOLVEPNP_IPPE);
     std::optional<BoardSighting> best;
+    double least = 0.0;
     for (std::size_t i = 0; i < turns.size(); ++i) {
         cv::solvePnPRefineLM(matches.board, matches.seen, intrinsics, distortion, turns[i], ways[i]);
         const double error = errorOf(matches, intrinsics, distortion, turns[i], ways[i]);
         if (!(error < kWorstFit) || !(ways[i].at<double>(2) > 0.0)) continue;
-        if (best && best->reprojectionError <= error) continue;
+        const Pose pose = poseOf(turns[i], ways[i]);
+        const bool isTurned = hint && std::abs(glm::dot(pose.rotation, hint->rotation)) < kSameTurn;
+        const double cost = isTurned ? kDoubt * error : error;
+        if (best && least <= cost) continue;
         const auto points = static_cast<int>(matches.seen.size());
-        best = {poseOf(turns[i], ways[i]), error, points, static_cast<double>(points) / pointCount()};
+        best = {pose, error, points, static_cast<double>(points) / pointCount()};
+        least = cost;
     }
     return best;
 }
@@ -227,17 +266,21 @@ BoardFinder::~BoardFinder() = default;
 BoardFinder::BoardFinder(BoardFinder&&) noexcept = default;
 BoardFinder& BoardFinder::operator=(BoardFinder&&) noexcept = default;
 
-std::optional<BoardSighting> BoardFinder::find(std::span<const std::uint8_t> grey) {
+int BoardFinder::cornersSeen() const noexcept { return data_->cornersSeen; }
+
+std::optional<BoardSighting> BoardFinder::find(std::span<const std::uint8_t> grey, const std::optional<Pose>& hint) {
     const glm::ivec2 size = data_->camera.size;
     if (grey.size() != static_cast<std::size_t>(size.x) * static_cast<std::size_t>(size.y))
         throw InvalidInput("camera picture", "it has another size than the camera was calibrated with",
                            "set the camera to " + std::to_string(size.x) + " x " + std::to_string(size.y));
     // OpenCV only reads it.
     const cv::Mat picture(size.y, size.x, CV_8UC1, const_cast<std::uint8_t*>(grey.data()));
+    data_->cornersSeen = 0;
     try {
         Matches matches = data_->matches(picture);
+        data_->cornersSeen = static_cast<int>(matches.seen.size());
         refine(picture, data_->board, matches);
-        return data_->sighting(matches);
+        return data_->sighting(matches, hint);
     } catch (const cv::Exception&) { // corners that lie in one line have no pose
         return std::nullopt;
     }
@@ -245,9 +288,8 @@ std::optional<BoardSighting> BoardFinder::find(std::span<const std::uint8_t> gre
 
 Image BoardFinder::page(const MarkerBoard& board, double pixelsPerMetre) {
     checkBoard(board);
-    const double gap = board.kind == MarkerBoard::Kind::charuco ? 0.0 : board.square - board.marker;
-    const cv::Size size(static_cast<int>(std::lround((board.columns * board.square - gap) * pixelsPerMetre)),
-                        static_cast<int>(std::lround((board.rows * board.square - gap) * pixelsPerMetre)));
+    const glm::dvec2 pixels = sizeOf(board) * pixelsPerMetre;
+    const cv::Size size(static_cast<int>(std::lround(pixels.x)), static_cast<int>(std::lround(pixels.y)));
     cv::Mat drawn;
     if (board.kind == MarkerBoard::Kind::charuco)
         charucoBoard(board)->draw(size, drawn);
@@ -260,6 +302,26 @@ Image BoardFinder::page(const MarkerBoard& board, double pixelsPerMetre) {
             page.at(x, y) = {grey, grey, grey, 255};
         }
     return page;
+}
+
+std::vector<BlackBox> BoardFinder::blackBoxes(const MarkerBoard& board) {
+    checkBoard(board);
+    std::vector<BlackBox> boxes;
+    const cv::Ptr<cv::aruco::Board> all = board.kind == MarkerBoard::Kind::charuco
+                                              ? cv::Ptr<cv::aruco::Board>(charucoBoard(board))
+                                              : cv::Ptr<cv::aruco::Board>(gridBoard(board));
+    std::set<std::pair<int, int>> marked; // squares that hold a marker
+    for (std::size_t i = 0; i < all->ids.size(); ++i) {
+        const glm::dvec2 upper = placeOf(upThePage(board, all->objPoints[i].front()));
+        addMarker(boxes, *all->dictionary, all->ids[i], upper, board.marker);
+        marked.emplace(static_cast<int>(upper.x / board.square), static_cast<int>(upper.y / board.square));
+    }
+    if (board.kind == MarkerBoard::Kind::charuco)
+        for (int column = 0; column < board.columns; ++column)
+            for (int row = 0; row < board.rows; ++row)
+                if (!marked.contains({column, row}))
+                    boxes.push_back({board.square * glm::dvec2(column, row), glm::dvec2(board.square)});
+    return boxes;
 }
 
 Pose worldFromDevice(const BoardSighting& sighting, const CalibratedCamera& camera, const Pose& deviceFromBoard) {

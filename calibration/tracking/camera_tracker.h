@@ -1,38 +1,48 @@
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 
-#include "calibration/tracking/board_finder.h"
+#include "calibration/tracking/board_address.h"
+#include "core/base/clock.h"
+#include "core/render/image.h"
 
 namespace lumorph {
 
+/// What one picture told of the body to which the board is fixed.
+struct BoardPicture {
+    std::uint64_t number = 0;
+    Microseconds seen{0};     ///< when the camera took it, as well as that is known
+    std::optional<Pose> pose; ///< in the world; empty where the board is not to be seen
+};
+
 struct CameraTrackerOptions {
-    std::string source; ///< "0" or "/dev/video0" for a webcam, or a video file
-    MarkerBoard board;
-    CalibratedCamera camera; ///< intrinsics at the size of its pictures, and where it stands
-    Pose deviceFromBoard;
-    bool repeat = false; ///< a file begins anew at its end
+    BoardAddress address;
     std::shared_ptr<const Clock> clock = std::make_shared<SteadyClock>();
-    std::function<void(const PoseSample&)> onPose; ///< in the tracker's thread, for every picture; must return at once
+    std::function<void(const BoardPicture&)> onPicture; ///< in the tracker's thread; must return at once
 };
 
 struct CameraTrackerStatus {
     bool open = false;
     bool ended = false; ///< a file came to its end
+    glm::ivec2 size{0}; ///< of its pictures
     std::uint64_t pictures = 0;
     double picturesPerSecond = 0.0;
     std::optional<BoardSighting> sighting; ///< in the newest picture
     double foundShare = 0.0;               ///< of the last hundred pictures
+    std::string assumptions;               ///< what lens and place are taken for; a sentence or two
     std::string advice;                    ///< what keeps it from seeing the board; empty while all is well
+    std::shared_ptr<const Image> preview;  ///< a few times a second, while somebody asks for the status; null at first
 };
 
-/// A camera that sees a marker board fixed to the device, in a thread of its own. For those without a motion capture
-/// system.
+/// A camera, or a video in its place, that sees a marker board fixed to a body; in a thread of its own. For those
+/// without a motion capture system.
 class CameraTracker {
 public:
-    /// Throws as BoardFinder; a camera that cannot be opened is told by `status` and tried again every second.
+    /// Throws as checkBoard; a camera that cannot be opened is told by `status` and tried again every second.
     explicit CameraTracker(CameraTrackerOptions options);
     ~CameraTracker();
     [[nodiscard]] CameraTrackerStatus status() const;

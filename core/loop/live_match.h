@@ -34,6 +34,19 @@ struct MatchField {
 
 enum class MatchMethod { voting, refined };
 
+struct MatchFrame;
+struct MatchWish;
+
+/// Frames that were made elsewhere, such as those of a recording. One thread at a time asks for them.
+class FrameSource {
+public:
+    virtual ~FrameSource() = default;
+    /// The frame to be seen at `now`, by the loop's clock, of the wish's rig; the same object while it is the same.
+    [[nodiscard]] virtual std::shared_ptr<const MatchFrame> frame(const MatchWish& wish, Microseconds now) = 0;
+    /// Whether it will be another one later.
+    [[nodiscard]] virtual bool moves() const = 0;
+};
+
 /// What the user wants now; the loop takes the newest one for each frame.
 struct MatchWish {
     std::shared_ptr<const Rig> rig;            ///< always there
@@ -56,6 +69,8 @@ struct MatchWish {
     std::shared_ptr<const PoseBoard> poses; ///< tracked heads and device; without a head the scene's own eye
     bool scenePlaying = true;               ///< the scene's time runs
     std::optional<double> sceneSeek;        ///< scene time to go to, seconds; heeded once for each new value
+
+    std::shared_ptr<FrameSource> source; ///< its frames instead of the loop's own; the actuators stand as they say
 
     // With a scene: `virtualOnly` holds the servos at rest; else, while `live`, they follow the scene's visible driving
     // item (a TargetItem with the role physical is the target, matched as ever), or without one what they would follow

@@ -88,6 +88,7 @@ struct MatchLoop::Data {
     void hold(const MatchWish& wish, double sinceLast, MatchFrame& frame);
     void joinBends(const MatchWish& wish, MatchFrame& frame);
     void move(const MatchWish& wish, double sinceLast, MatchFrame& frame);
+    [[nodiscard]] std::shared_ptr<const MatchFrame> shown(const MatchWish& wish);
     [[nodiscard]] bool restsAfter(const MatchWish& wish, const MatchFrame& frame) const;
 
     const Clock& clock;
@@ -179,14 +180,25 @@ void MatchLoop::Data::move(const MatchWish& wish, double sinceLast, MatchFrame& 
     frame.devicePositions = motion.deformed();
 }
 
+/// A frame of another source. Whoever comes back from there goes on where its actuators stood.
+std::shared_ptr<const MatchFrame> MatchLoop::Data::shown(const MatchWish& wish) {
+    if (!wish.rig) throw InvalidInput("device", "there is no rig", "open one first");
+    std::shared_ptr<const MatchFrame> frame = wish.source->frame(wish, clock.now());
+    motion.follow(wish.rig);
+    motion.standAt(frame->estimatedStrokes);
+    settled = !wish.source->moves();
+    return frame;
+}
+
 MatchLoop::MatchLoop(const Clock& clock) : data_(std::make_unique<Data>(clock)) {}
 MatchLoop::~MatchLoop() = default;
 MatchLoop::MatchLoop(MatchLoop&&) noexcept = default;
 MatchLoop& MatchLoop::operator=(MatchLoop&&) noexcept = default;
 
 std::shared_ptr<const MatchFrame> MatchLoop::step(const MatchWish& wish, double sinceLast) {
-    checkWish(wish, sinceLast);
     data_->settled = false;
+    if (wish.source) return data_->shown(wish);
+    checkWish(wish, sinceLast);
     auto frame = std::make_shared<MatchFrame>();
     frame->number = ++data_->number;
     frame->time = data_->clock.now();

@@ -14,6 +14,8 @@ class MotionStage {
 public:
     /// An actuator stays where it is when the rig has the same actuators as the one before; else all are at rest.
     void follow(const std::shared_ptr<const Rig>& rig);
+    /// The actuators stand there, one stroke each.
+    void standAt(std::span<const double> strokes) { motion_.reset(strokes); }
     /// Moves towards the wanted strokes; while stopped all hold still, and start softly afterwards.
     void move(std::span<const double> wanted, double seconds, bool stopped);
     /// Within 1e-5 strokes of what is wanted they have arrived; then a motion ends exactly there.

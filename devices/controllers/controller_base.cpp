@@ -11,16 +11,25 @@ namespace lumorph {
 
 namespace {
 
-constexpr double kRecovered = 0.2;    // volts above the limit that end the warning: under load it sags
-constexpr double kLeastBattery = 0.5; // volts; less is an input that nothing is wired to
-constexpr double kMostBattery = 30.0; // volts; more is a broken answer
-constexpr double kShareOfLink = 0.47; // of its bytes, for pulses; the rest is for questions and hiccups
+constexpr double kRecovered = 0.2;         // volts above the limit that end the warning: under load it sags
+constexpr double kLeastBattery = 0.5;      // volts; less is an input that nothing is wired to
+constexpr double kMostBattery = 30.0;      // volts; more is a broken answer
+constexpr double kShareOfLink = 0.47;      // of its bytes, for pulses; the rest is for questions and hiccups
+constexpr double kDetachShare = 0.65;      // of its bytes, for letting servos go: nothing else matters then
+constexpr Microseconds kDetachGap{25'000}; // at least
 constexpr std::size_t kMostQuestions = 64;
+
+/// The scale with what follows from the traits.
+PulseScale scaleOf(PulseScale scale, const DeviceProfile& profile, const ControllerTraits& traits) {
+    scale.step = traits.pulseStep;
+    scale.perSecond = setsPerSecond(profile, traits);
+    return scale;
+}
 
 } // namespace
 
 ControllerBase::ControllerBase(const DeviceProfile& profile, const PulseScale& scale, ControllerTraits traits)
-    : plan_(profile.servos, scale) {
+    : plan_(profile.servos, scaleOf(scale, profile, traits)) {
     state_.traits = std::move(traits);
     state_.readPulses.resize(profile.servos.size());
 }
@@ -51,6 +60,7 @@ void ControllerBase::tick(Microseconds now) {
     now_ = now;
     plan_.tick(now);
     work(now);
+    state_.detaching = plan_.detaching();
     if (now - heard_ < kSilence) return;
     state_.answering = false;
     trouble(Concern::silence, silence(!everHeard_));
@@ -65,6 +75,11 @@ void ControllerBase::heard(Microseconds now) {
     everHeard_ = true;
     state_.answering = true;
     trouble(Concern::silence, std::nullopt);
+}
+
+void ControllerBase::setLimits(const DeviceProfile& profile) {
+    plan_.setServos(profile.servos, setsPerSecond(profile, state_.traits));
+    limitsChanged(profile);
 }
 
 void ControllerBase::confirm() {
@@ -135,6 +150,7 @@ std::vector<std::vector<std::uint8_t>> ControllerBase::takeOutput() {
         output.insert(output.end(), std::make_move_iterator(moves.begin()), std::make_move_iterator(moves.end()));
     }
     if (!output.empty()) lastWritten_ = now_;
+    state_.detaching = plan_.detaching();
     return output;
 }
 
@@ -154,9 +170,19 @@ double setsPerSecond(int baud, std::size_t bytes) {
     return kShareOfLink * baud / 10.0 / static_cast<double>(std::max<std::size_t>(bytes, 1)); // 8N1: ten bits a byte
 }
 
+Microseconds detachGap(int baud, std::size_t bytes) {
+    const double seconds = 10.0 * static_cast<double>(bytes) / (kDetachShare * baud);
+    return std::max(kDetachGap, Microseconds(std::lround(1e6 * seconds)));
+}
+
 double setsPerSecond(const DeviceProfile& profile, const ControllerTraits& traits) {
     const double wanted = profile.commandsPerSecond;
     return wanted > 0.0 ? std::min(wanted, traits.commandsPerSecond) : traits.commandsPerSecond;
+}
+
+void refuseHid(const DeviceProfile& profile, const DeviceAddress& address, const char* why, const char* remedy) {
+    if (std::holds_alternative<HidAddress>(address))
+        throw InvalidInput("device address '" + profile.address + "'", why, remedy);
 }
 
 void checkChannels(const DeviceProfile& profile, int last) {

@@ -46,8 +46,10 @@ public:
     void opened(const std::string& product, Microseconds now) final;
     void received(std::span<const std::uint8_t> bytes, Microseconds now) final;
     void tick(Microseconds now) final;
+    void setLimits(const DeviceProfile& profile) final;
     void confirm() final;
     void send(const GuardedPulses& pulses, Microseconds now) final { command(pulses.servos(), now); }
+    void detachAgain() final { plan_.detachAgain(); }
     [[nodiscard]] std::vector<std::vector<std::uint8_t>> takeOutput() final;
     [[nodiscard]] const ControllerState& state() const final { return state_; }
 
@@ -55,6 +57,7 @@ protected:
     using Messages = std::vector<std::vector<std::uint8_t>>;
     enum class Concern { refusal, silence, board, battery }; ///< the first that there is, is told
 
+    /// Step and rate of the scale are those of profile and traits.
     ControllerBase(const DeviceProfile& profile, const PulseScale& scale, ControllerTraits traits);
 
     virtual void begin(Microseconds now) = 0;
@@ -62,6 +65,8 @@ protected:
     virtual void work(Microseconds now) = 0;
     [[nodiscard]] virtual Messages detachments(std::span<const std::size_t> servos) = 0;
     [[nodiscard]] virtual Messages changes(std::span<const PulsePlan::Change> changes) = 0;
+    /// The plan has taken other limits over.
+    virtual void limitsChanged(const DeviceProfile&) {}
     /// Why it may be silent: it never answered since the link was opened, or has fallen silent.
     [[nodiscard]] virtual LinkTrouble silence(bool never) const = 0;
 
@@ -76,6 +81,8 @@ protected:
     void rebooted();
     void trouble(Concern concern, std::optional<LinkTrouble> trouble);
     void takeVoltage(double volts);
+    /// What it was told last.
+    [[nodiscard]] Microseconds now() const noexcept { return now_; }
     /// When something was last written.
     [[nodiscard]] Microseconds lastWritten() const noexcept { return lastWritten_; }
     [[nodiscard]] std::optional<std::size_t> servoOn(int channel) const;
@@ -100,8 +107,12 @@ private:
 [[nodiscard]] int baudOf(const DeviceAddress& address);
 /// Sets of so many bytes that a serial link takes a second, half of it left for everything else.
 [[nodiscard]] double setsPerSecond(int baud, std::size_t bytes);
+/// Pause between two times that servos are told to let go in so many bytes: a line should be free to carry the answers.
+[[nodiscard]] Microseconds detachGap(int baud, std::size_t bytes);
 /// Sets a second that the profile wants and the link takes.
 [[nodiscard]] double setsPerSecond(const DeviceProfile& profile, const ControllerTraits& traits);
+/// Throws InvalidInput with these words for a HID address.
+void refuseHid(const DeviceProfile& profile, const DeviceAddress& address, const char* why, const char* remedy);
 /// Throws InvalidInput that names the first servo whose channel is not 0 to `last`.
 void checkChannels(const DeviceProfile& profile, int last);
 

@@ -20,28 +20,15 @@ namespace {
 
 using nlohmann::json;
 namespace fs = std::filesystem;
+namespace limits = profile_limits;
 
 constexpr const char* kFormat = "lumorph device";
 constexpr int kSchema = 1;
 constexpr const char* kReplace = "choose another file, or restore this one from a copy";
 constexpr JsonLimits kLimits{1U << 20, 8, 4096};
 
-// Beyond these, hobby servos run into their end stops or are driven by nobody.
-constexpr double kLeastPulse = 500.0;
-constexpr double kGreatestPulse = 2500.0;
 constexpr std::size_t kMostServos = 64;
 constexpr std::size_t kLongestText = 500;
-
-struct Bounds {
-    double min;
-    double max;
-};
-constexpr Bounds kVelocity{0.001, 20.0};       // strokes a second
-constexpr Bounds kAcceleration{0.001, 1000.0}; // strokes a second, a second
-constexpr Bounds kCommandRate{1.0, 400.0};
-constexpr Bounds kStagger{0.0, 10.0};
-constexpr Bounds kSlowShare{0.01, 1.0};
-constexpr Bounds kControllerNumber{0, 127};
 
 constexpr std::array<std::pair<ControllerKind, std::string_view>, 3> kKinds = {
     {{ControllerKind::firmata, "firmata"},
@@ -63,24 +50,25 @@ int greatestChannel(ControllerKind kind) {
 
 std::string numberText(double value) { return std::isfinite(value) ? json(value).dump() : std::to_string(value); }
 
-void requireWithin(const std::string& subject, const char* what, double value, Bounds bounds) {
-    if (value >= bounds.min && value <= bounds.max) return;
+void requireWithin(const std::string& subject, const char* what, double value, ProfileLimits bounds) {
+    if (value >= bounds.least && value <= bounds.most) return;
     throw InvalidInput(subject, std::string(what) + " is " + numberText(value),
-                       "use " + numberText(bounds.min) + " to " + numberText(bounds.max));
+                       "use " + numberText(bounds.least) + " to " + numberText(bounds.most));
 }
 
 void checkServo(const ServoSetup& servo, const std::string& subject, ControllerKind kind) {
     requireWithin(subject, "the channel", servo.channel, {0.0, static_cast<double>(greatestChannel(kind))});
-    requireWithin(subject, "the least pulse", servo.pulseMin, {kLeastPulse, kGreatestPulse});
-    requireWithin(subject, "the greatest pulse", servo.pulseMax, {kLeastPulse, kGreatestPulse});
+    requireWithin(subject, "the least pulse", servo.pulseMin, limits::kPulse);
+    requireWithin(subject, "the greatest pulse", servo.pulseMax, limits::kPulse);
     const double span = servo.pulseMax - servo.pulseMin;
     if (!(span >= 1.0))
         throw InvalidInput(
             subject, "its pulses run from " + numberText(servo.pulseMin) + " to " + numberText(servo.pulseMax),
             "let the greatest be greater than the least, and reverse the servo if it turns the wrong way");
     requireWithin(subject, "the trim", servo.trim, {-0.5 * span, 0.5 * span});
-    requireWithin(subject, "the velocity", servo.maxVelocity, kVelocity);
-    requireWithin(subject, "the acceleration", servo.maxAcceleration, kAcceleration);
+    requireWithin(subject, "the velocity", servo.maxVelocity, limits::kVelocity);
+    requireWithin(subject, "the acceleration", servo.maxAcceleration, limits::kAcceleration);
+    requireWithin(subject, "the place at the end", servo.exitStroke, {0.0, 1.0});
 }
 
 void requireShort(const char* what, const std::string& text) {
@@ -95,7 +83,8 @@ json documentOf(const ServoSetup& servo) {
             {"reversed", servo.reversed},
             {"trim", servo.trim},
             {"maxVelocity", servo.maxVelocity},
-            {"maxAcceleration", servo.maxAcceleration}};
+            {"maxAcceleration", servo.maxAcceleration},
+            {"exitStroke", servo.exitStroke}};
 }
 
 std::string_view nameOf(ControllerKind kind) {
@@ -117,6 +106,7 @@ json documentOf(const DeviceProfile& profile) {
             {"commandsPerSecond", profile.commandsPerSecond},
             {"staggerSeconds", profile.staggerSeconds},
             {"slowShare", profile.slowShare},
+            {"handDistance", profile.handDistance},
             {"restOnExit", profile.restOnExit}};
 }
 
@@ -130,16 +120,21 @@ void refuseUnknown(const json& object, const Section& section) {
         section.refuse(object.begin().key().substr(0, 80), "is not known here", "correct its name, or remove it");
 }
 
+void readWithin(Section& section, const char* key, double& value, ProfileLimits bounds) {
+    section.number(key, value, bounds.least, bounds.most);
+}
+
 ServoSetup readServo(json& object, Section section, ControllerKind kind) {
     for (const char* key : {"channel", "pulseMin", "pulseMax"}) require(section, key);
     ServoSetup servo;
     section.wholeNumber("channel", servo.channel, 0, greatestChannel(kind));
-    section.number("pulseMin", servo.pulseMin, kLeastPulse, kGreatestPulse);
-    section.number("pulseMax", servo.pulseMax, kLeastPulse, kGreatestPulse);
+    readWithin(section, "pulseMin", servo.pulseMin, limits::kPulse);
+    readWithin(section, "pulseMax", servo.pulseMax, limits::kPulse);
     section.flag("reversed", servo.reversed);
-    section.number("trim", servo.trim, -kGreatestPulse, kGreatestPulse);
-    section.number("maxVelocity", servo.maxVelocity, kVelocity.min, kVelocity.max);
-    section.number("maxAcceleration", servo.maxAcceleration, kAcceleration.min, kAcceleration.max);
+    section.number("trim", servo.trim, -limits::kPulse.most, limits::kPulse.most);
+    readWithin(section, "maxVelocity", servo.maxVelocity, limits::kVelocity);
+    readWithin(section, "maxAcceleration", servo.maxAcceleration, limits::kAcceleration);
+    section.number("exitStroke", servo.exitStroke, 0.0, 1.0);
     refuseUnknown(object, section);
     return servo;
 }
@@ -189,9 +184,10 @@ DeviceProfile profileOf(json& document, const std::string& file) {
     section.wholeNumber("controllerNumber", profile.controllerNumber, 0, 127);
     section.flag("maestroCrc", profile.maestroCrc);
     section.text("identity", profile.identity);
-    section.number("commandsPerSecond", profile.commandsPerSecond, kCommandRate.min, kCommandRate.max);
-    section.number("staggerSeconds", profile.staggerSeconds, kStagger.min, kStagger.max);
-    section.number("slowShare", profile.slowShare, kSlowShare.min, kSlowShare.max);
+    readWithin(section, "commandsPerSecond", profile.commandsPerSecond, limits::kCommandsPerSecond);
+    readWithin(section, "staggerSeconds", profile.staggerSeconds, limits::kStaggerSeconds);
+    readWithin(section, "slowShare", profile.slowShare, limits::kSlowShare);
+    readWithin(section, "handDistance", profile.handDistance, limits::kHandDistance);
     section.flag("restOnExit", profile.restOnExit);
     profile.servos = readServos(document, section, profile.controller, file);
     refuseUnknown(document, section);
@@ -220,9 +216,9 @@ DeviceProfile profileFor(const Rig& rig, int first) {
         // A rig that tells the greater pulse for rest means a servo that turns the other way.
         servo.reversed = actuator.drive.pulseMin > actuator.drive.pulseMax;
         const auto [least, greatest] = std::minmax(actuator.drive.pulseMin, actuator.drive.pulseMax);
-        servo.pulseMin = std::clamp(least, kLeastPulse, kGreatestPulse - 1.0);
-        servo.pulseMax = std::clamp(greatest, servo.pulseMin + 1.0, kGreatestPulse);
-        servo.maxVelocity = std::clamp(actuator.maxVelocity, kVelocity.min, kVelocity.max);
+        servo.pulseMin = std::clamp(least, limits::kPulse.least, limits::kPulse.most - 1.0);
+        servo.pulseMax = std::clamp(greatest, servo.pulseMin + 1.0, limits::kPulse.most);
+        servo.maxVelocity = std::clamp(actuator.maxVelocity, limits::kVelocity.least, limits::kVelocity.most);
         profile.servos.push_back(servo);
     }
     return profile;
@@ -247,10 +243,11 @@ void checkProfile(const DeviceProfile& profile) {
         throw InvalidInput("device profile", std::to_string(profile.servos.size()) + " servos, and 64 is the most",
                            "spread them over several controllers");
     const std::string all = "device profile";
-    requireWithin(all, "the controller's number", profile.controllerNumber, kControllerNumber);
-    requireWithin(all, "the rate of commands", profile.commandsPerSecond, kCommandRate);
-    requireWithin(all, "the pause between servo starts", profile.staggerSeconds, kStagger);
-    requireWithin(all, "the share of slow mode", profile.slowShare, kSlowShare);
+    requireWithin(all, "the controller's number", profile.controllerNumber, limits::kControllerNumber);
+    requireWithin(all, "the rate of commands", profile.commandsPerSecond, limits::kCommandsPerSecond);
+    requireWithin(all, "the pause between servo starts", profile.staggerSeconds, limits::kStaggerSeconds);
+    requireWithin(all, "the share of slow mode", profile.slowShare, limits::kSlowShare);
+    requireWithin(all, "the distance of hands", profile.handDistance, limits::kHandDistance);
     std::vector<int> channels;
     for (const ServoSetup& servo : profile.servos) {
         const std::string subject = "servo " + std::to_string(channels.size() + 1);
@@ -265,6 +262,22 @@ void checkProfile(const DeviceProfile& profile) {
     }
 }
 
+std::string profileText(const DeviceProfile& profile) {
+    return documentOf(profile).dump(-1, ' ', false, json::error_handler_t::replace);
+}
+
+DeviceProfile parseProfile(std::string_view text, const std::string& subject) {
+    if (const std::string problem = jsonProblem(text, kLimits); !problem.empty())
+        throw DataError(subject, problem, kReplace);
+    try {
+        json document = json::parse(text);
+        if (!document.is_object()) throw DataError(subject, "is not a device profile", kReplace);
+        return profileOf(document, subject);
+    } catch (const json::exception&) {
+        throw DataError(subject, "is not sound JSON", kReplace);
+    }
+}
+
 DeviceProfile readProfile(const fs::path& file) {
     const std::string name = file.string();
     std::error_code failed;
@@ -272,16 +285,7 @@ DeviceProfile readProfile(const fs::path& file) {
     if (fs::exists(file, failed) && fs::is_other(file, failed))
         throw DataError(name, "is not a file", "choose a device profile");
     const std::vector<std::byte> bytes = readFile(file, kLimits.bytes);
-    const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-    if (const std::string problem = jsonProblem(text, kLimits); !problem.empty())
-        throw DataError(name, problem, kReplace);
-    try {
-        json document = json::parse(text);
-        if (!document.is_object()) throw DataError(name, "is not a device profile", kReplace);
-        return profileOf(document, name);
-    } catch (const json::exception&) {
-        throw DataError(name, "is not sound JSON", kReplace);
-    }
+    return parseProfile({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, name);
 }
 
 void writeProfile(const DeviceProfile& profile, const fs::path& file) {

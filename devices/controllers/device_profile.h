@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/rig/rig.h"
@@ -17,6 +18,7 @@ struct ServoSetup {
     double trim = 0.0;            ///< microseconds added, within the limits
     double maxVelocity = 1.0;     ///< strokes a second
     double maxAcceleration = 8.0; ///< strokes a second, a second
+    double exitStroke = 0.0;      ///< where it goes at the end, in [0, 1]
     bool operator==(const ServoSetup&) const = default;
 };
 
@@ -34,9 +36,27 @@ struct DeviceProfile {
     double commandsPerSecond = 50.0; ///< at most; the link's own limit holds too
     double staggerSeconds = 0.4;     ///< between one servo's start and the next
     double slowShare = 0.25;         ///< of all velocities, in slow mode
-    bool restOnExit = true;
+    double handDistance = 0.1;       ///< metres; a tracked hand that is nearer makes all slow; 0: none does
+    bool restOnExit = true;          ///< servos go to their exitStrokes when the link ends
     bool operator==(const DeviceProfile&) const = default;
 };
+
+/// The least and the most that a value of a profile may be.
+struct ProfileLimits {
+    double least = 0.0;
+    double most = 0.0;
+};
+namespace profile_limits {
+// Beyond these, hobby servos run into their end stops or are driven by nobody.
+inline constexpr ProfileLimits kPulse{500.0, 2500.0};
+inline constexpr ProfileLimits kVelocity{0.001, 20.0};
+inline constexpr ProfileLimits kAcceleration{0.001, 1000.0};
+inline constexpr ProfileLimits kCommandsPerSecond{1.0, 400.0};
+inline constexpr ProfileLimits kStaggerSeconds{0.0, 10.0};
+inline constexpr ProfileLimits kSlowShare{0.01, 1.0};
+inline constexpr ProfileLimits kControllerNumber{0.0, 127.0};
+inline constexpr ProfileLimits kHandDistance{0.0, 1.0};
+} // namespace profile_limits
 
 /// A profile for a rig as its file describes its drives; channels that it does not tell are counted from `first`.
 [[nodiscard]] DeviceProfile profileFor(const Rig& rig, int first = 0);
@@ -46,6 +66,9 @@ struct DeviceProfile {
 /// Throws InvalidInput that names the servo and the value: out of range, not finite, two servos on one channel.
 void checkProfile(const DeviceProfile& profile);
 
+/// As JSON; doubles come back bit for bit. `subject` names it in a DataError. Text that is not UTF-8 is mended.
+[[nodiscard]] std::string profileText(const DeviceProfile& profile);
+[[nodiscard]] DeviceProfile parseProfile(std::string_view text, const std::string& subject);
 /// JSON files. Throw DataError with file and place; writing is atomic.
 [[nodiscard]] DeviceProfile readProfile(const std::filesystem::path& file);
 void writeProfile(const DeviceProfile& profile, const std::filesystem::path& file);

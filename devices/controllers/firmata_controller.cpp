@@ -1,7 +1,9 @@
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <deque>
 #include <string_view>
+#include <utility>
 
 #include "core/base/error.h"
 #include "devices/controllers/controller_base.h"
@@ -17,6 +19,9 @@ constexpr std::array<std::string_view, 4> kKnown = {kOwnFirmware, "StandardFirma
 constexpr Microseconds kAskAgain{500'000};
 constexpr Microseconds kHeartbeat{200'000}; // our firmware's watchdog waits for 500 ms
 constexpr Microseconds kStateAtLeast{400'000};
+constexpr double kOwnLeastPulse = 500.0; // microseconds, since 1.1; before, and in stock firmware, less is degrees
+constexpr std::size_t kBytesOfDetach = 4;
+constexpr int kLimpModes = 3; // input, output, analog: what a pin is that drives no servo
 constexpr Microseconds kVoltageEvery{2'000'000};
 constexpr Microseconds kWordsLast{10'000'000};
 constexpr std::size_t kLongestWords = 80;
@@ -49,11 +54,17 @@ ControllerTraits firmataTraits(const DeviceProfile& profile, const DeviceAddress
     return traits;
 }
 
-PulseScale firmataScale(const DeviceProfile& profile, const ControllerTraits& traits) {
+PulseScale firmataScale(const DeviceProfile& profile, const DeviceAddress& address) {
     PulseScale scale;
-    scale.least = firmata::kLeastMicroseconds;
-    scale.perSecond = setsPerSecond(profile, traits);
+    scale.least = kOwnLeastPulse; // which firmware it is will be known later
+    scale.detachGap = detachGap(baudOf(address), kBytesOfDetach * profile.servos.size());
     return scale;
+}
+
+/// A message that also gets the board out of one whose end was lost.
+firmata::Bytes certain(firmata::Bytes message) {
+    message.insert(message.begin(), firmata::kEndOfMessage);
+    return message;
 }
 
 class FirmataController final : public ControllerBase {
@@ -63,7 +74,8 @@ public:
 
 private:
     FirmataController(const DeviceProfile& profile, const DeviceAddress& address, const ControllerTraits& traits)
-        : ControllerBase(profile, firmataScale(profile, traits), traits), address_(address) {
+        : ControllerBase(profile, firmataScale(profile, address), traits), address_(address) {
+        limitsTold_.resize(profile.servos.size());
         becomeKind(false);
     }
 
@@ -85,7 +97,10 @@ private:
     void hear(const firmata::Reading&) {}
     void askCapabilitiesOnce();
     void askState(Microseconds now);
+    [[nodiscard]] std::size_t servoToAskFor();
     void becomeKind(bool own);
+    [[nodiscard]] bool refusesPulses();
+    void tellOfShortPulses();
 
     DeviceAddress address_;
     firmata::Parser parser_;
@@ -98,9 +113,11 @@ private:
     Repeater heartbeat_{kHeartbeat};
     Repeater stateAtLeast_{kStateAtLeast};
     Repeater voltage_{kVoltageEvery};
-    std::deque<Microseconds> statesAsked_; ///< when the open questions for a pin's state were asked
-    int contrary_ = 0;                     ///< answers in a row that tell of a servo that was let go
-    std::optional<Microseconds> words_;    ///< when the board said something
+    std::deque<Microseconds> statesAsked_;        ///< when the open questions for a pin's state were asked
+    std::size_t asked_ = 0;                       ///< servo whose state was asked for last
+    int contrary_ = 0;                            ///< answers in a row that tell of a servo that was let go
+    std::optional<Microseconds> words_;           ///< when the board said something
+    std::vector<std::pair<int, int>> limitsTold_; ///< by servo, microseconds
 };
 
 void FirmataController::begin(Microseconds now) {
@@ -125,6 +142,7 @@ void FirmataController::startHandshake() {
 
 void FirmataController::becomeKind(bool own) {
     own_ = own;
+    plan_.setLeast(firmata::kLeastMicroseconds);
     state_.traits.failsafe = own;
     state_.traits.readsVoltage = own;
     state_.traits.jumpsOnAttach = !own;
@@ -170,6 +188,7 @@ void FirmataController::hear(const firmata::Firmware& firmware) {
     state_.firmware =
         readable(*firmware_) + " " + std::to_string(firmware.major) + "." + std::to_string(firmware.minor);
     becomeKind(*firmware_ == kOwnFirmware);
+    if (own_ && (firmware.major > 1 || firmware.minor > 0)) plan_.setLeast(kOwnLeastPulse);
     askCapabilitiesOnce();
 }
 
@@ -193,10 +212,35 @@ void FirmataController::hear(const firmata::Capabilities& capabilities) {
                 "put the servo on another pin and tell its channel, or upload a firmware that drives servos there"});
         return;
     }
+    if (refusesPulses()) return;
     if (std::find(kKnown.begin(), kKnown.end(), *firmware_) != kKnown.end())
         becomeReady();
     else
         state_.phase = ControllerPhase::unidentified;
+    tellOfShortPulses();
+}
+
+/// A servo all of whose pulses are shorter than the firmware can be told.
+bool FirmataController::refusesPulses() {
+    for (std::size_t i = 0; i < plan_.servos().size(); ++i) {
+        if (plan_.hasValue(i)) continue;
+        refuse(
+            {"servo " + std::to_string(i + 1) + " takes pulses below 544 us only, and this firmware cannot make them",
+             "widen its range, or upload the firmware of the studio"});
+        return true;
+    }
+    return false;
+}
+
+void FirmataController::tellOfShortPulses() {
+    std::string cut;
+    for (std::size_t i = 0; i < plan_.servos().size(); ++i)
+        if (std::ceil(plan_.servos()[i].pulseMin) < static_cast<double>(plan_.valueOf(i, 0.0)))
+            cut += (cut.empty() ? "" : ", ") + std::to_string(i + 1);
+    if (cut.empty()) return;
+    words_ = heardAt_;
+    trouble(Concern::board, LinkTrouble{"this firmware makes no pulse shorter than 544 us (servo " + cut + ")",
+                                        "set the least pulse to 544 us, or upload the firmware of the studio"});
 }
 
 /// Nothing else tells that a command has arrived, or that the watchdog has let go of the servos.
@@ -207,7 +251,8 @@ void FirmataController::hear(const firmata::PinState& pin) {
     const std::optional<std::size_t> servo = servoOn(pin.pin);
     if (!servo || asked <= plan_.since(*servo)) return;
     const bool drives = pin.mode == firmata::kServoMode;
-    if (plan_.limp(*servo) && drives) plan_.detachAgain(*servo);
+    if (drives) plan_.detachAgain(*servo);
+    if (pin.mode >= 0 && pin.mode < kLimpModes) plan_.confirmLimp(*servo);
     if (!plan_.attached(*servo)) return;
     contrary_ = drives ? 0 : contrary_ + 1;
     if (contrary_ < 2) return;
@@ -249,38 +294,58 @@ void FirmataController::work(Microseconds now) {
 
 void FirmataController::askState(Microseconds now) {
     if (plan_.servos().empty()) return;
-    std::size_t servo = 0;
-    for (std::size_t i = plan_.servos().size(); i-- > 0;)
-        if (plan_.attached(i)) servo = i;
-    ask(firmata::askPinState(plan_.servos()[servo].channel));
+    ask(firmata::askPinState(plan_.servos()[servoToAskFor()].channel));
     heartbeat_.done(now);
     stateAtLeast_.done(now);
     statesAsked_.push_back(now);
     if (statesAsked_.size() > 8) statesAsked_.pop_front();
 }
 
+/// In turn those that may not have let go yet, else one that holds.
+std::size_t FirmataController::servoToAskFor() {
+    const std::size_t count = plan_.servos().size();
+    for (std::size_t step = 1; step <= count; ++step)
+        if (plan_.doubtful((asked_ + step) % count)) return asked_ = (asked_ + step) % count;
+    for (std::size_t i = 0; i < count; ++i)
+        if (plan_.attached(i)) return i;
+    return 0;
+}
+
+/// Where none shall hold, a reset says so again and again: it is one byte, so that nothing can be missing in it. Of
+/// other messages a line that loses bytes makes new ones: the mode of one pin and the number of the next may attach a
+/// servo.
 ControllerBase::Messages FirmataController::detachments(std::span<const std::size_t> servos) {
+    const bool ready = state_.phase == ControllerPhase::ready;
+    const bool resets = ready && !plan_.anyAttached();
     Messages messages;
-    for (const std::size_t servo : servos) messages.push_back(firmata::detachServo(plan_.servos()[servo].channel));
+    for (const std::size_t servo : servos)
+        if (!resets || plan_.since(servo) == now() || !plan_.detaching())
+            messages.push_back(certain(firmata::detachServo(plan_.servos()[servo].channel)));
+    if (resets) messages.push_back(certain(firmata::resetBoard()));
+    if (ready) askState(now());
     return messages;
 }
 
 /// Our firmware takes the pulse first and starts from it; a stock one ignores it until the servo is attached, so it
-/// comes right behind, to end the jump to the middle.
+/// comes right behind, to end the jump to the middle. Ours clamps to the limits that it was told, so other ones go
+/// before the first pulse that they are for.
 ControllerBase::Messages FirmataController::changes(std::span<const PulsePlan::Change> changes) {
     Messages messages;
     for (const PulsePlan::Change& change : changes) {
         const int pin = plan_.servos()[change.servo].channel;
         const int pulse = static_cast<int>(change.value);
-        if (change.attach && own_) {
-            messages.push_back(firmata::writeValue(pin, pulse));
-            const int least = static_cast<int>(plan_.valueOf(change.servo, 0.0));
-            const int greatest = static_cast<int>(plan_.valueOf(change.servo, 1e5));
-            messages.push_back(firmata::configureServo(pin, least, greatest));
+        const std::pair limits(static_cast<int>(plan_.valueOf(change.servo, 0.0)),
+                               static_cast<int>(plan_.valueOf(change.servo, 1e5)));
+        if (change.attach && own_) messages.push_back(firmata::writeValue(pin, pulse));
+        if (own_ && (change.attach || limitsTold_[change.servo] != limits)) {
+            messages.push_back(firmata::configureServo(pin, limits.first, limits.second));
+            limitsTold_[change.servo] = limits;
         }
         if (change.attach) messages.push_back(firmata::attachServo(pin));
         messages.push_back(firmata::writeValue(pin, pulse));
     }
+    // Old stock firmware writes what it takes for an endless message over its memory: with each set it ends.
+    if (!own_ && !messages.empty()) messages.front() = certain(std::move(messages.front()));
     return messages;
 }
 
@@ -297,9 +362,7 @@ LinkTrouble FirmataController::silence(bool never) const {
 } // namespace
 
 std::unique_ptr<ServoController> makeFirmata(const DeviceProfile& profile, const DeviceAddress& address) {
-    if (std::holds_alternative<HidAddress>(address))
-        throw InvalidInput("device address '" + profile.address + "'", "Firmata is not spoken over HID",
-                           "use a serial or a Bluetooth address");
+    refuseHid(profile, address, "Firmata is not spoken over HID", "use a serial or a Bluetooth address");
     checkChannels(profile, 127);
     return std::make_unique<FirmataController>(profile, address);
 }

@@ -14,7 +14,8 @@ using lewansoul::kServosPerReport;
 
 constexpr double kAttachSeconds = 0.1; // no longer than the guard leaves a new servo in peace
 constexpr double kHidPerSecond = 30.0; // what real boards follow
-constexpr double kHidStep = 2.0;       // 500 to 2500 us are 0 to 1000
+constexpr Microseconds kHidDetachGap{34'000};
+constexpr double kHidStep = 2.0; // 500 to 2500 us are 0 to 1000
 constexpr double kHidZero = 500.0;
 constexpr Microseconds kDrain{50'000};
 constexpr Microseconds kAskAgain{400'000};
@@ -22,7 +23,6 @@ constexpr Microseconds kPositionsEvery{250'000};
 constexpr Microseconds kVoltageEvery{800'000}; // a sign of life where positions are not told
 constexpr Microseconds kStale{1'000'000};
 constexpr Microseconds kFrameGap{100'000};
-constexpr int kSag = 5;              // of 1000: away from its target by so much more, a servo is limp
 constexpr int kLeastPosition = -100; // servos turned by hand go a little beyond 0 to 1000
 constexpr int kMostPosition = 1100;
 constexpr double kLeastMoveTime = 20.0; // ms
@@ -48,13 +48,12 @@ ControllerTraits lewansoulTraits(const DeviceProfile& profile, const DeviceAddre
     return traits;
 }
 
-PulseScale lewansoulScale(const DeviceProfile& profile, const ControllerTraits& traits) {
+PulseScale lewansoulScale(const DeviceProfile& profile, const DeviceAddress& address) {
     PulseScale scale;
-    scale.step = traits.pulseStep;
-    scale.zero = traits.readsPosition ? kHidZero : 0.0;
+    scale.zero = isHid(address) ? kHidZero : 0.0;
     scale.least = 500.0;
     scale.greatest = 2500.0;
-    scale.perSecond = setsPerSecond(profile, traits);
+    scale.detachGap = isHid(address) ? kHidDetachGap : detachGap(baudOf(address), 5 + profile.servos.size());
     return scale;
 }
 
@@ -65,18 +64,11 @@ public:
 
 private:
     LewansoulController(const DeviceProfile& profile, const DeviceAddress& address, const ControllerTraits& traits)
-        : ControllerBase(profile, lewansoulScale(profile, traits), traits), hid_(isHid(address)),
-          baud_(baudOf(address)), reads_(profile.servos.size()) {
-        moveTime_ = static_cast<int>(std::clamp(1000.0 / setsPerSecond(profile, traits), kLeastMoveTime, 1000.0));
+        : ControllerBase(profile, lewansoulScale(profile, address), traits), hid_(isHid(address)),
+          baud_(baudOf(address)), readAt_(profile.servos.size()) {
+        limitsChanged(profile);
         moves_.resize(profile.servos.size());
     }
-
-    /// What is known of one servo's position.
-    struct Read {
-        int target = 0; ///< last told
-        std::optional<int> before;
-        Microseconds at{0};
-    };
 
     /// What a servo does since it was told, in the controller's steps.
     struct Move {
@@ -97,6 +89,10 @@ private:
     void work(Microseconds now) override;
     [[nodiscard]] Messages detachments(std::span<const std::size_t> servos) override;
     [[nodiscard]] Messages changes(std::span<const PulsePlan::Change> changes) override;
+    void limitsChanged(const DeviceProfile& profile) override {
+        const double period = 1000.0 / setsPerSecond(profile, state_.traits);
+        moveTime_ = static_cast<int>(std::clamp(period, kLeastMoveTime, 1000.0));
+    }
     [[nodiscard]] LinkTrouble silence(bool never) const override;
 
     [[nodiscard]] int durationOf(std::span<const PulsePlan::Change> changes) const;
@@ -115,7 +111,7 @@ private:
     Microseconds workedAt_{0};
     std::vector<Move> moves_; ///< by servo
     lewansoul::Parser parser_;
-    std::vector<Read> reads_;
+    std::vector<Microseconds> readAt_; ///< when each servo's position was
     Microseconds opened_{0};
     Microseconds lastBytes_{0};
     bool voltageAsked_ = false;
@@ -133,7 +129,7 @@ void LewansoulController::begin(Microseconds now) {
     voltage_.reset();
     question_.reset();
     positions_.reset();
-    std::fill(reads_.begin(), reads_.end(), Read{});
+    std::fill(readAt_.begin(), readAt_.end(), Microseconds{0});
 }
 
 /// Reports that were waiting in the system when the link was opened are of another time.
@@ -181,12 +177,7 @@ void LewansoulController::hearPlace(const lewansoul::Place& place, Microseconds 
         return;
     }
     state_.readPulses[*servo] = kHidZero + kHidStep * place.position;
-    Read& read = reads_[*servo];
-    const int far = std::abs(place.position - read.target);
-    if (plan_.limp(*servo) && read.before && far - std::abs(*read.before - read.target) >= kSag)
-        plan_.knownLimp(*servo);
-    read.before = place.position;
-    read.at = now;
+    readAt_[*servo] = now;
 }
 
 void LewansoulController::work(Microseconds now) {
@@ -219,10 +210,11 @@ void LewansoulController::askAll() {
 }
 
 void LewansoulController::forgetStale(Microseconds now) {
-    for (std::size_t i = 0; i < reads_.size(); ++i)
-        if (now < reads_[i].at || now - reads_[i].at >= kStale) state_.readPulses[i].reset();
+    for (std::size_t i = 0; i < readAt_.size(); ++i)
+        if (now < readAt_[i] || now - readAt_[i] >= kStale) state_.readPulses[i].reset();
 }
 
+/// Nothing tells whether a servo is under power: they are told again as long as they shall be limp.
 ControllerBase::Messages LewansoulController::detachments(std::span<const std::size_t> servos) {
     Messages messages;
     for (std::size_t first = 0; first < servos.size(); first += kServosPerReport) {
@@ -231,7 +223,6 @@ ControllerBase::Messages LewansoulController::detachments(std::span<const std::s
             channels.push_back(plan_.servos()[servo].channel);
         messages.push_back(lewansoul::unload(channels));
     }
-    positions_.reset(); // did it work?
     return messages;
 }
 
@@ -261,7 +252,6 @@ ControllerBase::Messages LewansoulController::changes(std::span<const PulsePlan:
              changes.subspan(first, std::min(kServosPerReport, changes.size() - first))) {
             const int value = static_cast<int>(change.value);
             places.push_back({plan_.servos()[change.servo].channel, value});
-            reads_[change.servo].target = value;
             Move& move = moves_[change.servo];
             const double from = change.attach ? value : move.at(workedAt_);
             move = {from, static_cast<double>(value), workedAt_, std::chrono::milliseconds(duration)};

@@ -24,33 +24,33 @@ maestro::Form formOf(const DeviceProfile& profile) {
     return {addressed, addressed ? profile.controllerNumber : 0, profile.maestroCrc};
 }
 
+std::size_t bytesOfTarget(const DeviceProfile& profile) { return maestro::setTarget(formOf(profile), 0, 0).size(); }
+
 ControllerTraits maestroTraits(const DeviceProfile& profile, const DeviceAddress& address) {
     ControllerTraits traits;
     traits.name = "Pololu Maestro";
     traits.pulseStep = kQuarter;
-    const std::size_t bytes = maestro::setTarget(formOf(profile), 0, 0).size();
-    traits.commandsPerSecond = setsPerSecond(baudOf(address), bytes * profile.servos.size());
+    traits.commandsPerSecond = setsPerSecond(baudOf(address), bytesOfTarget(profile) * profile.servos.size());
     traits.failsafeWord = "only where a serial timeout is set in the board itself (Maestro Control Center, Serial "
                           "Settings): the studio can neither read nor set it. Without it servos stay under power where "
                           "they are when the studio dies";
     return traits;
 }
 
-PulseScale maestroScale(const DeviceProfile& profile, const ControllerTraits& traits) {
+PulseScale maestroScale(const DeviceProfile& profile, const DeviceAddress& address) {
     PulseScale scale;
-    scale.step = kQuarter;
-    scale.perSecond = setsPerSecond(profile, traits);
+    scale.detachGap = detachGap(baudOf(address), bytesOfTarget(profile) * profile.servos.size());
     return scale;
 }
 
 class MaestroController final : public ControllerBase {
 public:
     MaestroController(const DeviceProfile& profile, const DeviceAddress& address)
-        : MaestroController(profile, maestroTraits(profile, address)) {}
+        : MaestroController(profile, address, maestroTraits(profile, address)) {}
 
 private:
-    MaestroController(const DeviceProfile& profile, const ControllerTraits& traits)
-        : ControllerBase(profile, maestroScale(profile, traits), traits), form_(formOf(profile)) {}
+    MaestroController(const DeviceProfile& profile, const DeviceAddress& address, const ControllerTraits& traits)
+        : ControllerBase(profile, maestroScale(profile, address), traits), form_(formOf(profile)) {}
 
     void begin(Microseconds now) override;
     void take(std::span<const std::uint8_t> bytes, Microseconds now) override;
@@ -66,6 +66,7 @@ private:
     void hear(const maestro::Moving&, Microseconds) {}
     void say(LinkTrouble trouble, Microseconds now);
     void letGo(LinkTrouble why, Microseconds now);
+    [[nodiscard]] std::size_t servoToAskFor() const;
     void askPosition(Microseconds now);
 
     maestro::Form form_;
@@ -139,7 +140,10 @@ void MaestroController::hear(const maestro::Errors& errors, Microseconds now) {
 void MaestroController::hear(const maestro::Position& position, Microseconds now) {
     const std::optional<std::size_t> servo = servoOn(position.channel);
     if (!servo || asked_ <= plan_.since(*servo)) return;
-    if (plan_.limp(*servo) && position.quarters != 0) plan_.detachAgain(*servo);
+    if (position.quarters != 0)
+        plan_.detachAgain(*servo);
+    else
+        plan_.confirmLimp(*servo);
     if (!plan_.attached(*servo)) return;
     contrary_ = position.quarters != 0 ? 0 : contrary_ + 1;
     if (contrary_ >= 2)
@@ -173,16 +177,25 @@ void MaestroController::work(Microseconds now) {
         ask(maestro::askErrors(form_));
         replies_.expectErrors();
         asked_ = now;
-    } else if (state_.phase == ControllerPhase::ready && positions_.take(now)) {
+    } else if (state_.phase == ControllerPhase::ready && (plan_.detaching() || positions_.due(now))) {
         askPosition(now);
     }
 }
 
+/// In turn those that may not have let go yet, else those that hold, else all.
+std::size_t MaestroController::servoToAskFor() const {
+    const std::size_t count = plan_.servos().size();
+    for (std::size_t step = 1; step <= count; ++step)
+        if (plan_.doubtful((next_ + step) % count)) return (next_ + step) % count;
+    for (std::size_t step = 1; step <= count; ++step)
+        if (plan_.attached((next_ + step) % count)) return (next_ + step) % count;
+    return (next_ + 1) % count;
+}
+
 void MaestroController::askPosition(Microseconds now) {
+    positions_.done(now);
     if (plan_.servos().empty()) return;
-    next_ = (next_ + 1) % plan_.servos().size();
-    for (std::size_t i = 0; i < plan_.servos().size() && plan_.anyAttached() && !plan_.attached(next_); ++i)
-        next_ = (next_ + 1) % plan_.servos().size();
+    next_ = servoToAskFor();
     const int channel = plan_.servos()[next_].channel;
     ask(maestro::askPosition(form_, channel));
     replies_.expectPosition(channel);
@@ -215,9 +228,8 @@ LinkTrouble MaestroController::silence(bool never) const {
 } // namespace
 
 std::unique_ptr<ServoController> makeMaestro(const DeviceProfile& profile, const DeviceAddress& address) {
-    if (std::holds_alternative<HidAddress>(address))
-        throw InvalidInput("device address '" + profile.address + "'", "a Maestro is not reached over HID",
-                           "use the address of its command port, such as serial:///dev/ttyACM0");
+    refuseHid(profile, address, "a Maestro is not reached over HID",
+              "use the address of its command port, such as serial:///dev/ttyACM0");
     checkChannels(profile, 23);
     return std::make_unique<MaestroController>(profile, address);
 }

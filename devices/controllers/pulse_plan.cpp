@@ -21,16 +21,11 @@ Limits limitsOf(const ServoSetup& servo, const PulseScale& scale) {
     return {static_cast<long>(std::ceil(least / scale.step)), static_cast<long>(std::floor(greatest / scale.step))};
 }
 
-} // namespace
-
-PulsePlan::PulsePlan(std::vector<ServoSetup> servos, const PulseScale& scale)
-    : servos_(std::move(servos)), scale_(scale), states_(servos_.size()) {
-    const double perSecond = std::isfinite(scale.perSecond) ? std::clamp(scale.perSecond, 0.1, 1000.0) : 50.0;
-    period_ = Microseconds(std::lround(1e6 / perSecond));
-    for (std::size_t i = 0; i < servos_.size(); ++i) {
-        const ServoSetup& servo = servos_[i];
+void checkServos(const std::vector<ServoSetup>& servos, const PulseScale& scale) {
+    for (std::size_t i = 0; i < servos.size(); ++i) {
+        const ServoSetup& servo = servos[i];
         const bool sound = servo.pulseMin >= 0.0 && servo.pulseMin <= servo.pulseMax && servo.pulseMax <= 1e6;
-        if (!sound || limitsOf(servo, scale_).least > limitsOf(servo, scale_).greatest)
+        if (!sound || limitsOf(servo, scale).least > limitsOf(servo, scale).greatest)
             throw InvalidInput("servo " + std::to_string(i + 1),
                                "its controller can send no pulse from " + std::to_string(servo.pulseMin) + " to " +
                                    std::to_string(servo.pulseMax) + " us",
@@ -38,9 +33,33 @@ PulsePlan::PulsePlan(std::vector<ServoSetup> servos, const PulseScale& scale)
     }
 }
 
+} // namespace
+
+PulsePlan::PulsePlan(std::vector<ServoSetup> servos, const PulseScale& scale)
+    : servos_(std::move(servos)), scale_(scale), states_(servos_.size()) {
+    setRate(scale.perSecond);
+    checkServos(servos_, scale_);
+}
+
+void PulsePlan::setRate(double perSecond) {
+    perSecond = std::isfinite(perSecond) ? std::clamp(perSecond, 0.1, 1000.0) : 50.0;
+    period_ = Microseconds(std::lround(1e6 / perSecond));
+}
+
+void PulsePlan::setServos(std::vector<ServoSetup> servos, double perSecond) {
+    servos_ = std::move(servos);
+    setRate(perSecond);
+}
+
+bool PulsePlan::hasValue(std::size_t servo) const {
+    const Limits limits = limitsOf(servos_[servo], scale_);
+    return limits.least <= limits.greatest;
+}
+
 long PulsePlan::valueOf(std::size_t servo, double microseconds) const {
     const Limits limits = limitsOf(servos_[servo], scale_);
-    return std::clamp(std::lround((microseconds - scale_.zero) / scale_.step), limits.least, limits.greatest);
+    const long nearest = std::lround((microseconds - scale_.zero) / scale_.step);
+    return std::min(std::max(nearest, limits.least), limits.greatest);
 }
 
 void PulsePlan::restart() {
@@ -48,12 +67,12 @@ void PulsePlan::restart() {
         state.held = state.held || state.attach || state.told == Told::attached;
         state.attach = false;
         state.told = Told::nothing;
-        state.detachments = 0;
     }
-    pending_ = due_ = false;
+    pending_ = due_ = ready_ = false;
 }
 
 void PulsePlan::want(std::span<const GuardedPulse> pulses, Microseconds now, bool ready) {
+    ready_ = ready;
     for (const GuardedPulse& pulse : pulses)
         for (std::size_t i = 0; i < servos_.size(); ++i)
             if (servos_[i].channel == pulse.channel) wantOne(i, pulse, ready);
@@ -66,11 +85,11 @@ void PulsePlan::wantOne(std::size_t servo, const GuardedPulse& pulse, bool ready
         state.attach = state.held = false;
         if (state.told == Told::limp) return;
         state.told = Told::limp;
-        state.detachments = kDetachments;
-        state.nextDetachment = Microseconds::min();
+        state.detachFirst = true;
+        state.confirmations = 0;
         return;
     }
-    if (!ready || state.held || !std::isfinite(pulse.microseconds)) return;
+    if (!ready || state.held || !std::isfinite(pulse.microseconds) || !hasValue(servo)) return;
     state.attach = true;
     state.value = valueOf(servo, pulse.microseconds);
     pending_ = pending_ || state.told != Told::attached || state.toldValue != state.value;
@@ -85,27 +104,57 @@ void PulsePlan::tick(Microseconds now) {
     nextSlot_ = now + period_;
 }
 
-void PulsePlan::knownLimp(std::size_t servo) {
-    if (states_[servo].told == Told::limp) states_[servo].detachments = 0;
+void PulsePlan::confirmLimp(std::size_t servo) {
+    if (states_[servo].told == Told::limp && !states_[servo].detachFirst) ++states_[servo].confirmations;
 }
 
 void PulsePlan::detachAgain(std::size_t servo) {
     State& state = states_[servo];
-    if (state.told != Told::limp || state.detachments > 0) return;
-    state.detachments = 1;
-    state.nextDetachment = Microseconds::min();
+    if (state.told != Told::limp) return;
+    state.confirmations = 0;
+    state.quickUntil = now_ + kDetachQuickly;
+}
+
+bool PulsePlan::doubtful(std::size_t servo) const {
+    return states_[servo].told == Told::limp && states_[servo].confirmations < kConfirmations;
+}
+
+bool PulsePlan::detaching() const {
+    for (std::size_t i = 0; i < states_.size(); ++i)
+        if (doubtful(i) && (states_[i].detachFirst || isQuick(states_[i]))) return true;
+    return false;
+}
+
+bool PulsePlan::isQuick(const State& state) const {
+    return now_ < state.quickUntil && state.quickUntil - now_ <= kDetachQuickly; // beyond: the clock was set back
+}
+
+bool PulsePlan::detachmentDue(const State& state) const {
+    if (state.detachFirst) return true; // even if it was attached again since
+    if (state.attach || state.confirmations >= kConfirmations) return false;
+    const bool quickly = isQuick(state);
+    if (!quickly && !ready_) return false; // what may be no servo controller is left in peace
+    return now_ < state.detachedAt || now_ - state.detachedAt >= (quickly ? scale_.detachGap : kDetachSlowly);
+}
+
+void PulsePlan::detachAgain() {
+    for (std::size_t i = 0; i < states_.size(); ++i) {
+        detachAgain(i);
+        states_[i].detachedAt = std::min(states_[i].detachedAt, now_ - scale_.detachGap);
+    }
 }
 
 std::vector<std::size_t> PulsePlan::takeDetachments() {
     std::vector<std::size_t> servos;
     for (std::size_t i = 0; i < states_.size(); ++i) {
         State& state = states_[i];
-        const bool first = state.nextDetachment == Microseconds::min(); // goes out even if it was attached again since
-        if (state.told != Told::limp || state.detachments == 0 || (state.attach && !first)) continue;
-        if (now_ < state.nextDetachment && state.nextDetachment - now_ <= kDetachGap) continue;
-        if (first) state.since = now_;
-        --state.detachments;
-        state.nextDetachment = now_ + kDetachGap;
+        if (state.told != Told::limp || !detachmentDue(state)) continue;
+        if (state.detachFirst) {
+            state.since = now_;
+            state.quickUntil = now_ + kDetachQuickly;
+        }
+        state.detachFirst = false;
+        state.detachedAt = now_;
         servos.push_back(i);
     }
     return servos;
@@ -122,7 +171,6 @@ std::vector<PulsePlan::Change> PulsePlan::takeChanges() {
         if (state.told != Told::attached) state.since = now_;
         state.told = Told::attached;
         state.toldValue = state.value;
-        state.detachments = 0;
     }
     return changes;
 }

@@ -38,12 +38,13 @@ enum class ControllerPhase {
 struct ControllerState {
     ControllerPhase phase = ControllerPhase::handshake;
     ControllerTraits traits;
-    std::string firmware; ///< "LumorphTablet 1.0", empty while unknown
+    std::string firmware; ///< "LumorphTablet 1.1", empty while unknown
     std::optional<double> volts;
     std::vector<std::optional<double>> readPulses; ///< by servo of the profile, microseconds; where it can be read
     std::uint64_t reboots = 0;                     ///< noticed in this session: handshake was begun anew
     std::uint64_t errors = 0;                      ///< broken frames, errors the device told
     bool answering = true;                         ///< false: it has been silent for a second
+    bool detaching = false; ///< servos are told again and again to let go: nobody knows yet whether they have
     std::optional<LinkTrouble> trouble;
 };
 
@@ -57,11 +58,16 @@ public:
     virtual void received(std::span<const std::uint8_t> bytes, Microseconds now) = 0;
     /// Time passes: handshakes are repeated, voltages asked for, heartbeats sent.
     virtual void tick(Microseconds now) = 0;
+    /// Other limits, velocities or rate of the same servos on the same channels; all stay where they are, and a servo
+    /// between whose limits it can make no pulse stays there.
+    virtual void setLimits(const DeviceProfile& profile) = 0;
     /// The user says that it is what it seems to be.
     virtual void confirm() = 0;
     /// Writes what is different from what was sent last. Ignored unless ready, except that servos are detached in every
     /// phase.
     virtual void send(const GuardedPulses& pulses, Microseconds now) = 0;
+    /// Servos that were told to be limp are told so once more, now: nobody knows whether it arrived.
+    virtual void detachAgain() = 0;
     /// Messages to write, in order; emptied by taking them.
     [[nodiscard]] virtual std::vector<std::vector<std::uint8_t>> takeOutput() = 0;
     [[nodiscard]] virtual const ControllerState& state() const = 0;

@@ -36,6 +36,7 @@ struct Servo {
     std::optional<double> wanted;
     std::optional<Wiggle> wiggle;
     bool attached = false;
+    bool released = true; ///< a step has told that it is limp: attached again without it, it would stop dead
     bool known = false;   ///< somebody knows where it is
     bool pending = false; ///< to be attached by the soft start
     double hold = 0.0;    ///< seconds before it may move, once attached
@@ -69,6 +70,7 @@ struct Servo {
         if (known) motion.position = std::clamp(*stroke, low, high);
     }
     void detach() noexcept {
+        released = released && !attached;
         attached = pending = false;
         hold = 0.0;
         motion.velocity = 0.0;
@@ -159,7 +161,8 @@ struct ServoGuard::Data {
 
     /// One servo in a step at most, in order. It is attached where it is, and moves in a later step.
     void attachNext() noexcept {
-        const auto next = std::ranges::find_if(servos, [this](const Servo& servo) { return mayStart(servo); });
+        const auto next =
+            std::ranges::find_if(servos, [this](const Servo& servo) { return mayStart(servo) && servo.released; });
         if (pause > 0.0 || next == servos.end()) return;
         next->hold = std::max(profile.staggerSeconds, next->known ? kHoldSeconds : kJumpSeconds);
         next->attach();
@@ -316,7 +319,10 @@ GuardedPulses ServoGuard::step(Microseconds now) {
     data.endStart();
     std::vector<GuardedPulse> pulses;
     pulses.reserve(data.servos.size());
-    for (const Servo& servo : data.servos) pulses.push_back(data.pulseOf(servo));
+    for (Servo& servo : data.servos) {
+        servo.released = !servo.attached;
+        pulses.push_back(data.pulseOf(servo));
+    }
     return GuardedPulses(std::move(pulses));
 }
 
@@ -328,6 +334,13 @@ bool ServoGuard::settled() const noexcept {
         return servo.attached && (servo.wiggle || servo.nextSetup || servo.hold > 0.0 ||
                                   std::abs(servo.target() - servo.motion.position) > kSettledStroke ||
                                   std::abs(servo.motion.velocity) > kSettledVelocity);
+    });
+}
+
+bool ServoGuard::withinLimits() const noexcept {
+    return std::ranges::all_of(data_->servos, [](const Servo& servo) {
+        const bool outside = servo.sent < servo.setup.pulseMin || servo.sent > servo.setup.pulseMax;
+        return !servo.nextSetup && !(servo.attached && outside);
     });
 }
 

@@ -73,6 +73,8 @@ public:
     [[nodiscard]] Phase phase() const noexcept;
     /// All attached servos are where they are wanted, and stand still.
     [[nodiscard]] bool settled() const noexcept;
+    /// Every servo has taken its newest limits over and is within them.
+    [[nodiscard]] bool withinLimits() const noexcept;
     /// Where the servos are, by what was sent, strokes.
     [[nodiscard]] std::span<const double> strokes() const noexcept;
     /// How often something was clamped or refused since it was made, for the live table.

@@ -1,8 +1,10 @@
 #include "devices/controllers/servo_link.h"
 
 #include <algorithm>
+#include <atomic>
 #include <exception>
 #include <mutex>
+#include <thread>
 #include <type_traits>
 #include <utility>
 
@@ -26,8 +28,8 @@ void checkAll(const DeviceProfile& profile) {
 }
 
 /// STOP takes back what was asked before it and would move something.
-bool movesSomething(const LinkRequest& request) {
-    return std::holds_alternative<link_request::Arm>(request) || std::holds_alternative<link_request::Wiggle>(request);
+bool movesSomething(const ServoInput& request) {
+    return std::holds_alternative<servo_input::Arm>(request) || std::holds_alternative<servo_input::Wiggle>(request);
 }
 
 } // namespace
@@ -38,12 +40,18 @@ struct ServoLink::Data {
 
     const LinkOptions options;
 
-    std::mutex mutex; ///< held for moments only, never while anything waits
+    /// How often STOP was pressed. It needs no lock, so that whoever floods the link with orders cannot hold it up;
+    /// what was ordered before it, and moves, is told by its number.
+    std::atomic<std::uint64_t> stops = 0;
+
+    std::mutex mutex; ///< as the other, held for moments only, never while anything waits
     DeviceProfile profile;
     LinkOrders orders;
+    bool woken = false;
+
+    std::mutex toldMutex;
     LinkStatus status;
     std::vector<LinkEvent> events;
-    bool woken = false;
 
     QThread thread;
     QObject here; ///< lives in the thread
@@ -53,7 +61,9 @@ struct ServoLink::Data {
     std::unique_ptr<QTimer> timer;
     std::optional<LinkPhase> toldPhase;
     Microseconds toldAt{0};
-    bool eventsToTell = false;
+    std::uint64_t stopsTaken = 0;
+
+    std::atomic<bool> eventsToTell = false;
 
     void begin() {
         timer = std::make_unique<QTimer>();
@@ -68,15 +78,15 @@ struct ServoLink::Data {
     void work() {
         if (!worker) return;
         try {
+            takeStop();
             worker->work(takeOrders());
         } catch (const std::exception& error) {
             keep({{},
                   LinkEvent::Kind::failure,
                   std::string("The link has failed: ") + error.what() + ".",
                   "Servos were stopped; connect the device again."});
-            LinkOrders stop;
-            stop.stop = true;
-            worker->work(std::move(stop));
+            worker->stop();
+            worker->work({});
         }
         if (worker->done()) {
             worker.reset();
@@ -86,28 +96,32 @@ struct ServoLink::Data {
         }
         timer->start(std::chrono::duration_cast<std::chrono::milliseconds>(worker->pause()));
     }
-    /// Whatever fails in the thread is told; servos are stopped then.
-    template <typename Work> bool tried(Work work) {
-        try {
-            work();
-            return true;
-        } catch (const std::exception& error) {
-            keep({SteadyClock{}.now(), LinkEvent::Kind::failure, std::string("The link has failed: ") + error.what(),
-                  "Servos were stopped; connect the device again."});
-            return false;
-        }
-    }
     [[nodiscard]] DeviceProfile profileNow() {
         const std::scoped_lock lock(mutex);
         return profile;
     }
+    void takeStop() {
+        if (const std::uint64_t now = stops; std::exchange(stopsTaken, now) != now) worker->stop();
+    }
+    /// Without those that a STOP has taken back. One that comes while the lock is held by others is taken at once.
     [[nodiscard]] LinkOrders takeOrders() {
-        const std::scoped_lock lock(mutex);
+        std::unique_lock lock(mutex, std::try_to_lock);
+        while (!lock.owns_lock()) {
+            takeStop();
+            std::this_thread::sleep_for(std::chrono::microseconds(100)); // whoever holds it may need this processor
+            (void)lock.try_lock();
+        }
         woken = false;
-        return std::exchange(orders, {});
+        LinkOrders all = std::exchange(orders, {});
+        lock.unlock();
+        std::erase_if(all.requests, [this](const LinkRequest& request) {
+            return request.stops < stopsTaken && movesSomething(request.input);
+        });
+        if (all.commandStops < stopsTaken) all.command.reset();
+        return all;
     }
     void keep(LinkEvent event) {
-        const std::scoped_lock lock(mutex);
+        const std::scoped_lock lock(toldMutex);
         if (events.size() >= kMostEvents) events.erase(events.begin());
         events.push_back(std::move(event));
         eventsToTell = true;
@@ -117,7 +131,7 @@ struct ServoLink::Data {
         const bool isNews = eventsToTell || toldPhase != now.phase || time - toldAt >= kTellChange;
         toldPhase = now.phase;
         {
-            const std::scoped_lock lock(mutex);
+            const std::scoped_lock lock(toldMutex);
             status = std::move(now);
         }
         if (!isNews || !options.onChange) return;
@@ -130,12 +144,15 @@ struct ServoLink::Data {
     template <typename Change> void order(Change change) {
         const std::scoped_lock lock(mutex);
         change(orders);
-        if (std::exchange(woken, true)) return;
+        if (!std::exchange(woken, true)) wake();
+    }
+    void wake() {
         QMetaObject::invokeMethod(
             &here, [this] { work(); }, Qt::QueuedConnection);
     }
-    void request(LinkRequest request) {
-        order([&](LinkOrders& all) { all.requests.push_back(std::move(request)); });
+    void request(ServoInput input) {
+        const std::uint64_t before = stops;
+        order([&](LinkOrders& all) { all.requests.push_back({std::move(input), before}); });
     }
 };
 
@@ -155,52 +172,55 @@ ServoLink::~ServoLink() {
     data_->thread.wait();
 }
 
-void ServoLink::connect() { data_->request(link_request::Connect{}); }
-void ServoLink::disconnect() { data_->request(link_request::Disconnect{}); }
-void ServoLink::confirmIdentity() { data_->request(link_request::Confirm{}); }
+void ServoLink::connect() { data_->request(servo_input::Connect{}); }
+void ServoLink::disconnect() { data_->request(servo_input::Disconnect{}); }
+void ServoLink::confirmIdentity() { data_->request(servo_input::Confirm{}); }
 
 void ServoLink::setProfile(DeviceProfile profile) {
     checkAll(profile);
     data_->order([&](LinkOrders& all) {
         data_->profile = profile;
         // A slider gives many in a row, and only the last counts.
-        if (!all.requests.empty() && std::holds_alternative<link_request::Profile>(all.requests.back()))
+        if (!all.requests.empty() && std::holds_alternative<servo_input::Profile>(all.requests.back().input))
             all.requests.pop_back();
-        all.requests.emplace_back(link_request::Profile{std::move(profile)});
+        all.requests.push_back({servo_input::Profile{std::move(profile)}, 0});
     });
 }
 
 DeviceProfile ServoLink::profile() const { return data_->profileNow(); }
 
-void ServoLink::arm(bool jumpAllowed) { data_->request(link_request::Arm{jumpAllowed}); }
-void ServoLink::disarm() { data_->request(link_request::Disarm{}); }
+void ServoLink::arm(bool jumpAllowed) { data_->request(servo_input::Arm{jumpAllowed}); }
+void ServoLink::disarm() { data_->request(servo_input::Disarm{}); }
 
 void ServoLink::stop() {
-    data_->order([](LinkOrders& all) {
-        all.stop = true;
-        std::erase_if(all.requests, movesSomething);
-        all.command.reset();
-    });
+    ++data_->stops;
+    data_->wake();
 }
 
 void ServoLink::command(std::span<const double> strokes) {
     const Microseconds now = SteadyClock{}.now();
+    const std::uint64_t before = data_->stops;
     data_->order([&](LinkOrders& all) {
         if (!all.command) all.commandedAt = now;
+        all.commandStops = before;
         all.command.emplace(strokes.begin(), strokes.end());
     });
 }
 
-void ServoLink::wiggle(std::size_t servo) { data_->request(link_request::Wiggle{servo}); }
-void ServoLink::setSlow(bool slow) { data_->request(link_request::Slow{slow}); }
+void ServoLink::wiggle(std::size_t servo) { data_->request(servo_input::Wiggle{servo}); }
+void ServoLink::setSlow(bool slow) { data_->request(servo_input::Slow{slow}); }
+
+void ServoLink::setTrace(std::function<void(const ServoTraceRow&)> sink) {
+    data_->order([&](LinkOrders& all) { all.sinks.push_back(std::move(sink)); });
+}
 
 LinkStatus ServoLink::status() const {
-    const std::scoped_lock lock(data_->mutex);
+    const std::scoped_lock lock(data_->toldMutex);
     return data_->status;
 }
 
 std::vector<LinkEvent> ServoLink::takeEvents() {
-    const std::scoped_lock lock(data_->mutex);
+    const std::scoped_lock lock(data_->toldMutex);
     return std::exchange(data_->events, {});
 }
 

@@ -9,52 +9,13 @@
 #include <vector>
 
 #include "core/base/clock.h"
-#include "devices/controllers/servo_controller.h"
-#include "devices/controllers/servo_guard.h"
+#include "devices/controllers/device_profile.h"
+#include "devices/controllers/servo_link_status.h"
 #include "devices/controllers/servo_trace.h"
 
 namespace lumorph {
 
 class SimulatedBench;
-
-/// One servo as the live table shows it; strokes in [0, 1].
-struct ServoStatus {
-    double wanted = 0.0;
-    double commanded = 0.0;         ///< by the guard
-    std::optional<double> readBack; ///< where the controller can read it
-    double microseconds = 0.0;      ///< pulse last sent
-    bool attached = false;
-    bool known = false; ///< somebody knows where it is
-};
-
-enum class LinkPhase { off, connecting, handshake, unidentified, disarmed, starting, live, stopped, lost };
-
-struct LinkStatus {
-    LinkPhase phase = LinkPhase::off;
-    ControllerState controller;
-    std::string product;
-    std::string identity;
-    std::optional<LinkTrouble> trouble;
-    std::vector<ServoStatus> servos;
-    std::vector<std::size_t> waiting; ///< servos that need the user's word before they start
-    double commandsPerSecond = 0.0;   ///< of the last second
-    double latencyMilliseconds =
-        0.0; ///< median of the last ones, from command() to the first byte's write, beyond the rate cap
-    std::uint64_t bytesSent = 0;
-    std::uint64_t reconnects = 0;
-    std::uint64_t clamped = 0, refused = 0;
-    bool slow = false;
-};
-
-/// Something its user should know of.
-struct LinkEvent {
-    enum class Kind { information, warning, failure };
-    Microseconds time{0};
-    Kind kind = Kind::information;
-    std::string text;
-    std::string remedy; ///< may be empty
-    bool operator==(const LinkEvent&) const = default;
-};
 
 struct LinkOptions {
     SimulatedBench* bench = nullptr;
@@ -91,8 +52,8 @@ public:
     void setSlow(bool slow);
 
     /// Hands every input and every byte sent to `sink`, in the link's thread, beginning with those since the link was
-    /// made as far as they were kept (the last row of a history that is not whole says so); an empty one ends it. It
-    /// must return at once.
+    /// made; an empty one ends it. Only so much is kept (about 64 MB, hours of a show): where a session has outgrown
+    /// it, the first row says so. A sink must return at once, and may be called for a moment after it was ended.
     void setTrace(std::function<void(const ServoTraceRow&)> sink);
 
     [[nodiscard]] LinkStatus status() const;

@@ -9,7 +9,7 @@ namespace lumorph::firmata {
 namespace {
 
 constexpr std::uint8_t kStart = 0xF0;
-constexpr std::uint8_t kEnd = 0xF7;
+constexpr std::uint8_t kEnd = kEndOfMessage;
 constexpr std::uint8_t kVersion = 0xF9;
 constexpr std::uint8_t kSetMode = 0xF4;
 constexpr std::uint8_t kReset = 0xFF;

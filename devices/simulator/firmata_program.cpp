@@ -18,7 +18,8 @@ constexpr int kFirstAnalog = 14;
 constexpr std::uint8_t kOutput = 0x01;
 constexpr std::uint8_t kServo = 0x04;
 constexpr int kLeastMicroseconds = 544; // a value below is an angle
-constexpr double kMiddle = 1502.0;      // microseconds, measured on the real firmware
+constexpr int kOurLeastMicroseconds = 500;
+constexpr double kMiddle = 1502.0; // microseconds, measured on the real firmware
 constexpr std::size_t kSysexBuffer = 64;
 constexpr Microseconds kSilence{500'000};
 
@@ -27,12 +28,13 @@ bool isServo(int pin) { return pin >= kFirstServo && pin <= kLastServo; }
 struct Pin {
     std::uint8_t mode = kOutput;
     int value = 0; ///< last written, as it was written
+    int anglesBelow = kLeastMicroseconds;
     int least = kLeastMicroseconds;
     int greatest = 2400;
 
     [[nodiscard]] double pulse() const {
         const double microseconds =
-            value >= kLeastMicroseconds ? value : least + (greatest - least) * std::min(value, 180) / 180.0;
+            value >= anglesBelow ? value : least + (greatest - least) * std::min(value, 180) / 180.0;
         return std::clamp(microseconds, static_cast<double>(least), static_cast<double>(greatest));
     }
 };
@@ -79,6 +81,7 @@ private:
     }
 
     void begin(std::uint8_t status) {
+        if (!ours_ && status == 0xF7) return; // the end of nothing: data of what was begun before may still come
         status_ = status;
         data_.clear();
         inSysex_ = status == 0xF0;
@@ -158,7 +161,10 @@ private:
 
     [[nodiscard]] Pin freshPin() const {
         Pin pin;
-        if (ours_) pin.greatest = 2500;
+        if (ours_) {
+            pin.anglesBelow = pin.least = kOurLeastMicroseconds;
+            pin.greatest = 2500;
+        }
         return pin;
     }
 
@@ -174,7 +180,7 @@ private:
     void sayString(std::string_view text) { sayText({0xF0, 0x71}, text); }
     void sayFirmware() {
         if (ours_)
-            sayText({0xF0, 0x79, 0x01, 0x00}, "LumorphTablet");
+            sayText({0xF0, 0x79, 0x01, 0x01}, "LumorphTablet");
         else
             sayText({0xF0, 0x79, 0x02, 0x05}, "StandardFirmata");
     }

@@ -27,7 +27,8 @@ ServoBank::ServoBank(std::size_t count, double speed) : speed_(speed), servos_(c
 void ServoBank::advance(Microseconds now) {
     if (now <= now_) return;
     const double reach = speed_ * secondsOf(now - now_);
-    for (SimulatedServo& servo : servos_) servo.position += std::clamp(wayToGo(servo), -reach, reach);
+    for (std::size_t k = 0; k < servos_.size(); ++k)
+        if (k != held_) servos_[k].position += std::clamp(wayToGo(servos_[k]), -reach, reach);
     now_ = now;
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <vector>
 
 #include "core/base/clock.h"
@@ -18,6 +19,8 @@ public:
     /// From now on the servo gets this pulse; 0: none. There is no such servo: nothing.
     void setPulse(std::size_t servo, double microseconds);
     void allLimp();
+    /// Somebody holds the horn of this one, and of no other; nothing: of none.
+    void hold(std::optional<std::size_t> servo) noexcept { held_ = servo; }
 
     [[nodiscard]] std::size_t size() const noexcept { return servos_.size(); }
     [[nodiscard]] std::size_t moving() const noexcept;
@@ -35,6 +38,7 @@ private:
     void measure(SimulatedServo& servo, Commands& commands, double pulse) const;
 
     double speed_;
+    std::optional<std::size_t> held_;
     Microseconds now_{0};
     std::vector<SimulatedServo> servos_;
     std::vector<Commands> commands_;

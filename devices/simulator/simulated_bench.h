@@ -19,11 +19,13 @@ struct BoardFaults {
     bool silent = false;    ///< it is there but does not answer
     bool busy = false;      ///< another program has it
     bool forbidden = false; ///< this user may not open it
+    bool nameless = false;  ///< its USB adapter does not say what it is; heeded when the link is opened
     bool stalled = false;   ///< the link takes bytes but passes nothing on
     double noise = 0.0;     ///< share of bytes that arrive broken, both ways
     double drop = 0.0;      ///< share of bytes that are lost, both ways
     double jitterMilliseconds = 0.0;
-    double volts = 7.4; ///< of its battery
+    double volts = 7.4;                ///< of its battery
+    std::optional<std::size_t> held{}; ///< a hand holds the horn of this servo, in the order of `servos`
     bool operator==(const BoardFaults&) const = default;
 };
 
@@ -43,6 +45,8 @@ public:
     [[nodiscard]] virtual std::string product() const = 0; ///< what it calls itself
     [[nodiscard]] virtual BoardFaults faults() const = 0;
     virtual void setFaults(const BoardFaults& faults) = 0;
+    /// False while a board whose USB is its own starts anew: the system does not see it then.
+    [[nodiscard]] virtual bool present() const { return true; }
     /// Brown-out: servos go limp, all state is lost, and it starts anew (Firmata says so unasked).
     virtual void reboot() = 0;
     /// In the order of the board's numbers: pins from 2 (`tablet`, `uno`), ids from 1 (`xarm`), channels from 0

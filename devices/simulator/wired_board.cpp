@@ -14,9 +14,10 @@ namespace lumorph {
 namespace {
 
 constexpr double kBrownOutVolts = 5.2;
-constexpr std::size_t kBrownOutServos = 3; // that many at once draw more than a weak battery gives
-constexpr std::size_t kReport = 64;        // bytes
-constexpr double kLongestJitter = 60000.0; // milliseconds
+constexpr std::size_t kBrownOutServos = 3;     // that many at once draw more than a weak battery gives
+constexpr std::size_t kReport = 64;            // bytes
+constexpr const char* kAdapter = "USB Serial"; // what adapters call themselves, whatever is behind them
+constexpr double kLongestJitter = 60000.0;     // milliseconds
 constexpr double kHighestVolts = 16.0;
 
 /// What cannot be is taken for the nearest that can; no number for none.
@@ -34,6 +35,7 @@ public:
     Machine& operator=(const Machine&) = delete;
 
     [[nodiscard]] const BoardFaults& faults() const { return faults_; }
+    [[nodiscard]] bool running() const { return program_ != nullptr; }
     [[nodiscard]] const std::vector<SimulatedServo>& servos() const { return hardware_.servos.servos(); }
 
     void advance(Microseconds now) {
@@ -53,6 +55,7 @@ public:
         faults_.jitterMilliseconds = within(faults.jitterMilliseconds, kLongestJitter);
         faults_.volts = within(faults.volts, kHighestVolts);
         hardware_.volts = faults_.volts;
+        hardware_.servos.hold(faults_.held);
         settle();
         advance(time_);
     }
@@ -145,8 +148,14 @@ public:
         : kind_(std::move(kind)), clock_(std::move(clock)), machine_(kind_, seed, clock_->now()) {}
 
     [[nodiscard]] std::string name() const override { return kind_.name; }
-    [[nodiscard]] std::string product() const override { return kind_.product; }
+    [[nodiscard]] std::string product() const override { return faults().nameless ? kAdapter : kind_.product; }
     [[nodiscard]] bool isHid() const override { return kind_.isHid; }
+
+    [[nodiscard]] bool present() const override {
+        const std::scoped_lock lock(mutex_);
+        machine_.advance(clock_->now());
+        return machine_.running() || !kind_.isHid;
+    }
 
     [[nodiscard]] BoardFaults faults() const override {
         const std::scoped_lock lock(mutex_);

@@ -8,8 +8,11 @@
 #include <string_view>
 #include <vector>
 
+#include <glm/vec2.hpp>
+
 #include "core/base/clock.h"
 #include "core/loop/pose_stream.h"
+#include "core/render/image.h"
 
 namespace lumorph {
 
@@ -28,6 +31,16 @@ struct TrackerFrame {
     std::vector<TrackedBody> bodies;
 };
 
+/// What a tracker that is a camera looks at; helps whoever holds a board into its picture.
+struct TrackerCamera {
+    glm::ivec2 size{0}; ///< of its pictures, pixels
+    double picturesPerSecond = 0.0;
+    double foundShare = 0.0;                 ///< of the last hundred pictures
+    std::optional<double> reprojectionError; ///< pixels, in the newest picture; empty where the board is not in it
+    std::string lens;                        ///< what its lens and place are taken for; a sentence
+    std::shared_ptr<const Image> preview;    ///< a small picture, with what was found drawn into it; null at first
+};
+
 /// What arrives, from whom and how fast; and why nothing does.
 struct TrackerStatus {
     std::string source;     ///< "Motive 2.1 at 192.168.0.5, NatNet 3.0"; empty while nothing is known
@@ -37,11 +50,14 @@ struct TrackerStatus {
     double packetsPerSecond = 0.0;
     double framesPerSecond = 0.0;
     std::uint64_t packets = 0;
-    std::uint64_t rejected = 0;                ///< packets that were wrong
-    std::string lastRejected;                  ///< what was wrong with the last of them
-    std::optional<double> latencyMilliseconds; ///< from the cameras' exposure to here, where clocks are matched
-    std::vector<TrackedBody> bodies;           ///< newest of each
-    std::string advice;                        ///< why nothing arrives, and what to do; empty while all is well
+    std::uint64_t rejected = 0;                  ///< packets that were wrong
+    std::string lastRejected;                    ///< what was wrong with the last of them
+    std::optional<double> latencyMilliseconds;   ///< from the cameras' exposure to here, where clocks are matched
+    std::vector<TrackedBody> bodies;             ///< newest of each
+    std::string advice;                          ///< why nothing arrives, and what to do; empty while all is well
+    std::string event;                           ///< "head jumped by 3.00 m": what was odd about poses, the newest
+    std::uint64_t events = 0;                    ///< ever
+    std::shared_ptr<const TrackerCamera> camera; ///< null for what is no camera
 };
 
 /// A source of poses, in a thread of its own. Everything may be called from any thread.

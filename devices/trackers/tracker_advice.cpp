@@ -64,14 +64,27 @@ std::string serverWithoutFrames(const NatNetAddress& address, const NatNetSituat
     if (connection && address.multicast && groupOf(*connection) != address.group)
         return name + " sends to the group " + groupOf(*connection) +
                ", but the address says multicast=" + address.group + ". Change one of the two.";
-    return name + " at " + address.host + " answers, but sends no frames. Check in this order: that streaming is " +
-           "switched on there ('Broadcast Frame Data'); that it is live or playing, not paused; that no firewall " +
-           "blocks UDP port " + std::to_string(address.data) + " here; " +
+    const std::string lead = name + " at " + address.host +
+                             " answers, but sends no frames. Check in this order: that streaming is switched on there "
+                             "('Broadcast Frame Data'); that it is live or playing, not paused; ";
+    if (s.hostIsHere) return lead + "that it sends on the interface " + address.host + ".";
+    return lead + "that no firewall " + "blocks UDP port " + std::to_string(address.data) + " here; " +
            (address.multicast ? "that local= names our address on the network of the server, " + machineList(s) + "."
                               : "that it is set to unicast.");
 }
 
+/// A server on this machine needs no network and meets no firewall.
+std::string silentHere(const NatNetAddress& address, const NatNetSituation& s) {
+    return silence(s) + " from " + address.host +
+           ", which is this machine. Check in this order: that Motive, or what " +
+           "stands for it, runs here; that streaming is switched on there ('Broadcast Frame Data'), by " +
+           (address.multicast ? "multicast" : "unicast") + " and on the interface " + address.host +
+           "; that it listens to commands on UDP port " + std::to_string(address.command) +
+           (address.multicast ? " and sends to port " + std::to_string(address.data) : std::string()) + ".";
+}
+
 std::string unreachableServer(const NatNetAddress& address, const NatNetSituation& s) {
+    if (s.hostIsHere) return silentHere(address, s);
     return silence(s) + " from " + address.host + ". Check in this order: that " + address.host +
            " is the address of the machine on which Motive runs; that streaming is switched on there ('Broadcast "
            "Frame Data'), by " +

@@ -17,6 +17,10 @@ struct TrackerHub::Data {
     };
     std::shared_ptr<PoseBoard> board;
     std::shared_ptr<const Clock> clock;
+    TrackerOpener opener;
+
+    std::mutex tapping;
+    Tap tap;
 
     mutable std::mutex mutex; ///< never held while a tracker is opened or ended: its thread may be in take()
     RoleMap roles;
@@ -40,10 +44,11 @@ struct TrackerHub::Data {
     }
 };
 
-TrackerHub::TrackerHub(std::shared_ptr<PoseBoard> board, std::shared_ptr<const Clock> clock)
+TrackerHub::TrackerHub(std::shared_ptr<PoseBoard> board, std::shared_ptr<const Clock> clock, TrackerOpener opener)
     : data_(std::make_unique<Data>()) {
     data_->board = std::move(board);
     data_->clock = std::move(clock);
+    data_->opener = std::move(opener);
 }
 
 TrackerHub::~TrackerHub() {
@@ -68,7 +73,7 @@ void TrackerHub::open(const std::string& uri, bool openToNetwork) {
         options.clock = data_->clock;
         options.openToNetwork = openToNetwork;
         options.onFrame = [this, uri](const TrackerFrame& frame) { take(uri, frame); };
-        std::shared_ptr<Tracker> tracker = openTracker(uri, std::move(options));
+        std::shared_ptr<Tracker> tracker = data_->opener(uri, std::move(options));
         const std::scoped_lock lock(data_->mutex);
         data_->trackers[uri] = std::move(tracker);
     } catch (...) {
@@ -123,7 +128,16 @@ std::vector<TrackerStatus> TrackerHub::status() const {
     return status;
 }
 
+void TrackerHub::setTap(Tap tap) {
+    const std::scoped_lock lock(data_->tapping);
+    data_->tap = std::move(tap);
+}
+
 void TrackerHub::take(const std::string& source, const TrackerFrame& frame) {
+    {
+        const std::scoped_lock lock(data_->tapping);
+        if (data_->tap) data_->tap(source, frame);
+    }
     // A time to come would make all that is measured before it come too late.
     const Microseconds measured = std::min(frame.measured, data_->clock->now());
     const std::scoped_lock lock(data_->mutex);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <map>
 #include <memory>
 #include <string>
@@ -12,13 +13,17 @@ namespace lumorph {
 /// Who a tracked body is in the show. Remembered by the body's name.
 using RoleMap = std::map<std::string, PoseRole>;
 
+/// Makes a tracker of an address, as openTracker does; for those who know of more kinds.
+using TrackerOpener = std::function<std::unique_ptr<Tracker>(const std::string& uri, TrackerOptions options)>;
+
 /// All open trackers of a session: poses go to the board under the roles that their names have. Any thread.
 class TrackerHub {
 public:
-    explicit TrackerHub(std::shared_ptr<PoseBoard> board, std::shared_ptr<const Clock> clock);
+    explicit TrackerHub(std::shared_ptr<PoseBoard> board, std::shared_ptr<const Clock> clock,
+                        TrackerOpener opener = openTracker);
     ~TrackerHub();
 
-    /// Throws as openTracker; then all stays as it was. One tracker an address.
+    /// Throws as the opener; then all stays as it was. One tracker an address.
     void open(const std::string& uri, bool openToNetwork);
     void close(const std::string& uri);
     void setRoles(RoleMap roles);
@@ -26,6 +31,10 @@ public:
     [[nodiscard]] std::vector<TrackerStatus> status() const;
     /// Poses from elsewhere (a camera that sees a board, a replay) take the same way.
     void take(const std::string& source, const TrackerFrame& frame);
+    using Tap = std::function<void(const std::string& source, const TrackerFrame& frame)>;
+    /// Called with all that arrives, whatever role it has, in the thread that brings it; must return at once. When this
+    /// returns, the one before is called no more.
+    void setTap(Tap tap);
 
 private:
     struct Data;

@@ -1,6 +1,9 @@
 #include "devices/trackers/tracker_log.h"
 
+#include <cstdio>
 #include <utility>
+
+#include <glm/geometric.hpp>
 
 namespace lumorph {
 
@@ -8,6 +11,12 @@ namespace {
 
 constexpr Microseconds kReceiving{1'000'000};
 constexpr Microseconds kNever{-1'000'000'000'000};
+constexpr Microseconds kEventPause{100'000}; ///< a stream may be odd in every frame
+constexpr double kFastest = 6.0;             ///< metres a second: a hand that strikes
+constexpr double kLeastJump = 0.2;           ///< metres
+constexpr double kLongestGap = 1.0;          ///< seconds; after that it may be anywhere
+
+double secondsOf(Microseconds time) { return 1e-6 * static_cast<double>(time.count()); }
 
 } // namespace
 
@@ -32,9 +41,28 @@ void TrackerLog::noteRejected(const std::string& why) {
 void TrackerLog::noteFrame(const TrackerFrame& frame, std::optional<double> latencyMilliseconds) {
     const std::scoped_lock lock(mutex_);
     frames_.note(frame.arrived);
+    noteJumps(frame);
+    measured_ = frame.measured;
     lastGood_ = frame.arrived;
     status_.bodies = frame.bodies;
     status_.latencyMilliseconds = latencyMilliseconds;
+}
+
+void TrackerLog::noteJumps(const TrackerFrame& frame) {
+    const double gap = secondsOf(frame.measured - measured_);
+    if (status_.bodies.size() != frame.bodies.size() || gap > kLongestGap || frame.arrived < nextEvent_) return;
+    for (std::size_t i = 0; i < frame.bodies.size(); ++i) {
+        const TrackedBody& now = frame.bodies[i];
+        const TrackedBody& before = status_.bodies[i];
+        if (!now.valid || !before.valid || now.id != before.id) continue;
+        const double way = glm::distance(now.pose.position, before.pose.position);
+        if (!(way > kLeastJump + kFastest * gap)) continue;
+        char metres[32];
+        std::snprintf(metres, sizeof metres, "%.2f m", way);
+        status_.event = now.name + " jumped by " + metres;
+        ++status_.events;
+        nextEvent_ = frame.arrived + kEventPause;
+    }
 }
 
 void TrackerLog::noteAnswer() {

@@ -26,12 +26,17 @@ public:
     [[nodiscard]] TrackerStatus status() const;
 
 private:
+    /// What moves farther between two frames than a body can.
+    void noteJumps(const TrackerFrame& frame);
+
     mutable std::mutex mutex_;
     std::shared_ptr<const Clock> clock_;
     TrackerStatus status_;
     RateMeter packets_;
     RateMeter frames_;
     Microseconds lastGood_;
+    Microseconds measured_{0}; ///< of the newest frame
+    Microseconds nextEvent_{0};
 };
 
 } // namespace lumorph

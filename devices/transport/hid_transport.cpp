@@ -56,6 +56,10 @@ public:
         waiting_.push_back(report);
         changed_.notify_one();
     }
+    void dropUnsent() {
+        const std::scoped_lock lock(mutex_);
+        waiting_.clear();
+    }
     [[nodiscard]] std::size_t unsent() const {
         const std::scoped_lock lock(mutex_);
         return kReport * (waiting_.size() + (writing_ ? 1 : 0));
@@ -121,6 +125,9 @@ public:
     void close() override;
     [[nodiscard]] bool isOpen() const override { return worker_ != nullptr; }
     void write(std::span<const std::uint8_t> message) override;
+    void dropUnsent() override {
+        if (worker_) worker_->dropUnsent();
+    }
     [[nodiscard]] std::size_t unsent() const override { return worker_ ? worker_->unsent() : 0; }
     [[nodiscard]] std::string identity() const override { return facts_.serialNumber; }
     [[nodiscard]] std::string product() const override { return facts_.productText; }

@@ -179,6 +179,10 @@ void LinkKeeper::write(std::span<const std::uint8_t> message) {
     if (isOpen()) data_->transport->write(message);
 }
 
+void LinkKeeper::dropUnsent() {
+    if (isOpen()) data_->transport->dropUnsent();
+}
+
 bool LinkKeeper::isOpen() const { return data_->state == Data::State::open; }
 
 std::size_t LinkKeeper::unsent() const { return isOpen() ? data_->transport->unsent() : 0; }

@@ -33,6 +33,8 @@ public:
     /// The device does not answer: closes the link and begins anew. `why` is told as any other trouble.
     void drop(const LinkTrouble& why, Microseconds now);
     void write(std::span<const std::uint8_t> message);
+    /// As Transport::dropUnsent.
+    void dropUnsent();
 
     [[nodiscard]] bool isOpen() const;
     [[nodiscard]] std::size_t unsent() const;

@@ -60,11 +60,13 @@ public:
     void close() override;
     [[nodiscard]] bool isOpen() const override { return open_; }
     void write(std::span<const std::uint8_t> message) override;
+    void dropUnsent() override { unsent_.clear(); }
     [[nodiscard]] std::size_t unsent() const override;
     [[nodiscard]] std::string identity() const override { return "simulated " + board_->name(); }
     [[nodiscard]] std::string product() const override { return board_->product(); }
 
 private:
+    [[nodiscard]] std::optional<LinkTrouble> away() const;
     void step();
     void carryOut(Microseconds now);
     void carryIn(Microseconds now);
@@ -82,7 +84,9 @@ private:
 
 void SimulatedTransport::open() {
     if (open_) return;
-    if (const std::optional<LinkTrouble> trouble = simulatedTrouble(board_->name(), board_->faults())) {
+    std::optional<LinkTrouble> trouble = simulatedTrouble(board_->name(), board_->faults());
+    if (!trouble) trouble = away();
+    if (trouble) {
         events_.closed(*trouble);
         return;
     }
@@ -90,6 +94,14 @@ void SimulatedTransport::open() {
     board_->plugged(now_());
     timer_.start();
     events_.opened();
+}
+
+/// Why an open link is at its end.
+std::optional<LinkTrouble> SimulatedTransport::away() const {
+    if (const BoardFaults faults = board_->faults(); faults.unplugged) return simulatedTrouble(board_->name(), faults);
+    if (board_->present()) return std::nullopt;
+    return LinkTrouble{"the simulated device '" + board_->name() + "' has gone from the USB",
+                       "check its power; it is connected again when it is back"};
 }
 
 void SimulatedTransport::close() {
@@ -119,13 +131,12 @@ std::size_t SimulatedTransport::unsent() const {
 }
 
 void SimulatedTransport::step() {
-    const BoardFaults faults = board_->faults();
-    if (faults.unplugged) {
+    if (const std::optional<LinkTrouble> why = away()) {
         close();
-        events_.closed(*simulatedTrouble(board_->name(), faults));
+        events_.closed(*why);
         return;
     }
-    if (faults.stalled) return;
+    if (board_->faults().stalled) return;
     const Microseconds now = now_();
     carryOut(now);
     carryIn(now);

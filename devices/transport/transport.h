@@ -33,6 +33,9 @@ public:
     [[nodiscard]] virtual bool isOpen() const = 0;
     /// A whole message; on HID one report, filled up with zeros. Without an open link it is dropped.
     virtual void write(std::span<const std::uint8_t> message) = 0;
+    /// What was written and has not begun to leave is dropped, as whole messages, where the link can tell: what is
+    /// written next goes out first.
+    virtual void dropUnsent() {}
     /// Bytes that were written but have not left this program: more than a few mean that the link stalls.
     [[nodiscard]] virtual std::size_t unsent() const = 0;
     /// What tells this device from all others, as far as it is known (serial number, MAC); empty else.

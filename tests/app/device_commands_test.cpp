@@ -1,4 +1,13 @@
+#include <chrono>
+#include <csignal>
 #include <sstream>
+#include <stdexcept>
+#include <string>
+
+#include <fcntl.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -23,7 +32,7 @@ TEST(DeviceCommands, ListNamesTheSimulatedBoards) {
 TEST(DeviceCommands, ProbeSaysWhatABoardIsAndMovesNothing) {
     const nlohmann::json tablet = lumorph({"device", "probe", "sim://tablet", "--json"}).json();
     EXPECT_EQ(tablet["phase"], "ready");
-    EXPECT_EQ(tablet["firmware"], "LumorphTablet 1.0");
+    EXPECT_EQ(tablet["firmware"], "LumorphTablet 1.1");
     EXPECT_EQ(tablet["failsafe"], true);
     EXPECT_EQ(tablet["volts"], 7.4);
     for (const auto& servo : tablet["servos"]) EXPECT_EQ(servo["attached"], false);
@@ -82,6 +91,71 @@ TEST(DeviceCommands, WrongArgumentsAreTold) {
     }
 }
 
+/// A serial port that is a file: the near end of a pseudo-terminal.
+class TestPort {
+public:
+    TestPort() : far_(::posix_openpt(O_RDWR | O_NOCTTY)) {
+        if (far_ < 0 || ::grantpt(far_) != 0 || ::unlockpt(far_) != 0) throw std::runtime_error("no terminal");
+        path_ = ::ptsname(far_);
+        near_ = ::open(path_.c_str(), O_RDWR | O_NOCTTY);
+    }
+    ~TestPort() {
+        ::close(near_);
+        ::close(far_);
+    }
+    TestPort(const TestPort&) = delete;
+    TestPort& operator=(const TestPort&) = delete;
+
+    [[nodiscard]] const std::string& path() const { return path_; }
+    /// As a program does that uses it.
+    [[nodiscard]] bool lock() const { return ::flock(near_, LOCK_EX | LOCK_NB) == 0; }
+
+private:
+    int far_ = -1;
+    int near_ = -1;
+    std::string path_;
+};
+
+constexpr const char* kAsNobody = "/usr/bin/setpriv"; ///< root may open every port
+
+/// What no waiting mends is told before an answer of the board is waited for, which takes eight seconds.
+void expectToldAtOnce(const std::string& command, const std::string& address, const std::string& why,
+                      const std::string& remedy, bool asNobody = false) {
+    SCOPED_TRACE(command + ' ' + address);
+    std::vector<std::string> arguments{"device", command, address};
+    if (command == "move") arguments.insert(arguments.end(), {"--actuator", "0", "--level", "1"});
+    const auto begun = std::chrono::steady_clock::now();
+    if (asNobody) arguments.insert(arguments.begin(), {"--reuid=65534", "--clear-groups", lumorphProgram()});
+    const Outcome outcome = Process(asNobody ? kAsNobody : lumorphProgram(), arguments).wait();
+    EXPECT_LT(std::chrono::steady_clock::now() - begun, std::chrono::seconds(7));
+    EXPECT_EQ(outcome.exitCode, 1);
+    EXPECT_THAT(outcome.err, HasSubstr(address)) << "what is meant";
+    EXPECT_THAT(outcome.err, HasSubstr(why));
+    EXPECT_THAT(outcome.err, HasSubstr(remedy));
+    EXPECT_THAT(outcome.err, ::testing::Not(HasSubstr("There is no link"))) << "once is enough";
+}
+
+TEST(DeviceCommands, APortThatIsNotThereIsToldAtOnce) {
+    for (const char* command : {"probe", "monitor", "move"})
+        expectToldAtOnce(command, "serial:///dev/ttyNothing", "there is no port /dev/ttyNothing", "plug the device in");
+    expectToldAtOnce("probe", "hid://0483:ffff", "no USB device", "plug");
+}
+
+TEST(DeviceCommands, APortThatSomebodyUsesIsToldAtOnce) {
+    const TestPort port;
+    ASSERT_TRUE(port.lock());
+    expectToldAtOnce("probe", "serial://" + port.path(), "uses " + port.path(), "close ");
+}
+
+TEST(DeviceCommands, APortThatIsNotPermittedIsToldAtOnce) {
+    const TestPort port;
+    const bool root = ::geteuid() == 0;
+    if (root && ::access(kAsNobody, X_OK) != 0) GTEST_SKIP() << "needs to be another user";
+    ASSERT_EQ(::chmod(port.path().c_str(), 0), 0);
+    expectToldAtOnce("monitor", "serial://" + port.path(), "permission denied on " + port.path(), "add yourself to",
+                     root);
+}
+
 TEST(TrackCommand, PrintsOneJsonObjectAFrame) {
     const Outcome outcome = lumorph({"track", "monitor", "sim://head?rate=100", "--frames", "5", "--json"});
     ASSERT_EQ(outcome.exitCode, 0) << outcome.err;
@@ -105,6 +179,40 @@ TEST(TrackCommand, SaysWhatIsWrongWithAnAddress) {
     const Outcome outcome = lumorph({"track", "monitor", "opentrack://nonsense:x"});
     EXPECT_EQ(outcome.exitCode, 2);
     EXPECT_THAT(outcome.err, HasSubstr("opentrack"));
+}
+
+TEST(TrackCommand, CtrlCEndsAMonitorAndIsNoFailure) {
+    using namespace std::chrono_literals;
+    Process monitor(lumorphProgram(), {"track", "monitor", "board://camera99", "--json"});
+    ASSERT_TRUE(monitor.waitForError("There is no camera at /dev/video99", 20s));
+    monitor.send(SIGINT);
+    const Outcome outcome = monitor.wait(10s);
+    EXPECT_EQ(outcome.exitCode, 0);
+    EXPECT_THAT(outcome.err, HasSubstr("lumorph: stopped after "));
+    EXPECT_THAT(outcome.err, HasSubstr(" s: 0 frames in 0 packets, 0 of them rejected"));
+    EXPECT_THAT(outcome.err, ::testing::Not(HasSubstr("nothing was written")));
+    EXPECT_THAT(outcome.err, HasSubstr("taken to see 60 degrees")) << "no lens is known";
+}
+
+TEST(TrackCommand, CtrlCBeforeAllFramesCameIsOne) {
+    using namespace std::chrono_literals;
+    Process monitor(lumorphProgram(), {"track", "monitor", "board://camera99", "--json", "--frames", "3"});
+    ASSERT_TRUE(monitor.waitForError("There is no camera", 20s));
+    monitor.send(SIGINT);
+    const Outcome outcome = monitor.wait(10s);
+    EXPECT_EQ(outcome.exitCode, 1);
+    EXPECT_THAT(outcome.err, HasSubstr("it was stopped after 0 of 3 frames; There is no camera"));
+}
+
+TEST(TrackCommand, WritesABoardToPrint) {
+    const Outcome page = lumorph({"track", "board", "-", "--board", "squares=4x6&size=35&marker=25"});
+    EXPECT_EQ(page.exitCode, 0) << page.err;
+    EXPECT_TRUE(page.out.starts_with("%PDF-1.4"));
+    EXPECT_THAT(page.out, HasSubstr("4 x 6 squares of 35 mm"));
+    const Outcome wrong = lumorph({"track", "board", "-", "--board", "squares=4x6&cow=1"});
+    EXPECT_EQ(wrong.exitCode, 2);
+    EXPECT_THAT(wrong.err, HasSubstr("nothing is known of 'cow'"));
+    EXPECT_TRUE(lumorph({"track", "cameras", "--json"}).json().is_array());
 }
 
 } // namespace

@@ -206,6 +206,76 @@ TEST_F(RecordingTest, TheCommandTellsWhatHappenedAndWritesTables) {
     EXPECT_THAT(none.err, HasSubstr("there is no such file"));
 }
 
+TEST_F(RecordingTest, FilesOfTheProjectComeBackAndHostileNamesAreRefused) {
+    {
+        Recorder recorder(file, {});
+        recorder.add(FileRow{"session files/stone.glb", {0x00, 0xFF, 0x0A}});
+        recorder.add(FileRow{"session files/empty.png", {}});
+    }
+    const std::vector<FileRow> wanted = {{"session files/empty.png", {}},
+                                         {"session files/stone.glb", {0x00, 0xFF, 0x0A}}};
+    EXPECT_TRUE(readFiles(file) == wanted);
+    for (const char* name : {"../up.glb", "/etc/passwd", "a/../../b", "resource:models/tablet.glb"}) {
+        fs::remove(file);
+        {
+            Recorder recorder(file, {});
+            recorder.add(FileRow{name, {1}});
+        }
+        EXPECT_THROW((void)readFiles(file), DataError) << name;
+    }
+}
+
+TEST_F(RecordingTest, RowsOfSeveralThreadsAreSortedAndServoRowsStayAsTheyCame) {
+    {
+        Recorder recorder(file, {});
+        for (const int time : {5, 3, 9, 3}) {
+            recorder.add(EventRow{Microseconds{time}, "mark", std::to_string(time), {}});
+            recorder.add(ServoRow{Microseconds{time}, "sent", {static_cast<std::uint8_t>(time)}});
+        }
+    }
+    const Recording recording = readRecording(file);
+    const auto times = [](const auto& rows) {
+        std::vector<std::int64_t> all;
+        for (const auto& row : rows) all.push_back(row.time.count());
+        return all;
+    };
+    EXPECT_EQ(times(recording.events), (std::vector<std::int64_t>{3, 3, 5, 9}));
+    EXPECT_EQ(times(recording.servo), (std::vector<std::int64_t>{5, 3, 9, 3}));
+}
+
+TEST_F(RecordingTest, ReadingAndTablesTellHowFarTheyAreAndCanBeCancelled) {
+    {
+        std::mt19937 random(5);
+        Recorder recorder(file, {});
+        for (int i = 0; i < 5000; ++i) recorder.add(someFrame(random, i));
+    }
+    std::vector<double> told;
+    const Progress listening([&](double fraction, std::string_view) { told.push_back(fraction); });
+    const Recording recording = readRecording(file, listening);
+    EXPECT_EQ(recording.frames.size(), 5000U);
+    ASSERT_GE(told.size(), 4U);
+    EXPECT_TRUE(std::ranges::is_sorted(told));
+    EXPECT_LE(told.back(), 1.0);
+    std::stop_source stop;
+    const Progress stopping([&](double, std::string_view) { stop.request_stop(); }, stop.get_token());
+    EXPECT_THROW((void)readRecording(file, stopping), Cancelled);
+    stop = std::stop_source();
+    const Progress stoppingTables([&](double, std::string_view) { stop.request_stop(); }, stop.get_token());
+    EXPECT_THROW(exportCsv(recording, folder / "csv", stoppingTables), Cancelled);
+    EXPECT_FALSE(fs::exists(folder / "csv" / "frames.csv")) << "whole or not at all";
+}
+
+TEST_F(RecordingTest, AFinishedFileIsWholeAndTakesNoMore) {
+    std::mt19937 random(6);
+    Recorder recorder(file, {});
+    recorder.add(someFrame(random, 1));
+    recorder.finish();
+    EXPECT_FALSE(fs::exists(file.string() + "-wal"));
+    recorder.add(someFrame(random, 2));
+    recorder.finish();
+    EXPECT_EQ(readRecording(file).frames.size(), 1U);
+}
+
 TEST_F(RecordingTest, AnotherFileIsNotOverwritten) {
     std::ofstream(file) << "mine";
     EXPECT_THROW(const Recorder recorder(file, {}), DeviceError);

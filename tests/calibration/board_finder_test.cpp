@@ -3,68 +3,25 @@
 #include <algorithm>
 #include <cmath>
 #include <random>
-#include <thread>
 
 #include <glm/gtc/matrix_transform.hpp>
 #include <glm/gtc/quaternion.hpp>
 #include <gtest/gtest.h>
 
-#include "calibration/tracking/camera_tracker.h"
 #include "core/base/error.h"
+#include "tests/calibration/photographer.h"
 
 namespace lumorph {
 namespace {
+
+using test::degreesBetween;
+using test::Photographer;
 
 CalibratedCamera webcam(bool distorted) {
     CalibratedCamera camera = cameraLookingAt({0.15, 0.55, 0.45}, {0.0, 0.0, 0.0}, {960, 540}, 790.0);
     camera.principal += glm::dvec2(11.0, -7.0);
     if (distorted) camera.distortion = {-0.12, 0.04, 0.001, -0.0008, 0.0};
     return camera;
-}
-
-/// Takes pictures of a page that lies in the world, by rays: four a pixel, whose directions are found once.
-class Photographer {
-public:
-    Photographer(const MarkerBoard& board, const CalibratedCamera& camera)
-        : page_(BoardFinder::page(board, kFine)), from_(positionOf(camera)) {
-        for (int y = 0; y < camera.size.y; ++y)
-            for (int x = 0; x < camera.size.x; ++x)
-                for (const glm::dvec2 part : {glm::dvec2(-0.25, -0.25), {0.25, -0.25}, {-0.25, 0.25}, {0.25, 0.25}})
-                    ways_.push_back(directionOf(camera, glm::dvec2(x, y) + part));
-    }
-
-    [[nodiscard]] std::vector<std::uint8_t> picture(const glm::dmat4& worldFromBoard, double noise) const {
-        const glm::dmat4 boardFromWorld = glm::inverse(worldFromBoard);
-        const glm::dvec3 from(boardFromWorld * glm::dvec4(from_, 1.0));
-        std::mt19937 random(7);
-        std::normal_distribution<double> grain(0.0, noise);
-        std::vector<std::uint8_t> grey;
-        for (std::size_t i = 0; i < ways_.size(); i += 4) {
-            double sum = 0.0;
-            for (std::size_t k = i; k < i + 4; ++k) sum += lightAlong(from, glm::dmat3(boardFromWorld) * ways_[k]);
-            grey.push_back(static_cast<std::uint8_t>(std::clamp(sum / 4.0 + grain(random), 0.0, 255.0)));
-        }
-        return grey;
-    }
-
-private:
-    static constexpr double kFine = 4000.0; // pixels of the page a metre
-
-    [[nodiscard]] double lightAlong(const glm::dvec3& from, const glm::dvec3& way) const {
-        const glm::dvec3 at = from - way * (from.z / way.z);
-        const int column = static_cast<int>(std::floor(at.x * kFine));
-        const int row = page_.size().y - 1 - static_cast<int>(std::floor(at.y * kFine));
-        const bool on = column >= 0 && row >= 0 && column < page_.size().x && row < page_.size().y;
-        return on ? 20.0 + page_.at(column, row)[0] * 0.75 : 230.0;
-    }
-
-    Image page_;
-    glm::dvec3 from_;
-    std::vector<glm::dvec3> ways_;
-};
-
-double degreesBetween(const glm::dquat& a, const glm::dquat& b) {
-    return glm::degrees(2.0 * std::acos(std::min(1.0, std::abs(glm::dot(a, b)))));
 }
 
 struct Case {
@@ -86,10 +43,7 @@ TEST_P(BoardFinderPose, IsTheTruth) {
     for (int number = 0; number < 2; ++number) {
         const Pose truth{{0.02 * number, 0.01 * number, -0.015},
                          glm::angleAxis(glm::radians(12.0 * number - 9.0), glm::normalize(glm::dvec3(0.3, 1.0, 0.2)))};
-        const auto matrix = [](const Pose& pose) {
-            return glm::translate(glm::dmat4(1.0), pose.position) * glm::mat4_cast(pose.rotation);
-        };
-        const auto picture = photographer.picture(matrix(truth) * matrix(deviceFromBoard), 3.0);
+        const auto picture = photographer.picture(test::matrixOf(truth) * test::matrixOf(deviceFromBoard), 3.0);
         const auto sighting = finder.find(picture);
         ASSERT_TRUE(sighting) << number;
         const Pose found = worldFromDevice(*sighting, camera, deviceFromBoard);
@@ -105,6 +59,32 @@ INSTANTIATE_TEST_SUITE_P(
     ::testing::Values(Case{"charuco", {}, false, 0.8}, Case{"charucoThroughALens", {}, true, 0.8},
                       Case{"aruco", {MarkerBoard::Kind::aruco, 4, 5, 0.035, 0.028, "6X6_250"}, true, 1.5}),
     [](const auto& one) { return one.param.name; });
+
+TEST(BoardFinder, BlackBoxesAreTheBlackOfThePage) {
+    for (const MarkerBoard& board : {MarkerBoard{}, MarkerBoard{MarkerBoard::Kind::aruco, 3, 2, 0.05, 0.04, "5X5_50"},
+                                     MarkerBoard{MarkerBoard::Kind::charuco, 4, 6, 0.024, 0.018, "6X6_250"}}) {
+        const double perMetre = 5000.0;
+        const Image page = BoardFinder::page(board, perMetre);
+        std::vector<int> black(static_cast<std::size_t>(page.size().x * page.size().y), 0);
+        for (const BlackBox& box : BoardFinder::blackBoxes(board)) {
+            const glm::dvec2 low = box.corner * perMetre, high = (box.corner + box.size) * perMetre;
+            for (int y = 0; y < page.size().y; ++y)
+                for (int x = 0; x < page.size().x; ++x) {
+                    const glm::dvec2 middle(x + 0.5, page.size().y - 1 - y + 0.5);
+                    if (middle.x >= low.x && middle.x < high.x && middle.y >= low.y && middle.y < high.y)
+                        ++black[static_cast<std::size_t>(y * page.size().x + x)];
+                }
+        }
+        int differ = 0, twice = 0;
+        for (std::size_t i = 0; i < black.size(); ++i) {
+            differ += (black[i] > 0) != (page.pixels()[i][0] < 128) ? 1 : 0;
+            twice += black[i] > 1 ? 1 : 0;
+        }
+        // Borders may fall on either side of a pixel.
+        EXPECT_LT(differ, static_cast<int>(black.size()) / 50) << board.dictionary;
+        EXPECT_EQ(twice, 0) << board.dictionary;
+    }
+}
 
 TEST(BoardFinder, SeesNothingWhereThereIsNoBoard) {
     const CalibratedCamera camera = webcam(false);
@@ -132,17 +112,6 @@ TEST(BoardFinder, RefusesBoardsThatCannotBe) {
     board = {};
     board.square = std::nan("");
     EXPECT_THROW(BoardFinder(board, camera), InvalidInput);
-}
-
-TEST(CameraTracker, SaysThatItsCameraIsNotThere) {
-    CameraTrackerOptions options;
-    options.source = "/dev/video-that-is-not-there";
-    options.camera = webcam(false);
-    const CameraTracker tracker(options);
-    for (int i = 0; i < 250 && tracker.status().advice.empty(); ++i)
-        std::this_thread::sleep_for(std::chrono::milliseconds(20));
-    EXPECT_NE(tracker.status().advice.find("cannot be opened"), std::string::npos);
-    EXPECT_FALSE(tracker.status().open);
 }
 
 } // namespace

@@ -20,6 +20,7 @@ struct UnguardedAccess {
 namespace test {
 
 using Bytes = std::vector<std::uint8_t>;
+using Messages = std::vector<Bytes>;
 
 inline DeviceProfile profileOn(ControllerKind kind, const std::vector<int>& channels) {
     DeviceProfile profile;
@@ -50,13 +51,13 @@ public:
         }
     }
     /// Messages since the last call.
-    std::vector<Bytes> written() {
+    Messages written() {
         collect();
         return std::exchange(messages_, {});
     }
     /// The same without questions: those that begin as one of `questions` does.
-    std::vector<Bytes> writtenBut(const std::vector<Bytes>& questions) {
-        std::vector<Bytes> rest;
+    Messages writtenBut(const Messages& questions) {
+        Messages rest;
         for (const Bytes& message : written()) {
             bool isQuestion = false;
             for (const Bytes& question : questions)
@@ -77,7 +78,7 @@ private:
     }
     std::unique_ptr<ServoController> controller_;
     Microseconds now_{1'000'000};
-    std::vector<Bytes> messages_;
+    Messages messages_;
 };
 
 } // namespace test

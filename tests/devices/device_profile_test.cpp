@@ -41,7 +41,8 @@ DeviceProfile fullProfile() {
     profile.staggerSeconds = 0.7;
     profile.slowShare = 0.1;
     profile.restOnExit = false;
-    profile.servos = {{3, 600.5, 2400.25, true, -12.5, 0.75, 4.0}, {7, 1000.0, 2000.0, false, 0.0, 1.0, 8.0}};
+    profile.handDistance = 0.25;
+    profile.servos = {{3, 600.5, 2400.25, true, -12.5, 0.75, 4.0, 0.5}, {7, 1000.0, 2000.0, false, 0.0, 1.0, 8.0, 0.0}};
     return profile;
 }
 
@@ -59,6 +60,16 @@ TEST(DeviceProfile, ComesBackFromItsFileAsItWas) {
     const ProfileFolder folder;
     writeProfile(fullProfile(), folder / "tablet.json");
     EXPECT_EQ(readProfile(folder / "tablet.json"), fullProfile());
+}
+
+TEST(DeviceProfile, OneOfBeforeHasTheUsualValues) {
+    const ProfileFolder folder;
+    std::ofstream(folder / "old.json")
+        << R"({"format": "lumorph device", "servos": [{"channel": 1, "pulseMin": 900, "pulseMax": 2100}]})";
+    const DeviceProfile old = readProfile(folder / "old.json");
+    EXPECT_EQ(old.handDistance, 0.1);
+    EXPECT_EQ(old.servos.at(0).exitStroke, 0.0);
+    EXPECT_TRUE(old.restOnExit);
 }
 
 TEST(DeviceProfile, TurnsStrokesIntoPulsesWithinTheLimits) {
@@ -97,6 +108,10 @@ TEST(DeviceProfile, RefusesWhatWouldBreakAServo) {
         {[](DeviceProfile& p) { p.servos[1].channel = 3; }, "servo 2: channel 3 is already that of servo 1"},
         {[](DeviceProfile& p) { p.servos[1].channel = 24; }, "servo 2: the channel is 24"},
         {[](DeviceProfile& p) { p.servos[1].channel = -1; }, "servo 2: the channel is -1"},
+        {[](DeviceProfile& p) { p.servos[0].exitStroke = 1.1; }, "servo 1: the place at the end is 1.1"},
+        {[](DeviceProfile& p) { p.servos[1].exitStroke = NAN; }, "servo 2: the place at the end is nan"},
+        {[](DeviceProfile& p) { p.handDistance = -0.1; }, "the distance of hands is -0.1"},
+        {[](DeviceProfile& p) { p.controllerNumber = 128; }, "controller's number is 128"},
         {[](DeviceProfile& p) { p.slowShare = 0.0; }, "slow mode"},
         {[](DeviceProfile& p) { p.staggerSeconds = NAN; }, "pause between servo starts"},
         {[](DeviceProfile& p) { p.commandsPerSecond = 1e9; }, "rate of commands"},

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "core/base/error.h"
+#include "tests/devices/byte_cuts.h"
 
 namespace lumorph::firmata {
 namespace {
@@ -75,16 +76,7 @@ TEST(FirmataParser, ReadsEveryAnswer) {
 }
 
 TEST(FirmataParser, GivesTheSameHoweverItsBytesAreCut) {
-    const std::span<const std::uint8_t> all(kStream);
-    for (std::size_t a = 0; a <= all.size(); ++a)
-        for (std::size_t b = a; b <= all.size(); ++b) {
-            Parser parser;
-            std::vector<Message> messages;
-            for (const auto& part : {all.first(a), all.subspan(a, b - a), all.subspan(b)})
-                for (Message& message : parser.feed(part)) messages.push_back(std::move(message));
-            ASSERT_EQ(messages, kMeant) << a << " " << b;
-            ASSERT_EQ(parser.broken(), 0U);
-        }
+    test::expectTheSameHoweverCut(kStream, kMeant, [] { return Parser(); });
 }
 
 TEST(FirmataParser, GoesOnAfterGarbageAndCountsIt) {

@@ -9,11 +9,10 @@ namespace {
 
 using test::Bytes;
 using test::ControllerTrial;
+using test::Messages;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
-
-using Messages = std::vector<Bytes>;
 
 const Bytes kErrorQuestion = {0xAA, 0x0C, 0x21};
 const Bytes kPositionQuestion = {0xAA, 0x0C, 0x10};
@@ -136,6 +135,23 @@ TEST(MaestroController, DetachesAtOnceByTargetZero) {
     EXPECT_THAT(board.take(), ElementsAre(Bytes{0xAA, 0x0C, 0x04, 0x00, 0x00, 0x00}));
     board.wait(20);
     EXPECT_THAT(board.take(), ElementsAre(Bytes{0xAA, 0x0C, 0x04, 0x01, 0x00, 0x32})); // 6400
+}
+
+TEST(MaestroController, TellsTargetZeroAgainUntilTheBoardSaysSo) {
+    AnsweringTrial board(sixServos());
+    board.trial.send({{0, 1500.0, true}});
+    (void)board.take();
+    const Bytes off = {0xAA, 0x0C, 0x04, 0x00, 0x00, 0x00};
+    board.trial.send({{0, 1600.0, false}});
+    board.wait(1000); // it says 1500 us
+    EXPECT_GE(board.take().size(), 35U);
+    EXPECT_TRUE(board.trial.state().detaching) << "it says the contrary";
+    board.quarters = 0;
+    board.wait(300);
+    EXPECT_FALSE(board.trial.state().detaching);
+    for (const Bytes& message : board.take()) EXPECT_EQ(message, off);
+    board.wait(10'000);
+    EXPECT_THAT(board.take(), IsEmpty());
 }
 
 TEST(MaestroController, SaysHonestlyWhatItDoesNotKnow) {

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "core/base/error.h"
+#include "tests/devices/byte_cuts.h"
 
 namespace lumorph::maestro {
 namespace {
@@ -69,18 +70,11 @@ const Bytes kStream = {0x70, 0x17, 0x01, 0x28, 0x00, 0x00, 0x00};
 const std::vector<Message> kMeant = {Position{3, 6000}, Moving{true}, Errors{0x28}, Position{0, 0}};
 
 TEST(MaestroReplies, GiveTheSameHoweverTheirBytesAreCut) {
-    const std::span<const std::uint8_t> all(kStream);
-    for (std::size_t a = 0; a <= all.size(); ++a)
-        for (std::size_t b = a; b <= all.size(); ++b) {
-            Replies replies;
-            expectAll(replies);
-            std::vector<Message> messages;
-            for (const auto& part : {all.first(a), all.subspan(a, b - a), all.subspan(b)})
-                for (Message& message : replies.feed(part)) messages.push_back(std::move(message));
-            ASSERT_EQ(messages, kMeant) << a << " " << b;
-            ASSERT_EQ(replies.broken(), 0U);
-            ASSERT_EQ(replies.open(), 0U);
-        }
+    test::expectTheSameHoweverCut(kStream, kMeant, [] {
+        Replies replies;
+        expectAll(replies);
+        return replies;
+    });
 }
 
 TEST(MaestroReplies, TellErrorsInWords) {

@@ -143,8 +143,9 @@ TEST_F(ServoLinkTest, StartsNoServoWithoutAWordWhosePlaceIsUnknown) {
     open(tabletProfile());
     ASSERT_TRUE(reaches(LinkPhase::disarmed));
     link_->arm(false);
-    ASSERT_TRUE(hears("Nobody knows where servos 1, 2, 3 stand"));
+    ASSERT_TRUE(hears("Nobody knows where servos 1, 2 and 3 stand, so they were not started."));
     EXPECT_EQ(link_->status().waiting.size(), 3U);
+    EXPECT_EQ(link_->status().phase, LinkPhase::starting) << "they do not follow";
     EXPECT_TRUE(allLimp());
 }
 
@@ -330,7 +331,7 @@ TEST_F(ServoLinkTest, WarnsOfFirmwareThatJumps) {
     EXPECT_EQ(times("jump to their middle"), 1) << said_;
 }
 
-TEST_F(ServoLinkTest, TakesNarrowerLimitsAtOnceAndAsksAgainForWiderOnes) {
+TEST_F(ServoLinkTest, TakesOtherLimitsOverWhileServosFollow) {
     open(tabletProfile());
     goLive();
     link_->command(std::vector<double>(3, 1.0));
@@ -344,14 +345,20 @@ TEST_F(ServoLinkTest, TakesNarrowerLimitsAtOnceAndAsksAgainForWiderOnes) {
     EXPECT_EQ(link_->status().phase, LinkPhase::live);
     DeviceProfile wide = narrow;
     wide.servos[0].pulseMax = 2300.0;
+    wide.commandsPerSecond = 30.0;
     link_->setProfile(wide);
-    EXPECT_TRUE(hears("Other wires or wider limits"));
-    ASSERT_TRUE(reaches(LinkPhase::disarmed));
-    link_->arm(false);
-    ASSERT_TRUE(reaches(LinkPhase::live));
     EXPECT_TRUE(arrives(0, 2300.0)) << said();
-    wide.servos[0].pulseMax = NAN;
-    EXPECT_THROW(link_->setProfile(wide), InvalidInput);
+    EXPECT_EQ(link_->status().phase, LinkPhase::live);
+    EXPECT_EQ(link_->status().reconnects, 0U);
+    EXPECT_EQ(times("let go"), 0) << said_;
+    DeviceProfile elsewhere = wide;
+    elsewhere.servos[0].channel = 7;
+    link_->setProfile(elsewhere);
+    EXPECT_TRUE(hears("Another board or other wires: the servos were let go."));
+    EXPECT_TRUE(reaches(LinkPhase::disarmed));
+    EXPECT_TRUE(allLimp());
+    elsewhere.servos[0].pulseMax = NAN;
+    EXPECT_THROW(link_->setProfile(elsewhere), InvalidInput);
     EXPECT_EQ(link_->profile().servos[0].pulseMax, 2300.0);
 }
 

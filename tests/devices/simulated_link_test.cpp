@@ -100,6 +100,29 @@ TEST_F(SimulatedLink, AKeeperFollowsThePanel) {
     EXPECT_EQ(opened, 2);
 }
 
+TEST_F(SimulatedLink, AUsbBoardThatStartsAnewLeavesTheBusOneBehindAPortDoesNot) {
+    for (const char* name : {"xarm", "tablet", "uno", "maestro"}) {
+        int opened = 0;
+        std::vector<std::string> lost;
+        LinkKeeper keeper(parseDeviceAddress(std::string("sim://") + name),
+                          {[&] { ++opened; }, [](auto) {}, [&](const LinkTrouble& why) { lost.push_back(why.why); }},
+                          &bench_);
+        keeper.start(time_->now());
+        ASSERT_TRUE(keeper.isOpen()) << name;
+        bench_.board(name)->reboot();
+        const Microseconds later = time_->now() + 3s;
+        ASSERT_TRUE(EventLoop::runUntil(
+            [&] { return time_->advance(5ms), keeper.tick(time_->now()), time_->now() > later; }, 30s));
+        EXPECT_TRUE(keeper.isOpen()) << name;
+        const bool leaves = name == std::string("xarm");
+        EXPECT_EQ(opened, leaves ? 2 : 1) << name;
+        ASSERT_EQ(lost.size(), leaves ? 1U : 0U) << name;
+        if (leaves) {
+            EXPECT_THAT(lost[0], HasSubstr("gone from the USB"));
+        }
+    }
+}
+
 TEST_F(SimulatedLink, AKeeperTellsOfABoardThatIsNone) {
     std::vector<std::string> lost;
     LinkKeeper keeper(parseDeviceAddress("sim://table"),

@@ -101,6 +101,22 @@ TEST_F(SimulatedTransportTest, CarriesBytesBothWays) {
     EXPECT_TRUE(troubles_.empty());
 }
 
+TEST_F(SimulatedTransportTest, DropsWhatAStalledLinkHasNotTaken) {
+    make();
+    transport_->open();
+    transport_->write(Bytes{1});
+    board_->faults_.stalled = true;
+    transport_->write(Bytes{2, 3});
+    transport_->write(Bytes{4});
+    EXPECT_EQ(transport_->unsent(), 3u);
+    transport_->dropUnsent();
+    EXPECT_EQ(transport_->unsent(), 0u);
+    transport_->write(Bytes{5});
+    board_->faults_.stalled = false;
+    ASSERT_TRUE(EventLoop::runUntil([&] { return board_->taken.size() == 2; }, 2s));
+    EXPECT_EQ(board_->taken, (Bytes{1, 5}));
+}
+
 TEST_F(SimulatedTransportTest, AHidBoardGetsWholeReports) {
     make(true);
     transport_->open();

@@ -52,6 +52,41 @@ TEST(SimulatedXarm, MovesAtTheSpeedItWasTold) {
     EXPECT_EQ(wire.servo(0).pulse, 2500.0);
 }
 
+TEST(SimulatedXarm, AServoThatIsHeldStaysAndIsReadThere) {
+    SimulatedWire wire("xarm");
+    wire.fault([](BoardFaults& faults) { faults.held = 0; });
+    const Bytes both = report({0x55, 0x55, 0x0B, 0x03, 0x02, 0xE8, 0x03, 0x01, 0xE8, 0x03, 0x02, 0xE8, 0x03});
+    wire.send(both);
+    wire.wait(2s);
+    EXPECT_EQ(wire.servo(0).pulse, 2500.0) << "it is told all the same";
+    EXPECT_EQ(wire.servo(0).position, 1500.0);
+    EXPECT_EQ(wire.servo(1).position, 2500.0);
+    // 500 of 1000, and 1000.
+    EXPECT_EQ(wire.ask(report({0x55, 0x55, 0x05, 0x15, 0x02, 0x01, 0x02})),
+              report({0x55, 0x55, 0x09, 0x15, 0x02, 0x01, 0xF4, 0x01, 0x02, 0xE8, 0x03}));
+    wire.fault([](BoardFaults& faults) { faults.held.reset(); });
+    wire.wait(2s);
+    EXPECT_EQ(wire.servo(0).position, 2500.0);
+}
+
+TEST(SimulatedXarm, ItsUsbIsAwayWhileItStartsAnew) {
+    SimulatedWire wire("xarm");
+    EXPECT_TRUE(wire.board->present());
+    wire.board->reboot();
+    EXPECT_FALSE(wire.board->present());
+    wire.wait(1s);
+    EXPECT_TRUE(wire.board->present());
+    SimulatedWire behindAnAdapter("tablet");
+    behindAnAdapter.board->reboot();
+    EXPECT_TRUE(behindAnAdapter.board->present());
+}
+
+TEST(SimulatedXarm, ANamelessOneCallsItselfAsAnyAdapterDoes) {
+    SimulatedWire wire("xarm");
+    wire.fault([](BoardFaults& faults) { faults.nameless = true; });
+    EXPECT_EQ(wire.board->product(), "USB Serial");
+}
+
 TEST(SimulatedXarm, AMoveWithoutTimeIsAJump) {
     SimulatedWire wire("xarm");
     wire.send(report({0x55, 0x55, 0x08, 0x03, 0x01, 0x00, 0x00, 0x01, 0x64, 0x00})); // 100: 700 us

@@ -13,12 +13,14 @@
 #include "devices/trackers/simulated_body.h"
 #include "devices/trackers/tracker_address.h"
 #include "devices/trackers/tracker_advice.h"
+#include "devices/trackers/tracker_log.h"
 
 namespace lumorph {
 namespace {
 
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
+using ::testing::Not;
 
 Microseconds at(double seconds) { return Microseconds(std::llround(1e6 * seconds)); }
 
@@ -131,7 +133,7 @@ TEST(SimulatedBody, ComesAtItsRateWithItsLatency) {
     for (const TrackerFrame& frame : frames) EXPECT_EQ(frame.arrived - frame.measured, Microseconds{40'000});
     const SimulatedBody body({"head"}, at(100.0));
     const double when = 1e-6 * static_cast<double>((frames[500].measured - at(100.0)).count());
-    EXPECT_EQ(frames[500].bodies.at(0).pose, body.truth(when));
+    EXPECT_EQ(frames[500].bodies.at(0).pose, body.path(when));
     EXPECT_EQ(frames[500].bodies.at(0).name, "head");
 }
 
@@ -143,7 +145,7 @@ TEST(SimulatedBody, NoiseAndDropsAreAsOrdered) {
     double sum = 0.0;
     for (const TrackerFrame& frame : frames) {
         const double when = 1e-6 * static_cast<double>((frame.measured - at(100.0)).count());
-        const double off = frame.bodies.at(0).pose.position.x - body.truth(when).position.x;
+        const double off = frame.bodies.at(0).pose.position.x - body.path(when).position.x;
         sum += off * off;
     }
     EXPECT_NEAR(std::sqrt(sum / static_cast<double>(frames.size())), 0.002, 0.0002);
@@ -153,8 +155,8 @@ TEST(SimulatedBody, NoiseAndDropsAreAsOrdered) {
 TEST(SimulatedBody, MovesSlowlyAndSleepsOverAPause) {
     const SimulatedBody head({"head"}, at(0.0));
     for (double t = 0.0; t < 60.0; t += 0.01) {
-        EXPECT_LT(glm::distance(head.truth(t).position, head.truth(t + 0.01).position), 0.005);
-        EXPECT_LT(glm::distance(head.truth(t).position, {0.0, 0.45, 0.6}), 0.3);
+        EXPECT_LT(glm::distance(head.path(t).position, head.path(t + 0.01).position), 0.005);
+        EXPECT_LT(glm::distance(head.path(t).position, {0.0, 0.45, 0.6}), 0.3);
     }
     SimulatedBody body({"device"}, at(0.0));
     int frames = 0;
@@ -163,11 +165,94 @@ TEST(SimulatedBody, MovesSlowlyAndSleepsOverAPause) {
     EXPECT_GE(frames, 99);
 }
 
+/// All frames of a body from 0 s on, at 100 Hz, while `steer` changes its orders.
+template <typename Steer> std::vector<TrackerFrame> steered(double seconds, Steer steer) {
+    std::vector<TrackerFrame> frames;
+    const SimulatedBodyAddress address{"head"};
+    SimulatedBody body(address, at(0.0));
+    SimulatedOrders orders = ordersOf(address);
+    for (int i = 0; 0.002 * i <= seconds; ++i) {
+        steer(orders, 0.002 * i);
+        body.order(orders, at(0.002 * i));
+        body.advance(at(0.002 * i), [&](const TrackerFrame& frame) { frames.push_back(frame); });
+    }
+    return frames;
+}
+
+TEST(SteeredBody, IsWhereItIsHeldAndComesThatMuchLater) {
+    const Pose held{{0.3, 0.2, 0.9}, glm::angleAxis(0.5, glm::dvec3(0, 1, 0))};
+    const auto frames = steered(3.0, [&](SimulatedOrders& orders, double t) {
+        orders.latencyMilliseconds = 200.0;
+        if (t >= 1.0) orders.held = held;
+    });
+    int before = 0, after = 0;
+    for (const TrackerFrame& frame : frames) {
+        EXPECT_EQ(frame.arrived - frame.measured, Microseconds{200'000});
+        const bool isHeld = frame.bodies[0].pose == held;
+        EXPECT_EQ(isHeld, frame.measured >= at(1.0)) << frame.measured.count();
+        ++(isHeld ? after : before);
+    }
+    EXPECT_NEAR(before, 100, 1);
+    EXPECT_NEAR(after, 180, 2) << "from 1.0 s to 2.8 s";
+}
+
+TEST(SteeredBody, ChangesItsRateInMidStreamWithoutAGap) {
+    const auto frames = steered(4.0, [](SimulatedOrders& orders, double t) { orders.rateHertz = t < 2.0 ? 50 : 200; });
+    EXPECT_NEAR(static_cast<double>(frames.size()), 100.0 + 400.0, 3.0);
+    for (std::size_t i = 1; i < frames.size(); ++i) {
+        const double gap = 1e-6 * static_cast<double>((frames[i].measured - frames[i - 1].measured).count());
+        EXPECT_NEAR(gap, i <= 101 ? 0.02 : 0.005, 0.016) << i;
+        EXPECT_GT(gap, 0.0);
+        EXPECT_EQ(frames[i].number, frames[i - 1].number + 1);
+    }
+}
+
+TEST(SteeredBody, IsSpoiledForTenFramesEachTime) {
+    const auto frames = steered(2.0, [](SimulatedOrders& orders, double t) {
+        orders.jumps = t < 0.5 ? 0 : 1;
+        orders.notNumbers = t < 1.5 ? 0 : 1;
+        orders.hidden = t >= 1.9;
+    });
+    int jumped = 0, lacking = 0, lost = 0;
+    const SimulatedBody truth({"head"}, at(0.0));
+    for (const TrackerFrame& frame : frames) {
+        const TrackedBody& body = frame.bodies[0];
+        lost += body.valid ? 0 : 1;
+        if (!std::isfinite(body.pose.position.y))
+            ++lacking;
+        else
+            jumped += glm::distance(body.pose.position, truth.truth(frame.measured).position) > 2.9 ? 1 : 0;
+    }
+    EXPECT_EQ(jumped, 10);
+    EXPECT_EQ(lacking, 10);
+    EXPECT_NEAR(lost, 11, 1);
+}
+
+TEST(TrackerLog, TellsOfABodyThatJumpsAndOfNoneThatRuns) {
+    const auto clock = std::make_shared<ManualClock>();
+    TrackerLog log("sim://head", clock);
+    const auto see = [&](double x, double seconds, bool valid = true) {
+        clock->advance(at(seconds));
+        log.noteFrame({1, clock->now(), clock->now(), {{7, "hat", valid, {{x, 0, 0}, {1, 0, 0, 0}}}}}, {});
+        return log.status().events;
+    };
+    (void)see(0.0, 5.0);
+    for (int i = 1; i <= 50; ++i) EXPECT_EQ(see(0.05 * i, 0.01), 0U) << "5 m/s";
+    EXPECT_EQ(see(5.5, 0.01), 1U);
+    EXPECT_EQ(log.status().event, "hat jumped by 3.00 m");
+    EXPECT_EQ(see(0.0, 0.01), 1U) << "not ten times in a tenth of a second";
+    (void)see(0.0, 0.01, false);
+    EXPECT_EQ(see(4.0, 0.5), 1U) << "it was lost meanwhile";
+    EXPECT_EQ(see(0.0, 5.0), 1U) << "nobody looked for 5 s";
+    EXPECT_EQ(see(1.0, 0.01), 2U);
+}
+
 // --- What to do when nothing arrives
 
 NatNetSituation quiet() {
     NatNetSituation s;
-    s.hostIsHere = true;
+    s.hostIsHere = false;
+    s.openToNetwork = true;
     s.ownAddresses = "127.0.0.1, 192.168.0.2";
     s.sinceOpened = at(5.0);
     return s;
@@ -199,6 +284,24 @@ TEST(TrackerAdvice, NatNetSaysWhatToCheckInOrder) {
     }
 }
 
+TEST(TrackerAdvice, AServerOnThisMachineMeetsNoFirewallAndNoNetwork) {
+    const auto address = std::get<NatNetAddress>(parseTrackerAddress("natnet://127.0.0.1?mode=unicast"));
+    NatNetSituation s = quiet();
+    s.hostIsHere = true;
+    s.openToNetwork = false;
+    const std::string silent = adviceFor(address, s);
+    EXPECT_THAT(silent, HasSubstr("127.0.0.1, which is this machine"));
+    EXPECT_THAT(silent, HasSubstr("runs here"));
+    EXPECT_THAT(silent, HasSubstr("by unicast and on the interface 127.0.0.1"));
+    s.server = natnet::ServerInfo{"Motive", {2, 1, 0, 0}, {3, 0}, {}};
+    const std::string answering = adviceFor(address, s);
+    EXPECT_THAT(answering, HasSubstr("not paused; that it sends on the interface 127.0.0.1"));
+    for (const char* wrong : {"not on loopback", "firewall", "same network", "leads here"}) {
+        EXPECT_THAT(silent, Not(HasSubstr(wrong)));
+        EXPECT_THAT(answering, Not(HasSubstr(wrong)));
+    }
+}
+
 TEST(TrackerAdvice, NatNetKnowsWhatIsWrong) {
     NatNetAddress address = remote();
     address.local = "10.0.0.9";
@@ -208,12 +311,14 @@ TEST(TrackerAdvice, NatNetKnowsWhatIsWrong) {
     EXPECT_THAT(adviceFor(address, s), HasSubstr("this machine has 127.0.0.1, 192.168.0.2"));
 
     s = quiet();
-    s.hostIsHere = false;
+    s.openToNetwork = false;
     EXPECT_THAT(adviceFor(remote(), s), HasSubstr("Open it to the network"));
     s.openToNetwork = true;
     EXPECT_THAT(adviceFor(remote(), s), HasSubstr("Check in this order"));
 
     s = quiet();
+    s.hostIsHere = true;
+    s.openToNetwork = false;
     s.dropped = 17;
     s.lastDropped = "192.168.0.77";
     s.sinceDropped = at(0.1);
@@ -245,6 +350,7 @@ TEST(TrackerAdvice, NatNetComparesWhatTheServerSaysWithTheAddress) {
 
 TEST(TrackerAdvice, ListenersNameTheirPort) {
     TrackerSituation s = quiet();
+    s.openToNetwork = false;
     const OpenTrackAddress address{"127.0.0.1", 4242};
     EXPECT_THAT(adviceFor(address, s), HasSubstr("port 4242 of 127.0.0.1"));
     EXPECT_THAT(adviceFor(address, s), HasSubstr("If it runs on another machine, open this input"));

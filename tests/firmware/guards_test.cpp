@@ -169,8 +169,8 @@ TEST_P(Garbage, NeverLeavesTheLimits) {
             const auto servo =
                 std::find_if(servos.begin(), servos.end(), [&](const ServoSetup& s) { return s.channel == pulse.pin; });
             ASSERT_NE(servo, servos.end()) << "pin " << pulse.pin;
-            ASSERT_GE(pulse.width, servo->pulseMin - 4.0) << "pin " << pulse.pin;
-            ASSERT_LE(pulse.width, servo->pulseMax + 4.0) << "pin " << pulse.pin;
+            ASSERT_GE(pulse.width, servo->pulseMin) << "pin " << pulse.pin;
+            ASSERT_LE(pulse.width, servo->pulseMax) << "pin " << pulse.pin;
             widest = std::max(widest, pulse.width);
             narrowest = std::min(narrowest, pulse.width);
             ++count;

@@ -93,7 +93,7 @@ protected:
 TEST_F(LiveLink, TheStudioKnowsTheSketchAndDrivesIt) {
     ServoLink link(profile_, {});
     ASSERT_TRUE(isLive(link));
-    EXPECT_EQ(link.status().controller.firmware, "LumorphTablet 1.0");
+    EXPECT_EQ(link.status().controller.firmware, "LumorphTablet 1.1");
     EXPECT_TRUE(link.status().controller.traits.failsafe);
     EXPECT_FALSE(link.status().controller.traits.jumpsOnAttach);
     ASSERT_TRUE(comesTrue([&] { return allAre(board_, profile_, 0.25); }));
@@ -121,17 +121,29 @@ TEST_F(LiveLink, ACutLineLetsServosGo) {
     EXPECT_TRUE(comesTrue([&] { return link.status().phase == LinkPhase::lost; }));
 }
 
-/// Largest step of a pulse's width from one frame to the next, microseconds; starts after a pause do not count.
-double largestStep(const std::vector<Pulse>& pulses) {
-    std::map<int, Pulse> before;
-    double largest = 0.0;
-    for (const Pulse& pulse : pulses) {
-        const auto last = before.find(pulse.pin);
-        if (last != before.end() && pulse.start - last->second.start < 30.0)
-            largest = std::max(largest, std::abs(pulse.width - last->second.width));
-        before[pulse.pin] = pulse;
+struct Steps {
+    double largest = 0.0; ///< microseconds from one frame to the next
+    double share = 0.0;   ///< greatest, of what the velocity limit allows in the time
+};
+
+/// Of all pins; starts after a pause do not count. When the studio itself stands still, 50 ms of it count at most; what
+/// it said since the frame before, the next one takes over.
+Steps stepsOf(const std::vector<Pulse>& pulses, const std::vector<double>& wallTimes, double perMillisecond) {
+    constexpr double kStudiosPause = 50.0;
+    constexpr double kFrame = 20.0;
+    std::map<int, std::size_t> before;
+    Steps steps;
+    for (std::size_t i = 0; i < pulses.size(); ++i) {
+        const auto last = before.find(pulses[i].pin);
+        if (last != before.end() && pulses[i].start - pulses[last->second].start < 30.0) {
+            const double step = std::abs(pulses[i].width - pulses[last->second].width);
+            const double time = std::max(kFrame, wallTimes[i] - wallTimes[last->second]) + kStudiosPause;
+            steps.largest = std::max(steps.largest, step);
+            steps.share = std::max(steps.share, step / (perMillisecond * time));
+        }
+        before[pulses[i].pin] = i;
     }
-    return largest;
+    return steps;
 }
 
 // Two cuts here; twenty in ten minutes where LUMORPH_SOAK is set.
@@ -165,18 +177,19 @@ TEST_F(LiveLink, TheLineIsCutAndMendedAgainAndAgain) {
     }
     const std::vector<Pulse> pulses = board_.pulses();
     for (const Pulse& pulse : pulses) {
-        ASSERT_GE(pulse.width, 1000.0 - 4.0);
-        ASSERT_LE(pulse.width, 2000.0 + 4.0);
+        ASSERT_GE(pulse.width, 1000.0);
+        ASSERT_LE(pulse.width, 2000.0);
     }
-    // A frame lasts 20 ms; on a busy machine the studio's time and the board's differ by some more.
-    const double frame = 4.0 * 1000.0 * 0.020;
-    const double largest = largestStep(pulses);
-    EXPECT_LE(largest, 3.0 * frame) << "1000 us are a stroke, and 4 strokes a second the limit";
+    std::vector<double> wallTimes = board_.wallTimes();
+    wallTimes.resize(pulses.size());
+    const double perMillisecond = 4.0 * 1000.0 * 0.001; // 1000 us are a stroke, and 4 strokes a second the limit
+    const Steps steps = stepsOf(pulses, wallTimes, perMillisecond);
+    EXPECT_LE(steps.share, 1.0) << "of the velocity limit";
     if (soak) {
         EXPECT_LE(slowest, 3.0) << "seconds until it was found again";
     }
-    std::printf("%d cuts, found again within %.2f s; %zu pulses, largest step %.1f us a frame (limit %.0f)\n", cuts,
-                slowest, pulses.size(), largest, frame);
+    std::printf("%d cuts, found again within %.2f s; %zu pulses, largest step %.1f us a frame, %.0f %% of the limit\n",
+                cuts, slowest, pulses.size(), steps.largest, 100.0 * steps.share);
 }
 
 } // namespace

@@ -4,6 +4,8 @@
 #include <fstream>
 #include <string>
 
+#include <gtest/gtest.h>
+
 #include "app/studio/document/desk.h"
 #include "core/base/atomic_file.h"
 #include "core/geometry/mesh_writers.h"
@@ -75,6 +77,12 @@ struct DeskWorld {
             }
         return false;
     }
+};
+
+/// A desk among files of its own.
+struct DeskFixture : testing::Test {
+    DeskFiles files; // before the desk, which keeps its session among them
+    DeskWorld world;
 };
 
 } // namespace lumorph::test

@@ -1,18 +1,14 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <filesystem>
 #include <thread>
 
-#include <QAbstractButton>
-#include <QCheckBox>
-#include <QListWidget>
 #include <QSlider>
 
 #include "app/studio/devices/device_shelf.h"
 #include "app/workspaces/devices/device_words.h"
 #include "devices/controllers/device_profile.h"
-#include "tests/ui/studio_window.h"
+#include "tests/ui/devices_window.h"
 
 // The Devices workspace as its user has it, against the simulated tablet: what counts is what the board's servos get.
 
@@ -21,98 +17,6 @@ namespace {
 
 using namespace std::chrono_literals;
 using Steady = std::chrono::steady_clock;
-
-constexpr int kFirstPin = 2; ///< of the simulated tablet's servos
-
-/// No profile of the test before is left.
-struct NoProfiles {
-    NoProfiles() { std::filesystem::remove_all(studio::Settings().folder() / "devices"); }
-};
-
-class DevicesWindow : public ::testing::Test {
-protected:
-    DevicesWindow() : window(folder_ / "session", "devices") {
-        board = window.studio().devices.bench().board("tablet");
-    }
-
-    [[nodiscard]] LinkPhase phase() { return window.studio().devices.status().phase; }
-    [[nodiscard]] bool reaches(LinkPhase wanted) {
-        return eventually([&] { return phase() == wanted; });
-    }
-    /// Whether the card says so, soon.
-    [[nodiscard]] bool tells(const QString& words) {
-        return eventually([&] {
-            return window.text("devices.card.title").contains(words) ||
-                   window.text("devices.card.text").contains(words);
-        });
-    }
-    [[nodiscard]] bool logs(const QString& words) {
-        return eventually([&] {
-            const auto* log = window.findNow<QListWidget>("devices.log");
-            return log && !log->findItems(words, Qt::MatchContains).isEmpty();
-        });
-    }
-    [[nodiscard]] QString next() {
-        const auto* button = window.findNow<QAbstractButton>("devices.next");
-        return button ? button->text() : QString();
-    }
-    [[nodiscard]] bool offers(const QString& words) {
-        return eventually([&] { return next() == words; });
-    }
-    /// From nothing to servos that follow, by the card's button alone.
-    void goLive() {
-        setByHand(0, 0.0); // the show stands still
-        ASSERT_TRUE(offers("Connect the simulated tablet"));
-        window.click("devices.next");
-        ASSERT_TRUE(offers("Start servos"));
-        startServos();
-    }
-    void startServos() {
-        window.click("devices.next");
-        ASSERT_TRUE(eventually([&] { return phase() == LinkPhase::live || next() == "Start anyway"; }));
-        if (next() == "Start anyway") window.click("devices.next");
-        ASSERT_TRUE(eventually([&] { return allDriven(); }));
-    }
-    /// Every servo of the rig has its pulse.
-    [[nodiscard]] bool allDriven() {
-        const LinkStatus& link = window.studio().devices.status();
-        return link.phase == LinkPhase::live && link.waiting.empty() && !link.servos.empty() &&
-               std::ranges::all_of(link.servos, &ServoStatus::attached);
-    }
-    void setByHand(std::size_t servo, double stroke) {
-        window.studio().document.change("Move by hand", [&](studio::StudioState& state) {
-            state.matching.live = false;
-            state.strokes.assign(state.rig.rig->actuatorCount(), 0.0);
-            state.strokes[servo] = stroke;
-        });
-    }
-    [[nodiscard]] SimulatedServo servoOf(std::size_t servo) {
-        const int channel = window.studio().devices.profile().servos.at(servo).channel;
-        return board->servos().at(static_cast<std::size_t>(channel - kFirstPin));
-    }
-    [[nodiscard]] bool allLimp() const {
-        for (const SimulatedServo& servo : board->servos())
-            if (servo.pulse != 0.0) return false;
-        return true;
-    }
-    void showSimulator() {
-        auto* dock = window.window().findChild<QDockWidget*>("dock.devices.simulator");
-        ASSERT_NE(dock, nullptr);
-        dock->raise();
-        ASSERT_NE(window.find<QWidget>("sim.board"), nullptr);
-    }
-    void set(const QString& name, bool on) {
-        auto* box = window.find<QCheckBox>(name);
-        ASSERT_NE(box, nullptr);
-        if (box->isChecked() != on) QTest::mouseClick(box, Qt::LeftButton, {}, QPoint(8, box->height() / 2));
-        ASSERT_EQ(box->isChecked(), on);
-    }
-
-    TemporaryFolder folder_;
-    NoProfiles none_;
-    StudioWindow window;
-    std::shared_ptr<SimulatedBoard> board;
-};
 
 TEST_F(DevicesWindow, NothingIsConnectedUntilTheUserSaysSoThenServosFollow) {
     EXPECT_EQ(phase(), LinkPhase::off);
@@ -139,7 +43,7 @@ TEST_F(DevicesWindow, AnUnpluggedBoardIsToldAndComesBackLimp) {
     showSimulator();
     set("sim.unplugged", true);
     EXPECT_TRUE(reaches(LinkPhase::lost));
-    EXPECT_TRUE(tells("is not there"));
+    EXPECT_TRUE(tells("is lost"));
     EXPECT_TRUE(logs("The link is lost"));
     window.screenshot("devices-unplugged");
     set("sim.unplugged", false);
@@ -294,7 +198,7 @@ TEST(DeviceWords, TheNextStepFitsTheState) {
         {LinkPhase::live, {0, 1, 2}, Step::startAnyway, "All servos may jump when they start: hands off"},
         {LinkPhase::live, {}, Step::none, "Live"},
         {LinkPhase::stopped, {}, Step::startAgain, "Stopped"},
-        {LinkPhase::lost, {}, Step::none, "Tablet is not there"},
+        {LinkPhase::lost, {}, Step::none, "The link to Tablet is lost"},
     };
     for (const auto& row : rows) {
         view.link.phase = row.phase;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <deque>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -10,23 +11,20 @@
 #include <QString>
 #include <QStringList>
 
+#include "app/studio/devices/device_log.h"
+#include "app/studio/devices/hand_watch.h"
 #include "app/studio/document/notices.h"
 #include "app/studio/document/studio_document.h"
 #include "app/studio/document/studio_loop.h"
 #include "app/studio/shell/settings.h"
 #include "devices/controllers/servo_link.h"
-#include "devices/simulator/simulated_bench.h"
 #include "devices/transport/discovery.h"
 
-namespace lumorph::studio {
+namespace lumorph {
 
-/// One line of what happened with the device.
-struct DeviceLogLine {
-    QDateTime time;
-    LinkEvent::Kind kind = LinkEvent::Kind::information;
-    QString text;
-    QString remedy;
-};
+class SimulatedBench;
+
+namespace studio {
 
 /// The servo controller of the studio: what was found, how the rig hangs on it, the link, and what happened. Nothing is
 /// connected until the user says so. Servos follow the match loop from its own thread, whatever the window does. Lives
@@ -71,7 +69,10 @@ public:
     void release();
     void wiggle(std::size_t servo);
     void setSlow(bool slow);
-    [[nodiscard]] bool slow() const noexcept;
+    [[nodiscard]] bool slow() const noexcept; ///< by the user's will; hands make it slow besides
+    /// Who sees hands; null: nobody.
+    void setPoses(std::shared_ptr<const PoseBoard> poses);
+    [[nodiscard]] const HandSense& hands() const noexcept;
     /// Moves one servo slowly to a stroke and keeps it there, until `endTest`.
     void test(std::size_t servo, double stroke);
     void endTest();
@@ -88,6 +89,9 @@ public:
     /// Newest first, at most 500.
     [[nodiscard]] const std::deque<DeviceLogLine>& log() const noexcept;
     void note(const QString& text);
+    /// What goes into the machines behind the servos and comes out of them, from the present link's beginning on and of
+    /// each that follows; in the link's thread. An empty sink ends it.
+    void setTrace(std::function<void(const ServoTraceRow&)> sink);
 
 signals:
     void changed(); ///< status; at most 20 times a second
@@ -100,4 +104,5 @@ private:
     std::unique_ptr<Data> data_;
 };
 
-} // namespace lumorph::studio
+} // namespace studio
+} // namespace lumorph

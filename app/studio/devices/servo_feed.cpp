@@ -11,7 +11,34 @@ void ServoFeed::attach(ServoLink* link, std::size_t servos) {
     link_ = link;
     holds_.assign(servos, std::nullopt);
     stoppedLive_ = false;
+    heldServos_.forget();
+    slow(SlowCause::held, false);
+    if (link_) link_->setSlow(causes_ != 0);
     tell();
+}
+
+void ServoFeed::setSlow(SlowCause cause, bool on) {
+    const std::scoped_lock lock(mutex_);
+    slow(cause, on);
+}
+
+void ServoFeed::slow(SlowCause cause, bool on) {
+    const bool before = causes_ != 0;
+    const unsigned bit = 1U << static_cast<unsigned>(cause);
+    causes_ = on ? causes_ | bit : causes_ & ~bit;
+    if (link_ && (causes_ != 0) != before) link_->setSlow(causes_ != 0);
+}
+
+void ServoFeed::feel(Microseconds now) {
+    const std::scoped_lock lock(mutex_);
+    if (!link_) return;
+    heldServos_.look(link_->status(), now);
+    slow(SlowCause::held, !heldServos_.held().empty());
+}
+
+std::vector<std::size_t> ServoFeed::stuck() const {
+    const std::scoped_lock lock(mutex_);
+    return heldServos_.held();
 }
 
 void ServoFeed::stop() {

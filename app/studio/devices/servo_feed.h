@@ -5,9 +5,17 @@
 #include <span>
 #include <vector>
 
+#include "app/studio/devices/held_servos.h"
 #include "devices/controllers/servo_link.h"
 
 namespace lumorph::studio {
+
+/// Why servos are slow.
+enum class SlowCause {
+    user,
+    hand, ///< one that is tracked is near
+    held  ///< some servo does not follow
+};
 
 /// What the servos are told: the strokes of the show, except those that are held for a test. Any thread.
 class ServoFeed {
@@ -23,6 +31,13 @@ public:
     [[nodiscard]] bool takeStoppedLive();
     /// Where the show has the device now. Told on where it fits the servos.
     void follow(std::span<const double> strokes);
+
+    /// All servos move slowly as long as there is any cause for it.
+    void setSlow(SlowCause cause, bool on);
+    /// Looks whether servos follow, and makes all slow where one does not; ten times a second or more often.
+    void feel(Microseconds now);
+    /// Servos that do not follow.
+    [[nodiscard]] std::vector<std::size_t> stuck() const;
 
     /// Moves one servo slowly from where it was told to be, and keeps it there.
     void hold(std::size_t servo, double stroke);
@@ -44,6 +59,7 @@ private:
         std::optional<double> aim; ///< nothing: back to the show
     };
     void tell();
+    void slow(SlowCause cause, bool on);
 
     mutable std::mutex mutex_;
     ServoLink* link_ = nullptr;
@@ -51,6 +67,8 @@ private:
     std::vector<std::optional<Hold>> holds_; ///< one a servo
     std::vector<double> told_;
     bool stoppedLive_ = false;
+    unsigned causes_ = 0; ///< to be slow, a bit each
+    HeldServos heldServos_;
 };
 
 } // namespace lumorph::studio

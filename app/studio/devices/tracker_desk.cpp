@@ -4,12 +4,17 @@
 #include <cctype>
 #include <limits>
 #include <map>
+#include <mutex>
 #include <set>
 #include <utility>
 
 #include <QThreadPool>
+#include <QTime>
 #include <QTimer>
 #include <QVariantMap>
+
+#include "app/tracking/any_tracker.h"
+#include "calibration/tracking/camera_source.h"
 
 namespace lumorph::studio {
 namespace {
@@ -18,10 +23,15 @@ constexpr int kStatusMilliseconds = 100;
 constexpr std::size_t kHistory = 101; ///< ten seconds of it
 constexpr qsizetype kMostAddresses = 8;
 constexpr std::size_t kMostBodies = 200; ///< names come from outside, and may be new ones for ever
+constexpr std::string_view kSimulated = "sim://";
 constexpr auto kAddressesKey = "trackers/addresses";
 constexpr auto kRolesKey = "trackers/roles";
-constexpr const char* kExamples[] = {"sim://head", "sim://device", "natnet://192.168.0.2?mode=multicast",
-                                     "opentrack://127.0.0.1:4242", "osc://127.0.0.1:9000"};
+constexpr const char* kExamples[] = {"sim://head",
+                                     "sim://device",
+                                     "sim://pointer",
+                                     "natnet://192.168.0.2?mode=multicast",
+                                     "opentrack://127.0.0.1:4242",
+                                     "osc://127.0.0.1:9000"};
 constexpr std::pair<PoseRole, const char*> kRoleWords[] = {
     {PoseRole::head, "head"}, {PoseRole::device, "device"}, {PoseRole::pointer, "pointer"}};
 
@@ -49,7 +59,8 @@ std::optional<PoseRole> likelyRole(std::string_view body) {
     std::ranges::transform(name, name.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
     const auto tells = [&](const char* word) { return name.find(word) != std::string::npos; };
     if (tells("head") || tells("eye") || tells("glasses") || tells("hat")) return PoseRole::head;
-    if (tells("device") || tells("tablet")) return PoseRole::device;
+    if (tells("device") || tells("tablet") || tells("board")) return PoseRole::device;
+    if (tells("hand") || tells("pointer") || tells("finger") || tells("glove")) return PoseRole::pointer;
     return std::nullopt;
 }
 
@@ -70,6 +81,9 @@ struct TrackerDesk::Data {
     void take();
     void sample();
     void meet(const TrackerStatus& status);
+    void noteEvent(OpenTracker& tracker, std::uint64_t before);
+    [[nodiscard]] std::unique_ptr<Tracker> openOne(const std::string& uri, TrackerOptions options);
+    [[nodiscard]] std::shared_ptr<SimulatedSteering> steeringOf(const std::string& uri);
     void tellRoles();
     void keepRoles();
 
@@ -78,10 +92,15 @@ struct TrackerDesk::Data {
     StudioLoop& loop;
     Notices& notices;
     std::shared_ptr<PoseBoard> board = std::make_shared<PoseBoard>();
-    TrackerHub hub{board, std::make_shared<SteadyClock>()};
+    std::shared_ptr<const Clock> clock = std::make_shared<SteadyClock>();
+    std::mutex steeringMutex; ///< trackers are opened in the worker
+    std::map<std::string, std::shared_ptr<SimulatedSteering>> steering;
+    TrackerHub hub{board, clock,
+                   [this](const std::string& uri, TrackerOptions options) { return openOne(uri, std::move(options)); }};
     std::map<std::string, std::optional<PoseRole>> said; ///< by the user
     std::map<std::string, std::optional<PoseRole>> met;  ///< by name, since the start
     std::vector<OpenTracker> trackers;
+    std::map<std::pair<std::string, std::string>, Microseconds> lastSeen; ///< by address and body
     std::set<QString> opening;
     QString trouble;       ///< what the newest notice is about
     bool followed = false; ///< the loop has the board
@@ -118,7 +137,10 @@ void TrackerDesk::Data::take() {
         const auto before = std::ranges::find(trackers, status.address,
                                               [](const OpenTracker& tracker) { return tracker.status.address; });
         if (before != trackers.end()) one = std::move(*before);
+        const std::uint64_t events = one.status.events;
         one.status = std::move(status);
+        one.steering = steeringOf(one.status.address);
+        noteEvent(one, events);
     }
     trackers = std::move(now);
     const bool any = !trackers.empty();
@@ -137,6 +159,26 @@ void TrackerDesk::Data::sample() {
         keepTenSeconds(one.latency, one.status.receiving ? one.status.latencyMilliseconds.value_or(kNone) : kNone);
     }
     emit desk.changed();
+}
+
+void TrackerDesk::Data::noteEvent(OpenTracker& tracker, std::uint64_t before) {
+    if (tracker.status.events == before) return;
+    tracker.event = QTime::currentTime().toString("HH:mm:ss") + ' ' + QString::fromStdString(tracker.status.event);
+}
+
+/// In the worker.
+std::unique_ptr<Tracker> TrackerDesk::Data::openOne(const std::string& uri, TrackerOptions options) {
+    auto made = std::make_shared<SimulatedSteering>();
+    std::unique_ptr<Tracker> tracker = openAnyTracker(uri, std::move(options), made);
+    const std::scoped_lock lock(steeringMutex);
+    steering[uri] = uri.starts_with(kSimulated) ? std::move(made) : nullptr;
+    return tracker;
+}
+
+std::shared_ptr<SimulatedSteering> TrackerDesk::Data::steeringOf(const std::string& uri) {
+    const std::scoped_lock lock(steeringMutex);
+    const auto found = steering.find(uri);
+    return found == steering.end() ? nullptr : found->second;
 }
 
 /// Bodies that are new get the role that they had last time, or the one that their name tells.
@@ -176,6 +218,12 @@ QStringList TrackerDesk::addresses() const {
     QStringList all = data_->settings.value(kAddressesKey).toStringList().mid(0, kMostAddresses);
     for (const char* example : kExamples)
         if (!all.contains(example)) all << example;
+    std::vector<CameraInfo> cameras = listCameras();
+    if (cameras.empty()) cameras.push_back({"/dev/video0", {}});
+    for (const CameraInfo& camera : cameras) {
+        const QString address = "board://" + QString::fromStdString(camera.path) + "?squares=5x7&size=30&marker=22";
+        if (!all.contains(address)) all << address;
+    }
     return all;
 }
 
@@ -209,8 +257,28 @@ void TrackerDesk::close(const QString& address) {
     });
 }
 
+std::shared_ptr<const PoseBoard> TrackerDesk::poses() const noexcept { return data_->board; }
 bool TrackerDesk::opening() const noexcept { return !data_->opening.empty(); }
 const std::vector<OpenTracker>& TrackerDesk::trackers() const noexcept { return data_->trackers; }
+
+std::vector<SeenBody> TrackerDesk::bodies() const {
+    std::vector<SeenBody> all;
+    if (data_->trackers.empty()) return all;
+    const Microseconds now = data_->clock->now();
+    for (const TrackerStatus& status : data_->hub.status())
+        for (const TrackedBody& body : status.bodies) {
+            if (all.size() >= kMostBodies) return all;
+            const std::pair key{status.address, body.name};
+            if (data_->lastSeen.size() > 2 * kMostBodies) data_->lastSeen.clear();
+            if (body.valid && status.receiving) data_->lastSeen[key] = now;
+            const auto seen = data_->lastSeen.find(key);
+            if (seen == data_->lastSeen.end()) continue;
+            all.push_back({body.name, role(body.name), body.pose,
+                           1e-6 * static_cast<double>((now - seen->second).count()),
+                           data_->steeringOf(status.address)});
+        }
+    return all;
+}
 
 std::optional<PoseRole> TrackerDesk::role(const std::string& body) const {
     const auto found = data_->met.find(body);
@@ -224,5 +292,7 @@ void TrackerDesk::setRole(const std::string& body, std::optional<PoseRole> role)
     data_->tellRoles();
     emit changed();
 }
+
+void TrackerDesk::setTap(TrackerHub::Tap tap) { data_->hub.setTap(std::move(tap)); }
 
 } // namespace lumorph::studio

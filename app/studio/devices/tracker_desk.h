@@ -14,6 +14,7 @@
 #include "app/studio/document/notices.h"
 #include "app/studio/document/studio_loop.h"
 #include "app/studio/shell/settings.h"
+#include "devices/trackers/simulated_orders.h"
 #include "devices/trackers/tracker_hub.h"
 
 namespace lumorph::studio {
@@ -26,6 +27,17 @@ struct OpenTracker {
     TrackerStatus status;
     std::deque<double> latency; ///< milliseconds
     std::deque<double> rate;    ///< frames a second
+    QString event;              ///< "12:03:04 head jumped by 3.00 m": the newest oddity; empty while there was none
+    std::shared_ptr<SimulatedSteering> steering; ///< of a simulated one; else null
+};
+
+/// A tracked body as it was seen last, for those who draw it.
+struct SeenBody {
+    std::string name;
+    std::optional<PoseRole> role;
+    Pose pose;
+    double age = 0.0; ///< seconds since then
+    std::shared_ptr<SimulatedSteering> steering;
 };
 
 /// The trackers of the studio. Nothing is opened until the user says so. While one is open the match loop follows what
@@ -44,11 +56,18 @@ public:
     void close(const QString& address);
     [[nodiscard]] bool opening() const noexcept;
     [[nodiscard]] const std::vector<OpenTracker>& trackers() const noexcept;
+    /// Of all trackers, as of now: newer than the last `changed`. What was never seen is left out.
+    [[nodiscard]] std::vector<SeenBody> bodies() const;
+
+    /// All that the trackers see, as long as this lives and after.
+    [[nodiscard]] std::shared_ptr<const PoseBoard> poses() const noexcept;
 
     /// None: the body is seen, and does nothing.
     [[nodiscard]] std::optional<PoseRole> role(const std::string& body) const;
     /// Remembered by the body's name.
     void setRole(const std::string& body, std::optional<PoseRole> role);
+    /// As TrackerHub::setTap.
+    void setTap(TrackerHub::Tap tap);
 
 signals:
     void changed(); ///< ten times a second while one is open; and when one was opened, closed, or got a role

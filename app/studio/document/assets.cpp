@@ -46,6 +46,7 @@ FileKind kindOf(const fs::path& path) {
     const std::string extension = extensionOf(path);
     if (extension == ".lumorph") return FileKind::project;
     if (extension == ".mdf") return FileKind::field;
+    if (extension == ".lumorphrec") return FileKind::recording;
     if (extension == ".nrrd") return FileKind::voxels;
     if (extension == ".glb" || extension == ".gltf")
         return holdsActuators(readModel(path)) ? FileKind::rig : FileKind::target;

@@ -10,7 +10,7 @@
 
 namespace lumorph::studio {
 
-enum class FileKind { project, field, rig, target, voxels, unknown };
+enum class FileKind { project, field, rig, target, voxels, recording, unknown };
 
 /// What a file is to the studio, by its name and, of a glTF, by what it holds: one with actuators is a rig. Throws
 /// DataError for a glTF that cannot be read.

@@ -33,6 +33,8 @@ Desk::Data::Data(Desk& owner, StudioDocument& openDocument, Jobs& allJobs, Notic
 Desk::Desk(StudioDocument& document, Jobs& jobs, Notices& notices, QObject* parent)
     : QObject(parent), data_(std::make_unique<Data>(*this, document, jobs, notices)) {}
 
+ProjectSource Desk::project() const { return data_->source(); }
+
 Desk::~Desk() {
     for (const auto& [slot, id] : data_->slots_) data_->jobs.cancel(id);
 }

@@ -9,6 +9,7 @@
 
 #include "app/studio/document/jobs.h"
 #include "app/studio/document/notices.h"
+#include "app/studio/document/project_io.h"
 #include "app/studio/document/studio_document.h"
 #include "core/mdf/builder.h"
 
@@ -21,8 +22,8 @@ class Desk : public QObject {
 public:
     Desk(StudioDocument& document, Jobs& jobs, Notices& notices, QObject* parent = nullptr);
 
-    /// Opens a file by what it is: a project, a field, a rig (a glTF with actuators, a folder) or a target. For files
-    /// dropped on the window and the command line.
+    /// Opens a file by what it is: a project, a field, a rig (a glTF with actuators, a folder), a target or a
+    /// recording. For files dropped on the window and the command line.
     void open(const std::filesystem::path& file);
     void openProject(const std::filesystem::path& file);
     /// Opens a rig, and the field that lies beside it or was built for it last; else builds one.
@@ -38,6 +39,9 @@ public:
     void buildField(const BuildOptions& options);
     void fit();       ///< the largest size that fits, standing on the device
     void autoPlace(); ///< searches heading, size and place
+
+    /// What is open, as it would be saved now.
+    [[nodiscard]] ProjectSource project() const;
 
     /// Names another file where the scene names `asset`, by one step of undo.
     void relink(const std::string& asset, const std::filesystem::path& file);
@@ -62,6 +66,8 @@ public:
 signals:
     void opened(const QString& path); ///< for the list of recent files
     void saved(const QString& path);
+    /// A recording was to be opened, which is no part of the document.
+    void recordingChosen(const QString& path);
     /// The remedy of a notice: ask for another file of this place ("target", "rig", "field", "project"; "viewport" for
     /// any kind) and open it.
     void chooseFile(const QString& place);

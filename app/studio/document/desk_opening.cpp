@@ -76,6 +76,9 @@ void Desk::Data::openAsWhatItIs(const fs::path& file) {
             case FileKind::target:
                 openTarget(file);
                 break;
+            case FileKind::recording:
+                emit desk.recordingChosen(fullName(file));
+                break;
             case FileKind::voxels:
                 notices.post("target", {Notice::Level::error,
                                         fileName(file),
@@ -88,7 +91,7 @@ void Desk::Data::openAsWhatItIs(const fs::path& file) {
                                           fileName(file),
                                           tr("is no kind of file that can be opened here"),
                                           tr("choose a mesh (.obj, .stl, .ply, .off, .glb, .gltf), a rig, a field "
-                                             "(.mdf) or a project (.lumorph)"),
+                                             "(.mdf), a project (.lumorph) or a recording (.lumorphrec)"),
                                           {chooseAnother("viewport")}});
                 break;
             }

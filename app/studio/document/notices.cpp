@@ -39,6 +39,7 @@ void Notices::post(const QString& place, Notice notice) {
     std::erase_if(entries_, [&](const Entry& e) { return e.place == place && e.notice.subject == notice.subject; });
     entries_.insert(entries_.begin(), Entry{place, std::move(notice)});
     emit changed(place);
+    emit posted(place);
 }
 
 void Notices::dismiss(const QString& place, const QString& subject) {

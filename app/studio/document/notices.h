@@ -42,6 +42,8 @@ public:
 
 signals:
     void changed(const QString& place);
+    /// The newest of `at(place)` is new.
+    void posted(const QString& place);
 
 private:
     struct Entry {

@@ -33,10 +33,7 @@ StudioLoop::StudioLoop(StudioDocument& document, QObject* parent) : QObject(pare
     sendSoon();
 }
 
-StudioLoop::~StudioLoop() {
-    setTap({});
-    thread_.reset();
-}
+StudioLoop::~StudioLoop() { thread_.reset(); }
 
 double StudioLoop::rate() const noexcept { return thread_->rate(); }
 
@@ -95,15 +92,29 @@ void StudioLoop::setRate(double framesPerSecond) {
     if (std::isfinite(framesPerSecond)) thread_->setRate(std::clamp(framesPerSecond, 1.0, 1000.0));
 }
 
-void StudioLoop::setTap(std::function<void(const MatchFrame&)> tap) {
+void StudioLoop::setSource(std::shared_ptr<FrameSource> source) {
+    source_ = std::move(source);
+    send();
+}
+
+void StudioLoop::refresh() { sendSoon(); }
+
+int StudioLoop::addTap(Tap tap) {
     const std::scoped_lock lock(tapping_);
-    tap_ = std::move(tap);
+    taps_.emplace(nextTap_, std::move(tap));
+    return nextTap_++;
+}
+
+void StudioLoop::removeTap(int id) {
+    const std::scoped_lock lock(tapping_);
+    taps_.erase(id);
 }
 
 void StudioLoop::tap() {
     const std::scoped_lock lock(tapping_);
-    if (!tap_) return;
-    if (const auto frame = thread_->latest()) tap_(*frame);
+    const auto frame = taps_.empty() ? nullptr : thread_->latest();
+    if (!frame) return;
+    for (const auto& [id, tap] : taps_) tap(*frame);
 }
 
 void StudioLoop::heed(StateParts parts) {
@@ -127,7 +138,8 @@ void StudioLoop::send() {
     wish.stopped = stopped_;
     wish.seek = seek_;
     wish.showTint = tint_;
-    wish.poses = poses_;
+    wish.poses = source_ ? nullptr : poses_;
+    wish.source = source_;
     wish.scenePlaying = scenePlaying_;
     wish.sceneSeek = sceneSeek_;
     thread_->wish(std::move(wish));

@@ -3,6 +3,7 @@
 #include <atomic>
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -46,9 +47,17 @@ public:
     /// Tracked heads and device; empty: the scene's own eye and place.
     void setPoses(std::shared_ptr<const PoseBoard> poses);
     void setRate(double framesPerSecond);
-    /// Called in the loop's thread with every new frame, also while the window is stuck; must return at once. When this
-    /// returns, the one before is called no more.
-    void setTap(std::function<void(const MatchFrame&)> tap);
+    /// Frames of another source instead of the loop's own, until it is set to nothing; the show then goes on from where
+    /// the actuators stand, under their limits. Poses of trackers wait meanwhile.
+    void setSource(std::shared_ptr<FrameSource> source);
+    [[nodiscard]] bool showsSource() const noexcept { return source_ != nullptr; }
+    /// The source has something else to show than when the loop came to rest.
+    void refresh();
+    using Tap = std::function<void(const MatchFrame&)>;
+    /// Called in the loop's thread with every new frame, also while the window is stuck; must return at once.
+    int addTap(Tap tap);
+    /// When this returns, it is called no more.
+    void removeTap(int id);
 
 signals:
     /// A new frame, newest only: frames that come faster than the window takes them are left out.
@@ -75,11 +84,13 @@ private:
     bool scenePlaying_ = true;
     std::optional<double> sceneSeek_;
     std::shared_ptr<const PoseBoard> poses_;
+    std::shared_ptr<FrameSource> source_;
     bool sending_ = false;              ///< a wish goes out when the event loop comes round
     std::vector<std::int64_t> shownAt_; ///< when matched frames were handed over, milliseconds
     std::atomic<bool> posted_ = false;  ///< the window has been told of a frame that it did not take yet
     std::mutex tapping_;
-    std::function<void(const MatchFrame&)> tap_;
+    std::map<int, Tap> taps_;
+    int nextTap_ = 1;
     QTimer errors_;
     std::unique_ptr<MatchThread> thread_;
 };

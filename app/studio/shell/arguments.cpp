@@ -38,7 +38,7 @@ ParsedArguments parseArguments(int argc, const char* const* argv) {
     std::string project;
     CLI::App app("Lumorph Studio: objects that change shape and are painted with light.", "lumorph-studio");
     app.set_version_flag("--version", "lumorph-studio " LUMORPH_VERSION);
-    app.add_option("PROJECT", project, "a project, rig, field or 3D model to open");
+    app.add_option("PROJECT", project, "a project, recording, rig, field or 3D model to open");
     app.add_option("--demo", arguments.demo, "start a demonstration: " + listed(kDemos));
     app.add_option("--workspace", arguments.workspace, "the workspace to show first, such as field");
     app.add_flag("--kiosk", arguments.kiosk, "full screen for visitors: the view and STOP alone");

@@ -16,9 +16,10 @@ std::vector<std::filesystem::path> localFiles(const QMimeData& dragged) {
 }
 
 DropOverlay::DropOverlay(QWidget& window, const QMimeData& dragged)
-    : Overlay(window), text_(localFiles(dragged).empty()
-                                 ? "Only files on this computer can be opened; save it to a folder first"
-                                 : "Drop a 3D model to make it the target;\na rig, field or project to open it") {
+    : Overlay(window),
+      text_(localFiles(dragged).empty()
+                ? "Only files on this computer can be opened; save it to a folder first"
+                : "Drop a 3D model to make it the target;\na rig, field, project or recording to open it") {
     setObjectName("dropOverlay");
     setAttribute(Qt::WA_TransparentForMouseEvents);
     setFocusPolicy(Qt::NoFocus);

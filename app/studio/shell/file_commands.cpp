@@ -9,6 +9,7 @@
 #include <QMenu>
 
 #include "app/studio/look/icons.h"
+#include "app/studio/recording/record_commands.h"
 
 namespace lumorph::studio {
 namespace {
@@ -50,9 +51,10 @@ void openWithDialog(Studio& studio, QWidget& window) {
     auto* dialog = new StudioFileDialog(window, "Open", "dialog.open");
     dialog->setFileMode(QFileDialog::ExistingFile);
     dialog->setDirectory(lastFolder(studio));
-    dialog->setNameFilters({"Everything Lumorph opens (*.lumorph *.mdf *.glb *.gltf *.obj *.stl *.ply *.off)",
-                            "Projects (*.lumorph)", "Fields (*.mdf)",
-                            "3D models and rigs (*.glb *.gltf *.obj *.stl *.ply *.off)", "All files (*)"});
+    dialog->setNameFilters(
+        {"Everything Lumorph opens (*.lumorph *.lumorphrec *.mdf *.glb *.gltf *.obj *.stl *.ply *.off)",
+         "Projects (*.lumorph)", "Recordings (*.lumorphrec)", "Fields (*.mdf)",
+         "3D models and rigs (*.glb *.gltf *.obj *.stl *.ply *.off)", "All files (*)"});
     QObject::connect(dialog, &QFileDialog::fileSelected, &studio.desk, [&studio](const QString& file) {
         studio.settings.setValue("files/folder", QFileInfo(file).absolutePath());
         studio.desk.open(pathOf(file));
@@ -119,6 +121,7 @@ void addFileCommands(Studio& studio, QWidget& window) {
     });
     add("file.saveAs", "Save &as...", "save", QKeySequence(Qt::CTRL | Qt::SHIFT | Qt::Key_S),
         [&studio, &window] { saveWithDialog(studio, window); });
+    addRecordCommands(studio, window);
     add("file.quit", "&Quit", "", QKeySequence(Qt::CTRL | Qt::Key_Q), [&window] { window.close(); });
     const auto remember = [&studio](const QString& path) { studio.settings.addRecentFile(path); };
     QObject::connect(&studio.desk, &Desk::opened, &window, remember);

@@ -1,5 +1,6 @@
 #include "app/studio/shell/main_window.h"
 
+#include <algorithm>
 #include <map>
 
 #include <QApplication>
@@ -13,6 +14,7 @@
 
 #include "app/studio/look/icons.h"
 #include "app/studio/look/palette.h"
+#include "app/studio/recording/replay_bar.h"
 #include "app/studio/shell/command_palette.h"
 #include "app/studio/shell/drop_overlay.h"
 #include "app/studio/shell/escape_twice.h"
@@ -85,6 +87,7 @@ MainWindow::MainWindow(Studio& studio, std::vector<std::unique_ptr<Workspace>> w
     data_->stack = new QStackedWidget(body);
     data_->status = new StatusLine(studio, body);
     column->addWidget(data_->stack, 1);
+    column->addWidget(makeReplayBar(studio, body));
     column->addWidget(data_->status);
     setCentralWidget(body);
     connect(data_->bar, &TopBar::workspaceChosen, this, &MainWindow::showWorkspace);
@@ -107,9 +110,19 @@ MainWindow::MainWindow(Studio& studio, std::vector<std::unique_ptr<Workspace>> w
     });
     qApp->installEventFilter(this);
     resize(kUsualSize.boundedTo(screen()->availableSize() - kFrame));
-    restoreGeometry(studio.settings.value(kGeometryKey).toByteArray());
+    if (restoreGeometry(studio.settings.value(kGeometryKey).toByteArray())) keepOnScreen();
     showFirstWorkspace();
     showTitle();
+}
+
+// A window that is kept may come from a larger screen, or from a smaller scale of this one.
+void MainWindow::keepOnScreen() {
+    if (isMaximized() || isFullScreen()) return;
+    const QRect there = screen()->availableGeometry();
+    resize(size().boundedTo(there.size() - kFrame));
+    const QSize space = there.size() - size();
+    move(std::clamp(x(), there.left(), there.left() + std::max(0, space.width())),
+         std::clamp(y(), there.top(), there.top() + std::max(0, space.height())));
 }
 
 MainWindow::~MainWindow() {

@@ -41,6 +41,7 @@ private:
     void showCommands();
     void showFirstWorkspace();
     void showTitle();
+    void keepOnScreen();
     void retheme();
     void acceptDrag(QDropEvent& event);
 

@@ -6,6 +6,7 @@
 #include <QTimer>
 
 #include "app/studio/look/icons.h"
+#include "app/studio/recording/record_chip.h"
 #include "app/studio/shell/loop_text.h"
 #include "app/studio/shell/notice_list.h"
 #include "app/studio/widgets/icon_label.h"
@@ -51,6 +52,8 @@ StatusLine::StatusLine(Studio& studio, QWidget* parent)
                     "How often the device follows the target, and how long finding its levels takes", this);
     loop_->setMinimumWidth(64);
     row->addStretch(1);
+    row->addWidget(makeRecordChip(studio.recorder, studio.commands, this));
+    row->addSpacing(16);
     row->addWidget(makeJobLine(studio.jobs, this));
     row->addSpacing(16);
     warnings_ = new QPushButton(this);
@@ -100,6 +103,7 @@ void StatusLine::showHardware() {
 
 void StatusLine::showLoop() {
     const auto& frame = studio_.loop.frame();
+    if (studio_.loop.showsSource()) return loop_->setText("Replay");
     const QString text = loopText(frame.get(), lastMatch_, studio_.loop.rate(), studio_.loop.stopped());
     if (text != loop_->text()) loop_->setText(text);
 }

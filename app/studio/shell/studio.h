@@ -8,6 +8,8 @@
 #include "app/studio/document/studio_document.h"
 #include "app/studio/document/studio_loop.h"
 #include "app/studio/output/projector_outputs.h"
+#include "app/studio/recording/record_desk.h"
+#include "app/studio/recording/replay_desk.h"
 #include "app/studio/shell/commands.h"
 #include "app/studio/shell/settings.h"
 #include "app/studio/show/show_feed.h"
@@ -29,6 +31,8 @@ struct Studio {
     RenderThread renderer;
     ShowFeed show{loop, renderer, notices};
     ProjectorOutputs outputs{document, show, commands, notices};
+    RecordDesk recorder{settings, document, desk, loop, devices, trackers, jobs, notices};
+    ReplayDesk replay{document, desk, loop, jobs, notices};
 };
 
 } // namespace lumorph::studio

@@ -9,6 +9,7 @@
 
 #include "app/studio/look/icons.h"
 #include "app/studio/look/palette.h"
+#include "app/studio/recording/record_chip.h"
 
 namespace lumorph::studio {
 namespace {
@@ -119,6 +120,8 @@ void TopBar::addTools(QHBoxLayout& row) {
     row.addSpacing(8);
     tools_.push_back(makeTool(commands.find("view.theme"), this));
     row.addWidget(tools_.back());
+    tools_.push_back(makeRecordButton(studio_.recorder, commands, this));
+    row.addWidget(tools_.back());
 }
 
 void TopBar::addStop(QHBoxLayout& row) {
@@ -158,11 +161,12 @@ void TopBar::resizeEvent(QResizeEvent* event) {
     fitSearch();
 }
 
-/// The field with its words where there is room, else the glass alone; in a narrow window undo and redo are left to
-/// the menu, so that all menus are in sight.
+/// The field with its words where there is room, else the glass alone; in a narrow window undo, redo and recording are
+/// left to the menu, so that all menus are in sight.
 void TopBar::fitSearch() {
-    for (std::size_t k = 0; k < 2 && !kiosk_; ++k) tools_[k]->setVisible(width() >= kNarrow);
-    int others = 220 + stop_->minimumWidth() + menus_->sizeHint().width();
+    if (!kiosk_)
+        for (QWidget* tool : {tools_[0], tools_[1], tools_.back()}) tool->setVisible(width() >= kNarrow);
+    int others = 292 + stop_->minimumWidth() + menus_->sizeHint().width();
     for (const QToolButton* tab : tabs_) others += tab->sizeHint().width() + 4;
     const bool roomy = width() - others > kSearchWidth;
     search_->setFixedWidth(roomy ? kSearchWidth : 32);

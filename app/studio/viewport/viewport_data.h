@@ -79,6 +79,7 @@ struct ViewportWidget::Data {
     std::shared_ptr<const ViewportScene> prepared; ///< `scene`, with the gizmo when there is one
     Box selection;
     std::optional<Gizmo> gizmo;
+    std::vector<BodyMark> bodies;
     bool active = true;
     bool cameraGiven = false; ///< the owner or the user has chosen where to look from
     CameraMotion motion;

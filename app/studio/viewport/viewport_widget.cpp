@@ -147,6 +147,7 @@ void ViewportWidget::Data::paintMarks(QPainter& painter) const {
     const Palette& colors = currentPalette();
     const ViewCamera& camera = motion.camera();
     const QSize view = self.size();
+    if (!frame.image.isNull()) paintBodies(painter, view, camera, bodies, colors);
     // A view smaller than its marks shows only the picture.
     if (view.width() > 220 && view.height() > 160) {
         const bool onEdge = std::abs(camera.pitch.inDegrees()) < kGridOnEdge;
@@ -202,6 +203,12 @@ void ViewportWidget::setGizmo(std::optional<Gizmo> gizmo) {
     data_->gizmo = gizmo;
     if (!data_->gizmo) data_->setHot(std::nullopt, data_->hotSide);
     data_->changed();
+}
+
+void ViewportWidget::setBodies(std::vector<BodyMark> bodies) {
+    if (bodies == data_->bodies) return;
+    data_->bodies = std::move(bodies);
+    update();
 }
 
 void ViewportWidget::setActive(bool active) {

@@ -6,6 +6,7 @@
 #include <QString>
 #include <QWidget>
 
+#include "app/studio/viewport/body_marks.h"
 #include "app/studio/viewport/gizmo.h"
 #include "app/studio/viewport/render_thread.h"
 #include "core/render/viewport_renderer.h"
@@ -35,6 +36,8 @@ public:
     void setSelectionBox(const Box& box);
     /// Shows or hides the gizmo. During a drag it follows the pointer by itself; the owner may set it all the same.
     void setGizmo(std::optional<Gizmo> gizmo);
+    /// Tracked bodies, painted over the picture: no frame is drawn anew for them.
+    void setBodies(std::vector<BodyMark> bodies);
     /// A hidden viewport asks for no frames.
     void setActive(bool active);
     /// Frames that were painted; for rates and tests.

@@ -5,6 +5,7 @@
 #include <QApplication>
 
 #include "app/workspaces/devices/servo_board.h"
+#include "app/workspaces/devices/tracker_commands.h"
 #include "app/workspaces/field/export_dialogs.h"
 #include "core/base/atomic_file.h"
 #include "devices/firmware/pin_header.h"
@@ -115,10 +116,8 @@ void addDeviceCommands(Studio& studio) {
         studio, "device.firmware", "Write channels.h for the firmware...", "file",
         "Pins, limits and speed of this profile, for the sketch in devices/firmware/tablet",
         [&studio] { writeFirmwareHeader(studio); }, {}, true);
-    add(studio, "tracker.simulate", "Open a simulated head", "eye",
-        "A head that moves by itself before the device, to try the show without a tracker",
-        [&studio] { studio.trackers.open("sim://head"); });
     addSlow(studio);
+    addTrackerCommands(studio);
     const auto follow = [=, &studio] {
         const LinkStatus& link = studio.devices.status();
         const bool rig = studio.document.state().rig.rig != nullptr;

@@ -1,5 +1,7 @@
 #include "app/workspaces/devices/device_words.h"
 
+#include "app/studio/devices/device_log.h"
+
 namespace lumorph::studio {
 namespace {
 
@@ -25,15 +27,20 @@ DeviceCard offCard(const DeviceView& view) {
 DeviceCard lostCard(const DeviceView& view) {
     const auto& trouble = view.link.trouble ? view.link.trouble : view.link.controller.trouble;
     QString text = trouble ? troubleText(*trouble) : QString("It does not answer any more.");
-    return {
-        Tone::failure, view.name + " is not there", joined(text, "The studio tries again by itself."), Step::none, {}};
+    const bool was = view.link.phase == LinkPhase::lost;
+    return {Tone::failure,
+            (was ? "The link to " + view.name + " is lost" : "No link to " + view.name),
+            joined(text, "The studio tries again by itself."),
+            Step::none,
+            {}};
 }
 
 DeviceCard handshakeCard(const DeviceView& view) {
     const ControllerState& controller = view.link.controller;
-    if (controller.phase == ControllerPhase::refused || controller.trouble)
+    const bool refused = controller.phase == ControllerPhase::refused;
+    if (refused || controller.trouble)
         return {Tone::failure,
-                view.name + " cannot be used as it is",
+                view.name + (refused || controller.answering ? " cannot be used as it is" : " does not answer"),
                 controller.trouble ? troubleText(*controller.trouble) : QString("It is something else."),
                 Step::none,
                 {}};
@@ -64,10 +71,7 @@ DeviceCard waitingCard(const DeviceView& view) {
     if (static_cast<qsizetype>(waiting.size()) == view.servos.size())
         return {Tone::warning, "All servos may jump when they start: hands off",
                 "Nobody knows where they stand. They start one after the other.", Step::startAnyway, "Start anyway"};
-    QStringList numbers;
-    for (const std::size_t servo : waiting) numbers << QString::number(servo + 1);
-    const QString last = numbers.takeLast();
-    return {Tone::warning, "Servos " + numbers.join(", ") + " and " + last + " may jump when they start: hands off",
+    return {Tone::warning, QString::fromStdString(servosText(waiting)) + " may jump when they start: hands off",
             "Nobody knows where they stand. They start one after the other.", Step::startAnyway, "Start anyway"};
 }
 
@@ -160,6 +164,30 @@ QString failsafeText(const LinkStatus& link) {
     return traits.failsafe
                ? "When the studio dies, it stops by itself."
                : "When the studio dies, its servos stay where they are, under power. Switch it off by hand.";
+}
+
+QString handsText(const HandSense& hands, const QStringList& servos) {
+    if (!hands.held.empty()) {
+        const bool one = hands.held.size() == 1;
+        QString who = one ? servoName(servos, hands.held.front()) : QString::fromStdString(servosText(hands.held));
+        who[0] = who[0].toLower();
+        return "Slow: " + who + (one ? " is held, or stuck" : " are held, or stuck");
+    }
+    const QString distance = hands.distance ? QString("%1 cm").arg(100.0 * *hands.distance, 0, 'f', 0) : QString();
+    if (hands.near && !hands.distance) return "Slow: a hand was near when it was seen last";
+    if (hands.near) return "Slow: a hand is tracked " + distance + " away";
+    if (hands.distance) return "A hand is tracked " + distance + " away";
+    return hands.feels ? "Hands are not tracked; a servo that is held is felt" : "Hands are not sensed";
+}
+
+QString restText(const DeviceProfile& profile, const QStringList& servos) {
+    QStringList raised;
+    for (std::size_t k = 0; k < profile.servos.size(); ++k)
+        if (const double stroke = profile.servos[k].exitStroke; stroke > 0.0)
+            raised << QString("%1 at %2 %").arg(servoName(servos, k)).arg(100.0 * stroke, 0, 'f', 0);
+    if (raised.isEmpty()) return "All servos down.";
+    const bool all = raised.size() == static_cast<qsizetype>(profile.servos.size());
+    return raised.join(", ") + (all ? "." : ", the others down.");
 }
 
 QString controllerText(ControllerKind kind) {

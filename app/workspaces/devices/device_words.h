@@ -3,6 +3,7 @@
 #include <QString>
 #include <QStringList>
 
+#include "app/studio/devices/hand_watch.h"
 #include "devices/controllers/servo_link.h"
 
 namespace lumorph::studio {
@@ -36,8 +37,12 @@ struct DeviceView {
 [[nodiscard]] QString servoWord(const LinkStatus& link, std::size_t servo, bool tested);
 /// What the controller does when the studio dies; honest where it does nothing.
 [[nodiscard]] QString failsafeText(const LinkStatus& link);
+/// Who senses hands, or that nobody does, and why servos are slow.
+[[nodiscard]] QString handsText(const HandSense& hands, const QStringList& servos);
 /// "Servo 3 (front left)" of an index.
 [[nodiscard]] QString servoName(const QStringList& servos, std::size_t servo);
+/// "All at rest", or who rests where.
+[[nodiscard]] QString restText(const DeviceProfile& profile, const QStringList& servos);
 [[nodiscard]] QString controllerText(ControllerKind kind);
 /// The first letter large and a full stop at the end.
 [[nodiscard]] QString sentence(const std::string& words);

@@ -13,6 +13,8 @@ namespace lumorph::studio {
 [[nodiscard]] QWidget* makeTrackersDock(Studio& studio);
 /// Channel, range, direction and limits of the chosen servo, and the profile that they are kept in.
 [[nodiscard]] QWidget* makeServoDock(Studio& studio, ServoSelection& selection);
+/// What is the same for all servos of a profile: speed, hands, the end, and a Maestro's number.
+[[nodiscard]] QWidget* makeSetupDock(Studio& studio);
 /// Breaks simulated boards on purpose, and shows what their servos really do.
 [[nodiscard]] QWidget* makeSimulatorDock(Studio& studio);
 /// What happened, newest first.

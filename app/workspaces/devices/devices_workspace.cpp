@@ -6,7 +6,10 @@
 
 namespace lumorph::studio {
 
-DevicesWorkspace::DevicesWorkspace(Studio& studio) : studio_(studio) { addDeviceCommands(studio); }
+DevicesWorkspace::DevicesWorkspace(Studio& studio) : studio_(studio) {
+    studio.devices.setPoses(studio.trackers.poses());
+    addDeviceCommands(studio);
+}
 
 QString DevicesWorkspace::id() const { return "devices"; }
 QString DevicesWorkspace::title() const { return "Devices"; }
@@ -18,6 +21,7 @@ std::vector<WorkspaceDock> DevicesWorkspace::makeDocks() {
         {"dock.devices.found", "Devices", "device", makeFoundDock(studio_), Qt::LeftDockWidgetArea, false},
         {"dock.devices.trackers", "Trackers", "eye", makeTrackersDock(studio_), Qt::LeftDockWidgetArea, true},
         {"dock.devices.servo", "Servo", "actuator", makeServoDock(studio_, selection_), Qt::RightDockWidgetArea, false},
+        {"dock.devices.setup", "Set-up", "settings", makeSetupDock(studio_), Qt::RightDockWidgetArea, true},
         {"dock.devices.simulator", "Simulator", "lab", makeSimulatorDock(studio_), Qt::RightDockWidgetArea, true},
         {"dock.devices.log", "Log", "clock", makeDeviceLog(studio_), Qt::BottomDockWidgetArea, false}};
 }

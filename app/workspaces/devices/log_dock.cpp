@@ -8,14 +8,16 @@
 namespace lumorph::studio {
 namespace {
 
-class DeviceLog : public QWidget {
+class LogDock : public QWidget {
 public:
-    explicit DeviceLog(Studio& studio) : studio_(studio), list_(new QListWidget(this)), empty_(new QLabel(this)) {
+    explicit LogDock(Studio& studio) : studio_(studio), list_(new QListWidget(this)), empty_(new QLabel(this)) {
         auto* layout = new QVBoxLayout(this);
         layout->setContentsMargins(8, 8, 8, 8);
         list_->setObjectName("devices.log");
         list_->setAccessibleName("What happened, newest first");
         list_->setWordWrap(true);
+        list_->setResizeMode(QListView::Adjust); // a scroll bar makes lines narrower, and more of them
+        list_->setTextElideMode(Qt::ElideNone);
         list_->setSelectionMode(QAbstractItemView::ExtendedSelection);
         list_->setVerticalScrollMode(QAbstractItemView::ScrollPerPixel);
         list_->setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
@@ -67,6 +69,6 @@ private:
 
 } // namespace
 
-QWidget* makeDeviceLog(Studio& studio) { return new DeviceLog(studio); }
+QWidget* makeDeviceLog(Studio& studio) { return new LogDock(studio); }
 
 } // namespace lumorph::studio

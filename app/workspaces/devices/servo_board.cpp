@@ -3,6 +3,7 @@
 #include <utility>
 
 #include <QCheckBox>
+#include <QStyle>
 #include <QVBoxLayout>
 
 #include "app/studio/widgets/panel.h"
@@ -22,8 +23,10 @@ QString lately(const DeviceDesk& desk) {
     for (const DeviceLogLine& line : desk.log()) {
         if (line.time.secsTo(QDateTime::currentDateTime()) > kLatelySeconds) break;
         if (live && line.time < desk.liveSince()) break; // over and done
+        if (line.aside) continue;
+        if (live && line.kind == LinkEvent::Kind::information) break; // it went well after that
         if (line.kind != LinkEvent::Kind::information)
-            return line.remedy.isEmpty() ? line.text : line.text + ' ' + line.remedy;
+            return live && !line.remedy.isEmpty() ? line.text + ' ' + line.remedy : line.text; // it is mended else
     }
     return {};
 }
@@ -36,8 +39,8 @@ public:
         setProperty("look", "panel");
         setAttribute(Qt::WA_StyledBackground);
         auto* layout = new QVBoxLayout(this);
-        layout->setContentsMargins(16, 12, 16, 8);
-        layout->setSpacing(8);
+        layout->setContentsMargins(16, 8, 16, 8);
+        layout->setSpacing(6);
         layout->addWidget(card_);
         layout->addWidget(makeHint());
         layout->addWidget(makeStrokeLegend(this));
@@ -88,9 +91,11 @@ private:
 
     QWidget* makeHands() {
         auto* hands = new QWidget(this);
-        auto* text = new QLabel("Hands near the device: not sensed", hands);
-        text->setObjectName("devices.hands");
-        text->setToolTip("Nothing here sees hands. Before you reach in, make it slow, or press STOP.");
+        handsText_ = new QLabel(hands);
+        handsText_->setObjectName("devices.hands");
+        handsText_->setToolTip("Servos are slow while a tracked hand is nearer than the set-up says, or while a servo "
+                               "that is read back does not follow.\nWhere nothing senses hands, make it slow, or "
+                               "press STOP, before you reach in.");
         auto* slow = new QCheckBox("Slow", hands);
         slow->setObjectName("devices.slow");
         QAction* command = studio_.commands.find("device.slow");
@@ -100,7 +105,7 @@ private:
         auto* row = new QHBoxLayout(hands);
         row->setContentsMargins(0, 0, 0, 0);
         row->setSpacing(16);
-        row->addWidget(text);
+        row->addWidget(handsText_);
         row->addWidget(slow);
         row->addStretch(1);
         row->addWidget(makeCommandButton(studio_.commands.find("device.release"), "devices.release", hands));
@@ -153,6 +158,7 @@ private:
         const DeviceDesk& desk = studio_.devices;
         card_->show(cardOf(deviceViewOf(studio_)));
         facts_->show(desk.status());
+        showHands(desk.hands());
         const auto& frame = studio_.loop.frame();
         const auto& setups = desk.profile().servos;
         for (std::size_t k = 0; k < list_.size() && k < setups.size(); ++k) {
@@ -162,6 +168,15 @@ private:
             list_[k]->setChecked(selection_.servo() == k);
         }
         showHint();
+    }
+
+    void showHands(const HandSense& hands) {
+        handsText_->setText(handsText(hands, names_));
+        const QString look = hands.near || !hands.held.empty() ? "warning" : "";
+        if (handsText_->property("look").toString() == look) return;
+        handsText_->setProperty("look", look);
+        handsText_->style()->unpolish(handsText_);
+        handsText_->style()->polish(handsText_);
     }
 
     void showHint() {
@@ -184,6 +199,7 @@ private:
     DeviceFacts* facts_;
     QWidget* hint_ = nullptr;
     QLabel* hintText_ = nullptr;
+    QLabel* handsText_ = nullptr;
     QPushButton* hintEnd_ = nullptr;
     Column rows_;
     std::vector<ServoRow*> list_;

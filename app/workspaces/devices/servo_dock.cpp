@@ -19,8 +19,10 @@
 namespace lumorph::studio {
 namespace {
 
-constexpr double kLeastPulse = 500.0, kMostPulse = 2500.0, kLeastSpan = 50.0;
-constexpr double kMostTrim = 500.0, kMostVelocity = 20.0, kMostAcceleration = 200.0;
+namespace limits = profile_limits;
+
+constexpr double kLeastSpan = 50.0; // microseconds
+constexpr double kLeastVelocity = 0.01, kLeastAcceleration = 0.1, kMostAcceleration = 200.0;
 constexpr int kMostChannel = 253;
 
 class ServoDock : public QWidget {
@@ -82,8 +84,8 @@ private:
     }
 
     ValueField* addNumber(QVBoxLayout& rows, const QString& label, const char* name, const QString& tip, Setup member,
-                          double least, double most, double usual, double step) {
-        auto* field = new ValueField(Quantity::plain, least, most, usual, this);
+                          double least, double most, double step, Quantity quantity = Quantity::plain) {
+        auto* field = new ValueField(quantity, least, most, ServoSetup{}.*member, this);
         field->setObjectName(name);
         field->setToolTip(tip);
         field->setStep(step);
@@ -99,11 +101,11 @@ private:
     void addLimits(QVBoxLayout& rows) {
         rows.addWidget(makeHeading("Pulse"));
         least_ = addNumber(rows, "&Least (µs)", "servo.pulseMin", "No shorter pulse is ever sent; in force at once",
-                           &ServoSetup::pulseMin, kLeastPulse, kMostPulse, 1000.0, 10.0);
+                           &ServoSetup::pulseMin, limits::kPulse.least, limits::kPulse.most, 10.0);
         most_ = addNumber(rows, "&Most (µs)", "servo.pulseMax", "No longer pulse is ever sent; in force at once",
-                          &ServoSetup::pulseMax, kLeastPulse, kMostPulse, 2000.0, 10.0);
-        addNumber(rows, "&Trim (µs)", "servo.trim", "Added to every pulse, within least and most", &ServoSetup::trim,
-                  -kMostTrim, kMostTrim, 0.0, 5.0);
+                          &ServoSetup::pulseMax, limits::kPulse.least, limits::kPulse.most, 10.0);
+        trim_ = addNumber(rows, "&Trim (µs)", "servo.trim", "Added to every pulse, within least and most",
+                          &ServoSetup::trim, 0.0, 0.0, 5.0);
         reversed_ = new QCheckBox("Turns the other way");
         reversed_->setObjectName("servo.reversed");
         reversed_->setToolTip("Rest is at the longest pulse. The servo lets go, and is started again.");
@@ -112,9 +114,12 @@ private:
         rows.addWidget(reversed_);
         rows.addWidget(makeHeading("Speed"));
         addNumber(rows, "&Velocity", "servo.velocity", "At most so many full strokes a second",
-                  &ServoSetup::maxVelocity, 0.01, kMostVelocity, 1.0, 0.1);
+                  &ServoSetup::maxVelocity, kLeastVelocity, limits::kVelocity.most, 0.1);
         addNumber(rows, "&Acceleration", "servo.acceleration", "At most so many strokes a second, a second",
-                  &ServoSetup::maxAcceleration, 0.1, kMostAcceleration, 8.0, 0.5);
+                  &ServoSetup::maxAcceleration, kLeastAcceleration, kMostAcceleration, 0.5);
+        addNumber(rows, "At the &end", "servo.exit",
+                  "Where it rests when the link ends, if the set-up wants it to rest", &ServoSetup::exitStroke, 0.0,
+                  1.0, 0.05, Quantity::share);
     }
 
     void addTests(QVBoxLayout& rows) {
@@ -212,8 +217,10 @@ private:
         const ServoSetup& setup = servos[*servo];
         title_->setText(servoName(servoNamesOf(studio_), *servo));
         channel_->setValue(setup.channel);
-        least_->setRange(kLeastPulse, setup.pulseMax - kLeastSpan);
-        most_->setRange(setup.pulseMin + kLeastSpan, kMostPulse);
+        least_->setRange(limits::kPulse.least, setup.pulseMax - kLeastSpan);
+        most_->setRange(setup.pulseMin + kLeastSpan, limits::kPulse.most);
+        const double mostTrim = 0.5 * (setup.pulseMax - setup.pulseMin);
+        trim_->setRange(-mostTrim, mostTrim);
         for (const auto& [field, member] : numbers_) field->setValue(setup.*member);
         reversed_->setChecked(setup.reversed);
         const QSignalBlocker quiet(profiles_);
@@ -257,6 +264,7 @@ private:
     ValueField* channel_ = nullptr;
     ValueField* least_ = nullptr;
     ValueField* most_ = nullptr;
+    ValueField* trim_ = nullptr;
     QCheckBox* reversed_ = nullptr;
     QPushButton* assign_ = nullptr;
     QPushButton* follow_ = nullptr;

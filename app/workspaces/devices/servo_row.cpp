@@ -12,7 +12,7 @@
 namespace lumorph::studio {
 namespace {
 
-constexpr int kHeight = 56, kLeastHeight = 40;
+constexpr int kHeight = 56, kLeastHeight = 34;
 constexpr int kNameWidth = 128;
 
 } // namespace
@@ -51,12 +51,11 @@ ServoRow::ServoRow(std::size_t servo, const QString& name, QWidget* parent)
     wiggle_->setToolTip("Moves this servo a little to and fro, to see which one it is");
     wiggle_->setAccessibleName("Wiggle " + name);
     auto* row = new QHBoxLayout(this);
-    row->setContentsMargins(12, 0, 12, 0);
+    row->setContentsMargins(8, 0, 8, 0);
     row->setSpacing(8);
     row->addLayout(names);
     row->addWidget(bar_, 1);
     row->addWidget(pulse_);
-    row->addSpacing(8);
     row->addWidget(word_);
     row->addWidget(wiggle_);
     connect(wiggle_, &QPushButton::clicked, this, &ServoRow::wiggled);

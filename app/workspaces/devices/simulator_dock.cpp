@@ -16,6 +16,7 @@
 #include "app/workspaces/field/dock_parts.h"
 #include "core/base/error.h"
 #include "devices/controllers/controller_kinds.h"
+#include "devices/simulator/simulated_bench.h"
 #include "devices/transport/address.h"
 
 namespace lumorph::studio {
@@ -40,6 +41,7 @@ public:
         for (const std::string& name : studio.devices.bench().names()) boards_->addItem(QString::fromStdString(name));
         rows.addWidget(makeRow("&Board", boards_));
         addSwitches(rows);
+        addHand(rows);
         addSliders(rows);
         addTruth(rows);
         connect(boards_, &QComboBox::currentIndexChanged, this, [this] { showFaults(); });
@@ -89,6 +91,8 @@ private:
          "free again"},
         {"sim.forbidden", "Forbidden", "This user may not open its port", &BoardFaults::forbidden, "forbidden",
          "allowed again"},
+        {"sim.nameless", "Nameless", "Its adapter does not say what is behind it; heeded when it is connected anew",
+         &BoardFaults::nameless, "without a name", "named again"},
         {"sim.stalled", "Stalled", "The link takes bytes, but passes nothing on", &BoardFaults::stalled, "stalled",
          "flowing again"},
     };
@@ -179,6 +183,32 @@ private:
         }
     }
 
+    void addHand(QVBoxLayout& rows) {
+        hand_ = new QComboBox;
+        hand_->setObjectName("sim.held");
+        hand_->setToolTip("As if a hand held the horn of one servo: it does not move, whatever it is told");
+        connect(hand_, &QComboBox::activated, this, [this](int index) {
+            if (index == 0)
+                studio_.devices.note("Simulator: nobody holds a servo of the " + boards_->currentText() + '.');
+            else
+                tell("held at " + hand_->itemText(index));
+            change([index](BoardFaults& faults) {
+                faults.held.reset();
+                if (index > 0) faults.held = static_cast<std::size_t>(index - 1);
+            });
+        });
+        rows.addWidget(makeRow("&Held", hand_));
+    }
+
+    void showHand(const SimulatedBoard& chosen) {
+        const int first = firstChannel(likelyController("sim://" + chosen.name()));
+        hand_->clear();
+        hand_->addItem("by nobody");
+        for (std::size_t k = 0; k < chosen.servos().size(); ++k)
+            hand_->addItem(QString("channel %1").arg(first + static_cast<int>(k)));
+        hand_->setCurrentIndex(chosen.faults().held ? static_cast<int>(*chosen.faults().held) + 1 : 0);
+    }
+
     void addTruth(QVBoxLayout& rows) {
         rows.addWidget(makeHeading("What its servos really do"));
         rows.addWidget(horns_);
@@ -212,6 +242,7 @@ private:
             sliders_[k]->setValue(static_cast<int>(std::lround((value - one.least) / one.step)));
             values_[k]->setText(QString::number(value * one.shown, 'f', one.digits) + one.unit);
         }
+        showHand(*chosen);
         showTruth();
     }
 
@@ -235,6 +266,7 @@ private:
 
     Studio& studio_;
     QComboBox* boards_;
+    QComboBox* hand_ = nullptr;
     HornView* horns_;
     QLabel* extremes_ = nullptr;
     std::vector<QCheckBox*> switches_;

@@ -7,6 +7,7 @@
 #include <QPushButton>
 
 #include "app/studio/look/palette.h"
+#include "app/studio/widgets/plot_axes.h"
 #include "app/workspaces/devices/device_words.h"
 #include "app/workspaces/field/dock_parts.h"
 
@@ -14,12 +15,20 @@ namespace lumorph::studio {
 namespace {
 
 constexpr std::size_t kMostRows = 12;
+constexpr int kPlotHeight = 104;
 constexpr std::optional<PoseRole> kRoles[] = {std::nullopt, PoseRole::head, PoseRole::device, PoseRole::pointer};
 constexpr const char* kRoleTexts[] = {"Nobody", "Head", "Device", "Pointer"};
 
 int indexOf(std::optional<PoseRole> role) { return static_cast<int>(std::ranges::find(kRoles, role) - kRoles); }
 
 QString asText(const std::string& words) { return QString::fromStdString(words); }
+
+/// A long address may break after its marks, so that it does not make the dock wide.
+QString breakable(QString text) {
+    constexpr QChar kMayBreak(0x200B);
+    for (const char* mark : {"/", "?", "&", ",", "="}) text.replace(mark, mark + QString(kMayBreak));
+    return text;
+}
 
 QString headlineOf(const TrackerStatus& status) {
     QString source = asText(status.source);
@@ -32,6 +41,19 @@ QString placeOf(const Pose& pose) {
     const auto centimetres = [](double metres) { return QString::number(100.0 * metres, 'f', 1); };
     return QString("x %1   y %2   z %3 cm")
         .arg(centimetres(pose.position.x), centimetres(pose.position.y), centimetres(pose.position.z));
+}
+
+/// Ten seconds of something; `least`: the highest value that the axis shows at any rate.
+void showHistory(Plot& plot, const QString& name, double least, const std::deque<double>& values,
+                 const QString& unknown) {
+    const bool known = std::ranges::any_of(values, [](double value) { return std::isfinite(value); });
+    plot.setEmptyText(known || unknown.isEmpty() ? QString("The last ten seconds come here.") : unknown);
+    if (!known) return plot.setCurves({});
+    double most = least;
+    for (const double value : values)
+        if (std::isfinite(value)) most = std::max(most, value);
+    plot.setRange(0.0, niceTick(1.02 * most, 1)); // so that the axis is labelled at its end
+    plot.setCurves({{name, currentPalette().accent, std::vector<double>(values.begin(), values.end())}});
 }
 
 QString perSecond(double rate) { return QString::number(rate, 'f', 1) + " /s"; }
@@ -49,17 +71,26 @@ TrackerCard::TrackerCard(TrackerDesk& desk, const QString& address, const QStrin
     unproven_->setText("Never tried with real software: check a few positions before you trust it.");
     advice_ = addText("advice", "warning");
     addFacts();
+    sourceRow_ = layout_->count();
     reason_ = addText("reason", "muted");
+    event_ = addText("event", "muted");
     bodies_ = new QVBoxLayout;
     bodies_->setContentsMargins(0, 4, 0, 0);
     bodies_->setSpacing(6);
     layout_->addLayout(bodies_);
     more_ = addText("more", "muted");
-    plot_ = new Plot;
-    plot_->setObjectName(name + ".plot");
-    plot_->setFixedHeight(120);
-    plot_->setEmptyText("The last ten seconds come here.");
-    layout_->addWidget(plot_);
+    rate_ = addPlot("rates", "Frames a second in the last ten seconds", "frames/s");
+    delay_ = addPlot("delays", "Latency in the last ten seconds", "ms");
+}
+
+Plot* TrackerCard::addPlot(const QString& part, const QString& what, const QString& unit) {
+    auto* plot = new Plot;
+    plot->setObjectName(name_ + '.' + part);
+    plot->setAccessibleName(what);
+    plot->setFixedHeight(kPlotHeight);
+    plot->setAxes("Tenths of a second", unit);
+    layout_->addWidget(plot);
+    return plot;
 }
 
 QLabel* TrackerCard::addText(const QString& part, const char* look) {
@@ -75,7 +106,7 @@ QLabel* TrackerCard::addText(const QString& part, const char* look) {
 void TrackerCard::addHead() {
     source_ = addText("source", "heading");
     auto* where = addText("address", "muted");
-    where->setText(address_);
+    where->setText(breakable(address_));
     layout_->removeWidget(where);
     auto* close = new QPushButton("Close");
     close->setObjectName(name_ + ".close");
@@ -149,7 +180,7 @@ void TrackerCard::addBodyRow() {
 
 void TrackerCard::show(const OpenTracker& tracker) {
     const TrackerStatus& status = tracker.status;
-    source_->setText(headlineOf(status));
+    source_->setText(breakable(headlineOf(status)));
     unproven_->setVisible(!status.verified);
     advice_->setText(sentence(status.advice));
     advice_->setVisible(!status.advice.empty());
@@ -160,8 +191,12 @@ void TrackerCard::show(const OpenTracker& tracker) {
                                                  : QString("unknown"));
     reason_->setText("Rejected last: " + asText(status.lastRejected));
     reason_->setVisible(!status.lastRejected.empty());
+    event_->setText("Noticed last: " + tracker.event);
+    event_->setVisible(!tracker.event.isEmpty());
+    showSource(tracker);
     showBodies(status);
-    showHistory(tracker);
+    showHistory(*rate_, "Frames", 10.0, tracker.rate, {});
+    showHistory(*delay_, "Latency", 1.0, tracker.latency, "The tracker does not tell when its cameras looked.");
 }
 
 void TrackerCard::showBodies(const TrackerStatus& status) {
@@ -184,18 +219,17 @@ void TrackerCard::showBodies(const TrackerStatus& status) {
     more_->setVisible(status.bodies.size() > count);
 }
 
-/// Latency where it is known; else whether frames come evenly.
-void TrackerCard::showHistory(const OpenTracker& tracker) {
-    const bool known = std::ranges::any_of(tracker.latency, [](double value) { return std::isfinite(value); });
-    const std::deque<double>& values = known ? tracker.latency : tracker.rate;
-    plot_->setAxes("Tenths of a second", known ? "ms" : "frames/s");
-    plot_->setAccessibleName(known ? "Latency in the last ten seconds" : "Frames a second in the last ten seconds");
-    double most = known ? 1.0 : 10.0;
-    for (const double value : values)
-        if (std::isfinite(value)) most = std::max(most, 1.2 * value);
-    plot_->setRange(0.0, most);
-    plot_->setCurves(
-        {{known ? "Latency" : "Frames", currentPalette().accent, std::vector<double>(values.begin(), values.end())}});
+/// What only cameras and simulated trackers have.
+void TrackerCard::showSource(const OpenTracker& tracker) {
+    if (tracker.status.camera) {
+        if (camera_ == nullptr) layout_->insertWidget(sourceRow_, camera_ = new CameraPanel(name_ + ".camera", this));
+        camera_->show(*tracker.status.camera);
+    }
+    if (tracker.steering) {
+        if (simulated_ == nullptr)
+            layout_->insertWidget(sourceRow_, simulated_ = new SimulatedPanel(tracker.steering, name_ + ".sim", this));
+        simulated_->refresh();
+    }
 }
 
 } // namespace lumorph::studio

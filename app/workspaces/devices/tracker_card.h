@@ -10,6 +10,8 @@
 
 #include "app/studio/devices/tracker_desk.h"
 #include "app/studio/widgets/plot.h"
+#include "app/workspaces/devices/camera_panel.h"
+#include "app/workspaces/devices/simulated_panel.h"
 
 namespace lumorph::studio {
 
@@ -36,17 +38,22 @@ private:
     void addFacts();
     void addBodyRow();
     void showBodies(const TrackerStatus& status);
-    void showHistory(const OpenTracker& tracker);
+    void showSource(const OpenTracker& tracker);
+    [[nodiscard]] Plot* addPlot(const QString& part, const QString& what, const QString& unit);
 
     TrackerDesk& desk_;
     QString address_, name_;
     QVBoxLayout* layout_;
-    QLabel *source_ = nullptr, *unproven_ = nullptr, *advice_ = nullptr, *reason_ = nullptr, *more_ = nullptr;
+    QLabel *source_ = nullptr, *unproven_ = nullptr, *advice_ = nullptr, *reason_ = nullptr, *event_ = nullptr,
+           *more_ = nullptr;
     QLabel *frames_ = nullptr, *packets_ = nullptr, *rejected_ = nullptr, *latency_ = nullptr;
     QVBoxLayout* bodies_ = nullptr;
+    int sourceRow_ = 0; ///< where in the layout what only some trackers have comes
     std::vector<BodyRow> rows_;
-    std::vector<std::string> shown_; ///< names of the bodies in the rows
-    Plot* plot_ = nullptr;
+    std::vector<std::string> shown_;      ///< names of the bodies in the rows
+    CameraPanel* camera_ = nullptr;       ///< of a camera, made when it is known to be one
+    SimulatedPanel* simulated_ = nullptr; ///< the same of a simulated tracker
+    Plot *rate_ = nullptr, *delay_ = nullptr;
 };
 
 } // namespace lumorph::studio

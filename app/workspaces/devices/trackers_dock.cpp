@@ -3,10 +3,14 @@
 
 #include <QCheckBox>
 #include <QComboBox>
+#include <QLabel>
 #include <QLineEdit>
 #include <QPushButton>
 #include <QSignalBlocker>
 #include <QVBoxLayout>
+
+#include <glm/common.hpp>
+#include <glm/gtc/quaternion.hpp>
 
 #include "app/studio/widgets/panel.h"
 #include "app/workspaces/devices/devices_docks.h"
@@ -15,6 +19,8 @@
 
 namespace lumorph::studio {
 namespace {
+
+constexpr glm::dvec3 kRoom(20.0); ///< metres; farther away no simulated body goes
 
 class TrackersDock : public QWidget {
 public:
@@ -54,8 +60,9 @@ private:
         addresses_->setSizeAdjustPolicy(QComboBox::AdjustToMinimumContentsLengthWithIcon);
         addresses_->setMinimumContentsLength(16);
         addresses_->setToolTip(
-            "Where poses come from: OptiTrack Motive (natnet://), opentrack, anything that sends OSC, "
-            "or a simulated body. The list has examples to change.");
+            "Where poses come from: OptiTrack Motive (natnet://), opentrack, anything that sends OSC, a printed marker "
+            "board before a camera or in a video (board://), or a simulated body. The list has examples to change, and "
+            "the cameras that are there.");
         addresses_->lineEdit()->setObjectName("trackers.address");
         open_->setObjectName("trackers.open");
         open_->setToolTip("Starts to listen at this address");
@@ -76,14 +83,23 @@ private:
     }
 
     void addTrackers(QVBoxLayout& layout) {
-        cardsLayout_ = new QVBoxLayout;
-        cardsLayout_->setSpacing(8);
-        layout.addLayout(cardsLayout_);
         above_ = makeHeading("From above");
         layout.addWidget(above_);
         top_ = new TopView;
         top_->setObjectName("trackers.top");
         layout.addWidget(top_);
+        connect(top_, &TopView::moved, this,
+                [this](int body, const glm::dvec3& way, double turn) { move(body, way, turn); });
+        hint_ =
+            new QLabel("Drag a ringed body; the right button turns it, the wheel lifts it. Keys: arrows, PageUp and "
+                       "PageDown, comma and full stop to turn, Space for the next body.");
+        hint_->setProperty("look", "muted");
+        hint_->setWordWrap(true);
+        hint_->hide();
+        layout.addWidget(hint_);
+        cardsLayout_ = new QVBoxLayout;
+        cardsLayout_->setSpacing(8);
+        layout.addLayout(cardsLayout_);
     }
 
     void openNow() { studio_.trackers.open(addresses_->currentText(), network_->isChecked()); }
@@ -126,17 +142,37 @@ private:
         matchCards();
         const std::vector<OpenTracker>& trackers = studio_.trackers.trackers();
         empty_->setVisible(trackers.empty());
+        if (trackers.empty()) hint_->hide();
         above_->setVisible(!trackers.empty());
         top_->setVisible(!trackers.empty());
         if (!isVisible()) return;
         std::vector<TopView::Body> bodies;
+        std::vector<std::shared_ptr<SimulatedSteering>> steerings;
         for (std::size_t k = 0; k < trackers.size(); ++k) {
             const TrackerStatus& status = trackers[k].status;
             cards_[k]->show(trackers[k]);
             for (const TrackedBody& body : status.bodies)
-                bodies.push_back({QString::fromStdString(body.name), body.pose, body.valid && status.receiving});
+                bodies.push_back({QString::fromStdString(body.name), body.pose, body.valid && status.receiving,
+                                  trackers[k].steering != nullptr});
+            steerings.insert(steerings.end(), status.bodies.size(), trackers[k].steering);
         }
+        const bool simulated = std::ranges::any_of(bodies, &TopView::Body::movable);
+        hint_->setVisible(simulated);
         top_->show(std::move(bodies));
+        steerings_ = std::move(steerings);
+    }
+
+    /// A person takes a simulated body by the hand.
+    void move(int body, const glm::dvec3& way, double turn) {
+        const auto index = static_cast<std::size_t>(body);
+        if (index >= steerings_.size() || !steerings_[index]) return;
+        SimulatedSteering& steering = *steerings_[index];
+        SimulatedOrders orders = steering.orders();
+        Pose pose = orders.held.value_or(steering.truth());
+        pose.position = glm::clamp(pose.position + way, -kRoom, kRoom);
+        pose.rotation = glm::normalize(glm::angleAxis(turn, glm::dvec3(0.0, 1.0, 0.0)) * pose.rotation);
+        orders.held = pose;
+        steering.order(orders);
     }
 
     Studio& studio_;
@@ -147,6 +183,8 @@ private:
     std::vector<TrackerCard*> cards_;
     QWidget* above_ = nullptr;
     TopView* top_ = nullptr;
+    QLabel* hint_ = nullptr;
+    std::vector<std::shared_ptr<SimulatedSteering>> steerings_; ///< of the bodies in the view from above
     QWidget* empty_ = nullptr;
 };
 

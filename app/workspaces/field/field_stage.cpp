@@ -3,6 +3,7 @@
 #include <QGridLayout>
 #include <QLabel>
 
+#include "app/studio/devices/body_axes.h"
 #include "app/studio/widgets/panel.h"
 #include "app/workspaces/field/dock_parts.h"
 
@@ -30,6 +31,7 @@ FieldStage::FieldStage(Studio& studio, Throttle& numbers, QWidget* parent)
     setObjectName("field.stage");
     viewport_->setObjectName("field.viewport");
     viewport_->setAccessibleName("Device and target");
+    new BodyAxes(studio, viewport_);
     // All lie in the same grid: the viewport fills it, the others keep to its corners.
     auto* grid = new QGridLayout(this);
     grid->setContentsMargins(0, 0, 0, 0);

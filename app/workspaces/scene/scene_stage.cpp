@@ -7,6 +7,7 @@
 
 #include <QVBoxLayout>
 
+#include "app/studio/devices/body_axes.h"
 #include "app/studio/show/show_frames.h"
 #include "app/studio/viewport/gl_page.h"
 #include "app/studio/viewport/viewport_widget.h"
@@ -130,6 +131,7 @@ void SceneStage::Data::addDevice() {
     device = new ViewportWidget(studio.renderer, views);
     device->setObjectName("scene.viewport");
     device->setAccessibleName(tr("Device without light"));
+    new BodyAxes(studio, device);
     deviceCaption = new PaneCaption(tr("Device"), device);
     deviceCaption->setText(tr("Device"), tr("without light"));
     builder.setColors(fieldSceneColors(studio.settings.theme()));

@@ -35,14 +35,10 @@ enum : uint8_t { kModeInput = 0, kModeOutput = 1, kModeServo = 4, kModeNone = 0x
 
 constexpr uint8_t kPins = 20;
 constexpr uint8_t kServoBits = 14;
-constexpr uint16_t kLeastMicroseconds = 544;
 constexpr uint16_t kGreatestDegrees = 180;
 constexpr uint8_t kSilence = 500 / kFrameMilliseconds + 1; // frames: more than 500 ms, at most 520
 constexpr int8_t kNoChannel = -1;
 
-struct Limits {
-    uint16_t least, greatest;
-};
 Limits limits[kChannelCount]; // as the studio set them, within those of channels.h
 uint8_t silentFrames;
 
@@ -90,7 +86,7 @@ void sayFirmware() {
     const char name[] = "LumorphTablet";
     if (!beginMessage(kFirmware, 2 * sizeof(name))) return;
     uartWrite(1);
-    uartWrite(0);
+    uartWrite(1); // since 1.1 pulses begin at 500 us
     writeText(name);
     endMessage();
 }
@@ -153,7 +149,7 @@ void write(uint8_t pin, uint16_t value) {
     const Limits& limit = limits[channel];
     if (value <= kGreatestDegrees)
         value = limit.least + uint32_t(limit.greatest - limit.least) * value / kGreatestDegrees;
-    else if (value < kLeastMicroseconds)
+    else if (value < kLeastPulse)
         return sayError("Neither degrees nor microseconds");
     setPulse(channel, within(value, limit.least, limit.greatest));
 }
@@ -173,7 +169,8 @@ void configure() {
     const uint16_t least = data[1] | uint16_t(data[2]) << 7;
     const uint16_t greatest = data[3] | uint16_t(data[4]) << 7;
     if (least > greatest) return sayError("Limits the wrong way round");
-    limits[channel] = {within(least, setup.least, setup.greatest), within(greatest, setup.least, setup.greatest)};
+    limits[channel] =
+        safeLimits(within(least, setup.least, setup.greatest), within(greatest, setup.least, setup.greatest));
 }
 
 void setMode(uint8_t pin, uint8_t mode) {
@@ -193,7 +190,7 @@ void setMode(uint8_t pin, uint8_t mode) {
 
 void reset() {
     forgetPulses();
-    for (uint8_t i = 0; i < kChannelCount; ++i) limits[i] = {kChannels[i].least, kChannels[i].greatest};
+    for (uint8_t i = 0; i < kChannelCount; ++i) limits[i] = safeLimits(kChannels[i].least, kChannels[i].greatest);
 }
 
 void takeSysex(uint8_t kind) {

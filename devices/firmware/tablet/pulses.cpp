@@ -165,13 +165,21 @@ void pulsesBegin() {
     TCCR1B = _BV(WGM12) | _BV(CS11);
 }
 
+Limits safeLimits(uint16_t least, uint16_t greatest) {
+    if (least < kLeastPulse) least = kLeastPulse;
+    if (greatest > kGreatestPulse) greatest = kGreatestPulse;
+    if (greatest < least + 2 * kEdgeError) {
+        const uint16_t middle = least + (greatest > least ? (greatest - least) / 2 : 0);
+        return {middle, middle};
+    }
+    return {uint16_t(least + kEdgeError), uint16_t(greatest - kEdgeError)};
+}
+
 void setPulse(uint8_t channel, uint16_t microseconds) {
-    const ChannelSetup& setup = kChannels[channel];
-    if (microseconds < setup.least) microseconds = setup.least;
-    if (microseconds > setup.greatest) microseconds = setup.greatest;
-    if (microseconds < kLeastPulse) microseconds = kLeastPulse;
-    if (microseconds > kGreatestPulse) microseconds = kGreatestPulse;
-    channels[channel].width = microseconds;
+    const Limits hard = safeLimits(kChannels[channel].least, kChannels[channel].greatest);
+    channels[channel].width = microseconds < hard.least      ? hard.least
+                              : microseconds > hard.greatest ? hard.greatest
+                                                             : microseconds;
 }
 
 void setOn(uint8_t channel, bool on) { channels[channel].on = on; }

@@ -6,9 +6,15 @@
 
 constexpr uint16_t kLeastPulse = 500; // microseconds; no pulse is ever shorter or longer, whatever is asked
 constexpr uint16_t kGreatestPulse = 2500;
+constexpr uint16_t kEdgeError = F_CPU > 8000000UL ? 1 : 2; // microseconds that a pulse may differ from what was asked
 constexpr uint8_t kFrameMilliseconds = 20;
 
 void pulsesBegin();
+struct Limits {
+    uint16_t least, greatest;
+};
+/// Rounded inwards, so that a pulse that is asked for at a limit does not pass it on the wire.
+Limits safeLimits(uint16_t least, uint16_t greatest);
 /// Width from the next frame on, microseconds; clamped to the channel's limits.
 void setPulse(uint8_t channel, uint16_t microseconds);
 /// A channel that is on but was never given a width stays without pulse.

@@ -1,0 +1,239 @@
+#include <cmath>
+#include <functional>
+#include <optional>
+#include <utility>
+
+#include <QCheckBox>
+#include <QLabel>
+#include <QStackedWidget>
+#include <QVBoxLayout>
+
+#include "app/studio/widgets/panel.h"
+#include "app/studio/widgets/value_field.h"
+#include "app/workspaces/devices/device_words.h"
+#include "app/workspaces/devices/devices_docks.h"
+#include "app/workspaces/devices/servo_board.h"
+#include "app/workspaces/field/dock_parts.h"
+
+namespace lumorph::studio {
+namespace {
+
+namespace limits = profile_limits;
+
+QLabel* makeMuted(const char* name) {
+    auto* label = new QLabel;
+    label->setObjectName(name);
+    label->setProperty("look", "muted");
+    label->setTextFormat(Qt::PlainText);
+    label->setWordWrap(true);
+    return label;
+}
+
+class SetupDock : public QWidget {
+public:
+    explicit SetupDock(Studio& studio) : studio_(studio), pages_(new QStackedWidget(this)) {
+        auto* layout = new QVBoxLayout(this);
+        layout->setContentsMargins(0, 0, 0, 0);
+        layout->setSpacing(0);
+        layout->addWidget(makeNoticeBar(studio.notices, "servo"));
+        layout->addWidget(pages_, 1);
+        pages_->addWidget(makeEmptyState("settings", "No rig is open", "A rig says which servos there are to set up.",
+                                         studio.commands.find("rig.open"), this));
+        pages_->addWidget(makeContents());
+        connect(&studio.devices, &DeviceDesk::profileChanged, this, [this] { refresh(); });
+        connect(&studio.devices, &DeviceDesk::changed, this, [this] { refreshLink(); });
+        refresh();
+    }
+
+private:
+    using Member = double DeviceProfile::*;
+    using Edit = std::function<void(DeviceProfile&)>;
+
+    QWidget* makeContents() {
+        const Column column = makeColumn(this);
+        QVBoxLayout& rows = *column.layout;
+        rows.addWidget(makeHeading("Speed of all servos"));
+        addNumber(rows, "&Pause at the start", "setup.stagger",
+                  "The pause between the start of one servo and of the next, so that the supply can bear it",
+                  &DeviceProfile::staggerSeconds, Quantity::seconds, limits::kStaggerSeconds, 0.1);
+        addNumber(rows, "In sl&ow mode", "setup.slowShare", "The share of their velocity that servos have in slow mode",
+                  &DeviceProfile::slowShare, Quantity::share, limits::kSlowShare, 0.05);
+        addNumber(rows, "Command &rate (/s)", "setup.rate",
+                  "At most so many commands a second. The servos are let go, and are started again.",
+                  &DeviceProfile::commandsPerSecond, Quantity::plain, limits::kCommandsPerSecond, 5.0);
+        rate_ = makeMuted("setup.rateNote");
+        rows.addWidget(rate_);
+        rows.addWidget(makeHeading("Hands"));
+        addNumber(rows, "Slow &nearer than", "setup.hand",
+                  "Servos are slow while a tracked hand is nearer to the device; 0: never.\nA tracker tells one point "
+                  "of a hand: fingers reach up to 20 cm beyond it.",
+                  &DeviceProfile::handDistance, Quantity::length, limits::kHandDistance, 0.01);
+        addRest(rows);
+        addController(rows);
+        return column.widget;
+    }
+
+    void addNumber(QVBoxLayout& rows, const QString& label, const char* name, const QString& tip, Member member,
+                   Quantity quantity, ProfileLimits range, double step) {
+        auto* field = new ValueField(quantity, range.least, range.most, DeviceProfile{}.*member, this);
+        field->setObjectName(name);
+        field->setToolTip(tip);
+        field->setStep(step);
+        const auto set = [member](double value) { return [member, value](DeviceProfile& p) { p.*member = value; }; };
+        connect(field, &ValueField::previewed, this, [this, set](double value) { preview(set(value)); });
+        connect(field, &ValueField::committed, this, [this, set](double value) { edit(set(value)); });
+        connect(field, &ValueField::reverted, this, [this] { revert(); });
+        rows.addWidget(makeRow(label, field));
+        numbers_.push_back({field, member});
+    }
+
+    QCheckBox* addSwitch(QVBoxLayout& rows, const QString& text, const char* name, const QString& tip,
+                         bool DeviceProfile::*member) {
+        auto* box = new QCheckBox(text);
+        box->setObjectName(name);
+        box->setToolTip(tip);
+        connect(box, &QCheckBox::clicked, this,
+                [this, member](bool on) { edit([member, on](DeviceProfile& profile) { profile.*member = on; }); });
+        rows.addWidget(box);
+        return box;
+    }
+
+    void addRest(QVBoxLayout& rows) {
+        rows.addWidget(makeHeading("When the link ends"));
+        rest_ = addSwitch(rows, "Go to the rest pose", "setup.rest",
+                          "Before the studio ends, or another device is chosen, servos go there for two seconds at "
+                          "most.\nElse they are let go where they are.",
+                          &DeviceProfile::restOnExit);
+        pose_ = makeMuted("setup.pose");
+        rows.addWidget(pose_);
+        auto* row = new QHBoxLayout;
+        row->setSpacing(8);
+        row->addWidget(addPose("As they are now", "setup.poseNow", "Where the servos are now is their rest pose",
+                               [this](std::size_t servo) { return strokeNow(servo); }),
+                       1);
+        row->addWidget(addPose("All down", "setup.poseDown", "All servos rest at the beginning of their way",
+                               [](std::size_t) { return 0.0; }),
+                       1);
+        rows.addLayout(row);
+    }
+
+    QPushButton* addPose(const QString& text, const char* name, const QString& tip,
+                         std::function<double(std::size_t)> strokeOf) {
+        auto* button = new QPushButton(text);
+        button->setObjectName(name);
+        button->setToolTip(tip);
+        connect(button, &QPushButton::clicked, this, [this, strokeOf = std::move(strokeOf)] {
+            edit([&](DeviceProfile& profile) {
+                for (std::size_t k = 0; k < profile.servos.size(); ++k) profile.servos[k].exitStroke = strokeOf(k);
+            });
+        });
+        return button;
+    }
+
+    /// Of a servo that is driven, what it was told; else where the show has it.
+    [[nodiscard]] double strokeNow(std::size_t servo) const {
+        const LinkStatus& link = studio_.devices.status();
+        if (servo < link.servos.size() && link.servos[servo].attached) return link.servos[servo].commanded;
+        const auto& frame = studio_.loop.frame();
+        return frame && servo < frame->estimatedStrokes.size() ? frame->estimatedStrokes[servo] : 0.0;
+    }
+
+    void addController(QVBoxLayout& rows) {
+        rows.addWidget(makeHeading("Controller"));
+        kind_ = makeMuted("setup.kind");
+        rows.addWidget(kind_);
+        number_ = new ValueField(Quantity::level, limits::kControllerNumber.least, limits::kControllerNumber.most,
+                                 DeviceProfile{}.controllerNumber, this);
+        number_->setObjectName("setup.number");
+        number_->setToolTip("The Maestro's device number, as its own settings (Maestro Control Center) say; 12 unless "
+                            "somebody changed it");
+        number_->setStep(1.0);
+        connect(number_, &ValueField::committed, this, [this](double value) {
+            edit([value](DeviceProfile& profile) { profile.controllerNumber = static_cast<int>(std::lround(value)); });
+        });
+        maestro_ = new QWidget;
+        auto* column = new QVBoxLayout(maestro_);
+        column->setContentsMargins(0, 0, 0, 0);
+        column->setSpacing(8);
+        column->addWidget(makeRow("&Device number", number_));
+        crc_ = addSwitch(*column, "Expects a checksum (CRC)", "setup.crc",
+                         "As \"Enable CRC\" in the Maestro's own settings; wrong here, it heeds no command",
+                         &DeviceProfile::maestroCrc);
+        rows.addWidget(maestro_);
+        identity_ = makeMuted("setup.identity");
+        rows.addWidget(identity_);
+        forget_ = new QPushButton("Ask me again");
+        forget_->setObjectName("setup.forget");
+        forget_->setToolTip("Forgets that you said that this is your board");
+        connect(forget_, &QPushButton::clicked, this,
+                [this] { edit([](DeviceProfile& profile) { profile.identity.clear(); }); });
+        rows.addWidget(forget_);
+    }
+
+    [[nodiscard]] DeviceProfile edited(const Edit& change) const {
+        DeviceProfile profile = studio_.devices.profile();
+        change(profile);
+        return profile;
+    }
+    void preview(const Edit& change) {
+        if (!before_) before_ = studio_.devices.profile();
+        studio_.devices.previewProfile(edited(change));
+    }
+    void edit(const Edit& change) {
+        before_.reset();
+        studio_.devices.setProfile(edited(change));
+        refresh();
+    }
+    void revert() {
+        if (before_) studio_.devices.previewProfile(*std::exchange(before_, std::nullopt));
+    }
+
+    void refresh() {
+        const DeviceProfile& profile = studio_.devices.profile();
+        pages_->setCurrentIndex(profile.servos.empty() ? 0 : 1);
+        for (const auto& [field, member] : numbers_) field->setValue(profile.*member);
+        rest_->setChecked(profile.restOnExit);
+        pose_->setText(restText(profile, servoNamesOf(studio_)));
+        number_->setValue(profile.controllerNumber);
+        crc_->setChecked(profile.maestroCrc);
+        const bool known = !profile.identity.empty();
+        identity_->setText("You said that this is your board: " + QString::fromStdString(profile.identity) + '.');
+        identity_->setVisible(known);
+        forget_->setVisible(known);
+        kind_->setText(controllerText(profile.controller));
+        maestro_->setVisible(profile.controller == ControllerKind::maestro);
+        refreshLink();
+    }
+
+    void refreshLink() {
+        const double most = studio_.devices.status().controller.traits.commandsPerSecond;
+        const bool less = most > 0.0 && most < studio_.devices.profile().commandsPerSecond;
+        rate_->setText(QString("This link takes %1 a second at most.").arg(most, 0, 'f', most < 10.0 ? 1 : 0));
+        rate_->setVisible(less);
+    }
+
+    struct Number {
+        ValueField* field;
+        Member member;
+    };
+
+    Studio& studio_;
+    QStackedWidget* pages_;
+    std::vector<Number> numbers_;
+    QLabel* rate_ = nullptr;
+    QCheckBox* rest_ = nullptr;
+    QLabel* pose_ = nullptr;
+    QLabel* kind_ = nullptr;
+    QWidget* maestro_ = nullptr;
+    ValueField* number_ = nullptr;
+    QCheckBox* crc_ = nullptr;
+    QLabel* identity_ = nullptr;
+    QPushButton* forget_ = nullptr;
+    std::optional<DeviceProfile> before_; ///< a drag began with it
+};
+
+} // namespace
+
+QWidget* makeSetupDock(Studio& studio) { return new SetupDock(studio); }
+
+} // namespace lumorph::studio

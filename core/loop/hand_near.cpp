@@ -1,0 +1,35 @@
+#include "core/loop/hand_near.h"
+
+#include <algorithm>
+
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+#include <glm/mat3x3.hpp>
+#include <glm/matrix.hpp>
+
+namespace lumorph {
+
+std::optional<double> handDistance(const PoseBoard& board, const Box& box, const glm::mat4& worldFromDevice,
+                                   Microseconds now) {
+    if (box.empty()) return std::nullopt;
+    const glm::dmat3 deviceFromWorld = glm::transpose(glm::dmat3(worldFromDevice));
+    const glm::dvec3 place(worldFromDevice[3]);
+    std::optional<double> nearest;
+    for (const PoseBoard::Entry& entry : board.entries()) {
+        if (entry.role != PoseRole::pointer) continue;
+        const std::optional<Pose> hand = entry.stream->at(now, now);
+        if (!hand) continue;
+        const glm::dvec3 at = deviceFromWorld * (hand->position - place);
+        const double distance = glm::distance(at, glm::clamp(at, glm::dvec3(box.min), glm::dvec3(box.max)));
+        nearest = nearest ? std::min(*nearest, distance) : distance;
+    }
+    return nearest;
+}
+
+bool handNear(const PoseBoard& board, const Box& box, const glm::mat4& worldFromDevice, double metres,
+              Microseconds now) {
+    const std::optional<double> distance = handDistance(board, box, worldFromDevice, now);
+    return distance && *distance <= metres;
+}
+
+} // namespace lumorph

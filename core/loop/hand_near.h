@@ -1,0 +1,23 @@
+#pragma once
+
+#include <optional>
+
+#include <glm/mat4x4.hpp>
+
+#include "core/geometry/triangle_mesh.h"
+#include "core/loop/pose_stream.h"
+
+namespace lumorph {
+
+/// Metres from the nearest tracked hand (a body in the role `pointer`) to the device's box; 0 inside it. Empty where
+/// `now` no hand is seen: then nothing senses hands, and none may be said to be far. `box` is in the device's frame,
+/// in metres; `worldFromDevice` is rigid, as in MatchFrame. A tracker tells one point of a hand: fingers reach up to
+/// 0.2 m beyond it.
+[[nodiscard]] std::optional<double> handDistance(const PoseBoard& board, const Box& box,
+                                                 const glm::mat4& worldFromDevice, Microseconds now);
+
+/// Whether a hand is seen at most so many metres from the box. False where none is seen.
+[[nodiscard]] bool handNear(const PoseBoard& board, const Box& box, const glm::mat4& worldFromDevice, double metres,
+                            Microseconds now);
+
+} // namespace lumorph

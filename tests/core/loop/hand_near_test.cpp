@@ -1,0 +1,68 @@
+#include "core/loop/hand_near.h"
+
+#include <glm/gtc/matrix_transform.hpp>
+#include <gtest/gtest.h>
+
+namespace lumorph {
+namespace {
+
+constexpr Microseconds kNow{1'000'000};
+const Box kTablet{{-0.10F, 0.0F, -0.08F}, {0.10F, 0.05F, 0.08F}};
+
+void see(PoseBoard& board, const char* name, PoseRole role, const glm::dvec3& at, Microseconds time = kNow,
+         bool valid = true) {
+    board.stream(name, role)->push({time, valid, {at, {1.0, 0.0, 0.0, 0.0}}});
+}
+
+double distanceTo(const glm::dvec3& hand, const glm::mat4& worldFromDevice = glm::mat4(1.0F)) {
+    PoseBoard board;
+    see(board, "hand", PoseRole::pointer, hand);
+    return handDistance(board, kTablet, worldFromDevice, kNow).value_or(-1.0);
+}
+
+TEST(HandDistance, IsToTheNearestPointOfTheBox) {
+    EXPECT_NEAR(distanceTo({0.0, 0.25, 0.0}), 0.20, 1e-6) << "above a face";
+    EXPECT_NEAR(distanceTo({0.13, 0.09, 0.0}), 0.05, 1e-6) << "off an edge: 3, 4, 5";
+    EXPECT_NEAR(distanceTo({0.12, 0.06, 0.10}), 0.03, 1e-6) << "off a corner: 2, 1, 2 is 3";
+    EXPECT_EQ(distanceTo({0.05, 0.02, -0.03}), 0.0) << "inside";
+    EXPECT_NEAR(distanceTo({0.0, -0.04, 0.0}), 0.04, 1e-6) << "below";
+}
+
+TEST(HandDistance, GoesWithTheDeviceWhereverItStandsAndHoweverItTurns) {
+    glm::mat4 placed = glm::translate(glm::mat4(1.0F), {1.0F, 0.7F, -2.0F});
+    EXPECT_NEAR(distanceTo({1.0, 0.95, -2.0}, placed), 0.20, 1e-6);
+    // On its side, by a quarter turn about z: what was its height of 0.05 points to -x.
+    placed = glm::rotate(placed, glm::radians(90.0F), {0.0F, 0.0F, 1.0F});
+    EXPECT_NEAR(distanceTo({0.75, 0.7, -2.0}, placed), 0.20, 1e-6);
+    EXPECT_NEAR(distanceTo({1.0, 0.95, -2.0}, placed), 0.15, 1e-6);
+}
+
+TEST(HandNear, CountsHandsOnlyAndTheNearestOfThem) {
+    PoseBoard board;
+    see(board, "anna", PoseRole::head, {0.0, 0.06, 0.0});
+    see(board, "tablet", PoseRole::device, {0.0, 0.0, 0.0});
+    EXPECT_FALSE(handDistance(board, kTablet, glm::mat4(1.0F), kNow)) << "nobody sees a hand";
+    EXPECT_FALSE(handNear(board, kTablet, glm::mat4(1.0F), 10.0, kNow));
+    see(board, "left", PoseRole::pointer, {0.0, 0.55, 0.0});
+    see(board, "right", PoseRole::pointer, {0.0, 0.35, 0.0});
+    EXPECT_FALSE(handNear(board, kTablet, glm::mat4(1.0F), 0.29, kNow));
+    EXPECT_TRUE(handNear(board, kTablet, glm::mat4(1.0F), 0.31, kNow));
+}
+
+TEST(HandNear, AHandThatIsLostOrLongSilentIsNotSensed) {
+    PoseBoard board;
+    see(board, "hand", PoseRole::pointer, {0.0, 0.1, 0.0});
+    EXPECT_TRUE(handNear(board, kTablet, glm::mat4(1.0F), 0.1, kNow + Microseconds{200'000}));
+    EXPECT_FALSE(handDistance(board, kTablet, glm::mat4(1.0F), kNow + Microseconds{300'000})) << "silent for 0.3 s";
+    see(board, "hand", PoseRole::pointer, {0.0, 0.1, 0.0}, kNow + Microseconds{1}, false);
+    EXPECT_FALSE(handDistance(board, kTablet, glm::mat4(1.0F), kNow + Microseconds{2})) << "lost";
+}
+
+TEST(HandNear, WithoutABoxThereIsNothingToBeNear) {
+    PoseBoard board;
+    see(board, "hand", PoseRole::pointer, {0.0, 0.0, 0.0});
+    EXPECT_FALSE(handDistance(board, Box{}, glm::mat4(1.0F), kNow));
+}
+
+} // namespace
+} // namespace lumorph

@@ -1,0 +1,347 @@
+// Everything that may happen to a device, at random, without threads: what its board is told is decoded from the bytes
+// and held against the limits exactly.
+
+#include "devices/controllers/servo_engine.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <random>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "tests/devices/engine_bench.h"
+#include "tests/devices/wire_ear.h"
+
+namespace lumorph {
+namespace {
+
+namespace in = servo_input;
+
+struct EngineCase {
+    const char* board;
+    ControllerKind controller;
+    int first;     ///< channel of the board's first servo
+    double step;   ///< microseconds between two pulses it can be told
+    double period; ///< seconds between two commands, at most
+};
+
+/// One servo as the wire tells of it.
+struct HeardServo {
+    std::vector<ServoSetup> setups; ///< those it may move by
+    double changed = -1e9;          ///< counted time of the last change of them
+    bool attached = false;
+    double pulse = 0.0;
+    double at = 0.0;                  ///< counted time of the pulse
+    std::optional<double> velocity{}; ///< mean of the last interval, microseconds a second
+    double interval = 0.0;
+    double rounding = 0.0; ///< of that interval's ends
+    // Where a board moves by itself.
+    double from = 0.0;
+    Microseconds begin{0}; ///< by the engine's clock
+    double takes = 0.0;
+
+    [[nodiscard]] double greatest(double ServoSetup::*share) const {
+        double most = 0.0;
+        for (const ServoSetup& one : setups) most = std::max(most, one.*share * (one.pulseMax - one.pulseMin));
+        return most;
+    }
+    [[nodiscard]] double place(Microseconds now) const {
+        const double passed = 1e-6 * static_cast<double>((now - begin).count());
+        if (passed < 0.0 || passed >= takes) return pulse;
+        return from + (pulse - from) * passed / takes;
+    }
+};
+
+class RandomSession {
+public:
+    RandomSession(const EngineCase& board, unsigned seed)
+        : case_(board), random_(seed), profile_(profileOf(board)), bench_(profile_), ear_(board.controller) {
+        for (const ServoSetup& servo : profile_.servos) servos_.push_back({{servo}});
+        bench_.onWrite = [this](const auto& message) {
+            for (const WireOrder& order : ear_.hear(message)) hear(order);
+        };
+        bench_.tell(in::Connect{});
+    }
+
+    void use() {
+        disturb();
+        const LinkPhase phase = phaseNow();
+        if (phase == LinkPhase::unidentified) bench_.tell(in::Confirm{});
+        if ((phase == LinkPhase::disarmed || phase == LinkPhase::stopped) && pick(12) == 0) {
+            jumpAllowed_ = pick(3) == 0;
+            bench_.tell(in::Arm{jumpAllowed_});
+        }
+        if (phase == LinkPhase::starting && pick(400) == 0) bench_.tell(in::Arm{jumpAllowed_ = true});
+        if (pick(5) == 0) command();
+        pass();
+        compareWithBoard();
+    }
+    /// To rest, and all servos let go.
+    void end() {
+        bench_.fault([](BoardFaults& faults) { faults = {}; });
+        bench_.unsent = 0;
+        bench_.tell(in::Quit{});
+        for (int i = 0; i < 1000 && !bench_.engine.done(); ++i) pass(5'000);
+        ASSERT_TRUE(bench_.engine.done());
+        for (const HeardServo& servo : servos_) ASSERT_FALSE(servo.attached);
+        const TraceCheck check = checkTrace(bench_.rows);
+        ASSERT_FALSE(check.difference) << "row " << check.difference->row << ": " << check.difference->text;
+        replayed = check.bytesSent;
+    }
+
+    std::uint64_t orders = 0, attaches = 0, softAttaches = 0, stops = 0, reconnects = 0, replayed = 0;
+    std::uint64_t comparisons = 0;
+    double nearest = 0.0; ///< to the velocity limit
+
+private:
+    static DeviceProfile profileOf(const EngineCase& board) {
+        DeviceProfile profile;
+        profile.controller = board.controller;
+        profile.address = "sim://" + std::string(board.board);
+        profile.staggerSeconds = 0.05;
+        profile.servos = {{.channel = board.first, .pulseMin = 1000.0, .pulseMax = 2000.0},
+                          {.channel = board.first + 1,
+                           .pulseMin = 700.0,
+                           .pulseMax = 1800.0,
+                           .reversed = true,
+                           .trim = 30.0,
+                           .maxVelocity = 0.5,
+                           .maxAcceleration = 3.0},
+                          {.channel = board.first + 3,
+                           .pulseMin = 1400.0,
+                           .pulseMax = 2400.0,
+                           .maxVelocity = 2.0,
+                           .maxAcceleration = 20.0}};
+        return profile;
+    }
+
+    std::size_t pick(std::size_t count) { return random_() % count; }
+    double number(double low, double high) { return std::uniform_real_distribution(low, high)(random_); }
+    LinkPhase phaseNow() const { return bench_.engine.status().phase; }
+
+    void disturb() {
+        switch (pick(6000)) {
+        case 0:
+        case 1:
+        case 2:
+        case 3:
+            stop();
+            break;
+        case 4:
+        case 5:
+            bench_.tell(in::Disarm{});
+            break;
+        case 6:
+            bench_.fault([](BoardFaults& faults) { faults.unplugged = true; });
+            break;
+        case 7:
+            if (pick(2) == 0) bench_.board->reboot();
+            break;
+        case 8:
+            bench_.tell(in::Disconnect{});
+            break;
+        case 9:
+            bench_.unsent = 1'000;
+            break;
+        case 10:
+        case 11:
+        case 12:
+            bench_.clockIsAhead += Microseconds{static_cast<long>(number(-5e6, 5e6))};
+            break;
+        case 13:
+            bench_.clockIsAhead = Microseconds{static_cast<long>(number(-1e15, 1e15))};
+            break;
+        default:
+            break;
+        }
+        if (pick(300) == 0) bench_.tell(in::Wiggle{pick(4)});
+        if (pick(500) == 0) bench_.tell(in::Slow{pick(3) == 0});
+        if (pick(1500) == 0) changeProfile();
+        if (pick(60) == 0) {
+            if (bench_.board->faults().unplugged) ++reconnects;
+            bench_.fault([](BoardFaults& faults) { faults.unplugged = false; });
+            bench_.unsent = 0;
+            if (phaseNow() == LinkPhase::off) bench_.tell(in::Connect{});
+        }
+    }
+    void stop() {
+        bench_.tell(in::Stop{});
+        ++stops;
+        if (!bench_.isOpen()) return;
+        for (const HeardServo& servo : servos_) ASSERT_FALSE(servo.attached) << "in the very step";
+    }
+    void command() {
+        std::vector<double> strokes(pick(50) == 0 ? pick(6) : 3);
+        for (double& stroke : strokes) stroke = number(-0.3, 1.3);
+        if (pick(40) == 0 && !strokes.empty()) strokes[pick(strokes.size())] = pick(2) ? NAN : 1e30;
+        bench_.tell(in::Command{strokes});
+    }
+    void changeProfile() {
+        ServoSetup& servo = profile_.servos[pick(3)];
+        if (pick(2) == 0) {
+            servo.pulseMin = number(600.0, 1400.0);
+            servo.pulseMax = servo.pulseMin + number(300.0, 1000.0);
+        } else {
+            servo.maxVelocity = number(0.3, 2.0);
+            servo.maxAcceleration = number(2.0, 20.0);
+        }
+        for (std::size_t i = 0; i < servos_.size(); ++i) {
+            if (profile_.servos[i] == servos_[i].setups.back()) continue;
+            servos_[i].setups.push_back(profile_.servos[i]);
+            servos_[i].changed = counted_;
+            servos_[i].velocity.reset();
+        }
+        bench_.tell(in::Profile{profile_});
+    }
+    void pass(long microseconds = 0) {
+        if (microseconds == 0) microseconds = pick(200) == 0 ? 90'000 : 1'000 + static_cast<long>(pick(12'000));
+        // As the guard counts: whatever was not stalled, and forwards, at most 50 ms at once.
+        const Microseconds now = bench_.now() + Microseconds{microseconds};
+        if (bench_.unsent == 0) {
+            if (now > tick_) counted_ += 1e-6 * static_cast<double>(std::min<long>((now - tick_).count(), 50'000));
+            tick_ = now;
+        }
+        bench_.pass(microseconds);
+        // By then a servo that was moving has braked, and has come back within new limits.
+        for (HeardServo& servo : servos_)
+            if (counted_ - servo.changed > 5.0) servo.setups = {servo.setups.back()};
+    }
+
+    void hear(const WireOrder& order) {
+        const auto index = std::ranges::find(profile_.servos, order.channel, &ServoSetup::channel);
+        ASSERT_NE(index, profile_.servos.end()) << "a channel of no servo";
+        HeardServo& servo = servos_[static_cast<std::size_t>(index - profile_.servos.begin())];
+        if (!order.pulse) {
+            servo.attached = false;
+            return;
+        }
+        ++orders;
+        if (servo.attached)
+            follow(servo, order);
+        else
+            attach(servo, order);
+        servo.takes = order.seconds;
+        servo.begin = bench_.now();
+        servo.pulse = *order.pulse;
+        servo.at = counted_;
+    }
+    void attach(HeardServo& servo, const WireOrder& order) {
+        ++attaches;
+        servo.attached = true;
+        servo.velocity.reset();
+        servo.from = *order.pulse;
+        ASSERT_GE(*order.pulse, servo.setups.back().pulseMin - 1e-9);
+        ASSERT_LE(*order.pulse, servo.setups.back().pulseMax + 1e-9);
+        if (jumpAllowed_) return;
+        ++softAttaches;
+        const auto truth = bench_.board->servos().at(static_cast<std::size_t>(order.channel - case_.first));
+        // What was on its way when it was let go; a board that moves by itself may have been in the middle of a way.
+        const double seconds = case_.period + 0.1 + servo.takes;
+        const double late = servo.greatest(&ServoSetup::maxVelocity) * seconds + 2.0 * case_.step;
+        ASSERT_LE(std::abs(*order.pulse - truth.position), late) << "it jumps";
+    }
+    void follow(HeardServo& servo, const WireOrder& order) {
+        double low = servo.pulse, high = servo.pulse;
+        for (const ServoSetup& setup : servo.setups) {
+            low = std::min(low, setup.pulseMin);
+            high = std::max(high, setup.pulseMax);
+        }
+        ASSERT_GE(*order.pulse, low - 1e-9);
+        ASSERT_LE(*order.pulse, high + 1e-9);
+        const double limit = servo.greatest(&ServoSetup::maxVelocity);
+        const double seconds = counted_ - servo.at;
+        const double moved = *order.pulse - servo.pulse;
+        const double rounding = errorOf(servo, servo.pulse) + errorOf(servo, *order.pulse);
+        ASSERT_LE(std::abs(moved), limit * seconds + rounding + 1e-6);
+        if (seconds > 0.0) {
+            const double velocity = moved / seconds;
+            if (servo.velocity) {
+                const double change = servo.greatest(&ServoSetup::maxAcceleration) * (seconds + servo.interval);
+                ASSERT_LE(std::abs(velocity - *servo.velocity),
+                          change + rounding / seconds + servo.rounding / servo.interval + 1e-6)
+                    << *servo.velocity << " us/s for " << servo.interval << " s, then " << velocity << " for "
+                    << seconds << " s, to " << *order.pulse << " of channel " << order.channel;
+            }
+            if (servo.setups.size() == 1) nearest = std::max(nearest, (std::abs(moved) - case_.step) / seconds / limit);
+            servo.velocity = velocity;
+            servo.interval = seconds;
+            servo.rounding = rounding;
+        }
+        servo.from = servo.place(bench_.now());
+        if (order.seconds > 0.0) {
+            ASSERT_LE(std::abs(*order.pulse - servo.from), limit * order.seconds + 1e-6);
+        }
+    }
+    /// A pulse is rounded to the board's steps; at the ends of its range inwards.
+    [[nodiscard]] double errorOf(const HeardServo& servo, double pulse) const {
+        const bool atEnd = std::ranges::any_of(servo.setups, [&](const ServoSetup& setup) {
+            return std::min(std::abs(pulse - setup.pulseMin), std::abs(pulse - setup.pulseMax)) < case_.step;
+        });
+        return atEnd ? case_.step : 0.5 * case_.step;
+    }
+    /// What the board was told is what it does: its own limits, told to it, do not stand in the way.
+    void compareWithBoard() {
+        if (case_.controller == ControllerKind::lewansoul || !bench_.isOpen()) return;
+        const std::vector<SimulatedServo> truth = bench_.board->servos();
+        for (std::size_t i = 0; i < servos_.size(); ++i) {
+            const double pulse = truth.at(static_cast<std::size_t>(profile_.servos[i].channel - case_.first)).pulse;
+            if (pulse == 0.0 || !servos_[i].attached) continue;
+            ++comparisons;
+            ASSERT_DOUBLE_EQ(pulse, servos_[i].pulse);
+        }
+    }
+
+    EngineCase case_;
+    std::mt19937 random_;
+    DeviceProfile profile_;
+    EngineBench bench_;
+    WireEar ear_;
+    std::vector<HeardServo> servos_;
+    bool jumpAllowed_ = false;
+    double counted_ = 0.0; ///< seconds, as the guard's promise counts them
+    Microseconds tick_{0};
+};
+
+class ServoEngineWire : public testing::TestWithParam<EngineCase> {};
+
+TEST_P(ServoEngineWire, BreaksNoLimitWhateverHappens) {
+    std::uint64_t orders = 0, attaches = 0, soft = 0, stops = 0, reconnects = 0, replayed = 0, compared = 0;
+    double nearest = 0.0;
+    for (unsigned seed = 1; orders < 100'000 && seed < 200; ++seed) {
+        RandomSession session(GetParam(), seed);
+        for (int i = 0; i < 10'000; ++i) {
+            session.use();
+            ASSERT_FALSE(HasFailure()) << "seed " << seed << ", use " << i;
+        }
+        session.end();
+        ASSERT_FALSE(HasFailure()) << "seed " << seed << ", at the end";
+        orders += session.orders, attaches += session.attaches, soft += session.softAttaches;
+        stops += session.stops, reconnects += session.reconnects, replayed += session.replayed;
+        compared += session.comparisons;
+        nearest = std::max(nearest, session.nearest);
+    }
+    const auto count = [](std::uint64_t n) { return static_cast<unsigned long long>(n); };
+    std::printf("%s: %llu pulses on the wire, %llu starts (%llu without a jump), %llu STOPs, %llu reconnects, "
+                "%llu bytes equal when run again, %.3f of the velocity limit\n",
+                GetParam().board, count(orders), count(attaches), count(soft), count(stops), count(reconnects),
+                count(replayed), nearest);
+    EXPECT_GE(orders, 100'000U);
+    EXPECT_GT(attaches, 200U);
+    EXPECT_GT(soft, 50U);
+    EXPECT_GT(stops, 50U);
+    EXPECT_GT(reconnects, 10U);
+    EXPECT_GT(nearest, 0.9);
+    EXPECT_TRUE(compared > 50'000U || GetParam().controller == ControllerKind::lewansoul) << compared;
+}
+
+INSTANTIATE_TEST_SUITE_P(Boards, ServoEngineWire,
+                         testing::Values(EngineCase{"tablet", ControllerKind::firmata, 2, 1.0, 0.05},
+                                         EngineCase{"xarm", ControllerKind::lewansoul, 1, 2.0, 0.05},
+                                         EngineCase{"maestro", ControllerKind::maestro, 0, 0.25, 0.05}),
+                         [](const auto& board) { return std::string(board.param.board); });
+
+} // namespace
+} // namespace lumorph
