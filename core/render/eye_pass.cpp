@@ -21,6 +21,7 @@
 #include "core/render/eye_surfaces.h"
 #include "core/render/eye_table.h"
 #include "core/render/lookup_region.h"
+#include "core/render/table_shadow.h"
 
 namespace lumorph {
 namespace {
@@ -41,6 +42,7 @@ struct Thing {
     float distance = 0.0F;
     bool skin = false;
     std::uint64_t version = 0; ///< of its shape
+    bool inTheOpen = false;    ///< no shadow reaches what is drawn of it
 };
 
 /// Where a frame is drawn to.
@@ -84,7 +86,7 @@ struct EyePass::Data {
     EyeShadow shadow;
     EyeLighting lighting;
     EyeFog fog;
-    EyeMesh table;
+    EyeMesh table, straightTable;
     glm::vec2 tableSize{0.0F};
 
     void updateTable(glm::vec2 size);
@@ -96,6 +98,7 @@ struct EyePass::Data {
     [[nodiscard]] std::vector<Thing> itemThings(const ShowFrame& frame, const glm::vec3& eye) const;
     void begin(const ShowFrame& frame, const View& view, unsigned framebuffer) const;
     void draw(const ShowFrame& frame, const View& view, const Thing& thing);
+    [[nodiscard]] PixelRectangle shadowedPixels(const ShowFrame& frame, const View& view) const;
     void drawTable(const ShowFrame& frame, const View& view);
     void drawCreases(const ShowFrame& frame, const View& view);
     void drawBlended(const ShowFrame& frame, const View& view, std::vector<Thing> things);
@@ -110,7 +113,8 @@ EyePass& EyePass::operator=(EyePass&&) noexcept = default;
 void EyePass::Data::updateTable(glm::vec2 size) {
     if (size == tableSize) return;
     tableSize = size;
-    shapeTable(table, size);
+    shapeTable(table, size, kTableForLenses);
+    shapeTable(straightTable, size, kStraightTable);
 }
 
 // The device counts with all it can reach, so that its shadow does not swim while it moves.
@@ -252,6 +256,7 @@ void EyePass::Data::begin(const ShowFrame& frame, const View& view, unsigned fra
 void EyePass::Data::draw(const ShowFrame& frame, const View& view, const Thing& thing) {
     const bool lit = (thing.features & eye_feature::unlit) == 0;
     std::uint32_t features = thing.features | (lit ? lighting.features() : 0U);
+    if (thing.inTheOpen) features &= ~std::uint32_t{eye_feature::shadow | eye_feature::lamp};
     if (!view.unseen) features |= fog.features();
     Program& program = programs.use(Stage::surface, features);
     setCamera(program, *view.camera, view.depth.near, view.depth.far);
@@ -285,6 +290,22 @@ void EyePass::Data::draw(const ShowFrame& frame, const View& view, const Thing& 
     glDisable(GL_POLYGON_OFFSET_FILL);
 }
 
+// A rectangle that holds all shadows on the table.
+PixelRectangle EyePass::Data::shadowedPixels(const ShowFrame& frame, const View& view) const {
+    const PixelRectangle all{glm::ivec2(0), view.camera->size};
+    if (!lighting.shadowed()) return {};
+    Box shadows;
+    const auto include = [&](const Box& caster) {
+        return caster.empty() || includeShadow(shadows, caster, *lighting.shadowed());
+    };
+    if (surfaces.hasSkin() && showsSkin(frame) && !include(movedBox(surfaces.skinBoxAtDevice(), frame.worldFromDevice)))
+        return all;
+    for (const auto& item : surfaces.items())
+        if (frame.posed.surfaces[item.surface].castsShadow && !include(item.box)) return all;
+    if (shadows.empty()) return {};
+    return pixelsOf(TableArea{{shadows.min.x, shadows.min.z}, {shadows.max.x, shadows.max.z}}, *view.camera);
+}
+
 void EyePass::Data::drawTable(const ShowFrame& frame, const View& view) {
     const Material& material = frame.scene->table.material;
     std::uint32_t features = materials.features(material, view.unseen) | eye_feature::planar | eye_feature::twoSided;
@@ -294,7 +315,22 @@ void EyePass::Data::drawTable(const ShowFrame& frame, const View& view) {
         surfaces.hasSkin() && showsSkin(frame) && (skinThing(frame, view.unseen).features & eye_feature::holes) != 0;
     if (throughHoles && lighting.shadowed() && (features & eye_feature::unlit) == 0)
         features |= eye_feature::holesBelow;
-    draw(frame, view, {&table, glm::mat4(1.0F), &material, 1.0F, features, 0.0F});
+    const bool straight = view.camera->distortion == std::array<double, 5>{};
+    Thing thing{straight ? &straightTable : &table, glm::mat4(1.0F), &material, 1.0F, features, 0.0F};
+    // Through holes light is looked up elsewhere than on the table; and many cells are too dear to be drawn in parts.
+    if (!straight || (features & (eye_feature::holesBelow | eye_feature::unlit)) != 0) return draw(frame, view, thing);
+    // Looking for shadows is dear, and most of the table lies in the open.
+    const PixelRectangle shadowed = shadowedPixels(frame, view);
+    const auto drawWithin = [&](const PixelRectangle& part) {
+        if (part.empty()) return;
+        glScissor(part.low.x, part.low.y, part.high.x - part.low.x, part.high.y - part.low.y);
+        draw(frame, view, thing);
+    };
+    glEnable(GL_SCISSOR_TEST);
+    drawWithin(shadowed);
+    thing.inTheOpen = true;
+    for (const PixelRectangle& part : around(shadowed, {glm::ivec2(0), view.camera->size})) drawWithin(part);
+    glDisable(GL_SCISSOR_TEST);
 }
 
 // Ink upon the skin, a hair above it.
@@ -384,7 +420,7 @@ std::vector<std::string> EyePass::warnings() const { return data_->programs.warn
 
 std::size_t EyePass::objectCount() const noexcept {
     return data_->programs.objectCount() + data_->materials.objectCount() + data_->surfaces.objectCount() +
-           data_->shadow.objectCount() + data_->fog.objectCount() + EyeMesh::kObjects;
+           data_->shadow.objectCount() + data_->fog.objectCount() + 2 * EyeMesh::kObjects;
 }
 
 } // namespace lumorph

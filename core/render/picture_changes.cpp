@@ -7,12 +7,10 @@
 
 #include "core/render/device_surface.h"
 #include "core/render/eye_surfaces.h"
+#include "core/render/table_shadow.h"
 
 namespace lumorph {
 namespace {
-
-constexpr float kPenumbra = 0.03F;    // metres, at least, that a shadow's edge may be wide
-constexpr float kLowestLight = 0.02F; // lower lights throw shadows without end
 
 bool isStill(const SceneTexture& texture) {
     return texture.image.empty() || (texture.velocity == glm::vec2(0.0F) && !(texture.framesPerSecond > 0.0));
@@ -34,22 +32,6 @@ bool sameScene(const std::shared_ptr<const Scene>& first, const std::shared_ptr<
     Scene moved = *first;
     moved.eye = second->eye;
     return moved == *second;
-}
-
-// Takes in the shadow that a box throws on the table; false: it has no end.
-bool includeShadow(Box& onTable, const Box& box, const PosedLight& light) {
-    for (unsigned i = 0; i < 8; ++i) {
-        const glm::vec3 corner((i & 1U) != 0 ? box.max.x : box.min.x, (i & 2U) != 0 ? box.max.y : box.min.y,
-                               (i & 4U) != 0 ? box.max.z : box.min.z);
-        const glm::vec3 way = light.parallel ? light.position : light.position - corner;
-        if (!(way.y > kLowestLight * glm::length(way))) return false;
-        const float height = std::max(corner.y, 0.0F);
-        const glm::vec3 at = corner - way * (height / way.y);
-        const float blur = kPenumbra + 2.0F * light.softness * height * glm::length(way) / way.y;
-        onTable.include(at - blur);
-        onTable.include(at + blur);
-    }
-    return true;
 }
 
 // A rectangle of the image that holds a box; all of it where part of the box cannot be seen.
