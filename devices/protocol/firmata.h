@@ -17,8 +17,8 @@ constexpr int kOutputMode = 1;
 constexpr int kServoMode = 4;
 /// A value below is taken for degrees, not for microseconds.
 constexpr int kLeastMicroseconds = 544;
-/// Ends an extended message. Before any other it does no harm, and gets a board out of one whose own end was lost: stock
-/// firmware takes all for data until then.
+/// Ends an extended message. Before any other it does no harm, and gets a board out of one whose own end was lost:
+/// stock firmware takes all for data until then.
 constexpr std::uint8_t kEndOfMessage = 0xF7;
 
 // Questions and commands. All throw InvalidInput for a pin beyond 0 to 127 or a value that their bytes cannot carry.
