@@ -58,6 +58,16 @@ public:
         database_.run("COMMIT");
     }
 
+    /// One file without companions, which can be read where nothing may be written. While somebody reads it, it stays
+    /// as it is: whole too.
+    void close() {
+        for (std::optional<Statement>* statement : {&frame_, &pose_, &event_, &servo_, &file_}) statement->reset();
+        try {
+            database_.run("PRAGMA busy_timeout = 0; PRAGMA journal_mode = DELETE");
+        } catch (const std::exception&) { // a reader
+        }
+    }
+
 private:
     void write(const FrameRow& row);
     void write(const PoseRow& row);
@@ -200,6 +210,7 @@ void Recorder::finish() {
     }
     data_->thread.request_stop();
     data_->thread.join();
+    if (data_->writer) data_->writer->close();
     data_->writer.reset();
 }
 

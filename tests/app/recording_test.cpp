@@ -274,6 +274,14 @@ TEST_F(RecordingTest, AFinishedFileIsWholeAndTakesNoMore) {
     recorder.add(someFrame(random, 2));
     recorder.finish();
     EXPECT_EQ(readRecording(file).frames.size(), 1U);
+    // It is read without companions, so also from where nothing may be written: bytes 18 and 19 of SQLite's header
+    // are 1 for a file without a write-ahead log.
+    EXPECT_EQ(std::distance(fs::directory_iterator(folder), fs::directory_iterator()), 1);
+    std::ifstream in(file, std::ios::binary);
+    char header[20] = {};
+    in.read(header, sizeof header);
+    EXPECT_EQ(header[18], 1);
+    EXPECT_EQ(header[19], 1);
 }
 
 TEST_F(RecordingTest, AnotherFileIsNotOverwritten) {
