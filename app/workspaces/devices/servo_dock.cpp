@@ -13,6 +13,7 @@
 #include "app/studio/widgets/panel.h"
 #include "app/studio/widgets/value_field.h"
 #include "app/workspaces/devices/devices_docks.h"
+#include "app/workspaces/devices/profile_edit.h"
 #include "app/workspaces/devices/servo_board.h"
 #include "app/workspaces/field/dock_parts.h"
 
@@ -90,9 +91,9 @@ private:
         field->setToolTip(tip);
         field->setStep(step);
         const auto set = [member](double value) { return [member, value](ServoSetup& one) { one.*member = value; }; };
-        connect(field, &ValueField::previewed, this, [this, set](double value) { preview(set(value)); });
+        connect(field, &ValueField::previewed, this, [this, set](double value) { edit_.preview(edited(set(value))); });
         connect(field, &ValueField::committed, this, [this, set](double value) { edit(set(value)); });
-        connect(field, &ValueField::reverted, this, [this] { revert(); });
+        connect(field, &ValueField::reverted, this, [this] { edit_.revert(); });
         rows.addWidget(makeRow(label, field));
         numbers_.push_back({field, member});
         return field;
@@ -195,17 +196,9 @@ private:
         if (servo && *servo < profile.servos.size()) change(profile.servos[*servo]);
         return profile;
     }
-    void preview(const Edit& change) {
-        if (!before_) before_ = studio_.devices.profile();
-        studio_.devices.previewProfile(edited(change));
-    }
     void edit(const Edit& change) {
-        before_.reset();
-        studio_.devices.setProfile(edited(change));
+        edit_.keep(edited(change));
         refresh();
-    }
-    void revert() {
-        if (before_) studio_.devices.previewProfile(*std::exchange(before_, std::nullopt));
     }
 
     void refresh() {
@@ -273,7 +266,7 @@ private:
     QLineEdit* name_ = nullptr;
     std::vector<Number> numbers_;
     std::vector<Test> tests_;
-    std::optional<DeviceProfile> before_; ///< a drag began with it
+    ProfileEdit edit_{studio_.devices};
 };
 
 } // namespace

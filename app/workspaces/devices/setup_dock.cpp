@@ -12,6 +12,7 @@
 #include "app/studio/widgets/value_field.h"
 #include "app/workspaces/devices/device_words.h"
 #include "app/workspaces/devices/devices_docks.h"
+#include "app/workspaces/devices/profile_edit.h"
 #include "app/workspaces/devices/servo_board.h"
 #include "app/workspaces/field/dock_parts.h"
 
@@ -80,9 +81,9 @@ private:
         field->setToolTip(tip);
         field->setStep(step);
         const auto set = [member](double value) { return [member, value](DeviceProfile& p) { p.*member = value; }; };
-        connect(field, &ValueField::previewed, this, [this, set](double value) { preview(set(value)); });
+        connect(field, &ValueField::previewed, this, [this, set](double value) { edit_.preview(edited(set(value))); });
         connect(field, &ValueField::committed, this, [this, set](double value) { edit(set(value)); });
-        connect(field, &ValueField::reverted, this, [this] { revert(); });
+        connect(field, &ValueField::reverted, this, [this] { edit_.revert(); });
         rows.addWidget(makeRow(label, field));
         numbers_.push_back({field, member});
     }
@@ -175,17 +176,9 @@ private:
         change(profile);
         return profile;
     }
-    void preview(const Edit& change) {
-        if (!before_) before_ = studio_.devices.profile();
-        studio_.devices.previewProfile(edited(change));
-    }
     void edit(const Edit& change) {
-        before_.reset();
-        studio_.devices.setProfile(edited(change));
+        edit_.keep(edited(change));
         refresh();
-    }
-    void revert() {
-        if (before_) studio_.devices.previewProfile(*std::exchange(before_, std::nullopt));
     }
 
     void refresh() {
@@ -229,7 +222,7 @@ private:
     QCheckBox* crc_ = nullptr;
     QLabel* identity_ = nullptr;
     QPushButton* forget_ = nullptr;
-    std::optional<DeviceProfile> before_; ///< a drag began with it
+    ProfileEdit edit_{studio_.devices};
 };
 
 } // namespace
