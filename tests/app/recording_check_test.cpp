@@ -37,6 +37,7 @@ struct RecordedShow {
             frame.time = bench.now() - begin;
             frame.number = static_cast<std::uint64_t>(i);
             frame.estimated = {0.5 + std::sin(0.03 * i) / 3.0, 0.5 - std::cos(0.02 * i) / 3.0};
+            frame.wanted = frame.estimated;
             bench.pass(1'000);
             if (i % 7 != 0) bench.tell(servo_input::Command{frame.estimated}); // one was overtaken now and then
             for (const long pause : {4'000, 5'000, 6'667}) bench.pass(pause);

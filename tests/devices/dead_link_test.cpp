@@ -5,6 +5,7 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <filesystem>
 #include <mutex>
 #include <string>
 #include <thread>
@@ -12,6 +13,7 @@
 
 #include <gtest/gtest.h>
 #include <sys/resource.h>
+#include <unistd.h>
 
 #include "devices/controllers/servo_link.h"
 #include "devices/simulator/simulated_bench.h"
@@ -129,11 +131,17 @@ protected:
 
 TEST_F(DeadLink, ADeadPseudoTerminalCostsNoTimeAndFewWords) {
     pty_ = std::make_unique<Pty>();
-    open("serial://" + pty_->path());
+    // By a name of its own: the system gives the number of a dead terminal to whoever asks next.
+    const std::filesystem::path name =
+        std::filesystem::temp_directory_path() / ("lumorph-dead-port-" + std::to_string(::getpid()));
+    std::filesystem::remove(name);
+    std::filesystem::create_symlink(pty_->path(), name);
+    open("serial://" + name.string());
     goLive();
     (void)link_->takeEvents();
     g_qtWords = 0;
     const auto before = qInstallMessageHandler(countQtWord);
+    std::filesystem::remove(name);
     pty_->unplug();
     pty_.reset();
     ASSERT_TRUE(reaches(LinkPhase::lost, 1s)) << "noticed within a second";
