@@ -16,6 +16,7 @@ namespace {
 constexpr std::string_view kOwnFirmware = "LumorphTablet";
 constexpr std::array<std::string_view, 4> kKnown = {kOwnFirmware, "StandardFirmata", "ConfigurableFirmata",
                                                     "ServoFirmata"};
+constexpr int kDoubts = 2;
 constexpr Microseconds kAskAgain{500'000};
 constexpr Microseconds kHeartbeat{200'000}; // our firmware's watchdog waits for 500 ms
 constexpr Microseconds kStateAtLeast{400'000};
@@ -96,6 +97,7 @@ private:
     void hear(const firmata::AnalogMapping&) {}
     void hear(const firmata::Reading&) {}
     void askCapabilitiesOnce();
+    void askForDoubts(Microseconds now);
     void askState(Microseconds now);
     [[nodiscard]] std::size_t servoToAskFor();
     void becomeKind(bool own);
@@ -108,6 +110,8 @@ private:
     std::optional<firmata::Version> version_;
     std::optional<std::string> firmware_; ///< its name
     bool capabilitiesAsked_ = false;
+    int doubts_ = 0;                           ///< times that an unknown name was asked for again
+    std::optional<Microseconds> doubtAskedAt_; ///< the last of them
     bool own_ = false;
     Repeater question_{kAskAgain};
     Repeater heartbeat_{kHeartbeat};
@@ -132,6 +136,8 @@ void FirmataController::startHandshake() {
     version_.reset();
     firmware_.reset();
     capabilitiesAsked_ = false;
+    doubts_ = 0;
+    doubtAskedAt_.reset();
     question_.reset();
     voltage_.reset();
     statesAsked_.clear();
@@ -180,7 +186,13 @@ void FirmataController::hear(const firmata::Version& version) {
 }
 
 void FirmataController::hear(const firmata::Firmware& firmware) {
-    if (state_.phase != ControllerPhase::handshake) {
+    // The answer to a doubt, which may come when the user has already settled it.
+    const bool asked = doubtAskedAt_ && heardAt_ - *doubtAskedAt_ < kAskAgain;
+    if (asked && firmware_ == withoutSuffix(firmware.name)) return;
+    if (asked && state_.phase == ControllerPhase::unidentified) {
+        state_.phase = ControllerPhase::handshake;
+        capabilitiesAsked_ = false;
+    } else if (state_.phase != ControllerPhase::handshake) {
         rebooted();
         startHandshake();
     }
@@ -213,11 +225,21 @@ void FirmataController::hear(const firmata::Capabilities& capabilities) {
         return;
     }
     if (refusesPulses()) return;
-    if (std::find(kKnown.begin(), kKnown.end(), *firmware_) != kKnown.end())
+    if (std::find(kKnown.begin(), kKnown.end(), *firmware_) != kKnown.end()) {
         becomeReady();
-    else
+    } else {
         state_.phase = ControllerPhase::unidentified;
+        question_.done(heardAt_);
+    }
     tellOfShortPulses();
+}
+
+/// A name that nobody knows may be a known one that noise has hit: it is asked for again, a few times.
+void FirmataController::askForDoubts(Microseconds now) {
+    if (state_.phase != ControllerPhase::unidentified || doubts_ == kDoubts || !question_.take(now)) return;
+    ++doubts_;
+    doubtAskedAt_ = now;
+    ask(firmata::askFirmware());
 }
 
 /// A servo all of whose pulses are shorter than the firmware can be told.
@@ -287,6 +309,7 @@ void FirmataController::work(Microseconds now) {
         if (version_ && firmware_) ask(firmata::askCapabilities());
         return;
     }
+    askForDoubts(now);
     if (own_ && voltage_.take(now)) ask(firmata::askVoltage());
     const bool quiet = now - lastWritten() >= kHeartbeat;
     if ((quiet && heartbeat_.due(now)) || stateAtLeast_.due(now)) askState(now);

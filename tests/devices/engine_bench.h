@@ -8,9 +8,8 @@
 #include <variant>
 #include <vector>
 
-#include "devices/controllers/servo_engine.h"
-#include "devices/controllers/servo_trace_log.h"
 #include "devices/simulator/simulated_bench.h"
+#include "tests/support/traced_engine.h"
 
 namespace lumorph {
 
@@ -20,24 +19,13 @@ public:
     using Bytes = std::vector<std::uint8_t>;
 
     explicit EngineBench(const DeviceProfile& profile)
-        : engine(profile), board(bench_.board(profile.address.substr(6))) {
-        clock_->advance(Microseconds{1'000'000});
-        log_.setSink([this](const ServoTraceRow& row) { rows.push_back(row); });
-        log_.made(profile, now());
-    }
+        : traced_(profile, clock_->now()), engine(traced_.engine), rows(traced_.rows),
+          board(bench_.board(profile.address.substr(6))) {}
     EngineBench(const EngineBench&) = delete;
     EngineBench& operator=(const EngineBench&) = delete;
 
     void tell(const ServoInput& input) {
-        log_.took(input, now());
-        engine.take(input, now());
-        const std::vector<ServoOutput> outputs = engine.takeOutput();
-        Bytes sent;
-        for (const ServoOutput& output : outputs)
-            if (const auto* write = std::get_if<servo_output::Write>(&output))
-                sent.insert(sent.end(), write->bytes.begin(), write->bytes.end());
-        if (!sent.empty()) log_.sent(sent, now());
-        log_.hand(1'000'000);
+        const std::vector<ServoOutput> outputs = traced_.take(input, now());
         for (const ServoOutput& output : outputs) std::visit([this](const auto& one) { perform(one); }, output);
     }
     /// Time passes for all; the engine sees it at the end.
@@ -88,7 +76,6 @@ public:
     [[nodiscard]] Microseconds now() const { return clock_->now() + clockIsAhead; }
     [[nodiscard]] bool isOpen() const { return open_; }
 
-    std::vector<ServoTraceRow> rows;
     std::string said; ///< to the user
     Microseconds clockIsAhead{0};
     std::uint64_t unsent = 0;
@@ -110,14 +97,21 @@ private:
     void perform(const servo_output::Tell& tell) { said += tell.event.text + " (" + tell.event.remedy + ")\n"; }
     Bytes listen() { return open_ ? board->give(clock_->now()) : Bytes{}; }
 
-    std::shared_ptr<ManualClock> clock_ = std::make_shared<ManualClock>();
+    static std::shared_ptr<ManualClock> clockThatHasRun() {
+        auto clock = std::make_shared<ManualClock>();
+        clock->advance(Microseconds{1'000'000});
+        return clock;
+    }
+
+    std::shared_ptr<ManualClock> clock_ = clockThatHasRun();
     SimulatedBench bench_{clock_};
-    ServoTraceLog log_;
+    test::TracedEngine traced_;
     bool wanted_ = false;
     bool open_ = false;
 
 public:
-    ServoEngine engine;
+    ServoEngine& engine;
+    std::vector<ServoTraceRow>& rows;
     std::shared_ptr<SimulatedBoard> board;
 };
 

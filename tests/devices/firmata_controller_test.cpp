@@ -62,6 +62,33 @@ TEST(FirmataController, KnowsFirmwaresAndAsksTheUserAboutOthers) {
     }
 }
 
+TEST(FirmataController, ANameThatNoiseHasHitIsAskedForAgain) {
+    const Bytes question = {0xF0, 0x79, 0xF7};
+    ControllerTrial trial = readyTrial({9}, "LumorphEablet");
+    ASSERT_EQ(trial.state().phase, ControllerPhase::unidentified);
+    trial.wait(600);
+    EXPECT_THAT(trial.written(), testing::Contains(question));
+    trial.hear(firmwareNamed("LumorphTablet"));
+    trial.hear(capabilities());
+    EXPECT_EQ(trial.state().phase, ControllerPhase::ready);
+    EXPECT_EQ(trial.state().firmware, "LumorphTablet 1.1");
+    EXPECT_TRUE(trial.state().traits.failsafe);
+    EXPECT_EQ(trial.state().reboots, 0U);
+}
+
+TEST(FirmataController, TheAnswerToADoubtThatTheUserHasSettledIsNoReboot) {
+    ControllerTrial trial = readyTrial({9}, "Blink");
+    trial.wait(600); // asked again
+    trial.controller().confirm();
+    trial.hear(firmwareNamed("Blink"));
+    EXPECT_EQ(trial.state().phase, ControllerPhase::ready);
+    EXPECT_EQ(trial.state().reboots, 0U);
+    trial.wait(1000);
+    trial.hear(firmwareNamed("Blink")); // nobody has asked
+    EXPECT_EQ(trial.state().phase, ControllerPhase::handshake);
+    EXPECT_EQ(trial.state().reboots, 1U);
+}
+
 TEST(FirmataController, RefusesBoardsThatCannotDriveTheServos) {
     for (const int channel : {1, 25}) {
         ControllerTrial trial = readyTrial({9, channel});

@@ -9,6 +9,7 @@
 
 #include "core/base/error.h"
 #include "tests/devices/engine_bench.h"
+#include "tests/support/simulated_devices.h"
 
 namespace lumorph {
 namespace {
@@ -16,25 +17,9 @@ namespace {
 using testing::HasSubstr;
 namespace in = servo_input;
 
-struct TraceBoard {
-    const char* name;
-    ControllerKind controller;
-    int first; ///< channel of the board's first servo
-};
-
-DeviceProfile profileAt(const TraceBoard& board) {
-    DeviceProfile profile;
-    profile.name = "the tablet in \"room 3\"";
-    profile.address = "sim://" + std::string(board.name);
-    profile.controller = board.controller;
-    profile.staggerSeconds = 0.05;
-    profile.servos = {{.channel = board.first}, {.channel = board.first + 1, .trim = 1.0 / 3.0}};
-    return profile;
-}
-
 /// Soft start, commands, wiggle, slow mode, STOP, other limits, an unplug, a reboot, and the rest at the end.
-std::vector<ServoTraceRow> session(const TraceBoard& where) {
-    const DeviceProfile profile = profileAt(where);
+std::vector<ServoTraceRow> session(const test::SimulatedDevice& where) {
+    const DeviceProfile profile = test::profileOf(where);
     EngineBench bench(profile);
     EXPECT_TRUE(bench.connect()) << bench.said;
     const auto follow = [&bench](int frames) {
@@ -85,7 +70,7 @@ std::vector<ServoTraceRow> session(const TraceBoard& where) {
     return std::move(bench.rows);
 }
 
-class ServoTrace : public testing::TestWithParam<TraceBoard> {
+class ServoTrace : public testing::TestWithParam<test::SimulatedDevice> {
 protected:
     /// The n-th row of a kind, counted from the front.
     std::size_t find(const std::string& kind, int n) {
@@ -167,14 +152,10 @@ TEST_P(ServoTrace, TwoDevicesInTurnAreOneTrace) {
     EXPECT_FALSE(checkTrace(both).difference);
 }
 
-INSTANTIATE_TEST_SUITE_P(Boards, ServoTrace,
-                         testing::Values(TraceBoard{"tablet", ControllerKind::firmata, 2},
-                                         TraceBoard{"uno", ControllerKind::firmata, 2},
-                                         TraceBoard{"xarm", ControllerKind::lewansoul, 1},
-                                         TraceBoard{"maestro", ControllerKind::maestro, 0}),
+INSTANTIATE_TEST_SUITE_P(Boards, ServoTrace, testing::ValuesIn(test::kSimulatedDevices),
                          [](const auto& board) { return std::string(board.param.name); });
 
-const TraceBoard kTablet{"tablet", ControllerKind::firmata, 2};
+const test::SimulatedDevice kTablet = test::kSimulatedDevices[0];
 
 std::string refusal(const std::vector<ServoTraceRow>& rows) {
     try {
@@ -187,7 +168,7 @@ std::string refusal(const std::vector<ServoTraceRow>& rows) {
 }
 
 TEST(ServoTraceRows, ComeBackAsTheyWere) {
-    const DeviceProfile profile = profileAt(kTablet);
+    const DeviceProfile profile = test::profileOf(kTablet);
     const double nan = std::numeric_limits<double>::quiet_NaN();
     const std::vector<ServoInput> inputs = {in::Connect{},
                                             in::Disconnect{},
@@ -226,7 +207,7 @@ TEST(ServoTraceRows, ComeBackAsTheyWere) {
 }
 
 TEST(ServoTraceRows, DamagedOnesAreRefusedByTheirNumber) {
-    const std::vector<ServoTraceRow> good = {servo_trace::machineRow(profileAt(kTablet), {})};
+    const std::vector<ServoTraceRow> good = {servo_trace::machineRow(test::profileOf(kTablet), {})};
     const auto with = [&good](const char* kind, std::vector<std::uint8_t> bytes) {
         std::vector<ServoTraceRow> rows = good;
         rows.push_back({Microseconds{1}, kind, std::move(bytes)});
@@ -250,7 +231,7 @@ TEST(ServoTraceRows, DamagedOnesAreRefusedByTheirNumber) {
 
 TEST(ServoTraceRows, RandomOnesDoNoHarm) {
     std::mt19937 random(3);
-    const ServoTraceRow machine = servo_trace::machineRow(profileAt(kTablet), {});
+    const ServoTraceRow machine = servo_trace::machineRow(test::profileOf(kTablet), {});
     int taken = 0;
     for (int i = 0; i < 2'000; ++i) {
         std::vector<ServoTraceRow> rows{machine};
@@ -277,7 +258,7 @@ TEST(ServoTraceRows, RandomOnesDoNoHarm) {
 
 TEST(ServoTraceLog, KeepsIdleHoursInLittleAndHandsTheHistoryOn) {
     ServoTraceLog log;
-    const DeviceProfile profile = profileAt(kTablet);
+    const DeviceProfile profile = test::profileOf(kTablet);
     log.made(profile, Microseconds{0});
     log.took(in::Connect{}, Microseconds{1});
     for (long i = 1; i <= 20L * 3600; ++i) log.took(in::Tick{0}, Microseconds{50'000 * i});
@@ -307,7 +288,7 @@ TEST(ServoTraceLog, KeepsIdleHoursInLittleAndHandsTheHistoryOn) {
 
 TEST(ServoTraceLog, SaysSoWhereItsBeginningWasNotKept) {
     ServoTraceLog log(10'000);
-    log.made(profileAt(kTablet), Microseconds{0});
+    log.made(test::profileOf(kTablet), Microseconds{0});
     for (long i = 0; i < 1'000; ++i) log.took(in::Command{{0.5, 0.5}}, Microseconds{1000 * i});
     std::vector<ServoTraceRow> rows;
     log.setSink([&rows](const ServoTraceRow& row) { rows.push_back(row); });

@@ -185,6 +185,8 @@ TEST_F(LiveLink, TheLineIsCutAndMendedAgainAndAgain) {
     const double perMillisecond = 4.0 * 1000.0 * 0.001; // 1000 us are a stroke, and 4 strokes a second the limit
     const Steps steps = stepsOf(pulses, wallTimes, perMillisecond);
     EXPECT_LE(steps.share, 1.0) << "of the velocity limit";
+    // A frame lasts 20 ms; on a busy machine the studio's time and the board's differ by some more.
+    EXPECT_LE(steps.largest, 3.0 * 20.0 * perMillisecond);
     if (soak) {
         EXPECT_LE(slowest, 3.0) << "seconds until it was found again";
     }

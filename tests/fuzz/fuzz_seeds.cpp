@@ -18,6 +18,7 @@
 #include "core/voxels/nrrd.h"
 #include "core/voxels/solid.h"
 #include "tests/core/scene/scenes.h"
+#include "tests/fuzz/servo_trace_seeds.h"
 #include "tests/support/full_model.h"
 #include "tests/support/gltf_builder.h"
 #include "tests/support/natnet_frames.h"
@@ -160,6 +161,8 @@ int main(int argc, char** argv) {
     writeBytes("lewansoul/board", {5,    0x55, 0x55, 0x04, 0x0F, 0xE8, 0x1C, 0x55, 0x55, 0x09, 0x15, 0x02, 0x01,
                                    0xF4, 0x01, 0x02, 0xFB, 0xFF, 0x00, 0x55, 0x55, 0x05, 0x08, 0x01, 0x01, 0x00});
     writeBytes("maestro/board", {0, 1, 2, 3, 0x70, 0x17, 0x01, 0x28, 0x00});
+    for (const std::vector<std::uint8_t>& seed : servoTraceSeeds())
+        writeBytes(("servo_trace/" + std::to_string(seed.front())).c_str(), seed);
     writeNatNet(write);
     write("opentrack/rest", std::vector<std::byte>(48));
     using namespace std::string_literals;

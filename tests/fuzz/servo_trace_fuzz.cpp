@@ -1,33 +1,20 @@
-#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>
-#include <string>
 #include <vector>
 
 #include "core/base/error.h"
-#include "devices/controllers/servo_trace_rows.h"
+#include "tests/fuzz/servo_trace_input.h"
+#include "tests/support/traced_engine.h"
 
-/// Rows behind a sound beginning: each has a byte for its kind, one for the milliseconds since the last (signed), one
-/// for its length, and its bytes. A row that is taken is written as it was; the same rows give the same result.
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-    using namespace lumorph;
-    DeviceProfile profile;
-    profile.address = "sim://tablet";
-    profile.controller = static_cast<ControllerKind>(size > 0 ? data[0] % 3 : 0);
-    profile.servos = {{.channel = 2}, {.channel = 3}};
+namespace {
+
+using namespace lumorph;
+
+/// Rows as they come, behind a sound beginning: they are taken or refused, and shifted ones give the same result.
+void checkAsTheyAre(const DeviceProfile& profile, const std::vector<ServoTraceRow>& rows) {
     std::vector<ServoTraceRow> trace{servo_trace::machineRow(profile, {})};
-    Microseconds time{0};
-    for (std::size_t at = 1; at + 3 <= size;) {
-        ServoTraceRow row;
-        row.kind = servo_trace::kKinds[data[at] % servo_trace::kKinds.size()];
-        time += Microseconds{1000 * static_cast<std::int8_t>(data[at + 1])};
-        row.time = time;
-        const std::size_t length = std::min<std::size_t>(data[at + 2], size - at - 3);
-        row.bytes.assign(data + at + 3, data + at + 3 + length);
-        at += 3 + length;
-        trace.push_back(row);
-    }
+    trace.insert(trace.end(), rows.begin(), rows.end());
     try {
         const TraceCheck first = checkTrace(trace);
         for (ServoTraceRow& row : trace) row.time += Microseconds{12'345};
@@ -37,5 +24,30 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
             std::abort();
     } catch (const DataError&) {
     }
+}
+
+/// A session of their inputs: its trace is equal bit for bit when it is run again.
+void runAsASession(const DeviceProfile& profile, const std::vector<ServoTraceRow>& rows) {
+    test::TracedEngine traced(profile, {});
+    for (const ServoTraceRow& row : rows) {
+        if (row.kind == servo_trace::kMachine || row.kind == servo_trace::kSent || row.kind == servo_trace::kMissing)
+            continue;
+        try {
+            for (const servo_trace::TimedInput& timed : servo_trace::inputsOf(row, 0))
+                (void)traced.take(timed.input, timed.time);
+        } catch (const DataError&) {
+        }
+    }
+    if (checkTrace(traced.rows).difference) std::abort();
+}
+
+} // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+    if (size == 0) return 0;
+    const DeviceProfile profile = servo_trace_input::profileOf(data[0]);
+    const std::vector<ServoTraceRow> rows = servo_trace_input::rowsOf({data + 1, size - 1});
+    checkAsTheyAre(profile, rows);
+    runAsASession(profile, rows);
     return 0;
 }
