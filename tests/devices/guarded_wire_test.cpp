@@ -12,6 +12,7 @@
 #include "devices/controllers/servo_controller.h"
 #include "devices/controllers/servo_guard.h"
 #include "devices/simulator/simulated_bench.h"
+#include "tests/support/simulated_devices.h"
 
 namespace lumorph {
 namespace {
@@ -29,19 +30,7 @@ protected:
         profile_.controller = GetParam().controller;
         profile_.address = "sim://" + std::string(GetParam().board);
         profile_.staggerSeconds = 0.05;
-        profile_.servos = {{.channel = GetParam().first, .pulseMin = 1000.0, .pulseMax = 2000.0},
-                           {.channel = GetParam().first + 1,
-                            .pulseMin = 700.0,
-                            .pulseMax = 1800.0,
-                            .reversed = true,
-                            .trim = 30.0,
-                            .maxVelocity = 0.5,
-                            .maxAcceleration = 3.0},
-                           {.channel = GetParam().first + 3,
-                            .pulseMin = 1400.0,
-                            .pulseMax = 2400.0,
-                            .maxVelocity = 2.0,
-                            .maxAcceleration = 20.0}};
+        profile_.servos = test::unevenServos(GetParam().first);
         board_ = bench_.board(GetParam().board);
         controller_ = makeController(profile_, parseDeviceAddress(profile_.address));
         guard_ = std::make_unique<ServoGuard>(profile_);

@@ -14,6 +14,7 @@
 
 #include "tests/devices/engine_bench.h"
 #include "tests/devices/wire_ear.h"
+#include "tests/support/simulated_devices.h"
 
 namespace lumorph {
 namespace {
@@ -102,19 +103,7 @@ private:
         profile.controller = board.controller;
         profile.address = "sim://" + std::string(board.board);
         profile.staggerSeconds = 0.05;
-        profile.servos = {{.channel = board.first, .pulseMin = 1000.0, .pulseMax = 2000.0},
-                          {.channel = board.first + 1,
-                           .pulseMin = 700.0,
-                           .pulseMax = 1800.0,
-                           .reversed = true,
-                           .trim = 30.0,
-                           .maxVelocity = 0.5,
-                           .maxAcceleration = 3.0},
-                          {.channel = board.first + 3,
-                           .pulseMin = 1400.0,
-                           .pulseMax = 2400.0,
-                           .maxVelocity = 2.0,
-                           .maxAcceleration = 20.0}};
+        profile.servos = test::unevenServos(board.first);
         return profile;
     }
 

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <string>
+#include <vector>
 
 #include "devices/controllers/device_profile.h"
 
@@ -25,6 +26,20 @@ inline DeviceProfile profileOf(const SimulatedDevice& device) {
     profile.staggerSeconds = 0.05;
     profile.servos = {{.channel = device.first}, {.channel = device.first + 1, .trim = 1.0 / 3.0}};
     return profile;
+}
+
+/// Three that differ in all that a guard looks at; the third sits one channel further on.
+inline std::vector<ServoSetup> unevenServos(int first) {
+    return {
+        {.channel = first, .pulseMin = 1000.0, .pulseMax = 2000.0},
+        {.channel = first + 1,
+         .pulseMin = 700.0,
+         .pulseMax = 1800.0,
+         .reversed = true,
+         .trim = 30.0,
+         .maxVelocity = 0.5,
+         .maxAcceleration = 3.0},
+        {.channel = first + 3, .pulseMin = 1400.0, .pulseMax = 2400.0, .maxVelocity = 2.0, .maxAcceleration = 20.0}};
 }
 
 } // namespace lumorph::test

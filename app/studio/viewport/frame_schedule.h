@@ -19,8 +19,8 @@ public:
     using Time = std::chrono::steady_clock::time_point;
     /// How long a viewport must be quiet before it is drawn in full quality.
     static constexpr std::chrono::milliseconds kQuiet{120};
-    /// A moving frame may take this long.
-    static constexpr double kBudgetMilliseconds = 27.0;
+    /// A moving frame may take this long; handing it over and painting it take the rest of a thirtieth of a second.
+    static constexpr double kBudgetMilliseconds = 23.0;
     static constexpr double kLowestResolution = 0.5;
 
     struct Work {
