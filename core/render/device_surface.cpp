@@ -3,6 +3,7 @@
 #include <string>
 
 #include "core/base/error.h"
+#include "core/geometry/mesh_check.h"
 #include "core/render/eye_surfaces.h"
 
 namespace lumorph {
@@ -20,6 +21,8 @@ void DeviceSurface::update(const ShowFrame& frame) {
         rig_ = frame.rig;
         positions_ = nullptr;
         count_ = static_cast<GLsizei>(3 * rest.triangles.size());
+        const MeshReport report = checkMesh(rest, IntersectionTest::skip);
+        closed_ = report.closed() && report.manifold() && report.inwardComponents == 0;
         glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, indices_.name());
         glBufferData(GL_ELEMENT_ARRAY_BUFFER, static_cast<GLsizeiptr>(rest.triangles.size() * sizeof(glm::uvec3)),
                      rest.triangles.data(), GL_STATIC_DRAW);
@@ -37,9 +40,12 @@ void DeviceSurface::update(const ShowFrame& frame) {
 
 void DeviceSurface::draw(Program& program) const {
     program.set("worldFromMesh", worldFromDevice_);
+    // Nobody sees the inside of a solid.
+    if (closed_) glEnable(GL_CULL_FACE);
     glBindVertexArray(array_.name());
     glDrawElements(GL_TRIANGLES, count_, GL_UNSIGNED_INT, nullptr);
     glBindVertexArray(0);
+    glDisable(GL_CULL_FACE);
 }
 
 Box deviceBounds(const ShowFrame& frame) { return movedBox(frame.rig->reach(), frame.worldFromDevice); }

@@ -27,6 +27,7 @@ private:
     std::shared_ptr<const std::vector<glm::vec3>> positions_;
     glm::mat4 worldFromDevice_{1.0F};
     GLsizei count_ = 0;
+    bool closed_ = false;
 };
 
 /// Box of the device in the world over all its states.

@@ -19,8 +19,8 @@
 #include "core/render/eye_shadow.h"
 #include "core/render/eye_skin.h"
 #include "core/render/eye_surfaces.h"
-#include "core/render/eye_table.h"
 #include "core/render/lookup_region.h"
+#include "core/render/table_grid.h"
 #include "core/render/table_shadow.h"
 
 namespace lumorph {
@@ -34,7 +34,7 @@ constexpr float kFarthestCaster = 1.5F;       // metres from the device's middle
 
 /// One thing to draw: a mesh, where it stands, and what it looks like.
 struct Thing {
-    const EyeMesh* mesh = nullptr;
+    const EyeMesh* mesh = nullptr; ///< none: the table
     glm::mat4 world{1.0F};
     const Material* material = nullptr;
     float opacity = 1.0F;
@@ -86,10 +86,8 @@ struct EyePass::Data {
     EyeShadow shadow;
     EyeLighting lighting;
     EyeFog fog;
-    EyeMesh table, straightTable;
-    glm::vec2 tableSize{0.0F};
+    TableGrid table;
 
-    void updateTable(glm::vec2 size);
     [[nodiscard]] Box casters(const ShowFrame& frame) const;
     [[nodiscard]] std::vector<Thing> shadowThings(const ShowFrame& frame) const;
     void drawShadow(const ShowFrame& frame);
@@ -102,6 +100,7 @@ struct EyePass::Data {
     void drawTable(const ShowFrame& frame, const View& view);
     void drawCreases(const ShowFrame& frame, const View& view);
     void drawBlended(const ShowFrame& frame, const View& view, std::vector<Thing> things);
+    void drawSeen(const ShowFrame& frame, const CalibratedCamera& camera, unsigned framebuffer, bool withSkin);
     [[nodiscard]] Box everything(const ShowFrame& frame) const;
 };
 
@@ -109,13 +108,6 @@ EyePass::EyePass() : data_(std::make_unique<Data>()) {}
 EyePass::~EyePass() = default;
 EyePass::EyePass(EyePass&&) noexcept = default;
 EyePass& EyePass::operator=(EyePass&&) noexcept = default;
-
-void EyePass::Data::updateTable(glm::vec2 size) {
-    if (size == tableSize) return;
-    tableSize = size;
-    shapeTable(table, size, kTableForLenses);
-    shapeTable(straightTable, size, kStraightTable);
-}
 
 // The device counts with all it can reach, so that its shadow does not swim while it moves.
 Box EyePass::Data::casters(const ShowFrame& frame) const {
@@ -286,7 +278,7 @@ void EyePass::Data::draw(const ShowFrame& frame, const View& view, const Thing& 
     // Where an item lies in the device's own surface, the item is seen.
     (thing.skin ? glEnable : glDisable)(GL_POLYGON_OFFSET_FILL);
     glPolygonOffset(1.0F, 8.0F);
-    thing.mesh->draw();
+    thing.mesh != nullptr ? thing.mesh->draw() : table.draw();
     glDisable(GL_POLYGON_OFFSET_FILL);
 }
 
@@ -315,10 +307,11 @@ void EyePass::Data::drawTable(const ShowFrame& frame, const View& view) {
         surfaces.hasSkin() && showsSkin(frame) && (skinThing(frame, view.unseen).features & eye_feature::holes) != 0;
     if (throughHoles && lighting.shadowed() && (features & eye_feature::unlit) == 0)
         features |= eye_feature::holesBelow;
-    const bool straight = view.camera->distortion == std::array<double, 5>{};
-    Thing thing{straight ? &straightTable : &table, glm::mat4(1.0F), &material, 1.0F, features, 0.0F};
-    // Through holes light is looked up elsewhere than on the table; and many cells are too dear to be drawn in parts.
-    if (!straight || (features & (eye_feature::holesBelow | eye_feature::unlit)) != 0) return draw(frame, view, thing);
+    table.fit(*view.camera, frame.scene->table.size, 4);
+    glVertexAttrib3f(1, 0.0F, 1.0F, 0.0F); // its normal, everywhere
+    Thing thing{nullptr, glm::mat4(1.0F), &material, 1.0F, features, 0.0F};
+    // Through holes light is looked up elsewhere than on the table.
+    if ((features & (eye_feature::holesBelow | eye_feature::unlit)) != 0) return draw(frame, view, thing);
     // Looking for shadows is dear, and most of the table lies in the open.
     const PixelRectangle shadowed = shadowedPixels(frame, view);
     const auto drawWithin = [&](const PixelRectangle& part) {
@@ -379,7 +372,6 @@ void EyePass::Data::drawBlended(const ShowFrame& frame, const View& view, std::v
 void EyePass::prepare(const ShowFrame& frame) {
     data_->materials.begin(frame.assets, frame.posed.seconds);
     data_->surfaces.update(frame);
-    data_->updateTable(frame.scene->table.size);
     data_->lighting = EyeLighting(*frame.scene, frame.posed.lights);
     data_->lighting.setBounce(data_->lighting.onTable(glm::vec3(frame.worldFromDevice[3])) *
                               data_->materials.meanColor(frame.scene->table.material));
@@ -387,23 +379,32 @@ void EyePass::prepare(const ShowFrame& frame) {
     data_->drawShadow(frame);
 }
 
-void EyePass::draw(const ShowFrame& frame, const CalibratedCamera& camera, unsigned framebuffer) {
+void EyePass::Data::drawSeen(const ShowFrame& frame, const CalibratedCamera& camera, unsigned framebuffer,
+                             bool withSkin) {
     requireSize(camera.size);
     const glm::vec3 eye(positionOf(camera));
-    const View view{&camera, depthRange(camera, data_->everything(frame)), false};
-    data_->begin(frame, view, framebuffer);
-    std::vector<Thing> things = data_->itemThings(frame, eye);
-    if (data_->surfaces.hasSkin() && showsSkin(frame)) {
-        things.push_back(data_->skinThing(frame, false));
+    const View view{&camera, depthRange(camera, everything(frame)), false};
+    begin(frame, view, framebuffer);
+    std::vector<Thing> things = itemThings(frame, eye);
+    if (withSkin) {
+        things.push_back(skinThing(frame, false));
         things.back().distance = glm::distance(glm::vec3(frame.worldFromDevice[3]), eye);
     }
     const auto opaqueEnd = std::stable_partition(
         things.begin(), things.end(), [](const Thing& thing) { return (thing.features & eye_feature::blend) == 0; });
-    for (auto thing = things.begin(); thing != opaqueEnd; ++thing) data_->draw(frame, view, *thing);
-    data_->drawTable(frame, view);
-    if (showsSkin(frame)) data_->drawCreases(frame, view);
-    data_->drawBlended(frame, view, {opaqueEnd, things.end()});
+    for (auto thing = things.begin(); thing != opaqueEnd; ++thing) draw(frame, view, *thing);
+    drawTable(frame, view);
+    if (withSkin) drawCreases(frame, view);
+    drawBlended(frame, view, {opaqueEnd, things.end()});
     finishDrawing();
+}
+
+void EyePass::draw(const ShowFrame& frame, const CalibratedCamera& camera, unsigned framebuffer) {
+    data_->drawSeen(frame, camera, framebuffer, data_->surfaces.hasSkin() && showsSkin(frame));
+}
+
+void EyePass::drawBesideDevice(const ShowFrame& frame, const CalibratedCamera& camera, unsigned framebuffer) {
+    data_->drawSeen(frame, camera, framebuffer, false);
 }
 
 void EyePass::drawUnseen(const ShowFrame& frame, const CalibratedCamera& camera, unsigned framebuffer) {
@@ -420,7 +421,7 @@ std::vector<std::string> EyePass::warnings() const { return data_->programs.warn
 
 std::size_t EyePass::objectCount() const noexcept {
     return data_->programs.objectCount() + data_->materials.objectCount() + data_->surfaces.objectCount() +
-           data_->shadow.objectCount() + data_->fog.objectCount() + 2 * EyeMesh::kObjects;
+           data_->shadow.objectCount() + data_->fog.objectCount() + TableGrid::kObjects;
 }
 
 } // namespace lumorph

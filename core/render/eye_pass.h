@@ -28,6 +28,9 @@ public:
     /// framebuffer with GL_FRAMEBUFFER_SRGB); alpha is 1. All of the frame is filled.
     void draw(const ShowFrame& frame, const CalibratedCamera& camera, unsigned framebuffer);
 
+    /// The same without the device's skin, for places that the device does not hide.
+    void drawBesideDevice(const ShowFrame& frame, const CalibratedCamera& camera, unsigned framebuffer);
+
     /// Device and table alone as they are, physically, through any camera, shaded by what does not depend on a viewer:
     /// their materials in diffuse light with shadows, without reflection, refraction, holes and items above them. For
     /// places that no eye sees. Linear light as above; black where neither is.

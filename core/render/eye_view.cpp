@@ -6,12 +6,15 @@
 
 namespace lumorph {
 
-void EyeView::draw(EyePass& pass, const ShowFrame& frame, const CalibratedCamera& camera, const DeviceSurface& device,
-                   Program& depthProgram) {
+void EyeView::draw(EyePass& pass, const ShowFrame& frame, const CalibratedCamera& camera, Use use,
+                   const DeviceSurface& device, Program& depthProgram) {
     camera_ = camera;
     range_ = depthRange(camera, deviceBounds(frame));
     glEnable(GL_FRAMEBUFFER_SRGB);
-    pass.draw(frame, camera, picture_.framebuffer());
+    if (use == Use::tableAlone)
+        pass.drawBesideDevice(frame, camera, picture_.framebuffer());
+    else
+        pass.draw(frame, camera, picture_.framebuffer());
     beginSurfaces(depth_.framebuffer(), camera.size);
     glClear(GL_DEPTH_BUFFER_BIT);
     depthProgram.use();

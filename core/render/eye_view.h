@@ -15,9 +15,11 @@ class EyeView {
 public:
     explicit EyeView(glm::ivec2 size) : picture_(size), depth_(size) {}
 
+    /// What of the frame the picture holds: places on the table are looked up only where the device does not hide them.
+    enum class Use { deviceAndTable, tableAlone };
     /// Draws both; the pass is prepared, the device uploaded. `depthProgram`: physical.vert with nothing.frag.
-    void draw(EyePass& pass, const ShowFrame& frame, const CalibratedCamera& camera, const DeviceSurface& device,
-              Program& depthProgram);
+    void draw(EyePass& pass, const ShowFrame& frame, const CalibratedCamera& camera, Use use,
+              const DeviceSurface& device, Program& depthProgram);
     /// Sets the uniforms `name`View (an EyeView of eye_lookup.glsl), `name`Picture and `name`ViewDepth of the current
     /// program, and binds two texture units from `unit` on.
     void set(Program& program, const std::string& name, int unit) const;

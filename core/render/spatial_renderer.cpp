@@ -92,7 +92,7 @@ void SpatialRenderer::Data::drawEye(const glm::vec3& from) {
     eyeProblem.clear();
     if (!eye) eye.emplace(eyeSize);
     try {
-        eye->draw(pass, *frame, deviceView(*frame, from, eyeSize), device, depthProgram);
+        eye->draw(pass, *frame, deviceView(*frame, from, eyeSize), EyeView::Use::deviceAndTable, device, depthProgram);
         eyeShown = true;
     } catch (const InvalidInput& error) { // too close to the device, or among it
         eyeProblem = error.what();
@@ -108,7 +108,7 @@ void SpatialRenderer::Data::drawTableView(const glm::vec3& from) {
     const auto camera = tableLookup(*frame, from, *tableArea, eye->camera(), size);
     if (!camera) return;
     if (!table) table.emplace(size);
-    table->draw(pass, *frame, *camera, device, depthProgram);
+    table->draw(pass, *frame, *camera, EyeView::Use::tableAlone, device, depthProgram);
     tableShown = true;
     times.eye += finish(since);
 }

@@ -14,7 +14,6 @@ namespace lumorph {
 namespace {
 
 constexpr int kMostCells = 256;          // a side
-constexpr int kLeastCells = 32;          // so that what changes slowly over the table may be interpolated
 constexpr double kStraightEnough = 0.02; // pixels
 
 struct Rectangle {
@@ -60,10 +59,10 @@ double bendOf(const CalibratedCamera& camera, const glm::dvec2& from, const glm:
     return glm::distance(drawn, *expected);
 }
 
-int cellsFor(const CalibratedCamera& camera, const Rectangle& area) {
-    if (camera.distortion == std::array<double, 5>{}) return kLeastCells;
+int cellsFor(const CalibratedCamera& camera, const Rectangle& area, int least) {
+    if (camera.distortion == std::array<double, 5>{}) return least;
     constexpr int kProbes = 6;
-    int cells = kLeastCells;
+    int cells = least;
     for (; cells < kMostCells; cells *= 2) {
         const glm::dvec2 cell = (area.high - area.low) / static_cast<double>(cells);
         double worst = 0.0;
@@ -79,13 +78,13 @@ int cellsFor(const CalibratedCamera& camera, const Rectangle& area) {
 
 } // namespace
 
-void TableGrid::fit(const CalibratedCamera& camera, glm::vec2 size) {
+void TableGrid::fit(const CalibratedCamera& camera, glm::vec2 size, int leastCells) {
     if (camera_ == camera && size_ == size) return;
     camera_ = camera;
     size_ = size;
     const glm::dvec2 half = 0.5 * glm::dvec2(size);
     const Rectangle area = seenRectangle(camera, half);
-    const int cells = cellsFor(camera, area);
+    const int cells = cellsFor(camera, area, leastCells);
     std::vector<glm::vec3> vertices;
     std::vector<glm::uvec3> triangles;
     for (int j = 0; j <= cells; ++j)
