@@ -4,6 +4,7 @@
 
 #include "core/render/camera_uniforms.h"
 #include "core/render/gl_objects.h"
+#include "core/render/lookup_region.h"
 
 namespace lumorph {
 
@@ -22,6 +23,10 @@ inline void beginSurfaces(GLuint framebuffer, glm::ivec2 size) {
     glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
     glClearColor(0.0F, 0.0F, 0.0F, 1.0F);
     glClearDepth(1.0);
+}
+
+inline void scissor(const PixelRectangle& area) {
+    glScissor(area.low.x, area.low.y, area.high.x - area.low.x, area.high.y - area.low.y);
 }
 
 inline void bindTexture(int unit, GLuint texture) {

@@ -12,6 +12,7 @@
 
 #include "core/base/error.h"
 #include "core/render/camera_uniforms.h"
+#include "core/render/draw_state.h"
 #include "core/render/eye_fog.h"
 #include "core/render/eye_lighting.h"
 #include "core/render/eye_materials.h"
@@ -20,6 +21,7 @@
 #include "core/render/eye_skin.h"
 #include "core/render/eye_surfaces.h"
 #include "core/render/lookup_region.h"
+#include "core/render/projector_target.h"
 #include "core/render/table_grid.h"
 #include "core/render/table_shadow.h"
 
@@ -49,7 +51,9 @@ struct Thing {
 struct View {
     const CalibratedCamera* camera = nullptr;
     DepthRange depth;
+    PixelRectangle area; ///< all that is drawn
     bool unseen = false;
+    const ProjectorTarget* target = nullptr; ///< of a projector that sends it
 };
 
 void setFrontFace(const glm::mat4& world) { glFrontFace(glm::determinant(glm::mat3(world)) < 0.0F ? GL_CW : GL_CCW); }
@@ -66,8 +70,20 @@ void requireSize(glm::ivec2 size) {
                        "the eye pass draws at least one pixel", "use 1 pixel a side or more");
 }
 
+std::uint32_t projectorFeatures(const View& view) {
+    if (view.target == nullptr) return 0;
+    return eye_feature::projected | (view.target->blend ? eye_feature::shared : 0U) |
+           (view.target->projector.gamma > 0.0 ? eye_feature::gamma : 0U);
+}
+
+void setView(Program& program, const ShowFrame& frame, const View& view) {
+    setCamera(program, *view.camera, view.depth.near, view.depth.far);
+    if (view.target != nullptr) setOutput(program, *view.target, frame.scene->compensation, eye_unit::weights);
+}
+
 // Others find the state as they know it.
 void finishDrawing() {
+    glDisable(GL_SCISSOR_TEST);
     glBindSampler(eye_unit::shadowMap, 0);
     glBindSampler(eye_unit::shadowDepth, 0);
     glActiveTexture(GL_TEXTURE0);
@@ -100,6 +116,7 @@ struct EyePass::Data {
     void drawTable(const ShowFrame& frame, const View& view);
     void drawCreases(const ShowFrame& frame, const View& view);
     void drawBlended(const ShowFrame& frame, const View& view, std::vector<Thing> things);
+    void drawPhysical(const ShowFrame& frame, const View& view);
     void drawSeen(const ShowFrame& frame, const CalibratedCamera& camera, unsigned framebuffer, bool withSkin);
     [[nodiscard]] Box everything(const ShowFrame& frame) const;
 };
@@ -232,13 +249,16 @@ Box EyePass::Data::everything(const ShowFrame& frame) const {
 void EyePass::Data::begin(const ShowFrame& frame, const View& view, unsigned framebuffer) const {
     glBindFramebuffer(GL_FRAMEBUFFER, framebuffer);
     glViewport(0, 0, view.camera->size.x, view.camera->size.y);
-    glDisable(GL_SCISSOR_TEST);
+    glEnable(GL_SCISSOR_TEST);
+    scissor(view.area);
     glDisable(GL_BLEND);
     glEnable(GL_DEPTH_TEST);
     glDepthFunc(GL_LESS);
     glDepthMask(GL_TRUE);
     glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
-    glEnable(GL_FRAMEBUFFER_SRGB);
+    const bool encodes = view.target != nullptr && view.target->projector.gamma > 0.0;
+    (encodes ? glDisable : glEnable)(GL_FRAMEBUFFER_SRGB);
+    if (view.target != nullptr) return; // what stands stays
     glClearDepth(1.0);
     const glm::vec3 background = encodedClear(*frame.scene, view.unseen);
     glClearColor(background.r, background.g, background.b, 1.0F);
@@ -250,8 +270,8 @@ void EyePass::Data::draw(const ShowFrame& frame, const View& view, const Thing& 
     std::uint32_t features = thing.features | (lit ? lighting.features() : 0U);
     if (thing.inTheOpen) features &= ~std::uint32_t{eye_feature::shadow | eye_feature::lamp};
     if (!view.unseen) features |= fog.features();
-    Program& program = programs.use(Stage::surface, features);
-    setCamera(program, *view.camera, view.depth.near, view.depth.far);
+    Program& program = programs.use(Stage::surface, features | projectorFeatures(view));
+    setView(program, frame, view);
     program.set("eyePosition", glm::vec3(positionOf(*view.camera)));
     program.set("worldFromSurface", thing.world);
     program.set("normalFromSurface", glm::mat4(glm::inverseTranspose(glm::mat3(thing.world))));
@@ -284,18 +304,19 @@ void EyePass::Data::draw(const ShowFrame& frame, const View& view, const Thing& 
 
 // A rectangle that holds all shadows on the table.
 PixelRectangle EyePass::Data::shadowedPixels(const ShowFrame& frame, const View& view) const {
-    const PixelRectangle all{glm::ivec2(0), view.camera->size};
     if (!lighting.shadowed()) return {};
     Box shadows;
     const auto include = [&](const Box& caster) {
         return caster.empty() || includeShadow(shadows, caster, *lighting.shadowed());
     };
     if (surfaces.hasSkin() && showsSkin(frame) && !include(movedBox(surfaces.skinBoxAtDevice(), frame.worldFromDevice)))
-        return all;
+        return view.area;
     for (const auto& item : surfaces.items())
-        if (frame.posed.surfaces[item.surface].castsShadow && !include(item.box)) return all;
+        if (frame.posed.surfaces[item.surface].castsShadow && !include(item.box)) return view.area;
     if (shadows.empty()) return {};
-    return pixelsOf(TableArea{{shadows.min.x, shadows.min.z}, {shadows.max.x, shadows.max.z}}, *view.camera);
+    const PixelRectangle pixels =
+        pixelsOf(TableArea{{shadows.min.x, shadows.min.z}, {shadows.max.x, shadows.max.z}}, *view.camera);
+    return {glm::max(pixels.low, view.area.low), glm::min(pixels.high, view.area.high)};
 }
 
 void EyePass::Data::drawTable(const ShowFrame& frame, const View& view) {
@@ -316,14 +337,13 @@ void EyePass::Data::drawTable(const ShowFrame& frame, const View& view) {
     const PixelRectangle shadowed = shadowedPixels(frame, view);
     const auto drawWithin = [&](const PixelRectangle& part) {
         if (part.empty()) return;
-        glScissor(part.low.x, part.low.y, part.high.x - part.low.x, part.high.y - part.low.y);
+        scissor(part);
         draw(frame, view, thing);
     };
-    glEnable(GL_SCISSOR_TEST);
     drawWithin(shadowed);
     thing.inTheOpen = true;
-    for (const PixelRectangle& part : around(shadowed, {glm::ivec2(0), view.camera->size})) drawWithin(part);
-    glDisable(GL_SCISSOR_TEST);
+    for (const PixelRectangle& part : around(shadowed, view.area)) drawWithin(part);
+    scissor(view.area);
 }
 
 // Ink upon the skin, a hair above it.
@@ -332,8 +352,8 @@ void EyePass::Data::drawCreases(const ShowFrame& frame, const View& view) {
     if (lines == nullptr || !surfaces.hasSkin()) return;
     const std::uint32_t features = view.unseen ? eye_feature::skin : skinFeatures(frame.scene->device);
     const DeviceSkin::Creases& creases = frame.scene->device.creases;
-    Program& program = programs.use(Stage::crease, features);
-    setCamera(program, *view.camera, view.depth.near, view.depth.far);
+    Program& program = programs.use(Stage::crease, features | projectorFeatures(view));
+    setView(program, frame, view);
     program.set("worldFromSurface", frame.worldFromDevice);
     program.set("ink", glm::vec4(linearLight(creases.color), static_cast<float>(std::min(creases.emphasis, 1.0))));
     lighting.apply(program);
@@ -383,7 +403,7 @@ void EyePass::Data::drawSeen(const ShowFrame& frame, const CalibratedCamera& cam
                              bool withSkin) {
     requireSize(camera.size);
     const glm::vec3 eye(positionOf(camera));
-    const View view{&camera, depthRange(camera, everything(frame)), false};
+    const View view{&camera, depthRange(camera, everything(frame)), {glm::ivec2(0), camera.size}};
     begin(frame, view, framebuffer);
     std::vector<Thing> things = itemThings(frame, eye);
     if (withSkin) {
@@ -399,6 +419,13 @@ void EyePass::Data::drawSeen(const ShowFrame& frame, const CalibratedCamera& cam
     finishDrawing();
 }
 
+void EyePass::Data::drawPhysical(const ShowFrame& frame, const View& view) {
+    if (surfaces.hasSkin()) draw(frame, view, skinThing(frame, true));
+    drawTable(frame, view);
+    drawCreases(frame, view);
+    finishDrawing();
+}
+
 void EyePass::draw(const ShowFrame& frame, const CalibratedCamera& camera, unsigned framebuffer) {
     data_->drawSeen(frame, camera, framebuffer, data_->surfaces.hasSkin() && showsSkin(frame));
 }
@@ -409,12 +436,16 @@ void EyePass::drawBesideDevice(const ShowFrame& frame, const CalibratedCamera& c
 
 void EyePass::drawUnseen(const ShowFrame& frame, const CalibratedCamera& camera, unsigned framebuffer) {
     requireSize(camera.size);
-    const View view{&camera, depthRange(camera, data_->everything(frame)), true};
+    const View view{&camera, depthRange(camera, data_->everything(frame)), {glm::ivec2(0), camera.size}, true};
     data_->begin(frame, view, framebuffer);
-    if (data_->surfaces.hasSkin()) data_->draw(frame, view, data_->skinThing(frame, true));
-    data_->drawTable(frame, view);
-    data_->drawCreases(frame, view);
-    finishDrawing();
+    data_->drawPhysical(frame, view);
+}
+
+void EyePass::drawUnseen(const ShowFrame& frame, const ProjectorTarget& target) {
+    const CalibratedCamera& camera = target.projector.camera;
+    const View view{&camera, depthRange(camera, data_->everything(frame)), target.area, true, &target};
+    data_->begin(frame, view, target.rest.name());
+    data_->drawPhysical(frame, view);
 }
 
 std::vector<std::string> EyePass::warnings() const { return data_->programs.warnings(); }

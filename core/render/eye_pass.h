@@ -11,6 +11,8 @@
 
 namespace lumorph {
 
+struct ProjectorTarget;
+
 /// Draws the virtual scene: the device's skin, the table and all items, lit, shadowed, in fog, with holes. Keeps
 /// programs, buffers and textures between frames.
 class EyePass {
@@ -35,6 +37,8 @@ public:
     /// their materials in diffuse light with shadows, without reflection, refraction, holes and items above them. For
     /// places that no eye sees. Linear light as above; black where neither is.
     void drawUnseen(const ShowFrame& frame, const CalibratedCamera& camera, unsigned framebuffer);
+    /// The same as a projector sends it, to the places within its area that are not done.
+    void drawUnseen(const ShowFrame& frame, const ProjectorTarget& target);
 
     /// Programs this driver refused, with file and line, and the plain one that stands in for them.
     [[nodiscard]] std::vector<std::string> warnings() const;

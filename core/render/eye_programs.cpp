@@ -28,10 +28,13 @@ constexpr std::pair<std::uint32_t, const char*> kNames[] = {
     {fog, "FOG"},
     {blend, "BLEND"},
     {twoSided, "TWO_SIDED"},
-    {planar, "PLANAR"},
+    {planar, "TABLE"},
     {dither, "DITHER"},
     {holesBelow, "HOLES_BELOW"},
     {secondFog, "SECOND_FOG"},
+    {projected, "PROJECTED"},
+    {shared, "SHARED"},
+    {gamma, "GAMMA"},
 };
 
 std::vector<std::string> definesOf(std::uint32_t features) {
@@ -46,13 +49,17 @@ std::vector<std::string> definesOf(std::uint32_t features) {
 ShaderFiles filesOf(Stage stage, std::uint32_t features) {
     const auto has = [&](std::uint32_t bits) { return (features & bits) != 0; };
     ShaderFiles files;
+    std::vector<std::string> fragment{"version.glsl", "eye_holes.glsl"};
+    if (stage != Stage::depth) fragment.emplace_back("eye_tone.glsl");
+    if (has(projected))
+        fragment.insert(fragment.end(), {"physical_normal.glsl", "projector_light.glsl", "projector_output.glsl"});
     if (stage == Stage::depth) {
-        files = shaderFiles({"version.glsl", "eye_depth.vert"}, {"version.glsl", "eye_holes.glsl", "eye_depth.frag"});
+        fragment.emplace_back("eye_depth.frag");
+        files = shaderFiles({"version.glsl", "eye_depth.vert"}, fragment);
     } else if (stage == Stage::crease) {
-        files = shaderFiles({"version.glsl", "camera.glsl", "eye_crease.vert"},
-                            {"version.glsl", "eye_holes.glsl", "eye_tone.glsl", "eye_crease.frag"});
+        fragment.emplace_back("eye_crease.frag");
+        files = shaderFiles({"version.glsl", "camera.glsl", "eye_crease.vert"}, fragment);
     } else {
-        std::vector<std::string> fragment{"version.glsl", "eye_holes.glsl", "eye_tone.glsl"};
         if (has(shadow)) fragment.emplace_back("eye_shadow.glsl");
         if (has(reflection | refraction)) fragment.emplace_back("eye_environment.glsl");
         if (has(fog)) fragment.emplace_back("eye_fog.glsl");

@@ -14,7 +14,8 @@ namespace lumorph {
 namespace eye_feature {
 enum Bit : std::uint32_t {
     skin = 1U << 0U,
-    holes = 1U << 1U, ///< some of those below
+    holes = 1U << 1U,     ///< some of those below
+    projected = 1U << 2U, ///< sent by a projector
     holeMask = 1U << 3U,
     cutout = 1U << 4U,
     colorTexture = 1U << 5U,
@@ -33,8 +34,10 @@ enum Bit : std::uint32_t {
     dither = 1U << 18U,
     holesBelow = 1U << 19U, ///< the table under a device with holes
     secondFog = 1U << 20U,
-    lightShift = 24U, ///< the number of lights stands above this bit, in three bits
-    holeShift = 27U   ///< the number of the skin's round holes
+    shared = 1U << 21U, ///< by several projectors
+    gamma = 1U << 22U,  ///< of the projector
+    lightShift = 24U,   ///< the number of lights stands above this bit, in three bits
+    holeShift = 27U     ///< the number of the skin's round holes
 };
 } // namespace eye_feature
 

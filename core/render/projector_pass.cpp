@@ -26,24 +26,14 @@ void setLens(Program& program, const ProjectorTarget& target) {
     setCamera(program, target.projector.camera, target.range.near, target.range.far);
 }
 
-std::vector<std::string> outputDefines(const ProjectorTarget& target) {
-    std::vector<std::string> defines;
-    if (target.blend) defines.emplace_back("SHARED");
-    if (target.projector.gamma > 0.0) defines.emplace_back("GAMMA");
-    return defines;
-}
-
-void scissor(const PixelRectangle& area) {
-    glScissor(area.low.x, area.low.y, area.high.x - area.low.x, area.high.y - area.low.y);
-}
-
 } // namespace
 
 ProjectorPass::ProjectorPass()
     : depth_(physicalFiles({"version.glsl", "nothing.frag"})),
       edges_(shaderFiles({"full_frame.vert"}, {"version.glsl", "projector_edges.frag"})),
       distance_(shaderFiles({"full_frame.vert"}, {"version.glsl", "projector_distance.frag"})),
-      deviceWeight_(weightFiles({})), tableWeight_(weightFiles({"TABLE"})) {}
+      deviceWeight_(weightFiles({})), tableWeight_(weightFiles({"TABLE"})),
+      done_(shaderFiles({"full_frame.vert"}, {"version.glsl", "projector_done.frag"})) {}
 
 void ProjectorPass::drawDepth(ProjectorTarget& target, const ShowFrame& frame, const DeviceSurface& device,
                               bool withTable) {
@@ -128,90 +118,72 @@ void ProjectorPass::drawWeights(std::span<ProjectorTarget* const> targets, const
     glDepthMask(GL_TRUE);
 }
 
-Program& ProjectorPass::colorProgram(std::vector<std::string> defines, bool table) {
-    std::vector<std::string> fragment{"version.glsl", "physical_normal.glsl", "projector_light.glsl"};
-    for (const std::string& define : defines)
-        if (define.starts_with("EYE")) fragment.emplace_back("eye_lookup.glsl");
-    fragment.emplace_back("projector.frag");
-    if (table) defines.emplace_back("TABLE");
-    return colors_.try_emplace(defines, physicalFiles(fragment, defines)).first->second;
-}
-
-Program& ProjectorPass::plainProgram(std::vector<std::string> defines) {
-    ShaderFiles files = shaderFiles({"version.glsl", "camera.glsl", "projector_light.glsl", "projector_plain.vert"},
-                                    {"version.glsl", "projector_plain.frag"});
-    files.defines = defines;
-    return plain_.try_emplace(std::move(defines), std::move(files)).first->second;
-}
-
-void ProjectorPass::setColor(Program& program, const ProjectorTarget& target, const ShowFrame& frame) const {
-    const SceneProjector& projector = target.projector;
-    program.use();
-    setLens(program, target);
-    setLight(program, projector);
-    program.set("compensation", frame.scene->compensation ? 1.0F : 0.0F);
-    if (projector.gamma > 0.0) program.set("inverseGamma", static_cast<float>(1.0 / projector.gamma));
-    bindTexture(0, target.unseen.texture());
-    program.set("unseen", 0);
-    program.set("unseenCorner", glm::vec2(target.area.low));
-    if (!target.blend) return;
-    bindTexture(1, target.blend->weights());
-    program.set("weights", 1);
+Program& ProjectorPass::seenProgram(std::vector<std::string> defines) {
+    return seen_
+        .try_emplace(defines, physicalFiles({"version.glsl", "physical_normal.glsl", "projector_light.glsl",
+                                             "projector_output.glsl", "eye_lookup.glsl", "projector.frag"},
+                                            defines))
+        .first->second;
 }
 
 Program& ProjectorPass::beginLookup(const ProjectorTarget& target, const ShowFrame& frame, const EyeViews& views,
                                     bool table) {
-    std::vector<std::string> defines = outputDefines(target);
-    if (views.device != nullptr) defines.emplace_back(table && views.table != nullptr ? "EYE 2" : "EYE 1");
-    Program& program = colorProgram(std::move(defines), table);
-    setColor(program, target, frame);
-    if (views.device != nullptr) views.device->set(program, "device", 2);
+    std::vector<std::string> defines;
+    if (target.blend) defines.emplace_back("SHARED");
+    if (target.projector.gamma > 0.0) defines.emplace_back("GAMMA");
+    if (table) defines.emplace_back("TABLE");
+    if (table && views.table != nullptr) defines.emplace_back("TABLE_VIEW");
+    Program& program = seenProgram(std::move(defines));
+    program.use();
+    setLens(program, target);
+    setOutput(program, target, frame.scene->compensation, 0);
+    views.device->set(program, "device", 2);
     if (!table) return program;
     if (views.table != nullptr) views.table->set(program, "table", 4);
     program.set("lookupArea", glm::vec4(views.tableArea->low, views.tableArea->high));
     return program;
 }
 
-// Looking things up in the eye's pictures is dear, and most of the table shows every eye the same.
-void ProjectorPass::drawTable(const ProjectorTarget& target, const ShowFrame& frame, const EyeViews& views) {
-    PixelRectangle area;
-    if (views.device != nullptr && views.tableArea) area = pixelsOf(*views.tableArea, target.projector.camera);
-    if (!area.empty()) {
-        scissor(area);
-        drawTableOf(target, beginLookup(target, frame, views, true));
-    }
-    Program& plain = plainProgram(outputDefines(target));
-    setColor(plain, target, frame);
-    for (const PixelRectangle& rest : around(area, target.area)) {
-        if (rest.empty()) continue;
-        scissor(rest);
-        target.table.draw();
-    }
-}
-
-void ProjectorPass::draw(const ProjectorTarget& target, const ShowFrame& frame, const DeviceSurface& device,
-                         const EyeViews& views) {
-    beginSurfaces(target.sent.framebuffer(), target.sent.size());
+void ProjectorPass::drawSeen(const ProjectorTarget& target, const ShowFrame& frame, const DeviceSurface& device,
+                             const EyeViews& views) {
+    beginSurfaces(target.seen.name(), target.sent.size());
     glEnable(GL_SCISSOR_TEST);
     scissor(target.area);
     glClear(GL_COLOR_BUFFER_BIT);
-    if (target.projector.gamma > 0.0)
-        glDisable(GL_FRAMEBUFFER_SRGB);
-    else
-        glEnable(GL_FRAMEBUFFER_SRGB);
-    Program& program = beginLookup(target, frame, views, false);
-    device.draw(program);
-    drawTable(target, frame, views);
+    if (views.device != nullptr) {
+        (target.projector.gamma > 0.0 ? glDisable : glEnable)(GL_FRAMEBUFFER_SRGB);
+        device.draw(beginLookup(target, frame, views, false));
+        if (views.tableArea) {
+            scissor(pixelsOf(*views.tableArea, target.projector.camera));
+            drawTableOf(target, beginLookup(target, frame, views, true));
+            scissor(target.area);
+        }
+    }
+    hideDone(target, views.device != nullptr);
     glDisable(GL_SCISSOR_TEST);
-    glDisable(GL_FRAMEBUFFER_SRGB);
+}
+
+// What is done lies nearer than all else, so that the rest alone is shaded.
+void ProjectorPass::hideDone(const ProjectorTarget& target, bool any) {
+    glBindFramebuffer(GL_FRAMEBUFFER, target.rest.name());
+    glClear(GL_DEPTH_BUFFER_BIT);
+    if (!any) return;
+    glDepthFunc(GL_ALWAYS);
+    glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
+    done_.use();
+    bindTexture(0, target.done.name());
+    done_.set("done", 0);
+    glBindVertexArray(noAttributes_.name());
+    glDrawArrays(GL_TRIANGLES, 0, 3);
+    glBindVertexArray(0);
+    glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
 }
 
 std::size_t ProjectorPass::objectCount() const noexcept {
     std::size_t count = 1;
-    for (const Program* program : {&depth_, &edges_, &distance_, &deviceWeight_, &tableWeight_})
+    for (const Program* program : {&depth_, &edges_, &distance_, &deviceWeight_, &tableWeight_, &done_})
         count += program->objectCount();
-    for (const auto* programs : {&colors_, &plain_})
-        for (const auto& [defines, program] : *programs) count += program.objectCount();
+    for (const auto& [defines, program] : seen_) count += program.objectCount();
     return count;
 }
 

@@ -30,25 +30,23 @@ public:
     void drawDepth(ProjectorTarget& target, const ShowFrame& frame, const DeviceSurface& device, bool withTable);
     /// Weighs projectors against one another; all their depths are drawn.
     void drawWeights(std::span<ProjectorTarget* const> targets, const DeviceSurface& device);
-    /// Draws the picture of one projector; depth, weights and `unseen` are drawn.
-    void draw(const ProjectorTarget& target, const ShowFrame& frame, const DeviceSurface& device,
-              const EyeViews& views);
+    /// Begins the picture of one projector with what the eye sees, and hides what is done; depth and weights are drawn.
+    /// The rest is the eye pass's.
+    void drawSeen(const ProjectorTarget& target, const ShowFrame& frame, const DeviceSurface& device,
+                  const EyeViews& views);
 
     [[nodiscard]] std::size_t objectCount() const noexcept;
 
 private:
-    /// A program for the device or the table; `defines` of projector.frag.
-    [[nodiscard]] Program& colorProgram(std::vector<std::string> defines, bool table);
-    [[nodiscard]] Program& plainProgram(std::vector<std::string> defines);
-    void setColor(Program& program, const ProjectorTarget& target, const ShowFrame& frame) const;
+    [[nodiscard]] Program& seenProgram(std::vector<std::string> defines);
     Program& beginLookup(const ProjectorTarget& target, const ShowFrame& frame, const EyeViews& views, bool table);
-    void drawTable(const ProjectorTarget& target, const ShowFrame& frame, const EyeViews& views);
+    void hideDone(const ProjectorTarget& target, bool any);
     void drawDistance(ProjectorTarget& target);
     void addWeight(const ProjectorTarget& shown, const ProjectorTarget& weighed, const DeviceSurface& device);
 
     gl::VertexArray noAttributes_;
-    Program depth_, edges_, distance_, deviceWeight_, tableWeight_;
-    std::map<std::vector<std::string>, Program> colors_, plain_;
+    Program depth_, edges_, distance_, deviceWeight_, tableWeight_, done_;
+    std::map<std::vector<std::string>, Program> seen_; ///< by the defines of projector.frag
 };
 
 } // namespace lumorph

@@ -6,17 +6,42 @@
 
 namespace lumorph {
 
-CalibratedCamera cropped(const CalibratedCamera& camera, const PixelRectangle& area) {
-    CalibratedCamera part = camera;
-    part.size = area.high - area.low;
-    part.principal -= glm::dvec2(area.low.x, camera.size.y - area.high.y);
-    return part;
+ProjectorTarget::ProjectorTarget(const SceneProjector& what)
+    : projector(what), sent(what.camera.size), open(what.camera.size) {
+    const glm::ivec2 size = sent.size();
+    bindTexture(0, done.name());
+    glTexImage2D(GL_TEXTURE_2D, 0, GL_R8, size.x, size.y, 0, GL_RED, GL_UNSIGNED_BYTE, nullptr);
+    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
+    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
+    bindTexture(0, 0);
+    const auto attach = [](GLenum to, GLuint texture) {
+        glFramebufferTexture2D(GL_FRAMEBUFFER, to, GL_TEXTURE_2D, texture, 0);
+    };
+    glBindFramebuffer(GL_FRAMEBUFFER, seen.name());
+    attach(GL_COLOR_ATTACHMENT0, sent.texture());
+    attach(GL_COLOR_ATTACHMENT1, done.name());
+    attach(GL_DEPTH_ATTACHMENT, sent.depthTexture());
+    constexpr GLenum kBoth[] = {GL_COLOR_ATTACHMENT0, GL_COLOR_ATTACHMENT1};
+    glDrawBuffers(2, kBoth);
+    glBindFramebuffer(GL_FRAMEBUFFER, rest.name());
+    attach(GL_COLOR_ATTACHMENT0, sent.texture());
+    attach(GL_DEPTH_ATTACHMENT, open.texture());
+    glBindFramebuffer(GL_FRAMEBUFFER, 0);
 }
 
 void setLight(Program& program, const SceneProjector& projector) {
     program.set("projectorPosition", glm::vec3(positionOf(projector.camera)));
     program.set("projectorPeak", static_cast<float>(projector.peak) * projector.gain);
     program.set("projectorReference", static_cast<float>(projector.referenceDistance));
+}
+
+void setOutput(Program& program, const ProjectorTarget& target, bool compensation, int unit) {
+    setLight(program, target.projector);
+    program.set("compensation", compensation ? 1.0F : 0.0F);
+    if (target.projector.gamma > 0.0) program.set("inverseGamma", static_cast<float>(1.0 / target.projector.gamma));
+    if (!target.blend) return;
+    bindTexture(unit, target.blend->weights());
+    program.set("weights", unit);
 }
 
 void setSight(Program& program, const ProjectorTarget& target, int unit) {

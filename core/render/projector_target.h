@@ -13,28 +13,30 @@ namespace lumorph {
 
 /// What one projector keeps between frames.
 struct ProjectorTarget {
-    explicit ProjectorTarget(const SceneProjector& what)
-        : projector(what), sent(what.camera.size), unseen(what.camera.size) {}
+    /// Throws as ColorTarget does.
+    explicit ProjectorTarget(const SceneProjector& what);
 
     SceneProjector projector;
     DepthRange range;
-    ColorTarget sent;    ///< what it sends out; its depth is that of device and table
-    ColorTarget unseen;  ///< what it shows where no eye sees it, from the corner of `area` on
-    PixelRectangle area; ///< what of its picture is drawn in this frame; the rest stays
+    ColorTarget sent;     ///< what it sends out; its depth is that of the device, and of the table among several
+    gl::Texture done;     ///< 1 where what it sends out is drawn for the eye
+    DepthMap open;        ///< by which that hides all else
+    gl::Framebuffer seen; ///< `sent` and `done`, with the depth of `sent`
+    gl::Framebuffer rest; ///< `sent` with `open`
+    PixelRectangle area;  ///< what of its picture is drawn in this frame; the rest stays
     PictureChanges changes;
     TableGrid table;
     std::optional<BlendMaps> blend; ///< while another projector is on
 
     [[nodiscard]] std::size_t objectCount() const noexcept {
-        return 2 * ColorTarget::kObjects + TableGrid::kObjects + (blend ? BlendMaps::kObjects : 0);
+        return ColorTarget::kObjects + DepthMap::kObjects + 3 + TableGrid::kObjects + (blend ? BlendMaps::kObjects : 0);
     }
 };
 
-/// A camera that sees no more than a rectangle of another's image.
-[[nodiscard]] CalibratedCamera cropped(const CalibratedCamera& camera, const PixelRectangle& area);
-
 /// Sets the uniforms of projector_light.glsl.
 void setLight(Program& program, const SceneProjector& projector);
+/// Sets those of projector_output.glsl too; binds the weights of a shared one to a texture unit.
+void setOutput(Program& program, const ProjectorTarget& target, bool compensation, int unit);
 /// Sets those of projector_sight.glsl; binds the depth map to a texture unit.
 void setSight(Program& program, const ProjectorTarget& target, int unit);
 

@@ -156,12 +156,14 @@ void SpatialRenderer::Data::drawProjectors() {
         // Weights of several projectors change far beyond what moves.
         if (shared) target->area = {glm::ivec2(0), camera.size};
         if (target->area.empty()) continue;
-        pass.drawUnseen(*frame, cropped(camera, target->area), target->unseen.framebuffer());
         projectorPass.drawDepth(*target, *frame, device, shared);
     }
     if (shared) projectorPass.drawWeights(targets, device);
     for (ProjectorTarget* target : targets) {
-        if (!target->area.empty()) projectorPass.draw(*target, *frame, device, views);
+        if (!target->area.empty()) {
+            projectorPass.drawSeen(*target, *frame, device, views);
+            pass.drawUnseen(*frame, *target);
+        }
         if (!shared) target->changes.finish(*frame);
     }
     times.projectors = finish(since);

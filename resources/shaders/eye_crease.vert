@@ -8,11 +8,13 @@ layout(location = 3) in vec3 restPosition;
 uniform mat4 worldFromSurface;
 out vec2 place;
 out vec3 restPlace;
+out vec3 worldPosition;
 
 const float kAbove = 0.0001; // metres
 
 void main() {
     place = across;
     restPlace = restPosition.xzy;
-    gl_Position = clipOf((worldFromSurface * vec4(position + kAbove * normal, 1.0)).xyz);
+    worldPosition = (worldFromSurface * vec4(position + kAbove * normal, 1.0)).xyz;
+    gl_Position = clipOf(worldPosition);
 }

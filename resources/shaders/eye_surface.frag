@@ -1,5 +1,6 @@
-// Fragment stage of the eye pass: light from a surface to the eye, linear, tone mapped to [0, 1]. In: the world's place
-// and normal, the surface's coordinates; material and lights. Space: world, metres.
+// Fragment stage of the eye pass: light from a surface to the eye, linear, tone mapped to [0, 1]; where PROJECTED is
+// defined, what a projector sends for it. In: the world's place and normal, the surface's coordinates; material and
+// lights. Space: world, metres.
 
 in vec3 worldPosition;
 in vec3 worldNormal;
@@ -57,7 +58,7 @@ vec3 bentNormal(vec3 n) {
 #ifdef NORMAL_B
     slopes += slopesOf(normalPictureB, mat2(normalTurnB.xy, normalTurnB.zw) * place + normalShiftB, normalBendB);
 #endif
-#ifdef PLANAR
+#ifdef TABLE
     return normalize(n + vec3(slopes.x, 0.0, -slopes.y));
 #else
     // The directions in which the coordinates grow, within the plane of the surface.
@@ -160,4 +161,7 @@ void main() {
     light = fogged(light, worldPosition, eyePosition);
 #endif
     color = shown(light, base.a);
+#ifdef PROJECTED
+    color = sentFor(color.rgb, worldPosition, faceTowards(worldPosition, projectorPosition));
+#endif
 }

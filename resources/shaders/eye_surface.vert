@@ -1,10 +1,10 @@
 // Vertex stage of the eye pass. In: positions and normals in the surface's frame, coordinates (metres of the rest shape,
-// or texture coordinates; of the table, PLANAR, its x and z), of the device's skin the place at rest too. Out: the same
+// or texture coordinates; of the table, TABLE, its x and z), of the device's skin the place at rest too. Out: the same
 // in the world, metres, and with SHADOW the place in the shadow map with the slope of the surface's plane there.
 
 layout(location = 0) in vec3 position;
 layout(location = 1) in vec3 normal;
-#ifndef PLANAR
+#ifndef TABLE
 layout(location = 2) in vec2 coordinates;
 #endif
 #ifdef SKIN
@@ -51,7 +51,7 @@ void placeInShadow() {
 void main() {
     worldPosition = (worldFromSurface * vec4(position, 1.0)).xyz;
     worldNormal = (normalFromSurface * vec4(normal, 0.0)).xyz;
-#ifdef PLANAR
+#ifdef TABLE
     place = position.xz;
 #else
     place = coordinates;

@@ -1,7 +1,7 @@
 #version 410 core
-// One triangle that covers the frame. In: nothing (three vertices without attributes). Out: clip space.
+// One triangle that covers the frame. In: nothing (three vertices without attributes). Out: clip space, nearest.
 
 void main() {
     vec2 corner = vec2(gl_VertexID == 1 ? 3.0 : -1.0, gl_VertexID == 2 ? 3.0 : -1.0);
-    gl_Position = vec4(corner, 0.0, 1.0);
+    gl_Position = vec4(corner, -1.0, 1.0);
 }

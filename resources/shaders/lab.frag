@@ -2,6 +2,7 @@
 // camera.glsl, physical_normal.glsl, projector_light.glsl, projector_sight.glsl. In: what the projector sends out and
 // its gamma (0: sRGB). Out: linear radiance, to be added up; white where the projector reaches when MASK is defined.
 
+in vec3 worldPosition;
 uniform vec3 viewerPosition;
 uniform sampler2D sent;
 uniform float gamma;
@@ -26,7 +27,7 @@ vec3 lightBetween(vec2 uv) {
 }
 
 void main() {
-    vec3 normal = faceTowards(viewerPosition);
+    vec3 normal = faceTowards(worldPosition, viewerPosition);
     Sight sight = sightOf(worldPosition, normal);
     vec3 light = fullLight(worldPosition, normal);
 #ifdef MASK

@@ -1,50 +1,33 @@
-// What a projector sends out. Pieces before: version.glsl, physical_normal.glsl, projector_light.glsl, eye_lookup.glsl
-// where EYE is defined. In: worldPosition; the view-independent picture from the projector; where EYE is defined the
-// eye's pictures of the device and (EYE 2) of the table, where SHARED is defined this projector's weight and the sum
-// of all. Out: the value, linear for an sRGB framebuffer or, where GAMMA is defined, encoded.
+// What a projector sends to places that the eye sees. Pieces before: version.glsl, physical_normal.glsl,
+// projector_light.glsl, projector_output.glsl, eye_lookup.glsl. In: worldPosition; the eye's pictures of the device and
+// (TABLE_VIEW) of the table. Out: the value, and that this place is done.
 
-uniform sampler2D unseen;
-uniform vec2 unseenCorner;  // the pixel of the projector at which that picture begins
-uniform float compensation; // 1: of incidence and distance; 0: none
-#ifdef EYE
+in vec3 worldPosition;
 uniform EyeView deviceView;
 uniform sampler2D devicePicture;
 uniform sampler2D deviceViewDepth;
-#if EYE == 2
+#ifdef TABLE_VIEW
 uniform EyeView tableView;
 uniform sampler2D tablePicture;
 uniform sampler2D tableViewDepth;
 #endif
-#endif
-#ifdef SHARED
-uniform sampler2D weights;
-#endif
-#ifdef GAMMA
-uniform float inverseGamma;
-#endif
 
-out vec4 color;
+layout(location = 0) out vec4 color;
+layout(location = 1) out float done;
+
+// Where pictures fade into the view-independent one they do so pixel by pixel: either is drawn, never both.
+float threshold() { return fract(52.9829189 * fract(dot(gl_FragCoord.xy, vec2(0.06711056, 0.00583715)))); }
 
 void main() {
-    vec3 normal = faceTowards(projectorPosition);
-    ivec2 pixel = ivec2(gl_FragCoord.xy);
-    vec3 radiance = texelFetch(unseen, pixel - ivec2(unseenCorner), 0).rgb;
-#ifdef EYE
-#if EYE == 2
+    vec3 normal = faceTowards(worldPosition, projectorPosition);
+    vec4 seen = seenByEye(devicePicture, deviceViewDepth, deviceView, worldPosition, normal);
+#ifdef TABLE_VIEW
     vec4 onTable = seenByEye(tablePicture, tableViewDepth, tableView, worldPosition, normal);
-    radiance = mix(radiance, onTable.rgb, onTable.a);
+    float rest = onTable.a * (1.0 - seen.a);
+    float all = max(seen.a + rest, 1e-6);
+    seen = vec4((seen.a * seen.rgb + rest * onTable.rgb) / all, seen.a + rest);
 #endif
-    vec4 onDevice = seenByEye(devicePicture, deviceViewDepth, deviceView, worldPosition, normal);
-    radiance = mix(radiance, onDevice.rgb, onDevice.a);
-#endif
-    vec3 value = radiance * valueFor(worldPosition, normal, compensation);
-#ifdef SHARED
-    vec2 weight = texelFetch(weights, pixel, 0).rg;
-    value *= weight.g > 0.0 ? weight.r / weight.g : 1.0;
-#endif
-    value = clamp(value, 0.0, 1.0);
-#ifdef GAMMA
-    value = pow(value, vec3(inverseGamma));
-#endif
-    color = vec4(value, 1.0);
+    if (seen.a <= threshold()) discard;
+    color = sentFor(seen.rgb, worldPosition, normal);
+    done = 1.0;
 }

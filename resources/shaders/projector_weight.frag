@@ -3,6 +3,7 @@
 // projector that shows it stands; the distance from depth edges in the image of the one that is weighed (0 to 1); `own`
 // is 1 where they are the same. Out: its weight where they are the same, and its weight.
 
+in vec3 worldPosition;
 uniform vec3 viewerPosition;
 uniform sampler2D openness;
 uniform float own;
@@ -13,7 +14,7 @@ const float kLeast = 0.01;  // so that a point which only one projector reaches 
 out vec2 weight;
 
 void main() {
-    vec3 normal = faceTowards(viewerPosition);
+    vec3 normal = faceTowards(worldPosition, viewerPosition);
     Sight sight = sightOf(worldPosition, normal);
     vec3 light = fullLight(worldPosition, normal);
     float strength = max(light.r, max(light.g, light.b));
