@@ -15,6 +15,7 @@ public:
     TracedEngine(const DeviceProfile& profile, Microseconds now) : engine(profile) {
         log_.setSink([this](const ServoTraceRow& row) { rows.push_back(row); });
         log_.made(profile, now);
+        log_.hand(1);
     }
     TracedEngine(const TracedEngine&) = delete;
     TracedEngine& operator=(const TracedEngine&) = delete;
