@@ -132,6 +132,8 @@ TEST_F(TrackersWindow, ASimulatedHeadGoesWhereItIsDraggedAndTheShowFollows) {
     EXPECT_TRUE(eventually([&] { return eye() && glm::distance(glm::dvec3(*eye()), held.position) < 0.003; }, 10s))
         << "the show is drawn for where it was put";
     window.screenshot("trackers-dragged");
+    const auto* release = window.find<QWidget>("tracker.0.sim.release");
+    ASSERT_TRUE(eventually([&] { return release->isEnabled(); }, 2s)) << "there is something to let go of";
     window.click("tracker.0.sim.release");
     EXPECT_TRUE(eventually([&] { return glm::distance(truth().position, held.position) > 0.01; }, 10s));
 }
