@@ -118,7 +118,7 @@ void ProjectorPass::drawWeights(std::span<ProjectorTarget* const> targets, const
     glDepthMask(GL_TRUE);
 }
 
-Program& ProjectorPass::seenProgram(std::vector<std::string> defines) {
+Program& ProjectorPass::seenProgram(const std::vector<std::string>& defines) {
     return seen_
         .try_emplace(defines, physicalFiles({"version.glsl", "physical_normal.glsl", "projector_light.glsl",
                                              "projector_output.glsl", "eye_lookup.glsl", "projector.frag"},
@@ -133,7 +133,7 @@ Program& ProjectorPass::beginLookup(const ProjectorTarget& target, const ShowFra
     if (target.projector.gamma > 0.0) defines.emplace_back("GAMMA");
     if (table) defines.emplace_back("TABLE");
     if (table && views.table != nullptr) defines.emplace_back("TABLE_VIEW");
-    Program& program = seenProgram(std::move(defines));
+    Program& program = seenProgram(defines);
     program.use();
     setLens(program, target);
     setOutput(program, target, frame.scene->compensation, 0);

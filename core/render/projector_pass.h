@@ -38,7 +38,7 @@ public:
     [[nodiscard]] std::size_t objectCount() const noexcept;
 
 private:
-    [[nodiscard]] Program& seenProgram(std::vector<std::string> defines);
+    [[nodiscard]] Program& seenProgram(const std::vector<std::string>& defines);
     Program& beginLookup(const ProjectorTarget& target, const ShowFrame& frame, const EyeViews& views, bool table);
     void hideDone(const ProjectorTarget& target, bool any);
     void drawDistance(ProjectorTarget& target);
