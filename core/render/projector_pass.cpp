@@ -1,5 +1,7 @@
 #include "core/render/projector_pass.h"
 
+#include <utility>
+
 #include "core/render/draw_state.h"
 
 namespace lumorph {
