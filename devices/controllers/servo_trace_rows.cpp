@@ -12,6 +12,7 @@ namespace {
 
 constexpr const char* kRemedy = "take the recording from a copy, or record the session again";
 constexpr std::size_t kMostStrokes = 4096;
+constexpr std::int64_t kMostTime = 1'000'000'000'000'000; // microseconds: no machine has run for thirty years
 
 using Bytes = std::vector<std::uint8_t>;
 
@@ -76,14 +77,17 @@ public:
     std::string text() {
         const std::uint64_t size = count();
         if (size > left_.size()) refuse("ends in the middle of a text");
-        const std::string text(left_.begin(), left_.begin() + static_cast<std::ptrdiff_t>(size));
+        std::string text(left_.begin(), left_.begin() + static_cast<std::ptrdiff_t>(size));
         left_ = left_.subspan(size);
         return text;
     }
     Bytes rest() {
-        const Bytes bytes(left_.begin(), left_.end());
+        Bytes bytes(left_.begin(), left_.end());
         left_ = {};
         return bytes;
+    }
+    void checkTime(std::int64_t time) const {
+        if (time < -kMostTime || time > kMostTime) refuse("tells a time that no clock shows");
     }
     [[nodiscard]] bool atEnd() const { return left_.empty(); }
     void end() const {
@@ -187,6 +191,7 @@ std::vector<TimedInput> readTicks(Reader& from, Microseconds time) {
     do {
         at = static_cast<std::int64_t>(static_cast<std::uint64_t>(at) +
                                        static_cast<std::uint64_t>(fromZigzag(from.count())));
+        from.checkTime(at);
         ticks.push_back({Microseconds{at}, in::Tick{from.count()}});
     } while (!from.atEnd());
     return ticks;
@@ -232,6 +237,7 @@ DeviceProfile machineProfile(const ServoTraceRow& row, std::size_t number) {
 
 std::vector<TimedInput> inputsOf(const ServoTraceRow& row, std::size_t number) {
     Reader from(row, number);
+    from.checkTime(row.time.count());
     if (row.kind == "ticks") return readTicks(from, row.time);
     std::vector<TimedInput> inputs{{row.time, readInput(row.kind, from)}};
     from.end();

@@ -196,8 +196,10 @@ TEST(ServoTraceRows, ComeBackAsTheyWere) {
     const std::vector<double> back = tracedStrokes(servo_trace::inputRow(in::Command{strokes}, {}), 0);
     EXPECT_TRUE(std::isnan(back[0]) && back[1] == strokes[1] && back[2] == 0.1);
     EXPECT_EQ(servo_trace::machineProfile(servo_trace::machineRow(profile, {}), 0), profile);
-    const std::vector<servo_trace::TimedTick> ticks = {
-        {Microseconds{5}, 0}, {Microseconds{5'005}, 300}, {Microseconds{-70'000'000}, 0}, {Microseconds::max(), 1}};
+    const std::vector<servo_trace::TimedTick> ticks = {{Microseconds{5}, 0},
+                                                       {Microseconds{5'005}, 300},
+                                                       {Microseconds{-70'000'000}, 0},
+                                                       {Microseconds{1'000'000'000'000'000}, 1}};
     const auto ticksBack = servo_trace::inputsOf(servo_trace::ticksRow(ticks), 0);
     ASSERT_EQ(ticksBack.size(), ticks.size());
     for (std::size_t i = 0; i < ticks.size(); ++i) {
@@ -216,6 +218,9 @@ TEST(ServoTraceRows, DamagedOnesAreRefusedByTheirNumber) {
     EXPECT_THAT(refusal({}), HasSubstr("is empty"));
     EXPECT_THAT(refusal({{{}, "connect", {}}}), HasSubstr("does not begin with its machine"));
     EXPECT_THAT(refusal({{{}, "missing", {}}}), HasSubstr("begins too late"));
+    EXPECT_THAT(refusal({good[0], {Microseconds::max(), "stop", {}}}), HasSubstr("a time that no clock shows"));
+    EXPECT_THAT(with("ticks", {0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0x7F, 0}),
+                HasSubstr("row 1 of the servo trace (ticks): tells a time that no clock shows"));
     EXPECT_THAT(with("arm", {}), HasSubstr("row 1 of the servo trace (arm): is cut short"));
     EXPECT_THAT(with("arm", {2}), HasSubstr("where yes or no belongs"));
     EXPECT_THAT(with("stop", {0, 0}), HasSubstr("2 bytes too many"));
