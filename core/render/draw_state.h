@@ -1,5 +1,7 @@
 #pragma once
 
+#include <glm/mat4x4.hpp>
+#include <glm/matrix.hpp>
 #include <glm/vec2.hpp>
 
 #include "core/render/camera_uniforms.h"
@@ -27,6 +29,11 @@ inline void beginSurfaces(GLuint framebuffer, glm::ivec2 size) {
 
 inline void scissor(const PixelRectangle& area) {
     glScissor(area.low.x, area.low.y, area.high.x - area.low.x, area.high.y - area.low.y);
+}
+
+/// Culling takes the faces that look away even where a placement turns a mesh inside out.
+inline void setFrontFace(const glm::mat4& world) {
+    glFrontFace(glm::determinant(glm::mat3(world)) < 0.0F ? GL_CW : GL_CCW);
 }
 
 inline void bindTexture(int unit, GLuint texture) {

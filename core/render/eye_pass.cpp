@@ -1,9 +1,4 @@
-#include "core/render/eye_pass.h"
-
 #include <algorithm>
-#include <array>
-#include <cmath>
-#include <limits>
 #include <string>
 
 #include <epoxy/gl.h>
@@ -13,72 +8,25 @@
 #include "core/base/error.h"
 #include "core/render/camera_uniforms.h"
 #include "core/render/draw_state.h"
-#include "core/render/eye_fog.h"
-#include "core/render/eye_lighting.h"
-#include "core/render/eye_materials.h"
-#include "core/render/eye_programs.h"
-#include "core/render/eye_shadow.h"
+#include "core/render/eye_pass_data.h"
 #include "core/render/eye_skin.h"
-#include "core/render/eye_surfaces.h"
 #include "core/render/lookup_region.h"
 #include "core/render/projector_target.h"
-#include "core/render/table_grid.h"
 #include "core/render/table_shadow.h"
 
 namespace lumorph {
 namespace {
 
-using Stage = EyePrograms::Stage;
+constexpr float kBlurredLift = 0.004F; // metres by which blurred folds keep off their own shadow
 
-constexpr float kBlurredLift = 0.004F;        // metres by which blurred folds keep off their own shadow
-constexpr float kNearSideStepsBack = 0.0025F; // metres
-constexpr float kFarthestCaster = 1.5F;       // metres from the device's middle
-
-/// One thing to draw: a mesh, where it stands, and what it looks like.
-struct Thing {
-    const EyeMesh* mesh = nullptr; ///< none: the table
-    glm::mat4 world{1.0F};
-    const Material* material = nullptr;
-    float opacity = 1.0F;
-    std::uint32_t features = 0;
-    float distance = 0.0F;
-    bool skin = false;
-    std::uint64_t version = 0; ///< of its shape
-    bool inTheOpen = false;    ///< no shadow reaches what is drawn of it
-};
-
-/// Where a frame is drawn to.
-struct View {
-    const CalibratedCamera* camera = nullptr;
-    DepthRange depth;
-    PixelRectangle area; ///< all that is drawn
-    bool unseen = false;
-    const ProjectorTarget* target = nullptr; ///< of a projector that sends it
-};
-
-void setFrontFace(const glm::mat4& world) { glFrontFace(glm::determinant(glm::mat3(world)) < 0.0F ? GL_CW : GL_CCW); }
-
-glm::vec3 encodedClear(const Scene& scene, bool unseen) {
-    return unseen ? glm::vec3(0.0F) : glm::clamp(0.5F * scene.sky * static_cast<float>(scene.exposure), 0.0F, 0.7F);
+glm::vec3 encodedClear(const Scene& scene) {
+    return glm::clamp(0.5F * scene.sky * static_cast<float>(scene.exposure), 0.0F, 0.7F);
 }
-
-bool showsSkin(const ShowFrame& frame) { return frame.scene->device.show == DeviceSkin::Show::material; }
 
 void requireSize(glm::ivec2 size) {
     if (size.x >= 1 && size.y >= 1) return;
     throw InvalidInput("picture size " + std::to_string(size.x) + "x" + std::to_string(size.y),
                        "the eye pass draws at least one pixel", "use 1 pixel a side or more");
-}
-
-std::uint32_t projectorFeatures(const View& view) {
-    if (view.target == nullptr) return 0;
-    return eye_feature::projected | (view.target->blend ? eye_feature::shared : 0U) |
-           (view.target->projector.gamma > 0.0 ? eye_feature::gamma : 0U);
-}
-
-void setView(Program& program, const ShowFrame& frame, const View& view) {
-    setCamera(program, *view.camera, view.depth.near, view.depth.far);
-    if (view.target != nullptr) setOutput(program, *view.target, frame.scene->compensation, eye_unit::weights);
 }
 
 // Others find the state as they know it.
@@ -95,145 +43,20 @@ void finishDrawing() {
 
 } // namespace
 
-struct EyePass::Data {
-    EyePrograms programs;
-    EyeMaterials materials;
-    EyeSurfaces surfaces;
-    EyeShadow shadow;
-    EyeLighting lighting;
-    EyeFog fog;
-    TableGrid table;
-
-    [[nodiscard]] Box casters(const ShowFrame& frame) const;
-    [[nodiscard]] std::vector<Thing> shadowThings(const ShowFrame& frame) const;
-    void drawShadow(const ShowFrame& frame);
-    void drawCaster(const ShowFrame& frame, const Thing& thing, const glm::mat4& clipFromWorld);
-    [[nodiscard]] Thing skinThing(const ShowFrame& frame, bool unseen) const;
-    [[nodiscard]] std::vector<Thing> itemThings(const ShowFrame& frame, const glm::vec3& eye) const;
-    void begin(const ShowFrame& frame, const View& view, unsigned framebuffer) const;
-    void draw(const ShowFrame& frame, const View& view, const Thing& thing);
-    [[nodiscard]] PixelRectangle shadowedPixels(const ShowFrame& frame, const View& view) const;
-    void drawTable(const ShowFrame& frame, const View& view);
-    void drawCreases(const ShowFrame& frame, const View& view);
-    void drawBlended(const ShowFrame& frame, const View& view, std::vector<Thing> things);
-    void drawPhysical(const ShowFrame& frame, const View& view);
-    void drawSeen(const ShowFrame& frame, const CalibratedCamera& camera, unsigned framebuffer, bool withSkin);
-    [[nodiscard]] Box everything(const ShowFrame& frame) const;
-};
-
 EyePass::EyePass() : data_(std::make_unique<Data>()) {}
 EyePass::~EyePass() = default;
 EyePass::EyePass(EyePass&&) noexcept = default;
 EyePass& EyePass::operator=(EyePass&&) noexcept = default;
 
-// The device counts with all it can reach, so that its shadow does not swim while it moves.
-Box EyePass::Data::casters(const ShowFrame& frame) const {
-    Box box;
-    glm::vec3 middle(frame.worldFromDevice[3]);
-    if (frame.rig) {
-        box = movedBox(frame.rig->reach(), frame.worldFromDevice);
-        middle = box.centre();
-    }
-    for (const auto& item : surfaces.items()) box.include(item.box);
-    if (box.empty()) box.include(middle);
-    box.min = glm::max(box.min, middle - kFarthestCaster);
-    box.max = glm::min(box.max, middle + kFarthestCaster);
-    return box;
+std::uint32_t EyePass::Data::View::features() const noexcept {
+    if (target == nullptr) return 0;
+    return eye_feature::projected | (target->blend ? eye_feature::shared : 0U) |
+           (target->projector.gamma > 0.0 ? eye_feature::gamma : 0U);
 }
 
-std::vector<Thing> EyePass::Data::shadowThings(const ShowFrame& frame) const {
-    std::vector<Thing> things;
-    if (surfaces.hasSkin() && showsSkin(frame)) things.push_back(skinThing(frame, false));
-    for (const auto& item : surfaces.items()) {
-        const PosedSurface& surface = frame.posed.surfaces[item.surface];
-        if (!surface.castsShadow) continue;
-        const float own = surface.material.alpha == Material::Alpha::blend ? surface.material.opacity : 1.0F;
-        things.push_back({item.mesh, surface.worldFromSurface, &surface.material, own * surface.opacity,
-                          materials.features(surface.material) | eye_feature::twoSided, 0.0F, false, item.version});
-    }
-    for (Thing& thing : things) {
-        thing.features &= eye_feature::skin | eye_feature::holes | eye_feature::holeMask | eye_feature::cutout |
-                          eye_feature::twoSided | kMostRoundHoles << eye_feature::holeShift;
-        if (thing.opacity < 1.0F) thing.features |= eye_feature::dither;
-    }
-    return things;
-}
-
-void EyePass::Data::drawShadow(const ShowFrame& frame) {
-    if (!lighting.shadowed()) return;
-    const std::vector<Thing> things = shadowThings(frame);
-    std::vector<CasterState> states;
-    for (const Thing& thing : things) {
-        const auto [picture, placement] = materials.cutter(*thing.material, thing.features);
-        states.push_back({thing.version, thing.world, thing.opacity, thing.features, picture, placement,
-                          thing.material->holeThreshold});
-    }
-    shadow.aim(*lighting.shadowed(), casters(frame));
-    if (!shadow.changed(std::move(states), frame.scene->device)) return;
-    shadow.draw([&](const glm::mat4& clipFromWorld) {
-        for (const Thing& thing : things) drawCaster(frame, thing, clipFromWorld);
-    });
-}
-
-void EyePass::Data::drawCaster(const ShowFrame& frame, const Thing& thing, const glm::mat4& clipFromWorld) {
-    Program& program = programs.use(Stage::depth, thing.features & ~eye_feature::twoSided);
-    program.set("clipFromWorld", clipFromWorld);
-    program.set("worldFromMesh", thing.world);
-    program.set("castShare", thing.opacity);
-    program.set("stepBack", 0.0F);
-    materials.applyDepth(program, *thing.material, thing.features);
-    if (thing.skin) applySkin(program, frame.scene->device, surfaces.skinBoxAtRest(), frame.worldFromDevice);
-    setFrontFace(thing.world);
-    // The near side of closed things steps back: then most places of it are told lit at first sight, and what it covers
-    // its far side covers too.
-    const bool closed = (thing.features & eye_feature::twoSided) == 0;
-    (closed ? glEnable : glDisable)(GL_CULL_FACE);
-    if (closed) {
-        glCullFace(GL_FRONT);
-        thing.mesh->draw();
-        glCullFace(GL_BACK);
-        program.set("stepBack", shadow.depthOf(kNearSideStepsBack));
-    }
-    thing.mesh->draw();
-}
-
-Thing EyePass::Data::skinThing(const ShowFrame& frame, bool unseen) const {
-    const DeviceSkin& skin = frame.scene->device;
-    Thing thing{&surfaces.skin(),
-                frame.worldFromDevice,
-                &skin.material,
-                1.0F,
-                materials.features(skin.material, unseen),
-                0.0F,
-                true,
-                surfaces.skinVersion()};
-    if (!unseen) thing.features |= skinFeatures(skin);
-    if (!unseen && skin.material.alpha == Material::Alpha::blend) {
-        thing.opacity = skin.material.opacity;
-        thing.features |= eye_feature::blend;
-    }
-    if (!surfaces.skinSource().closed()) thing.features |= eye_feature::twoSided;
-    return thing;
-}
-
-// Nearest first.
-std::vector<Thing> EyePass::Data::itemThings(const ShowFrame& frame, const glm::vec3& eye) const {
-    std::vector<Thing> things;
-    for (const auto& item : surfaces.items()) {
-        if (item.surface >= frame.posed.surfaces.size()) continue;
-        const PosedSurface& surface = frame.posed.surfaces[item.surface];
-        Thing thing{item.mesh,
-                    surface.worldFromSurface,
-                    &surface.material,
-                    surface.opacity,
-                    materials.features(surface.material) | eye_feature::twoSided,
-                    glm::distance(item.box.centre(), eye)};
-        if (surface.opacity < 1.0F || surface.material.alpha == Material::Alpha::blend)
-            thing.features |= eye_feature::blend;
-        things.push_back(thing);
-    }
-    std::sort(things.begin(), things.end(), [](const Thing& a, const Thing& b) { return a.distance < b.distance; });
-    return things;
+void EyePass::Data::View::apply(Program& program, const ShowFrame& frame) const {
+    setCamera(program, *camera, depth.near, depth.far);
+    if (target != nullptr) setOutput(program, *target, frame.scene->compensation, eye_unit::weights);
 }
 
 Box EyePass::Data::everything(const ShowFrame& frame) const {
@@ -256,11 +79,11 @@ void EyePass::Data::begin(const ShowFrame& frame, const View& view, unsigned fra
     glDepthFunc(GL_LESS);
     glDepthMask(GL_TRUE);
     glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
-    const bool encodes = view.target != nullptr && view.target->projector.gamma > 0.0;
+    const bool encodes = view.unseen() && view.target->projector.gamma > 0.0;
     (encodes ? glDisable : glEnable)(GL_FRAMEBUFFER_SRGB);
-    if (view.target != nullptr) return; // what stands stays
+    if (view.unseen()) return; // what stands stays
     glClearDepth(1.0);
-    const glm::vec3 background = encodedClear(*frame.scene, view.unseen);
+    const glm::vec3 background = encodedClear(*frame.scene);
     glClearColor(background.r, background.g, background.b, 1.0F);
     glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
 }
@@ -269,9 +92,9 @@ void EyePass::Data::draw(const ShowFrame& frame, const View& view, const Thing& 
     const bool lit = (thing.features & eye_feature::unlit) == 0;
     std::uint32_t features = thing.features | (lit ? lighting.features() : 0U);
     if (thing.inTheOpen) features &= ~std::uint32_t{eye_feature::shadow | eye_feature::lamp};
-    if (!view.unseen) features |= fog.features();
-    Program& program = programs.use(Stage::surface, features | projectorFeatures(view));
-    setView(program, frame, view);
+    if (!view.unseen()) features |= fog.features();
+    Program& program = programs.use(EyePrograms::Stage::surface, features | view.features());
+    view.apply(program, frame);
     program.set("eyePosition", glm::vec3(positionOf(*view.camera)));
     program.set("worldFromSurface", thing.world);
     program.set("normalFromSurface", glm::mat4(glm::inverseTranspose(glm::mat3(thing.world))));
@@ -309,8 +132,7 @@ PixelRectangle EyePass::Data::shadowedPixels(const ShowFrame& frame, const View&
     const auto include = [&](const Box& caster) {
         return caster.empty() || includeShadow(shadows, caster, *lighting.shadowed());
     };
-    if (surfaces.hasSkin() && showsSkin(frame) && !include(movedBox(surfaces.skinBoxAtDevice(), frame.worldFromDevice)))
-        return view.area;
+    if (showsSkin(frame) && !include(movedBox(surfaces.skinBoxAtDevice(), frame.worldFromDevice))) return view.area;
     for (const auto& item : surfaces.items())
         if (frame.posed.surfaces[item.surface].castsShadow && !include(item.box)) return view.area;
     if (shadows.empty()) return {};
@@ -321,14 +143,13 @@ PixelRectangle EyePass::Data::shadowedPixels(const ShowFrame& frame, const View&
 
 void EyePass::Data::drawTable(const ShowFrame& frame, const View& view) {
     const Material& material = frame.scene->table.material;
-    std::uint32_t features = materials.features(material, view.unseen) | eye_feature::planar | eye_feature::twoSided;
+    std::uint32_t features = materials.features(material, view.unseen()) | eye_feature::table | eye_feature::twoSided;
     // The projector pass shows such a table alike to every eye.
     if (!dependsOnEye(material)) features &= ~eye_feature::specular;
-    const bool throughHoles =
-        surfaces.hasSkin() && showsSkin(frame) && (skinThing(frame, view.unseen).features & eye_feature::holes) != 0;
+    const bool throughHoles = showsSkin(frame) && (skinThing(frame, view.unseen()).features & eye_feature::holes) != 0;
     if (throughHoles && lighting.shadowed() && (features & eye_feature::unlit) == 0)
         features |= eye_feature::holesBelow;
-    table.fit(*view.camera, frame.scene->table.size, 4);
+    table.fit(*view.camera, frame.scene->table.size);
     glVertexAttrib3f(1, 0.0F, 1.0F, 0.0F); // its normal, everywhere
     Thing thing{nullptr, glm::mat4(1.0F), &material, 1.0F, features, 0.0F};
     // Through holes light is looked up elsewhere than on the table.
@@ -350,10 +171,10 @@ void EyePass::Data::drawTable(const ShowFrame& frame, const View& view) {
 void EyePass::Data::drawCreases(const ShowFrame& frame, const View& view) {
     const EyeMesh* lines = surfaces.creases();
     if (lines == nullptr || !surfaces.hasSkin()) return;
-    const std::uint32_t features = view.unseen ? eye_feature::skin : skinFeatures(frame.scene->device);
+    const std::uint32_t features = view.unseen() ? eye_feature::skin : skinFeatures(frame.scene->device);
     const DeviceSkin::Creases& creases = frame.scene->device.creases;
-    Program& program = programs.use(Stage::crease, features | projectorFeatures(view));
-    setView(program, frame, view);
+    Program& program = programs.use(EyePrograms::Stage::crease, features | view.features());
+    view.apply(program, frame);
     program.set("worldFromSurface", frame.worldFromDevice);
     program.set("ink", glm::vec4(linearLight(creases.color), static_cast<float>(std::min(creases.emphasis, 1.0))));
     lighting.apply(program);
@@ -419,33 +240,22 @@ void EyePass::Data::drawSeen(const ShowFrame& frame, const CalibratedCamera& cam
     finishDrawing();
 }
 
-void EyePass::Data::drawPhysical(const ShowFrame& frame, const View& view) {
-    if (surfaces.hasSkin()) draw(frame, view, skinThing(frame, true));
-    drawTable(frame, view);
-    drawCreases(frame, view);
-    finishDrawing();
-}
-
 void EyePass::draw(const ShowFrame& frame, const CalibratedCamera& camera, unsigned framebuffer) {
-    data_->drawSeen(frame, camera, framebuffer, data_->surfaces.hasSkin() && showsSkin(frame));
+    data_->drawSeen(frame, camera, framebuffer, data_->showsSkin(frame));
 }
 
 void EyePass::drawBesideDevice(const ShowFrame& frame, const CalibratedCamera& camera, unsigned framebuffer) {
     data_->drawSeen(frame, camera, framebuffer, false);
 }
 
-void EyePass::drawUnseen(const ShowFrame& frame, const CalibratedCamera& camera, unsigned framebuffer) {
-    requireSize(camera.size);
-    const View view{&camera, depthRange(camera, data_->everything(frame)), {glm::ivec2(0), camera.size}, true};
-    data_->begin(frame, view, framebuffer);
-    data_->drawPhysical(frame, view);
-}
-
 void EyePass::drawUnseen(const ShowFrame& frame, const ProjectorTarget& target) {
     const CalibratedCamera& camera = target.projector.camera;
-    const View view{&camera, depthRange(camera, data_->everything(frame)), target.area, true, &target};
+    const Data::View view{&camera, depthRange(camera, data_->everything(frame)), target.area, &target};
     data_->begin(frame, view, target.rest.name());
-    data_->drawPhysical(frame, view);
+    if (data_->surfaces.hasSkin()) data_->draw(frame, view, data_->skinThing(frame, true));
+    data_->drawTable(frame, view);
+    data_->drawCreases(frame, view);
+    finishDrawing();
 }
 
 std::vector<std::string> EyePass::warnings() const { return data_->programs.warnings(); }

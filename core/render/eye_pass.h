@@ -33,11 +33,9 @@ public:
     /// The same without the device's skin, for places that the device does not hide.
     void drawBesideDevice(const ShowFrame& frame, const CalibratedCamera& camera, unsigned framebuffer);
 
-    /// Device and table alone as they are, physically, through any camera, shaded by what does not depend on a viewer:
-    /// their materials in diffuse light with shadows, without reflection, refraction, holes and items above them. For
-    /// places that no eye sees. Linear light as above; black where neither is.
-    void drawUnseen(const ShowFrame& frame, const CalibratedCamera& camera, unsigned framebuffer);
-    /// The same as a projector sends it, to the places within its area that are not done.
+    /// Device and table alone as they are, physically, shaded by what does not depend on a viewer: their materials in
+    /// diffuse light with shadows, without reflection, refraction, holes and items above them. For places that no eye
+    /// sees; as a projector sends it, to those within its area that are not done.
     void drawUnseen(const ShowFrame& frame, const ProjectorTarget& target);
 
     /// Programs this driver refused, with file and line, and the plain one that stands in for them.

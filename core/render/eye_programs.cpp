@@ -28,7 +28,7 @@ constexpr std::pair<std::uint32_t, const char*> kNames[] = {
     {fog, "FOG"},
     {blend, "BLEND"},
     {twoSided, "TWO_SIDED"},
-    {planar, "TABLE"},
+    {table, "TABLE"},
     {dither, "DITHER"},
     {holesBelow, "HOLES_BELOW"},
     {secondFog, "SECOND_FOG"},
@@ -62,7 +62,7 @@ ShaderFiles filesOf(Stage stage, std::uint32_t features) {
     } else {
         if (has(shadow)) fragment.emplace_back("eye_shadow.glsl");
         if (has(reflection | refraction)) fragment.emplace_back("eye_environment.glsl");
-        if (has(fog)) fragment.emplace_back("eye_fog.glsl");
+        if (has(fog)) fragment.insert(fragment.end(), {"noise.glsl", "eye_fog.glsl"});
         fragment.emplace_back("eye_surface.frag");
         files = shaderFiles({"version.glsl", "camera.glsl", "eye_surface.vert"}, fragment);
     }

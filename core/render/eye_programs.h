@@ -30,7 +30,7 @@ enum Bit : std::uint32_t {
     fog = 1U << 14U,
     blend = 1U << 15U,
     twoSided = 1U << 16U,
-    planar = 1U << 17U, ///< the table: it lies in y = 0
+    table = 1U << 17U, ///< it lies in y = 0
     dither = 1U << 18U,
     holesBelow = 1U << 19U, ///< the table under a device with holes
     secondFog = 1U << 20U,

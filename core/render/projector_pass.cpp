@@ -122,9 +122,10 @@ void ProjectorPass::drawWeights(std::span<ProjectorTarget* const> targets, const
 
 Program& ProjectorPass::seenProgram(const std::vector<std::string>& defines) {
     return seen_
-        .try_emplace(defines, physicalFiles({"version.glsl", "physical_normal.glsl", "projector_light.glsl",
-                                             "projector_output.glsl", "eye_lookup.glsl", "projector.frag"},
-                                            defines))
+        .try_emplace(defines,
+                     physicalFiles({"version.glsl", "physical_normal.glsl", "projector_light.glsl",
+                                    "projector_output.glsl", "eye_lookup.glsl", "noise.glsl", "projector.frag"},
+                                   defines))
         .first->second;
 }
 

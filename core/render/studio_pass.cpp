@@ -37,9 +37,11 @@ float distanceTo(const glm::vec3& eye, const StudioSurface& surface) { return gl
 struct StudioPass::Data {
     ShadowMaps key{768, 1};
     ShadowMaps sky{112, kSkyCount};
-    Program backdrop{shaderFiles({"full_frame.vert"}, {"version.glsl", "backdrop.glsl", "backdrop.frag"})};
-    Program ground{shaderFiles({"ground.vert"}, {"version.glsl", "backdrop.glsl", "studio_light.glsl", "ground.frag"})};
-    Program surface{shaderFiles({"surface.vert"}, {"version.glsl", "backdrop.glsl", "studio_light.glsl",
+    Program backdrop{
+        shaderFiles({"full_frame.vert"}, {"version.glsl", "noise.glsl", "backdrop.glsl", "backdrop.frag"})};
+    Program ground{shaderFiles({"ground.vert"},
+                               {"version.glsl", "noise.glsl", "backdrop.glsl", "studio_light.glsl", "ground.frag"})};
+    Program surface{shaderFiles({"surface.vert"}, {"version.glsl", "noise.glsl", "backdrop.glsl", "studio_light.glsl",
                                                    "light_colors.glsl", "tone.glsl", "surface.frag"})};
     gl::VertexArray empty;
     std::array<glm::vec3, kSkyCount> skyDirections = lumorph::skyDirections();

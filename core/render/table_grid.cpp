@@ -59,10 +59,11 @@ double bendOf(const CalibratedCamera& camera, const glm::dvec2& from, const glm:
     return glm::distance(drawn, *expected);
 }
 
-int cellsFor(const CalibratedCamera& camera, const Rectangle& area, int least) {
-    if (camera.distortion == std::array<double, 5>{}) return least;
+int cellsFor(const CalibratedCamera& camera, const Rectangle& area) {
+    constexpr int kLeastCells = 4;
+    if (camera.distortion == std::array<double, 5>{}) return kLeastCells;
     constexpr int kProbes = 6;
-    int cells = least;
+    int cells = kLeastCells;
     for (; cells < kMostCells; cells *= 2) {
         const glm::dvec2 cell = (area.high - area.low) / static_cast<double>(cells);
         double worst = 0.0;
@@ -78,13 +79,13 @@ int cellsFor(const CalibratedCamera& camera, const Rectangle& area, int least) {
 
 } // namespace
 
-void TableGrid::fit(const CalibratedCamera& camera, glm::vec2 size, int leastCells) {
+void TableGrid::fit(const CalibratedCamera& camera, glm::vec2 size) {
     if (camera_ == camera && size_ == size) return;
     camera_ = camera;
     size_ = size;
     const glm::dvec2 half = 0.5 * glm::dvec2(size);
     const Rectangle area = seenRectangle(camera, half);
-    const int cells = cellsFor(camera, area, leastCells);
+    const int cells = cellsFor(camera, area);
     std::vector<glm::vec3> vertices;
     std::vector<glm::uvec3> triangles;
     for (int j = 0; j <= cells; ++j)

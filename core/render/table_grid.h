@@ -12,11 +12,8 @@ namespace lumorph {
 /// The table as triangles for one camera: of what the camera sees of it, as few as its lens allows.
 class TableGrid {
 public:
-    /// Cells a side by which what changes slowly over the table may be interpolated.
-    static constexpr int kCellsToInterpolate = 16;
-
     /// Builds it anew where the camera or the table is another one than before. `size`: metres in x and z.
-    void fit(const CalibratedCamera& camera, glm::vec2 size, int leastCells = kCellsToInterpolate);
+    void fit(const CalibratedCamera& camera, glm::vec2 size);
     void draw() const;
     [[nodiscard]] std::size_t triangleCount() const noexcept { return static_cast<std::size_t>(count_) / 3; }
     static constexpr std::size_t kObjects = 3;

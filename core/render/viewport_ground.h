@@ -36,11 +36,12 @@ private:
     void drawBackdrop(const ViewportFrame& frame, const FramePiece& piece);
     void drawPlane(const ViewportFrame& frame, const FramePiece& piece, const ViewportLight* light);
 
-    Program backdrop_{shaderFiles({"full_frame.vert"}, {"version.glsl", "backdrop.glsl", "backdrop.frag"})};
-    Program open_{
-        shaderFiles({"ground.vert"}, {"version.glsl", "backdrop.glsl", "open_light.glsl", "viewport_ground.frag"})};
-    Program still_{
-        shaderFiles({"ground.vert"}, {"version.glsl", "backdrop.glsl", "studio_light.glsl", "viewport_ground.frag"})};
+    Program backdrop_{
+        shaderFiles({"full_frame.vert"}, {"version.glsl", "noise.glsl", "backdrop.glsl", "backdrop.frag"})};
+    Program open_{shaderFiles(
+        {"ground.vert"}, {"version.glsl", "noise.glsl", "backdrop.glsl", "open_light.glsl", "viewport_ground.frag"})};
+    Program still_{shaderFiles(
+        {"ground.vert"}, {"version.glsl", "noise.glsl", "backdrop.glsl", "studio_light.glsl", "viewport_ground.frag"})};
     Program shadow_{shaderFiles({"ground.vert"}, {"version.glsl", "moving_light.glsl", "ground_shadow.frag"})};
     gl::VertexArray empty_;
 };

@@ -2,6 +2,7 @@
 
 #include <glm/mat3x3.hpp>
 
+#include "core/render/draw_state.h"
 #include "core/render/paper_fibre.h"
 #include "core/render/viewport_ground.h"
 
@@ -22,15 +23,13 @@ std::array<Program, 2> movingPrograms() {
 
 std::array<Program, 2> stillPrograms() {
     const std::vector<std::string> vertex{"viewport_surface.vert"};
-    std::vector<std::string> light{"version.glsl", "backdrop.glsl", "studio_light.glsl", "light_colors.glsl",
-                                   "tone.glsl"};
+    std::vector<std::string> light{"version.glsl",      "noise.glsl",        "backdrop.glsl",
+                                   "studio_light.glsl", "light_colors.glsl", "tone.glsl"};
     std::vector<std::string> tinted = light;
     light.emplace_back("viewport_surface.frag");
     tinted.insert(tinted.end(), {"tint.glsl", "viewport_surface.frag"});
     return {Program(shaderFiles(vertex, light)), Program(shaderFiles(vertex, tinted))};
 }
-
-void setFrontFace(const glm::mat4& world) { glFrontFace(glm::determinant(glm::mat3(world)) < 0.0F ? GL_CW : GL_CCW); }
 
 } // namespace
 

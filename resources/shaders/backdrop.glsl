@@ -1,5 +1,5 @@
-// Shared piece: the backdrop's colour at a pixel of the frame, and the last step of every colour.
-// In: frameSize and frameOrigin (the whole frame and the drawn piece's lower left corner in it, pixels),
+// Shared piece: the backdrop's colour at a pixel of the frame, and the last step of every colour. Piece before:
+// noise.glsl. In: frameSize and frameOrigin (the whole frame and the drawn piece's lower left corner in it, pixels),
 // backdropTop, backdropBottom (sRGB-encoded). Space: frame pixels.
 
 uniform vec2 frameSize;
@@ -14,6 +14,5 @@ vec3 backdropColor() {
 
 // Half a step of noise, so that slow gradients show no bands in eight bits.
 vec3 dithered(vec3 encoded) {
-    float noise = fract(52.9829189 * fract(dot(gl_FragCoord.xy + frameOrigin, vec2(0.06711056, 0.00583715))));
-    return encoded + (noise - 0.5) / 255.0;
+    return encoded + (noiseAt(gl_FragCoord.xy + frameOrigin) - 0.5) / 255.0;
 }

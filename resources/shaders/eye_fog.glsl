@@ -1,4 +1,4 @@
-// Shared piece: fog between the eye and a place. In: boxes [-0.5, 0.5]^3 with colour (lit) and greatest extinction a
+// Shared piece: fog between the eye and a place. Piece before: noise.glsl. In: boxes [-0.5, 0.5]^3 with colour (lit) and greatest extinction a
 // metre, and their grain: a picture of noise that repeats, and how often it does so across the box. A few steps through
 // each box, begun at another share of a step from pixel to pixel so that no layers show. Space: world, metres.
 
@@ -24,7 +24,7 @@ float fogDensity(vec3 at, vec3 grains, vec2 drift) {
 }
 
 vec3 fogged(vec3 light, vec3 place, vec3 eye) {
-    float start = fract(52.9829189 * fract(dot(gl_FragCoord.xy, vec2(0.06711056, 0.00583715))));
+    float start = noiseAt(gl_FragCoord.xy);
     for (int i = 0; i < kFogs; ++i) {
         vec3 from = (fogFromWorld[i] * vec4(eye, 1.0)).xyz;
         vec3 way = (fogFromWorld[i] * vec4(place, 1.0)).xyz - from;

@@ -1,5 +1,5 @@
 // What a projector sends to places that the eye sees. Pieces before: version.glsl, physical_normal.glsl,
-// projector_light.glsl, projector_output.glsl, eye_lookup.glsl. In: worldPosition; the eye's pictures of the device and
+// projector_light.glsl, projector_output.glsl, eye_lookup.glsl, noise.glsl. In: worldPosition; the eye's pictures of the device and
 // (TABLE_VIEW) of the table. Out: the value, and that this place is done.
 
 in vec3 worldPosition;
@@ -15,9 +15,6 @@ uniform sampler2D tableViewDepth;
 layout(location = 0) out vec4 color;
 layout(location = 1) out float done;
 
-// Where pictures fade into the view-independent one they do so pixel by pixel: either is drawn, never both.
-float threshold() { return fract(52.9829189 * fract(dot(gl_FragCoord.xy, vec2(0.06711056, 0.00583715)))); }
-
 void main() {
     vec3 normal = faceTowards(worldPosition, projectorPosition);
     vec4 seen = seenByEye(devicePicture, deviceViewDepth, deviceView, worldPosition, normal);
@@ -27,7 +24,8 @@ void main() {
     float all = max(seen.a + rest, 1e-6);
     seen = vec4((seen.a * seen.rgb + rest * onTable.rgb) / all, seen.a + rest);
 #endif
-    if (seen.a <= threshold()) discard;
+    // Where pictures fade into the view-independent one they do so pixel by pixel: either is drawn, never both.
+    if (seen.a <= noiseAt(gl_FragCoord.xy)) discard;
     color = sentFor(seen.rgb, worldPosition, normal);
     done = 1.0;
 }

@@ -2,6 +2,7 @@
 #include <QApplication>
 
 #include "core/base/resources.h"
+#include "tests/ui/stall_watch.h"
 #include "tests/ui/studio_window.h"
 
 // The window under a long day's use: a tenth of it here, all of it with LUMORPH_SOAK=10 (packaging/soak).
@@ -52,21 +53,42 @@ void dragInView(StudioWindow& window, Qt::MouseButton button, int steps) {
     QTest::mouseRelease(&view, button, {}, start + QPoint(3 * steps, 0));
 }
 
-/// Milliseconds that the window did not answer while all of this went on at once.
-double longestStallOfBusyUse(StudioWindow& window) {
+/// How long the window did not answer at most, and while what was done.
+struct Stall {
+    double milliseconds = 0.0;
+    std::string step;
+};
+
+/// Of everything a user does at once while the demo's live match runs.
+Stall longestStallOfBusyUse(StudioWindow& window) {
     StallWatch watch;
-    pass(1s); // the live match of the demo
+    Stall longest;
+    const auto done = [&](std::string step) {
+        if (const double stall = watch.takeLongest(); stall > longest.milliseconds) longest = {stall, std::move(step)};
+    };
+    pass(1s);
+    done("live match");
     dragInView(window, Qt::MiddleButton, 60);
+    done("drag");
     window.command("build the field");
     window.enter("field.build.resolution", "70", Qt::Key_Tab);
     window.click("field.build.accept");
+    done("order of a build");
     dragInView(window, Qt::MiddleButton, 60);
-    for (QDockWidget* dock : docks(window))
-        if (dock->isVisible()) floatDockCloseReopen(window, dock);
+    done("drag while it builds");
+    for (QDockWidget* dock : docks(window)) {
+        if (!dock->isVisible()) continue;
+        floatDockCloseReopen(window, dock);
+        done("float, close and open " + dock->objectName().toStdString());
+    }
     window.slide("actuators.slider.1", 0.7);
+    done("slide");
     EXPECT_TRUE(eventually([&] { return window.studio().jobs.running().empty(); }));
+    done("end of the build");
     window.studio().document.undoStack().setIndex(0);
-    return watch.takeLongest();
+    pass(50ms);
+    done("undo of all");
+    return longest;
 }
 
 class Endurance : public ::testing::Test {
@@ -79,12 +101,14 @@ protected:
 TEST_F(Endurance, TheWindowNeverFreezes) {
     StudioWindow window(session());
     pass(2s); // the first pictures compile shaders
-    double best = 1e9;
-    for (int attempt = 0; attempt < 3 && best > kLongestStall; ++attempt)
-        best = std::min(best, longestStallOfBusyUse(window));
-    RecordProperty("longestStallMilliseconds", std::to_string(best));
-    std::printf("longest stall of the window: %.0f ms\n", best);
-    EXPECT_LE(best, kLongestStall);
+    Stall best{1e9, {}};
+    for (int attempt = 0; attempt < 3 && best.milliseconds > kLongestStall; ++attempt) {
+        Stall stall = longestStallOfBusyUse(window);
+        std::printf("longest stall of the window: %.0f ms (%s)\n", stall.milliseconds, stall.step.c_str());
+        if (stall.milliseconds < best.milliseconds) best = std::move(stall);
+    }
+    RecordProperty("longestStallMilliseconds", std::to_string(best.milliseconds));
+    EXPECT_LE(best.milliseconds, kLongestStall) << best.step;
 }
 
 TEST_F(Endurance, DocksAndWorkspacesLoseNothing) {
@@ -96,10 +120,16 @@ TEST_F(Endurance, DocksAndWorkspacesLoseNothing) {
             pass(40ms);
         }
     };
-    for (int i = 0; i < 2; ++i) round(); // what is made on first use
-    ASSERT_TRUE(eventually([&] { return window.view().framesPainted() > 20; }));
+    // What is made on first use; pictures come and go with what is in sight, so the most of all rounds counts.
+    std::size_t objects = 0;
+    for (int i = 0; i < 5; ++i) {
+        round();
+        ASSERT_TRUE(eventually([&, painted = window.view().framesPainted()] {
+            objects = std::max(objects, window.studio().renderer.objectCount());
+            return window.view().framesPainted() > painted + 20;
+        }));
+    }
     const double memory = residentMegabytes();
-    const std::size_t objects = window.studio().renderer.objectCount();
     for (int i = 0; i < 5 * soakFactor(); ++i) {
         round();
         if (i % 5 == 4) std::printf("round %d: %.0f MB\n", i + 1, residentMegabytes());

@@ -2,6 +2,7 @@
 #include <thread>
 
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 
 #include "app/studio/document/jobs.h"
 #include "core/base/error.h"
@@ -48,6 +49,14 @@ TEST_F(JobsTest, WorkRunsBesideTheWindowAndItsResultIsHandedOverInIt) {
     EXPECT_NE(worked, window);
     EXPECT_EQ(handed, window);
     EXPECT_TRUE(jobs.running().empty());
+}
+
+TEST_F(JobsTest, WorkGivesWayToTheWindow) {
+    Jobs jobs;
+    jobs.run<int>(
+        "field", "Counting", [](const Progress&) { return ::getpriority(PRIO_PROCESS, 0); }, give, tell);
+    ASSERT_TRUE(eventually([&] { return !got.empty(); }));
+    EXPECT_GT(got.front(), ::getpriority(PRIO_PROCESS, 0));
 }
 
 TEST_F(JobsTest, WhatWasThrownIsHandedOver) {

@@ -15,6 +15,7 @@
 #include "app/recording/recording.h"
 #include "app/studio/recording/servo_proof.h"
 #include "core/motion/rig_motion.h"
+#include "tests/ui/stall_watch.h"
 #include "tests/ui/studio_window.h"
 
 // Recording and replay as their user has them: what counts is that what was seen comes back bit for bit.

@@ -19,6 +19,7 @@
 #include "app/workspaces/scene/scene_words.h"
 #include "core/base/resources.h"
 #include "core/scene/techniques.h"
+#include "tests/ui/stall_watch.h"
 #include "tests/ui/studio_window.h"
 
 // The Scene workspace as its user has it: the real window, driven by mouse and keys.

@@ -8,6 +8,7 @@
 #include "app/workspaces/scene/eye_orbit.h"
 #include "app/workspaces/scene/stage_bar.h"
 #include "app/workspaces/scene/stage_pane.h"
+#include "tests/ui/stall_watch.h"
 #include "tests/ui/studio_window.h"
 
 namespace lumorph::test {

@@ -17,7 +17,6 @@
 namespace lumorph::test {
 
 using namespace std::chrono_literals;
-using Steady = std::chrono::steady_clock;
 
 int soakFactor() {
     const char* factor = std::getenv("LUMORPH_SOAK");
@@ -30,38 +29,6 @@ double residentMegabytes() {
     file >> pages >> pages;
     return pages * 4096.0 / 1e6;
 }
-
-struct StallWatch::Ping : QObject {
-    explicit Ping(StallWatch& owner) : watch(owner) {}
-    bool event(QEvent* event) override {
-        if (event->type() != QEvent::User) return QObject::event(event);
-        const double waited = std::chrono::duration<double, std::milli>(Steady::now() - sent).count();
-        if (waited > watch.longest_) watch.longest_ = waited;
-        watch.answered_ = true;
-        return true;
-    }
-    StallWatch& watch;
-    Steady::time_point sent;
-};
-
-StallWatch::StallWatch() : receiver_(std::make_unique<Ping>(*this)) {
-    thread_ = std::jthread([this](const std::stop_token& stop) {
-        while (!stop.stop_requested()) {
-            if (answered_.exchange(false)) {
-                static_cast<Ping*>(receiver_.get())->sent = Steady::now();
-                QCoreApplication::postEvent(receiver_.get(), new QEvent(QEvent::User));
-            }
-            std::this_thread::sleep_for(2ms);
-        }
-    });
-}
-
-StallWatch::~StallWatch() {
-    thread_.request_stop();
-    thread_.join();
-}
-
-double StallWatch::takeLongest() { return longest_.exchange(0.0); }
 
 StudioWindow::StudioWindow(const std::filesystem::path& session, const QString& workspace) {
     const bool again = std::filesystem::exists(session);

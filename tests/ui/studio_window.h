@@ -1,11 +1,9 @@
 #pragma once
 
-#include <atomic>
 #include <chrono>
 #include <filesystem>
 #include <memory>
 #include <string>
-#include <thread>
 #include <vector>
 
 #include <QDialog>
@@ -27,22 +25,6 @@ namespace lumorph::test {
 
 /// What this process holds of the machine's memory.
 [[nodiscard]] double residentMegabytes();
-
-/// The longest time an event had to wait for the window's thread, as a thread beside it sees it.
-class StallWatch {
-public:
-    StallWatch();
-    ~StallWatch();
-    /// Milliseconds since the start or the last call.
-    [[nodiscard]] double takeLongest();
-
-private:
-    struct Ping;
-    std::unique_ptr<QObject> receiver_;
-    std::atomic<bool> answered_{true};
-    std::atomic<double> longest_{0.0};
-    std::jthread thread_;
-};
 
 /// The studio as the program makes it, 1600 x 1000, with a session folder that the test names. Widgets are found by
 /// objectName, and what a user would do is done with mouse and keys.

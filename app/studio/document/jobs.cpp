@@ -7,6 +7,8 @@
 #include <QElapsedTimer>
 #include <QTimer>
 
+#include "core/base/thread_priority.h"
+
 namespace lumorph::studio {
 
 namespace {
@@ -60,6 +62,7 @@ Jobs::Id Jobs::start(const QString& place, const QString& title, std::function<s
         if (!said->posted.exchange(true)) QMetaObject::invokeMethod(this, [this, id] { hear(id); });
     };
     started.thread = std::jthread([this, id, report, work = std::move(work)](const std::stop_token& stop) {
+        giveWayToOthers(); // the window comes first
         std::any result;
         std::exception_ptr error;
         try {

@@ -11,6 +11,7 @@
 #include "core/render/color_target.h"
 #include "core/render/eye_pass.h"
 #include "core/render/headless_context.h"
+#include "core/render/projector_target.h"
 #include "core/rig/rig_file.h"
 #include "core/scene/posed_scene.h"
 #include "tests/core/render/ray_oracle.h"
@@ -107,11 +108,24 @@ public:
         return read();
     }
     [[nodiscard]] LinearPicture draw() { return draw(frame(), camera()); }
-    [[nodiscard]] LinearPicture drawUnseen(const ShowFrame& frame, const CalibratedCamera& camera) {
-        if (!target_ || target_->size() != camera.size) target_.emplace(camera.size, GL_RGBA32F);
-        pass.prepare(frame);
-        pass.drawUnseen(frame, camera, target_->framebuffer());
-        return read();
+    /// What a projector in the eye's place would send to where no eye looks, the light itself (`compensation` off);
+    /// row 0 is the top.
+    [[nodiscard]] Image drawUnseen() {
+        scene.compensation = false;
+        SceneProjector projector;
+        projector.camera = camera();
+        ProjectorTarget target(projector);
+        target.area = {glm::ivec2(0), size};
+        glBindFramebuffer(GL_FRAMEBUFFER, target.rest.name());
+        glDisable(GL_SCISSOR_TEST);
+        glDepthMask(GL_TRUE);
+        glClearDepth(1.0);
+        glClearColor(0.0F, 0.0F, 0.0F, 0.0F);
+        glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+        const ShowFrame now = frame();
+        pass.prepare(now);
+        pass.drawUnseen(now, target);
+        return target.sent.read();
     }
 
     /// All that is in a frame, but for skin holes.
