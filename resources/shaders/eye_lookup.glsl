@@ -1,7 +1,8 @@
 // The eye's picture at a physical point, where the eye sees it. In: the picture, the depth of the device alone from the
 // eye (1 where it is not), and how the eye looks; on the table the area where its picture differs from the
 // view-independent one. Out: linear light; alpha is the share to be taken, 0 where the eye does not see the point or it
-// lies outside the picture. Software rasterisers run all lanes through every branch, so there are few of them.
+// lies outside the picture. Where the device hides itself the light is that of what hides it, and alpha is negative.
+// Software rasterisers run all lanes through every branch, so there are few of them.
 
 struct EyeView {
     mat4 clipFromWorld;
@@ -72,17 +73,25 @@ vec4 seenByEye(sampler2D picture, sampler2D deviceDepth, EyeView view, vec3 worl
     // What lies in front of the plane drawn on beyond its rim but behind the point itself, hides nothing.
     clear = max(behind, stored - at.z);
 #endif
-    if (dot(weights, vec4(greaterThan(clear, vec4(-slack)))) < 0.5) share = 0.0;
+    bool hidden = dot(weights, vec4(greaterThan(clear, vec4(-slack)))) < 0.5;
 
-    // The nearest of its own texels, for points so close to an edge that no whole tap fits.
-    weights *= vec4(lessThan(abs(behind), vec4(2.0 * slack)));
+    // The nearest of its own texels, for points so close to an edge that no whole tap fits; hidden ones have none.
+    vec4 own = weights * vec4(lessThan(abs(behind), vec4(2.0 * slack)));
+#ifdef TABLE
+    share *= hidden ? 0.0 : 1.0;
+    weights = own;
+#else
+    bool lost = max(max(own.x, own.y), max(own.z, own.w)) == 0.0;
+    share *= hidden || lost ? -1.0 : 1.0;
+    weights = lost ? weights * vec4(lessThan(stored, vec4(0.9999999))) : own;
+#endif
     vec2 most = max(weights.xy, weights.wz);
     ivec2 nearest = ivec2(most.y > most.x ? 1 : 0, max(weights.x, weights.y) > max(weights.z, weights.w) ? 1 : 0);
     float found = max(most.x, most.y) > 0.0 ? 1e-4 : 0.0;
     vec4 sum = found * vec4(texelFetch(picture, ivec2(floor(place)) + nearest, 0).rgb, 1.0);
 
     vec2 taps = clamp(ceil(vec2(length(alongX * view.size), length(alongY * view.size)) / kTapSpacing), 1.0, kMostTaps);
-    if (share == 0.0) taps = vec2(1.0);
+    if (share <= 0.0) taps = vec2(1.0);
     vec2 tap = vec2(0.5);
     do {
         vec2 along = tap / taps - 0.5;

@@ -1,6 +1,7 @@
 // What a projector sends to places that the eye sees. Pieces before: version.glsl, physical_normal.glsl,
 // projector_light.glsl, projector_output.glsl, eye_lookup.glsl, noise.glsl. In: worldPosition; the eye's pictures of the device and
-// (TABLE_VIEW) of the table. Out: the value, and that this place is done.
+// (TABLE_VIEW) of the table. Out: the value; 1 where this place is done, a half where
+// it is hidden and done only next to others.
 
 in vec3 worldPosition;
 uniform EyeView deviceView;
@@ -25,7 +26,9 @@ void main() {
     seen = vec4((seen.a * seen.rgb + rest * onTable.rgb) / all, seen.a + rest);
 #endif
     // Where pictures fade into the view-independent one they do so pixel by pixel: either is drawn, never both.
-    if (seen.a <= noiseAt(gl_FragCoord.xy)) discard;
-    color = sentFor(seen.rgb, worldPosition, normal);
-    done = 1.0;
+    if (abs(seen.a) <= noiseAt(gl_FragCoord.xy)) discard;
+    // A hidden place may be steep; made up for, it would outshine the side that is seen.
+    vec3 turned = seen.a > 0.0 ? normal : normalize(projectorPosition - worldPosition);
+    color = sentFor(seen.rgb, worldPosition, turned);
+    done = seen.a > 0.0 ? 1.0 : 0.5;
 }

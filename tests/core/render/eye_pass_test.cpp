@@ -306,7 +306,7 @@ TEST(EyePass, UnseenPlacesShowThePhysicalDevice) {
     stage.scene.device.material.color = {0.9F, 0.1F, 0.1F};
     stage.scene.table.material.color = {0.1F, 0.9F, 0.1F};
     stage.scene.device.holes = {{{0.0F, 0.0F}, 0.03}};
-    stage.addBox({0.0F, 0.05F, 0.0F}, 0.03F).material.color = {0.1F, 0.1F, 0.9F};
+    stage.addBox({0.07F, 0.05F, 0.0F}, 0.03F).material.color = {0.1F, 0.1F, 0.9F};
     const Image picture = stage.drawUnseen();
     const Image::Pixel& middle = picture.at(stage.size.x / 2, stage.size.y / 2 + 10);
     EXPECT_GT(middle[0], 2 * middle[1]);

@@ -188,6 +188,45 @@ TEST(SpatialRenderer, FloatingBoxIsDrawnWhereTheEyeSeesItAndNowhereElse) {
     EXPECT_LE(faults, 1) << "one pixel may lie on an edge as the eye sees it";
 }
 
+// A pixel that reaches over an edge shows both sides what is meant for the side that is seen.
+TEST(SpatialRenderer, FoldsShowNoRimOfWhatLiesHiddenBehindThem) {
+    const HeadlessContext context;
+    SpatialRenderer renderer;
+    Scene scene = unlitScene({0.9F, 0.0F, 0.0F}, glm::vec3(0.0F), {overhead()});
+    scene.items.push_back(box({0.0F, 0.2F, 0.0F}, Anchor::world, {0.0F, 1.0F, 0.0F}, 0.3F)); // all the eye sees
+    const ShowFrame frame = posed(frameOf(scene, liftedFlaps()));
+    const TriangleMesh device = physicalDevice(frame);
+    const CalibratedCamera camera = overhead().camera;
+    const glm::dvec3 eye(*frame.eye);
+    const auto lit = [&](const glm::dvec2& pixel) { // seen by both eye and projector, not by a hair
+        const Place place = placeOf(device, frame.scene->table, camera, pixel);
+        if (place.on != Place::On::device) return false;
+        const double distance = glm::distance(eye, place.point);
+        const auto first = hitDistance(device, eye, (place.point - eye) / distance);
+        return first && *first > distance - 0.0002;
+    };
+    renderer.draw(frame);
+    const Image sent = renderer.readProjector(0);
+    int edges = 0;
+    int rims = 0;
+    int hidden = 0;
+    for (int y = 2; y < camera.size.y - 2; y += 5)
+        for (int x = 2; x < camera.size.x - 2; ++x) {
+            const Place place = placeOf(device, frame.scene->table, camera, {x, y});
+            if (place.on != Place::On::device || lit({x, y})) continue;
+            const bool red = sent.at(x, y)[0] > sent.at(x, y)[1];
+            hidden += red ? 1 : 0;
+            const glm::dvec2 at(x, y);
+            if (!lit(at + glm::dvec2(0.45, 0.0)) && !lit(at - glm::dvec2(0.45, 0.0))) continue;
+            ++edges;
+            rims += red ? 1 : 0;
+        }
+    std::printf("%d pixels over an edge, %d of them with a rim; %d hidden\n", edges, rims, hidden);
+    EXPECT_GT(edges, 20);
+    EXPECT_GT(hidden, 100) << "elsewhere hidden places keep their own look";
+    EXPECT_LE(rims, edges / 20);
+}
+
 TEST(SpatialRenderer, ThingsFarFromTheDeviceAreDrawnOnTheTable) {
     const HeadlessContext context;
     SpatialRenderer renderer;
