@@ -89,7 +89,7 @@ public:
             find();
             break;
         case 8:
-            now_ += Microseconds{static_cast<long>(number(-5e6, 5e6))};
+            pass(number(-5e6, 5e6));
             break;
         case 9:
             if (pick(20) == 0) now_ = pick(2) ? Microseconds::max() : Microseconds::min();
@@ -133,9 +133,13 @@ private:
 
     void advance() {
         static constexpr long kTops[] = {3, 1'000, 6'000, 20'000, 60'000};
-        now_ += Microseconds{static_cast<long>(number(0.0, static_cast<double>(kTops[pick(5)])))};
-        if (now_ > Microseconds{1'000'000'000'000'000} || now_ < Microseconds{-1'000'000'000'000'000})
-            now_ = Microseconds{0};
+        pass(number(0.0, static_cast<double>(kTops[pick(5)])));
+    }
+    /// A clock at the end of its range starts again.
+    void pass(double microseconds) {
+        constexpr Microseconds kFar{1'000'000'000'000'000};
+        if (now_ > kFar || now_ < -kFar) now_ = Microseconds{0};
+        now_ += Microseconds{static_cast<long>(microseconds)};
     }
     void want() {
         wanted_.resize(3);
