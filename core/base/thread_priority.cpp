@@ -6,8 +6,8 @@ namespace lumorph {
 
 namespace {
 
-/// Of Linux' 0 (usual) to 19: a tenth of the processor's time where somebody else wants the rest.
-constexpr int kNiceness = 10;
+/// Of Linux' 0 (usual) to 19: a quarter of the processor's time where somebody else wants the rest.
+constexpr int kNiceness = 5;
 
 } // namespace
 

@@ -81,10 +81,7 @@ public:
         std::this_thread::sleep_for(30ms);
         return true;
     }
-    void move() {
-        turn_ += 0.1;
-        link_->command(std::vector<double>(3, 0.5 + 0.4 * std::sin(turn_)));
-    }
+    void move() { link_->command(std::vector<double>(3, 0.5 + 0.4 * std::sin(0.1 * ++turn_))); }
     bool limp() {
         return std::ranges::all_of(bench_.board("tablet")->servos(),
                                    [](const SimulatedServo& servo) { return servo.pulse == 0.0; });
@@ -125,7 +122,7 @@ private:
     std::mutex mutex_;
     SteadyTime told_[3];
     std::vector<std::uint8_t> first_;
-    double turn_ = 0.0;
+    std::atomic<int> turn_ = 0; ///< a flood of orders turns it too
     std::unique_ptr<ServoLink> link_;
 };
 

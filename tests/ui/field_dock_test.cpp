@@ -75,6 +75,7 @@ protected:
         window_->resize(340, 900);
         window_->show();
         ASSERT_TRUE(QTest::qWaitForWindowExposed(window_.get()));
+        ASSERT_TRUE(test::eventually([&] { return studio_->jobs.running().empty(); })); // a look at the rig
     }
 
     template <class Widget> Widget* find(const char* name) {
