@@ -1,9 +1,9 @@
 #include "devices/transport/found_devices.h"
 
-#include <cstdio>
-
+#include <fcntl.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include "devices/transport/port_access.h"
 #include "tests/devices/pty.h"
@@ -59,11 +59,11 @@ TEST(FoundDevices, ABoundPortIsSlow) {
 TEST(FoundDevices, APortThatCanBeOpenedHasNoTroubleOneInUseHas) {
     const Pty pty;
     EXPECT_EQ(describeSerialPort({pty.path(), "", 0, 0, ""}).trouble, LinkTrouble{});
-    FILE* const file = std::fopen(pty.path().c_str(), "r+");
-    ASSERT_TRUE(file);
+    const int file = ::open(pty.path().c_str(), O_RDWR | O_NOCTTY); // else its end could end us, too
+    ASSERT_GE(file, 0);
     EXPECT_EQ(describeSerialPort({pty.path(), "", 0, 0, ""}).trouble.why,
               "this program uses " + pty.path() + " already");
-    std::fclose(file);
+    ::close(file);
 }
 
 TEST(FoundDevices, AHidDeviceIsNotTrustedForItsIds) {
