@@ -26,12 +26,6 @@ constexpr QEvent::Type kWake = QEvent::User;
 constexpr std::size_t kMostEvents = 1000;
 constexpr Microseconds kTellChange{33'000}; // a window need not know more often
 
-/// What one thread hands to another by an event, or by its end, is in order: Qt locks. ThreadSanitizer does not see
-/// into Qt, so it is said here again.
-std::atomic<unsigned> handedOver = 0;
-void handOver() { handedOver.fetch_add(1, std::memory_order_release); }
-void takeOver() { (void)handedOver.load(std::memory_order_acquire); }
-
 void checkAll(const DeviceProfile& profile) {
     checkProfile(profile);
     (void)makeController(profile, parseDeviceAddress(profile.address));
@@ -65,11 +59,17 @@ struct ServoLink::Data {
 
     QThread thread;
 
+    /// What one thread hands to another by an event, or by its end, is in order: Qt locks. ThreadSanitizer does not see
+    /// into Qt, so it is said here again.
+    std::atomic<unsigned> handedOver = 0;
+    void handOver() { handedOver.fetch_add(1, std::memory_order_release); }
+    void takeOver() { (void)handedOver.load(std::memory_order_acquire); }
+
     /// Lives in the thread and hears what is posted to it.
     struct Ear : QObject {
         explicit Ear(Data& its) : data(its) {}
         bool event(QEvent* event) override {
-            takeOver();
+            data.takeOver();
             if (event->type() != kWake) return QObject::event(event);
             data.work();
             return true;
@@ -194,7 +194,7 @@ ServoLink::ServoLink(DeviceProfile profile, LinkOptions options) {
 ServoLink::~ServoLink() {
     data_->order([](LinkOrders& all) { all.quit = true; });
     data_->thread.wait();
-    takeOver();
+    data_->takeOver();
 }
 
 void ServoLink::connect() { data_->request(servo_input::Connect{}); }

@@ -311,6 +311,7 @@ TEST(EyePass, UnseenPlacesShowThePhysicalDevice) {
     const Image::Pixel& middle = picture.at(stage.size.x / 2, stage.size.y / 2 + 10);
     EXPECT_GT(middle[0], 2 * middle[1]);
     EXPECT_GT(middle[0], 60);
+    EXPECT_EQ(picture.at(0, 0)[3], 255); // drawn, for all was cleared to 0
     for (const auto& [red, green, blue, alpha] : picture.pixels()) ASSERT_LE(blue, std::max(red, green));
 }
 
