@@ -7,7 +7,11 @@ install(DIRECTORY resources/fonts resources/icons resources/materials resources/
                   resources/shaders resources/targets
         DESTINATION ${CMAKE_INSTALL_DATADIR}/lumorph
         PATTERN generator EXCLUDE PATTERN CMakeLists.txt EXCLUDE)
+# devices/firmware/sketch.cpp takes it from there.
+install(DIRECTORY devices/firmware/tablet DESTINATION ${CMAKE_INSTALL_DATADIR}/lumorph/firmware)
 install(FILES README.md CHANGELOG.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
+# Under the name that README.md links to.
+install(DIRECTORY resources/guide DESTINATION ${CMAKE_INSTALL_DOCDIR}/resources)
 install(FILES packaging/desktop/copyright DESTINATION ${CMAKE_INSTALL_DOCDIR})
 # Who may open servo controllers. udev looks in /usr/lib and /usr/local/lib, not in the folders of an architecture.
 install(FILES packaging/udev/60-lumorph.rules DESTINATION lib/udev/rules.d)

@@ -18,9 +18,10 @@ constexpr double kAhead = 0.15;
 
 double secondsOf(Microseconds time) { return 1e-6 * static_cast<double>(time.count()); }
 
-bool isSound(const Pose& pose) {
-    const glm::dvec3 p = glm::abs(pose.position);
-    const double length = glm::length(pose.rotation);
+bool isSound(const PoseSample& sample) {
+    if (!sample.valid) return true;
+    const glm::dvec3 p = glm::abs(sample.pose.position);
+    const double length = glm::length(sample.pose.rotation);
     return p.x <= kFarthest && p.y <= kFarthest && p.z <= kFarthest && length > 0.1 && length < 10.0;
 }
 
@@ -38,12 +39,25 @@ PoseStream::PoseStream(Microseconds staleAfter) : staleAfter_(staleAfter), filte
 
 bool PoseStream::push(const PoseSample& sample) {
     const std::scoped_lock lock(mutex_);
+    if (!isSound(sample)) return false;
+    if (filter_->newest && sample.time <= filter_->newest->time) return false;
+    take(sample);
+    return true;
+}
+
+bool PoseStream::restart(const PoseSample& sample) {
+    const std::scoped_lock lock(mutex_);
+    if (!isSound(sample)) return false;
+    filter_->found = false;
+    take(sample);
+    return true;
+}
+
+void PoseStream::take(const PoseSample& sample) {
     Filter& filter = *filter_;
-    if (sample.valid && !isSound(sample.pose)) return false;
-    if (filter.newest && sample.time <= filter.newest->time) return false;
     filter.newest = sample;
     filter.tracked = sample.valid;
-    if (!sample.valid) return true;
+    if (!sample.valid) return;
     const Pose pose{sample.pose.position, glm::normalize(sample.pose.rotation)};
     const Microseconds gap = sample.time - filter.measured;
     if (filter.found && gap <= staleAfter_)
@@ -52,7 +66,11 @@ bool PoseStream::push(const PoseSample& sample) {
         filter.poses.restart(pose);
     filter.found = true;
     filter.measured = sample.time;
-    return true;
+}
+
+bool PoseStream::isStale(Microseconds now) const {
+    const std::scoped_lock lock(mutex_);
+    return !filter_->found || now - filter_->measured > staleAfter_;
 }
 
 std::optional<PoseSample> PoseStream::latest() const {

@@ -38,12 +38,20 @@ public:
 
     /// Samples that are not finite, or older than the newest, are left out; false then.
     bool push(const PoseSample& sample);
+    /// Begins anew with a sample of another source: nothing before counts, and its times may be older. One that is not
+    /// finite changes nothing; false then.
+    bool restart(const PoseSample& sample);
+    /// The newest valid sample is too old, or there was none. A body that was lost just now is not stale yet.
+    [[nodiscard]] bool isStale(Microseconds now) const;
     [[nodiscard]] std::optional<PoseSample> latest() const;
     /// Where it will be at `time`, extrapolated from what was measured (at most 0.15 s ahead); empty while lost or
     /// stale.
     [[nodiscard]] std::optional<Pose> at(Microseconds time, Microseconds now) const;
 
 private:
+    /// Called with the mutex held.
+    void take(const PoseSample& sample);
+
     mutable std::mutex mutex_;
     Microseconds staleAfter_;
     struct Filter;

@@ -4,6 +4,7 @@
 #include <charconv>
 #include <cmath>
 #include <cstdio>
+#include <utility>
 
 #include "core/base/error.h"
 
@@ -13,6 +14,7 @@ namespace {
 
 constexpr double kRecovered = 0.2;         // volts above the limit that end the warning: under load it sags
 constexpr double kLeastBattery = 0.5;      // volts; less is an input that nothing is wired to
+constexpr double kBatteryLeap = 1.0;       // volts between two readings of which the newer one is in doubt
 constexpr double kMostBattery = 30.0;      // volts; more is a broken answer
 constexpr double kShareOfLink = 0.47;      // of its bytes, for pulses; the rest is for questions and hiccups
 constexpr double kDetachShare = 0.65;      // of its bytes, for letting servos go: nothing else matters then
@@ -37,6 +39,7 @@ ControllerBase::ControllerBase(const DeviceProfile& profile, const PulseScale& s
 void ControllerBase::opened(const std::string& product, Microseconds now) {
     now_ = heard_ = lastWritten_ = now;
     everHeard_ = false;
+    heardVolts_.reset();
     product_ = product;
     questions_.clear();
     plan_.restart();
@@ -112,21 +115,25 @@ void ControllerBase::trouble(Concern concern, std::optional<LinkTrouble> trouble
     state_.trouble = first == troubles_.end() ? std::nullopt : *first;
 }
 
-void ControllerBase::takeVoltage(double volts) {
+bool ControllerBase::takeVoltage(double volts) {
     if (!(volts >= 0.0 && volts <= kMostBattery)) {
         ++state_.errors;
-        return;
+        return false;
     }
+    // No battery leaps; a reading that noise has hit does. What the next one confirms is true.
+    const std::optional<double> before = std::exchange(heardVolts_, volts);
+    if (before && std::abs(volts - *before) > kBatteryLeap) return false;
     state_.volts = volts < kLeastBattery ? std::nullopt : std::optional(volts);
     const bool warned = troubles_[static_cast<std::size_t>(Concern::battery)].has_value();
     if (!state_.volts || volts >= kLowBattery + (warned ? kRecovered : 0.0)) {
         trouble(Concern::battery, std::nullopt);
-        return;
+        return true;
     }
     char text[40];
     std::snprintf(text, sizeof(text), "battery at %.1f V", volts);
     trouble(Concern::battery, LinkTrouble{text, "charge it or change it: servos lose their strength, and the board "
                                                 "may start anew under load"});
+    return true;
 }
 
 std::optional<std::size_t> ControllerBase::servoOn(int channel) const {

@@ -80,7 +80,8 @@ protected:
     /// It started anew, or let go of its servos by itself.
     void rebooted();
     void trouble(Concern concern, std::optional<LinkTrouble> trouble);
-    void takeVoltage(double volts);
+    /// False where it is in doubt, and should be asked for again.
+    bool takeVoltage(double volts);
     /// What it was told last.
     [[nodiscard]] Microseconds now() const noexcept { return now_; }
     /// When something was last written.
@@ -101,6 +102,7 @@ private:
     Microseconds heard_{0};
     Microseconds lastWritten_{0};
     bool everHeard_ = false;
+    std::optional<double> heardVolts_; ///< last, true or not
 };
 
 /// Baud rate of a link as far as its address tells it: 9600 over Bluetooth (HC-06), 57600 where nobody says.

@@ -102,6 +102,7 @@ json documentOf(const DeviceProfile& profile) {
             {"controllerNumber", profile.controllerNumber},
             {"maestroCrc", profile.maestroCrc},
             {"identity", profile.identity},
+            {"confirmed", profile.confirmed},
             {"servos", std::move(servos)},
             {"commandsPerSecond", profile.commandsPerSecond},
             {"staggerSeconds", profile.staggerSeconds},
@@ -184,6 +185,7 @@ DeviceProfile profileOf(json& document, const std::string& file) {
     section.wholeNumber("controllerNumber", profile.controllerNumber, 0, 127);
     section.flag("maestroCrc", profile.maestroCrc);
     section.text("identity", profile.identity);
+    section.flag("confirmed", profile.confirmed);
     readWithin(section, "commandsPerSecond", profile.commandsPerSecond, limits::kCommandsPerSecond);
     readWithin(section, "staggerSeconds", profile.staggerSeconds, limits::kStaggerSeconds);
     readWithin(section, "slowShare", profile.slowShare, limits::kSlowShare);

@@ -32,6 +32,7 @@ struct DeviceProfile {
     int controllerNumber = 12;       ///< of a Maestro: its device number
     bool maestroCrc = false;         ///< it expects a checksum
     std::string identity;            ///< of the very board it was set up with; empty: any
+    bool confirmed = false;          ///< the user has said that it is one, whatever its firmware calls itself
     std::vector<ServoSetup> servos;  ///< one an actuator
     double commandsPerSecond = 50.0; ///< at most; the link's own limit holds too
     double staggerSeconds = 0.4;     ///< between one servo's start and the next

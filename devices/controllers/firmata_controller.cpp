@@ -20,7 +20,11 @@ constexpr int kDoubts = 2;
 constexpr Microseconds kAskAgain{500'000};
 constexpr Microseconds kHeartbeat{200'000}; // our firmware's watchdog waits for 500 ms
 constexpr Microseconds kStateAtLeast{400'000};
-constexpr double kOwnLeastPulse = 500.0; // microseconds, since 1.1; before, and in stock firmware, less is degrees
+constexpr double kOwnLeastPulse = 500.0;  // microseconds, since 1.1; before, and in stock firmware, less is degrees
+constexpr int kSoftSince = 2;             // minor version of ours that bounds the step from frame to frame
+constexpr double kFrameSeconds = 0.020;   // of it
+constexpr double kGreatestStep = 16383.0; // microseconds that can be told
+constexpr long kSameValue = 4;            // microseconds: firmware keeps off its limits by one or two
 constexpr std::size_t kBytesOfDetach = 4;
 constexpr int kLimpModes = 3; // input, output, analog: what a pin is that drives no servo
 constexpr Microseconds kVoltageEvery{2'000'000};
@@ -62,6 +66,12 @@ PulseScale firmataScale(const DeviceProfile& profile, const DeviceAddress& addre
     return scale;
 }
 
+/// By how many microseconds a servo may move in a frame of the board, rounded up so that it never lags behind.
+int stepOf(const ServoSetup& servo) {
+    const double step = servo.maxVelocity * (servo.pulseMax - servo.pulseMin) * kFrameSeconds;
+    return static_cast<int>(std::clamp(std::ceil(step), 1.0, kGreatestStep));
+}
+
 /// A message that also gets the board out of one whose end was lost.
 firmata::Bytes certain(firmata::Bytes message) {
     message.insert(message.begin(), firmata::kEndOfMessage);
@@ -76,7 +86,7 @@ public:
 private:
     FirmataController(const DeviceProfile& profile, const DeviceAddress& address, const ControllerTraits& traits)
         : ControllerBase(profile, firmataScale(profile, address), traits), address_(address) {
-        limitsTold_.resize(profile.servos.size());
+        told_.resize(profile.servos.size());
         becomeKind(false);
     }
 
@@ -117,11 +127,19 @@ private:
     Repeater heartbeat_{kHeartbeat};
     Repeater stateAtLeast_{kStateAtLeast};
     Repeater voltage_{kVoltageEvery};
-    std::deque<Microseconds> statesAsked_;        ///< when the open questions for a pin's state were asked
-    std::size_t asked_ = 0;                       ///< servo whose state was asked for last
-    int contrary_ = 0;                            ///< answers in a row that tell of a servo that was let go
-    std::optional<Microseconds> words_;           ///< when the board said something
-    std::vector<std::pair<int, int>> limitsTold_; ///< by servo, microseconds
+    std::deque<Microseconds> statesAsked_; ///< when the open questions for a pin's state were asked
+    std::size_t asked_ = 0;                ///< servo whose state was asked for last
+    int contrary_ = 0;                     ///< answers in a row that tell of a servo that was let go
+    std::optional<Microseconds> words_;    ///< when the board said something
+    /// What our firmware knows of a servo, microseconds.
+    struct Bounds {
+        int least = 0, greatest = 0;
+        int step = 0; ///< 0: it knows of none
+        bool operator==(const Bounds&) const = default;
+    };
+    [[nodiscard]] Bounds boundsOf(std::size_t servo) const;
+    bool soft_ = false; ///< our firmware bounds the step from frame to frame
+    std::vector<Bounds> told_;
 };
 
 void FirmataController::begin(Microseconds now) {
@@ -148,6 +166,7 @@ void FirmataController::startHandshake() {
 
 void FirmataController::becomeKind(bool own) {
     own_ = own;
+    soft_ = false;
     plan_.setLeast(firmata::kLeastMicroseconds);
     state_.traits.failsafe = own;
     state_.traits.readsVoltage = own;
@@ -201,6 +220,7 @@ void FirmataController::hear(const firmata::Firmware& firmware) {
         readable(*firmware_) + " " + std::to_string(firmware.major) + "." + std::to_string(firmware.minor);
     becomeKind(*firmware_ == kOwnFirmware);
     if (own_ && (firmware.major > 1 || firmware.minor > 0)) plan_.setLeast(kOwnLeastPulse);
+    soft_ = own_ && (firmware.major > 1 || firmware.minor >= kSoftSince);
     askCapabilitiesOnce();
 }
 
@@ -276,6 +296,9 @@ void FirmataController::hear(const firmata::PinState& pin) {
     if (drives) plan_.detachAgain(*servo);
     if (pin.mode >= 0 && pin.mode < kLimpModes) plan_.confirmLimp(*servo);
     if (!plan_.attached(*servo)) return;
+    if (drives && std::abs(static_cast<long>(pin.value) - plan_.told(*servo)) > kSameValue &&
+        plan_.tellAgain(*servo, asked))
+        ++state_.errors;
     contrary_ = drives ? 0 : contrary_ + 1;
     if (contrary_ < 2) return;
     rebooted();
@@ -294,7 +317,7 @@ void FirmataController::hear(const firmata::Text& text) {
 }
 
 void FirmataController::hear(const firmata::Voltage& voltage) {
-    if (own_) takeVoltage(voltage.volts);
+    if (own_ && !takeVoltage(voltage.volts)) voltage_.reset();
 }
 
 void FirmataController::work(Microseconds now) {
@@ -324,14 +347,19 @@ void FirmataController::askState(Microseconds now) {
     if (statesAsked_.size() > 8) statesAsked_.pop_front();
 }
 
-/// In turn those that may not have let go yet, else one that holds.
+/// In turn those that may not have let go yet, else those that hold.
 std::size_t FirmataController::servoToAskFor() {
     const std::size_t count = plan_.servos().size();
     for (std::size_t step = 1; step <= count; ++step)
         if (plan_.doubtful((asked_ + step) % count)) return asked_ = (asked_ + step) % count;
-    for (std::size_t i = 0; i < count; ++i)
-        if (plan_.attached(i)) return i;
+    for (std::size_t step = 1; step <= count; ++step)
+        if (plan_.attached((asked_ + step) % count)) return asked_ = (asked_ + step) % count;
     return 0;
+}
+
+FirmataController::Bounds FirmataController::boundsOf(std::size_t servo) const {
+    return {static_cast<int>(plan_.valueOf(servo, 0.0)), static_cast<int>(plan_.valueOf(servo, 1e5)),
+            soft_ ? stepOf(plan_.servos()[servo]) : 0};
 }
 
 /// Where none shall hold, a reset says so again and again: it is one byte, so that nothing can be missing in it. Of
@@ -350,19 +378,19 @@ ControllerBase::Messages FirmataController::detachments(std::span<const std::siz
 }
 
 /// Our firmware takes the pulse first and starts from it; a stock one ignores it until the servo is attached, so it
-/// comes right behind, to end the jump to the middle. Ours clamps to the limits that it was told, so other ones go
-/// before the first pulse that they are for.
+/// comes right behind, to end the jump to the middle. Ours clamps to the limits that it was told and goes no faster, so
+/// other ones go before the first pulse that they are for.
 ControllerBase::Messages FirmataController::changes(std::span<const PulsePlan::Change> changes) {
     Messages messages;
     for (const PulsePlan::Change& change : changes) {
         const int pin = plan_.servos()[change.servo].channel;
         const int pulse = static_cast<int>(change.value);
-        const std::pair limits(static_cast<int>(plan_.valueOf(change.servo, 0.0)),
-                               static_cast<int>(plan_.valueOf(change.servo, 1e5)));
+        const Bounds bounds = boundsOf(change.servo);
         if (change.attach && own_) messages.push_back(firmata::writeValue(pin, pulse));
-        if (own_ && (change.attach || limitsTold_[change.servo] != limits)) {
-            messages.push_back(firmata::configureServo(pin, limits.first, limits.second));
-            limitsTold_[change.servo] = limits;
+        if (own_ && (change.attach || told_[change.servo] != bounds)) {
+            messages.push_back(firmata::configureServo(pin, bounds.least, bounds.greatest));
+            if (soft_) messages.push_back(firmata::limitStep(pin, bounds.step));
+            told_[change.servo] = bounds;
         }
         if (change.attach) messages.push_back(firmata::attachServo(pin));
         messages.push_back(firmata::writeValue(pin, pulse));

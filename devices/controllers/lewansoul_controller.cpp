@@ -156,7 +156,7 @@ void LewansoulController::hear(const lewansoul::Voltage& voltage, Microseconds n
     if (!voltageAsked_) return;
     voltageAsked_ = false;
     heard(now);
-    takeVoltage(voltage.volts);
+    if (!takeVoltage(voltage.volts)) voltage_.reset();
     if (state_.phase != ControllerPhase::handshake && state_.phase != ControllerPhase::refused) return;
     trouble(Concern::refusal, std::nullopt);
     voltage_.done(now);

@@ -145,6 +145,8 @@ void MaestroController::hear(const maestro::Position& position, Microseconds now
     else
         plan_.confirmLimp(*servo);
     if (!plan_.attached(*servo)) return;
+    if (position.quarters != 0 && position.quarters != plan_.told(*servo) && plan_.tellAgain(*servo, asked_))
+        ++state_.errors;
     contrary_ = position.quarters != 0 ? 0 : contrary_ + 1;
     if (contrary_ >= 2)
         letGo({"the board has let go of its servos by itself: it started anew, or its own timeout has run out",
@@ -185,6 +187,7 @@ void MaestroController::work(Microseconds now) {
 /// In turn those that may not have let go yet, else those that hold, else all.
 std::size_t MaestroController::servoToAskFor() const {
     const std::size_t count = plan_.servos().size();
+    if (count == 0) return 0;
     for (std::size_t step = 1; step <= count; ++step)
         if (plan_.doubtful((next_ + step) % count)) return (next_ + step) % count;
     for (std::size_t step = 1; step <= count; ++step)

@@ -115,6 +115,14 @@ void PulsePlan::detachAgain(std::size_t servo) {
     state.quickUntil = now_ + kDetachQuickly;
 }
 
+bool PulsePlan::tellAgain(std::size_t servo, Microseconds asked) {
+    State& state = states_[servo];
+    if (state.told != Told::attached || asked <= state.toldAt || state.again || state.repeats == kRepeats) return false;
+    state.again = pending_ = true;
+    ++state.repeats;
+    return true;
+}
+
 bool PulsePlan::doubtful(std::size_t servo) const {
     return states_[servo].told == Told::limp && states_[servo].confirmations < kConfirmations;
 }
@@ -166,8 +174,12 @@ std::vector<PulsePlan::Change> PulsePlan::takeChanges() {
     due_ = false;
     for (std::size_t i = 0; i < states_.size(); ++i) {
         State& state = states_[i];
-        if (!state.attach || (state.told == Told::attached && state.toldValue == state.value)) continue;
+        const bool news = state.told != Told::attached || state.toldValue != state.value;
+        if (!state.attach || (!news && !state.again)) continue;
         changes.push_back({i, state.value, state.told != Told::attached});
+        if (news) state.repeats = 0;
+        state.again = false;
+        state.toldAt = now_;
         if (state.told != Told::attached) state.since = now_;
         state.told = Told::attached;
         state.toldValue = state.value;

@@ -29,6 +29,7 @@ public:
     static constexpr Microseconds kDetachQuickly{1'000'000};
     static constexpr Microseconds kDetachSlowly{1'000'000}; ///< between two times after that
     static constexpr int kConfirmations = 2;                ///< in a row: a line that loses bytes also makes some up
+    static constexpr int kRepeats = 3;                      ///< of a value that a board does not take
 
     struct Change {
         std::size_t servo = 0;
@@ -57,6 +58,11 @@ public:
     void detachAgain(std::size_t servo);
     /// All limp ones must be told again, now.
     void detachAgain();
+    /// It says of one that is attached, when asked at this time, that it has another value than it was told: it is told
+    /// again, a few times. False where that would be once too often, or it was told something else since.
+    bool tellAgain(std::size_t servo, Microseconds asked);
+    /// What one that is attached was told last, steps.
+    [[nodiscard]] long told(std::size_t servo) const { return states_[servo].toldValue; }
     /// It was told to be limp, and nobody knows whether it is.
     [[nodiscard]] bool doubtful(std::size_t servo) const;
     /// Some servo is being told to let go again and again.
@@ -84,7 +90,10 @@ private:
         long value = 0;
         Told told = Told::nothing;
         long toldValue = 0;
-        bool held = false; ///< until it was let go
+        Microseconds toldAt{0};
+        bool again = false; ///< the same value
+        int repeats = 0;    ///< of it
+        bool held = false;  ///< until it was let go
         bool detachFirst = false;
         Microseconds detachedAt{0}; ///< last told so
         Microseconds quickUntil{0};

@@ -38,7 +38,7 @@ enum class ControllerPhase {
 struct ControllerState {
     ControllerPhase phase = ControllerPhase::handshake;
     ControllerTraits traits;
-    std::string firmware; ///< "LumorphTablet 1.1", empty while unknown
+    std::string firmware; ///< "LumorphTablet 1.2", empty while unknown
     std::optional<double> volts;
     std::vector<std::optional<double>> readPulses; ///< by servo of the profile, microseconds; where it can be read
     std::uint64_t reboots = 0;                     ///< noticed in this session: handshake was begun anew

@@ -137,7 +137,8 @@ void ServoEngine::Data::drive() {
     if (!waitOutSilence()) return;
     if (armed() && !ready()) guard.disarm();
     // The user's word about this very board was kept with the profile.
-    if (state.phase == ControllerPhase::unidentified && !foreign && !profile.identity.empty()) controller->confirm();
+    if (state.phase == ControllerPhase::unidentified && !foreign && profile.confirmed && !profile.identity.empty())
+        controller->confirm();
     watch.look(state, now);
     readPositions();
     // Nothing is added to a queue that does not move, and no time passes for the guard: what comes after starts from

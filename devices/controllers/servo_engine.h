@@ -22,7 +22,9 @@ struct Write {
 struct Reach { ///< the link leads elsewhere from now on; it is closed
     std::string address;
 };
-struct Open {};
+struct Open {
+    std::string identity; ///< of the device that is meant; empty: whatever is there
+};
 struct Close {};
 struct Drop { ///< the device does not answer: close the link and open it anew
     LinkTrouble why;
@@ -41,7 +43,7 @@ using ServoOutput = std::variant<servo_output::Write, servo_output::Reach, servo
 class ServoEngine {
 public:
     /// Another number where the same inputs may give other bytes: a trace is of one version.
-    static constexpr std::uint8_t kVersion = 2;
+    static constexpr std::uint8_t kVersion = 3;
 
     /// Throws as checkProfile, parseDeviceAddress and makeController.
     explicit ServoEngine(const DeviceProfile& profile);

@@ -44,7 +44,7 @@ void ServoEngine::Data::take(const servo_input::Connect&) {
 void ServoEngine::Data::openLink() {
     if (std::exchange(wanted, true)) return;
     linkTrouble.reset();
-    output.emplace_back(servo_output::Open{});
+    output.emplace_back(servo_output::Open{profile.identity});
 }
 
 void ServoEngine::Data::take(const servo_input::Disconnect&) {

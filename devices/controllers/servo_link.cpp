@@ -16,6 +16,7 @@
 #include <QTimer>
 
 #include "core/base/error.h"
+#include "core/base/thread_priority.h"
 #include "devices/controllers/servo_link_worker.h"
 #include "devices/transport/address.h"
 
@@ -89,6 +90,8 @@ struct ServoLink::Data {
 
     void begin() {
         begun = true;
+        // Boards let go of their servos when they hear nothing for half a second, however busy the machine is.
+        runPromptly();
         timer = std::make_unique<QTimer>();
         timer->setTimerType(Qt::PreciseTimer);
         timer->setSingleShot(true);
@@ -104,12 +107,7 @@ struct ServoLink::Data {
             takeStop();
             worker->work(takeOrders());
         } catch (const std::exception& error) {
-            keep({{},
-                  LinkEvent::Kind::failure,
-                  std::string("The link has failed: ") + error.what() + ".",
-                  "Servos were stopped; connect the device again."});
-            worker->stop();
-            worker->work({});
+            stopAfter(error);
         }
         if (worker->done()) {
             worker.reset();
@@ -119,6 +117,17 @@ struct ServoLink::Data {
             return;
         }
         timer->start(std::chrono::duration_cast<std::chrono::milliseconds>(worker->pause()));
+    }
+    /// What the link's own faults lead to; none of them may end the program, or be told better than it is.
+    void stopAfter(const std::exception& error) {
+        std::string remedy = "Servos were stopped; connect the device again.";
+        try {
+            worker->stop();
+            worker->work({});
+        } catch (const std::exception&) {
+            remedy = "Servos may still have power: switch it off by hand, then connect the device again.";
+        }
+        keep({{}, LinkEvent::Kind::failure, std::string("The link has failed: ") + error.what() + ".", remedy});
     }
     [[nodiscard]] DeviceProfile profileNow() {
         const std::scoped_lock lock(mutex);
@@ -187,7 +196,7 @@ ServoLink::ServoLink(DeviceProfile profile, LinkOptions options) {
     Data& data = *data_;
     data.status.servos.resize(data.profile.servos.size());
     data.ear.moveToThread(&data.thread);
-    data.thread.start(QThread::TimeCriticalPriority);
+    data.thread.start();
     data.wake();
 }
 

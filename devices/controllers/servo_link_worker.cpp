@@ -45,7 +45,7 @@ struct LinkWorker::Data {
 
     void perform(const servo_output::Write& write);
     void perform(const servo_output::Reach& place) { reach(place.address); }
-    void perform(const servo_output::Open&) { keeper->start(now()); }
+    void perform(const servo_output::Open& open) { keeper->start(now(), open.identity); }
     void perform(const servo_output::Close&) { keeper->stop(); }
     void perform(const servo_output::Drop& drop) { keeper->drop(drop.why, now()); }
     void perform(const servo_output::Tell& tell) { events.tell(tell.event); }
@@ -84,10 +84,16 @@ void LinkWorker::Data::take(const ServoInput& input) {
     }
     if (!sent.empty()) trace.sent(std::move(sent), time);
     if (std::exchange(doing, true)) return;
-    while (!todo.empty()) {
-        const ServoOutput next = std::move(todo.front());
-        todo.pop_front();
-        std::visit([this](const auto& output) { perform(output); }, next);
+    try {
+        while (!todo.empty()) {
+            const ServoOutput next = std::move(todo.front());
+            todo.pop_front();
+            std::visit([this](const auto& output) { perform(output); }, next);
+        }
+    } catch (...) {
+        todo.clear(); // a STOP must not wait behind what has failed
+        doing = false;
+        throw;
     }
     doing = false;
 }

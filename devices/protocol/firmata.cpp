@@ -17,6 +17,7 @@ constexpr std::uint8_t kAnalog = 0xE0;
 constexpr std::uint8_t kDigital = 0x90;
 // Of extended messages:
 constexpr std::uint8_t kVoltage = 0x02;
+constexpr std::uint8_t kStep = 0x03;
 constexpr std::uint8_t kMappingQuery = 0x69, kMapping = 0x6A;
 constexpr std::uint8_t kCapabilityQuery = 0x6B, kCapability = 0x6C;
 constexpr std::uint8_t kPinStateQuery = 0x6D, kPinState = 0x6E;
@@ -105,6 +106,10 @@ Bytes askVoltage() { return {kStart, kVoltage, kEnd}; }
 
 Bytes configureServo(int pin, int pulseMin, int pulseMax) {
     return {kStart, kServoConfig, pinByte(pin), low(pulseMin), high(pulseMin), low(pulseMax), high(pulseMax), kEnd};
+}
+
+Bytes limitStep(int pin, int microseconds) {
+    return {kStart, kStep, pinByte(pin), low(microseconds), high(microseconds), kEnd};
 }
 
 Bytes setPinMode(int pin, int mode) { return {kSetMode, pinByte(pin), inRange("pin mode", mode, 127)}; }

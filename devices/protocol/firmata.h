@@ -31,6 +31,9 @@ constexpr std::uint8_t kEndOfMessage = 0xF7;
 [[nodiscard]] Bytes askVoltage();
 /// Microseconds, 0 to 16383. Stock firmware attaches the servo, too.
 [[nodiscard]] Bytes configureServo(int pin, int pulseMin, int pulseMax);
+/// Most microseconds from one frame of 20 ms to the next, 0 to 16383; 0: any. Only firmware of ours knows it,
+/// since 1.2.
+[[nodiscard]] Bytes limitStep(int pin, int microseconds);
 [[nodiscard]] Bytes setPinMode(int pin, int mode);
 [[nodiscard]] Bytes attachServo(int pin);
 [[nodiscard]] Bytes detachServo(int pin);

@@ -180,7 +180,7 @@ private:
     void sayString(std::string_view text) { sayText({0xF0, 0x71}, text); }
     void sayFirmware() {
         if (ours_)
-            sayText({0xF0, 0x79, 0x01, 0x01}, "LumorphTablet");
+            sayText({0xF0, 0x79, 0x01, 0x02}, "LumorphTablet");
         else
             sayText({0xF0, 0x79, 0x02, 0x05}, "StandardFirmata");
     }

@@ -27,6 +27,11 @@ constexpr std::size_t kLongestName = 256;
 constexpr std::array<std::uint8_t, 4> kProgram = {0, 3, 0, 0};
 constexpr std::array kVerified = {Version{2, 5}, Version{2, 7}, Version{2, 9}, Version{2, 10}};
 
+/// Whether it says which bodies it sees.
+bool tellsValid(const natnet::Version& version) {
+    return version.major > 2 || (version.major == 2 && version.minor >= 6);
+}
+
 bool isSound(const natnet::RigidBody& body) {
     const float length = glm::length(body.rotation);
     return glm::dot(body.position, body.position) < 1e6F && length > 0.1F && length < 10.0F;
@@ -168,6 +173,8 @@ void NatNetClient::takeFrame(std::span<const std::byte> payload, Microseconds no
         body.id = told.id;
         const bool sound = isSound(told);
         body.valid = told.valid && sound;
+        // What is not seen may be told as anything.
+        body.isNumber = sound || !told.valid || !tellsValid(*version());
         body.pose = sound ? Pose{told.position, glm::normalize(glm::dquat(told.rotation))} : Pose{};
         nameBody(body);
     }

@@ -54,7 +54,8 @@ private:
         if (address_.multicast) {
             // What is sent to a group comes only to sockets that are bound to all or to the group.
             data = std::make_unique<UdpPort>(UdpBinding{hostOf(address_.group), address_.data, true}, onPacket);
-            data->join(hostOf(address_.group), local);
+            // The gate alone would not do: anyone on the network can forge the sender of a packet.
+            data->join(hostOf(address_.group), intake_.gate().isOpen() ? local : QHostAddress(QHostAddress::LocalHost));
         } else if (address_.dataGiven) {
             data = std::make_unique<UdpPort>(
                 UdpBinding{intake_.gate().isOpen() ? wide : QHostAddress(QHostAddress::LocalHost), address_.data},
@@ -155,7 +156,7 @@ private:
 std::unique_ptr<Tracker> openNatNet(const NatNetAddress& address, const std::string& uri, TrackerOptions options) {
     auto log = std::make_shared<TrackerLog>(uri, options.clock);
     return std::make_unique<TrackerThread>(
-        log, [=] { return std::make_unique<NatNetWork>(address, log, options); }, kStep);
+        log, [=, options = std::move(options)] { return std::make_unique<NatNetWork>(address, log, options); }, kStep);
 }
 
 } // namespace lumorph

@@ -22,6 +22,7 @@ struct TrackedBody {
     std::string name; ///< as the tracker calls it, or "body 3"
     bool valid = false;
     Pose pose;
+    bool isNumber = true; ///< false: it was told as seen, with a pose that is none
 };
 
 struct TrackerFrame {
@@ -54,7 +55,7 @@ struct TrackerStatus {
     std::string lastRejected;                    ///< what was wrong with the last of them
     std::optional<double> latencyMilliseconds;   ///< from the cameras' exposure to here, where clocks are matched
     std::vector<TrackedBody> bodies;             ///< newest of each
-    std::string advice;                          ///< why nothing arrives, and what to do; empty while all is well
+    std::string advice;                          ///< why nothing comes or counts, and what to do; else empty
     std::string event;                           ///< "head jumped by 3.00 m": what was odd about poses, the newest
     std::uint64_t events = 0;                    ///< ever
     std::shared_ptr<const TrackerCamera> camera; ///< null for what is no camera
@@ -70,7 +71,8 @@ public:
 struct TrackerOptions {
     std::shared_ptr<const Clock> clock = std::make_shared<SteadyClock>();
     std::function<void(const TrackerFrame&)> onFrame; ///< in the tracker's thread; must return at once
-    bool openToNetwork = false; ///< false: only packets from this machine are taken, whatever the address says
+    /// False: sockets are on loopback, and only what this machine sends is taken, whatever the address says.
+    bool openToNetwork = false;
 };
 
 /// Opens `natnet://HOST?mode=unicast|multicast&data=1511&command=1510&local=ADDR&multicast=239.255.42.99`,

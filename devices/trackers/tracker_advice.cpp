@@ -9,6 +9,9 @@ namespace {
 constexpr Microseconds kSilence{1'000'000};
 constexpr Microseconds kRecent{5'000'000};
 
+constexpr const char* kHowToOpen =
+    "close it, switch on 'Take packets from other machines' and open it again (on the command line: --open)";
+
 bool isRecent(const std::optional<Microseconds>& since) { return since && *since < kRecent; }
 
 bool allIsWell(const TrackerSituation& s) {
@@ -44,6 +47,21 @@ std::string trimmed(std::string text) {
 
 std::string machineList(const TrackerSituation& s) { return "this machine has " + s.ownAddresses; }
 
+/// While it is closed, a group is heard on loopback alone, also where the server is named by another address of ours.
+bool isLoopbackAlone(const NatNetAddress& address, const TrackerSituation& s) {
+    return address.multicast && !s.openToNetwork;
+}
+
+/// The interface on which a server on this machine has to send.
+std::string interfaceHere(const NatNetAddress& address, const TrackerSituation& s) {
+    return isLoopbackAlone(address, s) ? "127.0.0.1" : address.host;
+}
+
+std::string otherInterfaceWord(const NatNetAddress& address, const TrackerSituation& s) {
+    if (!isLoopbackAlone(address, s)) return {};
+    return std::string(" If it has to send on another interface, open this input to the network: ") + kHowToOpen + ".";
+}
+
 std::string groupOf(const natnet::Connection& c) {
     char text[32];
     std::snprintf(text, sizeof text, "%d.%d.%d.%d", c.address[0], c.address[1], c.address[2], c.address[3]);
@@ -67,7 +85,9 @@ std::string serverWithoutFrames(const NatNetAddress& address, const NatNetSituat
     const std::string lead = name + " at " + address.host +
                              " answers, but sends no frames. Check in this order: that streaming is switched on there "
                              "('Broadcast Frame Data'); that it is live or playing, not paused; ";
-    if (s.hostIsHere) return lead + "that it sends on the interface " + address.host + ".";
+    if (s.hostIsHere)
+        return lead + "that it sends on the interface " + interfaceHere(address, s) + "." +
+               otherInterfaceWord(address, s);
     return lead + "that no firewall " + "blocks UDP port " + std::to_string(address.data) + " here; " +
            (address.multicast ? "that local= names our address on the network of the server, " + machineList(s) + "."
                               : "that it is set to unicast.");
@@ -78,9 +98,10 @@ std::string silentHere(const NatNetAddress& address, const NatNetSituation& s) {
     return silence(s) + " from " + address.host +
            ", which is this machine. Check in this order: that Motive, or what " +
            "stands for it, runs here; that streaming is switched on there ('Broadcast Frame Data'), by " +
-           (address.multicast ? "multicast" : "unicast") + " and on the interface " + address.host +
+           (address.multicast ? "multicast" : "unicast") + " and on the interface " + interfaceHere(address, s) +
            "; that it listens to commands on UDP port " + std::to_string(address.command) +
-           (address.multicast ? " and sends to port " + std::to_string(address.data) : std::string()) + ".";
+           (address.multicast ? " and sends to port " + std::to_string(address.data) : std::string()) + "." +
+           otherInterfaceWord(address, s);
 }
 
 std::string unreachableServer(const NatNetAddress& address, const NatNetSituation& s) {
@@ -94,8 +115,7 @@ std::string unreachableServer(const NatNetAddress& address, const NatNetSituatio
            ", there and here; that this machine is on the same network: " + machineList(s) + ".";
 }
 
-std::string listenerAdvice(const std::string& local, std::uint16_t port, const TrackerSituation& s,
-                           const std::string& program) {
+std::string listenerAdvice(std::uint16_t port, const TrackerSituation& s, const std::string& program) {
     if (allIsWell(s)) return {};
     std::string advice = commonAdvice(s);
     if (!advice.empty()) return trimmed(advice);
@@ -104,8 +124,7 @@ std::string listenerAdvice(const std::string& local, std::uint16_t port, const T
     if (s.openToNetwork)
         return advice + " of this machine, which has " + s.ownAddresses + "; that no firewall blocks UDP port " +
                std::to_string(port) + " here.";
-    return advice + " of " + (local.empty() ? "127.0.0.1" : local) +
-           ". If it runs on another machine, open this input to the network.";
+    return advice + " of 127.0.0.1. If it runs on another machine, open this input to the network: " + kHowToOpen + ".";
 }
 
 } // namespace
@@ -116,7 +135,7 @@ std::string adviceFor(const NatNetAddress& address, const NatNetSituation& s) {
                machineList(s) + ". Use one of these, or connect the network.";
     if (!s.hostIsHere && !s.openToNetwork)
         return address.host + " is another machine, and this input takes only what this machine sends. Open it to " +
-               "the network." + (s.dropped > 0 ? " " + trimmed(droppedWord(s)) : "");
+               "the network: " + kHowToOpen + "." + (s.dropped > 0 ? " " + trimmed(droppedWord(s)) : "");
     if (allIsWell(s)) return {};
     if (s.framesWithoutVersion)
         return "Frames arrive, but the server does not answer at port " + std::to_string(address.command) + " of " +
@@ -129,15 +148,24 @@ std::string adviceFor(const NatNetAddress& address, const NatNetSituation& s) {
 }
 
 std::string adviceFor(const OpenTrackAddress& address, const TrackerSituation& situation) {
-    return listenerAdvice(address.local, address.port, situation,
-                          "opentrack runs and is started, with the output 'UDP over network'");
+    return listenerAdvice(address.port, situation, "opentrack runs and is started, with the output 'UDP over network'");
 }
 
 std::string adviceFor(const OscAddress& address, const TrackerSituation& situation, bool onlyRotations) {
     if (!allIsWell(situation) && onlyRotations)
         return "Only rotations arrive. Let the sender send /tracking/trackers/head/position as well.";
-    return listenerAdvice(address.local, address.port, situation,
+    return listenerAdvice(address.port, situation,
                           "the phone or bridge runs and sends /tracking/trackers/head/position");
+}
+
+std::string adviceFor(const SharedName& shared) {
+    const bool isOne = shared.more == 0;
+    std::string bodies = "'" + shared.body + "'";
+    if (!isOne) bodies += " and " + std::to_string(shared.more) + (shared.more == 1 ? " other body" : " other bodies");
+    const std::string other = shared.address + (shared.source.empty() ? "" : " (" + shared.source + ")");
+    return bodies + " of this tracker " + (isOne ? "is" : "are") + " not followed: " + other + " brings the same " +
+           (isOne ? "name" : "names") + " and came first. Close one of the two trackers, or rename the " +
+           (isOne ? "body" : "bodies") + " in its program.";
 }
 
 } // namespace lumorph

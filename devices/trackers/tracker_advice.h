@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -30,10 +31,20 @@ struct NatNetSituation : TrackerSituation {
     bool framesWithoutVersion = false;
 };
 
+/// A body that is not followed, because another tracker brings one of the same name and came first.
+struct SharedName {
+    std::string body;
+    std::size_t more = 0; ///< other bodies of which the same is true
+    std::string address;  ///< of the tracker that is followed
+    std::string source;   ///< as its status tells it; empty where that is not known
+};
+
 // Plain sentences on what to check, in order; empty while all is well or it is too early to tell.
 [[nodiscard]] std::string adviceFor(const NatNetAddress& address, const NatNetSituation& situation);
 [[nodiscard]] std::string adviceFor(const OpenTrackAddress& address, const TrackerSituation& situation);
 /// `onlyRotations`: positions are what is missing.
 [[nodiscard]] std::string adviceFor(const OscAddress& address, const TrackerSituation& situation, bool onlyRotations);
+/// Why a tracker that sends is not followed; never empty.
+[[nodiscard]] std::string adviceFor(const SharedName& shared);
 
 } // namespace lumorph

@@ -3,17 +3,41 @@
 #include <algorithm>
 #include <iterator>
 #include <mutex>
-#include <set>
+#include <optional>
 #include <utility>
 
 #include "core/base/error.h"
+#include "devices/trackers/tracker_advice.h"
 
 namespace lumorph {
 
+namespace {
+
+constexpr Microseconds kLately{2'000'000}; ///< so long that what is told of a slow tracker does not flicker
+
+} // namespace
+
 struct TrackerHub::Data {
+    /// The stream of one name, and who brings bodies of that name.
     struct Fed {
         std::shared_ptr<PoseStream> stream;
-        std::set<std::string> sources;
+        std::string followed; ///< the source whose poses go to the stream; empty after that was closed
+        std::map<std::string, std::optional<Microseconds>> sources; ///< each, and when a pose of it was last left out
+
+        /// Poses of two places in one stream would make the eye jump to and fro: who came first is followed until its
+        /// poses are stale. Ages are compared as measured, or two late trackers would take turns.
+        void take(const std::string& source, const PoseSample& sample, Microseconds now) {
+            std::optional<Microseconds>& leftOut = sources[source];
+            if (source == followed) {
+                stream->push(sample);
+            } else if (sample.valid && (followed.empty() || stream->isStale(sample.time))) {
+                if (!stream->restart(sample)) return;
+                followed = source;
+                leftOut.reset();
+            } else if (sample.valid) {
+                leftOut = now;
+            }
+        }
     };
     std::shared_ptr<PoseBoard> board;
     std::shared_ptr<const Clock> clock;
@@ -29,15 +53,30 @@ struct TrackerHub::Data {
 
     Fed& feed(const std::string& name, PoseRole role, const std::string& source) {
         Fed& entry = fed[name];
-        if (!entry.stream) entry.stream = board->stream(name, role);
-        if (!entry.sources.contains(source)) entry.sources.insert(source);
+        if (!entry.stream) entry = {board->stream(name, role), source, {}};
         return entry;
+    }
+
+    /// What is left out now of that source, because others are followed under the same names.
+    [[nodiscard]] std::optional<SharedName> sharedNow(const std::string& source, Microseconds now) const {
+        std::optional<SharedName> shared;
+        for (const auto& [name, entry] : fed) {
+            const auto found = entry.sources.find(source);
+            if (found == entry.sources.end() || !found->second || now - *found->second > kLately) continue;
+            if (entry.followed.empty()) continue;
+            if (!shared)
+                shared = SharedName{name, 0, entry.followed, {}};
+            else if (shared->address == entry.followed)
+                ++shared->more;
+        }
+        return shared;
     }
 
     void forget(const std::string& source) {
         for (auto entry = fed.begin(); entry != fed.end();) {
             auto& [name, streamed] = *entry;
             const bool wasLast = streamed.sources.erase(source) > 0 && streamed.sources.empty();
+            if (streamed.followed == source) streamed.followed.clear();
             if (wasLast) board->remove(name);
             entry = wasLast ? fed.erase(entry) : std::next(entry);
         }
@@ -123,9 +162,19 @@ std::vector<TrackerStatus> TrackerHub::status() const {
         for (const auto& [uri, tracker] : data_->trackers)
             if (tracker) trackers.push_back(tracker);
     }
-    std::vector<TrackerStatus> status;
-    for (const auto& tracker : trackers) status.push_back(tracker->status());
-    return status;
+    std::vector<TrackerStatus> all;
+    all.reserve(trackers.size());
+    for (const auto& tracker : trackers) all.push_back(tracker->status());
+    const Microseconds now = data_->clock->now();
+    const std::scoped_lock lock(data_->mutex);
+    for (TrackerStatus& status : all) {
+        std::optional<SharedName> shared = data_->sharedNow(status.address, now);
+        if (!shared) continue;
+        const auto other = std::ranges::find(all, shared->address, &TrackerStatus::address);
+        if (other != all.end()) shared->source = other->source;
+        status.advice += (status.advice.empty() ? "" : " ") + adviceFor(*shared);
+    }
+    return all;
 }
 
 void TrackerHub::setTap(Tap tap) {
@@ -138,13 +187,14 @@ void TrackerHub::take(const std::string& source, const TrackerFrame& frame) {
         const std::scoped_lock lock(data_->tapping);
         if (data_->tap) data_->tap(source, frame);
     }
+    const Microseconds now = data_->clock->now();
     // A time to come would make all that is measured before it come too late.
-    const Microseconds measured = std::min(frame.measured, data_->clock->now());
+    const Microseconds measured = std::min(frame.measured, now);
     const std::scoped_lock lock(data_->mutex);
     for (const TrackedBody& body : frame.bodies) {
         const auto role = data_->roles.find(body.name);
         if (role == data_->roles.end()) continue;
-        data_->feed(body.name, role->second, source).stream->push({measured, body.valid, body.pose});
+        data_->feed(body.name, role->second, source).take(source, {measured, body.valid, body.pose}, now);
     }
 }
 

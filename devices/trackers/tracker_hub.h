@@ -16,7 +16,8 @@ using RoleMap = std::map<std::string, PoseRole>;
 /// Makes a tracker of an address, as openTracker does; for those who know of more kinds.
 using TrackerOpener = std::function<std::unique_ptr<Tracker>(const std::string& uri, TrackerOptions options)>;
 
-/// All open trackers of a session: poses go to the board under the roles that their names have. Any thread.
+/// All open trackers of a session: poses go to the board under the roles that their names have. Where several bring a
+/// body of the same name, the first is followed as long as it sees it, then another. Any thread.
 class TrackerHub {
 public:
     explicit TrackerHub(std::shared_ptr<PoseBoard> board, std::shared_ptr<const Clock> clock,
@@ -28,6 +29,7 @@ public:
     void close(const std::string& uri);
     void setRoles(RoleMap roles);
     [[nodiscard]] RoleMap roles() const;
+    /// As the trackers tell it; their advice also names bodies that are not followed because another tracker's are.
     [[nodiscard]] std::vector<TrackerStatus> status() const;
     /// Poses from elsewhere (a camera that sees a board, a replay) take the same way.
     void take(const std::string& source, const TrackerFrame& frame);

@@ -42,6 +42,7 @@ void TrackerLog::noteFrame(const TrackerFrame& frame, std::optional<double> late
     const std::scoped_lock lock(mutex_);
     frames_.note(frame.arrived);
     noteJumps(frame);
+    noteNonsense(frame);
     measured_ = frame.measured;
     lastGood_ = frame.arrived;
     status_.bodies = frame.bodies;
@@ -60,6 +61,16 @@ void TrackerLog::noteJumps(const TrackerFrame& frame) {
         char metres[32];
         std::snprintf(metres, sizeof metres, "%.2f m", way);
         status_.event = now.name + " jumped by " + metres;
+        ++status_.events;
+        nextEvent_ = frame.arrived + kEventPause;
+    }
+}
+
+void TrackerLog::noteNonsense(const TrackerFrame& frame) {
+    if (frame.arrived < nextEvent_) return;
+    for (const TrackedBody& body : frame.bodies) {
+        if (body.isNumber) continue;
+        status_.event = "the pose of " + body.name + " is no number, so it counts as not seen";
         ++status_.events;
         nextEvent_ = frame.arrived + kEventPause;
     }

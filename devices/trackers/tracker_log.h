@@ -28,6 +28,7 @@ public:
 private:
     /// What moves farther between two frames than a body can.
     void noteJumps(const TrackerFrame& frame);
+    void noteNonsense(const TrackerFrame& frame);
 
     mutable std::mutex mutex_;
     std::shared_ptr<const Clock> clock_;

@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <utility>
 
+#include <netinet/in.h>
+#include <sys/socket.h>
+
 #include <QNetworkInterface>
 
 #include "core/base/error.h"
@@ -20,6 +23,13 @@ QNetworkInterface interfaceOf(const QHostAddress& local) {
         for (const QNetworkAddressEntry& entry : candidate.addressEntries())
             if (entry.ip() == local) return candidate;
     return {};
+}
+
+/// Otherwise a socket hears a group on every interface on which any program of this machine has joined it.
+bool hearOnlyWhereJoined(const QUdpSocket& socket) {
+    const int all = 0;
+    return ::setsockopt(static_cast<int>(socket.socketDescriptor()), IPPROTO_IP, IP_MULTICAST_ALL, &all, sizeof all) ==
+           0;
 }
 
 [[noreturn]] void refusePort(const UdpBinding& binding, const QUdpSocket& socket) {
@@ -63,11 +73,17 @@ UdpPort::UdpPort(const UdpBinding& binding, OnPacket onPacket)
 }
 
 void UdpPort::join(const QHostAddress& group, const QHostAddress& local) {
-    const bool joined =
-        local.isNull() ? socket_.joinMulticastGroup(group) : socket_.joinMulticastGroup(group, interfaceOf(local));
-    if (!joined)
-        throw DeviceError("multicast group " + group.toString().toStdString(), socket_.errorString().toStdString(),
+    const auto refuse = [&](const std::string& why) {
+        throw DeviceError("multicast group " + group.toString().toStdString(), why,
                           "say which network to use with local=, one of " + listOf(ownAddresses()));
+    };
+    const QNetworkInterface network = local.isNull() ? QNetworkInterface() : interfaceOf(local);
+    // Qt would let the system choose, where the one that is meant is missing.
+    if (!local.isNull() && !network.isValid())
+        refuse(local.toString().toStdString() + " is no address of this machine");
+    if (!hearOnlyWhereJoined(socket_)) refuse("it cannot be kept to one network");
+    const bool joined = local.isNull() ? socket_.joinMulticastGroup(group) : socket_.joinMulticastGroup(group, network);
+    if (!joined) refuse(socket_.errorString().toStdString());
 }
 
 void UdpPort::send(std::span<const std::byte> bytes, const QHostAddress& to, quint16 port) {

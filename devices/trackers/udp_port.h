@@ -45,7 +45,8 @@ public:
 
     /// Throws DeviceError that says who has the port, as far as the system tells.
     UdpPort(const UdpBinding& binding, OnPacket onPacket);
-    /// Throws DeviceError where the group cannot be joined on the interface with that address.
+    /// From then on what is sent to the group comes too, but only by the interface with that address, or by the one
+    /// that the system chooses where `local` is null. Throws DeviceError where the group cannot be joined there.
     void join(const QHostAddress& group, const QHostAddress& local);
     void send(std::span<const std::byte> bytes, const QHostAddress& to, quint16 port);
     [[nodiscard]] quint16 port() const { return socket_.localPort(); }

@@ -1,7 +1,5 @@
 #pragma once
 
-#include <functional>
-#include <memory>
 #include <string>
 #include <vector>
 
@@ -24,21 +22,5 @@ struct FoundDevice {
 /// Serial ports, bound rfcomm ports, HID devices and simulated boards, in this order. Takes milliseconds; opens
 /// nothing.
 [[nodiscard]] std::vector<FoundDevice> findDevices(const SimulatedBench* bench);
-
-/// Looks for Bluetooth devices that offer a serial port; takes ten seconds or so. Lives in one thread that runs a Qt
-/// event loop. Gone, it calls no more.
-class BluetoothSearch {
-public:
-    struct Events {
-        std::function<void(const FoundDevice&)> found;
-        std::function<void(const LinkTrouble&)> ended; ///< texts are empty where it simply came to its end
-    };
-    explicit BluetoothSearch(Events events);
-    ~BluetoothSearch();
-
-private:
-    struct Data;
-    std::unique_ptr<Data> data_;
-};
 
 } // namespace lumorph

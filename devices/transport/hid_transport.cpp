@@ -6,8 +6,11 @@
 #include <chrono>
 #include <condition_variable>
 #include <deque>
+#include <memory>
 #include <mutex>
 #include <optional>
+#include <set>
+#include <string>
 #include <thread>
 #include <utility>
 #include <variant>
@@ -114,6 +117,21 @@ private:
     std::jthread thread_; ///< last: it uses all of the above
 };
 
+/// Claims a board for one link of this program, until the claim is dropped; null where another one has it. The system
+/// lets a board be opened twice; but two guards that drive the same servos guard nothing, as when one link still takes
+/// them to rest while the next begins.
+std::shared_ptr<const std::string> claim(const std::string& path) {
+    static std::mutex mutex;
+    static std::set<std::string> claimed;
+    const std::scoped_lock lock(mutex);
+    if (!claimed.insert(path).second) return nullptr;
+    return {new std::string(path), [](const std::string* its) {
+                const std::unique_ptr<const std::string> freed(its);
+                const std::scoped_lock again(mutex);
+                claimed.erase(*freed);
+            }};
+}
+
 class HidTransport final : public Transport {
 public:
     HidTransport(HidAddress address, Events events) : address_(std::move(address)), events_(std::move(events)) {}
@@ -141,6 +159,7 @@ private:
     HidAddress address_;
     Events events_;
     HidDevice facts_;
+    std::shared_ptr<const std::string> claim_; ///< while it is open
     std::uint64_t link_ = 0; ///< counts the links, so that words of an old one are not taken for the new one's
     QObject receiver_;
     std::unique_ptr<HidWorker> worker_;
@@ -161,6 +180,10 @@ std::optional<LinkTrouble> HidTransport::tryOpen() {
     const auto choice = chooseHidDevice(address_, facts_.serialNumber, hidDevices(address_.vendor, address_.product));
     if (const auto* trouble = std::get_if<LinkTrouble>(&choice)) return *trouble;
     const HidDevice& found = std::get<HidDevice>(choice);
+    auto claimed = claim(found.path);
+    if (!claimed)
+        return LinkTrouble{"the link before still takes the servos of " + found.productText + " to rest",
+                           "wait a moment: it is opened by itself"};
     const auto opened = openHidDevice(found.path);
     if (const auto* trouble = std::get_if<LinkTrouble>(&opened)) return *trouble;
     facts_ = found;
@@ -170,6 +193,7 @@ std::optional<LinkTrouble> HidTransport::tryOpen() {
     };
     const auto died = [this, link] { post([this] { die(); }, link); };
     worker_ = std::make_unique<HidWorker>(std::get<hid_device_*>(opened), HidWorker::Events{received, died});
+    claim_ = std::move(claimed);
     return std::nullopt;
 }
 
@@ -186,6 +210,7 @@ void HidTransport::close() {
     if (!worker_) return;
     worker_->stop();
     ending_.push_back(std::move(worker_));
+    claim_.reset();
 }
 
 void HidTransport::die() {

@@ -40,6 +40,7 @@ struct LinkKeeper::Data {
     std::vector<std::unique_ptr<Transport>> retired; ///< one of them may have called us
     DeviceAddress at;                                ///< where `transport` leads
     PortMemory memory;
+    std::string expected; ///< serial number of the device
     Backoff backoff;
     bool heard = false; ///< the device has said something since the link was opened
     std::optional<Microseconds> due;
@@ -77,7 +78,12 @@ void LinkKeeper::Data::attempt(Microseconds now) {
 
 std::optional<DeviceAddress> LinkKeeper::Data::whereIsIt() {
     const auto* serial = std::get_if<SerialAddress>(&address);
-    if (!serial || memory.isEmpty()) return address;
+    if (!serial) return address;
+    if (memory.isEmpty()) {
+        if (expected.empty()) return address;
+        const std::string path = portOf(expected, world.serialPorts()).value_or(serial->path);
+        return SerialAddress{path == realPath(serial->path) ? serial->path : path, serial->baud};
+    }
     const std::optional<std::string> path = memory.find(serial->path, world.serialPorts());
     if (!path) return std::nullopt;
     return SerialAddress{*path, serial->baud};
@@ -140,8 +146,9 @@ LinkKeeper::LinkKeeper(DeviceAddress address, Events events, LinkWorld world) : 
 
 LinkKeeper::~LinkKeeper() { stop(); }
 
-void LinkKeeper::start(Microseconds now) {
+void LinkKeeper::start(Microseconds now, std::string identity) {
     if (data_->state != Data::State::stopped) return;
+    data_->expected = std::move(identity);
     // Its user may have put another device in its place.
     data_->letGo();
     data_->memory.forget();

@@ -26,7 +26,9 @@ public:
     LinkKeeper(DeviceAddress address, Events events, LinkWorld world);
     ~LinkKeeper();
 
-    void start(Microseconds now);
+    /// `identity`: the serial number of the device that is meant. Where a port that calls itself so is found, it is
+    /// opened, under whatever name. Empty: the address alone counts.
+    void start(Microseconds now, std::string identity = {});
     void stop();
     /// Does what is due; call it every 50 ms or more often.
     void tick(Microseconds now);

@@ -31,6 +31,13 @@ std::optional<SerialPort> serialPortAt(const std::string& path, std::span<const 
     return *port;
 }
 
+std::optional<std::string> portOf(const std::string& serialNumber, std::span<const SerialPort> ports) {
+    const auto isMeant = [&](const SerialPort& port) { return port.serialNumber == serialNumber; };
+    const auto port = std::ranges::find_if(ports, isMeant);
+    if (port == ports.end() || std::ranges::count_if(ports, isMeant) > 1) return std::nullopt;
+    return port->path;
+}
+
 void PortMemory::remember(const std::string& path, std::span<const SerialPort> ports) {
     forget();
     device_ = serialPortAt(path, ports);

@@ -22,6 +22,9 @@ struct SerialPort {
 /// The port that `path` leads to.
 [[nodiscard]] std::optional<SerialPort> serialPortAt(const std::string& path, std::span<const SerialPort> ports);
 
+/// Where the only device with this serial number is.
+[[nodiscard]] std::optional<std::string> portOf(const std::string& serialNumber, std::span<const SerialPort> ports);
+
 /// Finds a device again whose port has another name: by its serial number or, without one, by VID:PID. Ports that were
 /// there beside it are not it. A device that the system does not list (a pseudo-terminal) is known by its path.
 class PortMemory {

@@ -32,7 +32,7 @@ TEST(DeviceCommands, ListNamesTheSimulatedBoards) {
 TEST(DeviceCommands, ProbeSaysWhatABoardIsAndMovesNothing) {
     const nlohmann::json tablet = lumorph({"device", "probe", "sim://tablet", "--json"}).json();
     EXPECT_EQ(tablet["phase"], "ready");
-    EXPECT_EQ(tablet["firmware"], "LumorphTablet 1.1");
+    EXPECT_EQ(tablet["firmware"], "LumorphTablet 1.2");
     EXPECT_EQ(tablet["failsafe"], true);
     EXPECT_EQ(tablet["volts"], 7.4);
     for (const auto& servo : tablet["servos"]) EXPECT_EQ(servo["attached"], false);

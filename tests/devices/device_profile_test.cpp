@@ -37,6 +37,7 @@ DeviceProfile fullProfile() {
     profile.controllerNumber = 14;
     profile.maestroCrc = true;
     profile.identity = "00123456";
+    profile.confirmed = true;
     profile.commandsPerSecond = 25.0;
     profile.staggerSeconds = 0.7;
     profile.slowShare = 0.1;

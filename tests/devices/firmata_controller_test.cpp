@@ -29,7 +29,7 @@ TEST(FirmataController, AsksWhoIsThereAndWhatItCan) {
     EXPECT_EQ(trial.state().phase, ControllerPhase::handshake);
     trial.hear(capabilities());
     EXPECT_EQ(trial.state().phase, ControllerPhase::ready);
-    EXPECT_EQ(trial.state().firmware, "LumorphTablet 1.1");
+    EXPECT_EQ(trial.state().firmware, "LumorphTablet 1.2");
     EXPECT_TRUE(trial.state().traits.failsafe);
     EXPECT_FALSE(trial.state().traits.jumpsOnAttach);
     EXPECT_THAT(trial.state().traits.failsafeWord, HasSubstr("half a second"));
@@ -71,7 +71,7 @@ TEST(FirmataController, ANameThatNoiseHasHitIsAskedForAgain) {
     trial.hear(firmwareNamed("LumorphTablet"));
     trial.hear(capabilities());
     EXPECT_EQ(trial.state().phase, ControllerPhase::ready);
-    EXPECT_EQ(trial.state().firmware, "LumorphTablet 1.1");
+    EXPECT_EQ(trial.state().firmware, "LumorphTablet 1.2");
     EXPECT_TRUE(trial.state().traits.failsafe);
     EXPECT_EQ(trial.state().reboots, 0U);
 }
@@ -126,8 +126,8 @@ TEST(FirmataController, ARebootIsNoticedAndThePoseIsNotSentAgain) {
         trial.send({{9, 1560.0, false}, {10, 1500.0, false}}); // let go, and started anew
         trial.send({{9, 1560.0, true}, {10, 1500.0, false}});
         const Messages messages = trial.writtenBut(kQuestions);
-        ASSERT_EQ(messages.size(), 7U);
-        EXPECT_EQ(messages[5], (Bytes{0xF4, 0x09, 0x04}));
+        ASSERT_EQ(messages.size(), 8U);
+        EXPECT_EQ(messages[6], (Bytes{0xF4, 0x09, 0x04}));
     }
 }
 
@@ -193,14 +193,26 @@ TEST(FirmataController, TellsTheBatteryAndWarnsWhenItIsEmpty) {
     trial.hear(voltage(7412));
     EXPECT_NEAR(trial.state().volts.value_or(0), 7.412, 1e-9);
     EXPECT_FALSE(trial.state().trouble);
+    (void)trial.written();
     trial.hear(voltage(5600));
+    EXPECT_FALSE(trial.state().trouble) << "it may be noise";
+    trial.wait(10);
+    EXPECT_THAT(trial.written(), testing::Contains(Bytes{0xF0, 0x02, 0xF7})) << "so it is asked at once";
+    trial.hear(voltage(5610));
     ASSERT_TRUE(trial.state().trouble);
     EXPECT_EQ(trial.state().trouble->why, "battery at 5.6 V");
+    trial.hear(voltage(15'600)); // a bit was flipped
+    EXPECT_EQ(trial.state().trouble->why, "battery at 5.6 V") << "nothing is well again";
+    trial.hear(voltage(5600));
+    EXPECT_NEAR(trial.state().volts.value_or(0), 5.61, 1e-9) << "the one before was far away";
+    trial.hear(voltage(5600));
+    EXPECT_NEAR(trial.state().volts.value_or(0), 5.6, 1e-9);
     EXPECT_THAT(trial.state().trouble->remedy, HasSubstr("charge it"));
     trial.hear(voltage(6500));
     EXPECT_FALSE(trial.state().trouble);
     trial.hear(voltage(200'000));
     EXPECT_NEAR(trial.state().volts.value_or(0), 6.5, 1e-9) << "no battery has 200 V";
+    trial.hear(voltage(0));
     trial.hear(voltage(0));
     EXPECT_FALSE(trial.state().volts) << "nothing is wired to it";
 }

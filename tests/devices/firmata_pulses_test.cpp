@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <limits>
 
 #include <gmock/gmock.h>
@@ -21,12 +22,90 @@ TEST(FirmataPulses, OurFirmwareHasThePulseBeforeItIsEnabled) {
     ControllerTrial trial = readyTrial({9, 16});
     trial.send({{9, 1500.0, true}, {16, 1200.0, true}});
     const Bytes pulse = {0xE9, 0x5C, 0x0B};
-    // Limits 1000 = 7 x 128 + 104 and 2000 = 15 x 128 + 80.
+    // Limits 1000 = 7 x 128 + 104 and 2000 = 15 x 128 + 80; 1 stroke a second are 20 us a frame.
     const Bytes limits = {0xF0, 0x70, 0x09, 0x68, 0x07, 0x50, 0x0F, 0xF7};
     const Bytes far = {0xF0, 0x6F, 0x10, 0x30, 0x09, 0xF7};
     const Bytes farLimits = {0xF0, 0x70, 0x10, 0x68, 0x07, 0x50, 0x0F, 0xF7};
-    EXPECT_THAT(trial.writtenBut(kQuestions), ElementsAre(pulse, limits, Bytes{0xF4, 0x09, 0x04}, pulse, far, farLimits,
-                                                          Bytes{0xF4, 0x10, 0x04}, far));
+    EXPECT_THAT(trial.writtenBut(kQuestions),
+                ElementsAre(pulse, limits, Bytes{0xF0, 0x03, 0x09, 0x14, 0x00, 0xF7}, Bytes{0xF4, 0x09, 0x04}, pulse,
+                            far, farLimits, Bytes{0xF0, 0x03, 0x10, 0x14, 0x00, 0xF7}, Bytes{0xF4, 0x10, 0x04}, far));
+}
+
+TEST(FirmataPulses, OurFirmwareKnowsHowFastAServoMayGo) {
+    struct Row {
+        double velocity; ///< strokes a second
+        std::uint8_t minor;
+        std::vector<int> told; ///< microseconds a frame
+    };
+    for (const Row& row : {Row{4.0, 2, {80}}, Row{0.013, 2, {1}}, Row{0.51, 2, {11}}, Row{4.0, 1, {}}}) {
+        DeviceProfile profile = test::profileOn(ControllerKind::firmata, {9});
+        profile.servos[0].maxVelocity = row.velocity;
+        ControllerTrial trial(profile, "serial:///dev/ttyUSB0");
+        trial.open();
+        trial.hear(kVersion);
+        trial.hear(firmwareNamed("LumorphTablet", row.minor));
+        trial.hear(capabilities());
+        const auto told = [&] {
+            std::vector<int> steps;
+            for (const Bytes& message : trial.written())
+                if (message.size() == 6 && message[1] == 0x03) steps.push_back(message[3] | message[4] << 7);
+            return steps;
+        };
+        trial.send({{9, 1500.0, true}});
+        EXPECT_EQ(told(), row.told) << row.velocity;
+        if (row.told.empty()) continue;
+        trial.wait(20);
+        trial.send({{9, 1510.0, true}});
+        EXPECT_THAT(told(), IsEmpty()) << "nothing is new";
+        profile.servos[0].maxVelocity = 2.0;
+        trial.controller().setLimits(profile);
+        trial.wait(20);
+        trial.send({{9, 1520.0, true}});
+        EXPECT_EQ(told(), std::vector{40});
+    }
+}
+
+TEST(FirmataPulses, AValueThatTheLineSpoiledIsToldAgain) {
+    for (const char* firmware : {"LumorphTablet", "StandardFirmata"}) {
+        ControllerTrial trial = readyTrial({9, 10}, firmware);
+        trial.send({{9, 1600.0, true}, {10, 1500.0, true}});
+        trial.wait(20);
+        const auto pulses = [&] {
+            int count = 0;
+            for (const Bytes& message : trial.written())
+                count += std::ranges::search(message, Bytes{0xE9, 0x40, 0x0C}).size() > 0; // 1600 on pin 9
+            return count;
+        };
+        (void)pulses();
+        /// Answers all questions of a time with what the board has.
+        const auto answersFor = [&](int milliseconds, int value) {
+            int count = 0;
+            for (int passed = 0; passed < milliseconds; passed += 5) {
+                trial.wait(5);
+                for (const Bytes& message : trial.written()) {
+                    count += std::ranges::search(message, Bytes{0xE9, 0x40, 0x0C}).size() > 0;
+                    if (message.size() == 4 && message[1] == 0x6D)
+                        trial.hear(stateOf(message[2], 4, message[2] == 9 ? value : 1500));
+                }
+            }
+            return count;
+        };
+        EXPECT_EQ(answersFor(3000, 1600), 0) << "it has what it was told";
+        EXPECT_EQ(answersFor(3000, 1602), 0) << "it keeps off its limits";
+        EXPECT_EQ(trial.state().errors, 0U);
+        EXPECT_EQ(answersFor(600, 1728), 1) << firmware;
+        EXPECT_EQ(trial.state().errors, 1U);
+        EXPECT_EQ(answersFor(3000, 1600), 0);
+        EXPECT_EQ(answersFor(20'000, 1728), 2) << "a board that will not have it is not flooded";
+        trial.send({{9, 1700.0, true}, {10, 1500.0, true}});
+        trial.wait(20);
+        (void)trial.written();
+        trial.send({{9, 1600.0, true}, {10, 1500.0, true}});
+        trial.wait(20);
+        EXPECT_EQ(pulses(), 1);
+        EXPECT_EQ(answersFor(20'000, 1728), 3) << "but another value counts anew";
+        EXPECT_EQ(trial.state().reboots, 0U);
+    }
 }
 
 TEST(FirmataPulses, StockFirmwareHasThePulseRightBehindTheAttach) {

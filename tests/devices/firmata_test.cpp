@@ -26,6 +26,7 @@ TEST(Firmata, WritesWhatTheProtocolSays) {
     EXPECT_THAT(setSampling(1000), ElementsAre(0xF0, 0x7A, 0x68, 0x07, 0xF7));
     // 544 = 4 x 128 + 32, 2400 = 18 x 128 + 96
     EXPECT_THAT(configureServo(9, 544, 2400), ElementsAre(0xF0, 0x70, 0x09, 0x20, 0x04, 0x60, 0x12, 0xF7));
+    EXPECT_THAT(limitStep(9, 300), ElementsAre(0xF0, 0x03, 0x09, 0x2C, 0x02, 0xF7)); // 2 x 128 + 44
     EXPECT_THAT(writeValue(9, 1500), ElementsAre(0xE9, 0x5C, 0x0B));
     EXPECT_THAT(writeExtended(9, 1500), ElementsAre(0xF0, 0x6F, 0x09, 0x5C, 0x0B, 0xF7));
     EXPECT_THAT(writeValue(15, 1500), ElementsAre(0xEF, 0x5C, 0x0B));

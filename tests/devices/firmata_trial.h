@@ -13,7 +13,7 @@ inline const Bytes kStateQuestion = {0xF0, 0x6D};
 inline const Bytes kVoltageQuestion = {0xF0, 0x02};
 inline const Messages kQuestions = {kStateQuestion, kVoltageQuestion};
 
-inline Bytes firmwareNamed(const std::string& name, std::uint8_t minor = 1) {
+inline Bytes firmwareNamed(const std::string& name, std::uint8_t minor = 2) {
     Bytes bytes = {0xF0, 0x79, 0x01, minor};
     for (const char letter : name) bytes.insert(bytes.end(), {static_cast<std::uint8_t>(letter), 0x00});
     bytes.push_back(0xF7);
@@ -28,7 +28,10 @@ inline Bytes capabilities(int pins = 20) {
     return bytes;
 }
 
-inline Bytes stateOf(std::uint8_t pin, std::uint8_t mode) { return {0xF0, 0x6E, pin, mode, 0x5C, 0x0B, 0xF7}; }
+inline Bytes stateOf(std::uint8_t pin, std::uint8_t mode, int value = 1500) {
+    return {0xF0, 0x6E, pin, mode, static_cast<std::uint8_t>(value & 0x7F), static_cast<std::uint8_t>(value >> 7),
+            0xF7};
+}
 /// What a pin is told to let its servo go; the first byte ends what was begun before.
 inline Bytes detachOf(std::uint8_t pin) { return {0xF7, 0xF4, pin, 0x01}; }
 inline const Bytes kReset = {0xF7, 0xFF};

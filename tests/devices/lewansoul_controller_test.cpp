@@ -267,6 +267,8 @@ TEST(LewansoulController, TellsSilenceAndAnEmptyBattery) {
     ControllerTrial trial = readyTrial({1});
     trial.wait(900);
     trial.hear(report(voltage(5600)));
+    trial.wait(20);
+    trial.hear(report(voltage(5600)));
     EXPECT_EQ(trial.state().trouble->why, "battery at 5.6 V");
     trial.wait(1100);
     EXPECT_FALSE(trial.state().answering);

@@ -186,6 +186,28 @@ TEST_F(LinkKeeperTest, ADeviceThatSpokeIsTriedSoonOneThatIsSilentEverLater) {
     EXPECT_EQ(lost_.back(), kSilent.why);
 }
 
+TEST_F(LinkKeeperTest, TheDeviceThatIsExpectedIsOpenedWhateverItsPortIsCalledToday) {
+    script_.refusal = std::nullopt;
+    ports_ = {{"/dev/none0", "S7", 0x2341, 0x43, "Uno"}, {"/dev/none3", "S1", 0x2341, 0x43, "Uno"}};
+    make();
+    keeper_->start(now_, "S1");
+    EXPECT_EQ(script_.attempts.back(), DeviceAddress(SerialAddress{"/dev/none3"}))
+        << "another board has the port that is typed";
+    for (const auto& [ports, opened] : std::vector<std::pair<std::vector<SerialPort>, const char*>>{
+             {{{"/dev/none0", "S1", 0x2341, 0x43, "Uno"}}, "/dev/none0"},
+             {{{"/dev/none5", "S7", 0x2341, 0x43, "Uno"}}, "/dev/none0"}, // its own trouble is told
+             {{{"/dev/none5", "S1", 0x2341, 0x43, "Uno"}, {"/dev/none6", "S1", 0x2341, 0x43, "Uno"}}, "/dev/none0"},
+             {{{"/dev/none5", "S1", 0x2341, 0x43, "Uno"}}, "/dev/none5"}}) {
+        keeper_->stop();
+        ports_ = ports;
+        keeper_->start(now_, "S1");
+        EXPECT_EQ(script_.attempts.back(), DeviceAddress(SerialAddress{opened}));
+    }
+    keeper_->stop();
+    keeper_->start(now_);
+    EXPECT_EQ(script_.attempts.back(), DeviceAddress(SerialAddress{"/dev/none0"})) << "nobody in particular is meant";
+}
+
 TEST_F(LinkKeeperTest, OpensAtOnceWhatHasComeBack) {
     make();
     keeper_->start(now_);

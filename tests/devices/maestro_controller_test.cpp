@@ -199,6 +199,21 @@ TEST(MaestroController, ItsOwnTimeoutEndsTheSession) {
     EXPECT_FALSE(board.take().empty());
 }
 
+TEST(MaestroController, ATargetThatTheLineSpoiledIsToldAgain) {
+    AnsweringTrial board(sixServos());
+    board.trial.send({{3, 1500.0, true}});
+    board.quarters = 6000;
+    board.wait(1500);
+    (void)board.take();
+    board.quarters = 6512;
+    board.wait(3000);
+    const Messages again = board.take();
+    // 6000 quarters on channel 3, as the board's manual writes it.
+    EXPECT_THAT(again, testing::ElementsAreArray(Messages(3, Bytes{0xAA, 0x0C, 0x04, 0x03, 0x70, 0x2E})))
+        << "a few times, not for ever";
+    EXPECT_GE(board.trial.state().errors, 3U);
+}
+
 TEST(MaestroController, ABoardThatLetGoIsNoticed) {
     AnsweringTrial board(sixServos());
     board.trial.send({{3, 1500.0, true}});

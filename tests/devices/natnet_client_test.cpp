@@ -161,8 +161,12 @@ TEST(NatNetClient, APoseThatIsNoNumberIsNotValidWhateverItsFlagSays) {
     talk.frame(talk.frameOf(bodies), 0.1);
     for (const TrackedBody& body : talk.client.frame().bodies) {
         EXPECT_FALSE(body.valid);
+        EXPECT_FALSE(body.isNumber) << "so it can be told";
         EXPECT_EQ(body.pose, Pose{});
     }
+    for (natnet::RigidBody& body : bodies) body.valid = false;
+    talk.frame(talk.frameOf(bodies), 0.2);
+    for (const TrackedBody& body : talk.client.frame().bodies) EXPECT_TRUE(body.isNumber) << "nobody sees it";
 }
 
 TEST(NatNetClient, ClocksAreMatchedByEchoes) {

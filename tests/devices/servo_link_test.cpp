@@ -9,10 +9,13 @@
 #include <string>
 #include <thread>
 
+#include <sched.h>
+
 #include <QCoreApplication>
 #include <gtest/gtest.h>
 
 #include "core/base/error.h"
+#include "core/base/thread_priority.h"
 #include "devices/simulator/simulated_bench.h"
 
 namespace lumorph {
@@ -59,6 +62,8 @@ protected:
         LinkOptions options;
         options.bench = &bench_;
         options.onWire = [this](std::span<const std::uint8_t> bytes, bool sent) {
+            policy_ = ::sched_getscheduler(0);
+            if (sent && faultsToCome_ > 0 && --faultsToCome_ >= 0) throw std::runtime_error("out of memory");
             const std::scoped_lock lock(mutex_);
             if (sent) sent_.insert(sent_.end(), bytes.begin(), bytes.end());
         };
@@ -115,6 +120,8 @@ protected:
     SimulatedBench bench_;
     DeviceProfile profile_;
     std::shared_ptr<SimulatedBoard> board_;
+    std::atomic<int> faultsToCome_ = 0; ///< of what is sent next, as if the link itself failed
+    std::atomic<int> policy_ = -1;      ///< of the thread that sends
     std::mutex mutex_;
     std::vector<std::uint8_t> sent_;
     std::unique_ptr<ServoLink> link_;
@@ -137,6 +144,24 @@ TEST_F(ServoLinkTest, TakesServosWhereTheyAreWanted) {
     EXPECT_GT(status.bytesSent, 20U);
     EXPECT_EQ(times("The board is ready (Firmata, LumorphTablet"), 1) << said_;
     expectSoft();
+}
+
+TEST_F(ServoLinkTest, AFaultOfItsOwnLetsServosGoAndIsToldAsItIs) {
+    open(tabletProfile());
+    goLive();
+    faultsToCome_ = 1;
+    link_->command(std::vector<double>(3, 0.9));
+    EXPECT_TRUE(hears("The link has failed: out of memory. (Servos were stopped; connect the device again.)"));
+    EXPECT_TRUE(waitFor([&] { return allLimp(); }));
+    EXPECT_TRUE(reaches(LinkPhase::stopped));
+    link_->arm(true);
+    ASSERT_TRUE(reaches(LinkPhase::live)) << "it still heeds orders";
+    faultsToCome_ = 2;
+    link_->command(std::vector<double>(3, 0.1));
+    EXPECT_TRUE(hears("Servos may still have power: switch it off by hand"));
+    EXPECT_TRUE(waitFor([&] { return allLimp(); })) << "what was not said is said again";
+    link_->stop();
+    EXPECT_TRUE(reaches(LinkPhase::stopped));
 }
 
 TEST_F(ServoLinkTest, StartsNoServoWithoutAWordWhosePlaceIsUnknown) {
@@ -170,6 +195,15 @@ TEST_F(ServoLinkTest, StopsWhileItsUserIsStuckAndStaysStopped) {
     EXPECT_TRUE(arrives(0, 1200.0));
     // One slot of the rate cap at full speed, and the horn's way to its pulse.
     expectSoft(60.0);
+}
+
+TEST_F(ServoLinkTest, RunsBeforeUsualThreadsWhereTheSystemGrantsIt) {
+    bool granted = false;
+    std::thread([&] { granted = runPromptly(); }).join();
+    open(tabletProfile());
+    goLive();
+    EXPECT_EQ(policy_, granted ? SCHED_RR | SCHED_RESET_ON_FORK : SCHED_OTHER);
+    EXPECT_EQ(::sched_getscheduler(0), SCHED_OTHER) << "it is the link's thread alone";
 }
 
 TEST_F(ServoLinkTest, TakesBackWhatWasAskedBeforeTheStop) {

@@ -21,7 +21,7 @@ Bytes textMessage(Bytes head, const std::string& text) {
 }
 
 const Bytes kVersion{0xF9, 0x02, 0x05};
-const Bytes kTabletFirmware = textMessage({0xF0, 0x79, 0x01, 0x01}, "LumorphTablet");
+const Bytes kTabletFirmware = textMessage({0xF0, 0x79, 0x01, 0x02}, "LumorphTablet");
 
 Bytes operator+(Bytes first, const Bytes& second) {
     first.insert(first.end(), second.begin(), second.end());

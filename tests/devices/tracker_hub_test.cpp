@@ -4,17 +4,18 @@
 #include <cmath>
 #include <limits>
 #include <memory>
-#include <thread>
-
-#include <QCoreApplication>
 
 #include <glm/geometric.hpp>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "core/base/error.h"
+#include "tests/devices/running_tracker.h"
 
 namespace lumorph {
 namespace {
+
+using ::testing::HasSubstr;
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
@@ -121,23 +122,93 @@ TEST_F(TrackerHubTest, ATimeToComeDoesNotStopWhatFollows) {
     EXPECT_NEAR(now("glasses")->position.x, 1.0, 1e-3);
 }
 
+// --- Two trackers, one name
+
+constexpr glm::dvec3 kHere{0.0, 1.0, 0.0};
+constexpr glm::dvec3 kThere{0.7, 1.0, 0.0};
+
+TEST_F(TrackerHubTest, OfTwoThatShareANameTheFirstIsFollowed) {
+    hub.setRoles({{"head", PoseRole::head}});
+    for (int i = 0; i < 100; ++i) {
+        take("head", kHere, true, "first");
+        take("head", kThere, true, "second");
+        ASSERT_TRUE(now("head"));
+        ASSERT_LT(glm::distance(now("head")->position, kHere), 1e-9) << i;
+    }
+    EXPECT_EQ(board->entries().size(), 1U);
+}
+
+TEST_F(TrackerHubTest, TheSecondTakesOverWhenTheFirstIsStaleAndTheFirstDoesNotTakeItBack) {
+    hub.setRoles({{"head", PoseRole::head}});
+    for (int i = 0; i < 20; ++i) take("head", kHere - glm::dvec3(0.005 * i, 0, 0), true, "first");
+    const glm::dvec3 last = kHere - glm::dvec3(0.005 * 19, 0, 0);
+    for (int i = 0; i < 25; ++i) {
+        take("head", kThere, true, "second");
+        ASSERT_GT(glm::distance(now("head")->position, kThere), 0.5) << "after " << 10 * (i + 1) << " ms";
+    }
+    EXPECT_EQ(board->entries()[0].stream->latest()->pose.position, last);
+    take("head", kThere, true, "second");
+    ASSERT_TRUE(now("head")) << "0.26 s after the first spoke last";
+    EXPECT_EQ(now("head")->position, kThere) << "at once, without a trace of the first";
+    const auto pose = board->entries()[0].stream->at(clock->now() + Microseconds{100'000}, clock->now());
+    EXPECT_EQ(pose->position, kThere) << "nor of its motion";
+    for (int i = 0; i < 20; ++i) {
+        take("head", kHere, true, "first");
+        take("head", kThere, true, "second");
+        ASSERT_LT(glm::distance(now("head")->position, kThere), 1e-9) << i;
+    }
+}
+
+TEST_F(TrackerHubTest, AShortLossChangesNothingAndALongOneHandsOver) {
+    hub.setRoles({{"head", PoseRole::head}});
+    take("head", kHere, true, "first");
+    for (int i = 0; i < 5; ++i) {
+        take("head", kHere, false, "first");
+        take("head", kThere, true, "second");
+        EXPECT_FALSE(now("head")) << "lost, and nobody is put in its place";
+    }
+    take("head", kHere, true, "first");
+    ASSERT_TRUE(now("head"));
+    EXPECT_LT(glm::distance(now("head")->position, kHere), 1e-9);
+    for (int i = 0; i < 20; ++i) {
+        take("head", kHere, false, "first");
+        take("head", kThere, true, "second");
+    }
+    ASSERT_TRUE(now("head"));
+    EXPECT_LT(glm::distance(now("head")->position, kThere), 1e-9) << "who still says lost does not lose it";
+}
+
+TEST_F(TrackerHubTest, ASecondThatHasNoPoseDoesNotTakeOver) {
+    hub.setRoles({{"head", PoseRole::head}});
+    take("head", kHere, true, "first");
+    clock->advance(Microseconds{300'000});
+    take("head", kThere, false, "second");
+    take("head", {kNan, 0, 0}, true, "second");
+    take("head", kHere, true, "first");
+    ASSERT_TRUE(now("head"));
+    EXPECT_LT(glm::distance(now("head")->position, kHere), 1e-9);
+}
+
+TEST_F(TrackerHubTest, TwoThatAreLateDoNotTakeTurns) {
+    hub.setRoles({{"head", PoseRole::head}});
+    const auto takeLate = [&](const glm::dvec3& position, const std::string& source) {
+        clock->advance(Microseconds{10'000});
+        TrackerFrame frame;
+        frame.measured = clock->now() - Microseconds{245'000};
+        frame.bodies = {{1, "head", true, {position, {1, 0, 0, 0}}}};
+        hub.take(source, frame);
+    };
+    clock->advance(Microseconds{1'000'000});
+    for (int i = 0; i < 50; ++i) {
+        takeLate(kHere, "first");
+        takeLate(kThere, "second");
+        ASSERT_EQ(board->entries()[0].stream->latest()->pose.position, kHere) << i;
+    }
+}
+
 // --- With trackers that run
 
-class RunningHub : public ::testing::Test {
-protected:
-    void SetUp() override {
-        if (QCoreApplication::instance() == nullptr) {
-            static int count = 1;
-            static char name[] = "test";
-            static char* arguments[] = {name, nullptr};
-            new QCoreApplication(count, arguments); // as long as the program
-        }
-    }
-    template <typename Condition> static bool waitFor(Condition condition) {
-        for (int i = 0; i < 2000 && !condition(); ++i) std::this_thread::sleep_for(std::chrono::milliseconds(5));
-        return condition();
-    }
-};
+class RunningHub : public test::RunningTracker {};
 
 TEST_F(RunningHub, ASimulatedHeadComesToTheBoardUntilItIsClosed) {
     const auto clock = std::make_shared<SteadyClock>();
@@ -156,6 +227,29 @@ TEST_F(RunningHub, ASimulatedHeadComesToTheBoardUntilItIsClosed) {
     EXPECT_TRUE(board->entries().empty());
     hub.close("sim://head?rate=200"); // and again: nothing happens
     hub.open("sim://head?rate=200", false);
+}
+
+TEST_F(RunningHub, OfTwoSimulatedHeadsTheSecondIsToldAndTakesOverWhenTheFirstIsClosed) {
+    const auto clock = std::make_shared<SteadyClock>();
+    const auto board = std::make_shared<PoseBoard>();
+    TrackerHub hub(board, clock);
+    hub.setRoles({{"head", PoseRole::head}});
+    const auto adviceOf = [&](const std::string& uri) {
+        for (const TrackerStatus& status : hub.status())
+            if (status.address == uri) return status.advice;
+        return std::string();
+    };
+    const auto isSeen = [&] {
+        const auto entries = board->entries();
+        return !entries.empty() && entries[0].stream->at(clock->now(), clock->now()).has_value();
+    };
+    hub.open("sim://head?rate=200", false);
+    ASSERT_TRUE(waitFor(isSeen));
+    hub.open("sim://head?rate=150", false);
+    EXPECT_TRUE(waitFor([&] { return !adviceOf("sim://head?rate=150").empty(); }));
+    EXPECT_THAT(adviceOf("sim://head?rate=150"), HasSubstr("sim://head?rate=200 (a simulated head)"));
+    hub.close("sim://head?rate=200");
+    EXPECT_TRUE(waitFor([&] { return isSeen() && adviceOf("sim://head?rate=150").empty(); }));
 }
 
 } // namespace

@@ -247,6 +247,22 @@ TEST(TrackerLog, TellsOfABodyThatJumpsAndOfNoneThatRuns) {
     EXPECT_EQ(see(1.0, 0.01), 2U);
 }
 
+TEST(TrackerLog, TellsOfAPoseThatIsNoNumber) {
+    const auto clock = std::make_shared<ManualClock>();
+    TrackerLog log("natnet://127.0.0.1", clock);
+    const auto see = [&](bool isNumber) {
+        clock->advance(at(0.01));
+        log.noteFrame({1, clock->now(), clock->now(), {{7, "hat", isNumber, {}, isNumber}}}, {});
+        return log.status().events;
+    };
+    EXPECT_EQ(see(true), 0U);
+    EXPECT_EQ(see(false), 1U);
+    EXPECT_EQ(log.status().event, "the pose of hat is no number, so it counts as not seen");
+    EXPECT_EQ(see(false), 1U) << "not a hundred times a second";
+    for (int i = 0; i < 100; ++i) (void)see(false);
+    EXPECT_LE(log.status().events, 11U);
+}
+
 // --- What to do when nothing arrives
 
 NatNetSituation quiet() {
@@ -302,6 +318,47 @@ TEST(TrackerAdvice, AServerOnThisMachineMeetsNoFirewallAndNoNetwork) {
     }
 }
 
+TEST(TrackerAdvice, WhileClosedAGroupIsHeardOnLoopbackAndItIsTold) {
+    NatNetAddress address = remote();
+    NatNetSituation s = quiet();
+    s.hostIsHere = true; // by its address on the network
+    s.openToNetwork = false;
+    const std::string silent = adviceFor(address, s);
+    s.server = natnet::ServerInfo{"Motive", {2, 1, 0, 0}, {3, 0}, {}};
+    const std::string answering = adviceFor(address, s);
+    for (const std::string& advice : {silent, answering}) {
+        EXPECT_THAT(advice, HasSubstr("on the interface 127.0.0.1"));
+        EXPECT_THAT(advice, HasSubstr("If it has to send on another interface, open this input to the network"));
+    }
+    s.openToNetwork = true;
+    EXPECT_THAT(adviceFor(address, s), HasSubstr("on the interface 192.168.0.5."));
+    address.multicast = false;
+    s.openToNetwork = false;
+    EXPECT_THAT(adviceFor(address, s), HasSubstr("on the interface 192.168.0.5."));
+    EXPECT_THAT(adviceFor(address, s), Not(HasSubstr("another interface")));
+}
+
+TEST(TrackerAdvice, SaysHowAnInputIsOpened) {
+    NatNetSituation s = quiet();
+    s.openToNetwork = false;
+    const std::string natnet = adviceFor(remote(), s);
+    EXPECT_THAT(natnet, HasSubstr("192.168.0.5 is another machine"));
+    for (const std::string& advice : {natnet, adviceFor(OpenTrackAddress{"127.0.0.1", 4242}, s),
+                                      adviceFor(OscAddress{"127.0.0.1", 9000}, s, false)}) {
+        EXPECT_THAT(advice, HasSubstr("switch on 'Take packets from other machines' and open it again"));
+        EXPECT_THAT(advice, HasSubstr("--open"));
+    }
+}
+
+TEST(TrackerAdvice, ASharedNameIsToldWithTheOtherAndTheRemedy) {
+    EXPECT_EQ(adviceFor(SharedName{"head", 0, "sim://head", "a simulated head"}),
+              "'head' of this tracker is not followed: sim://head (a simulated head) brings the same name and came "
+              "first. Close one of the two trackers, or rename the body in its program.");
+    EXPECT_THAT(adviceFor(SharedName{"head", 1, "replay", {}}),
+                HasSubstr("'head' and 1 other body of this tracker are not followed: replay brings the same names"));
+    EXPECT_THAT(adviceFor(SharedName{"head", 5, "replay", {}}), HasSubstr("'head' and 5 other bodies of"));
+}
+
 TEST(TrackerAdvice, NatNetKnowsWhatIsWrong) {
     NatNetAddress address = remote();
     address.local = "10.0.0.9";
@@ -354,6 +411,8 @@ TEST(TrackerAdvice, ListenersNameTheirPort) {
     const OpenTrackAddress address{"127.0.0.1", 4242};
     EXPECT_THAT(adviceFor(address, s), HasSubstr("port 4242 of 127.0.0.1"));
     EXPECT_THAT(adviceFor(address, s), HasSubstr("If it runs on another machine, open this input"));
+    EXPECT_THAT(adviceFor(OscAddress{"192.168.0.2", 9000}, s, false), HasSubstr("port 9000 of 127.0.0.1"))
+        << "while closed it listens nowhere else";
     s.openToNetwork = true;
     EXPECT_THAT(adviceFor(address, s), HasSubstr("firewall blocks UDP port 4242"));
     EXPECT_THAT(adviceFor(OscAddress{"127.0.0.1", 9000}, s, true), HasSubstr("Only rotations arrive"));

@@ -1,152 +1,29 @@
 #include "devices/trackers/tracker.h"
 
 #include <bit>
-#include <chrono>
-#include <cstring>
-#include <mutex>
-#include <thread>
 #include <vector>
-
-#include <QCoreApplication>
-#include <QNetworkDatagram>
-#include <QNetworkInterface>
-#include <QUdpSocket>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "core/base/error.h"
-#include "devices/trackers/udp_port.h"
-#include "tests/support/natnet_frames.h"
-#include "tests/support/natnet_writer.h"
+#include "tests/devices/running_tracker.h"
 
 namespace lumorph {
 namespace {
 
 using natnet::Message;
 using natnet::Version;
+using test::freePort;
+using test::loopback;
+using test::RunningTracker;
+using test::TestServer;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
-
-constexpr std::uint64_t kHertz = 10'000'000;
-constexpr std::uint64_t kServerAhead = 123'456 * kHertz;
-
-std::uint64_t serverTicks(Microseconds time) {
-    return kServerAhead + static_cast<std::uint64_t>(time.count()) * (kHertz / 1'000'000);
-}
-
-/// A port that is free, as well as that can be known.
-quint16 freePort() {
-    QUdpSocket socket;
-    EXPECT_TRUE(socket.bind(QHostAddress::LocalHost, 0));
-    return socket.localPort();
-}
-
-/// A NatNet server at a port that the system chooses; answers while it is looked after.
-class TestServer {
-public:
-    explicit TestServer(Version version, bool multicast = false) : version_(version), writer_(version) {
-        EXPECT_TRUE(socket_.bind(QHostAddress::LocalHost, 0));
-        info_ = {"Motive", {2, 1, 0, 0}, version, {}};
-        if (version.major >= 3) info_.connection = natnet::Connection{kHertz, 1511, multicast, {239, 255, 42, 99}};
-    }
-    [[nodiscard]] std::string port() const { return std::to_string(socket_.localPort()); }
-    [[nodiscard]] int count(Message message) const { return counts_[static_cast<std::size_t>(message)]; }
-
-    void serve() {
-        while (socket_.hasPendingDatagrams()) {
-            const QNetworkDatagram datagram = socket_.receiveDatagram();
-            const QByteArray data = datagram.data();
-            const natnet::Packet packet =
-                natnet::readPacket(std::as_bytes(std::span(data.constData(), static_cast<std::size_t>(data.size()))));
-            client_ = static_cast<quint16>(datagram.senderPort());
-            ++counts_[static_cast<std::size_t>(packet.message)];
-            if (packet.message == Message::connect) send(writer_.serverInfo(info_));
-            if (packet.message == Message::requestModels) send(writer_.models(models));
-            if (packet.message == Message::echoRequest) {
-                std::uint64_t number = 0;
-                std::memcpy(&number, packet.payload.data(), sizeof number);
-                send(writer_.echo(number, serverTicks(SteadyClock().now())));
-            }
-        }
-    }
-    void send(const std::vector<std::byte>& bytes) { sendTo(bytes, QHostAddress::LocalHost, client_); }
-    void sendTo(const std::vector<std::byte>& bytes, const QHostAddress& to, quint16 port) {
-        socket_.writeDatagram(reinterpret_cast<const char*>(bytes.data()), static_cast<qint64>(bytes.size()), to, port);
-    }
-    [[nodiscard]] std::vector<std::byte> frame(int number, const std::vector<natnet::RigidBody>& bodies) {
-        natnet::Frame frame;
-        frame.number = number;
-        frame.bodies = bodies;
-        if (version_.major < 3) frame.latency = 0.0F;
-        frame.timestamp = 0.01 * number;
-        if (version_.major >= 3) {
-            frame.ticks.emplace();
-            frame.ticks->exposure = serverTicks(SteadyClock().now() - Microseconds{5'000});
-        }
-        return writer_.frame(frame);
-    }
-    QUdpSocket& socket() { return socket_; }
-
-    std::vector<natnet::Model> models;
-
-private:
-    Version version_;
-    test::NatNetWriter writer_;
-    natnet::ServerInfo info_;
-    QUdpSocket socket_;
-    quint16 client_ = 0;
-    std::array<int, 128> counts_{};
-};
 
 natnet::Model named(std::int32_t id, const std::string& name) {
     return {natnet::Model::Kind::rigidBody, name, id, {{name, id, -1, {}}}, {}};
 }
-
-class RunningTracker : public ::testing::Test {
-protected:
-    void SetUp() override {
-        if (QCoreApplication::instance() == nullptr) {
-            static int count = 1;
-            static char name[] = "test";
-            static char* arguments[] = {name, nullptr};
-            new QCoreApplication(count, arguments); // as long as the program
-        }
-    }
-
-    std::unique_ptr<Tracker> open(const std::string& uri) {
-        TrackerOptions options;
-        options.onFrame = [this](const TrackerFrame& frame) {
-            const std::scoped_lock lock(mutex_);
-            frames_.push_back(frame);
-        };
-        return openTracker(uri, std::move(options));
-    }
-    std::vector<TrackerFrame> frames() {
-        const std::scoped_lock lock(mutex_);
-        return frames_;
-    }
-    /// Until it holds, or for ten seconds.
-    template <typename Condition> static bool waitFor(Condition condition) {
-        for (int i = 0; i < 2000 && !condition(); ++i) std::this_thread::sleep_for(std::chrono::milliseconds(5));
-        return condition();
-    }
-
-    static void sendTo(quint16 port, const std::vector<std::byte>& bytes) {
-        QUdpSocket socket;
-        socket.writeDatagram(reinterpret_cast<const char*>(bytes.data()), static_cast<qint64>(bytes.size()),
-                             QHostAddress::LocalHost, port);
-    }
-    static std::vector<std::byte> openTrackPacket(const std::array<double, 6>& numbers) {
-        std::vector<std::byte> bytes(48);
-        std::memcpy(bytes.data(), numbers.data(), 48);
-        return bytes;
-    }
-
-private:
-    std::mutex mutex_;
-    std::vector<TrackerFrame> frames_;
-};
 
 TEST_F(RunningTracker, NatNetUnicastFromTheFirstWordToPosesWithTheirTimes) {
     for (const Version version : {Version{2, 10}, Version{3, 1}, Version{4, 1}}) {
@@ -206,8 +83,7 @@ TEST_F(RunningTracker, NatNetMulticastJoinsTheGroupOnTheLocalAddress) {
     } catch (const DeviceError& error) {
         GTEST_SKIP() << "no multicast here: " << error.what();
     }
-    for (const QNetworkInterface& candidate : QNetworkInterface::allInterfaces())
-        if (candidate.flags().testFlag(QNetworkInterface::IsLoopBack)) server.socket().setMulticastInterface(candidate);
+    server.socket().setMulticastInterface(loopback());
     int number = 0;
     EXPECT_TRUE(waitFor([&] {
         server.serve();
@@ -308,16 +184,6 @@ TEST_F(RunningTracker, APortThatIsTakenNamesTheProgramThatHasIt) {
                         HasSubstr("(process " + std::to_string(QCoreApplication::applicationPid()) + ") has it"));
         }
     }
-}
-
-TEST_F(RunningTracker, OnlyThisMachineMaySendUnlessTheUserOpensTheWay) {
-    const PacketGate closed(false);
-    EXPECT_TRUE(closed.lets(QHostAddress("127.0.0.1")));
-    EXPECT_TRUE(closed.lets(QHostAddress("127.3.2.1")));
-    for (const QHostAddress& own : ownAddresses()) EXPECT_TRUE(closed.lets(own)) << own.toString().toStdString();
-    EXPECT_FALSE(closed.lets(QHostAddress("203.0.113.5")));
-    EXPECT_FALSE(closed.lets(QHostAddress("8.8.8.8")));
-    EXPECT_TRUE(PacketGate(true).lets(QHostAddress("203.0.113.5")));
 }
 
 } // namespace

@@ -18,5 +18,8 @@ inline Bytes write(int pin, int value) {
 inline Bytes limits(int pin, int least, int greatest) {
     return {0xF0, 0x70, static_cast<std::uint8_t>(pin), low(least), high(least), low(greatest), high(greatest), 0xF7};
 }
+inline Bytes step(int pin, int microseconds) {
+    return {0xF0, 0x03, static_cast<std::uint8_t>(pin), low(microseconds), high(microseconds), 0xF7};
+}
 
 } // namespace lumorph::firmware_test

@@ -30,7 +30,7 @@ Bytes inPairs(const std::string& text) {
 Bytes textMessage(const std::string& text) { return plus(plus({0xF0, 0x71}, inPairs(text)), {0xF7}); }
 
 const Bytes kVersion = {0xF9, 0x02, 0x05};
-const Bytes kFirmware = plus(plus({0xF0, 0x79, 1, 1}, inPairs("LumorphTablet")), {0xF7});
+const Bytes kFirmware = plus(plus({0xF0, 0x79, 1, 2}, inPairs("LumorphTablet")), {0xF7});
 
 class Firmata : public testing::Test {
 protected:

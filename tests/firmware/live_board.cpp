@@ -37,7 +37,6 @@ void LiveBoard::live() {
         std::this_thread::sleep_for(std::chrono::milliseconds(2));
         const auto now = Clock::now();
         board.run(std::min(20.0, std::chrono::duration<double, std::milli>(now - last).count()));
-        const double heardAt = std::chrono::duration<double, std::milli>(last.time_since_epoch()).count();
         last = now;
         if (pty_ && !plugged_) pty_.reset();
         if (!pty_ && plugged_) plug();
@@ -49,7 +48,6 @@ void LiveBoard::live() {
         const std::vector<Pulse> fresh = board.takePulses();
         const std::scoped_lock lock(mutex_);
         pulses_.insert(pulses_.end(), fresh.begin(), fresh.end());
-        wallTimes_.resize(pulses_.size(), heardAt);
         now_ = board.now();
     }
 }
@@ -57,11 +55,6 @@ void LiveBoard::live() {
 std::vector<Pulse> LiveBoard::pulses() const {
     const std::scoped_lock lock(mutex_);
     return pulses_;
-}
-
-std::vector<double> LiveBoard::wallTimes() const {
-    const std::scoped_lock lock(mutex_);
-    return wallTimes_;
 }
 
 double LiveBoard::widthNow(int pin) const {

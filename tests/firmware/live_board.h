@@ -24,9 +24,6 @@ public:
     void cutTheLine() { plugged_ = false; }
     void mendTheLine() { plugged_ = true; }
     [[nodiscard]] std::vector<Pulse> pulses() const; ///< all until now
-    /// When the board had last heard the studio before each of them, by the wall's clock, milliseconds: on a busy
-    /// machine it stands still at times, and takes what was said meanwhile all at once.
-    [[nodiscard]] std::vector<double> wallTimes() const;
     /// Width of the newest pulse on a pin, if it is no older than two frames; 0: no pulse.
     [[nodiscard]] double widthNow(int pin) const;
     [[nodiscard]] double now() const;
@@ -39,7 +36,6 @@ private:
     std::unique_ptr<Pty> pty_; ///< of the board's thread
     mutable std::mutex mutex_;
     std::vector<Pulse> pulses_;
-    std::vector<double> wallTimes_;
     double now_ = 0.0;
     std::atomic<bool> plugged_{true};
     std::atomic<bool> ends_{false};

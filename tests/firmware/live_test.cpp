@@ -93,7 +93,7 @@ protected:
 TEST_F(LiveLink, TheStudioKnowsTheSketchAndDrivesIt) {
     ServoLink link(profile_, {});
     ASSERT_TRUE(isLive(link));
-    EXPECT_EQ(link.status().controller.firmware, "LumorphTablet 1.1");
+    EXPECT_EQ(link.status().controller.firmware, "LumorphTablet 1.2");
     EXPECT_TRUE(link.status().controller.traits.failsafe);
     EXPECT_FALSE(link.status().controller.traits.jumpsOnAttach);
     ASSERT_TRUE(comesTrue([&] { return allAre(board_, profile_, 0.25); }));
@@ -121,29 +121,17 @@ TEST_F(LiveLink, ACutLineLetsServosGo) {
     EXPECT_TRUE(comesTrue([&] { return link.status().phase == LinkPhase::lost; }));
 }
 
-struct Steps {
-    double largest = 0.0; ///< microseconds from one frame to the next
-    double share = 0.0;   ///< greatest, of what the velocity limit allows in the time
-};
-
-/// Of all pins; starts after a pause do not count. When the studio itself stands still, 50 ms of it count at most; what
-/// it said since the frame before, the next one takes over.
-Steps stepsOf(const std::vector<Pulse>& pulses, const std::vector<double>& wallTimes, double perMillisecond) {
-    constexpr double kStudiosPause = 50.0;
-    constexpr double kFrame = 20.0;
-    std::map<int, std::size_t> before;
-    Steps steps;
-    for (std::size_t i = 0; i < pulses.size(); ++i) {
-        const auto last = before.find(pulses[i].pin);
-        if (last != before.end() && pulses[i].start - pulses[last->second].start < 30.0) {
-            const double step = std::abs(pulses[i].width - pulses[last->second].width);
-            const double time = std::max(kFrame, wallTimes[i] - wallTimes[last->second]) + kStudiosPause;
-            steps.largest = std::max(steps.largest, step);
-            steps.share = std::max(steps.share, step / (perMillisecond * time));
-        }
-        before[pulses[i].pin] = i;
+/// Greatest from one frame to the next, microseconds, of all pins; starts after a pause do not count.
+double largestStep(const std::vector<Pulse>& pulses) {
+    std::map<int, Pulse> before;
+    double largest = 0.0;
+    for (const Pulse& pulse : pulses) {
+        const auto last = before.find(pulse.pin);
+        if (last != before.end() && pulse.start - last->second.start < 30.0)
+            largest = std::max(largest, std::abs(pulse.width - last->second.width));
+        before[pulse.pin] = pulse;
     }
-    return steps;
+    return largest;
 }
 
 // Two cuts here; twenty in ten minutes where LUMORPH_SOAK is set.
@@ -180,18 +168,15 @@ TEST_F(LiveLink, TheLineIsCutAndMendedAgainAndAgain) {
         ASSERT_GE(pulse.width, 1000.0);
         ASSERT_LE(pulse.width, 2000.0);
     }
-    std::vector<double> wallTimes = board_.wallTimes();
-    wallTimes.resize(pulses.size());
-    const double perMillisecond = 4.0 * 1000.0 * 0.001; // 1000 us are a stroke, and 4 strokes a second the limit
-    const Steps steps = stepsOf(pulses, wallTimes, perMillisecond);
-    EXPECT_LE(steps.share, 1.0) << "of the velocity limit";
-    // A frame lasts 20 ms; on a busy machine the studio's time and the board's differ by some more.
-    EXPECT_LE(steps.largest, 3.0 * 20.0 * perMillisecond);
+    // 4 strokes of 1000 us a second are 80 us a frame, whenever the bytes arrive; and a microsecond is rounded.
+    const double largest = largestStep(pulses);
+    EXPECT_LE(largest, 81.0) << "the velocity limit";
+    EXPECT_GT(largest, 30.0) << "it did move";
     if (soak) {
         EXPECT_LE(slowest, 3.0) << "seconds until it was found again";
     }
-    std::printf("%d cuts, found again within %.2f s; %zu pulses, largest step %.1f us a frame, %.0f %% of the limit\n",
-                cuts, slowest, pulses.size(), steps.largest, 100.0 * steps.share);
+    std::printf("%d cuts, found again within %.2f s; %zu pulses, largest step %.1f us a frame of 80 allowed\n", cuts,
+                slowest, pulses.size(), largest);
 }
 
 } // namespace

@@ -33,6 +33,18 @@ protected:
         ASSERT_NE(slider, nullptr);
         slider->setValue(steps);
     }
+    /// As if the profile had been set up with another board, whose port this one now has.
+    void expectAnotherIsAskedAbout() {
+        window.click("devices.disconnect");
+        ASSERT_TRUE(reaches(LinkPhase::off));
+        DeviceProfile other = window.studio().devices.profile();
+        other.identity = "A9007Xyz";
+        ASSERT_TRUE(window.studio().devices.setProfile(other));
+        window.studio().devices.connectTo(address());
+        EXPECT_TRUE(offers("Yes, this is it")) << story();
+        EXPECT_TRUE(logs("This is not the board that the profile was set up with."));
+        pass(300ms);
+    }
     /// The board is whole again and its user starts the servos, as the card offers it.
     void goOn() {
         window.click("sim.mend");
@@ -181,20 +193,19 @@ TEST_P(DeviceFaults, TheWordThatThisIsTheBoardIsKeptForThisBoardAlone) {
     ASSERT_TRUE(offers("Start servos")) << story();
     EXPECT_FALSE(logsNow("Confirm"));
 
-    // Another board where this one was.
-    window.click("devices.disconnect");
-    ASSERT_TRUE(reaches(LinkPhase::off));
-    DeviceProfile other = window.studio().devices.profile();
-    other.identity = "A9007Xyz";
-    ASSERT_TRUE(window.studio().devices.setProfile(other));
-    window.studio().devices.connectTo(address());
-    EXPECT_TRUE(offers("Yes, this is it")) << story();
-    EXPECT_TRUE(logs("This is not the board that the profile was set up with."));
-    pass(300ms);
+    expectAnotherIsAskedAbout();
     EXPECT_EQ(phase(), LinkPhase::unidentified);
     window.click("devices.next");
     ASSERT_TRUE(offers("Start servos"));
     EXPECT_EQ(window.studio().devices.profile().identity, "simulated " + board->name());
+}
+
+TEST_P(DeviceFaults, AnotherBoardWhereTheOneThatWasLiveWasIsAskedAbout) {
+    goLiveByAddress();
+    const std::string known = "simulated " + board->name();
+    EXPECT_TRUE(eventually([&] { return window.studio().devices.profile().identity == known; }));
+    expectAnotherIsAskedAbout();
+    EXPECT_TRUE(allLimp());
 }
 
 /// Another program that has a port for itself.

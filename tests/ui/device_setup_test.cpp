@@ -1,14 +1,22 @@
 #include <cmath>
+#include <fstream>
+#include <iterator>
 
 #include <QCheckBox>
+#include <QFileDialog>
+#include <QLineEdit>
+#include <QPointer>
 
 #include "app/studio/devices/device_shelf.h"
+#include "devices/firmware/pin_header.h"
 #include "tests/ui/devices_window.h"
 
 // What is set up for all servos of a profile: it is in force at once, and it is kept.
 
 namespace lumorph::test {
 namespace {
+
+using namespace std::chrono_literals;
 
 class DeviceSetup : public DevicesWindow {
 protected:
@@ -98,6 +106,40 @@ TEST_F(DeviceSetup, AMaestrosNumberIsAskedOfMaestrosAlone) {
     EXPECT_TRUE(offers("Start servos"));
     set("setup.crc", true);
     EXPECT_TRUE(profile().maestroCrc);
+}
+
+TEST_F(DeviceSetup, TheWholeSketchIsWrittenIntoTheFolderThatIsChosen) {
+    window.studio().commands.find("device.firmware")->trigger();
+    QPointer<QFileDialog> dialog = window.find<QFileDialog>("device.firmware.file");
+    ASSERT_TRUE(dialog);
+    auto* name = dialog->findChild<QLineEdit*>("fileNameEdit");
+    ASSERT_NE(name, nullptr);
+    pass(300ms);
+    name->setFocus();
+    name->selectAll();
+    QTest::keyClicks(name, QString::fromStdString(folder_.path().string()));
+    EXPECT_TRUE(eventually(
+        [&] {
+            if (!dialog || !dialog->isVisible()) return true;
+            for (auto* button : dialog->findChildren<QAbstractButton*>())
+                if (button->isVisible() && button->isEnabled() && button->text().contains("Export here"))
+                    QTest::mouseClick(button, Qt::LeftButton);
+            return !dialog || !dialog->isVisible();
+        },
+        10s));
+    const auto told = [&]() -> QString {
+        for (const studio::Notice& notice : window.studio().notices.at("devices"))
+            if (notice.level == studio::Notice::Level::info) return notice.why;
+        return {};
+    };
+    ASSERT_TRUE(eventually([&] { return !told().isEmpty(); }, 10s));
+    const std::filesystem::path sketch = folder_ / "tablet";
+    EXPECT_TRUE(told().contains(QString::fromStdString(sketch.string()))) << told().toStdString();
+    EXPECT_TRUE(std::filesystem::is_regular_file(sketch / "tablet.ino"));
+    EXPECT_TRUE(std::filesystem::is_regular_file(sketch / "firmata.cpp"));
+    std::ifstream file(sketch / "channels.h");
+    const std::string header{std::istreambuf_iterator<char>(file), {}};
+    EXPECT_EQ(header, channelsHeader(profile()));
 }
 
 } // namespace

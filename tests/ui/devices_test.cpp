@@ -95,10 +95,41 @@ TEST_F(DevicesWindow, StopReachesTheBoardWhileTheWindowIsStuck) {
     window.screenshot("devices-stopped");
     pass(300ms);
     EXPECT_TRUE(allLimp()) << "it is latched";
-    window.click("stop"); // resume
+    window.click("resume");
     EXPECT_FALSE(window.studio().loop.stopped());
     EXPECT_TRUE(eventually([&] { return allDriven(); })) << "servos that were live start softly";
     EXPECT_TRUE(eventually([&] { return std::abs(servoOf(0).pulse - 2000.0) <= 2.0; }));
+}
+
+TEST_F(DevicesWindow, WhoHitsStopTwiceDoesNotStartTheServosAgain) {
+    goLive();
+    auto* stop = window.find<QWidget>("stop");
+    ASSERT_NE(stop, nullptr);
+    const QPoint place = stop->mapTo(&window.window(), stop->rect().center());
+    QTest::mouseClick(stop, Qt::LeftButton);
+    ASSERT_TRUE(reaches(LinkPhase::stopped));
+    // Whatever is under the pointer now, is hit four times more.
+    for (int press = 0; press < 4; ++press)
+        if (QWidget* there = window.window().childAt(place)) QTest::mouseClick(there, Qt::LeftButton);
+    pass(500ms);
+    EXPECT_EQ(phase(), LinkPhase::stopped);
+    EXPECT_TRUE(window.studio().loop.stopped());
+    EXPECT_TRUE(allLimp());
+    window.screenshot("devices-stopped-twice");
+    window.click("resume");
+    EXPECT_TRUE(eventually([&] { return allDriven(); }));
+    EXPECT_EQ(window.findNow<QWidget>("resume"), nullptr) << "it is not offered where nothing is stopped";
+}
+
+TEST_F(DevicesWindow, WhereEscIsNotHeardEverywhereItIsSaid) {
+    goLive();
+    EXPECT_EQ(window.findNow<QWidget>("devices.stopKeys"), nullptr) << "here it is";
+    window.studio().devices.setStopKeysDeaf("this desktop does not let a program hear other windows' keys");
+    EXPECT_TRUE(eventually([&] {
+        return window.findNow<QWidget>("devices.stopKeys") != nullptr &&
+               window.text("devices.stopKeys").contains("does not let a program hear");
+    }));
+    window.screenshot("devices-deaf");
 }
 
 TEST_F(DevicesWindow, ServosFollowAndStopWhileTheWindowIsStuck) {

@@ -50,6 +50,7 @@ struct Rates {
     double matched = 0.0; ///< matches a second that reached the window
     double painted = 0.0; ///< frames a second, each of a newer match
     double drawn = 0.0;   ///< share of each side that the last frame was drawn with
+    double drawing = 0.0; ///< milliseconds that a frame took, the median
     double stall = 0.0;   ///< milliseconds
 };
 
@@ -62,7 +63,11 @@ void run(std::chrono::milliseconds time) {
 
 Rates measure(Studio& studio, const ViewportWidget& view, std::chrono::milliseconds time) {
     int matches = 0;
-    const auto count = QObject::connect(&studio.loop, &StudioLoop::framed, [&] { ++matches; });
+    std::vector<double> took;
+    const auto count = QObject::connect(&studio.loop, &StudioLoop::framed, [&] {
+        ++matches;
+        took.push_back(view.frameMilliseconds());
+    });
     test::StallWatch watch;
     run(std::chrono::milliseconds(200));
     (void)watch.takeLongest();
@@ -72,8 +77,10 @@ Rates measure(Studio& studio, const ViewportWidget& view, std::chrono::milliseco
     run(time);
     const double seconds = std::chrono::duration<double>(Clock::now() - start).count();
     QObject::disconnect(count);
+    const auto middle = took.begin() + static_cast<std::ptrdiff_t>(took.size() / 2);
+    std::nth_element(took.begin(), middle, took.end());
     return {matches / seconds, static_cast<double>(view.framesPainted() - before) / seconds, view.frameResolution(),
-            watch.takeLongest()};
+            took.empty() ? 0.0 : *middle, watch.takeLongest()};
 }
 
 TEST_F(LiveRate, ThirtyMatchesASecondAreSeenWhileALargeTargetMoves) {
@@ -87,8 +94,9 @@ TEST_F(LiveRate, ThirtyMatchesASecondAreSeenWhileALargeTargetMoves) {
     for (int attempt = 0; attempt < 6 && (rates.painted < 30.0 || rates.stall > 100.0); ++attempt) {
         rates = measure(studio_, *view, std::chrono::seconds(5));
         std::printf(
-            "viewport %dx%d: %.1f matches/s to the window, %.1f painted/s, drawn at %.2f, longest stall %.1f ms\n",
-            view->width(), view->height(), rates.matched, rates.painted, rates.drawn, rates.stall);
+            "viewport %dx%d: %.1f matches/s to the window, %.1f painted/s, drawn at %.2f in %.1f ms, longest stall "
+            "%.1f ms\n",
+            view->width(), view->height(), rates.matched, rates.painted, rates.drawn, rates.drawing, rates.stall);
     }
     RecordProperty("painted", static_cast<int>(rates.painted));
     EXPECT_GE(rates.painted, 30.0);

@@ -1,4 +1,6 @@
+#include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <fstream>
 #include <functional>
 
@@ -9,57 +11,19 @@
 #include <QLineEdit>
 #include <QPainter>
 #include <QPointer>
-#include <QScrollArea>
 #include <QSlider>
 #include <opencv2/imgproc.hpp>
 #include <opencv2/videoio.hpp>
 
 #include "app/studio/widgets/plot.h"
-#include "app/workspaces/devices/top_view.h"
 #include "tests/calibration/photographer.h"
-#include "tests/ui/studio_window.h"
+#include "tests/ui/trackers_window.h"
 
 // Trackers as their user has them, against simulated bodies and a board in a video: what counts is whom the loop
 // follows.
 
 namespace lumorph::test {
 namespace {
-
-using namespace std::chrono_literals;
-
-class TrackersWindow : public ::testing::Test {
-protected:
-    TrackersWindow() : window(folder_ / "session", "devices") {
-        window.studio().settings.setValue("trackers/roles", {});
-        if (auto* dock = window.window().findChild<QDockWidget*>("dock.devices.trackers")) dock->raise();
-    }
-
-    [[nodiscard]] bool opens(const QString& address) {
-        window.enter("trackers.address", address, Qt::Key_Tab);
-        window.click("trackers.open");
-        return eventually([&] { return window.findNow<QWidget>("tracker.0") != nullptr; }, 10s);
-    }
-    [[nodiscard]] std::string viewer() { return window.studio().loop.frame()->viewer; }
-    [[nodiscard]] QString textNow(const QString& name) {
-        const auto* label = window.findNow<QLabel>(name);
-        return label ? label->text() : QString();
-    }
-    [[nodiscard]] std::optional<glm::vec3> eye() { return window.studio().loop.frame()->eye; }
-    [[nodiscard]] studio::TopView& above() { return *window.find<studio::TopView>("trackers.top"); }
-    /// The one body that is open, where it truly is.
-    [[nodiscard]] Pose truth() { return window.studio().trackers.trackers().at(0).steering->truth(); }
-    /// Brings a part of the dock into sight, as somebody would by scrolling.
-    void reveal(const QString& name) {
-        auto* part = window.find<QWidget>(name);
-        if (part == nullptr) return;
-        for (QWidget* up = part->parentWidget(); up != nullptr; up = up->parentWidget())
-            if (auto* area = qobject_cast<QScrollArea*>(up)) area->ensureWidgetVisible(part);
-    }
-    [[nodiscard]] double framesPerSecond() { return textNow("tracker.0.frames").section(' ', 0, 0).toDouble(); }
-
-    TemporaryFolder folder_;
-    StudioWindow window;
-};
 
 TEST_F(TrackersWindow, TheLoopFollowsASimulatedHeadUntilItIsClosed) {
     EXPECT_EQ(viewer(), "");
@@ -109,55 +73,43 @@ TEST_F(TrackersWindow, AWrongAddressIsToldAndNothingIsOpen) {
     EXPECT_TRUE(eventually([&] { return window.studio().notices.at("devices").empty(); }, 5s));
 }
 
-// --- A person without hardware
-
-TEST_F(TrackersWindow, ASimulatedHeadGoesWhereItIsDraggedAndTheShowFollows) {
-    ASSERT_TRUE(opens("sim://head"));
+TEST_F(TrackersWindow, OfTwoHeadsTheFirstIsFollowedAndTheSecondIsToldWhy) {
+    const QString first = "sim://head?rate=60", second = "sim://head?rate=90";
+    ASSERT_TRUE(opens(first));
     ASSERT_TRUE(eventually([&] { return viewer() == "head"; }, 10s));
-    reveal("trackers.top");
-    studio::TopView& view = above();
-    ASSERT_TRUE(eventually([&] { return view.focusPolicy() == Qt::StrongFocus; }, 5s)) << "it has something to move";
-    const Pose before = truth();
-    const double metres = view.metresPerPixel();
-    const QPoint from = view.pointOf(before).toPoint();
-    QTest::mousePress(&view, Qt::LeftButton, {}, from);
-    for (int i = 1; i <= 6; ++i) QTest::mouseMove(&view, from + QPoint(5 * i, -3 * i));
-    QTest::mouseRelease(&view, Qt::LeftButton, {}, from + QPoint(30, -18));
-    ASSERT_TRUE(window.studio().trackers.trackers().at(0).steering->orders().held) << "it no longer goes by itself";
-    const Pose held = *window.studio().trackers.trackers().at(0).steering->orders().held;
-    // It walked on for the moment that the test took.
-    EXPECT_NEAR(held.position.x, before.position.x + 30 * metres, 0.05);
-    EXPECT_NEAR(held.position.z, before.position.z - 18 * metres, 0.05);
-    EXPECT_NEAR(held.position.y, before.position.y, 0.05);
-    EXPECT_TRUE(eventually([&] { return eye() && glm::distance(glm::dvec3(*eye()), held.position) < 0.003; }, 10s))
-        << "the show is drawn for where it was put";
-    window.screenshot("trackers-dragged");
-    const auto* release = window.find<QWidget>("tracker.0.sim.release");
-    ASSERT_TRUE(eventually([&] { return release->isEnabled(); }, 2s)) << "there is something to let go of";
-    window.click("tracker.0.sim.release");
-    EXPECT_TRUE(eventually([&] { return glm::distance(truth().position, held.position) > 0.01; }, 10s));
+    window.enter("trackers.address", second, Qt::Key_Tab);
+    window.click("trackers.open");
+    ASSERT_TRUE(eventually([&] { return window.studio().trackers.trackers().size() == 2; }, 10s));
+    const glm::dvec3 places[] = {{-0.3, 0.4, 0.6}, {0.3, 0.4, 0.6}};
+    for (std::size_t i = 0; i < 2; ++i) {
+        studio::OpenTracker tracker = window.studio().trackers.trackers().at(i);
+        ASSERT_EQ(tracker.status.address, (i == 0 ? first : second).toStdString());
+        SimulatedOrders orders = tracker.steering->orders();
+        orders.held = Pose{places[i], {1, 0, 0, 0}};
+        tracker.steering->order(orders);
+    }
+    const auto isAt = [&](const glm::dvec3& place) {
+        return eye() && glm::distance(glm::dvec3(*eye()), place) < 0.003;
+    };
+    EXPECT_TRUE(eventually([&] { return isAt(places[0]); }, 10s));
+    const auto told = [&] { return textNow("tracker.1.advice"); };
+    EXPECT_TRUE(eventually([&] { return told().contains("'head' of this tracker is not followed"); }, 5s));
+    EXPECT_TRUE(told().contains(first + " (a simulated head)")) << told().toStdString();
+    EXPECT_TRUE(told().contains("Close one of the two trackers, or rename the body")) << told().toStdString();
+    EXPECT_EQ(textNow("tracker.0.advice"), "") << "nothing is wrong with the first";
+    for (int i = 0; i < 30; ++i) {
+        pass(10ms);
+        ASSERT_FALSE(isAt(places[1])) << "the eye does not jump";
+    }
+    window.screenshot("trackers-two-heads");
+    reveal("tracker.0.close");
+    window.click("tracker.0.close");
+    EXPECT_TRUE(eventually([&] { return window.studio().trackers.trackers().size() == 1; }, 10s));
+    EXPECT_TRUE(eventually([&] { return isAt(places[1]); }, 10s)) << "the second takes over by itself";
+    EXPECT_TRUE(eventually([&] { return textNow("tracker.0.advice").isEmpty(); }, 5s));
 }
 
-TEST_F(TrackersWindow, KeysMoveLiftAndTurnASimulatedDevice) {
-    ASSERT_TRUE(opens("sim://device"));
-    reveal("trackers.top");
-    studio::TopView& view = above();
-    ASSERT_TRUE(eventually([&] { return view.focusPolicy() == Qt::StrongFocus; }, 5s));
-    view.setFocus();
-    QTest::keyClick(&view, Qt::Key_PageUp); // takes it by the hand
-    const auto held = [&] { return *window.studio().trackers.trackers().at(0).steering->orders().held; };
-    const Pose start = held();
-    for (int i = 0; i < 3; ++i) QTest::keyClick(&view, Qt::Key_Right);
-    QTest::keyClick(&view, Qt::Key_Up);
-    QTest::keyClick(&view, Qt::Key_PageUp, Qt::ControlModifier);
-    for (int i = 0; i < 6; ++i) QTest::keyClick(&view, Qt::Key_Comma);
-    const Pose end = held();
-    EXPECT_LT(glm::distance(end.position - start.position, {0.03, 0.10, -0.01}), 1e-9);
-    EXPECT_NEAR(degreesBetween(start.rotation, end.rotation), 30.0, 1e-6);
-    const auto device = [&] { return glm::dmat4(window.studio().loop.frame()->worldFromDevice); };
-    EXPECT_TRUE(eventually([&] { return glm::distance(glm::dvec3(device()[3]), end.position) < 0.003; }, 10s));
-    EXPECT_LT(degreesBetween(glm::quat_cast(glm::dmat3(device())), end.rotation), 1.0) << "the show turns with it";
-}
+// --- A person without hardware
 
 TEST_F(TrackersWindow, ASimulatedTrackerIsBrokenOnPurposeAndItIsTold) {
     ASSERT_TRUE(opens("sim://head?rate=100"));
@@ -356,7 +308,7 @@ TEST_F(TrackersWindow, BodiesAreInTheViewsUntilTheyAreSwitchedOff) {
     ASSERT_NE(axes, nullptr);
     EXPECT_TRUE(axes->isChecked());
     EXPECT_TRUE(eventually(isPainted, 10s));
-    window.screenshot("trackers-axes");
+    window.screenshot("trackers-room");
     const int with = axisPixels(view.grab().toImage(), at);
     axes->trigger();
     EXPECT_TRUE(eventually([&] { return axisPixels(view.grab().toImage(), at) < with / 3; }, 5s));

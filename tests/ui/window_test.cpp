@@ -231,6 +231,8 @@ TEST_F(Window, EscapeTwiceStops) {
     pass(500ms);
     EXPECT_EQ(window.studio().loop.frame()->estimatedStrokes, held);
     window.click("stop");
+    EXPECT_TRUE(window.studio().loop.stopped()) << "only Resume resumes";
+    window.click("resume");
     EXPECT_FALSE(window.studio().loop.stopped());
     EXPECT_TRUE(eventually([&] { return window.studio().loop.frame()->estimatedStrokes != held; }));
 }

@@ -35,7 +35,12 @@ void DeviceDesk::Data::listen() {
     connect(&document, &StudioDocument::changed, &desk, [this](StateParts parts) {
         if (parts & StatePart::rig) takeRig();
     });
-    connect(&loop, &StudioLoop::stoppedChanged, &desk, [this] { heedStop(); });
+    // STOP is for the servos before it is for anything else.
+    connect(&loop, &StudioLoop::stopOrdered, &desk, [this] {
+        feed.stop();
+        take();
+    });
+    connect(&loop, &StudioLoop::stoppedChanged, &desk, [this] { heedResume(); });
     tap = loop.addTap([this](const MatchFrame& frame) { follow(frame); });
     takeRig();
 }
@@ -143,10 +148,22 @@ void DeviceDesk::Data::take() {
     const bool wasLive = status.phase == LinkPhase::live;
     status = link ? link->status() : LinkStatus{};
     if (status.phase == LinkPhase::live && !wasLive) liveSince = QDateTime::currentDateTime();
-    if (drives(status.phase) && !wasDriven) notices.dismissAll("device");
+    if (drives(status.phase) && !wasDriven) {
+        notices.dismissAll("device");
+        knowBoard();
+    }
     if (!drives(status.phase) && wasDriven) desk.endTest();
     sense();
     emit desk.changed();
+}
+
+/// Its pulses and limits are those of the board that was set up: next time another one at the same port is asked about,
+/// and this one found at another port.
+void DeviceDesk::Data::knowBoard() {
+    if (!profile.identity.empty() || status.identity.empty()) return;
+    DeviceProfile known = profile;
+    known.identity = status.identity;
+    desk.setProfile(known);
 }
 
 /// Whether something that is shown of hands is different.
@@ -177,14 +194,10 @@ void DeviceDesk::Data::tellAll(const std::vector<LinkEvent>& events) {
     if (!events.empty()) emit desk.logged(static_cast<int>(events.size()));
 }
 
-/// STOP is for the servos before it is for anything else; taken back, they start softly where they were live.
-void DeviceDesk::Data::heedStop() {
-    if (!link) return;
-    if (loop.stopped()) {
-        feed.stop();
-    } else if (feed.takeStoppedLive()) {
-        link->arm(false);
-    }
+/// Servos that STOP has let go start softly, where they were live.
+void DeviceDesk::Data::heedResume() {
+    if (!link || loop.stopped() || !feed.takeStoppedLive()) return;
+    link->arm(false);
     take();
 }
 

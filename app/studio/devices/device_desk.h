@@ -65,6 +65,9 @@ public:
     void start(bool jumpAllowed = false);
     /// STOP for the servos alone, from any thread, whatever the window does; the loop is to be stopped too.
     void stopNow();
+    /// Why Esc Esc is heard in the program's own windows alone; empty: it is heard everywhere.
+    void setStopKeysDeaf(const QString& why);
+    [[nodiscard]] const QString& stopKeysDeaf() const noexcept;
     /// Servos go limp, without STOP.
     void release();
     void wiggle(std::size_t servo);

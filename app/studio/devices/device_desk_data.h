@@ -37,7 +37,8 @@ struct DeviceDesk::Data {
     void take();
     void takeEvents();
     void tellAll(const std::vector<LinkEvent>& events);
-    void heedStop();
+    void heedResume();
+    void knowBoard();
     bool sense();
     void tellSearch(const LinkTrouble& trouble);
     void tick();
@@ -65,6 +66,7 @@ struct DeviceDesk::Data {
     QTimer due, poll, testTimer;
     QElapsedTimer sinceTest;
     QDateTime liveSince;
+    QString stopKeysDeaf; ///< why
     bool slow = false;
 };
 

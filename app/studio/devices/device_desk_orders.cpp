@@ -45,6 +45,7 @@ void DeviceDesk::loadProfile(const QString& name) {
             loaded.address = data_->profile.address;
             loaded.controller = data_->profile.controller;
             loaded.identity = data_->profile.identity;
+            loaded.confirmed = data_->profile.confirmed;
         }
         setProfile(loaded);
     } catch (const Error& error) {
@@ -102,6 +103,7 @@ void DeviceDesk::confirm() {
     if (const std::string& identity = data_->status.identity; !identity.empty()) {
         DeviceProfile known = data_->profile;
         known.identity = identity;
+        known.confirmed = true;
         setProfile(known);
     }
     data_->take();
@@ -116,6 +118,13 @@ void DeviceDesk::start(bool jumpAllowed) {
 }
 
 void DeviceDesk::stopNow() { data_->feed.stop(); }
+
+void DeviceDesk::setStopKeysDeaf(const QString& why) {
+    data_->stopKeysDeaf = why;
+    emit changed();
+}
+
+const QString& DeviceDesk::stopKeysDeaf() const noexcept { return data_->stopKeysDeaf; }
 
 void DeviceDesk::release() {
     if (!data_->link) return;

@@ -6,6 +6,7 @@
 #include <QTimer>
 
 #include "devices/simulator/simulated_bench.h"
+#include "devices/transport/bluetooth_search.h"
 
 namespace lumorph::studio {
 namespace {
@@ -19,13 +20,15 @@ struct DeviceFinder::Data {
 
     void look();
     void take(std::vector<FoundDevice> now);
+    void add(const FoundDevice& one);
     void end(const LinkTrouble& trouble);
 
     DeviceFinder& finder;
     const SimulatedBench& bench;
     std::vector<FoundDevice> found;
     std::vector<FoundDevice> ofBluetooth;
-    std::unique_ptr<BluetoothSearch> search;
+    BluetoothSearch search{BluetoothSearch::Events{[this](const FoundDevice& one) { add(one); },
+                                                   [this](const LinkTrouble& trouble) { end(trouble); }}};
     QTimer timer;
     bool looking = false;
     std::jthread looker; ///< last: it uses the above
@@ -54,8 +57,13 @@ void DeviceFinder::Data::take(std::vector<FoundDevice> now) {
     emit finder.changed();
 }
 
+void DeviceFinder::Data::add(const FoundDevice& one) {
+    ofBluetooth.push_back(one);
+    found.push_back(one);
+    emit finder.changed();
+}
+
 void DeviceFinder::Data::end(const LinkTrouble& trouble) {
-    search.reset();
     if (!trouble.why.empty()) emit finder.searchFailed(trouble);
     emit finder.changed();
 }
@@ -68,7 +76,7 @@ DeviceFinder::DeviceFinder(const SimulatedBench& bench) : data_(std::make_unique
 DeviceFinder::~DeviceFinder() = default;
 
 const std::vector<FoundDevice>& DeviceFinder::found() const noexcept { return data_->found; }
-bool DeviceFinder::searchingBluetooth() const noexcept { return data_->search != nullptr; }
+bool DeviceFinder::searchingBluetooth() const noexcept { return data_->search.running(); }
 
 void DeviceFinder::setLooking(bool looking) {
     if (!looking) return data_->timer.stop();
@@ -77,20 +85,9 @@ void DeviceFinder::setLooking(bool looking) {
 }
 
 void DeviceFinder::searchBluetooth() {
-    if (data_->search) return;
+    if (data_->search.running()) return;
     data_->ofBluetooth.clear();
-    BluetoothSearch::Events events;
-    events.found = [this](const FoundDevice& one) {
-        data_->ofBluetooth.push_back(one);
-        data_->found.push_back(one);
-        emit changed();
-    };
-    events.ended = [this](const LinkTrouble& trouble) {
-        // The search must not be destroyed inside its own call.
-        QMetaObject::invokeMethod(
-            this, [this, trouble] { data_->end(trouble); }, Qt::QueuedConnection);
-    };
-    data_->search = std::make_unique<BluetoothSearch>(std::move(events));
+    data_->search.start();
     emit changed();
 }
 

@@ -10,13 +10,13 @@
 namespace lumorph::studio {
 
 /// What is connected to this machine, looked for every two seconds while somebody wants to know, and what a search of
-/// Bluetooth found. Lives in the window's thread; looking is done in another.
+/// Bluetooth found. Lives in the window's thread; looking is done in others.
 class DeviceFinder : public QObject {
     Q_OBJECT
 public:
     /// The bench outlives it.
     explicit DeviceFinder(const SimulatedBench& bench);
-    /// Waits for a look that is under way.
+    /// Waits for a look that is under way, which takes milliseconds, but not for the Bluetooth service.
     ~DeviceFinder() override;
 
     void setLooking(bool looking);

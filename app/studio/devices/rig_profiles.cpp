@@ -50,7 +50,10 @@ DeviceProfile freshProfile(const Rig& rig, ControllerKind kind) {
 DeviceProfile readdressed(const DeviceProfile& profile, const Rig& rig, const std::string& address,
                           ControllerKind kind) {
     DeviceProfile next = profile;
-    if (next.address != address) next.identity.clear(); // it was another board's
+    if (next.address != address) { // they were another board's
+        next.identity.clear();
+        next.confirmed = false;
+    }
     next.address = address;
     next.controller = kind;
     if (kind != profile.controller && sameChannels(freshProfile(rig, profile.controller), profile))

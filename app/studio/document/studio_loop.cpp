@@ -44,6 +44,7 @@ double StudioLoop::matchRate() const noexcept {
 }
 
 void StudioLoop::stop() {
+    emit stopOrdered();
     if (std::exchange(stopped_, true)) return;
     send(); // not a turn of the event loop later
     emit stoppedChanged();

@@ -31,7 +31,7 @@ public:
     [[nodiscard]] double matchRate() const noexcept; ///< matches a second that were handed to the window
 
     [[nodiscard]] bool stopped() const noexcept { return stopped_; }
-    /// STOP: the servos stay where they are until `resume`.
+    /// STOP: the servos stay where they are until `resume`. Pressed again it is ordered again.
     void stop();
     void resume();
     [[nodiscard]] bool dancing() const noexcept { return dancing_; }
@@ -62,6 +62,8 @@ public:
 signals:
     /// A new frame, newest only: frames that come faster than the window takes them are left out.
     void framed();
+    /// STOP was pressed, also where it holds already.
+    void stopOrdered();
     void stoppedChanged();
     void dancingChanged();
     void scenePlayingChanged();

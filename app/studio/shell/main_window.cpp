@@ -108,6 +108,7 @@ MainWindow::MainWindow(Studio& studio, std::vector<std::unique_ptr<Workspace>> w
         studio.devices.stopNow();
         QMetaObject::invokeMethod(&studio.loop, &StudioLoop::stop, Qt::QueuedConnection);
     });
+    studio.devices.setStopKeysDeaf(data_->stopKeys->why());
     qApp->installEventFilter(this);
     resize(kUsualSize.boundedTo(screen()->availableSize() - kFrame));
     if (restoreGeometry(studio.settings.value(kGeometryKey).toByteArray())) keepOnScreen();

@@ -37,13 +37,12 @@ void addUndo(Studio& studio) {
 }
 
 void addStop(Studio& studio) {
-    QAction* stop = add(studio, "loop.stop", "STOP: hold every actuator", "stop", {}, "Rig",
-                        [&studio] { studio.loop.stopped() ? studio.loop.resume() : studio.loop.stop(); });
-    const auto follow = [&studio, stop] {
-        stop->setText(studio.loop.stopped() ? "Resume after STOP" : "STOP: hold every actuator");
-        stop->setIcon(icon(studio.loop.stopped() ? "play" : "stop"));
-    };
-    QObject::connect(&studio.loop, &StudioLoop::stoppedChanged, stop, follow);
+    add(studio, "loop.stop", "STOP: hold every actuator", "stop", {}, "Rig", [&studio] { studio.loop.stop(); });
+    QAction* resume =
+        add(studio, "loop.resume", "Resume after STOP", "play", {}, "Rig", [&studio] { studio.loop.resume(); });
+    const auto follow = [&studio, resume] { resume->setEnabled(studio.loop.stopped()); };
+    QObject::connect(&studio.loop, &StudioLoop::stoppedChanged, resume, follow);
+    follow();
 }
 
 void addTheme(Studio& studio) {

@@ -125,23 +125,31 @@ void TopBar::addTools(QHBoxLayout& row) {
 }
 
 void TopBar::addStop(QHBoxLayout& row) {
-    stop_ = new QPushButton(this);
+    // Two buttons: who hits STOP twice must not start everything again.
+    resume_ = new QPushButton(icon("play"), "Resume", this);
+    resume_->setObjectName("resume");
+    resume_->setToolTip("Lets every actuator move again; servos of a device start softly, one after the other");
+    row.addWidget(resume_);
+    connect(resume_, &QPushButton::clicked, &studio_.loop, &StudioLoop::resume);
+    row.addSpacing(8);
+    stop_ = new QPushButton(icon("stop", IconRole::onDanger), "STOP", this);
     stop_->setObjectName("stop");
+    stop_->setMinimumWidth(96);
     row.addWidget(stop_);
-    connect(stop_, &QPushButton::clicked, this,
-            [this] { studio_.loop.stopped() ? studio_.loop.resume() : studio_.loop.stop(); });
+    connect(stop_, &QPushButton::clicked, &studio_.loop, &StudioLoop::stop);
     connect(&studio_.loop, &StudioLoop::stoppedChanged, this, &TopBar::showStopped);
     showStopped();
 }
 
 void TopBar::showStopped() {
     const bool stopped = studio_.loop.stopped();
-    stop_->setText(stopped ? "Stopped - resume" : "STOP");
-    stop_->setIcon(stopped ? icon("play") : icon("stop", IconRole::onDanger));
-    stop_->setToolTip(stopped ? "Every actuator holds where it is. Click to let them move again; servos start softly."
-                              : "Every actuator holds where it is, at once; servos of a device go limp (Esc Esc)");
+    resume_->setVisible(stopped);
+    stop_->setText(stopped ? "Stopped" : "STOP");
+    stop_->setToolTip(stopped
+                          ? "Every actuator holds where it is, until you resume. Click to say it to the servos again"
+                          : "Every actuator holds where it is, at once; servos of a device go limp (Esc Esc)");
+    stop_->setIcon(icon("stop", stopped ? IconRole::control : IconRole::onDanger));
     relook(*stop_, stopped ? "latched" : "danger");
-    stop_->setMinimumWidth(stopped ? 144 : 96);
     fitSearch();
 }
 
@@ -166,7 +174,8 @@ void TopBar::resizeEvent(QResizeEvent* event) {
 void TopBar::fitSearch() {
     if (!kiosk_)
         for (QWidget* tool : {tools_[0], tools_[1], tools_.back()}) tool->setVisible(width() >= kNarrow);
-    int others = 292 + stop_->minimumWidth() + menus_->sizeHint().width();
+    int others = 300 + stop_->minimumWidth() + menus_->sizeHint().width();
+    if (!resume_->isHidden()) others += resume_->sizeHint().width();
     for (const QToolButton* tab : tabs_) others += tab->sizeHint().width() + 4;
     const bool roomy = width() - others > kSearchWidth;
     search_->setFixedWidth(roomy ? kSearchWidth : 32);

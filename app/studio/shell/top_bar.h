@@ -45,6 +45,7 @@ private:
     std::vector<QWidget*> tools_;
     bool kiosk_ = false;
     QPushButton* search_ = nullptr;
+    QPushButton* resume_ = nullptr;
     QPushButton* stop_ = nullptr;
 };
 

@@ -5,7 +5,6 @@ namespace lumorph::studio {
 namespace {
 
 void showBoth(Studio& studio) {
-    studio.loop.resume();
     studio.loop.setScenePlaying(true);
     editScene(studio.document, "Show both", [](Scene& scene) { scene.showing = Showing::both; });
 }

@@ -8,6 +8,8 @@
 #include <glm/geometric.hpp>
 #include <glm/mat4x4.hpp>
 
+#include "app/studio/viewport/view_marks.h"
+
 namespace lumorph::studio {
 namespace {
 
@@ -18,11 +20,6 @@ constexpr double kArrow = 9.0;                 // pixels
 constexpr double kFresh = 0.25, kFaded = 2.25; // seconds
 constexpr double kFaintest = 0.25;
 constexpr int kLongestName = 160; // pixels
-
-std::array<QColor, 3> axisColors(const Palette& palette) {
-    if (palette.window.lightness() < 128) return {QColor(236, 96, 90), QColor(126, 200, 92), QColor(98, 160, 248)};
-    return {QColor(192, 48, 44), QColor(50, 124, 36), QColor(36, 92, 196)};
-}
 
 QPointF toPoint(const glm::vec2& p) { return {static_cast<double>(p.x), static_cast<double>(p.y)}; }
 
@@ -44,6 +41,7 @@ void paintName(QPainter& painter, const QPointF& at, const QString& name, Qt::Al
 
 void paintAxes(QPainter& painter, const QPointF& at, const ViewCamera& camera, const BodyMark& body,
                const glm::vec2& size, const Palette& palette) {
+    paintName(painter, at + QPointF(9.0, -9.0), body.name, Qt::AlignLeft, palette); // under the axes
     const float length = std::max(kAxis, kLeastPixels * metresPerPixel(camera, body.position, size));
     const std::array<QColor, 3> colors = axisColors(palette);
     QColor halo = palette.window;
@@ -61,7 +59,6 @@ void paintAxes(QPainter& painter, const QPointF& at, const ViewCamera& camera, c
     painter.setPen(QPen(palette.window, 1.0));
     painter.setBrush(palette.text);
     painter.drawEllipse(at, 3.0, 3.0);
-    paintName(painter, at + QPointF(9.0, -9.0), body.name, Qt::AlignLeft, palette);
 }
 
 /// Where the way from the middle to what is not in sight meets the edge.

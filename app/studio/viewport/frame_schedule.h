@@ -21,7 +21,7 @@ public:
     static constexpr std::chrono::milliseconds kQuiet{120};
     /// A moving frame may take this long; handing it over and painting it take the rest of a thirtieth of a second.
     static constexpr double kBudgetMilliseconds = 23.0;
-    static constexpr double kLowestResolution = 0.5;
+    static constexpr double kLowestResolution = 0.35;
 
     struct Work {
         int viewport = 0;

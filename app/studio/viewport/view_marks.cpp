@@ -23,10 +23,8 @@ struct Axis {
 // Far axes first.
 std::array<Axis, 3> axesFarFirst(const ViewCamera& camera, const Palette& palette) {
     const glm::mat3 turn(viewFromWorld(camera));
-    const bool dark = palette.window.lightness() < 128;
-    std::array<Axis, 3> axes{{{turn[0], dark ? QColor(236, 96, 90) : QColor(192, 48, 44), "X"},
-                              {turn[1], dark ? QColor(126, 200, 92) : QColor(50, 124, 36), "Y"},
-                              {turn[2], dark ? QColor(98, 160, 248) : QColor(36, 92, 196), "Z"}}};
+    const std::array<QColor, 3> colors = axisColors(palette);
+    std::array<Axis, 3> axes{{{turn[0], colors[0], "X"}, {turn[1], colors[1], "Y"}, {turn[2], colors[2], "Z"}}};
     std::sort(axes.begin(), axes.end(), [](const Axis& a, const Axis& b) { return a.seen.z < b.seen.z; });
     return axes;
 }
@@ -70,8 +68,13 @@ QString word(const char* text) { return QCoreApplication::translate("ViewMarks",
 
 } // namespace
 
+std::array<QColor, 3> axisColors(const Palette& palette) {
+    if (palette.window.lightness() < 128) return {QColor(236, 96, 90), QColor(126, 200, 92), QColor(98, 160, 248)};
+    return {QColor(192, 48, 44), QColor(50, 124, 36), QColor(36, 92, 196)};
+}
+
 QString projectionName(const ViewCamera& camera) {
-    const QString projection = camera.orthographic ? word("Orthographic") : word("Perspective");
+    QString projection = camera.orthographic ? word("Orthographic") : word("Perspective");
     const double pitch = camera.pitch.inDegrees();
     constexpr double exact = 0.05;
     if (pitch > 90.0 - exact) return projection + word(" top");

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <array>
+
+#include <QColor>
 #include <QPainter>
 #include <QPointF>
 #include <QSize>
@@ -9,6 +12,9 @@
 #include "core/render/view_camera.h"
 
 namespace lumorph::studio {
+
+/// Of x, y and z: red, green and blue that are seen well in the theme.
+[[nodiscard]] std::array<QColor, 3> axisColors(const Palette& palette);
 
 /// "Perspective", "Orthographic front": the projection and, where it looks along an axis, from which side.
 [[nodiscard]] QString projectionName(const ViewCamera& camera);

@@ -222,6 +222,7 @@ void ViewportWidget::setActive(bool active) {
 
 std::uint64_t ViewportWidget::framesPainted() const noexcept { return data_->painted; }
 double ViewportWidget::frameResolution() const noexcept { return data_->frame.resolution; }
+double ViewportWidget::frameMilliseconds() const noexcept { return data_->frame.milliseconds; }
 QImage ViewportWidget::frameImage() const { return data_->frame.image.copy(); }
 
 bool ViewportWidget::settled() const noexcept {

@@ -44,6 +44,8 @@ public:
     [[nodiscard]] std::uint64_t framesPainted() const noexcept;
     /// Share of each side, in pixels, that the frame now on screen was drawn with: below 1 where time was short.
     [[nodiscard]] double frameResolution() const noexcept;
+    /// What drawing it took.
+    [[nodiscard]] double frameMilliseconds() const noexcept;
     /// The frame now on screen, without marks; for tests and pictures of the view.
     [[nodiscard]] QImage frameImage() const;
     /// The last frame painted is in full quality and of the newest scene and camera.

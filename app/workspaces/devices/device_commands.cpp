@@ -1,20 +1,24 @@
 #include "app/workspaces/devices/device_commands.h"
 
-#include <span>
+#include <filesystem>
 
 #include <QApplication>
+#include <QDesktopServices>
+#include <QUrl>
 
 #include "app/workspaces/devices/servo_board.h"
 #include "app/workspaces/devices/tracker_commands.h"
 #include "app/workspaces/field/export_dialogs.h"
-#include "core/base/atomic_file.h"
 #include "devices/firmware/pin_header.h"
+#include "devices/firmware/sketch.h"
 
 namespace lumorph::studio {
 namespace {
 
 constexpr auto kFirstAddress = "sim://tablet";
 constexpr auto kMenu = "Device";
+constexpr auto kPlace = "devices"; // of notices and jobs
+constexpr auto kSketch = "The board's sketch";
 
 QAction* add(Studio& studio, const char* id, const QString& text, const char* icon, const QString& tip,
              std::function<void()> run, const QKeySequence& keys = {}, bool here = false) {
@@ -59,21 +63,34 @@ void doNext(Studio& studio) {
     }
 }
 
-// The sketch is told by this file which pins drive servos, and within which limits.
-void writeFirmwareHeader(Studio& studio) {
+Notice writtenNotice(const std::filesystem::path& folder) {
+    const QString place = QString::fromStdString(folder.string());
+    const QString name = QString::fromStdString(folder.filename().string());
+    Notice notice;
+    notice.level = Notice::Level::info;
+    notice.subject = kSketch;
+    notice.why = "The whole sketch is in " + place;
+    notice.remedy = "Open " + name + ".ino there in the Arduino IDE and upload it to the board";
+    notice.actions.push_back({"Open its folder", [place] { QDesktopServices::openUrl(QUrl::fromLocalFile(place)); }});
+    return notice;
+}
+
+void writeSketchInto(Studio& studio, const std::filesystem::path& parent) {
+    studio.jobs.run<std::filesystem::path>(
+        kPlace, "Writing the sketch",
+        [profile = studio.devices.profile(), parent](const Progress&) { return writeSketch(profile, parent); },
+        [&studio](const std::filesystem::path& folder) { studio.notices.post(kPlace, writtenNotice(folder)); },
+        [&studio](const std::exception& error) { studio.notices.post(kPlace, noticeOf(error)); });
+}
+
+void askForSketch(Studio& studio) {
     try {
-        const std::string header = channelsHeader(studio.devices.profile());
-        askFile(QApplication::activeWindow(), studio.settings, "device.firmware", "Write channels.h", "channels.h",
-                {{"Pins and limits of the firmware", "h"}}, [&studio, header](const QString& file) {
-                    try {
-                        writeFileAtomically(file.toStdString(), std::as_bytes(std::span(header)));
-                    } catch (const std::exception& error) {
-                        studio.notices.post("devices", noticeOf(error));
-                    }
-                });
+        (void)channelsHeader(studio.devices.profile()); // what the board cannot do is said before a folder is asked for
     } catch (const std::exception& error) {
-        studio.notices.post("devices", noticeOf(error));
+        return studio.notices.post(kPlace, noticeOf(error));
     }
+    askFolder(QApplication::activeWindow(), studio.settings, "device.firmware", "Where to put the folder of the sketch",
+              [&studio](const QString& folder) { writeSketchInto(studio, folder.toStdString()); });
 }
 
 bool isOff(const LinkStatus& link) { return link.phase == LinkPhase::off; }
@@ -113,9 +130,10 @@ void addDeviceCommands(Studio& studio) {
         studio, "device.bluetooth", "Search Bluetooth devices", "search", "Takes ten seconds or so",
         [&studio] { studio.devices.searchBluetooth(); }, {}, true);
     add(
-        studio, "device.firmware", "Write channels.h for the firmware...", "file",
-        "Pins, limits and speed of this profile, for the sketch in devices/firmware/tablet",
-        [&studio] { writeFirmwareHeader(studio); }, {}, true);
+        studio, "device.firmware", "Write the board's sketch...", "file",
+        "The whole sketch for an Arduino Pro Mini, with the pins, limits and speed of this profile, into a folder that "
+        "you choose",
+        [&studio] { askForSketch(studio); }, {}, true);
     addSlow(studio);
     addTrackerCommands(studio);
     const auto follow = [=, &studio] {

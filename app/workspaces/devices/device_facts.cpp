@@ -57,7 +57,7 @@ void warn(QLabel* label, bool on) {
 
 } // namespace
 
-DeviceFacts::DeviceFacts(QWidget* parent) : QWidget(parent), failsafe_(new QLabel(this)) {
+DeviceFacts::DeviceFacts(QWidget* parent) : QWidget(parent), failsafe_(new QLabel(this)), stopKeys_(new QLabel(this)) {
     auto* grid = new QGridLayout(this);
     grid->setContentsMargins(0, 0, 0, 0);
     grid->setHorizontalSpacing(16);
@@ -86,14 +86,21 @@ DeviceFacts::DeviceFacts(QWidget* parent) : QWidget(parent), failsafe_(new QLabe
     failsafe_->setProperty("look", "muted");
     failsafe_->setWordWrap(true);
     grid->addWidget(failsafe_, 6, 0, 1, kColumns);
+    stopKeys_->setObjectName("devices.stopKeys");
+    stopKeys_->setProperty("look", "warning");
+    stopKeys_->setWordWrap(true);
+    stopKeys_->hide();
+    grid->addWidget(stopKeys_, 7, 0, 1, kColumns);
 }
 
-void DeviceFacts::show(const LinkStatus& link) {
+void DeviceFacts::show(const LinkStatus& link, const QString& stopKeysDeaf) {
     for (std::size_t k = 0; k < values_.size(); ++k) {
         const QString text = link.phase == LinkPhase::off ? kUnknown : kFacts[k].text(link);
         if (values_[k]->text() != text) values_[k]->setText(text);
     }
     failsafe_->setText(failsafeText(link));
+    stopKeys_->setText(stopKeysText(stopKeysDeaf));
+    stopKeys_->setVisible(!stopKeysDeaf.isEmpty() && link.phase != LinkPhase::off);
     const bool low = link.phase != LinkPhase::off && link.controller.volts && *link.controller.volts < kLowVolts;
     warn(values_.front(), low);
 }

@@ -14,11 +14,13 @@ class DeviceFacts : public QWidget {
     Q_OBJECT
 public:
     explicit DeviceFacts(QWidget* parent);
-    void show(const LinkStatus& link);
+    /// `stopKeysDeaf`: why Esc Esc is not heard everywhere; may be empty.
+    void show(const LinkStatus& link, const QString& stopKeysDeaf);
 
 private:
     std::vector<QLabel*> values_;
     QLabel* failsafe_;
+    QLabel* stopKeys_;
 };
 
 } // namespace lumorph::studio

@@ -166,6 +166,12 @@ QString failsafeText(const LinkStatus& link) {
                : "When the studio dies, its servos stay where they are, under power. Switch it off by hand.";
 }
 
+QString stopKeysText(const QString& why) {
+    if (why.isEmpty()) return {};
+    return "Esc Esc stops the servos only while this window has the keyboard and is not stuck: " + why +
+           ". Keep the switch of their power at hand.";
+}
+
 QString handsText(const HandSense& hands, const QStringList& servos) {
     if (!hands.held.empty()) {
         const bool one = hands.held.size() == 1;

@@ -37,6 +37,8 @@ struct DeviceView {
 [[nodiscard]] QString servoWord(const LinkStatus& link, std::size_t servo, bool tested);
 /// What the controller does when the studio dies; honest where it does nothing.
 [[nodiscard]] QString failsafeText(const LinkStatus& link);
+/// How far Esc Esc reaches, where it is not everywhere; `why` may be empty.
+[[nodiscard]] QString stopKeysText(const QString& why);
 /// Who senses hands, or that nobody does, and why servos are slow.
 [[nodiscard]] QString handsText(const HandSense& hands, const QStringList& servos);
 /// "Servo 3 (front left)" of an index.

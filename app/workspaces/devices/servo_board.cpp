@@ -157,7 +157,7 @@ private:
     void refresh() {
         const DeviceDesk& desk = studio_.devices;
         card_->show(cardOf(deviceViewOf(studio_)));
-        facts_->show(desk.status());
+        facts_->show(desk.status(), desk.stopKeysDeaf());
         showHands(desk.hands());
         const auto& frame = studio_.loop.frame();
         const auto& setups = desk.profile().servos;

@@ -163,11 +163,15 @@ private:
         rows.addWidget(maestro_);
         identity_ = makeMuted("setup.identity");
         rows.addWidget(identity_);
-        forget_ = new QPushButton("Ask me again");
+        forget_ = new QPushButton("Forget this board");
         forget_->setObjectName("setup.forget");
-        forget_->setToolTip("Forgets that you said that this is your board");
-        connect(forget_, &QPushButton::clicked, this,
-                [this] { edit([](DeviceProfile& profile) { profile.identity.clear(); }); });
+        forget_->setToolTip("The profile is then good for whatever board is at its address");
+        connect(forget_, &QPushButton::clicked, this, [this] {
+            edit([](DeviceProfile& profile) {
+                profile.identity.clear();
+                profile.confirmed = false;
+            });
+        });
         rows.addWidget(forget_);
     }
 
@@ -190,7 +194,8 @@ private:
         number_->setValue(profile.controllerNumber);
         crc_->setChecked(profile.maestroCrc);
         const bool known = !profile.identity.empty();
-        identity_->setText("You said that this is your board: " + QString::fromStdString(profile.identity) + '.');
+        identity_->setText((profile.confirmed ? "You said that this is your board: " : "Set up with the board ") +
+                           QString::fromStdString(profile.identity) + '.');
         identity_->setVisible(known);
         forget_->setVisible(known);
         kind_->setText(controllerText(profile.controller));

@@ -57,7 +57,7 @@ void addTrackerCommands(Studio& studio) {
         "A head that moves by itself before the device, or as you drag it, to try the show without a tracker",
         [&studio] { studio.trackers.open("sim://head"); });
     add(studio, "tracker.simulateDevice", "Open a simulated device pose", "device",
-        "The device as a tracker would see it: drag and turn it in the view from above",
+        "The device as a tracker would see it: drag and turn it in the view of the room",
         [&studio] { studio.trackers.open("sim://device"); });
     add(studio, "tracker.camera", "Open a camera with a marker board", "picture",
         "The camera and board used last, or the first camera that is there", [&studio] { openBoard(studio); });

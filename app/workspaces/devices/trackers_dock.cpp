@@ -14,7 +14,7 @@
 
 #include "app/studio/widgets/panel.h"
 #include "app/workspaces/devices/devices_docks.h"
-#include "app/workspaces/devices/top_view.h"
+#include "app/workspaces/devices/room_view.h"
 #include "app/workspaces/devices/tracker_card.h"
 
 namespace lumorph::studio {
@@ -83,16 +83,17 @@ private:
     }
 
     void addTrackers(QVBoxLayout& layout) {
-        above_ = makeHeading("From above");
-        layout.addWidget(above_);
-        top_ = new TopView;
-        top_->setObjectName("trackers.top");
-        layout.addWidget(top_);
-        connect(top_, &TopView::moved, this,
+        heading_ = makeHeading("In the room");
+        layout.addWidget(heading_);
+        room_ = new RoomView;
+        room_->setObjectName("trackers.room");
+        layout.addWidget(room_);
+        connect(room_, &RoomView::moved, this,
                 [this](int body, const glm::dvec3& way, double turn) { move(body, way, turn); });
         hint_ =
-            new QLabel("Drag a ringed body; the right button turns it, the wheel lifts it. Keys: arrows, PageUp and "
-                       "PageDown, comma and full stop to turn, Space for the next body.");
+            new QLabel("Drag a ringed body; the right button turns it, the wheel lifts it. Drag beside it to turn the "
+                       "view, double click to look from above. Keys: arrows, PageUp and PageDown, comma and full stop "
+                       "to turn, Space for the next body.");
         hint_->setProperty("look", "muted");
         hint_->setWordWrap(true);
         hint_->hide();
@@ -143,10 +144,10 @@ private:
         const std::vector<OpenTracker>& trackers = studio_.trackers.trackers();
         empty_->setVisible(trackers.empty());
         if (trackers.empty()) hint_->hide();
-        above_->setVisible(!trackers.empty());
-        top_->setVisible(!trackers.empty());
+        heading_->setVisible(!trackers.empty());
+        room_->setVisible(!trackers.empty());
         if (!isVisible()) return;
-        std::vector<TopView::Body> bodies;
+        std::vector<RoomView::Body> bodies;
         std::vector<std::shared_ptr<SimulatedSteering>> steerings;
         for (std::size_t k = 0; k < trackers.size(); ++k) {
             const TrackerStatus& status = trackers[k].status;
@@ -156,9 +157,9 @@ private:
                                   trackers[k].steering != nullptr});
             steerings.insert(steerings.end(), status.bodies.size(), trackers[k].steering);
         }
-        const bool simulated = std::ranges::any_of(bodies, &TopView::Body::movable);
+        const bool simulated = std::ranges::any_of(bodies, &RoomView::Body::movable);
         hint_->setVisible(simulated);
-        top_->show(std::move(bodies));
+        room_->show(std::move(bodies));
         steerings_ = std::move(steerings);
     }
 
@@ -181,10 +182,10 @@ private:
     QCheckBox* network_ = nullptr;
     QVBoxLayout* cardsLayout_ = nullptr;
     std::vector<TrackerCard*> cards_;
-    QWidget* above_ = nullptr;
-    TopView* top_ = nullptr;
+    QWidget* heading_ = nullptr;
+    RoomView* room_ = nullptr;
     QLabel* hint_ = nullptr;
-    std::vector<std::shared_ptr<SimulatedSteering>> steerings_; ///< of the bodies in the view from above
+    std::vector<std::shared_ptr<SimulatedSteering>> steerings_; ///< of the bodies in the view
     QWidget* empty_ = nullptr;
 };
 

@@ -13,6 +13,7 @@ namespace {
 
 enum : uint8_t {
     kMillivolts = 0x02, // our own
+    kStep = 0x03,       // our own
     kExtendedWrite = 0x6F,
     kAnalogMappingQuery = 0x69,
     kAnalogMapping = 0x6A,
@@ -86,7 +87,7 @@ void sayFirmware() {
     const char name[] = "LumorphTablet";
     if (!beginMessage(kFirmware, 2 * sizeof(name))) return;
     uartWrite(1);
-    uartWrite(1); // since 1.1 pulses begin at 500 us
+    uartWrite(2); // since 1.1 pulses begin at 500 us, since 1.2 it knows steps
     writeText(name);
     endMessage();
 }
@@ -173,6 +174,13 @@ void configure() {
         safeLimits(within(least, setup.least, setup.greatest), within(greatest, setup.least, setup.greatest));
 }
 
+void configureStep() {
+    if (length != 3) return sayError("Message too short");
+    const int8_t channel = channelOf(data[0]);
+    if (channel == kNoChannel) return sayError("No servo on this pin");
+    setStep(channel, data[1] | uint16_t(data[2]) << 7);
+}
+
 void setMode(uint8_t pin, uint8_t mode) {
     const int8_t channel = channelOf(pin);
     if (channel == kNoChannel) return sayError("No servo on this pin");
@@ -209,6 +217,8 @@ void takeSysex(uint8_t kind) {
         return extendedWrite();
     case kServoConfig:
         return configure();
+    case kStep:
+        return configureStep();
     case kSampling:
     case kString:
         return;

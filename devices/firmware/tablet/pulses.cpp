@@ -41,6 +41,8 @@ struct Edge {
 
 struct Channel {
     uint16_t width; // microseconds; 0: never given
+    uint16_t step;  // most from one frame to the next; 0: any
+    uint16_t now;   // of the frame that is laid out; 0: none yet since it is on
     bool on;
 };
 
@@ -84,12 +86,24 @@ uint8_t addEdge(Edge* edges, uint8_t count, uint16_t time, const Ports& bits) {
 uint8_t addGroup(Edge* edges, uint8_t count, uint8_t first, uint8_t end, uint16_t time) {
     for (uint8_t i = first; i < end; ++i) {
         const Channel& channel = channels[i];
-        if (!channel.on || channel.width < kLeastPulse || channel.width > kGreatestPulse) continue;
+        if (!channel.on || channel.now < kLeastPulse || channel.now > kGreatestPulse) continue;
         count = addEdge(edges, count, time, bitsOf(i));
-        time += channel.width * kTick;
+        time += channel.now * kTick;
         count = addEdge(edges, count, time, bitsOf(i));
     }
     return count;
+}
+
+/// One frame nearer to what each channel was given.
+void advance(Channel& channel) {
+    if (!channel.on)
+        channel.now = 0;
+    else if (channel.now == 0 || channel.step == 0)
+        channel.now = channel.width;
+    else if (channel.width > channel.now)
+        channel.now += channel.width - channel.now < channel.step ? channel.width - channel.now : channel.step;
+    else
+        channel.now -= channel.now - channel.width < channel.step ? channel.now - channel.width : channel.step;
 }
 
 uint8_t clampedEnd(uint8_t end) { return end < kChannelCount ? end : kChannelCount; }
@@ -182,12 +196,13 @@ void setPulse(uint8_t channel, uint16_t microseconds) {
                                                              : microseconds;
 }
 
+void setStep(uint8_t channel, uint16_t microseconds) { channels[channel].step = microseconds; }
 void setOn(uint8_t channel, bool on) { channels[channel].on = on; }
 bool isOn(uint8_t channel) { return channels[channel].on; }
 uint16_t pulseOf(uint8_t channel) { return channels[channel].width; }
 
 void forgetPulses() {
-    for (Channel& channel : channels) channel = {0, false};
+    for (Channel& channel : channels) channel = {0, 0, 0, false};
 }
 
 void allOff() {
@@ -210,6 +225,7 @@ bool pulsesFrameIsDue() {
 
 void pulsesPlan() {
     isPlanned = false; // from here on the interrupt does not change `playing`
+    for (Channel& channel : channels) advance(channel);
     Edge* edges = frames[playing ^ 1];
     uint8_t count = addGroup(edges, 0, 0, clampedEnd(kGroup), kFirstEdge);
     count = addGroup(edges, count, clampedEnd(kGroup), kChannelCount, kFirstEdge + kSecondGroup);

@@ -17,12 +17,15 @@ struct Limits {
 Limits safeLimits(uint16_t least, uint16_t greatest);
 /// Width from the next frame on, microseconds; clamped to the channel's limits.
 void setPulse(uint8_t channel, uint16_t microseconds);
-/// A channel that is on but was never given a width stays without pulse.
+/// Most microseconds by which a pulse may differ from the one a frame before, while the channel is on; 0: any. What a
+/// radio held back and then delivers all at once must not throw a servo.
+void setStep(uint8_t channel, uint16_t microseconds);
+/// A channel that is on but was never given a width stays without pulse. Its first pulse is the one it was given.
 void setOn(uint8_t channel, bool on);
 bool isOn(uint8_t channel);
-/// 0: it was never given one.
+/// What it was given, though it may still be on its way there. 0: it was never given one.
 uint16_t pulseOf(uint8_t channel);
-/// All off, widths forgotten.
+/// All off, widths and steps forgotten.
 void forgetPulses();
 void allOff();
 bool anyOn();

@@ -200,6 +200,30 @@ TEST(PoseStream, LostOrStaleIsEmpty) {
     EXPECT_EQ(stream.at(at(9.06), at(9.0))->position, glm::dvec3(5, 6, 7)) << "found anew, nothing before counts";
 }
 
+TEST(PoseStream, IsStaleWhenNothingValidWasMeasuredLately) {
+    PoseStream stream(Microseconds{200'000});
+    EXPECT_TRUE(stream.isStale(at(0.0)));
+    ASSERT_TRUE(stream.push(sampleAt(1.0, {1, 2, 3})));
+    EXPECT_FALSE(stream.isStale(at(1.2)));
+    EXPECT_TRUE(stream.isStale(at(1.21)));
+    PoseSample lost = sampleAt(1.15, {});
+    lost.valid = false;
+    ASSERT_TRUE(stream.push(lost));
+    EXPECT_FALSE(stream.isStale(at(1.2))) << "lost a moment ago";
+    EXPECT_TRUE(stream.isStale(at(1.21))) << "what is lost makes nothing fresh";
+}
+
+TEST(PoseStream, BeginsAnewWithAnotherSource) {
+    PoseStream stream;
+    for (int k = 0; k <= 120; ++k) (void)stream.push(sampleAt(k / kRate, {0.3 * k / kRate, 0, 0}));
+    EXPECT_FALSE(stream.restart(sampleAt(1.01, {kNan, 0, 0})));
+    EXPECT_NEAR(stream.at(at(1.0), at(1.0))->position.x, 0.3, 1e-3) << "what is no pose changes nothing";
+    ASSERT_TRUE(stream.restart(sampleAt(0.98, {5, 6, 7}))) << "its tracker is a little later";
+    EXPECT_EQ(stream.at(at(1.1), at(1.0))->position, glm::dvec3(5, 6, 7)) << "neither mixed nor moving on";
+    ASSERT_TRUE(stream.push(sampleAt(0.99, {5, 6, 7})));
+    EXPECT_LT(glm::distance(stream.at(at(1.1), at(1.0))->position, {5, 6, 7}), 1e-6);
+}
+
 TEST(PoseStream, LeavesOutWhatIsLateOrNoPose) {
     PoseStream stream;
     ASSERT_TRUE(stream.push(sampleAt(1.0, {1, 2, 3})));

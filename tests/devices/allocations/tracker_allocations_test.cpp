@@ -1,5 +1,6 @@
 #include <atomic>
 #include <cstdlib>
+#include <functional>
 #include <memory>
 #include <new>
 #include <vector>
@@ -84,6 +85,30 @@ TEST(TrackerAllocations, PosesComeToTheBoardWithoutAny) {
     for (int i = 0; i < 100; ++i) takeOne();
     EXPECT_EQ(allocations - before, 0);
     EXPECT_EQ(board->entries().size(), 24U);
+}
+
+TEST(TrackerAllocations, TrackersThatShareANameNeedNone) {
+    const auto clock = std::make_shared<ManualClock>();
+    TrackerHub hub(std::make_shared<PoseBoard>(), clock);
+    const std::string name = "a body with a rather long name";
+    hub.setRoles({{name, PoseRole::head}});
+    const std::string first = "opentrack://127.0.0.1:4242", second = "natnet://192.168.0.2?mode=multicast";
+    TrackerFrame frame;
+    frame.bodies = {{1, name, true, {}}};
+    const auto takeFrom = [&](const std::string& source) {
+        clock->advance(Microseconds{4'167});
+        frame.measured = frame.arrived = clock->now();
+        hub.take(source, frame);
+    };
+    const auto takeTurns = [&] {
+        for (int i = 0; i < 100; ++i) takeFrom(i % 2 == 0 ? first : second);
+        for (const std::string& source : {std::cref(first), std::cref(second)}) // each is silent, and taken over from
+            for (int i = 0; i < 100; ++i) takeFrom(source);
+    };
+    takeTurns();
+    const long before = allocations;
+    takeTurns();
+    EXPECT_EQ(allocations - before, 0);
 }
 
 } // namespace

@@ -193,6 +193,25 @@ TEST_F(HidTransportTest, AStuckDeviceHoldsUpNobody) {
     EXPECT_TRUE(troubles_.empty());
 }
 
+TEST_F(HidTransportTest, ABoardThatAnotherLinkOfTheProgramHoldsIsNotOpenedTwice) {
+    plugIn();
+    make();
+    transport_->open();
+    ASSERT_TRUE(transport_->isOpen());
+    std::vector<LinkTrouble> troubles;
+    int opened = 0;
+    const auto second = makeHidTransport(
+        kLobot, {[&] { ++opened; }, [](auto) {}, [&](const LinkTrouble& trouble) { troubles.push_back(trouble); }});
+    second->open();
+    EXPECT_EQ(opened, 0);
+    ASSERT_EQ(troubles.size(), 1u);
+    EXPECT_THAT(troubles[0].why, HasSubstr("still takes the servos of LOBOT xArm to rest"));
+    EXPECT_EQ(fakeHidBus().open, 1);
+    transport_->close();
+    second->open();
+    EXPECT_EQ(opened, 1);
+}
+
 TEST_F(HidTransportTest, IsNotBusyWhileNothingHappens) {
     plugIn();
     make();

@@ -1,0 +1,216 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdlib>
+#include <limits>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <epoxy/gl.h>
+#include <gmock/gmock.h>
+
+#include "core/base/error.h"
+#include "core/render/headless_context.h"
+#include "core/render/spatial_renderer.h"
+#include "tests/core/render/spatial_scene.h"
+
+// What stays and what changes from one frame of the renderer to the next.
+
+namespace lumorph {
+namespace {
+
+TEST(SpatialFrames, ProjectorsComeGoAndChangeTheirSize) {
+    const HeadlessContext context;
+    SpatialRenderer renderer;
+    EXPECT_THROW((void)renderer.readEye(), InvalidInput);
+    EXPECT_THROW((void)renderer.readMask(), InvalidInput);
+    EXPECT_EQ(renderer.eyeTexture(), 0U);
+    Scene scene = unlitScene(glm::vec3(0.8F), glm::vec3(0.8F), {overhead(), overhead()});
+    scene.projectors[1].camera.size = {1, 1};
+    scene.projectors[1].camera.principal = {0.0, 0.0};
+    renderer.setEyeSize({64, 48});
+    renderer.draw(frameOf(scene, liftedFlaps()));
+    EXPECT_EQ(renderer.readEye().size(), glm::ivec2(64, 48));
+    EXPECT_EQ(renderer.readProjector(0).size(), glm::ivec2(480, 320));
+    EXPECT_EQ(renderer.readProjector(1).size(), glm::ivec2(1, 1));
+    const std::size_t two = renderer.objectCount();
+
+    scene.projectors[0].camera.size = {200, 100};
+    scene.projectors[1].enabled = false;
+    renderer.draw(frameOf(scene, liftedFlaps()));
+    EXPECT_EQ(renderer.readProjector(0).size(), glm::ivec2(200, 100));
+    EXPECT_EQ(renderer.projectorTexture(1), 0U);
+    EXPECT_LT(renderer.objectCount(), two);
+
+    scene.projectors.clear();
+    renderer.draw(frameOf(scene, liftedFlaps()));
+    EXPECT_THROW((void)renderer.readProjector(0), InvalidInput);
+    EXPECT_NE(renderer.eyeTexture(), 0U);
+
+    scene.projectors = {overhead()};
+    scene.projectors[0].camera.size = {100'000, 10};
+    EXPECT_THROW(renderer.draw(frameOf(scene, liftedFlaps())), InvalidInput);
+    scene.projectors[0].camera.size = {100, 10};
+    scene.projectors[0].camera.focal.x = std::numeric_limits<double>::quiet_NaN();
+    EXPECT_THROW(renderer.draw(frameOf(scene, liftedFlaps())), InvalidInput);
+    EXPECT_THROW(renderer.draw({}), InvalidInput);
+    EXPECT_THROW(renderer.setEyeSize({0, 10}), InvalidInput);
+    ShowFrame odd = frameOf(scene, liftedFlaps());
+    odd.devicePositions = std::make_shared<const std::vector<glm::vec3>>(3);
+    EXPECT_THROW(renderer.draw(odd), InvalidInput);
+}
+
+// A lit scene of which each step changes something else than the one before.
+ShowFrame changingFrame(int step) {
+    Scene scene = defaultScene();
+    scene.projectors = {overhead()};
+    scene.projectors[0].camera.size = {240, 160};
+    scene.projectors[0].camera.focal *= 0.4;
+    scene.projectors[0].camera.principal = {119.5, 79.5};
+    scene.items.push_back(box({0.05F, 0.09F, 0.02F}, Anchor::device, {0.0F, 1.0F, 0.0F}));
+    scene.items.back().id = 7;
+    std::vector<double> strokes(bundledTablet()->actuatorCount(), 0.0);
+    if (step >= 1) strokes[0] = 0.9;
+    if (step >= 2) scene.eye = {0.3F, 0.4F, 0.4F};
+    if (step >= 3) scene.items.back().position = {-0.14F, 0.05F, 0.1F};
+    if (step >= 4) strokes[1] = 0.8;
+    if (step >= 5) scene.items.front().position = {0.5F, 0.35F, 0.5F};
+    if (step >= 6) scene.table.material.color = {0.3F, 0.5F, 0.8F};
+    if (step >= 7) scene.worldFromDevice[3] = glm::vec4(0.06F, 0.0F, -0.03F, 1.0F);
+    if (step >= 8) scene.items.pop_back();
+    if (step >= 9) strokes.assign(strokes.size(), 1.0); // long shadows on the table
+    if (step >= 10) scene.projectors[0].peak = 2.0;
+    ShowFrame frame = posed(frameOf(scene, strokes));
+    if (step >= 11) frame.eye.reset();
+    return frame;
+}
+
+int differingPixels(const Image& first, const Image& second) {
+    int count = 0;
+    for (std::size_t i = 0; i < first.pixels().size(); ++i) count += first.pixels()[i] == second.pixels()[i] ? 0 : 1;
+    return count;
+}
+
+TEST(SpatialFrames, PictureIsTheSameWhateverWasDrawnBefore) {
+    const HeadlessContext context;
+    SpatialRenderer renderer;
+    renderer.setEyeSize({320, 200});
+    Image before;
+    for (int step = 0; step <= 11; ++step) {
+        const ShowFrame frame = changingFrame(step);
+        renderer.draw(frame);
+        const Image sent = renderer.readProjector(0);
+        SpatialRenderer fresh;
+        fresh.setEyeSize({320, 200});
+        fresh.draw(frame);
+        // Now and then a shadow's edge falls on the other side of a rounding.
+        EXPECT_LE(differingPixels(sent, fresh.readProjector(0)), 3) << "step " << step;
+        EXPECT_NE(sent, before) << "step " << step << " changes nothing";
+        before = sent;
+    }
+}
+
+SceneTexture texture(const std::string& image, int columns = 1) {
+    SceneTexture texture;
+    texture.image = image;
+    texture.columns = columns;
+    texture.framesPerSecond = columns > 1 ? 20.0 : 0.0;
+    return texture;
+}
+
+/// A scene of everything: pictures, a flip-book, waves, fog, two projectors.
+Scene busyScene() {
+    Scene scene = unlitScene({0.9F, 0.2F, 0.0F}, {0.0F, 0.3F, 0.9F}, {overhead(), overhead()});
+    scene.device.material.colorTexture = texture("flip-book", 4);
+    scene.device.creases.emphasis = 0.5;
+    scene.table.material.colorTexture = texture("wood");
+    scene.items.push_back(box({0.25F, 0.03F, 0.2F}, Anchor::world, {0.0F, 1.0F, 0.0F}));
+    scene.items.back().material.unlit = false;
+    scene.items.back().material.normalMaps[0] = texture("bumps");
+    SceneItem water = box({0.0F, 0.04F, 0.0F}, Anchor::device, {0.2F, 0.4F, 0.9F});
+    water.id = 2;
+    HeightItem waves;
+    waves.waves.emplace_back();
+    water.kind = waves;
+    scene.items.push_back(water);
+    SceneItem fog = box({0.0F, 0.05F, 0.0F}, Anchor::device, {1.0F, 1.0F, 1.0F});
+    fog.id = 3;
+    fog.kind = FogItem{};
+    scene.items.push_back(fog);
+    SceneItem sun = box({0.3F, 0.8F, 0.3F}, Anchor::world, {1.0F, 1.0F, 1.0F});
+    sun.id = 4;
+    sun.kind = LightItem{};
+    std::get<LightItem>(sun.kind).shadows = false; // their maps take most of a frame
+    scene.items.push_back(sun);
+    for (SceneProjector& projector : scene.projectors) {
+        projector.camera.size = {48, 32};
+        projector.camera.focal *= 0.1;
+        projector.camera.principal = {23.5, 15.5};
+    }
+    return scene;
+}
+
+/// The pictures of that scene; all but the flip-book are read anew.
+std::shared_ptr<const SceneAssets> readAnew() {
+    static const auto sheet = std::make_shared<const Image>(glm::ivec2(16, 4), Image::Pixel{90, 200, 40, 255});
+    auto assets = std::make_shared<SceneAssets>();
+    assets->images["flip-book"] = sheet;
+    assets->images["wood"] = std::make_shared<const Image>(glm::ivec2(8), Image::Pixel{120, 80, 40, 255});
+    assets->images["bumps"] = std::make_shared<const Image>(glm::ivec2(8), Image::Pixel{128, 128, 255, 255});
+    return assets;
+}
+
+/// What the driver itself has, by kind.
+std::array<std::size_t, 6> liveObjects() {
+    constexpr GLuint kNames = 500000; // a driver need not use a name twice
+    std::array<std::size_t, 6> count{};
+    for (GLuint name = 1; name < kNames; ++name) {
+        count[0] += glIsTexture(name);
+        count[1] += glIsBuffer(name);
+        count[2] += glIsVertexArray(name);
+        count[3] += glIsFramebuffer(name);
+        count[4] += glIsRenderbuffer(name);
+        count[5] += glIsProgram(name);
+    }
+    return count;
+}
+
+TEST(SpatialFrames, ManyFramesKeepAsManyObjects) {
+    const HeadlessContext context;
+    SpatialRenderer renderer;
+    renderer.setEyeSize({64, 40});
+    Scene scene = busyScene();
+    ScenePoser poser;
+    const char* soak = std::getenv("LUMORPH_SOAK");
+    const int frames = 500 * (soak != nullptr ? std::max(1, std::atoi(soak)) : 1);
+    const CalibratedCamera observer = cameraLookingAt({0.0, 0.5, 0.5}, {0.0, 0.0, 0.0}, {32, 24}, 40.0);
+    std::size_t settled = 0;
+    std::array<std::size_t, 6> live{};
+    auto assets = readAnew();
+    for (int i = 0; i < frames; ++i) {
+        std::vector<double> strokes(bundledTablet()->actuatorCount());
+        for (std::size_t k = 0; k < strokes.size(); ++k) strokes[k] = 0.5 + 0.5 * std::sin(0.1 * i + double(k));
+        scene.eye.x = 0.3F * std::sin(0.05F * static_cast<float>(i));
+        ShowFrame frame = frameOf(scene, strokes);
+        if (i % 5 == 4) assets = readAnew();
+        frame.assets = assets;
+        frame = posedBy(poser, std::move(frame), 0.05 * i);
+        if (i % 10 == 9) frame.eye.reset();
+        renderer.draw(frame);
+        if (i % 50 == 0) (void)renderer.readLab(observer);
+        if (i % 50 == 1 && frame.eye) (void)renderer.readMask();
+        if (i == 60) {
+            settled = renderer.objectCount();
+            live = liveObjects();
+        }
+        if (i > 60) {
+            ASSERT_EQ(renderer.objectCount(), settled) << i;
+        }
+    }
+    EXPECT_EQ(liveObjects(), live);
+    EXPECT_EQ(glGetError(), unsigned{GL_NO_ERROR});
+}
+
+} // namespace
+} // namespace lumorph
