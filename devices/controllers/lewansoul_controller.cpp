@@ -41,9 +41,9 @@ ControllerTraits lewansoulTraits(const DeviceProfile& profile, const DeviceAddre
     traits.pulseStep = hid ? kHidStep : 1.0;
     traits.readsPosition = hid;
     traits.readsVoltage = true;
-    const auto reports = static_cast<double>((servos + kServosPerReport - 1) / kServosPerReport);
-    traits.commandsPerSecond =
-        hid ? kHidPerSecond / reports : std::min(kHidPerSecond, setsPerSecond(baudOf(address), 7 + 3 * servos));
+    const std::size_t reports = (servos + kServosPerReport - 1) / kServosPerReport;
+    traits.commandsPerSecond = hid ? kHidPerSecond / static_cast<double>(reports)
+                                   : std::min(kHidPerSecond, setsPerSecond(baudOf(address), 7 + 3 * servos));
     traits.failsafeWord = "none: when the studio dies or the cable is pulled, servos stay under power where they are; "
                           "switch the board off to free them";
     return traits;
