@@ -26,7 +26,8 @@ constexpr double kFrameSeconds = 0.020;   // of it
 constexpr double kGreatestStep = 16383.0; // microseconds that can be told
 constexpr long kSameValue = 4;            // microseconds: firmware keeps off its limits by one or two
 constexpr std::size_t kBytesOfDetach = 4;
-constexpr int kLimpModes = 3; // input, output, analog: what a pin is that drives no servo
+constexpr std::size_t kMostQuestions = 256; // far more than two seconds hold
+constexpr int kLimpModes = 3;               // input, output, analog: what a pin is that drives no servo
 constexpr Microseconds kVoltageEvery{2'000'000};
 constexpr Microseconds kWordsLast{10'000'000};
 constexpr std::size_t kLongestWords = 80;
@@ -127,10 +128,15 @@ private:
     Repeater heartbeat_{kHeartbeat};
     Repeater stateAtLeast_{kStateAtLeast};
     Repeater voltage_{kVoltageEvery};
-    std::deque<Microseconds> statesAsked_; ///< when the open questions for a pin's state were asked
-    std::size_t asked_ = 0;                ///< servo whose state was asked for last
-    int contrary_ = 0;                     ///< answers in a row that tell of a servo that was let go
-    std::optional<Microseconds> words_;    ///< when the board said something
+    struct Question {
+        int pin = 0;
+        Microseconds at{0};
+    };
+    [[nodiscard]] std::optional<Microseconds> takeQuestion(int pin);
+    std::deque<Question> questions_;    ///< for a pin's state, that are open
+    std::size_t asked_ = 0;             ///< servo whose state was asked for last
+    int contrary_ = 0;                  ///< answers in a row that tell of a servo that was let go
+    std::optional<Microseconds> words_; ///< when the board said something
     /// What our firmware knows of a servo, microseconds.
     struct Bounds {
         int least = 0, greatest = 0;
@@ -158,7 +164,7 @@ void FirmataController::startHandshake() {
     doubtAskedAt_.reset();
     question_.reset();
     voltage_.reset();
-    statesAsked_.clear();
+    questions_.clear();
     contrary_ = 0;
     state_.firmware.clear();
     state_.volts.reset();
@@ -285,19 +291,28 @@ void FirmataController::tellOfShortPulses() {
                                         "set the least pulse to 544 us, or upload the firmware of the studio"});
 }
 
+/// When the question was asked that a pin's state answers: the oldest for that pin, since a board answers in order;
+/// what was asked before has lost its answer. Too old is safe, for then the answer counts less; too young would take
+/// what a slow link still tells of before an attach for what came of it.
+std::optional<Microseconds> FirmataController::takeQuestion(int pin) {
+    const auto found = std::ranges::find(questions_, pin, &Question::pin);
+    if (found == questions_.end()) return std::nullopt;
+    const Microseconds at = found->at;
+    questions_.erase(questions_.begin(), found + 1);
+    return at;
+}
+
 /// Nothing else tells that a command has arrived, or that the watchdog has let go of the servos.
 void FirmataController::hear(const firmata::PinState& pin) {
-    if (statesAsked_.empty()) return;
-    const Microseconds asked = statesAsked_.front();
-    statesAsked_.pop_front();
+    const std::optional<Microseconds> asked = takeQuestion(pin.pin);
     const std::optional<std::size_t> servo = servoOn(pin.pin);
-    if (!servo || asked <= plan_.since(*servo)) return;
+    if (!asked || !servo || *asked <= plan_.since(*servo)) return;
     const bool drives = pin.mode == firmata::kServoMode;
     if (drives) plan_.detachAgain(*servo);
     if (pin.mode >= 0 && pin.mode < kLimpModes) plan_.confirmLimp(*servo);
     if (!plan_.attached(*servo)) return;
     if (drives && std::abs(static_cast<long>(pin.value) - plan_.told(*servo)) > kSameValue &&
-        plan_.tellAgain(*servo, asked))
+        plan_.tellAgain(*servo, *asked))
         ++state_.errors;
     contrary_ = drives ? 0 : contrary_ + 1;
     if (contrary_ < 2) return;
@@ -340,11 +355,13 @@ void FirmataController::work(Microseconds now) {
 
 void FirmataController::askState(Microseconds now) {
     if (plan_.servos().empty()) return;
-    ask(firmata::askPinState(plan_.servos()[servoToAskFor()].channel));
+    const int pin = plan_.servos()[servoToAskFor()].channel;
+    ask(firmata::askPinState(pin));
     heartbeat_.done(now);
     stateAtLeast_.done(now);
-    statesAsked_.push_back(now);
-    if (statesAsked_.size() > 8) statesAsked_.pop_front();
+    questions_.push_back({pin, now});
+    // No answer is older: after a second of silence the link is given up.
+    while (questions_.size() > kMostQuestions || now - questions_.front().at > 2 * kSilence) questions_.pop_front();
 }
 
 /// In turn those that may not have let go yet, else those that hold.

@@ -244,6 +244,40 @@ TEST(FirmataController, AnAnswerOfBeforeTheAttachMeansNothing) {
     EXPECT_EQ(trial.state().phase, ControllerPhase::ready);
 }
 
+TEST(FirmataController, NorDoManyThatASlowLinkHeldBack) {
+    ControllerTrial trial = readyTrial({9, 10});
+    const auto statesAsked = [&] {
+        int count = 0;
+        for (const Bytes& message : trial.written())
+            count += message.size() > 2 && message[0] == 0xF0 && message[1] == 0x6D ? 1 : 0;
+        return count;
+    };
+    (void)statesAsked();
+    trial.send({{9, 0.0, false}, {10, 0.0, false}});
+    trial.wait(500);
+    const int before = statesAsked();
+    ASSERT_GT(before, 8);
+    trial.send({{9, 1500.0, true}, {10, 1500.0, true}});
+    trial.wait(450);
+    for (int i = 0; i < before; ++i) trial.hear(stateOf(i % 2 == 0 ? 9 : 10, 1));
+    EXPECT_EQ(trial.state().phase, ControllerPhase::ready);
+    EXPECT_EQ(trial.state().reboots, 0U);
+}
+
+TEST(FirmataController, ALostAnswerDoesNotMakeTheOthersWait) {
+    ControllerTrial trial = readyTrial({9, 10});
+    trial.send({{9, 1500.0, true}, {10, 1500.0, true}});
+    trial.wait(500); // questions that are never answered
+    trial.hear(stateOf(9, 4));
+    trial.hear(stateOf(10, 4));
+    for (int i = 0; i < 2; ++i) {
+        trial.wait(400);
+        trial.hear(stateOf(i == 0 ? 9 : 10, 1));
+        trial.hear(stateOf(i == 0 ? 10 : 9, 1));
+    }
+    EXPECT_EQ(trial.state().reboots, 1U);
+}
+
 TEST(FirmataController, WhatTheBoardSaysIsTold) {
     ControllerTrial trial = readyTrial({9});
     Bytes text = {0xF0, 0x71};
