@@ -254,10 +254,14 @@ void addDeviceCommands(CLI::App& app, Session& session) {
     CLI::App* lists = group->add_subcommand("list", "What is connected to this machine, and the simulated boards");
     lists->add_flag("--json", arguments->json, "Print one JSON value");
     lists->callback([arguments] { list(*arguments); });
-    CLI::App* probes = addCommand(*group, "probe", "Ask a controller what it is; nothing moves", *arguments);
+    CLI::App* probes =
+        addCommand(*group, "probe", "Ask a controller what it is; nothing is driven, and servos that are on are let go",
+                   *arguments);
     probes->add_flag("--json", arguments->json, "Print one JSON value");
     probes->callback([arguments, &session] { probe(*arguments, session); });
-    CLI::App* monitors = addCommand(*group, "monitor", "Print every byte, both ways; nothing moves", *arguments);
+    CLI::App* monitors =
+        addCommand(*group, "monitor",
+                   "Print every byte, both ways; nothing is driven, and servos that are on are let go", *arguments);
     monitors->add_option("--seconds", arguments->seconds, "How long (default: until Ctrl-C)")
         ->check(numberBetween(0.0, 1e6));
     monitors->callback([arguments, &session] { monitor(*arguments, session); });

@@ -61,6 +61,7 @@ int run(int argc, char** argv, const Arguments& arguments) {
     arguments.kiosk ? window.enterKiosk() : window.show();
     openFirst(studio, window, arguments);
     const int status = QApplication::exec();
+    studio.devices.leave(); // as long as the window's keys can stop it
     application.setOnError({});
     return status;
 }

@@ -113,6 +113,7 @@ void ControllerBase::trouble(Concern concern, std::optional<LinkTrouble> trouble
     troubles_[static_cast<std::size_t>(concern)] = std::move(trouble);
     const auto first = std::find_if(troubles_.begin(), troubles_.end(), [](const auto& t) { return t.has_value(); });
     state_.trouble = first == troubles_.end() ? std::nullopt : *first;
+    state_.batteryTrouble = first == troubles_.begin() + static_cast<std::ptrdiff_t>(Concern::battery);
 }
 
 bool ControllerBase::takeVoltage(double volts) {
@@ -133,6 +134,19 @@ bool ControllerBase::takeVoltage(double volts) {
     std::snprintf(text, sizeof(text), "battery at %.1f V", volts);
     trouble(Concern::battery, LinkTrouble{text, "charge it or change it: servos lose their strength, and the board "
                                                 "may start anew under load"});
+    return true;
+}
+
+bool ControllerBase::takeValue(std::size_t servo, long value, bool same, Microseconds asked,
+                               const std::string& remedy) {
+    const PulsePlan::Verdict verdict = plan_.hears(servo, same, asked);
+    if (verdict == PulsePlan::Verdict::mended) ++state_.errors;
+    if (verdict != PulsePlan::Verdict::refused) return false;
+    const auto microseconds = [this](long steps) { return std::to_string(std::lround(plan_.microseconds(steps))); };
+    trouble(Concern::board,
+            LinkTrouble{"the board holds servo " + std::to_string(servo + 1) + " at " + microseconds(value) +
+                            " us, where it was told " + microseconds(plan_.told(servo)) + " us",
+                        remedy});
     return true;
 }
 

@@ -82,6 +82,9 @@ protected:
     void trouble(Concern concern, std::optional<LinkTrouble> trouble);
     /// False where it is in doubt, and should be asked for again.
     bool takeVoltage(double volts);
+    /// The board says, when asked at this time, that an attached servo has this value (steps), `same` as told or not:
+    /// what noise has spoiled is put right, and what the board will not have becomes a trouble, true then.
+    bool takeValue(std::size_t servo, long value, bool same, Microseconds asked, const std::string& remedy);
     /// What it was told last.
     [[nodiscard]] Microseconds now() const noexcept { return now_; }
     /// When something was last written.

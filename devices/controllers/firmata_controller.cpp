@@ -73,6 +73,15 @@ int stepOf(const ServoSetup& servo) {
     return static_cast<int>(std::clamp(std::ceil(step), 1.0, kGreatestStep));
 }
 
+/// What our firmware, and the stock one, have to say (devices/firmware/tablet/firmata.cpp).
+std::string remedyFor(std::string_view text) {
+    if (text.starts_with("Silence")) return "see that the link is not interrupted, then start the servos again";
+    if (text.starts_with("Bytes were lost")) return "check plugs and ground, or bring the radio nearer";
+    if (text.starts_with("Started anew"))
+        return "start the servos again; where it comes again, upload the sketch again and see to the board's supply";
+    return "see that the channels of the profile are those of the wiring";
+}
+
 /// A message that also gets the board out of one whose end was lost.
 firmata::Bytes certain(firmata::Bytes message) {
     message.insert(message.begin(), firmata::kEndOfMessage);
@@ -311,9 +320,12 @@ void FirmataController::hear(const firmata::PinState& pin) {
     if (drives) plan_.detachAgain(*servo);
     if (pin.mode >= 0 && pin.mode < kLimpModes) plan_.confirmLimp(*servo);
     if (!plan_.attached(*servo)) return;
-    if (drives && std::abs(static_cast<long>(pin.value) - plan_.told(*servo)) > kSameValue &&
-        plan_.tellAgain(*servo, *asked))
-        ++state_.errors;
+    const auto value = static_cast<long>(pin.value);
+    if (drives && takeValue(*servo, value, std::abs(value - plan_.told(*servo)) <= kSameValue, *asked,
+                            own_ ? "write the board's sketch for this profile again and upload it, or narrow the "
+                                   "servo's pulses to what the board was given"
+                                 : "narrow the servo's pulses to what this firmware makes"))
+        words_ = heardAt_;
     contrary_ = drives ? 0 : contrary_ + 1;
     if (contrary_ < 2) return;
     rebooted();
@@ -327,8 +339,7 @@ void FirmataController::hear(const firmata::Text& text) {
     if (text.text.empty()) return;
     if (state_.phase != ControllerPhase::handshake) ++state_.errors;
     words_ = heardAt_;
-    trouble(Concern::board, LinkTrouble{"the board says '" + readable(text.text) + "'",
-                                        "see that the channels of the profile are those of the wiring"});
+    trouble(Concern::board, LinkTrouble{"the board says '" + readable(text.text) + "'", remedyFor(text.text)});
 }
 
 void FirmataController::hear(const firmata::Voltage& voltage) {

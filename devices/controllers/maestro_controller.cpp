@@ -2,6 +2,7 @@
 #include <bit>
 #include <cctype>
 #include <utility>
+#include <vector>
 
 #include "core/base/error.h"
 #include "devices/controllers/controller_base.h"
@@ -17,6 +18,7 @@ constexpr Microseconds kErrorsEvery{200'000};
 constexpr Microseconds kPositionsEvery{250'000};
 constexpr Microseconds kAnswerWithin{250'000};
 constexpr Microseconds kWordsLast{10'000'000};
+constexpr long kNoPosition = -1;
 
 /// With a number the board is addressed by it, so that others on the same line stay still; without one any board is.
 maestro::Form formOf(const DeviceProfile& profile) {
@@ -79,6 +81,7 @@ private:
     int contrary_ = 0;      ///< answers in a row that tell of a servo that was let go
     bool oldErrors_ = true; ///< those told next are of before
     std::optional<Microseconds> words_;
+    std::vector<long> positionsHeard_; ///< by servo, quarters, since it was told something; or kNoPosition
 };
 
 void MaestroController::begin(Microseconds now) {
@@ -89,6 +92,7 @@ void MaestroController::begin(Microseconds now) {
     contrary_ = 0;
     oldErrors_ = true;
     words_.reset();
+    positionsHeard_.assign(plan_.servos().size(), kNoPosition);
 }
 
 bool MaestroController::namesItself() const {
@@ -145,8 +149,13 @@ void MaestroController::hear(const maestro::Position& position, Microseconds now
     else
         plan_.confirmLimp(*servo);
     if (!plan_.attached(*servo)) return;
-    if (position.quarters != 0 && position.quarters != plan_.told(*servo) && plan_.tellAgain(*servo, asked_))
-        ++state_.errors;
+    // On the way, where the board has a speed of its own for the channel, no two answers are alike.
+    const auto quarters = static_cast<long>(position.quarters);
+    const bool steady = std::exchange(positionsHeard_[*servo], quarters) == quarters;
+    if (quarters != 0 && steady &&
+        takeValue(*servo, quarters, quarters == plan_.told(*servo), asked_,
+                  "widen Min and Max of its channel in the board's settings, or narrow the servo's pulses"))
+        words_ = now;
     contrary_ = position.quarters != 0 ? 0 : contrary_ + 1;
     if (contrary_ >= 2)
         letGo({"the board has let go of its servos by itself: it started anew, or its own timeout has run out",
@@ -214,9 +223,11 @@ ControllerBase::Messages MaestroController::detachments(std::span<const std::siz
 
 ControllerBase::Messages MaestroController::changes(std::span<const PulsePlan::Change> changes) {
     Messages messages;
-    for (const PulsePlan::Change& change : changes)
+    for (const PulsePlan::Change& change : changes) {
         messages.push_back(
             maestro::setTarget(form_, plan_.servos()[change.servo].channel, static_cast<int>(change.value)));
+        positionsHeard_[change.servo] = kNoPosition;
+    }
     return messages;
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <utility>
 
 #include "core/base/error.h"
 
@@ -115,12 +116,14 @@ void PulsePlan::detachAgain(std::size_t servo) {
     state.quickUntil = now_ + kDetachQuickly;
 }
 
-bool PulsePlan::tellAgain(std::size_t servo, Microseconds asked) {
+PulsePlan::Verdict PulsePlan::hears(std::size_t servo, bool same, Microseconds asked) {
     State& state = states_[servo];
-    if (state.told != Told::attached || asked <= state.toldAt || state.again || state.repeats == kRepeats) return false;
+    if (state.told != Told::attached || asked <= state.toldAt || state.again) return Verdict::nothing;
+    if (same) return std::exchange(state.repeats, 0) > 0 ? Verdict::mended : Verdict::nothing;
+    if (state.repeats == kRepeats) return Verdict::refused;
     state.again = pending_ = true;
     ++state.repeats;
-    return true;
+    return Verdict::nothing;
 }
 
 bool PulsePlan::doubtful(std::size_t servo) const {

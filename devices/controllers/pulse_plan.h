@@ -58,9 +58,19 @@ public:
     void detachAgain(std::size_t servo);
     /// All limp ones must be told again, now.
     void detachAgain();
-    /// It says of one that is attached, when asked at this time, that it has another value than it was told: it is told
-    /// again, a few times. False where that would be once too often, or it was told something else since.
-    bool tellAgain(std::size_t servo, Microseconds asked);
+    /// What follows from the value that a board has.
+    enum class Verdict {
+        nothing,
+        mended, ///< the line had spoiled it, and it was put right
+        refused ///< the board keeps to another value, however often it is told
+    };
+    /// The board says, when asked at this time, whether one that is attached has the value that it was told. If not it
+    /// is told again, a few times.
+    Verdict hears(std::size_t servo, bool same, Microseconds asked);
+    /// The pulse of so many steps.
+    [[nodiscard]] double microseconds(long steps) const {
+        return scale_.zero + scale_.step * static_cast<double>(steps);
+    }
     /// What one that is attached was told last, steps.
     [[nodiscard]] long told(std::size_t servo) const { return states_[servo].toldValue; }
     /// It was told to be limp, and nobody knows whether it is.

@@ -46,6 +46,7 @@ struct ControllerState {
     bool answering = true;                         ///< false: it has been silent for a second
     bool detaching = false; ///< servos are told again and again to let go: nobody knows yet whether they have
     std::optional<LinkTrouble> trouble;
+    bool batteryTrouble = false; ///< it is the battery's alone
 };
 
 /// One kind of servo controller, as a machine that takes bytes and time and gives bytes: it does no I/O. What is sent

@@ -128,6 +128,8 @@ void ServoEngine::Data::take(const servo_input::Quit&) {
 void ServoEngine::Data::take(const servo_input::Opened& opened) {
     open = true;
     linkTrouble.reset();
+    silentSince.reset();
+    silenceTold = stallTold = false;
     product = opened.product;
     identity = opened.identity;
     if (std::exchange(everOpen, true)) ++reconnects;

@@ -200,7 +200,9 @@ ServoLink::ServoLink(DeviceProfile profile, LinkOptions options) {
     data.wake();
 }
 
-ServoLink::~ServoLink() {
+ServoLink::~ServoLink() { leave(); }
+
+void ServoLink::leave() {
     data_->order([](LinkOrders& all) { all.quit = true; });
     data_->thread.wait();
     data_->takeOver();

@@ -31,8 +31,11 @@ class ServoLink {
 public:
     /// Throws as checkProfile and parseDeviceAddress.
     ServoLink(DeviceProfile profile, LinkOptions options);
-    /// Goes to rest (at most 2 s) where the profile says so and servos are live, detaches them and closes the link.
+    /// As leave().
     ~ServoLink();
+    /// Goes to rest (at most 2 s) where the profile says so and servos are live, detaches them, closes the link, and
+    /// waits for all that; stop() cuts it short. Nothing else is heeded from then on.
+    void leave();
 
     void connect();
     void disconnect();

@@ -74,8 +74,7 @@ void LinkWatch::lookAtNoise(const ControllerState& state, Microseconds now) {
 
 /// What the board itself says; the battery and a refusal have words of their own.
 void LinkWatch::lookAtWords(const ControllerState& state) {
-    if (!state.trouble || !state.answering || state.phase == ControllerPhase::refused) return;
-    if (state.volts && *state.volts < kEnough) return;
+    if (!state.trouble || state.batteryTrouble || !state.answering || state.phase == ControllerPhase::refused) return;
     if (std::exchange(words_, state.trouble->why) == state.trouble->why) return;
     tell_(Kind::warning, "Trouble with the board: " + state.trouble->why + ".", state.trouble->remedy);
 }

@@ -278,15 +278,33 @@ TEST(FirmataController, ALostAnswerDoesNotMakeTheOthersWait) {
     EXPECT_EQ(trial.state().reboots, 1U);
 }
 
-TEST(FirmataController, WhatTheBoardSaysIsTold) {
-    ControllerTrial trial = readyTrial({9});
+/// A string message, and a byte at its end that no text has.
+Bytes saying(const std::string& words) {
     Bytes text = {0xF0, 0x71};
-    for (const char letter : std::string("Unknown pin mode")) {
+    for (const char letter : words) {
         text.push_back(static_cast<std::uint8_t>(letter));
         text.push_back(0);
     }
     text.insert(text.end(), {0x1B, 0x00, 0xF7});
-    trial.hear(text);
+    return text;
+}
+
+TEST(FirmataController, WhatOurFirmwareSaysHasARemedyOfItsOwn) {
+    for (const auto& [words, remedy] : {std::pair{"Silence: servos let go", "link is not interrupted"},
+                                        std::pair{"Bytes were lost", "plugs and ground"},
+                                        std::pair{"Started anew: it hung", "start the servos again"},
+                                        std::pair{"Unknown pin mode", "channels of the profile"}}) {
+        ControllerTrial trial = readyTrial({9});
+        trial.hear(saying(words));
+        ASSERT_TRUE(trial.state().trouble);
+        EXPECT_THAT(trial.state().trouble->remedy, HasSubstr(remedy)) << words;
+        EXPECT_FALSE(trial.state().batteryTrouble);
+    }
+}
+
+TEST(FirmataController, WhatTheBoardSaysIsTold) {
+    ControllerTrial trial = readyTrial({9});
+    trial.hear(saying("Unknown pin mode"));
     ASSERT_TRUE(trial.state().trouble);
     EXPECT_EQ(trial.state().trouble->why, "the board says 'Unknown pin mode?'");
     EXPECT_EQ(trial.state().errors, 1U);

@@ -94,9 +94,13 @@ TEST(FirmataPulses, AValueThatTheLineSpoiledIsToldAgain) {
         EXPECT_EQ(answersFor(3000, 1602), 0) << "it keeps off its limits";
         EXPECT_EQ(trial.state().errors, 0U);
         EXPECT_EQ(answersFor(600, 1728), 1) << firmware;
-        EXPECT_EQ(trial.state().errors, 1U);
         EXPECT_EQ(answersFor(3000, 1600), 0);
-        EXPECT_EQ(answersFor(20'000, 1728), 2) << "a board that will not have it is not flooded";
+        EXPECT_EQ(trial.state().errors, 1U) << "the line had spoiled it";
+        EXPECT_FALSE(trial.state().trouble);
+        EXPECT_EQ(answersFor(20'000, 1728), 3) << "a board that will not have it is not flooded";
+        EXPECT_EQ(trial.state().errors, 1U) << "that is not the line";
+        ASSERT_TRUE(trial.state().trouble);
+        EXPECT_THAT(trial.state().trouble->why, HasSubstr("holds servo 1 at 1728 us, where it was told 1600 us"));
         trial.send({{9, 1700.0, true}, {10, 1500.0, true}});
         trial.wait(20);
         (void)trial.written();
@@ -104,6 +108,8 @@ TEST(FirmataPulses, AValueThatTheLineSpoiledIsToldAgain) {
         trial.wait(20);
         EXPECT_EQ(pulses(), 1);
         EXPECT_EQ(answersFor(20'000, 1728), 3) << "but another value counts anew";
+        EXPECT_EQ(answersFor(12'000, 1600), 0);
+        EXPECT_FALSE(trial.state().trouble) << "it is over when the board has it";
         EXPECT_EQ(trial.state().reboots, 0U);
     }
 }

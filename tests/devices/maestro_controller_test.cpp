@@ -211,7 +211,27 @@ TEST(MaestroController, ATargetThatTheLineSpoiledIsToldAgain) {
     // 6000 quarters on channel 3, as the board's manual writes it.
     EXPECT_THAT(again, testing::ElementsAreArray(Messages(3, Bytes{0xAA, 0x0C, 0x04, 0x03, 0x70, 0x2E})))
         << "a few times, not for ever";
-    EXPECT_GE(board.trial.state().errors, 3U);
+    EXPECT_EQ(board.trial.state().errors, 0U);
+    ASSERT_TRUE(board.trial.state().trouble);
+    EXPECT_THAT(board.trial.state().trouble->why, HasSubstr("holds servo 4 at 1628 us, where it was told 1500 us"));
+    EXPECT_THAT(board.trial.state().trouble->remedy, HasSubstr("Min and Max"));
+    board.quarters = 6000;
+    board.wait(1500);
+    EXPECT_EQ(board.trial.state().errors, 1U) << "the line had spoiled it after all";
+}
+
+TEST(MaestroController, AChannelWithASpeedOfItsOwnIsOnItsWayNotSpoiled) {
+    AnsweringTrial board(sixServos());
+    board.trial.send({{3, 1500.0, true}});
+    board.quarters = 4000;
+    for (; board.quarters < 6000; board.quarters += 100) {
+        board.wait(250);
+        if (board.quarters == 4000) (void)board.take();
+    }
+    board.wait(1500);
+    EXPECT_THAT(board.take(), IsEmpty());
+    EXPECT_EQ(board.trial.state().errors, 0U);
+    EXPECT_FALSE(board.trial.state().trouble);
 }
 
 TEST(MaestroController, ABoardThatLetGoIsNoticed) {

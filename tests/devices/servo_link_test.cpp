@@ -270,6 +270,21 @@ TEST_F(ServoLinkTest, DropsABoardThatHasFallenSilent) {
     EXPECT_TRUE(reaches(LinkPhase::disarmed));
 }
 
+TEST_F(ServoLinkTest, ConnectedAnewItSaysNothingGoodOfTheTimeBefore) {
+    open(tabletProfile());
+    goLive();
+    fault([](BoardFaults& faults) { faults.silent = true; });
+    ASSERT_TRUE(hears("The link is lost: the board has fallen silent")) << said_;
+    link_->disconnect();
+    std::this_thread::sleep_for(1300ms); // letting go is repeated before the link is closed
+    EXPECT_EQ(link_->status().phase, LinkPhase::off);
+    fault([](BoardFaults& faults) { faults.silent = false; });
+    link_->connect();
+    ASSERT_TRUE(reaches(LinkPhase::disarmed));
+    std::this_thread::sleep_for(100ms);
+    EXPECT_EQ(times("answers again"), 0) << said_;
+}
+
 TEST_F(ServoLinkTest, TellsOfALowBatteryOnce) {
     open(tabletProfile());
     ASSERT_TRUE(reaches(LinkPhase::disarmed));
@@ -325,6 +340,22 @@ TEST_F(ServoLinkTest, GoesToRestAndLetsGoAtTheEnd) {
     EXPECT_NEAR(board_->servos()[0].position, 1000.0, 30.0);
     EXPECT_TRUE(allLimp());
     for (const SimulatedServo& servo : board_->servos()) EXPECT_LE(servo.fastest, 2000.0);
+}
+
+TEST_F(ServoLinkTest, StopCutsTheWayToRestShort) {
+    DeviceProfile profile = tabletProfile();
+    profile.restOnExit = true;
+    for (ServoSetup& servo : profile.servos) servo.maxVelocity = 0.25; // two seconds to rest
+    open(profile);
+    goLive();
+    std::thread leaving([this] { link_->leave(); });
+    ASSERT_TRUE(waitFor([&] { return pulse(0) > 0.0 && pulse(0) < 1480.0; })) << "it is on its way";
+    const auto stopped = std::chrono::steady_clock::now();
+    link_->stop();
+    EXPECT_TRUE(waitFor([&] { return allLimp(); }, 50ms));
+    leaving.join();
+    EXPECT_LT(std::chrono::steady_clock::now() - stopped, 1s);
+    EXPECT_GT(board_->servos()[0].position, 1300.0) << "the middle is where it came from";
 }
 
 TEST_F(ServoLinkTest, WantsTheBoardOfTheProfile) {

@@ -90,6 +90,21 @@ TEST_F(DeviceSetup, TheRestPoseIsWhereServosGoWhenTheLinkEnds) {
     EXPECT_NEAR(servoOf(1).position, 1500.0, 30.0);
 }
 
+TEST_F(DeviceSetup, StopIsHeardOnTheWayToRestToo) {
+    goLive();
+    window.studio().devices.setSlow(true);
+    setByHand(0, 1.0);
+    ASSERT_TRUE(eventually([&] { return servoOf(0).pulse > 1950.0; }));
+    const std::shared_ptr<SimulatedBoard> left = board;
+    const auto pulse = [&] { return left->servos().at(0).pulse; };
+    window.studio().devices.connectTo("sim://uno");
+    ASSERT_TRUE(eventually([&] { return pulse() < 1900.0; }));
+    ASSERT_GT(pulse(), 0.0) << "it is on its way";
+    window.click("stop");
+    EXPECT_TRUE(eventually([&] { return allLimp(); }));
+    EXPECT_GT(left->servos().at(0).position, 1200.0) << "and did not get there";
+}
+
 TEST_F(DeviceSetup, AMaestrosNumberIsAskedOfMaestrosAlone) {
     EXPECT_EQ(window.findNow<QWidget>("setup.number"), nullptr);
     use("maestro");

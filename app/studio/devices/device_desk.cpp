@@ -101,11 +101,11 @@ void DeviceDesk::Data::makeLink() {
     LinkOptions options;
     options.bench = bench.get();
     options.onChange = [this] { hear(); };
-    auto made = std::make_unique<ServoLink>(profile, options);
+    auto made = std::make_shared<ServoLink>(profile, options);
     retire();
     link = std::move(made);
     traceLink();
-    feed.attach(link.get(), profile.servos.size());
+    feed.attach(link, profile.servos.size());
 }
 
 void DeviceDesk::Data::traceLink() {
@@ -125,9 +125,17 @@ void DeviceDesk::Data::retire() {
     takeEvents();
     if (tracing) *tracing = false; // the next one's rows may not come between
     link->setTrace({});
-    leaving.push_back(
-        std::async(std::launch::async, [old = std::shared_ptr<ServoLink>(std::move(link))]() mutable { old.reset(); }));
+    leaving.push_back(std::async(std::launch::async, [old = std::exchange(link, nullptr)]() mutable {
+        old->leave();
+        old.reset();
+    }));
     status = {};
+}
+
+void DeviceDesk::Data::leaveAll() {
+    loop.removeTap(tap);
+    retire();
+    leaving.clear(); // waits: they call `hear`
 }
 
 void DeviceDesk::Data::hear() {
@@ -220,12 +228,9 @@ DeviceDesk::DeviceDesk(Settings& settings, StudioDocument& document, StudioLoop&
     data_->listen();
 }
 
-DeviceDesk::~DeviceDesk() {
-    data_->loop.removeTap(data_->tap);
-    data_->feed.attach(nullptr, 0);
-    data_->link.reset();
-    data_->leaving.clear(); // waits: they call `hear`
-}
+DeviceDesk::~DeviceDesk() { data_->leaveAll(); }
+
+void DeviceDesk::leave() { data_->leaveAll(); }
 
 SimulatedBench& DeviceDesk::bench() noexcept { return *data_->bench; }
 const std::vector<FoundDevice>& DeviceDesk::found() const noexcept { return data_->finder.found(); }

@@ -65,6 +65,9 @@ public:
     void start(bool jumpAllowed = false);
     /// STOP for the servos alone, from any thread, whatever the window does; the loop is to be stopped too.
     void stopNow();
+    /// At the end of the program: servos go to rest where the profile says so, and are let go. Waits for it, at most
+    /// some seconds; STOP from other threads is heard meanwhile.
+    void leave();
     /// Why Esc Esc is heard in the program's own windows alone; empty: it is heard everywhere.
     void setStopKeysDeaf(const QString& why);
     [[nodiscard]] const QString& stopKeysDeaf() const noexcept;

@@ -33,6 +33,7 @@ struct DeviceDesk::Data {
     void makeLink();
     void traceLink();
     void retire();
+    void leaveAll();
     void hear(); ///< in the link's thread
     void take();
     void takeEvents();
@@ -57,7 +58,7 @@ struct DeviceDesk::Data {
     int tap = 0;
     std::function<void(const ServoTraceRow&)> trace;
     std::shared_ptr<std::atomic<bool>> tracing; ///< false for a link that is no longer the present one
-    std::unique_ptr<ServoLink> link;
+    std::shared_ptr<ServoLink> link;
     std::vector<std::future<void>> leaving; ///< links that go to rest; waiting for them would block the window
     LinkStatus status;
     DeviceFinder finder{*bench};

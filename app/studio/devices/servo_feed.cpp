@@ -6,9 +6,17 @@
 
 namespace lumorph::studio {
 
-void ServoFeed::attach(ServoLink* link, std::size_t servos) {
+template <class Order> void ServoFeed::each(Order order) {
+    if (link_) order(*link_);
+    for (const auto& one : leaving_)
+        if (const auto link = one.lock()) order(*link);
+}
+
+void ServoFeed::attach(std::shared_ptr<ServoLink> link, std::size_t servos) {
     const std::scoped_lock lock(mutex_);
-    link_ = link;
+    std::erase_if(leaving_, [](const auto& one) { return one.expired(); });
+    if (link_) leaving_.push_back(link_);
+    link_ = std::move(link);
     holds_.assign(servos, std::nullopt);
     stoppedLive_ = false;
     heldServos_.forget();
@@ -26,12 +34,13 @@ void ServoFeed::slow(SlowCause cause, bool on) {
     const bool before = causes_ != 0;
     const unsigned bit = 1U << static_cast<unsigned>(cause);
     causes_ = on ? causes_ | bit : causes_ & ~bit;
-    if (link_ && (causes_ != 0) != before) link_->setSlow(causes_ != 0);
+    if ((causes_ != 0) != before) each([this](ServoLink& link) { link.setSlow(causes_ != 0); });
 }
 
 void ServoFeed::feel(Microseconds now) {
-    const std::scoped_lock lock(mutex_);
-    if (!link_) return;
+    // It is called in the link's thread, which must not wait for a busy one that holds this: there is a next time.
+    const std::unique_lock lock(mutex_, std::try_to_lock);
+    if (!lock || !link_) return;
     heldServos_.look(link_->status(), now);
     slow(SlowCause::held, !heldServos_.held().empty());
 }
@@ -43,9 +52,8 @@ std::vector<std::size_t> ServoFeed::stuck() const {
 
 void ServoFeed::stop() {
     const std::scoped_lock lock(mutex_);
-    if (!link_) return;
-    const LinkPhase before = link_->status().phase;
-    link_->stop();
+    const LinkPhase before = link_ ? link_->status().phase : LinkPhase::off;
+    each([](ServoLink& link) { link.stop(); });
     stoppedLive_ = stoppedLive_ || before == LinkPhase::live || before == LinkPhase::starting;
     holds_.assign(holds_.size(), std::nullopt);
 }

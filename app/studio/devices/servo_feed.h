@@ -1,5 +1,6 @@
 #pragma once
 
+#include <memory>
 #include <mutex>
 #include <optional>
 #include <span>
@@ -23,9 +24,10 @@ public:
     /// Strokes a second at which a servo goes to where a test wants it, and back.
     static constexpr double kTestVelocity = 0.25;
 
-    /// Tells this link from now on, at once what was told last; null: none. The link outlives its time here.
-    void attach(ServoLink* link, std::size_t servos);
-    /// STOP: the link's servos are detached, whatever the window does.
+    /// Tells this link from now on, at once what was told last; null: none. The one before is stopped and slowed with
+    /// the others for as long as somebody holds it: it may be on its way to rest.
+    void attach(std::shared_ptr<ServoLink> link, std::size_t servos);
+    /// STOP: the servos of all links are detached, whatever the window does.
     void stop();
     /// Whether servos were driven when STOP came; forgotten by asking.
     [[nodiscard]] bool takeStoppedLive();
@@ -60,9 +62,12 @@ private:
     };
     void tell();
     void slow(SlowCause cause, bool on);
+    /// Of all links, those that leave included.
+    template <class Order> void each(Order order);
 
     mutable std::mutex mutex_;
-    ServoLink* link_ = nullptr;
+    std::shared_ptr<ServoLink> link_;
+    std::vector<std::weak_ptr<ServoLink>> leaving_;
     std::vector<double> show_;
     std::vector<std::optional<Hold>> holds_; ///< one a servo
     std::vector<double> told_;

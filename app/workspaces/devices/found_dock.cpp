@@ -91,7 +91,8 @@ private:
     void addButtons(QVBoxLayout& layout) {
         connect_ = new QPushButton("Connect");
         connect_->setObjectName("devices.connect");
-        connect_->setToolTip("Opens the link. Nothing moves yet.");
+        connect_->setToolTip(
+            "Opens the link. Nothing is driven yet; servos that something else has switched on are let go.");
         connect(connect_, &QPushButton::clicked, this, [this] { connectNow(); });
         auto* row = new QHBoxLayout;
         row->setSpacing(8);
