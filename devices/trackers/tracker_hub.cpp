@@ -1,9 +1,11 @@
 #include "devices/trackers/tracker_hub.h"
 
 #include <algorithm>
+#include <chrono>
 #include <iterator>
 #include <mutex>
 #include <optional>
+#include <thread>
 #include <utility>
 
 #include "core/base/error.h"
@@ -131,6 +133,9 @@ void TrackerHub::close(const std::string& uri) {
         ending = std::move(found->second);
         data_->trackers.erase(found);
     }
+    // Whoever asks for its status holds it too, for a moment. It ends here, where there is time to wait for it, and
+    // before its port is opened again.
+    while (ending.use_count() > 1) std::this_thread::sleep_for(std::chrono::milliseconds(1));
     ending.reset();
     const std::scoped_lock lock(data_->mutex);
     data_->forget(uri);

@@ -121,6 +121,13 @@ TEST_F(RoomWindow, KeysMoveLiftAndTurnASimulatedDevice) {
     QTest::keyClick(&view, Qt::Key_PageUp, Qt::ControlModifier);
     for (int i = 0; i < 6; ++i) QTest::keyClick(&view, Qt::Key_Comma);
     const Pose end = held();
+    for (const Qt::KeyboardModifier other : {Qt::AltModifier, Qt::MetaModifier})
+        QTest::keyClick(&view, Qt::Key_Right, other); // a desktop's
+    QKeyEvent settings(QEvent::ShortcutOverride, Qt::Key_Comma, Qt::ControlModifier);
+    settings.ignore();
+    QCoreApplication::sendEvent(&view, &settings);
+    EXPECT_FALSE(settings.isAccepted()) << "Ctrl+comma is the window's";
+    EXPECT_EQ(held().position, end.position);
     EXPECT_LT(glm::distance(end.position - start.position, {0.03, 0.10, -0.01}), 1e-9);
     EXPECT_NEAR(degreesBetween(start.rotation, end.rotation), 30.0, 1e-6);
     const auto device = [&] { return glm::dmat4(window.studio().loop.frame()->worldFromDevice); };

@@ -109,6 +109,17 @@ std::optional<KeyMove> moveOf(int key) {
     }
 }
 
+/// What a key with its modifiers moves: Ctrl takes longer steps, but Ctrl+comma and its like are the window's.
+std::optional<KeyMove> moveOf(const QKeyEvent& event) {
+    const bool farther = event.modifiers().testFlag(Qt::ControlModifier);
+    if ((event.modifiers() & (Qt::AltModifier | Qt::MetaModifier)) != 0) return std::nullopt;
+    std::optional<KeyMove> move = moveOf(event.key());
+    if (!move || !farther) return move;
+    if (move->turn != 0.0) return std::nullopt;
+    move->way *= 10.0;
+    return move;
+}
+
 /// A way as the view shows it, along the world's axes that come nearest to it.
 glm::dvec3 alongAxes(const glm::dvec3& way, const ViewCamera& camera) {
     const double turn = 0.5 * M_PI * std::round(camera.yaw.inDegrees() / 90.0);
@@ -285,8 +296,8 @@ void RoomView::wheelEvent(QWheelEvent* event) {
 bool RoomView::event(QEvent* event) {
     // These keys belong to the view while it has the keyboard, whatever shortcuts say.
     if (event->type() == QEvent::ShortcutOverride && chosen()) {
-        const int key = static_cast<QKeyEvent*>(event)->key();
-        if (moveOf(key) || key == Qt::Key_Space) {
+        const auto& key = *static_cast<QKeyEvent*>(event);
+        if (moveOf(key) || (key.key() == Qt::Key_Space && key.modifiers() == Qt::NoModifier)) {
             event->accept();
             return true;
         }
@@ -297,10 +308,9 @@ bool RoomView::event(QEvent* event) {
 void RoomView::keyPressEvent(QKeyEvent* event) {
     const auto body = chosen();
     if (body && event->key() == Qt::Key_Space) return chooseNext();
-    const auto move = moveOf(event->key());
+    const auto move = moveOf(*event);
     if (!body || !move) return QWidget::keyPressEvent(event);
-    const double times = event->modifiers().testFlag(Qt::ControlModifier) ? 10.0 : 1.0;
-    emit moved(*body, times * alongAxes(move->way, camera_), times * move->turn);
+    emit moved(*body, alongAxes(move->way, camera_), move->turn);
 }
 
 void RoomView::focusInEvent(QFocusEvent* event) {
