@@ -137,8 +137,7 @@ bool ControllerBase::takeVoltage(double volts) {
     return true;
 }
 
-bool ControllerBase::takeValue(std::size_t servo, long value, bool same, Microseconds asked,
-                               const std::string& remedy) {
+bool ControllerBase::takeValue(std::size_t servo, long value, bool same, Microseconds asked, const char* remedy) {
     const PulsePlan::Verdict verdict = plan_.hears(servo, same, asked);
     if (verdict == PulsePlan::Verdict::mended) ++state_.errors;
     if (verdict != PulsePlan::Verdict::refused) return false;

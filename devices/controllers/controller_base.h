@@ -84,7 +84,7 @@ protected:
     bool takeVoltage(double volts);
     /// The board says, when asked at this time, that an attached servo has this value (steps), `same` as told or not:
     /// what noise has spoiled is put right, and what the board will not have becomes a trouble, true then.
-    bool takeValue(std::size_t servo, long value, bool same, Microseconds asked, const std::string& remedy);
+    bool takeValue(std::size_t servo, long value, bool same, Microseconds asked, const char* remedy);
     /// What it was told last.
     [[nodiscard]] Microseconds now() const noexcept { return now_; }
     /// When something was last written.

@@ -142,7 +142,7 @@ private:
         Microseconds at{0};
     };
     [[nodiscard]] std::optional<Microseconds> takeQuestion(int pin);
-    std::deque<Question> questions_;    ///< for a pin's state, that are open
+    std::deque<Question> statesAsked_;  ///< for a pin's state, that are open
     std::size_t asked_ = 0;             ///< servo whose state was asked for last
     int contrary_ = 0;                  ///< answers in a row that tell of a servo that was let go
     std::optional<Microseconds> words_; ///< when the board said something
@@ -173,7 +173,7 @@ void FirmataController::startHandshake() {
     doubtAskedAt_.reset();
     question_.reset();
     voltage_.reset();
-    questions_.clear();
+    statesAsked_.clear();
     contrary_ = 0;
     state_.firmware.clear();
     state_.volts.reset();
@@ -304,10 +304,10 @@ void FirmataController::tellOfShortPulses() {
 /// what was asked before has lost its answer. Too old is safe, for then the answer counts less; too young would take
 /// what a slow link still tells of before an attach for what came of it.
 std::optional<Microseconds> FirmataController::takeQuestion(int pin) {
-    const auto found = std::ranges::find(questions_, pin, &Question::pin);
-    if (found == questions_.end()) return std::nullopt;
+    const auto found = std::ranges::find(statesAsked_, pin, &Question::pin);
+    if (found == statesAsked_.end()) return std::nullopt;
     const Microseconds at = found->at;
-    questions_.erase(questions_.begin(), found + 1);
+    statesAsked_.erase(statesAsked_.begin(), found + 1);
     return at;
 }
 
@@ -370,9 +370,10 @@ void FirmataController::askState(Microseconds now) {
     ask(firmata::askPinState(pin));
     heartbeat_.done(now);
     stateAtLeast_.done(now);
-    questions_.push_back({pin, now});
+    statesAsked_.push_back({pin, now});
     // No answer is older: after a second of silence the link is given up.
-    while (questions_.size() > kMostQuestions || now - questions_.front().at > 2 * kSilence) questions_.pop_front();
+    while (statesAsked_.size() > kMostQuestions || now - statesAsked_.front().at > 2 * kSilence)
+        statesAsked_.pop_front();
 }
 
 /// In turn those that may not have let go yet, else those that hold.

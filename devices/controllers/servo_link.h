@@ -34,7 +34,7 @@ public:
     /// As leave().
     ~ServoLink();
     /// Goes to rest (at most 2 s) where the profile says so and servos are live, detaches them, closes the link, and
-    /// waits for all that; stop() cuts it short. Nothing else is heeded from then on.
+    /// waits for all that; stop() cuts it short, setSlow() is heeded, and nothing else.
     void leave();
 
     void connect();

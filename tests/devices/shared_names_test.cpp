@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <atomic>
-#include <chrono>
 #include <map>
 #include <memory>
 #include <string>
@@ -25,46 +24,6 @@ using ::testing::StartsWith;
 
 constexpr glm::dvec3 kHere{0.0, 1.0, 0.0};
 constexpr glm::dvec3 kThere{0.7, 1.0, 0.0};
-
-/// Is asked for its status by one thread while another closes it.
-class SlowTracker final : public Tracker {
-public:
-    struct Story {
-        std::atomic<bool> asked = false, mayAnswer = false;
-        std::atomic<std::thread::id> endedIn{};
-    };
-    explicit SlowTracker(std::shared_ptr<Story> story) : story_(std::move(story)) {}
-    ~SlowTracker() override { story_->endedIn = std::this_thread::get_id(); }
-    [[nodiscard]] TrackerStatus status() const override {
-        story_->asked = true;
-        while (!story_->mayAnswer) std::this_thread::sleep_for(std::chrono::milliseconds(1));
-        return {};
-    }
-
-private:
-    std::shared_ptr<Story> story_;
-};
-
-TEST(TrackerHub, ATrackerEndsWhereItIsClosedWhoeverAsksForItsStatus) {
-    const auto story = std::make_shared<SlowTracker::Story>();
-    TrackerHub hub(std::make_shared<PoseBoard>(), std::make_shared<ManualClock>(),
-                   [&](const std::string&, const TrackerOptions&) { return std::make_unique<SlowTracker>(story); });
-    hub.open("sim://head", false);
-    std::thread window([&] { (void)hub.status(); });
-    while (!story->asked) std::this_thread::yield();
-    std::atomic<bool> closed = false;
-    std::thread closing([&] {
-        hub.close("sim://head");
-        closed = true;
-    });
-    const std::thread::id there = closing.get_id();
-    std::this_thread::sleep_for(std::chrono::milliseconds(50));
-    EXPECT_FALSE(closed) << "it is not over yet";
-    story->mayAnswer = true;
-    window.join();
-    closing.join();
-    EXPECT_EQ(story->endedIn.load(), there);
-}
 
 /// Tells what it was told to tell.
 class PlainTracker final : public Tracker {

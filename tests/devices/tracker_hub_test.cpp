@@ -1,9 +1,11 @@
 #include "devices/trackers/tracker_hub.h"
 
+#include <atomic>
 #include <chrono>
 #include <cmath>
 #include <limits>
 #include <memory>
+#include <thread>
 
 #include <glm/geometric.hpp>
 #include <gmock/gmock.h>
@@ -207,6 +209,46 @@ TEST_F(TrackerHubTest, TwoThatAreLateDoNotTakeTurns) {
 }
 
 // --- With trackers that run
+
+/// Is asked for its status by one thread while another closes it.
+class SlowTracker final : public Tracker {
+public:
+    struct Story {
+        std::atomic<bool> asked = false, mayAnswer = false;
+        std::atomic<std::thread::id> endedIn{};
+    };
+    explicit SlowTracker(std::shared_ptr<Story> story) : story_(std::move(story)) {}
+    ~SlowTracker() override { story_->endedIn = std::this_thread::get_id(); }
+    [[nodiscard]] TrackerStatus status() const override {
+        story_->asked = true;
+        while (!story_->mayAnswer) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+        return {};
+    }
+
+private:
+    std::shared_ptr<Story> story_;
+};
+
+TEST(TrackerHub, ATrackerEndsWhereItIsClosedWhoeverAsksForItsStatus) {
+    const auto story = std::make_shared<SlowTracker::Story>();
+    TrackerHub hub(std::make_shared<PoseBoard>(), std::make_shared<ManualClock>(),
+                   [&](const std::string&, const TrackerOptions&) { return std::make_unique<SlowTracker>(story); });
+    hub.open("sim://head", false);
+    std::thread window([&] { (void)hub.status(); });
+    while (!story->asked) std::this_thread::yield();
+    std::atomic<bool> closed = false;
+    std::thread closing([&] {
+        hub.close("sim://head");
+        closed = true;
+    });
+    const std::thread::id there = closing.get_id();
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    EXPECT_FALSE(closed) << "it is not over yet";
+    story->mayAnswer = true;
+    window.join();
+    closing.join();
+    EXPECT_EQ(story->endedIn.load(), there);
+}
 
 class RunningHub : public test::RunningTracker {};
 

@@ -3,13 +3,11 @@
 #include <iterator>
 
 #include <QCheckBox>
-#include <QFileDialog>
-#include <QLineEdit>
-#include <QPointer>
 
 #include "app/studio/devices/device_shelf.h"
 #include "devices/firmware/pin_header.h"
 #include "tests/ui/devices_window.h"
+#include "tests/ui/file_dialog.h"
 
 // What is set up for all servos of a profile: it is in force at once, and it is kept.
 
@@ -105,6 +103,22 @@ TEST_F(DeviceSetup, StopIsHeardOnTheWayToRestToo) {
     EXPECT_GT(left->servos().at(0).position, 1200.0) << "and did not get there";
 }
 
+TEST_F(DeviceSetup, WhoIsOnTheWayToRestIsNotHurried) {
+    goLive();
+    window.studio().devices.setSlow(true);
+    setByHand(0, 1.0);
+    ASSERT_TRUE(eventually([&] { return servoOf(0).pulse > 1950.0; }));
+    const DeviceProfile slow = profile();
+    const std::shared_ptr<SimulatedBoard> left = board;
+    window.studio().devices.connectTo("sim://uno");
+    window.studio().devices.setSlow(false); // the other device's servos may be fast
+    ASSERT_TRUE(eventually([&] { return allLimp(); }));
+    const ServoSetup& setup = slow.servos[0];
+    const double fast = setup.maxVelocity * (setup.pulseMax - setup.pulseMin);
+    EXPECT_LT(left->servos().at(0).position, 1900.0) << "it was on its way";
+    EXPECT_LT(left->servos().at(0).fastest, 2.0 * slow.slowShare * fast);
+}
+
 TEST_F(DeviceSetup, AMaestrosNumberIsAskedOfMaestrosAlone) {
     EXPECT_EQ(window.findNow<QWidget>("setup.number"), nullptr);
     use("maestro");
@@ -125,23 +139,7 @@ TEST_F(DeviceSetup, AMaestrosNumberIsAskedOfMaestrosAlone) {
 
 TEST_F(DeviceSetup, TheWholeSketchIsWrittenIntoTheFolderThatIsChosen) {
     window.studio().commands.find("device.firmware")->trigger();
-    QPointer<QFileDialog> dialog = window.find<QFileDialog>("device.firmware.file");
-    ASSERT_TRUE(dialog);
-    auto* name = dialog->findChild<QLineEdit*>("fileNameEdit");
-    ASSERT_NE(name, nullptr);
-    pass(300ms);
-    name->setFocus();
-    name->selectAll();
-    QTest::keyClicks(name, QString::fromStdString(folder_.path().string()));
-    EXPECT_TRUE(eventually(
-        [&] {
-            if (!dialog || !dialog->isVisible()) return true;
-            for (auto* button : dialog->findChildren<QAbstractButton*>())
-                if (button->isVisible() && button->isEnabled() && button->text().contains("Export here"))
-                    QTest::mouseClick(button, Qt::LeftButton);
-            return !dialog || !dialog->isVisible();
-        },
-        10s));
+    answerFileDialog(window, "device.firmware.file", folder_.path(), "Export here");
     const auto told = [&]() -> QString {
         for (const studio::Notice& notice : window.studio().notices.at("devices"))
             if (notice.level == studio::Notice::Level::info) return notice.why;

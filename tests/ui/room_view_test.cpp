@@ -150,5 +150,27 @@ TEST_F(RoomWindow, ABodyThatGoesWhileItIsDraggedIsLetGo) {
     EXPECT_NE(view.cursor().shape(), Qt::ClosedHandCursor);
 }
 
+TEST_F(RoomWindow, ADragKeepsToItsBodyWhenAnotherTrackerCloses) {
+    ASSERT_TRUE(opens("sim://device"));
+    ASSERT_TRUE(opens("sim://head"));
+    reveal("trackers.room");
+    studio::RoomView& view = room();
+    const auto trackers = [&] { return window.studio().trackers.trackers(); };
+    const auto head = [&] { return trackers().back(); };
+    ASSERT_TRUE(eventually([&] { return trackers().size() == 2 && !head().status.bodies.empty(); }, 10s));
+    pass(300ms); // both are drawn
+    const QPoint from = pixelIn(view, head().status.bodies.at(0).pose.position);
+    QTest::mousePress(&view, Qt::LeftButton, {}, from);
+    QTest::mouseMove(&view, from + QPoint(5, 0));
+    ASSERT_TRUE(head().steering->orders().held) << "the head is dragged";
+    const double before = head().steering->orders().held->position.x;
+    window.studio().trackers.close(QString::fromStdString(trackers().at(0).status.address));
+    ASSERT_TRUE(eventually([&] { return trackers().size() == 1; }, 5s));
+    pass(300ms);
+    for (int i = 2; i < 8; ++i) QTest::mouseMove(&view, from + QPoint(5 * i, 0));
+    QTest::mouseRelease(&view, Qt::LeftButton, {}, from + QPoint(35, 0));
+    EXPECT_GT(head().steering->orders().held->position.x, before + 0.01) << "it goes on, to the right";
+}
+
 } // namespace
 } // namespace lumorph::test

@@ -7,16 +7,14 @@
 #include <QAbstractButton>
 #include <QCheckBox>
 #include <QComboBox>
-#include <QFileDialog>
-#include <QLineEdit>
 #include <QPainter>
-#include <QPointer>
 #include <QSlider>
 #include <opencv2/imgproc.hpp>
 #include <opencv2/videoio.hpp>
 
 #include "app/studio/widgets/plot.h"
 #include "tests/calibration/photographer.h"
+#include "tests/ui/file_dialog.h"
 #include "tests/ui/trackers_window.h"
 
 // Trackers as their user has them, against simulated bodies and a board in a video: what counts is whom the loop
@@ -212,24 +210,7 @@ TEST_F(TrackersWindow, ACameraThatIsNotThereIsToldWithItsRemedy) {
 TEST_F(TrackersWindow, TheBoardThatIsOpenIsWrittenToBePrinted) {
     ASSERT_TRUE(opens("board:///dev/video97?squares=4x6&size=35&marker=25"));
     window.studio().commands.find("tracker.board")->trigger();
-    QPointer<QFileDialog> dialog = window.find<QFileDialog>("tracker.board.file");
-    ASSERT_TRUE(dialog);
-    dialog->setDirectory(QString::fromStdString(folder_.path().string()));
-    auto* name = dialog->findChild<QLineEdit*>("fileNameEdit");
-    ASSERT_NE(name, nullptr);
-    pass(300ms);
-    name->setFocus();
-    name->selectAll();
-    QTest::keyClicks(name, "page.pdf");
-    EXPECT_TRUE(eventually(
-        [&] {
-            if (!dialog || !dialog->isVisible()) return true;
-            for (auto* button : dialog->findChildren<QAbstractButton*>())
-                if (button->isVisible() && button->isEnabled() && button->text().contains("Save"))
-                    QTest::mouseClick(button, Qt::LeftButton);
-            return !dialog || !dialog->isVisible();
-        },
-        10s));
+    answerFileDialog(window, "tracker.board.file", folder_ / "page.pdf");
     ASSERT_TRUE(eventually([&] { return std::filesystem::exists(folder_ / "page.pdf"); }, 5s));
     std::ifstream file(folder_ / "page.pdf");
     const std::string pdf{std::istreambuf_iterator<char>(file), {}};

@@ -12,6 +12,7 @@
 #include "core/base/resources.h"
 #include "core/geometry/mesh_file.h"
 #include "core/mdf/coverage.h"
+#include "tests/ui/file_dialog.h"
 #include "tests/ui/studio_window.h"
 
 // The studio as its user has it: the real window, driven by mouse and keys.
@@ -62,30 +63,6 @@ double difference(const QImage& a, const QImage& b) {
                 std::abs(qRed(p) - qRed(q)) + std::abs(qGreen(p) - qGreen(q)) + std::abs(qBlue(p) - qBlue(q)) > 48;
         }
     return static_cast<double>(differing) / (a.width() * a.height());
-}
-
-/// Types a name into a file dialog and saves. The dialog looks folders up while one types, so Save is pressed when
-/// it has caught up.
-void answerFileDialog(StudioWindow& window, const QString& dialog, const std::filesystem::path& file) {
-    QPointer<QFileDialog> found = window.find<QFileDialog>(dialog);
-    ASSERT_TRUE(found);
-    found->setDirectory(QString::fromStdString(file.parent_path().string()));
-    auto* name = found->findChild<QLineEdit*>("fileNameEdit");
-    ASSERT_NE(name, nullptr);
-    pass(300ms);
-    name->setFocus();
-    name->selectAll();
-    QTest::keyClicks(name, QString::fromStdString(file.filename().string()));
-    window.screenshot("file-dialog");
-    EXPECT_TRUE(eventually(
-        [&] {
-            if (!found || !found->isVisible()) return true;
-            for (auto* button : found->findChildren<QAbstractButton*>())
-                if (button->isVisible() && button->isEnabled() && button->text().contains("Save"))
-                    QTest::mouseClick(button, Qt::LeftButton);
-            return !found || !found->isVisible();
-        },
-        10s));
 }
 
 bool matchesTarget(StudioWindow& window, const std::string& name) {

@@ -6,8 +6,7 @@
 
 namespace lumorph::studio {
 
-template <class Order> void ServoFeed::each(Order order) {
-    if (link_) order(*link_);
+template <class Order> void ServoFeed::eachLeaving(Order order) {
     for (const auto& one : leaving_)
         if (const auto link = one.lock()) order(*link);
 }
@@ -34,7 +33,10 @@ void ServoFeed::slow(SlowCause cause, bool on) {
     const bool before = causes_ != 0;
     const unsigned bit = 1U << static_cast<unsigned>(cause);
     causes_ = on ? causes_ | bit : causes_ & ~bit;
-    if ((causes_ != 0) != before) each([this](ServoLink& link) { link.setSlow(causes_ != 0); });
+    if ((causes_ != 0) == before) return;
+    if (link_) link_->setSlow(!before);
+    // What leaves is not hurried: nobody looks any more whether its servos are held.
+    if (!before) eachLeaving([](ServoLink& link) { link.setSlow(true); });
 }
 
 void ServoFeed::feel(Microseconds now) {
@@ -53,7 +55,8 @@ std::vector<std::size_t> ServoFeed::stuck() const {
 void ServoFeed::stop() {
     const std::scoped_lock lock(mutex_);
     const LinkPhase before = link_ ? link_->status().phase : LinkPhase::off;
-    each([](ServoLink& link) { link.stop(); });
+    if (link_) link_->stop();
+    eachLeaving([](ServoLink& link) { link.stop(); });
     stoppedLive_ = stoppedLive_ || before == LinkPhase::live || before == LinkPhase::starting;
     holds_.assign(holds_.size(), std::nullopt);
 }

@@ -24,8 +24,8 @@ public:
     /// Strokes a second at which a servo goes to where a test wants it, and back.
     static constexpr double kTestVelocity = 0.25;
 
-    /// Tells this link from now on, at once what was told last; null: none. The one before is stopped and slowed with
-    /// the others for as long as somebody holds it: it may be on its way to rest.
+    /// Tells this link from now on, at once what was told last; null: none. The one before is still stopped, and
+    /// slowed, for as long as somebody holds it: it may be on its way to rest.
     void attach(std::shared_ptr<ServoLink> link, std::size_t servos);
     /// STOP: the servos of all links are detached, whatever the window does.
     void stop();
@@ -62,8 +62,7 @@ private:
     };
     void tell();
     void slow(SlowCause cause, bool on);
-    /// Of all links, those that leave included.
-    template <class Order> void each(Order order);
+    template <class Order> void eachLeaving(Order order);
 
     mutable std::mutex mutex_;
     std::shared_ptr<ServoLink> link_;

@@ -138,6 +138,11 @@ void paintNotice(QPainter& painter, const QSize& view, const QString& text, cons
     painter.restore();
 }
 
+bool cameByKey(const QFocusEvent& event) {
+    const Qt::FocusReason why = event.reason();
+    return why == Qt::TabFocusReason || why == Qt::BacktabFocusReason || why == Qt::ShortcutFocusReason;
+}
+
 void paintFocusRing(QPainter& painter, const QSize& view, const Palette& palette) {
     painter.save();
     painter.setRenderHint(QPainter::Antialiasing);

@@ -3,6 +3,7 @@
 #include <array>
 
 #include <QColor>
+#include <QFocusEvent>
 #include <QPainter>
 #include <QPointF>
 #include <QSize>
@@ -30,5 +31,7 @@ void paintChip(QPainter& painter, const QSize& view, const QPointF& pointer, con
 void paintNotice(QPainter& painter, const QSize& view, const QString& text, const Palette& palette);
 /// Shows that keys go to the view.
 void paintFocusRing(QPainter& painter, const QSize& view, const Palette& palette);
+/// The focus came by a key: only then is the ring shown.
+[[nodiscard]] bool cameByKey(const QFocusEvent& event);
 
 } // namespace lumorph::studio

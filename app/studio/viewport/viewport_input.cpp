@@ -6,6 +6,7 @@
 #include <QPainter>
 #include <QWheelEvent>
 
+#include "app/studio/viewport/view_marks.h"
 #include "app/studio/viewport/viewport_data.h"
 
 namespace lumorph::studio {
@@ -346,8 +347,7 @@ void ViewportWidget::leaveEvent(QEvent* event) {
 }
 
 void ViewportWidget::focusInEvent(QFocusEvent* event) {
-    const auto why = event->reason();
-    data_->ringed = why == Qt::TabFocusReason || why == Qt::BacktabFocusReason || why == Qt::ShortcutFocusReason;
+    data_->ringed = cameByKey(*event);
     update();
     QWidget::focusInEvent(event);
 }

@@ -120,6 +120,8 @@ std::optional<KeyMove> moveOf(const QKeyEvent& event) {
     return move;
 }
 
+bool isNext(const QKeyEvent& event) { return event.key() == Qt::Key_Space && event.modifiers() == Qt::NoModifier; }
+
 /// A way as the view shows it, along the world's axes that come nearest to it.
 glm::dvec3 alongAxes(const glm::dvec3& way, const ViewCamera& camera) {
     const double turn = 0.5 * M_PI * std::round(camera.yaw.inDegrees() / 90.0);
@@ -135,8 +137,8 @@ RoomView::RoomView(QWidget* parent) : QWidget(parent) {
                "own axes x and z lie on the grid and begin at its origin. Drag beside the bodies to turn the view, "
                "double click to look from above and back. A simulated body has a ring: drag it, turn it with the right "
                "button, lift it with the wheel.");
-    setAccessibleDescription("Space chooses a simulated body; arrow keys move it, PageUp and PageDown lift it, comma "
-                             "and full stop turn it; with Ctrl ten times as much.");
+    setAccessibleDescription("Space chooses a simulated body; arrow keys move it, PageUp and PageDown lift it, with "
+                             "Ctrl ten times as far; comma and full stop turn it.");
     setMouseTracking(true);
     setContextMenuPolicy(Qt::PreventContextMenu);
     setSizePolicy(QSizePolicy::Expanding, QSizePolicy::Fixed);
@@ -146,7 +148,7 @@ RoomView::RoomView(QWidget* parent) : QWidget(parent) {
 
 void RoomView::show(std::vector<Body> bodies) {
     bodies_ = std::move(bodies);
-    if (dragged_ && static_cast<std::size_t>(*dragged_) >= bodies_.size()) letGo(); // its tracker is gone
+    if (hold_ == Hold::body && !chosen()) letGo(); // its tracker is gone
     const bool any = std::ranges::any_of(bodies_, &Body::movable);
     setFocusPolicy(any ? Qt::StrongFocus : Qt::NoFocus);
     if (any && !chosen()) chooseNext();
@@ -200,9 +202,10 @@ std::optional<int> RoomView::movableAt(const QPointF& at) const {
     return nearest;
 }
 
+bool RoomView::isChosen(const Body& body) const { return body.movable && chosen_ == std::pair(body.source, body.name); }
+
 std::optional<int> RoomView::chosen() const {
-    const auto found =
-        std::ranges::find_if(bodies_, [this](const Body& body) { return body.movable && body.name == chosen_; });
+    const auto found = std::ranges::find_if(bodies_, [this](const Body& body) { return isChosen(body); });
     if (found == bodies_.end()) return std::nullopt;
     return static_cast<int>(found - bodies_.begin());
 }
@@ -213,7 +216,7 @@ void RoomView::chooseNext() {
     for (std::size_t i = 0; i < count; ++i) {
         const Body& body = bodies_[(from + i) % count];
         if (!body.movable) continue;
-        chosen_ = body.name;
+        chosen_ = {body.source, body.name};
         return update();
     }
 }
@@ -221,12 +224,12 @@ void RoomView::chooseNext() {
 void RoomView::mousePressEvent(QMouseEvent* event) {
     const bool left = event->button() == Qt::LeftButton;
     if (hold_ != Hold::nothing || (!left && event->button() != Qt::RightButton)) return;
-    dragged_ = movableAt(event->position());
-    if (!dragged_ && !left) return;
-    hold_ = dragged_ ? Hold::body : Hold::view;
+    const auto at = movableAt(event->position());
+    if (!at && !left) return;
+    hold_ = at ? Hold::body : Hold::view;
     button_ = event->button();
     last_ = event->position();
-    if (dragged_) chosen_ = bodies_[static_cast<std::size_t>(*dragged_)].name;
+    if (at) chosen_ = {bodies_[static_cast<std::size_t>(*at)].source, bodies_[static_cast<std::size_t>(*at)].name};
     setCursor(Qt::ClosedHandCursor);
     update();
 }
@@ -244,14 +247,15 @@ void RoomView::mouseMoveEvent(QMouseEvent* event) {
         return lookAtAll();
     }
     if (button_ == Qt::RightButton)
-        emit moved(*dragged_, glm::dvec3(0.0), -kTurnPerPixel * (at - from).x());
+        emit moved(*chosen(), glm::dvec3(0.0), -kTurnPerPixel * (at - from).x());
     else
         drag(from, at);
 }
 
 /// Along the plane through the body that is level, or, where the view is nearly level itself, upright and facing it.
 void RoomView::drag(const QPointF& from, const QPointF& to) {
-    const glm::vec3 body = placeOf(bodies_[static_cast<std::size_t>(*dragged_)]);
+    const int dragged = *chosen();
+    const glm::vec3 body = placeOf(bodies_[static_cast<std::size_t>(dragged)]);
     const auto yaw = static_cast<float>(camera_.yaw.inRadians());
     const glm::vec3 normal = camera_.pitch.inRadians() > kLevel.inRadians()
                                  ? glm::vec3(0.0F, 1.0F, 0.0F)
@@ -264,7 +268,7 @@ void RoomView::drag(const QPointF& from, const QPointF& to) {
         return ray.origin + way * ray.direction;
     };
     const auto before = place(from), after = place(to);
-    if (before && after) emit moved(*dragged_, glm::dvec3(*after - *before), 0.0);
+    if (before && after) emit moved(dragged, glm::dvec3(*after - *before), 0.0);
 }
 
 void RoomView::mouseReleaseEvent(QMouseEvent* event) {
@@ -273,7 +277,6 @@ void RoomView::mouseReleaseEvent(QMouseEvent* event) {
 
 void RoomView::letGo() {
     hold_ = Hold::nothing;
-    dragged_.reset();
     button_ = Qt::NoButton;
     unsetCursor();
 }
@@ -297,7 +300,7 @@ bool RoomView::event(QEvent* event) {
     // These keys belong to the view while it has the keyboard, whatever shortcuts say.
     if (event->type() == QEvent::ShortcutOverride && chosen()) {
         const auto& key = *static_cast<QKeyEvent*>(event);
-        if (moveOf(key) || (key.key() == Qt::Key_Space && key.modifiers() == Qt::NoModifier)) {
+        if (moveOf(key) || isNext(key)) {
             event->accept();
             return true;
         }
@@ -307,15 +310,14 @@ bool RoomView::event(QEvent* event) {
 
 void RoomView::keyPressEvent(QKeyEvent* event) {
     const auto body = chosen();
-    if (body && event->key() == Qt::Key_Space) return chooseNext();
+    if (body && isNext(*event)) return hold_ == Hold::body ? void() : chooseNext();
     const auto move = moveOf(*event);
     if (!body || !move) return QWidget::keyPressEvent(event);
     emit moved(*body, alongAxes(move->way, camera_), move->turn);
 }
 
 void RoomView::focusInEvent(QFocusEvent* event) {
-    const auto why = event->reason();
-    ringed_ = why == Qt::TabFocusReason || why == Qt::BacktabFocusReason || why == Qt::ShortcutFocusReason;
+    ringed_ = cameByKey(*event);
     update();
     QWidget::focusInEvent(event);
 }
@@ -352,8 +354,7 @@ void RoomView::paintEvent(QPaintEvent* /*event*/) {
         painter.setPen(QPen(colors.textMuted, 1, Qt::DotLine));
         room.line(at, {at.x, 0.0F, at.z});
         if (body.movable) {
-            const bool isChosen = body.name == chosen_;
-            painter.setPen(QPen(isChosen ? colors.accentText : colors.border, isChosen ? 2.0 : 1.0));
+            painter.setPen(isChosen(body) ? QPen(colors.accentText, 2.0) : QPen(colors.border, 1.0));
             room.ring(at, 9.0);
         }
         marks.push_back({body.name, at, glm::quat(body.pose.rotation), body.seen ? 1.0 : kFaint});

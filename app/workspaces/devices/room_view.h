@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include <QString>
@@ -18,13 +19,14 @@ namespace lumorph::studio {
 ///
 /// Bodies that a person may move are dragged by the left button (at their height, or upright where the view is nearly
 /// level) and turned by the right; the wheel lifts them. With the keyboard: Space chooses the next one, arrow keys move
-/// it by 1 cm along the axis that points that way, PageUp and PageDown lift it, comma and full stop turn it by 5
-/// degrees, each ten times as much with Ctrl.
+/// it by 1 cm along the axis that points that way, PageUp and PageDown lift it, both ten times as far with Ctrl, comma
+/// and full stop turn it by 5 degrees.
 class RoomView : public QWidget {
     Q_OBJECT
 public:
     struct Body {
         QString name;
+        QString source; ///< address of its tracker: others may have bodies of that name
         Pose pose;
         bool seen = true;
         bool movable = false;
@@ -59,6 +61,8 @@ private:
     /// What the pressed button does until it is released.
     enum class Hold { nothing, view, body };
 
+    [[nodiscard]] bool isChosen(const Body& body) const;
+
     [[nodiscard]] glm::vec2 viewSize() const;
     [[nodiscard]] std::optional<int> movableAt(const QPointF& at) const;
     [[nodiscard]] std::optional<int> chosen() const;
@@ -70,10 +74,10 @@ private:
 
     std::vector<Body> bodies_;
     ViewCamera camera_;
-    Box inSight_;    ///< metres; grows and shrinks in steps, so that the picture does not breathe with every move
-    QString chosen_; ///< name of the body that keys move
+    Box inSight_; ///< metres; grows and shrinks in steps, so that the picture does not breathe with every move
+    /// Source and name of the body that is dragged, or that keys move.
+    std::pair<QString, QString> chosen_;
     Hold hold_ = Hold::nothing;
-    std::optional<int> dragged_;
     Qt::MouseButton button_ = Qt::NoButton;
     QPointF last_;
     bool ringed_ = false; ///< the focus came by key

@@ -153,8 +153,8 @@ private:
             const TrackerStatus& status = trackers[k].status;
             cards_[k]->show(trackers[k]);
             for (const TrackedBody& body : status.bodies)
-                bodies.push_back({QString::fromStdString(body.name), body.pose, body.valid && status.receiving,
-                                  trackers[k].steering != nullptr});
+                bodies.push_back({QString::fromStdString(body.name), QString::fromStdString(status.address), body.pose,
+                                  body.valid && status.receiving, trackers[k].steering != nullptr});
             steerings.insert(steerings.end(), status.bodies.size(), trackers[k].steering);
         }
         const bool simulated = std::ranges::any_of(bodies, &RoomView::Body::movable);

@@ -259,8 +259,7 @@ void StagePane::keyPressEvent(QKeyEvent* event) {
 }
 
 void StagePane::focusInEvent(QFocusEvent* event) {
-    const auto why = event->reason();
-    ringed_ = why == Qt::TabFocusReason || why == Qt::BacktabFocusReason || why == Qt::ShortcutFocusReason;
+    ringed_ = cameByKey(*event);
     update();
     QWidget::focusInEvent(event);
 }
