@@ -26,6 +26,15 @@ Box boundingBox(std::span<const glm::vec3> points) noexcept {
     return box;
 }
 
+std::array<glm::vec3, 8> cornersOf(const Box& box, const glm::mat4& frameFromBox) noexcept {
+    std::array<glm::vec3, 8> corners{};
+    for (std::size_t i = 0; i < corners.size(); ++i)
+        corners[i] = glm::vec3(frameFromBox * glm::vec4((i & 1U) != 0 ? box.max.x : box.min.x,
+                                                        (i & 2U) != 0 ? box.max.y : box.min.y,
+                                                        (i & 4U) != 0 ? box.max.z : box.min.z, 1.0F));
+    return corners;
+}
+
 double signedVolume(const TriangleMesh& mesh) noexcept {
     double sum = 0.0;
     for (const glm::uvec3& t : mesh.triangles) {

@@ -1,9 +1,11 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
 
+#include <glm/mat4x4.hpp>
 #include <glm/vec3.hpp>
 
 namespace lumorph {
@@ -30,6 +32,10 @@ struct TriangleMesh {
 
 /// Box of the points; empty for none.
 [[nodiscard]] Box boundingBox(std::span<const glm::vec3> points) noexcept;
+
+/// The corners of a box, as it lies in another frame.
+[[nodiscard]] std::array<glm::vec3, 8> cornersOf(const Box& box,
+                                                 const glm::mat4& frameFromBox = glm::mat4(1.0F)) noexcept;
 
 /// Enclosed volume in cubic metres, negative when the faces look inwards. Meaningful for closed meshes.
 [[nodiscard]] double signedVolume(const TriangleMesh& mesh) noexcept;

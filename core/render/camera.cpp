@@ -1,7 +1,6 @@
 #include "core/render/camera.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include <glm/geometric.hpp>
@@ -13,13 +12,6 @@ namespace lumorph {
 namespace {
 
 const glm::vec3 kUp(0.0F, 1.0F, 0.0F);
-
-std::array<glm::vec3, 8> cornersOf(const Box& box) {
-    std::array<glm::vec3, 8> corners;
-    for (unsigned i = 0; i < 8; ++i)
-        corners[i] = {i & 1U ? box.max.x : box.min.x, i & 2U ? box.max.y : box.min.y, i & 4U ? box.max.z : box.min.z};
-    return corners;
-}
 
 } // namespace
 

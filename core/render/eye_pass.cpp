@@ -128,16 +128,10 @@ void EyePass::Data::draw(const ShowFrame& frame, const View& view, const Thing& 
 // A rectangle that holds all shadows on the table.
 PixelRectangle EyePass::Data::shadowedPixels(const ShowFrame& frame, const View& view) const {
     if (!lighting.shadowed()) return {};
-    Box shadows;
-    const auto include = [&](const Box& caster) {
-        return caster.empty() || includeShadow(shadows, caster, *lighting.shadowed());
-    };
-    if (showsSkin(frame) && !include(movedBox(surfaces.skinBoxAtDevice(), frame.worldFromDevice))) return view.area;
-    for (const auto& item : surfaces.items())
-        if (frame.posed.surfaces[item.surface].castsShadow && !include(item.box)) return view.area;
-    if (shadows.empty()) return {};
-    const PixelRectangle pixels =
-        pixelsOf(TableArea{{shadows.min.x, shadows.min.z}, {shadows.max.x, shadows.max.z}}, *view.camera);
+    const auto shadows = shadowsOnTable(frame, *lighting.shadowed());
+    if (!shadows) return view.area;
+    if (shadows->empty()) return {};
+    const PixelRectangle pixels = pixelsOf(*shadows, *view.camera);
     return {glm::max(pixels.low, view.area.low), glm::min(pixels.high, view.area.high)};
 }
 

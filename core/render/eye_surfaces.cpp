@@ -42,13 +42,7 @@ bool finite(const glm::mat4& matrix) {
 } // namespace
 
 Box movedBox(const Box& box, const glm::mat4& world) {
-    Box result;
-    for (unsigned i = 0; i < 8 && !box.empty(); ++i) {
-        const glm::vec3 corner((i & 1U) != 0 ? box.max.x : box.min.x, (i & 2U) != 0 ? box.max.y : box.min.y,
-                               (i & 4U) != 0 ? box.max.z : box.min.z);
-        result.include(glm::vec3(world * glm::vec4(corner, 1.0F)));
-    }
-    return result;
+    return box.empty() ? Box() : boundingBox(cornersOf(box, world));
 }
 
 void EyeMesh::setTopology(const std::vector<glm::uvec3>& triangles, const std::vector<glm::vec2>& coordinates,

@@ -9,11 +9,11 @@
 
 namespace lumorph {
 
-/// A picture for the eye, and the depth of the device alone in it, by which the projector pass knows what the eye sees.
-/// The table needs no depth: it hides nothing, and is seen where the device is not.
+/// A picture for the eye in linear light, and the depth of the device alone in it, by which the projector pass knows
+/// what the eye sees. The table needs no depth: it hides nothing, and is seen where the device is not.
 class EyeView {
 public:
-    explicit EyeView(glm::ivec2 size) : picture_(size), depth_(size) {}
+    explicit EyeView(glm::ivec2 size) : picture_(size, GL_RGBA16F), depth_(size) {}
 
     /// What of the frame the picture holds: places on the table are looked up only where the device does not hide them.
     enum class Use { deviceAndTable, tableAlone };

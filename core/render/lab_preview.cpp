@@ -13,26 +13,12 @@ ShaderFiles litFiles(std::vector<std::string> defines) {
     return files;
 }
 
-ShaderFiles outFiles(std::vector<std::string> defines) {
-    ShaderFiles files = shaderFiles({"full_frame.vert"}, {"version.glsl", "lab_out.frag"});
-    files.defines = std::move(defines);
-    return files;
-}
-
-bool encodes(GLuint framebuffer) {
-    GLint encoding = GL_LINEAR;
-    glBindFramebuffer(GL_FRAMEBUFFER, framebuffer);
-    glGetFramebufferAttachmentParameteriv(GL_FRAMEBUFFER, framebuffer == 0 ? GL_BACK_LEFT : GL_COLOR_ATTACHMENT0,
-                                          GL_FRAMEBUFFER_ATTACHMENT_COLOR_ENCODING, &encoding);
-    return encoding == GL_SRGB;
-}
-
 } // namespace
 
 LabPreview::LabPreview()
     : flat_(shaderFiles({"version.glsl", "camera.glsl", "physical.vert"}, {"version.glsl", "flat.frag"})),
       deviceLight_(litFiles({})), tableLight_(litFiles({"TABLE"})), deviceMask_(litFiles({"MASK"})),
-      tableMask_(litFiles({"MASK", "TABLE"})), out_(outFiles({})), encodedOut_(outFiles({"ENCODE"})) {}
+      tableMask_(litFiles({"MASK", "TABLE"})) {}
 
 void LabPreview::drawSurfaces(const Observer& observer, const DeviceSurface& device, float flat) {
     glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
@@ -63,7 +49,8 @@ void LabPreview::addProjector(const Observer& observer, const DeviceSurface& dev
 }
 
 void LabPreview::draw(GLuint framebuffer, const CalibratedCamera& observer, float ambient, const ShowFrame& frame,
-                      const DeviceSurface& device, std::span<const ProjectorTarget* const> projectors) {
+                      const DeviceSurface& device, std::span<const ProjectorTarget* const> projectors,
+                      PictureOutput& out) {
     if (!radiance_ || radiance_->size() != observer.size) radiance_.emplace(observer.size, GL_RGBA16F);
     table_.fit(observer, frame.scene->table.size);
     const Observer seen{observer, depthRange(observer, physicalBounds(frame))};
@@ -75,19 +62,7 @@ void LabPreview::draw(GLuint framebuffer, const CalibratedCamera& observer, floa
     glBlendFunc(GL_ONE, GL_ONE);
     for (const ProjectorTarget* projector : projectors)
         addProjector(seen, device, *projector, deviceLight_, tableLight_);
-
-    const bool encoding = encodes(framebuffer);
-    beginSurfaces(framebuffer, observer.size);
-    glDisable(GL_DEPTH_TEST);
-    if (encoding) glEnable(GL_FRAMEBUFFER_SRGB);
-    Program& out = encoding ? out_ : encodedOut_;
-    out.use();
-    bindTexture(0, radiance_->texture());
-    out.set("radiance", 0);
-    glBindVertexArray(noAttributes_.name());
-    glDrawArrays(GL_TRIANGLES, 0, 3);
-    glBindVertexArray(0);
-    glDisable(GL_FRAMEBUFFER_SRGB);
+    out.draw(framebuffer, *radiance_);
 }
 
 void LabPreview::drawMask(GLuint framebuffer, const CalibratedCamera& observer, const ShowFrame& frame,
@@ -106,8 +81,8 @@ void LabPreview::drawMask(GLuint framebuffer, const CalibratedCamera& observer, 
 }
 
 std::size_t LabPreview::objectCount() const noexcept {
-    std::size_t count = 1 + TableGrid::kObjects + (radiance_ ? ColorTarget::kObjects : 0);
-    for (const Program* program : {&flat_, &deviceLight_, &tableLight_, &deviceMask_, &tableMask_, &out_, &encodedOut_})
+    std::size_t count = TableGrid::kObjects + (radiance_ ? ColorTarget::kObjects : 0);
+    for (const Program* program : {&flat_, &deviceLight_, &tableLight_, &deviceMask_, &tableMask_})
         count += program->objectCount();
     return count;
 }

@@ -3,6 +3,7 @@
 #include <optional>
 #include <span>
 
+#include "core/render/picture_output.h"
 #include "core/render/projector_target.h"
 
 namespace lumorph {
@@ -14,7 +15,7 @@ public:
 
     /// Into a framebuffer of the observer's size, sRGB encoded by it or, if it does not encode, by this.
     void draw(GLuint framebuffer, const CalibratedCamera& observer, float ambient, const ShowFrame& frame,
-              const DeviceSurface& device, std::span<const ProjectorTarget* const> projectors);
+              const DeviceSurface& device, std::span<const ProjectorTarget* const> projectors, PictureOutput& out);
     /// White where a projector reaches what the observer sees.
     void drawMask(GLuint framebuffer, const CalibratedCamera& observer, const ShowFrame& frame,
                   const DeviceSurface& device, std::span<const ProjectorTarget* const> projectors);
@@ -30,10 +31,9 @@ private:
     void addProjector(const Observer& observer, const DeviceSurface& device, const ProjectorTarget& projector,
                       Program& deviceProgram, Program& tableProgram);
 
-    gl::VertexArray noAttributes_;
     TableGrid table_;
     std::optional<ColorTarget> radiance_;
-    Program flat_, deviceLight_, tableLight_, deviceMask_, tableMask_, out_, encodedOut_;
+    Program flat_, deviceLight_, tableLight_, deviceMask_, tableMask_;
 };
 
 } // namespace lumorph

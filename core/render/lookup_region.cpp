@@ -11,19 +11,45 @@ namespace {
 
 // A table less rough than this shows the eye highlights worth a picture of their own.
 constexpr float kGlossy = 0.4F;
-constexpr float kFadeRoom = 0.025F; // metres, as far as eye_lookup.glsl fades out around an area
+constexpr float kFadeRoom = 0.010F;   // metres, farther than eye_lookup.glsl fades out around an area
+constexpr std::size_t kMostAreas = 6; // each costs a drawing of the table
+constexpr int kMostHalvings = 3;
 
-// Where things of a box appear on the table, seen from the eye; false: beyond all bounds.
-bool includeOnTable(Box& onTable, const Box& box, const glm::mat4& worldFromBox, const glm::vec3& eye) {
-    for (unsigned i = 0; i < 8; ++i) {
-        const glm::vec3 corner(worldFromBox * glm::vec4((i & 1U) != 0 ? box.max.x : box.min.x,
-                                                        (i & 2U) != 0 ? box.max.y : box.min.y,
-                                                        (i & 4U) != 0 ? box.max.z : box.min.z, 1.0F));
+// Where a box appears on the table, seen from the eye; none: beyond all bounds.
+std::optional<TableArea> areaBehind(const Box& box, const glm::mat4& worldFromBox, const glm::vec3& eye) {
+    Box area;
+    for (const glm::vec3& corner : cornersOf(box, worldFromBox)) {
         const float way = eye.y / (eye.y - corner.y);
-        if (!(way > 0.0F) || !(way < 1e3F)) return false;
-        onTable.include(eye + way * (corner - eye));
+        if (!(way > 0.0F) || !(way < 1e3F)) return std::nullopt;
+        area.include(eye + way * (corner - eye));
     }
-    return true;
+    return TableArea{{area.min.x, area.min.z}, {area.max.x, area.max.z}};
+}
+
+TableArea allOf(const ShowFrame& frame) {
+    const glm::vec2 half = 0.5F * frame.scene->table.size;
+    return {-half - kFadeRoom, half + kFadeRoom};
+}
+
+TableArea withFade(const TableArea& area) { return {area.low - kFadeRoom, area.high + kFadeRoom}; }
+
+TableArea united(const TableArea& a, const TableArea& b) { return {glm::min(a.low, b.low), glm::max(a.high, b.high)}; }
+
+float drawnSize(const TableArea& area) {
+    const TableArea drawn = withFade(area);
+    return (drawn.high.x - drawn.low.x) * (drawn.high.y - drawn.low.y);
+}
+
+// Areas become one where that costs nothing, or there would be too many.
+void add(std::vector<TableArea>& areas, TableArea area) {
+    while (!areas.empty()) {
+        const auto growth = [&](const TableArea& other) { return drawnSize(united(area, other)) - drawnSize(other); };
+        const auto nearest = std::ranges::min_element(areas, {}, growth);
+        if (growth(*nearest) > drawnSize(area) && areas.size() < kMostAreas) break;
+        area = united(area, *nearest);
+        areas.erase(nearest);
+    }
+    areas.push_back(area);
 }
 
 bool holds(const CalibratedCamera& camera, const glm::vec3& point) {
@@ -31,6 +57,15 @@ bool holds(const CalibratedCamera& camera, const glm::vec3& point) {
     const glm::dvec2 room = 0.03 * glm::dvec2(camera.size);
     return pixel && pixel->x > room.x && pixel->y > room.y && pixel->x < camera.size.x - 1 - room.x &&
            pixel->y < camera.size.y - 1 - room.y;
+}
+
+// Of the part that is looked up, as far as there is a table.
+std::array<glm::vec3, 4> drawnCorners(const TableArea& area, const ShowFrame& frame) {
+    const glm::vec2 half = 0.5F * frame.scene->table.size;
+    const TableArea drawn = withFade(area);
+    const glm::vec2 low = glm::max(drawn.low, -half);
+    const glm::vec2 high = glm::min(drawn.high, half);
+    return {{{low.x, 0.0F, low.y}, {high.x, 0.0F, low.y}, {low.x, 0.0F, high.y}, {high.x, 0.0F, high.y}}};
 }
 
 } // namespace
@@ -53,57 +88,66 @@ bool dependsOnEye(const Material& table) {
     return table.reflection > 0.0F || table.refraction > 0.0F || table.metallic > 0.3F || table.roughness < kGlossy;
 }
 
-std::optional<TableArea> lookupArea(const ShowFrame& frame, const glm::vec3& eye) {
-    const glm::vec2 half = 0.5F * frame.scene->table.size;
-    const TableArea all{-half - kFadeRoom, half + kFadeRoom};
-    if (dependsOnEye(frame.scene->table.material)) return all;
-    Box seen;
-    bool bounded = true;
+std::vector<TableArea> lookupAreas(const ShowFrame& frame, const glm::vec3& eye) {
+    const TableArea all = allOf(frame);
+    if (dependsOnEye(frame.scene->table.material)) return {all};
+    std::vector<TableArea> areas;
+    const auto addBehind = [&](const Box& box, const glm::mat4& worldFromBox) {
+        const auto behind = areaBehind(box, worldFromBox, eye);
+        if (!behind) return false;
+        const TableArea area{glm::max(behind->low, all.low), glm::min(behind->high, all.high)};
+        if (!area.empty()) add(areas, area);
+        return true;
+    };
     for (const PosedSurface& surface : frame.posed.surfaces)
-        if (!surface.positions->empty())
-            bounded = bounded && includeOnTable(seen, boundingBox(*surface.positions), surface.worldFromSurface, eye);
+        if (surface.shown() && !addBehind(boundingBox(*surface.positions), surface.worldFromSurface)) return {all};
     for (const PosedFog& fog : frame.posed.fogs)
-        bounded = bounded && includeOnTable(seen, {glm::vec3(-0.5F), glm::vec3(0.5F)}, fog.worldFromBox, eye);
-    if (!bounded) return all;
-    if (seen.empty()) return std::nullopt;
-    const TableArea area{glm::max(glm::vec2(seen.min.x, seen.min.z), all.low),
-                         glm::min(glm::vec2(seen.max.x, seen.max.z), all.high)};
-    if (area.low.x >= area.high.x || area.low.y >= area.high.y) return std::nullopt;
-    return area;
+        if (!addBehind({glm::vec3(-0.5F), glm::vec3(0.5F)}, fog.worldFromBox)) return {all};
+    return areas;
 }
 
-std::optional<CalibratedCamera> tableLookup(const ShowFrame& frame, const glm::vec3& eye, const TableArea& area,
-                                            const CalibratedCamera& first, glm::ivec2 size) {
-    const glm::vec2 half = 0.5F * frame.scene->table.size;
-    const glm::vec2 low = glm::max(area.low - kFadeRoom, -half);
-    const glm::vec2 high = glm::min(area.high + kFadeRoom, half);
-    const std::array<glm::vec3, 4> corners{
-        {{low.x, 0.0F, low.y}, {high.x, 0.0F, low.y}, {low.x, 0.0F, high.y}, {high.x, 0.0F, high.y}}};
-    if (std::all_of(corners.begin(), corners.end(), [&](const glm::vec3& at) { return holds(first, at); }))
-        return std::nullopt;
+bool holds(const CalibratedCamera& picture, const TableArea& area, const ShowFrame& frame) {
+    return std::ranges::all_of(drawnCorners(area, frame), [&](const glm::vec3& at) { return holds(picture, at); });
+}
+
+std::optional<CalibratedCamera> tableLookup(const ShowFrame& frame, const glm::vec3& eye,
+                                            std::span<const TableArea> areas, const CalibratedCamera& first,
+                                            glm::ivec2 most) {
+    std::optional<TableArea> beyond;
+    for (const TableArea& area : areas)
+        if (!holds(first, area, frame)) beyond = beyond ? united(*beyond, area) : area;
+    if (!beyond) return std::nullopt;
+    const auto corners = drawnCorners(*beyond, frame);
     try {
-        return eyeCamera(glm::dvec3(eye), corners, size);
+        CalibratedCamera camera = eyeCamera(glm::dvec3(eye), corners, most);
+        for (int i = 0; i < kMostHalvings && camera.focal.x >= first.focal.x; ++i)
+            camera = eyeCamera(glm::dvec3(eye), corners, glm::max(camera.size / 2, 1));
+        return camera;
     } catch (const InvalidInput&) { // the eye stands above part of it
-        return tableView(frame, eye, size);
+        return tableView(frame, eye, most);
     }
 }
 
-PixelRectangle pixelsOf(const TableArea& area, const CalibratedCamera& projector) {
+PixelRectangle pixelsOf(const TableArea& area, const CalibratedCamera& camera) {
     constexpr int kSteps = 8;
     constexpr double kRoom = 2.0;
-    const glm::dvec2 from(area.low - kFadeRoom);
-    const glm::dvec2 way(area.high - area.low + 2.0F * kFadeRoom);
+    const glm::dvec2 from(area.low);
+    const glm::dvec2 way(area.high - area.low);
     glm::dvec2 low(1e9);
     glm::dvec2 high(-1e9);
     for (int i = 0; i <= kSteps; ++i)
         for (int j = 0; j <= kSteps; ++j) {
             const glm::dvec2 place = from + way * glm::dvec2(i, j) / double{kSteps};
-            const auto at = pixelOf(projector, {place.x, 0.0, place.y});
-            if (!at) return {glm::ivec2(0), projector.size};
+            const auto at = pixelOf(camera, {place.x, 0.0, place.y});
+            if (!at) return {glm::ivec2(0), camera.size};
             low = glm::min(low, *at);
             high = glm::max(high, *at);
         }
-    return pixelRectangle(low - kRoom, high + kRoom, projector.size);
+    return pixelRectangle(low - kRoom, high + kRoom, camera.size);
+}
+
+PixelRectangle lookupPixels(const TableArea& area, const CalibratedCamera& projector) {
+    return pixelsOf(withFade(area), projector);
 }
 
 std::array<PixelRectangle, 4> around(const PixelRectangle& area, const PixelRectangle& whole) {

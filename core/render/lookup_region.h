@@ -2,6 +2,8 @@
 
 #include <array>
 #include <optional>
+#include <span>
+#include <vector>
 
 #include <glm/vec2.hpp>
 
@@ -29,19 +31,26 @@ struct PixelRectangle {
 struct TableArea {
     glm::vec2 low{0.0F};
     glm::vec2 high{0.0F};
+    [[nodiscard]] bool empty() const noexcept { return low.x >= high.x || low.y >= high.y; }
 };
 
 /// Where on the table an eye sees another picture than the view-independent one: things that stand on the table or
-/// reach beyond the device, fog, a mirroring table. None: nowhere.
-[[nodiscard]] std::optional<TableArea> lookupArea(const ShowFrame& frame, const glm::vec3& eye);
+/// reach beyond the device, fog, a mirroring table. Few areas, which overlap little.
+[[nodiscard]] std::vector<TableArea> lookupAreas(const ShowFrame& frame, const glm::vec3& eye);
 
-/// The camera of a second eye picture, of `size`, for an area that the first does not hold; none: it does.
+/// Whether an eye picture holds all of an area of the table.
+[[nodiscard]] bool holds(const CalibratedCamera& picture, const TableArea& area, const ShowFrame& frame);
+
+/// The camera of a second eye picture for the areas that the first does not hold, at most as large as `most` and, where
+/// that gives room, half as fine as the first; none: it holds all.
 [[nodiscard]] std::optional<CalibratedCamera> tableLookup(const ShowFrame& frame, const glm::vec3& eye,
-                                                          const TableArea& area, const CalibratedCamera& first,
-                                                          glm::ivec2 size);
+                                                          std::span<const TableArea> areas,
+                                                          const CalibratedCamera& first, glm::ivec2 most);
 
-/// A rectangle that holds the area, with room to fade out around it, in a projector's image.
-[[nodiscard]] PixelRectangle pixelsOf(const TableArea& area, const CalibratedCamera& projector);
+/// A rectangle that holds the area in an image.
+[[nodiscard]] PixelRectangle pixelsOf(const TableArea& area, const CalibratedCamera& camera);
+/// The same with the room in which lookups fade out around it.
+[[nodiscard]] PixelRectangle lookupPixels(const TableArea& area, const CalibratedCamera& projector);
 
 /// What is left of a rectangle around another one.
 [[nodiscard]] std::array<PixelRectangle, 4> around(const PixelRectangle& area, const PixelRectangle& whole);

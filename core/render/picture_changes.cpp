@@ -34,15 +34,13 @@ bool sameScene(const std::shared_ptr<const Scene>& first, const std::shared_ptr<
     return moved == *second;
 }
 
-// A rectangle of the image that holds a box; all of it where part of the box cannot be seen.
-PixelRectangle pixelsOf(const Box& box, const CalibratedCamera& projector) {
+// A rectangle of the image that holds a box; all of it where a corner cannot be seen.
+PixelRectangle pixelsOf(std::span<const glm::vec3> corners, const CalibratedCamera& projector) {
     constexpr double kRoom = 4.0;
     glm::dvec2 low(1e9);
     glm::dvec2 high(-1e9);
-    for (unsigned i = 0; i < 8; ++i) {
-        const auto at =
-            pixelOf(projector, {(i & 1U) != 0 ? box.max.x : box.min.x, (i & 2U) != 0 ? box.max.y : box.min.y,
-                                (i & 4U) != 0 ? box.max.z : box.min.z});
+    for (const glm::vec3& corner : corners) {
+        const auto at = pixelOf(projector, glm::dvec3(corner));
         if (!at) return {glm::ivec2(0), projector.size};
         low = glm::min(low, *at);
         high = glm::max(high, *at);
@@ -52,21 +50,15 @@ PixelRectangle pixelsOf(const Box& box, const CalibratedCamera& projector) {
 
 // All that moves in a frame, as it lies in the projector's image.
 PixelRectangle movingPixels(const ShowFrame& frame, const CalibratedCamera& projector,
-                            const std::optional<TableArea>& lookups) {
-    const PixelRectangle all{glm::ivec2(0), projector.size};
-    const Box device = deviceBounds(frame);
-    std::vector<Box> casters{device};
-    for (const PosedSurface& surface : frame.posed.surfaces)
-        if (surface.castsShadow && !surface.positions->empty())
-            casters.push_back(movedBox(boundingBox(*surface.positions), surface.worldFromSurface));
-    Box shadows;
-    for (const PosedLight& light : frame.posed.lights)
-        for (const Box& caster : casters)
-            if (light.shadows && !includeShadow(shadows, caster, light)) return all;
-    PixelRectangle moving = pixelsOf(device, projector);
-    if (!shadows.empty())
-        moving.include(pixelsOf(TableArea{{shadows.min.x, shadows.min.z}, {shadows.max.x, shadows.max.z}}, projector));
-    if (lookups) moving.include(pixelsOf(*lookups, projector));
+                            std::span<const TableArea> lookups) {
+    PixelRectangle moving = pixelsOf(cornersOf(boundingBox(*frame.devicePositions), frame.worldFromDevice), projector);
+    for (const PosedLight& light : frame.posed.lights) {
+        if (!light.shadows) continue;
+        const auto shadows = shadowsOnTable(frame, light);
+        if (!shadows) return {glm::ivec2(0), projector.size};
+        if (!shadows->empty()) moving.include(pixelsOf(*shadows, projector));
+    }
+    for (const TableArea& area : lookups) moving.include(lookupPixels(area, projector));
     return moving;
 }
 
@@ -81,7 +73,7 @@ bool PictureChanges::standsStill(const ShowFrame& frame) const {
 }
 
 PixelRectangle PictureChanges::begin(const ShowFrame& frame, const CalibratedCamera& projector,
-                                     const std::optional<TableArea>& lookups) {
+                                     std::span<const TableArea> lookups) {
     PixelRectangle area{glm::ivec2(0), projector.size};
     const PixelRectangle moving = movingPixels(frame, projector, lookups);
     if (standsStill(frame)) {

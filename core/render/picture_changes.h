@@ -2,6 +2,7 @@
 
 #include <memory>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "core/render/lookup_region.h"
@@ -17,7 +18,7 @@ public:
     /// The rectangle to draw for a frame: all of the image where more than things in motion has changed. Forgets what
     /// was drawn, until it is told again.
     [[nodiscard]] PixelRectangle begin(const ShowFrame& frame, const CalibratedCamera& projector,
-                                       const std::optional<TableArea>& lookups);
+                                       std::span<const TableArea> lookups);
     /// The picture stands.
     void finish(const ShowFrame& frame);
 

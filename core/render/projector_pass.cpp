@@ -130,20 +130,21 @@ Program& ProjectorPass::seenProgram(const std::vector<std::string>& defines) {
 }
 
 Program& ProjectorPass::beginLookup(const ProjectorTarget& target, const ShowFrame& frame, const EyeViews& views,
-                                    bool table) {
+                                    const TableArea* onTable) {
+    const bool second = onTable != nullptr && views.table != nullptr && !holds(views.device->camera(), *onTable, frame);
     std::vector<std::string> defines;
     if (target.blend) defines.emplace_back("SHARED");
     if (target.projector.gamma > 0.0) defines.emplace_back("GAMMA");
-    if (table) defines.emplace_back("TABLE");
-    if (table && views.table != nullptr) defines.emplace_back("TABLE_VIEW");
+    if (onTable != nullptr) defines.emplace_back("TABLE");
+    if (second) defines.emplace_back("TABLE_VIEW");
     Program& program = seenProgram(defines);
     program.use();
     setLens(program, target);
     setOutput(program, target, frame.scene->compensation, 0);
     views.device->set(program, "device", 2);
-    if (!table) return program;
-    if (views.table != nullptr) views.table->set(program, "table", 4);
-    program.set("lookupArea", glm::vec4(views.tableArea->low, views.tableArea->high));
+    if (onTable == nullptr) return program;
+    if (second) views.table->set(program, "table", 4);
+    program.set("lookupArea", glm::vec4(onTable->low, onTable->high));
     return program;
 }
 
@@ -155,12 +156,12 @@ void ProjectorPass::drawSeen(const ProjectorTarget& target, const ShowFrame& fra
     glClear(GL_COLOR_BUFFER_BIT);
     if (views.device != nullptr) {
         (target.projector.gamma > 0.0 ? glDisable : glEnable)(GL_FRAMEBUFFER_SRGB);
-        device.draw(beginLookup(target, frame, views, false));
-        if (views.tableArea) {
-            scissor(pixelsOf(*views.tableArea, target.projector.camera));
-            drawTableOf(target, beginLookup(target, frame, views, true));
-            scissor(target.area);
+        device.draw(beginLookup(target, frame, views, nullptr));
+        for (const TableArea& area : views.tableAreas) {
+            scissor(lookupPixels(area, target.projector.camera));
+            drawTableOf(target, beginLookup(target, frame, views, &area));
         }
+        scissor(target.area);
     }
     hideDone(target, views.device != nullptr);
     glDisable(GL_SCISSOR_TEST);

@@ -16,8 +16,8 @@ namespace lumorph {
 /// the view-independent picture.
 struct EyeViews {
     const EyeView* device = nullptr;
-    const EyeView* table = nullptr;       ///< only with `device`
-    std::optional<TableArea> tableArea{}; ///< where the table is looked up in them; none: nowhere
+    const EyeView* table = nullptr;          ///< only with `device`
+    std::span<const TableArea> tableAreas{}; ///< where the table is looked up in them
 };
 
 /// Draws what projectors send out so that the eye sees its picture on device and table.
@@ -39,7 +39,8 @@ public:
 
 private:
     [[nodiscard]] Program& seenProgram(const std::vector<std::string>& defines);
-    Program& beginLookup(const ProjectorTarget& target, const ShowFrame& frame, const EyeViews& views, bool table);
+    Program& beginLookup(const ProjectorTarget& target, const ShowFrame& frame, const EyeViews& views,
+                         const TableArea* onTable);
     void hideDone(const ProjectorTarget& target, bool any);
     void drawDistance(ProjectorTarget& target);
     void addWeight(const ProjectorTarget& shown, const ProjectorTarget& weighed, const DeviceSurface& device);

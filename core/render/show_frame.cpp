@@ -1,7 +1,6 @@
 #include "core/render/show_frame.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 
@@ -15,15 +14,6 @@ namespace {
 constexpr float kHeightStep = 0.02F;
 // Half a right angle and a bit: wider views spend their pixels on the far corners of the table.
 constexpr double kWidestTangent = 1.6;
-
-std::array<glm::vec3, 8> cornersOf(const Box& box, const glm::mat4& worldFromBox) {
-    std::array<glm::vec3, 8> corners{};
-    for (std::size_t i = 0; i < corners.size(); ++i)
-        corners[i] = glm::vec3(worldFromBox * glm::vec4((i & 1U) != 0 ? box.max.x : box.min.x,
-                                                        (i & 2U) != 0 ? box.max.y : box.min.y,
-                                                        (i & 4U) != 0 ? box.max.z : box.min.z, 1.0F));
-    return corners;
-}
 
 // Highest point over the device's ground plan of what is posed above it, in the device's frame.
 float heightAbove(const ShowFrame& frame, const Box& reach) {

@@ -43,10 +43,11 @@ struct SpatialRenderer::Data {
     DeviceSurface device;
     ProjectorPass projectorPass;
     LabPreview lab;
+    PictureOutput out;
     std::optional<EyeView> eye;
     std::optional<EyeView> table;
     bool tableShown = false;
-    std::optional<TableArea> tableArea;
+    std::vector<TableArea> tableAreas;
     std::vector<std::optional<ProjectorTarget>> projectors;
     std::optional<ShowFrame> frame;
     bool eyeShown = false;
@@ -88,7 +89,7 @@ void SpatialRenderer::Data::drawEye(const glm::vec3& from) {
     auto since = std::chrono::steady_clock::now();
     eyeShown = false;
     tableShown = false;
-    tableArea.reset();
+    tableAreas.clear();
     eyeProblem.clear();
     if (!eye) eye.emplace(eyeSize);
     try {
@@ -102,12 +103,10 @@ void SpatialRenderer::Data::drawEye(const glm::vec3& from) {
 
 void SpatialRenderer::Data::drawTableView(const glm::vec3& from) {
     auto since = std::chrono::steady_clock::now();
-    const glm::ivec2 size = glm::max(eyeSize / 2, 1);
-    tableArea = lookupArea(*frame, from);
-    if (!tableArea) return;
-    const auto camera = tableLookup(*frame, from, *tableArea, eye->camera(), size);
+    tableAreas = lookupAreas(*frame, from);
+    const auto camera = tableLookup(*frame, from, tableAreas, eye->camera(), glm::max(eyeSize / 2, 1));
     if (!camera) return;
-    if (!table) table.emplace(size);
+    if (!table || table->picture().size() != camera->size) table.emplace(camera->size);
     table->draw(pass, *frame, *camera, EyeView::Use::tableAlone, device, depthProgram);
     tableShown = true;
     times.eye += finish(since);
@@ -146,13 +145,13 @@ void SpatialRenderer::Data::drawProjectors() {
     EyeViews views;
     if (frame->eye && eyeShown) views.device = &*eye;
     if (views.device != nullptr && tableShown) views.table = &*table;
-    if (views.device != nullptr) views.tableArea = tableArea;
+    if (views.device != nullptr) views.tableAreas = tableAreas;
     const std::vector<ProjectorTarget*> targets = enabled();
     const bool shared = targets.size() > 1;
     for (ProjectorTarget* target : targets) {
         const CalibratedCamera& camera = target->projector.camera;
         if (!shared) target->blend.reset();
-        target->area = target->changes.begin(*frame, camera, views.tableArea);
+        target->area = target->changes.begin(*frame, camera, views.tableAreas);
         // Weights of several projectors change far beyond what moves.
         if (shared) target->area = {glm::ivec2(0), camera.size};
         if (target->area.empty()) continue;
@@ -204,7 +203,11 @@ void SpatialRenderer::draw(const ShowFrame& frame) {
     data_->times.total = data_->finish(since);
 }
 
-unsigned SpatialRenderer::eyeTexture() const { return data_->eye ? data_->eye->picture().texture() : 0; }
+void SpatialRenderer::showEye(unsigned framebuffer) {
+    if (!data_->eye) throw InvalidInput("eye picture", "no frame has been drawn yet", "draw one first");
+    data_->out.draw(framebuffer, data_->eye->picture());
+    restoreState();
+}
 
 unsigned SpatialRenderer::projectorTexture(std::size_t projector) const {
     const auto& targets = data_->projectors;
@@ -214,13 +217,14 @@ unsigned SpatialRenderer::projectorTexture(std::size_t projector) const {
 void SpatialRenderer::drawLab(unsigned framebuffer, const CalibratedCamera& observer, float ambient) {
     if (!data_->frame) throw InvalidInput("lab", "no frame has been drawn yet", "draw one first");
     checkCamera(observer);
-    data_->lab.draw(framebuffer, observer, ambient, *data_->frame, data_->device, data_->lit());
+    data_->lab.draw(framebuffer, observer, ambient, *data_->frame, data_->device, data_->lit(), data_->out);
     restoreState();
 }
 
-Image SpatialRenderer::readEye() const {
-    if (!data_->eye) throw InvalidInput("eye picture", "no frame has been drawn yet", "draw one first");
-    return data_->eye->picture().read();
+Image SpatialRenderer::readEye() {
+    const ColorTarget target(data_->eyeSize);
+    showEye(target.framebuffer());
+    return target.read();
 }
 
 Image SpatialRenderer::readProjector(std::size_t projector) const {
@@ -253,7 +257,7 @@ std::vector<std::string> SpatialRenderer::warnings() const {
 
 std::size_t SpatialRenderer::objectCount() const noexcept {
     std::size_t count = data_->pass.objectCount() + data_->projectorPass.objectCount() + data_->lab.objectCount() +
-                        data_->depthProgram.objectCount() + DeviceSurface::kObjects;
+                        data_->out.objectCount() + data_->depthProgram.objectCount() + DeviceSurface::kObjects;
     for (const auto* view : {&data_->eye, &data_->table}) count += *view ? EyeView::kObjects : 0;
     for (const auto& target : data_->projectors) count += target ? target->objectCount() : 0;
     return count;

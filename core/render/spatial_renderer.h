@@ -38,15 +38,17 @@ public:
     /// The same without projectors, for a preview of the eye alone.
     void drawEye(const ShowFrame& frame);
 
-    /// Textures of the last frame (sRGB encoded, row 0 at the bottom as OpenGL has it), valid until the next; 0: none.
-    [[nodiscard]] unsigned eyeTexture() const;
+    /// Draws what the eye should see in the last frame into a framebuffer of the eye pass's size, as drawLab does.
+    void showEye(unsigned framebuffer);
+    /// Texture of the last frame (sRGB encoded, row 0 at the bottom as OpenGL has it), valid until the next; 0: none.
     [[nodiscard]] unsigned projectorTexture(std::size_t projector) const;
 
-    /// Draws what an observer sees of the lit device and table into a framebuffer: the live form of the virtual lab.
-    /// `ambient` is light of the room that no projector makes, linear.
+    /// Draws what an observer sees of the lit device and table into a framebuffer of the observer's size: the live form
+    /// of the virtual lab. It is sRGB encoded by the framebuffer or, if that does not encode, by this. `ambient` is
+    /// light of the room that no projector makes, linear.
     void drawLab(unsigned framebuffer, const CalibratedCamera& observer, float ambient = 0.0F);
 
-    [[nodiscard]] Image readEye() const;
+    [[nodiscard]] Image readEye();
     [[nodiscard]] Image readProjector(std::size_t projector) const;
     [[nodiscard]] Image readLab(const CalibratedCamera& observer, float ambient = 0.0F);
     /// White where the surface that the eye pass's camera sees is seen by an enabled projector too.

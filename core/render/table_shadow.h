@@ -1,11 +1,14 @@
 #pragma once
 
-#include "core/geometry/triangle_mesh.h"
-#include "core/scene/posed_scene.h"
+#include <optional>
+
+#include "core/render/lookup_region.h"
+#include "core/render/show_frame.h"
 
 namespace lumorph {
 
-/// Takes into `onTable` the shadow that a box in the world throws on the table, edges included; false: it has no end.
-[[nodiscard]] bool includeShadow(Box& onTable, const Box& caster, const PosedLight& light);
+/// What holds all shadows of a frame on the table in this light, edges included; empty where there are none. None: they
+/// have no end.
+[[nodiscard]] std::optional<TableArea> shadowsOnTable(const ShowFrame& frame, const PosedLight& light);
 
 } // namespace lumorph

@@ -44,13 +44,6 @@ double pixelAtPivot(const ViewCamera& camera, glm::vec2 size) {
     return 2.0 * camera.distance * tanHalf(camera) / static_cast<double>(size.y);
 }
 
-std::array<glm::dvec3, 8> cornersOf(const Box& box) {
-    std::array<glm::dvec3, 8> corners;
-    for (unsigned i = 0; i < 8; ++i)
-        corners[i] = {i & 1U ? box.max.x : box.min.x, i & 2U ? box.max.y : box.min.y, i & 4U ? box.max.z : box.min.z};
-    return corners;
-}
-
 // A corner of a box from its centre: place across an axis of the picture in units of what is seen
 // at depth 1, and how much nearer to the eye it is.
 struct Reach {
@@ -107,8 +100,8 @@ glm::mat4 clipFromWorld(const ViewCamera& camera, float aspect, const Box& scene
     double nearest = camera.distance;
     double farthest = camera.distance;
     if (!scene.empty())
-        for (const glm::dvec3& corner : cornersOf(scene)) {
-            const double depth = glm::dot(eye - corner, axes.back);
+        for (const glm::vec3& corner : cornersOf(scene)) {
+            const double depth = glm::dot(eye - glm::dvec3(corner), axes.back);
             nearest = std::min(nearest, depth);
             farthest = std::max(farthest, depth);
         }
@@ -195,7 +188,7 @@ ViewCamera framed(ViewCamera camera, const Box& box, float aspect, float fill) {
     Reaches upward;
     const auto corners = cornersOf(box);
     for (std::size_t i = 0; i < corners.size(); ++i) {
-        const glm::dvec3 p = corners[i] - centre;
+        const glm::dvec3 p = glm::dvec3(corners[i]) - centre;
         across[i] = {glm::dot(p, axes.right) / right, glm::dot(p, axes.back)};
         upward[i] = {glm::dot(p, axes.up) / up, glm::dot(p, axes.back)};
     }

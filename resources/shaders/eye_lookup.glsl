@@ -17,7 +17,7 @@ uniform vec4 lookupArea; // least and largest x, z, metres
 #endif
 
 const float kFeather = 0.025; // of the picture's side, over which it fades out at its border
-const float kAreaFade = 0.02; // metres, over which it fades out around the area of the table
+const float kAreaFade = 0.008; // metres, over which it fades out around the area of the table
 const float kSlack = 0.0004;  // metres between a point and the depth that stands for it
 const float kTapSpacing = 1.0; // texels
 const float kMostTaps = 8.0;  // along one side of a footprint

@@ -89,8 +89,7 @@ QImage toQImage(const Image& image, QSize pixels) {
 /// What holds OpenGL objects.
 struct Objects {
     SpatialRenderer renderer;
-    gl::Framebuffer source;          ///< a texture is attached to it while it is copied
-    std::map<int, ColorTarget> labs; ///< what lab views are drawn into
+    gl::Framebuffer source; ///< a texture is attached to it while it is copied
     std::map<int, FrameReader> readers;
 };
 
@@ -101,7 +100,6 @@ struct ShowDrawer::Data {
 
     void pose(const ShowPace::Work& work);
     void drawBend(const ShowPace::Work& work, Bend bend);
-    const ColorTarget& drawLab(const WantedView& wanted, const ShowFrame& frame, glm::ivec2 size);
     void drawView(const WantedView& wanted, const ShowFrame& frame, double resolution);
     void drawProjector(const WantedView& wanted, FrameReader& reader, const ShowFrame& frame);
     void copyTexture(FrameReader& reader, unsigned texture, glm::ivec2 size, QSize pixels);
@@ -126,12 +124,10 @@ ShowDrawer::ShowDrawer(const GlDriver& driver, Deliver deliver)
 ShowDrawer::~ShowDrawer() = default;
 
 void ShowDrawer::Data::dropUnwanted(const ShowRequest& request) {
-    const auto unwanted = [&](const auto& entry) {
+    std::erase_if(objects->readers, [&](const auto& entry) {
         return std::none_of(request.views.begin(), request.views.end(),
                             [&](const WantedView& wanted) { return wanted.id == entry.first; });
-    };
-    std::erase_if(objects->readers, unwanted);
-    std::erase_if(objects->labs, unwanted);
+    });
 }
 
 /// Posing costs a millisecond or two. It is done here, not in the loop: the loop makes more frames than are drawn, and
@@ -171,17 +167,6 @@ void ShowDrawer::Data::drawProjector(const WantedView& wanted, FrameReader& read
     copyTexture(reader, objects->renderer.projectorTexture(number), own, toSize(shown));
 }
 
-const ColorTarget& ShowDrawer::Data::drawLab(const WantedView& wanted, const ShowFrame& frame, glm::ivec2 size) {
-    auto found = objects->labs.find(wanted.id);
-    if (found != objects->labs.end() && found->second.size() != size) {
-        objects->labs.erase(found);
-        found = objects->labs.end();
-    }
-    if (found == objects->labs.end()) found = objects->labs.emplace(wanted.id, ColorTarget(size)).first;
-    objects->renderer.drawLab(found->second.framebuffer(), labCamera(frame, wanted.view.observer, size), kRoomLight);
-    return found->second;
-}
-
 void ShowDrawer::Data::drawView(const WantedView& wanted, const ShowFrame& frame, double resolution) {
     SpatialRenderer& renderer = objects->renderer;
     if (wanted.view.kind == ShowView::Kind::mask) {
@@ -191,12 +176,14 @@ void ShowDrawer::Data::drawView(const WantedView& wanted, const ShowFrame& frame
     FrameReader& reader = objects->readers.try_emplace(wanted.id, way, pool).first->second;
     auto from = Clock::now();
     if (wanted.view.kind == ShowView::Kind::lab) {
-        const ColorTarget& lab = drawLab(wanted, frame, scaled(toVec(wanted.pixels), resolution));
+        const glm::ivec2 size = scaled(toVec(wanted.pixels), resolution);
+        renderer.drawLab(reader.framebuffer(toSize(size)), labCamera(frame, wanted.view.observer, size), kRoomLight);
         drawn.ms.lab += since(from);
         from = Clock::now();
-        copyTexture(reader, lab.texture(), lab.size(), wanted.pixels);
+        reader.start(wanted.pixels);
     } else if (wanted.view.kind == ShowView::Kind::eye) {
-        copyTexture(reader, renderer.eyeTexture(), eyePixels, wanted.pixels);
+        renderer.showEye(reader.framebuffer(toSize(eyePixels)));
+        reader.start(wanted.pixels);
     } else {
         drawProjector(wanted, reader, frame);
     }
@@ -272,7 +259,6 @@ void ShowDrawer::clear() {
 std::size_t ShowDrawer::objectCount() const {
     if (!data_->objects) return 0;
     std::size_t count = data_->objects->renderer.objectCount() + 1;
-    count += data_->objects->labs.size() * ColorTarget::kObjects;
     for (const auto& [id, reader] : data_->objects->readers) count += reader.objectCount();
     return count;
 }

@@ -109,36 +109,71 @@ TEST(TableView, HoldsTheTableAsFarAsAnEyeCan) {
     EXPECT_GT(near.focal.x, 240.0);
 }
 
-TEST(LookupArea, IsWhatAnEyeSeesDifferently) {
+TEST(LookupAreas, AreWhatAnEyeSeesDifferently) {
     const glm::vec3 eye(0.0F, 0.4F, 0.4F);
-    EXPECT_FALSE(lookupArea(at(plainScene(), 0.5, 0.0), eye)) << "nothing but device and matt table";
+    EXPECT_TRUE(lookupAreas(at(plainScene(), 0.5, 0.0), eye).empty()) << "nothing but device and matt table";
     Scene scene = plainScene();
     scene.items.push_back(floating(0.1F));
     scene.items.back().motion = {};
-    const auto area = lookupArea(at(scene, 0.5, 0.0), eye);
-    ASSERT_TRUE(area);
+    const auto areas = lookupAreas(at(scene, 0.5, 0.0), eye);
+    ASSERT_EQ(areas.size(), 1U);
     // The cube, 3 cm wide around 10 cm up, seen from (0.4, 0.4): its upper edge falls on z = 0.4 - (0.4 + 0.015) * 0.4
     // / (0.4 - 0.115).
-    EXPECT_NEAR(area->low.y, 0.4 - 0.415 * 0.4 / 0.285, 1e-3);
-    EXPECT_NEAR(area->high.x, 0.015 * 0.4 / 0.285, 1e-3);
-    EXPECT_LT(area->high.y, 0.0F);
+    EXPECT_NEAR(areas[0].low.y, 0.4 - 0.415 * 0.4 / 0.285, 1e-3);
+    EXPECT_NEAR(areas[0].high.x, 0.015 * 0.4 / 0.285, 1e-3);
+    EXPECT_LT(areas[0].high.y, 0.0F);
+    scene.items.back().opacity = 0.0F;
+    EXPECT_TRUE(lookupAreas(at(scene, 0.5, 0.0), eye).empty()) << "what only the servos follow is not seen";
     scene.table.material.reflection = 0.3F;
-    const auto mirror = lookupArea(at(scene, 0.5, 0.0), eye);
-    ASSERT_TRUE(mirror);
-    EXPECT_LE(mirror->low.x, -0.6F);
-    EXPECT_GE(mirror->high.y, 0.45F);
+    const auto mirror = lookupAreas(at(scene, 0.5, 0.0), eye);
+    ASSERT_EQ(mirror.size(), 1U);
+    EXPECT_LE(mirror[0].low.x, -0.6F);
+    EXPECT_GE(mirror[0].high.y, 0.45F);
 }
 
-TEST(LookupArea, NeedsASecondPictureOnlyBeyondTheFirst) {
+TEST(LookupAreas, AreFewAndHoldEveryThing) {
+    const glm::vec3 eye(0.0F, 0.7F, 0.5F);
+    const auto row = [&](int count, float from, float step) {
+        Scene scene = plainScene();
+        for (int i = 0; i < count; ++i) {
+            scene.items.push_back(floating(0.1F));
+            scene.items.back().id = i + 1;
+            scene.items.back().position.x = from + step * static_cast<float>(i);
+        }
+        return at(scene, 0.5, 0.0);
+    };
+    EXPECT_EQ(lookupAreas(row(2, -0.2F, 0.4F), eye).size(), 2U) << "far from each other";
+    EXPECT_EQ(lookupAreas(row(4, -0.03F, 0.02F), eye).size(), 1U) << "one behind the other";
+    const ShowFrame many = row(30, -0.4F, 0.027F);
+    const auto areas = lookupAreas(many, eye);
+    EXPECT_LE(areas.size(), 6U);
+    for (const PosedSurface& surface : many.posed.surfaces)
+        for (const glm::vec3& point : *surface.positions) {
+            const glm::vec3 place(surface.worldFromSurface * glm::vec4(point, 1.0F));
+            const glm::vec3 seen = eye + eye.y / (eye.y - place.y) * (place - eye);
+            EXPECT_TRUE(std::ranges::any_of(areas,
+                                            [&](const TableArea& area) {
+                                                return seen.x > area.low.x - 1e-5F && seen.z > area.low.y - 1e-5F &&
+                                                       seen.x < area.high.x + 1e-5F && seen.z < area.high.y + 1e-5F;
+                                            }))
+                << seen.x << ", " << seen.z;
+        }
+}
+
+TEST(LookupAreas, NeedASecondPictureOnlyBeyondTheFirst) {
     const glm::vec3 eye(0.0F, 0.4F, 0.4F);
     const ShowFrame frame = at(plainScene(), 0.5, 0.0);
     const CalibratedCamera first = deviceView(frame, eye, kSize);
-    EXPECT_FALSE(tableLookup(frame, eye, {{-0.03F, -0.03F}, {0.03F, 0.03F}}, first, {640, 400}));
-    const auto second = tableLookup(frame, eye, {{0.3F, -0.2F}, {0.4F, -0.1F}}, first, {640, 400});
+    const TableArea within{{-0.03F, -0.03F}, {0.03F, 0.03F}}, beyond{{0.3F, -0.2F}, {0.4F, -0.1F}};
+    EXPECT_FALSE(tableLookup(frame, eye, std::array{within}, first, {640, 400}));
+    const auto second = tableLookup(frame, eye, std::array{within, beyond}, first, {640, 400});
     ASSERT_TRUE(second);
     EXPECT_TRUE(holds(*second, {0.3F, 0.0F, -0.2F}));
     EXPECT_TRUE(holds(*second, {0.4F, 0.0F, -0.1F}));
-    EXPECT_GT(second->focal.x, 1000.0) << "tight";
+    EXPECT_FALSE(holds(*second, {0.03F, 0.0F, 0.0F})) << "tight";
+    EXPECT_GE(second->focal.x, 0.5 * first.focal.x) << "fine enough";
+    EXPECT_LE(second->focal.x, first.focal.x) << "and no finer than that takes";
+    EXPECT_LT(second->size.x, 640);
 }
 
 TEST(PixelRectangle, AroundCoversTheRestOnce) {

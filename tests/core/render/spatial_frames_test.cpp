@@ -25,7 +25,7 @@ TEST(SpatialFrames, ProjectorsComeGoAndChangeTheirSize) {
     SpatialRenderer renderer;
     EXPECT_THROW((void)renderer.readEye(), InvalidInput);
     EXPECT_THROW((void)renderer.readMask(), InvalidInput);
-    EXPECT_EQ(renderer.eyeTexture(), 0U);
+    EXPECT_THROW(renderer.showEye(0), InvalidInput);
     Scene scene = unlitScene(glm::vec3(0.8F), glm::vec3(0.8F), {overhead(), overhead()});
     scene.projectors[1].camera.size = {1, 1};
     scene.projectors[1].camera.principal = {0.0, 0.0};
@@ -46,7 +46,7 @@ TEST(SpatialFrames, ProjectorsComeGoAndChangeTheirSize) {
     scene.projectors.clear();
     renderer.draw(frameOf(scene, liftedFlaps()));
     EXPECT_THROW((void)renderer.readProjector(0), InvalidInput);
-    EXPECT_NE(renderer.eyeTexture(), 0U);
+    EXPECT_EQ(renderer.readEye().size(), glm::ivec2(64, 48));
 
     scene.projectors = {overhead()};
     scene.projectors[0].camera.size = {100'000, 10};

@@ -1,0 +1,23 @@
+#pragma once
+
+#include "core/render/color_target.h"
+#include "core/render/program.h"
+
+namespace lumorph {
+
+/// Shows a picture of linear light: sRGB, clipped at white.
+class PictureOutput {
+public:
+    PictureOutput();
+
+    /// Into a framebuffer of the picture's size, encoded by it or, if it does not encode, by this.
+    void draw(GLuint framebuffer, const ColorTarget& picture);
+
+    [[nodiscard]] std::size_t objectCount() const noexcept;
+
+private:
+    gl::VertexArray noAttributes_;
+    Program out_, encodedOut_;
+};
+
+} // namespace lumorph
