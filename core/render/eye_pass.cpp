@@ -1,5 +1,8 @@
 #include <algorithm>
+#include <array>
+#include <span>
 #include <string>
+#include <vector>
 
 #include <epoxy/gl.h>
 #include <glm/geometric.hpp>
@@ -73,7 +76,7 @@ void EyePass::Data::begin(const ShowFrame& frame, const View& view, unsigned fra
     glBindFramebuffer(GL_FRAMEBUFFER, framebuffer);
     glViewport(0, 0, view.camera->size.x, view.camera->size.y);
     glEnable(GL_SCISSOR_TEST);
-    scissor(view.area);
+    scissor(view.region.bounds());
     glDisable(GL_BLEND);
     glEnable(GL_DEPTH_TEST);
     glDepthFunc(GL_LESS);
@@ -89,6 +92,12 @@ void EyePass::Data::begin(const ShowFrame& frame, const View& view, unsigned fra
 }
 
 void EyePass::Data::draw(const ShowFrame& frame, const View& view, const Thing& thing) {
+    draw(frame, view, thing, std::array{view.region.bounds()});
+}
+
+void EyePass::Data::draw(const ShowFrame& frame, const View& view, const Thing& thing,
+                         std::span<const PixelRectangle> parts) {
+    if (parts.empty()) return;
     const bool lit = (thing.features & eye_feature::unlit) == 0;
     std::uint32_t features = thing.features | (lit ? lighting.features() : 0U);
     if (thing.inTheOpen) features &= ~std::uint32_t{eye_feature::shadow | eye_feature::lamp};
@@ -121,18 +130,20 @@ void EyePass::Data::draw(const ShowFrame& frame, const View& view, const Thing& 
     // Where an item lies in the device's own surface, the item is seen.
     (thing.skin ? glEnable : glDisable)(GL_POLYGON_OFFSET_FILL);
     glPolygonOffset(1.0F, 8.0F);
-    thing.mesh != nullptr ? thing.mesh->draw() : table.draw();
+    for (const PixelRectangle& part : parts) {
+        scissor(part);
+        thing.mesh != nullptr ? thing.mesh->draw() : table.draw();
+    }
     glDisable(GL_POLYGON_OFFSET_FILL);
 }
 
-// A rectangle that holds all shadows on the table.
+// A rectangle of the image that holds all shadows on the table.
 PixelRectangle EyePass::Data::shadowedPixels(const ShowFrame& frame, const View& view) const {
     if (!lighting.shadowed()) return {};
     const auto shadows = shadowsOnTable(frame, *lighting.shadowed());
-    if (!shadows) return view.area;
+    if (!shadows) return view.region.bounds();
     if (shadows->empty()) return {};
-    const PixelRectangle pixels = pixelsOf(*shadows, *view.camera);
-    return {glm::max(pixels.low, view.area.low), glm::min(pixels.high, view.area.high)};
+    return pixelsOf(*shadows, *view.camera);
 }
 
 void EyePass::Data::drawTable(const ShowFrame& frame, const View& view) {
@@ -147,18 +158,22 @@ void EyePass::Data::drawTable(const ShowFrame& frame, const View& view) {
     glVertexAttrib3f(1, 0.0F, 1.0F, 0.0F); // its normal, everywhere
     Thing thing{nullptr, glm::mat4(1.0F), &material, 1.0F, features, 0.0F};
     // Through holes light is looked up elsewhere than on the table.
-    if ((features & (eye_feature::holesBelow | eye_feature::unlit)) != 0) return draw(frame, view, thing);
+    if ((features & (eye_feature::holesBelow | eye_feature::unlit)) != 0)
+        return draw(frame, view, thing, view.region.parts());
     // Looking for shadows is dear, and most of the table lies in the open.
     const PixelRectangle shadowed = shadowedPixels(frame, view);
-    const auto drawWithin = [&](const PixelRectangle& part) {
-        if (part.empty()) return;
-        scissor(part);
-        draw(frame, view, thing);
+    std::vector<PixelRectangle> dim, open;
+    const auto add = [](std::vector<PixelRectangle>& parts, const PixelRectangle& part) {
+        if (!part.empty()) parts.push_back(part);
     };
-    drawWithin(shadowed);
+    for (const PixelRectangle& part : view.region.parts()) {
+        add(dim, common(part, shadowed));
+        for (const PixelRectangle& beside : around(shadowed, part)) add(open, beside);
+    }
+    draw(frame, view, thing, dim);
     thing.inTheOpen = true;
-    for (const PixelRectangle& part : around(shadowed, view.area)) drawWithin(part);
-    scissor(view.area);
+    draw(frame, view, thing, open);
+    scissor(view.region.bounds());
 }
 
 // Ink upon the skin, a hair above it.
@@ -218,7 +233,7 @@ void EyePass::Data::drawSeen(const ShowFrame& frame, const CalibratedCamera& cam
                              bool withSkin) {
     requireSize(camera.size);
     const glm::vec3 eye(positionOf(camera));
-    const View view{&camera, depthRange(camera, everything(frame)), {glm::ivec2(0), camera.size}};
+    const View view{&camera, depthRange(camera, everything(frame)), PixelRegion({glm::ivec2(0), camera.size})};
     begin(frame, view, framebuffer);
     std::vector<Thing> things = itemThings(frame, eye);
     if (withSkin) {
@@ -244,7 +259,7 @@ void EyePass::drawBesideDevice(const ShowFrame& frame, const CalibratedCamera& c
 
 void EyePass::drawUnseen(const ShowFrame& frame, const ProjectorTarget& target) {
     const CalibratedCamera& camera = target.projector.camera;
-    const Data::View view{&camera, depthRange(camera, data_->everything(frame)), target.area, &target};
+    const Data::View view{&camera, depthRange(camera, data_->everything(frame)), target.region, &target};
     data_->begin(frame, view, target.rest.name());
     if (data_->surfaces.hasSkin()) data_->draw(frame, view, data_->skinThing(frame, true));
     data_->drawTable(frame, view);

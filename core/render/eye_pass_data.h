@@ -32,7 +32,7 @@ struct EyePass::Data {
     struct View {
         const CalibratedCamera* camera = nullptr;
         DepthRange depth;
-        PixelRectangle area;                     ///< all that is drawn
+        PixelRegion region;                      ///< all that is drawn
         const ProjectorTarget* target = nullptr; ///< of a projector that sends it, to places that no eye sees
 
         [[nodiscard]] bool unseen() const noexcept { return target != nullptr; }
@@ -57,6 +57,7 @@ struct EyePass::Data {
     [[nodiscard]] std::vector<Thing> itemThings(const ShowFrame& frame, const glm::vec3& eye) const;
     void begin(const ShowFrame& frame, const View& view, unsigned framebuffer) const;
     void draw(const ShowFrame& frame, const View& view, const Thing& thing);
+    void draw(const ShowFrame& frame, const View& view, const Thing& thing, std::span<const PixelRectangle> parts);
     [[nodiscard]] PixelRectangle shadowedPixels(const ShowFrame& frame, const View& view) const;
     void drawTable(const ShowFrame& frame, const View& view);
     void drawCreases(const ShowFrame& frame, const View& view);

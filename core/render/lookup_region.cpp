@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/base/error.h"
+#include "core/render/few_areas.h"
 
 namespace lumorph {
 namespace {
@@ -33,23 +34,11 @@ TableArea allOf(const ShowFrame& frame) {
 
 TableArea withFade(const TableArea& area) { return {area.low - kFadeRoom, area.high + kFadeRoom}; }
 
-TableArea united(const TableArea& a, const TableArea& b) { return {glm::min(a.low, b.low), glm::max(a.high, b.high)}; }
+TableArea joined(const TableArea& a, const TableArea& b) { return {glm::min(a.low, b.low), glm::max(a.high, b.high)}; }
 
 float drawnSize(const TableArea& area) {
     const TableArea drawn = withFade(area);
     return (drawn.high.x - drawn.low.x) * (drawn.high.y - drawn.low.y);
-}
-
-// Areas become one where that costs nothing, or there would be too many.
-void add(std::vector<TableArea>& areas, TableArea area) {
-    while (!areas.empty()) {
-        const auto growth = [&](const TableArea& other) { return drawnSize(united(area, other)) - drawnSize(other); };
-        const auto nearest = std::ranges::min_element(areas, {}, growth);
-        if (growth(*nearest) > drawnSize(area) && areas.size() < kMostAreas) break;
-        area = united(area, *nearest);
-        areas.erase(nearest);
-    }
-    areas.push_back(area);
 }
 
 bool holds(const CalibratedCamera& camera, const glm::vec3& point) {
@@ -70,20 +59,6 @@ std::array<glm::vec3, 4> drawnCorners(const TableArea& area, const ShowFrame& fr
 
 } // namespace
 
-void PixelRectangle::include(const PixelRectangle& other) noexcept {
-    if (other.empty()) return;
-    low = empty() ? other.low : glm::min(low, other.low);
-    high = glm::max(high, other.high);
-}
-
-PixelRectangle pixelRectangle(const glm::dvec2& low, const glm::dvec2& high, glm::ivec2 size) {
-    const glm::dvec2 whole(size);
-    const glm::dvec2 least = glm::clamp(low, glm::dvec2(0.0), whole);
-    const glm::dvec2 most = glm::clamp(high, glm::dvec2(0.0), whole);
-    return {{static_cast<int>(least.x), static_cast<int>(whole.y - most.y)},
-            {static_cast<int>(std::ceil(most.x)), static_cast<int>(std::ceil(whole.y - least.y))}};
-}
-
 bool dependsOnEye(const Material& table) {
     return table.reflection > 0.0F || table.refraction > 0.0F || table.metallic > 0.3F || table.roughness < kGlossy;
 }
@@ -96,7 +71,7 @@ std::vector<TableArea> lookupAreas(const ShowFrame& frame, const glm::vec3& eye)
         const auto behind = areaBehind(box, worldFromBox, eye);
         if (!behind) return false;
         const TableArea area{glm::max(behind->low, all.low), glm::min(behind->high, all.high)};
-        if (!area.empty()) add(areas, area);
+        if (!area.empty()) addToFew(areas, area, kMostAreas, joined, drawnSize);
         return true;
     };
     for (const PosedSurface& surface : frame.posed.surfaces)
@@ -115,7 +90,7 @@ std::optional<CalibratedCamera> tableLookup(const ShowFrame& frame, const glm::v
                                             glm::ivec2 most) {
     std::optional<TableArea> beyond;
     for (const TableArea& area : areas)
-        if (!holds(first, area, frame)) beyond = beyond ? united(*beyond, area) : area;
+        if (!holds(first, area, frame)) beyond = beyond ? joined(*beyond, area) : area;
     if (!beyond) return std::nullopt;
     const auto corners = drawnCorners(*beyond, frame);
     try {
@@ -148,16 +123,6 @@ PixelRectangle pixelsOf(const TableArea& area, const CalibratedCamera& camera) {
 
 PixelRectangle lookupPixels(const TableArea& area, const CalibratedCamera& projector) {
     return pixelsOf(withFade(area), projector);
-}
-
-std::array<PixelRectangle, 4> around(const PixelRectangle& area, const PixelRectangle& whole) {
-    const PixelRectangle inner{glm::clamp(area.low, whole.low, whole.high),
-                               glm::clamp(area.high, whole.low, whole.high)};
-    if (inner.empty()) return {{whole, {}, {}, {}}};
-    return {{{whole.low, {whole.high.x, inner.low.y}},
-             {{whole.low.x, inner.high.y}, whole.high},
-             {{whole.low.x, inner.low.y}, {inner.low.x, inner.high.y}},
-             {{inner.high.x, inner.low.y}, {whole.high.x, inner.high.y}}}};
 }
 
 } // namespace lumorph

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <array>
 #include <optional>
 #include <span>
 #include <vector>
@@ -8,20 +7,10 @@
 #include <glm/vec2.hpp>
 
 #include "core/geometry/calibrated_camera.h"
+#include "core/render/pixel_region.h"
 #include "core/render/show_frame.h"
 
 namespace lumorph {
-
-/// Pixels of an image, as OpenGL counts them: row 0 is the lowest, `high` is not included.
-struct PixelRectangle {
-    glm::ivec2 low{0};
-    glm::ivec2 high{0};
-    [[nodiscard]] bool empty() const noexcept { return low.x >= high.x || low.y >= high.y; }
-    void include(const PixelRectangle& other) noexcept;
-};
-
-/// The pixels between two places of an image, as calibration counts them (row 0 at the top), within its size.
-[[nodiscard]] PixelRectangle pixelRectangle(const glm::dvec2& low, const glm::dvec2& high, glm::ivec2 size);
 
 /// Whether a table of this material looks different to every eye: it mirrors, bends light or shines. What does not must
 /// be drawn the same by both of the eye pass's ways, because the projector pass then takes the cheap one.
@@ -51,8 +40,5 @@ struct TableArea {
 [[nodiscard]] PixelRectangle pixelsOf(const TableArea& area, const CalibratedCamera& camera);
 /// The same with the room in which lookups fade out around it.
 [[nodiscard]] PixelRectangle lookupPixels(const TableArea& area, const CalibratedCamera& projector);
-
-/// What is left of a rectangle around another one.
-[[nodiscard]] std::array<PixelRectangle, 4> around(const PixelRectangle& area, const PixelRectangle& whole);
 
 } // namespace lumorph

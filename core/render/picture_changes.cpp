@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include <glm/geometric.hpp>
 
@@ -34,28 +35,14 @@ bool sameScene(const std::shared_ptr<const Scene>& first, const std::shared_ptr<
     return moved == *second;
 }
 
-// A rectangle of the image that holds a box; all of it where a corner cannot be seen.
-PixelRectangle pixelsOf(std::span<const glm::vec3> corners, const CalibratedCamera& projector) {
-    constexpr double kRoom = 4.0;
-    glm::dvec2 low(1e9);
-    glm::dvec2 high(-1e9);
-    for (const glm::vec3& corner : corners) {
-        const auto at = pixelOf(projector, glm::dvec3(corner));
-        if (!at) return {glm::ivec2(0), projector.size};
-        low = glm::min(low, *at);
-        high = glm::max(high, *at);
-    }
-    return pixelRectangle(low - kRoom, high + kRoom, projector.size);
-}
-
 // All that moves in a frame, as it lies in the projector's image.
-PixelRectangle movingPixels(const ShowFrame& frame, const CalibratedCamera& projector,
-                            std::span<const TableArea> lookups) {
-    PixelRectangle moving = pixelsOf(cornersOf(boundingBox(*frame.devicePositions), frame.worldFromDevice), projector);
+PixelRegion movingPixels(const ShowFrame& frame, const CalibratedCamera& projector,
+                         std::span<const TableArea> lookups) {
+    PixelRegion moving(devicePixels(frame, projector));
     for (const PosedLight& light : frame.posed.lights) {
         if (!light.shadows) continue;
         const auto shadows = shadowsOnTable(frame, light);
-        if (!shadows) return {glm::ivec2(0), projector.size};
+        if (!shadows) return PixelRegion({glm::ivec2(0), projector.size});
         if (!shadows->empty()) moving.include(pixelsOf(*shadows, projector));
     }
     for (const TableArea& area : lookups) moving.include(lookupPixels(area, projector));
@@ -63,6 +50,22 @@ PixelRectangle movingPixels(const ShowFrame& frame, const CalibratedCamera& proj
 }
 
 } // namespace
+
+PixelRectangle devicePixels(const ShowFrame& frame, const CalibratedCamera& projector) {
+    constexpr double kRoom = 4.0;
+    glm::dvec2 low(1e9);
+    glm::dvec2 high(-1e9);
+    const Box box = boundingBox(*frame.devicePositions);
+    for (int i = 0; i < 27; ++i) { // corners and middles: a lens bends the edges between them outwards
+        const glm::vec3 share = 0.5F * glm::vec3(i % 3, i / 3 % 3, i / 9);
+        const glm::vec3 place(frame.worldFromDevice * glm::vec4(glm::mix(box.min, box.max, share), 1.0F));
+        const auto at = pixelOf(projector, glm::dvec3(place));
+        if (!at) return {glm::ivec2(0), projector.size}; // part of it cannot be seen
+        low = glm::min(low, *at);
+        high = glm::max(high, *at);
+    }
+    return pixelRectangle(low - kRoom, high + kRoom, projector.size);
+}
 
 bool PictureChanges::standsStill(const ShowFrame& frame) const {
     return drawn_ && drawn_->assets == frame.assets && drawn_->rig == frame.rig &&
@@ -72,17 +75,16 @@ bool PictureChanges::standsStill(const ShowFrame& frame) const {
            isStill(frame.scene->table.material) && sameScene(drawn_->scene, frame.scene);
 }
 
-PixelRectangle PictureChanges::begin(const ShowFrame& frame, const CalibratedCamera& projector,
-                                     std::span<const TableArea> lookups) {
-    PixelRectangle area{glm::ivec2(0), projector.size};
-    const PixelRectangle moving = movingPixels(frame, projector, lookups);
+PixelRegion PictureChanges::begin(const ShowFrame& frame, const CalibratedCamera& projector,
+                                  std::span<const TableArea> lookups) {
+    const PixelRegion moved = std::exchange(moving_, movingPixels(frame, projector, lookups));
+    PixelRegion region({glm::ivec2(0), projector.size});
     if (standsStill(frame)) {
-        area = moving;
-        area.include(moving_);
+        region = moving_;
+        region.include(moved);
     }
-    moving_ = moving;
     drawn_.reset();
-    return area;
+    return region;
 }
 
 void PictureChanges::finish(const ShowFrame& frame) {

@@ -10,15 +10,18 @@
 
 namespace lumorph {
 
+/// A rectangle of a projector's image that holds the device as it is.
+[[nodiscard]] PixelRectangle devicePixels(const ShowFrame& frame, const CalibratedCamera& projector);
+
 /// Remembers for which frame a projector's picture was drawn, to know what of it the next one can change: the device
 /// and its surroundings, shadows on the table, what an eye sees there. The rest of a still table stays as it is, which
 /// saves more than half of a frame's work.
 class PictureChanges {
 public:
-    /// The rectangle to draw for a frame: all of the image where more than things in motion has changed. Forgets what
-    /// was drawn, until it is told again.
-    [[nodiscard]] PixelRectangle begin(const ShowFrame& frame, const CalibratedCamera& projector,
-                                       std::span<const TableArea> lookups);
+    /// What to draw for a frame: all of the image where more than things in motion has changed. Forgets what was drawn,
+    /// until it is told again.
+    [[nodiscard]] PixelRegion begin(const ShowFrame& frame, const CalibratedCamera& projector,
+                                    std::span<const TableArea> lookups);
     /// The picture stands.
     void finish(const ShowFrame& frame);
 
@@ -33,7 +36,7 @@ private:
     [[nodiscard]] bool standsStill(const ShowFrame& frame) const;
 
     std::optional<Drawn> drawn_;
-    PixelRectangle moving_; ///< what moved in the frame drawn last
+    PixelRegion moving_; ///< what moved in the frame drawn last
 };
 
 } // namespace lumorph

@@ -1,5 +1,7 @@
 #include "core/render/projector_pass.h"
 
+#include <algorithm>
+#include <array>
 #include <utility>
 
 #include "core/render/draw_state.h"
@@ -24,6 +26,14 @@ void drawTableOf(const ProjectorTarget& target, Program& program) {
     target.table.draw();
 }
 
+// The scissor test is on, and is set to another place.
+void clearRegion(const PixelRegion& region, GLbitfield what) {
+    for (const PixelRectangle& part : region.parts()) {
+        scissor(part);
+        glClear(what);
+    }
+}
+
 void setLens(Program& program, const ProjectorTarget& target) {
     setCamera(program, target.projector.camera, target.range.near, target.range.far);
 }
@@ -32,26 +42,49 @@ void setLens(Program& program, const ProjectorTarget& target) {
 
 ProjectorPass::ProjectorPass()
     : depth_(physicalFiles({"version.glsl", "nothing.frag"})),
+      surface_(physicalFiles(
+          {"version.glsl", "physical_normal.glsl", "packed_normal.glsl", "eye_lookup.glsl", "projector_surface.frag"})),
       edges_(shaderFiles({"full_frame.vert"}, {"version.glsl", "projector_edges.frag"})),
       distance_(shaderFiles({"full_frame.vert"}, {"version.glsl", "projector_distance.frag"})),
       deviceWeight_(weightFiles({})), tableWeight_(weightFiles({"TABLE"})),
       done_(shaderFiles({"full_frame.vert"}, {"version.glsl", "projector_done.frag"})) {}
 
 void ProjectorPass::drawDepth(ProjectorTarget& target, const ShowFrame& frame, const DeviceSurface& device,
-                              bool withTable) {
+                              const EyeViews& views, bool withTable) {
     target.range = depthRange(target.projector.camera, physicalBounds(frame));
     target.table.fit(target.projector.camera, frame.scene->table.size);
-    beginSurfaces(target.sent.framebuffer(), target.sent.size());
+    target.device = devicePixels(frame, target.projector.camera);
+    beginSurfaces(target.surface.framebuffer(), target.sent.size());
     glEnable(GL_SCISSOR_TEST);
-    scissor(target.area);
     glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
-    glClear(GL_DEPTH_BUFFER_BIT);
+    clearRegion(target.region, GL_DEPTH_BUFFER_BIT);
+    scissor(target.region.bounds());
     depth_.use();
     setLens(depth_, target);
-    device.draw(depth_);
     if (withTable) drawTableOf(target, depth_);
+    if (views.device == nullptr) device.draw(depth_);
     glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+    if (views.device != nullptr) drawSurface(target, device, views);
     glDisable(GL_SCISSOR_TEST);
+}
+
+// After the table, so that it holds what the projector sees.
+void ProjectorPass::drawSurface(const ProjectorTarget& target, const DeviceSurface& device, const EyeViews& views) {
+    scissor(target.device);
+    constexpr std::array<GLfloat, 4> kNothing{};
+    glClearBufferfv(GL_COLOR, 0, kNothing.data());
+    surface_.use();
+    setLens(surface_, target);
+    surface_.set("projectorPosition", glm::vec3(positionOf(target.projector.camera)));
+    views.device->set(surface_, "device", 2);
+    device.draw(surface_);
+}
+
+void ProjectorPass::drawFullFrame(const PixelRectangle& part) {
+    scissor(part);
+    glBindVertexArray(noAttributes_.name());
+    glDrawArrays(GL_TRIANGLES, 0, 3);
+    glBindVertexArray(0);
 }
 
 void ProjectorPass::drawDistance(ProjectorTarget& target) {
@@ -121,12 +154,15 @@ void ProjectorPass::drawWeights(std::span<ProjectorTarget* const> targets, const
 }
 
 Program& ProjectorPass::seenProgram(const std::vector<std::string>& defines) {
-    return seen_
-        .try_emplace(defines,
-                     physicalFiles({"version.glsl", "physical_normal.glsl", "projector_light.glsl",
-                                    "projector_output.glsl", "eye_lookup.glsl", "noise.glsl", "projector.frag"},
-                                   defines))
-        .first->second;
+    const auto found = seen_.find(defines);
+    if (found != seen_.end()) return found->second;
+    ShaderFiles files =
+        physicalFiles({"version.glsl", "physical_normal.glsl", "packed_normal.glsl", "projector_light.glsl",
+                       "projector_output.glsl", "eye_lookup.glsl", "noise.glsl", "projector.frag"},
+                      defines);
+    if (std::ranges::find(defines, "TABLE") == defines.end())
+        files.vertex = shaderFiles({"full_frame.vert"}, {}).vertex;
+    return seen_.try_emplace(defines, files).first->second;
 }
 
 Program& ProjectorPass::beginLookup(const ProjectorTarget& target, const ShowFrame& frame, const EyeViews& views,
@@ -148,44 +184,45 @@ Program& ProjectorPass::beginLookup(const ProjectorTarget& target, const ShowFra
     return program;
 }
 
-void ProjectorPass::drawSeen(const ProjectorTarget& target, const ShowFrame& frame, const DeviceSurface& device,
-                             const EyeViews& views) {
+void ProjectorPass::drawSeen(const ProjectorTarget& target, const ShowFrame& frame, const EyeViews& views) {
     beginSurfaces(target.seen.name(), target.sent.size());
     glEnable(GL_SCISSOR_TEST);
-    scissor(target.area);
-    glClear(GL_COLOR_BUFFER_BIT);
+    clearRegion(target.region, GL_COLOR_BUFFER_BIT);
     if (views.device != nullptr) {
         (target.projector.gamma > 0.0 ? glDisable : glEnable)(GL_FRAMEBUFFER_SRGB);
-        device.draw(beginLookup(target, frame, views, nullptr));
+        Program& program = beginLookup(target, frame, views, nullptr);
+        target.surface.set(program, 4);
+        glDisable(GL_DEPTH_TEST);
+        drawFullFrame(target.device);
+        glEnable(GL_DEPTH_TEST);
         for (const TableArea& area : views.tableAreas) {
             scissor(lookupPixels(area, target.projector.camera));
             drawTableOf(target, beginLookup(target, frame, views, &area));
         }
-        scissor(target.area);
     }
-    hideDone(target, views.device != nullptr);
+    hideDone(target, views);
     glDisable(GL_SCISSOR_TEST);
 }
 
 // What is done lies nearer than all else, so that the rest alone is shaded.
-void ProjectorPass::hideDone(const ProjectorTarget& target, bool any) {
+void ProjectorPass::hideDone(const ProjectorTarget& target, const EyeViews& views) {
     glBindFramebuffer(GL_FRAMEBUFFER, target.rest.name());
-    glClear(GL_DEPTH_BUFFER_BIT);
-    if (!any) return;
+    clearRegion(target.region, GL_DEPTH_BUFFER_BIT);
+    if (views.device == nullptr) return;
+    PixelRegion lookedUp(target.device);
+    for (const TableArea& area : views.tableAreas) lookedUp.include(lookupPixels(area, target.projector.camera));
     glDepthFunc(GL_ALWAYS);
     glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
     done_.use();
     bindTexture(0, target.done.name());
     done_.set("done", 0);
-    glBindVertexArray(noAttributes_.name());
-    glDrawArrays(GL_TRIANGLES, 0, 3);
-    glBindVertexArray(0);
+    for (const PixelRectangle& part : lookedUp.parts()) drawFullFrame(part);
     glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
 }
 
 std::size_t ProjectorPass::objectCount() const noexcept {
     std::size_t count = 1;
-    for (const Program* program : {&depth_, &edges_, &distance_, &deviceWeight_, &tableWeight_, &done_})
+    for (const Program* program : {&depth_, &surface_, &edges_, &distance_, &deviceWeight_, &tableWeight_, &done_})
         count += program->objectCount();
     for (const auto& [defines, program] : seen_) count += program.objectCount();
     return count;

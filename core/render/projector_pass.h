@@ -25,15 +25,15 @@ class ProjectorPass {
 public:
     ProjectorPass();
 
-    /// Fits the target's table grid and depth range to the frame and draws the depth of the device, and of the table
-    /// where others must know it.
-    void drawDepth(ProjectorTarget& target, const ShowFrame& frame, const DeviceSurface& device, bool withTable);
+    /// Fits the target's table grid and depth range to the frame and draws the depth of the device, with what the
+    /// lookups must know of it, and of the table where others must know it.
+    void drawDepth(ProjectorTarget& target, const ShowFrame& frame, const DeviceSurface& device, const EyeViews& views,
+                   bool withTable);
     /// Weighs projectors against one another; all their depths are drawn.
     void drawWeights(std::span<ProjectorTarget* const> targets, const DeviceSurface& device);
     /// Begins the picture of one projector with what the eye sees, and hides what is done; depth and weights are drawn.
     /// The rest is the eye pass's.
-    void drawSeen(const ProjectorTarget& target, const ShowFrame& frame, const DeviceSurface& device,
-                  const EyeViews& views);
+    void drawSeen(const ProjectorTarget& target, const ShowFrame& frame, const EyeViews& views);
 
     [[nodiscard]] std::size_t objectCount() const noexcept;
 
@@ -41,12 +41,14 @@ private:
     [[nodiscard]] Program& seenProgram(const std::vector<std::string>& defines);
     Program& beginLookup(const ProjectorTarget& target, const ShowFrame& frame, const EyeViews& views,
                          const TableArea* onTable);
-    void hideDone(const ProjectorTarget& target, bool any);
+    void drawSurface(const ProjectorTarget& target, const DeviceSurface& device, const EyeViews& views);
+    void hideDone(const ProjectorTarget& target, const EyeViews& views);
+    void drawFullFrame(const PixelRectangle& part);
     void drawDistance(ProjectorTarget& target);
     void addWeight(const ProjectorTarget& shown, const ProjectorTarget& weighed, const DeviceSurface& device);
 
     gl::VertexArray noAttributes_;
-    Program depth_, edges_, distance_, deviceWeight_, tableWeight_, done_;
+    Program depth_, surface_, edges_, distance_, deviceWeight_, tableWeight_, done_;
     std::map<std::vector<std::string>, Program> seen_; ///< by the defines of projector.frag
 };
 

@@ -151,16 +151,16 @@ void SpatialRenderer::Data::drawProjectors() {
     for (ProjectorTarget* target : targets) {
         const CalibratedCamera& camera = target->projector.camera;
         if (!shared) target->blend.reset();
-        target->area = target->changes.begin(*frame, camera, views.tableAreas);
+        target->region = target->changes.begin(*frame, camera, views.tableAreas);
         // Weights of several projectors change far beyond what moves.
-        if (shared) target->area = {glm::ivec2(0), camera.size};
-        if (target->area.empty()) continue;
-        projectorPass.drawDepth(*target, *frame, device, shared);
+        if (shared) target->region = PixelRegion({glm::ivec2(0), camera.size});
+        if (target->region.empty()) continue;
+        projectorPass.drawDepth(*target, *frame, device, views, shared);
     }
     if (shared) projectorPass.drawWeights(targets, device);
     for (ProjectorTarget* target : targets) {
-        if (!target->area.empty()) {
-            projectorPass.drawSeen(*target, *frame, device, views);
+        if (!target->region.empty()) {
+            projectorPass.drawSeen(*target, *frame, views);
             pass.drawUnseen(*frame, *target);
         }
         if (!shared) target->changes.finish(*frame);

@@ -50,12 +50,19 @@ float shareAt(vec2 uv, vec3 world) {
     return clamp(share, 0.0, 1.0);
 }
 
-vec4 seenByEye(sampler2D picture, sampler2D deviceDepth, EyeView view, vec3 world, vec3 normal) {
+// How a place moves in the eye's picture (0 to 1) from this pixel to the next: to the right, and up.
+vec4 footprintOf(EyeView view, vec3 world) {
+    vec4 clip = view.clipFromWorld * vec4(world, 1.0);
+    vec2 at = clip.xy / max(clip.w, 1e-6) * 0.5;
+    return vec4(dFdx(at), dFdy(at));
+}
+
+vec4 seenByEye(sampler2D picture, sampler2D deviceDepth, EyeView view, vec3 world, vec3 normal, vec4 footprint) {
     vec4 clip = view.clipFromWorld * vec4(world, 1.0);
     float distance = max(clip.w, 1e-6);
     vec3 at = clip.xyz / distance * 0.5 + 0.5;
-    vec2 alongX = dFdx(at.xy);
-    vec2 alongY = dFdy(at.xy);
+    vec2 alongX = footprint.xy;
+    vec2 alongY = footprint.zw;
     float share = clip.w > 0.0 ? shareAt(at.xy, world) : 0.0;
 
     vec2 slope = vec2(0.0);

@@ -115,7 +115,7 @@ public:
         SceneProjector projector;
         projector.camera = camera();
         ProjectorTarget target(projector);
-        target.area = {glm::ivec2(0), size};
+        target.region = PixelRegion({glm::ivec2(0), size});
         glBindFramebuffer(GL_FRAMEBUFFER, target.rest.name());
         glDisable(GL_SCISSOR_TEST);
         glDepthMask(GL_TRUE);
