@@ -30,7 +30,7 @@ struct PicturePlacement {
 
 /// Texture units of the eye pass.
 namespace eye_unit {
-enum Unit : int { color, normalA, normalB, holes, table, shadowMap, shadowDepth, shadowTiles, fog, weights };
+enum Unit : int { color, normalA, normalB, holes, table, shadowDepth, shadowTiles, fog, weights };
 } // namespace eye_unit
 
 /// Sets materials in the programs of the eye pass.

@@ -35,8 +35,6 @@ void requireSize(glm::ivec2 size) {
 // Others find the state as they know it.
 void finishDrawing() {
     glDisable(GL_SCISSOR_TEST);
-    glBindSampler(eye_unit::shadowMap, 0);
-    glBindSampler(eye_unit::shadowDepth, 0);
     glActiveTexture(GL_TEXTURE0);
     glDisable(GL_FRAMEBUFFER_SRGB);
     glDisable(GL_CULL_FACE);

@@ -21,7 +21,7 @@ constexpr float kPixelsOfBias = 0.75F;
 void store(const gl::Texture& texture, GLint format, int side, GLenum pixels) {
     glBindTexture(GL_TEXTURE_2D, texture.name());
     glTexImage2D(GL_TEXTURE_2D, 0, format, side, side, 0, pixels, GL_FLOAT, nullptr);
-    const float lit[] = {1.0F, 1.0F, 1.0F, 1.0F};
+    const float lit[] = {1.0F, 1.0F, 1.0F, 1.0F}; // outside the map nothing is between a place and the light
     glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
     glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
     glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_BORDER);
@@ -36,16 +36,6 @@ ShaderFiles tileFiles(const std::vector<std::string>& defines) {
     return files;
 }
 
-void setSampler(const gl::Sampler& sampler, GLint filter) {
-    // Outside the map there is nothing between a place and the light.
-    const float lit[] = {1.0F, 1.0F, 1.0F, 1.0F};
-    glSamplerParameteri(sampler.name(), GL_TEXTURE_MIN_FILTER, filter);
-    glSamplerParameteri(sampler.name(), GL_TEXTURE_MAG_FILTER, filter);
-    glSamplerParameteri(sampler.name(), GL_TEXTURE_WRAP_S, GL_CLAMP_TO_BORDER);
-    glSamplerParameteri(sampler.name(), GL_TEXTURE_WRAP_T, GL_CLAMP_TO_BORDER);
-    glSamplerParameterfv(sampler.name(), GL_TEXTURE_BORDER_COLOR, lit);
-}
-
 glm::vec3 acrossFrom(const glm::vec3& direction) {
     return std::abs(direction.y) > 0.9F ? glm::vec3(0.0F, 0.0F, -1.0F) : glm::vec3(0.0F, 1.0F, 0.0F);
 }
@@ -55,10 +45,6 @@ glm::vec3 acrossFrom(const glm::vec3& direction) {
 EyeShadow::EyeShadow() : gather_(tileFiles({"GATHER"})), spread_(tileFiles({})) {
     store(depth_, GL_DEPTH_COMPONENT32F, kSide, GL_DEPTH_COMPONENT);
     for (const gl::Texture& tiles : tiles_) store(tiles, GL_RG32F, kTiles, GL_RG);
-    setSampler(compared_, GL_LINEAR);
-    glSamplerParameteri(compared_.name(), GL_TEXTURE_COMPARE_MODE, GL_COMPARE_REF_TO_TEXTURE);
-    glSamplerParameteri(compared_.name(), GL_TEXTURE_COMPARE_FUNC, GL_LEQUAL);
-    setSampler(plain_, GL_NEAREST);
 }
 
 void EyeShadow::aim(const PosedLight& light, const Box& casters) {
@@ -136,7 +122,6 @@ void EyeShadow::drawTiles() {
     const auto pass = [&](Program& program, GLuint from, const gl::Texture& to) {
         glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, to.name(), 0);
         glBindTexture(GL_TEXTURE_2D, from);
-        glBindSampler(0, plain_.name());
         program.set("depth", 0);
         program.set("tiles", 0);
         glDrawArrays(GL_TRIANGLES, 0, 3);
@@ -155,7 +140,6 @@ void EyeShadow::drawTiles() {
     spread_.set("axis", glm::vec2(0.0F, 1.0F));
     pass(spread_, tiles_[1].name(), tiles_[0]);
     glBindVertexArray(0);
-    glBindSampler(0, 0);
     glEnable(GL_DEPTH_TEST);
 }
 
@@ -168,7 +152,7 @@ glm::vec2 EyeShadow::reach() const {
 
 float EyeShadow::spread() const { return 0.5F * std::max(light_.softness, 0.0F) * depthRange_ * perMetre_; }
 
-std::size_t EyeShadow::objectCount() const noexcept { return 8 + gather_.objectCount() + spread_.objectCount(); }
+std::size_t EyeShadow::objectCount() const noexcept { return 6 + gather_.objectCount() + spread_.objectCount(); }
 
 void EyeShadow::apply(Program& program) const {
     const float metresOfBias = kPixelsOfBias * texel_ * distance_;
@@ -182,17 +166,12 @@ void EyeShadow::apply(Program& program) const {
     program.set("shadowSteepest", kSteepest / (perMetre_ * depthRange_));
     program.set("shadowReach", reach());
     program.set("shadowSpread", spread());
-    program.set("shadowMap", static_cast<int>(eye_unit::shadowMap));
     program.set("shadowDepth", static_cast<int>(eye_unit::shadowDepth));
     program.set("shadowTiles", static_cast<int>(eye_unit::shadowTiles));
     glActiveTexture(GL_TEXTURE0 + eye_unit::shadowTiles);
     glBindTexture(GL_TEXTURE_2D, tiles_[0].name());
-    for (const auto& [unit, sampler] :
-         {std::pair(eye_unit::shadowMap, compared_.name()), std::pair(eye_unit::shadowDepth, plain_.name())}) {
-        glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(unit));
-        glBindTexture(GL_TEXTURE_2D, depth_.name());
-        glBindSampler(static_cast<GLuint>(unit), sampler);
-    }
+    glActiveTexture(GL_TEXTURE0 + eye_unit::shadowDepth);
+    glBindTexture(GL_TEXTURE_2D, depth_.name());
 }
 
 } // namespace lumorph

@@ -61,7 +61,6 @@ private:
     gl::Framebuffer framebuffer_, tileFramebuffer_;
     gl::VertexArray frame_;
     Program gather_, spread_;
-    gl::Sampler compared_, plain_;
     PosedLight light_;
     glm::mat4 drawnClip_{0.0F};
     float drawnSoftness_ = -1.0F;

@@ -12,8 +12,8 @@
 namespace lumorph {
 namespace {
 
-constexpr float kNearSideStepsBack = 0.0025F; // metres
-constexpr float kFarthestCaster = 1.5F;       // metres from the device's middle
+constexpr float kNearSideStepsBack = 0.012F; // metres; as much as depth changes over a tile of the map on a slant
+constexpr float kFarthestCaster = 1.5F;      // metres from the device's middle
 
 } // namespace
 

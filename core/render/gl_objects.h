@@ -53,14 +53,6 @@ struct TextureKind {
     }
     static void destroy(GLuint name) { glDeleteTextures(1, &name); }
 };
-struct SamplerKind {
-    static GLuint create() {
-        GLuint name = 0;
-        glGenSamplers(1, &name);
-        return name;
-    }
-    static void destroy(GLuint name) { glDeleteSamplers(1, &name); }
-};
 struct RenderbufferKind {
     static GLuint create() {
         GLuint name = 0;
@@ -89,7 +81,6 @@ template <GLenum Stage> struct ShaderKind {
 using Buffer = Object<BufferKind>;
 using VertexArray = Object<VertexArrayKind>;
 using Texture = Object<TextureKind>;
-using Sampler = Object<SamplerKind>;
 using Renderbuffer = Object<RenderbufferKind>;
 using Framebuffer = Object<FramebufferKind>;
 using ProgramObject = Object<ProgramKind>;

@@ -18,7 +18,7 @@ constexpr glm::ivec2 kSize(1280, 800);
 constexpr int kWarmUp = 5;
 constexpr int kFrames = 20;
 
-/// The tablet with its flaps half up, moving, in a scene with one projector and one shadow map.
+/// The tablet with its flaps half up, moving, in a scene with one projector and one shadow map; the viewer sways.
 class Show {
 public:
     explicit Show(Scene scene) : rig_(std::make_shared<const Rig>(readRig(resourceFile("models/tablet.glb")))) {
@@ -29,7 +29,6 @@ public:
         camera.focal *= share;
         camera.principal = (camera.principal + 0.5) * share - 0.5;
         camera.size = kSize;
-        frame_.eye = scene.eye;
         frame_.assets = loadSceneAssets(scene, {});
         frame_.scene = std::make_shared<const Scene>(std::move(scene));
         frame_.rig = rig_;
@@ -45,6 +44,7 @@ public:
         frame_.devicePositions = std::move(positions);
         PoseInput input;
         input.seconds = seconds;
+        frame_.eye = frame_.scene->eye + 0.05F * glm::vec3(std::sin(2.0 * seconds), 0.0, std::cos(2.0 * seconds));
         frame_.posed = poser_.pose(*frame_.scene, *frame_.assets, input);
         return frame_;
     }

@@ -68,6 +68,7 @@ ShowFrame changingFrame(int step) {
     scene.projectors[0].camera.size = {240, 160};
     scene.projectors[0].camera.focal *= 0.4;
     scene.projectors[0].camera.principal = {119.5, 79.5};
+    scene.projectors[0].camera.distortion = {-0.3, 0.05, 0.002, -0.003, 0.0}; // bends edges beyond their ends
     scene.items.push_back(box({0.05F, 0.09F, 0.02F}, Anchor::device, {0.0F, 1.0F, 0.0F}));
     scene.items.back().id = 7;
     std::vector<double> strokes(bundledTablet()->actuatorCount(), 0.0);
