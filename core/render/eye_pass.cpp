@@ -22,7 +22,7 @@ namespace {
 
 constexpr float kBlurredLift = 0.004F; // metres by which blurred folds keep off their own shadow
 
-glm::vec3 encodedClear(const Scene& scene) {
+glm::vec3 backgroundOf(const Scene& scene) {
     return glm::clamp(0.5F * scene.sky * static_cast<float>(scene.exposure), 0.0F, 0.7F);
 }
 
@@ -84,7 +84,7 @@ void EyePass::Data::begin(const ShowFrame& frame, const View& view, unsigned fra
     (encodes ? glDisable : glEnable)(GL_FRAMEBUFFER_SRGB);
     if (view.unseen()) return; // what stands stays
     glClearDepth(1.0);
-    const glm::vec3 background = encodedClear(*frame.scene);
+    const glm::vec3 background = backgroundOf(*frame.scene);
     glClearColor(background.r, background.g, background.b, 1.0F);
     glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
 }
@@ -132,6 +132,7 @@ void EyePass::Data::draw(const ShowFrame& frame, const View& view, const Thing& 
         scissor(part);
         thing.mesh != nullptr ? thing.mesh->draw() : table.draw();
     }
+    scissor(view.region.bounds());
     glDisable(GL_POLYGON_OFFSET_FILL);
 }
 
@@ -171,7 +172,6 @@ void EyePass::Data::drawTable(const ShowFrame& frame, const View& view) {
     draw(frame, view, thing, dim);
     thing.inTheOpen = true;
     draw(frame, view, thing, open);
-    scissor(view.region.bounds());
 }
 
 // Ink upon the skin, a hair above it.
@@ -259,8 +259,10 @@ void EyePass::drawUnseen(const ShowFrame& frame, const ProjectorTarget& target) 
     const CalibratedCamera& camera = target.projector.camera;
     const Data::View view{&camera, depthRange(camera, data_->everything(frame)), target.region, &target};
     data_->begin(frame, view, target.rest.name());
-    if (data_->surfaces.hasSkin()) data_->draw(frame, view, data_->skinThing(frame, true));
+    // What reaches beyond the device is nowhere cleared.
+    if (data_->surfaces.hasSkin()) data_->draw(frame, view, data_->skinThing(frame, true), std::array{target.device});
     data_->drawTable(frame, view);
+    scissor(target.device);
     data_->drawCreases(frame, view);
     finishDrawing();
 }

@@ -79,8 +79,8 @@ void EyePass::Data::drawCaster(const ShowFrame& frame, const Thing& thing, const
     materials.applyDepth(program, *thing.material, thing.features);
     if (thing.skin) applySkin(program, frame.scene->device, surfaces.skinBoxAtRest(), frame.worldFromDevice);
     setFrontFace(thing.world);
-    // The near side of closed things steps back: then most places of it are told lit at first sight, and what it covers
-    // its far side covers too.
+    // The near side of closed things steps back: then most places of it are told lit at first sight. What it covers the
+    // far side covers too, or the near side itself where the thing is thicker than the step.
     const bool closed = (thing.features & eye_feature::twoSided) == 0;
     (closed ? glEnable : glDisable)(GL_CULL_FACE);
     if (closed) {

@@ -6,6 +6,11 @@
 
 namespace lumorph {
 
+EyeView::EyeView(glm::ivec2 size) : picture_(size, GL_RGBA16F), depth_(size) {
+    beginSurfaces(picture_.framebuffer(), size);
+    glClear(GL_COLOR_BUFFER_BIT);
+}
+
 void EyeView::draw(EyePass& pass, const ShowFrame& frame, const CalibratedCamera& camera, Use use,
                    const DeviceSurface& device, Program& depthProgram) {
     camera_ = camera;

@@ -13,7 +13,8 @@ namespace lumorph {
 /// what the eye sees. The table needs no depth: it hides nothing, and is seen where the device is not.
 class EyeView {
 public:
-    explicit EyeView(glm::ivec2 size) : picture_(size, GL_RGBA16F), depth_(size) {}
+    /// Black at first. Throws as ColorTarget does.
+    explicit EyeView(glm::ivec2 size);
 
     /// What of the frame the picture holds: places on the table are looked up only where the device does not hide them.
     enum class Use { deviceAndTable, tableAlone };

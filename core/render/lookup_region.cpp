@@ -15,11 +15,12 @@ constexpr float kGlossy = 0.4F;
 constexpr float kFadeRoom = 0.010F;   // metres, farther than eye_lookup.glsl fades out around an area
 constexpr std::size_t kMostAreas = 6; // each costs a drawing of the table
 constexpr int kMostHalvings = 3;
+constexpr double kReluctance = 1.25; // to halve a size that is there
 
 // Where a box appears on the table, seen from the eye; none: beyond all bounds.
-std::optional<TableArea> areaBehind(const Box& box, const glm::mat4& worldFromBox, const glm::vec3& eye) {
+std::optional<TableArea> areaBehind(std::span<const glm::vec3> corners, const glm::vec3& eye) {
     Box area;
-    for (const glm::vec3& corner : cornersOf(box, worldFromBox)) {
+    for (const glm::vec3& corner : corners) {
         const float way = eye.y / (eye.y - corner.y);
         if (!(way > 0.0F) || !(way < 1e3F)) return std::nullopt;
         area.include(eye + way * (corner - eye));
@@ -67,17 +68,17 @@ std::vector<TableArea> lookupAreas(const ShowFrame& frame, const glm::vec3& eye)
     const TableArea all = allOf(frame);
     if (dependsOnEye(frame.scene->table.material)) return {all};
     std::vector<TableArea> areas;
-    const auto addBehind = [&](const Box& box, const glm::mat4& worldFromBox) {
-        const auto behind = areaBehind(box, worldFromBox, eye);
+    const auto addBehind = [&](std::span<const glm::vec3> corners) {
+        const auto behind = areaBehind(corners, eye);
         if (!behind) return false;
         const TableArea area{glm::max(behind->low, all.low), glm::min(behind->high, all.high)};
         if (!area.empty()) addToFew(areas, area, kMostAreas, joined, drawnSize);
         return true;
     };
     for (const PosedSurface& surface : frame.posed.surfaces)
-        if (surface.shown() && !addBehind(boundingBox(*surface.positions), surface.worldFromSurface)) return {all};
+        if (const auto corners = seenCorners(surface); corners && !addBehind(*corners)) return {all};
     for (const PosedFog& fog : frame.posed.fogs)
-        if (!addBehind({glm::vec3(-0.5F), glm::vec3(0.5F)}, fog.worldFromBox)) return {all};
+        if (!addBehind(cornersOf({glm::vec3(-0.5F), glm::vec3(0.5F)}, fog.worldFromBox))) return {all};
     return areas;
 }
 
@@ -87,7 +88,7 @@ bool holds(const CalibratedCamera& picture, const TableArea& area, const ShowFra
 
 std::optional<CalibratedCamera> tableLookup(const ShowFrame& frame, const glm::vec3& eye,
                                             std::span<const TableArea> areas, const CalibratedCamera& first,
-                                            glm::ivec2 most) {
+                                            glm::ivec2 most, glm::ivec2 before) {
     std::optional<TableArea> beyond;
     for (const TableArea& area : areas)
         if (!holds(first, area, frame)) beyond = beyond ? joined(*beyond, area) : area;
@@ -95,7 +96,10 @@ std::optional<CalibratedCamera> tableLookup(const ShowFrame& frame, const glm::v
     const auto corners = drawnCorners(*beyond, frame);
     try {
         CalibratedCamera camera = eyeCamera(glm::dvec3(eye), corners, most);
-        for (int i = 0; i < kMostHalvings && camera.focal.x >= first.focal.x; ++i)
+        const auto finerThanNeeded = [&] {
+            return camera.focal.x >= (camera.size == before ? kReluctance : 1.0) * first.focal.x;
+        };
+        for (int i = 0; i < kMostHalvings && finerThanNeeded(); ++i)
             camera = eyeCamera(glm::dvec3(eye), corners, glm::max(camera.size / 2, 1));
         return camera;
     } catch (const InvalidInput&) { // the eye stands above part of it

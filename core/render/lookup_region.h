@@ -30,11 +30,13 @@ struct TableArea {
 /// Whether an eye picture holds all of an area of the table.
 [[nodiscard]] bool holds(const CalibratedCamera& picture, const TableArea& area, const ShowFrame& frame);
 
-/// The camera of a second eye picture for the areas that the first does not hold, at most as large as `most` and, where
-/// that gives room, half as fine as the first; none: it holds all.
+/// The camera of a second eye picture for the areas that the first does not hold: of the size `most`, or halved as
+/// often as leaves it half as fine as the first, with some reluctance to leave the size `before`; none: the first holds
+/// all. Where the eye stands above one of them, tableView.
 [[nodiscard]] std::optional<CalibratedCamera> tableLookup(const ShowFrame& frame, const glm::vec3& eye,
                                                           std::span<const TableArea> areas,
-                                                          const CalibratedCamera& first, glm::ivec2 most);
+                                                          const CalibratedCamera& first, glm::ivec2 most,
+                                                          glm::ivec2 before = glm::ivec2(0));
 
 /// A rectangle that holds the area in an image.
 [[nodiscard]] PixelRectangle pixelsOf(const TableArea& area, const CalibratedCamera& camera);

@@ -7,6 +7,7 @@
 #include <glm/geometric.hpp>
 
 #include "core/render/device_surface.h"
+#include "core/render/eye_lighting.h"
 #include "core/render/eye_surfaces.h"
 #include "core/render/table_shadow.h"
 
@@ -39,9 +40,9 @@ bool sameScene(const std::shared_ptr<const Scene>& first, const std::shared_ptr<
 PixelRegion movingPixels(const ShowFrame& frame, const CalibratedCamera& projector,
                          std::span<const TableArea> lookups) {
     PixelRegion moving(devicePixels(frame, projector));
-    for (const PosedLight& light : frame.posed.lights) {
-        if (!light.shadows) continue;
-        const auto shadows = shadowsOnTable(frame, light);
+    const EyeLighting lighting(*frame.scene, frame.posed.lights);
+    if (lighting.shadowed()) {
+        const auto shadows = shadowsOnTable(frame, *lighting.shadowed());
         if (!shadows) return PixelRegion({glm::ivec2(0), projector.size});
         if (!shadows->empty()) moving.include(pixelsOf(*shadows, projector));
     }
@@ -56,8 +57,8 @@ PixelRectangle devicePixels(const ShowFrame& frame, const CalibratedCamera& proj
     glm::dvec2 low(1e9);
     glm::dvec2 high(-1e9);
     const Box box = boundingBox(*frame.devicePositions);
-    for (int i = 0; i < 27; ++i) { // corners and middles: a lens bends the edges between them outwards
-        const glm::vec3 share = 0.5F * glm::vec3(i % 3, i / 3 % 3, i / 9);
+    for (int i = 0; i < 125; ++i) { // not its corners alone: a lens bends the edges between them outwards
+        const glm::vec3 share = 0.25F * glm::vec3(i % 5, i / 5 % 5, i / 25);
         const glm::vec3 place(frame.worldFromDevice * glm::vec4(glm::mix(box.min, box.max, share), 1.0F));
         const auto at = pixelOf(projector, glm::dvec3(place));
         if (!at) return {glm::ivec2(0), projector.size}; // part of it cannot be seen

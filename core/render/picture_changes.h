@@ -13,8 +13,8 @@ namespace lumorph {
 /// A rectangle of a projector's image that holds the device as it is.
 [[nodiscard]] PixelRectangle devicePixels(const ShowFrame& frame, const CalibratedCamera& projector);
 
-/// Remembers for which frame a projector's picture was drawn, to know what of it the next one can change: the device
-/// and its surroundings, shadows on the table, what an eye sees there. The rest of a still table stays as it is, which
+/// Remembers for which frame a projector's picture was drawn, to know what of it the next one can change: the device,
+/// shadows on the table, what an eye sees there. The rest of a still table stays as it is, which
 /// saves more than half of a frame's work.
 class PictureChanges {
 public:

@@ -54,7 +54,10 @@ void ProjectorPass::drawDepth(ProjectorTarget& target, const ShowFrame& frame, c
     target.range = depthRange(target.projector.camera, physicalBounds(frame));
     target.table.fit(target.projector.camera, frame.scene->table.size);
     target.device = devicePixels(frame, target.projector.camera);
-    beginSurfaces(target.surface.framebuffer(), target.sent.size());
+    if (views.device != nullptr && !target.surface)
+        target.surface.emplace(target.sent.size(), target.sent.depthTexture());
+    beginSurfaces(views.device != nullptr ? target.surface->framebuffer() : target.sent.framebuffer(),
+                  target.sent.size());
     glEnable(GL_SCISSOR_TEST);
     glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
     clearRegion(target.region, GL_DEPTH_BUFFER_BIT);
@@ -191,7 +194,7 @@ void ProjectorPass::drawSeen(const ProjectorTarget& target, const ShowFrame& fra
     if (views.device != nullptr) {
         (target.projector.gamma > 0.0 ? glDisable : glEnable)(GL_FRAMEBUFFER_SRGB);
         Program& program = beginLookup(target, frame, views, nullptr);
-        target.surface.set(program, 4);
+        target.surface->set(program, 4);
         glDisable(GL_DEPTH_TEST);
         drawFullFrame(target.device);
         glEnable(GL_DEPTH_TEST);

@@ -2,6 +2,7 @@
 
 #include <array>
 
+#include "core/base/error.h"
 #include "core/render/draw_state.h"
 
 namespace lumorph {
@@ -21,7 +22,9 @@ ProjectorSurface::ProjectorSurface(glm::ivec2 size, GLuint depth) {
     glFramebufferTexture2D(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_TEXTURE_2D, depth, 0);
     constexpr std::array<GLenum, 2> kAll{GL_COLOR_ATTACHMENT0, GL_COLOR_ATTACHMENT1};
     glDrawBuffers(static_cast<GLsizei>(kAll.size()), kAll.data());
+    const bool complete = glCheckFramebufferStatus(GL_FRAMEBUFFER) == GL_FRAMEBUFFER_COMPLETE;
     glBindFramebuffer(GL_FRAMEBUFFER, 0);
+    if (!complete) throw DeviceError("OpenGL", "the driver cannot hold a picture of this size", "use a smaller size");
 }
 
 void ProjectorSurface::set(Program& program, int unit) const {

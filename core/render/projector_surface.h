@@ -11,7 +11,7 @@ namespace lumorph {
 /// the place moves in the eye's picture from pixel to pixel.
 class ProjectorSurface {
 public:
-    /// `depth`: texture of the depth that is drawn with it.
+    /// `depth`: texture of the depth that is drawn with it. Throws DeviceError when the driver has no memory.
     ProjectorSurface(glm::ivec2 size, GLuint depth);
 
     [[nodiscard]] GLuint framebuffer() const noexcept { return framebuffer_.name(); }

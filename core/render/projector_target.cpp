@@ -7,7 +7,7 @@
 namespace lumorph {
 
 ProjectorTarget::ProjectorTarget(const SceneProjector& what)
-    : projector(what), sent(what.camera.size), surface(what.camera.size, sent.depthTexture()), open(what.camera.size) {
+    : projector(what), sent(what.camera.size), open(what.camera.size) {
     const glm::ivec2 size = sent.size();
     bindTexture(0, done.name());
     glTexImage2D(GL_TEXTURE_2D, 0, GL_R8, size.x, size.y, 0, GL_RED, GL_UNSIGNED_BYTE, nullptr);

@@ -19,21 +19,21 @@ struct ProjectorTarget {
 
     SceneProjector projector;
     DepthRange range;
-    ColorTarget sent;         ///< what it sends out; its depth is that of the device, and of the table among several
-    gl::Texture done;         ///< 1 where what it sends out is drawn for the eye
-    ProjectorSurface surface; ///< the device under its pixels, with the depth of `sent`
-    DepthMap open;            ///< by which that hides all else
-    gl::Framebuffer seen;     ///< `sent` and `done`, with the depth of `sent`
-    gl::Framebuffer rest;     ///< `sent` with `open`
-    PixelRegion region;       ///< what of its picture is drawn in this frame; the rest stays
-    PixelRectangle device;    ///< holds the device as it is
+    ColorTarget sent;      ///< what it sends out; its depth is that of the device, and of the table among several
+    gl::Texture done;      ///< 1 where what it sends out is drawn for the eye
+    DepthMap open;         ///< by which that hides all else
+    gl::Framebuffer seen;  ///< `sent` and `done`, with the depth of `sent`
+    gl::Framebuffer rest;  ///< `sent` with `open`
+    PixelRegion region;    ///< what of its picture is drawn in this frame; the rest stays
+    PixelRectangle device; ///< holds the device as it is
     PictureChanges changes;
     TableGrid table;
-    std::optional<BlendMaps> blend; ///< while another projector is on
+    std::optional<ProjectorSurface> surface; ///< the device under its pixels, with the depth of `sent`; for an eye
+    std::optional<BlendMaps> blend;          ///< while another projector is on
 
     [[nodiscard]] std::size_t objectCount() const noexcept {
-        return ColorTarget::kObjects + DepthMap::kObjects + ProjectorSurface::kObjects + 3 + TableGrid::kObjects +
-               (blend ? BlendMaps::kObjects : 0);
+        return ColorTarget::kObjects + DepthMap::kObjects + 3 + TableGrid::kObjects +
+               (blend ? BlendMaps::kObjects : 0) + (surface ? ProjectorSurface::kObjects : 0);
     }
 };
 

@@ -20,8 +20,10 @@ float heightAbove(const ShowFrame& frame, const Box& reach) {
     const glm::mat4 deviceFromWorld = glm::inverse(frame.worldFromDevice);
     float highest = reach.max.y;
     for (const PosedSurface& surface : frame.posed.surfaces) {
-        const glm::mat4 deviceFromSurface = deviceFromWorld * surface.worldFromSurface;
-        const Box box = boundingBox(cornersOf(boundingBox(*surface.positions), deviceFromSurface));
+        const auto corners = seenCorners(surface);
+        if (!corners) continue;
+        Box box;
+        for (const glm::vec3& corner : *corners) box.include(glm::vec3(deviceFromWorld * glm::vec4(corner, 1.0F)));
         const bool above =
             box.max.x > reach.min.x && box.min.x < reach.max.x && box.max.z > reach.min.z && box.min.z < reach.max.z;
         if (above && std::isfinite(box.max.y)) highest = std::max(highest, box.max.y);
@@ -32,6 +34,14 @@ float heightAbove(const ShowFrame& frame, const Box& reach) {
 }
 
 } // namespace
+
+std::optional<std::array<glm::vec3, 8>> seenCorners(const PosedSurface& surface) {
+    if (!(surface.opacity > 0.0F) || !surface.positions || surface.positions->empty()) return std::nullopt;
+    const auto corners = cornersOf(boundingBox(*surface.positions), surface.worldFromSurface);
+    const bool finite = std::ranges::all_of(
+        corners, [](const glm::vec3& at) { return std::isfinite(at.x) && std::isfinite(at.y) && std::isfinite(at.z); });
+    return finite ? std::optional(corners) : std::nullopt;
+}
 
 CalibratedCamera deviceView(const ShowFrame& frame, const glm::vec3& eye, glm::ivec2 size) {
     Box box = frame.rig->reach();

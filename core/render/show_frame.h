@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -24,6 +25,10 @@ struct ShowFrame {
     glm::mat4 worldFromDevice{1.0F};
     std::optional<glm::vec3> eye; ///< of the viewer who is followed, world metres; none: view-independent
 };
+
+/// Corners, in the world, of a box around what is seen of a surface; none: nothing is, as of what only the servos
+/// follow, or its numbers are not finite.
+[[nodiscard]] std::optional<std::array<glm::vec3, 8>> seenCorners(const PosedSurface& surface);
 
 /// The off-axis camera of the eye pass: from `eye`, tight around the device as it is and everything above it up to its
 /// reach, so that it does not swim while the device moves.

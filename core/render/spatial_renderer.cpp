@@ -104,7 +104,8 @@ void SpatialRenderer::Data::drawEye(const glm::vec3& from) {
 void SpatialRenderer::Data::drawTableView(const glm::vec3& from) {
     auto since = std::chrono::steady_clock::now();
     tableAreas = lookupAreas(*frame, from);
-    const auto camera = tableLookup(*frame, from, tableAreas, eye->camera(), glm::max(eyeSize / 2, 1));
+    const auto camera = tableLookup(*frame, from, tableAreas, eye->camera(), glm::max(eyeSize / 2, 1),
+                                    table ? table->picture().size() : glm::ivec2(0));
     if (!camera) return;
     if (!table || table->picture().size() != camera->size) table.emplace(camera->size);
     table->draw(pass, *frame, *camera, EyeView::Use::tableAlone, device, depthProgram);

@@ -32,9 +32,6 @@ struct PosedSurface {
     Material material;
     float opacity = 1.0F; ///< of the item, on top of the material's
     bool castsShadow = true;
-
-    /// Whether there is something to see: what only the servos follow is not.
-    [[nodiscard]] bool shown() const noexcept { return opacity > 0.0F && positions && !positions->empty(); }
 };
 
 struct PosedLight {

@@ -1,6 +1,6 @@
 // The eye's picture at a physical point, where the eye sees it. In: the picture, the depth of the device alone from the
-// eye (1 where it is not), and how the eye looks; on the table the area where its picture differs from the
-// view-independent one. Out: linear light; alpha is the share to be taken, 0 where the eye does not see the point or it
+// eye (1 where it is not), how the eye looks, and the pixel's footprint in its picture (footprintOf, where there are
+// derivatives); on the table the area where its picture differs from the view-independent one. Out: linear light; alpha is the share to be taken, 0 where the eye does not see the point or it
 // lies outside the picture. Where the device hides itself the light is that of what hides it, and alpha is negative.
 // Software rasterisers run all lanes through every branch, so there are few of them.
 
@@ -105,8 +105,8 @@ vec4 seenByEye(sampler2D picture, sampler2D deviceDepth, EyeView view, vec3 worl
         vec2 uv = at.xy + along.x * alongX + along.y * alongY;
         behind = behindPlane(textureGather(deviceDepth, uv), uv, view.size, at, slope);
         float reach = 2.0 * slack + slack * length((uv - at.xy) * view.size);
-        float whole = all(lessThan(abs(behind), vec4(reach))) ? 1.0 : 0.0;
-        sum += whole * vec4(textureLod(picture, uv, 0.0).rgb, 1.0);
+        bool whole = all(lessThan(abs(behind), vec4(reach)));
+        sum += whole ? vec4(textureLod(picture, uv, 0.0).rgb, 1.0) : vec4(0.0);
         tap.x += 1.0;
         if (tap.x > taps.x) tap = vec2(0.5, tap.y + 1.0);
     } while (tap.y < taps.y);

@@ -6,8 +6,8 @@
 
 in vec4 shadowPlace;
 in vec2 shadowSlope;
-uniform sampler2D shadowDepth; // the map
-uniform sampler2D shadowTiles; // least and greatest depth within reach of a place
+uniform sampler2D shadowDepth;     // the map
+uniform sampler2D shadowTiles;     // least and greatest depth within reach of a place
 uniform vec2 shadowReach;          // radius of the search, and least radius of an edge, map units
 uniform float shadowSpread;        // radius of an edge, map units, for each unit of depth from blocker to surface
 

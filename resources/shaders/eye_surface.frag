@@ -97,7 +97,7 @@ void main() {
 #ifdef UNLIT
     vec3 light = base.rgb + emitted;
 #else
-    vec3 smoothNormal = normalize(worldNormal);
+    vec3 smoothNormal = worldNormal * inversesqrt(max(dot(worldNormal, worldNormal), 1e-24));
 #ifdef TWO_SIDED
     smoothNormal = gl_FrontFacing ? smoothNormal : -smoothNormal;
 #endif

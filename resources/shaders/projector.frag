@@ -1,7 +1,8 @@
 // What a projector sends to places that the eye sees. Pieces before: version.glsl, physical_normal.glsl,
-// packed_normal.glsl, projector_light.glsl, projector_output.glsl, eye_lookup.glsl, noise.glsl. In: of the table (TABLE) worldPosition, of
-// the device what projector_surface.frag has found; the eye's pictures of the device and (TABLE_VIEW) of the table. Out:
-// the value; 1 where this place is done, a half where it is hidden and done only next to others.
+// packed_normal.glsl, projector_light.glsl, projector_output.glsl, eye_lookup.glsl, noise.glsl. In: of the
+// table (TABLE) worldPosition, of the device what projector_surface.frag has found; the eye's pictures of the device and
+// (TABLE_VIEW) of the table. Out: the value; 1 where this place is done, a half where it is hidden and done only next to
+// others.
 
 #ifdef TABLE
 in vec3 worldPosition;

@@ -116,6 +116,7 @@ public:
         projector.camera = camera();
         ProjectorTarget target(projector);
         target.region = PixelRegion({glm::ivec2(0), size});
+        target.device = {glm::ivec2(0), size};
         glBindFramebuffer(GL_FRAMEBUFFER, target.rest.name());
         glDisable(GL_SCISSOR_TEST);
         glDepthMask(GL_TRUE);

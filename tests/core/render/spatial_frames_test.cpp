@@ -82,8 +82,25 @@ ShowFrame changingFrame(int step) {
     if (step >= 8) scene.items.pop_back();
     if (step >= 9) strokes.assign(strokes.size(), 1.0); // long shadows on the table
     if (step >= 10) scene.projectors[0].peak = 2.0;
+    if (step >= 12) strokes[2] = 0.4; // it moves while nobody is there
+    if (step >= 14) {                 // ink reaches beyond the rim, over a table that no light falls on
+        scene.table.material.unlit = true;
+        scene.device.creases = {.emphasis = 0.6, .width = 0.03};
+        scene.items.push_back(box({0.2F, 0.04F, 0.14F}, Anchor::world, {1.0F, 0.0F, 0.0F})); // another part
+        scene.items.back().id = 8;
+    }
+    if (step >= 15) strokes[3] = 0.5;
+    if (step >= 16) strokes[0] = 0.2;
+    if (step >= 17) {
+        scene.table.material.unlit = false;
+        LightItem& lamp = std::get<LightItem>(scene.items.front().kind);
+        lamp.kind = LightItem::Kind::lamp;
+        lamp.softness = 0.3;
+        scene.items.front().position = {0.15F, 0.3F, 0.1F};
+    }
+    if (step >= 18) strokes[4] = 0.3;
     ShowFrame frame = posed(frameOf(scene, strokes));
-    if (step >= 11) frame.eye.reset();
+    if (step == 11 || step == 12 || step == 16) frame.eye.reset();
     return frame;
 }
 
@@ -98,7 +115,7 @@ TEST(SpatialFrames, PictureIsTheSameWhateverWasDrawnBefore) {
     SpatialRenderer renderer;
     renderer.setEyeSize({320, 200});
     Image before;
-    for (int step = 0; step <= 11; ++step) {
+    for (int step = 0; step <= 18; ++step) {
         const ShowFrame frame = changingFrame(step);
         renderer.draw(frame);
         const Image sent = renderer.readProjector(0);
