@@ -54,10 +54,7 @@ void ProjectorPass::drawDepth(ProjectorTarget& target, const ShowFrame& frame, c
     target.range = depthRange(target.projector.camera, physicalBounds(frame));
     target.table.fit(target.projector.camera, frame.scene->table.size);
     target.device = devicePixels(frame, target.projector.camera);
-    if (views.device != nullptr && !target.surface)
-        target.surface.emplace(target.sent.size(), target.sent.depthTexture());
-    beginSurfaces(views.device != nullptr ? target.surface->framebuffer() : target.sent.framebuffer(),
-                  target.sent.size());
+    beginSurfaces(target.sent.framebuffer(), target.sent.size());
     glEnable(GL_SCISSOR_TEST);
     glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
     clearRegion(target.region, GL_DEPTH_BUFFER_BIT);
@@ -65,14 +62,19 @@ void ProjectorPass::drawDepth(ProjectorTarget& target, const ShowFrame& frame, c
     depth_.use();
     setLens(depth_, target);
     if (withTable) drawTableOf(target, depth_);
-    if (views.device == nullptr) device.draw(depth_);
+    // Of one projector alone the surface brings the depth along.
+    const bool withSurface = views.device != nullptr && !target.blend;
+    if (!withSurface) device.draw(depth_);
     glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
-    if (views.device != nullptr) drawSurface(target, device, views);
+    if (withSurface) drawSurface(target, device, views);
     glDisable(GL_SCISSOR_TEST);
 }
 
-// After the table, so that it holds what the projector sees.
+// The scissor test is on; the depth of what stands before the device is drawn, so that it holds what the projector
+// sees.
 void ProjectorPass::drawSurface(const ProjectorTarget& target, const DeviceSurface& device, const EyeViews& views) {
+    seenSurface_.fit(target.sent.size());
+    seenSurface_.bind(target.sent.depthTexture());
     scissor(target.device);
     constexpr std::array<GLfloat, 4> kNothing{};
     glClearBufferfv(GL_COLOR, 0, kNothing.data());
@@ -187,14 +189,19 @@ Program& ProjectorPass::beginLookup(const ProjectorTarget& target, const ShowFra
     return program;
 }
 
-void ProjectorPass::drawSeen(const ProjectorTarget& target, const ShowFrame& frame, const EyeViews& views) {
+void ProjectorPass::drawSeen(const ProjectorTarget& target, const ShowFrame& frame, const DeviceSurface& device,
+                             const EyeViews& views) {
     beginSurfaces(target.seen.name(), target.sent.size());
     glEnable(GL_SCISSOR_TEST);
+    if (views.device != nullptr && target.blend) {
+        drawSurface(target, device, views);
+        glBindFramebuffer(GL_FRAMEBUFFER, target.seen.name());
+    }
     clearRegion(target.region, GL_COLOR_BUFFER_BIT);
     if (views.device != nullptr) {
         (target.projector.gamma > 0.0 ? glDisable : glEnable)(GL_FRAMEBUFFER_SRGB);
         Program& program = beginLookup(target, frame, views, nullptr);
-        target.surface->set(program, 4);
+        seenSurface_.set(program, 4);
         glDisable(GL_DEPTH_TEST);
         drawFullFrame(target.device);
         glEnable(GL_DEPTH_TEST);
@@ -224,7 +231,7 @@ void ProjectorPass::hideDone(const ProjectorTarget& target, const EyeViews& view
 }
 
 std::size_t ProjectorPass::objectCount() const noexcept {
-    std::size_t count = 1;
+    std::size_t count = 1 + ProjectorSurface::kObjects;
     for (const Program* program : {&depth_, &surface_, &edges_, &distance_, &deviceWeight_, &tableWeight_, &done_})
         count += program->objectCount();
     for (const auto& [defines, program] : seen_) count += program.objectCount();

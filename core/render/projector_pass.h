@@ -8,6 +8,7 @@
 
 #include "core/render/eye_view.h"
 #include "core/render/lookup_region.h"
+#include "core/render/projector_surface.h"
 #include "core/render/projector_target.h"
 
 namespace lumorph {
@@ -33,7 +34,8 @@ public:
     void drawWeights(std::span<ProjectorTarget* const> targets, const DeviceSurface& device);
     /// Begins the picture of one projector with what the eye sees, and hides what is done; depth and weights are drawn.
     /// The rest is the eye pass's.
-    void drawSeen(const ProjectorTarget& target, const ShowFrame& frame, const EyeViews& views);
+    void drawSeen(const ProjectorTarget& target, const ShowFrame& frame, const DeviceSurface& device,
+                  const EyeViews& views);
 
     [[nodiscard]] std::size_t objectCount() const noexcept;
 
@@ -48,6 +50,7 @@ private:
     void addWeight(const ProjectorTarget& shown, const ProjectorTarget& weighed, const DeviceSurface& device);
 
     gl::VertexArray noAttributes_;
+    ProjectorSurface seenSurface_;
     Program depth_, surface_, edges_, distance_, deviceWeight_, tableWeight_, done_;
     std::map<std::vector<std::string>, Program> seen_; ///< by the defines of projector.frag
 };

@@ -7,7 +7,6 @@
 #include "core/render/color_target.h"
 #include "core/render/device_surface.h"
 #include "core/render/picture_changes.h"
-#include "core/render/projector_surface.h"
 #include "core/render/table_grid.h"
 
 namespace lumorph {
@@ -28,12 +27,10 @@ struct ProjectorTarget {
     PixelRectangle device; ///< holds the device as it is
     PictureChanges changes;
     TableGrid table;
-    std::optional<ProjectorSurface> surface; ///< the device under its pixels, with the depth of `sent`; for an eye
-    std::optional<BlendMaps> blend;          ///< while another projector is on
+    std::optional<BlendMaps> blend; ///< while another projector is on
 
     [[nodiscard]] std::size_t objectCount() const noexcept {
-        return ColorTarget::kObjects + DepthMap::kObjects + 3 + TableGrid::kObjects +
-               (blend ? BlendMaps::kObjects : 0) + (surface ? ProjectorSurface::kObjects : 0);
+        return ColorTarget::kObjects + DepthMap::kObjects + 3 + TableGrid::kObjects + (blend ? BlendMaps::kObjects : 0);
     }
 };
 

@@ -161,7 +161,7 @@ void SpatialRenderer::Data::drawProjectors() {
     if (shared) projectorPass.drawWeights(targets, device);
     for (ProjectorTarget* target : targets) {
         if (!target->region.empty()) {
-            projectorPass.drawSeen(*target, *frame, views);
+            projectorPass.drawSeen(*target, *frame, device, views);
             pass.drawUnseen(*frame, *target);
         }
         if (!shared) target->changes.finish(*frame);

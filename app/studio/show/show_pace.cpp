@@ -10,6 +10,10 @@ namespace {
 constexpr std::size_t kRemembered = 3;
 // Finer only when that will surely be in time, so that it does not swing.
 constexpr double kRoom = 0.7;
+// Pictures of few sizes come and go: memory that is freed fits the next.
+constexpr double kStepsToFull = 20.0;
+
+double inSteps(double resolution) { return std::floor(kStepsToFull * resolution) / kStepsToFull; }
 
 double median(std::vector<double> values) {
     const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
@@ -56,9 +60,9 @@ void ShowPace::finished(const Work& work, double milliseconds) {
     const double fitting = resolution_ * std::sqrt(kBudgetMilliseconds / usual);
     double wanted = resolution_;
     if (usual > kBudgetMilliseconds)
-        wanted = std::max(kLowestResolution, 0.97 * fitting);
+        wanted = std::max(kLowestResolution, inSteps(0.97 * fitting));
     else if (usual < kRoom * kBudgetMilliseconds)
-        wanted = std::min(1.0, 0.9 * fitting);
+        wanted = std::min(1.0, inSteps(0.9 * fitting));
     if (wanted == resolution_ || (wanted > resolution_ && wanted < 1.05 * resolution_)) return;
     resolution_ = wanted;
     times_.clear();
