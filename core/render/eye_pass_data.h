@@ -49,7 +49,6 @@ struct EyePass::Data {
     TableGrid table;
 
     [[nodiscard]] bool showsSkin(const ShowFrame& frame) const;
-    [[nodiscard]] Box casters(const ShowFrame& frame) const;
     [[nodiscard]] std::vector<Thing> shadowThings(const ShowFrame& frame) const;
     void drawShadow(const ShowFrame& frame);
     void drawCaster(const ShowFrame& frame, const Thing& thing, const glm::mat4& clipFromWorld);

@@ -6,6 +6,7 @@
 #include "core/render/draw_state.h"
 #include "core/render/eye_pass_data.h"
 #include "core/render/eye_skin.h"
+#include "core/render/table_shadow.h"
 
 // The eye pass's things, and the shadows they cast.
 
@@ -13,27 +14,11 @@ namespace lumorph {
 namespace {
 
 constexpr float kNearSideStepsBack = 0.012F; // metres; as much as depth changes over a tile of the map on a slant
-constexpr float kFarthestCaster = 1.5F;      // metres from the device's middle
 
 } // namespace
 
 bool EyePass::Data::showsSkin(const ShowFrame& frame) const {
     return surfaces.hasSkin() && frame.scene->device.show == DeviceSkin::Show::material;
-}
-
-// The device counts with all it can reach, so that its shadow does not swim while it moves.
-Box EyePass::Data::casters(const ShowFrame& frame) const {
-    Box box;
-    glm::vec3 middle(frame.worldFromDevice[3]);
-    if (frame.rig) {
-        box = movedBox(frame.rig->reach(), frame.worldFromDevice);
-        middle = box.centre();
-    }
-    for (const auto& item : surfaces.items()) box.include(item.box);
-    if (box.empty()) box.include(middle);
-    box.min = glm::max(box.min, middle - kFarthestCaster);
-    box.max = glm::min(box.max, middle + kFarthestCaster);
-    return box;
 }
 
 std::vector<EyePass::Data::Thing> EyePass::Data::shadowThings(const ShowFrame& frame) const {
@@ -63,7 +48,7 @@ void EyePass::Data::drawShadow(const ShowFrame& frame) {
         states.push_back({thing.version, thing.world, thing.opacity, thing.features, picture, placement,
                           thing.material->holeThreshold});
     }
-    shadow.aim(*lighting.shadowed(), casters(frame));
+    shadow.aim(*lighting.shadowed(), casterBounds(frame));
     if (!shadow.changed(std::move(states), frame.scene->device)) return;
     shadow.draw([&](const glm::mat4& clipFromWorld) {
         for (const Thing& thing : things) drawCaster(frame, thing, clipFromWorld);

@@ -1,14 +1,9 @@
 #include "core/render/picture_changes.h"
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
 
-#include <glm/geometric.hpp>
-
-#include "core/render/device_surface.h"
 #include "core/render/eye_lighting.h"
-#include "core/render/eye_surfaces.h"
 #include "core/render/table_shadow.h"
 
 namespace lumorph {

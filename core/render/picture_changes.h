@@ -14,8 +14,8 @@ namespace lumorph {
 [[nodiscard]] PixelRectangle devicePixels(const ShowFrame& frame, const CalibratedCamera& projector);
 
 /// Remembers for which frame a projector's picture was drawn, to know what of it the next one can change: the device,
-/// shadows on the table, what an eye sees there. The rest of a still table stays as it is, which
-/// saves more than half of a frame's work.
+/// shadows on the table, what an eye sees there. The rest of a still table stays as it is, which saves more than half
+/// of a frame's work.
 class PictureChanges {
 public:
     /// What to draw for a frame: all of the image where more than things in motion has changed. Forgets what was drawn,

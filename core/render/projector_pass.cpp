@@ -50,7 +50,7 @@ ProjectorPass::ProjectorPass()
       done_(shaderFiles({"full_frame.vert"}, {"version.glsl", "projector_done.frag"})) {}
 
 void ProjectorPass::drawDepth(ProjectorTarget& target, const ShowFrame& frame, const DeviceSurface& device,
-                              const EyeViews& views, bool withTable) {
+                              const EyeViews& views, bool shared) {
     target.range = depthRange(target.projector.camera, physicalBounds(frame));
     target.table.fit(target.projector.camera, frame.scene->table.size);
     target.device = devicePixels(frame, target.projector.camera);
@@ -61,9 +61,9 @@ void ProjectorPass::drawDepth(ProjectorTarget& target, const ShowFrame& frame, c
     scissor(target.region.bounds());
     depth_.use();
     setLens(depth_, target);
-    if (withTable) drawTableOf(target, depth_);
+    if (shared) drawTableOf(target, depth_);
     // Of one projector alone the surface brings the depth along.
-    const bool withSurface = views.device != nullptr && !target.blend;
+    const bool withSurface = views.device != nullptr && !shared;
     if (!withSurface) device.draw(depth_);
     glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
     if (withSurface) drawSurface(target, device, views);

@@ -27,9 +27,9 @@ public:
     ProjectorPass();
 
     /// Fits the target's table grid and depth range to the frame and draws the depth of the device, with what the
-    /// lookups must know of it, and of the table where others must know it.
+    /// lookups must know of it; of the table too where several projectors share the work.
     void drawDepth(ProjectorTarget& target, const ShowFrame& frame, const DeviceSurface& device, const EyeViews& views,
-                   bool withTable);
+                   bool shared);
     /// Weighs projectors against one another; all their depths are drawn.
     void drawWeights(std::span<ProjectorTarget* const> targets, const DeviceSurface& device);
     /// Begins the picture of one projector with what the eye sees, and hides what is done; depth and weights are drawn.

@@ -11,9 +11,10 @@
 namespace lumorph {
 namespace {
 
-constexpr float kSharpest = 0.004F;   // metres that the sharpest edge may reach: bias
-constexpr float kMapPixels = 0.01F;   // and of the casters' radius: some pixels of the map
-constexpr float kLowestLight = 0.02F; // lower lights throw shadows without end
+constexpr float kSharpest = 0.004F;     // metres that the sharpest edge may reach: bias
+constexpr float kMapPixels = 0.01F;     // and of the casters' radius: some pixels of the map
+constexpr float kLowestLight = 0.02F;   // lower lights throw shadows without end
+constexpr float kFarthestCaster = 1.5F; // metres from the device's middle
 
 // What throws shadows.
 struct Casters {
@@ -22,10 +23,7 @@ struct Casters {
 };
 
 Casters castersOf(const ShowFrame& frame, const PosedLight& light) {
-    Casters casters;
-    if (frame.rig) casters.box = deviceBounds(frame);
-    for (const PosedSurface& surface : frame.posed.surfaces)
-        if (const auto corners = seenCorners(surface)) casters.box.include(boundingBox(*corners));
+    Casters casters{casterBounds(frame)};
     for (const glm::vec3& corner : cornersOf(casters.box))
         casters.distance = std::max(casters.distance, glm::distance(corner, light.position));
     return casters;
@@ -53,6 +51,21 @@ bool includeShadow(Box& onTable, std::span<const glm::vec3> points, const glm::m
 }
 
 } // namespace
+
+Box casterBounds(const ShowFrame& frame) {
+    Box box;
+    glm::vec3 middle(frame.worldFromDevice[3]);
+    if (frame.rig) {
+        box = deviceBounds(frame);
+        middle = box.centre();
+    }
+    for (const PosedSurface& surface : frame.posed.surfaces)
+        if (const auto corners = seenCorners(surface)) box.include(boundingBox(*corners));
+    if (box.empty()) box.include(middle);
+    box.min = glm::max(box.min, middle - kFarthestCaster);
+    box.max = glm::min(box.max, middle + kFarthestCaster);
+    return box;
+}
 
 std::optional<TableArea> shadowsOnTable(const ShowFrame& frame, const PosedLight& light) {
     Box shadows;

@@ -1,7 +1,8 @@
 // The eye's picture at a physical point, where the eye sees it. In: the picture, the depth of the device alone from the
 // eye (1 where it is not), how the eye looks, and the pixel's footprint in its picture (footprintOf, where there are
-// derivatives); on the table the area where its picture differs from the view-independent one. Out: linear light; alpha is the share to be taken, 0 where the eye does not see the point or it
-// lies outside the picture. Where the device hides itself the light is that of what hides it, and alpha is negative.
+// derivatives); on the table the area where its picture differs from the view-independent one. Out: linear light; alpha
+// is the share to be taken, 0 where the eye does not see the point or it lies outside the picture. Where the device hides
+// itself the light is that of what hides it, and alpha is negative.
 // Software rasterisers run all lanes through every branch, so there are few of them.
 
 struct EyeView {

@@ -1,5 +1,5 @@
 // Shared piece: a direction as one whole number from 1 to 2^24, which a float holds: 12 bits for each side of the
-// octahedron unfolded (Meyer et al., On Floating-Point Normal Vectors, EGSR 2010). To within 0.04 degrees.
+// octahedron unfolded (Meyer et al., On Floating-Point Normal Vectors, EGSR 2010). To within 0.06 degrees.
 
 vec2 foldedOver(vec2 at) {
     return (1.0 - abs(at.yx)) * vec2(at.x < 0.0 ? -1.0 : 1.0, at.y < 0.0 ? -1.0 : 1.0);

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <map>
+#include <set>
 
 #include <QSignalSpy>
 
@@ -276,19 +277,41 @@ TEST(ShowPaceTest, CoarserWhileItTakesLongAndFullWhenQuiet) {
     ASSERT_TRUE(full);
     EXPECT_EQ(full->resolution, 1.0);
     EXPECT_FALSE(pace.nextStill(start + std::chrono::seconds(60)));
-    // It never goes below half, and comes back when there is time.
+    // It ends at the lowest, and comes back when there is time.
+    double lowest = 1.0;
     for (int i = 0; i < 40; ++i) {
         ask(i);
         const auto slow = pace.nextMoving();
         pace.finished(*slow, 400.0);
-        EXPECT_GE(slow->resolution, ShowPace::kLowestResolution);
+        lowest = std::min(lowest, slow->resolution);
     }
+    EXPECT_EQ(lowest, ShowPace::kLowestResolution);
     for (int i = 0; i < 40; ++i) {
         ask(i);
         pace.finished(*pace.nextMoving(), 5.0);
     }
     ask(99);
     EXPECT_EQ(pace.nextMoving()->resolution, 1.0);
+}
+
+// Each size of the pictures takes memory of its own: however long frames take, there are few.
+TEST(ShowPaceTest, ResolutionGoesInTwentieths) {
+    ShowPace pace;
+    std::set<double> seen;
+    for (int i = 0; i < 400; ++i) {
+        ShowRequest request;
+        request.views.push_back(wantedView(1, Kind::eye, {100, 100}));
+        pace.request(std::move(request), ShowPace::Time(std::chrono::milliseconds(i)));
+        const auto work = pace.nextMoving();
+        ASSERT_TRUE(work);
+        EXPECT_NEAR(20.0 * work->resolution, std::round(20.0 * work->resolution), 1e-9);
+        seen.insert(work->resolution);
+        // From full to the lowest and back, smoothly.
+        const double share = 1.0 + 0.9 * std::cos(0.05 * i);
+        pace.finished(*work, share * work->resolution * work->resolution * 2.0 * ShowPace::kBudgetMilliseconds);
+    }
+    EXPECT_GE(seen.size(), 5U);
+    EXPECT_LE(seen.size(), 14U); // from 0.35 to 1
 }
 
 TEST(ShowFrames, AResizedCameraSeesTheSame) {

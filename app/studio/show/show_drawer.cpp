@@ -102,7 +102,6 @@ struct ShowDrawer::Data {
     void drawBend(const ShowPace::Work& work, Bend bend);
     void drawView(const WantedView& wanted, const ShowFrame& frame, double resolution);
     void drawProjector(const WantedView& wanted, FrameReader& reader, const ShowFrame& frame);
-    void copyTexture(FrameReader& reader, unsigned texture, glm::ivec2 size, QSize pixels);
     void addTimes(const SpatialTimes& times);
     void dropUnwanted(const ShowRequest& request);
     void collect();
@@ -142,8 +141,13 @@ void ShowDrawer::Data::pose(const ShowPace::Work& work) {
     drawn.ms.pose = since(from);
 }
 
-void ShowDrawer::Data::copyTexture(FrameReader& reader, unsigned texture, glm::ivec2 size, QSize pixels) {
-    const unsigned target = reader.framebuffer(toSize(size));
+void ShowDrawer::Data::drawProjector(const WantedView& wanted, FrameReader& reader, const ShowFrame& frame) {
+    const std::size_t number = wanted.view.projector;
+    if (number >= frame.scene->projectors.size()) return;
+    const glm::ivec2 own = frame.scene->projectors[number].camera.size;
+    const glm::ivec2 shown = wanted.view.exact ? own : fittingSize(own, toVec(wanted.pixels));
+    const unsigned texture = objects->renderer.projectorTexture(number);
+    const unsigned target = reader.framebuffer(toSize(own));
     glBindFramebuffer(GL_READ_FRAMEBUFFER, objects->source.name());
     glFramebufferTexture2D(GL_READ_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, texture, 0);
     glBindFramebuffer(GL_DRAW_FRAMEBUFFER, target);
@@ -152,19 +156,11 @@ void ShowDrawer::Data::copyTexture(FrameReader& reader, unsigned texture, glm::i
         constexpr std::array<float, 4> kBlack{0.0F, 0.0F, 0.0F, 1.0F};
         glClearBufferfv(GL_COLOR, 0, kBlack.data());
     } else {
-        glBlitFramebuffer(0, 0, size.x, size.y, 0, 0, size.x, size.y, GL_COLOR_BUFFER_BIT, GL_NEAREST);
+        glBlitFramebuffer(0, 0, own.x, own.y, 0, 0, own.x, own.y, GL_COLOR_BUFFER_BIT, GL_NEAREST);
     }
     glFramebufferTexture2D(GL_READ_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, 0, 0);
     glBindFramebuffer(GL_FRAMEBUFFER, 0);
-    reader.start(pixels);
-}
-
-void ShowDrawer::Data::drawProjector(const WantedView& wanted, FrameReader& reader, const ShowFrame& frame) {
-    const std::size_t number = wanted.view.projector;
-    if (number >= frame.scene->projectors.size()) return;
-    const glm::ivec2 own = frame.scene->projectors[number].camera.size;
-    const glm::ivec2 shown = wanted.view.exact ? own : fittingSize(own, toVec(wanted.pixels));
-    copyTexture(reader, objects->renderer.projectorTexture(number), own, toSize(shown));
+    reader.start(toSize(shown));
 }
 
 void ShowDrawer::Data::drawView(const WantedView& wanted, const ShowFrame& frame, double resolution) {

@@ -1,4 +1,5 @@
 #include <cmath>
+#include <utility>
 
 #include <gtest/gtest.h>
 
@@ -59,7 +60,7 @@ bool inside(const std::vector<Seen>& seen, glm::ivec2 size, int x, int y) {
 }
 
 struct Score {
-    int judged = 0, agree = 0, litJudged = 0, litAgree = 0, dark = 0;
+    int judged = 0, agree = 0, litJudged = 0, litAgree = 0, dark = 0, darkAgree = 0;
 };
 
 // A pixel is dark where shadows take away the light that comes straight from the source.
@@ -82,6 +83,7 @@ Score score(EyeStage& stage) {
             score.litJudged += pixel.lit ? 1 : 0;
             score.litAgree += pixel.lit && lit ? 1 : 0;
             score.dark += pixel.lit ? 0 : 1;
+            score.darkAgree += pixel.lit || lit ? 0 : 1;
         }
     return score;
 }
@@ -118,6 +120,32 @@ TEST(EyeShadow, OfALampToo) {
         const Score result = score(stage);
         EXPECT_GT(result.dark, 2'000);
         EXPECT_GE(result.agree, 0.99 * result.judged) << lamp.x;
+    }
+}
+
+// The near side of the device steps back in the map: close to the table its far side must throw the shadow.
+TEST(EyeShadow, BeginsWhereTheDeviceTouchesTheTable) {
+    EyeStage stage;
+    for (const bool lamp : {false, true}) {
+        stage.sun().kind = lamp ? LightItem::Kind::lamp : LightItem::Kind::sun;
+        stage.scene.items.front().position = lamp ? glm::vec3(-0.4F, 0.12F, -0.3F) : glm::vec3(-0.7F, 0.2F, -0.5F);
+        const Score result = score(stage);
+        EXPECT_GT(result.dark, 1'000) << lamp;
+        EXPECT_GE(result.darkAgree, 0.9998 * result.dark) << lamp;
+        EXPECT_GE(result.litAgree, 0.999 * result.litJudged) << lamp;
+    }
+}
+
+TEST(EyeShadow, OfAThinPlateCloseToTheTable) {
+    EyeStage stage;
+    SceneItem& plate = stage.addBox({0.02F, 0.0F, 0.14F}, 0.06F);
+    for (const auto& [thickness, gap] : {std::pair(0.001F, 0.004F), std::pair(0.005F, 0.02F)}) {
+        std::get<ShapeItem>(plate.kind).size = {0.06F, thickness, 0.05F};
+        plate.position.y = gap + 0.5F * thickness;
+        const Score result = score(stage);
+        EXPECT_GT(result.dark, 1'000) << thickness;
+        EXPECT_GE(result.darkAgree, 0.99 * result.dark) << thickness;
+        EXPECT_GE(result.litAgree, 0.999 * result.litJudged) << thickness;
     }
 }
 

@@ -83,9 +83,10 @@ ShowFrame changingFrame(int step) {
     if (step >= 9) strokes.assign(strokes.size(), 1.0); // long shadows on the table
     if (step >= 10) scene.projectors[0].peak = 2.0;
     if (step >= 12) strokes[2] = 0.4; // it moves while nobody is there
-    if (step >= 14) {                 // ink reaches beyond the rim, over a table that no light falls on
+    if (step >= 14) {                 // ink reaches beyond the rim, and no shadow does
         scene.table.material.unlit = true;
-        scene.device.creases = {.emphasis = 0.6, .width = 0.03};
+        std::get<LightItem>(scene.items.front().kind).shadows = false;
+        scene.device.creases = {.emphasis = 0.6, .width = 0.1};
         scene.items.push_back(box({0.2F, 0.04F, 0.14F}, Anchor::world, {1.0F, 0.0F, 0.0F})); // another part
         scene.items.back().id = 8;
     }
@@ -95,6 +96,7 @@ ShowFrame changingFrame(int step) {
         scene.table.material.unlit = false;
         LightItem& lamp = std::get<LightItem>(scene.items.front().kind);
         lamp.kind = LightItem::Kind::lamp;
+        lamp.shadows = true;
         lamp.softness = 0.3;
         scene.items.front().position = {0.15F, 0.3F, 0.1F};
     }
