@@ -277,7 +277,7 @@ TEST(ShowPaceTest, CoarserWhileItTakesLongAndFullWhenQuiet) {
     ASSERT_TRUE(full);
     EXPECT_EQ(full->resolution, 1.0);
     EXPECT_FALSE(pace.nextStill(start + std::chrono::seconds(60)));
-    // It ends at the lowest, and comes back when there is time.
+    // It ends at half, and comes back when there is time.
     double lowest = 1.0;
     for (int i = 0; i < 40; ++i) {
         ask(i);
@@ -311,7 +311,7 @@ TEST(ShowPaceTest, ResolutionGoesInTwentieths) {
         pace.finished(*work, share * work->resolution * work->resolution * 2.0 * ShowPace::kBudgetMilliseconds);
     }
     EXPECT_GE(seen.size(), 5U);
-    EXPECT_LE(seen.size(), 14U); // from 0.35 to 1
+    EXPECT_LE(seen.size(), 11U); // from a half to 1
 }
 
 TEST(ShowFrames, AResizedCameraSeesTheSame) {
