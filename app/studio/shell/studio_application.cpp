@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <string_view>
 
+#include <malloc.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
@@ -43,6 +44,15 @@ bool choosesPlatform(int argc, char** argv) {
     return !qEnvironmentVariableIsEmpty("QT_QPA_PLATFORM");
 }
 
+/// Pictures come and go with their resolution all day, and in software OpenGL they lie in this program's memory. By
+/// itself glibc puts those of up to 32 MB among all else, where they leave holes that stay.
+void returnFreedPictures() {
+#ifdef __GLIBC__
+    constexpr int kBytes = 1 << 20;
+    ::mallopt(M_MMAP_THRESHOLD, kBytes);
+#endif
+}
+
 /// While the application is being made its complaints are ours to word; afterwards they go where they always go.
 class DisplayWatch {
 public:
@@ -56,6 +66,7 @@ private:
 } // namespace
 
 QString prepareApplication(int argc, char** argv) {
+    returnFreedPictures();
     QSurfaceFormat format;
     format.setVersion(4, 1);
     format.setProfile(QSurfaceFormat::CoreProfile);
