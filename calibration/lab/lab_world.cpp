@@ -2,9 +2,17 @@
 
 #include <string>
 
+#include "calibration/lab/lab_light.h"
 #include "core/base/error.h"
 
 namespace lumorph {
+namespace {
+
+glm::vec3 albedoOf(const glm::vec3& color) {
+    return {lightOfSrgb(color.r), lightOfSrgb(color.g), lightOfSrgb(color.b)};
+}
+
+} // namespace
 
 TriangleMesh deviceMesh(const ShowFrame& frame) {
     TriangleMesh mesh{*frame.devicePositions, frame.rig->restMesh().triangles};
@@ -26,8 +34,8 @@ LabWorld labWorld(const ShowFrame& frame, std::span<const Image> pictures) {
                                " projectors",
                            "give one for each");
     LabWorld world;
-    world.surfaces.push_back({deviceMesh(frame)});
-    world.surfaces.push_back({tableMesh(frame.scene->table)});
+    world.surfaces.push_back({deviceMesh(frame), albedoOf(frame.scene->device.surfaceColor)});
+    world.surfaces.push_back({tableMesh(frame.scene->table), albedoOf(frame.scene->table.surfaceColor)});
     for (std::size_t i = 0; i < projectors.size(); ++i)
         world.projectors.push_back(
             {projectors[i], projectors[i].enabled ? pictures[i] : Image(projectors[i].camera.size)});

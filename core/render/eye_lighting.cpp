@@ -44,6 +44,11 @@ EyeLighting::EyeLighting(const Scene& scene, std::span<const PosedLight> lights)
     features_ |= static_cast<std::uint32_t>(shining.size()) << eye_feature::lightShift;
 }
 
+void EyeLighting::dropShadow() {
+    shadowed_.reset();
+    features_ &= ~(eye_feature::shadow | eye_feature::lamp);
+}
+
 void EyeLighting::apply(Program& program) const {
     program.set("skyLight", sky_);
     program.set("bounceLight", kBounceShare * bounce_ + kDarkestSky * sky_);

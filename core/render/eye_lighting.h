@@ -22,6 +22,7 @@ public:
 
     /// The light that gets the shadow map.
     [[nodiscard]] const std::optional<PosedLight>& shadowed() const noexcept { return shadowed_; }
+    void dropShadow();
     /// Bits of eye_feature.
     [[nodiscard]] std::uint32_t features() const noexcept { return features_; }
     void apply(Program& program) const;

@@ -55,9 +55,9 @@ std::uint32_t EyePass::Data::View::features() const noexcept {
            (target->projector.gamma > 0.0 ? eye_feature::gamma : 0U);
 }
 
-void EyePass::Data::View::apply(Program& program, const ShowFrame& frame) const {
+void EyePass::Data::View::apply(Program& program, const ShowFrame& frame, PhysicalSurface surface) const {
     setCamera(program, *camera, depth.near, depth.far);
-    if (target != nullptr) setOutput(program, *target, frame.scene->compensation, eye_unit::weights);
+    if (target != nullptr) setOutput(program, *target, *frame.scene, surface, eye_unit::weights);
 }
 
 Box EyePass::Data::everything(const ShowFrame& frame) const {
@@ -101,7 +101,7 @@ void EyePass::Data::draw(const ShowFrame& frame, const View& view, const Thing& 
     if (thing.inTheOpen) features &= ~std::uint32_t{eye_feature::shadow | eye_feature::lamp};
     if (!view.unseen()) features |= fog.features();
     Program& program = programs.use(EyePrograms::Stage::surface, features | view.features());
-    view.apply(program, frame);
+    view.apply(program, frame, thing.mesh == nullptr ? PhysicalSurface::table : PhysicalSurface::device);
     program.set("eyePosition", glm::vec3(positionOf(*view.camera)));
     program.set("worldFromSurface", thing.world);
     program.set("normalFromSurface", glm::mat4(glm::inverseTranspose(glm::mat3(thing.world))));
@@ -181,7 +181,7 @@ void EyePass::Data::drawCreases(const ShowFrame& frame, const View& view) {
     const std::uint32_t features = view.unseen() ? eye_feature::skin : skinFeatures(frame.scene->device);
     const DeviceSkin::Creases& creases = frame.scene->device.creases;
     Program& program = programs.use(EyePrograms::Stage::crease, features | view.features());
-    view.apply(program, frame);
+    view.apply(program, frame, PhysicalSurface::device);
     program.set("worldFromSurface", frame.worldFromDevice);
     program.set("ink", glm::vec4(linearLight(creases.color), static_cast<float>(std::min(creases.emphasis, 1.0))));
     lighting.apply(program);
@@ -267,7 +267,11 @@ void EyePass::drawUnseen(const ShowFrame& frame, const ProjectorTarget& target) 
     finishDrawing();
 }
 
-std::vector<std::string> EyePass::warnings() const { return data_->programs.warnings(); }
+std::vector<std::string> EyePass::warnings() const {
+    std::vector<std::string> warnings = data_->programs.warnings();
+    if (!data_->shadowProblem.empty()) warnings.push_back(data_->shadowProblem);
+    return warnings;
+}
 
 std::size_t EyePass::objectCount() const noexcept {
     return data_->programs.objectCount() + data_->materials.objectCount() + data_->surfaces.objectCount() +

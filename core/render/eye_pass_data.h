@@ -1,5 +1,7 @@
 #pragma once
 
+#include <string>
+
 #include "core/render/camera_uniforms.h"
 #include "core/render/eye_fog.h"
 #include "core/render/eye_lighting.h"
@@ -9,6 +11,7 @@
 #include "core/render/eye_shadow.h"
 #include "core/render/eye_surfaces.h"
 #include "core/render/lookup_region.h"
+#include "core/render/projector_target.h"
 #include "core/render/table_grid.h"
 
 namespace lumorph {
@@ -37,7 +40,7 @@ struct EyePass::Data {
 
         [[nodiscard]] bool unseen() const noexcept { return target != nullptr; }
         [[nodiscard]] std::uint32_t features() const noexcept;
-        void apply(Program& program, const ShowFrame& frame) const;
+        void apply(Program& program, const ShowFrame& frame, PhysicalSurface surface) const;
     };
 
     EyePrograms programs;
@@ -47,6 +50,7 @@ struct EyePass::Data {
     EyeLighting lighting;
     EyeFog fog;
     TableGrid table;
+    std::string shadowProblem; ///< of a driver that cannot compile what shadows need
 
     [[nodiscard]] bool showsSkin(const ShowFrame& frame) const;
     [[nodiscard]] std::vector<Thing> shadowThings(const ShowFrame& frame) const;

@@ -3,6 +3,7 @@
 #include <epoxy/gl.h>
 #include <glm/geometric.hpp>
 
+#include "core/base/error.h"
 #include "core/render/draw_state.h"
 #include "core/render/eye_pass_data.h"
 #include "core/render/eye_skin.h"
@@ -40,6 +41,7 @@ std::vector<EyePass::Data::Thing> EyePass::Data::shadowThings(const ShowFrame& f
 }
 
 void EyePass::Data::drawShadow(const ShowFrame& frame) {
+    if (!shadowProblem.empty()) lighting.dropShadow();
     if (!lighting.shadowed()) return;
     const std::vector<Thing> things = shadowThings(frame);
     std::vector<CasterState> states;
@@ -50,9 +52,15 @@ void EyePass::Data::drawShadow(const ShowFrame& frame) {
     }
     shadow.aim(*lighting.shadowed(), casterBounds(frame));
     if (!shadow.changed(std::move(states), frame.scene->device)) return;
-    shadow.draw([&](const glm::mat4& clipFromWorld) {
-        for (const Thing& thing : things) drawCaster(frame, thing, clipFromWorld);
-    });
+    try {
+        shadow.draw([&](const glm::mat4& clipFromWorld) {
+            for (const Thing& thing : things) drawCaster(frame, thing, clipFromWorld);
+        });
+    } catch (const DataError& error) {
+        shadowProblem = error.subject() + ": " + error.why() + "; there are no shadows";
+        lighting.dropShadow();
+        glEnable(GL_DEPTH_TEST);
+    }
 }
 
 void EyePass::Data::drawCaster(const ShowFrame& frame, const Thing& thing, const glm::mat4& clipFromWorld) {

@@ -24,8 +24,9 @@ void LabPreview::drawSurfaces(const Observer& observer, const DeviceSurface& dev
     glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
     flat_.use();
     setCamera(flat_, observer.camera, observer.range.near, observer.range.far);
-    flat_.set("flatColor", glm::vec3(flat));
+    flat_.set("flatColor", flat * surfaceColor(observer.scene, PhysicalSurface::device));
     device.draw(flat_);
+    flat_.set("flatColor", flat * surfaceColor(observer.scene, PhysicalSurface::table));
     flat_.set("worldFromMesh", glm::mat4(1.0F));
     table_.draw();
 }
@@ -41,8 +42,11 @@ void LabPreview::addProjector(const Observer& observer, const DeviceSurface& dev
         bindTexture(1, projector.sent.texture());
         program->set("sent", 1);
         program->set("gamma", static_cast<float>(projector.projector.gamma));
-        if (program == &deviceProgram) device.draw(*program);
-        if (program == &deviceProgram) continue;
+        const bool onDevice = program == &deviceProgram;
+        program->set("surfaceColor",
+                     surfaceColor(observer.scene, onDevice ? PhysicalSurface::device : PhysicalSurface::table));
+        if (onDevice) device.draw(*program);
+        if (onDevice) continue;
         program->set("worldFromMesh", glm::mat4(1.0F));
         table_.draw();
     }
@@ -53,7 +57,7 @@ void LabPreview::draw(GLuint framebuffer, const CalibratedCamera& observer, floa
                       PictureOutput& out) {
     if (!radiance_ || radiance_->size() != observer.size) radiance_.emplace(observer.size, GL_RGBA16F);
     table_.fit(observer, frame.scene->table.size);
-    const Observer seen{observer, depthRange(observer, physicalBounds(frame))};
+    const Observer seen{observer, depthRange(observer, physicalBounds(frame)), *frame.scene};
     beginSurfaces(radiance_->framebuffer(), observer.size);
     drawSurfaces(seen, device, ambient);
     glDepthMask(GL_FALSE);
@@ -68,7 +72,7 @@ void LabPreview::draw(GLuint framebuffer, const CalibratedCamera& observer, floa
 void LabPreview::drawMask(GLuint framebuffer, const CalibratedCamera& observer, const ShowFrame& frame,
                           const DeviceSurface& device, std::span<const ProjectorTarget* const> projectors) {
     table_.fit(observer, frame.scene->table.size);
-    const Observer seen{observer, depthRange(observer, physicalBounds(frame))};
+    const Observer seen{observer, depthRange(observer, physicalBounds(frame)), *frame.scene};
     beginSurfaces(framebuffer, observer.size);
     drawSurfaces(seen, device, 0.0F);
     glDepthMask(GL_FALSE);

@@ -26,6 +26,7 @@ private:
     struct Observer {
         const CalibratedCamera& camera;
         DepthRange range;
+        const Scene& scene;
     };
     void drawSurfaces(const Observer& observer, const DeviceSurface& device, float flat);
     void addProjector(const Observer& observer, const DeviceSurface& device, const ProjectorTarget& projector,

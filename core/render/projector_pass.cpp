@@ -181,7 +181,7 @@ Program& ProjectorPass::beginLookup(const ProjectorTarget& target, const ShowFra
     Program& program = seenProgram(defines);
     program.use();
     setLens(program, target);
-    setOutput(program, target, frame.scene->compensation, 0);
+    setOutput(program, target, *frame.scene, onTable != nullptr ? PhysicalSurface::table : PhysicalSurface::device, 0);
     views.device->set(program, "device", 2);
     if (onTable == nullptr) return program;
     if (second) views.table->set(program, "table", 4);

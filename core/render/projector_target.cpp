@@ -3,8 +3,14 @@
 #include <glm/matrix.hpp>
 
 #include "core/render/draw_state.h"
+#include "core/render/eye_materials.h"
 
 namespace lumorph {
+namespace {
+
+constexpr float kDarkestSurface = 0.01F; // what is darker nobody makes bright
+
+} // namespace
 
 ProjectorTarget::ProjectorTarget(const SceneProjector& what)
     : projector(what), sent(what.camera.size), open(what.camera.size) {
@@ -35,9 +41,15 @@ void setLight(Program& program, const SceneProjector& projector) {
     program.set("projectorReference", static_cast<float>(projector.referenceDistance));
 }
 
-void setOutput(Program& program, const ProjectorTarget& target, bool compensation, int unit) {
+glm::vec3 surfaceColor(const Scene& scene, PhysicalSurface surface) {
+    const bool device = surface == PhysicalSurface::device;
+    return linearLight(device ? scene.device.surfaceColor : scene.table.surfaceColor);
+}
+
+void setOutput(Program& program, const ProjectorTarget& target, const Scene& scene, PhysicalSurface surface, int unit) {
     setLight(program, target.projector);
-    program.set("compensation", compensation ? 1.0F : 0.0F);
+    program.set("compensation", scene.compensation ? 1.0F : 0.0F);
+    program.set("surfaceColor", glm::max(surfaceColor(scene, surface), kDarkestSurface));
     if (target.projector.gamma > 0.0) program.set("inverseGamma", static_cast<float>(1.0 / target.projector.gamma));
     if (!target.blend) return;
     bindTexture(unit, target.blend->weights());

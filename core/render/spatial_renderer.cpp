@@ -54,12 +54,14 @@ struct SpatialRenderer::Data {
     bool measuring = false;
     SpatialTimes times;
     std::string eyeProblem;
+    std::string projectorProblem; ///< of a driver that cannot compile what projectors need to know of the eye
 
     void beginFrame(const ShowFrame& next);
     void drawEye(const glm::vec3& from);
     void drawTableView(const glm::vec3& from);
     void fitProjectors();
     void drawProjectors();
+    void drawProjectors(const EyeViews& views, bool shared);
     [[nodiscard]] std::vector<ProjectorTarget*> enabled();
     [[nodiscard]] std::vector<const ProjectorTarget*> lit() const;
     double finish(std::chrono::steady_clock::time_point& since) const;
@@ -147,8 +149,24 @@ void SpatialRenderer::Data::drawProjectors() {
     if (frame->eye && eyeShown) views.device = &*eye;
     if (views.device != nullptr && tableShown) views.table = &*table;
     if (views.device != nullptr) views.tableAreas = tableAreas;
+    bool drawn = false;
+    try {
+        if (projectorProblem.empty()) {
+            drawProjectors(views, enabled().size() > 1);
+            drawn = true;
+        }
+    } catch (const DataError& error) {
+        projectorProblem = error.subject() + ": " + error.why() +
+                           "; projectors show what does not depend on the viewer, and do not share";
+        glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+        restoreState();
+    }
+    if (!drawn) drawProjectors({}, false);
+    times.projectors = finish(since);
+}
+
+void SpatialRenderer::Data::drawProjectors(const EyeViews& views, bool shared) {
     const std::vector<ProjectorTarget*> targets = enabled();
-    const bool shared = targets.size() > 1;
     for (ProjectorTarget* target : targets) {
         const CalibratedCamera& camera = target->projector.camera;
         if (!shared) target->blend.reset();
@@ -166,7 +184,6 @@ void SpatialRenderer::Data::drawProjectors() {
         }
         if (!shared) target->changes.finish(*frame);
     }
-    times.projectors = finish(since);
 }
 
 SpatialRenderer::SpatialRenderer() : data_(std::make_unique<Data>()) {}
@@ -252,7 +269,8 @@ SpatialTimes SpatialRenderer::times() const { return data_->times; }
 
 std::vector<std::string> SpatialRenderer::warnings() const {
     std::vector<std::string> warnings = data_->pass.warnings();
-    if (!data_->eyeProblem.empty()) warnings.push_back(data_->eyeProblem);
+    for (const std::string& problem : {data_->eyeProblem, data_->projectorProblem})
+        if (!problem.empty()) warnings.push_back(problem);
     return warnings;
 }
 

@@ -135,6 +135,7 @@ struct DeviceSkin {
         glm::vec3 color{0.05F};
         bool operator==(const Creases&) const = default;
     } creases;
+    glm::vec3 surfaceColor{1.0F}; ///< of the bare device, on which all light falls; white until measured
     bool operator==(const DeviceSkin&) const = default;
 };
 
@@ -142,6 +143,7 @@ struct DeviceSkin {
 struct Table {
     glm::vec2 size{1.2F, 0.9F}; ///< metres in x and z
     Material material;
+    glm::vec3 surfaceColor{1.0F}; ///< of the bare table, as the device's
     bool operator==(const Table&) const = default;
 };
 

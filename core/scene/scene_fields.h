@@ -164,11 +164,13 @@ template <typename V, Is<DeviceSkin> T> void fields(V& v, T& skin) {
     v.number("shrink", skin.shrink, {0.0, 0.9});
     v.list("holes", skin.holes, kMaxHoles);
     v.object("creases", skin.creases);
+    v.color("surfaceColor", skin.surfaceColor);
 }
 
 template <typename V, Is<Table> T> void fields(V& v, T& table) {
     v.vector("size", table.size, {0.01, kFar});
     v.whole("material", table.material);
+    v.color("surfaceColor", table.surfaceColor);
 }
 
 template <typename V, Is<CalibratedCamera> T> void fields(V& v, T& camera) {

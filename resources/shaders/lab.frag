@@ -1,11 +1,13 @@
-// A projector's light on device and table, white and diffuse, seen by any observer. Pieces before: version.glsl,
+// A projector's light on device and table, which are diffuse, seen by any observer. Pieces before: version.glsl,
 // camera.glsl, physical_normal.glsl, projector_light.glsl, projector_sight.glsl. In: what the projector sends out and
-// its gamma (0: sRGB). Out: linear radiance, to be added up; white where the projector reaches when MASK is defined.
+// its gamma (0: sRGB), and the colour of the bare surface. Out: linear radiance, to be added up; white where the
+// projector reaches when MASK is defined.
 
 in vec3 worldPosition;
 uniform vec3 viewerPosition;
 uniform sampler2D sent;
 uniform float gamma;
+uniform vec3 surfaceColor; // linear
 
 out vec4 color;
 
@@ -33,6 +35,6 @@ void main() {
 #ifdef MASK
     color = vec4(sight.reached > 0.5 && light.g > 0.0 ? 1.0 : 0.0);
 #else
-    color = vec4(light * sight.reached * lightBetween(sight.uv), 1.0);
+    color = vec4(surfaceColor * light * sight.reached * lightBetween(sight.uv), 1.0);
 #endif
 }

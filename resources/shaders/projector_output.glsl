@@ -1,8 +1,10 @@
 // Shared piece: what a projector sends for the light that a place should have. Piece before: projector_light.glsl. In:
-// whether incidence and distance are made up for; where SHARED is defined this projector's weight and the sum of all.
-// Out: the value, linear for an sRGB framebuffer or, where GAMMA is defined, encoded.
+// whether incidence and distance are made up for; the colour of the bare surface; where SHARED is defined this
+// projector's weight and the sum of all. Out: the value, linear for an sRGB framebuffer or, where GAMMA is defined,
+// encoded.
 
 uniform float compensation; // 1: of incidence and distance; 0: none
+uniform vec3 surfaceColor;  // linear
 #ifdef SHARED
 uniform sampler2D weights;
 #endif
@@ -11,7 +13,7 @@ uniform float inverseGamma;
 #endif
 
 vec4 sentFor(vec3 radiance, vec3 world, vec3 normal) {
-    vec3 value = radiance * valueFor(world, normal, compensation);
+    vec3 value = radiance / surfaceColor * valueFor(world, normal, compensation);
 #ifdef SHARED
     vec2 weight = texelFetch(weights, ivec2(gl_FragCoord.xy), 0).rg;
     value *= weight.g > 0.0 ? weight.r / weight.g : 1.0;

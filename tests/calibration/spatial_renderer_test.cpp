@@ -245,7 +245,9 @@ struct Difference {
 Difference between(const Image& first, const Image& second) {
     Difference difference;
     for (std::size_t i = 0; i < first.pixels().size(); ++i) {
-        const double step = std::abs(first.pixels()[i][1] - second.pixels()[i][1]);
+        double step = 0.0; // of the channel that differs most
+        for (std::size_t c = 0; c < 3; ++c)
+            step = std::max<double>(step, std::abs(first.pixels()[i][c] - second.pixels()[i][c]));
         difference.mean += step / static_cast<double>(first.pixels().size());
         difference.muchShare += (step > 20 ? 1.0 : 0.0) / static_cast<double>(first.pixels().size());
     }
@@ -260,6 +262,8 @@ TEST(SpatialRenderer, PreviewOfTheLabShowsWhatTheLabShows) {
     projectors[0].gain = {0.8F, 0.9F, 0.7F};
     Scene scene = unlitScene({0.9F, 0.5F, 0.2F}, {0.1F, 0.4F, 0.6F}, projectors);
     scene.compensation = false; // so that the light falls off visibly
+    scene.device.surfaceColor = {0.8F, 0.9F, 0.6F};
+    scene.table.surfaceColor = {0.7F, 0.6F, 0.9F};
     const ShowFrame frame = frameOf(scene, liftedFlaps());
     renderer.draw(frame);
     const Lab lab(labOf(frame, renderer));
@@ -269,6 +273,31 @@ TEST(SpatialRenderer, PreviewOfTheLabShowsWhatTheLabShows) {
         EXPECT_LT(difference.mean, 0.6);
         EXPECT_LT(difference.muchShare, 0.01);
     }
+}
+
+// The lab knows the true colours of what the light falls on, and its projectors' colours.
+TEST(SpatialRenderer, MakesUpForColouredSurfacesAndProjectors) {
+    const HeadlessContext context;
+    SpatialRenderer renderer;
+    Scene scene = unlitScene({0.5F, 0.3F, 0.2F}, {0.1F, 0.4F, 0.3F}, {pair()[0]});
+    scene.projectors[0].peak = 3.0;
+    const ShowFrame white = frameOf(scene, liftedFlaps());
+    renderer.draw(white);
+    const Image wanted = Lab(labOf(white, renderer)).view(kAbove, 1);
+    scene.device.surfaceColor = {0.9F, 0.7F, 0.8F};
+    scene.table.surfaceColor = {0.6F, 0.8F, 0.9F};
+    scene.projectors[0].gain = {0.8F, 1.0F, 1.2F};
+    const ShowFrame colored = frameOf(scene, liftedFlaps());
+    LabWorld uncorrected = labOf(white, renderer);
+    const LabWorld truth = labOf(colored, renderer);
+    uncorrected.surfaces = truth.surfaces;
+    renderer.draw(colored);
+    const Image right = Lab(labOf(colored, renderer)).view(kAbove, 1);
+    const Image wrong = Lab(uncorrected).view(kAbove, 1);
+    const Difference after = between(right, wanted);
+    EXPECT_LT(after.mean, 0.8);
+    EXPECT_LT(after.muchShare, 0.01);
+    EXPECT_GT(between(wrong, wanted).mean, 8.0);
 }
 
 TEST(SpatialRenderer, MaskIsWhiteWhereEyeAndProjectorMeet) {

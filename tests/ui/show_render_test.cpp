@@ -1,3 +1,5 @@
+#include <epoxy/gl.h>
+
 #include "app/studio/viewport/render_thread.h"
 
 #include <cmath>
@@ -179,6 +181,48 @@ TEST_F(ShowRender, AFrameThatCannotBeDrawnIsToldOnceAndTheNextIsDrawn) {
         return shown && shown->match == good;
     }));
     EXPECT_EQ(broke.size(), 1);
+}
+
+bool driverIsReset = false; // told once
+
+GLenum tellReset() { return std::exchange(driverIsReset, false) ? GL_INNOCENT_CONTEXT_RESET : GL_NO_ERROR; }
+
+/// What the driver says of resets is ours to say.
+class DriverResets {
+public:
+    DriverResets() : asked_(std::exchange(epoxy_glGetGraphicsResetStatus, tellReset)) {}
+    ~DriverResets() { epoxy_glGetGraphicsResetStatus = asked_; }
+    DriverResets(const DriverResets&) = delete;
+    DriverResets& operator=(const DriverResets&) = delete;
+
+private:
+    PFNGLGETGRAPHICSRESETSTATUSPROC asked_;
+};
+
+TEST(ShowRenderResets, TheShowComesBackByItself) {
+    const DriverResets resets;
+    RenderThread thread;
+    const auto drawn = [&] {
+        const auto match = showFrame();
+        return waitFor([&] {
+            thread.requestShow(requestOf(match, {wantedView(1, Kind::projector, {320, 200})}));
+            const auto shown = thread.takeShow();
+            return shown && shown->match == match && meanDifference(pictureOf(*shown, 1), QImage()) > 0.0;
+        });
+    };
+    ASSERT_TRUE(drawn());
+    EXPECT_FALSE(thread.failure());
+    for (int i = 0; i < 2; ++i) {
+        driverIsReset = true;
+        (void)waitFor([&] {
+            thread.requestShow(requestOf(showFrame(), {wantedView(1, Kind::projector, {320, 200})}));
+            return thread.failure().has_value();
+        });
+        ASSERT_TRUE(thread.failure());
+        EXPECT_TRUE(thread.failure()->contains("driver was reset")) << thread.failure()->toStdString();
+        ASSERT_TRUE(waitFor([&] { return !thread.failure(); }));
+        EXPECT_TRUE(drawn());
+    }
 }
 
 /// The same pictures as other objects, as after their files were read again.

@@ -18,12 +18,15 @@ QSurfaceFormat neededFormat() {
     format.setRenderableType(QSurfaceFormat::OpenGL);
     format.setVersion(kNeededVersion / 10, kNeededVersion % 10);
     format.setProfile(QSurfaceFormat::CoreProfile);
+    format.setOption(QSurfaceFormat::ResetNotification);
     return format;
 }
 
 // A context as wished, or whatever there is, so that its version can be told; null when there is nothing.
 std::unique_ptr<QOpenGLContext> makeContext(const QSurfaceFormat& wished) {
-    for (const QSurfaceFormat& format : {wished, QSurfaceFormat()}) {
+    QSurfaceFormat untold = wished; // of resets: there are drivers that cannot
+    untold.setOption(QSurfaceFormat::ResetNotification, false);
+    for (const QSurfaceFormat& format : {wished, untold, QSurfaceFormat()}) {
         auto context = std::make_unique<QOpenGLContext>();
         context->setFormat(format);
         context->setShareContext(QOpenGLContext::globalShareContext());

@@ -7,6 +7,8 @@
 #include <mutex>
 #include <vector>
 
+#include <QTimer>
+
 #include "app/studio/show/show_drawer.h"
 #include "app/studio/viewport/frame_drawer.h"
 #include "app/studio/viewport/gl_thread.h"
@@ -27,6 +29,11 @@ QString reasonOf(const std::exception& error) { return QString::fromUtf8(error.w
 
 /// After a frame of the show failed, frames are left out for so long: making the renderer anew takes time.
 constexpr std::chrono::seconds kShowPause{1};
+
+/// How long after the driver's reset, and after each attempt that failed, drawing is begun anew.
+constexpr std::chrono::seconds kAnew{1};
+
+struct ContextLost {};
 
 } // namespace
 
@@ -55,6 +62,7 @@ struct RenderThread::Data {
     void deliver(const FrameSchedule::Work& work, DrawnFrame frame);
     void sleep(std::unique_lock<std::mutex>& lock);
     void complain(const QString& why);
+    /// Throws ContextLost.
     void count(const Drawers& drawers);
     bool shallGiveUp() {
         const std::lock_guard lock(mutex);
@@ -62,7 +70,9 @@ struct RenderThread::Data {
     }
     [[nodiscard]] bool pressing() const { return schedule.pressing() || pace.pressing(); }
 
-    void start(); ///< in the window's thread
+    // In the window's thread:
+    void start();
+    void startAnew();
 
     RenderThread& owner;
     mutable std::mutex mutex;
@@ -81,7 +91,9 @@ struct RenderThread::Data {
 
     std::atomic<std::size_t> objects{0};
     std::atomic<std::size_t> errors{0};
-    QString lastComplaint;     ///< of the render thread only
+    std::atomic<bool> lost{false};
+    GlDriver driver;           ///< of the render thread only
+    QString lastComplaint;     ///< likewise
     QString lastShowComplaint; ///< likewise
     std::unique_ptr<GlThread> thread;
 };
@@ -89,6 +101,7 @@ struct RenderThread::Data {
 void RenderThread::Data::start() {
     // The thread before has to be gone: it may still speak of its failure.
     thread.reset();
+    failure.reset();
     thread = std::make_unique<GlThread>([this] { run(); }, [this](const QString& why) { tell(why); });
 }
 
@@ -100,17 +113,31 @@ void RenderThread::Data::tell(std::optional<QString> why) {
     emit owner.ready();
 }
 
+// A show that runs all day comes back by itself.
+void RenderThread::Data::startAnew() {
+    if (!lost) return;
+    if (owner.failure()) start();
+    QTimer::singleShot(kAnew, &owner, [this] { startAnew(); });
+}
+
 void RenderThread::Data::run() {
     try {
         serve();
+    } catch (const ContextLost&) {
+        lost = true;
+        tell(QStringLiteral("The graphics driver was reset. Drawing begins anew by itself; if this comes again and "
+                            "again, update the driver, or start Lumorph with LIBGL_ALWAYS_SOFTWARE=1."));
+        QMetaObject::invokeMethod(
+            &owner, [this] { QTimer::singleShot(kAnew, &owner, [this] { startAnew(); }); }, Qt::QueuedConnection);
     } catch (const std::exception& error) {
         tell(reasonOf(error));
     }
 }
 
 void RenderThread::Data::serve() {
+    lost = false;
     tell(std::nullopt);
-    const GlDriver driver = currentDriver();
+    driver = currentDriver();
     Drawers drawers{
         {driver, [this](const FrameSchedule::Work& work, DrawnFrame frame) { deliver(work, std::move(frame)); }},
         {driver, [this](const ShowPace::Work& work, DrawnShow frame) { deliverShow(work, std::move(frame)); }}};
@@ -229,6 +256,7 @@ void RenderThread::Data::complain(const QString& why) {
 }
 
 void RenderThread::Data::count(const Drawers& drawers) {
+    if (contextLost(driver)) throw ContextLost{};
     objects = drawers.frames.objectCount() + drawers.show.objectCount();
     errors += FrameDrawer::takeErrors();
 }

@@ -45,7 +45,7 @@ public:
     ~RenderThread() override;
 
     /// Why nothing can be drawn here (OpenGL 4.1 is missing, with the version found, and what to do); empty when all is
-    /// well. Known once `ready` was emitted.
+    /// well. Known once `ready` was emitted. After a reset of the graphics driver drawing begins anew by itself.
     [[nodiscard]] std::optional<QString> failure() const;
     /// After a failure, for example when a driver was installed: looks again and emits `ready`.
     void retry();

@@ -25,6 +25,10 @@ Part<Scene> whole() {
 
 bool always(const Scene& /*scene*/) { return true; }
 
+QString bareSurfaceTip() {
+    return QObject::tr("Its own colour without projection: projectors make up for it. White until measured");
+}
+
 void addShrink(SceneForm& form, const Part<DeviceSkin>& device) {
     form.section("device.section.optics", QObject::tr("Shrinking and holes"), false);
     form.number(
@@ -110,6 +114,9 @@ void addDeviceRows(SceneForm& form, Studio& studio) {
                     memberOf<Material>(
                         device, [](auto& skin) -> auto& { return skin.material; }),
                     always);
+    form.color(
+        {"device.surfaceColor", QObject::tr("Bare surface"), bareSurfaceTip()}, device,
+        [](auto& skin) -> auto& { return skin.surfaceColor; });
     addCreases(form, device);
     addShrink(form, device);
     addDevicePlace(form);
@@ -121,6 +128,9 @@ void addTableRows(SceneForm& form, Studio& studio) {
     form.vector(
         {"table.size", QObject::tr("Size"), QObject::tr("Width and depth")}, {Quantity::length, 0.01, kFar, 1.0, 0.01},
         "xz", table, [](auto& found) -> auto& { return found.size; });
+    form.color(
+        {"table.surfaceColor", QObject::tr("Bare surface"), bareSurfaceTip()}, table,
+        [](auto& found) -> auto& { return found.surfaceColor; });
     addMaterialRows(form, studio, "table.material",
                     memberOf<Material>(
                         table, [](auto& found) -> auto& { return found.material; }),

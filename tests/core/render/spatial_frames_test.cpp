@@ -13,6 +13,7 @@
 #include "core/base/error.h"
 #include "core/render/headless_context.h"
 #include "core/render/spatial_renderer.h"
+#include "tests/core/render/broken_shader.h"
 #include "tests/core/render/spatial_scene.h"
 
 // What stays and what changes from one frame of the renderer to the next.
@@ -129,6 +130,57 @@ TEST(SpatialFrames, PictureIsTheSameWhateverWasDrawnBefore) {
         EXPECT_NE(sent, before) << "step " << step << " changes nothing";
         before = sent;
     }
+}
+
+// What does not depend on the viewer is left, from every projector.
+TEST(SpatialFrames, WithoutAProjectorsShaderTheShowGoesOn) {
+    const HeadlessContext context;
+    for (const char* name : {"projector_surface.frag", "projector.frag", "projector_done.frag", "projector_edges.frag",
+                             "projector_distance.frag", "projector_weight.frag"}) {
+        const BrokenShader broken(name);
+        SpatialRenderer renderer;
+        renderer.setEyeSize({320, 200});
+        const ShowFrame frame =
+            frameOf(unlitScene(glm::vec3(0.8F, 0.1F, 0.1F), glm::vec3(0.1F, 0.8F, 0.1F), {overhead(), overhead()}),
+                    liftedFlaps());
+        for (int i = 0; i < 2; ++i) renderer.draw(frame);
+        const std::vector<std::string> warnings = renderer.warnings();
+        ASSERT_EQ(warnings.size(), 1U) << name;
+        EXPECT_NE(warnings.front().find(std::string(name) + ":3"), std::string::npos) << warnings.front();
+        for (const std::size_t projector : {0U, 1U}) {
+            const Image sent = renderer.readProjector(projector);
+            const Image::Pixel device = sent.at(240, 160);
+            const Image::Pixel table = sent.at(5, 160);
+            EXPECT_GT(device[0], 2 * device[1]) << name << projector;
+            EXPECT_GT(table[1], 2 * table[0]) << name << projector;
+        }
+        EXPECT_EQ(glGetError(), static_cast<GLenum>(GL_NO_ERROR)) << name;
+    }
+}
+
+TEST(SpatialFrames, WithoutTheShadersOfShadowsThereAreNone) {
+    const HeadlessContext context;
+    Scene scene = defaultScene();
+    scene.projectors = {overhead()};
+    const auto sent = [&](SpatialRenderer& renderer) {
+        renderer.setEyeSize({320, 200});
+        for (int i = 0; i < 2; ++i) renderer.draw(posed(frameOf(scene, liftedFlaps())));
+        return renderer.readProjector(0);
+    };
+    std::vector<std::string> warnings;
+    Image without;
+    {
+        const BrokenShader broken("eye_tiles.frag");
+        SpatialRenderer renderer;
+        without = sent(renderer);
+        warnings = renderer.warnings();
+    }
+    ASSERT_EQ(warnings.size(), 1U);
+    EXPECT_NE(warnings.front().find("eye_tiles.frag:3"), std::string::npos) << warnings.front();
+    SpatialRenderer renderer;
+    EXPECT_GT(differingPixels(sent(renderer), without), 2'000);
+    std::get<LightItem>(scene.items.front().kind).shadows = false;
+    EXPECT_LE(differingPixels(sent(renderer), without), 3);
 }
 
 SceneTexture texture(const std::string& image, int columns = 1) {
