@@ -16,6 +16,9 @@
 namespace lumorph::test {
 namespace {
 
+/// The bar is for device and table; lines seen from above come 0.1 dB short of it where the device is judged alone.
+constexpr double kDeviceSlack = 0.5; // decibels
+
 /// All eyes in the long run (packaging/soak); else two of each state, so that every eye has its turn.
 std::vector<TruthEye> eyesOf(const TruthState& state) {
     const auto eyes = truthEyes();
@@ -72,17 +75,25 @@ TEST_P(TruthTest, TheLitDeviceLooksAsTheEyePassSays) {
             const ShowFrame frame = truthFrame(device, state, from, content);
             ASSERT_EQ(deviceView(frame, from, bench.eye().size), bench.eye());
             renderer.draw(frame);
-            const TruthFigure figure = judge(bench, renderer.readEye(), renderer.readProjector(0));
-            std::printf("truth %-11s | %-11s | %-7s | rendered %5.1f dB | ideal %5.1f dB\n", state.name, eye.name,
-                        nameOf(content), figure.rendered, figure.ideal);
-            EXPECT_GE(figure.rendered, figure.bar()) << eye.name << ", " << nameOf(content);
+            const auto [all, alone] = judge(bench, renderer.readEye(), renderer.readProjector(0));
+            std::printf(
+                "truth %-11s | %-11s | %-7s | rendered %5.1f dB | ideal %5.1f dB | device alone %5.1f | %5.1f\n",
+                state.name, eye.name, nameOf(content), all.rendered, all.ideal, alone.rendered, alone.ideal);
+            EXPECT_GE(all.rendered, all.bar()) << eye.name << ", " << nameOf(content);
+            EXPECT_GE(alone.rendered, alone.bar() - kDeviceSlack)
+                << eye.name << ", " << nameOf(content) << ", device alone";
         }
         const TruthCoverage coverage = coverageOf(bench, device, state, renderer.readMask());
-        std::printf("cover %-11s | %-11s | device %4.1f %% | flaps %5.1f %% | mask differs %.2f %%\n", state.name,
-                    eye.name, 100 * coverage.device, 100 * coverage.flaps, 100 * coverage.disagreement);
+        std::printf("cover %-11s | %-11s | device %4.1f %% | flaps %5.1f %% | mask differs %.2f %% | judged %4.1f %% | "
+                    "of flaps %5.1f %%\n",
+                    state.name, eye.name, 100 * coverage.device, 100 * coverage.flaps, 100 * coverage.disagreement,
+                    100 * coverage.judged, 100 * coverage.judgedFlaps);
         EXPECT_GE(coverage.device, 0.6) << eye.name;
         EXPECT_GE(coverage.flaps, 0.3) << eye.name;
         EXPECT_LE(coverage.disagreement, 0.02) << eye.name;
+        // Beside the mask's edges nothing can be judged; so much is left at least.
+        EXPECT_GE(coverage.judged, 0.5) << eye.name;
+        EXPECT_GE(coverage.judgedFlaps, 0.25) << eye.name;
     }
 }
 
@@ -98,7 +109,7 @@ TEST_P(TruthTest, PointsAreSeenWhereTheEyePassHasThem) {
             ballErrors(bench, points, renderer.readProjector(0), renderer.readEye(), 16, bench.judged());
         std::printf("place %-11s | %-11s | mean %.3f | 95 %% %.3f pixels | %zu balls\n", state.name, eye.name,
                     meanOf(errors), quantileOf(errors, 0.95), errors.size());
-        EXPECT_GE(errors.size(), 5U) << eye.name; // most windows touch an edge when all flaps are up
+        EXPECT_GE(errors.size(), 8U) << eye.name; // most windows touch an edge when all flaps are up
         EXPECT_LE(meanOf(errors), 0.5) << eye.name;
         EXPECT_LE(quantileOf(errors, 0.95), 1.5) << eye.name;
     }
@@ -128,7 +139,7 @@ TEST_F(TruthShow, WhoStandsBesideTheEyeSeesAnotherPicture) {
     const Image objects = projectedFor(truthFrame(device, state, tracked, TruthContent::objects));
     const ShowFrame wanted = truthFrame(device, state, beside, TruthContent::objects);
     TruthBench bench(setupOf(state, wanted, beside));
-    const TruthFigure figure = judge(bench, eyePictureFor(wanted), objects);
+    const TruthFigure figure = judge(bench, eyePictureFor(wanted), objects).all;
     std::printf("beside the eye: rendered %.1f dB | ideal %.1f dB\n", figure.rendered, figure.ideal);
     EXPECT_LT(figure.rendered, figure.bar() - 6.0);
 

@@ -217,6 +217,15 @@ std::size_t TruthBench::judgedPixels() const {
     return static_cast<std::size_t>(std::count(data_->judged.begin(), data_->judged.end(), 1));
 }
 
+std::vector<std::uint8_t> TruthBench::judgedDevice() const {
+    const LabSight& sight = data_->sight;
+    const auto rays = static_cast<std::size_t>(sight.samples * sight.samples);
+    std::vector<std::uint8_t> marked = data_->judged;
+    for (std::size_t i = 0; i < marked.size(); ++i)
+        if (sight.surfaces[i * rays] != kDevice) marked[i] = 0;
+    return marked;
+}
+
 Image TruthBench::ideal(const LabPicture& eyePicture) const {
     const std::vector<glm::vec3> light = data_->lightOfParts(eyePicture);
     const glm::ivec2 size = data_->region.size();

@@ -53,6 +53,8 @@ public:
     /// One an eye pixel: 1 where it is judged.
     [[nodiscard]] const std::vector<std::uint8_t>& judged() const;
     [[nodiscard]] std::size_t judgedPixels() const;
+    /// 1 where device is judged.
+    [[nodiscard]] std::vector<std::uint8_t> judgedDevice() const;
 
     /// What a perfect renderer would send: for each projector pixel the average over its footprint of the eye picture
     /// (of places the eye sees), compensated for incidence and distance.

@@ -140,11 +140,15 @@ ShowFrame ballsFrame(const TruthDevice& device, const TruthState& state, const g
     return frameOf(device, state, eye, std::move(scene), {});
 }
 
-TruthFigure judge(TruthBench& bench, const Image& eyePicture, const Image& projected) {
+TruthFigures judge(TruthBench& bench, const Image& eyePicture, const Image& projected) {
     const LabPicture eye = lightOf(eyePicture);
     const LabPicture wanted = bench.lowPassed(eye);
-    return {psnr(bench.seen(projected), wanted, bench.judged()),
-            psnr(bench.seen(bench.ideal(eye)), wanted, bench.judged())};
+    const LabPicture rendered = bench.seen(projected);
+    const LabPicture ideal = bench.seen(bench.ideal(eye));
+    const auto figureOf = [&](const std::vector<std::uint8_t>& marked) {
+        return TruthFigure{psnr(rendered, wanted, marked), psnr(ideal, wanted, marked)};
+    };
+    return {figureOf(bench.judged()), figureOf(bench.judgedDevice())};
 }
 
 namespace {
@@ -179,6 +183,8 @@ TruthCoverage coverageOf(const TruthBench& bench, const TruthDevice& device, con
     double flapPixels = 0.0;
     double flapMasked = 0.0;
     double different = 0.0;
+    double deviceJudged = 0.0;
+    double flapJudged = 0.0;
     for (std::size_t i = 0; i < mask.pixels().size(); ++i) {
         const std::size_t ray = i * rays;
         if (sight.surfaces[ray] != TruthBench::kDevice) continue;
@@ -186,12 +192,16 @@ TruthCoverage coverageOf(const TruthBench& bench, const TruthDevice& device, con
         devicePixels += 1.0;
         deviceMasked += white ? 1.0 : 0.0;
         different += white == (sight.gleams[ray].share > 0.0F) ? 0.0 : 1.0;
+        deviceJudged += bench.judged()[i];
         if (!lifted[sight.triangles[ray]]) continue;
         flapPixels += 1.0;
         flapMasked += white ? 1.0 : 0.0;
+        flapJudged += bench.judged()[i];
     }
-    return {deviceMasked / std::max(devicePixels, 1.0), flapPixels > 0.0 ? flapMasked / flapPixels : 1.0,
-            different / std::max(devicePixels, 1.0)};
+    const auto ofFlaps = [&](double count) { return flapPixels > 0.0 ? count / flapPixels : 1.0; };
+    devicePixels = std::max(devicePixels, 1.0);
+    return {deviceMasked / devicePixels, ofFlaps(flapMasked), different / devicePixels, deviceJudged / devicePixels,
+            ofFlaps(flapJudged)};
 }
 
 } // namespace lumorph::test

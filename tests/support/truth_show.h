@@ -33,13 +33,19 @@ struct TruthFigure {
     /// 35 dB, or 1 dB below what ideal resampling reaches where that is lower.
     [[nodiscard]] double bar() const { return std::min(35.0, ideal - 1.0); }
 };
-[[nodiscard]] TruthFigure judge(TruthBench& bench, const Image& eyePicture, const Image& projected);
+struct TruthFigures {
+    TruthFigure all;    ///< over all that is judged
+    TruthFigure device; ///< over the device alone
+};
+[[nodiscard]] TruthFigures judge(TruthBench& bench, const Image& eyePicture, const Image& projected);
 
 /// Shares of what the eye sees that the mask covers.
 struct TruthCoverage {
     double device = 0.0;
     double flaps = 1.0;        ///< lifted ones; 1 where the eye sees none
-    double disagreement = 0.0; ///< share of all judged or device pixels at which mask and lab differ
+    double disagreement = 0.0; ///< share of device pixels at which mask and lab differ
+    double judged = 0.0;       ///< share of device pixels that are judged
+    double judgedFlaps = 1.0;
 };
 [[nodiscard]] TruthCoverage coverageOf(const TruthBench& bench, const TruthDevice& device, const TruthState& state,
                                        const Image& mask);
