@@ -11,6 +11,7 @@
 #include "core/motion/surface_heights.h"
 #include "core/motion/view_dependence.h"
 #include "tests/core/loop/scene_loop_fixture.h"
+#include "tests/support/animated_target.h"
 
 // What servos do with a scene.
 
@@ -175,6 +176,40 @@ TEST_F(SceneLoopTest, ASplitTargetIsLiftedWhereItStands) {
     EXPECT_TRUE(loop_.settled());
     wish.target = nullptr;
     EXPECT_EQ(run(wish, 1.0)->wantedStrokes, wish.strokes) << "without a target there is nothing to follow";
+}
+
+TEST_F(SceneLoopTest, ASplitModelIsLiftedAsItsAnimationMovesIt) {
+    const Model model = animatedEllipsoid(24, 16);
+    auto shown = std::make_shared<SceneModel>();
+    shown->model = model;
+    shown->materials.resize(model.materials.size());
+    auto assets = std::make_shared<SceneAssets>();
+    assets->models["ball.glb"] = std::move(shown);
+    Scene scene = emptyScene();
+    SceneItem item = itemOf(ItemRole::split, MeshItem{"ball.glb"});
+    item.position = {-0.08F, 0.015F, 0.055F};
+    item.scale = glm::vec3(0.03F);
+    scene.items.push_back(item);
+    MatchWish wish = wishWith(scene);
+    wish.assets = assets;
+    FrequencySplit split(*tablet());
+    const FrequencySplit::Wish heights = [&](double t, std::span<float> out) {
+        TriangleMesh mesh = flatten(model, model.animations[0], std::fmod(t, 2.0));
+        for (glm::vec3& corner : mesh.positions) corner = item.position + item.scale * corner;
+        heightsOfMesh(mesh, split.points(), out);
+    };
+    double least = 1.0;
+    double most = 0.0;
+    for (int k = 0; k < 240; ++k) {
+        const auto frame = step(wish);
+        const std::vector<double> expected = split.strokes(heights, frame->sceneSeconds + kLag);
+        for (std::size_t i = 0; i < 6; ++i) EXPECT_NEAR(frame->wantedStrokes[i], expected[i], 5e-3) << k << ' ' << i;
+        if (k < 120) continue;
+        least = std::min(least, std::ranges::max(frame->wantedStrokes));
+        most = std::max(most, std::ranges::max(frame->wantedStrokes));
+    }
+    EXPECT_GT(most, 0.1);
+    EXPECT_GT(most, least + 0.01) << "it swells and turns";
 }
 
 TEST_F(SceneLoopTest, AShapeIsFeltWhereItIs) {

@@ -113,6 +113,39 @@ TEST(EyePass, BlurredFoldsChangeLightOnTheDeviceAlone) {
     EXPECT_GT(change.inside, change.area / 10);
 }
 
+// R33: light carries what servos that lag, or that are off, do not.
+TEST(EyePass, ASplitItemLooksTheSameWhateverTheServosDo) {
+    EyeStage stage;
+    stage.sun().shadows = false;
+    SceneItem sea;
+    sea.id = 7;
+    sea.name = "Sea";
+    sea.role = ItemRole::split;
+    sea.position = {0.0F, 0.045F, 0.0F};
+    sea.material = EyeStage::plain({0.2F, 0.4F, 0.9F});
+    HeightItem waves;
+    waves.size = {0.16F, 0.11F};
+    waves.waves = {{0.004, 0.06, 2.0, Angle::degrees(20.0), {}}};
+    sea.kind = waves;
+    stage.scene.items.push_back(sea);
+    const LinearPicture atRest = stage.draw();
+    const std::vector<Met> before = meet(stage.frame(), stage.camera());
+    stage.strokes = {0.1, 0.3, 0.2, 0.0, 0.3, 0.1};
+    const LinearPicture lifted = stage.draw();
+    const std::vector<Met> after = meet(stage.frame(), stage.camera());
+    std::vector<bool> surface; // but where a flap rises through it, and the pixels beside
+    for (std::size_t i = 0; i < before.size(); ++i)
+        surface.push_back(before[i].thing != EyeStage::firstItem || after[i].thing != EyeStage::firstItem);
+    surface = grown(surface, stage.size, 1);
+    surface.flip();
+    const Change change = changeOf(atRest, lifted, surface);
+    EXPECT_GT(change.area, 10'000);
+    EXPECT_EQ(change.inside, 0);
+    EXPECT_GT(change.outside, 500) << "the bare device beside it does move";
+    stage.seconds = 0.5;
+    EXPECT_GT(changeOf(lifted, stage.draw(), surface).inside, change.area / 4) << "the wave goes on";
+}
+
 // R31
 TEST(EyePass, AFloatingThingAndItsShadowChangeTheirOwnPlaces) {
     EyeStage stage;
