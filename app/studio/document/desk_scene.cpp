@@ -67,7 +67,7 @@ void Desk::Data::takeAssets(const std::shared_ptr<const SceneAssets>& assets) {
                                fileName(asset),
                                QString::fromStdString(problem),
                                {},
-                               {offerRelink(asset), {tr("Leave it out"), [] {}}}});
+                               {offerRelink(asset), {tr("Dismiss"), [] {}}}});
 }
 
 std::map<std::string, FileStamp> Desk::Data::sceneStamps() {
