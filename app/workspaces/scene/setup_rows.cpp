@@ -110,13 +110,13 @@ void addDeviceRows(SceneForm& form, Studio& studio) {
         {{"device.show.material", QObject::tr("Its material"), QObject::tr("And what lies on it")},
          {"device.show.content", QObject::tr("Things alone"), QObject::tr("The device is a mere screen")}},
         device, [](auto& skin) -> auto& { return skin.show; });
+    form.color(
+        {"device.surfaceColor", QObject::tr("Bare surface"), bareSurfaceTip()}, device,
+        [](auto& skin) -> auto& { return skin.surfaceColor; });
     addMaterialRows(form, studio, "device.material",
                     memberOf<Material>(
                         device, [](auto& skin) -> auto& { return skin.material; }),
                     always);
-    form.color(
-        {"device.surfaceColor", QObject::tr("Bare surface"), bareSurfaceTip()}, device,
-        [](auto& skin) -> auto& { return skin.surfaceColor; });
     addCreases(form, device);
     addShrink(form, device);
     addDevicePlace(form);
