@@ -1,4 +1,5 @@
 #include <cmath>
+#include <cstdio>
 #include <utility>
 
 #include <gtest/gtest.h>
@@ -173,6 +174,68 @@ TEST(EyeShadow, LeavesLitSheetsWhole) {
                 }
             EXPECT_GT(tops, 50'000);
             EXPECT_LE(specks, softness > 0.0 ? tops / 100 : 0); // beside the slits edges are soft
+        }
+}
+
+/// Which share of a round sun is seen from a place.
+double shareOfSun(const RayOracle& rays, const glm::dvec3& from, const glm::dvec3& sun, double size) {
+    const glm::dvec3 side = glm::normalize(glm::cross(sun, glm::dvec3(0.0, 0.0, 1.0)));
+    const glm::dvec3 up = glm::cross(side, sun);
+    int seen = 0;
+    int all = 0;
+    for (int i = -7; i <= 7; ++i)
+        for (int j = -7; j <= 7; ++j) {
+            const glm::dvec2 at(i / 7.0, j / 7.0);
+            if (glm::length(at) > 1.0) continue;
+            const glm::dvec3 way = sun + 0.5 * size * (at.x * side + at.y * up);
+            seen += rays.cast(from, glm::normalize(way), 1e-9, EyeStage::firstItem) ? 0 : 1;
+            ++all;
+        }
+    return static_cast<double>(seen) / all;
+}
+
+// R31: the wider, the larger the source and the higher what throws them.
+TEST(EyeShadow, SoftEdgesAreAsWideAsTheSourceMakesThem) {
+    EyeStage stage;
+    stage.scene.items.front().position = {-0.15F, 0.9F, -0.1F};
+    stage.addBox({0.0F, 0.0F, 0.0F}, 0.03F);
+    stage.sun().shadows = false;
+    const LinearPicture open = stage.draw(); // the device's top alone is judged
+    stage.sun().shadows = true;
+    for (const float height : {0.05F, 0.1F})
+        for (const double softness : {0.1, 0.2}) {
+            stage.sun().softness = softness;
+            stage.scene.items.back().position = {0.0F, height, 0.0F};
+            const ShowFrame frame = stage.frame();
+            const LinearPicture picture = stage.draw(frame, stage.camera());
+            const std::vector<Seen> seen = look(frame, stage.camera());
+            const RayOracle rays = EyeStage::oracle(frame);
+            const glm::dvec3 sun = glm::normalize(glm::dvec3(frame.posed.lights.front().position));
+            int soft = 0;
+            int drawnSoft = 0;
+            double difference = 0.0;
+            for (int y = 0; y < stage.size.y; y += 2)
+                for (int x = 0; x < stage.size.x; x += 2) {
+                    const Seen& pixel = seen[static_cast<std::size_t>(y * stage.size.x + x)];
+                    const glm::dvec3 from = EyeStage::origin(stage.camera());
+                    const glm::dvec3 direction = EyeStage::ray(stage.camera(), x, y);
+                    const glm::dvec3 place = from + direction * ((0.02 - from.y) / direction.y);
+                    if (pixel.thing != EyeStage::device || pixel.normal.y < 0.999 || std::abs(place.x) > 0.09 ||
+                        std::abs(place.z) > 0.06)
+                        continue;
+                    const double share = shareOfSun(rays, place + 1e-6 * pixel.normal, sun, softness);
+                    const double drawn = 1.0 - static_cast<double>(open.at(x, y).g - picture.at(x, y).g) / pixel.direct;
+                    const bool half = share > 0.1 && share < 0.9;
+                    soft += half ? 1 : 0;
+                    drawnSoft += drawn > 0.1 && drawn < 0.9 ? 1 : 0;
+                    difference += half ? std::abs(share - drawn) : 0.0;
+                }
+            RecordProperty("soft", soft);
+            std::printf("source %.1f, %3.0f mm above: %d soft pixels, %d drawn, mean difference %.3f\n", softness,
+                        1000.0 * static_cast<double>(height - 0.02F), soft, drawnSoft, difference / soft);
+            EXPECT_GT(soft, 100);
+            EXPECT_NEAR(static_cast<double>(drawnSoft) / soft, 1.0, 0.3) << softness << ' ' << height;
+            EXPECT_LT(difference / soft, 0.08) << softness << ' ' << height;
         }
 }
 
