@@ -1,7 +1,6 @@
 #include <cmath>
 #include <cstdlib>
 #include <limits>
-#include <optional>
 
 #include <gtest/gtest.h>
 
@@ -12,12 +11,6 @@
 namespace lumorph {
 namespace {
 
-std::shared_ptr<const Image> checks(glm::ivec2 size, int cell, Image::Pixel a, Image::Pixel b) {
-    auto image = std::make_shared<Image>(size);
-    for (int y = 0; y < size.y; ++y)
-        for (int x = 0; x < size.x; ++x) image->at(x, y) = (x / cell + y / cell) % 2 == 0 ? a : b;
-    return image;
-}
 std::shared_ptr<const Image> waves(int side) {
     auto image = std::make_shared<Image>(glm::ivec2(side));
     for (int y = 0; y < side; ++y)
@@ -29,13 +22,6 @@ std::shared_ptr<const Image> waves(int side) {
         }
     return image;
 }
-SceneTexture textured(const std::string& image, float tile) {
-    SceneTexture texture;
-    texture.image = image;
-    texture.tile = glm::vec2(tile);
-    return texture;
-}
-
 // R27
 TEST(EyePass, BumpMapsChangeLightOnTheDeviceAndNothingElse) {
     EyeStage stage;
@@ -45,7 +31,7 @@ TEST(EyePass, BumpMapsChangeLightOnTheDeviceAndNothingElse) {
     stage.scene.device.material.color = {0.9F, 0.1F, 0.1F};
     stage.scene.table.material.color = {0.1F, 0.9F, 0.1F};
     const LinearPicture before = stage.draw();
-    stage.scene.device.material.normalMaps[0] = textured("waves", 0.04F);
+    stage.scene.device.material.normalMaps[0] = EyeStage::textured("waves", 0.04F);
     const LinearPicture after = stage.draw();
     const auto region = near(meet(stage.frame(), stage.camera()), stage.size, 1, onDevice);
     const Change change = changeOf(before, after, region);
@@ -58,8 +44,8 @@ TEST(EyePass, BumpMapsChangeLightOnTheDeviceAndNothingElse) {
 // R28
 TEST(EyePass, MovingTexturesMoveOnTheDeviceAlone) {
     EyeStage stage;
-    stage.assets->images["checks"] = checks({64, 64}, 8, {250, 250, 250, 255}, {20, 20, 20, 255});
-    stage.scene.device.material.colorTexture = textured("checks", 0.0625F);
+    stage.assets->images["checks"] = EyeStage::checks({64, 64}, 8, {250, 250, 250, 255}, {20, 20, 20, 255});
+    stage.scene.device.material.colorTexture = EyeStage::textured("checks", 0.0625F);
     stage.scene.device.material.colorTexture.velocity = {0.03125F, 0.015625F};
     const LinearPicture before = stage.draw();
     stage.seconds = 0.7;
@@ -82,7 +68,7 @@ TEST(EyePass, AFlipBookShowsItsPicturesInOrder) {
                               static_cast<std::uint8_t>(90 * (y / 32)), static_cast<std::uint8_t>(4 * (y % 32)), 255};
     stage.assets->images["book"] = book;
     SceneTexture& texture = stage.scene.device.material.colorTexture;
-    texture = textured("book", 0.05F);
+    texture = EyeStage::textured("book", 0.05F);
     texture.columns = 3;
     texture.rows = 2;
     texture.framesPerSecond = 10.0;
@@ -94,7 +80,7 @@ TEST(EyePass, AFlipBookShowsItsPicturesInOrder) {
             for (int x = 0; x < 32; ++x) page->at(x, y) = book->at(32 * (cell % 3) + x, 32 * (cell / 3) + y);
         stage.assets->images["page"] = page;
         const Scene flipBook = stage.scene;
-        stage.scene.device.material.colorTexture = textured("page", 0.05F);
+        stage.scene.device.material.colorTexture = EyeStage::textured("page", 0.05F);
         EXPECT_TRUE(shown.pixels == stage.draw().pixels) << cell;
         stage.scene = flipBook;
     }
@@ -112,93 +98,6 @@ TEST(EyePass, BlurredFoldsChangeLightOnTheDeviceAlone) {
     const Change change = changeOf(before, soft, region);
     EXPECT_EQ(change.outside, 0);
     EXPECT_GT(change.inside, change.area / 10);
-}
-
-/// A table of red and blue squares.
-void layRedAndBlue(EyeStage& stage) {
-    stage.sun().shadows = false;
-    stage.assets->images["squares"] = checks({32, 32}, 16, {230, 10, 20, 255}, {20, 10, 230, 255});
-    stage.scene.table.material.colorTexture = textured("squares", 0.05F);
-}
-
-/// How often a picture shows red and blue as a table alone does at the places that `wayFrom` leads to.
-struct Agreement {
-    int judged = 0, agree = 0, blue = 0;
-};
-template <class WayFrom> Agreement withTable(EyeStage& stage, const LinearPicture& picture, const WayFrom& wayFrom) {
-    ShowFrame bare = stage.frame();
-    const std::vector<Met> met = meet(bare, stage.camera());
-    bare.rig.reset();
-    bare.posed.surfaces.clear();
-    const LinearPicture table = stage.draw(bare, stage.camera());
-    const auto red = [](const glm::vec4& color) { return color.r > color.b; };
-    Agreement result;
-    for (int y = 0; y < stage.size.y; ++y)
-        for (int x = 0; x < stage.size.x; ++x) {
-            const Met& here = met[static_cast<std::size_t>(y * stage.size.x + x)];
-            if (here.thing != EyeStage::firstItem) continue;
-            const auto way = wayFrom(here, EyeStage::ray(stage.camera(), x, y));
-            if (!way) continue;
-            const auto pixel = pixelOf(stage.camera(), here.place - *way * (here.place.y / way->y));
-            if (!pixel) continue;
-            const glm::ivec2 at(glm::round(*pixel));
-            if (at.x < 2 || at.y < 2 || at.x > stage.size.x - 3 || at.y > stage.size.y - 3) continue;
-            bool plain = true; // no edge of a square about
-            for (const glm::ivec2 by : {glm::ivec2(-2, 0), glm::ivec2(2, 0), glm::ivec2(0, -2), glm::ivec2(0, 2)})
-                plain = plain && red(table.at(at.x + by.x, at.y + by.y)) == red(table.at(at.x, at.y));
-            if (!plain) continue;
-            ++result.judged;
-            result.blue += red(picture.at(x, y)) ? 0 : 1;
-            result.agree += red(picture.at(x, y)) == red(table.at(at.x, at.y)) ? 1 : 0;
-        }
-    return result;
-}
-
-// R28
-TEST(EyePass, ClearWaterShowsTheTableWhereSnellSeesIt) {
-    for (const float index : {1.0F, 1.33F, 1.7F}) {
-        EyeStage stage;
-        layRedAndBlue(stage);
-        SceneItem water;
-        water.id = 7;
-        water.name = "Water";
-        water.anchor = Anchor::world;
-        water.position = {0.0F, 0.06F, 0.0F};
-        water.material = EyeStage::plain({1.0F, 1.0F, 1.0F});
-        water.material.refraction = 1.0F;
-        water.material.refractiveIndex = index;
-        HeightItem flat;
-        flat.size = {0.16F, 0.12F};
-        water.kind = flat;
-        stage.scene.items.push_back(water);
-        const Agreement result =
-            withTable(stage, stage.draw(), [&](const Met& met, const glm::dvec3& view) -> std::optional<glm::dvec3> {
-                if (met.normal.y < 0.999) return std::nullopt;
-                return glm::refract(view, met.normal, 1.0 / static_cast<double>(index));
-            });
-        EXPECT_GT(result.judged, 10'000) << index;
-        EXPECT_GT(result.blue, result.judged / 4) << index;
-        EXPECT_LT(result.blue, result.judged * 3 / 4) << index;
-        EXPECT_GE(result.agree, 0.98 * result.judged) << index;
-    }
-}
-
-TEST(EyePass, AMirrorShowsTheTableBeforeIt) {
-    EyeStage stage;
-    layRedAndBlue(stage);
-    SceneItem& mirror = stage.addBox({0.0F, 0.05F, -0.02F}, 0.1F);
-    mirror.rotation = {1.0F, 0.0F, 0.0F, 0.0F};
-    mirror.material.metallic = 1.0F;
-    mirror.material.reflection = 1.0F;
-    const Agreement result =
-        withTable(stage, stage.draw(), [](const Met& met, const glm::dvec3& view) -> std::optional<glm::dvec3> {
-            if (met.normal.z < 0.999) return std::nullopt; // the side that the eye sees itself in
-            return glm::reflect(view, met.normal);
-        });
-    EXPECT_GT(result.judged, 5'000);
-    EXPECT_GT(result.blue, result.judged / 4);
-    EXPECT_LT(result.blue, result.judged * 3 / 4);
-    EXPECT_GE(result.agree, 0.98 * result.judged);
 }
 
 // R33: light carries what servos that lag, or that are off, do not.
@@ -252,8 +151,8 @@ TEST(EyePass, AFloatingThingAndItsShadowChangeTheirOwnPlaces) {
 TEST(EyePass, AHoleIsTheTableAlongTheEyesRay) {
     EyeStage stage;
     stage.scene.sky = glm::vec3(0.3F);
-    stage.assets->images["checks"] = checks({64, 64}, 16, {230, 190, 120, 255}, {110, 60, 30, 255});
-    stage.scene.table.material.colorTexture = textured("checks", 0.06F);
+    stage.assets->images["checks"] = EyeStage::checks({64, 64}, 16, {230, 190, 120, 255}, {110, 60, 30, 255});
+    stage.scene.table.material.colorTexture = EyeStage::textured("checks", 0.06F);
     const LinearPicture whole = stage.draw();
     const glm::dvec2 centre(0.01, 0.012);
     const double radius = 0.022;

@@ -57,6 +57,19 @@ public:
         material.roughness = 1.0F;
         return material;
     }
+    /// Squares of `cell` pixels a side.
+    static std::shared_ptr<const Image> checks(glm::ivec2 size, int cell, Image::Pixel a, Image::Pixel b) {
+        auto image = std::make_shared<Image>(size);
+        for (int y = 0; y < size.y; ++y)
+            for (int x = 0; x < size.x; ++x) image->at(x, y) = (x / cell + y / cell) % 2 == 0 ? a : b;
+        return image;
+    }
+    static SceneTexture textured(const std::string& image, float tile) {
+        SceneTexture texture;
+        texture.image = image;
+        texture.tile = glm::vec2(tile);
+        return texture;
+    }
     SceneItem& addSun(const glm::vec3& position) {
         SceneItem sun;
         sun.id = static_cast<int>(scene.items.size()) + 1;

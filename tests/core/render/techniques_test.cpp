@@ -33,19 +33,10 @@ std::vector<bool> shrunken(std::vector<bool> marked, glm::ivec2 size) {
 }
 
 /// Squares two centimetres and more a side, so that one place of the table is told from another.
-std::shared_ptr<const Image> squares() {
-    auto image = std::make_shared<Image>(glm::ivec2(64));
-    for (int y = 0; y < 64; ++y)
-        for (int x = 0; x < 64; ++x)
-            image->at(x, y) =
-                (x / 16 + y / 16) % 2 == 0 ? Image::Pixel{230, 190, 120, 255} : Image::Pixel{110, 60, 30, 255};
-    return image;
-}
 void layCloth(EyeStage& stage) {
     stage.scene.sky = glm::vec3(0.3F);
-    stage.assets->images["squares"] = squares();
-    stage.scene.table.material.colorTexture.image = "squares";
-    stage.scene.table.material.colorTexture.tile = glm::vec2(0.09F);
+    stage.assets->images["squares"] = EyeStage::checks({64, 64}, 16, {230, 190, 120, 255}, {110, 60, 30, 255});
+    stage.scene.table.material.colorTexture = EyeStage::textured("squares", 0.09F);
 }
 LinearPicture drawTableAlone(EyeStage& stage) {
     ShowFrame frame = stage.frame();
