@@ -16,6 +16,13 @@ glm::mat4 matrixOf(const Pose& pose) {
     return {matrix};
 }
 
+/// Where drawing takes longer than the scene says, poses are predicted farther. Too far they would only swing.
+double lookAhead(const Scene& scene, double lightDelay) {
+    constexpr double kFarthest = 0.15;
+    if (scene.predictionSeconds <= 0.0) return 0.0;
+    return std::max(scene.predictionSeconds, std::min(lightDelay, kFarthest));
+}
+
 /// What the board's streams say about one moment to come.
 class Outlook {
 public:
@@ -24,7 +31,7 @@ public:
         if (board)
             for (const PoseBoard::Entry& entry : board->entries()) take(entry, then);
         if (!tracked) return;
-        frame.ms.poseAge = 1e-3 * static_cast<double>((frame.time - oldest_).count());
+        frame.ms.poseAge = 1e-3 * static_cast<double>(std::max(frame.time - oldest_, Microseconds{0}).count());
         frame.ms.latency = frame.ms.poseAge + 1e3 * seconds;
     }
 
@@ -52,7 +59,7 @@ private:
 void ViewerStage::look(const MatchWish& wish, double sinceLast, MatchFrame& frame) {
     const Scene& scene = *wish.scene;
     frame.worldFromDevice = scene.worldFromDevice;
-    const Outlook outlook(wish.poses.get(), scene.predictionSeconds, frame);
+    const Outlook outlook(wish.poses.get(), lookAhead(scene, wish.lightDelay), frame);
     const glm::dvec3 centre(frame.worldFromDevice[3]);
     const std::optional<ViewerDirector::View> view = director_.step(outlook.heads, centre, scene.viewer, sinceLast);
     if (view) {

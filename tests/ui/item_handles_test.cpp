@@ -9,7 +9,7 @@
 #include "app/workspaces/scene/outliner_model.h"
 #include "app/workspaces/scene/stage_pane.h"
 #include "tests/support/show_frames.h"
-#include "tests/ui/studio_window.h"
+#include "tests/ui/stage_pictures.h"
 
 // Things of a scene in the hand: which one a click takes, and where a dragged one goes.
 
@@ -114,15 +114,6 @@ protected:
         const QLineF way(seen(worldOf(box())), seen(worldOf(box()) + 0.02F * axis));
         return way.pointAt(45.0 / way.length());
     }
-    void drag(const QPointF& from, const QPointF& to, bool release = true) {
-        QTest::mousePress(pane, Qt::LeftButton, {}, from.toPoint());
-        for (int step = 1; step <= 10; ++step) {
-            const QPointF at = from.toPoint() + (to - from) * step / 10;
-            QMouseEvent move(QEvent::MouseMove, at, pane->mapToGlobal(at), Qt::NoButton, Qt::LeftButton, {});
-            QApplication::sendEvent(pane, &move);
-        }
-        if (release) QTest::mouseRelease(pane, Qt::LeftButton, {}, (from.toPoint() + to - from).toPoint());
-    }
 
     TemporaryFolder folder;
     StudioWindow window;
@@ -135,7 +126,7 @@ TEST_F(SceneHandles, AnArrowCarriesTheThingAndIsOneStepOfUndo) {
         const glm::vec3 eye = scene().eye;
         const SceneItem whole = box();
         const int step = steps();
-        drag(onArrow(axis), onArrow(axis) + seen(before + 0.02F * axis) - seen(before));
+        dragMouse(pane, onArrow(axis), seen(before + 0.02F * axis) - seen(before));
         EXPECT_LT(glm::distance(worldOf(box()), before + 0.02F * axis), 0.001F) << axis.x;
         EXPECT_LT(glm::length(glm::cross(worldOf(box()) - before, axis)), 1e-5F) << "along the arrow alone";
         EXPECT_EQ(scene().eye, eye) << "the hand is on the thing";
@@ -150,7 +141,7 @@ TEST_F(SceneHandles, AnArrowCarriesTheThingAndIsOneStepOfUndo) {
 TEST_F(SceneHandles, EscapeTakesADragBack) {
     const SceneItem before = box();
     const int step = steps();
-    drag(onArrow({1.0F, 0.0F, 0.0F}), onArrow({1.0F, 0.0F, 0.0F}) + QPointF(40.0, 5.0), false);
+    dragMouse(pane, onArrow({1.0F, 0.0F, 0.0F}), {40.0, 5.0}, {}, false);
     EXPECT_NE(box(), before);
     QTest::keyClick(pane, Qt::Key_Escape);
     EXPECT_EQ(box(), before);

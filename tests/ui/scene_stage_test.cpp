@@ -1,15 +1,19 @@
 #include "app/workspaces/scene/scene_stage.h"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
 #include <QSignalSpy>
+#include <QTimer>
 
 #include "app/workspaces/scene/eye_orbit.h"
+#include "app/workspaces/scene/latency_card.h"
 #include "app/workspaces/scene/stage_bar.h"
 #include "app/workspaces/scene/stage_pane.h"
+#include "core/base/clock.h"
+#include "tests/ui/stage_pictures.h"
 #include "tests/ui/stall_watch.h"
-#include "tests/ui/studio_window.h"
 
 namespace lumorph::test {
 namespace {
@@ -26,15 +30,8 @@ protected:
         EXPECT_TRUE(found && eventually([&] { return !found->picture().isNull(); })) << name;
         return found;
     }
-    void drag(StagePane* on, QPoint by, Qt::KeyboardModifiers held = {}, bool release = true) {
-        const QPoint from = on->rect().center();
-        QTest::mousePress(on, Qt::LeftButton, held, from);
-        for (int step = 1; step <= 10; ++step) {
-            QMouseEvent move(QEvent::MouseMove, QPointF(from + by * step / 10), on->mapToGlobal(from + by * step / 10),
-                             Qt::NoButton, Qt::LeftButton, held);
-            QApplication::sendEvent(on, &move);
-        }
-        if (release) QTest::mouseRelease(on, Qt::LeftButton, held, from + by);
+    static void drag(StagePane* on, QPoint by, Qt::KeyboardModifiers held = {}, bool release = true) {
+        dragMouse(on, on->rect().center(), by, held, release);
     }
     glm::vec3 eye() { return window.state().scene->eye; }
     glm::vec3 centre() {
@@ -44,35 +41,12 @@ protected:
     void stopTime() {
         window.studio().loop.setScenePlaying(false);
         window.studio().document.change("Pause", [](studio::StudioState& state) { state.playback.playing = false; });
-        EXPECT_TRUE(settles());
-    }
-    /// Until nothing moves and the newest frame is there in full quality.
-    bool settles() {
-        std::shared_ptr<const MatchFrame> last;
-        return eventually([&] {
-            const auto& newest = window.studio().show.newest();
-            if (!newest.still || newest.match != window.studio().loop.frame()) return false;
-            if (std::exchange(last, newest.match) == newest.match) return true;
-            pass(300ms);
-            return false;
-        });
+        EXPECT_TRUE(stageSettles(window));
     }
 
     TemporaryFolder folder;
     StudioWindow window{folder.path()};
 };
-
-double difference(const QImage& a, const QImage& b) {
-    if (a.size() != b.size()) return 1.0;
-    int differing = 0;
-    for (int y = 0; y < a.height(); ++y)
-        for (int x = 0; x < a.width(); ++x) {
-            const QRgb p = a.pixel(x, y), q = b.pixel(x, y);
-            differing +=
-                std::abs(qRed(p) - qRed(q)) + std::abs(qGreen(p) - qGreen(q)) + std::abs(qBlue(p) - qBlue(q)) > 24;
-        }
-    return static_cast<double>(differing) / (a.width() * a.height());
-}
 
 TEST_F(SceneStageTest, ADragLeadsTheEyeAroundAndIsOneStepOfUndo) {
     auto* lab = pane("scene.lab");
@@ -88,11 +62,11 @@ TEST_F(SceneStageTest, ADragLeadsTheEyeAroundAndIsOneStepOfUndo) {
     EXPECT_NEAR(to.azimuth.inDegrees() - from.azimuth.inDegrees(), 30.0, 0.5);
     EXPECT_NEAR(to.elevation.inDegrees() - from.elevation.inDegrees(), -10.0, 0.5);
     EXPECT_NEAR(to.distance, from.distance, 1e-4);
-    EXPECT_TRUE(eventually([&] { return difference(lab->picture(), picture) > 0.05; }));
+    EXPECT_TRUE(eventually([&] { return differingShare(lab->picture(), picture) > 0.05; }));
     EXPECT_EQ(window.studio().document.undoStack().index(), steps + 1);
     window.studio().document.undoStack().undo();
     EXPECT_EQ(eye(), before);
-    EXPECT_TRUE(eventually([&] { return difference(lab->picture(), picture) < 0.02; }));
+    EXPECT_TRUE(eventually([&] { return differingShare(lab->picture(), picture) < 0.02; }));
 }
 
 TEST_F(SceneStageTest, EscapeTakesADragBack) {
@@ -131,12 +105,12 @@ TEST_F(SceneStageTest, TheObserverMovesAloneInTheLab) {
     const QImage labBefore = lab->picture().copy(), eyeBefore = seen->picture().copy();
     drag(lab, {lab->height() / 4, -20}, Qt::ControlModifier);
     EXPECT_EQ(eye(), before);
-    EXPECT_TRUE(eventually([&] { return difference(lab->picture(), labBefore) > 0.05; }));
-    ASSERT_TRUE(settles());
-    EXPECT_LT(difference(seen->picture(), eyeBefore), 0.02);
+    EXPECT_TRUE(eventually([&] { return differingShare(lab->picture(), labBefore) > 0.05; }));
+    ASSERT_TRUE(stageSettles(window));
+    EXPECT_LT(differingShare(seen->picture(), eyeBefore), 0.02);
     // Back to the viewer's own eye.
     window.studio().commands.find("scene.elsewhere")->setChecked(false);
-    EXPECT_TRUE(eventually([&] { return difference(lab->picture(), labBefore) < 0.02; }));
+    EXPECT_TRUE(eventually([&] { return differingShare(lab->picture(), labBefore) < 0.02; }));
 }
 
 TEST_F(SceneStageTest, EveryArrangementShowsItsPictures) {
@@ -178,6 +152,46 @@ TEST_F(SceneStageTest, AHiddenStageDrawsNothing) {
     }
     pass(2500ms);
     EXPECT_EQ(window.studio().show.count(), count);
+}
+
+TEST_F(SceneStageTest, TheCardSaysWhereTheTimeGoesAndPosesArePredictedByIt) {
+    (void)pane("scene.eye");
+    const auto board = std::make_shared<PoseBoard>();
+    const auto head = board->stream("Ada", PoseRole::head);
+    window.studio().loop.setPoses(board);
+    window.studio().commands.find("scene.latency")->setChecked(true);
+    const auto valueOf = [&](const QString& stage) {
+        for (const auto& line : studio::LatencyCard::linesOf(window.studio().show))
+            if (line.stage == stage) return line.value;
+        ADD_FAILURE() << stage.toStdString();
+        return 0.0;
+    };
+    const auto& show = window.studio().show;
+    const auto from = show.count();
+    QTimer tracker;
+    QObject::connect(&tracker, &QTimer::timeout, [&] {
+        (void)head->push({SteadyClock().now() - 4ms, true, {{0.0, 0.45, 0.55}, {1, 0, 0, 0}}});
+    });
+    tracker.start(8ms);
+    ASSERT_TRUE(eventually([&] { return show.count() > from + 12; }, 20s));
+    EXPECT_TRUE(window.find<studio::LatencyCard>("scene.latency")->isVisible());
+    window.screenshot("stage-latency");
+    double stages = 0.0;
+    for (const char* stage : {"Match", "Motion", "Pose", "Shadow", "Eye pass", "Projectors", "Read back"}) {
+        EXPECT_GE(valueOf(stage), 0.0) << stage;
+        stages += valueOf(stage);
+    }
+    EXPECT_GT(valueOf("Eye pass"), 0.0);
+    EXPECT_GT(valueOf("Projectors"), 0.0);
+    EXPECT_GE(valueOf("End to end"), 0.8 * stages) << "which it holds";
+    const MatchTimes& times = show.newest().match->ms;
+    EXPECT_GE(times.poseAge, 4.0);
+    const double ahead = times.latency - times.poseAge; // milliseconds
+    EXPECT_GE(ahead, 60.0);
+    EXPECT_LE(ahead, 150.0);
+    const double usual = std::clamp(show.endToEnd(), 60.0, 150.0);
+    EXPECT_NEAR(ahead, usual, 60.0);
+    window.studio().loop.setPoses(nullptr);
 }
 
 TEST_F(SceneStageTest, PlayingAndOrbitingNeverStallTheWindow) {

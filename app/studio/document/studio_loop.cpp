@@ -89,6 +89,13 @@ void StudioLoop::setPoses(std::shared_ptr<const PoseBoard> poses) {
     sendSoon();
 }
 
+void StudioLoop::setLightDelay(double seconds) {
+    constexpr double kStep = 0.005; // what is predicted shall not tremble with the delay
+    if (!std::isfinite(seconds) || std::abs(seconds - lightDelay_) < kStep) return;
+    lightDelay_ = seconds;
+    if (poses_) sendSoon();
+}
+
 void StudioLoop::setRate(double framesPerSecond) {
     if (std::isfinite(framesPerSecond)) thread_->setRate(std::clamp(framesPerSecond, 1.0, 1000.0));
 }
@@ -141,6 +148,7 @@ void StudioLoop::send() {
     wish.showTint = tint_;
     wish.poses = source_ ? nullptr : poses_;
     wish.source = source_;
+    wish.lightDelay = lightDelay_;
     wish.scenePlaying = scenePlaying_;
     wish.sceneSeek = sceneSeek_;
     thread_->wish(std::move(wish));

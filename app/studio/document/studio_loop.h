@@ -46,6 +46,8 @@ public:
     void seekScene(double seconds);
     /// Tracked heads and device; empty: the scene's own eye and place.
     void setPoses(std::shared_ptr<const PoseBoard> poses);
+    /// How long a frame takes to its light, seconds: poses are predicted by it.
+    void setLightDelay(double seconds);
     void setRate(double framesPerSecond);
     /// Frames of another source instead of the loop's own, until it is set to nothing; the show then goes on from where
     /// the actuators stand, under their limits. Poses of trackers wait meanwhile.
@@ -87,6 +89,7 @@ private:
     std::optional<double> sceneSeek_;
     std::shared_ptr<const PoseBoard> poses_;
     std::shared_ptr<FrameSource> source_;
+    double lightDelay_ = 0.0;
     bool sending_ = false;              ///< a wish goes out when the event loop comes round
     std::vector<std::int64_t> shownAt_; ///< when matched frames were handed over, milliseconds
     std::atomic<bool> posted_ = false;  ///< the window has been told of a frame that it did not take yet

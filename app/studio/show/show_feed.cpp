@@ -11,6 +11,8 @@ namespace {
 
 constexpr auto kPlace = "viewport";
 constexpr std::int64_t kSecond = 1000;
+constexpr double kSmoothing = 0.05; // of delays
+constexpr double kLongest = 300.0;  // milliseconds; while shaders compile all waits, and says nothing of what follows
 
 /// Whether a picture answers what is wanted: an observer who moves gets those from where he just was.
 bool answers(const ShowView& picture, const ShowView& wanted) {
@@ -95,7 +97,11 @@ void ShowFeed::take() {
     shownAt_.push_back(now);
     // A frame drawn again in full is as old as its rest; that says nothing about the delay.
     const double age = std::chrono::duration<double, std::milli>(SteadyClock().now() - newest_.match->time).count();
-    if (!newest_.still || newest_.resolution < 1.0 || endToEnd_ == 0.0 || age < kSecond / 4) endToEnd_ = age;
+    if (!newest_.still || newest_.resolution < 1.0 || endToEnd_ == 0.0 || age < kSecond / 4) {
+        endToEnd_ = age;
+        usualDelay_ += (usualDelay_ == 0.0 ? 1.0 : kSmoothing) * (std::min(age, kLongest) - usualDelay_);
+        loop_.setLightDelay(1e-3 * usualDelay_);
+    }
     ++count_;
     emit shown();
 }

@@ -11,7 +11,7 @@ constexpr int kMilliseconds = 250; // nobody reads faster
 constexpr int kLine = 18;
 constexpr int kPadding = 12;
 constexpr int kWidth = 200;
-constexpr int kLines = 14;
+constexpr int kLines = 16;
 
 } // namespace
 
@@ -34,7 +34,8 @@ std::vector<LatencyCard::Line> LatencyCard::linesOf(const ShowFeed& feed) {
     const MatchTimes& loop = newest.match->ms;
     const ShowTimes& show = newest.ms;
     const QString ms = tr("ms");
-    return {{tr("Track"), loop.track, ms},
+    return {{tr("Pose's age"), loop.poseAge, ms},
+            {tr("Track"), loop.track, ms},
             {tr("Match"), loop.voxelize + loop.match + loop.refine, ms},
             {tr("Rule"), loop.rule, ms},
             {tr("Motion"), loop.motion + loop.deform, ms},
@@ -45,7 +46,8 @@ std::vector<LatencyCard::Line> LatencyCard::linesOf(const ShowFeed& feed) {
             {tr("Projectors"), show.projectors, ms},
             {tr("Lab"), show.lab, ms},
             {tr("Read back"), show.readBack, ms},
-            {tr("End to end"), feed.endToEnd(), ms},
+            {tr("End to end"), loop.poseAge + feed.endToEnd(), ms},
+            {tr("Looked ahead"), loop.latency, ms},
             {tr("Pictures"), feed.rate(), tr("/s")},
             {tr("Resolution"), 100.0 * newest.resolution, tr("%")}};
 }

@@ -159,7 +159,8 @@ void addViewerRows(SceneForm& form, Studio& studio) {
         scene, [](auto& all) -> auto& { return all.viewer; });
     form.number(
         {"viewer.prediction", QObject::tr("Look ahead"),
-         QObject::tr("The delay from tracker to light; heads are expected where they will be by then")},
+         QObject::tr("The delay from tracker to light; heads are expected where they will be by then. "
+                     "Where drawing takes longer, that counts")},
         {Quantity::seconds, 0.0, 0.15, 0.06, 0.005}, scene, [](auto& all) -> auto& { return all.predictionSeconds; });
     form.section("viewer.section.dependence", QObject::tr("View-dependent shape"));
     const auto rule = makePart<ViewDependence>([](auto& all) { return &all.viewDependence; });

@@ -2,6 +2,7 @@
 #include <limits>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <glm/geometric.hpp>
@@ -161,6 +162,13 @@ TEST_F(SceneLoopTest, DeviceAndHeadArePredictedForTheMomentOfTheLight) {
     for (int c = 0; c < 4; ++c) EXPECT_LT(glm::distance(frame->worldFromDevice[c], truth[c]), 2e-3F) << c;
     EXPECT_NEAR(frame->ms.poseAge, 4.0, 1e-6);
     EXPECT_NEAR(frame->ms.latency, 64.0, 1e-6);
+
+    for (const auto& [delay, ahead] : {std::pair{0.03, 0.06}, {0.1, 0.1}, {0.8, 0.15}}) {
+        wish.lightDelay = delay;
+        const auto slow = loop_.step(wish, kFrame);
+        EXPECT_NEAR(slow->ms.latency - slow->ms.poseAge, 1e3 * ahead, 1e-6) << delay;
+        EXPECT_NEAR(slow->eye->x, 0.3 * (t + 0.008 + ahead), 3e-3) << delay;
+    }
 
     scene.predictionSeconds = 0.0;
     wish.scene = std::make_shared<const Scene>(scene);
