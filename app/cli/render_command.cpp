@@ -35,6 +35,8 @@ struct RenderArguments {
     std::string size;
     std::string state;
     std::string output;
+    std::vector<std::string> hands;
+    double ambient = 0.0;
     int projector = 0;
     double seconds = 0.0;
     bool json = false;
@@ -106,8 +108,14 @@ void render(const RenderArguments& arguments, const Session& session) {
     const std::filesystem::path file = projectFile(arguments.project);
     checkOutput(arguments.output, file.string());
     if (arguments.output == "-") throw InvalidInput("--output", "a picture needs a file", "name a .png file");
-    ViewRequest request{kViews.at(arguments.view), static_cast<std::size_t>(arguments.projector),
-                        placeOf("--observer", arguments.observer), sizeOf(arguments.size)};
+    ViewRequest request{kViews.at(arguments.view),
+                        static_cast<std::size_t>(arguments.projector),
+                        placeOf("--observer", arguments.observer),
+                        sizeOf(arguments.size),
+                        {},
+                        arguments.ambient};
+    for (const std::string& hand : arguments.hands)
+        if (const auto place = placeOf("--hand", hand)) request.hands.push_back(*place);
     ProjectMoment moment{arguments.seconds, placeOf("--eye", arguments.eye), std::nullopt};
     if (!arguments.state.empty()) moment.state = parseState(arguments.state);
 
@@ -140,6 +148,11 @@ void addRenderCommand(CLI::App& app, Session& session) {
                         "The viewer whom the show follows, world metres: X,Y,Z (default: the project's)");
     command->add_option("--observer", arguments->observer,
                         "Who looks at lab or device, world metres: X,Y,Z (default: the eye)");
+    command->add_option("--hand", arguments->hands,
+                        "In the lab, the viewer's hand at a place, world metres: X,Y,Z; once for each hand");
+    command->add_option("--ambient", arguments->ambient, "In the lab, the room's light: radiance of white")
+        ->check(numberBetween(0.0, 10.0))
+        ->capture_default_str();
     command->add_option("--projector", arguments->projector, "Which projector, from 0")
         ->check(CLI::Range(0, 63))
         ->capture_default_str();

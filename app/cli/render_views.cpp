@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cmath>
 #include <string>
+#include <utility>
 
 #include <glm/geometric.hpp>
 
@@ -59,7 +60,10 @@ RenderedView labView(SpatialRenderer& renderer, const ShowFrame& frame, const Vi
     for (std::size_t i = 0; i < frame.scene->projectors.size(); ++i)
         pictures.push_back(frame.scene->projectors[i].enabled ? renderer.readProjector(i) : Image());
     const auto start = std::chrono::steady_clock::now();
-    RenderedView result{Lab(labWorld(frame, pictures)).view(camera), camera, renderer.times()};
+    LabWorld world = labWorld(frame, pictures);
+    for (const glm::vec3& hand : request.hands) world.blockers.push_back(visitorHand(hand, eyeOf(frame)));
+    world.ambient = glm::vec3(static_cast<float>(request.ambient));
+    RenderedView result{Lab(std::move(world)).view(camera), camera, renderer.times()};
     result.labMilliseconds =
         std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
     return result;
@@ -116,6 +120,9 @@ RenderedView plainView(const ShowFrame& frame, const ViewRequest& request) {
 RenderedView renderView(const ShowFrame& frame, const ViewRequest& request) {
     checkPlace("--eye", eyeOf(frame));
     if (request.observer) checkPlace("--observer", *request.observer);
+    for (const glm::vec3& hand : request.hands) checkPlace("--hand", hand);
+    if (request.view != ViewRequest::View::lab && (!request.hands.empty() || request.ambient > 0.0))
+        throw InvalidInput("--hand, --ambient", "only the lab has visitors and a room", "use them with --view lab");
     const HeadlessContext context;
     if (request.view == ViewRequest::View::device) return plainView(frame, request);
     SpatialRenderer renderer;

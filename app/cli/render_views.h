@@ -1,6 +1,8 @@
 #pragma once
 
 #include <optional>
+#include <string>
+#include <vector>
 
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
@@ -18,6 +20,8 @@ struct ViewRequest {
     std::size_t projector = 0;         ///< of View::projector
     std::optional<glm::vec3> observer; ///< of View::lab and View::device; else the eye
     std::optional<glm::ivec2> size;    ///< else 1280 x 800, or the projector's own
+    std::vector<glm::vec3> hands;      ///< of the viewer, in View::lab
+    double ambient = 0.0;              ///< radiance of white under the room's light, in View::lab
 };
 
 struct RenderedView {

@@ -1,6 +1,10 @@
 #include "calibration/lab/lab_world.h"
 
+#include <cstdint>
 #include <string>
+
+#include <glm/geometric.hpp>
+#include <glm/mat3x3.hpp>
 
 #include "calibration/lab/lab_light.h"
 #include "core/base/error.h"
@@ -12,7 +16,44 @@ glm::vec3 albedoOf(const glm::vec3& color) {
     return {lightOfSrgb(color.r), lightOfSrgb(color.g), lightOfSrgb(color.b)};
 }
 
+/// A box of half sizes along three axes of its own.
+void addBox(TriangleMesh& mesh, const glm::vec3& centre, const glm::mat3& axes, const glm::vec3& half) {
+    const auto first = static_cast<std::uint32_t>(mesh.positions.size());
+    for (int i = 0; i < 8; ++i)
+        mesh.positions.push_back(
+            centre + axes * (half * glm::vec3((i & 1) != 0 ? 1 : -1, (i & 2) != 0 ? 1 : -1, (i & 4) != 0 ? 1 : -1)));
+    for (const glm::uvec3& t : {glm::uvec3{0, 4, 6},
+                                {0, 6, 2},
+                                {1, 3, 7},
+                                {1, 7, 5},
+                                {0, 1, 5},
+                                {0, 5, 4},
+                                {2, 6, 7},
+                                {2, 7, 3},
+                                {0, 2, 3},
+                                {0, 3, 1},
+                                {4, 5, 7},
+                                {4, 7, 6}})
+        mesh.triangles.push_back(first + t);
+}
+
 } // namespace
+
+TriangleMesh visitorHand(const glm::vec3& place, const glm::vec3& visitor) {
+    constexpr glm::vec3 kPalm(0.09F, 0.025F, 0.18F);
+    constexpr glm::vec3 kForearm(0.06F, 0.06F, 0.3F);
+    constexpr float kRise = 0.3F; // of the forearm, metres a metre
+    glm::vec3 way(visitor.x - place.x, 0.0F, visitor.z - place.z);
+    way = glm::length(way) > 1e-4F ? glm::normalize(way) : glm::vec3(0.0F, 0.0F, 1.0F);
+    const glm::vec3 up(0.0F, 1.0F, 0.0F);
+    const glm::vec3 side = glm::cross(up, way);
+    TriangleMesh mesh;
+    addBox(mesh, place, {side, up, way}, 0.5F * kPalm);
+    const glm::vec3 arm = glm::normalize(way + kRise * up);
+    addBox(mesh, place + 0.5F * kPalm.z * way + 0.5F * kForearm.z * arm, {side, glm::cross(arm, side), arm},
+           0.5F * kForearm);
+    return mesh;
+}
 
 TriangleMesh deviceMesh(const ShowFrame& frame) {
     TriangleMesh mesh{*frame.devicePositions, frame.rig->restMesh().triangles};

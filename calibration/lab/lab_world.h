@@ -7,13 +7,16 @@
 
 namespace lumorph {
 
-/// The lab of a frame: the device as it is and its table, both white, and the scene's projectors with what they send
-/// out, one picture each (an empty one for a projector that is off). Surface 0 is the device, 1 the table. Throws
+/// The lab of a frame: the device as it is and its table, in the colours of their bare surfaces, and the scene's
+/// projectors with what they send out, one picture each (an empty one for a projector that is off). Surface 0 is the device, 1 the table. Throws
 /// InvalidInput when pictures and projectors do not agree.
 [[nodiscard]] LabWorld labWorld(const ShowFrame& frame, std::span<const Image> pictures);
 
 /// The device of a frame, world metres.
 [[nodiscard]] TriangleMesh deviceMesh(const ShowFrame& frame);
+/// A visitor's flat hand around a place, and the forearm behind it, which comes from where the visitor stands; world
+/// metres. For LabWorld::blockers.
+[[nodiscard]] TriangleMesh visitorHand(const glm::vec3& place, const glm::vec3& visitor);
 /// The table as a flat mesh, world metres.
 [[nodiscard]] TriangleMesh tableMesh(const Table& table);
 

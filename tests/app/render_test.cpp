@@ -95,6 +95,36 @@ TEST_F(Render, AnObserverElsewhereSeesTheSameLightFromThere) {
         << "the project's own eye";
 }
 
+TEST_F(Render, AHandInTheLabShadowsTheProjectorAndTheRoomLightsTheShadow) {
+    Project project = readProject(w["p.lumorph"]);
+    SceneProjector& projector = project.scene.projectors[0]; // overhead, so that the hand's shadow is below it
+    projector.camera.cameraFromWorld =
+        cameraLookingAt({0.0, 1.6, 0.0}, {0.0, 0.0, 0.001}, projector.camera.size, projector.camera.focal.x)
+            .cameraFromWorld;
+    projector.camera.principal = 0.5 * glm::dvec2(projector.camera.size) - 0.5;
+    writeProject(project, w["p.lumorph"]);
+    const std::vector<std::string> beside{"--size", "320x200", "--observer", "0.6,0.4,0"};
+    const auto with = [&](std::vector<std::string> more) {
+        more.insert(more.end(), beside.begin(), beside.end());
+        return picture("lab", more);
+    };
+    const Image open = with({});
+    const Image shadowed = with({"--hand", "0,0.3,0"});
+    const Image lit = with({"--hand", "0,0.3,0", "--ambient", "0.1"});
+    const glm::ivec2 middle(160, 100);
+    EXPECT_GT(open.at(middle.x, middle.y)[0], 60);
+    EXPECT_LT(shadowed.at(middle.x, middle.y)[0], 5);
+    // A tenth of white, of white paper: 89 of 255.
+    EXPECT_NEAR(lit.at(middle.x, middle.y)[0], 89, 3);
+    for (std::size_t i = 0; i < open.pixels().size(); ++i)
+        EXPECT_LE(shadowed.pixels()[i][0], open.pixels()[i][0] + 1) << "a hand only takes light away";
+    const Image away = with({"--hand", "0,0.3,0.8"});
+    EXPECT_TRUE(same(away, open)) << "a hand outside of the light";
+    expectRefused({"--view", "eye", "--hand", "0,0.3,0"}, "--view lab");
+    expectRefused({"--view", "lab", "--hand", "0,0.3"}, "three numbers");
+    expectRefused({"--view", "lab", "--ambient", "-1"}, "--ambient");
+}
+
 TEST_F(Render, ADeviceFollowsTheShowOrIsHeldInAState) {
     const Image atRest = picture("device");
     EXPECT_TRUE(same(picture("device", {"--size", "320x200", "--state", "0,0,0,0,0,0"}), atRest));
