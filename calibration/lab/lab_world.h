@@ -8,8 +8,8 @@
 namespace lumorph {
 
 /// The lab of a frame: the device as it is and its table, in the colours of their bare surfaces, and the scene's
-/// projectors with what they send out, one picture each (an empty one for a projector that is off). Surface 0 is the device, 1 the table. Throws
-/// InvalidInput when pictures and projectors do not agree.
+/// projectors with what they send out, one picture each (an empty one for a projector that is off). Surface 0 is the
+/// device, 1 the table. Throws InvalidInput when pictures and projectors do not agree.
 [[nodiscard]] LabWorld labWorld(const ShowFrame& frame, std::span<const Image> pictures);
 
 /// The device of a frame, world metres.

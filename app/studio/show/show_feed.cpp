@@ -97,7 +97,7 @@ void ShowFeed::take() {
     shownAt_.push_back(now);
     // A frame drawn again in full is as old as its rest; that says nothing about the delay.
     const double age = std::chrono::duration<double, std::milli>(SteadyClock().now() - newest_.match->time).count();
-    if (!newest_.still || newest_.resolution < 1.0 || endToEnd_ == 0.0 || age < kSecond / 4) {
+    if (!newest_.still || newest_.resolution < 1.0 || endToEnd_ == 0.0 || 4.0 * age < kSecond) {
         endToEnd_ = age;
         usualDelay_ += (usualDelay_ == 0.0 ? 1.0 : kSmoothing) * (std::min(age, kLongest) - usualDelay_);
         loop_.setLightDelay(1e-3 * usualDelay_);

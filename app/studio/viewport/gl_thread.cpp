@@ -59,18 +59,19 @@ GlThread::GlThread(std::function<void()> work, std::function<void(QString)> fail
     surface_ = std::make_unique<QOffscreenSurface>();
     surface_->setFormat(context ? context->format() : neededFormat());
     surface_->create();
-    thread_.reset(QThread::create([context, surface = surface_.get(), work = std::move(work), failed] {
-        if (!context || !context->makeCurrent(surface)) {
-            failed(nothingThere());
-            return;
-        }
-        const GlDriver driver = currentDriver();
-        if (driver.version < kNeededVersion)
-            failed(whatIsMissing(driver));
-        else
-            work();
-        context->doneCurrent();
-    }));
+    thread_.reset(
+        QThread::create([context, surface = surface_.get(), work = std::move(work), failed = std::move(failed)] {
+            if (!context || !context->makeCurrent(surface)) {
+                failed(nothingThere());
+                return;
+            }
+            const GlDriver driver = currentDriver();
+            if (driver.version < kNeededVersion)
+                failed(whatIsMissing(driver));
+            else
+                work();
+            context->doneCurrent();
+        }));
     thread_->setObjectName(QStringLiteral("render"));
     if (context) context->moveToThread(thread_.get());
     thread_->start();
