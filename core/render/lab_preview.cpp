@@ -1,9 +1,13 @@
 #include "core/render/lab_preview.h"
 
+#include "core/base/error.h"
 #include "core/render/draw_state.h"
 
 namespace lumorph {
 namespace {
+
+/// Radiance of device and table where there is no program for their light, so that the one shows on the other.
+constexpr glm::vec2 kStandIn(0.5F, 0.1F);
 
 ShaderFiles litFiles(std::vector<std::string> defines) {
     ShaderFiles files = shaderFiles({"version.glsl", "camera.glsl", "physical.vert"},
@@ -20,13 +24,13 @@ LabPreview::LabPreview()
       deviceLight_(litFiles({})), tableLight_(litFiles({"TABLE"})), deviceMask_(litFiles({"MASK"})),
       tableMask_(litFiles({"MASK", "TABLE"})) {}
 
-void LabPreview::drawSurfaces(const Observer& observer, const DeviceSurface& device, float flat) {
+void LabPreview::drawSurfaces(const Observer& observer, const DeviceSurface& device, float onDevice, float onTable) {
     glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
     flat_.use();
     setCamera(flat_, observer.camera, observer.range.near, observer.range.far);
-    flat_.set("flatColor", flat * surfaceColor(observer.scene, PhysicalSurface::device));
+    flat_.set("flatColor", onDevice * surfaceColor(observer.scene, PhysicalSurface::device));
     device.draw(flat_);
-    flat_.set("flatColor", flat * surfaceColor(observer.scene, PhysicalSurface::table));
+    flat_.set("flatColor", onTable * surfaceColor(observer.scene, PhysicalSurface::table));
     flat_.set("worldFromMesh", glm::mat4(1.0F));
     table_.draw();
 }
@@ -52,6 +56,16 @@ void LabPreview::addProjector(const Observer& observer, const DeviceSurface& dev
     }
 }
 
+void LabPreview::addLight(const Observer& observer, const DeviceSurface& device,
+                          std::span<const ProjectorTarget* const> projectors) {
+    glDepthMask(GL_FALSE);
+    glEnable(GL_BLEND);
+    glBlendEquation(GL_FUNC_ADD);
+    glBlendFunc(GL_ONE, GL_ONE);
+    for (const ProjectorTarget* projector : projectors)
+        addProjector(observer, device, *projector, deviceLight_, tableLight_);
+}
+
 void LabPreview::draw(GLuint framebuffer, const CalibratedCamera& observer, float ambient, const ShowFrame& frame,
                       const DeviceSurface& device, std::span<const ProjectorTarget* const> projectors,
                       PictureOutput& out) {
@@ -59,13 +73,16 @@ void LabPreview::draw(GLuint framebuffer, const CalibratedCamera& observer, floa
     table_.fit(observer, frame.scene->table.size);
     const Observer seen{observer, depthRange(observer, physicalBounds(frame)), *frame.scene};
     beginSurfaces(radiance_->framebuffer(), observer.size);
-    drawSurfaces(seen, device, ambient);
-    glDepthMask(GL_FALSE);
-    glEnable(GL_BLEND);
-    glBlendEquation(GL_FUNC_ADD);
-    glBlendFunc(GL_ONE, GL_ONE);
-    for (const ProjectorTarget* projector : projectors)
-        addProjector(seen, device, *projector, deviceLight_, tableLight_);
+    try {
+        if (problem_.empty()) {
+            drawSurfaces(seen, device, ambient, ambient);
+            addLight(seen, device, projectors);
+        }
+    } catch (const DataError& error) {
+        problem_ = error.subject() + ": " + error.why() + "; the lab is drawn without the light of projectors";
+        beginSurfaces(radiance_->framebuffer(), observer.size);
+    }
+    if (!problem_.empty()) drawSurfaces(seen, device, kStandIn.x, kStandIn.y);
     out.draw(framebuffer, *radiance_);
 }
 
@@ -74,7 +91,7 @@ void LabPreview::drawMask(GLuint framebuffer, const CalibratedCamera& observer, 
     table_.fit(observer, frame.scene->table.size);
     const Observer seen{observer, depthRange(observer, physicalBounds(frame)), *frame.scene};
     beginSurfaces(framebuffer, observer.size);
-    drawSurfaces(seen, device, 0.0F);
+    drawSurfaces(seen, device, 0.0F, 0.0F);
     glDepthMask(GL_FALSE);
     glEnable(GL_BLEND);
     glBlendEquation(GL_MAX);

@@ -2,6 +2,7 @@
 
 #include <optional>
 #include <span>
+#include <string>
 
 #include "core/render/picture_output.h"
 #include "core/render/projector_target.h"
@@ -13,13 +14,17 @@ class LabPreview {
 public:
     LabPreview();
 
-    /// Into a framebuffer of the observer's size, sRGB encoded by it or, if it does not encode, by this.
+    /// Into a framebuffer of the observer's size, sRGB encoded by it or, if it does not encode, by this. Where the
+    /// driver refuses the program of light, a bright device on a dark table, and `problem`.
     void draw(GLuint framebuffer, const CalibratedCamera& observer, float ambient, const ShowFrame& frame,
               const DeviceSurface& device, std::span<const ProjectorTarget* const> projectors, PictureOutput& out);
-    /// White where a projector reaches what the observer sees.
+    /// White where a projector reaches what the observer sees. Throws DataError where the driver refuses the program:
+    /// what stood in for it would be wrong.
     void drawMask(GLuint framebuffer, const CalibratedCamera& observer, const ShowFrame& frame,
                   const DeviceSurface& device, std::span<const ProjectorTarget* const> projectors);
 
+    /// Empty, or what the driver refuses, with file and line, and what stands in for it.
+    [[nodiscard]] const std::string& problem() const noexcept { return problem_; }
     [[nodiscard]] std::size_t objectCount() const noexcept;
 
 private:
@@ -28,13 +33,16 @@ private:
         DepthRange range;
         const Scene& scene;
     };
-    void drawSurfaces(const Observer& observer, const DeviceSurface& device, float flat);
+    void drawSurfaces(const Observer& observer, const DeviceSurface& device, float onDevice, float onTable);
+    void addLight(const Observer& observer, const DeviceSurface& device,
+                  std::span<const ProjectorTarget* const> projectors);
     void addProjector(const Observer& observer, const DeviceSurface& device, const ProjectorTarget& projector,
                       Program& deviceProgram, Program& tableProgram);
 
     TableGrid table_;
     std::optional<ColorTarget> radiance_;
     Program flat_, deviceLight_, tableLight_, deviceMask_, tableMask_;
+    std::string problem_;
 };
 
 } // namespace lumorph

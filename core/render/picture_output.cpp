@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "core/base/error.h"
 #include "core/render/draw_state.h"
 
 namespace lumorph {
@@ -21,6 +22,14 @@ bool encodes(GLuint framebuffer) {
     return encoding == GL_SRGB;
 }
 
+// What is left without a program.
+void copy(GLuint framebuffer, const ColorTarget& picture) {
+    const glm::ivec2 size = picture.size();
+    glBindFramebuffer(GL_READ_FRAMEBUFFER, picture.framebuffer());
+    glBlitFramebuffer(0, 0, size.x, size.y, 0, 0, size.x, size.y, GL_COLOR_BUFFER_BIT, GL_NEAREST);
+    glBindFramebuffer(GL_FRAMEBUFFER, framebuffer);
+}
+
 } // namespace
 
 PictureOutput::PictureOutput() : out_(outFiles({})), encodedOut_(outFiles({"ENCODE"})) {}
@@ -30,6 +39,16 @@ void PictureOutput::draw(GLuint framebuffer, const ColorTarget& picture) {
     beginSurfaces(framebuffer, picture.size());
     glDisable(GL_DEPTH_TEST);
     if (encoding) glEnable(GL_FRAMEBUFFER_SRGB);
+    try {
+        if (problem_.empty()) encode(picture, encoding);
+    } catch (const DataError& error) {
+        problem_ = error.subject() + ": " + error.why() + "; pictures are copied, and may be too dark";
+    }
+    if (!problem_.empty()) copy(framebuffer, picture);
+    glDisable(GL_FRAMEBUFFER_SRGB);
+}
+
+void PictureOutput::encode(const ColorTarget& picture, bool encoding) {
     Program& out = encoding ? out_ : encodedOut_;
     out.use();
     bindTexture(0, picture.texture());
@@ -37,7 +56,6 @@ void PictureOutput::draw(GLuint framebuffer, const ColorTarget& picture) {
     glBindVertexArray(noAttributes_.name());
     glDrawArrays(GL_TRIANGLES, 0, 3);
     glBindVertexArray(0);
-    glDisable(GL_FRAMEBUFFER_SRGB);
 }
 
 std::size_t PictureOutput::objectCount() const noexcept { return 1 + out_.objectCount() + encodedOut_.objectCount(); }

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <string>
+
 #include "core/render/color_target.h"
 #include "core/render/program.h"
 
@@ -13,11 +15,16 @@ public:
     /// Into a framebuffer of the picture's size, encoded by it or, if it does not encode, by this.
     void draw(GLuint framebuffer, const ColorTarget& picture);
 
+    /// Empty, or why the driver only copies, with file and line.
+    [[nodiscard]] const std::string& problem() const noexcept { return problem_; }
     [[nodiscard]] std::size_t objectCount() const noexcept;
 
 private:
+    void encode(const ColorTarget& picture, bool encoding);
+
     gl::VertexArray noAttributes_;
     Program out_, encodedOut_;
+    std::string problem_;
 };
 
 } // namespace lumorph

@@ -269,7 +269,8 @@ SpatialTimes SpatialRenderer::times() const { return data_->times; }
 
 std::vector<std::string> SpatialRenderer::warnings() const {
     std::vector<std::string> warnings = data_->pass.warnings();
-    for (const std::string& problem : {data_->eyeProblem, data_->projectorProblem})
+    for (const std::string& problem :
+         {data_->eyeProblem, data_->projectorProblem, data_->lab.problem(), data_->out.problem()})
         if (!problem.empty()) warnings.push_back(problem);
     return warnings;
 }

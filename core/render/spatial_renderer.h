@@ -51,7 +51,8 @@ public:
     [[nodiscard]] Image readEye();
     [[nodiscard]] Image readProjector(std::size_t projector) const;
     [[nodiscard]] Image readLab(const CalibratedCamera& observer, float ambient = 0.0F);
-    /// White where the surface that the eye pass's camera sees is seen by an enabled projector too.
+    /// White where the surface that the eye pass's camera sees is seen by an enabled projector too. Throws DataError
+    /// where the driver refuses its program.
     [[nodiscard]] Image readMask();
 
     [[nodiscard]] SpatialTimes times() const;

@@ -30,10 +30,10 @@ struct Row {
     std::string name;
     std::string what; ///< what is compared with what
     double figure = 0.0;
-    std::string unit;
-    std::optional<Limit> bar;
-    std::optional<Limit> aim;
-    std::vector<std::string> notes; ///< inputs and figures behind it, plain sentences
+    std::string unit = {};
+    std::optional<Limit> bar = {};
+    std::optional<Limit> aim = {};
+    std::vector<std::string> notes = {}; ///< inputs and figures behind it, plain sentences
 };
 
 /// A series of measurements, for the eye.

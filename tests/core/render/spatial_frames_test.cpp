@@ -183,6 +183,62 @@ TEST(SpatialFrames, WithoutTheShadersOfShadowsThereAreNone) {
     EXPECT_LE(differingPixels(sent(renderer), without), 3);
 }
 
+TEST(SpatialFrames, WithoutTheLabsShaderItShowsTheBareDevice) {
+    const HeadlessContext context;
+    const BrokenShader broken("lab.frag");
+    SpatialRenderer renderer;
+    renderer.setEyeSize({320, 200});
+    const ShowFrame frame =
+        frameOf(unlitScene(glm::vec3(0.8F, 0.1F, 0.1F), glm::vec3(0.1F, 0.8F, 0.1F), {overhead()}), liftedFlaps());
+    renderer.draw(frame);
+    EXPECT_TRUE(renderer.warnings().empty());
+    for (int i = 0; i < 2; ++i) {
+        const Image lab = renderer.readLab(overhead().camera);
+        EXPECT_GT(lab.at(240, 160)[0], 1.5 * lab.at(5, 160)[0]);
+        EXPECT_GT(lab.at(5, 160)[0], 0);
+    }
+    ASSERT_EQ(renderer.warnings().size(), 1U);
+    EXPECT_NE(renderer.warnings().front().find("lab.frag:3"), std::string::npos) << renderer.warnings().front();
+    // What a projector reaches cannot be told, and is not made up.
+    EXPECT_THROW(static_cast<void>(renderer.readMask()), DataError);
+    renderer.draw(frame);
+    EXPECT_GT(renderer.readProjector(0).at(240, 160)[0], 100);
+    EXPECT_EQ(glGetError(), static_cast<GLenum>(GL_NO_ERROR));
+}
+
+TEST(SpatialFrames, WithoutTheShaderOfPicturesTheyAreCopied) {
+    const HeadlessContext context;
+    const ShowFrame frame =
+        frameOf(unlitScene(glm::vec3(0.8F, 0.1F, 0.1F), glm::vec3(0.1F, 0.8F, 0.1F), {overhead()}), liftedFlaps());
+    const auto pictures = [&](SpatialRenderer& renderer) {
+        renderer.setEyeSize({320, 200});
+        renderer.draw(frame);
+        return std::pair(renderer.readEye(), renderer.readLab(overhead().camera));
+    };
+    SpatialRenderer whole;
+    const auto [eye, lab] = pictures(whole);
+    const BrokenShader broken("picture_output.frag");
+    SpatialRenderer renderer;
+    const auto [copiedEye, copiedLab] = pictures(renderer);
+    ASSERT_EQ(renderer.warnings().size(), 1U);
+    EXPECT_NE(renderer.warnings().front().find("picture_output.frag:3"), std::string::npos)
+        << renderer.warnings().front();
+    // Upright, in its place and of its colour; how bright is up to the driver.
+    for (const auto& [expected, copied] : {std::pair(&eye, &copiedEye), std::pair(&lab, &copiedLab)}) {
+        const glm::ivec2 size = expected->size();
+        ASSERT_EQ(copied->size(), size);
+        int agreeing = 0;
+        for (int y = 0; y < size.y; ++y)
+            for (int x = 0; x < size.x; ++x) {
+                const Image::Pixel a = expected->at(x, y);
+                const Image::Pixel b = copied->at(x, y);
+                if ((a[0] > a[1]) == (b[0] > b[1]) && (a[0] > 0) == (b[0] > 0)) ++agreeing;
+            }
+        EXPECT_GT(agreeing, 0.99 * size.x * size.y);
+    }
+    EXPECT_EQ(glGetError(), static_cast<GLenum>(GL_NO_ERROR));
+}
+
 SceneTexture texture(const std::string& image, int columns = 1) {
     SceneTexture texture;
     texture.image = image;
