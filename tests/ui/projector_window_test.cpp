@@ -1,6 +1,7 @@
 #include "app/studio/output/projector_window.h"
 
 #include <QGuiApplication>
+#include <QPointer>
 #include <QScreen>
 #include <QSignalSpy>
 #include <QTest>
@@ -61,7 +62,8 @@ protected:
     Commands commands;
     RenderThread renderer;
     ShowFeed feed{loop, renderer, notices};
-    ProjectorOutputs outputs{document, feed, commands, notices};
+    std::unique_ptr<ProjectorOutputs> all = std::make_unique<ProjectorOutputs>(document, feed, commands, notices);
+    ProjectorOutputs& outputs = *all;
 };
 
 /// The grab without its dots per inch, which are none of our business.
@@ -163,6 +165,21 @@ TEST_F(ProjectorOutput, TheStudiosOwnScreenIsNotCoveredWithoutAsking) {
     outputs.close(0);
     outputs.showOnScreen(0, screenName());
     EXPECT_NE(outputs.window(0), nullptr);
+}
+
+TEST_F(ProjectorOutput, AWindowThatIsBeingClosedGoesBeforeTheFeed) {
+    outputs.showInWindow(0);
+    const QPointer<ProjectorWindow> first = outputs.window(0);
+    ASSERT_NE(first, nullptr);
+    first->close(); // as its user does
+    EXPECT_EQ(outputs.window(0), nullptr);
+    EXPECT_TRUE(eventually([&] { return first.isNull(); }, 5s));
+    outputs.showInWindow(0);
+    const QPointer<ProjectorWindow> second = outputs.window(0);
+    ASSERT_NE(second, nullptr);
+    outputs.close(0);
+    all.reset(); // the program ends at once
+    EXPECT_TRUE(second.isNull());
 }
 
 TEST_F(ProjectorOutput, ItsNumberIsShownForAWhile) {

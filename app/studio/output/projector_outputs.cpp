@@ -43,7 +43,10 @@ ProjectorOutputs::ProjectorOutputs(StudioDocument& document, ShowFeed& feed, Com
     heedScene();
 }
 
-ProjectorOutputs::~ProjectorOutputs() = default;
+ProjectorOutputs::~ProjectorOutputs() {
+    // No window may outlive the feed it asks for pictures.
+    for (const QPointer<ProjectorWindow>& window : closing_) delete window;
+}
 
 std::size_t ProjectorOutputs::count() const {
     const auto& scene = document_.state().scene;
@@ -215,9 +218,12 @@ void ProjectorOutputs::close(std::size_t projector) {
     notices_.dismiss(kPlace, titleOf(projector));
     notices_.dismiss(kPlace, tr("Size of %1").arg(titleOf(projector)));
     // It may be the one that tells of its end.
-    found->second.window->hide();
-    found->second.window.release()->deleteLater();
+    ProjectorWindow* const window = found->second.window.release();
     outputs_.erase(found);
+    std::erase(closing_, nullptr);
+    closing_.emplace_back(window);
+    window->hide();
+    window->deleteLater();
     emit changed();
 }
 

@@ -4,9 +4,11 @@
 #include <map>
 #include <memory>
 #include <set>
+#include <vector>
 
 #include <QMenu>
 #include <QObject>
+#include <QPointer>
 #include <QScreen>
 
 #include "app/studio/document/notices.h"
@@ -67,7 +69,8 @@ private:
     Commands& commands_;
     Notices& notices_;
     std::map<std::size_t, Output> outputs_;
-    std::set<QString> allowed_; ///< screens of the studio that may be covered
+    std::vector<QPointer<ProjectorWindow>> closing_; ///< deleted when the event loop comes round
+    std::set<QString> allowed_;                      ///< screens of the studio that may be covered
     TestPattern pattern_ = TestPattern::none;
     bool scaled_ = false;
 };
