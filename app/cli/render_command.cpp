@@ -114,8 +114,11 @@ void render(const RenderArguments& arguments, const Session& session) {
                         sizeOf(arguments.size),
                         {},
                         arguments.ambient};
-    for (const std::string& hand : arguments.hands)
-        if (const auto place = placeOf("--hand", hand)) request.hands.push_back(*place);
+    for (const std::string& hand : arguments.hands) {
+        const auto place = placeOf("--hand", hand);
+        if (!place) throw InvalidInput("--hand", "it is empty", "give a place as X,Y,Z in metres");
+        request.hands.push_back(*place);
+    }
     ProjectMoment moment{arguments.seconds, placeOf("--eye", arguments.eye), std::nullopt};
     if (!arguments.state.empty()) moment.state = parseState(arguments.state);
 
@@ -148,8 +151,10 @@ void addRenderCommand(CLI::App& app, Session& session) {
                         "The viewer whom the show follows, world metres: X,Y,Z (default: the project's)");
     command->add_option("--observer", arguments->observer,
                         "Who looks at lab or device, world metres: X,Y,Z (default: the eye)");
-    command->add_option("--hand", arguments->hands,
-                        "In the lab, the viewer's hand at a place, world metres: X,Y,Z; once for each hand");
+    command
+        ->add_option("--hand", arguments->hands,
+                     "In the lab, the viewer's hand at a place, world metres: X,Y,Z; once for each hand")
+        ->allow_extra_args(false); // else it takes the project that follows for another hand
     command->add_option("--ambient", arguments->ambient, "In the lab, the room's light: radiance of white")
         ->check(numberBetween(0.0, 10.0))
         ->capture_default_str();

@@ -18,6 +18,7 @@ inline void beginSurfaces(GLuint framebuffer, glm::ivec2 size) {
     glDisable(GL_STENCIL_TEST);
     glDisable(GL_CULL_FACE);
     glDisable(GL_BLEND);
+    glBlendEquation(GL_FUNC_ADD);
     glDisable(GL_POLYGON_OFFSET_FILL);
     glEnable(GL_DEPTH_TEST);
     glDepthFunc(GL_LEQUAL);

@@ -60,6 +60,8 @@ void EyePass::Data::drawShadow(const ShowFrame& frame) {
         shadowProblem = error.subject() + ": " + error.why() + "; there are no shadows";
         lighting.dropShadow();
         glEnable(GL_DEPTH_TEST);
+        glDisable(GL_DEPTH_CLAMP);
+        glDisable(GL_CULL_FACE);
     }
 }
 

@@ -186,7 +186,7 @@ struct Scene {
     ViewDependence viewDependence;
     ViewerChoice viewer = ViewerChoice::automatic;
     bool compensation = true;        ///< of incidence and distance
-    double predictionSeconds = 0.06; ///< that poses are extrapolated by at least; 0: they are not
+    double predictionSeconds = 0.06; ///< that poses are extrapolated by at least; 0: only to the present
     std::vector<SceneProjector> projectors;
     glm::vec3 eye{0.0F, 0.45F, 0.55F}; ///< simulated viewer, world metres
     glm::mat4 worldFromDevice{1.0F};   ///< simulated tracker: where the device lies

@@ -118,10 +118,15 @@ TEST_F(Render, AHandInTheLabShadowsTheProjectorAndTheRoomLightsTheShadow) {
     EXPECT_NEAR(lit.at(middle.x, middle.y)[0], 89, 3);
     for (std::size_t i = 0; i < open.pixels().size(); ++i)
         EXPECT_LE(shadowed.pixels()[i][0], open.pixels()[i][0] + 1) << "a hand only takes light away";
+    const Outcome projectLast = lumorph({"render", "--view", "lab", "--size", "320x200", "--observer", "0.6,0.4,0",
+                                         "-o", w["last.png"], "--hand", "0,0.3,0", w["p.lumorph"]});
+    ASSERT_EQ(projectLast.exitCode, 0) << projectLast.err;
+    EXPECT_TRUE(same(readPng(w["last.png"]), shadowed));
     const Image away = with({"--hand", "0,0.3,0.8"});
     EXPECT_TRUE(same(away, open)) << "a hand outside of the light";
     expectRefused({"--view", "eye", "--hand", "0,0.3,0"}, "--view lab");
     expectRefused({"--view", "lab", "--hand", "0,0.3"}, "three numbers");
+    expectRefused({"--view", "lab", "--hand", ""}, "empty");
     expectRefused({"--view", "lab", "--ambient", "-1"}, "--ambient");
 }
 

@@ -298,9 +298,16 @@ TEST_F(SceneDocks, TheNumberKeysShowTheTechniquesOfTheirDemoAlone) {
     window.studio().desk.openDemo("techniques");
     ASSERT_NE(window.find<QAbstractButton>("technique.3.button"), nullptr);
     ASSERT_TRUE(eventually([&] { return window.studio().jobs.running().empty(); }));
+    const glm::vec3 grey(0.7F);
+    editScene(window.studio().document, "Measured", [&](Scene& measured) {
+        measured.device.surfaceColor = grey;
+        measured.table.surfaceColor = grey;
+    });
     for (const Technique& technique : techniques()) {
         QTest::keyClick(&window.window(), static_cast<Qt::Key>(Qt::Key_0 + technique.key));
         EXPECT_TRUE(scene().items == techniqueScene(technique.key).items) << technique.name;
+        EXPECT_EQ(scene().device.surfaceColor, grey) << "the same device and table";
+        EXPECT_EQ(scene().table.surfaceColor, grey);
         EXPECT_TRUE(window.find<QAbstractButton>(QString("technique.%1.button").arg(technique.key))->isChecked());
         EXPECT_TRUE(window.text("technique.sentence").contains(QString::fromStdString(technique.name)));
         pass(1s);

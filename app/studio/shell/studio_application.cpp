@@ -70,9 +70,7 @@ QString prepareApplication(int argc, char** argv) {
     QSurfaceFormat format;
     format.setVersion(4, 1);
     format.setProfile(QSurfaceFormat::CoreProfile);
-    format.setOption(QSurfaceFormat::ResetNotification); // contexts that share must agree
     QSurfaceFormat::setDefaultFormat(format);
-    QCoreApplication::setAttribute(Qt::AA_ShareOpenGLContexts);
     QCoreApplication::setOrganizationName("lumorph");
     QCoreApplication::setApplicationName("lumorph");
     QCoreApplication::setApplicationVersion(LUMORPH_VERSION);

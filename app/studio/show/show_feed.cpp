@@ -12,7 +12,7 @@ namespace {
 constexpr auto kPlace = "viewport";
 constexpr std::int64_t kSecond = 1000;
 constexpr double kSmoothing = 0.05; // of delays
-constexpr double kLongest = 300.0;  // milliseconds; while shaders compile all waits, and says nothing of what follows
+constexpr double kLongest = 300.0;  // milliseconds; a frame that waited for something else counts for no more
 
 /// Whether a picture answers what is wanted: an observer who moves gets those from where he just was.
 bool answers(const ShowView& picture, const ShowView& wanted) {
@@ -99,7 +99,11 @@ void ShowFeed::take() {
     const double age = std::chrono::duration<double, std::milli>(SteadyClock().now() - newest_.match->time).count();
     if (!newest_.still || newest_.resolution < 1.0 || endToEnd_ == 0.0 || 4.0 * age < kSecond) {
         endToEnd_ = age;
-        usualDelay_ += (usualDelay_ == 0.0 ? 1.0 : kSmoothing) * (std::min(age, kLongest) - usualDelay_);
+        // While the loop rests, frames of long ago are drawn; and shaders compile before the first picture.
+        const std::uint64_t number = newest_.match->number;
+        if (count_ > 0 && number != measured_)
+            usualDelay_ += (usualDelay_ == 0.0 ? 1.0 : kSmoothing) * (std::min(age, kLongest) - usualDelay_);
+        measured_ = number;
         loop_.setLightDelay(1e-3 * usualDelay_);
     }
     ++count_;

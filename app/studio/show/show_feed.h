@@ -64,7 +64,8 @@ private:
     DrawnShow newest_;
     std::vector<std::int64_t> shownAt_; ///< milliseconds
     double endToEnd_ = 0.0;
-    double usualDelay_ = 0.0; ///< of late, milliseconds
+    double usualDelay_ = 0.0;    ///< of late, milliseconds
+    std::uint64_t measured_ = 0; ///< number of the last frame that it was measured of
     std::uint64_t count_ = 0;
     std::set<std::string> told_; ///< warnings
     int views_ = 0;

@@ -29,7 +29,6 @@ std::unique_ptr<QOpenGLContext> makeContext(const QSurfaceFormat& wished) {
     for (const QSurfaceFormat& format : {wished, untold, QSurfaceFormat()}) {
         auto context = std::make_unique<QOpenGLContext>();
         context->setFormat(format);
-        context->setShareContext(QOpenGLContext::globalShareContext());
         if (context->create()) return context;
     }
     return nullptr;

@@ -10,8 +10,8 @@ class QOffscreenSurface;
 
 namespace lumorph::studio {
 
-/// A thread with an OpenGL 4.1 core context of its own that shares objects with the program's other contexts. Made and
-/// destroyed in the window's thread.
+/// A thread with an OpenGL 4.1 core context of its own. It shares nothing with other contexts: after a reset of the
+/// driver whatever shares with a lost context is lost too. Made and destroyed in the window's thread.
 class GlThread {
 public:
     /// Runs `work` in the thread, the context being current, or `failed` there with what is wrong and what to do. The

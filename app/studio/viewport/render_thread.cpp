@@ -38,7 +38,10 @@ struct ContextLost {};
 } // namespace
 
 struct RenderThread::Data {
-    explicit Data(RenderThread& whole) : owner(whole) {}
+    explicit Data(RenderThread& whole) : owner(whole) {
+        again.setSingleShot(true);
+        QObject::connect(&again, &QTimer::timeout, &owner, [this] { startAnew(); });
+    }
 
     bool stillQuality = true; // the window thread's alone
 
@@ -70,6 +73,9 @@ struct RenderThread::Data {
     }
     [[nodiscard]] bool pressing() const { return schedule.pressing() || pace.pressing(); }
 
+    void fail(const QString& why); ///< after a reset it is tried again
+    void failLost();
+
     // In the window's thread:
     void start();
     void startAnew();
@@ -91,10 +97,11 @@ struct RenderThread::Data {
 
     std::atomic<std::size_t> objects{0};
     std::atomic<std::size_t> errors{0};
-    std::atomic<bool> lost{false};
-    GlDriver driver;           ///< of the render thread only
-    QString lastComplaint;     ///< likewise
-    QString lastShowComplaint; ///< likewise
+    std::atomic<bool> lost{false}; ///< by a reset, until drawing goes on
+    QTimer again;                  ///< of the window's thread
+    GlDriver driver;               ///< of the render thread only
+    QString lastComplaint;         ///< likewise
+    QString lastShowComplaint;     ///< likewise
     std::unique_ptr<GlThread> thread;
 };
 
@@ -102,7 +109,14 @@ void RenderThread::Data::start() {
     // The thread before has to be gone: it may still speak of its failure.
     thread.reset();
     failure.reset();
-    thread = std::make_unique<GlThread>([this] { run(); }, [this](const QString& why) { tell(why); });
+    thread = std::make_unique<GlThread>([this] { run(); }, [this](const QString& why) { fail(why); });
+}
+
+void RenderThread::Data::fail(const QString& why) {
+    tell(why);
+    if (lost)
+        QMetaObject::invokeMethod(
+            &owner, [this] { again.start(kAnew); }, Qt::QueuedConnection);
 }
 
 void RenderThread::Data::tell(std::optional<QString> why) {
@@ -115,27 +129,30 @@ void RenderThread::Data::tell(std::optional<QString> why) {
 
 // A show that runs all day comes back by itself.
 void RenderThread::Data::startAnew() {
-    if (!lost) return;
-    if (owner.failure()) start();
-    QTimer::singleShot(kAnew, &owner, [this] { startAnew(); });
+    if (lost && owner.failure()) start();
 }
 
 void RenderThread::Data::run() {
     try {
         serve();
     } catch (const ContextLost&) {
-        lost = true;
-        tell(QStringLiteral("The graphics driver was reset. Drawing begins anew by itself; if this comes again and "
-                            "again, update the driver, or start Lumorph with LIBGL_ALWAYS_SOFTWARE=1."));
-        QMetaObject::invokeMethod(
-            &owner, [this] { QTimer::singleShot(kAnew, &owner, [this] { startAnew(); }); }, Qt::QueuedConnection);
+        failLost();
     } catch (const std::exception& error) {
-        tell(reasonOf(error));
+        // A reset is often noticed by what waits for the card.
+        if (contextLost(driver))
+            failLost();
+        else
+            fail(reasonOf(error));
     }
 }
 
+void RenderThread::Data::failLost() {
+    lost = true;
+    fail(QStringLiteral("The graphics driver was reset. Drawing begins anew by itself; if this comes again and "
+                        "again, update the driver, or start Lumorph with LIBGL_ALWAYS_SOFTWARE=1."));
+}
+
 void RenderThread::Data::serve() {
-    lost = false;
     tell(std::nullopt);
     driver = currentDriver();
     Drawers drawers{
@@ -257,6 +274,7 @@ void RenderThread::Data::complain(const QString& why) {
 
 void RenderThread::Data::count(const Drawers& drawers) {
     if (contextLost(driver)) throw ContextLost{};
+    lost = false;
     objects = drawers.frames.objectCount() + drawers.show.objectCount();
     errors += FrameDrawer::takeErrors();
 }

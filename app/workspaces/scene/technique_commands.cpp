@@ -34,6 +34,8 @@ void takeTechnique(Scene& scene, int key) {
     next.viewer = scene.viewer;
     next.predictionSeconds = scene.predictionSeconds;
     next.compensation = scene.compensation;
+    next.device.surfaceColor = scene.device.surfaceColor;
+    next.table.surfaceColor = scene.table.surfaceColor;
     scene = std::move(next);
 }
 
