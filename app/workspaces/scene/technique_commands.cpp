@@ -4,6 +4,7 @@
 #include <utility>
 
 #include <QLabel>
+#include <QVBoxLayout>
 
 #include "app/studio/document/scene_edit.h"
 #include "app/workspaces/scene/segments.h"
