@@ -22,12 +22,25 @@ constexpr glm::ivec2 kEyeSize{1280, 800};
 
 std::string words(glm::ivec2 size) { return std::to_string(size.x) + " x " + std::to_string(size.y); }
 
-void checkPlace(const char* option, const glm::vec3& place) {
+void checkPlace(const char* option, const glm::vec3& place, const char* whyAboveTable) {
     if (!std::isfinite(place.x + place.y + place.z))
         throw InvalidInput(option, "it is not a finite place", "give three numbers, metres: X,Y,Z");
     if (!(place.y > 0.0F))
-        throw InvalidInput(option, "it lies below the table, from where nothing is seen",
-                           "give a height (the second number) above 0, in metres");
+        throw InvalidInput(option, whyAboveTable, "give a height (the second number) above 0, in metres");
+}
+
+void checkRequest(const ShowFrame& frame, const ViewRequest& request) {
+    constexpr auto kSeesNothing = "it is not above the table, so nothing is seen from there";
+    checkPlace("--eye", frame.eye.value_or(frame.scene->eye), kSeesNothing);
+    if (request.observer) checkPlace("--observer", *request.observer, kSeesNothing);
+    for (const glm::vec3& hand : request.hands)
+        checkPlace("--hand", hand, "it is not above the table, so it is in no light");
+    if (request.view == ViewRequest::View::lab) return;
+    if (!request.hands.empty())
+        throw InvalidInput("--hand", "only the lab has visitors", "use it with --view lab, or leave it out");
+    if (request.ambient > 0.0)
+        throw InvalidInput("--ambient", "only the lab has the light of a room",
+                           "use it with --view lab, or leave it out");
 }
 
 const SceneProjector& projectorOf(const ShowFrame& frame, std::size_t number) {
@@ -118,11 +131,7 @@ RenderedView plainView(const ShowFrame& frame, const ViewRequest& request) {
 } // namespace
 
 RenderedView renderView(const ShowFrame& frame, const ViewRequest& request) {
-    checkPlace("--eye", eyeOf(frame));
-    if (request.observer) checkPlace("--observer", *request.observer);
-    for (const glm::vec3& hand : request.hands) checkPlace("--hand", hand);
-    if (request.view != ViewRequest::View::lab && (!request.hands.empty() || request.ambient > 0.0))
-        throw InvalidInput("--hand, --ambient", "only the lab has visitors and a room", "use them with --view lab");
+    checkRequest(frame, request);
     const HeadlessContext context;
     if (request.view == ViewRequest::View::device) return plainView(frame, request);
     SpatialRenderer renderer;

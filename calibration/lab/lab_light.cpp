@@ -24,6 +24,10 @@ double lightOfSrgb(double value) noexcept {
     return value <= 0.04045 ? value / 12.92 : std::pow((value + 0.055) / 1.055, 2.4);
 }
 
+glm::vec3 lightOfSrgb(const glm::vec3& color) noexcept {
+    return {lightOfSrgb(color.r), lightOfSrgb(color.g), lightOfSrgb(color.b)};
+}
+
 double srgbOfLight(double light) noexcept {
     const double inside = std::clamp(light, 0.0, 1.0);
     return inside <= 0.0031308 ? 12.92 * inside : 1.055 * std::pow(inside, 1.0 / 2.4) - 0.055;

@@ -26,6 +26,7 @@ struct LabPicture {
 
 /// Light of an sRGB value in [0, 1], and back.
 [[nodiscard]] double lightOfSrgb(double value) noexcept;
+[[nodiscard]] glm::vec3 lightOfSrgb(const glm::vec3& color) noexcept;
 [[nodiscard]] double srgbOfLight(double light) noexcept;
 
 } // namespace lumorph

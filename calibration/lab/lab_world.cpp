@@ -12,10 +12,6 @@
 namespace lumorph {
 namespace {
 
-glm::vec3 albedoOf(const glm::vec3& color) {
-    return {lightOfSrgb(color.r), lightOfSrgb(color.g), lightOfSrgb(color.b)};
-}
-
 /// A box of half sizes along three axes of its own.
 void addBox(TriangleMesh& mesh, const glm::vec3& centre, const glm::mat3& axes, const glm::vec3& half) {
     const auto first = static_cast<std::uint32_t>(mesh.positions.size());
@@ -75,8 +71,8 @@ LabWorld labWorld(const ShowFrame& frame, std::span<const Image> pictures) {
                                " projectors",
                            "give one for each");
     LabWorld world;
-    world.surfaces.push_back({deviceMesh(frame), albedoOf(frame.scene->device.surfaceColor)});
-    world.surfaces.push_back({tableMesh(frame.scene->table), albedoOf(frame.scene->table.surfaceColor)});
+    world.surfaces.push_back({deviceMesh(frame), lightOfSrgb(frame.scene->device.surfaceColor)});
+    world.surfaces.push_back({tableMesh(frame.scene->table), lightOfSrgb(frame.scene->table.surfaceColor)});
     for (std::size_t i = 0; i < projectors.size(); ++i)
         world.projectors.push_back(
             {projectors[i], projectors[i].enabled ? pictures[i] : Image(projectors[i].camera.size)});

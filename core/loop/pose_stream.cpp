@@ -14,7 +14,6 @@ namespace {
 
 constexpr double kFarthest = 1000.0; // metres; what lies beyond is no room
 constexpr double kBehind = -0.05;    // seconds
-constexpr double kAhead = 0.15;
 
 double secondsOf(Microseconds time) { return 1e-6 * static_cast<double>(time.count()); }
 
@@ -82,7 +81,7 @@ std::optional<Pose> PoseStream::at(Microseconds time, Microseconds now) const {
     const std::scoped_lock lock(mutex_);
     const Filter& filter = *filter_;
     if (!filter.tracked || now - filter.measured > staleAfter_) return std::nullopt;
-    return filter.poses.at(std::clamp(secondsOf(time - filter.measured), kBehind, kAhead));
+    return filter.poses.at(std::clamp(secondsOf(time - filter.measured), kBehind, kFarthestAhead));
 }
 
 } // namespace lumorph

@@ -33,6 +33,9 @@ struct PoseSample {
 /// lag in motion.
 class PoseStream {
 public:
+    /// Seconds after a measurement; what is extrapolated farther would only swing.
+    static constexpr double kFarthestAhead = 0.15;
+
     /// Nothing newer than this makes it stale: as if lost.
     explicit PoseStream(Microseconds staleAfter = Microseconds{250'000});
 
@@ -44,8 +47,8 @@ public:
     /// The newest valid sample is too old, or there was none. A body that was lost just now is not stale yet.
     [[nodiscard]] bool isStale(Microseconds now) const;
     [[nodiscard]] std::optional<PoseSample> latest() const;
-    /// Where it will be at `time`, extrapolated from what was measured (at most 0.15 s ahead); empty while lost or
-    /// stale.
+    /// Where it will be at `time`, extrapolated from what was measured (`kFarthestAhead` at most); empty while
+    /// lost or stale.
     [[nodiscard]] std::optional<Pose> at(Microseconds time, Microseconds now) const;
 
 private:

@@ -16,11 +16,9 @@ glm::mat4 matrixOf(const Pose& pose) {
     return {matrix};
 }
 
-/// Where drawing takes longer than the scene says, poses are predicted farther. Too far they would only swing.
+/// Where drawing takes longer than the scene says, poses are predicted farther.
 double lookAhead(const Scene& scene, double lightDelay) {
-    constexpr double kFarthest = 0.15;
-    if (scene.predictionSeconds <= 0.0) return 0.0;
-    return std::max(scene.predictionSeconds, std::min(lightDelay, kFarthest));
+    return scene.predictionSeconds > 0.0 ? std::max(scene.predictionSeconds, lightDelay) : 0.0;
 }
 
 /// What the board's streams say about one moment to come.
@@ -32,7 +30,8 @@ public:
             for (const PoseBoard::Entry& entry : board->entries()) take(entry, then);
         if (!tracked) return;
         frame.ms.poseAge = 1e-3 * static_cast<double>(std::max(frame.time - oldest_, Microseconds{0}).count());
-        frame.ms.latency = frame.ms.poseAge + 1e3 * seconds;
+        frame.ms.latency =
+            std::min(frame.ms.poseAge + 1e3 * seconds, std::max(frame.ms.poseAge, 1e3 * PoseStream::kFarthestAhead));
     }
 
     std::vector<TrackedHead> heads;

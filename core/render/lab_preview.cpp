@@ -28,9 +28,9 @@ void LabPreview::drawSurfaces(const Observer& observer, const DeviceSurface& dev
     glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
     flat_.use();
     setCamera(flat_, observer.camera, observer.range.near, observer.range.far);
-    flat_.set("flatColor", onDevice * surfaceColor(observer.scene, PhysicalSurface::device));
+    flat_.set("flatColor", onDevice * albedoOf(observer.scene, PhysicalSurface::device));
     device.draw(flat_);
-    flat_.set("flatColor", onTable * surfaceColor(observer.scene, PhysicalSurface::table));
+    flat_.set("flatColor", onTable * albedoOf(observer.scene, PhysicalSurface::table));
     flat_.set("worldFromMesh", glm::mat4(1.0F));
     table_.draw();
 }
@@ -47,8 +47,8 @@ void LabPreview::addProjector(const Observer& observer, const DeviceSurface& dev
         program->set("sent", 1);
         program->set("gamma", static_cast<float>(projector.projector.gamma));
         const bool onDevice = program == &deviceProgram;
-        program->set("surfaceColor",
-                     surfaceColor(observer.scene, onDevice ? PhysicalSurface::device : PhysicalSurface::table));
+        program->set("surfaceAlbedo",
+                     albedoOf(observer.scene, onDevice ? PhysicalSurface::device : PhysicalSurface::table));
         if (onDevice) device.draw(*program);
         if (onDevice) continue;
         program->set("worldFromMesh", glm::mat4(1.0F));
@@ -66,6 +66,29 @@ void LabPreview::addLight(const Observer& observer, const DeviceSurface& device,
         addProjector(observer, device, *projector, deviceLight_, tableLight_);
 }
 
+void LabPreview::drawLit(const Observer& observer, float ambient, const DeviceSurface& device,
+                         std::span<const ProjectorTarget* const> projectors) {
+    if (!problem_.empty()) return;
+    try {
+        drawSurfaces(observer, device, ambient, ambient);
+        addLight(observer, device, projectors);
+    } catch (const DataError& error) {
+        problem_ = error.subject() + ": " + error.why() + "; the lab is drawn without the light of projectors";
+    }
+}
+
+// Black where the driver refuses this too: projectors must not fail with it.
+void LabPreview::drawStandIn(const Observer& observer, const DeviceSurface& device) {
+    beginSurfaces(radiance_->framebuffer(), observer.camera.size);
+    glClear(GL_COLOR_BUFFER_BIT);
+    if (standInRefused_) return;
+    try {
+        drawSurfaces(observer, device, kStandIn.x, kStandIn.y);
+    } catch (const DataError&) {
+        standInRefused_ = true;
+    }
+}
+
 void LabPreview::draw(GLuint framebuffer, const CalibratedCamera& observer, float ambient, const ShowFrame& frame,
                       const DeviceSurface& device, std::span<const ProjectorTarget* const> projectors,
                       PictureOutput& out) {
@@ -73,16 +96,8 @@ void LabPreview::draw(GLuint framebuffer, const CalibratedCamera& observer, floa
     table_.fit(observer, frame.scene->table.size);
     const Observer seen{observer, depthRange(observer, physicalBounds(frame)), *frame.scene};
     beginSurfaces(radiance_->framebuffer(), observer.size);
-    try {
-        if (problem_.empty()) {
-            drawSurfaces(seen, device, ambient, ambient);
-            addLight(seen, device, projectors);
-        }
-    } catch (const DataError& error) {
-        problem_ = error.subject() + ": " + error.why() + "; the lab is drawn without the light of projectors";
-        beginSurfaces(radiance_->framebuffer(), observer.size);
-    }
-    if (!problem_.empty()) drawSurfaces(seen, device, kStandIn.x, kStandIn.y);
+    drawLit(seen, ambient, device, projectors);
+    if (!problem_.empty()) drawStandIn(seen, device);
     out.draw(framebuffer, *radiance_);
 }
 
@@ -96,9 +111,6 @@ void LabPreview::drawMask(GLuint framebuffer, const CalibratedCamera& observer, 
     glEnable(GL_BLEND);
     glBlendEquation(GL_MAX);
     for (const ProjectorTarget* projector : projectors) addProjector(seen, device, *projector, deviceMask_, tableMask_);
-    glBlendEquation(GL_FUNC_ADD);
-    glDisable(GL_BLEND);
-    glDepthMask(GL_TRUE);
 }
 
 std::size_t LabPreview::objectCount() const noexcept {

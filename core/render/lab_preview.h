@@ -15,7 +15,8 @@ public:
     LabPreview();
 
     /// Into a framebuffer of the observer's size, sRGB encoded by it or, if it does not encode, by this. Where the
-    /// driver refuses the program of light, a bright device on a dark table, and `problem`.
+    /// driver refuses a program of light, a bright device on a dark table (black, if that is refused too), and
+    /// `problem`.
     void draw(GLuint framebuffer, const CalibratedCamera& observer, float ambient, const ShowFrame& frame,
               const DeviceSurface& device, std::span<const ProjectorTarget* const> projectors, PictureOutput& out);
     /// White where a projector reaches what the observer sees. Throws DataError where the driver refuses the program:
@@ -34,6 +35,9 @@ private:
         const Scene& scene;
     };
     void drawSurfaces(const Observer& observer, const DeviceSurface& device, float onDevice, float onTable);
+    void drawLit(const Observer& observer, float ambient, const DeviceSurface& device,
+                 std::span<const ProjectorTarget* const> projectors);
+    void drawStandIn(const Observer& observer, const DeviceSurface& device);
     void addLight(const Observer& observer, const DeviceSurface& device,
                   std::span<const ProjectorTarget* const> projectors);
     void addProjector(const Observer& observer, const DeviceSurface& device, const ProjectorTarget& projector,
@@ -43,6 +47,7 @@ private:
     std::optional<ColorTarget> radiance_;
     Program flat_, deviceLight_, tableLight_, deviceMask_, tableMask_;
     std::string problem_;
+    bool standInRefused_ = false;
 };
 
 } // namespace lumorph

@@ -2,11 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <string_view>
 #include <utility>
 
 #include <epoxy/gl.h>
 #include <glm/common.hpp>
+
+#include "core/render/gl_driver.h"
 
 namespace lumorph {
 namespace {
@@ -40,13 +41,6 @@ Image halved(const Image& image) {
     return half;
 }
 
-// A processor that draws pays for every texel: a quarter of the frame between the finest filter and a plain one.
-bool drawnByProcessor() {
-    const auto* renderer = reinterpret_cast<const char*>(glGetString(GL_RENDERER));
-    const std::string_view name = renderer == nullptr ? "" : renderer;
-    return name.find("llvmpipe") != std::string_view::npos || name.find("softpipe") != std::string_view::npos;
-}
-
 void upload(GLuint texture, const Image& image, PictureTextures::Use use) {
     const GLint format = use == PictureTextures::Use::color ? GL_SRGB8_ALPHA8 : GL_RGBA8;
     glBindTexture(GL_TEXTURE_2D, texture);
@@ -54,7 +48,8 @@ void upload(GLuint texture, const Image& image, PictureTextures::Use use) {
     glTexImage2D(GL_TEXTURE_2D, 0, format, image.size().x, image.size().y, 0, GL_RGBA, GL_UNSIGNED_BYTE,
                  image.pixels().data());
     glGenerateMipmap(GL_TEXTURE_2D);
-    const bool slow = drawnByProcessor();
+    // A processor that draws pays for every texel: a quarter of the frame between the finest filter and a plain one.
+    const bool slow = currentDriver().software;
     glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, slow ? GL_LINEAR_MIPMAP_NEAREST : GL_LINEAR_MIPMAP_LINEAR);
     glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
     if (!slow && epoxy_has_gl_extension("GL_EXT_texture_filter_anisotropic"))

@@ -41,7 +41,7 @@ void setLight(Program& program, const SceneProjector& projector) {
     program.set("projectorReference", static_cast<float>(projector.referenceDistance));
 }
 
-glm::vec3 surfaceColor(const Scene& scene, PhysicalSurface surface) {
+glm::vec3 albedoOf(const Scene& scene, PhysicalSurface surface) {
     const bool device = surface == PhysicalSurface::device;
     return linearLight(device ? scene.device.surfaceColor : scene.table.surfaceColor);
 }
@@ -49,7 +49,7 @@ glm::vec3 surfaceColor(const Scene& scene, PhysicalSurface surface) {
 void setOutput(Program& program, const ProjectorTarget& target, const Scene& scene, PhysicalSurface surface, int unit) {
     setLight(program, target.projector);
     program.set("compensation", scene.compensation ? 1.0F : 0.0F);
-    program.set("surfaceColor", glm::max(surfaceColor(scene, surface), kDarkestSurface));
+    program.set("surfaceAlbedo", glm::max(albedoOf(scene, surface), kDarkestSurface));
     if (target.projector.gamma > 0.0) program.set("inverseGamma", static_cast<float>(1.0 / target.projector.gamma));
     if (!target.blend) return;
     bindTexture(unit, target.blend->weights());

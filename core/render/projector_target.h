@@ -38,8 +38,8 @@ struct ProjectorTarget {
 void setLight(Program& program, const SceneProjector& projector);
 /// The bare device or table on which light falls.
 enum class PhysicalSurface { device, table };
-/// Of its colour, linear.
-[[nodiscard]] glm::vec3 surfaceColor(const Scene& scene, PhysicalSurface surface);
+/// The share of light that it gives back, linear, in [0, 1].
+[[nodiscard]] glm::vec3 albedoOf(const Scene& scene, PhysicalSurface surface);
 /// Sets those of projector_output.glsl too; binds the weights of a shared one to a texture unit.
 void setOutput(Program& program, const ProjectorTarget& target, const Scene& scene, PhysicalSurface surface, int unit);
 /// Sets those of projector_sight.glsl; binds the depth map to a texture unit.

@@ -23,6 +23,8 @@ void restoreState() {
     glDisable(GL_FRAMEBUFFER_SRGB);
     glDisable(GL_SCISSOR_TEST);
     glDisable(GL_BLEND);
+    glBlendEquation(GL_FUNC_ADD);
+    glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
     glDepthMask(GL_TRUE);
     glDepthFunc(GL_LESS);
     glUseProgram(0);
@@ -32,6 +34,25 @@ void restoreState() {
 
 ShaderFiles depthFiles() {
     return shaderFiles({"version.glsl", "camera.glsl", "physical.vert"}, {"version.glsl", "nothing.frag"});
+}
+
+/// Gives the state back when a part of the renderer throws.
+struct StateKeeper {
+    ~StateKeeper() { restoreState(); }
+};
+
+/// False where the driver refuses a program that there is a way without; `problem` says then what is lost. Throws
+/// DataError where that way is refused too.
+template <typename Draw> bool granted(std::string& problem, const char* loss, const Draw& draw) {
+    try {
+        draw();
+        return true;
+    } catch (const DataError& error) {
+        if (!problem.empty()) throw;
+        problem = error.subject() + ": " + error.why() + "; " + loss;
+        restoreState();
+        return false;
+    }
 }
 
 } // namespace
@@ -54,14 +75,17 @@ struct SpatialRenderer::Data {
     bool measuring = false;
     SpatialTimes times;
     std::string eyeProblem;
-    std::string projectorProblem; ///< of a driver that cannot compile what projectors need to know of the eye
+    // Of a driver that refuses a program of projectors: what looks the eye's picture up, and what weighs them.
+    std::string lookupProblem;
+    std::string sharingProblem;
 
     void beginFrame(const ShowFrame& next);
     void drawEye(const glm::vec3& from);
     void drawTableView(const glm::vec3& from);
     void fitProjectors();
     void drawProjectors();
-    void drawProjectors(const EyeViews& views, bool shared);
+    [[nodiscard]] EyeViews lookups() const;
+    [[nodiscard]] bool drawProjectors(const EyeViews& views, bool shared); ///< false: begin anew, with less
     [[nodiscard]] std::vector<ProjectorTarget*> enabled();
     [[nodiscard]] std::vector<const ProjectorTarget*> lit() const;
     double finish(std::chrono::steady_clock::time_point& since) const;
@@ -143,30 +167,27 @@ std::vector<const ProjectorTarget*> SpatialRenderer::Data::lit() const {
     return targets;
 }
 
+EyeViews SpatialRenderer::Data::lookups() const {
+    EyeViews views;
+    if (!frame->eye || !eyeShown || !lookupProblem.empty()) return views;
+    views.device = &*eye;
+    if (tableShown) views.table = &*table;
+    views.tableAreas = tableAreas;
+    return views;
+}
+
 void SpatialRenderer::Data::drawProjectors() {
     auto since = std::chrono::steady_clock::now();
-    EyeViews views;
-    if (frame->eye && eyeShown) views.device = &*eye;
-    if (views.device != nullptr && tableShown) views.table = &*table;
-    if (views.device != nullptr) views.tableAreas = tableAreas;
-    bool drawn = false;
-    try {
-        if (projectorProblem.empty()) {
-            drawProjectors(views, enabled().size() > 1);
-            drawn = true;
-        }
-    } catch (const DataError& error) {
-        projectorProblem = error.subject() + ": " + error.why() +
-                           "; projectors show what does not depend on the viewer, and do not share";
-        glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
-        restoreState();
-    }
-    if (!drawn) drawProjectors({}, false);
+    while (!drawProjectors(lookups(), sharingProblem.empty() && enabled().size() > 1))
+        for (ProjectorTarget* target : enabled()) target->changes = {}; // what was drawn before is of another kind
     times.projectors = finish(since);
 }
 
-void SpatialRenderer::Data::drawProjectors(const EyeViews& views, bool shared) {
+bool SpatialRenderer::Data::drawProjectors(const EyeViews& views, bool shared) {
     const std::vector<ProjectorTarget*> targets = enabled();
+    const auto lookUp = [&](const auto& draw) {
+        return granted(lookupProblem, "projectors show what does not depend on the viewer", draw);
+    };
     for (ProjectorTarget* target : targets) {
         const CalibratedCamera& camera = target->projector.camera;
         if (!shared) target->blend.reset();
@@ -174,16 +195,19 @@ void SpatialRenderer::Data::drawProjectors(const EyeViews& views, bool shared) {
         // Weights of several projectors change far beyond what moves.
         if (shared) target->region = PixelRegion({glm::ivec2(0), camera.size});
         if (target->region.empty()) continue;
-        projectorPass.drawDepth(*target, *frame, device, views, shared);
+        if (!lookUp([&] { projectorPass.drawDepth(*target, *frame, device, views, shared); })) return false;
     }
-    if (shared) projectorPass.drawWeights(targets, device);
+    const auto weigh = [&] { projectorPass.drawWeights(targets, device); };
+    if (shared && !granted(sharingProblem, "projectors do not share, and are too bright where they meet", weigh))
+        return false;
     for (ProjectorTarget* target : targets) {
         if (!target->region.empty()) {
-            projectorPass.drawSeen(*target, *frame, device, views);
+            if (!lookUp([&] { projectorPass.drawSeen(*target, *frame, device, views); })) return false;
             pass.drawUnseen(*frame, *target);
         }
         if (!shared) target->changes.finish(*frame);
     }
+    return true;
 }
 
 SpatialRenderer::SpatialRenderer() : data_(std::make_unique<Data>()) {}
@@ -203,28 +227,28 @@ void SpatialRenderer::setMeasuring(bool on) { data_->measuring = on; }
 
 void SpatialRenderer::drawEye(const ShowFrame& frame) {
     auto since = std::chrono::steady_clock::now();
+    const StateKeeper keeper;
     data_->beginFrame(frame);
     data_->drawEye(frame.eye.value_or(frame.scene->eye));
-    restoreState();
     data_->times.total = data_->finish(since);
 }
 
 void SpatialRenderer::draw(const ShowFrame& frame) {
     auto since = std::chrono::steady_clock::now();
+    const StateKeeper keeper;
     data_->beginFrame(frame);
     data_->fitProjectors();
     const glm::vec3 from = frame.eye.value_or(frame.scene->eye);
     data_->drawEye(from);
     if (frame.eye && data_->eyeShown && !data_->enabled().empty()) data_->drawTableView(from);
     data_->drawProjectors();
-    restoreState();
     data_->times.total = data_->finish(since);
 }
 
 void SpatialRenderer::showEye(unsigned framebuffer) {
     if (!data_->eye) throw InvalidInput("eye picture", "no frame has been drawn yet", "draw one first");
+    const StateKeeper keeper;
     data_->out.draw(framebuffer, data_->eye->picture());
-    restoreState();
 }
 
 unsigned SpatialRenderer::projectorTexture(std::size_t projector) const {
@@ -235,8 +259,8 @@ unsigned SpatialRenderer::projectorTexture(std::size_t projector) const {
 void SpatialRenderer::drawLab(unsigned framebuffer, const CalibratedCamera& observer, float ambient) {
     if (!data_->frame) throw InvalidInput("lab", "no frame has been drawn yet", "draw one first");
     checkCamera(observer);
+    const StateKeeper keeper;
     data_->lab.draw(framebuffer, observer, ambient, *data_->frame, data_->device, data_->lit(), data_->out);
-    restoreState();
 }
 
 Image SpatialRenderer::readEye() {
@@ -260,8 +284,8 @@ Image SpatialRenderer::readLab(const CalibratedCamera& observer, float ambient) 
 Image SpatialRenderer::readMask() {
     if (!data_->eyeShown) throw InvalidInput("mask", "no picture for an eye has been drawn", "draw a frame first");
     const ColorTarget target(data_->eyeSize);
+    const StateKeeper keeper;
     data_->lab.drawMask(target.framebuffer(), data_->eye->camera(), *data_->frame, data_->device, data_->lit());
-    restoreState();
     return target.read();
 }
 
@@ -270,7 +294,7 @@ SpatialTimes SpatialRenderer::times() const { return data_->times; }
 std::vector<std::string> SpatialRenderer::warnings() const {
     std::vector<std::string> warnings = data_->pass.warnings();
     for (const std::string& problem :
-         {data_->eyeProblem, data_->projectorProblem, data_->lab.problem(), data_->out.problem()})
+         {data_->eyeProblem, data_->lookupProblem, data_->sharingProblem, data_->lab.problem(), data_->out.problem()})
         if (!problem.empty()) warnings.push_back(problem);
     return warnings;
 }

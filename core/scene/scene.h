@@ -135,7 +135,8 @@ struct DeviceSkin {
         glm::vec3 color{0.05F};
         bool operator==(const Creases&) const = default;
     } creases;
-    glm::vec3 surfaceColor{1.0F}; ///< of the bare device, on which all light falls; white until measured
+    glm::vec3 surfaceColor{
+        1.0F}; ///< of the bare device, on which all light falls, sRGB in [0, 1]; white until measured
     bool operator==(const DeviceSkin&) const = default;
 };
 

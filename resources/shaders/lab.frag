@@ -7,7 +7,7 @@ in vec3 worldPosition;
 uniform vec3 viewerPosition;
 uniform sampler2D sent;
 uniform float gamma;
-uniform vec3 surfaceColor; // linear
+uniform vec3 surfaceAlbedo; // linear
 
 out vec4 color;
 
@@ -35,6 +35,6 @@ void main() {
 #ifdef MASK
     color = vec4(sight.reached > 0.5 && light.g > 0.0 ? 1.0 : 0.0);
 #else
-    color = vec4(surfaceColor * light * sight.reached * lightBetween(sight.uv), 1.0);
+    color = vec4(surfaceAlbedo * light * sight.reached * lightBetween(sight.uv), 1.0);
 #endif
 }

@@ -4,7 +4,7 @@
 // encoded.
 
 uniform float compensation; // 1: of incidence and distance; 0: none
-uniform vec3 surfaceColor;  // linear
+uniform vec3 surfaceAlbedo; // linear
 #ifdef SHARED
 uniform sampler2D weights;
 #endif
@@ -13,7 +13,7 @@ uniform float inverseGamma;
 #endif
 
 vec4 sentFor(vec3 radiance, vec3 world, vec3 normal) {
-    vec3 value = radiance / surfaceColor * valueFor(world, normal, compensation);
+    vec3 value = radiance / surfaceAlbedo * valueFor(world, normal, compensation);
 #ifdef SHARED
     vec2 weight = texelFetch(weights, ivec2(gl_FragCoord.xy), 0).rg;
     value *= weight.g > 0.0 ? weight.r / weight.g : 1.0;

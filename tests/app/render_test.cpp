@@ -165,9 +165,9 @@ TEST_F(Render, JsonTellsHowThePictureWasSeen) {
 TEST_F(Render, WrongUseIsExplained) {
     expectRefused({"--view", "ghost"}, "--view");
     expectRefused({"--view", "eye", "--eye", "1,2"}, "three numbers");
-    expectRefused({"--view", "eye", "--eye", "0,-0.4,0.5"}, "below the table");
+    expectRefused({"--view", "eye", "--eye", "0,-0.4,0.5"}, "not above the table, so nothing is seen");
     expectRefused({"--view", "eye", "--eye", "0,nan,0.5"}, "--eye");
-    expectRefused({"--view", "lab", "--observer", "0.5,0,0.5"}, "below the table");
+    expectRefused({"--view", "lab", "--observer", "0.5,0,0.5"}, "not above the table, so nothing is seen");
     expectRefused({"--view", "eye", "--eye", "0,0.01,0"}, "eye");
     expectRefused({"--view", "eye", "--size", "320"}, "1280x800");
     expectRefused({"--view", "eye", "--size", "4x4"}, "out of range");

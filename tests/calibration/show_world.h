@@ -14,11 +14,8 @@ inline LabWorld labOf(const ShowFrame& frame, const SpatialRenderer& renderer) {
     const TriangleMesh table{
         {{-half.x, 0.0F, -half.y}, {half.x, 0.0F, -half.y}, {-half.x, 0.0F, half.y}, {half.x, 0.0F, half.y}},
         {{0, 2, 1}, {1, 2, 3}}};
-    const auto albedo = [](const glm::vec3& color) {
-        return glm::vec3(lightOfSrgb(color.r), lightOfSrgb(color.g), lightOfSrgb(color.b));
-    };
-    world.surfaces = {{physicalDevice(frame), albedo(frame.scene->device.surfaceColor)},
-                      {table, albedo(frame.scene->table.surfaceColor)}};
+    world.surfaces = {{physicalDevice(frame), lightOfSrgb(frame.scene->device.surfaceColor)},
+                      {table, lightOfSrgb(frame.scene->table.surfaceColor)}};
     for (std::size_t i = 0; i < frame.scene->projectors.size(); ++i)
         if (frame.scene->projectors[i].enabled)
             world.projectors.push_back({frame.scene->projectors[i], renderer.readProjector(i)});

@@ -3,10 +3,12 @@
 #include <QAbstractButton>
 #include <QApplication>
 #include <QColorDialog>
+#include <QDockWidget>
 #include <QFileDialog>
 #include <QListWidget>
 #include <QMimeData>
 #include <QPushButton>
+#include <QScrollArea>
 #include <QSlider>
 #include <QTreeView>
 
@@ -375,6 +377,35 @@ TEST_F(SceneDocks, FitsASmallWindowInBothThemes) {
             EXPECT_EQ(cutTexts(window.window()).join(", ").toStdString(), "") << static_cast<int>(kind);
         }
     }
+}
+
+TEST_F(SceneDocks, InspectorIsNeverNarrowerThanItsRows) {
+    using Kind = SceneChoice::Kind;
+    window.command("add water");
+    QDockWidget* inspector = nullptr;
+    for (QWidget* above = window.find<QWidget>("inspector.name"); above != nullptr && inspector == nullptr;
+         above = above->parentWidget())
+        inspector = qobject_cast<QDockWidget*>(above);
+    ASSERT_TRUE(inspector);
+    const auto check = [&](const std::string& page) {
+        for (const int width : {100, 400, 100}) {
+            window.window().resizeDocks({inspector}, {width}, Qt::Horizontal);
+            pass(100ms);
+            int shown = 0;
+            for (auto* area : inspector->findChildren<QScrollArea*>()) {
+                if (!area->isVisible() || area->widget() == nullptr) continue;
+                ++shown;
+                EXPECT_LE(area->widget()->width(), area->viewport()->width()) << page << " at " << width;
+            }
+            EXPECT_EQ(shown, 1) << page;
+        }
+    };
+    check("water");
+    for (const Kind kind : {Kind::device, Kind::table, Kind::projector, Kind::viewer, Kind::room}) {
+        choose(kind);
+        check(std::to_string(static_cast<int>(kind)));
+    }
+    window.screenshot("scene-narrow-inspector");
 }
 
 double longestStallOfEditing(StudioWindow& window) {

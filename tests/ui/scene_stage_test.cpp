@@ -7,6 +7,7 @@
 #include <QSignalSpy>
 #include <QTimer>
 
+#include "app/studio/document/scene_edit.h"
 #include "app/workspaces/scene/eye_orbit.h"
 #include "app/workspaces/scene/latency_card.h"
 #include "app/workspaces/scene/stage_bar.h"
@@ -154,10 +155,20 @@ TEST_F(SceneStageTest, AHiddenStageDrawsNothing) {
     EXPECT_EQ(window.studio().show.count(), count);
 }
 
+TEST_F(SceneStageTest, WhatIsSaidOfAFailureGoesWhenTheShowComesBack) {
+    (void)pane("scene.lab");
+    emit window.studio().renderer.showBroke("the driver lost a frame");
+    const auto told = [&] { return window.studio().notices.at("viewport").size(); };
+    ASSERT_EQ(told(), 1U);
+    window.studio().show.refresh();
+    EXPECT_TRUE(eventually([&] { return told() == 0; }));
+}
+
 TEST_F(SceneStageTest, TheCardSaysWhereTheTimeGoesAndPosesArePredictedByIt) {
     (void)pane("scene.eye");
     const auto board = std::make_shared<PoseBoard>();
     const auto head = board->stream("Ada", PoseRole::head);
+    studio::editScene(window.studio().document, "Look ahead", [](Scene& scene) { scene.predictionSeconds = 0.005; });
     window.studio().loop.setPoses(board);
     window.studio().commands.find("scene.latency")->setChecked(true);
     const auto valueOf = [&](const QString& stage) {
@@ -186,11 +197,10 @@ TEST_F(SceneStageTest, TheCardSaysWhereTheTimeGoesAndPosesArePredictedByIt) {
     EXPECT_GE(valueOf("End to end"), 0.8 * stages) << "which it holds";
     const MatchTimes& times = show.newest().match->ms;
     EXPECT_GE(times.poseAge, 4.0);
-    const double ahead = times.latency - times.poseAge; // milliseconds
-    EXPECT_GE(ahead, 60.0);
-    EXPECT_LE(ahead, 150.0);
-    const double usual = std::clamp(show.endToEnd(), 60.0, 150.0);
-    EXPECT_NEAR(ahead, usual, 60.0);
+    // Milliseconds; drawing takes far longer than the scene says.
+    const double expected = std::min(times.poseAge + show.usualDelay(), 150.0);
+    EXPECT_NEAR(times.latency, expected, 20.0);
+    EXPECT_GT(times.latency, times.poseAge + 15.0);
     window.studio().loop.setPoses(nullptr);
 }
 

@@ -218,16 +218,44 @@ TEST(ShowRenderResets, TheShowComesBackByItself) {
     ASSERT_TRUE(drawn());
     EXPECT_FALSE(thread.failure());
     for (const int times : {1, 1, 3}) { // some come again at once
+        const auto late = showFrame();
         resetsToTell = times;
         (void)waitFor([&] {
-            thread.requestShow(requestOf(showFrame(), {wantedView(1, Kind::projector, {320, 200})}));
-            return thread.failure().has_value();
+            if (thread.failure()) return true;
+            const auto shown = thread.takeShow();
+            EXPECT_FALSE(shown && shown->match == late) << "what a lost context draws is nothing to show";
+            thread.requestShow(requestOf(late, {wantedView(1, Kind::projector, {320, 200})}));
+            return false;
         });
         ASSERT_TRUE(thread.failure());
         EXPECT_TRUE(thread.failure()->contains("driver was reset")) << thread.failure()->toStdString();
         ASSERT_TRUE(waitFor([&] { return resetsToTell == 0 && !thread.failure(); }));
         EXPECT_TRUE(drawn());
     }
+}
+
+TEST(ShowRenderResets, APictureThatWasLostIsSaidToBe) {
+    const DriverResets resets;
+    RenderThread thread;
+    FrameRequest request;
+    request.scene = std::make_shared<const ViewportScene>();
+    request.pixels = {64, 48};
+    std::vector<std::pair<QImage, QString>> answers;
+    const auto ask = [&] {
+        thread.picture(request, [&](const QImage& image, const QString& why) { answers.emplace_back(image, why); });
+        const std::size_t asked = answers.size();
+        return waitFor([&] { return answers.size() > asked; });
+    };
+    ASSERT_TRUE(ask());
+    EXPECT_FALSE(answers.back().first.isNull());
+    resetsToTell = 1;
+    ASSERT_TRUE(ask());
+    EXPECT_TRUE(answers.back().first.isNull());
+    EXPECT_TRUE(answers.back().second.contains("driver was reset")) << answers.back().second.toStdString();
+    ASSERT_TRUE(waitFor([&] { return thread.failure().has_value(); }));
+    ASSERT_TRUE(waitFor([&] { return !thread.failure(); }));
+    ASSERT_TRUE(ask());
+    EXPECT_FALSE(answers.back().first.isNull());
 }
 
 /// The same pictures as other objects, as after their files were read again.

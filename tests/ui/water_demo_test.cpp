@@ -17,15 +17,22 @@ namespace {
 using namespace std::chrono_literals;
 using studio::StagePane;
 
-class WaterDemo : public ::testing::Test {
-protected:
-    WaterDemo() : window(folder.path(), "scene") {
+/// The program as it starts for the first time.
+struct FirstStart {
+    FirstStart() {
         EXPECT_TRUE(eventually([&] {
             const SceneItem* sea = drivingItem(*window.state().scene);
             return sea != nullptr && sea->name == "Sea" && window.studio().jobs.running().empty();
-        })) << "a first start shows it by itself";
-        pane = window.find<StagePane>("scene.eye");
+        })) << "it shows the sea by itself";
     }
+
+    TemporaryFolder folder;
+    StudioWindow window{folder.path(), "scene"};
+};
+
+class WaterDemo : public ::testing::Test {
+protected:
+    WaterDemo() { pane = window.find<StagePane>("scene.eye"); }
     [[nodiscard]] bool plays() { return window.studio().loop.scenePlaying(); }
     [[nodiscard]] const studio::DrawnShow& newest() { return window.studio().show.newest(); }
     /// By the key that the button names.
@@ -51,8 +58,8 @@ protected:
         return in.rect().contains(at) ? std::optional(in.pixelColor(at)) : std::nullopt;
     }
 
-    TemporaryFolder folder;
-    StudioWindow window;
+    FirstStart program;
+    StudioWindow& window = program.window;
     StagePane* pane = nullptr;
 };
 
@@ -136,29 +143,33 @@ TEST_F(WaterDemo, ADragLeadsTheEyeAroundTheWaterAndUndoLeadsItBack) {
     EXPECT_TRUE(eventually([&] { return differingShare(picture(), before) < 0.02; }, 20s));
 }
 
-// Other programs on the machine only add to a stall, so the best of three counts.
-TEST_F(WaterDemo, DemosAndDroppedModelsNeverStallTheWindow) {
-    double best = 1e9;
-    for (int attempt = 0; attempt < 3 && best > 100.0; ++attempt) {
-        StallWatch watch;
-        window.studio().desk.openDemo("water");
-        pass(1s);
-        window.studio().desk.openDemo("techniques");
-        ASSERT_TRUE(eventually([&] { return window.findNow<QWidget>("technique.3.button") != nullptr; }));
-        for (const int key : {1, 4, 6}) {
-            QTest::keyClick(&window.window(), static_cast<Qt::Key>(Qt::Key_0 + key));
-            EXPECT_TRUE(window.state().scene->items == techniqueScene(key).items) << key;
-            pass(500ms);
-        }
-        window.drop(resourceFile("targets/dunes.glb"), window.find<QWidget>("scene.outliner"));
-        const auto& show = window.studio().show;
-        ASSERT_TRUE(eventually([&] {
-            const auto& assets = window.state().assets;
-            return !assets->models.empty() && show.newest().match->assets == assets;
-        })) << "read, and drawn";
+double longestStallOfDemos() {
+    FirstStart program; // its caches are empty each time
+    StudioWindow& window = program.window;
+    StallWatch watch;
+    window.studio().desk.openDemo("water");
+    pass(1s);
+    window.studio().desk.openDemo("techniques");
+    EXPECT_TRUE(eventually([&] { return window.findNow<QWidget>("technique.3.button") != nullptr; }));
+    for (const int key : {1, 4, 6}) {
+        QTest::keyClick(&window.window(), static_cast<Qt::Key>(Qt::Key_0 + key));
+        EXPECT_TRUE(window.state().scene->items == techniqueScene(key).items) << key;
         pass(500ms);
-        best = std::min(best, watch.takeLongest());
     }
+    window.drop(resourceFile("targets/dunes.glb"), window.find<QWidget>("scene.outliner"));
+    const auto& show = window.studio().show;
+    EXPECT_TRUE(eventually([&] {
+        const auto& assets = window.state().assets;
+        return !assets->models.empty() && show.newest().match->assets == assets;
+    })) << "read, and drawn";
+    pass(500ms);
+    return watch.takeLongest();
+}
+
+// Other programs on the machine only add to a stall, so the best of three counts.
+TEST(WaterDemoStalls, DemosAndDroppedModelsNeverStallTheWindow) {
+    double best = 1e9;
+    for (int attempt = 0; attempt < 3 && best > 100.0; ++attempt) best = std::min(best, longestStallOfDemos());
     RecordProperty("longest_stall_ms", std::to_string(best));
     std::printf("longest stall of the window: %.0f ms\n", best);
     EXPECT_LE(best, 100.0);

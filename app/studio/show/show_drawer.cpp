@@ -38,9 +38,7 @@ glm::ivec2 scaled(glm::ivec2 size, double share) {
     return glm::max(glm::ivec2(glm::round(glm::dvec2(size) * share)), glm::ivec2(1));
 }
 
-bool showsEye(const WantedView& wanted) {
-    return wanted.view.kind == ShowView::Kind::eye || wanted.view.kind == ShowView::Kind::mask;
-}
+bool showsEye(const WantedView& wanted) { return wanted.view.kind == ShowView::Kind::eye; }
 
 /// Pixels of the eye pass: its shape is that of its largest view, else of the lab's. A view of the lab that is larger,
 /// or a projector that is wanted in all its pixels, needs more of them; the lab can wait until nothing moves.
@@ -77,13 +75,6 @@ ShowFrame withProjectorPixels(ShowFrame frame, const ShowPace::Work& work) {
 bool needsProjectors(const ShowRequest& request) {
     return std::any_of(request.views.begin(), request.views.end(),
                        [](const WantedView& wanted) { return wanted.view.kind != ShowView::Kind::eye; });
-}
-
-QImage toQImage(const Image& image, QSize pixels) {
-    const QImage seen(reinterpret_cast<const uchar*>(image.pixels().data()), image.size().x, image.size().y,
-                      4 * static_cast<qsizetype>(image.size().x), QImage::Format_RGBX8888);
-    const QImage shown = seen.convertToFormat(QImage::Format_RGB32);
-    return shown.size() == pixels ? shown : shown.scaled(pixels);
 }
 
 /// What holds OpenGL objects.
@@ -165,10 +156,6 @@ void ShowDrawer::Data::drawProjector(const WantedView& wanted, FrameReader& read
 
 void ShowDrawer::Data::drawView(const WantedView& wanted, const ShowFrame& frame, double resolution) {
     SpatialRenderer& renderer = objects->renderer;
-    if (wanted.view.kind == ShowView::Kind::mask) {
-        drawn.pictures.push_back({wanted.id, wanted.view, toQImage(renderer.readMask(), wanted.pixels)});
-        return;
-    }
     FrameReader& reader = objects->readers.try_emplace(wanted.id, way, pool).first->second;
     auto from = Clock::now();
     if (wanted.view.kind == ShowView::Kind::lab) {

@@ -20,6 +20,8 @@ bool answers(const ShowView& picture, const ShowView& wanted) {
            picture.exact == wanted.exact;
 }
 
+QString failureSubject() { return ShowFeed::tr("Views of the scene"); }
+
 std::int64_t nowMilliseconds() {
     return std::chrono::duration_cast<std::chrono::milliseconds>(SteadyClock().now()).count();
 }
@@ -89,6 +91,7 @@ void ShowFeed::take() {
         if (wanted != wanted_.end() && answers(picture.view, wanted->second.view))
             pictures_[picture.id] = picture.image;
     }
+    notices_.dismiss(kPlace, failureSubject());
     tellWarnings(drawn->warnings);
     drawn->pictures.clear();
     newest_ = std::move(*drawn);
@@ -112,7 +115,7 @@ void ShowFeed::take() {
 
 void ShowFeed::tellFailure(const QString& why) {
     Notice notice;
-    notice.subject = tr("Views of the scene");
+    notice.subject = failureSubject();
     notice.why = tr("They could not be drawn. %1").arg(why);
     notice.actions.push_back({tr("Draw again"), [this] { refresh(); }});
     notices_.post(kPlace, std::move(notice));

@@ -40,7 +40,8 @@ public:
     [[nodiscard]] const DrawnShow& newest() const noexcept { return newest_; }
     [[nodiscard]] double rate() const;     ///< pictures a second
     [[nodiscard]] double endToEnd() const; ///< milliseconds from the loop's frame to its pictures, the last one
-    [[nodiscard]] std::uint64_t count() const noexcept { return count_; } ///< frames shown so far
+    [[nodiscard]] double usualDelay() const noexcept { return usualDelay_; } ///< that, of late; 0 before the first
+    [[nodiscard]] std::uint64_t count() const noexcept { return count_; }    ///< frames shown so far
 
 signals:
     void shown(); ///< there are new pictures

@@ -22,7 +22,6 @@ struct ShowView {
         eye,       ///< what the viewer should see
         projector, ///< what a projector sends out
         lab,       ///< the lit device and table, as somebody sees them
-        mask,      ///< white where the viewer and a projector both reach
     };
     /// The device as it is, or, to compare: with all actuators at rest, or bent for the viewer.
     enum class Bend { asItIs, atRest, forViewer };

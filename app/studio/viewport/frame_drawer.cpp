@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <map>
 #include <optional>
 
@@ -29,18 +28,6 @@ QImage toQImage(const Image& image) {
 }
 
 } // namespace
-
-GlDriver currentDriver() {
-    GlDriver driver;
-    driver.version = epoxy_gl_version();
-    if (const auto* name = reinterpret_cast<const char*>(glGetString(GL_RENDERER))) driver.renderer = name;
-    for (const char* software : {"llvmpipe", "softpipe", "SWR", "swrast", "Software", "GDI Generic", "Basic Render"})
-        driver.software = driver.software || driver.renderer.find(software) != std::string::npos;
-    driver.tellsResets = driver.version >= 45 || epoxy_has_gl_extension("GL_KHR_robustness");
-    return driver;
-}
-
-bool contextLost(const GlDriver& driver) { return driver.tellsResets && glGetGraphicsResetStatus() != GL_NO_ERROR; }
 
 struct FrameDrawer::Data {
     struct Viewport {

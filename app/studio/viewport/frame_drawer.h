@@ -2,24 +2,13 @@
 
 #include <functional>
 #include <memory>
-#include <string>
 
 #include <QImage>
 
 #include "app/studio/viewport/frame_schedule.h"
+#include "core/render/gl_driver.h"
 
 namespace lumorph::studio {
-
-/// The driver behind the current OpenGL context.
-struct GlDriver {
-    int version = 0; ///< 41 is OpenGL 4.1; 0 when there is none
-    std::string renderer;
-    bool software = false;    ///< drawn by the processor
-    bool tellsResets = false; ///< `contextLost` can say so
-};
-[[nodiscard]] GlDriver currentDriver();
-/// Whether the driver was reset: nothing is drawn any more, and all objects of the current context are gone.
-[[nodiscard]] bool contextLost(const GlDriver& driver);
 
 /// Draws frames of viewports in the current OpenGL context and reads them back. A frame may come out of it only after
 /// the next one was begun (graphics cards), so `collect` until nothing is left. All calls in one thread, the context

@@ -101,6 +101,7 @@ void FrameReader::readIntoBuffer(QSize pixels) {
     glPixelStorei(GL_PACK_ALIGNMENT, 4);
     glReadPixels(0, 0, pixels.width(), pixels.height(), GL_BGRA, GL_UNSIGNED_INT_8_8_8_8_REV, nullptr);
     glBindBuffer(GL_PIXEL_PACK_BUFFER, 0);
+    if (fence_) glDeleteSync(static_cast<GLsync>(fence_)); // of a frame that nobody collected
     fence_ = glFenceSync(GL_SYNC_GPU_COMMANDS_COMPLETE, 0);
     glFlush();
 }

@@ -6,7 +6,7 @@
 #include <QSurfaceFormat>
 #include <QThread>
 
-#include "app/studio/viewport/frame_drawer.h"
+#include "core/render/gl_driver.h"
 
 namespace lumorph::studio {
 namespace {

@@ -35,6 +35,11 @@ constexpr std::chrono::seconds kAnew{1};
 
 struct ContextLost {};
 
+QString resetReason() {
+    return QStringLiteral("The graphics driver was reset. Drawing begins anew by itself; if this comes again and "
+                          "again, update the driver, or start Lumorph with LIBGL_ALWAYS_SOFTWARE=1.");
+}
+
 } // namespace
 
 struct RenderThread::Data {
@@ -57,15 +62,16 @@ struct RenderThread::Data {
     void tell(std::optional<QString> why);
     void step(Drawers& drawers, std::unique_lock<std::mutex>& lock);
     [[nodiscard]] bool showIsNext() const;
-    /// Draws or collects; what is thrown becomes a complaint.
+    /// Draw or collect; what is thrown becomes a complaint.
+    void serveFrames(const std::function<void()>& draw);
     void serveShow(const std::function<void()>& draw);
     void deliverShow(const ShowPace::Work& work, DrawnShow frame);
     void drawFrame(FrameDrawer& drawer, const FrameSchedule::Work& work);
     void drawPicture(FrameDrawer& drawer, const PictureJob& job);
     void deliver(const FrameSchedule::Work& work, DrawnFrame frame);
     void sleep(std::unique_lock<std::mutex>& lock);
-    void complain(const QString& why);
-    /// Throws ContextLost.
+    /// Throws ContextLost; what was drawn until then is worth nothing.
+    void checkContext() const;
     void count(const Drawers& drawers);
     bool shallGiveUp() {
         const std::lock_guard lock(mutex);
@@ -148,8 +154,7 @@ void RenderThread::Data::run() {
 
 void RenderThread::Data::failLost() {
     lost = true;
-    fail(QStringLiteral("The graphics driver was reset. Drawing begins anew by itself; if this comes again and "
-                        "again, update the driver, or start Lumorph with LIBGL_ALWAYS_SOFTWARE=1."));
+    fail(resetReason());
 }
 
 void RenderThread::Data::serve() {
@@ -178,7 +183,7 @@ void RenderThread::Data::step(Drawers& drawers, std::unique_lock<std::mutex>& lo
         lock.unlock();
         serveShow([&] { drawers.show.draw(*show); });
         // The show may go on without a pause: what viewports have begun is not to wait for one.
-        drawers.frames.collect();
+        serveFrames([&] { drawers.frames.collect(); });
     } else if (const auto work = schedule.next(now)) {
         showsTurn = true;
         lock.unlock();
@@ -189,7 +194,7 @@ void RenderThread::Data::step(Drawers& drawers, std::unique_lock<std::mutex>& lo
         serveShow([&] { drawers.show.draw(*still); });
     } else {
         lock.unlock();
-        drawers.frames.collect();
+        serveFrames([&] { drawers.frames.collect(); });
         serveShow([&] { drawers.show.collect(); });
         count(drawers);
         lock.lock();
@@ -210,10 +215,21 @@ void RenderThread::Data::sleep(std::unique_lock<std::mutex>& lock) {
         wake.wait(lock, wanted);
 }
 
+void RenderThread::Data::serveFrames(const std::function<void()>& draw) {
+    try {
+        draw();
+    } catch (const std::exception& error) {
+        checkContext();
+        const QString why = reasonOf(error);
+        if (why != std::exchange(lastComplaint, why)) emit owner.broke(why);
+    }
+}
+
 void RenderThread::Data::serveShow(const std::function<void()>& draw) {
     try {
         draw();
     } catch (const std::exception& error) {
+        checkContext();
         const QString why = reasonOf(error);
         {
             const std::lock_guard lock(mutex);
@@ -225,6 +241,7 @@ void RenderThread::Data::serveShow(const std::function<void()>& draw) {
 }
 
 void RenderThread::Data::deliverShow(const ShowPace::Work& work, DrawnShow frame) {
+    checkContext();
     lastShowComplaint.clear();
     const std::lock_guard lock(mutex);
     pace.finished(work, frame.ms.total);
@@ -235,13 +252,11 @@ void RenderThread::Data::deliverShow(const ShowPace::Work& work, DrawnShow frame
 }
 
 void RenderThread::Data::drawFrame(FrameDrawer& drawer, const FrameSchedule::Work& work) {
-    try {
+    serveFrames([&] {
         if (drawer.draw(work, [this] { return shallGiveUp(); })) return;
         const std::lock_guard lock(mutex);
         schedule.givenUp(work);
-    } catch (const std::exception& error) {
-        complain(reasonOf(error));
-    }
+    });
 }
 
 void RenderThread::Data::drawPicture(FrameDrawer& drawer, const PictureJob& job) {
@@ -252,11 +267,18 @@ void RenderThread::Data::drawPicture(FrameDrawer& drawer, const PictureJob& job)
     } catch (const std::exception& error) {
         why = reasonOf(error);
     }
+    const bool gone = contextLost(driver);
+    if (gone) {
+        image = {};
+        why = resetReason();
+    }
     QMetaObject::invokeMethod(
         &owner, [done = job.done, image, why] { done(image, why); }, Qt::QueuedConnection);
+    if (gone) throw ContextLost{};
 }
 
 void RenderThread::Data::deliver(const FrameSchedule::Work& work, DrawnFrame frame) {
+    checkContext();
     lastComplaint.clear();
     const std::lock_guard lock(mutex);
     schedule.finished(work, frame.milliseconds);
@@ -266,14 +288,12 @@ void RenderThread::Data::deliver(const FrameSchedule::Work& work, DrawnFrame fra
     if (!told) emit owner.drawn(work.viewport);
 }
 
-void RenderThread::Data::complain(const QString& why) {
-    if (why == lastComplaint) return;
-    lastComplaint = why;
-    emit owner.broke(why);
+void RenderThread::Data::checkContext() const {
+    if (contextLost(driver)) throw ContextLost{};
 }
 
 void RenderThread::Data::count(const Drawers& drawers) {
-    if (contextLost(driver)) throw ContextLost{};
+    checkContext();
     lost = false;
     objects = drawers.frames.objectCount() + drawers.show.objectCount();
     errors += FrameDrawer::takeErrors();

@@ -34,10 +34,9 @@ struct DrawnFrame {
     double milliseconds = 0.0;
 };
 
-/// Draws all viewports, and the show, in a thread of its own with a context of its own that shares with the program's
-/// others. The newest request of each viewport and of the show counts; frames are read back and handed over, so that
-/// the window's thread only paints a picture and a dock that moves loses nothing. Made, used and destroyed in the
-/// window's thread.
+/// Draws all viewports, and the show, in a thread of its own with a context of its own. The newest request of each
+/// viewport and of the show counts; frames are read back and handed over, so that the window's thread only paints a
+/// picture and a dock that moves loses nothing. Made, used and destroyed in the window's thread.
 class RenderThread : public QObject {
     Q_OBJECT
 public:

@@ -102,7 +102,6 @@ class InspectorDock : public QWidget {
 public:
     InspectorDock(Studio& studio, SceneSelection& selection)
         : studio_(studio), selection_(selection), stack_(new QStackedWidget(this)) {
-        setMinimumWidth(kLeastDockWidth);
         auto* layout = new QVBoxLayout(this);
         layout->setContentsMargins(0, 0, 0, 0);
         layout->addWidget(stack_);
@@ -114,6 +113,11 @@ public:
             if (parts & StatePart::scene) refresh();
         });
         choose();
+    }
+
+    /// Its rows are cut off in less.
+    [[nodiscard]] QSize minimumSizeHint() const override {
+        return QWidget::minimumSizeHint().expandedTo({kLeastDockWidth, 0});
     }
 
 protected:

@@ -160,7 +160,7 @@ void addViewerRows(SceneForm& form, Studio& studio) {
     form.number(
         {"viewer.prediction", QObject::tr("Look ahead"),
          QObject::tr("The delay from tracker to light; heads are expected where they will be by then. "
-                     "Where drawing takes longer, that counts")},
+                     "Where drawing takes longer, that counts. 0: they are shown where they are now")},
         {Quantity::seconds, 0.0, 0.15, 0.06, 0.005}, scene, [](auto& all) -> auto& { return all.predictionSeconds; });
     form.section("viewer.section.dependence", QObject::tr("View-dependent shape"));
     const auto rule = makePart<ViewDependence>([](auto& all) { return &all.viewDependence; });

@@ -16,8 +16,12 @@ public:
         namespace fs = std::filesystem;
         const fs::path resources = folder_.path() / "resources";
         fs::copy(LUMORPH_SOURCE_DIR "/resources", resources, fs::copy_options::recursive);
-        std::ofstream(resources / "shaders" / name) << "out vec4 color;\nvoid main() {\n    color = nothing;\n}\n";
+        breakToo(name);
         ::setenv("LUMORPH_RESOURCES", resources.c_str(), 1);
+    }
+    void breakToo(const std::string& name) const {
+        std::ofstream(folder_.path() / "resources/shaders" / name)
+            << "out vec4 color;\nvoid main() {\n    color = nothing;\n}\n";
     }
     ~BrokenShader() { ::unsetenv("LUMORPH_RESOURCES"); }
     BrokenShader(const BrokenShader&) = delete;

@@ -132,17 +132,33 @@ TEST(SpatialFrames, PictureIsTheSameWhateverWasDrawnBefore) {
     }
 }
 
-// What does not depend on the viewer is left, from every projector.
+/// Of a picture that two projectors share: how much brighter their middle is than it has to be, about 2 where they do
+/// not know of one another.
+double excess(const Image& sent, const Image& shared) {
+    const auto light = [](const Image& image) {
+        return std::pow((image.at(240, 160)[0] / 255.0 + 0.055) / 1.055, 2.4);
+    };
+    return light(sent) / light(shared);
+}
+
+// What needs the program is left out, from every projector, and nothing else.
 TEST(SpatialFrames, WithoutAProjectorsShaderTheShowGoesOn) {
     const HeadlessContext context;
-    for (const char* name : {"projector_surface.frag", "projector.frag", "projector_done.frag", "projector_edges.frag",
-                             "projector_distance.frag", "projector_weight.frag"}) {
+    constexpr bool kShares = true;
+    const ShowFrame frame = frameOf(
+        unlitScene(glm::vec3(0.5F, 0.1F, 0.1F), glm::vec3(0.1F, 0.5F, 0.1F), {overhead(), overhead()}), liftedFlaps());
+    SpatialRenderer whole;
+    whole.setEyeSize({320, 200});
+    whole.draw(frame);
+    for (const auto& [name, shares] : {std::pair("projector_surface.frag", kShares),
+                                       {"projector.frag", kShares},
+                                       {"projector_done.frag", kShares},
+                                       {"projector_edges.frag", !kShares},
+                                       {"projector_distance.frag", !kShares},
+                                       {"projector_weight.frag", !kShares}}) {
         const BrokenShader broken(name);
         SpatialRenderer renderer;
         renderer.setEyeSize({320, 200});
-        const ShowFrame frame =
-            frameOf(unlitScene(glm::vec3(0.8F, 0.1F, 0.1F), glm::vec3(0.1F, 0.8F, 0.1F), {overhead(), overhead()}),
-                    liftedFlaps());
         for (int i = 0; i < 2; ++i) renderer.draw(frame);
         const std::vector<std::string> warnings = renderer.warnings();
         ASSERT_EQ(warnings.size(), 1U) << name;
@@ -153,9 +169,24 @@ TEST(SpatialFrames, WithoutAProjectorsShaderTheShowGoesOn) {
             const Image::Pixel table = sent.at(5, 160);
             EXPECT_GT(device[0], 2 * device[1]) << name << projector;
             EXPECT_GT(table[1], 2 * table[0]) << name << projector;
+            EXPECT_NEAR(excess(sent, whole.readProjector(projector)), shares ? 1.0 : 2.0, 0.1) << name;
         }
         EXPECT_EQ(glGetError(), static_cast<GLenum>(GL_NO_ERROR)) << name;
     }
+}
+
+TEST(SpatialFrames, WithoutEyeOrSharingWhatIsLeftIsDrawn) {
+    const HeadlessContext context;
+    const BrokenShader lookup("projector.frag");
+    lookup.breakToo("projector_weight.frag");
+    SpatialRenderer renderer;
+    renderer.setEyeSize({320, 200});
+    for (int i = 0; i < 2; ++i)
+        renderer.draw(
+            frameOf(unlitScene(glm::vec3(0.5F, 0.1F, 0.1F), glm::vec3(0.1F), {overhead(), overhead()}), liftedFlaps()));
+    EXPECT_EQ(renderer.warnings().size(), 2U);
+    const Image::Pixel device = renderer.readProjector(1).at(240, 160);
+    EXPECT_GT(device[0], 2 * device[1]);
 }
 
 TEST(SpatialFrames, WithoutTheShadersOfShadowsThereAreNone) {
@@ -203,6 +234,22 @@ TEST(SpatialFrames, WithoutTheLabsShaderItShowsTheBareDevice) {
     EXPECT_THROW(static_cast<void>(renderer.readMask()), DataError);
     renderer.draw(frame);
     EXPECT_GT(renderer.readProjector(0).at(240, 160)[0], 100);
+    EXPECT_EQ(glGetError(), static_cast<GLenum>(GL_NO_ERROR));
+}
+
+TEST(SpatialFrames, WithoutEvenTheLabsStandInProjectorsGoOn) {
+    const HeadlessContext context;
+    const BrokenShader broken("flat.frag");
+    SpatialRenderer renderer;
+    renderer.setEyeSize({320, 200});
+    const ShowFrame frame = frameOf(unlitScene(glm::vec3(0.8F), glm::vec3(0.8F), {overhead()}), liftedFlaps());
+    for (int i = 0; i < 2; ++i) {
+        renderer.draw(frame);
+        EXPECT_EQ(renderer.readLab(overhead().camera), Image(overhead().camera.size)) << "black";
+        EXPECT_GT(renderer.readProjector(0).at(240, 160)[0], 100);
+    }
+    ASSERT_EQ(renderer.warnings().size(), 1U);
+    EXPECT_NE(renderer.warnings().front().find("flat.frag:3"), std::string::npos) << renderer.warnings().front();
     EXPECT_EQ(glGetError(), static_cast<GLenum>(GL_NO_ERROR));
 }
 

@@ -197,6 +197,8 @@ TEST(SceneFormat, EveryBrokenValueIsNamedWithItsKey) {
         {with("/device/holes/0/radius", 0), "scene.device.holes[0].radius: is not a number"},
         {with("/device/creases/thresholdDegrees", 181), "scene.device.creases.thresholdDegrees: is not a number"},
         {with("/device/material/colorTexture/image", "../../x.png"), "scene.device.material.colorTexture.image: "},
+        {with("/device/surfaceColor/1", 1.1), "scene.device.surfaceColor[1]: is not a number from 0.0 to 1.0"},
+        {with("/table/surfaceColor/2", -0.1), "scene.table.surfaceColor[2]: is not a number from 0.0 to 1.0"},
         {with("/table/size/0", 0), "scene.table.size[0]: is not a number"},
         {with("/exposure", 0), "scene.exposure: is not a number"},
         {with("/showing", "nothing"), "scene.showing: \"nothing\" is not known here"},

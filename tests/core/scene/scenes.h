@@ -74,7 +74,9 @@ inline Scene fullScene() {
     scene.device.shrink = 0.25;
     scene.device.holes = {{{0.01F, -0.02F}, 0.012}, {{0.0F, 0.03F}, 0.02}};
     scene.device.creases = {-0.5, Angle::degrees(12.0), 0.003, {0.1F, 0.0F, 0.2F}};
+    scene.device.surfaceColor = {0.8F, 0.7F, 0.6F};
     scene.table = {{1.5F, 1.0F}, material};
+    scene.table.surfaceColor = {0.5F, 0.4F, 0.3F};
     scene.sky = {0.1F, 0.2F, 0.35F};
     scene.exposure = 1.25;
     scene.toneMapping = false;
