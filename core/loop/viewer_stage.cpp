@@ -30,8 +30,7 @@ public:
             for (const PoseBoard::Entry& entry : board->entries()) take(entry, then);
         if (!tracked) return;
         frame.ms.poseAge = 1e-3 * static_cast<double>(std::max(frame.time - oldest_, Microseconds{0}).count());
-        frame.ms.latency =
-            std::min(frame.ms.poseAge + 1e3 * seconds, std::max(frame.ms.poseAge, 1e3 * PoseStream::kFarthestAhead));
+        frame.ms.latency = std::min(frame.ms.poseAge + 1e3 * seconds, 1e3 * PoseStream::kFarthestAhead);
     }
 
     std::vector<TrackedHead> heads;
