@@ -4,6 +4,7 @@
 #include <cmath>
 #include <set>
 
+#include "core/base/srgb.h"
 #include "core/render/eye_programs.h"
 
 namespace lumorph {
@@ -33,13 +34,6 @@ PicturePlacement placementOf(const SceneTexture& texture, double seconds) {
     const double shown = std::floor(seconds * texture.framesPerSecond);
     if (cells > 1 && std::isfinite(shown)) placement.cell = static_cast<int>(shown - cells * std::floor(shown / cells));
     return placement;
-}
-
-glm::vec3 linearLight(const glm::vec3& color) {
-    const auto one = [](float value) {
-        return value <= 0.04045F ? value / 12.92F : std::pow((value + 0.055F) / 1.055F, 2.4F);
-    };
-    return {one(color.r), one(color.g), one(color.b)};
 }
 
 void EyeMaterials::begin(std::shared_ptr<const SceneAssets> assets, double seconds) {
@@ -120,8 +114,8 @@ void EyeMaterials::bindHoles(Program& program, const Material& material) {
 void EyeMaterials::apply(Program& program, const Material& material, float opacity, std::uint32_t features) {
     using namespace eye_feature;
     const float own = material.alpha == Material::Alpha::blend ? material.opacity : 1.0F;
-    program.set("baseColor", glm::vec4(linearLight(material.color), own * opacity));
-    program.set("emitted", material.emissionStrength * linearLight(material.emission));
+    program.set("baseColor", glm::vec4(linearFromSrgb(material.color), own * opacity));
+    program.set("emitted", material.emissionStrength * linearFromSrgb(material.emission));
     if ((features & colorTexture) != 0)
         bind(program, eye_unit::color, material.colorTexture, PictureTextures::Use::color, "colorPicture", "colorTurn",
              "colorShift");
@@ -156,11 +150,11 @@ std::pair<const Image*, PicturePlacement> EyeMaterials::cutter(const Material& m
 void EyeMaterials::applyTable(Program& program, const Material& table) {
     bind(program, eye_unit::table, table.colorTexture, PictureTextures::Use::color, "tablePicture", "tableTurn",
          "tableShift");
-    program.set("tableColor", linearLight(table.color));
+    program.set("tableColor", linearFromSrgb(table.color));
 }
 
 glm::vec3 EyeMaterials::meanColor(const Material& material) {
-    const glm::vec3 color = linearLight(material.color);
+    const glm::vec3 color = linearFromSrgb(material.color);
     if (!has(material.colorTexture)) return color;
     return color * pictures_.picture(assets_->images.at(material.colorTexture.image), PictureTextures::Use::color).mean;
 }

@@ -26,7 +26,6 @@ struct PicturePlacement {
 [[nodiscard]] PicturePlacement placementOf(const SceneTexture& texture, double seconds);
 
 /// sRGB to linear light.
-[[nodiscard]] glm::vec3 linearLight(const glm::vec3& color);
 
 /// Texture units of the eye pass.
 namespace eye_unit {

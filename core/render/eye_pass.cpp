@@ -9,6 +9,7 @@
 #include <glm/gtc/matrix_inverse.hpp>
 
 #include "core/base/error.h"
+#include "core/base/srgb.h"
 #include "core/render/camera_uniforms.h"
 #include "core/render/draw_state.h"
 #include "core/render/eye_pass_data.h"
@@ -183,7 +184,7 @@ void EyePass::Data::drawCreases(const ShowFrame& frame, const View& view) {
     Program& program = programs.use(EyePrograms::Stage::crease, features | view.features());
     view.apply(program, frame, PhysicalSurface::device);
     program.set("worldFromSurface", frame.worldFromDevice);
-    program.set("ink", glm::vec4(linearLight(creases.color), static_cast<float>(std::min(creases.emphasis, 1.0))));
+    program.set("ink", glm::vec4(linearFromSrgb(creases.color), static_cast<float>(std::min(creases.emphasis, 1.0))));
     lighting.apply(program);
     applySkin(program, frame.scene->device, surfaces.skinBoxAtRest(), frame.worldFromDevice);
     setFrontFace(frame.worldFromDevice);

@@ -2,8 +2,8 @@
 
 #include <glm/matrix.hpp>
 
+#include "core/base/srgb.h"
 #include "core/render/draw_state.h"
-#include "core/render/eye_materials.h"
 
 namespace lumorph {
 namespace {
@@ -43,7 +43,7 @@ void setLight(Program& program, const SceneProjector& projector) {
 
 glm::vec3 albedoOf(const Scene& scene, PhysicalSurface surface) {
     const bool device = surface == PhysicalSurface::device;
-    return linearLight(device ? scene.device.surfaceColor : scene.table.surfaceColor);
+    return linearFromSrgb(device ? scene.device.surfaceColor : scene.table.surfaceColor);
 }
 
 void setOutput(Program& program, const ProjectorTarget& target, const Scene& scene, PhysicalSurface surface, int unit) {

@@ -2,8 +2,6 @@
 
 #include <cmath>
 
-#include <glm/common.hpp>
-#include <glm/exponential.hpp>
 #include <glm/geometric.hpp>
 
 namespace lumorph {
@@ -37,11 +35,6 @@ std::array<glm::vec3, kSkyCount> skyDirections() {
         directions[static_cast<std::size_t>(i)] = {r * std::cos(around), y, r * std::sin(around)};
     }
     return directions;
-}
-
-glm::vec3 linearFromSrgb(const glm::vec3& encoded) {
-    return glm::mix(encoded / 12.92F, glm::pow((encoded + 0.055F) / 1.055F, glm::vec3(2.4F)),
-                    glm::vec3(glm::step(glm::vec3(0.04045F), encoded)));
 }
 
 } // namespace lumorph

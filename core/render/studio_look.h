@@ -25,6 +25,4 @@ inline constexpr float kKeySoftness = 0.011F;
 inline constexpr int kSkyCount = 16;
 [[nodiscard]] std::array<glm::vec3, kSkyCount> skyDirections();
 
-[[nodiscard]] glm::vec3 linearFromSrgb(const glm::vec3& encoded);
-
 } // namespace lumorph

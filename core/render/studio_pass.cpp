@@ -6,6 +6,7 @@
 
 #include <glm/geometric.hpp>
 
+#include "core/base/srgb.h"
 #include "core/render/program.h"
 #include "core/render/shadow_maps.h"
 #include "core/render/studio_look.h"

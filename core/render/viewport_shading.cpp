@@ -2,6 +2,7 @@
 
 #include <glm/mat3x3.hpp>
 
+#include "core/base/srgb.h"
 #include "core/render/draw_state.h"
 #include "core/render/paper_fibre.h"
 #include "core/render/viewport_ground.h"

@@ -5,6 +5,8 @@
 
 #include <glm/gtc/matrix_transform.hpp>
 
+#include "core/base/srgb.h"
+
 namespace lumorph {
 namespace {
 

@@ -10,18 +10,11 @@
 #include <glm/gtc/matrix_transform.hpp>
 
 #include "core/base/error.h"
+#include "core/base/srgb.h"
 #include "core/scene/item_surfaces.h"
 
 namespace lumorph {
 namespace {
-
-/// sRGB to linear light.
-glm::vec3 linear(const glm::vec3& color) {
-    const auto one = [](float value) {
-        return value <= 0.04045F ? value / 12.92F : std::pow((value + 0.055F) / 1.055F, 2.4F);
-    };
-    return {one(color.r), one(color.g), one(color.b)};
-}
 
 bool finite(const glm::mat4& matrix) {
     for (int i = 0; i < 16; ++i)
@@ -170,7 +163,7 @@ private:
             position = glm::length(towards) > 1e-6F ? glm::normalize(towards) : glm::vec3(0.0F, 1.0F, 0.0F);
         }
         posed_.lights.push_back({item.id, sun, position,
-                                 linear(light.color) * static_cast<float>(light.intensity) * share,
+                                 linearFromSrgb(light.color) * static_cast<float>(light.intensity) * share,
                                  static_cast<float>(light.softness), light.shadows});
     }
 
@@ -220,7 +213,7 @@ private:
     }
 
     void addKind(const SceneItem& item, const FogItem& fog, const glm::mat4& worldFromItem, float opacity) {
-        posed_.fogs.push_back({item.id, glm::scale(worldFromItem, fog.size), linear(fog.color),
+        posed_.fogs.push_back({item.id, glm::scale(worldFromItem, fog.size), linearFromSrgb(fog.color),
                                static_cast<float>(fog.density) * opacity, static_cast<float>(fog.grain),
                                fog.drift * static_cast<float>(posed_.seconds)});
     }

@@ -332,6 +332,23 @@ TEST_F(SceneDocks, TheWaterDemoIsWhatAVisitorSeesFirst) {
         << "its long waves move the servos";
 }
 
+TEST_F(SceneDocks, WarnsWhereAProjectorHasTooLittleLight) {
+    choose(SceneChoice::Kind::projector);
+    auto* warning = window.find<QLabel>("projector.warning");
+    pass(700ms); // the rig stands as it is looked at
+    EXPECT_FALSE(warning->text().contains("cannot become white")) << warning->text().toStdString();
+    window.click("projector.section.light");
+    window.enter("projector.peak", "0.2");
+    EXPECT_TRUE(eventually([&] { return warning->isVisible() && warning->text().contains("cannot become white"); }));
+    window.screenshot("scene-dim-projector");
+    undo();
+    EXPECT_TRUE(eventually([&] { return !warning->text().contains("cannot become white"); }));
+    studio::editScene(window.studio().document, "Measure", [](Scene& scene) {
+        scene.device.surfaceColor = glm::vec3(0.5F); // a fifth of the light
+    });
+    EXPECT_TRUE(eventually([&] { return warning->text().contains("cannot become white"); }));
+}
+
 /// Visible texts that do not fit their widgets.
 QStringList cutTexts(QWidget& window) {
     QStringList cut;

@@ -242,22 +242,52 @@ TEST(ProjectorPose, IsCarriedAndTurnedAsTyped) {
 }
 
 // R42: what the light does not reach well is told.
-TEST(ProjectorReach, TellsWhatIsMissedAndWhatIsMetAtTooSteepAnAngle) {
-    const std::vector<glm::vec3> positions = {{0, 0, 0}, {0.1F, 0, 0}, {0.1F, 0, 0.1F}, {0, 0, 0.1F}};
-    const std::vector<glm::uvec3> flat = {{0, 3, 2}, {0, 2, 1}};
-    CalibratedCamera above = cameraLookingAt({0.05, 2.0, 0.05}, {0.05, 0.0, 0.05}, {1280, 800}, 3000.0);
-    const ProjectorReach met = reachOf(above, positions, flat, glm::mat4(1.0F));
-    EXPECT_NEAR(met.missed, 0.0, 1e-9);
-    EXPECT_NEAR(met.steep, 0.0, 1e-9);
+struct ProjectorReachTest : testing::Test {
+    [[nodiscard]] studio::ProjectorReach reach(const glm::vec3& albedo = glm::vec3(1.0F)) const {
+        const std::vector<glm::vec3> positions = {{0, 0, 0}, {0.1F, 0, 0}, {0.1F, 0, 0.1F}, {0, 0, 0.1F}};
+        return reachOf(projector, albedo, positions, {{0, 3, 2}, {0, 2, 1}}, glm::mat4(1.0F));
+    }
+    /// Above the flat square, from where it looks straight down.
+    SceneProjector projector = [] {
+        SceneProjector made;
+        made.camera = cameraLookingAt({0.05, 2.0, 0.05}, {0.05, 0.0, 0.05}, {1280, 800}, 3000.0);
+        made.referenceDistance = 2.0;
+        made.peak = 3.0;
+        return made;
+    }();
+};
+
+TEST_F(ProjectorReachTest, TellsWhatIsMissedAndWhatIsMetAtTooSteepAnAngle) {
+    EXPECT_NEAR(reach().missed, 0.0, 1e-9);
+    EXPECT_NEAR(reach().steep, 0.0, 1e-9);
     // Carried 7 m to the side it meets the flat square at 74 degrees.
-    lookAt(above, {0.05, 0.05});
-    carryTo(above, {7.05, 2.0, 0.05});
-    EXPECT_NEAR(reachOf(above, positions, flat, glm::mat4(1.0F)).missed, 1.0, 1e-9);
-    lookAt(above, {0.05, 0.05});
-    EXPECT_NEAR(reachOf(above, positions, flat, glm::mat4(1.0F)).steep, 1.0, 1e-9);
-    carryTo(above, {4.05, 2.0, 0.05});
-    lookAt(above, {0.05, 0.05});
-    EXPECT_NEAR(reachOf(above, positions, flat, glm::mat4(1.0F)).steep, 0.0, 1e-9) << "63 degrees are not steep";
+    lookAt(projector.camera, {0.05, 0.05});
+    carryTo(projector.camera, {7.05, 2.0, 0.05});
+    EXPECT_NEAR(reach().missed, 1.0, 1e-9);
+    lookAt(projector.camera, {0.05, 0.05});
+    EXPECT_NEAR(reach().steep, 1.0, 1e-9);
+    carryTo(projector.camera, {4.05, 2.0, 0.05});
+    lookAt(projector.camera, {0.05, 0.05});
+    EXPECT_NEAR(reach().steep, 0.0, 1e-9) << "63 degrees are not steep";
+}
+
+TEST_F(ProjectorReachTest, TellsWhatItCannotMakeWhite) {
+    EXPECT_NEAR(reach().dim, 0.0, 1e-9);
+    EXPECT_NEAR(reach(glm::vec3(0.4F)).dim, 0.0, 1e-9) << "1.2 of white";
+    EXPECT_NEAR(reach(glm::vec3(0.25F)).dim, 1.0, 1e-9) << "0.75 of white";
+    EXPECT_NEAR(reach({1.0F, 1.0F, 0.25F}).dim, 1.0, 1e-9) << "yellow at most";
+    projector.gain.b = 0.25F;
+    EXPECT_NEAR(reach().dim, 1.0, 1e-9) << "the lamp lacks blue";
+    projector.gain.b = 1.0F;
+    projector.referenceDistance = 1.0;
+    EXPECT_NEAR(reach().dim, 1.0, 1e-9) << "a quarter of 3 at twice the distance";
+    projector.referenceDistance = 2.0;
+    // At 4 m to the side and 4.5 m away: 3 x cos 63 x (2 / 4.47)^2 = 0.27.
+    carryTo(projector.camera, {4.05, 2.0, 0.05});
+    lookAt(projector.camera, {0.05, 0.05});
+    EXPECT_NEAR(reach().dim, 1.0, 1e-9);
+    projector.peak = 12.0;
+    EXPECT_NEAR(reach().dim, 0.0, 1e-9);
 }
 
 /// A picture of its own colour.

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/base/srgb.h"
+
 namespace lumorph::studio {
 namespace {
 
@@ -56,13 +58,9 @@ Palette lightPalette() {
     return colors;
 }
 
-/// Linear light of one sRGB channel in [0, 1].
-double linear(double channel) {
-    return channel <= 0.04045 ? channel / 12.92 : std::pow((channel + 0.055) / 1.055, 2.4);
-}
-
 double luminance(const QColor& color) {
-    return 0.2126 * linear(color.redF()) + 0.7152 * linear(color.greenF()) + 0.0722 * linear(color.blueF());
+    return 0.2126 * linearFromSrgb(color.redF()) + 0.7152 * linearFromSrgb(color.greenF()) +
+           0.0722 * linearFromSrgb(color.blueF());
 }
 
 } // namespace

@@ -5,7 +5,7 @@
 #include <glm/mat4x4.hpp>
 #include <glm/vec3.hpp>
 
-#include "core/geometry/calibrated_camera.h"
+#include "core/scene/scene.h"
 
 namespace lumorph::studio {
 
@@ -13,11 +13,14 @@ namespace lumorph::studio {
 struct ProjectorReach {
     double missed = 0.0; ///< share that its picture does not cover
     double steep = 0.0;  ///< share of the rest that it meets at more than 70 degrees, or from behind
+    double dim = 0.0;    ///< share of what is left then where it cannot show white: too far, slanting or dark
 };
 inline constexpr double kSteepDegrees = 70.0;
 
-/// Of a surface's triangles with its vertices in its own frame, metres.
-[[nodiscard]] ProjectorReach reachOf(const CalibratedCamera& projector, const std::vector<glm::vec3>& positions,
-                                     const std::vector<glm::uvec3>& triangles, const glm::mat4& worldFromSurface);
+/// Of a surface's triangles with its vertices in its own frame, metres; `albedo` is the share of light that the bare
+/// surface gives back, linear.
+[[nodiscard]] ProjectorReach reachOf(const SceneProjector& projector, const glm::vec3& albedo,
+                                     const std::vector<glm::vec3>& positions, const std::vector<glm::uvec3>& triangles,
+                                     const glm::mat4& worldFromSurface);
 
 } // namespace lumorph::studio

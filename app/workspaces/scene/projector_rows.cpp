@@ -7,6 +7,7 @@
 #include "app/workspaces/scene/projector_pose.h"
 #include "app/workspaces/scene/projector_reach.h"
 #include "app/workspaces/scene/setup_rows.h"
+#include "core/base/srgb.h"
 
 namespace lumorph::studio {
 
@@ -63,6 +64,11 @@ QString warningOf(const ProjectorReach& reach) {
         told << QObject::tr("%1 % is met at more than %2°, where light is dim and blurred.")
                     .arg(percent(reach.steep))
                     .arg(kSteepDegrees);
+    if (reach.dim > kWorthTelling)
+        told << QObject::tr(
+                    "%1 % cannot become white: too far, too slanting, or too dark a surface. A higher peak or a "
+                    "lower exposure helps.")
+                    .arg(percent(reach.dim));
     return told.join(' ');
 }
 
@@ -71,12 +77,13 @@ void addWarning(SceneForm& form, Studio& studio, const Part<SceneProjector>& pro
     QLabel* warning = form.sentence("projector.warning");
     warning->setProperty("look", "warning");
     const auto look = [warning, &studio, projector] {
-        const SceneProjector* found = projector.read(*studio.document.state().scene);
+        const Scene& scene = *studio.document.state().scene;
+        const SceneProjector* found = projector.read(scene);
         const auto& frame = studio.loop.frame();
         QString text;
         if (found && found->enabled && frame && frame->rig && frame->devicePositions)
-            text = warningOf(reachOf(found->camera, *frame->devicePositions, frame->rig->restMesh().triangles,
-                                     frame->worldFromDevice));
+            text = warningOf(reachOf(*found, linearFromSrgb(scene.device.surfaceColor), *frame->devicePositions,
+                                     frame->rig->restMesh().triangles, frame->worldFromDevice));
         warning->setText(text);
         warning->setVisible(!text.isEmpty());
     };
