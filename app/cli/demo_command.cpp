@@ -43,7 +43,7 @@ void runStudio(std::vector<std::string> arguments) {
 void addDemoCommand(CLI::App& app) {
     auto options = std::make_shared<DemoOptions>();
     CLI::App* command = app.add_subcommand("demo", "Start a demonstration, or play one without a window");
-    command->add_option("NAME", options->name, "Which: water, techniques")->required();
+    command->add_option("NAME", options->name, "Which: water, techniques, field (with a window only)")->required();
     CLI::Option* seconds = command->add_option("--seconds", options->seconds, "Without a window: how long it lasts")
                                ->check(CLI::Range(0.1, 600.0))
                                ->capture_default_str();

@@ -1,0 +1,62 @@
+#include <filesystem>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <opencv2/core.hpp>
+#include <opencv2/videoio.hpp>
+
+#include "tests/app/process.h"
+#include "tests/app/workspace.h"
+
+// `lumorph demo` as a script uses it: played without a window, by the studio's own loop.
+
+namespace lumorph::test {
+namespace {
+
+using ::testing::HasSubstr;
+
+TEST(Demo, IsPlayedWithoutAWindowIntoAVideo) {
+    const TemporaryFolder folder;
+    const std::string video = (folder / "water.mp4").string();
+    const Outcome outcome = lumorph({"demo", "water", "--seconds", "0.5", "--record", video, "--json"});
+    ASSERT_EQ(outcome.exitCode, 0) << outcome.err;
+    const auto told = outcome.json();
+    EXPECT_EQ(told["demo"], "water");
+    EXPECT_EQ(told["frames"], 15);
+    EXPECT_EQ(told["record"], video);
+    EXPECT_GT(told["framesPerSecond"], 0.0);
+    EXPECT_GT(told["ms"]["passes"], told["ms"]["loop"]);
+    EXPECT_TRUE(told["warnings"].empty()) << told["warnings"];
+
+    cv::VideoCapture shown(video, cv::CAP_FFMPEG);
+    cv::Mat first, last;
+    ASSERT_TRUE(shown.read(first));
+    int frames = 1;
+    for (cv::Mat frame; shown.read(frame); ++frames) last = frame.clone();
+    EXPECT_EQ(frames, 15);
+    EXPECT_GT(cv::norm(first, last, cv::NORM_L1) / static_cast<double>(first.total()), 1.0) << "the sea moves";
+    const cv::Scalar color = cv::mean(last(cv::Rect(last.cols / 2 - 20, last.rows / 2 - 20, 40, 40))); // BGR
+    EXPECT_GT(color[0], color[2]) << "and is blue";
+}
+
+TEST(Demo, WrongUseIsNamed) {
+    const TemporaryFolder folder;
+    const auto refused = [&](const std::vector<std::string>& arguments, int code, const std::string& says) {
+        std::vector<std::string> all{"demo"};
+        all.insert(all.end(), arguments.begin(), arguments.end());
+        const Outcome outcome = lumorph(all);
+        EXPECT_EQ(outcome.exitCode, code) << says;
+        EXPECT_THAT(outcome.err, HasSubstr(says));
+        EXPECT_EQ(outcome.out, "") << says;
+    };
+    refused({"volcano", "--json"}, 2, "there is no demo 'volcano'; there are: water, techniques");
+    refused({"water", "--seconds", "0"}, 2, "--seconds");
+    refused({"field", "--json"}, 1, "there is no scene of that name to play");
+    refused({"water", "--seconds", "0.5", "--record", (folder / "none/w.mp4").string()}, 1, "its folder is not there");
+    refused({"water", "--seconds", "0.5", "--record", (folder / "w.txt").string()}, 1, "ends in .mp4");
+    EXPECT_TRUE(filesIn(folder.path()).empty());
+}
+
+} // namespace
+} // namespace lumorph::test
