@@ -87,6 +87,7 @@ class SceneHandles : public testing::Test {
 protected:
     SceneHandles() : window(folder.path(), "scene") {
         window.studio().loop.setScenePlaying(false);
+        window.studio().loop.seekScene(1.5); // no wave hides the box then
         window.studio().document.change("Pause", [](studio::StudioState& state) { state.playback.playing = false; });
         window.command("add a box");
         pane = window.find<StagePane>("scene.eye");
