@@ -31,6 +31,7 @@ void runStudio(std::vector<std::string> arguments) {
         throw DeviceError("demo", "the program lumorph-studio is not beside this one", "build it, or install it again");
     arguments.insert(arguments.begin(), program.string());
     std::vector<char*> argv;
+    argv.reserve(arguments.size() + 1);
     for (std::string& argument : arguments) argv.push_back(argument.data());
     argv.push_back(nullptr);
     Session::releaseSignals();
