@@ -291,31 +291,42 @@ protected:
     void drawMany(const std::shared_ptr<const Scene>& scene) {
         auto assets = scene ? loadSceneAssets(*scene, {}) : showFrame()->assets;
         std::size_t objects = 0;
-        std::vector<double> memory; // of pictures in full, from frame 100 on
+        std::vector<double> allocated, resident; // megabytes, of pictures in full, from frame 100 on
         for (int i = 0; i < frames; ++i) {
             if (i % 10 == 9) assets = readAnew(*assets);
             const bool full = i % 25 == 0;
             draw(busyFrame(i, scene, assets), full);
             ASSERT_FALSE(HasFailure()) << "frame " << i;
             // How coarse a moving picture is, and so its memory, is the machine's: those in full are compared.
-            if (full && i >= 100) memory.push_back(test::residentMegabytes());
+            if (full && i >= 100) {
+                test::pass(std::chrono::milliseconds(50)); // until nothing is in flight
+                allocated.push_back(test::allocatedMegabytes());
+                resident.push_back(test::residentMegabytes());
+            }
             if (i == 100) objects = thread.objectCount();
             if (i % 1000 == 0) std::printf("frame %d: %.1f MB\n", i, test::residentMegabytes());
         }
         draw(busyFrame(100, scene, assets), true); // the same again
-        // What a sample finds still in flight differs by 10 MB, and only adds: what stays is the least of many.
-        const auto half = memory.begin() + std::ssize(memory) / 2;
-        const double early = *std::min_element(memory.begin(), half), late = *std::min_element(half, memory.end());
-        std::printf("%zu objects at frame 100, %zu at %d; at least %.1f MB in the first half, %.1f MB in the last\n",
-                    objects, thread.objectCount(), frames, early, late);
+        std::printf("%zu objects at frame 100, %zu at %d\n", objects, thread.objectCount(), frames);
+        expectFlat("allocated", allocated, 6.0); // one picture may still be kept in one half alone: 4.5 MB
+        // Holes in the heap come and go with the order of two threads, 8 MB were seen; this one is for what a driver
+        // maps by itself, and for the 10,000.
+        expectFlat("resident", resident, 16.0);
         EXPECT_GT(objects, 0U);
         EXPECT_TRUE(waitFor([&] { return thread.objectCount() == objects; }, 2000)) << thread.objectCount();
-        EXPECT_LT(late - early, 6.0);
         EXPECT_EQ(thread.errorCount(), 0U);
         EXPECT_TRUE(broke.isEmpty());
     }
 
 private:
+    /// What a sample finds still in flight only adds: what stays is the least of each half.
+    static void expectFlat(const char* what, const std::vector<double>& megabytes, double growth) {
+        const auto half = megabytes.begin() + std::ssize(megabytes) / 2;
+        const double early = *std::min_element(megabytes.begin(), half),
+                     late = *std::min_element(half, megabytes.end());
+        std::printf("%s: at least %.2f MB in the first half, %.2f MB in the last\n", what, early, late);
+        EXPECT_LT(late - early, growth) << what;
+    }
     /// Waits for the picture, and for all its pixels where it is wanted in `full`.
     void draw(const std::shared_ptr<MatchFrame>& match, bool full) {
         ShowRequest request =

@@ -3,6 +3,8 @@
 #include <cstdlib>
 #include <fstream>
 
+#include <malloc.h>
+
 #include <QAbstractButton>
 #include <QAbstractSlider>
 #include <QDragEnterEvent>
@@ -28,6 +30,11 @@ double residentMegabytes() {
     double pages = 0.0;
     file >> pages >> pages;
     return pages * 4096.0 / 1e6;
+}
+
+double allocatedMegabytes() {
+    const struct mallinfo2 heap = ::mallinfo2();
+    return static_cast<double>(heap.uordblks + heap.hblkhd) / 1e6;
 }
 
 StudioWindow::StudioWindow(const std::filesystem::path& session, const QString& workspace) {

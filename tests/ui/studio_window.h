@@ -26,6 +26,9 @@ namespace lumorph::test {
 /// What this process holds of the machine's memory.
 [[nodiscard]] double residentMegabytes();
 
+/// What of the heap is in use: without its holes, and without what drivers map by themselves.
+[[nodiscard]] double allocatedMegabytes();
+
 /// The studio as the program makes it, 1600 x 1000, with a session folder that the test names. Widgets are found by
 /// objectName, and what a user would do is done with mouse and keys.
 class StudioWindow {
