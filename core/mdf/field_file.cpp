@@ -226,6 +226,16 @@ bool insideBody(const Field& field, std::uint32_t column, int y) {
     return field.body.test(static_cast<int>(column % width), y, static_cast<int>(column / width));
 }
 
+void readBackground(Reader r, Field& field) {
+    field.background = r.getAll<std::uint8_t>(field.frame.voxelCount());
+    r.expectEnd();
+    const auto height = static_cast<std::size_t>(field.frame.dimensions.y);
+    for (std::size_t v = 0; v < field.background.size(); ++v)
+        r.expect(field.background[v] == 0 ||
+                     !insideBody(field, static_cast<std::uint32_t>(v / height), static_cast<int>(v % height)),
+                 "it covers voxels inside the body");
+}
+
 void readActuator(Reader r, const Field& field, ActuatorField& actuator) {
     const auto runs = r.get<std::uint64_t>();
     const auto ramps = r.get<std::uint64_t>();
@@ -298,8 +308,7 @@ Field parseField(std::span<const std::byte> bytes, const std::string& name) {
     const auto body = getBlock(file, Block::body, 8 * voxels);
     readBody(Reader(body, name, "body"), field);
     const auto background = getBlock(file, Block::background, voxels);
-    Reader backgroundReader(background, name, "background");
-    field.background = backgroundReader.getAll<std::uint8_t>(voxels);
+    readBackground(Reader(background, name, "background"), field);
     for (std::size_t i = 0; i < field.actuators.size(); ++i) {
         const std::uint64_t limit = 16 + sizeof(ActuatorField::Run) * field.body.columnCount() + sizeof(Ramp) * voxels;
         const auto content = getBlock(file, Block::actuator, limit);

@@ -83,6 +83,14 @@ void addUp(const CompiledActuator& actuator, const std::vector<std::uint32_t>& c
     sums.values.resize(static_cast<std::size_t>(levels));
 }
 
+/// `sum` - `part`, of which the part is never more. Where both are equal only rounding is left, of either sign: that is
+/// zero, so that every level that fits exactly ties with the others.
+double difference(double sum, double part) {
+    constexpr double kRounding = 1e-12;
+    const double left = sum - part;
+    return left > kRounding * sum ? left : 0.0;
+}
+
 double ratioAt(const ActuatorVote& vote, std::size_t level) { return vote.errors[level] / vote.intersections[level]; }
 
 /// The lowest point of the parabola through the ratios at `best` and its neighbours, in levels.
@@ -250,7 +258,7 @@ void Voting::match(const BitColumns& target, Votes& votes, Workspace& workspace,
         vote.errors.resize(levels);
         for (std::size_t j = 0; j < levels; ++j) {
             const double intersection = vote.intersections[j] + background;
-            vote.errors[j] = (c.actuators[i].expectedTotal[j] + targetUnits - 2.0 * intersection) / 255.0;
+            vote.errors[j] = difference(c.actuators[i].expectedTotal[j] + targetUnits, 2.0 * intersection) / 255.0;
             vote.intersections[j] = intersection / 255.0;
         }
         decide(vote, workspace.reachable[i], last == nullptr ? nullptr : &(*last)[i], hysteresis);

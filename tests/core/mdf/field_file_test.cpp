@@ -1,5 +1,6 @@
 #include "core/mdf/field_file.h"
 
+#include <algorithm>
 #include <cstring>
 #include <random>
 
@@ -79,6 +80,37 @@ TEST(FieldFile, WrongMagicAndVersionAreNamed) {
 }
 
 /// A length that claims terabytes must not be believed.
+TEST(FieldFile, CoverageInsideTheBodyIsRefused) {
+    const auto refuses = [](const Field& field, const std::string& place) {
+        try {
+            (void)parseField(writeField(field), "bad.mdf");
+            ADD_FAILURE() << place << " was accepted";
+        } catch (const DataError& error) {
+            EXPECT_NE(error.why().find(place), std::string::npos) << error.why();
+            EXPECT_NE(error.why().find("inside the body"), std::string::npos) << error.why();
+        }
+    };
+    Field covered = smallField();
+    const auto inside = std::find(covered.background.begin(), covered.background.end(), 0);
+    const auto voxel = static_cast<std::size_t>(inside - covered.background.begin());
+    const auto height = static_cast<std::size_t>(covered.frame.dimensions.y);
+    const auto width = static_cast<std::size_t>(covered.frame.dimensions.x);
+    covered.body.set(static_cast<int>(voxel / height % width), static_cast<int>(voxel % height),
+                     static_cast<int>(voxel / height / width));
+    ASSERT_EQ(parseField(writeField(covered), "good.mdf"), covered);
+    *inside = 1;
+    refuses(covered, "background");
+
+    Field changed = smallField();
+    const ActuatorField::Run& run = changed.actuators[0].runs[0];
+    std::size_t first = 0;
+    while (changed.actuators[0].ramps[run.firstRamp + first].v0 == kUnchanged) ++first;
+    const std::size_t y = run.firstY + first;
+    changed.body.set(static_cast<int>(run.column % width), static_cast<int>(y), static_cast<int>(run.column / width));
+    changed.background[run.column * height + y] = 0;
+    refuses(changed, "actuator 0");
+}
+
 TEST(FieldFile, HostileLengthsDoNotTakeMemory) {
     const std::vector<std::byte> file = writeField(smallField());
     for (const std::size_t offset : {std::size_t{24 + 8}, std::size_t{24 + 16}}) {

@@ -212,6 +212,36 @@ TEST(Voting, BackgroundThatNoActuatorChangesIsCounted) {
     }
 }
 
+/// A target that the device can take on exactly: its error is nothing but what rounding leaves of a difference, and of
+/// the levels that all fit the lowest is meant.
+TEST(Voting, AnExactFitIsFoundAtItsLowestLevel) {
+    constexpr int kLevels = 33;
+    std::mt19937 random(11);
+    for (int round = 0; round < 300; ++round) {
+        Field field;
+        field.frame = {{0, 0, 0}, 0.01, {1, 40, 1}};
+        field.levels = kLevels;
+        field.body = BitColumns(field.frame.dimensions);
+        field.background.assign(40, 128);
+        ActuatorField actuator{"a", {{0, 0, 40, 0}}, {}};
+        int full = 0;
+        BitColumns target(field.frame.dimensions);
+        for (int y = 0; y < 40; ++y) {
+            const auto v0 = static_cast<std::uint8_t>(1 + random() % 12);
+            const auto v1 = static_cast<std::uint8_t>(v0 + random() % 16);
+            actuator.ramps.push_back({v0, v1, static_cast<std::uint8_t>(random() % 200), 255});
+            full = std::max(full, int{v1});
+            target.set(0, y, 0);
+        }
+        field.actuators = {actuator};
+        const ActuatorVote vote = Voting(field).match(target).actuators[0];
+        ASSERT_TRUE(vote.reached);
+        ASSERT_EQ(vote.level.index, full) << "round " << round;
+        for (const double error : vote.errors) ASSERT_GE(error, 0.0);
+        ASSERT_NEAR(vote.stroke * (kLevels - 1), full, 0.5);
+    }
+}
+
 TEST(Ramp, FollowsItsDefinition) {
     const Ramp ramp{2, 5, 51, 255};
     const double expected[] = {0.2, 0.2, 0.4, 0.6, 0.8, 1.0, 1.0};
