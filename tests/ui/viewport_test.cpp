@@ -268,6 +268,23 @@ TEST_F(ViewportGizmoTest, TheHandlesAreDrawnIntoTheFrameAndLightUpUnderThePointe
     EXPECT_EQ(view.cursor().shape(), Qt::OpenHandCursor);
 }
 
+TEST_F(ViewportTest, WhatIsSetAgainUnchangedIsNotDrawnAgain) {
+    QSignalSpy drawn(&thread, &RenderThread::drawn);
+    const Gizmo gizmo{{1.0, {}, kCentre}, kCentre};
+    for (const std::optional<Gizmo> shown : {std::optional<Gizmo>(), std::optional<Gizmo>(gizmo)}) {
+        view.setGizmo(shown);
+        ASSERT_TRUE(waitFor([&] { return view.settled(); }));
+        drawn.clear();
+        view.setScene(view.scene());
+        view.setGizmo(shown);
+        EXPECT_FALSE(waitFor([&] { return !drawn.isEmpty(); }, 400)) << (shown ? "with" : "without") << " a gizmo";
+    }
+    Gizmo moved = gizmo;
+    moved.placement.translation.x += 0.01F;
+    view.setGizmo(moved);
+    EXPECT_TRUE(waitFor([&] { return !drawn.isEmpty(); }));
+}
+
 TEST_F(ViewportTest, AHiddenViewportDrawsNothing) {
     QSignalSpy drawn(&thread, &RenderThread::drawn);
     view.setActive(false);

@@ -22,6 +22,8 @@ enum class GizmoHandle { moveX, moveY, moveZ, moveGround, turn, size };
 struct Gizmo {
     Placement placement;
     glm::vec3 centre{0.0F}; ///< where the handles meet: the middle of the placed object's foot, device metres
+
+    bool operator==(const Gizmo&) const = default;
 };
 
 /// Length of the arrows in pixels at 100 %.

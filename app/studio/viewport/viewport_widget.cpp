@@ -199,6 +199,8 @@ void ViewportWidget::setCamera(const ViewCamera& camera, bool glide) {
 void ViewportWidget::setSelectionBox(const Box& box) { data_->selection = box; }
 
 void ViewportWidget::setGizmo(std::optional<Gizmo> gizmo) {
+    // Set anew with every match: what is drawn already is not drawn again.
+    if (gizmo == data_->gizmo) return;
     if (!gizmo && data_->grip) data_->cancelGrip(false);
     data_->gizmo = gizmo;
     if (!data_->gizmo) data_->setHot(std::nullopt, data_->hotSide);
