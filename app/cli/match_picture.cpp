@@ -3,8 +3,8 @@
 #include <cstdio>
 #include <vector>
 
-#include "core/render/figure.h"
-#include "core/render/headless_context.h"
+#include "core/render/figure/figure.h"
+#include "core/render/gl/headless_context.h"
 
 namespace lumorph::cli {
 

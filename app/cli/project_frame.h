@@ -8,7 +8,7 @@
 #include <glm/vec3.hpp>
 
 #include "app/cli/session.h"
-#include "core/render/show_frame.h"
+#include "core/scene/show_frame.h"
 
 namespace lumorph::cli {
 

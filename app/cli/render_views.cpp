@@ -10,9 +10,9 @@
 
 #include "calibration/lab/lab_world.h"
 #include "core/base/error.h"
-#include "core/render/figure.h"
-#include "core/render/headless_context.h"
-#include "core/render/viewport_renderer.h"
+#include "core/render/figure/figure.h"
+#include "core/render/gl/headless_context.h"
+#include "core/render/viewport/viewport_renderer.h"
 
 namespace lumorph::cli {
 

@@ -7,9 +7,9 @@
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 
-#include "core/render/image.h"
-#include "core/render/show_frame.h"
+#include "core/base/image.h"
 #include "core/render/spatial_renderer.h"
+#include "core/scene/show_frame.h"
 
 namespace lumorph::cli {
 

@@ -14,11 +14,11 @@
 #include "app/output/video_writer.h"
 #include "app/studio/document/match_wish.h"
 #include "app/studio/document/project_io.h"
-#include "app/studio/show/show_frames.h"
+#include "app/studio/rendering/show_frames.h"
 #include "core/base/error.h"
 #include "core/base/resources.h"
 #include "core/loop/show_stage.h"
-#include "core/render/headless_context.h"
+#include "core/render/gl/headless_context.h"
 #include "core/render/spatial_renderer.h"
 
 namespace lumorph::studio {

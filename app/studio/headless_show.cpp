@@ -10,17 +10,17 @@
 
 #include "app/output/video_writer.h"
 #include "app/studio/headless_scene.h"
-#include "app/workspaces/field/field_colors.h"
-#include "app/workspaces/field/field_scene.h"
+#include "app/workspaces/common/field_colors.h"
+#include "app/workspaces/common/field_scene.h"
 #include "core/base/atomic_file.h"
 #include "core/base/error.h"
 #include "core/base/resources.h"
 #include "core/loop/live_match.h"
 #include "core/mdf/builder.h"
 #include "core/mdf/clip.h"
-#include "core/render/frame_target.h"
-#include "core/render/headless_context.h"
-#include "core/render/viewport_renderer.h"
+#include "core/render/gl/frame_target.h"
+#include "core/render/gl/headless_context.h"
+#include "core/render/viewport/viewport_renderer.h"
 #include "core/rig/rig_file.h"
 
 namespace lumorph::studio {

@@ -8,9 +8,9 @@
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 
+#include "core/base/image.h"
 #include "core/geometry/calibrated_camera.h"
 #include "core/geometry/triangle_mesh.h"
-#include "core/render/image.h"
 #include "core/scene/scene.h"
 
 namespace lumorph {

@@ -5,7 +5,7 @@
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 
-#include "core/render/image.h"
+#include "core/base/image.h"
 
 namespace lumorph {
 

@@ -3,7 +3,7 @@
 #include <span>
 
 #include "calibration/lab/lab.h"
-#include "core/render/show_frame.h"
+#include "core/scene/show_frame.h"
 
 namespace lumorph {
 

@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
+#include "core/base/image.h"
 #include "core/geometry/calibrated_camera.h"
 #include "core/loop/pose_stream.h"
-#include "core/render/image.h"
 
 namespace lumorph {
 

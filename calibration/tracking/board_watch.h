@@ -6,7 +6,7 @@
 
 #include "calibration/tracking/board_address.h"
 #include "calibration/tracking/board_finder.h"
-#include "core/render/image.h"
+#include "core/base/image.h"
 
 namespace cv {
 class Mat;

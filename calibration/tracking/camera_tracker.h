@@ -8,7 +8,7 @@
 
 #include "calibration/tracking/board_address.h"
 #include "core/base/clock.h"
-#include "core/render/image.h"
+#include "core/base/image.h"
 
 namespace lumorph {
 

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "core/loop/live_match.h"
-#include "core/render/show_frame.h"
+#include "core/scene/show_frame.h"
 
 namespace lumorph {
 

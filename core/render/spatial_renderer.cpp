@@ -4,10 +4,10 @@
 #include <optional>
 
 #include "core/base/error.h"
-#include "core/render/draw_state.h"
-#include "core/render/lab_preview.h"
-#include "core/render/lookup_region.h"
-#include "core/render/projector_pass.h"
+#include "core/render/eye/lookup_region.h"
+#include "core/render/gl/draw_state.h"
+#include "core/render/projector/lab_preview.h"
+#include "core/render/projector/projector_pass.h"
 
 namespace lumorph {
 namespace {
@@ -203,7 +203,7 @@ bool SpatialRenderer::Data::drawProjectors(const EyeViews& views, bool shared) {
     for (ProjectorTarget* target : targets) {
         if (!target->region.empty()) {
             if (!lookUp([&] { projectorPass.drawSeen(*target, *frame, device, views); })) return false;
-            pass.drawUnseen(*frame, *target);
+            pass.drawUnseen(*frame, unseenPlaces(*target, *frame->scene));
         }
         if (!shared) target->changes.finish(*frame);
     }

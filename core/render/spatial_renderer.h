@@ -6,9 +6,9 @@
 
 #include <glm/vec2.hpp>
 
+#include "core/base/image.h"
 #include "core/geometry/calibrated_camera.h"
-#include "core/render/image.h"
-#include "core/render/show_frame.h"
+#include "core/scene/show_frame.h"
 
 namespace lumorph {
 

@@ -2,7 +2,7 @@
 
 #include <glm/vec2.hpp>
 
-#include "core/render/image.h"
+#include "core/base/image.h"
 #include "core/scene/scene.h"
 
 /// The parts of a height field's formula. Private to core/scene.

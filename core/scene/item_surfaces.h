@@ -6,9 +6,9 @@
 #include <span>
 #include <vector>
 
+#include "core/base/image.h"
 #include "core/geometry/model.h"
-#include "core/render/image.h"
-#include "core/render/surface_shading.h"
+#include "core/geometry/surface_shading.h"
 #include "core/scene/posed_scene.h"
 
 /// The surfaces of items, each in its item's frame. Private to core/scene.

@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
+#include "core/base/image.h"
 #include "core/base/progress.h"
 #include "core/geometry/model.h"
-#include "core/render/image.h"
 #include "core/scene/scene.h"
 
 namespace lumorph {

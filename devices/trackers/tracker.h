@@ -11,8 +11,8 @@
 #include <glm/vec2.hpp>
 
 #include "core/base/clock.h"
+#include "core/base/image.h"
 #include "core/loop/pose_stream.h"
-#include "core/render/image.h"
 
 namespace lumorph {
 

@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "core/render/image.h"
+#include "core/base/image.h"
 #include "core/scene/project.h"
 #include "tests/app/process.h"
 #include "tests/app/workspace.h"

@@ -4,8 +4,8 @@
 #include <epoxy/gl.h>
 
 #include "core/base/resources.h"
-#include "core/render/gl_driver.h"
-#include "core/render/headless_context.h"
+#include "core/render/gl/gl_driver.h"
+#include "core/render/gl/headless_context.h"
 #include "core/render/spatial_renderer.h"
 #include "core/rig/rig_file.h"
 #include "core/scene/posed_scene.h"

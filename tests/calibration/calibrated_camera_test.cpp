@@ -12,8 +12,8 @@
 
 #include "core/base/error.h"
 #include "core/geometry/triangle_mesh.h"
-#include "core/render/camera_uniforms.h"
-#include "core/render/headless_context.h"
+#include "core/render/gl/camera_uniforms.h"
+#include "core/render/gl/headless_context.h"
 #include "tests/core/temporary_folder.h"
 
 namespace lumorph {

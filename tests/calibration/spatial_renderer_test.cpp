@@ -7,7 +7,7 @@
 #include <gmock/gmock.h>
 
 #include "core/base/error.h"
-#include "core/render/headless_context.h"
+#include "core/render/gl/headless_context.h"
 #include "tests/calibration/show_world.h"
 
 namespace lumorph {

@@ -6,8 +6,8 @@
 
 #include "calibration/lab/lab_lens.h"
 #include "core/base/resources.h"
-#include "core/render/show_frame.h"
 #include "core/rig/rig_file.h"
+#include "core/scene/show_frame.h"
 #include "tests/support/truth.h"
 #include "tests/support/truth_cases.h"
 

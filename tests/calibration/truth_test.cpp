@@ -7,7 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "calibration/lab/lab_lens.h"
-#include "core/render/headless_context.h"
+#include "core/render/gl/headless_context.h"
 #include "tests/support/truth_show.h"
 
 // R24, R26: lights the deformed device with the projector's picture in the virtual lab, looks from the eye, and

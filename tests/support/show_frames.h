@@ -3,8 +3,8 @@
 #include <memory>
 #include <vector>
 
-#include "core/render/show_frame.h"
 #include "core/rig/rig_file.h"
+#include "core/scene/show_frame.h"
 
 namespace lumorph {
 

@@ -8,7 +8,7 @@
 
 #include <glm/vec3.hpp>
 
-#include "core/render/show_frame.h"
+#include "core/scene/show_frame.h"
 #include "tests/support/truth.h"
 
 namespace lumorph::test {

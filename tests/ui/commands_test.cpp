@@ -1,4 +1,4 @@
-#include "app/studio/shell/commands.h"
+#include "app/studio/base/commands.h"
 
 #include <QApplication>
 #include <QLineEdit>

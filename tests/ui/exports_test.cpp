@@ -15,7 +15,7 @@
 #include <opencv2/videoio.hpp>
 
 #include "app/output/video_writer.h"
-#include "app/workspaces/field/field_output.h"
+#include "app/workspaces/common/field_output.h"
 #include "core/base/error.h"
 #include "core/base/file.h"
 #include "core/base/resources.h"

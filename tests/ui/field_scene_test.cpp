@@ -1,4 +1,4 @@
-#include "app/workspaces/field/field_scene.h"
+#include "app/workspaces/common/field_scene.h"
 
 #include <algorithm>
 #include <chrono>
@@ -9,7 +9,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "app/workspaces/field/field_cloud.h"
+#include "app/workspaces/common/field_cloud.h"
 #include "core/mdf/builder.h"
 #include "tests/support/small_rigs.h"
 

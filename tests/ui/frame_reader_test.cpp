@@ -1,10 +1,10 @@
-#include "app/studio/viewport/frame_reader.h"
+#include "app/studio/rendering/frame_reader.h"
 
 #include <array>
 
 #include <gtest/gtest.h>
 
-#include "core/render/headless_context.h"
+#include "core/render/gl/headless_context.h"
 
 namespace lumorph::studio {
 namespace {

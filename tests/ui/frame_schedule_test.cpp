@@ -1,4 +1,4 @@
-#include "app/studio/viewport/frame_schedule.h"
+#include "app/studio/rendering/frame_schedule.h"
 
 #include <gtest/gtest.h>
 

@@ -14,7 +14,7 @@
 
 #include "app/studio/headless_show.h"
 #include "core/base/error.h"
-#include "core/render/image.h"
+#include "core/base/image.h"
 
 namespace lumorph::studio {
 namespace {

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 
-#include "app/studio/document/jobs.h"
+#include "app/studio/base/jobs.h"
 #include "core/base/error.h"
 #include "tests/ui/event_loop.h"
 

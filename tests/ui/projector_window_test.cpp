@@ -10,7 +10,7 @@
 
 #include "app/studio/output/projector_outputs.h"
 #include "app/studio/shell/escape_twice.h"
-#include "core/render/headless_context.h"
+#include "core/render/gl/headless_context.h"
 #include "core/render/spatial_renderer.h"
 #include "event_loop.h"
 #include "show_fixture.h"

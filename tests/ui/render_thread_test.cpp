@@ -1,4 +1,4 @@
-#include "app/studio/viewport/render_thread.h"
+#include "app/studio/rendering/render_thread.h"
 
 #include <set>
 

@@ -1,4 +1,4 @@
-#include "app/studio/shell/settings.h"
+#include "app/studio/base/settings.h"
 
 #include <QDir>
 #include <QSignalSpy>

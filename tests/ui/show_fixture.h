@@ -2,7 +2,7 @@
 
 #include <memory>
 
-#include "app/studio/show/show_request.h"
+#include "app/studio/rendering/show_request.h"
 #include "core/base/resources.h"
 #include "core/rig/rig_file.h"
 #include "core/scene/scene_assets.h"

@@ -1,6 +1,6 @@
 #include <epoxy/gl.h>
 
-#include "app/studio/viewport/render_thread.h"
+#include "app/studio/rendering/render_thread.h"
 
 #include <algorithm>
 #include <atomic>
@@ -12,8 +12,8 @@
 
 #include <QSignalSpy>
 
-#include "app/studio/show/show_frames.h"
-#include "app/studio/show/show_pace.h"
+#include "app/studio/rendering/show_frames.h"
+#include "app/studio/rendering/show_pace.h"
 #include "app/workspaces/scene/item_pick.h"
 #include "core/geometry/calibrated_camera.h"
 #include "core/loop/show_stage.h"

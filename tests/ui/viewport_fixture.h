@@ -8,7 +8,7 @@
 #include <QRect>
 #include <gtest/gtest.h>
 
-#include "app/studio/viewport/render_thread.h"
+#include "app/studio/rendering/render_thread.h"
 #include "app/studio/viewport/viewport_widget.h"
 
 namespace lumorph::studio {

@@ -8,7 +8,7 @@
 #include <QPointer>
 #include <QProcess>
 
-#include "app/workspaces/field/field_scene.h"
+#include "app/workspaces/common/field_scene.h"
 #include "core/base/resources.h"
 #include "core/geometry/mesh_file.h"
 #include "core/mdf/coverage.h"

@@ -11,12 +11,12 @@
 #include <QString>
 #include <QStringList>
 
+#include "app/studio/base/notices.h"
+#include "app/studio/base/settings.h"
 #include "app/studio/devices/device_log.h"
 #include "app/studio/devices/hand_watch.h"
-#include "app/studio/document/notices.h"
 #include "app/studio/document/studio_document.h"
 #include "app/studio/document/studio_loop.h"
-#include "app/studio/shell/settings.h"
 #include "devices/controllers/servo_link.h"
 #include "devices/transport/discovery.h"
 

@@ -7,7 +7,7 @@
 #include <QDateTime>
 #include <QString>
 
-#include "app/studio/document/notices.h"
+#include "app/studio/base/notices.h"
 #include "devices/controllers/servo_link.h"
 
 namespace lumorph::studio {

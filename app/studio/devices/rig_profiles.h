@@ -6,8 +6,8 @@
 #include <QString>
 #include <QStringList>
 
+#include "app/studio/base/settings.h"
 #include "app/studio/devices/device_shelf.h"
-#include "app/studio/shell/settings.h"
 #include "core/rig/rig.h"
 
 namespace lumorph::studio {

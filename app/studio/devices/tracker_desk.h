@@ -11,9 +11,9 @@
 #include <QString>
 #include <QStringList>
 
-#include "app/studio/document/notices.h"
+#include "app/studio/base/notices.h"
+#include "app/studio/base/settings.h"
 #include "app/studio/document/studio_loop.h"
-#include "app/studio/shell/settings.h"
 #include "devices/trackers/simulated_orders.h"
 #include "devices/trackers/tracker_hub.h"
 

@@ -7,8 +7,8 @@
 #include <QObject>
 #include <QString>
 
-#include "app/studio/document/jobs.h"
-#include "app/studio/document/notices.h"
+#include "app/studio/base/jobs.h"
+#include "app/studio/base/notices.h"
 #include "app/studio/document/project_io.h"
 #include "app/studio/document/studio_document.h"
 #include "core/mdf/builder.h"

@@ -6,7 +6,7 @@
 #include <QColor>
 #include <QString>
 
-#include "core/render/theme.h"
+#include "core/render/viewport/theme.h"
 
 namespace lumorph::studio {
 

@@ -11,7 +11,7 @@
 #include <QPointer>
 #include <QScreen>
 
-#include "app/studio/document/notices.h"
+#include "app/studio/base/notices.h"
 #include "app/studio/document/studio_document.h"
 #include "app/studio/output/projector_window.h"
 

@@ -6,9 +6,9 @@
 #include <QTimer>
 #include <QWidget>
 
+#include "app/studio/base/commands.h"
 #include "app/studio/output/test_pattern.h"
-#include "app/studio/shell/commands.h"
-#include "app/studio/show/show_feed.h"
+#include "app/studio/rendering/show_feed.h"
 
 namespace lumorph::studio {
 

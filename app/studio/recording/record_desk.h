@@ -8,13 +8,13 @@
 #include <QObject>
 #include <QString>
 
+#include "app/studio/base/jobs.h"
+#include "app/studio/base/notices.h"
+#include "app/studio/base/settings.h"
 #include "app/studio/devices/device_desk.h"
 #include "app/studio/devices/tracker_desk.h"
 #include "app/studio/document/desk.h"
-#include "app/studio/document/jobs.h"
-#include "app/studio/document/notices.h"
 #include "app/studio/document/studio_loop.h"
-#include "app/studio/shell/settings.h"
 
 namespace lumorph::studio {
 

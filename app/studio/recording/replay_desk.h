@@ -8,9 +8,9 @@
 #include <QString>
 
 #include "app/recording/recording.h"
+#include "app/studio/base/jobs.h"
+#include "app/studio/base/notices.h"
 #include "app/studio/document/desk.h"
-#include "app/studio/document/jobs.h"
-#include "app/studio/document/notices.h"
 #include "app/studio/document/studio_loop.h"
 
 namespace lumorph::studio {

@@ -2,7 +2,7 @@
 
 #include <QWidget>
 
-#include "app/studio/shell/commands.h"
+#include "app/studio/base/commands.h"
 
 namespace lumorph::studio {
 

@@ -5,7 +5,7 @@
 
 #include <QString>
 
-#include "app/studio/shell/commands.h"
+#include "app/studio/base/commands.h"
 
 namespace lumorph::studio {
 

@@ -9,7 +9,7 @@
 #include <QMenu>
 
 #include "app/studio/look/icons.h"
-#include "app/studio/recording/record_commands.h"
+#include "app/studio/shell/record_commands.h"
 
 namespace lumorph::studio {
 namespace {

@@ -14,12 +14,12 @@
 
 #include "app/studio/look/icons.h"
 #include "app/studio/look/palette.h"
-#include "app/studio/recording/replay_bar.h"
 #include "app/studio/shell/command_palette.h"
 #include "app/studio/shell/drop_overlay.h"
 #include "app/studio/shell/escape_twice.h"
 #include "app/studio/shell/file_commands.h"
 #include "app/studio/shell/idle_cursor.h"
+#include "app/studio/shell/replay_bar.h"
 #include "app/studio/shell/shell_commands.h"
 #include "app/studio/shell/status_line.h"
 #include "app/studio/shell/stop_key_watch.h"

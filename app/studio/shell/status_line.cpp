@@ -6,9 +6,9 @@
 #include <QTimer>
 
 #include "app/studio/look/icons.h"
-#include "app/studio/recording/record_chip.h"
 #include "app/studio/shell/loop_text.h"
 #include "app/studio/shell/notice_list.h"
+#include "app/studio/shell/record_chip.h"
 #include "app/studio/widgets/icon_label.h"
 #include "app/studio/widgets/panel.h"
 

@@ -1,19 +1,19 @@
 #pragma once
 
+#include "app/studio/base/commands.h"
+#include "app/studio/base/jobs.h"
+#include "app/studio/base/notices.h"
+#include "app/studio/base/settings.h"
 #include "app/studio/devices/device_desk.h"
 #include "app/studio/devices/tracker_desk.h"
 #include "app/studio/document/desk.h"
-#include "app/studio/document/jobs.h"
-#include "app/studio/document/notices.h"
 #include "app/studio/document/studio_document.h"
 #include "app/studio/document/studio_loop.h"
 #include "app/studio/output/projector_outputs.h"
 #include "app/studio/recording/record_desk.h"
 #include "app/studio/recording/replay_desk.h"
-#include "app/studio/shell/commands.h"
-#include "app/studio/shell/settings.h"
-#include "app/studio/show/show_feed.h"
-#include "app/studio/viewport/render_thread.h"
+#include "app/studio/rendering/render_thread.h"
+#include "app/studio/rendering/show_feed.h"
 
 namespace lumorph::studio {
 

@@ -9,7 +9,7 @@
 
 #include "app/studio/look/icons.h"
 #include "app/studio/look/palette.h"
-#include "app/studio/recording/record_chip.h"
+#include "app/studio/shell/record_chip.h"
 
 namespace lumorph::studio {
 namespace {

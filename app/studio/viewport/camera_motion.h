@@ -5,7 +5,7 @@
 
 #include <glm/vec2.hpp>
 
-#include "core/render/view_camera.h"
+#include "core/render/viewport/view_camera.h"
 
 namespace lumorph::studio {
 

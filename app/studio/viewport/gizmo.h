@@ -9,8 +9,8 @@
 
 #include "core/geometry/triangle_mesh.h"
 #include "core/mdf/placement.h"
-#include "core/render/view_camera.h"
-#include "core/render/viewport_scene.h"
+#include "core/render/viewport/view_camera.h"
+#include "core/render/viewport/viewport_scene.h"
 
 namespace lumorph::studio {
 

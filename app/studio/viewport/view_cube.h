@@ -9,7 +9,7 @@
 #include <glm/vec3.hpp>
 
 #include "app/studio/look/palette.h"
-#include "core/render/view_camera.h"
+#include "core/render/viewport/view_camera.h"
 
 namespace lumorph::studio {
 

@@ -10,7 +10,7 @@
 #include <QString>
 
 #include "app/studio/look/palette.h"
-#include "core/render/view_camera.h"
+#include "core/render/viewport/view_camera.h"
 
 namespace lumorph::studio {
 

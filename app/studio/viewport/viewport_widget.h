@@ -6,10 +6,10 @@
 #include <QString>
 #include <QWidget>
 
+#include "app/studio/rendering/render_thread.h"
 #include "app/studio/viewport/body_marks.h"
 #include "app/studio/viewport/gizmo.h"
-#include "app/studio/viewport/render_thread.h"
-#include "core/render/viewport_renderer.h"
+#include "core/render/viewport/viewport_renderer.h"
 
 namespace lumorph::studio {
 

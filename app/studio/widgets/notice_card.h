@@ -2,7 +2,7 @@
 
 #include <QWidget>
 
-#include "app/studio/document/notices.h"
+#include "app/studio/base/notices.h"
 
 namespace lumorph::studio {
 

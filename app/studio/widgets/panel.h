@@ -4,9 +4,9 @@
 #include <QVBoxLayout>
 #include <QWidget>
 
-#include "app/studio/document/jobs.h"
-#include "app/studio/document/notices.h"
-#include "app/studio/shell/commands.h"
+#include "app/studio/base/commands.h"
+#include "app/studio/base/jobs.h"
+#include "app/studio/base/notices.h"
 
 namespace lumorph::studio {
 

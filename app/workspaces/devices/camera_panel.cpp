@@ -6,8 +6,8 @@
 #include <QPainter>
 
 #include "app/studio/look/palette.h"
+#include "app/studio/widgets/dock_parts.h"
 #include "app/tracking/any_tracker.h"
-#include "app/workspaces/field/dock_parts.h"
 
 namespace lumorph::studio {
 

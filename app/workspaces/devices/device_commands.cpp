@@ -6,9 +6,9 @@
 #include <QDesktopServices>
 #include <QUrl>
 
+#include "app/workspaces/common/export_dialogs.h"
 #include "app/workspaces/devices/servo_board.h"
 #include "app/workspaces/devices/tracker_commands.h"
-#include "app/workspaces/field/export_dialogs.h"
 #include "devices/firmware/pin_header.h"
 #include "devices/firmware/sketch.h"
 

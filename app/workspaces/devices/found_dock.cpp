@@ -5,10 +5,10 @@
 #include <QSignalBlocker>
 #include <QVBoxLayout>
 
+#include "app/studio/widgets/dock_parts.h"
 #include "app/studio/widgets/panel.h"
 #include "app/workspaces/devices/device_words.h"
 #include "app/workspaces/devices/devices_docks.h"
-#include "app/workspaces/field/dock_parts.h"
 #include "app/workspaces/rig/actuator_item.h"
 #include "devices/controllers/controller_kinds.h"
 

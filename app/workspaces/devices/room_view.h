@@ -9,7 +9,7 @@
 
 #include "app/studio/viewport/body_marks.h"
 #include "core/loop/pose_stream.h"
-#include "core/render/view_camera.h"
+#include "core/render/viewport/view_camera.h"
 
 namespace lumorph::studio {
 

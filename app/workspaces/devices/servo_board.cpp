@@ -6,11 +6,11 @@
 #include <QStyle>
 #include <QVBoxLayout>
 
+#include "app/studio/widgets/dock_parts.h"
 #include "app/studio/widgets/panel.h"
 #include "app/workspaces/devices/device_card.h"
 #include "app/workspaces/devices/device_facts.h"
 #include "app/workspaces/devices/servo_row.h"
-#include "app/workspaces/field/dock_parts.h"
 
 namespace lumorph::studio {
 namespace {

@@ -10,12 +10,12 @@
 #include <QStackedWidget>
 #include <QVBoxLayout>
 
+#include "app/studio/widgets/dock_parts.h"
 #include "app/studio/widgets/panel.h"
 #include "app/studio/widgets/value_field.h"
 #include "app/workspaces/devices/devices_docks.h"
 #include "app/workspaces/devices/profile_edit.h"
 #include "app/workspaces/devices/servo_board.h"
-#include "app/workspaces/field/dock_parts.h"
 
 namespace lumorph::studio {
 namespace {

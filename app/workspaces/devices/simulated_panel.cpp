@@ -7,7 +7,7 @@
 #include <QSignalBlocker>
 #include <QVBoxLayout>
 
-#include "app/workspaces/field/dock_parts.h"
+#include "app/studio/widgets/dock_parts.h"
 
 namespace lumorph::studio {
 namespace {

@@ -10,10 +10,10 @@
 #include <QTimer>
 #include <QVBoxLayout>
 
+#include "app/studio/widgets/dock_parts.h"
 #include "app/studio/widgets/panel.h"
 #include "app/workspaces/devices/devices_docks.h"
 #include "app/workspaces/devices/horn_view.h"
-#include "app/workspaces/field/dock_parts.h"
 #include "core/base/error.h"
 #include "devices/controllers/controller_kinds.h"
 #include "devices/simulator/simulated_bench.h"

@@ -7,9 +7,9 @@
 #include <QPushButton>
 
 #include "app/studio/look/palette.h"
+#include "app/studio/widgets/dock_parts.h"
 #include "app/studio/widgets/plot_axes.h"
 #include "app/workspaces/devices/device_words.h"
-#include "app/workspaces/field/dock_parts.h"
 
 namespace lumorph::studio {
 namespace {

@@ -4,8 +4,8 @@
 
 #include <QApplication>
 
-#include "app/studio/devices/body_axes.h"
-#include "app/workspaces/field/export_dialogs.h"
+#include "app/workspaces/common/body_axes.h"
+#include "app/workspaces/common/export_dialogs.h"
 #include "calibration/tracking/board_address.h"
 #include "calibration/tracking/board_page.h"
 #include "core/base/atomic_file.h"

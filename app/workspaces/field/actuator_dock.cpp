@@ -6,11 +6,11 @@
 #include <QStackedWidget>
 #include <QVBoxLayout>
 
+#include "app/studio/widgets/dock_parts.h"
 #include "app/studio/widgets/panel.h"
+#include "app/studio/widgets/throttle.h"
 #include "app/workspaces/field/actuator_grid.h"
 #include "app/workspaces/field/actuator_row.h"
-#include "app/workspaces/field/dock_parts.h"
-#include "app/workspaces/field/throttle.h"
 
 namespace lumorph::studio {
 

@@ -13,7 +13,7 @@
 
 #include "app/studio/widgets/panel.h"
 #include "app/studio/widgets/value_field.h"
-#include "app/workspaces/field/field_summary.h"
+#include "app/workspaces/common/field_summary.h"
 #include "core/base/error.h"
 
 namespace lumorph::studio {

@@ -10,9 +10,9 @@
 #include <QVBoxLayout>
 
 #include "app/studio/widgets/panel.h"
+#include "app/workspaces/common/field_summary.h"
 #include "app/workspaces/field/field_build.h"
 #include "app/workspaces/field/field_show.h"
-#include "app/workspaces/field/field_summary.h"
 
 namespace lumorph::studio {
 namespace {

@@ -8,8 +8,8 @@
 #include <QPointer>
 #include <QUrl>
 
-#include "app/workspaces/field/export_dialogs.h"
-#include "app/workspaces/field/field_output.h"
+#include "app/workspaces/common/export_dialogs.h"
+#include "app/workspaces/common/field_output.h"
 #include "core/base/atomic_file.h"
 #include "core/base/error.h"
 

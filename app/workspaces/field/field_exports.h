@@ -6,8 +6,8 @@
 #include <QWidget>
 
 #include "app/studio/shell/studio.h"
-#include "core/render/view_camera.h"
-#include "core/render/viewport_scene.h"
+#include "core/render/viewport/view_camera.h"
+#include "core/render/viewport/viewport_scene.h"
 
 namespace lumorph::studio {
 

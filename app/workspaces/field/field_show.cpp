@@ -13,9 +13,9 @@
 #include <QVBoxLayout>
 
 #include "app/studio/widgets/panel.h"
+#include "app/studio/widgets/range_row.h"
 #include "app/studio/widgets/value_field.h"
 #include "app/workspaces/field/level_legend.h"
-#include "app/workspaces/field/range_row.h"
 
 namespace lumorph::studio {
 namespace {

@@ -3,7 +3,7 @@
 #include <QWidget>
 
 #include "app/studio/shell/studio.h"
-#include "app/workspaces/field/field_display.h"
+#include "app/workspaces/common/field_display.h"
 
 namespace lumorph::studio {
 

@@ -3,9 +3,9 @@
 #include <QGridLayout>
 #include <QLabel>
 
-#include "app/studio/devices/body_axes.h"
+#include "app/studio/widgets/dock_parts.h"
 #include "app/studio/widgets/panel.h"
-#include "app/workspaces/field/dock_parts.h"
+#include "app/workspaces/common/body_axes.h"
 
 namespace lumorph::studio {
 

@@ -4,8 +4,8 @@
 
 #include "app/studio/shell/studio.h"
 #include "app/studio/viewport/viewport_widget.h"
+#include "app/studio/widgets/throttle.h"
 #include "app/workspaces/field/fit_readout.h"
-#include "app/workspaces/field/throttle.h"
 #include "app/workspaces/field/timeline.h"
 
 namespace lumorph::studio {

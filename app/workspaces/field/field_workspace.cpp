@@ -9,8 +9,8 @@
 #include <QPointer>
 #include <QTimer>
 
+#include "app/workspaces/common/field_colors.h"
 #include "app/workspaces/field/actuator_dock.h"
-#include "app/workspaces/field/field_colors.h"
 #include "app/workspaces/field/field_commands.h"
 #include "app/workspaces/field/field_dock.h"
 #include "app/workspaces/field/field_exports.h"

@@ -3,7 +3,7 @@
 #include <QGridLayout>
 #include <QVBoxLayout>
 
-#include "app/workspaces/field/dock_parts.h"
+#include "app/studio/widgets/dock_parts.h"
 #include "app/workspaces/field/match_numbers.h"
 
 namespace lumorph::studio {

@@ -2,7 +2,7 @@
 
 #include <QLabel>
 
-#include "app/workspaces/field/floating_card.h"
+#include "app/studio/widgets/floating_card.h"
 #include "core/loop/live_match.h"
 
 namespace lumorph::studio {

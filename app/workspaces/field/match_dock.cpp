@@ -6,12 +6,12 @@
 #include <QVBoxLayout>
 
 #include "app/studio/look/palette.h"
+#include "app/studio/widgets/dock_parts.h"
 #include "app/studio/widgets/panel.h"
 #include "app/studio/widgets/plot.h"
+#include "app/studio/widgets/throttle.h"
 #include "app/studio/widgets/value_field.h"
-#include "app/workspaces/field/dock_parts.h"
 #include "app/workspaces/field/match_numbers.h"
-#include "app/workspaces/field/throttle.h"
 #include "app/workspaces/field/vote_table.h"
 
 namespace lumorph::studio {

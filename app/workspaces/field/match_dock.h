@@ -3,7 +3,7 @@
 #include <QWidget>
 
 #include "app/studio/shell/studio.h"
-#include "app/workspaces/field/throttle.h"
+#include "app/studio/widgets/throttle.h"
 
 namespace lumorph::studio {
 

@@ -7,10 +7,10 @@
 #include <QStackedLayout>
 #include <QVBoxLayout>
 
+#include "app/studio/widgets/dock_parts.h"
 #include "app/studio/widgets/panel.h"
 #include "app/studio/widgets/value_field.h"
-#include "app/workspaces/field/dock_parts.h"
-#include "app/workspaces/field/field_summary.h"
+#include "app/workspaces/common/field_summary.h"
 #include "app/workspaces/field/placement_form.h"
 
 namespace lumorph::studio {

@@ -5,7 +5,7 @@
 #include <QBoxLayout>
 #include <QSignalBlocker>
 
-#include "app/workspaces/field/dock_parts.h"
+#include "app/studio/widgets/dock_parts.h"
 
 namespace lumorph::studio {
 

@@ -4,7 +4,7 @@
 #include <QSlider>
 
 #include "app/studio/shell/studio.h"
-#include "app/workspaces/field/floating_card.h"
+#include "app/studio/widgets/floating_card.h"
 
 namespace lumorph::studio {
 

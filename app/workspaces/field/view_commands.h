@@ -2,7 +2,7 @@
 
 #include <functional>
 
-#include "app/studio/shell/commands.h"
+#include "app/studio/base/commands.h"
 #include "app/studio/viewport/viewport_widget.h"
 
 namespace lumorph::studio {

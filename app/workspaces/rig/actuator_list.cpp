@@ -4,9 +4,9 @@
 #include <QStackedWidget>
 #include <QVBoxLayout>
 
+#include "app/studio/widgets/dock_parts.h"
 #include "app/studio/widgets/panel.h"
-#include "app/workspaces/field/dock_parts.h"
-#include "app/workspaces/field/field_summary.h"
+#include "app/workspaces/common/field_summary.h"
 #include "app/workspaces/rig/actuator_item.h"
 #include "app/workspaces/rig/rig_docks.h"
 #include "app/workspaces/rig/rig_facts.h"

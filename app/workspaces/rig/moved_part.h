@@ -3,7 +3,7 @@
 #include <memory>
 #include <vector>
 
-#include "core/render/viewport_scene.h"
+#include "core/render/viewport/viewport_scene.h"
 #include "core/rig/rig.h"
 
 namespace lumorph::studio {

@@ -3,8 +3,8 @@
 #include <QStackedWidget>
 #include <QVBoxLayout>
 
+#include "app/studio/widgets/dock_parts.h"
 #include "app/studio/widgets/panel.h"
-#include "app/workspaces/field/dock_parts.h"
 #include "app/workspaces/rig/rig_docks.h"
 #include "app/workspaces/rig/rig_facts.h"
 

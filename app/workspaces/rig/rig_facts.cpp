@@ -7,8 +7,8 @@
 #include <QLabel>
 #include <glm/geometric.hpp>
 
-#include "app/workspaces/field/dock_parts.h"
-#include "app/workspaces/field/field_summary.h"
+#include "app/studio/widgets/dock_parts.h"
+#include "app/workspaces/common/field_summary.h"
 
 namespace lumorph::studio {
 

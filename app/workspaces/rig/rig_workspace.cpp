@@ -8,7 +8,7 @@
 #include <QPointer>
 
 #include "app/studio/viewport/viewport_widget.h"
-#include "app/workspaces/field/field_colors.h"
+#include "app/workspaces/common/field_colors.h"
 #include "app/workspaces/rig/moved_part.h"
 #include "app/workspaces/rig/rig_docks.h"
 

@@ -3,8 +3,8 @@
 #include <glm/vec2.hpp>
 
 #include "core/geometry/calibrated_camera.h"
-#include "core/render/show_frame.h"
-#include "core/render/view_camera.h"
+#include "core/render/viewport/view_camera.h"
+#include "core/scene/show_frame.h"
 
 namespace lumorph::studio {
 

@@ -4,9 +4,9 @@
 
 #include <QString>
 
-#include "app/studio/show/show_feed.h"
-#include "app/workspaces/field/floating_card.h"
-#include "app/workspaces/field/throttle.h"
+#include "app/studio/rendering/show_feed.h"
+#include "app/studio/widgets/floating_card.h"
+#include "app/studio/widgets/throttle.h"
 
 namespace lumorph::studio {
 

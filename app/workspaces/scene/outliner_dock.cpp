@@ -8,8 +8,8 @@
 
 #include "app/studio/look/icons.h"
 #include "app/studio/look/palette.h"
+#include "app/studio/widgets/dock_parts.h"
 #include "app/studio/widgets/panel.h"
-#include "app/workspaces/field/dock_parts.h"
 #include "app/workspaces/scene/outliner_item.h"
 #include "app/workspaces/scene/outliner_model.h"
 #include "app/workspaces/scene/scene_commands.h"

@@ -7,13 +7,13 @@
 
 #include <QVBoxLayout>
 
-#include "app/studio/devices/body_axes.h"
-#include "app/studio/show/show_frames.h"
+#include "app/studio/rendering/show_frames.h"
 #include "app/studio/viewport/gl_page.h"
 #include "app/studio/viewport/viewport_widget.h"
 #include "app/studio/widgets/panel.h"
-#include "app/workspaces/field/field_colors.h"
-#include "app/workspaces/field/field_scene.h"
+#include "app/workspaces/common/body_axes.h"
+#include "app/workspaces/common/field_colors.h"
+#include "app/workspaces/common/field_scene.h"
 #include "app/workspaces/scene/eye_orbit.h"
 #include "app/workspaces/scene/item_handles.h"
 #include "app/workspaces/scene/item_pick.h"

@@ -9,7 +9,7 @@
 
 #include "app/studio/look/icons.h"
 #include "app/studio/look/palette.h"
-#include "app/workspaces/field/dock_parts.h"
+#include "app/studio/widgets/dock_parts.h"
 
 namespace lumorph::studio {
 namespace {

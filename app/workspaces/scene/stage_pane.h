@@ -7,7 +7,7 @@
 #include <QPointF>
 #include <QWidget>
 
-#include "app/studio/show/show_feed.h"
+#include "app/studio/rendering/show_feed.h"
 
 namespace lumorph::studio {
 

@@ -2,7 +2,7 @@
 
 #include <filesystem>
 
-#include "core/render/image.h"
+#include "core/base/image.h"
 
 namespace lumorph {
 

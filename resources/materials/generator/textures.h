@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "core/render/image.h"
+#include "core/base/image.h"
 
 /// The pictures of the ready materials, made from numbers alone.
 namespace lumorph {

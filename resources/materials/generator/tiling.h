@@ -7,7 +7,7 @@
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 
-#include "core/render/image.h"
+#include "core/base/image.h"
 
 /// Pictures that repeat without a seam: everything here lives on a torus of side 1.
 namespace lumorph {

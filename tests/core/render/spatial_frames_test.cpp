@@ -11,9 +11,9 @@
 #include <gmock/gmock.h>
 
 #include "core/base/error.h"
-#include "core/render/headless_context.h"
+#include "core/render/gl/headless_context.h"
 #include "core/render/spatial_renderer.h"
-#include "tests/core/render/broken_shader.h"
+#include "tests/core/render/gl/broken_shader.h"
 #include "tests/core/render/spatial_scene.h"
 
 // What stays and what changes from one frame of the renderer to the next.

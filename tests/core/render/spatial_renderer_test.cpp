@@ -13,7 +13,7 @@
 #include <gmock/gmock.h>
 
 #include "core/base/error.h"
-#include "core/render/headless_context.h"
+#include "core/render/gl/headless_context.h"
 #include "tests/core/render/ray_oracle.h"
 #include "tests/core/render/spatial_scene.h"
 

@@ -9,7 +9,7 @@
 #include <glm/vector_relational.hpp>
 #include <gtest/gtest.h>
 
-#include "tests/core/render/predicted_region.h"
+#include "tests/core/render/gl/predicted_region.h"
 
 // Each technique changes what is displayed where a ray caster says it may, and nothing elsewhere.
 

@@ -7,8 +7,8 @@
 #include <gtest/gtest.h>
 
 #include "core/base/error.h"
+#include "core/base/image.h"
 #include "core/base/resources.h"
-#include "core/render/image.h"
 #include "core/scene/posed_scene.h"
 #include "core/scene/project.h"
 #include "core/scene/scene_assets.h"

@@ -1,0 +1,94 @@
+#include "app/studio/base/settings.h"
+
+#include <algorithm>
+
+#include <QFileInfo>
+
+namespace lumorph::studio {
+namespace {
+
+constexpr int kMostRecentFiles = 10;
+constexpr double kLowestRate = 10.0, kHighestRate = 120.0, kUsualRate = 60.0;
+
+QString layoutKey(const QString& workspace) { return "layout/" + workspace; }
+
+} // namespace
+
+Settings::Settings(QObject* parent)
+    : QObject(parent), store_(QSettings::IniFormat, QSettings::UserScope, "lumorph", "studio") {}
+
+Theme Settings::theme() const { return store_.value("look/theme").toString() == "light" ? Theme::light : Theme::dark; }
+
+void Settings::setTheme(Theme theme) {
+    if (theme == this->theme()) return;
+    store_.setValue("look/theme", theme == Theme::light ? "light" : "dark");
+    emit themeChanged();
+}
+
+double Settings::loopRate() const {
+    bool isNumber = false;
+    const double rate = store_.value("loop/rate", kUsualRate).toDouble(&isNumber);
+    return isNumber ? std::clamp(rate, kLowestRate, kHighestRate) : kUsualRate; // the file may be edited by hand
+}
+
+void Settings::setLoopRate(double framesPerSecond) {
+    const double rate = std::clamp(framesPerSecond, kLowestRate, kHighestRate);
+    if (rate == loopRate()) return;
+    store_.setValue("loop/rate", rate);
+    emit loopRateChanged();
+}
+
+bool Settings::stillQuality() const { return store_.value("look/stillQuality", true).toBool(); }
+
+void Settings::setStillQuality(bool on) {
+    if (on == stillQuality()) return;
+    store_.setValue("look/stillQuality", on);
+    emit qualityChanged();
+}
+
+bool Settings::placesNewTargets() const { return store_.value("target/placeNew", true).toBool(); }
+
+void Settings::setPlacesNewTargets(bool on) {
+    if (on == placesNewTargets()) return;
+    store_.setValue("target/placeNew", on);
+    emit placesNewTargetsChanged();
+}
+
+bool Settings::tourSeen() const { return store_.value("tour/seen", false).toBool(); }
+
+void Settings::setTourSeen(bool seen) { store_.setValue("tour/seen", seen); }
+
+QStringList Settings::recentFiles() const {
+    QStringList there;
+    for (const QString& path : store_.value("files/recent").toStringList())
+        if (there.size() < kMostRecentFiles && QFileInfo::exists(path)) there << path;
+    return there;
+}
+
+void Settings::addRecentFile(const QString& path) {
+    const QString absolute = QFileInfo(path).absoluteFilePath();
+    QStringList files = store_.value("files/recent").toStringList();
+    files.removeAll(absolute);
+    files.prepend(absolute);
+    store_.setValue("files/recent", QStringList(files.mid(0, 2 * kMostRecentFiles)));
+    emit recentFilesChanged();
+}
+
+void Settings::clearRecentFiles() {
+    store_.remove("files/recent");
+    emit recentFilesChanged();
+}
+
+QByteArray Settings::layout(const QString& workspace) const { return store_.value(layoutKey(workspace)).toByteArray(); }
+
+void Settings::setLayout(const QString& workspace, const QByteArray& layout) {
+    store_.setValue(layoutKey(workspace), layout);
+}
+
+std::filesystem::path Settings::folder() const { return QFileInfo(store_.fileName()).absolutePath().toStdString(); }
+
+QVariant Settings::value(const QString& key, const QVariant& fallback) const { return store_.value(key, fallback); }
+
+void Settings::setValue(const QString& key, const QVariant& value) { store_.setValue(key, value); }
+
+} // namespace lumorph::studio

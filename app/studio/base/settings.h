@@ -1,0 +1,52 @@
+#pragma once
+
+#include <filesystem>
+
+#include <QObject>
+#include <QSettings>
+#include <QString>
+#include <QStringList>
+
+#include "core/base/clock.h"
+#include "core/render/viewport/theme.h"
+
+namespace lumorph::studio {
+
+/// What the user chose once for all projects; kept in the user's configuration. Lives in the window's thread.
+class Settings : public QObject {
+    Q_OBJECT
+public:
+    explicit Settings(QObject* parent = nullptr);
+
+    [[nodiscard]] Theme theme() const;
+    void setTheme(Theme theme);
+    [[nodiscard]] double loopRate() const; ///< frames a second, 10 to 120
+    void setLoopRate(double framesPerSecond);
+    [[nodiscard]] bool stillQuality() const; ///< draw a still view in full quality
+    void setStillQuality(bool on);
+    [[nodiscard]] bool placesNewTargets() const; ///< a new target is moved where it matches best
+    void setPlacesNewTargets(bool on);
+    [[nodiscard]] bool tourSeen() const;
+    void setTourSeen(bool seen);
+    [[nodiscard]] QStringList recentFiles() const; ///< newest first, at most ten, those that are still there
+    void addRecentFile(const QString& path);
+    void clearRecentFiles();
+    [[nodiscard]] QByteArray layout(const QString& workspace) const;
+    void setLayout(const QString& workspace, const QByteArray& layout);
+    /// Where what is too large for a setting lies: the folder of the settings' own file.
+    [[nodiscard]] std::filesystem::path folder() const;
+    [[nodiscard]] QVariant value(const QString& key, const QVariant& fallback = {}) const;
+    void setValue(const QString& key, const QVariant& value);
+
+signals:
+    void themeChanged();
+    void loopRateChanged();
+    void qualityChanged();
+    void placesNewTargetsChanged();
+    void recentFilesChanged();
+
+private:
+    QSettings store_;
+};
+
+} // namespace lumorph::studio

@@ -1,0 +1,75 @@
+#include "app/studio/rendering/show_frames.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <glm/matrix.hpp>
+
+#include "core/motion/view_dependence.h"
+
+namespace lumorph::studio {
+namespace {
+
+glm::ivec2 scaledSize(glm::ivec2 size, double share) {
+    const auto side = [share](int pixels) { return std::max(1, static_cast<int>(std::lround(pixels * share))); };
+    return {side(size.x), side(size.y)};
+}
+
+std::vector<double> strokesFor(const ShowFrame& frame, ShowView::Bend bend) {
+    if (bend == ShowView::Bend::atRest) return std::vector<double>(frame.rig->actuatorCount(), 0.0);
+    const glm::dmat4 deviceFromWorld = glm::inverse(glm::dmat4(frame.worldFromDevice));
+    const glm::dvec3 eye(deviceFromWorld * glm::dvec4(glm::dvec3(*frame.eye), 1.0));
+    return ViewRule(*frame.rig).strokes(eye, frame.scene->viewDependence.theta);
+}
+
+} // namespace
+
+glm::ivec2 fittingSize(glm::ivec2 of, glm::ivec2 room) {
+    const double share = std::min(static_cast<double>(room.x) / std::max(of.x, 1), //
+                                  static_cast<double>(room.y) / std::max(of.y, 1));
+    return scaledSize(of, share);
+}
+
+CalibratedCamera resized(CalibratedCamera camera, glm::ivec2 size) {
+    const glm::dvec2 share = glm::dvec2(size) / glm::dvec2(camera.size);
+    camera.size = size;
+    camera.focal *= share;
+    // Pixel centres lie at whole numbers, so the corner of the image is at -0.5.
+    camera.principal = (camera.principal + 0.5) * share - 0.5;
+    return camera;
+}
+
+ShowFrame withProjectorShare(ShowFrame frame, double share) {
+    if (share >= 1.0) return frame;
+    auto scene = std::make_shared<Scene>(*frame.scene);
+    for (SceneProjector& projector : scene->projectors)
+        projector.camera = resized(projector.camera, scaledSize(projector.camera.size, share));
+    frame.scene = std::move(scene);
+    return frame;
+}
+
+ShowFrame withProjectorRoom(ShowFrame frame, glm::ivec2 room) {
+    auto scene = std::make_shared<Scene>(*frame.scene);
+    for (SceneProjector& projector : scene->projectors) {
+        const glm::ivec2 fitting = fittingSize(projector.camera.size, room);
+        if (fitting.x < projector.camera.size.x) projector.camera = resized(projector.camera, fitting);
+    }
+    frame.scene = std::move(scene);
+    return frame;
+}
+
+ShowFrame withBend(ShowFrame frame, ShowView::Bend bend) {
+    if (bend == ShowView::Bend::asItIs || !frame.rig || !frame.eye) return frame;
+    auto positions = std::make_shared<std::vector<glm::vec3>>(frame.rig->restMesh().positions.size());
+    frame.rig->deform(strokesFor(frame, bend), *positions);
+    frame.devicePositions = std::move(positions);
+    return frame;
+}
+
+glm::vec3 viewerOf(const ShowFrame& frame) { return frame.eye.value_or(frame.scene->eye); }
+
+CalibratedCamera labCamera(const ShowFrame& frame, const std::optional<glm::vec3>& observer, glm::ivec2 size) {
+    return deviceView(frame, observer.value_or(viewerOf(frame)), size);
+}
+
+} // namespace lumorph::studio

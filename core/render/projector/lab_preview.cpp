@@ -1,0 +1,123 @@
+#include "core/render/projector/lab_preview.h"
+
+#include "core/base/error.h"
+#include "core/render/gl/draw_state.h"
+
+namespace lumorph {
+namespace {
+
+/// Radiance of device and table where there is no program for their light, so that the one shows on the other.
+constexpr glm::vec2 kStandIn(0.5F, 0.1F);
+
+ShaderFiles litFiles(std::vector<std::string> defines) {
+    ShaderFiles files = shaderFiles({"version.glsl", "camera.glsl", "physical.vert"},
+                                    {"version.glsl", "camera.glsl", "physical_normal.glsl", "projector_light.glsl",
+                                     "projector_sight.glsl", "lab.frag"});
+    files.defines = std::move(defines);
+    return files;
+}
+
+} // namespace
+
+LabPreview::LabPreview()
+    : flat_(shaderFiles({"version.glsl", "camera.glsl", "physical.vert"}, {"version.glsl", "flat.frag"})),
+      deviceLight_(litFiles({})), tableLight_(litFiles({"TABLE"})), deviceMask_(litFiles({"MASK"})),
+      tableMask_(litFiles({"MASK", "TABLE"})) {}
+
+void LabPreview::drawSurfaces(const Observer& observer, const DeviceSurface& device, float onDevice, float onTable) {
+    glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+    flat_.use();
+    setCamera(flat_, observer.camera, observer.range.near, observer.range.far);
+    flat_.set("flatColor", onDevice * albedoOf(observer.scene, PhysicalSurface::device));
+    device.draw(flat_);
+    flat_.set("flatColor", onTable * albedoOf(observer.scene, PhysicalSurface::table));
+    flat_.set("worldFromMesh", glm::mat4(1.0F));
+    table_.draw();
+}
+
+void LabPreview::addProjector(const Observer& observer, const DeviceSurface& device, const ProjectorTarget& projector,
+                              Program& deviceProgram, Program& tableProgram) {
+    for (Program* program : {&deviceProgram, &tableProgram}) {
+        program->use();
+        setCamera(*program, observer.camera, observer.range.near, observer.range.far);
+        program->set("viewerPosition", glm::vec3(positionOf(observer.camera)));
+        setLight(*program, projector.projector);
+        setSight(*program, projector, 0);
+        bindTexture(1, projector.sent.texture());
+        program->set("sent", 1);
+        program->set("gamma", static_cast<float>(projector.projector.gamma));
+        const bool onDevice = program == &deviceProgram;
+        program->set("surfaceAlbedo",
+                     albedoOf(observer.scene, onDevice ? PhysicalSurface::device : PhysicalSurface::table));
+        if (onDevice) device.draw(*program);
+        if (onDevice) continue;
+        program->set("worldFromMesh", glm::mat4(1.0F));
+        table_.draw();
+    }
+}
+
+void LabPreview::addLight(const Observer& observer, const DeviceSurface& device,
+                          std::span<const ProjectorTarget* const> projectors) {
+    glDepthMask(GL_FALSE);
+    glEnable(GL_BLEND);
+    glBlendEquation(GL_FUNC_ADD);
+    glBlendFunc(GL_ONE, GL_ONE);
+    for (const ProjectorTarget* projector : projectors)
+        addProjector(observer, device, *projector, deviceLight_, tableLight_);
+}
+
+void LabPreview::drawLit(const Observer& observer, float ambient, const DeviceSurface& device,
+                         std::span<const ProjectorTarget* const> projectors) {
+    if (!problem_.empty()) return;
+    try {
+        drawSurfaces(observer, device, ambient, ambient);
+        addLight(observer, device, projectors);
+    } catch (const DataError& error) {
+        problem_ = error.subject() + ": " + error.why() + "; the lab is drawn without the light of projectors";
+    }
+}
+
+// Black where the driver refuses this too: projectors must not fail with it.
+void LabPreview::drawStandIn(const Observer& observer, const DeviceSurface& device) {
+    beginSurfaces(radiance_->framebuffer(), observer.camera.size);
+    glClear(GL_COLOR_BUFFER_BIT);
+    if (standInRefused_) return;
+    try {
+        drawSurfaces(observer, device, kStandIn.x, kStandIn.y);
+    } catch (const DataError&) {
+        standInRefused_ = true;
+    }
+}
+
+void LabPreview::draw(GLuint framebuffer, const CalibratedCamera& observer, float ambient, const ShowFrame& frame,
+                      const DeviceSurface& device, std::span<const ProjectorTarget* const> projectors,
+                      PictureOutput& out) {
+    if (!radiance_ || radiance_->size() != observer.size) radiance_.emplace(observer.size, GL_RGBA16F);
+    table_.fit(observer, frame.scene->table.size);
+    const Observer seen{observer, depthRange(observer, physicalBounds(frame)), *frame.scene};
+    beginSurfaces(radiance_->framebuffer(), observer.size);
+    drawLit(seen, ambient, device, projectors);
+    if (!problem_.empty()) drawStandIn(seen, device);
+    out.draw(framebuffer, *radiance_);
+}
+
+void LabPreview::drawMask(GLuint framebuffer, const CalibratedCamera& observer, const ShowFrame& frame,
+                          const DeviceSurface& device, std::span<const ProjectorTarget* const> projectors) {
+    table_.fit(observer, frame.scene->table.size);
+    const Observer seen{observer, depthRange(observer, physicalBounds(frame)), *frame.scene};
+    beginSurfaces(framebuffer, observer.size);
+    drawSurfaces(seen, device, 0.0F, 0.0F);
+    glDepthMask(GL_FALSE);
+    glEnable(GL_BLEND);
+    glBlendEquation(GL_MAX);
+    for (const ProjectorTarget* projector : projectors) addProjector(seen, device, *projector, deviceMask_, tableMask_);
+}
+
+std::size_t LabPreview::objectCount() const noexcept {
+    std::size_t count = TableGrid::kObjects + (radiance_ ? ColorTarget::kObjects : 0);
+    for (const Program* program : {&flat_, &deviceLight_, &tableLight_, &deviceMask_, &tableMask_})
+        count += program->objectCount();
+    return count;
+}
+
+} // namespace lumorph

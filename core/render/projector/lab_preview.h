@@ -1,0 +1,53 @@
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string>
+
+#include "core/render/projector/picture_output.h"
+#include "core/render/projector/projector_target.h"
+
+namespace lumorph {
+
+/// What an observer sees of device and table in the projectors' light.
+class LabPreview {
+public:
+    LabPreview();
+
+    /// Into a framebuffer of the observer's size, sRGB encoded by it or, if it does not encode, by this. Where the
+    /// driver refuses a program of light, a bright device on a dark table (black, if that is refused too), and
+    /// `problem`.
+    void draw(GLuint framebuffer, const CalibratedCamera& observer, float ambient, const ShowFrame& frame,
+              const DeviceSurface& device, std::span<const ProjectorTarget* const> projectors, PictureOutput& out);
+    /// White where a projector reaches what the observer sees. Throws DataError where the driver refuses the program:
+    /// what stood in for it would be wrong.
+    void drawMask(GLuint framebuffer, const CalibratedCamera& observer, const ShowFrame& frame,
+                  const DeviceSurface& device, std::span<const ProjectorTarget* const> projectors);
+
+    /// Empty, or what the driver refuses, with file and line, and what stands in for it.
+    [[nodiscard]] const std::string& problem() const noexcept { return problem_; }
+    [[nodiscard]] std::size_t objectCount() const noexcept;
+
+private:
+    struct Observer {
+        const CalibratedCamera& camera;
+        DepthRange range;
+        const Scene& scene;
+    };
+    void drawSurfaces(const Observer& observer, const DeviceSurface& device, float onDevice, float onTable);
+    void drawLit(const Observer& observer, float ambient, const DeviceSurface& device,
+                 std::span<const ProjectorTarget* const> projectors);
+    void drawStandIn(const Observer& observer, const DeviceSurface& device);
+    void addLight(const Observer& observer, const DeviceSurface& device,
+                  std::span<const ProjectorTarget* const> projectors);
+    void addProjector(const Observer& observer, const DeviceSurface& device, const ProjectorTarget& projector,
+                      Program& deviceProgram, Program& tableProgram);
+
+    TableGrid table_;
+    std::optional<ColorTarget> radiance_;
+    Program flat_, deviceLight_, tableLight_, deviceMask_, tableMask_;
+    std::string problem_;
+    bool standInRefused_ = false;
+};
+
+} // namespace lumorph

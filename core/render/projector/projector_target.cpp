@@ -1,0 +1,86 @@
+#include "core/render/projector/projector_target.h"
+
+#include <glm/matrix.hpp>
+
+#include "core/base/srgb.h"
+#include "core/render/eye/eye_programs.h"
+#include "core/render/gl/draw_state.h"
+
+namespace lumorph {
+namespace {
+
+constexpr float kDarkestSurface = 0.01F; // what is darker nobody makes bright
+
+} // namespace
+
+ProjectorTarget::ProjectorTarget(const SceneProjector& what)
+    : projector(what), sent(what.camera.size), open(what.camera.size) {
+    const glm::ivec2 size = sent.size();
+    bindTexture(0, done.name());
+    glTexImage2D(GL_TEXTURE_2D, 0, GL_R8, size.x, size.y, 0, GL_RED, GL_UNSIGNED_BYTE, nullptr);
+    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
+    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
+    bindTexture(0, 0);
+    const auto attach = [](GLenum to, GLuint texture) {
+        glFramebufferTexture2D(GL_FRAMEBUFFER, to, GL_TEXTURE_2D, texture, 0);
+    };
+    glBindFramebuffer(GL_FRAMEBUFFER, seen.name());
+    attach(GL_COLOR_ATTACHMENT0, sent.texture());
+    attach(GL_COLOR_ATTACHMENT1, done.name());
+    attach(GL_DEPTH_ATTACHMENT, sent.depthTexture());
+    constexpr GLenum kBoth[] = {GL_COLOR_ATTACHMENT0, GL_COLOR_ATTACHMENT1};
+    glDrawBuffers(2, kBoth);
+    glBindFramebuffer(GL_FRAMEBUFFER, rest.name());
+    attach(GL_COLOR_ATTACHMENT0, sent.texture());
+    attach(GL_DEPTH_ATTACHMENT, open.texture());
+    glBindFramebuffer(GL_FRAMEBUFFER, 0);
+}
+
+void setLight(Program& program, const SceneProjector& projector) {
+    program.set("projectorPosition", glm::vec3(positionOf(projector.camera)));
+    program.set("projectorPeak", static_cast<float>(projector.peak) * projector.gain);
+    program.set("projectorReference", static_cast<float>(projector.referenceDistance));
+}
+
+glm::vec3 albedoOf(const Scene& scene, PhysicalSurface surface) {
+    const bool device = surface == PhysicalSurface::device;
+    return linearFromSrgb(device ? scene.device.surfaceColor : scene.table.surfaceColor);
+}
+
+void setOutput(Program& program, const ProjectorTarget& target, const Scene& scene, PhysicalSurface surface, int unit) {
+    setLight(program, target.projector);
+    program.set("compensation", scene.compensation ? 1.0F : 0.0F);
+    program.set("surfaceAlbedo", glm::max(albedoOf(scene, surface), kDarkestSurface));
+    if (target.projector.gamma > 0.0) program.set("inverseGamma", static_cast<float>(1.0 / target.projector.gamma));
+    if (!target.blend) return;
+    bindTexture(unit, target.blend->weights());
+    program.set("weights", unit);
+}
+
+UnseenPlaces unseenPlaces(const ProjectorTarget& target, const Scene& scene) {
+    const std::uint32_t features = eye_feature::projected | (target.blend ? eye_feature::shared : 0U) |
+                                   (target.projector.gamma > 0.0 ? eye_feature::gamma : 0U);
+    return {target.projector.camera,
+            target.region,
+            target.device,
+            target.rest.name(),
+            features,
+            [&target, &scene](Program& program, PhysicalSurface surface, int unit) {
+                setOutput(program, target, scene, surface, unit);
+            }};
+}
+
+void setSight(Program& program, const ProjectorTarget& target, int unit) {
+    const CalibratedCamera& camera = target.projector.camera;
+    const DepthRange& range = target.range;
+    const glm::dmat4 clipFromWorld = clipFromCamera(camera, range.near, range.far) * camera.cameraFromWorld;
+    setCamera(program, camera, range.near, range.far, "sightLens");
+    program.set("sightPlane", glm::mat4(glm::transpose(glm::inverse(clipFromWorld))));
+    program.set("sightSize", glm::vec2(camera.size));
+    program.set("sightTexel", static_cast<float>(1.0 / camera.focal.x));
+    program.set("sightDepthSlope", static_cast<float>(depthSlope(range)));
+    bindTexture(unit, target.sent.depthTexture());
+    program.set("sightDepth", unit);
+}
+
+} // namespace lumorph

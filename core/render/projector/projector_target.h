@@ -1,0 +1,50 @@
+#pragma once
+
+#include <optional>
+
+#include "core/render/eye/device_surface.h"
+#include "core/render/eye/eye_pass.h"
+#include "core/render/eye/table_grid.h"
+#include "core/render/gl/camera_uniforms.h"
+#include "core/render/gl/color_target.h"
+#include "core/render/projector/blend_maps.h"
+#include "core/render/projector/picture_changes.h"
+
+namespace lumorph {
+
+/// What one projector keeps between frames.
+struct ProjectorTarget {
+    /// Throws as ColorTarget does.
+    explicit ProjectorTarget(const SceneProjector& what);
+
+    SceneProjector projector;
+    DepthRange range;
+    ColorTarget sent;      ///< what it sends out; its depth is that of the device, and of the table among several
+    gl::Texture done;      ///< 1 where what it sends out is drawn for the eye
+    DepthMap open;         ///< by which that hides all else
+    gl::Framebuffer seen;  ///< `sent` and `done`, with the depth of `sent`
+    gl::Framebuffer rest;  ///< `sent` with `open`
+    PixelRegion region;    ///< what of its picture is drawn in this frame; the rest stays
+    PixelRectangle device; ///< holds the device as it is
+    PictureChanges changes;
+    TableGrid table;
+    std::optional<BlendMaps> blend; ///< while another projector is on
+
+    [[nodiscard]] std::size_t objectCount() const noexcept {
+        return ColorTarget::kObjects + DepthMap::kObjects + 3 + TableGrid::kObjects + (blend ? BlendMaps::kObjects : 0);
+    }
+};
+
+/// Sets the uniforms of projector_light.glsl.
+void setLight(Program& program, const SceneProjector& projector);
+/// The share of light that it gives back, linear, in [0, 1].
+[[nodiscard]] glm::vec3 albedoOf(const Scene& scene, PhysicalSurface surface);
+/// Sets those of projector_output.glsl too; binds the weights of a shared one to a texture unit.
+void setOutput(Program& program, const ProjectorTarget& target, const Scene& scene, PhysicalSurface surface, int unit);
+/// What of its picture the eye pass draws itself: places that no eye sees. Neither argument may go before the result.
+[[nodiscard]] UnseenPlaces unseenPlaces(const ProjectorTarget& target, const Scene& scene);
+
+/// Sets those of projector_sight.glsl; binds the depth map to a texture unit.
+void setSight(Program& program, const ProjectorTarget& target, int unit);
+
+} // namespace lumorph
