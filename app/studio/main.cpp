@@ -35,13 +35,13 @@ void openFirst(Studio& studio, MainWindow& window, const Arguments& arguments) {
         if (!studio.settings.tourSeen()) window.startTour();
     };
     if (isProject(arguments.project))
-        studio.desk.open(arguments.project);
+        studio.project.open(arguments.project);
     else if (!arguments.project.empty())
-        studio.desk.restoreSession([&studio, file = arguments.project] { studio.desk.open(file); });
+        studio.project.restoreSession([&studio, file = arguments.project] { studio.project.open(file); });
     else if (!arguments.demo.empty())
-        studio.desk.openDemo(arguments.demo);
+        studio.project.openDemo(arguments.demo);
     else
-        studio.desk.restoreSession(arguments.kiosk ? std::function<void()>() : tourOnce);
+        studio.project.restoreSession(arguments.kiosk ? std::function<void()>() : tourOnce);
 }
 
 int run(int argc, char** argv, const Arguments& arguments) {

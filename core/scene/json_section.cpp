@@ -16,7 +16,7 @@ std::string shortest(double value) { return json(value).dump(); }
 
 } // namespace
 
-void Section::text(const std::string& key, std::string& value) {
+void JsonSection::text(const std::string& key, std::string& value) {
     const json* found = find(key);
     if (!found) return;
     if (!found->is_string()) refuse(key, "is not a text", "put it in quotes, or remove it");
@@ -24,14 +24,14 @@ void Section::text(const std::string& key, std::string& value) {
     object_->erase(key);
 }
 
-void Section::asset(const std::string& key, std::string& value) {
+void JsonSection::asset(const std::string& key, std::string& value) {
     text(key, value);
     if (value.empty() || isAssetName(value)) return;
     refuse(key, "\"" + value.substr(0, 80) + "\" leads out of the project's folder",
            "put the file beside the project and name it relative to it");
 }
 
-void Section::flag(const std::string& key, bool& value) {
+void JsonSection::flag(const std::string& key, bool& value) {
     const json* found = find(key);
     if (!found) return;
     if (!found->is_boolean()) refuse(key, "is neither true nor false", "write true or false, or remove it");
@@ -39,14 +39,14 @@ void Section::flag(const std::string& key, bool& value) {
     object_->erase(key);
 }
 
-void Section::number(const std::string& key, double& value, double min, double max) {
+void JsonSection::number(const std::string& key, double& value, double min, double max) {
     const json* found = find(key);
     if (!found) return;
     value = numberIn(*found, key, min, max);
     object_->erase(key);
 }
 
-void Section::wholeNumber(const std::string& key, int& value, int min, int max) {
+void JsonSection::wholeNumber(const std::string& key, int& value, int min, int max) {
     const json* found = find(key);
     if (!found) return;
     if (!found->is_number_integer() || !(found->get<double>() >= min && found->get<double>() <= max))
@@ -55,8 +55,8 @@ void Section::wholeNumber(const std::string& key, int& value, int min, int max) 
     object_->erase(key);
 }
 
-void Section::numbers(const std::string& key, std::vector<double>& values, double min, double max, std::size_t most,
-                      bool exactly) {
+void JsonSection::numbers(const std::string& key, std::vector<double>& values, double min, double max, std::size_t most,
+                          bool exactly) {
     const json* found = find(key);
     if (!found) return;
     if (!found->is_array() || found->size() > most || (exactly && found->size() != most))
@@ -68,23 +68,23 @@ void Section::numbers(const std::string& key, std::vector<double>& values, doubl
     object_->erase(key);
 }
 
-void Section::refuse(const std::string& key, const std::string& why, const std::string& remedy) const {
+void JsonSection::refuse(const std::string& key, const std::string& why, const std::string& remedy) const {
     throw DataError(*file_, prefix_ + key + ": " + why, remedy);
 }
 
-const json* Section::find(const std::string& key) const {
+const json* JsonSection::find(const std::string& key) const {
     const auto found = object_->find(key);
     return found == object_->end() ? nullptr : &*found;
 }
 
-double Section::numberIn(const json& value, const std::string& key, double min, double max) const {
+double JsonSection::numberIn(const json& value, const std::string& key, double min, double max) const {
     const double number = value.is_number() ? value.get<double>() : std::numeric_limits<double>::quiet_NaN();
     if (!(number >= min && number <= max))
         refuse(key, "is not a number from " + shortest(min) + " to " + shortest(max), kCorrect);
     return number;
 }
 
-void Section::refuseNoList(const std::string& key, const json& value, std::size_t most) const {
+void JsonSection::refuseNoList(const std::string& key, const json& value, std::size_t most) const {
     if (!value.is_array()) refuse(key, "is not a list", "write it in [ ], or remove it");
     if (value.size() > most)
         refuse(key, "has " + std::to_string(value.size()) + " entries, and " + std::to_string(most) + " is the most",

@@ -12,9 +12,9 @@ namespace lumorph {
 /// One JSON object of a project and where it stands. What has been read is taken out, so that the rest is what this
 /// version does not know. Whatever is not as it should be throws DataError naming the file, the key and the remedy;
 /// a key that is missing leaves the value as it is.
-class Section {
+class JsonSection {
 public:
-    Section(nlohmann::json& object, std::string prefix, const std::string& file)
+    JsonSection(nlohmann::json& object, std::string prefix, const std::string& file)
         : object_(&object), prefix_(std::move(prefix)), file_(&file) {}
 
     [[nodiscard]] bool has(const std::string& key) const { return find(key) != nullptr; }
@@ -32,7 +32,7 @@ public:
         if (!has(key)) return;
         nlohmann::json& inner = (*object_)[key];
         if (!inner.is_object()) refuse(key, "is not an object", "write it in { }, or remove it");
-        read(Section(inner, prefix_ + key + ".", *file_));
+        read(JsonSection(inner, prefix_ + key + ".", *file_));
         if (inner.empty()) object_->erase(key);
     }
     /// Reads a list of at most `most` objects one by one; what is not known of them is lost.
@@ -44,7 +44,7 @@ public:
         for (nlohmann::json& element : list) {
             const std::string name = key + "[" + std::to_string(index++) + "]";
             if (!element.is_object()) refuse(name, "is not an object", "write it in { }, or remove it");
-            read(Section(element, prefix_ + name + ".", *file_));
+            read(JsonSection(element, prefix_ + name + ".", *file_));
         }
         object_->erase(key);
     }

@@ -42,7 +42,7 @@ using Migration = void (*)(json& document);
 /// The step at index i takes a document from schema i to i + 1.
 constexpr std::array<Migration, kProjectSchema> kMigrations = {&fromDraft, &addScene};
 
-Placement readPlacement(Section section) {
+Placement readPlacement(JsonSection section) {
     constexpr double kFar = 1e6; // metres, and radians: many turns
     Placement placement;
     section.number("scale", placement.scale, 1e-6, 1e6);
@@ -86,7 +86,7 @@ json migrated(json document, const std::string& file) {
 Project projectOf(json document, const std::string& file) {
     constexpr int kMaxAnimation = 100'000;
     Project project;
-    Section root(document, "", file);
+    JsonSection root(document, "", file);
     document.erase("schemaVersion");
     root.asset("rig", project.rig);
     if (project.rig.empty())
@@ -94,18 +94,18 @@ Project projectOf(json document, const std::string& file) {
     root.asset("field", project.field);
     root.asset("target", project.target);
     root.wholeNumber("animation", project.animation, 0, kMaxAnimation);
-    root.section("placement", [&](Section section) { project.placement = readPlacement(std::move(section)); });
+    root.section("placement", [&](JsonSection section) { project.placement = readPlacement(std::move(section)); });
     root.numbers("strokes", project.strokes, 0.0, 1.0, kMaxActuators);
-    root.section("matching", [&](Section section) {
+    root.section("matching", [&](JsonSection section) {
         section.flag("live", project.matching.live);
         section.flag("refined", project.matching.refined);
         section.number("budgetMilliseconds", project.matching.budgetMilliseconds, 0.1, 10'000.0);
     });
-    root.section("playback", [&](Section section) {
+    root.section("playback", [&](JsonSection section) {
         section.flag("playing", project.playback.playing);
         section.number("spin", project.playback.spin, -100.0, 100.0);
     });
-    root.section("scene", [&](const Section& section) { readScene(section, project.scene); });
+    root.section("scene", [&](const JsonSection& section) { readScene(section, project.scene); });
     if (const auto view = document.find("view"); view != document.end()) {
         if (!view->is_object()) root.refuse("view", "is not an object", "write it in { }, or remove it");
         project.view = std::move(*view);

@@ -9,7 +9,7 @@
 namespace lumorph {
 
 /// Reads over `scene`: what is not stated stays. Throws DataError naming the key.
-void readScene(const Section& section, Scene& scene);
+void readScene(const JsonSection& section, Scene& scene);
 
 /// All of a scene, nothing checked; numbers that are not finite become null.
 [[nodiscard]] nlohmann::json documentOf(const Scene& scene);

@@ -16,7 +16,7 @@ constexpr Range kManyTurns{-6e7, 6e7};
 
 class Reader {
 public:
-    explicit Reader(Section section) : section_(std::move(section)) {}
+    explicit Reader(JsonSection section) : section_(std::move(section)) {}
 
     void text(const char* key, std::string& value) {
         section_.text(key, value);
@@ -74,7 +74,7 @@ public:
         for (int i = 0; i < 16; ++i) value[i % 4][i / 4] = static_cast<T>(rows[static_cast<std::size_t>(i)]);
     }
     template <typename T> void object(const char* key, T& value) {
-        section_.section(key, [&value](Section section) {
+        section_.section(key, [&value](JsonSection section) {
             Reader reader(std::move(section));
             fields(reader, value);
         });
@@ -86,7 +86,7 @@ public:
     template <typename T> void plain(const char* key, T& value) { whole(key, value); }
     template <typename T> void list(const char* key, std::vector<T>& values, std::size_t most) {
         if (section_.has(key)) values.clear();
-        section_.sections(key, most, [&values](Section section) {
+        section_.sections(key, most, [&values](JsonSection section) {
             Reader reader(std::move(section));
             fields(reader, values.emplace_back());
         });
@@ -129,12 +129,12 @@ private:
         (set.template operator()<Indices>(index), ...);
     }
 
-    Section section_;
+    JsonSection section_;
 };
 
 } // namespace
 
-void readScene(const Section& section, Scene& scene) {
+void readScene(const JsonSection& section, Scene& scene) {
     Reader reader(section);
     fields(reader, scene);
     try {

@@ -73,7 +73,7 @@ void ControllerBase::ask(std::vector<std::uint8_t> message) {
     if (questions_.size() < kMostQuestions) questions_.push_back(std::move(message));
 }
 
-void ControllerBase::heard(Microseconds now) {
+void ControllerBase::noteAnswer(Microseconds now) {
     heard_ = now;
     everHeard_ = true;
     state_.answering = true;

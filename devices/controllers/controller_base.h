@@ -73,7 +73,7 @@ protected:
     /// Dropped where dozens wait already: nobody takes them.
     void ask(std::vector<std::uint8_t> message);
     /// A sound answer came.
-    void heard(Microseconds now);
+    void noteAnswer(Microseconds now);
     [[nodiscard]] bool everHeard() const noexcept { return everHeard_; }
     void becomeReady();
     void refuse(LinkTrouble why);

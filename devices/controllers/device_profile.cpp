@@ -111,21 +111,21 @@ json documentOf(const DeviceProfile& profile) {
             {"restOnExit", profile.restOnExit}};
 }
 
-void require(const Section& section, const char* key) {
+void require(const JsonSection& section, const char* key) {
     if (!section.has(key)) section.refuse(key, "is missing", "add it");
 }
 
 /// A limit whose name is misspelt would silently be another limit: what is not known is an error.
-void refuseUnknown(const json& object, const Section& section) {
+void refuseUnknown(const json& object, const JsonSection& section) {
     if (!object.empty())
         section.refuse(object.begin().key().substr(0, 80), "is not known here", "correct its name, or remove it");
 }
 
-void readWithin(Section& section, const char* key, double& value, ProfileLimits bounds) {
+void readWithin(JsonSection& section, const char* key, double& value, ProfileLimits bounds) {
     section.number(key, value, bounds.least, bounds.most);
 }
 
-ServoSetup readServo(json& object, Section section, ControllerKind kind) {
+ServoSetup readServo(json& object, JsonSection section, ControllerKind kind) {
     for (const char* key : {"channel", "pulseMin", "pulseMax"}) require(section, key);
     ServoSetup servo;
     section.wholeNumber("channel", servo.channel, 0, greatestChannel(kind));
@@ -140,7 +140,7 @@ ServoSetup readServo(json& object, Section section, ControllerKind kind) {
     return servo;
 }
 
-std::vector<ServoSetup> readServos(json& document, const Section& section, ControllerKind kind,
+std::vector<ServoSetup> readServos(json& document, const JsonSection& section, ControllerKind kind,
                                    const std::string& file) {
     require(section, "servos");
     json list = std::move(document["servos"]);
@@ -151,12 +151,12 @@ std::vector<ServoSetup> readServos(json& document, const Section& section, Contr
     for (json& object : list) {
         const std::string name = "servos[" + std::to_string(servos.size()) + "]";
         if (!object.is_object()) section.refuse(name, "is not an object", "write it in { }, or remove it");
-        servos.push_back(readServo(object, Section(object, name + ".", file), kind));
+        servos.push_back(readServo(object, JsonSection(object, name + ".", file), kind));
     }
     return servos;
 }
 
-ControllerKind readKind(Section& section) {
+ControllerKind readKind(JsonSection& section) {
     std::string name(nameOf(ControllerKind::firmata));
     section.text("controller", name);
     const auto* const found = std::ranges::find(kKinds, name, &std::pair<ControllerKind, std::string_view>::second);
@@ -166,7 +166,7 @@ ControllerKind readKind(Section& section) {
     return found->first;
 }
 
-void requireFormat(Section& section, const std::string& file) {
+void requireFormat(JsonSection& section, const std::string& file) {
     std::string format;
     section.text("format", format);
     if (format != kFormat) throw DataError(file, "is not a device profile", "choose a file that was saved as one");
@@ -176,7 +176,7 @@ void requireFormat(Section& section, const std::string& file) {
 }
 
 DeviceProfile profileOf(json& document, const std::string& file) {
-    Section section(document, "", file);
+    JsonSection section(document, "", file);
     requireFormat(section, file);
     DeviceProfile profile;
     section.text("name", profile.name);

@@ -108,14 +108,14 @@ private:
     [[nodiscard]] LinkTrouble silence(bool never) const override;
 
     void startHandshake();
-    void hear(const firmata::Version& version);
-    void hear(const firmata::Firmware& firmware);
-    void hear(const firmata::Capabilities& capabilities);
-    void hear(const firmata::PinState& pin);
-    void hear(const firmata::Text& text);
-    void hear(const firmata::Voltage& voltage);
-    void hear(const firmata::AnalogMapping&) {}
-    void hear(const firmata::Reading&) {}
+    void receive(const firmata::Version& version);
+    void receive(const firmata::Firmware& firmware);
+    void receive(const firmata::Capabilities& capabilities);
+    void receive(const firmata::PinState& pin);
+    void receive(const firmata::Text& text);
+    void receive(const firmata::Voltage& voltage);
+    void receive(const firmata::AnalogMapping&) {}
+    void receive(const firmata::Reading&) {}
     void askCapabilitiesOnce();
     void askForDoubts(Microseconds now);
     void askState(Microseconds now);
@@ -195,13 +195,13 @@ void FirmataController::take(std::span<const std::uint8_t> bytes, Microseconds n
     const std::uint64_t broken = parser_.broken();
     for (const firmata::Message& message : parser_.feed(bytes)) {
         heardAt_ = now;
-        heard(now);
-        std::visit([this](const auto& m) { hear(m); }, message);
+        noteAnswer(now);
+        std::visit([this](const auto& m) { receive(m); }, message);
     }
     state_.errors += parser_.broken() - broken;
 }
 
-void FirmataController::hear(const firmata::Version& version) {
+void FirmataController::receive(const firmata::Version& version) {
     if (version.major < 1 || version.major > 3) { // no such thing exists: noise
         ++state_.errors;
         return;
@@ -219,7 +219,7 @@ void FirmataController::hear(const firmata::Version& version) {
     askCapabilitiesOnce();
 }
 
-void FirmataController::hear(const firmata::Firmware& firmware) {
+void FirmataController::receive(const firmata::Firmware& firmware) {
     // The answer to a doubt, which may come when the user has already settled it.
     const bool asked = doubtAskedAt_ && heardAt_ - *doubtAskedAt_ < kAskAgain;
     if (asked && firmware_ == withoutSuffix(firmware.name)) return;
@@ -247,7 +247,7 @@ void FirmataController::askCapabilitiesOnce() {
     question_.done(heardAt_);
 }
 
-void FirmataController::hear(const firmata::Capabilities& capabilities) {
+void FirmataController::receive(const firmata::Capabilities& capabilities) {
     if (state_.phase != ControllerPhase::handshake || !version_ || !firmware_) return;
     for (const ServoSetup& servo : plan_.servos()) {
         const auto pin = static_cast<std::size_t>(servo.channel);
@@ -312,7 +312,7 @@ std::optional<Microseconds> FirmataController::takeQuestion(int pin) {
 }
 
 /// Nothing else tells that a command has arrived, or that the watchdog has let go of the servos.
-void FirmataController::hear(const firmata::PinState& pin) {
+void FirmataController::receive(const firmata::PinState& pin) {
     const std::optional<Microseconds> asked = takeQuestion(pin.pin);
     const std::optional<std::size_t> servo = servoOn(pin.pin);
     if (!asked || !servo || *asked <= plan_.since(*servo)) return;
@@ -335,14 +335,14 @@ void FirmataController::hear(const firmata::PinState& pin) {
                                         "see that the link is not interrupted, then start the servos again"});
 }
 
-void FirmataController::hear(const firmata::Text& text) {
+void FirmataController::receive(const firmata::Text& text) {
     if (text.text.empty()) return;
     if (state_.phase != ControllerPhase::handshake) ++state_.errors;
     words_ = heardAt_;
     trouble(Concern::board, LinkTrouble{"the board says '" + readable(text.text) + "'", remedyFor(text.text)});
 }
 
-void FirmataController::hear(const firmata::Voltage& voltage) {
+void FirmataController::receive(const firmata::Voltage& voltage) {
     if (own_ && !takeVoltage(voltage.volts)) voltage_.reset();
 }
 

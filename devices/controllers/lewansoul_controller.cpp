@@ -99,10 +99,10 @@ private:
     [[nodiscard]] int durationOf(std::span<const PulsePlan::Change> changes) const;
     [[nodiscard]] bool draining(Microseconds now) const;
     [[nodiscard]] bool namesItself() const { return product_.find("LOBOT") != std::string::npos; }
-    void hear(const lewansoul::Voltage& voltage, Microseconds now);
-    void hear(const lewansoul::Positions& positions, Microseconds now);
-    void hear(const lewansoul::Other&, Microseconds) {}
-    void hearPlace(const lewansoul::Place& place, Microseconds now);
+    void receive(const lewansoul::Voltage& voltage, Microseconds now);
+    void receive(const lewansoul::Positions& positions, Microseconds now);
+    void receive(const lewansoul::Other&, Microseconds) {}
+    void receivePlace(const lewansoul::Place& place, Microseconds now);
     void askAll();
     void forgetStale(Microseconds now);
 
@@ -147,15 +147,15 @@ void LewansoulController::take(std::span<const std::uint8_t> bytes, Microseconds
     lastBytes_ = now;
     const std::uint64_t broken = parser_.broken();
     for (const lewansoul::Message& message : hid_ ? parser_.report(bytes) : parser_.feed(bytes))
-        std::visit([&](const auto& m) { hear(m, now); }, message);
+        std::visit([&](const auto& m) { receive(m, now); }, message);
     state_.errors += parser_.broken() - broken;
 }
 
 /// That it knows its voltage tells a servo controller from all else under the same USB numbers.
-void LewansoulController::hear(const lewansoul::Voltage& voltage, Microseconds now) {
+void LewansoulController::receive(const lewansoul::Voltage& voltage, Microseconds now) {
     if (!voltageAsked_) return;
     voltageAsked_ = false;
-    heard(now);
+    noteAnswer(now);
     if (!takeVoltage(voltage.volts)) voltage_.reset();
     if (state_.phase != ControllerPhase::handshake && state_.phase != ControllerPhase::refused) return;
     trouble(Concern::refusal, std::nullopt);
@@ -166,14 +166,14 @@ void LewansoulController::hear(const lewansoul::Voltage& voltage, Microseconds n
         state_.phase = ControllerPhase::unidentified;
 }
 
-void LewansoulController::hear(const lewansoul::Positions& positions, Microseconds now) {
+void LewansoulController::receive(const lewansoul::Positions& positions, Microseconds now) {
     if (positionsAsked_ == 0) return;
     --positionsAsked_;
-    heard(now);
-    for (const lewansoul::Place& place : positions.places) hearPlace(place, now);
+    noteAnswer(now);
+    for (const lewansoul::Place& place : positions.places) receivePlace(place, now);
 }
 
-void LewansoulController::hearPlace(const lewansoul::Place& place, Microseconds now) {
+void LewansoulController::receivePlace(const lewansoul::Place& place, Microseconds now) {
     const std::optional<std::size_t> servo = servoOn(place.servo);
     if (!servo || place.position < kLeastPosition || place.position > kMostPosition) {
         ++state_.errors;

@@ -63,9 +63,9 @@ private:
 
     [[nodiscard]] bool draining(Microseconds now) const { return now >= drain_ && now - drain_ < kDrain; }
     [[nodiscard]] bool namesItself() const;
-    void hear(const maestro::Errors& errors, Microseconds now);
-    void hear(const maestro::Position& position, Microseconds now);
-    void hear(const maestro::Moving&, Microseconds) {}
+    void receive(const maestro::Errors& errors, Microseconds now);
+    void receive(const maestro::Position& position, Microseconds now);
+    void receive(const maestro::Moving&, Microseconds) {}
     void say(LinkTrouble trouble, Microseconds now);
     void letGo(LinkTrouble why, Microseconds now);
     [[nodiscard]] std::size_t servoToAskFor() const;
@@ -105,8 +105,8 @@ void MaestroController::take(std::span<const std::uint8_t> bytes, Microseconds n
     if (draining(now)) return; // nobody knows what it answers
     const std::uint64_t broken = replies_.broken();
     for (const maestro::Message& message : replies_.feed(bytes)) {
-        heard(now);
-        std::visit([&](const auto& m) { hear(m, now); }, message);
+        noteAnswer(now);
+        std::visit([&](const auto& m) { receive(m, now); }, message);
     }
     if (replies_.broken() == broken) return;
     state_.errors += replies_.broken() - broken;
@@ -114,7 +114,7 @@ void MaestroController::take(std::span<const std::uint8_t> bytes, Microseconds n
     drain_ = now;
 }
 
-void MaestroController::hear(const maestro::Errors& errors, Microseconds now) {
+void MaestroController::receive(const maestro::Errors& errors, Microseconds now) {
     if (state_.phase == ControllerPhase::handshake) {
         if (namesItself())
             becomeReady();
@@ -141,7 +141,7 @@ void MaestroController::hear(const maestro::Errors& errors, Microseconds now) {
 }
 
 /// It tells what the board sends, not where the servo is: only that it sends nothing is news.
-void MaestroController::hear(const maestro::Position& position, Microseconds now) {
+void MaestroController::receive(const maestro::Position& position, Microseconds now) {
     const std::optional<std::size_t> servo = servoOn(position.channel);
     if (!servo || asked_ <= plan_.since(*servo)) return;
     if (position.quarters != 0)

@@ -26,7 +26,7 @@ QNetworkInterface interfaceOf(const QHostAddress& local) {
 }
 
 /// Otherwise a socket hears a group on every interface on which any program of this machine has joined it.
-bool hearOnlyWhereJoined(const QUdpSocket& socket) {
+bool receiveOnlyWhereJoined(const QUdpSocket& socket) {
     const int all = 0;
     return ::setsockopt(static_cast<int>(socket.socketDescriptor()), IPPROTO_IP, IP_MULTICAST_ALL, &all, sizeof all) ==
            0;
@@ -81,7 +81,7 @@ void UdpPort::join(const QHostAddress& group, const QHostAddress& local) {
     // Qt would let the system choose, where the one that is meant is missing.
     if (!local.isNull() && !network.isValid())
         refuse(local.toString().toStdString() + " is no address of this machine");
-    if (!hearOnlyWhereJoined(socket_)) refuse("it cannot be kept to one network");
+    if (!receiveOnlyWhereJoined(socket_)) refuse("it cannot be kept to one network");
     const bool joined = local.isNull() ? socket_.joinMulticastGroup(group) : socket_.joinMulticastGroup(group, network);
     if (!joined) refuse(socket_.errorString().toStdString());
 }

@@ -28,7 +28,7 @@ public:
     /// From now on the calling thread runs what was posted.
     void open() {
         const std::scoped_lock lock(mutex_);
-        ear_ = std::make_unique<Ear>(*this);
+        reader_ = std::make_unique<Ear>(*this);
         for (std::size_t i = 0; i < words_.size(); ++i) wake();
     }
     /// In the thread that opened it: nothing is run any more, and nothing kept.
@@ -36,13 +36,13 @@ public:
         const std::scoped_lock lock(mutex_);
         closed_ = true;
         words_.clear();
-        ear_.reset();
+        reader_.reset();
     }
     void post(std::function<void()> word) {
         const std::scoped_lock lock(mutex_);
         if (closed_) return;
         words_.push_back(std::move(word));
-        if (ear_) wake();
+        if (reader_) wake();
     }
     /// Instead of all that was not run yet.
     void postLast(std::function<void()> word) {
@@ -57,14 +57,14 @@ private:
     /// Lives in the thread that runs the words.
     struct Ear : QObject {
         explicit Ear(Mailbox& its) : box(its) {}
-        bool event(QEvent* event) override { return box.hear(*event) || QObject::event(event); }
+        bool event(QEvent* event) override { return box.onEvent(*event) || QObject::event(event); }
         Mailbox& box;
     };
 
-    void wake() { QCoreApplication::postEvent(ear_.get(), new QEvent(kWake)); }
+    void wake() { QCoreApplication::postEvent(reader_.get(), new QEvent(kWake)); }
 
     /// Locks before it looks at the event: ThreadSanitizer does not see what Qt's own locks hand over.
-    bool hear(const QEvent& event) {
+    bool onEvent(const QEvent& event) {
         std::function<void()> word;
         {
             const std::scoped_lock lock(mutex_);
@@ -79,7 +79,7 @@ private:
 
     std::mutex mutex_;
     std::deque<std::function<void()>> words_;
-    std::unique_ptr<Ear> ear_;
+    std::unique_ptr<Ear> reader_;
     bool closed_ = false;
 };
 

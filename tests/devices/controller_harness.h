@@ -40,7 +40,7 @@ public:
         : controller_(makeController(profile, parseDeviceAddress(uri))) {}
 
     void open(const std::string& product = {}) { controller_->opened(product, now_); }
-    void hear(const Bytes& bytes) { controller_->received(bytes, now_); }
+    void receive(const Bytes& bytes) { controller_->received(bytes, now_); }
     void send(const std::vector<GuardedPulse>& pulses) { UnguardedAccess::send(*controller_, pulses, now_); }
     /// Ticks every 5 ms; what is written meanwhile is kept.
     void wait(int milliseconds) {

@@ -21,13 +21,13 @@ TEST(FirmataController, AsksWhoIsThereAndWhatItCan) {
     EXPECT_THAT(trial.written(), ElementsAre(Bytes{0xF9}, Bytes{0xF0, 0x79, 0xF7}));
     trial.wait(500); // the boot loader swallows what came first
     EXPECT_THAT(trial.written(), ElementsAre(Bytes{0xF9}, Bytes{0xF0, 0x79, 0xF7}));
-    trial.hear(kVersion);
+    trial.receive(kVersion);
     trial.wait(500);
     EXPECT_THAT(trial.written(), ElementsAre(Bytes{0xF0, 0x79, 0xF7}));
-    trial.hear(firmwareNamed("LumorphTablet.ino"));
+    trial.receive(firmwareNamed("LumorphTablet.ino"));
     EXPECT_THAT(trial.written(), ElementsAre(Bytes{0xF0, 0x6B, 0xF7}));
     EXPECT_EQ(trial.state().phase, ControllerPhase::handshake);
-    trial.hear(capabilities());
+    trial.receive(capabilities());
     EXPECT_EQ(trial.state().phase, ControllerPhase::ready);
     EXPECT_EQ(trial.state().firmware, "LumorphTablet 1.2");
     EXPECT_TRUE(trial.state().traits.failsafe);
@@ -68,8 +68,8 @@ TEST(FirmataController, ANameThatNoiseHasHitIsAskedForAgain) {
     ASSERT_EQ(trial.state().phase, ControllerPhase::unidentified);
     trial.wait(600);
     EXPECT_THAT(trial.written(), testing::Contains(question));
-    trial.hear(firmwareNamed("LumorphTablet"));
-    trial.hear(capabilities());
+    trial.receive(firmwareNamed("LumorphTablet"));
+    trial.receive(capabilities());
     EXPECT_EQ(trial.state().phase, ControllerPhase::ready);
     EXPECT_EQ(trial.state().firmware, "LumorphTablet 1.2");
     EXPECT_TRUE(trial.state().traits.failsafe);
@@ -80,11 +80,11 @@ TEST(FirmataController, TheAnswerToADoubtThatTheUserHasSettledIsNoReboot) {
     ControllerTrial trial = readyTrial({9}, "Blink");
     trial.wait(600); // asked again
     trial.controller().confirm();
-    trial.hear(firmwareNamed("Blink"));
+    trial.receive(firmwareNamed("Blink"));
     EXPECT_EQ(trial.state().phase, ControllerPhase::ready);
     EXPECT_EQ(trial.state().reboots, 0U);
     trial.wait(1000);
-    trial.hear(firmwareNamed("Blink")); // nobody has asked
+    trial.receive(firmwareNamed("Blink")); // nobody has asked
     EXPECT_EQ(trial.state().phase, ControllerPhase::handshake);
     EXPECT_EQ(trial.state().reboots, 1U);
 }
@@ -100,7 +100,7 @@ TEST(FirmataController, RefusesBoardsThatCannotDriveTheServos) {
     }
     ControllerTrial old(test::profileOn(ControllerKind::firmata, {9}), "serial:///dev/ttyUSB0");
     old.open();
-    old.hear({0xF9, 0x01, 0x04});
+    old.receive({0xF9, 0x01, 0x04});
     EXPECT_EQ(old.state().phase, ControllerPhase::refused);
     EXPECT_THAT(old.state().trouble->why, HasSubstr("1.4"));
 }
@@ -111,13 +111,13 @@ TEST(FirmataController, ARebootIsNoticedAndThePoseIsNotSentAgain) {
         trial.send({{9, 1500.0, true}, {10, 1500.0, true}});
         trial.send({{9, 1550.0, true}, {10, 1500.0, true}}); // waits
         (void)trial.written();
-        trial.hear(firmwareFirst ? firmwareNamed("LumorphTablet") : kVersion);
+        trial.receive(firmwareFirst ? firmwareNamed("LumorphTablet") : kVersion);
         EXPECT_EQ(trial.state().reboots, 1U);
         EXPECT_EQ(trial.state().phase, ControllerPhase::handshake);
-        trial.hear(firmwareFirst ? kVersion : firmwareNamed("LumorphTablet"));
+        trial.receive(firmwareFirst ? kVersion : firmwareNamed("LumorphTablet"));
         EXPECT_EQ(trial.state().reboots, 1U) << "both are of one start";
         trial.wait(50);
-        trial.hear(capabilities());
+        trial.receive(capabilities());
         EXPECT_EQ(trial.state().phase, ControllerPhase::ready);
         (void)trial.written();
         trial.send({{9, 1560.0, true}, {10, 1500.0, true}});
@@ -167,11 +167,11 @@ TEST(FirmataController, SilenceNamesTheBaudRateAndOffersOthers) {
     ASSERT_TRUE(trial.state().trouble);
     EXPECT_THAT(trial.state().trouble->why, HasSubstr("38400 baud"));
     for (const char* rate : {"57600", "115200", "9600"}) EXPECT_THAT(trial.state().trouble->remedy, HasSubstr(rate));
-    trial.hear({0x12, 0x34, 0x9F});
+    trial.receive({0x12, 0x34, 0x9F});
     trial.wait(5);
     EXPECT_FALSE(trial.state().answering) << "noise is no answer";
     EXPECT_GT(trial.state().errors, 0U);
-    trial.hear(kVersion);
+    trial.receive(kVersion);
     EXPECT_TRUE(trial.state().answering);
     EXPECT_FALSE(trial.state().trouble);
 }
@@ -179,7 +179,7 @@ TEST(FirmataController, SilenceNamesTheBaudRateAndOffersOthers) {
 TEST(FirmataController, FallingSilentIsTold) {
     ControllerTrial trial = readyTrial({9});
     trial.wait(600);
-    trial.hear(stateOf(9, 1));
+    trial.receive(stateOf(9, 1));
     trial.wait(900);
     EXPECT_TRUE(trial.state().answering);
     trial.wait(200);
@@ -190,30 +190,30 @@ TEST(FirmataController, FallingSilentIsTold) {
 TEST(FirmataController, TellsTheBatteryAndWarnsWhenItIsEmpty) {
     ControllerTrial trial = readyTrial({9});
     EXPECT_FALSE(trial.state().volts);
-    trial.hear(voltage(7412));
+    trial.receive(voltage(7412));
     EXPECT_NEAR(trial.state().volts.value_or(0), 7.412, 1e-9);
     EXPECT_FALSE(trial.state().trouble);
     (void)trial.written();
-    trial.hear(voltage(5600));
+    trial.receive(voltage(5600));
     EXPECT_FALSE(trial.state().trouble) << "it may be noise";
     trial.wait(10);
     EXPECT_THAT(trial.written(), testing::Contains(Bytes{0xF0, 0x02, 0xF7})) << "so it is asked at once";
-    trial.hear(voltage(5610));
+    trial.receive(voltage(5610));
     ASSERT_TRUE(trial.state().trouble);
     EXPECT_EQ(trial.state().trouble->why, "battery at 5.6 V");
-    trial.hear(voltage(15'600)); // a bit was flipped
+    trial.receive(voltage(15'600)); // a bit was flipped
     EXPECT_EQ(trial.state().trouble->why, "battery at 5.6 V") << "nothing is well again";
-    trial.hear(voltage(5600));
+    trial.receive(voltage(5600));
     EXPECT_NEAR(trial.state().volts.value_or(0), 5.61, 1e-9) << "the one before was far away";
-    trial.hear(voltage(5600));
+    trial.receive(voltage(5600));
     EXPECT_NEAR(trial.state().volts.value_or(0), 5.6, 1e-9);
     EXPECT_THAT(trial.state().trouble->remedy, HasSubstr("charge it"));
-    trial.hear(voltage(6500));
+    trial.receive(voltage(6500));
     EXPECT_FALSE(trial.state().trouble);
-    trial.hear(voltage(200'000));
+    trial.receive(voltage(200'000));
     EXPECT_NEAR(trial.state().volts.value_or(0), 6.5, 1e-9) << "no battery has 200 V";
-    trial.hear(voltage(0));
-    trial.hear(voltage(0));
+    trial.receive(voltage(0));
+    trial.receive(voltage(0));
     EXPECT_FALSE(trial.state().volts) << "nothing is wired to it";
 }
 
@@ -221,14 +221,14 @@ TEST(FirmataController, AWatchdogThatLetGoIsNoticed) {
     ControllerTrial trial = readyTrial({9});
     trial.send({{9, 1500.0, true}});
     trial.wait(1000);
-    trial.hear(stateOf(9, 4));
+    trial.receive(stateOf(9, 4));
     trial.wait(400);
-    trial.hear(stateOf(9, 4));
+    trial.receive(stateOf(9, 4));
     EXPECT_EQ(trial.state().phase, ControllerPhase::ready);
     trial.wait(400);
-    trial.hear(stateOf(9, 1));
+    trial.receive(stateOf(9, 1));
     trial.wait(400);
-    trial.hear(stateOf(9, 1));
+    trial.receive(stateOf(9, 1));
     EXPECT_EQ(trial.state().phase, ControllerPhase::handshake);
     EXPECT_EQ(trial.state().reboots, 1U);
     ASSERT_TRUE(trial.state().trouble);
@@ -240,7 +240,7 @@ TEST(FirmataController, AnAnswerOfBeforeTheAttachMeansNothing) {
     trial.wait(5);
     for (int i = 0; i < 2; ++i) trial.wait(200);
     trial.send({{9, 1500.0, true}});
-    for (int i = 0; i < 2; ++i) trial.hear(stateOf(9, 1));
+    for (int i = 0; i < 2; ++i) trial.receive(stateOf(9, 1));
     EXPECT_EQ(trial.state().phase, ControllerPhase::ready);
 }
 
@@ -259,7 +259,7 @@ TEST(FirmataController, NorDoManyThatASlowLinkHeldBack) {
     ASSERT_GT(before, 8);
     trial.send({{9, 1500.0, true}, {10, 1500.0, true}});
     trial.wait(450);
-    for (int i = 0; i < before; ++i) trial.hear(stateOf(i % 2 == 0 ? 9 : 10, 1));
+    for (int i = 0; i < before; ++i) trial.receive(stateOf(i % 2 == 0 ? 9 : 10, 1));
     EXPECT_EQ(trial.state().phase, ControllerPhase::ready);
     EXPECT_EQ(trial.state().reboots, 0U);
 }
@@ -268,12 +268,12 @@ TEST(FirmataController, ALostAnswerDoesNotMakeTheOthersWait) {
     ControllerTrial trial = readyTrial({9, 10});
     trial.send({{9, 1500.0, true}, {10, 1500.0, true}});
     trial.wait(500); // questions that are never answered
-    trial.hear(stateOf(9, 4));
-    trial.hear(stateOf(10, 4));
+    trial.receive(stateOf(9, 4));
+    trial.receive(stateOf(10, 4));
     for (int i = 0; i < 2; ++i) {
         trial.wait(400);
-        trial.hear(stateOf(i == 0 ? 9 : 10, 1));
-        trial.hear(stateOf(i == 0 ? 10 : 9, 1));
+        trial.receive(stateOf(i == 0 ? 9 : 10, 1));
+        trial.receive(stateOf(i == 0 ? 10 : 9, 1));
     }
     EXPECT_EQ(trial.state().reboots, 1U);
 }
@@ -295,7 +295,7 @@ TEST(FirmataController, WhatOurFirmwareSaysHasARemedyOfItsOwn) {
                                         std::pair{"Started anew: it hung", "start the servos again"},
                                         std::pair{"Unknown pin mode", "channels of the profile"}}) {
         ControllerTrial trial = readyTrial({9});
-        trial.hear(saying(words));
+        trial.receive(saying(words));
         ASSERT_TRUE(trial.state().trouble);
         EXPECT_THAT(trial.state().trouble->remedy, HasSubstr(remedy)) << words;
         EXPECT_FALSE(trial.state().batteryTrouble);
@@ -304,13 +304,13 @@ TEST(FirmataController, WhatOurFirmwareSaysHasARemedyOfItsOwn) {
 
 TEST(FirmataController, WhatTheBoardSaysIsTold) {
     ControllerTrial trial = readyTrial({9});
-    trial.hear(saying("Unknown pin mode"));
+    trial.receive(saying("Unknown pin mode"));
     ASSERT_TRUE(trial.state().trouble);
     EXPECT_EQ(trial.state().trouble->why, "the board says 'Unknown pin mode?'");
     EXPECT_EQ(trial.state().errors, 1U);
     for (int i = 0; i < 22; ++i) {
         trial.wait(500);
-        trial.hear(stateOf(9, 1));
+        trial.receive(stateOf(9, 1));
     }
     EXPECT_FALSE(trial.state().trouble) << "it passes";
 }
@@ -318,7 +318,7 @@ TEST(FirmataController, WhatTheBoardSaysIsTold) {
 TEST(FirmataController, OpeningAnewBeginsAnew) {
     ControllerTrial trial = readyTrial({9});
     trial.send({{9, 1500.0, true}});
-    trial.hear(voltage(5600));
+    trial.receive(voltage(5600));
     (void)trial.written();
     trial.open();
     EXPECT_EQ(trial.state().phase, ControllerPhase::handshake);

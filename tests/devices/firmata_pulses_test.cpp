@@ -42,9 +42,9 @@ TEST(FirmataPulses, OurFirmwareKnowsHowFastAServoMayGo) {
         profile.servos[0].maxVelocity = row.velocity;
         ControllerTrial trial(profile, "serial:///dev/ttyUSB0");
         trial.open();
-        trial.hear(kVersion);
-        trial.hear(firmwareNamed("LumorphTablet", row.minor));
-        trial.hear(capabilities());
+        trial.receive(kVersion);
+        trial.receive(firmwareNamed("LumorphTablet", row.minor));
+        trial.receive(capabilities());
         const auto told = [&] {
             std::vector<int> steps;
             for (const Bytes& message : trial.written())
@@ -85,7 +85,7 @@ TEST(FirmataPulses, AValueThatTheLineSpoiledIsToldAgain) {
                 for (const Bytes& message : trial.written()) {
                     count += std::ranges::search(message, Bytes{0xE9, 0x40, 0x0C}).size() > 0;
                     if (message.size() == 4 && message[1] == 0x6D)
-                        trial.hear(stateOf(message[2], 4, message[2] == 9 ? value : 1500));
+                        trial.receive(stateOf(message[2], 4, message[2] == 9 ? value : 1500));
                 }
             }
             return count;
@@ -203,7 +203,7 @@ TEST(FirmataPulses, DetachesAgainUntilTheBoardIsKnownToHaveObeyed) {
                 trial.wait(5);
                 for (const Bytes& message : trial.written()) {
                     told += message == kReset;
-                    if (answers && message.size() == 4 && message[1] == 0x6D) trial.hear(stateOf(message[2], 1));
+                    if (answers && message.size() == 4 && message[1] == 0x6D) trial.receive(stateOf(message[2], 1));
                 }
             }
         };
@@ -290,9 +290,9 @@ TEST(FirmataPulses, TheShortestPulsesAreThoseOfTheFirmware) {
         profile.servos[0].pulseMin = 500.0;
         ControllerTrial trial(profile, "serial:///dev/ttyUSB0");
         trial.open();
-        trial.hear(kVersion);
-        trial.hear(firmwareNamed(row.firmware, row.minor));
-        trial.hear(capabilities());
+        trial.receive(kVersion);
+        trial.receive(firmwareNamed(row.firmware, row.minor));
+        trial.receive(capabilities());
         ASSERT_EQ(trial.state().phase, ControllerPhase::ready);
         (void)trial.written();
         trial.send({{9, 500.0, true}});
@@ -334,7 +334,7 @@ TEST(FirmataPulses, ADetachThatWasLostIsSaidAgain) {
     trial.send({{9, 1500.0, false}});
     trial.wait(1000);
     (void)trial.written();
-    for (int i = 0; i < 8; ++i) trial.hear(stateOf(9, 4));
+    for (int i = 0; i < 8; ++i) trial.receive(stateOf(9, 4));
     trial.wait(5);
     EXPECT_THAT(trial.writtenBut(kQuestions), ElementsAre(kReset));
 }

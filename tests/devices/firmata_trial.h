@@ -45,9 +45,9 @@ inline Bytes voltage(int millivolts) {
 }
 
 inline void shakeHands(ControllerTrial& trial, const std::string& firmware = "LumorphTablet") {
-    trial.hear(kVersion);
-    trial.hear(firmwareNamed(firmware));
-    trial.hear(capabilities());
+    trial.receive(kVersion);
+    trial.receive(firmwareNamed(firmware));
+    trial.receive(capabilities());
 }
 
 inline ControllerTrial readyTrial(const std::vector<int>& channels, const std::string& firmware = "LumorphTablet",

@@ -54,7 +54,7 @@ ControllerTrial readyTrial(const std::vector<int>& channels) {
     ControllerTrial trial(armProfile(channels), kHid);
     trial.open("LOBOT");
     trial.wait(60);
-    trial.hear(report(voltage(7400)));
+    trial.receive(report(voltage(7400)));
     (void)trial.written();
     return trial;
 }
@@ -62,16 +62,16 @@ ControllerTrial readyTrial(const std::vector<int>& channels) {
 TEST(LewansoulController, AsksForTheVoltageOnceStaleReportsAreGone) {
     ControllerTrial trial(armProfile({1}), kHid);
     trial.open("LOBOT");
-    trial.hear(report(voltage(7400))); // of another time
+    trial.receive(report(voltage(7400))); // of another time
     trial.wait(45);
     EXPECT_THAT(trial.written(), IsEmpty());
     EXPECT_EQ(trial.state().phase, ControllerPhase::handshake);
     EXPECT_FALSE(trial.state().volts);
     trial.wait(5);
     EXPECT_THAT(trial.written(), ElementsAre(kVoltageQuestion));
-    trial.hear(report(position(1, 500))); // nobody asked
+    trial.receive(report(position(1, 500))); // nobody asked
     EXPECT_EQ(trial.state().phase, ControllerPhase::handshake);
-    trial.hear(report(voltage(7400)));
+    trial.receive(report(voltage(7400)));
     EXPECT_EQ(trial.state().phase, ControllerPhase::ready);
     EXPECT_NEAR(trial.state().volts.value_or(0), 7.4, 1e-9);
     EXPECT_TRUE(trial.state().traits.readsPosition);
@@ -92,7 +92,7 @@ TEST(LewansoulController, NeverMovesOnUsbNumbersAlone) {
         ControllerTrial trial(armProfile({1}), kHid);
         trial.open(row.product);
         trial.wait(1100);
-        if (row.answers) trial.hear(report(voltage(7400)));
+        if (row.answers) trial.receive(report(voltage(7400)));
         EXPECT_EQ(trial.state().phase, row.phase) << row.product;
         trial.send({{1, 1500.0, true}});
         trial.wait(100);
@@ -121,7 +121,7 @@ TEST(LewansoulController, MapsPulsesToPositionsAndBack) {
     trial.send({{1, 1510.0, true}, {2, 2500.0, true}});
     EXPECT_THAT(trial.writtenBut(kQuestions),
                 ElementsAre(Bytes{0x55, 0x55, 0x08, 0x03, 0x01, 33, 0x00, 0x01, 0xF9, 0x01}));
-    trial.hear(report({0x55, 0x55, 0x09, 0x15, 0x02, 0x01, 0xF4, 0x01, 0x02, 0xFB, 0xFF}));
+    trial.receive(report({0x55, 0x55, 0x09, 0x15, 0x02, 0x01, 0xF4, 0x01, 0x02, 0xFB, 0xFF}));
     EXPECT_EQ(trial.state().readPulses[0], 1500.0);
     EXPECT_EQ(trial.state().readPulses[1], 490.0) << "turned by hand beyond its end";
 }
@@ -134,7 +134,7 @@ TEST(LewansoulController, KeepsWithinLimitsWhenItRounds) {
         ControllerTrial trial(profile, kHid);
         trial.open("LOBOT");
         trial.wait(60);
-        trial.hear(report(voltage(7400)));
+        trial.receive(report(voltage(7400)));
         (void)trial.written();
         trial.send({{1, pulse, true}});
         const Messages messages = trial.writtenBut(kQuestions);
@@ -151,7 +151,7 @@ TEST(LewansoulController, ReadsPositionsAFewTimesASecondAndForgetsOldOnes) {
         questions += message == Bytes{0x55, 0x55, 0x05, 0x15, 0x02, 0x01, 0x02};
     EXPECT_GE(questions, 7);
     EXPECT_LE(questions, 9);
-    trial.hear(report(position(1, 300)));
+    trial.receive(report(position(1, 300)));
     EXPECT_EQ(trial.state().readPulses[0], 1100.0);
     EXPECT_FALSE(trial.state().readPulses[1]);
     trial.wait(900);
@@ -163,13 +163,13 @@ TEST(LewansoulController, ReadsPositionsAFewTimesASecondAndForgetsOldOnes) {
 TEST(LewansoulController, DoubtsPositionsThatCannotBe) {
     ControllerTrial trial = readyTrial({1});
     trial.wait(300);
-    trial.hear(report(position(1, 0x5555)));
+    trial.receive(report(position(1, 0x5555)));
     EXPECT_FALSE(trial.state().readPulses[0]);
     EXPECT_EQ(trial.state().errors, 1U);
     trial.wait(300);
-    trial.hear(report(position(7, 500)));
+    trial.receive(report(position(7, 500)));
     EXPECT_EQ(trial.state().errors, 2U);
-    trial.hear(Bytes{0x55, 0x55, 0x04});
+    trial.receive(Bytes{0x55, 0x55, 0x04});
     EXPECT_EQ(trial.state().errors, 3U);
 }
 
@@ -182,7 +182,7 @@ TEST(LewansoulController, UnloadsThirtyTimesInASecondAndThenOnceASecond) {
     EXPECT_THAT(trial.written(), ElementsAre(unload));
     // Where it stands tells nothing of whether it is under power.
     trial.wait(300);
-    for (const int place : {500, 480, 460}) trial.hear(report(position(1, place)));
+    for (const int place : {500, 480, 460}) trial.receive(report(position(1, place)));
     trial.wait(700);
     const Messages quick = trial.writtenBut(kQuestions);
     EXPECT_GE(quick.size(), 25U);
@@ -237,7 +237,7 @@ TEST(LewansoulController, SerialBoardsSpeakMicrosecondsAndReadNothing) {
     trial.open("CP2102 USB to UART");
     trial.wait(60);
     EXPECT_THAT(trial.written(), ElementsAre(kVoltageQuestion));
-    for (const std::uint8_t byte : voltage(7400)) trial.hear({byte});
+    for (const std::uint8_t byte : voltage(7400)) trial.receive({byte});
     EXPECT_EQ(trial.state().phase, ControllerPhase::unidentified);
     EXPECT_FALSE(trial.state().traits.readsPosition);
     EXPECT_LT(trial.state().traits.commandsPerSecond, 20.0) << "25 bytes a set";
@@ -255,9 +255,9 @@ TEST(LewansoulController, TheRestOfAFrameThatNeverCameDoesNotSpoilTheNext) {
     ControllerTrial trial(armProfile({1}), "serial:///dev/ttyUSB0?baud=9600");
     trial.open("LOBOT");
     trial.wait(60);
-    trial.hear({0x55, 0x55, 0x04, 0x0F, 0xE8});
+    trial.receive({0x55, 0x55, 0x04, 0x0F, 0xE8});
     trial.wait(400);
-    trial.hear(voltage(7400));
+    trial.receive(voltage(7400));
     EXPECT_EQ(trial.state().phase, ControllerPhase::ready);
     EXPECT_NEAR(trial.state().volts.value_or(0), 7.4, 1e-9);
     EXPECT_EQ(trial.state().errors, 1U);
@@ -266,9 +266,9 @@ TEST(LewansoulController, TheRestOfAFrameThatNeverCameDoesNotSpoilTheNext) {
 TEST(LewansoulController, TellsSilenceAndAnEmptyBattery) {
     ControllerTrial trial = readyTrial({1});
     trial.wait(900);
-    trial.hear(report(voltage(5600)));
+    trial.receive(report(voltage(5600)));
     trial.wait(20);
-    trial.hear(report(voltage(5600)));
+    trial.receive(report(voltage(5600)));
     EXPECT_EQ(trial.state().trouble->why, "battery at 5.6 V");
     trial.wait(1100);
     EXPECT_FALSE(trial.state().answering);

@@ -48,10 +48,10 @@ private:
     void collect() {
         for (Bytes& message : trial.written()) {
             if (message == kErrorQuestion) {
-                trial.hear({std::exchange(errors, std::uint8_t{0}), 0});
+                trial.receive({std::exchange(errors, std::uint8_t{0}), 0});
             } else if (message.size() == 4 && message[2] == 0x10) {
                 asked.push_back(message[3]);
-                trial.hear({static_cast<std::uint8_t>(quarters & 0xFF), static_cast<std::uint8_t>(quarters >> 8)});
+                trial.receive({static_cast<std::uint8_t>(quarters & 0xFF), static_cast<std::uint8_t>(quarters >> 8)});
             } else {
                 rest_.push_back(std::move(message));
             }
@@ -73,10 +73,10 @@ TEST(MaestroController, IsKnownByNameAndByAnswer) {
                            Row{"Pololu Mini Maestro 12", false, ControllerPhase::handshake}}) {
         ControllerTrial trial(sixServos(), "serial:///dev/ttyACM0");
         trial.open(row.product);
-        trial.hear({0xFF, 0xFF}); // still on its way from another time
+        trial.receive({0xFF, 0xFF}); // still on its way from another time
         trial.wait(60);
         EXPECT_THAT(trial.written(), ElementsAre(kErrorQuestion));
-        if (row.answers) trial.hear({0x10, 0x00}); // an error of before
+        if (row.answers) trial.receive({0x10, 0x00}); // an error of before
         EXPECT_EQ(trial.state().phase, row.phase) << row.product;
         EXPECT_EQ(trial.state().errors, 0U);
         EXPECT_FALSE(trial.state().trouble);
@@ -109,7 +109,7 @@ TEST(MaestroController, SendsQuartersInTheFormOfItsProfile) {
     alone.open("Maestro");
     alone.wait(60);
     EXPECT_THAT(alone.written(), ElementsAre(Bytes{0xA1}));
-    alone.hear({0, 0});
+    alone.receive({0, 0});
     alone.send({{0, 1500.0, true}});
     EXPECT_THAT(alone.written(), ElementsAre(Bytes{0x84, 0x00, 0x70, 0x2E}));
 }
@@ -261,7 +261,7 @@ TEST(MaestroController, LostBytesDoNotShiftTheAnswers) {
         board.trial.wait(5);
         if (!board.trial.written().empty()) break;
     }
-    board.trial.hear({0x00}); // half an answer
+    board.trial.receive({0x00}); // half an answer
     board.wait(1000);
     board.errors = 1 << 1;
     board.wait(300);

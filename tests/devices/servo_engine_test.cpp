@@ -14,7 +14,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/devices/engine_bench.h"
-#include "tests/devices/wire_ear.h"
+#include "tests/devices/wire_reader.h"
 #include "tests/support/simulated_devices.h"
 
 namespace lumorph {
@@ -62,10 +62,10 @@ class RandomSession {
 public:
     static constexpr double kNoticed = 1.0; ///< seconds after which it is noticed that a board has let go
     RandomSession(const EngineCase& board, unsigned seed)
-        : case_(board), random_(seed), profile_(profileOf(board)), bench_(profile_), ear_(board.controller) {
+        : case_(board), random_(seed), profile_(profileOf(board)), bench_(profile_), reader_(board.controller) {
         for (const ServoSetup& servo : profile_.servos) servos_.push_back({{servo}});
         bench_.onWrite = [this](const auto& message) {
-            for (const WireOrder& order : ear_.hear(message)) hear(order);
+            for (const WireOrder& order : reader_.receive(message)) receive(order);
         };
         bench_.tell(in::Connect{});
     }
@@ -202,7 +202,7 @@ private:
             if (counted_ - servo.changed > 5.0) servo.setups = {servo.setups.back()};
     }
 
-    void hear(const WireOrder& order) {
+    void receive(const WireOrder& order) {
         const auto index = std::ranges::find(profile_.servos, order.channel, &ServoSetup::channel);
         ASSERT_NE(index, profile_.servos.end()) << "a channel of no servo";
         HeardServo& servo = servos_[static_cast<std::size_t>(index - profile_.servos.begin())];
@@ -304,7 +304,7 @@ private:
     std::mt19937 random_;
     DeviceProfile profile_;
     EngineBench bench_;
-    WireEar ear_;
+    WireReader reader_;
     std::vector<HeardServo> servos_;
     bool jumpAllowed_ = false;
     double counted_ = 0.0; ///< seconds, as the guard's promise counts them

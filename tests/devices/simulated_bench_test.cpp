@@ -107,7 +107,7 @@ TEST(SimulatedBoard, AWeakBatteryBreaksDownWhenThreeServosMove) {
         for (int i = 0; i < servos; ++i) wire.send(write(2 + i, 1800));
         EXPECT_EQ(wire.servo(0).pulse == 0.0, breaks) << volts << " V, " << servos;
         wire.wait(3s);
-        const Bytes said = wire.hear();
+        const Bytes said = wire.receive();
         EXPECT_EQ(said.size() > 3 && said[0] == 0xF9, breaks) << volts << " V, " << servos;
     }
 }
@@ -131,7 +131,7 @@ TEST(SimulatedBoard, ASilentOneObeysAndSaysNothing) {
     EXPECT_EQ(wire.ask({0xF9}), Bytes{});
     EXPECT_EQ(wire.servo(0).pulse, 1500.0);
     wire.fault([](BoardFaults& faults) { faults.silent = false; });
-    EXPECT_EQ(wire.hear(), Bytes{}) << "what was not said is not said later";
+    EXPECT_EQ(wire.receive(), Bytes{}) << "what was not said is not said later";
     EXPECT_EQ(wire.ask({0xF9}), (Bytes{0xF9, 0x02, 0x05}));
 }
 
@@ -146,7 +146,7 @@ TEST(SimulatedBoard, AStalledLinkPassesNothingOnUntilItGoesOn) {
     EXPECT_EQ(wire.servo(0).pulse, 0.0) << "the firmware hears nothing";
     wire.send({0xF4, 0x02, 0x04});
     wire.fault([](BoardFaults& faults) { faults.stalled = false; });
-    EXPECT_EQ(wire.hear(), (Bytes{0xF9, 0x02, 0x05}));
+    EXPECT_EQ(wire.receive(), (Bytes{0xF9, 0x02, 0x05}));
     EXPECT_EQ(wire.servo(0).pulse, 1600.0) << "what was on its way arrives in order";
 }
 
@@ -154,7 +154,7 @@ TEST(SimulatedBoard, ANewLinkKnowsNothingOfTheOldOnesBytes) {
     SimulatedWire wire("tablet");
     wire.send({0xF9});
     wire.board->plugged(wire.now());
-    EXPECT_EQ(wire.hear(), Bytes{});
+    EXPECT_EQ(wire.receive(), Bytes{});
 }
 
 /// What a board says to many questions.
@@ -227,7 +227,7 @@ TEST(SimulatedBoard, JitterDelaysButKeepsTheOrder) {
         wire.wait(5ms);
     }
     wire.wait(80ms); // the longest there and back
-    const Bytes rest = wire.hear();
+    const Bytes rest = wire.receive();
     heard.insert(heard.end(), rest.begin(), rest.end());
     Bytes named;
     for (std::size_t i = 2; i < heard.size(); i += 4) named.push_back(heard[i]);

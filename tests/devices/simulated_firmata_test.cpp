@@ -32,7 +32,7 @@ TEST(SimulatedFirmata, SaysNothingUnaskedWhenItIsPluggedIn) {
     for (const char* name : {"tablet", "uno"}) {
         SimulatedWire wire(name);
         wire.wait(5s);
-        EXPECT_EQ(wire.hear(), Bytes{}) << name;
+        EXPECT_EQ(wire.receive(), Bytes{}) << name;
     }
 }
 
@@ -187,7 +187,7 @@ TEST(SimulatedFirmata, TabletDetachesAfterHalfASecondOfSilence) {
     EXPECT_EQ(wire.servo(0).pulse, 1500.0);
     wire.wait(1us);
     EXPECT_EQ(wire.servo(0).pulse, 0.0);
-    EXPECT_EQ(wire.hear(), Bytes{});
+    EXPECT_EQ(wire.receive(), Bytes{});
     EXPECT_EQ(wire.ask({0xF0, 0x6D, 0x02, 0xF7}), (Bytes{0xF0, 0x6E, 0x02, 0x01, 0x5C, 0x0B, 0xF7}));
     wire.send({0xE2, 0x68, 0x07});
     EXPECT_EQ(wire.servo(0).pulse, 0.0) << "a write does not attach it again";
@@ -219,10 +219,10 @@ TEST(SimulatedFirmata, RebootLosesAllAndSaysSoAfterTheBootloader) {
     EXPECT_EQ(wire.servo(0).pulse, 0.0);
     wire.send({0xF9, 0xE2, 0x5C, 0x0B, 0xF4, 0x02, 0x04}); // nobody is there to hear it
     wire.wait(2'499'999us);
-    EXPECT_EQ(wire.hear(), Bytes{});
+    EXPECT_EQ(wire.receive(), Bytes{});
     EXPECT_EQ(wire.servo(0).pulse, 0.0);
     wire.wait(1us);
-    EXPECT_EQ(wire.hear(), kVersion + kTabletFirmware);
+    EXPECT_EQ(wire.receive(), kVersion + kTabletFirmware);
     EXPECT_EQ(wire.servo(0).position, where) << "a limp servo stays";
     wire.send({0xF4, 0x02, 0x04});
     EXPECT_EQ(wire.servo(0).pulse, 0.0) << "the pulse of before is forgotten";

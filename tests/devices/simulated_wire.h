@@ -17,10 +17,10 @@ public:
     explicit SimulatedWire(const std::string& name) : board(bench_.board(name)) { board->plugged(clock_->now()); }
 
     void send(const Bytes& bytes) { board->take(bytes, clock_->now()); }
-    [[nodiscard]] Bytes hear() { return board->give(clock_->now()); }
+    [[nodiscard]] Bytes receive() { return board->give(clock_->now()); }
     [[nodiscard]] Bytes ask(const Bytes& question) {
         send(question);
-        return hear();
+        return receive();
     }
     void wait(Microseconds time) { clock_->advance(time); }
     [[nodiscard]] Microseconds now() const { return clock_->now(); }

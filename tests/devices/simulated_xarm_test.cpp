@@ -37,7 +37,7 @@ TEST(SimulatedXarm, TakesTheVendorsVectors) {
     EXPECT_LT(wire.servo(1).pulse, 2500.0);
     wire.wait(1ms);
     EXPECT_EQ(wire.servo(1).pulse, 2500.0);
-    EXPECT_EQ(wire.hear(), Bytes{}) << "moves have no reply";
+    EXPECT_EQ(wire.receive(), Bytes{}) << "moves have no reply";
 }
 
 TEST(SimulatedXarm, MovesAtTheSpeedItWasTold) {
@@ -110,9 +110,9 @@ TEST(SimulatedXarm, TellsItsVoltageInReportsOfItsOwn) {
     Bytes withNumber = report({0x55, 0x55, 0x04, 0x15, 0x01, 0x01});
     withNumber.insert(withNumber.begin(), 0x00);
     wire.send(withNumber);
-    EXPECT_EQ(wire.hear(), report({0x55, 0x55, 0x04, 0x0F, 0x4C, 0x1D}));
-    EXPECT_EQ(wire.hear(), report({0x55, 0x55, 0x06, 0x15, 0x01, 0x01, 0xF4, 0x01}));
-    EXPECT_EQ(wire.hear(), Bytes{});
+    EXPECT_EQ(wire.receive(), report({0x55, 0x55, 0x04, 0x0F, 0x4C, 0x1D}));
+    EXPECT_EQ(wire.receive(), report({0x55, 0x55, 0x06, 0x15, 0x01, 0x01, 0xF4, 0x01}));
+    EXPECT_EQ(wire.receive(), Bytes{});
 }
 
 TEST(SimulatedXarm, EveryFifthUnloadFailsSilently) {

@@ -124,7 +124,7 @@ TEST_F(DevicesWindow, WhoHitsStopTwiceDoesNotStartTheServosAgain) {
 TEST_F(DevicesWindow, WhereEscIsNotHeardEverywhereItIsSaid) {
     goLive();
     EXPECT_EQ(window.findNow<QWidget>("devices.stopKeys"), nullptr) << "here it is";
-    window.studio().devices.setStopKeysDeaf("this desktop does not let a program hear other windows' keys");
+    window.studio().devices.setStopKeysProblem("this desktop does not let a program hear other windows' keys");
     EXPECT_TRUE(eventually([&] {
         return window.findNow<QWidget>("devices.stopKeys") != nullptr &&
                window.text("devices.stopKeys").contains("does not let a program hear");

@@ -7,9 +7,9 @@
 #include "app/workspaces/scene/item_pick.h"
 #include "app/workspaces/scene/outliner_item.h"
 #include "app/workspaces/scene/outliner_model.h"
-#include "app/workspaces/scene/stage_pane.h"
+#include "app/workspaces/scene/view_pane.h"
 #include "tests/support/show_frames.h"
-#include "tests/ui/stage_pictures.h"
+#include "tests/ui/view_pictures.h"
 
 // Things of a scene in the hand: which one a click takes, and where a dragged one goes.
 
@@ -18,7 +18,7 @@ namespace {
 
 using studio::OutlinerModel;
 using studio::SceneChoice;
-using studio::StagePane;
+using studio::ViewPane;
 
 SceneItem boxAt(int id, const glm::vec3& position, const glm::vec3& size) {
     SceneItem box;
@@ -90,7 +90,7 @@ protected:
         window.studio().loop.seekScene(1.5); // no wave hides the box then
         window.studio().document.change("Pause", [](studio::StudioState& state) { state.playback.playing = false; });
         window.command("add a box");
-        pane = window.find<StagePane>("scene.eye");
+        pane = window.find<ViewPane>("scene.eye");
         EXPECT_TRUE(eventually([&] {
             const auto& newest = window.studio().show.newest();
             return newest.frame && newest.still && newest.frame->scene == window.state().scene;
@@ -118,7 +118,7 @@ protected:
 
     TemporaryFolder folder;
     StudioWindow window;
-    StagePane* pane = nullptr;
+    ViewPane* pane = nullptr;
 };
 
 TEST_F(SceneHandles, AnArrowCarriesTheThingAndIsOneStepOfUndo) {

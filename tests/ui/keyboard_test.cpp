@@ -25,8 +25,8 @@
 #include "app/workspaces/field/actuator_grid.h"
 #include "app/workspaces/scene/direction_dial.h"
 #include "app/workspaces/workspaces.h"
-#include "tests/ui/desk_world.h"
 #include "tests/ui/event_loop.h"
+#include "tests/ui/project_world.h"
 
 namespace lumorph::studio {
 namespace {
@@ -120,7 +120,7 @@ protected:
         window->resize(1500, 950);
         window->show();
         ASSERT_TRUE(QTest::qWaitForWindowActive(window.get()));
-        studio->desk.openDemo("field");
+        studio->service.openDemo("field");
         ASSERT_TRUE(eventually([&] {
             const auto& frame = studio->loop.frame();
             return frame && frame->matched && studio->jobs.running().empty();
@@ -171,7 +171,7 @@ protected:
         ASSERT_TRUE(eventually([&] { return window->isActiveWindow(); }));
     }
 
-    test::DeskFiles files;
+    test::SessionFiles files;
     std::unique_ptr<Studio> studio;
     std::unique_ptr<MainWindow> window;
 };
@@ -225,7 +225,7 @@ TEST_F(Keyboard, ReachesEveryControlOfTheDialogs) {
 TEST_F(Keyboard, ReachesTheRemediesOfANotice) {
     window->showWorkspace("field");
     files.writeText("broken.obj", "v 0 0 0\nf 1 2 9\n");
-    studio->desk.open(files / "broken.obj");
+    studio->service.open(files / "broken.obj");
     ASSERT_TRUE(eventually([&] { return !studio->notices.at("target").empty(); }));
     auto* dock = window->findChild<QDockWidget*>("dock.target");
     ASSERT_NE(dock, nullptr);

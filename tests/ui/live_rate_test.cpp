@@ -14,7 +14,7 @@
 #include "core/base/atomic_file.h"
 #include "core/geometry/model.h"
 #include "tests/support/animated_target.h"
-#include "tests/ui/desk_world.h"
+#include "tests/ui/project_world.h"
 #include "tests/ui/stall_watch.h"
 
 namespace lumorph::studio {
@@ -30,17 +30,17 @@ protected:
         window_.resize(1600, 1000);
         window_.showWorkspace("field");
         window_.show();
-        studio_.desk.newProject();
+        studio_.project.newProject();
     }
 
     [[nodiscard]] bool openTarget() {
         const auto idle = [&] { return studio_.jobs.running().empty(); };
         if (!test::eventually([&] { return idle() && studio_.document.state().field.field; })) return false;
-        studio_.desk.openTarget(files_ / "swim.glb");
+        studio_.project.openTarget(files_ / "swim.glb");
         return test::eventually([&] { return idle() && studio_.loop.frame() && studio_.loop.frame()->matched; });
     }
 
-    test::DeskFiles files_;
+    test::SessionFiles files_;
     Studio studio_;
     MainWindow window_;
 };

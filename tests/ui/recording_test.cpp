@@ -74,13 +74,13 @@ protected:
     [[nodiscard]] studio::Studio& studio() { return window_->studio(); }
     [[nodiscard]] bool starts() {
         window().click("bar.record");
-        return eventually([&] { return studio().recorder.phase() == studio::RecordDesk::Phase::recording; });
+        return eventually([&] { return studio().recorder.phase() == studio::RecordingService::Phase::recording; });
     }
     /// Stops it and reads what there is.
     [[nodiscard]] Recording stopped() {
         bool complete = false;
         const auto heard =
-            QObject::connect(&studio().recorder, &studio::RecordDesk::finished, [&complete] { complete = true; });
+            QObject::connect(&studio().recorder, &studio::RecordingService::finished, [&complete] { complete = true; });
         window().click("bar.record");
         EXPECT_TRUE(eventually([&] { return complete; }));
         QObject::disconnect(heard);
@@ -314,7 +314,7 @@ TEST_F(RecordingWindow, ADiskThatFillsEndsItAndTheShowGoesOn) {
     ASSERT_TRUE(starts());
     pass(700ms);
     studio().recorder.setRoom([](const fs::path&) { return std::int64_t{400'000'000}; });
-    EXPECT_TRUE(eventually([&] { return studio().recorder.phase() == studio::RecordDesk::Phase::idle; }));
+    EXPECT_TRUE(eventually([&] { return studio().recorder.phase() == studio::RecordingService::Phase::idle; }));
     EXPECT_TRUE(eventually([&] { return noticeAt("record").find("less than 500 MB") != std::string::npos; }));
     EXPECT_THAT(noticeAt("record"), HasSubstr(studio().recorder.file().filename().string()));
     EXPECT_TRUE(eventually([&] { return !fs::exists(studio().recorder.file().string() + "-wal"); }));
@@ -329,7 +329,7 @@ TEST_F(RecordingWindow, WhereItCannotWriteItSaysSoAndRecordsElsewhere) {
     studio().recorder.start(file / "below" / "session.lumorphrec");
     EXPECT_TRUE(eventually([&] { return !noticeAt("record").empty(); }));
     EXPECT_THAT(noticeAt("record"), HasSubstr("choose a folder"));
-    EXPECT_EQ(studio().recorder.phase(), studio::RecordDesk::Phase::idle);
+    EXPECT_EQ(studio().recorder.phase(), studio::RecordingService::Phase::idle);
     actOnNotice("record", "Record elsewhere...");
     auto* dialog = window().find<QDialog>("dialog.record");
     ASSERT_NE(dialog, nullptr);
@@ -339,7 +339,7 @@ TEST_F(RecordingWindow, WhereItCannotWriteItSaysSoAndRecordsElsewhere) {
 TEST_F(RecordingWindow, AFileThatIsTakenAwayIsTold) {
     ASSERT_TRUE(starts());
     fs::remove(studio().recorder.file());
-    EXPECT_TRUE(eventually([&] { return studio().recorder.phase() == studio::RecordDesk::Phase::idle; }));
+    EXPECT_TRUE(eventually([&] { return studio().recorder.phase() == studio::RecordingService::Phase::idle; }));
     EXPECT_TRUE(eventually([&] { return noticeAt("record").find("taken away") != std::string::npos; }));
 }
 
@@ -359,7 +359,7 @@ TEST_F(RecordingWindow, TheProjectItWasMadeWithIsOfferedAndComesBack) {
     const auto name = window().state().target.target->name;
     ASSERT_TRUE(replays(file));
     EXPECT_EQ(noticeAt("replay"), "") << "of the very same project there is nothing to say";
-    studio().desk.newProject();
+    studio().project.newProject();
     ASSERT_TRUE(eventually([&] { return !window().state().target.target; }));
     window().drop(file, window().find<QWidget>("topBar"));
     ASSERT_TRUE(eventually([&] { return !noticeAt("replay").empty(); }));

@@ -297,7 +297,7 @@ TEST_F(SceneDocks, TheNumberKeysShowTheTechniquesOfTheirDemoAlone) {
     QTest::keyClick(&window.window(), Qt::Key_3);
     EXPECT_TRUE(scene() == before) << "elsewhere a number changes nothing";
     EXPECT_EQ(window.findNow<QWidget>("technique.3.button"), nullptr);
-    window.studio().desk.openDemo("techniques");
+    window.studio().project.openDemo("techniques");
     ASSERT_NE(window.find<QAbstractButton>("technique.3.button"), nullptr);
     ASSERT_TRUE(eventually([&] { return window.studio().jobs.running().empty(); }));
     const glm::vec3 grey(0.7F);
@@ -320,7 +320,7 @@ TEST_F(SceneDocks, TheNumberKeysShowTheTechniquesOfTheirDemoAlone) {
 }
 
 TEST_F(SceneDocks, TheWaterDemoIsWhatAVisitorSeesFirst) {
-    window.studio().desk.openDemo();
+    window.studio().project.openDemo();
     ASSERT_TRUE(eventually([&] { return drivingItem(scene()) != nullptr && window.studio().jobs.running().empty(); }));
     EXPECT_TRUE(window.studio().notices.at("scene").empty());
     EXPECT_TRUE(window.state().assets->problems.empty());

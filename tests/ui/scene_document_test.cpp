@@ -9,15 +9,15 @@
 #include "app/workspaces/scene/projector_reach.h"
 #include "app/workspaces/scene/sun_path.h"
 #include "core/scene/project.h"
-#include "tests/ui/desk_world.h"
+#include "tests/ui/project_world.h"
 
 namespace lumorph::studio {
 namespace {
 
 namespace fs = std::filesystem;
-using test::DeskFiles;
-using test::DeskWorld;
 using test::eventually;
+using test::ProjectWorld;
+using test::SessionFiles;
 
 SceneItem box(const std::string& name = "Box") {
     SceneItem item;
@@ -307,20 +307,20 @@ struct SceneFiles : testing::Test {
                   [&](Scene& scene) { scene.device.material.colorTexture.image = asset; });
     }
     /// What is in memory of an asset; the red of its first pixel, or -1.
-    static int redOf(const DeskWorld& of, const std::string& asset) {
+    static int redOf(const ProjectWorld& of, const std::string& asset) {
         const auto& assets = of.state().assets;
         if (!assets || !assets->images.contains(asset)) return -1;
         return assets->images.at(asset)->at(0, 0)[0];
     }
-    static const std::string& named(const DeskWorld& of) {
+    static const std::string& named(const ProjectWorld& of) {
         return of.state().scene->device.material.colorTexture.image;
     }
     [[nodiscard]] bool reads(int red) {
         return eventually([&] { return world.jobs.running().empty() && redOf(world, named(world)) == red; });
     }
 
-    DeskFiles files;
-    DeskWorld world;
+    SessionFiles files;
+    ProjectWorld world;
     std::string picture;
 };
 
@@ -337,15 +337,15 @@ TEST_F(SceneFiles, AProjectTakesItsPicturesAlong) {
     use(picture);
     ASSERT_TRUE(reads(200));
     fs::create_directories(files / "there");
-    world.desk.saveAs(files / "there/show.lumorph");
+    world.service.saveAs(files / "there/show.lumorph");
     EXPECT_FALSE(world.document.modified());
     fs::remove(picture);
     const std::string inside = readProject(files / "there/show.lumorph").scene.device.material.colorTexture.image;
     EXPECT_TRUE(isAssetName(inside)) << inside;
 
     fs::rename(files / "there", files / "elsewhere");
-    DeskWorld other;
-    other.desk.open(files / "elsewhere/show.lumorph");
+    ProjectWorld other;
+    other.service.open(files / "elsewhere/show.lumorph");
     ASSERT_TRUE(eventually([&] { return other.jobs.running().empty() && redOf(other, named(other)) == 200; }));
     EXPECT_TRUE(other.notices.at("scene").empty());
     EXPECT_FALSE(other.document.modified());
@@ -359,10 +359,10 @@ TEST_F(SceneFiles, APictureThatVanishedIsSavedFromMemory) {
     use(picture);
     ASSERT_TRUE(reads(200));
     fs::remove(picture);
-    world.desk.saveAs(files / "show.lumorph");
+    world.service.saveAs(files / "show.lumorph");
     EXPECT_TRUE(world.notices.at("project").empty());
-    DeskWorld other;
-    other.desk.open(files / "show.lumorph");
+    ProjectWorld other;
+    other.service.open(files / "show.lumorph");
     EXPECT_TRUE(eventually([&] { return other.jobs.running().empty() && redOf(other, named(other)) == 200; }));
 }
 
@@ -378,19 +378,19 @@ TEST_F(SceneFiles, ABrokenPictureIsAPlaceholderWithANoticeAndCanBeRelinked) {
     ASSERT_FALSE(told.actions.empty());
     EXPECT_EQ(told.actions.front().text, "Relink...");
     QString asked;
-    QObject::connect(&world.desk, &Desk::chooseAsset, [&](const QString& asset) { asked = asset; });
+    QObject::connect(&world.service, &ProjectService::chooseAsset, [&](const QString& asset) { asked = asset; });
     told.actions.front().run();
     EXPECT_EQ(asked.toStdString(), broken);
 
     const int steps = world.document.undoStack().count();
-    world.desk.relink(broken, picture);
+    world.service.relink(broken, picture);
     ASSERT_TRUE(reads(200));
     EXPECT_EQ(named(world), picture);
     EXPECT_EQ(world.document.undoStack().count(), steps + 1);
     EXPECT_TRUE(world.notices.at("scene").empty());
 
     world.document.undoStack().undo();
-    world.desk.saveAs(files / "show.lumorph"); // what is broken is still named, and nothing else is lost
+    world.service.saveAs(files / "show.lumorph"); // what is broken is still named, and nothing else is lost
     EXPECT_TRUE(world.notices.at("project").empty());
     EXPECT_EQ(fs::path(readProject(files / "show.lumorph").scene.device.material.colorTexture.image).filename(),
               "broken.png");
@@ -400,15 +400,15 @@ TEST_F(SceneFiles, AMissingPictureIsToldAndTheProjectOpens) {
     use(picture);
     ASSERT_TRUE(reads(200));
     fs::create_directories(files / "there");
-    world.desk.saveAs(files / "there/show.lumorph");
+    world.service.saveAs(files / "there/show.lumorph");
     const std::string inside = readProject(files / "there/show.lumorph").scene.device.material.colorTexture.image;
     ASSERT_TRUE(fs::remove(files / "there" / inside));
-    DeskWorld other;
-    other.desk.open(files / "there/show.lumorph");
+    ProjectWorld other;
+    other.service.open(files / "there/show.lumorph");
     ASSERT_TRUE(eventually([&] { return other.jobs.running().empty() && !other.notices.at("scene").empty(); }));
     EXPECT_TRUE(other.state().rig.rig);
     EXPECT_EQ(other.notice("scene").subject.toStdString(), fs::path(inside).filename().string());
-    other.desk.relink(named(other), picture);
+    other.service.relink(named(other), picture);
     EXPECT_TRUE(eventually([&] { return other.jobs.running().empty() && redOf(other, named(other)) == 200; }));
 }
 
@@ -427,19 +427,19 @@ TEST_F(SceneFiles, ASessionKeepsTheSceneAndItsPictures) {
     ASSERT_TRUE(reads(200));
     editScene(world.document, "Add", [](Scene& scene) { addItem(scene, box()); });
     const Scene kept = *world.state().scene;
-    world.desk.keepSession();
+    world.service.keepSession();
     {
-        DeskWorld next;
+        ProjectWorld next;
         bool ready = false;
-        next.desk.restoreSession([&] { ready = true; });
+        next.service.restoreSession([&] { ready = true; });
         ASSERT_TRUE(eventually([&] { return ready; }));
         EXPECT_TRUE(*next.state().scene == kept) << "its pictures go by the names they had";
         EXPECT_EQ(redOf(next, picture), 200);
     }
     fs::remove(picture);
-    DeskWorld last;
+    ProjectWorld last;
     bool ready = false;
-    last.desk.restoreSession([&] { ready = true; });
+    last.service.restoreSession([&] { ready = true; });
     ASSERT_TRUE(eventually([&] { return ready; }));
     EXPECT_EQ(redOf(last, named(last)), 200) << "a copy was kept";
     EXPECT_TRUE(last.notices.at("scene").empty());

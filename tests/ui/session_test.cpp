@@ -8,22 +8,22 @@
 
 #include "app/studio/document/state_rules.h"
 #include "core/scene/project.h"
-#include "tests/ui/desk_world.h"
+#include "tests/ui/project_world.h"
 
 namespace lumorph::studio {
 namespace {
 
 namespace fs = std::filesystem;
-using test::DeskFiles;
-using test::DeskWorld;
 using test::eventually;
+using test::ProjectWorld;
+using test::SessionFiles;
 
 struct SessionTest : testing::Test {
-    DeskFiles files;
+    SessionFiles files;
 
-    void restore(DeskWorld& world) const {
+    void restore(ProjectWorld& world) const {
         bool ready = false;
-        world.desk.restoreSession([&] { ready = true; });
+        world.service.restoreSession([&] { ready = true; });
         EXPECT_TRUE(eventually([&] { return ready; }));
     }
 };
@@ -44,7 +44,7 @@ void expectEqual(const StudioState& is, const StudioState& was) {
     EXPECT_FALSE(differenceOf(sameObjects, was));
 }
 
-StudioState edited(DeskWorld& world, const DeskFiles& files) {
+StudioState edited(ProjectWorld& world, const SessionFiles& files) {
     world.openRig(files / "cushion.glb");
     world.openTarget(files / "block.obj");
     world.document.change("Edit", [](StudioState& s) {
@@ -57,7 +57,7 @@ StudioState edited(DeskWorld& world, const DeskFiles& files) {
 }
 
 TEST_F(SessionTest, TheDemoOpensWhereThereWasNoSession) {
-    DeskWorld world;
+    ProjectWorld world;
     restore(world);
     EXPECT_EQ(world.state().rig.path.filename(), "tablet.glb");
     EXPECT_NE(drivingItem(*world.state().scene), nullptr) << "the sea moves the tablet";
@@ -69,28 +69,28 @@ TEST_F(SessionTest, TheDemoOpensWhereThereWasNoSession) {
 TEST_F(SessionTest, GoesOnWhereItEnded) {
     StudioState was;
     {
-        DeskWorld world;
+        ProjectWorld world;
         was = edited(world, files);
-        world.desk.saveAs(files / "garden.lumorph");
+        world.service.saveAs(files / "garden.lumorph");
         world.document.change("Turn", [](StudioState& s) { s.placement.yaw = Angle::radians(0.25); });
         was = world.state();
-        world.desk.keepSession();
+        world.service.keepSession();
     }
     const fs::path project = files / "garden.lumorph";
     const auto saved = fs::last_write_time(project);
     {
-        DeskWorld world;
+        ProjectWorld world;
         restore(world);
         expectEqual(world.state(), was);
         EXPECT_EQ(world.document.file(), project);
         EXPECT_TRUE(world.document.modified());
         EXPECT_EQ(fs::last_write_time(project), saved) << "the project's own file is the user's to save";
         EXPECT_EQ(readProject(project).placement.yaw.inRadians(), 1.1);
-        EXPECT_TRUE(world.desk.save());
+        EXPECT_TRUE(world.service.save());
         EXPECT_EQ(readProject(project).placement.yaw.inRadians(), 0.25);
-        world.desk.keepSession();
+        world.service.keepSession();
     }
-    DeskWorld world;
+    ProjectWorld world;
     restore(world);
     EXPECT_FALSE(world.document.modified());
     test::pass(std::chrono::milliseconds(1500));
@@ -99,10 +99,10 @@ TEST_F(SessionTest, GoesOnWhereItEnded) {
 
 TEST_F(SessionTest, IsKeptSomeSecondsAfterAChange) {
     StudioState was;
-    DeskWorld world;
+    ProjectWorld world;
     was = edited(world, files);
     const auto kept = [&] {
-        for (const auto& entry : fs::directory_iterator(Desk::sessionFolder()))
+        for (const auto& entry : fs::directory_iterator(ProjectService::sessionFolder()))
             if (fs::exists(entry.path() / "session.lumorph") &&
                 readProject(entry.path() / "session.lumorph").playback.spin == 0.3)
                 return true;
@@ -114,13 +114,13 @@ TEST_F(SessionTest, IsKeptSomeSecondsAfterAChange) {
 TEST_F(SessionTest, HoldsWhatVanishedSince) {
     StudioState was;
     {
-        DeskWorld world;
+        ProjectWorld world;
         was = edited(world, files);
-        world.desk.keepSession();
+        world.service.keepSession();
     }
     fs::remove(files / "block.obj");
     fs::remove(files / "cushion.glb");
-    DeskWorld world;
+    ProjectWorld world;
     restore(world);
     expectEqual(world.state(), was);
     EXPECT_TRUE(eventually([&] { return !world.notices.at("target").empty() && !world.notices.at("rig").empty(); }));
@@ -128,34 +128,34 @@ TEST_F(SessionTest, HoldsWhatVanishedSince) {
 
 TEST_F(SessionTest, ABrokenOneIsMovedAsideAndTheDemoOpens) {
     {
-        DeskWorld world;
+        ProjectWorld world;
         edited(world, files);
-        world.desk.keepSession();
+        world.service.keepSession();
     }
     fs::path session;
-    for (const auto& entry : fs::directory_iterator(Desk::sessionFolder()))
+    for (const auto& entry : fs::directory_iterator(ProjectService::sessionFolder()))
         if (fs::exists(entry.path() / "session.lumorph")) session = entry.path();
     std::ofstream(session / "session.lumorph") << "{ torn";
-    DeskWorld world;
+    ProjectWorld world;
     restore(world);
     EXPECT_EQ(world.state().rig.path.filename(), "tablet.glb");
     const Notice notice = world.notice("project");
     EXPECT_TRUE(notice.why.contains("last session"));
     EXPECT_TRUE(notice.remedy.contains("broken-1"));
-    EXPECT_TRUE(fs::exists(Desk::sessionFolder() / "broken-1" / "session.lumorph"));
+    EXPECT_TRUE(fs::exists(ProjectService::sessionFolder() / "broken-1" / "session.lumorph"));
 }
 
 TEST_F(SessionTest, ASecondStudioLeavesTheSessionOfTheFirstAlone) {
-    DeskWorld first;
+    ProjectWorld first;
     const StudioState was = edited(first, files);
-    first.desk.keepSession();
+    first.service.keepSession();
     {
-        DeskWorld second;
+        ProjectWorld second;
         second.openRig(files / "lifter.glb");
-        second.desk.keepSession();
-        second.desk.openRig(files / "lifter.glb");
+        second.service.keepSession();
+        second.service.openRig(files / "lifter.glb");
     }
-    DeskWorld third;
+    ProjectWorld third;
     restore(third);
     EXPECT_EQ(third.state().rig.path, was.rig.path);
 }
@@ -164,7 +164,7 @@ TEST_F(SessionTest, ASecondStudioLeavesTheSessionOfTheFirstAlone) {
 TEST(SessionChild, DISABLED_KeepsForEver) {
     const fs::path folder = qgetenv("LUMORPH_TEST_FILES").toStdString();
     test::needApplication();
-    DeskWorld world;
+    ProjectWorld world;
     world.openTarget(folder / "block.obj");
     const auto even = world.state().target;
     world.openTarget(folder / "other.obj");
@@ -176,7 +176,7 @@ TEST(SessionChild, DISABLED_KeepsForEver) {
             s.strokes = {k / 1000.0, 1.0 - k / 1000.0, 0.5};
             s.playback.spin = k / 1000.0;
         });
-        world.desk.keepSession();
+        world.service.keepSession();
         std::printf("kept %d\n", k);
         std::fflush(stdout);
     }
@@ -210,7 +210,7 @@ TEST_F(SessionTest, KilledAtAnyTimeItLeavesAWholeSession) {
         output += child.readAllStandardOutput();
         const int kept = lastKept(output);
 
-        DeskWorld world;
+        ProjectWorld world;
         restore(world);
         ASSERT_EQ(world.state().rig.path.filename(), "cushion.glb");
         const int number = static_cast<int>(std::lround(1000.0 * world.state().playback.spin));

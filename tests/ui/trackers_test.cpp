@@ -54,7 +54,7 @@ TEST_F(TrackersWindow, WhoABodyIsCanBeChangedAndIsRemembered) {
     EXPECT_TRUE(eventually([&] { return viewer().empty(); }, 5s));
     EXPECT_FALSE(window.studio().trackers.role("head").has_value());
     studio::Notices notices;
-    studio::TrackerDesk later(window.studio().settings, window.studio().loop, notices);
+    studio::TrackerService later(window.studio().settings, window.studio().loop, notices);
     later.open("sim://head");
     EXPECT_TRUE(eventually([&] { return !later.trackers().empty(); }, 5s));
     EXPECT_TRUE(eventually([&] { return !later.trackers().front().status.bodies.empty(); }, 5s));

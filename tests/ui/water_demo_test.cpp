@@ -3,11 +3,11 @@
 #include <cstdio>
 
 #include "app/workspaces/scene/eye_orbit.h"
-#include "app/workspaces/scene/stage_pane.h"
+#include "app/workspaces/scene/view_pane.h"
 #include "core/base/resources.h"
 #include "core/scene/techniques.h"
-#include "tests/ui/stage_pictures.h"
 #include "tests/ui/stall_watch.h"
+#include "tests/ui/view_pictures.h"
 
 // What a visitor sees first, in the real window: water on the tablet, with shadows that go with the sun.
 
@@ -15,7 +15,7 @@ namespace lumorph::test {
 namespace {
 
 using namespace std::chrono_literals;
-using studio::StagePane;
+using studio::ViewPane;
 
 /// The program as it starts for the first time.
 struct FirstStart {
@@ -32,7 +32,7 @@ struct FirstStart {
 
 class WaterDemo : public ::testing::Test {
 protected:
-    WaterDemo() { pane = window.find<StagePane>("scene.eye"); }
+    WaterDemo() { pane = window.find<ViewPane>("scene.eye"); }
     [[nodiscard]] bool plays() { return window.studio().loop.scenePlaying(); }
     [[nodiscard]] const studio::DrawnShow& newest() { return window.studio().show.newest(); }
     /// By the key that the button names.
@@ -60,7 +60,7 @@ protected:
 
     FirstStart program;
     StudioWindow& window = program.window;
-    StagePane* pane = nullptr;
+    ViewPane* pane = nullptr;
 };
 
 TEST_F(WaterDemo, IsWaterThatMovesUntilItIsPaused) {
@@ -147,9 +147,9 @@ double longestStallOfDemos() {
     FirstStart program; // its caches are empty each time
     StudioWindow& window = program.window;
     StallWatch watch;
-    window.studio().desk.openDemo("water");
+    window.studio().project.openDemo("water");
     pass(1s);
-    window.studio().desk.openDemo("techniques");
+    window.studio().project.openDemo("techniques");
     EXPECT_TRUE(eventually([&] { return window.findNow<QWidget>("technique.3.button") != nullptr; }));
     for (const int key : {1, 4, 6}) {
         QTest::keyClick(&window.window(), static_cast<Qt::Key>(Qt::Key_0 + key));

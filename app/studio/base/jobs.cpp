@@ -59,7 +59,7 @@ Jobs::Id Jobs::start(const QString& place, const QString& title, std::function<s
             said->fraction = fraction;
             said->stage = stage;
         }
-        if (!said->posted.exchange(true)) QMetaObject::invokeMethod(this, [this, id] { hear(id); });
+        if (!said->posted.exchange(true)) QMetaObject::invokeMethod(this, [this, id] { poll(id); });
     };
     started.thread = std::jthread([this, id, report, work = std::move(work)](const std::stop_token& stop) {
         giveWayToOthers(); // the window comes first
@@ -78,13 +78,13 @@ Jobs::Id Jobs::start(const QString& place, const QString& title, std::function<s
     return id;
 }
 
-void Jobs::hear(Id id) {
+void Jobs::poll(Id id) {
     const auto found = jobs_.find(id);
     if (found == jobs_.end() || found->second->cancelled) return;
     Job& job = *found->second;
     const qint64 wait = job.sinceReport.isValid() ? kReportMilliseconds - job.sinceReport.elapsed() : 0;
     if (wait > 0) { // the newest word is kept and told then
-        QTimer::singleShot(static_cast<int>(wait), this, [this, id] { hear(id); });
+        QTimer::singleShot(static_cast<int>(wait), this, [this, id] { poll(id); });
         return;
     }
     job.sinceReport.start();

@@ -56,7 +56,7 @@ signals:
 private:
     Id start(const QString& place, const QString& title, std::function<std::any(const Progress&)> work,
              std::function<void(std::any)> done, std::function<void(const std::exception&)> failed);
-    void hear(Id id);
+    void poll(Id id);
     void end(Id id, std::any result, const std::exception_ptr& error);
 
     struct Job;

@@ -39,7 +39,7 @@ void ServoFeed::slow(SlowCause cause, bool on) {
     if (!before) eachLeaving([](ServoLink& link) { link.setSlow(true); });
 }
 
-void ServoFeed::feel(Microseconds now) {
+void ServoFeed::checkHands(Microseconds now) {
     // It is called in the link's thread, which must not wait for a busy one that holds this: there is a next time.
     const std::unique_lock lock(mutex_, std::try_to_lock);
     if (!lock || !link_) return;

@@ -37,7 +37,7 @@ public:
     /// All servos move slowly as long as there is any cause for it.
     void setSlow(SlowCause cause, bool on);
     /// Looks whether servos follow, and makes all slow where one does not; ten times a second or more often.
-    void feel(Microseconds now);
+    void checkHands(Microseconds now);
     /// Servos that do not follow.
     [[nodiscard]] std::vector<std::size_t> stuck() const;
 

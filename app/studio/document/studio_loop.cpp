@@ -125,7 +125,7 @@ void StudioLoop::tap() {
     for (const auto& [id, tap] : taps_) tap(*frame);
 }
 
-void StudioLoop::heed(StateParts parts) {
+void StudioLoop::onChanged(StateParts parts) {
     // Whoever takes the rig in hand, or back to the target, ends the dance.
     if (parts & (StatePart::strokes | StatePart::matching | StatePart::rig)) setDancing(false);
     if (parts & StatePart::target || document_.state().playback.playing) seek_.reset();

@@ -72,7 +72,7 @@ signals:
     void failed(const QString& why);
 
 private:
-    void heed(StateParts parts);
+    void onChanged(StateParts parts);
     void sendSoon();
     void send();
     void take();

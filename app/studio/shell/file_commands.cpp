@@ -55,9 +55,9 @@ void openWithDialog(Studio& studio, QWidget& window) {
         {"Everything Lumorph opens (*.lumorph *.lumorphrec *.mdf *.glb *.gltf *.obj *.stl *.ply *.off)",
          "Projects (*.lumorph)", "Recordings (*.lumorphrec)", "Fields (*.mdf)",
          "3D models and rigs (*.glb *.gltf *.obj *.stl *.ply *.off)", "All files (*)"});
-    QObject::connect(dialog, &QFileDialog::fileSelected, &studio.desk, [&studio](const QString& file) {
+    QObject::connect(dialog, &QFileDialog::fileSelected, &studio.project, [&studio](const QString& file) {
         studio.settings.setValue("files/folder", QFileInfo(file).absolutePath());
-        studio.desk.open(pathOf(file));
+        studio.project.open(pathOf(file));
     });
     dialog->show();
 }
@@ -71,9 +71,9 @@ void saveWithDialog(Studio& studio, QWidget& window) {
     const auto& file = studio.document.file();
     dialog->setDirectory(file.empty() ? lastFolder(studio) : QString::fromStdString(file.parent_path().string()));
     dialog->selectFile(file.empty() ? "Untitled.lumorph" : QString::fromStdString(file.filename().string()));
-    QObject::connect(dialog, &QFileDialog::fileSelected, &studio.desk, [&studio](const QString& chosen) {
+    QObject::connect(dialog, &QFileDialog::fileSelected, &studio.project, [&studio](const QString& chosen) {
         studio.settings.setValue("files/folder", QFileInfo(chosen).absolutePath());
-        studio.desk.saveAs(pathOf(chosen));
+        studio.project.saveAs(pathOf(chosen));
     });
     dialog->show();
 }
@@ -109,23 +109,23 @@ void addFileCommands(Studio& studio, QWidget& window) {
         commands.add(id, text, options, std::move(run));
     };
     // What a notice offers. Targets have a dialog of their own, with the bundled ones in it.
-    QObject::connect(&studio.desk, &Desk::saveElsewhere, &window,
+    QObject::connect(&studio.project, &ProjectService::saveElsewhere, &window,
                      [&studio, &window] { saveWithDialog(studio, window); });
-    QObject::connect(&studio.desk, &Desk::chooseFile, &window, [&studio, &window](const QString& place) {
+    QObject::connect(&studio.project, &ProjectService::chooseFile, &window, [&studio, &window](const QString& place) {
         if (place != "target") openWithDialog(studio, window);
     });
-    add("file.new", "&New project", "file", QKeySequence::New, [&studio] { studio.desk.newProject(); });
+    add("file.new", "&New project", "file", QKeySequence::New, [&studio] { studio.project.newProject(); });
     add("file.open", "&Open...", "open", QKeySequence::Open, [&studio, &window] { openWithDialog(studio, window); });
     add("file.save", "&Save", "save", QKeySequence::Save, [&studio, &window] {
-        if (!studio.desk.save()) saveWithDialog(studio, window);
+        if (!studio.project.save()) saveWithDialog(studio, window);
     });
     add("file.saveAs", "Save &as...", "save", QKeySequence(Qt::CTRL | Qt::SHIFT | Qt::Key_S),
         [&studio, &window] { saveWithDialog(studio, window); });
     addRecordCommands(studio, window);
     add("file.quit", "&Quit", "", QKeySequence(Qt::CTRL | Qt::Key_Q), [&window] { window.close(); });
     const auto remember = [&studio](const QString& path) { studio.settings.addRecentFile(path); };
-    QObject::connect(&studio.desk, &Desk::opened, &window, remember);
-    QObject::connect(&studio.desk, &Desk::saved, &window, remember);
+    QObject::connect(&studio.project, &ProjectService::opened, &window, remember);
+    QObject::connect(&studio.project, &ProjectService::saved, &window, remember);
 }
 
 void fillRecentMenu(Studio& studio, QMenu& menu) {
@@ -134,8 +134,8 @@ void fillRecentMenu(Studio& studio, QMenu& menu) {
         const QFileInfo file(path);
         QAction* action = menu.addAction(icon(file.isDir() ? "folder" : "file"), file.fileName().replace('&', "&&"));
         action->setToolTip(path);
-        QObject::connect(action, &QAction::triggered, &studio.desk,
-                         [&studio, path] { studio.desk.open(pathOf(path)); });
+        QObject::connect(action, &QAction::triggered, &studio.project,
+                         [&studio, path] { studio.project.open(pathOf(path)); });
     }
     if (menu.isEmpty()) {
         menu.addAction("No recent files")->setEnabled(false);
@@ -152,8 +152,8 @@ void openDropped(Studio& studio, const std::vector<std::filesystem::path>& files
     std::vector<std::filesystem::path> left;
     for (auto file = files.begin(); file != files.end(); ++file)
         if (file != device && file != target) left.push_back(*file);
-    if (device != files.end()) studio.desk.open(*device);
-    if (target != files.end()) studio.desk.open(*target);
+    if (device != files.end()) studio.project.open(*device);
+    if (target != files.end()) studio.project.open(*target);
     tellLeftOver(studio.notices, left);
 }
 

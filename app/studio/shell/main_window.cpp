@@ -99,7 +99,7 @@ MainWindow::MainWindow(Studio& studio, std::vector<std::unique_ptr<Workspace>> w
     const auto setQuality = [&studio] { studio.renderer.setStillQuality(studio.settings.stillQuality()); };
     connect(&studio.settings, &Settings::qualityChanged, this, setQuality);
     setQuality();
-    const auto setPlacing = [&studio] { studio.desk.setPlacesNewTargets(studio.settings.placesNewTargets()); };
+    const auto setPlacing = [&studio] { studio.project.setPlacesNewTargets(studio.settings.placesNewTargets()); };
     connect(&studio.settings, &Settings::placesNewTargetsChanged, this, setPlacing);
     setPlacing();
     connect(new EscapeTwice(data_->clock, this), &EscapeTwice::pressed, &studio.loop, &StudioLoop::stop);
@@ -108,7 +108,7 @@ MainWindow::MainWindow(Studio& studio, std::vector<std::unique_ptr<Workspace>> w
         studio.devices.stopNow();
         QMetaObject::invokeMethod(&studio.loop, &StudioLoop::stop, Qt::QueuedConnection);
     });
-    studio.devices.setStopKeysDeaf(data_->stopKeys->why());
+    studio.devices.setStopKeysProblem(data_->stopKeys->why());
     qApp->installEventFilter(this);
     resize(kUsualSize.boundedTo(screen()->availableSize() - kFrame));
     if (restoreGeometry(studio.settings.value(kGeometryKey).toByteArray())) keepOnScreen();
@@ -241,7 +241,7 @@ void MainWindow::closeEvent(QCloseEvent* event) {
         data_->studio.settings.setValue(kGeometryKey, saveGeometry());
         data_->studio.settings.setValue(kWorkspaceKey, data_->present);
     }
-    data_->studio.desk.keepSession();
+    data_->studio.project.keepSession();
     event->accept();
     QTimer::singleShot(0, qApp, [] { QCoreApplication::exit(0); }); // floating docks and dialogs are windows too
 }

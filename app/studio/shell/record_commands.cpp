@@ -118,7 +118,7 @@ void askMark(Studio& studio, QWidget& window) {
 void showFolder(const fs::path& file) { QDesktopServices::openUrl(QUrl::fromLocalFile(textOf(file.parent_path()))); }
 
 void addRecording(Studio& studio, QWidget& window) {
-    RecordDesk& record = studio.recorder;
+    RecordingService& record = studio.recorder;
     QAction* start = add(
         studio, "record.start", "&Record", "record",
         "Records the show: poses, levels, servos, and what happens, until you stop it", [&record] { record.start(); },
@@ -135,22 +135,23 @@ void addRecording(Studio& studio, QWidget& window) {
         studio, "record.folder", "Show the folder of the recordings", "folder", {},
         [&record] { showFolder(record.file().empty() ? record.freshFile() : record.file()); }, "", false);
     const auto follow = [=, &record] {
-        const bool idle = record.phase() == RecordDesk::Phase::idle;
+        const bool idle = record.phase() == RecordingService::Phase::idle;
         start->setEnabled(idle);
         startAs->setEnabled(idle);
         stop->setEnabled(!idle);
-        mark->setEnabled(record.phase() == RecordDesk::Phase::recording);
+        mark->setEnabled(record.phase() == RecordingService::Phase::recording);
         folder->setEnabled(true);
     };
-    QObject::connect(&record, &RecordDesk::changed, start, follow);
+    QObject::connect(&record, &RecordingService::changed, start, follow);
     follow();
-    QObject::connect(&record, &RecordDesk::chooseFile, &window, [&studio, &window] { askWhereTo(studio, window); });
-    QObject::connect(&record, &RecordDesk::showWanted, &studio.replay,
+    QObject::connect(&record, &RecordingService::chooseFile, &window,
+                     [&studio, &window] { askWhereTo(studio, window); });
+    QObject::connect(&record, &RecordingService::showWanted, &studio.replay,
                      [&studio](const QString& file) { studio.replay.open(file.toStdString()); });
 }
 
 void addReplay(Studio& studio, QWidget& window) {
-    ReplayDesk& replay = studio.replay;
+    ReplayService& replay = studio.replay;
     add(studio, "replay.open", "Open recordin&g...", "replay", "Shows a recorded session again",
         [&studio, &window] { askWhatToReplay(studio, window); });
     QAction* play = add(
@@ -175,9 +176,9 @@ void addReplay(Studio& studio, QWidget& window) {
         play->setText(replay.playing() ? "Pause the recording" : "Play the recording");
         play->setIcon(icon(replay.playing() ? "pause" : "play"));
     };
-    QObject::connect(&replay, &ReplayDesk::changed, play, follow);
+    QObject::connect(&replay, &ReplayService::changed, play, follow);
     follow();
-    QObject::connect(&studio.desk, &Desk::recordingChosen, &replay,
+    QObject::connect(&studio.project, &ProjectService::recordingChosen, &replay,
                      [&replay](const QString& file) { replay.open(file.toStdString()); });
 }
 

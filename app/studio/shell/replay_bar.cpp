@@ -41,8 +41,8 @@ public:
         addName(*row);
         addTime(*row);
         addTools(*row);
-        connect(&replay_, &ReplayDesk::changed, this, [this] { refresh(); });
-        connect(&replay_, &ReplayDesk::moved, this, [this] { showTime(); });
+        connect(&replay_, &ReplayService::changed, this, [this] { refresh(); });
+        connect(&replay_, &ReplayService::moved, this, [this] { showTime(); });
         refresh();
     }
 
@@ -94,7 +94,7 @@ private:
         slider_ = new MarkSlider(this);
         slider_->setObjectName("replay.scrub");
         slider_->setAccessibleName("Time of the recording");
-        connect(slider_, &MarkSlider::sought, &replay_, &ReplayDesk::seek);
+        connect(slider_, &MarkSlider::sought, &replay_, &ReplayService::seek);
         row.addWidget(slider_, 1);
         duration_ = makeClock("replay.duration", "0:00:00", this);
         row.addWidget(duration_);
@@ -119,7 +119,7 @@ private:
         row.addWidget(more);
         auto* live = new QPushButton("Back to live", this);
         live->setObjectName("replay.live");
-        connect(live, &QPushButton::clicked, &replay_, &ReplayDesk::close);
+        connect(live, &QPushButton::clicked, &replay_, &ReplayService::close);
         row.addWidget(live);
     }
 
@@ -160,7 +160,7 @@ private:
     }
 
     Studio& studio_;
-    ReplayDesk& replay_;
+    ReplayService& replay_;
     std::weak_ptr<const Recording> shown_;
     QWidget* words_ = nullptr;
     QLabel* name_ = nullptr;

@@ -62,7 +62,7 @@ StatusLine::StatusLine(Studio& studio, QWidget* parent)
     row->addWidget(warnings_);
     connect(warnings_, &QPushButton::clicked, this, &StatusLine::listWarnings);
     connect(&studio.document, &StudioDocument::titleChanged, this, &StatusLine::showProject);
-    connect(&studio.devices, &DeviceDesk::changed, this, &StatusLine::showHardware);
+    connect(&studio.devices, &DeviceService::changed, this, &StatusLine::showHardware);
     connect(&studio.notices, &Notices::changed, this, [this](const QString& place) {
         if (!place.isEmpty()) places_.insert(place);
         showWarnings();

@@ -72,7 +72,7 @@ struct StopKeyWatch::Data {
 
     QString open();
     void listen(const std::stop_token& stop);
-    void heed(const xcb_generic_event_t& event);
+    void onEvent(const xcb_generic_event_t& event);
     PressTwice twice;
 };
 
@@ -92,7 +92,7 @@ QString StopKeyWatch::Data::open() {
     return wake < 0 ? "the system has no free file numbers" : QString();
 }
 
-void StopKeyWatch::Data::heed(const xcb_generic_event_t& event) {
+void StopKeyWatch::Data::onEvent(const xcb_generic_event_t& event) {
     if ((event.response_type & 0x7F) != XCB_GE_GENERIC) return;
     const auto& generic = reinterpret_cast<const xcb_ge_generic_event_t&>(event);
     if (generic.extension != extension || generic.event_type != XCB_INPUT_RAW_KEY_PRESS) return;
@@ -107,7 +107,7 @@ void StopKeyWatch::Data::heed(const xcb_generic_event_t& event) {
 void StopKeyWatch::Data::listen(const std::stop_token& stop) {
     pollfd waits[] = {{xcb_get_file_descriptor(connection.get()), POLLIN, 0}, {wake, POLLIN, 0}};
     while (!stop.stop_requested() && xcb_connection_has_error(connection.get()) == 0) {
-        while (const auto event = taken(xcb_poll_for_event(connection.get()))) heed(*event);
+        while (const auto event = taken(xcb_poll_for_event(connection.get()))) onEvent(*event);
         ::poll(waits, std::size(waits), -1);
     }
 }

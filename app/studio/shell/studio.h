@@ -4,14 +4,14 @@
 #include "app/studio/base/jobs.h"
 #include "app/studio/base/notices.h"
 #include "app/studio/base/settings.h"
-#include "app/studio/devices/device_desk.h"
-#include "app/studio/devices/tracker_desk.h"
-#include "app/studio/document/desk.h"
+#include "app/studio/devices/device_service.h"
+#include "app/studio/devices/tracker_service.h"
+#include "app/studio/document/project_service.h"
 #include "app/studio/document/studio_document.h"
 #include "app/studio/document/studio_loop.h"
 #include "app/studio/output/projector_outputs.h"
-#include "app/studio/recording/record_desk.h"
-#include "app/studio/recording/replay_desk.h"
+#include "app/studio/recording/recording_service.h"
+#include "app/studio/recording/replay_service.h"
 #include "app/studio/rendering/render_thread.h"
 #include "app/studio/rendering/show_feed.h"
 
@@ -24,15 +24,15 @@ struct Studio {
     Jobs jobs;
     StudioDocument document;
     StudioLoop loop{document};
-    Desk desk{document, jobs, notices};
-    DeviceDesk devices{settings, document, loop, notices};
-    TrackerDesk trackers{settings, loop, notices};
+    ProjectService project{document, jobs, notices};
+    DeviceService devices{settings, document, loop, notices};
+    TrackerService trackers{settings, loop, notices};
     Commands commands;
     RenderThread renderer;
     ShowFeed show{loop, renderer, notices};
     ProjectorOutputs outputs{document, show, commands, notices};
-    RecordDesk recorder{settings, document, desk, loop, devices, trackers, jobs, notices};
-    ReplayDesk replay{document, desk, loop, jobs, notices};
+    RecordingService recorder{settings, document, project, loop, devices, trackers, jobs, notices};
+    ReplayService replay{document, project, loop, jobs, notices};
 };
 
 } // namespace lumorph::studio

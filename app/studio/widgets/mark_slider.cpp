@@ -12,7 +12,7 @@
 #include <QToolTip>
 
 #include "app/studio/look/palette.h"
-#include "app/studio/recording/record_desk.h"
+#include "app/studio/recording/recording_service.h"
 
 namespace lumorph::studio {
 namespace {

@@ -44,7 +44,7 @@ void addBodiesCommand(Studio& studio) {
 BodyAxes::BodyAxes(Studio& studio, ViewportWidget* view) : QObject(view), studio_(studio), view_(view) {
     timer_.setInterval(kMilliseconds);
     connect(&timer_, &QTimer::timeout, this, [this] { look(); });
-    connect(&studio.trackers, &TrackerDesk::changed, this, [this] { follow(); });
+    connect(&studio.trackers, &TrackerService::changed, this, [this] { follow(); });
     connect(&studio.commands, &Commands::added, this, [this](QAction* action) {
         if (action->objectName() == kCommand) connect(action, &QAction::toggled, this, [this] { follow(); });
     });

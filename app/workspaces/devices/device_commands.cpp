@@ -105,7 +105,7 @@ void addSlow(Studio& studio) {
     QAction* slow = studio.commands.add("device.slow", "Slow servos", options,
                                         [&studio] { studio.devices.setSlow(!studio.devices.slow()); });
     slow->setToolTip("All servos move at a quarter of their speed, or as the profile says: for when hands are near");
-    QObject::connect(&studio.devices, &DeviceDesk::changed, slow,
+    QObject::connect(&studio.devices, &DeviceService::changed, slow,
                      [slow, &studio] { slow->setChecked(studio.devices.slow()); });
 }
 
@@ -145,8 +145,8 @@ void addDeviceCommands(Studio& studio) {
         start->setEnabled(canStart(link));
         release->setEnabled(isDriven(link));
     };
-    QObject::connect(&studio.devices, &DeviceDesk::changed, next, follow);
-    QObject::connect(&studio.devices, &DeviceDesk::profileChanged, next, follow);
+    QObject::connect(&studio.devices, &DeviceService::changed, next, follow);
+    QObject::connect(&studio.devices, &DeviceService::profileChanged, next, follow);
     follow();
 }
 

@@ -40,9 +40,9 @@ public:
         addList(*column.layout);
         addAddress(*column.layout);
         addButtons(*column.layout);
-        connect(&studio.devices, &DeviceDesk::foundChanged, this, [this] { list(); });
-        connect(&studio.devices, &DeviceDesk::profileChanged, this, [this] { showProfile(); });
-        connect(&studio.devices, &DeviceDesk::changed, this, [this] { refresh(); });
+        connect(&studio.devices, &DeviceService::foundChanged, this, [this] { list(); });
+        connect(&studio.devices, &DeviceService::profileChanged, this, [this] { showProfile(); });
+        connect(&studio.devices, &DeviceService::changed, this, [this] { refresh(); });
         showProfile();
         list();
         refresh();

@@ -28,7 +28,7 @@ public:
         empty_->setWordWrap(true);
         layout->addWidget(list_, 1);
         layout->addWidget(empty_, 1);
-        connect(&studio.devices, &DeviceDesk::logged, this, [this](int lines) { take(lines); });
+        connect(&studio.devices, &DeviceService::logged, this, [this](int lines) { take(lines); });
         take(static_cast<int>(studio.devices.log().size()));
     }
 

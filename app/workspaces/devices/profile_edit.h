@@ -3,14 +3,14 @@
 #include <optional>
 #include <utility>
 
-#include "app/studio/devices/device_desk.h"
+#include "app/studio/devices/device_service.h"
 
 namespace lumorph::studio {
 
 /// The change of a profile by a control: in force while it is dragged, kept at the end, or taken back.
 class ProfileEdit {
 public:
-    explicit ProfileEdit(DeviceDesk& devices) : devices_(devices) {}
+    explicit ProfileEdit(DeviceService& devices) : devices_(devices) {}
 
     void preview(const DeviceProfile& profile) {
         if (!before_) before_ = devices_.profile();
@@ -25,7 +25,7 @@ public:
     }
 
 private:
-    DeviceDesk& devices_;
+    DeviceService& devices_;
     std::optional<DeviceProfile> before_; ///< the drag began with it
 };
 

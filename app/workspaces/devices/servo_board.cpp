@@ -18,11 +18,11 @@ namespace {
 /// What went wrong this long ago still belongs to the state of things.
 constexpr qint64 kLatelySeconds = 20;
 
-QString lately(const DeviceDesk& desk) {
-    const bool live = desk.status().phase == LinkPhase::live;
-    for (const DeviceLogLine& line : desk.log()) {
+QString lately(const DeviceService& service) {
+    const bool live = service.status().phase == LinkPhase::live;
+    for (const DeviceLogLine& line : service.log()) {
         if (line.time.secsTo(QDateTime::currentDateTime()) > kLatelySeconds) break;
-        if (live && line.time < desk.liveSince()) break; // over and done
+        if (live && line.time < service.liveSince()) break; // over and done
         if (line.aside) continue;
         if (live && line.kind == LinkEvent::Kind::information) break; // it went well after that
         if (line.kind != LinkEvent::Kind::information)
@@ -52,10 +52,10 @@ public:
         layout->addWidget(makeHands());
         layout->addWidget(facts_);
         connect(card_, &DeviceCardWidget::nextWanted, studio.commands.find("device.next"), &QAction::trigger);
-        connect(&studio.devices, &DeviceDesk::changed, this, [this] { refresh(); });
-        connect(&studio.devices, &DeviceDesk::foundChanged, this, [this] { refresh(); });
-        connect(&studio.devices, &DeviceDesk::logged, this, [this] { refresh(); });
-        connect(&studio.devices, &DeviceDesk::profileChanged, this, [this] { rebuild(); });
+        connect(&studio.devices, &DeviceService::changed, this, [this] { refresh(); });
+        connect(&studio.devices, &DeviceService::foundChanged, this, [this] { refresh(); });
+        connect(&studio.devices, &DeviceService::logged, this, [this] { refresh(); });
+        connect(&studio.devices, &DeviceService::profileChanged, this, [this] { rebuild(); });
         connect(&studio.document, &StudioDocument::changed, this, [this](StateParts parts) {
             if (parts & StatePart::rig) rebuild();
         });
@@ -155,15 +155,15 @@ private:
     }
 
     void refresh() {
-        const DeviceDesk& desk = studio_.devices;
+        const DeviceService& service = studio_.devices;
         card_->show(cardOf(deviceViewOf(studio_)));
-        facts_->show(desk.status(), desk.stopKeysDeaf());
-        showHands(desk.hands());
+        facts_->show(service.status(), service.stopKeysDeaf());
+        showHands(service.hands());
         const auto& frame = studio_.loop.frame();
-        const auto& setups = desk.profile().servos;
+        const auto& setups = service.profile().servos;
         for (std::size_t k = 0; k < list_.size() && k < setups.size(); ++k) {
             const bool told = frame && k < frame->estimatedStrokes.size();
-            list_[k]->show(desk.status(), setups[k], desk.tested(k).has_value(),
+            list_[k]->show(service.status(), setups[k], service.tested(k).has_value(),
                            told ? frame->estimatedStrokes[k] : 0.0);
             list_[k]->setChecked(selection_.servo() == k);
         }
@@ -216,14 +216,14 @@ QStringList servoNamesOf(Studio& studio) {
 }
 
 DeviceView deviceViewOf(Studio& studio) {
-    const DeviceDesk& desk = studio.devices;
+    const DeviceService& service = studio.devices;
     DeviceView view;
     view.rig = studio.document.state().rig.rig != nullptr;
-    view.link = desk.status();
-    view.name = desk.name();
-    view.address = QString::fromStdString(desk.profile().address);
+    view.link = service.status();
+    view.name = service.name();
+    view.address = QString::fromStdString(service.profile().address);
     view.stopped = studio.loop.stopped();
-    view.lately = lately(desk);
+    view.lately = lately(service);
     view.servos = servoNamesOf(studio);
     return view;
 }

@@ -39,8 +39,8 @@ public:
             makeEmptyState("actuator", "No servo chosen", "Click a servo in the middle to set it up.", nullptr, this));
         pages_->addWidget(makeContents());
         connect(&selection, &ServoSelection::changed, this, [this] { refresh(); });
-        connect(&studio.devices, &DeviceDesk::profileChanged, this, [this] { refresh(); });
-        connect(&studio.devices, &DeviceDesk::changed, this, [this] { refreshTests(); });
+        connect(&studio.devices, &DeviceService::profileChanged, this, [this] { refresh(); });
+        connect(&studio.devices, &DeviceService::changed, this, [this] { refreshTests(); });
         refresh();
     }
 

@@ -41,8 +41,8 @@ public:
         pages_->addWidget(makeEmptyState("settings", "No rig is open", "A rig says which servos there are to set up.",
                                          studio.commands.find("rig.open"), this));
         pages_->addWidget(makeContents());
-        connect(&studio.devices, &DeviceDesk::profileChanged, this, [this] { refresh(); });
-        connect(&studio.devices, &DeviceDesk::changed, this, [this] { refreshLink(); });
+        connect(&studio.devices, &DeviceService::profileChanged, this, [this] { refresh(); });
+        connect(&studio.devices, &DeviceService::changed, this, [this] { refreshLink(); });
         refresh();
     }
 

@@ -45,7 +45,7 @@ public:
         addSliders(rows);
         addTruth(rows);
         connect(boards_, &QComboBox::currentIndexChanged, this, [this] { showFaults(); });
-        connect(&studio.devices, &DeviceDesk::profileChanged, this, [this] { followLink(); });
+        connect(&studio.devices, &DeviceService::profileChanged, this, [this] { followLink(); });
         timer_.setInterval(kTruthMilliseconds);
         connect(&timer_, &QTimer::timeout, this, [this] { showTruth(); });
         followLink();

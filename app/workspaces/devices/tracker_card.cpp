@@ -60,8 +60,8 @@ QString perSecond(double rate) { return QString::number(rate, 'f', 1) + " /s"; }
 
 } // namespace
 
-TrackerCard::TrackerCard(TrackerDesk& desk, const QString& address, const QString& name, QWidget* parent)
-    : QFrame(parent), desk_(desk), address_(address), name_(name), layout_(new QVBoxLayout(this)) {
+TrackerCard::TrackerCard(TrackerService& service, const QString& address, const QString& name, QWidget* parent)
+    : QFrame(parent), service_(service), address_(address), name_(name), layout_(new QVBoxLayout(this)) {
     setProperty("look", "card");
     setObjectName(name);
     layout_->setContentsMargins(12, 8, 12, 12);
@@ -113,7 +113,7 @@ void TrackerCard::addHead() {
     close->setToolTip("Ends this tracker. Without one, the show goes back to the scene's own eye.");
     connect(close, &QPushButton::clicked, this, [this, close] {
         close->setEnabled(false);
-        desk_.close(address_);
+        service_.close(address_);
     });
     auto* row = new QHBoxLayout;
     row->setSpacing(8);
@@ -170,7 +170,7 @@ void TrackerCard::addBodyRow() {
     for (const char* text : kRoleTexts) row.role->addItem(text);
     const std::size_t index = rows_.size();
     connect(row.role, &QComboBox::activated, this,
-            [this, index](int chosen) { desk_.setRole(shown_.at(index), kRoles[chosen]); });
+            [this, index](int chosen) { service_.setRole(shown_.at(index), kRoles[chosen]); });
     grid->addWidget(row.name, 0, 0);
     grid->addWidget(row.role, 0, 1);
     grid->addWidget(row.place, 1, 0, 1, 2);
@@ -212,7 +212,7 @@ void TrackerCard::showBodies(const TrackerStatus& status) {
         shown_[k] = body.name;
         row.name->setText(QString("%1 - %2").arg(asText(body.name).left(60), seen ? "seen" : "lost"));
         row.place->setText(seen ? placeOf(body.pose) : QString("It is not seen now."));
-        const int role = indexOf(desk_.role(body.name));
+        const int role = indexOf(service_.role(body.name));
         if (row.role->currentIndex() != role) row.role->setCurrentIndex(role);
     }
     more_->setText(QString("And %1 more.").arg(status.bodies.size() - count));

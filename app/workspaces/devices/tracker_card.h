@@ -8,7 +8,7 @@
 #include <QLabel>
 #include <QVBoxLayout>
 
-#include "app/studio/devices/tracker_desk.h"
+#include "app/studio/devices/tracker_service.h"
 #include "app/studio/widgets/plot.h"
 #include "app/workspaces/devices/camera_panel.h"
 #include "app/workspaces/devices/simulated_panel.h"
@@ -19,7 +19,7 @@ namespace lumorph::studio {
 class TrackerCard : public QFrame {
 public:
     /// Its parts are named "NAME.source", "NAME.close" and so on.
-    TrackerCard(TrackerDesk& desk, const QString& address, const QString& name, QWidget* parent = nullptr);
+    TrackerCard(TrackerService& service, const QString& address, const QString& name, QWidget* parent = nullptr);
     void show(const OpenTracker& tracker);
     [[nodiscard]] const QString& address() const noexcept { return address_; }
 
@@ -41,7 +41,7 @@ private:
     void showSource(const OpenTracker& tracker);
     [[nodiscard]] Plot* addPlot(const QString& part, const QString& what, const QString& unit);
 
-    TrackerDesk& desk_;
+    TrackerService& service_;
     QString address_, name_;
     QVBoxLayout* layout_;
     QLabel *source_ = nullptr, *unproven_ = nullptr, *advice_ = nullptr, *reason_ = nullptr, *event_ = nullptr,

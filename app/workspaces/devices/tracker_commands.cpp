@@ -22,7 +22,7 @@ void add(Studio& studio, const char* id, const QString& text, const char* icon, 
 }
 
 /// The board that is open, or else the one of an address that was open last.
-MarkerBoard usualBoard(const TrackerDesk& trackers) {
+MarkerBoard usualBoard(const TrackerService& trackers) {
     for (const QString& address : trackers.addresses()) {
         if (!isBoardAddress(address.toStdString())) continue;
         try {

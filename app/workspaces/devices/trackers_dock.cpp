@@ -39,8 +39,8 @@ public:
                                 "looks at it. Until then the scene's own eye counts.",
                                 studio.commands.find("tracker.simulate"));
         column.layout->addWidget(empty_);
-        connect(&studio.trackers, &TrackerDesk::changed, this, [this] { refresh(); });
-        connect(&studio.trackers, &TrackerDesk::addressesChanged, this, [this] { listAddresses(); });
+        connect(&studio.trackers, &TrackerService::changed, this, [this] { refresh(); });
+        connect(&studio.trackers, &TrackerService::addressesChanged, this, [this] { listAddresses(); });
         listAddresses();
         refresh();
     }

@@ -228,7 +228,7 @@ void BuildDialog::start() {
     if (!build_->isEnabled()) return;
     const BuildOptions chosen = options();
     accept();
-    studio_.desk.buildField(chosen);
+    studio_.project.buildField(chosen);
 }
 
 } // namespace

@@ -31,7 +31,7 @@ public:
         addMatch();
         connect(&studio.document, &StudioDocument::changed, this, [this] { follow(); });
         connect(&studio.loop, &StudioLoop::dancingChanged, this, [this] { follow(); });
-        connect(&studio.desk, &Desk::chooseFile, this, [this](const QString& place) {
+        connect(&studio.project, &ProjectService::chooseFile, this, [this](const QString& place) {
             if (place == "target") openTarget();
         });
         follow();
@@ -63,18 +63,18 @@ private:
         add({"target.open", "Open target...", "Open a 3D model to be matched", "open", "Ctrl+T"}, "Target", false,
             [this] { openTarget(); });
         add({"target.dunes", "Try the dunes", "Open a bundled model that the tablet can show well", "target", ""},
-            "Target", false, [this] { studio_.desk.openTarget(resourceFile("targets/dunes.glb")); });
+            "Target", false, [this] { studio_.project.openTarget(resourceFile("targets/dunes.glb")); });
         add({"target.bloom", "Try the bloom", "Open a bundled model that moves as the tablet can", "target", ""},
-            "Target", false, [this] { studio_.desk.openTarget(resourceFile("targets/bloom.glb")); });
+            "Target", false, [this] { studio_.project.openTarget(resourceFile("targets/bloom.glb")); });
         add({"target.swell", "Try the swell", "Open a bundled wave that moves", "target", ""}, "Target", false,
-            [this] { studio_.desk.openTarget(resourceFile("targets/swell.glb")); });
+            [this] { studio_.project.openTarget(resourceFile("targets/swell.glb")); });
         remove_ = add({"target.remove", "Remove", "Take the target away", "close", "Ctrl+Shift+T"}, "Target", false,
-                      [this] { studio_.desk.removeTarget(); });
+                      [this] { studio_.project.removeTarget(); });
         fit_ = add({"target.fit", "Fit", "As large as the device can show, in its middle", "fit", "Ctrl+Shift+F"},
-                   "Target", false, [this] { studio_.desk.fit(); });
+                   "Target", false, [this] { studio_.project.fit(); });
         autoPlace_ = add({"target.autoPlace", "Auto-place", "Search the heading, size and place that match best",
                           "auto-place", "Ctrl+Shift+A"},
-                         "Target", false, [this] { studio_.desk.autoPlace(); });
+                         "Target", false, [this] { studio_.project.autoPlace(); });
         spin_ = add({"target.spin", "Spin", "Turn the target slowly about its upright axis", "spin", "Ctrl+Shift+G"},
                     "Target", true, [this] {
                         studio_.document.change("Spin the target", [](StudioState& state) {
@@ -130,7 +130,7 @@ private:
         dialog->setNameFilters({"3D models (*.obj *.stl *.ply *.off *.glb *.gltf)", "All files (*)"});
         connect(dialog, &QFileDialog::fileSelected, this, [this](const QString& file) {
             studio_.settings.setValue(kTargetFolder, QFileInfo(file).absolutePath());
-            studio_.desk.openTarget(std::filesystem::path(file.toStdU16String()));
+            studio_.project.openTarget(std::filesystem::path(file.toStdU16String()));
         });
         dialog->open();
     }

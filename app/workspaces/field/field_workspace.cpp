@@ -11,10 +11,10 @@
 
 #include "app/workspaces/common/field_colors.h"
 #include "app/workspaces/field/actuator_dock.h"
+#include "app/workspaces/field/field_central_view.h"
 #include "app/workspaces/field/field_commands.h"
 #include "app/workspaces/field/field_dock.h"
 #include "app/workspaces/field/field_exports.h"
-#include "app/workspaces/field/field_stage.h"
 #include "app/workspaces/field/hand_control.h"
 #include "app/workspaces/field/match_dock.h"
 #include "app/workspaces/field/target_dock.h"
@@ -80,7 +80,7 @@ struct FieldWorkspace::Data : public QObject {
     Studio& studio;
     FieldDisplayModel display;
     FieldSceneBuilder builder;
-    QPointer<FieldStage> stage;
+    QPointer<FieldCentralView> stage;
     QAction* gizmoShown = nullptr;
     bool active = false;
     bool targetSelected = false;
@@ -225,7 +225,7 @@ QString FieldWorkspace::id() const { return "field"; }
 QString FieldWorkspace::title() const { return "Field"; }
 
 QWidget* FieldWorkspace::makeCentralView() {
-    data_->stage = new FieldStage(data_->studio, data_->numbers);
+    data_->stage = new FieldCentralView(data_->studio, data_->numbers);
     data_->connectView();
     bindViewShortcuts(data_->studio.commands, data_->view());
     data_->view()->setActive(data_->active);

@@ -94,7 +94,7 @@ void RigWorkspace::Data::openRig() {
     const QString file = QFileDialog::getOpenFileName(parent, "Open rig", folder, "Rigs (*.glb *.gltf);;All files (*)");
     if (file.isEmpty()) return;
     studio.settings.setValue(kRigFolder, QFileInfo(file).absolutePath());
-    studio.desk.openRig(file.toStdString());
+    studio.project.openRig(file.toStdString());
 }
 
 void RigWorkspace::Data::select() {

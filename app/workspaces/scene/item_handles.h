@@ -7,7 +7,7 @@
 
 #include "app/studio/document/studio_document.h"
 #include "app/studio/viewport/gizmo.h"
-#include "app/workspaces/scene/stage_pane.h"
+#include "app/workspaces/scene/view_pane.h"
 #include "core/geometry/calibrated_camera.h"
 
 namespace lumorph::studio {

@@ -22,7 +22,7 @@ bool isSun(const SceneItem* item) {
 }
 
 void addRole(SceneForm& form, const Part<SceneItem>& item) {
-    Section& section = form.section("item.section.role", QObject::tr("Servos or light"), true);
+    CollapsibleSection& section = form.section("item.section.role", QObject::tr("Servos or light"), true);
     form.showWhile(&section, [item](const Scene& scene) {
         const SceneItem* found = item.read(scene);
         return found && canBePhysical(*found);
@@ -86,7 +86,7 @@ QWidget* addRotation(SceneForm& form, const Part<SceneItem>& item) {
 }
 
 void addPlace(SceneForm& form, const Part<SceneItem>& item) {
-    Section& section = form.section("item.section.place", QObject::tr("Place"), true);
+    CollapsibleSection& section = form.section("item.section.place", QObject::tr("Place"), true);
     form.showWhile(&section, [item](const Scene& scene) {
         const SceneItem* found = item.read(scene);
         return found && !isTarget(found);
@@ -114,7 +114,7 @@ void addPlace(SceneForm& form, const Part<SceneItem>& item) {
 }
 
 void addMotion(SceneForm& form, const Part<SceneItem>& item) {
-    Section& section = form.section("item.section.motion", QObject::tr("Motion"), false);
+    CollapsibleSection& section = form.section("item.section.motion", QObject::tr("Motion"), false);
     form.showWhile(&section, [item](const Scene& scene) {
         const SceneItem* found = item.read(scene);
         return found && !isTarget(found) && !isLight(found);

@@ -31,8 +31,8 @@ private:
         return {prefix_ + '.' + name, label, hint};
     }
 
-    Section& section(const char* name, const QString& title, bool open) {
-        Section& made = form_.section(prefix_ + ".section." + name, title, open);
+    CollapsibleSection& section(const char* name, const QString& title, bool open) {
+        CollapsibleSection& made = form_.section(prefix_ + ".section." + name, title, open);
         if (shown_) form_.showWhile(&made, shown_);
         return made;
     }

@@ -34,7 +34,7 @@ void addRepeatedRows(SceneForm& form, const RepeatedWords& words, const Part<std
         const auto part = within<Element>(
             list, [index](auto& all) -> decltype(all.data()) { return index < all.size() ? &all[index] : nullptr; });
         auto* one = new SceneForm(form.document(), held);
-        Section& section = one->section(name, words.one + ' ' + QString::number(index + 1));
+        CollapsibleSection& section = one->section(name, words.one + ' ' + QString::number(index + 1));
         auto* remove = new QToolButton;
         remove->setObjectName(name + ".remove");
         remove->setIcon(icon("close", IconRole::muted));

@@ -100,7 +100,7 @@ public:
         connect(&studio.document, &StudioDocument::changed, this, [this](StateParts parts) {
             if (parts & StatePart::scene) follow();
         });
-        connect(&studio.desk, &Desk::chooseAsset, this, [this](const QString& asset) { relink(asset); });
+        connect(&studio.project, &ProjectService::chooseAsset, this, [this](const QString& asset) { relink(asset); });
         follow();
     }
 
@@ -250,7 +250,7 @@ private:
         if (!window) return;
         const std::string name = asset.toStdString();
         askForFile(studio_, window, tr("Relink %1").arg(QFileInfo(asset).fileName()), tr("All files (*)"),
-                   [this, name](const std::filesystem::path& file) { studio_.desk.relink(name, file); });
+                   [this, name](const std::filesystem::path& file) { studio_.project.relink(name, file); });
     }
 
     [[nodiscard]] const SceneItem* chosen() const {

@@ -32,8 +32,8 @@ SceneForm::SceneForm(StudioDocument& document, QWidget* parent)
     column_->setSpacing(6);
 }
 
-Section& SceneForm::section(const QString& name, const QString& title, bool open) {
-    auto* section = new Section(name, title, open, this);
+CollapsibleSection& SceneForm::section(const QString& name, const QString& title, bool open) {
+    auto* section = new CollapsibleSection(name, title, open, this);
     column_->addWidget(section);
     rows_ = &section->rows();
     return *section;

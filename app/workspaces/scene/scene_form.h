@@ -13,8 +13,8 @@
 
 #include "app/studio/document/scene_edit.h"
 #include "app/studio/widgets/quantity.h"
+#include "app/workspaces/scene/collapsible_section.h"
 #include "app/workspaces/scene/scene_part.h"
-#include "app/workspaces/scene/section.h"
 #include "app/workspaces/scene/segments.h"
 
 namespace lumorph::studio {
@@ -42,7 +42,7 @@ public:
     explicit SceneForm(StudioDocument& document, QWidget* parent = nullptr);
 
     /// A group of rows; those that are added later go into it. Another section, or `endSection`, ends it.
-    Section& section(const QString& name, const QString& title, bool open = true);
+    CollapsibleSection& section(const QString& name, const QString& title, bool open = true);
     void endSection();
     void add(QWidget* widget);
     /// A plain sentence, muted.

@@ -9,9 +9,9 @@
 
 #include "app/studio/document/scene_edit.h"
 #include "app/workspaces/scene/outliner_model.h"
+#include "app/workspaces/scene/scene_central_view.h"
 #include "app/workspaces/scene/scene_commands.h"
 #include "app/workspaces/scene/scene_docks.h"
-#include "app/workspaces/scene/scene_stage.h"
 #include "app/workspaces/scene/technique_commands.h"
 #include "core/scene/material_library.h"
 
@@ -36,7 +36,7 @@ struct SceneWorkspace::Data : public QObject {
 
     Studio& studio;
     SceneSelection selection;
-    QPointer<SceneStage> stage;
+    QPointer<SceneCentralView> stage;
     bool active = false;
 };
 
@@ -100,11 +100,11 @@ QString SceneWorkspace::title() const { return "Scene"; }
 
 QWidget* SceneWorkspace::makeCentralView() {
     Data& data = *data_;
-    data.stage = new SceneStage(data.studio);
+    data.stage = new SceneCentralView(data.studio);
     data.stage->setActive(data.active);
     data.stage->setAcceptDrops(true);
     data.stage->installEventFilter(&data);
-    connect(data.stage, &SceneStage::picked, &data.selection, &SceneSelection::chooseItem);
+    connect(data.stage, &SceneCentralView::picked, &data.selection, &SceneSelection::chooseItem);
     const auto mark = [&data] {
         if (data.stage) data.stage->setSelected(data.selection.item());
     };

@@ -68,7 +68,7 @@ private:
     void show(const Technique& technique) {
         if (!open_) { // its demo first
             wanted_ = technique;
-            studio_.desk.openDemo(kDemo);
+            studio_.project.openDemo(kDemo);
             return;
         }
         editScene(studio_.document, titleOf(technique), [&](Scene& scene) { takeTechnique(scene, technique.key); });

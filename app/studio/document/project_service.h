@@ -1,0 +1,87 @@
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <memory>
+
+#include <QObject>
+#include <QString>
+
+#include "app/studio/base/jobs.h"
+#include "app/studio/base/notices.h"
+#include "app/studio/document/project_io.h"
+#include "app/studio/document/studio_document.h"
+#include "core/mdf/builder.h"
+
+namespace lumorph::studio {
+
+/// Opens, builds, saves and keeps: whatever turns files into document and back. Each takes its time as a job and tells
+/// failures as notices with a remedy; the document changes only when all went well, by one step of undo.
+class ProjectService : public QObject {
+    Q_OBJECT
+public:
+    ProjectService(StudioDocument& document, Jobs& jobs, Notices& notices, QObject* parent = nullptr);
+
+    /// Opens a file by what it is: a project, a field, a rig (a glTF with actuators, a folder), a target or a
+    /// recording. For files dropped on the window and the command line.
+    void open(const std::filesystem::path& file);
+    void openProject(const std::filesystem::path& file);
+    /// Opens a rig, and the field that lies beside it or was built for it last; else builds one.
+    void openRig(const std::filesystem::path& path);
+    /// A field of another rig is refused; the notice offers to open the field's own rig.
+    void openField(const std::filesystem::path& file);
+    /// Opens a target and places it: as large as fits the frame (`fitPlacement`).
+    void openTarget(const std::filesystem::path& file);
+    /// Whether a closed target that stands still is then moved where it matches best, by a second step of undo. It
+    /// shows at once where it fits; whoever moves it or takes it back meanwhile is not interfered with. Off at first.
+    void setPlacesNewTargets(bool places);
+    void removeTarget();
+    void buildField(const BuildOptions& options);
+    void fit();       ///< the largest size that fits, standing on the device
+    void autoPlace(); ///< searches heading, size and place
+
+    /// What is open, as it would be saved now.
+    [[nodiscard]] ProjectSource project() const;
+
+    /// Names another file where the scene names `asset`, by one step of undo.
+    void relink(const std::string& asset, const std::filesystem::path& file);
+
+    void newProject(); ///< the bundled tablet, no target
+    /// "water", "techniques", or "field": the bundled tablet with an animated target, matched live.
+    void openDemo(const std::string& name = kFirstDemo);
+    static constexpr const char* kFirstDemo = "water";
+    /// Saves to the project's file; it is on disk when this returns, or the document is still modified and a notice
+    /// says why. False when it has no file; ask for one and use saveAs.
+    bool save();
+    void saveAs(const std::filesystem::path& file);
+
+    /// Goes on where the last session ended; the demo when there was none. `onReady` runs when it is there or failed.
+    void restoreSession(std::function<void()> onReady = {});
+    /// Keeps the session now; blocks until it is on disk. Called at the end; while running it is kept some seconds
+    /// after each change.
+    void keepSession();
+    /// Where sessions are kept; for tests.
+    static std::filesystem::path sessionFolder();
+
+signals:
+    void opened(const QString& path); ///< for the list of recent files
+    void saved(const QString& path);
+    /// A recording was to be opened, which is no part of the document.
+    void recordingChosen(const QString& path);
+    /// The remedy of a notice: ask for another file of this place ("target", "rig", "field", "project"; "viewport" for
+    /// any kind) and open it.
+    void chooseFile(const QString& place);
+    /// The remedy of a notice: ask for another file, and `relink` this asset of the scene.
+    void chooseAsset(const QString& asset);
+    /// The remedy of a notice: ask where to save, and `saveAs`.
+    void saveElsewhere();
+
+private:
+    struct Data;
+    std::unique_ptr<Data> data_;
+
+public:
+    ~ProjectService() override;
+};
+
+} // namespace lumorph::studio

@@ -1,0 +1,59 @@
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <vector>
+
+#include <QObject>
+#include <QString>
+
+#include "app/recording/recording.h"
+#include "app/studio/base/jobs.h"
+#include "app/studio/base/notices.h"
+#include "app/studio/document/project_service.h"
+#include "app/studio/document/studio_loop.h"
+
+namespace lumorph::studio {
+
+/// Shows a recording instead of the live show: every view, dock and projector, and the servos where the user has them
+/// live, get the recorded frames by the loop. Lives in the window's thread.
+class ReplayService : public QObject {
+    Q_OBJECT
+public:
+    ReplayService(StudioDocument& document, ProjectService& service, StudioLoop& loop, Jobs& jobs, Notices& notices);
+    ~ReplayService() override;
+
+    /// Read beside the window, then shown and played; the notices of "replay" say why not, or that it was made with
+    /// another project than the open one, and offer that.
+    void open(const std::filesystem::path& file);
+    /// Back to the live show, from where the actuators stand.
+    void close();
+    /// What is shown; empty while the show is live.
+    [[nodiscard]] const std::shared_ptr<const Recording>& recording() const noexcept;
+    [[nodiscard]] const std::filesystem::path& file() const noexcept;
+
+    void setPlaying(bool playing);
+    void seek(double seconds);
+    void setSpeed(double times);
+    [[nodiscard]] bool playing() const;
+    [[nodiscard]] double position() const; ///< seconds
+    [[nodiscard]] double duration() const;
+    [[nodiscard]] double speed() const;
+
+    /// Runs the recorded servo traffic again and says whether the same bytes come out.
+    void verify();
+    /// Tables for a study, into a folder.
+    void exportTables(const std::filesystem::path& folder);
+    /// The project that was recorded, as a copy in a folder of its own; the replay goes on with it.
+    void openProject();
+
+signals:
+    void changed(); ///< opened, closed, played, paused, speed
+    void moved();   ///< another position
+
+private:
+    struct Data;
+    std::unique_ptr<Data> data_;
+};
+
+} // namespace lumorph::studio

@@ -1,0 +1,370 @@
+#include "app/workspaces/scene/scene_central_view.h"
+
+#include <cmath>
+#include <map>
+#include <optional>
+#include <utility>
+
+#include <QVBoxLayout>
+
+#include "app/studio/rendering/show_frames.h"
+#include "app/studio/viewport/gl_page.h"
+#include "app/studio/viewport/viewport_widget.h"
+#include "app/studio/widgets/panel.h"
+#include "app/workspaces/common/body_axes.h"
+#include "app/workspaces/common/field_colors.h"
+#include "app/workspaces/common/field_scene.h"
+#include "app/workspaces/scene/eye_orbit.h"
+#include "app/workspaces/scene/item_handles.h"
+#include "app/workspaces/scene/item_pick.h"
+#include "app/workspaces/scene/latency_card.h"
+#include "app/workspaces/scene/simulated_eye.h"
+#include "app/workspaces/scene/view_bar.h"
+#include "app/workspaces/scene/view_pane.h"
+#include "core/base/error.h"
+
+namespace lumorph::studio {
+namespace {
+
+constexpr int kMargin = 12;
+constexpr int kNoticeWidth = 480;
+
+/// The angle between two ways to look at a centre.
+double degreesBetween(const glm::vec3& a, const glm::vec3& b, const glm::vec3& centre) {
+    const glm::dvec3 u = glm::normalize(glm::dvec3(a - centre));
+    const glm::dvec3 v = glm::normalize(glm::dvec3(b - centre));
+    return Angle::radians(std::acos(std::clamp(glm::dot(u, v), -1.0, 1.0))).inDegrees();
+}
+
+ShowView viewOf(ShowView::Kind kind, ShowView::Bend bend = ShowView::Bend::asItIs) {
+    ShowView view;
+    view.kind = kind;
+    view.bend = bend;
+    return view;
+}
+
+} // namespace
+
+struct SceneCentralView::Data {
+    Data(SceneCentralView& stage, Studio& shared);
+
+    ViewPane* addPane(ScenePane part, const ShowView& view, const QString& title);
+    void addDevice();
+    void addFloating();
+    void arrange();
+    void enlarge(ScenePane part);
+    void showScene();    ///< of the device
+    void showCaptions(); ///< of all pictures
+    void showReason();
+    void beginDrag(ScenePane part, Qt::MouseButton button, Qt::KeyboardModifiers modifiers);
+    void drag(ScenePane part, const QPointF& by);
+    void endDrag(bool taken);
+    void zoom(ScenePane part, double notches);
+    void click(ScenePane part, const QPointF& at);
+    void setObserver(std::optional<glm::vec3> eye);
+    [[nodiscard]] QWidget* widgetOf(ScenePane part) const;
+    [[nodiscard]] std::optional<CalibratedCamera> cameraOf(ScenePane part, const QSize& size) const;
+    [[nodiscard]] QString eyeState() const;
+    [[nodiscard]] QString labState() const;
+
+    SceneCentralView& self;
+    Studio& studio;
+    SimulatedEye viewer;
+    FieldSceneBuilder builder;
+    ViewBar* bar;
+    QWidget* views;
+    std::map<ScenePane, ViewPane*> panes;
+    std::map<ScenePane, std::unique_ptr<ItemHandles>> handles;
+    ViewportWidget* device = nullptr;
+    PaneCaption* deviceCaption = nullptr;
+    GlPage* page = nullptr;
+    LatencyCard* latency = nullptr;
+    QWidget* notices = nullptr;
+    std::optional<ScenePane> alone; ///< enlarged by a double click
+    std::optional<glm::vec3> observer;
+    bool observing = false; ///< this drag moves the observer, not the viewer
+    bool active = false;
+};
+
+SceneCentralView::Data::Data(SceneCentralView& stage, Studio& shared)
+    : self(stage), studio(shared), viewer(shared.document), bar(new ViewBar(shared, &stage)),
+      views(new QWidget(&stage)) {
+    builder.setPatient(false);
+    auto* column = new QVBoxLayout(&self);
+    column->setContentsMargins(0, 0, 0, 0);
+    column->setSpacing(0);
+    column->addWidget(bar);
+    column->addWidget(views, 1);
+    addPane(ScenePane::lab, viewOf(ShowView::Kind::lab), tr("Lab"));
+    addPane(ScenePane::eye, viewOf(ShowView::Kind::eye), tr("Eye"));
+    addPane(ScenePane::projector, viewOf(ShowView::Kind::projector), tr("Projector 1"));
+    addPane(ScenePane::cropped, viewOf(ShowView::Kind::lab, ShowView::Bend::atRest), tr("Cropped"));
+    addPane(ScenePane::uncropped, viewOf(ShowView::Kind::lab, ShowView::Bend::forViewer), tr("Uncropped"));
+    addDevice();
+    addFloating();
+}
+
+ViewPane* SceneCentralView::Data::addPane(ScenePane part, const ShowView& view, const QString& title) {
+    static const std::map<ScenePane, const char*> kNames{{ScenePane::lab, "scene.lab"},
+                                                         {ScenePane::eye, "scene.eye"},
+                                                         {ScenePane::projector, "scene.projector"},
+                                                         {ScenePane::cropped, "scene.cropped"},
+                                                         {ScenePane::uncropped, "scene.uncropped"}};
+    auto* pane = new ViewPane(studio.show, view, title, views);
+    pane->setObjectName(kNames.at(part));
+    panes[part] = pane;
+    connect(pane, &ViewPane::enlarged, &self, [this, part] { enlarge(part); });
+    if (part == ScenePane::projector) return pane;
+    connect(pane, &ViewPane::dragBegan, &self,
+            [this, part](Qt::MouseButton button, Qt::KeyboardModifiers held) { beginDrag(part, button, held); });
+    connect(pane, &ViewPane::dragged, &self, [this, part](const QPointF& by) { drag(part, by); });
+    connect(pane, &ViewPane::dragEnded, &self, [this](bool taken) { endDrag(taken); });
+    connect(pane, &ViewPane::wheeled, &self, [this, part](double notches) { zoom(part, notches); });
+    connect(pane, &ViewPane::clicked, &self, [this, part](const QPointF& at) { click(part, at); });
+    const auto camera = [this, part](const QSize& size) { return cameraOf(part, size); };
+    handles[part] = std::make_unique<ItemHandles>(studio.document, camera);
+    pane->setOverlay(handles[part].get());
+    return pane;
+}
+
+void SceneCentralView::Data::addDevice() {
+    device = new ViewportWidget(studio.renderer, views);
+    device->setObjectName("scene.viewport");
+    device->setAccessibleName(tr("Device without light"));
+    new BodyAxes(studio, device);
+    deviceCaption = new PaneCaption(tr("Device"), device);
+    deviceCaption->setText(tr("Device"), tr("without light"));
+    builder.setColors(fieldSceneColors(studio.settings.theme()));
+    connect(&studio.settings, &Settings::themeChanged, &self, [this] {
+        builder.setColors(fieldSceneColors(studio.settings.theme()));
+        showScene();
+    });
+    connect(&studio.loop, &StudioLoop::framed, &self, [this] {
+        if (const auto& frame = studio.loop.frame()) bar->setSeconds(frame->sceneSeconds);
+        showScene();
+    });
+}
+
+void SceneCentralView::Data::addFloating() {
+    page = new GlPage([this] { studio.renderer.retry(); }, views);
+    latency = new LatencyCard(studio.show, views);
+    latency->hide();
+    notices = new QWidget(views);
+    auto* column = new QVBoxLayout(notices);
+    column->setContentsMargins(0, 0, 0, 0);
+    column->setSpacing(8);
+    column->addWidget(makeNoticeBar(studio.notices, "viewport", notices));
+    column->addWidget(makeNoticeBar(studio.notices, "output", notices));
+    column->addStretch(1);
+    notices->setMaximumWidth(kNoticeWidth);
+    connect(&studio.notices, &Notices::changed, &self, [this] { arrange(); });
+    connect(&studio.renderer, &RenderThread::ready, &self, [this] { showReason(); });
+    connect(&studio.show, &ShowFeed::shown, &self, [this] {
+        const double seconds = studio.show.newest().match->sceneSeconds;
+        for (const auto& [part, one] : handles) one->setSeconds(seconds);
+        showCaptions();
+    });
+    connect(bar, &ViewBar::modeChanged, &self, [this] {
+        alone.reset();
+        arrange();
+    });
+    connect(bar, &ViewBar::elsewhereChanged, &self, [this] {
+        if (!bar->elsewhere())
+            setObserver(std::nullopt);
+        else if (!observer)
+            setObserver(viewer.eye());
+    });
+    connect(bar, &ViewBar::latencyChanged, &self, [this] { latency->setVisible(bar->latencyShown()); });
+    connect(bar, &ViewBar::nextProjector, &self, [this] {
+        ViewPane* pane = panes.at(ScenePane::projector);
+        ShowView view = pane->view();
+        const std::size_t count = studio.document.state().scene->projectors.size();
+        view.projector = count == 0 ? 0 : (view.projector + 1) % count;
+        pane->setView(view);
+        showCaptions();
+    });
+}
+
+QWidget* SceneCentralView::Data::widgetOf(ScenePane part) const {
+    if (part == ScenePane::device) return device;
+    return panes.at(part);
+}
+
+void SceneCentralView::Data::arrange() {
+    const QSize size = views->size();
+    std::map<QWidget*, QRect> boxes;
+    if (alone)
+        boxes[widgetOf(*alone)] = QRect(QPoint(0, 0), size);
+    else
+        for (const StagePlace& place : viewLayout(bar->mode(), size)) boxes[widgetOf(place.part)] = place.box;
+    std::vector<QWidget*> all{device};
+    for (const auto& [part, pane] : panes) all.push_back(pane);
+    for (QWidget* one : all) {
+        const auto box = boxes.find(one);
+        if (box != boxes.end()) one->setGeometry(box->second);
+        one->setVisible(box != boxes.end() && !page->isVisibleTo(views));
+    }
+    page->setGeometry(views->rect());
+    const QSize card = latency->sizeHint();
+    latency->setGeometry(
+        QRect(QPoint(size.width() - card.width() - kMargin, size.height() - card.height() - kMargin), card));
+    const int wide = std::min(kNoticeWidth, size.width() - 2 * kMargin);
+    notices->setGeometry((size.width() - wide) / 2, kMargin, wide, notices->sizeHint().height());
+    latency->raise();
+    notices->raise();
+    showScene();
+    showCaptions();
+}
+
+void SceneCentralView::Data::enlarge(ScenePane part) {
+    if (alone)
+        alone.reset();
+    else
+        alone = part;
+    arrange();
+}
+
+void SceneCentralView::Data::showScene() {
+    const auto& frame = studio.loop.frame();
+    if (!active || !device->isVisible() || !frame) return;
+    FieldDisplay display;
+    display.showTarget = false;
+    display.showMismatch = false;
+    device->setScene(builder.build(*frame, display, false));
+}
+
+QString SceneCentralView::Data::eyeState() const {
+    const auto& match = studio.show.newest().match;
+    if (match && !match->viewer.empty()) return tr("what %1 should see").arg(QString::fromStdString(match->viewer));
+    if (!viewer.moving()) return tr("what the viewer should see");
+    const EyePlace place = placeOf(viewer.eye(), viewer.centre());
+    return tr("elevation %1°, %2 cm away")
+        .arg(place.elevation.inDegrees(), 0, 'f', 0)
+        .arg(100.0 * place.distance, 0, 'f', 0);
+}
+
+QString SceneCentralView::Data::labState() const {
+    if (!observer) return tr("the lit device, as the viewer sees it");
+    const double degrees = degreesBetween(*observer, viewer.eye(), viewer.centre());
+    return tr("seen from elsewhere, %1° off the viewer").arg(degrees, 0, 'f', 0);
+}
+
+void SceneCentralView::Data::showCaptions() {
+    panes.at(ScenePane::eye)->caption().setText(tr("Eye"), eyeState(), viewer.moving());
+    panes.at(ScenePane::lab)->caption().setText(tr("Lab"), labState(), observer.has_value());
+    panes.at(ScenePane::cropped)->caption().setText(tr("Cropped"), tr("the device lies flat"));
+    panes.at(ScenePane::uncropped)->caption().setText(tr("Uncropped"), tr("its far edges bend up for the viewer"));
+    ViewPane* projector = panes.at(ScenePane::projector);
+    const auto& all = studio.document.state().scene->projectors;
+    const std::size_t number = projector->view().projector;
+    const QString title = tr("Projector %1").arg(number + 1);
+    if (number >= all.size()) {
+        projector->caption().setText(title, tr("there is none in this scene"));
+        projector->setWaiting(tr("Add a projector in the Library, and its picture stands here."));
+        return;
+    }
+    const glm::ivec2 size = all[number].camera.size;
+    projector->caption().setText(title, all[number].enabled ? tr("what is sent out, %1 × %2").arg(size.x).arg(size.y)
+                                                            : tr("switched off"));
+}
+
+void SceneCentralView::Data::showReason() {
+    const auto why = studio.renderer.failure();
+    page->setReason(why.value_or(QString()));
+    page->setVisible(why.has_value());
+    arrange();
+}
+
+void SceneCentralView::Data::setObserver(std::optional<glm::vec3> eye) {
+    observer = eye;
+    ViewPane* pane = panes.at(ScenePane::lab);
+    ShowView view = pane->view();
+    view.observer = eye;
+    pane->setView(view);
+    showCaptions();
+}
+
+/// In the lab another button or Ctrl leads the observer away from the viewer.
+void SceneCentralView::Data::beginDrag(ScenePane part, Qt::MouseButton button, Qt::KeyboardModifiers modifiers) {
+    const bool asked = button == Qt::RightButton || modifiers.testFlag(Qt::ControlModifier);
+    if (part == ScenePane::lab && asked) bar->setElsewhere(true);
+    observing = part == ScenePane::lab && bar->elsewhere();
+}
+
+void SceneCentralView::Data::drag(ScenePane part, const QPointF& by) {
+    const QSize size = widgetOf(part)->size();
+    if (!observing) {
+        viewer.drag(by, size);
+    } else {
+        const glm::vec2 pixels(static_cast<float>(by.x()), static_cast<float>(by.y()));
+        setObserver(
+            orbitedEye(observer.value_or(viewer.eye()), viewer.centre(), pixels, {size.width(), size.height()}));
+    }
+    showCaptions();
+}
+
+void SceneCentralView::Data::endDrag(bool taken) {
+    if (!std::exchange(observing, false)) viewer.end(taken);
+    showCaptions();
+}
+
+void SceneCentralView::Data::zoom(ScenePane part, double notches) {
+    if (part == ScenePane::lab && observer)
+        setObserver(nearerEye(*observer, viewer.centre(), notches));
+    else
+        viewer.zoom(notches);
+    showCaptions();
+}
+
+void SceneCentralView::Data::click(ScenePane part, const QPointF& at) {
+    const auto& frame = studio.show.newest().frame;
+    const auto camera = cameraOf(part, panes.at(part)->size());
+    if (!frame || !camera) return;
+    emit self.picked(pickItem(*frame, rayThrough(*camera, {static_cast<float>(at.x()), static_cast<float>(at.y())})));
+}
+
+/// Of the newest picture, in pixels of the desktop; empty while there is none or nothing can be seen from there.
+std::optional<CalibratedCamera> SceneCentralView::Data::cameraOf(ScenePane part, const QSize& size) const {
+    const auto& frame = studio.show.newest().frame;
+    if (!frame || size.isEmpty()) return std::nullopt;
+    try {
+        return labCamera(*frame, part == ScenePane::lab ? observer : std::nullopt, {size.width(), size.height()});
+    } catch (const InvalidInput&) { // among what is to be seen
+        return std::nullopt;
+    }
+}
+
+SceneCentralView::SceneCentralView(Studio& studio, QWidget* parent) : QWidget(parent) {
+    setObjectName("scene.stage");
+    data_ = std::make_unique<Data>(*this, studio);
+    data_->showReason();
+}
+
+SceneCentralView::~SceneCentralView() {
+    // The panes outlive the handles over them.
+    setActive(false);
+    for (const auto& [part, pane] : data_->panes) pane->setOverlay(nullptr);
+}
+
+void SceneCentralView::setActive(bool active) {
+    data_->active = active;
+    for (const auto& [part, pane] : data_->panes) pane->setActive(active);
+    data_->device->setActive(active);
+    data_->showScene();
+}
+
+void SceneCentralView::setSelected(int item) {
+    for (const auto& [part, handles] : data_->handles) {
+        handles->setItem(item);
+        data_->panes.at(part)->update();
+    }
+}
+
+void SceneCentralView::resizeEvent(QResizeEvent* event) {
+    QWidget::resizeEvent(event);
+    // The column has given the views their room by now.
+    layout()->activate();
+    data_->arrange();
+}
+
+} // namespace lumorph::studio

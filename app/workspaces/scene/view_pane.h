@@ -1,0 +1,111 @@
+#pragma once
+
+#include <functional>
+#include <optional>
+
+#include <QImage>
+#include <QPointF>
+#include <QWidget>
+
+#include "app/studio/rendering/show_feed.h"
+
+namespace lumorph::studio {
+
+/// What a view is and how it stands, in its upper left corner; the pointer goes through it.
+class PaneCaption : public QWidget {
+    Q_OBJECT
+public:
+    PaneCaption(const QString& title, QWidget* parent);
+    /// `live`: the state is worth the accent, such as a view that is not the viewer's own.
+    void setText(const QString& title, const QString& state, bool live = false);
+
+protected:
+    void paintEvent(QPaintEvent* event) override;
+
+private:
+    QString title_;
+    QString state_;
+    bool live_ = false;
+};
+
+/// Something that is drawn over a pane's picture and may take the pointer: the handles of an item.
+class PaneOverlay {
+public:
+    virtual ~PaneOverlay() = default;
+    virtual void paint(QPainter& painter, const QSize& size) = 0;
+    /// True: the drag that begins here is the overlay's.
+    virtual bool press(const QPointF& at, const QSize& size, Qt::KeyboardModifiers modifiers) = 0;
+    virtual void drag(const QPointF& to, const QSize& size, Qt::KeyboardModifiers modifiers) = 0;
+    virtual void release() = 0;
+    virtual void cancel() = 0;
+    /// True when something changed that has to be painted.
+    virtual bool hover(const QPointF& at, const QSize& size) = 0;
+};
+
+/// One picture of the show, as large as the pane, with its caption. It asks for pictures while it is in sight, and says
+/// what the pointer does on it.
+class ViewPane : public QWidget {
+    Q_OBJECT
+public:
+    /// `feed` outlives it.
+    ViewPane(ShowFeed& feed, const ShowView& view, const QString& title, QWidget* parent);
+    ~ViewPane() override;
+
+    void setView(const ShowView& view);
+    [[nodiscard]] const ShowView& view() const noexcept { return view_; }
+    [[nodiscard]] PaneCaption& caption() noexcept { return *caption_; }
+    /// The overlay outlives the pane, or is taken away before; null: none.
+    void setOverlay(PaneOverlay* overlay) { overlay_ = overlay; }
+    /// A sentence instead of a picture, while there is none.
+    void setWaiting(const QString& text);
+    [[nodiscard]] QImage picture() const { return feed_.picture(id_); }
+    [[nodiscard]] QSize pixels() const; ///< of the screen
+    /// A hidden stage asks for nothing.
+    void setActive(bool active);
+
+signals:
+    void dragBegan(Qt::MouseButton button, Qt::KeyboardModifiers modifiers);
+    void dragged(const QPointF& by);
+    void dragEnded(bool taken); ///< not taken: Esc, or the view has gone
+    void wheeled(double notches);
+    void clicked(const QPointF& at);
+    void enlarged(); ///< a double click
+
+protected:
+    bool event(QEvent* event) override;
+    void paintEvent(QPaintEvent* event) override;
+    void resizeEvent(QResizeEvent* event) override;
+    void showEvent(QShowEvent* event) override;
+    void hideEvent(QHideEvent* event) override;
+    void mousePressEvent(QMouseEvent* event) override;
+    void mouseMoveEvent(QMouseEvent* event) override;
+    void mouseReleaseEvent(QMouseEvent* event) override;
+    void mouseDoubleClickEvent(QMouseEvent* event) override;
+    void wheelEvent(QWheelEvent* event) override;
+    void keyPressEvent(QKeyEvent* event) override;
+    void focusInEvent(QFocusEvent* event) override;
+    void focusOutEvent(QFocusEvent* event) override;
+
+private:
+    enum class Drag { none, undecided, view, overlay };
+    void ask();
+    void endDrag(bool taken);
+    [[nodiscard]] QRect pictureBox(const QSize& picture) const;
+
+    ShowFeed& feed_;
+    const int id_;
+    ShowView view_;
+    PaneCaption* caption_;
+    PaneOverlay* overlay_ = nullptr;
+    QString waiting_;
+    QSize asked_;
+    bool active_ = false;
+    bool ringed_ = false; ///< the focus came by key
+    Drag drag_ = Drag::none;
+    Qt::MouseButton button_ = Qt::NoButton;
+    Qt::KeyboardModifiers modifiers_;
+    QPointF pressedAt_;
+    QPointF last_;
+};
+
+} // namespace lumorph::studio
