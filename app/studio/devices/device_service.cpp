@@ -41,7 +41,7 @@ void DeviceService::Data::listen() {
         feed.stop();
         take();
     });
-    connect(&loop, &StudioLoop::stoppedChanged, &service, [this] { heedResume(); });
+    connect(&loop, &StudioLoop::stoppedChanged, &service, [this] { onResumed(); });
     tap = loop.addTap([this](const MatchFrame& frame) { follow(frame); });
     takeRig();
 }
@@ -101,7 +101,7 @@ void DeviceService::Data::keep() {
 void DeviceService::Data::makeLink() {
     LinkOptions options;
     options.bench = bench.get();
-    options.onChange = [this] { poll(); };
+    options.onChange = [this] { onLinkChanged(); };
     auto made = std::make_shared<ServoLink>(profile, options);
     retire();
     link = std::move(made);
@@ -139,7 +139,7 @@ void DeviceService::Data::leaveAll() {
     leaving.clear(); // waits: they call `hear`
 }
 
-void DeviceService::Data::poll() {
+void DeviceService::Data::onLinkChanged() {
     feed.checkHands(SteadyClock().now());
     if (posted.exchange(true)) return;
     QMetaObject::invokeMethod(
@@ -204,7 +204,7 @@ void DeviceService::Data::tellAll(const std::vector<LinkEvent>& events) {
 }
 
 /// Servos that STOP has let go start softly, where they were live.
-void DeviceService::Data::heedResume() {
+void DeviceService::Data::onResumed() {
     if (!link || loop.stopped() || !feed.takeStoppedLive()) return;
     link->arm(false);
     take();

@@ -34,11 +34,11 @@ struct DeviceService::Data {
     void traceLink();
     void retire();
     void leaveAll();
-    void poll(); ///< in the link's thread
+    void onLinkChanged(); ///< in the link's thread
     void take();
     void takeEvents();
     void tellAll(const std::vector<LinkEvent>& events);
-    void heedResume();
+    void onResumed();
     void identifyBoard();
     bool sense();
     void tellSearch(const LinkTrouble& trouble);
@@ -67,7 +67,7 @@ struct DeviceService::Data {
     QTimer due, poll, testTimer;
     QElapsedTimer sinceTest;
     QDateTime liveSince;
-    QString stopKeysDeaf; ///< why
+    QString stopKeysProblem; ///< why
     bool slow = false;
 };
 

@@ -120,11 +120,11 @@ void DeviceService::start(bool jumpAllowed) {
 void DeviceService::stopNow() { data_->feed.stop(); }
 
 void DeviceService::setStopKeysProblem(const QString& why) {
-    data_->stopKeysDeaf = why;
+    data_->stopKeysProblem = why;
     emit changed();
 }
 
-const QString& DeviceService::stopKeysDeaf() const noexcept { return data_->stopKeysDeaf; }
+const QString& DeviceService::stopKeysProblem() const noexcept { return data_->stopKeysProblem; }
 
 void DeviceService::release() {
     if (!data_->link) return;
