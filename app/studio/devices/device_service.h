@@ -70,7 +70,7 @@ public:
     void leave();
     /// Why Esc Esc is heard in the program's own windows alone; empty: it is heard everywhere.
     void setStopKeysProblem(const QString& why);
-    [[nodiscard]] const QString& stopKeysDeaf() const noexcept;
+    [[nodiscard]] const QString& stopKeysProblem() const noexcept;
     /// Servos go limp, without STOP.
     void release();
     void wiggle(std::size_t servo);

@@ -27,7 +27,7 @@ StudioLoop::StudioLoop(StudioDocument& document, QObject* parent) : QObject(pare
             QMetaObject::invokeMethod(
                 this, [this] { take(); }, Qt::QueuedConnection);
     });
-    connect(&document_, &StudioDocument::changed, this, &StudioLoop::heed);
+    connect(&document_, &StudioDocument::changed, this, &StudioLoop::onChanged);
     connect(&errors_, &QTimer::timeout, this, &StudioLoop::takeError);
     errors_.start(kErrorMilliseconds);
     sendSoon();

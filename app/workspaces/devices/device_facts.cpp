@@ -93,14 +93,14 @@ DeviceFacts::DeviceFacts(QWidget* parent) : QWidget(parent), failsafe_(new QLabe
     grid->addWidget(stopKeys_, 7, 0, 1, kColumns);
 }
 
-void DeviceFacts::show(const LinkStatus& link, const QString& stopKeysDeaf) {
+void DeviceFacts::show(const LinkStatus& link, const QString& stopKeysProblem) {
     for (std::size_t k = 0; k < values_.size(); ++k) {
         const QString text = link.phase == LinkPhase::off ? kUnknown : kFacts[k].text(link);
         if (values_[k]->text() != text) values_[k]->setText(text);
     }
     failsafe_->setText(failsafeText(link));
-    stopKeys_->setText(stopKeysText(stopKeysDeaf));
-    stopKeys_->setVisible(!stopKeysDeaf.isEmpty() && link.phase != LinkPhase::off);
+    stopKeys_->setText(stopKeysText(stopKeysProblem));
+    stopKeys_->setVisible(!stopKeysProblem.isEmpty() && link.phase != LinkPhase::off);
     const bool low = link.phase != LinkPhase::off && link.controller.volts && *link.controller.volts < kLowVolts;
     warn(values_.front(), low);
 }

@@ -14,8 +14,8 @@ class DeviceFacts : public QWidget {
     Q_OBJECT
 public:
     explicit DeviceFacts(QWidget* parent);
-    /// `stopKeysDeaf`: why Esc Esc is not heard everywhere; may be empty.
-    void show(const LinkStatus& link, const QString& stopKeysDeaf);
+    /// `stopKeysProblem`: why Esc Esc is not heard everywhere; may be empty.
+    void show(const LinkStatus& link, const QString& stopKeysProblem);
 
 private:
     std::vector<QLabel*> values_;

@@ -157,7 +157,7 @@ private:
     void refresh() {
         const DeviceService& service = studio_.devices;
         card_->show(cardOf(deviceViewOf(studio_)));
-        facts_->show(service.status(), service.stopKeysDeaf());
+        facts_->show(service.status(), service.stopKeysProblem());
         showHands(service.hands());
         const auto& frame = studio_.loop.frame();
         const auto& setups = service.profile().servos;
