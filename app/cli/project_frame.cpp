@@ -92,10 +92,11 @@ std::filesystem::path projectFile(const std::string& name) {
 
 ProjectFrame readProjectFrame(const std::filesystem::path& file, const ProjectMoment& moment, const Session& session) {
     Project project = readProject(file);
-    if (moment.eye) project.scene.eye = *moment.eye;
+    if (moment.eye) project.installation.eye = *moment.eye;
     MatchWish wish = wishOf(project, file, session);
     const auto scene = std::make_shared<const Scene>(std::move(project.scene));
     wish.scene = scene;
+    wish.installation = std::make_shared<const Installation>(project.installation);
     wish.assets = loadSceneAssets(*scene, file, nullptr, session.progress());
     Session::endProgress();
 

@@ -18,6 +18,7 @@
 #include "core/mdf/voting.h"
 #include "core/motion/motion.h"
 #include "core/rig/rig.h"
+#include "core/scene/installation.h"
 #include "core/scene/scene.h"
 #include "core/scene/scene_assets.h"
 
@@ -64,7 +65,8 @@ struct MatchWish {
     bool stopped = false;        ///< STOP: servos stay where they are until it is taken back
     bool showTint = true;        ///< work out which voxels are unmatched and overfilled
 
-    std::shared_ptr<const Scene> scene; ///< what light shows, and what of it servos follow; may be empty
+    std::shared_ptr<const Scene> scene;               ///< what light shows, and what of it servos follow; may be empty
+    std::shared_ptr<const Installation> installation; ///< where; always there with a scene
     std::shared_ptr<const SceneAssets> assets;
     std::shared_ptr<const PoseBoard> poses; ///< tracked heads and device; without a head the scene's own eye
     double lightDelay = 0.0;                ///< measured from a frame to its light, seconds; 0: not yet
@@ -122,7 +124,8 @@ struct MatchFrame {
     double shareUnreachable = 0.0;        ///< of the target's voxels that no actuator changes
     std::shared_ptr<const std::vector<std::uint8_t>> classes; ///< one a voxel, x fastest; empty unless asked for
 
-    std::shared_ptr<const Scene> scene; ///< of the wish
+    std::shared_ptr<const Scene> scene;               ///< of the wish
+    std::shared_ptr<const Installation> installation; ///< of the wish
     std::shared_ptr<const SceneAssets> assets;
     double sceneSeconds = 0.0;
     glm::mat4 worldFromDevice{1.0F};  ///< predicted for the moment at which the frame is seen

@@ -50,6 +50,8 @@ void checkWish(const MatchWish& wish, double sinceLast) {
     if (!(sinceLast >= 0.0) || !std::isfinite(sinceLast))
         throw InvalidInput("time step", "it is negative or not finite",
                            "use a finite time that does not run backwards");
+    if (wish.scene && !wish.installation)
+        throw InvalidInput("scene", "there is no installation to show it in", "give it one, such as the virtual lab's");
     requireFinite("spin", wish.spin);
     if (wish.seek) requireFinite("animation time", *wish.seek);
     if (wish.sceneSeek) requireFinite("scene time", *wish.sceneSeek);
@@ -126,6 +128,7 @@ void MatchLoop::Data::look(const MatchWish& wish, double sinceLast, MatchFrame& 
     if (!wish.scene) return;
     const StageTimer timer(clock, frame.ms.track);
     frame.scene = wish.scene;
+    frame.installation = wish.installation;
     frame.assets = wish.assets;
     viewer.look(wish, sinceLast, frame);
     time.step(wish, sinceLast);

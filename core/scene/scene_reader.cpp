@@ -144,4 +144,14 @@ void readScene(const JsonSection& section, Scene& scene) {
     }
 }
 
+void readInstallation(const JsonSection& section, Installation& installation) {
+    Reader reader(section);
+    fields(reader, installation);
+    try {
+        checkInstallation(installation);
+    } catch (const InvalidInput& error) {
+        section.refuse("projectors", error.subject() + ": " + error.why(), error.remedy());
+    }
+}
+
 } // namespace lumorph

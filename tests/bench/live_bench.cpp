@@ -80,6 +80,7 @@ MatchWish sceneWish() {
     MatchWish wish;
     wish.rig = std::make_shared<const Rig>(readRig(resourceFile("models/tablet.glb")));
     wish.scene = std::make_shared<const Scene>(std::move(scene));
+    wish.installation = std::make_shared<const Installation>(defaultInstallation());
     wish.assets = std::make_shared<const SceneAssets>();
     return wish;
 }

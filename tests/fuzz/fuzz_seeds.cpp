@@ -144,6 +144,7 @@ int main(int argc, char** argv) {
     project.view = {{"camera", {{"yaw", 0.5}}}};
     writeText("project/whole.lumorph", projectText(project));
     project.scene = test::fullScene();
+    project.installation = test::fullInstallation();
     writeText("project/scene.lumorph", projectText(project));
     writeText("project/first.lumorph", R"({"schemaVersion": 1, "rig": "a.glb", "target": "cow.obj"})");
     writeText("project/bare.lumorph",

@@ -15,6 +15,7 @@ MatchWish wishOf(const StudioState& state) {
     wish.playing = state.playback.playing;
     wish.spin = state.playback.spin;
     wish.scene = state.scene;
+    wish.installation = state.installation;
     wish.assets = state.assets;
     return wish;
 }
