@@ -26,7 +26,7 @@ using Clock = std::chrono::steady_clock;
 
 constexpr std::chrono::seconds kMoveWithin{60};
 
-struct Arguments {
+struct DeviceArguments {
     std::string uri;
     std::string controller;
     std::string profile;
@@ -69,7 +69,7 @@ ControllerKind kindNamed(const std::string& name) {
     return name == "maestro" ? ControllerKind::maestro : ControllerKind::firmata;
 }
 
-DeviceProfile profileOf(const Arguments& arguments) {
+DeviceProfile profileOf(const DeviceArguments& arguments) {
     DeviceProfile profile;
     if (!arguments.profile.empty()) {
         profile = readProfile(arguments.profile);
@@ -134,7 +134,7 @@ void printText(const std::string& uri, const LinkStatus& status) {
     }
 }
 
-void list(const Arguments& arguments) {
+void list(const DeviceArguments& arguments) {
     const QtProgram program;
     const SimulatedBench bench;
     const std::vector<FoundDevice> found = findDevices(&bench);
@@ -158,7 +158,7 @@ void list(const Arguments& arguments) {
     }
 }
 
-void probe(const Arguments& arguments, const Session& session) {
+void probe(const DeviceArguments& arguments, const Session& session) {
     const QtProgram program;
     DeviceLink link(profileOf(arguments), session);
     link.untilReady(arguments.confirmed);
@@ -171,7 +171,7 @@ void probe(const Arguments& arguments, const Session& session) {
         printText(arguments.uri, link->status());
 }
 
-void monitor(const Arguments& arguments, const Session& session) {
+void monitor(const DeviceArguments& arguments, const Session& session) {
     const QtProgram program;
     std::mutex output;
     const auto begun = Clock::now();
@@ -187,7 +187,7 @@ void monitor(const Arguments& arguments, const Session& session) {
     static_cast<void>(link.until([](const LinkStatus&) { return false; }, seconds));
 }
 
-void move(const Arguments& arguments, const Session& session) {
+void move(const DeviceArguments& arguments, const Session& session) {
     const QtProgram program;
     const DeviceProfile profile = profileOf(arguments);
     const std::size_t count = profile.servos.size();
@@ -230,7 +230,7 @@ void move(const Arguments& arguments, const Session& session) {
         printText(arguments.uri, after);
 }
 
-CLI::App* addCommand(CLI::App& group, const char* name, const char* what, Arguments& arguments) {
+CLI::App* addCommand(CLI::App& group, const char* name, const char* what, DeviceArguments& arguments) {
     CLI::App* command = group.add_subcommand(name, what);
     command
         ->add_option("uri", arguments.uri,
@@ -250,7 +250,7 @@ CLI::App* addCommand(CLI::App& group, const char* name, const char* what, Argume
 void addDeviceCommands(CLI::App& app, Session& session) {
     CLI::App* group = app.add_subcommand("device", "Servo controllers");
     group->require_subcommand(1);
-    auto arguments = std::make_shared<Arguments>();
+    auto arguments = std::make_shared<DeviceArguments>();
     CLI::App* lists = group->add_subcommand("list", "What is connected to this machine, and the simulated boards");
     lists->add_flag("--json", arguments->json, "Print one JSON value");
     lists->callback([arguments] { list(*arguments); });

@@ -19,7 +19,7 @@ namespace lumorph::cli {
 
 namespace {
 
-struct Arguments {
+struct MatchArguments {
     std::string field;
     TargetArguments target;
     std::string method = "voting";
@@ -91,7 +91,7 @@ void addWarnings(const Matcher& matcher, const BitColumns& wanted, bool autoPlac
                                       "' can change; it rests.");
 }
 
-Result matchVoxels(const Matcher& matcher, const TargetVoxels& target, const Arguments& arguments,
+Result matchVoxels(const Matcher& matcher, const TargetVoxels& target, const MatchArguments& arguments,
                    const Session& session) {
     Result result;
     result.warnings = target.warnings;
@@ -124,7 +124,7 @@ nlohmann::json stateJson(const State& state) {
     return levels;
 }
 
-nlohmann::json resultJson(const Matcher& matcher, const Result& result, const Arguments& arguments) {
+nlohmann::json resultJson(const Matcher& matcher, const Result& result, const MatchArguments& arguments) {
     const double volume = matcher.field.frame.voxelVolume();
     nlohmann::json actuators = nlohmann::json::array();
     for (std::size_t i = 0; i < result.votes.actuators.size(); ++i) {
@@ -195,7 +195,7 @@ const Model::Animation& chooseAnimation(const Model& model, const std::string& p
                        "use 'first' or '" + model.animations.front().name + "'");
 }
 
-void matchAnimation(const Matcher& matcher, const Arguments& arguments, const Session& session) {
+void matchAnimation(const Matcher& matcher, const MatchArguments& arguments, const Session& session) {
     const Model model = readModel(arguments.target.path);
     const Model::Animation& animation = chooseAnimation(model, arguments.target.path, arguments.animation);
     ClipOptions options;
@@ -225,7 +225,7 @@ void matchAnimation(const Matcher& matcher, const Arguments& arguments, const Se
                     frames.size(), animation.name.c_str(), wanted, reached);
 }
 
-void checkArguments(const Arguments& arguments) {
+void checkArguments(const MatchArguments& arguments) {
     if (arguments.json && arguments.csv == "-")
         throw InvalidInput("--json", "standard output would hold the table and the JSON value",
                            "name a file with --csv");
@@ -235,7 +235,7 @@ void checkArguments(const Arguments& arguments) {
         if (!output.empty()) checkOutput(output, arguments.target.path);
 }
 
-void match(const Arguments& arguments, const Session& session) {
+void match(const MatchArguments& arguments, const Session& session) {
     checkArguments(arguments);
     const Matcher matcher(session, arguments.field);
     if (!arguments.animation.empty()) {
@@ -265,7 +265,7 @@ void match(const Arguments& arguments, const Session& session) {
 } // namespace
 
 void addMatchCommand(CLI::App& app, Session& session) {
-    auto a = std::make_shared<Arguments>();
+    auto a = std::make_shared<MatchArguments>();
     CLI::App* command = app.add_subcommand("match", "Find the state in which the device looks most like a target");
     command->add_option("field", a->field, "A .mdf file")->required();
     command

@@ -10,13 +10,13 @@ namespace lumorph::cli {
 
 namespace {
 
-struct Arguments {
+struct RecordingArguments {
     std::string file;
     std::string folder;
     bool json = false;
 };
 
-void printInfo(const Arguments& arguments) {
+void printRecording(const RecordingArguments& arguments) {
     const Recording recording = readRecording(arguments.file);
     const double seconds = secondsOf(recording);
     if (arguments.json) {
@@ -51,7 +51,7 @@ void printJsonOf(const RecordingCheck& check, std::size_t rows) {
                {"commandsOfFrames", check.framed}});
 }
 
-void printTextOf(const RecordingCheck& check, const Arguments& arguments) {
+void printTextOf(const RecordingCheck& check, const RecordingArguments& arguments) {
     std::printf("%s: %llu inputs of the servos were run again, %llu bytes sent\n", arguments.file.c_str(),
                 static_cast<unsigned long long>(check.servos.inputs),
                 static_cast<unsigned long long>(check.servos.bytesSent));
@@ -71,7 +71,7 @@ void printTextOf(const RecordingCheck& check, const Arguments& arguments) {
                     check.firstOther.c_str());
 }
 
-void checkFile(const Arguments& arguments) {
+void checkFile(const RecordingArguments& arguments) {
     const Recording recording = readRecording(arguments.file);
     RecordingCheck check;
     try {
@@ -96,11 +96,11 @@ void checkFile(const Arguments& arguments) {
 void addRecordingCommands(CLI::App& app) {
     CLI::App* group = app.add_subcommand("recording", "Look at recorded sessions");
     group->require_subcommand(1);
-    auto arguments = std::make_shared<Arguments>();
+    auto arguments = std::make_shared<RecordingArguments>();
     CLI::App* info = group->add_subcommand("info", "What a recording holds, and what happened in it");
     info->add_option("recording", arguments->file, "A .lumorphrec file")->required();
     info->add_flag("--json", arguments->json, "Print one JSON value");
-    info->callback([arguments] { printInfo(*arguments); });
+    info->callback([arguments] { printRecording(*arguments); });
     CLI::App* table = group->add_subcommand("export", "Write a recording as tables for a study");
     table->add_option("recording", arguments->file, "A .lumorphrec file")->required();
     table->add_option("-o,--output", arguments->folder, "Folder for frames.csv, poses.csv, events.csv and servo.csv")

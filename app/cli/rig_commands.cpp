@@ -83,7 +83,7 @@ void printRange(const ShapeReport::PerActuator& a) {
         std::printf("%6.2f to %5.2f    ", a.rangeMin, a.rangeMax);
 }
 
-void printReport(const Rig& rig, const ShapeReport& report) {
+void printShapes(const Rig& rig, const ShapeReport& report) {
     const glm::vec3 size = 1000.0F * report.reach.size();
     std::printf("%s: %zu triangles, %s, %.0f x %.0f x %.0f mm over all states\n\n", rig.name().c_str(),
                 report.rest.triangles, report.rest.solid() ? "a clean closed solid" : "not a clean solid",
@@ -106,11 +106,11 @@ void printReport(const Rig& rig, const ShapeReport& report) {
     for (const std::string& warning : report.warnings) std::printf("  ! %s\n", warning.c_str());
 }
 
-void info(const InfoOptions& options, const Session& session) {
+void rigInfo(const InfoOptions& options, const Session& session) {
     const Rig rig = readRig(options.rig);
     const ShapeReport report = shapeReport(rig, options.states, options.seed, session.progress());
     Session::endProgress();
-    options.json ? printJson(reportJson(rig, report)) : printReport(rig, report);
+    options.json ? printJson(reportJson(rig, report)) : printShapes(rig, report);
 }
 
 struct DeformOptions {
@@ -152,7 +152,7 @@ void addRigCommands(CLI::App& app, Session& session) {
     infoCommand->add_option("--seed", infoOptions->seed, "Which random states")
         ->check(seedNumber())
         ->capture_default_str();
-    infoCommand->callback([infoOptions, &session] { info(*infoOptions, session); });
+    infoCommand->callback([infoOptions, &session] { rigInfo(*infoOptions, session); });
 
     auto deformOptions = std::make_shared<DeformOptions>();
     CLI::App* deformCommand = group->add_subcommand("deform", "Write the mesh of a joint state, in metres");

@@ -21,7 +21,7 @@ namespace lumorph::cli {
 
 namespace {
 
-constexpr std::chrono::milliseconds kPause{50}; ///< how soon Ctrl-C is seen
+constexpr std::chrono::milliseconds kTrackPause{50}; ///< how soon Ctrl-C is seen
 constexpr std::chrono::milliseconds kLineEvery{1000};
 constexpr std::size_t kMostWaiting = 4096;
 
@@ -44,7 +44,7 @@ public:
     /// All that have come, after a short wait for the first.
     std::deque<TrackerFrame> take() {
         std::unique_lock lock(mutex_);
-        arrived_.wait_for(lock, kPause, [this] { return !frames_.empty(); });
+        arrived_.wait_for(lock, kTrackPause, [this] { return !frames_.empty(); });
         return std::exchange(frames_, {});
     }
 
@@ -115,7 +115,7 @@ void tellEnd(const MonitorArguments& arguments, const TrackerStatus& status, int
                           status.advice.empty() ? "give it more time" : status.advice);
 }
 
-void monitor(const MonitorArguments& arguments, const Session& session) {
+void monitorTracker(const MonitorArguments& arguments, const Session& session) {
     int count = 1;
     char name[] = "lumorph";
     char* words[] = {name, nullptr};
@@ -162,7 +162,7 @@ void addMonitor(CLI::App& group, const Session& session) {
         ->check(CLI::Range(1, 1'000'000'000));
     command->add_flag("--json", arguments->json, "Print one JSON value a frame, a line each");
     command->add_flag("--open", arguments->open, "Take packets from other machines as well");
-    command->callback([arguments, &session] { monitor(*arguments, session); });
+    command->callback([arguments, &session] { monitorTracker(*arguments, session); });
 }
 
 void addCameras(CLI::App& group) {

@@ -8,13 +8,13 @@ namespace lumorph::cli {
 
 namespace {
 
-struct Arguments {
+struct VoxelizeArguments {
     TargetArguments target;
     std::string like;
     std::string output;
 };
 
-void voxelize(const Arguments& arguments, const Session& session) {
+void voxelize(const VoxelizeArguments& arguments, const Session& session) {
     checkOutput(arguments.output, arguments.target.path);
     const Field field = readFieldFile(session, arguments.like);
     const TargetVoxels voxels = readTarget(session, field, arguments.target);
@@ -26,7 +26,7 @@ void voxelize(const Arguments& arguments, const Session& session) {
 } // namespace
 
 void addVoxelizeCommand(CLI::App& app, Session& session) {
-    auto a = std::make_shared<Arguments>();
+    auto a = std::make_shared<VoxelizeArguments>();
     CLI::App* command = app.add_subcommand("voxelize", "Turn a mesh into voxels of a field's frame");
     command
         ->add_option("mesh", a->target.path,

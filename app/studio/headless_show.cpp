@@ -29,11 +29,11 @@ namespace {
 namespace fs = std::filesystem;
 using Frame = std::shared_ptr<const MatchFrame>;
 
-constexpr double kLoopRate = 60.0;
-constexpr int kStepsAPicture = 2; ///< 30 pictures a second
+constexpr double kShowLoopRate = 60.0;
+constexpr int kStepsAShowPicture = 2; ///< 30 pictures a second
 constexpr glm::ivec2 kPictureSize{1600, 1000};
 constexpr glm::ivec2 kVideoSize{960, 600};
-constexpr double kMaxSeconds = 600.0;
+constexpr double kMaxShowSeconds = 600.0;
 
 MatchWish showWish(std::ostream& out) {
     MatchWish wish;
@@ -51,11 +51,11 @@ std::vector<Frame> playShow(const MatchWish& wish, double seconds) {
     ManualClock clock;
     MatchLoop loop(clock);
     std::vector<Frame> frames;
-    const int steps = std::max(kStepsAPicture, static_cast<int>(std::lround(seconds * kLoopRate)));
+    const int steps = std::max(kStepsAShowPicture, static_cast<int>(std::lround(seconds * kShowLoopRate)));
     for (int k = 0; k < steps; ++k) {
-        const Frame frame = loop.step(wish, k == 0 ? 0.0 : 1.0 / kLoopRate);
-        clock.advance(Microseconds(static_cast<std::int64_t>(1e6 / kLoopRate)));
-        if (k % kStepsAPicture == 0) frames.push_back(frame);
+        const Frame frame = loop.step(wish, k == 0 ? 0.0 : 1.0 / kShowLoopRate);
+        clock.advance(Microseconds(static_cast<std::int64_t>(1e6 / kShowLoopRate)));
+        if (k % kStepsAShowPicture == 0) frames.push_back(frame);
     }
     return frames;
 }
@@ -113,7 +113,7 @@ void savePictures(Stage& stage, const std::vector<Frame>& frames, const fs::path
 }
 
 void saveVideo(Stage& stage, const std::vector<Frame>& frames, const fs::path& file) {
-    VideoWriter video(file, kVideoSize, kLoopRate / kStepsAPicture);
+    VideoWriter video(file, kVideoSize, kShowLoopRate / kStepsAShowPicture);
     for (const Frame& frame : frames) video.add(stage.videoPicture(*frame));
     video.finish();
 }
@@ -121,7 +121,7 @@ void saveVideo(Stage& stage, const std::vector<Frame>& frames, const fs::path& f
 void saveTable(const std::vector<Frame>& frames, const fs::path& file) {
     std::vector<ClipFrame> rows;
     for (std::size_t k = 0; k < frames.size(); ++k)
-        rows.push_back({static_cast<double>(k) * kStepsAPicture / kLoopRate, frames[k]->wanted,
+        rows.push_back({static_cast<double>(k) * kStepsAShowPicture / kShowLoopRate, frames[k]->wanted,
                         frames[k]->estimatedStrokes, frames[k]->iouWanted, frames[k]->iouEstimated});
     const std::string table = clipCsv(frames.front()->field->field, rows);
     writeFileAtomically(file, std::as_bytes(std::span(table)));
@@ -155,7 +155,7 @@ void showWater(const fs::path& folder, double seconds, std::ostream& out) {
 } // namespace
 
 void runHeadlessShow(const fs::path& folder, double seconds, std::ostream& out) {
-    if (!(seconds > 0.0 && seconds <= kMaxSeconds))
+    if (!(seconds > 0.0 && seconds <= kMaxShowSeconds))
         throw InvalidInput("--seconds", "the show lasts more than 0 and at most 600 seconds",
                            "give a number in that range");
     std::error_code error;

@@ -9,7 +9,7 @@
 namespace lumorph::studio {
 namespace {
 
-constexpr int kStatusMilliseconds = 50;
+constexpr int kDeviceStatusMilliseconds = 50;
 constexpr int kTestMilliseconds = 33;
 
 bool drives(LinkPhase phase) { return phase == LinkPhase::live || phase == LinkPhase::starting; }
@@ -18,8 +18,8 @@ bool drives(LinkPhase phase) { return phase == LinkPhase::live || phase == LinkP
 
 void DeviceService::Data::listen() {
     due.setSingleShot(true);
-    due.setInterval(kStatusMilliseconds);
-    poll.setInterval(kStatusMilliseconds);
+    due.setInterval(kDeviceStatusMilliseconds);
+    poll.setInterval(kDeviceStatusMilliseconds);
     testTimer.setInterval(kTestMilliseconds);
     connect(&due, &QTimer::timeout, &service, [this] { take(); });
     connect(&poll, &QTimer::timeout, &service, [this] {

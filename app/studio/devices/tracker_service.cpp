@@ -19,7 +19,7 @@
 namespace lumorph::studio {
 namespace {
 
-constexpr int kStatusMilliseconds = 100;
+constexpr int kTrackerStatusMilliseconds = 100;
 constexpr std::size_t kHistory = 101; ///< ten seconds of it
 constexpr qsizetype kMostAddresses = 8;
 constexpr std::size_t kMostBodies = 200; ///< names come from outside, and may be new ones for ever
@@ -72,7 +72,7 @@ struct TrackerService::Data {
         worker.setExpiryTimeout(-1);
         for (const auto& [body, word] : settings.value(kRolesKey).toMap().asKeyValueRange())
             said[body.toStdString()] = roleOf(word.toString());
-        timer.setInterval(kStatusMilliseconds);
+        timer.setInterval(kTrackerStatusMilliseconds);
         connect(&timer, &QTimer::timeout, &service, [this] { sample(); });
     }
 

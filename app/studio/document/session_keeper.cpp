@@ -40,10 +40,10 @@ std::vector<int> numbersIn(const fs::path& folder) {
     return numbers;
 }
 
-fs::path placeOf(const fs::path& folder, int number) { return folder / std::to_string(number); }
+fs::path sessionFolder(const fs::path& folder, int number) { return folder / std::to_string(number); }
 
 /// Json holds nothing but UTF-8; a name that is none gets replacement characters.
-std::string textOf(const fs::path& path) { return QString::fromStdString(path.string()).toStdString(); }
+std::string utf8Of(const fs::path& path) { return QString::fromStdString(path.string()).toStdString(); }
 
 /// Where each file that the scene names lies, in the order in which the scene names them.
 nlohmann::json sceneFiles(const StudioState& state) {
@@ -51,7 +51,7 @@ nlohmann::json sceneFiles(const StudioState& state) {
     if (!state.scene) return files;
     Scene scene = *state.scene;
     renameAssets(scene, [&files](const std::string& asset) {
-        files.push_back(textOf(asset));
+        files.push_back(utf8Of(asset));
         return asset;
     });
     return files;
@@ -61,9 +61,9 @@ ProjectSource withMemory(const SessionState& session) {
     ProjectSource source = session.source;
     if (!source.extras.view.is_object()) source.extras.view = nlohmann::json::object();
     const StudioState& state = source.state;
-    source.extras.view[kKey] = {{"file", textOf(session.file)},        {"modified", session.modified},
-                                {"rig", textOf(state.rig.path)},       {"field", textOf(state.field.path)},
-                                {"target", textOf(state.target.path)}, {"scene", sceneFiles(state)}};
+    source.extras.view[kKey] = {{"file", utf8Of(session.file)},        {"modified", session.modified},
+                                {"rig", utf8Of(state.rig.path)},       {"field", utf8Of(state.field.path)},
+                                {"target", utf8Of(state.target.path)}, {"scene", sceneFiles(state)}};
     return source;
 }
 
@@ -76,8 +76,8 @@ int writeAnew(const fs::path& folder, const SessionState& session) {
     fs::remove_all(partial);
     fs::create_directories(partial);
     saveProject(withMemory(session), partial / kProjectName);
-    fs::rename(partial, placeOf(folder, number));
-    for (const int older : old) fs::remove_all(placeOf(folder, older));
+    fs::rename(partial, sessionFolder(folder, number));
+    for (const int older : old) fs::remove_all(sessionFolder(folder, older));
     return number;
 }
 
@@ -88,9 +88,9 @@ bool sameAssets(const StudioState& a, const StudioState& b) {
 void write(const fs::path& folder, const SessionState& session, SessionKeeper::Written& last) {
     try {
         const bool same = last.number > 0 && sameAssets(last.assets, session.source.state) &&
-                          fs::exists(placeOf(folder, last.number) / kProjectName);
+                          fs::exists(sessionFolder(folder, last.number) / kProjectName);
         if (same) { // the large files are there already; the project's file is replaced at once
-            saveProject(withMemory(session), placeOf(folder, last.number) / kProjectName);
+            saveProject(withMemory(session), sessionFolder(folder, last.number) / kProjectName);
         } else {
             last.number = writeAnew(folder, session);
             last.assets = session.source.state;
@@ -206,7 +206,7 @@ void SessionKeeper::keepNow() {
 std::optional<SessionState> SessionKeeper::restore(const fs::path& folder, const Progress& progress) {
     const std::vector<int> numbers = numbersIn(folder);
     if (numbers.empty()) return std::nullopt;
-    const fs::path place = placeOf(folder, numbers.front());
+    const fs::path place = sessionFolder(folder, numbers.front());
     LoadedProject loaded = loadProjectWithoutAssets(place / kProjectName, progress.part(0.0, 0.8));
     const nlohmann::json memory = loaded.extras.view.is_object() && loaded.extras.view.contains(kKey)
                                       ? loaded.extras.view[kKey]
@@ -231,7 +231,7 @@ fs::path SessionKeeper::moveAside(const fs::path& folder) {
     for (int i = 1; !numbers.empty() && i < 10'000; ++i) {
         const fs::path aside = folder / ("broken-" + std::to_string(i));
         if (fs::exists(aside, ignored)) continue;
-        fs::rename(placeOf(folder, numbers.front()), aside, ignored);
+        fs::rename(sessionFolder(folder, numbers.front()), aside, ignored);
         return aside;
     }
     return {};

@@ -24,7 +24,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr auto kPlace = "record";
+constexpr auto kRecordPlace = "record";
 constexpr auto kFolderKey = "record/folder";
 constexpr int kLookMilliseconds = 500;
 
@@ -215,7 +215,7 @@ void RecordingService::Data::addEvent(std::string kind, const QString& text, con
 
 /// What the device tells comes by its log.
 void RecordingService::Data::addNotice(const QString& at) {
-    if (at == "device" || at == kPlace) return;
+    if (at == "device" || at == kRecordPlace) return;
     const std::vector<Notice> there = notices.at(at);
     if (there.empty()) return;
     const Notice& newest = there.front();
@@ -254,7 +254,7 @@ void RecordingService::Data::look() {
 void RecordingService::Data::fail(const std::exception& error) {
     Notice notice = noticeOf(error);
     notice.actions.push_back({tr("Record elsewhere..."), [this] { emit record.chooseFile(); }});
-    notices.post(kPlace, std::move(notice));
+    notices.post(kRecordPlace, std::move(notice));
 }
 
 /// `tell`: how it went; else the user was told already. Waiting for link and disk would hold the window up.
@@ -287,17 +287,18 @@ void RecordingService::Data::tellEnd(const fs::path& ended, double seconds, cons
     const QString name = QString::fromStdString(ended.filename().string());
     const QString path = QString::fromStdString(ended.string());
     if (trouble.isEmpty())
-        notices.post(kPlace, {Notice::Level::info,
-                              tr("Recorded"),
-                              tr("%1, %2, %3").arg(name, clockText(seconds), bytesText(sizeOf(ended))),
-                              {},
-                              {{tr("Replay"), [this, path] { emit record.showWanted(path); }}, {tr("OK"), [] {}}}});
+        notices.post(kRecordPlace,
+                     {Notice::Level::info,
+                      tr("Recorded"),
+                      tr("%1, %2, %3").arg(name, clockText(seconds), bytesText(sizeOf(ended))),
+                      {},
+                      {{tr("Replay"), [this, path] { emit record.showWanted(path); }}, {tr("OK"), [] {}}}});
     else
-        notices.post(kPlace, {Notice::Level::error,
-                              name,
-                              tr("recording stopped: %1; what was recorded before is kept").arg(trouble),
-                              {},
-                              {{tr("Record elsewhere..."), [this] { emit record.chooseFile(); }}}});
+        notices.post(kRecordPlace, {Notice::Level::error,
+                                    name,
+                                    tr("recording stopped: %1; what was recorded before is kept").arg(trouble),
+                                    {},
+                                    {{tr("Record elsewhere..."), [this] { emit record.chooseFile(); }}}});
 }
 
 RecordingService::RecordingService(Settings& settings, StudioDocument& document, ProjectService& service,
@@ -317,7 +318,7 @@ void RecordingService::start() { start(freshFile()); }
 
 void RecordingService::start(const fs::path& file) {
     if (data_->phase != Phase::idle) return;
-    data_->notices.dismissAll(kPlace);
+    data_->notices.dismissAll(kRecordPlace);
     data_->file = file;
     data_->lasted = 0.0;
     data_->bytes = 0;
@@ -332,7 +333,7 @@ void RecordingService::start(const fs::path& file) {
         {"started", QDateTime::currentDateTime().toString(Qt::ISODate).toStdString()},
         {"project_name", data_->document.name().toStdString()}};
     data_->starting = data_->jobs.run<std::shared_ptr<Recorder>>(
-        kPlace, tr("Starting the recording"),
+        kRecordPlace, tr("Starting the recording"),
         [file, facts, source = data_->service.project(), profile = data_->devices.profile()](const Progress& progress) {
             return begun(file, facts, source, profile, progress);
         },

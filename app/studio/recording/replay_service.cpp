@@ -16,7 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr auto kPlace = "replay";
+constexpr auto kReplayPlace = "replay";
 constexpr int kMoveMilliseconds = 50;
 
 /// A recording, and what it was made with.
@@ -102,7 +102,7 @@ void ReplayService::Data::listen() {
         if (awaited.empty() || path.toStdString() != awaited.string()) return;
         awaited.clear();
         session.sameProject = true;
-        notices.dismissAll(kPlace);
+        notices.dismissAll(kReplayPlace);
         if (!shown() && session.recording) show();
     });
 }
@@ -116,13 +116,13 @@ void ReplayService::Data::take(const fs::path& from, ReadSession read) {
     replay.close();
     file = from;
     session = std::move(read);
-    notices.dismissAll(kPlace);
+    notices.dismissAll(kReplayPlace);
     if (session.recording->frames.empty()) {
-        notices.post(kPlace, {Notice::Level::warning,
-                              nameOf(file),
-                              tr("holds no frame: nothing was shown while it was recorded"),
-                              tr("choose another recording"),
-                              {}});
+        notices.post(kReplayPlace, {Notice::Level::warning,
+                                    nameOf(file),
+                                    tr("holds no frame: nothing was shown while it was recorded"),
+                                    tr("choose another recording"),
+                                    {}});
         return;
     }
     const bool shows = fits();
@@ -167,10 +167,10 @@ void ReplayService::Data::tellOther(bool shown) {
     else
         notice.remedy = tr("open the project that it was made with");
     if (shown) notice.actions.push_back({tr("Keep mine"), [] {}});
-    notices.post(kPlace, std::move(notice));
+    notices.post(kReplayPlace, std::move(notice));
 }
 
-void ReplayService::Data::fail(const std::exception& error) { notices.post(kPlace, noticeOf(error)); }
+void ReplayService::Data::fail(const std::exception& error) { notices.post(kReplayPlace, noticeOf(error)); }
 
 ReplayService::ReplayService(StudioDocument& document, ProjectService& service, StudioLoop& loop, Jobs& jobs,
                              Notices& notices)
@@ -187,7 +187,7 @@ ReplayService::~ReplayService() {
 void ReplayService::open(const fs::path& file) {
     data_->jobs.cancel(data_->reading);
     data_->reading = data_->jobs.run<ReadSession>(
-        kPlace, tr("Opening %1").arg(nameOf(file)),
+        kReplayPlace, tr("Opening %1").arg(nameOf(file)),
         [file, open = data_->service.project()](const Progress& progress) { return readSession(file, open, progress); },
         [this, file](ReadSession session) { data_->take(file, std::move(session)); },
         [this](const std::exception& error) { data_->fail(error); });
@@ -195,7 +195,7 @@ void ReplayService::open(const fs::path& file) {
 
 void ReplayService::close() {
     data_->hide();
-    data_->notices.dismissAll(kPlace);
+    data_->notices.dismissAll(kReplayPlace);
     letGo(std::exchange(data_->session, {}).recording);
 }
 
@@ -234,17 +234,17 @@ double ReplayService::speed() const { return data_->shown() ? data_->source->spe
 void ReplayService::verify() {
     if (!data_->shown()) return;
     data_->proving = data_->jobs.run<ServoProof>(
-        kPlace, tr("Verifying the servo bytes"),
+        kReplayPlace, tr("Verifying the servo bytes"),
         [recording = data_->session.recording](const Progress& progress) {
             return proveServos(recording->servo, progress);
         },
         [this](const ServoProof& proof) {
             const bool equal = proof.difference.isEmpty();
-            data_->notices.post(kPlace, {equal ? Notice::Level::info : Notice::Level::warning,
-                                         tr("Verified"),
-                                         proofText(proof),
-                                         {},
-                                         {{tr("OK"), [] {}}}});
+            data_->notices.post(kReplayPlace, {equal ? Notice::Level::info : Notice::Level::warning,
+                                               tr("Verified"),
+                                               proofText(proof),
+                                               {},
+                                               {{tr("OK"), [] {}}}});
         },
         [this](const std::exception& error) { data_->fail(error); });
 }
@@ -252,18 +252,18 @@ void ReplayService::verify() {
 void ReplayService::exportTables(const fs::path& folder) {
     if (!data_->shown()) return;
     data_->exporting = data_->jobs.run<bool>(
-        kPlace, tr("Exporting tables"),
+        kReplayPlace, tr("Exporting tables"),
         [recording = data_->session.recording, folder](const Progress& progress) {
             exportCsv(*recording, folder, progress);
             return true;
         },
         [this, folder](bool) {
-            data_->notices.post(kPlace, {Notice::Level::info,
-                                         tr("Exported"),
-                                         tr("frames.csv, poses.csv, events.csv and servo.csv lie in %1")
-                                             .arg(QString::fromStdString(folder.string())),
-                                         {},
-                                         {{tr("OK"), [] {}}}});
+            data_->notices.post(kReplayPlace, {Notice::Level::info,
+                                               tr("Exported"),
+                                               tr("frames.csv, poses.csv, events.csv and servo.csv lie in %1")
+                                                   .arg(QString::fromStdString(folder.string())),
+                                               {},
+                                               {{tr("OK"), [] {}}}});
         },
         [this](const std::exception& error) { data_->fail(error); });
 }
@@ -271,7 +271,7 @@ void ReplayService::exportTables(const fs::path& folder) {
 void ReplayService::openProject() {
     if (data_->session.project.text.empty()) return;
     data_->unpacking = data_->jobs.run<fs::path>(
-        kPlace, tr("Opening its project"),
+        kReplayPlace, tr("Opening its project"),
         [pack = data_->session.project, name = data_->file.stem().string()](const Progress&) {
             return unpackProject(pack, projectsFolder(), name);
         },

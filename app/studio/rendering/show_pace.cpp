@@ -7,7 +7,7 @@
 namespace lumorph::studio {
 namespace {
 
-constexpr std::size_t kRemembered = 3;
+constexpr std::size_t kRememberedShows = 3;
 // Finer only when that will surely be in time, so that it does not swing.
 constexpr double kRoom = 0.7;
 // Pictures of few sizes come and go: memory that is freed fits the next.
@@ -15,7 +15,7 @@ constexpr double kStepsToFull = 20.0;
 
 double inSteps(double resolution) { return std::floor(kStepsToFull * resolution) / kStepsToFull; }
 
-double median(std::vector<double> values) {
+double medianShowTime(std::vector<double> values) {
     const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
     std::nth_element(values.begin(), middle, values.end());
     return *middle;
@@ -53,10 +53,10 @@ std::optional<ShowPace::Time> ShowPace::stillAt() const {
 void ShowPace::finished(const Work& work, double milliseconds) {
     if (work.still || work.resolution != resolution_) return;
     times_.push_back(milliseconds);
-    if (times_.size() > kRemembered) times_.erase(times_.begin());
-    if (times_.size() < kRemembered) return;
+    if (times_.size() > kRememberedShows) times_.erase(times_.begin());
+    if (times_.size() < kRememberedShows) return;
     // The time goes with the pixels, so with the square of a side.
-    const double usual = std::max(median(times_), 0.1);
+    const double usual = std::max(medianShowTime(times_), 0.1);
     const double fitting = resolution_ * std::sqrt(kBudgetMilliseconds / usual);
     double wanted = resolution_;
     if (usual > kBudgetMilliseconds)

@@ -21,8 +21,8 @@ namespace fs = std::filesystem;
 constexpr auto kKind = "Recordings (*.lumorphrec)";
 constexpr auto kTablesKey = "replay/tables";
 
-QAction* add(Studio& studio, const char* id, const QString& text, const char* icon, const QString& tip,
-             std::function<void()> run, const char* keys = "", bool inMenu = true) {
+QAction* addRecordAction(Studio& studio, const char* id, const QString& text, const char* icon, const QString& tip,
+                         std::function<void()> run, const char* keys = "", bool inMenu = true) {
     Commands::Options options;
     options.icon = icon;
     options.shortcut = QKeySequence(keys);
@@ -41,7 +41,7 @@ QString folderThere(fs::path folder) {
     return textOf(folder);
 }
 
-QFileDialog* makeDialog(QWidget& window, const char* name, const QString& title, const QString& folder) {
+QFileDialog* makeFileDialog(QWidget& window, const char* name, const QString& title, const QString& folder) {
     auto* dialog = new QFileDialog(&window, title, folder);
     dialog->setObjectName(name);
     dialog->setAttribute(Qt::WA_DeleteOnClose);
@@ -51,7 +51,7 @@ QFileDialog* makeDialog(QWidget& window, const char* name, const QString& title,
 
 void askWhereTo(Studio& studio, QWidget& window) {
     const fs::path fresh = studio.recorder.freshFile();
-    QFileDialog* dialog = makeDialog(window, "dialog.record", "Record to", folderThere(studio.recorder.folder()));
+    QFileDialog* dialog = makeFileDialog(window, "dialog.record", "Record to", folderThere(studio.recorder.folder()));
     dialog->setAcceptMode(QFileDialog::AcceptSave);
     dialog->setDefaultSuffix("lumorphrec");
     dialog->setNameFilter(kKind);
@@ -63,7 +63,8 @@ void askWhereTo(Studio& studio, QWidget& window) {
 }
 
 void askWhatToReplay(Studio& studio, QWidget& window) {
-    QFileDialog* dialog = makeDialog(window, "dialog.replay", "Open recording", folderThere(studio.recorder.folder()));
+    QFileDialog* dialog =
+        makeFileDialog(window, "dialog.replay", "Open recording", folderThere(studio.recorder.folder()));
     dialog->setFileMode(QFileDialog::ExistingFile);
     dialog->setNameFilter(kKind);
     QObject::connect(dialog, &QFileDialog::fileSelected, &studio.replay,
@@ -73,8 +74,8 @@ void askWhatToReplay(Studio& studio, QWidget& window) {
 
 void askForTables(Studio& studio, QWidget& window) {
     const QString beside = folderThere(studio.replay.file().parent_path());
-    QFileDialog* dialog = makeDialog(window, "dialog.tables", "Export tables into a folder",
-                                     studio.settings.value(kTablesKey, beside).toString());
+    QFileDialog* dialog = makeFileDialog(window, "dialog.tables", "Export tables into a folder",
+                                         studio.settings.value(kTablesKey, beside).toString());
     dialog->setFileMode(QFileDialog::Directory);
     dialog->setOption(QFileDialog::ShowDirsOnly);
     dialog->setLabelText(QFileDialog::Accept, "Export here");
@@ -119,19 +120,20 @@ void showFolder(const fs::path& file) { QDesktopServices::openUrl(QUrl::fromLoca
 
 void addRecording(Studio& studio, QWidget& window) {
     RecordingService& record = studio.recorder;
-    QAction* start = add(
+    QAction* start = addRecordAction(
         studio, "record.start", "&Record", "record",
         "Records the show: poses, levels, servos, and what happens, until you stop it", [&record] { record.start(); },
         "Ctrl+Alt+R");
-    QAction* startAs = add(studio, "record.startAs", "Record to...", "record", "The same, into a file that you choose",
-                           [&studio, &window] { askWhereTo(studio, window); });
-    QAction* mark = add(
+    QAction* startAs =
+        addRecordAction(studio, "record.startAs", "Record to...", "record", "The same, into a file that you choose",
+                        [&studio, &window] { askWhereTo(studio, window); });
+    QAction* mark = addRecordAction(
         studio, "record.mark", "&Mark this moment...", "mark", "Puts a mark with your words into the recording",
         [&studio, &window] { askMark(studio, window); }, "Ctrl+Alt+M");
-    QAction* stop = add(
+    QAction* stop = addRecordAction(
         studio, "record.stop", "Stop recording", "pause", "Completes the file", [&record] { record.stop(); },
         "Ctrl+Alt+S");
-    QAction* folder = add(
+    QAction* folder = addRecordAction(
         studio, "record.folder", "Show the folder of the recordings", "folder", {},
         [&record] { showFolder(record.file().empty() ? record.freshFile() : record.file()); }, "", false);
     const auto follow = [=, &record] {
@@ -152,22 +154,22 @@ void addRecording(Studio& studio, QWidget& window) {
 
 void addReplay(Studio& studio, QWidget& window) {
     ReplayService& replay = studio.replay;
-    add(studio, "replay.open", "Open recordin&g...", "replay", "Shows a recorded session again",
-        [&studio, &window] { askWhatToReplay(studio, window); });
-    QAction* play = add(
+    addRecordAction(studio, "replay.open", "Open recordin&g...", "replay", "Shows a recorded session again",
+                    [&studio, &window] { askWhatToReplay(studio, window); });
+    QAction* play = addRecordAction(
         studio, "replay.play", "Play the recording", "play", {}, [&replay] { replay.setPlaying(!replay.playing()); },
         "Ctrl+Alt+Space", false);
-    QAction* verify = add(
+    QAction* verify = addRecordAction(
         studio, "replay.verify", "Verify the servo bytes", "check",
         "Runs what went into the servo controller again and compares what comes out, bit for bit",
         [&replay] { replay.verify(); }, "", false);
-    QAction* tables = add(
+    QAction* tables = addRecordAction(
         studio, "replay.export", "Export CSV...", "export", "Tables of frames, poses, events and servo traffic",
         [&studio, &window] { askForTables(studio, window); }, "", false);
-    QAction* project = add(
+    QAction* project = addRecordAction(
         studio, "replay.project", "Open the recorded project", "open", "A copy of the project as it was recorded",
         [&replay] { replay.openProject(); }, "", false);
-    QAction* close = add(
+    QAction* close = addRecordAction(
         studio, "replay.close", "Close the recording", "close", "Back to the live show", [&replay] { replay.close(); },
         "Ctrl+Alt+W", false);
     const auto follow = [=, &replay] {

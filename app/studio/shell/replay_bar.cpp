@@ -19,8 +19,8 @@
 namespace lumorph::studio {
 namespace {
 
-constexpr int kHeight = 48;
-constexpr int kNarrow = 900;
+constexpr int kReplayBarHeight = 48;
+constexpr int kNarrowReplayBar = 900;
 constexpr double kSpeeds[] = {0.25, 0.5, 1.0, 2.0, 4.0};
 
 QLabel* makeClock(const char* name, const char* widest, QWidget* parent) {
@@ -34,7 +34,7 @@ class ReplayBar : public QWidget {
 public:
     ReplayBar(Studio& studio, QWidget* parent) : QWidget(parent), studio_(studio), replay_(studio.replay) {
         setObjectName("replay.bar");
-        setFixedHeight(kHeight);
+        setFixedHeight(kReplayBarHeight);
         auto* row = new QHBoxLayout(this);
         row->setContentsMargins(12, 0, 8, 0);
         row->setSpacing(8);
@@ -54,7 +54,7 @@ protected:
     }
     void resizeEvent(QResizeEvent* event) override {
         QWidget::resizeEvent(event);
-        words_->setVisible(width() >= kNarrow);
+        words_->setVisible(width() >= kNarrowReplayBar);
         elide();
     }
 

@@ -9,8 +9,8 @@
 namespace lumorph::studio {
 namespace {
 
-QAction* add(Studio& studio, const char* id, const QString& text, const char* iconName, const QKeySequence& keys,
-             const char* menu, std::function<void()> run) {
+QAction* addShellAction(Studio& studio, const char* id, const QString& text, const char* iconName,
+                        const QKeySequence& keys, const char* menu, std::function<void()> run) {
     Commands::Options options;
     options.icon = iconName;
     options.shortcut = keys;
@@ -21,9 +21,10 @@ QAction* add(Studio& studio, const char* id, const QString& text, const char* ic
 /// "Undo Move target", greyed while there is nothing to take back.
 void addUndo(Studio& studio) {
     QUndoStack& stack = studio.document.undoStack();
-    QAction* undo = add(studio, "edit.undo", "&Undo", "undo", QKeySequence::Undo, "Edit", [&stack] { stack.undo(); });
-    QAction* redo = add(studio, "edit.redo", "&Redo", "redo", QKeySequence(Qt::CTRL | Qt::SHIFT | Qt::Key_Z), "Edit",
-                        [&stack] { stack.redo(); });
+    QAction* undo =
+        addShellAction(studio, "edit.undo", "&Undo", "undo", QKeySequence::Undo, "Edit", [&stack] { stack.undo(); });
+    QAction* redo = addShellAction(studio, "edit.redo", "&Redo", "redo", QKeySequence(Qt::CTRL | Qt::SHIFT | Qt::Key_Z),
+                                   "Edit", [&stack] { stack.redo(); });
     const auto follow = [&stack, undo, redo] {
         undo->setEnabled(stack.canUndo());
         redo->setEnabled(stack.canRedo());
@@ -37,16 +38,17 @@ void addUndo(Studio& studio) {
 }
 
 void addStop(Studio& studio) {
-    add(studio, "loop.stop", "STOP: hold every actuator", "stop", {}, "Rig", [&studio] { studio.loop.stop(); });
-    QAction* resume =
-        add(studio, "loop.resume", "Resume after STOP", "play", {}, "Rig", [&studio] { studio.loop.resume(); });
+    addShellAction(studio, "loop.stop", "STOP: hold every actuator", "stop", {}, "Rig",
+                   [&studio] { studio.loop.stop(); });
+    QAction* resume = addShellAction(studio, "loop.resume", "Resume after STOP", "play", {}, "Rig",
+                                     [&studio] { studio.loop.resume(); });
     const auto follow = [&studio, resume] { resume->setEnabled(studio.loop.stopped()); };
     QObject::connect(&studio.loop, &StudioLoop::stoppedChanged, resume, follow);
     follow();
 }
 
 void addTheme(Studio& studio) {
-    QAction* theme = add(studio, "view.theme", {}, "sun", {}, "View", [&studio] {
+    QAction* theme = addShellAction(studio, "view.theme", {}, "sun", {}, "View", [&studio] {
         studio.settings.setTheme(studio.settings.theme() == Theme::dark ? Theme::light : Theme::dark);
     });
     const auto follow = [&studio, theme] {
@@ -63,10 +65,10 @@ void addView(Studio& studio, QMainWindow& window, const ShellActions& does) {
     for (const auto& [title, show] : does.workspaces) {
         const QString id = "workspace." + QString::number(number);
         const QKeySequence keys(Qt::CTRL | static_cast<Qt::Key>(Qt::Key_0 + number++));
-        add(studio, id.toLatin1().constData(), title + " workspace", "", keys, "View", show);
+        addShellAction(studio, id.toLatin1().constData(), title + " workspace", "", keys, "View", show);
     }
-    add(studio, "view.commandPalette", "&Search commands", "search", QKeySequence(Qt::CTRL | Qt::Key_K), "View",
-        [&studio, &window] { toggleCommandPalette(window, studio.commands); });
+    addShellAction(studio, "view.commandPalette", "&Search commands", "search", QKeySequence(Qt::CTRL | Qt::Key_K),
+                   "View", [&studio, &window] { toggleCommandPalette(window, studio.commands); });
     addTheme(studio);
     Commands::Options options;
     options.icon = "frame";
@@ -75,21 +77,21 @@ void addView(Studio& studio, QMainWindow& window, const ShellActions& does) {
     options.checkable = true;
     studio.commands.add("view.fullScreen", "&Full screen", options,
                         [&window] { window.isFullScreen() ? window.showNormal() : window.showFullScreen(); });
-    add(studio, "view.resetLayout", "&Reset layout", "reset", {}, "View", does.resetLayout);
+    addShellAction(studio, "view.resetLayout", "&Reset layout", "reset", {}, "View", does.resetLayout);
 }
 
 } // namespace
 
 void addShellCommands(Studio& studio, QMainWindow& window, const ShellActions& does) {
     addUndo(studio);
-    add(studio, "settings", "&Settings...", "settings", QKeySequence(Qt::CTRL | Qt::Key_Comma), "Edit",
-        [&studio, &window] { openSettings(studio, window); });
+    addShellAction(studio, "settings", "&Settings...", "settings", QKeySequence(Qt::CTRL | Qt::Key_Comma), "Edit",
+                   [&studio, &window] { openSettings(studio, window); });
     addView(studio, window, does);
     addStop(studio);
-    add(studio, "help.tour", "&Tour", "tour", {}, "Help", does.startTour);
-    add(studio, "help.shortcuts", "&Keyboard and mouse", "help", QKeySequence(Qt::Key_F1), "Help",
-        [&studio, &window] { openShortcuts(studio, window); });
-    add(studio, "help.about", "&About Lumorph", "info", {}, "Help", [&window] { openAbout(window); });
+    addShellAction(studio, "help.tour", "&Tour", "tour", {}, "Help", does.startTour);
+    addShellAction(studio, "help.shortcuts", "&Keyboard and mouse", "help", QKeySequence(Qt::Key_F1), "Help",
+                   [&studio, &window] { openShortcuts(studio, window); });
+    addShellAction(studio, "help.about", "&About Lumorph", "info", {}, "Help", [&window] { openAbout(window); });
 }
 
 } // namespace lumorph::studio

@@ -14,9 +14,9 @@
 namespace lumorph::studio {
 namespace {
 
-constexpr int kHeight = 40;
+constexpr int kTopBarHeight = 40;
 constexpr int kSearchWidth = 240;
-constexpr int kNarrow = 880;
+constexpr int kNarrowTopBar = 880;
 
 /// The mark of the program: a sheet that three actuators lift.
 class AppMark : public QWidget {
@@ -64,7 +64,7 @@ TopBar::TopBar(Studio& studio, const std::vector<std::unique_ptr<Workspace>>& wo
     : QWidget(parent), studio_(studio) {
     setObjectName("topBar");
     setAttribute(Qt::WA_StyledBackground);
-    setFixedHeight(kHeight);
+    setFixedHeight(kTopBarHeight);
     auto* row = new QHBoxLayout(this);
     row->setContentsMargins(12, 0, 8, 0);
     row->setSpacing(4);
@@ -92,7 +92,7 @@ void TopBar::addTabs(const std::vector<std::unique_ptr<Workspace>>& workspaces, 
         tab->setText(workspace->title());
         tab->setToolButtonStyle(Qt::ToolButtonTextOnly);
         tab->setCheckable(true);
-        tab->setFixedHeight(kHeight - 1);
+        tab->setFixedHeight(kTopBarHeight - 1);
         tab->setFocusPolicy(Qt::StrongFocus);
         group->addButton(tab);
         row.addWidget(tab);
@@ -173,7 +173,7 @@ void TopBar::resizeEvent(QResizeEvent* event) {
 /// left to the menu, so that all menus are in sight.
 void TopBar::fitSearch() {
     if (!kiosk_)
-        for (QWidget* tool : {tools_[0], tools_[1], tools_.back()}) tool->setVisible(width() >= kNarrow);
+        for (QWidget* tool : {tools_[0], tools_[1], tools_.back()}) tool->setVisible(width() >= kNarrowTopBar);
     int others = 300 + stop_->minimumWidth() + menus_->sizeHint().width();
     if (!resume_->isHidden()) others += resume_->sizeHint().width();
     for (const QToolButton* tab : tabs_) others += tab->sizeHint().width() + 4;

@@ -32,7 +32,7 @@ protected:
 
 constexpr int kLayoutVersion = 1;
 constexpr int kUsualDockWidth = 312;
-constexpr int kNarrow = 960; ///< below it two columns of docks would leave no room for the view
+constexpr int kNarrowPage = 960; ///< below it two columns of docks would leave no room for the view
 
 } // namespace
 
@@ -144,7 +144,7 @@ void WorkspacePage::resizeEvent(QResizeEvent* event) {
 
 /// In a narrow window all docks lie behind each other in one column, until it is wide again.
 void WorkspacePage::fitColumns() {
-    const bool narrow = width() < kNarrow;
+    const bool narrow = width() < kNarrowPage;
     if (kiosk_ || narrow == !wideLayout_.isEmpty()) return;
     if (!narrow) {
         restoreState(std::exchange(wideLayout_, {}), kLayoutVersion);

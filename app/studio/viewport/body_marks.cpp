@@ -24,7 +24,8 @@ constexpr int kLongestName = 160; // pixels
 QPointF toPoint(const glm::vec2& p) { return {static_cast<double>(p.x), static_cast<double>(p.y)}; }
 
 /// Text that can be read on any picture.
-void paintName(QPainter& painter, const QPointF& at, const QString& name, Qt::Alignment side, const Palette& palette) {
+void paintBodyName(QPainter& painter, const QPointF& at, const QString& name, Qt::Alignment side,
+                   const Palette& palette) {
     const QString text = painter.fontMetrics().elidedText(name, Qt::ElideRight, kLongestName);
     const double width = painter.fontMetrics().horizontalAdvance(text);
     QPointF left = at + QPointF(0.0, 4.0);
@@ -39,9 +40,9 @@ void paintName(QPainter& painter, const QPointF& at, const QString& name, Qt::Al
     painter.drawText(left, text);
 }
 
-void paintAxes(QPainter& painter, const QPointF& at, const ViewCamera& camera, const BodyMark& body,
-               const glm::vec2& size, const Palette& palette) {
-    paintName(painter, at + QPointF(9.0, -9.0), body.name, Qt::AlignLeft, palette); // under the axes
+void paintBodyAxes(QPainter& painter, const QPointF& at, const ViewCamera& camera, const BodyMark& body,
+                   const glm::vec2& size, const Palette& palette) {
+    paintBodyName(painter, at + QPointF(9.0, -9.0), body.name, Qt::AlignLeft, palette); // under the axes
     const float length = std::max(kAxis, kLeastPixels * metresPerPixel(camera, body.position, size));
     const std::array<QColor, 3> colors = axisColors(palette);
     QColor halo = palette.window;
@@ -77,7 +78,7 @@ void paintArrow(QPainter& painter, const QSize& view, const ViewCamera& camera, 
     painter.setBrush(palette.text);
     painter.drawPolygon(QPolygonF({tip + kArrow * way, tip - 0.6 * kArrow * across, tip + 0.6 * kArrow * across}));
     const Qt::Alignment side = way.x() > 0.4 ? Qt::AlignRight : way.x() < -0.4 ? Qt::AlignLeft : Qt::AlignHCenter;
-    paintName(painter, tip - 14.0 * way, body.name, side, palette);
+    paintBodyName(painter, tip - 14.0 * way, body.name, side, palette);
 }
 
 } // namespace
@@ -100,7 +101,7 @@ void paintBodies(QPainter& painter, const QSize& view, const ViewCamera& camera,
         painter.setOpacity(body.strength);
         const auto at = pixelOf(camera, body.position, size);
         if (at && QRectF(0.0, 0.0, view.width(), view.height()).contains(toPoint(*at)))
-            paintAxes(painter, toPoint(*at), camera, body, size, palette);
+            paintBodyAxes(painter, toPoint(*at), camera, body, size, palette);
         else
             paintArrow(painter, view, camera, body, palette);
     }

@@ -14,7 +14,7 @@ namespace lumorph::studio {
 namespace {
 
 constexpr int kTextWidth = 440;
-constexpr int kMargin = 24;
+constexpr int kPageMargin = 24;
 
 QLabel* label(const QString& text, double size, QFont::Weight weight) {
     auto* made = new QLabel(text);
@@ -51,7 +51,7 @@ GlPage::GlPage(std::function<void()> retry, QWidget* parent) : QWidget(parent) {
     across->addLayout(column);
     across->addStretch(1);
     auto* down = new QVBoxLayout(this);
-    down->setContentsMargins(kMargin, kMargin, kMargin, kMargin);
+    down->setContentsMargins(kPageMargin, kPageMargin, kPageMargin, kPageMargin);
     down->addStretch(2);
     down->addLayout(across);
     down->addStretch(3);
@@ -62,7 +62,7 @@ void GlPage::setReason(const QString& why) { reason_->setText(why); }
 void GlPage::resizeEvent(QResizeEvent* /*event*/) {
     // Labels that wrap know their height only for a width that is settled.
     for (QLabel* text : {title_, reason_, rest_})
-        text->setFixedWidth(std::clamp(width() - 2 * kMargin, 60, kTextWidth));
+        text->setFixedWidth(std::clamp(width() - 2 * kPageMargin, 60, kTextWidth));
 }
 
 void GlPage::paintEvent(QPaintEvent* /*event*/) { QPainter(this).fillRect(rect(), currentPalette().window); }

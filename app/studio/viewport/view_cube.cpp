@@ -16,7 +16,7 @@ namespace lumorph::studio {
 namespace {
 
 constexpr double kBoxSide = 104.0;
-constexpr double kMargin = 12.0;
+constexpr double kCubeMargin = 12.0;
 constexpr float kHalfEdge = 30.0F;
 // From here to the rim a face belongs to its edges and corners.
 constexpr float kRim = 0.7F;
@@ -68,7 +68,7 @@ QColor faceColor(const glm::vec3& seenNormal, const Palette& palette) {
                 : mixed(palette.border, palette.panel, 0.45 + 0.55 * lit);
 }
 
-void paintName(QPainter& painter, const QPolygonF& face, const char* name, const QColor& color) {
+void paintFaceName(QPainter& painter, const QPolygonF& face, const char* name, const QColor& color) {
     // Letters as if painted on the face: on a square of 100 units, laid onto it.
     QTransform onto;
     const QPolygonF square({{0, 0}, {100, 0}, {100, 100}, {0, 100}});
@@ -99,7 +99,9 @@ QPolygonF hotPatch(const View& view, const Face& face, const CubeSide& side) {
 
 } // namespace
 
-QRectF viewCubeBox(const QSize& view) { return {view.width() - kMargin - kBoxSide, kMargin, kBoxSide, kBoxSide}; }
+QRectF viewCubeBox(const QSize& view) {
+    return {view.width() - kCubeMargin - kBoxSide, kCubeMargin, kBoxSide, kBoxSide};
+}
 
 std::optional<CubeSide> viewCubeAt(const QRectF& box, const ViewCamera& camera, const QPointF& pointer) {
     const View view(box, camera);
@@ -139,7 +141,7 @@ void paintViewCube(QPainter& painter, const QRectF& box, const ViewCamera& camer
         }
         const bool onAccent = lit && CubeSide(face.normal) == *hot;
         // Letters that lie almost flat cannot be read and only flicker.
-        if (normal.z > 0.25F) paintName(painter, outline, face.name, onAccent ? palette.onAccent : palette.text);
+        if (normal.z > 0.25F) paintFaceName(painter, outline, face.name, onAccent ? palette.onAccent : palette.text);
     }
     painter.restore();
 }

@@ -11,7 +11,7 @@
 namespace lumorph::studio {
 namespace {
 
-constexpr double kMargin = 16.0;
+constexpr double kMarksMargin = 16.0;
 constexpr double kAxisLength = 20.0;
 
 struct Axis {
@@ -29,7 +29,7 @@ std::array<Axis, 3> axesFarFirst(const ViewCamera& camera, const Palette& palett
     return axes;
 }
 
-void paintAxes(QPainter& painter, const QPointF& middle, const ViewCamera& camera, const Palette& palette) {
+void paintWorldAxes(QPainter& painter, const QPointF& middle, const ViewCamera& camera, const Palette& palette) {
     QFont font = painter.font();
     font.setPixelSize(10);
     font.setWeight(QFont::DemiBold);
@@ -90,8 +90,8 @@ void paintLegend(QPainter& painter, const QSize& view, const ViewCamera& camera,
                  const Palette& palette) {
     painter.save();
     painter.setRenderHint(QPainter::Antialiasing);
-    const QPointF middle(kMargin + 26.0, view.height() - kMargin - 26.0);
-    paintAxes(painter, middle, camera, palette);
+    const QPointF middle(kMarksMargin + 26.0, view.height() - kMarksMargin - 26.0);
+    paintWorldAxes(painter, middle, camera, palette);
     painter.setFont(smallFont(painter));
     const double left = middle.x() + 46.0;
     paintReadable(painter, {left, middle.y() + 8.0, 240.0, 18.0}, projectionName(camera), palette.text, palette.window);
@@ -128,7 +128,7 @@ void paintNotice(QPainter& painter, const QSize& view, const QString& text, cons
     painter.save();
     painter.setRenderHint(QPainter::Antialiasing);
     painter.setFont(smallFont(painter));
-    const QRectF room(kMargin, kMargin, std::max(120.0, view.width() - 140.0), 200.0);
+    const QRectF room(kMarksMargin, kMarksMargin, std::max(120.0, view.width() - 140.0), 200.0);
     const QRectF lines = painter.boundingRect(room.adjusted(12, 8, -12, -8), Qt::TextWordWrap, text);
     painter.setPen(QPen(palette.warning, 1.0));
     painter.setBrush(palette.panel);

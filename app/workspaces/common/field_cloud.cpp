@@ -12,7 +12,7 @@ namespace lumorph::studio {
 
 namespace {
 
-std::array<std::uint8_t, 4> bytesOf(const glm::vec3& color) noexcept {
+std::array<std::uint8_t, 4> colorBytes(const glm::vec3& color) noexcept {
     const glm::vec3 scaled = glm::round(glm::clamp(color, 0.0F, 1.0F) * 255.0F);
     return {static_cast<std::uint8_t>(scaled.x), static_cast<std::uint8_t>(scaled.y),
             static_cast<std::uint8_t>(scaled.z), 255};
@@ -50,7 +50,7 @@ std::vector<ViewportVoxel> fieldCloud(const Field& field, const FieldDisplay& di
     options.touchedBy = touchedBy;
     std::vector<std::array<std::uint8_t, 4>> colors;
     for (int level = 0; level < std::max(field.levels, 1); ++level)
-        colors.push_back(bytesOf(levelColor(level, field.levels, low, high)));
+        colors.push_back(colorBytes(levelColor(level, field.levels, low, high)));
     std::vector<ViewportVoxel> cloud;
     for (const FieldVoxel& voxel : fieldVoxels(field, options)) {
         const auto level = static_cast<std::size_t>(std::clamp(voxel.level, 0, static_cast<int>(colors.size()) - 1));

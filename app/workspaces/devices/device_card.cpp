@@ -9,7 +9,7 @@
 namespace lumorph::studio {
 namespace {
 
-constexpr int kHeight = 80; ///< the same whatever it says, so that rows do not jump under the pointer
+constexpr int kCardHeight = 80; ///< the same whatever it says, so that rows do not jump under the pointer
 
 QColor stripeOf(DeviceCard::Tone tone) {
     const Palette& colors = currentPalette();
@@ -26,7 +26,7 @@ QColor stripeOf(DeviceCard::Tone tone) {
     return colors.border;
 }
 
-std::pair<QString, IconRole> iconOf(DeviceCard::Tone tone) {
+std::pair<QString, IconRole> toneIcon(DeviceCard::Tone tone) {
     switch (tone) {
     case DeviceCard::Tone::live:
         return {"live", IconRole::accent};
@@ -47,7 +47,7 @@ DeviceCardWidget::DeviceCardWidget(QWidget* parent)
       text_(new QLabel(this)), next_(new QPushButton(this)) {
     setObjectName("devices.card");
     setProperty("look", "card");
-    setMinimumHeight(kHeight);
+    setMinimumHeight(kCardHeight);
     title_->setObjectName("devices.card.title");
     title_->setProperty("look", "title");
     text_->setObjectName("devices.card.text");
@@ -78,7 +78,7 @@ DeviceCardWidget::DeviceCardWidget(QWidget* parent)
 void DeviceCardWidget::show(const DeviceCard& card) {
     if (card == card_) return;
     card_ = card;
-    const auto [name, role] = iconOf(card.tone);
+    const auto [name, role] = toneIcon(card.tone);
     icon_->setIcon(name, role);
     title_->setText(card.title);
     text_->setText(card.text);

@@ -20,8 +20,8 @@ constexpr auto kMenu = "Device";
 constexpr auto kPlace = "devices"; // of notices and jobs
 constexpr auto kSketch = "The board's sketch";
 
-QAction* add(Studio& studio, const char* id, const QString& text, const char* icon, const QString& tip,
-             std::function<void()> run, const QKeySequence& keys = {}, bool here = false) {
+QAction* addDeviceAction(Studio& studio, const char* id, const QString& text, const char* icon, const QString& tip,
+                         std::function<void()> run, const QKeySequence& keys = {}, bool here = false) {
     Commands::Options options;
     options.icon = icon;
     options.menu = kMenu;
@@ -112,24 +112,26 @@ void addSlow(Studio& studio) {
 } // namespace
 
 void addDeviceCommands(Studio& studio) {
-    QAction* next = add(
+    QAction* next = addDeviceAction(
         studio, "device.next", "Next step", "play", "What the card over the servos offers",
         [&studio] { doNext(studio); }, QKeySequence(Qt::CTRL | Qt::Key_Return), true);
-    QAction* open =
-        add(studio, "device.connect", "Connect device", "link",
-            "Connects to the device of last time, or to the simulated tablet", [&studio] { connectUsual(studio); });
-    QAction* close = add(studio, "device.disconnect", "Disconnect device", "cancel",
-                         "Lets the servos go and the link too", [&studio] { studio.devices.disconnect(); });
-    QAction* start = add(studio, "device.start", "Start servos", "play", "One after the other, each from where it is",
-                         [&studio] { studio.devices.start(); });
-    QAction* release = add(studio, "device.release", "Let servos go", "pause",
-                           "No pulses: the servos are limp, the link stays", [&studio] { studio.devices.release(); });
-    add(studio, "device.stop", "STOP: let all servos go at once", "stop", "As the red button, and Esc Esc",
-        [&studio] { studio.loop.stop(); });
-    add(
+    QAction* open = addDeviceAction(studio, "device.connect", "Connect device", "link",
+                                    "Connects to the device of last time, or to the simulated tablet",
+                                    [&studio] { connectUsual(studio); });
+    QAction* close = addDeviceAction(studio, "device.disconnect", "Disconnect device", "cancel",
+                                     "Lets the servos go and the link too", [&studio] { studio.devices.disconnect(); });
+    QAction* start =
+        addDeviceAction(studio, "device.start", "Start servos", "play", "One after the other, each from where it is",
+                        [&studio] { studio.devices.start(); });
+    QAction* release =
+        addDeviceAction(studio, "device.release", "Let servos go", "pause",
+                        "No pulses: the servos are limp, the link stays", [&studio] { studio.devices.release(); });
+    addDeviceAction(studio, "device.stop", "STOP: let all servos go at once", "stop", "As the red button, and Esc Esc",
+                    [&studio] { studio.loop.stop(); });
+    addDeviceAction(
         studio, "device.bluetooth", "Search Bluetooth devices", "search", "Takes ten seconds or so",
         [&studio] { studio.devices.searchBluetooth(); }, {}, true);
-    add(
+    addDeviceAction(
         studio, "device.firmware", "Write the board's sketch...", "file",
         "The whole sketch for an Arduino Pro Mini, with the pins, limits and speed of this profile, into a folder that "
         "you choose",

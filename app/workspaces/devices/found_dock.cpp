@@ -22,7 +22,7 @@ QString detailOf(const FoundDevice& device) {
     return QString::fromStdString(device.hint.empty() ? device.address : device.hint);
 }
 
-QString iconOf(const FoundDevice& device) {
+QString foundIcon(const FoundDevice& device) {
     if (!device.trouble.why.empty()) return "warning";
     return device.address.starts_with("sim://") ? "lab" : "device";
 }
@@ -111,7 +111,7 @@ private:
             auto* item = new QListWidgetItem(QString::fromStdString(device.name), list_);
             const QString detail = detailOf(device);
             item->setData(kActuatorDetail, detail);
-            item->setData(kActuatorIcon, iconOf(device));
+            item->setData(kActuatorIcon, foundIcon(device));
             item->setData(Qt::AccessibleDescriptionRole, detail);
             item->setToolTip(QString::fromStdString(device.address) + '\n' + detail);
         }

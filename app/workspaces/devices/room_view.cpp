@@ -17,7 +17,7 @@
 namespace lumorph::studio {
 namespace {
 
-constexpr int kHeight = 240;
+constexpr int kRoomHeight = 240;
 constexpr double kGrasp = 16.0; ///< pixels from a body
 constexpr double kStep = 0.01;  ///< metres
 constexpr double kTurn = 5.0 * M_PI / 180.0;
@@ -333,8 +333,8 @@ void RoomView::resizeEvent(QResizeEvent* event) {
     lookAtAll();
 }
 
-QSize RoomView::sizeHint() const { return {240, kHeight}; }
-QSize RoomView::minimumSizeHint() const { return {160, kHeight}; }
+QSize RoomView::sizeHint() const { return {240, kRoomHeight}; }
+QSize RoomView::minimumSizeHint() const { return {160, kRoomHeight}; }
 
 void RoomView::paintEvent(QPaintEvent* /*event*/) {
     const Palette& colors = currentPalette();

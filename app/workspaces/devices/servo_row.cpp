@@ -12,7 +12,7 @@
 namespace lumorph::studio {
 namespace {
 
-constexpr int kHeight = 56, kLeastHeight = 34;
+constexpr int kServoRowHeight = 56, kLeastServoRowHeight = 34;
 constexpr int kNameWidth = 128;
 
 } // namespace
@@ -25,8 +25,8 @@ ServoRow::ServoRow(std::size_t servo, const QString& name, QWidget* parent)
     setToolTip(name + ": click to set it up on the right");
     setCheckable(true);
     setFocusPolicy(Qt::StrongFocus);
-    setMinimumHeight(kLeastHeight);
-    setMaximumHeight(kHeight);
+    setMinimumHeight(kLeastServoRowHeight);
+    setMaximumHeight(kServoRowHeight);
     setSizePolicy(QSizePolicy::Expanding, QSizePolicy::Preferred);
     auto* title = new QLabel(fontMetrics().elidedText(name, Qt::ElideRight, kNameWidth - 4), this);
     title->setProperty("look", "heading");
@@ -72,7 +72,7 @@ void ServoRow::show(const LinkStatus& link, const ServoSetup& setup, bool tested
     wiggle_->setEnabled(link.phase == LinkPhase::live && servo.attached);
 }
 
-QSize ServoRow::sizeHint() const { return {520, kHeight}; }
+QSize ServoRow::sizeHint() const { return {520, kServoRowHeight}; }
 
 void ServoRow::paintEvent(QPaintEvent* /*event*/) {
     const Palette& colors = currentPalette();

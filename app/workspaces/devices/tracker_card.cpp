@@ -37,7 +37,7 @@ QString headlineOf(const TrackerStatus& status) {
     return source;
 }
 
-QString placeOf(const Pose& pose) {
+QString placeText(const Pose& pose) {
     const auto centimetres = [](double metres) { return QString::number(100.0 * metres, 'f', 1); };
     return QString("x %1   y %2   z %3 cm")
         .arg(centimetres(pose.position.x), centimetres(pose.position.y), centimetres(pose.position.z));
@@ -211,7 +211,7 @@ void TrackerCard::showBodies(const TrackerStatus& status) {
         const bool seen = body.valid && status.receiving;
         shown_[k] = body.name;
         row.name->setText(QString("%1 - %2").arg(asText(body.name).left(60), seen ? "seen" : "lost"));
-        row.place->setText(seen ? placeOf(body.pose) : QString("It is not seen now."));
+        row.place->setText(seen ? placeText(body.pose) : QString("It is not seen now."));
         const int role = indexOf(service_.role(body.name));
         if (row.role->currentIndex() != role) row.role->setCurrentIndex(role);
     }

@@ -13,8 +13,8 @@
 namespace lumorph::studio {
 namespace {
 
-void add(Studio& studio, const char* id, const QString& text, const char* icon, const QString& tip,
-         std::function<void()> run) {
+void addTrackerAction(Studio& studio, const char* id, const QString& text, const char* icon, const QString& tip,
+                      std::function<void()> run) {
     Commands::Options options;
     options.icon = icon;
     options.menu = "Device";
@@ -53,17 +53,19 @@ void openBoard(Studio& studio) {
 } // namespace
 
 void addTrackerCommands(Studio& studio) {
-    add(studio, "tracker.simulate", "Open a simulated head", "eye",
+    addTrackerAction(
+        studio, "tracker.simulate", "Open a simulated head", "eye",
         "A head that moves by itself before the device, or as you drag it, to try the show without a tracker",
         [&studio] { studio.trackers.open("sim://head"); });
-    add(studio, "tracker.simulateDevice", "Open a simulated device pose", "device",
-        "The device as a tracker would see it: drag and turn it in the view of the room",
-        [&studio] { studio.trackers.open("sim://device"); });
-    add(studio, "tracker.camera", "Open a camera with a marker board", "picture",
-        "The camera and board used last, or the first camera that is there", [&studio] { openBoard(studio); });
-    add(studio, "tracker.board", "Write a marker board to print...", "grid",
-        "A page as PDF, at true size, with the measures of the board's address. Fix it flat to the device",
-        [&studio] { writeBoard(studio); });
+    addTrackerAction(studio, "tracker.simulateDevice", "Open a simulated device pose", "device",
+                     "The device as a tracker would see it: drag and turn it in the view of the room",
+                     [&studio] { studio.trackers.open("sim://device"); });
+    addTrackerAction(studio, "tracker.camera", "Open a camera with a marker board", "picture",
+                     "The camera and board used last, or the first camera that is there",
+                     [&studio] { openBoard(studio); });
+    addTrackerAction(studio, "tracker.board", "Write a marker board to print...", "grid",
+                     "A page as PDF, at true size, with the measures of the board's address. Fix it flat to the device",
+                     [&studio] { writeBoard(studio); });
     addBodiesCommand(studio);
 }
 

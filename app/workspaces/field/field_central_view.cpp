@@ -11,7 +11,7 @@ namespace lumorph::studio {
 
 namespace {
 
-constexpr int kMargin = 16;
+constexpr int kViewMargin = 16;
 constexpr int kNoticeWidth = 480;
 constexpr int kNarrow = 800;
 constexpr int kMarksHeight = 56; ///< of the axes and the words beside them
@@ -39,7 +39,7 @@ FieldCentralView::FieldCentralView(Studio& studio, Throttle& numbers, QWidget* p
     grid->addWidget(viewport_, 0, 0, 3, 3);
     const auto lay = [grid](QWidget* widget, int row, Qt::Alignment alignment) {
         auto* padded = new QVBoxLayout;
-        padded->setContentsMargins(kMargin, kMargin, kMargin, kMargin);
+        padded->setContentsMargins(kViewMargin, kViewMargin, kViewMargin, kViewMargin);
         padded->addWidget(widget);
         grid->addLayout(padded, row, 0, 1, 3, alignment);
         widget->raise();
@@ -61,11 +61,11 @@ void FieldCentralView::resizeEvent(QResizeEvent* event) {
     QWidget::resizeEvent(event);
     // Side by side where there is room; else above each other, and above the marks in the corner.
     const bool narrow = width() < kNarrow;
-    const int below = narrow ? kMargin + kMarksHeight : kMargin;
-    timelineMargins_->setContentsMargins(kMargin, kMargin, kMargin, below);
+    const int below = narrow ? kViewMargin + kMarksHeight : kViewMargin;
+    timelineMargins_->setContentsMargins(kViewMargin, kViewMargin, kViewMargin, below);
     readout_->setCompact(narrow);
-    const int timeline = narrow ? timeline_->sizeHint().height() + kMargin / 2 : 0;
-    readoutMargins_->setContentsMargins(kMargin, kMargin, kMargin, below + timeline);
+    const int timeline = narrow ? timeline_->sizeHint().height() + kViewMargin / 2 : 0;
+    readoutMargins_->setContentsMargins(kViewMargin, kViewMargin, kViewMargin, below + timeline);
 }
 
 QWidget* FieldCentralView::makeTools() {

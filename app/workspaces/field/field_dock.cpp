@@ -17,7 +17,7 @@
 namespace lumorph::studio {
 namespace {
 
-const QString kPlace = QStringLiteral("field");
+const QString kFieldPlace = QStringLiteral("field");
 
 /// What the field is, as rows of a name and a value, and warnings below.
 class FieldFacts : public QWidget {
@@ -91,8 +91,8 @@ FieldDock::FieldDock(Studio& studio, FieldDisplayModel& display) : studio_(studi
     auto* layout = new QVBoxLayout(this);
     layout->setContentsMargins(0, 0, 0, 0);
     layout->setSpacing(0);
-    layout->addWidget(makeNoticeBar(studio.notices, kPlace));
-    layout->addWidget(makeJobBar(studio.jobs, kPlace));
+    layout->addWidget(makeNoticeBar(studio.notices, kFieldPlace));
+    layout->addWidget(makeJobBar(studio.jobs, kFieldPlace));
     layout->addWidget(pages_, 1);
     pages_->setObjectName("field.pages");
     pages_->addWidget(makeEmptyState(
@@ -139,8 +139,9 @@ QWidget* FieldDock::makeContents(FieldDisplayModel& display) {
 void FieldDock::watchBuilds() {
     connect(&studio_.jobs, &Jobs::started, this, [this](int id) {
         const std::vector<Jobs::Status> running = studio_.jobs.running();
-        const auto found = std::find_if(running.begin(), running.end(),
-                                        [id](const Jobs::Status& job) { return job.id == id && job.place == kPlace; });
+        const auto found = std::find_if(running.begin(), running.end(), [id](const Jobs::Status& job) {
+            return job.id == id && job.place == kFieldPlace;
+        });
         if (found != running.end()) since_.start();
     });
 }

@@ -16,7 +16,7 @@
 namespace lumorph::studio {
 namespace {
 
-const QString kPlace = QStringLiteral("export");
+const QString kExportPlace = QStringLiteral("export");
 
 using Frame = std::shared_ptr<const MatchFrame>;
 using Path = std::filesystem::path;
@@ -141,7 +141,7 @@ QString FieldExports::suggestedName(const QString& ending) const {
 
 void FieldExports::run(const QString& title, const QString& again, std::function<Path(const Progress&)> write) {
     studio().jobs.run<Path>(
-        kPlace, title, std::move(write),
+        kExportPlace, title, std::move(write),
         [self = QPointer<FieldExports>(this)](const Path& path) {
             if (self) self->tellWritten(path);
         },
@@ -160,7 +160,7 @@ void FieldExports::tellWritten(const Path& path) {
     const QString folder = file.isDir() ? file.absoluteFilePath() : file.absolutePath();
     notice.actions.push_back(
         {tr("Open its folder"), [folder] { QDesktopServices::openUrl(QUrl::fromLocalFile(folder)); }});
-    studio().notices.post(kPlace, std::move(notice));
+    studio().notices.post(kExportPlace, std::move(notice));
 }
 
 void FieldExports::tellFailed(const std::exception& error, const QString& again) {
@@ -169,7 +169,7 @@ void FieldExports::tellFailed(const std::exception& error, const QString& again)
                                   if (!self) return;
                                   if (QAction* action = self->studio().commands.find(again)) action->trigger();
                               }});
-    studio().notices.post(kPlace, std::move(notice));
+    studio().notices.post(kExportPlace, std::move(notice));
 }
 
 void FieldExports::exportShape() {

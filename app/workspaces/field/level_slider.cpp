@@ -16,7 +16,7 @@ namespace lumorph::studio {
 
 namespace {
 
-constexpr double kMargin = 8.0; ///< so that the handle is whole at both ends
+constexpr double kSliderMargin = 8.0; ///< so that the handle is whole at both ends
 constexpr int kMostTicks = 41;
 
 } // namespace
@@ -53,7 +53,7 @@ void LevelSlider::setLive(bool live) {
     update();
 }
 
-double LevelSlider::xOf(double stroke) const { return kMargin + stroke * (width() - 2.0 * kMargin); }
+double LevelSlider::xOf(double stroke) const { return kSliderMargin + stroke * (width() - 2.0 * kSliderMargin); }
 
 QSize LevelSlider::sizeHint() const { return {160, 24}; }
 QSize LevelSlider::minimumSizeHint() const { return {80, 24}; }
@@ -88,8 +88,8 @@ void LevelSlider::paintEvent(QPaintEvent* /*event*/) {
 }
 
 void LevelSlider::dragTo(double x) {
-    const double room = std::max(width() - 2.0 * kMargin, 1.0);
-    const int level = nearestLevel(std::clamp((x - kMargin) / room, 0.0, 1.0), maximum() + 1);
+    const double room = std::max(width() - 2.0 * kSliderMargin, 1.0);
+    const int level = nearestLevel(std::clamp((x - kSliderMargin) / room, 0.0, 1.0), maximum() + 1);
     wanted_ = static_cast<double>(level) / maximum();
     if (level != value()) setValue(level);
     update();

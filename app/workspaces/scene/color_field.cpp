@@ -11,7 +11,7 @@ namespace lumorph::studio {
 namespace {
 
 constexpr int kPatch = 18;
-constexpr int kMargin = 6;
+constexpr int kColorMargin = 6;
 constexpr int kNumberWidth = 72;
 
 } // namespace
@@ -56,7 +56,8 @@ void ColorField::paintEvent(QPaintEvent* event) {
     if (!isEnabled()) shown.setAlpha(90);
     painter.setPen(currentPalette().border);
     painter.setBrush(shown);
-    painter.drawRoundedRect(QRectF(kMargin + 0.5, (height() - kPatch) / 2 + 0.5, 2 * kPatch - 1, kPatch - 1), 3, 3);
+    painter.drawRoundedRect(QRectF(kColorMargin + 0.5, (height() - kPatch) / 2 + 0.5, 2 * kPatch - 1, kPatch - 1), 3,
+                            3);
 }
 
 } // namespace lumorph::studio

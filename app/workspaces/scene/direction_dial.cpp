@@ -15,7 +15,7 @@ namespace lumorph::studio {
 
 namespace {
 
-constexpr double kMargin = 10.0;
+constexpr double kDialMargin = 10.0;
 constexpr double kHandle = 6.0;
 constexpr double kLowest = 3.0 * std::numbers::pi / 180.0; ///< a light in the horizon casts endless shadows
 constexpr double kStep = 5.0 * std::numbers::pi / 180.0;
@@ -52,7 +52,7 @@ void DirectionDial::setDirection(const glm::vec3& direction) {
     update();
 }
 
-double DirectionDial::radius() const { return std::min(width(), height()) / 2.0 - kMargin; }
+double DirectionDial::radius() const { return std::min(width(), height()) / 2.0 - kDialMargin; }
 
 QPointF DirectionDial::handle() const {
     const Bearing bearing = bearingOf(direction_);

@@ -11,7 +11,7 @@ namespace lumorph::studio {
 
 namespace {
 
-constexpr double kTurn = 2.0 * std::numbers::pi;
+constexpr double kWaveTurn = 2.0 * std::numbers::pi;
 
 Part<HeightItem> heightOf(const Part<SceneItem>& item) {
     return within<HeightItem>(item, [](auto& found) { return std::get_if<HeightItem>(&found.kind); });
@@ -29,9 +29,9 @@ void addWave(SceneForm& form, const Part<Wave>& wave, const QString& name) {
         wave, [](auto& w) -> auto& { return w.period; });
     form.number(
         {name + ".direction", QObject::tr("Direction"), QObject::tr("0 degrees runs to the right, 90 to the front")},
-        {Quantity::angle, -kTurn, kTurn}, wave, [](auto& w) -> auto& { return w.direction; });
+        {Quantity::angle, -kWaveTurn, kWaveTurn}, wave, [](auto& w) -> auto& { return w.direction; });
     form.number(
-        {name + ".phase", QObject::tr("Starts at"), {}}, {Quantity::angle, -kTurn, kTurn}, wave,
+        {name + ".phase", QObject::tr("Starts at"), {}}, {Quantity::angle, -kWaveTurn, kWaveTurn}, wave,
         [](auto& w) -> auto& { return w.phase; });
 }
 

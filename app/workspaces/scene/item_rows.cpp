@@ -11,8 +11,8 @@ namespace lumorph::studio {
 
 namespace {
 
-constexpr double kFar = 10.0; ///< metres
-constexpr double kTurn = 2.0 * std::numbers::pi;
+constexpr double kFarthestItem = 10.0; ///< metres
+constexpr double kItemTurn = 2.0 * std::numbers::pi;
 
 bool isLight(const SceneItem* item) { return item && std::holds_alternative<LightItem>(item->kind); }
 bool isTarget(const SceneItem* item) { return item && std::holds_alternative<TargetItem>(item->kind); }
@@ -68,7 +68,7 @@ QWidget* addRotation(SceneForm& form, const Part<SceneItem>& item) {
     for (int axis = 0; axis < 3; ++axis) {
         const Turn& turn = turns[axis];
         rows.push_back({{turn.name, turn.label, turn.hint},
-                        {Quantity::angle, -kTurn, kTurn},
+                        {Quantity::angle, -kItemTurn, kItemTurn},
                         [item, axis](const StudioState& state) -> std::optional<double> {
                             const SceneItem* found = item.read(state);
                             return found ? std::optional(headingTiltRoll(glm::dquat(found->rotation))[axis])
@@ -95,7 +95,8 @@ void addPlace(SceneForm& form, const Part<SceneItem>& item) {
     form.showWhile(
         form.vector(
             {"item.position", QObject::tr("Position"), QObject::tr("x to the right, y up, z towards the viewer")},
-            {Quantity::length, -kFar, kFar}, "xyz", item, [](auto& found) -> auto& { return found.position; }),
+            {Quantity::length, -kFarthestItem, kFarthestItem}, "xyz", item,
+            [](auto& found) -> auto& { return found.position; }),
         [item](const StudioState& state) { return !isSun(item.read(state)); });
     form.showWhile(addRotation(form, item), standsStill);
     QWidget* scale = form.vector(
@@ -121,7 +122,7 @@ void addMotion(SceneForm& form, const Part<SceneItem>& item) {
     });
     form.number(
         {"item.motion.spin", QObject::tr("Turns a second"), QObject::tr("About the upright axis")},
-        {Quantity::angle, -kTurn, kTurn, 0.0, std::numbers::pi / 36.0}, item,
+        {Quantity::angle, -kItemTurn, kItemTurn, 0.0, std::numbers::pi / 36.0}, item,
         [](auto& found) -> auto& { return found.motion.spin; });
     form.number(
         {"item.motion.bob", QObject::tr("Rises and falls"), QObject::tr("How far, up and down")},

@@ -9,7 +9,7 @@ namespace {
 
 constexpr int kMilliseconds = 250; // nobody reads faster
 constexpr int kLine = 18;
-constexpr int kPadding = 12;
+constexpr int kLatencyPadding = 12;
 constexpr int kWidth = 200;
 constexpr int kLines = 16;
 
@@ -26,7 +26,7 @@ LatencyCard::LatencyCard(ShowFeed& feed, QWidget* parent) : FloatingCard(parent)
     });
 }
 
-QSize LatencyCard::sizeHint() const { return {kWidth, kLines * kLine + 2 * kPadding}; }
+QSize LatencyCard::sizeHint() const { return {kWidth, kLines * kLine + 2 * kLatencyPadding}; }
 
 std::vector<LatencyCard::Line> LatencyCard::linesOf(const ShowFeed& feed) {
     const DrawnShow& newest = feed.newest();
@@ -56,9 +56,9 @@ void LatencyCard::paintEvent(QPaintEvent* event) {
     FloatingCard::paintEvent(event);
     const Palette& colors = currentPalette();
     QPainter painter(this);
-    int y = kPadding;
+    int y = kLatencyPadding;
     for (const Line& line : lines_) {
-        const QRect row(kPadding, y, width() - 2 * kPadding, kLine);
+        const QRect row(kLatencyPadding, y, width() - 2 * kLatencyPadding, kLine);
         painter.setPen(colors.textMuted);
         painter.drawText(row, Qt::AlignLeft | Qt::AlignVCenter, line.stage);
         painter.setPen(colors.text);

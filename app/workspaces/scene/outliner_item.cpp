@@ -11,9 +11,9 @@ namespace lumorph::studio {
 
 namespace {
 
-constexpr int kHeight = 28;
+constexpr int kOutlinerHeight = 28;
 constexpr int kIcon = 18;
-constexpr int kGap = 8;
+constexpr int kOutlinerGap = 8;
 constexpr int kSwatch = 12;
 constexpr int kEye = 24;
 
@@ -33,7 +33,7 @@ int drawBadge(QPainter& painter, const QRect& row, int right, const QString& tex
     painter.drawRoundedRect(box.adjusted(0.5, 0.5, -0.5, -0.5), 4, 4);
     painter.setFont(small);
     painter.drawText(box, Qt::AlignCenter, text);
-    return right - width - kGap;
+    return right - width - kOutlinerGap;
 }
 
 void drawHeading(QPainter& painter, const QStyleOptionViewItem& option, const QString& text) {
@@ -49,7 +49,7 @@ void drawHeading(QPainter& painter, const QStyleOptionViewItem& option, const QS
 QRect OutlinerItem::eyeBox(const QRect& row) { return {row.right() - kEye, row.top(), kEye, row.height()}; }
 
 QSize OutlinerItem::sizeHint(const QStyleOptionViewItem& /*option*/, const QModelIndex& /*index*/) const {
-    return {160, kHeight};
+    return {160, kOutlinerHeight};
 }
 
 void OutlinerItem::paint(QPainter* painter, const QStyleOptionViewItem& option, const QModelIndex& index) const {
@@ -74,14 +74,14 @@ void OutlinerItem::paint(QPainter* painter, const QStyleOptionViewItem& option, 
     int left = row.left() + 4;
     if (const QString name = text(OutlinerModel::iconRole); !name.isEmpty()) {
         paintIcon(*painter, middleLeft(row, left, kIcon), name, chosen ? colors.accentText : colors.textMuted);
-        left += kIcon + kGap;
+        left += kIcon + kOutlinerGap;
     }
-    int right = row.right() - kGap;
+    int right = row.right() - kOutlinerGap;
     if (index.data(OutlinerModel::canHideRole).toBool()) {
         const bool visible = index.data(OutlinerModel::visibleRole).toBool();
         paintIcon(*painter, middleLeft(row, row.right() - kEye + 3, kIcon), visible ? "eye" : "eye-off",
                   visible ? colors.textMuted : disabledText(colors));
-        right = row.right() - kEye - kGap / 2;
+        right = row.right() - kEye - kOutlinerGap / 2;
     }
     if (const QString badge = text(OutlinerModel::badgeRole); !badge.isEmpty())
         right = drawBadge(*painter, row, right, badge, option.font);
@@ -89,7 +89,7 @@ void OutlinerItem::paint(QPainter* painter, const QStyleOptionViewItem& option, 
         painter->setPen(colors.border);
         painter->setBrush(swatch.value<QColor>());
         painter->drawEllipse(middleLeft(row, right - kSwatch, kSwatch).adjusted(0.5, 0.5, -0.5, -0.5));
-        right -= kSwatch + kGap;
+        right -= kSwatch + kOutlinerGap;
     }
     painter->setFont(option.font);
     painter->setPen(muted ? colors.textMuted : colors.text);
@@ -101,7 +101,7 @@ void OutlinerItem::paint(QPainter* painter, const QStyleOptionViewItem& option, 
 
 void OutlinerItem::updateEditorGeometry(QWidget* editor, const QStyleOptionViewItem& option,
                                         const QModelIndex& /*index*/) const {
-    editor->setGeometry(option.rect.adjusted(kIcon + kGap, 0, -kEye, 0));
+    editor->setGeometry(option.rect.adjusted(kIcon + kOutlinerGap, 0, -kEye, 0));
 }
 
 bool OutlinerItem::editorEvent(QEvent* event, QAbstractItemModel* model, const QStyleOptionViewItem& option,

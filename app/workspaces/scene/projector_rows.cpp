@@ -13,7 +13,7 @@ namespace lumorph::studio {
 
 namespace {
 
-constexpr double kFar = 20.0; ///< metres
+constexpr double kFarthestProjector = 20.0; ///< metres
 constexpr int kLookMilliseconds = 500;
 constexpr double kWorthTelling = 0.01; ///< share of the device
 
@@ -21,7 +21,7 @@ SceneForm::NumberRow placeRow(const Part<InstalledProjector>& projector, int axi
     const QString letter(QChar::fromLatin1("xyz"[axis]));
     return {
         {"projector.position." + letter, QObject::tr("Position %1").arg(letter), QObject::tr("y is above the table")},
-        {Quantity::length, -kFar, kFar, axis == 1 ? 2.0 : 0.0, 0.01},
+        {Quantity::length, -kFarthestProjector, kFarthestProjector, axis == 1 ? 2.0 : 0.0, 0.01},
         [projector, axis](const StudioState& state) -> std::optional<double> {
             const InstalledProjector* found = projector.read(state);
             return found ? std::optional(positionOf(found->camera)[axis]) : std::nullopt;
@@ -39,7 +39,7 @@ SceneForm::NumberRow lookRow(const Part<InstalledProjector>& projector, int axis
     const QString letter(QChar::fromLatin1("xz"[axis]));
     return {{"projector.look." + letter, QObject::tr("Looks at %1").arg(letter),
              QObject::tr("Where the middle of its picture falls on the table")},
-            {Quantity::length, -kFar, kFar, 0.0, 0.01},
+            {Quantity::length, -kFarthestProjector, kFarthestProjector, 0.0, 0.01},
             [projector, axis](const StudioState& state) -> std::optional<double> {
                 const InstalledProjector* found = projector.read(state);
                 const auto point = found ? lookPoint(found->camera) : std::nullopt;
@@ -131,7 +131,7 @@ void addLight(SceneForm& form, const Part<InstalledProjector>& projector) {
         {Quantity::plain, 0.01, 100.0, 3.0, 0.1}, projector, [](auto& found) -> auto& { return found.peak; });
     form.number(
         {"projector.reference", QObject::tr("Measured at"), QObject::tr("The distance at which that holds")},
-        {Quantity::length, 0.05, kFar, 2.0, 0.01}, projector,
+        {Quantity::length, 0.05, kFarthestProjector, 2.0, 0.01}, projector,
         [](auto& found) -> auto& { return found.referenceDistance; });
     form.number(
         {"projector.gamma", QObject::tr("Gamma"), QObject::tr("0 is the curve of sRGB")},

@@ -26,7 +26,7 @@
 namespace lumorph::studio {
 namespace {
 
-constexpr int kMargin = 12;
+constexpr int kViewMargin = 12;
 constexpr int kNoticeWidth = 480;
 
 /// The angle between two ways to look at a centre.
@@ -207,9 +207,9 @@ void SceneCentralView::Data::arrange() {
     page->setGeometry(views->rect());
     const QSize card = latency->sizeHint();
     latency->setGeometry(
-        QRect(QPoint(size.width() - card.width() - kMargin, size.height() - card.height() - kMargin), card));
-    const int wide = std::min(kNoticeWidth, size.width() - 2 * kMargin);
-    notices->setGeometry((size.width() - wide) / 2, kMargin, wide, notices->sizeHint().height());
+        QRect(QPoint(size.width() - card.width() - kViewMargin, size.height() - card.height() - kViewMargin), card));
+    const int wide = std::min(kNoticeWidth, size.width() - 2 * kViewMargin);
+    notices->setGeometry((size.width() - wide) / 2, kViewMargin, wide, notices->sizeHint().height());
     latency->raise();
     notices->raise();
     showScene();

@@ -12,8 +12,8 @@ namespace lumorph::studio {
 
 namespace {
 
-constexpr double kFar = 20.0; ///< metres
-constexpr double kTurn = 2.0 * std::numbers::pi;
+constexpr double kFarthestSetup = 20.0; ///< metres
+constexpr double kSetupTurn = 2.0 * std::numbers::pi;
 
 Part<DeviceSkin> devicePart() {
     return makePart<DeviceSkin>([](auto& scene) { return &scene.device; });
@@ -82,7 +82,7 @@ void addDevicePlace(SceneForm& form) {
         const QString letter(QChar::fromLatin1("xyz"[axis]));
         position.push_back(
             {{"device.position." + letter, QObject::tr("Position %1").arg(letter), QObject::tr("On the table")},
-             {Quantity::length, -kFar, kFar},
+             {Quantity::length, -kFarthestSetup, kFarthestSetup},
              [axis](const StudioState& state) {
                  return std::optional<double>(state.installation->worldFromDevice[3][axis]);
              },
@@ -90,7 +90,7 @@ void addDevicePlace(SceneForm& form) {
                  installationToEdit(state).worldFromDevice[3][axis] = static_cast<float>(value);
              }});
         rotation.push_back({{"device.rotation." + letter, turns[axis], {}},
-                            {Quantity::angle, -kTurn, kTurn},
+                            {Quantity::angle, -kSetupTurn, kSetupTurn},
                             [axis](const StudioState& state) {
                                 const glm::dquat turned(glm::quat_cast(glm::mat3(state.installation->worldFromDevice)));
                                 return std::optional(headingTiltRoll(turned)[axis]);
@@ -134,8 +134,9 @@ void addDeviceRows(SceneForm& form, Studio& studio) {
 void addTableRows(SceneForm& form, Studio& studio) {
     const auto table = makePart<Table>([](auto& scene) { return &scene.table; });
     form.vector(
-        {"table.size", QObject::tr("Size"), QObject::tr("Width and depth")}, {Quantity::length, 0.01, kFar, 1.0, 0.01},
-        "xz", room(), [](auto& all) -> auto& { return all.tableSize; });
+        {"table.size", QObject::tr("Size"), QObject::tr("Width and depth")},
+        {Quantity::length, 0.01, kFarthestSetup, 1.0, 0.01}, "xz", room(),
+        [](auto& all) -> auto& { return all.tableSize; });
     form.color(
         {"table.surfaceColor", QObject::tr("Bare surface"), bareSurfaceTip()}, room(),
         [](auto& all) -> auto& { return all.tableColor; });
@@ -149,7 +150,8 @@ void addViewerRows(SceneForm& form, Studio& studio) {
     form.section("viewer.section.eye", QObject::tr("Simulated eye"));
     form.vector(
         {"viewer.eye", QObject::tr("Eye"), QObject::tr("Above the table; z towards the front")},
-        {Quantity::length, -kFar, kFar, 0.4, 0.01}, "xyz", room(), [](auto& all) -> auto& { return all.eye; });
+        {Quantity::length, -kFarthestSetup, kFarthestSetup, 0.4, 0.01}, "xyz", room(),
+        [](auto& all) -> auto& { return all.eye; });
     QLabel* who = form.sentence("viewer.who");
     const auto tell = [who, &studio] {
         const auto& frame = studio.loop.frame();

@@ -16,7 +16,7 @@ namespace {
 
 constexpr const char* kFolderKey = "folders/scene";
 constexpr int kThumbnail = 36;
-constexpr double kTurn = 2.0 * std::numbers::pi;
+constexpr double kTextureTurn = 2.0 * std::numbers::pi;
 
 QString shortName(const std::string& asset) {
     if (asset.empty()) return QObject::tr("None");
@@ -188,8 +188,8 @@ void addTextureRows(SceneForm& form, Studio& studio, const QString& prefix, cons
                        here);
     }
     form.showWhile(form.number(
-                       {prefix + ".turn", QObject::tr("Turned by"), {}}, {Quantity::angle, -kTurn, kTurn}, part,
-                       [](auto& texture) -> auto& { return texture.turn; }),
+                       {prefix + ".turn", QObject::tr("Turned by"), {}}, {Quantity::angle, -kTextureTurn, kTextureTurn},
+                       part, [](auto& texture) -> auto& { return texture.turn; }),
                    named);
     const auto whole = FormRange{Quantity::level, 1.0, 64.0, 1.0, 1.0};
     QWidget* columns = form.number(

@@ -14,7 +14,7 @@
 namespace lumorph::studio {
 namespace {
 
-constexpr int kHeight = 40;
+constexpr int kViewBarHeight = 40;
 
 QFrame* makeLine(QWidget* parent) {
     auto* line = new QFrame(parent);
@@ -45,7 +45,7 @@ constexpr ModeWords kModes[] = {
 
 ViewBar::ViewBar(Studio& studio, QWidget* parent) : QWidget(parent), studio_(studio) {
     setObjectName("scene.bar");
-    setFixedHeight(kHeight);
+    setFixedHeight(kViewBarHeight);
     setSizePolicy(QSizePolicy::Ignored, QSizePolicy::Fixed); // words give way, not the pictures
     auto* row = new QHBoxLayout(this);
     row->setContentsMargins(8, 0, 8, 0);

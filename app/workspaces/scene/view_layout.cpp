@@ -3,20 +3,20 @@
 namespace lumorph::studio {
 namespace {
 
-constexpr int kGap = 2;
+constexpr int kPaneGap = 2;
 constexpr double kLarger = 0.6; ///< of the lab beside the eye
 /// Pictures of the device are wider than high: two are side by side only where there is room for both.
 constexpr double kWide = 1.4;
 
 /// Cuts a box in two, side by side or above each other.
 std::pair<QRect, QRect> cut(const QRect& box, bool sideways, double share) {
-    const int length = (sideways ? box.width() : box.height()) - kGap;
+    const int length = (sideways ? box.width() : box.height()) - kPaneGap;
     const int first = static_cast<int>(share * length);
     if (sideways)
         return {QRect(box.topLeft(), QSize(first, box.height())),
-                QRect(box.left() + first + kGap, box.top(), length - first, box.height())};
+                QRect(box.left() + first + kPaneGap, box.top(), length - first, box.height())};
     return {QRect(box.topLeft(), QSize(box.width(), first)),
-            QRect(box.left(), box.top() + first + kGap, box.width(), length - first)};
+            QRect(box.left(), box.top() + first + kPaneGap, box.width(), length - first)};
 }
 
 } // namespace

@@ -15,8 +15,8 @@ namespace lumorph::studio {
 namespace {
 
 constexpr double kClickReach = 4.0; // pixels that a click may wander
-constexpr int kPadding = 8;
-constexpr int kMargin = 12;
+constexpr int kPanePadding = 8;
+constexpr int kPaneMargin = 12;
 constexpr int kCaptionHeight = 24;
 
 /// Arrow keys go around as the pointer does.
@@ -39,7 +39,7 @@ std::optional<QPointF> stepOf(int key) {
 
 PaneCaption::PaneCaption(const QString& title, QWidget* parent) : QWidget(parent), title_(title) {
     setAttribute(Qt::WA_TransparentForMouseEvents);
-    move(kMargin, kMargin);
+    move(kPaneMargin, kPaneMargin);
     setText(title, {});
 }
 
@@ -51,8 +51,8 @@ void PaneCaption::setText(const QString& title, const QString& state, bool live)
     setAccessibleName(state.isEmpty() ? title : title + ": " + state);
     QFont bold = font();
     bold.setWeight(QFont::DemiBold);
-    const int wide = QFontMetrics(bold).horizontalAdvance(title_) + 2 * kPadding +
-                     (state_.isEmpty() ? 0 : kPadding + fontMetrics().horizontalAdvance(state_));
+    const int wide = QFontMetrics(bold).horizontalAdvance(title_) + 2 * kPanePadding +
+                     (state_.isEmpty() ? 0 : kPanePadding + fontMetrics().horizontalAdvance(state_));
     if (size() != QSize(wide, kCaptionHeight)) resize(wide, kCaptionHeight);
     if (!same) update();
 }
@@ -70,9 +70,9 @@ void PaneCaption::paintEvent(QPaintEvent* /*event*/) {
     bold.setWeight(QFont::DemiBold);
     painter.setFont(bold);
     painter.setPen(colors.text);
-    const QRect inside = rect().adjusted(kPadding, 0, -kPadding, 0);
+    const QRect inside = rect().adjusted(kPanePadding, 0, -kPanePadding, 0);
     painter.drawText(inside, Qt::AlignLeft | Qt::AlignVCenter, title_);
-    const int used = QFontMetrics(bold).horizontalAdvance(title_) + kPadding;
+    const int used = QFontMetrics(bold).horizontalAdvance(title_) + kPanePadding;
     painter.setFont(font());
     painter.setPen(live_ ? colors.accentText : colors.textMuted);
     painter.drawText(inside.adjusted(used, 0, 0, 0), Qt::AlignLeft | Qt::AlignVCenter, state_);

@@ -206,7 +206,7 @@ TEST(SpatialRenderer, ThingsFarFromTheDeviceAreDrawnOnTheTable) {
     int shown = 0;
     for (int y = 0; y < wide.camera.size.y; ++y)
         for (int x = 0; x < wide.camera.size.x; ++x) {
-            const Place place = placeOf({}, scene.table, wide.camera, {x, y});
+            const Place place = placeOf({}, scene.tableSize, wide.camera, {x, y});
             if (place.on != Place::On::table) continue;
             const bool green = sent.at(x, y)[1] > 100;
             if (through(glm::dvec3(*frame.eye), place.point, centre, 0.017)) {
