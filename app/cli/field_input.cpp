@@ -10,6 +10,7 @@
 #include "core/geometry/mesh_parsers.h"
 #include "core/geometry/model.h"
 #include "core/voxels/nrrd.h"
+#include "core/voxels/surface.h"
 
 namespace lumorph::cli {
 
@@ -46,6 +47,15 @@ TargetVoxels gridVoxels(const Field& field, std::span<const std::byte> bytes, co
         throw DataError(path, "its grid lies elsewhere than the field's",
                         "make it with 'lumorph voxelize --like' that field");
     return {bitsOf(grid), {}, 0.0, {}};
+}
+
+/// The mesh as it is: a surface needs no repair.
+TargetVoxels surfaceVoxels(const Field& field, TriangleMesh mesh, bool fit) {
+    if (fit) mesh = placed(mesh, fitPlacement(field, boundingBox(mesh.positions)));
+    TargetVoxels voxels{voxelizeSurface(field.frame, mesh), std::move(mesh), 0.0, {}};
+    if (voxels.bits.count() == 0)
+        voxels.warnings.emplace_back("the mesh lies beyond the space the device can show; use --fit.");
+    return voxels;
 }
 
 } // namespace
@@ -88,9 +98,13 @@ TargetVoxels readTarget(const Session& session, const Field& field, const Target
     if (hasGridExtension(arguments.path) || beginsWith(bytes, "NRRD")) {
         if (arguments.fit)
             throw InvalidInput("--fit", "a voxel grid stands where it is", "leave --fit out, or give the mesh");
+        if (arguments.surface)
+            throw InvalidInput("--surface", "a voxel grid has no surface to look at", "give the mesh");
         return gridVoxels(field, bytes, name);
     }
-    const Target target = makeTarget(arguments.path == "-" ? parseMesh(bytes, name) : readMesh(arguments.path));
+    TriangleMesh mesh = arguments.path == "-" ? parseMesh(bytes, name) : readMesh(arguments.path);
+    if (arguments.surface) return surfaceVoxels(field, std::move(mesh), arguments.fit);
+    const Target target = makeTarget(std::move(mesh));
     std::optional<Placement> placement;
     if (arguments.fit) placement = fitPlacement(field, boundingBox(target.mesh.positions));
     return voxelsOf(field, target, placement, arguments.repeat);

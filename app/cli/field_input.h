@@ -24,7 +24,8 @@ struct TargetVoxels {
 struct TargetArguments {
     std::string path;
     bool fit = false;
-    int repeat = 1; ///< how often to voxelise, for the median
+    bool surface = false; ///< voxels that its surface meets, instead of those inside it; it may be open then
+    int repeat = 1;       ///< how often to voxelise, for the median
 };
 
 /// Reads a mesh, or an NRRD grid in the field's own frame, and turns it into voxels. On stdin ("-") it
