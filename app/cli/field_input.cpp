@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "core/base/error.h"
+#include "core/base/statistics.h"
 #include "core/geometry/mesh_file.h"
 #include "core/geometry/mesh_parsers.h"
 #include "core/geometry/model.h"
@@ -60,13 +61,6 @@ TargetVoxels surfaceVoxels(const Field& field, TriangleMesh mesh, bool fit) {
 
 } // namespace
 
-double medianOf(std::vector<double> values) {
-    if (values.empty()) return 0.0;
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    return *middle;
-}
-
 TargetVoxels voxelsOf(const Field& field, const Target& target, const std::optional<Placement>& placement, int repeat) {
     TargetVoxels voxels{{}, placed(target.mesh, placement.value_or(Placement{})), 0.0, target.warnings};
     const Target standing{voxels.mesh, target.closed, {}};
@@ -77,7 +71,7 @@ TargetVoxels voxelsOf(const Field& field, const Target& target, const std::optio
         voxelizeTarget(field.frame, standing, voxelizer, voxels.bits);
         times.push_back(std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count());
     }
-    voxels.voxelizeMilliseconds = medianOf(times);
+    voxels.voxelizeMilliseconds = median(std::move(times));
     const double beyond = shareBeyondFrame(field.frame, standing, voxels.bits);
     if (beyond > 0.01 && voxels.bits.count() > 0)
         voxels.warnings.push_back(std::to_string(std::lround(100.0 * beyond)) +

@@ -38,7 +38,4 @@ struct TargetArguments {
 [[nodiscard]] TargetVoxels voxelsOf(const Field& field, const Target& target, const std::optional<Placement>& placement,
                                     int repeat);
 
-/// The middle of some measurements; 0 for none.
-[[nodiscard]] double medianOf(std::vector<double> values);
-
 } // namespace lumorph::cli

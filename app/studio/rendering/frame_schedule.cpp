@@ -2,17 +2,13 @@
 
 #include <algorithm>
 
+#include "core/base/statistics.h"
+
 namespace lumorph::studio {
 namespace {
 
 constexpr double kStep = 0.92; // of a side; about 0.85 of the pixels
 constexpr std::size_t kRemembered = 5;
-
-double median(std::vector<double> values) {
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    return *middle;
-}
 
 } // namespace
 

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "core/base/statistics.h"
+
 namespace lumorph::studio {
 namespace {
 
@@ -14,12 +16,6 @@ constexpr double kRoom = 0.7;
 constexpr double kStepsToFull = 20.0;
 
 double inSteps(double resolution) { return std::floor(kStepsToFull * resolution) / kStepsToFull; }
-
-double median(std::vector<double> values) {
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    return *middle;
-}
 
 } // namespace
 
