@@ -24,11 +24,11 @@ TEST(InQuotes, ShortensWhatIsLong) {
 TEST(InQuotes, KeepsWhatIsNoTextOutOfMessages) {
     EXPECT_EQ(inQuotes("a\nb\tc\x7f\0d"s), "'a?b?c??d'");
     EXPECT_EQ(inQuotes("\u0085"), "'?'") << "a control character of two bytes";
-    EXPECT_EQ(inQuotes("\xff\xfe"), "'??'");
+    EXPECT_EQ(inQuotes("\xff\xfe."), "'??.'");
     EXPECT_EQ(inQuotes("\xc3(\xc3"), "'?(?'") << "characters that break off";
-    EXPECT_EQ(inQuotes("\xc0\xaf"), "'??'") << "longer than need be";
-    EXPECT_EQ(inQuotes("\xed\xa0\x80"), "'???'") << "half of a pair";
-    EXPECT_EQ(inQuotes("\xf4\x90\x80\x80"), "'????'") << "beyond Unicode";
+    EXPECT_EQ(inQuotes("\xc0\xaf."), "'??.'") << "longer than need be";
+    EXPECT_EQ(inQuotes("\xed\xa0\x80."), "'???.'") << "half of a pair";
+    EXPECT_EQ(inQuotes("\xf4\x90\x80\x80."), "'????.'") << "beyond Unicode";
 }
 
 TEST(CsvField, IsBareWhereItCanBe) {
