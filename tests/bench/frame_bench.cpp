@@ -4,6 +4,7 @@
 #include <epoxy/gl.h>
 
 #include "core/base/resources.h"
+#include "core/base/statistics.h"
 #include "core/render/gl/gl_driver.h"
 #include "core/render/gl/headless_context.h"
 #include "core/render/spatial_renderer.h"
@@ -112,8 +113,8 @@ FrameTimes measure(const Scene& scene, glm::ivec2 size) {
         eye.push_back(times.eye);
         projectors.push_back(times.projectors);
     }
-    return {medianOf(whole), medianOf(processor),  medianOf(pose),  medianOf(upload),   medianOf(shadow),
-            medianOf(eye),   medianOf(projectors), currentDriver(), renderer.warnings()};
+    return {median(whole), median(processor),  median(pose),    median(upload),     median(shadow),
+            median(eye),   median(projectors), currentDriver(), renderer.warnings()};
 }
 
 void fail(const std::string& name, const FrameTimes& times, Report& report) {

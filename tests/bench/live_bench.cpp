@@ -4,6 +4,7 @@
 
 #include "core/base/error.h"
 #include "core/base/resources.h"
+#include "core/base/statistics.h"
 #include "core/loop/live_match.h"
 #include "core/rig/rig_file.h"
 #include "tests/bench/bench_groups.h"
@@ -54,7 +55,7 @@ std::string noteOf(const std::vector<MatchTimes>& frames) {
     for (const Stage& stage : kStages) {
         std::vector<double> values;
         for (const MatchTimes& frame : frames) values.push_back(frame.*stage.of);
-        note += std::string(" ") + stage.name + " " + fixed(medianOf(values), 3);
+        note += std::string(" ") + stage.name + " " + fixed(median(values), 3);
         longest = *std::max_element(values.begin(), values.end());
     }
     return note + "; longest " + fixed(longest, 1);
@@ -103,7 +104,7 @@ void benchScene(Report& report) {
     for (const MatchTimes& frame : times) totals.push_back(frame.total);
     report.add({"loop-scene",
                 "live loop without drawing: tracked head, view dependence, water split between servos and light",
-                medianOf(totals),
+                median(totals),
                 "ms",
                 atMost(3.0),
                 atMost(1.0),

@@ -284,7 +284,7 @@ std::shared_ptr<MatchFrame> busyFrame(int i, std::shared_ptr<const Scene> scene,
 }
 
 /// A session draws some hundred thousand frames: 10,000 of them with LUMORPH_SOAK=10.
-class ShowEndurance : public ShowRender {
+class ShowRenderEndurance : public ShowRender {
 protected:
     int frames = test::soakFactor() > 1 ? 1000 * test::soakFactor() : 500;
 
@@ -341,9 +341,9 @@ private:
     }
 };
 
-TEST_F(ShowEndurance, ManyFramesLeaveObjectsAndMemoryFlat) { drawMany(nullptr); }
+TEST_F(ShowRenderEndurance, ManyFramesLeaveObjectsAndMemoryFlat) { drawMany(nullptr); }
 
-TEST_F(ShowEndurance, ManyFramesOfTheSeaLeaveObjectsAndMemoryFlat) {
+TEST_F(ShowRenderEndurance, ManyFramesOfTheSeaLeaveObjectsAndMemoryFlat) {
     drawMany(std::make_shared<const Scene>(waterScene()));
 }
 

@@ -86,9 +86,9 @@ struct Case {
     double volume;
 };
 
-class Repairs : public testing::TestWithParam<Case> {};
+class RepairMeshTable : public testing::TestWithParam<Case> {};
 
-TEST_P(Repairs, GiveASolidOfTheRightVolume) {
+TEST_P(RepairMeshTable, GiveASolidOfTheRightVolume) {
     const Case& c = GetParam();
     const MeshRepair repair = repairMesh(c.mesh);
     EXPECT_THAT(repair.after.findings(), IsEmpty());
@@ -101,7 +101,7 @@ TEST_P(Repairs, GiveASolidOfTheRightVolume) {
 }
 
 // clang-format off
-INSTANTIATE_TEST_SUITE_P(Meshes, Repairs, testing::Values(
+INSTANTIATE_TEST_SUITE_P(Meshes, RepairMeshTable, testing::Values(
     //   name                   mesh                    parts volume
     Case{"RuinedCube",          ruinedCube(),           1,    1.0},
     Case{"FlatTriangle",        cubeWithFlatTriangle(), 1,    1.0},
@@ -115,7 +115,7 @@ INSTANTIATE_TEST_SUITE_P(Meshes, Repairs, testing::Values(
     [](const auto& test) { return std::string(test.param.name); });
 // clang-format on
 
-TEST(Repair, LeavesSoundMeshesAsTheyAre) {
+TEST(RepairMesh, LeavesSoundMeshesAsTheyAre) {
     for (const TriangleMesh& mesh : {kCube, torus(20, 10), shattered(kCube), both(kCube, cubeAt({0.5F, 0, 0}, 1))}) {
         const MeshRepair repair = repairMesh(mesh);
         EXPECT_EQ(repair.mesh.positions, mesh.positions);
@@ -124,7 +124,7 @@ TEST(Repair, LeavesSoundMeshesAsTheyAre) {
     }
 }
 
-TEST(Repair, MergesVerticesAndSaysWhatItDid) {
+TEST(RepairMesh, MergesVerticesAndSaysWhatItDid) {
     const MeshRepair repair = repairMesh(ruinedCube());
     EXPECT_EQ(repair.mesh.positions.size(), 8U);
     EXPECT_EQ(repair.mesh.triangles.size(), 12U);
@@ -132,13 +132,13 @@ TEST(Repair, MergesVerticesAndSaysWhatItDid) {
                                             HasSubstr("turned"), HasSubstr("A hole was filled")));
 }
 
-TEST(Repair, LeavesLargeHolesOpenAndSaysSo) {
+TEST(RepairMesh, LeavesLargeHolesOpenAndSaysSo) {
     const MeshRepair repair = repairMesh(openTube(48), 47);
     EXPECT_EQ(repair.after.boundaryEdges, 96U);
     EXPECT_THAT(repair.actions, ElementsAre(HasSubstr("2 holes were left open")));
 }
 
-TEST(Repair, DoesNotMakePillowsOfFlatSheets) {
+TEST(RepairMesh, DoesNotMakePillowsOfFlatSheets) {
     const TriangleMesh sheet{{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}, {{0, 1, 2}, {0, 2, 3}}};
     const MeshRepair repair = repairMesh(sheet);
     EXPECT_EQ(repair.mesh.triangles, sheet.triangles);
@@ -146,7 +146,7 @@ TEST(Repair, DoesNotMakePillowsOfFlatSheets) {
     EXPECT_THAT(repair.actions, ElementsAre(HasSubstr("left open")));
 }
 
-TEST(Repair, KeepsSoundPartsBitEqualBesideABrokenOne) {
+TEST(RepairMesh, KeepsSoundPartsBitEqualBesideABrokenOne) {
     const TriangleMesh sound = torus(16, 8);
     TriangleMesh mesh = both(sound, cubeAt({5, 0, 0}, 1));
     mesh.triangles.pop_back();
@@ -158,7 +158,7 @@ TEST(Repair, KeepsSoundPartsBitEqualBesideABrokenOne) {
             EXPECT_EQ(repair.mesh.positions[repair.mesh.triangles[t][k]], sound.positions[sound.triangles[t][k]]);
 }
 
-TEST(Repair, TakesARandomHeapAndReportsTruly) {
+TEST(RepairMesh, TakesARandomHeapAndReportsTruly) {
     std::mt19937 random(7);
     std::uniform_int_distribution<int> place(0, 3);
     std::uniform_int_distribution<std::uint32_t> vertex(0, 39);
@@ -176,7 +176,7 @@ TEST(Repair, TakesARandomHeapAndReportsTruly) {
     }
 }
 
-TEST(Repair, ClosesASharedModelWithHolesCutIntoIt) {
+TEST(RepairMesh, ClosesASharedModelWithHolesCutIntoIt) {
     const std::filesystem::path file = std::filesystem::path(LUMORPH_SHARED_DIR) / "data/meshes/spot.obj";
     if (!std::filesystem::exists(file)) GTEST_SKIP() << "no shared models here";
     TriangleMesh mesh = readMesh(file);

@@ -185,28 +185,28 @@ TEST(SceneFormat, EveryBrokenValueIsNamedWithItsKey) {
         {with("/items", "none"), "scene.items: is not a list"},
         {with("/items", many), "scene.items: has 501 entries, and 500 is the most"},
         {with("/items/0", 5), "scene.items[0]: is not an object"},
-        {with("/items/0/kind", "cloud"), "scene.items[0].kind: \"cloud\" is not known here"},
+        {with("/items/0/kind", "cloud"), "scene.items[0].kind: 'cloud' is not known here"},
         {with("/items/0/kind", 7), "scene.items[0].kind: is not a text"},
         {with("/items/0/id", 0), "scene.items[0].id: is not a whole number from 1"},
         {with("/items/0/id", 1.5), "scene.items[0].id: is not a whole number"},
         {with("/items/0/name", std::string(1001, 'x')), "scene.items[0].name: is longer"},
         {with("/items/0/opacity", 1.01), "scene.items[0].opacity: is not a number from 0.0 to 1.0"},
-        {with("/items/0/anchor", "sky"), "scene.items[0].anchor: \"sky\" is not known here"},
-        {with("/items/0/role", ""), "scene.items[0].role: \"\" is not known here"},
+        {with("/items/0/anchor", "sky"), "scene.items[0].anchor: 'sky' is not known here"},
+        {with("/items/0/role", ""), "scene.items[0].role: '' is not known here"},
         {with("/items/0/position", {1, 2}), "scene.items[0].position: is not a list of 3 numbers"},
         {with("/items/0/position/1", nullptr), "scene.items[0].position[1]: is not a number"},
         {with("/items/0/position/2", 1e30), "scene.items[0].position[2]: is not a number from -100.0 to 100.0"},
         {with("/items/0/rotation", {0, 0, 0, 0}), "rotation is no rotation"},
         {with("/items/0/scale/0", 0), "scene.items[0].scale[0]: is not a number"},
         {with("/items/0/motion/bobPeriod", 0), "scene.items[0].motion.bobPeriod: is not a number"},
-        {with("/items/1/mesh/model", "../fish.glb"), "scene.items[1].mesh.model: \"../fish.glb\" leads out"},
+        {with("/items/1/mesh/model", "../fish.glb"), "scene.items[1].mesh.model: '../fish.glb' leads out"},
         {with("/items/1/mesh/animation", -2), "scene.items[1].mesh.animation: is not a whole number from -1"},
         {with("/items/3/shape/size/1", 0), "scene.items[3].shape.size[1]: is not a number"},
-        {with("/items/3/shape/form", "torus"), "scene.items[3].shape.form: \"torus\" is not known here"},
+        {with("/items/3/shape/form", "torus"), "scene.items[3].shape.form: 'torus' is not known here"},
         {with("/items/4/heights/size/0", 0), "scene.items[4].heights.size[0]: is not a number"},
         {with("/items/4/heights/waves", json(33, json::object())), "scene.items[4].heights.waves: has 33 entries"},
         {with("/items/4/heights/waves/0/length", 0), "scene.items[4].heights.waves[0].length: is not a number"},
-        {with("/items/4/heights/image", "/etc/passwd"), "scene.items[4].heights.image: \"/etc/passwd\" leads out"},
+        {with("/items/4/heights/image", "/etc/passwd"), "scene.items[4].heights.image: '/etc/passwd' leads out"},
         {with("/items/4/material/color/0", -0.1), "scene.items[4].material.color[0]: is not a number"},
         {with("/items/4/material/colorTexture/columns", 0), "scene.items[4].material.colorTexture.columns: is not"},
         {with("/items/4/material/colorTexture/tile/0", 0), "scene.items[4].material.colorTexture.tile[0]: is not"},
@@ -227,7 +227,7 @@ TEST(SceneFormat, EveryBrokenValueIsNamedWithItsKey) {
         {inRoom("/tableColor/2", -0.1), "installation.tableColor[2]: is not a number from 0.0 to 1.0"},
         {inRoom("/tableSize/0", 0), "installation.tableSize[0]: is not a number"},
         {with("/exposure", 0), "scene.exposure: is not a number"},
-        {with("/showing", "nothing"), "scene.showing: \"nothing\" is not known here"},
+        {with("/showing", "nothing"), "scene.showing: 'nothing' is not known here"},
         {inRoom("", 3), "installation: is not an object"},
         {inRoom("/viewer", 1), "installation.viewer: is not a text"},
         {with("/viewDependence/thetaDegrees", 0), "scene.viewDependence.thetaDegrees: is not a number"},
@@ -240,7 +240,7 @@ TEST(SceneFormat, EveryBrokenValueIsNamedWithItsKey) {
         {inRoom("/projectors/0/camera/cameraFromWorld/5", 9),
          "projector \"Beamer\": camera.cameraFromWorld is not a rotation and a translation"},
         {inRoom("/projectors/0/poseOrigin/way", "guessed"),
-         "installation.projectors[0].poseOrigin.way: \"guessed\" is not known here"},
+         "installation.projectors[0].poseOrigin.way: 'guessed' is not known here"},
         {inRoom("/cameras", json(17, json::object())), "installation.cameras: has 17 entries, and 16 is the most"},
         {inRoom("/cameras/0/camera/focal/0", 0), "installation.cameras[0].camera.focal[0]: is not a number"},
         {inRoom("/cameras/0/camera/cameraFromWorld/0", 9),
@@ -303,7 +303,7 @@ TEST(SceneFormat, FollowsNoLinkOutOfItsFolder) {
         (void)readProject(folder / "project/a.lumorph");
         ADD_FAILURE() << "was read";
     } catch (const DataError& error) {
-        EXPECT_THAT(error.why(), HasSubstr("\"pictures/sea.png\" leads out"));
+        EXPECT_THAT(error.why(), HasSubstr("'pictures/sea.png' leads out"));
     }
 }
 
