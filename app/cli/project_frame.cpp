@@ -8,7 +8,7 @@
 #include "core/base/file.h"
 #include "core/base/resources.h"
 #include "core/geometry/mesh_file.h"
-#include "core/loop/live_match.h"
+#include "core/loop/match_loop.h"
 #include "core/loop/show_stage.h"
 #include "core/mdf/field_file.h"
 #include "core/rig/rig_file.h"

@@ -1,3 +1,5 @@
+#include "core/loop/match_loop.h"
+
 #include <algorithm>
 #include <cmath>
 #include <string>
@@ -6,14 +8,13 @@
 #include "core/base/error.h"
 #include "core/loop/dance.h"
 #include "core/loop/drive_stage.h"
-#include "core/loop/live_match.h"
+#include "core/loop/frame_source.h"
 #include "core/loop/match_stage.h"
 #include "core/loop/motion_stage.h"
 #include "core/loop/scene_clock.h"
 #include "core/loop/stage_timer.h"
 #include "core/loop/target_stage.h"
 #include "core/loop/viewer_stage.h"
-#include "core/rig/rig_file.h"
 
 namespace lumorph {
 
@@ -65,17 +66,7 @@ State nearestLevels(const std::vector<double>& strokes, int levels) {
     return state;
 }
 
-Rig rigOf(const Field& field) {
-    Rig rig = readRigGlb(field.rigGlb, field.rigName);
-    if (rig.actuatorCount() != field.actuators.size())
-        throw DataError(field.rigName, "the field and the rig in it do not agree", "build the field again");
-    return rig;
-}
-
 } // namespace
-
-MatchField::MatchField(Field built)
-    : field(std::move(built)), rig(rigOf(field)), coverage(rig, field.frame, field.levels), voting(field) {}
 
 struct MatchLoop::Data {
     explicit Data(const Clock& c) : clock(c) {}

@@ -4,7 +4,8 @@
 #include <optional>
 #include <vector>
 
-#include "core/loop/live_match.h"
+#include "core/loop/match_frame.h"
+#include "core/loop/match_wish.h"
 #include "core/loop/target_stage.h"
 #include "core/mdf/frame_matcher.h"
 

@@ -4,7 +4,7 @@
 
 #include "core/base/error.h"
 #include "core/base/resources.h"
-#include "core/loop/live_match.h"
+#include "core/loop/match_loop.h"
 #include "core/rig/rig_file.h"
 #include "tests/bench/bench_groups.h"
 #include "tests/bench/bench_inputs.h"

@@ -2,7 +2,8 @@
 
 #include <gtest/gtest.h>
 
-#include "core/loop/live_match.h"
+#include "core/loop/frame_source.h"
+#include "core/loop/match_loop.h"
 #include "core/motion/rig_motion.h"
 #include "tests/support/small_rigs.h"
 

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "core/base/error.h"
+#include "core/loop/match_loop.h"
 #include "core/mdf/frame_matcher.h"
 #include "tests/core/loop/loop_fixture.h"
 

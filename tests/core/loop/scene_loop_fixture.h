@@ -8,7 +8,7 @@
 #include <glm/vec2.hpp>
 #include <gtest/gtest.h>
 
-#include "core/loop/live_match.h"
+#include "core/loop/match_loop.h"
 #include "core/rig/rig_file.h"
 #include "tests/core/loop/loop_fixture.h"
 
