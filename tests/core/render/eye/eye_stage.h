@@ -138,7 +138,7 @@ public:
         glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
         const ShowFrame now = frame();
         pass.prepare(now);
-        pass.drawUnseen(now, target);
+        pass.drawUnseen(now, unseenPlaces(target, scene));
         return target.sent.read();
     }
 
