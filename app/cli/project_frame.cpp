@@ -36,7 +36,6 @@ MatchWish wishOf(const Project& project, const std::filesystem::path& file, cons
     if (!project.target.empty())
         wish.target = readMatchTarget(assetPath(file, project.target), project.animation, session.progress());
     wish.placement = project.placement;
-    wish.live = project.matching.live;
     wish.method = project.matching.refined ? MatchMethod::refined : MatchMethod::voting;
     wish.budget = Microseconds(static_cast<std::int64_t>(1000.0 * project.matching.budgetMilliseconds));
     wish.strokes = project.strokes;
@@ -69,7 +68,7 @@ std::shared_ptr<const MatchFrame> follow(const MatchWish& wish, double seconds, 
 std::shared_ptr<const MatchFrame> hold(MatchWish wish, const State& state, double seconds) {
     const int levels = wish.field ? wish.field->field.levels : kDefaultLevels;
     const std::vector<double> strokes = strokesOf(*wish.rig, state, levels);
-    wish.live = false;
+    wish.driver = Driver::hand;
     wish.strokes = strokes;
     wish.sceneSeek = seconds;
     wish.seek = seconds;
@@ -96,13 +95,14 @@ ProjectFrame readProjectFrame(const std::filesystem::path& file, const ProjectMo
     MatchWish wish = wishOf(project, file, session);
     const auto scene = std::make_shared<const Scene>(std::move(project.scene));
     wish.scene = scene;
+    wish.driver = driverOf(project.matching.live, scene.get());
     wish.assets = loadSceneAssets(*scene, file, nullptr, session.progress());
     Session::endProgress();
 
     const auto match = moment.state ? hold(wish, *moment.state, moment.seconds) : follow(wish, moment.seconds, session);
     ProjectFrame result{ShowStage().frame(*match), match->estimatedStrokes, {}};
     for (const auto& [asset, problem] : wish.assets->problems) result.warnings.push_back(problem);
-    if (wish.target && wish.live && !wish.field && !moment.state)
+    if (wish.target && project.matching.live && !wish.field && !moment.state)
         result.warnings.emplace_back("The project has no field, so the device does not follow its target.");
     return result;
 }

@@ -15,6 +15,22 @@ namespace lumorph {
 
 class FrameSource;
 
+/// Who moves the servos. View dependence joins in by the larger stroke, whoever it is, and a scene that shows light
+/// alone (Showing::virtualOnly) holds them at rest; a recording knows neither.
+enum class Driver {
+    target,    ///< `target` is matched by `field`; without one of them `strokes` are held
+    sceneItem, ///< heights of the scene's visible driving item, or of its slow part where its role is split; without
+               ///< such an item, or where it stands for a target that is not there, `strokes` are held
+    hand,      ///< `strokes` are held
+    dance,     ///< random moves that begin at `strokes`
+    recording, ///< frames of `source` are shown, with servos as they say; without a source the wish is refused
+    program,   ///< what a show program asks of them; without a program the wish is refused
+};
+
+/// Who moves the servos for those who know only whether they shall follow something (`live`): a visible driving item of
+/// the scene that does not stand for a physical target, else the target; and the hand while they follow nothing.
+[[nodiscard]] Driver driverOf(bool live, const Scene* scene);
+
 enum class MatchMethod { voting, refined };
 
 /// What the user wants now; the loop takes the newest one for each frame.
@@ -23,14 +39,13 @@ struct MatchWish {
     std::shared_ptr<const MatchField> field;   ///< empty until it is built; then its rig is the rig
     std::shared_ptr<const MatchTarget> target; ///< may be empty
     Placement placement;
-    bool live = true; ///< follow the target; false: hold `strokes`
+    Driver driver = Driver::target;
     MatchMethod method = MatchMethod::refined;
     Microseconds budget{8'000};  ///< for refinement, each frame
-    std::vector<double> strokes; ///< held while not live or without a target; one an actuator
+    std::vector<double> strokes; ///< held, or begun from, as `driver` says; one an actuator
     bool playing = true;         ///< the target's animation runs
     std::optional<double> seek;  ///< animation time to show while not playing, seconds
     double spin = 0.0;           ///< radians a second that the target turns about +Y
-    bool dancing = false;        ///< random moves, while not live
     bool stopped = false;        ///< STOP: servos stay where they are until it is taken back
     bool showTint = true;        ///< work out which voxels are unmatched and overfilled
 
@@ -41,11 +56,7 @@ struct MatchWish {
     bool scenePlaying = true;               ///< the scene's time runs
     std::optional<double> sceneSeek;        ///< scene time to go to, seconds; heeded once for each new value
 
-    std::shared_ptr<FrameSource> source; ///< its frames instead of the loop's own; the actuators stand as they say
-
-    // With a scene: `virtualOnly` holds the servos at rest; else, while `live`, they follow the scene's visible driving
-    // item (a TargetItem with the role physical is the target, matched as ever), or without one what they would follow
-    // without a scene. View dependence is joined to all of it by the larger stroke.
+    std::shared_ptr<FrameSource> source; ///< of the driver `recording`, instead of frames of the loop's own
 };
 
 } // namespace lumorph

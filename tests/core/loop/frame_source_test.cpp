@@ -33,7 +33,7 @@ private:
 struct FrameSourceTest : ::testing::Test {
     FrameSourceTest() {
         wish.rig = std::make_shared<const Rig>(test::cushionRig());
-        wish.live = false;
+        wish.driver = Driver::hand;
         wish.strokes.assign(wish.rig->actuatorCount(), 0.0);
     }
     ManualClock clock;
@@ -45,6 +45,7 @@ TEST_F(FrameSourceTest, ItsFramesAreGivenAsTheyAre) {
     const std::vector<double> strokes(wish.rig->actuatorCount(), 0.625);
     const auto source = std::make_shared<StandingSource>(strokes);
     wish.source = source;
+    wish.driver = Driver::recording;
     const auto frame = loop.step(wish, 0.01);
     EXPECT_EQ(frame->number, 77U);
     EXPECT_EQ(frame->estimatedStrokes, strokes);
@@ -56,8 +57,10 @@ TEST_F(FrameSourceTest, ItsFramesAreGivenAsTheyAre) {
 
 TEST_F(FrameSourceTest, TheWayBackStartsWhereTheActuatorsStandAndKeepsTheirLimits) {
     wish.source = std::make_shared<StandingSource>(std::vector<double>(wish.rig->actuatorCount(), 1.0));
+    wish.driver = Driver::recording;
     (void)loop.step(wish, 0.01);
     wish.source.reset();
+    wish.driver = Driver::hand;
     const std::vector<MotionLimits> limits = motionLimits(*wish.rig);
     std::vector<double> before(wish.rig->actuatorCount(), 1.0);
     for (int step = 0; step < 2000; ++step) {

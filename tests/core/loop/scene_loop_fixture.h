@@ -56,6 +56,7 @@ protected:
         MatchWish wish;
         wish.strokes.assign(rig->actuatorCount(), 0.0);
         wish.rig = std::move(rig);
+        wish.driver = driverOf(true, &scene);
         wish.scene = std::make_shared<const Scene>(std::move(scene));
         wish.assets = std::make_shared<const SceneAssets>();
         return wish;
