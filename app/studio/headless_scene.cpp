@@ -18,6 +18,7 @@
 #include "core/base/error.h"
 #include "core/base/resources.h"
 #include "core/base/statistics.h"
+#include "core/loop/match_loop.h"
 #include "core/loop/show_stage.h"
 #include "core/render/gl/headless_context.h"
 #include "core/render/spatial_renderer.h"

@@ -5,7 +5,7 @@
 #include "core/base/error.h"
 #include "core/base/resources.h"
 #include "core/base/statistics.h"
-#include "core/loop/live_match.h"
+#include "core/loop/match_loop.h"
 #include "core/rig/rig_file.h"
 #include "tests/bench/bench_groups.h"
 #include "tests/bench/bench_inputs.h"
@@ -80,6 +80,7 @@ MatchWish sceneWish() {
     scene.viewDependence.on = true;
     MatchWish wish;
     wish.rig = std::make_shared<const Rig>(readRig(resourceFile("models/tablet.glb")));
+    wish.driver = driverOf(true, &scene);
     wish.scene = std::make_shared<const Scene>(std::move(scene));
     wish.installation = std::make_shared<const Installation>(defaultInstallation());
     wish.assets = std::make_shared<const SceneAssets>();

@@ -8,7 +8,7 @@ MatchWish wishOf(const StudioState& state) {
     wish.field = state.field.field;
     wish.target = state.target.target;
     wish.placement = state.placement;
-    wish.live = state.matching.live;
+    wish.driver = driverOf(state.matching.live, state.scene.get());
     wish.method = state.matching.method;
     wish.budget = state.matching.budget;
     wish.strokes = state.strokes;

@@ -4,8 +4,8 @@
 #include <memory>
 #include <vector>
 
-#include "core/loop/live_match.h"
 #include "core/loop/match_target.h"
+#include "core/loop/match_wish.h"
 #include "core/mdf/placement.h"
 #include "core/rig/rig.h"
 #include "core/scene/installation.h"

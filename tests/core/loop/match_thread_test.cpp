@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "core/base/error.h"
+#include "core/loop/match_thread.h"
 #include "tests/core/loop/loop_fixture.h"
 #include "tests/support/scene_in_room.h"
 

@@ -8,7 +8,7 @@
 #include <glm/vec2.hpp>
 #include <gtest/gtest.h>
 
-#include "core/loop/live_match.h"
+#include "core/loop/match_loop.h"
 #include "core/rig/rig_file.h"
 #include "tests/core/loop/loop_fixture.h"
 #include "tests/support/scene_in_room.h"
@@ -58,6 +58,7 @@ protected:
         wish.strokes.assign(rig->actuatorCount(), 0.0);
         wish.rig = std::move(rig);
         setSceneInRoom(wish, scene);
+        wish.driver = driverOf(true, &scene);
         wish.assets = std::make_shared<const SceneAssets>();
         return wish;
     }
