@@ -210,7 +210,7 @@ TEST(SceneFormat, EveryBrokenValueIsNamedWithItsKey) {
         {with("/items/4/material/color/0", -0.1), "scene.items[4].material.color[0]: is not a number"},
         {with("/items/4/material/colorTexture/columns", 0), "scene.items[4].material.colorTexture.columns: is not"},
         {with("/items/4/material/colorTexture/tile/0", 0), "scene.items[4].material.colorTexture.tile[0]: is not"},
-        {with("/items/4/material/holes/image", "a/../../b.png"), "scene.items[4].material.holes.image: \"a/.."},
+        {with("/items/4/material/holes/image", "a/../../b.png"), "scene.items[4].material.holes.image: 'a/.."},
         {with("/items/4/material/alpha", true), "scene.items[4].material.alpha: is not a text"},
         {with("/items/5/fog/density", -1), "scene.items[5].fog.density: is not a number"},
         {with("/items/6/light/intensity", "bright"), "scene.items[6].light.intensity: is not a number"},
