@@ -63,7 +63,7 @@ struct MatchFrame {
     double shareUnreachable = 0.0;        ///< of the target's voxels that no actuator changes
     std::shared_ptr<const std::vector<std::uint8_t>> classes; ///< one a voxel, x fastest; empty unless asked for
 
-    std::shared_ptr<const Scene> scene; ///< of the wish
+    std::shared_ptr<const Scene> scene;               ///< of the wish
     std::shared_ptr<const Installation> installation; ///< of the wish
     std::shared_ptr<const SceneAssets> assets;
     double sceneSeconds = 0.0;

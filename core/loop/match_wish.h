@@ -50,7 +50,7 @@ struct MatchWish {
     bool stopped = false;        ///< STOP: servos stay where they are until it is taken back
     bool showTint = true;        ///< work out which voxels are unmatched and overfilled
 
-    std::shared_ptr<const Scene> scene; ///< what light shows, and what of it servos follow; may be empty
+    std::shared_ptr<const Scene> scene;               ///< what light shows, and what of it servos follow; may be empty
     std::shared_ptr<const Installation> installation; ///< where; always there with a scene
     std::shared_ptr<const SceneAssets> assets;
     std::shared_ptr<const PoseBoard> poses; ///< tracked heads and device; without a head the scene's own eye

@@ -52,9 +52,9 @@ StudioWindow::StudioWindow(const std::filesystem::path& session, const QString& 
     (void)QTest::qWaitForWindowExposed(window_.get());
     bool there = false;
     if (again) {
-        studio_->service.restoreSession([&there] { there = true; });
+        studio_->project.restoreSession([&there] { there = true; });
     } else {
-        studio_->service.openDemo("field");
+        studio_->project.openDemo("field");
         there = true;
     }
     EXPECT_TRUE(eventually([&] { return there && state().field.field && studio_->loop.frame(); }));
