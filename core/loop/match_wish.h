@@ -53,7 +53,7 @@ struct MatchWish {
     std::shared_ptr<const Scene> scene;               ///< what light shows, and what of it servos follow; may be empty
     std::shared_ptr<const Installation> installation; ///< where; always there with a scene
     std::shared_ptr<const SceneAssets> assets;
-    std::shared_ptr<const PoseBoard> poses; ///< tracked heads and device; without a head the scene's own eye
+    std::shared_ptr<const PoseBoard> poses; ///< tracked heads and device; without a head the simulated eye
     double lightDelay = 0.0;                ///< measured from a frame to its light, seconds; 0: not yet
     bool scenePlaying = true;               ///< the scene's time runs
     std::optional<double> sceneSeek;        ///< scene time to go to, seconds; heeded once for each new value
