@@ -7,8 +7,8 @@ namespace {
 
 /// A full-HD projector 2 m above the table and a little on the viewer's side, so that a far flap that bends up for him
 /// is lit on the side he sees, while his head stays out of the light. Like most projectors it has a lens shift: its
-/// axis leaves through the lower edge of the picture. 0.62 x 0.35 m around the device are lit, a third of a millimetre
-/// a pixel.
+/// axis leaves through the lower edge of the picture. 0.62 x 0.35 m around the device are lit, a third of a
+/// millimetre a pixel.
 SceneProjector defaultProjector() {
     const glm::dvec3 position(0.0, 2.0, 0.4);
     const double focal = 6080.0;
@@ -47,7 +47,7 @@ Material paper() {
     return material;
 }
 
-SceneTexture picture(const std::string& image, float metres) {
+SceneTexture bundledPicture(const std::string& image, float metres) {
     SceneTexture texture;
     texture.image = image;
     texture.tile = glm::vec2(metres);
@@ -58,8 +58,8 @@ Material tableWood() {
     Material material;
     material.name = "Wood";
     material.color = {0.86F, 0.80F, 0.74F};
-    material.colorTexture = picture("resource:materials/wood.png", 0.45F);
-    material.normalMaps[0] = picture("resource:materials/wood_normal.png", 0.45F);
+    material.colorTexture = bundledPicture("resource:materials/wood.png", 0.45F);
+    material.normalMaps[0] = bundledPicture("resource:materials/wood_normal.png", 0.45F);
     material.roughness = 0.55F;
     return material;
 }
