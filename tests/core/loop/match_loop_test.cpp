@@ -7,6 +7,7 @@
 #include "core/base/error.h"
 #include "core/mdf/frame_matcher.h"
 #include "tests/core/loop/loop_fixture.h"
+#include "tests/support/not_a_number.h"
 
 namespace lumorph {
 namespace {
@@ -17,7 +18,6 @@ using test::stillTarget;
 using test::wishFor;
 
 constexpr double kFrame = 1.0 / 60.0;
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 /// The target's voxels outside the body, by the one-off functions.
 BitColumns voxelsOf(const MatchFrame& frame) {
