@@ -6,10 +6,12 @@
 #include <string_view>
 
 #include "core/base/error.h"
+#include "core/base/statistics.h"
 #include "core/geometry/mesh_file.h"
 #include "core/geometry/mesh_parsers.h"
 #include "core/geometry/model.h"
 #include "core/voxels/nrrd.h"
+#include "core/voxels/surface.h"
 
 namespace lumorph::cli {
 
@@ -48,14 +50,16 @@ TargetVoxels gridVoxels(const Field& field, std::span<const std::byte> bytes, co
     return {bitsOf(grid), {}, 0.0, {}};
 }
 
-} // namespace
-
-double medianOf(std::vector<double> values) {
-    if (values.empty()) return 0.0;
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    return *middle;
+/// The mesh as it is: a surface needs no repair.
+TargetVoxels surfaceVoxels(const Field& field, TriangleMesh mesh, bool fit) {
+    if (fit) mesh = placed(mesh, fitPlacement(field, boundingBox(mesh.positions)));
+    TargetVoxels voxels{voxelizeSurface(field.frame, mesh), std::move(mesh), 0.0, {}};
+    if (voxels.bits.count() == 0)
+        voxels.warnings.emplace_back("the mesh lies beyond the space the device can show; use --fit.");
+    return voxels;
 }
+
+} // namespace
 
 TargetVoxels voxelsOf(const Field& field, const Target& target, const std::optional<Placement>& placement, int repeat) {
     TargetVoxels voxels{{}, placed(target.mesh, placement.value_or(Placement{})), 0.0, target.warnings};
@@ -67,7 +71,7 @@ TargetVoxels voxelsOf(const Field& field, const Target& target, const std::optio
         voxelizeTarget(field.frame, standing, voxelizer, voxels.bits);
         times.push_back(std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count());
     }
-    voxels.voxelizeMilliseconds = medianOf(times);
+    voxels.voxelizeMilliseconds = median(std::move(times));
     const double beyond = shareBeyondFrame(field.frame, standing, voxels.bits);
     if (beyond > 0.01 && voxels.bits.count() > 0)
         voxels.warnings.push_back(std::to_string(std::lround(100.0 * beyond)) +
@@ -88,9 +92,13 @@ TargetVoxels readTarget(const Session& session, const Field& field, const Target
     if (hasGridExtension(arguments.path) || beginsWith(bytes, "NRRD")) {
         if (arguments.fit)
             throw InvalidInput("--fit", "a voxel grid stands where it is", "leave --fit out, or give the mesh");
+        if (arguments.surface)
+            throw InvalidInput("--surface", "a voxel grid has no surface to look at", "give the mesh");
         return gridVoxels(field, bytes, name);
     }
-    const Target target = makeTarget(arguments.path == "-" ? parseMesh(bytes, name) : readMesh(arguments.path));
+    TriangleMesh mesh = arguments.path == "-" ? parseMesh(bytes, name) : readMesh(arguments.path);
+    if (arguments.surface) return surfaceVoxels(field, std::move(mesh), arguments.fit);
+    const Target target = makeTarget(std::move(mesh));
     std::optional<Placement> placement;
     if (arguments.fit) placement = fitPlacement(field, boundingBox(target.mesh.positions));
     return voxelsOf(field, target, placement, arguments.repeat);

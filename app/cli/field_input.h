@@ -24,7 +24,8 @@ struct TargetVoxels {
 struct TargetArguments {
     std::string path;
     bool fit = false;
-    int repeat = 1; ///< how often to voxelise, for the median
+    bool surface = false; ///< voxels that its surface meets, instead of those inside it; it may be open then
+    int repeat = 1;       ///< how often to voxelise, for the median
 };
 
 /// Reads a mesh, or an NRRD grid in the field's own frame, and turns it into voxels. On stdin ("-") it
@@ -36,8 +37,5 @@ struct TargetArguments {
 /// Turns a mesh that has been read already into voxels; without a placement it stands where it is.
 [[nodiscard]] TargetVoxels voxelsOf(const Field& field, const Target& target, const std::optional<Placement>& placement,
                                     int repeat);
-
-/// The middle of some measurements; 0 for none.
-[[nodiscard]] double medianOf(std::vector<double> values);
 
 } // namespace lumorph::cli

@@ -8,6 +8,7 @@
 #include "app/cli/field_input.h"
 #include "app/cli/match_picture.h"
 #include "core/base/error.h"
+#include "core/base/statistics.h"
 #include "core/geometry/mesh_file.h"
 #include "core/mdf/auto_place.h"
 #include "core/mdf/clip.h"
@@ -68,7 +69,7 @@ template <typename Work> double medianMilliseconds(int repeat, const Session& se
         work();
         times.push_back(std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count());
     }
-    return medianOf(times);
+    return median(std::move(times));
 }
 
 /// Tells the author what the device cannot show of this target (R42).

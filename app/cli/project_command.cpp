@@ -121,7 +121,7 @@ private:
 
     void checkScenery() {
         session_.throwIfCancelled();
-        const SceneReport report = sceneReport(project_.scene, file_);
+        const SceneReport report = sceneReport(project_.scene, project_.installation, file_);
         scene_ = {report.json, report.text};
         problems_.insert(problems_.end(), report.problems.begin(), report.problems.end());
     }

@@ -8,7 +8,7 @@
 #include "core/base/file.h"
 #include "core/base/resources.h"
 #include "core/geometry/mesh_file.h"
-#include "core/loop/live_match.h"
+#include "core/loop/match_loop.h"
 #include "core/loop/show_stage.h"
 #include "core/mdf/field_file.h"
 #include "core/rig/rig_file.h"
@@ -36,7 +36,6 @@ MatchWish wishOf(const Project& project, const std::filesystem::path& file, cons
     if (!project.target.empty())
         wish.target = readMatchTarget(assetPath(file, project.target), project.animation, session.progress());
     wish.placement = project.placement;
-    wish.live = project.matching.live;
     wish.method = project.matching.refined ? MatchMethod::refined : MatchMethod::voting;
     wish.budget = Microseconds(static_cast<std::int64_t>(1000.0 * project.matching.budgetMilliseconds));
     wish.strokes = project.strokes;
@@ -69,7 +68,7 @@ std::shared_ptr<const MatchFrame> follow(const MatchWish& wish, double seconds, 
 std::shared_ptr<const MatchFrame> hold(MatchWish wish, const State& state, double seconds) {
     const int levels = wish.field ? wish.field->field.levels : kDefaultLevels;
     const std::vector<double> strokes = strokesOf(*wish.rig, state, levels);
-    wish.live = false;
+    wish.driver = Driver::hand;
     wish.strokes = strokes;
     wish.sceneSeek = seconds;
     wish.seek = seconds;
@@ -92,17 +91,19 @@ std::filesystem::path projectFile(const std::string& name) {
 
 ProjectFrame readProjectFrame(const std::filesystem::path& file, const ProjectMoment& moment, const Session& session) {
     Project project = readProject(file);
-    if (moment.eye) project.scene.eye = *moment.eye;
+    if (moment.eye) project.installation.eye = *moment.eye;
     MatchWish wish = wishOf(project, file, session);
     const auto scene = std::make_shared<const Scene>(std::move(project.scene));
     wish.scene = scene;
+    wish.installation = std::make_shared<const Installation>(project.installation);
+    wish.driver = driverOf(project.matching.live, scene.get());
     wish.assets = loadSceneAssets(*scene, file, nullptr, session.progress());
     Session::endProgress();
 
     const auto match = moment.state ? hold(wish, *moment.state, moment.seconds) : follow(wish, moment.seconds, session);
     ProjectFrame result{ShowStage().frame(*match), match->estimatedStrokes, {}};
     for (const auto& [asset, problem] : wish.assets->problems) result.warnings.push_back(problem);
-    if (wish.target && wish.live && !wish.field && !moment.state)
+    if (wish.target && project.matching.live && !wish.field && !moment.state)
         result.warnings.emplace_back("The project has no field, so the device does not follow its target.");
     return result;
 }

@@ -31,7 +31,7 @@ void checkPlace(const char* option, const glm::vec3& place, const char* whyAbove
 
 void checkRequest(const ShowFrame& frame, const ViewRequest& request) {
     constexpr auto kSeesNothing = "it is not above the table, so nothing is seen from there";
-    checkPlace("--eye", frame.eye.value_or(frame.scene->eye), kSeesNothing);
+    checkPlace("--eye", frame.eye.value_or(frame.installation->eye), kSeesNothing);
     if (request.observer) checkPlace("--observer", *request.observer, kSeesNothing);
     for (const glm::vec3& hand : request.hands)
         checkPlace("--hand", hand, "it is not above the table, so it is in no light");
@@ -43,18 +43,19 @@ void checkRequest(const ShowFrame& frame, const ViewRequest& request) {
                            "use it with --view lab, or leave it out");
 }
 
-const SceneProjector& projectorOf(const ShowFrame& frame, std::size_t number) {
-    const auto& projectors = frame.scene->projectors;
+const InstalledProjector& projectorOf(const ShowFrame& frame, std::size_t number) {
+    const auto& projectors = frame.installation->projectors;
     const std::string name = "projector " + std::to_string(number);
-    if (projectors.empty()) throw InvalidInput(name, "the project has no projector", "add one to its scene");
+    if (projectors.empty()) throw InvalidInput(name, "the project has no projector", "add one to its installation");
     if (number >= projectors.size())
         throw InvalidInput(name, "there is no such projector",
                            "count from 0; the project's last one is " + std::to_string(projectors.size() - 1));
-    if (!projectors[number].enabled) throw InvalidInput(name, "it is off in this project", "switch it on in its scene");
+    if (!projectors[number].enabled)
+        throw InvalidInput(name, "it is off in this project", "switch it on in its installation");
     return projectors[number];
 }
 
-glm::vec3 eyeOf(const ShowFrame& frame) { return frame.eye.value_or(frame.scene->eye); }
+glm::vec3 eyeOf(const ShowFrame& frame) { return frame.eye.value_or(frame.installation->eye); }
 
 RenderedView projectorView(SpatialRenderer& renderer, const ShowFrame& frame, const ViewRequest& request) {
     const CalibratedCamera& camera = projectorOf(frame, request.projector).camera;
@@ -70,8 +71,8 @@ RenderedView labView(SpatialRenderer& renderer, const ShowFrame& frame, const Vi
         deviceView(frame, request.observer.value_or(eyeOf(frame)), request.size.value_or(kEyeSize));
     renderer.draw(frame);
     std::vector<Image> pictures;
-    for (std::size_t i = 0; i < frame.scene->projectors.size(); ++i)
-        pictures.push_back(frame.scene->projectors[i].enabled ? renderer.readProjector(i) : Image());
+    for (std::size_t i = 0; i < frame.installation->projectors.size(); ++i)
+        pictures.push_back(frame.installation->projectors[i].enabled ? renderer.readProjector(i) : Image());
     const auto start = std::chrono::steady_clock::now();
     LabWorld world = labWorld(frame, pictures);
     for (const glm::vec3& hand : request.hands) world.blockers.push_back(visitorHand(hand, eyeOf(frame)));

@@ -15,9 +15,9 @@ std::string counted(std::size_t count, const std::string& one) {
     return std::to_string(count) + " " + one + (count == 1 ? "" : "s");
 }
 
-nlohmann::json projectorsOf(const Scene& scene) {
+nlohmann::json projectorsOf(const Installation& installation) {
     nlohmann::json projectors = nlohmann::json::array();
-    for (const SceneProjector& projector : scene.projectors)
+    for (const InstalledProjector& projector : installation.projectors)
         projectors.push_back({{"name", projector.name},
                               {"enabled", projector.enabled},
                               {"size", {projector.camera.size.x, projector.camera.size.y}}});
@@ -34,7 +34,8 @@ DataError errorOf(const std::string& asset, const std::string& problem) {
 
 } // namespace
 
-SceneReport sceneReport(const Scene& scene, const std::filesystem::path& projectFile) {
+SceneReport sceneReport(const Scene& scene, const Installation& installation,
+                        const std::filesystem::path& projectFile) {
     SceneReport report;
     nlohmann::json items = nlohmann::json::object();
     for (const char* kind : kKinds) items[kind] = 0;
@@ -56,10 +57,10 @@ SceneReport sceneReport(const Scene& scene, const std::filesystem::path& project
     const SceneItem* driving = drivingItem(scene);
     report.json = {{"items", items},
                    {"servosFollow", driving ? nlohmann::json(driving->name) : nlohmann::json()},
-                   {"projectors", projectorsOf(scene)},
+                   {"projectors", projectorsOf(installation)},
                    {"assets", assets}};
-    report.text = counted(scene.items.size(), "item") + ", " + counted(scene.projectors.size(), "projector") + ", " +
-                  counted(assets.size(), "file") +
+    report.text = counted(scene.items.size(), "item") + ", " + counted(installation.projectors.size(), "projector") +
+                  ", " + counted(assets.size(), "file") +
                   (report.problems.empty() ? "" : " (" + std::to_string(report.problems.size()) + " broken)");
     return report;
 }

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/base/error.h"
+#include "core/scene/installation.h"
 #include "core/scene/scene.h"
 
 namespace lumorph::cli {
@@ -18,6 +19,7 @@ struct SceneReport {
     std::vector<DataError> problems;
 };
 
-[[nodiscard]] SceneReport sceneReport(const Scene& scene, const std::filesystem::path& projectFile);
+[[nodiscard]] SceneReport sceneReport(const Scene& scene, const Installation& installation,
+                                      const std::filesystem::path& projectFile);
 
 } // namespace lumorph::cli

@@ -20,7 +20,8 @@ void voxelize(const VoxelizeArguments& arguments, const Session& session) {
     const TargetVoxels voxels = readTarget(session, field, arguments.target);
     printWarnings(voxels.warnings);
     session.throwIfCancelled();
-    writeOutput(arguments.output, writeNrrd(bytesOf(field.frame, voxels.bits), "target"));
+    writeOutput(arguments.output,
+                writeNrrd(bytesOf(field.frame, voxels.bits), arguments.target.surface ? "surface" : "target"));
 }
 
 } // namespace
@@ -34,6 +35,9 @@ void addVoxelizeCommand(CLI::App& app, Session& session) {
         ->required();
     command->add_option("--like", a->like, "The field whose frame to use")->required();
     command->add_flag("--fit", a->target.fit, "Largest scale inside the frame, centred, standing on the rest surface");
+    command->add_flag("--surface", a->target.surface,
+                      "The voxels that the mesh's surface meets, borders included, instead of those inside it; the "
+                      "mesh may be open");
     command->add_option("-o,--output", a->output, "The .nrrd file to write, or -")->required();
     command->callback([a, &session] { voxelize(*a, session); });
 }

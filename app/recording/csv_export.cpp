@@ -6,6 +6,7 @@
 #include "app/recording/recording.h"
 #include "core/base/atomic_file.h"
 #include "core/base/error.h"
+#include "core/base/text.h"
 
 namespace lumorph {
 namespace {
@@ -18,13 +19,6 @@ std::string number(double value) {
 }
 
 std::string seconds(Microseconds time) { return number(static_cast<double>(time.count()) / 1e6); }
-
-std::string quoted(const std::string& text) {
-    if (text.find_first_of(",\"\n\r") == std::string::npos) return text;
-    std::string result = "\"";
-    for (const char c : text) result += c == '"' ? std::string("\"\"") : std::string(1, c);
-    return result + '"';
-}
 
 std::string numbered(const char* name, std::size_t count) {
     std::string header;
@@ -79,7 +73,7 @@ std::string framesCsv(const std::vector<FrameRow>& frames, const Progress& progr
             << cells(row.estimated, servos);
         for (int axis = 0; axis < 3; ++axis) out << ',' << number(row.worldFromDevice[3][axis]);
         for (int axis = 0; axis < 3; ++axis) out << ',' << (row.eye ? number((*row.eye)[axis]) : std::string());
-        out << ',' << quoted(row.viewer) << ',' << number(row.iou) << ',' << number(row.milliseconds) << ','
+        out << ',' << csvField(row.viewer) << ',' << number(row.iou) << ',' << number(row.milliseconds) << ','
             << number(row.latency) << '\n';
     }
     return out.str();
@@ -92,8 +86,8 @@ std::string posesCsv(const std::vector<PoseRow>& poses, const Progress& progress
     for (const PoseRow& row : poses) {
         lines.step();
         const auto& [p, q] = row.pose;
-        out << seconds(row.time) << ',' << seconds(row.measured) << ',' << quoted(row.source) << ',' << quoted(row.name)
-            << ',' << row.id << ',' << (row.valid ? 1 : 0);
+        out << seconds(row.time) << ',' << seconds(row.measured) << ',' << csvField(row.source) << ','
+            << csvField(row.name) << ',' << row.id << ',' << (row.valid ? 1 : 0);
         for (const double value : {p.x, p.y, p.z, q.x, q.y, q.z, q.w}) out << ',' << number(value);
         out << '\n';
     }
@@ -106,8 +100,8 @@ std::string eventsCsv(const std::vector<EventRow>& events, const Progress& progr
     out << "time_s,kind,text,remedy\n";
     for (const EventRow& row : events) {
         lines.step();
-        out << seconds(row.time) << ',' << quoted(row.kind) << ',' << quoted(row.text) << ',' << quoted(row.remedy)
-            << '\n';
+        out << seconds(row.time) << ',' << csvField(row.kind) << ',' << csvField(row.text) << ','
+            << csvField(row.remedy) << '\n';
     }
     return out.str();
 }
@@ -119,7 +113,7 @@ std::string servoCsv(const std::vector<ServoRow>& rows, const Progress& progress
     out << "time_s,kind,bytes\n";
     for (const ServoRow& row : rows) {
         lines.step();
-        out << seconds(row.time) << ',' << quoted(row.kind) << ',';
+        out << seconds(row.time) << ',' << csvField(row.kind) << ',';
         for (const std::uint8_t byte : row.bytes) out << kDigits[byte >> 4] << kDigits[byte & 15];
         out << '\n';
     }

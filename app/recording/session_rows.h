@@ -9,7 +9,8 @@
 #include <glm/vec3.hpp>
 
 #include "core/base/clock.h"
-#include "core/loop/live_match.h"
+#include "core/loop/match_frame.h"
+#include "core/loop/match_wish.h"
 #include "core/loop/pose_stream.h"
 
 /// What a session's recording holds, row by row. All times are of one steady clock, from the recording's begin.

@@ -17,6 +17,8 @@
 #include "app/studio/rendering/show_frames.h"
 #include "core/base/error.h"
 #include "core/base/resources.h"
+#include "core/base/statistics.h"
+#include "core/loop/match_loop.h"
 #include "core/loop/show_stage.h"
 #include "core/render/gl/headless_context.h"
 #include "core/render/spatial_renderer.h"
@@ -35,13 +37,6 @@ constexpr double kWalkPeriod = 8.0;
 
 double since(Clock::time_point begun) {
     return std::chrono::duration<double, std::milli>(Clock::now() - begun).count();
-}
-
-double median(std::vector<double> values) {
-    if (values.empty()) return 0.0;
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    return *middle;
 }
 
 /// The viewer sways around the device, so that one sees that the picture follows him.

@@ -15,7 +15,7 @@
 #include "core/base/atomic_file.h"
 #include "core/base/error.h"
 #include "core/base/resources.h"
-#include "core/loop/live_match.h"
+#include "core/loop/match_loop.h"
 #include "core/mdf/builder.h"
 #include "core/mdf/clip.h"
 #include "core/render/gl/frame_target.h"

@@ -223,7 +223,7 @@ void Lab::show(std::size_t projector, const Image& image) {
     if (projector >= data_->lamps.size())
         throw InvalidInput("projector " + std::to_string(projector), "the lab has no such projector",
                            "count from 0 to the last one");
-    const SceneProjector& owner = data_->world.projectors[projector].projector;
+    const InstalledProjector& owner = data_->world.projectors[projector].projector;
     if (image.size() != owner.camera.size)
         throw InvalidInput("picture of projector " + owner.name,
                            "it is " + std::to_string(image.size().x) + " x " + std::to_string(image.size().y) +

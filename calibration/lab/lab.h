@@ -11,7 +11,7 @@
 #include "core/base/image.h"
 #include "core/geometry/calibrated_camera.h"
 #include "core/geometry/triangle_mesh.h"
-#include "core/scene/scene.h"
+#include "core/scene/installation.h"
 
 namespace lumorph {
 
@@ -23,8 +23,8 @@ struct LabSurface {
 
 /// A projector of the lab with the picture it sends out.
 struct LabProjector {
-    SceneProjector projector; ///< as it truly is, which need not be what calibration believes
-    Image image;              ///< of the projector's size, sRGB or its own gamma
+    InstalledProjector projector; ///< as it truly is, which need not be what calibration believes
+    Image image;                  ///< of the projector's size, sRGB or its own gamma
 };
 
 /// All that is in the lab.

@@ -57,22 +57,22 @@ TriangleMesh deviceMesh(const ShowFrame& frame) {
     return mesh;
 }
 
-TriangleMesh tableMesh(const Table& table) {
-    const glm::vec2 half = 0.5F * table.size;
+TriangleMesh tableMesh(glm::vec2 size) {
+    const glm::vec2 half = 0.5F * size;
     return {{{-half.x, 0, -half.y}, {-half.x, 0, half.y}, {half.x, 0, half.y}, {half.x, 0, -half.y}},
             {{0, 1, 2}, {0, 2, 3}}};
 }
 
 LabWorld labWorld(const ShowFrame& frame, std::span<const Image> pictures) {
-    const auto& projectors = frame.scene->projectors;
+    const auto& projectors = frame.installation->projectors;
     if (pictures.size() != projectors.size())
         throw InvalidInput("virtual lab",
                            std::to_string(pictures.size()) + " pictures for " + std::to_string(projectors.size()) +
                                " projectors",
                            "give one for each");
     LabWorld world;
-    world.surfaces.push_back({deviceMesh(frame), lightOfSrgb(frame.scene->device.surfaceColor)});
-    world.surfaces.push_back({tableMesh(frame.scene->table), lightOfSrgb(frame.scene->table.surfaceColor)});
+    world.surfaces.push_back({deviceMesh(frame), lightOfSrgb(frame.installation->deviceColor)});
+    world.surfaces.push_back({tableMesh(frame.installation->tableSize), lightOfSrgb(frame.installation->tableColor)});
     for (std::size_t i = 0; i < projectors.size(); ++i)
         world.projectors.push_back(
             {projectors[i], projectors[i].enabled ? pictures[i] : Image(projectors[i].camera.size)});

@@ -18,6 +18,6 @@ namespace lumorph {
 /// metres. For LabWorld::blockers.
 [[nodiscard]] TriangleMesh visitorHand(const glm::vec3& place, const glm::vec3& visitor);
 /// The table as a flat mesh, world metres.
-[[nodiscard]] TriangleMesh tableMesh(const Table& table);
+[[nodiscard]] TriangleMesh tableMesh(glm::vec2 size);
 
 } // namespace lumorph

@@ -7,6 +7,7 @@
 #include <system_error>
 
 #include "core/base/confined_path.h"
+#include "core/base/text.h"
 #include "core/geometry/mesh_file.h"
 
 namespace lumorph::gltf {
@@ -62,9 +63,6 @@ DataUri splitDataUri(std::string_view uri, const std::string& place, const std::
         refuse(file, place + ": its data URI is not base64");
     return {std::string(head.substr(0, head.find(';'))), uri.substr(comma + 1)};
 }
-
-// A URI inside data can be megabytes long; a message shows its beginning.
-std::string quotedUri(const std::string& uri) { return "\"" + uri.substr(0, 80) + (uri.size() > 80 ? "...\"" : "\""); }
 
 std::vector<std::byte> uriBytes(const std::string& uri, std::size_t maxBytes, const Folder& folder,
                                 const std::string& place, const std::string& file) {
@@ -148,13 +146,13 @@ std::string stringMember(const json& object, const char* key) {
 
 std::filesystem::path Folder::find(const std::string& uri, const std::string& place, const std::string& file) const {
     if (!path_)
-        refuse(file, place + ": refers to " + quotedUri(uri) + " outside the file",
+        refuse(file, place + ": refers to " + inQuotes(uri) + " outside the file",
                "export as .glb with everything inside");
     const auto target = confinedPath(*path_, percentDecoded(uri));
-    if (!target) refuse(file, place + ": " + quotedUri(uri) + " leads out of the folder of the model", kKeepBeside);
+    if (!target) refuse(file, place + ": " + inQuotes(uri) + " leads out of the folder of the model", kKeepBeside);
     std::error_code failed;
     if (!std::filesystem::is_regular_file(*target, failed))
-        refuse(file, place + ": " + quotedUri(uri) + " is not there", kKeepBeside);
+        refuse(file, place + ": " + inQuotes(uri) + " is not there", kKeepBeside);
     return *target;
 }
 

@@ -1,3 +1,4 @@
+#include "core/base/text.h"
 #include "core/geometry/mesh_parsers.h"
 
 #include <algorithm>
@@ -31,7 +32,7 @@ public:
             else if (std::ranges::find(kPassedOver, keyword) != kPassedOver.end())
                 passOver();
             else
-                scanner_.fail(quoted(keyword) + " is not a statement of an OBJ file",
+                scanner_.fail(inQuotes(keyword) + " is not a statement of an OBJ file",
                               "check that the file is a Wavefront OBJ, or export it again");
         }
         return builder_.finish();
@@ -60,7 +61,7 @@ private:
     std::int64_t corner(std::string_view word) {
         const std::size_t slash = std::min(word.find('/'), word.size());
         if (word.find_first_not_of("-+/0123456789", slash) != word.npos)
-            scanner_.fail(quoted(word) + " is not a corner of a face", "write corners like 7, 7/1, 7//3 or 7/1/3");
+            scanner_.fail(inQuotes(word) + " is not a corner of a face", "write corners like 7, 7/1, 7//3 or 7/1/3");
         const std::int64_t index = scanner_.integer(word.substr(0, slash), "corner of a face");
         if (index > 0) return index - 1;
         if (index == 0) scanner_.fail("a face refers to vertex 0", "count vertices from 1");

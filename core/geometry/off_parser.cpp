@@ -1,3 +1,4 @@
+#include "core/base/text.h"
 #include "core/geometry/mesh_parsers.h"
 
 #include "core/geometry/mesh_builder.h"
@@ -15,10 +16,10 @@ std::string_view readKeyword(TextScanner& scanner) {
     if (rest.starts_with("C")) rest.remove_prefix(1);
     if (rest.starts_with("N")) rest.remove_prefix(1);
     if (rest.starts_with("4OFF") || rest.starts_with("nOFF") || rest.starts_with("4nOFF"))
-        scanner.fail("its points are not three-dimensional (" + quoted(word) + ")", "export a plain OFF file");
+        scanner.fail("its points are not three-dimensional (" + inQuotes(word) + ")", "export a plain OFF file");
     const bool known = rest.starts_with("OFF") && rest.find_first_not_of("0123456789", 3) == rest.npos;
     if (!known)
-        scanner.fail("it does not begin with OFF but with " + quoted(word),
+        scanner.fail("it does not begin with OFF but with " + inQuotes(word),
                      "check that the file is an OFF file, or export it again");
     return rest.substr(3);
 }
@@ -77,7 +78,7 @@ TriangleMesh parseOff(std::span<const std::byte> bytes, const std::string& name)
     readVertices(scanner, builder, vertices);
     readFaces(scanner, builder, faces);
     if (const std::string_view extra = scanner.word(); !extra.empty())
-        scanner.fail("after the last of " + std::to_string(faces) + " faces follows " + quoted(extra),
+        scanner.fail("after the last of " + std::to_string(faces) + " faces follows " + inQuotes(extra),
                      "correct the counts in the file's head, or export it again");
     return builder.finish();
 }

@@ -3,6 +3,7 @@
 #include <array>
 #include <utility>
 
+#include "core/base/text.h"
 #include "core/geometry/text_scanner.h"
 
 namespace lumorph {
@@ -64,8 +65,8 @@ private:
         else if (format == "binary_big_endian")
             header_.format = PlyHeader::Format::bigEndian;
         else
-            scanner_.fail("the format " + quoted(format) + " is not known", "export the model as binary or text PLY");
-        if (version != "1.0") scanner_.fail("version " + quoted(version) + " is not 1.0", "export the model again");
+            scanner_.fail("the format " + inQuotes(format) + " is not known", "export the model as binary or text PLY");
+        if (version != "1.0") scanner_.fail("version " + inQuotes(version) + " is not 1.0", "export the model again");
         scanner_.restOfLine();
     }
 
@@ -78,7 +79,7 @@ private:
         else if (keyword == "property")
             property();
         else if (!keyword.empty() && keyword != "comment" && keyword != "obj_info" && keyword != "end_header")
-            scanner_.fail(quoted(keyword) + " is not a statement of a PLY head", "export the model again");
+            scanner_.fail(inQuotes(keyword) + " is not a statement of a PLY head", "export the model again");
         scanner_.restOfLine();
         return keyword != "end_header";
     }
@@ -113,7 +114,7 @@ private:
     Type type(std::string_view word) const {
         for (const auto& [name, type] : kTypes)
             if (name == word) return type;
-        scanner_.fail(quoted(word) + " is not a type of a PLY property", "export the model again");
+        scanner_.fail(inQuotes(word) + " is not a type of a PLY property", "export the model again");
     }
 
     TextScanner scanner_;

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "core/base/error.h"
+#include "core/base/text.h"
 #include "core/geometry/binary_reader.h"
 #include "core/geometry/mesh_builder.h"
 #include "core/geometry/ply_header.h"
@@ -41,7 +42,7 @@ private:
         double value = 0.0;
         if (word.empty())
             fail("", 0, "the file ends where " + what + " should follow", "it is cut short; copy or export it again");
-        if (!parseReal(word, value)) fail("", 0, quoted(word) + " is not a number", "export the model again");
+        if (!parseReal(word, value)) fail("", 0, inQuotes(word) + " is not a number", "export the model again");
         return value;
     }
     std::int64_t whole(double value) const {
@@ -157,8 +158,8 @@ private:
         const std::size_t least = leastBytes(element, header_.format);
         if (least > 0 && element.count > body_.remaining() / least)
             throw DataError(name_,
-                            "its head promises " + std::to_string(element.count) + " times '" + element.name +
-                                "', more than the file has room for",
+                            "its head promises " + std::to_string(element.count) + " times " + inQuotes(element.name) +
+                                ", more than the file has room for",
                             "it is cut short or damaged; copy or export it again");
     }
 

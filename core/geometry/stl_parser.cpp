@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/base/error.h"
+#include "core/base/text.h"
 #include "core/geometry/binary_reader.h"
 #include "core/geometry/mesh_builder.h"
 #include "core/geometry/mesh_file.h"
@@ -67,12 +68,12 @@ private:
 
     void expect(std::string_view keyword) {
         const std::string_view word = scanner_.word();
-        if (!equalsIgnoringCase(word, keyword)) failUnexpected(word, std::string("'").append(keyword).append("'"));
+        if (!equalsIgnoringCase(word, keyword)) failUnexpected(word, inQuotes(keyword));
     }
 
     [[noreturn]] void failUnexpected(std::string_view word, const std::string& expected) const {
         if (word.empty()) scanner_.failTruncated(expected);
-        scanner_.fail("expected " + expected + ", found " + quoted(word), "export the model again");
+        scanner_.fail("expected " + expected + ", found " + inQuotes(word), "export the model again");
     }
 
     TextScanner scanner_;

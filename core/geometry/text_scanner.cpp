@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/base/error.h"
+#include "core/base/text.h"
 
 namespace lumorph {
 namespace {
@@ -22,13 +23,6 @@ std::string_view textOf(std::span<const std::byte> bytes) noexcept {
     std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
     if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
     return text;
-}
-
-std::string quoted(std::string_view word) {
-    constexpr std::size_t kLongest = 32;
-    std::string text = "'";
-    for (const char c : word.substr(0, kLongest)) text += c >= ' ' && c <= '~' ? c : '?';
-    return text + (word.size() > kLongest ? "...'" : "'");
 }
 
 bool parseReal(std::string_view word, double& value) noexcept {
@@ -106,10 +100,10 @@ float TextScanner::coordinate(std::string_view word, std::string_view what) cons
     if (word.empty()) failMissing(what);
     double wide = 0.0;
     if (!parseReal(word, wide))
-        fail(quoted(word) + " is not a number, for the " + std::string(what), "write numbers like 1.5 or -2e-3");
+        fail(inQuotes(word) + " is not a number, for the " + std::string(what), "write numbers like 1.5 or -2e-3");
     value = static_cast<float>(wide);
     if (!std::isfinite(value))
-        fail("the " + std::string(what) + " is " + quoted(word) + ", not a finite number",
+        fail("the " + std::string(what) + " is " + inQuotes(word) + ", not a finite number",
              "remove the vertex, or export the model again");
     return value;
 }
@@ -121,7 +115,7 @@ std::int64_t TextScanner::integer(std::string_view word, std::string_view what) 
     std::int64_t value = 0;
     const auto [stop, error] = std::from_chars(digits.data(), end, value);
     if (error != std::errc() || stop != end)
-        fail(quoted(word) + " is not a whole number, for the " + std::string(what), "export the model again");
+        fail(inQuotes(word) + " is not a whole number, for the " + std::string(what), "export the model again");
     return value;
 }
 

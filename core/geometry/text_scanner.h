@@ -50,9 +50,6 @@ private:
 /// The bytes as text, without a byte order mark.
 [[nodiscard]] std::string_view textOf(std::span<const std::byte> bytes) noexcept;
 
-/// A foreign word made fit for an error message: short, and printable.
-[[nodiscard]] std::string quoted(std::string_view word);
-
 /// A real number that may be out of a float's range; false when the word is no number. "nan" and
 /// "inf" are numbers here.
 [[nodiscard]] bool parseReal(std::string_view word, double& value) noexcept;

@@ -33,10 +33,8 @@ double lagOf(const Rig& rig) {
 DriveStage::Mode DriveStage::modeOf(const MatchWish& wish) {
     if (!wish.scene) return Mode::asWished;
     if (wish.scene->showing == Showing::virtualOnly) return Mode::atRest;
-    const SceneItem* item = wish.live ? drivingItemShown(*wish.scene) : nullptr;
-    if (!item) return Mode::asWished;
-    if (!isTarget(*item)) return Mode::byHeights;
-    return item->role == ItemRole::split && wish.target ? Mode::byHeights : Mode::asWished;
+    const SceneItem* item = wish.driver == Driver::sceneItem ? drivingItemShown(*wish.scene) : nullptr;
+    return item && (!isTarget(*item) || wish.target) ? Mode::byHeights : Mode::asWished;
 }
 
 std::vector<double> DriveStage::strokes(const MatchWish& wish, const MatchFrame& frame, double sinceLast) {

@@ -5,7 +5,8 @@
 #include <vector>
 
 #include "core/loop/driving_heights.h"
-#include "core/loop/live_match.h"
+#include "core/loop/match_frame.h"
+#include "core/loop/match_wish.h"
 #include "core/loop/target_stage.h"
 #include "core/motion/frequency_split.h"
 #include "core/motion/view_dependence.h"

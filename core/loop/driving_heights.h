@@ -5,9 +5,12 @@
 #include <span>
 #include <vector>
 
-#include "core/loop/live_match.h"
+#include "core/loop/match_target.h"
+#include "core/mdf/placement.h"
 #include "core/motion/surface_heights.h"
 #include "core/scene/posed_scene.h"
+#include "core/scene/scene.h"
+#include "core/scene/scene_assets.h"
 
 namespace lumorph {
 

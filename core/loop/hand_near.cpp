@@ -26,10 +26,4 @@ std::optional<double> handDistance(const PoseBoard& board, const Box& box, const
     return nearest;
 }
 
-bool handNear(const PoseBoard& board, const Box& box, const glm::mat4& worldFromDevice, double metres,
-              Microseconds now) {
-    const std::optional<double> distance = handDistance(board, box, worldFromDevice, now);
-    return distance && *distance <= metres;
-}
-
 } // namespace lumorph

@@ -16,8 +16,4 @@ namespace lumorph {
 [[nodiscard]] std::optional<double> handDistance(const PoseBoard& board, const Box& box,
                                                  const glm::mat4& worldFromDevice, Microseconds now);
 
-/// Whether a hand is seen at most so many metres from the box. False where none is seen.
-[[nodiscard]] bool handNear(const PoseBoard& board, const Box& box, const glm::mat4& worldFromDevice, double metres,
-                            Microseconds now);
-
 } // namespace lumorph

@@ -1,3 +1,5 @@
+#include "core/loop/match_loop.h"
+
 #include <algorithm>
 #include <cmath>
 #include <string>
@@ -6,20 +8,19 @@
 #include "core/base/error.h"
 #include "core/loop/dance.h"
 #include "core/loop/drive_stage.h"
-#include "core/loop/live_match.h"
+#include "core/loop/frame_source.h"
 #include "core/loop/match_stage.h"
 #include "core/loop/motion_stage.h"
 #include "core/loop/scene_clock.h"
 #include "core/loop/stage_timer.h"
 #include "core/loop/target_stage.h"
 #include "core/loop/viewer_stage.h"
-#include "core/rig/rig_file.h"
 
 namespace lumorph {
 
 namespace {
 
-bool follows(const MatchWish& wish) { return wish.live && wish.target && wish.field; }
+bool follows(const MatchWish& wish) { return wish.driver == Driver::target && wish.target && wish.field; }
 
 void requireFinite(const char* what, double value) {
     if (!std::isfinite(value)) throw InvalidInput(what, "it is not a finite number", "give a finite number");
@@ -50,6 +51,9 @@ void checkWish(const MatchWish& wish, double sinceLast) {
     if (!(sinceLast >= 0.0) || !std::isfinite(sinceLast))
         throw InvalidInput("time step", "it is negative or not finite",
                            "use a finite time that does not run backwards");
+    if (wish.scene && !wish.installation)
+        throw InvalidInput("scene", "there is no installation to show it in", "give it one, such as the virtual lab's");
+    if (wish.driver == Driver::program) throw InvalidInput("show program", "there is none", "choose one first");
     requireFinite("spin", wish.spin);
     if (wish.seek) requireFinite("animation time", *wish.seek);
     if (wish.sceneSeek) requireFinite("scene time", *wish.sceneSeek);
@@ -65,17 +69,7 @@ State nearestLevels(const std::vector<double>& strokes, int levels) {
     return state;
 }
 
-Rig rigOf(const Field& field) {
-    Rig rig = readRigGlb(field.rigGlb, field.rigName);
-    if (rig.actuatorCount() != field.actuators.size())
-        throw DataError(field.rigName, "the field and the rig in it do not agree", "build the field again");
-    return rig;
-}
-
 } // namespace
-
-MatchField::MatchField(Field built)
-    : field(std::move(built)), rig(rigOf(field)), coverage(rig, field.frame, field.levels), voting(field) {}
 
 struct MatchLoop::Data {
     explicit Data(const Clock& c) : clock(c) {}
@@ -126,6 +120,7 @@ void MatchLoop::Data::look(const MatchWish& wish, double sinceLast, MatchFrame& 
     if (!wish.scene) return;
     const StageTimer timer(clock, frame.ms.track);
     frame.scene = wish.scene;
+    frame.installation = wish.installation;
     frame.assets = wish.assets;
     viewer.look(wish, sinceLast, frame);
     time.step(wish, sinceLast);
@@ -136,7 +131,7 @@ MatchWish MatchLoop::Data::driven(const MatchWish& wish, double sinceLast, Match
     MatchWish servos = wish;
     const DriveStage::Mode mode = DriveStage::modeOf(wish);
     if (mode == DriveStage::Mode::asWished) return servos;
-    servos.live = servos.dancing = false;
+    servos.driver = Driver::hand;
     servos.strokes.assign(wish.rig->actuatorCount(), 0.0);
     if (mode == DriveStage::Mode::atRest) return servos;
     const StageTimer timer(clock, frame.ms.rule);
@@ -159,12 +154,13 @@ bool MatchLoop::Data::restsAfter(const MatchWish& wish, const MatchFrame& frame)
     if (wish.scene && (viewer.moves() || time.moves())) return false;
     if (TargetStage::moves(wish)) return false;
     if (!wish.stopped && !motion.arrived(frame.wantedStrokes)) return false;
-    return follows(wish) ? matching.converged() : !wish.dancing;
+    return follows(wish) ? matching.converged() : wish.driver != Driver::dance;
 }
 
 void MatchLoop::Data::hold(const MatchWish& wish, double sinceLast, MatchFrame& frame) {
-    if (!wish.dancing) dance.end();
-    frame.wantedStrokes = wish.dancing ? dance.step(wish.strokes, sinceLast) : wish.strokes;
+    const bool dances = wish.driver == Driver::dance;
+    if (!dances) dance.end();
+    frame.wantedStrokes = dances ? dance.step(wish.strokes, sinceLast) : wish.strokes;
     for (double& stroke : frame.wantedStrokes) stroke = std::clamp(stroke, 0.0, 1.0);
     if (wish.field) frame.wanted = nearestLevels(frame.wantedStrokes, wish.field->field.levels);
 }
@@ -183,6 +179,7 @@ void MatchLoop::Data::move(const MatchWish& wish, double sinceLast, MatchFrame& 
 /// A frame of another source. Whoever comes back from there goes on where its actuators stood.
 std::shared_ptr<const MatchFrame> MatchLoop::Data::shown(const MatchWish& wish) {
     if (!wish.rig) throw InvalidInput("device", "there is no rig", "open one first");
+    if (!wish.source) throw InvalidInput("recording", "there is none to show", "open one first");
     std::shared_ptr<const MatchFrame> frame = wish.source->frame(wish, clock.now());
     motion.follow(wish.rig);
     motion.standAt(frame->estimatedStrokes);
@@ -197,7 +194,7 @@ MatchLoop& MatchLoop::operator=(MatchLoop&&) noexcept = default;
 
 std::shared_ptr<const MatchFrame> MatchLoop::step(const MatchWish& wish, double sinceLast) {
     data_->settled = false;
-    if (wish.source) return data_->shown(wish);
+    if (wish.driver == Driver::recording) return data_->shown(wish);
     checkWish(wish, sinceLast);
     auto frame = std::make_shared<MatchFrame>();
     frame->number = ++data_->number;

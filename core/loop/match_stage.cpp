@@ -35,7 +35,7 @@ void MatchStage::match(const MatchWish& wish, const TargetStage& target, bool ne
     const FrameMatch& found = matcher_->found();
     frame.votes = votes_;
     frame.iouVoting = iouOf(found.votedQuality, target.voxels());
-    if (!wish.live) return;
+    if (wish.driver != Driver::target) return;
     frame.statesSeen = found.statesSeen;
     frame.wanted = found.wanted;
     frame.wantedStrokes.clear();
@@ -56,7 +56,7 @@ void MatchStage::vote(const MatchWish& wish, const TargetStage& target, const Cl
 }
 
 void MatchStage::decide(const MatchWish& wish, const TargetStage& target, const Clock& clock, MatchTimes& ms) {
-    const bool refined = wish.live && wish.method == MatchMethod::refined && target.voxels() > 0;
+    const bool refined = wish.driver == Driver::target && wish.method == MatchMethod::refined && target.voxels() > 0;
     const Decided how = refined ? Decided::byRefinement : Decided::byVoting;
     if (decided_ == how && matcher_->found().converged) return;
     const StageTimer timer(clock, refined ? ms.refine : ms.match);

@@ -4,7 +4,8 @@
 #include <optional>
 #include <vector>
 
-#include "core/loop/live_match.h"
+#include "core/loop/match_frame.h"
+#include "core/loop/match_wish.h"
 #include "core/loop/target_stage.h"
 #include "core/mdf/frame_matcher.h"
 
@@ -17,7 +18,8 @@ public:
     /// Gets ready for a field; an empty one lets go of the last.
     void use(const std::shared_ptr<const MatchField>& field);
     /// Matches the voxels of a target (`newVoxels`: they are other ones than before) and writes votes, wanted state and
-    /// strokes into the frame. When the wish is not live the state is left alone.
+    /// strokes into the frame. When another than the
+    /// target drives, the state is left alone.
     void match(const MatchWish& wish, const TargetStage& target, bool newVoxels, const Clock& clock, MatchFrame& frame);
     /// Compares V(wanted) and what is covered at the estimated strokes with the target's voxels.
     void judge(const MatchWish& wish, const TargetStage& target, MatchFrame& frame);

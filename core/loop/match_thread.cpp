@@ -1,3 +1,5 @@
+#include "core/loop/match_thread.h"
+
 #include <algorithm>
 #include <cmath>
 #include <condition_variable>
@@ -9,7 +11,7 @@
 #include <utility>
 
 #include "core/base/error.h"
-#include "core/loop/live_match.h"
+#include "core/loop/match_loop.h"
 #include "core/loop/viewer_stage.h"
 
 namespace lumorph {

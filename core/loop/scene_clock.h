@@ -3,7 +3,7 @@
 #include <memory>
 #include <optional>
 
-#include "core/loop/live_match.h"
+#include "core/loop/match_wish.h"
 
 namespace lumorph {
 

@@ -5,7 +5,7 @@
 namespace lumorph {
 
 ShowFrame ShowStage::frame(const MatchFrame& match) {
-    if (!match.scene || !match.assets)
+    if (!match.scene || !match.installation || !match.assets)
         throw InvalidInput("show frame", "the loop's frame has no scene", "give the loop a scene with its assets");
     PoseInput input;
     input.seconds = match.sceneSeconds;
@@ -19,6 +19,7 @@ ShowFrame ShowStage::frame(const MatchFrame& match) {
     ShowFrame frame;
     frame.posed = poser_.pose(*match.scene, *match.assets, input);
     frame.scene = match.scene;
+    frame.installation = match.installation;
     frame.assets = match.assets;
     frame.rig = match.rig;
     frame.devicePositions = match.devicePositions;

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "core/loop/live_match.h"
+#include "core/loop/match_frame.h"
 #include "core/scene/show_frame.h"
 
 namespace lumorph {

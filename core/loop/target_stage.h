@@ -4,7 +4,8 @@
 #include <memory>
 #include <vector>
 
-#include "core/loop/live_match.h"
+#include "core/loop/match_frame.h"
+#include "core/loop/match_wish.h"
 #include "core/loop/stage_timer.h"
 #include "core/voxels/solid.h"
 

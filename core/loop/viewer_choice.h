@@ -7,7 +7,7 @@
 #include <glm/vec3.hpp>
 
 #include "core/loop/pose_stream.h"
-#include "core/scene/scene.h"
+#include "core/scene/installation.h"
 
 namespace lumorph {
 

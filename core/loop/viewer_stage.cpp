@@ -17,14 +17,15 @@ glm::mat4 matrixOf(const Pose& pose) {
 }
 
 /// Where drawing takes longer than the scene says, poses are predicted farther.
-double lookAhead(const Scene& scene, double lightDelay) {
-    return scene.predictionSeconds > 0.0 ? std::max(scene.predictionSeconds, lightDelay) : 0.0;
+double lookAhead(const Installation& installation, double lightDelay) {
+    return installation.predictionSeconds > 0.0 ? std::max(installation.predictionSeconds, lightDelay) : 0.0;
 }
 
 /// What the board's streams say about one moment to come.
 class Outlook {
 public:
-    Outlook(const PoseBoard* board, double seconds, MatchFrame& frame) : frame_(frame) {
+    Outlook(const PoseBoard* board, double seconds, const glm::vec3& eyeFromHead, MatchFrame& frame)
+        : eyeFromHead_(eyeFromHead), frame_(frame) {
         const Microseconds then = frame.time + Microseconds(std::llround(1e6 * seconds));
         if (board)
             for (const PoseBoard::Entry& entry : board->entries()) take(entry, then);
@@ -44,10 +45,11 @@ private:
         if (!pose || entry.role == PoseRole::pointer) return;
         tracked = true;
         if (const std::optional<PoseSample> sample = entry.stream->latest()) oldest_ = std::min(oldest_, sample->time);
-        if (entry.role == PoseRole::head) heads.push_back({entry.name, pose->position});
+        if (entry.role == PoseRole::head) heads.push_back({entry.name, pose->position + pose->rotation * eyeFromHead_});
         if (entry.role == PoseRole::device) frame_.worldFromDevice = matrixOf(*pose);
     }
 
+    glm::dvec3 eyeFromHead_; ///< in the frame of a head's body
     MatchFrame& frame_;
     Microseconds oldest_ = Microseconds::max();
 };
@@ -55,17 +57,18 @@ private:
 } // namespace
 
 void ViewerStage::look(const MatchWish& wish, double sinceLast, MatchFrame& frame) {
-    const Scene& scene = *wish.scene;
-    frame.worldFromDevice = scene.worldFromDevice;
-    const Outlook outlook(wish.poses.get(), lookAhead(scene, wish.lightDelay), frame);
+    const Installation& installation = *wish.installation;
+    frame.worldFromDevice = installation.worldFromDevice;
+    const Outlook outlook(wish.poses.get(), lookAhead(installation, wish.lightDelay), installation.eyeFromHead, frame);
     const glm::dvec3 centre(frame.worldFromDevice[3]);
-    const std::optional<ViewerDirector::View> view = director_.step(outlook.heads, centre, scene.viewer, sinceLast);
+    const std::optional<ViewerDirector::View> view =
+        director_.step(outlook.heads, centre, installation.viewer, sinceLast);
     if (view) {
         frame.eye = glm::vec3(view->eye);
         frame.viewer = view->name;
         frame.handingOver = view->handingOver;
-    } else if (!outlook.headsExpected && scene.viewer != ViewerChoice::none) {
-        frame.eye = scene.eye;
+    } else if (!outlook.headsExpected && installation.viewer != ViewerChoice::none) {
+        frame.eye = installation.eye;
     }
     moves_ = outlook.tracked;
 }

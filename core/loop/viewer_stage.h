@@ -1,6 +1,7 @@
 #pragma once
 
-#include "core/loop/live_match.h"
+#include "core/loop/match_frame.h"
+#include "core/loop/match_wish.h"
 #include "core/loop/viewer_choice.h"
 
 namespace lumorph {

@@ -4,18 +4,13 @@
 #include <cstdio>
 
 #include "core/base/error.h"
+#include "core/base/text.h"
 #include "core/mdf/frame_matcher.h"
 #include "core/motion/rig_motion.h"
 
 namespace lumorph {
 
 namespace {
-
-std::string quoted(const std::string& text) {
-    std::string result = "\"";
-    for (const char c : text) result += c == '"' ? std::string("\"\"") : std::string(1, c);
-    return result + "\"";
-}
 
 std::string number(double value, const char* format) {
     char text[64];
@@ -74,7 +69,7 @@ std::vector<ClipFrame> matchClip(const Field& field, const Coverage& coverage, c
 std::string clipCsv(const Field& field, const std::vector<ClipFrame>& frames) {
     std::string csv = "seconds,iou wanted,iou reached";
     for (const ActuatorField& actuator : field.actuators)
-        csv += "," + quoted(actuator.name + " level") + "," + quoted(actuator.name + " stroke");
+        csv += "," + csvField(actuator.name + " level") + "," + csvField(actuator.name + " stroke");
     csv += "\n";
     for (const ClipFrame& frame : frames) {
         csv += number(frame.seconds, "%.6f") + "," + number(frame.iouWanted, "%.6f") + "," +

@@ -13,8 +13,8 @@ namespace lumorph {
 namespace {
 
 void check(const ShowFrame& frame) {
-    if (frame.scene && frame.assets && frame.rig && frame.devicePositions) return;
-    throw InvalidInput("frame", "it lacks its scene, its pictures, its rig or the device's positions",
+    if (frame.scene && frame.installation && frame.assets && frame.rig && frame.devicePositions) return;
+    throw InvalidInput("frame", "it lacks its scene, its installation, its pictures, its rig or the device's positions",
                        "fill in all of them");
 }
 
@@ -140,7 +140,7 @@ void SpatialRenderer::Data::drawTableView(const glm::vec3& from) {
 }
 
 void SpatialRenderer::Data::fitProjectors() {
-    const auto& wanted = frame->scene->projectors;
+    const auto& wanted = frame->installation->projectors;
     projectors.resize(wanted.size());
     for (std::size_t i = 0; i < wanted.size(); ++i) {
         if (!wanted[i].enabled) {
@@ -203,7 +203,7 @@ bool SpatialRenderer::Data::drawProjectors(const EyeViews& views, bool shared) {
     for (ProjectorTarget* target : targets) {
         if (!target->region.empty()) {
             if (!lookUp([&] { projectorPass.drawSeen(*target, *frame, device, views); })) return false;
-            pass.drawUnseen(*frame, unseenPlaces(*target, *frame->scene));
+            pass.drawUnseen(*frame, unseenPlaces(*target, *frame->installation));
         }
         if (!shared) target->changes.finish(*frame);
     }
@@ -229,7 +229,7 @@ void SpatialRenderer::drawEye(const ShowFrame& frame) {
     auto since = std::chrono::steady_clock::now();
     const StateKeeper keeper;
     data_->beginFrame(frame);
-    data_->drawEye(frame.eye.value_or(frame.scene->eye));
+    data_->drawEye(frame.eye.value_or(frame.installation->eye));
     data_->times.total = data_->finish(since);
 }
 
@@ -238,7 +238,7 @@ void SpatialRenderer::draw(const ShowFrame& frame) {
     const StateKeeper keeper;
     data_->beginFrame(frame);
     data_->fitProjectors();
-    const glm::vec3 from = frame.eye.value_or(frame.scene->eye);
+    const glm::vec3 from = frame.eye.value_or(frame.installation->eye);
     data_->drawEye(from);
     if (frame.eye && data_->eyeShown && !data_->enabled().empty()) data_->drawTableView(from);
     data_->drawProjectors();

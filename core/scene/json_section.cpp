@@ -3,6 +3,7 @@
 #include <limits>
 
 #include "core/base/error.h"
+#include "core/base/text.h"
 #include "core/scene/project_assets.h"
 
 namespace lumorph {
@@ -27,7 +28,7 @@ void JsonSection::text(const std::string& key, std::string& value) {
 void JsonSection::asset(const std::string& key, std::string& value) {
     text(key, value);
     if (value.empty() || isAssetName(value)) return;
-    refuse(key, "\"" + value.substr(0, 80) + "\" leads out of the project's folder",
+    refuse(key, inQuotes(value) + " leads out of the project's folder",
            "put the file beside the project and name it relative to it");
 }
 

@@ -8,6 +8,7 @@
 #include "core/base/error.h"
 #include "core/base/file.h"
 #include "core/base/json_check.h"
+#include "core/base/text.h"
 #include "core/scene/project_format.h"
 #include "core/scene/scene_assets.h"
 
@@ -24,7 +25,7 @@ void refuseLinksOutside(const Project& project, const fs::path& file) {
     const auto refuse = [&file](const char* key, const std::string& asset) {
         if (asset.empty() || asset.starts_with("resource:") || confinedPath(projectFolder(file), asset)) return;
         throw DataError(file.string(),
-                        std::string(key) + ": \"" + asset + "\" leads out of the project's folder through a link",
+                        std::string(key) + ": " + inQuotes(asset) + " leads out of the project's folder through a link",
                         "put the file itself beside the project");
     };
     refuse("rig", project.rig);

@@ -8,13 +8,14 @@
 #include <nlohmann/json.hpp>
 
 #include "core/mdf/placement.h"
+#include "core/scene/installation.h"
 #include "core/scene/project_assets.h"
 #include "core/scene/scene.h"
 
 namespace lumorph {
 
 /// Schema version that this program writes; older ones are migrated step by step, newer ones are refused.
-inline constexpr int kProjectSchema = 2;
+inline constexpr int kProjectSchema = 3;
 
 /// A project as its file `name.lumorph` (JSON) holds it. Paths of assets are relative to the project's folder and may
 /// not leave it, or name a bundled resource as `resource:models/tablet.glb`. Keys that this version does not know are
@@ -38,8 +39,10 @@ struct Project {
         bool operator==(const Playback&) const = default;
     } playback;
     Scene scene = defaultScene(); ///< what is shown
-    nlohmann::json view;          ///< what a window wants to remember about how it shows the project; an object or null
-    nlohmann::json unknown;       ///< the rest of the file, nested as it was, written back as it was
+    /// A copy of the room's when it was saved. Who opens the project in another room decides which to use.
+    Installation installation = defaultInstallation();
+    nlohmann::json view;    ///< what a window wants to remember about how it shows the project; an object or null
+    nlohmann::json unknown; ///< the rest of the file, nested as it was, written back as it was
 };
 
 /// A project from the text of its file; `name` stands in errors. Older schemas are migrated, links are not looked at.

@@ -8,6 +8,7 @@
 #include "core/base/atomic_file.h"
 #include "core/base/confined_path.h"
 #include "core/base/resources.h"
+#include "core/base/text.h"
 #include "core/scene/asset_copy.h"
 
 namespace lumorph {
@@ -17,7 +18,7 @@ namespace fs = std::filesystem;
 
 constexpr std::string_view kResource = "resource:";
 
-std::string quoted(const std::string& asset) { return "\"" + asset.substr(0, 200) + "\""; }
+constexpr std::size_t kLongestName = 200; // of a path, in a message
 
 /// The name under which a bundled resource is known; nothing for other files, or where there are no resources.
 std::optional<std::string> resourceName(const fs::path& file) {
@@ -107,11 +108,13 @@ fs::path assetPath(const fs::path& projectFile, const std::string& asset) {
     if (asset.empty()) throw DataError(subject, "names no such file", "choose one");
     const auto path = confinedPath(folder, bundled ? asset.substr(kResource.size()) : asset);
     if (!path)
-        throw DataError(subject, quoted(asset) + " leads out of the " + (bundled ? "resources" : "project's folder"),
+        throw DataError(subject,
+                        inQuotes(asset, kLongestName) + " leads out of the " +
+                            (bundled ? "resources" : "project's folder"),
                         "put the file itself beside the project");
     std::error_code failed;
     if (!fs::exists(*path, failed))
-        throw DataError(subject, quoted(asset) + " is not there",
+        throw DataError(subject, inQuotes(asset, kLongestName) + " is not there",
                         bundled ? "install Lumorph again" : "put it back, or choose another file");
     return *path;
 }

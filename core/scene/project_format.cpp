@@ -38,9 +38,35 @@ void addScene(json& document) {
     document["scene"] = documentOf(scene);
 }
 
+/// Moves what stands under `from` in one object to `to` in another.
+void move(json& from, const char* key, json& to, const char* newKey) {
+    if (!from.is_object()) return;
+    const auto found = from.find(key);
+    if (found == from.end()) return;
+    json value = std::move(*found);
+    from.erase(found);
+    to[newKey] = std::move(value);
+}
+
+/// The second schema's scene held what stands in the room, too.
+void separateInstallation(json& document) {
+    const auto scene = document.find("scene");
+    if (scene == document.end() || !scene->is_object() || document.contains("installation")) return;
+    json installation = json::object();
+    for (const char* key : {"projectors", "eye", "worldFromDevice", "viewer", "compensation", "predictionSeconds"})
+        move(*scene, key, installation, key);
+    if (const auto table = scene->find("table"); table != scene->end()) {
+        move(*table, "size", installation, "tableSize");
+        move(*table, "surfaceColor", installation, "tableColor");
+    }
+    if (const auto device = scene->find("device"); device != scene->end())
+        move(*device, "surfaceColor", installation, "deviceColor");
+    document["installation"] = std::move(installation);
+}
+
 using Migration = void (*)(json& document);
 /// The step at index i takes a document from schema i to i + 1.
-constexpr std::array<Migration, kProjectSchema> kMigrations = {&fromDraft, &addScene};
+constexpr std::array<Migration, kProjectSchema> kMigrations = {&fromDraft, &addScene, &separateInstallation};
 
 Placement readPlacement(JsonSection section) {
     constexpr double kFar = 1e6; // metres, and radians: many turns
@@ -106,6 +132,7 @@ Project projectOf(json document, const std::string& file) {
         section.number("spin", project.playback.spin, -100.0, 100.0);
     });
     root.section("scene", [&](const JsonSection& section) { readScene(section, project.scene); });
+    root.section("installation", [&](const JsonSection& section) { readInstallation(section, project.installation); });
     if (const auto view = document.find("view"); view != document.end()) {
         if (!view->is_object()) root.refuse("view", "is not an object", "write it in { }, or remove it");
         project.view = std::move(*view);
@@ -134,6 +161,7 @@ json documentOf(const Project& project) {
            {"budgetMilliseconds", project.matching.budgetMilliseconds}});
     merge(document, "playback", {{"playing", project.playback.playing}, {"spin", project.playback.spin}});
     merge(document, "scene", documentOf(project.scene));
+    merge(document, "installation", documentOf(project.installation));
     document.erase("view");
     if (!project.view.is_null()) document["view"] = project.view;
     return document;

@@ -13,7 +13,6 @@
 #include <glm/vec3.hpp>
 
 #include "core/base/units.h"
-#include "core/geometry/calibrated_camera.h"
 #include "core/scene/material.h"
 
 namespace lumorph {
@@ -135,31 +134,13 @@ struct DeviceSkin {
         glm::vec3 color{0.05F};
         bool operator==(const Creases&) const = default;
     } creases;
-    glm::vec3 surfaceColor{
-        1.0F}; ///< of the bare device, on which all light falls, sRGB in [0, 1]; white until measured
     bool operator==(const DeviceSkin&) const = default;
 };
 
-/// The table: the world's plane y = 0 around the origin.
+/// What the table beneath looks like, through holes and beside the device. How large it is says the installation.
 struct Table {
-    glm::vec2 size{1.2F, 0.9F}; ///< metres in x and z
     Material material;
-    glm::vec3 surfaceColor{1.0F}; ///< of the bare table, as the device's
     bool operator==(const Table&) const = default;
-};
-
-/// A projector and what is known of its light. Full white on a white diffuse surface that it meets head on at
-/// `referenceDistance` has the radiance `peak`, where 1 is white in the eye pass; so `peak` is the headroom for
-/// slanting and distant places.
-struct SceneProjector {
-    std::string name = "Projector";
-    bool enabled = true;
-    CalibratedCamera camera;
-    double referenceDistance = 2.0; ///< metres
-    double peak = 3.0;
-    glm::vec3 gain{1.0F}; ///< relative response of red, green, blue; 1 until measured
-    double gamma = 0.0;   ///< light = value^gamma; 0: sRGB
-    bool operator==(const SceneProjector&) const = default;
 };
 
 /// Which of the two layers works, Fig. 2 of the paper: servos, light, or both. `virtualOnly` keeps the device at rest.
@@ -172,10 +153,7 @@ struct ViewDependence {
     bool operator==(const ViewDependence&) const = default;
 };
 
-/// Whom the show follows when several heads are tracked.
-enum class ViewerChoice { automatic, first, nearest, none };
-
-/// All that is shown, and how: a plain value.
+/// All that is shown, and how: a plain value. Where it is shown says the installation (installation.h).
 struct Scene {
     std::vector<SceneItem> items; ///< a group stands before its members
     DeviceSkin device;
@@ -185,17 +163,11 @@ struct Scene {
     bool toneMapping = true; ///< a soft shoulder; false clips
     Showing showing = Showing::both;
     ViewDependence viewDependence;
-    ViewerChoice viewer = ViewerChoice::automatic;
-    bool compensation = true;        ///< of incidence and distance
-    double predictionSeconds = 0.06; ///< that poses are extrapolated by at least; 0: only to the present
-    std::vector<SceneProjector> projectors;
-    glm::vec3 eye{0.0F, 0.45F, 0.55F}; ///< simulated viewer, world metres
-    glm::mat4 worldFromDevice{1.0F};   ///< simulated tracker: where the device lies
     bool operator==(const Scene&) const = default;
 };
 
-/// What a new project shows: the device as paper on a wooden table, one sun, one calibrated projector about 2 m above
-/// it. Room for all its numbers is in `scene_defaults.cpp`.
+/// What a new project shows: the device as paper on a wooden table, and one sun. Room for all its numbers is in
+/// `scene_defaults.cpp`.
 [[nodiscard]] Scene defaultScene();
 
 /// Throws InvalidInput naming the item and the value: ids, parents, numbers that are not finite or out of range, more

@@ -85,7 +85,11 @@ private:
         Checker checker(subjectOf(item));
         fields(checker, item);
     }
-    void go(const SceneProjector& projector, const std::string& /*path*/) const {
+    void go(const InstalledCamera& camera, const std::string& /*path*/) const {
+        Checker checker("camera \"" + camera.name.substr(0, 80) + "\"");
+        fields(checker, camera);
+    }
+    void go(const InstalledProjector& projector, const std::string& /*path*/) const {
         Checker checker("projector \"" + projector.name.substr(0, 80) + "\"");
         fields(checker, projector);
     }
@@ -154,6 +158,11 @@ void checkScene(const Scene& scene) {
     fields(checker, scene);
     checkTree(scene.items);
     checkDriving(scene.items);
+}
+
+void checkInstallation(const Installation& installation) {
+    Checker checker("installation");
+    fields(checker, installation);
 }
 
 } // namespace lumorph

@@ -1,5 +1,6 @@
 #include <cmath>
 
+#include "core/scene/installation.h"
 #include "core/scene/scene.h"
 
 namespace lumorph {
@@ -7,13 +8,13 @@ namespace {
 
 /// A full-HD projector 2 m above the table and a little on the viewer's side, so that a far flap that bends up for him
 /// is lit on the side he sees, while his head stays out of the light. Like most projectors it has a lens shift: its
-/// axis leaves through the lower edge of the picture. 0.62 x 0.35 m around the device are lit, a third of a
-/// millimetre a pixel.
-SceneProjector defaultProjector() {
+/// axis leaves through the lower edge of the picture. 0.62 x 0.35 m around the device are lit, a third of a millimetre
+/// a pixel.
+InstalledProjector defaultProjector() {
     const glm::dvec3 position(0.0, 2.0, 0.4);
     const double focal = 6080.0;
     const double shift = 620.0; // pixels from the picture's middle down to the axis
-    SceneProjector projector;
+    InstalledProjector projector;
     projector.name = "Projector above the table";
     projector.camera.size = {1920, 1080};
     projector.camera.focal = {focal, focal + 6.0};
@@ -71,8 +72,13 @@ Scene defaultScene() {
     scene.items.push_back(defaultSun());
     scene.device.material = paper();
     scene.table.material = tableWood();
-    scene.projectors.push_back(defaultProjector());
     return scene;
+}
+
+Installation defaultInstallation() {
+    Installation installation;
+    installation.projectors.push_back(defaultProjector());
+    return installation;
 }
 
 } // namespace lumorph

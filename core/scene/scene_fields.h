@@ -6,12 +6,13 @@
 #include <type_traits>
 #include <variant>
 
+#include "core/scene/installation.h"
 #include "core/scene/scene.h"
 
-/// What every part of a scene consists of: names, ranges and words, stated once for reading, writing and checking.
-/// A visitor has number, vector, color, degrees, flag, text, asset, word, rigid, object (read over what is there),
-/// whole (read over a fresh one), plain (like whole, and not written while it is a fresh one), list, and kind. Private
-/// to core/scene.
+/// What every part of a scene and of an installation consists of: names, ranges and words, stated once for reading,
+/// writing and checking. A visitor has number, vector, color, degrees, flag, text, asset, word, rigid, object (read
+/// over what is there), whole (read over a fresh one), plain (like whole, and not written while it is a fresh one),
+/// list, and kind. Private to core/scene.
 namespace lumorph {
 
 struct Range {
@@ -31,6 +32,7 @@ inline constexpr Words<4> kForms = {"box", "sphere", "cylinder", "plane"};
 inline constexpr Words<2> kLightKinds = {"sun", "lamp"};
 inline constexpr Words<2> kSkinShows = {"material", "content"};
 inline constexpr Words<3> kShowings = {"both", "physical", "virtual"};
+inline constexpr Words<3> kOriginWays = {"assumed", "entered", "measured"};
 inline constexpr Words<4> kViewers = {"automatic", "first", "nearest", "none"};
 /// In the order of ItemKind; also the keys under which the kinds' own values stand.
 inline constexpr Words<std::variant_size_v<ItemKind>> kKinds = {"mesh", "target", "shape", "heights",
@@ -164,14 +166,9 @@ template <typename V, Is<DeviceSkin> T> void fields(V& v, T& skin) {
     v.number("shrink", skin.shrink, {0.0, 0.9});
     v.list("holes", skin.holes, kMaxHoles);
     v.object("creases", skin.creases);
-    v.color("surfaceColor", skin.surfaceColor);
 }
 
-template <typename V, Is<Table> T> void fields(V& v, T& table) {
-    v.vector("size", table.size, {0.01, kFar});
-    v.whole("material", table.material);
-    v.color("surfaceColor", table.surfaceColor);
-}
+template <typename V, Is<Table> T> void fields(V& v, T& table) { v.whole("material", table.material); }
 
 template <typename V, Is<CalibratedCamera> T> void fields(V& v, T& camera) {
     v.vector("size", camera.size, {16, 16384});
@@ -181,7 +178,13 @@ template <typename V, Is<CalibratedCamera> T> void fields(V& v, T& camera) {
     v.rigid("cameraFromWorld", camera.cameraFromWorld);
 }
 
-template <typename V, Is<SceneProjector> T> void fields(V& v, T& projector) {
+template <typename V, Is<Origin> T> void fields(V& v, T& origin) {
+    v.word("way", origin.way, kOriginWays);
+    v.text("method", origin.method);
+    v.text("date", origin.date);
+}
+
+template <typename V, Is<InstalledProjector> T> void fields(V& v, T& projector) {
     v.text("name", projector.name);
     v.flag("enabled", projector.enabled);
     v.whole("camera", projector.camera);
@@ -189,6 +192,9 @@ template <typename V, Is<SceneProjector> T> void fields(V& v, T& projector) {
     v.number("peak", projector.peak, {0.01, 1000.0});
     v.vector("gain", projector.gain, {0.001, 1000.0});
     v.number("gamma", projector.gamma, {0.0, 5.0});
+    v.plain("lensOrigin", projector.lens);
+    v.plain("poseOrigin", projector.pose);
+    v.plain("responseOrigin", projector.response);
 }
 
 template <typename V, Is<ViewDependence> T> void fields(V& v, T& dependence) {
@@ -205,12 +211,33 @@ template <typename V, Is<Scene> T> void fields(V& v, T& scene) {
     v.flag("toneMapping", scene.toneMapping);
     v.word("showing", scene.showing, kShowings);
     v.object("viewDependence", scene.viewDependence);
-    v.word("viewer", scene.viewer, kViewers);
-    v.flag("compensation", scene.compensation);
-    v.number("predictionSeconds", scene.predictionSeconds, kShare);
-    v.list("projectors", scene.projectors, kMaxProjectors);
-    v.vector("eye", scene.eye, kPlace);
-    v.rigid("worldFromDevice", scene.worldFromDevice);
+}
+
+template <typename V, Is<InstalledCamera> T> void fields(V& v, T& camera) {
+    v.text("name", camera.name);
+    v.text("address", camera.address);
+    v.whole("camera", camera.camera);
+    v.plain("lensOrigin", camera.lens);
+    v.plain("poseOrigin", camera.pose);
+}
+
+template <typename V, Is<Installation> T> void fields(V& v, T& installation) {
+    v.list("projectors", installation.projectors, kMaxProjectors);
+    v.list("cameras", installation.cameras, kMaxProjectors);
+    v.vector("tableSize", installation.tableSize, {0.01, kFar});
+    v.rigid("worldFromDevice", installation.worldFromDevice);
+    v.color("deviceColor", installation.deviceColor);
+    v.color("tableColor", installation.tableColor);
+    v.vector("eye", installation.eye, kPlace);
+    v.vector("eyeFromHead", installation.eyeFromHead, {-1.0, 1.0});
+    v.word("viewer", installation.viewer, kViewers);
+    v.flag("compensation", installation.compensation);
+    v.number("predictionSeconds", installation.predictionSeconds, kShare);
+    v.plain("tableOrigin", installation.origins.table);
+    v.plain("devicePlaceOrigin", installation.origins.devicePlace);
+    v.plain("colorsOrigin", installation.origins.colors);
+    v.plain("eyeOffsetOrigin", installation.origins.eyeOffset);
+    v.plain("delaysOrigin", installation.origins.delays);
 }
 
 } // namespace lumorph

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/base/error.h"
+#include "core/base/text.h"
 
 namespace lumorph {
 namespace {
@@ -108,8 +109,7 @@ private:
         progress_.throwIfCancelled();
         const Model::Image& source = scene_->model.images[static_cast<std::size_t>(index)];
         const std::string called =
-            name_ + ": picture " +
-            (source.name.empty() ? std::to_string(index) : "\"" + source.name.substr(0, 80) + "\"");
+            name_ + ": picture " + (source.name.empty() ? std::to_string(index) : inQuotes(source.name));
         try {
             Image decoded = decodeImage(source.bytes, called);
             budget_.charge(decoded);

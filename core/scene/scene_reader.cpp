@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "core/base/error.h"
+#include "core/base/text.h"
 #include "core/scene/scene_fields.h"
 #include "core/scene/scene_format.h"
 
@@ -110,7 +111,7 @@ private:
     }
     template <std::size_t Count> static std::string choices(const Words<Count>& words) {
         std::string all;
-        for (const char* word : words) all += (all.empty() ? "\"" : ", \"") + std::string(word) + "\"";
+        for (const char* word : words) all += (all.empty() ? "" : ", ") + inQuotes(word);
         return all;
     }
     template <std::size_t Count> std::size_t indexOfWord(const char* key, const Words<Count>& words) {
@@ -118,7 +119,7 @@ private:
         section_.text(key, word);
         for (std::size_t i = 0; i < Count; ++i)
             if (word == words[i]) return i;
-        section_.refuse(key, "\"" + word.substr(0, 80) + "\" is not known here", "write one of " + choices(words));
+        section_.refuse(key, inQuotes(word) + " is not known here", "write one of " + choices(words));
     }
     template <std::size_t... Indices>
     static void setKind(ItemKind& kind, std::size_t index, std::index_sequence<Indices...> /*all*/) {
@@ -140,6 +141,16 @@ void readScene(const JsonSection& section, Scene& scene) {
         checkScene(scene);
     } catch (const InvalidInput& error) {
         section.refuse("items", error.subject() + ": " + error.why(), error.remedy());
+    }
+}
+
+void readInstallation(const JsonSection& section, Installation& installation) {
+    Reader reader(section);
+    fields(reader, installation);
+    try {
+        checkInstallation(installation);
+    } catch (const InvalidInput& error) {
+        section.refuse("projectors", error.subject() + ": " + error.why(), error.remedy());
     }
 }
 

@@ -110,4 +110,10 @@ json documentOf(const Scene& scene) {
     return std::move(writer.document);
 }
 
+json documentOf(const Installation& installation) {
+    Writer writer;
+    fields(writer, installation);
+    return std::move(writer.document);
+}
+
 } // namespace lumorph

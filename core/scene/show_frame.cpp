@@ -51,7 +51,7 @@ CalibratedCamera deviceView(const ShowFrame& frame, const glm::vec3& eye, glm::i
 
 CalibratedCamera tableView(const ShowFrame& frame, const glm::vec3& eye, glm::ivec2 size) {
     const glm::vec3 device(frame.worldFromDevice[3]);
-    const glm::vec2 half = 0.5F * frame.scene->table.size;
+    const glm::vec2 half = 0.5F * frame.installation->tableSize;
     const glm::dvec3 aim(std::clamp(device.x, -half.x, half.x), 0.0, std::clamp(device.z, -half.y, half.y));
     CalibratedCamera camera = cameraLookingAt(glm::dvec3(eye), aim, size, 1.0);
     constexpr int kSteps = 24;

@@ -9,6 +9,7 @@
 #include <glm/vec3.hpp>
 
 #include "core/rig/rig.h"
+#include "core/scene/installation.h"
 #include "core/scene/posed_scene.h"
 #include "core/scene/scene.h"
 #include "core/scene/scene_assets.h"
@@ -17,8 +18,9 @@ namespace lumorph {
 
 /// All that the passes of one frame need, as a value: what is physically there, what is to be seen, and from where.
 struct ShowFrame {
-    std::shared_ptr<const Scene> scene;        ///< skin, table, projectors, exposure
-    std::shared_ptr<const SceneAssets> assets; ///< its pictures
+    std::shared_ptr<const Scene> scene;               ///< skin, table, exposure
+    std::shared_ptr<const Installation> installation; ///< projectors, size of the table, bare colours
+    std::shared_ptr<const SceneAssets> assets;        ///< its pictures
     PosedScene posed;
     std::shared_ptr<const Rig> rig;
     std::shared_ptr<const std::vector<glm::vec3>> devicePositions; ///< of the estimated state, device metres

@@ -11,6 +11,7 @@
 #include <string_view>
 
 #include "core/base/error.h"
+#include "core/base/text.h"
 
 namespace lumorph {
 
@@ -76,7 +77,7 @@ public:
             double value = 0.0;
             const auto parsed = std::from_chars(word.data(), word.data() + word.size(), value);
             if (parsed.ec != std::errc() || parsed.ptr != word.data() + word.size() || !std::isfinite(value))
-                fail("field '" + field + "'", "'" + word + "' is not a number");
+                fail("field '" + field + "'", inQuotes(word) + " is not a number");
             result.push_back(value);
         }
         return result;
@@ -150,9 +151,9 @@ ByteGrid parseNrrd(std::span<const std::byte> bytes, const std::string& name) {
         header.fail("field 'data file'", "the data lies in another file");
     const std::string& type = header.require("type");
     if (type != "uint8" && type != "unsigned char" && type != "uchar" && type != "uint8_t")
-        header.fail("field 'type'", "'" + type + "' is not uint8");
+        header.fail("field 'type'", inQuotes(type) + " is not uint8");
     if (header.require("encoding") != "raw")
-        header.fail("field 'encoding'", "'" + header.require("encoding") + "' is not raw");
+        header.fail("field 'encoding'", inQuotes(header.require("encoding")) + " is not raw");
 
     ByteGrid grid;
     grid.frame.dimensions = readSizes(header);

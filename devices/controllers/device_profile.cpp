@@ -13,6 +13,7 @@
 #include "core/base/error.h"
 #include "core/base/file.h"
 #include "core/base/json_check.h"
+#include "core/base/text.h"
 #include "core/scene/json_section.h"
 
 namespace lumorph {
@@ -161,7 +162,7 @@ ControllerKind readKind(JsonSection& section) {
     section.text("controller", name);
     const auto* const found = std::ranges::find(kKinds, name, &std::pair<ControllerKind, std::string_view>::second);
     if (found == kKinds.end())
-        section.refuse("controller", "\"" + name.substr(0, 80) + "\" is no controller that is known here",
+        section.refuse("controller", inQuotes(name) + " is no controller that is known here",
                        "write firmata, lewansoul or maestro");
     return found->first;
 }

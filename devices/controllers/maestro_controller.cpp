@@ -65,7 +65,6 @@ private:
     [[nodiscard]] bool namesItself() const;
     void receive(const maestro::Errors& errors, Microseconds now);
     void receive(const maestro::Position& position, Microseconds now);
-    void receive(const maestro::Moving&, Microseconds) {}
     void say(LinkTrouble trouble, Microseconds now);
     void letGo(LinkTrouble why, Microseconds now);
     [[nodiscard]] std::size_t servoToAskFor() const;

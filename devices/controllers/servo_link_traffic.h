@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/base/clock.h"
+#include "core/base/statistics.h"
 
 namespace lumorph {
 
@@ -32,11 +33,8 @@ public:
         return static_cast<double>(written_.size());
     }
     [[nodiscard]] double medianMilliseconds() const {
-        if (latencies_.empty()) return 0.0;
-        std::vector<Microseconds> sorted(latencies_.begin(), latencies_.end());
-        const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
-        std::nth_element(sorted.begin(), middle, sorted.end());
-        return std::max(0.0, 1e-3 * static_cast<double>(middle->count()));
+        const Microseconds usual = median(std::vector<Microseconds>(latencies_.begin(), latencies_.end()));
+        return std::max(0.0, 1e-3 * static_cast<double>(usual.count()));
     }
 
 private:

@@ -18,14 +18,13 @@ constexpr std::uint8_t kDigital = 0x90;
 // Of extended messages:
 constexpr std::uint8_t kVoltage = 0x02;
 constexpr std::uint8_t kStep = 0x03;
-constexpr std::uint8_t kMappingQuery = 0x69, kMapping = 0x6A;
+constexpr std::uint8_t kMapping = 0x6A;
 constexpr std::uint8_t kCapabilityQuery = 0x6B, kCapability = 0x6C;
 constexpr std::uint8_t kPinStateQuery = 0x6D, kPinState = 0x6E;
 constexpr std::uint8_t kExtendedAnalog = 0x6F;
 constexpr std::uint8_t kServoConfig = 0x70;
 constexpr std::uint8_t kText = 0x71;
 constexpr std::uint8_t kFirmware = 0x79;
-constexpr std::uint8_t kSampling = 0x7A;
 
 std::uint8_t inRange(const char* what, int value, int greatest) {
     if (value < 0 || value > greatest)
@@ -100,7 +99,6 @@ std::optional<Message> voltageOf(View body) {
 Bytes askVersion() { return {kVersion}; }
 Bytes askFirmware() { return {kStart, kFirmware, kEnd}; }
 Bytes askCapabilities() { return {kStart, kCapabilityQuery, kEnd}; }
-Bytes askAnalogMapping() { return {kStart, kMappingQuery, kEnd}; }
 Bytes askPinState(int pin) { return {kStart, kPinStateQuery, pinByte(pin), kEnd}; }
 Bytes askVoltage() { return {kStart, kVoltage, kEnd}; }
 
@@ -130,7 +128,6 @@ Bytes writeExtended(int pin, int value) {
     return bytes;
 }
 
-Bytes setSampling(int milliseconds) { return {kStart, kSampling, low(milliseconds), high(milliseconds), kEnd}; }
 Bytes resetBoard() { return {kReset}; }
 
 std::vector<Message> Parser::feed(std::span<const std::uint8_t> bytes) {

@@ -25,7 +25,6 @@ constexpr std::uint8_t kEndOfMessage = 0xF7;
 [[nodiscard]] Bytes askVersion();
 [[nodiscard]] Bytes askFirmware();
 [[nodiscard]] Bytes askCapabilities();
-[[nodiscard]] Bytes askAnalogMapping();
 [[nodiscard]] Bytes askPinState(int pin);
 /// Only firmware of ours answers it.
 [[nodiscard]] Bytes askVoltage();
@@ -40,7 +39,6 @@ constexpr std::uint8_t kEndOfMessage = 0xF7;
 /// The short form where it can carry pin and value, else the extended one.
 [[nodiscard]] Bytes writeValue(int pin, int value);
 [[nodiscard]] Bytes writeExtended(int pin, int value);
-[[nodiscard]] Bytes setSampling(int milliseconds);
 /// Detaches all servos.
 [[nodiscard]] Bytes resetBoard();
 

@@ -10,9 +10,7 @@ namespace {
 
 constexpr std::uint8_t kTarget = 0x84;
 constexpr std::uint8_t kSpeed = 0x87;
-constexpr std::uint8_t kAcceleration = 0x89;
 constexpr std::uint8_t kPosition = 0x90;
-constexpr std::uint8_t kMoving = 0x93;
 constexpr std::uint8_t kErrors = 0xA1;
 constexpr std::uint8_t kHome = 0xA2;
 constexpr std::uint8_t kAddressed = 0xAA;
@@ -62,15 +60,11 @@ std::uint8_t checksum(std::span<const std::uint8_t> bytes) {
 
 Bytes setTarget(const Form& form, int channel, int quarters) { return ofChannel(form, kTarget, channel, quarters); }
 Bytes setSpeed(const Form& form, int channel, int speed) { return ofChannel(form, kSpeed, channel, speed); }
-Bytes setAcceleration(const Form& form, int channel, int acceleration) {
-    return ofChannel(form, kAcceleration, channel, acceleration);
-}
 Bytes goHome(const Form& form) { return dressed(form, kHome, {}); }
 Bytes askPosition(const Form& form, int channel) {
     const std::array data = {static_cast<std::uint8_t>(inRange("channel", channel, 127))};
     return dressed(form, kPosition, data);
 }
-Bytes askMoving(const Form& form) { return dressed(form, kMoving, {}); }
 Bytes askErrors(const Form& form) { return dressed(form, kErrors, {}); }
 
 std::string errorWords(int bits) {
@@ -92,7 +86,6 @@ void Replies::expect(Question question) {
     open_.push_back(question);
 }
 void Replies::expectPosition(int channel) { expect({Question::Kind::position, channel}); }
-void Replies::expectMoving() { expect({Question::Kind::moving, 0}); }
 void Replies::expectErrors() { expect({Question::Kind::errors, 0}); }
 
 void Replies::clear() {
@@ -105,8 +98,6 @@ std::vector<Message> Replies::feed(std::span<const std::uint8_t> bytes) {
     for (const std::uint8_t byte : bytes) {
         if (open_.empty()) {
             ++broken_;
-        } else if (open_.front().kind == Question::Kind::moving) {
-            answer(byte, messages);
         } else if (first_ < 0) {
             first_ = byte;
         } else {
@@ -122,14 +113,12 @@ void Replies::answer(int value, std::vector<Message>& messages) {
     const Question question = open_.front();
     open_.pop_front();
     using Kind = Question::Kind;
-    const int greatest = question.kind == Kind::position ? 0x3FFF : question.kind == Kind::moving ? 1 : 0x1FF;
+    const int greatest = question.kind == Kind::position ? 0x3FFF : 0x1FF;
     if (value > greatest) {
         ++broken_;
         clear();
     } else if (question.kind == Kind::position) {
         messages.emplace_back(Position{question.channel, value});
-    } else if (question.kind == Kind::moving) {
-        messages.emplace_back(Moving{value == 1});
     } else {
         messages.emplace_back(Errors{value});
     }

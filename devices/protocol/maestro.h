@@ -28,10 +28,8 @@ struct Form {
 /// Quarters of a microsecond; 0 is no pulse.
 [[nodiscard]] Bytes setTarget(const Form& form, int channel, int quarters);
 [[nodiscard]] Bytes setSpeed(const Form& form, int channel, int speed);
-[[nodiscard]] Bytes setAcceleration(const Form& form, int channel, int acceleration);
 [[nodiscard]] Bytes goHome(const Form& form);
 [[nodiscard]] Bytes askPosition(const Form& form, int channel);
-[[nodiscard]] Bytes askMoving(const Form& form);
 [[nodiscard]] Bytes askErrors(const Form& form);
 
 /// What the board sends to the channel now, not where the servo is; 0: no pulse.
@@ -39,15 +37,11 @@ struct Position {
     int channel = 0, quarters = 0;
     bool operator==(const Position&) const = default;
 };
-struct Moving {
-    bool moving = false;
-    bool operator==(const Moving&) const = default;
-};
 struct Errors {
     int bits = 0;
     bool operator==(const Errors&) const = default;
 };
-using Message = std::variant<Position, Moving, Errors>;
+using Message = std::variant<Position, Errors>;
 
 constexpr int kTimeoutError = 1 << 5;
 /// "checksum error, serial timeout"; empty for none.
@@ -60,7 +54,6 @@ public:
     static constexpr std::size_t kMostOpen = 32;
 
     void expectPosition(int channel);
-    void expectMoving();
     void expectErrors();
     /// A byte that nobody asked for is broken; so is an answer that cannot be, and then all that is open is given up,
     /// since nobody knows whose bytes come next.
@@ -72,7 +65,7 @@ public:
 
 private:
     struct Question {
-        enum class Kind { position, moving, errors } kind;
+        enum class Kind { position, errors } kind;
         int channel;
     };
     void expect(Question question);

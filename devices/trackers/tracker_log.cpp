@@ -93,11 +93,6 @@ void TrackerLog::setAdvice(const std::string& advice) {
     status_.advice = advice;
 }
 
-Microseconds TrackerLog::lastGood() const {
-    const std::scoped_lock lock(mutex_);
-    return lastGood_;
-}
-
 TrackerStatus TrackerLog::status() const {
     const Microseconds now = clock_->now();
     const std::scoped_lock lock(mutex_);

@@ -21,8 +21,6 @@ public:
     void noteAnswer();
     void setSource(const std::string& source, bool verified);
     void setAdvice(const std::string& advice);
-    /// Never: a negative time long ago.
-    [[nodiscard]] Microseconds lastGood() const;
     [[nodiscard]] TrackerStatus status() const;
 
 private:
@@ -35,7 +33,7 @@ private:
     TrackerStatus status_;
     RateMeter packets_;
     RateMeter frames_;
-    Microseconds lastGood_;
+    Microseconds lastGood_;    ///< never: a negative time long ago
     Microseconds measured_{0}; ///< of the newest frame
     Microseconds nextEvent_{0};
 };

@@ -88,6 +88,7 @@ TEST_F(CommandLineErrors, WrongUsageExitsWithTwo) {
         {2, {"mdf", "build", "{rig.glb}", "-o", "{rig.glb}"}, "replace"},
         {2, {"voxelize", "{target.obj}", "-o", "{x.nrrd}"}, "--like"},
         {2, {"voxelize", "{good.nrrd}", "--like", "{field.mdf}", "--fit", "-o", "{x.nrrd}"}, "--fit"},
+        {2, {"voxelize", "{good.nrrd}", "--like", "{field.mdf}", "--surface", "-o", "{x.nrrd}"}, "--surface"},
         {2, {"match", "{field.mdf}"}, "target is required"},
         {2, {"match", "{field.mdf}", "{target.obj}", "--method", "guessing"}, "guessing"},
         {2, {"match", "{field.mdf}", "{good.nrrd}", "--fit"}, "--fit"},

@@ -85,7 +85,7 @@ TEST(MatchQuality, AnimationKeepsToTheVelocityLimits) {
         SCOPED_TRACE(name);
         const double limit = rig["actuators"][i]["maxVelocity"].get<double>() / kFramesPerSecond;
         const std::size_t column = kFirstActuator + 2 * i + 1;
-        ASSERT_EQ(rows[0][column], "\"" + name + " stroke\"");
+        ASSERT_EQ(rows[0][column], name + " stroke");
         EXPECT_EQ(std::stod(rows[1][column]), 0.0); // starts at rest
         double moved = 0.0;
         for (std::size_t k = 1; k < rows.size(); ++k) {

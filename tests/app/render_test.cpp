@@ -81,7 +81,7 @@ TEST_F(Render, TheLitDeviceLooksAsItShouldWhereEyeAndProjectorSeeIt) {
 
 TEST_F(Render, TheProjectorsPictureHasTheProjectorsSize) {
     const Project project = readProject(w["p.lumorph"]);
-    EXPECT_EQ(picture("projector", {}).size(), project.scene.projectors[0].camera.size);
+    EXPECT_EQ(picture("projector", {}).size(), project.installation.projectors[0].camera.size);
     expectRefused({"--view", "projector", "--size", "320x200"}, "1920 x 1080");
     expectRefused({"--view", "projector", "--projector", "3"}, "the project's last one is 0");
 }
@@ -97,7 +97,8 @@ TEST_F(Render, AnObserverElsewhereSeesTheSameLightFromThere) {
 
 TEST_F(Render, AHandInTheLabShadowsTheProjectorAndTheRoomLightsTheShadow) {
     Project project = readProject(w["p.lumorph"]);
-    SceneProjector& projector = project.scene.projectors[0]; // overhead, so that the hand's shadow is below it
+    InstalledProjector& projector =
+        project.installation.projectors[0]; // overhead, so that the hand's shadow is below it
     projector.camera.cameraFromWorld =
         cameraLookingAt({0.0, 1.6, 0.0}, {0.0, 0.0, 0.001}, projector.camera.size, projector.camera.focal.x)
             .cameraFromWorld;

@@ -7,16 +7,11 @@
 
 #include <ctime>
 
+#include "core/base/statistics.h"
+
 namespace lumorph::bench {
 
 using Seconds = std::chrono::duration<double>;
-
-[[nodiscard]] inline double medianOf(std::vector<double> values) {
-    if (values.empty()) return 0.0;
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    return *middle;
-}
 
 [[nodiscard]] inline double smallestOf(const std::vector<double>& values) {
     return *std::min_element(values.begin(), values.end());
@@ -59,7 +54,7 @@ struct TimedWork {
                 samples[w].push_back(threadSeconds() - start);
             }
     std::vector<double> medians;
-    for (std::vector<double>& of : samples) medians.push_back(medianOf(std::move(of)));
+    for (std::vector<double>& of : samples) medians.push_back(median(std::move(of)));
     return medians;
 }
 

@@ -5,6 +5,7 @@
 #include <QCoreApplication>
 
 #include "core/base/resources.h"
+#include "core/base/statistics.h"
 #include "core/rig/rig_file.h"
 #include "devices/controllers/servo_link.h"
 #include "devices/simulator/simulated_bench.h"
@@ -61,14 +62,14 @@ void benchTracking(Report& report) {
             }
         }));
     if (board->entries().size() != kBodies) report.fail("track-natnet", "not all bodies came to the board");
-    const double share = 100.0 * medianOf(seconds) / 10.0;
+    const double share = 100.0 * median(seconds) / 10.0;
     report.add({"track-natnet",
                 "240 Hz of 24 rigid bodies, from the packet to filtered poses",
                 share,
                 "% of a core",
                 atMost(2.0),
                 {},
-                {fixed(1e6 * medianOf(seconds) / (10.0 * kRate), 1) + " us a frame; the socket is left out"}});
+                {fixed(1e6 * median(seconds) / (10.0 * kRate), 1) + " us a frame; the socket is left out"}});
 }
 
 // Commands as the loop gives them, to the simulated tablet through the link's own thread.
@@ -107,7 +108,7 @@ void benchServoLatency(Report& report) {
     }
     report.add({"servo-latency",
                 "from a command to its first byte on the wire, beyond the rate cap",
-                medianOf(medians),
+                median(medians),
                 "ms",
                 atMost(2.0),
                 {},

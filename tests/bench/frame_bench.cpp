@@ -4,6 +4,7 @@
 #include <epoxy/gl.h>
 
 #include "core/base/resources.h"
+#include "core/base/statistics.h"
 #include "core/render/gl/gl_driver.h"
 #include "core/render/gl/headless_context.h"
 #include "core/render/spatial_renderer.h"
@@ -25,16 +26,18 @@ constexpr int kFrames = 20;
 /// The tablet with its flaps half up, moving, in a scene with one projector and one shadow map; the viewer sways.
 class Show {
 public:
-    Show(Scene scene, glm::ivec2 size) : rig_(std::make_shared<const Rig>(readRig(resourceFile("models/tablet.glb")))) {
-        scene.projectors.resize(1);
-        CalibratedCamera& camera = scene.projectors.front().camera;
+    Show(const Scene& scene, glm::ivec2 size)
+        : rig_(std::make_shared<const Rig>(readRig(resourceFile("models/tablet.glb")))) {
+        Installation installation = defaultInstallation();
+        CalibratedCamera& camera = installation.projectors.front().camera;
         // So many pixels over the same part of the table.
         const glm::dvec2 share = glm::dvec2(size) / glm::dvec2(camera.size);
         camera.focal *= share;
         camera.principal = (camera.principal + 0.5) * share - 0.5;
         camera.size = size;
         frame_.assets = loadSceneAssets(scene, {});
-        frame_.scene = std::make_shared<const Scene>(std::move(scene));
+        frame_.scene = std::make_shared<const Scene>(scene);
+        frame_.installation = std::make_shared<const Installation>(std::move(installation));
         frame_.rig = rig_;
     }
 
@@ -48,7 +51,8 @@ public:
         frame_.devicePositions = std::move(positions);
         PoseInput input;
         input.seconds = seconds;
-        frame_.eye = frame_.scene->eye + 0.05F * glm::vec3(std::sin(2.0 * seconds), 0.0, std::cos(2.0 * seconds));
+        frame_.eye =
+            frame_.installation->eye + 0.05F * glm::vec3(std::sin(2.0 * seconds), 0.0, std::cos(2.0 * seconds));
         frame_.posed = poser_.pose(*frame_.scene, *frame_.assets, input);
         return frame_;
     }
@@ -80,11 +84,11 @@ struct FrameTimes {
     }
 };
 
-FrameTimes measure(Scene scene, glm::ivec2 size) {
+FrameTimes measure(const Scene& scene, glm::ivec2 size) {
     const HeadlessContext context;
     SpatialRenderer renderer;
     renderer.setEyeSize(size);
-    Show show(std::move(scene), size);
+    Show show(scene, size);
     std::vector<double> pose, upload, shadow, eye, projectors, whole, processor;
     for (int number = 0; number < kWarmUp + kFrames; ++number) {
         const ShowFrame* frame = nullptr;
@@ -109,8 +113,8 @@ FrameTimes measure(Scene scene, glm::ivec2 size) {
         eye.push_back(times.eye);
         projectors.push_back(times.projectors);
     }
-    return {medianOf(whole), medianOf(processor),  medianOf(pose),  medianOf(upload),   medianOf(shadow),
-            medianOf(eye),   medianOf(projectors), currentDriver(), renderer.warnings()};
+    return {median(whole), median(processor),  median(pose),    median(upload),     median(shadow),
+            median(eye),   median(projectors), currentDriver(), renderer.warnings()};
 }
 
 void fail(const std::string& name, const FrameTimes& times, Report& report) {
@@ -118,8 +122,8 @@ void fail(const std::string& name, const FrameTimes& times, Report& report) {
 }
 
 /// With what software on two cores is held to in one scene, and aims at in the others.
-void addSoftwareRow(Row row, Scene scene, Report& report) {
-    const FrameTimes times = measure(std::move(scene), kSize);
+void addSoftwareRow(Row row, const Scene& scene, Report& report) {
+    const FrameTimes times = measure(scene, kSize);
     row.figure = 1e3 / times.whole;
     row.unit = "frames/s";
     row.notes = {times.parts(),

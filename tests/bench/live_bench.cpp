@@ -4,7 +4,8 @@
 
 #include "core/base/error.h"
 #include "core/base/resources.h"
-#include "core/loop/live_match.h"
+#include "core/base/statistics.h"
+#include "core/loop/match_loop.h"
 #include "core/rig/rig_file.h"
 #include "tests/bench/bench_groups.h"
 #include "tests/bench/bench_inputs.h"
@@ -54,7 +55,7 @@ std::string noteOf(const std::vector<MatchTimes>& frames) {
     for (const Stage& stage : kStages) {
         std::vector<double> values;
         for (const MatchTimes& frame : frames) values.push_back(frame.*stage.of);
-        note += std::string(" ") + stage.name + " " + fixed(medianOf(values), 3);
+        note += std::string(" ") + stage.name + " " + fixed(median(values), 3);
         longest = *std::max_element(values.begin(), values.end());
     }
     return note + "; longest " + fixed(longest, 1);
@@ -79,7 +80,9 @@ MatchWish sceneWish() {
     scene.viewDependence.on = true;
     MatchWish wish;
     wish.rig = std::make_shared<const Rig>(readRig(resourceFile("models/tablet.glb")));
+    wish.driver = driverOf(true, &scene);
     wish.scene = std::make_shared<const Scene>(std::move(scene));
+    wish.installation = std::make_shared<const Installation>(defaultInstallation());
     wish.assets = std::make_shared<const SceneAssets>();
     return wish;
 }
@@ -102,7 +105,7 @@ void benchScene(Report& report) {
     for (const MatchTimes& frame : times) totals.push_back(frame.total);
     report.add({"loop-scene",
                 "live loop without drawing: tracked head, view dependence, water split between servos and light",
-                medianOf(totals),
+                median(totals),
                 "ms",
                 atMost(3.0),
                 atMost(1.0),

@@ -1,6 +1,7 @@
 #include <numeric>
 
 #include "core/base/clock.h"
+#include "core/base/statistics.h"
 #include "core/geometry/model.h"
 #include "core/mdf/placement.h"
 #include "core/mdf/refine.h"
@@ -79,8 +80,8 @@ Row measure(Loop& loop, const std::string& name, const std::string& what, Micros
     }
     std::string note = "medians of " + std::to_string(kFrames) + " frames, ms:";
     for (std::size_t s = 0; s < stages.size(); ++s)
-        note += std::string(" ") + Loop::kStages[s] + " " + fixed(medianOf(stages[s]), 3);
-    return {name, what, medianOf(whole), "ms", atMost(3.0), {}, {note}};
+        note += std::string(" ") + Loop::kStages[s] + " " + fixed(median(stages[s]), 3);
+    return {name, what, median(whole), "ms", atMost(3.0), {}, {note}};
 }
 
 } // namespace

@@ -3,6 +3,7 @@
 #include <benchmark/benchmark.h>
 
 #include "core/base/clock.h"
+#include "core/base/statistics.h"
 #include "core/mdf/refine.h"
 #include "core/mdf/sampling.h"
 #include "tests/bench/bench_groups.h"
@@ -91,7 +92,7 @@ Summary summarise(const std::vector<Outcome>& outcomes) {
     summary.worst = smallestOf(shares);
     summary.notes = {std::to_string(shares.size()) + " of " + std::to_string(outcomes.size()) +
                          " targets count; mean " + fixed(meanOf(shares), 4) + "; worst " + worst,
-                     "median " + std::to_string(static_cast<int>(medianOf(states))) + " states looked at; at most " +
+                     "median " + std::to_string(static_cast<int>(median(states))) + " states looked at; at most " +
                          fixed(1e3 * slowest, 2) + " ms"};
     return summary;
 }

@@ -2,6 +2,7 @@
 #include <set>
 #include <stdexcept>
 
+#include "core/base/statistics.h"
 #include "tests/bench/bench_groups.h"
 #include "tests/bench/bench_inputs.h"
 #include "tests/bench/bench_timing.h"
@@ -88,7 +89,7 @@ void benchVoting(const Filter& filter, Report& report) {
     };
     add({names[0],
          "Eq. 1 against the literal loop (median target)",
-         medianOf(literalRatios),
+         median(literalRatios),
          "x",
          atLeast(400.0),
          atLeast(1000.0),
@@ -102,7 +103,7 @@ void benchVoting(const Filter& filter, Report& report) {
          {}});
     add({names[2],
          "Eq. 1 against dense vector sums (median target)",
-         medianOf(vectorisedRatios),
+         median(vectorisedRatios),
          "x",
          {},
          {},
@@ -113,7 +114,7 @@ void benchVoting(const Filter& filter, Report& report) {
          "ms",
          {},
          atMost(0.1),
-         {"median target " + fixed(medianOf(milliseconds), 4) + " ms"}});
+         {"median target " + fixed(median(milliseconds), 4) + " ms"}});
     add({names[4],
          "literal loop, a voxel, actuator and level (slowest target)",
          *std::max_element(nanoseconds.begin(), nanoseconds.end()),

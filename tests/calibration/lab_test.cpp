@@ -62,8 +62,8 @@ std::vector<CalibratedCamera> cameras() {
     return {plain, bent, wide, shifted};
 }
 
-SceneProjector projectorAbove() {
-    SceneProjector projector;
+InstalledProjector projectorAbove() {
+    InstalledProjector projector;
     projector.camera = lookingFrom({0.05, 2.0, 0.1}, {0, 0, 0}, {1280, 800}, 2400);
     projector.camera.distortion = {-0.06, 0.03, 0.001, -0.001, 0.0};
     projector.camera.principal = {630.0, 500.0};

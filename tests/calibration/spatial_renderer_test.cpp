@@ -17,7 +17,7 @@ const CalibratedCamera kAbove = cameraLookingAt({0.02, 1.1, 0.25}, {0.0, 0.0, 0.
 constexpr double kSteepest = 65.0 * 3.14159265358979 / 180.0;
 
 // Two projectors from left and right that both hold the device, with borders in the other's image.
-std::vector<SceneProjector> pair() {
+std::vector<InstalledProjector> pair() {
     return {projectorAt({-0.7, 1.4, 0.1}, {-0.06, 0.0, 0.0}, {640, 400}, 1700.0),
             projectorAt({0.75, 1.3, -0.1}, {0.07, 0.0, 0.02}, {600, 420}, 1600.0)};
 }
@@ -52,7 +52,7 @@ int litAround(const Lab& lab, std::size_t projector, const Lab::Hit& hit, double
 
 // `edge`: no projector reaches it for sure and not too steeply, or the edge of a shadow is so near that the pixels
 // blur it.
-Reach reachOf(const Lab& lab, const std::vector<SceneProjector>& projectors, const Lab::Hit& hit) {
+Reach reachOf(const Lab& lab, const std::vector<InstalledProjector>& projectors, const Lab::Hit& hit) {
     constexpr double kPixel = 0.0011; // and a bit: 1.5 m at 1600 pixels
     bool sure = false;
     bool ever = false;
@@ -68,7 +68,7 @@ Reach reachOf(const Lab& lab, const std::vector<SceneProjector>& projectors, con
 }
 
 /// Whether something stands in a projector's way to a place that it would light else.
-bool inShadow(const Lab& lab, const std::vector<SceneProjector>& projectors, const Lab::Hit& hit) {
+bool inShadow(const Lab& lab, const std::vector<InstalledProjector>& projectors, const Lab::Hit& hit) {
     for (std::size_t i = 0; i < projectors.size(); ++i) {
         const CalibratedCamera& camera = projectors[i].camera;
         const auto pixel = pixelOf(camera, hit.point);
@@ -91,7 +91,7 @@ struct Flatness {
     int unreached = 0;
 };
 
-Flatness flatnessOf(const Lab& lab, const std::vector<SceneProjector>& projectors, double expected) {
+Flatness flatnessOf(const Lab& lab, const std::vector<InstalledProjector>& projectors, double expected) {
     Flatness result;
     const std::vector<glm::vec3> seen = lab.radiance(kAbove, 1);
     for (int y = 0; y < kAbove.size.y; ++y)
@@ -125,7 +125,7 @@ double linear(double value) { return value <= 0.04045 ? value / 12.92 : std::pow
 TEST(SpatialRenderer, OneProjectorMakesABentDeviceUniform) {
     const HeadlessContext context;
     SpatialRenderer renderer;
-    const std::vector<SceneProjector> projectors{pair()[0]};
+    const std::vector<InstalledProjector> projectors{pair()[0]};
     const ShowFrame frame = frameOf(unlitScene(glm::vec3(0.7F), glm::vec3(0.7F), projectors), liftedFlaps());
     renderer.draw(frame);
     const Lab lab(labOf(frame, renderer));
@@ -139,7 +139,7 @@ TEST(SpatialRenderer, OneProjectorMakesABentDeviceUniform) {
 TEST(SpatialRenderer, WithoutCompensationTheValueIsTheContent) {
     const HeadlessContext context;
     SpatialRenderer renderer;
-    Scene scene = unlitScene(glm::vec3(0.7F), glm::vec3(0.7F), {pair()[0]});
+    SceneInRoom scene = unlitScene(glm::vec3(0.7F), glm::vec3(0.7F), {pair()[0]});
     scene.compensation = false;
     const ShowFrame frame = frameOf(scene, liftedFlaps());
     renderer.draw(frame);
@@ -152,7 +152,7 @@ TEST(SpatialRenderer, WithoutCompensationTheValueIsTheContent) {
 TEST(SpatialRenderer, TwoProjectorsShareTheWorkWithoutASeam) {
     const HeadlessContext context;
     SpatialRenderer renderer;
-    const std::vector<SceneProjector> projectors = pair();
+    const std::vector<InstalledProjector> projectors = pair();
     const ShowFrame frame = frameOf(unlitScene(glm::vec3(0.7F), glm::vec3(0.7F), projectors), liftedFlaps());
     renderer.draw(frame);
     const Lab lab(labOf(frame, renderer));
@@ -169,7 +169,7 @@ TEST(SpatialRenderer, TwoProjectorsShareTheWorkWithoutASeam) {
     const auto pixel = pixelOf(projectors[0].camera, {0.0, 0.0, 0.16});
     ASSERT_TRUE(pixel);
     const double value = linear(first.at(int(pixel->x), int(pixel->y))[1] / 255.0);
-    Scene alone = *frame.scene;
+    SceneInRoom alone{*frame.scene, *frame.installation};
     alone.projectors[1].enabled = false;
     renderer.draw(frameOf(alone, liftedFlaps()));
     const double whole = linear(renderer.readProjector(0).at(int(pixel->x), int(pixel->y))[1] / 255.0);
@@ -179,7 +179,7 @@ TEST(SpatialRenderer, TwoProjectorsShareTheWorkWithoutASeam) {
 }
 
 // The share of the light at a table's point that a projector brings, from the value it sends there.
-double shareOf(const SceneProjector& projector, const Image& sent, glm::ivec2 pixel, const glm::dvec3& point) {
+double shareOf(const InstalledProjector& projector, const Image& sent, glm::ivec2 pixel, const glm::dvec3& point) {
     const glm::dvec3 way = positionOf(projector.camera) - point;
     const double distance = glm::length(way);
     const double full = projector.peak * way.y / distance * std::pow(projector.referenceDistance / distance, 2.0);
@@ -204,8 +204,8 @@ bool seesOpenTable(const Lab& lab, const CalibratedCamera& camera, const glm::dv
 TEST(SpatialRenderer, WeightsFallSmoothlyTowardsShadowsAndBorders) {
     const HeadlessContext context;
     SpatialRenderer renderer;
-    const std::vector<SceneProjector> projectors = pair();
-    Scene scene = unlitScene(glm::vec3(0.7F), glm::vec3(0.7F), projectors);
+    const std::vector<InstalledProjector> projectors = pair();
+    SceneInRoom scene = unlitScene(glm::vec3(0.7F), glm::vec3(0.7F), projectors);
     scene.worldFromDevice[3].y = 0.12F; // held up, so that its shadows lie apart
     const ShowFrame frame = frameOf(scene, liftedFlaps());
     renderer.draw(frame);
@@ -248,7 +248,7 @@ TEST(SpatialRenderer, WeightsFallSmoothlyTowardsShadowsAndBorders) {
 TEST(SpatialRenderer, GammaOfAProjectorIsAnswered) {
     const HeadlessContext context;
     SpatialRenderer renderer;
-    std::vector<SceneProjector> projectors{pair()[0]};
+    std::vector<InstalledProjector> projectors{pair()[0]};
     projectors[0].gamma = 2.6;
     const ShowFrame frame = frameOf(unlitScene(glm::vec3(0.7F), glm::vec3(0.7F), projectors), liftedFlaps());
     renderer.draw(frame);
@@ -279,13 +279,13 @@ Difference between(const Image& first, const Image& second) {
 TEST(SpatialRenderer, PreviewOfTheLabShowsWhatTheLabShows) {
     const HeadlessContext context;
     SpatialRenderer renderer;
-    std::vector<SceneProjector> projectors = pair();
+    std::vector<InstalledProjector> projectors = pair();
     projectors[1].gamma = 1.8;
     projectors[0].gain = {0.8F, 0.9F, 0.7F};
-    Scene scene = unlitScene({0.9F, 0.5F, 0.2F}, {0.1F, 0.4F, 0.6F}, projectors);
+    SceneInRoom scene = unlitScene({0.9F, 0.5F, 0.2F}, {0.1F, 0.4F, 0.6F}, projectors);
     scene.compensation = false; // so that the light falls off visibly
-    scene.device.surfaceColor = {0.8F, 0.9F, 0.6F};
-    scene.table.surfaceColor = {0.7F, 0.6F, 0.9F};
+    scene.deviceColor = {0.8F, 0.9F, 0.6F};
+    scene.tableColor = {0.7F, 0.6F, 0.9F};
     const ShowFrame frame = frameOf(scene, liftedFlaps());
     renderer.draw(frame);
     const Lab lab(labOf(frame, renderer));
@@ -301,13 +301,13 @@ TEST(SpatialRenderer, PreviewOfTheLabShowsWhatTheLabShows) {
 TEST(SpatialRenderer, MakesUpForColouredSurfacesAndProjectors) {
     const HeadlessContext context;
     SpatialRenderer renderer;
-    Scene scene = unlitScene({0.5F, 0.3F, 0.2F}, {0.1F, 0.4F, 0.3F}, {pair()[0]});
+    SceneInRoom scene = unlitScene({0.5F, 0.3F, 0.2F}, {0.1F, 0.4F, 0.3F}, {pair()[0]});
     scene.projectors[0].peak = 3.0;
     const ShowFrame white = frameOf(scene, liftedFlaps());
     renderer.draw(white);
     const Image wanted = Lab(labOf(white, renderer)).view(kAbove, 1);
-    scene.device.surfaceColor = {0.9F, 0.7F, 0.8F};
-    scene.table.surfaceColor = {0.6F, 0.8F, 0.9F};
+    scene.deviceColor = {0.9F, 0.7F, 0.8F};
+    scene.tableColor = {0.6F, 0.8F, 0.9F};
     scene.projectors[0].gain = {0.8F, 1.0F, 1.2F};
     const ShowFrame colored = frameOf(scene, liftedFlaps());
     LabWorld uncorrected = labOf(white, renderer);
@@ -326,7 +326,7 @@ TEST(SpatialRenderer, MaskIsWhiteWhereEyeAndProjectorMeet) {
     const HeadlessContext context;
     SpatialRenderer renderer;
     renderer.setEyeSize({320, 200});
-    const std::vector<SceneProjector> projectors{pair()[0]};
+    const std::vector<InstalledProjector> projectors{pair()[0]};
     const ShowFrame frame = frameOf(unlitScene(glm::vec3(0.7F), glm::vec3(0.7F), projectors), liftedFlaps());
     renderer.draw(frame);
     const Image mask = renderer.readMask();

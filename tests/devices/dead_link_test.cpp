@@ -48,7 +48,7 @@ double timeOfOthers() {
 }
 
 /// A simulated tablet at the far end of a pseudo-terminal or of a simulated link, and a link to it.
-class DeadLink : public testing::Test {
+class ServoLinkDead : public testing::Test {
 protected:
     void open(const std::string& address, ControllerKind controller = ControllerKind::firmata, int first = 2) {
         DeviceProfile profile;
@@ -131,7 +131,7 @@ protected:
     std::unique_ptr<ServoLink> link_;
 };
 
-TEST_F(DeadLink, ADeadPseudoTerminalCostsNoTimeAndFewWords) {
+TEST_F(ServoLinkDead, ADeadPseudoTerminalCostsNoTimeAndFewWords) {
     pty_ = std::make_unique<Pty>();
     // By a name of its own: the system gives the number of a dead terminal to whoever asks next.
     const std::filesystem::path name =
@@ -168,7 +168,7 @@ TEST_F(DeadLink, ADeadPseudoTerminalCostsNoTimeAndFewWords) {
     EXPECT_EQ(link_->status().phase, LinkPhase::lost);
 }
 
-TEST_F(DeadLink, AWrongBaudRateIsNamedWithOthersToTry) {
+TEST_F(ServoLinkDead, AWrongBaudRateIsNamedWithOthersToTry) {
     pty_ = std::make_unique<Pty>();
     stands_ = true; // what is not understood is not answered
     open("serial://" + pty_->path() + "?baud=38400");
@@ -185,7 +185,7 @@ TEST_F(DeadLink, AWrongBaudRateIsNamedWithOthersToTry) {
 }
 
 // Its battery fails: its servos are limp, and nothing starts them again by itself, whatever board it is.
-TEST_F(DeadLink, ABrownOutIsToldByEveryBoard) {
+TEST_F(ServoLinkDead, ABrownOutIsToldByEveryBoard) {
     struct Row {
         const char* address;
         ControllerKind controller;
@@ -215,7 +215,7 @@ TEST_F(DeadLink, ABrownOutIsToldByEveryBoard) {
     }
 }
 
-TEST_F(DeadLink, AStandstillOfFiveSecondsQueuesNothingAndTheNewestCommandComesOut) {
+TEST_F(ServoLinkDead, AStandstillOfFiveSecondsQueuesNothingAndTheNewestCommandComesOut) {
     open("sim://tablet");
     goLive();
     stall(true);
@@ -232,7 +232,7 @@ TEST_F(DeadLink, AStandstillOfFiveSecondsQueuesNothingAndTheNewestCommandComesOu
     for (const SimulatedServo& servo : board_->servos()) EXPECT_LE(servo.fastest, 2.0 * 1000.0);
 }
 
-TEST_F(DeadLink, AShortStandstillEndsWithTheNewestCommand) {
+TEST_F(ServoLinkDead, AShortStandstillEndsWithTheNewestCommand) {
     open("sim://uno"); // which has no watchdog of its own
     goLive();
     ASSERT_TRUE(standsAt(0.5));
@@ -247,7 +247,7 @@ TEST_F(DeadLink, AShortStandstillEndsWithTheNewestCommand) {
     EXPECT_EQ(link_->status().reconnects, 0U);
 }
 
-TEST_F(DeadLink, APseudoTerminalThatNobodyReadsHoldsLittle) {
+TEST_F(ServoLinkDead, APseudoTerminalThatNobodyReadsHoldsLittle) {
     pty_ = std::make_unique<Pty>();
     open("serial://" + pty_->path());
     goLive();

@@ -17,13 +17,11 @@ TEST(Firmata, WritesWhatTheProtocolSays) {
     EXPECT_THAT(askVersion(), ElementsAre(0xF9));
     EXPECT_THAT(askFirmware(), ElementsAre(0xF0, 0x79, 0xF7));
     EXPECT_THAT(askCapabilities(), ElementsAre(0xF0, 0x6B, 0xF7));
-    EXPECT_THAT(askAnalogMapping(), ElementsAre(0xF0, 0x69, 0xF7));
     EXPECT_THAT(askPinState(9), ElementsAre(0xF0, 0x6D, 0x09, 0xF7));
     EXPECT_THAT(askVoltage(), ElementsAre(0xF0, 0x02, 0xF7));
     EXPECT_THAT(attachServo(9), ElementsAre(0xF4, 0x09, 0x04));
     EXPECT_THAT(detachServo(9), ElementsAre(0xF4, 0x09, 0x01));
     EXPECT_THAT(resetBoard(), ElementsAre(0xFF));
-    EXPECT_THAT(setSampling(1000), ElementsAre(0xF0, 0x7A, 0x68, 0x07, 0xF7));
     // 544 = 4 x 128 + 32, 2400 = 18 x 128 + 96
     EXPECT_THAT(configureServo(9, 544, 2400), ElementsAre(0xF0, 0x70, 0x09, 0x20, 0x04, 0x60, 0x12, 0xF7));
     EXPECT_THAT(limitStep(9, 300), ElementsAre(0xF0, 0x03, 0x09, 0x2C, 0x02, 0xF7)); // 2 x 128 + 44
@@ -39,7 +37,6 @@ TEST(Firmata, RefusesWhatItsBytesCannotCarry) {
     EXPECT_THROW((void)writeValue(-1, 1500), InvalidInput);
     EXPECT_THROW((void)writeValue(3, -1), InvalidInput);
     EXPECT_THROW((void)configureServo(3, 0, 16384), InvalidInput);
-    EXPECT_THROW((void)setSampling(16384), InvalidInput);
 }
 
 /// Everything a board says, with facts of the tables by its side.

@@ -24,9 +24,9 @@ struct WireCase {
     double step; ///< microseconds between two pulses it can be told
 };
 
-class GuardedWire : public testing::TestWithParam<WireCase> {
+class ServoGuardOnTheWire : public testing::TestWithParam<WireCase> {
 protected:
-    GuardedWire() {
+    ServoGuardOnTheWire() {
         profile_.controller = GetParam().controller;
         profile_.address = "sim://" + std::string(GetParam().board);
         profile_.staggerSeconds = 0.05;
@@ -82,7 +82,7 @@ protected:
     std::ptrdiff_t attached_ = 0;
 };
 
-TEST_P(GuardedWire, KeepsEveryLimitOnTheBoard) {
+TEST_P(ServoGuardOnTheWire, KeepsEveryLimitOnTheBoard) {
     ASSERT_EQ(controller_->state().phase, ControllerPhase::ready);
     knowTruth();
     guard_->arm(false);
@@ -126,7 +126,7 @@ TEST_P(GuardedWire, KeepsEveryLimitOnTheBoard) {
     }
 }
 
-TEST_P(GuardedWire, LetsGoOfAllServosAtOnceWhenStopped) {
+TEST_P(ServoGuardOnTheWire, LetsGoOfAllServosAtOnceWhenStopped) {
     knowTruth();
     guard_->arm(false);
     for (int i = 0; i < 200; ++i) exchange(5'000);
@@ -143,7 +143,7 @@ TEST_P(GuardedWire, LetsGoOfAllServosAtOnceWhenStopped) {
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(Boards, GuardedWire,
+INSTANTIATE_TEST_SUITE_P(Boards, ServoGuardOnTheWire,
                          testing::Values(WireCase{"tablet", ControllerKind::firmata, 2, 1.0},
                                          WireCase{"xarm", ControllerKind::lewansoul, 1, 2.0},
                                          WireCase{"maestro", ControllerKind::maestro, 0, 0.25}),

@@ -41,10 +41,8 @@ TEST(Maestro, WritesTheVendorsVectors) {
     EXPECT_THAT(setTarget(pololu, 0, 6000), ElementsAre(0xAA, 0x0C, 0x04, 0x00, 0x70, 0x2E));
     EXPECT_THAT(setTarget(compact, 5, 0), ElementsAre(0x84, 0x05, 0x00, 0x00));
     EXPECT_THAT(setSpeed(compact, 5, 140), ElementsAre(0x87, 0x05, 0x0C, 0x01));
-    EXPECT_THAT(setAcceleration(compact, 5, 5), ElementsAre(0x89, 0x05, 0x05, 0x00));
     EXPECT_THAT(askPosition(compact, 3), ElementsAre(0x90, 0x03));
     EXPECT_THAT(askPosition(pololu, 3), ElementsAre(0xAA, 0x0C, 0x10, 0x03));
-    EXPECT_THAT(askMoving(compact), ElementsAre(0x93));
     EXPECT_THAT(goHome(compact), ElementsAre(0xA2));
     EXPECT_THAT(askErrors(compact), ElementsAre(0xA1));
     EXPECT_THAT(askErrors(pololu), ElementsAre(0xAA, 0x0C, 0x21));
@@ -62,12 +60,11 @@ TEST(Maestro, RefusesWhatItsBytesCannotCarry) {
 
 void expectAll(Replies& replies) {
     replies.expectPosition(3);
-    replies.expectMoving();
     replies.expectErrors();
     replies.expectPosition(0);
 }
-const Bytes kStream = {0x70, 0x17, 0x01, 0x28, 0x00, 0x00, 0x00};
-const std::vector<Message> kMeant = {Position{3, 6000}, Moving{true}, Errors{0x28}, Position{0, 0}};
+const Bytes kStream = {0x70, 0x17, 0x28, 0x00, 0x00, 0x00};
+const std::vector<Message> kMeant = {Position{3, 6000}, Errors{0x28}, Position{0, 0}};
 
 TEST(MaestroReplies, GiveTheSameHoweverTheirBytesAreCut) {
     test::expectTheSameHoweverCut(kStream, kMeant, [] {
@@ -92,8 +89,8 @@ TEST(MaestroReplies, CountWhatNobodyAskedForAndWhatCannotBe) {
     EXPECT_TRUE(replies.feed(Bytes{0xFF, 0xFF}).empty());
     EXPECT_EQ(replies.broken(), 3U);
     EXPECT_EQ(replies.open(), 0U) << "nobody knows whose bytes come next";
-    replies.expectMoving();
-    EXPECT_TRUE(replies.feed(Bytes{0x02}).empty());
+    replies.expectPosition(1);
+    EXPECT_TRUE(replies.feed(Bytes{0x00, 0x40}).empty());
     EXPECT_EQ(replies.broken(), 4U);
 }
 

@@ -100,7 +100,7 @@ private:
     std::size_t sent_ = 0;
 };
 
-class StopOnABadLine : public testing::TestWithParam<BadLineCase> {
+class ServoControllerOnABadLine : public testing::TestWithParam<BadLineCase> {
 protected:
     /// All are limp a second after STOP, and stay so. A Maestro without checksums takes for a target what a message
     /// that lost a byte and the next one make together: on such a line no word is the last, and each was let go once.
@@ -134,11 +134,11 @@ protected:
     }
 };
 
-TEST_P(StopOnABadLine, ThatLosesEachFifthByte) { expectAllLimp({.drop = 0.2}); }
+TEST_P(ServoControllerOnABadLine, ThatLosesEachFifthByte) { expectAllLimp({.drop = 0.2}); }
 
-TEST_P(StopOnABadLine, ThatBreaksEachTwentiethByte) { expectAllLimp({.noise = 0.05}); }
+TEST_P(ServoControllerOnABadLine, ThatBreaksEachTwentiethByte) { expectAllLimp({.noise = 0.05}); }
 
-TEST_P(StopOnABadLine, ThatIsDeadForHalfASecond) {
+TEST_P(ServoControllerOnABadLine, ThatIsDeadForHalfASecond) {
     BadLine line(GetParam(), 1);
     line.setFaults({.drop = 1.0});
     line.stop();
@@ -148,7 +148,7 @@ TEST_P(StopOnABadLine, ThatIsDeadForHalfASecond) {
     EXPECT_EQ(line.attached(), 0U);
 }
 
-TEST_P(StopOnABadLine, ASoundLineIsSilentSoon) {
+TEST_P(ServoControllerOnABadLine, ASoundLineIsSilentSoon) {
     BadLine line(GetParam(), 1);
     line.stop();
     line.pass(5'000);
@@ -160,7 +160,7 @@ TEST_P(StopOnABadLine, ASoundLineIsSilentSoon) {
     EXPECT_LT(line.bytesSent() - before, 10U * 140U);
 }
 
-INSTANTIATE_TEST_SUITE_P(Boards, StopOnABadLine,
+INSTANTIATE_TEST_SUITE_P(Boards, ServoControllerOnABadLine,
                          testing::Values(BadLineCase{"tablet", ControllerKind::firmata, 2, "57600"},
                                          BadLineCase{"uno", ControllerKind::firmata, 2, "57600"},
                                          BadLineCase{"uno", ControllerKind::firmata, 2, "9600"},

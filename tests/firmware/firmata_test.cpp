@@ -32,9 +32,9 @@ Bytes textMessage(const std::string& text) { return plus(plus({0xF0, 0x71}, inPa
 const Bytes kVersion = {0xF9, 0x02, 0x05};
 const Bytes kFirmware = plus(plus({0xF0, 0x79, 1, 2}, inPairs("LumorphTablet")), {0xF7});
 
-class Firmata : public testing::Test {
+class FirmwareFirmata : public testing::Test {
 protected:
-    Firmata() {
+    FirmwareFirmata() {
         board_.run(60.0);
         greeting_ = board_.takeSaid();
     }
@@ -70,13 +70,13 @@ protected:
 
 testing::Matcher<int> about(int width) { return testing::AllOf(testing::Ge(width - 4), testing::Le(width + 4)); }
 
-TEST_F(Firmata, TellsItsNameUnaskedAndWhenAsked) {
+TEST_F(FirmwareFirmata, TellsItsNameUnaskedAndWhenAsked) {
     EXPECT_THAT(greeting_, ElementsAreArray(plus(kVersion, kFirmware)));
     EXPECT_THAT(answerTo({0xF9}), ElementsAreArray(kVersion));
     EXPECT_THAT(answerTo({0xF0, 0x79, 0xF7}), ElementsAreArray(kFirmware));
 }
 
-TEST_F(Firmata, TellsWhatItsPinsCanDo) {
+TEST_F(FirmwareFirmata, TellsWhatItsPinsCanDo) {
     Bytes capability = {0xF0, 0x6C};
     Bytes mapping = {0xF0, 0x6A};
     for (const int pin : {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17, 18, 19}) {
@@ -88,7 +88,7 @@ TEST_F(Firmata, TellsWhatItsPinsCanDo) {
     EXPECT_THAT(answerTo({0xF0, 0x69, 0xF7}), ElementsAreArray(plus(mapping, {0xF7})));
 }
 
-TEST_F(Firmata, TellsThePinState) {
+TEST_F(FirmwareFirmata, TellsThePinState) {
     EXPECT_THAT(answerTo({0xF0, 0x6D, 9, 0xF7}), ElementsAreArray(Bytes{0xF0, 0x6E, 9, 1, 0, 0, 0xF7}));
     does(plus(write(9, 1500), attach(9)));
     EXPECT_THAT(answerTo({0xF0, 0x6D, 9, 0xF7}), ElementsAreArray(Bytes{0xF0, 0x6E, 9, 4, 0x5C, 0x0B, 0xF7}));
@@ -99,7 +99,7 @@ TEST_F(Firmata, TellsThePinState) {
     EXPECT_THAT(answerTo({0xF0, 0x6D, 99, 0xF7}), ElementsAreArray(Bytes{0xF0, 0x6E, 99, 0xF7}));
 }
 
-TEST_F(Firmata, StartsWithExactlyThePulseWrittenBefore) {
+TEST_F(FirmwareFirmata, StartsWithExactlyThePulseWrittenBefore) {
     does(write(9, 1234));
     EXPECT_THAT(widthsOf(9), IsEmpty());
     (void)board_.takePulses();
@@ -111,7 +111,7 @@ TEST_F(Firmata, StartsWithExactlyThePulseWrittenBefore) {
     EXPECT_LE(pulses.front().start, board_.now() - 150.0);
 }
 
-TEST_F(Firmata, AServoThatWasNeverToldAPlaceGetsNoPulse) {
+TEST_F(FirmwareFirmata, AServoThatWasNeverToldAPlaceGetsNoPulse) {
     does(attach(9));
     EXPECT_THAT(widthsOf(9), IsEmpty());
     (void)board_.takePulses();
@@ -121,7 +121,7 @@ TEST_F(Firmata, AServoThatWasNeverToldAPlaceGetsNoPulse) {
     for (const Pulse& pulse : pulses) EXPECT_NEAR(pulse.width, 1111.0, 4.0);
 }
 
-TEST_F(Firmata, AttachesAndDetachesWithoutCuttingAPulse) {
+TEST_F(FirmwareFirmata, AttachesAndDetachesWithoutCuttingAPulse) {
     does(plus(write(9, 1900), write(10, 1100)));
     for (int i = 0; i < 40; ++i) {
         board_.send(plus(attach(9), attach(10)));
@@ -136,7 +136,7 @@ TEST_F(Firmata, AttachesAndDetachesWithoutCuttingAPulse) {
     EXPECT_THAT(widthsOf(9), IsEmpty());
 }
 
-TEST_F(Firmata, DetachesWithinTwoFrames) {
+TEST_F(FirmwareFirmata, DetachesWithinTwoFrames) {
     does(plus(write(9, 1900), attach(9)));
     for (int i = 0; i < 40; ++i) {
         does(attach(9));
@@ -150,7 +150,7 @@ TEST_F(Firmata, DetachesWithinTwoFrames) {
     }
 }
 
-TEST_F(Firmata, ClampsToTheHeadersLimits) {
+TEST_F(FirmwareFirmata, ClampsToTheHeadersLimits) {
     does(attach(9));
     does(write(9, 2500));
     EXPECT_THAT(widthNow(9), about(2000));
@@ -166,7 +166,7 @@ TEST_F(Firmata, ClampsToTheHeadersLimits) {
     EXPECT_THAT(widthNow(9), about(2000));
 }
 
-TEST_F(Firmata, ClampsToTheStudiosLimitsWhichCannotWidenTheHeaders) {
+TEST_F(FirmwareFirmata, ClampsToTheStudiosLimitsWhichCannotWidenTheHeaders) {
     does(limits(9, 1200, 1700));
     EXPECT_THAT(widthsOf(9), IsEmpty()) << "limits do not attach";
     does(plus(write(9, 1900), attach(9)));
@@ -179,7 +179,7 @@ TEST_F(Firmata, ClampsToTheStudiosLimitsWhichCannotWidenTheHeaders) {
     EXPECT_THAT(answerTo(limits(9, 1700, 1200)), ElementsAreArray(textMessage("Limits the wrong way round")));
 }
 
-TEST_F(Firmata, LimitsNarrowedWhileDetachedHoldForTheFirstPulseToo) {
+TEST_F(FirmwareFirmata, LimitsNarrowedWhileDetachedHoldForTheFirstPulseToo) {
     does(plus(write(9, 1900), limits(9, 1200, 1700)));
     (void)board_.takePulses();
     does(attach(9));
@@ -188,7 +188,7 @@ TEST_F(Firmata, LimitsNarrowedWhileDetachedHoldForTheFirstPulseToo) {
     for (const Pulse& pulse : pulses) EXPECT_NEAR(pulse.width, 1700.0, 4.0);
 }
 
-TEST_F(Firmata, TakesDegreesAndMistakesForWhatTheyAre) {
+TEST_F(FirmwareFirmata, TakesDegreesAndMistakesForWhatTheyAre) {
     does(plus(attach(9), limits(9, 1100, 1900)));
     const int rows[][2] = {{0, 1100}, {90, 1500}, {180, 1900}, {45, 1300}, {181, 1300}, {499, 1300}, {500, 1100}};
     for (const auto& [value, width] : rows) {
@@ -198,7 +198,7 @@ TEST_F(Firmata, TakesDegreesAndMistakesForWhatTheyAre) {
     EXPECT_THAT(answerTo(write(9, 300)), ElementsAreArray(textMessage("Neither degrees nor microseconds")));
 }
 
-TEST_F(Firmata, ResetDetachesAndForgets) {
+TEST_F(FirmwareFirmata, ResetDetachesAndForgets) {
     does(plus(plus(limits(9, 1200, 1700), write(9, 1500)), attach(9)));
     EXPECT_THAT(widthNow(9), about(1500));
     does({0xFF});
@@ -209,7 +209,7 @@ TEST_F(Firmata, ResetDetachesAndForgets) {
     EXPECT_THAT(widthNow(9), about(2000));
 }
 
-TEST_F(Firmata, SaysWhatIsWrong) {
+TEST_F(FirmwareFirmata, SaysWhatIsWrong) {
     EXPECT_THAT(answerTo(attach(8)), ElementsAreArray(textMessage("No servo on this pin")));
     EXPECT_THAT(answerTo({0xF4, 9, 3}), ElementsAreArray(textMessage("Unknown pin mode")));
     EXPECT_THAT(answerTo({0xF0, 0x55, 0xF7}), ElementsAreArray(textMessage("Unknown message")));
@@ -220,7 +220,7 @@ TEST_F(Firmata, SaysWhatIsWrong) {
     EXPECT_THAT(answerTo({0xF0, 0xF7}), IsEmpty());
 }
 
-TEST_F(Firmata, BrokenOffMessagesMoveNothing) {
+TEST_F(FirmwareFirmata, BrokenOffMessagesMoveNothing) {
     does(plus(write(9, 1500), attach(9)));
     does({0xE9, 0x10, 0xE9}); // one write broken off, one begun ...
     EXPECT_THAT(widthNow(9), about(1500));
@@ -232,7 +232,7 @@ TEST_F(Firmata, BrokenOffMessagesMoveNothing) {
     EXPECT_THAT(answerTo({0xF0, 0x6D, 9, 0xF7}), ElementsAreArray(Bytes{0xF0, 0x6E, 9, 4, 0x5C, 0x0B, 0xF7}));
 }
 
-TEST_F(Firmata, MeasuresTheBattery) {
+TEST_F(FirmwareFirmata, MeasuresTheBattery) {
     for (const int pin : {200, 764, 1000}) { // millivolts behind the divider of 11 to 1
         board_.setPinMillivolts(pin);
         board_.run(700.0);

@@ -13,9 +13,9 @@
 namespace lumorph::firmware_test {
 namespace {
 
-class Guards : public testing::TestWithParam<int> {
+class FirmwareGuards : public testing::TestWithParam<int> {
 protected:
-    Guards() : board_("six", GetParam()) {
+    FirmwareGuards() : board_("six", GetParam()) {
         board_.run(60.0);
         board_.send(write(9, 1700));
         board_.send(attach(9));
@@ -32,7 +32,7 @@ protected:
     Board board_;
 };
 
-TEST_P(Guards, SilenceHoldsForHalfASecondAndThenLetsGo) {
+TEST_P(FirmwareGuards, SilenceHoldsForHalfASecondAndThenLetsGo) {
     for (int i = 0; i < 12; ++i) {
         // Bytes end at another place in the frame each time.
         board_.run(100.0 + 1.7 * i);
@@ -59,7 +59,7 @@ TEST_P(Guards, SilenceHoldsForHalfASecondAndThenLetsGo) {
     EXPECT_TRUE(board_.takePulses().empty());
 }
 
-TEST_P(Guards, AnyByteKeepsItAwake) {
+TEST_P(FirmwareGuards, AnyByteKeepsItAwake) {
     for (int i = 0; i < 8; ++i) {
         board_.send({0xF9});
         board_.run(480.0);
@@ -70,7 +70,7 @@ TEST_P(Guards, AnyByteKeepsItAwake) {
     EXPECT_GE(board_.takePulses().size(), 2U * 4U);
 }
 
-TEST_P(Guards, AHangLetsServosGoAndStartsAnew) {
+TEST_P(FirmwareGuards, AHangLetsServosGoAndStartsAnew) {
     board_.run(33.3);
     (void)board_.takePulses();
     (void)board_.takeSaid();
@@ -96,7 +96,7 @@ TEST_P(Guards, AHangLetsServosGoAndStartsAnew) {
     for (const Pulse& pulse : pulses) EXPECT_NEAR(pulse.width, 1500.0, 4.0);
 }
 
-TEST_P(Guards, AHangWithAStandingTimerEndsInAReset) {
+TEST_P(FirmwareGuards, AHangWithAStandingTimerEndsInAReset) {
     board_.run(33.3);
     while (board_.isHigh(9) || board_.isHigh(10)) board_.run(0.1);
     (void)board_.takePulses();
@@ -112,11 +112,11 @@ TEST_P(Guards, AHangWithAStandingTimerEndsInAReset) {
     EXPECT_FALSE(board_.takePulses().empty());
 }
 
-INSTANTIATE_TEST_SUITE_P(Clocks, Guards, testing::Values(8, 16),
+INSTANTIATE_TEST_SUITE_P(Clocks, FirmwareGuards, testing::Values(8, 16),
                          [](const auto& clock) { return std::to_string(clock.param) + "MHz"; });
 
 /// Two minutes of what a bad line, a wrong program or an enemy may send.
-class Garbage : public testing::TestWithParam<int> {
+class FirmwareGarbage : public testing::TestWithParam<int> {
 protected:
     Bytes some() {
         const int pin = pins_[random_() % pins_.size()];
@@ -152,7 +152,7 @@ protected:
     std::vector<int> pins_;
 };
 
-TEST_P(Garbage, NeverLeavesTheLimits) {
+TEST_P(FirmwareGarbage, NeverLeavesTheLimits) {
     const bool isTwelve = GetParam() == 8;
     Board board(isTwelve ? "twelve" : "six", GetParam());
     const std::vector<ServoSetup> servos = (isTwelve ? twelveServos() : sixServos()).servos;
@@ -187,7 +187,7 @@ TEST_P(Garbage, NeverLeavesTheLimits) {
     EXPECT_NE(std::search(said.begin(), said.end(), version.begin(), version.end()), said.end()) << "it still answers";
 }
 
-INSTANTIATE_TEST_SUITE_P(Boards, Garbage, testing::Values(8, 16),
+INSTANTIATE_TEST_SUITE_P(Boards, FirmwareGarbage, testing::Values(8, 16),
                          [](const auto& clock) { return std::to_string(clock.param) + "MHz"; });
 
 } // namespace

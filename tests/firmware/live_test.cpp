@@ -43,7 +43,7 @@ bool noneMoves(const LiveBoard& board, const DeviceProfile& profile) {
                        [&](const ServoSetup& servo) { return board.widthNow(servo.channel) == 0.0; });
 }
 
-TEST(LiveFirmware, ASerialPortDrivesItAndItsEndLetsServosGo) {
+TEST(FirmwareOnASerialPort, ASerialPortDrivesItAndItsEndLetsServosGo) {
     const EventLoop loop;
     LiveBoard board;
     QSerialPort port;
@@ -70,9 +70,9 @@ TEST(LiveFirmware, ASerialPortDrivesItAndItsEndLetsServosGo) {
     ASSERT_TRUE(comesTrue([&] { return board.widthNow(9) == 0.0; }));
 }
 
-class LiveLink : public testing::Test {
+class ServoLinkOnTheSketch : public testing::Test {
 protected:
-    LiveLink() : profile_(sixServos()) {
+    ServoLinkOnTheSketch() : profile_(sixServos()) {
         profile_.address = "serial://" + board_.path() + "?baud=57600";
         profile_.staggerSeconds = 0.05;
         profile_.restOnExit = false;
@@ -90,7 +90,7 @@ protected:
     DeviceProfile profile_;
 };
 
-TEST_F(LiveLink, TheStudioKnowsTheSketchAndDrivesIt) {
+TEST_F(ServoLinkOnTheSketch, TheStudioKnowsTheSketchAndDrivesIt) {
     ServoLink link(profile_, {});
     ASSERT_TRUE(isLive(link));
     EXPECT_EQ(link.status().controller.firmware, "LumorphTablet 1.2");
@@ -112,7 +112,7 @@ TEST_F(LiveLink, TheStudioKnowsTheSketchAndDrivesIt) {
     EXPECT_EQ(link.status().phase, LinkPhase::stopped);
 }
 
-TEST_F(LiveLink, ACutLineLetsServosGo) {
+TEST_F(ServoLinkOnTheSketch, ACutLineLetsServosGo) {
     ServoLink link(profile_, {});
     ASSERT_TRUE(isLive(link));
     ASSERT_TRUE(comesTrue([&] { return allAre(board_, profile_, 0.25); }));
@@ -135,7 +135,7 @@ double largestStep(const std::vector<Pulse>& pulses) {
 }
 
 // Two cuts here; twenty in ten minutes where LUMORPH_SOAK is set.
-TEST_F(LiveLink, TheLineIsCutAndMendedAgainAndAgain) {
+TEST_F(ServoLinkOnTheSketch, TheLineIsCutAndMendedAgainAndAgain) {
     const bool soak = std::getenv("LUMORPH_SOAK") != nullptr;
     const int cuts = soak ? 20 : 2;
     const auto between = soak ? 26s : 1s;

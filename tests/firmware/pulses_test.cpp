@@ -18,9 +18,9 @@ namespace {
 constexpr double kTolerance = 4.0; // microseconds
 
 /// Every pulse on the six or twelve pins against what was commanded, at 8 and 16 MHz.
-class Pulses : public testing::TestWithParam<std::tuple<const char*, int>> {
+class FirmwarePulses : public testing::TestWithParam<std::tuple<const char*, int>> {
 protected:
-    Pulses() : board_(std::get<0>(GetParam()), std::get<1>(GetParam())) {
+    FirmwarePulses() : board_(std::get<0>(GetParam()), std::get<1>(GetParam())) {
         const bool six = std::string(std::get<0>(GetParam())) == "six";
         servos_ = (six ? sixServos() : twelveServos()).servos;
         board_.run(100.0);
@@ -67,7 +67,7 @@ protected:
     std::mt19937 random_{7};
 };
 
-TEST_P(Pulses, MatchTheCommandsAllAtOnce) {
+TEST_P(FirmwarePulses, MatchTheCommandsAllAtOnce) {
     attachAll();
     double worst = 0.0;
     for (int round = 0; round < 150; ++round) {
@@ -82,7 +82,7 @@ TEST_P(Pulses, MatchTheCommandsAllAtOnce) {
 }
 
 // Asked for at a limit, and beyond it, while the ends of two pulses pass each other.
-TEST_P(Pulses, NeverPassALimit) {
+TEST_P(FirmwarePulses, NeverPassALimit) {
     attachAll();
     double nearest = 1e9;
     for (const bool greatest : {false, true})
@@ -107,7 +107,7 @@ TEST_P(Pulses, NeverPassALimit) {
 }
 
 // With twelve servos two pulses run at a time; their ends are led past each other in steps of a microsecond.
-TEST_P(Pulses, MatchWhereTwoEndsMeet) {
+TEST_P(FirmwarePulses, MatchWhereTwoEndsMeet) {
     attachAll();
     double worst = 0.0;
     for (int shift = -40; shift <= 40; ++shift) {
@@ -119,7 +119,7 @@ TEST_P(Pulses, MatchWhereTwoEndsMeet) {
     EXPECT_LE(worst, kTolerance);
 }
 
-TEST_P(Pulses, MatchWhileTheLineIsFlooded) {
+TEST_P(FirmwarePulses, MatchWhileTheLineIsFlooded) {
     attachAll();
     std::vector<int> wanted;
     for (std::size_t i = 0; i < servos_.size(); ++i) {
@@ -163,7 +163,7 @@ TEST_P(Pulses, MatchWhileTheLineIsFlooded) {
 }
 
 // As when a radio delivers at once what it held back.
-TEST_P(Pulses, GoNoFasterThanTheyWereToldHoweverCommandsCome) {
+TEST_P(FirmwarePulses, GoNoFasterThanTheyWereToldHoweverCommandsCome) {
     attachAll();
     const int pin = servos_[0].channel, other = servos_[1].channel;
     board_.send(step(pin, 20));
@@ -209,7 +209,7 @@ TEST_P(Pulses, GoNoFasterThanTheyWereToldHoweverCommandsCome) {
     EXPECT_NEAR(widths[pin].back(), std::max(1000.0, servos_[0].pulseMin), kTolerance);
 }
 
-TEST_P(Pulses, ComeFiftyTimesASecond) {
+TEST_P(FirmwarePulses, ComeFiftyTimesASecond) {
     attachAll();
     std::map<int, int> counts;
     for (int i = 0; i < 20; ++i) {
@@ -224,7 +224,8 @@ TEST_P(Pulses, ComeFiftyTimesASecond) {
     EXPECT_EQ(counts.size(), servos_.size());
 }
 
-INSTANTIATE_TEST_SUITE_P(Boards, Pulses, testing::Combine(testing::Values("six", "twelve"), testing::Values(8, 16)),
+INSTANTIATE_TEST_SUITE_P(Boards, FirmwarePulses,
+                         testing::Combine(testing::Values("six", "twelve"), testing::Values(8, 16)),
                          [](const auto& board) {
                              return std::string(std::get<0>(board.param)) + std::to_string(std::get<1>(board.param)) +
                                     "MHz";

@@ -144,6 +144,7 @@ int main(int argc, char** argv) {
     project.view = {{"camera", {{"yaw", 0.5}}}};
     writeText("project/whole.lumorph", projectText(project));
     project.scene = test::fullScene();
+    project.installation = test::fullInstallation();
     writeText("project/scene.lumorph", projectText(project));
     writeText("project/first.lumorph", R"({"schemaVersion": 1, "rig": "a.glb", "target": "cow.obj"})");
     writeText("project/bare.lumorph",
@@ -160,7 +161,7 @@ int main(int argc, char** argv) {
                                  0x71, 0x6E, 0x00, 0xF7, 0xF0, 0x02, 0x68, 0x39, 0x00, 0xF7, 0xE3, 0x7F, 0x07});
     writeBytes("lewansoul/board", {5,    0x55, 0x55, 0x04, 0x0F, 0xE8, 0x1C, 0x55, 0x55, 0x09, 0x15, 0x02, 0x01,
                                    0xF4, 0x01, 0x02, 0xFB, 0xFF, 0x00, 0x55, 0x55, 0x05, 0x08, 0x01, 0x01, 0x00});
-    writeBytes("maestro/board", {0, 1, 2, 3, 0x70, 0x17, 0x01, 0x28, 0x00});
+    writeBytes("maestro/board", {0, 2, 3, 0x70, 0x17, 0x28, 0x00});
     for (const std::vector<std::uint8_t>& seed : servoTraceSeeds())
         writeBytes(("servo_trace/" + std::to_string(seed.front())).c_str(), seed);
     writeNatNet(write);

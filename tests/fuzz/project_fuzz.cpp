@@ -19,6 +19,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         for (const std::string& asset : assetNames(project.scene))
             if (!isAssetName(asset)) std::abort();
         checkScene(project.scene);
+        checkInstallation(project.installation);
         const std::string text = projectText(project);
         if (projectText(parseProject(text, "again.lumorph")) != text) std::abort();
     } catch (const DataError&) {

@@ -5,12 +5,14 @@
 
 #include "core/rig/rig_file.h"
 #include "core/scene/show_frame.h"
+#include "tests/support/scene_in_room.h"
 
 namespace lumorph {
 
 /// A projector that hangs at a place and looks at another.
-inline SceneProjector projectorAt(const glm::dvec3& position, const glm::dvec3& centre, glm::ivec2 size, double focal) {
-    SceneProjector projector;
+inline InstalledProjector projectorAt(const glm::dvec3& position, const glm::dvec3& centre, glm::ivec2 size,
+                                      double focal) {
+    InstalledProjector projector;
     projector.camera = cameraLookingAt(position, centre, size, focal);
     projector.referenceDistance = 1.6;
     return projector;
@@ -24,9 +26,9 @@ inline Material unlit(const glm::vec3& color) {
 }
 
 /// Device and table in colours that no light changes.
-inline Scene unlitScene(const glm::vec3& device, const glm::vec3& table,
-                        const std::vector<SceneProjector>& projectors) {
-    Scene scene;
+inline SceneInRoom unlitScene(const glm::vec3& device, const glm::vec3& table,
+                              const std::vector<InstalledProjector>& projectors) {
+    SceneInRoom scene;
     scene.toneMapping = false;
     scene.device.material = unlit(device);
     scene.table.material = unlit(table);
@@ -47,9 +49,9 @@ inline std::vector<double> liftedFlaps() {
     return strokes;
 }
 
-inline ShowFrame frameOf(const Scene& scene, const std::vector<double>& strokes) {
+inline ShowFrame frameOf(const SceneInRoom& scene, const std::vector<double>& strokes) {
     ShowFrame frame;
-    frame.scene = std::make_shared<const Scene>(scene);
+    setSceneInRoom(frame, scene);
     static const auto assets = std::make_shared<const SceneAssets>();
     frame.assets = assets;
     frame.rig = bundledTablet();

@@ -230,7 +230,7 @@ Image TruthBench::ideal(const LabPicture& eyePicture) const {
     const std::vector<glm::vec3> light = data_->lightOfParts(eyePicture);
     const glm::ivec2 size = data_->region.size();
     const int fine = data_->setup.fine;
-    const SceneProjector& projector = data_->setup.projector;
+    const InstalledProjector& projector = data_->setup.projector;
     Image image(projector.camera.size);
     for (int y = 0; y < size.y; ++y)
         for (int x = 0; x < size.x; ++x) {

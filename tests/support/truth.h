@@ -18,7 +18,7 @@ namespace lumorph::test {
 struct TruthSetup {
     TriangleMesh device; ///< world metres
     TriangleMesh table;
-    SceneProjector projector;
+    InstalledProjector projector;
     CalibratedCamera eye;
     int fine = 3;    ///< rays along the side of a projector pixel
     int around = 60; ///< projector pixels around the device that are judged too

@@ -24,7 +24,7 @@ template <typename Row> const Row& find(std::span<const Row> rows, const std::st
 } // namespace
 
 TruthDevice truthDevice() {
-    return {std::make_shared<Rig>(readRig(resourceFile("models/tablet.glb"))), defaultScene()};
+    return {std::make_shared<Rig>(readRig(resourceFile("models/tablet.glb"))), defaultSceneInRoom()};
 }
 
 std::span<const TruthState> truthStates() {
@@ -73,7 +73,7 @@ CalibratedCamera truthView(const TruthDevice& device, const glm::vec3& eye) {
 }
 
 TruthSetup truthSetup(const TruthDevice& device, const TruthState& state, const glm::vec3& eye) {
-    return {truthMesh(device, state), tableMesh(device.scene.table), device.scene.projectors.front(),
+    return {truthMesh(device, state), tableMesh(device.scene.tableSize), device.scene.projectors.front(),
             truthView(device, eye)};
 }
 
@@ -83,8 +83,8 @@ TriangleMesh truthMesh(const TruthDevice& device, const TruthState& state) {
     return mesh;
 }
 
-TriangleMesh tableMesh(const Table& table) {
-    const glm::vec2 half = 0.5F * table.size;
+TriangleMesh tableMesh(glm::vec2 size) {
+    const glm::vec2 half = 0.5F * size;
     return {{{-half.x, 0, -half.y}, {-half.x, 0, half.y}, {half.x, 0, half.y}, {half.x, 0, -half.y}},
             {{0, 1, 2}, {0, 2, 3}}};
 }

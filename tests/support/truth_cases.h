@@ -6,9 +6,11 @@
 #include <string>
 #include <vector>
 
+#include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 
 #include "core/scene/show_frame.h"
+#include "tests/support/scene_in_room.h"
 #include "tests/support/truth.h"
 
 namespace lumorph::test {
@@ -16,7 +18,7 @@ namespace lumorph::test {
 /// The tablet on its table under the default projector, as the truth test uses it.
 struct TruthDevice {
     std::shared_ptr<const Rig> rig;
-    Scene scene; ///< table and projector
+    SceneInRoom scene; ///< table and projector
 };
 [[nodiscard]] TruthDevice truthDevice();
 
@@ -48,7 +50,7 @@ struct TruthEye {
 
 /// The device at a state, world metres.
 [[nodiscard]] TriangleMesh truthMesh(const TruthDevice& device, const TruthState& state);
-/// The plane y = 0 of the table's size.
-[[nodiscard]] TriangleMesh tableMesh(const Table& table);
+/// The plane y = 0 of a table's size.
+[[nodiscard]] TriangleMesh tableMesh(glm::vec2 size);
 
 } // namespace lumorph::test

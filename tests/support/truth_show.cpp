@@ -86,7 +86,7 @@ void setSkin(Scene& scene, const char* image) {
     scene.table.material.color = {0.75F, 0.66F, 0.55F};
 }
 
-ShowFrame frameOf(const TruthDevice& device, const TruthState& state, const glm::vec3& eye, Scene scene,
+ShowFrame frameOf(const TruthDevice& device, const TruthState& state, const glm::vec3& eye, const SceneInRoom& scene,
                   const SceneAssets& assets) {
     ShowFrame frame;
     frame.assets = std::make_shared<SceneAssets>(assets);
@@ -97,7 +97,7 @@ ShowFrame frameOf(const TruthDevice& device, const TruthState& state, const glm:
     frame.devicePositions = std::make_shared<std::vector<glm::vec3>>(deformed(*device.rig, state.strokes).positions);
     frame.worldFromDevice = scene.worldFromDevice;
     frame.eye = eye;
-    frame.scene = std::make_shared<const Scene>(std::move(scene));
+    setSceneInRoom(frame, scene);
     return frame;
 }
 
@@ -114,17 +114,17 @@ ShowFrame truthFrame(const TruthDevice& device, const TruthState& state, const g
         made.images = {{"bricks", pictureOf(brickAt)}, {"lines", pictureOf(lineAt)}};
         return made;
     }();
-    Scene scene = device.scene;
+    SceneInRoom scene = device.scene;
     setSkin(scene, content == TruthContent::lines ? "lines" : "bricks");
     if (content == TruthContent::water) addWater(scene);
     if (content == TruthContent::objects) addObjects(scene);
     addMarker(scene);
-    return frameOf(device, state, eye, std::move(scene), assets);
+    return frameOf(device, state, eye, scene, assets);
 }
 
 ShowFrame ballsFrame(const TruthDevice& device, const TruthState& state, const glm::vec3& eye,
                      const std::vector<glm::dvec3>& points) {
-    Scene scene = device.scene;
+    SceneInRoom scene = device.scene;
     scene.toneMapping = false;
     scene.sky = glm::vec3(0.0F);
     for (Material* material : {&scene.device.material, &scene.table.material}) {
@@ -137,7 +137,7 @@ ShowFrame ballsFrame(const TruthDevice& device, const TruthState& state, const g
         ball.material.unlit = true;
         scene.items.push_back(ball);
     }
-    return frameOf(device, state, eye, std::move(scene), {});
+    return frameOf(device, state, eye, scene, {});
 }
 
 TruthFigures judge(TruthBench& bench, const Image& eyePicture, const Image& projected) {

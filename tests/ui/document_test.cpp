@@ -74,8 +74,14 @@ TEST_F(DocumentTest, EachPartIsToldAloneAndComesBackExactlyByUndoAndRedo) {
         {StatePart::scene,
          [](StudioState& s) {
              Scene scene = *s.scene;
-             scene.table.size.x += 0.1F;
+             scene.exposure += 0.1;
              s.scene = std::make_shared<const Scene>(scene);
+         }},
+        {StatePart::installation,
+         [](StudioState& s) {
+             Installation installation = *s.installation;
+             installation.tableSize.x += 0.1F;
+             s.installation = std::make_shared<const Installation>(installation);
          }},
         {StatePart::playback,
          [](StudioState& s) {

@@ -91,14 +91,14 @@ Stall longestStallOfBusyUse(StudioWindow& window) {
     return longest;
 }
 
-class Endurance : public ::testing::Test {
+class WindowEndurance : public ::testing::Test {
 protected:
     [[nodiscard]] std::filesystem::path session() const { return folder_ / "session"; }
     TemporaryFolder folder_;
 };
 
 // Other programs on the machine only add to a stall, so the best of three counts.
-TEST_F(Endurance, TheWindowNeverFreezes) {
+TEST_F(WindowEndurance, TheWindowNeverFreezes) {
     StudioWindow window(session());
     pass(2s); // the first pictures compile shaders
     Stall best{1e9, {}};
@@ -111,7 +111,7 @@ TEST_F(Endurance, TheWindowNeverFreezes) {
     EXPECT_LE(best.milliseconds, kLongestStall) << best.step;
 }
 
-TEST_F(Endurance, DocksAndWorkspacesLoseNothing) {
+TEST_F(WindowEndurance, DocksAndWorkspacesLoseNothing) {
     StudioWindow window(session());
     const auto round = [&] {
         for (QDockWidget* dock : docks(window)) floatDockCloseReopen(window, dock);
@@ -145,7 +145,7 @@ TEST_F(Endurance, DocksAndWorkspacesLoseNothing) {
     EXPECT_TRUE(eventually([&] { return window.view().framesPainted() > painted + 5; })) << "the view stands still";
 }
 
-TEST_F(Endurance, MatchedFramesLeaveMemoryFlat) {
+TEST_F(WindowEndurance, MatchedFramesLeaveMemoryFlat) {
     StudioWindow window(session());
     window.studio().settings.setLoopRate(120);
     int matched = 0;

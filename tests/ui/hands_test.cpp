@@ -156,7 +156,7 @@ TEST_F(HandWatchTest, ALimitOfZeroHeedsNoHand) {
     EXPECT_TRUE(hold(0.3, 1.0));
 }
 
-TEST(HandWords, SayWhatSensesHandsAndThatNothingDoes) {
+TEST(DeviceWordsOfHands, SayWhatSensesHandsAndThatNothingDoes) {
     const QStringList servos{"left", "middle", "right"};
     const struct {
         HandSense hands;
@@ -198,9 +198,9 @@ private:
     double fastest_ = 0.0;
 };
 
-using HandsWindow = DevicesWindow;
+using DevicesWindowHands = DevicesWindow;
 
-TEST_F(HandsWindow, AHandThatIsTrackedNearMakesServosSlowAndIsTold) {
+TEST_F(DevicesWindowHands, AHandThatIsTrackedNearMakesServosSlowAndIsTold) {
     goLive();
     EXPECT_EQ(window.text("devices.hands"), "Hands are not sensed");
     const auto poses = std::make_shared<PoseBoard>();
@@ -249,7 +249,7 @@ TEST_F(HandsWindow, AHandThatIsTrackedNearMakesServosSlowAndIsTold) {
     EXPECT_TRUE(logs("No hand is near any more"));
 }
 
-TEST_F(HandsWindow, AServoThatIsHeldMakesAllSlowAndIsTold) {
+TEST_F(DevicesWindowHands, AServoThatIsHeldMakesAllSlowAndIsTold) {
     use("xarm");
     goLiveByAddress();
     EXPECT_TRUE(eventually([&] { return window.text("devices.hands").contains("a servo that is held is felt"); }));

@@ -42,8 +42,8 @@ protected:
         // Pixel centres are at whole numbers for cameras, at halves for windows.
         return studio::pickItem(frame, studio::rayThrough(camera, glm::vec2(pixelOf(camera, place).value() + 0.5)));
     }
-    Scene scene = [] {
-        Scene one = defaultScene();
+    SceneInRoom scene = [] {
+        SceneInRoom one = defaultSceneInRoom();
         one.items.clear();
         one.device.show = DeviceSkin::Show::material;
         one.eye = {0.0F, 0.5F, 0.5F};
@@ -98,15 +98,17 @@ protected:
     }
 
     [[nodiscard]] const Scene& scene() { return *window.state().scene; }
+    [[nodiscard]] const Installation& room() { return *window.state().installation; }
     [[nodiscard]] const SceneItem& box() { return scene().items.back(); }
     [[nodiscard]] int steps() { return window.studio().document.undoStack().index(); }
     [[nodiscard]] glm::vec3 worldOf(const SceneItem& item) {
-        return glm::vec3(studio::worldFromParent(scene(), item, 0.0) * glm::vec4(item.position, 1.0F));
+        return glm::vec3(studio::worldFromParent(scene(), item, 0.0, room().worldFromDevice) *
+                         glm::vec4(item.position, 1.0F));
     }
     /// Where the eye's picture shows a point, in the pane.
     [[nodiscard]] QPointF seen(const glm::vec3& place) {
         const CalibratedCamera camera =
-            deviceView(*window.studio().show.newest().frame, scene().eye, {pane->width(), pane->height()});
+            deviceView(*window.studio().show.newest().frame, room().eye, {pane->width(), pane->height()});
         const glm::dvec2 pixel = pixelOf(camera, place).value() + 0.5;
         return {pixel.x, pixel.y};
     }
@@ -124,13 +126,13 @@ protected:
 TEST_F(SceneHandles, AnArrowCarriesTheThingAndIsOneStepOfUndo) {
     for (const glm::vec3& axis : {glm::vec3(1.0F, 0.0F, 0.0F), glm::vec3(0.0F, 1.0F, 0.0F)}) {
         const glm::vec3 before = worldOf(box());
-        const glm::vec3 eye = scene().eye;
+        const glm::vec3 eye = room().eye;
         const SceneItem whole = box();
         const int step = steps();
         dragMouse(pane, onArrow(axis), seen(before + 0.02F * axis) - seen(before));
         EXPECT_LT(glm::distance(worldOf(box()), before + 0.02F * axis), 0.001F) << axis.x;
         EXPECT_LT(glm::length(glm::cross(worldOf(box()) - before, axis)), 1e-5F) << "along the arrow alone";
-        EXPECT_EQ(scene().eye, eye) << "the hand is on the thing";
+        EXPECT_EQ(room().eye, eye) << "the hand is on the thing";
         EXPECT_EQ(steps(), step + 1);
         window.screenshot("scene-handles");
         window.studio().document.undoStack().undo();

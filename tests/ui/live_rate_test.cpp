@@ -23,9 +23,9 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 /// The whole studio in a window of 1600 x 1000 with the bundled tablet, and a target of 70,000 triangles that moves.
-class LiveRate : public testing::Test {
+class WindowRate : public testing::Test {
 protected:
-    LiveRate() : window_(studio_, makeWorkspaces(studio_)) {
+    WindowRate() : window_(studio_, makeWorkspaces(studio_)) {
         writeFileAtomically(files_ / "swim.glb", writeGlb(test::animatedEllipsoid()));
         window_.resize(1600, 1000);
         window_.showWorkspace("field");
@@ -83,7 +83,7 @@ Rates measure(Studio& studio, const ViewportWidget& view, std::chrono::milliseco
             took.empty() ? 0.0 : *middle, watch.takeLongest()};
 }
 
-TEST_F(LiveRate, ThirtyMatchesASecondAreSeenWhileALargeTargetMoves) {
+TEST_F(WindowRate, ThirtyMatchesASecondAreSeenWhileALargeTargetMoves) {
     ASSERT_TRUE(openTarget());
     auto* view = window_.findChild<ViewportWidget*>("field.viewport");
     ASSERT_TRUE(view);

@@ -121,16 +121,16 @@ TEST(Plot, RepaintsInLessThanTwoMilliseconds) {
     plot.setCurves(curves);
     plot.resize(320, 200);
     QImage picture(320, 200, QImage::Format_ARGB32_Premultiplied);
-    std::vector<double> milliseconds;
+    std::vector<double> drawnMilliseconds;
     for (int i = 0; i < 21; ++i) {
         QElapsedTimer timer;
         timer.start();
         plot.render(&picture);
-        milliseconds.push_back(static_cast<double>(timer.nsecsElapsed()) * 1e-6);
+        drawnMilliseconds.push_back(static_cast<double>(timer.nsecsElapsed()) * 1e-6);
     }
-    std::sort(milliseconds.begin(), milliseconds.end());
-    RecordProperty("median_ms", std::to_string(milliseconds[10]));
-    EXPECT_LT(milliseconds[2], 2.0); // the quickest: others may be using this machine
+    std::sort(drawnMilliseconds.begin(), drawnMilliseconds.end());
+    RecordProperty("median_ms", std::to_string(drawnMilliseconds[10]));
+    EXPECT_LT(drawnMilliseconds[2], 2.0); // the quickest: others may be using this machine
 }
 
 TEST(Plot, IsReadByTheKeysFromTheMarkOn) {

@@ -13,7 +13,7 @@ namespace fs = std::filesystem;
 using test::eventually;
 
 /// A service that places new targets, with the cushion open and a thin wall to be placed on it.
-class PlacingTest : public test::ProjectServiceFixture {
+class ProjectServicePlacing : public test::ProjectServiceFixture {
 protected:
     void SetUp() override {
         files.writeMesh(test::boxMesh({-0.004F, 0.0F, -0.03F}, {0.004F, 0.02F, 0.03F}), "wall.obj");
@@ -44,7 +44,7 @@ protected:
     Placement fitted;
 };
 
-TEST_F(PlacingTest, ANewTargetShowsWhereItFitsAndThenMovesWhereItMatchesBest) {
+TEST_F(ProjectServicePlacing, ANewTargetShowsWhereItFitsAndThenMovesWhereItMatchesBest) {
     open("wall.obj");
     EXPECT_EQ(world.document.undoStack().undoText(), "Open wall");
     ASSERT_TRUE(eventually([&] { return world.document.undoStack().count() == before + 2; }));
@@ -55,7 +55,7 @@ TEST_F(PlacingTest, ANewTargetShowsWhereItFitsAndThenMovesWhereItMatchesBest) {
     EXPECT_TRUE(world.state().target.target) << "only its place was taken back";
 }
 
-TEST_F(PlacingTest, WhoMovesItMeanwhileWins) {
+TEST_F(ProjectServicePlacing, WhoMovesItMeanwhileWins) {
     open("wall.obj");
     world.document.change("Move", [](StudioState& s) { s.placement.translation.x += 0.003F; });
     const Placement moved = world.state().placement;
@@ -65,7 +65,7 @@ TEST_F(PlacingTest, WhoMovesItMeanwhileWins) {
     EXPECT_EQ(world.document.undoStack().undoText(), "Move");
 }
 
-TEST_F(PlacingTest, WhoMovesItWhileItGlidesWins) {
+TEST_F(ProjectServicePlacing, WhoMovesItWhileItGlidesWins) {
     open("wall.obj");
     ASSERT_TRUE(eventually([&] { return world.state().placement != fitted; }));
     ASSERT_EQ(world.document.undoStack().count(), before + 1) << "it is on its way";
@@ -77,7 +77,7 @@ TEST_F(PlacingTest, WhoMovesItWhileItGlidesWins) {
     EXPECT_EQ(world.document.undoStack().undoText(), "Move");
 }
 
-TEST_F(PlacingTest, WhoTakesTheTargetBackIsNotInterferedWith) {
+TEST_F(ProjectServicePlacing, WhoTakesTheTargetBackIsNotInterferedWith) {
     open("wall.obj");
     world.document.undoStack().undo();
     ASSERT_TRUE(world.rest());
@@ -86,7 +86,7 @@ TEST_F(PlacingTest, WhoTakesTheTargetBackIsNotInterferedWith) {
     EXPECT_TRUE(world.document.undoStack().canRedo());
 }
 
-TEST_F(PlacingTest, ATargetThatMovesStaysWhereItFits) {
+TEST_F(ProjectServicePlacing, ATargetThatMovesStaysWhereItFits) {
     world.openTarget(fs::path(LUMORPH_SOURCE_DIR) / "resources/targets/swell.glb");
     test::pass(std::chrono::milliseconds(100));
     EXPECT_TRUE(world.jobs.running().empty());

@@ -8,6 +8,7 @@
 #include <QWindow>
 #include <gtest/gtest.h>
 
+#include "app/studio/document/scene_edit.h"
 #include "app/studio/output/projector_outputs.h"
 #include "app/studio/shell/escape_twice.h"
 #include "core/render/gl/headless_context.h"
@@ -30,15 +31,14 @@ protected:
         StudioState state;
         state.rig.rig = showFrame()->rig;
         state.scene = showFrame()->scene;
+        state.installation = showFrame()->installation;
         state.assets = showFrame()->assets;
         document.reset(state, {});
         setProjectorSize(screenPixels());
     }
     void setProjectorSize(QSize size) {
         document.change("Size", [size](StudioState& state) {
-            auto scene = std::make_shared<Scene>(*state.scene);
-            scene->projectors.front().camera.size = {size.width(), size.height()};
-            state.scene = scene;
+            installationToEdit(state).projectors.front().camera.size = {size.width(), size.height()};
         });
     }
     /// What really is on the screen, asked from the display server.
@@ -218,12 +218,8 @@ TEST_F(ProjectorOutput, TheScenesPictureComesInTheProjectorsPixels) {
         EXPECT_LT(difference / (3.0 * 800 * 500), 1.0);
         EXPECT_GT(brightest, 100.0);
     }
-    // The scene loses its projector, and gets it back.
-    document.change("Remove", [](StudioState& state) {
-        auto scene = std::make_shared<Scene>(*state.scene);
-        scene->projectors.clear();
-        state.scene = scene;
-    });
+    // The room loses its projector, and gets it back.
+    editInstallation(document, "Remove", [](Installation& installation) { installation.projectors.clear(); });
     EXPECT_TRUE(eventually([&] { return window->picture().isNull(); }, 5s));
     document.undoStack().undo();
     EXPECT_TRUE(eventually([&] { return window->picture().size() == QSize(800, 500); }));

@@ -34,9 +34,9 @@ protected:
     static void drag(ViewPane* on, QPoint by, Qt::KeyboardModifiers held = {}, bool release = true) {
         dragMouse(on, on->rect().center(), by, held, release);
     }
-    glm::vec3 eye() { return window.state().scene->eye; }
+    glm::vec3 eye() { return window.state().installation->eye; }
     glm::vec3 centre() {
-        return glm::vec3(window.state().scene->worldFromDevice *
+        return glm::vec3(window.state().installation->worldFromDevice *
                          glm::vec4(window.state().rig.rig->reach().centre(), 1.0F));
     }
     void stopTime() {
@@ -168,7 +168,8 @@ TEST_F(SceneCentralViewTest, TheCardSaysWhereTheTimeGoesAndPosesArePredictedByIt
     (void)pane("scene.eye");
     const auto board = std::make_shared<PoseBoard>();
     const auto head = board->stream("Ada", PoseRole::head);
-    studio::editScene(window.studio().document, "Look ahead", [](Scene& scene) { scene.predictionSeconds = 0.005; });
+    studio::editInstallation(window.studio().document, "Look ahead",
+                             [](Installation& installation) { installation.predictionSeconds = 0.005; });
     window.studio().loop.setPoses(board);
     window.studio().commands.find("scene.latency")->setChecked(true);
     const auto valueOf = [&](const QString& stage) {

@@ -41,6 +41,7 @@ protected:
     }
 
     [[nodiscard]] const Scene& scene() { return *window.state().scene; }
+    [[nodiscard]] const Installation& room() { return *window.state().installation; }
     [[nodiscard]] int steps() { return window.studio().document.undoStack().index(); }
     [[nodiscard]] const SceneItem* item(const std::string& name) {
         for (const SceneItem& one : scene().items)
@@ -273,21 +274,24 @@ TEST_F(SceneDocks, EverythingAlwaysThereHasItsPage) {
         Kind kind;
         const char* field;
         const char* picture;
+        bool ofTheRoom; ///< of the installation, not of the scene
     };
-    for (const Page& page :
-         {Page{Kind::device, "device.material.roughness", "scene-device"},
-          Page{Kind::table, "table.size.x", "scene-table"},
-          Page{Kind::projector, "projector.position.y", "scene-projector"},
-          Page{Kind::viewer, "viewer.eye.z", "scene-viewer"}, Page{Kind::room, "room.exposure", "scene-room"}}) {
+    for (const Page& page : {Page{Kind::device, "device.material.roughness", "scene-device", false},
+                             Page{Kind::table, "table.size.x", "scene-table", true},
+                             Page{Kind::projector, "projector.position.y", "scene-projector", true},
+                             Page{Kind::viewer, "viewer.eye.z", "scene-viewer", true},
+                             Page{Kind::room, "room.exposure", "scene-room", false}}) {
         choose(page.kind);
         const int before = steps();
         const Scene was = scene();
+        const Installation wasThere = room();
         auto* field = window.find<QLineEdit>(page.field);
         ASSERT_NE(field, nullptr);
         field->setFocus();
         QTest::keyClick(field, Qt::Key_Up);
         EXPECT_EQ(steps(), before + 1) << page.field;
-        EXPECT_FALSE(scene() == was) << page.field;
+        EXPECT_EQ(scene() == was, page.ofTheRoom) << page.field;
+        EXPECT_EQ(room() == wasThere, !page.ofTheRoom) << page.field;
         window.screenshot(page.picture);
     }
 }
@@ -301,15 +305,20 @@ TEST_F(SceneDocks, TheNumberKeysShowTheTechniquesOfTheirDemoAlone) {
     ASSERT_NE(window.find<QAbstractButton>("technique.3.button"), nullptr);
     ASSERT_TRUE(eventually([&] { return window.studio().jobs.running().empty(); }));
     const glm::vec3 grey(0.7F);
-    editScene(window.studio().document, "Measured", [&](Scene& measured) {
-        measured.device.surfaceColor = grey;
-        measured.table.surfaceColor = grey;
+    studio::editInstallation(window.studio().document, "Measured", [&](Installation& measured) {
+        measured.deviceColor = grey;
+        measured.tableColor = grey;
+        measured.tableSize = {1.0F, 0.8F};
+        measured.eye = {0.1F, 0.5F, 0.4F};
+        measured.projectors.front().peak = 2.0;
+        measured.predictionSeconds = 0.05;
     });
+    const Installation measured = room();
+    ASSERT_EQ(measured.deviceColor, grey);
     for (const Technique& technique : techniques()) {
         QTest::keyClick(&window.window(), static_cast<Qt::Key>(Qt::Key_0 + technique.key));
         EXPECT_TRUE(scene().items == techniqueScene(technique.key).items) << technique.name;
-        EXPECT_EQ(scene().device.surfaceColor, grey) << "the same device and table";
-        EXPECT_EQ(scene().table.surfaceColor, grey);
+        EXPECT_TRUE(room() == measured) << "the same device on the same table, in the same light";
         EXPECT_TRUE(window.find<QAbstractButton>(QString("technique.%1.button").arg(technique.key))->isChecked());
         EXPECT_TRUE(window.text("technique.sentence").contains(QString::fromStdString(technique.name)));
         pass(1s);
@@ -343,8 +352,8 @@ TEST_F(SceneDocks, WarnsWhereAProjectorHasTooLittleLight) {
     window.screenshot("scene-dim-projector");
     undo();
     EXPECT_TRUE(eventually([&] { return !warning->text().contains("cannot become white"); }));
-    studio::editScene(window.studio().document, "Measure", [](Scene& scene) {
-        scene.device.surfaceColor = glm::vec3(0.5F); // a fifth of the light
+    studio::editInstallation(window.studio().document, "Measure", [](Installation& installation) {
+        installation.deviceColor = glm::vec3(0.5F); // a fifth of the light
     });
     EXPECT_TRUE(eventually([&] { return warning->text().contains("cannot become white"); }));
 }

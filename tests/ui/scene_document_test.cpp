@@ -53,6 +53,7 @@ Scene emptied() {
 struct SceneDocument : testing::Test {
     SceneDocument() { test::needApplication(); }
     [[nodiscard]] const Scene& scene() const { return *document.state().scene; }
+    [[nodiscard]] const Installation& room() const { return *document.state().installation; }
     StudioDocument document;
 };
 
@@ -94,10 +95,8 @@ TEST_F(SceneDocument, EveryKindOfEditIsAStepThatComesBackExactly) {
          }},
         {"table",
          [](Scene& s) {
-             s.table.size = {2.0F, 1.0F};
+             s.table.material.color = {0.2F, 0.1F, 0.3F};
          }},
-        {"projector", [](Scene& s) { s.projectors.front().peak = 4.0; }},
-        {"viewer", [](Scene& s) { s.viewer = ViewerChoice::first; }},
         {"view dependence",
          [](Scene& s) {
              s.viewDependence = {true, Angle::degrees(60.0)};
@@ -121,6 +120,67 @@ TEST_F(SceneDocument, EveryKindOfEditIsAStepThatComesBackExactly) {
         document.undoStack().redo();
         EXPECT_TRUE(scene() == scenes[i + 1]) << "redoing " << edits[i].first;
     }
+}
+
+TEST_F(SceneDocument, EveryEditOfTheRoomIsAStepThatComesBackExactly) {
+    ASSERT_TRUE(document.state().installation) << "a new document has a room";
+    const std::vector<std::pair<const char*, InstallationEdit>> edits = {
+        {"table",
+         [](Installation& i) {
+             i.tableSize = {2.0F, 1.0F};
+         }},
+        {"projector", [](Installation& i) { i.projectors.front().peak = 4.0; }},
+        {"viewer", [](Installation& i) { i.viewer = ViewerChoice::first; }},
+        {"eye",
+         [](Installation& i) {
+             i.eye = {0.2F, 0.4F, 0.6F};
+         }},
+        {"bare device", [](Installation& i) { i.deviceColor = glm::vec3(0.7F); }},
+        {"no projector", [](Installation& i) { i.projectors.clear(); }},
+    };
+    const Scene shown = scene();
+    std::vector<Installation> rooms = {room()};
+    for (const auto& [name, edit] : edits) {
+        editInstallation(document, name, edit);
+        EXPECT_FALSE(room() == rooms.back()) << name << " was refused";
+        EXPECT_EQ(document.undoStack().count(), static_cast<int>(rooms.size())) << name;
+        rooms.push_back(room());
+    }
+    for (std::size_t i = edits.size(); i-- > 0;) {
+        document.undoStack().undo();
+        EXPECT_TRUE(room() == rooms[i]) << "undoing " << edits[i].first;
+    }
+    for (std::size_t i = 0; i < edits.size(); ++i) {
+        document.undoStack().redo();
+        EXPECT_TRUE(room() == rooms[i + 1]) << "redoing " << edits[i].first;
+    }
+    EXPECT_TRUE(scene() == shown) << "what is shown stays";
+    EXPECT_EQ(rooms[1].origins.table.way, Origin::Way::entered) << "what is edited was entered by hand";
+    EXPECT_FALSE(rooms[1].origins.table.date.empty());
+    EXPECT_EQ(rooms[1].projectors.front().response, Origin());
+    EXPECT_EQ(rooms[2].projectors.front().response.way, Origin::Way::entered);
+    EXPECT_EQ(rooms[2].projectors.front().pose, Origin());
+}
+
+TEST_F(SceneDocument, AnEditOfTheRoomThatIsNotSoundIsRefused) {
+    const Installation before = room();
+    const float nan = std::numeric_limits<float>::quiet_NaN();
+    const std::vector<std::pair<const char*, InstallationEdit>> edits = {
+        {"no number", [nan](Installation& i) { i.eye.x = nan; }},
+        {"no picture",
+         [](Installation& i) {
+             i.projectors.front().camera.size = {0, 0};
+         }},
+        {"no table", [](Installation& i) { i.tableSize.x = 0.0F; }},
+        {"no rotation", [](Installation& i) { i.worldFromDevice[0][0] = 2.0F; }},
+    };
+    for (const auto& [name, edit] : edits) {
+        editInstallation(document, name, edit);
+        previewInstallation(document, edit);
+        document.cancelPreview();
+        EXPECT_TRUE(room() == before) << name;
+    }
+    EXPECT_EQ(document.undoStack().count(), 0);
 }
 
 TEST_F(SceneDocument, AnEditThatIsNotSoundIsRefused) {
@@ -227,7 +287,7 @@ TEST(SunPath, TheHourMovesTheSunAlongItsArc) {
 }
 
 TEST(ProjectorPose, IsCarriedAndTurnedAsTyped) {
-    CalibratedCamera camera = defaultScene().projectors.front().camera;
+    CalibratedCamera camera = defaultInstallation().projectors.front().camera;
     const auto looked = lookPoint(camera);
     ASSERT_TRUE(looked);
     carryTo(camera, positionOf(camera) + glm::dvec3(0.3, 0.0, 0.1));
@@ -248,8 +308,8 @@ struct ProjectorReachTest : testing::Test {
         return reachOf(projector, albedo, positions, {{0, 3, 2}, {0, 2, 1}}, glm::mat4(1.0F));
     }
     /// Above the flat square, from where it looks straight down.
-    SceneProjector projector = [] {
-        SceneProjector made;
+    InstalledProjector projector = [] {
+        InstalledProjector made;
         made.camera = cameraLookingAt({0.05, 2.0, 0.05}, {0.05, 0.0, 0.05}, {1280, 800}, 3000.0);
         made.referenceDistance = 2.0;
         made.peak = 3.0;
@@ -336,6 +396,10 @@ TEST_F(SceneFiles, APictureIsReadBesideTheWindowAndKeptByUndo) {
 TEST_F(SceneFiles, AProjectTakesItsPicturesAlong) {
     use(picture);
     ASSERT_TRUE(reads(200));
+    editInstallation(world.document, "Measure", [](Installation& installation) {
+        installation.deviceColor = {0.7F, 0.6F, 0.5F};
+        installation.projectors.front().peak = 2.2;
+    });
     fs::create_directories(files / "there");
     world.service.saveAs(files / "there/show.lumorph");
     EXPECT_FALSE(world.document.modified());
@@ -353,6 +417,10 @@ TEST_F(SceneFiles, AProjectTakesItsPicturesAlong) {
     Scene sameNames = *other.state().scene;
     sameNames.device.material.colorTexture.image = picture;
     EXPECT_TRUE(sameNames == *world.state().scene);
+    EXPECT_TRUE(readProject(files / "elsewhere/show.lumorph").installation == *world.state().installation)
+        << "a copy of the room it was shown in";
+    EXPECT_TRUE(*other.state().installation == defaultInstallation())
+        << "opening a project changes nothing in the room";
 }
 
 TEST_F(SceneFiles, APictureThatVanishedIsSavedFromMemory) {

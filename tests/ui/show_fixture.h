@@ -15,6 +15,7 @@ namespace lumorph::studio {
     static const auto rig = std::make_shared<const Rig>(readRig(resourceFile("models/tablet.glb")));
     static const auto rest = std::make_shared<const std::vector<glm::vec3>>(rig->restMesh().positions);
     auto scene = std::make_shared<Scene>(defaultScene());
+    static const auto installation = std::make_shared<const Installation>(defaultInstallation());
     SceneItem box;
     box.id = 900;
     box.name = "Box";
@@ -28,8 +29,9 @@ namespace lumorph::studio {
     frame->rig = rig;
     frame->devicePositions = rest;
     frame->estimatedStrokes.assign(rig->actuatorCount(), 0.0);
-    frame->worldFromDevice = scene->worldFromDevice;
-    frame->eye = scene->eye;
+    frame->installation = installation;
+    frame->worldFromDevice = installation->worldFromDevice;
+    frame->eye = installation->eye;
     // Read once, as a document reads them: pictures that are other objects are uploaded again.
     static const auto assets = loadSceneAssets(*scene, {});
     frame->assets = assets;

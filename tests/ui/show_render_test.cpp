@@ -108,7 +108,7 @@ TEST_F(ShowRender, EachViewHasItsOwnSizeAndTheProjectorAllItsPixels) {
     WantedView exact = wantedView(3, Kind::projector, {300, 300});
     exact.view.exact = true;
     const auto match = showFrame();
-    const glm::ivec2 own = match->scene->projectors.front().camera.size;
+    const glm::ivec2 own = match->installation->projectors.front().camera.size;
     const DrawnShow shown =
         still(requestOf(match, {wantedView(1, Kind::eye, {500, 301}), wantedView(2, Kind::projector, {300, 300}), exact,
                                 wantedView(4, Kind::lab, {411, 333})}));
@@ -171,9 +171,9 @@ TEST_F(ShowRender, ComparingBendsChangesTheDeviceAlone) {
 
 TEST_F(ShowRender, AFrameThatCannotBeDrawnIsToldOnceAndTheNextIsDrawn) {
     auto broken = showFrame();
-    auto scene = std::make_shared<Scene>(*broken->scene);
-    scene->projectors.front().camera.size = {0, 0};
-    broken->scene = scene;
+    auto installation = std::make_shared<Installation>(*broken->installation);
+    installation->projectors.front().camera.size = {0, 0};
+    broken->installation = installation;
     thread.requestShow(requestOf(broken, {wantedView(1, Kind::lab, {320, 200})}));
     ASSERT_TRUE(waitFor([&] { return !broke.isEmpty(); }));
     EXPECT_FALSE(broke.front().front().toString().isEmpty());
@@ -284,7 +284,7 @@ std::shared_ptr<MatchFrame> busyFrame(int i, std::shared_ptr<const Scene> scene,
 }
 
 /// A session draws some hundred thousand frames: 10,000 of them with LUMORPH_SOAK=10.
-class ShowEndurance : public ShowRender {
+class ShowRenderEndurance : public ShowRender {
 protected:
     int frames = test::soakFactor() > 1 ? 1000 * test::soakFactor() : 500;
 
@@ -341,9 +341,9 @@ private:
     }
 };
 
-TEST_F(ShowEndurance, ManyFramesLeaveObjectsAndMemoryFlat) { drawMany(nullptr); }
+TEST_F(ShowRenderEndurance, ManyFramesLeaveObjectsAndMemoryFlat) { drawMany(nullptr); }
 
-TEST_F(ShowEndurance, ManyFramesOfTheSeaLeaveObjectsAndMemoryFlat) {
+TEST_F(ShowRenderEndurance, ManyFramesOfTheSeaLeaveObjectsAndMemoryFlat) {
     drawMany(std::make_shared<const Scene>(waterScene()));
 }
 
@@ -411,7 +411,7 @@ TEST(ShowPaceTest, ResolutionGoesInTwentieths) {
 }
 
 TEST(ShowFrames, AResizedCameraSeesTheSame) {
-    CalibratedCamera camera = defaultScene().projectors.front().camera;
+    CalibratedCamera camera = defaultInstallation().projectors.front().camera;
     const CalibratedCamera half = resized(camera, camera.size / 2);
     for (const glm::dvec3 point : {glm::dvec3(0.1, 0.0, 0.05), glm::dvec3(-0.1, 0.03, 0.0)}) {
         const glm::dvec2 whole = (pixelOf(camera, point).value() + 0.5) / glm::dvec2(camera.size);

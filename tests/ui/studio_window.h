@@ -20,7 +20,7 @@
 
 namespace lumorph::test {
 
-/// How many times as long the endurance tests run: LUMORPH_SOAK, 10 in packaging/soak.
+/// How many times as long the endurance tests run: LUMORPH_SOAK, up to 10 in packaging/soak.
 [[nodiscard]] int soakFactor();
 
 /// What this process holds of the machine's memory.

@@ -44,9 +44,9 @@ protected:
         }
     }
     [[nodiscard]] studio::EyePlace eyePlace() {
-        const Scene& scene = *window.state().scene;
+        const Installation& room = *window.state().installation;
         const glm::vec4 middle(window.state().rig.rig->reach().centre(), 1.0F);
-        return studio::placeOf(scene.eye, glm::vec3(scene.worldFromDevice * middle));
+        return studio::placeOf(room.eye, glm::vec3(room.worldFromDevice * middle));
     }
     [[nodiscard]] QImage picture() { return pane->picture().copy(); }
     /// The picture's colour at a point of the world, as the eye sees it; none outside the picture.
@@ -120,7 +120,7 @@ TEST_F(WaterDemo, ShadowsOnTheTableGoWithTheSun) {
 TEST_F(WaterDemo, ADragLeadsTheEyeAroundTheWaterAndUndoLeadsItBack) {
     ASSERT_TRUE(eventually([&] { return !pane->picture().isNull(); }));
     playOrPause(false); // what changes then is the eye's doing
-    const glm::vec3 eye = window.state().scene->eye;
+    const glm::vec3 eye = window.state().installation->eye;
     const studio::EyePlace from = eyePlace();
     const QImage before = picture();
     const QPoint by(-pane->height() / 4, -pane->height() / 18);
@@ -139,7 +139,7 @@ TEST_F(WaterDemo, ADragLeadsTheEyeAroundTheWaterAndUndoLeadsItBack) {
         }
     EXPECT_GT(blue, 4) << "the water stays on the device, glints aside";
     QTest::keyClick(&window.window(), Qt::Key_Z, Qt::ControlModifier);
-    EXPECT_EQ(window.state().scene->eye, eye);
+    EXPECT_EQ(window.state().installation->eye, eye);
     EXPECT_TRUE(eventually([&] { return differingShare(picture(), before) < 0.02; }, 20s));
 }
 

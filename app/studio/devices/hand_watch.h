@@ -6,7 +6,8 @@
 #include <vector>
 
 #include "core/base/clock.h"
-#include "core/loop/live_match.h"
+#include "core/loop/match_frame.h"
+#include "core/loop/pose_stream.h"
 #include "devices/controllers/servo_link.h"
 
 namespace lumorph::studio {

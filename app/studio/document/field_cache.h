@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <memory>
 
-#include "core/loop/live_match.h"
+#include "core/loop/match_field.h"
 
 namespace lumorph::studio {
 

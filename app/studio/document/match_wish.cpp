@@ -8,13 +8,14 @@ MatchWish wishOf(const StudioState& state) {
     wish.field = state.field.field;
     wish.target = state.target.target;
     wish.placement = state.placement;
-    wish.live = state.matching.live;
+    wish.driver = driverOf(state.matching.live, state.scene.get());
     wish.method = state.matching.method;
     wish.budget = state.matching.budget;
     wish.strokes = state.strokes;
     wish.playing = state.playback.playing;
     wish.spin = state.playback.spin;
     wish.scene = state.scene;
+    wish.installation = state.installation;
     wish.assets = state.assets;
     return wish;
 }

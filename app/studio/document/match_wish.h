@@ -1,7 +1,7 @@
 #pragma once
 
 #include "app/studio/document/studio_state.h"
-#include "core/loop/live_match.h"
+#include "core/loop/match_wish.h"
 
 namespace lumorph::studio {
 

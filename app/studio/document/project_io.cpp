@@ -55,6 +55,7 @@ Project projectOf(const ProjectSource& source) {
     project.matching = {state.matching.live, state.matching.method == MatchMethod::refined,
                         static_cast<double>(state.matching.budget.count()) / 1000.0};
     project.playback = {state.playback.playing, state.playback.spin};
+    if (state.installation) project.installation = *state.installation;
     project.view = source.extras.view;
     project.unknown = source.extras.unknown;
     return project;
@@ -123,6 +124,7 @@ LoadedProject loadProjectWithoutAssets(const fs::path& file, const Progress& pro
         loaded.stamps.target = target.stamp;
     }
     loaded.state.scene = std::make_shared<const Scene>(withWholePaths(project.scene, file));
+    loaded.installation = std::make_shared<const Installation>(project.installation);
     return loaded;
 }
 

@@ -18,7 +18,8 @@ struct ProjectExtras {
 
 /// A project and everything it names, read into memory.
 struct LoadedProject {
-    StudioState state;
+    StudioState state;                                ///< without an installation: that is the room's
+    std::shared_ptr<const Installation> installation; ///< the project's copy
     AssetStamps stamps;
     ProjectExtras extras;
     std::vector<std::string> warnings; ///< plain sentences, such as about a field that has to be built again

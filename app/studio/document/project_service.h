@@ -66,6 +66,8 @@ public:
 signals:
     void opened(const QString& path); ///< for the list of recent files
     void saved(const QString& path);
+    /// A project was opened, which holds a copy of the installation that it was made in. The document's is the room's.
+    void openedElsewhere(const QString& path, std::shared_ptr<const lumorph::Installation> installation);
     /// A recording was to be opened, which is no part of the document.
     void recordingChosen(const QString& path);
     /// The remedy of a notice: ask for another file of this place ("target", "rig", "field", "project"; "viewport" for

@@ -45,6 +45,7 @@ void ProjectService::Data::openProject(const fs::path& file) {
                 notices.post("field",
                              {Notice::Level::warning, fileName(file), QString::fromStdString(warning), {}, {}});
             emit service.opened(fullName(file));
+            emit service.openedElsewhere(fullName(file), loaded.installation);
         },
         {chooseAnother("project")});
 }
@@ -76,12 +77,13 @@ void ProjectService::Data::replaceAll(LoadedProject loaded, const fs::path& file
     extras = std::move(loaded.extras);
     assetStamps.clear();
     reading.clear();
+    loaded.state.installation.reset(); // the room stays as it is, whatever is opened in it
     document.reset(std::move(loaded.state), file);
     if (const auto& assets = document.state().assets) takeAssets(assets);
     buildMissing();
     if (!unsaved || !before.source.state.rig.rig) return;
     const auto bringBack = [this, before] {
-        replaceAll({before.source.state, before.source.stamps, before.source.extras, {}}, before.file);
+        replaceAll({before.source.state, {}, before.source.stamps, before.source.extras, {}}, before.file);
         document.undoStack().resetClean();
     };
     notices.post("project", {Notice::Level::info,
@@ -123,7 +125,7 @@ void ProjectService::Data::restore(std::function<void()> onReady) {
                 openBundled(kFirstDemo, *ready);
                 return;
             }
-            replaceAll({session->source.state, session->source.stamps, session->source.extras, {}}, session->file);
+            replaceAll({session->source.state, {}, session->source.stamps, session->source.extras, {}}, session->file);
             if (session->modified) document.undoStack().resetClean();
             if (*ready) (*ready)();
         },

@@ -8,13 +8,6 @@ namespace lumorph::studio {
 
 namespace {
 
-StudioState& withEdit(StudioState& state, const SceneEdit& edit) {
-    auto scene = std::make_shared<Scene>(*state.scene);
-    edit(*scene);
-    state.scene = std::move(scene);
-    return state;
-}
-
 int freeId(const Scene& scene) {
     int highest = 0;
     for (const SceneItem& item : scene.items) highest = std::max(highest, item.id);
@@ -62,12 +55,34 @@ void putIn(Scene& scene, std::vector<SceneItem> items, std::ptrdiff_t place) {
 
 } // namespace
 
+Scene& sceneToEdit(StudioState& state) {
+    auto scene = std::make_shared<Scene>(*state.scene);
+    Scene& editable = *scene;
+    state.scene = std::move(scene);
+    return editable;
+}
+
+Installation& installationToEdit(StudioState& state) {
+    auto installation = std::make_shared<Installation>(*state.installation);
+    Installation& editable = *installation;
+    state.installation = std::move(installation);
+    return editable;
+}
+
+void editInstallation(StudioDocument& document, const QString& what, const InstallationEdit& edit) {
+    document.change(what, [&edit](StudioState& state) { edit(installationToEdit(state)); });
+}
+
+void previewInstallation(StudioDocument& document, const InstallationEdit& edit) {
+    document.preview([&edit](StudioState& state) { edit(installationToEdit(state)); });
+}
+
 void editScene(StudioDocument& document, const QString& what, const SceneEdit& edit) {
-    document.change(what, [&edit](StudioState& state) { withEdit(state, edit); });
+    document.change(what, [&edit](StudioState& state) { edit(sceneToEdit(state)); });
 }
 
 void previewScene(StudioDocument& document, const SceneEdit& edit) {
-    document.preview([&edit](StudioState& state) { withEdit(state, edit); });
+    document.preview([&edit](StudioState& state) { edit(sceneToEdit(state)); });
 }
 
 SceneItem* itemOf(Scene& scene, int id) {

@@ -9,11 +9,20 @@
 namespace lumorph::studio {
 
 using SceneEdit = std::function<void(Scene&)>;
+using InstallationEdit = std::function<void(Installation&)>;
 
 /// An edit of the document's scene as one step of undo.
 void editScene(StudioDocument& document, const QString& what, const SceneEdit& edit);
 /// An edit while something is dragged; `StudioDocument::commitPreview` makes a step of undo of it.
 void previewScene(StudioDocument& document, const SceneEdit& edit);
+
+/// The same of what stands in the room.
+void editInstallation(StudioDocument& document, const QString& what, const InstallationEdit& edit);
+void previewInstallation(StudioDocument& document, const InstallationEdit& edit);
+
+/// A state's own copy of its scene or installation, which others may share until then.
+[[nodiscard]] Scene& sceneToEdit(StudioState& state);
+[[nodiscard]] Installation& installationToEdit(StudioState& state);
 
 /// Null when there is none.
 [[nodiscard]] SceneItem* itemOf(Scene& scene, int id);

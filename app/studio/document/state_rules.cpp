@@ -50,6 +50,27 @@ std::shared_ptr<const Scene> soundScene(const std::shared_ptr<const Scene>& befo
     return before ? before : std::make_shared<const Scene>(defaultScene());
 }
 
+bool sameInstallation(const std::shared_ptr<const Installation>& a, const std::shared_ptr<const Installation>& b) {
+    return a == b || (a && b && *a == *b);
+}
+
+/// What an edit changes was entered by hand, unless the edit says where it came from.
+std::shared_ptr<const Installation> soundInstallation(const std::shared_ptr<const Installation>& before,
+                                                      const std::shared_ptr<const Installation>& edited) {
+    if (edited && edited == before) return edited;
+    try {
+        if (edited) {
+            checkInstallation(*edited);
+            if (!before) return edited;
+            auto marked = std::make_shared<Installation>(*edited);
+            markOrigins(*before, *marked, {Origin::Way::entered, {}, utcDate()});
+            return marked;
+        }
+    } catch (const InvalidInput&) {
+    } // it stays as it was
+    return before ? before : std::make_shared<const Installation>(defaultInstallation());
+}
+
 } // namespace
 
 StateParts differenceOf(const StudioState& a, const StudioState& b) {
@@ -62,6 +83,7 @@ StateParts differenceOf(const StudioState& a, const StudioState& b) {
     parts.setFlag(StatePart::matching, !(a.matching == b.matching));
     parts.setFlag(StatePart::playback, !(a.playback == b.playback));
     parts.setFlag(StatePart::scene, !sameScene(a.scene, b.scene));
+    parts.setFlag(StatePart::installation, !sameInstallation(a.installation, b.installation));
     return parts;
 }
 
@@ -80,6 +102,7 @@ StudioState settled(const StudioState& before, StudioState edited) {
     edited.matching.budget = std::clamp(edited.matching.budget, Microseconds{100}, Microseconds{10'000'000});
     edited.playback.spin = soundNumber(before.playback.spin, edited.playback.spin, -100.0, 100.0);
     edited.scene = soundScene(before.scene, edited.scene);
+    edited.installation = soundInstallation(before.installation, edited.installation);
     return edited;
 }
 

@@ -13,7 +13,7 @@ namespace lumorph::studio {
 
 /// The one place where a state is made sound after an edit of `before`: a field of another rig is dropped, there is one
 /// stroke an actuator, and every number is finite and within what a project file can hold. A number that is not finite
-/// is refused: it stays what it was; so does a scene that is not sound.
+/// is refused: it stays what it was; so does a scene or an installation that is not sound.
 [[nodiscard]] StudioState settled(const StudioState& before, StudioState edited);
 
 } // namespace lumorph::studio

@@ -90,9 +90,16 @@ void StudioDocument::setAssets(std::shared_ptr<const SceneAssets> assets) {
     emit changed(StatePart::scene);
 }
 
+void StudioDocument::setInstallation(std::shared_ptr<const Installation> installation) {
+    StudioState next = state_;
+    next.installation = std::move(installation);
+    exchange(next);
+}
+
 void StudioDocument::reset(StudioState state, const std::filesystem::path& file) {
     previewing_ = false;
     beforePreview_ = {};
+    if (!state.installation) state.installation = state_.installation;
     state_ = settled({}, std::move(state));
     file_ = file;
     undo_.clear();

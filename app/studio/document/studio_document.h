@@ -20,7 +20,8 @@ enum class StatePart : unsigned {
     matching = 32,
     playback = 64,
     scene = 128,
-    all = 255,
+    installation = 256,
+    all = 511,
 };
 Q_DECLARE_FLAGS(StateParts, StatePart)
 Q_DECLARE_OPERATORS_FOR_FLAGS(StateParts)
@@ -47,7 +48,11 @@ public:
     /// Hands over what the scene names; no step of undo, and told as a change of the scene.
     void setAssets(std::shared_ptr<const SceneAssets> assets);
 
-    /// Replaces everything and forgets undo: a project was opened, or a new one begun.
+    /// What the machine has kept of the room; no step of undo.
+    void setInstallation(std::shared_ptr<const Installation> installation);
+
+    /// Replaces everything but the installation, unless the state brings one, and forgets undo: a project was opened,
+    /// or a new one begun.
     void reset(StudioState state, const std::filesystem::path& file);
 
     /// The project's file; empty while it has none.

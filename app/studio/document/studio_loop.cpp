@@ -141,8 +141,8 @@ void StudioLoop::send() {
     sending_ = false;
     if (!document_.state().rig.rig) return;
     MatchWish wish = wishOf(document_.state());
-    wish.live = wish.live && !dancing_;
-    wish.dancing = dancing_;
+    if (dancing_) wish.driver = Driver::dance;
+    if (source_) wish.driver = Driver::recording;
     wish.stopped = stopped_;
     wish.seek = seek_;
     wish.showTint = tint_;

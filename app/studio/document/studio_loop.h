@@ -13,7 +13,8 @@
 #include <QTimer>
 
 #include "app/studio/document/studio_document.h"
-#include "core/loop/live_match.h"
+#include "core/loop/frame_source.h"
+#include "core/loop/match_thread.h"
 
 namespace lumorph::studio {
 

@@ -4,10 +4,11 @@
 #include <memory>
 #include <vector>
 
-#include "core/loop/live_match.h"
 #include "core/loop/match_target.h"
+#include "core/loop/match_wish.h"
 #include "core/mdf/placement.h"
 #include "core/rig/rig.h"
+#include "core/scene/installation.h"
 #include "core/scene/scene.h"
 #include "core/scene/scene_assets.h"
 
@@ -51,6 +52,8 @@ struct StudioState {
     Matching matching;
     Playback playback;
     std::shared_ptr<const Scene> scene; ///< in a document never empty
+    /// What stands in the room, whatever is open: opening a project leaves it as it is. In a document never empty.
+    std::shared_ptr<const Installation> installation;
     /// What the scene names, as far as it has been read; no edit changes it, and undo leaves it as it is.
     std::shared_ptr<const SceneAssets> assets;
 };

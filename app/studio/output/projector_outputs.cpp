@@ -27,7 +27,7 @@ bool showsStudio(const QScreen* screen) {
 
 QString titleOf(std::size_t projector) { return ProjectorOutputs::tr("Projector %1").arg(projector + 1); }
 
-QSize sizeOf(const SceneProjector& projector) { return {projector.camera.size.x, projector.camera.size.y}; }
+QSize sizeOf(const InstalledProjector& projector) { return {projector.camera.size.x, projector.camera.size.y}; }
 
 } // namespace
 
@@ -36,11 +36,11 @@ ProjectorOutputs::ProjectorOutputs(StudioDocument& document, ShowFeed& feed, Com
     : QObject(parent), document_(document), feed_(feed), commands_(commands), notices_(notices) {
     addCommands();
     connect(&document_, &StudioDocument::changed, this, [this](StateParts parts) {
-        if (parts & StatePart::scene) heedScene();
+        if (parts & StatePart::installation) onInstallationChanged();
     });
     connect(qGuiApp, &QGuiApplication::screenAdded, this, [this] { addScreenCommands(); });
     connect(qGuiApp, &QGuiApplication::screenRemoved, this, [this](QScreen* screen) { screenGone(screen->name()); });
-    heedScene();
+    onInstallationChanged();
 }
 
 ProjectorOutputs::~ProjectorOutputs() {
@@ -49,8 +49,8 @@ ProjectorOutputs::~ProjectorOutputs() {
 }
 
 std::size_t ProjectorOutputs::count() const {
-    const auto& scene = document_.state().scene;
-    return scene ? scene->projectors.size() : 0;
+    const auto& installation = document_.state().installation;
+    return installation ? installation->projectors.size() : 0;
 }
 
 QAction* ProjectorOutputs::add(const QString& id, const QString& text, std::function<void()> run, bool checkable) {
@@ -91,10 +91,10 @@ void ProjectorOutputs::addScreenCommands() {
     }
 }
 
-void ProjectorOutputs::heedScene() {
+void ProjectorOutputs::onInstallationChanged() {
     addScreenCommands();
     for (auto& [number, output] : outputs_) {
-        const auto& projectors = document_.state().scene->projectors;
+        const auto& projectors = document_.state().installation->projectors;
         if (number < projectors.size())
             output.window->setProjector(titleOf(number), sizeOf(projectors[number]));
         else
@@ -108,7 +108,7 @@ ProjectorOutputs::Output& ProjectorOutputs::open(std::size_t projector) {
     output.window = std::make_unique<ProjectorWindow>(feed_, commands_, projector);
     output.window->setPattern(pattern_);
     output.window->setScaled(scaled_);
-    output.window->setProjector(titleOf(projector), sizeOf(document_.state().scene->projectors[projector]));
+    output.window->setProjector(titleOf(projector), sizeOf(document_.state().installation->projectors[projector]));
     connect(output.window.get(), &ProjectorWindow::closed, this, [this, projector] { close(projector); });
     connect(output.window.get(), &ProjectorWindow::covered, this, [this, projector] { heedSize(projector); });
     connect(output.window.get(), &ProjectorWindow::leftScreen, this, [this, projector] {
@@ -165,7 +165,7 @@ void ProjectorOutputs::heedSize(std::size_t projector) {
     const auto found = outputs_.find(projector);
     if (found == outputs_.end() || projector >= count()) return;
     const QSize there = found->second.window->pixels();
-    const QSize wanted = sizeOf(document_.state().scene->projectors[projector]);
+    const QSize wanted = sizeOf(document_.state().installation->projectors[projector]);
     const QString subject = tr("Size of %1").arg(titleOf(projector));
     // At some desktop scales a screen is counted a pixel larger than it is; a smaller one would lose its last row.
     const QSize more = there - wanted;

@@ -59,7 +59,7 @@ private:
     void ask(std::size_t projector, const QString& screen);
     void askBack(std::size_t projector, const QString& screen);
     void heedSize(std::size_t projector);
-    void heedScene();
+    void onInstallationChanged();
     void addCommands();
     void addScreenCommands();
     QAction* add(const QString& id, const QString& text, std::function<void()> run, bool checkable = false);

@@ -4,7 +4,8 @@
 #include <mutex>
 
 #include "app/recording/recording.h"
-#include "core/loop/live_match.h"
+#include "core/loop/frame_source.h"
+#include "core/loop/match_frame.h"
 
 namespace lumorph::studio {
 

@@ -2,17 +2,13 @@
 
 #include <algorithm>
 
+#include "core/base/statistics.h"
+
 namespace lumorph::studio {
 namespace {
 
 constexpr double kStep = 0.92; // of a side; about 0.85 of the pixels
 constexpr std::size_t kRememberedFrames = 5;
-
-double medianFrameTime(std::vector<double> values) {
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    return *middle;
-}
 
 } // namespace
 
@@ -74,7 +70,7 @@ void FrameSchedule::adapt(Slot& slot, double milliseconds) {
     slot.times.push_back(milliseconds);
     if (slot.times.size() > kRememberedFrames) slot.times.erase(slot.times.begin());
     if (slot.times.size() < kRememberedFrames) return;
-    const double usual = medianFrameTime(slot.times);
+    const double usual = median(slot.times);
     double wanted = slot.resolution;
     // Upwards only when the larger frame will surely be in time, so that it does not swing.
     if (usual > kBudgetMilliseconds)

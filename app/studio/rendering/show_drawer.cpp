@@ -134,8 +134,8 @@ void ShowDrawer::Data::pose(const ShowPace::Work& work) {
 
 void ShowDrawer::Data::drawProjector(const WantedView& wanted, FrameReader& reader, const ShowFrame& frame) {
     const std::size_t number = wanted.view.projector;
-    if (number >= frame.scene->projectors.size()) return;
-    const glm::ivec2 own = frame.scene->projectors[number].camera.size;
+    if (number >= frame.installation->projectors.size()) return;
+    const glm::ivec2 own = frame.installation->projectors[number].camera.size;
     const glm::ivec2 shown = wanted.view.exact ? own : fittingSize(own, toVec(wanted.pixels));
     const unsigned texture = objects->renderer.projectorTexture(number);
     const unsigned target = reader.framebuffer(toSize(own));

@@ -41,20 +41,20 @@ CalibratedCamera resized(CalibratedCamera camera, glm::ivec2 size) {
 
 ShowFrame withProjectorShare(ShowFrame frame, double share) {
     if (share >= 1.0) return frame;
-    auto scene = std::make_shared<Scene>(*frame.scene);
-    for (SceneProjector& projector : scene->projectors)
+    auto installation = std::make_shared<Installation>(*frame.installation);
+    for (InstalledProjector& projector : installation->projectors)
         projector.camera = resized(projector.camera, scaledSize(projector.camera.size, share));
-    frame.scene = std::move(scene);
+    frame.installation = std::move(installation);
     return frame;
 }
 
 ShowFrame withProjectorRoom(ShowFrame frame, glm::ivec2 room) {
-    auto scene = std::make_shared<Scene>(*frame.scene);
-    for (SceneProjector& projector : scene->projectors) {
+    auto installation = std::make_shared<Installation>(*frame.installation);
+    for (InstalledProjector& projector : installation->projectors) {
         const glm::ivec2 fitting = fittingSize(projector.camera.size, room);
         if (fitting.x < projector.camera.size.x) projector.camera = resized(projector.camera, fitting);
     }
-    frame.scene = std::move(scene);
+    frame.installation = std::move(installation);
     return frame;
 }
 
@@ -66,7 +66,7 @@ ShowFrame withBend(ShowFrame frame, ShowView::Bend bend) {
     return frame;
 }
 
-glm::vec3 viewerOf(const ShowFrame& frame) { return frame.eye.value_or(frame.scene->eye); }
+glm::vec3 viewerOf(const ShowFrame& frame) { return frame.eye.value_or(frame.installation->eye); }
 
 CalibratedCamera labCamera(const ShowFrame& frame, const std::optional<glm::vec3>& observer, glm::ivec2 size) {
     return deviceView(frame, observer.value_or(viewerOf(frame)), size);

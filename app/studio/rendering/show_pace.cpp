@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "core/base/statistics.h"
+
 namespace lumorph::studio {
 namespace {
 
@@ -14,12 +16,6 @@ constexpr double kRoom = 0.7;
 constexpr double kStepsToFull = 20.0;
 
 double inSteps(double resolution) { return std::floor(kStepsToFull * resolution) / kStepsToFull; }
-
-double medianShowTime(std::vector<double> values) {
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    return *middle;
-}
 
 } // namespace
 
@@ -56,7 +52,7 @@ void ShowPace::finished(const Work& work, double milliseconds) {
     if (times_.size() > kRememberedShows) times_.erase(times_.begin());
     if (times_.size() < kRememberedShows) return;
     // The time goes with the pixels, so with the square of a side.
-    const double usual = std::max(medianShowTime(times_), 0.1);
+    const double usual = std::max(median(times_), 0.1);
     const double fitting = resolution_ * std::sqrt(kBudgetMilliseconds / usual);
     double wanted = resolution_;
     if (usual > kBudgetMilliseconds)

@@ -11,7 +11,7 @@
 #include <QSize>
 #include <glm/vec3.hpp>
 
-#include "core/loop/live_match.h"
+#include "core/loop/match_frame.h"
 #include "core/scene/show_frame.h"
 
 namespace lumorph::studio {

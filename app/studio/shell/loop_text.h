@@ -4,7 +4,7 @@
 
 #include <QString>
 
-#include "core/loop/live_match.h"
+#include "core/loop/match_frame.h"
 
 namespace lumorph::studio {
 

@@ -6,6 +6,7 @@
 #include "app/studio/base/settings.h"
 #include "app/studio/devices/device_service.h"
 #include "app/studio/devices/tracker_service.h"
+#include "app/studio/document/installation_keeper.h"
 #include "app/studio/document/project_service.h"
 #include "app/studio/document/studio_document.h"
 #include "app/studio/document/studio_loop.h"
@@ -25,6 +26,7 @@ struct Studio {
     StudioDocument document;
     StudioLoop loop{document};
     ProjectService project{document, jobs, notices};
+    InstallationKeeper room{settings, document, project, notices};
     DeviceService devices{settings, document, loop, notices};
     TrackerService trackers{settings, loop, notices};
     Commands commands;

@@ -7,7 +7,7 @@
 #include <glm/vec3.hpp>
 
 #include "app/workspaces/common/field_display.h"
-#include "core/loop/live_match.h"
+#include "core/loop/match_frame.h"
 #include "core/mdf/field.h"
 #include "core/render/viewport/viewport_scene.h"
 

@@ -11,7 +11,8 @@
 #include "app/studio/rendering/render_thread.h"
 #include "core/base/image.h"
 #include "core/base/progress.h"
-#include "core/loop/live_match.h"
+#include "core/loop/match_frame.h"
+#include "core/loop/match_wish.h"
 
 namespace lumorph::studio {
 

@@ -3,7 +3,7 @@
 #include <memory>
 
 #include "app/workspaces/common/field_display.h"
-#include "core/loop/live_match.h"
+#include "core/loop/match_frame.h"
 #include "core/render/viewport/viewport_scene.h"
 
 namespace lumorph::studio {

@@ -3,7 +3,7 @@
 #include <QLabel>
 
 #include "app/studio/widgets/floating_card.h"
-#include "core/loop/live_match.h"
+#include "core/loop/match_frame.h"
 
 namespace lumorph::studio {
 

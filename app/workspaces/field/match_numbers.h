@@ -3,7 +3,7 @@
 #include <QLabel>
 #include <QWidget>
 
-#include "core/loop/live_match.h"
+#include "core/loop/match_frame.h"
 
 namespace lumorph::studio {
 

@@ -6,7 +6,7 @@
 #include <QAbstractTableModel>
 
 #include "app/studio/widgets/plot.h"
-#include "core/loop/live_match.h"
+#include "core/loop/match_frame.h"
 
 namespace lumorph::studio {
 

@@ -40,18 +40,18 @@ void addWave(SceneForm& form, const Part<Wave>& wave, const QString& name) {
 void addHeightRows(SceneForm& form, Studio& studio, const Part<SceneItem>& item) {
     const auto part = heightOf(item);
     form.showWhile(&form.section("item.section.height", QObject::tr("Water and heights")),
-                   [part](const Scene& scene) { return part.read(scene) != nullptr; });
+                   [part](const StudioState& state) { return part.read(state) != nullptr; });
     form.vector(
         {"item.height.size", QObject::tr("Size"), QObject::tr("Width and depth")}, {Quantity::length, 1e-3, 10.0, 0.2},
         "xz", part, [](auto& height) -> auto& { return height.size; });
     addFileSlot(form, studio,
                 {"item.height.image", QObject::tr("Picture of heights"), pictureFilter(),
-                 [part](const Scene& scene) {
-                     const HeightItem* height = part.read(scene);
+                 [part](const StudioState& state) {
+                     const HeightItem* height = part.read(state);
                      return height ? height->image : std::string();
                  },
-                 [part](Scene& scene, const std::string& asset) {
-                     if (HeightItem* height = part.write(scene)) height->image = asset;
+                 [part](StudioState& state, const std::string& asset) {
+                     if (HeightItem* height = part.write(state)) height->image = asset;
                  }});
     form.number(
         {"item.height.imageHeight", QObject::tr("Black to white"), QObject::tr("How high white stands over black")},

@@ -48,8 +48,8 @@ public:
             show(QString::fromStdString(item->name), kindWord(*item), kindIcon(*item), true);
         } else if (choice.kind == Kind::projector) {
             const auto index = static_cast<std::size_t>(choice.index);
-            if (index < scene.projectors.size())
-                show(QString::fromStdString(scene.projectors[index].name), {}, "projector", true);
+            const auto& projectors = studio_.document.state().installation->projectors;
+            if (index < projectors.size()) show(QString::fromStdString(projectors[index].name), {}, "projector", true);
         } else if (choice.kind == Kind::device) {
             show(tr("Device"), {}, "device", false);
         } else if (choice.kind == Kind::table) {
@@ -79,14 +79,16 @@ private:
         if (!name_->isModified()) return;
         name_->setModified(false);
         const std::string name = name_->text().trimmed().toStdString();
-        if (!name.empty())
-            editScene(studio_.document, tr("Rename to %1").arg(name_->text().trimmed()),
-                      [this, &name, choice = selection_.choice()](Scene& scene) {
-                          if (SceneItem* item = itemOf(scene, selection_.item()))
-                              item->name = name;
-                          else if (choice.kind == Kind::projector)
-                              scene.projectors.at(static_cast<std::size_t>(choice.index)).name = name;
-                      });
+        const QString what = tr("Rename to %1").arg(name_->text().trimmed());
+        const SceneChoice choice = selection_.choice();
+        if (!name.empty() && choice.kind == Kind::projector)
+            editInstallation(studio_.document, what, [&](Installation& installation) {
+                installation.projectors.at(static_cast<std::size_t>(choice.index)).name = name;
+            });
+        else if (!name.empty())
+            editScene(studio_.document, what, [&](Scene& scene) {
+                if (SceneItem* item = itemOf(scene, selection_.item())) item->name = name;
+            });
         refresh();
     }
 
@@ -110,7 +112,7 @@ public:
                                          nullptr));
         connect(&selection, &SceneSelection::changed, this, [this] { choose(); });
         connect(&studio.document, &StudioDocument::changed, this, [this](StateParts parts) {
-            if (parts & StatePart::scene) refresh();
+            if (parts & (StatePart::scene | StatePart::installation)) refresh();
         });
         choose();
     }
@@ -177,26 +179,26 @@ private:
         });
         addItemRows(form, studio_, item);
         addKindRows(form, studio_, item);
-        const auto mesh = [item](const Scene& scene) -> const MeshItem* {
-            const SceneItem* found = item.read(scene);
+        const auto mesh = [item](const StudioState& state) -> const MeshItem* {
+            const SceneItem* found = item.read(state);
             return found ? std::get_if<MeshItem>(&found->kind) : nullptr;
         };
         addMaterialRows(
             form, studio_, "item.material",
             memberOf<Material>(
                 item, [](auto& found) -> auto& { return found.material; }),
-            [mesh](const Scene& scene) { return mesh(scene) == nullptr; },
-            [item, mesh](const Scene& scene) {
-                const SceneItem* found = item.read(scene);
-                return found && hasMaterial(*found) && !(mesh(scene) && mesh(scene)->ownMaterials);
+            [mesh](const StudioState& state) { return mesh(state) == nullptr; },
+            [item, mesh](const StudioState& state) {
+                const SceneItem* found = item.read(state);
+                return found && hasMaterial(*found) && !(mesh(state) && mesh(state)->ownMaterials);
             });
     }
 
-    Part<SceneProjector> chosenProjector() {
-        return makePart<SceneProjector>([this](auto& scene) -> decltype(scene.projectors.data()) {
+    Part<InstalledProjector> chosenProjector() {
+        return makeInstallationPart<InstalledProjector>([this](auto& room) -> decltype(room.projectors.data()) {
             const auto index = static_cast<std::size_t>(selection_.choice().index);
-            const bool there = selection_.choice().kind == Kind::projector && index < scene.projectors.size();
-            return there ? &scene.projectors[index] : nullptr;
+            const bool there = selection_.choice().kind == Kind::projector && index < room.projectors.size();
+            return there ? &room.projectors[index] : nullptr;
         });
     }
 

@@ -50,8 +50,8 @@ HandleView handleView(const CalibratedCamera& camera) {
     return view;
 }
 
-glm::mat4 worldFromParent(const Scene& scene, const SceneItem& item, double seconds) {
-    const glm::mat4 anchor = item.anchor == Anchor::device ? scene.worldFromDevice : glm::mat4(1.0F);
+glm::mat4 worldFromParent(const Scene& scene, const SceneItem& item, double seconds, const glm::mat4& worldFromDevice) {
+    const glm::mat4 anchor = item.anchor == Anchor::device ? worldFromDevice : glm::mat4(1.0F);
     const SceneItem* group = findItem(scene, item.parent);
     return group == nullptr ? anchor : anchor * anchorFromItem(scene, *group, seconds);
 }
@@ -86,7 +86,8 @@ const SceneItem* ItemHandles::item() const {
 std::optional<Gizmo> ItemHandles::gizmo() const {
     const SceneItem* held = item();
     if (held == nullptr) return std::nullopt;
-    const glm::mat4 parent = worldFromParent(*document_.state().scene, *held, seconds_);
+    const glm::mat4 parent =
+        worldFromParent(*document_.state().scene, *held, seconds_, document_.state().installation->worldFromDevice);
     const glm::vec3 origin(parent * glm::vec4(held->position, 1.0F));
     return Gizmo{{1.0, {}, origin}, origin};
 }
@@ -132,8 +133,13 @@ bool ItemHandles::press(const QPointF& at, const QSize& size, Qt::KeyboardModifi
     const auto view = viewOf(size);
     if (!hot_ || !shown || !view) return false;
     grip_ = Grip{
-        *hot_, *shown, *item(), worldFromParent(*document_.state().scene, *item(), seconds_), toVec(at) + view->offset,
-        at,    {}};
+        *hot_,
+        *shown,
+        *item(),
+        worldFromParent(*document_.state().scene, *item(), seconds_, document_.state().installation->worldFromDevice),
+        toVec(at) + view->offset,
+        at,
+        {}};
     return true;
 }
 

@@ -23,7 +23,8 @@ struct HandleView {
 [[nodiscard]] HandleView handleView(const CalibratedCamera& camera);
 
 /// World from the frame in which an item's position counts: its group's or its anchor's.
-[[nodiscard]] glm::mat4 worldFromParent(const Scene& scene, const SceneItem& item, double seconds);
+[[nodiscard]] glm::mat4 worldFromParent(const Scene& scene, const SceneItem& item, double seconds,
+                                        const glm::mat4& worldFromDevice);
 
 /// The item after its handles were dragged: moved, turned about the world's +Y, scaled evenly.
 [[nodiscard]] SceneItem draggedItem(SceneItem item, const glm::mat4& worldFromParent, const Placement& from,

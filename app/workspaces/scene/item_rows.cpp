@@ -23,8 +23,8 @@ bool isSun(const SceneItem* item) {
 
 void addRole(SceneForm& form, const Part<SceneItem>& item) {
     CollapsibleSection& section = form.section("item.section.role", QObject::tr("Servos or light"), true);
-    form.showWhile(&section, [item](const Scene& scene) {
-        const SceneItem* found = item.read(scene);
+    form.showWhile(&section, [item](const StudioState& state) {
+        const SceneItem* found = item.read(state);
         return found && canBePhysical(*found);
     });
     form.addSegments(
@@ -32,22 +32,22 @@ void addRole(SceneForm& form, const Part<SceneItem>& item) {
         {{"item.role.light", roleWord(ItemRole::virtualOnly), roleSentence(ItemRole::virtualOnly)},
          {"item.role.physical", roleWord(ItemRole::physical), roleSentence(ItemRole::physical)},
          {"item.role.split", roleWord(ItemRole::split), roleSentence(ItemRole::split)}},
-        [item](const Scene& scene) -> std::optional<int> {
-            const SceneItem* found = item.read(scene);
+        [item](const StudioState& state) -> std::optional<int> {
+            const SceneItem* found = item.read(state);
             return found ? std::optional(static_cast<int>(found->role)) : std::nullopt;
         },
-        [item](Scene& scene, int role) {
-            if (const SceneItem* found = item.write(scene)) setItemRole(scene, found->id, static_cast<ItemRole>(role));
+        [item](StudioState& state, int role) {
+            if (const SceneItem* found = item.write(state)) setItemRole(state, found->id, static_cast<ItemRole>(role));
         });
     QLabel* sentence = form.sentence("item.role.sentence");
-    form.onRefresh([sentence, item](const Scene& scene) {
-        const SceneItem* found = item.read(scene);
+    form.onRefresh([sentence, item](const StudioState& state) {
+        const SceneItem* found = item.read(state);
         if (found) sentence->setText(roleSentence(found->role));
     });
     QLabel* other = form.sentence("item.role.other");
-    form.onRefresh([other, item](const Scene& scene) {
-        const SceneItem* found = item.read(scene);
-        const SceneItem* driving = drivingItem(scene);
+    form.onRefresh([other, item](const StudioState& state) {
+        const SceneItem* found = item.read(state);
+        const SceneItem* driving = drivingItem(state);
         const bool another = found && driving && driving->id != found->id;
         other->setVisible(another);
         if (another)
@@ -69,13 +69,13 @@ QWidget* addRotation(SceneForm& form, const Part<SceneItem>& item) {
         const Turn& turn = turns[axis];
         rows.push_back({{turn.name, turn.label, turn.hint},
                         {Quantity::angle, -kItemTurn, kItemTurn},
-                        [item, axis](const Scene& scene) -> std::optional<double> {
-                            const SceneItem* found = item.read(scene);
+                        [item, axis](const StudioState& state) -> std::optional<double> {
+                            const SceneItem* found = item.read(state);
                             return found ? std::optional(headingTiltRoll(glm::dquat(found->rotation))[axis])
                                          : std::nullopt;
                         },
-                        [item, axis](Scene& scene, double value) {
-                            SceneItem* found = item.write(scene);
+                        [item, axis](StudioState& state, double value) {
+                            SceneItem* found = item.write(state);
                             if (!found) return;
                             glm::dvec3 angles = headingTiltRoll(glm::dquat(found->rotation));
                             angles[axis] = value;
@@ -87,17 +87,17 @@ QWidget* addRotation(SceneForm& form, const Part<SceneItem>& item) {
 
 void addPlace(SceneForm& form, const Part<SceneItem>& item) {
     CollapsibleSection& section = form.section("item.section.place", QObject::tr("Place"), true);
-    form.showWhile(&section, [item](const Scene& scene) {
-        const SceneItem* found = item.read(scene);
+    form.showWhile(&section, [item](const StudioState& state) {
+        const SceneItem* found = item.read(state);
         return found && !isTarget(found);
     });
-    const auto standsStill = [item](const Scene& scene) { return !isLight(item.read(scene)); };
+    const auto standsStill = [item](const StudioState& state) { return !isLight(item.read(state)); };
     form.showWhile(
         form.vector(
             {"item.position", QObject::tr("Position"), QObject::tr("x to the right, y up, z towards the viewer")},
             {Quantity::length, -kFarthestItem, kFarthestItem}, "xyz", item,
             [](auto& found) -> auto& { return found.position; }),
-        [item](const Scene& scene) { return !isSun(item.read(scene)); });
+        [item](const StudioState& state) { return !isSun(item.read(state)); });
     form.showWhile(addRotation(form, item), standsStill);
     QWidget* scale = form.vector(
         {"item.scale", QObject::tr("Scale"), QObject::tr("100 % is as it was made")},
@@ -108,16 +108,16 @@ void addPlace(SceneForm& form, const Part<SceneItem>& item) {
         {{"item.anchor.device", QObject::tr("On the device"), QObject::tr("It goes where the device goes")},
          {"item.anchor.world", QObject::tr("On the table"), QObject::tr("It stays while the device is moved")}},
         item, [](auto& found) -> auto& { return found.anchor; });
-    form.showWhile(anchor, [item](const Scene& scene) {
-        const SceneItem* found = item.read(scene);
+    form.showWhile(anchor, [item](const StudioState& state) {
+        const SceneItem* found = item.read(state);
         return found && found->parent == 0;
     });
 }
 
 void addMotion(SceneForm& form, const Part<SceneItem>& item) {
     CollapsibleSection& section = form.section("item.section.motion", QObject::tr("Motion"), false);
-    form.showWhile(&section, [item](const Scene& scene) {
-        const SceneItem* found = item.read(scene);
+    form.showWhile(&section, [item](const StudioState& state) {
+        const SceneItem* found = item.read(state);
         return found && !isTarget(found) && !isLight(found);
     });
     form.number(
@@ -141,8 +141,8 @@ void addItemRows(SceneForm& form, Studio& /*studio*/, const Part<SceneItem>& ite
     form.showWhile(form.number(
                        {"item.opacity", QObject::tr("Opacity"), {}}, {Quantity::share, 0.0, 1.0, 1.0}, item,
                        [](auto& found) -> auto& { return found.opacity; }),
-                   [item](const Scene& scene) {
-                       const SceneItem* found = item.read(scene);
+                   [item](const StudioState& state) {
+                       const SceneItem* found = item.read(state);
                        return found && hasMaterial(*found);
                    });
     addRole(form, item);

@@ -14,8 +14,8 @@ template <class Kind> Part<Kind> kindOf(const Part<SceneItem>& item) {
     return within<Kind>(item, [](auto& found) { return std::get_if<Kind>(&found.kind); });
 }
 
-template <class Kind> std::function<bool(const Scene&)> isKind(const Part<Kind>& part) {
-    return [part](const Scene& scene) { return part.read(scene) != nullptr; };
+template <class Kind> std::function<bool(const StudioState&)> isKind(const Part<Kind>& part) {
+    return [part](const StudioState& state) { return part.read(state) != nullptr; };
 }
 
 /// The animations of the model as far as it has been read; the first entry stands still.
@@ -34,21 +34,21 @@ void addMesh(SceneForm& form, Studio& studio, const Part<SceneItem>& item) {
     form.showWhile(&form.section("item.section.mesh", QObject::tr("Model")), isKind(part));
     addFileSlot(form, studio,
                 {"item.model", QObject::tr("File"), modelFilter(),
-                 [part](const Scene& scene) {
-                     const MeshItem* mesh = part.read(scene);
+                 [part](const StudioState& state) {
+                     const MeshItem* mesh = part.read(state);
                      return mesh ? mesh->model : std::string();
                  },
-                 [part](Scene& scene, const std::string& asset) {
-                     if (MeshItem* mesh = part.write(scene)) mesh->model = asset;
+                 [part](StudioState& state, const std::string& asset) {
+                     if (MeshItem* mesh = part.write(state)) mesh->model = asset;
                  }});
     QComboBox* animation = form.addChoice(
         {"item.animation", QObject::tr("Animation"), {}}, {QObject::tr("Stands still")},
-        [](const Scene&) { return std::nullopt; },
-        [part](Scene& scene, int index) {
-            if (MeshItem* mesh = part.write(scene)) mesh->animation = index - 1;
+        [](const StudioState&) { return std::nullopt; },
+        [part](StudioState& state, int index) {
+            if (MeshItem* mesh = part.write(state)) mesh->animation = index - 1;
         });
-    form.onRefresh([animation, part, &studio](const Scene& scene) {
-        const MeshItem* mesh = part.read(scene);
+    form.onRefresh([animation, part, &studio](const StudioState& state) {
+        const MeshItem* mesh = part.read(state);
         if (!mesh) return;
         const QStringList names = animationsOf(studio.document.state().assets.get(), mesh->model);
         const QSignalBlocker quiet(animation);

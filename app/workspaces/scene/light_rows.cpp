@@ -43,8 +43,8 @@ void addDial(SceneForm& form, const Part<SceneItem>& item) {
     row->addStretch(1);
     form.add(held);
     const auto change = [item](const glm::vec3& direction) {
-        return [item, direction](Scene& scene) {
-            if (SceneItem* found = item.write(scene)) turnTo(*found, direction);
+        return [item, direction](StudioState& state) {
+            if (SceneItem* found = item.write(state)) turnTo(*found, direction);
         };
     };
     StudioDocument& document = form.document();
@@ -55,8 +55,8 @@ void addDial(SceneForm& form, const Part<SceneItem>& item) {
         document.commitPreview(QObject::tr("Move the light"));
     });
     QObject::connect(dial, &DirectionDial::reverted, &form, [&document] { document.cancelPreview(); });
-    form.onRefresh([dial, item](const Scene& scene) {
-        if (const SceneItem* found = item.read(scene)) dial->setDirection(directionTo(*found));
+    form.onRefresh([dial, item](const StudioState& state) {
+        if (const SceneItem* found = item.read(state)) dial->setDirection(directionTo(*found));
     });
 }
 
@@ -80,16 +80,16 @@ void addHour(SceneForm& form, const Part<SceneItem>& item) {
     form.add(line);
     StudioDocument& document = form.document();
     QObject::connect(slider, &QSlider::valueChanged, &form, [&document, slider, item](int ticks) {
-        previewScene(document, [item, ticks](Scene& scene) {
-            if (SceneItem* found = item.write(scene))
+        previewScene(document, [item, ticks](StudioState& state) {
+            if (SceneItem* found = item.write(state))
                 turnTo(*found, sunAt(static_cast<double>(ticks) / kTicksAnHour, directionTo(*found)));
         });
         if (!slider->isSliderDown()) document.commitPreview(QObject::tr("Move the sun"));
     });
     QObject::connect(slider, &QSlider::sliderReleased, &form,
                      [&document] { document.commitPreview(QObject::tr("Move the sun")); });
-    form.onRefresh([slider, label, item](const Scene& scene) {
-        const SceneItem* found = item.read(scene);
+    form.onRefresh([slider, label, item](const StudioState& state) {
+        const SceneItem* found = item.read(state);
         if (!found) return;
         const double hour = hourOf(directionTo(*found));
         const QSignalBlocker quiet(slider);
@@ -97,8 +97,8 @@ void addHour(SceneForm& form, const Part<SceneItem>& item) {
         const int minutes = static_cast<int>(std::lround(hour * 60.0));
         label->setText(QString("%1:%2").arg(minutes / 60).arg(minutes % 60, 2, 10, QChar('0')));
     });
-    form.showWhile(line, [part = lightOf(item)](const Scene& scene) {
-        const LightItem* light = part.read(scene);
+    form.showWhile(line, [part = lightOf(item)](const StudioState& state) {
+        const LightItem* light = part.read(state);
         return light && light->kind == LightItem::Kind::sun;
     });
 }
@@ -108,7 +108,7 @@ void addHour(SceneForm& form, const Part<SceneItem>& item) {
 void addLightRows(SceneForm& form, const Part<SceneItem>& item) {
     const auto part = lightOf(item);
     form.showWhile(&form.section("item.section.light", QObject::tr("Light")),
-                   [part](const Scene& scene) { return part.read(scene) != nullptr; });
+                   [part](const StudioState& state) { return part.read(state) != nullptr; });
     form.segments(
         {"item.light.kind", QObject::tr("Kind"), {}},
         {{"item.light.sun", QObject::tr("Sun"), QObject::tr("Far away: all its rays are parallel")},

@@ -13,7 +13,7 @@ const FormRange kShare{Quantity::share, 0.0, 1.0};
 class MaterialRows {
 public:
     MaterialRows(SceneForm& form, Studio& studio, QString prefix, Part<Material> part,
-                 std::function<bool(const Scene&)> metres, std::function<bool(const Scene&)> shown)
+                 std::function<bool(const StudioState&)> metres, std::function<bool(const StudioState&)> shown)
         : form_(form), studio_(studio), prefix_(std::move(prefix)), part_(std::move(part)), metres_(std::move(metres)),
           shown_(std::move(shown)) {}
 
@@ -44,8 +44,8 @@ private:
     void addSurface() {
         section("surface", QObject::tr("Surface"), true);
         QLabel* name = form_.sentence(prefix_ + ".name");
-        form_.onRefresh([name, part = part_](const Scene& scene) {
-            if (const Material* material = part.read(scene))
+        form_.onRefresh([name, part = part_](const StudioState& state) {
+            if (const Material* material = part.read(state))
                 name->setText(QObject::tr("%1. The library has others.").arg(QString::fromStdString(material->name)));
         });
         form_.color(
@@ -124,14 +124,15 @@ private:
     Studio& studio_;
     QString prefix_;
     Part<Material> part_;
-    std::function<bool(const Scene&)> metres_;
-    std::function<bool(const Scene&)> shown_;
+    std::function<bool(const StudioState&)> metres_;
+    std::function<bool(const StudioState&)> shown_;
 };
 
 } // namespace
 
 void addMaterialRows(SceneForm& form, Studio& studio, const QString& prefix, const Part<Material>& part,
-                     const std::function<bool(const Scene&)>& metres, const std::function<bool(const Scene&)>& shown) {
+                     const std::function<bool(const StudioState&)>& metres,
+                     const std::function<bool(const StudioState&)>& shown) {
     MaterialRows(form, studio, prefix, part, metres, shown).addAll();
 }
 

@@ -20,13 +20,14 @@ constexpr int kRoot = 0, kThings = 1, kSetup = 2;
 } // namespace
 
 OutlinerModel::OutlinerModel(StudioDocument& document, QObject* parent)
-    : QAbstractItemModel(parent), document_(document), nodes_(nodesOf(*document.state().scene)) {
+    : QAbstractItemModel(parent), document_(document),
+      nodes_(nodesOf(*document.state().scene, *document.state().installation)) {
     connect(&document, &StudioDocument::changed, this, [this](StateParts parts) {
-        if (parts & StatePart::scene) take();
+        if (parts & (StatePart::scene | StatePart::installation)) take();
     });
 }
 
-std::vector<OutlinerModel::Node> OutlinerModel::nodesOf(const Scene& scene) {
+std::vector<OutlinerModel::Node> OutlinerModel::nodesOf(const Scene& scene, const Installation& installation) {
     std::vector<Node> nodes;
     const auto add = [&nodes](Node::Kind kind, const SceneChoice& choice, int parent) {
         const int number = static_cast<int>(nodes.size());
@@ -47,7 +48,7 @@ std::vector<OutlinerModel::Node> OutlinerModel::nodesOf(const Scene& scene) {
     if (scene.items.empty()) add(Node::Kind::nothing, {}, kThings);
     add(Node::Kind::choice, {SceneChoice::Kind::device, 0}, kSetup);
     add(Node::Kind::choice, {SceneChoice::Kind::table, 0}, kSetup);
-    for (std::size_t i = 0; i < scene.projectors.size(); ++i)
+    for (std::size_t i = 0; i < installation.projectors.size(); ++i)
         add(Node::Kind::choice, {SceneChoice::Kind::projector, static_cast<int>(i)}, kSetup);
     add(Node::Kind::choice, {SceneChoice::Kind::viewer, 0}, kSetup);
     add(Node::Kind::choice, {SceneChoice::Kind::room, 0}, kSetup);
@@ -55,7 +56,7 @@ std::vector<OutlinerModel::Node> OutlinerModel::nodesOf(const Scene& scene) {
 }
 
 void OutlinerModel::take() {
-    std::vector<Node> next = nodesOf(scene());
+    std::vector<Node> next = nodesOf(scene(), installation());
     if (next == nodes_) {
         for (std::size_t i = 0; i < nodes_.size(); ++i)
             if (!nodes_[i].children.empty()) {
@@ -142,7 +143,8 @@ QString OutlinerModel::nameOf(const Node& node) const {
     case SceneChoice::Kind::table:
         return tr("Table");
     case SceneChoice::Kind::projector:
-        return index < scene().projectors.size() ? QString::fromStdString(scene().projectors[index].name) : QString();
+        return index < installation().projectors.size() ? QString::fromStdString(installation().projectors[index].name)
+                                                        : QString();
     case SceneChoice::Kind::viewer:
         return tr("Viewer");
     case SceneChoice::Kind::room:
@@ -213,12 +215,15 @@ bool OutlinerModel::setData(const QModelIndex& index, const QVariant& value, int
     const SceneChoice choice = choiceAt(index);
     const std::string name = value.toString().trimmed().toStdString();
     if (role != Qt::EditRole || name.empty() || value.toString() == nameOf(nodeAt(index))) return false;
-    editScene(document_, tr("Rename %1").arg(nameOf(nodeAt(index))), [&](Scene& scene) {
-        if (choice.kind == SceneChoice::Kind::projector)
-            scene.projectors.at(static_cast<std::size_t>(choice.index)).name = name;
-        else if (SceneItem* item = itemOf(scene, choice.index))
-            item->name = name;
-    });
+    const QString what = tr("Rename %1").arg(nameOf(nodeAt(index)));
+    if (choice.kind == SceneChoice::Kind::projector)
+        editInstallation(document_, what, [&](Installation& installation) {
+            installation.projectors.at(static_cast<std::size_t>(choice.index)).name = name;
+        });
+    else
+        editScene(document_, what, [&](Scene& scene) {
+            if (SceneItem* item = itemOf(scene, choice.index)) item->name = name;
+        });
     return true;
 }
 

@@ -56,10 +56,11 @@ private:
         std::vector<int> children;
         bool operator==(const Node&) const = default;
     };
-    [[nodiscard]] static std::vector<Node> nodesOf(const Scene& scene);
+    [[nodiscard]] static std::vector<Node> nodesOf(const Scene& scene, const Installation& installation);
     [[nodiscard]] const Node& nodeAt(const QModelIndex& index) const;
     [[nodiscard]] const SceneItem* itemAt(const QModelIndex& index) const;
     [[nodiscard]] const Scene& scene() const { return *document_.state().scene; }
+    [[nodiscard]] const Installation& installation() const { return *document_.state().installation; }
     [[nodiscard]] QString nameOf(const Node& node) const;
     [[nodiscard]] QString iconOf(const Node& node) const;
     void take();

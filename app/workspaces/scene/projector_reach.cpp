@@ -20,7 +20,7 @@ bool inPicture(const CalibratedCamera& projector, const glm::dvec3& point) {
 
 } // namespace
 
-ProjectorReach reachOf(const SceneProjector& projector, const glm::vec3& albedo,
+ProjectorReach reachOf(const InstalledProjector& projector, const glm::vec3& albedo,
                        const std::vector<glm::vec3>& positions, const std::vector<glm::uvec3>& triangles,
                        const glm::mat4& worldFromSurface) {
     const double least = std::cos(kSteepDegrees * std::numbers::pi / 180.0);

@@ -19,7 +19,7 @@ inline constexpr double kSteepDegrees = 70.0;
 
 /// Of a surface's triangles with its vertices in its own frame, metres; `albedo` is the share of light that the bare
 /// surface gives back, linear.
-[[nodiscard]] ProjectorReach reachOf(const SceneProjector& projector, const glm::vec3& albedo,
+[[nodiscard]] ProjectorReach reachOf(const InstalledProjector& projector, const glm::vec3& albedo,
                                      const std::vector<glm::vec3>& positions, const std::vector<glm::uvec3>& triangles,
                                      const glm::mat4& worldFromSurface);
 

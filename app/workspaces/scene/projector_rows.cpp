@@ -17,17 +17,17 @@ constexpr double kFarthestProjector = 20.0; ///< metres
 constexpr int kLookMilliseconds = 500;
 constexpr double kWorthTelling = 0.01; ///< share of the device
 
-SceneForm::NumberRow placeRow(const Part<SceneProjector>& projector, int axis) {
+SceneForm::NumberRow placeRow(const Part<InstalledProjector>& projector, int axis) {
     const QString letter(QChar::fromLatin1("xyz"[axis]));
     return {
         {"projector.position." + letter, QObject::tr("Position %1").arg(letter), QObject::tr("y is above the table")},
         {Quantity::length, -kFarthestProjector, kFarthestProjector, axis == 1 ? 2.0 : 0.0, 0.01},
-        [projector, axis](const Scene& scene) -> std::optional<double> {
-            const SceneProjector* found = projector.read(scene);
+        [projector, axis](const StudioState& state) -> std::optional<double> {
+            const InstalledProjector* found = projector.read(state);
             return found ? std::optional(positionOf(found->camera)[axis]) : std::nullopt;
         },
-        [projector, axis](Scene& scene, double value) {
-            SceneProjector* found = projector.write(scene);
+        [projector, axis](StudioState& state, double value) {
+            InstalledProjector* found = projector.write(state);
             if (!found) return;
             glm::dvec3 position = positionOf(found->camera);
             position[axis] = value;
@@ -35,18 +35,18 @@ SceneForm::NumberRow placeRow(const Part<SceneProjector>& projector, int axis) {
         }};
 }
 
-SceneForm::NumberRow lookRow(const Part<SceneProjector>& projector, int axis) {
+SceneForm::NumberRow lookRow(const Part<InstalledProjector>& projector, int axis) {
     const QString letter(QChar::fromLatin1("xz"[axis]));
     return {{"projector.look." + letter, QObject::tr("Looks at %1").arg(letter),
              QObject::tr("Where the middle of its picture falls on the table")},
             {Quantity::length, -kFarthestProjector, kFarthestProjector, 0.0, 0.01},
-            [projector, axis](const Scene& scene) -> std::optional<double> {
-                const SceneProjector* found = projector.read(scene);
+            [projector, axis](const StudioState& state) -> std::optional<double> {
+                const InstalledProjector* found = projector.read(state);
                 const auto point = found ? lookPoint(found->camera) : std::nullopt;
                 return point ? std::optional((*point)[axis]) : std::nullopt;
             },
-            [projector, axis](Scene& scene, double value) {
-                SceneProjector* found = projector.write(scene);
+            [projector, axis](StudioState& state, double value) {
+                InstalledProjector* found = projector.write(state);
                 if (!found) return;
                 glm::dvec2 point = lookPoint(found->camera).value_or(glm::dvec2(0.0));
                 point[axis] = value;
@@ -73,16 +73,16 @@ QString warningOf(const ProjectorReach& reach) {
 }
 
 /// What its light does not reach well, as the device stands now.
-void addWarning(SceneForm& form, Studio& studio, const Part<SceneProjector>& projector) {
+void addWarning(SceneForm& form, Studio& studio, const Part<InstalledProjector>& projector) {
     QLabel* warning = form.sentence("projector.warning");
     warning->setProperty("look", "warning");
     const auto look = [warning, &studio, projector] {
-        const Scene& scene = *studio.document.state().scene;
-        const SceneProjector* found = projector.read(scene);
+        const StudioState& state = studio.document.state();
+        const InstalledProjector* found = projector.read(state);
         const auto& frame = studio.loop.frame();
         QString text;
         if (found && found->enabled && frame && frame->rig && frame->devicePositions)
-            text = warningOf(reachOf(*found, linearFromSrgb(scene.device.surfaceColor), *frame->devicePositions,
+            text = warningOf(reachOf(*found, linearFromSrgb(state.installation->deviceColor), *frame->devicePositions,
                                      frame->rig->restMesh().triangles, frame->worldFromDevice));
         warning->setText(text);
         warning->setVisible(!text.isEmpty());
@@ -92,16 +92,16 @@ void addWarning(SceneForm& form, Studio& studio, const Part<SceneProjector>& pro
         if (form.isVisible()) look();
     });
     often->start(kLookMilliseconds);
-    form.onRefresh([look](const Scene&) { look(); });
+    form.onRefresh([look](const StudioState&) { look(); });
 }
 
-void addPlace(SceneForm& form, const Part<SceneProjector>& projector) {
+void addPlace(SceneForm& form, const Part<InstalledProjector>& projector) {
     form.section("projector.section.place", QObject::tr("Place"));
     form.addNumbers(QObject::tr("Position"), {placeRow(projector, 0), placeRow(projector, 1), placeRow(projector, 2)});
     form.addNumbers(QObject::tr("Looks at"), {lookRow(projector, 0), lookRow(projector, 1)});
 }
 
-void addLens(SceneForm& form, const Part<SceneProjector>& projector) {
+void addLens(SceneForm& form, const Part<InstalledProjector>& projector) {
     form.section("projector.section.lens", QObject::tr("Lens"), false);
     const auto camera = memberOf<CalibratedCamera>(
         projector, [](auto& found) -> auto& { return found.camera; });
@@ -123,7 +123,7 @@ void addLens(SceneForm& form, const Part<SceneProjector>& projector) {
             camera, [i](auto& lens) -> auto& { return lens.distortion[i]; });
 }
 
-void addLight(SceneForm& form, const Part<SceneProjector>& projector) {
+void addLight(SceneForm& form, const Part<InstalledProjector>& projector) {
     form.section("projector.section.light", QObject::tr("Light"), false);
     form.number(
         {"projector.peak", QObject::tr("Peak"),
@@ -139,16 +139,16 @@ void addLight(SceneForm& form, const Part<SceneProjector>& projector) {
     form.vector(
         {"projector.gain", QObject::tr("Gain"), QObject::tr("Of red, green and blue, one against the others")},
         {Quantity::share, 0.01, 10.0, 1.0}, "rgb", projector, [](auto& found) -> auto& { return found.gain; });
-    const auto scene = makePart<Scene>([](auto& all) { return &all; });
+    const auto room = makeInstallationPart<Installation>([](auto& all) { return &all; });
     form.check(
         {"projector.compensation", QObject::tr("Even out slant and distance"),
          QObject::tr("Slanting and far places get more light, for all projectors")},
-        scene, [](auto& all) -> auto& { return all.compensation; });
+        room, [](auto& all) -> auto& { return all.compensation; });
 }
 
 } // namespace
 
-void addProjectorRows(SceneForm& form, Studio& studio, const Part<SceneProjector>& projector) {
+void addProjectorRows(SceneForm& form, Studio& studio, const Part<InstalledProjector>& projector) {
     form.check(
         {"projector.enabled", QObject::tr("In use"), {}}, projector,
         [](auto& found) -> auto& { return found.enabled; });

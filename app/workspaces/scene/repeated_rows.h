@@ -43,8 +43,8 @@ void addRepeatedRows(SceneForm& form, const RepeatedWords& words, const Part<std
         remove->setFocusPolicy(Qt::StrongFocus);
         section.addToHeading(remove);
         QObject::connect(remove, &QToolButton::clicked, &form, [&form, list, index, words] {
-            form.edit(QObject::tr("Remove %1").arg(words.one.toLower()), [&](Scene& scene) {
-                auto* all = list.write(scene);
+            form.edit(QObject::tr("Remove %1").arg(words.one.toLower()), [&](StudioState& state) {
+                auto* all = list.write(state);
                 if (all && index < all->size()) all->erase(all->begin() + static_cast<std::ptrdiff_t>(index));
             });
         });
@@ -52,8 +52,8 @@ void addRepeatedRows(SceneForm& form, const RepeatedWords& words, const Part<std
         column->addWidget(one);
         rows->push_back(one);
     };
-    form.onRefresh([list, rows, makeOne](const Scene& scene) {
-        const auto* all = list.read(scene);
+    form.onRefresh([list, rows, makeOne](const StudioState& state) {
+        const auto* all = list.read(state);
         const std::size_t count = all ? all->size() : 0;
         while (rows->size() < count) makeOne();
         for (std::size_t i = 0; i < rows->size(); ++i) {
@@ -65,8 +65,8 @@ void addRepeatedRows(SceneForm& form, const RepeatedWords& words, const Part<std
     add->setObjectName(words.name + ".add");
     add->setIcon(icon("plus"));
     QObject::connect(add, &QPushButton::clicked, &form, [&form, list, words] {
-        form.edit(words.add, [&](Scene& scene) {
-            if (auto* all = list.write(scene)) all->push_back(all->empty() ? Element{} : all->back());
+        form.edit(words.add, [&](StudioState& state) {
+            if (auto* all = list.write(state)) all->push_back(all->empty() ? Element{} : all->back());
         });
     });
     form.add(add);

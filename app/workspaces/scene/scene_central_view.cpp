@@ -178,7 +178,7 @@ void SceneCentralView::Data::addFloating() {
     connect(bar, &ViewBar::nextProjector, &self, [this] {
         ViewPane* pane = panes.at(ScenePane::projector);
         ShowView view = pane->view();
-        const std::size_t count = studio.document.state().scene->projectors.size();
+        const std::size_t count = studio.document.state().installation->projectors.size();
         view.projector = count == 0 ? 0 : (view.projector + 1) % count;
         pane->setView(view);
         showCaptions();
@@ -255,11 +255,11 @@ void SceneCentralView::Data::showCaptions() {
     panes.at(ScenePane::cropped)->caption().setText(tr("Cropped"), tr("the device lies flat"));
     panes.at(ScenePane::uncropped)->caption().setText(tr("Uncropped"), tr("its far edges bend up for the viewer"));
     ViewPane* projector = panes.at(ScenePane::projector);
-    const auto& all = studio.document.state().scene->projectors;
+    const auto& all = studio.document.state().installation->projectors;
     const std::size_t number = projector->view().projector;
     const QString title = tr("Projector %1").arg(number + 1);
     if (number >= all.size()) {
-        projector->caption().setText(title, tr("there is none in this scene"));
+        projector->caption().setText(title, tr("there is none in this room"));
         projector->setWaiting(tr("Add a projector in the Library, and its picture stands here."));
         return;
     }

@@ -98,7 +98,7 @@ public:
         addPlaying();
         connect(&selection, &SceneSelection::changed, this, [this] { follow(); });
         connect(&studio.document, &StudioDocument::changed, this, [this](StateParts parts) {
-            if (parts & StatePart::scene) follow();
+            if (parts & (StatePart::scene | StatePart::installation)) follow();
         });
         connect(&studio.project, &ProjectService::chooseAsset, this, [this](const QString& asset) { relink(asset); });
         follow();
@@ -154,17 +154,18 @@ private:
     }
 
     void addProjector() {
-        SceneProjector projector = defaultScene().projectors.front();
-        const auto& all = studio_.document.state().scene->projectors;
+        InstalledProjector projector = defaultInstallation().projectors.front();
+        const auto& all = studio_.document.state().installation->projectors;
         projector.name = "Projector " + std::to_string(all.size() + 1);
         // Beside the others, so that it is seen to be another.
         carryTo(projector.camera,
                 positionOf(projector.camera) + glm::dvec3(0.5 * static_cast<double>(all.size()), 0, 0));
         lookAt(projector.camera, glm::dvec2(0.0));
-        editScene(studio_.document, tr("Add a projector"),
-                  [&projector](Scene& scene) { scene.projectors.push_back(projector); });
-        selection_.choose(
-            {SceneChoice::Kind::projector, static_cast<int>(studio_.document.state().scene->projectors.size()) - 1});
+        projector.pose = {Origin::Way::entered, {}, utcDate()};
+        editInstallation(studio_.document, tr("Add a projector"),
+                         [&projector](Installation& installation) { installation.projectors.push_back(projector); });
+        selection_.choose({SceneChoice::Kind::projector,
+                           static_cast<int>(studio_.document.state().installation->projectors.size()) - 1});
     }
 
     void addChanging() {
@@ -272,14 +273,15 @@ private:
     [[nodiscard]] bool projectorChosen() const {
         const SceneChoice& choice = selection_.choice();
         return choice.kind == SceneChoice::Kind::projector &&
-               static_cast<std::size_t>(choice.index) < studio_.document.state().scene->projectors.size();
+               static_cast<std::size_t>(choice.index) < studio_.document.state().installation->projectors.size();
     }
 
     void removeProjector() {
         const int index = selection_.choice().index;
         selection_.choose({});
-        editScene(studio_.document, tr("Delete a projector"),
-                  [index](Scene& scene) { scene.projectors.erase(scene.projectors.begin() + index); });
+        editInstallation(studio_.document, tr("Delete a projector"), [index](Installation& installation) {
+            installation.projectors.erase(installation.projectors.begin() + index);
+        });
     }
 
     void remove() {

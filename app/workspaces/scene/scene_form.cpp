@@ -53,20 +53,20 @@ QLabel* SceneForm::sentence(const QString& name, const QString& text) {
     return label;
 }
 
-void SceneForm::showWhile(QWidget* widget, std::function<bool(const Scene&)> holds) {
-    onRefresh([widget, holds = std::move(holds)](const Scene& scene) { widget->setVisible(holds(scene)); });
+void SceneForm::showWhile(QWidget* widget, std::function<bool(const StudioState&)> holds) {
+    onRefresh([widget, holds = std::move(holds)](const StudioState& state) { widget->setVisible(holds(state)); });
 }
 
-void SceneForm::onRefresh(std::function<void(const Scene&)> run) { refreshes_.push_back(std::move(run)); }
+void SceneForm::onRefresh(std::function<void(const StudioState&)> run) { refreshes_.push_back(std::move(run)); }
 
 void SceneForm::refresh() {
-    const auto shown = document_.state().scene;
-    for (const auto& refresh : refreshes_) refresh(*shown);
+    const StudioState shown = document_.state(); // what a row sets off may change the document
+    for (const auto& refresh : refreshes_) refresh(shown);
 }
 
 /// What was refused is shown as it still is.
-void SceneForm::edit(const QString& what, const SceneEdit& edit) {
-    editScene(document_, what, edit);
+void SceneForm::edit(const QString& what, const StateEdit& edit) {
+    document_.change(what, edit);
     refresh();
 }
 
@@ -77,7 +77,7 @@ QWidget* SceneForm::makeNumber(const NumberRow& row) {
     if (row.range.step > 0.0) field->setStep(row.range.step);
     if (!row.words.hint.isEmpty()) field->setToolTip(row.words.hint);
     const auto change = [write = row.write](double value) {
-        return [write, value](Scene& scene) { write(scene, value); };
+        return [write, value](StudioState& state) { write(state, value); };
     };
     connect(field, &ValueField::previewed, this,
             [this, change](double value) { previewScene(document_, change(value)); });
@@ -87,8 +87,8 @@ QWidget* SceneForm::makeNumber(const NumberRow& row) {
         refresh();
     });
     connect(field, &ValueField::reverted, this, [this] { document_.cancelPreview(); });
-    onRefresh([field, read = row.read](const Scene& scene) {
-        if (const auto value = read(scene)) field->setValue(*value);
+    onRefresh([field, read = row.read](const StudioState& state) {
+        if (const auto value = read(state)) field->setValue(*value);
     });
     return field;
 }
@@ -120,28 +120,28 @@ QWidget* SceneForm::addNumbers(const QString& label, const std::vector<NumberRow
     return block;
 }
 
-QCheckBox* SceneForm::addCheck(const FormWords& words, ReadBool read, std::function<void(Scene&, bool)> write) {
+QCheckBox* SceneForm::addCheck(const FormWords& words, ReadBool read, std::function<void(StudioState&, bool)> write) {
     auto* box = new QCheckBox(words.label, this);
     box->setObjectName(words.name);
     box->setToolTip(words.hint);
     connect(box, &QCheckBox::clicked, this, [this, write = std::move(write), what = editName(words)](bool on) {
-        edit(what, [&](Scene& scene) { write(scene, on); });
+        edit(what, [&](StudioState& state) { write(state, on); });
     });
-    onRefresh([box, read = std::move(read)](const Scene& scene) {
-        if (const auto on = read(scene)) box->setChecked(*on);
+    onRefresh([box, read = std::move(read)](const StudioState& state) {
+        if (const auto on = read(state)) box->setChecked(*on);
     });
     add(box);
     return box;
 }
 
 QWidget* SceneForm::addColor(const FormWords& words, ReadColor read,
-                             std::function<void(Scene&, const glm::vec3&)> write) {
+                             std::function<void(StudioState&, const glm::vec3&)> write) {
     auto* field = new ColorField(this);
     field->setObjectName(words.name);
     field->setAccessibleName(words.label);
     field->setToolTip(words.hint.isEmpty() ? tr("Choose another colour") : words.hint);
     const auto change = [write = std::move(write)](const QColor& color) {
-        return [write, value = fromColor(color)](Scene& scene) { write(scene, value); };
+        return [write, value = fromColor(color)](StudioState& state) { write(state, value); };
     };
     connect(field, &ColorField::previewed, this,
             [this, change](const QColor& color) { previewScene(document_, change(color)); });
@@ -154,8 +154,8 @@ QWidget* SceneForm::addColor(const FormWords& words, ReadColor read,
         document_.cancelPreview();
         refresh();
     });
-    onRefresh([field, read = std::move(read)](const Scene& scene) {
-        if (const auto color = read(scene)) field->setColor(toColor(*color));
+    onRefresh([field, read = std::move(read)](const StudioState& state) {
+        if (const auto color = read(state)) field->setColor(toColor(*color));
     });
     QWidget* row = makeRow(words.label, field, this);
     add(row);
@@ -168,10 +168,10 @@ Segments* SceneForm::addSegments(const FormWords& words, const std::vector<Segme
     segments->setObjectName(words.name);
     segments->setAccessibleName(words.label);
     connect(segments, &Segments::chosen, this, [this, write, what = editName(words)](int index) {
-        edit(what, [&](Scene& scene) { write(scene, index); });
+        edit(what, [&](StudioState& state) { write(state, index); });
     });
-    onRefresh([segments, read = std::move(read)](const Scene& scene) {
-        if (const auto index = read(scene)) segments->setChosen(*index);
+    onRefresh([segments, read = std::move(read)](const StudioState& state) {
+        if (const auto index = read(state)) segments->setChosen(*index);
     });
     add(segments);
     return segments;
@@ -187,11 +187,11 @@ QComboBox* SceneForm::addChoice(const FormWords& words, const QStringList& names
     box->setSizeAdjustPolicy(QComboBox::AdjustToMinimumContentsLengthWithIcon);
     box->setMinimumContentsLength(8);
     connect(box, &QComboBox::activated, this, [this, write, what = editName(words)](int index) {
-        edit(what, [&](Scene& scene) { write(scene, index); });
+        edit(what, [&](StudioState& state) { write(state, index); });
     });
-    onRefresh([box, read = std::move(read)](const Scene& scene) {
+    onRefresh([box, read = std::move(read)](const StudioState& state) {
         const QSignalBlocker quiet(box);
-        if (const auto index = read(scene)) box->setCurrentIndex(*index);
+        if (const auto index = read(state)) box->setCurrentIndex(*index);
     });
     add(makeRow(words.label, box, this));
     return box;

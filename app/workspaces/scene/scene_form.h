@@ -19,6 +19,8 @@
 
 namespace lumorph::studio {
 
+using StateEdit = std::function<void(StudioState&)>;
+
 /// What a row of a form is called. `name` becomes the control's objectName.
 struct FormWords {
     QString name;
@@ -34,8 +36,8 @@ struct FormRange {
     double step = 0.0;
 };
 
-/// Rows that show and edit parts of the document's scene: each edit is a step of undo, each drag is one. What a row
-/// shows comes from the scene alone, by `refresh`.
+/// Rows that show and edit parts of the document's scene and installation: each edit is a step of undo, each drag is
+/// one. What a row shows comes from the document alone, by `refresh`.
 class SceneForm : public QWidget {
     Q_OBJECT
 public:
@@ -48,9 +50,9 @@ public:
     /// A plain sentence, muted.
     QLabel* sentence(const QString& name, const QString& text = {});
     /// Shows a widget only while this holds.
-    void showWhile(QWidget* widget, std::function<bool(const Scene&)> holds);
+    void showWhile(QWidget* widget, std::function<bool(const StudioState&)> holds);
     /// Runs with each refresh.
-    void onRefresh(std::function<void(const Scene&)> run);
+    void onRefresh(std::function<void(const StudioState&)> run);
     void refresh();
 
     template <class Object, class Ref>
@@ -74,23 +76,23 @@ public:
     template <class Object, class Ref> QCheckBox* check(const FormWords& words, const Part<Object>& part, Ref ref) {
         return addCheck(
             words,
-            [part, ref](const Scene& scene) -> std::optional<bool> {
-                const Object* object = part.read(scene);
+            [part, ref](const StudioState& state) -> std::optional<bool> {
+                const Object* object = part.read(state);
                 return object ? std::optional(ref(*object)) : std::nullopt;
             },
-            [part, ref](Scene& scene, bool on) {
-                if (Object* object = part.write(scene)) ref(*object) = on;
+            [part, ref](StudioState& state, bool on) {
+                if (Object* object = part.write(state)) ref(*object) = on;
             });
     }
     template <class Object, class Ref> QWidget* color(const FormWords& words, const Part<Object>& part, Ref ref) {
         return addColor(
             words,
-            [part, ref](const Scene& scene) -> std::optional<glm::vec3> {
-                const Object* object = part.read(scene);
+            [part, ref](const StudioState& state) -> std::optional<glm::vec3> {
+                const Object* object = part.read(state);
                 return object ? std::optional<glm::vec3>(ref(*object)) : std::nullopt;
             },
-            [part, ref](Scene& scene, const glm::vec3& value) {
-                if (Object* object = part.write(scene)) ref(*object) = value;
+            [part, ref](StudioState& state, const glm::vec3& value) {
+                if (Object* object = part.write(state)) ref(*object) = value;
             });
     }
     /// Buttons of which one is down, or a list of names to choose from, for an enumeration or a whole number.
@@ -104,8 +106,8 @@ public:
         return addChoice(words, names, readIndex(part, ref), writeIndex(part, ref));
     }
 
-    using ReadNumber = std::function<std::optional<double>(const Scene&)>;
-    using WriteNumber = std::function<void(Scene&, double)>;
+    using ReadNumber = std::function<std::optional<double>(const StudioState&)>;
+    using WriteNumber = std::function<void(StudioState&, double)>;
     struct NumberRow {
         FormWords words;
         FormRange range;
@@ -114,42 +116,43 @@ public:
     };
     /// Numbers side by side; one alone stands beside its label.
     QWidget* addNumbers(const QString& label, const std::vector<NumberRow>& rows);
-    using ReadBool = std::function<std::optional<bool>(const Scene&)>;
-    QCheckBox* addCheck(const FormWords& words, ReadBool read, std::function<void(Scene&, bool)> write);
-    using ReadColor = std::function<std::optional<glm::vec3>(const Scene&)>;
-    QWidget* addColor(const FormWords& words, ReadColor read, std::function<void(Scene&, const glm::vec3&)> write);
-    using ReadIndex = std::function<std::optional<int>(const Scene&)>;
-    using WriteIndex = std::function<void(Scene&, int)>;
+    using ReadBool = std::function<std::optional<bool>(const StudioState&)>;
+    QCheckBox* addCheck(const FormWords& words, ReadBool read, std::function<void(StudioState&, bool)> write);
+    using ReadColor = std::function<std::optional<glm::vec3>(const StudioState&)>;
+    QWidget* addColor(const FormWords& words, ReadColor read,
+                      std::function<void(StudioState&, const glm::vec3&)> write);
+    using ReadIndex = std::function<std::optional<int>(const StudioState&)>;
+    using WriteIndex = std::function<void(StudioState&, int)>;
     Segments* addSegments(const FormWords& words, const std::vector<Segments::Segment>& choices, ReadIndex read,
                           const WriteIndex& write);
     QComboBox* addChoice(const FormWords& words, const QStringList& names, ReadIndex read, const WriteIndex& write);
 
     [[nodiscard]] StudioDocument& document() noexcept { return document_; }
-    [[nodiscard]] const Scene& scene() const { return *document_.state().scene; }
+    [[nodiscard]] const StudioState& state() const { return document_.state(); }
     /// One step of undo, or what is seen of it while something is dragged.
-    void edit(const QString& what, const SceneEdit& edit);
+    void edit(const QString& what, const StateEdit& edit);
 
 private:
     template <class Object, class Ref>
     static NumberRow numberRow(const FormWords& words, const FormRange& range, const Part<Object>& part, Ref ref) {
         return {words, range,
-                [part, ref](const Scene& scene) -> std::optional<double> {
-                    const Object* object = part.read(scene);
+                [part, ref](const StudioState& state) -> std::optional<double> {
+                    const Object* object = part.read(state);
                     return object ? std::optional(asNumber(ref(*object))) : std::nullopt;
                 },
-                [part, ref](Scene& scene, double value) {
-                    if (Object* object = part.write(scene)) setNumber(ref(*object), value);
+                [part, ref](StudioState& state, double value) {
+                    if (Object* object = part.write(state)) setNumber(ref(*object), value);
                 }};
     }
     template <class Object, class Ref> static ReadIndex readIndex(const Part<Object>& part, Ref ref) {
-        return [part, ref](const Scene& scene) -> std::optional<int> {
-            const Object* object = part.read(scene);
+        return [part, ref](const StudioState& state) -> std::optional<int> {
+            const Object* object = part.read(state);
             return object ? std::optional(static_cast<int>(ref(*object))) : std::nullopt;
         };
     }
     template <class Object, class Ref> static WriteIndex writeIndex(const Part<Object>& part, Ref ref) {
-        return [part, ref](Scene& scene, int index) {
-            if (Object* object = part.write(scene))
+        return [part, ref](StudioState& state, int index) {
+            if (Object* object = part.write(state))
                 ref(*object) = static_cast<std::decay_t<decltype(ref(*object))>>(index);
         };
     }
@@ -158,7 +161,7 @@ private:
     StudioDocument& document_;
     QVBoxLayout* column_;
     QVBoxLayout* rows_; ///< where the next row goes
-    std::vector<std::function<void(const Scene&)>> refreshes_;
+    std::vector<std::function<void(const StudioState&)>> refreshes_;
 };
 
 /// Colours of the scene (sRGB in [0, 1]) as those of the window.

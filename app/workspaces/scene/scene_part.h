@@ -4,32 +4,37 @@
 #include <functional>
 #include <type_traits>
 
+#include "app/studio/document/scene_edit.h"
 #include "core/base/units.h"
-#include "core/scene/scene.h"
 
 namespace lumorph::studio {
 
-/// A part of a scene that a form shows and edits, such as the material of the chosen item. Both find nothing (null)
-/// while there is no such part.
+/// A part of scene or installation that a form shows and edits, such as the material of the chosen item. Both find
+/// nothing (null) while there is no such part.
 template <class Object> struct Part {
-    std::function<const Object*(const Scene&)> read;
-    std::function<Object*(Scene&)> write;
+    std::function<const Object*(const StudioState&)> read;
+    std::function<Object*(StudioState&)> write;
 };
 
-/// From one generic lambda that gives a pointer into the scene it is given.
+/// A part of the scene, from one generic lambda that gives a pointer into the scene it is given.
 template <class Object, class Find> [[nodiscard]] Part<Object> makePart(Find find) {
-    return {[find](const Scene& scene) -> const Object* { return find(scene); },
-            [find](Scene& scene) -> Object* { return find(scene); }};
+    return {[find](const StudioState& state) -> const Object* { return find(*state.scene); },
+            [find](StudioState& state) -> Object* { return find(sceneToEdit(state)); }};
+}
+/// The same of what stands in the room.
+template <class Object, class Find> [[nodiscard]] Part<Object> makeInstallationPart(Find find) {
+    return {[find](const StudioState& state) -> const Object* { return find(*state.installation); },
+            [find](StudioState& state) -> Object* { return find(installationToEdit(state)); }};
 }
 
 /// A part of a part, from one generic lambda that gives a pointer into what it is given.
 template <class Inner, class Outer, class Step> [[nodiscard]] Part<Inner> within(const Part<Outer>& outer, Step step) {
-    return {[outer, step](const Scene& scene) -> const Inner* {
-                const Outer* found = outer.read(scene);
+    return {[outer, step](const StudioState& state) -> const Inner* {
+                const Outer* found = outer.read(state);
                 return found ? step(*found) : nullptr;
             },
-            [outer, step](Scene& scene) -> Inner* {
-                Outer* found = outer.write(scene);
+            [outer, step](StudioState& state) -> Inner* {
+                Outer* found = outer.write(state);
                 return found ? step(*found) : nullptr;
             }};
 }

@@ -23,7 +23,11 @@ Part<Scene> whole() {
     return makePart<Scene>([](auto& scene) { return &scene; });
 }
 
-bool always(const Scene& /*scene*/) { return true; }
+Part<Installation> room() {
+    return makeInstallationPart<Installation>([](auto& installation) { return &installation; });
+}
+
+bool always(const StudioState& /*state*/) { return true; }
 
 QString bareSurfaceTip() {
     return QObject::tr("Its own colour without projection: projectors make up for it. White until measured");
@@ -79,21 +83,25 @@ void addDevicePlace(SceneForm& form) {
         position.push_back(
             {{"device.position." + letter, QObject::tr("Position %1").arg(letter), QObject::tr("On the table")},
              {Quantity::length, -kFarthestSetup, kFarthestSetup},
-             [axis](const Scene& scene) { return std::optional<double>(scene.worldFromDevice[3][axis]); },
-             [axis](Scene& scene, double value) { scene.worldFromDevice[3][axis] = static_cast<float>(value); }});
+             [axis](const StudioState& state) {
+                 return std::optional<double>(state.installation->worldFromDevice[3][axis]);
+             },
+             [axis](StudioState& state, double value) {
+                 installationToEdit(state).worldFromDevice[3][axis] = static_cast<float>(value);
+             }});
         rotation.push_back({{"device.rotation." + letter, turns[axis], {}},
                             {Quantity::angle, -kSetupTurn, kSetupTurn},
-                            [axis](const Scene& scene) {
-                                const glm::dquat turned(glm::quat_cast(glm::mat3(scene.worldFromDevice)));
+                            [axis](const StudioState& state) {
+                                const glm::dquat turned(glm::quat_cast(glm::mat3(state.installation->worldFromDevice)));
                                 return std::optional(headingTiltRoll(turned)[axis]);
                             },
-                            [axis](Scene& scene, double value) {
-                                glm::dvec3 angles =
-                                    headingTiltRoll(glm::dquat(glm::quat_cast(glm::mat3(scene.worldFromDevice))));
+                            [axis](StudioState& state, double value) {
+                                glm::mat4& place = installationToEdit(state).worldFromDevice;
+                                glm::dvec3 angles = headingTiltRoll(glm::dquat(glm::quat_cast(glm::mat3(place))));
                                 angles[axis] = value;
-                                const glm::vec4 origin = scene.worldFromDevice[3];
-                                scene.worldFromDevice = glm::mat4(glm::mat4_cast(fromHeadingTiltRoll(angles)));
-                                scene.worldFromDevice[3] = origin;
+                                const glm::vec4 origin = place[3];
+                                place = glm::mat4(glm::mat4_cast(fromHeadingTiltRoll(angles)));
+                                place[3] = origin;
                             }});
     }
     form.addNumbers(QObject::tr("Position"), position);
@@ -111,8 +119,8 @@ void addDeviceRows(SceneForm& form, Studio& studio) {
          {"device.show.content", QObject::tr("Things alone"), QObject::tr("The device is a mere screen")}},
         device, [](auto& skin) -> auto& { return skin.show; });
     form.color(
-        {"device.surfaceColor", QObject::tr("Bare surface"), bareSurfaceTip()}, device,
-        [](auto& skin) -> auto& { return skin.surfaceColor; });
+        {"device.surfaceColor", QObject::tr("Bare surface"), bareSurfaceTip()}, room(),
+        [](auto& all) -> auto& { return all.deviceColor; });
     addMaterialRows(form, studio, "device.material",
                     memberOf<Material>(
                         device, [](auto& skin) -> auto& { return skin.material; }),
@@ -127,11 +135,11 @@ void addTableRows(SceneForm& form, Studio& studio) {
     const auto table = makePart<Table>([](auto& scene) { return &scene.table; });
     form.vector(
         {"table.size", QObject::tr("Size"), QObject::tr("Width and depth")},
-        {Quantity::length, 0.01, kFarthestSetup, 1.0, 0.01}, "xz", table,
-        [](auto& found) -> auto& { return found.size; });
+        {Quantity::length, 0.01, kFarthestSetup, 1.0, 0.01}, "xz", room(),
+        [](auto& all) -> auto& { return all.tableSize; });
     form.color(
-        {"table.surfaceColor", QObject::tr("Bare surface"), bareSurfaceTip()}, table,
-        [](auto& found) -> auto& { return found.surfaceColor; });
+        {"table.surfaceColor", QObject::tr("Bare surface"), bareSurfaceTip()}, room(),
+        [](auto& all) -> auto& { return all.tableColor; });
     addMaterialRows(form, studio, "table.material",
                     memberOf<Material>(
                         table, [](auto& found) -> auto& { return found.material; }),
@@ -139,11 +147,10 @@ void addTableRows(SceneForm& form, Studio& studio) {
 }
 
 void addViewerRows(SceneForm& form, Studio& studio) {
-    const auto scene = whole();
     form.section("viewer.section.eye", QObject::tr("Simulated eye"));
     form.vector(
         {"viewer.eye", QObject::tr("Eye"), QObject::tr("Above the table; z towards the front")},
-        {Quantity::length, -kFarthestSetup, kFarthestSetup, 0.4, 0.01}, "xyz", scene,
+        {Quantity::length, -kFarthestSetup, kFarthestSetup, 0.4, 0.01}, "xyz", room(),
         [](auto& all) -> auto& { return all.eye; });
     QLabel* who = form.sentence("viewer.who");
     const auto tell = [who, &studio] {
@@ -152,18 +159,22 @@ void addViewerRows(SceneForm& form, Studio& studio) {
                          ? QObject::tr("The show follows %1.").arg(QString::fromStdString(frame->viewer))
                          : QObject::tr("Nobody is tracked, so the show follows this eye."));
     };
-    form.onRefresh([tell](const Scene&) { tell(); });
+    form.onRefresh([tell](const StudioState&) { tell(); });
     form.section("viewer.section.tracking", QObject::tr("Tracked viewers"));
     form.choice(
         {"viewer.choice", QObject::tr("Follow"), {}},
         {QObject::tr("The nearest, calmly"), QObject::tr("The first who came"), QObject::tr("Always the nearest"),
          QObject::tr("Nobody")},
-        scene, [](auto& all) -> auto& { return all.viewer; });
+        room(), [](auto& all) -> auto& { return all.viewer; });
+    form.vector(
+        {"viewer.eyeFromHead", QObject::tr("Eye from head"),
+         QObject::tr("Where the eye is in the frame of the tracked head's body")},
+        {Quantity::length, -1.0, 1.0, 0.0, 0.005}, "xyz", room(), [](auto& all) -> auto& { return all.eyeFromHead; });
     form.number(
         {"viewer.prediction", QObject::tr("Look ahead"),
          QObject::tr("The delay from tracker to light; heads are expected where they will be by then. "
                      "Where drawing takes longer, that counts. 0: they are shown where they are now")},
-        {Quantity::seconds, 0.0, 0.15, 0.06, 0.005}, scene, [](auto& all) -> auto& { return all.predictionSeconds; });
+        {Quantity::seconds, 0.0, 0.15, 0.06, 0.005}, room(), [](auto& all) -> auto& { return all.predictionSeconds; });
     form.section("viewer.section.dependence", QObject::tr("View-dependent shape"));
     const auto rule = makePart<ViewDependence>([](auto& all) { return &all.viewDependence; });
     form.check(

@@ -9,7 +9,7 @@ namespace lumorph::studio {
 
 void addDeviceRows(SceneForm& form, Studio& studio);
 void addTableRows(SceneForm& form, Studio& studio);
-void addProjectorRows(SceneForm& form, Studio& studio, const Part<SceneProjector>& projector);
+void addProjectorRows(SceneForm& form, Studio& studio, const Part<InstalledProjector>& projector);
 void addViewerRows(SceneForm& form, Studio& studio);
 void addRoomRows(SceneForm& form);
 

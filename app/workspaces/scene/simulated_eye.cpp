@@ -18,17 +18,17 @@ SimulatedEye::SimulatedEye(StudioDocument& document, QObject* parent) : QObject(
     connect(&settled_, &QTimer::timeout, this, [this] { end(true); });
 }
 
-glm::vec3 SimulatedEye::eye() const { return document_.state().scene->eye; }
+glm::vec3 SimulatedEye::eye() const { return document_.state().installation->eye; }
 
 glm::vec3 SimulatedEye::centre() const {
     const StudioState& state = document_.state();
     const glm::vec3 middle = state.rig.rig ? state.rig.rig->reach().centre() : glm::vec3(0.0F);
-    return glm::vec3(state.scene->worldFromDevice * glm::vec4(middle, 1.0F));
+    return glm::vec3(state.installation->worldFromDevice * glm::vec4(middle, 1.0F));
 }
 
 void SimulatedEye::set(const glm::vec3& eye) {
     moving_ = true;
-    previewScene(document_, [&eye](Scene& scene) { scene.eye = eye; });
+    previewInstallation(document_, [&eye](Installation& installation) { installation.eye = eye; });
 }
 
 void SimulatedEye::drag(const QPointF& by, const QSize& view) {

@@ -26,20 +26,6 @@ bool isTechniqueScene(const Scene& scene, const Scene& plain) {
     return true;
 }
 
-/// What the technique shows, before the same viewer, on the same device, by the same projectors.
-void takeTechnique(Scene& scene, int key) {
-    Scene next = techniqueScene(key);
-    next.projectors = scene.projectors;
-    next.eye = scene.eye;
-    next.worldFromDevice = scene.worldFromDevice;
-    next.viewer = scene.viewer;
-    next.predictionSeconds = scene.predictionSeconds;
-    next.compensation = scene.compensation;
-    next.device.surfaceColor = scene.device.surfaceColor;
-    next.table.surfaceColor = scene.table.surfaceColor;
-    scene = std::move(next);
-}
-
 QString titleOf(const Technique& technique) {
     return QObject::tr("Technique: %1").arg(QString::fromStdString(technique.name).toLower());
 }
@@ -71,7 +57,7 @@ private:
             studio_.project.openDemo(kDemo);
             return;
         }
-        editScene(studio_.document, titleOf(technique), [&](Scene& scene) { takeTechnique(scene, technique.key); });
+        editScene(studio_.document, titleOf(technique), [&](Scene& scene) { scene = techniqueScene(technique.key); });
     }
 
     /// The number keys belong to the demo: elsewhere a stray key must not change a scene.
@@ -129,9 +115,7 @@ private:
         setVisible(open);
         if (!open) return;
         for (std::size_t i = 0; i < scenes_.size(); ++i) {
-            Scene same = scene;
-            takeTechnique(same, all_[i].key);
-            if (!(same == scene)) continue;
+            if (!(scenes_[i] == scene)) continue;
             numbers_->setChosen(static_cast<int>(i));
             sentence_->setText(QString("<b>%1</b><br>%2")
                                    .arg(QString::fromStdString(all_[i].name).toHtmlEscaped(),

@@ -96,8 +96,8 @@ public:
         connect(clear_, &QToolButton::clicked, this, [this] { put({}); });
     }
 
-    void refresh(const Scene& scene) {
-        const std::string asset = slot_.read(scene);
+    void refresh(const StudioState& state) {
+        const std::string asset = slot_.read(state);
         const auto& assets = studio_.document.state().assets;
         const bool broken = assets && assets->problems.contains(asset);
         file_->setText(fontMetrics().elidedText(broken ? tr("%1: relink it").arg(shortName(asset)) : shortName(asset),
@@ -113,7 +113,7 @@ public:
 private:
     void put(const std::string& asset) {
         form_.edit(asset.empty() ? tr("Take a file away") : tr("Choose %1").arg(shortName(asset)),
-                   [&](Scene& scene) { slot_.write(scene, asset); });
+                   [&](StudioState& state) { slot_.write(state, asset); });
     }
 
     SceneForm& form_;
@@ -150,22 +150,22 @@ void askForFile(Studio& studio, QWidget* parent, const QString& title, const QSt
 void addFileSlot(SceneForm& form, Studio& studio, const FileSlot& slot) {
     auto* row = new SlotRow(form, studio, slot);
     form.add(row);
-    form.onRefresh([row](const Scene& scene) { row->refresh(scene); });
+    form.onRefresh([row](const StudioState& state) { row->refresh(state); });
 }
 
 void addTextureRows(SceneForm& form, Studio& studio, const QString& prefix, const QString& label,
-                    const Part<SceneTexture>& part, const std::function<bool(const Scene&)>& metres) {
+                    const Part<SceneTexture>& part, const std::function<bool(const StudioState&)>& metres) {
     addFileSlot(form, studio,
                 {prefix, label, pictureFilter(),
-                 [part](const Scene& scene) {
-                     const SceneTexture* texture = part.read(scene);
+                 [part](const StudioState& state) {
+                     const SceneTexture* texture = part.read(state);
                      return texture ? texture->image : std::string();
                  },
-                 [part](Scene& scene, const std::string& asset) {
-                     if (SceneTexture* texture = part.write(scene)) texture->image = asset;
+                 [part](StudioState& state, const std::string& asset) {
+                     if (SceneTexture* texture = part.write(state)) texture->image = asset;
                  }});
-    const auto named = [part](const Scene& scene) {
-        const SceneTexture* texture = part.read(scene);
+    const auto named = [part](const StudioState& state) {
+        const SceneTexture* texture = part.read(state);
         return texture && !texture->image.empty();
     };
     const auto tile = [](auto& texture) -> auto& { return texture.tile; };
@@ -174,8 +174,8 @@ void addTextureRows(SceneForm& form, Studio& studio, const QString& prefix, cons
     for (const bool inMetres : {true, false}) {
         const Quantity quantity = inMetres ? Quantity::length : Quantity::plain;
         const QString ends = inMetres ? "xz" : "uv";
-        const auto here = [named, metres, inMetres](const Scene& scene) {
-            return named(scene) && metres(scene) == inMetres;
+        const auto here = [named, metres, inMetres](const StudioState& state) {
+            return named(state) && metres(state) == inMetres;
         };
         form.showWhile(form.vector({prefix + ".tile" + (inMetres ? "" : ".own"), QObject::tr("Repeats after"),
                                     QObject::tr("How much of the surface one copy of the picture covers")},
@@ -205,9 +205,9 @@ void addTextureRows(SceneForm& form, Studio& studio, const QString& prefix, cons
                        {prefix + ".framesPerSecond", QObject::tr("Pictures a second"), {}},
                        {Quantity::plain, 0.0, 120.0, 0.0, 1.0}, part,
                        [](auto& texture) -> auto& { return texture.framesPerSecond; }),
-                   [part, named](const Scene& scene) {
-                       const SceneTexture* texture = part.read(scene);
-                       return named(scene) && texture->columns * texture->rows > 1;
+                   [part, named](const StudioState& state) {
+                       const SceneTexture* texture = part.read(state);
+                       return named(state) && texture->columns * texture->rows > 1;
                    });
 }
 

@@ -51,7 +51,7 @@ void DeviceSurface::draw(Program& program) const {
 Box deviceBounds(const ShowFrame& frame) { return movedBox(frame.rig->reach(), frame.worldFromDevice); }
 
 Box physicalBounds(const ShowFrame& frame) {
-    const glm::vec2 half = 0.5F * frame.scene->table.size;
+    const glm::vec2 half = 0.5F * frame.installation->tableSize;
     Box box = deviceBounds(frame);
     box.include(Box{glm::vec3(-half.x, 0.0F, -half.y), glm::vec3(half.x, 0.0F, half.y)});
     return box;

@@ -121,7 +121,7 @@ void EyePass::Data::View::apply(Program& program, PhysicalSurface surface) const
 
 Box EyePass::Data::everything(const ShowFrame& frame) const {
     Box box;
-    const glm::vec2 half = 0.5F * frame.scene->table.size;
+    const glm::vec2 half = 0.5F * frame.installation->tableSize;
     box.include(glm::vec3(-half.x, 0.0F, -half.y));
     box.include(glm::vec3(half.x, 0.0F, half.y));
     if (surfaces.hasSkin()) box.include(movedBox(surfaces.skinBoxAtDevice(), frame.worldFromDevice));
@@ -173,7 +173,7 @@ void EyePass::Data::draw(const ShowFrame& frame, const View& view, const Thing& 
     if ((features & (eye_feature::reflection | eye_feature::refraction)) != 0) {
         materials.applyTable(program, frame.scene->table.material);
         program.set("tableLight", lighting.onTable(glm::vec3(frame.worldFromDevice[3])));
-        program.set("tableHalf", 0.5F * frame.scene->table.size);
+        program.set("tableHalf", 0.5F * frame.installation->tableSize);
         program.set("sky", frame.scene->sky);
     }
     if ((features & eye_feature::skin) != 0)
@@ -212,7 +212,7 @@ void EyePass::Data::drawTable(const ShowFrame& frame, const View& view) {
     const bool throughHoles = showsSkin(frame) && (skinThing(frame, view.unseen()).features & eye_feature::holes) != 0;
     if (throughHoles && lighting.shadowed() && (features & eye_feature::unlit) == 0)
         features |= eye_feature::holesBelow;
-    table.fit(*view.camera, frame.scene->table.size);
+    table.fit(*view.camera, frame.installation->tableSize);
     glVertexAttrib3f(1, 0.0F, 1.0F, 0.0F); // its normal, everywhere
     Thing thing{nullptr, glm::mat4(1.0F), &material, 1.0F, features, 0.0F};
     // Through holes light is looked up elsewhere than on the table.

@@ -29,7 +29,7 @@ std::optional<TableArea> areaBehind(std::span<const glm::vec3> corners, const gl
 }
 
 TableArea allOf(const ShowFrame& frame) {
-    const glm::vec2 half = 0.5F * frame.scene->table.size;
+    const glm::vec2 half = 0.5F * frame.installation->tableSize;
     return {-half - kFadeRoom, half + kFadeRoom};
 }
 
@@ -51,7 +51,7 @@ bool holds(const CalibratedCamera& camera, const glm::vec3& point) {
 
 // Of the part that is looked up, as far as there is a table.
 std::array<glm::vec3, 4> drawnCorners(const TableArea& area, const ShowFrame& frame) {
-    const glm::vec2 half = 0.5F * frame.scene->table.size;
+    const glm::vec2 half = 0.5F * frame.installation->tableSize;
     const TableArea drawn = withFade(area);
     const glm::vec2 low = glm::max(drawn.low, -half);
     const glm::vec2 high = glm::min(drawn.high, half);

@@ -28,9 +28,9 @@ void LabPreview::drawSurfaces(const Observer& observer, const DeviceSurface& dev
     glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
     flat_.use();
     setCamera(flat_, observer.camera, observer.range.near, observer.range.far);
-    flat_.set("flatColor", onDevice * albedoOf(observer.scene, PhysicalSurface::device));
+    flat_.set("flatColor", onDevice * albedoOf(observer.installation, PhysicalSurface::device));
     device.draw(flat_);
-    flat_.set("flatColor", onTable * albedoOf(observer.scene, PhysicalSurface::table));
+    flat_.set("flatColor", onTable * albedoOf(observer.installation, PhysicalSurface::table));
     flat_.set("worldFromMesh", glm::mat4(1.0F));
     table_.draw();
 }
@@ -48,7 +48,7 @@ void LabPreview::addProjector(const Observer& observer, const DeviceSurface& dev
         program->set("gamma", static_cast<float>(projector.projector.gamma));
         const bool onDevice = program == &deviceProgram;
         program->set("surfaceAlbedo",
-                     albedoOf(observer.scene, onDevice ? PhysicalSurface::device : PhysicalSurface::table));
+                     albedoOf(observer.installation, onDevice ? PhysicalSurface::device : PhysicalSurface::table));
         if (onDevice) device.draw(*program);
         if (onDevice) continue;
         program->set("worldFromMesh", glm::mat4(1.0F));
@@ -93,8 +93,8 @@ void LabPreview::draw(GLuint framebuffer, const CalibratedCamera& observer, floa
                       const DeviceSurface& device, std::span<const ProjectorTarget* const> projectors,
                       PictureOutput& out) {
     if (!radiance_ || radiance_->size() != observer.size) radiance_.emplace(observer.size, GL_RGBA16F);
-    table_.fit(observer, frame.scene->table.size);
-    const Observer seen{observer, depthRange(observer, physicalBounds(frame)), *frame.scene};
+    table_.fit(observer, frame.installation->tableSize);
+    const Observer seen{observer, depthRange(observer, physicalBounds(frame)), *frame.installation};
     beginSurfaces(radiance_->framebuffer(), observer.size);
     drawLit(seen, ambient, device, projectors);
     if (!problem_.empty()) drawStandIn(seen, device);
@@ -103,8 +103,8 @@ void LabPreview::draw(GLuint framebuffer, const CalibratedCamera& observer, floa
 
 void LabPreview::drawMask(GLuint framebuffer, const CalibratedCamera& observer, const ShowFrame& frame,
                           const DeviceSurface& device, std::span<const ProjectorTarget* const> projectors) {
-    table_.fit(observer, frame.scene->table.size);
-    const Observer seen{observer, depthRange(observer, physicalBounds(frame)), *frame.scene};
+    table_.fit(observer, frame.installation->tableSize);
+    const Observer seen{observer, depthRange(observer, physicalBounds(frame)), *frame.installation};
     beginSurfaces(framebuffer, observer.size);
     drawSurfaces(seen, device, 0.0F, 0.0F);
     glDepthMask(GL_FALSE);

@@ -32,7 +32,7 @@ private:
     struct Observer {
         const CalibratedCamera& camera;
         DepthRange range;
-        const Scene& scene;
+        const Installation& installation;
     };
     void drawSurfaces(const Observer& observer, const DeviceSurface& device, float onDevice, float onTable);
     void drawLit(const Observer& observer, float ambient, const DeviceSurface& device,

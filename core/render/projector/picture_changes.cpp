@@ -23,10 +23,10 @@ bool sameLight(const PosedLight& first, const PosedLight& second) {
            first.radiance == second.radiance && first.softness == second.softness && first.shadows == second.shadows;
 }
 
-// Scenes that differ at most by their simulated eye, which the frame holds anyway.
-bool sameScene(const std::shared_ptr<const Scene>& first, const std::shared_ptr<const Scene>& second) {
+// Rooms that differ at most by their simulated eye, which the frame holds anyway.
+bool sameRoom(const std::shared_ptr<const Installation>& first, const std::shared_ptr<const Installation>& second) {
     if (first == second) return true;
-    Scene moved = *first;
+    Installation moved = *first;
     moved.eye = second->eye;
     return moved == *second;
 }
@@ -68,7 +68,8 @@ bool PictureChanges::standsStill(const ShowFrame& frame) const {
            drawn_->worldFromDevice == frame.worldFromDevice &&
            std::equal(drawn_->lights.begin(), drawn_->lights.end(), frame.posed.lights.begin(),
                       frame.posed.lights.end(), sameLight) &&
-           isStill(frame.scene->table.material) && sameScene(drawn_->scene, frame.scene);
+           isStill(frame.scene->table.material) && (drawn_->scene == frame.scene || *drawn_->scene == *frame.scene) &&
+           sameRoom(drawn_->installation, frame.installation);
 }
 
 PixelRegion PictureChanges::begin(const ShowFrame& frame, const CalibratedCamera& projector,
@@ -84,7 +85,7 @@ PixelRegion PictureChanges::begin(const ShowFrame& frame, const CalibratedCamera
 }
 
 void PictureChanges::finish(const ShowFrame& frame) {
-    drawn_ = Drawn{frame.scene, frame.assets, frame.rig, frame.worldFromDevice, frame.posed.lights};
+    drawn_ = Drawn{frame.scene, frame.installation, frame.assets, frame.rig, frame.worldFromDevice, frame.posed.lights};
 }
 
 } // namespace lumorph

@@ -28,6 +28,7 @@ public:
 private:
     struct Drawn {
         std::shared_ptr<const Scene> scene;
+        std::shared_ptr<const Installation> installation;
         std::shared_ptr<const SceneAssets> assets;
         std::shared_ptr<const Rig> rig;
         glm::mat4 worldFromDevice{1.0F};

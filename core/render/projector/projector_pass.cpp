@@ -52,7 +52,7 @@ ProjectorPass::ProjectorPass()
 void ProjectorPass::drawDepth(ProjectorTarget& target, const ShowFrame& frame, const DeviceSurface& device,
                               const EyeViews& views, bool shared) {
     target.range = depthRange(target.projector.camera, physicalBounds(frame));
-    target.table.fit(target.projector.camera, frame.scene->table.size);
+    target.table.fit(target.projector.camera, frame.installation->tableSize);
     target.device = devicePixels(frame, target.projector.camera);
     beginSurfaces(target.sent.framebuffer(), target.sent.size());
     glEnable(GL_SCISSOR_TEST);
@@ -181,7 +181,8 @@ Program& ProjectorPass::beginLookup(const ProjectorTarget& target, const ShowFra
     Program& program = seenProgram(defines);
     program.use();
     setLens(program, target);
-    setOutput(program, target, *frame.scene, onTable != nullptr ? PhysicalSurface::table : PhysicalSurface::device, 0);
+    setOutput(program, target, *frame.installation,
+              onTable != nullptr ? PhysicalSurface::table : PhysicalSurface::device, 0);
     views.device->set(program, "device", 2);
     if (onTable == nullptr) return program;
     if (second) views.table->set(program, "table", 4);

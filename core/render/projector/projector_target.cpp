@@ -13,7 +13,7 @@ constexpr float kDarkestSurface = 0.01F; // what is darker nobody makes bright
 
 } // namespace
 
-ProjectorTarget::ProjectorTarget(const SceneProjector& what)
+ProjectorTarget::ProjectorTarget(const InstalledProjector& what)
     : projector(what), sent(what.camera.size), open(what.camera.size) {
     const glm::ivec2 size = sent.size();
     bindTexture(0, done.name());
@@ -36,28 +36,29 @@ ProjectorTarget::ProjectorTarget(const SceneProjector& what)
     glBindFramebuffer(GL_FRAMEBUFFER, 0);
 }
 
-void setLight(Program& program, const SceneProjector& projector) {
+void setLight(Program& program, const InstalledProjector& projector) {
     program.set("projectorPosition", glm::vec3(positionOf(projector.camera)));
     program.set("projectorPeak", static_cast<float>(projector.peak) * projector.gain);
     program.set("projectorReference", static_cast<float>(projector.referenceDistance));
 }
 
-glm::vec3 albedoOf(const Scene& scene, PhysicalSurface surface) {
+glm::vec3 albedoOf(const Installation& installation, PhysicalSurface surface) {
     const bool device = surface == PhysicalSurface::device;
-    return linearFromSrgb(device ? scene.device.surfaceColor : scene.table.surfaceColor);
+    return linearFromSrgb(device ? installation.deviceColor : installation.tableColor);
 }
 
-void setOutput(Program& program, const ProjectorTarget& target, const Scene& scene, PhysicalSurface surface, int unit) {
+void setOutput(Program& program, const ProjectorTarget& target, const Installation& installation,
+               PhysicalSurface surface, int unit) {
     setLight(program, target.projector);
-    program.set("compensation", scene.compensation ? 1.0F : 0.0F);
-    program.set("surfaceAlbedo", glm::max(albedoOf(scene, surface), kDarkestSurface));
+    program.set("compensation", installation.compensation ? 1.0F : 0.0F);
+    program.set("surfaceAlbedo", glm::max(albedoOf(installation, surface), kDarkestSurface));
     if (target.projector.gamma > 0.0) program.set("inverseGamma", static_cast<float>(1.0 / target.projector.gamma));
     if (!target.blend) return;
     bindTexture(unit, target.blend->weights());
     program.set("weights", unit);
 }
 
-UnseenPlaces unseenPlaces(const ProjectorTarget& target, const Scene& scene) {
+UnseenPlaces unseenPlaces(const ProjectorTarget& target, const Installation& installation) {
     const std::uint32_t features = eye_feature::projected | (target.blend ? eye_feature::shared : 0U) |
                                    (target.projector.gamma > 0.0 ? eye_feature::gamma : 0U);
     return {target.projector.camera,
@@ -65,8 +66,8 @@ UnseenPlaces unseenPlaces(const ProjectorTarget& target, const Scene& scene) {
             target.device,
             target.rest.name(),
             features,
-            [&target, &scene](Program& program, PhysicalSurface surface, int unit) {
-                setOutput(program, target, scene, surface, unit);
+            [&target, &installation](Program& program, PhysicalSurface surface, int unit) {
+                setOutput(program, target, installation, surface, unit);
             }};
 }
 

@@ -15,9 +15,9 @@ namespace lumorph {
 /// What one projector keeps between frames.
 struct ProjectorTarget {
     /// Throws as ColorTarget does.
-    explicit ProjectorTarget(const SceneProjector& what);
+    explicit ProjectorTarget(const InstalledProjector& what);
 
-    SceneProjector projector;
+    InstalledProjector projector;
     DepthRange range;
     ColorTarget sent;      ///< what it sends out; its depth is that of the device, and of the table among several
     gl::Texture done;      ///< 1 where what it sends out is drawn for the eye
@@ -36,13 +36,14 @@ struct ProjectorTarget {
 };
 
 /// Sets the uniforms of projector_light.glsl.
-void setLight(Program& program, const SceneProjector& projector);
+void setLight(Program& program, const InstalledProjector& projector);
 /// The share of light that it gives back, linear, in [0, 1].
-[[nodiscard]] glm::vec3 albedoOf(const Scene& scene, PhysicalSurface surface);
+[[nodiscard]] glm::vec3 albedoOf(const Installation& installation, PhysicalSurface surface);
 /// Sets those of projector_output.glsl too; binds the weights of a shared one to a texture unit.
-void setOutput(Program& program, const ProjectorTarget& target, const Scene& scene, PhysicalSurface surface, int unit);
+void setOutput(Program& program, const ProjectorTarget& target, const Installation& installation,
+               PhysicalSurface surface, int unit);
 /// What of its picture the eye pass draws itself: places that no eye sees. Neither argument may go before the result.
-[[nodiscard]] UnseenPlaces unseenPlaces(const ProjectorTarget& target, const Scene& scene);
+[[nodiscard]] UnseenPlaces unseenPlaces(const ProjectorTarget& target, const Installation& installation);
 
 /// Sets those of projector_sight.glsl; binds the depth map to a texture unit.
 void setSight(Program& program, const ProjectorTarget& target, int unit);

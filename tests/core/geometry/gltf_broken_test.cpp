@@ -34,9 +34,9 @@ struct BrokenDocument {
     const char* why;
 };
 
-class BrokenDocuments : public ::testing::TestWithParam<BrokenDocument> {};
+class GltfReaderBrokenDocuments : public ::testing::TestWithParam<BrokenDocument> {};
 
-TEST_P(BrokenDocuments, AreRefusedWithPlaceAndRemedy) {
+TEST_P(GltfReaderBrokenDocuments, AreRefusedWithPlaceAndRemedy) {
     GltfBuilder builder = GltfBuilder::triangle();
     ASSERT_NO_THROW((void)readGlb(builder.glb(), "broken.glb"));
     GetParam().damage(builder);
@@ -252,7 +252,7 @@ const BrokenDocument kBroken[] = {
      "more than 100000 nodes"},
 };
 
-INSTANTIATE_TEST_SUITE_P(Table, BrokenDocuments, ::testing::ValuesIn(kBroken),
+INSTANTIATE_TEST_SUITE_P(Table, GltfReaderBrokenDocuments, ::testing::ValuesIn(kBroken),
                          [](const auto& row) { return row.param.name; });
 
 /// A broken container.
@@ -262,9 +262,9 @@ struct BrokenBytes {
     const char* why;
 };
 
-class BrokenContainers : public ::testing::TestWithParam<BrokenBytes> {};
+class GltfReaderBrokenContainers : public ::testing::TestWithParam<BrokenBytes> {};
 
-TEST_P(BrokenContainers, AreRefused) {
+TEST_P(GltfReaderBrokenContainers, AreRefused) {
     const std::vector<std::byte> bytes = GetParam().make();
     expectRefused([&] { (void)readGlb(bytes, "torn.glb"); }, "torn.glb", GetParam().why);
 }
@@ -280,7 +280,7 @@ std::string nested(std::size_t levels) {
 }
 
 INSTANTIATE_TEST_SUITE_P(
-    Table, BrokenContainers,
+    Table, GltfReaderBrokenContainers,
     ::testing::Values(BrokenBytes{"Nothing", [] { return std::vector<std::byte>(); }, "does not begin"},
                       BrokenBytes{"WrongMagic", [] { return changed(0, 'x'); }, "does not begin"},
                       BrokenBytes{"WrongVersion", [] { return changed(4, 1); }, "GLB version"},
@@ -310,14 +310,14 @@ INSTANTIATE_TEST_SUITE_P(
                       BrokenBytes{"DeepEnough", [] { return packGlb(nested(62), {}); }, "scene is empty"}),
     [](const auto& row) { return row.param.name; });
 
-TEST(BrokenContainers, EveryTruncationIsRefused) {
+TEST(GltfReaderBrokenContainers, EveryTruncationIsRefused) {
     const std::vector<std::byte> whole = GltfBuilder::triangle().glb();
     for (std::size_t size = 0; size < whole.size(); ++size)
         EXPECT_THROW((void)readGlb(std::span(whole).first(size), "torn.glb"), DataError) << size;
 }
 
 /// A buffer that lies somewhere it must not be read from.
-class ConfinedBuffers : public ::testing::TestWithParam<std::pair<const char*, const char*>> {
+class GltfReaderConfinedBuffers : public ::testing::TestWithParam<std::pair<const char*, const char*>> {
 protected:
     void SetUp() override {
         std::filesystem::create_directory(folder_.path() / "models");
@@ -331,7 +331,7 @@ protected:
     GltfBuilder builder_ = GltfBuilder::triangle();
 };
 
-TEST_P(ConfinedBuffers, AreNotRead) {
+TEST_P(GltfReaderConfinedBuffers, AreNotRead) {
     std::string uri = GetParam().first;
     if (uri == "absolute") uri = (folder_.path() / "secret.bin").string();
     builder_.document["buffers"] = {{{"byteLength", builder_.binary.size()}, {"uri", uri}}};
@@ -339,7 +339,7 @@ TEST_P(ConfinedBuffers, AreNotRead) {
     expectRefused([&] { (void)readModel(file); }, "shape.gltf", GetParam().second);
 }
 
-INSTANTIATE_TEST_SUITE_P(Table, ConfinedBuffers,
+INSTANTIATE_TEST_SUITE_P(Table, GltfReaderConfinedBuffers,
                          ::testing::Values(std::pair{"../secret.bin", "leads out of the folder"},
                                            std::pair{"%2e%2e/secret.bin", "leads out of the folder"},
                                            std::pair{"directory/../../secret.bin", "leads out of the folder"},
@@ -352,7 +352,7 @@ INSTANTIATE_TEST_SUITE_P(Table, ConfinedBuffers,
                                            std::pair{"missing.bin", "is not there"},
                                            std::pair{"https://example.org/mesh.bin", "is not there"}));
 
-TEST(BrokenFiles, AMissingFileIsNamed) {
+TEST(GltfReaderBrokenFiles, AMissingFileIsNamed) {
     expectRefused([] { (void)readModel("/nowhere/shape.glb"); }, "/nowhere/shape.glb", "is not there");
 }
 

@@ -49,9 +49,9 @@ struct Mode {
     std::vector<glm::uvec3> triangles;
 };
 
-class TriangleModes : public ::testing::TestWithParam<Mode> {};
+class GltfReaderTriangleModes : public ::testing::TestWithParam<Mode> {};
 
-TEST_P(TriangleModes, BecomeTriangles) {
+TEST_P(GltfReaderTriangleModes, BecomeTriangles) {
     GltfBuilder builder = GltfBuilder::triangle();
     builder.primitive()["attributes"]["POSITION"] = builder.floats(std::vector<float>(18, 0.0F), "VEC3");
     builder.primitive()["mode"] = GetParam().mode;
@@ -61,7 +61,7 @@ TEST_P(TriangleModes, BecomeTriangles) {
     EXPECT_EQ(onlyPrimitive(read(builder)).triangles, GetParam().triangles);
 }
 
-INSTANTIATE_TEST_SUITE_P(Table, TriangleModes,
+INSTANTIATE_TEST_SUITE_P(Table, GltfReaderTriangleModes,
                          ::testing::Values(Mode{4, {}, {{0, 1, 2}, {3, 4, 5}}},                 //
                                            Mode{4, {5, 4, 3}, {{5, 4, 3}}},                     //
                                            Mode{5, {0, 1, 2, 3}, {{0, 1, 2}, {1, 3, 2}}},       //
@@ -93,9 +93,9 @@ template <typename Component> std::vector<std::byte> bytesIn(const std::vector<C
     return bytes;
 }
 
-class ComponentTypes : public ::testing::TestWithParam<Stored> {};
+class GltfReaderComponentTypes : public ::testing::TestWithParam<Stored> {};
 
-TEST_P(ComponentTypes, BecomeFloats) {
+TEST_P(GltfReaderComponentTypes, BecomeFloats) {
     GltfBuilder builder = GltfBuilder::triangle();
     const int index = builder.accessor(GetParam().bytes, "SCALAR", GetParam().componentType);
     builder.document["accessors"][static_cast<std::size_t>(index)]["count"] = 3;
@@ -106,7 +106,7 @@ TEST_P(ComponentTypes, BecomeFloats) {
 }
 
 INSTANTIATE_TEST_SUITE_P(
-    Table, ComponentTypes,
+    Table, GltfReaderComponentTypes,
     ::testing::Values(
         Stored{"Byte", 5120, false, bytesIn<std::int8_t>({-128, 0, 127}), {-128, 0, 127}},
         Stored{"ByteNormalized", 5120, true, bytesIn<std::int8_t>({-128, 0, 127}), {-1, 0, 1}},

@@ -84,9 +84,9 @@ struct Contradiction {
     const char* why;
 };
 
-class ContradictoryModels : public ::testing::TestWithParam<Contradiction> {};
+class GltfWriterContradictions : public ::testing::TestWithParam<Contradiction> {};
 
-TEST_P(ContradictoryModels, AreRefused) {
+TEST_P(GltfWriterContradictions, AreRefused) {
     Model model = fullModel();
     GetParam().make(model);
     try {
@@ -99,7 +99,7 @@ TEST_P(ContradictoryModels, AreRefused) {
 }
 
 INSTANTIATE_TEST_SUITE_P(
-    Table, ContradictoryModels,
+    Table, GltfWriterContradictions,
     ::testing::Values(
         Contradiction{"Roots", [](Model& m) { m.roots.clear(); }, "no nodes"},
         Contradiction{"Normals", [](Model& m) { m.meshes[0].primitives[0].normals.pop_back(); }, "mesh 0: normals"},

@@ -66,9 +66,9 @@ struct Case {
     double volume;
 };
 
-class MeshChecks : public testing::TestWithParam<Case> {};
+class CheckMeshTable : public testing::TestWithParam<Case> {};
 
-TEST_P(MeshChecks, CountsWhatIsWrong) {
+TEST_P(CheckMeshTable, CountsWhatIsWrong) {
     const Case& c = GetParam();
     const MeshReport report = checkMesh(c.mesh);
     EXPECT_EQ(report.vertices, c.mesh.positions.size());
@@ -88,7 +88,7 @@ const TriangleMesh kCube = cubeAt({0, 0, 0}, 1);
 const TriangleMesh kInner = cubeAt({0.25F, 0.25F, 0.25F}, 0.5F);
 
 // clang-format off
-INSTANTIATE_TEST_SUITE_P(Meshes, MeshChecks, testing::Values(
+INSTANTIATE_TEST_SUITE_P(Meshes, CheckMeshTable, testing::Values(
     //   name                  mesh                                             parts holes nonman flat inward cross  solid  volume
     Case{"Cube",               kCube,                                           1,    0,    0,     0,   0,     false, true,  1.0},
     Case{"ShatteredCube",      shattered(kCube),                                1,    0,    0,     0,   0,     false, true,  1.0},
@@ -146,7 +146,7 @@ TEST(SelfIntersections, StopCountingAHeapOfTriangles) {
     EXPECT_EQ(countSelfIntersections(heap), kMaxIntersectionsCounted);
 }
 
-TEST(MeshCheck, FindsTheSharedModelsClosed) {
+TEST(CheckMesh, FindsTheSharedModelsClosed) {
     const std::filesystem::path folder = std::filesystem::path(LUMORPH_SHARED_DIR) / "data/meshes";
     if (!std::filesystem::exists(folder / "spot.obj")) GTEST_SKIP() << "no shared models here";
     const MeshReport spot = checkMesh(readMesh(folder / "spot.obj"));

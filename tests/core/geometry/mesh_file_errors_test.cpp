@@ -25,9 +25,9 @@ struct Broken {
     const char* why;
 };
 
-class BrokenFiles : public testing::TestWithParam<Broken> {};
+class ReadMeshBrokenFiles : public testing::TestWithParam<Broken> {};
 
-TEST_P(BrokenFiles, AreRefusedWithPlaceAndCause) {
+TEST_P(ReadMeshBrokenFiles, AreRefusedWithPlaceAndCause) {
     const TemporaryFolder folder;
     const fs::path file = folder / GetParam().file;
     std::ofstream(file, std::ios::binary) << GetParam().content;
@@ -72,7 +72,7 @@ std::string stlWithNan() {
 const std::string kV3 = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
 
 // clang-format off
-INSTANTIATE_TEST_SUITE_P(Table, BrokenFiles, testing::Values(
+INSTANTIATE_TEST_SUITE_P(Table, ReadMeshBrokenFiles, testing::Values(
     //     name                  file     content                                           place            cause
     Broken{"UnknownKind",        "a.step", "x",                                             "",              "no kind known"},
     Broken{"NoExtension",        "a",     "x",                                              "",              "no kind known"},

@@ -26,9 +26,9 @@ struct Readable {
     std::string content;
 };
 
-class Formats : public testing::TestWithParam<Readable> {};
+class ReadMeshFormats : public testing::TestWithParam<Readable> {};
 
-TEST_P(Formats, GiveTheSameSolid) {
+TEST_P(ReadMeshFormats, GiveTheSameSolid) {
     const TemporaryFolder folder;
     std::ofstream(folder / GetParam().file, std::ios::binary) << GetParam().content;
     const TriangleMesh mesh = readMesh(folder / GetParam().file);
@@ -50,7 +50,7 @@ constexpr auto kLittle = std::endian::little;
 constexpr auto kBig = std::endian::big;
 
 // clang-format off
-INSTANTIATE_TEST_SUITE_P(Prism, Formats, testing::Values(
+INSTANTIATE_TEST_SUITE_P(Prism, ReadMeshFormats, testing::Values(
     Readable{"Obj",              "a.obj", prismObj()},
     Readable{"ObjUpperCase",     "a.OBJ", prismObj()},
     Readable{"ObjCrLf",          "a.obj", replaced(prismObj(), "\n", "\r\n")},
@@ -83,14 +83,14 @@ INSTANTIATE_TEST_SUITE_P(Prism, Formats, testing::Values(
     [](const auto& test) { return std::string(test.param.name); });
 // clang-format on
 
-TEST(ObjReader, KeepsCoordinatesToTheBit) {
+TEST(ReadMeshObj, KeepsCoordinatesToTheBit) {
     const TriangleMesh mesh = parseObj(bytesOf("v 0.1 +1.5e-3 -2E2\nv 1e-60 1e-45 0\nv 16777217 .5 5.\nf 1 2 3"), "a");
     EXPECT_EQ(mesh.positions[0], glm::vec3(0.1F, 1.5e-3F, -200.0F));
     EXPECT_EQ(mesh.positions[1], glm::vec3(0.0F, 1e-45F, 0.0F)); // below the least float: zero
     EXPECT_EQ(mesh.positions[2], glm::vec3(16777216.0F, 0.5F, 5.0F));
 }
 
-TEST(ObjReader, CutsDentedPolygonsWithoutFillingTheDents) {
+TEST(ReadMeshObj, CutsDentedPolygonsWithoutFillingTheDents) {
     // A comb: fans from any one corner would cover the gaps.
     std::string text;
     std::string face = "f";
@@ -124,7 +124,7 @@ TEST(ObjReader, CutsDentedPolygonsWithoutFillingTheDents) {
     EXPECT_NEAR(signedArea, -125.0, 1e-4);
 }
 
-TEST(ObjReader, MakesNoFlatTrianglesOfCornersOnAStraightSide) {
+TEST(ReadMeshObj, MakesNoFlatTrianglesOfCornersOnAStraightSide) {
     const TriangleMesh mesh =
         parseObj(bytesOf("v 0 0 0\nv 1 0 0\nv 2 0 0\nv 3 0 0\nv 3 3 0\nv 0 3 0\nv 0 2 0\nf 1 2 3 4 5 6 7"), "a");
     EXPECT_EQ(mesh.triangles.size(), 5U);

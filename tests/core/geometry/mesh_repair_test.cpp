@@ -86,9 +86,9 @@ struct Ruin {
     double volume;
 };
 
-class Repairs : public testing::TestWithParam<Ruin> {};
+class RepairMeshTable : public testing::TestWithParam<Ruin> {};
 
-TEST_P(Repairs, GiveASolidOfTheRightVolume) {
+TEST_P(RepairMeshTable, GiveASolidOfTheRightVolume) {
     const Ruin& c = GetParam();
     const MeshRepair repair = repairMesh(c.mesh);
     EXPECT_THAT(repair.after.findings(), IsEmpty());
@@ -101,21 +101,21 @@ TEST_P(Repairs, GiveASolidOfTheRightVolume) {
 }
 
 // clang-format off
-INSTANTIATE_TEST_SUITE_P(Meshes, Repairs, testing::Values(
+INSTANTIATE_TEST_SUITE_P(Meshes, RepairMeshTable, testing::Values(
     //   name                   mesh                    parts volume
     Ruin{"RuinedCube",          ruinedCube(),           1,    1.0},
     Ruin{"FlatTriangle",        cubeWithFlatTriangle(), 1,    1.0},
     Ruin{"InsideOut",           turned(kWholeCube),     1,    1.0},
     Ruin{"InsideOutWithCavity", insideOutWithCavity(),  2,    0.875},
     Ruin{"GluedCubes",          gluedCubes(),           1,    2.0},
-    Ruin{"CubesOnOneEdge",      cubesSharingAnEdge(),  2,    2.0},
+    Ruin{"CubesOnOneEdge",      cubesSharingAnEdge(),   2,    2.0},
     Ruin{"WithoutTop",          withoutTop(),           1,    1.0},
     Ruin{"TouchingHoles",       withTouchingHoles(),    1,    1.0},
     Ruin{"OpenTube",            openTube(48),           1,    tubeVolume(48)}),
     [](const auto& test) { return std::string(test.param.name); });
 // clang-format on
 
-TEST(Repair, LeavesSoundMeshesAsTheyAre) {
+TEST(RepairMesh, LeavesSoundMeshesAsTheyAre) {
     for (const TriangleMesh& mesh :
          {kWholeCube, torus(20, 10), shattered(kWholeCube), both(kWholeCube, cubeAt({0.5F, 0, 0}, 1))}) {
         const MeshRepair repair = repairMesh(mesh);
@@ -125,7 +125,7 @@ TEST(Repair, LeavesSoundMeshesAsTheyAre) {
     }
 }
 
-TEST(Repair, MergesVerticesAndSaysWhatItDid) {
+TEST(RepairMesh, MergesVerticesAndSaysWhatItDid) {
     const MeshRepair repair = repairMesh(ruinedCube());
     EXPECT_EQ(repair.mesh.positions.size(), 8U);
     EXPECT_EQ(repair.mesh.triangles.size(), 12U);
@@ -133,13 +133,13 @@ TEST(Repair, MergesVerticesAndSaysWhatItDid) {
                                             HasSubstr("turned"), HasSubstr("A hole was filled")));
 }
 
-TEST(Repair, LeavesLargeHolesOpenAndSaysSo) {
+TEST(RepairMesh, LeavesLargeHolesOpenAndSaysSo) {
     const MeshRepair repair = repairMesh(openTube(48), 47);
     EXPECT_EQ(repair.after.boundaryEdges, 96U);
     EXPECT_THAT(repair.actions, ElementsAre(HasSubstr("2 holes were left open")));
 }
 
-TEST(Repair, DoesNotMakePillowsOfFlatSheets) {
+TEST(RepairMesh, DoesNotMakePillowsOfFlatSheets) {
     const TriangleMesh sheet{{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}, {{0, 1, 2}, {0, 2, 3}}};
     const MeshRepair repair = repairMesh(sheet);
     EXPECT_EQ(repair.mesh.triangles, sheet.triangles);
@@ -147,7 +147,7 @@ TEST(Repair, DoesNotMakePillowsOfFlatSheets) {
     EXPECT_THAT(repair.actions, ElementsAre(HasSubstr("left open")));
 }
 
-TEST(Repair, KeepsSoundPartsBitEqualBesideABrokenOne) {
+TEST(RepairMesh, KeepsSoundPartsBitEqualBesideABrokenOne) {
     const TriangleMesh sound = torus(16, 8);
     TriangleMesh mesh = both(sound, cubeAt({5, 0, 0}, 1));
     mesh.triangles.pop_back();
@@ -159,7 +159,7 @@ TEST(Repair, KeepsSoundPartsBitEqualBesideABrokenOne) {
             EXPECT_EQ(repair.mesh.positions[repair.mesh.triangles[t][k]], sound.positions[sound.triangles[t][k]]);
 }
 
-TEST(Repair, TakesARandomHeapAndReportsTruly) {
+TEST(RepairMesh, TakesARandomHeapAndReportsTruly) {
     std::mt19937 random(7);
     std::uniform_int_distribution<int> place(0, 3);
     std::uniform_int_distribution<std::uint32_t> vertex(0, 39);
@@ -177,7 +177,7 @@ TEST(Repair, TakesARandomHeapAndReportsTruly) {
     }
 }
 
-TEST(Repair, ClosesASharedModelWithHolesCutIntoIt) {
+TEST(RepairMesh, ClosesASharedModelWithHolesCutIntoIt) {
     const std::filesystem::path file = std::filesystem::path(LUMORPH_SHARED_DIR) / "data/meshes/spot.obj";
     if (!std::filesystem::exists(file)) GTEST_SKIP() << "no shared models here";
     TriangleMesh mesh = readMesh(file);

@@ -2,7 +2,8 @@
 
 #include <gtest/gtest.h>
 
-#include "core/loop/live_match.h"
+#include "core/loop/frame_source.h"
+#include "core/loop/match_loop.h"
 #include "core/motion/rig_motion.h"
 #include "tests/support/small_rigs.h"
 
@@ -32,7 +33,7 @@ private:
 struct FrameSourceTest : ::testing::Test {
     FrameSourceTest() {
         wish.rig = std::make_shared<const Rig>(test::cushionRig());
-        wish.live = false;
+        wish.driver = Driver::hand;
         wish.strokes.assign(wish.rig->actuatorCount(), 0.0);
     }
     ManualClock clock;
@@ -44,6 +45,7 @@ TEST_F(FrameSourceTest, ItsFramesAreGivenAsTheyAre) {
     const std::vector<double> strokes(wish.rig->actuatorCount(), 0.625);
     const auto source = std::make_shared<StandingSource>(strokes);
     wish.source = source;
+    wish.driver = Driver::recording;
     const auto frame = loop.step(wish, 0.01);
     EXPECT_EQ(frame->number, 77U);
     EXPECT_EQ(frame->estimatedStrokes, strokes);
@@ -55,8 +57,10 @@ TEST_F(FrameSourceTest, ItsFramesAreGivenAsTheyAre) {
 
 TEST_F(FrameSourceTest, TheWayBackStartsWhereTheActuatorsStandAndKeepsTheirLimits) {
     wish.source = std::make_shared<StandingSource>(std::vector<double>(wish.rig->actuatorCount(), 1.0));
+    wish.driver = Driver::recording;
     (void)loop.step(wish, 0.01);
     wish.source.reset();
+    wish.driver = Driver::hand;
     const std::vector<MotionLimits> limits = motionLimits(*wish.rig);
     std::vector<double> before(wish.rig->actuatorCount(), 1.0);
     for (int step = 0; step < 2000; ++step) {

@@ -37,28 +37,26 @@ TEST(HandDistance, GoesWithTheDeviceWhereverItStandsAndHoweverItTurns) {
     EXPECT_NEAR(distanceTo({1.0, 0.95, -2.0}, placed), 0.15, 1e-6);
 }
 
-TEST(HandNear, CountsHandsOnlyAndTheNearestOfThem) {
+TEST(HandDistance, CountsHandsOnlyAndTheNearestOfThem) {
     PoseBoard board;
     see(board, "anna", PoseRole::head, {0.0, 0.06, 0.0});
     see(board, "tablet", PoseRole::device, {0.0, 0.0, 0.0});
     EXPECT_FALSE(handDistance(board, kTablet, glm::mat4(1.0F), kNow)) << "nobody sees a hand";
-    EXPECT_FALSE(handNear(board, kTablet, glm::mat4(1.0F), 10.0, kNow));
     see(board, "left", PoseRole::pointer, {0.0, 0.55, 0.0});
     see(board, "right", PoseRole::pointer, {0.0, 0.35, 0.0});
-    EXPECT_FALSE(handNear(board, kTablet, glm::mat4(1.0F), 0.29, kNow));
-    EXPECT_TRUE(handNear(board, kTablet, glm::mat4(1.0F), 0.31, kNow));
+    EXPECT_NEAR(handDistance(board, kTablet, glm::mat4(1.0F), kNow).value_or(-1.0), 0.30, 1e-6);
 }
 
-TEST(HandNear, AHandThatIsLostOrLongSilentIsNotSensed) {
+TEST(HandDistance, AHandThatIsLostOrLongSilentIsNotSensed) {
     PoseBoard board;
     see(board, "hand", PoseRole::pointer, {0.0, 0.1, 0.0});
-    EXPECT_TRUE(handNear(board, kTablet, glm::mat4(1.0F), 0.1, kNow + Microseconds{200'000}));
+    EXPECT_TRUE(handDistance(board, kTablet, glm::mat4(1.0F), kNow + Microseconds{200'000}));
     EXPECT_FALSE(handDistance(board, kTablet, glm::mat4(1.0F), kNow + Microseconds{300'000})) << "silent for 0.3 s";
     see(board, "hand", PoseRole::pointer, {0.0, 0.1, 0.0}, kNow + Microseconds{1}, false);
     EXPECT_FALSE(handDistance(board, kTablet, glm::mat4(1.0F), kNow + Microseconds{2})) << "lost";
 }
 
-TEST(HandNear, WithoutABoxThereIsNothingToBeNear) {
+TEST(HandDistance, WithoutABoxThereIsNothingToBeNear) {
     PoseBoard board;
     see(board, "hand", PoseRole::pointer, {0.0, 0.0, 0.0});
     EXPECT_FALSE(handDistance(board, Box{}, glm::mat4(1.0F), kNow));

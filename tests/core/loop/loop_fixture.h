@@ -3,7 +3,7 @@
 #include <memory>
 #include <utility>
 
-#include "core/loop/live_match.h"
+#include "core/loop/match_wish.h"
 #include "core/mdf/builder.h"
 #include "tests/support/animated_target.h"
 #include "tests/support/small_rigs.h"

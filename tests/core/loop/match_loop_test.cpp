@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "core/base/error.h"
+#include "core/loop/match_loop.h"
 #include "core/mdf/frame_matcher.h"
 #include "tests/core/loop/loop_fixture.h"
 #include "tests/support/not_a_number.h"
@@ -293,7 +294,7 @@ TEST_F(MatchLoopTest, SpinTurnsTheTargetOnTopOfItsPlacement) {
 
 TEST_F(MatchLoopTest, HeldStateIsMeasuredAgainstTheTarget) {
     MatchWish wish = wishFor(field_, block());
-    wish.live = false;
+    wish.driver = Driver::hand;
     wish.strokes = {0.5, 1.7, -0.25};
     const auto frame = loop_.step(wish, kFrame);
     EXPECT_EQ(frame->wantedStrokes, (std::vector<double>{0.5, 1.0, 0.0}));
@@ -301,7 +302,7 @@ TEST_F(MatchLoopTest, HeldStateIsMeasuredAgainstTheTarget) {
     EXPECT_TRUE(frame->matched);
     EXPECT_NEAR(frame->iouWanted, iouOf(*field_, frame->wanted, voxelsOf(*frame)), 1e-12);
     EXPECT_NEAR(frame->iouVoting, iouOf(*field_, frame->votes->state(), voxelsOf(*frame)), 1e-12);
-    wish.live = true;
+    wish.driver = Driver::target;
     EXPECT_GE(loop_.step(wish, kFrame)->iouWanted, frame->iouVoting);
 }
 
@@ -349,8 +350,7 @@ TEST_F(MatchLoopTest, ActuatorsStayWhereTheyAreInTheSameRig) {
 
 TEST_F(MatchLoopTest, DanceIsLivelyAndTheSameEveryTime) {
     MatchWish wish = wishFor(field_, nullptr);
-    wish.live = false;
-    wish.dancing = true;
+    wish.driver = Driver::dance;
     MatchLoop other(clock_);
     std::vector<double> last;
     std::vector<double> changes;
@@ -367,7 +367,7 @@ TEST_F(MatchLoopTest, DanceIsLivelyAndTheSameEveryTime) {
         EXPECT_GE(changes[i] - changes[i - 1], 0.6 - 1e-9);
         EXPECT_LE(changes[i] - changes[i - 1], 1.4 + kFrame + 1e-9);
     }
-    wish.dancing = false;
+    wish.driver = Driver::hand;
     EXPECT_EQ(loop_.step(wish, kFrame)->wantedStrokes, wish.strokes);
 }
 
@@ -393,7 +393,7 @@ TEST_F(MatchLoopTest, WishesThatContradictThemselvesAreRefused) {
     };
     for (const Case& c : cases) {
         MatchWish wish = wishFor(field_, block());
-        wish.live = false;
+        wish.driver = Driver::hand;
         double seconds = kFrame;
         c.spoil(wish, seconds);
         try {

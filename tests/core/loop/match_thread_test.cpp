@@ -8,7 +8,9 @@
 #include <gtest/gtest.h>
 
 #include "core/base/error.h"
+#include "core/loop/match_thread.h"
 #include "tests/core/loop/loop_fixture.h"
+#include "tests/support/scene_in_room.h"
 
 namespace lumorph {
 namespace {
@@ -176,9 +178,9 @@ TEST_F(MatchThreadTest, TwoThousandFramesKeepNothing) {
 // R25: a tracker does not call the loop, which follows it all the same.
 TEST_F(MatchThreadTest, RunsWhileAHeadIsTrackedAndWakesWhenOneComes) {
     MatchWish wish = held(0.0);
-    Scene scene;
+    SceneInRoom scene;
     scene.predictionSeconds = 0.0;
-    wish.scene = std::make_shared<const Scene>(scene);
+    setSceneInRoom(wish, scene);
     wish.assets = std::make_shared<const SceneAssets>();
     const auto board = std::make_shared<PoseBoard>();
     wish.poses = board;

@@ -25,13 +25,13 @@ TEST_F(SceneLoopTest, ASceneThatDrivesNothingLeavesMatchingAsItIs) {
     const auto field = matchFieldOf(cushionRig());
     MatchWish plain = wishFor(field, movingTarget());
     MatchWish shown = plain;
-    Scene scene = emptyScene();
+    SceneInRoom scene = emptyScene();
     scene.items.push_back(itemOf(ItemRole::virtualOnly, waves(0.01, 3.0)));
-    shown.scene = std::make_shared<const Scene>(scene);
+    setSceneInRoom(shown, scene);
     shown.assets = std::make_shared<const SceneAssets>();
     MatchWish driven = shown;
     scene.items.push_back(itemOf(ItemRole::physical, TargetItem{}, 2));
-    driven.scene = std::make_shared<const Scene>(scene);
+    setSceneInRoom(driven, scene);
     MatchLoop bare(clock_);
     MatchLoop matched(clock_);
     for (int k = 0; k < 60; ++k) {
@@ -50,13 +50,13 @@ TEST_F(SceneLoopTest, ASceneThatDrivesNothingLeavesMatchingAsItIs) {
 TEST_F(SceneLoopTest, LightAloneLetsTheServosRest) {
     const auto field = matchFieldOf(cushionRig());
     MatchWish wish = wishFor(field, movingTarget());
-    Scene scene = emptyScene();
+    SceneInRoom scene = emptyScene();
     scene.viewDependence.on = true;
-    wish.scene = std::make_shared<const Scene>(scene);
+    setSceneInRoom(wish, scene);
     wish.assets = std::make_shared<const SceneAssets>();
     ASSERT_GT(std::ranges::max(run(wish, 2.0)->estimatedStrokes), 0.2);
     scene.showing = Showing::virtualOnly;
-    wish.scene = std::make_shared<const Scene>(scene);
+    setSceneInRoom(wish, scene);
     wish.strokes = {1.0, 1.0, 1.0};
     const auto frame = run(wish, 6.0);
     EXPECT_EQ(frame->wantedStrokes, std::vector<double>(3, 0.0));
@@ -70,7 +70,7 @@ TEST_F(SceneLoopTest, LightAloneLetsTheServosRest) {
 // R33
 TEST_F(SceneLoopTest, AHeightFieldWithAPhysicalRoleIsFittedAsItStands) {
     for (const Anchor anchor : {Anchor::device, Anchor::world}) {
-        Scene scene = emptyScene();
+        SceneInRoom scene = emptyScene();
         const HeightItem water = waves(0.012, 4.0);
         SceneItem item = itemOf(ItemRole::physical, water);
         item.position = {0.01F, 0.025F, -0.005F};
@@ -102,7 +102,7 @@ TEST_F(SceneLoopTest, AHeightFieldWithAPhysicalRoleIsFittedAsItStands) {
 
 // R33, Fig. 2
 TEST_F(SceneLoopTest, ServosCarryTheSlowPartOfASplitItem) {
-    Scene scene = emptyScene();
+    SceneInRoom scene = emptyScene();
     HeightItem water = waves(0.012, 8.0);
     water.size = {0.25F, 0.2F}; // over the whole device
     water.waves.push_back({0.004, 0.03, 0.3, Angle::degrees(60.0), Angle{}});
@@ -144,7 +144,7 @@ TEST_F(SceneLoopTest, ServosCarryTheSlowPartOfASplitItem) {
 
 TEST_F(SceneLoopTest, ASplitTargetIsLiftedWhereItStands) {
     MatchWish wish = wishWith([] {
-        Scene scene = emptyScene();
+        SceneInRoom scene = emptyScene();
         scene.items.push_back(itemOf(ItemRole::split, TargetItem{}));
         return scene;
     }());
@@ -185,7 +185,7 @@ TEST_F(SceneLoopTest, ASplitModelIsLiftedAsItsAnimationMovesIt) {
     shown->materials.resize(model.materials.size());
     auto assets = std::make_shared<SceneAssets>();
     assets->models["ball.glb"] = std::move(shown);
-    Scene scene = emptyScene();
+    SceneInRoom scene = emptyScene();
     SceneItem item = itemOf(ItemRole::split, MeshItem{"ball.glb"});
     item.position = {-0.08F, 0.015F, 0.055F};
     item.scale = glm::vec3(0.03F);
@@ -213,7 +213,7 @@ TEST_F(SceneLoopTest, ASplitModelIsLiftedAsItsAnimationMovesIt) {
 }
 
 TEST_F(SceneLoopTest, AShapeIsFeltWhereItIs) {
-    Scene scene = emptyScene();
+    SceneInRoom scene = emptyScene();
     SceneItem group = itemOf(ItemRole::virtualOnly, GroupItem{}, 1);
     group.position = {0.08F, 0.0F, 0.0F};
     scene.items.push_back(group);
@@ -232,7 +232,7 @@ TEST_F(SceneLoopTest, AShapeIsFeltWhereItIs) {
 
 // R22
 TEST_F(SceneLoopTest, ViewDependenceJoinsByTheLargerStroke) {
-    Scene scene = emptyScene();
+    SceneInRoom scene = emptyScene();
     scene.viewDependence.on = true;
     scene.eye = {0.0F, 0.3F, 0.5F};
     MatchWish wish = wishWith(scene);
@@ -260,12 +260,12 @@ TEST_F(SceneLoopTest, ViewDependenceRaisesTheLevelsOfAMatch) {
     const auto field = matchFieldOf(cushionRig());
     MatchWish wish = wishFor(field, stillTarget(boxMesh({0, 0, 0}, {0.06F, 0.006F, 0.05F})));
     wish.assets = std::make_shared<const SceneAssets>();
-    Scene scene = emptyScene();
-    wish.scene = std::make_shared<const Scene>(scene);
+    SceneInRoom scene = emptyScene();
+    setSceneInRoom(wish, scene);
     const auto plain = step(wish);
     scene.viewDependence.on = true;
     scene.eye = {0.05F, 0.1F, -0.5F};
-    wish.scene = std::make_shared<const Scene>(scene);
+    setSceneInRoom(wish, scene);
     const auto joined = step(wish);
     ASSERT_TRUE(joined->matched);
     bool raised = false;

@@ -8,9 +8,10 @@
 #include <glm/vec2.hpp>
 #include <gtest/gtest.h>
 
-#include "core/loop/live_match.h"
+#include "core/loop/match_loop.h"
 #include "core/rig/rig_file.h"
 #include "tests/core/loop/loop_fixture.h"
+#include "tests/support/scene_in_room.h"
 
 namespace lumorph::test {
 
@@ -21,8 +22,8 @@ inline std::shared_ptr<const Rig> tablet() {
     return rig;
 }
 
-inline Scene emptyScene() {
-    Scene scene = defaultScene();
+inline SceneInRoom emptyScene() {
+    SceneInRoom scene = defaultSceneInRoom();
     scene.items.clear();
     return scene;
 }
@@ -52,11 +53,12 @@ inline double waveHeight(const HeightItem& water, const glm::vec2& at, double t)
 /// A loop with a scene, in a time that the test turns.
 class SceneLoopTest : public testing::Test {
 protected:
-    MatchWish wishWith(Scene scene, std::shared_ptr<const Rig> rig = tablet()) {
+    MatchWish wishWith(const SceneInRoom& scene, std::shared_ptr<const Rig> rig = tablet()) {
         MatchWish wish;
         wish.strokes.assign(rig->actuatorCount(), 0.0);
         wish.rig = std::move(rig);
-        wish.scene = std::make_shared<const Scene>(std::move(scene));
+        setSceneInRoom(wish, scene);
+        wish.driver = driverOf(true, &scene);
         wish.assets = std::make_shared<const SceneAssets>();
         return wish;
     }

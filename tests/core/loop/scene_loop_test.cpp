@@ -19,7 +19,7 @@ namespace lumorph::test {
 namespace {
 
 TEST_F(SceneLoopTest, SceneTimePlaysPausesAndIsSoughtOnce) {
-    Scene scene = emptyScene();
+    SceneInRoom scene = emptyScene();
     scene.items.push_back(itemOf(ItemRole::virtualOnly, waves(0.01, 2.0)));
     MatchWish wish = wishWith(scene);
     EXPECT_NEAR(step(wish, 0.5)->sceneSeconds, 0.5, 1e-12);
@@ -41,7 +41,7 @@ TEST_F(SceneLoopTest, SceneTimePlaysPausesAndIsSoughtOnce) {
 
 TEST_F(SceneLoopTest, RestsOnlyWhenNothingInTheSceneMoves) {
     const auto lamp = [](double spin) {
-        Scene scene = emptyScene();
+        SceneInRoom scene = emptyScene();
         SceneItem light = itemOf(ItemRole::virtualOnly, LightItem{});
         light.position = {0.3F, 0.5F, 0.1F};
         light.motion.spin = spin;
@@ -49,27 +49,27 @@ TEST_F(SceneLoopTest, RestsOnlyWhenNothingInTheSceneMoves) {
         return scene;
     };
     const auto texture = [](glm::vec2 velocity, const char* image) {
-        Scene scene = emptyScene();
+        SceneInRoom scene = emptyScene();
         scene.device.material.normalMaps[1].image = image;
         scene.device.material.normalMaps[1].velocity = velocity;
         return scene;
     };
     const auto hidden = [&] {
-        Scene scene = lamp(1.0);
+        SceneInRoom scene = lamp(1.0);
         scene.items.front().visible = false;
         return scene;
     };
     struct Case {
         const char* what;
-        Scene scene;
+        SceneInRoom scene;
         bool moves;
     };
     FogItem drifting;
     FogItem still;
     still.drift = {0.0F, 0.0F};
-    Scene fog = emptyScene();
+    SceneInRoom fog = emptyScene();
     fog.items.push_back(itemOf(ItemRole::virtualOnly, drifting));
-    Scene calm = emptyScene();
+    SceneInRoom calm = emptyScene();
     calm.items.push_back(itemOf(ItemRole::virtualOnly, still));
     for (const Case& c : {Case{"nothing", emptyScene(), false}, Case{"light", lamp(0.0), false},
                           Case{"spinning light", lamp(0.2), true}, Case{"hidden", hidden(), false},
@@ -88,7 +88,7 @@ TEST_F(SceneLoopTest, RestsOnlyWhenNothingInTheSceneMoves) {
 }
 
 TEST_F(SceneLoopTest, StopFreezesServosAndLightGoesOn) {
-    Scene scene = emptyScene();
+    SceneInRoom scene = emptyScene();
     scene.items.push_back(itemOf(ItemRole::split, waves(0.015, 3.0)));
     scene.items.back().position = {0.0F, 0.02F, 0.0F};
     scene.viewDependence.on = true;
@@ -108,7 +108,7 @@ TEST_F(SceneLoopTest, StopFreezesServosAndLightGoesOn) {
 }
 
 TEST_F(SceneLoopTest, APausedSplitComesToRest) {
-    Scene scene = emptyScene();
+    SceneInRoom scene = emptyScene();
     scene.items.push_back(itemOf(ItemRole::split, waves(0.015, 3.0)));
     scene.items.back().position = {0.0F, 0.025F, 0.0F};
     MatchWish wish = wishWith(scene);
@@ -128,7 +128,7 @@ TEST_F(SceneLoopTest, APausedSplitComesToRest) {
 
 // R25
 TEST_F(SceneLoopTest, DeviceAndHeadArePredictedForTheMomentOfTheLight) {
-    Scene scene = emptyScene();
+    SceneInRoom scene = emptyScene();
     scene.predictionSeconds = 0.06;
     MatchWish wish = wishWith(scene);
     const auto board = std::make_shared<PoseBoard>();
@@ -171,7 +171,7 @@ TEST_F(SceneLoopTest, DeviceAndHeadArePredictedForTheMomentOfTheLight) {
     }
 
     scene.predictionSeconds = 0.0;
-    wish.scene = std::make_shared<const Scene>(scene);
+    setSceneInRoom(wish, scene);
     EXPECT_NEAR(loop_.step(wish, kFrame)->eye->x, 0.3 * (t + 0.008), 1e-3);
 
     clock_.advance(Microseconds{300'000});
@@ -182,8 +182,48 @@ TEST_F(SceneLoopTest, DeviceAndHeadArePredictedForTheMomentOfTheLight) {
     EXPECT_TRUE(loop_.settled());
 }
 
+TEST_F(SceneLoopTest, ASceneNeedsARoom) {
+    MatchWish wish = wishWith(emptyScene());
+    const auto frame = step(wish);
+    EXPECT_EQ(frame->installation, wish.installation);
+    wish.installation = nullptr;
+    EXPECT_THROW((void)step(wish), InvalidInput);
+    wish.scene = nullptr;
+    EXPECT_NO_THROW((void)step(wish));
+}
+
+TEST_F(SceneLoopTest, ATrackedHeadSeesFromItsEyeAsItIsTurned) {
+    SceneInRoom scene = emptyScene();
+    scene.eyeFromHead = {0.03F, 0.02F, -0.1F};
+    MatchWish wish = wishWith(scene);
+    EXPECT_EQ(step(wish)->eye, scene.eye) << "the simulated eye is an eye already";
+    const auto board = std::make_shared<PoseBoard>();
+    wish.poses = board;
+    const auto head = board->stream("Ada", PoseRole::head);
+    const double half = std::sqrt(0.5);
+    const struct {
+        const char* what;
+        glm::dquat rotation; // w, x, y, z
+        glm::dvec3 eye;
+    } cases[] = {
+        {"as the world", {1.0, 0.0, 0.0, 0.0}, {0.13, 0.52, 0.3}},
+        {"a quarter of a turn to the left", {half, 0.0, half, 0.0}, {0.0, 0.52, 0.37}},
+        {"a quarter of a turn upwards", {half, half, 0.0, 0.0}, {0.13, 0.6, 0.42}},
+        {"upside down", {0.0, 0.0, 0.0, 1.0}, {0.07, 0.48, 0.3}},
+    };
+    for (const auto& c : cases) {
+        std::shared_ptr<const MatchFrame> frame;
+        for (int k = 0; k < 120; ++k) { // longer than it was turned before
+            ASSERT_TRUE(head->push({clock_.now(), true, {{0.1, 0.5, 0.4}, c.rotation}}));
+            frame = step(wish);
+        }
+        ASSERT_TRUE(frame->eye) << c.what;
+        EXPECT_LT(glm::distance(glm::dvec3(*frame->eye), c.eye), 1e-5) << c.what;
+    }
+}
+
 TEST_F(SceneLoopTest, HandsOverFromViewerToViewer) {
-    Scene scene = emptyScene();
+    SceneInRoom scene = emptyScene();
     MatchWish wish = wishWith(scene);
     const auto board = std::make_shared<PoseBoard>();
     wish.poses = board;

@@ -16,7 +16,7 @@ namespace lumorph::test {
 namespace {
 
 TEST_F(SceneLoopTest, ShowStageHandsOnWhatTheLoopFound) {
-    Scene scene = emptyScene();
+    SceneInRoom scene = emptyScene();
     scene.items.push_back(itemOf(ItemRole::split, waves(0.01, 3.0)));
     scene.items.push_back(itemOf(ItemRole::virtualOnly, LightItem{}, 2));
     scene.items.back().position = {0.2F, 0.5F, 0.1F};
@@ -25,6 +25,7 @@ TEST_F(SceneLoopTest, ShowStageHandsOnWhatTheLoopFound) {
     ShowStage stage;
     const ShowFrame show = stage.frame(*match);
     EXPECT_EQ(show.scene, match->scene);
+    EXPECT_EQ(show.installation, match->installation);
     EXPECT_EQ(show.assets, match->assets);
     EXPECT_EQ(show.rig, match->rig);
     EXPECT_EQ(show.devicePositions, match->devicePositions);
@@ -45,10 +46,13 @@ TEST_F(SceneLoopTest, ShowStageHandsOnWhatTheLoopFound) {
     MatchWish plain = wishWith(scene);
     plain.scene = nullptr;
     EXPECT_THROW((void)stage.frame(*step(plain)), InvalidInput);
+    MatchFrame nowhere = *match;
+    nowhere.installation = nullptr;
+    EXPECT_THROW((void)stage.frame(nowhere), InvalidInput);
 }
 
 TEST_F(SceneLoopTest, ShowStageShowsTheTargetWhereTheLoopHasIt) {
-    Scene scene = emptyScene();
+    SceneInRoom scene = emptyScene();
     scene.items.push_back(itemOf(ItemRole::physical, TargetItem{}));
     MatchWish wish = wishWith(scene);
     wish.target = movingTarget();

@@ -27,7 +27,7 @@ TEST(SpatialFrames, ProjectorsComeGoAndChangeTheirSize) {
     EXPECT_THROW((void)renderer.readEye(), InvalidInput);
     EXPECT_THROW((void)renderer.readMask(), InvalidInput);
     EXPECT_THROW(renderer.showEye(0), InvalidInput);
-    Scene scene = unlitScene(glm::vec3(0.8F), glm::vec3(0.8F), {overhead(), overhead()});
+    SceneInRoom scene = unlitScene(glm::vec3(0.8F), glm::vec3(0.8F), {overhead(), overhead()});
     scene.projectors[1].camera.size = {1, 1};
     scene.projectors[1].camera.principal = {0.0, 0.0};
     renderer.setEyeSize({64, 48});
@@ -60,11 +60,16 @@ TEST(SpatialFrames, ProjectorsComeGoAndChangeTheirSize) {
     ShowFrame odd = frameOf(scene, liftedFlaps());
     odd.devicePositions = std::make_shared<const std::vector<glm::vec3>>(3);
     EXPECT_THROW(renderer.draw(odd), InvalidInput);
+    ShowFrame nowhere = frameOf(unlitScene(glm::vec3(0.8F), glm::vec3(0.8F), {}), liftedFlaps());
+    EXPECT_NO_THROW(renderer.draw(nowhere));
+    nowhere.installation = nullptr;
+    EXPECT_THROW(renderer.draw(nowhere), InvalidInput);
+    EXPECT_THROW(renderer.drawEye(nowhere), InvalidInput);
 }
 
 // A lit scene of which each step changes something else than the one before.
 ShowFrame changingFrame(int step) {
-    Scene scene = defaultScene();
+    SceneInRoom scene = defaultSceneInRoom();
     scene.projectors = {overhead()};
     scene.projectors[0].camera.size = {240, 160};
     scene.projectors[0].camera.focal *= 0.4;
@@ -191,7 +196,7 @@ TEST(SpatialFrames, WithoutEyeOrSharingWhatIsLeftIsDrawn) {
 
 TEST(SpatialFrames, WithoutTheShadersOfShadowsThereAreNone) {
     const HeadlessContext context;
-    Scene scene = defaultScene();
+    SceneInRoom scene = defaultSceneInRoom();
     scene.projectors = {overhead()};
     const auto sent = [&](SpatialRenderer& renderer) {
         renderer.setEyeSize({320, 200});
@@ -295,8 +300,8 @@ SceneTexture texture(const std::string& image, int columns = 1) {
 }
 
 /// A scene of everything: pictures, a flip-book, waves, fog, two projectors.
-Scene busyScene() {
-    Scene scene = unlitScene({0.9F, 0.2F, 0.0F}, {0.0F, 0.3F, 0.9F}, {overhead(), overhead()});
+SceneInRoom busyScene() {
+    SceneInRoom scene = unlitScene({0.9F, 0.2F, 0.0F}, {0.0F, 0.3F, 0.9F}, {overhead(), overhead()});
     scene.device.material.colorTexture = texture("flip-book", 4);
     scene.device.creases.emphasis = 0.5;
     scene.table.material.colorTexture = texture("wood");
@@ -318,7 +323,7 @@ Scene busyScene() {
     sun.kind = LightItem{};
     std::get<LightItem>(sun.kind).shadows = false; // their maps take most of a frame
     scene.items.push_back(sun);
-    for (SceneProjector& projector : scene.projectors) {
+    for (InstalledProjector& projector : scene.projectors) {
         projector.camera.size = {48, 32};
         projector.camera.focal *= 0.1;
         projector.camera.principal = {23.5, 15.5};
@@ -355,7 +360,7 @@ TEST(SpatialFrames, ManyFramesKeepAsManyObjects) {
     const HeadlessContext context;
     SpatialRenderer renderer;
     renderer.setEyeSize({64, 40});
-    Scene scene = busyScene();
+    SceneInRoom scene = busyScene();
     ScenePoser poser;
     const char* soak = std::getenv("LUMORPH_SOAK");
     const int frames = 500 * (soak != nullptr ? std::max(1, std::atoi(soak)) : 1);

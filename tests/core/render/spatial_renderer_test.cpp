@@ -35,12 +35,12 @@ struct Place {
     glm::dvec3 point{0.0};
 };
 
-Place placeOf(const RayOracle& device, const Table& table, const CalibratedCamera& camera, const glm::dvec2& pixel) {
+Place placeOf(const RayOracle& device, glm::vec2 tableSize, const CalibratedCamera& camera, const glm::dvec2& pixel) {
     const glm::dvec3 from = positionOf(camera);
     const glm::dvec3 way = directionOf(camera, pixel);
     if (const auto hit = device.cast(from, way)) return {Place::On::device, from + hit->distance * way};
     const glm::dvec3 point = from - from.y / way.y * way;
-    const bool inside = std::abs(point.x) < 0.5 * table.size.x && std::abs(point.z) < 0.5 * table.size.y;
+    const bool inside = std::abs(point.x) < 0.5 * tableSize.x && std::abs(point.z) < 0.5 * tableSize.y;
     return {inside ? Place::On::table : Place::On::nothing, point};
 }
 
@@ -51,10 +51,11 @@ int judgePixels(const ShowFrame& frame, const CalibratedCamera& camera,
     int judged = 0;
     for (int y = 4; y < camera.size.y - 4; y += 7)
         for (int x = 4; x < camera.size.x - 4; x += 7) {
-            const Place place = placeOf(device, frame.scene->table, camera, {x, y});
+            const Place place = placeOf(device, frame.installation->tableSize, camera, {x, y});
             bool clear = true;
             for (const glm::dvec2& aside : {glm::dvec2(2, 2), {-2, 2}, {2, -2}, {-2, -2}})
-                clear = clear && placeOf(device, frame.scene->table, camera, glm::dvec2(x, y) + aside).on == place.on;
+                clear = clear &&
+                        placeOf(device, frame.installation->tableSize, camera, glm::dvec2(x, y) + aside).on == place.on;
             if (!clear) continue;
             judge({x, y}, place);
             ++judged;
@@ -104,8 +105,8 @@ TEST(SpatialRenderer, DeviceAndTableKeepTheirOwnLight) {
 TEST(SpatialRenderer, NothingIsSentBesideTheTable) {
     const HeadlessContext context;
     SpatialRenderer renderer;
-    Scene scene = unlitScene(glm::vec3(1.0F), glm::vec3(1.0F), {overhead()});
-    scene.table.size = {0.3F, 0.25F};
+    SceneInRoom scene = unlitScene(glm::vec3(1.0F), glm::vec3(1.0F), {overhead()});
+    scene.tableSize = {0.3F, 0.25F};
     const ShowFrame frame = frameOf(scene, liftedFlaps());
     renderer.draw(frame);
     const Image sent = renderer.readProjector(0);
@@ -121,7 +122,7 @@ TEST(SpatialRenderer, NothingIsSentBesideTheTable) {
 TEST(SpatialRenderer, FloatingBoxIsDrawnWhereTheEyeSeesItAndNowhereElse) {
     const HeadlessContext context;
     SpatialRenderer renderer;
-    Scene scene = unlitScene(glm::vec3(0.5F, 0.0F, 0.0F), glm::vec3(0.5F, 0.0F, 0.0F), {overhead()});
+    SceneInRoom scene = unlitScene(glm::vec3(0.5F, 0.0F, 0.0F), glm::vec3(0.5F, 0.0F, 0.0F), {overhead()});
     const glm::dvec3 centre(0.02, 0.08, -0.02);
     scene.items.push_back(box(glm::vec3(centre), Anchor::world, {0.0F, 1.0F, 0.0F}));
     const ShowFrame frame = posed(frameOf(scene, liftedFlaps()));
@@ -156,14 +157,14 @@ TEST(SpatialRenderer, FloatingBoxIsDrawnWhereTheEyeSeesItAndNowhereElse) {
 TEST(SpatialRenderer, FoldsShowNoRimOfWhatLiesHiddenBehindThem) {
     const HeadlessContext context;
     SpatialRenderer renderer;
-    Scene scene = unlitScene({0.9F, 0.0F, 0.0F}, glm::vec3(0.0F), {overhead()});
+    SceneInRoom scene = unlitScene({0.9F, 0.0F, 0.0F}, glm::vec3(0.0F), {overhead()});
     scene.items.push_back(box({0.0F, 0.2F, 0.0F}, Anchor::world, {0.0F, 1.0F, 0.0F}, 0.3F)); // all the eye sees
     const ShowFrame frame = posed(frameOf(scene, liftedFlaps()));
     const RayOracle device = raysAt(physicalDevice(frame));
     const CalibratedCamera camera = overhead().camera;
     const glm::dvec3 eye(*frame.eye);
     const auto lit = [&](const glm::dvec2& pixel) { // seen by both eye and projector, not by a hair
-        const Place place = placeOf(device, frame.scene->table, camera, pixel);
+        const Place place = placeOf(device, frame.installation->tableSize, camera, pixel);
         if (place.on != Place::On::device) return false;
         const double distance = glm::distance(eye, place.point);
         const auto first = device.cast(eye, (place.point - eye) / distance);
@@ -176,7 +177,7 @@ TEST(SpatialRenderer, FoldsShowNoRimOfWhatLiesHiddenBehindThem) {
     int hidden = 0;
     for (int y = 2; y < camera.size.y - 2; y += 5)
         for (int x = 2; x < camera.size.x - 2; ++x) {
-            const Place place = placeOf(device, frame.scene->table, camera, {x, y});
+            const Place place = placeOf(device, frame.installation->tableSize, camera, {x, y});
             if (place.on != Place::On::device || lit({x, y})) continue;
             const bool red = sent.at(x, y)[0] > sent.at(x, y)[1];
             hidden += red ? 1 : 0;
@@ -194,9 +195,9 @@ TEST(SpatialRenderer, FoldsShowNoRimOfWhatLiesHiddenBehindThem) {
 TEST(SpatialRenderer, ThingsFarFromTheDeviceAreDrawnOnTheTable) {
     const HeadlessContext context;
     SpatialRenderer renderer;
-    SceneProjector wide = overhead();
+    InstalledProjector wide = overhead();
     wide.camera.focal *= 0.45;
-    Scene scene = unlitScene(glm::vec3(0.5F, 0.0F, 0.0F), glm::vec3(0.5F, 0.0F, 0.0F), {wide});
+    SceneInRoom scene = unlitScene(glm::vec3(0.5F, 0.0F, 0.0F), glm::vec3(0.5F, 0.0F, 0.0F), {wide});
     const glm::dvec3 centre(0.32, 0.02, -0.22);
     scene.items.push_back(box(glm::vec3(centre), Anchor::world, {0.0F, 1.0F, 0.0F}));
     const ShowFrame frame = posed(frameOf(scene, liftedFlaps()));
@@ -205,7 +206,7 @@ TEST(SpatialRenderer, ThingsFarFromTheDeviceAreDrawnOnTheTable) {
     int shown = 0;
     for (int y = 0; y < wide.camera.size.y; ++y)
         for (int x = 0; x < wide.camera.size.x; ++x) {
-            const Place place = placeOf({}, scene.table, wide.camera, {x, y});
+            const Place place = placeOf({}, scene.tableSize, wide.camera, {x, y});
             if (place.on != Place::On::table) continue;
             const bool green = sent.at(x, y)[1] > 100;
             if (through(glm::dvec3(*frame.eye), place.point, centre, 0.017)) {
@@ -221,10 +222,10 @@ TEST(SpatialRenderer, ThingsFarFromTheDeviceAreDrawnOnTheTable) {
 TEST(SpatialRenderer, WithoutViewerNoEyeMatters) {
     const HeadlessContext context;
     SpatialRenderer renderer;
-    Scene scene = unlitScene({0.9F, 0.2F, 0.0F}, {0.0F, 0.3F, 0.9F}, {overhead()});
+    SceneInRoom scene = unlitScene({0.9F, 0.2F, 0.0F}, {0.0F, 0.3F, 0.9F}, {overhead()});
     scene.items.push_back(box({0.0F, 0.08F, 0.0F}, Anchor::world, {0.0F, 1.0F, 0.0F}));
     const auto sentFor = [&](const glm::vec3& simulated) {
-        Scene moved = scene;
+        SceneInRoom moved = scene;
         moved.eye = simulated;
         ShowFrame frame = posed(frameOf(moved, liftedFlaps()));
         frame.eye.reset();

@@ -8,7 +8,7 @@
 
 namespace lumorph {
 
-inline SceneProjector overhead() { return projectorAt({-0.15, 1.5, -0.2}, {0.0, 0.0, 0.0}, {480, 320}, 1500.0); }
+inline InstalledProjector overhead() { return projectorAt({-0.15, 1.5, -0.2}, {0.0, 0.0, 0.0}, {480, 320}, 1500.0); }
 
 inline SceneItem box(const glm::vec3& position, Anchor anchor, const glm::vec3& color, float size = 0.04F) {
     SceneItem item;

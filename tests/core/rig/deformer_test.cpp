@@ -54,9 +54,9 @@ struct BendCase {
     double length;
 };
 
-class Bends : public testing::TestWithParam<BendCase> {};
+class DeformersBend : public testing::TestWithParam<BendCase> {};
 
-TEST_P(Bends, FollowTheIntegratedCurvature) {
+TEST_P(DeformersBend, FollowTheIntegratedCurvature) {
     const auto [degrees, length] = GetParam();
     std::vector<glm::vec3> points;
     for (const double u : {-0.03, -0.001, 0.0, 0.001, 0.004, 0.0099, 0.01, 0.0101, 0.02, 0.05})
@@ -74,7 +74,7 @@ TEST_P(Bends, FollowTheIntegratedCurvature) {
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(AnglesAndLengths, Bends,
+INSTANTIATE_TEST_SUITE_P(AnglesAndLengths, DeformersBend,
                          testing::Values(BendCase{90.0, 0.01}, BendCase{30.0, 0.02}, BendCase{180.0, 0.01},
                                          BendCase{359.0, 0.04}, BendCase{1.0, 0.003}));
 

@@ -31,7 +31,7 @@ struct Broken {
     std::function<void(json&)> spoil;
 };
 
-class BrokenEntries : public testing::TestWithParam<Broken> {};
+class RigFileBrokenEntries : public testing::TestWithParam<Broken> {};
 
 void expectRefused(const std::function<void()>& read, const std::string& subject, const std::string& message) {
     try {
@@ -44,7 +44,7 @@ void expectRefused(const std::function<void()>& read, const std::string& subject
     }
 }
 
-TEST_P(BrokenEntries, NameFileNodeAndRemedy) {
+TEST_P(RigFileBrokenEntries, NameFileNodeAndRemedy) {
     Model model = validModel();
     ASSERT_NO_THROW((void)readRigGlb(writeGlb(model), "device.glb"));
     GetParam().spoil(model.nodes[0].extras["lumorph"]);
@@ -54,7 +54,7 @@ TEST_P(BrokenEntries, NameFileNodeAndRemedy) {
 }
 
 INSTANTIATE_TEST_SUITE_P(
-    RigFile, BrokenEntries,
+    RigFile, RigFileBrokenEntries,
     testing::Values(Broken{"NotAnObject", "not an object", [](json& e) { e = "hinge"; }},
                     Broken{"NoName", "\"actuator\" is missing", [](json& e) { e.erase("actuator"); }},
                     Broken{"NameNotText", "not a text", [](json& e) { e["actuator"] = 5; }},

@@ -42,10 +42,10 @@ struct Kind {
     std::function<Rig()> make;
 };
 
-class RoundTrips : public testing::TestWithParam<Kind> {};
+class RigFileRoundTrips : public testing::TestWithParam<Kind> {};
 
 // R13: a field's file holds its rig; what is read back must be the same device.
-TEST_P(RoundTrips, GiveTheSameRig) {
+TEST_P(RigFileRoundTrips, GiveTheSameRig) {
     const Rig rig = GetParam().make();
     const std::vector<std::byte> bytes = writeRigGlb(rig);
     const Rig read = readRigGlb(bytes, "test");
@@ -88,7 +88,7 @@ TEST_P(RoundTrips, GiveTheSameRig) {
     EXPECT_EQ(writeRigGlb(read), bytes);
 }
 
-INSTANTIATE_TEST_SUITE_P(Rigs, RoundTrips,
+INSTANTIATE_TEST_SUITE_P(Rigs, RigFileRoundTrips,
                          testing::Values(Kind{"Tablet", tabletRig}, Kind{"PinDisplay", pinDisplayRig},
                                          Kind{"Ribbon", ribbonRig}, Kind{"Hills", hillsRig},
                                          Kind{"Cushion", test::cushionRig}, Kind{"Arm", test::armRig},

@@ -155,9 +155,9 @@ struct BadParts {
     std::function<void(RigParts&)> spoil;
 };
 
-class RefusedParts : public testing::TestWithParam<BadParts> {};
+class RigRefusedParts : public testing::TestWithParam<BadParts> {};
 
-TEST_P(RefusedParts, AreRefusedWithTheirCause) {
+TEST_P(RigRefusedParts, AreRefusedWithTheirCause) {
     RigParts parts = pointParts({{0, 0, 0}, {0.1F, 0, 0}, {0, 0, 0.1F}},
                                 {Hinge{{}, {1, 0, 0}, Angle(), Angle::degrees(90)},
                                  Bend{{}, {1, 0, 0}, {0, 0, 1}, 0.01, Angle(), Angle::degrees(90)},
@@ -181,7 +181,7 @@ template <class T> T& deformer(RigParts& parts) {
 }
 
 INSTANTIATE_TEST_SUITE_P(
-    Rig, RefusedParts,
+    Rig, RigRefusedParts,
     testing::Values(
         BadParts{"NoTriangles", "mesh is empty", [](RigParts& p) { p.restMesh.triangles.clear(); }},
         BadParts{"NaNVertex", "not finite", [](RigParts& p) { p.restMesh.positions[1].y = kNaN; }},

@@ -165,9 +165,13 @@ TEST(Techniques, ShowWhatTheyAreCalled) {
 }
 
 TEST(Techniques, TheBundledProjectsAreWhatTheProgramMakes) {
-    const auto sceneOf = [](const char* name) { return readProject(resourceFile(name)).scene; };
-    EXPECT_TRUE(sceneOf("projects/water.lumorph") == waterScene());
-    EXPECT_TRUE(sceneOf("projects/techniques.lumorph") == techniqueScene(1));
+    const auto expectProject = [](const char* name, const Scene& scene) {
+        const Project project = readProject(resourceFile(name));
+        EXPECT_TRUE(project.scene == scene) << name;
+        EXPECT_TRUE(project.installation == defaultInstallation()) << name;
+    };
+    expectProject("projects/water.lumorph", waterScene());
+    expectProject("projects/techniques.lumorph", techniqueScene(1));
 }
 
 } // namespace

@@ -77,7 +77,7 @@ TEST(ProjectFile, ComesBackAsItWasWritten) {
 
 TEST(ProjectFile, HoldsTheKeysThatOtherProgramsMayRead) {
     const json document = json::parse(projectText(fullProject()));
-    EXPECT_EQ(document["schemaVersion"], 2);
+    EXPECT_EQ(document["schemaVersion"], 3);
     EXPECT_EQ(document["rig"], kTablet);
     EXPECT_EQ(document["target"], "my files/Kühe & Pferde.glb");
     EXPECT_EQ(document["placement"]["scale"], 0.1);
@@ -124,7 +124,7 @@ TEST(ProjectFile, ADraftWithoutVersionIsMigrated) {
         EXPECT_EQ(project.rig, "a.glb");
         EXPECT_THAT(project.strokes, ElementsAre(0.5));
         const json written = json::parse(projectText(project));
-        EXPECT_EQ(written["schemaVersion"], 2);
+        EXPECT_EQ(written["schemaVersion"], 3);
         EXPECT_EQ(written["author"], "Ada");
         EXPECT_FALSE(written.contains("model"));
     }
@@ -146,8 +146,8 @@ TEST(ProjectFile, EveryBrokenValueIsNamedWithItsKey) {
         {projectWith("/deep", nested), "nests JSON deeper than 64 levels"},
         {projectWith("/many", std::vector<int>(1'000'001, 0)), "more than 1000000 JSON values"},
         {R"({"rig": "a.glb", "strokes": [1e999]})", "is not valid JSON"},
-        {projectWith("/schemaVersion", 3),
-         "schemaVersion: was written by a newer Lumorph (schema 3; this one reads up to 2)"},
+        {projectWith("/schemaVersion", 4),
+         "schemaVersion: was written by a newer Lumorph (schema 4; this one reads up to 3)"},
         {projectWith("/schemaVersion", 18446744073709551615ULL), "newer Lumorph"},
         {projectWith("/schemaVersion", -1), "schemaVersion: is not a whole number"},
         {projectWith("/schemaVersion", "1"), "schemaVersion: is not a whole number"},

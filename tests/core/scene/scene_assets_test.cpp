@@ -195,7 +195,7 @@ TEST_F(SceneAssetsTest, MaterialsOfAModelBecomeOurs) {
     EXPECT_EQ(m.colorTexture.velocity, glm::vec2(0.1F, -0.2F));
     EXPECT_EQ(assets->images.at(imageName("fish.glb", 0))->at(0, 0), (Image::Pixel{0, 128, 64, 255}));
     EXPECT_EQ(assets->images.at(imageName("fish.glb", 1))->at(0, 0), (Image::Pixel{255, 0, 255, 255}));
-    EXPECT_THAT(assets->problems.at("fish.glb"), HasSubstr("\"bad\""));
+    EXPECT_THAT(assets->problems.at("fish.glb"), HasSubstr("'bad'"));
     const PosedScene own = ScenePoser().pose(scene, *assets, {});
     EXPECT_EQ(own.surfaces.at(0).material, m);
     std::get<MeshItem>(scene.items[0].kind).ownMaterials = false;

@@ -6,6 +6,7 @@
 
 #include "core/base/resources.h"
 #include "core/rig/rig_file.h"
+#include "core/scene/installation.h"
 #include "core/scene/scene.h"
 
 namespace lumorph {
@@ -18,10 +19,10 @@ glm::dvec3 landing(const CalibratedCamera& camera, const glm::dvec2& pixel, doub
     return from + way * ((height - from.y) / way.y);
 }
 
-TEST(DefaultScene, ItsProjectorLightsTheDeviceFromTwoMetresAbove) {
-    const Scene scene = defaultScene();
-    ASSERT_EQ(scene.projectors.size(), 1U);
-    const CalibratedCamera& camera = scene.projectors[0].camera;
+TEST(DefaultInstallation, ItsProjectorLightsTheDeviceFromTwoMetresAbove) {
+    const Installation installation = defaultInstallation();
+    ASSERT_EQ(installation.projectors.size(), 1U);
+    const CalibratedCamera& camera = installation.projectors[0].camera;
     checkCamera(camera);
     EXPECT_EQ(camera.size, glm::ivec2(1920, 1080));
     EXPECT_NEAR(positionOf(camera).y, 2.0, 0.2);
@@ -40,8 +41,8 @@ TEST(DefaultScene, ItsProjectorLightsTheDeviceFromTwoMetresAbove) {
     EXPECT_NE(camera.distortion[0], 0.0);
 }
 
-TEST(DefaultScene, TheLiftedDeviceStaysInTheProjectorsPicture) {
-    const CalibratedCamera camera = defaultScene().projectors[0].camera;
+TEST(DefaultInstallation, TheLiftedDeviceStaysInTheProjectorsPicture) {
+    const CalibratedCamera camera = defaultInstallation().projectors[0].camera;
     const Rig rig = readRig(resourceFile("models/tablet.glb"));
     std::vector<glm::vec3> points(rig.restMesh().positions.size());
     for (const double stroke : {0.0, 0.5, 1.0}) {
@@ -54,9 +55,9 @@ TEST(DefaultScene, TheLiftedDeviceStaysInTheProjectorsPicture) {
     }
 }
 
-TEST(DefaultScene, AFarFlapThatStandsUpForTheViewerIsLitAndSoAreOthersLiftedHalfWay) {
+TEST(DefaultInstallation, AFarFlapThatStandsUpForTheViewerIsLitAndSoAreOthersLiftedHalfWay) {
     // A flap's upper side leans towards the device's middle by its lift.
-    const glm::dvec3 from = positionOf(defaultScene().projectors[0].camera);
+    const glm::dvec3 from = positionOf(defaultInstallation().projectors[0].camera);
     const auto incidence = [&](const glm::dvec3& outwards, double degrees) {
         const double lift = Angle::degrees(degrees).inRadians();
         const glm::dvec3 normal = glm::dvec3(0.0, std::cos(lift), 0.0) - outwards * std::sin(lift);
@@ -68,6 +69,15 @@ TEST(DefaultScene, AFarFlapThatStandsUpForTheViewerIsLitAndSoAreOthersLiftedHalf
         EXPECT_LT(incidence(outwards, 55.0), 70.0) << outwards.x << ", " << outwards.z;
 }
 
+TEST(DefaultInstallation, HasATableBeforeWhichAViewerStandsAndNothingIsMeasured) {
+    const Installation installation = defaultInstallation();
+    EXPECT_EQ(installation.tableSize, glm::vec2(1.2F, 0.9F));
+    EXPECT_GT(installation.eye.y, 0.3F);
+    EXPECT_EQ(installation.origins, Installation::Origins());
+    EXPECT_EQ(installation.projectors[0].pose.way, Origin::Way::assumed);
+    EXPECT_NO_THROW(checkInstallation(installation));
+}
+
 TEST(DefaultScene, HasOneSunFromTheUpperLeftAndAPaperDeviceOnWood) {
     const Scene scene = defaultScene();
     ASSERT_EQ(scene.items.size(), 1U);
@@ -77,10 +87,8 @@ TEST(DefaultScene, HasOneSunFromTheUpperLeftAndAPaperDeviceOnWood) {
     EXPECT_TRUE(sun->shadows);
     EXPECT_LT(scene.items[0].position.x, 0.0F) << "left";
     EXPECT_LT(scene.items[0].position.z, 0.0F) << "upper, on the viewer's page";
-    EXPECT_EQ(scene.table.size, glm::vec2(1.2F, 0.9F));
     const glm::vec3 paper = scene.device.material.color;
     EXPECT_GT(std::min({paper.r, paper.g, paper.b}), 0.85F);
-    EXPECT_GT(scene.eye.y, 0.3F);
     EXPECT_EQ(drivingItem(scene), nullptr);
 }
 

@@ -1,8 +1,9 @@
 #pragma once
 
+#include "core/scene/installation.h"
 #include "core/scene/scene.h"
 
-/// Scenes for tests.
+/// Scenes and a room for tests.
 namespace lumorph::test {
 
 inline SceneItem itemOf(int id, ItemKind kind, int parent = 0) {
@@ -74,28 +75,56 @@ inline Scene fullScene() {
     scene.device.shrink = 0.25;
     scene.device.holes = {{{0.01F, -0.02F}, 0.012}, {{0.0F, 0.03F}, 0.02}};
     scene.device.creases = {-0.5, Angle::degrees(12.0), 0.003, {0.1F, 0.0F, 0.2F}};
-    scene.device.surfaceColor = {0.8F, 0.7F, 0.6F};
-    scene.table = {{1.5F, 1.0F}, material};
-    scene.table.surfaceColor = {0.5F, 0.4F, 0.3F};
+    scene.table.material = material;
     scene.sky = {0.1F, 0.2F, 0.35F};
     scene.exposure = 1.25;
     scene.toneMapping = false;
     scene.showing = Showing::virtualOnly;
     scene.viewDependence = {true, Angle::degrees(75.0)};
-    scene.viewer = ViewerChoice::nearest;
-    scene.compensation = false;
-    scene.predictionSeconds = 0.08;
-    scene.projectors = {defaultScene().projectors.front(), SceneProjector{}};
-    scene.projectors[0].name = "Beamer";
-    scene.projectors[0].enabled = false;
-    scene.projectors[0].referenceDistance = 1.9;
-    scene.projectors[0].peak = 2.5;
-    scene.projectors[0].gain = {0.9F, 1.0F, 1.1F};
-    scene.projectors[0].gamma = 2.2;
-    scene.eye = {0.1F, 0.5F, 0.6F};
-    scene.worldFromDevice = glm::mat4_cast(glm::angleAxis(0.7F, glm::vec3(0.0F, 1.0F, 0.0F)));
-    scene.worldFromDevice[3] = {0.02F, 0.01F, -0.03F, 1.0F};
     return scene;
+}
+
+/// No value in it is the one it has by itself.
+inline Installation fullInstallation() {
+    const auto measured = [](const char* method, const char* date) {
+        return Origin{Origin::Way::measured, method, date};
+    };
+    Installation installation;
+    installation.projectors = {defaultInstallation().projectors.front(), InstalledProjector{}};
+    InstalledProjector& projector = installation.projectors[0];
+    projector.name = "Beamer";
+    projector.enabled = false;
+    projector.referenceDistance = 1.9;
+    projector.peak = 2.5;
+    projector.gain = {0.9F, 1.0F, 1.1F};
+    projector.gamma = 2.2;
+    projector.lens = measured("structured light, 12 boards", "2026-11-20T09:00:00Z");
+    projector.pose = {Origin::Way::entered, {}, "2026-11-21T10:30:00Z"};
+    projector.response = measured("exposure series", "2026-11-22T11:15:00Z");
+    InstalledCamera camera;
+    camera.name = "Kamera \"links\"";
+    camera.address = "camera2";
+    camera.camera = cameraLookingAt({-0.4, 1.3, 0.5}, {0.02, 0.0, -0.01}, {1600, 1200}, 1650.0);
+    camera.camera.distortion = {-0.21, 0.07, 0.001, -0.002, 0.01};
+    camera.lens = measured("20 boards", "2026-11-19T08:00:00Z");
+    camera.pose = measured("board on the table", "2026-11-19T08:05:00Z");
+    installation.cameras = {camera, InstalledCamera{}};
+    installation.tableSize = {1.5F, 1.0F};
+    installation.worldFromDevice = glm::mat4_cast(glm::angleAxis(0.7F, glm::vec3(0.0F, 1.0F, 0.0F)));
+    installation.worldFromDevice[3] = {0.02F, 0.01F, -0.03F, 1.0F};
+    installation.deviceColor = {0.8F, 0.7F, 0.6F};
+    installation.tableColor = {0.5F, 0.4F, 0.3F};
+    installation.eye = {0.1F, 0.5F, 0.6F};
+    installation.eyeFromHead = {0.01F, -0.07F, 0.09F};
+    installation.viewer = ViewerChoice::nearest;
+    installation.compensation = false;
+    installation.predictionSeconds = 0.08;
+    installation.origins.table = measured("photograph of the edges", "2026-11-23T12:00:00Z");
+    installation.origins.devicePlace = measured("probe on four corners", "2026-11-23T12:10:00Z");
+    installation.origins.colors = measured("white and black pictures", "2026-11-23T12:20:00Z");
+    installation.origins.eyeOffset = measured("sights", "2026-11-23T12:30:00Z");
+    installation.origins.delays = measured("flashing square", "2026-11-23T12:40:00Z");
+    return installation;
 }
 
 } // namespace lumorph::test

@@ -17,7 +17,7 @@ constexpr glm::ivec2 kSize(1280, 800);
 const std::array<glm::vec3, 5> kEyes{
     {{0.0F, 0.45F, 0.55F}, {0.6F, 0.05F, 0.1F}, {0.0F, 0.9F, 0.0F}, {-0.4F, 0.3F, -0.5F}, {0.02F, 0.01F, 0.8F}}};
 
-Scene plainScene() { return unlitScene(glm::vec3(0.5F), glm::vec3(0.5F), {}); }
+SceneInRoom plainScene() { return unlitScene(glm::vec3(0.5F), glm::vec3(0.5F), {}); }
 
 SceneItem floating(float height) {
     SceneItem item;
@@ -29,7 +29,7 @@ SceneItem floating(float height) {
     return item;
 }
 
-ShowFrame at(const Scene& scene, double stroke, double seconds) {
+ShowFrame at(const SceneInRoom& scene, double stroke, double seconds) {
     ShowFrame frame = frameOf(scene, std::vector<double>(bundledTablet()->actuatorCount(), stroke));
     ScenePoser poser;
     PoseInput input;
@@ -72,7 +72,7 @@ TEST(DeviceView, HoldsEveryStateTightly) {
 }
 
 TEST(DeviceView, DoesNotSwimWhileDeviceAndItemsMove) {
-    Scene scene = plainScene();
+    SceneInRoom scene = plainScene();
     scene.items.push_back(floating(0.115F));
     for (const glm::vec3& eye : kEyes) {
         const CalibratedCamera first = deviceView(at(scene, 0.0, 0.0), eye, kSize);
@@ -83,7 +83,7 @@ TEST(DeviceView, DoesNotSwimWhileDeviceAndItemsMove) {
 }
 
 TEST(DeviceView, HoldsWhatFloatsAboveAndFollowsTheDevice) {
-    Scene scene = plainScene();
+    SceneInRoom scene = plainScene();
     scene.items.push_back(floating(0.13F));
     scene.worldFromDevice[3] = glm::vec4(0.2F, 0.1F, -0.1F, 1.0F);
     const glm::vec3 eye(0.1F, 0.6F, 0.7F);
@@ -112,7 +112,7 @@ TEST(TableView, HoldsTheTableAsFarAsAnEyeCan) {
 TEST(LookupAreas, AreWhatAnEyeSeesDifferently) {
     const glm::vec3 eye(0.0F, 0.4F, 0.4F);
     EXPECT_TRUE(lookupAreas(at(plainScene(), 0.5, 0.0), eye).empty()) << "nothing but device and matt table";
-    Scene scene = plainScene();
+    SceneInRoom scene = plainScene();
     scene.items.push_back(floating(0.1F));
     scene.items.back().motion = {};
     const auto areas = lookupAreas(at(scene, 0.5, 0.0), eye);
@@ -134,7 +134,7 @@ TEST(LookupAreas, AreWhatAnEyeSeesDifferently) {
 TEST(LookupAreas, AreFewAndHoldEveryThing) {
     const glm::vec3 eye(0.0F, 0.7F, 0.5F);
     const auto row = [&](int count, float from, float step) {
-        Scene scene = plainScene();
+        SceneInRoom scene = plainScene();
         for (int i = 0; i < count; ++i) {
             scene.items.push_back(floating(0.1F));
             scene.items.back().id = i + 1;

@@ -79,7 +79,7 @@ TEST(EyePass, AFlipBookShowsItsPicturesInOrder) {
         for (int y = 0; y < 32; ++y)
             for (int x = 0; x < 32; ++x) page->at(x, y) = book->at(32 * (cell % 3) + x, 32 * (cell / 3) + y);
         stage.assets->images["page"] = page;
-        const Scene flipBook = stage.scene;
+        const SceneInRoom flipBook = stage.scene;
         stage.scene.device.material.colorTexture = EyeStage::textured("page", 0.05F);
         EXPECT_TRUE(shown.pixels == stage.draw().pixels) << cell;
         stage.scene = flipBook;

@@ -15,6 +15,7 @@
 #include "core/rig/rig_file.h"
 #include "core/scene/posed_scene.h"
 #include "tests/core/render/ray_oracle.h"
+#include "tests/support/scene_in_room.h"
 
 namespace lumorph {
 
@@ -36,7 +37,7 @@ public:
     EyePass pass;
     std::shared_ptr<Rig> rig = std::make_shared<Rig>(readRig(LUMORPH_SOURCE_DIR "/resources/models/tablet.glb"));
     std::shared_ptr<SceneAssets> assets = std::make_shared<SceneAssets>();
-    Scene scene;
+    SceneInRoom scene;
     std::vector<double> strokes = std::vector<double>(6, 0.0);
     double seconds = 0.0;
     glm::ivec2 size{640, 400};
@@ -95,7 +96,7 @@ public:
 
     [[nodiscard]] ShowFrame frame() {
         ShowFrame frame;
-        frame.scene = std::make_shared<Scene>(scene);
+        setSceneInRoom(frame, scene);
         frame.assets = assets;
         frame.rig = rig;
         auto positions = std::make_shared<std::vector<glm::vec3>>(rig->restMesh().positions.size());
@@ -125,7 +126,7 @@ public:
     /// row 0 is the top.
     [[nodiscard]] Image drawUnseen() {
         scene.compensation = false;
-        SceneProjector projector;
+        InstalledProjector projector;
         projector.camera = camera();
         ProjectorTarget target(projector);
         target.region = PixelRegion({glm::ivec2(0), size});
@@ -138,7 +139,7 @@ public:
         glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
         const ShowFrame now = frame();
         pass.prepare(now);
-        pass.drawUnseen(now, target);
+        pass.drawUnseen(now, unseenPlaces(target, *now.installation));
         return target.sent.read();
     }
 
@@ -150,7 +151,7 @@ public:
             for (const glm::uvec3& t : triangles) rays.add(at(t.x), at(t.y), at(t.z), thing);
         };
         add(frame.rig->restMesh().triangles, *frame.devicePositions, frame.worldFromDevice, device);
-        const glm::dvec2 half = 0.5 * glm::dvec2(frame.scene->table.size);
+        const glm::dvec2 half = 0.5 * glm::dvec2(frame.installation->tableSize);
         const glm::dvec3 a(-half.x, 0, -half.y), b(-half.x, 0, half.y), c(half.x, 0, half.y), d(half.x, 0, -half.y);
         rays.add(a, b, c, table);
         rays.add(a, c, d, table);

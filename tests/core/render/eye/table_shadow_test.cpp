@@ -22,7 +22,7 @@ SceneItem cube(const glm::vec3& position, float size) {
 }
 
 ShowFrame frameWith(const SceneItem& item) {
-    Scene scene = unlitScene(glm::vec3(0.5F), glm::vec3(0.5F), {});
+    SceneInRoom scene = unlitScene(glm::vec3(0.5F), glm::vec3(0.5F), {});
     scene.items = {item};
     ShowFrame frame = frameOf(scene, {0.7, 0.0, 0.2, 0.5, 0.0, 0.9});
     PoseInput input;

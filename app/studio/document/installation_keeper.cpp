@@ -1,0 +1,128 @@
+#include "app/studio/document/installation_keeper.h"
+
+#include <utility>
+
+#include <QCryptographicHash>
+#include <QFileInfo>
+
+namespace lumorph::studio {
+namespace {
+
+constexpr int kRestMilliseconds = 1000; // edits come in bursts
+constexpr auto kAnsweredKey = "installation/answered";
+constexpr int kMostAnswers = 100;
+constexpr auto kPlace = "project";
+
+QString subject() { return QObject::tr("Installation"); }
+
+/// Of a project's copy beside the room's own.
+QString questionOf(const Installation& project, const Installation& room) {
+    Installation withoutEye = room;
+    withoutEye.eye = {};
+    QCryptographicHash hash(QCryptographicHash::Sha1);
+    hash.addData(QByteArray::fromStdString(installationText(project)));
+    hash.addData(QByteArray::fromStdString(installationText(withoutEye)));
+    return QString::fromLatin1(hash.result().toHex());
+}
+
+} // namespace
+
+InstallationKeeper::InstallationKeeper(Settings& settings, StudioDocument& document, ProjectService& projects,
+                                       Notices& notices)
+    : settings_(settings), document_(document), notices_(notices), store_(settings.folder() / "installation") {
+    load();
+    due_.setSingleShot(true);
+    due_.setInterval(kRestMilliseconds);
+    connect(&due_, &QTimer::timeout, this, &InstallationKeeper::keep);
+    connect(&document, &StudioDocument::changed, this, [this](StateParts parts) {
+        if (parts & StatePart::installation) due_.start();
+    });
+    connect(&projects, &ProjectService::openedElsewhere, this, &InstallationKeeper::compare);
+}
+
+InstallationKeeper::~InstallationKeeper() {
+    if (due_.isActive()) keep();
+}
+
+void InstallationKeeper::load() {
+    try {
+        if (auto installation = store_.load())
+            document_.setInstallation(std::make_shared<const Installation>(*std::move(installation)));
+    } catch (const std::exception& error) {
+        Notice notice = noticeOf(error);
+        notice.why = tr("what stands in the room could not be read: %1").arg(notice.why);
+        notice.remedy = tr("the virtual lab's installation is in use until you bring an earlier one back");
+        if (const auto files = earlier(); !files.empty())
+            notice.actions.push_back(
+                {tr("Bring back the last one"), [this, file = files.front()] { bringBack(file); }});
+        notices_.post(kPlace, notice);
+    }
+    kept_ = document_.state().installation;
+}
+
+void InstallationKeeper::keep() {
+    if (document_.previewing()) { // where a drag ends is what counts
+        due_.start();
+        return;
+    }
+    const auto installation = document_.state().installation;
+    if (installation == kept_ || *installation == *kept_) return;
+    try {
+        store_.keep(*installation);
+        kept_ = installation;
+        notices_.dismiss(kPlace, subject());
+    } catch (const std::exception& error) {
+        Notice notice = noticeOf(error);
+        notice.why = tr("what stands in the room could not be kept for the next start: %1").arg(notice.why);
+        notice.subject = subject();
+        notice.actions.push_back({tr("Try again"), [this] { keep(); }});
+        notices_.post(kPlace, notice);
+    }
+}
+
+void InstallationKeeper::bringBack(const std::filesystem::path& file) {
+    try {
+        auto installation = std::make_shared<const Installation>(InstallationStore::read(file));
+        document_.change(tr("Bring back an earlier installation"),
+                         [&](StudioState& state) { state.installation = installation; });
+    } catch (const std::exception& error) {
+        notices_.post(kPlace, noticeOf(error));
+    }
+}
+
+/// Opening a project changes nothing in the room. One that comes from elsewhere has its own figures, which may be what
+/// its maker wants on another machine in the same room, or of no use at all here: only the user knows.
+void InstallationKeeper::compare(const QString& project, const std::shared_ptr<const Installation>& installation) {
+    notices_.dismiss(kPlace, subject());
+    // A project that only ever saw the virtual lab has nothing to offer.
+    if (!installation || isSameRoom(*installation, *document_.state().installation) ||
+        isSameRoom(*installation, defaultInstallation()))
+        return;
+    const QString question = questionOf(*installation, *document_.state().installation);
+    if (answered(question)) return;
+    const QString name = QFileInfo(project).fileName();
+    notices_.post(kPlace,
+                  {Notice::Level::info,
+                   subject(),
+                   tr("%1 was saved with another projector, table or place of the device than this room has").arg(name),
+                   tr("this room's are in use; take the project's if it was calibrated here"),
+                   {{tr("Keep this room's"), [this, question] { setAnswered(question); }},
+                    {tr("Use the project's"), [this, question, installation, name] {
+                         setAnswered(question);
+                         document_.change(tr("Use the installation of %1").arg(name),
+                                          [&](StudioState& state) { state.installation = installation; });
+                     }}}});
+}
+
+bool InstallationKeeper::answered(const QString& question) const {
+    return settings_.value(kAnsweredKey).toStringList().contains(question);
+}
+
+void InstallationKeeper::setAnswered(const QString& question) {
+    QStringList answers = settings_.value(kAnsweredKey).toStringList();
+    answers.removeAll(question);
+    answers.prepend(question);
+    settings_.setValue(kAnsweredKey, answers.mid(0, kMostAnswers));
+}
+
+} // namespace lumorph::studio

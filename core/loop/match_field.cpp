@@ -1,0 +1,24 @@
+#include "core/loop/match_field.h"
+
+#include <utility>
+
+#include "core/base/error.h"
+#include "core/rig/rig_file.h"
+
+namespace lumorph {
+
+namespace {
+
+Rig rigOf(const Field& field) {
+    Rig rig = readRigGlb(field.rigGlb, field.rigName);
+    if (rig.actuatorCount() != field.actuators.size())
+        throw DataError(field.rigName, "the field and the rig in it do not agree", "build the field again");
+    return rig;
+}
+
+} // namespace
+
+MatchField::MatchField(Field built)
+    : field(std::move(built)), rig(rigOf(field)), coverage(rig, field.frame, field.levels), voting(field) {}
+
+} // namespace lumorph

@@ -1,0 +1,19 @@
+#pragma once
+
+#include "core/mdf/coverage.h"
+#include "core/mdf/field.h"
+#include "core/mdf/voting.h"
+#include "core/rig/rig.h"
+
+namespace lumorph {
+
+/// A field and all that matching needs of it. Immutable; shared between threads.
+struct MatchField {
+    explicit MatchField(Field built); ///< reads the rig out of the field; throws DataError when it is not there
+    Field field;
+    Rig rig;
+    Coverage coverage;
+    Voting voting;
+};
+
+} // namespace lumorph

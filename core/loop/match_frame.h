@@ -1,0 +1,79 @@
+#pragma once
+
+#include <cstdint>
+#include <glm/mat4x4.hpp>
+#include <glm/vec3.hpp>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/base/clock.h"
+#include "core/base/units.h"
+#include "core/loop/match_field.h"
+#include "core/loop/match_target.h"
+#include "core/mdf/placement.h"
+#include "core/scene/installation.h"
+#include "core/scene/scene.h"
+#include "core/scene/scene_assets.h"
+
+namespace lumorph {
+
+/// Milliseconds of each stage of one frame.
+struct MatchTimes {
+    double pose = 0.0, voxelize = 0.0, match = 0.0, refine = 0.0, motion = 0.0, deform = 0.0, total = 0.0;
+    double track = 0.0; ///< poses and viewer
+    double rule = 0.0;  ///< view dependence, and the servos' part of a scene's item
+    // Not parts of `total`:
+    double poseAge = 0.0; ///< of the oldest pose used when the frame began; 0 without a tracker
+    double latency =
+        0.0; ///< from that pose being measured to the light for which it was predicted; 0 without a tracker
+};
+
+/// Classes of MatchFrame::classes.
+inline constexpr std::uint8_t kVoxelMatched = 1, kVoxelUnmatched = 2, kVoxelOverfilled = 3;
+
+/// What one frame found, as a value that never changes again.
+struct MatchFrame {
+    std::uint64_t number = 0;
+    Microseconds time{0};
+    std::shared_ptr<const Rig> rig;
+    std::shared_ptr<const MatchField> field;
+    std::shared_ptr<const MatchTarget> target;
+    bool matched = false; ///< a target was matched in this frame
+    double seconds = 0.0; ///< of the target's animation
+    Angle turned;         ///< by spinning, on top of the placement's yaw
+    glm::mat4 deviceFromTarget{1.0F};
+    std::shared_ptr<const std::vector<glm::vec3>>
+        targetPositions; ///< target's own frame; the same object while it stands still
+    std::shared_ptr<const std::vector<glm::vec3>> devicePositions; ///< at the estimated state, device metres
+
+    State wanted;                         ///< levels asked for (of the field; empty without one)
+    std::vector<double> wantedStrokes;    ///< what the actuators are asked for, one each
+    std::vector<double> estimatedStrokes; ///< where they are under their velocity limits
+    std::shared_ptr<const Votes> votes;   ///< error curves; only when matched
+    double iouVoting = 0.0;               ///< of V(s) by voting alone
+    double iouWanted = 0.0;               ///< of V(wanted)
+    double iouEstimated = 0.0;            ///< of the volume really covered now
+    int statesSeen = 0;                   ///< joint states that refinement looked at
+    double unmatchedVolume = 0.0;         ///< cubic metres of the target that V(wanted) leaves out
+    double overfilledVolume = 0.0;        ///< cubic metres of V(wanted) outside the target
+    double targetVolume = 0.0;            ///< cubic metres of the target in the frame, outside the body
+    double shareBeyondFrame = 0.0;        ///< of the target's volume
+    double shareUnreachable = 0.0;        ///< of the target's voxels that no actuator changes
+    std::shared_ptr<const std::vector<std::uint8_t>> classes; ///< one a voxel, x fastest; empty unless asked for
+
+    std::shared_ptr<const Scene> scene;               ///< of the wish
+    std::shared_ptr<const Installation> installation; ///< of the wish
+    std::shared_ptr<const SceneAssets> assets;
+    double sceneSeconds = 0.0;
+    glm::mat4 worldFromDevice{1.0F};  ///< predicted for the moment at which the frame is seen
+    std::optional<glm::vec3> eye;     ///< of the viewer who is followed, predicted likewise; world metres
+    std::string viewer;               ///< his name; empty for the scene's own eye
+    bool handingOver = false;         ///< the eye glides from one viewer to the next
+    std::vector<double> viewStrokes;  ///< what view dependence asks for; empty while it is off or servos rest
+    std::vector<double> splitStrokes; ///< what the frequency split asks for; empty without a split item
+    MatchTimes ms;
+};
+
+} // namespace lumorph

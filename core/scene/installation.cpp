@@ -1,0 +1,81 @@
+#include "core/scene/installation.h"
+
+#include <chrono>
+#include <ctime>
+
+namespace lumorph {
+namespace {
+
+Installation withoutOrigins(Installation installation) {
+    installation.origins = {};
+    for (InstalledProjector& projector : installation.projectors)
+        projector.lens = projector.pose = projector.response = {};
+    for (InstalledCamera& camera : installation.cameras) camera.lens = camera.pose = {};
+    return installation;
+}
+
+bool sameLens(const CalibratedCamera& a, const CalibratedCamera& b) {
+    return a.size == b.size && a.focal == b.focal && a.principal == b.principal && a.distortion == b.distortion;
+}
+
+bool sameResponse(const InstalledProjector& a, const InstalledProjector& b) {
+    return a.referenceDistance == b.referenceDistance && a.peak == b.peak && a.gain == b.gain && a.gamma == b.gamma;
+}
+
+/// An edit that comes with an origin of its own, as a calibration does, keeps it.
+void mark(bool same, const Origin& before, Origin& edited, const Origin& origin) {
+    if (!same && edited == before) edited = origin;
+}
+
+/// Of a list whose parts are known by their names, since one may have been added or taken away before others.
+template <class Part> const Part* partNamed(const std::vector<Part>& parts, const Part& wanted, std::size_t index) {
+    if (index < parts.size() && parts[index].name == wanted.name) return &parts[index];
+    for (const Part& part : parts)
+        if (part.name == wanted.name) return &part;
+    return index < parts.size() ? &parts[index] : nullptr;
+}
+
+} // namespace
+
+bool isSameRoom(const Installation& a, const Installation& b) {
+    Installation left = withoutOrigins(a);
+    left.eye = b.eye;
+    return left == withoutOrigins(b);
+}
+
+void markOrigins(const Installation& before, Installation& edited, const Origin& origin) {
+    for (std::size_t i = 0; i < edited.projectors.size(); ++i) {
+        InstalledProjector& now = edited.projectors[i];
+        const InstalledProjector* then = partNamed(before.projectors, now, i);
+        if (!then) continue; // a new one says itself where it came from
+        mark(sameLens(then->camera, now.camera), then->lens, now.lens, origin);
+        mark(then->camera.cameraFromWorld == now.camera.cameraFromWorld, then->pose, now.pose, origin);
+        mark(sameResponse(*then, now), then->response, now.response, origin);
+    }
+    for (std::size_t i = 0; i < edited.cameras.size(); ++i) {
+        InstalledCamera& now = edited.cameras[i];
+        const InstalledCamera* then = partNamed(before.cameras, now, i);
+        if (!then) continue;
+        mark(sameLens(then->camera, now.camera), then->lens, now.lens, origin);
+        mark(then->camera.cameraFromWorld == now.camera.cameraFromWorld, then->pose, now.pose, origin);
+    }
+    const Installation::Origins& then = before.origins;
+    Installation::Origins& now = edited.origins;
+    mark(before.tableSize == edited.tableSize, then.table, now.table, origin);
+    mark(before.worldFromDevice == edited.worldFromDevice, then.devicePlace, now.devicePlace, origin);
+    mark(before.deviceColor == edited.deviceColor && before.tableColor == edited.tableColor, then.colors, now.colors,
+         origin);
+    mark(before.eyeFromHead == edited.eyeFromHead, then.eyeOffset, now.eyeOffset, origin);
+    mark(before.predictionSeconds == edited.predictionSeconds, then.delays, now.delays, origin);
+}
+
+std::string utcDate() {
+    const std::time_t now = std::chrono::system_clock::to_time_t(std::chrono::system_clock::now());
+    std::tm parts{};
+    gmtime_r(&now, &parts);
+    char text[32];
+    const std::size_t length = std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%SZ", &parts);
+    return {text, length};
+}
+
+} // namespace lumorph

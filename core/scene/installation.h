@@ -1,0 +1,95 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <glm/mat4x4.hpp>
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+
+#include "core/geometry/calibrated_camera.h"
+
+namespace lumorph {
+
+/// Where a figure of an installation came from, and when.
+struct Origin {
+    enum class Way {
+        assumed, ///< nobody has looked: that of the virtual lab
+        entered, ///< typed or dragged by hand
+        measured ///< by a calibration
+    };
+    Way way = Way::assumed;
+    std::string method; ///< of a measurement, in a few words: "structured light, 12 boards"
+    std::string date;   ///< ISO 8601 in UTC, such as "2026-11-24T17:05:00Z"; empty for what is assumed
+    bool operator==(const Origin&) const = default;
+};
+
+/// A projector and what is known of its light. Full white on a white diffuse surface that it meets head on at
+/// `referenceDistance` has the radiance `peak`, where 1 is white in the eye pass; so `peak` is the headroom for
+/// slanting and distant places.
+struct InstalledProjector {
+    std::string name = "Projector";
+    bool enabled = true;
+    CalibratedCamera camera;
+    double referenceDistance = 2.0; ///< metres
+    double peak = 3.0;
+    glm::vec3 gain{1.0F}; ///< relative response of red, green, blue; 1 until measured
+    double gamma = 0.0;   ///< light = value^gamma; 0: sRGB
+    Origin lens, pose, response;
+    bool operator==(const InstalledProjector&) const = default;
+};
+
+/// A camera that looks at device and table.
+struct InstalledCamera {
+    std::string name = "Camera";
+    std::string address; ///< how it is opened, such as "camera0"; empty: the virtual lab's
+    CalibratedCamera camera;
+    Origin lens, pose;
+    bool operator==(const InstalledCamera&) const = default;
+};
+
+/// Whom the show follows when several heads are tracked.
+enum class ViewerChoice { automatic, first, nearest, none };
+
+/// What stands in the room, whatever is shown there: a plain value. It belongs to the machine and the room around it;
+/// a scene (scene.h) is what is shown in it. Calibration writes it, everything reads it.
+struct Installation {
+    std::vector<InstalledProjector> projectors;
+    std::vector<InstalledCamera> cameras;
+    glm::vec2 tableSize{1.2F, 0.9F}; ///< metres in x and z; the table is the world's plane y = 0 around the origin
+    glm::mat4 worldFromDevice{1.0F}; ///< where the device lies while no tracker says so
+    glm::vec3 deviceColor{1.0F};     ///< of the bare device, on which light falls, sRGB in [0, 1]; white until measured
+    glm::vec3 tableColor{1.0F};      ///< of the bare table, as the device's
+    glm::vec3 eye{0.0F, 0.45F, 0.55F}; ///< simulated viewer, world metres: followed while nobody is tracked
+    glm::vec3 eyeFromHead{0.0F};       ///< the eye in the frame of a tracked head's body, metres
+    ViewerChoice viewer = ViewerChoice::automatic;
+    bool compensation = true; ///< of incidence and distance
+    double predictionSeconds =
+        0.06; ///< from a pose to its light, by which poses are extrapolated at least; 0: not at all
+    /// Of what is not a projector's or a camera's own.
+    struct Origins {
+        Origin table, devicePlace, colors, eyeOffset, delays;
+        bool operator==(const Origins&) const = default;
+    } origins;
+    bool operator==(const Installation&) const = default;
+};
+
+/// The virtual lab: one calibrated projector about 2 m above the table. Room for all its numbers is in
+/// `scene_defaults.cpp`.
+[[nodiscard]] Installation defaultInstallation();
+
+/// Throws InvalidInput naming the part and the value: numbers that are not finite or out of range, more than 16
+/// projectors or cameras.
+void checkInstallation(const Installation& installation);
+
+/// Whether two describe the same room: all figures but the simulated eye, which is where one last looked from, and the
+/// origins.
+[[nodiscard]] bool isSameRoom(const Installation& a, const Installation& b);
+
+/// Gives each part of `edited` whose figures differ from those of `before` this origin, unless the edit brought one.
+void markOrigins(const Installation& before, Installation& edited, const Origin& origin);
+
+/// Now, as an Origin's date.
+[[nodiscard]] std::string utcDate();
+
+} // namespace lumorph

@@ -1,0 +1,49 @@
+#include "core/base/text.h"
+
+#include <gtest/gtest.h>
+
+namespace lumorph {
+namespace {
+
+using namespace std::string_literals;
+
+TEST(InQuotes, ShowsTextAsItIs) {
+    EXPECT_EQ(inQuotes(""), "''");
+    EXPECT_EQ(inQuotes("sea.png"), "'sea.png'");
+    EXPECT_EQ(inQuotes("M\u00f6bel \u6d77 \U0001F30A"), "'M\u00f6bel \u6d77 \U0001F30A'");
+}
+
+TEST(InQuotes, ShortensWhatIsLong) {
+    EXPECT_EQ(inQuotes("abcdef", 6), "'abcdef'");
+    EXPECT_EQ(inQuotes("abcdefg", 6), "'abcdef...'");
+    EXPECT_EQ(inQuotes("abcd", 0), "'...'");
+    EXPECT_EQ(inQuotes(std::string(1'000'000, 'x')), "'" + std::string(80, 'x') + "...'");
+    EXPECT_EQ(inQuotes("ab\u00f6cd", 3), "'ab...'") << "no character is cut in two";
+}
+
+TEST(InQuotes, KeepsWhatIsNoTextOutOfMessages) {
+    EXPECT_EQ(inQuotes("a\nb\tc\x7f\0d"s), "'a?b?c??d'");
+    EXPECT_EQ(inQuotes("\u0085"), "'?'") << "a control character of two bytes";
+    EXPECT_EQ(inQuotes("\xff\xfe."), "'??.'");
+    EXPECT_EQ(inQuotes("\xc3(\xc3"), "'?(?'") << "characters that break off";
+    EXPECT_EQ(inQuotes("\xc0\xaf."), "'??.'") << "longer than need be";
+    EXPECT_EQ(inQuotes("\xed\xa0\x80."), "'???.'") << "half of a pair";
+    EXPECT_EQ(inQuotes("\xf4\x90\x80\x80."), "'????.'") << "beyond Unicode";
+}
+
+TEST(CsvField, IsBareWhereItCanBe) {
+    EXPECT_EQ(csvField(""), "");
+    EXPECT_EQ(csvField("corner front left"), "corner front left");
+    EXPECT_EQ(csvField("it's; 5 %"), "it's; 5 %");
+}
+
+TEST(CsvField, IsInQuotesWhereItMustBe) {
+    EXPECT_EQ(csvField("a,b"), R"("a,b")");
+    EXPECT_EQ(csvField(R"(the "left" one)"), R"("the ""left"" one")");
+    EXPECT_EQ(csvField("two\nlines"), "\"two\nlines\"");
+    EXPECT_EQ(csvField("two\r\nlines"), "\"two\r\nlines\"");
+    EXPECT_EQ(csvField("\""), R"("""")");
+}
+
+} // namespace
+} // namespace lumorph
