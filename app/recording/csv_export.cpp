@@ -26,14 +26,14 @@ std::string numbered(const char* name, std::size_t count) {
     return header;
 }
 
-constexpr std::size_t kRowsBetweenLooks = 1024;
+constexpr std::size_t kExportRowsBetweenLooks = 1024;
 
 /// Tells how far a table is, and stops where the user wants it.
 class Lines {
 public:
     Lines(const Progress& progress, std::size_t all, const char* name) : progress_(progress), all_(all), name_(name) {}
     void step() {
-        if (++done_ % kRowsBetweenLooks != 0) return;
+        if (++done_ % kExportRowsBetweenLooks != 0) return;
         progress_.throwIfCancelled();
         progress_.report(static_cast<double>(done_) / static_cast<double>(all_), name_);
     }

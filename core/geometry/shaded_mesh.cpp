@@ -20,14 +20,14 @@ struct Face {
     glm::vec3 angles;
 };
 
-struct Corner {
+struct FaceCorner {
     std::uint32_t face;
     int index;
 };
 
 bool finite(const glm::vec3& p) { return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z); }
 
-void requireSound(const TriangleMesh& mesh) {
+void requireFinite(const TriangleMesh& mesh) {
     const std::size_t count = mesh.positions.size();
     for (const glm::uvec3& t : mesh.triangles)
         if (t.x >= count || t.y >= count || t.z >= count)
@@ -59,7 +59,7 @@ std::vector<Face> facesOf(const TriangleMesh& mesh) {
 }
 
 // For every vertex the first vertex at the same place.
-std::vector<std::uint32_t> placesOf(const std::vector<glm::vec3>& positions) {
+std::vector<std::uint32_t> sharedPlaces(const std::vector<glm::vec3>& positions) {
     std::vector<std::uint32_t> order(positions.size());
     std::iota(order.begin(), order.end(), 0U);
     const auto key = [&](std::uint32_t i) {
@@ -76,16 +76,16 @@ std::vector<std::uint32_t> placesOf(const std::vector<glm::vec3>& positions) {
 } // namespace
 
 ShadedMesh shade(const TriangleMesh& mesh, Angle crease) {
-    requireSound(mesh);
+    requireFinite(mesh);
     const std::vector<Face> faces = facesOf(mesh);
-    const std::vector<std::uint32_t> places = placesOf(mesh.positions);
+    const std::vector<std::uint32_t> places = sharedPlaces(mesh.positions);
 
     // The corners around each place, as runs in one array.
     std::vector<std::uint32_t> begin(mesh.positions.size() + 1, 0);
     for (const Face& face : faces)
         for (int k = 0; k < 3; ++k) ++begin[places[face.corners[k]] + 1];
     std::partial_sum(begin.begin(), begin.end(), begin.begin());
-    std::vector<Corner> corners(faces.size() * 3);
+    std::vector<FaceCorner> corners(faces.size() * 3);
     std::vector<std::uint32_t> next(begin.begin(), begin.end() - 1);
     for (std::uint32_t f = 0; f < faces.size(); ++f)
         for (int k = 0; k < 3; ++k) corners[next[places[faces[f].corners[k]]]++] = {f, k};

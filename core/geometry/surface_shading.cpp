@@ -16,7 +16,7 @@
 namespace lumorph {
 namespace {
 
-constexpr std::uint32_t kNone = UINT32_MAX;
+constexpr std::uint32_t kNoVertex = UINT32_MAX;
 constexpr std::size_t kCoarseTriangles = 9000;
 
 // A corner of a face: the vertex of the mesh and the normal it shows.
@@ -33,7 +33,7 @@ struct HalfEdge {
 
 std::uint32_t nextCorner(std::uint32_t corner) { return corner % 3 == 2 ? corner - 2 : corner + 1; }
 
-void requireSound(const TriangleMesh& mesh) {
+void requireVertices(const TriangleMesh& mesh) {
     const std::size_t count = mesh.positions.size();
     for (const glm::uvec3& t : mesh.triangles)
         if (t.x >= count || t.y >= count || t.z >= count)
@@ -42,7 +42,7 @@ void requireSound(const TriangleMesh& mesh) {
 }
 
 // For every vertex the first vertex at the same place.
-std::vector<std::uint32_t> placesOf(const std::vector<glm::vec3>& positions) {
+std::vector<std::uint32_t> firstAtPlace(const std::vector<glm::vec3>& positions) {
     std::vector<std::uint32_t> order(positions.size());
     std::iota(order.begin(), order.end(), 0U);
     const auto key = [&](std::uint32_t i) { return std::tuple(positions[i].x, positions[i].y, positions[i].z); };
@@ -69,7 +69,7 @@ std::vector<HalfEdge> halfEdgesOf(const TriangleMesh& mesh, const std::vector<st
 }
 
 // Calls visit(first, last) for each run of half-edges between the same two places.
-template <class Visit> void forEachEdge(const std::vector<HalfEdge>& edges, const Visit& visit) {
+template <class Visit> void forEachSharedEdge(const std::vector<HalfEdge>& edges, const Visit& visit) {
     for (auto first = edges.begin(); first != edges.end();) {
         const auto last =
             std::find_if(first, edges.end(), [&](const HalfEdge& e) { return e.places() != first->places(); });
@@ -95,7 +95,7 @@ std::vector<glm::vec3> faceNormals(const TriangleMesh& mesh) {
 DisjointSets smoothCorners(const std::vector<HalfEdge>& edges, const std::vector<glm::vec3>& normals, Angle crease) {
     DisjointSets sets(3 * normals.size());
     const auto limit = static_cast<float>(std::cos(crease.inRadians()));
-    forEachEdge(edges, [&](auto first, auto last) {
+    forEachSharedEdge(edges, [&](auto first, auto last) {
         if (first->from == first->to) return;
         for (auto a = first; a != last; ++a)
             for (auto b = a + 1; b != last; ++b) {
@@ -110,7 +110,7 @@ DisjointSets smoothCorners(const std::vector<HalfEdge>& edges, const std::vector
 
 bool closedOutwards(const TriangleMesh& mesh, const std::vector<HalfEdge>& edges) {
     bool closed = !edges.empty();
-    forEachEdge(edges, [&](auto first, auto last) {
+    forEachSharedEdge(edges, [&](auto first, auto last) {
         const auto along = std::count_if(first, last, [&](const HalfEdge& e) { return e.from == first->from; });
         closed = closed && (first->from == first->to || 2 * along == last - first);
     });
@@ -121,8 +121,8 @@ bool closedOutwards(const TriangleMesh& mesh, const std::vector<HalfEdge>& edges
 
 SurfaceShading::SurfaceShading(const TriangleMesh& mesh, Angle crease) : meshVertexCount_(mesh.positions.size()) {
     fine_.triangles.resize(mesh.triangles.size());
-    requireSound(mesh);
-    const std::vector<HalfEdge> edges = halfEdgesOf(mesh, placesOf(mesh.positions));
+    requireVertices(mesh);
+    const std::vector<HalfEdge> edges = halfEdgesOf(mesh, firstAtPlace(mesh.positions));
     closed_ = closedOutwards(mesh, edges);
     DisjointSets smooth = smoothCorners(edges, faceNormals(mesh), crease);
 
@@ -131,12 +131,12 @@ SurfaceShading::SurfaceShading(const TriangleMesh& mesh, Angle crease) : meshVer
     for (std::uint32_t i = 0; i < corners.size(); ++i)
         corners[i] = {mesh.triangles[i / 3][static_cast<int>(i % 3)], smooth.find(i), i};
     std::sort(corners.begin(), corners.end());
-    std::vector<std::uint32_t> leaderOf(corners.size(), kNone);
+    std::vector<std::uint32_t> leaderOf(corners.size(), kNoVertex);
     for (std::size_t i = 0; i < corners.size(); ++i) {
         const auto& [source, normal, corner] = corners[i];
         if (i == 0 || source != corners[i - 1].source || normal != corners[i - 1].normal) {
             const auto drawn = static_cast<std::uint32_t>(fine_.sources.size());
-            if (leaderOf[normal] == kNone) leaderOf[normal] = drawn;
+            if (leaderOf[normal] == kNoVertex) leaderOf[normal] = drawn;
             fine_.sources.push_back(source);
             fine_.leaders.push_back(leaderOf[normal]);
         }

@@ -16,7 +16,7 @@
 namespace lumorph {
 namespace {
 
-constexpr std::uint32_t kNone = MeshTopology::kNone;
+constexpr std::uint32_t kNoPartner = MeshTopology::kNone;
 
 std::uint64_t directedKey(std::uint32_t a, std::uint32_t b) noexcept { return (std::uint64_t{a} << 32U) | b; }
 
@@ -65,7 +65,7 @@ private:
     /// Looks over one edge; 1 when the neighbour is new and runs against the first triangle.
     std::size_t visit(std::uint32_t h, std::vector<signed char>& side, std::vector<std::uint32_t>& piece) {
         const std::uint32_t other = topology_.partner[h];
-        if (other == kNone) return 0;
+        if (other == kNoPartner) return 0;
         const bool agree = topology_.startPlace(mesh_, h) != topology_.startPlace(mesh_, other);
         const auto wanted = static_cast<signed char>(agree ? side[h / 3] : -side[h / 3]);
         signed char& neighbour = side[other / 3];
@@ -75,7 +75,7 @@ private:
             return wanted < 0 ? 1 : 0;
         }
         if (neighbour != wanted) {
-            topology_.partner[h] = topology_.partner[other] = kNone;
+            topology_.partner[h] = topology_.partner[other] = kNoPartner;
             cut_.push_back(h);
             cut_.push_back(other);
         }
@@ -87,14 +87,14 @@ private:
         std::swap(mesh_.triangles[t].y, mesh_.triangles[t].z);
         std::swap(topology_.partner[3 * t], topology_.partner[3 * t + 2]);
         for (const std::uint32_t h : {3 * t, 3 * t + 2})
-            if (const std::uint32_t other = topology_.partner[h]; other != kNone) topology_.partner[other] = h;
+            if (const std::uint32_t other = topology_.partner[h]; other != kNoPartner) topology_.partner[other] = h;
         ++result_.turnedTriangles;
     }
 
     void joinCorners() {
         for (std::uint32_t h = 0; h < topology_.partner.size(); ++h) {
             const std::uint32_t other = topology_.partner[h];
-            if (other == kNone || other < h) continue;
+            if (other == kNoPartner || other < h) continue;
             pieces_.join(h / 3, other / 3);
             corners_.join(h, nextInTriangle(other));
             corners_.join(nextInTriangle(h), other);
@@ -112,7 +112,7 @@ private:
         // Each vertex is the tip of one fan of triangles, so at most one open half-edge starts there.
         std::unordered_map<std::uint32_t, std::uint32_t> openFrom;
         for (std::uint32_t h = 0; h < topology_.partner.size(); ++h)
-            if (topology_.partner[h] == kNone) openFrom[corners_.find(h)] = h;
+            if (topology_.partner[h] == kNoPartner) openFrom[corners_.find(h)] = h;
         if (openFrom.empty()) return;
         for (std::uint32_t h = 0; h < topology_.partner.size(); ++h)
             edges_.insert(directedKey(place(h), place(nextInTriangle(h))));
@@ -126,7 +126,7 @@ private:
         std::vector<std::vector<std::uint32_t>> rims;
         std::unordered_set<std::uint32_t> done;
         for (std::uint32_t h = 0; h < topology_.partner.size(); ++h) {
-            if (topology_.partner[h] != kNone || done.contains(h)) continue;
+            if (topology_.partner[h] != kNoPartner || done.contains(h)) continue;
             rims.emplace_back();
             for (std::uint32_t at = h; done.insert(at).second; at = openFrom.at(corners_.find(nextInTriangle(at))))
                 rims.back().push_back(at);
@@ -207,16 +207,16 @@ private:
     /// One vertex for each set of joined corners, in the order the mesh had them. Gives their numbers
     /// by the corner that stands for the set.
     std::vector<std::uint32_t> numberVertices() {
-        std::vector<std::uint32_t> first(cornerCount(), kNone); // vertex of the mesh, by set
+        std::vector<std::uint32_t> first(cornerCount(), kNoPartner); // vertex of the mesh, by set
         for (std::uint32_t c = 0; c < cornerCount(); ++c) {
             std::uint32_t& vertex = first[corners_.find(c)];
             vertex = std::min(vertex, vertexAt(mesh_, c));
         }
         std::vector<std::uint32_t> sets;
         for (std::uint32_t c = 0; c < cornerCount(); ++c)
-            if (first[c] != kNone) sets.push_back(c);
+            if (first[c] != kNoPartner) sets.push_back(c);
         std::ranges::stable_sort(sets, {}, [&](std::uint32_t set) { return first[set]; });
-        std::vector<std::uint32_t> number(cornerCount(), kNone);
+        std::vector<std::uint32_t> number(cornerCount(), kNoPartner);
         for (const std::uint32_t set : sets) {
             number[set] = static_cast<std::uint32_t>(result_.mesh.positions.size());
             result_.mesh.positions.push_back(mesh_.positions[first[set]]);

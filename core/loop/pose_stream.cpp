@@ -15,7 +15,7 @@ namespace {
 constexpr double kFarthest = 1000.0; // metres; what lies beyond is no room
 constexpr double kBehind = -0.05;    // seconds
 
-double secondsOf(Microseconds time) { return 1e-6 * static_cast<double>(time.count()); }
+double inSeconds(Microseconds time) { return 1e-6 * static_cast<double>(time.count()); }
 
 bool isSound(const PoseSample& sample) {
     if (!sample.valid) return true;
@@ -60,7 +60,7 @@ void PoseStream::take(const PoseSample& sample) {
     const Pose pose{sample.pose.position, glm::normalize(sample.pose.rotation)};
     const Microseconds gap = sample.time - filter.measured;
     if (filter.found && gap <= staleAfter_)
-        filter.poses.add(pose, secondsOf(gap));
+        filter.poses.add(pose, inSeconds(gap));
     else
         filter.poses.restart(pose);
     filter.found = true;
@@ -81,7 +81,7 @@ std::optional<Pose> PoseStream::at(Microseconds time, Microseconds now) const {
     const std::scoped_lock lock(mutex_);
     const Filter& filter = *filter_;
     if (!filter.tracked || now - filter.measured > staleAfter_) return std::nullopt;
-    return filter.poses.at(std::clamp(secondsOf(time - filter.measured), kBehind, kFarthestAhead));
+    return filter.poses.at(std::clamp(inSeconds(time - filter.measured), kBehind, kFarthestAhead));
 }
 
 } // namespace lumorph

@@ -19,14 +19,14 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-constexpr const char* kReplace = "choose another file, or restore this one from a copy";
+constexpr const char* kChooseAnother = "choose another file, or restore this one from a copy";
 constexpr std::string_view kEarlier = "installation-";
 
 void checkSchema(json& document, const std::string& name) {
     std::string kind;
     JsonSection root(document, "", name);
     root.text("lumorph", kind);
-    if (kind != "installation") throw DataError(name, "is not an installation of Lumorph", kReplace);
+    if (kind != "installation") throw DataError(name, "is not an installation of Lumorph", kChooseAnother);
     const auto version = document.find("schemaVersion");
     if (version == document.end() || !version->is_number_unsigned())
         throw DataError(name, "schemaVersion: is not a whole number from 0 up",
@@ -50,9 +50,10 @@ bool describesSameRoom(const fs::path& file, const Installation& installation) {
 } // namespace
 
 Installation parseInstallation(std::string_view text, const std::string& name) {
-    if (const std::string problem = jsonProblem(text); !problem.empty()) throw DataError(name, problem, kReplace);
+    if (const std::string problem = jsonProblem(text); !problem.empty()) throw DataError(name, problem, kChooseAnother);
     json document = json::parse(text);
-    if (!document.is_object()) throw DataError(name, "is not an installation: its JSON is not an object", kReplace);
+    if (!document.is_object())
+        throw DataError(name, "is not an installation: its JSON is not an object", kChooseAnother);
     checkSchema(document, name);
     Installation installation = defaultInstallation();
     JsonSection(document, "", name).section("installation", [&](const JsonSection& section) {

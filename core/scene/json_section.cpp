@@ -13,7 +13,7 @@ using nlohmann::json;
 
 constexpr const char* kCorrect = "correct it, or remove it";
 
-std::string shortest(double value) { return json(value).dump(); }
+std::string shortestText(double value) { return json(value).dump(); }
 
 } // namespace
 
@@ -81,7 +81,7 @@ const json* JsonSection::find(const std::string& key) const {
 double JsonSection::numberIn(const json& value, const std::string& key, double min, double max) const {
     const double number = value.is_number() ? value.get<double>() : std::numeric_limits<double>::quiet_NaN();
     if (!(number >= min && number <= max))
-        refuse(key, "is not a number from " + shortest(min) + " to " + shortest(max), kCorrect);
+        refuse(key, "is not a number from " + shortestText(min) + " to " + shortestText(max), kCorrect);
     return number;
 }
 

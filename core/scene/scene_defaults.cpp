@@ -48,7 +48,7 @@ Material paper() {
     return material;
 }
 
-SceneTexture picture(const std::string& image, float metres) {
+SceneTexture bundledPicture(const std::string& image, float metres) {
     SceneTexture texture;
     texture.image = image;
     texture.tile = glm::vec2(metres);
@@ -59,8 +59,8 @@ Material tableWood() {
     Material material;
     material.name = "Wood";
     material.color = {0.86F, 0.80F, 0.74F};
-    material.colorTexture = picture("resource:materials/wood.png", 0.45F);
-    material.normalMaps[0] = picture("resource:materials/wood_normal.png", 0.45F);
+    material.colorTexture = bundledPicture("resource:materials/wood.png", 0.45F);
+    material.normalMaps[0] = bundledPicture("resource:materials/wood_normal.png", 0.45F);
     material.roughness = 0.55F;
     return material;
 }

@@ -11,9 +11,9 @@
 namespace lumorph {
 namespace {
 
-constexpr std::size_t kMaxTextLength = 1000;
+constexpr std::size_t kLongestText = 1000;
 /// Radians up to a million.
-constexpr Range kManyTurns{-6e7, 6e7};
+constexpr Range kTurnRange{-6e7, 6e7};
 
 class Reader {
 public:
@@ -21,13 +21,12 @@ public:
 
     void text(const char* key, std::string& value) {
         section_.text(key, value);
-        if (value.size() > kMaxTextLength)
-            section_.refuse(key, "is longer than " + std::to_string(kMaxTextLength) + " bytes", "shorten it");
+        if (value.size() > kLongestText)
+            section_.refuse(key, "is longer than " + std::to_string(kLongestText) + " bytes", "shorten it");
     }
     void asset(const char* key, std::string& value) {
         section_.asset(key, value);
-        if (value.size() > kMaxTextLength)
-            section_.refuse(key, "is too long for the name of a file", "rename the file");
+        if (value.size() > kLongestText) section_.refuse(key, "is too long for the name of a file", "rename the file");
     }
     void flag(const char* key, bool& value) { section_.flag(key, value); }
     void number(const char* key, int& value, Range range) {
@@ -52,7 +51,7 @@ public:
         vector(key, xyzw, {-1.01, 1.01});
         value = glm::quat(xyzw.w, xyzw.x, xyzw.y, xyzw.z);
     }
-    void degrees(const char* key, Angle& value, Range range = kManyTurns) {
+    void degrees(const char* key, Angle& value, Range range = kTurnRange) {
         if (!section_.has(key)) return;
         double number = 0.0;
         section_.number(key, number, range.min, range.max);

@@ -17,7 +17,7 @@ constexpr std::string_view kOwnFirmware = "LumorphTablet";
 constexpr std::array<std::string_view, 4> kKnown = {kOwnFirmware, "StandardFirmata", "ConfigurableFirmata",
                                                     "ServoFirmata"};
 constexpr int kDoubts = 2;
-constexpr Microseconds kAskAgain{500'000};
+constexpr Microseconds kFirmataAskAgain{500'000};
 constexpr Microseconds kHeartbeat{200'000}; // our firmware's watchdog waits for 500 ms
 constexpr Microseconds kStateAtLeast{400'000};
 constexpr double kOwnLeastPulse = 500.0;  // microseconds, since 1.1; before, and in stock firmware, less is degrees
@@ -26,10 +26,10 @@ constexpr double kFrameSeconds = 0.020;   // of it
 constexpr double kGreatestStep = 16383.0; // microseconds that can be told
 constexpr long kSameValue = 4;            // microseconds: firmware keeps off its limits by one or two
 constexpr std::size_t kBytesOfDetach = 4;
-constexpr std::size_t kMostQuestions = 256; // far more than two seconds hold
-constexpr int kLimpModes = 3;               // input, output, analog: what a pin is that drives no servo
-constexpr Microseconds kVoltageEvery{2'000'000};
-constexpr Microseconds kWordsLast{10'000'000};
+constexpr std::size_t kMostStatesAsked = 256; // far more than two seconds hold
+constexpr int kLimpModes = 3;                 // input, output, analog: what a pin is that drives no servo
+constexpr Microseconds kFirmataVoltageEvery{2'000'000};
+constexpr Microseconds kFirmataWordsLast{10'000'000};
 constexpr std::size_t kLongestWords = 80;
 
 /// Sketches call themselves by their file.
@@ -133,10 +133,10 @@ private:
     int doubts_ = 0;                           ///< times that an unknown name was asked for again
     std::optional<Microseconds> doubtAskedAt_; ///< the last of them
     bool own_ = false;
-    Repeater question_{kAskAgain};
+    Repeater question_{kFirmataAskAgain};
     Repeater heartbeat_{kHeartbeat};
     Repeater stateAtLeast_{kStateAtLeast};
-    Repeater voltage_{kVoltageEvery};
+    Repeater voltage_{kFirmataVoltageEvery};
     struct Question {
         int pin = 0;
         Microseconds at{0};
@@ -221,7 +221,7 @@ void FirmataController::receive(const firmata::Version& version) {
 
 void FirmataController::receive(const firmata::Firmware& firmware) {
     // The answer to a doubt, which may come when the user has already settled it.
-    const bool asked = doubtAskedAt_ && heardAt_ - *doubtAskedAt_ < kAskAgain;
+    const bool asked = doubtAskedAt_ && heardAt_ - *doubtAskedAt_ < kFirmataAskAgain;
     if (asked && firmware_ == withoutSuffix(firmware.name)) return;
     if (asked && state_.phase == ControllerPhase::unidentified) {
         state_.phase = ControllerPhase::handshake;
@@ -347,7 +347,7 @@ void FirmataController::receive(const firmata::Voltage& voltage) {
 }
 
 void FirmataController::work(Microseconds now) {
-    if (words_ && (now < *words_ || now - *words_ >= kWordsLast)) {
+    if (words_ && (now < *words_ || now - *words_ >= kFirmataWordsLast)) {
         words_.reset();
         trouble(Concern::board, std::nullopt);
     }
@@ -372,7 +372,7 @@ void FirmataController::askState(Microseconds now) {
     stateAtLeast_.done(now);
     statesAsked_.push_back({pin, now});
     // No answer is older: after a second of silence the link is given up.
-    while (statesAsked_.size() > kMostQuestions || now - statesAsked_.front().at > 2 * kSilence)
+    while (statesAsked_.size() > kMostStatesAsked || now - statesAsked_.front().at > 2 * kSilence)
         statesAsked_.pop_front();
 }
 

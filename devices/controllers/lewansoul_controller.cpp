@@ -17,11 +17,11 @@ constexpr double kHidPerSecond = 30.0; // what real boards follow
 constexpr Microseconds kHidDetachGap{34'000};
 constexpr double kHidStep = 2.0; // 500 to 2500 us are 0 to 1000
 constexpr double kHidZero = 500.0;
-constexpr Microseconds kDrain{50'000};
-constexpr Microseconds kAskAgain{400'000};
-constexpr Microseconds kPositionsEvery{250'000};
+constexpr Microseconds kLewansoulDrain{50'000};
+constexpr Microseconds kLewansoulAskAgain{400'000};
+constexpr Microseconds kLewansoulPositionsEvery{250'000};
 constexpr Microseconds kStoppedEvery{100'000}; // positions while servos are let go: a start soon after begins there
-constexpr Microseconds kVoltageEvery{800'000}; // a sign of life where positions are not told
+constexpr Microseconds kLewansoulVoltageEvery{800'000}; // a sign of life where positions are not told
 constexpr Microseconds kStale{1'000'000};
 constexpr Microseconds kFrameGap{100'000};
 constexpr int kLeastPosition = -100; // servos turned by hand go a little beyond 0 to 1000
@@ -117,9 +117,9 @@ private:
     Microseconds lastBytes_{0};
     bool voltageAsked_ = false;
     std::size_t positionsAsked_ = 0; ///< questions that are open
-    Repeater voltage_{kVoltageEvery};
-    Repeater question_{kAskAgain};
-    Repeater positions_{kPositionsEvery};
+    Repeater voltage_{kLewansoulVoltageEvery};
+    Repeater question_{kLewansoulAskAgain};
+    Repeater positions_{kLewansoulPositionsEvery};
     Repeater stopped_{kStoppedEvery};
 };
 
@@ -136,7 +136,7 @@ void LewansoulController::begin(Microseconds now) {
 }
 
 /// Reports that were waiting in the system when the link was opened are of another time.
-bool LewansoulController::draining(Microseconds now) const { return now >= opened_ && now - opened_ < kDrain; }
+bool LewansoulController::draining(Microseconds now) const { return now >= opened_ && now - opened_ < kLewansoulDrain; }
 
 void LewansoulController::take(std::span<const std::uint8_t> bytes, Microseconds now) {
     if (draining(now)) return;

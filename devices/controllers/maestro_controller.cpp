@@ -13,11 +13,11 @@ namespace lumorph {
 namespace {
 
 constexpr double kQuarter = 0.25;
-constexpr Microseconds kDrain{50'000};
+constexpr Microseconds kMaestroDrain{50'000};
 constexpr Microseconds kErrorsEvery{200'000};
-constexpr Microseconds kPositionsEvery{250'000};
+constexpr Microseconds kMaestroPositionsEvery{250'000};
 constexpr Microseconds kAnswerWithin{250'000};
-constexpr Microseconds kWordsLast{10'000'000};
+constexpr Microseconds kMaestroWordsLast{10'000'000};
 constexpr long kNoPosition = -1;
 
 /// With a number the board is addressed by it, so that others on the same line stay still; without one any board is.
@@ -61,7 +61,7 @@ private:
     [[nodiscard]] Messages changes(std::span<const PulsePlan::Change> changes) override;
     [[nodiscard]] LinkTrouble silence(bool never) const override;
 
-    [[nodiscard]] bool draining(Microseconds now) const { return now >= drain_ && now - drain_ < kDrain; }
+    [[nodiscard]] bool draining(Microseconds now) const { return now >= drain_ && now - drain_ < kMaestroDrain; }
     [[nodiscard]] bool namesItself() const;
     void receive(const maestro::Errors& errors, Microseconds now);
     void receive(const maestro::Position& position, Microseconds now);
@@ -75,7 +75,7 @@ private:
     Microseconds drain_{0};
     Microseconds asked_{0};
     Repeater errors_{kErrorsEvery};
-    Repeater positions_{kPositionsEvery};
+    Repeater positions_{kMaestroPositionsEvery};
     std::size_t next_ = 0;  ///< servo whose channel is asked for next
     int contrary_ = 0;      ///< answers in a row that tell of a servo that was let go
     bool oldErrors_ = true; ///< those told next are of before
@@ -174,7 +174,7 @@ void MaestroController::letGo(LinkTrouble why, Microseconds now) {
 }
 
 void MaestroController::work(Microseconds now) {
-    if (words_ && (now < *words_ || now - *words_ >= kWordsLast)) {
+    if (words_ && (now < *words_ || now - *words_ >= kMaestroWordsLast)) {
         words_.reset();
         trouble(Concern::board, std::nullopt);
     }

@@ -9,7 +9,7 @@ namespace {
 
 constexpr Microseconds kRestAtMost{2'000'000};
 constexpr Microseconds kCloseAfter{250'000}; // detaching is repeated meanwhile
-constexpr Microseconds kTrustedRest{2'000'000};
+constexpr Microseconds kTrustedRestOfOrders{2'000'000};
 
 /// The same board with the same wires: only limits and manners may differ.
 bool sameWires(const DeviceProfile& made, const DeviceProfile& wanted) {
@@ -160,7 +160,7 @@ void ServoEngine::Data::take(const servo_input::Lost& lost) {
     linkTrouble = lost.why;
     const bool wasArmed = armed();
     // What was sent last may never have arrived.
-    if (wasArmed && passed - movedAt < kTrustedRest) forget();
+    if (wasArmed && passed - movedAt < kTrustedRestOfOrders) forget();
     guard.disarm();
     stalledSince.reset();
     silentSince.reset();

@@ -12,10 +12,10 @@ namespace {
 using Bytes = std::vector<std::uint8_t>;
 
 constexpr std::size_t kServos = 6;
-constexpr std::size_t kReport = 64;
+constexpr std::size_t kReportLength = 64;
 constexpr int kGreatestUnit = 1000;
-constexpr Microseconds kTick{10'000}; // a servo renews its goal so often on its way
-constexpr int kFailingUnload = 5;     // one out of so many does nothing
+constexpr Microseconds kGoalTick{10'000}; // a servo renews its goal so often on its way
+constexpr int kFailingUnload = 5;         // one out of so many does nothing
 
 double pulseOfUnits(int units) { return 500.0 + 2.0 * std::min(units, kGreatestUnit); }
 
@@ -43,7 +43,8 @@ public:
 
     void receive(std::span<const std::uint8_t> report, Microseconds now) override {
         wake(now);
-        if (report.size() == kReport + 1 && report[0] == 0) report = report.subspan(1); // the absent report number
+        if (report.size() == kReportLength + 1 && report[0] == 0)
+            report = report.subspan(1); // the absent report number
         if (report.size() < 4 || report[0] != 0x55 || report[1] != 0x55 || report[2] < 2) return;
         const std::size_t parameters = report[2] - 2U;
         if (report.size() < 4 + parameters) return;
@@ -54,7 +55,7 @@ public:
         std::optional<Microseconds> first;
         for (const Ramp& ramp : ramps_) {
             if (ramp.ends <= now_) continue;
-            const Microseconds next = std::min(ramp.ends, now_ + kTick);
+            const Microseconds next = std::min(ramp.ends, now_ + kGoalTick);
             first = first ? std::min(*first, next) : next;
         }
         return first;
@@ -119,7 +120,7 @@ private:
         Bytes message{0x55, 0x55, static_cast<std::uint8_t>(triples.size() + 3), 0x15,
                       static_cast<std::uint8_t>(triples.size() / 3)};
         message.insert(message.end(), triples.begin(), triples.end());
-        if (message.size() <= kReport) hardware_.said.push_back(std::move(message));
+        if (message.size() <= kReportLength) hardware_.said.push_back(std::move(message));
     }
 
     BoardHardware& hardware_;

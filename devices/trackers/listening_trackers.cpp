@@ -14,7 +14,7 @@ namespace lumorph {
 
 namespace {
 
-constexpr std::chrono::milliseconds kStep{100};
+constexpr std::chrono::milliseconds kListeningStep{100};
 
 /// Listens to one port; what is read from packets is the business of the kind.
 class ListeningWork : public TrackerWork {
@@ -116,13 +116,13 @@ std::unique_ptr<Tracker> openOpenTrack(const OpenTrackAddress& address, const st
                                        TrackerOptions options) {
     auto log = std::make_shared<TrackerLog>(uri, options.clock);
     return std::make_unique<TrackerThread>(
-        log, [=] { return std::make_unique<OpenTrackWork>(address, log, options); }, kStep);
+        log, [=] { return std::make_unique<OpenTrackWork>(address, log, options); }, kListeningStep);
 }
 
 std::unique_ptr<Tracker> openOsc(const OscAddress& address, const std::string& uri, TrackerOptions options) {
     auto log = std::make_shared<TrackerLog>(uri, options.clock);
     return std::make_unique<TrackerThread>(
-        log, [=] { return std::make_unique<OscWork>(address, log, options); }, kStep);
+        log, [=] { return std::make_unique<OscWork>(address, log, options); }, kListeningStep);
 }
 
 } // namespace lumorph

@@ -16,7 +16,7 @@ using natnet::Version;
 
 constexpr Microseconds kHelloEvery{1'000'000};
 constexpr Microseconds kAliveEvery{2'000'000};
-constexpr Microseconds kSilence{3'000'000};
+constexpr Microseconds kServerSilence{3'000'000};
 constexpr Microseconds kNamesEvery{1'000'000};
 constexpr Microseconds kEchoEvery{1'000'000};
 constexpr std::size_t kQuickEchoes = 5; ///< one a tick, until times are known well
@@ -57,7 +57,7 @@ bool NatNetClient::isVerified() const noexcept {
 }
 
 void NatNetClient::tick(Microseconds now) {
-    const bool silent = !server_ || !heard_ || now - *heard_ > kSilence;
+    const bool silent = !server_ || !heard_ || now - *heard_ > kServerSilence;
     if (now >= nextHello_) {
         if (silent)
             send_(natnet::connectPacket("Lumorph", kProgram));

@@ -12,7 +12,7 @@ namespace lumorph {
 
 namespace {
 
-constexpr std::chrono::milliseconds kStep{100};
+constexpr std::chrono::milliseconds kNatNetStep{100};
 constexpr Microseconds kAgain{2'000'000};
 
 QHostAddress hostOf(const std::string& text) { return QHostAddress(QString::fromStdString(text)); }
@@ -156,7 +156,8 @@ private:
 std::unique_ptr<Tracker> openNatNet(const NatNetAddress& address, const std::string& uri, TrackerOptions options) {
     auto log = std::make_shared<TrackerLog>(uri, options.clock);
     return std::make_unique<TrackerThread>(
-        log, [=, options = std::move(options)] { return std::make_unique<NatNetWork>(address, log, options); }, kStep);
+        log, [=, options = std::move(options)] { return std::make_unique<NatNetWork>(address, log, options); },
+        kNatNetStep);
 }
 
 } // namespace lumorph

@@ -6,7 +6,7 @@ namespace lumorph {
 
 namespace {
 
-constexpr Microseconds kSilence{1'000'000};
+constexpr Microseconds kFrameSilence{1'000'000};
 constexpr Microseconds kRecent{5'000'000};
 
 constexpr const char* kHowToOpen =
@@ -15,8 +15,8 @@ constexpr const char* kHowToOpen =
 bool isRecent(const std::optional<Microseconds>& since) { return since && *since < kRecent; }
 
 bool allIsWell(const TrackerSituation& s) {
-    if (s.sinceFrame) return *s.sinceFrame <= kSilence;
-    return s.sinceOpened <= kSilence;
+    if (s.sinceFrame) return *s.sinceFrame <= kFrameSilence;
+    return s.sinceOpened <= kFrameSilence;
 }
 
 std::string seconds(Microseconds time) { return std::to_string(time.count() / 1'000'000) + " s"; }

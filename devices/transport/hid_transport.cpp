@@ -27,7 +27,7 @@ namespace lumorph {
 namespace {
 
 constexpr std::size_t kReport = 64;
-constexpr std::chrono::milliseconds kLook{
+constexpr std::chrono::milliseconds kHidLook{
     4};                          // how long a report may lie unread: 250 looks a second cost next to nothing
 constexpr int kMostReports = 16; // read before the next write has its turn
 
@@ -73,7 +73,7 @@ private:
     bool nextToWrite(std::optional<OutputReport>& report) {
         std::unique_lock lock(mutex_);
         writing_ = false;
-        changed_.wait_for(lock, kLook, [this] { return stopped_ || !waiting_.empty(); });
+        changed_.wait_for(lock, kHidLook, [this] { return stopped_ || !waiting_.empty(); });
         if (stopped_) return false;
         report.reset();
         if (waiting_.empty()) return true;

@@ -13,8 +13,8 @@ namespace {
 
 constexpr Microseconds kFirstPause{200'000};
 constexpr Microseconds kLongestPause{2'000'000};
-constexpr Microseconds kLook{100'000};   // between two looks for the device's return
-constexpr Microseconds kSettle{100'000}; // a new node gets its permissions a moment after it appears
+constexpr Microseconds kReturnLook{100'000}; // between two looks for the device's return
+constexpr Microseconds kSettle{100'000};     // a new node gets its permissions a moment after it appears
 
 /// Pauses between attempts: 0.2 s, doubling, at most 2 s.
 struct Backoff {
@@ -129,7 +129,7 @@ void LinkKeeper::Data::lose(const LinkTrouble& why) {
 }
 
 void LinkKeeper::Data::lookForReturn(Microseconds now) {
-    if (now - looked < kLook) return;
+    if (now - looked < kReturnLook) return;
     looked = now;
     std::string sight = world.sight(address);
     if (sight == seen) return;

@@ -13,7 +13,7 @@ namespace {
 /// Enough for any refinement to end by itself, on a slow machine too.
 const std::string kPatience = "60000";
 
-nlohmann::json jsonOf(const std::vector<std::string>& arguments) {
+nlohmann::json matchJson(const std::vector<std::string>& arguments) {
     const Outcome outcome = lumorph(arguments);
     EXPECT_EQ(outcome.exitCode, 0) << outcome.err;
     return outcome.json();
@@ -38,9 +38,9 @@ TEST(MatchQuality, RefinedIsNeverWorseThanVoting) {
         SCOPED_TRACE(target.name);
         std::vector<std::string> arguments{"match", w.field(), target.path, "--json"};
         if (target.fit) arguments.emplace_back("--fit");
-        const nlohmann::json voting = jsonOf(arguments);
+        const nlohmann::json voting = matchJson(arguments);
         arguments.insert(arguments.end(), {"--method", "refined", "--budget-ms", kPatience});
-        const nlohmann::json refined = jsonOf(arguments);
+        const nlohmann::json refined = matchJson(arguments);
         EXPECT_GE(refined["iou"].get<double>(), voting["iou"].get<double>());
         EXPECT_DOUBLE_EQ(refined["iouBefore"].get<double>(), voting["iou"].get<double>());
         EXPECT_TRUE(refined["converged"].get<bool>());
@@ -58,7 +58,7 @@ TEST(MatchQuality, AutoPlaceIsAtLeastAsGoodAsFit) {
     const auto with = [&](const char* option) {
         std::vector<std::string> arguments = match;
         arguments.emplace_back(option);
-        return jsonOf(arguments);
+        return matchJson(arguments);
     };
     const nlohmann::json fit = with("--fit");
     const nlohmann::json placed = with("--auto-place");
@@ -72,7 +72,7 @@ TEST(MatchQuality, AnimationKeepsToTheVelocityLimits) {
     constexpr double kFramesPerSecond = 25.0;
     constexpr std::size_t kFirstActuator = 3; // column: after seconds, IoU wanted and reached
     const TabletWorkspace w;
-    const nlohmann::json rig = jsonOf({"rig", "info", resource("models/tablet.glb"), "--states", "1", "--json"});
+    const nlohmann::json rig = matchJson({"rig", "info", resource("models/tablet.glb"), "--states", "1", "--json"});
     const Outcome outcome = lumorph(
         {"match", w.field(), resource("targets/swell.glb"), "--animation", "first", "--fps", "25", "--csv", "-"});
     ASSERT_EQ(outcome.exitCode, 0) << outcome.err;

@@ -25,7 +25,7 @@ namespace {
 using namespace std::chrono_literals;
 using Bytes = std::vector<std::uint8_t>;
 
-constexpr std::size_t kServos = 3;
+constexpr std::size_t kDeadLinkServos = 3;
 constexpr double kShareOfACore = 0.05;
 
 std::atomic<int> g_qtWords{0};
@@ -57,7 +57,8 @@ protected:
         if (address.starts_with("sim://")) board_ = bench_.board(address.substr(6));
         profile.staggerSeconds = 0.0;
         profile.restOnExit = false;
-        for (std::size_t i = 0; i < kServos; ++i) profile.servos.push_back({.channel = first + static_cast<int>(i)});
+        for (std::size_t i = 0; i < kDeadLinkServos; ++i)
+            profile.servos.push_back({.channel = first + static_cast<int>(i)});
         LinkOptions options;
         options.bench = &bench_;
         options.onWire = [this](std::span<const std::uint8_t> bytes, bool sent) {
@@ -87,7 +88,7 @@ protected:
     }
     void goLive() {
         ASSERT_TRUE(reaches(LinkPhase::disarmed));
-        link_->command(std::vector<double>(kServos, 0.5));
+        link_->command(std::vector<double>(kDeadLinkServos, 0.5));
         link_->arm(true);
         ASSERT_TRUE(reaches(LinkPhase::live));
     }
@@ -97,11 +98,11 @@ protected:
         (void)runUntil(
             [&] {
                 const std::chrono::duration<double> passed = std::chrono::steady_clock::now() - begin;
-                link_->command(std::vector<double>(kServos, 0.5 + 0.4 * std::sin(9.0 * passed.count())));
+                link_->command(std::vector<double>(kDeadLinkServos, 0.5 + 0.4 * std::sin(9.0 * passed.count())));
                 return passed > time;
             },
             time * 2);
-        link_->command(std::vector<double>(kServos, last));
+        link_->command(std::vector<double>(kDeadLinkServos, last));
     }
     void stall(bool isSo) {
         BoardFaults faults = board_->faults();
@@ -112,9 +113,10 @@ protected:
         return runUntil(
             [&] {
                 const std::vector<SimulatedServo> servos = board_->servos();
-                return std::ranges::all_of(std::span(servos).first(kServos), [stroke](const SimulatedServo& servo) {
-                    return std::abs(servo.pulse - (1000.0 + 1000.0 * stroke)) < 1.5;
-                });
+                return std::ranges::all_of(std::span(servos).first(kDeadLinkServos),
+                                           [stroke](const SimulatedServo& servo) {
+                                               return std::abs(servo.pulse - (1000.0 + 1000.0 * stroke)) < 1.5;
+                                           });
             },
             10s);
     }
@@ -148,7 +150,7 @@ TEST_F(ServoLinkDead, ADeadPseudoTerminalCostsNoTimeAndFewWords) {
     changes_ = 0;
     const double begin = timeOfOthers();
     const auto commanded = [this, on = 0.0]() mutable {
-        link_->command(std::vector<double>(kServos, on = 1.0 - on));
+        link_->command(std::vector<double>(kDeadLinkServos, on = 1.0 - on));
         return false;
     };
     (void)runUntil(commanded, 2s);
@@ -206,7 +208,7 @@ TEST_F(ServoLinkDead, ABrownOutIsToldByEveryBoard) {
             },
             10s))
             << row.address << " said " << said;
-        link_->command(std::vector<double>(kServos, 0.9));
+        link_->command(std::vector<double>(kDeadLinkServos, 0.9));
         EXPECT_TRUE(reaches(LinkPhase::disarmed)) << row.address;
         (void)runUntil([] { return false; }, 300ms);
         for (const SimulatedServo& servo : board_->servos()) EXPECT_EQ(servo.pulse, 0.0) << row.address;

@@ -16,7 +16,7 @@ using testing::IsEmpty;
 
 const Bytes kErrorQuestion = {0xAA, 0x0C, 0x21};
 const Bytes kPositionQuestion = {0xAA, 0x0C, 0x10};
-const Messages kQuestions = {kErrorQuestion, kPositionQuestion};
+const Messages kMaestroQuestions = {kErrorQuestion, kPositionQuestion};
 
 /// A board that answers: its error register, and a position of every channel.
 class AnsweringTrial {
@@ -81,7 +81,7 @@ TEST(MaestroController, IsKnownByNameAndByAnswer) {
         EXPECT_EQ(trial.state().errors, 0U);
         EXPECT_FALSE(trial.state().trouble);
         trial.send({{0, 1500.0, true}});
-        EXPECT_EQ(trial.writtenBut(kQuestions).empty(), row.phase != ControllerPhase::ready);
+        EXPECT_EQ(trial.writtenBut(kMaestroQuestions).empty(), row.phase != ControllerPhase::ready);
     }
 }
 

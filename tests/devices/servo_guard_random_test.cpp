@@ -9,12 +9,12 @@
 
 #include "core/base/error.h"
 #include "devices/controllers/servo_guard.h"
+#include "tests/support/not_a_number.h"
 
 namespace lumorph {
 namespace {
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kUnbounded = std::numeric_limits<double>::infinity();
 
 /// What one servo may do, as this test sees it: in microseconds, and knowing nothing of strokes inside the guard.
 struct Oracle {
@@ -149,7 +149,7 @@ private:
     }
     void wantBadly() {
         std::vector<double> strokes(pick(3) ? 3 : pick(3), 0.5);
-        if (strokes.size() == 3) strokes[pick(3)] = pick(2) ? kNan : pick(2) ? kInfinity : -kInfinity;
+        if (strokes.size() == 3) strokes[pick(3)] = pick(2) ? kNan : pick(2) ? kUnbounded : -kUnbounded;
         EXPECT_FALSE(guard_.want(strokes));
     }
     void arm() {

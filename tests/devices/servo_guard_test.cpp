@@ -7,11 +7,11 @@
 #include <gtest/gtest.h>
 
 #include "core/base/error.h"
+#include "tests/support/not_a_number.h"
 
 namespace lumorph {
 namespace {
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr Microseconds kTick{5'000};
 

@@ -22,8 +22,8 @@ using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::StartsWith;
 
-constexpr glm::dvec3 kHere{0.0, 1.0, 0.0};
-constexpr glm::dvec3 kThere{0.7, 1.0, 0.0};
+constexpr glm::dvec3 kFirstPlace{0.0, 1.0, 0.0};
+constexpr glm::dvec3 kSecondPlace{0.7, 1.0, 0.0};
 
 /// Tells what it was told to tell.
 class PlainTracker final : public Tracker {
@@ -77,40 +77,40 @@ protected:
 
 TEST_F(SharedNames, TheSecondIsToldWhomTheShowFollowsAndWhatToDo) {
     hub.setRoles({{"head", PoseRole::head}});
-    take(sim, kHere);
+    take(sim, kFirstPlace);
     EXPECT_THAT(adviceOf(openTrack), IsEmpty());
-    take(openTrack, kThere);
+    take(openTrack, kSecondPlace);
     EXPECT_EQ(adviceOf(openTrack), "'head' of this tracker is not followed: sim://head (a simulated head) brings the "
                                    "same name and came first. Close one of the two trackers, or rename the body in "
                                    "its program.");
     EXPECT_THAT(adviceOf(sim), IsEmpty()) << "nothing is wrong with the first";
-    take(sim, kHere);
+    take(sim, kFirstPlace);
     clock->advance(Microseconds{3'000'000});
     EXPECT_THAT(adviceOf(openTrack), IsEmpty()) << "it no longer sends";
 }
 
 TEST_F(SharedNames, WithoutARoleNobodyIsInTheWay) {
-    take(sim, kHere);
-    take(openTrack, kThere);
+    take(sim, kFirstPlace);
+    take(openTrack, kSecondPlace);
     EXPECT_THAT(adviceOf(openTrack), IsEmpty());
 }
 
 TEST_F(SharedNames, WhenTheFirstIsClosedTheSecondIsThereAtOnce) {
     hub.setRoles({{"head", PoseRole::head}});
     for (int i = 0; i < 10; ++i) {
-        take(sim, kHere - glm::dvec3(0.005 * i, 0, 0));
-        take(openTrack, kThere);
+        take(sim, kFirstPlace - glm::dvec3(0.005 * i, 0, 0));
+        take(openTrack, kSecondPlace);
     }
     hub.close(sim);
     ASSERT_EQ(board->entries().size(), 1U);
-    take(openTrack, kThere);
+    take(openTrack, kSecondPlace);
     ASSERT_TRUE(head());
-    EXPECT_EQ(head()->position, kThere);
+    EXPECT_EQ(head()->position, kSecondPlace);
     EXPECT_THAT(adviceOf(openTrack), IsEmpty());
     hub.open(sim, false);
-    take(sim, kHere);
-    take(openTrack, kThere);
-    EXPECT_LT(glm::distance(head()->position, kThere), 1e-9) << "now the other came first";
+    take(sim, kFirstPlace);
+    take(openTrack, kSecondPlace);
+    EXPECT_LT(glm::distance(head()->position, kSecondPlace), 1e-9) << "now the other came first";
     EXPECT_THAT(adviceOf(sim), HasSubstr("opentrack://127.0.0.1:4242 (opentrack from 127.0.0.1)"));
     hub.close(sim);
     hub.close(openTrack);
@@ -119,11 +119,11 @@ TEST_F(SharedNames, WhenTheFirstIsClosedTheSecondIsThereAtOnce) {
 
 TEST_F(SharedNames, WhoTakesOverFromASilentOneIsNoLongerToldOfIt) {
     hub.setRoles({{"head", PoseRole::head}});
-    take(sim, kHere);
-    for (int i = 0; i < 60; ++i) take(openTrack, kThere);
-    EXPECT_LT(glm::distance(head()->position, kThere), 1e-9);
+    take(sim, kFirstPlace);
+    for (int i = 0; i < 60; ++i) take(openTrack, kSecondPlace);
+    EXPECT_LT(glm::distance(head()->position, kSecondPlace), 1e-9);
     EXPECT_THAT(adviceOf(openTrack), IsEmpty());
-    take(sim, kHere);
+    take(sim, kFirstPlace);
     EXPECT_THAT(adviceOf(sim), HasSubstr("opentrack://127.0.0.1:4242"));
 }
 
@@ -132,8 +132,8 @@ TEST_F(SharedNames, ManyAreCountedAndTheTrackersOwnAdviceStays) {
     ownAdvice = "The sun is low.";
     hub.open(openTrack, false);
     hub.setRoles({{"hand", PoseRole::pointer}, {"head", PoseRole::head}, {"tablet", PoseRole::device}});
-    take(sim, kHere, {"hand", "head", "tablet"});
-    take(openTrack, kThere, {"head", "tablet", "hand", "chair"});
+    take(sim, kFirstPlace, {"hand", "head", "tablet"});
+    take(openTrack, kSecondPlace, {"head", "tablet", "hand", "chair"});
     EXPECT_THAT(adviceOf(openTrack),
                 AllOf(StartsWith("The sun is low. 'hand' and 2 other bodies of this tracker are not followed: "),
                       HasSubstr("rename the bodies")));
@@ -155,15 +155,15 @@ TEST(SharedNamesInThreads, MaySendAndBeAskedAtOnceAndNothingIsMixed) {
             hub.take(uri, {1, clock->now(), clock->now(), {{1, "head", true, {position, {1, 0, 0, 0}}}}});
         --sending;
     };
-    const std::jthread one([&] { send("one", kHere); });
-    const std::jthread other([&] { send("other", kThere); });
+    const std::jthread one([&] { send("one", kFirstPlace); });
+    const std::jthread other([&] { send("other", kSecondPlace); });
     while (sending > 0) {
         (void)hub.status();
         for (const PoseBoard::Entry& entry : board->entries()) {
             const auto pose = entry.stream->at(clock->now(), clock->now());
             if (!pose) continue;
-            const double here = glm::distance(pose->position, kHere);
-            const double there = glm::distance(pose->position, kThere);
+            const double here = glm::distance(pose->position, kFirstPlace);
+            const double there = glm::distance(pose->position, kSecondPlace);
             ASSERT_LT(std::min(here, there), 1e-9) << "one of the two";
         }
     }

@@ -13,13 +13,12 @@
 
 #include "core/base/error.h"
 #include "tests/devices/running_tracker.h"
+#include "tests/support/not_a_number.h"
 
 namespace lumorph {
 namespace {
 
 using ::testing::HasSubstr;
-
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 /// A hub with a clock that is turned by hand, fed as a replay would.
 class TrackerHubTest : public ::testing::Test {

@@ -22,7 +22,7 @@ using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::Not;
 
-Microseconds at(double seconds) { return Microseconds(std::llround(1e6 * seconds)); }
+Microseconds timeAt(double seconds) { return Microseconds(std::llround(1e6 * seconds)); }
 
 TEST(TrackerAddress, ReadsEveryKind) {
     NatNetAddress natnet;
@@ -83,26 +83,26 @@ TEST(TrackerAddress, RefusesWhatIsNoneAndNamesIt) {
 TEST(ClockMatch, TheQuickestAnswerIsBelieved) {
     ClockMatch match;
     EXPECT_FALSE(match.localOf(5000));
-    match.add(at(1.0), at(1.4), 999'999, 1000); // slow, and far off
-    match.add(at(2.0), at(2.002), 5000, 1000);
-    match.add(at(3.0), at(3.3), 1, 1000);
-    EXPECT_EQ(match.localOf(5000), at(2.001));
-    EXPECT_EQ(match.localOf(6500), at(3.501));
-    EXPECT_EQ(match.localOf(4000), at(1.001));
+    match.add(timeAt(1.0), timeAt(1.4), 999'999, 1000); // slow, and far off
+    match.add(timeAt(2.0), timeAt(2.002), 5000, 1000);
+    match.add(timeAt(3.0), timeAt(3.3), 1, 1000);
+    EXPECT_EQ(match.localOf(5000), timeAt(2.001));
+    EXPECT_EQ(match.localOf(6500), timeAt(3.501));
+    EXPECT_EQ(match.localOf(4000), timeAt(1.001));
     match.clear();
     EXPECT_FALSE(match.localOf(5000));
 }
 
 TEST(ClockMatch, OldAnswersAreForgottenAndImpossibleOnesNotTaken) {
     ClockMatch match;
-    match.add(at(2.0), at(1.0), 1, 1000); // answered before it was asked
-    match.add(at(2.0), at(2.6), 1, 1000); // too slow
-    match.add(at(2.0), at(2.1), 1, 0);
+    match.add(timeAt(2.0), timeAt(1.0), 1, 1000); // answered before it was asked
+    match.add(timeAt(2.0), timeAt(2.6), 1, 1000); // too slow
+    match.add(timeAt(2.0), timeAt(2.1), 1, 0);
     EXPECT_FALSE(match.localOf(1));
-    match.add(at(0.0), at(0.001), 0, 1000);
+    match.add(timeAt(0.0), timeAt(0.001), 0, 1000);
     for (int i = 0; i < 16; ++i)
-        match.add(at(10.0 + i), at(10.01 + i), 20'000 + 1000U * static_cast<unsigned>(i), 1000);
-    EXPECT_EQ(match.localOf(20'000), at(10.005)) << "the quick one of long ago has drifted away";
+        match.add(timeAt(10.0 + i), timeAt(10.01 + i), 20'000 + 1000U * static_cast<unsigned>(i), 1000);
+    EXPECT_EQ(match.localOf(20'000), timeAt(10.005)) << "the quick one of long ago has drifted away";
     EXPECT_FALSE(match.localOf(~std::uint64_t{0} / 2));
 }
 
@@ -110,20 +110,20 @@ TEST(RateMeter, TellsEvenRatesAndForgetsWhatStopped) {
     for (const double hertz : {1.0, 30.0, 120.0, 240.0, 1000.0}) {
         RateMeter meter;
         double now = 5.0;
-        for (int i = 0; i < static_cast<int>(3 * hertz); ++i) meter.note(at(now += 1.0 / hertz));
-        EXPECT_NEAR(meter.perSecond(at(now)), hertz, 0.02 * hertz);
-        EXPECT_EQ(meter.perSecond(at(now + 1.0)), 0.0);
+        for (int i = 0; i < static_cast<int>(3 * hertz); ++i) meter.note(timeAt(now += 1.0 / hertz));
+        EXPECT_NEAR(meter.perSecond(timeAt(now)), hertz, 0.02 * hertz);
+        EXPECT_EQ(meter.perSecond(timeAt(now + 1.0)), 0.0);
     }
-    EXPECT_EQ(RateMeter().perSecond(at(0.1)), 0.0);
+    EXPECT_EQ(RateMeter().perSecond(timeAt(0.1)), 0.0);
 }
 
 // --- The simulated body
 
 std::vector<TrackerFrame> framesOf(const SimulatedBodyAddress& address, double seconds) {
     std::vector<TrackerFrame> frames;
-    SimulatedBody body(address, at(100.0));
+    SimulatedBody body(address, timeAt(100.0));
     for (double t = 0.0; t <= seconds + 1e-9; t += 0.004)
-        body.advance(at(100.0 + t), [&](const TrackerFrame& frame) { frames.push_back(frame); });
+        body.advance(timeAt(100.0 + t), [&](const TrackerFrame& frame) { frames.push_back(frame); });
     return frames;
 }
 
@@ -131,8 +131,8 @@ TEST(SimulatedBody, ComesAtItsRateWithItsLatency) {
     const auto frames = framesOf({"head", 0.0, 0.0, 40.0, 100.0}, 10.0);
     EXPECT_NEAR(static_cast<double>(frames.size()), 997.0, 1.0);
     for (const TrackerFrame& frame : frames) EXPECT_EQ(frame.arrived - frame.measured, Microseconds{40'000});
-    const SimulatedBody body({"head"}, at(100.0));
-    const double when = 1e-6 * static_cast<double>((frames[500].measured - at(100.0)).count());
+    const SimulatedBody body({"head"}, timeAt(100.0));
+    const double when = 1e-6 * static_cast<double>((frames[500].measured - timeAt(100.0)).count());
     EXPECT_EQ(frames[500].bodies.at(0).pose, body.path(when));
     EXPECT_EQ(frames[500].bodies.at(0).name, "head");
 }
@@ -141,10 +141,10 @@ TEST(SimulatedBody, NoiseAndDropsAreAsOrdered) {
     const SimulatedBodyAddress address{"head", 2.0, 0.25, 0.0, 200.0};
     const auto frames = framesOf(address, 50.0);
     EXPECT_NEAR(static_cast<double>(frames.size()), 7500.0, 200.0) << "a quarter is dropped";
-    const SimulatedBody body(address, at(100.0));
+    const SimulatedBody body(address, timeAt(100.0));
     double sum = 0.0;
     for (const TrackerFrame& frame : frames) {
-        const double when = 1e-6 * static_cast<double>((frame.measured - at(100.0)).count());
+        const double when = 1e-6 * static_cast<double>((frame.measured - timeAt(100.0)).count());
         const double off = frame.bodies.at(0).pose.position.x - body.path(when).position.x;
         sum += off * off;
     }
@@ -153,14 +153,14 @@ TEST(SimulatedBody, NoiseAndDropsAreAsOrdered) {
 }
 
 TEST(SimulatedBody, MovesSlowlyAndSleepsOverAPause) {
-    const SimulatedBody head({"head"}, at(0.0));
+    const SimulatedBody head({"head"}, timeAt(0.0));
     for (double t = 0.0; t < 60.0; t += 0.01) {
         EXPECT_LT(glm::distance(head.path(t).position, head.path(t + 0.01).position), 0.005);
         EXPECT_LT(glm::distance(head.path(t).position, {0.0, 0.45, 0.6}), 0.3);
     }
-    SimulatedBody body({"device"}, at(0.0));
+    SimulatedBody body({"device"}, timeAt(0.0));
     int frames = 0;
-    body.advance(at(3600.0), [&](const TrackerFrame&) { ++frames; });
+    body.advance(timeAt(3600.0), [&](const TrackerFrame&) { ++frames; });
     EXPECT_LE(frames, 102) << "at most what a second holds";
     EXPECT_GE(frames, 99);
 }
@@ -169,12 +169,12 @@ TEST(SimulatedBody, MovesSlowlyAndSleepsOverAPause) {
 template <typename Steer> std::vector<TrackerFrame> steered(double seconds, Steer steer) {
     std::vector<TrackerFrame> frames;
     const SimulatedBodyAddress address{"head"};
-    SimulatedBody body(address, at(0.0));
+    SimulatedBody body(address, timeAt(0.0));
     SimulatedOrders orders = ordersOf(address);
     for (int i = 0; 0.002 * i <= seconds; ++i) {
         steer(orders, 0.002 * i);
-        body.order(orders, at(0.002 * i));
-        body.advance(at(0.002 * i), [&](const TrackerFrame& frame) { frames.push_back(frame); });
+        body.order(orders, timeAt(0.002 * i));
+        body.advance(timeAt(0.002 * i), [&](const TrackerFrame& frame) { frames.push_back(frame); });
     }
     return frames;
 }
@@ -189,7 +189,7 @@ TEST(SteeredBody, IsWhereItIsHeldAndComesThatMuchLater) {
     for (const TrackerFrame& frame : frames) {
         EXPECT_EQ(frame.arrived - frame.measured, Microseconds{200'000});
         const bool isHeld = frame.bodies[0].pose == held;
-        EXPECT_EQ(isHeld, frame.measured >= at(1.0)) << frame.measured.count();
+        EXPECT_EQ(isHeld, frame.measured >= timeAt(1.0)) << frame.measured.count();
         ++(isHeld ? after : before);
     }
     EXPECT_NEAR(before, 100, 1);
@@ -214,7 +214,7 @@ TEST(SteeredBody, IsSpoiledForTenFramesEachTime) {
         orders.hidden = t >= 1.9;
     });
     int jumped = 0, lacking = 0, lost = 0;
-    const SimulatedBody truth({"head"}, at(0.0));
+    const SimulatedBody truth({"head"}, timeAt(0.0));
     for (const TrackerFrame& frame : frames) {
         const TrackedBody& body = frame.bodies[0];
         lost += body.valid ? 0 : 1;
@@ -232,7 +232,7 @@ TEST(TrackerLog, TellsOfABodyThatJumpsAndOfNoneThatRuns) {
     const auto clock = std::make_shared<ManualClock>();
     TrackerLog log("sim://head", clock);
     const auto see = [&](double x, double seconds, bool valid = true) {
-        clock->advance(at(seconds));
+        clock->advance(timeAt(seconds));
         log.noteFrame({1, clock->now(), clock->now(), {{7, "hat", valid, {{x, 0, 0}, {1, 0, 0, 0}}}}}, {});
         return log.status().events;
     };
@@ -251,7 +251,7 @@ TEST(TrackerLog, TellsOfAPoseThatIsNoNumber) {
     const auto clock = std::make_shared<ManualClock>();
     TrackerLog log("natnet://127.0.0.1", clock);
     const auto see = [&](bool isNumber) {
-        clock->advance(at(0.01));
+        clock->advance(timeAt(0.01));
         log.noteFrame({1, clock->now(), clock->now(), {{7, "hat", isNumber, {}, isNumber}}}, {});
         return log.status().events;
     };
@@ -270,7 +270,7 @@ NatNetSituation quiet() {
     s.hostIsHere = false;
     s.openToNetwork = true;
     s.ownAddresses = "127.0.0.1, 192.168.0.2";
-    s.sinceOpened = at(5.0);
+    s.sinceOpened = timeAt(5.0);
     return s;
 }
 
@@ -278,12 +278,12 @@ NatNetAddress remote() { return std::get<NatNetAddress>(parseTrackerAddress("nat
 
 TEST(TrackerAdvice, NothingIsSaidWhileAllIsWellOrItIsTooEarly) {
     NatNetSituation s = quiet();
-    s.sinceOpened = at(0.5);
+    s.sinceOpened = timeAt(0.5);
     EXPECT_THAT(adviceFor(remote(), s), IsEmpty());
-    s.sinceOpened = at(50.0);
-    s.sinceFrame = at(0.1);
+    s.sinceOpened = timeAt(50.0);
+    s.sinceFrame = timeAt(0.1);
     EXPECT_THAT(adviceFor(remote(), s), IsEmpty());
-    s.sinceFrame = at(12.5);
+    s.sinceFrame = timeAt(12.5);
     EXPECT_THAT(adviceFor(remote(), s), HasSubstr("No pose has arrived for 12 s"));
 }
 
@@ -378,7 +378,7 @@ TEST(TrackerAdvice, NatNetKnowsWhatIsWrong) {
     s.openToNetwork = false;
     s.dropped = 17;
     s.lastDropped = "192.168.0.77";
-    s.sinceDropped = at(0.1);
+    s.sinceDropped = timeAt(0.1);
     EXPECT_THAT(adviceFor(remote(), s), HasSubstr("17 packets of another machine (the last from 192.168.0.77) were"));
 
     s = quiet();
@@ -386,7 +386,7 @@ TEST(TrackerAdvice, NatNetKnowsWhatIsWrong) {
     EXPECT_THAT(adviceFor(remote(), s), HasSubstr("does not answer at port 1510"));
 
     s = quiet();
-    s.sinceRejected = at(0.2);
+    s.sinceRejected = timeAt(0.2);
     s.lastRejected = "from 127.0.0.1 port 5: it ends too early";
     EXPECT_THAT(adviceFor(remote(), s), HasSubstr("it ends too early"));
 }

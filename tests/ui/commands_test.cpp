@@ -14,7 +14,7 @@ namespace lumorph::studio {
 namespace {
 
 /// A window with a palette over some commands; what ran last is remembered.
-class Commands : public ::testing::Test {
+class CommandsTest : public ::testing::Test {
 protected:
     void SetUp() override {
         add("file.open", "&Open...", "File", QKeySequence::Open);
@@ -49,7 +49,7 @@ protected:
     QString ran;
 };
 
-TEST_F(Commands, AreFoundByTheirId) {
+TEST_F(CommandsTest, AreFoundByTheirId) {
     ASSERT_NE(commands.find("file.open"), nullptr);
     EXPECT_EQ(commands.find("file.open")->shortcut(), QKeySequence(QKeySequence::Open));
     EXPECT_EQ(commands.find("file.nothing"), nullptr);
@@ -57,7 +57,7 @@ TEST_F(Commands, AreFoundByTheirId) {
     EXPECT_EQ(ran, "view.full");
 }
 
-TEST_F(Commands, LettersInOrderFindACommandAndTheBestIsFirst) {
+TEST_F(CommandsTest, LettersInOrderFindACommandAndTheBestIsFirst) {
     EXPECT_EQ(found("").size(), 5);
     EXPECT_EQ(found("open").first(), "file.open");
     EXPECT_EQ(found("ot").first(), "target.open");
@@ -69,12 +69,12 @@ TEST_F(Commands, LettersInOrderFindACommandAndTheBestIsFirst) {
     EXPECT_TRUE(found("xyz").isEmpty());
 }
 
-TEST_F(Commands, OutOfSightAreNotFound) {
+TEST_F(CommandsTest, OutOfSightAreNotFound) {
     commands.find("view.full")->setVisible(false);
     EXPECT_TRUE(found("full screen").isEmpty());
 }
 
-TEST_F(Commands, ThePaletteFiltersAndEnterRuns) {
+TEST_F(CommandsTest, ThePaletteFiltersAndEnterRuns) {
     toggleCommandPalette(window, commands);
     ASSERT_NE(input(), nullptr);
     EXPECT_TRUE(input()->hasFocus());
@@ -89,7 +89,7 @@ TEST_F(Commands, ThePaletteFiltersAndEnterRuns) {
     EXPECT_TRUE(window.centralWidget()->hasFocus());
 }
 
-TEST_F(Commands, EscClosesThePaletteAndNothingRuns) {
+TEST_F(CommandsTest, EscClosesThePaletteAndNothingRuns) {
     toggleCommandPalette(window, commands);
     QTest::keyClicks(input(), "full");
     QTest::keyClick(input(), Qt::Key_Escape);
@@ -98,7 +98,7 @@ TEST_F(Commands, EscClosesThePaletteAndNothingRuns) {
     EXPECT_TRUE(ran.isEmpty());
 }
 
-TEST_F(Commands, WhatIsDisabledIsShownAndDoesNotRun) {
+TEST_F(CommandsTest, WhatIsDisabledIsShownAndDoesNotRun) {
     commands.find("view.full")->setEnabled(false);
     toggleCommandPalette(window, commands);
     QTest::keyClicks(input(), "full screen");

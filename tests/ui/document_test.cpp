@@ -15,7 +15,7 @@ namespace {
 using test::cushionRig;
 using test::lifterRig;
 
-std::shared_ptr<const MatchField> smallField(const Rig& rig) {
+std::shared_ptr<const MatchField> sharedField(const Rig& rig) {
     BuildOptions options;
     options.resolution = 8;
     options.levels = 5;
@@ -48,7 +48,7 @@ using Edit = std::function<void(StudioState&)>;
 
 TEST_F(DocumentTest, EachPartIsToldAloneAndComesBackExactlyByUndoAndRedo) {
     const auto target = blockTarget();
-    const auto field = smallField(*document.state().rig.rig);
+    const auto field = sharedField(*document.state().rig.rig);
     const std::vector<std::pair<StatePart, Edit>> edits = {
         {StatePart::rig, [](StudioState& s) { s.rig.path = "elsewhere.glb"; }},
         {StatePart::field,
@@ -168,7 +168,7 @@ TEST_F(DocumentTest, UndoDuringADragTakesTheDragBackToo) {
 }
 
 TEST_F(DocumentTest, AFieldOfAnotherRigIsDropped) {
-    const auto field = smallField(*document.state().rig.rig);
+    const auto field = sharedField(*document.state().rig.rig);
     document.change("Build", [&](StudioState& s) { s.field.field = field; });
     EXPECT_EQ(document.state().field.field, field);
     document.change("Open rig", [](StudioState& s) { s.rig.rig = std::make_shared<const Rig>(lifterRig()); });

@@ -12,7 +12,7 @@ namespace {
 
 using std::chrono::milliseconds;
 
-class EscapeTwice : public ::testing::Test {
+class EscapeTwiceTest : public ::testing::Test {
 protected:
     void SetUp() override {
         auto* column = new QVBoxLayout(&window);
@@ -32,18 +32,18 @@ protected:
     QLineEdit* edit = nullptr;
 };
 
-TEST_F(EscapeTwice, OncePassesByAllParentsAndCountsOnce) {
+TEST_F(EscapeTwiceTest, OncePassesByAllParentsAndCountsOnce) {
     press(*edit, 1000);
     EXPECT_EQ(pressed.count(), 0);
 }
 
-TEST_F(EscapeTwice, WithinSixTenthsOfASecond) {
+TEST_F(EscapeTwiceTest, WithinSixTenthsOfASecond) {
     press(*edit, 1000);
     press(*edit, 590);
     EXPECT_EQ(pressed.count(), 1);
 }
 
-TEST_F(EscapeTwice, SlowerIsNot) {
+TEST_F(EscapeTwiceTest, SlowerIsNot) {
     press(*edit, 1000);
     press(*edit, 610);
     EXPECT_EQ(pressed.count(), 0);
@@ -51,19 +51,19 @@ TEST_F(EscapeTwice, SlowerIsNot) {
     EXPECT_EQ(pressed.count(), 1);
 }
 
-TEST_F(EscapeTwice, ThreeTimesIsOnce) {
+TEST_F(EscapeTwiceTest, ThreeTimesIsOnce) {
     for (int i = 0; i < 3; ++i) press(*edit, 100);
     EXPECT_EQ(pressed.count(), 1);
 }
 
-TEST_F(EscapeTwice, AnotherKeyBetweenIsNot) {
+TEST_F(EscapeTwiceTest, AnotherKeyBetweenIsNot) {
     press(*edit, 1000);
     press(*edit, 100, Qt::Key_A);
     press(*edit, 100);
     EXPECT_EQ(pressed.count(), 0);
 }
 
-TEST_F(EscapeTwice, WorksWhileADialogIsOpenAndClosesByTheFirst) {
+TEST_F(EscapeTwiceTest, WorksWhileADialogIsOpenAndClosesByTheFirst) {
     QDialog dialog(&window);
     dialog.setModal(true);
     dialog.show();
@@ -74,7 +74,7 @@ TEST_F(EscapeTwice, WorksWhileADialogIsOpenAndClosesByTheFirst) {
     EXPECT_EQ(pressed.count(), 1);
 }
 
-TEST_F(EscapeTwice, AKeyHeldDownIsOnePress) {
+TEST_F(EscapeTwiceTest, AKeyHeldDownIsOnePress) {
     clock.advance(milliseconds(1000));
     QTest::keyPress(edit, Qt::Key_Escape);
     for (int i = 0; i < 5; ++i) {

@@ -52,7 +52,7 @@ private:
     fs::path folder_;
 };
 
-std::shared_ptr<const MatchField> cushionField() {
+std::shared_ptr<const MatchField> exportedField() {
     static const auto field = std::make_shared<const MatchField>(
         buildField(test::cushionRig(), {.resolution = 14, .levels = 6, .samples = 8, .seed = 3, .threads = 1}));
     return field;
@@ -61,7 +61,7 @@ std::shared_ptr<const MatchField> cushionField() {
 /// A frame as the loop would hand it over, with an estimate that is behind the wish.
 MatchFrame cushionFrame() {
     MatchFrame frame;
-    frame.field = cushionField();
+    frame.field = exportedField();
     frame.rig = std::make_shared<const Rig>(frame.field->rig);
     frame.wanted = {Level{5}, Level{3}, Level{0}};
     frame.wantedStrokes = {1.0, 0.6, 0.0};
@@ -72,7 +72,7 @@ MatchFrame cushionFrame() {
     return frame;
 }
 
-std::string textOf(const fs::path& path) {
+std::string exportedText(const fs::path& path) {
     std::ifstream stream(path, std::ios::binary);
     return {std::istreambuf_iterator<char>(stream), {}};
 }
@@ -134,18 +134,18 @@ TEST_F(Exports, AShapeReadBackIsTheDeformedRigInEveryFormat) {
 }
 
 TEST_F(Exports, AFieldFileHoldsTheField) {
-    writeFieldFile(cushionField()->field, file("cushion.mdf"));
-    EXPECT_EQ(parseField(readFile(file("cushion.mdf"), std::size_t{1} << 30), "cushion.mdf"), cushionField()->field);
+    writeFieldFile(exportedField()->field, file("cushion.mdf"));
+    EXPECT_EQ(parseField(readFile(file("cushion.mdf"), std::size_t{1} << 30), "cushion.mdf"), exportedField()->field);
     EXPECT_THAT(files(), testing::ElementsAre("cushion.mdf"));
 }
 
 TEST_F(Exports, GridsStandInAFolderOfTheirOwnAndReplaceNothing) {
-    const Field& field = cushionField()->field;
+    const Field& field = exportedField()->field;
     const fs::path first = writeFieldGrids(field, file(""));
     const fs::path second = writeFieldGrids(field, file(""));
     EXPECT_NE(first, second);
     EXPECT_EQ(files().size(), 2U) << "nothing temporary is left";
-    const std::string text = textOf(first / "actuator-1-v0.nrrd");
+    const std::string text = exportedText(first / "actuator-1-v0.nrrd");
     const glm::ivec3& d = field.frame.dimensions;
     std::ostringstream sizes;
     sizes << "sizes: " << d.x << " " << d.y << " " << d.z;
@@ -173,7 +173,7 @@ TEST_F(Exports, ACancelledExportOfGridsLeavesNothing) {
             if (fraction > 0.2) stop.request_stop();
         },
         stop.get_token());
-    EXPECT_THROW((void)writeFieldGrids(cushionField()->field, file(""), progress), Cancelled);
+    EXPECT_THROW((void)writeFieldGrids(exportedField()->field, file(""), progress), Cancelled);
     EXPECT_THAT(files(), testing::IsEmpty());
 }
 
@@ -193,7 +193,7 @@ TEST_F(Exports, TargetVoxelsFillTheTargetWhereItIsPlaced) {
         frame.deviceFromTarget[3][axis] = box.centre()[axis];
     }
     writeTargetVoxels(frame, file("target.nrrd"));
-    const std::string text = textOf(file("target.nrrd"));
+    const std::string text = exportedText(file("target.nrrd"));
     const std::size_t data = text.find("\n\n") + 2;
     ASSERT_EQ(text.size() - data, voxels.voxelCount());
     const glm::ivec3& d = voxels.dimensions;
@@ -323,7 +323,7 @@ TEST_F(Exports, AVideoThatTheDiskRefusesLeavesTheOlderOne) {
     EXPECT_THROW(video.finish(), DeviceError);
     setrlimit(RLIMIT_FSIZE, &before);
     std::signal(SIGXFSZ, handler);
-    EXPECT_EQ(textOf(file("full.mp4")), "older");
+    EXPECT_EQ(exportedText(file("full.mp4")), "older");
 }
 
 /// Paints a plain picture whose red says where the camera has turned to.

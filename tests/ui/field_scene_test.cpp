@@ -16,7 +16,7 @@
 namespace lumorph::studio {
 namespace {
 
-std::shared_ptr<const MatchField> smallField() {
+std::shared_ptr<const MatchField> armField() {
     static const auto field = [] {
         BuildOptions options;
         options.resolution = 12;
@@ -38,7 +38,7 @@ std::shared_ptr<const MatchTarget> boxTarget() {
 /// A frame as the loop hands it over, with the rig at rest and a target that is matched nowhere.
 MatchFrame matchedFrame() {
     MatchFrame frame;
-    frame.field = smallField();
+    frame.field = armField();
     frame.rig = std::shared_ptr<const Rig>(frame.field, &frame.field->rig);
     frame.target = boxTarget();
     frame.matched = true;

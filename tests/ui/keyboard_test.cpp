@@ -120,7 +120,7 @@ protected:
         window->resize(1500, 950);
         window->show();
         ASSERT_TRUE(QTest::qWaitForWindowActive(window.get()));
-        studio->service.openDemo("field");
+        studio->project.openDemo("field");
         ASSERT_TRUE(eventually([&] {
             const auto& frame = studio->loop.frame();
             return frame && frame->matched && studio->jobs.running().empty();
@@ -225,7 +225,7 @@ TEST_F(Keyboard, ReachesEveryControlOfTheDialogs) {
 TEST_F(Keyboard, ReachesTheRemediesOfANotice) {
     window->showWorkspace("field");
     files.writeText("broken.obj", "v 0 0 0\nf 1 2 9\n");
-    studio->service.open(files / "broken.obj");
+    studio->project.open(files / "broken.obj");
     ASSERT_TRUE(eventually([&] { return !studio->notices.at("target").empty(); }));
     auto* dock = window->findChild<QDockWidget*>("dock.target");
     ASSERT_NE(dock, nullptr);

@@ -5,7 +5,7 @@
 namespace lumorph::studio {
 namespace {
 
-MatchFrame matchedFrame() {
+MatchFrame toldFrame() {
     MatchFrame frame;
     frame.matched = true;
     frame.target = std::make_shared<MatchTarget>();
@@ -15,7 +15,7 @@ MatchFrame matchedFrame() {
 }
 
 TEST(LoopText, SaysRateAndTimes) {
-    MatchFrame frame = matchedFrame();
+    MatchFrame frame = toldFrame();
     EXPECT_EQ(loopText(&frame, frame.ms, 59.8, false), "60 Hz, matched in 0.02 ms + refined 3.1 ms");
     frame.ms.refine = 0.0;
     EXPECT_EQ(loopText(&frame, frame.ms, 59.8, false), "60 Hz, matched in 0.02 ms");
@@ -30,7 +30,7 @@ TEST(LoopText, SaysRateAndTimes) {
 }
 
 TEST(LoopText, KeepsTheTimesOfTheLastMatchWhileNothingChanges) {
-    MatchFrame frame = matchedFrame();
+    MatchFrame frame = toldFrame();
     MatchTimes last = lastMatch({}, frame);
     frame.ms = {}; // the device moves on to what was found
     last = lastMatch(last, frame);
@@ -49,7 +49,7 @@ TEST(LoopText, KeepsTheTimesOfTheLastMatchWhileNothingChanges) {
 }
 
 TEST(LoopText, WarnsOfWhatTheDeviceCannotShow) {
-    MatchFrame frame = matchedFrame();
+    MatchFrame frame = toldFrame();
     EXPECT_TRUE(frameWarnings(&frame).empty());
     EXPECT_TRUE(frameWarnings(nullptr).empty());
     frame.shareBeyondFrame = 0.004;
@@ -63,7 +63,7 @@ TEST(LoopText, WarnsOfWhatTheDeviceCannotShow) {
 }
 
 TEST(LoopText, TellsTheTargetsOwnWarnings) {
-    MatchFrame frame = matchedFrame();
+    MatchFrame frame = toldFrame();
     auto target = std::make_shared<MatchTarget>();
     target->warnings = {"The mesh has holes."};
     frame.target = target;

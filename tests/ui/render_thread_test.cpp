@@ -9,7 +9,7 @@
 namespace lumorph::studio {
 namespace {
 
-constexpr glm::vec3 kRed{0.9F, 0.08F, 0.08F};
+constexpr glm::vec3 kRedTriangle{0.9F, 0.08F, 0.08F};
 
 ViewCamera camera() {
     ViewCamera made;
@@ -54,7 +54,7 @@ TEST_F(RenderThreadTest, ACubeIsSeenWhereTheCameraSays) {
     for (const bool orthographic : {false, true}) {
         ViewCamera from = camera();
         from.orthographic = orthographic;
-        const auto scene = cubeScene(centre, 0.06F, kRed);
+        const auto scene = cubeScene(centre, 0.06F, kRedTriangle);
         const DrawnFrame frame = still(1, {scene, from, {640, 401}, 1.0, true});
         EXPECT_EQ(frame.image.size(), QSize(640, 401));
         EXPECT_EQ(frame.scene, scene);
@@ -65,8 +65,8 @@ TEST_F(RenderThreadTest, ACubeIsSeenWhereTheCameraSays) {
 }
 
 TEST_F(RenderThreadTest, EachViewportGetsItsOwnFrames) {
-    thread.request(1, {cubeScene({0, 0, 0}, 0.05F, kRed), camera(), {300, 200}, 1.0, true});
-    thread.request(2, {cubeScene({0.05F, 0, 0}, 0.08F, kRed), camera(), {411, 333}, 1.0, true});
+    thread.request(1, {cubeScene({0, 0, 0}, 0.05F, kRedTriangle), camera(), {300, 200}, 1.0, true});
+    thread.request(2, {cubeScene({0.05F, 0, 0}, 0.08F, kRedTriangle), camera(), {411, 333}, 1.0, true});
     std::map<int, DrawnFrame> got;
     ASSERT_TRUE(waitFor([&] {
         for (const int viewport : {1, 2})
@@ -80,7 +80,7 @@ TEST_F(RenderThreadTest, EachViewportGetsItsOwnFrames) {
 TEST_F(RenderThreadTest, OnlyTheNewestRequestCounts) {
     std::shared_ptr<ViewportScene> last;
     for (int i = 0; i < 50; ++i) {
-        last = cubeScene({0, 0, 0}, 0.02F + 0.001F * static_cast<float>(i), kRed);
+        last = cubeScene({0, 0, 0}, 0.02F + 0.001F * static_cast<float>(i), kRedTriangle);
         thread.request(1, {last, camera(), {320, 240}, 1.0, true});
     }
     std::set<const ViewportScene*> shown;
@@ -95,13 +95,13 @@ TEST_F(RenderThreadTest, OnlyTheNewestRequestCounts) {
 TEST_F(RenderThreadTest, AForgottenViewportGetsNoFrames) {
     QSignalSpy drawn(&thread, &RenderThread::drawn);
     const auto count = thread.objectCount();
-    (void)still(1, {cubeScene({0, 0, 0}, 0.05F, kRed), camera(), {300, 200}, 1.0, true});
-    thread.request(1, {cubeScene({0, 0, 0}, 0.05F, kRed), camera(), {300, 200}, 1.0, true});
+    (void)still(1, {cubeScene({0, 0, 0}, 0.05F, kRedTriangle), camera(), {300, 200}, 1.0, true});
+    thread.request(1, {cubeScene({0, 0, 0}, 0.05F, kRedTriangle), camera(), {300, 200}, 1.0, true});
     thread.forget(1);
     drawn.clear();
     EXPECT_FALSE(waitFor([&] { return thread.takeFrame(1).has_value(); }, 400));
     // Others go on.
-    (void)still(2, {cubeScene({0, 0, 0}, 0.05F, kRed), camera(), {300, 200}, 1.0, true});
+    (void)still(2, {cubeScene({0, 0, 0}, 0.05F, kRedTriangle), camera(), {300, 200}, 1.0, true});
     EXPECT_GE(thread.objectCount(), count);
 }
 
@@ -110,7 +110,7 @@ TEST_F(RenderThreadTest, APictureOfAnySizeComesWhole) {
     QImage picture;
     QString why;
     bool done = false;
-    thread.picture({cubeScene(centre, 0.06F, kRed), camera(), {3000, 2000}, 1.0, true},
+    thread.picture({cubeScene(centre, 0.06F, kRedTriangle), camera(), {3000, 2000}, 1.0, true},
                    [&](const QImage& image, const QString& reason) {
                        picture = image;
                        why = reason;
@@ -126,7 +126,7 @@ TEST_F(RenderThreadTest, APictureThatCannotBeSaysWhy) {
     for (const QSize size : {QSize(0, 100), QSize(20000, 100)}) {
         QImage picture(1, 1, QImage::Format_RGB32);
         QString why;
-        thread.picture({cubeScene({0, 0, 0}, 0.06F, kRed), camera(), size, 1.0, true},
+        thread.picture({cubeScene({0, 0, 0}, 0.06F, kRedTriangle), camera(), size, 1.0, true},
                        [&](const QImage& image, const QString& reason) {
                            picture = image;
                            why = reason;
@@ -143,7 +143,7 @@ TEST_F(RenderThreadTest, ChangingScenesAndSizesKeepsNoOpenGlObjects) {
         const QSize size(200 + i % 3 * 20, 160);
         (void)size;
         const float side = 0.03F + 0.0002F * static_cast<float>(i);
-        const auto scene = cubeScene({0, 0, 0}, side, kRed);
+        const auto scene = cubeScene({0, 0, 0}, side, kRedTriangle);
         thread.request(1, {scene, camera(), size, 1.0, i % 20 == 19});
         ASSERT_TRUE(waitFor([&] {
             const auto frame = thread.takeFrame(1);
@@ -152,7 +152,7 @@ TEST_F(RenderThreadTest, ChangingScenesAndSizesKeepsNoOpenGlObjects) {
         if (i == 39) first = thread.objectCount();
     }
     // Counted after the frame was handed over: wait until nothing is under way.
-    (void)still(1, {cubeScene({0, 0, 0}, 0.05F, kRed), camera(), {200, 160}, 1.0, true});
+    (void)still(1, {cubeScene({0, 0, 0}, 0.05F, kRedTriangle), camera(), {200, 160}, 1.0, true});
     EXPECT_GT(first, 0U);
     EXPECT_TRUE(waitFor([&] { return thread.objectCount() <= first; }, 2000)) << thread.objectCount() << " " << first;
     EXPECT_EQ(thread.errorCount(), 0U);

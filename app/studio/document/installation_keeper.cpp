@@ -8,7 +8,7 @@
 namespace lumorph::studio {
 namespace {
 
-constexpr int kRestMilliseconds = 1000; // edits come in bursts
+constexpr int kEditsRestMilliseconds = 1000; // edits come in bursts
 constexpr auto kAnsweredKey = "installation/answered";
 constexpr int kMostAnswers = 100;
 constexpr auto kPlace = "project";
@@ -30,7 +30,7 @@ InstallationKeeper::InstallationKeeper(Settings& settings, StudioDocument& docum
     : settings_(settings), document_(document), notices_(notices), store_(settings.folder() / "installation") {
     load();
     due_.setSingleShot(true);
-    due_.setInterval(kRestMilliseconds);
+    due_.setInterval(kEditsRestMilliseconds);
     connect(&due_, &QTimer::timeout, this, &InstallationKeeper::keep);
     connect(&document, &StudioDocument::changed, this, [this](StateParts parts) {
         if (parts & StatePart::installation) due_.start();

@@ -16,7 +16,7 @@ namespace lumorph {
 namespace {
 
 constexpr std::size_t kMost = 2; // as in eye_fog.glsl
-constexpr int kSide = 64;        // of the grain's picture, which repeats
+constexpr int kGrainSide = 64;   // of the grain's picture, which repeats
 constexpr float kGrainsAcross = 4.0F;
 
 // Random values on a lattice of `cells` a side, smoothly between.
@@ -25,9 +25,10 @@ std::vector<float> valueNoise(int cells, std::mt19937& random) {
     std::vector<float> lattice(static_cast<std::size_t>(cells * cells));
     for (float& value : lattice) value = uniform(random);
     std::vector<float> noise;
-    noise.reserve(static_cast<std::size_t>(kSide) * kSide);
-    for (int i = 0; i < kSide * kSide; ++i) {
-        const glm::vec2 at = glm::vec2(i % kSide, i / kSide) * (static_cast<float>(cells) / static_cast<float>(kSide));
+    noise.reserve(static_cast<std::size_t>(kGrainSide) * kGrainSide);
+    for (int i = 0; i < kGrainSide * kGrainSide; ++i) {
+        const glm::vec2 at =
+            glm::vec2(i % kGrainSide, i / kGrainSide) * (static_cast<float>(cells) / static_cast<float>(kGrainSide));
         const glm::vec2 cell = glm::floor(at);
         const glm::vec2 share = glm::smoothstep(glm::vec2(0.0F), glm::vec2(1.0F), at - cell);
         const auto value = [&](int right, int down) {
@@ -57,7 +58,7 @@ void EyeFog::makeGrain() {
     grain_.emplace();
     glBindTexture(GL_TEXTURE_2D, grain_->name());
     glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
-    glTexImage2D(GL_TEXTURE_2D, 0, GL_R8, kSide, kSide, 0, GL_RED, GL_UNSIGNED_BYTE, bytes.data());
+    glTexImage2D(GL_TEXTURE_2D, 0, GL_R8, kGrainSide, kGrainSide, 0, GL_RED, GL_UNSIGNED_BYTE, bytes.data());
     glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
     glBindTexture(GL_TEXTURE_2D, 0);
 }

@@ -9,7 +9,7 @@
 namespace lumorph {
 namespace {
 
-constexpr int kSide = 1024;
+constexpr int kShadowSide = 1024;
 constexpr int kTiles = 128; // of 8 pixels, as in eye_tiles.frag
 constexpr float kRadiusStep = 1.15F;
 constexpr float kSmallestRadius = 0.02F; // metres
@@ -43,7 +43,7 @@ glm::vec3 acrossFrom(const glm::vec3& direction) {
 } // namespace
 
 EyeShadow::EyeShadow() : gather_(tileFiles({"GATHER"})), spread_(tileFiles({})) {
-    store(depth_, GL_DEPTH_COMPONENT32F, kSide, GL_DEPTH_COMPONENT);
+    store(depth_, GL_DEPTH_COMPONENT32F, kShadowSide, GL_DEPTH_COMPONENT);
     for (const gl::Texture& tiles : tiles_) store(tiles, GL_RG32F, kTiles, GL_RG);
 }
 
@@ -72,7 +72,7 @@ bool EyeShadow::changed(std::vector<CasterState> casters, const DeviceSkin& skin
 void EyeShadow::aimParallel(const glm::vec3& centre, float radius) {
     const glm::vec3 towards = glm::normalize(light_.position);
     const glm::mat4 turn = glm::lookAt(towards, glm::vec3(0.0F), acrossFrom(towards));
-    texel_ = 2.0F * radius / static_cast<float>(kSide);
+    texel_ = 2.0F * radius / static_cast<float>(kShadowSide);
     glm::vec3 at(turn * glm::vec4(centre, 1.0F));
     at = texel_ * glm::round(at / texel_);
     const float depth = 1.05F * radius;
@@ -91,7 +91,7 @@ void EyeShadow::aimLamp(const glm::vec3& centre, float radius) {
     const float far = distance_ + 1.05F * radius;
     clipFromWorld_ = glm::perspective(2.0F * half, 1.0F, near, far) *
                      glm::lookAt(light_.position, light_.position + away, acrossFrom(away));
-    texel_ = 2.0F * std::tan(half) / static_cast<float>(kSide);
+    texel_ = 2.0F * std::tan(half) / static_cast<float>(kShadowSide);
     perMetre_ = 0.5F / (std::tan(half) * distance_);
     depthRange_ = (far - near) * distance_ * distance_ / (far * near);
 }
@@ -101,7 +101,7 @@ void EyeShadow::draw(const std::function<void(const glm::mat4& clipFromWorld)>& 
     glFramebufferTexture2D(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_TEXTURE_2D, depth_.name(), 0);
     glDrawBuffer(GL_NONE);
     glReadBuffer(GL_NONE);
-    glViewport(0, 0, kSide, kSide);
+    glViewport(0, 0, kShadowSide, kShadowSide);
     glDisable(GL_SCISSOR_TEST);
     glDisable(GL_CULL_FACE);
     glDisable(GL_BLEND);
@@ -146,7 +146,7 @@ void EyeShadow::drawTiles() {
 // Radius of the search, as far as an edge can spread while blocker and surface are at most a third of the map's depth
 // apart, and the least radius of an edge.
 glm::vec2 EyeShadow::reach() const {
-    const float pixel = 1.0F / static_cast<float>(kSide);
+    const float pixel = 1.0F / static_cast<float>(kShadowSide);
     return {std::clamp(0.33F * spread(), 1.5F * pixel, kWidestSearch), 0.75F * pixel};
 }
 

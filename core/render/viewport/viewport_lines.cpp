@@ -13,7 +13,7 @@ struct LineVertex {
     glm::vec4 tone; // sRGB and width in pixels
 };
 
-void attribute(GLuint index, GLint size, std::size_t offset) {
+void lineAttribute(GLuint index, GLint size, std::size_t offset) {
     glEnableVertexAttribArray(index);
     glVertexAttribPointer(index, size, GL_FLOAT, GL_FALSE, sizeof(LineVertex), reinterpret_cast<const void*>(offset));
 }
@@ -23,9 +23,9 @@ void attribute(GLuint index, GLint size, std::size_t offset) {
 ViewportLineSet::ViewportLineSet() {
     glBindVertexArray(array_.name());
     glBindBuffer(GL_ARRAY_BUFFER, vertices_.name());
-    attribute(0, 3, offsetof(LineVertex, from));
-    attribute(1, 3, offsetof(LineVertex, to));
-    attribute(2, 4, offsetof(LineVertex, tone));
+    lineAttribute(0, 3, offsetof(LineVertex, from));
+    lineAttribute(1, 3, offsetof(LineVertex, to));
+    lineAttribute(2, 4, offsetof(LineVertex, tone));
     glBindVertexArray(0);
 }
 

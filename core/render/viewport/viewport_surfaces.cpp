@@ -12,7 +12,7 @@ template <class Values> void fill(GLenum target, const Values& values, GLenum us
     glBufferData(target, static_cast<GLsizeiptr>(values.size() * sizeof(*values.data())), values.data(), usage);
 }
 
-void attribute(GLuint index, std::size_t stride, std::size_t offset) {
+void surfaceAttribute(GLuint index, std::size_t stride, std::size_t offset) {
     glEnableVertexAttribArray(index);
     glVertexAttribPointer(index, 3, GL_FLOAT, GL_FALSE, static_cast<GLsizei>(stride),
                           reinterpret_cast<const void*>(offset));
@@ -54,8 +54,8 @@ ViewportSurfaces::Entry& ViewportSurfaces::add(const ViewportSurface& surface) {
     entry.detail = detailOf(surface);
     glBindVertexArray(entry.array.name());
     glBindBuffer(GL_ARRAY_BUFFER, entry.vertices.name());
-    attribute(0, sizeof(Vertex), offsetof(Vertex, position));
-    attribute(1, sizeof(Vertex), offsetof(Vertex, normal));
+    surfaceAttribute(0, sizeof(Vertex), offsetof(Vertex, position));
+    surfaceAttribute(1, sizeof(Vertex), offsetof(Vertex, normal));
     glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, entry.indices.name());
     fill(GL_ELEMENT_ARRAY_BUFFER, surface.shading->triangles(entry.detail), GL_STATIC_DRAW);
     glBindVertexArray(0);

@@ -14,7 +14,6 @@ namespace {
 using nlohmann::json;
 using support::GltfBuilder;
 using support::packGlb;
-using support::TemporaryFolder;
 using ::testing::HasSubstr;
 
 void expectRefused(const std::function<void()>& read, const std::string& file, const std::string& why) {
@@ -29,13 +28,13 @@ void expectRefused(const std::function<void()>& read, const std::string& file, c
 }
 
 /// A well-formed container whose document or buffer is broken.
-struct Broken {
+struct BrokenDocument {
     const char* name;
     void (*damage)(GltfBuilder&);
     const char* why;
 };
 
-class GltfReaderBrokenDocuments : public ::testing::TestWithParam<Broken> {};
+class GltfReaderBrokenDocuments : public ::testing::TestWithParam<BrokenDocument> {};
 
 TEST_P(GltfReaderBrokenDocuments, AreRefusedWithPlaceAndRemedy) {
     GltfBuilder builder = GltfBuilder::triangle();
@@ -69,7 +68,7 @@ void addSparse(GltfBuilder& b, std::uint8_t index, int offset) {
                                             {"values", {{"bufferView", values}, {"byteOffset", offset}}}};
 }
 
-const Broken kBroken[] = {
+const BrokenDocument kBroken[] = {
     {"NoVersion", [](GltfBuilder& b) { b.document.erase("asset"); }, "names no glTF version"},
     {"OldVersion", [](GltfBuilder& b) { b.document["asset"]["version"] = "1.0"; }, "version 1.0"},
     {"Draco", [](GltfBuilder& b) { b.document["extensionsRequired"] = {"KHR_draco_mesh_compression"}; },
@@ -328,7 +327,7 @@ protected:
         std::filesystem::create_directory(folder_.path() / "models/directory");
     }
 
-    TemporaryFolder folder_;
+    support::TemporaryFolder folder_;
     GltfBuilder builder_ = GltfBuilder::triangle();
 };
 

@@ -12,7 +12,6 @@ namespace {
 
 using nlohmann::json;
 using support::GltfBuilder;
-using support::TemporaryFolder;
 using ::testing::ElementsAre;
 
 Model read(const GltfBuilder& builder) { return readGlb(builder.glb(), "test.glb"); }
@@ -88,7 +87,7 @@ struct Stored {
     std::vector<float> expected;
 };
 
-template <typename Component> std::vector<std::byte> bytesOf(const std::vector<Component>& values) {
+template <typename Component> std::vector<std::byte> bytesIn(const std::vector<Component>& values) {
     std::vector<std::byte> bytes;
     putBytes(bytes, values);
     return bytes;
@@ -109,16 +108,16 @@ TEST_P(GltfReaderComponentTypes, BecomeFloats) {
 INSTANTIATE_TEST_SUITE_P(
     Table, GltfReaderComponentTypes,
     ::testing::Values(
-        Stored{"Byte", 5120, false, bytesOf<std::int8_t>({-128, 0, 127}), {-128, 0, 127}},
-        Stored{"ByteNormalized", 5120, true, bytesOf<std::int8_t>({-128, 0, 127}), {-1, 0, 1}},
-        Stored{"UnsignedByte", 5121, false, bytesOf<std::uint8_t>({0, 51, 255}), {0, 51, 255}},
-        Stored{"UnsignedByteNormalized", 5121, true, bytesOf<std::uint8_t>({0, 51, 255}), {0, 0.2F, 1}},
-        Stored{"Short", 5122, false, bytesOf<std::int16_t>({-32768, 5, 32767}), {-32768, 5, 32767}},
-        Stored{"ShortNormalized", 5122, true, bytesOf<std::int16_t>({-32768, 0, 32767}), {-1, 0, 1}},
-        Stored{"UnsignedShort", 5123, false, bytesOf<std::uint16_t>({0, 1, 65535}), {0, 1, 65535}},
-        Stored{"UnsignedShortNormalized", 5123, true, bytesOf<std::uint16_t>({0, 13107, 65535}), {0, 0.2F, 1}},
-        Stored{"UnsignedInt", 5125, false, bytesOf<std::uint32_t>({0, 1, 1 << 30}), {0, 1, 1073741824.0F}},
-        Stored{"Float", 5126, false, bytesOf<float>({-1.5F, 0, 1e30F}), {-1.5F, 0, 1e30F}}),
+        Stored{"Byte", 5120, false, bytesIn<std::int8_t>({-128, 0, 127}), {-128, 0, 127}},
+        Stored{"ByteNormalized", 5120, true, bytesIn<std::int8_t>({-128, 0, 127}), {-1, 0, 1}},
+        Stored{"UnsignedByte", 5121, false, bytesIn<std::uint8_t>({0, 51, 255}), {0, 51, 255}},
+        Stored{"UnsignedByteNormalized", 5121, true, bytesIn<std::uint8_t>({0, 51, 255}), {0, 0.2F, 1}},
+        Stored{"Short", 5122, false, bytesIn<std::int16_t>({-32768, 5, 32767}), {-32768, 5, 32767}},
+        Stored{"ShortNormalized", 5122, true, bytesIn<std::int16_t>({-32768, 0, 32767}), {-1, 0, 1}},
+        Stored{"UnsignedShort", 5123, false, bytesIn<std::uint16_t>({0, 1, 65535}), {0, 1, 65535}},
+        Stored{"UnsignedShortNormalized", 5123, true, bytesIn<std::uint16_t>({0, 13107, 65535}), {0, 0.2F, 1}},
+        Stored{"UnsignedInt", 5125, false, bytesIn<std::uint32_t>({0, 1, 1 << 30}), {0, 1, 1073741824.0F}},
+        Stored{"Float", 5126, false, bytesIn<float>({-1.5F, 0, 1e30F}), {-1.5F, 0, 1e30F}}),
     [](const auto& row) { return row.param.name; });
 
 TEST(GltfReader, FollowsStrideAndOffset) {
@@ -272,7 +271,7 @@ TEST(GltfReader, KnownRequiredExtensionsAreRead) {
 }
 
 TEST(GltfReader, ReadsBuffersAndPicturesBesideTheFile) {
-    const TemporaryFolder folder;
+    const support::TemporaryFolder folder;
     GltfBuilder builder = GltfBuilder::triangle();
     std::filesystem::create_directory(folder.path() / "my data");
     folder.write("my data/mesh.bin", builder.binary);
@@ -287,7 +286,7 @@ TEST(GltfReader, ReadsBuffersAndPicturesBesideTheFile) {
 }
 
 TEST(GltfReader, ReadsBuffersInDataUris) {
-    const TemporaryFolder folder;
+    const support::TemporaryFolder folder;
     GltfBuilder builder = GltfBuilder::triangle();
     builder.document["buffers"] = {{{"byteLength", builder.binary.size()},
                                     {"uri", "data:application/octet-stream;base64," + base64(builder.binary)}}};

@@ -16,11 +16,11 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
 
-const TriangleMesh kCube = cubeAt({0, 0, 0}, 1);
+const TriangleMesh kWholeCube = cubeAt({0, 0, 0}, 1);
 
 /// Shattered, three faces turned, one triangle missing, one twice, one collapsed.
 TriangleMesh ruinedCube() {
-    TriangleMesh mesh = shattered(kCube);
+    TriangleMesh mesh = shattered(kWholeCube);
     for (const std::size_t t : {1U, 4U, 9U}) std::swap(mesh.triangles[t].x, mesh.triangles[t].z);
     mesh.triangles.erase(mesh.triangles.begin() + 6);
     mesh.triangles.push_back(mesh.triangles[2]);
@@ -30,7 +30,7 @@ TriangleMesh ruinedCube() {
 
 /// A cube whose bottom edge has a corner in its middle on one side only, closed by a flat triangle.
 TriangleMesh cubeWithFlatTriangle() {
-    TriangleMesh mesh = kCube;
+    TriangleMesh mesh = kWholeCube;
     mesh.positions.emplace_back(0.5F, 0, 0);
     mesh.triangles[4] = {0, 8, 5}; // was 0, 1, 5
     mesh.triangles.emplace_back(8, 1, 5);
@@ -40,21 +40,21 @@ TriangleMesh cubeWithFlatTriangle() {
 
 TriangleMesh gluedCubes() {
     // Shattered, so that the wall between them is back to back on the same places.
-    return shattered(both(kCube, cubeAt({1, 0, 0}, 1)));
+    return shattered(both(kWholeCube, cubeAt({1, 0, 0}, 1)));
 }
 
 /// Welded where they touch: one edge with four triangles.
-TriangleMesh cubesOnOneEdge() { return shattered(both(kCube, cubeAt({1, 1, 0}, 1))); }
+TriangleMesh cubesSharingAnEdge() { return shattered(both(kWholeCube, cubeAt({1, 1, 0}, 1))); }
 
 TriangleMesh withoutTop() {
-    TriangleMesh mesh = kCube;
+    TriangleMesh mesh = kWholeCube;
     mesh.triangles.erase(mesh.triangles.begin() + 6, mesh.triangles.begin() + 8);
     return mesh;
 }
 
 /// A side's two triangles and the opposite side's gone: holes that touch at no point, and two that do.
 TriangleMesh withTouchingHoles() {
-    TriangleMesh mesh = kCube;
+    TriangleMesh mesh = kWholeCube;
     // Triangles 0-2-3 of the back and 2-7-3's neighbour across corner 2 only.
     mesh.triangles.erase(mesh.triangles.begin() + 8); // 0 4 6
     mesh.triangles.erase(mesh.triangles.begin() + 1); // 0 3 1
@@ -77,19 +77,19 @@ TriangleMesh openTube(std::uint32_t sides) {
 
 double tubeVolume(std::uint32_t sides) { return 0.5 * sides * std::sin(6.283185307179586 / sides); }
 
-TriangleMesh insideOutWithCavity() { return turned(both(kCube, turned(cubeAt({0.25F, 0.25F, 0.25F}, 0.5F)))); }
+TriangleMesh insideOutWithCavity() { return turned(both(kWholeCube, turned(cubeAt({0.25F, 0.25F, 0.25F}, 0.5F)))); }
 
-struct Case {
+struct Ruin {
     const char* name;
     TriangleMesh mesh;
     std::size_t components;
     double volume;
 };
 
-class RepairMeshTable : public testing::TestWithParam<Case> {};
+class RepairMeshTable : public testing::TestWithParam<Ruin> {};
 
 TEST_P(RepairMeshTable, GiveASolidOfTheRightVolume) {
-    const Case& c = GetParam();
+    const Ruin& c = GetParam();
     const MeshRepair repair = repairMesh(c.mesh);
     EXPECT_THAT(repair.after.findings(), IsEmpty());
     EXPECT_TRUE(repair.after.solid());
@@ -103,20 +103,21 @@ TEST_P(RepairMeshTable, GiveASolidOfTheRightVolume) {
 // clang-format off
 INSTANTIATE_TEST_SUITE_P(Meshes, RepairMeshTable, testing::Values(
     //   name                   mesh                    parts volume
-    Case{"RuinedCube",          ruinedCube(),           1,    1.0},
-    Case{"FlatTriangle",        cubeWithFlatTriangle(), 1,    1.0},
-    Case{"InsideOut",           turned(kCube),          1,    1.0},
-    Case{"InsideOutWithCavity", insideOutWithCavity(),  2,    0.875},
-    Case{"GluedCubes",          gluedCubes(),           1,    2.0},
-    Case{"CubesOnOneEdge",      cubesOnOneEdge(),       2,    2.0},
-    Case{"WithoutTop",          withoutTop(),           1,    1.0},
-    Case{"TouchingHoles",       withTouchingHoles(),    1,    1.0},
-    Case{"OpenTube",            openTube(48),           1,    tubeVolume(48)}),
+    Ruin{"RuinedCube",          ruinedCube(),           1,    1.0},
+    Ruin{"FlatTriangle",        cubeWithFlatTriangle(), 1,    1.0},
+    Ruin{"InsideOut",           turned(kWholeCube),     1,    1.0},
+    Ruin{"InsideOutWithCavity", insideOutWithCavity(),  2,    0.875},
+    Ruin{"GluedCubes",          gluedCubes(),           1,    2.0},
+    Ruin{"CubesOnOneEdge",      cubesSharingAnEdge(),   2,    2.0},
+    Ruin{"WithoutTop",          withoutTop(),           1,    1.0},
+    Ruin{"TouchingHoles",       withTouchingHoles(),    1,    1.0},
+    Ruin{"OpenTube",            openTube(48),           1,    tubeVolume(48)}),
     [](const auto& test) { return std::string(test.param.name); });
 // clang-format on
 
 TEST(RepairMesh, LeavesSoundMeshesAsTheyAre) {
-    for (const TriangleMesh& mesh : {kCube, torus(20, 10), shattered(kCube), both(kCube, cubeAt({0.5F, 0, 0}, 1))}) {
+    for (const TriangleMesh& mesh :
+         {kWholeCube, torus(20, 10), shattered(kWholeCube), both(kWholeCube, cubeAt({0.5F, 0, 0}, 1))}) {
         const MeshRepair repair = repairMesh(mesh);
         EXPECT_EQ(repair.mesh.positions, mesh.positions);
         EXPECT_EQ(repair.mesh.triangles, mesh.triangles);

@@ -18,13 +18,13 @@ void expectNear(const glm::vec3& actual, const glm::vec3& expected, float tolera
 
 glm::quat turnAboutZ(float angle) { return {std::cos(angle / 2), 0, 0, std::sin(angle / 2)}; }
 
-TriangleMesh tetrahedron() {
+TriangleMesh smallTetrahedron() {
     return {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}}};
 }
 
 /// A node with one channel.
 Model moving(Path path, Interpolation interpolation, std::vector<float> times, std::vector<float> values) {
-    Model model = modelOf(tetrahedron(), "moving");
+    Model model = modelOf(smallTetrahedron(), "moving");
     model.animations.push_back({"it", {{0, path, interpolation, std::move(times), std::move(values)}}});
     return model;
 }
@@ -103,7 +103,7 @@ TEST(ModelPose, CubicRotationsStayUnit) {
 }
 
 TEST(ModelPose, MorphTargetsAddUp) {
-    Model model = modelOf(tetrahedron(), "morph");
+    Model model = modelOf(smallTetrahedron(), "morph");
     Model::Mesh& mesh = model.meshes[0];
     mesh.primitives[0].morphTargets = {{{0, 0, 1}, {0, 0, 2}, {0, 0, 3}, {0, 0, 4}},
                                        std::vector<glm::vec3>(4, {8, 0, 0})};
@@ -164,14 +164,14 @@ struct Mirror {
 
 TEST(ModelPose, OutsideStaysOutsideWhenMirrored) {
     for (const Mirror& mirror : {Mirror{{1, 1, 1}, 1}, {{-1, 1, 1}, 1}, {{-2, -1, 1}, 2}, {{-1, -2, -3}, 6}}) {
-        Model model = modelOf(tetrahedron(), "mirror");
+        Model model = modelOf(smallTetrahedron(), "mirror");
         model.nodes[0].scale = mirror.scale;
         EXPECT_NEAR(signedVolume(flatten(model)), mirror.volume / 6.0, 1e-6);
     }
 }
 
 TEST(ModelPose, MirroredSkinsKeepOutsideOutside) {
-    Model model = modelOf(tetrahedron(), "mirror");
+    Model model = modelOf(smallTetrahedron(), "mirror");
     model.meshes[0].primitives[0].joints.assign(4, {0, 0, 0, 0});
     model.meshes[0].primitives[0].weights.assign(4, {1, 0, 0, 0});
     model.skins.push_back({"", {0}, {glm::mat4(1.0F)}});
@@ -187,7 +187,7 @@ TEST(ModelPose, TrianglesAreTheSameAtEveryTime) {
 }
 
 TEST(ModelPose, OnlyTheSceneIsShown) {
-    Model model = modelOf(tetrahedron(), "one");
+    Model model = modelOf(smallTetrahedron(), "one");
     model.nodes.resize(2);
     model.nodes[1].mesh = 0;
     EXPECT_EQ(flatten(model).triangles.size(), 4U);
@@ -197,7 +197,7 @@ TEST(ModelPose, OnlyTheSceneIsShown) {
 }
 
 TEST(ModelPose, PositionsBeyondFloatAreRefused) {
-    Model model = modelOf(tetrahedron(), "huge");
+    Model model = modelOf(smallTetrahedron(), "huge");
     model.nodes[0].scale = glm::vec3(1e38F);
     model.meshes[0].primitives[0].positions[1] = {100, 0, 0};
     EXPECT_THROW((void)flatten(model), InvalidInput);

@@ -8,6 +8,7 @@
 #include "core/loop/match_loop.h"
 #include "core/mdf/frame_matcher.h"
 #include "tests/core/loop/loop_fixture.h"
+#include "tests/support/not_a_number.h"
 
 namespace lumorph {
 namespace {
@@ -18,7 +19,6 @@ using test::stillTarget;
 using test::wishFor;
 
 constexpr double kFrame = 1.0 / 60.0;
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 /// The target's voxels outside the body, by the one-off functions.
 BitColumns voxelsOf(const MatchFrame& frame) {

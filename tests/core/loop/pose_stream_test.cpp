@@ -12,13 +12,13 @@
 #include <gtest/gtest.h>
 
 #include "core/loop/pose_stream.h"
+#include "tests/support/not_a_number.h"
 
 namespace lumorph {
 namespace {
 
 constexpr double kRate = 120.0;
 constexpr double kDelay = 0.06;
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 Microseconds at(double seconds) { return Microseconds(std::llround(1e6 * seconds)); }
 

@@ -11,13 +11,12 @@
 
 #include "core/base/error.h"
 #include "tests/core/loop/scene_loop_fixture.h"
+#include "tests/support/not_a_number.h"
 
 // A scene's time, when the loop may rest, and who looks at it.
 
 namespace lumorph::test {
 namespace {
-
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 TEST_F(SceneLoopTest, SceneTimePlaysPausesAndIsSoughtOnce) {
     SceneInRoom scene = emptyScene();

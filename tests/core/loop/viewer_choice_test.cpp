@@ -10,7 +10,7 @@
 namespace lumorph {
 namespace {
 
-constexpr double kFrame = 1.0 / 60.0;
+constexpr double kFrameSeconds = 1.0 / 60.0;
 constexpr glm::dvec3 kCentre{0.0, 0.0, 0.0};
 
 TrackedHead head(const char* name, double distance, double side = 1.0) { return {name, {side * distance, 0.0, 0.0}}; }
@@ -20,24 +20,25 @@ protected:
     std::optional<ViewerDirector::View> run(const std::vector<TrackedHead>& heads, double seconds,
                                             ViewerChoice choice = ViewerChoice::automatic) {
         std::optional<ViewerDirector::View> view;
-        for (double t = 0.0; t < seconds; t += kFrame) view = director_.step(heads, kCentre, choice, kFrame);
+        for (double t = 0.0; t < seconds; t += kFrameSeconds)
+            view = director_.step(heads, kCentre, choice, kFrameSeconds);
         return view;
     }
     ViewerDirector director_;
 };
 
 TEST_F(ViewerDirectorTest, NobodyIsFollowedWhenNobodyIsThere) {
-    EXPECT_FALSE(director_.step({}, kCentre, ViewerChoice::automatic, kFrame));
+    EXPECT_FALSE(director_.step({}, kCentre, ViewerChoice::automatic, kFrameSeconds));
     const std::vector<TrackedHead> one{head("Ada", 1.0)};
-    const auto view = director_.step(one, kCentre, ViewerChoice::automatic, kFrame);
+    const auto view = director_.step(one, kCentre, ViewerChoice::automatic, kFrameSeconds);
     ASSERT_TRUE(view);
     EXPECT_EQ(view->name, "Ada");
     EXPECT_EQ(view->eye, one[0].eye) << "at once, since nobody was followed before";
     EXPECT_FALSE(view->handingOver);
-    EXPECT_FALSE(director_.step(one, kCentre, ViewerChoice::none, kFrame));
-    EXPECT_FALSE(director_.step({}, kCentre, ViewerChoice::nearest, kFrame));
+    EXPECT_FALSE(director_.step(one, kCentre, ViewerChoice::none, kFrameSeconds));
+    EXPECT_FALSE(director_.step({}, kCentre, ViewerChoice::nearest, kFrameSeconds));
     const std::vector<TrackedHead> nowhere{{"Ada", {std::numeric_limits<double>::quiet_NaN(), 0.0, 0.0}}};
-    EXPECT_FALSE(director_.step(nowhere, kCentre, ViewerChoice::first, kFrame));
+    EXPECT_FALSE(director_.step(nowhere, kCentre, ViewerChoice::first, kFrameSeconds));
 }
 
 TEST_F(ViewerDirectorTest, ChoosesAsItIsTold) {
@@ -45,8 +46,9 @@ TEST_F(ViewerDirectorTest, ChoosesAsItIsTold) {
     EXPECT_EQ(run(heads, 1.0, ViewerChoice::first)->name, "Ada");
     EXPECT_EQ(run(heads, 1.0, ViewerChoice::nearest)->name, "Bo");
     ViewerDirector fresh;
-    EXPECT_EQ(fresh.step(heads, kCentre, ViewerChoice::automatic, kFrame)->name, "Bo");
-    EXPECT_EQ(fresh.step(heads, {2.1, 0.0, 0.0}, ViewerChoice::nearest, kFrame)->name, "Cy") << "nearest to the device";
+    EXPECT_EQ(fresh.step(heads, kCentre, ViewerChoice::automatic, kFrameSeconds)->name, "Bo");
+    EXPECT_EQ(fresh.step(heads, {2.1, 0.0, 0.0}, ViewerChoice::nearest, kFrameSeconds)->name, "Cy")
+        << "nearest to the device";
 }
 
 TEST_F(ViewerDirectorTest, KeepsItsViewerUntilAnotherIsClearlyNearerForHalfASecond) {
@@ -67,11 +69,11 @@ TEST_F(ViewerDirectorTest, TheEyeGlidesWithoutAJump) {
     double farthest = 0.0;
     double handed = 0.0;
     for (int k = 0; k < 60; ++k) {
-        const auto view = director_.step(heads, kCentre, ViewerChoice::automatic, kFrame);
+        const auto view = director_.step(heads, kCentre, ViewerChoice::automatic, kFrameSeconds);
         ASSERT_TRUE(view);
         EXPECT_EQ(view->name, "Bo");
         farthest = std::max(farthest, glm::distance(view->eye, last));
-        handed += view->handingOver ? kFrame : 0.0;
+        handed += view->handingOver ? kFrameSeconds : 0.0;
         // Mid-way somebody else comes, and Bo leaves: still no jump.
         if (k == 10) break;
         last = view->eye;
@@ -80,17 +82,17 @@ TEST_F(ViewerDirectorTest, TheEyeGlidesWithoutAJump) {
     last = glm::dvec3(0.0);
     bool first = true;
     for (int k = 0; k < 40; ++k) {
-        const auto view = director_.step(heads, kCentre, ViewerChoice::automatic, kFrame);
+        const auto view = director_.step(heads, kCentre, ViewerChoice::automatic, kFrameSeconds);
         if (!first) farthest = std::max(farthest, glm::distance(view->eye, last));
         first = false;
         last = view->eye;
-        handed += view->handingOver ? kFrame : 0.0;
+        handed += view->handingOver ? kFrameSeconds : 0.0;
     }
     // 3.2 m at most in 0.4 s, at most half again as fast in the middle.
-    EXPECT_LE(farthest, 1.5 * 3.2 / 0.4 * kFrame + 1e-9);
+    EXPECT_LE(farthest, 1.5 * 3.2 / 0.4 * kFrameSeconds + 1e-9);
     EXPECT_EQ(last, heads[0].eye);
-    EXPECT_NEAR(handed, 11 * kFrame + 0.4, 2.5 * kFrame);
-    EXPECT_FALSE(director_.step(heads, kCentre, ViewerChoice::automatic, kFrame)->handingOver);
+    EXPECT_NEAR(handed, 11 * kFrameSeconds + 0.4, 2.5 * kFrameSeconds);
+    EXPECT_FALSE(director_.step(heads, kCentre, ViewerChoice::automatic, kFrameSeconds)->handingOver);
 }
 
 TEST_F(ViewerDirectorTest, TimeThatMakesNoSenseIsNoTime) {

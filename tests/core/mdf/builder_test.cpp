@@ -16,13 +16,13 @@
 namespace lumorph {
 namespace {
 
-constexpr int kLevels = 5;
+constexpr int kBuilderLevels = 5;
 
 /// V(s) by CGAL alone: each voxel centre asked against the deformed mesh along the path (R6).
 std::vector<bool> coveredByOracle(const Coverage& coverage, const State& state, const std::vector<bool>& body) {
     const Rig& rig = coverage.rig();
     const VoxelFrame& frame = coverage.frame();
-    const std::vector<double> full = strokesOf(rig, state, kLevels);
+    const std::vector<double> full = strokesOf(rig, state, kBuilderLevels);
     const int steps = rig.pathInside() ? 1 : coverage.pathSteps(full);
     std::vector<bool> covered(frame.voxelCount());
     for (int step = 1; step <= steps; ++step) {
@@ -48,7 +48,7 @@ class BuilderOracle : public testing::TestWithParam<RigCase> {
 protected:
     void SetUp() override {
         const Rig rig = GetParam().make();
-        coverage_ = std::make_unique<Coverage>(rig, frameOf(rig.reach(), GetParam().resolution), kLevels);
+        coverage_ = std::make_unique<Coverage>(rig, frameOf(rig.reach(), GetParam().resolution), kBuilderLevels);
         const test::InsideOracle inside(rig.restMesh());
         std::size_t i = 0;
         const VoxelFrame& frame = coverage_->frame();
@@ -56,12 +56,12 @@ protected:
         for (int z = 0; z < frame.dimensions.z; ++z)
             for (int x = 0; x < frame.dimensions.x; ++x)
                 for (int y = 0; y < frame.dimensions.y; ++y, ++i) body_[i] = inside(frame.centre(x, y, z));
-        for (const State& state : allStates(3, kLevels)) {
+        for (const State& state : allStates(3, kBuilderLevels)) {
             auto& v = volumes_[key(state)] = coveredByOracle(*coverage_, state, body_);
             reachable_ += static_cast<std::size_t>(std::count(v.begin(), v.end(), true));
         }
     }
-    static int key(const State& s) { return s[0].index + kLevels * (s[1].index + kLevels * s[2].index); }
+    static int key(const State& s) { return s[0].index + kBuilderLevels * (s[1].index + kBuilderLevels * s[2].index); }
 
     /// Mean over the given states, actuator at a level, coverage OR-ed over lower levels first (R8, R10).
     [[nodiscard]] double expectation(const std::vector<State>& states, std::size_t actuator, int level,
@@ -90,9 +90,9 @@ TEST_P(BuilderOracle, CoverageOfEveryStateIsWhatCgalSays) {
     BitColumns kept;
     BitColumns afresh;
     std::size_t different = 0;
-    for (const State& state : allStates(3, kLevels)) {
+    for (const State& state : allStates(3, kBuilderLevels)) {
         coverage_->covered(state, kept, scratch);
-        coverage_->coveredAt(strokesOf(coverage_->rig(), state, kLevels), afresh, scratch);
+        coverage_->coveredAt(strokesOf(coverage_->rig(), state, kBuilderLevels), afresh, scratch);
         ASSERT_EQ(kept, afresh) << "kept pieces give another volume than rasterising afresh";
         const std::vector<bool>& expected = volumes_.at(key(state));
         std::size_t i = 0;
@@ -106,7 +106,7 @@ TEST_P(BuilderOracle, CoverageOfEveryStateIsWhatCgalSays) {
 
 // R8, R9: with all states sampled the field is the expectation itself, exactly.
 TEST_P(BuilderOracle, FieldEqualsTheExpectationOverAllStates) {
-    const std::vector<State> states = allStates(3, kLevels);
+    const std::vector<State> states = allStates(3, kBuilderLevels);
     const SampledField sampled = sampleField(*coverage_, states);
     std::size_t coupled = 0;
     const auto height = static_cast<std::size_t>(coverage_->frame().dimensions.y);
@@ -115,7 +115,7 @@ TEST_P(BuilderOracle, FieldEqualsTheExpectationOverAllStates) {
         for (const SampledField::Voxel& voxel : sampled.actuators[actuator]) {
             const std::size_t index = voxel.column * height + static_cast<std::size_t>(voxel.y);
             listed[index] = true;
-            for (int level = 0; level < kLevels; ++level)
+            for (int level = 0; level < kBuilderLevels; ++level)
                 ASSERT_DOUBLE_EQ(voxel.expectation[static_cast<std::size_t>(level)],
                                  expectation(states, actuator, level, index));
             coupled += voxel.expectation.front() > 0.0;
@@ -124,7 +124,7 @@ TEST_P(BuilderOracle, FieldEqualsTheExpectationOverAllStates) {
         for (std::size_t index = 0; index < listed.size(); ++index)
             if (!listed[index]) {
                 ASSERT_DOUBLE_EQ(expectation(states, actuator, 0, index),
-                                 expectation(states, actuator, kLevels - 1, index));
+                                 expectation(states, actuator, kBuilderLevels - 1, index));
             }
     }
     EXPECT_GT(coupled, 100U) << "the rig does not couple its actuators, so this test would prove little";
@@ -133,13 +133,13 @@ TEST_P(BuilderOracle, FieldEqualsTheExpectationOverAllStates) {
 // R8: with fewer samples the expectation is met within three standard errors nearly everywhere.
 TEST_P(BuilderOracle, SampledFieldIsWithinThreeSigma) {
     constexpr std::size_t kSamples = 48;
-    const std::vector<State> all = allStates(3, kLevels);
-    const SampledField sampled = sampleField(*coverage_, quasiRandomStates(3, kLevels, kSamples, 7));
+    const std::vector<State> all = allStates(3, kBuilderLevels);
+    const SampledField sampled = sampleField(*coverage_, quasiRandomStates(3, kBuilderLevels, kSamples, 7));
     const auto height = static_cast<std::size_t>(coverage_->frame().dimensions.y);
     std::size_t compared = 0;
     for (std::size_t actuator = 0; actuator < 3; ++actuator)
         for (const SampledField::Voxel& voxel : sampled.actuators[actuator])
-            for (int level = 0; level < kLevels; ++level) {
+            for (int level = 0; level < kBuilderLevels; ++level) {
                 const double p =
                     expectation(all, actuator, level, voxel.column * height + static_cast<std::size_t>(voxel.y));
                 const double sigma = std::sqrt(p * (1.0 - p) / kSamples);
@@ -153,27 +153,27 @@ TEST_P(BuilderOracle, SampledFieldIsWithinThreeSigma) {
 TEST_P(BuilderOracle, StoredRampsAndBackgroundFitTheExpectation) {
     BuildOptions options;
     options.resolution = GetParam().resolution;
-    options.levels = kLevels;
+    options.levels = kBuilderLevels;
     options.samples = 1000; // more than there are states: all are used
     const Field field = buildField(coverage_->rig(), options);
     ASSERT_TRUE(field.exhaustive);
     ASSERT_EQ(field.samples, 125U);
-    const std::vector<State> states = allStates(3, kLevels);
+    const std::vector<State> states = allStates(3, kBuilderLevels);
     double error = 0.0;
     std::size_t terms = 0;
     for (std::size_t actuator = 0; actuator < 3; ++actuator) {
         const std::vector<Ramp> ramps = denseRamps(field, actuator);
         for (std::size_t voxel = 0; voxel < ramps.size(); ++voxel) {
             if (ramps[voxel].v0 == kUnchanged) continue;
-            for (int level = 0; level < kLevels; ++level, ++terms)
+            for (int level = 0; level < kBuilderLevels; ++level, ++terms)
                 error += std::abs(expectationAt(ramps[voxel], level) - expectation(states, actuator, level, voxel));
             ASSERT_NEAR(ramps[voxel].base / 255.0, expectation(states, actuator, 0, voxel), 0.5 / 255.0 + 1e-9);
-            ASSERT_NEAR(ramps[voxel].top / 255.0, expectation(states, actuator, kLevels - 1, voxel),
+            ASSERT_NEAR(ramps[voxel].top / 255.0, expectation(states, actuator, kBuilderLevels - 1, voxel),
                         0.5 / 255.0 + 1e-9);
         }
     }
     EXPECT_NEAR(error / static_cast<double>(terms), field.report.rampErrorMean, 1e-9);
-    EXPECT_EQ(terms, field.report.changedVoxels * kLevels);
+    EXPECT_EQ(terms, field.report.changedVoxels * kBuilderLevels);
     for (std::size_t voxel = 0; voxel < field.background.size(); ++voxel) {
         std::size_t covered = 0;
         for (const State& state : states) covered += volumes_.at(key(state))[voxel];
@@ -186,14 +186,14 @@ TEST_P(BuilderOracle, StoredRampsAndBackgroundFitTheExpectation) {
 TEST_P(BuilderOracle, MonotonicityIsEnforcedAndItsViolationsAreCounted) {
     BuildOptions options;
     options.resolution = GetParam().resolution;
-    options.levels = kLevels;
+    options.levels = kBuilderLevels;
     options.samples = 1000;
     const Field field = buildField(coverage_->rig(), options);
     std::uint64_t violations = 0;
     for (std::size_t actuator = 0; actuator < 3; ++actuator)
-        for (State state : allStates(3, kLevels)) {
+        for (State state : allStates(3, kBuilderLevels)) {
             std::vector<bool> seen(field.frame.voxelCount());
-            for (int level = 0; level < kLevels; ++level) {
+            for (int level = 0; level < kBuilderLevels; ++level) {
                 state[actuator] = Level{level};
                 const std::vector<bool>& now = volumes_.at(key(state));
                 for (std::size_t voxel = 0; voxel < seen.size(); ++voxel) {

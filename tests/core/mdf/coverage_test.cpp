@@ -13,16 +13,16 @@
 namespace lumorph {
 namespace {
 
-constexpr int kLevels = 9;
+constexpr int kCoverageLevels = 9;
 
 // R6: what a flap passes on its way stays covered, though the solid itself has moved on.
 TEST(Coverage, WhatASweepPassedStaysCovered) {
     const Rig rig = test::armRig();
     ASSERT_FALSE(rig.pathInside());
-    const Coverage coverage(rig, frameOf(rig.reach(), 12), kLevels);
+    const Coverage coverage(rig, frameOf(rig.reach(), 12), kCoverageLevels);
     CoverageScratch scratch;
     BitColumns before(coverage.frame().dimensions);
-    for (int level = 0; level < kLevels; ++level) {
+    for (int level = 0; level < kCoverageLevels; ++level) {
         BitColumns now;
         coverage.covered(State{Level{level}, Level{0}, Level{0}}, now, scratch);
         BitColumns lost = before;
@@ -52,7 +52,7 @@ Rig gateRig() {
 // R6: the sweep of one actuator, kept level by level, against a sweep five times as fine judged by CGAL.
 TEST(Coverage, ASweptFlapAgreesWithAFineSweep) {
     const Rig rig = gateRig();
-    const Coverage coverage(rig, frameOf(rig.reach(), 10), kLevels);
+    const Coverage coverage(rig, frameOf(rig.reach(), 10), kCoverageLevels);
     const VoxelFrame& frame = coverage.frame();
     CoverageScratch scratch;
     BitColumns fine(frame.dimensions);
@@ -60,7 +60,7 @@ TEST(Coverage, ASweptFlapAgreesWithAFineSweep) {
     BitColumns kept;
     BitColumns afresh;
     std::size_t wrong = 0;
-    for (int level = 0; level < kLevels; ++level) {
+    for (int level = 0; level < kCoverageLevels; ++level) {
         const double from = std::max(0, level - 1) / 8.0;
         const int steps = level == 0 ? 1 : 5 * coverage.pathSteps(std::vector<double>{1.0 / 8.0});
         for (int step = 1; step <= steps; ++step) {
@@ -102,7 +102,7 @@ TEST(Coverage, ACavityInThePartThatStaysIsNotBody) {
     parts.actuators.push_back(std::move(lift));
     const Rig rig(std::move(parts));
     const VoxelFrame frame = frameOf(rig.reach(), 25);
-    const Coverage coverage(rig, frame, kLevels);
+    const Coverage coverage(rig, frame, kCoverageLevels);
     EXPECT_EQ(coverage.body(), voxelizeSolid(frame, rig.restMesh()));
     EXPECT_FALSE(coverage.body().test(12, 12, 12));
     EXPECT_TRUE(coverage.domain().test(12, 12, 12));
@@ -112,8 +112,8 @@ TEST(Coverage, ACavityInThePartThatStaysIsNotBody) {
 TEST(Coverage, ThreadsShareOne) {
     const Rig rig = test::lifterRig();
     const VoxelFrame frame = frameOf(rig.reach(), 14);
-    const Coverage alone(rig, frame, kLevels);
-    const Coverage shared(rig, frame, kLevels);
+    const Coverage alone(rig, frame, kCoverageLevels);
+    const Coverage shared(rig, frame, kCoverageLevels);
     std::array<std::vector<BitColumns>, 4> seen;
     {
         std::vector<std::jthread> threads;

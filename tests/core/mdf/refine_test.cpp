@@ -14,7 +14,7 @@
 namespace lumorph {
 namespace {
 
-constexpr int kLevels = 9;
+constexpr int kRefineLevels = 9;
 
 struct RefineCase {
     const char* name;
@@ -25,7 +25,7 @@ class RefineOnRig : public testing::TestWithParam<RefineCase> {
 protected:
     void SetUp() override {
         const Rig rig = GetParam().make();
-        coverage_ = std::make_unique<Coverage>(rig, frameOf(rig.reach(), 12), kLevels);
+        coverage_ = std::make_unique<Coverage>(rig, frameOf(rig.reach(), 12), kRefineLevels);
     }
     BitColumns volumeOf(const State& state) {
         BitColumns bits;
@@ -43,7 +43,7 @@ TEST_P(RefineOnRig, FindsHiddenStatesFromRest) {
     double worst = 1.0;
     for (int i = 0; i < 20; ++i) {
         State hidden(3);
-        for (Level& level : hidden) level.index = static_cast<int>(random() % kLevels);
+        for (Level& level : hidden) level.index = static_cast<int>(random() % kRefineLevels);
         const BitColumns target = volumeOf(hidden);
         if (target.count() < 20) continue;
         const Refinement refined = refiner.refine(target, State(3), Microseconds{0}, clock_);
@@ -96,11 +96,11 @@ TEST_P(RefineOnRig, ReportsTrueQualityAndEndsWhereNoSingleActuatorHelps) {
     EXPECT_NEAR(refined.after.iou(), intersectionOverUnion(volumeOf(refined.state), wanted), 1e-12);
     EXPECT_EQ(refined.after.both + refined.after.unmatched, wanted.count());
     double best = 0.0;
-    for (const State& state : allStates(3, kLevels))
+    for (const State& state : allStates(3, kRefineLevels))
         best = std::max(best, intersectionOverUnion(volumeOf(state), wanted));
     EXPECT_GE(refined.after.iou(), 0.98 * best) << "exhaustive search finds " << best;
     for (std::size_t i = 0; i < 3; ++i)
-        for (int level = 0; level < kLevels; ++level) {
+        for (int level = 0; level < kRefineLevels; ++level) {
             State other = refined.state;
             other[i] = Level{level};
             EXPECT_LE(intersectionOverUnion(volumeOf(other), wanted), refined.after.iou() + 1e-12);
@@ -123,7 +123,7 @@ private:
 
 TEST(Refine, StopsWhenItsTimeIsUp) {
     const Rig rig = test::cushionRig();
-    const Coverage coverage(rig, frameOf(rig.reach(), 12), kLevels);
+    const Coverage coverage(rig, frameOf(rig.reach(), 12), kRefineLevels);
     CoverageScratch scratch;
     BitColumns target;
     coverage.covered(State{Level{8}, Level{8}, Level{8}}, target, scratch);
@@ -136,12 +136,12 @@ TEST(Refine, StopsWhenItsTimeIsUp) {
 
 TEST(Refine, RefusesStatesAndTargetsThatDoNotFit) {
     const Rig rig = test::cushionRig();
-    const Coverage coverage(rig, frameOf(rig.reach(), 12), kLevels);
+    const Coverage coverage(rig, frameOf(rig.reach(), 12), kRefineLevels);
     Refiner refiner(coverage);
     const SteadyClock clock;
     const BitColumns target(coverage.frame().dimensions);
     EXPECT_THROW((void)refiner.refine(target, State(2), Microseconds{0}, clock), InvalidInput);
-    EXPECT_THROW((void)refiner.refine(target, {Level{0}, Level{0}, Level{kLevels}}, Microseconds{0}, clock),
+    EXPECT_THROW((void)refiner.refine(target, {Level{0}, Level{0}, Level{kRefineLevels}}, Microseconds{0}, clock),
                  InvalidInput);
     EXPECT_THROW((void)refiner.refine(BitColumns({1, 1, 1}), State(3), Microseconds{0}, clock), InvalidInput);
 }

@@ -11,12 +11,12 @@
 #include "core/base/error.h"
 #include "core/motion/frequency_split.h"
 #include "core/rig/rig_file.h"
+#include "tests/support/not_a_number.h"
 #include "tests/support/small_rigs.h"
 
 namespace lumorph {
 namespace {
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kFrame = 1.0 / 60.0;
 
 const Rig& tablet() {

@@ -8,12 +8,12 @@
 #include <gtest/gtest.h>
 
 #include "core/base/error.h"
+#include "tests/support/not_a_number.h"
 
 namespace lumorph {
 namespace {
 
 constexpr double kRounding = 1e-12;
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 // An independent solution: the same equation by tiny explicit steps (semi-implicit Euler), O(step).

@@ -11,14 +11,13 @@
 #include "core/base/error.h"
 #include "core/motion/view_dependence.h"
 #include "core/rig/rig_file.h"
+#include "tests/support/not_a_number.h"
 #include "tests/support/small_rigs.h"
 
 namespace lumorph {
 namespace {
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-
-const Rig& tablet() {
+const Rig& tabletRig() {
     static const Rig rig = readRig(LUMORPH_SOURCE_DIR "/resources/models/tablet.glb");
     return rig;
 }
@@ -32,10 +31,10 @@ glm::dvec3 eyeAt(double azimuth, double elevation, double distance = 0.6) {
 }
 
 std::map<std::string, double> strokesAt(const glm::dvec3& eye, Angle theta = Angle::degrees(90.0)) {
-    static const ViewRule rule(tablet());
+    static const ViewRule rule(tabletRig());
     const std::vector<double> strokes = rule.strokes(eye, theta);
     std::map<std::string, double> named;
-    for (std::size_t i = 0; i < strokes.size(); ++i) named[tablet().actuators()[i].name] = strokes[i];
+    for (std::size_t i = 0; i < strokes.size(); ++i) named[tabletRig().actuators()[i].name] = strokes[i];
     return named;
 }
 
@@ -156,7 +155,7 @@ TEST(ViewRule, SlidesUseTheirStrokeAsNinetyDegreesAndInnerPartsStay) {
 }
 
 TEST(ViewRule, RefusesAnEyeThatIsNowhere) {
-    const ViewRule rule(tablet());
+    const ViewRule rule(tabletRig());
     for (const glm::dvec3& eye : {glm::dvec3(kNan, 1, 1), glm::dvec3(1, kNan, 1), glm::dvec3(1, 1, HUGE_VAL)})
         EXPECT_THROW((void)rule.strokes(eye), InvalidInput);
     EXPECT_THROW((void)rule.strokes({0, 1, 1}, Angle{}), InvalidInput);

@@ -48,7 +48,7 @@ Project fullProject() {
 }
 
 /// The smallest document that is a project, with `key` (a JSON pointer) set to `value`.
-std::string with(const std::string& key, const json& value) {
+std::string projectWith(const std::string& key, const json& value) {
     json document = {{"schemaVersion", kProjectSchema}, {"rig", kTablet}};
     document[json::json_pointer(key)] = value;
     return document.dump();
@@ -128,7 +128,7 @@ TEST(ProjectFile, ADraftWithoutVersionIsMigrated) {
         EXPECT_EQ(written["author"], "Ada");
         EXPECT_FALSE(written.contains("model"));
     }
-    const Project present = parseProject(with("/model", "not a rig here"), "a.lumorph");
+    const Project present = parseProject(projectWith("/model", "not a rig here"), "a.lumorph");
     EXPECT_EQ(present.rig, kTablet) << "a document of today's schema was migrated";
 }
 
@@ -142,45 +142,47 @@ TEST(ProjectFile, EveryBrokenValueIsNamedWithItsKey) {
         {"", "is not valid JSON at byte"},
         {R"({"schemaVersion": 1,)", "is not valid JSON at byte 2"},
         {"[]", "is not a project"},
-        {with("/strokes", json::parse("[1]")).replace(15, 1, "\xff"), "is not valid JSON"},
-        {with("/deep", nested), "nests JSON deeper than 64 levels"},
-        {with("/many", std::vector<int>(1'000'001, 0)), "more than 1000000 JSON values"},
+        {projectWith("/strokes", json::parse("[1]")).replace(15, 1, "\xff"), "is not valid JSON"},
+        {projectWith("/deep", nested), "nests JSON deeper than 64 levels"},
+        {projectWith("/many", std::vector<int>(1'000'001, 0)), "more than 1000000 JSON values"},
         {R"({"rig": "a.glb", "strokes": [1e999]})", "is not valid JSON"},
-        {with("/schemaVersion", 4), "schemaVersion: was written by a newer Lumorph (schema 4; this one reads up to 3)"},
-        {with("/schemaVersion", 18446744073709551615ULL), "newer Lumorph"},
-        {with("/schemaVersion", -1), "schemaVersion: is not a whole number"},
-        {with("/schemaVersion", "1"), "schemaVersion: is not a whole number"},
-        {with("/schemaVersion", 1.5), "schemaVersion: is not a whole number"},
+        {projectWith("/schemaVersion", 4),
+         "schemaVersion: was written by a newer Lumorph (schema 4; this one reads up to 3)"},
+        {projectWith("/schemaVersion", 18446744073709551615ULL), "newer Lumorph"},
+        {projectWith("/schemaVersion", -1), "schemaVersion: is not a whole number"},
+        {projectWith("/schemaVersion", "1"), "schemaVersion: is not a whole number"},
+        {projectWith("/schemaVersion", 1.5), "schemaVersion: is not a whole number"},
         {R"({"schemaVersion": 1})", "rig: is missing"},
-        {with("/rig", ""), "rig: is missing"},
-        {with("/rig", 7), "rig: is not a text"},
-        {with("/field", json::array()), "field: is not a text"},
-        {with("/target", nullptr), "target: is not a text"},
-        {with("/animation", -1), "animation: is not a whole number from 0 to 100000"},
-        {with("/animation", 0.5), "animation: is not a whole number"},
-        {with("/animation", 100'001), "animation: is not a whole number"},
-        {with("/placement", 3), "placement: is not an object"},
-        {with("/placement/scale", 0), "placement.scale: is not a number from 1e-06 to 1000000.0"},
-        {with("/placement/scale", "big"), "placement.scale: is not a number"},
-        {with("/placement/scale", 1e300), "placement.scale: is not a number"},
-        {with("/placement/yaw", true), "placement.yaw: is not a number"},
-        {with("/placement/translation", {1, 2}), "placement.translation: is not a list of 3 numbers"},
-        {with("/placement/translation", {1, 2, 3, 4}), "placement.translation: is not a list of 3 numbers"},
-        {with("/placement/translation", {1, "2", 3}), "placement.translation[1]: is not a number"},
-        {with("/placement/translation", {1, 2, 1e7}), "placement.translation[2]: is not a number"},
-        {with("/strokes", 1), "strokes: is not a list"},
-        {with("/strokes", {0.5, 1.01}), "strokes[1]: is not a number from 0.0 to 1.0"},
-        {with("/strokes", {-0.1}), "strokes[0]: is not a number"},
-        {with("/strokes", {nullptr}), "strokes[0]: is not a number"},
-        {with("/strokes", std::vector<int>(65'001, 0)), "strokes: is not a list of at most 65000 numbers"},
-        {with("/matching", "live"), "matching: is not an object"},
-        {with("/matching/live", 1), "matching.live: is neither true nor false"},
-        {with("/matching/refined", "yes"), "matching.refined: is neither true nor false"},
-        {with("/matching/budgetMilliseconds", 0), "matching.budgetMilliseconds: is not a number from 0.1 to 10000.0"},
-        {with("/playback", nullptr), "playback: is not an object"},
-        {with("/playback/playing", "on"), "playback.playing: is neither true nor false"},
-        {with("/playback/spin", 1000), "playback.spin: is not a number from -100.0 to 100.0"},
-        {with("/view", {1, 2}), "view: is not an object"},
+        {projectWith("/rig", ""), "rig: is missing"},
+        {projectWith("/rig", 7), "rig: is not a text"},
+        {projectWith("/field", json::array()), "field: is not a text"},
+        {projectWith("/target", nullptr), "target: is not a text"},
+        {projectWith("/animation", -1), "animation: is not a whole number from 0 to 100000"},
+        {projectWith("/animation", 0.5), "animation: is not a whole number"},
+        {projectWith("/animation", 100'001), "animation: is not a whole number"},
+        {projectWith("/placement", 3), "placement: is not an object"},
+        {projectWith("/placement/scale", 0), "placement.scale: is not a number from 1e-06 to 1000000.0"},
+        {projectWith("/placement/scale", "big"), "placement.scale: is not a number"},
+        {projectWith("/placement/scale", 1e300), "placement.scale: is not a number"},
+        {projectWith("/placement/yaw", true), "placement.yaw: is not a number"},
+        {projectWith("/placement/translation", {1, 2}), "placement.translation: is not a list of 3 numbers"},
+        {projectWith("/placement/translation", {1, 2, 3, 4}), "placement.translation: is not a list of 3 numbers"},
+        {projectWith("/placement/translation", {1, "2", 3}), "placement.translation[1]: is not a number"},
+        {projectWith("/placement/translation", {1, 2, 1e7}), "placement.translation[2]: is not a number"},
+        {projectWith("/strokes", 1), "strokes: is not a list"},
+        {projectWith("/strokes", {0.5, 1.01}), "strokes[1]: is not a number from 0.0 to 1.0"},
+        {projectWith("/strokes", {-0.1}), "strokes[0]: is not a number"},
+        {projectWith("/strokes", {nullptr}), "strokes[0]: is not a number"},
+        {projectWith("/strokes", std::vector<int>(65'001, 0)), "strokes: is not a list of at most 65000 numbers"},
+        {projectWith("/matching", "live"), "matching: is not an object"},
+        {projectWith("/matching/live", 1), "matching.live: is neither true nor false"},
+        {projectWith("/matching/refined", "yes"), "matching.refined: is neither true nor false"},
+        {projectWith("/matching/budgetMilliseconds", 0),
+         "matching.budgetMilliseconds: is not a number from 0.1 to 10000.0"},
+        {projectWith("/playback", nullptr), "playback: is not an object"},
+        {projectWith("/playback/playing", "on"), "playback.playing: is neither true nor false"},
+        {projectWith("/playback/spin", 1000), "playback.spin: is not a number from -100.0 to 100.0"},
+        {projectWith("/view", {1, 2}), "view: is not an object"},
     };
     for (const auto& c : cases) {
         SCOPED_TRACE(c.says);
@@ -202,7 +204,7 @@ TEST(ProjectFile, NamesNoFileOutsideItsFolder) {
         for (const char* key : {"rig", "field", "target"}) {
             SCOPED_TRACE(std::string(key) + " " + path);
             try {
-                (void)parseProject(with(std::string("/") + key, path), "a.lumorph");
+                (void)parseProject(projectWith(std::string("/") + key, path), "a.lumorph");
                 ADD_FAILURE() << "was read";
             } catch (const DataError& error) {
                 EXPECT_THAT(error.why(), testing::AllOf(HasSubstr(std::string(key) + ": "), HasSubstr("leads out")));
@@ -215,7 +217,7 @@ TEST(ProjectFile, NamesNoFileOutsideItsFolder) {
             EXPECT_EQ(filesIn(folder.path()), 0U);
         }
     }
-    const std::string zero = with("/rig", std::string("a\0b.glb", 7));
+    const std::string zero = projectWith("/rig", std::string("a\0b.glb", 7));
     EXPECT_THROW((void)parseProject(zero, "a.lumorph"), DataError);
 }
 
@@ -230,7 +232,7 @@ TEST(ProjectFile, FollowsNoLinkOutOfItsFolder) {
     fs::create_directory_symlink("inside", folder / "project/in");
     const fs::path file = folder / "project/p.lumorph";
     for (const char* asset : {"out/a.glb", "out.glb", "out"}) {
-        std::ofstream(file) << with("/rig", asset);
+        std::ofstream(file) << projectWith("/rig", asset);
         try {
             (void)readProject(file);
             ADD_FAILURE() << asset << " was followed";
@@ -243,7 +245,7 @@ TEST(ProjectFile, FollowsNoLinkOutOfItsFolder) {
         project.rig = asset;
         EXPECT_THROW(writeProject(project, file), InvalidInput);
     }
-    std::ofstream(file) << with("/rig", "in/a.glb");
+    std::ofstream(file) << projectWith("/rig", "in/a.glb");
     EXPECT_EQ(assetPath(file, readProject(file).rig), fs::canonical(folder / "project/inside/a.glb"));
 }
 
