@@ -50,12 +50,6 @@ Pose bodyFromBoardOf(const BoardAddress& address) {
             glm::angleAxis(-M_PI / 2.0, glm::dvec3(1.0, 0.0, 0.0))};
 }
 
-glm::dmat4 matrixOf(const Pose& pose) {
-    glm::dmat4 matrix = glm::mat4_cast(pose.rotation);
-    matrix[3] = glm::dvec4(pose.position, 1.0);
-    return matrix;
-}
-
 /// Metres, seen in pixels, in the picture.
 cv::Point2d seenAt(const CalibratedCamera& camera, const Pose& cameraFromBoard, const glm::dvec3& point, double scale) {
     CalibratedCamera here = camera;

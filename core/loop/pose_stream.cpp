@@ -10,6 +10,12 @@
 
 namespace lumorph {
 
+glm::dmat4 matrixOf(const Pose& pose) {
+    glm::dmat4 matrix = glm::mat4_cast(pose.rotation);
+    matrix[3] = glm::dvec4(pose.position, 1.0);
+    return matrix;
+}
+
 namespace {
 
 constexpr double kFarthest = 1000.0; // metres; what lies beyond is no room

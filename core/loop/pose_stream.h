@@ -8,6 +8,7 @@
 #include <vector>
 
 #include <glm/gtc/quaternion.hpp>
+#include <glm/mat4x4.hpp>
 #include <glm/vec3.hpp>
 
 #include "core/base/clock.h"
@@ -20,6 +21,9 @@ struct Pose {
     glm::dquat rotation{1.0, 0.0, 0.0, 0.0};
     bool operator==(const Pose&) const = default;
 };
+
+/// `worldFromBody` of a pose.
+[[nodiscard]] glm::dmat4 matrixOf(const Pose& pose);
 
 /// What a tracker said about one body at one moment.
 struct PoseSample {

@@ -11,23 +11,12 @@
 #include "core/base/error.h"
 #include "core/geometry/mesh_file.h"
 #include "core/loop/stage_timer.h"
+#include "core/loop/viewer_stage.h"
 #include "core/mdf/placement.h"
 
 namespace lumorph {
 
 namespace {
-
-glm::mat4 matrixOf(const Pose& pose) {
-    glm::dmat4 matrix = glm::mat4_cast(pose.rotation);
-    matrix[3] = glm::dvec4(pose.position, 1.0);
-    return {matrix};
-}
-
-/// How far ahead poses are predicted, seconds: as for the viewer, so that what a program sees is what light shows.
-double lookAhead(const MatchWish& wish) {
-    const double delay = wish.installation->predictionSeconds;
-    return delay > 0.0 ? std::max(delay, wish.lightDelay) : 0.0;
-}
 
 [[noreturn]] void refuse(const std::string& why, const std::string& remedy) {
     throw InvalidInput("target of the servos", why, remedy);
@@ -113,7 +102,8 @@ void ProgramStage::lookAround(const MatchWish& wish, MatchFrame& frame) {
     bodies_.clear();
     worldFromDevice_ = wish.installation->worldFromDevice;
     if (!wish.poses) return;
-    const Microseconds then = frame.time + Microseconds(std::llround(1e6 * lookAhead(wish)));
+    const Microseconds then =
+        frame.time + Microseconds(std::llround(1e6 * lookAhead(*wish.installation, wish.lightDelay)));
     for (const PoseBoard::Entry& entry : wish.poses->entries()) {
         const std::optional<Pose> pose = entry.stream->at(then, frame.time);
         if (!pose) continue;

@@ -10,17 +10,6 @@ namespace lumorph {
 
 namespace {
 
-glm::mat4 matrixOf(const Pose& pose) {
-    glm::dmat4 matrix = glm::mat4_cast(pose.rotation);
-    matrix[3] = glm::dvec4(pose.position, 1.0);
-    return {matrix};
-}
-
-/// Where drawing takes longer than the installation says, poses are predicted farther.
-double lookAhead(const Installation& installation, double lightDelay) {
-    return installation.predictionSeconds > 0.0 ? std::max(installation.predictionSeconds, lightDelay) : 0.0;
-}
-
 /// What the board's streams say about one moment to come.
 class Outlook {
 public:
@@ -46,7 +35,7 @@ private:
         tracked = true;
         if (const std::optional<PoseSample> sample = entry.stream->latest()) oldest_ = std::min(oldest_, sample->time);
         if (entry.role == PoseRole::head) heads.push_back({entry.name, pose->position + pose->rotation * eyeFromHead_});
-        if (entry.role == PoseRole::device) frame_.worldFromDevice = matrixOf(*pose);
+        if (entry.role == PoseRole::device) frame_.worldFromDevice = glm::mat4(matrixOf(*pose));
     }
 
     glm::dvec3 eyeFromHead_; ///< in the frame of a head's body
@@ -55,6 +44,10 @@ private:
 };
 
 } // namespace
+
+double lookAhead(const Installation& installation, double lightDelay) {
+    return installation.predictionSeconds > 0.0 ? std::max(installation.predictionSeconds, lightDelay) : 0.0;
+}
 
 void ViewerStage::look(const MatchWish& wish, double sinceLast, MatchFrame& frame) {
     const Installation& installation = *wish.installation;
