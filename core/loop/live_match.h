@@ -49,8 +49,11 @@ public:
 
 /// What the user wants now; the loop takes the newest one for each frame.
 struct MatchWish {
-    std::shared_ptr<const Rig> rig;            ///< always there
-    std::shared_ptr<const MatchField> field;   ///< empty until it is built; then its rig is the rig
+    std::shared_ptr<const Rig> rig; ///< always there
+    /// Stays the same object while a rig is edited, so that its actuators go on where they are; may be empty.
+    std::shared_ptr<const void> rigOrigin;
+    /// Empty until it is built. Of the rig, or of an edit of it with as many actuators.
+    std::shared_ptr<const MatchField> field;
     std::shared_ptr<const MatchTarget> target; ///< may be empty
     Placement placement;
     bool live = true; ///< follow the target; false: hold `strokes`
@@ -97,6 +100,7 @@ struct MatchFrame {
     std::uint64_t number = 0;
     Microseconds time{0};
     std::shared_ptr<const Rig> rig;
+    std::shared_ptr<const void> rigOrigin; ///< of the wish
     std::shared_ptr<const MatchField> field;
     std::shared_ptr<const MatchTarget> target;
     bool matched = false; ///< a target was matched in this frame
@@ -144,8 +148,9 @@ public:
     MatchLoop(MatchLoop&&) noexcept;
     MatchLoop& operator=(MatchLoop&&) noexcept;
 
-    /// `sinceLast` seconds have passed since the frame before. An actuator starts where it is when rig and actuator
-    /// count stay the same, else at rest. Throws InvalidInput when the wish contradicts itself.
+    /// `sinceLast` seconds have passed since the frame before. An actuator goes on where it is when the rig has the
+    /// same actuators or is an edit of the one before, else it starts at rest. Throws InvalidInput when the wish
+    /// contradicts itself.
     [[nodiscard]] std::shared_ptr<const MatchFrame> step(const MatchWish& wish, double sinceLast);
 
     /// Whether another step with the last wish would change nothing: nothing plays, turns or dances, nobody is tracked,
