@@ -34,7 +34,7 @@ void DeviceService::Data::listen() {
             [this](const LinkTrouble& trouble) { tellSearch(trouble); });
     connect(&testTimer, &QTimer::timeout, &service, [this] { tick(); });
     connect(&document, &StudioDocument::changed, &service, [this](StateParts parts) {
-        if (parts & StatePart::rig) takeRig();
+        if (parts & (StatePart::rig | StatePart::rigEdited)) takeRig();
     });
     // STOP is for the servos before it is for anything else.
     connect(&loop, &StudioLoop::stopOrdered, &service, [this] {
@@ -50,8 +50,11 @@ void DeviceService::Data::listen() {
 void DeviceService::Data::takeRig() {
     const auto& now = document.state().rig.rig;
     if (now == rig) return;
-    const bool same = now && rig && now->name() == rig->name() && now->actuatorCount() == profile.servos.size();
+    const bool edited = origin && origin == document.state().rig.origin;
+    const bool same =
+        now && rig && (edited || now->name() == rig->name()) && now->actuatorCount() == profile.servos.size();
     rig = now;
+    origin = document.state().rig.origin;
     if (same) return;
     retire();
     use(rig ? freshProfile(*rig, ControllerKind::firmata) : DeviceProfile{});

@@ -51,6 +51,7 @@ struct DeviceService::Data {
     RigProfiles profiles;
     std::unique_ptr<SimulatedBench> bench = std::make_unique<SimulatedBench>();
     std::shared_ptr<const Rig> rig;
+    std::shared_ptr<const Rig> origin; ///< of the rig, the same for its edits
     DeviceProfile profile;
     HandWatch handWatch;
     HandSense hands;

@@ -10,11 +10,15 @@ namespace lumorph::studio {
 
 ProjectService::Data::Data(ProjectService& owner, StudioDocument& openDocument, Jobs& allJobs, Notices& allNotices)
     : service(owner), document(openDocument), jobs(allJobs), notices(allNotices), cache(sessionFolder() / "fields"),
-      keeper(sessionFolder(), [this] { return session(); }) {
+      keeper(sessionFolder(), [this] { return session(); }), compiler(openDocument, allNotices) {
     connect(&document, &StudioDocument::changed, &service, [this](StateParts parts) {
-        if (parts & (StatePart::rig | StatePart::field | StatePart::target | StatePart::scene)) watchFiles();
+        if (parts & (StatePart::rig | StatePart::rigEdited | StatePart::field | StatePart::target | StatePart::scene))
+            watchFiles();
         if (parts & StatePart::scene) readMissingAssets();
-        if (parts & StatePart::field) placeNew();
+        if (parts & StatePart::field) {
+            placeNew();
+            tellStale();
+        }
         keeper.touch();
     });
     connect(&document, &StudioDocument::titleChanged, &service, [this] { keeper.touch(); });

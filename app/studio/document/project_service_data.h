@@ -9,6 +9,7 @@
 #include "app/studio/document/field_cache.h"
 #include "app/studio/document/file_watch.h"
 #include "app/studio/document/project_service.h"
+#include "app/studio/document/rig_compiler.h"
 #include "app/studio/document/session_keeper.h"
 
 namespace lumorph::studio {
@@ -30,6 +31,8 @@ struct ProjectService::Data {
     // project_service_building.cpp
     void build(const BuildOptions& options, bool asked);
     void buildMissing();
+    /// Says that the field is of the rig before an edit, and no longer when it is not.
+    void tellStale();
 
     // project_service_placing.cpp
     void fit();
@@ -102,6 +105,7 @@ struct ProjectService::Data {
     FieldCache cache;
     FileWatch watch;
     SessionKeeper keeper;
+    RigCompiler compiler;
     bool placesNewTargets = false;
     std::vector<std::string> reading;             ///< what the scene names of which is being read
     std::map<std::string, FileStamp> assetStamps; ///< of the scene's files as they were read

@@ -10,7 +10,8 @@
 
 namespace lumorph::studio {
 
-/// The parts of a StudioState, for telling what changed.
+/// The parts of a StudioState, for telling what changed. `rig` says that there is another rig now; `rigEdited` that the
+/// same one was edited, or is compiled now, so that selections, cameras and links may stay as they are.
 enum class StatePart : unsigned {
     rig = 1,
     field = 2,
@@ -21,6 +22,7 @@ enum class StatePart : unsigned {
     playback = 64,
     scene = 128,
     all = 255,
+    rigEdited = 512, ///< not in `all`, which replaces the rig
 };
 Q_DECLARE_FLAGS(StateParts, StatePart)
 Q_DECLARE_OPERATORS_FOR_FLAGS(StateParts)
@@ -46,6 +48,10 @@ public:
 
     /// Hands over what the scene names; no step of undo, and told as a change of the scene.
     void setAssets(std::shared_ptr<const SceneAssets> assets);
+
+    /// Hands over what the parts in `of` were compiled to; no step of undo. It is shown until the newest parts are
+    /// compiled; where they are already, or the rig is another one by now, nothing happens.
+    void setCompiled(const StudioState::RigAsset& of, const std::shared_ptr<const Rig>& rig);
 
     /// Replaces everything and forgets undo: a project was opened, or a new one begun.
     void reset(StudioState state, const std::filesystem::path& file);
