@@ -102,9 +102,8 @@ void ActuatorForm::show(std::optional<std::size_t> actuator) {
 
 void ActuatorForm::showRange(const Actuator& actuator) {
     const ActuatorRange range = rangeOf(actuator);
-    // A sheet is drawn flat: its bend begins at 0.
-    const bool fromRest = std::holds_alternative<Bend>(actuator.deformer);
-    showRow(from_, range.motion == Motion::turning && !fromRest);
+    from_->setEnabled(!std::holds_alternative<Bend>(actuator.deformer)); // a sheet is drawn flat: its bend begins at 0
+    showRow(from_, range.motion == Motion::turning);
     showRow(to_, range.motion == Motion::turning);
     showRow(fromLength_, range.motion == Motion::moving);
     showRow(toLength_, range.motion == Motion::moving);
