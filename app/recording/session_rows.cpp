@@ -58,6 +58,7 @@ MatchFrame frameOf(const FrameRow& row, const MatchWish& like) {
     frame.number = row.number;
     frame.time = row.time;
     frame.rig = like.rig;
+    frame.rigOrigin = like.rigOrigin;
     frame.field = like.field;
     frame.target = like.target;
     frame.seconds = row.seconds;

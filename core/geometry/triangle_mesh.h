@@ -28,6 +28,7 @@ struct TriangleMesh {
     std::vector<glm::uvec3> triangles;
 
     [[nodiscard]] bool empty() const noexcept { return triangles.empty(); }
+    bool operator==(const TriangleMesh&) const = default;
 };
 
 /// Box of the points; empty for none.

@@ -97,11 +97,12 @@ void DriveStage::followTarget(const MatchWish& wish, const MatchFrame& frame, do
 
 std::vector<double> DriveStage::bends(const MatchWish& wish, const MatchFrame& frame) {
     if (!wish.scene || !wish.scene->viewDependence.on || wish.scene->showing == Showing::virtualOnly) return {};
+    if (!frame.eye) return std::vector<double>(wish.rig->actuatorCount(), 0.0);
+    // Only now: it takes tens of milliseconds, and while a rig is edited there is a new one with each frame.
     if (ruleRig_ != wish.rig) {
         rule_.emplace(*wish.rig);
         ruleRig_ = wish.rig;
     }
-    if (!frame.eye) return std::vector<double>(wish.rig->actuatorCount(), 0.0);
     const glm::dmat4 deviceFromWorld = glm::inverse(glm::dmat4(frame.worldFromDevice));
     return rule_->strokes(glm::dvec3(deviceFromWorld * glm::dvec4(*frame.eye, 1.0)), wish.scene->viewDependence.theta);
 }

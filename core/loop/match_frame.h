@@ -42,6 +42,7 @@ struct MatchFrame {
     std::uint64_t number = 0;
     Microseconds time{0};
     std::shared_ptr<const Rig> rig;
+    std::shared_ptr<const void> rigOrigin; ///< of the wish
     std::shared_ptr<const MatchField> field;
     std::shared_ptr<const MatchTarget> target;
     bool matched = false; ///< a target was matched in this frame, `target` or one of `program`

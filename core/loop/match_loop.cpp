@@ -195,6 +195,7 @@ void MatchLoop::Data::hold(const MatchWish& wish, double sinceLast, MatchFrame& 
 void MatchLoop::Data::move(const MatchWish& wish, double sinceLast, MatchFrame& frame) {
     {
         const StageTimer timer(clock, frame.ms.motion);
+        motion.follow(wish.rig, wish.rigOrigin);
         motion.move(frame.wantedStrokes, sinceLast, wish.stopped);
         frame.estimatedStrokes.assign(motion.strokes().begin(), motion.strokes().end());
     }
@@ -207,7 +208,7 @@ std::shared_ptr<const MatchFrame> MatchLoop::Data::shown(const MatchWish& wish) 
     if (!wish.rig) throw InvalidInput("device", "there is no rig", "open one first");
     if (!wish.source) throw InvalidInput("recording", "there is none to show", "open one first");
     std::shared_ptr<const MatchFrame> frame = wish.source->frame(wish, clock.now());
-    motion.follow(wish.rig);
+    motion.follow(wish.rig, wish.rigOrigin);
     motion.standAt(frame->estimatedStrokes);
     settled = !wish.source->moves();
     return frame;
@@ -226,6 +227,7 @@ std::shared_ptr<const MatchFrame> MatchLoop::step(const MatchWish& wish, double 
     frame->number = ++data_->number;
     frame->time = data_->clock.now();
     frame->rig = wish.rig;
+    frame->rigOrigin = wish.rigOrigin;
     frame->field = wish.field;
     data_->fill(wish, sinceLast, *frame);
     return frame;

@@ -19,8 +19,9 @@ public:
     MatchLoop(MatchLoop&&) noexcept;
     MatchLoop& operator=(MatchLoop&&) noexcept;
 
-    /// `sinceLast` seconds have passed since the frame before. An actuator starts where it is when rig and actuator
-    /// count stay the same, else at rest. Throws InvalidInput when the wish contradicts itself.
+    /// `sinceLast` seconds have passed since the frame before. An actuator goes on where it is when the rig has the
+    /// same actuators or is an edit of the one before, else it starts at rest. Throws InvalidInput when the wish
+    /// contradicts itself.
     [[nodiscard]] std::shared_ptr<const MatchFrame> step(const MatchWish& wish, double sinceLast);
 
     /// Whether another step with the last wish would change nothing: nothing plays, turns or dances, no program moves,

@@ -39,8 +39,11 @@ enum class MatchMethod { voting, refined };
 
 /// What the user wants now; the loop takes the newest one for each frame.
 struct MatchWish {
-    std::shared_ptr<const Rig> rig;            ///< always there
-    std::shared_ptr<const MatchField> field;   ///< empty until it is built; then its rig is the rig
+    std::shared_ptr<const Rig> rig; ///< always there
+    /// Stays the same object while a rig is edited, so that its actuators go on where they are; may be empty.
+    std::shared_ptr<const void> rigOrigin;
+    /// Empty until it is built. Of the rig, or of an edit of it with as many actuators.
+    std::shared_ptr<const MatchField> field;
     std::shared_ptr<const MatchTarget> target; ///< may be empty
     Placement placement;
     Driver driver = Driver::target;

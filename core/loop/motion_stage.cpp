@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
+#include <string>
+#include <utility>
 
 #include "core/motion/rig_motion.h"
 
@@ -15,17 +18,37 @@ bool sameActuators(const Rig& a, const Rig& b) {
     return std::ranges::equal(a.actuators(), b.actuators(), {}, &Actuator::name, &Actuator::name);
 }
 
+std::optional<std::size_t> placeOf(const Rig& rig, const std::string& actuator) {
+    const auto found = std::ranges::find(rig.actuators(), actuator, &Actuator::name);
+    if (found == rig.actuators().end()) return std::nullopt;
+    return static_cast<std::size_t>(found - rig.actuators().begin());
+}
+
 } // namespace
 
-void MotionStage::follow(const std::shared_ptr<const Rig>& rig) {
+void MotionStage::follow(const std::shared_ptr<const Rig>& rig, const std::shared_ptr<const void>& origin) {
     if (rig == rig_) return;
-    const std::vector<double> last(motion_.positions().begin(), motion_.positions().end());
-    const bool stay = rig_ && sameActuators(*rig_, *rig);
+    const bool edited = rig_ && origin && origin == origin_;
+    const bool stay = edited || (rig_ && sameActuators(*rig_, *rig));
+    const MotionModel last = std::exchange(motion_, MotionModel(motionLimits(*rig)));
     limits_ = motionLimits(*rig);
-    motion_ = MotionModel(limits_);
-    if (stay) motion_.reset(last);
+    if (stay) goOn(last, *rig_, *rig);
     rig_ = rig;
+    origin_ = origin;
     deformed_ = nullptr;
+}
+
+void MotionStage::goOn(const MotionModel& last, const Rig& from, const Rig& to) {
+    const bool sameCount = from.actuatorCount() == to.actuatorCount();
+    std::vector<double> positions(to.actuatorCount(), 0.0), velocities(to.actuatorCount(), 0.0);
+    for (std::size_t i = 0; i < to.actuatorCount(); ++i) {
+        auto before = placeOf(from, to.actuators()[i].name);
+        if (!before && sameCount) before = i;
+        if (!before) continue;
+        positions[i] = last.positions()[*before];
+        velocities[i] = last.velocities()[*before];
+    }
+    motion_.resume(positions, velocities);
 }
 
 void MotionStage::move(std::span<const double> wanted, double seconds, bool stopped) {

@@ -12,8 +12,10 @@ namespace lumorph {
 /// Last stages of a frame: the actuators move under their limits, and the device is deformed to where they are.
 class MotionStage {
 public:
-    /// An actuator stays where it is when the rig has the same actuators as the one before; else all are at rest.
-    void follow(const std::shared_ptr<const Rig>& rig);
+    /// An actuator stays where it is when the rig has the same actuators as the one before. In an edit of that rig,
+    /// which has the same `origin`, each goes on, as fast as it was: by its name, or where it was renamed by its place;
+    /// one that is new is at rest. Else all are at rest.
+    void follow(const std::shared_ptr<const Rig>& rig, const std::shared_ptr<const void>& origin = nullptr);
     /// The actuators stand there, one stroke each.
     void standAt(std::span<const double> strokes) { motion_.reset(strokes); }
     /// Moves towards the wanted strokes; while stopped all hold still, and start softly afterwards.
@@ -25,7 +27,10 @@ public:
     [[nodiscard]] const std::shared_ptr<const std::vector<glm::vec3>>& deformed();
 
 private:
+    void goOn(const MotionModel& last, const Rig& from, const Rig& to);
+
     std::shared_ptr<const Rig> rig_;
+    std::shared_ptr<const void> origin_;
     std::vector<MotionLimits> limits_;
     MotionModel motion_{{}};
     std::vector<double> deformedAt_;

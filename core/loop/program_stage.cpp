@@ -108,7 +108,7 @@ void ProgramStage::lookAround(const MatchWish& wish, MatchFrame& frame) {
         const std::optional<Pose> pose = entry.stream->at(then, frame.time);
         if (!pose) continue;
         bodies_.push_back({entry.name, entry.role, *pose});
-        if (entry.role == PoseRole::device) worldFromDevice_ = matrixOf(*pose);
+        if (entry.role == PoseRole::device) worldFromDevice_ = glm::mat4(matrixOf(*pose));
     }
     moves_ = !bodies_.empty();
 }

@@ -102,6 +102,11 @@ void requireValid(const MotionLimits& limits) {
 
 void requirePosition(const char* what, double value) { requireWithin(what, value, 0.0, 1.0, "use a stroke in [0, 1]"); }
 
+void requireVelocity(double value) {
+    requireWithin("velocity", value, std::numeric_limits<double>::lowest(), std::numeric_limits<double>::max(),
+                  "use a finite velocity");
+}
+
 void requireTime(double seconds) {
     requireWithin("time step", seconds, 0.0, std::numeric_limits<double>::max(),
                   "use a finite time that does not run backwards");
@@ -129,8 +134,7 @@ MotionState moved(MotionState now, double target, double seconds, const MotionLi
 MotionState advance(MotionState now, double target, double seconds, const MotionLimits& limits) {
     requireValid(limits);
     requirePosition("position", now.position);
-    requireWithin("velocity", now.velocity, std::numeric_limits<double>::lowest(), std::numeric_limits<double>::max(),
-                  "use a finite velocity");
+    requireVelocity(now.velocity);
     requirePosition("target", target);
     requireTime(seconds);
     return moved(now, target, seconds, limits);
@@ -158,6 +162,13 @@ void MotionModel::reset(std::span<const double> positions) {
     for (const double position : positions) requirePosition("position", position);
     std::copy(positions.begin(), positions.end(), positions_.begin());
     std::fill(velocities_.begin(), velocities_.end(), 0.0);
+}
+
+void MotionModel::resume(std::span<const double> positions, std::span<const double> velocities) {
+    requireCount(velocities.size(), limits_.size());
+    for (const double velocity : velocities) requireVelocity(velocity);
+    reset(positions);
+    std::copy(velocities.begin(), velocities.end(), velocities_.begin());
 }
 
 } // namespace lumorph

@@ -45,6 +45,9 @@ public:
     /// Takes over positions that were read back from the device; velocities become 0. Throws
     /// InvalidInput, and changes nothing, when the count or one position is wrong.
     void reset(std::span<const double> positions);
+    /// Goes on from a motion under other limits: positions and velocities, one each. Throws InvalidInput, and changes
+    /// nothing, when a count or a number is wrong.
+    void resume(std::span<const double> positions, std::span<const double> velocities);
 
 private:
     std::vector<MotionLimits> limits_;

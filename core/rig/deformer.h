@@ -18,6 +18,7 @@ struct Hinge {
     glm::vec3 axis{1.0F, 0.0F, 0.0F};
     Angle min;
     Angle max;
+    bool operator==(const Hinge&) const = default;
 };
 
 /// Bends like a flexible sheet: straight up to the bend line, an arc of `length` metres, straight
@@ -32,6 +33,7 @@ struct Bend {
     double length = 0.01; ///< metres of arc
     Angle min;
     Angle max;
+    bool operator==(const Bend&) const = default;
 };
 
 /// Moves its part along a line.
@@ -39,6 +41,7 @@ struct Slide {
     glm::vec3 direction{0.0F, 1.0F, 0.0F};
     double min = 0.0; ///< metres
     double max = 0.0;
+    bool operator==(const Slide&) const = default;
 };
 
 /// Moves each vertex along a polyline of its own: a morph target (one key at stroke 1) or one mesh
@@ -49,6 +52,7 @@ struct MorphTarget {
     std::vector<float> keys; ///< strokes in (0, 1], ascending
     /// displacements[k][i] belongs to keys[k] and the i-th influence of the actuator, metres.
     std::vector<std::vector<glm::vec3>> displacements;
+    bool operator==(const MorphTarget&) const = default;
 };
 
 /// Turns or moves one joint of the model's skin; the vertices follow by linear blend skinning.
@@ -58,6 +62,7 @@ struct SkinJoint {
     glm::vec3 axis{1.0F, 0.0F, 0.0F}; ///< in the joint's local frame
     double min = 0.0;                 ///< radians or metres
     double max = 0.0;
+    bool operator==(const SkinJoint&) const = default;
 };
 
 using Deformer = std::variant<Hinge, Bend, Slide, MorphTarget, SkinJoint>;

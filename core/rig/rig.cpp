@@ -36,6 +36,15 @@ bool jointMoves(const RigCore& core, std::uint16_t actuator, std::uint32_t verte
 
 } // namespace
 
+bool deformAlike(const RigParts& a, const RigParts& b) {
+    if (&a == &b) return true;
+    const auto alike = [](const Actuator& one, const Actuator& other) {
+        return one.deformer == other.deformer && one.influences == other.influences;
+    };
+    return a.pathInside == b.pathInside && std::ranges::equal(a.actuators, b.actuators, alike) &&
+           a.skeleton == b.skeleton && a.restMesh == b.restMesh;
+}
+
 struct Rig::Compiled {
     explicit Compiled(RigParts rigParts)
         : core(std::make_shared<const RigCore>(validated(std::move(rigParts)))), whole(core, allVertices(*core)),

@@ -22,6 +22,7 @@ namespace lumorph {
 struct Influence {
     std::uint32_t vertex = 0;
     float weight = 1.0F;
+    bool operator==(const Influence&) const = default;
 };
 
 /// The servo or motor behind an actuator, as far as a controller needs to know it.
@@ -29,6 +30,7 @@ struct ActuatorDrive {
     int channel = -1;
     double pulseMin = 1000.0; ///< microseconds at rest
     double pulseMax = 2000.0; ///< microseconds at full stroke
+    bool operator==(const ActuatorDrive&) const = default;
 };
 
 /// One degree of freedom. Its stroke is a number in [0, 1]: 0 is rest, 1 the end of its range.
@@ -40,6 +42,7 @@ struct Actuator {
     double maxVelocity = 1.0;          ///< strokes a second
     double dampingRatio = 1.0;         ///< 1 is critical
     ActuatorDrive drive;
+    bool operator==(const Actuator&) const = default;
 };
 
 /// Joints of a skinned model, for SkinJoint actuators. A parent stands before its children. The rest
@@ -50,10 +53,12 @@ struct Skeleton {
         /// `parentFromJoint` at rest (`deviceFromJoint` without a parent); a rotation, a translation
         /// and a uniform scale.
         glm::mat4 localRest{1.0F};
+        bool operator==(const Joint&) const = default;
     };
     std::vector<Joint> joints;
     std::vector<glm::u16vec4> vertexJoints; ///< one a vertex of the rest mesh
     std::vector<glm::vec4> vertexWeights;   ///< normalised
+    bool operator==(const Skeleton&) const = default;
 };
 
 /// The parts a rig is made of.
@@ -65,7 +70,12 @@ struct RigParts {
     /// True when the solid at a state holds all it passed on the way from rest (its skirt follows
     /// the path), so that the covered volume needs no sweep. `shapeReport` measures it.
     bool pathInside = false;
+    bool operator==(const RigParts&) const = default;
 };
+
+/// Whether both are the same solid in every joint state, so that a field of the one is a field of the other: names,
+/// suggested levels, velocity limits, damping and drives may differ, because V(s) depends on none of them.
+[[nodiscard]] bool deformAlike(const RigParts& a, const RigParts& b);
 
 class DeformProgram;
 

@@ -5,11 +5,16 @@
 
 #include <QApplication>
 #include <QEventLoop>
+#include <QLineEdit>
+#include <QListWidget>
+#include <QTest>
 #include <QTimer>
 #include <gtest/gtest.h>
 
+#include "app/studio/document/rig_edit.h"
 #include "app/studio/shell/main_window.h"
 #include "app/studio/viewport/viewport_widget.h"
+#include "app/studio/widgets/value_field.h"
 #include "app/workspaces/workspaces.h"
 #include "core/base/atomic_file.h"
 #include "core/geometry/model.h"
@@ -102,6 +107,83 @@ TEST_F(WindowRate, ThirtyMatchesASecondAreSeenWhileALargeTargetMoves) {
     EXPECT_GE(rates.painted, 30.0);
     EXPECT_LE(rates.painted, rates.matched + 1.0) << "no match is painted twice";
     EXPECT_LE(rates.stall, 100.0);
+}
+
+// A rig that is dragged at 60 edits a second, as handles on the model will do.
+TEST_F(LiveRate, TheRigIsEditedWithoutHoldingUpTheWindow) {
+    ASSERT_TRUE(openTarget());
+    StudioDocument& document = studio_.document;
+    window_.showWorkspace("rig");
+    auto* list = window_.findChild<QListWidget*>("rig.list");
+    auto* view = window_.findChild<ViewportWidget*>("rig.viewport");
+    ASSERT_TRUE(list && view);
+    list->setCurrentRow(1);
+    run(std::chrono::seconds(3)); // it wiggles, and the view is framed
+    ViewCamera camera = view->camera();
+    camera.yaw = Angle::radians(camera.yaw.inRadians() + 0.35);
+    view->setCamera(camera);
+    const StudioState before = document.state();
+    const int steps = document.undoStack().count();
+    const double from = before.rig.parts->actuators[1].maxVelocity;
+
+    double stall = 1e9;
+    int compiled = 0, edits = 0;
+    const auto count = QObject::connect(&document, &StudioDocument::changed, [&](StateParts parts) {
+        compiled += (parts & StatePart::rigEdited) && document.state().rig.rig != before.rig.rig;
+    });
+    for (int attempt = 0; attempt < 4 && stall > 100.0; ++attempt) {
+        test::StallWatch watch;
+        (void)watch.takeLongest();
+        QTimer drag;
+        drag.setTimerType(Qt::PreciseTimer);
+        QObject::connect(&drag, &QTimer::timeout, [&] {
+            previewRig(document, [at = ++edits](RigParts& parts) {
+                std::get<Bend>(parts.actuators[1].deformer).max = Angle::degrees(30.0 + 0.1 * (at % 240));
+            });
+        });
+        drag.start(1000 / 60);
+        (void)test::eventually([&] { return edits >= 60 * (attempt + 1); }); // a second where the machine is free
+        stall = watch.takeLongest();
+    }
+    QObject::disconnect(count);
+    std::printf("%d edits, told of %d times, longest stall %.1f ms\n", edits, compiled, stall);
+    RecordProperty("stall", static_cast<int>(stall));
+    EXPECT_GE(edits, 60);
+    EXPECT_LE(stall, 100.0);
+    document.commitPreview("Drag the range");
+    const auto newest = document.state().rig.parts;
+    ASSERT_TRUE(test::eventually([&] { return document.state().rig.compiled; }));
+    EXPECT_EQ(document.state().rig.rig->parts(), *newest) << "the newest wins";
+    EXPECT_EQ(document.undoStack().count(), steps + 1);
+    EXPECT_EQ(list->currentRow(), 1) << "the selection stays";
+    EXPECT_EQ(view->camera().yaw.inRadians(), camera.yaw.inRadians()) << "so does the view";
+    EXPECT_TRUE(document.state().field.stale);
+    EXPECT_EQ(document.state().field.field, before.field.field);
+    EXPECT_TRUE(test::eventually([&] {
+        const auto& frame = studio_.loop.frame();
+        return frame->rig == document.state().rig.rig && frame->matched && frame->field == before.field.field;
+    })) << "the field before the edit is still matched";
+
+    // The fields of the chosen actuator do the same, each by one step of undo.
+    auto* stroke = window_.findChild<ValueField*>("rig.edit.stroke");
+    auto* name = window_.findChild<QLineEdit*>("rig.edit.name");
+    ASSERT_TRUE(stroke && name && stroke->isVisible() && name->isVisible());
+    QTest::keyClick(stroke, Qt::Key_A, Qt::ControlModifier);
+    QTest::keyClicks(stroke, "2 s");
+    QTest::keyClick(stroke, Qt::Key_Return);
+    EXPECT_DOUBLE_EQ(document.state().rig.parts->actuators[1].maxVelocity, 0.5);
+    QTest::keyClick(name, Qt::Key_A, Qt::ControlModifier);
+    QTest::keyClicks(name, "left wing");
+    QTest::keyClick(name, Qt::Key_Return);
+    EXPECT_EQ(document.state().rig.parts->actuators[1].name, "left wing");
+    EXPECT_TRUE(test::eventually([&] { return list->item(1)->text() == "left wing"; }));
+    EXPECT_EQ(document.undoStack().count(), steps + 3);
+    EXPECT_EQ(list->currentRow(), 1);
+    for (int i = 0; i < 3; ++i) document.undoStack().undo();
+    EXPECT_EQ(document.state().rig, before.rig);
+    EXPECT_EQ(document.state().rig.parts->actuators[1].maxVelocity, from);
+    EXPECT_FALSE(document.state().field.stale) << "undone to the rig that it was built for";
+    EXPECT_EQ(view->camera().yaw.inRadians(), camera.yaw.inRadians());
 }
 
 } // namespace

@@ -1,10 +1,25 @@
-#include "app/studio/devices/device_service_data.h"
+#include "app/studio/devices/device_service.h"
 
 #include <algorithm>
+#include <atomic>
 #include <chrono>
+#include <functional>
+#include <future>
+#include <memory>
 #include <utility>
+#include <vector>
 
+#include <QDateTime>
+#include <QElapsedTimer>
+#include <QTimer>
+
+#include "app/studio/devices/device_finder.h"
+#include "app/studio/devices/rig_profiles.h"
+#include "app/studio/devices/servo_feed.h"
 #include "core/base/error.h"
+#include "devices/controllers/controller_kinds.h"
+#include "devices/simulator/simulated_bench.h"
+#include "devices/transport/address.h"
 
 namespace lumorph::studio {
 namespace {
@@ -15,6 +30,60 @@ constexpr int kTestMilliseconds = 33;
 bool drives(LinkPhase phase) { return phase == LinkPhase::live || phase == LinkPhase::starting; }
 
 } // namespace
+
+/// What a DeviceService holds.
+struct DeviceService::Data {
+    Data(DeviceService& owner, Settings& userSettings, StudioDocument& openDocument, StudioLoop& studioLoop,
+         Notices& allNotices)
+        : service(owner), document(openDocument), loop(studioLoop), notices(allNotices), profiles(userSettings) {}
+
+    void listen();
+    void follow(const MatchFrame& frame); ///< in the loop's thread
+    void takeRig();
+    void use(DeviceProfile next);
+    bool force(const DeviceProfile& next);
+    void keep();
+    void makeLink();
+    void traceLink();
+    void retire();
+    void leaveAll();
+    void onLinkChanged(); ///< in the link's thread
+    void take();
+    void takeEvents();
+    void tellAll(const std::vector<LinkEvent>& events);
+    void onResumed();
+    void identifyBoard();
+    bool sense();
+    void tellSearch(const LinkTrouble& trouble);
+    void tick();
+
+    DeviceService& service;
+    StudioDocument& document;
+    StudioLoop& loop;
+    Notices& notices;
+    RigProfiles profiles;
+    std::unique_ptr<SimulatedBench> bench = std::make_unique<SimulatedBench>();
+    std::shared_ptr<const Rig> rig;
+    std::shared_ptr<const Rig> origin; ///< of the rig, the same for its edits
+    DeviceProfile profile;
+    HandWatch handWatch;
+    HandSense hands;
+    ServoFeed feed;
+    int tap = 0;
+    std::function<void(const ServoTraceRow&)> trace;
+    std::shared_ptr<std::atomic<bool>> tracing; ///< false for a link that is no longer the present one
+    std::shared_ptr<ServoLink> link;
+    std::vector<std::future<void>> leaving; ///< links that go to rest; waiting for them would block the window
+    LinkStatus status;
+    DeviceFinder finder{*bench};
+    DeviceLog log;
+    std::atomic<bool> posted = false; ///< the window has been told of a change that it did not take yet
+    QTimer due, poll, testTimer;
+    QElapsedTimer sinceTest;
+    QDateTime liveSince;
+    QString stopKeysProblem; ///< why
+    bool slow = false;
+};
 
 void DeviceService::Data::listen() {
     due.setSingleShot(true);
@@ -34,7 +103,7 @@ void DeviceService::Data::listen() {
             [this](const LinkTrouble& trouble) { tellSearch(trouble); });
     connect(&testTimer, &QTimer::timeout, &service, [this] { tick(); });
     connect(&document, &StudioDocument::changed, &service, [this](StateParts parts) {
-        if (parts & StatePart::rig) takeRig();
+        if (parts & (StatePart::rig | StatePart::rigEdited)) takeRig();
     });
     // STOP is for the servos before it is for anything else.
     connect(&loop, &StudioLoop::stopOrdered, &service, [this] {
@@ -50,8 +119,11 @@ void DeviceService::Data::listen() {
 void DeviceService::Data::takeRig() {
     const auto& now = document.state().rig.rig;
     if (now == rig) return;
-    const bool same = now && rig && now->name() == rig->name() && now->actuatorCount() == profile.servos.size();
+    const bool edited = origin && origin == document.state().rig.origin;
+    const bool same =
+        now && rig && (edited || now->name() == rig->name()) && now->actuatorCount() == profile.servos.size();
     rig = now;
+    origin = document.state().rig.origin;
     if (same) return;
     retire();
     use(rig ? freshProfile(*rig, ControllerKind::firmata) : DeviceProfile{});
@@ -245,5 +317,188 @@ bool DeviceService::slow() const noexcept { return data_->slow; }
 QStringList DeviceService::profileNames() const { return data_->profiles.names(); }
 std::optional<double> DeviceService::tested(std::size_t servo) const { return data_->feed.held(servo); }
 bool DeviceService::testing() const { return data_->feed.testing(); }
+
+// What the user orders at the service.
+
+void DeviceService::setShown(bool shown) {
+    data_->finder.setLooking(shown);
+    if (!shown) {
+        data_->poll.stop();
+        return;
+    }
+    data_->poll.start();
+    data_->take();
+}
+
+void DeviceService::searchBluetooth() {
+    data_->notices.dismiss("devices", "Bluetooth");
+    data_->finder.searchBluetooth();
+}
+
+bool DeviceService::setProfile(const DeviceProfile& profile) {
+    if (!data_->force(profile)) return false;
+    data_->keep();
+    return true;
+}
+
+bool DeviceService::previewProfile(const DeviceProfile& profile) {
+    if (data_->link && beginsAnew(data_->link->profile(), profile)) return false;
+    return data_->force(profile);
+}
+
+void DeviceService::loadProfile(const QString& name) {
+    if (!data_->rig) return;
+    try {
+        DeviceProfile loaded = data_->profiles.load(name, *data_->rig);
+        if (data_->status.phase == LinkPhase::off) {
+            data_->retire();
+        } else { // what is connected stays connected
+            loaded.address = data_->profile.address;
+            loaded.controller = data_->profile.controller;
+            loaded.identity = data_->profile.identity;
+            loaded.confirmed = data_->profile.confirmed;
+        }
+        setProfile(loaded);
+    } catch (const Error& error) {
+        data_->notices.post("servo", noticeOf(error));
+        emit profileChanged();
+    }
+}
+
+void DeviceService::saveProfileAs(const QString& name) {
+    DeviceProfile named = data_->profile;
+    named.name = fileNameOf(name).toStdString();
+    setProfile(named);
+}
+
+void DeviceService::resetProfile() {
+    if (!data_->rig) return;
+    DeviceProfile fresh = data_->profile;
+    fresh.servos = freshProfile(*data_->rig, fresh.controller).servos;
+    setProfile(fresh);
+}
+
+void DeviceService::connectTo(const QString& address, std::optional<ControllerKind> controller) {
+    if (!data_->rig) return;
+    const std::string wanted = address.trimmed().toStdString();
+    const DeviceProfile next =
+        readdressed(data_->profile, *data_->rig, wanted, controller.value_or(likelyController(wanted)));
+    const DeviceProfile before = std::exchange(data_->profile, next);
+    try {
+        static_cast<void>(parseDeviceAddress(wanted));
+        const bool other = !data_->link || data_->link->profile().address != wanted ||
+                           data_->link->profile().controller != next.controller;
+        if (other) data_->makeLink();
+        data_->link->connect();
+        data_->notices.dismissAll("devices");
+        data_->keep();
+    } catch (const Error& error) {
+        data_->profile = before;
+        data_->notices.post("devices", noticeOf(error));
+    }
+    emit profileChanged();
+    data_->take();
+}
+
+void DeviceService::disconnect() {
+    if (!data_->link) return;
+    data_->link->disconnect();
+    data_->feed.drop();
+    data_->notices.dismissAll("device");
+    data_->take();
+}
+
+void DeviceService::confirm() {
+    if (!data_->link) return;
+    data_->link->confirmIdentity();
+    if (const std::string& identity = data_->status.identity; !identity.empty()) {
+        DeviceProfile known = data_->profile;
+        known.identity = identity;
+        known.confirmed = true;
+        setProfile(known);
+    }
+    data_->take();
+}
+
+void DeviceService::start(bool jumpAllowed) {
+    if (!data_->link) return;
+    static_cast<void>(data_->feed.takeStoppedLive()); // this start is the one to come
+    data_->loop.resume();
+    data_->link->arm(jumpAllowed);
+    data_->take();
+}
+
+void DeviceService::stopNow() { data_->feed.stop(); }
+
+void DeviceService::setStopKeysProblem(const QString& why) {
+    data_->stopKeysProblem = why;
+    emit changed();
+}
+
+const QString& DeviceService::stopKeysProblem() const noexcept { return data_->stopKeysProblem; }
+
+void DeviceService::release() {
+    if (!data_->link) return;
+    data_->link->disarm();
+    data_->feed.drop();
+    data_->take();
+}
+
+void DeviceService::wiggle(std::size_t servo) {
+    if (data_->link) data_->link->wiggle(servo);
+}
+
+void DeviceService::setSlow(bool slow) {
+    data_->slow = slow;
+    data_->feed.setSlow(SlowCause::user, slow);
+    emit changed();
+}
+
+void DeviceService::test(std::size_t servo, double stroke) {
+    if (data_->status.phase != LinkPhase::live) return;
+    data_->feed.hold(servo, stroke);
+    data_->sinceTest.start();
+    data_->testTimer.start();
+    emit changed();
+}
+
+void DeviceService::endTest() {
+    if (!data_->feed.testing()) return;
+    data_->feed.release();
+    data_->sinceTest.start();
+    data_->testTimer.start();
+    emit changed();
+}
+
+void DeviceService::setPoses(std::shared_ptr<const PoseBoard> poses) { data_->handWatch.setPoses(std::move(poses)); }
+
+QString DeviceService::name() const {
+    const std::string& address = data_->profile.address;
+    for (const FoundDevice& one : data_->finder.found())
+        if (one.address == address) return QString::fromStdString(one.name);
+    if (!data_->status.product.empty()) return QString::fromStdString(data_->status.product);
+    return address.empty() ? QString("Device") : QString::fromStdString(address);
+}
+
+QString DeviceService::liveName() const {
+    switch (data_->status.phase) {
+    case LinkPhase::starting:
+    case LinkPhase::live:
+    case LinkPhase::stopped:
+        return name();
+    default:
+        return {};
+    }
+}
+
+void DeviceService::setTrace(std::function<void(const ServoTraceRow&)> sink) {
+    data_->trace = std::move(sink);
+    data_->traceLink();
+}
+
+void DeviceService::note(const QString& text) {
+    data_->log.add({QDateTime::currentDateTime(), LinkEvent::Kind::information, text, {}, true});
+    emit logged(1);
+}
 
 } // namespace lumorph::studio

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <string>
 
+#include "app/studio/document/state_rules.h"
 #include "core/base/file.h"
 #include "core/geometry/mesh_file.h"
 #include "core/geometry/model.h"
@@ -81,7 +82,9 @@ void ReadFiles::remember(const StudioState& state, const AssetStamps& stamps) {
 }
 
 AssetStamps ReadFiles::of(const StudioState& state) const {
-    return {find(state.rig.rig), find(state.field.field), find(state.target.target)};
+    // No file holds an edited rig.
+    const auto rig = isEdited(state.rig) ? nullptr : state.rig.rig;
+    return {find(rig), find(state.field.field), find(state.target.target)};
 }
 
 std::optional<FileStamp> ReadFiles::find(const std::shared_ptr<const void>& asset) const {

@@ -21,10 +21,22 @@ namespace {
 namespace fs = std::filesystem;
 using Bytes = std::vector<std::byte>;
 
+// In the project's view: the field was built before the rig was edited, and is kept until it is built anew.
+constexpr const char* kEarlierRig = "fieldOfEarlierRig";
+
+bool isFieldOfEarlierRig(const ProjectExtras& extras) {
+    return extras.view.is_object() && extras.view.contains(kEarlierRig) && extras.view[kEarlierRig] == true;
+}
+
 void loadField(const fs::path& file, const std::string& asset, LoadedProject& loaded) {
     try {
         auto field = readFieldAsset(assetPath(file, asset));
-        if (isFieldOf(*field.asset.field, *loaded.state.rig.rig)) {
+        const bool earlier = isFieldOfEarlierRig(loaded.extras);
+        if (earlier || isFieldOf(*field.asset.field, *loaded.state.rig.rig)) {
+            const Rig& built = earlier ? field.asset.field->rig : *loaded.state.rig.rig;
+            const std::shared_ptr<const void> owner =
+                earlier ? std::shared_ptr<const void>(field.asset.field) : loaded.state.rig.rig;
+            field.asset.builtFor = {owner, &built.parts()};
             loaded.state.field = std::move(field.asset);
             loaded.stamps.field = field.stamp;
         } else {
@@ -57,6 +69,8 @@ Project projectOf(const ProjectSource& source) {
     project.playback = {state.playback.playing, state.playback.spin};
     if (state.installation) project.installation = *state.installation;
     project.view = source.extras.view;
+    if (project.view.is_object()) project.view.erase(kEarlierRig);
+    if (state.field.stale) project.view[kEarlierRig] = true;
     project.unknown = source.extras.unknown;
     return project;
 }
@@ -84,17 +98,27 @@ Bytes targetBytes(const MatchTarget& target) {
     return writeGlb(target.model ? *target.model : modelOf(target.solid.mesh, target.name));
 }
 
-/// A field that was saved with this project before and that nothing names any more.
-void dropOldField(const fs::path& file, const std::string& before, const std::string& now) {
+/// The rig as its parts say; while they cannot be compiled, the last one that could.
+Rig rigToSave(const StudioState::RigAsset& rig) {
+    if (rig.compiled || !rig.parts) return *rig.rig;
+    try {
+        return Rig(*rig.parts);
+    } catch (const InvalidInput&) {
+        return *rig.rig;
+    }
+}
+
+/// A rig or field that was saved with this project before and that nothing names any more.
+void dropOld(const fs::path& file, const std::string& before, const std::string& now) {
     const std::string own = file.stem().string() + " files/";
     if (before.empty() || before == now || !before.starts_with(own)) return;
     std::error_code ignored;
     fs::remove(file.parent_path() / before, ignored);
 }
 
-std::string fieldNamedBy(const fs::path& file) {
+Project savedBefore(const fs::path& file) {
     try {
-        return readProject(file).field;
+        return readProject(file);
     } catch (const Error&) {
         return {};
     }
@@ -132,6 +156,25 @@ void loadAssets(LoadedProject& loaded, const fs::path& file, const Progress& pro
     loaded.state.assets = loadSceneAssets(*loaded.state.scene, file, nullptr, progress);
 }
 
+LoadedProject loadedProject(const ProjectContents& demo) {
+    LoadedProject loaded;
+    loaded.state = stateOf(demo.project);
+    loaded.extras = {demo.project.view, demo.project.unknown};
+    const auto add = [](const std::string& asset, auto& path, std::optional<FileStamp>& stamp) {
+        path = assetPath({}, asset);
+        stamp = stampOf(path);
+    };
+    loaded.state.rig.rig = demo.rig;
+    add(demo.project.rig, loaded.state.rig.path, loaded.stamps.rig);
+    if (demo.target) {
+        loaded.state.target.target = demo.target;
+        add(demo.project.target, loaded.state.target.path, loaded.stamps.target);
+    }
+    loaded.state.scene = std::make_shared<const Scene>(demo.project.scene);
+    loaded.state.assets = demo.assets;
+    return loaded;
+}
+
 LoadedProject loadProject(const fs::path& file, const Progress& progress) {
     LoadedProject loaded = loadProjectWithoutAssets(file, progress.part(0.0, 0.8));
     loadAssets(loaded, file, progress.part(0.8, 1.0));
@@ -144,7 +187,7 @@ void saveProject(const ProjectSource& source, const fs::path& file, const Progre
     Project project = projectOf(source);
     const std::string rigName = fileStem(state.rig.path, state.rig.rig->name());
     project.rig = take(
-        file, state.rig.path, source.stamps.rig, rigName + ".glb", [&] { return writeRigGlb(*state.rig.rig); },
+        file, state.rig.path, source.stamps.rig, rigName + ".glb", [&] { return writeRigGlb(rigToSave(state.rig)); },
         progress);
     if (state.field.field)
         project.field = take(
@@ -155,9 +198,11 @@ void saveProject(const ProjectSource& source, const fs::path& file, const Progre
             file, state.target.path, source.stamps.target, fileStem(state.target.path, target->name) + ".glb",
             [&] { return targetBytes(*target); }, progress);
     if (state.scene) project.scene = withTakenFiles(*state.scene, state.assets.get(), file, progress);
-    const std::string oldField = fieldNamedBy(file);
+    const Project old = savedBefore(file);
     writeProject(project, file);
-    dropOldField(file, oldField, project.field);
+    dropOld(file, old.field, project.field);
+    // The one that was opened is what undo leads back to.
+    if (file.parent_path() / old.rig != state.rig.path) dropOld(file, old.rig, project.rig);
 }
 
 } // namespace lumorph::studio

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/studio/document/assets.h"
+#include "core/show/project_contents.h"
 
 namespace lumorph::studio {
 
@@ -30,6 +31,9 @@ struct LoadedProject {
 /// told in `StudioState::assets`. In memory the scene names its files by whole paths. Throws DataError for anything
 /// else that is wrong; Cancelled.
 [[nodiscard]] LoadedProject loadProject(const std::filesystem::path& file, const Progress& progress);
+
+/// A demonstration, which names resources alone and brings no installation.
+[[nodiscard]] LoadedProject loadedProject(const ProjectContents& demo);
 
 /// The same without what the scene names, and that alone: for a session, whose scene goes by other names.
 [[nodiscard]] LoadedProject loadProjectWithoutAssets(const std::filesystem::path& file, const Progress& progress);

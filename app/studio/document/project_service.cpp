@@ -1,33 +1,266 @@
 #include "app/studio/document/project_service.h"
 
 #include <cstdlib>
+#include <map>
+#include <utility>
 
 #include <QStandardPaths>
 
-#include "app/studio/document/project_service_data.h"
+#include "app/applications/demo.h"
+#include "app/studio/document/asset_opening.h"
+#include "app/studio/document/assets.h"
+#include "app/studio/document/field_building.h"
+#include "app/studio/document/field_cache.h"
+#include "app/studio/document/file_watch.h"
+#include "app/studio/document/job_slots.h"
+#include "app/studio/document/path_text.h"
+#include "app/studio/document/rig_compiler.h"
+#include "app/studio/document/scene_assets_reader.h"
+#include "app/studio/document/session_keeper.h"
+#include "app/studio/document/target_placing.h"
+#include "core/base/error.h"
+#include "core/base/resources.h"
 
 namespace lumorph::studio {
 
+namespace {
+
+namespace fs = std::filesystem;
+
+/// What the scene's files are watched as, before their names.
+constexpr const char* kScenePlace = "scene:";
+
+/// A demonstration by its name; without one a new project, the bundled tablet. Neither belongs to a file of the user's.
+LoadedProject readBundled(const std::string& demo, const FieldCache& cache, const Progress& progress) {
+    LoadedProject loaded;
+    if (demo.empty()) {
+        auto rig = readRigAsset(resourceFile("models/tablet.glb"));
+        loaded.state.rig = std::move(rig.asset);
+        loaded.stamps.rig = rig.stamp;
+    } else {
+        loaded = loadedProject(demoNamed(demo).open(progress));
+    }
+    if (!loaded.state.field.field) loaded.state.field.field = cache.find(*loaded.state.rig.rig);
+    return loaded;
+}
+
+} // namespace
+
+/// Projects and sessions, and what the pieces that open, build and place have in common.
+struct ProjectService::Data {
+    Data(ProjectService& owner, StudioDocument& openDocument, Jobs& allJobs, Notices& allNotices);
+
+    void connectPieces();
+    void watch();
+    void openProject(const fs::path& file);
+    /// A demo by its name, or a new project.
+    void openBundled(const std::string& demo, std::function<void()> onReady);
+    void replaceAll(LoadedProject loaded, const fs::path& file);
+    void saveTo(const fs::path& file);
+    void restore(std::function<void()> onReady);
+    [[nodiscard]] ProjectSource source() const;
+    [[nodiscard]] std::optional<SessionState> session() const;
+    void tellChanged(const QString& place, const QString& path);
+    void tellVanished(const QString& place, const QString& path);
+
+    ProjectService& service;
+    StudioDocument& document;
+    Notices& notices;
+    JobSlots jobs;
+    ReadFiles read;
+    ProjectExtras extras;
+    FieldCache cache;
+    FileWatch files;
+    SessionKeeper keeper;
+    RigCompiler compiler;
+    AssetOpening opening;
+    FieldBuilding building;
+    TargetPlacing placing;
+    SceneAssetsReader scene;
+};
+
 ProjectService::Data::Data(ProjectService& owner, StudioDocument& openDocument, Jobs& allJobs, Notices& allNotices)
-    : service(owner), document(openDocument), jobs(allJobs), notices(allNotices), cache(sessionFolder() / "fields"),
-      keeper(sessionFolder(), [this] { return session(); }) {
+    : service(owner), document(openDocument), notices(allNotices), jobs(owner, allJobs, allNotices),
+      cache(sessionFolder() / "fields"), keeper(sessionFolder(), [this] { return session(); }),
+      compiler(document, notices), opening(document, jobs, notices, read, cache),
+      building(document, jobs, notices, cache), placing(document, jobs, notices), scene(document, jobs, notices) {
     connect(&document, &StudioDocument::changed, &service, [this](StateParts parts) {
-        if (parts & (StatePart::rig | StatePart::field | StatePart::target | StatePart::scene)) watchFiles();
-        if (parts & StatePart::scene) readMissingAssets();
-        if (parts & StatePart::field) placeNew();
+        if (parts & (StatePart::rig | StatePart::rigEdited | StatePart::field | StatePart::target | StatePart::scene))
+            watch();
         keeper.touch();
     });
     connect(&document, &StudioDocument::titleChanged, &service, [this] { keeper.touch(); });
-    connect(&watch, &FileWatch::changed, &service,
+    connect(&files, &FileWatch::changed, &service,
             [this](const QString& place, const QString& path) { tellChanged(place, path); });
-    connect(&watch, &FileWatch::vanished, &service,
+    connect(&files, &FileWatch::vanished, &service,
             [this](const QString& place, const QString& path) { tellVanished(place, path); });
-    connect(&watch, &FileWatch::restored, &service, [this](const QString& place, const QString& path) {
+    connect(&files, &FileWatch::restored, &service, [this](const QString& place, const QString& path) {
         notices.dismiss(place.startsWith(kScenePlace) ? QString("scene") : place, fileName(path.toStdString()));
     });
     connect(&keeper, &SessionKeeper::failed, &service, [this](const QString& why) {
         notices.post("project", {Notice::Level::warning, tr("Session"), why, tr("save the project"), {}});
     });
+    connectPieces();
+}
+
+/// None of them knows another.
+void ProjectService::Data::connectPieces() {
+    connect(&opening, &AssetOpening::opened, &service, &ProjectService::opened);
+    connect(&opening, &AssetOpening::rigOpened, &building, &FieldBuilding::buildMissing);
+    connect(&opening, &AssetOpening::targetOpened, &placing, &TargetPlacing::expect);
+    connect(&opening, &AssetOpening::projectChosen, &service, [this](const fs::path& file) { openProject(file); });
+    connect(&opening, &AssetOpening::recordingChosen, &service, &ProjectService::recordingChosen);
+    connect(&opening, &AssetOpening::fileWanted, &service, &ProjectService::chooseFile);
+    connect(&building, &FieldBuilding::rigWanted, &service, [this] { emit service.chooseFile("rig"); });
+    connect(&placing, &TargetPlacing::fieldWanted, &building, [this] { building.build({}, false); });
+    connect(&placing, &TargetPlacing::targetWanted, &service, [this] { emit service.chooseFile("target"); });
+    connect(&scene, &SceneAssetsReader::assetWanted, &service, &ProjectService::chooseAsset);
+}
+
+void ProjectService::Data::openProject(const fs::path& file) {
+    jobs.run<LoadedProject>(
+        "project", "project", tr("Opening %1").arg(fileName(file)),
+        [file](const Progress& progress) { return loadProject(file, progress); },
+        [this, file](const LoadedProject& loaded) {
+            replaceAll(loaded, file);
+            for (const std::string& warning : loaded.warnings)
+                notices.post("field",
+                             {Notice::Level::warning, fileName(file), QString::fromStdString(warning), {}, {}});
+            emit service.opened(fullName(file));
+            emit service.openedElsewhere(fullName(file), loaded.installation);
+        },
+        {{tr("Choose another file..."), [this] { emit service.chooseFile("project"); }}});
+}
+
+void ProjectService::Data::openBundled(const std::string& demo, std::function<void()> onReady) {
+    const auto ready = std::make_shared<std::function<void()>>(std::move(onReady));
+    jobs.runWith<LoadedProject>(
+        "project", "project", demo.empty() ? tr("Opening the tablet") : tr("Opening the demo"),
+        [demo, cache = cache](const Progress& progress) { return readBundled(demo, cache, progress); },
+        [this, ready](const LoadedProject& loaded) {
+            replaceAll(loaded, {});
+            if (*ready) (*ready)();
+        },
+        [this, ready](const std::exception& error) {
+            jobs.fail("project", error);
+            if (*ready) (*ready)();
+        });
+}
+
+void ProjectService::Data::replaceAll(LoadedProject loaded, const fs::path& file) {
+    for (const char* slot : {"rig", "field", "target", "place"}) jobs.stop(slot);
+    scene.reset();
+    for (const char* place : {"rig", "field", "target", "match", "project", "scene"}) notices.dismissAll(place);
+    const bool unsaved = document.modified();
+    const SessionState before{source(), document.file(), unsaved};
+    const QString name = document.name();
+    read.remember(loaded.state, loaded.stamps);
+    extras = std::move(loaded.extras);
+    loaded.state.installation.reset(); // the room stays as it is, whatever is opened in it
+    document.reset(std::move(loaded.state), file);
+    scene.takeOpened();
+    building.buildMissing();
+    if (!unsaved || !before.source.state.rig.rig) return;
+    const auto bringBack = [this, before] {
+        replaceAll({before.source.state, {}, before.source.stamps, before.source.extras, {}}, before.file);
+        document.undoStack().resetClean();
+    };
+    notices.post("project", {Notice::Level::info,
+                             name,
+                             tr("had changes that were not saved"),
+                             tr("bring it back to save them"),
+                             {{tr("Bring it back"), bringBack}}});
+}
+
+ProjectSource ProjectService::Data::source() const { return {document.state(), read.of(document.state()), extras}; }
+
+std::optional<SessionState> ProjectService::Data::session() const {
+    if (!document.state().rig.rig) return std::nullopt;
+    return SessionState{source(), document.file(), document.modified()};
+}
+
+void ProjectService::Data::saveTo(const fs::path& file) {
+    try {
+        document.commitPreview(tr("Edit"));
+        saveProject(source(), file);
+        document.setSaved(file);
+        notices.dismissAll("project");
+        emit service.saved(fullName(file));
+    } catch (const std::exception& error) {
+        jobs.fail("project", error,
+                  {{tr("Save somewhere else..."), [this] { emit service.saveElsewhere(); }},
+                   {tr("Try again"), [this, file] { saveTo(file); }}});
+    }
+}
+
+void ProjectService::Data::restore(std::function<void()> onReady) {
+    const auto ready = std::make_shared<std::function<void()>>(std::move(onReady));
+    jobs.runWith<std::optional<SessionState>>(
+        "project", "project", tr("Opening the last session"),
+        [folder = sessionFolder()](const Progress& progress) { return SessionKeeper::restore(folder, progress); },
+        [this, ready](const std::optional<SessionState>& session) {
+            if (!session) {
+                openBundled(demos().front().name, *ready);
+                return;
+            }
+            replaceAll({session->source.state, {}, session->source.stamps, session->source.extras, {}}, session->file);
+            if (session->modified) document.undoStack().resetClean();
+            if (*ready) (*ready)();
+        },
+        [this, ready](const std::exception& error) {
+            const fs::path aside = SessionKeeper::moveAside(sessionFolder());
+            Notice notice = noticeOf(error);
+            notice.why = tr("the last session could not be opened: %1").arg(notice.why);
+            notice.remedy = tr("what is left of it lies in %1").arg(fullName(aside));
+            // Told when the demo is there: what opens clears the notices of what was open.
+            openBundled(demos().front().name, [this, notice, ready] {
+                notices.post("project", notice);
+                if (*ready) (*ready)();
+            });
+        });
+}
+
+void ProjectService::Data::watch() {
+    const StudioState& state = document.state();
+    const AssetStamps stamps = read.of(state);
+    std::map<QString, FileWatch::Watched> watched;
+    const auto add = [&](const QString& place, const std::filesystem::path& path,
+                         const std::optional<FileStamp>& stamp) {
+        if (!path.empty() && stamp) watched[place] = {path, *stamp};
+    };
+    add("rig", state.rig.path, stamps.rig);
+    add("field", state.field.path, stamps.field);
+    add("target", state.target.path, stamps.target);
+    for (const auto& [asset, stamp] : scene.stamps()) add(kScenePlace + QString::fromStdString(asset), asset, stamp);
+    files.watch(watched);
+}
+
+void ProjectService::Data::tellChanged(const QString& place, const QString& path) {
+    const std::filesystem::path file = path.toStdString();
+    if (place.startsWith(kScenePlace)) return scene.readAgain(file.string());
+    const auto again = [this, place, file] {
+        if (place == "target")
+            opening.readTargetAgain(file);
+        else if (place == "rig")
+            opening.openRig(file);
+        else
+            opening.openField(file);
+    };
+    notices.post(place, {Notice::Level::warning,
+                         fileName(file),
+                         tr("has changed on disk"),
+                         tr("read it again, or keep what is open"),
+                         {{tr("Read again"), again}, {tr("Keep"), [] {}}}});
+}
+
+void ProjectService::Data::tellVanished(const QString& place, const QString& path) {
+    if (place.startsWith(kScenePlace)) return scene.tellVanished(path.toStdString());
+    const auto saveCopy = [this] { emit service.saveElsewhere(); };
+    notices.post(place, {Notice::Level::warning,
+                         fileName(path.toStdString()),
+                         tr("is no longer on the disk; what is open stays"),
+                         tr("save the project, which then holds a copy of it"),
+                         {{tr("Save a copy..."), saveCopy}, {tr("Dismiss"), [] {}}}});
 }
 
 ProjectService::ProjectService(StudioDocument& document, Jobs& jobs, Notices& notices, QObject* parent)
@@ -35,31 +268,33 @@ ProjectService::ProjectService(StudioDocument& document, Jobs& jobs, Notices& no
 
 ProjectSource ProjectService::project() const { return data_->source(); }
 
-ProjectService::~ProjectService() {
-    for (const auto& [slot, id] : data_->slots_) data_->jobs.cancel(id);
-}
+ProjectService::~ProjectService() = default;
 
-void ProjectService::open(const std::filesystem::path& file) { data_->openAsWhatItIs(file); }
+void ProjectService::open(const std::filesystem::path& file) { data_->opening.open(file); }
 void ProjectService::openProject(const std::filesystem::path& file) { data_->openProject(file); }
-void ProjectService::openRig(const std::filesystem::path& path) { data_->openRig(path); }
-void ProjectService::openField(const std::filesystem::path& file) { data_->openField(file); }
-void ProjectService::openTarget(const std::filesystem::path& file) { data_->openTarget(file); }
+void ProjectService::openRig(const std::filesystem::path& path) { data_->opening.openRig(path); }
+void ProjectService::openField(const std::filesystem::path& file) { data_->opening.openField(file); }
+void ProjectService::openTarget(const std::filesystem::path& file) { data_->opening.openTarget(file); }
 
-void ProjectService::setPlacesNewTargets(bool places) { data_->placesNewTargets = places; }
+void ProjectService::setPlacesNewTargets(bool places) { data_->placing.setPlacesNewTargets(places); }
 
 void ProjectService::removeTarget() {
-    data_->stop("target");
-    data_->stop("place");
+    data_->jobs.stop("target");
+    data_->jobs.stop("place");
     data_->notices.dismissAll("target");
     data_->document.change(tr("Remove target"), [](StudioState& state) { state.target = {}; });
 }
 
-void ProjectService::buildField(const BuildOptions& options) { data_->build(options, true); }
-void ProjectService::fit() { data_->fit(); }
-void ProjectService::autoPlace() { data_->autoPlace(); }
-void ProjectService::relink(const std::string& asset, const std::filesystem::path& file) { data_->relink(asset, file); }
+void ProjectService::buildField(const BuildOptions& options) { data_->building.build(options, true); }
+void ProjectService::fit() { data_->placing.fit(); }
+void ProjectService::autoPlace() { data_->placing.autoPlace(); }
+void ProjectService::relink(const std::string& asset, const std::filesystem::path& file) {
+    data_->scene.relink(asset, file);
+}
 void ProjectService::newProject() { data_->openBundled({}, {}); }
-void ProjectService::openDemo(const std::string& name) { data_->openBundled(name, {}); }
+void ProjectService::openDemo(const std::string& name) {
+    data_->openBundled(name.empty() ? demos().front().name : name, {});
+}
 
 bool ProjectService::save() {
     const std::filesystem::path file = data_->document.file();
@@ -80,7 +315,7 @@ void ProjectService::keepSession() {
     try {
         data_->keeper.keepNow();
     } catch (const std::exception& error) {
-        data_->fail("project", error);
+        data_->jobs.fail("project", error);
     }
 }
 
@@ -88,60 +323,6 @@ std::filesystem::path ProjectService::sessionFolder() {
     if (const char* chosen = std::getenv("LUMORPH_SESSION"); chosen && *chosen) return chosen;
     const QString data = QStandardPaths::writableLocation(QStandardPaths::GenericDataLocation);
     return std::filesystem::path(data.toStdString()) / "lumorph" / "session";
-}
-
-void ProjectService::Data::watchFiles() {
-    const StudioState& state = document.state();
-    const AssetStamps stamps = read.of(state);
-    std::map<QString, FileWatch::Watched> files;
-    const auto add = [&](const QString& place, const std::filesystem::path& path,
-                         const std::optional<FileStamp>& stamp) {
-        if (!path.empty() && stamp) files[place] = {path, *stamp};
-    };
-    add("rig", state.rig.path, stamps.rig);
-    add("field", state.field.path, stamps.field);
-    add("target", state.target.path, stamps.target);
-    for (const auto& [asset, stamp] : sceneStamps()) add(kScenePlace + QString::fromStdString(asset), asset, stamp);
-    watch.watch(files);
-}
-
-void ProjectService::Data::tellChanged(const QString& place, const QString& path) {
-    const std::filesystem::path file = path.toStdString();
-    if (place.startsWith(kScenePlace)) return readAssetAgain(file.string());
-    const auto again = [this, place, file] {
-        if (place == "target")
-            readTargetAgain(file);
-        else if (place == "rig")
-            openRig(file);
-        else
-            openField(file);
-    };
-    notices.post(place, {Notice::Level::warning,
-                         fileName(file),
-                         tr("has changed on disk"),
-                         tr("read it again, or keep what is open"),
-                         {{tr("Read again"), again}, {tr("Keep"), [] {}}}});
-}
-
-void ProjectService::Data::tellVanished(const QString& place, const QString& path) {
-    if (place.startsWith(kScenePlace)) return tellVanishedAsset(path);
-    const auto saveCopy = [this] { emit service.saveElsewhere(); };
-    notices.post(place, {Notice::Level::warning,
-                         fileName(path.toStdString()),
-                         tr("is no longer on the disk; what is open stays"),
-                         tr("save the project, which then holds a copy of it"),
-                         {{tr("Save a copy..."), saveCopy}, {tr("Dismiss"), [] {}}}});
-}
-
-void ProjectService::Data::fail(const QString& place, const std::exception& error,
-                                std::vector<Notice::Action> actions) {
-    Notice notice = noticeOf(error);
-    notice.actions = std::move(actions);
-    notices.post(place, std::move(notice));
-}
-
-Notice::Action ProjectService::Data::chooseAnother(const QString& place) {
-    return {tr("Choose another file..."), [this, place] { emit service.chooseFile(place); }};
 }
 
 } // namespace lumorph::studio

@@ -47,9 +47,8 @@ public:
     void relink(const std::string& asset, const std::filesystem::path& file);
 
     void newProject(); ///< the bundled tablet, no target
-    /// "water", "techniques", or "field": the bundled tablet with an animated target, matched live.
-    void openDemo(const std::string& name = kFirstDemo);
-    static constexpr const char* kFirstDemo = "water";
+    /// A demonstration of app/applications by its name; without one the first.
+    void openDemo(const std::string& name = {});
     /// Saves to the project's file; it is on disk when this returns, or the document is still modified and a notice
     /// says why. False when it has no file; ask for one and use saveAs.
     bool save();

@@ -63,7 +63,8 @@ ProjectSource withMemory(const SessionState& session) {
     const StudioState& state = source.state;
     source.extras.view[kKey] = {{"file", utf8Of(session.file)},        {"modified", session.modified},
                                 {"rig", utf8Of(state.rig.path)},       {"field", utf8Of(state.field.path)},
-                                {"target", utf8Of(state.target.path)}, {"scene", sceneFiles(state)}};
+                                {"target", utf8Of(state.target.path)}, {"scene", sceneFiles(state)},
+                                {"rigInMemory", !source.stamps.rig}};
     return source;
 }
 
@@ -216,9 +217,12 @@ std::optional<SessionState> SessionKeeper::restore(const fs::path& folder, const
     session.modified = memory.is_object() && memory.value("modified", true);
     if (loaded.extras.view.is_object()) loaded.extras.view.erase(kKey);
     StudioState& state = loaded.state;
+    // An edited rig is in no file, though it goes by the name of the one that was opened.
+    const bool rigInMemory = memory.is_object() && memory.value("rigInMemory", false);
     rename(state.rig.path, loaded.stamps.rig, textIn(memory, "rig"), place);
     rename(state.field.path, loaded.stamps.field, textIn(memory, "field"), place);
     rename(state.target.path, loaded.stamps.target, textIn(memory, "target"), place);
+    if (rigInMemory) loaded.stamps.rig.reset();
     renameScene(state, memory, place);
     loadAssets(loaded, place / kProjectName, progress.part(0.8, 1.0));
     session.source = {std::move(loaded.state), loaded.stamps, std::move(loaded.extras)};

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
+#include <utility>
 
 #include "core/base/error.h"
 #include "core/rig/rig_file.h"
@@ -31,6 +33,40 @@ std::vector<double> soundStrokes(const std::vector<double>& before, const std::v
     for (std::size_t i = 0; i < std::min(count, edited.size()); ++i)
         sound[i] = soundNumber(i < before.size() ? before[i] : 0.0, edited[i], 0.0, 1.0);
     return sound;
+}
+
+std::shared_ptr<const RigParts> partsOf(const std::shared_ptr<const Rig>& rig) { return {rig, &rig->parts()}; }
+
+StudioState::RigAsset soundRig(const StudioState::RigAsset& before, StudioState::RigAsset edited) {
+    if (!edited.rig) return {edited.path, nullptr};
+    const bool replaced = edited.rig != before.rig && (!edited.parts || edited.parts == before.parts);
+    if (replaced || !edited.origin || !edited.parts) {
+        edited.origin = edited.rig;
+        edited.parts = partsOf(edited.rig);
+    }
+    if (edited.parts.get() == &edited.rig->parts())
+        edited.compiled = true;
+    else if (before.rig && edited.parts != before.parts)
+        edited.compiled = false;
+    return edited;
+}
+
+StudioState::FieldAsset soundField(const StudioState& before, const StudioState& edited) {
+    StudioState::FieldAsset field = edited.field;
+    if (!field.field || !edited.rig.rig) return {};
+    const bool sameLine = edited.rig.origin == before.rig.origin;
+    const bool asBefore = sameLine && field.field == before.field.field;
+    // Whoever brings a field of an earlier edit, or a whole state, says what it was built for.
+    const bool known = field.builtFor && field.builtFor != before.field.builtFor && (sameLine || !before.rig.rig);
+    if (asBefore) {
+        field.builtFor = before.field.builtFor;
+    } else if (!known) {
+        if (!isFieldOf(*field.field, *edited.rig.rig)) return {};
+        field.builtFor = partsOf(edited.rig.rig);
+    }
+    if (!asBefore || edited.rig.parts != before.rig.parts)
+        field.stale = !deformAlike(*field.builtFor, *edited.rig.parts);
+    return field;
 }
 
 bool sameScene(const std::shared_ptr<const Scene>& a, const std::shared_ptr<const Scene>& b) {
@@ -75,7 +111,9 @@ std::shared_ptr<const Installation> soundInstallation(const std::shared_ptr<cons
 
 StateParts differenceOf(const StudioState& a, const StudioState& b) {
     StateParts parts;
-    parts.setFlag(StatePart::rig, !(a.rig == b.rig));
+    const bool otherRig = a.rig.path != b.rig.path || a.rig.origin != b.rig.origin;
+    parts.setFlag(StatePart::rig, otherRig);
+    parts.setFlag(StatePart::rigEdited, !otherRig && !(a.rig == b.rig));
     parts.setFlag(StatePart::field, !(a.field == b.field));
     parts.setFlag(StatePart::target, !(a.target == b.target));
     parts.setFlag(StatePart::placement, a.placement != b.placement);
@@ -87,18 +125,39 @@ StateParts differenceOf(const StudioState& a, const StudioState& b) {
     return parts;
 }
 
-bool isFieldOf(const MatchField& field, const Rig& rig) {
-    return &field.rig.parts() == &rig.parts() || writeRigGlb(rig) == field.field.rigGlb;
+bool isEdited(const StudioState::RigAsset& rig) {
+    return rig.origin && rig.parts && rig.parts.get() != &rig.origin->parts();
+}
+
+bool fieldFits(const StudioState& state) {
+    if (!state.field.field || !state.field.builtFor || !state.rig.rig) return true;
+    const std::vector<Actuator>& was = state.field.builtFor->actuators;
+    const std::span<const Actuator> is = state.rig.rig->actuators();
+    if (was.size() != is.size()) return false;
+    for (std::size_t i = 0; i < was.size(); ++i) {
+        // A name that nobody has any more was changed; one that stands elsewhere tells of another order.
+        const bool moved = was[i].name != is[i].name && std::ranges::find(is, was[i].name, &Actuator::name) != is.end();
+        if (moved) return false;
+    }
+    return true;
+}
+
+StudioState withRig(StudioState state, const StudioState::RigAsset& shown) {
+    StudioState::RigAsset& rig = state.rig;
+    if (rig.rig || !rig.origin) return state;
+    const bool sameLine = shown.rig && shown.origin == rig.origin;
+    rig.rig = sameLine ? shown.rig : rig.origin;
+    rig.compiled = sameLine && shown.compiled && shown.parts == rig.parts;
+    return state;
 }
 
 StudioState settled(const StudioState& before, StudioState edited) {
-    const bool asBefore = edited.rig.rig == before.rig.rig && edited.field.field == before.field.field;
-    if (edited.field.field && !asBefore && (!edited.rig.rig || !isFieldOf(*edited.field.field, *edited.rig.rig)))
-        edited.field = {};
-    if (!edited.field.field) edited.field.path.clear();
+    edited.rig = soundRig(before.rig, std::move(edited.rig));
+    edited.field = soundField(before, edited);
     if (!edited.target.target) edited.target.path.clear();
     edited.placement = soundPlacement(before.placement, edited.placement);
-    edited.strokes = soundStrokes(before.strokes, edited.strokes, edited.rig.rig ? edited.rig.rig->actuatorCount() : 0);
+    edited.strokes =
+        soundStrokes(before.strokes, edited.strokes, edited.rig.parts ? edited.rig.parts->actuators.size() : 0);
     edited.matching.budget = std::clamp(edited.matching.budget, Microseconds{100}, Microseconds{10'000'000});
     edited.playback.spin = soundNumber(before.playback.spin, edited.playback.spin, -100.0, 100.0);
     edited.scene = soundScene(before.scene, edited.scene);

@@ -8,11 +8,23 @@ namespace lumorph::studio {
 /// hold something else.
 [[nodiscard]] StateParts differenceOf(const StudioState& a, const StudioState& b);
 
-/// Whether a field was built for this rig.
+/// Whether a field was built for this rig, or for one that is the same solid in every joint state.
 [[nodiscard]] bool isFieldOf(const MatchField& field, const Rig& rig);
 
-/// The one place where a state is made sound after an edit of `before`: a field of another rig is dropped, there is one
-/// stroke an actuator, and every number is finite and within what a project file can hold. A number that is not finite
+/// Whether the rig is another one than was opened.
+[[nodiscard]] bool isEdited(const StudioState::RigAsset& rig);
+
+/// Whether the field's actuators are those of the rig one by one, so that levels that it finds are theirs. True without
+/// a field; a field of the rig before an edit may have others.
+[[nodiscard]] bool fieldFits(const StudioState& state);
+
+/// A step of undo holds edited parts without the rig that they were compiled to; until it is compiled again, `shown`
+/// goes on being shown where it is an edit of the same rig.
+[[nodiscard]] StudioState withRig(StudioState state, const StudioState::RigAsset& shown);
+
+/// The one place where a state is made sound after an edit of `before`: a rig that was put in the place of another
+/// begins a line of edits, a field of another line is dropped and one of an earlier edit is stale, there is one stroke
+/// an actuator, and every number is finite and within what a project file can hold. A number that is not finite
 /// is refused: it stays what it was; so does a scene or an installation that is not sound.
 [[nodiscard]] StudioState settled(const StudioState& before, StudioState edited);
 

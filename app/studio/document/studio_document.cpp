@@ -23,6 +23,9 @@ public:
         // Pictures that only undo would hold can be read again.
         before_.assets.reset();
         after_.assets.reset();
+        // Edited parts can be compiled again; only what was opened is kept whole.
+        for (StudioState::RigAsset* rig : {&before_.rig, &after_.rig})
+            if (isEdited(*rig)) rig->rig.reset();
     }
 
     void undo() override {
@@ -96,6 +99,18 @@ void StudioDocument::setInstallation(std::shared_ptr<const Installation> install
     exchange(next);
 }
 
+void StudioDocument::setCompiled(const StudioState::RigAsset& of, const std::shared_ptr<const Rig>& rig) {
+    const auto take = [&](StudioState::RigAsset& asset) {
+        if (asset.compiled || asset.origin != of.origin) return;
+        asset.rig = rig;
+        asset.compiled = asset.parts == of.parts;
+    };
+    if (previewing_) take(beforePreview_.rig);
+    StudioState next = state_;
+    take(next.rig);
+    exchange(next);
+}
+
 void StudioDocument::reset(StudioState state, const std::filesystem::path& file) {
     previewing_ = false;
     beforePreview_ = {};
@@ -120,11 +135,10 @@ QString StudioDocument::name() const {
 }
 
 void StudioDocument::exchange(const StudioState& next) {
-    const StateParts parts = differenceOf(state_, next);
+    const StudioState before = std::exchange(state_, withRig(next, state_.rig));
+    state_.assets = before.assets;
+    const StateParts parts = differenceOf(before, state_);
     if (!parts) return;
-    const auto assets = state_.assets;
-    state_ = next;
-    state_.assets = assets;
     emit changed(parts);
 }
 

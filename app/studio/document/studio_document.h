@@ -10,7 +10,8 @@
 
 namespace lumorph::studio {
 
-/// The parts of a StudioState, for telling what changed.
+/// The parts of a StudioState, for telling what changed. `rig` says that there is another rig now; `rigEdited` that the
+/// same one was edited, or is compiled now, so that selections, cameras and links may stay as they are.
 enum class StatePart : unsigned {
     rig = 1,
     field = 2,
@@ -22,6 +23,7 @@ enum class StatePart : unsigned {
     scene = 128,
     installation = 256,
     all = 511,
+    rigEdited = 512, ///< not in `all`, which replaces the rig
 };
 Q_DECLARE_FLAGS(StateParts, StatePart)
 Q_DECLARE_OPERATORS_FOR_FLAGS(StateParts)
@@ -47,6 +49,10 @@ public:
 
     /// Hands over what the scene names; no step of undo, and told as a change of the scene.
     void setAssets(std::shared_ptr<const SceneAssets> assets);
+
+    /// Hands over what the parts in `of` were compiled to; no step of undo. It is shown until the newest parts are
+    /// compiled; where they are already, or the rig is another one by now, nothing happens.
+    void setCompiled(const StudioState::RigAsset& of, const std::shared_ptr<const Rig>& rig);
 
     /// What the machine has kept of the room; no step of undo.
     void setInstallation(std::shared_ptr<const Installation> installation);

@@ -18,13 +18,19 @@ namespace lumorph::studio {
 /// copy from before.
 struct StudioState {
     struct RigAsset {
-        std::filesystem::path path; ///< a file, or a folder of one mesh per state
+        std::filesystem::path path; ///< a file, or a folder of one mesh per state; edits leave it
+        /// What is shown, matched and moved: compiled of `parts` or, until that is done, of an edit before.
         std::shared_ptr<const Rig> rig;
+        std::shared_ptr<const RigParts> parts{}; ///< what the user edits; always there with a rig
+        std::shared_ptr<const Rig> origin{};     ///< the rig as it was opened, the same for all its edits
+        bool compiled = false; ///< `rig` is of `parts`; false while they are compiled, or where they cannot be
         bool operator==(const RigAsset&) const = default;
     };
     struct FieldAsset {
         std::filesystem::path path; ///< empty while it was built here and not saved
         std::shared_ptr<const MatchField> field;
+        std::shared_ptr<const RigParts> builtFor{}; ///< the parts of the rig that it was built for
+        bool stale = false;                         ///< it covers another volume than the rig, which was edited since
         bool operator==(const FieldAsset&) const = default;
     };
     struct TargetAsset {
@@ -45,10 +51,10 @@ struct StudioState {
     };
 
     RigAsset rig;
-    FieldAsset field; ///< of this rig, or empty
+    FieldAsset field; ///< of this rig or an edit of it before, or empty
     TargetAsset target;
     Placement placement;
-    std::vector<double> strokes; ///< set by hand; one an actuator of the rig, each in [0, 1]
+    std::vector<double> strokes; ///< set by hand; one an actuator of the rig's parts, each in [0, 1]
     Matching matching;
     Playback playback;
     std::shared_ptr<const Scene> scene; ///< in a document never empty

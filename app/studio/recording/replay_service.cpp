@@ -96,7 +96,7 @@ void ReplayService::Data::listen() {
         if (std::exchange(playing, plays) != plays) emit replay.changed(); // it has come to its end
     });
     connect(&document, &StudioDocument::changed, &replay, [this](StateParts parts) {
-        if (parts & StatePart::rig) heedRig();
+        if (parts & (StatePart::rig | StatePart::rigEdited)) heedRig();
     });
     connect(&service, &ProjectService::opened, &replay, [this](const QString& path) {
         if (awaited.empty() || path.toStdString() != awaited.string()) return;

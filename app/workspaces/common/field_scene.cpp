@@ -113,6 +113,7 @@ bool differ(const std::vector<double>& a, const std::vector<double>& b) {
 struct FieldSceneBuilder::Data {
     FieldSceneColors colors;
     bool patient = true;
+    std::shared_ptr<const Rig> shadedRig;
     Prepared<std::shared_ptr<const Rig>> deviceShape;
     Prepared<std::shared_ptr<const MatchTarget>> targetShape;
     Prepared<SurfaceKey> levelShape;
@@ -139,8 +140,10 @@ struct FieldSceneBuilder::Data {
 
 void FieldSceneBuilder::Data::addDevice(ViewportScene& scene, const MatchFrame& frame, bool tinted) {
     const TriangleMesh& rest = frame.rig->restMesh();
-    const Shaped& shaped = deviceShape.of(frame.rig, !patient && rest.triangles.size() > kShadedAtOnce, false,
-                                          [rig = frame.rig] { return shapeOf(rig->restMesh()); });
+    // Few edits of a rig touch its mesh, and looking whether one did takes less time than shading.
+    if (!shadedRig || (shadedRig != frame.rig && !(shadedRig->restMesh() == rest))) shadedRig = frame.rig;
+    const Shaped& shaped = deviceShape.of(shadedRig, !patient && rest.triangles.size() > kShadedAtOnce, false,
+                                          [rig = shadedRig] { return shapeOf(rig->restMesh()); });
     if (!shaped.shading) return;
     ViewportSurface surface;
     surface.id = kDeviceId;

@@ -57,7 +57,7 @@ public:
         connect(&studio.devices, &DeviceService::logged, this, [this] { refresh(); });
         connect(&studio.devices, &DeviceService::profileChanged, this, [this] { rebuild(); });
         connect(&studio.document, &StudioDocument::changed, this, [this](StateParts parts) {
-            if (parts & StatePart::rig) rebuild();
+            if (parts & (StatePart::rig | StatePart::rigEdited)) rebuild();
         });
         connect(&selection, &ServoSelection::changed, this, [this] { refresh(); });
         connect(&selection, &ServoSelection::assigningChanged, this, [this] { refresh(); });
@@ -115,6 +115,7 @@ private:
     void rebuild() {
         const QStringList names = servoNamesOf(studio_);
         if (names == names_) return refresh();
+        const bool sameCount = names.size() == names_.size(); // renamed, most likely
         names_ = names;
         list_.clear();
         while (QLayoutItem* item = rows_.layout->takeAt(0)) {
@@ -123,7 +124,7 @@ private:
         }
         for (qsizetype k = 0; k < names.size(); ++k) addRow(static_cast<std::size_t>(k));
         rows_.layout->addStretch(1);
-        selection_.select(names.isEmpty() ? std::nullopt : std::optional<std::size_t>(0));
+        if (!sameCount) selection_.select(names.isEmpty() ? std::nullopt : std::optional<std::size_t>(0));
         refresh();
     }
 

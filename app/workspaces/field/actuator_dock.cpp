@@ -1,5 +1,6 @@
 #include "app/workspaces/field/actuator_dock.h"
 
+#include <algorithm>
 #include <memory>
 #include <vector>
 
@@ -33,7 +34,7 @@ public:
         connect(&studio.loop, &StudioLoop::framed, refresh_, &Throttle::request);
         connect(refresh_, &Throttle::due, this, [this] { refresh(); });
         connect(&studio.document, &StudioDocument::changed, this, [this](StateParts parts) {
-            if (parts & (StatePart::rig | StatePart::field)) rebuild();
+            if (parts & (StatePart::rig | StatePart::rigEdited | StatePart::field)) rebuild();
             refresh();
         });
         rebuild();
@@ -73,10 +74,18 @@ private:
         return field ? field->field.levels : actuator.levels;
     }
 
+    /// Whether rows of this rig would be those that are shown, as with most edits of it.
+    [[nodiscard]] bool looksAs(const std::shared_ptr<const Rig>& rig) const {
+        if (rig == rig_ || !rig || !rig_) return rig == rig_;
+        return std::ranges::equal(rig->actuators(), rig_->actuators(), [](const Actuator& a, const Actuator& b) {
+            return a.name == b.name && a.levels == b.levels && a.deformer == b.deformer;
+        });
+    }
+
     void rebuild() {
         const auto& rig = studio_.document.state().rig.rig;
         const auto& field = studio_.document.state().field.field;
-        if (rig == rig_ && field == field_ && built_) return;
+        if (field == field_ && built_ && looksAs(rig)) return;
         rig_ = rig;
         field_ = field;
         built_ = true;

@@ -84,6 +84,7 @@ private:
     FieldFacts* facts_ = nullptr;
     QElapsedTimer since_; ///< the build that runs was started; invalid while none does
     std::weak_ptr<const MatchField> shown_;
+    bool stale_ = false;
 };
 
 FieldDock::FieldDock(Studio& studio, FieldDisplayModel& display) : studio_(studio), pages_(new QStackedWidget) {
@@ -151,11 +152,17 @@ void FieldDock::refresh() {
     const auto& field = state.field.field;
     build_->setEnabled(state.rig.rig != nullptr);
     pages_->setCurrentIndex(field ? 1 : 0);
-    if (!field || field == shown_.lock()) return;
+    if (!field || (field == shown_.lock() && state.field.stale == stale_)) return;
     shown_ = field;
+    stale_ = state.field.stale;
     const bool built = state.field.path.empty() && since_.isValid();
-    facts_->tell(summaryOf(field->field, state.field.path,
-                           built ? std::optional(static_cast<double>(since_.elapsed()) / 1000.0) : std::nullopt));
+    FieldSummary summary =
+        summaryOf(field->field, state.field.path,
+                  built ? std::optional(static_cast<double>(since_.elapsed()) / 1000.0) : std::nullopt);
+    if (stale_)
+        summary.warnings.insert(summary.warnings.begin(),
+                                tr("It is of the rig before your edit, so matches are a little off. Build it again."));
+    facts_->tell(summary);
     since_.invalidate();
 }
 

@@ -130,7 +130,10 @@ void FieldWorkspace::Data::refresh() {
     stage->refresh();
     const auto& frame = studio.loop.frame();
     if (!frame) return;
-    const auto scene = builder.build(*frame, display.value(), targetSelected);
+    MatchFrame shown = *frame;
+    // A field of other actuators than the rig has since its edit is not matched, but it is what is open.
+    if (!shown.field && isOf(shown, studio.document.state())) shown.field = studio.document.state().field.field;
+    const auto scene = builder.build(shown, display.value(), targetSelected);
     view()->setScene(scene);
     if (unframed && frame->rig && isOf(*frame, studio.document.state())) frameOnce(*scene);
     showGizmo();

@@ -9,7 +9,7 @@ namespace lumorph::studio {
 bool isOf(const MatchFrame& frame, const StudioState& state) {
     const bool sameField = frame.field && frame.field == state.field.field;
     return state.rig.rig && frame.wantedStrokes.size() == state.rig.rig->actuatorCount() &&
-           (sameField || frame.rig == state.rig.rig);
+           (sameField || frame.rig == state.rig.rig || (frame.rigOrigin && frame.rigOrigin == state.rig.origin));
 }
 
 std::vector<double> HandControl::strokes() const {

@@ -5,6 +5,7 @@
 #include <QTreeView>
 #include <QVBoxLayout>
 
+#include "app/studio/document/state_rules.h"
 #include "app/studio/look/palette.h"
 #include "app/studio/widgets/dock_parts.h"
 #include "app/studio/widgets/panel.h"
@@ -67,6 +68,7 @@ public:
               "Matching asks the mechanical distance field of the device. It takes a moment to build.", "field.build");
         stack_->addWidget(column_.widget);
         column_.layout->addWidget(numbers_);
+        addStale();
         addWarnings();
         addMethod();
         addActuators();
@@ -79,6 +81,32 @@ public:
     }
 
 private:
+    /// The field is of the rig before an edit.
+    void addStale() {
+        stale_ = new QWidget(this);
+        stale_->setObjectName("match.stale");
+        staleText_ = new QLabel(stale_);
+        staleText_->setObjectName("match.stale.text");
+        staleText_->setWordWrap(true);
+        staleText_->setProperty("look", "warning");
+        auto* layout = new QHBoxLayout(stale_);
+        layout->setContentsMargins(0, 0, 0, 0);
+        layout->setSpacing(8);
+        layout->addWidget(staleText_, 1);
+        layout->addWidget(makeCommandButton(studio_.commands.find("field.build"), "match.stale.remedy", stale_), 0,
+                          Qt::AlignTop);
+        column_.layout->addWidget(stale_);
+    }
+
+    void showStale() {
+        const StudioState& state = studio_.document.state();
+        stale_->setVisible(state.field.stale);
+        if (!state.field.stale) return;
+        staleText_->setText(fieldFits(state) ? "The field is of the rig before your edit."
+                                             : "The field has other actuators than the rig since your edit, so nothing "
+                                               "is matched.");
+    }
+
     void addWarnings() {
         QAction* remedy = studio_.commands.find("target.autoPlace");
         beyond_ = new ShareWarning("match.beyond", "%1 of the target reaches beyond the frame.", remedy, this);
@@ -163,6 +191,7 @@ private:
     void refresh() {
         const StudioState& state = studio_.document.state();
         stack_->setCurrentIndex(!state.target.target ? 0 : !state.field.field ? 1 : 2);
+        showStale();
         const auto& frame = studio_.loop.frame();
         if (!isVisible() || !frame) return;
         const bool follows = state.matching.live && !studio_.loop.dancing();
@@ -221,6 +250,8 @@ private:
     QStackedLayout* stack_;
     Column column_ = makeColumn(this);
     MatchNumbers* numbers_ = new MatchNumbers(column_.widget);
+    QWidget* stale_ = nullptr;
+    QLabel* staleText_ = nullptr;
     ShareWarning* beyond_ = nullptr;
     ShareWarning* unreachable_ = nullptr;
     ValueField* budget_ = nullptr;

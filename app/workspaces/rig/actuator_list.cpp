@@ -6,7 +6,9 @@
 
 #include "app/studio/widgets/dock_parts.h"
 #include "app/studio/widgets/panel.h"
+#include "app/studio/widgets/throttle.h"
 #include "app/workspaces/common/field_summary.h"
+#include "app/workspaces/rig/actuator_form.h"
 #include "app/workspaces/rig/actuator_item.h"
 #include "app/workspaces/rig/rig_docks.h"
 #include "app/workspaces/rig/rig_facts.h"
@@ -15,11 +17,15 @@ namespace lumorph::studio {
 
 namespace {
 
+/// While something is dragged, what stands in the list and below it follows a little later than the view.
+constexpr int kFollowMilliseconds = 100;
+
 class RigActuators : public QWidget {
 public:
     RigActuators(Studio& studio, RigSelection& selection)
         : studio_(studio), selection_(selection), pages_(new QStackedWidget(this)), list_(new QListWidget(this)),
-          details_(new QVBoxLayout) {
+          form_(new ActuatorForm(studio.document)), details_(new QVBoxLayout),
+          soon_(new Throttle(kFollowMilliseconds, this)) {
         auto* layout = new QVBoxLayout(this);
         layout->setContentsMargins(0, 0, 0, 0);
         layout->setSpacing(0);
@@ -32,7 +38,12 @@ public:
         pages_->addWidget(makeContents());
         connect(&studio.document, &StudioDocument::changed, this, [this](StateParts parts) {
             if (parts & StatePart::rig) rebuild();
+            if (!(parts & StatePart::rigEdited)) return;
+            form_->show(selection_.actuator());
+            soon_->request();
         });
+        connect(soon_, &Throttle::due, this, [this] { follow(); });
+        connect(form_, &ActuatorForm::motionChanged, this, [this] { selection_.wiggle(); });
         connect(list_, &QListWidget::currentRowChanged, this, [this](int row) {
             selection_.select(row < 0 ? std::nullopt : std::optional(static_cast<std::size_t>(row)));
         });
@@ -60,29 +71,43 @@ private:
         list_->setItemDelegate(new ActuatorItem(list_));
         layout->addWidget(summary_);
         layout->addWidget(list_, 1);
+        title_ = makeHeading("Actuator");
+        layout->addWidget(title_);
+        layout->addWidget(form_);
         layout->addLayout(details_);
         layout->addWidget(makeCommandButton(studio_.commands.find("rig.wiggle"), "rig.wiggleButton", nullptr));
         return contents;
     }
 
+    /// Another rig: nothing of it is chosen yet.
     void rebuild() {
-        const auto& rig = studio_.document.state().rig.rig;
-        if (rig == rig_ && rig) return;
-        rig_ = rig;
+        const auto& origin = studio_.document.state().rig.origin;
+        if (origin == origin_ && origin) return;
+        origin_ = origin;
         selection_.select(std::nullopt);
         list_->clear();
-        pages_->setCurrentIndex(rig ? 1 : 0);
-        if (!rig) return;
-        for (const Actuator& actuator : rig->actuators()) {
-            auto* item = new QListWidgetItem(QString::fromStdString(actuator.name), list_);
+        pages_->setCurrentIndex(origin ? 1 : 0);
+        follow();
+    }
+
+    /// The same rig, edited: what is chosen stays chosen.
+    void follow() {
+        const auto& parts = studio_.document.state().rig.parts;
+        if (!parts) return;
+        const std::size_t count = parts->actuators.size();
+        while (list_->count() > static_cast<int>(count)) delete list_->takeItem(list_->count() - 1);
+        for (std::size_t i = 0; i < count; ++i) {
+            const Actuator& actuator = parts->actuators[i];
+            QListWidgetItem* item = list_->item(static_cast<int>(i));
+            if (!item) item = new QListWidgetItem(list_);
             const QString detail = deformerText(actuator) + ", " + rangeText(actuator);
+            item->setText(QString::fromStdString(actuator.name));
             item->setData(kActuatorDetail, detail);
             item->setData(Qt::AccessibleDescriptionRole, detail);
         }
-        const std::size_t count = rig->actuatorCount();
         summary_->setText(
-            QString("%1: %2 %3. Choose one to see what it moves.")
-                .arg(QString::fromStdString(rig->name()), countText(count), count == 1 ? "actuator" : "actuators"));
+            QString("%1: %2 %3. Choose one to see what it moves, and to edit it.")
+                .arg(QString::fromStdString(parts->name), countText(count), count == 1 ? "actuator" : "actuators"));
         showDetails();
     }
 
@@ -93,19 +118,24 @@ private:
             delete item;
         }
         const auto chosen = selection_.actuator();
-        if (!rig_ || !chosen || *chosen >= rig_->actuatorCount()) return;
+        form_->show(chosen);
+        title_->setVisible(!form_->isHidden());
+        const auto& rig = studio_.document.state().rig.rig; // may be that of an edit before
+        if (!rig || !chosen || *chosen >= rig->actuatorCount()) return;
         if (list_->currentRow() != static_cast<int>(*chosen)) list_->setCurrentRow(static_cast<int>(*chosen));
-        details_->addWidget(makeHeading(QString::fromStdString(rig_->actuators()[*chosen].name)));
-        details_->addWidget(makeFacts(factsOf(*rig_, *chosen), "rig.actuator.", this));
+        details_->addWidget(makeFacts(factsOf(*rig, *chosen), "rig.actuator.", this));
     }
 
     Studio& studio_;
     RigSelection& selection_;
     QStackedWidget* pages_;
     QListWidget* list_;
+    ActuatorForm* form_;
     QVBoxLayout* details_;
+    Throttle* soon_;
     QLabel* summary_ = nullptr;
-    std::shared_ptr<const Rig> rig_;
+    QWidget* title_ = nullptr;
+    std::shared_ptr<const Rig> origin_;
 };
 
 } // namespace

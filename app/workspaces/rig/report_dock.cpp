@@ -33,7 +33,7 @@ public:
                                          "shapes the rig can take.",
                                          check_));
         connect(&studio.document, &StudioDocument::changed, this, [this](StateParts parts) {
-            if (parts & StatePart::rig) follow();
+            if (parts & (StatePart::rig | StatePart::rigEdited)) follow();
         });
         follow();
     }
@@ -42,9 +42,12 @@ private:
     void follow() {
         const auto& rig = studio_.document.state().rig.rig;
         check_->setEnabled(rig != nullptr);
-        if (rig != rig_) clear();
+        if (!rig || !isOf(*rig)) clear();
         rig_ = rig;
     }
+
+    /// What was found is true of edits that leave the shape as it is.
+    [[nodiscard]] bool isOf(const Rig& rig) const { return rig_ && deformAlike(rig_->parts(), rig.parts()); }
 
     void clear() {
         if (pages_->count() < 2) return;
@@ -63,7 +66,7 @@ private:
                 return std::make_shared<const ShapeReport>(shapeReport(*rig, kStates, 1, progress));
             },
             [alive, rig](const std::shared_ptr<const ShapeReport>& report) {
-                if (alive && alive->rig_ == rig) alive->show(*report);
+                if (alive && alive->isOf(*rig)) alive->show(*report);
             },
             [alive](const std::exception& error) {
                 if (alive) alive->studio_.notices.post("rig", noticeOf(error));

@@ -14,25 +14,26 @@ namespace lumorph::studio {
 
 namespace {
 
-enum class Motion { turning, moving, blending };
+using Motion = ActuatorRange::Motion;
 
-struct Range {
-    Motion motion;
-    double min, max; ///< radians, metres or weight
+struct RangeOf {
+    ActuatorRange operator()(const Hinge& d) const { return {Motion::turning, d.min.inRadians(), d.max.inRadians()}; }
+    ActuatorRange operator()(const Bend& d) const { return {Motion::turning, d.min.inRadians(), d.max.inRadians()}; }
+    ActuatorRange operator()(const Slide& d) const { return {Motion::moving, d.min, d.max}; }
+    ActuatorRange operator()(const MorphTarget&) const { return {Motion::blending, 0.0, 1.0}; }
+    ActuatorRange operator()(const SkinJoint& d) const {
+        return {d.motion == SkinJoint::Motion::rotate ? Motion::turning : Motion::moving, d.min, d.max};
+    }
 };
 
-Range rangeOf(const Deformer& deformer) {
-    struct {
-        Range operator()(const Hinge& d) const { return {Motion::turning, d.min.inRadians(), d.max.inRadians()}; }
-        Range operator()(const Bend& d) const { return {Motion::turning, d.min.inRadians(), d.max.inRadians()}; }
-        Range operator()(const Slide& d) const { return {Motion::moving, d.min, d.max}; }
-        Range operator()(const MorphTarget&) const { return {Motion::blending, 0.0, 1.0}; }
-        Range operator()(const SkinJoint& d) const {
-            return {d.motion == SkinJoint::Motion::rotate ? Motion::turning : Motion::moving, d.min, d.max};
-        }
-    } visitor;
-    return std::visit(visitor, deformer);
-}
+struct SetRange {
+    double min, max;
+    void operator()(Hinge& d) const { d.min = Angle::radians(min), d.max = Angle::radians(max); }
+    void operator()(Bend& d) const { d.min = Angle::radians(min), d.max = Angle::radians(max); }
+    void operator()(Slide& d) const { d.min = min, d.max = max; }
+    void operator()(MorphTarget&) const {}
+    void operator()(SkinJoint& d) const { d.min = min, d.max = max; }
+};
 
 /// A number with at most one decimal.
 QString shortNumber(double value) {
@@ -55,8 +56,16 @@ QString deformerText(const Actuator& actuator) {
     return kNames.at(actuator.deformer.index());
 }
 
+ActuatorRange rangeOf(const Actuator& actuator) { return std::visit(RangeOf{}, actuator.deformer); }
+
+void setRange(Actuator& actuator, double min, double max) {
+    const ActuatorRange before = rangeOf(actuator);
+    std::visit(SetRange{min, max}, actuator.deformer);
+    if (before.max > before.min && max > min) actuator.maxVelocity *= (before.max - before.min) / (max - min);
+}
+
 QString rangeText(const Actuator& actuator) {
-    const Range range = rangeOf(actuator.deformer);
+    const ActuatorRange range = rangeOf(actuator);
     switch (range.motion) {
     case Motion::turning:
         return QString("%1° to %2°")
@@ -88,10 +97,7 @@ std::vector<RigFact> factsOf(const Rig& rig, std::size_t index) {
     const ActuatorDrive& drive = actuator.drive;
     return {
         {"Moves by", deformerText(actuator), "How its part changes shape"},
-        {"Range", rangeText(actuator), "From rest to full stroke"},
         {"Amplitude", lengthText(amplitudeOf(rig, index)), "The longest way a point of the surface goes"},
-        {"Full stroke", QString("%1 s").arg(1.0 / actuator.maxVelocity, 0, 'f', 2),
-         "Time from rest to full stroke at its velocity limit"},
         {"Levels", QString::number(actuator.levels), "Steps that the rig suggests for a field"},
         {"Moves", countText(rig.verticesOf(index).size()) + " vertices", "How much of the mesh follows it"},
         {"Channel", drive.channel < 0 ? QString("none") : QString::number(drive.channel),

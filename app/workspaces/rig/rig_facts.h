@@ -16,11 +16,21 @@ struct RigFact {
     QString why; ///< what it means, for a tooltip
 };
 
+/// How far an actuator goes from rest to full stroke.
+struct ActuatorRange {
+    enum class Motion { turning, moving, blending } motion = Motion::blending;
+    double min = 0.0, max = 1.0; ///< radians, metres or weight
+};
+[[nodiscard]] ActuatorRange rangeOf(const Actuator& actuator);
+/// Another range for an actuator that turns or moves. Its servo is as fast as before: the velocity limit, which counts
+/// strokes, follows the range.
+void setRange(Actuator& actuator, double min, double max);
+
 /// "Hinge", "Bend", "Slide", "Morph target" or "Joint".
 [[nodiscard]] QString deformerText(const Actuator& actuator);
 /// "0° to 45°", "0 to 20 mm" or "0 to 1".
 [[nodiscard]] QString rangeText(const Actuator& actuator);
-/// What a maker and a controller need to know of an actuator. Deforms the rig once.
+/// What a maker and a controller need to know of an actuator beside what they edit. Deforms the rig once.
 [[nodiscard]] std::vector<RigFact> factsOf(const Rig& rig, std::size_t actuator);
 /// The longest way that a vertex goes at full stroke of this actuator alone, metres.
 [[nodiscard]] double amplitudeOf(const Rig& rig, std::size_t actuator);

@@ -1,5 +1,7 @@
 #include "app/workspaces/rig/rig_workspace.h"
 
+#include <algorithm>
+#include <memory>
 #include <optional>
 #include <utility>
 
@@ -37,6 +39,8 @@ struct RigWorkspace::Data : public QObject {
     void openRig();
     void refresh();
     void select();
+    void edited();
+    void markPart();
     void wiggle();
     void frameOnce(const ViewportScene& scene);
     /// The frame as shown: the loop's, with the selected actuator wiggling on top.
@@ -47,6 +51,7 @@ struct RigWorkspace::Data : public QObject {
     FieldSceneBuilder builder;
     QPointer<ViewportWidget> view;
     std::optional<MovedPart> part;
+    std::shared_ptr<const Rig> partOf;
     QAction* wiggleCommand = nullptr;
     QElapsedTimer wiggling;
     QTimer tick;
@@ -69,6 +74,7 @@ void RigWorkspace::Data::listen() {
         refresh();
     });
     connect(&studio.document, &StudioDocument::changed, this, [this](StateParts parts) {
+        if (parts & StatePart::rigEdited) edited();
         if (!(parts & StatePart::rig)) return;
         unframed = true;
         selection.select(std::nullopt);
@@ -98,15 +104,33 @@ void RigWorkspace::Data::openRig() {
 }
 
 void RigWorkspace::Data::select() {
+    part.reset();
+    tick.stop();
+    markPart();
+    wiggle();
+    wiggleCommand->setEnabled(part.has_value());
+    refresh();
+}
+
+void RigWorkspace::Data::markPart() {
     const auto& rig = studio.document.state().rig.rig;
     const auto chosen = selection.actuator();
     part.reset();
-    tick.stop();
-    if (rig && chosen && *chosen < rig->actuatorCount()) {
-        part.emplace(*rig, *chosen);
-        wiggle();
-    }
-    wiggleCommand->setEnabled(part.has_value());
+    partOf = rig;
+    if (rig && chosen && *chosen < rig->actuatorCount()) part.emplace(*rig, *chosen);
+}
+
+/// The same rig with other numbers: what is chosen, and where one looks from, stay.
+void RigWorkspace::Data::edited() {
+    const auto& rig = studio.document.state().rig.rig;
+    const auto chosen = selection.actuator();
+    if (!chosen || rig == partOf) return;
+    if (*chosen >= rig->actuatorCount()) return selection.select(std::nullopt);
+    // Finding the border takes longer than a frame of a drag, and most edits leave it where it is.
+    const bool sameBorder = part && *chosen < partOf->actuatorCount() && partOf->restMesh() == rig->restMesh() &&
+                            std::ranges::equal(partOf->verticesOf(*chosen), rig->verticesOf(*chosen));
+    if (!sameBorder) markPart();
+    partOf = rig;
     refresh();
 }
 
@@ -133,7 +157,7 @@ void RigWorkspace::Data::refresh() {
     if (!active || !view) return;
     const auto& frame = studio.loop.frame();
     // A frame of the rig before would be marked with the parts of this one.
-    if (!frame || frame->rig != studio.document.state().rig.rig) return;
+    if (!frame || frame->rigOrigin != studio.document.state().rig.origin) return;
     FieldDisplay display;
     display.showTarget = false;
     display.showMismatch = false;

@@ -348,6 +348,43 @@ TEST_F(MatchLoopTest, ActuatorsStayWhereTheyAreInTheSameRig) {
     EXPECT_EQ(other->devicePositions->size(), wish.rig->restMesh().positions.size());
 }
 
+// A drag of a rig's numbers makes a new rig with every frame.
+TEST_F(MatchLoopTest, ActuatorsGoOnWithoutAJumpInARigThatIsEdited) {
+    MatchWish wish = wishFor(field_, nullptr);
+    wish.live = false;
+    wish.rigOrigin = wish.rig;
+    wish.strokes = {1.0, 0.5, 0.0};
+    MatchWish still = wish;
+    MatchLoop reference(clock_);
+    for (int i = 0; i < 20; ++i) {
+        RigParts parts = wish.rig->parts();
+        parts.actuators[2].name = "renamed " + std::to_string(i);
+        wish.rig = std::make_shared<const Rig>(std::move(parts));
+        const auto frame = loop_.step(wish, kFrame);
+        EXPECT_EQ(frame->rig, wish.rig);
+        EXPECT_EQ(frame->estimatedStrokes, reference.step(still, kFrame)->estimatedStrokes) << "frame " << i;
+    }
+    const auto last = loop_.step(wish, 0.0);
+    ASSERT_GT(last->estimatedStrokes[0], 0.1);
+
+    // Fewer, and in another order: each goes on by its name.
+    RigParts parts = wish.rig->parts();
+    std::swap(parts.actuators[0], parts.actuators[1]);
+    parts.actuators.pop_back();
+    wish.rig = std::make_shared<const Rig>(std::move(parts));
+    wish.field = nullptr;
+    wish.strokes = {0.5, 1.0};
+    const auto fewer = loop_.step(wish, 0.0);
+    EXPECT_EQ(fewer->estimatedStrokes, (std::vector<double>{last->estimatedStrokes[1], last->estimatedStrokes[0]}));
+
+    // Another rig with as many actuators begins at rest.
+    parts = wish.rig->parts();
+    for (Actuator& actuator : parts.actuators) actuator.name += " of another";
+    wish.rig = std::make_shared<const Rig>(std::move(parts));
+    wish.rigOrigin = wish.rig;
+    EXPECT_EQ(loop_.step(wish, 0.0)->estimatedStrokes, std::vector<double>(2, 0.0));
+}
+
 TEST_F(MatchLoopTest, DanceIsLivelyAndTheSameEveryTime) {
     MatchWish wish = wishFor(field_, nullptr);
     wish.driver = Driver::dance;

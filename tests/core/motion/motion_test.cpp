@@ -187,5 +187,19 @@ TEST(Motion, TheModelMovesEachActuatorByItsOwnLimits) {
     EXPECT_EQ(model.positions()[1], advance({0.4, 0.0}, 0.1, 0.3, fast).position);
 }
 
+TEST(Motion, ResumedUnderOtherLimitsItGoesOnAsFastAsItWas) {
+    const MotionLimits before{2.0, 1.0, 0.15}, after{2.0, 1.5, 0.15};
+    MotionModel model({before});
+    model.step(std::vector<double>{1.0}, 0.1);
+    const MotionState there{model.positions()[0], model.velocities()[0]};
+    ASSERT_GT(there.velocity, 0.5);
+    MotionModel next({after});
+    next.resume(model.positions(), model.velocities());
+    next.step(std::vector<double>{1.0}, 0.01);
+    EXPECT_EQ(next.positions()[0], advance(there, 1.0, 0.01, after).position);
+    EXPECT_THROW(next.resume(model.positions(), std::vector<double>{kNan}), InvalidInput);
+    EXPECT_THROW(next.resume(model.positions(), {}), InvalidInput);
+}
+
 } // namespace
 } // namespace lumorph

@@ -136,6 +136,37 @@ TEST(Rig, ReachIsExactForSlides) {
     EXPECT_EQ(rig.reachOf(1).max, glm::vec3(0.1F, static_cast<float>(0.06 - 0.01), 0.0F));
 }
 
+TEST(Rig, DeformsAlikeWhereOnlyWhatNoFieldDependsOnDiffers) {
+    const RigParts parts = test::lifterRig().parts();
+    struct Case {
+        const char* what;
+        std::function<void(RigParts&)> edit;
+        bool alike;
+    };
+    const std::vector<Case> cases = {
+        {"nothing", [](RigParts&) {}, true},
+        {"rig's name", [](RigParts& p) { p.name = "other"; }, true},
+        {"actuator's name", [](RigParts& p) { p.actuators[1].name = "other"; }, true},
+        {"levels", [](RigParts& p) { p.actuators[1].levels = 5; }, true},
+        {"velocity", [](RigParts& p) { p.actuators[1].maxVelocity = 0.5; }, true},
+        {"damping", [](RigParts& p) { p.actuators[1].dampingRatio = 2.0; }, true},
+        {"drive", [](RigParts& p) { p.actuators[1].drive.channel = 7; }, true},
+        {"range", [](RigParts& p) { std::get<Slide>(p.actuators[1].deformer).max *= 1.5; }, false},
+        {"weight", [](RigParts& p) { p.actuators[1].influences[0].weight = 0.5F; }, false},
+        {"vertex", [](RigParts& p) { p.restMesh.positions[0].x += 1e-6F; }, false},
+        {"triangle", [](RigParts& p) { p.restMesh.triangles.pop_back(); }, false},
+        {"path", [](RigParts& p) { p.pathInside = !p.pathInside; }, false},
+        {"order", [](RigParts& p) { std::swap(p.actuators[0], p.actuators[1]); }, false},
+        {"count", [](RigParts& p) { p.actuators.pop_back(); }, false},
+    };
+    for (const Case& one : cases) {
+        RigParts edited = parts;
+        one.edit(edited);
+        EXPECT_EQ(deformAlike(parts, edited), one.alike) << one.what;
+        EXPECT_EQ(parts == edited, std::string(one.what) == "nothing") << one.what;
+    }
+}
+
 TEST(Rig, StrokesOfAState) {
     const Rig rig(
         pointParts({{0, 0, 0}, {0.1F, 0, 0}, {0, 0, 0.1F}}, {Slide{{0, 1, 0}, 0, 0.1}, Slide{{0, 1, 0}, 0, 0.1}}));

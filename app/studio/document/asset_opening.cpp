@@ -1,6 +1,9 @@
-#include <algorithm>
+#include "app/studio/document/asset_opening.h"
 
-#include "app/studio/document/project_service_data.h"
+#include <algorithm>
+#include <utility>
+
+#include "app/studio/document/path_text.h"
 #include "app/studio/document/state_rules.h"
 #include "core/base/error.h"
 #include "core/rig/rig_file.h"
@@ -59,13 +62,17 @@ QString joined(const std::vector<std::string>& sentences) {
 
 } // namespace
 
-void ProjectService::Data::openAsWhatItIs(const fs::path& file) {
-    run<FileKind>(
+AssetOpening::AssetOpening(StudioDocument& document, JobSlots& jobs, Notices& notices, ReadFiles& read,
+                           FieldCache cache)
+    : document_(document), jobs_(jobs), notices_(notices), read_(read), cache_(std::move(cache)) {}
+
+void AssetOpening::open(const fs::path& file) {
+    jobs_.run<FileKind>(
         "look", "viewport", tr("Looking at %1").arg(fileName(file)), [file](const Progress&) { return kindOf(file); },
         [this, file](FileKind kind) {
             switch (kind) {
             case FileKind::project:
-                openProject(file);
+                emit projectChosen(file);
                 break;
             case FileKind::field:
                 openField(file);
@@ -77,135 +84,136 @@ void ProjectService::Data::openAsWhatItIs(const fs::path& file) {
                 openTarget(file);
                 break;
             case FileKind::recording:
-                emit service.recordingChosen(fullName(file));
+                emit recordingChosen(fullName(file));
                 break;
             case FileKind::voxels:
-                notices.post("target", {Notice::Level::error,
-                                        fileName(file),
-                                        tr("is a grid of voxels, which has no surface to show and move"),
-                                        tr("open the mesh that it was made from"),
-                                        {chooseAnother("target")}});
+                notices_.post("target", {Notice::Level::error,
+                                         fileName(file),
+                                         tr("is a grid of voxels, which has no surface to show and move"),
+                                         tr("open the mesh that it was made from"),
+                                         {chooseAnother("target")}});
                 break;
             case FileKind::unknown:
-                notices.post("viewport", {Notice::Level::error,
-                                          fileName(file),
-                                          tr("is no kind of file that can be opened here"),
-                                          tr("choose a mesh (.obj, .stl, .ply, .off, .glb, .gltf), a rig, a field "
-                                             "(.mdf), a project (.lumorph) or a recording (.lumorphrec)"),
-                                          {chooseAnother("viewport")}});
+                notices_.post("viewport", {Notice::Level::error,
+                                           fileName(file),
+                                           tr("is no kind of file that can be opened here"),
+                                           tr("choose a mesh (.obj, .stl, .ply, .off, .glb, .gltf), a rig, a field "
+                                              "(.mdf), a project (.lumorph) or a recording (.lumorphrec)"),
+                                           {chooseAnother("viewport")}});
                 break;
             }
         },
         {chooseAnother("viewport")});
 }
 
-void ProjectService::Data::openRig(const fs::path& path) {
-    run<OpenedRig>(
+void AssetOpening::openRig(const fs::path& path) {
+    jobs_.run<OpenedRig>(
         "rig", "rig", tr("Opening %1").arg(fileName(path)),
-        [path, cache = cache](const Progress& progress) { return readOpenedRig(path, cache, progress); },
-        [this, path](const OpenedRig& opened) {
-            stop("field");
-            read.remember(opened.rig.asset.rig, opened.rig.stamp);
-            if (opened.field.stamp.there) read.remember(opened.field.asset.field, opened.field.stamp);
-            notices.dismissAll("rig");
-            notices.dismissAll("field");
-            document.change(tr("Open %1").arg(fullName(path.stem())), [&](StudioState& state) {
-                state.rig = opened.rig.asset;
-                state.field = opened.field.asset;
+        [path, cache = cache_](const Progress& progress) { return readOpenedRig(path, cache, progress); },
+        [this, path](const OpenedRig& result) {
+            jobs_.stop("field");
+            read_.remember(result.rig.asset.rig, result.rig.stamp);
+            if (result.field.stamp.there) read_.remember(result.field.asset.field, result.field.stamp);
+            notices_.dismissAll("rig");
+            notices_.dismissAll("field");
+            document_.change(tr("Open %1").arg(fullName(path.stem())), [&](StudioState& state) {
+                state.rig = result.rig.asset;
+                state.field = result.field.asset;
                 fitTarget(state);
             });
-            emit service.opened(fullName(path));
-            buildMissing();
+            emit opened(fullName(path));
+            emit rigOpened();
         },
         {chooseAnother("rig")});
 }
 
-void ProjectService::Data::openField(const fs::path& file) {
-    run<Stamped<StudioState::FieldAsset>>(
+void AssetOpening::openField(const fs::path& file) {
+    jobs_.run<Stamped<StudioState::FieldAsset>>(
         "field", "field", tr("Opening %1").arg(fileName(file)),
         [file](const Progress&) { return readFieldAsset(file); },
         [this, file](const Stamped<StudioState::FieldAsset>& field) {
-            read.remember(field.asset.field, field.stamp);
+            read_.remember(field.asset.field, field.stamp);
             takeField(field.asset, tr("Open %1").arg(fullName(file.stem())));
         },
         {chooseAnother("field")});
 }
 
-void ProjectService::Data::takeField(StudioState::FieldAsset field, const QString& what) {
-    const StudioState& state = document.state();
+void AssetOpening::takeField(StudioState::FieldAsset field, const QString& what) {
+    const StudioState& state = document_.state();
     if (!state.rig.rig) {
         takeRigOfField(field);
         return;
     }
     if (isFieldOf(*field.field, *state.rig.rig)) {
-        notices.dismissAll("field");
+        notices_.dismissAll("field");
         const QString path = fullName(field.path);
-        document.change(what, [&](StudioState& next) { next.field = field; });
-        emit service.opened(path);
+        document_.change(what, [&](StudioState& next) { next.field = field; });
+        emit opened(path);
         return;
     }
     const QString why = tr("was built for another rig, \"%1\"").arg(QString::fromStdString(field.field->rig.name()));
-    notices.post("field", {Notice::Level::error,
-                           fileName(field.path),
-                           why,
-                           tr("open the rig it was built for, or keep yours"),
-                           {{tr("Open its rig"), [this, field] { takeRigOfField(field); }}, {tr("Keep mine"), [] {}}}});
+    notices_.post("field",
+                  {Notice::Level::error,
+                   fileName(field.path),
+                   why,
+                   tr("open the rig it was built for, or keep yours"),
+                   {{tr("Open its rig"), [this, field] { takeRigOfField(field); }}, {tr("Keep mine"), [] {}}}});
 }
 
-void ProjectService::Data::takeRigOfField(const StudioState::FieldAsset& field) {
-    stop("rig");
-    notices.dismissAll("field");
-    document.change(tr("Open the rig of %1").arg(fullName(field.path.stem())), [&](StudioState& state) {
+void AssetOpening::takeRigOfField(const StudioState::FieldAsset& field) {
+    jobs_.stop("rig");
+    notices_.dismissAll("field");
+    document_.change(tr("Open the rig of %1").arg(fullName(field.path.stem())), [&](StudioState& state) {
         state.rig = {{}, std::shared_ptr<const Rig>(field.field, &field.field->rig)};
         state.field = field;
         fitTarget(state);
     });
-    emit service.opened(fullName(field.path));
+    emit opened(fullName(field.path));
 }
 
-void ProjectService::Data::openTarget(const fs::path& file) {
-    run<Stamped<StudioState::TargetAsset>>(
+void AssetOpening::openTarget(const fs::path& file) {
+    jobs_.run<Stamped<StudioState::TargetAsset>>(
         "target", "target", tr("Opening %1").arg(fileName(file)),
         [file](const Progress& progress) { return readTargetAsset(file, std::nullopt, progress); },
         [this, file](const Stamped<StudioState::TargetAsset>& target) {
-            stop("place");
-            read.remember(target.asset.target, target.stamp);
-            document.change(tr("Open %1").arg(fullName(file.stem())), [&](StudioState& state) {
+            jobs_.stop("place");
+            read_.remember(target.asset.target, target.stamp);
+            document_.change(tr("Open %1").arg(fullName(file.stem())), [&](StudioState& state) {
                 state.target = target.asset;
                 state.placement = {};
                 fitTarget(state);
             });
             tellTarget(target.asset);
-            emit service.opened(fullName(file));
-            // Each look at an open mesh takes tens of milliseconds, and the search needs hundreds of them.
-            const MatchTarget& opened = *target.asset.target;
-            if (!placesNewTargets || opened.duration > 0.0 || !opened.solid.closed) return;
-            unplaced = {target.asset.target, document.state().placement};
-            placeNew();
+            emit opened(fullName(file));
+            emit targetOpened();
         },
         {chooseAnother("target")});
 }
 
-void ProjectService::Data::readTargetAgain(const fs::path& file) {
-    const auto& open = document.state().target.target;
+void AssetOpening::readTargetAgain(const fs::path& file) {
+    const auto& open = document_.state().target.target;
     const std::optional<int> animation = open && open->animation > 0 ? std::optional(open->animation) : std::nullopt;
-    run<Stamped<StudioState::TargetAsset>>(
+    jobs_.run<Stamped<StudioState::TargetAsset>>(
         "target", "target", tr("Opening %1").arg(fileName(file)),
         [file, animation](const Progress& progress) { return readTargetAsset(file, animation, progress); },
         [this, file](const Stamped<StudioState::TargetAsset>& target) {
-            read.remember(target.asset.target, target.stamp);
-            document.change(tr("Read %1 again").arg(fullName(file.stem())),
-                            [&](StudioState& state) { state.target = target.asset; });
+            read_.remember(target.asset.target, target.stamp);
+            document_.change(tr("Read %1 again").arg(fullName(file.stem())),
+                             [&](StudioState& state) { state.target = target.asset; });
             tellTarget(target.asset);
         },
         {chooseAnother("target")});
 }
 
-void ProjectService::Data::tellTarget(const StudioState::TargetAsset& target) {
-    notices.dismissAll("target");
+void AssetOpening::tellTarget(const StudioState::TargetAsset& target) {
+    notices_.dismissAll("target");
     if (!target.target->warnings.empty())
-        notices.post("target",
-                     {Notice::Level::warning, fileName(target.path), joined(target.target->warnings), {}, {}});
+        notices_.post("target",
+                      {Notice::Level::warning, fileName(target.path), joined(target.target->warnings), {}, {}});
+}
+
+Notice::Action AssetOpening::chooseAnother(const QString& place) {
+    return {tr("Choose another file..."), [this, place] { emit fileWanted(place); }};
 }
 
 } // namespace lumorph::studio

@@ -1,0 +1,136 @@
+#include "app/studio/document/target_placing.h"
+
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+#include <QVariantAnimation>
+
+#include "app/studio/document/assets.h"
+#include "app/studio/document/path_text.h"
+#include "core/base/error.h"
+#include "core/mdf/auto_place.h"
+
+namespace lumorph::studio {
+
+namespace {
+
+constexpr int kGlideMilliseconds = 700;
+
+/// Part of the way from one placement to another, the short way round.
+Placement between(const Placement& from, const Placement& to, double share) {
+    const auto part = static_cast<float>(share);
+    const double turn = std::remainder(to.yaw.inRadians() - from.yaw.inRadians(), 2.0 * std::numbers::pi);
+    return {from.scale * std::pow(to.scale / from.scale, share), Angle::radians(from.yaw.inRadians() + share * turn),
+            from.translation + part * (to.translation - from.translation)};
+}
+
+} // namespace
+
+TargetPlacing::TargetPlacing(StudioDocument& document, JobSlots& jobs, Notices& notices)
+    : document_(document), jobs_(jobs), notices_(notices) {
+    connect(&document, &StudioDocument::changed, this, [this](StateParts parts) {
+        if (parts & StatePart::field) placeNew();
+    });
+}
+
+void TargetPlacing::expect() {
+    const StudioState& state = document_.state();
+    // Each look at an open mesh takes tens of milliseconds, and the search needs hundreds of them.
+    const MatchTarget& opened = *state.target.target;
+    if (!placesNewTargets_ || opened.duration > 0.0 || !opened.solid.closed) return;
+    unplaced_ = {state.target.target, state.placement};
+    placeNew();
+}
+
+void TargetPlacing::fit() {
+    const StudioState& state = document_.state();
+    if (!state.rig.rig || !state.target.target) return;
+    try {
+        const Placement placement =
+            placementThatFits(*state.rig.rig, state.field.field.get(), state.target.target->box, state.placement.yaw);
+        document_.change(tr("Fit target"), [&](StudioState& next) { next.placement = placement; });
+    } catch (const InvalidInput& error) {
+        jobs_.fail("target", error, {{tr("Choose another file..."), [this] { emit targetWanted(); }}});
+    }
+}
+
+void TargetPlacing::autoPlace() {
+    const StudioState::TargetAsset target = document_.state().target;
+    const std::shared_ptr<const MatchField> field = document_.state().field.field;
+    if (!target.target) return;
+    if (!field) {
+        notices_.post("target", {Notice::Level::error,
+                                 tr("Auto-place"),
+                                 tr("the field of this rig has not been built yet"),
+                                 tr("build it first"),
+                                 {{tr("Build the field"), [this] { emit fieldWanted(); }}}});
+        return;
+    }
+    jobs_.run<AutoPlacement>(
+        "place", "target", tr("Placing the target"),
+        [target, field](const Progress& progress) {
+            return lumorph::autoPlace(field->field, field->coverage, field->voting, target.target->solid, {}, progress);
+        },
+        [this, target, field](const AutoPlacement& found) {
+            if (document_.state().target.target != target.target || document_.state().field.field != field) return;
+            document_.change(tr("Auto-place target"), [&](StudioState& state) { state.placement = found.placement; });
+        },
+        {{tr("Fit"), [this] { fit(); }}});
+}
+
+void TargetPlacing::placeNew() {
+    const StudioState& state = document_.state();
+    if (!unplaced_.target || state.target.target != unplaced_.target || state.placement != unplaced_.placement) {
+        unplaced_ = {}; // someone else has moved it, or taken it away
+        return;
+    }
+    const std::shared_ptr<const MatchField> field = state.field.field;
+    if (!field) return; // when it is built
+    const auto [target, placement] = std::exchange(unplaced_, {});
+    const QString what = tr("Auto-place %1").arg(fullName(state.target.path.stem()));
+    jobs_.runWith<AutoPlacement>(
+        "place", "target", tr("Looking for a better place"),
+        [target = target, field](const Progress& progress) {
+            return lumorph::autoPlace(field->field, field->coverage, field->voting, target->solid, {}, progress);
+        },
+        [this, target = target, placement = placement, field, what](const AutoPlacement& found) {
+            const StudioState& now = document_.state();
+            if (now.target.target != target || now.placement != placement || now.field.field != field) return;
+            if (!document_.previewing() && found.iou > found.iouAtFit) glideTo(found.placement, what);
+        },
+        [](const std::exception&) {}); // nobody asked for it, and it stays where it fits
+}
+
+void TargetPlacing::glideTo(const Placement& place, const QString& what) {
+    auto* glide = new QVariantAnimation(this);
+    glide->setDuration(kGlideMilliseconds);
+    glide->setStartValue(0.0);
+    glide->setEndValue(1.0);
+    glide->setEasingCurve(QEasingCurve::InOutCubic);
+    const auto target = document_.state().target.target;
+    const auto shown = std::make_shared<Placement>(document_.state().placement);
+    const auto stillOurs = [this, target, shown] {
+        return document_.state().target.target == target && document_.state().placement == *shown;
+    };
+    connect(glide, &QVariantAnimation::valueChanged, this,
+            [this, glide, stillOurs, shown, from = *shown, place](const QVariant& share) {
+                if (!stillOurs()) { // taken over by hand, or undone
+                    glide->stop();
+                    glide->deleteLater();
+                    return;
+                }
+                document_.preview(
+                    [&](StudioState& state) { state.placement = between(from, place, share.toDouble()); });
+                *shown = document_.state().placement;
+            });
+    connect(glide, &QVariantAnimation::finished, this, [this, stillOurs, place, what, glide] {
+        glide->deleteLater();
+        if (!stillOurs()) return;
+        document_.preview([&](StudioState& state) { state.placement = place; });
+        document_.commitPreview(what);
+    });
+    glide->start();
+}
+
+} // namespace lumorph::studio

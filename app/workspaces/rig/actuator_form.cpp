@@ -1,0 +1,125 @@
+#include "app/workspaces/rig/actuator_form.h"
+
+#include <numbers>
+
+#include <QVBoxLayout>
+
+#include "app/studio/document/rig_edit.h"
+#include "app/studio/widgets/panel.h"
+#include "app/workspaces/rig/rig_facts.h"
+
+namespace lumorph::studio {
+
+namespace {
+
+using Motion = ActuatorRange::Motion;
+
+constexpr double kFullTurn = 2.0 * std::numbers::pi;
+
+void showRow(ValueField* field, bool shown) { field->parentWidget()->setVisible(shown); }
+
+} // namespace
+
+ActuatorForm::ActuatorForm(StudioDocument& document, QWidget* parent)
+    : QWidget(parent), document_(document), name_(new QLineEdit) {
+    auto* layout = new QVBoxLayout(this);
+    layout->setContentsMargins(0, 0, 0, 0);
+    layout->setSpacing(4);
+    name_->setObjectName("rig.edit.name");
+    name_->setToolTip("The actuator's name, of its own in this rig");
+    connect(name_, &QLineEdit::editingFinished, this, &ActuatorForm::rename);
+    layout->addWidget(makeRow("&Name", name_, this));
+    addRange();
+    stroke_ = addField({"rig.edit.stroke", "Full &stroke", "Time from rest to full stroke at its velocity limit",
+                        "Change the velocity of %1"},
+                       {Quantity::seconds, 0.02, 60.0, 1.0},
+                       [](Actuator& actuator, double seconds) { actuator.maxVelocity = 1.0 / seconds; });
+    damping_ = addField({"rig.edit.damping", "&Damping", "1 arrives soonest without passing its place; more is softer",
+                         "Change the damping of %1"},
+                        {Quantity::plain, 1.0, 20.0, 1.0},
+                        [](Actuator& actuator, double ratio) { actuator.dampingRatio = ratio; });
+    damping_->setStep(0.1);
+    show(std::nullopt);
+}
+
+void ActuatorForm::addRange() {
+    const auto from = [](Actuator& actuator, double value) { setRange(actuator, value, rangeOf(actuator).max); };
+    const auto to = [](Actuator& actuator, double value) { setRange(actuator, rangeOf(actuator).min, value); };
+    const QString step = "Change the range of %1";
+    const QString atRest = "Where it stands at rest", atEnd = "Where it stands at full stroke";
+    const Limits turn{Quantity::angle, -kFullTurn, kFullTurn, 0.0}, way{Quantity::length, -1.0, 1.0, 0.0};
+    from_ = addField({"rig.edit.from", "&From", atRest, step}, turn, from);
+    to_ = addField({"rig.edit.to", "&To", atEnd, step}, {turn.quantity, turn.low, turn.high, kFullTurn / 8.0}, to);
+    fromLength_ = addField({"rig.edit.fromLength", "&From", atRest, step}, way, from);
+    toLength_ = addField({"rig.edit.toLength", "&To", atEnd, step}, {way.quantity, way.low, way.high, 0.02}, to);
+}
+
+ValueField* ActuatorForm::addField(const Words& words, const Limits& limits, const Edit& edit) {
+    auto* field = new ValueField(limits.quantity, limits.low, limits.high, limits.reset);
+    field->setObjectName(words.name);
+    field->setToolTip(words.hint + ".\n" + field->toolTip());
+    layout()->addWidget(makeRow(words.label, field, this));
+    connect(field, &ValueField::previewed, this,
+            [this, edit](double value) { previewRig(document_, onActuator(edit, value)); });
+    connect(field, &ValueField::committed, this, [this, edit, step = words.step](double value) {
+        if (!shown()) return;
+        const QString name = QString::fromStdString(shown()->name);
+        previewRig(document_, onActuator(edit, value));
+        document_.commitPreview(step.arg(name));
+        emit motionChanged();
+    });
+    connect(field, &ValueField::reverted, this, [this] { document_.cancelPreview(); });
+    return field;
+}
+
+std::function<void(RigParts&)> ActuatorForm::onActuator(const Edit& edit, double value) {
+    if (!document_.previewing()) base_ = document_.state().rig.parts;
+    return [edit, value, base = base_, index = actuator_](RigParts& parts) {
+        if (!index || *index >= parts.actuators.size()) return;
+        Actuator& actuator = parts.actuators[*index];
+        if (base && *index < base->actuators.size()) actuator = base->actuators[*index];
+        edit(actuator, value);
+    };
+}
+
+const Actuator* ActuatorForm::shown() const {
+    const auto& parts = document_.state().rig.parts;
+    return parts && actuator_ && *actuator_ < parts->actuators.size() ? &parts->actuators[*actuator_] : nullptr;
+}
+
+void ActuatorForm::show(std::optional<std::size_t> actuator) {
+    const bool other = actuator_ != actuator;
+    actuator_ = actuator;
+    const Actuator* now = shown();
+    setVisible(now != nullptr);
+    if (!now) return;
+    if (other) name_->setModified(false);
+    if (!(name_->hasFocus() && name_->isModified())) name_->setText(QString::fromStdString(now->name));
+    showRange(*now);
+    stroke_->setValue(1.0 / now->maxVelocity);
+    damping_->setValue(now->dampingRatio);
+}
+
+void ActuatorForm::showRange(const Actuator& actuator) {
+    const ActuatorRange range = rangeOf(actuator);
+    from_->setEnabled(!std::holds_alternative<Bend>(actuator.deformer)); // a sheet is drawn flat: its bend begins at 0
+    showRow(from_, range.motion == Motion::turning);
+    showRow(to_, range.motion == Motion::turning);
+    showRow(fromLength_, range.motion == Motion::moving);
+    showRow(toLength_, range.motion == Motion::moving);
+    const bool turns = range.motion == Motion::turning;
+    (turns ? from_ : fromLength_)->setValue(range.min);
+    (turns ? to_ : toLength_)->setValue(range.max);
+}
+
+void ActuatorForm::rename() {
+    if (!name_->isModified()) return;
+    name_->setModified(false);
+    const QString name = name_->text().trimmed();
+    if (shown() && !name.isEmpty())
+        editRig(document_, tr("Rename to %1").arg(name),
+                [this, &name](RigParts& parts) { parts.actuators[*actuator_].name = name.toStdString(); });
+    show(actuator_);
+}
+
+} // namespace lumorph::studio

@@ -1,0 +1,57 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <optional>
+
+#include <QLineEdit>
+#include <QWidget>
+
+#include "app/studio/document/studio_document.h"
+#include "app/studio/widgets/value_field.h"
+
+namespace lumorph::studio {
+
+/// The chosen actuator's name, range, velocity and damping to be edited, each edit by one step of undo; what is dragged
+/// shows at once. Fields are named "rig.edit.name", ".from", ".to", ".stroke" and ".damping", and
+/// ".fromLength" and ".toLength" of one that moves along a line.
+class ActuatorForm : public QWidget {
+    Q_OBJECT
+public:
+    explicit ActuatorForm(StudioDocument& document, QWidget* parent = nullptr);
+
+    /// Shows one of the document's actuators as it is now; hidden without one.
+    void show(std::optional<std::size_t> actuator);
+
+signals:
+    /// How far or how fast it moves was edited.
+    void motionChanged();
+
+private:
+    using Edit = std::function<void(Actuator&, double)>;
+    void addRange();
+    struct Words {
+        QString name, label, hint;
+        QString step; ///< of undo, before the actuator's name
+    };
+    struct Limits {
+        Quantity quantity;
+        double low, high, reset;
+    };
+    ValueField* addField(const Words& words, const Limits& limits, const Edit& edit);
+    void showRange(const Actuator& actuator);
+    void rename();
+    [[nodiscard]] const Actuator* shown() const;
+    /// As the edit makes it of the actuator as it was when the drag began.
+    [[nodiscard]] std::function<void(RigParts&)> onActuator(const Edit& edit, double value);
+
+    StudioDocument& document_;
+    std::optional<std::size_t> actuator_;
+    std::shared_ptr<const RigParts> base_; ///< the parts when a drag began
+    QLineEdit* name_;
+    ValueField *from_ = nullptr, *to_ = nullptr;             ///< of one that turns
+    ValueField *fromLength_ = nullptr, *toLength_ = nullptr; ///< of one that moves along a line
+    ValueField *stroke_ = nullptr, *damping_ = nullptr;
+};
+
+} // namespace lumorph::studio
