@@ -56,9 +56,9 @@ int main(int argc, char** argv) {
 #ifdef LUMORPH_WITH_DEVICES
     lumorph::cli::addDeviceCommands(app, session);
     lumorph::cli::addTrackCommand(app, session);
+    lumorph::cli::addDemoCommand(app);
 #endif
     lumorph::cli::addBenchCommand(app);
-    lumorph::cli::addDemoCommand(app);
     try {
         app.parse(argc, argv); // runs the command
         lumorph::cli::finishOutput();

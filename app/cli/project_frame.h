@@ -26,7 +26,7 @@ struct ProjectFrame {
     std::vector<std::string> warnings;
 };
 
-/// The file that an argument names: a path, or a bundled one such as `resource:projects/water.lumorph`. Throws
+/// The file that an argument names: a path, or a bundled one such as `resource:projects/NAME.lumorph`. Throws
 /// DataError when there is no such resource.
 [[nodiscard]] std::filesystem::path projectFile(const std::string& name);
 

@@ -8,20 +8,18 @@
 #include <span>
 #include <system_error>
 
+#include "app/output/demo_player.h"
 #include "app/output/video_writer.h"
-#include "app/studio/headless_scene.h"
 #include "app/workspaces/common/field_colors.h"
 #include "app/workspaces/common/field_scene.h"
 #include "core/base/atomic_file.h"
 #include "core/base/error.h"
-#include "core/base/resources.h"
-#include "core/loop/match_loop.h"
 #include "core/mdf/builder.h"
 #include "core/mdf/clip.h"
 #include "core/render/gl/frame_target.h"
 #include "core/render/gl/headless_context.h"
 #include "core/render/viewport/viewport_renderer.h"
-#include "core/rig/rig_file.h"
+#include "core/show/show_player.h"
 
 namespace lumorph::studio {
 namespace {
@@ -29,41 +27,36 @@ namespace {
 namespace fs = std::filesystem;
 using Frame = std::shared_ptr<const MatchFrame>;
 
-constexpr double kShowLoopRate = 60.0;
 constexpr int kStepsAShowPicture = 2; ///< 30 pictures a second
 constexpr glm::ivec2 kPictureSize{1600, 1000};
 constexpr glm::ivec2 kVideoSize{960, 600};
 constexpr double kMaxShowSeconds = 600.0;
 
-MatchWish showWish(std::ostream& out) {
-    MatchWish wish;
-    wish.rig = std::make_shared<Rig>(readRig(resourceFile("models/tablet.glb")));
-    out << "Building the field of the tablet..." << std::endl;
+/// The demonstration of matching: the one that the Field workspace shows.
+MatchWish matchedWish(std::ostream& out) {
+    const auto matched = std::ranges::find(demos(), "field", &Demo::workspace);
+    MatchWish wish = wishOf(matched->open({}));
+    out << "Building the field of the " << wish.rig->name() << "..." << std::endl;
     wish.field = std::make_shared<MatchField>(buildField(*wish.rig, BuildOptions{}));
-    wish.target = readMatchTarget(resourceFile("targets/bloom.glb"));
-    wish.placement = fitPlacement(wish.field->field, wish.target->box);
+    wish.scene = nullptr; // the device as it is, without light
     return wish;
 }
 
-/// All frames of the show, one a picture of the video. The clock stands still while a frame is worked out, so that
-/// refinement always comes to its end and the same show gives the same numbers.
-std::vector<Frame> playShow(const MatchWish& wish, double seconds) {
+/// All frames of the show, one a picture of the video.
+std::vector<Frame> playedFrames(const MatchWish& wish, double seconds) {
     ManualClock clock;
-    MatchLoop loop(clock);
+    ShowPlayer player(clock, wish);
     std::vector<Frame> frames;
-    const int steps = std::max(kStepsAShowPicture, static_cast<int>(std::lround(seconds * kShowLoopRate)));
-    for (int k = 0; k < steps; ++k) {
-        const Frame frame = loop.step(wish, k == 0 ? 0.0 : 1.0 / kShowLoopRate);
-        clock.advance(Microseconds(static_cast<std::int64_t>(1e6 / kShowLoopRate)));
-        if (k % kStepsAShowPicture == 0) frames.push_back(frame);
-    }
+    const int steps = std::max(kStepsAShowPicture, static_cast<int>(std::lround(seconds / ShowPlayer::kStep)));
+    for (int k = 0; k < steps; ++k)
+        if (const Frame frame = player.step(); k % kStepsAShowPicture == 0) frames.push_back(frame);
     return frames;
 }
 
 /// Scenes as the Field workspace shows them, drawn without a window.
-class Stage {
+class FieldPictures {
 public:
-    explicit Stage(const Box& box) { // everything seen from the front right and above
+    explicit FieldPictures(const Box& box) { // everything seen from the front right and above
         builder_.setColors(fieldSceneColors(Theme::dark));
         camera_.yaw = Angle::degrees(32.0);
         camera_.pitch = Angle::degrees(28.0);
@@ -96,32 +89,32 @@ FieldDisplay displayOf(FieldDisplay::Show show, bool mismatch) {
     return display;
 }
 
-void savePictures(Stage& stage, const std::vector<Frame>& frames, const fs::path& folder) {
+void savePictures(FieldPictures& pictures, const std::vector<Frame>& frames, const fs::path& folder) {
     const FieldDisplay plain = displayOf(FieldDisplay::Show::nothing, false);
-    stage.savePicture(*frames.front(), plain, folder / "start.png");
-    stage.savePicture(*frames[frames.size() / 2], plain, folder / "middle.png");
-    stage.savePicture(*frames.back(), plain, folder / "end.png");
-    stage.savePicture(*frames.back(), displayOf(FieldDisplay::Show::nothing, true), folder / "unmatched.png");
+    pictures.savePicture(*frames.front(), plain, folder / "start.png");
+    pictures.savePicture(*frames[frames.size() / 2], plain, folder / "middle.png");
+    pictures.savePicture(*frames.back(), plain, folder / "end.png");
+    pictures.savePicture(*frames.back(), displayOf(FieldDisplay::Show::nothing, true), folder / "unmatched.png");
     FieldDisplay voxels = displayOf(FieldDisplay::Show::voxels, false);
     voxels.showTarget = false;
     voxels.sliceTo.z = frames.back()->field->field.frame.dimensions.z / 2; // cut open, so that the inside shows
-    stage.savePicture(*frames.back(), voxels, folder / "voxels.png");
+    pictures.savePicture(*frames.back(), voxels, folder / "voxels.png");
     FieldDisplay surface = displayOf(FieldDisplay::Show::surface, false);
     surface.showTarget = false;
     surface.surfaceLevel = frames.back()->field->field.levels / 2;
-    stage.savePicture(*frames.back(), surface, folder / "level-surface.png");
+    pictures.savePicture(*frames.back(), surface, folder / "level-surface.png");
 }
 
-void saveVideo(Stage& stage, const std::vector<Frame>& frames, const fs::path& file) {
-    VideoWriter video(file, kVideoSize, kShowLoopRate / kStepsAShowPicture);
-    for (const Frame& frame : frames) video.add(stage.videoPicture(*frame));
+void saveVideo(FieldPictures& pictures, const std::vector<Frame>& frames, const fs::path& file) {
+    VideoWriter video(file, kVideoSize, 1.0 / (ShowPlayer::kStep * kStepsAShowPicture));
+    for (const Frame& frame : frames) video.add(pictures.videoPicture(*frame));
     video.finish();
 }
 
 void saveTable(const std::vector<Frame>& frames, const fs::path& file) {
     std::vector<ClipFrame> rows;
     for (std::size_t k = 0; k < frames.size(); ++k)
-        rows.push_back({static_cast<double>(k) * kStepsAShowPicture / kShowLoopRate, frames[k]->wanted,
+        rows.push_back({static_cast<double>(k) * kStepsAShowPicture * ShowPlayer::kStep, frames[k]->wanted,
                         frames[k]->estimatedStrokes, frames[k]->iouWanted, frames[k]->iouEstimated});
     const std::string table = clipCsv(frames.front()->field->field, rows);
     writeFileAtomically(file, std::as_bytes(std::span(table)));
@@ -138,18 +131,18 @@ void tellNumbers(const std::vector<Frame>& frames, std::ostream& out) {
         << " reached under the velocity limits" << std::endl;
 }
 
-/// The same minutes of the bundled water: what eye, projector and lab see.
-void showWater(const fs::path& folder, double seconds, std::ostream& out) {
-    out << "Painting the water for " << seconds << " s..." << std::endl;
-    SceneShow show;
-    show.project = resourceFile("projects/water.lumorph");
+/// The same minutes of the demonstration that is shown first: what eye, projector and lab see.
+void paintFirstDemo(const fs::path& folder, double seconds, std::ostream& out) {
+    const Demo& demo = demos().front();
+    out << "Painting the " << demo.name << " for " << seconds << " s..." << std::endl;
+    ShowPictures show;
     show.seconds = seconds;
     show.video = kVideoSize;
     show.picture = kPictureSize;
-    const SceneShowReport report = playScene(show, folder, folder / "water.mp4");
-    out << std::setprecision(1) << "Both passes and the lab: " << report.framesPerSecond << " frames/s here"
+    const ShowRates rates = playShow(demo.open({}), demo.name, show, folder, folder / (demo.name + ".mp4"));
+    out << std::setprecision(1) << "Both passes and the lab: " << rates.framesPerSecond << " frames/s here"
         << std::endl;
-    for (const std::string& warning : report.warnings) out << warning << std::endl;
+    for (const std::string& warning : rates.warnings) out << warning << std::endl;
 }
 
 } // namespace
@@ -163,16 +156,16 @@ void runHeadlessShow(const fs::path& folder, double seconds, std::ostream& out) 
     if (error)
         throw DeviceError(folder.string(), "the folder cannot be made (" + error.message() + ")",
                           "choose another place");
-    const MatchWish wish = showWish(out);
+    const MatchWish wish = matchedWish(out);
     out << "Matching " << wish.target->name << " for " << seconds << " s..." << std::endl;
-    const std::vector<Frame> frames = playShow(wish, seconds);
+    const std::vector<Frame> frames = playedFrames(wish, seconds);
     tellNumbers(frames, out);
     out << "Drawing " << frames.size() << " pictures..." << std::endl;
-    Stage stage(wish.field->field.frame.box());
-    savePictures(stage, frames, folder);
-    saveVideo(stage, frames, folder / "bloom.mp4");
-    saveTable(frames, folder / "bloom.csv");
-    showWater(folder, seconds, out);
+    FieldPictures pictures(wish.field->field.frame.box());
+    savePictures(pictures, frames, folder);
+    saveVideo(pictures, frames, folder / (wish.target->name + ".mp4"));
+    saveTable(frames, folder / (wish.target->name + ".csv"));
+    paintFirstDemo(folder, seconds, out);
     out << "Pictures, video and table are in " << fs::absolute(folder).lexically_normal().string() << std::endl;
 }
 

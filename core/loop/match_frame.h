@@ -12,6 +12,7 @@
 #include "core/base/units.h"
 #include "core/loop/match_field.h"
 #include "core/loop/match_target.h"
+#include "core/loop/show_inputs.h"
 #include "core/mdf/placement.h"
 #include "core/scene/installation.h"
 #include "core/scene/scene.h"
@@ -19,11 +20,14 @@
 
 namespace lumorph {
 
+class ShowProgram;
+
 /// Milliseconds of each stage of one frame.
 struct MatchTimes {
     double pose = 0.0, voxelize = 0.0, match = 0.0, refine = 0.0, motion = 0.0, deform = 0.0, total = 0.0;
-    double track = 0.0; ///< poses and viewer
-    double rule = 0.0;  ///< view dependence, and the servos' part of a scene's item
+    double program = 0.0; ///< the show program's answer
+    double track = 0.0;   ///< poses and viewer
+    double rule = 0.0;    ///< view dependence, and the servos' part of a scene's item
     // Not parts of `total`:
     double poseAge = 0.0; ///< of the oldest pose used when the frame began; 0 without a tracker
     double latency =
@@ -40,7 +44,7 @@ struct MatchFrame {
     std::shared_ptr<const Rig> rig;
     std::shared_ptr<const MatchField> field;
     std::shared_ptr<const MatchTarget> target;
-    bool matched = false; ///< a target was matched in this frame
+    bool matched = false; ///< a target was matched in this frame, `target` or one of `program`
     double seconds = 0.0; ///< of the target's animation
     Angle turned;         ///< by spinning, on top of the placement's yaw
     glm::mat4 deviceFromTarget{1.0F};
@@ -72,7 +76,14 @@ struct MatchFrame {
     std::string viewer;               ///< his name; empty for the scene's own eye
     bool handingOver = false;         ///< the eye glides from one viewer to the next
     std::vector<double> viewStrokes;  ///< what view dependence asks for; empty while it is off or servos rest
-    std::vector<double> splitStrokes; ///< what the frequency split asks for; empty without a split item
+    std::vector<double> splitStrokes; ///< what the frequency split asks for; empty where servos follow none
+
+    std::shared_ptr<const ShowProgram> program; ///< that was asked in this frame; empty: none
+    double programSeconds = 0.0;                ///< its time, ShowMoment::seconds
+    std::vector<ShowInput> inputs;              ///< that it was given in this frame: a recording of them can replay it
+    /// Why the wish's program is asked no more, and that the show goes on without it; in every frame from its end on.
+    std::string programError;
+
     MatchTimes ms;
 };
 

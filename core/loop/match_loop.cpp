@@ -11,6 +11,7 @@
 #include "core/loop/frame_source.h"
 #include "core/loop/match_stage.h"
 #include "core/loop/motion_stage.h"
+#include "core/loop/program_stage.h"
 #include "core/loop/scene_clock.h"
 #include "core/loop/stage_timer.h"
 #include "core/loop/target_stage.h"
@@ -20,7 +21,10 @@ namespace lumorph {
 
 namespace {
 
-bool follows(const MatchWish& wish) { return wish.driver == Driver::target && wish.target && wish.field; }
+bool matchesTarget(const MatchWish& wish) { return wish.driver == Driver::target && wish.target && wish.field; }
+
+/// Of a wish whose driver has been worked out: whether voxels are followed.
+bool isMatched(const MatchWish& wish) { return wish.driver == Driver::target || wish.driver == Driver::program; }
 
 void requireFinite(const char* what, double value) {
     if (!std::isfinite(value)) throw InvalidInput(what, "it is not a finite number", "give a finite number");
@@ -51,16 +55,19 @@ void checkWish(const MatchWish& wish, double sinceLast) {
     if (!(sinceLast >= 0.0) || !std::isfinite(sinceLast))
         throw InvalidInput("time step", "it is negative or not finite",
                            "use a finite time that does not run backwards");
-    if (wish.scene && !wish.installation)
+    if ((wish.scene || wish.program) && !wish.installation)
         throw InvalidInput("scene", "there is no installation to show it in", "give it one, such as the virtual lab's");
-    if (wish.driver == Driver::program) throw InvalidInput("show program", "there is none", "choose one first");
+    if (wish.driver == Driver::program && !wish.program)
+        throw InvalidInput("show program", "there is none", "choose one first");
     requireFinite("spin", wish.spin);
     if (wish.seek) requireFinite("animation time", *wish.seek);
     if (wish.sceneSeek) requireFinite("scene time", *wish.sceneSeek);
     if (wish.target) checkPlacement(wish.placement);
     if (wish.budget <= Microseconds{0})
         throw InvalidInput("time for refinement", "it must be more than zero", "give it at least a microsecond");
-    if (!follows(wish) && DriveStage::modeOf(wish) == DriveStage::Mode::asWished) checkStrokes(wish);
+    // With a program the driver may turn out to have nothing to follow.
+    const bool holds = !matchesTarget(wish) && DriveStage::modeOf(wish) == DriveStage::Mode::asWished;
+    if (wish.program || holds) checkStrokes(wish);
 }
 
 State nearestLevels(const std::vector<double>& strokes, int levels) {
@@ -75,9 +82,12 @@ struct MatchLoop::Data {
     explicit Data(const Clock& c) : clock(c) {}
 
     void fill(const MatchWish& wish, double sinceLast, MatchFrame& frame);
+    /// The same, once what is shown is known.
+    void fillShown(const MatchWish& wish, double sinceLast, MatchFrame& frame);
     /// The scene's part of a frame: poses, viewer, time.
     void look(const MatchWish& wish, double sinceLast, MatchFrame& frame);
-    /// What the scene makes of what the servos are to do.
+    /// What scene and program make of what the servos are to do: the driver that is left is target or program where
+    /// voxels are followed, else hand or dance.
     MatchWish driven(const MatchWish& wish, double sinceLast, MatchFrame& frame);
     void hold(const MatchWish& wish, double sinceLast, MatchFrame& frame);
     void joinBends(const MatchWish& wish, MatchFrame& frame);
@@ -86,6 +96,7 @@ struct MatchLoop::Data {
     [[nodiscard]] bool restsAfter(const MatchWish& wish, const MatchFrame& frame) const;
 
     const Clock& clock;
+    ProgramStage program;
     ViewerStage viewer;
     SceneClock time;
     TargetStage target;
@@ -99,20 +110,30 @@ struct MatchLoop::Data {
 
 void MatchLoop::Data::fill(const MatchWish& wish, double sinceLast, MatchFrame& frame) {
     const StageTimer timer(clock, frame.ms.total);
+    motion.follow(wish.rig);
+    fillShown(program.ask(wish, sinceLast, motion.strokes(), clock, frame), sinceLast, frame);
+}
+
+void MatchLoop::Data::fillShown(const MatchWish& wish, double sinceLast, MatchFrame& frame) {
     look(wish, sinceLast, frame);
     target.play(wish, sinceLast);
-    const bool newVoxels = target.show(wish, clock, frame.ms);
+    const bool newTarget = target.show(wish, clock, frame.ms);
     target.describe(frame);
+    program.describe(frame);
     matching.use(wish.field);
     const MatchWish servos = driven(wish, sinceLast, frame);
-    if (follows(servos))
+    if (isMatched(servos))
         dance.end();
     else
         hold(servos, sinceLast, frame);
-    if (frame.matched) matching.match(servos, target, newVoxels, clock, frame);
+    const TargetVoxels& voxels = program.matches() ? program.voxels() : target.voxels();
+    if (program.matches())
+        matching.match(servos, voxels, wish.program, program.newVoxels(), clock, frame);
+    else if (frame.matched)
+        matching.match(servos, voxels, wish.target, newTarget, clock, frame);
     joinBends(wish, frame);
     move(wish, sinceLast, frame);
-    if (frame.matched) matching.judge(wish, target, frame);
+    if (frame.matched) matching.judge(wish, voxels, frame);
     settled = restsAfter(servos, frame);
 }
 
@@ -130,7 +151,12 @@ void MatchLoop::Data::look(const MatchWish& wish, double sinceLast, MatchFrame& 
 MatchWish MatchLoop::Data::driven(const MatchWish& wish, double sinceLast, MatchFrame& frame) {
     MatchWish servos = wish;
     const DriveStage::Mode mode = DriveStage::modeOf(wish);
-    if (mode == DriveStage::Mode::asWished) return servos;
+    if (mode == DriveStage::Mode::asWished) {
+        if (matchesTarget(wish) || program.matches() || wish.driver == Driver::dance) return servos;
+        servos.driver = Driver::hand;
+        if (!program.splitStrokes().empty()) servos.strokes = frame.splitStrokes = program.splitStrokes();
+        return servos;
+    }
     servos.driver = Driver::hand;
     servos.strokes.assign(wish.rig->actuatorCount(), 0.0);
     if (mode == DriveStage::Mode::atRest) return servos;
@@ -151,10 +177,11 @@ void MatchLoop::Data::joinBends(const MatchWish& wish, MatchFrame& frame) {
 }
 
 bool MatchLoop::Data::restsAfter(const MatchWish& wish, const MatchFrame& frame) const {
+    if (program.moves() || (wish.inputs && wish.program && !wish.inputs->empty())) return false;
     if (wish.scene && (viewer.moves() || time.moves())) return false;
     if (TargetStage::moves(wish)) return false;
     if (!wish.stopped && !motion.arrived(frame.wantedStrokes)) return false;
-    return follows(wish) ? matching.converged() : wish.driver != Driver::dance;
+    return isMatched(wish) ? matching.converged() : wish.driver != Driver::dance;
 }
 
 void MatchLoop::Data::hold(const MatchWish& wish, double sinceLast, MatchFrame& frame) {
@@ -168,7 +195,6 @@ void MatchLoop::Data::hold(const MatchWish& wish, double sinceLast, MatchFrame& 
 void MatchLoop::Data::move(const MatchWish& wish, double sinceLast, MatchFrame& frame) {
     {
         const StageTimer timer(clock, frame.ms.motion);
-        motion.follow(wish.rig);
         motion.move(frame.wantedStrokes, sinceLast, wish.stopped);
         frame.estimatedStrokes.assign(motion.strokes().begin(), motion.strokes().end());
     }

@@ -8,7 +8,8 @@
 
 namespace lumorph {
 
-/// One frame after another: tracked poses -> viewer -> scene time -> pose of the target -> voxels -> levels, or heights
+/// One frame after another: show program -> tracked poses -> viewer -> scene time -> pose of the target -> voxels ->
+/// levels, or heights
 /// -> strokes -> view dependence -> motion limits -> estimated state -> deformed device. Keeps what one frame hands to
 /// the next: last levels, motion, dance, buffers. One thread at a time.
 class MatchLoop {
@@ -22,7 +23,8 @@ public:
     /// count stay the same, else at rest. Throws InvalidInput when the wish contradicts itself.
     [[nodiscard]] std::shared_ptr<const MatchFrame> step(const MatchWish& wish, double sinceLast);
 
-    /// Whether another step with the last wish would change nothing: nothing plays, turns or dances, nobody is tracked,
+    /// Whether another step with the last wish would change nothing: nothing plays, turns or dances, no program moves,
+    /// nobody is tracked,
     /// the actuators have arrived (within 1e-5 strokes; or are stopped) and refinement has nothing left to try.
     [[nodiscard]] bool settled() const noexcept;
 

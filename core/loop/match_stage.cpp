@@ -3,12 +3,17 @@
 #include <algorithm>
 #include <bit>
 
+#include "core/loop/stage_timer.h"
+
 namespace lumorph {
 
 namespace {
 
 /// A target that has no voxel in the frame is not met by anything.
 double iouOf(const FitQuality& quality, std::size_t targetVoxels) { return targetVoxels == 0 ? 0.0 : quality.iou(); }
+
+/// Whether servos follow the voxels; else these are only compared with what the servos do.
+bool followed(const MatchWish& wish) { return wish.driver == Driver::target || wish.driver == Driver::program; }
 
 } // namespace
 
@@ -26,16 +31,17 @@ void MatchStage::use(const std::shared_ptr<const MatchField>& field) {
     reachedStrokes_.clear();
 }
 
-void MatchStage::match(const MatchWish& wish, const TargetStage& target, bool newVoxels, const Clock& clock,
-                       MatchFrame& frame) {
-    newVoxels_ |= newVoxels;
-    if (newVoxels || target_ != wish.target) votes_ = nullptr;
-    if (!votes_) vote(wish, target, clock, frame.ms);
+void MatchStage::match(const MatchWish& wish, const TargetVoxels& target, const std::shared_ptr<const void>& of,
+                       bool newVoxels, const Clock& clock, MatchFrame& frame) {
+    const bool other = newVoxels || target_ != of;
+    newVoxels_ |= other;
+    if (other) votes_ = nullptr;
+    if (!votes_) vote(target, of, clock, frame.ms);
     decide(wish, target, clock, frame.ms);
     const FrameMatch& found = matcher_->found();
     frame.votes = votes_;
-    frame.iouVoting = iouOf(found.votedQuality, target.voxels());
-    if (wish.driver != Driver::target) return;
+    frame.iouVoting = iouOf(found.votedQuality, target.count());
+    if (!followed(wish)) return;
     frame.statesSeen = found.statesSeen;
     frame.wanted = found.wanted;
     frame.wantedStrokes.clear();
@@ -45,18 +51,19 @@ void MatchStage::match(const MatchWish& wish, const TargetStage& target, bool ne
                                               : std::clamp(votes_->actuators[i].stroke, 0.0, 1.0));
 }
 
-void MatchStage::vote(const MatchWish& wish, const TargetStage& target, const Clock& clock, MatchTimes& ms) {
+void MatchStage::vote(const TargetVoxels& target, const std::shared_ptr<const void>& of, const Clock& clock,
+                      MatchTimes& ms) {
     const StageTimer timer(clock, ms.match);
-    if (target_ != wish.target) matcher_->forget();
+    if (target_ != of) matcher_->forget();
     auto votes = std::make_shared<Votes>();
     matcher_->vote(target.bits(), *votes);
     decided_ = Decided::nothing;
-    target_ = wish.target;
+    target_ = of;
     votes_ = std::move(votes);
 }
 
-void MatchStage::decide(const MatchWish& wish, const TargetStage& target, const Clock& clock, MatchTimes& ms) {
-    const bool refined = wish.driver == Driver::target && wish.method == MatchMethod::refined && target.voxels() > 0;
+void MatchStage::decide(const MatchWish& wish, const TargetVoxels& target, const Clock& clock, MatchTimes& ms) {
+    const bool refined = followed(wish) && wish.method == MatchMethod::refined && target.count() > 0;
     const Decided how = refined ? Decided::byRefinement : Decided::byVoting;
     if (decided_ == how && matcher_->found().converged) return;
     const StageTimer timer(clock, refined ? ms.refine : ms.match);
@@ -69,7 +76,7 @@ void MatchStage::decide(const MatchWish& wish, const TargetStage& target, const 
     decided_ = how;
 }
 
-void MatchStage::judge(const MatchWish& wish, const TargetStage& target, MatchFrame& frame) {
+void MatchStage::judge(const MatchWish& wish, const TargetVoxels& target, MatchFrame& frame) {
     judgeWanted(target, frame);
     judgeEstimated(target, frame);
     newVoxels_ = false;
@@ -78,7 +85,7 @@ void MatchStage::judge(const MatchWish& wish, const TargetStage& target, MatchFr
     frame.classes = classes_;
 }
 
-void MatchStage::judgeWanted(const TargetStage& target, MatchFrame& frame) {
+void MatchStage::judgeWanted(const TargetVoxels& target, MatchFrame& frame) {
     const bool moved = coveredState_ != frame.wanted;
     if (moved) field_->coverage.covered(frame.wanted, covered_, scratch_);
     coveredState_ = frame.wanted;
@@ -87,20 +94,20 @@ void MatchStage::judgeWanted(const TargetStage& target, MatchFrame& frame) {
         classes_ = nullptr;
     }
     const double voxelVolume = field_->field.frame.voxelVolume();
-    frame.iouWanted = iouOf(quality_, target.voxels());
+    frame.iouWanted = iouOf(quality_, target.count());
     frame.unmatchedVolume = static_cast<double>(quality_.unmatched) * voxelVolume;
     frame.overfilledVolume = static_cast<double>(quality_.overfilled) * voxelVolume;
 }
 
-void MatchStage::judgeEstimated(const TargetStage& target, MatchFrame& frame) {
+void MatchStage::judgeEstimated(const TargetVoxels& target, MatchFrame& frame) {
     const bool moved = reachedStrokes_ != frame.estimatedStrokes;
     if (moved) field_->coverage.coveredAt(frame.estimatedStrokes, reached_, scratch_);
     reachedStrokes_ = frame.estimatedStrokes;
-    if (moved || newVoxels_) iouReached_ = iouOf(compareVolumes(reached_, target.bits()), target.voxels());
+    if (moved || newVoxels_) iouReached_ = iouOf(compareVolumes(reached_, target.bits()), target.count());
     frame.iouEstimated = iouReached_;
 }
 
-void MatchStage::classify(const TargetStage& target) {
+void MatchStage::classify(const TargetVoxels& target) {
     const glm::ivec3 size = covered_.dimensions();
     const auto rowLength = static_cast<std::size_t>(size.x);
     auto classes = std::make_shared<std::vector<std::uint8_t>>(field_->field.frame.voxelCount(), std::uint8_t{0});

@@ -6,7 +6,7 @@
 
 #include "core/loop/match_frame.h"
 #include "core/loop/match_wish.h"
-#include "core/loop/target_stage.h"
+#include "core/loop/target_voxels.h"
 #include "core/mdf/frame_matcher.h"
 
 namespace lumorph {
@@ -17,27 +17,28 @@ class MatchStage {
 public:
     /// Gets ready for a field; an empty one lets go of the last.
     void use(const std::shared_ptr<const MatchField>& field);
-    /// Matches the voxels of a target (`newVoxels`: they are other ones than before) and writes votes, wanted state and
-    /// strokes into the frame. When another than the
-    /// target drives, the state is left alone.
-    void match(const MatchWish& wish, const TargetStage& target, bool newVoxels, const Clock& clock, MatchFrame& frame);
+    /// Matches the voxels of a target and writes votes, wanted state and strokes into the frame. `of` is what they are
+    /// voxels of: as long as it is the same, levels do not flicker; `newVoxels`: they are other ones than before. When
+    /// neither target nor program drives, the state is left alone.
+    void match(const MatchWish& wish, const TargetVoxels& target, const std::shared_ptr<const void>& of, bool newVoxels,
+               const Clock& clock, MatchFrame& frame);
     /// Compares V(wanted) and what is covered at the estimated strokes with the target's voxels.
-    void judge(const MatchWish& wish, const TargetStage& target, MatchFrame& frame);
+    void judge(const MatchWish& wish, const TargetVoxels& target, MatchFrame& frame);
     /// Whether refinement has nothing left to try on these voxels.
     [[nodiscard]] bool converged() const noexcept { return !matcher_ || matcher_->found().converged; }
 
 private:
     enum class Decided { nothing, byVoting, byRefinement };
 
-    void vote(const MatchWish& wish, const TargetStage& target, const Clock& clock, MatchTimes& ms);
-    void decide(const MatchWish& wish, const TargetStage& target, const Clock& clock, MatchTimes& ms);
-    void judgeWanted(const TargetStage& target, MatchFrame& frame);
-    void judgeEstimated(const TargetStage& target, MatchFrame& frame);
-    void classify(const TargetStage& target);
+    void vote(const TargetVoxels& target, const std::shared_ptr<const void>& of, const Clock& clock, MatchTimes& ms);
+    void decide(const MatchWish& wish, const TargetVoxels& target, const Clock& clock, MatchTimes& ms);
+    void judgeWanted(const TargetVoxels& target, MatchFrame& frame);
+    void judgeEstimated(const TargetVoxels& target, MatchFrame& frame);
+    void classify(const TargetVoxels& target);
 
     std::shared_ptr<const MatchField> field_;
     std::optional<FrameMatcher> matcher_;
-    std::shared_ptr<const MatchTarget> target_;
+    std::shared_ptr<const void> target_; ///< what the votes are of
     std::shared_ptr<const Votes> votes_;
     Decided decided_ = Decided::nothing;
 

@@ -12,6 +12,7 @@
 
 #include "core/base/error.h"
 #include "core/loop/match_loop.h"
+#include "core/loop/show_inputs.h"
 #include "core/loop/viewer_stage.h"
 
 namespace lumorph {
@@ -30,6 +31,17 @@ Microseconds periodOf(double framesPerSecond) {
 }
 
 double secondsOf(Microseconds time) { return 1e-6 * static_cast<double>(time.count()); }
+
+/// Whether something has happened that nobody sent a wish for. A program sees pointers too, and takes inputs.
+bool wakes(const MatchWish& wish, Microseconds now) {
+    if (wish.program && wish.driver != Driver::recording) {
+        if (wish.inputs && !wish.inputs->empty()) return true;
+        return wish.poses && std::ranges::any_of(wish.poses->entries(), [&](const PoseBoard::Entry& entry) {
+                   return entry.stream->at(now, now).has_value();
+               });
+    }
+    return wish.scene && wish.poses && anyTracked(*wish.poses, now);
+}
 
 std::chrono::steady_clock::time_point pointOf(Microseconds time) { return std::chrono::steady_clock::time_point(time); }
 
@@ -70,7 +82,7 @@ std::optional<MatchWish> MatchThread::Data::nextTurn(const std::stop_token& stop
     // Trackers do not call: while the loop rests, it looks now and then whether they see somebody again.
     while (!changed.wait_for(lock, stop, kGlance, [&] { return fresh || !resting; })) {
         if (stop.stop_requested()) return std::nullopt;
-        if (newest && newest->scene && newest->poses && !failed && anyTracked(*newest->poses, clock.now())) break;
+        if (newest && !failed && wakes(*newest, clock.now())) break;
     }
     while (!stop.stop_requested() && clock.now() < started + period) {
         const Microseconds before = period;

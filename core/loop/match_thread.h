@@ -11,8 +11,8 @@
 namespace lumorph {
 
 /// Runs a MatchLoop in a thread of its own at a fixed rate: the newest wish goes in, the newest frame comes out. Idle
-/// (nothing moves, no new wish, nobody tracked) it costs next to nothing; a body that is tracked again wakes it within
-/// a tenth of a second.
+/// (nothing moves, no new wish, nobody tracked) it costs next to nothing; a body that is tracked again, or an input to
+/// a program, wakes it within a tenth of a second, a wish at once.
 class MatchThread {
 public:
     /// `onFrame` is called in the loop's thread after each frame; it must return at once.

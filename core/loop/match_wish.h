@@ -15,6 +15,8 @@
 namespace lumorph {
 
 class FrameSource;
+class ShowInputs;
+class ShowProgram;
 
 /// Who moves the servos. View dependence joins in by the larger stroke, whoever it is, and a scene that shows light
 /// alone (Showing::virtualOnly) holds them at rest; a recording knows neither.
@@ -25,7 +27,8 @@ enum class Driver {
     hand,      ///< `strokes` are held
     dance,     ///< random moves that begin at `strokes`
     recording, ///< frames of `source` are shown, with servos as they say; without a source the wish is refused
-    program,   ///< what a show program asks of them; without a program the wish is refused
+    program,   ///< what `program` asks of them; where it asks nothing, has ended, or wants to be matched without a
+               ///< field, `strokes` are held; without a program the wish is refused
 };
 
 /// Who moves the servos for those who know only whether they shall follow something (`live`): a visible driving item of
@@ -53,12 +56,17 @@ struct MatchWish {
     std::shared_ptr<const Scene> scene;               ///< what light shows, and what of it servos follow; may be empty
     std::shared_ptr<const Installation> installation; ///< where; always there with a scene
     std::shared_ptr<const SceneAssets> assets;
-    std::shared_ptr<const PoseBoard> poses; ///< tracked heads and device; without a head the scene's own eye
+    std::shared_ptr<const PoseBoard> poses; ///< tracked heads and device; without a head the simulated eye
     double lightDelay = 0.0;                ///< measured from a frame to its light, seconds; 0: not yet
     bool scenePlaying = true;               ///< the scene's time runs
     std::optional<double> sceneSeek;        ///< scene time to go to, seconds; heeded once for each new value
 
     std::shared_ptr<FrameSource> source; ///< of the driver `recording`, instead of frames of the loop's own
+
+    /// Asked once a frame for scene and assets, which then take the place of the wish's own, and for what servos follow
+    /// if the driver is `program`; not asked while a recording shows. May be empty.
+    std::shared_ptr<ShowProgram> program;
+    std::shared_ptr<ShowInputs> inputs; ///< of that program; the same queue in every wish for it; may be empty
 };
 
 } // namespace lumorph

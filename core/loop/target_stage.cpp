@@ -44,7 +44,8 @@ bool TargetStage::show(const MatchWish& wish, const Clock& clock, MatchTimes& ms
         field_ = nullptr;
         return false;
     }
-    const bool sameField = wish.field && wish.field == field_;
+    const std::shared_ptr<const MatchField> field = wish.driver == Driver::program ? nullptr : wish.field;
+    const bool sameField = field && field == field_;
     const bool samePose = posed_ == target_ && posedSeconds_ == seconds_;
     deviceFromTarget_ = turnedPlacement(wish.placement, turned_);
     if (!samePose) {
@@ -52,13 +53,13 @@ bool TargetStage::show(const MatchWish& wish, const Clock& clock, MatchTimes& ms
         const StageTimer timer(clock, ms.pose);
         pose(wish);
     }
-    if (!wish.field) field_ = nullptr;
-    if (!wish.field || (samePose && sameField && voxelizedAt_ == deviceFromTarget_)) return false;
+    if (!field) field_ = nullptr;
+    if (!field || (samePose && sameField && voxelizedAt_ == deviceFromTarget_)) return false;
     const StageTimer timer(clock, ms.voxelize);
     field_ = nullptr;
-    voxelize(wish.field);
+    voxelize(field);
     voxelizedAt_ = deviceFromTarget_;
-    field_ = wish.field;
+    field_ = field;
     return true;
 }
 
@@ -81,14 +82,9 @@ void TargetStage::pose(const MatchWish& wish) {
 void TargetStage::voxelize(const std::shared_ptr<const MatchField>& shared) {
     const MatchField& field = *shared;
     placePoints(*positions_, deviceFromTarget_, placed_.mesh.positions);
-    voxelizeTarget(field.field.frame, placed_, voxelizer_, bits_);
-    shareBeyondFrame_ = shareBeyondFrame(field.field.frame, placed_, bits_);
-    bits_ &= field.coverage.domain();
-    voxels_ = bits_.count();
-    if (reachableOf_ != shared) reachable_ = reachableVoxels(field.field);
-    reachableOf_ = shared;
-    const std::size_t reached = bits_.countAnd(reachable_);
-    shareUnreachable_ = voxels_ == 0 ? 0.0 : static_cast<double>(voxels_ - reached) / static_cast<double>(voxels_);
+    voxelizeTarget(field.field.frame, placed_, voxelizer_, voxels_.written());
+    shareBeyondFrame_ = shareBeyondFrame(field.field.frame, placed_, voxels_.bits());
+    voxels_.keepDomain(shared);
 }
 
 void TargetStage::describe(MatchFrame& frame) const {
@@ -100,9 +96,9 @@ void TargetStage::describe(MatchFrame& frame) const {
     frame.targetPositions = positions_;
     if (!field_) return;
     frame.matched = true;
-    frame.targetVolume = static_cast<double>(voxels_) * field_->field.frame.voxelVolume();
+    frame.targetVolume = static_cast<double>(voxels_.count()) * field_->field.frame.voxelVolume();
     frame.shareBeyondFrame = shareBeyondFrame_;
-    frame.shareUnreachable = shareUnreachable_;
+    frame.shareUnreachable = voxels_.shareUnreachable();
 }
 
 } // namespace lumorph

@@ -7,6 +7,7 @@
 #include "core/loop/match_frame.h"
 #include "core/loop/match_wish.h"
 #include "core/loop/stage_timer.h"
+#include "core/loop/target_voxels.h"
 #include "core/voxels/solid.h"
 
 namespace lumorph {
@@ -17,15 +18,14 @@ class TargetStage {
 public:
     /// Moves animation and spin on; a target shown for the first time starts at 0.
     void play(const MatchWish& wish, double sinceLast);
-    /// Poses the target of the wish and voxelises it when there is a field. True when the voxels are other ones than
-    /// those of the frame before.
+    /// Poses the target of the wish and voxelises it when there is a field and no program drives the servos. True when
+    /// the voxels are other ones than those of the frame before.
     bool show(const MatchWish& wish, const Clock& clock, MatchTimes& ms);
     /// What there is to say about the target, written into a frame.
     void describe(MatchFrame& frame) const;
 
-    /// Voxels of the target in the domain of the field; only with a target and a field.
-    [[nodiscard]] const BitColumns& bits() const noexcept { return bits_; }
-    [[nodiscard]] std::size_t voxels() const noexcept { return voxels_; }
+    /// Only with a target and a field.
+    [[nodiscard]] const TargetVoxels& voxels() const noexcept { return voxels_; }
     /// Whether the target will stand elsewhere in the next frame with the same wish.
     [[nodiscard]] static bool moves(const MatchWish& wish) noexcept;
 
@@ -42,16 +42,12 @@ private:
     double posedSeconds_ = 0.0;
     std::shared_ptr<const std::vector<glm::vec3>> positions_;
 
-    std::shared_ptr<const MatchField> field_; ///< that `bits_` are in; empty while they are not worked out
+    std::shared_ptr<const MatchField> field_; ///< that `voxels_` are in; empty while they are not worked out
     glm::mat4 voxelizedAt_{1.0F};
     Target placed_; ///< the posed mesh in device coordinates; a buffer
     SolidVoxelizer voxelizer_;
-    BitColumns bits_;
-    BitColumns reachable_;
-    std::shared_ptr<const MatchField> reachableOf_;
-    std::size_t voxels_ = 0;
+    TargetVoxels voxels_;
     double shareBeyondFrame_ = 0.0;
-    double shareUnreachable_ = 0.0;
 };
 
 } // namespace lumorph

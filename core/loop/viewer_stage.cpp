@@ -16,7 +16,7 @@ glm::mat4 matrixOf(const Pose& pose) {
     return {matrix};
 }
 
-/// Where drawing takes longer than the scene says, poses are predicted farther.
+/// Where drawing takes longer than the installation says, poses are predicted farther.
 double lookAhead(const Installation& installation, double lightDelay) {
     return installation.predictionSeconds > 0.0 ? std::max(installation.predictionSeconds, lightDelay) : 0.0;
 }

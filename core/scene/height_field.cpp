@@ -2,7 +2,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "core/scene/height_grid.h"
+#include "core/scene/height_formula.h"
 #include "core/scene/posed_scene.h"
 
 namespace lumorph {

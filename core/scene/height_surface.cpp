@@ -4,7 +4,7 @@
 
 #include <glm/geometric.hpp>
 
-#include "core/scene/height_grid.h"
+#include "core/scene/height_formula.h"
 #include "core/scene/item_surfaces.h"
 
 namespace lumorph {

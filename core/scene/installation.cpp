@@ -6,14 +6,6 @@
 namespace lumorph {
 namespace {
 
-Installation withoutOrigins(Installation installation) {
-    installation.origins = {};
-    for (InstalledProjector& projector : installation.projectors)
-        projector.lens = projector.pose = projector.response = {};
-    for (InstalledCamera& camera : installation.cameras) camera.lens = camera.pose = {};
-    return installation;
-}
-
 bool sameLens(const CalibratedCamera& a, const CalibratedCamera& b) {
     return a.size == b.size && a.focal == b.focal && a.principal == b.principal && a.distortion == b.distortion;
 }
@@ -27,26 +19,36 @@ void mark(bool same, const Origin& before, Origin& edited, const Origin& origin)
     if (!same && edited == before) edited = origin;
 }
 
-/// Of a list whose parts are known by their names, since one may have been added or taken away before others.
-template <class Part> const Part* partNamed(const std::vector<Part>& parts, const Part& wanted, std::size_t index) {
-    if (index < parts.size() && parts[index].name == wanted.name) return &parts[index];
-    for (const Part& part : parts)
-        if (part.name == wanted.name) return &part;
-    return index < parts.size() ? &parts[index] : nullptr;
+/// What a part was before an edit. Parts are known by their names, since one may have been added or taken away before
+/// others; of several that are called the same, the one that has not changed is meant.
+template <class Part> const Part* partBefore(const std::vector<Part>& parts, const Part& wanted, std::size_t index) {
+    const Part* named = nullptr;
+    for (const Part& part : parts) {
+        if (part.name != wanted.name) continue;
+        if (part == wanted) return &part;
+        if (!named) named = &part;
+    }
+    if (index < parts.size() && (!named || parts[index].name == wanted.name)) return &parts[index];
+    return named;
 }
 
 } // namespace
 
-bool isSameRoom(const Installation& a, const Installation& b) {
-    Installation left = withoutOrigins(a);
-    left.eye = b.eye;
-    return left == withoutOrigins(b);
+Installation figuresOf(Installation installation) {
+    installation.origins = {};
+    installation.eye = {};
+    for (InstalledProjector& projector : installation.projectors)
+        projector.lens = projector.pose = projector.response = {};
+    for (InstalledCamera& camera : installation.cameras) camera.lens = camera.pose = {};
+    return installation;
 }
+
+bool isSameRoom(const Installation& a, const Installation& b) { return figuresOf(a) == figuresOf(b); }
 
 void markOrigins(const Installation& before, Installation& edited, const Origin& origin) {
     for (std::size_t i = 0; i < edited.projectors.size(); ++i) {
         InstalledProjector& now = edited.projectors[i];
-        const InstalledProjector* then = partNamed(before.projectors, now, i);
+        const InstalledProjector* then = partBefore(before.projectors, now, i);
         if (!then) continue; // a new one says itself where it came from
         mark(sameLens(then->camera, now.camera), then->lens, now.lens, origin);
         mark(then->camera.cameraFromWorld == now.camera.cameraFromWorld, then->pose, now.pose, origin);
@@ -54,7 +56,7 @@ void markOrigins(const Installation& before, Installation& edited, const Origin&
     }
     for (std::size_t i = 0; i < edited.cameras.size(); ++i) {
         InstalledCamera& now = edited.cameras[i];
-        const InstalledCamera* then = partNamed(before.cameras, now, i);
+        const InstalledCamera* then = partBefore(before.cameras, now, i);
         if (!then) continue;
         mark(sameLens(then->camera, now.camera), then->lens, now.lens, origin);
         mark(then->camera.cameraFromWorld == now.camera.cameraFromWorld, then->pose, now.pose, origin);

@@ -82,8 +82,9 @@ struct Installation {
 /// projectors or cameras.
 void checkInstallation(const Installation& installation);
 
-/// Whether two describe the same room: all figures but the simulated eye, which is where one last looked from, and the
-/// origins.
+/// The figures alone, by which two rooms are compared: without origins, and without the simulated eye, which is where
+/// one last looked from.
+[[nodiscard]] Installation figuresOf(Installation installation);
 [[nodiscard]] bool isSameRoom(const Installation& a, const Installation& b);
 
 /// Gives each part of `edited` whose figures differ from those of `before` this origin, unless the edit brought one.

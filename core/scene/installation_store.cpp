@@ -38,6 +38,15 @@ void checkSchema(json& document, const std::string& name) {
                         "open it with the newest Lumorph");
 }
 
+/// Whoever only walks the simulated eye around must not push ten calibrations out.
+bool describesSameRoom(const fs::path& file, const Installation& installation) {
+    try {
+        return isSameRoom(InstallationStore::read(file), installation);
+    } catch (const Error&) {
+        return false;
+    }
+}
+
 } // namespace
 
 Installation parseInstallation(std::string_view text, const std::string& name) {
@@ -109,7 +118,7 @@ void InstallationStore::keep(const Installation& installation) {
     std::error_code failed;
     fs::create_directories(folder_, failed);
     if (failed) throwWriteError(folder_, failed.value());
-    putAside();
+    if (!describesSameRoom(file(), installation)) putAside();
     writeFileAtomically(file(), std::as_bytes(std::span(text)));
 }
 

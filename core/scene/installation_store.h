@@ -33,7 +33,8 @@ public:
     /// Empty where none has been kept yet. Throws DataError for a file that cannot be read; it stays where it is.
     [[nodiscard]] std::optional<Installation> load() const;
 
-    /// Replaces it whole or not at all; what stood there before becomes an earlier one. Throws DeviceError when the
+    /// Replaces it whole or not at all; what stood there before becomes an earlier one, where its figures were others.
+    /// Throws DeviceError when the
     /// disk refuses, InvalidInput for an installation that is not sound.
     void keep(const Installation& installation);
 

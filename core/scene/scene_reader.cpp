@@ -150,7 +150,11 @@ void readInstallation(const JsonSection& section, Installation& installation) {
     try {
         checkInstallation(installation);
     } catch (const InvalidInput& error) {
-        section.refuse("projectors", error.subject() + ": " + error.why(), error.remedy());
+        const std::string& subject = error.subject();
+        if (subject == "installation")
+            section.refuse(error.why().substr(0, error.why().find(' ')), error.why(), error.remedy());
+        section.refuse(subject.starts_with("camera") ? "cameras" : "projectors", subject + ": " + error.why(),
+                       error.remedy());
     }
 }
 

@@ -10,7 +10,8 @@
 #include "core/render/spatial_renderer.h"
 #include "core/rig/rig_file.h"
 #include "core/scene/posed_scene.h"
-#include "core/scene/techniques.h"
+#include "app/applications/techniques/techniques.h"
+#include "app/applications/water/water.h"
 #include "tests/bench/bench_groups.h"
 #include "tests/bench/bench_timing.h"
 

@@ -20,7 +20,7 @@
 #include "app/workspaces/scene/outliner_model.h"
 #include "app/workspaces/scene/scene_words.h"
 #include "core/base/resources.h"
-#include "core/scene/techniques.h"
+#include "app/applications/techniques/techniques.h"
 #include "tests/ui/stall_watch.h"
 #include "tests/ui/studio_window.h"
 

@@ -17,7 +17,7 @@
 #include "app/workspaces/scene/item_pick.h"
 #include "core/geometry/calibrated_camera.h"
 #include "core/loop/show_stage.h"
-#include "core/scene/techniques.h"
+#include "app/applications/water/water.h"
 #include "show_fixture.h"
 #include "studio_window.h"
 #include "viewport_fixture.h"

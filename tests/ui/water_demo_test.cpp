@@ -5,7 +5,7 @@
 #include "app/workspaces/scene/eye_orbit.h"
 #include "app/workspaces/scene/view_pane.h"
 #include "core/base/resources.h"
-#include "core/scene/techniques.h"
+#include "app/applications/techniques/techniques.h"
 #include "tests/ui/stall_watch.h"
 #include "tests/ui/view_pictures.h"
 

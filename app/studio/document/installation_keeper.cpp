@@ -17,11 +17,9 @@ QString subject() { return QObject::tr("Installation"); }
 
 /// Of a project's copy beside the room's own.
 QString questionOf(const Installation& project, const Installation& room) {
-    Installation withoutEye = room;
-    withoutEye.eye = {};
     QCryptographicHash hash(QCryptographicHash::Sha1);
-    hash.addData(QByteArray::fromStdString(installationText(project)));
-    hash.addData(QByteArray::fromStdString(installationText(withoutEye)));
+    for (const Installation* one : {&project, &room})
+        hash.addData(QByteArray::fromStdString(installationText(figuresOf(*one))));
     return QString::fromLatin1(hash.result().toHex());
 }
 
@@ -82,9 +80,7 @@ void InstallationKeeper::keep() {
 
 void InstallationKeeper::bringBack(const std::filesystem::path& file) {
     try {
-        auto installation = std::make_shared<const Installation>(InstallationStore::read(file));
-        document_.change(tr("Bring back an earlier installation"),
-                         [&](StudioState& state) { state.installation = installation; });
+        take(InstallationStore::read(file), "an earlier installation", tr("Bring back an earlier installation"));
     } catch (const std::exception& error) {
         notices_.post(kPlace, noticeOf(error));
     }
@@ -101,17 +97,23 @@ void InstallationKeeper::compare(const QString& project, const std::shared_ptr<c
     const QString question = questionOf(*installation, *document_.state().installation);
     if (answered(question)) return;
     const QString name = QFileInfo(project).fileName();
-    notices_.post(kPlace,
-                  {Notice::Level::info,
-                   subject(),
-                   tr("%1 was saved with another projector, table or place of the device than this room has").arg(name),
-                   tr("this room's are in use; take the project's if it was calibrated here"),
-                   {{tr("Keep this room's"), [this, question] { setAnswered(question); }},
-                    {tr("Use the project's"), [this, question, installation, name] {
-                         setAnswered(question);
-                         document_.change(tr("Use the installation of %1").arg(name),
-                                          [&](StudioState& state) { state.installation = installation; });
-                     }}}});
+    notices_.post(
+        kPlace, {Notice::Level::info,
+                 subject(),
+                 tr("%1 was saved with another projector, table or place of the device than this room has").arg(name),
+                 tr("this room's are in use; take the project's if it was calibrated here"),
+                 {{tr("Keep this room's"), [this, question] { setAnswered(question); }},
+                  {tr("Use the project's"), [this, question, installation, name] {
+                       setAnswered(question);
+                       take(*installation, "project " + name.toStdString(), tr("Use the installation of %1").arg(name));
+                   }}}});
+}
+
+/// What is taken over keeps the origins that it has; what nobody had looked at came from there.
+void InstallationKeeper::take(Installation installation, const std::string& from, const QString& what) {
+    markOrigins(*document_.state().installation, installation, {Origin::Way::entered, from, utcDate()});
+    auto taken = std::make_shared<const Installation>(std::move(installation));
+    document_.change(what, [&](StudioState& state) { state.installation = taken; });
 }
 
 bool InstallationKeeper::answered(const QString& question) const {

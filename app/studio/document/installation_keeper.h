@@ -28,6 +28,7 @@ private:
     void load();
     void keep();
     void compare(const QString& project, const std::shared_ptr<const Installation>& installation);
+    void take(Installation installation, const std::string& from, const QString& what);
     [[nodiscard]] bool answered(const QString& question) const;
     void setAnswered(const QString& question);
 

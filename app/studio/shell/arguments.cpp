@@ -1,17 +1,13 @@
 #include "app/studio/shell/arguments.h"
 
+#include <algorithm>
+
 #include <CLI/CLI.hpp>
+
+#include "app/applications/demo.h"
 
 namespace lumorph::studio {
 namespace {
-
-const std::vector<std::string> kDemos{"water", "techniques", "field"};
-
-std::string listed(const std::vector<std::string>& names) {
-    std::string text;
-    for (const auto& name : names) text += (text.empty() ? "" : ", ") + name;
-    return text;
-}
 
 ParsedArguments wrongUsage(const std::string& what) {
     return {std::nullopt, "lumorph-studio: arguments: " + what + "; see 'lumorph-studio --help'\n", 2};
@@ -39,7 +35,7 @@ ParsedArguments parseArguments(int argc, const char* const* argv) {
     CLI::App app("Lumorph Studio: objects that change shape and are painted with light.", "lumorph-studio");
     app.set_version_flag("--version", "lumorph-studio " LUMORPH_VERSION);
     app.add_option("PROJECT", project, "a project, recording, rig, field or 3D model to open");
-    app.add_option("--demo", arguments.demo, "start a demonstration: " + listed(kDemos));
+    app.add_option("--demo", arguments.demo, "start a demonstration: " + demoNames());
     app.add_option("--workspace", arguments.workspace, "the workspace to show first, such as field");
     app.add_flag("--kiosk", arguments.kiosk, "full screen for visitors: the view and STOP alone");
     std::string headless;
@@ -64,8 +60,8 @@ ParsedArguments parseArguments(int argc, const char* const* argv) {
     } catch (const CLI::ParseError& error) {
         return wrongUsage(error.what());
     }
-    if (!arguments.demo.empty() && std::find(kDemos.begin(), kDemos.end(), arguments.demo) == kDemos.end())
-        return wrongUsage("there is no demo '" + arguments.demo + "'; there are: " + listed(kDemos));
+    if (!arguments.demo.empty() && std::ranges::find(demos(), arguments.demo, &Demo::name) == demos().end())
+        return wrongUsage("there is no demo '" + arguments.demo + "'; there are: " + demoNames());
     if (!arguments.demo.empty() && !project.empty())
         return wrongUsage("a demo and '" + project + "' cannot both be opened; leave one out");
     arguments.project = project;

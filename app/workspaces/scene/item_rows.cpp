@@ -37,7 +37,9 @@ void addRole(SceneForm& form, const Part<SceneItem>& item) {
             return found ? std::optional(static_cast<int>(found->role)) : std::nullopt;
         },
         [item](StudioState& state, int role) {
-            if (const SceneItem* found = item.write(state)) setItemRole(state, found->id, static_cast<ItemRole>(role));
+            const SceneItem* found = item.read(state);
+            const int id = found ? found->id : 0;
+            setItemRole(sceneToEdit(state), id, static_cast<ItemRole>(role));
         });
     QLabel* sentence = form.sentence("item.role.sentence");
     form.onRefresh([sentence, item](const StudioState& state) {
@@ -47,7 +49,7 @@ void addRole(SceneForm& form, const Part<SceneItem>& item) {
     QLabel* other = form.sentence("item.role.other");
     form.onRefresh([other, item](const StudioState& state) {
         const SceneItem* found = item.read(state);
-        const SceneItem* driving = drivingItem(state);
+        const SceneItem* driving = drivingItem(*state.scene);
         const bool another = found && driving && driving->id != found->id;
         other->setVisible(another);
         if (another)

@@ -49,9 +49,9 @@ void addDial(SceneForm& form, const Part<SceneItem>& item) {
     };
     StudioDocument& document = form.document();
     QObject::connect(dial, &DirectionDial::previewed, &form,
-                     [&document, change](const glm::vec3& direction) { previewScene(document, change(direction)); });
+                     [&document, change](const glm::vec3& direction) { document.preview(change(direction)); });
     QObject::connect(dial, &DirectionDial::committed, &form, [&document, change](const glm::vec3& direction) {
-        previewScene(document, change(direction));
+        document.preview(change(direction));
         document.commitPreview(QObject::tr("Move the light"));
     });
     QObject::connect(dial, &DirectionDial::reverted, &form, [&document] { document.cancelPreview(); });
@@ -80,7 +80,7 @@ void addHour(SceneForm& form, const Part<SceneItem>& item) {
     form.add(line);
     StudioDocument& document = form.document();
     QObject::connect(slider, &QSlider::valueChanged, &form, [&document, slider, item](int ticks) {
-        previewScene(document, [item, ticks](StudioState& state) {
+        document.preview([item, ticks](StudioState& state) {
             if (SceneItem* found = item.write(state))
                 turnTo(*found, sunAt(static_cast<double>(ticks) / kTicksAnHour, directionTo(*found)));
         });

@@ -5,7 +5,7 @@
 #include <glm/mat4x4.hpp>
 #include <glm/vec3.hpp>
 
-#include "core/scene/scene.h"
+#include "core/scene/installation.h"
 
 namespace lumorph::studio {
 

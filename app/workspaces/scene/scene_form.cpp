@@ -79,10 +79,9 @@ QWidget* SceneForm::makeNumber(const NumberRow& row) {
     const auto change = [write = row.write](double value) {
         return [write, value](StudioState& state) { write(state, value); };
     };
-    connect(field, &ValueField::previewed, this,
-            [this, change](double value) { previewScene(document_, change(value)); });
+    connect(field, &ValueField::previewed, this, [this, change](double value) { document_.preview(change(value)); });
     connect(field, &ValueField::committed, this, [this, change, what = editName(row.words)](double value) {
-        previewScene(document_, change(value));
+        document_.preview(change(value));
         document_.commitPreview(what);
         refresh();
     });
@@ -144,9 +143,9 @@ QWidget* SceneForm::addColor(const FormWords& words, ReadColor read,
         return [write, value = fromColor(color)](StudioState& state) { write(state, value); };
     };
     connect(field, &ColorField::previewed, this,
-            [this, change](const QColor& color) { previewScene(document_, change(color)); });
+            [this, change](const QColor& color) { document_.preview(change(color)); });
     connect(field, &ColorField::committed, this, [this, change, what = editName(words)](const QColor& color) {
-        previewScene(document_, change(color));
+        document_.preview(change(color));
         document_.commitPreview(what);
         refresh();
     });

@@ -6,17 +6,23 @@
 #include <QLabel>
 #include <QVBoxLayout>
 
+#include "app/applications/demo.h"
 #include "app/studio/document/scene_edit.h"
 #include "app/workspaces/scene/segments.h"
-#include "core/scene/techniques.h"
+#include "core/base/error.h"
 
 namespace lumorph::studio {
 
 namespace {
 
-constexpr const char* kDemo = "techniques";
+/// The demonstration with a scene for each number key.
+const Demo& demoOfSteps() {
+    for (const Demo& demo : demos())
+        if (!demo.steps().empty()) return demo;
+    throw InvalidInput("demos", "none has steps", "give one some");
+}
 
-/// Whether a scene holds the things of the techniques' demo.
+/// Whether a scene holds the things of that demonstration.
 bool isTechniqueScene(const Scene& scene, const Scene& plain) {
     if (scene.items.size() != plain.items.size()) return false;
     for (std::size_t i = 0; i < scene.items.size(); ++i)
@@ -26,14 +32,15 @@ bool isTechniqueScene(const Scene& scene, const Scene& plain) {
     return true;
 }
 
-QString titleOf(const Technique& technique) {
+QString titleOf(const DemoStep& technique) {
     return QObject::tr("Technique: %1").arg(QString::fromStdString(technique.name).toLower());
 }
 
 class TechniqueCommands : public QObject {
 public:
-    explicit TechniqueCommands(Studio& studio) : QObject(&studio.commands), studio_(studio), plain_(techniqueScene(0)) {
-        for (const Technique& technique : techniques()) add(technique);
+    explicit TechniqueCommands(Studio& studio)
+        : QObject(&studio.commands), studio_(studio), steps_(demoOfSteps().steps()) {
+        for (const DemoStep& technique : steps_) add(technique);
         connect(&studio.document, &StudioDocument::changed, this, [this](StateParts parts) {
             if (parts & StatePart::scene) follow();
         });
@@ -41,7 +48,7 @@ public:
     }
 
 private:
-    void add(const Technique& technique) {
+    void add(const DemoStep& technique) {
         Commands::Options options;
         options.icon = "light";
         options.workspace = "scene";
@@ -51,18 +58,18 @@ private:
         actions_.emplace_back(technique.key, action);
     }
 
-    void show(const Technique& technique) {
+    void show(const DemoStep& technique) {
         if (!open_) { // its demo first
             wanted_ = technique;
-            studio_.project.openDemo(kDemo);
+            studio_.project.openDemo(demoOfSteps().name);
             return;
         }
-        editScene(studio_.document, titleOf(technique), [&](Scene& scene) { scene = techniqueScene(technique.key); });
+        editScene(studio_.document, titleOf(technique), [&](Scene& scene) { scene = technique.scene; });
     }
 
     /// The number keys belong to the demo: elsewhere a stray key must not change a scene.
     void follow() {
-        const bool open = isTechniqueScene(*studio_.document.state().scene, plain_);
+        const bool open = isTechniqueScene(*studio_.document.state().scene, steps_.front().scene);
         if (open == open_) return;
         open_ = open;
         for (const auto& [key, action] : actions_)
@@ -72,9 +79,9 @@ private:
     }
 
     Studio& studio_;
-    Scene plain_;
+    const std::vector<DemoStep> steps_;
     bool open_ = false;
-    std::optional<Technique> wanted_; ///< as soon as the demo is there
+    std::optional<DemoStep> wanted_; ///< as soon as the demo is there
     std::vector<std::pair<int, QAction*>> actions_;
 };
 
@@ -83,8 +90,7 @@ public:
     TechniqueBar(Studio& studio, QWidget* parent) : QWidget(parent), studio_(studio), sentence_(new QLabel(this)) {
         setObjectName("scene.techniques");
         std::vector<Segments::Segment> segments;
-        for (const Technique& technique : techniques()) {
-            scenes_.push_back(techniqueScene(technique.key));
+        for (const DemoStep& technique : all_) {
             segments.push_back({QString("technique.%1.button").arg(technique.key), QString::number(technique.key),
                                 QString::fromStdString(technique.name)});
         }
@@ -111,11 +117,11 @@ public:
 private:
     void refresh() {
         const Scene& scene = *studio_.document.state().scene;
-        const bool open = isTechniqueScene(scene, scenes_.front());
+        const bool open = isTechniqueScene(scene, all_.front().scene);
         setVisible(open);
         if (!open) return;
-        for (std::size_t i = 0; i < scenes_.size(); ++i) {
-            if (!(scenes_[i] == scene)) continue;
+        for (std::size_t i = 0; i < all_.size(); ++i) {
+            if (!(all_[i].scene == scene)) continue;
             numbers_->setChosen(static_cast<int>(i));
             sentence_->setText(QString("<b>%1</b><br>%2")
                                    .arg(QString::fromStdString(all_[i].name).toHtmlEscaped(),
@@ -125,8 +131,7 @@ private:
     }
 
     Studio& studio_;
-    const std::vector<Technique> all_ = techniques();
-    std::vector<Scene> scenes_;
+    const std::vector<DemoStep> all_ = demoOfSteps().steps();
     Segments* numbers_ = nullptr;
     QLabel* sentence_;
 };

@@ -9,6 +9,7 @@
 #include "core/render/gl/color_target.h"
 #include "core/render/projector/blend_maps.h"
 #include "core/render/projector/picture_changes.h"
+#include "core/scene/installation.h"
 
 namespace lumorph {
 

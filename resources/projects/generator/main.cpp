@@ -2,8 +2,9 @@
 #include <exception>
 #include <filesystem>
 
+#include "app/applications/techniques/techniques.h"
+#include "app/applications/water/water.h"
 #include "core/scene/project.h"
-#include "core/scene/techniques.h"
 
 namespace {
 

@@ -1,4 +1,4 @@
-#include "core/scene/techniques.h"
+#include "app/applications/techniques/techniques.h"
 
 #include <algorithm>
 #include <cmath>

@@ -12,7 +12,8 @@
 #include "core/scene/posed_scene.h"
 #include "core/scene/project.h"
 #include "core/scene/scene_assets.h"
-#include "core/scene/techniques.h"
+#include "app/applications/techniques/techniques.h"
+#include "app/applications/water/water.h"
 
 namespace lumorph {
 namespace {

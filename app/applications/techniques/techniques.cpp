@@ -1,7 +1,7 @@
-#include "core/scene/techniques.h"
+#include "app/applications/techniques/techniques.h"
 
+#include "app/applications/demo_items.h"
 #include "core/base/error.h"
-#include "core/scene/demo_items.h"
 #include "core/scene/material_library.h"
 
 namespace lumorph {
@@ -82,24 +82,6 @@ Material skinOf(int key) {
 
 } // namespace
 
-SceneItem demoItem(int id, std::string name, ItemKind kind, int parent) {
-    SceneItem item;
-    item.id = id;
-    item.parent = parent;
-    item.name = std::move(name);
-    item.kind = std::move(kind);
-    return item;
-}
-
-void turnSun(Scene& scene, int group, double period) {
-    SceneItem day = demoItem(group, "Day", GroupItem{});
-    day.anchor = Anchor::world;
-    // Whole degrees a second where they come out even, so that the file reads well.
-    if (period > 0.0) day.motion.spin = Angle::degrees(360.0 / period).inRadians();
-    scene.items.front().parent = group;
-    scene.items.insert(scene.items.begin(), std::move(day));
-}
-
 std::vector<Technique> techniques() {
     return {
         {kPlain, "Plain device", "The device as it is: paper over six servos, with nothing but light on it."},
@@ -132,43 +114,19 @@ Scene techniqueScene(int key) {
     return scene;
 }
 
-Scene waterScene() {
-    enum WaterId { kWaterSun = 1, kWaterDay, kSea, kBuoy, kCrate };
-    Scene scene = defaultScene();
-    scene.device.show = DeviceSkin::Show::content;
-    turnSun(scene, kWaterDay, 40.0);
-
-    HeightItem sea;
-    // The long wave's phase is that of the buoy, which rises and falls with it.
-    sea.waves = {{0.012, 0.30, 6.0, Angle::degrees(15.0), Angle::degrees(228.0)},
-                 {0.006, 0.17, 4.5, Angle::degrees(-40.0), {}},
-                 {0.0018, 0.050, 0.8, Angle::degrees(35.0), {}},
-                 {0.0010, 0.031, 0.55, Angle::degrees(-20.0), {}},
-                 {0.0005, 0.019, 0.4, Angle::degrees(80.0), {}}};
-    sea.floor = -0.036;
-    SceneItem water = demoItem(kSea, "Sea", sea);
-    water.role = ItemRole::split;
-    water.position.y = kSheet + 0.018F;
-    water.material = readyMaterial("Water");
-    scene.items.push_back(water);
-
-    SceneItem buoy = demoItem(kBuoy, "Buoy", ShapeItem{ShapeItem::Form::sphere, glm::vec3(0.024F)});
-    buoy.position = {-0.045F, 0.043F, 0.012F};
-    buoy.motion = {0.0, 0.012, 6.0};
-    buoy.material.name = "Paint";
-    buoy.material.color = {0.88F, 0.26F, 0.18F};
-    buoy.material.roughness = 0.35F;
-    scene.items.push_back(buoy);
-
-    SceneItem crate = demoItem(kCrate, "Crate", ShapeItem{ShapeItem::Form::box, {0.028F, 0.020F, 0.022F}});
-    crate.position = {0.050F, 0.045F, -0.020F};
-    crate.rotation = glm::angleAxis(0.12F, glm::vec3(0.0F, 0.0F, 1.0F));
-    crate.motion = {Angle::degrees(9.0).inRadians(), 0.004, 6.0};
-    crate.material = readyMaterial("Wood");
-    crate.material.colorTexture.tile = glm::vec2(0.05F);
-    crate.material.normalMaps[0].tile = glm::vec2(0.05F);
-    scene.items.push_back(crate);
-    return scene;
+Demo techniquesDemo() {
+    return {"techniques",
+            "What light adds",
+            "Six ways in which light extends what six servos can show, one number key each.",
+            "thumbnails/techniques.png",
+            "scene",
+            [](const Progress& progress) { return bundledProject("techniques", progress); },
+            [] {
+                std::vector<DemoStep> steps;
+                for (const Technique& technique : techniques())
+                    steps.push_back({technique.key, technique.name, technique.sentence, techniqueScene(technique.key)});
+                return steps;
+            }};
 }
 
 } // namespace lumorph

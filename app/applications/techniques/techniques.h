@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "core/scene/scene.h"
+#include "app/applications/demo.h"
 
 namespace lumorph {
 
@@ -22,7 +22,6 @@ struct Technique {
 /// Throws InvalidInput for a key that is none.
 [[nodiscard]] Scene techniqueScene(int key);
 
-/// A sea: long, slow waves for the servos, short, fast ones for the light, two things afloat and a wandering sun.
-[[nodiscard]] Scene waterScene();
+[[nodiscard]] Demo techniquesDemo();
 
 } // namespace lumorph

@@ -2,7 +2,7 @@
 
 #include "core/scene/scene.h"
 
-/// Items of the bundled demonstrations. Private to core/scene.
+/// Items of the bundled demonstrations.
 namespace lumorph {
 
 /// y of the tablet's sheet at rest, metres.

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/show/project_contents.h"
+
+namespace lumorph {
+
+/// A scene that a demonstration shows at the press of a number key.
+struct DemoStep {
+    int key = 0; ///< the number key
+    std::string name;
+    std::string sentence; ///< what is to be seen
+    Scene scene;
+};
+
+/// A demonstration, as those who offer it know it: the window, the command line, tests. What it is made of stays in its
+/// own folder.
+struct Demo {
+    std::string name;      ///< on the command line
+    std::string title;     ///< for visitors
+    std::string sentence;  ///< what is to be seen, for visitors
+    std::string thumbnail; ///< a picture among the resources, 320 x 200
+    std::string workspace; ///< in which it is seen best
+    /// What it shows, ready but for the field of its rig, which takes its time. Throws DataError where a resource is
+    /// missing, Cancelled.
+    ProjectContents (*open)(const Progress& progress) = nullptr;
+    /// All have the same items with the same ids; empty for one that shows one thing.
+    std::vector<DemoStep> (*steps)() = nullptr;
+};
+
+/// All demonstrations in the order in which they are offered. The first is shown to who starts for the first time.
+[[nodiscard]] std::span<const Demo> demos();
+
+/// Throws InvalidInput for a name that none has, with those there are.
+[[nodiscard]] const Demo& demoNamed(const std::string& name);
+
+/// "water, techniques, ..."
+[[nodiscard]] std::string demoNames();
+
+/// A demonstration whose scene is a bundled project: `projects/NAME.lumorph`.
+[[nodiscard]] ProjectContents bundledProject(const std::string& name, const Progress& progress);
+
+} // namespace lumorph

@@ -1,0 +1,35 @@
+#include <algorithm>
+#include <vector>
+
+#include "app/applications/demo.h"
+#include "app/applications/field/field_demo.h"
+#include "app/applications/techniques/techniques.h"
+#include "app/applications/water/water.h"
+#include "core/base/error.h"
+#include "core/base/resources.h"
+
+namespace lumorph {
+
+std::span<const Demo> demos() {
+    static const std::vector<Demo> all{waterDemo(), techniquesDemo(), fieldDemo()};
+    return all;
+}
+
+const Demo& demoNamed(const std::string& name) {
+    const auto found = std::ranges::find(demos(), name, &Demo::name);
+    if (found == demos().end())
+        throw InvalidInput("demo '" + name + "'", "there is none of that name", "choose one of " + demoNames());
+    return *found;
+}
+
+std::string demoNames() {
+    std::string names;
+    for (const Demo& demo : demos()) names += (names.empty() ? "" : ", ") + demo.name;
+    return names;
+}
+
+ProjectContents bundledProject(const std::string& name, const Progress& progress) {
+    return readContents(resourceFile("projects/" + name + ".lumorph"), progress);
+}
+
+} // namespace lumorph

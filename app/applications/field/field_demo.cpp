@@ -1,0 +1,33 @@
+#include "app/applications/field/field_demo.h"
+
+#include "core/mdf/builder.h"
+
+namespace lumorph {
+namespace {
+
+ProjectContents openField(const Progress& progress) {
+    Project project;
+    project.rig = "resource:models/tablet.glb";
+    project.target = "resource:targets/bloom.glb";
+    ProjectContents contents = readContents(std::move(project), {}, progress);
+    // As large as fits: for that the field's frame is enough, which is known before the field is built.
+    Field room;
+    room.frame = frameOf(contents.rig->reach(), BuildOptions{}.resolution);
+    room.restSurface = boundingBox(contents.rig->restMesh().positions).max.y;
+    contents.project.placement = fitPlacement(room, contents.target->box);
+    return contents;
+}
+
+} // namespace
+
+Demo fieldDemo() {
+    return {"field",
+            "A flower on six servos",
+            "A tablet follows an opening flower as well as it can; colour shows what is left out.",
+            "thumbnails/field.png",
+            "field",
+            openField,
+            [] { return std::vector<DemoStep>(); }};
+}
+
+} // namespace lumorph

@@ -1,0 +1,59 @@
+#include "app/applications/water/water.h"
+
+#include <glm/gtc/quaternion.hpp>
+
+#include "app/applications/demo_items.h"
+#include "core/scene/material_library.h"
+
+namespace lumorph {
+
+Scene waterScene() {
+    enum WaterId { kWaterSun = 1, kWaterDay, kSea, kBuoy, kCrate };
+    Scene scene = defaultScene();
+    scene.device.show = DeviceSkin::Show::content;
+    turnSun(scene, kWaterDay, 40.0);
+
+    HeightItem sea;
+    // The long wave's phase is that of the buoy, which rises and falls with it.
+    sea.waves = {{0.012, 0.30, 6.0, Angle::degrees(15.0), Angle::degrees(228.0)},
+                 {0.006, 0.17, 4.5, Angle::degrees(-40.0), {}},
+                 {0.0018, 0.050, 0.8, Angle::degrees(35.0), {}},
+                 {0.0010, 0.031, 0.55, Angle::degrees(-20.0), {}},
+                 {0.0005, 0.019, 0.4, Angle::degrees(80.0), {}}};
+    sea.floor = -0.036;
+    SceneItem water = demoItem(kSea, "Sea", sea);
+    water.role = ItemRole::split;
+    water.position.y = kSheet + 0.018F;
+    water.material = readyMaterial("Water");
+    scene.items.push_back(water);
+
+    SceneItem buoy = demoItem(kBuoy, "Buoy", ShapeItem{ShapeItem::Form::sphere, glm::vec3(0.024F)});
+    buoy.position = {-0.045F, 0.043F, 0.012F};
+    buoy.motion = {0.0, 0.012, 6.0};
+    buoy.material.name = "Paint";
+    buoy.material.color = {0.88F, 0.26F, 0.18F};
+    buoy.material.roughness = 0.35F;
+    scene.items.push_back(buoy);
+
+    SceneItem crate = demoItem(kCrate, "Crate", ShapeItem{ShapeItem::Form::box, {0.028F, 0.020F, 0.022F}});
+    crate.position = {0.050F, 0.045F, -0.020F};
+    crate.rotation = glm::angleAxis(0.12F, glm::vec3(0.0F, 0.0F, 1.0F));
+    crate.motion = {Angle::degrees(9.0).inRadians(), 0.004, 6.0};
+    crate.material = readyMaterial("Wood");
+    crate.material.colorTexture.tile = glm::vec2(0.05F);
+    crate.material.normalMaps[0].tile = glm::vec2(0.05F);
+    scene.items.push_back(crate);
+    return scene;
+}
+
+Demo waterDemo() {
+    return {"water",
+            "A sea you can feel",
+            "The tablet lifts the long waves, light paints the short ones, and a buoy floats on both.",
+            "thumbnails/water.png",
+            "scene",
+            [](const Progress& progress) { return bundledProject("water", progress); },
+            [] { return std::vector<DemoStep>(); }};
+}
+
+} // namespace lumorph

@@ -1,0 +1,167 @@
+#include "app/output/demo_player.h"
+
+#include <chrono>
+#include <cmath>
+#include <iomanip>
+#include <numbers>
+#include <optional>
+#include <ostream>
+
+#include <nlohmann/json.hpp>
+
+#include "app/output/video_writer.h"
+#include "core/base/error.h"
+#include "core/base/statistics.h"
+#include "core/mdf/builder.h"
+#include "core/render/gl/headless_context.h"
+#include "core/render/spatial_renderer.h"
+#include "core/show/show_player.h"
+
+namespace lumorph {
+namespace {
+
+namespace fs = std::filesystem;
+using Clock = std::chrono::steady_clock;
+
+constexpr int kStepsAPicture = 2; ///< 30 pictures a second
+constexpr double kMaxSeconds = 600.0;
+constexpr double kWalk = 0.35; ///< radians to either side
+constexpr double kWalkPeriod = 8.0;
+
+double since(Clock::time_point begun) {
+    return std::chrono::duration<double, std::milli>(Clock::now() - begun).count();
+}
+
+/// The viewer sways around the device, so that one sees that the picture follows him.
+glm::vec3 walkedEye(const glm::vec3& eye, double seconds) {
+    const double turn = kWalk * std::sin(2.0 * std::numbers::pi * seconds / kWalkPeriod);
+    const double c = std::cos(turn), s = std::sin(turn);
+    return glm::vec3(glm::dvec3(c * eye.x + s * eye.z, eye.y, c * eye.z - s * eye.x));
+}
+
+/// A show that nobody watches waits for its field.
+MatchWish completeWish(const ProjectContents& contents) {
+    MatchWish wish = wishOf(contents);
+    wish.showTint = false;
+    if (wish.target && !wish.field) wish.field = std::make_shared<const MatchField>(buildField(*wish.rig, {}));
+    return wish;
+}
+
+/// A show, drawn and measured step by step.
+class Recorder {
+public:
+    Recorder(const ProjectContents& contents, const std::string& name, const ShowPictures& show)
+        : name_(name), show_(show), room_(contents.project.installation), player_(clock_, completeWish(contents)) {
+        renderer_.setMeasuring(true);
+        renderer_.setEyeSize(show.video);
+    }
+
+    void step() {
+        Installation room = room_;
+        room.eye = walkedEye(room_.eye, player_.frame() ? player_.seconds() + ShowPlayer::kStep : 0.0);
+        MatchWish wish = player_.wish();
+        wish.installation = std::make_shared<const Installation>(std::move(room));
+        player_.setWish(std::move(wish));
+        const auto begun = Clock::now();
+        player_.step();
+        loopTimes_.push_back(since(begun));
+    }
+
+    /// What the viewer sees of the lit device.
+    [[nodiscard]] Image lab() {
+        const auto begun = Clock::now();
+        const ShowFrame frame = player_.shown();
+        renderer_.draw(frame);
+        passTimes_.push_back(renderer_.times().total);
+        Image picture = renderer_.readLab(viewOf(frame, show_.video));
+        frameTimes_.push_back(since(begun));
+        return picture;
+    }
+
+    void savePictures(const fs::path& folder) {
+        const ShowFrame frame = player_.shown();
+        renderer_.setEyeSize(show_.picture);
+        renderer_.draw(frame);
+        writePng(renderer_.readEye(), folder / (name_ + "-eye.png"));
+        for (std::size_t i = 0; i < frame.installation->projectors.size(); ++i) {
+            if (!frame.installation->projectors[i].enabled) continue;
+            const std::string number = i == 0 ? "" : std::to_string(i + 1);
+            writePng(renderer_.readProjector(i), folder / (name_ + "-projector" + number + ".png"));
+        }
+        writePng(renderer_.readLab(viewOf(frame, show_.picture)), folder / (name_ + "-lab.png"));
+        renderer_.setEyeSize(show_.video);
+    }
+
+    [[nodiscard]] ShowRates rates() const {
+        ShowRates rates;
+        rates.frames = static_cast<int>(frameTimes_.size());
+        const double frame = frameTimes_.empty() ? 0.0 : median(frameTimes_);
+        rates.framesPerSecond = frame > 0.0 ? 1000.0 / frame : 0.0;
+        rates.loopMilliseconds = loopTimes_.empty() ? 0.0 : median(loopTimes_);
+        rates.passMilliseconds = passTimes_.empty() ? 0.0 : median(passTimes_);
+        rates.warnings = renderer_.warnings();
+        return rates;
+    }
+
+private:
+    static CalibratedCamera viewOf(const ShowFrame& frame, glm::ivec2 size) {
+        return deviceView(frame, frame.eye.value_or(frame.installation->eye), size);
+    }
+
+    const std::string& name_;
+    const ShowPictures& show_;
+    const Installation room_;
+    ManualClock clock_;
+    ShowPlayer player_;
+    HeadlessContext context_;
+    SpatialRenderer renderer_;
+    std::vector<double> loopTimes_, passTimes_, frameTimes_;
+};
+
+} // namespace
+
+ShowRates playShow(const ProjectContents& contents, const std::string& name, const ShowPictures& show,
+                   const fs::path& pictures, const fs::path& video) {
+    if (!(show.seconds > 0.0 && show.seconds <= kMaxSeconds))
+        throw InvalidInput("--seconds", "the show lasts more than 0 and at most 600 seconds",
+                           "give a number in that range");
+    Recorder recorder(contents, name, show);
+    std::optional<VideoWriter> writer;
+    if (!video.empty()) writer.emplace(video, show.video, 1.0 / (ShowPlayer::kStep * kStepsAPicture));
+    const int steps = std::max(kStepsAPicture, static_cast<int>(std::lround(show.seconds / ShowPlayer::kStep)));
+    for (int k = 0; k < steps; ++k) {
+        recorder.step();
+        if (k == steps / 2 && !pictures.empty()) recorder.savePictures(pictures);
+        if (k % kStepsAPicture != 0) continue;
+        const Image picture = recorder.lab();
+        if (writer) writer->add(picture);
+    }
+    if (writer) writer->finish();
+    ShowRates rates = recorder.rates();
+    rates.warnings.insert(rates.warnings.end(), contents.warnings.begin(), contents.warnings.end());
+    return rates;
+}
+
+void playDemo(const Demo& demo, double seconds, const fs::path& video, bool json, std::ostream& out) {
+    ShowPictures show;
+    show.seconds = seconds;
+    const ShowRates rates = playShow(demo.open({}), demo.name, show, {}, video);
+    if (json) {
+        const nlohmann::json value{{"demo", demo.name},
+                                   {"seconds", seconds},
+                                   {"frames", rates.frames},
+                                   {"framesPerSecond", rates.framesPerSecond},
+                                   {"ms", {{"loop", rates.loopMilliseconds}, {"passes", rates.passMilliseconds}}},
+                                   {"record", video.string()},
+                                   {"warnings", rates.warnings}};
+        out << value.dump(2) << std::endl;
+        return;
+    }
+    out << std::fixed << std::setprecision(1) << rates.frames << " frames of " << demo.name << ": loop "
+        << rates.loopMilliseconds << " ms, both passes " << rates.passMilliseconds << " ms, with the lab "
+        << rates.framesPerSecond << " frames/s" << std::endl;
+    for (const std::string& warning : rates.warnings) out << warning << std::endl;
+    if (!video.empty()) out << "Video: " << fs::absolute(video).lexically_normal().string() << std::endl;
+}
+
+} // namespace lumorph
