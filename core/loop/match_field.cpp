@@ -21,4 +21,9 @@ Rig rigOf(const Field& field) {
 MatchField::MatchField(Field built)
     : field(std::move(built)), rig(rigOf(field)), coverage(rig, field.frame, field.levels), voting(field) {}
 
+bool isFieldOf(const MatchField& field, const Rig& rig) {
+    // Numbers may change in their last bit by being written and read, so equal files count as well.
+    return deformAlike(field.rig.parts(), rig.parts()) || writeRigGlb(rig) == field.field.rigGlb;
+}
+
 } // namespace lumorph

@@ -16,4 +16,7 @@ struct MatchField {
     Voting voting;
 };
 
+/// Whether a field was built for this rig, or for one that is the same solid in every joint state.
+[[nodiscard]] bool isFieldOf(const MatchField& field, const Rig& rig);
+
 } // namespace lumorph

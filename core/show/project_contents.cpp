@@ -19,7 +19,7 @@ void readField(const fs::path& file, ProjectContents& contents) {
     try {
         const fs::path path = assetPath(file, contents.project.field);
         auto field = std::make_shared<const MatchField>(parseField(readFile(path, kMaxFileBytes), path.string()));
-        if (field->field.rigGlb == writeRigGlb(*contents.rig))
+        if (isFieldOf(*field, *contents.rig))
             contents.field = std::move(field);
         else
             contents.warnings.emplace_back("Its field was built for another rig and is left out.");

@@ -8,9 +8,6 @@ namespace lumorph::studio {
 /// hold something else.
 [[nodiscard]] StateParts differenceOf(const StudioState& a, const StudioState& b);
 
-/// Whether a field was built for this rig, or for one that is the same solid in every joint state.
-[[nodiscard]] bool isFieldOf(const MatchField& field, const Rig& rig);
-
 /// Whether the rig is another one than was opened.
 [[nodiscard]] bool isEdited(const StudioState::RigAsset& rig);
 
