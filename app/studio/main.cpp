@@ -23,7 +23,7 @@ bool hasWorkspace(const std::vector<std::unique_ptr<Workspace>>& workspaces, con
 /// The one asked for; else that in which a demo is seen.
 QString firstWorkspace(const Arguments& arguments) {
     if (!arguments.workspace.empty() || arguments.demo.empty()) return QString::fromStdString(arguments.workspace);
-    return QString::fromStdString(demoNamed(arguments.demo).workspace);
+    return QString::fromStdString(lumorph::demoNamed(arguments.demo).workspace);
 }
 
 /// A project brings everything; a target or a field needs the device that was there last time.
@@ -70,7 +70,7 @@ int run(int argc, char** argv, const Arguments& arguments) {
 int showHeadless(const Arguments& arguments) {
     try {
         if (arguments.play > 0.0)
-            playDemo(demoNamed(arguments.demo), arguments.play, arguments.record, arguments.json, std::cout);
+            lumorph::playDemo(lumorph::demoNamed(arguments.demo), arguments.play, arguments.record, arguments.json, std::cout);
         else
             runHeadlessShow(arguments.headless, arguments.seconds, std::cout);
         return 0;
