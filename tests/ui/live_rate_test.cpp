@@ -110,7 +110,7 @@ TEST_F(WindowRate, ThirtyMatchesASecondAreSeenWhileALargeTargetMoves) {
 }
 
 // A rig that is dragged at 60 edits a second, as handles on the model will do.
-TEST_F(LiveRate, TheRigIsEditedWithoutHoldingUpTheWindow) {
+TEST_F(WindowRate, TheRigIsEditedWithoutHoldingUpTheWindow) {
     ASSERT_TRUE(openTarget());
     StudioDocument& document = studio_.document;
     window_.showWorkspace("rig");

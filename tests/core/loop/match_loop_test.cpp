@@ -351,7 +351,7 @@ TEST_F(MatchLoopTest, ActuatorsStayWhereTheyAreInTheSameRig) {
 // A drag of a rig's numbers makes a new rig with every frame.
 TEST_F(MatchLoopTest, ActuatorsGoOnWithoutAJumpInARigThatIsEdited) {
     MatchWish wish = wishFor(field_, nullptr);
-    wish.live = false;
+    wish.driver = Driver::hand;
     wish.rigOrigin = wish.rig;
     wish.strokes = {1.0, 0.5, 0.0};
     MatchWish still = wish;
