@@ -110,7 +110,7 @@ struct MatchLoop::Data {
 
 void MatchLoop::Data::fill(const MatchWish& wish, double sinceLast, MatchFrame& frame) {
     const StageTimer timer(clock, frame.ms.total);
-    motion.follow(wish.rig);
+    motion.follow(wish.rig, wish.rigOrigin);
     fillShown(program.ask(wish, sinceLast, motion.strokes(), clock, frame), sinceLast, frame);
 }
 
@@ -195,7 +195,6 @@ void MatchLoop::Data::hold(const MatchWish& wish, double sinceLast, MatchFrame& 
 void MatchLoop::Data::move(const MatchWish& wish, double sinceLast, MatchFrame& frame) {
     {
         const StageTimer timer(clock, frame.ms.motion);
-        motion.follow(wish.rig, wish.rigOrigin);
         motion.move(frame.wantedStrokes, sinceLast, wish.stopped);
         frame.estimatedStrokes.assign(motion.strokes().begin(), motion.strokes().end());
     }

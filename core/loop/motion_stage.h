@@ -15,7 +15,7 @@ public:
     /// An actuator stays where it is when the rig has the same actuators as the one before. In an edit of that rig,
     /// which has the same `origin`, each goes on, as fast as it was: by its name, or where it was renamed by its place;
     /// one that is new is at rest. Else all are at rest.
-    void follow(const std::shared_ptr<const Rig>& rig, const std::shared_ptr<const void>& origin = nullptr);
+    void follow(const std::shared_ptr<const Rig>& rig, const std::shared_ptr<const void>& origin);
     /// The actuators stand there, one stroke each.
     void standAt(std::span<const double> strokes) { motion_.reset(strokes); }
     /// Moves towards the wanted strokes; while stopped all hold still, and start softly afterwards.

@@ -43,7 +43,7 @@ TEST_P(BoardFinderPose, IsTheTruth) {
     for (int number = 0; number < 2; ++number) {
         const Pose truth{{0.02 * number, 0.01 * number, -0.015},
                          glm::angleAxis(glm::radians(12.0 * number - 9.0), glm::normalize(glm::dvec3(0.3, 1.0, 0.2)))};
-        const auto picture = photographer.picture(test::matrixOf(truth) * test::matrixOf(deviceFromBoard), 3.0);
+        const auto picture = photographer.picture(matrixOf(truth) * matrixOf(deviceFromBoard), 3.0);
         const auto sighting = finder.find(picture);
         ASSERT_TRUE(sighting) << number;
         const Pose found = worldFromDevice(*sighting, camera, deviceFromBoard);

@@ -10,12 +10,9 @@
 #include <glm/gtc/quaternion.hpp>
 
 #include "calibration/tracking/board_finder.h"
+#include "core/loop/pose_stream.h"
 
 namespace lumorph::test {
-
-inline glm::dmat4 matrixOf(const Pose& pose) {
-    return glm::translate(glm::dmat4(1.0), pose.position) * glm::mat4_cast(pose.rotation);
-}
 
 inline double degreesBetween(const glm::dquat& a, const glm::dquat& b) {
     return glm::degrees(2.0 * std::acos(std::min(1.0, std::abs(glm::dot(a, b)))));

@@ -112,6 +112,7 @@ TEST(Driver, AloneDecidesWhoMovesTheServos) {
         Scene scene = sceneWith(c.item);
         scene.showing = c.showing;
         wish.scene = std::make_shared<const Scene>(scene);
+        wish.installation = std::make_shared<const Installation>(defaultInstallation());
         wish.assets = std::make_shared<const SceneAssets>();
         wish.driver = c.driver;
         wish.strokes = {0.3, 0.2, 0.1};

@@ -68,7 +68,7 @@ protected:
     MatchWish wishOf(std::shared_ptr<ShowProgram> program) const {
         MatchWish wish = wishFor(field_, nullptr);
         wish.strokes = {0.3, 0.2, 0.1};
-        wish.scene = std::make_shared<const Scene>(emptyScene());
+        setSceneInRoom(wish, emptyScene());
         wish.assets = std::make_shared<const SceneAssets>();
         wish.program = std::move(program);
         wish.inputs = std::make_shared<ShowInputs>();
