@@ -18,9 +18,9 @@ namespace lumorph {
 namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-constexpr double kFrame = 1.0 / 60.0;
+constexpr double kStepSeconds = 1.0 / 60.0;
 
-const Rig& tablet() {
+const Rig& splitTablet() {
     static const Rig rig = readRig(LUMORPH_SOURCE_DIR "/resources/models/tablet.glb");
     return rig;
 }
@@ -56,7 +56,7 @@ private:
 };
 
 TEST(CausalSplit, SmoothsAsALiteralFilterDoes) {
-    CausalSplit split(tablet(), 0.03);
+    CausalSplit split(splitTablet(), 0.03);
     const Lift lift = [](const glm::vec2& at, double t) {
         return 0.02 * std::sin(3.0 * t + 20.0 * static_cast<double>(at.x)) + (t > 1.0 ? 0.03 : 0.0);
     };
@@ -78,8 +78,8 @@ TEST(CausalSplit, SmoothsAsALiteralFilterDoes) {
 }
 
 TEST(CausalSplit, LongAndShortStepsOfOneWayAgree) {
-    CausalSplit fine(tablet(), 0.03);
-    CausalSplit coarse(tablet(), 0.03);
+    CausalSplit fine(splitTablet(), 0.03);
+    CausalSplit coarse(splitTablet(), 0.03);
     const Lift rising = [](const glm::vec2&, double t) { return 0.04 * t; };
     (void)fine.strokes(heightsOf(fine, rising, 0.0), 0.0);
     (void)coarse.strokes(heightsOf(coarse, rising, 0.0), 0.0);
@@ -90,20 +90,20 @@ TEST(CausalSplit, LongAndShortStepsOfOneWayAgree) {
 }
 
 TEST(CausalSplit, WhatComesLaterChangesNothingBefore) {
-    CausalSplit one(tablet(), 0.02);
-    CausalSplit other(tablet(), 0.02);
+    CausalSplit one(splitTablet(), 0.02);
+    CausalSplit other(splitTablet(), 0.02);
     const auto wishAt = [&](int k, bool different) {
         return heightsOf(
             one,
             [&](const glm::vec2& at, double t) {
                 return different && k >= 60 ? 0.08 : 0.02 * std::sin(2.0 * t + 15.0 * static_cast<double>(at.x));
             },
-            k * kFrame);
+            k * kStepSeconds);
     };
     bool differs = false;
     for (int k = 0; k < 90; ++k) {
-        const auto first = one.strokes(wishAt(k, false), kFrame);
-        const auto second = other.strokes(wishAt(k, true), kFrame);
+        const auto first = one.strokes(wishAt(k, false), kStepSeconds);
+        const auto second = other.strokes(wishAt(k, true), kStepSeconds);
         if (k < 60) {
             ASSERT_EQ(first, second) << "bit for bit, step " << k;
         }
@@ -114,13 +114,13 @@ TEST(CausalSplit, WhatComesLaterChangesNothingBefore) {
 
 // The lag is what the header says, by the smoothed wish and by the strokes that carry it.
 TEST(CausalSplit, LagsByWhatItSays) {
-    CausalSplit split(tablet(), 0.02);
-    FrequencySplit still(tablet(), 0.02);
+    CausalSplit split(splitTablet(), 0.02);
+    FrequencySplit still(splitTablet(), 0.02);
     EXPECT_NEAR(split.lagSeconds(), 0.5 * 90.0 / 120.0, 1e-6) << "an SG90 under load takes 0.75 s for its stroke";
     EXPECT_LE(split.lagSeconds(), CausalSplit::kMostLag);
 
     const Lift ramp = [](const glm::vec2&, double t) { return 0.004 * t; };
-    for (int k = 0; k <= 600; ++k) (void)split.strokes(heightsOf(split, ramp, k * kFrame), kFrame);
+    for (int k = 0; k <= 600; ++k) (void)split.strokes(heightsOf(split, ramp, k * kStepSeconds), kStepSeconds);
     for (const double lift : split.smoothed()) EXPECT_NEAR(10.0 - lift / 0.004, split.lagSeconds(), 1e-3);
 
     // A slow sine within the device's reach: the strokes are those of the wish so many seconds ago.
@@ -132,18 +132,18 @@ TEST(CausalSplit, LagsByWhatItSays) {
     std::vector<std::vector<double>> now;
     std::vector<std::vector<double>> best; // for the wish as it is
     for (int k = 0; k < static_cast<int>(2 * period * 60); ++k) {
-        const std::vector<float> heights = heightsOf(split, sine, k * kFrame);
-        const std::vector<double> strokes = split.strokes(heights, kFrame);
+        const std::vector<float> heights = heightsOf(split, sine, k * kStepSeconds);
+        const std::vector<double> strokes = split.strokes(heights, kStepSeconds);
         if (k < static_cast<int>(period * 60)) continue;
         now.push_back(strokes);
         best.push_back(still.fit(heights));
     }
-    for (std::size_t i = 0; i < tablet().actuatorCount(); ++i) {
+    for (std::size_t i = 0; i < splitTablet().actuatorCount(); ++i) {
         const auto phaseOf = [&](const std::vector<std::vector<double>>& strokes) {
             double real = 0.0;
             double imaginary = 0.0;
             for (std::size_t k = 0; k < strokes.size(); ++k) {
-                const double angle = 2.0 * std::numbers::pi * static_cast<double>(k) * kFrame / period;
+                const double angle = 2.0 * std::numbers::pi * static_cast<double>(k) * kStepSeconds / period;
                 real += strokes[k][i] * std::sin(angle);
                 imaginary += strokes[k][i] * std::cos(angle);
             }
@@ -170,7 +170,7 @@ TEST(CausalSplit, LagIsBoundedForSlowActuators) {
 
 // R19
 TEST(CausalSplit, NeverMovesFasterThanTheLimits) {
-    CausalSplit split(tablet(), 0.03);
+    CausalSplit split(splitTablet(), 0.03);
     std::mt19937 random(17);
     std::uniform_real_distribution<double> uniform(0.0, 1.0);
     float wild = 0.0F;
@@ -187,7 +187,7 @@ TEST(CausalSplit, NeverMovesFasterThanTheLimits) {
         const std::vector<double> now = split.strokes(heights, step);
         for (std::size_t i = 0; i < now.size() && !last.empty(); ++i) {
             ASSERT_TRUE(now[i] >= 0.0 && now[i] <= 1.0);
-            const double limit = tablet().actuators()[i].maxVelocity * step;
+            const double limit = splitTablet().actuators()[i].maxVelocity * step;
             ASSERT_LE(std::abs(now[i] - last[i]), limit + 1e-12) << k;
             most = std::max(most, std::abs(now[i] - last[i]) / std::max(limit, 1e-9));
         }
@@ -199,8 +199,8 @@ TEST(CausalSplit, NeverMovesFasterThanTheLimits) {
 // R33: what servos carry is the smooth part, late by the lag; all the rest is left to light, which adds it to what
 // stands.
 TEST(CausalSplit, ServosCarryTheSmoothPartAndLightTheRest) {
-    CausalSplit split(tablet(), 0.012);
-    FrequencySplit surface(tablet(), 0.012);
+    CausalSplit split(splitTablet(), 0.012);
+    FrequencySplit surface(splitTablet(), 0.012);
     const Lift slow = [](const glm::vec2& at, double t) {
         return 0.015 + 0.012 * std::sin(2.0 * std::numbers::pi * (static_cast<double>(at.x) / 0.4 - t / 8.0));
     };
@@ -211,10 +211,10 @@ TEST(CausalSplit, ServosCarryTheSmoothPartAndLightTheRest) {
         split.restart();
         std::vector<float> reached(split.points().size());
         for (int k = 0; k < 20 * 60; ++k) {
-            const std::vector<double> strokes = split.strokes(heightsOf(split, wish, k * kFrame), kFrame);
+            const std::vector<double> strokes = split.strokes(heightsOf(split, wish, k * kStepSeconds), kStepSeconds);
             if (k < 240 || k % 6 != 0) continue;
             surface.heights(strokes, reached);
-            judge(k * kFrame, reached);
+            judge(k * kStepSeconds, reached);
         }
     };
     std::vector<std::vector<float>> alone;
@@ -244,7 +244,7 @@ TEST(CausalSplit, ServosCarryTheSmoothPartAndLightTheRest) {
 }
 
 TEST(CausalSplit, RefusesWhatIsNoWish) {
-    CausalSplit split(tablet(), 0.02);
+    CausalSplit split(splitTablet(), 0.02);
     const std::vector<float> rest(split.restHeights().begin(), split.restHeights().end());
     EXPECT_THROW((void)split.strokes(std::span(rest).first(3), 0.1), InvalidInput);
     for (const double wrong : {-0.1, kNan, HUGE_VAL}) EXPECT_THROW((void)split.strokes(rest, wrong), InvalidInput);
@@ -253,10 +253,10 @@ TEST(CausalSplit, RefusesWhatIsNoWish) {
     EXPECT_EQ(split.strokes(nothing, 0.0), std::vector<double>(6, 0.0));
     std::vector<float> high = rest;
     for (float& height : high) height += 0.04F;
-    const std::vector<double> soon = split.strokes(high, kFrame);
+    const std::vector<double> soon = split.strokes(high, kStepSeconds);
     split.restart();
     EXPECT_LT(soon[0], 0.05);
-    EXPECT_GT(split.strokes(high, kFrame)[0], 0.2) << "begun anew";
+    EXPECT_GT(split.strokes(high, kStepSeconds)[0], 0.2) << "begun anew";
 }
 
 } // namespace
