@@ -17,7 +17,7 @@ using nlohmann::json;
 
 const fs::path kFolder = LUMORPH_SOURCE_DIR "/tests/data/projects";
 
-json textOf(const char* name) {
+json documentOf(const char* name) {
     std::ifstream file(kFolder / name);
     return json::parse(file);
 }
@@ -71,7 +71,7 @@ void expectHolds(const json& written, const json& wanted) {
 }
 
 TEST(ProjectMigration, ASchema2ProjectsRoomIsItsInstallation) {
-    const json file = textOf("schema2.lumorph");
+    const json file = documentOf("schema2.lumorph");
     const json& scene = file.at("scene");
     ASSERT_EQ(file.at("schemaVersion"), 2);
     ASSERT_FALSE(file.contains("installation"));
@@ -109,7 +109,7 @@ TEST(ProjectMigration, ASchema2ProjectsRoomIsItsInstallation) {
 }
 
 TEST(ProjectMigration, ASchema2ProjectShowsWhatItShowed) {
-    const json file = textOf("schema2.lumorph");
+    const json file = documentOf("schema2.lumorph");
     const json written = json::parse(projectText(readProject(kFolder / "schema2.lumorph")));
     EXPECT_EQ(written.at("schemaVersion"), kProjectSchema);
     json kept = file;
@@ -131,7 +131,7 @@ TEST(ProjectMigration, ASchema2ProjectShowsWhatItShowed) {
 }
 
 TEST(ProjectMigration, ASchema1ProjectStandsInTheVirtualLab) {
-    const json file = textOf("schema1.lumorph");
+    const json file = documentOf("schema1.lumorph");
     ASSERT_EQ(file.at("schemaVersion"), 1);
     ASSERT_FALSE(file.contains("scene"));
     const Project project = readProject(kFolder / "schema1.lumorph");
@@ -182,10 +182,10 @@ TEST(ProjectMigration, WhatIsWrittenIsReadTheSame) {
 }
 
 TEST(ProjectMigration, ABrokenRoomOfASchema2ProjectIsStillRefused) {
-    json file = textOf("schema2.lumorph");
+    json file = documentOf("schema2.lumorph");
     file["scene"]["projectors"][1]["camera"]["focal"][0] = 0;
     EXPECT_THROW((void)parseProject(file.dump(), "a.lumorph"), DataError);
-    file = textOf("schema2.lumorph");
+    file = documentOf("schema2.lumorph");
     file["scene"]["table"]["size"] = "large";
     EXPECT_THROW((void)parseProject(file.dump(), "a.lumorph"), DataError);
 }

@@ -1,0 +1,174 @@
+#include <fstream>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "app/applications/demo.h"
+#include "app/studio/document/installation_keeper.h"
+#include "app/studio/document/scene_edit.h"
+#include "core/scene/project.h"
+#include "tests/ui/project_world.h"
+
+// What stands in the room: kept by the machine, and left alone by whatever is opened in it.
+
+namespace lumorph::studio {
+namespace {
+
+namespace fs = std::filesystem;
+using test::eventually;
+
+/// A studio without a window in a room whose installation somebody has measured.
+struct InstallationKeeperTest : test::ProjectServiceFixture {
+    Settings settings;
+    const fs::path folder = settings.folder() / "installation";
+    InstallationStore store{folder};
+    std::unique_ptr<InstallationKeeper> keeper;
+
+    InstallationKeeperTest() {
+        fs::remove_all(folder);
+        settings.setValue("installation/answered", {});
+        store.keep(measuredRoom());
+        start();
+    }
+    ~InstallationKeeperTest() override {
+        keeper.reset();
+        fs::remove_all(folder);
+    }
+
+    static Installation measuredRoom() {
+        Installation room = defaultInstallation();
+        room.projectors.front().peak = 1.75;
+        room.projectors.front().pose = {Origin::Way::measured, "structured light", "2026-11-20T10:00:00Z"};
+        room.worldFromDevice[3] = glm::vec4(0.04F, 0.01F, -0.02F, 1.0F);
+        room.tableColor = {0.7F, 0.6F, 0.5F};
+        return room;
+    }
+    /// As a start of the program does.
+    void start() {
+        keeper = std::make_unique<InstallationKeeper>(settings, world.document, world.service, world.notices);
+    }
+    [[nodiscard]] const Installation& room() const { return *world.state().installation; }
+    [[nodiscard]] bool open(const fs::path& file) {
+        world.service.open(file);
+        return eventually([&] { return world.jobs.running().empty() && world.document.file() == file; });
+    }
+    /// A project that was saved in another room.
+    [[nodiscard]] fs::path projectFromElsewhere() const {
+        Project project;
+        project.rig = "resource:models/tablet.glb";
+        project.installation.projectors.front().peak = 9.5;
+        project.installation.tableSize = {2.0F, 1.5F};
+        const fs::path file = files / "elsewhere.lumorph";
+        writeProject(project, file);
+        return file;
+    }
+    [[nodiscard]] QString asked() const {
+        for (const Notice& notice : world.notices.at("project"))
+            if (notice.subject == "Installation") return notice.why;
+        return {};
+    }
+};
+
+TEST_F(InstallationKeeperTest, StartsWithWhatWasKept) { EXPECT_EQ(room(), measuredRoom()); }
+
+TEST_F(InstallationKeeperTest, EveryDemoLeavesTheRoomAsItIs) {
+    for (const Demo& demo : demos()) {
+        world.service.openDemo(demo.name);
+        ASSERT_TRUE(eventually([&] { return world.jobs.running().empty() && world.state().field.field; })) << demo.name;
+        EXPECT_EQ(room(), measuredRoom()) << demo.name;
+        EXPECT_EQ(asked(), QString()) << demo.name;
+        for (const DemoStep& step : demo.steps()) {
+            editScene(world.document, "Step", [&](Scene& scene) { scene = step.scene; });
+            EXPECT_EQ(room(), measuredRoom()) << demo.name << ' ' << step.key;
+        }
+    }
+}
+
+TEST_F(InstallationKeeperTest, EveryOldProjectLeavesTheRoomAsItIs) {
+    int opened = 0;
+    for (const auto& entry : fs::directory_iterator(fs::path(LUMORPH_SOURCE_DIR) / "tests/data/projects")) {
+        const fs::path file = files / entry.path().filename().string();
+        fs::copy_file(entry.path(), file);
+        ASSERT_TRUE(open(file)) << file;
+        EXPECT_EQ(room(), measuredRoom()) << file;
+        ++opened;
+    }
+    EXPECT_GE(opened, 2);
+}
+
+TEST_F(InstallationKeeperTest, AsksOnceWhichInstallationToUse) {
+    const fs::path file = projectFromElsewhere();
+    ASSERT_TRUE(open(file));
+    EXPECT_EQ(room(), measuredRoom());
+    EXPECT_THAT(asked().toStdString(), testing::HasSubstr("elsewhere.lumorph"));
+    ASSERT_TRUE(world.press("project", "Keep this room's"));
+    EXPECT_EQ(room(), measuredRoom());
+    world.service.newProject();
+    ASSERT_TRUE(world.rest());
+    ASSERT_TRUE(open(file));
+    EXPECT_EQ(asked(), QString()) << "it was answered";
+    // In another room it is another question, even if one has only looked around since.
+    editInstallation(world.document, "Table", [](Installation& edited) { edited.tableSize.x += 0.1F; });
+    ASSERT_TRUE(open(projectFromElsewhere()) && eventually([&] { return !asked().isEmpty(); }));
+}
+
+TEST_F(InstallationKeeperTest, TheProjectsIsTakenByAStepOfUndo) {
+    const fs::path file = projectFromElsewhere();
+    ASSERT_TRUE(open(file));
+    ASSERT_TRUE(world.press("project", "Use the project's"));
+    EXPECT_EQ(room().tableSize, glm::vec2(2.0F, 1.5F));
+    EXPECT_EQ(room().projectors.front().peak, 9.5);
+    EXPECT_EQ(room().origins.table.way, Origin::Way::entered);
+    EXPECT_EQ(room().origins.table.method, "project elsewhere.lumorph");
+    world.document.undoStack().undo();
+    EXPECT_EQ(room(), measuredRoom());
+}
+
+TEST_F(InstallationKeeperTest, KeepsAnEditForTheNextStartAndTheOneBefore) {
+    editInstallation(world.document, "Table", [](Installation& edited) { edited.tableSize = {1.5F, 1.0F}; });
+    const Installation edited = room();
+    EXPECT_EQ(edited.origins.table.way, Origin::Way::entered);
+    EXPECT_EQ(edited.projectors.front().pose, measuredRoom().projectors.front().pose) << "it is still as measured";
+    keeper.reset(); // the end of the program
+    world.document.setInstallation(std::make_shared<const Installation>(defaultInstallation()));
+    start();
+    EXPECT_EQ(room(), edited);
+    ASSERT_EQ(keeper->earlier().size(), 1U);
+    keeper->bringBack(keeper->earlier().front());
+    EXPECT_EQ(room().tableSize, measuredRoom().tableSize);
+}
+
+TEST_F(InstallationKeeperTest, KeepsTenEarlierOnesWhateverOneLooksAt) {
+    for (int i = 0; i < 14; ++i) {
+        Installation next = measuredRoom();
+        next.tableSize.x = 1.0F + 0.1F * static_cast<float>(i);
+        store.keep(next);
+        next.eye.x += 0.5F; // walking around is no other room
+        store.keep(next);
+    }
+    const auto earlier = store.earlier();
+    ASSERT_EQ(earlier.size(), InstallationStore::kKept);
+    for (std::size_t i = 0; i < earlier.size(); ++i)
+        EXPECT_FLOAT_EQ(InstallationStore::read(earlier[i]).tableSize.x, 1.0F + 0.1F * static_cast<float>(12 - i)) << i;
+}
+
+TEST_F(InstallationKeeperTest, AFileThatCannotBeReadIsToldAndLeftAlone) {
+    keeper.reset();
+    Installation later = measuredRoom();
+    later.tableSize.y = 2.0F;
+    store.keep(later); // the measured one becomes an earlier one
+    const std::string broken = "{\"lumorph\": \"installation\", \"schemaVersion\": 1, \"installation\": {\"eye\": 3}}";
+    std::ofstream(store.file(), std::ios::binary) << broken;
+    world.document.setInstallation(std::make_shared<const Installation>(defaultInstallation()));
+    start();
+    const Notice notice = world.notice("project");
+    EXPECT_THAT(notice.why.toStdString(), testing::HasSubstr("installation.eye"));
+    EXPECT_EQ(room(), defaultInstallation());
+    std::ifstream in(store.file(), std::ios::binary);
+    EXPECT_EQ(std::string(std::istreambuf_iterator<char>(in), {}), broken);
+    ASSERT_TRUE(world.press("project", "Bring back the last one"));
+    EXPECT_TRUE(isSameRoom(room(), measuredRoom()));
+}
+
+} // namespace
+} // namespace lumorph::studio
