@@ -106,6 +106,17 @@ std::string eventsCsv(const std::vector<EventRow>& events, const Progress& progr
     return out.str();
 }
 
+std::string inputsCsv(const std::vector<InputRow>& inputs, const Progress& progress) {
+    Lines lines(progress, inputs.size(), "inputs");
+    std::ostringstream out;
+    out << "time_s,name,value\n";
+    for (const InputRow& row : inputs) {
+        lines.step();
+        out << seconds(row.time) << ',' << csvField(row.name) << ',' << number(row.value) << '\n';
+    }
+    return out.str();
+}
+
 std::string servoCsv(const std::vector<ServoRow>& rows, const Progress& progress) {
     Lines lines(progress, rows.size(), "servo traffic");
     constexpr auto kDigits = "0123456789ABCDEF";
@@ -133,6 +144,7 @@ void exportCsv(const Recording& recording, const std::filesystem::path& folder, 
     write(folder / "frames.csv", framesCsv(recording.frames, progress.part(0.0, 0.5)));
     write(folder / "poses.csv", posesCsv(recording.poses, progress.part(0.5, 0.8)));
     write(folder / "events.csv", eventsCsv(recording.events, progress.part(0.8, 0.8)));
+    write(folder / "inputs.csv", inputsCsv(recording.inputs, progress.part(0.8, 0.8)));
     write(folder / "servo.csv", servoCsv(recording.servo, progress.part(0.8, 1.0)));
 }
 

@@ -20,7 +20,7 @@ namespace lumorph {
 namespace {
 
 using namespace session_tables;
-using Row = std::variant<FrameRow, PoseRow, EventRow, ServoRow, FileRow>;
+using Row = std::variant<FrameRow, PoseRow, EventRow, InputRow, ServoRow, FileRow>;
 
 constexpr std::chrono::milliseconds kPause{200}; // what a crash may cost
 constexpr std::size_t kMostWaiting = 1'000'000;  // minutes of a disk that stands still
@@ -48,6 +48,7 @@ public:
             database_.prepare("INSERT INTO frame VALUES (NULL, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)"));
         pose_.emplace(database_.prepare("INSERT INTO pose VALUES (NULL, ?, ?, ?, ?, ?, ?, ?)"));
         event_.emplace(database_.prepare("INSERT INTO event VALUES (NULL, ?, ?, ?, ?)"));
+        input_.emplace(database_.prepare("INSERT INTO input VALUES (NULL, ?, ?, ?)"));
         servo_.emplace(database_.prepare("INSERT INTO servo VALUES (NULL, ?, ?, ?)"));
         file_.emplace(database_.prepare("INSERT OR REPLACE INTO file VALUES (?, ?)"));
     }
@@ -61,7 +62,8 @@ public:
     /// One file without companions, which can be read where nothing may be written. While somebody reads it, it stays
     /// as it is: whole too.
     void close() {
-        for (std::optional<Statement>* statement : {&frame_, &pose_, &event_, &servo_, &file_}) statement->reset();
+        for (std::optional<Statement>* statement : {&frame_, &pose_, &event_, &input_, &servo_, &file_})
+            statement->reset();
         try {
             database_.run("PRAGMA busy_timeout = 0; PRAGMA journal_mode = DELETE");
         } catch (const std::exception&) { // a reader
@@ -72,6 +74,7 @@ private:
     void write(const FrameRow& row);
     void write(const PoseRow& row);
     void write(const EventRow& row);
+    void write(const InputRow& row);
     void write(const ServoRow& row);
     void write(const FileRow& row);
 
@@ -81,7 +84,7 @@ private:
     }
 
     Database database_;
-    std::optional<Statement> frame_, pose_, event_, servo_, file_;
+    std::optional<Statement> frame_, pose_, event_, input_, servo_, file_;
 };
 
 void Writer::write(const FrameRow& row) {
@@ -128,6 +131,13 @@ void Writer::write(const EventRow& row) {
     event_->bind(2, row.text);
     event_->bind(3, row.remedy);
     run(*event_);
+}
+
+void Writer::write(const InputRow& row) {
+    input_->bind(0, us(row.time));
+    input_->bind(1, row.name);
+    input_->bind(2, row.value);
+    run(*input_);
 }
 
 void Writer::write(const ServoRow& row) {
@@ -217,6 +227,7 @@ void Recorder::finish() {
 void Recorder::add(FrameRow row) { data_->add(std::move(row)); }
 void Recorder::add(PoseRow row) { data_->add(std::move(row)); }
 void Recorder::add(EventRow row) { data_->add(std::move(row)); }
+void Recorder::add(InputRow row) { data_->add(std::move(row)); }
 void Recorder::add(ServoRow row) { data_->add(std::move(row)); }
 void Recorder::add(FileRow row) { data_->add(std::move(row)); }
 

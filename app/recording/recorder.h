@@ -23,6 +23,7 @@ public:
     void add(FrameRow row);
     void add(PoseRow row);
     void add(EventRow row);
+    void add(InputRow row);
     void add(ServoRow row);
     void add(FileRow row);
 

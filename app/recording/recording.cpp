@@ -100,6 +100,8 @@ EventRow eventRow(const Reader& reader) {
     return {reader.time(), reader.row().text(1), reader.row().text(2), reader.row().text(3)};
 }
 
+InputRow inputRow(const Reader& reader) { return {reader.time(), reader.row().text(1), reader.row().real(2)}; }
+
 ServoRow servoRow(const Reader& reader) { return {reader.time(), reader.row().text(1), reader.row().bytes(2)}; }
 
 /// How far the reading of all tables is.
@@ -147,7 +149,7 @@ std::int64_t checkVersion(Database& database, const std::filesystem::path& file)
 
 Recording readRecording(const std::filesystem::path& file, const Progress& progress) {
     Database database(file, Database::Mode::readOnly);
-    checkVersion(database, file);
+    const std::int64_t version = checkVersion(database, file);
     Recording recording;
     Statement facts = database.prepare("SELECT name, value FROM fact");
     while (facts.step()) recording.facts[facts.text(0)] = facts.text(1);
@@ -159,11 +161,14 @@ Recording readRecording(const std::filesystem::path& file, const Progress& progr
     readAll(Reader(database, file, "pose", "time_us, measured_us, source, name, body, valid, pose"), &poseRow,
             recording.poses, share);
     readAll(Reader(database, file, "event", "time_us, kind, text, remedy"), &eventRow, recording.events, share);
+    if (version >= 3)
+        readAll(Reader(database, file, "input", "time_us, name, value"), &inputRow, recording.inputs, share);
     readAll(Reader(database, file, "servo", "time_us, kind, bytes"), &servoRow, recording.servo, share);
     progress.throwIfCancelled();
     sortByTime(recording.frames);
     sortByTime(recording.poses);
     sortByTime(recording.events);
+    sortByTime(recording.inputs);
     return recording;
 }
 

@@ -16,7 +16,8 @@ struct Recording {
     std::vector<FrameRow> frames; ///< this and the next two by time
     std::vector<PoseRow> poses;
     std::vector<EventRow> events;
-    std::vector<ServoRow> servo; ///< as it went in and came out
+    std::vector<InputRow> inputs; ///< by time; empty in what an older version recorded
+    std::vector<ServoRow> servo;  ///< as it went in and came out
 };
 
 /// Throws DataError that names file, table and row: no recording, a newer version's, damaged; Cancelled.
@@ -28,9 +29,9 @@ struct Recording {
 /// Seconds from the recording's begin to the last that it shows or tells.
 [[nodiscard]] double secondsOf(const Recording& recording);
 
-/// Writes `frames.csv`, `poses.csv`, `events.csv` and `servo.csv` into a folder, for a study: a header line, commas,
-/// decimal points, seconds, metres; each column once, the servos' as wanted_0, estimated_0, ... Throws DeviceError,
-/// Cancelled.
+/// Writes `frames.csv`, `poses.csv`, `events.csv`, `inputs.csv` and `servo.csv` into a folder, for a study: a header
+/// line, commas, decimal points, seconds, metres; each column once, the servos' as wanted_0, estimated_0, ... Throws
+/// DeviceError, Cancelled.
 void exportCsv(const Recording& recording, const std::filesystem::path& folder, const Progress& progress = {});
 
 /// The frame to be shown `seconds` after the begin: the newest not after it; the first before all.

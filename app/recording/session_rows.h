@@ -58,6 +58,14 @@ struct EventRow {
     bool operator==(const EventRow&) const = default;
 };
 
+/// A named input that a show program took, in the frame that took it: by these the program can be run again.
+struct InputRow {
+    Microseconds time{0};
+    std::string name;
+    double value = 0.0;
+    bool operator==(const InputRow&) const = default;
+};
+
 /// What went into the machine behind a device's servos, in order, and the bytes that came out of it: by these the same
 /// session can be run again.
 struct ServoRow {

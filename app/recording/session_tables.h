@@ -9,7 +9,7 @@
 /// How rows lie in the file. Private to app/recording.
 namespace lumorph::session_tables {
 
-inline constexpr int kVersion = 2; ///< 1 knew no files
+inline constexpr int kVersion = 3; ///< 1 knew no files, 2 no inputs
 inline constexpr auto kSchema = R"(
     CREATE TABLE fact (name TEXT PRIMARY KEY, value TEXT NOT NULL) WITHOUT ROWID;
     CREATE TABLE file (name TEXT PRIMARY KEY, bytes BLOB NOT NULL) WITHOUT ROWID;
@@ -19,6 +19,7 @@ inline constexpr auto kSchema = R"(
     CREATE TABLE pose (id INTEGER PRIMARY KEY, time_us INTEGER NOT NULL, measured_us INTEGER, source TEXT, name TEXT,
         body INTEGER, valid INTEGER, pose BLOB);
     CREATE TABLE event (id INTEGER PRIMARY KEY, time_us INTEGER NOT NULL, kind TEXT, text TEXT, remedy TEXT);
+    CREATE TABLE input (id INTEGER PRIMARY KEY, time_us INTEGER NOT NULL, name TEXT, value REAL);
     CREATE TABLE servo (id INTEGER PRIMARY KEY, time_us INTEGER NOT NULL, kind TEXT, bytes BLOB);
 )";
 

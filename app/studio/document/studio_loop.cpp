@@ -105,6 +105,19 @@ void StudioLoop::setSource(std::shared_ptr<FrameSource> source) {
     send();
 }
 
+void StudioLoop::setProgram(std::shared_ptr<ShowProgram> program) {
+    if (program_ == program) return;
+    program_ = std::move(program);
+    inputs_ = program_ ? std::make_shared<ShowInputs>() : nullptr;
+    sendSoon();
+}
+
+void StudioLoop::input(const std::string& name, double value) {
+    if (!inputs_ || !std::isfinite(value)) return;
+    inputs_->push({name, value});
+    sendSoon(); // a loop that rests looks at it now
+}
+
 void StudioLoop::refresh() { sendSoon(); }
 
 int StudioLoop::addTap(Tap tap) {
@@ -141,6 +154,9 @@ void StudioLoop::send() {
     sending_ = false;
     if (!document_.state().rig.rig) return;
     MatchWish wish = wishOf(document_.state());
+    wish.program = program_;
+    wish.inputs = inputs_;
+    if (program_ && document_.state().matching.live) wish.driver = Driver::program;
     if (dancing_) wish.driver = Driver::dance;
     if (source_) wish.driver = Driver::recording;
     wish.stopped = stopped_;
@@ -167,6 +183,10 @@ void StudioLoop::take() {
         const std::int64_t now = nowMilliseconds();
         std::erase_if(shownAt_, [&](std::int64_t at) { return at <= now - 1000; });
         shownAt_.push_back(now);
+    }
+    if (program_ && !frame_->programError.empty()) {
+        setProgram(nullptr);
+        emit failed(QString::fromStdString(frame_->programError));
     }
     emit framed();
 }

@@ -15,6 +15,7 @@
 #include "app/studio/document/studio_document.h"
 #include "core/loop/frame_source.h"
 #include "core/loop/match_thread.h"
+#include "core/loop/show_program.h"
 
 namespace lumorph::studio {
 
@@ -54,6 +55,12 @@ public:
     /// the actuators stand, under their limits. Poses of trackers wait meanwhile.
     void setSource(std::shared_ptr<FrameSource> source);
     [[nodiscard]] bool showsSource() const noexcept { return source_ != nullptr; }
+    /// A program shows, and moves the servos while they follow anything, until it is set to nothing or ends by an
+    /// error, which `failed` tells. It begins with the next frame; what was put in before is not for it.
+    void setProgram(std::shared_ptr<ShowProgram> program);
+    [[nodiscard]] const std::shared_ptr<ShowProgram>& program() const noexcept { return program_; }
+    /// A key or button (1 pressed, 0 released) or a number for the program that shows; each reaches it once.
+    void input(const std::string& name, double value);
     /// The source has something else to show than when the loop came to rest.
     void refresh();
     using Tap = std::function<void(const MatchFrame&)>;
@@ -90,6 +97,8 @@ private:
     std::optional<double> sceneSeek_;
     std::shared_ptr<const PoseBoard> poses_;
     std::shared_ptr<FrameSource> source_;
+    std::shared_ptr<ShowProgram> program_;
+    std::shared_ptr<ShowInputs> inputs_; ///< of that program
     double lightDelay_ = 0.0;
     bool sending_ = false;              ///< a wish goes out when the event loop comes round
     std::vector<std::int64_t> shownAt_; ///< when matched frames were handed over, milliseconds

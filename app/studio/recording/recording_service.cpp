@@ -111,6 +111,8 @@ private:
 void addFrame(Gate& gate, const MatchFrame& frame) {
     if (frame.time < gate.begin()) return;
     gate.add([&](Microseconds begin) { return rowOf(frame, begin); });
+    for (const ShowInput& input : frame.inputs)
+        gate.add([&](Microseconds begin) { return InputRow{frame.time - begin, input.name, input.value}; });
 }
 
 void addPoses(Gate& gate, const std::string& source, const TrackerFrame& frame) {

@@ -3,9 +3,12 @@
 #include <algorithm>
 
 #include <QAbstractFileIconProvider>
+#include <QCursor>
+#include <QDateTime>
 #include <QDir>
 #include <QFileDialog>
 #include <QFileInfo>
+#include <QLocale>
 #include <QMenu>
 
 #include "app/studio/look/icons.h"
@@ -96,6 +99,20 @@ void tellLeftOver(Notices& notices, const std::vector<std::filesystem::path>& le
     notices.post("project", notice);
 }
 
+/// The installations that stood in the room before, by date, under the pointer.
+void offerEarlierInstallations(Studio& studio, QWidget& window) {
+    auto* menu = new QMenu(&window);
+    menu->setAttribute(Qt::WA_DeleteOnClose);
+    menu->setObjectName("room.earlier.menu");
+    for (const std::filesystem::path& file : studio.room.earlier()) {
+        const QFileInfo info(QString::fromStdString(file.string()));
+        menu->addAction(icon("projector"), QLocale().toString(info.lastModified(), QLocale::ShortFormat), &studio.room,
+                        [&studio, file] { studio.room.bringBack(file); });
+    }
+    if (menu->isEmpty()) menu->addAction("There is no earlier installation yet")->setEnabled(false);
+    menu->popup(QCursor::pos());
+}
+
 } // namespace
 
 void addFileCommands(Studio& studio, QWidget& window) {
@@ -122,6 +139,11 @@ void addFileCommands(Studio& studio, QWidget& window) {
     add("file.saveAs", "Save &as...", "save", QKeySequence(Qt::CTRL | Qt::SHIFT | Qt::Key_S),
         [&studio, &window] { saveWithDialog(studio, window); });
     addRecordCommands(studio, window);
+    add("room.earlier", "Earlier &installation...", "projector", {},
+        [&studio, &window] { offerEarlierInstallations(studio, window); });
+    QObject::connect(&studio.loop, &StudioLoop::failed, &window, [&studio](const QString& why) {
+        studio.notices.post("viewport", {Notice::Level::error, "Show", why, "start it again", {}});
+    });
     add("file.quit", "&Quit", "", QKeySequence(Qt::CTRL | Qt::Key_Q), [&window] { window.close(); });
     const auto remember = [&studio](const QString& path) { studio.settings.addRecentFile(path); };
     QObject::connect(&studio.project, &ProjectService::opened, &window, remember);

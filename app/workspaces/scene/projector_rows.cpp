@@ -6,6 +6,7 @@
 
 #include "app/workspaces/scene/projector_pose.h"
 #include "app/workspaces/scene/projector_reach.h"
+#include "app/workspaces/scene/scene_words.h"
 #include "app/workspaces/scene/setup_rows.h"
 #include "core/base/srgb.h"
 
@@ -146,6 +147,18 @@ void addLight(SceneForm& form, const Part<InstalledProjector>& projector) {
         room, [](auto& all) -> auto& { return all.compensation; });
 }
 
+/// Where its figures came from, so that one knows how far to trust them.
+void addOrigins(SceneForm& form, const Part<InstalledProjector>& projector) {
+    QLabel* sentence = form.sentence("projector.origins");
+    form.onRefresh([sentence, projector](const StudioState& state) {
+        const InstalledProjector* found = projector.read(state);
+        if (found)
+            sentence->setText(
+                QObject::tr("Place: %1. Lens: %2. Light: %3.")
+                    .arg(originWords(found->pose), originWords(found->lens), originWords(found->response)));
+    });
+}
+
 } // namespace
 
 void addProjectorRows(SceneForm& form, Studio& studio, const Part<InstalledProjector>& projector) {
@@ -153,6 +166,7 @@ void addProjectorRows(SceneForm& form, Studio& studio, const Part<InstalledProje
         {"projector.enabled", QObject::tr("In use"), {}}, projector,
         [](auto& found) -> auto& { return found.enabled; });
     addWarning(form, studio, projector);
+    addOrigins(form, projector);
     addPlace(form, projector);
     addLens(form, projector);
     addLight(form, projector);

@@ -1,5 +1,7 @@
 #include "app/workspaces/scene/scene_words.h"
 
+#include <QDateTime>
+#include <QLocale>
 #include <QObject>
 
 namespace lumorph::studio {
@@ -86,5 +88,21 @@ bool canBePhysical(const SceneItem& item) {
 }
 
 bool hasMaterial(const SceneItem& item) { return canBePhysical(item); }
+
+QString originWords(const Origin& origin) {
+    const QDateTime date = QDateTime::fromString(QString::fromStdString(origin.date), Qt::ISODate).toLocalTime();
+    const QString on =
+        date.isValid() ? QObject::tr(" on %1").arg(QLocale().toString(date.date(), QLocale::ShortFormat)) : QString();
+    const QString method = QString::fromStdString(origin.method);
+    switch (origin.way) {
+    case Origin::Way::entered:
+        return (method.isEmpty() ? QObject::tr("entered by hand") : QObject::tr("taken from %1").arg(method)) + on;
+    case Origin::Way::measured:
+        return (method.isEmpty() ? QObject::tr("measured") : QObject::tr("measured (%1)").arg(method)) + on;
+    case Origin::Way::assumed:
+        break;
+    }
+    return QObject::tr("assumed, as in the virtual lab");
+}
 
 } // namespace lumorph::studio

@@ -2,6 +2,7 @@
 
 #include <QString>
 
+#include "core/scene/installation.h"
 #include "core/scene/scene.h"
 
 namespace lumorph::studio {
@@ -16,5 +17,8 @@ namespace lumorph::studio {
 [[nodiscard]] bool canBePhysical(const SceneItem& item);
 /// Whether it has a surface, and so a material.
 [[nodiscard]] bool hasMaterial(const SceneItem& item);
+
+/// "assumed", "entered by hand on 24 Nov 2026", "measured (structured light) on 24 Nov 2026".
+[[nodiscard]] QString originWords(const Origin& origin);
 
 } // namespace lumorph::studio

@@ -7,6 +7,7 @@
 #include "app/workspaces/scene/euler.h"
 #include "app/workspaces/scene/material_rows.h"
 #include "app/workspaces/scene/repeated_rows.h"
+#include "app/workspaces/scene/scene_words.h"
 
 namespace lumorph::studio {
 
@@ -106,7 +107,11 @@ void addDevicePlace(SceneForm& form) {
     }
     form.addNumbers(QObject::tr("Position"), position);
     form.addNumbers(QObject::tr("Rotation"), rotation);
-    form.sentence("device.place.sentence", QObject::tr("A tracker that sees the device takes this over."));
+    QLabel* sentence = form.sentence("device.place.sentence");
+    form.onRefresh([sentence](const StudioState& state) {
+        sentence->setText(QObject::tr("It is %1. A tracker that sees the device takes this over.")
+                              .arg(originWords(state.installation->origins.devicePlace)));
+    });
 }
 
 } // namespace
