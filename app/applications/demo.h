@@ -1,6 +1,5 @@
 #pragma once
 
-#include <span>
 #include <string>
 #include <vector>
 
@@ -30,15 +29,6 @@ struct Demo {
     /// All have the same items with the same ids; empty for one that shows one thing.
     std::vector<DemoStep> (*steps)() = nullptr;
 };
-
-/// All demonstrations in the order in which they are offered. The first is shown to who starts for the first time.
-[[nodiscard]] std::span<const Demo> demos();
-
-/// Throws InvalidInput for a name that none has, with those there are.
-[[nodiscard]] const Demo& demoNamed(const std::string& name);
-
-/// "water, techniques, ..."
-[[nodiscard]] std::string demoNames();
 
 /// A demonstration whose scene is a bundled project: `projects/NAME.lumorph`.
 [[nodiscard]] ProjectContents bundledProject(const std::string& name, const Progress& progress);

@@ -7,7 +7,7 @@
 
 #include <glm/vec2.hpp>
 
-#include "app/applications/demo.h"
+#include "app/applications/registry/demos.h"
 
 namespace lumorph {
 

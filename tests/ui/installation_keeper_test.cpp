@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "app/applications/demo.h"
+#include "app/applications/registry/demos.h"
 #include "app/studio/document/installation_keeper.h"
 #include "app/studio/document/scene_edit.h"
 #include "core/scene/project.h"

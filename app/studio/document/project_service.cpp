@@ -6,7 +6,7 @@
 
 #include <QStandardPaths>
 
-#include "app/applications/demo.h"
+#include "app/applications/registry/demos.h"
 #include "app/studio/document/asset_opening.h"
 #include "app/studio/document/assets.h"
 #include "app/studio/document/field_building.h"

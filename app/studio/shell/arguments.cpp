@@ -4,7 +4,7 @@
 
 #include <CLI/CLI.hpp>
 
-#include "app/applications/demo.h"
+#include "app/applications/registry/demos.h"
 
 namespace lumorph::studio {
 namespace {

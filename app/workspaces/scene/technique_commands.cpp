@@ -6,7 +6,7 @@
 #include <QLabel>
 #include <QVBoxLayout>
 
-#include "app/applications/demo.h"
+#include "app/applications/registry/demos.h"
 #include "app/studio/document/scene_edit.h"
 #include "app/workspaces/scene/segments.h"
 #include "core/base/error.h"

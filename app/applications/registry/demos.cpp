@@ -1,12 +1,12 @@
+#include "app/applications/registry/demos.h"
+
 #include <algorithm>
 #include <vector>
 
-#include "app/applications/demo.h"
 #include "app/applications/field/field_demo.h"
 #include "app/applications/techniques/techniques.h"
 #include "app/applications/water/water.h"
 #include "core/base/error.h"
-#include "core/base/resources.h"
 
 namespace lumorph {
 
@@ -26,10 +26,6 @@ std::string demoNames() {
     std::string names;
     for (const Demo& demo : demos()) names += (names.empty() ? "" : ", ") + demo.name;
     return names;
-}
-
-ProjectContents bundledProject(const std::string& name, const Progress& progress) {
-    return readContents(resourceFile("projects/" + name + ".lumorph"), progress);
 }
 
 } // namespace lumorph
