@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "core/base/resources.h"
+#include "core/loop/show_program.h"
 #include "core/mdf/builder.h"
 #include "core/rig/rig_file.h"
 #include "core/show/project_contents.h"
