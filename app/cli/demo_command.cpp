@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
@@ -8,6 +9,7 @@
 
 #include <unistd.h>
 
+#include "app/applications/registry/demos.h"
 #include "app/cli/commands.h"
 #include "app/cli/session.h"
 #include "app/output/demo_player.h"
@@ -44,7 +46,10 @@ void showInWindow(const Demo& demo) {
 void addDemoCommand(CLI::App& app) {
     auto options = std::make_shared<DemoOptions>();
     CLI::App* command = app.add_subcommand("demo", "Start a demonstration, or play one without a window");
-    command->add_option("NAME", options->name, "Which: " + demoNames())->required();
+    command->add_option("NAME", options->name, "Which: " + demoNames())->required()->check([](const std::string& name) {
+        const bool known = std::ranges::find(demos(), name, &Demo::name) != demos().end();
+        return known ? std::string() : "there is no demo '" + name + "'; there are: " + demoNames();
+    });
     CLI::Option* seconds = command->add_option("--seconds", options->seconds, "Without a window: how long it lasts")
                                ->check(CLI::Range(0.1, 600.0))
                                ->capture_default_str();

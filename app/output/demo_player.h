@@ -7,7 +7,7 @@
 
 #include <glm/vec2.hpp>
 
-#include "app/applications/registry/demos.h"
+#include "app/applications/demo.h"
 
 namespace lumorph {
 

@@ -8,6 +8,7 @@
 #include <span>
 #include <system_error>
 
+#include "app/applications/registry/demos.h"
 #include "app/output/demo_player.h"
 #include "app/output/video_writer.h"
 #include "app/workspaces/common/field_colors.h"

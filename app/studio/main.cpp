@@ -1,6 +1,7 @@
 #include <cstdio>
 #include <iostream>
 
+#include "app/applications/registry/demos.h"
 #include "app/output/demo_player.h"
 #include "app/studio/headless_show.h"
 #include "app/studio/look/palette.h"
@@ -70,7 +71,8 @@ int run(int argc, char** argv, const Arguments& arguments) {
 int showHeadless(const Arguments& arguments) {
     try {
         if (arguments.play > 0.0)
-            lumorph::playDemo(lumorph::demoNamed(arguments.demo), arguments.play, arguments.record, arguments.json, std::cout);
+            lumorph::playDemo(lumorph::demoNamed(arguments.demo), arguments.play, arguments.record, arguments.json,
+                              std::cout);
         else
             runHeadlessShow(arguments.headless, arguments.seconds, std::cout);
         return 0;

@@ -40,6 +40,15 @@ TEST(Demo, IsPlayedWithoutAWindowIntoAVideo) {
     EXPECT_GT(color[0], color[2]) << "and is blue";
 }
 
+TEST(Demo, OfAMatchedTargetPlaysWithoutAWindowToo) {
+    const Outcome outcome = lumorph({"demo", "field", "--seconds", "0.1", "--json"});
+    ASSERT_EQ(outcome.exitCode, 0) << outcome.err;
+    const auto told = nlohmann::json::parse(outcome.out);
+    EXPECT_EQ(told["demo"], "field");
+    EXPECT_EQ(told["frames"], 3);
+    EXPECT_TRUE(told["warnings"].empty()) << told["warnings"];
+}
+
 TEST(Demo, WrongUseIsNamed) {
     const TemporaryFolder folder;
     const auto refused = [&](const std::vector<std::string>& arguments, int code, const std::string& says) {
@@ -52,9 +61,8 @@ TEST(Demo, WrongUseIsNamed) {
     };
     refused({"volcano", "--json"}, 2, "there is no demo 'volcano'; there are: water, techniques");
     refused({"water", "--seconds", "0"}, 2, "--seconds");
-    refused({"field", "--json"}, 1, "there is no scene of that name to play");
     refused({"water", "--seconds", "0.5", "--record", (folder / "none/w.mp4").string()}, 1, "its folder is not there");
-    refused({"water", "--seconds", "0.5", "--record", (folder / "w.txt").string()}, 1, "ends in .mp4");
+    refused({"water", "--seconds", "0.5", "--record", (folder / "w.txt").string()}, 2, "ends in .mp4");
     EXPECT_TRUE(filesIn(folder.path()).empty());
 }
 

@@ -89,6 +89,9 @@ TEST_F(InstallationKeeperTest, EveryOldProjectLeavesTheRoomAsItIs) {
     for (const auto& entry : fs::directory_iterator(fs::path(LUMORPH_SOURCE_DIR) / "tests/data/projects")) {
         const fs::path file = files / entry.path().filename().string();
         fs::copy_file(entry.path(), file);
+        fs::create_directories(files / "targets");
+        files.writeMesh(test::boxMesh({-0.02F, 0.0F, -0.01F}, {0.02F, 0.03F, 0.01F}),
+                        "targets/cow.obj"); // what one names
         ASSERT_TRUE(open(file)) << file;
         EXPECT_EQ(room(), measuredRoom()) << file;
         ++opened;
