@@ -1,6 +1,7 @@
 #include "core/scene/installation_store.h"
 
 #include <algorithm>
+#include <cstdlib>
 #include <span>
 #include <system_error>
 
@@ -101,12 +102,15 @@ void InstallationStore::putAside() const {
     if (!fs::exists(file(), failed)) return;
     std::string date = utcDate();
     std::erase(date, ':');
-    fs::path aside;
-    for (int number = 0; aside.empty() || fs::exists(aside, failed); ++number) {
-        std::string digits = std::to_string(number);
-        digits.insert(0, 3 - std::min<std::size_t>(digits.size(), 3), '0');
-        aside = folder_ / (std::string(kEarlier) + date + "-" + digits + ".json");
-    }
+    // Several within a second are numbered on from the newest, so that their names sort as they came.
+    const std::string stem = std::string(kEarlier) + date + "-";
+    int number = 0;
+    if (const auto before = earlier(); !before.empty())
+        if (const std::string newest = before.front().stem().string(); newest.starts_with(stem))
+            number = std::atoi(newest.c_str() + stem.size()) + 1;
+    std::string digits = std::to_string(number);
+    digits.insert(0, 6 - std::min<std::size_t>(digits.size(), 6), '0');
+    const fs::path aside = folder_ / (stem + digits + ".json");
     fs::copy_file(file(), aside, failed);
     if (failed) throwWriteError(aside, failed.value());
     const std::vector<fs::path> files = earlier();
