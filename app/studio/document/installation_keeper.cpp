@@ -12,6 +12,7 @@ constexpr int kEditsRestMilliseconds = 1000; // edits come in bursts
 constexpr auto kAnsweredKey = "installation/answered";
 constexpr int kMostAnswers = 100;
 constexpr auto kPlace = "project";
+constexpr auto kQuestionPlace = "scene"; // where projector and table are seen
 
 QString subject() { return QObject::tr("Installation"); }
 
@@ -89,7 +90,7 @@ void InstallationKeeper::bringBack(const std::filesystem::path& file) {
 /// Opening a project changes nothing in the room. One that comes from elsewhere has its own figures, which may be what
 /// its maker wants on another machine in the same room, or of no use at all here: only the user knows.
 void InstallationKeeper::compare(const QString& project, const std::shared_ptr<const Installation>& installation) {
-    notices_.dismiss(kPlace, subject());
+    notices_.dismiss(kQuestionPlace, subject());
     // A project that only ever saw the virtual lab has nothing to offer.
     if (!installation || isSameRoom(*installation, *document_.state().installation) ||
         isSameRoom(*installation, defaultInstallation()))
@@ -97,16 +98,17 @@ void InstallationKeeper::compare(const QString& project, const std::shared_ptr<c
     const QString question = questionOf(*installation, *document_.state().installation);
     if (answered(question)) return;
     const QString name = QFileInfo(project).fileName();
-    notices_.post(
-        kPlace, {Notice::Level::info,
-                 subject(),
-                 tr("%1 was saved with another projector, table or place of the device than this room has").arg(name),
-                 tr("this room's are in use; take the project's if it was calibrated here"),
-                 {{tr("Keep this room's"), [this, question] { setAnswered(question); }},
-                  {tr("Use the project's"), [this, question, installation, name] {
-                       setAnswered(question);
-                       take(*installation, "project " + name.toStdString(), tr("Use the installation of %1").arg(name));
-                   }}}});
+    notices_.post(kQuestionPlace,
+                  {Notice::Level::info,
+                   subject(),
+                   tr("%1 was saved with another projector, table or place of the device than this room has").arg(name),
+                   tr("this room's are in use; take the project's if it was calibrated here"),
+                   {{tr("Keep this room's"), [this, question] { setAnswered(question); }},
+                    {tr("Use the project's"), [this, question, installation, name] {
+                         setAnswered(question);
+                         take(*installation, "project " + name.toStdString(),
+                              tr("Use the installation of %1").arg(name));
+                     }}}});
 }
 
 /// What is taken over keeps the origins that it has; what nobody had looked at came from there.
