@@ -104,7 +104,7 @@ TEST_F(InstallationKeeperTest, AsksOnceWhichInstallationToUse) {
     ASSERT_TRUE(open(file));
     EXPECT_EQ(room(), measuredRoom());
     EXPECT_THAT(asked().toStdString(), testing::HasSubstr("elsewhere.lumorph"));
-    ASSERT_TRUE(world.press("scene", "Keep this room's"));
+    ASSERT_TRUE(world.press("scene", "Keep"));
     EXPECT_EQ(room(), measuredRoom());
     world.service.newProject();
     ASSERT_TRUE(world.rest());
@@ -118,7 +118,7 @@ TEST_F(InstallationKeeperTest, AsksOnceWhichInstallationToUse) {
 TEST_F(InstallationKeeperTest, TheProjectsIsTakenByAStepOfUndo) {
     const fs::path file = projectFromElsewhere();
     ASSERT_TRUE(open(file));
-    ASSERT_TRUE(world.press("scene", "Use the project's"));
+    ASSERT_TRUE(world.press("scene", "Use its"));
     EXPECT_EQ(room().tableSize, glm::vec2(2.0F, 1.5F));
     EXPECT_EQ(room().projectors.front().peak, 9.5);
     EXPECT_EQ(room().origins.table.way, Origin::Way::entered);

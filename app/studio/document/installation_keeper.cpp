@@ -98,17 +98,16 @@ void InstallationKeeper::compare(const QString& project, const std::shared_ptr<c
     const QString question = questionOf(*installation, *document_.state().installation);
     if (answered(question)) return;
     const QString name = QFileInfo(project).fileName();
-    notices_.post(kQuestionPlace,
-                  {Notice::Level::info,
-                   subject(),
-                   tr("%1 was saved with another projector, table or place of the device than this room has").arg(name),
-                   tr("this room's are in use; take the project's if it was calibrated here"),
-                   {{tr("Keep this room's"), [this, question] { setAnswered(question); }},
-                    {tr("Use the project's"), [this, question, installation, name] {
-                         setAnswered(question);
-                         take(*installation, "project " + name.toStdString(),
-                              tr("Use the installation of %1").arg(name));
-                     }}}});
+    notices_.post(kQuestionPlace, {Notice::Level::info,
+                                   subject(),
+                                   tr("other projectors, or another table: %1").arg(name),
+                                   tr("this room's stay in use"),
+                                   {{tr("Keep"), [this, question] { setAnswered(question); }},
+                                    {tr("Use its"), [this, question, installation, name] {
+                                         setAnswered(question);
+                                         take(*installation, "project " + name.toStdString(),
+                                              tr("Use the installation of %1").arg(name));
+                                     }}}});
 }
 
 /// What is taken over keeps the origins that it has; what nobody had looked at came from there.
