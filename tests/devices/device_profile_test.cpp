@@ -146,7 +146,7 @@ TEST(DeviceProfile, SaysWhereAFileIsWrong) {
         {R"({"format": "lumorph"})", "is not a device profile"},
         {R"({"format": "lumorph device", "schema": 2, "servos": []})", "newer version"},
         {head + R"("name": 3})", "name: is not a text"},
-        {head + R"("controller": "arduino", "servos": []})", "\"arduino\" is no controller"},
+        {head + R"("controller": "arduino", "servos": []})", "'arduino' is no controller"},
         {head + R"("name": "a"})", "servos: is missing"},
         {head + R"("servos": [{"pulseMin": 1000, "pulseMax": 2000}]})", "servos[0].channel: is missing"},
         {head + R"("servos": [{"channel": 1.5, "pulseMin": 1000, "pulseMax": 2000}]})", "servos[0].channel"},
