@@ -3,6 +3,8 @@
 
 #include <epoxy/gl.h>
 
+#include "app/applications/techniques/techniques.h"
+#include "app/applications/water/water.h"
 #include "core/base/resources.h"
 #include "core/base/statistics.h"
 #include "core/render/gl/gl_driver.h"
@@ -10,8 +12,6 @@
 #include "core/render/spatial_renderer.h"
 #include "core/rig/rig_file.h"
 #include "core/scene/posed_scene.h"
-#include "app/applications/techniques/techniques.h"
-#include "app/applications/water/water.h"
 #include "tests/bench/bench_groups.h"
 #include "tests/bench/bench_timing.h"
 

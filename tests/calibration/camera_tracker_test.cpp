@@ -44,8 +44,7 @@ Pose truthAt(double seconds) {
 }
 
 cv::Mat pictureOf(const Photographer& photographer, const Pose& body, const MarkerBoard& board, double noise = 2.0) {
-    std::vector<std::uint8_t> grey =
-        photographer.picture(matrixOf(body) * matrixOf(bodyFromBoard(board)), noise);
+    std::vector<std::uint8_t> grey = photographer.picture(matrixOf(body) * matrixOf(bodyFromBoard(board)), noise);
     return cv::Mat(kSize.y, kSize.x, CV_8UC1, grey.data()).clone();
 }
 

@@ -12,6 +12,7 @@
 #include <QSlider>
 #include <QTreeView>
 
+#include "app/applications/techniques/techniques.h"
 #include "app/studio/document/scene_edit.h"
 #include "app/studio/widgets/value_field.h"
 #include "app/workspaces/scene/direction_dial.h"
@@ -20,7 +21,6 @@
 #include "app/workspaces/scene/outliner_model.h"
 #include "app/workspaces/scene/scene_words.h"
 #include "core/base/resources.h"
-#include "app/applications/techniques/techniques.h"
 #include "tests/ui/stall_watch.h"
 #include "tests/ui/studio_window.h"
 

@@ -12,12 +12,12 @@
 
 #include <QSignalSpy>
 
+#include "app/applications/water/water.h"
 #include "app/studio/rendering/show_frames.h"
 #include "app/studio/rendering/show_pace.h"
 #include "app/workspaces/scene/item_pick.h"
 #include "core/geometry/calibrated_camera.h"
 #include "core/loop/show_stage.h"
-#include "app/applications/water/water.h"
 #include "show_fixture.h"
 #include "studio_window.h"
 #include "viewport_fixture.h"

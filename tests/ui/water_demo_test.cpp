@@ -2,10 +2,10 @@
 #include <cmath>
 #include <cstdio>
 
+#include "app/applications/techniques/techniques.h"
 #include "app/workspaces/scene/eye_orbit.h"
 #include "app/workspaces/scene/view_pane.h"
 #include "core/base/resources.h"
-#include "app/applications/techniques/techniques.h"
 #include "tests/ui/stall_watch.h"
 #include "tests/ui/view_pictures.h"
 

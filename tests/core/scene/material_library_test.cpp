@@ -6,14 +6,14 @@
 
 #include <gtest/gtest.h>
 
+#include "app/applications/techniques/techniques.h"
+#include "app/applications/water/water.h"
 #include "core/base/error.h"
 #include "core/base/image.h"
 #include "core/base/resources.h"
 #include "core/scene/posed_scene.h"
 #include "core/scene/project.h"
 #include "core/scene/scene_assets.h"
-#include "app/applications/techniques/techniques.h"
-#include "app/applications/water/water.h"
 
 namespace lumorph {
 namespace {
