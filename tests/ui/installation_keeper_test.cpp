@@ -6,6 +6,7 @@
 #include "app/applications/registry/demos.h"
 #include "app/studio/document/installation_keeper.h"
 #include "app/studio/document/scene_edit.h"
+#include "core/base/resources.h"
 #include "core/scene/project.h"
 #include "tests/ui/project_world.h"
 
@@ -77,6 +78,7 @@ TEST_F(InstallationKeeperTest, EveryDemoLeavesTheRoomAsItIs) {
         ASSERT_TRUE(eventually([&] { return world.jobs.running().empty() && world.state().field.field; })) << demo.name;
         EXPECT_EQ(room(), measuredRoom()) << demo.name;
         EXPECT_EQ(asked(), QString()) << demo.name;
+        EXPECT_TRUE(fs::exists(resourceFile(demo.thumbnail))) << demo.thumbnail;
         for (const DemoStep& step : demo.steps()) {
             editScene(world.document, "Step", [&](Scene& scene) { scene = step.scene; });
             EXPECT_EQ(room(), measuredRoom()) << demo.name << ' ' << step.key;
