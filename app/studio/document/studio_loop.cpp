@@ -109,7 +109,8 @@ void StudioLoop::setProgram(std::shared_ptr<ShowProgram> program) {
     if (program_ == program) return;
     program_ = std::move(program);
     inputs_ = program_ ? std::make_shared<ShowInputs>() : nullptr;
-    sendSoon();
+    send(); // not a turn of the event loop later: frames that begin from now on are of this program
+    programSince_ = SteadyClock().now();
 }
 
 void StudioLoop::input(const std::string& name, double value) {
@@ -184,7 +185,7 @@ void StudioLoop::take() {
         std::erase_if(shownAt_, [&](std::int64_t at) { return at <= now - 1000; });
         shownAt_.push_back(now);
     }
-    if (program_ && !frame_->programError.empty()) {
+    if (program_ && frame_->time >= programSince_ && !frame_->programError.empty()) {
         setProgram(nullptr);
         emit failed(QString::fromStdString(frame_->programError));
     }

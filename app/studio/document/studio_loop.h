@@ -99,6 +99,7 @@ private:
     std::shared_ptr<FrameSource> source_;
     std::shared_ptr<ShowProgram> program_;
     std::shared_ptr<ShowInputs> inputs_; ///< of that program
+    Microseconds programSince_{0};       ///< by the loop's clock; frames from before tell of the program before it
     double lightDelay_ = 0.0;
     bool sending_ = false;              ///< a wish goes out when the event loop comes round
     std::vector<std::int64_t> shownAt_; ///< when matched frames were handed over, milliseconds
