@@ -22,6 +22,10 @@ struct AssetReport {
     std::string text;
 };
 
+const char* nameOf(Driver driver) {
+    return driver == Driver::target ? "the target" : driver == Driver::sceneItem ? "the scene's item" : "the hand";
+}
+
 /// A project looked through asset by asset: one that is broken does not hide what is wrong with the next.
 class Check {
 public:
@@ -39,7 +43,7 @@ public:
         std::printf("  rig     %s\n", rig_.text.c_str());
         std::printf("  field   %s\n", field_.text.c_str());
         std::printf("  target  %s\n", target_.text.c_str());
-        std::printf("  matching %s, %s, within %g ms\n", project_.matching.live ? "live" : "on demand",
+        std::printf("  servos  follow %s; matching %s, within %g ms\n", nameOf(project_.matching.driver),
                     project_.matching.refined ? "refined" : "voting", project_.matching.budgetMilliseconds);
         std::printf("  scene   %s\n", scene_.text.c_str());
         for (const Error& problem : problems_) std::printf("  ! %s\n", problem.what());

@@ -44,7 +44,7 @@ ProjectFrame readProjectFrame(const std::filesystem::path& file, const ProjectMo
     result.frame = ShowStage().frame(*match);
     result.strokes = match->estimatedStrokes;
     result.warnings = contents.warnings;
-    if (wish.target && contents.project.matching.live && !wish.field && !moment.state)
+    if (wish.target && contents.project.matching.driver == Driver::target && !wish.field && !moment.state)
         result.warnings.emplace_back("The project has no field, so the device does not follow its target.");
     return result;
 }

@@ -5,17 +5,11 @@
 
 #include <glm/matrix.hpp>
 
-#include "core/loop/scene_clock.h"
 #include "core/motion/rig_motion.h"
 
 namespace lumorph {
 
 namespace {
-
-const SceneItem* drivingItemShown(const Scene& scene) {
-    const SceneItem* item = drivingItem(scene);
-    return item && isShown(scene, *item) ? item : nullptr;
-}
 
 bool isTarget(const SceneItem& item) { return std::holds_alternative<TargetItem>(item.kind); }
 
@@ -42,6 +36,7 @@ std::vector<double> DriveStage::strokes(const MatchWish& wish, const MatchFrame&
     use(wish, frame, item, sinceLast);
     const bool target = isTarget(item);
     const double now = target ? targetClock_ : frame.sceneSeconds;
+    sourceSeconds_ = now;
     if (item.role == ItemRole::physical) {
         std::vector<float> wished(split_->restHeights().begin(), split_->restHeights().end());
         heights_->at(now, wished);

@@ -25,6 +25,9 @@ public:
 
     /// Strokes for the driving item at a scene time; the target's own time passes by `sinceLast` seconds.
     [[nodiscard]] std::vector<double> strokes(const MatchWish& wish, const MatchFrame& frame, double sinceLast);
+    /// What those strokes were made from, and the time of it, seconds.
+    [[nodiscard]] const DrivingHeights::Source& source() const noexcept { return source_; }
+    [[nodiscard]] double sourceSeconds() const noexcept { return sourceSeconds_; }
     /// Strokes that view dependence asks for; all 0 without a viewer, none while it is off.
     [[nodiscard]] std::vector<double> bends(const MatchWish& wish, const MatchFrame& frame);
 
@@ -36,6 +39,7 @@ private:
     std::optional<FrequencySplit> split_;
     std::optional<DrivingHeights> heights_;
     DrivingHeights::Source source_;
+    double sourceSeconds_ = 0.0;
     Placement placement_;      ///< of the wish that `source_` was made for
     double turned_ = 0.0;      ///< by spinning when `targetClock_` was 0, radians
     double targetClock_ = 0.0; ///< the time in which the target has moved, seconds

@@ -14,6 +14,7 @@
 #include "core/loop/match_target.h"
 #include "core/loop/show_inputs.h"
 #include "core/mdf/placement.h"
+#include "core/scene/driver.h"
 #include "core/scene/installation.h"
 #include "core/scene/scene.h"
 #include "core/scene/scene_assets.h"
@@ -37,6 +38,16 @@ struct MatchTimes {
 /// Classes of MatchFrame::classes.
 inline constexpr std::uint8_t kVoxelMatched = 1, kVoxelUnmatched = 2, kVoxelOverfilled = 3;
 
+/// How well the device takes the shape of a scene item that servos follow; numbers as those of a target below.
+struct ItemFit {
+    int item = 0;                  ///< its id in the scene
+    double iouWanted = 0.0;        ///< of what is covered at the wanted strokes
+    double iouEstimated = 0.0;     ///< of what is covered now
+    double volume = 0.0;           ///< cubic metres of it in the frame, between the surface at rest and its top
+    double shareBeyondFrame = 0.0; ///< of all that lies above the surface at rest, over twice the frame's extent
+    double shareUnreachable = 0.0;
+};
+
 /// What one frame found, as a value that never changes again.
 struct MatchFrame {
     std::uint64_t number = 0;
@@ -45,9 +56,13 @@ struct MatchFrame {
     std::shared_ptr<const void> rigOrigin; ///< of the wish
     std::shared_ptr<const MatchField> field;
     std::shared_ptr<const MatchTarget> target;
-    bool matched = false; ///< a target was matched in this frame, `target` or one of `program`
-    double seconds = 0.0; ///< of the target's animation
-    Angle turned;         ///< by spinning, on top of the placement's yaw
+    Driver driver = Driver::hand; ///< of the wish
+    /// A target's voxels were compared with the device in this frame: those of `target`, which servos follow if it is
+    /// the driver, or those of `program`. Never while the scene's item drives.
+    bool matched = false;
+    std::optional<ItemFit> itemFit; ///< with a field, while the scene's item drives
+    double seconds = 0.0;           ///< of the target's animation
+    Angle turned;                   ///< by spinning, on top of the placement's yaw
     glm::mat4 deviceFromTarget{1.0F};
     std::shared_ptr<const std::vector<glm::vec3>>
         targetPositions; ///< target's own frame; the same object while it stands still

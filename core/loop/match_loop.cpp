@@ -9,6 +9,7 @@
 #include "core/loop/dance.h"
 #include "core/loop/drive_stage.h"
 #include "core/loop/frame_source.h"
+#include "core/loop/item_fit_stage.h"
 #include "core/loop/match_stage.h"
 #include "core/loop/motion_stage.h"
 #include "core/loop/program_stage.h"
@@ -92,6 +93,7 @@ struct MatchLoop::Data {
     void hold(const MatchWish& wish, double sinceLast, MatchFrame& frame);
     void joinBends(const MatchWish& wish, MatchFrame& frame);
     void move(const MatchWish& wish, double sinceLast, MatchFrame& frame);
+    void judgeItem(const MatchWish& wish, MatchFrame& frame);
     [[nodiscard]] std::shared_ptr<const MatchFrame> shown(const MatchWish& wish);
     [[nodiscard]] bool restsAfter(const MatchWish& wish, const MatchFrame& frame) const;
 
@@ -101,6 +103,7 @@ struct MatchLoop::Data {
     SceneClock time;
     TargetStage target;
     DriveStage drive;
+    ItemFitStage itemFit;
     MatchStage matching;
     MotionStage motion;
     Dance dance;
@@ -134,6 +137,7 @@ void MatchLoop::Data::fillShown(const MatchWish& wish, double sinceLast, MatchFr
     joinBends(wish, frame);
     move(wish, sinceLast, frame);
     if (frame.matched) matching.judge(wish, voxels, frame);
+    judgeItem(wish, frame);
     settled = restsAfter(servos, frame);
 }
 
@@ -181,6 +185,7 @@ bool MatchLoop::Data::restsAfter(const MatchWish& wish, const MatchFrame& frame)
     if (wish.scene && (viewer.moves() || time.moves())) return false;
     if (TargetStage::moves(wish)) return false;
     if (!wish.stopped && !motion.arrived(frame.wantedStrokes)) return false;
+    if (!itemFit.current()) return false;
     return isMatched(wish) ? matching.converged() : wish.driver != Driver::dance;
 }
 
@@ -200,6 +205,12 @@ void MatchLoop::Data::move(const MatchWish& wish, double sinceLast, MatchFrame& 
     }
     const StageTimer timer(clock, frame.ms.deform);
     frame.devicePositions = motion.deformed();
+}
+
+void MatchLoop::Data::judgeItem(const MatchWish& wish, MatchFrame& frame) {
+    if (!wish.field || DriveStage::modeOf(wish) != DriveStage::Mode::byHeights) return itemFit.forget();
+    const StageTimer timer(clock, frame.ms.match);
+    itemFit.judge(drive.source(), drive.sourceSeconds(), wish.field, clock, frame);
 }
 
 /// A frame of another source. Whoever comes back from there goes on where its actuators stood.
@@ -228,6 +239,7 @@ std::shared_ptr<const MatchFrame> MatchLoop::step(const MatchWish& wish, double 
     frame->rig = wish.rig;
     frame->rigOrigin = wish.rigOrigin;
     frame->field = wish.field;
+    frame->driver = wish.driver;
     data_->fill(wish, sinceLast, *frame);
     return frame;
 }

@@ -8,6 +8,7 @@
 #include "core/loop/match_field.h"
 #include "core/loop/match_target.h"
 #include "core/loop/pose_stream.h"
+#include "core/scene/driver.h"
 #include "core/scene/installation.h"
 #include "core/scene/scene.h"
 #include "core/scene/scene_assets.h"
@@ -17,23 +18,6 @@ namespace lumorph {
 class FrameSource;
 class ShowInputs;
 class ShowProgram;
-
-/// Who moves the servos. View dependence joins in by the larger stroke, whoever it is, and a scene that shows light
-/// alone (Showing::virtualOnly) holds them at rest; a recording knows neither.
-enum class Driver {
-    target,    ///< `target` is matched by `field`; without one of them `strokes` are held
-    sceneItem, ///< heights of the scene's visible driving item, or of its slow part where its role is split; without
-               ///< such an item, or where it stands for a target that is not there, `strokes` are held
-    hand,      ///< `strokes` are held
-    dance,     ///< random moves that begin at `strokes`
-    recording, ///< frames of `source` are shown, with servos as they say; without a source the wish is refused
-    program,   ///< what `program` asks of them; where it asks nothing, has ended, or wants to be matched without a
-               ///< field, `strokes` are held; without a program the wish is refused
-};
-
-/// Who moves the servos for those who know only whether they shall follow something (`live`): a visible driving item of
-/// the scene that does not stand for a physical target, else the target; and the hand while they follow nothing.
-[[nodiscard]] Driver driverOf(bool live, const Scene* scene);
 
 enum class MatchMethod { voting, refined };
 
@@ -46,6 +30,7 @@ struct MatchWish {
     std::shared_ptr<const MatchField> field;
     std::shared_ptr<const MatchTarget> target; ///< may be empty
     Placement placement;
+    /// Whom the servos follow; `recording` and `program` need `source` and `program`, or the wish is refused.
     Driver driver = Driver::target;
     MatchMethod method = MatchMethod::refined;
     Microseconds budget{8'000};  ///< for refinement, each frame

@@ -50,16 +50,6 @@ void SceneClock::step(const MatchWish& wish, double sinceLast) {
     moves_ = wish.scenePlaying && animated_;
 }
 
-bool isShown(const Scene& scene, const SceneItem& item) {
-    const SceneItem* shown = &item;
-    // As many steps as there are items: parents that nobody has checked may go round in a circle.
-    for (std::size_t steps = 0; shown && shown->visible && steps < scene.items.size(); ++steps) {
-        if (shown->parent == 0) return true;
-        shown = findItem(scene, shown->parent);
-    }
-    return shown == nullptr;
-}
-
 bool isAnimated(const Scene& scene, const SceneAssets* assets) {
     if (moves(scene.device.material) || moves(scene.table.material)) return true;
     return std::ranges::any_of(scene.items,

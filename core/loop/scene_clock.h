@@ -29,7 +29,4 @@ private:
 /// models. The match target has a time of its own.
 [[nodiscard]] bool isAnimated(const Scene& scene, const SceneAssets* assets);
 
-/// Whether an item and all groups around it are visible.
-[[nodiscard]] bool isShown(const Scene& scene, const SceneItem& item);
-
 } // namespace lumorph

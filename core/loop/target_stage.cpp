@@ -44,7 +44,8 @@ bool TargetStage::show(const MatchWish& wish, const Clock& clock, MatchTimes& ms
         field_ = nullptr;
         return false;
     }
-    const std::shared_ptr<const MatchField> field = wish.driver == Driver::program ? nullptr : wish.field;
+    const bool compared = wish.driver != Driver::program && wish.driver != Driver::sceneItem;
+    const std::shared_ptr<const MatchField> field = compared ? wish.field : nullptr;
     const bool sameField = field && field == field_;
     const bool samePose = posed_ == target_ && posedSeconds_ == seconds_;
     deviceFromTarget_ = turnedPlacement(wish.placement, turned_);

@@ -18,8 +18,8 @@ class TargetStage {
 public:
     /// Moves animation and spin on; a target shown for the first time starts at 0.
     void play(const MatchWish& wish, double sinceLast);
-    /// Poses the target of the wish and voxelises it when there is a field and no program drives the servos. True when
-    /// the voxels are other ones than those of the frame before.
+    /// Poses the target of the wish and voxelises it when there is a field and neither program nor scene item drives
+    /// the servos. True when the voxels are other ones than those of the frame before.
     bool show(const MatchWish& wish, const Clock& clock, MatchTimes& ms);
     /// What there is to say about the target, written into a frame.
     void describe(MatchFrame& frame) const;

@@ -30,7 +30,8 @@ void FrameMatcher::refine(const BitColumns& target, Microseconds budget, const C
     take(refinement);
     found_.votedQuality = refinement.before;
     searching_ = true;
-    if (hasRefined_ && last != found_.wanted && stayed.iou() + kStay >= found_.quality.iou()) {
+    const bool betterThanVotes = stayed.iou() >= found_.votedQuality.iou();
+    if (hasRefined_ && last != found_.wanted && betterThanVotes && stayed.iou() + kStay >= found_.quality.iou()) {
         found_.wanted = last;
         found_.quality = stayed;
         found_.converged = searching_ = false;

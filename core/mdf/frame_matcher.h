@@ -19,7 +19,8 @@ struct FrameMatch {
 
 /// Matches one frame after another of a target that moves, without flicker: voting keeps the level of the frame before
 /// unless another is clearly better, and refinement keeps the state of the frame before unless what it finds from the
-/// votes is better by more than `kStay`. Coverage and voting must outlive it; one object for each thread.
+/// votes is better by more than `kStay`, or the votes alone are better. Coverage and voting must outlive it; one object
+/// for each thread.
 class FrameMatcher {
 public:
     /// By how much IoU a newly found state must be better than the one before.

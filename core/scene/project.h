@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/mdf/placement.h"
+#include "core/scene/driver.h"
 #include "core/scene/installation.h"
 #include "core/scene/project_assets.h"
 #include "core/scene/scene.h"
@@ -15,7 +16,7 @@
 namespace lumorph {
 
 /// Schema version that this program writes; older ones are migrated step by step, newer ones are refused.
-inline constexpr int kProjectSchema = 3;
+inline constexpr int kProjectSchema = 4;
 
 /// A project as its file `name.lumorph` (JSON) holds it. Paths of assets are relative to the project's folder and may
 /// not leave it, or name a bundled resource as `resource:models/tablet.glb`. Keys that this version does not know are
@@ -28,7 +29,7 @@ struct Project {
     Placement placement;
     std::vector<double> strokes; ///< the state set by hand, in [0, 1]; one an actuator, or none for rest
     struct Matching {
-        bool live = true;
+        Driver driver = Driver::target; ///< target, sceneItem or hand; others are of a moment, not of a project
         bool refined = true;
         double budgetMilliseconds = 8.0;
         bool operator==(const Matching&) const = default;

@@ -1,5 +1,6 @@
 #include "core/scene/project_format.h"
 
+#include <algorithm>
 #include <array>
 #include <utility>
 
@@ -13,8 +14,32 @@ namespace {
 
 using nlohmann::json;
 
+constexpr std::array kDriverKeys = {std::pair(Driver::target, "target"), std::pair(Driver::sceneItem, "sceneItem"),
+                                    std::pair(Driver::hand, "hand")};
+
+const char* driverKey(Driver driver) {
+    const auto* found = std::ranges::find(kDriverKeys, driver, &std::pair<Driver, const char*>::first);
+    if (found == kDriverKeys.end())
+        throw InvalidInput("driver of the servos", "a project keeps only target, scene item and hand",
+                           "give one of these");
+    return found->second;
+}
+
+void readDriver(JsonSection& section, Driver& driver) {
+    if (!section.has("driver")) return;
+    std::string key;
+    section.text("driver", key);
+    for (const auto& [kept, name] : kDriverKeys)
+        if (key == name) {
+            driver = kept;
+            return;
+        }
+    section.refuse("driver", "is '" + key + "', not who can move the servos",
+                   "write \"target\", \"sceneItem\" or \"hand\"");
+}
+
 /// Drafts of the format had no version and called the rig a model.
-void fromDraft(json& document) {
+void fromDraft(json& document, const std::string& /*file*/) {
     const auto model = document.find("model");
     if (model == document.end() || document.contains("rig")) return;
     json rig = std::move(*model);
@@ -23,7 +48,7 @@ void fromDraft(json& document) {
 }
 
 /// The first schema knew no scene: what it matched is drawn, and the servos go on following it.
-void addScene(json& document) {
+void addScene(json& document, const std::string& /*file*/) {
     if (document.contains("scene")) return;
     Scene scene = defaultScene();
     const auto target = document.find("target");
@@ -49,7 +74,7 @@ void move(json& from, const char* key, json& to, const char* newKey) {
 }
 
 /// The second schema's scene held what stands in the room, too.
-void separateInstallation(json& document) {
+void separateInstallation(json& document, const std::string& /*file*/) {
     const auto scene = document.find("scene");
     if (scene == document.end() || !scene->is_object() || document.contains("installation")) return;
     json installation = json::object();
@@ -64,9 +89,26 @@ void separateInstallation(json& document) {
     document["installation"] = std::move(installation);
 }
 
-using Migration = void (*)(json& document);
+/// The third schema knew only whether servos follow something; whom, the scene said.
+void nameDriver(json& document, const std::string& file) {
+    if (!document.contains("matching")) document["matching"] = json::object();
+    json& matching = document["matching"];
+    if (!matching.is_object() || matching.contains("driver")) return;
+    bool live = true;
+    JsonSection(matching, "matching.", file).flag("live", live);
+    matching.erase("live");
+    Scene scene;
+    if (document.contains("scene") && document["scene"].is_object()) {
+        json copy = document["scene"];
+        readScene(JsonSection(copy, "scene.", file), scene);
+    }
+    matching["driver"] = driverKey(live ? driverOf(scene) : Driver::hand);
+}
+
+using Migration = void (*)(json& document, const std::string& file);
 /// The step at index i takes a document from schema i to i + 1.
-constexpr std::array<Migration, kProjectSchema> kMigrations = {&fromDraft, &addScene, &separateInstallation};
+constexpr std::array<Migration, kProjectSchema> kMigrations = {&fromDraft, &addScene, &separateInstallation,
+                                                               &nameDriver};
 
 Placement readPlacement(JsonSection section) {
     constexpr double kFar = 1e6; // metres, and radians: many turns
@@ -104,7 +146,7 @@ json migrated(json document, const std::string& file) {
                         "schemaVersion: was written by a newer Lumorph (schema " + std::to_string(version) +
                             "; this one reads up to " + std::to_string(kProjectSchema) + ")",
                         "open it with the newest Lumorph");
-    for (; version < kProjectSchema; ++version) kMigrations.at(version)(document);
+    for (; version < kProjectSchema; ++version) kMigrations.at(version)(document, file);
     document["schemaVersion"] = kProjectSchema;
     return document;
 }
@@ -123,7 +165,7 @@ Project projectOf(json document, const std::string& file) {
     root.section("placement", [&](JsonSection section) { project.placement = readPlacement(std::move(section)); });
     root.numbers("strokes", project.strokes, 0.0, 1.0, kMaxActuators);
     root.section("matching", [&](JsonSection section) {
-        section.flag("live", project.matching.live);
+        readDriver(section, project.matching.driver);
         section.flag("refined", project.matching.refined);
         section.number("budgetMilliseconds", project.matching.budgetMilliseconds, 0.1, 10'000.0);
     });
@@ -156,7 +198,7 @@ json documentOf(const Project& project) {
            {"yaw", project.placement.yaw.inRadians()},
            {"translation", {t.x, t.y, t.z}}});
     merge(document, "matching",
-          {{"live", project.matching.live},
+          {{"driver", driverKey(project.matching.driver)},
            {"refined", project.matching.refined},
            {"budgetMilliseconds", project.matching.budgetMilliseconds}});
     merge(document, "playback", {{"playing", project.playback.playing}, {"spin", project.playback.spin}});

@@ -26,6 +26,16 @@ const SceneItem* findItem(const Scene& scene, int id) {
     return id == 0 || found == scene.items.end() ? nullptr : &*found;
 }
 
+bool isShown(const Scene& scene, const SceneItem& item) {
+    const SceneItem* shown = &item;
+    // As many steps as there are items: parents that nobody has checked may go round in a circle.
+    for (std::size_t steps = 0; shown && shown->visible && steps < scene.items.size(); ++steps) {
+        if (shown->parent == 0) return true;
+        shown = findItem(scene, shown->parent);
+    }
+    return shown == nullptr;
+}
+
 const SceneItem* drivingItem(const Scene& scene) {
     const auto found =
         std::ranges::find_if(scene.items, [](const SceneItem& item) { return item.role != ItemRole::virtualOnly; });

@@ -176,6 +176,8 @@ void checkScene(const Scene& scene);
 inline constexpr int kMaxItems = 500;
 
 [[nodiscard]] const SceneItem* findItem(const Scene& scene, int id);
+/// Whether an item and all groups around it are visible.
+[[nodiscard]] bool isShown(const Scene& scene, const SceneItem& item);
 /// The item the servos follow (role physical or split), if any.
 [[nodiscard]] const SceneItem* drivingItem(const Scene& scene);
 

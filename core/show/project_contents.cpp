@@ -72,7 +72,7 @@ MatchWish wishOf(const ProjectContents& contents) {
     wish.scene = std::make_shared<const Scene>(project.scene);
     wish.installation = std::make_shared<const Installation>(project.installation);
     wish.assets = contents.assets;
-    wish.driver = driverOf(project.matching.live, wish.scene.get());
+    wish.driver = project.matching.driver;
     return wish;
 }
 

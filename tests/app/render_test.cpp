@@ -136,7 +136,7 @@ TEST_F(Render, ADeviceFollowsTheShowOrIsHeldInAState) {
     EXPECT_TRUE(same(picture("device", {"--size", "320x200", "--state", "0,0,0,0,0,0"}), atRest));
     EXPECT_FALSE(same(picture("device", {"--size", "320x200", "--state", "32,0,0,0,0,0"}), atRest));
     Project project = readProject(w["p.lumorph"]);
-    project.matching.live = false;
+    project.matching.driver = Driver::hand;
     project.strokes = {1.0, 0.0, 0.0, 0.0, 0.0, 0.0};
     writeProject(project, w["p.lumorph"]);
     const Image begun = picture("device", {"--size", "320x200", "--time", "0.1"});

@@ -80,7 +80,7 @@ MatchWish sceneWish() {
     scene.viewDependence.on = true;
     MatchWish wish;
     wish.rig = std::make_shared<const Rig>(readRig(resourceFile("models/tablet.glb")));
-    wish.driver = driverOf(true, &scene);
+    wish.driver = driverOf(scene);
     wish.scene = std::make_shared<const Scene>(std::move(scene));
     wish.installation = std::make_shared<const Installation>(defaultInstallation());
     wish.assets = std::make_shared<const SceneAssets>();

@@ -151,7 +151,7 @@ int main(int argc, char** argv) {
               R"({"schemaVersion": 2, "rig": "a.glb", "scene": {"items": [{"id": 1, "kind": "group"}, {"id": 2,
               "parent": 1, "kind": "heights", "heights": {"waves": [{"phaseDegrees": 1e-9}]}}], "projectors": []}})");
     writeText("project/draft.lumorph",
-              R"({"model": "a.glb", "author": "b", "matching": {"live": false, "more": [1]}})");
+              R"({"model": "a.glb", "author": "b", "matching": {"driver": "hand", "more": [1]}})");
 
     const auto writeBytes = [&](const char* name, const std::vector<std::uint8_t>& bytes) {
         write(name, std::as_bytes(std::span(bytes)));

@@ -95,7 +95,7 @@ protected:
     }
     void setByHand(std::size_t servo, double stroke) {
         window.studio().document.change("Move by hand", [&](studio::StudioState& state) {
-            state.matching.live = false;
+            state.matching.driver = Driver::hand;
             state.strokes.assign(state.rig.rig->actuatorCount(), 0.0);
             state.strokes[servo] = stroke;
         });

@@ -69,7 +69,7 @@ TEST_F(DocumentTest, EachPartIsToldAloneAndComesBackExactlyByUndoAndRedo) {
          }},
         {StatePart::matching,
          [](StudioState& s) {
-             s.matching = {false, MatchMethod::voting, Microseconds(5000)};
+             s.matching = {Driver::hand, MatchMethod::voting, Microseconds(5000)};
          }},
         {StatePart::scene,
          [](StudioState& s) {

@@ -108,13 +108,13 @@ TEST_F(FieldDocks, DraggingASliderMovesOneActuatorAndStopsMatchingInOneStep) {
     QTest::mouseMove(slider, middle + QPoint(static_cast<int>(slider->xOf(0.75)), 0));
     QTest::mouseRelease(slider, Qt::LeftButton, {}, middle + QPoint(static_cast<int>(slider->xOf(0.75)), 0));
     EXPECT_EQ(studio_.document.undoStack().count(), 1);
-    EXPECT_FALSE(studio_.document.state().matching.live);
+    EXPECT_EQ(studio_.document.state().matching.driver, Driver::hand);
     EXPECT_DOUBLE_EQ(studio_.document.state().strokes[1], 0.75);
     EXPECT_EQ(find<QLabel>(*dock, "actuators.level.1")->text(), "level 6");
     EXPECT_TRUE(hint->isVisible());
 
-    QTest::mouseClick(find<QPushButton>(*dock, "actuators.matchLive"), Qt::LeftButton);
-    EXPECT_TRUE(studio_.document.state().matching.live);
+    QTest::mouseClick(find<QPushButton>(*dock, "actuators.hint.remedy"), Qt::LeftButton);
+    EXPECT_EQ(studio_.document.state().matching.driver, Driver::target);
     EXPECT_FALSE(hint->isVisible());
 }
 

@@ -1,4 +1,4 @@
-#include "app/workspaces/field/hand_control.h"
+#include "app/studio/document/hand_control.h"
 
 #include <gtest/gtest.h>
 
@@ -28,22 +28,22 @@ protected:
 };
 
 TEST_F(HandControlTest, ADragIsOneStepOfUndoThatTakesTheDeviceOffItsTarget) {
-    ASSERT_TRUE(document_.state().matching.live);
+    ASSERT_EQ(document_.state().matching.driver, Driver::target);
     for (const double stroke : {0.3, 0.5, 0.8}) hand_.preview(1, stroke);
     EXPECT_EQ(document_.state().strokes, (std::vector<double>{0.25, 0.8, 0.25})) << "shown while it is dragged";
     hand_.commit(1, 1.0);
-    EXPECT_FALSE(document_.state().matching.live);
+    EXPECT_EQ(document_.state().matching.driver, Driver::hand);
     EXPECT_EQ(document_.state().strokes, (std::vector<double>{0.25, 1.0, 0.25}));
     EXPECT_EQ(document_.undoStack().count(), 1);
     document_.undoStack().undo();
-    EXPECT_TRUE(document_.state().matching.live) << "taken back in the same step";
+    EXPECT_EQ(document_.state().matching.driver, Driver::target) << "taken back in the same step";
     EXPECT_EQ(document_.state().strokes, (std::vector<double>{0.25, 0.25, 0.25}));
 }
 
 TEST_F(HandControlTest, EscapeLeavesNothingBehind) {
     hand_.preview(0, 0.9);
     hand_.cancel();
-    EXPECT_TRUE(document_.state().matching.live);
+    EXPECT_EQ(document_.state().matching.driver, Driver::target);
     EXPECT_EQ(document_.state().strokes[0], 0.25);
     EXPECT_EQ(document_.undoStack().count(), 0);
 }

@@ -31,7 +31,7 @@ TEST_F(ProjectServiceFiles, TheDemoPlaysAndLeavesNothingToSave) {
     ASSERT_TRUE(eventually([&] { return world.jobs.running().empty() && world.state().field.field; }));
     EXPECT_GT(world.state().target.target->duration, 0.0);
     EXPECT_TRUE(world.state().playback.playing);
-    EXPECT_TRUE(world.state().matching.live);
+    EXPECT_EQ(world.state().matching.driver, Driver::target);
     EXPECT_EQ(world.state().matching.method, MatchMethod::refined);
     EXPECT_FALSE(world.document.modified()) << "the field that was built for it is no change of the user's";
     EXPECT_EQ(world.document.undoStack().count(), 0);
@@ -53,7 +53,7 @@ TEST_F(ProjectServiceFiles, AProjectHoldsCopiesSoThatItOpensElsewhere) {
     world.openTarget(files / "block.obj");
     world.document.change("Hold", [](StudioState& s) {
         s.strokes = {0.1, 0.2, 1.0 / 3.0};
-        s.matching = {false, MatchMethod::voting, Microseconds(5250)};
+        s.matching = {Driver::hand, MatchMethod::voting, Microseconds(5250)};
         s.playback = {false, 0.3};
         s.placement = {0.7, Angle::radians(1.1), {0.01F, 0.02F, 0.03F}};
     });

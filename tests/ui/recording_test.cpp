@@ -247,11 +247,16 @@ TEST_F(RecordingWindow, TheWayBackToTheLiveShowHasNoJump) {
     ASSERT_TRUE(replays(studio().recorder.file()));
     pass(300ms);
     studio().document.change("By hand", [](studio::StudioState& state) {
-        state.matching.live = false;
+        state.matching.driver = Driver::hand;
         state.strokes.assign(state.rig.rig->actuatorCount(), 1.0);
     });
+    EXPECT_EQ(studio().driver.driver(), Driver::hand) << "who takes the servos has them";
+    EXPECT_EQ(studio().replay.recording(), nullptr);
     pass(200ms);
-    EXPECT_NE(rowNumbered(recording.frames, studio().loop.frame()->number), nullptr) << "an edit does not show";
+    ASSERT_EQ(window().text("bar.driver.back").left(7), "Back to");
+    window().click("bar.driver.back");
+    ASSERT_EQ(studio().driver.driver(), Driver::recording);
+    ASSERT_TRUE(eventually([&] { return rowNumbered(recording.frames, studio().loop.frame()->number) != nullptr; }));
     FrameTap tap(studio().loop);
     studio().replay.seek(0.0);
     studio().replay.setPlaying(false);

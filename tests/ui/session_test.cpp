@@ -49,7 +49,7 @@ StudioState edited(ProjectWorld& world, const SessionFiles& files) {
     world.openTarget(files / "block.obj");
     world.document.change("Edit", [](StudioState& s) {
         s.strokes = {0.1, 0.2, 1.0 / 3.0};
-        s.matching = {false, MatchMethod::voting, Microseconds(5250)};
+        s.matching = {Driver::hand, MatchMethod::voting, Microseconds(5250)};
         s.playback = {false, 0.3};
         s.placement = {0.7, Angle::radians(1.1), {0.01F, 0.02F, 0.03F}};
     });

@@ -118,6 +118,7 @@ void StudioWindow::slide(const QString& name, double share) {
 }
 
 QString StudioWindow::text(const QString& label) {
+    if (const auto* button = findNow<QAbstractButton>(label)) return button->text();
     const auto* found = find<QLabel>(label);
     return found ? found->text() : QString();
 }

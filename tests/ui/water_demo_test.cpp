@@ -117,6 +117,31 @@ TEST_F(WaterDemo, ShadowsOnTheTableGoWithTheSun) {
     EXPECT_GT(changed, 3);
 }
 
+// In the first hour a target was opened, the device went on following the sea, and the numbers were of the sea's pose.
+TEST_F(WaterDemo, GivesTheServosToATargetThatIsOpenedAndTakesThemBackByOneClick) {
+    const auto frame = [&] { return window.studio().loop.frame(); };
+    ASSERT_TRUE(eventually([&] { return window.text("bar.driver") == "Servos: Sea"; }));
+    ASSERT_TRUE(eventually([&] { return window.state().field.field != nullptr; }, 60s));
+    ASSERT_TRUE(eventually([&] { return frame()->itemFit.has_value(); }));
+    window.window().showWorkspace("field");
+    EXPECT_EQ(window.findNow<QWidget>("match.driver"), nullptr);
+    window.studio().project.openTarget(resourceFile("targets/bloom.glb"));
+    ASSERT_TRUE(eventually([&] { return window.text("bar.driver") == "Servos: bloom"; }, 30s));
+    ASSERT_TRUE(eventually([&] { return frame()->matched && frame()->driver == Driver::target; }));
+    EXPECT_GE(frame()->iouWanted, frame()->iouVoting - 1e-9);
+    window.screenshot("driver-target");
+    EXPECT_EQ(window.text("bar.driver.back"), "Back to Sea");
+    window.click("bar.driver.back");
+    ASSERT_TRUE(eventually([&] { return frame()->driver == Driver::sceneItem; }));
+    EXPECT_EQ(window.text("bar.driver"), "Servos: Sea");
+    EXPECT_TRUE(eventually([&] { return window.text("match.driver.text").startsWith("'Sea' of the scene moves"); }));
+    EXPECT_TRUE(eventually([&] { return window.text("match.iou") == QString(QChar(0x2013)); }));
+    EXPECT_FALSE(window.find<QWidget>("match.iou")->isEnabled());
+    window.screenshot("driver-sea");
+    window.click("match.driver.remedy");
+    EXPECT_EQ(window.text("bar.driver"), "Servos: bloom");
+}
+
 TEST_F(WaterDemo, ADragLeadsTheEyeAroundTheWaterAndUndoLeadsItBack) {
     ASSERT_TRUE(eventually([&] { return !pane->picture().isNull(); }));
     playOrPause(false); // what changes then is the eye's doing

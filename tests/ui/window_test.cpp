@@ -105,7 +105,7 @@ TEST_F(Window, FirstHour) {
         const double before = window.studio().loop.frame()->wantedStrokes[0];
         const double to = before < 0.5 ? 0.9 : 0.1;
         window.slide("actuators.slider.0", to);
-        EXPECT_FALSE(window.state().matching.live);
+        EXPECT_EQ(window.state().matching.driver, Driver::hand);
         EXPECT_NEAR(window.state().strokes[0], to, 0.04);
         EXPECT_EQ(document.undoStack().index(), steps + 1);
         ASSERT_TRUE(
@@ -151,7 +151,7 @@ TEST_F(Window, FirstHour) {
         // Back to the coarse field, the live match and the demo's target, and forth again.
         while (document.undoStack().canUndo()) QTest::keyClick(&window.window(), Qt::Key_Z, Qt::ControlModifier);
         EXPECT_EQ(window.state().field.field, coarse);
-        EXPECT_TRUE(window.state().matching.live);
+        EXPECT_EQ(window.state().matching.driver, Driver::target);
         EXPECT_NE(window.state().target.path, model);
         while (document.undoStack().canRedo())
             QTest::keyClick(&window.window(), Qt::Key_Z, Qt::ControlModifier | Qt::ShiftModifier);

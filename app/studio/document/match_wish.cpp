@@ -11,7 +11,7 @@ MatchWish wishOf(const StudioState& state) {
     if (fieldFits(state)) wish.field = state.field.field;
     wish.target = state.target.target;
     wish.placement = state.placement;
-    wish.driver = driverOf(state.matching.live, state.scene.get());
+    wish.driver = state.matching.driver;
     wish.method = state.matching.method;
     wish.budget = state.matching.budget;
     wish.strokes = state.strokes;

@@ -51,7 +51,7 @@ StudioState stateOf(const Project& project) {
     StudioState state;
     state.placement = project.placement;
     state.strokes = project.strokes;
-    state.matching.live = project.matching.live;
+    state.matching.driver = project.matching.driver;
     state.matching.method = project.matching.refined ? MatchMethod::refined : MatchMethod::voting;
     state.matching.budget = Microseconds(std::llround(1000.0 * project.matching.budgetMilliseconds));
     state.playback = {project.playback.playing, project.playback.spin};
@@ -64,7 +64,7 @@ Project projectOf(const ProjectSource& source) {
     if (state.target.target) project.animation = std::max(0, state.target.target->animation);
     project.placement = state.placement;
     project.strokes = state.strokes;
-    project.matching = {state.matching.live, state.matching.method == MatchMethod::refined,
+    project.matching = {state.matching.driver, state.matching.method == MatchMethod::refined,
                         static_cast<double>(state.matching.budget.count()) / 1000.0};
     project.playback = {state.playback.playing, state.playback.spin};
     if (state.installation) project.installation = *state.installation;

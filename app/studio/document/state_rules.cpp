@@ -7,6 +7,7 @@
 
 #include "core/base/error.h"
 #include "core/rig/rig_file.h"
+#include "core/scene/driver.h"
 
 namespace lumorph::studio {
 
@@ -149,6 +150,20 @@ StudioState withRig(StudioState state, const StudioState::RigAsset& shown) {
     rig.rig = sameLine ? shown.rig : rig.origin;
     rig.compiled = sameLine && shown.compiled && shown.parts == rig.parts;
     return state;
+}
+
+StudioState withTakeover(const StudioState& before, StudioState edited) {
+    if (edited.matching.driver != before.matching.driver || !before.scene || !edited.scene) return edited;
+    Driver& driver = edited.matching.driver;
+    const SceneItem* item = drivingItemShown(*edited.scene);
+    const SceneItem* itemBefore = drivingItemShown(*before.scene);
+    const bool newItem = item && (!itemBefore || item->id != itemBefore->id || item->role != itemBefore->role);
+    const bool newTarget = edited.target.target && edited.target.target != before.target.target;
+    const bool itemGone = driver == Driver::sceneItem && !followableItem(*edited.scene);
+    const bool targetGone = driver == Driver::target && before.target.target && !edited.target.target;
+    if (newTarget || (itemGone && edited.target.target)) driver = Driver::target;
+    if (newItem || targetGone) driver = driverOf(*edited.scene);
+    return edited;
 }
 
 StudioState settled(const StudioState& before, StudioState edited) {

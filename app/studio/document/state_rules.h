@@ -19,6 +19,11 @@ namespace lumorph::studio {
 /// goes on being shown where it is an edit of the same rig.
 [[nodiscard]] StudioState withRig(StudioState state, const StudioState::RigAsset& shown);
 
+/// An edit that gives servos something new to follow hands them over to it, in the same step: a target that is opened,
+/// or an item of the scene that is made physical or shown. Where what they followed is gone, what is left takes over.
+/// An edit that says itself who drives is left as it is.
+[[nodiscard]] StudioState withTakeover(const StudioState& before, StudioState edited);
+
 /// The one place where a state is made sound after an edit of `before`: a rig that was put in the place of another
 /// begins a line of edits, a field of another line is dropped and one of an earlier edit is stale, there is one stroke
 /// an actuator, and every number is finite and within what a project file can hold. A number that is not finite

@@ -55,14 +55,14 @@ void StudioDocument::change(const QString& what, const std::function<void(Studio
     const StudioState before = previewing_ ? beforePreview_ : state_;
     StudioState after = before;
     edit(after);
-    after = settled(before, std::move(after));
+    after = withTakeover(before, settled(before, std::move(after)));
     if (!differenceOf(before, after)) return;
     // A result that arrives during a drag is a step of its own below the drag, which goes on.
     StudioState shown = after;
     if (previewing_) {
         shown = state_;
         edit(shown);
-        shown = settled(state_, std::move(shown));
+        shown = withTakeover(state_, settled(state_, std::move(shown)));
         beforePreview_ = after;
     }
     undo_.push(new ChangeState(*this, what, before, std::move(after)));
@@ -74,7 +74,7 @@ void StudioDocument::preview(const std::function<void(StudioState&)>& edit) {
     previewing_ = true;
     StudioState next = state_;
     edit(next);
-    exchange(settled(state_, std::move(next)));
+    exchange(withTakeover(state_, settled(state_, std::move(next))));
 }
 
 void StudioDocument::commitPreview(const QString& what) {

@@ -27,6 +27,7 @@ StudioLoop::StudioLoop(StudioDocument& document, QObject* parent) : QObject(pare
             QMetaObject::invokeMethod(
                 this, [this] { take(); }, Qt::QueuedConnection);
     });
+    documentDriver_ = document_.state().matching.driver;
     connect(&document_, &StudioDocument::changed, this, &StudioLoop::onChanged);
     connect(&errors_, &QTimer::timeout, this, &StudioLoop::takeError);
     errors_.start(kErrorMilliseconds);
@@ -60,6 +61,7 @@ void StudioLoop::setDancing(bool dancing) {
     if (std::exchange(dancing_, dancing) == dancing) return;
     sendSoon();
     emit dancingChanged();
+    emit driverChanged();
 }
 
 void StudioLoop::seek(double seconds) {
@@ -103,14 +105,31 @@ void StudioLoop::setRate(double framesPerSecond) {
 void StudioLoop::setSource(std::shared_ptr<FrameSource> source) {
     source_ = std::move(source);
     send();
+    emit driverChanged();
+}
+
+Driver StudioLoop::driver() const noexcept {
+    if (source_) return Driver::recording;
+    if (dancing_) return Driver::dance;
+    return program_ && programDrives_ ? Driver::program : document_.state().matching.driver;
 }
 
 void StudioLoop::setProgram(std::shared_ptr<ShowProgram> program) {
     if (program_ == program) return;
     program_ = std::move(program);
     inputs_ = program_ ? std::make_shared<ShowInputs>() : nullptr;
+    programDrives_ = program_ != nullptr;
+    if (programDrives_) setDancing(false);
     send(); // not a turn of the event loop later: frames that begin from now on are of this program
     programSince_ = SteadyClock().now();
+    emit driverChanged();
+}
+
+void StudioLoop::setProgramDrives(bool drives) {
+    programDrives_ = drives && program_;
+    if (programDrives_) setDancing(false);
+    sendSoon();
+    emit driverChanged();
 }
 
 void StudioLoop::input(const std::string& name, double value) {
@@ -140,8 +159,16 @@ void StudioLoop::tap() {
 }
 
 void StudioLoop::onChanged(StateParts parts) {
-    // Whoever takes the rig in hand, or back to the target, ends the dance.
-    if (parts & (StatePart::strokes | StatePart::matching | StatePart::rig)) setDancing(false);
+    // Whoever takes the servos in the document ends what moves them for the moment.
+    const Driver before = std::exchange(documentDriver_, document_.state().matching.driver);
+    const bool newTarget = (parts & StatePart::target) && document_.state().target.target;
+    const bool taken = before != documentDriver_ || newTarget || (parts & StatePart::strokes);
+    if (taken || (parts & StatePart::rig)) setDancing(false);
+    if (taken) {
+        programDrives_ = false;
+        if (!(parts & StatePart::rig)) emit this->taken();
+        emit driverChanged();
+    }
     if (parts & StatePart::target || document_.state().playback.playing) seek_.reset();
     sendSoon();
 }
@@ -157,9 +184,7 @@ void StudioLoop::send() {
     MatchWish wish = wishOf(document_.state());
     wish.program = program_;
     wish.inputs = inputs_;
-    if (program_ && document_.state().matching.live) wish.driver = Driver::program;
-    if (dancing_) wish.driver = Driver::dance;
-    if (source_) wish.driver = Driver::recording;
+    wish.driver = driver();
     wish.stopped = stopped_;
     wish.seek = seek_;
     wish.showTint = tint_;

@@ -36,6 +36,9 @@ public:
     /// STOP: the servos stay where they are until `resume`. Pressed again it is ordered again.
     void stop();
     void resume();
+    /// Who moves the servos by the newest wish: the recording that is shown, the dance, the program that shows and was
+    /// not sent off the servos, else whom the document says.
+    [[nodiscard]] Driver driver() const noexcept;
     [[nodiscard]] bool dancing() const noexcept { return dancing_; }
     /// Random smooth moves; takes the rig off the target.
     void setDancing(bool dancing);
@@ -55,10 +58,12 @@ public:
     /// the actuators stand, under their limits. Poses of trackers wait meanwhile.
     void setSource(std::shared_ptr<FrameSource> source);
     [[nodiscard]] bool showsSource() const noexcept { return source_ != nullptr; }
-    /// A program shows, and moves the servos while they follow anything, until it is set to nothing or ends by an
+    /// A program shows, and moves the servos until somebody else takes them, until it is set to nothing or ends by an
     /// error, which `failed` tells. It begins with the next frame; what was put in before is not for it.
     void setProgram(std::shared_ptr<ShowProgram> program);
     [[nodiscard]] const std::shared_ptr<ShowProgram>& program() const noexcept { return program_; }
+    /// Whether the program that shows moves the servos, too; whoever takes them in the document sends it off them.
+    void setProgramDrives(bool drives);
     /// A key or button (1 pressed, 0 released) or a number for the program that shows; each reaches it once.
     void input(const std::string& name, double value);
     /// The source has something else to show than when the loop came to rest.
@@ -77,6 +82,10 @@ signals:
     void stoppedChanged();
     void dancingChanged();
     void scenePlayingChanged();
+    /// `driver` may be another now.
+    void driverChanged();
+    /// An edit took the servos: strokes, another driver or a new target. Not when a rig or a project is opened.
+    void taken();
     void failed(const QString& why);
 
 private:
@@ -98,8 +107,10 @@ private:
     std::shared_ptr<const PoseBoard> poses_;
     std::shared_ptr<FrameSource> source_;
     std::shared_ptr<ShowProgram> program_;
-    std::shared_ptr<ShowInputs> inputs_; ///< of that program
-    Microseconds programSince_{0};       ///< by the loop's clock; frames from before tell of the program before it
+    bool programDrives_ = false;
+    Driver documentDriver_ = Driver::target; ///< as the document said it last
+    std::shared_ptr<ShowInputs> inputs_;     ///< of that program
+    Microseconds programSince_{0};           ///< by the loop's clock; frames from before tell of the program before it
     double lightDelay_ = 0.0;
     bool sending_ = false;              ///< a wish goes out when the event loop comes round
     std::vector<std::int64_t> shownAt_; ///< when matched frames were handed over, milliseconds

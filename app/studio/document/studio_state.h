@@ -39,7 +39,7 @@ struct StudioState {
         bool operator==(const TargetAsset&) const = default;
     };
     struct Matching {
-        bool live = true; ///< the rig follows the target; false: it holds `strokes`
+        Driver driver = Driver::target; ///< target, sceneItem or hand, which holds `strokes`
         MatchMethod method = MatchMethod::refined;
         Microseconds budget{8'000};
         bool operator==(const Matching&) const = default;

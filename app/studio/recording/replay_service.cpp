@@ -84,6 +84,8 @@ struct ReplayService::Data {
     Jobs::Id reading = 0, proving = 0, exporting = 0, unpacking = 0;
     double position = 0.0;
     bool playing = false;
+    std::optional<double> left; ///< position in seconds at which it was suspended
+    bool playedWhenLeft = false;
     QTimer moves;
 };
 
@@ -98,6 +100,7 @@ void ReplayService::Data::listen() {
     connect(&document, &StudioDocument::changed, &replay, [this](StateParts parts) {
         if (parts & (StatePart::rig | StatePart::rigEdited)) heedRig();
     });
+    connect(&loop, &StudioLoop::taken, &replay, &ReplayService::suspend);
     connect(&service, &ProjectService::opened, &replay, [this](const QString& path) {
         if (awaited.empty() || path.toStdString() != awaited.string()) return;
         awaited.clear();
@@ -132,6 +135,7 @@ void ReplayService::Data::take(const fs::path& from, ReadSession read) {
 
 void ReplayService::Data::show() {
     if (!fits()) return tellOther(false);
+    left.reset();
     source = std::make_shared<ReplaySource>(session.recording);
     source->play();
     playing = true;
@@ -194,10 +198,29 @@ void ReplayService::open(const fs::path& file) {
 }
 
 void ReplayService::close() {
+    const bool wasSuspended = std::exchange(data_->left, std::nullopt).has_value();
     data_->hide();
     data_->notices.dismissAll(kReplayPlace);
     letGo(std::exchange(data_->session, {}).recording);
+    if (wasSuspended) emit changed();
 }
+
+void ReplayService::suspend() {
+    if (!data_->shown()) return;
+    data_->left = data_->source->position();
+    data_->playedWhenLeft = data_->source->playing();
+    data_->hide();
+}
+
+void ReplayService::resume() {
+    if (!suspended()) return;
+    const double at = *data_->left;
+    data_->show();
+    seek(at);
+    setPlaying(data_->playedWhenLeft);
+}
+
+bool ReplayService::suspended() const noexcept { return data_->left.has_value(); }
 
 const std::shared_ptr<const Recording>& ReplayService::recording() const noexcept {
     return data_->shown() ? data_->session.recording : data_->none;

@@ -28,6 +28,11 @@ public:
     void open(const std::filesystem::path& file);
     /// Back to the live show, from where the actuators stand.
     void close();
+    /// Back to the live show for as long as somebody else moves the servos, which an edit in the document does;
+    /// `resume` goes on where it was left.
+    void suspend();
+    void resume();
+    [[nodiscard]] bool suspended() const noexcept;
     /// What is shown; empty while the show is live.
     [[nodiscard]] const std::shared_ptr<const Recording>& recording() const noexcept;
     [[nodiscard]] const std::filesystem::path& file() const noexcept;

@@ -5,6 +5,7 @@
 #include "app/studio/look/icons.h"
 #include "app/studio/shell/command_palette.h"
 #include "app/studio/shell/dialogs.h"
+#include "app/studio/shell/driver_chip.h"
 
 namespace lumorph::studio {
 namespace {
@@ -88,6 +89,7 @@ void addShellCommands(Studio& studio, QMainWindow& window, const ShellActions& d
                    [&studio, &window] { openSettings(studio, window); });
     addView(studio, window, does);
     addStop(studio);
+    addDriverCommands(studio);
     addShellAction(studio, "help.tour", "&Tour", "tour", {}, "Help", does.startTour);
     addShellAction(studio, "help.shortcuts", "&Keyboard and mouse", "help", QKeySequence(Qt::Key_F1), "Help",
                    [&studio, &window] { openShortcuts(studio, window); });

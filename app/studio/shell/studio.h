@@ -15,6 +15,7 @@
 #include "app/studio/recording/replay_service.h"
 #include "app/studio/rendering/render_thread.h"
 #include "app/studio/rendering/show_feed.h"
+#include "app/studio/shell/driver_control.h"
 
 namespace lumorph::studio {
 
@@ -35,6 +36,7 @@ struct Studio {
     ProjectorOutputs outputs{document, show, commands, notices};
     RecordingService recorder{settings, document, project, loop, devices, trackers, jobs, notices};
     ReplayService replay{document, project, loop, jobs, notices};
+    DriverControl driver{document, loop, replay};
 };
 
 } // namespace lumorph::studio

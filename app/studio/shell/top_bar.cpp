@@ -9,6 +9,7 @@
 
 #include "app/studio/look/icons.h"
 #include "app/studio/look/palette.h"
+#include "app/studio/shell/driver_chip.h"
 #include "app/studio/shell/record_chip.h"
 
 namespace lumorph::studio {
@@ -78,6 +79,10 @@ TopBar::TopBar(Studio& studio, const std::vector<std::unique_ptr<Workspace>>& wo
     addTabs(workspaces, *row);
     row->addStretch(1);
     addTools(*row);
+    row->addSpacing(8);
+    driver_ = new DriverChip(studio, this);
+    row->addWidget(driver_);
+    connect(&studio.driver, &DriverControl::changed, this, &TopBar::fitSearch);
     row->addSpacing(8);
     addStop(*row);
 }
@@ -162,6 +167,7 @@ void TopBar::setKiosk() {
     menus_->hide();
     for (QToolButton* tab : tabs_) tab->hide();
     for (QWidget* tool : tools_) tool->hide();
+    driver_->hide();
 }
 
 void TopBar::resizeEvent(QResizeEvent* event) {
@@ -174,7 +180,8 @@ void TopBar::resizeEvent(QResizeEvent* event) {
 void TopBar::fitSearch() {
     if (!kiosk_)
         for (QWidget* tool : {tools_[0], tools_[1], tools_.back()}) tool->setVisible(width() >= kNarrowTopBar);
-    int others = 300 + stop_->minimumWidth() + menus_->sizeHint().width();
+    driver_->setNarrow(width() < kNarrowTopBar);
+    int others = 300 + driver_->sizeHint().width() + stop_->minimumWidth() + menus_->sizeHint().width();
     if (!resume_->isHidden()) others += resume_->sizeHint().width();
     for (const QToolButton* tab : tabs_) others += tab->sizeHint().width() + 4;
     const bool roomy = width() - others > kSearchWidth;

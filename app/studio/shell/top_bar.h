@@ -14,11 +14,14 @@ class QPushButton;
 
 namespace lumorph::studio {
 
-/// The slim bar at the top: mark, menus, workspaces, undo and redo, search, theme, and STOP, which never leaves it.
+class DriverChip;
+
+/// The slim bar at the top: mark, menus, workspaces, undo and redo, search, theme, who moves the servos, and STOP,
+/// which never leaves it.
 class TopBar : public QWidget {
     Q_OBJECT
 public:
-    /// The commands edit.undo, edit.redo, view.commandPalette and view.theme must be there.
+    /// The commands edit.undo, edit.redo, view.commandPalette, view.theme and those of the drivers must be there.
     TopBar(Studio& studio, const std::vector<std::unique_ptr<Workspace>>& workspaces, QWidget* parent);
 
     [[nodiscard]] QMenuBar& menuBar() noexcept { return *menus_; }
@@ -44,6 +47,7 @@ private:
     std::vector<QToolButton*> tabs_;
     std::vector<QWidget*> tools_;
     bool kiosk_ = false;
+    DriverChip* driver_ = nullptr;
     QPushButton* search_ = nullptr;
     QPushButton* resume_ = nullptr;
     QPushButton* stop_ = nullptr;

@@ -10,6 +10,7 @@
 #include "app/studio/widgets/dock_parts.h"
 #include "app/studio/widgets/panel.h"
 #include "app/studio/widgets/throttle.h"
+#include "app/workspaces/common/driver_hint.h"
 #include "app/workspaces/field/actuator_grid.h"
 #include "app/workspaces/field/actuator_row.h"
 
@@ -54,19 +55,9 @@ private:
     }
 
     QWidget* makeHint() {
-        hint_ = new QWidget(this);
-        hint_->setObjectName("actuators.hint");
-        auto* text = new QLabel("Moved by hand: the device no longer follows the target.", hint_);
-        text->setWordWrap(true);
-        text->setProperty("look", "muted");
-        QPushButton* button =
-            makeCommandButton(studio_.commands.find("match.live"), "actuators.matchLive", hint_, true);
-        auto* layout = new QHBoxLayout(hint_);
-        layout->setContentsMargins(16, 8, 16, 12);
-        layout->setSpacing(8);
-        layout->addWidget(text, 1);
-        layout->addWidget(button);
-        return hint_;
+        QWidget* hint = makeDriverHint(studio_, "actuators.hint", this);
+        hint->layout()->setContentsMargins(16, 8, 16, 12);
+        return hint;
     }
 
     [[nodiscard]] int levelsOf(const Actuator& actuator) const {
@@ -138,20 +129,20 @@ private:
 
     void refresh() {
         const StudioState& state = studio_.document.state();
-        const bool driven = state.matching.live && state.target.target && state.field.field;
-        const bool byHand = !state.matching.live && state.target.target && !studio_.loop.dancing();
-        hint_->setVisible(rig_ && byHand);
+        const Driver driver = studio_.driver.driver();
+        const bool driven = driver != Driver::hand && studio_.driver.whyNot(driver).isEmpty() &&
+                            (driver != Driver::target || state.field.field);
         if (!rig_) return;
         const auto& frame = studio_.loop.frame();
         const std::vector<double> wanted = hand_.strokes();
         const bool known = frame && isOf(*frame, state) && frame->estimatedStrokes.size() == wanted.size();
         const std::vector<double>& estimated = known ? frame->estimatedStrokes : wanted;
         for (const Row& row : rows_) {
-            row.widget->setLive(driven || studio_.loop.dancing());
+            row.widget->setLive(driven);
             row.widget->show(wanted[row.actuator], estimated[row.actuator]);
         }
         if (!grid_) return;
-        grid_->setLive(driven || studio_.loop.dancing());
+        grid_->setLive(driven);
         grid_->setStrokes(wanted, estimated);
     }
 
@@ -164,7 +155,6 @@ private:
     HandControl hand_;
     Throttle* refresh_;
     Column column_ = makeColumn(this);
-    QWidget* hint_ = nullptr;
     ActuatorGrid* grid_ = nullptr;
     std::vector<Row> rows_;
     std::shared_ptr<const Rig> rig_;

@@ -3,9 +3,9 @@
 #include <QLabel>
 #include <QWidget>
 
+#include "app/studio/document/hand_control.h"
 #include "app/studio/widgets/value_field.h"
 #include "app/workspaces/field/actuator_scale.h"
-#include "app/workspaces/field/hand_control.h"
 #include "app/workspaces/field/level_slider.h"
 
 namespace lumorph::studio {

@@ -33,12 +33,6 @@ double ActuatorScale::strokeOf(double value) const noexcept {
 
 ActuatorScale scaleOf(const Actuator& actuator) { return std::visit(ScaleOf{}, actuator.deformer); }
 
-std::vector<double> strokesFor(const Rig& rig, std::vector<double> strokes) {
-    strokes.resize(rig.actuatorCount(), 0.0);
-    for (double& stroke : strokes) stroke = std::isfinite(stroke) ? std::clamp(stroke, 0.0, 1.0) : 0.0;
-    return strokes;
-}
-
 int nearestLevel(double stroke, int levels) noexcept {
     return std::clamp(static_cast<int>(std::lround(stroke * (levels - 1))), 0, std::max(levels - 1, 0));
 }

@@ -18,9 +18,6 @@ struct ActuatorScale {
 };
 [[nodiscard]] ActuatorScale scaleOf(const Actuator& actuator);
 
-/// Strokes of a rig as the window shows them: `strokes` with one entry in [0, 1] an actuator, missing ones at rest.
-[[nodiscard]] std::vector<double> strokesFor(const Rig& rig, std::vector<double> strokes);
-
 /// The level of `levels` that is nearest to a stroke.
 [[nodiscard]] int nearestLevel(double stroke, int levels) noexcept;
 

@@ -9,9 +9,9 @@
 #include <QFileInfo>
 #include <QRandomGenerator>
 
+#include "app/studio/document/hand_control.h"
 #include "app/studio/look/icons.h"
 #include "app/workspaces/field/actuator_scale.h"
-#include "app/workspaces/field/hand_control.h"
 #include "core/base/resources.h"
 
 namespace lumorph::studio {
@@ -30,7 +30,7 @@ public:
         addRig();
         addMatch();
         connect(&studio.document, &StudioDocument::changed, this, [this] { follow(); });
-        connect(&studio.loop, &StudioLoop::dancingChanged, this, [this] { follow(); });
+        connect(&studio.driver, &DriverControl::changed, this, [this] { follow(); });
         connect(&studio.project, &ProjectService::chooseFile, this, [this](const QString& place) {
             if (place == "target") openTarget();
         });
@@ -149,13 +149,8 @@ private:
 
     /// Back to the target, or off it with the actuators staying where they are.
     void toggleLive() {
-        const bool on = !(studio_.document.state().matching.live && !studio_.loop.dancing());
-        const std::vector<double> strokes = hand_.strokes();
-        studio_.loop.setDancing(false);
-        studio_.document.change(on ? "Match live" : "Stop matching", [on, &strokes](StudioState& state) {
-            state.matching.live = on;
-            if (!on) state.strokes = strokes;
-        });
+        studio_.driver.choose(studio_.driver.driver() == Driver::target ? Driver::hand : Driver::target);
+        follow(); // also where that was not to be had
     }
 
     void follow() {
@@ -171,7 +166,7 @@ private:
         play_->setIcon(icon(state.playback.playing ? "pause" : "play"));
         spin_->setChecked(state.playback.spin != 0.0);
         dance_->setChecked(studio_.loop.dancing());
-        live_->setChecked(state.matching.live && !studio_.loop.dancing());
+        live_->setChecked(studio_.driver.driver() == Driver::target);
         refined_->setChecked(state.matching.method == MatchMethod::refined);
         voting_->setChecked(state.matching.method == MatchMethod::voting);
     }

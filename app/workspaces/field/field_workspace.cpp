@@ -9,13 +9,13 @@
 #include <QPointer>
 #include <QTimer>
 
+#include "app/studio/document/hand_control.h"
 #include "app/workspaces/common/field_colors.h"
 #include "app/workspaces/field/actuator_dock.h"
 #include "app/workspaces/field/field_central_view.h"
 #include "app/workspaces/field/field_commands.h"
 #include "app/workspaces/field/field_dock.h"
 #include "app/workspaces/field/field_exports.h"
-#include "app/workspaces/field/hand_control.h"
 #include "app/workspaces/field/match_dock.h"
 #include "app/workspaces/field/target_dock.h"
 #include "app/workspaces/field/view_commands.h"

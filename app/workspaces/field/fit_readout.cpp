@@ -49,8 +49,9 @@ FitReadout::FitReadout(QWidget* parent)
 void FitReadout::setCompact(bool compact) { volumes_->setVisible(!compact); }
 
 void FitReadout::show(const MatchFrame& frame) {
-    setVisible(frame.matched);
-    if (!frame.matched) return;
+    const bool ofTarget = frame.matched && frame.driver != Driver::dance;
+    setVisible(ofTarget);
+    if (!ofTarget) return;
     iou_->setText(QString::number(frame.iouWanted, 'f', 2));
     unmatched_->setText(volumeText(frame.unmatchedVolume));
     overfilled_->setText(volumeText(frame.overfilledVolume));

@@ -12,6 +12,7 @@
 #include "app/studio/widgets/plot.h"
 #include "app/studio/widgets/throttle.h"
 #include "app/studio/widgets/value_field.h"
+#include "app/workspaces/common/driver_hint.h"
 #include "app/workspaces/field/match_numbers.h"
 #include "app/workspaces/field/vote_table.h"
 
@@ -67,6 +68,7 @@ public:
         empty("field", "No field yet",
               "Matching asks the mechanical distance field of the device. It takes a moment to build.", "field.build");
         stack_->addWidget(column_.widget);
+        column_.layout->addWidget(makeDriverHint(studio, "match.driver", column_.widget));
         column_.layout->addWidget(numbers_);
         addStale();
         addWarnings();
@@ -77,6 +79,7 @@ public:
         column_.layout->addStretch(1);
         connect(&numbers, &Throttle::due, this, [this] { refresh(); });
         connect(&studio.document, &StudioDocument::changed, this, [this] { refresh(); });
+        connect(&studio.driver, &DriverControl::changed, this, [this] { refresh(); });
         refresh();
     }
 
@@ -194,10 +197,14 @@ private:
         showStale();
         const auto& frame = studio_.loop.frame();
         if (!isVisible() || !frame) return;
-        const bool follows = state.matching.live && !studio_.loop.dancing();
+        const bool follows = studio_.driver.driver() == Driver::target;
+        const bool left = isTargetLeft(studio_);
+        for (QWidget* part :
+             {static_cast<QWidget*>(numbers_), static_cast<QWidget*>(table_), static_cast<QWidget*>(plot_)})
+            part->setEnabled(!left);
         numbers_->show(*frame, follows && state.matching.method == MatchMethod::refined);
-        beyond_->show(frame->matched ? frame->shareBeyondFrame : 0.0);
-        unreachable_->show(frame->matched ? frame->shareUnreachable : 0.0);
+        beyond_->show(frame->matched && !left ? frame->shareBeyondFrame : 0.0);
+        unreachable_->show(frame->matched && !left ? frame->shareUnreachable : 0.0);
         unreachable_->offerRemedy(beyond_->isHidden());
         budget_->setEnabled(state.matching.method == MatchMethod::refined);
         budget_->setValue(static_cast<double>(state.matching.budget.count()) / 1000.0);

@@ -5,6 +5,7 @@
 #include <QLabel>
 
 #include "app/workspaces/scene/euler.h"
+#include "app/workspaces/scene/item_fit.h"
 #include "app/workspaces/scene/scene_words.h"
 
 namespace lumorph::studio {
@@ -21,7 +22,7 @@ bool isSun(const SceneItem* item) {
     return light && light->kind == LightItem::Kind::sun;
 }
 
-void addRole(SceneForm& form, const Part<SceneItem>& item) {
+void addRole(SceneForm& form, Studio& studio, const Part<SceneItem>& item) {
     CollapsibleSection& section = form.section("item.section.role", QObject::tr("Servos or light"), true);
     form.showWhile(&section, [item](const StudioState& state) {
         const SceneItem* found = item.read(state);
@@ -46,6 +47,7 @@ void addRole(SceneForm& form, const Part<SceneItem>& item) {
         const SceneItem* found = item.read(state);
         if (found) sentence->setText(roleSentence(found->role));
     });
+    addItemFitRows(form, studio, item);
     QLabel* other = form.sentence("item.role.other");
     form.onRefresh([other, item](const StudioState& state) {
         const SceneItem* found = item.read(state);
@@ -136,7 +138,7 @@ void addMotion(SceneForm& form, const Part<SceneItem>& item) {
 
 } // namespace
 
-void addItemRows(SceneForm& form, Studio& /*studio*/, const Part<SceneItem>& item) {
+void addItemRows(SceneForm& form, Studio& studio, const Part<SceneItem>& item) {
     form.check(
         {"item.visible", QObject::tr("Visible"), QObject::tr("Light draws it")}, item,
         [](auto& found) -> auto& { return found.visible; });
@@ -147,7 +149,7 @@ void addItemRows(SceneForm& form, Studio& /*studio*/, const Part<SceneItem>& ite
                        const SceneItem* found = item.read(state);
                        return found && hasMaterial(*found);
                    });
-    addRole(form, item);
+    addRole(form, studio, item);
     addPlace(form, item);
     addMotion(form, item);
     form.endSection();

@@ -11,6 +11,7 @@ namespace {
 lumorph::Project projectOf(lumorph::Scene scene) {
     lumorph::Project project;
     project.rig = "resource:models/tablet.glb";
+    project.matching.driver = lumorph::driverOf(scene);
     project.scene = std::move(scene);
     return project;
 }

@@ -41,30 +41,13 @@ Scene sceneWith(Item item) {
     return scene;
 }
 
-TEST(Driver, FollowsFromWhetherThereIsSomethingToFollow) {
-    struct Case {
-        bool live;
-        Item item;
-        Driver driver;
+TEST(Driver, OfASceneIsItsVisibleItemUnlessThatStandsForTheTarget) {
+    const std::pair<Item, Driver> cases[] = {
+        {Item::none, Driver::target},           {Item::light, Driver::target},    {Item::hiddenField, Driver::target},
+        {Item::physicalTarget, Driver::target}, {Item::field, Driver::sceneItem}, {Item::split, Driver::sceneItem},
+        {Item::splitTarget, Driver::sceneItem},
     };
-    const Case cases[] = {
-        {false, Item::none, Driver::hand},
-        {false, Item::field, Driver::hand},
-        {false, Item::physicalTarget, Driver::hand},
-        {true, Item::none, Driver::target},
-        {true, Item::light, Driver::target},
-        {true, Item::hiddenField, Driver::target},
-        {true, Item::physicalTarget, Driver::target},
-        {true, Item::field, Driver::sceneItem},
-        {true, Item::split, Driver::sceneItem},
-        {true, Item::splitTarget, Driver::sceneItem},
-    };
-    for (const Case& c : cases) {
-        const Scene scene = sceneWith(c.item);
-        EXPECT_EQ(driverOf(c.live, &scene), c.driver) << c.live << " " << static_cast<int>(c.item);
-    }
-    EXPECT_EQ(driverOf(true, nullptr), Driver::target);
-    EXPECT_EQ(driverOf(false, nullptr), Driver::hand);
+    for (const auto& [item, driver] : cases) EXPECT_EQ(driverOf(sceneWith(item)), driver) << static_cast<int>(item);
 }
 
 /// What a frame says about who moved its servos.

@@ -58,7 +58,7 @@ protected:
         wish.strokes.assign(rig->actuatorCount(), 0.0);
         wish.rig = std::move(rig);
         setSceneInRoom(wish, scene);
-        wish.driver = driverOf(true, &scene);
+        wish.driver = driverOf(scene);
         wish.assets = std::make_shared<const SceneAssets>();
         return wish;
     }

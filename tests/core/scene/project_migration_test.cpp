@@ -114,6 +114,8 @@ TEST(ProjectMigration, ASchema2ProjectShowsWhatItShowed) {
     EXPECT_EQ(written.at("schemaVersion"), kProjectSchema);
     json kept = file;
     kept.erase("schemaVersion");
+    kept.at("matching").erase("live"); // it names the driver since
+    EXPECT_EQ(written.at("matching").at("driver"), "sceneItem");
     json& scene = kept.at("scene");
     for (const char* moved : {"projectors", "eye", "worldFromDevice", "viewer", "compensation", "predictionSeconds"}) {
         ASSERT_EQ(scene.erase(moved), 1U) << moved;
@@ -151,7 +153,8 @@ TEST(ProjectMigration, ASchema1ProjectStandsInTheVirtualLab) {
     EXPECT_EQ(project.placement.scale, file.at("placement").at("scale").get<double>());
     EXPECT_EQ(project.placement.yaw.inRadians(), file.at("placement").at("yaw").get<double>());
     EXPECT_EQ(project.placement.translation, vectorOf<glm::vec3>(file.at("placement").at("translation")));
-    EXPECT_EQ(project.matching.live, file.at("matching").at("live").get<bool>());
+    ASSERT_FALSE(file.at("matching").at("live").get<bool>());
+    EXPECT_EQ(project.matching.driver, Driver::hand);
     EXPECT_EQ(project.matching.refined, file.at("matching").at("refined").get<bool>());
     EXPECT_EQ(project.matching.budgetMilliseconds, file.at("matching").at("budgetMilliseconds").get<double>());
     EXPECT_EQ(project.playback.playing, file.at("playback").at("playing").get<bool>());
@@ -168,6 +171,26 @@ TEST(ProjectMigration, ASchema1ProjectStandsInTheVirtualLab) {
     EXPECT_EQ(written.at("author"), "Ada") << "a key that nobody knows";
     EXPECT_EQ(written.at("installation").at("projectors").size(), 1U);
     EXPECT_FALSE(written.at("scene").contains("projectors"));
+}
+
+// Before schema 4 a project said only whether servos follow something; whom, the scene said.
+TEST(ProjectMigration, ASchema3ProjectIsDrivenAsItWas) {
+    const json field = {{"id", 1}, {"name", "sea"}, {"role", "physical"}, {"kind", "heights"}};
+    const auto driverOf = [](bool live, const json& items) {
+        json document = {{"schemaVersion", 3}, {"rig", "resource:models/tablet.glb"}, {"matching", {{"live", live}}}};
+        if (!items.is_null()) document["scene"] = {{"items", items}};
+        return parseProject(document.dump(), "old.lumorph").matching.driver;
+    };
+    json hidden = field;
+    hidden["visible"] = false;
+    json light = field;
+    light["role"] = "virtual";
+    json target = field;
+    target["kind"] = "target";
+    EXPECT_EQ(driverOf(true, json::array({field})), Driver::sceneItem);
+    EXPECT_EQ(driverOf(false, json::array({field})), Driver::hand);
+    for (const json& other : {hidden, light, target}) EXPECT_EQ(driverOf(true, json::array({other})), Driver::target);
+    EXPECT_EQ(driverOf(true, {}), Driver::target);
 }
 
 TEST(ProjectMigration, WhatIsWrittenIsReadTheSame) {

@@ -41,7 +41,7 @@ Project fullProject() {
     project.animation = 3;
     project.placement = {0.1, Angle::radians(-2.345678901234567), {0.1F, -2.5e-7F, 3.0F}};
     project.strokes = {0.0, 1.0, 1.0 / 3.0, 0.1, 1e-300, 0.999999999999999};
-    project.matching = {false, false, 12.5};
+    project.matching = {Driver::hand, false, 12.5};
     project.playback = {false, -0.7853981633974483};
     project.view = {{"camera", {{"yaw", 0.25}}}, {"slices", {1, 2, 3}}};
     return project;
@@ -77,7 +77,7 @@ TEST(ProjectFile, ComesBackAsItWasWritten) {
 
 TEST(ProjectFile, HoldsTheKeysThatOtherProgramsMayRead) {
     const json document = json::parse(projectText(fullProject()));
-    EXPECT_EQ(document["schemaVersion"], 3);
+    EXPECT_EQ(document["schemaVersion"], 4);
     EXPECT_EQ(document["rig"], kTablet);
     EXPECT_EQ(document["target"], "my files/Kühe & Pferde.glb");
     EXPECT_EQ(document["placement"]["scale"], 0.1);
@@ -101,17 +101,17 @@ TEST(ProjectFile, WhatIsNotStatedIsAsInANewProject) {
 
 TEST(ProjectFile, KeepsTheKeysItDoesNotKnow) {
     const std::string text = R"({"schemaVersion": 1, "rig": "a.glb", "author": "Ada", "nothing": null,
-        "matching": {"live": false, "colour": [1, {"deep": true}]}, "placement": {"pinned": true},
+        "matching": {"driver": "hand", "colour": [1, {"deep": true}]}, "placement": {"pinned": true},
         "lamps": [{"at": [1, 2, 3]}]})";
     Project project = parseProject(text, "a.lumorph");
     project.target = "cow.obj";
-    project.matching.live = true;
+    project.matching.driver = Driver::target;
     const json written = json::parse(projectText(project));
     EXPECT_EQ(written["author"], "Ada");
     EXPECT_TRUE(written.contains("nothing"));
     EXPECT_EQ(written["lamps"], json::parse(R"([{"at": [1, 2, 3]}])"));
     EXPECT_EQ(written["matching"]["colour"], json::parse(R"([1, {"deep": true}])"));
-    EXPECT_EQ(written["matching"]["live"], true);
+    EXPECT_EQ(written["matching"]["driver"], "target");
     EXPECT_EQ(written["placement"]["pinned"], true);
     EXPECT_EQ(written["placement"]["scale"], 1.0);
     EXPECT_EQ(written["target"], "cow.obj");
@@ -124,7 +124,7 @@ TEST(ProjectFile, ADraftWithoutVersionIsMigrated) {
         EXPECT_EQ(project.rig, "a.glb");
         EXPECT_THAT(project.strokes, ElementsAre(0.5));
         const json written = json::parse(projectText(project));
-        EXPECT_EQ(written["schemaVersion"], 3);
+        EXPECT_EQ(written["schemaVersion"], 4);
         EXPECT_EQ(written["author"], "Ada");
         EXPECT_FALSE(written.contains("model"));
     }
@@ -146,8 +146,8 @@ TEST(ProjectFile, EveryBrokenValueIsNamedWithItsKey) {
         {projectWith("/deep", nested), "nests JSON deeper than 64 levels"},
         {projectWith("/many", std::vector<int>(1'000'001, 0)), "more than 1000000 JSON values"},
         {R"({"rig": "a.glb", "strokes": [1e999]})", "is not valid JSON"},
-        {projectWith("/schemaVersion", 4),
-         "schemaVersion: was written by a newer Lumorph (schema 4; this one reads up to 3)"},
+        {projectWith("/schemaVersion", 5),
+         "schemaVersion: was written by a newer Lumorph (schema 5; this one reads up to 4)"},
         {projectWith("/schemaVersion", 18446744073709551615ULL), "newer Lumorph"},
         {projectWith("/schemaVersion", -1), "schemaVersion: is not a whole number"},
         {projectWith("/schemaVersion", "1"), "schemaVersion: is not a whole number"},
@@ -174,8 +174,9 @@ TEST(ProjectFile, EveryBrokenValueIsNamedWithItsKey) {
         {projectWith("/strokes", {-0.1}), "strokes[0]: is not a number"},
         {projectWith("/strokes", {nullptr}), "strokes[0]: is not a number"},
         {projectWith("/strokes", std::vector<int>(65'001, 0)), "strokes: is not a list of at most 65000 numbers"},
-        {projectWith("/matching", "live"), "matching: is not an object"},
-        {projectWith("/matching/live", 1), "matching.live: is neither true nor false"},
+        {projectWith("/matching", "driver"), "matching: is not an object"},
+        {projectWith("/matching/driver", 1), "matching.driver: is not a text"},
+        {projectWith("/matching/driver", "dance"), "matching.driver: is 'dance', not who can move the servos"},
         {projectWith("/matching/refined", "yes"), "matching.refined: is neither true nor false"},
         {projectWith("/matching/budgetMilliseconds", 0),
          "matching.budgetMilliseconds: is not a number from 0.1 to 10000.0"},

@@ -12,7 +12,7 @@ namespace lumorph::studio {
 /// Whether a frame shows the device of a state: a frame that was begun before an edit may come after it.
 [[nodiscard]] bool isOf(const MatchFrame& frame, const StudioState& state);
 
-/// Moves actuators by hand. Whoever takes an actuator takes the device off its target in the same step of undo; the
+/// Moves actuators by hand. Whoever takes an actuator becomes the driver of all, in the same step of undo; the
 /// other actuators stay where they are asked to be at that moment. Lives in the window's thread.
 class HandControl {
 public:

@@ -1,10 +1,21 @@
-#include "app/workspaces/field/hand_control.h"
+#include "app/studio/document/hand_control.h"
 
+#include <algorithm>
+#include <cmath>
 #include <utility>
 
-#include "app/workspaces/field/actuator_scale.h"
-
 namespace lumorph::studio {
+
+namespace {
+
+/// One in [0, 1] an actuator; missing ones at rest.
+std::vector<double> soundStrokesOf(const Rig& rig, std::vector<double> strokes) {
+    strokes.resize(rig.actuatorCount(), 0.0);
+    for (double& stroke : strokes) stroke = std::isfinite(stroke) ? std::clamp(stroke, 0.0, 1.0) : 0.0;
+    return strokes;
+}
+
+} // namespace
 
 bool isOf(const MatchFrame& frame, const StudioState& state) {
     const bool sameField = frame.field && frame.field == state.field.field;
@@ -16,9 +27,9 @@ std::vector<double> HandControl::strokes() const {
     const StudioState& state = document_.state();
     if (!state.rig.rig) return {};
     const auto& frame = loop_.frame();
-    const bool driven = state.matching.live || loop_.dancing();
+    const bool driven = loop_.driver() != Driver::hand;
     const bool known = frame && isOf(*frame, state);
-    return strokesFor(*state.rig.rig, driven && known ? frame->wantedStrokes : state.strokes);
+    return soundStrokesOf(*state.rig.rig, driven && known ? frame->wantedStrokes : state.strokes);
 }
 
 void HandControl::preview(std::size_t actuator, double stroke) {
@@ -27,7 +38,7 @@ void HandControl::preview(std::size_t actuator, double stroke) {
     }
     if (actuator >= base_.size()) return;
     document_.preview([this, actuator, stroke](StudioState& state) {
-        state.matching.live = false;
+        state.matching.driver = Driver::hand;
         state.strokes = base_;
         state.strokes[actuator] = stroke;
     });
@@ -42,8 +53,8 @@ void HandControl::moveAll(const QString& what, std::vector<double> strokes) {
     const StudioState& state = document_.state();
     if (!state.rig.rig) return;
     if (document_.previewing()) document_.cancelPreview();
-    document_.change(what, [moved = strokesFor(*state.rig.rig, std::move(strokes))](StudioState& next) {
-        next.matching.live = false;
+    document_.change(what, [moved = soundStrokesOf(*state.rig.rig, std::move(strokes))](StudioState& next) {
+        next.matching.driver = Driver::hand;
         next.strokes = moved;
     });
 }
