@@ -4,6 +4,7 @@
 #include <memory>
 #include <mutex>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <QCoreApplication>
@@ -64,18 +65,13 @@ const char* phaseText(LinkPhase phase) {
     return "";
 }
 
-ControllerKind kindNamed(const std::string& name) {
-    if (name == "lewansoul") return ControllerKind::lewansoul;
-    return name == "maestro" ? ControllerKind::maestro : ControllerKind::firmata;
-}
-
 DeviceProfile profileOf(const DeviceArguments& arguments) {
     DeviceProfile profile;
     if (!arguments.profile.empty()) {
         profile = readProfile(arguments.profile);
     } else {
         const ControllerKind kind =
-            arguments.controller.empty() ? likelyController(arguments.uri) : kindNamed(arguments.controller);
+            arguments.controller.empty() ? likelyController(arguments.uri) : knownController(arguments.controller).kind;
         const std::string rig = arguments.rig.empty() ? resourceFile("models/tablet.glb").string() : arguments.rig;
         profile = profileFor(readRig(rig), firstChannel(kind));
         profile.controller = kind;
@@ -158,7 +154,7 @@ void list(const DeviceArguments& arguments) {
     }
 }
 
-void probe(const DeviceArguments& arguments, const Session& session) {
+void probe(const DeviceArguments& arguments, Session& session) {
     const QtProgram program;
     DeviceLink link(profileOf(arguments), session);
     link.untilReady(arguments.confirmed);
@@ -171,23 +167,67 @@ void probe(const DeviceArguments& arguments, const Session& session) {
         printText(arguments.uri, link->status());
 }
 
-void monitor(const DeviceArguments& arguments, const Session& session) {
+/// What goes over the wire, as text. It is gathered in the link's thread and printed in the command's: whoever reads
+/// slowly, or has stopped reading, must not hold the link up.
+class WireText {
+public:
+    void add(std::span<const std::uint8_t> bytes, bool sent) {
+        const std::scoped_lock lock(mutex_);
+        if (text_.size() > kMostWaiting) {
+            ++left_;
+            return;
+        }
+        char word[24];
+        std::snprintf(word, sizeof word, "%9.3f %s", std::chrono::duration<double>(Clock::now() - begun_).count(),
+                      sent ? "->" : "<-");
+        text_ += word;
+        for (const std::uint8_t byte : bytes) {
+            std::snprintf(word, sizeof word, " %02X", byte);
+            text_ += word;
+        }
+        text_ += '\n';
+    }
+    void print() {
+        std::unique_lock lock(mutex_);
+        const std::string text = std::exchange(text_, {});
+        const std::size_t left = std::exchange(left_, 0);
+        lock.unlock();
+        if (text.empty()) return;
+        std::fwrite(text.data(), 1, text.size(), stdout);
+        if (left > 0) std::printf("... and %zu messages that were not read in time\n", left);
+        finishOutput();
+    }
+
+private:
+    static constexpr std::size_t kMostWaiting = std::size_t{1} << 20U;
+
+    const Clock::time_point begun_ = Clock::now();
+    std::mutex mutex_;
+    std::string text_;
+    std::size_t left_ = 0; ///< messages
+};
+
+void monitor(const DeviceArguments& arguments, Session& session) {
     const QtProgram program;
-    std::mutex output;
-    const auto begun = Clock::now();
-    const auto print = [&](std::span<const std::uint8_t> bytes, bool sent) {
-        const std::scoped_lock lock(output);
-        std::printf("%9.3f %s", std::chrono::duration<double>(Clock::now() - begun).count(), sent ? "->" : "<-");
-        for (const std::uint8_t byte : bytes) std::printf(" %02X", byte);
-        std::printf("\n");
-        std::fflush(stdout);
-    };
-    DeviceLink link(profileOf(arguments), session, print);
+    WireText wire;
     const auto seconds = std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(arguments.seconds));
-    static_cast<void>(link.until([](const LinkStatus&) { return false; }, seconds));
+    const auto print = [&wire](const LinkStatus&) {
+        wire.print();
+        return false;
+    };
+    bool stopped = false;
+    try {
+        DeviceLink link(profileOf(arguments), session,
+                        [&wire](std::span<const std::uint8_t> bytes, bool sent) { wire.add(bytes, sent); });
+        static_cast<void>(link.until(print, seconds));
+    } catch (const Cancelled&) {
+        stopped = true;
+    }
+    wire.print(); // with what was said when the link ended
+    if (stopped) throw Cancelled();
 }
 
-void move(const DeviceArguments& arguments, const Session& session) {
+void move(const DeviceArguments& arguments, Session& session) {
     const QtProgram program;
     const DeviceProfile profile = profileOf(arguments);
     const std::size_t count = profile.servos.size();
@@ -224,6 +264,7 @@ void move(const DeviceArguments& arguments, const Session& session) {
     if (!after.waiting.empty())
         throw DeviceError(arguments.uri, "nobody knows where its servos stand, so they may jump when they start",
                           "keep hands off, and say --may-jump");
+    link->leave(); // before printing, which may wait for a reader
     if (arguments.json)
         printJson(jsonOf(after));
     else
@@ -237,8 +278,16 @@ CLI::App* addCommand(CLI::App& group, const char* name, const char* what, Device
                      "serial:///dev/NAME?baud=N, bt://MAC, hid://VENDOR:PRODUCT?product=TEXT or sim://tablet")
         ->required();
     command
-        ->add_option("--controller", arguments.controller, "What it speaks (default: what such an address usually has)")
-        ->check(CLI::IsMember({"firmata", "lewansoul", "maestro"}));
+        ->add_option("--controller", arguments.controller,
+                     "What it speaks: " + controllerKeys() + " (default: what such an address usually has)")
+        ->check([](const std::string& key) {
+            try {
+                static_cast<void>(knownController(key));
+                return std::string();
+            } catch (const InvalidInput& error) {
+                return std::string(error.what());
+            }
+        });
     command->add_option("--profile", arguments.profile, "A device profile: channels, pulses, limits");
     command->add_option("--rig", arguments.rig, "The rig whose servos they are (default: the tablet)");
     command->add_flag("--is-right", arguments.confirmed, "It is what it seems to be");

@@ -1,5 +1,6 @@
 #include "app/cli/device_link.h"
 
+#include <algorithm>
 #include <cstdio>
 #include <string>
 #include <utility>
@@ -16,6 +17,7 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 constexpr std::chrono::milliseconds kPause{20};
+constexpr std::chrono::seconds kLetGoWithin{2};  // detaching is repeated until the board has confirmed it
 constexpr std::chrono::seconds kAnswerWithin{8}; // an Arduino starts anew when its port is opened
 
 /// Who is out of reach of the radio may come near, or be switched on. A port is there or it is not.
@@ -30,10 +32,33 @@ bool mayPass(const LinkTrouble& trouble, const DeviceAddress& address) {
 
 } // namespace
 
-DeviceLink::DeviceLink(const DeviceProfile& profile, const Session& session, OnWire onWire)
+DeviceLink::DeviceLink(const DeviceProfile& profile, Session& session, OnWire onWire)
     : session_(session), link_(profile, options(std::move(onWire))) {
     link_.connect();
-    untilOpen();
+    session_.setLastAct([this] { letGo(); });
+    try {
+        untilOpen();
+    } catch (...) {
+        session_.setLastAct({});
+        throw;
+    }
+}
+
+DeviceLink::~DeviceLink() {
+    link_.leave();
+    session_.setLastAct({});
+}
+
+/// Beside the command's own thread, which may wait for whoever reads what it prints.
+void DeviceLink::letGo() {
+    link_.stop();
+    const auto end = Clock::now() + kLetGoWithin;
+    for (LinkStatus status = link_.status(); Clock::now() < end; status = link_.status()) {
+        const bool driven = status.phase == LinkPhase::starting || status.phase == LinkPhase::live ||
+                            std::ranges::any_of(status.servos, &ServoStatus::attached);
+        if (!driven && !status.controller.detaching) return;
+        std::this_thread::sleep_for(kPause);
+    }
 }
 
 LinkOptions DeviceLink::options(OnWire onWire) {
@@ -80,6 +105,7 @@ void DeviceLink::tell() {
     for (const LinkEvent& event : link_.takeEvents())
         std::fprintf(stderr, "%s%s%s\n", event.text.c_str(),
                      event.remedy.empty() ? "" : " Remedy: ", event.remedy.c_str());
+    if (std::ferror(stderr) != 0) throwIfReaderGone();
 }
 
 } // namespace lumorph::cli

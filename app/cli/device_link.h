@@ -12,14 +12,18 @@
 
 namespace lumorph::cli {
 
-/// A link for the time of a command; what it tells goes to stderr as it comes.
+/// A link for the time of a command; what it tells goes to stderr as it comes. However the command ends, by an error, a
+/// signal, a second one or a reader that has gone, servos are let go first.
 class DeviceLink {
 public:
     using OnWire = std::function<void(std::span<const std::uint8_t>, bool)>;
 
     /// Opens it. Throws DeviceError with what is wrong: at once where waiting does not help (no such port, no
     /// permission, in use), after 8 seconds where the device may still come into reach of the radio.
-    DeviceLink(const DeviceProfile& profile, const Session& session, OnWire onWire = {});
+    DeviceLink(const DeviceProfile& profile, Session& session, OnWire onWire = {});
+    ~DeviceLink();
+    DeviceLink(const DeviceLink&) = delete;
+    DeviceLink& operator=(const DeviceLink&) = delete;
 
     ServoLink* operator->() noexcept { return &link_; }
 
@@ -43,10 +47,11 @@ public:
 private:
     [[nodiscard]] LinkOptions options(OnWire onWire);
     void untilOpen();
+    void letGo();
     void wait();
     void tell();
 
-    const Session& session_;
+    Session& session_;
     SimulatedBench bench_;
     ServoLink link_;
 };

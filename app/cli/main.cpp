@@ -71,6 +71,8 @@ int main(int argc, char** argv) {
         return complain(error.what(), kWrongUsage);
     } catch (const lumorph::Cancelled&) {
         return complain("stopped: it was asked to; nothing was written", kFailed);
+    } catch (const lumorph::cli::ReaderGone&) {
+        lumorph::cli::Session::endByPipe();
     } catch (const std::bad_alloc&) {
         return complain("memory: there is not enough for this; use a lower resolution or fewer levels", kFailed);
     } catch (const std::exception& error) {

@@ -9,6 +9,7 @@
 #include <iostream>
 #include <memory>
 #include <mutex>
+#include <utility>
 
 #include <poll.h>
 #include <unistd.h>
@@ -28,6 +29,7 @@ sigset_t stopSignals() {
     sigemptyset(&signals);
     sigaddset(&signals, SIGINT);
     sigaddset(&signals, SIGTERM);
+    sigaddset(&signals, SIGHUP);
     return signals;
 }
 
@@ -58,7 +60,10 @@ std::vector<std::byte> readStandardInput(const Session& session) {
     }
 }
 
-[[noreturn]] void failOutput() { throw DeviceError("standard output", "it cannot be written", "check where it goes"); }
+[[noreturn]] void failOutput() {
+    throwIfReaderGone();
+    throw DeviceError("standard output", "it cannot be written", "check where it goes");
+}
 
 } // namespace
 
@@ -66,12 +71,17 @@ Session::Session() {
     // The signals are blocked in every thread and waited for in one, which may do what a handler may not.
     const sigset_t signals = stopSignals();
     pthread_sigmask(SIG_BLOCK, &signals, nullptr);
+    std::signal(SIGPIPE, SIG_IGN);
     watcher_ = std::jthread([this, signals](const std::stop_token& end) {
         for (;;) {
             const int signal = sigwaitinfo(&signals, nullptr);
             if (end.stop_requested()) return;
             if (signal < 0) continue;
-            if (stop_.stop_requested()) _exit(1);
+            if (stop_.stop_requested()) {
+                const std::scoped_lock lock(lastActMutex_);
+                if (lastAct_) lastAct_();
+                _exit(1);
+            }
             stop_.request_stop();
         }
     });
@@ -83,7 +93,19 @@ Session::~Session() {
     pthread_kill(watcher_.native_handle(), SIGINT); // NOLINT(bugprone-bad-signal-to-kill-thread)
 }
 
+void Session::setLastAct(std::function<void()> act) {
+    const std::scoped_lock lock(lastActMutex_);
+    lastAct_ = std::move(act);
+}
+
+void Session::endByPipe() noexcept {
+    std::signal(SIGPIPE, SIG_DFL);
+    std::raise(SIGPIPE);
+    _exit(1); // where somebody has blocked it
+}
+
 void Session::releaseSignals() noexcept {
+    std::signal(SIGPIPE, SIG_DFL);
     const sigset_t signals = stopSignals();
     pthread_sigmask(SIG_UNBLOCK, &signals, nullptr);
 }
@@ -109,6 +131,11 @@ Progress Session::progress() const {
 
 void Session::endProgress() {
     if (isatty(STDERR_FILENO) != 0) std::fputs("\r\033[K", stderr);
+}
+
+void throwIfReaderGone() {
+    pollfd output{STDOUT_FILENO, 0, 0};
+    if (poll(&output, 1, 0) > 0 && (output.revents & (POLLERR | POLLHUP)) != 0) throw ReaderGone();
 }
 
 std::string inputName(const std::string& path) { return path == "-" ? "standard input" : path; }

@@ -121,7 +121,7 @@ void refuseHid(const DeviceProfile& profile, const DeviceAddress& address, const
 /// Throws InvalidInput that names the first servo whose channel is not 0 to `last`.
 void checkChannels(const DeviceProfile& profile, int last);
 
-// The three kinds; makeController chooses.
+// What the table of controller_kinds.cpp makes controllers with; channels were checked before.
 [[nodiscard]] std::unique_ptr<ServoController> makeFirmata(const DeviceProfile& profile, const DeviceAddress& address);
 [[nodiscard]] std::unique_ptr<ServoController> makeLewansoul(const DeviceProfile& profile,
                                                              const DeviceAddress& address);

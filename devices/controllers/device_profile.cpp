@@ -1,11 +1,12 @@
 #include "devices/controllers/device_profile.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <set>
 #include <string_view>
+#include <type_traits>
 #include <utility>
+#include <variant>
 
 #include <nlohmann/json.hpp>
 
@@ -15,6 +16,7 @@
 #include "core/base/json_check.h"
 #include "core/base/text.h"
 #include "core/scene/json_section.h"
+#include "devices/controllers/controller_kinds.h"
 
 namespace lumorph {
 namespace {
@@ -31,24 +33,6 @@ constexpr JsonLimits kLimits{1U << 20, 8, 4096};
 constexpr std::size_t kMostServos = 64;
 constexpr std::size_t kLongestText = 500;
 
-constexpr std::array<std::pair<ControllerKind, std::string_view>, 3> kKinds = {
-    {{ControllerKind::firmata, "firmata"},
-     {ControllerKind::lewansoul, "lewansoul"},
-     {ControllerKind::maestro, "maestro"}}};
-
-/// What a controller of this kind can number: pins, servo ids (254 means all) or channels.
-int greatestChannel(ControllerKind kind) {
-    switch (kind) {
-    case ControllerKind::firmata:
-        return 127;
-    case ControllerKind::lewansoul:
-        return 253;
-    case ControllerKind::maestro:
-        return 23;
-    }
-    return 0;
-}
-
 std::string numberText(double value) { return std::isfinite(value) ? json(value).dump() : std::to_string(value); }
 
 void requireWithin(const std::string& subject, const char* what, double value, ProfileLimits bounds) {
@@ -58,7 +42,7 @@ void requireWithin(const std::string& subject, const char* what, double value, P
 }
 
 void checkServo(const ServoSetup& servo, const std::string& subject, ControllerKind kind) {
-    requireWithin(subject, "the channel", servo.channel, {0.0, static_cast<double>(greatestChannel(kind))});
+    requireWithin(subject, "the channel", servo.channel, {0.0, static_cast<double>(knownController(kind).lastChannel)});
     requireWithin(subject, "the least pulse", servo.pulseMin, limits::kPulse);
     requireWithin(subject, "the greatest pulse", servo.pulseMax, limits::kPulse);
     const double span = servo.pulseMax - servo.pulseMin;
@@ -88,28 +72,31 @@ json documentOf(const ServoSetup& servo) {
             {"exitStroke", servo.exitStroke}};
 }
 
-std::string_view nameOf(ControllerKind kind) {
-    return std::ranges::find(kKinds, kind, &std::pair<ControllerKind, std::string_view>::first)->second;
+/// All options of all kinds: one who tries another board and comes back finds them as they were.
+template <typename Use> void eachOption(Use use) {
+    for (const KnownController& known : knownControllers())
+        for (const ControllerOption& option : known.options)
+            std::visit([&](auto member) { use(option, member); }, option.member);
 }
 
 json documentOf(const DeviceProfile& profile) {
     json servos = json::array();
     for (const ServoSetup& servo : profile.servos) servos.push_back(documentOf(servo));
-    return {{"format", kFormat},
-            {"schema", kSchema},
-            {"name", profile.name},
-            {"address", profile.address},
-            {"controller", nameOf(profile.controller)},
-            {"controllerNumber", profile.controllerNumber},
-            {"maestroCrc", profile.maestroCrc},
-            {"identity", profile.identity},
-            {"confirmed", profile.confirmed},
-            {"servos", std::move(servos)},
-            {"commandsPerSecond", profile.commandsPerSecond},
-            {"staggerSeconds", profile.staggerSeconds},
-            {"slowShare", profile.slowShare},
-            {"handDistance", profile.handDistance},
-            {"restOnExit", profile.restOnExit}};
+    json document = {{"format", kFormat},
+                     {"schema", kSchema},
+                     {"name", profile.name},
+                     {"address", profile.address},
+                     {"controller", knownController(profile.controller).key},
+                     {"identity", profile.identity},
+                     {"confirmed", profile.confirmed},
+                     {"servos", std::move(servos)},
+                     {"commandsPerSecond", profile.commandsPerSecond},
+                     {"staggerSeconds", profile.staggerSeconds},
+                     {"slowShare", profile.slowShare},
+                     {"handDistance", profile.handDistance},
+                     {"restOnExit", profile.restOnExit}};
+    eachOption([&](const ControllerOption& option, auto member) { document[option.key] = profile.*member; });
+    return document;
 }
 
 void require(const JsonSection& section, const char* key) {
@@ -129,7 +116,7 @@ void readWithin(JsonSection& section, const char* key, double& value, ProfileLim
 ServoSetup readServo(json& object, JsonSection section, ControllerKind kind) {
     for (const char* key : {"channel", "pulseMin", "pulseMax"}) require(section, key);
     ServoSetup servo;
-    section.wholeNumber("channel", servo.channel, 0, greatestChannel(kind));
+    section.wholeNumber("channel", servo.channel, 0, knownController(kind).lastChannel);
     readWithin(section, "pulseMin", servo.pulseMin, limits::kPulse);
     readWithin(section, "pulseMax", servo.pulseMax, limits::kPulse);
     section.flag("reversed", servo.reversed);
@@ -158,13 +145,24 @@ std::vector<ServoSetup> readServos(json& document, const JsonSection& section, C
 }
 
 ControllerKind readKind(JsonSection& section) {
-    std::string name(nameOf(ControllerKind::firmata));
-    section.text("controller", name);
-    const auto* const found = std::ranges::find(kKinds, name, &std::pair<ControllerKind, std::string_view>::second);
-    if (found == kKinds.end())
-        section.refuse("controller", inQuotes(name) + " is no controller that is known here",
-                       "write firmata, lewansoul or maestro");
-    return found->first;
+    std::string key(knownController(DeviceProfile{}.controller).key);
+    section.text("controller", key);
+    try {
+        return knownController(key).kind;
+    } catch (const InvalidInput& error) {
+        section.refuse("controller", error.why(), error.remedy());
+    }
+}
+
+void readOptions(JsonSection& section, DeviceProfile& profile) {
+    eachOption([&](const ControllerOption& option, auto member) {
+        const std::string key(option.key);
+        if constexpr (std::is_same_v<decltype(member), bool DeviceProfile::*>)
+            section.flag(key.c_str(), profile.*member);
+        else
+            section.wholeNumber(key.c_str(), profile.*member, static_cast<int>(option.limits.least),
+                                static_cast<int>(option.limits.most));
+    });
 }
 
 void requireFormat(JsonSection& section, const std::string& file) {
@@ -183,8 +181,7 @@ DeviceProfile profileOf(json& document, const std::string& file) {
     section.text("name", profile.name);
     section.text("address", profile.address);
     profile.controller = readKind(section);
-    section.wholeNumber("controllerNumber", profile.controllerNumber, 0, 127);
-    section.flag("maestroCrc", profile.maestroCrc);
+    readOptions(section, profile);
     section.text("identity", profile.identity);
     section.flag("confirmed", profile.confirmed);
     readWithin(section, "commandsPerSecond", profile.commandsPerSecond, limits::kCommandsPerSecond);
@@ -246,7 +243,10 @@ void checkProfile(const DeviceProfile& profile) {
         throw InvalidInput("device profile", std::to_string(profile.servos.size()) + " servos, and 64 is the most",
                            "spread them over several controllers");
     const std::string all = "device profile";
-    requireWithin(all, "the controller's number", profile.controllerNumber, limits::kControllerNumber);
+    eachOption([&](const ControllerOption& option, auto member) {
+        if constexpr (std::is_same_v<decltype(member), int DeviceProfile::*>)
+            requireWithin(all, inQuotes(option.title).c_str(), profile.*member, option.limits);
+    });
     requireWithin(all, "the rate of commands", profile.commandsPerSecond, limits::kCommandsPerSecond);
     requireWithin(all, "the pause between servo starts", profile.staggerSeconds, limits::kStaggerSeconds);
     requireWithin(all, "the share of slow mode", profile.slowShare, limits::kSlowShare);

@@ -443,7 +443,6 @@ LinkTrouble FirmataController::silence(bool never) const {
 
 std::unique_ptr<ServoController> makeFirmata(const DeviceProfile& profile, const DeviceAddress& address) {
     refuseHid(profile, address, "Firmata is not spoken over HID", "use a serial or a Bluetooth address");
-    checkChannels(profile, 127);
     return std::make_unique<FirmataController>(profile, address);
 }
 

@@ -275,7 +275,6 @@ LinkTrouble LewansoulController::silence(bool never) const {
 } // namespace
 
 std::unique_ptr<ServoController> makeLewansoul(const DeviceProfile& profile, const DeviceAddress& address) {
-    checkChannels(profile, 253);
     return std::make_unique<LewansoulController>(profile, address);
 }
 

@@ -243,7 +243,6 @@ LinkTrouble MaestroController::silence(bool never) const {
 std::unique_ptr<ServoController> makeMaestro(const DeviceProfile& profile, const DeviceAddress& address) {
     refuseHid(profile, address, "a Maestro is not reached over HID",
               "use the address of its command port, such as serial:///dev/ttyACM0");
-    checkChannels(profile, 23);
     return std::make_unique<MaestroController>(profile, address);
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "devices/controllers/controller_kinds.h"
 #include "devices/controllers/servo_engine_data.h"
 
 namespace lumorph {
@@ -13,8 +14,7 @@ constexpr Microseconds kTrustedRestOfOrders{2'000'000};
 
 /// The same board with the same wires: only limits and manners may differ.
 bool sameWires(const DeviceProfile& made, const DeviceProfile& wanted) {
-    return made.address == wanted.address && made.controller == wanted.controller &&
-           made.controllerNumber == wanted.controllerNumber && made.maestroCrc == wanted.maestroCrc &&
+    return made.address == wanted.address && made.controller == wanted.controller && sameOptions(made, wanted) &&
            std::ranges::equal(made.servos, wanted.servos, {}, &ServoSetup::channel, &ServoSetup::channel);
 }
 

@@ -79,7 +79,10 @@ TEST(DeviceCommands, WrongArgumentsAreTold) {
         {{"move", "sim://tablet", "--actuator", "0", "--level", "33"}, 2, "there are 33 levels"},
         {{"move", "sim://tablet", "--actuator", "0", "--level", "-1"}, 2, "level -1"},
         {{"probe", "sim://tablet", "--profile", "/nowhere.json"}, 1, "/nowhere.json"},
-        {{"probe", "sim://tablet", "--controller", "magic"}, 2, "magic"},
+        {{"probe", "sim://tablet", "--controller", "magic"},
+         2,
+         "'magic' is no controller that is known here; write "
+         "firmata, lewansoul or maestro"},
     };
     for (const Wrong& wrong : cases) {
         SCOPED_TRACE(wrong.says);

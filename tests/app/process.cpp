@@ -7,6 +7,8 @@
 #include <cstdlib>
 #include <stdexcept>
 #include <system_error>
+#include <thread>
+#include <utility>
 
 #include <fcntl.h>
 #include <poll.h>
@@ -93,6 +95,8 @@ Process::Process(const std::string& program, const std::vector<std::string>& arg
     sigemptyset(&signals);
     sigaddset(&signals, SIGINT);
     sigaddset(&signals, SIGTERM);
+    sigaddset(&signals, SIGHUP);
+    sigaddset(&signals, SIGPIPE);
     posix_spawnattr_setsigdefault(&attributes, &signals);
     posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGDEF);
     std::vector<char*> argv{const_cast<char*>(program.c_str())};
@@ -136,17 +140,28 @@ bool Process::waitForError(const std::string& text, std::chrono::seconds limit) 
     return true;
 }
 
+const Outcome& Process::gatherFor(std::chrono::milliseconds time) {
+    gather(time);
+    return outcome_;
+}
+
+void Process::closeReaders() {
+    for (int* end : {&out_, &err_})
+        if (const int descriptor = std::exchange(*end, -1); descriptor >= 0) close(descriptor);
+}
+
 Outcome Process::wait(std::chrono::seconds limit) {
     const auto end = Clock::now() + limit;
-    while (gather(std::chrono::milliseconds(50)))
+    int status = 0;
+    while (gather(std::chrono::milliseconds(50)) || waitpid(process_, &status, WNOHANG) == 0) {
+        if (out_ < 0 && err_ < 0) std::this_thread::sleep_for(std::chrono::milliseconds(2));
         if (Clock::now() > end) {
             kill(process_, SIGKILL);
             waitpid(process_, nullptr, 0);
             process_ = -1;
             return outcome_;
         }
-    int status = 0;
-    waitpid(process_, &status, 0);
+    }
     process_ = -1;
     outcome_.exitCode = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
     return outcome_;

@@ -33,6 +33,10 @@ public:
     void send(int signal) const;
     /// Gathers output until stderr holds `text`; false when the program ends or time runs out before.
     bool waitForError(const std::string& text, std::chrono::seconds limit);
+    /// Gathers output for so long, and gives what has come so far.
+    const Outcome& gatherFor(std::chrono::milliseconds time);
+    /// Nobody reads its output and its errors any more.
+    void closeReaders();
     /// Gathers output until the program ends.
     Outcome wait(std::chrono::seconds limit = std::chrono::seconds(300));
 

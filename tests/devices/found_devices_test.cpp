@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include "devices/controllers/controller_kinds.h"
 #include "devices/transport/port_access.h"
 #include "tests/devices/pty.h"
 
@@ -19,21 +20,23 @@ TEST(FoundDevices, ASerialPortIsNamedByWhatItProbablyIs) {
         const char* description;
         const char* name;
         const char* hint;
+        ControllerKind kind;
     };
     const Row rows[] = {
-        {0x2341, "Arduino Uno", "Arduino Uno on none0", "Arduino"},
-        {0x2341, "", "Arduino on none0", "StandardFirmata"},
-        {0x1a86, "USB Serial", "USB Serial on none0", "Nano"},
-        {0x1a86, "", "CH340 serial adapter on none0", "Nano"},
-        {0x0403, "", "FTDI serial adapter on none0", "Pro Mini"},
-        {0x10c4, "", "CP210x serial adapter on none0", "ESP"},
-        {0x1ffb, "", "Pololu on none0", "Maestro"},
-        {0x9999, "", "serial port on none0", ""},
+        {0x2341, "Arduino Uno", "Arduino Uno on none0", "Arduino", ControllerKind::firmata},
+        {0x2341, "", "Arduino on none0", "StandardFirmata", ControllerKind::firmata},
+        {0x1a86, "USB Serial", "USB Serial on none0", "Nano", ControllerKind::firmata},
+        {0x1a86, "", "CH340 serial adapter on none0", "Nano", ControllerKind::firmata},
+        {0x0403, "", "FTDI serial adapter on none0", "Pro Mini", ControllerKind::firmata},
+        {0x10c4, "", "CP210x serial adapter on none0", "ESP", ControllerKind::firmata},
+        {0x1ffb, "", "Pololu on none0", "Maestro", ControllerKind::maestro},
+        {0x9999, "", "serial port on none0", "", ControllerKind::firmata},
     };
     for (const Row& row : rows) {
         const FoundDevice found = describeSerialPort({"/dev/none0", "S1", row.vendor, 1, row.description});
         EXPECT_EQ(found.name, row.name);
         EXPECT_THAT(found.hint, HasSubstr(row.hint));
+        EXPECT_EQ(likelyController(found.address + ' ' + found.name + found.hint), row.kind);
         EXPECT_EQ(found.identity, "S1");
         EXPECT_EQ(std::get<SerialAddress>(parseDeviceAddress(found.address)).path, "/dev/none0");
         EXPECT_EQ(found.trouble, notThere("/dev/none0"));
@@ -70,6 +73,7 @@ TEST(FoundDevices, AHidDeviceIsNotTrustedForItsIds) {
     const FoundDevice arm = describeHidDevice({"/dev/hidraw9", 0x0483, 0x5750, "S1", "LOBOT xArm"});
     EXPECT_EQ(arm.name, "LOBOT xArm on hidraw9");
     EXPECT_THAT(arm.hint, HasSubstr("servo controller"));
+    EXPECT_EQ(likelyController(arm.name + arm.hint), ControllerKind::lewansoul);
     const FoundDevice other = describeHidDevice({"/dev/hidraw9", 0x0483, 0x5750, "", "Joystick"});
     EXPECT_THAT(other.hint, HasSubstr("something else"));
     EXPECT_EQ(describeHidDevice({"/dev/hidraw9", 0x0483, 0x5750, "", ""}).address, "hid://0483:5750");

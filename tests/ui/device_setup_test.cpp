@@ -120,20 +120,20 @@ TEST_F(DeviceSetup, WhoIsOnTheWayToRestIsNotHurried) {
 }
 
 TEST_F(DeviceSetup, AMaestrosNumberIsAskedOfMaestrosAlone) {
-    EXPECT_EQ(window.findNow<QWidget>("setup.number"), nullptr);
+    EXPECT_EQ(window.findNow<QWidget>("setup.controllerNumber"), nullptr);
     use("maestro");
     goLiveByAddress();
     raise("dock.devices.setup");
-    ASSERT_NE(window.find<QWidget>("setup.number"), nullptr);
-    window.enter("setup.number", "5");
+    ASSERT_NE(window.find<QWidget>("setup.controllerNumber"), nullptr);
+    window.enter("setup.controllerNumber", "5");
     EXPECT_EQ(profile().controllerNumber, 5);
     // The simulated board has number 12: nothing answers that is called 5.
     EXPECT_TRUE(logs("Another board or other wires: the servos were let go."));
     EXPECT_TRUE(tells("o Maestro with device number 5 answers"));
     EXPECT_TRUE(allLimp());
-    window.enter("setup.number", "12");
+    window.enter("setup.controllerNumber", "12");
     EXPECT_TRUE(offers("Start servos"));
-    set("setup.crc", true);
+    set("setup.maestroCrc", true);
     EXPECT_TRUE(profile().maestroCrc);
 }
 

@@ -126,7 +126,7 @@ void DeviceService::Data::takeRig() {
     origin = document.state().rig.origin;
     if (same) return;
     retire();
-    use(rig ? freshProfile(*rig, ControllerKind::firmata) : DeviceProfile{});
+    use(rig ? freshProfile(*rig, DeviceProfile{}.controller) : DeviceProfile{});
     if (rig)
         if (const QString last = profiles.lastOf(*rig); !last.isEmpty()) service.loadProfile(last);
     emit service.profileChanged();

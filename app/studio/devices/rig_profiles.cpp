@@ -65,8 +65,8 @@ bool beginsAnew(const DeviceProfile& before, const DeviceProfile& after) {
     const auto asNarrow = [](const ServoSetup& a, const ServoSetup& b) {
         return b.pulseMin >= a.pulseMin && b.pulseMax <= a.pulseMax;
     };
-    return before.commandsPerSecond != after.commandsPerSecond || before.controllerNumber != after.controllerNumber ||
-           before.maestroCrc != after.maestroCrc || !std::ranges::equal(before.servos, after.servos, asNarrow);
+    return before.commandsPerSecond != after.commandsPerSecond || !sameOptions(before, after) ||
+           !std::ranges::equal(before.servos, after.servos, asNarrow);
 }
 
 } // namespace lumorph::studio

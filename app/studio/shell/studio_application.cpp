@@ -119,6 +119,8 @@ void StudioApplication::closeOnInterrupt(QWidget& window) {
     action.sa_handler = wakeOnSignal;
     action.sa_flags = SA_RESTART | static_cast<int>(SA_RESETHAND);
     for (const int signal : {SIGINT, SIGTERM, SIGHUP}) ::sigaction(signal, &action, nullptr);
+    // Whoever read what the program says may go away; servos must not be left for that.
+    ::signal(SIGPIPE, SIG_IGN);
 }
 
 } // namespace lumorph::studio

@@ -196,16 +196,4 @@ QString restText(const DeviceProfile& profile, const QStringList& servos) {
     return raised.join(", ") + (all ? "." : ", the others down.");
 }
 
-QString controllerText(ControllerKind kind) {
-    switch (kind) {
-    case ControllerKind::firmata:
-        return "Arduino with Firmata";
-    case ControllerKind::lewansoul:
-        return "LewanSoul, Hiwonder";
-    case ControllerKind::maestro:
-        return "Pololu Maestro";
-    }
-    return {};
-}
-
 } // namespace lumorph::studio

@@ -45,7 +45,6 @@ struct DeviceView {
 [[nodiscard]] QString servoName(const QStringList& servos, std::size_t servo);
 /// "All at rest", or who rests where.
 [[nodiscard]] QString restText(const DeviceProfile& profile, const QStringList& servos);
-[[nodiscard]] QString controllerText(ControllerKind kind);
 /// The first letter large and a full stop at the end.
 [[nodiscard]] QString sentence(const std::string& words);
 

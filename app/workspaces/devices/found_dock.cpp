@@ -15,8 +15,6 @@
 namespace lumorph::studio {
 namespace {
 
-constexpr ControllerKind kKinds[] = {ControllerKind::firmata, ControllerKind::lewansoul, ControllerKind::maestro};
-
 QString detailOf(const FoundDevice& device) {
     if (!device.trouble.why.empty()) return sentence(device.trouble.why);
     return QString::fromStdString(device.hint.empty() ? device.address : device.hint);
@@ -78,15 +76,18 @@ private:
         kind_ = new QComboBox;
         kind_->setObjectName("devices.kind");
         kind_->setToolTip("What language the board speaks. Chosen by itself where the name tells.");
-        for (const ControllerKind kind : kKinds) kind_->addItem(controllerText(kind));
+        for (const KnownController& known : knownControllers())
+            kind_->addItem(QString::fromUtf8(known.title), static_cast<int>(known.kind));
         layout.addWidget(makeRow("&Speaks", kind_));
         connect(address_, &QLineEdit::returnPressed, this, [this] { connectNow(); });
         connect(address_, &QLineEdit::textEdited, this, [this](const QString& text) {
-            kind_->setCurrentIndex(static_cast<int>(likelyController(text.toStdString())));
+            showKind(likelyController(text.toStdString()));
             list_->setCurrentRow(rowOf(text));
             refresh();
         });
     }
+
+    void showKind(ControllerKind kind) { kind_->setCurrentIndex(kind_->findData(static_cast<int>(kind))); }
 
     void addButtons(QVBoxLayout& layout) {
         connect_ = new QPushButton("Connect");
@@ -132,8 +133,7 @@ private:
         if (row >= 0 && static_cast<std::size_t>(row) < found.size()) {
             const FoundDevice& device = found[static_cast<std::size_t>(row)];
             address_->setText(QString::fromStdString(device.address));
-            kind_->setCurrentIndex(
-                static_cast<int>(likelyController(address_->text().toStdString() + " " + device.name + device.hint)));
+            showKind(likelyController(address_->text().toStdString() + " " + device.name + device.hint));
         }
         showTrouble();
         refresh();
@@ -153,7 +153,7 @@ private:
         const QString address = QString::fromStdString(profile.address);
         if (address.isEmpty() || address_->hasFocus()) return;
         address_->setText(address);
-        kind_->setCurrentIndex(static_cast<int>(profile.controller));
+        showKind(profile.controller);
         const QSignalBlocker quiet(list_);
         list_->setCurrentRow(rowOf(address));
         showTrouble();
@@ -161,7 +161,7 @@ private:
 
     void connectNow() {
         if (!address_->text().trimmed().isEmpty())
-            studio_.devices.connectTo(address_->text(), kKinds[std::max(0, kind_->currentIndex())]);
+            studio_.devices.connectTo(address_->text(), static_cast<ControllerKind>(kind_->currentData().toInt()));
     }
 
     void refresh() {

@@ -2,6 +2,8 @@
 #include <functional>
 #include <optional>
 #include <utility>
+#include <variant>
+#include <vector>
 
 #include <QCheckBox>
 #include <QLabel>
@@ -15,6 +17,7 @@
 #include "app/workspaces/devices/devices_docks.h"
 #include "app/workspaces/devices/profile_edit.h"
 #include "app/workspaces/devices/servo_board.h"
+#include "devices/controllers/controller_kinds.h"
 
 namespace lumorph::studio {
 namespace {
@@ -88,7 +91,7 @@ private:
         numbers_.push_back({field, member});
     }
 
-    QCheckBox* addSwitch(QVBoxLayout& rows, const QString& text, const char* name, const QString& tip,
+    QCheckBox* addSwitch(QVBoxLayout& rows, const QString& text, const QString& name, const QString& tip,
                          bool DeviceProfile::*member) {
         auto* box = new QCheckBox(text);
         box->setObjectName(name);
@@ -143,24 +146,8 @@ private:
         rows.addWidget(makeHeading("Controller"));
         kind_ = makeMuted("setup.kind");
         rows.addWidget(kind_);
-        number_ = new ValueField(Quantity::level, limits::kControllerNumber.least, limits::kControllerNumber.most,
-                                 DeviceProfile{}.controllerNumber, this);
-        number_->setObjectName("setup.number");
-        number_->setToolTip("The Maestro's device number, as its own settings (Maestro Control Center) say; 12 unless "
-                            "somebody changed it");
-        number_->setStep(1.0);
-        connect(number_, &ValueField::committed, this, [this](double value) {
-            edit([value](DeviceProfile& profile) { profile.controllerNumber = static_cast<int>(std::lround(value)); });
-        });
-        maestro_ = new QWidget;
-        auto* column = new QVBoxLayout(maestro_);
-        column->setContentsMargins(0, 0, 0, 0);
-        column->setSpacing(8);
-        column->addWidget(makeRow("&Device number", number_));
-        crc_ = addSwitch(*column, "Expects a checksum (CRC)", "setup.crc",
-                         "As \"Enable CRC\" in the Maestro's own settings; wrong here, it heeds no command",
-                         &DeviceProfile::maestroCrc);
-        rows.addWidget(maestro_);
+        for (const KnownController& known : knownControllers())
+            if (!known.options.empty()) rows.addWidget(makeOptions(known));
         identity_ = makeMuted("setup.identity");
         rows.addWidget(identity_);
         forget_ = new QPushButton("Forget this board");
@@ -174,6 +161,37 @@ private:
         });
         rows.addWidget(forget_);
     }
+
+    /// What only this kind of controller has to be told.
+    QWidget* makeOptions(const KnownController& known) {
+        auto* group = new QWidget;
+        auto* column = new QVBoxLayout(group);
+        column->setContentsMargins(0, 0, 0, 0);
+        column->setSpacing(8);
+        for (const ControllerOption& option : known.options)
+            std::visit([&](auto member) { addOption(*column, option, member); }, option.member);
+        groups_.emplace_back(known.kind, group);
+        return group;
+    }
+
+    void addOption(QVBoxLayout& rows, const ControllerOption& option, int DeviceProfile::*member) {
+        auto* field =
+            new ValueField(Quantity::level, option.limits.least, option.limits.most, DeviceProfile{}.*member, this);
+        field->setObjectName(optionName(option));
+        field->setToolTip(QString::fromUtf8(option.tip));
+        field->setStep(1.0);
+        connect(field, &ValueField::committed, this, [this, member](double value) {
+            edit([member, value](DeviceProfile& profile) { profile.*member = static_cast<int>(std::lround(value)); });
+        });
+        rows.addWidget(makeRow('&' + QString::fromUtf8(option.title), field));
+        shown_.emplace_back([field, member](const DeviceProfile& profile) { field->setValue(profile.*member); });
+    }
+    void addOption(QVBoxLayout& rows, const ControllerOption& option, bool DeviceProfile::*member) {
+        QCheckBox* box =
+            addSwitch(rows, QString::fromUtf8(option.title), optionName(option), QString::fromUtf8(option.tip), member);
+        shown_.emplace_back([box, member](const DeviceProfile& profile) { box->setChecked(profile.*member); });
+    }
+    static QString optionName(const ControllerOption& option) { return "setup." + QString::fromUtf8(option.key); }
 
     [[nodiscard]] DeviceProfile edited(const Edit& change) const {
         DeviceProfile profile = studio_.devices.profile();
@@ -191,15 +209,14 @@ private:
         for (const auto& [field, member] : numbers_) field->setValue(profile.*member);
         rest_->setChecked(profile.restOnExit);
         pose_->setText(restText(profile, servoNamesOf(studio_)));
-        number_->setValue(profile.controllerNumber);
-        crc_->setChecked(profile.maestroCrc);
+        for (const auto& show : shown_) show(profile);
         const bool known = !profile.identity.empty();
         identity_->setText((profile.confirmed ? "You said that this is your board: " : "Set up with the board ") +
                            QString::fromStdString(profile.identity) + '.');
         identity_->setVisible(known);
         forget_->setVisible(known);
-        kind_->setText(controllerText(profile.controller));
-        maestro_->setVisible(profile.controller == ControllerKind::maestro);
+        kind_->setText(QString::fromUtf8(knownController(profile.controller).title));
+        for (const auto& [kind, group] : groups_) group->setVisible(kind == profile.controller);
         refreshLink();
     }
 
@@ -222,9 +239,8 @@ private:
     QCheckBox* rest_ = nullptr;
     QLabel* pose_ = nullptr;
     QLabel* kind_ = nullptr;
-    QWidget* maestro_ = nullptr;
-    ValueField* number_ = nullptr;
-    QCheckBox* crc_ = nullptr;
+    std::vector<std::pair<ControllerKind, QWidget*>> groups_;      ///< of options, a kind each that has some
+    std::vector<std::function<void(const DeviceProfile&)>> shown_; ///< puts an option's value into its widget
     QLabel* identity_ = nullptr;
     QPushButton* forget_ = nullptr;
     ProfileEdit edit_{studio_.devices};

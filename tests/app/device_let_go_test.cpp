@@ -1,0 +1,126 @@
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <csignal>
+#include <functional>
+#include <memory>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "devices/simulator/simulated_bench.h"
+#include "tests/app/process.h"
+#include "tests/devices/pty.h"
+
+namespace lumorph::test {
+namespace {
+
+using namespace std::chrono_literals;
+
+/// Stock StandardFirmata at a serial port: nothing but what it is told lets go of its servos.
+class StockBoardAtPort {
+public:
+    StockBoardAtPort()
+        : board_(bench_.board("uno")), pump_([this](const std::stop_token& end) {
+              board_->plugged(bench_.now());
+              for (; !end.stop_requested(); std::this_thread::sleep_for(1ms)) pass();
+          }) {}
+
+    [[nodiscard]] std::string address() const { return "serial://" + port_.path() + "?baud=57600"; }
+    /// How many of its servos get a pulse now, by the board itself.
+    [[nodiscard]] std::ptrdiff_t driven() const {
+        const std::vector<SimulatedServo> servos = board_->servos();
+        return std::ranges::count_if(servos, [](const SimulatedServo& servo) { return servo.pulse > 0.0; });
+    }
+
+private:
+    void pass() {
+        if (const auto bytes = port_.receive(); !bytes.empty()) board_->take(bytes, bench_.now());
+        if (const auto bytes = board_->give(bench_.now()); !bytes.empty()) port_.send(bytes);
+    }
+
+    Pty port_;
+    SimulatedBench bench_;
+    std::shared_ptr<SimulatedBoard> board_;
+    std::jthread pump_;
+};
+
+bool comesTrue(const std::function<bool()>& condition, std::chrono::seconds limit) {
+    const auto end = std::chrono::steady_clock::now() + limit;
+    while (!condition()) {
+        if (std::chrono::steady_clock::now() > end) return false;
+        std::this_thread::sleep_for(2ms);
+    }
+    return true;
+}
+
+/// A move that is on its way, with servos that are driven.
+struct RunningMove {
+    explicit RunningMove(bool json)
+        : process(lumorphProgram(), [&] {
+              std::vector<std::string> words{"device",  "move", board.address(), "--actuator", "0",
+                                             "--level", "32",   "--may-jump"};
+              if (json) words.emplace_back("--json");
+              return words;
+          }()) {}
+
+    StockBoardAtPort board;
+    Process process;
+};
+
+TEST(DeviceLetGo, WhateverEndsAMoveServosAreLetGoFirst) {
+    struct Row {
+        const char* name;
+        bool json;
+        void (*end)(Process& process);
+        int exitCode;
+    };
+    const Row rows[] = {
+        {"it ends by itself", true, [](Process&) {}, 0},
+        {"the reader goes", true, [](Process& p) { p.closeReaders(); }, 128 + SIGPIPE},
+        {"the reader of text goes", false, [](Process& p) { p.closeReaders(); }, 128 + SIGPIPE},
+        {"Ctrl-C", true, [](Process& p) { p.send(SIGINT); }, 1},
+        {"terminated", true, [](Process& p) { p.send(SIGTERM); }, 1},
+        {"the terminal closes", true, [](Process& p) { p.send(SIGHUP); }, 1},
+        {"somebody is impatient", true,
+         [](Process& p) {
+             p.send(SIGTERM);
+             std::this_thread::sleep_for(1ms);
+             for (int i = 0; i < 3; ++i) p.send(SIGINT);
+         },
+         1},
+    };
+    std::vector<std::unique_ptr<RunningMove>> moves; // all at once: each takes seconds
+    for (const Row& row : rows) moves.push_back(std::make_unique<RunningMove>(row.json));
+    std::vector<std::jthread> watchers;
+    std::vector<Outcome> outcomes(moves.size());
+    std::vector<std::ptrdiff_t> driven(moves.size(), 0);
+    for (std::size_t i = 0; i < moves.size(); ++i)
+        watchers.emplace_back([&, i] {
+            RunningMove& move = *moves[i];
+            static_cast<void>(comesTrue([&] { return move.board.driven() > 0; }, 60s));
+            driven[i] = move.board.driven();
+            rows[i].end(move.process);
+            outcomes[i] = move.process.wait(60s);
+        });
+    watchers.clear();
+    for (std::size_t i = 0; i < moves.size(); ++i) {
+        SCOPED_TRACE(rows[i].name);
+        EXPECT_GT(driven[i], 0) << outcomes[i].err;
+        EXPECT_EQ(outcomes[i].exitCode, rows[i].exitCode) << outcomes[i].err;
+        EXPECT_TRUE(comesTrue([&] { return moves[i]->board.driven() == 0; }, 1s))
+            << moves[i]->board.driven() << " servos are still driven";
+    }
+}
+
+TEST(DeviceLetGo, AMonitorWhoseReaderGoesEnds) {
+    Process monitor(lumorphProgram(), {"device", "monitor", "sim://tablet"});
+    ASSERT_TRUE(comesTrue([&] { return monitor.gatherFor(20ms).out.find("-> F0 79 F7") != std::string::npos; }, 30s));
+    monitor.closeReaders();
+    EXPECT_EQ(monitor.wait(20s).exitCode, 128 + SIGPIPE);
+}
+
+} // namespace
+} // namespace lumorph::test
