@@ -53,6 +53,73 @@ TEST(Quantity, RefusesWhatIsNoNumberOfThatKind) {
     for (const Row& row : rows) EXPECT_FALSE(parseQuantity(row.text, row.quantity).has_value()) << row.text;
 }
 
+TEST(Quantity, Calculates) {
+    struct Row {
+        const char* text;
+        Quantity quantity;
+        double si;
+    };
+    const Row rows[] = {
+        {"90+45", Quantity::angle, 0.75 * kPi},
+        {"2cm+5mm", Quantity::length, 0.025},
+        {"2 cm + 5", Quantity::length, 0.07},
+        {"5 + 2 mm", Quantity::length, 0.052},
+        {"1 - 2 - 3", Quantity::level, -4.0},
+        {"2+3*4", Quantity::plain, 14.0},
+        {"(2+3)*4", Quantity::plain, 20.0},
+        {"12/4/3", Quantity::plain, 1.0},
+        {"3*2cm", Quantity::length, 0.06},
+        {"2cm*3", Quantity::length, 0.06},
+        {"(1 + 2) mm", Quantity::length, 0.003},
+        {"1 in / 2", Quantity::length, 0.0127},
+        {"10 cm / 5 mm", Quantity::length, 0.2},
+        {"1 turn / 4 + 10", Quantity::angle, 100.0 * kPi / 180.0},
+        {"2 - -3", Quantity::level, 5.0},
+        {"-(2+1)", Quantity::level, -3.0},
+        {"6 \u00d7 7 \u00f7 2", Quantity::level, 21.0},
+        {"1,5 cm + 0.5 cm", Quantity::length, 0.02},
+        {"2 cm3 + 1 ml", Quantity::volume, 3e-6},
+        {"1e1+1", Quantity::level, 11.0},
+        {"50 % * 3", Quantity::share, 1.5},
+    };
+    for (const Row& row : rows) {
+        const auto read = readQuantity(QString::fromUtf8(row.text), row.quantity);
+        ASSERT_TRUE(read.value.has_value()) << row.text << ": " << read.why.toStdString();
+        EXPECT_NEAR(*read.value, row.si, 1e-12 + 1e-12 * std::abs(row.si)) << row.text;
+        EXPECT_TRUE(read.why.isEmpty());
+    }
+}
+
+TEST(Quantity, SaysWhyItIsNoNumber) {
+    struct Row {
+        QString text;
+        Quantity quantity;
+        const char* says;
+    };
+    const Row rows[] = {
+        {"2 apples", Quantity::length, "cm, mm, m, in, ft"},
+        {"2 cm", Quantity::plain, "not a unit here"},
+        {"90+", Quantity::angle, "missing at the end"},
+        {"90 45", Quantity::angle, "before \"45\""},
+        {"(90+45", Quantity::angle, "not closed"},
+        {"90)", Quantity::angle, "not opened"},
+        {"2cm*3mm", Quantity::length, "cannot be multiplied"},
+        {"2/3mm", Quantity::length, "cannot be divided"},
+        {"1/0", Quantity::plain, "divided by 0"},
+        {"1/(2-2)", Quantity::plain, "divided by 0"},
+        {"1e300*1e300", Quantity::plain, "too large"},
+        {"(2 cm) mm", Quantity::length, "has a unit already"},
+        {"", Quantity::length, "Type a number, such as 2 cm"},
+        {"two", Quantity::length, "not a number"},
+        {QString(5000, '('), Quantity::plain, "too many brackets"},
+    };
+    for (const Row& row : rows) {
+        const auto read = readQuantity(row.text, row.quantity);
+        EXPECT_FALSE(read.value.has_value()) << row.text.left(20).toStdString();
+        EXPECT_TRUE(read.why.contains(row.says)) << row.text.left(20).toStdString() << ": " << read.why.toStdString();
+    }
+}
+
 TEST(Quantity, WritesAsManyDigitsAsMakeSense) {
     struct Row {
         double si;

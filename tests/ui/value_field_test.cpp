@@ -6,6 +6,7 @@
 #include <QPushButton>
 #include <QSignalSpy>
 #include <QTest>
+#include <QToolTip>
 #include <QVBoxLayout>
 #include <QWheelEvent>
 #include <gtest/gtest.h>
@@ -96,6 +97,36 @@ TEST_F(ValueField, EntersTheNearestValueOfItsRange) {
     QTest::keyClick(field, Qt::Key_Return);
     ASSERT_EQ(committed->count(), 1);
     EXPECT_DOUBLE_EQ(last(*committed), 0.1);
+}
+
+TEST_F(ValueField, CalculatesAndSaysWhatItCannot) {
+    click();
+    QTest::keyClicks(field, "2cm+5mm");
+    EXPECT_FALSE(field->property("wrong").toBool());
+    QTest::keyClick(field, Qt::Key_Return);
+    ASSERT_EQ(committed->count(), 1);
+    EXPECT_NEAR(last(*committed), 0.025, 1e-12);
+    EXPECT_EQ(field->text().toStdString(), "2.50 cm");
+    EXPECT_TRUE(field->why().isEmpty());
+
+    QTest::keyClicks(field, "2cm+5 apples");
+    EXPECT_TRUE(field->why().isEmpty()) << "while one is typing it says nothing";
+    QTest::keyClick(field, Qt::Key_Return);
+    EXPECT_TRUE(field->why().contains("\"apples\" is not a unit")) << field->why().toStdString();
+    EXPECT_EQ(field->text().toStdString(), "2cm+5 apples") << "it can be mended";
+    EXPECT_TRUE(QTest::qWaitFor([&] { return QToolTip::text() == field->why(); }, 2000));
+    QTest::keyClick(field, Qt::Key_Tab);
+    EXPECT_EQ(field->text().toStdString(), "2.50 cm");
+    EXPECT_TRUE(field->why().endsWith("2cm+5 apples was taken back.")) << field->why().toStdString();
+
+    click();
+    EXPECT_TRUE(field->why().isEmpty());
+    QTest::keyClicks(field, "3 m"); // a number beyond the range does not become another in silence
+    QTest::keyClick(field, Qt::Key_Return);
+    EXPECT_EQ(field->why().toStdString(), "At most 10.00 cm here.");
+    QTest::keyClicks(field, "-1");
+    QTest::keyClick(field, Qt::Key_Return);
+    EXPECT_TRUE(field->why().startsWith("At least ")) << field->why().toStdString();
 }
 
 TEST_F(ValueField, DraggingPreviewsAndTheReleaseCommitsOnce) {

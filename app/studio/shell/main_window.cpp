@@ -31,7 +31,8 @@ namespace lumorph::studio {
 namespace {
 
 constexpr QSize kUsualSize{1440, 900};
-constexpr QSize kFrame{8, 40}; // what a desktop puts around a window
+constexpr QMargins kUsualFrame{4, 36, 4, 4}; // what a desktop puts around a window
+constexpr auto kFrameKey = "window/frame";
 constexpr auto kGeometryKey = "window/geometry";
 constexpr auto kWorkspaceKey = "window/workspace";
 
@@ -50,6 +51,22 @@ bool belongsTo(const QObject* watched, const QWidget* window) {
     for (const QObject* object = watched; object != nullptr; object = object->parent())
         if (object == window) return true;
     return false;
+}
+
+QSize sizeOf(const QMargins& frame) { return {frame.left() + frame.right(), frame.top() + frame.bottom()}; }
+
+/// Before it is shown nobody knows what the desktop will put around it, so the frame of last time stands for it.
+QMargins keptFrame(const Settings& settings) {
+    const QVariantList kept = settings.value(kFrameKey).toList();
+    if (kept.size() != 4) return kUsualFrame;
+    const auto side = [&kept](int i) { return std::clamp(kept[i].toInt(), 0, 100); };
+    return {side(0), side(1), side(2), side(3)};
+}
+
+QVariantList frameOf(const QWidget& window) {
+    const QRect outer = window.frameGeometry(), inner = window.geometry();
+    return {inner.left() - outer.left(), inner.top() - outer.top(), outer.right() - inner.right(),
+            outer.bottom() - inner.bottom()};
 }
 
 } // namespace
@@ -110,20 +127,26 @@ MainWindow::MainWindow(Studio& studio, std::vector<std::unique_ptr<Workspace>> w
     });
     studio.devices.setStopKeysProblem(data_->stopKeys->why());
     qApp->installEventFilter(this);
-    resize(kUsualSize.boundedTo(screen()->availableSize() - kFrame));
+    resize(kUsualSize.boundedTo(screen()->availableSize() - sizeOf(kUsualFrame)));
     if (restoreGeometry(studio.settings.value(kGeometryKey).toByteArray())) keepOnScreen();
     showFirstWorkspace();
     showTitle();
 }
 
-// A window that is kept may come from a larger screen, or from a smaller scale of this one.
+// A window that is kept may come from a larger screen, or from a smaller scale of this one. By its inner geometry:
+// `move` would put the frame where the inside was, a frame further at each start.
 void MainWindow::keepOnScreen() {
     if (isMaximized() || isFullScreen()) return;
-    const QRect there = screen()->availableGeometry();
-    resize(size().boundedTo(there.size() - kFrame));
-    const QSize space = there.size() - size();
-    move(std::clamp(x(), there.left(), there.left() + std::max(0, space.width())),
-         std::clamp(y(), there.top(), there.top() + std::max(0, space.height())));
+    const QMargins frame = keptFrame(data_->studio.settings);
+    const QRect outer = geometry().marginsAdded(frame);
+    if (screen()->availableVirtualGeometry().contains(outer)) return;
+    const QScreen* on = QGuiApplication::screenAt(outer.center());
+    const QRect there = (on == nullptr ? screen() : on)->availableGeometry();
+    QRect fitting(outer.topLeft(), outer.size().boundedTo(there.size()));
+    const QSize space = there.size() - fitting.size();
+    fitting.moveTo(std::clamp(fitting.left(), there.left(), there.left() + space.width()),
+                   std::clamp(fitting.top(), there.top(), there.top() + space.height()));
+    setGeometry(fitting.marginsRemoved(frame));
 }
 
 MainWindow::~MainWindow() {
@@ -239,6 +262,7 @@ void MainWindow::closeEvent(QCloseEvent* event) {
         if (id == data_->present) page->keepLayout();
     if (!data_->kiosk) {
         data_->studio.settings.setValue(kGeometryKey, saveGeometry());
+        if (!isMaximized() && !isFullScreen()) data_->studio.settings.setValue(kFrameKey, frameOf(*this));
         data_->studio.settings.setValue(kWorkspaceKey, data_->present);
     }
     data_->studio.project.keepSession();

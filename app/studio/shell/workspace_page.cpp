@@ -6,7 +6,6 @@
 
 #include <QDockWidget>
 #include <QPainter>
-#include <QTimer>
 
 #include "app/studio/look/palette.h"
 #include "app/studio/shell/dock_title.h"
@@ -33,6 +32,7 @@ protected:
 constexpr int kLayoutVersion = 1;
 constexpr int kUsualDockWidth = 312;
 constexpr int kNarrowPage = 960; ///< below it two columns of docks would leave no room for the view
+constexpr int kSettleMilliseconds = 400;
 
 } // namespace
 
@@ -58,8 +58,11 @@ WorkspacePage::WorkspacePage(Workspace& workspace, Settings& settings, Commands&
             break;
         }
     firstLayout_ = saveState(kLayoutVersion);
+    settled_.setSingleShot(true);
+    connect(&settled_, &QTimer::timeout, this, [this] { restored_.clear(); });
     const QByteArray kept = settings.layout(workspace.id());
     sized_ = !kept.isEmpty() && restoreState(kept, kLayoutVersion);
+    if (sized_) restored_ = kept;
 }
 
 void WorkspacePage::addDock(const WorkspaceDock& brought, QDockWidget* before) {
@@ -110,12 +113,14 @@ void WorkspacePage::setActive(bool active) {
 /// While the page is hidden its floating docks are too, and that is not what the user chose.
 void WorkspacePage::keepLayout() {
     if (kiosk_ || !hiddenFloats_.empty()) return;
-    settings_.setLayout(workspace_.id(), wideLayout_.isEmpty() ? saveState(kLayoutVersion) : wideLayout_);
+    const QByteArray& other = wideLayout_.isEmpty() ? restored_ : wideLayout_;
+    settings_.setLayout(workspace_.id(), other.isEmpty() ? saveState(kLayoutVersion) : other);
 }
 
 void WorkspacePage::resetLayout() {
     hiddenFloats_.clear();
     wideLayout_.clear();
+    restored_.clear();
     restoreState(firstLayout_, kLayoutVersion);
     applyFirstSizes();
     fitColumns();
@@ -124,12 +129,26 @@ void WorkspacePage::resetLayout() {
 
 void WorkspacePage::setKiosk() {
     kiosk_ = true;
+    restored_.clear();
     for (QDockWidget* dock : docks_) dock->hide();
+}
+
+/// A page is laid out several times on its way to its size, and widths that do not fit on the way would stay cut.
+void WorkspacePage::restore(const QByteArray& layout) {
+    restored_ = layout;
+    restoreInRoom();
+}
+
+void WorkspacePage::restoreInRoom() {
+    if (restored_.isEmpty() || !isVisible() || !wideLayout_.isEmpty()) return;
+    restoreState(restored_, kLayoutVersion);
+    settled_.start(kSettleMilliseconds);
 }
 
 void WorkspacePage::showEvent(QShowEvent* event) {
     QMainWindow::showEvent(event);
     fitColumns();
+    if (!restored_.isEmpty()) QTimer::singleShot(0, this, [this] { restoreInRoom(); }); // see below
     if (sized_) return;
     sized_ = true;
     QTimer::singleShot(0, this, [this] { // the layout has its size only after this event
@@ -139,7 +158,9 @@ void WorkspacePage::showEvent(QShowEvent* event) {
 
 void WorkspacePage::resizeEvent(QResizeEvent* event) {
     QMainWindow::resizeEvent(event);
-    if (isVisible()) fitColumns();
+    if (!isVisible()) return;
+    fitColumns();
+    restoreInRoom();
 }
 
 /// In a narrow window all docks lie behind each other in one column, until it is wide again.
@@ -147,10 +168,10 @@ void WorkspacePage::fitColumns() {
     const bool narrow = width() < kNarrowPage;
     if (kiosk_ || narrow == !wideLayout_.isEmpty()) return;
     if (!narrow) {
-        restoreState(std::exchange(wideLayout_, {}), kLayoutVersion);
+        restore(std::exchange(wideLayout_, {}));
         return;
     }
-    wideLayout_ = saveState(kLayoutVersion);
+    wideLayout_ = restored_.isEmpty() ? saveState(kLayoutVersion) : std::exchange(restored_, {});
     QDockWidget* first = nullptr;
     for (QDockWidget* dock : docks_) {
         if (dock->isFloating()) continue;

@@ -2,6 +2,7 @@
 
 #include <QMainWindow>
 #include <QPointer>
+#include <QTimer>
 
 #include "app/studio/shell/studio.h"
 #include "app/studio/shell/workspace.h"
@@ -35,6 +36,8 @@ private:
     void addCommands(Commands& commands, QDockWidget* dock, const WorkspaceDock& brought);
     void applyFirstSizes();
     void fitColumns();
+    void restore(const QByteArray& layout);
+    void restoreInRoom();
 
     Workspace& workspace_;
     Settings& settings_;
@@ -42,6 +45,8 @@ private:
     std::vector<QPointer<QDockWidget>> hiddenFloats_;
     QByteArray firstLayout_;
     QByteArray wideLayout_; ///< what it was before the window became narrow; empty while it is wide
+    QByteArray restored_;   ///< given back at every size until the page has the room that it is for
+    QTimer settled_;        ///< the page has it
     bool sized_ = false;    ///< the docks' first widths were given
     bool active_ = false;
     bool kiosk_ = false;

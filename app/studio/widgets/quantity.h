@@ -9,8 +9,16 @@ namespace lumorph::studio {
 /// What a number measures: how it is shown, which units it accepts, and what one unit is in SI.
 enum class Quantity { plain, length, angle, share, level, seconds, volume };
 
-/// "2 cm", "45 deg", "0.5 rad", "12.5 %", "3 in" as a number in SI; without a unit the quantity's own (cm, degrees, %).
-/// Both "." and "," separate decimals. Empty when it is no such number, or not finite.
+/// What was typed, as a number in SI, or in a sentence why it is none.
+struct TypedQuantity {
+    std::optional<double> value; ///< finite
+    QString why;                 ///< empty where there is a value
+};
+
+/// "2 cm", "45 deg", "0.5 rad", "12.5 %", "3 in", and sums of such: "90+45", "2cm + 5mm", "(1 in + 2 mm) / 3". A number
+/// without a unit has the quantity's own (cm, degrees, %), or is a factor. Both "." and "," separate decimals.
+[[nodiscard]] TypedQuantity readQuantity(const QString& text, Quantity quantity);
+/// Its value alone.
 [[nodiscard]] std::optional<double> parseQuantity(const QString& text, Quantity quantity);
 /// With its unit, in as many digits as make sense: "2.40 cm", "45.0 deg" (as a degree sign), "120 %".
 [[nodiscard]] QString formatQuantity(double value, Quantity quantity);

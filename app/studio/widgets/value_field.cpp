@@ -3,14 +3,18 @@
 #include <algorithm>
 #include <cmath>
 
+#include <QHelpEvent>
 #include <QKeyEvent>
 #include <QMouseEvent>
 #include <QStyle>
+#include <QTimer>
+#include <QToolTip>
 #include <QWheelEvent>
 
 namespace lumorph::studio {
 namespace {
 
+constexpr int kToldMilliseconds = 6000;
 constexpr int kScrubDistance = 3; ///< pixels before a press is a drag
 
 double pace(Qt::KeyboardModifiers modifiers) {
@@ -29,9 +33,12 @@ ValueField::ValueField(Quantity quantity, double minimum, double maximum, double
     setAlignment(Qt::AlignRight);
     const QString accepted = unitsOf(quantity);
     setToolTip("Drag sideways to change, click to type, double click to reset to " + formatQuantity(resetTo, quantity) +
-               (accepted.isEmpty() ? QString() : ".\nUnits: " + accepted));
+               ".\nIt calculates: 90+45, 2*3." + (accepted.isEmpty() ? QString() : "\nUnits: " + accepted));
     connect(this, &QLineEdit::returnPressed, this, &ValueField::enter);
-    connect(this, &QLineEdit::textEdited, this, [this] { mark(!parseQuantity(text(), quantity_)); });
+    connect(this, &QLineEdit::textEdited, this, [this] {
+        tell({});
+        mark(!parseQuantity(text(), quantity_));
+    });
     show(value_);
 }
 
@@ -66,6 +73,19 @@ void ValueField::mark(bool wrong) {
     style()->polish(this);
 }
 
+/// Beside the field, and once more where the pointer asks; not while one is typing, since half a sum is no number yet.
+void ValueField::tell(const QString& why) {
+    const bool silent = why_.isEmpty() && why.isEmpty();
+    why_ = why;
+    setAccessibleDescription(why);
+    if (silent || !isVisible()) return;
+    if (why.isEmpty()) return QToolTip::hideText();
+    QTimer::singleShot(0, this, [this, why] { // the keyboard may be on its way elsewhere, which hides all tips
+        if (why != why_ || !isVisible()) return;
+        QToolTip::showText(mapToGlobal(QPoint(0, height() - 12)), why, this, {}, kToldMilliseconds);
+    });
+}
+
 void ValueField::commit(double value) {
     value = std::clamp(value, minimum_, maximum_);
     const bool other = value != value_;
@@ -77,12 +97,15 @@ void ValueField::commit(double value) {
 /// A text that was not touched keeps the value's hidden digits.
 void ValueField::enter() {
     if (!isModified()) return;
-    const auto typed = parseQuantity(text(), quantity_);
-    if (!typed) {
+    const TypedQuantity typed = readQuantity(text(), quantity_);
+    if (!typed.value) {
         mark(true);
+        tell(typed.why);
         return;
     }
-    commit(*typed);
+    if (*typed.value > maximum_) tell("At most " + formatQuantity(maximum_, quantity_) + " here.");
+    if (*typed.value < minimum_) tell("At least " + formatQuantity(minimum_, quantity_) + " here.");
+    commit(*typed.value);
     if (hasFocus()) selectAll();
 }
 
@@ -191,8 +214,10 @@ void ValueField::wheelEvent(QWheelEvent* event) {
 }
 
 void ValueField::focusOutEvent(QFocusEvent* event) {
-    const bool valid = parseQuantity(text(), quantity_).has_value();
-    if (isModified() && valid) enter();
+    if (isModified()) {
+        enter();
+        if (isModified()) tell(why_ + ' ' + text().trimmed() + " was taken back.");
+    }
     show(value_);
     deselect();
     setCursor(Qt::SizeHorCursor);
@@ -200,6 +225,7 @@ void ValueField::focusOutEvent(QFocusEvent* event) {
 }
 
 void ValueField::focusInEvent(QFocusEvent* event) {
+    tell({});
     QLineEdit::focusInEvent(event);
     setCursor(Qt::IBeamCursor);
     selectAll();
@@ -210,6 +236,10 @@ bool ValueField::event(QEvent* event) {
     if (event->type() == QEvent::ShortcutOverride && static_cast<QKeyEvent*>(event)->key() == Qt::Key_Escape &&
         (scrubbing_ || isModified()))
         event->accept();
+    if (event->type() == QEvent::ToolTip && !why_.isEmpty()) {
+        QToolTip::showText(static_cast<QHelpEvent*>(event)->globalPos(), why_, this);
+        return true;
+    }
     return QLineEdit::event(event);
 }
 

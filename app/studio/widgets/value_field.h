@@ -10,7 +10,8 @@
 namespace lumorph::studio {
 
 /// A number with its unit: type it, scrub it by dragging sideways (Shift fine, Ctrl coarse), step it by the arrow keys
-/// or, while it has the keyboard, the wheel; reset it by double click. Wrong input is marked and taken back on leaving.
+/// or, while it has the keyboard, the wheel; reset it by double click. It calculates: "90+45". Wrong input is marked,
+/// and taken back on leaving; why, and what became of a number beyond the range, is said beside it.
 class ValueField : public QLineEdit {
     Q_OBJECT
 public:
@@ -24,6 +25,8 @@ public:
     void setStep(double step);
 
     [[nodiscard]] QSize sizeHint() const override;
+    /// What it says beside itself; empty: nothing.
+    [[nodiscard]] const QString& why() const noexcept { return why_; }
 
 signals:
     void previewed(double value); ///< while scrubbing
@@ -48,10 +51,12 @@ private:
     void commit(double value);
     void endScrub();
     void mark(bool wrong);
+    void tell(const QString& why);
 
     Quantity quantity_;
     double minimum_, maximum_, resetTo_, step_;
     double value_ = 0.0;
+    QString why_;
     bool pressed_ = false;   ///< the button is down on a field that was not being edited
     bool scrubbing_ = false; ///< and the pointer has moved
     int pressX_ = 0;

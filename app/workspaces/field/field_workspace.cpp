@@ -11,6 +11,7 @@
 
 #include "app/studio/document/hand_control.h"
 #include "app/workspaces/common/field_colors.h"
+#include "app/workspaces/common/kept_camera.h"
 #include "app/workspaces/field/actuator_dock.h"
 #include "app/workspaces/field/field_central_view.h"
 #include "app/workspaces/field/field_commands.h"
@@ -81,6 +82,7 @@ struct FieldWorkspace::Data : public QObject {
     FieldDisplayModel display;
     FieldSceneBuilder builder;
     QPointer<FieldCentralView> stage;
+    QPointer<KeptCamera> keptCamera;
     QAction* gizmoShown = nullptr;
     bool active = false;
     bool targetSelected = false;
@@ -143,6 +145,8 @@ void FieldWorkspace::Data::refresh() {
 void FieldWorkspace::Data::frameOnce(const ViewportScene& scene) {
     if (view()->width() < 2 || view()->height() < 2) return;
     unframed = false;
+    if (const auto kept = keptCamera->begin(QString::fromStdString(studio.document.state().rig.rig->name())))
+        return view()->setCamera(*kept);
     const float aspect = static_cast<float>(view()->width()) / static_cast<float>(view()->height());
     view()->setCamera(framed(firstCamera(), scene.bounds, aspect));
 }
@@ -195,6 +199,7 @@ void FieldWorkspace::Data::pick(const ViewportHit& hit) {
 
 void FieldWorkspace::Data::connectView() {
     ViewportWidget* shown = view();
+    keptCamera = new KeptCamera(studio.settings, "field", shown);
     connect(shown, &ViewportWidget::picked, this, &Data::pick);
     connect(shown, &ViewportWidget::gizmoDragged, this, [this](const Placement& placement) {
         studio.document.preview([placement](StudioState& state) { state.placement = placement; });

@@ -11,6 +11,7 @@
 
 #include "app/studio/viewport/viewport_widget.h"
 #include "app/workspaces/common/field_colors.h"
+#include "app/workspaces/common/kept_camera.h"
 #include "app/workspaces/rig/moved_part.h"
 #include "app/workspaces/rig/rig_docks.h"
 
@@ -50,6 +51,7 @@ struct RigWorkspace::Data : public QObject {
     RigSelection selection;
     FieldSceneBuilder builder;
     QPointer<ViewportWidget> view;
+    QPointer<KeptCamera> keptCamera;
     std::optional<MovedPart> part;
     std::shared_ptr<const Rig> partOf;
     QAction* wiggleCommand = nullptr;
@@ -174,6 +176,10 @@ void RigWorkspace::Data::refresh() {
 
 void RigWorkspace::Data::frameOnce(const ViewportScene& scene) {
     if (view->width() < 2 || view->height() < 2) return;
+    if (const auto kept = keptCamera->begin(QString::fromStdString(studio.document.state().rig.rig->name()))) {
+        unframed = false;
+        return view->setCamera(*kept);
+    }
     // Until the docks beside it have their widths, the view has not its own.
     if (std::exchange(framedSize, view->size()) != view->size() || !sinceSized.isValid()) sinceSized.start();
     unframed = sinceSized.elapsed() < kSettleMilliseconds;
@@ -196,6 +202,7 @@ QWidget* RigWorkspace::makeCentralView() {
     data_->view = new ViewportWidget(data_->studio.renderer);
     data_->view->setObjectName("rig.viewport");
     data_->view->setAccessibleName("Device");
+    data_->keptCamera = new KeptCamera(data_->studio.settings, "rig", data_->view);
     data_->view->setActive(data_->active);
     return data_->view;
 }
