@@ -89,10 +89,10 @@ void printShapes(const Rig& rig, const ShapeReport& report) {
                 report.rest.triangles, report.rest.solid() ? "a clean closed solid" : "not a clean solid",
                 static_cast<double>(size.x), static_cast<double>(size.y), static_cast<double>(size.z));
     constexpr std::size_t kMost = 24;
-    std::printf("  %-22s %-8s %-22s %10s %10s %9s\n", "actuator", "moves by", "range", "amplitude", "area", "stroke");
+    std::printf("  %-22s %-12s %-22s %10s %10s %9s\n", "actuator", "moves by", "range", "amplitude", "area", "stroke");
     for (std::size_t i = 0; i < std::min(kMost, report.actuators.size()); ++i) {
         const ShapeReport::PerActuator& a = report.actuators[i];
-        std::printf("  %-22s %-8s ", a.name.c_str(), a.deformer.c_str());
+        std::printf("  %-22s %-12s ", a.name.c_str(), a.deformer == "morph" ? "morph target" : a.deformer.c_str());
         printRange(a);
         std::printf(" %7.1f mm %6.1f cm2 %7.2f s\n", 1000 * a.amplitude, 1e4 * a.sweptArea, a.fullStrokeSeconds);
     }

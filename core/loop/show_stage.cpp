@@ -18,7 +18,7 @@ ShowFrame ShowStage::frame(const MatchFrame& match) {
     }
     ShowFrame frame;
     frame.posed = poser_.pose(*match.scene, *match.assets, input);
-    frame.scene = match.scene;
+    frame.scene = shown(match.scene);
     frame.installation = match.installation;
     frame.assets = match.assets;
     frame.rig = match.rig;
@@ -26,6 +26,20 @@ ShowFrame ShowStage::frame(const MatchFrame& match) {
     frame.worldFromDevice = match.worldFromDevice;
     frame.eye = match.eye;
     return frame;
+}
+
+/// Holes, shrinking and drawn creases are light's doing, and so is a device that is a mere screen.
+std::shared_ptr<const Scene> ShowStage::shown(const std::shared_ptr<const Scene>& scene) {
+    if (scene->showing != Showing::physical) return scene;
+    if (physicalOf_ != scene) { // the same object while nothing changes: who draws it compares
+        Scene alone = *scene;
+        Material material = std::move(alone.device.material);
+        alone.device = {};
+        alone.device.material = std::move(material);
+        physical_ = std::make_shared<const Scene>(std::move(alone));
+        physicalOf_ = scene;
+    }
+    return physical_;
 }
 
 } // namespace lumorph

@@ -118,19 +118,9 @@ private:
         out.fullStrokeSeconds = 1.0 / actuator.maxVelocity;
         const auto vertices = rig_.verticesOf(index);
         out.vertices = vertices.size();
-        const Rig::Subset subset = rig_.subset(vertices);
         std::vector<double> strokes(rig_.actuatorCount(), 0.0);
-        std::vector<glm::vec3> last(vertices.size());
-        std::vector<glm::vec3> now(vertices.size());
-        std::vector<double> way(vertices.size(), 0.0);
-        subset.deform(strokes, last);
-        for (int step = 1; step <= kPathSteps; ++step) {
-            strokes[index] = static_cast<double>(step) / kPathSteps;
-            subset.deform(strokes, now);
-            for (std::size_t v = 0; v < now.size(); ++v) way[v] += glm::distance(last[v], now[v]);
-            std::swap(last, now);
-        }
-        if (!way.empty()) out.amplitude = *std::ranges::max_element(way);
+        strokes[index] = 1.0;
+        out.amplitude = amplitudeOf(rig_, index);
         std::vector<bool> moved(rig_.restMesh().positions.size(), false);
         for (const std::uint32_t v : vertices) moved[v] = true;
         for (const glm::uvec3& t : rig_.restMesh().triangles)
@@ -269,6 +259,22 @@ private:
 };
 
 } // namespace
+
+double amplitudeOf(const Rig& rig, std::size_t actuator) {
+    const auto vertices = rig.verticesOf(actuator);
+    const Rig::Subset subset = rig.subset(vertices);
+    std::vector<double> strokes(rig.actuatorCount(), 0.0);
+    std::vector<glm::vec3> rest(vertices.size()), moved(vertices.size());
+    subset.deform(strokes, rest);
+    double amplitude = 0.0;
+    for (int step = 1; step <= kPathSteps; ++step) {
+        strokes.at(actuator) = static_cast<double>(step) / kPathSteps;
+        subset.deform(strokes, moved);
+        for (std::size_t v = 0; v < moved.size(); ++v)
+            amplitude = std::max(amplitude, static_cast<double>(glm::distance(rest[v], moved[v])));
+    }
+    return amplitude;
+}
 
 ShapeReport shapeReport(const Rig& rig, int states, std::uint64_t seed, const Progress& progress) {
     return Reporter(rig, progress).report(states, seed);

@@ -23,7 +23,7 @@ struct ShapeReport {
         double rangeMax = 0.0;
         std::string unit; ///< "rad", "m" or ""
         std::size_t vertices = 0;
-        double amplitude = 0.0;         ///< metres, longest way a vertex moves at full stroke
+        double amplitude = 0.0;         ///< metres, see amplitudeOf()
         double sweptArea = 0.0;         ///< square metres of rest surface that it moves
         double maxCurvature = 0.0;      ///< 1/metres at full stroke (0 where rigid)
         double fullStrokeSeconds = 0.0; ///< at its velocity limit
@@ -43,6 +43,10 @@ struct ShapeReport {
     double pathOutsideShare = 0.0;     ///< volume passed but not held, relative, over sampled states
     std::vector<std::string> warnings; ///< plain sentences (R42)
 };
+
+/// The farthest that a vertex gets from where it rests while this actuator alone goes through its stroke, metres, along
+/// a straight line: not the way it goes round a bend. Looked at in 16 states.
+[[nodiscard]] double amplitudeOf(const Rig& rig, std::size_t actuator);
 
 /// Samples `states` joint states: full stroke of all, then random ones (seeded). Throws Cancelled.
 [[nodiscard]] ShapeReport shapeReport(const Rig& rig, int states, std::uint64_t seed, const Progress& progress = {});

@@ -89,6 +89,38 @@ TEST_F(WaterDemo, IsWaterThatMovesUntilItIsPaused) {
     EXPECT_TRUE(eventually([&] { return differingShare(picture(), paused) > 0.05; }));
 }
 
+TEST_F(WaterDemo, PhysicalShowsTheBareDeviceLifting) {
+    ASSERT_TRUE(eventually([&] { return !pane->picture().isNull(); }));
+    window.click("scene.showing.physical.button");
+    ASSERT_TRUE(eventually([&] { return newest().match && newest().match->scene->showing == Showing::physical; }));
+    std::vector<QImage> pictures;
+    std::vector<std::vector<double>> strokes;
+    for (int moment = 0; moment < 2; ++moment) {
+        if (moment > 0) playOrPause(true);
+        const double from = window.studio().loop.frame()->sceneSeconds;
+        ASSERT_TRUE(eventually([&] { return window.studio().loop.frame()->sceneSeconds > from + 1.5; }));
+        playOrPause(false);
+        pictures.push_back(picture());
+        strokes.push_back(newest().match->estimatedStrokes);
+        int grey = 0;
+        int all = 0;
+        for (double x = -0.08; x <= 0.0801; x += 0.02)
+            for (double z = -0.05; z <= 0.0501; z += 0.02) {
+                const auto color = seen(pictures.back(), {x, 0.03, z});
+                ASSERT_TRUE(color);
+                ++all;
+                grey += std::abs(color->red() - color->blue()) < 24 ? 1 : 0;
+            }
+        EXPECT_GT(grey, all * 9 / 10) << "paper, and not the table's wood, which is what one saw through the device";
+        window.screenshot(QString("water-physical-%1").arg(moment));
+    }
+    double moved = 0.0;
+    for (std::size_t a = 0; a < strokes[0].size(); ++a)
+        moved = std::max(moved, std::abs(strokes[1][a] - strokes[0][a]));
+    EXPECT_GT(moved, 0.02) << "the servos go on";
+    EXPECT_GT(differingShare(pictures[0], pictures[1]), 0.01) << "and it is seen";
+}
+
 TEST_F(WaterDemo, ShadowsOnTheTableGoWithTheSun) {
     std::vector<QImage> pictures;
     std::vector<double> seconds;

@@ -5,7 +5,6 @@
 
 #include <QGridLayout>
 #include <QLabel>
-#include <glm/geometric.hpp>
 
 #include "app/studio/widgets/dock_parts.h"
 #include "app/workspaces/common/field_summary.h"
@@ -79,25 +78,12 @@ QString rangeText(const Actuator& actuator) {
     return shortNumber(range.min) + " to " + shortNumber(range.max);
 }
 
-double amplitudeOf(const Rig& rig, std::size_t actuator) {
-    const auto vertices = rig.verticesOf(actuator);
-    std::vector<double> strokes(rig.actuatorCount(), 0.0);
-    std::vector<glm::vec3> rest(vertices.size()), moved(vertices.size());
-    rig.deform(strokes, vertices, rest);
-    strokes[actuator] = 1.0;
-    rig.deform(strokes, vertices, moved);
-    double amplitude = 0.0;
-    for (std::size_t i = 0; i < vertices.size(); ++i)
-        amplitude = std::max(amplitude, static_cast<double>(glm::distance(rest[i], moved[i])));
-    return amplitude;
-}
-
 std::vector<RigFact> factsOf(const Rig& rig, std::size_t index) {
     const Actuator& actuator = rig.actuators()[index];
     const ActuatorDrive& drive = actuator.drive;
     return {
         {"Moves by", deformerText(actuator), "How its part changes shape"},
-        {"Amplitude", lengthText(amplitudeOf(rig, index)), "The longest way a point of the surface goes"},
+        {"Amplitude", lengthText(amplitudeOf(rig, index)), "The farthest that a point of the surface gets from where it rests"},
         {"Levels", QString::number(actuator.levels), "Steps that the rig suggests for a field"},
         {"Moves", countText(rig.verticesOf(index).size()) + " vertices", "How much of the mesh follows it"},
         {"Channel", drive.channel < 0 ? QString("none") : QString::number(drive.channel),

@@ -30,10 +30,8 @@ void setRange(Actuator& actuator, double min, double max);
 [[nodiscard]] QString deformerText(const Actuator& actuator);
 /// "0° to 45°", "0 to 20 mm" or "0 to 1".
 [[nodiscard]] QString rangeText(const Actuator& actuator);
-/// What a maker and a controller need to know of an actuator beside what they edit. Deforms the rig once.
+/// What a maker and a controller need to know of an actuator beside what they edit. Deforms the rig for its amplitude.
 [[nodiscard]] std::vector<RigFact> factsOf(const Rig& rig, std::size_t actuator);
-/// The longest way that a vertex goes at full stroke of this actuator alone, metres.
-[[nodiscard]] double amplitudeOf(const Rig& rig, std::size_t actuator);
 
 [[nodiscard]] std::vector<RigFact> meshFacts(const ShapeReport& report);
 [[nodiscard]] std::vector<RigFact> shapeFacts(const ShapeReport& report);

@@ -51,6 +51,33 @@ TEST_F(SceneLoopTest, ShowStageHandsOnWhatTheLoopFound) {
     EXPECT_THROW((void)stage.frame(nowhere), InvalidInput);
 }
 
+TEST_F(SceneLoopTest, ShowStageShowsTheBareDeviceWhereServosWorkAlone) {
+    SceneInRoom scene = emptyScene();
+    scene.items.push_back(itemOf(ItemRole::split, waves(0.01, 3.0)));
+    scene.device.show = DeviceSkin::Show::content;
+    scene.device.material.roughness = 0.7F;
+    scene.device.shrink = 0.3;
+    scene.device.holes = {{{0.01F, 0.02F}, 0.02}};
+    scene.device.creases.emphasis = 0.8;
+    const struct {
+        Showing showing;
+        bool bare;
+    } kCases[] = {{Showing::both, false}, {Showing::virtualOnly, false}, {Showing::physical, true}};
+    ShowStage stage;
+    for (const auto& one : kCases) {
+        scene.showing = one.showing;
+        const MatchWish wish = wishWith(scene);
+        const auto match = run(wish, 0.3);
+        const ShowFrame show = stage.frame(*match);
+        EXPECT_EQ(show.posed.surfaces.size(), one.bare ? 0U : 1U);
+        const DeviceSkin& skin = show.scene->device;
+        EXPECT_EQ(skin.show == DeviceSkin::Show::material, one.bare) << "else one looks through it at the table";
+        EXPECT_EQ(skin.shrink == 0.0 && skin.holes.empty() && skin.creases.emphasis == 0.0, one.bare);
+        EXPECT_EQ(skin.material.roughness, 0.7F);
+        EXPECT_EQ(stage.frame(*step(wish)).scene, show.scene) << "what does not change stays the same object";
+    }
+}
+
 TEST_F(SceneLoopTest, ShowStageShowsTheTargetWhereTheLoopHasIt) {
     SceneInRoom scene = emptyScene();
     scene.items.push_back(itemOf(ItemRole::physical, TargetItem{}));

@@ -27,14 +27,31 @@ TEST(ShapeReport, TheTabletIsSound) {
     EXPECT_NEAR(report.actuators[4].rangeMax, std::numbers::pi / 2.0, 1e-12);
     EXPECT_NEAR(report.actuators[4].maxCurvature, std::numbers::pi / 2.0 / 0.02, 1e-9);
     EXPECT_NEAR(report.actuators[4].fullStrokeSeconds, 0.75, 1e-9);
-    // The tip of an edge flap goes round a quarter of a circle of about 63 mm.
-    EXPECT_NEAR(report.actuators[4].amplitude, 0.063 * std::numbers::pi / 2.0, 0.003);
+    // The tip of an edge flap goes round a quarter of a circle of about 63 mm: its chord is how far it gets.
+    EXPECT_NEAR(report.actuators[4].amplitude, 0.063 * std::numbers::sqrt2, 0.003);
     EXPECT_GT(report.area, 0.015);
     EXPECT_LT(report.area, 0.21 * 0.15 * 1.2);
     EXPECT_NEAR(report.granularity, 6.0 / report.area, 1e-9);
     EXPECT_GT(report.volumeMax, 1.2 * report.volumeMin);
     // The sheet's top runs 1 mm inside the neutral surface, whose radius is 40 mm / pi at full stroke.
     EXPECT_NEAR(report.maxStretch, std::numbers::pi / 40.0, 0.003);
+}
+
+TEST(ShapeReport, AmplitudeIsTheFarthestFromRestAndNotTheWayRound) {
+    const struct {
+        double degrees, farthest;
+    } kTurns[] = {
+        {60.0, 0.1},                       // an equilateral triangle
+        {90.0, 0.1 * std::numbers::sqrt2}, //
+        {180.0, 0.2},                      //
+        {270.0, 0.2},                      // halfway it is farther than at full stroke; 168.75 degrees are looked at
+    };
+    for (const auto& turn : kTurns) {
+        const Rig rig(test::pointParts({{0.1F, 0, 0}, {0.02F, 0, 0}, {0, 0, 0.03F}},
+                                       {Hinge{{}, {0, 1, 0}, Angle(), Angle::degrees(turn.degrees)}}));
+        EXPECT_NEAR(amplitudeOf(rig, 0), turn.farthest, 0.001) << turn.degrees;
+        EXPECT_EQ(shapeReport(rig, 1, 1).actuators[0].amplitude, amplitudeOf(rig, 0));
+    }
 }
 
 TEST(ShapeReport, MeasuresWhatASlideDoes) {
