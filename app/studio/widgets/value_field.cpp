@@ -48,6 +48,8 @@ void ValueField::setRange(double minimum, double maximum) {
     setValue(value_);
 }
 
+void ValueField::setRefusing(bool refusing) { refusing_ = refusing; }
+
 void ValueField::setStep(double step) { step_ = step; }
 
 QSize ValueField::sizeHint() const { return {88, QLineEdit::sizeHint().height()}; }
@@ -80,6 +82,12 @@ void ValueField::enter() {
     const auto typed = parseQuantity(text(), quantity_);
     if (!typed) {
         mark(true);
+        return;
+    }
+    if (refusing_ && (*typed < minimum_ || *typed > maximum_)) {
+        mark(true);
+        emit refused(formatQuantity(*typed, quantity_) + " is not from " + formatQuantity(minimum_, quantity_) +
+                     " to " + formatQuantity(maximum_, quantity_) + "; it stays " + formatQuantity(value_, quantity_));
         return;
     }
     commit(*typed);

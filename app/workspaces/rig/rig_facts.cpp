@@ -92,9 +92,14 @@ double amplitudeOf(const Rig& rig, std::size_t actuator) {
     return amplitude;
 }
 
-std::vector<RigFact> factsOf(const Rig& rig, std::size_t index) {
+std::vector<RigFact> factsOf(const Rig& rig, std::size_t index, const ServoSetup* setup) {
     const Actuator& actuator = rig.actuators()[index];
-    const ActuatorDrive& drive = actuator.drive;
+    ActuatorDrive drive = actuator.drive;
+    if (setup) {
+        drive.channel = setup->channel;
+        drive.pulseMin = setup->reversed ? setup->pulseMax : setup->pulseMin;
+        drive.pulseMax = setup->reversed ? setup->pulseMin : setup->pulseMax;
+    }
     return {
         {"Moves by", deformerText(actuator), "How its part changes shape"},
         {"Amplitude", lengthText(amplitudeOf(rig, index)), "The longest way a point of the surface goes"},
