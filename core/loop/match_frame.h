@@ -52,6 +52,7 @@ struct ItemFit {
 struct MatchFrame {
     std::uint64_t number = 0;
     Microseconds time{0};
+    bool recorded = false; ///< shown again from a recording
     std::shared_ptr<const Rig> rig;
     std::shared_ptr<const void> rigOrigin; ///< of the wish
     std::shared_ptr<const MatchField> field;

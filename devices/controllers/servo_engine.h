@@ -43,7 +43,7 @@ using ServoOutput = std::variant<servo_output::Write, servo_output::Reach, servo
 class ServoEngine {
 public:
     /// Another number where the same inputs may give other bytes: a trace is of one version.
-    static constexpr std::uint8_t kVersion = 3;
+    static constexpr std::uint8_t kVersion = 4;
 
     /// Throws as checkProfile, parseDeviceAddress and makeController.
     explicit ServoEngine(const DeviceProfile& profile);

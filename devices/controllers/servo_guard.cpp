@@ -20,6 +20,7 @@ constexpr double kWiggleStroke = 0.05;   // to each side
 constexpr double kWiggleVelocity = 0.25; // share of the velocity
 constexpr double kLegDone = 1e-3;        // strokes from the end of a wiggle's way
 constexpr double kSettledStroke = 1e-5;
+constexpr double kCarefulVelocity = 0.25; // strokes a second on ways that nobody expects
 constexpr double kSettledVelocity = 1e-3;
 
 /// The way of a wiggle, and how far it has come.
@@ -39,6 +40,8 @@ struct Servo {
     bool released = true; ///< a step has told that it is limp: attached again without it, it would stop dead
     bool known = false;   ///< somebody knows where it is
     bool pending = false; ///< to be attached by the soft start
+    bool easing = false;  ///< on its way from where it was attached, or to where new pulse limits put it
+    double behind = 0.0;  ///< strokes that it was short of its target before the last step
     double hold = 0.0;    ///< seconds before it may move, once attached
     double sent = 0.0;    ///< microseconds, while attached
 
@@ -71,7 +74,7 @@ struct Servo {
     }
     void detach() noexcept {
         released = released && !attached;
-        attached = pending = false;
+        attached = pending = easing = false;
         hold = 0.0;
         motion.velocity = 0.0;
         wiggle.reset();
@@ -81,6 +84,9 @@ struct Servo {
     /// The pulse stays where it is, and what it means in strokes changes.
     void adopt(const ServoSetup& next) noexcept {
         const double at = strokeOf(next, pulse());
+        behind = 0.0;
+        easing = attached && (easing || next.pulseMin != setup.pulseMin || next.pulseMax != setup.pulseMax ||
+                              next.trim != setup.trim);
         setup = next;
         motion = {at, 0.0};
         if (!attached) locate(known ? std::optional(at) : std::nullopt);
@@ -89,7 +95,8 @@ struct Servo {
         attached = true;
         pending = false;
         if (!known) motion.position = allowed(wanted.value_or(0.0));
-        motion.velocity = 0.0;
+        motion.velocity = behind = 0.0;
+        easing = true;
         sent = std::clamp(pulse(), setup.pulseMin, setup.pulseMax);
     }
     /// Where limits were drawn in past it, it may stay and come nearer, but not go farther. Else this only rounds.
@@ -135,8 +142,9 @@ struct ServoGuard::Data {
 
     [[nodiscard]] ServoMotionLimits limitsOf(const Servo& servo) const noexcept {
         const double share = slow ? profile.slowShare : 1.0;
-        return {servo.setup.maxVelocity * share * (servo.wiggle ? kWiggleVelocity : 1.0),
-                servo.setup.maxAcceleration * share, servo.setup.maxAcceleration};
+        const double velocity = servo.setup.maxVelocity * share * (servo.wiggle ? kWiggleVelocity : 1.0);
+        return {servo.easing ? std::min(velocity, kCarefulVelocity) : velocity, servo.setup.maxAcceleration * share,
+                servo.setup.maxAcceleration};
     }
 
     void move(Servo& servo, double seconds) noexcept {
@@ -153,6 +161,10 @@ struct ServoGuard::Data {
             if (servo.stands()) servo.adopt(*std::exchange(servo.nextSetup, std::nullopt));
             return;
         }
+        const double left = servo.target() - servo.motion.position;
+        // A show that goes on is caught up with where it comes by.
+        if (std::abs(left) < kSettledStroke || left * servo.behind < 0.0) servo.easing = false;
+        servo.behind = left;
         servo.motion = movedServo(servo.motion, servo.target(), seconds, limitsOf(servo));
         if (servo.wiggle && std::abs(servo.target() - servo.motion.position) < kLegDone &&
             ++servo.wiggle->leg == servo.wiggle->ends.size())

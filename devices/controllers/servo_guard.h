@@ -39,7 +39,9 @@ public:
     /// Other limits or channels; servos whose channel or direction changed are detached and must be armed again, all of
     /// them where their number changed. A servo that moves brakes to a stop by the limits it had before it takes the
     /// new ones over. Where its limits were drawn in past it, it comes back within them as slowly as it moves
-    /// otherwise, and goes no farther out meanwhile. Throws as checkProfile; then all stays as it was.
+    /// otherwise, and goes no farther out meanwhile. To where other pulses put the wanted stroke an attached servo goes
+    /// at a quarter of a stroke a second at most: a number that is edited shall not make it leap. Throws as
+    /// checkProfile; then all stays as it was.
     void setProfile(const DeviceProfile& profile);
 
     /// A servo's position was read, or is remembered from before, strokes; nothing: it is not known any more (after a
@@ -48,8 +50,10 @@ public:
     void setKnown(std::size_t servo, std::optional<double> stroke);
     [[nodiscard]] std::optional<double> known(std::size_t servo) const;
 
-    /// Begins the soft start, also out of `stopped`. A servo whose position is unknown is attached at the stroke that
-    /// is wanted of it only where the user was asked (`jumpAllowed`); else it stays detached and is told by `waiting`.
+    /// Begins the soft start, also out of `stopped`: each is attached where it is and goes from there to what is wanted
+    /// of it at a quarter of a stroke a second at most. A servo whose position is unknown is attached at the stroke
+    /// that is wanted of it only where the user was asked (`jumpAllowed`); else it stays detached and is told by
+    /// `waiting`.
     void arm(bool jumpAllowed);
     /// Servos that stay detached because nobody knows where they are.
     [[nodiscard]] std::vector<std::size_t> waiting() const;

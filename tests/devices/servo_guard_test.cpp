@@ -263,6 +263,77 @@ TEST(ServoGuard, LeavesAServoWhereItIsWhenItsTrimOrLimitsChange) {
     EXPECT_THROW(bench.guard.setProfile(moved), InvalidInput);
 }
 
+// A fast servo of which a number is edited creeps: a quarter of a stroke a second, whatever its velocity.
+TEST(ServoGuard, CreepsToWhereOtherPulsesPutAServoThatIsDriven) {
+    DeviceProfile fast = oneServo();
+    fast.servos[0].maxVelocity = 10.0;
+    fast.servos[0].maxAcceleration = 200.0;
+    const struct {
+        const char* what;
+        double pulseMin, pulseMax, trim, ends; // microseconds; 1000 to 2000 before, at full stroke
+    } rows[] = {{"wider", 1000.0, 2400.0, 0.0, 2400.0},
+                {"narrower", 1000.0, 1500.0, 0.0, 1500.0},
+                {"trimmed", 1000.0, 2000.0, -300.0, 1700.0}};
+    for (const auto& row : rows) {
+        SCOPED_TRACE(row.what);
+        Bench bench(fast);
+        bench.armAt({1.0});
+        want(bench.guard, {1.0});
+        bench.run(0.5);
+        ASSERT_NEAR(bench.pulses[0].microseconds, 2000.0, 0.1);
+        DeviceProfile next = fast;
+        next.servos[0].pulseMin = row.pulseMin;
+        next.servos[0].pulseMax = row.pulseMax;
+        next.servos[0].trim = row.trim;
+        bench.guard.setProfile(next);
+        const double most = 0.25 * (row.pulseMax - row.pulseMin) * 0.005;
+        double last = 2000.0;
+        int steps = 0;
+        for (; std::abs(last - row.ends) > 0.1 && steps < 5000; ++steps) {
+            bench.step();
+            ASSERT_LE(std::abs(bench.pulses[0].microseconds - last), most + 1e-9) << steps;
+            last = bench.pulses[0].microseconds;
+        }
+        EXPECT_GE(0.005 * steps, std::abs(row.ends - 2000.0) / (0.25 * (row.pulseMax - row.pulseMin)) - 0.01);
+        // Once there it is as fast as ever: a stroke in two tenths of a second.
+        bench.run(0.1);
+        want(bench.guard, {0.0});
+        EXPECT_LT(bench.secondsTo(0.0), 0.3);
+    }
+}
+
+TEST(ServoGuard, GoesSlowlyFromWhereItWasAttachedAndThenAsFastAsItMay) {
+    DeviceProfile fast = oneServo();
+    fast.servos[0].maxVelocity = 10.0;
+    fast.servos[0].maxAcceleration = 200.0;
+    Bench bench(fast);
+    bench.guard.setKnown(0, 0.1);
+    want(bench.guard, {0.6});
+    bench.guard.arm(false);
+    const double seconds = bench.secondsTo(0.6);
+    EXPECT_GE(seconds, 2.0) << "half a stroke";
+    EXPECT_LE(seconds, 2.6);
+    want(bench.guard, {0.1});
+    EXPECT_LT(bench.secondsTo(0.1), 0.3);
+}
+
+TEST(ServoGuard, CatchesUpWithAShowThatGoesOnAndIsFastFromThere) {
+    DeviceProfile fast = oneServo();
+    fast.servos[0].maxVelocity = 10.0;
+    fast.servos[0].maxAcceleration = 200.0;
+    Bench bench(fast);
+    bench.guard.setKnown(0, 0.0);
+    want(bench.guard, {1.0});
+    bench.guard.arm(false);
+    bench.run(1.5);
+    ASSERT_LT(bench.guard.strokes()[0], 0.4);
+    // The show comes by below it, and goes up again.
+    want(bench.guard, {0.1});
+    bench.run(0.05);
+    want(bench.guard, {1.0});
+    EXPECT_LT(bench.secondsTo(1.0), 0.5);
+}
+
 TEST(ServoGuard, DoesNotLetALimpServoFollowItsLimits) {
     Bench bench(oneServo());
     bench.guard.setKnown(0, 1.0);

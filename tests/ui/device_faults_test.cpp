@@ -48,7 +48,7 @@ protected:
     /// The board is whole again and its user starts the servos, as the card offers it.
     void goOn() {
         window.click("sim.mend");
-        ASSERT_TRUE(eventually([&] { return next() == "Start servos" || allDriven(); }, 20s)) << story();
+        ASSERT_TRUE(eventually([&] { return next().startsWith("Hold to start") || allDriven(); }, 20s)) << story();
         if (!allDriven()) startServos();
         EXPECT_TRUE(allDriven());
         clearLog();
@@ -66,7 +66,7 @@ TEST_P(DeviceFaults, WhatKeepsALinkFromOpeningIsTold) {
         {"sim.busy", "nother program uses", "Let it go on the simulator's panel."},
     };
     connectNow();
-    ASSERT_TRUE(offers("Start servos"));
+    ASSERT_TRUE(offersStart());
     for (const auto& row : rows) {
         SCOPED_TRACE(row.fault);
         window.click("devices.disconnect");
@@ -83,14 +83,14 @@ TEST_P(DeviceFaults, WhatKeepsALinkFromOpeningIsTold) {
         EXPECT_EQ(phase(), LinkPhase::connecting);
         EXPECT_EQ(next(), "") << "the studio tries again by itself";
         set(row.fault, false);
-        EXPECT_TRUE(offers("Start servos")) << story();
+        EXPECT_TRUE(offersStart()) << story();
         EXPECT_TRUE(allLimp());
     }
 }
 
 TEST_P(DeviceFaults, APulledCableLetsNothingStartByItself) {
     connectNow();
-    ASSERT_TRUE(offers("Start servos"));
+    ASSERT_TRUE(offersStart());
     startServos();
     set("sim.unplugged", true);
     EXPECT_TRUE(reaches(LinkPhase::lost));
@@ -100,7 +100,7 @@ TEST_P(DeviceFaults, APulledCableLetsNothingStartByItself) {
     EXPECT_TRUE(logs("The link is lost: the simulated device '" + QString(GetParam()) + "' is unplugged."));
     set("sim.unplugged", false);
     EXPECT_TRUE(reaches(LinkPhase::disarmed));
-    EXPECT_TRUE(offers("Start servos"));
+    EXPECT_TRUE(offersStart());
     pass(300ms);
     EXPECT_EQ(phase(), LinkPhase::disarmed);
     startServos();
@@ -109,14 +109,14 @@ TEST_P(DeviceFaults, APulledCableLetsNothingStartByItself) {
 
 TEST_P(DeviceFaults, ARestartIsTold) {
     connectNow();
-    ASSERT_TRUE(offers("Start servos"));
+    ASSERT_TRUE(offersStart());
     startServos();
     window.click("sim.reboot");
     EXPECT_TRUE(eventually([&] { return phase() != LinkPhase::live; })) << story();
     // A board whose USB is its own goes from the bus; others say so, or are seen to have let go of their servos.
     const QString words = board->name() == "xarm" ? "has gone from the USB" : "The board has restarted";
     EXPECT_TRUE(logs(words));
-    EXPECT_TRUE(offers("Start servos")) << story();
+    EXPECT_TRUE(offersStart()) << story();
     pass(300ms);
     EXPECT_TRUE(allLimp()) << "nothing starts by itself";
     startServos();
@@ -125,7 +125,7 @@ TEST_P(DeviceFaults, ARestartIsTold) {
 
 TEST_P(DeviceFaults, ASilentOrStalledBoardIsTold) {
     connectNow();
-    ASSERT_TRUE(offers("Start servos"));
+    ASSERT_TRUE(offersStart());
     startServos();
     set("sim.silent", true);
     EXPECT_TRUE(eventually([&] { return phase() != LinkPhase::live; })) << "within seconds nobody calls it live";
@@ -142,7 +142,7 @@ TEST_P(DeviceFaults, ASilentOrStalledBoardIsTold) {
 
 TEST_P(DeviceFaults, NoiseIsToldAndServosStayWithinTheirLimits) {
     connectNow();
-    ASSERT_TRUE(offers("Start servos"));
+    ASSERT_TRUE(offersStart());
     startServos();
     clearLog();
     setSlider("sim.noise", 60); // 6 %
@@ -157,7 +157,7 @@ TEST_P(DeviceFaults, NoiseIsToldAndServosStayWithinTheirLimits) {
 
 TEST_P(DeviceFaults, ALowBatteryIsToldWhereItIsMeasured) {
     connectNow();
-    ASSERT_TRUE(offers("Start servos"));
+    ASSERT_TRUE(offersStart());
     const bool measured = window.studio().devices.status().controller.traits.readsVoltage;
     EXPECT_EQ(measured, std::string(GetParam()) == "tablet" || std::string(GetParam()) == "xarm");
     setSlider("sim.volts", 15); // 5.5 V
@@ -177,11 +177,12 @@ TEST_P(DeviceFaults, TheWordThatThisIsTheBoardIsKeptForThisBoardAlone) {
     nameless.nameless = true;
     board->setFaults(nameless);
     connectNow();
-    ASSERT_TRUE(eventually([&] { return next() == "Yes, this is it" || next() == "Start servos"; })) << story();
-    if (next() == "Start servos") return; // what it says of itself is enough
+    ASSERT_TRUE(eventually([&] { return next() == "Yes, this is it" || next().startsWith("Hold to start"); }))
+        << story();
+    if (next().startsWith("Hold to start")) return; // what it says of itself is enough
     EXPECT_TRUE(tells("Is this your device?"));
     window.click("devices.next");
-    ASSERT_TRUE(offers("Start servos"));
+    ASSERT_TRUE(offersStart());
     EXPECT_EQ(window.studio().devices.profile().identity, "simulated " + board->name());
 
     // The same board again: as after a start of the studio, the profile is read from its file.
@@ -190,13 +191,13 @@ TEST_P(DeviceFaults, TheWordThatThisIsTheBoardIsKeptForThisBoardAlone) {
     window.studio().devices.loadProfile(QString::fromStdString(window.studio().devices.profile().name));
     clearLog();
     window.studio().devices.connectTo(address());
-    ASSERT_TRUE(offers("Start servos")) << story();
+    ASSERT_TRUE(offersStart()) << story();
     EXPECT_FALSE(logsNow("Confirm"));
 
     expectAnotherIsAskedAbout();
     EXPECT_EQ(phase(), LinkPhase::unidentified);
     window.click("devices.next");
-    ASSERT_TRUE(offers("Start servos"));
+    ASSERT_TRUE(offersStart());
     EXPECT_EQ(window.studio().devices.profile().identity, "simulated " + board->name());
 }
 

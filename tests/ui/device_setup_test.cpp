@@ -132,7 +132,7 @@ TEST_F(DeviceSetup, AMaestrosNumberIsAskedOfMaestrosAlone) {
     EXPECT_TRUE(tells("o Maestro with device number 5 answers"));
     EXPECT_TRUE(allLimp());
     window.enter("setup.controllerNumber", "12");
-    EXPECT_TRUE(offers("Start servos"));
+    EXPECT_TRUE(offersStart());
     set("setup.maestroCrc", true);
     EXPECT_TRUE(profile().maestroCrc);
 }

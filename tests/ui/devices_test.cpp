@@ -3,10 +3,14 @@
 #include <cmath>
 #include <thread>
 
+#include <QLineEdit>
 #include <QSlider>
 
 #include "app/studio/devices/device_shelf.h"
+#include "app/studio/devices/start_moves.h"
 #include "app/workspaces/devices/device_words.h"
+#include "app/workspaces/devices/servo_board.h"
+#include "app/workspaces/devices/stroke_bar.h"
 #include "devices/controllers/device_profile.h"
 #include "tests/ui/devices_window.h"
 
@@ -48,7 +52,7 @@ TEST_F(DevicesWindow, AnUnpluggedBoardIsToldAndComesBackLimp) {
     window.screenshot("devices-unplugged");
     set("sim.unplugged", false);
     EXPECT_TRUE(reaches(LinkPhase::disarmed));
-    EXPECT_TRUE(offers("Start servos"));
+    EXPECT_TRUE(offersStart());
     EXPECT_TRUE(allLimp()) << "it is started by its user alone";
     startServos();
     EXPECT_TRUE(tells("Live"));
@@ -60,7 +64,7 @@ TEST_F(DevicesWindow, ARestartIsToldAndNothingStartsByItself) {
     window.click("sim.reboot");
     // While its bootloader runs it is silent, which is noticed first.
     EXPECT_TRUE(eventually([&] { return phase() != LinkPhase::live; }));
-    EXPECT_TRUE(offers("Start servos"));
+    EXPECT_TRUE(offersStart());
     EXPECT_TRUE(logs("The board has restarted"));
     EXPECT_TRUE(tells("ready again"));
     pass(500ms);
@@ -91,13 +95,18 @@ TEST_F(DevicesWindow, StopReachesTheBoardWhileTheWindowIsStuck) {
     while (!allLimp() && Steady::now() < deadline) std::this_thread::sleep_for(1ms);
     EXPECT_TRUE(allLimp());
     EXPECT_TRUE(reaches(LinkPhase::stopped));
-    EXPECT_TRUE(offers("Start again"));
+    EXPECT_TRUE(offersStart());
     window.screenshot("devices-stopped");
     pass(300ms);
     EXPECT_TRUE(allLimp()) << "it is latched";
     window.click("resume");
     EXPECT_FALSE(window.studio().loop.stopped());
-    EXPECT_TRUE(eventually([&] { return allDriven(); })) << "servos that were live start softly";
+    pass(500ms);
+    EXPECT_TRUE(allLimp()) << "this board cannot tell where its servos are: somebody may have moved them";
+    EXPECT_EQ(window.text("start.title"), "Start the servos again?");
+    EXPECT_TRUE(window.text("start.text").contains("cannot tell")) << window.text("start.text").toStdString();
+    window.screenshot("devices-resumed");
+    startServos();
     EXPECT_TRUE(eventually([&] { return std::abs(servoOf(0).pulse - 2000.0) <= 2.0; }));
 }
 
@@ -117,7 +126,7 @@ TEST_F(DevicesWindow, WhoHitsStopTwiceDoesNotStartTheServosAgain) {
     EXPECT_TRUE(allLimp());
     window.screenshot("devices-stopped-twice");
     window.click("resume");
-    EXPECT_TRUE(eventually([&] { return allDriven(); }));
+    startServos();
     EXPECT_EQ(window.findNow<QWidget>("resume"), nullptr) << "it is not offered where nothing is stopped";
 }
 
@@ -137,7 +146,7 @@ TEST_F(DevicesWindow, ServosFollowAndStopWhileTheWindowIsStuck) {
     setByHand(1, 1.0);
     window.studio().loop.stop(); // hands the wish over, so that the loop has nothing left to be told
     window.studio().loop.resume();
-    ASSERT_TRUE(eventually([&] { return allDriven(); }));
+    startServos();
     setByHand(1, 0.0);
     ASSERT_TRUE(eventually([&] { return servoOf(1).pulse < 1010.0 && servoOf(1).pulse > 0.0; }));
     setByHand(1, 1.0);
@@ -162,9 +171,6 @@ TEST_F(DevicesWindow, TheProfileLimitsThePulse) {
     EXPECT_TRUE(eventually([&] { return std::abs(servoOf(3).pulse - 1600.0) <= 2.0; })) << servoOf(3).pulse;
     pass(300ms);
     EXPECT_LE(servoOf(3).pulse, 1601.0);
-    window.enter("servo.channel", "2"); // the first servo has it
-    EXPECT_NE(window.studio().devices.profile().servos[3].channel, 2);
-    EXPECT_NE(window.find<QWidget>("notice"), nullptr) << "and it is said why";
     const auto file = studio::DeviceShelf(window.studio().settings.folder() / "devices")
                           .fileOf(QString::fromStdString(window.studio().devices.profile().name));
     EXPECT_EQ(readProfile(file).servos.at(3).pulseMax, 1600.0) << "it is kept";
@@ -196,6 +202,241 @@ TEST_F(DevicesWindow, TheRowThatMovedGetsTheChannelThatWiggled) {
     EXPECT_EQ(window.studio().devices.profile().servos[0].channel, sixth);
     window.click("servo.resetProfile");
     EXPECT_EQ(window.studio().devices.profile().servos[0].channel, first);
+}
+
+/// Who double-clicks, once or ten times, has said nothing about his fingers.
+TEST_F(DevicesWindow, DoubleClicksOnConnectAndOnStartStartNothing) {
+    setByHand(0, 0.0);
+    ASSERT_TRUE(offers("Connect the simulated tablet"));
+    auto* connect = window.find<QWidget>("devices.next");
+    const QPoint place = connect->mapTo(&window.window(), connect->rect().center());
+    for (int press = 0; press < 10 || !next().startsWith("Hold"); ++press) {
+        ASSERT_LT(press, 200);
+        if (QWidget* there = window.window().childAt(place)) {
+            QTest::mouseClick(there, Qt::LeftButton);
+            QTest::mouseDClick(there, Qt::LeftButton);
+        }
+        pass(100ms);
+    }
+    auto* hold = window.find<QWidget>("start.hold");
+    const QRect dangerous(hold->mapTo(&window.window(), QPoint()), hold->size());
+    EXPECT_FALSE(dangerous.contains(place)) << "nothing dangerous comes up under the pointer";
+    for (int press = 0; press < 5; ++press) {
+        QTest::mouseClick(hold, Qt::LeftButton);
+        QTest::mouseDClick(hold, Qt::LeftButton);
+        pass(100ms);
+    }
+    window.hold("start.hold", 700ms);
+    pass(600ms);
+    EXPECT_EQ(phase(), LinkPhase::disarmed);
+    EXPECT_TRUE(allLimp());
+    // The menu and the keys ask the same.
+    window.studio().commands.find("device.start")->trigger();
+    window.studio().commands.find("device.next")->trigger();
+    pass(300ms);
+    EXPECT_EQ(phase(), LinkPhase::disarmed);
+    EXPECT_EQ(QApplication::focusWidget(), hold);
+    QTest::keyPress(hold, Qt::Key_Space);
+    EXPECT_TRUE(eventually([&] { return allDriven(); }, 10s)) << story();
+}
+
+TEST_F(DevicesWindow, AStartShowsThePoseToComeAndTheLargestJump) {
+    setByHand(2, 0.8);
+    window.studio().devices.connectTo(address());
+    ASSERT_TRUE(offers("Hold to start anyway"));
+    // 1000 to 2000 us; what may be at 1000 and is wanted at 1800 leaps by 800, one that is wanted at 1000 by 1000.
+    EXPECT_TRUE(eventually([&] {
+        const auto* list = window.findNow<QListWidget>("start.servos");
+        return list && list->item(list->count() - 1)->text() ==
+                           studio::servoName(studio::servoNamesOf(window.studio()), 2) + " may jump by up to 800 µs";
+    }));
+    EXPECT_TRUE(window.text("start.text").contains("1000 µs, of Servo 1")) << window.text("start.text").toStdString();
+    EXPECT_TRUE(window.text("start.text").startsWith("Hands off"));
+    auto* view = window.find<studio::ViewportWidget>("start.view");
+    std::vector<double> strokes(window.state().rig.rig->actuatorCount(), 0.0);
+    strokes[2] = 0.8;
+    std::vector<glm::vec3> wanted(window.state().rig.rig->restMesh().positions.size());
+    window.state().rig.rig->deform(strokes, wanted);
+    const auto shows = [&](std::size_t surface, const std::vector<glm::vec3>& positions) {
+        const auto& scene = view->scene();
+        if (!scene || surface >= scene->surfaces.size()) return false;
+        const auto& drawn = *scene->surfaces[surface].positions;
+        for (std::size_t i = 0; i < positions.size(); ++i)
+            if (glm::distance(drawn[i], positions[i]) > 1e-4F) return false;
+        return drawn.size() == positions.size();
+    };
+    EXPECT_TRUE(eventually([&] { return shows(0, wanted); }));
+    EXPECT_LT(view->scene()->surfaces[0].opacity, 1.0F) << "nobody knows where it is: it is a ghost";
+    window.screenshot("devices-start");
+    startServos();
+    ASSERT_TRUE(eventually([&] { return std::abs(servoOf(2).pulse - 1800.0) <= 2.0; }));
+    window.studio().devices.release();
+    setByHand(1, 1.0);
+    ASSERT_TRUE(offers("Hold to start servos"));
+    EXPECT_TRUE(eventually([&] { return window.text("start.text").contains("100 % of a stroke, of Servo 2"); }))
+        << window.text("start.text").toStdString();
+    EXPECT_TRUE(eventually([&] { return shows(0, wanted); })) << "where it was let go";
+    strokes[2] = 0.0;
+    strokes[1] = 1.0;
+    window.state().rig.rig->deform(strokes, wanted);
+    EXPECT_TRUE(eventually([&] { return shows(1, wanted); })) << "and over it the pose to come";
+    window.screenshot("devices-start-known");
+}
+
+TEST_F(DevicesWindow, ResumeStartsServosByItselfWhereTheyAreRead) {
+    use("xarm");
+    goLiveByAddress();
+    window.click("stop");
+    ASSERT_TRUE(reaches(LinkPhase::stopped));
+    pass(1s);
+    window.click("resume");
+    EXPECT_TRUE(eventually([&] { return allDriven(); })) << story();
+}
+
+TEST_F(DevicesWindow, ANumberThatMayNotBeIsRefusedAndNotMadeAnother) {
+    goLive();
+    window.click("devices.row.3");
+    const DeviceProfile before = window.studio().devices.profile();
+    const struct {
+        const char* field;
+        const char* typed;
+        const char* told;
+    } rows[] = {
+        {"servo.pulseMax", "2600", "2600"}, {"servo.pulseMin", "1990", "1990"}, {"servo.trim", "700", "700"},
+        {"servo.velocity", "30", "30"},     {"servo.channel", "2.6", "2.6"},    {"servo.channel", "300", "300"},
+    };
+    for (const auto& row : rows) {
+        SCOPED_TRACE(row.field);
+        window.enter(row.field, row.typed);
+        const auto told = window.studio().notices.at("servo");
+        ASSERT_EQ(told.size(), 1U);
+        EXPECT_TRUE(told.front().why.contains(row.told)) << told.front().why.toStdString();
+        EXPECT_TRUE(told.front().subject.contains("Servo 4")) << told.front().subject.toStdString();
+        EXPECT_EQ(window.studio().devices.profile().servos, before.servos);
+    }
+    window.enter("servo.pulseMax", "1950");
+    EXPECT_EQ(window.studio().devices.profile().servos[3].pulseMax, 1950.0);
+    EXPECT_TRUE(window.studio().notices.at("servo").empty());
+}
+
+TEST_F(DevicesWindow, AChannelThatIsTakenNamesBothServosAndTheyMayExchange) {
+    window.click("devices.row.0");
+    const auto names = studio::servoNamesOf(window.studio());
+    const int first = window.studio().devices.profile().servos[0].channel;
+    const int fourth = window.studio().devices.profile().servos[3].channel;
+    window.enter("servo.channel", QString::number(fourth));
+    const auto told = window.studio().notices.at("servo");
+    ASSERT_EQ(told.size(), 1U);
+    EXPECT_TRUE(told.front().subject.contains(studio::servoName(names, 0))) << told.front().subject.toStdString();
+    EXPECT_TRUE(told.front().why.contains(studio::servoName(names, 3))) << told.front().why.toStdString();
+    EXPECT_EQ(window.studio().devices.profile().servos[0].channel, first);
+    EXPECT_EQ(window.find<QLineEdit>("servo.channel")->text(), QString::number(first)) << "what is so is shown";
+    window.screenshot("devices-channel-taken");
+    ASSERT_EQ(told.front().actions.size(), 1U);
+    told.front().actions.front().run();
+    EXPECT_EQ(window.studio().devices.profile().servos[0].channel, fourth);
+    EXPECT_EQ(window.studio().devices.profile().servos[3].channel, first);
+    EXPECT_EQ(window.text("devices.channel.0"), "channel " + QString::number(fourth));
+}
+
+TEST_F(DevicesWindow, WantedMarksFollowTheLoopWithoutABoard) {
+    const auto wanted = [&](std::size_t servo) {
+        const auto* row = window.find<QWidget>("devices.row." + QString::number(servo));
+        return row->findChild<studio::StrokeBar*>()->shown().wanted;
+    };
+    EXPECT_TRUE(eventually([&] { return wanted(0) > 0.0 || wanted(1) > 0.0 || wanted(2) > 0.0; }, 5s))
+        << "the demonstration plays from the start";
+    setByHand(2, 0.7);
+    EXPECT_TRUE(eventually([&] { return std::abs(wanted(2) - 0.7) < 1e-6; }, 5s)) << wanted(2);
+    setByHand(2, 0.2);
+    EXPECT_TRUE(eventually([&] { return std::abs(wanted(2) - 0.2) < 1e-6; }, 5s)) << wanted(2);
+}
+
+TEST_F(DevicesWindow, UndoIsOfTheSetUpHereAndOfTheDocumentElsewhereAndSaysWhatItTookBack) {
+    window.studio().document.change("Rename sky", [](studio::StudioState& state) {
+        Scene scene = *state.scene;
+        scene.items.front().name = "renamed";
+        state.scene = std::make_shared<const Scene>(std::move(scene));
+    });
+    QAction* undo = window.studio().commands.find("edit.undo");
+    EXPECT_FALSE(undo->isEnabled()) << "the scene is not undone from here, where nobody sees it";
+    window.click("devices.row.1");
+    const DeviceProfile before = window.studio().devices.profile();
+    window.enter("servo.pulseMax", "1900");
+    window.enter("servo.trim", "20");
+    EXPECT_EQ(window.studio().devices.profile().servos[1].trim, 20.0);
+    ASSERT_TRUE(undo->isEnabled());
+    QTest::keyClick(&window.window(), Qt::Key_Z, Qt::ControlModifier);
+    EXPECT_EQ(window.studio().devices.profile().servos[1].trim, 0.0);
+    EXPECT_EQ(window.studio().devices.profile().servos[1].pulseMax, 1900.0);
+    const QString who = studio::servoName(studio::servoNamesOf(window.studio()), 1);
+    EXPECT_EQ(window.text("undo.toast.text"), "Undone: Trim of " + who + " (Devices)");
+    window.screenshot("devices-undo");
+    undo->trigger();
+    EXPECT_EQ(window.studio().devices.profile().servos, before.servos);
+    EXPECT_FALSE(undo->isEnabled());
+    window.studio().commands.find("edit.redo")->trigger();
+    EXPECT_EQ(window.studio().devices.profile().servos[1].pulseMax, 1900.0);
+    const auto file = studio::DeviceShelf(window.studio().settings.folder() / "devices")
+                          .fileOf(QString::fromStdString(window.studio().devices.profile().name));
+    EXPECT_EQ(readProfile(file).servos.at(1).pulseMax, 1900.0) << "it is kept as it is now";
+    EXPECT_EQ(window.state().scene->items.front().name, "renamed");
+    // In Field the document is undone, and it is said that it was the scene's.
+    window.click("tab.field");
+    ASSERT_TRUE(undo->isEnabled());
+    undo->trigger();
+    EXPECT_NE(window.state().scene->items.front().name, "renamed");
+    EXPECT_EQ(window.text("undo.toast.text"), "Undone: Rename sky (Scene)");
+    EXPECT_EQ(window.studio().devices.profile().servos[1].pulseMax, 1900.0);
+    window.click("undo.toast.show");
+    EXPECT_EQ(window.window().workspace(), "scene");
+}
+
+TEST_F(DevicesWindow, TheRigShowsTheSameChannel) {
+    use("maestro");
+    goLiveByAddress();
+    window.click("devices.row.0");
+    window.enter("servo.channel", "11");
+    EXPECT_EQ(window.text("devices.channel.0"), "channel 11");
+    window.click("tab.rig");
+    auto* list = window.find<QListWidget>("rig.actuators");
+    ASSERT_NE(list, nullptr);
+    list->setCurrentRow(0);
+    EXPECT_TRUE(eventually([&] { return window.text("rig.actuator.channel") == "11"; }))
+        << window.text("rig.actuator.channel").toStdString();
+}
+
+TEST(StartMoves, SayWhoMayJumpAndHowFar) {
+    DeviceProfile profile;
+    profile.servos = {{.channel = 0, .pulseMin = 1000.0, .pulseMax = 2000.0},
+                      {.channel = 1, .pulseMin = 600.0, .pulseMax = 2400.0},
+                      {.channel = 2, .pulseMin = 1000.0, .pulseMax = 2000.0, .reversed = true}};
+    LinkStatus link;
+    link.servos.resize(3);
+    const std::vector<double> wanted{0.25, 0.5, 0.1};
+    auto moves = studio::startMoves(link, profile, wanted);
+    EXPECT_EQ(moves[0].jump, 750.0) << "from 2000 to 1250";
+    EXPECT_EQ(moves[1].jump, 900.0) << "from either end to 1500";
+    EXPECT_NEAR(moves[2].jump, 900.0, 1e-9) << "reversed, 1900 is wanted: from 1000";
+    EXPECT_FALSE(studio::startsFromReadPlaces(link));
+    link.servos[1].known = true;
+    link.servos[1].commanded = 0.9;
+    moves = studio::startMoves(link, profile, wanted);
+    EXPECT_EQ(moves[1].jump, 0.0);
+    EXPECT_EQ(moves[1].from, 0.9);
+    EXPECT_EQ(moves[1].to, 0.5);
+    link.controller.traits.jumpsOnAttach = true;
+    moves = studio::startMoves(link, profile, wanted);
+    EXPECT_NEAR(moves[1].jump, 720.0, 1e-9) << "from 2220 to the middle first";
+    EXPECT_EQ(moves[0].jump, 500.0);
+    link.controller.traits.jumpsOnAttach = false;
+    link.controller.traits.readsPosition = true;
+    for (ServoStatus& servo : link.servos) servo.known = true;
+    EXPECT_TRUE(studio::startsFromReadPlaces(link));
+    link.servos[2].known = false;
+    EXPECT_FALSE(studio::startsFromReadPlaces(link));
+    link.servos[0].attached = true;
+    EXPECT_EQ(studio::startMoves(link, profile, wanted)[0].jump, 0.0);
 }
 
 TEST_F(DevicesWindow, WhatIsNoAddressIsToldWhereItIsTyped) {
@@ -237,7 +478,7 @@ TEST(DeviceWords, TheNextStepFitsTheState) {
         const studio::DeviceCard card = cardOf(view);
         EXPECT_EQ(card.title.toStdString(), row.words);
         EXPECT_EQ(card.step, row.step) << row.words;
-        EXPECT_EQ(card.button.isEmpty(), row.step == Step::none) << row.words;
+        EXPECT_EQ(card.button.isEmpty(), row.step == Step::none || card.starts()) << row.words;
     }
     view.rig = false;
     EXPECT_EQ(cardOf(view).step, Step::openRig);

@@ -54,8 +54,13 @@ protected:
     }
     void clearLog() { seen_ = static_cast<int>(window.studio().devices.log().size()); }
     [[nodiscard]] QString next() {
+        if (const auto* hold = window.findNow<QAbstractButton>("start.hold"); hold && hold->isEnabled())
+            return hold->text();
         const auto* button = window.findNow<QAbstractButton>("devices.next");
         return button ? button->text() : QString();
+    }
+    [[nodiscard]] bool offersStart() {
+        return eventually([&] { return next().startsWith("Hold to start"); });
     }
     [[nodiscard]] bool offers(const QString& words) {
         return eventually([&] { return next() == words; });
@@ -65,20 +70,18 @@ protected:
         setByHand(0, 0.0); // the show stands still
         ASSERT_TRUE(offers("Connect the simulated tablet"));
         window.click("devices.next");
-        ASSERT_TRUE(offers("Start servos"));
+        ASSERT_TRUE(offersStart());
         startServos();
     }
     /// The same on the board that is used, by its address.
     void goLiveByAddress() {
         setByHand(0, 0.0);
         window.studio().devices.connectTo(address());
-        ASSERT_TRUE(offers("Start servos"));
+        ASSERT_TRUE(offersStart());
         startServos();
     }
     void startServos() {
-        window.click("devices.next");
-        ASSERT_TRUE(eventually([&] { return allDriven() || next() == "Start anyway"; })) << story();
-        if (next() == "Start anyway") window.click("devices.next");
+        window.hold("start.hold");
         ASSERT_TRUE(eventually([&] { return allDriven(); })) << story();
     }
     /// What the card and the log say, for those who read of a failure.

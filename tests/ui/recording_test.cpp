@@ -151,6 +151,8 @@ TEST_F(RecordingWindow, ASessionWithServosAndStopComesBackBitForBit) {
     EXPECT_TRUE(eventually([&] { return phase() == LinkPhase::stopped; }));
     pass(500ms);
     window().click("resume");
+    ASSERT_TRUE(eventually([&] { return studio().devices.status().phase == LinkPhase::stopped; }));
+    window().hold("start.hold");
     EXPECT_TRUE(eventually([&] { return phase() == LinkPhase::live; }));
     pass(2s);
     const std::vector<FrameRow> given = tap.take();
@@ -179,11 +181,55 @@ TEST_F(RecordingWindow, ASessionWithServosAndStopComesBackBitForBit) {
     EXPECT_GT(sent, 500U);
     EXPECT_EQ(proof.bytes, sent);
 
-    // The same again for the eyes, and for the servos by the live path.
-    trace();
+    // The same again for the eyes alone.
+    const auto commanded = [&] {
+        std::vector<double> strokes;
+        for (const ServoStatus& servo : studio().devices.status().servos) strokes.push_back(servo.wanted);
+        return strokes;
+    };
     ASSERT_TRUE(replays(studio().recorder.file()));
     ASSERT_TRUE(eventually([&] { return studio().replay.position() > 0.1; }));
-    (void)tap.take(); // the last live frames may have come until now
+    pass(100ms);
+    const std::vector<double> still = commanded();
+    EXPECT_TRUE(eventually([&] { return studio().replay.position() > 1.5; }));
+    EXPECT_EQ(commanded(), still) << "a replay only shows";
+    EXPECT_EQ(phase(), LinkPhase::live);
+    EXPECT_FALSE(studio().replay.drivesServos());
+    EXPECT_EQ(window().text("replay.what"), "A recording is shown; servos stay still");
+
+    // And for the servos too, once their user has agreed: first slowly to where it stands.
+    window().click("replay.playButton");
+    studio().replay.seek(0.0);
+    window().click("replay.driveButton");
+    ASSERT_NE(window().find<QDialog>("dialog.start"), nullptr);
+    EXPECT_EQ(window().text("start.title"), "Drive the servos by the recording?");
+    window().screenshot("replay-drive");
+    QTest::mouseClick(window().find<QWidget>("start.hold"), Qt::LeftButton);
+    pass(300ms);
+    EXPECT_FALSE(studio().replay.drivesServos()) << "a click is not enough";
+    trace();
+    window().hold("start.hold");
+    ASSERT_TRUE(studio().replay.drivesServos());
+    EXPECT_TRUE(eventually([&] { return studio().devices.testing(); }));
+    EXPECT_TRUE(eventually([&] { return !studio().devices.testing(); }));
+    const std::vector<double>& first = recording.frames.front().estimated;
+    EXPECT_TRUE(eventually([&] { return commanded() == first; }));
+    const std::vector<ServoTraceRow> way = traced();
+    std::vector<double> before;
+    for (std::size_t i = 0; i < way.size(); ++i) {
+        if (way[i].kind != "command") continue;
+        const std::vector<double> told = tracedStrokes(way[i], i);
+        for (std::size_t k = 0; k < before.size(); ++k)
+            EXPECT_LE(std::abs(told[k] - before[k]), 0.25 * 0.1 + 1e-9) << "a quarter of a stroke a second";
+        before = told;
+    }
+    {
+        const std::scoped_lock lock(mutex_);
+        traced_.clear();
+    }
+    trace();
+    (void)tap.take();
+    window().click("replay.playButton");
     EXPECT_TRUE(eventually([&] { return studio().replay.position() > 2.0; }));
     window().screenshot("replay");
     const auto& shown = studio().loop.frame();

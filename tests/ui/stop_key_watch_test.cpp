@@ -32,6 +32,28 @@ TEST(StopKeyWatch, HearsEscTwiceWhileTheWindowIsStuckAndAnotherHasTheKeyboard) {
     EXPECT_EQ(count, 1) << "another key came between";
 }
 
+TEST(StopKeyWatch, LeavesTheWindowAMomentToSayThatAPressClosedSomething) {
+    std::atomic<int> count = 0;
+    studio::StopKeyWatch watch([&count] { ++count; });
+    ASSERT_TRUE(watch.listens()) << watch.why().toStdString();
+    watch.setSomethingOpen(true);
+    ASSERT_TRUE(typeKeys("key Escape key Escape"));
+    EXPECT_TRUE(becomes(count, 1)) << "the window is stuck, and says nothing";
+    // The first press closed something: the second is a first one.
+    ASSERT_TRUE(typeKeys("key Escape"));
+    std::this_thread::sleep_for(milliseconds(30));
+    watch.forget();
+    ASSERT_TRUE(typeKeys("key Escape"));
+    std::this_thread::sleep_for(milliseconds(300));
+    EXPECT_EQ(count, 1);
+    ASSERT_TRUE(typeKeys("key a"));
+    // The second did.
+    ASSERT_TRUE(typeKeys("key Escape key Escape"));
+    watch.forget();
+    std::this_thread::sleep_for(milliseconds(300));
+    EXPECT_EQ(count, 1);
+}
+
 TEST(StopKeyWatch, SaysWhyItCannotListen) {
     const QByteArray display = qgetenv("DISPLAY");
     qunsetenv("DISPLAY");

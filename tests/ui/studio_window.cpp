@@ -11,6 +11,7 @@
 #include <QDropEvent>
 #include <QLineEdit>
 #include <QMimeData>
+#include <QPointer>
 #include <QScreen>
 #include <QUrl>
 
@@ -68,6 +69,14 @@ StudioWindow::~StudioWindow() {
 
 void StudioWindow::click(const QString& name) {
     if (auto* button = find<QWidget>(name)) QTest::mouseClick(button, Qt::LeftButton);
+}
+
+void StudioWindow::hold(const QString& name, std::chrono::milliseconds time) {
+    const QPointer<QWidget> button = find<QWidget>(name);
+    if (!button) return;
+    QTest::mousePress(button, Qt::LeftButton);
+    (void)eventually([&] { return !button || !button->isVisible(); }, time);
+    if (button && button->isVisible()) QTest::mouseRelease(button, Qt::LeftButton);
 }
 
 void StudioWindow::enter(const QString& name, const QString& text, Qt::Key then) {

@@ -12,10 +12,12 @@
 #include <QDateTime>
 #include <QElapsedTimer>
 #include <QTimer>
+#include <QUndoCommand>
 
 #include "app/studio/devices/device_finder.h"
 #include "app/studio/devices/rig_profiles.h"
 #include "app/studio/devices/servo_feed.h"
+#include "app/studio/devices/start_moves.h"
 #include "core/base/error.h"
 #include "devices/controllers/controller_kinds.h"
 #include "devices/simulator/simulated_bench.h"
@@ -28,6 +30,15 @@ constexpr int kDeviceStatusMilliseconds = 50;
 constexpr int kTestMilliseconds = 33;
 
 bool drives(LinkPhase phase) { return phase == LinkPhase::live || phase == LinkPhase::starting; }
+
+/// The set-up of one profile on the board of another.
+DeviceProfile onBoardOf(DeviceProfile setup, const DeviceProfile& board) {
+    setup.address = board.address;
+    setup.controller = board.controller;
+    setup.identity = board.identity;
+    setup.confirmed = board.confirmed;
+    return setup;
+}
 
 } // namespace
 
@@ -56,6 +67,7 @@ struct DeviceService::Data {
     bool sense();
     void tellSearch(const LinkTrouble& trouble);
     void tick();
+    void startTicking();
 
     DeviceService& service;
     StudioDocument& document;
@@ -83,6 +95,28 @@ struct DeviceService::Data {
     QDateTime liveSince;
     QString stopKeysProblem; ///< why
     bool slow = false;
+    QUndoStack undo;
+    std::optional<DeviceProfile> beforePreview; ///< what a drag began with
+    std::atomic<bool> followsRecordings = false;
+    bool apart = false; ///< a recording was shown that servos did not follow; of the loop's thread
+};
+
+/// Before and after; it has happened already when it is pushed.
+class DeviceService::ChangeSetup : public QUndoCommand {
+public:
+    ChangeSetup(DeviceService& service, const QString& what, DeviceProfile before, DeviceProfile after)
+        : QUndoCommand(what), service_(service), before_(std::move(before)), after_(std::move(after)) {}
+    void undo() override { use(before_); }
+    void redo() override {
+        if (std::exchange(pushed_, true)) use(after_);
+    }
+
+private:
+    void use(const DeviceProfile& profile) { service_.setProfile(onBoardOf(profile, service_.profile())); }
+
+    DeviceService& service_;
+    DeviceProfile before_, after_;
+    bool pushed_ = false;
 };
 
 void DeviceService::Data::listen() {
@@ -126,6 +160,8 @@ void DeviceService::Data::takeRig() {
     origin = document.state().rig.origin;
     if (same) return;
     retire();
+    undo.clear();
+    beforePreview.reset();
     use(rig ? freshProfile(*rig, DeviceProfile{}.controller) : DeviceProfile{});
     if (rig)
         if (const QString last = profiles.lastOf(*rig); !last.isEmpty()) service.loadProfile(last);
@@ -135,12 +171,19 @@ void DeviceService::Data::takeRig() {
 
 /// A hand that comes near makes servos slow before they are told where to go.
 void DeviceService::Data::follow(const MatchFrame& frame) {
-    handWatch.follow(frame);
+    const bool drives = !frame.recorded || followsRecordings;
+    if (drives) handWatch.follow(frame); // else the device is not where it is shown
     feed.setSlow(SlowCause::hand, handWatch.look(SteadyClock().now()));
-    feed.follow(frame.estimatedStrokes);
+    const bool anew = std::exchange(apart, !drives) && drives;
+    if (!drives) return;
+    feed.follow(frame.estimatedStrokes, anew);
+    if (anew)
+        QMetaObject::invokeMethod(
+            &service, [this] { startTicking(); }, Qt::QueuedConnection);
 }
 
 void DeviceService::Data::use(DeviceProfile next) {
+    if (next.controller != profile.controller) undo.clear(); // its channels are others
     profile = std::move(next);
     handWatch.setLimit(profile.handDistance);
 }
@@ -275,9 +318,12 @@ void DeviceService::Data::tellAll(const std::vector<LinkEvent>& events) {
     if (!events.empty()) emit service.logged(static_cast<int>(events.size()));
 }
 
-/// Servos that STOP has let go start softly, where they were live.
+/// Servos that STOP has let go start softly, where they were live and are read where they stand; else somebody may have
+/// moved them since, and the user is asked as at any start.
 void DeviceService::Data::onResumed() {
     if (!link || loop.stopped() || !feed.takeStoppedLive()) return;
+    take();
+    if (!startsFromReadPlaces(status)) return service.askStart();
     link->arm(false);
     take();
 }
@@ -294,6 +340,12 @@ void DeviceService::Data::tellSearch(const LinkTrouble& trouble) {
 void DeviceService::Data::tick() {
     feed.advance(1e-3 * static_cast<double>(sinceTest.restart()));
     if (!feed.moving()) testTimer.stop();
+}
+
+void DeviceService::Data::startTicking() {
+    sinceTest.start();
+    testTimer.start();
+    emit service.changed();
 }
 
 DeviceService::DeviceService(Settings& settings, StudioDocument& document, StudioLoop& loop, Notices& notices)
@@ -335,13 +387,19 @@ void DeviceService::searchBluetooth() {
     data_->finder.searchBluetooth();
 }
 
-bool DeviceService::setProfile(const DeviceProfile& profile) {
+bool DeviceService::setProfile(const DeviceProfile& profile, const QString& what) {
+    const DeviceProfile before = std::exchange(data_->beforePreview, std::nullopt).value_or(data_->profile);
     if (!data_->force(profile)) return false;
     data_->keep();
+    if (!what.isEmpty() && onBoardOf(before, profile) != profile)
+        data_->undo.push(new ChangeSetup(*this, what, before, profile));
     return true;
 }
 
+QUndoStack& DeviceService::undoStack() noexcept { return data_->undo; }
+
 bool DeviceService::previewProfile(const DeviceProfile& profile) {
+    if (!data_->beforePreview) data_->beforePreview = data_->profile;
     if (data_->link && beginsAnew(data_->link->profile(), profile)) return false;
     return data_->force(profile);
 }
@@ -358,7 +416,7 @@ void DeviceService::loadProfile(const QString& name) {
             loaded.identity = data_->profile.identity;
             loaded.confirmed = data_->profile.confirmed;
         }
-        setProfile(loaded);
+        setProfile(loaded, "Load profile " + name);
     } catch (const Error& error) {
         data_->notices.post("servo", noticeOf(error));
         emit profileChanged();
@@ -368,14 +426,14 @@ void DeviceService::loadProfile(const QString& name) {
 void DeviceService::saveProfileAs(const QString& name) {
     DeviceProfile named = data_->profile;
     named.name = fileNameOf(name).toStdString();
-    setProfile(named);
+    setProfile(named, "Save profile as " + fileNameOf(name));
 }
 
 void DeviceService::resetProfile() {
     if (!data_->rig) return;
     DeviceProfile fresh = data_->profile;
     fresh.servos = freshProfile(*data_->rig, fresh.controller).servos;
-    setProfile(fresh);
+    setProfile(fresh, "Set up as the rig's file says");
 }
 
 void DeviceService::connectTo(const QString& address, std::optional<ControllerKind> controller) {
@@ -428,6 +486,14 @@ void DeviceService::start(bool jumpAllowed) {
     data_->take();
 }
 
+void DeviceService::askStart(StartBy by) { emit startAsked(by); }
+
+std::vector<double> DeviceService::wanted() const { return data_->feed.shown(); }
+
+void DeviceService::setFollowsRecordings(bool follows) { data_->followsRecordings = follows; }
+
+bool DeviceService::followsRecordings() const noexcept { return data_->followsRecordings; }
+
 void DeviceService::stopNow() { data_->feed.stop(); }
 
 void DeviceService::setStopKeysProblem(const QString& why) {
@@ -457,17 +523,13 @@ void DeviceService::setSlow(bool slow) {
 void DeviceService::test(std::size_t servo, double stroke) {
     if (data_->status.phase != LinkPhase::live) return;
     data_->feed.hold(servo, stroke);
-    data_->sinceTest.start();
-    data_->testTimer.start();
-    emit changed();
+    data_->startTicking();
 }
 
 void DeviceService::endTest() {
     if (!data_->feed.testing()) return;
     data_->feed.release();
-    data_->sinceTest.start();
-    data_->testTimer.start();
-    emit changed();
+    data_->startTicking();
 }
 
 void DeviceService::setPoses(std::shared_ptr<const PoseBoard> poses) { data_->handWatch.setPoses(std::move(poses)); }

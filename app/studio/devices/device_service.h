@@ -10,6 +10,7 @@
 #include <QObject>
 #include <QString>
 #include <QStringList>
+#include <QUndoStack>
 
 #include "app/studio/base/notices.h"
 #include "app/studio/base/settings.h"
@@ -46,10 +47,13 @@ public:
     /// How the open rig hangs on its controller; without servos while no rig is open.
     [[nodiscard]] const DeviceProfile& profile() const noexcept;
     /// At once in force, within the guard's limits, and kept under its name. False, and a notice at "servo", where it
-    /// cannot be.
-    bool setProfile(const DeviceProfile& profile);
+    /// cannot be. `what` names it for undo, from where a preview before it began; empty: it is no step.
+    bool setProfile(const DeviceProfile& profile, const QString& what = {});
     /// The same while something is dragged: in force, not kept; limits that grow wait for the end of the drag.
     bool previewProfile(const DeviceProfile& profile);
+    /// Steps of the set-up alone; the board that is connected stays the one that it is. Forgotten with another rig, and
+    /// with another kind of controller.
+    [[nodiscard]] QUndoStack& undoStack() noexcept;
     [[nodiscard]] QStringList profileNames() const;
     void loadProfile(const QString& name);
     void saveProfileAs(const QString& name);
@@ -61,8 +65,18 @@ public:
     void disconnect();
     /// The user says that the board is what it seems to be; remembered with the profile.
     void confirm();
-    /// Soft start, also after STOP, which it ends.
+    /// Soft start, also after STOP, which it ends. A window asks its user before (`askStart`).
     void start(bool jumpAllowed = false);
+    /// What servos are to be moved by, once their user has agreed.
+    enum class StartBy { show, recording };
+    /// Asks the user, who sees what will move and agrees by holding a button: `startAsked`.
+    void askStart(StartBy by = StartBy::show);
+    /// Strokes to which a start leads: where the show has the servos now. Empty before its first frame.
+    [[nodiscard]] std::vector<double> wanted() const;
+    /// Whether servos are told where a recording that is shown has them; they stay where they are while not, and go
+    /// slowly to whatever they follow next.
+    void setFollowsRecordings(bool follows);
+    [[nodiscard]] bool followsRecordings() const noexcept;
     /// STOP for the servos alone, from any thread, whatever the window does; the loop is to be stopped too.
     void stopNow();
     /// At the end of the program: servos go to rest where the profile says so, and are let go. Waits for it, at most
@@ -83,7 +97,7 @@ public:
     void test(std::size_t servo, double stroke);
     void endTest();
     [[nodiscard]] std::optional<double> tested(std::size_t servo) const;
-    [[nodiscard]] bool testing() const;
+    [[nodiscard]] bool testing() const; ///< or on the way back from it
 
     [[nodiscard]] const LinkStatus& status() const noexcept;
     /// When servos were last all started.
@@ -100,12 +114,14 @@ public:
     void setTrace(std::function<void(const ServoTraceRow&)> sink);
 
 signals:
+    void startAsked(lumorph::studio::DeviceService::StartBy by);
     void changed(); ///< status; at most 20 times a second
     void foundChanged();
     void profileChanged();
     void logged(int lines); ///< so many new ones
 
 private:
+    class ChangeSetup;
     struct Data;
     std::unique_ptr<Data> data_;
 };

@@ -66,10 +66,19 @@ bool ServoFeed::takeStoppedLive() {
     return std::exchange(stoppedLive_, false);
 }
 
-void ServoFeed::follow(std::span<const double> strokes) {
+void ServoFeed::follow(std::span<const double> strokes, bool anew) {
     const std::scoped_lock lock(mutex_);
     show_.assign(strokes.begin(), strokes.end());
+    const LinkPhase phase = anew && link_ ? link_->status().phase : LinkPhase::off;
+    if ((phase == LinkPhase::live || phase == LinkPhase::starting) && told_.size() == holds_.size())
+        for (std::size_t k = 0; k < holds_.size(); ++k)
+            if (!holds_[k]) holds_[k] = Hold{told_[k], {}};
     tell();
+}
+
+std::vector<double> ServoFeed::shown() const {
+    const std::scoped_lock lock(mutex_);
+    return show_;
 }
 
 void ServoFeed::hold(std::size_t servo, double stroke) {

@@ -31,8 +31,11 @@ public:
     void stop();
     /// Whether servos were driven when STOP came; forgotten by asking.
     [[nodiscard]] bool takeStoppedLive();
-    /// Where the show has the device now. Told on where it fits the servos.
-    void follow(std::span<const double> strokes);
+    /// Where the show has the device now. Told on where it fits the servos. `anew`: it is another show than the servos
+    /// followed until now, so they go to it slowly from where they were told to be.
+    void follow(std::span<const double> strokes, bool anew = false);
+    /// What `follow` was told last; empty before.
+    [[nodiscard]] std::vector<double> shown() const;
 
     /// All servos move slowly as long as there is any cause for it.
     void setSlow(SlowCause cause, bool on);

@@ -56,9 +56,9 @@ QString nameOf(const fs::path& file) { return QString::fromStdString(file.filena
 
 struct ReplayService::Data {
     Data(ReplayService& owner, StudioDocument& openDocument, ProjectService& projectService, StudioLoop& studioLoop,
-         Jobs& allJobs, Notices& allNotices)
-        : replay(owner), document(openDocument), service(projectService), loop(studioLoop), jobs(allJobs),
-          notices(allNotices) {}
+         DeviceService& deviceService, Jobs& allJobs, Notices& allNotices)
+        : replay(owner), document(openDocument), service(projectService), loop(studioLoop), devices(deviceService),
+          jobs(allJobs), notices(allNotices) {}
 
     void listen();
     void take(const fs::path& from, ReadSession read);
@@ -74,6 +74,7 @@ struct ReplayService::Data {
     StudioDocument& document;
     ProjectService& service;
     StudioLoop& loop;
+    DeviceService& devices;
     Jobs& jobs;
     Notices& notices;
     fs::path file;
@@ -136,6 +137,7 @@ void ReplayService::Data::take(const fs::path& from, ReadSession read) {
 void ReplayService::Data::show() {
     if (!fits()) return tellOther(false);
     left.reset();
+    replay.setDrivesServos(false);
     source = std::make_shared<ReplaySource>(session.recording);
     source->play();
     playing = true;
@@ -150,6 +152,7 @@ void ReplayService::Data::hide() {
     moves.stop();
     source.reset();
     loop.setSource({});
+    replay.setDrivesServos(false);
     emit replay.changed();
 }
 
@@ -176,9 +179,9 @@ void ReplayService::Data::tellOther(bool shown) {
 
 void ReplayService::Data::fail(const std::exception& error) { notices.post(kReplayPlace, noticeOf(error)); }
 
-ReplayService::ReplayService(StudioDocument& document, ProjectService& service, StudioLoop& loop, Jobs& jobs,
-                             Notices& notices)
-    : data_(std::make_unique<Data>(*this, document, service, loop, jobs, notices)) {
+ReplayService::ReplayService(StudioDocument& document, ProjectService& service, StudioLoop& loop,
+                             DeviceService& devices, Jobs& jobs, Notices& notices)
+    : data_(std::make_unique<Data>(*this, document, service, loop, devices, jobs, notices)) {
     data_->listen();
 }
 
@@ -253,6 +256,15 @@ bool ReplayService::playing() const { return data_->shown() && data_->source->pl
 double ReplayService::position() const { return data_->shown() ? data_->source->position() : 0.0; }
 double ReplayService::duration() const { return data_->shown() ? data_->source->duration() : 0.0; }
 double ReplayService::speed() const { return data_->shown() ? data_->source->speed() : 1.0; }
+
+void ReplayService::setDrivesServos(bool drives) {
+    drives = drives && data_->shown();
+    if (data_->devices.followsRecordings() == drives) return;
+    data_->devices.setFollowsRecordings(drives);
+    data_->loop.refresh(); // a recording that stands still gives its frame anew
+    emit drivesServosChanged();
+}
+bool ReplayService::drivesServos() const { return data_->devices.followsRecordings(); }
 
 void ReplayService::verify() {
     if (!data_->shown()) return;

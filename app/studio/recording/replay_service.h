@@ -10,17 +10,19 @@
 #include "app/recording/recording.h"
 #include "app/studio/base/jobs.h"
 #include "app/studio/base/notices.h"
+#include "app/studio/devices/device_service.h"
 #include "app/studio/document/project_service.h"
 #include "app/studio/document/studio_loop.h"
 
 namespace lumorph::studio {
 
-/// Shows a recording instead of the live show: every view, dock and projector, and the servos where the user has them
-/// live, get the recorded frames by the loop. Lives in the window's thread.
+/// Shows a recording instead of the live show: every view, dock and projector get the recorded frames by the loop. The
+/// servos stay where they are, unless the user lets the recording drive them. Lives in the window's thread.
 class ReplayService : public QObject {
     Q_OBJECT
 public:
-    ReplayService(StudioDocument& document, ProjectService& service, StudioLoop& loop, Jobs& jobs, Notices& notices);
+    ReplayService(StudioDocument& document, ProjectService& service, StudioLoop& loop, DeviceService& devices,
+                  Jobs& jobs, Notices& notices);
     ~ReplayService() override;
 
     /// Read beside the window, then shown and played; the notices of "replay" say why not, or that it was made with
@@ -45,6 +47,11 @@ public:
     [[nodiscard]] double duration() const;
     [[nodiscard]] double speed() const;
 
+    /// Whether servos are driven by what is shown; they go there slowly. False with each recording that is opened.
+    /// A window asks its user before (`DeviceService::askStart`).
+    void setDrivesServos(bool drives);
+    [[nodiscard]] bool drivesServos() const;
+
     /// Runs the recorded servo traffic again and says whether the same bytes come out.
     void verify();
     /// Tables for a study, into a folder.
@@ -54,7 +61,8 @@ public:
 
 signals:
     void changed(); ///< opened, closed, played, paused, speed
-    void moved();   ///< another position
+    void drivesServosChanged();
+    void moved(); ///< another position
 
 private:
     struct Data;

@@ -26,6 +26,7 @@ std::shared_ptr<const MatchFrame> ReplaySource::frame(const MatchWish& wish, Mic
     if (row == row_ && isOf(*shown_, wish)) return shown_;
     auto frame = std::make_shared<MatchFrame>(frameOf(*row, wish));
     frame->time = now; // when it is shown again
+    frame->recorded = true;
     row_ = row;
     shown_ = std::move(frame);
     return shown_;

@@ -116,7 +116,7 @@ struct KeyLine {
 
 /// Keys and gestures that are no commands.
 constexpr KeyLine kGestures[] = {
-    {"Esc Esc", "STOP: every actuator holds where it is"},
+    {"Esc Esc", "STOP: the show holds still, all servos are let go"},
     {"Left drag, middle drag", "Turn the view"},
     {"Shift drag, right drag", "Move the view"},
     {"Wheel, + and -", "Zoom"},

@@ -33,6 +33,7 @@ DriverControl::DriverControl(StudioDocument& document, StudioLoop& loop, ReplayS
     connect(&loop, &StudioLoop::driverChanged, this, &DriverControl::compare);
     connect(&loop, &StudioLoop::stoppedChanged, this, &DriverControl::changed);
     connect(&replay, &ReplayService::changed, this, &DriverControl::compare);
+    connect(&replay, &ReplayService::drivesServosChanged, this, &DriverControl::changed);
 }
 
 void DriverControl::onDocument(StateParts parts) {
@@ -110,7 +111,11 @@ QString DriverControl::whyNot(Driver driver) const {
 QString DriverControl::whyStill() const {
     if (loop_.stopped()) return tr("STOP holds the servos until you resume.");
     const StudioState& state = document_.state();
-    if (driver() == Driver::recording) return {};
+    if (driver() == Driver::recording)
+        return replay_.drivesServos() ? QString()
+                                      : tr("The recording '%1' is only shown: servos of a device hold until it drives "
+                                           "them, too.")
+                                            .arg(nameOf(Driver::recording));
     if (state.scene && state.scene->showing == Showing::virtualOnly)
         return tr("The scene shows light alone, so the servos rest.");
     if (driver() == Driver::target && state.target.target && !state.field.field)

@@ -84,6 +84,7 @@ struct MainWindow::Data {
     std::unique_ptr<StopKeyWatch> stopKeys;
     QString present;
     bool kiosk = false;
+    QUndoGroup stacks{nullptr};
 };
 
 MainWindow::MainWindow(Studio& studio, std::vector<std::unique_ptr<Workspace>> workspaces)
@@ -119,13 +120,17 @@ MainWindow::MainWindow(Studio& studio, std::vector<std::unique_ptr<Workspace>> w
     const auto setPlacing = [&studio] { studio.project.setPlacesNewTargets(studio.settings.placesNewTargets()); };
     connect(&studio.settings, &Settings::placesNewTargetsChanged, this, setPlacing);
     setPlacing();
-    connect(new EscapeTwice(data_->clock, this), &EscapeTwice::pressed, &studio.loop, &StudioLoop::stop);
+    auto* escape = new EscapeTwice(data_->clock, this);
+    connect(escape, &EscapeTwice::pressed, &studio.loop, &StudioLoop::stop);
     // Also while another program has the keyboard, and for the servos while this window is stuck.
     data_->stopKeys = std::make_unique<StopKeyWatch>([&studio] {
         studio.devices.stopNow();
         QMetaObject::invokeMethod(&studio.loop, &StudioLoop::stop, Qt::QueuedConnection);
     });
     studio.devices.setStopKeysProblem(data_->stopKeys->why());
+    connect(escape, &EscapeTwice::openChanged, this, [this](bool any) { data_->stopKeys->setSomethingOpen(any); });
+    for (const auto answered : {&EscapeTwice::pressed, &EscapeTwice::spent})
+        connect(escape, answered, this, [this] { data_->stopKeys->forget(); });
     qApp->installEventFilter(this);
     resize(kUsualSize.boundedTo(screen()->availableSize() - sizeOf(kUsualFrame)));
     if (restoreGeometry(studio.settings.value(kGeometryKey).toByteArray())) keepOnScreen();
@@ -163,6 +168,16 @@ void MainWindow::addCommands() {
         if (const auto page = data_->pages.find(data_->present); page != data_->pages.end())
             page->second->resetLayout();
     };
+    does.present = [this] {
+        for (const auto& one : data_->workspaces)
+            if (one->id() == data_->present) return one->title();
+        return QString();
+    };
+    does.stacks = &data_->stacks;
+    data_->stacks.addStack(&data_->studio.document.undoStack());
+    for (const auto& one : data_->workspaces)
+        if (QUndoStack* own = one->undoStack()) data_->stacks.addStack(own);
+    data_->stacks.setActiveStack(&data_->studio.document.undoStack());
     for (const auto& workspace : data_->workspaces)
         does.workspaces.push_back({workspace->title(), [this, id = workspace->id()] { showWorkspace(id); }});
     addShellCommands(data_->studio, *this, does);
@@ -222,6 +237,8 @@ void MainWindow::showWorkspace(const QString& id) {
         data_->stack->addWidget(page);
         if (data_->kiosk) page->setKiosk();
     }
+    QUndoStack* own = (*found)->undoStack();
+    data_->stacks.setActiveStack(own != nullptr ? own : &data_->studio.document.undoStack());
     showCommands();
     data_->stack->setCurrentWidget(page);
     page->setActive(true);

@@ -9,6 +9,7 @@
 #include <QVBoxLayout>
 
 #include "app/studio/look/icons.h"
+#include "app/studio/shell/escape_twice.h"
 #include "app/studio/widgets/notice_card.h"
 
 namespace lumorph::studio {
@@ -42,6 +43,7 @@ public:
         outer->addWidget(area_);
         connect(&notices, &Notices::changed, this, [this] { fill(); });
         fill();
+        EscapeTwice::setCloses(*this);
         qApp->installEventFilter(this);
     }
 

@@ -5,12 +5,14 @@
 #include <QPainter>
 
 #include "app/studio/look/palette.h"
+#include "app/studio/shell/escape_twice.h"
 
 namespace lumorph::studio {
 
 Overlay::Overlay(QWidget& window) : QWidget(&window), hadKeyboard_(QApplication::focusWidget()) {
     setFocusPolicy(Qt::StrongFocus);
     setProperty("noFocusRing", true);
+    EscapeTwice::setCloses(*this);
     window.installEventFilter(this);
 }
 

@@ -159,6 +159,13 @@ void addReplay(Studio& studio, QWidget& window) {
     QAction* play = addRecordAction(
         studio, "replay.play", "Play the recording", "play", {}, [&replay] { replay.setPlaying(!replay.playing()); },
         "Ctrl+Alt+Space", false);
+    QAction* drive = addRecordAction(
+        studio, "replay.drive", "Drive the servos by it...", "actuator", {},
+        [&studio, &replay] {
+            replay.drivesServos() ? replay.setDrivesServos(false)
+                                  : studio.devices.askStart(DeviceService::StartBy::recording);
+        },
+        "", false);
     QAction* verify = addRecordAction(
         studio, "replay.verify", "Verify the servo bytes", "check",
         "Runs what went into the servo controller again and compares what comes out, bit for bit",
@@ -172,13 +179,22 @@ void addReplay(Studio& studio, QWidget& window) {
     QAction* close = addRecordAction(
         studio, "replay.close", "Close the recording", "close", "Back to the live show", [&replay] { replay.close(); },
         "Ctrl+Alt+W", false);
-    const auto follow = [=, &replay] {
+    const auto follow = [=, &studio, &replay] {
         for (QAction* action : {play, verify, tables, project, close})
             action->setEnabled(replay.recording() != nullptr);
         play->setText(replay.playing() ? "Pause the recording" : "Play the recording");
         play->setIcon(icon(replay.playing() ? "pause" : "play"));
+        const bool board = studio.devices.status().phase != LinkPhase::off;
+        const bool drives = replay.drivesServos();
+        drive->setEnabled(replay.recording() != nullptr && board);
+        drive->setText(drives ? "Keep the servos still" : "Drive the servos by it...");
+        drive->setToolTip(drives  ? "The recording goes on to be shown; the servos stay where they are"
+                          : board ? "Shows what would move, and asks; until then the recording is only shown"
+                                  : "No device is connected: the recording is only shown");
     };
     QObject::connect(&replay, &ReplayService::changed, play, follow);
+    QObject::connect(&replay, &ReplayService::drivesServosChanged, play, follow);
+    QObject::connect(&studio.devices, &DeviceService::changed, play, follow);
     follow();
     QObject::connect(&studio.project, &ProjectService::recordingChosen, &replay,
                      [&replay](const QString& file) { replay.open(file.toStdString()); });

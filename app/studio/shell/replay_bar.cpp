@@ -12,6 +12,7 @@
 
 #include "app/studio/look/icons.h"
 #include "app/studio/look/palette.h"
+#include "app/studio/widgets/dock_parts.h"
 #include "app/studio/widgets/icon_label.h"
 #include "app/studio/widgets/mark_slider.h"
 #include "app/studio/widgets/panel.h"
@@ -21,6 +22,7 @@ namespace {
 
 constexpr int kReplayBarHeight = 48;
 constexpr int kNarrowReplayBar = 900;
+constexpr auto kOnlyShown = "A recording is shown; servos stay still";
 constexpr double kSpeeds[] = {0.25, 0.5, 1.0, 2.0, 4.0};
 
 QLabel* makeClock(const char* name, const char* widest, QWidget* parent) {
@@ -42,6 +44,7 @@ public:
         addTime(*row);
         addTools(*row);
         connect(&replay_, &ReplayService::changed, this, [this] { refresh(); });
+        connect(&replay_, &ReplayService::drivesServosChanged, this, [this] { refresh(); });
         connect(&replay_, &ReplayService::moved, this, [this] { showTime(); });
         refresh();
     }
@@ -71,13 +74,13 @@ private:
         strong.setWeight(QFont::DemiBold);
         name_->setFont(strong);
         name_->setTextFormat(Qt::PlainText);
-        auto* what = new QLabel("A recording is shown, not the live show", words_);
-        what->setObjectName("replay.what");
-        what->setProperty("look", "muted");
+        what_ = new QLabel(kOnlyShown, words_);
+        what_->setObjectName("replay.what");
+        what_->setProperty("look", "muted");
         lines->addWidget(name_);
-        lines->addWidget(what);
+        lines->addWidget(what_);
         words_->setToolTip("What you edit meanwhile is kept, and seen as far as the recording does not say otherwise.");
-        words_->setFixedWidth(what->sizeHint().width() + 8);
+        words_->setFixedWidth(what_->sizeHint().width() + 8);
         row.addWidget(words_);
     }
 
@@ -107,6 +110,7 @@ private:
         for (const double times : kSpeeds) speed_->addItem(QString::number(times) + " x", times);
         connect(speed_, &QComboBox::activated, this, [this] { replay_.setSpeed(speed_->currentData().toDouble()); });
         row.addWidget(speed_);
+        row.addWidget(makeCommandButton(studio_.commands.find("replay.drive"), "replay.driveButton", this));
         auto* more = new QToolButton(this);
         more->setObjectName("replay.more");
         more->setText("More");
@@ -131,6 +135,7 @@ private:
             return;
         }
         if (shown_.lock() != recording) take(recording);
+        what_->setText(replay_.drivesServos() ? "A recording drives the servos" : kOnlyShown);
         const QSignalBlocker quiet(speed_);
         speed_->setCurrentIndex(speed_->findData(replay_.speed()));
         showTime();
@@ -164,6 +169,7 @@ private:
     std::weak_ptr<const Recording> shown_;
     QWidget* words_ = nullptr;
     QLabel* name_ = nullptr;
+    QLabel* what_ = nullptr;
     QLabel* time_ = nullptr;
     QLabel* duration_ = nullptr;
     MarkSlider* slider_ = nullptr;

@@ -1,11 +1,10 @@
 #include "app/studio/shell/shell_commands.h"
 
-#include <QUndoStack>
-
 #include "app/studio/look/icons.h"
 #include "app/studio/shell/command_palette.h"
 #include "app/studio/shell/dialogs.h"
 #include "app/studio/shell/driver_chip.h"
+#include "app/studio/shell/undo_commands.h"
 
 namespace lumorph::studio {
 namespace {
@@ -19,30 +18,13 @@ QAction* addShellAction(Studio& studio, const char* id, const QString& text, con
     return studio.commands.add(id, text, options, std::move(run));
 }
 
-/// "Undo Move target", greyed while there is nothing to take back.
-void addUndo(Studio& studio) {
-    QUndoStack& stack = studio.document.undoStack();
-    QAction* undo =
-        addShellAction(studio, "edit.undo", "&Undo", "undo", QKeySequence::Undo, "Edit", [&stack] { stack.undo(); });
-    QAction* redo = addShellAction(studio, "edit.redo", "&Redo", "redo", QKeySequence(Qt::CTRL | Qt::SHIFT | Qt::Key_Z),
-                                   "Edit", [&stack] { stack.redo(); });
-    const auto follow = [&stack, undo, redo] {
-        undo->setEnabled(stack.canUndo());
-        redo->setEnabled(stack.canRedo());
-        undo->setText(("&Undo " + stack.undoText()).trimmed());
-        redo->setText(("&Redo " + stack.redoText()).trimmed());
-    };
-    QObject::connect(&stack, &QUndoStack::indexChanged, undo, follow);
-    QObject::connect(&stack, &QUndoStack::canUndoChanged, undo, follow);
-    QObject::connect(&stack, &QUndoStack::canRedoChanged, undo, follow);
-    follow();
-}
-
 void addStop(Studio& studio) {
-    addShellAction(studio, "loop.stop", "STOP: hold every actuator", "stop", {}, "Rig",
-                   [&studio] { studio.loop.stop(); });
-    QAction* resume = addShellAction(studio, "loop.resume", "Resume after STOP", "play", {}, "Rig",
+    QAction* stop = addShellAction(studio, "loop.stop", "STOP: hold the show, let all servos go", "stop", {}, "Device",
+                                   [&studio] { studio.loop.stop(); });
+    stop->setToolTip(kStopPromise);
+    QAction* resume = addShellAction(studio, "loop.resume", "Resume after STOP", "play", {}, "Device",
                                      [&studio] { studio.loop.resume(); });
+    resume->setToolTip(kResumePromise);
     const auto follow = [&studio, resume] { resume->setEnabled(studio.loop.stopped()); };
     QObject::connect(&studio.loop, &StudioLoop::stoppedChanged, resume, follow);
     follow();
@@ -84,7 +66,7 @@ void addView(Studio& studio, QMainWindow& window, const ShellActions& does) {
 } // namespace
 
 void addShellCommands(Studio& studio, QMainWindow& window, const ShellActions& does) {
-    addUndo(studio);
+    addUndoCommands(studio, window, *does.stacks, does.present);
     addShellAction(studio, "settings", "&Settings...", "settings", QKeySequence(Qt::CTRL | Qt::Key_Comma), "Edit",
                    [&studio, &window] { openSettings(studio, window); });
     addView(studio, window, does);

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <mutex>
+#include <optional>
 #include <set>
 #include <thread>
 #include <utility>
@@ -19,6 +21,7 @@ namespace lumorph::studio {
 namespace {
 
 constexpr xcb_keysym_t kEscape = 0xff1b;
+constexpr Microseconds kWindowAnswers{150'000}; ///< by then the window has said what a press closed
 
 template <class T> using Reply = std::unique_ptr<T, decltype(&std::free)>;
 template <class T> Reply<T> taken(T* reply) { return {reply, &std::free}; }
@@ -73,7 +76,13 @@ struct StopKeyWatch::Data {
     QString open();
     void listen(const std::stop_token& stop);
     void onEvent(const xcb_generic_event_t& event);
+    void onEscape(Microseconds now);
+    /// Milliseconds until a second press counts that waits; -1: none does.
+    int wait(Microseconds now);
+    std::mutex mutex; ///< guards what follows
     PressTwice twice;
+    std::optional<Microseconds> due;
+    bool somethingOpen = false;
 };
 
 // Empty when it listens.
@@ -98,17 +107,39 @@ void StopKeyWatch::Data::onEvent(const xcb_generic_event_t& event) {
     if (generic.extension != extension || generic.event_type != XCB_INPUT_RAW_KEY_PRESS) return;
     const auto& key = reinterpret_cast<const xcb_input_raw_key_press_event_t&>(event);
     if ((key.flags & XCB_INPUT_KEY_EVENT_FLAGS_KEY_REPEAT) != 0) return;
-    if (!escapes.contains(key.detail))
-        twice.reset();
-    else if (twice.press(SteadyClock().now()))
-        pressed();
+    if (escapes.contains(key.detail)) return onEscape(SteadyClock().now());
+    const std::scoped_lock lock(mutex);
+    twice.reset();
+}
+
+void StopKeyWatch::Data::onEscape(Microseconds now) {
+    {
+        const std::scoped_lock lock(mutex);
+        if (!twice.press(now)) return;
+        if (somethingOpen) {
+            due = now + kWindowAnswers;
+            return;
+        }
+    }
+    pressed();
+}
+
+int StopKeyWatch::Data::wait(Microseconds now) {
+    {
+        const std::scoped_lock lock(mutex);
+        if (!due) return -1;
+        if (now < *due) return 1 + static_cast<int>((*due - now).count() / 1000);
+        due.reset();
+    }
+    pressed();
+    return -1;
 }
 
 void StopKeyWatch::Data::listen(const std::stop_token& stop) {
     pollfd waits[] = {{xcb_get_file_descriptor(connection.get()), POLLIN, 0}, {wake, POLLIN, 0}};
     while (!stop.stop_requested() && xcb_connection_has_error(connection.get()) == 0) {
         while (const auto event = taken(xcb_poll_for_event(connection.get()))) onEvent(*event);
-        ::poll(waits, std::size(waits), -1);
+        ::poll(waits, std::size(waits), wait(SteadyClock().now()));
     }
 }
 
@@ -126,6 +157,17 @@ StopKeyWatch::~StopKeyWatch() {
         data_->thread.join();
     }
     if (data_->wake >= 0) ::close(data_->wake);
+}
+
+void StopKeyWatch::setSomethingOpen(bool open) {
+    const std::scoped_lock lock(data_->mutex);
+    data_->somethingOpen = open;
+}
+
+void StopKeyWatch::forget() {
+    const std::scoped_lock lock(data_->mutex);
+    data_->twice.reset();
+    data_->due.reset();
 }
 
 bool StopKeyWatch::listens() const noexcept { return data_->why.isEmpty(); }

@@ -15,6 +15,12 @@ public:
     explicit StopKeyWatch(std::function<void()> pressed);
     ~StopKeyWatch();
 
+    /// Something is open that Esc closes: a second Esc waits a moment for `forget` before it counts, so that it works
+    /// all the same while the window is stuck. Any thread.
+    void setSomethingOpen(bool open);
+    /// The presses until now were meant otherwise, or were answered. Any thread.
+    void forget();
+
     /// Whether it can hear the keyboard. Where it cannot (Wayland, an old X server) `why` says so, and Esc Esc works in
     /// the program's own windows alone.
     [[nodiscard]] bool listens() const noexcept;

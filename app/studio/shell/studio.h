@@ -35,7 +35,7 @@ struct Studio {
     ShowFeed show{loop, renderer, notices};
     ProjectorOutputs outputs{document, show, commands, notices};
     RecordingService recorder{settings, document, project, loop, devices, trackers, jobs, notices};
-    ReplayService replay{document, project, loop, jobs, notices};
+    ReplayService replay{document, project, loop, devices, jobs, notices};
     DriverControl driver{document, loop, replay};
 };
 

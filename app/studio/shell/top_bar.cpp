@@ -11,6 +11,7 @@
 #include "app/studio/look/palette.h"
 #include "app/studio/shell/driver_chip.h"
 #include "app/studio/shell/record_chip.h"
+#include "app/studio/shell/shell_commands.h"
 
 namespace lumorph::studio {
 namespace {
@@ -133,7 +134,7 @@ void TopBar::addStop(QHBoxLayout& row) {
     // Two buttons: who hits STOP twice must not start everything again.
     resume_ = new QPushButton(icon("play"), "Resume", this);
     resume_->setObjectName("resume");
-    resume_->setToolTip("Lets every actuator move again; servos of a device start softly, one after the other");
+    resume_->setToolTip(kResumePromise);
     row.addWidget(resume_);
     connect(resume_, &QPushButton::clicked, &studio_.loop, &StudioLoop::resume);
     row.addSpacing(8);
@@ -150,9 +151,9 @@ void TopBar::showStopped() {
     const bool stopped = studio_.loop.stopped();
     resume_->setVisible(stopped);
     stop_->setText(stopped ? "Stopped" : "STOP");
-    stop_->setToolTip(stopped
-                          ? "Every actuator holds where it is, until you resume. Click to say it to the servos again"
-                          : "Every actuator holds where it is, at once; servos of a device go limp (Esc Esc)");
+    stop_->setToolTip(stopped ? "The show holds still and servos are limp, until you resume. Click to say it to the "
+                                "servos again"
+                              : kStopPromise);
     stop_->setIcon(icon("stop", stopped ? IconRole::control : IconRole::onDanger));
     relook(*stop_, stopped ? "latched" : "danger");
     fitSearch();

@@ -6,6 +6,7 @@
 #include <QKeySequence>
 #include <QObject>
 #include <QString>
+#include <QUndoStack>
 #include <QWidget>
 
 namespace lumorph::studio {
@@ -34,6 +35,8 @@ public:
     [[nodiscard]] virtual std::vector<WorkspaceDock> makeDocks() = 0;
     /// Shown, or another one is; a hidden workspace draws nothing.
     virtual void setActive(bool active) = 0;
+    /// What undo and redo work on while it is shown, where that is not the document; null: the document.
+    [[nodiscard]] virtual QUndoStack* undoStack() { return nullptr; }
     /// Files were dropped while it is shown; false: it has no use for them of its own.
     virtual bool takeDrop(const std::vector<std::filesystem::path>& files) {
         static_cast<void>(files);

@@ -55,6 +55,8 @@ void ValueField::setRange(double minimum, double maximum) {
     setValue(value_);
 }
 
+void ValueField::setRefusing(bool refusing) { refusing_ = refusing; }
+
 void ValueField::setStep(double step) { step_ = step; }
 
 QSize ValueField::sizeHint() const { return {88, QLineEdit::sizeHint().height()}; }
@@ -101,6 +103,12 @@ void ValueField::enter() {
     if (!typed.value) {
         mark(true);
         tell(typed.why);
+        return;
+    }
+    if (refusing_ && (*typed.value < minimum_ || *typed.value > maximum_)) {
+        mark(true);
+        emit refused(formatQuantity(*typed.value, quantity_) + " is not from " + formatQuantity(minimum_, quantity_) +
+                     " to " + formatQuantity(maximum_, quantity_) + "; it stays " + formatQuantity(value_, quantity_));
         return;
     }
     if (*typed.value > maximum_) tell("At most " + formatQuantity(maximum_, quantity_) + " here.");

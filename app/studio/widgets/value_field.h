@@ -21,6 +21,9 @@ public:
     /// Shows it without a signal. What the user is typing or dragging right now is left alone.
     void setValue(double value);
     void setRange(double minimum, double maximum);
+    /// A typed number that is out of range is not taken for the nearest one: it is marked, `refused` says why, and the
+    /// value stays. For numbers where another than the one that was meant does harm.
+    void setRefusing(bool refusing);
     /// What one arrow key press changes, SI.
     void setStep(double step);
 
@@ -29,9 +32,10 @@ public:
     [[nodiscard]] const QString& why() const noexcept { return why_; }
 
 signals:
-    void previewed(double value); ///< while scrubbing
-    void committed(double value); ///< entered, stepped, or the scrub ended
-    void reverted();              ///< Esc during a scrub
+    void previewed(double value);     ///< while scrubbing
+    void committed(double value);     ///< entered, stepped, or the scrub ended
+    void reverted();                  ///< Esc during a scrub
+    void refused(const QString& why); ///< "2600 is not from 1050 to 2500; it stays 2000"
 
 protected:
     void mousePressEvent(QMouseEvent* event) override;
@@ -57,6 +61,7 @@ private:
     double minimum_, maximum_, resetTo_, step_;
     double value_ = 0.0;
     QString why_;
+    bool refusing_ = false;
     bool pressed_ = false;   ///< the button is down on a field that was not being edited
     bool scrubbing_ = false; ///< and the pointer has moved
     int pressX_ = 0;

@@ -1,5 +1,6 @@
 #include "app/workspaces/devices/device_card.h"
 
+#include <QApplication>
 #include <QHBoxLayout>
 #include <QPainter>
 #include <QVBoxLayout>
@@ -72,7 +73,14 @@ DeviceCardWidget::DeviceCardWidget(QWidget* parent)
     row->addWidget(icon_);
     row->addLayout(texts, 1);
     row->addWidget(next_);
-    connect(next_, &QPushButton::clicked, this, &DeviceCardWidget::nextWanted);
+    connect(next_, &QPushButton::clicked, this, &DeviceCardWidget::onClicked);
+}
+
+/// The second click of a double click is not meant for the step that came up under it.
+void DeviceCardWidget::onClicked() {
+    const bool again = sinceClick_.isValid() && sinceClick_.elapsed() < QApplication::doubleClickInterval();
+    sinceClick_.start();
+    if (!again) emit nextWanted();
 }
 
 void DeviceCardWidget::show(const DeviceCard& card) {

@@ -2,6 +2,7 @@
 
 #include <functional>
 
+#include <QElapsedTimer>
 #include <QFrame>
 #include <QLabel>
 #include <QPushButton>
@@ -25,7 +26,10 @@ protected:
     void paintEvent(QPaintEvent* event) override;
 
 private:
+    void onClicked();
+
     DeviceCard card_;
+    QElapsedTimer sinceClick_;
     IconLabel* icon_;
     QLabel* title_;
     QLabel* text_;

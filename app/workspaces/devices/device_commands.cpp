@@ -53,10 +53,8 @@ void doNext(Studio& studio) {
         break;
     case DeviceCard::Step::start:
     case DeviceCard::Step::startAgain:
-        studio.devices.start();
-        break;
     case DeviceCard::Step::startAnyway:
-        studio.devices.start(true);
+        studio.devices.askStart();
         break;
     case DeviceCard::Step::none:
         break;
@@ -121,13 +119,12 @@ void addDeviceCommands(Studio& studio) {
     QAction* close = addDeviceAction(studio, "device.disconnect", "Disconnect device", "cancel",
                                      "Lets the servos go and the link too", [&studio] { studio.devices.disconnect(); });
     QAction* start =
-        addDeviceAction(studio, "device.start", "Start servos", "play", "One after the other, each from where it is",
-                        [&studio] { studio.devices.start(); });
+        addDeviceAction(studio, "device.start", "Start servos...", "play",
+                        "Shows what will move; a button that is held for a second starts them, one after the other",
+                        [&studio] { studio.devices.askStart(); });
     QAction* release =
         addDeviceAction(studio, "device.release", "Let servos go", "pause",
                         "No pulses: the servos are limp, the link stays", [&studio] { studio.devices.release(); });
-    addDeviceAction(studio, "device.stop", "STOP: let all servos go at once", "stop", "As the red button, and Esc Esc",
-                    [&studio] { studio.loop.stop(); });
     addDeviceAction(
         studio, "device.bluetooth", "Search Bluetooth devices", "search", "Takes ten seconds or so",
         [&studio] { studio.devices.searchBluetooth(); }, {}, true);

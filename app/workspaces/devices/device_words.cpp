@@ -66,13 +66,22 @@ DeviceCard confirmCard(const DeviceView& view) {
 DeviceCard waitingCard(const DeviceView& view) {
     const auto& waiting = view.link.waiting;
     if (waiting.size() == 1)
-        return {Tone::warning, servoName(view.servos, waiting.front()) + " may jump when it starts: hands off",
-                "Nobody knows where it stands.", Step::startAnyway, "Start anyway"};
+        return {Tone::warning,
+                servoName(view.servos, waiting.front()) + " may jump when it starts: hands off",
+                "Nobody knows where it stands.",
+                Step::startAnyway,
+                {}};
     if (static_cast<qsizetype>(waiting.size()) == view.servos.size())
-        return {Tone::warning, "All servos may jump when they start: hands off",
-                "Nobody knows where they stand. They start one after the other.", Step::startAnyway, "Start anyway"};
-    return {Tone::warning, QString::fromStdString(servosText(waiting)) + " may jump when they start: hands off",
-            "Nobody knows where they stand. They start one after the other.", Step::startAnyway, "Start anyway"};
+        return {Tone::warning,
+                "All servos may jump when they start: hands off",
+                "Nobody knows where they stand. They start one after the other.",
+                Step::startAnyway,
+                {}};
+    return {Tone::warning,
+            QString::fromStdString(servosText(waiting)) + " may jump when they start: hands off",
+            "Nobody knows where they stand. They start one after the other.",
+            Step::startAnyway,
+            {}};
 }
 
 DeviceCard readyCard(const DeviceView& view) {
@@ -87,8 +96,8 @@ DeviceCard readyCard(const DeviceView& view) {
                 Step::none,
                 {}};
     if (!view.lately.isEmpty())
-        return {Tone::warning, view.name + " is ready again", "Just now: " + view.lately, Step::start, "Start servos"};
-    return {Tone::quiet, view.name + " is ready", text, Step::start, "Start servos"};
+        return {Tone::warning, view.name + " is ready again", "Just now: " + view.lately, Step::start, {}};
+    return {Tone::quiet, view.name + " is ready", text, Step::start, {}};
 }
 
 DeviceCard liveCard(const DeviceView& view) {
@@ -130,8 +139,11 @@ DeviceCard cardOf(const DeviceView& view) {
     case LinkPhase::live:
         return view.link.waiting.empty() ? liveCard(view) : waitingCard(view);
     case LinkPhase::stopped:
-        return {Tone::failure, "Stopped", "All servos are limp, and stay so until you start them again.",
-                Step::startAgain, "Start again"};
+        return {Tone::failure,
+                "Stopped",
+                "The show holds still, and all servos are limp until you start them again.",
+                Step::startAgain,
+                {}};
     case LinkPhase::lost:
         return lostCard(view);
     }

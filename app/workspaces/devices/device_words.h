@@ -16,7 +16,10 @@ struct DeviceCard {
     QString title;
     QString text;
     Step step = Step::none;
-    QString button; ///< empty: there is nothing to do
+    QString button; ///< empty: there is nothing to do, or servos are to be started, which StartPanel asks about
+    [[nodiscard]] bool starts() const {
+        return step == Step::start || step == Step::startAnyway || step == Step::startAgain;
+    }
     bool operator==(const DeviceCard&) const = default;
 };
 

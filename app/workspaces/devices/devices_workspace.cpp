@@ -3,13 +3,21 @@
 #include "app/workspaces/devices/device_commands.h"
 #include "app/workspaces/devices/devices_docks.h"
 #include "app/workspaces/devices/servo_board.h"
+#include "app/workspaces/devices/start_panel.h"
 
 namespace lumorph::studio {
 
 DevicesWorkspace::DevicesWorkspace(Studio& studio) : studio_(studio) {
     studio.devices.setPoses(studio.trackers.poses());
     addDeviceCommands(studio);
+    connect(&studio.devices, &DeviceService::startAsked, this, [this](DeviceService::StartBy by) {
+        // Here the question stands over the servos already; the board gives it the keyboard.
+        const bool here = active_ && by == DeviceService::StartBy::show && cardOf(deviceViewOf(studio_)).starts();
+        if (!here) openStartDialog(studio_, by);
+    });
 }
+
+QUndoStack* DevicesWorkspace::undoStack() { return &studio_.devices.undoStack(); }
 
 QString DevicesWorkspace::id() const { return "devices"; }
 QString DevicesWorkspace::title() const { return "Devices"; }
@@ -31,6 +39,7 @@ void DevicesWorkspace::setActive(bool active) {
         selection_.assign(std::nullopt);
         studio_.devices.endTest();
     }
+    active_ = active;
     studio_.devices.setShown(active);
 }
 

@@ -17,10 +17,12 @@ public:
     [[nodiscard]] QWidget* makeCentralView() override;
     [[nodiscard]] std::vector<WorkspaceDock> makeDocks() override;
     void setActive(bool active) override;
+    [[nodiscard]] QUndoStack* undoStack() override;
 
 private:
     Studio& studio_;
     ServoSelection selection_;
+    bool active_ = false;
 };
 
 } // namespace lumorph::studio

@@ -16,9 +16,10 @@ public:
         if (!before_) before_ = devices_.profile();
         devices_.previewProfile(profile);
     }
-    void keep(const DeviceProfile& profile) {
+    /// `what` names it for undo.
+    void keep(const DeviceProfile& profile, const QString& what) {
         before_.reset();
-        devices_.setProfile(profile);
+        devices_.setProfile(profile, what);
     }
     void revert() {
         if (before_) devices_.previewProfile(*std::exchange(before_, std::nullopt));

@@ -4,6 +4,7 @@
 
 #include <QCheckBox>
 #include <QStyle>
+#include <QTimer>
 #include <QVBoxLayout>
 
 #include "app/studio/widgets/dock_parts.h"
@@ -11,12 +12,14 @@
 #include "app/workspaces/devices/device_card.h"
 #include "app/workspaces/devices/device_facts.h"
 #include "app/workspaces/devices/servo_row.h"
+#include "app/workspaces/devices/start_panel.h"
 
 namespace lumorph::studio {
 namespace {
 
 /// What went wrong this long ago still belongs to the state of things.
 constexpr qint64 kLatelySeconds = 20;
+constexpr int kMarksMilliseconds = 100;
 
 QString lately(const DeviceService& service) {
     const bool live = service.status().phase == LinkPhase::live;
@@ -42,6 +45,9 @@ public:
         layout->setContentsMargins(16, 8, 16, 8);
         layout->setSpacing(6);
         layout->addWidget(card_);
+        start_ = new StartPanel(studio, DeviceService::StartBy::show, this);
+        start_->hide();
+        layout->addWidget(start_);
         layout->addWidget(makeHint());
         layout->addWidget(makeStrokeLegend(this));
         rows_ = makeColumn(this);
@@ -53,6 +59,15 @@ public:
         layout->addWidget(facts_);
         connect(card_, &DeviceCardWidget::nextWanted, studio.commands.find("device.next"), &QAction::trigger);
         connect(&studio.devices, &DeviceService::changed, this, [this] { refresh(); });
+        connect(&studio.devices, &DeviceService::startAsked, this, [this] {
+            if (start_->isVisible()) start_->focusButton();
+        });
+        // The show goes on without a board, and its marks with it.
+        marks_.setInterval(kMarksMilliseconds);
+        connect(&marks_, &QTimer::timeout, this, [this] {
+            if (isVisible()) showServos();
+        });
+        marks_.start();
         connect(&studio.devices, &DeviceService::foundChanged, this, [this] { refresh(); });
         connect(&studio.devices, &DeviceService::logged, this, [this] { refresh(); });
         connect(&studio.devices, &DeviceService::profileChanged, this, [this] { rebuild(); });
@@ -150,25 +165,32 @@ private:
         DeviceProfile profile = studio_.devices.profile();
         if (wiggled == moved || std::max(wiggled, moved) >= profile.servos.size()) return;
         std::swap(profile.servos[wiggled].channel, profile.servos[moved].channel);
-        if (studio_.devices.setProfile(profile))
+        if (studio_.devices.setProfile(profile, "Exchange the channels of " + servoName(names_, wiggled) + " and " +
+                                                    servoName(names_, moved)))
             studio_.devices.note(
                 QString("%1 has channel %2 now.").arg(servoName(names_, moved)).arg(profile.servos[moved].channel));
     }
 
     void refresh() {
         const DeviceService& service = studio_.devices;
-        card_->show(cardOf(deviceViewOf(studio_)));
+        const DeviceCard card = cardOf(deviceViewOf(studio_));
+        card_->show(card);
+        start_->setVisible(card.starts());
         facts_->show(service.status(), service.stopKeysProblem());
         showHands(service.hands());
-        const auto& frame = studio_.loop.frame();
+        showServos();
+        showHint();
+    }
+
+    void showServos() {
+        const DeviceService& service = studio_.devices;
+        const std::vector<double> wanted = service.wanted();
         const auto& setups = service.profile().servos;
         for (std::size_t k = 0; k < list_.size() && k < setups.size(); ++k) {
-            const bool told = frame && k < frame->estimatedStrokes.size();
             list_[k]->show(service.status(), setups[k], service.tested(k).has_value(),
-                           told ? frame->estimatedStrokes[k] : 0.0);
+                           k < wanted.size() ? wanted[k] : 0.0);
             list_[k]->setChecked(selection_.servo() == k);
         }
-        showHint();
     }
 
     void showHands(const HandSense& hands) {
@@ -185,8 +207,16 @@ private:
         hint_->setVisible(assigning || studio_.devices.testing());
         hintText_->setText(assigning ? QString("Channel %1 wiggles. Click the row of the servo that really moved.")
                                            .arg(channelOf(*assigning))
-                                     : QString("Held for a test: it does not follow the show."));
+                           : anyTested() ? QString("Held for a test: it does not follow the show.")
+                                         : QString("On the way to the show, slowly."));
+        hintEnd_->setVisible(assigning || anyTested());
         hintEnd_->setText(assigning ? "Leave it" : "Follow the show");
+    }
+
+    [[nodiscard]] bool anyTested() const {
+        for (std::size_t k = 0; k < list_.size(); ++k)
+            if (studio_.devices.tested(k)) return true;
+        return false;
     }
 
     [[nodiscard]] int channelOf(std::size_t servo) const {
@@ -198,6 +228,8 @@ private:
     ServoSelection& selection_;
     DeviceCardWidget* card_;
     DeviceFacts* facts_;
+    StartPanel* start_ = nullptr;
+    QTimer marks_;
     QWidget* hint_ = nullptr;
     QLabel* hintText_ = nullptr;
     QLabel* handsText_ = nullptr;

@@ -1,3 +1,5 @@
+#include <algorithm>
+#include <cmath>
 #include <functional>
 #include <optional>
 #include <utility>
@@ -23,8 +25,10 @@ namespace {
 namespace limits = profile_limits;
 
 constexpr double kLeastSpan = 50.0; // microseconds
-constexpr double kLeastVelocity = 0.01, kLeastAcceleration = 0.1, kMostAcceleration = 200.0;
 constexpr int kMostChannel = 253;
+
+/// "Least" of "&Least (µs)".
+QString nameOfLabel(const QString& label) { return QString(label).remove('&').section(" (", 0, 0); }
 
 class ServoDock : public QWidget {
 public:
@@ -68,9 +72,9 @@ private:
         channel_->setObjectName("servo.channel");
         channel_->setToolTip(
             "The channel of the controller, or the pin of an Arduino, that this servo is plugged into");
-        connect(channel_, &ValueField::committed, this, [this](double value) {
-            edit([value](ServoSetup& servo) { servo.channel = static_cast<int>(value + 0.5); });
-        });
+        channel_->setRefusing(true);
+        connect(channel_, &ValueField::committed, this, [this](double value) { setChannel(value); });
+        connect(channel_, &ValueField::refused, this, [this](const QString& why) { refuse("Channel", why); });
         rows.addWidget(makeRow("&Channel", channel_));
         assign_ = new QPushButton("Wiggle it to find out");
         assign_->setObjectName("servo.assign");
@@ -90,9 +94,12 @@ private:
         field->setObjectName(name);
         field->setToolTip(tip);
         field->setStep(step);
+        field->setRefusing(true);
+        const QString what = nameOfLabel(label);
         const auto set = [member](double value) { return [member, value](ServoSetup& one) { one.*member = value; }; };
+        connect(field, &ValueField::refused, this, [this, what](const QString& why) { refuse(what, why); });
         connect(field, &ValueField::previewed, this, [this, set](double value) { edit_.preview(edited(set(value))); });
-        connect(field, &ValueField::committed, this, [this, set](double value) { edit(set(value)); });
+        connect(field, &ValueField::committed, this, [this, set, what](double value) { edit(what, set(value)); });
         connect(field, &ValueField::reverted, this, [this] { edit_.revert(); });
         rows.addWidget(makeRow(label, field));
         numbers_.push_back({field, member});
@@ -111,13 +118,14 @@ private:
         reversed_->setObjectName("servo.reversed");
         reversed_->setToolTip("Rest is at the longest pulse. The servo lets go, and is started again.");
         connect(reversed_, &QCheckBox::clicked, this,
-                [this](bool on) { edit([on](ServoSetup& servo) { servo.reversed = on; }); });
+                [this](bool on) { edit("Direction", [on](ServoSetup& servo) { servo.reversed = on; }); });
         rows.addWidget(reversed_);
         rows.addWidget(makeHeading("Speed"));
-        addNumber(rows, "&Velocity", "servo.velocity", "At most so many full strokes a second",
-                  &ServoSetup::maxVelocity, kLeastVelocity, limits::kVelocity.most, 0.1);
-        addNumber(rows, "&Acceleration", "servo.acceleration", "At most so many strokes a second, a second",
-                  &ServoSetup::maxAcceleration, kLeastAcceleration, kMostAcceleration, 0.5);
+        addNumber(rows, "&Velocity (strokes/s)", "servo.velocity", "At most so many full strokes a second",
+                  &ServoSetup::maxVelocity, limits::kVelocity.least, limits::kVelocity.most, 0.1);
+        addNumber(rows, "&Acceleration (strokes/s²)", "servo.acceleration",
+                  "At most so much faster or slower, in strokes a second, each second", &ServoSetup::maxAcceleration,
+                  limits::kAcceleration.least, limits::kAcceleration.most, 0.5);
         addNumber(rows, "At the &end", "servo.exit",
                   "Where it rests when the link ends, if the set-up wants it to rest", &ServoSetup::exitStroke, 0.0,
                   1.0, 0.05, Quantity::share);
@@ -196,9 +204,45 @@ private:
         if (servo && *servo < profile.servos.size()) change(profile.servos[*servo]);
         return profile;
     }
-    void edit(const Edit& change) {
-        edit_.keep(edited(change));
+    void edit(const QString& what, const Edit& change) {
+        if (const auto servo = selection_.servo()) edit_.keep(edited(change), what + " of " + nameOf(*servo));
         refresh();
+    }
+    [[nodiscard]] QString nameOf(std::size_t servo) const { return servoName(servoNamesOf(studio_), servo); }
+
+    /// Nothing is set to another value than the one that was meant.
+    void refuse(const QString& what, const QString& why, const QString& remedy = {},
+                std::vector<Notice::Action> actions = {}) {
+        const auto servo = selection_.servo();
+        if (!servo) return;
+        studio_.notices.dismissAll("servo");
+        studio_.notices.post("servo",
+                             {Notice::Level::warning, what + " of " + nameOf(*servo), why, remedy, std::move(actions)});
+        refresh();
+    }
+
+    void setChannel(double value) {
+        const auto servo = selection_.servo();
+        if (!servo) return;
+        if (value != std::floor(value))
+            return refuse("Channel",
+                          "A channel is a whole number, and " + formatQuantity(value, Quantity::plain) + " is none");
+        const int channel = static_cast<int>(value);
+        const auto& servos = studio_.devices.profile().servos;
+        const auto twin = std::ranges::find(servos, channel, &ServoSetup::channel);
+        const auto other = static_cast<std::size_t>(twin - servos.begin());
+        if (twin == servos.end() || other == *servo)
+            return edit("Channel", [channel](ServoSetup& one) { one.channel = channel; });
+        refuse("Channel", QString("Channel %1 is that of %2").arg(channel).arg(nameOf(other)),
+               "Choose one that is free, or let the two exchange theirs",
+               {{"Exchange channels", [this, a = *servo, b = other] { exchange(a, b); }}});
+    }
+
+    void exchange(std::size_t a, std::size_t b) {
+        DeviceProfile profile = studio_.devices.profile();
+        if (std::max(a, b) >= profile.servos.size()) return;
+        std::swap(profile.servos[a].channel, profile.servos[b].channel);
+        edit_.keep(profile, "Exchange the channels of " + nameOf(a) + " and " + nameOf(b));
     }
 
     void refresh() {
@@ -210,8 +254,9 @@ private:
         const ServoSetup& setup = servos[*servo];
         title_->setText(servoName(servoNamesOf(studio_), *servo));
         channel_->setValue(setup.channel);
-        least_->setRange(limits::kPulse.least, setup.pulseMax - kLeastSpan);
-        most_->setRange(setup.pulseMin + kLeastSpan, limits::kPulse.most);
+        // What a profile has is shown as it is, also where it is narrower than a drag may make it.
+        least_->setRange(limits::kPulse.least, std::max(setup.pulseMin, setup.pulseMax - kLeastSpan));
+        most_->setRange(std::min(setup.pulseMax, setup.pulseMin + kLeastSpan), limits::kPulse.most);
         const double mostTrim = 0.5 * (setup.pulseMax - setup.pulseMin);
         trim_->setRange(-mostTrim, mostTrim);
         for (const auto& [field, member] : numbers_) field->setValue(setup.*member);

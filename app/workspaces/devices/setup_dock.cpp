@@ -83,9 +83,12 @@ private:
         field->setObjectName(name);
         field->setToolTip(tip);
         field->setStep(step);
+        field->setRefusing(true);
+        const QString what = QString(label).remove('&').section(" (", 0, 0);
+        connect(field, &ValueField::refused, this, [this, what](const QString& why) { refuse(what, why); });
         const auto set = [member](double value) { return [member, value](DeviceProfile& p) { p.*member = value; }; };
         connect(field, &ValueField::previewed, this, [this, set](double value) { edit_.preview(edited(set(value))); });
-        connect(field, &ValueField::committed, this, [this, set](double value) { edit(set(value)); });
+        connect(field, &ValueField::committed, this, [this, set, what](double value) { edit(what, set(value)); });
         connect(field, &ValueField::reverted, this, [this] { edit_.revert(); });
         rows.addWidget(makeRow(label, field));
         numbers_.push_back({field, member});
@@ -96,8 +99,9 @@ private:
         auto* box = new QCheckBox(text);
         box->setObjectName(name);
         box->setToolTip(tip);
-        connect(box, &QCheckBox::clicked, this,
-                [this, member](bool on) { edit([member, on](DeviceProfile& profile) { profile.*member = on; }); });
+        connect(box, &QCheckBox::clicked, this, [this, member, text](bool on) {
+            edit(text, [member, on](DeviceProfile& profile) { profile.*member = on; });
+        });
         rows.addWidget(box);
         return box;
     }
@@ -127,7 +131,7 @@ private:
         button->setObjectName(name);
         button->setToolTip(tip);
         connect(button, &QPushButton::clicked, this, [this, strokeOf = std::move(strokeOf)] {
-            edit([&](DeviceProfile& profile) {
+            edit("Rest pose", [&](DeviceProfile& profile) {
                 for (std::size_t k = 0; k < profile.servos.size(); ++k) profile.servos[k].exitStroke = strokeOf(k);
             });
         });
@@ -154,7 +158,7 @@ private:
         forget_->setObjectName("setup.forget");
         forget_->setToolTip("The profile is then good for whatever board is at its address");
         connect(forget_, &QPushButton::clicked, this, [this] {
-            edit([](DeviceProfile& profile) {
+            edit("Forget this board", [](DeviceProfile& profile) {
                 profile.identity.clear();
                 profile.confirmed = false;
             });
@@ -180,10 +184,15 @@ private:
         field->setObjectName(optionName(option));
         field->setToolTip(QString::fromUtf8(option.tip));
         field->setStep(1.0);
-        connect(field, &ValueField::committed, this, [this, member](double value) {
-            edit([member, value](DeviceProfile& profile) { profile.*member = static_cast<int>(std::lround(value)); });
+        field->setRefusing(true);
+        const QString what = QString::fromUtf8(option.title);
+        connect(field, &ValueField::refused, this, [this, what](const QString& why) { refuse(what, why); });
+        connect(field, &ValueField::committed, this, [this, member, what](double value) {
+            if (value != std::floor(value)) return refuse(what, "It is a whole number");
+            edit(what,
+                 [member, value](DeviceProfile& profile) { profile.*member = static_cast<int>(std::lround(value)); });
         });
-        rows.addWidget(makeRow('&' + QString::fromUtf8(option.title), field));
+        rows.addWidget(makeRow('&' + what, field));
         shown_.emplace_back([field, member](const DeviceProfile& profile) { field->setValue(profile.*member); });
     }
     void addOption(QVBoxLayout& rows, const ControllerOption& option, bool DeviceProfile::*member) {
@@ -198,8 +207,13 @@ private:
         change(profile);
         return profile;
     }
-    void edit(const Edit& change) {
-        edit_.keep(edited(change));
+    void edit(const QString& what, const Edit& change) {
+        edit_.keep(edited(change), what);
+        refresh();
+    }
+    void refuse(const QString& what, const QString& why) {
+        studio_.notices.dismissAll("servo");
+        studio_.notices.post("servo", {Notice::Level::warning, what, why, {}, {}});
         refresh();
     }
 

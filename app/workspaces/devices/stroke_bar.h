@@ -12,6 +12,7 @@ class StrokeBar : public QWidget {
 public:
     explicit StrokeBar(QWidget* parent = nullptr);
     void show(const ServoStatus& servo);
+    [[nodiscard]] const ServoStatus& shown() const noexcept { return servo_; }
     [[nodiscard]] QSize sizeHint() const override;
     [[nodiscard]] QSize minimumSizeHint() const override;
 

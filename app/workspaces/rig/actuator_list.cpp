@@ -36,6 +36,7 @@ public:
                                          "for each state.",
                                          studio.commands.find("rig.open")));
         pages_->addWidget(makeContents());
+        connect(&studio.devices, &DeviceService::profileChanged, this, [this] { showDetails(); });
         connect(&studio.document, &StudioDocument::changed, this, [this](StateParts parts) {
             if (parts & StatePart::rig) rebuild();
             if (!(parts & StatePart::rigEdited)) return;
@@ -123,7 +124,9 @@ private:
         const auto& rig = studio_.document.state().rig.rig; // may be that of an edit before
         if (!rig || !chosen || *chosen >= rig->actuatorCount()) return;
         if (list_->currentRow() != static_cast<int>(*chosen)) list_->setCurrentRow(static_cast<int>(*chosen));
-        details_->addWidget(makeFacts(factsOf(*rig, *chosen), "rig.actuator.", this));
+        const auto& servos = studio_.devices.profile().servos;
+        const ServoSetup* setup = servos.size() == rig->actuatorCount() ? &servos[*chosen] : nullptr;
+        details_->addWidget(makeFacts(factsOf(*rig, *chosen, setup), "rig.actuator.", this));
     }
 
     Studio& studio_;

@@ -78,12 +78,18 @@ QString rangeText(const Actuator& actuator) {
     return shortNumber(range.min) + " to " + shortNumber(range.max);
 }
 
-std::vector<RigFact> factsOf(const Rig& rig, std::size_t index) {
+std::vector<RigFact> factsOf(const Rig& rig, std::size_t index, const ServoSetup* setup) {
     const Actuator& actuator = rig.actuators()[index];
-    const ActuatorDrive& drive = actuator.drive;
+    ActuatorDrive drive = actuator.drive;
+    if (setup) {
+        drive.channel = setup->channel;
+        drive.pulseMin = setup->reversed ? setup->pulseMax : setup->pulseMin;
+        drive.pulseMax = setup->reversed ? setup->pulseMin : setup->pulseMax;
+    }
     return {
         {"Moves by", deformerText(actuator), "How its part changes shape"},
-        {"Amplitude", lengthText(amplitudeOf(rig, index)), "The farthest that a point of the surface gets from where it rests"},
+        {"Amplitude", lengthText(amplitudeOf(rig, index)),
+         "The farthest that a point of the surface gets from where it rests"},
         {"Levels", QString::number(actuator.levels), "Steps that the rig suggests for a field"},
         {"Moves", countText(rig.verticesOf(index).size()) + " vertices", "How much of the mesh follows it"},
         {"Channel", drive.channel < 0 ? QString("none") : QString::number(drive.channel),

@@ -6,6 +6,7 @@
 #include <QWidget>
 
 #include "core/rig/shape_report.h"
+#include "devices/controllers/device_profile.h"
 
 namespace lumorph::studio {
 
@@ -31,7 +32,9 @@ void setRange(Actuator& actuator, double min, double max);
 /// "0° to 45°", "0 to 20 mm" or "0 to 1".
 [[nodiscard]] QString rangeText(const Actuator& actuator);
 /// What a maker and a controller need to know of an actuator beside what they edit. Deforms the rig for its amplitude.
-[[nodiscard]] std::vector<RigFact> factsOf(const Rig& rig, std::size_t actuator);
+/// Channel and pulse are those of its servo's set-up, the same that the Devices workspace shows; null: as the rig's
+/// file says.
+[[nodiscard]] std::vector<RigFact> factsOf(const Rig& rig, std::size_t actuator, const ServoSetup* setup = nullptr);
 
 [[nodiscard]] std::vector<RigFact> meshFacts(const ShapeReport& report);
 [[nodiscard]] std::vector<RigFact> shapeFacts(const ShapeReport& report);
