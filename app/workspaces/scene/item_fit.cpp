@@ -1,5 +1,7 @@
 #include "app/workspaces/scene/item_fit.h"
 
+#include <algorithm>
+
 #include <QPushButton>
 
 #include "app/studio/widgets/dock_parts.h"
@@ -60,7 +62,9 @@ public:
                           : state.field.field ? tr("The servos follow it.")
                                               : tr("The servos follow it. How well it fits is known once the "
                                                    "field is built, in the Field workspace."));
-        const QString why = known ? warningOf(*frame->itemFit) : QString();
+        const QString why = !known                          ? QString()
+                            : item->role == ItemRole::split ? splitOf(*frame->itemFit)
+                                                            : warningOf(*frame->itemFit);
         warning_->setText(why);
         warning_->setVisible(!why.isEmpty());
     }
@@ -68,6 +72,16 @@ public:
 private:
     static QString numbersOf(const ItemFit& fit) {
         return tr("IoU %1, reached %2").arg(fit.iouWanted, 0, 'f', 2).arg(fit.iouEstimated, 0, 'f', 2);
+    }
+
+    /// What servos leave out of a split item light shows anyway.
+    static QString splitOf(const ItemFit& fit) {
+        if (fit.volume <= 0.0)
+            return tr("Nothing of it stands above the device's surface, where servos could lift it.");
+        const double left = std::max(fit.shareUnreachable, fit.shareBeyondFrame);
+        return left > kWorthSaying
+                   ? tr("%1 of it is where the servos do not come: light alone shows it there.").arg(shareText(left))
+                   : QString();
     }
 
     /// The gravest alone.
