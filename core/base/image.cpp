@@ -38,13 +38,17 @@ Image::Image(glm::ivec2 size, Pixel fill) : size_(size) {
     pixels_.assign(static_cast<std::size_t>(size.x) * static_cast<std::size_t>(size.y), fill);
 }
 
-void writePng(const Image& image, const std::filesystem::path& file) {
-    if (image.pixels().empty()) throw InvalidInput(file.string(), "the image is empty", "draw something first");
+std::vector<std::byte> pngBytes(const Image& image, const std::string& name) {
+    if (image.pixels().empty()) throw InvalidInput(name, "the image is empty", "draw something first");
     std::vector<std::byte> bytes;
     const auto [width, height] = std::pair(image.size().x, image.size().y);
     if (!stbi_write_png_to_func(appendBytes, &bytes, width, height, 4, image.pixels().data(), width * 4))
-        throw DeviceError(file.string(), "the image cannot be packed", "free some memory");
-    writeFileAtomically(file, bytes);
+        throw DeviceError(name, "the image cannot be packed", "free some memory");
+    return bytes;
+}
+
+void writePng(const Image& image, const std::filesystem::path& file) {
+    writeFileAtomically(file, pngBytes(image, file.string()));
 }
 
 Image decodeImage(std::span<const std::byte> bytes, const std::string& name) {

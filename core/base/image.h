@@ -43,6 +43,8 @@ private:
 /// The image as a PNG file. Written beside the target and renamed, so that a failure leaves no half
 /// file. Throws InvalidInput for an empty image, DeviceError when the disk refuses.
 void writePng(const Image& image, const std::filesystem::path& file);
+/// What writePng writes; `name` is what errors call it.
+[[nodiscard]] std::vector<std::byte> pngBytes(const Image& image, const std::string& name);
 
 /// Most pixels of a picture that is decoded: 8192 x 8192.
 inline constexpr std::int64_t kMaxDecodedPixels = std::int64_t{1} << 26;

@@ -1,5 +1,6 @@
 #include "core/scene/project_assets.h"
 
+#include <algorithm>
 #include <optional>
 #include <system_error>
 
@@ -7,6 +8,7 @@
 
 #include "core/base/atomic_file.h"
 #include "core/base/confined_path.h"
+#include "core/base/file.h"
 #include "core/base/resources.h"
 #include "core/base/text.h"
 #include "core/scene/asset_copy.h"
@@ -79,11 +81,38 @@ private:
 };
 
 /// "dunes.glb", "dunes 2.glb", "dunes 3.glb" and so on.
-fs::path numbered(const AssetFiles& asset, int number) {
-    if (number == 1) return asset.name;
+fs::path numbered(const fs::path& name, bool folder, int number) {
+    if (number == 1) return name;
     const std::string suffix = " " + std::to_string(number);
-    if (asset.folder) return asset.name.string() + suffix;
-    return asset.name.stem().string() + suffix + asset.name.extension().string();
+    if (folder) return name.string() + suffix;
+    return name.stem().string() + suffix + name.extension().string();
+}
+
+/// Where the asset lies in `files`, below it: the first of its numbered names that is free, and is written then, or
+/// that `holds` it already.
+template <class Holds, class Write>
+fs::path placeIn(const AssetFolder& files, const fs::path& name, bool folder, const Progress& progress, Holds holds,
+                 Write write) {
+    for (int number = 1;; ++number) {
+        progress.throwIfCancelled();
+        fs::path numberedName = numbered(name, folder, number);
+        const fs::path place = files.path() / numberedName;
+        std::error_code failed;
+        const fs::file_type type = fs::symlink_status(place, failed).type();
+        if (type == fs::file_type::none) throwWriteError(place, failed.value());
+        const bool there = type != fs::file_type::not_found;
+        if (there && !holds(place)) continue;
+        if (!there) write(place);
+        return numberedName;
+    }
+}
+
+bool holdsBytes(const fs::path& place, std::span<const std::byte> bytes) {
+    std::error_code failed;
+    if (!fs::is_regular_file(fs::symlink_status(place, failed)) || fs::file_size(place, failed) != bytes.size() ||
+        failed)
+        return false;
+    return std::ranges::equal(readFile(place, bytes.size()), bytes);
 }
 
 } // namespace
@@ -129,20 +158,22 @@ std::string takeAsset(const fs::path& projectFile, const fs::path& source, const
     const AssetFiles asset = filesOfAsset(source);
     (void)checkedName(asset.name.string() + asset.main.string(), source);
     const AssetFolder files(projectFile);
-    for (int number = 1;; ++number) {
-        progress.throwIfCancelled();
-        const fs::path name = numbered(asset, number);
-        const fs::path place = files.path() / name;
-        std::error_code failed;
-        const fs::file_type type = fs::symlink_status(place, failed).type();
-        if (type == fs::file_type::none) throwWriteError(place, failed.value());
-        const bool there = type != fs::file_type::not_found;
-        if (there && !holdsAsset(place, asset, progress)) continue;
-        if (!there) copyAsset(asset, place, progress);
-        const fs::path inside = files.name() / name;
-        return checkedName((asset.folder && !asset.main.empty() ? inside / asset.main : inside).generic_string(),
-                           source);
-    }
+    const fs::path name = placeIn(
+        files, asset.name, asset.folder, progress,
+        [&](const fs::path& place) { return holdsAsset(place, asset, progress); },
+        [&](const fs::path& place) { copyAsset(asset, place, progress); });
+    const fs::path inside = files.name() / name;
+    return checkedName((asset.folder && !asset.main.empty() ? inside / asset.main : inside).generic_string(), source);
+}
+
+std::string takeAsset(const fs::path& projectFile, const std::string& name, std::span<const std::byte> bytes,
+                      const Progress& progress) {
+    (void)checkedName(name, name);
+    const AssetFolder files(projectFile);
+    const fs::path taken = placeIn(
+        files, name, false, progress, [&](const fs::path& place) { return holdsBytes(place, bytes); },
+        [&](const fs::path& place) { writeFileAtomically(place, bytes); });
+    return checkedName((files.name() / taken).generic_string(), name);
 }
 
 } // namespace lumorph

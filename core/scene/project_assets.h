@@ -1,6 +1,8 @@
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -23,6 +25,10 @@ namespace lumorph {
 /// Throws DeviceError when the disk refuses, DataError when the source cannot be read, Cancelled when asked to stop.
 [[nodiscard]] std::string takeAsset(const std::filesystem::path& projectFile, const std::filesystem::path& source,
                                     const Progress& progress = {});
+
+/// The same for what is in memory alone: a file that needs no other, `name` with its extension and without a folder.
+[[nodiscard]] std::string takeAsset(const std::filesystem::path& projectFile, const std::string& name,
+                                    std::span<const std::byte> bytes, const Progress& progress = {});
 
 /// The folder a project's assets are relative to: that of its file, links followed. Absolute.
 [[nodiscard]] std::filesystem::path projectFolder(const std::filesystem::path& projectFile);

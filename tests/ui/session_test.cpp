@@ -1,6 +1,18 @@
+#include <algorithm>
+#include <chrono>
+#include <cmath>
 #include <csignal>
 #include <cstdio>
 #include <fstream>
+#include <optional>
+#include <set>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include <fcntl.h>
+#include <sys/file.h>
+#include <unistd.h>
 
 #include <QProcess>
 #include <gmock/gmock.h>
@@ -97,18 +109,115 @@ TEST_F(SessionTest, GoesOnWhereItEnded) {
     EXPECT_TRUE(world.notices.at().empty()) << "nothing has changed on disk";
 }
 
-TEST_F(SessionTest, IsKeptSomeSecondsAfterAChange) {
-    StudioState was;
+/// Numbers of the sessions in a folder, newest first; what lies beside them is in `others`.
+std::vector<int> sessionsIn(const fs::path& folder, std::set<std::string>* others = nullptr) {
+    std::vector<int> numbers;
+    std::error_code gone;
+    for (fs::directory_iterator at(folder, gone), end; !gone && at != end; at.increment(gone)) {
+        const std::string name = at->path().filename().string();
+        bool isNumber = false;
+        const int number = QString::fromStdString(name).toInt(&isNumber);
+        if (isNumber)
+            numbers.push_back(number);
+        else if (others)
+            others->insert(name);
+    }
+    std::sort(numbers.rbegin(), numbers.rend());
+    return numbers;
+}
+
+/// What a studio would find that starts now; nothing while one is replaced by the next.
+std::optional<Project> keptNow(const fs::path& folder) {
+    try {
+        const std::vector<int> numbers = sessionsIn(folder);
+        if (!numbers.empty()) return readProject(folder / std::to_string(numbers.front()) / "session.lumorph");
+    } catch (const Error&) {
+    }
+    return std::nullopt;
+}
+
+/// Threads that leave no processor idle.
+struct BusyMachine {
+    std::vector<std::jthread> threads;
+    BusyMachine() {
+        for (unsigned k = 0; k < 2 * std::thread::hardware_concurrency(); ++k)
+            threads.emplace_back([](const std::stop_token& end) {
+                volatile double work = 1.0;
+                while (!end.stop_requested()) work = work * 1.0000001;
+            });
+    }
+};
+
+/// Every edit changes numbers, every sixth the target, so that files are written as well.
+TEST_F(SessionTest, AnEditIsOnDiskTwoSecondsLaterHoweverManyFollow) {
+    using Clock = std::chrono::steady_clock;
+    files.writeMesh(test::boxMesh({0, 0, 0}, {0.01F, 0.05F, 0.01F}, 3), "other.obj");
+    const fs::path folder = ProjectService::sessionFolder();
     ProjectWorld world;
-    was = edited(world, files);
-    const auto kept = [&] {
-        for (const auto& entry : fs::directory_iterator(ProjectService::sessionFolder()))
-            if (fs::exists(entry.path() / "session.lumorph") &&
-                readProject(entry.path() / "session.lumorph").playback.spin == 0.3)
-                return true;
-        return false;
+    world.openRig(files / "cushion.glb");
+    world.openTarget(files / "block.obj");
+    const auto even = world.state().target;
+    world.openTarget(files / "other.obj");
+    const auto odd = world.state().target;
+    const BusyMachine busy;
+    std::vector<Clock::time_point> made(1, Clock::now()); // [k]: when edit k was made
+    const auto edit = [&] {
+        const std::size_t k = made.size();
+        world.document.change("Count", [&](StudioState& s) {
+            s.playback.spin = static_cast<double>(k) / 1000.0;
+            s.target = k / 6 % 2 == 0 ? even : odd;
+        });
+        made.push_back(Clock::now());
     };
-    EXPECT_TRUE(eventually(kept, std::chrono::seconds(30)));
+    const auto keptEdit = [&]() -> std::size_t {
+        const std::optional<Project> kept = keptNow(folder);
+        return kept ? static_cast<std::size_t>(std::lround(1000.0 * kept->playback.spin)) : 0;
+    };
+    std::chrono::duration<double> oldest{0.0}; // that was not on disk yet
+    std::size_t kept = 0;
+    const auto look = [&] {
+        const auto now = Clock::now();
+        kept = std::max(kept, keptEdit()); // 0 also in the moment in which a folder takes another's place
+        if (kept + 1 < made.size()) oldest = std::max(oldest, std::chrono::duration<double>(now - made[kept + 1]));
+    };
+    while (Clock::now() - made.front() < std::chrono::seconds(8)) {
+        edit();
+        test::pass(std::chrono::milliseconds(20));
+        look();
+    }
+    EXPECT_LT(oldest.count(), 2.0) << "while edits go on";
+    const std::size_t last = made.size() - 1;
+    // The window's thread does nothing more: a dialog of the system, a driver that hangs.
+    while (kept < last && Clock::now() - made.back() < std::chrono::seconds(10)) {
+        std::this_thread::sleep_for(std::chrono::milliseconds(20));
+        look();
+    }
+    EXPECT_EQ(kept, last);
+    EXPECT_LT(std::chrono::duration<double>(Clock::now() - made.back()).count(), 2.0) << "while the window is stuck";
+    const std::vector<int> numbers = sessionsIn(folder);
+    ASSERT_EQ(numbers.size(), 1U);
+    std::set<std::string> assets;
+    static_cast<void>(sessionsIn(folder / std::to_string(numbers.front()) / "session files", &assets));
+    EXPECT_EQ(assets.size(), 3U) << "rig, field and the target that is open: " << testing::PrintToString(assets);
+}
+
+/// A studio that cannot have the folder at once is not one that never keeps anything: whoever was killed lets go late.
+TEST_F(SessionTest, IsKeptAlsoWhereTheOneBeforeTakesItsTimeToDie) {
+    const fs::path folder = ProjectService::sessionFolder();
+    fs::create_directories(folder);
+    const int dying = ::open((folder / "lock").c_str(), O_RDWR | O_CREAT, 0666);
+    ASSERT_EQ(::flock(dying, LOCK_EX | LOCK_NB), 0);
+    ProjectWorld world;
+    edited(world, files);
+    test::pass(std::chrono::milliseconds(1000));
+    EXPECT_FALSE(keptNow(folder));
+    ::close(dying);
+    EXPECT_TRUE(eventually(
+        [&] {
+            const std::optional<Project> kept = keptNow(folder);
+            return kept && kept->playback.spin == 0.3;
+        },
+        std::chrono::seconds(5)));
 }
 
 TEST_F(SessionTest, HoldsWhatVanishedSince) {
@@ -220,6 +329,71 @@ TEST_F(SessionTest, KilledAtAnyTimeItLeavesAWholeSession) {
         EXPECT_EQ(world.state().target.path.filename(), number % 2 == 0 ? "block.obj" : "other.obj");
         ASSERT_TRUE(world.state().field.field);
     }
+}
+
+/// What programs that were killed have left behind, and a session that could not be opened each day.
+void leaveRubbish(const fs::path& folder) {
+    const auto put = [&](const fs::path& file) {
+        fs::create_directories((folder / file).parent_path());
+        std::ofstream(folder / file) << "{ torn";
+    };
+    put("partial/session.lumorph");
+    put("partial/session files/big.mdf");
+    put("kept/kept files/nobody names it.png");
+    put(".lumorph-123-4.tmp");
+    for (int day = 1; day <= 40; ++day) {
+        const std::string name = "broken-" + std::to_string(day);
+        put(name + "/session.lumorph");
+        fs::last_write_time(folder / name, fs::file_time_type::clock::now() - std::chrono::hours(24 * (41 - day)));
+    }
+    put("broken-0/session.lumorph"); // the oldest
+    fs::last_write_time(folder / "broken-0", fs::file_time_type::clock::now() - std::chrono::hours(24 * 400));
+}
+
+/// What lies in the folder beside one session and what belongs there.
+std::set<std::string> rubbishIn(const fs::path& folder) {
+    std::set<std::string> others;
+    const std::vector<int> numbers = sessionsIn(folder, &others);
+    for (std::size_t k = 1; k < numbers.size(); ++k) others.insert(std::to_string(numbers[k]));
+    for (const char* usual : {"fields", "kept", "lock", "broken-40", "broken-39", "broken-38"}) others.erase(usual);
+    if (fs::exists(folder / "kept" / "kept files" / "nobody names it.png")) others.insert("nobody names it.png");
+    return others;
+}
+
+TEST_F(SessionTest, TheStudioItselfKilledManyTimesLeavesOneSessionAndNoRubbish) {
+    const fs::path folder = ProjectService::sessionFolder();
+    leaveRubbish(folder);
+    const auto make = [&](const char* name) {
+        fs::create_directories(files / name);
+        return QString::fromStdString((files / name).string());
+    };
+    auto environment = QProcessEnvironment::systemEnvironment();
+    for (const char* name : {"XDG_CONFIG_HOME", "XDG_DATA_HOME", "TMPDIR"}) environment.insert(name, make(name));
+    for (int kill = 1; kill <= 3; ++kill) {
+        SCOPED_TRACE(kill);
+        const std::string target = "target" + std::to_string(kill);
+        files.writeMesh(test::boxMesh({-0.02F, 0.0F, -0.01F}, {0.02F, 0.03F, 0.01F * static_cast<float>(kill)}),
+                        target + ".obj");
+        QProcess studio;
+        studio.setProcessEnvironment(environment);
+        studio.start(LUMORPH_BIN_DIR "/lumorph-studio", {QString::fromStdString((files / (target + ".obj")).string())});
+        const auto holdsTarget = [&] {
+            const std::optional<Project> kept = keptNow(folder);
+            return kept && fs::path(kept->target).stem() == target;
+        };
+        ASSERT_TRUE(eventually(holdsTarget, std::chrono::seconds(120))) << studio.readAllStandardError().toStdString();
+        test::pass(std::chrono::milliseconds(170 * (kill - 1)));
+        if (kill == 3) EXPECT_TRUE(eventually([&] { return rubbishIn(folder).empty(); }));
+        studio.kill();
+        ASSERT_TRUE(studio.waitForFinished());
+        EXPECT_TRUE(holdsTarget());
+        EXPECT_LE(sessionsIn(folder).size(), 2U) << "the one before, where the kill came between the two";
+    }
+    EXPECT_EQ(sessionsIn(folder).size(), 1U);
+    EXPECT_THAT(rubbishIn(folder), testing::IsEmpty());
+    EXPECT_TRUE(fs::exists(folder / "broken-40" / "session.lumorph")) << "lately: somebody may look for it";
+    for (const auto& left : fs::directory_iterator(files / "TMPDIR"))
+        ADD_FAILURE() << left.path() << " is left in the folder for what is temporary";
 }
 
 } // namespace

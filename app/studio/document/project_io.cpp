@@ -2,12 +2,10 @@
 
 #include <cmath>
 #include <functional>
-
-#include <QTemporaryDir>
+#include <map>
 
 #include "app/studio/document/scene_files.h"
 #include "app/studio/document/state_rules.h"
-#include "core/base/atomic_file.h"
 #include "core/base/error.h"
 #include "core/geometry/model.h"
 #include "core/mdf/field_file.h"
@@ -86,12 +84,7 @@ std::string fileStem(const fs::path& path, const std::string& name) {
 std::string take(const fs::path& project, const fs::path& path, const std::optional<FileStamp>& stamp,
                  const std::string& name, const std::function<Bytes()>& bytes, const Progress& progress) {
     if (!path.empty() && stamp && stamp->there && stampOf(path) == *stamp) return takeAsset(project, path, progress);
-    const QTemporaryDir folder;
-    if (!folder.isValid())
-        throw DeviceError("temporary folder", folder.errorString().toStdString(), "free some disk space");
-    const fs::path copy = fs::path(folder.path().toStdString()) / name;
-    writeFileAtomically(copy, bytes());
-    return takeAsset(project, copy, progress);
+    return takeAsset(project, name, bytes(), progress);
 }
 
 Bytes targetBytes(const MatchTarget& target) {
@@ -181,28 +174,34 @@ LoadedProject loadProject(const fs::path& file, const Progress& progress) {
     return loaded;
 }
 
-void saveProject(const ProjectSource& source, const fs::path& file, const Progress& progress) {
+TakenAssets saveProject(const ProjectSource& source, const fs::path& file, const Progress& progress,
+                        const TakenAssets& there) {
     const StudioState& state = source.state;
     if (!state.rig.rig) throw InvalidInput(file.string(), "there is no rig to save", "open a rig first");
     Project project = projectOf(source);
     const std::string rigName = fileStem(state.rig.path, state.rig.rig->name());
-    project.rig = take(
-        file, state.rig.path, source.stamps.rig, rigName + ".glb", [&] { return writeRigGlb(rigToSave(state.rig)); },
-        progress);
+    const auto taken = [&](const std::string& already, const fs::path& path, const std::optional<FileStamp>& stamp,
+                           const std::string& name, const std::function<Bytes()>& bytes) {
+        return already.empty() ? take(file, path, stamp, name, bytes, progress) : already;
+    };
+    project.rig = taken(there.rig, state.rig.path, source.stamps.rig, rigName + ".glb",
+                        [&] { return writeRigGlb(rigToSave(state.rig)); });
     if (state.field.field)
-        project.field = take(
-            file, state.field.path, source.stamps.field, fileStem(state.field.path, rigName) + ".mdf",
-            [&] { return writeField(state.field.field->field); }, progress);
+        project.field =
+            taken(there.field, state.field.path, source.stamps.field, fileStem(state.field.path, rigName) + ".mdf",
+                  [&] { return writeField(state.field.field->field); });
     if (const auto& target = state.target.target)
-        project.target = take(
-            file, state.target.path, source.stamps.target, fileStem(state.target.path, target->name) + ".glb",
-            [&] { return targetBytes(*target); }, progress);
-    if (state.scene) project.scene = withTakenFiles(*state.scene, state.assets.get(), file, progress);
+        project.target =
+            taken(there.target, state.target.path, source.stamps.target,
+                  fileStem(state.target.path, target->name) + ".glb", [&] { return targetBytes(*target); });
+    std::map<std::string, std::string> names = there.scene;
+    if (state.scene) project.scene = withTakenFiles(*state.scene, state.assets.get(), file, names, progress);
     const Project old = savedBefore(file);
     writeProject(project, file);
     dropOld(file, old.field, project.field);
     // The one that was opened is what undo leads back to.
     if (file.parent_path() / old.rig != state.rig.path) dropOld(file, old.rig, project.rig);
+    return {project.rig, project.field, project.target, std::move(names)};
 }
 
 } // namespace lumorph::studio

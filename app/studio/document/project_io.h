@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -46,9 +47,17 @@ struct ProjectSource {
     ProjectExtras extras;
 };
 
+/// What a project's assets are called in its folder; empty for what there is not.
+struct TakenAssets {
+    std::string rig, field, target;
+    std::map<std::string, std::string> scene; ///< by what the scene calls them in memory
+    bool operator==(const TakenAssets&) const = default;
+};
+
 /// Saves a project: assets are taken into the folder beside it, then the file is replaced at once. What has vanished or
 /// changed on disk since it was read is written as it is in memory. Throws DeviceError when the disk refuses; the old
-/// project is as it was then.
-void saveProject(const ProjectSource& source, const std::filesystem::path& file, const Progress& progress = {});
+/// project is as it was then. What is `there` by that name is not looked at again.
+TakenAssets saveProject(const ProjectSource& source, const std::filesystem::path& file, const Progress& progress = {},
+                        const TakenAssets& there = {});
 
 } // namespace lumorph::studio

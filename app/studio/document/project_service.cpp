@@ -197,7 +197,7 @@ void ProjectService::Data::restore(std::function<void()> onReady) {
     const auto ready = std::make_shared<std::function<void()>>(std::move(onReady));
     jobs.runWith<std::optional<SessionState>>(
         "project", "project", tr("Opening the last session"),
-        [folder = sessionFolder()](const Progress& progress) { return SessionKeeper::restore(folder, progress); },
+        [folder = sessionFolder()](const Progress& progress) { return SessionFolder::restore(folder, progress); },
         [this, ready](const std::optional<SessionState>& session) {
             if (!session) {
                 openBundled(demos().front().name, *ready);
@@ -208,7 +208,7 @@ void ProjectService::Data::restore(std::function<void()> onReady) {
             if (*ready) (*ready)();
         },
         [this, ready](const std::exception& error) {
-            const fs::path aside = SessionKeeper::moveAside(sessionFolder());
+            const fs::path aside = SessionFolder::moveAside(sessionFolder());
             Notice notice = noticeOf(error);
             notice.why = tr("the last session could not be opened: %1").arg(notice.why);
             notice.remedy = tr("what is left of it lies in %1").arg(fullName(aside));

@@ -1,11 +1,9 @@
 #include "app/studio/document/scene_files.h"
 
 #include <map>
-
-#include <QTemporaryDir>
+#include <vector>
 
 #include "app/studio/document/scene_edit.h"
-#include "core/base/atomic_file.h"
 #include "core/base/error.h"
 #include "core/scene/project_assets.h"
 
@@ -15,20 +13,18 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// What is in memory of an asset, as a file in `folder`; empty when there is nothing.
-fs::path writtenFromMemory(const std::string& asset, const SceneAssets& assets, const fs::path& folder) {
-    const fs::path name = fs::path(asset).filename();
+/// Takes what is in memory of an asset; empty when there is nothing.
+std::string takenFromMemory(const std::string& asset, const SceneAssets& assets, const fs::path& projectFile,
+                            const Progress& progress) {
+    const auto take = [&](const char* extension, const std::vector<std::byte>& bytes) {
+        const fs::path name = fs::path(asset).filename().replace_extension(extension);
+        return takeAsset(projectFile, name.string(), bytes, progress);
+    };
     if (assets.problems.contains(asset)) return {};
-    if (const auto image = assets.images.find(asset); image != assets.images.end() && image->second) {
-        const fs::path file = folder / fs::path(name).replace_extension(".png");
-        writePng(*image->second, file);
-        return file;
-    }
-    if (const auto model = assets.models.find(asset); model != assets.models.end() && model->second) {
-        const fs::path file = folder / fs::path(name).replace_extension(".glb");
-        writeFileAtomically(file, writeGlb(model->second->model));
-        return file;
-    }
+    if (const auto image = assets.images.find(asset); image != assets.images.end() && image->second)
+        return take(".png", pngBytes(*image->second, asset));
+    if (const auto model = assets.models.find(asset); model != assets.models.end() && model->second)
+        return take(".glb", writeGlb(model->second->model));
     return {};
 }
 
@@ -46,11 +42,8 @@ std::string taken(const std::string& asset, const SceneAssets* assets, const fs:
     } catch (const DataError&) {
     } // it has gone, or is no picture or model any more
     if (!assets) return namedAsMissing(asset, projectFile);
-    const QTemporaryDir folder;
-    if (!folder.isValid())
-        throw DeviceError("temporary folder", folder.errorString().toStdString(), "free some disk space");
-    const fs::path written = writtenFromMemory(asset, *assets, folder.path().toStdString());
-    return written.empty() ? namedAsMissing(asset, projectFile) : takeAsset(projectFile, written, progress);
+    const std::string name = takenFromMemory(asset, *assets, projectFile, progress);
+    return name.empty() ? namedAsMissing(asset, projectFile) : name;
 }
 
 } // namespace
@@ -65,8 +58,8 @@ Scene withWholePaths(Scene scene, const fs::path& projectFile) {
     return scene;
 }
 
-Scene withTakenFiles(Scene scene, const SceneAssets* assets, const fs::path& projectFile, const Progress& progress) {
-    std::map<std::string, std::string> names;
+Scene withTakenFiles(Scene scene, const SceneAssets* assets, const fs::path& projectFile,
+                     std::map<std::string, std::string>& names, const Progress& progress) {
     renameAssets(scene, [&](const std::string& asset) {
         const auto known = names.find(asset);
         return known != names.end() ? known->second

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
+#include <string>
 
 #include "core/base/progress.h"
 #include "core/scene/project.h"
@@ -15,9 +17,10 @@ namespace lumorph::studio {
 
 /// The scene as a project file can hold it: its files are taken into the project's folder and named as they lie there.
 /// One that has vanished is written as it is in memory; one that was never read is still named, so that it can be
-/// relinked. Throws DeviceError when the disk refuses, Cancelled.
+/// relinked. What `names` holds, by its name in memory, is there already; what is taken is added to it. Throws
+/// DeviceError when the disk refuses, Cancelled.
 [[nodiscard]] Scene withTakenFiles(Scene scene, const SceneAssets* assets, const std::filesystem::path& projectFile,
-                                   const Progress& progress = {});
+                                   std::map<std::string, std::string>& names, const Progress& progress = {});
 
 /// Whether everything that the scene names has been looked for.
 [[nodiscard]] bool holdsAll(const SceneAssets* assets, const Scene& scene);

@@ -1,66 +1,67 @@
 #pragma once
 
-#include <atomic>
+#include <chrono>
+#include <condition_variable>
+#include <cstdint>
+#include <exception>
 #include <filesystem>
 #include <functional>
-#include <memory>
+#include <mutex>
 #include <optional>
+#include <stop_token>
 #include <thread>
 
-#include <QLockFile>
 #include <QObject>
 #include <QString>
-#include <QTimer>
 
-#include "app/studio/document/project_io.h"
+#include "app/studio/document/session_folder.h"
 
 namespace lumorph::studio {
 
-/// What is needed to go on where a session ended.
-struct SessionState {
-    ProjectSource source;
-    std::filesystem::path file; ///< the project's own file; empty while it has none
-    bool modified = false;
-};
-
-/// Keeps the session in a folder of its own as numbered projects, the newest complete one counting: a kill at any time
-/// leaves the one before. One program at a time keeps sessions there; a second one keeps none.
+/// Keeps the session in a folder of its own, in a thread of its own: what changes is on disk within two seconds,
+/// however busy the window is and however long changes go on. One program at a time keeps sessions there; a second one
+/// keeps none.
 class SessionKeeper : public QObject {
     Q_OBJECT
 public:
     /// `snapshot` is asked in the window's thread; empty while there is nothing to keep.
     SessionKeeper(std::filesystem::path folder, std::function<std::optional<SessionState>()> snapshot,
                   QObject* parent = nullptr);
+    ~SessionKeeper() override;
 
-    /// It is kept some seconds from now.
+    /// Something has changed: the session as it is now will be kept, unless it changes again before.
     void touch();
     /// It is kept now; returns when it is on disk. Throws DeviceError when the disk refuses.
     void keepNow();
-
-    /// The session that was kept last; empty when there is none. For a job's thread. Throws what `loadProject` throws.
-    [[nodiscard]] static std::optional<SessionState> restore(const std::filesystem::path& folder,
-                                                             const Progress& progress);
-    /// Moves the session that was kept last out of the way and gives its new place.
-    static std::filesystem::path moveAside(const std::filesystem::path& folder);
-
-    /// What was kept last by this program.
-    struct Written {
-        int number = 0;
-        StudioState assets;
-    };
 
 signals:
     void failed(const QString& why);
 
 private:
-    void keepBeside();
+    using Clock = std::chrono::steady_clock;
+    enum class Role { undecided, keeper, onlooker }; ///< whether sessions are this program's to keep
+
+    /// With the mutex held; gives the offer's number.
+    std::uint64_t offer(SessionState session);
+    void run(const std::stop_token& end);
+    [[nodiscard]] bool becomeKeeper(std::unique_lock<std::mutex>& lock, const std::stop_token& end);
+    [[nodiscard]] std::exception_ptr write(const SessionState& session);
 
     std::filesystem::path folder_;
     std::function<std::optional<SessionState>()> snapshot_;
-    std::unique_ptr<QLockFile> lock_;
-    QTimer soon_;
-    Written written_; ///< the writer's while it writes
-    std::atomic<bool> writing_ = false;
+    SessionFolder sessions_; ///< the writer's
+    int lockFile_ = -1;
+
+    std::mutex mutex_; ///< of what follows; held for moments only
+    std::condition_variable_any changed_;
+    Role role_ = Role::undecided;
+    std::optional<SessionState> waiting_; ///< the newest, not yet written
+    Clock::time_point due_;               ///< when it is to be written
+    std::uint64_t offered_ = 0;
+    std::uint64_t tried_ = 0; ///< the newest that was written, or could not be
+    bool hurry_ = false;      ///< somebody waits for it
+    std::exception_ptr failure_;
+
     std::jthread writer_;
 };
 

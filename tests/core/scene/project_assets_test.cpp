@@ -115,6 +115,22 @@ TEST_F(TakeAsset, TheSameContentsAreNotCopiedTwiceAndOthersGetANumber) {
     EXPECT_EQ(textOf(home / "fish files/cow.obj"), "first");
 }
 
+TEST_F(TakeAsset, WhatIsInMemoryAloneGoesByTheSameRules) {
+    const auto take = [&](const std::string& text) {
+        return takeAsset(project, "cow.glb", std::as_bytes(std::span(text)));
+    };
+    EXPECT_EQ(take("first"), "fish files/cow.glb");
+    EXPECT_EQ(take("second"), "fish files/cow 2.glb");
+    EXPECT_EQ(take("fir"), "fish files/cow 3.glb") << "the beginning of another";
+    EXPECT_EQ(take("first"), "fish files/cow.glb");
+    EXPECT_THAT(contents(), ElementsAre("fish files/cow 2.glb", "fish files/cow 3.glb", "fish files/cow.glb"));
+    EXPECT_EQ(textOf(home / "fish files/cow 2.glb"), "second");
+    fs::create_symlink(source / "elsewhere", home / "fish files/bull.glb");
+    EXPECT_EQ(takeAsset(project, "bull.glb", std::as_bytes(std::span("bull", 4))), "fish files/bull 2.glb")
+        << "a link is not written through";
+    EXPECT_FALSE(fs::exists(source / "elsewhere"));
+}
+
 TEST_F(TakeAsset, AGltfBringsItsBuffersAndImages) {
     writeGltf(source / "cow.gltf");
     EXPECT_EQ(takeAsset(project, source / "cow.gltf"), "fish files/cow/cow.gltf");
