@@ -19,8 +19,11 @@ struct CoarseSurface {
 
 /// What is left of a surface when all vertices in a cell of a grid become one; the cells are as large as leaves about
 /// `wanted` triangles. Vertices whose normals are more than 40 degrees apart stay two vertices at one place, so that
-/// edges stay sharp. Empty where that would gain little. Metres; triangles index `vertices`.
+/// edges stay sharp. Vertices of different `parts`, one number a vertex, never become one, since parts may move apart;
+/// a part that is narrower than a cell has smaller cells. Empty where that would gain little. Metres; triangles index
+/// `vertices`.
 [[nodiscard]] CoarseSurface coarseSurface(std::span<const ShadedMesh::Vertex> vertices,
-                                          std::span<const glm::uvec3> triangles, std::size_t wanted);
+                                          std::span<const std::uint32_t> parts, std::span<const glm::uvec3> triangles,
+                                          std::size_t wanted);
 
 } // namespace lumorph

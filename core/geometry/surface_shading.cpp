@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <compare>
+#include <map>
 #include <numeric>
 #include <string>
 #include <tuple>
+#include <utility>
 
 #include <glm/geometric.hpp>
 
@@ -18,6 +20,8 @@ namespace {
 
 constexpr std::uint32_t kNoVertex = UINT32_MAX;
 constexpr std::size_t kCoarseTriangles = 9000;
+// Each part is at least a box. Where there are more, as in a soup of triangles, they are no parts that one sees.
+constexpr std::size_t kMostParts = kCoarseTriangles / 9;
 
 // A corner of a face: the vertex of the mesh and the normal it shows.
 struct Corner {
@@ -108,6 +112,27 @@ DisjointSets smoothCorners(const std::vector<HalfEdge>& edges, const std::vector
     return sets;
 }
 
+// For every vertex of the mesh a number of the part that it belongs to: those of one number in `given` that hang
+// together by edges. An edge of four faces is where two bodies touch.
+std::vector<std::uint32_t> partsOf(const TriangleMesh& mesh, const std::vector<HalfEdge>& edges,
+                                   std::span<const std::uint32_t> given) {
+    DisjointSets pieces(mesh.positions.size());
+    for (const glm::uvec3& t : mesh.triangles) {
+        pieces.join(t.x, t.y);
+        pieces.join(t.y, t.z);
+    }
+    const auto at = [&](std::uint32_t corner) { return mesh.triangles[corner / 3][static_cast<int>(corner % 3)]; };
+    forEachSharedEdge(edges, [&](auto first, auto last) {
+        if (last - first == 2) pieces.join(at(first->corner), at((first + 1)->corner)); // their faces join the rest
+    });
+    std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> numbers;
+    std::vector<std::uint32_t> parts(mesh.positions.size());
+    for (std::uint32_t i = 0; i < parts.size(); ++i)
+        parts[i] = numbers.try_emplace({pieces.find(i), given.empty() ? 0 : given[i]}, numbers.size()).first->second;
+    if (numbers.size() > kMostParts) std::fill(parts.begin(), parts.end(), 0U);
+    return parts;
+}
+
 bool closedOutwards(const TriangleMesh& mesh, const std::vector<HalfEdge>& edges) {
     bool closed = !edges.empty();
     forEachSharedEdge(edges, [&](auto first, auto last) {
@@ -119,7 +144,12 @@ bool closedOutwards(const TriangleMesh& mesh, const std::vector<HalfEdge>& edges
 
 } // namespace
 
-SurfaceShading::SurfaceShading(const TriangleMesh& mesh, Angle crease) : meshVertexCount_(mesh.positions.size()) {
+SurfaceShading::SurfaceShading(const TriangleMesh& mesh, Angle crease, std::span<const std::uint32_t> parts)
+    : meshVertexCount_(mesh.positions.size()) {
+    if (!parts.empty() && parts.size() != mesh.positions.size())
+        throw InvalidInput("parts",
+                           "there is not one for each of the " + std::to_string(mesh.positions.size()) + " vertices",
+                           "give as many, or none");
     fine_.triangles.resize(mesh.triangles.size());
     requireVertices(mesh);
     const std::vector<HalfEdge> edges = halfEdgesOf(mesh, firstAtPlace(mesh.positions));
@@ -143,13 +173,16 @@ SurfaceShading::SurfaceShading(const TriangleMesh& mesh, Angle crease) : meshVer
         fine_.triangles[corner / 3][static_cast<int>(corner % 3)] =
             static_cast<std::uint32_t>(fine_.sources.size() - 1);
     }
-    addCoarseForm(mesh.positions);
+    if (mesh.triangles.size() > kCoarseTriangles) addCoarseForm(mesh.positions, partsOf(mesh, edges, parts));
 }
 
-void SurfaceShading::addCoarseForm(std::span<const glm::vec3> positions) {
+void SurfaceShading::addCoarseForm(std::span<const glm::vec3> positions, std::span<const std::uint32_t> parts) {
     std::vector<ShadedMesh::Vertex> vertices(fine_.sources.size());
     shade(positions, vertices);
-    CoarseSurface coarse = coarseSurface(vertices, fine_.triangles, kCoarseTriangles);
+    std::vector<std::uint32_t> partOfDrawn;
+    partOfDrawn.reserve(vertices.size());
+    for (const std::uint32_t source : fine_.sources) partOfDrawn.push_back(parts[source]);
+    CoarseSurface coarse = coarseSurface(vertices, partOfDrawn, fine_.triangles, kCoarseTriangles);
     coarse_.triangles = std::move(coarse.triangles);
     for (const std::uint32_t vertex : coarse.vertices) coarse_.sources.push_back(fine_.sources[vertex]);
     coarse_.leaders.resize(coarse_.sources.size());

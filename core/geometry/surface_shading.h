@@ -17,9 +17,11 @@ namespace lumorph {
 /// threads.
 class SurfaceShading {
 public:
-    /// Smooth where neighbouring faces meet at less than `crease` in `mesh`, as `shade` does it. Throws
-    /// InvalidInput for an index beyond the positions.
-    SurfaceShading(const TriangleMesh& mesh, Angle crease);
+    /// Smooth where neighbouring faces meet at less than `crease` in `mesh`, as `shade` does it. `parts` says what
+    /// moves as one, a number a vertex of the mesh, or is empty: the coarse form keeps such parts apart, as it does
+    /// pieces of the mesh that share no edge. Throws InvalidInput for an index beyond the positions, and for parts that
+    /// are not as many as these.
+    SurfaceShading(const TriangleMesh& mesh, Angle crease, std::span<const std::uint32_t> parts = {});
 
     /// The surface itself, or a form of at most some ten thousand triangles for pictures in motion. The two are one
     /// where the triangles are few.
@@ -54,7 +56,7 @@ private:
     [[nodiscard]] const Form& form(Detail detail) const noexcept {
         return detail == Detail::coarse && hasCoarse() ? coarse_ : fine_;
     }
-    void addCoarseForm(std::span<const glm::vec3> positions);
+    void addCoarseForm(std::span<const glm::vec3> positions, std::span<const std::uint32_t> parts);
 
     Form fine_;
     Form coarse_; // empty: the triangles are few

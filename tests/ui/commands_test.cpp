@@ -69,6 +69,40 @@ TEST_F(CommandsTest, LettersInOrderFindACommandAndTheBestIsFirst) {
     EXPECT_TRUE(found("xyz").isEmpty());
 }
 
+TEST_F(CommandsTest, OtherWordsForThemFindThem) {
+    add("settings", "&Settings...", "Edit", {});
+    add("loop.stop", "STOP: hold every actuator", "Rig", {});
+    EXPECT_EQ(found("preferences").first(), "settings");
+    EXPECT_EQ(found("panic"), QStringList("loop.stop"));
+    EXPECT_EQ(found("screenshot"), QStringList("export.picture"));
+    EXPECT_EQ(found("load").first(), "file.open");
+    EXPECT_EQ(found("open").first(), "file.open") << "its own name comes first";
+    EXPECT_TRUE(found("preferred").isEmpty());
+}
+
+TEST_F(CommandsTest, ThePaletteFindsThingsAndChoosesThemInTheirWorkspace) {
+    QStringList chosen;
+    commands.addFinder([&chosen] {
+        return std::vector<Findable>{
+            {"Buoy", "Sphere", "sphere", "scene", [&chosen] { chosen << "buoy"; }},
+            {"Dunes", "Target", "target", "field", [&chosen] { chosen << "dunes"; }},
+        };
+    });
+    QObject::connect(&commands, &studio::Commands::workspaceWanted, &window,
+                     [&chosen](const QString& id) { chosen << "show " + id; });
+    toggleCommandPalette(window, commands);
+    EXPECT_EQ(list()->model()->rowCount(), 5) << "without words it lists what can be done";
+    QTest::keyClicks(input(), "buoy");
+    EXPECT_EQ(shown(0), "Buoy");
+    QTest::keyClick(input(), Qt::Key_Return);
+    EXPECT_EQ(chosen, QStringList({"show scene", "buoy"}));
+    EXPECT_TRUE(ran.isEmpty());
+    QCoreApplication::sendPostedEvents(nullptr, QEvent::DeferredDelete);
+    toggleCommandPalette(window, commands);
+    QTest::keyClicks(input(), "target dun"); // by what it is, too
+    EXPECT_EQ(shown(0), "Dunes");
+}
+
 TEST_F(CommandsTest, OutOfSightAreNotFound) {
     commands.find("view.full")->setVisible(false);
     EXPECT_TRUE(found("full screen").isEmpty());

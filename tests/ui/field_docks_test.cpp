@@ -1,5 +1,6 @@
 #include <cstdlib>
 #include <memory>
+#include <optional>
 
 #include <QApplication>
 #include <QLabel>
@@ -11,6 +12,7 @@
 #include "app/workspaces/field/actuator_dock.h"
 #include "app/workspaces/field/actuator_grid.h"
 #include "app/workspaces/field/actuator_scale.h"
+#include "app/workspaces/field/error_curves.h"
 #include "app/workspaces/field/field_commands.h"
 #include "app/workspaces/field/level_slider.h"
 #include "app/workspaces/field/match_dock.h"
@@ -176,6 +178,69 @@ TEST_F(FieldDocks, MatchShowsTheNumbersOfTheFrameAndSwitchesTheMethod) {
     EXPECT_FALSE(refined->isChecked());
     QTest::mouseClick(voting, Qt::LeftButton);
     EXPECT_TRUE(voting->isChecked()) << "a second click changes nothing";
+    EXPECT_EQ(studio_.document.undoStack().count(), 1);
+}
+
+TEST_F(FieldDocks, TheFirstActuatorWithACurveIsChosenUntilTheUserDoes) {
+    useTarget();
+    // Only the last of three lifters is near the target, so that the first ones have no curve.
+    StudioState state = studio_.document.state();
+    const auto& field = *state.field.field;
+    std::optional<std::size_t> first;
+    for (float x = 0.02F; x < 0.3F && !(first && *first > 0); x += 0.005F) {
+        state.placement.translation.x = x;
+        const Target target{placed(state.target.target->solid.mesh, state.placement), true, {}};
+        SolidVoxelizer voxelizer;
+        BitColumns goal;
+        voxelizeTarget(field.field.frame, target, voxelizer, goal);
+        const Votes votes = field.voting.match(goal);
+        first.reset();
+        for (std::size_t i = votes.actuators.size(); i-- > 0;)
+            if (votes.actuators[i].reached) first = i;
+    }
+    ASSERT_TRUE(first && *first > 0) << "no place of the target leaves the first actuator out";
+    studio_.document.reset(state, {});
+    std::unique_ptr<QWidget> dock(makeMatchDock(studio_, numbers_));
+    dock->show();
+    auto* table = find<QTreeView>(*dock, "match.actuators");
+    EXPECT_TRUE(test::eventually([&] {
+        numbers_.request();
+        return table->currentIndex().row() == static_cast<int>(*first);
+    })) << table->currentIndex().row();
+    table->setCurrentIndex(table->model()->index(0, 0)); // the user may look at it all the same
+    test::pass(std::chrono::milliseconds(200));
+    EXPECT_EQ(table->currentIndex().row(), 0);
+}
+
+TEST_F(FieldDocks, DraggingInAnErrorCurveTriesALevelAndLetsGo) {
+    useTarget();
+    std::unique_ptr<QWidget> dock(makeMatchDock(studio_, numbers_));
+    dock->resize(320, 900);
+    dock->show();
+    ASSERT_TRUE(matched());
+    auto* curves = find<ErrorCurves>(*dock, "match.curves");
+    std::size_t reached = 0;
+    for (const auto& votes = studio_.loop.frame()->votes->actuators; !votes[reached].reached;) ++reached;
+    const int at = static_cast<int>(reached);
+    ASSERT_TRUE(test::eventually([&] {
+        numbers_.request();
+        return curves->isVisible() && curves->current() == at;
+    }));
+    const StudioState before = studio_.document.state();
+    const auto pixel = [&](int level) { return QPoint(curves->xOf(at, level), curves->cellOf(at).center().y()); };
+    QTest::mousePress(curves, Qt::LeftButton, {}, pixel(2));
+    EXPECT_TRUE(studio_.document.state().matching.live) << "a click moves nothing";
+    for (const int level : {3, 4, 6}) QTest::mouseMove(curves, pixel(level));
+    EXPECT_TRUE(curves->trying());
+    EXPECT_FALSE(studio_.document.state().matching.live);
+    EXPECT_DOUBLE_EQ(studio_.document.state().strokes[reached], 6.0 / 8.0); // of 9 levels
+    QTest::mouseRelease(curves, Qt::LeftButton, {}, pixel(6));
+    EXPECT_TRUE(studio_.document.state().matching.live) << "the match goes on";
+    EXPECT_EQ(studio_.document.state().strokes, before.strokes);
+    EXPECT_EQ(studio_.document.undoStack().count(), 0);
+
+    QTest::mouseDClick(curves, Qt::LeftButton, {}, pixel(4));
+    EXPECT_DOUBLE_EQ(studio_.document.state().strokes[reached], 4.0 / 8.0);
     EXPECT_EQ(studio_.document.undoStack().count(), 1);
 }
 

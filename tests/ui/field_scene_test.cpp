@@ -10,7 +10,9 @@
 #include <gtest/gtest.h>
 
 #include "app/workspaces/common/field_cloud.h"
+#include "core/base/resources.h"
 #include "core/mdf/builder.h"
+#include "core/rig/rig_file.h"
 #include "tests/support/small_rigs.h"
 
 namespace lumorph::studio {
@@ -99,6 +101,36 @@ TEST_F(FieldScene, ShowsDeviceAsPaperAndTargetSeeThroughWhereTheFrameSays) {
     FieldDisplay hidden;
     hidden.showTarget = false;
     EXPECT_FALSE(surfaceOf(*builder.build(frame, hidden, false), kTargetId));
+}
+
+// In motion the pins of the pin display, which are one mesh with its plate, must not be seen as walls.
+TEST_F(FieldScene, TheCoarseFormKeepsRigidPartsApart) {
+    const auto rig = std::make_shared<const Rig>(readRig(resourceFile("models/pin_display.glb")));
+    MatchFrame frame;
+    frame.rig = rig;
+    frame.devicePositions = std::make_shared<std::vector<glm::vec3>>(rig->restMesh().positions);
+    frame.wantedStrokes.assign(rig->actuatorCount(), 0.0);
+    frame.estimatedStrokes = frame.wantedStrokes;
+    const auto scene = builder.build(frame, {}, false);
+    const ViewportSurface* device = surfaceOf(*scene, kDeviceId);
+    ASSERT_NE(device, nullptr);
+    constexpr auto kCoarse = SurfaceShading::Detail::coarse;
+    ASSERT_TRUE(device->shading->hasCoarse());
+
+    std::vector<double> strokes(rig->actuatorCount(), 0.0);
+    for (std::size_t i = 0; i < strokes.size(); ++i) strokes[i] = (i + i / 30) % 2 == 0 ? 1.0 : 0.0; // a chessboard
+    std::vector<glm::vec3> moved(rig->restMesh().positions.size());
+    rig->deform(strokes, moved);
+    double raised = 0.0; // square metres that look up
+    for (const glm::uvec3& t : device->shading->triangles(kCoarse)) {
+        const auto at = [&](int k) { return moved[device->shading->sources(kCoarse)[t[k]]]; };
+        const glm::vec3 a = at(0), b = at(1), c = at(2);
+        if (std::min({a.y, b.y, c.y}) < 0.08F) continue;
+        EXPECT_LT(std::max({a.x, b.x, c.x}) - std::min({a.x, b.x, c.x}), 0.0048F) << "wider than a pin";
+        EXPECT_LT(std::max({a.z, b.z, c.z}) - std::min({a.z, b.z, c.z}), 0.0048F) << "wider than a pin";
+        raised += 0.5 * std::max(0.0F, glm::cross(b - a, c - a).y);
+    }
+    EXPECT_NEAR(raised, 450 * 0.0047 * 0.0047, 1e-5) << "the tops of the pins that rose";
 }
 
 TEST_F(FieldScene, BoundsHoldFrameAndTargetAndDoNotFollowTheMotion) {

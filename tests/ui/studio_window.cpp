@@ -42,8 +42,10 @@ StudioWindow::StudioWindow(const std::filesystem::path& session, const QString& 
     const bool again = std::filesystem::exists(session);
     ::setenv("LUMORPH_SESSION", session.c_str(), 1);
     // A test begins in the virtual lab, whatever room the one before left.
-    if (!again || std::filesystem::is_empty(session))
+    if (!again || std::filesystem::is_empty(session)) {
         std::filesystem::remove_all(studio::Settings().folder() / "installation");
+        for (const char* view : {"camera/field", "camera/rig"}) studio::Settings().setValue(view, {});
+    }
     studio_ = std::make_unique<studio::Studio>();
     studio_->settings.setTourSeen(true);
     window_ = std::make_unique<studio::MainWindow>(*studio_, studio::makeWorkspaces(*studio_));

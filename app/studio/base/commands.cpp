@@ -23,6 +23,20 @@ QAction* Commands::add(const QString& id, const QString& text, const Options& op
     return action;
 }
 
+void Commands::addFinder(std::function<std::vector<Findable>()> find) { finders_.push_back(std::move(find)); }
+
+std::vector<Findable> Commands::findables() const {
+    std::vector<Findable> all;
+    for (const auto& find : finders_)
+        for (Findable& one : find()) all.push_back(std::move(one));
+    return all;
+}
+
+void Commands::choose(const Findable& found) {
+    if (!found.workspace.isEmpty()) emit workspaceWanted(found.workspace);
+    if (found.choose) found.choose();
+}
+
 QAction* Commands::find(const QString& id) const {
     for (const Entry& entry : entries_)
         if (entry.action->objectName() == id) return entry.action;

@@ -10,6 +10,15 @@
 
 namespace lumorph::studio {
 
+/// Something that can be found by its name beside commands: an object of the scene, a rig, a target.
+struct Findable {
+    QString title;
+    QString kind;      ///< what it is, in a word: "Target"
+    QString icon;      ///< may be empty
+    QString workspace; ///< id of the one in which it is seen; empty: any
+    std::function<void()> choose;
+};
+
 /// Everything the user can do, by name: menus, shortcuts and the command palette show these.
 class Commands : public QObject {
     Q_OBJECT
@@ -33,11 +42,20 @@ public:
     };
     [[nodiscard]] const std::vector<Entry>& all() const noexcept { return entries_; }
 
+    /// `find` is asked at each search; what it tells of may change. It lives as long as this does.
+    void addFinder(std::function<std::vector<Findable>()> find);
+    /// All that the finders know now, in the order in which they were added.
+    [[nodiscard]] std::vector<Findable> findables() const;
+    /// Shows the workspace of what was found, and chooses it there.
+    void choose(const Findable& found);
+
 signals:
     void added(QAction* action);
+    void workspaceWanted(const QString& id);
 
 private:
     std::vector<Entry> entries_;
+    std::vector<std::function<std::vector<Findable>()>> finders_;
 };
 
 } // namespace lumorph::studio

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <new>
+#include <set>
 
 #include "core/base/error.h"
 
@@ -51,7 +52,13 @@ void Notices::dismiss(const QString& place, const QString& subject) {
 
 void Notices::dismissAll(const QString& place) {
     const QString at = place;
-    if (std::erase_if(entries_, [&](const Entry& e) { return e.place == at; }) > 0) emit changed(at);
+    std::set<QString> places;
+    std::erase_if(entries_, [&](const Entry& e) {
+        const bool goes = at.isEmpty() || e.place == at;
+        if (goes) places.insert(e.place);
+        return goes;
+    });
+    for (const QString& changedPlace : places) emit changed(changedPlace);
 }
 
 std::vector<Notice> Notices::at(const QString& place) const {

@@ -36,7 +36,8 @@ public:
     /// Replaces the notice of that place that is about the same subject, if there is one.
     void post(const QString& place, Notice notice);
     void dismiss(const QString& place, const QString& subject);
-    void dismissAll(const QString& place);
+    /// Of one place; of all when empty.
+    void dismissAll(const QString& place = {});
     /// Of one place, newest first; all places when empty.
     [[nodiscard]] std::vector<Notice> at(const QString& place = {}) const;
 

@@ -288,6 +288,7 @@ void ProjectService::removeTarget() {
 void ProjectService::buildField(const BuildOptions& options) { data_->building.build(options, true); }
 void ProjectService::fit() { data_->placing.fit(); }
 void ProjectService::autoPlace() { data_->placing.autoPlace(); }
+bool ProjectService::autoPlaced() const { return data_->placing.autoPlaced(); }
 void ProjectService::relink(const std::string& asset, const std::filesystem::path& file) {
     data_->scene.relink(asset, file);
 }

@@ -74,9 +74,16 @@ void TargetPlacing::autoPlace() {
         },
         [this, target, field](const AutoPlacement& found) {
             if (document_.state().target.target != target.target || document_.state().field.field != field) return;
+            placed_ = {target.target, field, found.placement};
             document_.change(tr("Auto-place target"), [&](StudioState& state) { state.placement = found.placement; });
         },
         {{tr("Fit"), [this] { fit(); }}});
+}
+
+bool TargetPlacing::autoPlaced() const {
+    const StudioState& state = document_.state();
+    return placed_.target && placed_.target == state.target.target && placed_.field == state.field.field &&
+           placed_.placement == state.placement;
 }
 
 void TargetPlacing::placeNew() {
@@ -97,7 +104,9 @@ void TargetPlacing::placeNew() {
         [this, target = target, placement = placement, field, what](const AutoPlacement& found) {
             const StudioState& now = document_.state();
             if (now.target.target != target || now.placement != placement || now.field.field != field) return;
-            if (!document_.previewing() && found.iou > found.iouAtFit) glideTo(found.placement, what);
+            const bool better = found.iou > found.iouAtFit;
+            placed_ = {target, field, better ? found.placement : now.placement};
+            if (!document_.previewing() && better) glideTo(found.placement, what);
         },
         [](const std::exception&) {}); // nobody asked for it, and it stays where it fits
 }

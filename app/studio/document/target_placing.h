@@ -16,6 +16,8 @@ public:
     void setPlacesNewTargets(bool places) { placesNewTargets_ = places; }
     void fit();
     void autoPlace();
+    /// The target stands where auto-place put it, by the field that there is: again would change nothing.
+    [[nodiscard]] bool autoPlaced() const;
     /// The document's target was just opened and stands where it fits; it is placed better as soon as there is a field.
     void expect();
 
@@ -39,6 +41,13 @@ private:
     Notices& notices_;
     bool placesNewTargets_ = false;
     Unplaced unplaced_;
+    /// What auto-place found last.
+    struct Placed {
+        std::shared_ptr<const MatchTarget> target;
+        std::shared_ptr<const MatchField> field;
+        Placement placement;
+    };
+    Placed placed_;
 };
 
 } // namespace lumorph::studio

@@ -26,40 +26,41 @@ class CommandList : public QAbstractListModel {
 public:
     using QAbstractListModel::QAbstractListModel;
 
-    void set(std::vector<Commands::Entry> entries) {
+    void set(std::vector<Found> entries) {
         beginResetModel();
         entries_ = std::move(entries);
         endResetModel();
     }
-    [[nodiscard]] QAction* at(const QModelIndex& index) const {
-        return index.isValid() ? entries_[static_cast<std::size_t>(index.row())].action : nullptr;
+    [[nodiscard]] const Found& at(const QModelIndex& index) const {
+        return entries_[static_cast<std::size_t>(index.row())];
     }
     [[nodiscard]] int rowCount(const QModelIndex& parent = {}) const override {
         return parent.isValid() ? 0 : static_cast<int>(entries_.size());
     }
     [[nodiscard]] QVariant data(const QModelIndex& index, int role) const override {
-        const auto& entry = entries_[static_cast<std::size_t>(index.row())];
+        const auto& [action, menu, thing] = at(index);
         switch (role) {
         case Qt::DisplayRole:
-            return commandTitle(*entry.action);
+            return action ? commandTitle(*action) : thing.title;
         case Qt::DecorationRole:
-            return entry.action->icon();
-        case Qt::CheckStateRole:
-            return {};
+            if (!action && thing.icon.isEmpty()) return {};
+            return action ? action->icon() : icon(thing.icon);
         case kShortcut:
-            return entry.action->shortcut().toString(QKeySequence::NativeText);
+            return action ? action->shortcut().toString(QKeySequence::NativeText) : QString();
         case kMenu:
-            return entry.options.menu;
+            return action ? menu : thing.kind;
         default:
             return {};
         }
     }
     [[nodiscard]] Qt::ItemFlags flags(const QModelIndex& index) const override {
-        return at(index)->isEnabled() ? Qt::ItemIsEnabled | Qt::ItemIsSelectable : Qt::ItemFlags(Qt::ItemIsSelectable);
+        const QAction* action = at(index).action;
+        return !action || action->isEnabled() ? Qt::ItemIsEnabled | Qt::ItemIsSelectable
+                                              : Qt::ItemFlags(Qt::ItemIsSelectable);
     }
 
 private:
-    std::vector<Commands::Entry> entries_;
+    std::vector<Found> entries_;
 };
 
 class CommandDelegate : public QStyledItemDelegate {
@@ -131,7 +132,7 @@ private:
         column->setSpacing(8);
         input_ = new QLineEdit(card_);
         input_->setObjectName("palette.input");
-        input_->setPlaceholderText("Type what you want to do");
+        input_->setPlaceholderText("Type what you want to do, or the name of a thing");
         input_->addAction(icon("search", IconRole::muted), QLineEdit::LeadingPosition);
         input_->setProperty("look", "large");
         list_ = new QListView(card_);
@@ -147,7 +148,7 @@ private:
     }
 
     void find(const QString& typed) {
-        model_.set(searchCommands(commands_, typed));
+        model_.set(searchAll(commands_, typed));
         for (int row = 0; row < model_.rowCount(); ++row)
             if (model_.flags(model_.index(row)).testFlag(Qt::ItemIsEnabled)) {
                 list_->setCurrentIndex(model_.index(row));
@@ -189,10 +190,18 @@ private:
     }
 
     void run(const QModelIndex& index) {
-        const QPointer<QAction> action = model_.at(index);
-        if (!action || !action->isEnabled()) return;
+        if (!index.isValid()) return;
+        const Found found = model_.at(index);
+        if (!found.action) {
+            Commands& commands = commands_; // this goes
+            leave();
+            commands.choose(found.thing);
+            return;
+        }
+        const QPointer<QAction> action = found.action;
+        if (!action->isEnabled()) return;
         leave();
-        action->trigger();
+        if (action) action->trigger();
     }
 
     Commands& commands_;

@@ -6,8 +6,8 @@
 
 namespace lumorph::studio {
 
-/// Shows the command palette over a window: type to find a command, Enter runs it, Esc or a click beside it closes it.
-/// One that is open is closed instead.
+/// Shows the command palette over a window: type to find a command or a thing, Enter runs or chooses it, Esc or a click
+/// beside it closes it. One that is open is closed instead.
 void toggleCommandPalette(QWidget& window, Commands& commands);
 
 } // namespace lumorph::studio

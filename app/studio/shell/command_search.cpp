@@ -8,6 +8,53 @@ namespace {
 constexpr double kLetter = 1.0, kWordStart = 4.0, kNextToEachOther = 3.0, kFromTheStart = 3.0, kPerLetterLeft = 0.02;
 constexpr double kWorthShowing = 0.4; ///< of the best score; less is letters found by chance
 
+constexpr double kByMenu = 0.6, kByOtherWord = 0.7, kByKind = 0.6;
+
+/// What else a command may be called by someone who looks for it.
+struct OtherWords {
+    const char* id;
+    const char* words;
+};
+constexpr OtherWords kOtherWords[] = {
+    {"file.new", "create empty begin"},
+    {"file.open", "load import file rig model mesh"},
+    {"file.save", "store keep"},
+    {"file.quit", "exit close leave"},
+    {"edit.undo", "revert take back"},
+    {"edit.redo", "repeat again"},
+    {"settings", "preferences options configuration"},
+    {"view.theme", "dark mode bright mode appearance colours colors"},
+    {"view.fullScreen", "maximise maximize presentation fullscreen"},
+    {"view.resetLayout", "restore docks panels windows"},
+    {"loop.stop", "halt emergency panic freeze"},
+    {"loop.resume", "continue go on"},
+    {"help.shortcuts", "hotkeys keys bindings manual"},
+    {"help.tour", "introduction tutorial guide"},
+    {"help.about", "version licence license"},
+    {"target.open", "load import shape model mesh"},
+    {"target.remove", "delete clear"},
+    {"target.fit", "scale size centre center"},
+    {"target.autoPlace", "optimise optimize best position align"},
+    {"target.spin", "rotate turn"},
+    {"target.play", "animation pause"},
+    {"rig.open", "load import device"},
+    {"rig.rest", "home zero neutral flat reset pose"},
+    {"rig.random", "shuffle"},
+    {"rig.dance", "animate demo wiggle"},
+    {"match.live", "follow track drive"},
+    {"match.refined", "optimise optimize accurate"},
+    {"match.voting", "equation fast"},
+    {"field.build", "mdf voxels distance compute calculate"},
+    {"export.picture", "screenshot image snapshot photo"},
+    {"export.turntable", "film movie animation"},
+    {"record.start", "capture log film video"},
+    {"output.identify", "beamer number which"},
+    {"output.close", "beamer blank off"},
+    {"device.connect", "attach plug usb arduino board servo"},
+    {"device.start", "enable motors power on"},
+    {"device.release", "disable motors limp power off detach"},
+};
+
 bool startsWord(const QString& text, qsizetype at) { return at == 0 || !text[at - 1].isLetterOrNumber(); }
 
 } // namespace
@@ -48,25 +95,63 @@ QString commandTitle(const QAction& action) {
     return title.trimmed();
 }
 
+namespace {
+
+/// Each typed word begins one of the other words: letters that are scattered over a long list say nothing.
+bool isOtherWord(const QString& typed, const QString& id) {
+    const auto entry = std::ranges::find(kOtherWords, id, [](const OtherWords& one) { return QString(one.id); });
+    const QStringList words = typed.simplified().toCaseFolded().split(' ', Qt::SkipEmptyParts);
+    if (entry == std::end(kOtherWords) || words.isEmpty()) return false;
+    const QStringList others = QString(entry->words).split(' ');
+    return std::ranges::all_of(words, [&](const QString& word) {
+        return word.size() > 1 &&
+               std::ranges::any_of(others, [&](const QString& other) { return other.startsWith(word); });
+    });
+}
+
+std::optional<double> scoreOf(const Commands::Entry& entry, const QString& typed) {
+    if (!entry.action->isVisible()) return std::nullopt;
+    auto score = searchScore(typed, commandTitle(*entry.action));
+    // The menu's name finds its commands too, behind those that are called so.
+    if (const auto inMenu = searchScore(typed, entry.options.menu + ' ' + commandTitle(*entry.action)))
+        score = std::max(score.value_or(0.0), *inMenu * kByMenu);
+    if (isOtherWord(typed, entry.action->objectName()))
+        score = std::max(score.value_or(0.0), searchScore(typed, typed).value_or(0.0) * kByOtherWord);
+    return score;
+}
+
+std::optional<double> scoreOf(const Findable& thing, const QString& typed) {
+    auto score = searchScore(typed, thing.title);
+    if (const auto byKind = searchScore(typed, thing.kind + ' ' + thing.title))
+        score = std::max(score.value_or(0.0), *byKind * kByKind);
+    return score;
+}
+
+template <class Entry> std::vector<Entry> bestFirst(std::vector<std::pair<double, Entry>> found) {
+    std::ranges::stable_sort(found, [](const auto& a, const auto& b) { return a.first > b.first; });
+    std::vector<Entry> entries;
+    for (auto& [score, entry] : found)
+        if (score >= found.front().first * kWorthShowing) entries.push_back(std::move(entry));
+    return entries;
+}
+
+} // namespace
+
+std::vector<Found> searchAll(const Commands& commands, const QString& typed) {
+    std::vector<std::pair<double, Found>> found;
+    for (const Commands::Entry& entry : commands.all())
+        if (const auto score = scoreOf(entry, typed)) found.push_back({*score, {entry.action, entry.options.menu, {}}});
+    if (!typed.trimmed().isEmpty())
+        for (Findable& thing : commands.findables())
+            if (const auto score = scoreOf(thing, typed)) found.push_back({*score, {nullptr, {}, std::move(thing)}});
+    return bestFirst(std::move(found));
+}
+
 std::vector<Commands::Entry> searchCommands(const Commands& commands, const QString& typed) {
     std::vector<std::pair<double, Commands::Entry>> found;
-    for (const Commands::Entry& entry : commands.all()) {
-        if (!entry.action->isVisible()) continue;
-        auto score = searchScore(typed, commandTitle(*entry.action));
-        // The menu's name finds its commands too, behind those that are called so.
-        if (const auto inMenu = searchScore(typed, entry.options.menu + ' ' + commandTitle(*entry.action)))
-            score = std::max(score.value_or(0.0), *inMenu * 0.6);
-        if (score) found.emplace_back(*score, entry);
-    }
-    std::stable_sort(found.begin(), found.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
-    if (!found.empty()) {
-        const double worst = found.front().first * kWorthShowing;
-        std::erase_if(found, [worst](const auto& one) { return one.first < worst; });
-    }
-    std::vector<Commands::Entry> entries;
-    entries.reserve(found.size());
-    for (auto& [score, entry] : found) entries.push_back(std::move(entry));
-    return entries;
+    for (const Commands::Entry& entry : commands.all())
+        if (const auto score = scoreOf(entry, typed)) found.emplace_back(*score, entry);
+    return bestFirst(std::move(found));
 }
 
 } // namespace lumorph::studio

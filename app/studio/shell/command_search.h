@@ -16,7 +16,17 @@ namespace lumorph::studio {
 /// What a command is called in lists: without mnemonic and dots.
 [[nodiscard]] QString commandTitle(const QAction& action);
 
-/// Commands that can be seen now and fit what is typed, best first; of equal ones in the order they were added.
+/// Commands that can be seen now and fit what is typed, by their names, their menus or other words for them, best
+/// first; of equal ones in the order they were added.
 [[nodiscard]] std::vector<Commands::Entry> searchCommands(const Commands& commands, const QString& typed);
+
+/// A command, or something else that has a name.
+struct Found {
+    QAction* action = nullptr; ///< null: it is `thing`
+    QString menu;              ///< of the command
+    Findable thing;
+};
+/// Both in one order. Where nothing is typed only commands are listed.
+[[nodiscard]] std::vector<Found> searchAll(const Commands& commands, const QString& typed);
 
 } // namespace lumorph::studio

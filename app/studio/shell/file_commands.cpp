@@ -13,6 +13,7 @@
 
 #include "app/studio/look/icons.h"
 #include "app/studio/shell/record_commands.h"
+#include "app/studio/widgets/bundled_shelf.h"
 
 namespace lumorph::studio {
 namespace {
@@ -62,6 +63,11 @@ void openWithDialog(Studio& studio, QWidget& window) {
         studio.settings.setValue("files/folder", QFileInfo(file).absolutePath());
         studio.project.open(pathOf(file));
     });
+    addBundledShelf(*dialog, "Rigs that come with Lumorph", bundledRigs(),
+                    [&studio](const std::filesystem::path& file) { studio.project.openRig(file); });
+    addBundledShelf(*dialog, "Targets that come with Lumorph", bundledTargets(),
+                    [&studio](const std::filesystem::path& file) { studio.project.openTarget(file); });
+    dialog->resize(QSize(860, 760).boundedTo(window.size() * 0.95));
     dialog->show();
 }
 

@@ -5,6 +5,7 @@
 
 #include <QApplication>
 #include <QCloseEvent>
+#include <QDialog>
 #include <QDropEvent>
 #include <QMenu>
 #include <QScreen>
@@ -15,6 +16,7 @@
 #include "app/studio/look/icons.h"
 #include "app/studio/look/palette.h"
 #include "app/studio/shell/command_palette.h"
+#include "app/studio/shell/dialog_fit.h"
 #include "app/studio/shell/drop_overlay.h"
 #include "app/studio/shell/escape_twice.h"
 #include "app/studio/shell/file_commands.h"
@@ -94,6 +96,7 @@ MainWindow::MainWindow(Studio& studio, std::vector<std::unique_ptr<Workspace>> w
     setContextMenuPolicy(Qt::NoContextMenu);
     setMinimumSize(640, 400);
     connect(&studio.commands, &Commands::added, this, &MainWindow::joinMenu);
+    connect(&studio.commands, &Commands::workspaceWanted, this, &MainWindow::showWorkspace);
     addCommands();
     data_->bar = new TopBar(studio, data_->workspaces, this);
     addMenus();
@@ -332,6 +335,9 @@ void MainWindow::changeEvent(QEvent* event) {
 /// Fields inside the window would take a dropped file as text; files are the window's, wherever they are dropped.
 bool MainWindow::eventFilter(QObject* watched, QEvent* event) {
     const auto type = event->type();
+    if (type == QEvent::Show)
+        if (auto* dialog = qobject_cast<QDialog*>(watched); dialog != nullptr && !event->spontaneous())
+            fitDialog(*dialog);
     if (type != QEvent::DragEnter && type != QEvent::DragMove && type != QEvent::DragLeave && type != QEvent::Drop)
         return QMainWindow::eventFilter(watched, event);
     if (watched == this || !watched->isWidgetType() || !belongsTo(watched, this)) return false;

@@ -5,6 +5,7 @@
 #include <QKeyEvent>
 #include <QLabel>
 #include <QMouseEvent>
+#include <QPushButton>
 #include <QScrollArea>
 #include <QVBoxLayout>
 
@@ -84,6 +85,13 @@ private:
         auto* column = new QVBoxLayout(content);
         column->setContentsMargins(12, 12, 12, 12);
         column->setSpacing(8);
+        if (notices_.at().size() > 1) {
+            auto* all = new QPushButton("Dismiss all", content);
+            all->setObjectName("notices.dismissAll");
+            all->setToolTip("Takes all notices away; warnings of the match stay while they are true");
+            column->addWidget(all, 0, Qt::AlignRight);
+            connect(all, &QPushButton::clicked, this, [this] { notices_.dismissAll(); });
+        }
         for (const QString& place : places_)
             for (const Notice& notice : notices_.at(place))
                 column->addWidget(makeNoticeCard(notices_, place, notice, placeTitle(place), content));

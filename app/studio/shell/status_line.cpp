@@ -31,6 +31,25 @@ QLabel* addText(QHBoxLayout& row, const char* name, const QString& iconName, con
     return label;
 }
 
+/// While projectors show a test pattern instead of the scene: which, and a click ends it. Else nothing.
+QWidget* makePatternChip(ProjectorOutputs& outputs, QWidget* parent) {
+    auto* chip = new QPushButton(parent);
+    chip->setObjectName("status.pattern");
+    chip->setProperty("look", "status");
+    const auto show = [chip, &outputs] {
+        const TestPattern pattern = outputs.pattern();
+        chip->setVisible(pattern != TestPattern::none);
+        if (pattern == TestPattern::none) return;
+        chip->setIcon(icon("projector", IconRole::warning));
+        chip->setText("Test pattern: " + nameOf(pattern));
+        chip->setToolTip("The projectors show a test pattern, not the scene. Click to show the scene again.");
+    };
+    QObject::connect(&outputs, &ProjectorOutputs::changed, chip, show);
+    QObject::connect(chip, &QPushButton::clicked, &outputs, [&outputs] { outputs.setPattern(TestPattern::none); });
+    show();
+    return chip;
+}
+
 QString counted(int count, const QString& one) {
     return QString::number(count) + ' ' + one + (count == 1 ? QString() : QString("s"));
 }
@@ -52,6 +71,8 @@ StatusLine::StatusLine(Studio& studio, QWidget* parent)
                     "How often the device follows the target, and how long finding its levels takes", this);
     loop_->setMinimumWidth(64);
     row->addStretch(1);
+    row->addWidget(makePatternChip(studio.outputs, this));
+    row->addSpacing(16);
     row->addWidget(makeRecordChip(studio.recorder, studio.commands, this));
     row->addSpacing(16);
     row->addWidget(makeJobLine(studio.jobs, this));

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <functional>
 #include <future>
+#include <map>
+#include <span>
 #include <utility>
 
 #include "app/workspaces/common/field_cloud.h"
@@ -26,9 +28,21 @@ struct Shaped {
     Positions positions;
 };
 
-Shaped shapeOf(TriangleMesh mesh) {
+/// A number for each vertex: the same where the same actuators move it.
+std::vector<std::uint32_t> partsOf(const Rig& rig) {
+    std::map<std::vector<std::uint16_t>, std::uint32_t> numbers;
+    std::vector<std::uint32_t> parts;
+    for (std::uint32_t vertex = 0; vertex < rig.restMesh().positions.size(); ++vertex) {
+        const auto moves = rig.actuatorsOf(vertex);
+        const auto number = static_cast<std::uint32_t>(numbers.size());
+        parts.push_back(numbers.try_emplace({moves.begin(), moves.end()}, number).first->second);
+    }
+    return parts;
+}
+
+Shaped shapeOf(TriangleMesh mesh, std::span<const std::uint32_t> parts = {}) {
     Shaped shaped;
-    shaped.shading = std::make_shared<SurfaceShading>(mesh, Angle::degrees(kCreaseDegrees));
+    shaped.shading = std::make_shared<SurfaceShading>(mesh, Angle::degrees(kCreaseDegrees), parts);
     shaped.positions = std::make_shared<std::vector<glm::vec3>>(std::move(mesh.positions));
     return shaped;
 }
@@ -143,7 +157,7 @@ void FieldSceneBuilder::Data::addDevice(ViewportScene& scene, const MatchFrame& 
     // Few edits of a rig touch its mesh, and looking whether one did takes less time than shading.
     if (!shadedRig || (shadedRig != frame.rig && !(shadedRig->restMesh() == rest))) shadedRig = frame.rig;
     const Shaped& shaped = deviceShape.of(shadedRig, !patient && rest.triangles.size() > kShadedAtOnce, false,
-                                          [rig = shadedRig] { return shapeOf(rig->restMesh()); });
+                                          [rig = shadedRig] { return shapeOf(rig->restMesh(), partsOf(*rig)); });
     if (!shaped.shading) return;
     ViewportSurface surface;
     surface.id = kDeviceId;

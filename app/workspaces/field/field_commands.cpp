@@ -11,6 +11,7 @@
 
 #include "app/studio/document/hand_control.h"
 #include "app/studio/look/icons.h"
+#include "app/studio/widgets/bundled_shelf.h"
 #include "app/workspaces/field/actuator_scale.h"
 #include "core/base/resources.h"
 
@@ -27,10 +28,18 @@ public:
     FieldCommands(Studio& studio, std::function<QWidget*()> parent)
         : QObject(&studio.commands), studio_(studio), parent_(std::move(parent)) {
         addTarget();
+        studio_.commands.addFinder([this] {
+            std::vector<Findable> found;
+            for (const BundledFile& one : bundledTargets())
+                found.push_back({one.title, "Target", "target", "field",
+                                 [this, file = one.file] { studio_.project.openTarget(file); }});
+            return found;
+        });
         addRig();
         addMatch();
         connect(&studio.document, &StudioDocument::changed, this, [this] { follow(); });
         connect(&studio.driver, &DriverControl::changed, this, [this] { follow(); });
+        connect(&studio.jobs, &Jobs::finished, this, [this] { follow(); });
         connect(&studio.project, &ProjectService::chooseFile, this, [this](const QString& place) {
             if (place == "target") openTarget();
         });
@@ -132,6 +141,8 @@ private:
             studio_.settings.setValue(kTargetFolder, QFileInfo(file).absolutePath());
             studio_.project.openTarget(std::filesystem::path(file.toStdU16String()));
         });
+        addBundledShelf(*dialog, "Targets that come with Lumorph", bundledTargets(),
+                        [this](const std::filesystem::path& file) { studio_.project.openTarget(file); });
         dialog->open();
     }
 
@@ -159,7 +170,11 @@ private:
         const bool field = static_cast<bool>(state.field.field);
         const bool rig = static_cast<bool>(state.rig.rig);
         for (QAction* action : {remove_, spin_}) action->setEnabled(target);
-        for (QAction* action : {fit_, autoPlace_}) action->setEnabled(target && field);
+        const bool placed = studio_.project.autoPlaced();
+        fit_->setEnabled(target && field);
+        autoPlace_->setEnabled(target && field && !placed);
+        autoPlace_->setToolTip(placed ? "The target stands where auto-place put it; it would change nothing"
+                                      : "Search the heading, size and place that match best (Ctrl+Shift+A)");
         for (QAction* action : {rest_, random_, dance_}) action->setEnabled(rig);
         play_->setEnabled(target && state.target.target->duration > 0.0);
         play_->setText(state.playback.playing ? "Pause" : "Play");

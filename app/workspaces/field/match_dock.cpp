@@ -12,7 +12,9 @@
 #include "app/studio/widgets/plot.h"
 #include "app/studio/widgets/throttle.h"
 #include "app/studio/widgets/value_field.h"
+#include "app/studio/document/hand_control.h"
 #include "app/workspaces/common/driver_hint.h"
+#include "app/workspaces/field/error_curves.h"
 #include "app/workspaces/field/match_numbers.h"
 #include "app/workspaces/field/vote_table.h"
 
@@ -22,6 +24,7 @@ namespace {
 
 constexpr int kRowHeight = 24;
 constexpr int kMostRowsShown = 8;
+constexpr std::size_t kMostCurves = 36; ///< more would be a wall of numbers
 /// A warning appears above the first share and goes below the second, so that it does not flicker.
 constexpr double kWarnAbove = 0.02, kWarnBelow = 0.01;
 
@@ -169,7 +172,10 @@ private:
         table_->header()->setSectionResizeMode(VoteModel::nameColumn, QHeaderView::Stretch);
         table_->header()->setSectionResizeMode(VoteModel::levelColumn, QHeaderView::Fixed);
         table_->header()->resizeSection(VoteModel::levelColumn, fontMetrics().horizontalAdvance("out of reach") + 24);
-        connect(table_->selectionModel(), &QItemSelectionModel::currentChanged, this, [this] { plotSelected(); });
+        connect(table_->selectionModel(), &QItemSelectionModel::currentChanged, this, [this] {
+            chosenByUser_ = chosenByUser_ || !preselecting_;
+            plotSelected();
+        });
         column_.layout->addWidget(table_);
 
         plot_ = new Plot(column_.widget);
@@ -180,6 +186,56 @@ private:
                           "actuator. The lowest point is its vote.");
         plot_->setEmptyText("No level of this actuator touches the target.");
         column_.layout->addWidget(plot_);
+        addCurves();
+    }
+
+    void addCurves() {
+        curvesHeading_ = makeHeading("Error by level", column_.widget);
+        column_.layout->addWidget(curvesHeading_);
+        curves_ = new ErrorCurves(column_.widget);
+        curves_->setObjectName("match.curves");
+        curves_->setAccessibleName("Error curves of all actuators; Shift and the arrow keys try levels");
+        column_.layout->addWidget(curves_);
+        const auto strokeOf = [this](int level) {
+            const auto& field = studio_.document.state().field.field;
+            return field ? level / static_cast<double>(std::max(1, field->field.levels - 1)) : 0.0;
+        };
+        connect(curves_, &ErrorCurves::chosen, this,
+                [this](int actuator) { table_->setCurrentIndex(model_->index(actuator, 0)); });
+        connect(curves_, &ErrorCurves::previewed, this, [this, strokeOf](int actuator, int level) {
+            hand_.preview(static_cast<std::size_t>(actuator), strokeOf(level));
+        });
+        connect(curves_, &ErrorCurves::letGo, this, [this] { hand_.cancel(); });
+        connect(curves_, &ErrorCurves::kept, this, [this, strokeOf](int actuator, int level) {
+            hand_.commit(static_cast<std::size_t>(actuator), strokeOf(level));
+        });
+    }
+
+    void showCurves(const MatchFrame& frame) {
+        const std::size_t count = frame.rig ? frame.rig->actuatorCount() : 0;
+        const bool shown = count > 0 && count <= kMostCurves;
+        curvesHeading_->setVisible(shown);
+        curves_->setVisible(shown);
+        if (!shown) return;
+        QStringList names;
+        for (const Actuator& actuator : frame.rig->actuators()) names << QString::fromStdString(actuator.name);
+        curves_->setNames(names);
+        if (frame.matched && frame.votes) curves_->setVotes(frame.votes->actuators, frame.wanted);
+        curves_->setCurrent(table_->currentIndex().row());
+    }
+
+    /// Until the user chooses, the first actuator that has a curve to show.
+    void preselect(const MatchFrame& frame) {
+        if (chosenByUser_ || curves_->trying() || !frame.matched || !frame.votes) return;
+        const auto& votes = frame.votes->actuators;
+        const int now = table_->currentIndex().row();
+        if (now >= 0 && static_cast<std::size_t>(now) < votes.size() && votes[static_cast<std::size_t>(now)].reached)
+            return;
+        const auto first = std::ranges::find_if(votes, &ActuatorVote::reached);
+        preselecting_ = true;
+        table_->setCurrentIndex(first == votes.end() ? QModelIndex()
+                                                     : model_->index(static_cast<int>(first - votes.begin()), 0));
+        preselecting_ = false;
     }
 
     void addTimes() {
@@ -205,7 +261,9 @@ private:
         numbers_->show(*frame, follows && state.matching.method == MatchMethod::refined);
         beyond_->show(frame->matched && !left ? frame->shareBeyondFrame : 0.0);
         unreachable_->show(frame->matched && !left ? frame->shareUnreachable : 0.0);
-        unreachable_->offerRemedy(beyond_->isHidden());
+        const bool helps = !studio_.project.autoPlaced(); // it is not offered where it just ran
+        beyond_->offerRemedy(helps);
+        unreachable_->offerRemedy(helps && beyond_->isHidden());
         budget_->setEnabled(state.matching.method == MatchMethod::refined);
         budget_->setValue(static_cast<double>(state.matching.budget.count()) / 1000.0);
         showActuators(frame);
@@ -219,8 +277,10 @@ private:
         if (rows != before || table_->height() <= kRowHeight)
             table_->setFixedHeight(table_->header()->sizeHint().height() + 4 +
                                    std::min(rows, kMostRowsShown) * std::max(kRowHeight, table_->sizeHintForRow(0)));
-        if (!table_->currentIndex().isValid() && rows > 0) table_->setCurrentIndex(model_->index(0, 0));
+        if (rows != before) chosenByUser_ = false;
+        preselect(*frame);
         plotSelected();
+        showCurves(*frame);
     }
 
     void plotSelected() {
@@ -265,6 +325,11 @@ private:
     VoteModel* model_ = nullptr;
     QTreeView* table_ = nullptr;
     Plot* plot_ = nullptr;
+    QWidget* curvesHeading_ = nullptr;
+    ErrorCurves* curves_ = nullptr;
+    HandControl hand_{studio_.document, studio_.loop};
+    bool chosenByUser_ = false;
+    bool preselecting_ = false;
     QLabel* times_ = nullptr;
 };
 

@@ -5,11 +5,13 @@
 #include <optional>
 #include <utility>
 
+#include <QApplication>
 #include <QElapsedTimer>
 #include <QFileDialog>
 #include <QPointer>
 
 #include "app/studio/viewport/viewport_widget.h"
+#include "app/studio/widgets/bundled_shelf.h"
 #include "app/workspaces/common/field_colors.h"
 #include "app/workspaces/common/kept_camera.h"
 #include "app/workspaces/rig/moved_part.h"
@@ -38,6 +40,7 @@ struct RigWorkspace::Data : public QObject {
     void listen();
     void addCommands();
     void openRig();
+    [[nodiscard]] std::vector<Findable> thingsToFind();
     void refresh();
     void select();
     void edited();
@@ -97,12 +100,33 @@ void RigWorkspace::Data::addCommands() {
 }
 
 void RigWorkspace::Data::openRig() {
-    const QString folder = studio.settings.value(kRigFolder).toString();
-    QWidget* parent = view ? view->window() : nullptr;
-    const QString file = QFileDialog::getOpenFileName(parent, "Open rig", folder, "Rigs (*.glb *.gltf);;All files (*)");
-    if (file.isEmpty()) return;
-    studio.settings.setValue(kRigFolder, QFileInfo(file).absolutePath());
-    studio.project.openRig(file.toStdString());
+    QWidget* parent = view ? view->window() : QApplication::activeWindow();
+    if (auto* open = parent ? parent->findChild<QFileDialog*>("dialog.rig") : nullptr) return open->raise();
+    auto* dialog = new QFileDialog(parent, "Open rig", studio.settings.value(kRigFolder).toString());
+    dialog->setObjectName("dialog.rig");
+    dialog->setOption(QFileDialog::DontUseNativeDialog);
+    dialog->setAttribute(Qt::WA_DeleteOnClose);
+    dialog->setFileMode(QFileDialog::ExistingFile);
+    dialog->setNameFilters({"Rigs (*.glb *.gltf)", "All files (*)"});
+    connect(dialog, &QFileDialog::fileSelected, this, [this](const QString& file) {
+        studio.settings.setValue(kRigFolder, QFileInfo(file).absolutePath());
+        studio.project.openRig(std::filesystem::path(file.toStdU16String()));
+    });
+    addBundledShelf(*dialog, "Rigs that come with Lumorph", bundledRigs(),
+                    [this](const std::filesystem::path& file) { studio.project.openRig(file); });
+    dialog->open();
+}
+
+/// Rigs that come with the program, and the actuators of the one that is open.
+std::vector<Findable> RigWorkspace::Data::thingsToFind() {
+    std::vector<Findable> found;
+    for (const BundledFile& one : bundledRigs())
+        found.push_back({one.title, "Rig", "rig", "rig", [this, file = one.file] { studio.project.openRig(file); }});
+    const auto& rig = studio.document.state().rig.rig;
+    for (std::size_t i = 0; rig && i < rig->actuatorCount(); ++i)
+        found.push_back({QString::fromStdString(rig->actuators()[i].name), "Actuator", "actuator", "rig",
+                         [this, i] { selection.select(i); }});
+    return found;
 }
 
 void RigWorkspace::Data::select() {
@@ -191,6 +215,7 @@ void RigWorkspace::Data::frameOnce(const ViewportScene& scene) {
 RigWorkspace::RigWorkspace(Studio& studio) : data_(std::make_unique<Data>(studio)) {
     data_->addCommands();
     data_->listen();
+    studio.commands.addFinder([data = data_.get()] { return data->thingsToFind(); });
 }
 
 RigWorkspace::~RigWorkspace() = default;

@@ -12,6 +12,7 @@
 #include "app/workspaces/scene/scene_central_view.h"
 #include "app/workspaces/scene/scene_commands.h"
 #include "app/workspaces/scene/scene_docks.h"
+#include "app/workspaces/scene/scene_words.h"
 #include "app/workspaces/scene/technique_commands.h"
 #include "core/scene/material_library.h"
 
@@ -29,6 +30,7 @@ bool endsWith(const std::filesystem::path& file, std::initializer_list<const cha
 struct SceneWorkspace::Data : public QObject {
     explicit Data(Studio& shared) : studio(shared) {}
 
+    [[nodiscard]] std::vector<Findable> thingsToFind();
     void takeModel(const std::filesystem::path& file);
     void takePicture(const std::filesystem::path& file);
     /// A material of the library that is dropped on the stage.
@@ -39,6 +41,28 @@ struct SceneWorkspace::Data : public QObject {
     QPointer<SceneCentralView> stage;
     bool active = false;
 };
+
+/// The scene's items, and what is always there.
+std::vector<Findable> SceneWorkspace::Data::thingsToFind() {
+    std::vector<Findable> found;
+    const auto add = [&](const QString& title, const QString& kind, const QString& icon, const SceneChoice& choice) {
+        found.push_back({title, kind, icon, "scene", [this, choice] { selection.choose(choice); }});
+    };
+    using Kind = SceneChoice::Kind;
+    const StudioState& state = studio.document.state();
+    if (state.scene)
+        for (const SceneItem& item : state.scene->items)
+            add(QString::fromStdString(item.name), kindWord(item), kindIcon(item), {Kind::item, item.id});
+    if (state.installation)
+        for (std::size_t i = 0; i < state.installation->projectors.size(); ++i)
+            add(QString::fromStdString(state.installation->projectors[i].name), tr("Projector"), "projector",
+                {Kind::projector, static_cast<int>(i)});
+    add(tr("Device"), tr("Setup"), "device", {Kind::device, 0});
+    add(tr("Table"), tr("Setup"), "table", {Kind::table, 0});
+    add(tr("Viewer"), tr("Setup"), "viewer", {Kind::viewer, 0});
+    add(tr("Room light"), tr("Setup"), "room", {Kind::room, 0});
+    return found;
+}
 
 /// It comes in as light alone, and may become what the servos follow.
 void SceneWorkspace::Data::takeModel(const std::filesystem::path& file) {
@@ -91,6 +115,7 @@ SceneWorkspace::SceneWorkspace(Studio& studio) : data_(std::make_unique<Data>(st
         return data_->stage ? data_->stage->window() : QApplication::activeWindow();
     });
     addTechniqueCommands(studio);
+    studio.commands.addFinder([data = data_.get()] { return data->thingsToFind(); });
 }
 
 SceneWorkspace::~SceneWorkspace() = default;

@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
+#include <utility>
+#include <vector>
 
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
@@ -70,6 +73,49 @@ TEST(SurfaceShading, ASlitMayOpen) {
 }
 
 constexpr auto kCoarse = SurfaceShading::Detail::coarse;
+
+/// `count` by `count` pins, 4 mm wide and 0.3 mm apart, each of `slices` rings, side by side in one mesh.
+TriangleMesh pinField(int count, std::uint32_t slices) {
+    TriangleMesh mesh;
+    for (int pin = 0; pin < count * count; ++pin) {
+        const auto first = static_cast<std::uint32_t>(mesh.positions.size());
+        for (std::uint32_t ring = 0; ring <= slices; ++ring)
+            for (const glm::vec2 corner : {glm::vec2(0, 0), glm::vec2(1, 0), glm::vec2(1, 1), glm::vec2(0, 1)})
+                mesh.positions.emplace_back(0.0043F * static_cast<float>(pin % count) + 0.004F * corner.x,
+                                            0.01F * static_cast<float>(ring),
+                                            0.0043F * static_cast<float>(pin / count) + 0.004F * corner.y);
+        for (std::uint32_t ring = 0; ring < slices; ++ring)
+            for (std::uint32_t side = 0; side < 4; ++side) {
+                const glm::uvec2 low = first + 4 * ring + glm::uvec2(side, (side + 1) % 4);
+                mesh.triangles.emplace_back(low.x, low.x + 4, low.y);
+                mesh.triangles.emplace_back(low.y, low.x + 4, low.y + 4);
+            }
+        for (const glm::uvec3 t : {glm::uvec3(0, 1, 2), glm::uvec3(0, 2, 3)}) {
+            mesh.triangles.push_back(first + t);
+            mesh.triangles.push_back(first + 4 * slices + glm::uvec3(t.x, t.z, t.y));
+        }
+    }
+    return mesh;
+}
+
+// Pins that rise one by one must not be seen as a wall: no triangle may reach from one to its neighbour.
+TEST(SurfaceShading, TheCoarseFormKeepsPinsApart) {
+    const TriangleMesh mesh = pinField(14, 10); // 16,464 triangles
+    const SurfaceShading shading(mesh, kCrease);
+    ASSERT_TRUE(shading.hasCoarse());
+    const auto pinOf = [&](std::uint32_t drawn) {
+        const glm::vec3 at = mesh.positions[shading.sources(kCoarse)[drawn]];
+        return std::pair(std::floor((at.x + 0.0001F) / 0.0043F), std::floor((at.z + 0.0001F) / 0.0043F));
+    };
+    std::set<std::pair<float, float>> seen;
+    for (const glm::uvec3& t : shading.triangles(kCoarse)) {
+        EXPECT_EQ(pinOf(t.x), pinOf(t.y));
+        EXPECT_EQ(pinOf(t.x), pinOf(t.z));
+        seen.insert(pinOf(t.x));
+    }
+    EXPECT_EQ(seen.size(), 196U) << "pins have gone";
+    EXPECT_THROW(SurfaceShading(mesh, kCrease, std::vector<std::uint32_t>(5)), InvalidInput);
+}
 
 TEST(SurfaceShading, TheCoarseFormIsSmallAndNearTheSurface) {
     const TriangleMesh torus = torusMesh(0.06F, 0.02F, 264);
