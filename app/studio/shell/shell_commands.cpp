@@ -38,9 +38,9 @@ void addUndo(Studio& studio) {
 }
 
 void addStop(Studio& studio) {
-    addShellAction(studio, "loop.stop", "STOP: hold every actuator", "stop", {}, "Rig",
+    addShellAction(studio, "loop.stop", "STOP: hold every actuator", "stop", {}, "Actuators",
                    [&studio] { studio.loop.stop(); });
-    QAction* resume = addShellAction(studio, "loop.resume", "Resume after STOP", "play", {}, "Rig",
+    QAction* resume = addShellAction(studio, "loop.resume", "Resume after STOP", "play", {}, "Actuators",
                                      [&studio] { studio.loop.resume(); });
     const auto follow = [&studio, resume] { resume->setEnabled(studio.loop.stopped()); };
     QObject::connect(&studio.loop, &StudioLoop::stoppedChanged, resume, follow);
@@ -77,6 +77,8 @@ void addView(Studio& studio, QMainWindow& window, const ShellActions& does) {
     options.checkable = true;
     studio.commands.add("view.fullScreen", "&Full screen", options,
                         [&window] { window.isFullScreen() ? window.showNormal() : window.showFullScreen(); });
+    addShellAction(studio, "view.kiosk", "&Kiosk for visitors...", "lock", {}, "View", does.enterKiosk)
+        ->setToolTip("Full screen with the view and STOP alone; the operator leaves by a PIN");
     addShellAction(studio, "view.resetLayout", "&Reset layout", "reset", {}, "View", does.resetLayout);
 }
 
@@ -86,6 +88,8 @@ void addShellCommands(Studio& studio, QMainWindow& window, const ShellActions& d
     addUndo(studio);
     addShellAction(studio, "settings", "&Settings...", "settings", QKeySequence(Qt::CTRL | Qt::Key_Comma), "Edit",
                    [&studio, &window] { openSettings(studio, window); });
+    addShellAction(studio, "settings.pin", "Operator's &PIN...", "lock", {}, "Edit", does.changePin)
+        ->setToolTip("Choose the number by which one leaves the kiosk");
     addView(studio, window, does);
     addStop(studio);
     addShellAction(studio, "help.tour", "&Tour", "tour", {}, "Help", does.startTour);

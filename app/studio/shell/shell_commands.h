@@ -14,6 +14,8 @@ namespace lumorph::studio {
 struct ShellActions {
     std::function<void()> startTour;
     std::function<void()> resetLayout;
+    std::function<void()> enterKiosk;
+    std::function<void()> changePin;
     std::vector<std::pair<QString, std::function<void()>>> workspaces; ///< title and how to show it, in order
 };
 

@@ -6,6 +6,7 @@
 #include <QToolButton>
 #include <QWidget>
 
+#include "app/studio/shell/kiosk.h"
 #include "app/studio/shell/studio.h"
 #include "app/studio/shell/workspace.h"
 
@@ -14,7 +15,7 @@ class QPushButton;
 
 namespace lumorph::studio {
 
-/// The slim bar at the top: mark, menus, workspaces, undo and redo, search, theme, and STOP, which never leaves it.
+/// The slim bar at the top: mark, workspaces, menus, undo and redo, search, theme, and STOP, which never leaves it.
 class TopBar : public QWidget {
     Q_OBJECT
 public:
@@ -23,8 +24,9 @@ public:
 
     [[nodiscard]] QMenuBar& menuBar() noexcept { return *menus_; }
     void setWorkspace(const QString& id);
-    /// Only the mark and STOP stay.
-    void setKiosk();
+    /// Only the mark, STOP, and a lock for the operator stay; or all again.
+    void setKiosk(bool on);
+    [[nodiscard]] Kiosk::Buttons kioskButtons() const noexcept { return {stop_, resume_, leave_}; }
 
 signals:
     void workspaceChosen(const QString& id);
@@ -34,16 +36,20 @@ protected:
 
 private:
     void addTabs(const std::vector<std::unique_ptr<Workspace>>& workspaces, QHBoxLayout& row);
+    void addLeave(QHBoxLayout& row);
     void addTools(QHBoxLayout& row);
     void addStop(QHBoxLayout& row);
     void showStopped();
     void fitSearch();
 
     Studio& studio_;
+    QWidget* mark_ = nullptr;
     QMenuBar* menus_ = nullptr;
     std::vector<QToolButton*> tabs_;
     std::vector<QWidget*> tools_;
     bool kiosk_ = false;
+    std::vector<QPointer<QWidget>> shut_; ///< what the kiosk hides
+    QToolButton* leave_ = nullptr;
     QPushButton* search_ = nullptr;
     QPushButton* resume_ = nullptr;
     QPushButton* stop_ = nullptr;

@@ -34,6 +34,12 @@ public:
     [[nodiscard]] virtual std::vector<WorkspaceDock> makeDocks() = 0;
     /// Shown, or another one is; a hidden workspace draws nothing.
     virtual void setActive(bool active) = 0;
+    /// Visitors stand before it: its view without tools, handles and notices, or all again. False: it has nothing for
+    /// visitors.
+    virtual bool setForVisitors(bool on) {
+        static_cast<void>(on);
+        return false;
+    }
     /// Files were dropped while it is shown; false: it has no use for them of its own.
     virtual bool takeDrop(const std::vector<std::filesystem::path>& files) {
         static_cast<void>(files);

@@ -122,9 +122,19 @@ void WorkspacePage::resetLayout() {
     keepLayout();
 }
 
-void WorkspacePage::setKiosk() {
-    kiosk_ = true;
-    for (QDockWidget* dock : docks_) dock->hide();
+void WorkspacePage::setKiosk(bool on) {
+    if (on == kiosk_) return;
+    if (on && active_) keepLayout();
+    hasVisitors_ = workspace_.setForVisitors(on);
+    if (on) {
+        kioskLayout_ = saveState(kLayoutVersion);
+        kiosk_ = true;
+        for (QDockWidget* dock : docks_) dock->hide();
+        return;
+    }
+    restoreState(std::exchange(kioskLayout_, {}), kLayoutVersion);
+    kiosk_ = false;
+    if (isVisible()) fitColumns();
 }
 
 void WorkspacePage::showEvent(QShowEvent* event) {

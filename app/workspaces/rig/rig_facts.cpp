@@ -83,7 +83,8 @@ std::vector<RigFact> factsOf(const Rig& rig, std::size_t index) {
     const ActuatorDrive& drive = actuator.drive;
     return {
         {"Moves by", deformerText(actuator), "How its part changes shape"},
-        {"Amplitude", lengthText(amplitudeOf(rig, index)), "The farthest that a point of the surface gets from where it rests"},
+        {"Amplitude", lengthText(amplitudeOf(rig, index)),
+         "The farthest that a point of the surface gets from where it rests"},
         {"Levels", QString::number(actuator.levels), "Steps that the rig suggests for a field"},
         {"Moves", countText(rig.verticesOf(index).size()) + " vertices", "How much of the mesh follows it"},
         {"Channel", drive.channel < 0 ? QString("none") : QString::number(drive.channel),
