@@ -3,6 +3,7 @@
 
 #include "app/applications/registry/demos.h"
 #include "app/output/demo_player.h"
+#include "app/studio/base/operator_pin.h"
 #include "app/studio/headless_show.h"
 #include "app/studio/look/palette.h"
 #include "app/studio/shell/arguments.h"
@@ -57,7 +58,7 @@ int run(int argc, char** argv, const Arguments& arguments) {
         return 2;
     }
     MainWindow window(studio, std::move(workspaces));
-    application.closeOnInterrupt(window);
+    application.closeOnInterrupt([&window] { window.closeNow(); });
     window.showWorkspace(firstWorkspace(arguments)); // empty: stays as it is
     arguments.kiosk ? window.enterKiosk() : window.show();
     openFirst(studio, window, arguments);
@@ -65,6 +66,16 @@ int run(int argc, char** argv, const Arguments& arguments) {
     studio.devices.leave(); // as long as the window's keys can stop it
     application.setOnError({});
     return status;
+}
+
+/// For who cannot leave the kiosk any more; over ssh, too.
+int forgetPin() {
+    Settings settings;
+    OperatorPin::forget(settings);
+    std::puts(
+        "The operator's PIN is forgotten. A kiosk that runs opens at a touch of its lock; the next one asks for a "
+        "new PIN.");
+    return 0;
 }
 
 /// Needs no display, and so no application.
@@ -90,6 +101,7 @@ int main(int argc, char** argv) {
         std::fputs(parsed.message.c_str(), parsed.status == 0 ? stdout : stderr);
         return parsed.status;
     }
+    if (parsed.arguments->forgetPin) return forgetPin();
     if (!parsed.arguments->headless.empty() || parsed.arguments->play > 0.0) return showHeadless(*parsed.arguments);
     const QString noDisplay = prepareApplication(argc, argv);
     if (!noDisplay.isEmpty()) {

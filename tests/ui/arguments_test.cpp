@@ -18,6 +18,8 @@ TEST(Arguments, AreWhatWasAskedFor) {
     EXPECT_EQ(parsed.arguments->project, "vase.lumorph");
     EXPECT_EQ(parsed.arguments->workspace, "rig");
     EXPECT_TRUE(parsed.arguments->kiosk);
+    EXPECT_FALSE(parsed.arguments->forgetPin);
+    EXPECT_TRUE(parse({"--forget-pin"}).arguments->forgetPin);
     EXPECT_TRUE(parse({}).arguments->project.empty());
     for (const char* demo : {"water", "techniques", "field"}) EXPECT_EQ(parse({"--demo", demo}).arguments->demo, demo);
 }
@@ -39,6 +41,7 @@ TEST(Arguments, WrongUsageSaysWhatAndEndsWithTwo) {
         {{"--sparkle"}, "--sparkle"},
         {{"a.lumorph", "b.lumorph"}, "b.lumorph"},
         {{"a.lumorph", "--demo", "field"}, "a.lumorph"},
+        {{"--kiosk", "--forget-pin"}, "--forget-pin"},
     };
     for (const Row& row : rows) {
         const auto parsed = parse(row.words);

@@ -229,13 +229,13 @@ TEST_F(FieldDocks, DraggingInAnErrorCurveTriesALevelAndLetsGo) {
     const StudioState before = studio_.document.state();
     const auto pixel = [&](int level) { return QPoint(curves->xOf(at, level), curves->cellOf(at).center().y()); };
     QTest::mousePress(curves, Qt::LeftButton, {}, pixel(2));
-    EXPECT_TRUE(studio_.document.state().matching.live) << "a click moves nothing";
+    EXPECT_EQ(studio_.document.state().matching.driver, Driver::target) << "a click moves nothing";
     for (const int level : {3, 4, 6}) QTest::mouseMove(curves, pixel(level));
     EXPECT_TRUE(curves->trying());
-    EXPECT_FALSE(studio_.document.state().matching.live);
+    EXPECT_EQ(studio_.document.state().matching.driver, Driver::hand);
     EXPECT_DOUBLE_EQ(studio_.document.state().strokes[reached], 6.0 / 8.0); // of 9 levels
     QTest::mouseRelease(curves, Qt::LeftButton, {}, pixel(6));
-    EXPECT_TRUE(studio_.document.state().matching.live) << "the match goes on";
+    EXPECT_EQ(studio_.document.state().matching.driver, Driver::target) << "the match goes on";
     EXPECT_EQ(studio_.document.state().strokes, before.strokes);
     EXPECT_EQ(studio_.document.undoStack().count(), 0);
 

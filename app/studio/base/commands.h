@@ -7,6 +7,7 @@
 #include <QKeySequence>
 #include <QObject>
 #include <QString>
+#include <QStringList>
 
 namespace lumorph::studio {
 
@@ -19,6 +20,9 @@ struct Findable {
     std::function<void()> choose;
 };
 
+/// The menus, in the order of the work. None is called as a workspace is: those are the tabs beside them.
+inline const QStringList kMenus{"File", "Edit", "View", "Target", "Actuators", "Things", "Hardware", "Help"};
+
 /// Everything the user can do, by name: menus, shortcuts and the command palette show these.
 class Commands : public QObject {
     Q_OBJECT
@@ -28,8 +32,7 @@ public:
     struct Options {
         QString icon;
         QKeySequence shortcut;
-        QString
-            menu; ///< "File", "Edit", "View", "Target", "Rig", "Field", "Scene", "Device", "Help"; empty: palette only
+        QString menu;      ///< one of kMenus; empty: palette only
         QString workspace; ///< id of the workspace it belongs to; empty: always there
         bool checkable = false;
     };

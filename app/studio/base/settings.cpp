@@ -91,4 +91,8 @@ QVariant Settings::value(const QString& key, const QVariant& fallback) const { r
 
 void Settings::setValue(const QString& key, const QVariant& value) { store_.setValue(key, value); }
 
+void Settings::remove(const QString& key) { store_.remove(key); }
+
+void Settings::reload() { store_.sync(); }
+
 } // namespace lumorph::studio

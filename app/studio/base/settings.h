@@ -37,6 +37,9 @@ public:
     [[nodiscard]] std::filesystem::path folder() const;
     [[nodiscard]] QVariant value(const QString& key, const QVariant& fallback = {}) const;
     void setValue(const QString& key, const QVariant& value);
+    void remove(const QString& key);
+    /// Writes what changed here and reads what another process changed.
+    void reload();
 
 signals:
     void themeChanged();

@@ -37,7 +37,11 @@ ParsedArguments parseArguments(int argc, const char* const* argv) {
     app.add_option("PROJECT", project, "a project, recording, rig, field or 3D model to open");
     app.add_option("--demo", arguments.demo, "start a demonstration: " + demoNames());
     app.add_option("--workspace", arguments.workspace, "the workspace to show first, such as field");
-    app.add_flag("--kiosk", arguments.kiosk, "full screen for visitors: the view and STOP alone");
+    CLI::Option* kiosk = app.add_flag(
+        "--kiosk", arguments.kiosk, "full screen for visitors: the view and STOP alone; the operator leaves by a PIN");
+    app.add_flag("--forget-pin", arguments.forgetPin,
+                 "no window: forget the operator's PIN, and open a kiosk that runs")
+        ->excludes(kiosk);
     std::string headless;
     CLI::Option* folder =
         app.add_option("--headless", headless, "no window: draw a live match into this folder and end");

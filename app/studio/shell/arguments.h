@@ -6,14 +6,15 @@
 
 namespace lumorph::studio {
 
-/// What the program was started with: `lumorph-studio [PROJECT] [--demo NAME] [--kiosk] [--workspace ID]`, or
-/// `lumorph-studio --headless FOLDER [--seconds S]`, which opens no window, nor does `--demo NAME --play S [--record
-/// OUT.mp4] [--json]`.
+/// What the program was started with: `lumorph-studio [PROJECT] [--demo NAME] [--kiosk] [--workspace ID]`,
+/// `lumorph-studio --forget-pin`, which does only that, or `lumorph-studio --headless FOLDER [--seconds S]`, which
+/// opens no window, nor does `--demo NAME --play S [--record OUT.mp4] [--json]`.
 struct Arguments {
     std::filesystem::path project; ///< or a rig, a field or a target; empty: none
     std::string demo;
     std::string workspace;
     bool kiosk = false;
+    bool forgetPin = false;         ///< of the kiosk's operator; no window opens
     std::filesystem::path headless; ///< where to draw the show without a display; empty: open the window
     double seconds = 6.0;           ///< that the show lasts
     double play = 0.0;              ///< seconds of the demo without a window; 0: in a window

@@ -167,7 +167,7 @@ void openShortcuts(Studio& studio, QWidget& window) {
     QDialog* dialog = makeDialog(window, "dialog.shortcuts", "Keyboard and mouse");
     if (dialog == nullptr) return;
     const Column column = makeColumn(dialog);
-    for (const char* menu : {"File", "Edit", "View", "Target", "Rig", "Field", "Help"}) addKeysOf(studio, menu, column);
+    for (const QString& menu : kMenus) addKeysOf(studio, menu, column);
     column.layout->addWidget(makeHeading("View and numbers", dialog));
     for (const KeyLine& line : kGestures) addKeyLine(*column.layout, line.keys, line.does, dialog);
     dialog->layout()->addWidget(column.widget);

@@ -2,18 +2,17 @@
 
 #include <algorithm>
 #include <map>
+#include <utility>
 
 #include <QApplication>
 #include <QCloseEvent>
 #include <QDialog>
 #include <QDropEvent>
-#include <QMenu>
 #include <QScreen>
 #include <QStackedWidget>
 #include <QTimer>
 #include <QVBoxLayout>
 
-#include "app/studio/look/icons.h"
 #include "app/studio/look/palette.h"
 #include "app/studio/shell/command_palette.h"
 #include "app/studio/shell/dialog_fit.h"
@@ -21,6 +20,8 @@
 #include "app/studio/shell/escape_twice.h"
 #include "app/studio/shell/file_commands.h"
 #include "app/studio/shell/idle_cursor.h"
+#include "app/studio/shell/kiosk.h"
+#include "app/studio/shell/menus.h"
 #include "app/studio/shell/replay_bar.h"
 #include "app/studio/shell/shell_commands.h"
 #include "app/studio/shell/status_line.h"
@@ -37,17 +38,6 @@ constexpr QMargins kUsualFrame{4, 36, 4, 4}; // what a desktop puts around a win
 constexpr auto kFrameKey = "window/frame";
 constexpr auto kGeometryKey = "window/geometry";
 constexpr auto kWorkspaceKey = "window/workspace";
-
-/// In the order of the work; menus without a command in sight are hidden.
-const QStringList kMenus{"File", "Edit", "View", "Target", "Rig", "Field", "Scene", "Device", "Help"};
-
-/// Commands of one kind stand together: "view.dock.target" is of the kind "view.dock".
-QString kindOf(const QString& id) { return id.section('.', 0, -2); }
-
-bool startsGroup(const QMenu& menu, const QString& id) {
-    if (menu.isEmpty()) return false;
-    return id == "file.save" || id == "file.quit" || kindOf(menu.actions().back()->objectName()) != kindOf(id);
-}
 
 bool belongsTo(const QObject* watched, const QWidget* window) {
     for (const QObject* object = watched; object != nullptr; object = object->parent())
@@ -74,32 +64,35 @@ QVariantList frameOf(const QWidget& window) {
 } // namespace
 
 struct MainWindow::Data {
+    Data(Studio& shared, std::vector<std::unique_ptr<Workspace>> all) : studio(shared), workspaces(std::move(all)) {}
+
     Studio& studio;
     std::vector<std::unique_ptr<Workspace>> workspaces;
     SteadyClock clock;
     std::map<QString, WorkspacePage*> pages; ///< those that were shown
-    std::map<QString, QMenu*> menus;
     TopBar* bar = nullptr;
+    Menus* menus = nullptr;
     StatusLine* status = nullptr;
     QStackedWidget* stack = nullptr;
     QPointer<DropOverlay> drop;
     std::unique_ptr<StopKeyWatch> stopKeys;
     QString present;
-    bool kiosk = false;
+    Kiosk* kiosk = nullptr;
+    IdleCursor* idleCursor = nullptr; ///< in the kiosk
+    bool maximized = false;           ///< before the kiosk
     QUndoGroup stacks{nullptr};
 };
 
 MainWindow::MainWindow(Studio& studio, std::vector<std::unique_ptr<Workspace>> workspaces)
-    : data_(new Data{studio, std::move(workspaces), {}, {}, {}, nullptr, nullptr, nullptr, {}, {}, {}, false}) {
+    : data_(new Data(studio, std::move(workspaces))) {
     setObjectName("mainWindow");
     setAcceptDrops(true);
     setContextMenuPolicy(Qt::NoContextMenu);
     setMinimumSize(640, 400);
-    connect(&studio.commands, &Commands::added, this, &MainWindow::joinMenu);
     connect(&studio.commands, &Commands::workspaceWanted, this, &MainWindow::showWorkspace);
     addCommands();
     data_->bar = new TopBar(studio, data_->workspaces, this);
-    addMenus();
+    data_->menus = new Menus(studio, data_->bar->menuBar(), *this);
     setMenuWidget(data_->bar);
     auto* body = new QWidget(this);
     auto* column = new QVBoxLayout(body);
@@ -111,6 +104,8 @@ MainWindow::MainWindow(Studio& studio, std::vector<std::unique_ptr<Workspace>> w
     column->addWidget(makeReplayBar(studio, body));
     column->addWidget(data_->status);
     setCentralWidget(body);
+    data_->kiosk = new Kiosk(*this, studio.settings, data_->clock, data_->bar->kioskButtons());
+    connect(data_->kiosk, &Kiosk::leaveWanted, this, &MainWindow::leaveKiosk);
     connect(data_->bar, &TopBar::workspaceChosen, this, &MainWindow::showWorkspace);
     connect(&studio.document, &StudioDocument::titleChanged, this, &MainWindow::showTitle);
     connect(&studio.settings, &Settings::themeChanged, this, &MainWindow::retheme);
@@ -183,47 +178,9 @@ void MainWindow::addCommands() {
     data_->stacks.setActiveStack(&data_->studio.document.undoStack());
     for (const auto& workspace : data_->workspaces)
         does.workspaces.push_back({workspace->title(), [this, id = workspace->id()] { showWorkspace(id); }});
+    does.enterKiosk = [this] { data_->kiosk->requirePin(true, [this] { enterKiosk(); }); };
+    does.changePin = [this] { data_->kiosk->changePin(); };
     addShellCommands(data_->studio, *this, does);
-}
-
-void MainWindow::addMenus() {
-    for (const QString& name : kMenus) {
-        QMenu* menu = data_->bar->menuBar().addMenu('&' + name);
-        menu->setObjectName("menu." + name);
-        menu->setToolTipsVisible(true);
-        data_->menus[name] = menu;
-    }
-    for (const auto& entry : data_->studio.commands.all()) joinMenu(entry.action);
-    auto* recent = new QMenu("Open &recent", this);
-    recent->setObjectName("file.openRecent");
-    recent->setIcon(icon("clock"));
-    recent->setToolTipsVisible(true);
-    connect(recent, &QMenu::aboutToShow, this, [this, recent] { fillRecentMenu(data_->studio, *recent); });
-    data_->menus["File"]->insertMenu(data_->studio.commands.find("file.save"), recent);
-}
-
-/// Each command joins its menu; its keys work while any part of the window has the keyboard.
-void MainWindow::joinMenu(QAction* action) {
-    addAction(action);
-    for (const auto& entry : data_->studio.commands.all()) {
-        if (entry.action != action) continue;
-        const auto menu = data_->menus.find(entry.options.menu);
-        if (menu == data_->menus.end()) continue;
-        if (startsGroup(*menu->second, action->objectName())) menu->second->addSeparator();
-        menu->second->addAction(action);
-    }
-    showCommands();
-}
-
-/// Commands of another workspace than the present one are out of sight, and their keys sleep.
-void MainWindow::showCommands() {
-    for (const auto& entry : data_->studio.commands.all())
-        entry.action->setVisible(entry.options.workspace.isEmpty() || entry.options.workspace == data_->present);
-    for (const auto& [name, menu] : data_->menus) {
-        const auto actions = menu->actions();
-        const bool any = std::any_of(actions.begin(), actions.end(), [](const QAction* a) { return a->isVisible(); });
-        menu->menuAction()->setVisible(any);
-    }
 }
 
 void MainWindow::showWorkspace(const QString& id) {
@@ -238,11 +195,11 @@ void MainWindow::showWorkspace(const QString& id) {
     if (page == nullptr) {
         page = new WorkspacePage(**found, data_->studio.settings, data_->studio.commands, data_->stack);
         data_->stack->addWidget(page);
-        if (data_->kiosk) page->setKiosk();
+        if (data_->kiosk->closed()) page->setKiosk(true);
     }
     QUndoStack* own = (*found)->undoStack();
     data_->stacks.setActiveStack(own != nullptr ? own : &data_->studio.document.undoStack());
-    showCommands();
+    data_->menus->show(id);
     data_->stack->setCurrentWidget(page);
     page->setActive(true);
 }
@@ -263,11 +220,36 @@ void MainWindow::startTour() {
 }
 
 void MainWindow::enterKiosk() {
-    data_->kiosk = true;
-    data_->bar->setKiosk();
-    for (const auto& [id, page] : data_->pages) page->setKiosk();
-    new IdleCursor(this);
+    if (data_->kiosk->closed()) return;
+    data_->maximized = isMaximized();
+    data_->kiosk->close();
+    setKiosk(true);
     showFullScreen();
+    data_->kiosk->requirePin(false, [] {});
+}
+
+void MainWindow::leaveKiosk() {
+    if (!data_->kiosk->closed()) return;
+    data_->kiosk->open();
+    setKiosk(false);
+    data_->maximized ? showMaximized() : showNormal();
+}
+
+void MainWindow::setKiosk(bool on) {
+    data_->menus->setShut(on);
+    data_->bar->setKiosk(on);
+    data_->status->setVisible(!on);
+    for (const auto& [id, page] : data_->pages) page->setKiosk(on);
+    if (on && !data_->pages.at(data_->present)->hasVisitors()) showWorkspace("scene");
+    if (on)
+        data_->idleCursor = new IdleCursor(this);
+    else
+        delete std::exchange(data_->idleCursor, nullptr);
+}
+
+void MainWindow::closeNow() {
+    leaveKiosk();
+    close();
 }
 
 void MainWindow::showTitle() {
@@ -278,9 +260,14 @@ void MainWindow::showTitle() {
 void MainWindow::retheme() { applyTheme(*qApp, data_->studio.settings.theme()); }
 
 void MainWindow::closeEvent(QCloseEvent* event) {
+    if (data_->kiosk->closed() && !qApp->isSavingSession()) {
+        event->ignore();
+        data_->kiosk->askOperator("To close Lumorph.", [this] { closeNow(); });
+        return;
+    }
     for (const auto& [id, page] : data_->pages)
         if (id == data_->present) page->keepLayout();
-    if (!data_->kiosk) {
+    if (!data_->kiosk->closed()) {
         data_->studio.settings.setValue(kGeometryKey, saveGeometry());
         if (!isMaximized() && !isFullScreen()) data_->studio.settings.setValue(kFrameKey, frameOf(*this));
         data_->studio.settings.setValue(kWorkspaceKey, data_->present);

@@ -23,8 +23,11 @@ public:
     [[nodiscard]] QString workspace() const;
     /// The first-run tour, from its first step.
     void startTour();
-    /// Full screen with the view, STOP and the status line alone; a still pointer is hidden.
+    /// Full screen with the view and STOP alone, which alone hear anything; a still pointer is hidden. Asks for a PIN
+    /// where there is none yet; with it the operator leaves.
     void enterKiosk();
+    /// Also out of a kiosk: for who ends the program from outside.
+    void closeNow();
 
 protected:
     void closeEvent(QCloseEvent* event) override;
@@ -36,9 +39,8 @@ protected:
 
 private:
     void addCommands();
-    void addMenus();
-    void joinMenu(QAction* action);
-    void showCommands();
+    void leaveKiosk();
+    void setKiosk(bool on);
     void showFirstWorkspace();
     void showTitle();
     void keepOnScreen();

@@ -48,10 +48,8 @@ bool Overlay::eventFilter(QObject* watched, QEvent* event) {
     return QWidget::eventFilter(watched, event);
 }
 
-void Overlay::paintEvent(QPaintEvent* /*event*/) {
-    QPainter painter(this);
-    QColor dim = currentTheme() == Theme::dark ? QColor(0, 0, 0, 120) : QColor(20, 26, 32, 70);
-    painter.fillRect(rect(), dim);
-}
+void Overlay::paintEvent(QPaintEvent* /*event*/) { QPainter(this).fillRect(rect(), dimming()); }
+
+QColor Overlay::dimming() { return currentTheme() == Theme::dark ? QColor(0, 0, 0, 120) : QColor(20, 26, 32, 70); }
 
 } // namespace lumorph::studio

@@ -22,6 +22,8 @@ protected:
     virtual void arrange() {}
     /// Everything but `open` and STOP, which stays lit and in reach whatever lies over the window.
     void coverAllBut(const QRegion& open);
+    /// What it darkens the window with.
+    [[nodiscard]] static QColor dimming();
 
 private:
     QPointer<QWidget> hadKeyboard_;

@@ -19,10 +19,10 @@ QAction* addShellAction(Studio& studio, const char* id, const QString& text, con
 }
 
 void addStop(Studio& studio) {
-    QAction* stop = addShellAction(studio, "loop.stop", "STOP: hold the show, let all servos go", "stop", {}, "Device",
+    QAction* stop = addShellAction(studio, "loop.stop", "STOP: hold the show, let all servos go", "stop", {}, "Hardware",
                                    [&studio] { studio.loop.stop(); });
     stop->setToolTip(kStopPromise);
-    QAction* resume = addShellAction(studio, "loop.resume", "Resume after STOP", "play", {}, "Device",
+    QAction* resume = addShellAction(studio, "loop.resume", "Resume after STOP", "play", {}, "Hardware",
                                      [&studio] { studio.loop.resume(); });
     resume->setToolTip(kResumePromise);
     const auto follow = [&studio, resume] { resume->setEnabled(studio.loop.stopped()); };
@@ -60,6 +60,8 @@ void addView(Studio& studio, QMainWindow& window, const ShellActions& does) {
     options.checkable = true;
     studio.commands.add("view.fullScreen", "&Full screen", options,
                         [&window] { window.isFullScreen() ? window.showNormal() : window.showFullScreen(); });
+    addShellAction(studio, "view.kiosk", "&Kiosk for visitors...", "lock", {}, "View", does.enterKiosk)
+        ->setToolTip("Full screen with the view and STOP alone; the operator leaves by a PIN");
     addShellAction(studio, "view.resetLayout", "&Reset layout", "reset", {}, "View", does.resetLayout);
 }
 
@@ -69,6 +71,8 @@ void addShellCommands(Studio& studio, QMainWindow& window, const ShellActions& d
     addUndoCommands(studio, window, *does.stacks, does.present);
     addShellAction(studio, "settings", "&Settings...", "settings", QKeySequence(Qt::CTRL | Qt::Key_Comma), "Edit",
                    [&studio, &window] { openSettings(studio, window); });
+    addShellAction(studio, "settings.pin", "Operator's &PIN...", "lock", {}, "Edit", does.changePin)
+        ->setToolTip("Choose the number by which one leaves the kiosk");
     addView(studio, window, does);
     addStop(studio);
     addDriverCommands(studio);

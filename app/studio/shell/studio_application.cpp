@@ -108,12 +108,12 @@ void StudioApplication::tell(const std::exception& error) {
     std::fprintf(stderr, "lumorph-studio: %s\n", error.what());
 }
 
-void StudioApplication::closeOnInterrupt(QWidget& window) {
+void StudioApplication::closeOnInterrupt(std::function<void()> close) {
     if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, interruptSockets.data()) != 0) return;
     auto* notifier = new QSocketNotifier(interruptSockets[1], QSocketNotifier::Read, this);
-    connect(notifier, &QSocketNotifier::activated, &window, [notifier, &window] {
+    connect(notifier, &QSocketNotifier::activated, this, [notifier, close = std::move(close)] {
         notifier->setEnabled(false);
-        window.close();
+        close();
     });
     struct sigaction action {};
     action.sa_handler = wakeOnSignal;

@@ -1,5 +1,7 @@
 #include "app/studio/shell/top_bar.h"
 
+#include <utility>
+
 #include <QButtonGroup>
 #include <QHBoxLayout>
 #include <QPainter>
@@ -70,14 +72,17 @@ TopBar::TopBar(Studio& studio, const std::vector<std::unique_ptr<Workspace>>& wo
     auto* row = new QHBoxLayout(this);
     row->setContentsMargins(12, 0, 8, 0);
     row->setSpacing(4);
-    row->addWidget(new AppMark(this));
-    row->addSpacing(4);
+    mark_ = new AppMark(this);
+    row->addWidget(mark_);
+    row->addSpacing(8);
+    // Before the menus, whose number changes with the workspace: a tab stays where it was clicked.
+    addTabs(workspaces, *row);
+    addLeave(*row);
+    row->addSpacing(12);
     menus_ = new QMenuBar(this);
     menus_->setNativeMenuBar(false);
     menus_->setSizePolicy(QSizePolicy::Maximum, QSizePolicy::Fixed);
     row->addWidget(menus_, 0, Qt::AlignVCenter);
-    row->addSpacing(16);
-    addTabs(workspaces, *row);
     row->addStretch(1);
     addTools(*row);
     row->addSpacing(8);
@@ -105,6 +110,16 @@ void TopBar::addTabs(const std::vector<std::unique_ptr<Workspace>>& workspaces, 
         tabs_.push_back(tab);
         connect(tab, &QToolButton::clicked, this, [this, id = workspace->id()] { emit workspaceChosen(id); });
     }
+}
+
+void TopBar::addLeave(QHBoxLayout& row) {
+    leave_ = new QToolButton(this);
+    leave_->setObjectName("bar.leaveKiosk");
+    leave_->setIcon(icon("lock", IconRole::muted));
+    leave_->setIconSize(QSize(18, 18));
+    leave_->setAccessibleName("Leave the kiosk, by the operator's PIN");
+    leave_->hide();
+    row.addWidget(leave_);
 }
 
 void TopBar::addTools(QHBoxLayout& row) {
@@ -163,12 +178,21 @@ void TopBar::setWorkspace(const QString& id) {
     for (QToolButton* tab : tabs_) tab->setChecked(tab->property("workspace").toString() == id);
 }
 
-void TopBar::setKiosk() {
-    kiosk_ = true;
-    menus_->hide();
-    for (QToolButton* tab : tabs_) tab->hide();
-    for (QWidget* tool : tools_) tool->hide();
-    driver_->hide();
+void TopBar::setKiosk(bool on) {
+    kiosk_ = on;
+    if (on) {
+        for (QWidget* child : findChildren<QWidget*>(Qt::FindDirectChildrenOnly)) {
+            const bool stays = child == mark_ || child == stop_ || child == resume_ || child == leave_;
+            if (stays || child->isHidden()) continue;
+            child->hide();
+            shut_.emplace_back(child);
+        }
+    } else {
+        for (const auto& child : std::exchange(shut_, {}))
+            if (child) child->show();
+    }
+    leave_->setVisible(on);
+    fitSearch();
 }
 
 void TopBar::resizeEvent(QResizeEvent* event) {
@@ -179,8 +203,8 @@ void TopBar::resizeEvent(QResizeEvent* event) {
 /// The field with its words where there is room, else the glass alone; in a narrow window undo, redo and recording are
 /// left to the menu, so that all menus are in sight.
 void TopBar::fitSearch() {
-    if (!kiosk_)
-        for (QWidget* tool : {tools_[0], tools_[1], tools_.back()}) tool->setVisible(width() >= kNarrowTopBar);
+    if (kiosk_) return;
+    for (QWidget* tool : {tools_[0], tools_[1], tools_.back()}) tool->setVisible(width() >= kNarrowTopBar);
     driver_->setNarrow(width() < kNarrowTopBar);
     int others = 300 + driver_->sizeHint().width() + stop_->minimumWidth() + menus_->sizeHint().width();
     if (!resume_->isHidden()) others += resume_->sizeHint().width();

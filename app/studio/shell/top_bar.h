@@ -6,6 +6,7 @@
 #include <QToolButton>
 #include <QWidget>
 
+#include "app/studio/shell/kiosk.h"
 #include "app/studio/shell/studio.h"
 #include "app/studio/shell/workspace.h"
 
@@ -16,7 +17,7 @@ namespace lumorph::studio {
 
 class DriverChip;
 
-/// The slim bar at the top: mark, menus, workspaces, undo and redo, search, theme, who moves the servos, and STOP,
+/// The slim bar at the top: mark, workspaces, menus, undo and redo, search, theme, who moves the servos, and STOP,
 /// which never leaves it.
 class TopBar : public QWidget {
     Q_OBJECT
@@ -26,8 +27,9 @@ public:
 
     [[nodiscard]] QMenuBar& menuBar() noexcept { return *menus_; }
     void setWorkspace(const QString& id);
-    /// Only the mark and STOP stay.
-    void setKiosk();
+    /// Only the mark, STOP, and a lock for the operator stay; or all again.
+    void setKiosk(bool on);
+    [[nodiscard]] Kiosk::Buttons kioskButtons() const noexcept { return {stop_, resume_, leave_}; }
 
 signals:
     void workspaceChosen(const QString& id);
@@ -37,17 +39,21 @@ protected:
 
 private:
     void addTabs(const std::vector<std::unique_ptr<Workspace>>& workspaces, QHBoxLayout& row);
+    void addLeave(QHBoxLayout& row);
     void addTools(QHBoxLayout& row);
     void addStop(QHBoxLayout& row);
     void showStopped();
     void fitSearch();
 
     Studio& studio_;
+    QWidget* mark_ = nullptr;
     QMenuBar* menus_ = nullptr;
     std::vector<QToolButton*> tabs_;
     std::vector<QWidget*> tools_;
     bool kiosk_ = false;
     DriverChip* driver_ = nullptr;
+    std::vector<QPointer<QWidget>> shut_; ///< what the kiosk hides
+    QToolButton* leave_ = nullptr;
     QPushButton* search_ = nullptr;
     QPushButton* resume_ = nullptr;
     QPushButton* stop_ = nullptr;

@@ -1,5 +1,9 @@
 #include "app/studio/shell/tour.h"
 
+#include <algorithm>
+#include <optional>
+#include <utility>
+
 #include <QDockWidget>
 #include <QHBoxLayout>
 #include <QKeyEvent>
@@ -18,6 +22,9 @@ namespace {
 
 constexpr int kCardWidth = 344;
 constexpr int kGap = 16;
+constexpr int kArrow = 12;              ///< how far it sticks out of the card
+constexpr int kShadow = 12;             ///< and the card's shadow
+constexpr QMargins kBars(0, 40, 0, 28); ///< of the window: what stands there is never covered
 
 /// One in sight before one of another workspace that has the same name; a dock that is closed can be shown.
 QWidget* widgetOf(const QWidget& window, const TourStep& step) {
@@ -109,30 +116,50 @@ protected:
     void arrange() override {
         if (steps_.empty()) return;
         lit_ = spot();
-        // Outside the mask the window below gets the mouse: the lit widget can be used.
-        const QRegion open = lit_.isEmpty() ? QRegion() : QRegion(lit_.adjusted(4, 4, -4, -4));
+        const QWidget* second = present().alsoLit.isEmpty() ? nullptr : inSight(present().alsoLit);
+        also_ = second != nullptr ? boxOf(*second) : QRect();
         card_->setFixedWidth(std::min(kCardWidth, width() - 2 * kGap));
-        card_->adjustSize();
+        card_->layout()->activate();
+        const int height = card_->layout()->totalHeightForWidth(card_->width());
+        card_->setFixedHeight(std::min(height > 0 ? height : card_->sizeHint().height(), this->height()));
         card_->move(besideSpot(card_->size()));
-        coverAllBut(open - QRegion(card_->geometry()));
+        // Outside the mask the window below gets the mouse: the lit widget can be used.
+        lights_ = QRegion(lit_.isEmpty() ? QRect() : lit_.adjusted(4, 4, -4, -4)) + also_;
+        coverAllBut(lights_ - QRegion(card_->geometry().adjusted(-kShadow, -kShadow, kShadow, kShadow)) -
+                    arrow().boundingRect().toAlignedRect().adjusted(-2, -2, 2, 2));
         update();
     }
 
-    void paintEvent(QPaintEvent* event) override {
-        Overlay::paintEvent(event);
-        if (lit_.isEmpty()) return;
+    void paintEvent(QPaintEvent* /*event*/) override {
+        const Palette& colors = currentPalette();
         QPainter painter(this);
+        painter.save();
+        painter.setClipRegion(QRegion(rect()) - lights_);
+        painter.fillRect(rect(), dimming());
+        painter.restore();
         painter.setRenderHint(QPainter::Antialiasing);
-        painter.setPen(QPen(currentPalette().accent, 3));
         painter.setBrush(Qt::NoBrush);
-        painter.drawRoundedRect(QRectF(lit_).adjusted(2, 2, -2, -2), 4, 4);
+        if (!lit_.isEmpty()) {
+            painter.setPen(QPen(colors.accent, 3));
+            painter.drawRoundedRect(QRectF(lit_).adjusted(2, 2, -2, -2), 4, 4);
+        }
+        // The card and its arrow are one shape, in the colour of what they point at.
+        QPainterPath shape;
+        shape.addRoundedRect(QRectF(card_->geometry()).adjusted(1, 1, -1, -1), 8, 8);
+        shape = shape.united(arrow());
+        for (int wide = kShadow; wide > 0; wide -= 2) {
+            painter.setPen(QPen(QColor(0, 0, 0, 24), 2 * wide, Qt::SolidLine, Qt::RoundCap, Qt::RoundJoin));
+            painter.drawPath(shape);
+        }
+        painter.setPen(QPen(colors.accent, 2, Qt::SolidLine, Qt::RoundCap, Qt::RoundJoin));
+        painter.setBrush(colors.raised);
+        painter.drawPath(shape);
     }
 
 private:
     void makeCard() {
         card_ = new QFrame(this);
         card_->setObjectName("tour.card");
-        card_->setProperty("look", "popup");
         auto* column = new QVBoxLayout(card_);
         column->setContentsMargins(20, 16, 16, 16);
         column->setSpacing(8);
@@ -177,7 +204,7 @@ private:
             return;
         }
         step_ = step;
-        const TourStep& now = steps_[static_cast<std::size_t>(step)];
+        const TourStep& now = present();
         if (auto* dock = qobject_cast<QDockWidget*>(widgetOf(*parentWidget(), now))) {
             dock->show();
             dock->raise();
@@ -195,32 +222,85 @@ private:
         setFocus(Qt::OtherFocusReason); // not the button: it would take the arrow keys
     }
 
-    /// Of the present step's widget, in this window; empty while it is hidden or floats.
-    [[nodiscard]] QRect spot() const {
-        if (steps_.empty()) return {};
-        const QWidget* widget = widgetOf(*parentWidget(), steps_[static_cast<std::size_t>(step_)]);
-        if (widget == nullptr || !widget->isVisible() || widget->window() != parentWidget()) return {};
-        return QRect(widget->mapTo(parentWidget(), QPoint()), widget->size()).intersected(rect());
+    [[nodiscard]] const TourStep& present() const { return steps_[static_cast<std::size_t>(step_)]; }
+
+    [[nodiscard]] const QWidget* inSight(const QString& name) const {
+        for (const QWidget* widget : parentWidget()->findChildren<QWidget*>(name))
+            if (widget->isVisible()) return widget;
+        return nullptr;
     }
 
-    /// Beside what is lit, where there is most room; inside it when it fills the window.
+    /// In this window; empty for one that is hidden or floats.
+    [[nodiscard]] QRect boxOf(const QWidget& widget) const {
+        if (!widget.isVisible() || widget.window() != parentWidget()) return {};
+        return QRect(widget.mapTo(parentWidget(), QPoint()), widget.size()).intersected(rect());
+    }
+
+    /// Of the present step's widget.
+    [[nodiscard]] QRect spot() const {
+        const QWidget* widget = steps_.empty() ? nullptr : widgetOf(*parentWidget(), present());
+        return widget == nullptr ? QRect() : boxOf(*widget);
+    }
+
+    /// Beside what is lit, where it hides least of what else is; inside it when it fills the window.
     [[nodiscard]] QPoint besideSpot(const QSize& card) const {
-        const QRect inside = rect().adjusted(kGap, 56, -kGap, -44);
-        QPoint at(lit_.center().x() - card.width() / 2, lit_.bottom() - card.height() - 6 * kGap);
-        if (lit_.isEmpty())
-            at = rect().center() - QPoint(card.width() / 2, card.height() / 2);
-        else if (inside.right() - lit_.right() >= card.width() + kGap)
-            at = QPoint(lit_.right() + kGap, lit_.top());
-        else if (lit_.left() - inside.left() >= card.width() + kGap)
-            at = QPoint(lit_.left() - kGap - card.width(), lit_.top());
-        return {std::clamp(at.x(), inside.left(), std::max(inside.left(), inside.right() - card.width())),
-                std::clamp(at.y(), inside.top(), std::max(inside.top(), inside.bottom() - card.height()))};
+        const QRect room = rect().marginsRemoved(kBars).adjusted(kGap, kGap, -kGap, -kGap);
+        const auto inRoom = [&](QPoint at) {
+            return QPoint(std::clamp(at.x(), room.left(), std::max(room.left(), room.right() + 1 - card.width())),
+                          std::clamp(at.y(), room.top(), std::max(room.top(), room.bottom() + 1 - card.height())));
+        };
+        if (lit_.isEmpty()) return inRoom(rect().center() - QPoint(card.width() / 2, card.height() / 2));
+        const int away = kArrow + 4;
+        const QPoint places[] = {{lit_.right() + 1 + away, lit_.top()},
+                                 {lit_.left() - away - card.width(), lit_.top()},
+                                 {lit_.left(), lit_.bottom() + 1 + away},
+                                 {lit_.left(), lit_.top() - away - card.height()}};
+        std::optional<std::pair<qint64, QPoint>> best;
+        for (const QPoint& place : places) {
+            const QRect box(inRoom(place), card);
+            if (box.intersects(lit_)) continue;
+            const QSize hidden = box.intersected(also_).size();
+            const qint64 cost = static_cast<qint64>(hidden.width()) * hidden.height();
+            if (!best || cost < best->first) best = {cost, box.topLeft()};
+        }
+        if (best) return best->second;
+        return inRoom({lit_.center().x() - card.width() / 2, lit_.bottom() - card.height() - kGap});
+    }
+
+    /// From the card to what is lit; empty where nothing is.
+    [[nodiscard]] QPainterPath arrow() const {
+        QPainterPath path;
+        if (lit_.isEmpty()) return path;
+        const QRect card = card_->geometry();
+        const double half = kArrow, out = kArrow, in = 4.0;
+        const auto along = [half](double wanted, int low, int high) {
+            return std::clamp(wanted, low + half + 12.0, std::max(low + half + 12.0, high - half - 12.0));
+        };
+        const auto add = [&](QPointF root, QPointF towards) {
+            const QPointF aside(towards.y() * half, towards.x() * half);
+            path.moveTo(root + aside - in * towards);
+            path.lineTo(root + out * towards);
+            path.lineTo(root - aside - in * towards);
+            path.closeSubpath();
+        };
+        const double x = along(lit_.center().x(), card.left(), card.right());
+        const double y = along(lit_.center().y(), card.top(), card.bottom());
+        if (lit_.right() < card.left())
+            add(QPointF(card.left(), y), {-1, 0});
+        else if (lit_.left() > card.right())
+            add(QPointF(card.right() + 1, y), {1, 0});
+        else if (lit_.top() > card.bottom())
+            add(QPointF(x, card.bottom() + 1), {0, 1});
+        else // above, or all around
+            add(QPointF(x, card.top()), {0, -1});
+        return path;
     }
 
     std::vector<TourStep> steps_;
     std::function<void()> finished_;
     int step_ = 0;
-    QRect lit_;
+    QRect lit_, also_;
+    QRegion lights_; ///< what is not dimmed
     QFrame* card_ = nullptr;
     QLabel *title_ = nullptr, *text_ = nullptr;
     StepDots* dots_ = nullptr;

@@ -25,16 +25,19 @@ std::vector<TourStep> tourSteps(Studio& studio) {
          {}},
         {{"scene.showing"},
          "Servos, light, or both",
-         "Physical shows what the servos alone can do, Light what light alone can do. Together the servos take the "
-         "coarse shape, and light adds all that is too fine or too fast for them.",
+         "Try all three: Physical shows what the servos alone can do, Light what light alone can do. Together the "
+         "servos "
+         "take the coarse shape, and light adds all that is too fine or too fast for them.",
          "Show both",
-         [&studio] { showBoth(studio); }},
+         [&studio] { showBoth(studio); },
+         "scene.stage"},
         {{"dock.scene.outliner"},
          "What is in the scene",
          "Things that light draws, and below them device, table, projector and viewer. Add more here, or drop a glTF "
          "model or a picture anywhere on the window.",
          "Add a box",
-         [&studio] { run(studio, "scene.add.box"); }},
+         [&studio] { run(studio, "scene.add.box"); },
+         "scene.stage"},
         {{"dock.scene.inspector"},
          "Change what you choose",
          "What is chosen shows all its numbers here. Drag one sideways, or click and type it with its unit. Everything "

@@ -37,6 +37,12 @@ public:
     virtual void setActive(bool active) = 0;
     /// What undo and redo work on while it is shown, where that is not the document; null: the document.
     [[nodiscard]] virtual QUndoStack* undoStack() { return nullptr; }
+    /// Visitors stand before it: its view without tools, handles and notices, or all again. False: it has nothing for
+    /// visitors.
+    virtual bool setForVisitors(bool on) {
+        static_cast<void>(on);
+        return false;
+    }
     /// Files were dropped while it is shown; false: it has no use for them of its own.
     virtual bool takeDrop(const std::vector<std::filesystem::path>& files) {
         static_cast<void>(files);

@@ -127,10 +127,20 @@ void WorkspacePage::resetLayout() {
     keepLayout();
 }
 
-void WorkspacePage::setKiosk() {
-    kiosk_ = true;
-    restored_.clear();
-    for (QDockWidget* dock : docks_) dock->hide();
+void WorkspacePage::setKiosk(bool on) {
+    if (on == kiosk_) return;
+    if (on && active_) keepLayout();
+    hasVisitors_ = workspace_.setForVisitors(on);
+    if (on) {
+        restored_.clear();
+        kioskLayout_ = saveState(kLayoutVersion);
+        kiosk_ = true;
+        for (QDockWidget* dock : docks_) dock->hide();
+        return;
+    }
+    restoreState(std::exchange(kioskLayout_, {}), kLayoutVersion);
+    kiosk_ = false;
+    if (isVisible()) fitColumns();
 }
 
 /// A page is laid out several times on its way to its size, and widths that do not fit on the way would stay cut.

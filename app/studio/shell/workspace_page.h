@@ -24,8 +24,10 @@ public:
     void setActive(bool active);
     void keepLayout();
     void resetLayout();
-    /// Only the central view; nothing of it is remembered.
-    void setKiosk();
+    /// Only the central view, as visitors may see it; nothing of it is remembered. Or all as it was.
+    void setKiosk(bool on);
+    /// Whether visitors find something in it.
+    [[nodiscard]] bool hasVisitors() const noexcept { return hasVisitors_; }
 
 protected:
     void showEvent(QShowEvent* event) override;
@@ -50,6 +52,8 @@ private:
     bool sized_ = false;    ///< the docks' first widths were given
     bool active_ = false;
     bool kiosk_ = false;
+    bool hasVisitors_ = false;
+    QByteArray kioskLayout_; ///< what it was before
 };
 
 } // namespace lumorph::studio

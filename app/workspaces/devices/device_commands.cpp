@@ -16,7 +16,7 @@ namespace lumorph::studio {
 namespace {
 
 constexpr auto kFirstAddress = "sim://tablet";
-constexpr auto kMenu = "Device";
+constexpr auto kMenu = "Hardware";
 constexpr auto kPlace = "devices"; // of notices and jobs
 constexpr auto kSketch = "The board's sketch";
 

@@ -17,7 +17,7 @@ void addTrackerAction(Studio& studio, const char* id, const QString& text, const
                       std::function<void()> run) {
     Commands::Options options;
     options.icon = icon;
-    options.menu = "Device";
+    options.menu = "Hardware";
     studio.commands.add(id, text, options, std::move(run))->setToolTip(tip);
 }
 

@@ -45,9 +45,9 @@ FieldCentralView::FieldCentralView(Studio& studio, Throttle& numbers, QWidget* p
         widget->raise();
         return padded;
     };
-    lay(makeTools(), 0, Qt::AlignLeft | Qt::AlignTop);
+    lay(tools_ = makeTools(), 0, Qt::AlignLeft | Qt::AlignTop);
     lay(makeHint(), 1, Qt::AlignCenter);
-    lay(makeNotices(), 1, Qt::AlignHCenter | Qt::AlignTop);
+    lay(notices_ = makeNotices(), 1, Qt::AlignHCenter | Qt::AlignTop);
     timelineMargins_ = lay(timeline_, 2, Qt::AlignHCenter | Qt::AlignBottom);
     readoutMargins_ = lay(readout_, 2, Qt::AlignRight | Qt::AlignBottom);
     grid->setRowStretch(1, 1);
@@ -137,10 +137,18 @@ QWidget* FieldCentralView::makeNotices() {
 
 void FieldCentralView::setTargetNoticesShown(bool shown) { targetNotices_->setVisible(shown); }
 
+void FieldCentralView::setForVisitors(bool on) {
+    forVisitors_ = on;
+    tools_->setVisible(!on);
+    notices_->setVisible(!on);
+    refresh();
+}
+
 void FieldCentralView::refresh() {
     const StudioState& state = studio_.document.state();
-    hint_->setVisible(!state.target.target && state.rig.rig);
+    hint_->setVisible(!forVisitors_ && !state.target.target && state.rig.rig);
     timeline_->refresh();
+    if (forVisitors_) timeline_->hide();
     if (!state.target.target) readout_->hide();
 }
 

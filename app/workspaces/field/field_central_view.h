@@ -23,6 +23,8 @@ public:
     void refresh();
     /// Notices about the target stand over the view while no dock shows them.
     void setTargetNoticesShown(bool shown);
+    /// The view and how well it matches, without tools, timeline and notices; or all again.
+    void setForVisitors(bool on);
 
 protected:
     void resizeEvent(QResizeEvent* event) override;
@@ -38,8 +40,10 @@ private:
     Timeline* timeline_;
     QLayout* timelineMargins_ = nullptr;
     QLayout* readoutMargins_ = nullptr;
+    QWidget *tools_ = nullptr, *notices_ = nullptr;
     QWidget* hint_ = nullptr;
     QWidget* targetNotices_ = nullptr;
+    bool forVisitors_ = false;
 };
 
 } // namespace lumorph::studio

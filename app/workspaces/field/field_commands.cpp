@@ -99,12 +99,12 @@ private:
     }
 
     void addRig() {
-        rest_ = add({"rig.rest", "Rest", "Bring all actuators to rest", "rest", "Ctrl+0"}, "Rig", false,
+        rest_ = add({"rig.rest", "Rest", "Bring all actuators to rest", "rest", "Ctrl+0"}, "Actuators", false,
                     [this] { hand_.moveAll("Bring to rest", {}); });
-        random_ = add({"rig.random", "Random", "Bring every actuator to a random level", "random", "Ctrl+R"}, "Rig",
-                      false, [this] { moveAtRandom(); });
-        dance_ = add({"rig.dance", "Dance", "Smooth random moves until you stop them", "dance", "Ctrl+D"}, "Rig", true,
-                     [this] { studio_.loop.setDancing(!studio_.loop.dancing()); });
+        random_ = add({"rig.random", "Random", "Bring every actuator to a random level", "random", "Ctrl+R"},
+                      "Actuators", false, [this] { moveAtRandom(); });
+        dance_ = add({"rig.dance", "Dance", "Smooth random moves until you stop them", "dance", "Ctrl+D"}, "Actuators",
+                     true, [this] { studio_.loop.setDancing(!studio_.loop.dancing()); });
     }
 
     void addMatch() {

@@ -113,7 +113,7 @@ void FieldDock::addBuildCommand() {
     if (build_ != nullptr) return;
     Commands::Options options;
     options.icon = "build";
-    options.menu = "Field";
+    options.menu = "Actuators";
     options.workspace = "field";
     build_ = studio_.commands.add("field.build", tr("Build the Field..."), options,
                                   [this] { openBuildDialog(studio_, window()); });

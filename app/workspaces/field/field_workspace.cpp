@@ -254,6 +254,13 @@ std::vector<WorkspaceDock> FieldWorkspace::makeDocks() {
             {"dock.match", "Match", "live", makeMatchDock(studio, data_->numbers), Qt::RightDockWidgetArea, false}};
 }
 
+bool FieldWorkspace::setForVisitors(bool on) {
+    if (!data_->stage) return true;
+    if (on) data_->select(false);
+    data_->stage->setForVisitors(on);
+    return true;
+}
+
 void FieldWorkspace::setActive(bool active) {
     data_->active = active;
     if (!data_->view()) return;

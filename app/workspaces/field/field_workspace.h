@@ -21,6 +21,7 @@ public:
     [[nodiscard]] QWidget* makeCentralView() override;
     [[nodiscard]] std::vector<WorkspaceDock> makeDocks() override;
     void setActive(bool active) override;
+    bool setForVisitors(bool on) override;
 
 private:
     struct Data;

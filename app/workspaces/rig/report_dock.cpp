@@ -19,7 +19,7 @@ public:
     explicit RigReport(Studio& studio) : studio_(studio), pages_(new QStackedWidget(this)) {
         Commands::Options options;
         options.icon = "check";
-        options.menu = "Rig";
+        options.menu = "Actuators";
         options.workspace = "rig";
         check_ = studio.commands.add("rig.check", "Check the rig", options, [this] { check(); });
         auto* layout = new QVBoxLayout(this);

@@ -89,8 +89,9 @@ void RigWorkspace::Data::listen() {
 void RigWorkspace::Data::addCommands() {
     Commands::Options options;
     options.icon = "open";
-    options.menu = "Rig";
+    options.menu = "File";
     studio.commands.add("rig.open", "Open rig...", options, [this] { openRig(); });
+    options.menu = "Actuators";
     options.icon = "actuator";
     options.workspace = "rig";
     options.shortcut = QKeySequence("Ctrl+Shift+W");

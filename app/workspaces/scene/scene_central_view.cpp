@@ -84,6 +84,7 @@ struct SceneCentralView::Data {
     std::optional<glm::vec3> observer;
     bool observing = false; ///< this drag moves the observer, not the viewer
     bool active = false;
+    bool forVisitors = false;
 };
 
 SceneCentralView::Data::Data(SceneCentralView& stage, Studio& shared)
@@ -353,7 +354,16 @@ void SceneCentralView::setActive(bool active) {
     data_->showScene();
 }
 
+void SceneCentralView::setForVisitors(bool on) {
+    data_->forVisitors = on;
+    data_->bar->setVisible(!on);
+    data_->notices->setVisible(!on);
+    data_->latency->setVisible(!on && data_->bar->latencyShown());
+    if (on) setSelected(0);
+}
+
 void SceneCentralView::setSelected(int item) {
+    if (data_->forVisitors) item = 0;
     for (const auto& [part, handles] : data_->handles) {
         handles->setItem(item);
         data_->panes.at(part)->update();

@@ -19,6 +19,8 @@ public:
 
     /// A hidden stage draws nothing.
     void setActive(bool active);
+    /// The pictures alone, without bar, cards and handles; or all again.
+    void setForVisitors(bool on);
     /// Marks an item of the scene; 0 marks none.
     void setSelected(int item);
 

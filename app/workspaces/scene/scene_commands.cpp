@@ -110,7 +110,7 @@ private:
         Commands::Options options;
         options.icon = iconName;
         options.shortcut = QKeySequence(keys);
-        options.menu = "Scene";
+        options.menu = "Things";
         options.workspace = "scene";
         options.checkable = checkable;
         QAction* action = studio_.commands.add(id, text, options, std::move(run));

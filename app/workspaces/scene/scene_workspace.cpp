@@ -153,6 +153,13 @@ void SceneWorkspace::setActive(bool active) {
     if (data_->stage) data_->stage->setActive(active);
 }
 
+bool SceneWorkspace::setForVisitors(bool on) {
+    if (!data_->stage) return true;
+    data_->stage->setForVisitors(on);
+    if (!on) data_->stage->setSelected(data_->selection.item());
+    return true;
+}
+
 bool SceneWorkspace::takeDrop(const std::vector<std::filesystem::path>& files) {
     const auto isModel = [](const auto& file) { return endsWith(file, {".glb", ".gltf"}); };
     const auto isPicture = [](const auto& file) { return endsWith(file, {".png", ".jpg", ".jpeg"}); };

@@ -20,6 +20,7 @@ public:
     [[nodiscard]] QWidget* makeCentralView() override;
     [[nodiscard]] std::vector<WorkspaceDock> makeDocks() override;
     void setActive(bool active) override;
+    bool setForVisitors(bool on) override;
     bool takeDrop(const std::vector<std::filesystem::path>& files) override;
 
 private:
