@@ -331,6 +331,16 @@ TEST_F(DevicesWindow, ANumberThatMayNotBeIsRefusedAndNotMadeAnother) {
         EXPECT_TRUE(told.front().subject.contains("Servo 4")) << told.front().subject.toStdString();
         EXPECT_EQ(window.studio().devices.profile().servos, before.servos);
     }
+    // Every number of a servo says in what it is counted.
+    for (const auto& [field, unit] :
+         {std::pair{"servo.velocity", "(strokes/s)"}, std::pair{"servo.acceleration", "(strokes/s²)"},
+          std::pair{"servo.pulseMin", "(µs)"}}) {
+        const auto labels = window.window().findChildren<QLabel*>();
+        const auto label = std::ranges::find_if(
+            labels, [&](const QLabel* one) { return one->buddy() && one->buddy()->objectName() == field; });
+        ASSERT_NE(label, labels.end()) << field;
+        EXPECT_TRUE((*label)->text().contains(QString::fromUtf8(unit))) << (*label)->text().toStdString();
+    }
     window.enter("servo.pulseMax", "1950");
     EXPECT_EQ(window.studio().devices.profile().servos[3].pulseMax, 1950.0);
     EXPECT_TRUE(window.studio().notices.at("servo").empty());
