@@ -110,6 +110,21 @@ TEST_F(DevicesWindow, StopReachesTheBoardWhileTheWindowIsStuck) {
     EXPECT_TRUE(eventually([&] { return std::abs(servoOf(0).pulse - 2000.0) <= 2.0; }));
 }
 
+TEST_F(DevicesWindow, StopIsOneThingWithOnePromiseWhereverItIsOffered) {
+    std::vector<QAction*> stops;
+    for (const auto& entry : window.studio().commands.all())
+        if (entry.action->text().contains("STOP") && !entry.action->text().contains("after"))
+            stops.push_back(entry.action);
+    ASSERT_EQ(stops.size(), 1U);
+    EXPECT_EQ(stops[0]->toolTip(), window.find<QWidget>("stop")->toolTip());
+    EXPECT_TRUE(stops[0]->toolTip().contains("limp"));
+    goLive();
+    stops[0]->trigger();
+    EXPECT_TRUE(reaches(LinkPhase::stopped));
+    EXPECT_TRUE(allLimp());
+    EXPECT_TRUE(window.studio().loop.stopped());
+}
+
 TEST_F(DevicesWindow, WhoHitsStopTwiceDoesNotStartTheServosAgain) {
     goLive();
     auto* stop = window.find<QWidget>("stop");
@@ -215,6 +230,7 @@ TEST_F(DevicesWindow, DoubleClicksOnConnectAndOnStartStartNothing) {
         if (QWidget* there = window.window().childAt(place)) {
             QTest::mouseClick(there, Qt::LeftButton);
             QTest::mouseDClick(there, Qt::LeftButton);
+            QTest::mouseRelease(there, Qt::LeftButton);
         }
         pass(100ms);
     }
@@ -224,6 +240,7 @@ TEST_F(DevicesWindow, DoubleClicksOnConnectAndOnStartStartNothing) {
     for (int press = 0; press < 5; ++press) {
         QTest::mouseClick(hold, Qt::LeftButton);
         QTest::mouseDClick(hold, Qt::LeftButton);
+        QTest::mouseRelease(hold, Qt::LeftButton);
         pass(100ms);
     }
     window.hold("start.hold", 700ms);
@@ -247,8 +264,8 @@ TEST_F(DevicesWindow, AStartShowsThePoseToComeAndTheLargestJump) {
     // 1000 to 2000 us; what may be at 1000 and is wanted at 1800 leaps by 800, one that is wanted at 1000 by 1000.
     EXPECT_TRUE(eventually([&] {
         const auto* list = window.findNow<QListWidget>("start.servos");
-        return list && list->item(list->count() - 1)->text() ==
-                           studio::servoName(studio::servoNamesOf(window.studio()), 2) + " may jump by up to 800 µs";
+        return list && list->item(2)->text() ==
+                           studio::servoName(studio::servoNamesOf(window.studio()), 2) + ": may jump by up to 800 µs";
     }));
     EXPECT_TRUE(window.text("start.text").contains("1000 µs, of Servo 1")) << window.text("start.text").toStdString();
     EXPECT_TRUE(window.text("start.text").startsWith("Hands off"));
@@ -313,6 +330,16 @@ TEST_F(DevicesWindow, ANumberThatMayNotBeIsRefusedAndNotMadeAnother) {
         EXPECT_TRUE(told.front().why.contains(row.told)) << told.front().why.toStdString();
         EXPECT_TRUE(told.front().subject.contains("Servo 4")) << told.front().subject.toStdString();
         EXPECT_EQ(window.studio().devices.profile().servos, before.servos);
+    }
+    // Every number of a servo says in what it is counted.
+    for (const auto& [field, unit] :
+         {std::pair{"servo.velocity", "(strokes/s)"}, std::pair{"servo.acceleration", "(strokes/s²)"},
+          std::pair{"servo.pulseMin", "(µs)"}}) {
+        const auto labels = window.window().findChildren<QLabel*>();
+        const auto label = std::ranges::find_if(
+            labels, [&](const QLabel* one) { return one->buddy() && one->buddy()->objectName() == field; });
+        ASSERT_NE(label, labels.end()) << field;
+        EXPECT_TRUE((*label)->text().contains(QString::fromUtf8(unit))) << (*label)->text().toStdString();
     }
     window.enter("servo.pulseMax", "1950");
     EXPECT_EQ(window.studio().devices.profile().servos[3].pulseMax, 1950.0);
@@ -399,7 +426,7 @@ TEST_F(DevicesWindow, TheRigShowsTheSameChannel) {
     window.enter("servo.channel", "11");
     EXPECT_EQ(window.text("devices.channel.0"), "channel 11");
     window.click("tab.rig");
-    auto* list = window.find<QListWidget>("rig.actuators");
+    auto* list = window.find<QListWidget>("rig.list");
     ASSERT_NE(list, nullptr);
     list->setCurrentRow(0);
     EXPECT_TRUE(eventually([&] { return window.text("rig.actuator.channel") == "11"; }))

@@ -48,6 +48,7 @@ TEST_F(HoldButtonTest, ClicksAndDoubleClicksDoNothing) {
     for (int k = 0; k < 5; ++k) {
         QTest::mouseClick(button, Qt::LeftButton);
         QTest::mouseDClick(button, Qt::LeftButton);
+        QTest::mouseRelease(button, Qt::LeftButton);
         QTest::keyClick(button, Qt::Key_Space);
         QTest::keyClick(button, Qt::Key_Return);
     }

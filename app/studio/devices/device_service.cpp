@@ -442,6 +442,7 @@ void DeviceService::connectTo(const QString& address, std::optional<ControllerKi
     const DeviceProfile next =
         readdressed(data_->profile, *data_->rig, wanted, controller.value_or(likelyController(wanted)));
     const DeviceProfile before = std::exchange(data_->profile, next);
+    if (next.controller != before.controller) data_->undo.clear(); // its channels are others
     try {
         static_cast<void>(parseDeviceAddress(wanted));
         const bool other = !data_->link || data_->link->profile().address != wanted ||
@@ -488,7 +489,11 @@ void DeviceService::start(bool jumpAllowed) {
 
 void DeviceService::askStart(StartBy by) { emit startAsked(by); }
 
-std::vector<double> DeviceService::wanted() const { return data_->feed.shown(); }
+std::vector<double> DeviceService::wanted() const {
+    std::vector<double> shown = data_->feed.shown();
+    const auto& frame = data_->loop.frame();
+    return shown.empty() && frame && !frame->recorded ? frame->estimatedStrokes : shown;
+}
 
 void DeviceService::setFollowsRecordings(bool follows) { data_->followsRecordings = follows; }
 

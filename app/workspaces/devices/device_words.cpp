@@ -1,5 +1,7 @@
 #include "app/workspaces/devices/device_words.h"
 
+#include <algorithm>
+
 #include "app/studio/devices/device_log.h"
 
 namespace lumorph::studio {
@@ -85,7 +87,9 @@ DeviceCard waitingCard(const DeviceView& view) {
 }
 
 DeviceCard readyCard(const DeviceView& view) {
-    QString text = "Its servos are limp. They start one after the other, slowly.";
+    const bool known = std::ranges::all_of(view.link.servos, &ServoStatus::known);
+    QString text = known ? "Its servos are limp. They start one after the other, slowly."
+                         : "Its servos are limp, and nobody knows where they stand. They start one after the other.";
     if (view.link.controller.traits.jumpsOnAttach)
         text = "Its firmware lets servos jump to the middle when they start: hands off.";
     if (!view.link.controller.answering)

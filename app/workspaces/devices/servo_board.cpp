@@ -20,6 +20,7 @@ namespace {
 /// What went wrong this long ago still belongs to the state of things.
 constexpr qint64 kLatelySeconds = 20;
 constexpr int kMarksMilliseconds = 100;
+constexpr int kStartHeight = 190; ///< so that the servos stay in sight
 
 QString lately(const DeviceService& service) {
     const bool live = service.status().phase == LinkPhase::live;
@@ -46,6 +47,7 @@ public:
         layout->setSpacing(6);
         layout->addWidget(card_);
         start_ = new StartPanel(studio, DeviceService::StartBy::show, this);
+        start_->setMaximumHeight(kStartHeight);
         start_->hide();
         layout->addWidget(start_);
         layout->addWidget(makeHint());

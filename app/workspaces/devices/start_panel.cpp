@@ -1,7 +1,5 @@
 #include "app/workspaces/devices/start_panel.h"
 
-#include <cmath>
-
 #include <QApplication>
 #include <QDialog>
 #include <QHBoxLayout>
@@ -16,15 +14,7 @@ namespace {
 
 constexpr int kRefreshEvery = 200; ///< milliseconds; the show goes on meanwhile
 constexpr QSize kLeastPicture{220, 150};
-constexpr double kDrawnAnew = 0.01; ///< strokes
 constexpr float kGhost = 0.45F;
-
-bool looksSame(const std::vector<StartMove>& a, const std::vector<StartMove>& b) {
-    return std::ranges::equal(a, b, [](const StartMove& one, const StartMove& other) {
-        return one.from.has_value() == other.from.has_value() && std::abs(one.to - other.to) < kDrawnAnew &&
-               std::abs(one.from.value_or(0.0) - other.from.value_or(0.0)) < kDrawnAnew;
-    });
-}
 
 QWidget* programWindow() {
     for (QWidget* top : QApplication::topLevelWidgets())
@@ -55,6 +45,7 @@ StartPanel::StartPanel(Studio& studio, DeviceService::StartBy by, QWidget* paren
     servos_->setSelectionMode(QAbstractItemView::NoSelection);
     servos_->setFocusPolicy(Qt::TabFocus);
     servos_->setMinimumHeight(44);
+    servos_->setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
     hold_->setObjectName("start.hold");
     hold_->setMinimumHeight(36);
     auto* words = new QVBoxLayout;
@@ -117,8 +108,10 @@ void StartPanel::refresh() {
     hold_->setAccessibleName(question_.button);
     hold_->setEnabled(question_.possible);
     if (other) {
-        servos_->clear();
-        servos_->addItems(question_.servos);
+        while (servos_->count() > question_.servos.size()) delete servos_->takeItem(servos_->count() - 1);
+        for (int k = 0; k < question_.servos.size(); ++k)
+            k < servos_->count() ? servos_->item(k)->setText(question_.servos[k])
+                                 : servos_->addItem(question_.servos[k]);
         text_->style()->unpolish(text_);
         text_->style()->polish(text_);
         emit questionChanged();
@@ -130,7 +123,7 @@ void StartPanel::refresh() {
 void StartPanel::draw(const std::vector<StartMove>& moves) {
     const auto& rig = studio_.document.state().rig.rig;
     if (!rig || rig->actuatorCount() != moves.size()) return;
-    if (!builder_.pending() && !drawn_.empty() && looksSame(drawn_, moves)) return;
+    if (!builder_.pending() && drawn_ == moves) return;
     drawn_ = moves;
     MatchFrame pose;
     pose.rig = rig;
@@ -176,7 +169,7 @@ void openStartDialog(Studio& studio, DeviceService::StartBy by) {
     column->setSpacing(12);
     column->addWidget(panel, 1);
     column->addWidget(cancel, 0, Qt::AlignLeft);
-    dialog->setWindowTitle(panel->question().title);
+    dialog->setWindowTitle("Servos");
     QObject::connect(cancel, &QPushButton::clicked, dialog, &QDialog::reject);
     QObject::connect(panel, &StartPanel::started, dialog, &QDialog::accept);
     // What was asked about has come about otherwise, or is gone.

@@ -16,7 +16,7 @@ double wayOf(const StartMove& move) { return move.from ? std::abs(move.to - *mov
 QString moveText(const StartMove& move) {
     if (move.jump > 0.0) return "may jump by up to " + microsecondsText(move.jump);
     if (wayOf(move) < kStands) return "stays at " + strokePercent(move.to);
-    return "goes slowly from " + strokePercent(*move.from) + " to " + strokePercent(move.to);
+    return strokePercent(*move.from) + " to " + strokePercent(move.to) + ", slowly";
 }
 
 std::vector<std::size_t> farthestFirst(const std::vector<StartMove>& moves) {
@@ -51,7 +51,8 @@ bool canBegin(const LinkStatus& link, DeviceService::StartBy by) {
 StartQuestion startQuestion(const DeviceView& view, const std::vector<StartMove>& moves, DeviceService::StartBy by) {
     StartQuestion question;
     const std::vector<std::size_t> order = farthestFirst(moves);
-    for (const std::size_t k : order) question.servos << servoName(view.servos, k) + ' ' + moveText(moves[k]);
+    for (std::size_t k = 0; k < moves.size(); ++k)
+        question.servos << servoName(view.servos, k) + ": " + moveText(moves[k]);
     question.jumps = !order.empty() && moves[order.front()].jump > 0.0;
     question.possible = canBegin(view.link, by);
     question.title = titleOf(view, by);

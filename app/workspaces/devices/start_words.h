@@ -13,7 +13,7 @@ namespace lumorph::studio {
 struct StartQuestion {
     QString title;
     QString text;       ///< the largest jump and the farthest way, by servo
-    QStringList servos; ///< what each servo will do, the longest jump first, then the longest way
+    QStringList servos; ///< what each servo will do
     QString button;     ///< to be held
     bool jumps = false; ///< some servo may leap
     bool possible = false;
