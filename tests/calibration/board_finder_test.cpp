@@ -2,8 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <random>
+#include <utility>
+#include <vector>
 
+#include <glm/gtc/constants.hpp>
 #include <glm/gtc/matrix_transform.hpp>
 #include <glm/gtc/quaternion.hpp>
 #include <gtest/gtest.h>
@@ -59,6 +63,68 @@ INSTANTIATE_TEST_SUITE_P(
     ::testing::Values(Case{"charuco", {}, false, 0.8}, Case{"charucoThroughALens", {}, true, 0.8},
                       Case{"aruco", {MarkerBoard::Kind::aruco, 4, 5, 0.035, 0.028, "6X6_250"}, true, 1.5}),
     [](const auto& one) { return one.param.name; });
+
+/// The other pose in which a board looks the same from very far: its normal mirrored at the line of sight.
+glm::dquat flippedOver(const glm::dquat& cameraFromBoard, const glm::dvec3& sight) {
+    return glm::angleAxis(glm::pi<double>(), glm::normalize(sight)) * cameraFromBoard *
+           glm::angleAxis(glm::pi<double>(), glm::dvec3(0.0, 0.0, 1.0));
+}
+
+class BoardFinderFlip : public ::testing::Test {
+protected:
+    /// What is found of a board that is tilted by so many degrees, at a distance that fills the picture alike.
+    void look(double metres, double tilt, double turn) {
+        const CalibratedCamera camera =
+            cameraLookingAt({0.0, 0.0, metres}, {0.0, 0.0, 0.0}, {640, 480}, 1500.0 * metres);
+        const Photographer photographer(board_, camera);
+        const glm::dquat rotation = glm::angleAxis(glm::radians(turn), glm::dvec3(0.0, 0.0, 1.0)) *
+                                    glm::angleAxis(glm::radians(tilt), glm::dvec3(1.0, 0.0, 0.0));
+        const glm::dvec3 middle(0.5 * sizeOf(board_), 0.0);
+        const Pose worldFromBoard{rotation * -middle, rotation};
+        picture_ = photographer.picture(matrixOf(worldFromBoard), 4.0);
+        const glm::dmat4 cameraFromBoard = camera.cameraFromWorld * matrixOf(worldFromBoard);
+        truth_ = {glm::dvec3(cameraFromBoard[3]), glm::normalize(glm::quat_cast(glm::dmat3(cameraFromBoard)))};
+        other_ = truth_;
+        other_.rotation = flippedOver(truth_.rotation, truth_.position);
+        finder_.emplace(board_, camera);
+    }
+    /// Degrees from a pose, of what is found with a hint.
+    double degreesFrom(const Pose& pose, const std::optional<Pose>& hint) {
+        const auto sighting = finder_->find(picture_, hint);
+        if (!sighting) {
+            ADD_FAILURE() << "not found";
+            return 180.0;
+        }
+        return degreesBetween(sighting->cameraFromBoard.rotation, pose.rotation);
+    }
+    static Pose turnedALittle(Pose pose) {
+        pose.rotation = glm::angleAxis(glm::radians(4.0), glm::normalize(glm::dvec3(0.4, 1.0, 0.3))) * pose.rotation;
+        return pose;
+    }
+
+    MarkerBoard board_;
+    std::vector<std::uint8_t> picture_;
+    Pose truth_, other_;
+    std::optional<BoardFinder> finder_;
+};
+
+TEST_F(BoardFinderFlip, WhereTwoPosesFitAlikeTheOneOfBeforeGoesOn) {
+    for (const auto& [tilt, turn] : {std::pair(-30.0, 0.0), {25.0, 30.0}, {25.0, 115.0}}) {
+        look(60.0, tilt, turn);
+        ASSERT_GT(degreesBetween(truth_.rotation, other_.rotation), 45.0);
+        EXPECT_LT(degreesFrom(truth_, turnedALittle(truth_)), 6.0) << tilt << " turned " << turn;
+        EXPECT_LT(degreesFrom(other_, turnedALittle(other_)), 6.0) << tilt << " turned " << turn;
+    }
+}
+
+TEST_F(BoardFinderFlip, WhereOneFitsClearlyBetterNoHintMisleads) {
+    for (const auto& [tilt, turn] : {std::pair(-35.0, 0.0), {25.0, 115.0}, {40.0, 0.0}}) {
+        look(0.7, tilt, turn);
+        EXPECT_LT(degreesFrom(truth_, std::nullopt), 1.0) << tilt << " turned " << turn;
+        EXPECT_LT(degreesFrom(truth_, other_), 1.0) << tilt << " turned " << turn;
+        EXPECT_LT(degreesFrom(truth_, truth_), 1.0) << tilt << " turned " << turn;
+    }
+}
 
 TEST(BoardFinder, BlackBoxesAreTheBlackOfThePage) {
     for (const MarkerBoard& board : {MarkerBoard{}, MarkerBoard{MarkerBoard::Kind::aruco, 3, 2, 0.05, 0.04, "5X5_50"},

@@ -154,6 +154,36 @@ TEST(LabLens, ADirectionBeyondTheFoldOfTheDistortionHasNoPixel) {
     EXPECT_FALSE(rayThrough(lens, {319.5 + 500.0, 239.5}));
 }
 
+// Each term of the distortion bends on its own, and folds back where d(r (1 + k r^n)) / dr is zero.
+TEST(LabLens, EveryTermOfTheDistortionBendsAndFolds) {
+    struct Row {
+        std::array<double, 5> distortion;
+        double fold; ///< tangent
+    };
+    for (const Row& row : {Row{{-0.3, 0, 0, 0, 0}, std::sqrt(1.0 / 0.9)}, Row{{0, -0.1, 0, 0, 0}, std::pow(2.0, 0.25)},
+                           Row{{0, 0, 0, 0, -0.2}, std::pow(1.0 / 1.4, 1.0 / 6.0)},
+                           Row{{0, 0, 0, 0, -0.02}, std::pow(1.0 / 0.14, 1.0 / 6.0)}}) {
+        CalibratedCamera camera = lookingFrom({0, 1, 0}, {0, 0, 0}, {640, 480}, 500);
+        camera.distortion = row.distortion;
+        const LabLens lens = lensOf(camera, "camera");
+        EXPECT_NEAR(lens.steepestSlope, row.fold, 1e-6);
+        for (int i = 0; i < 24; ++i) {
+            const double angle = 0.26 * i;
+            for (const double share : {0.1, 0.5, 0.9, 0.99}) {
+                const glm::dvec3 point(share * row.fold * std::cos(angle), 0.0, share * row.fold * std::sin(angle));
+                const auto pixel = imageOf(lens, point);
+                ASSERT_TRUE(pixel) << share;
+                EXPECT_LT(glm::length(*pixel - opencvPixel(camera, point)), 1e-8);
+                const auto ray = rayThrough(lens, *pixel);
+                ASSERT_TRUE(ray) << share;
+                EXPECT_LT(glm::length(*ray - glm::normalize(point - lens.position)), 1e-8);
+            }
+            const double beyond = 1.001 * row.fold;
+            EXPECT_FALSE(imageOf(lens, {beyond * std::cos(angle), 0.0, beyond * std::sin(angle)}));
+        }
+    }
+}
+
 TEST(Lab, MarkersAppearWhereOpenCvProjectsThem) {
     for (const CalibratedCamera& camera : cameras()) {
         const LabLens lens = lensOf(camera, "camera");

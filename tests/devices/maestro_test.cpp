@@ -98,6 +98,28 @@ TEST(MaestroReplies, DoNotGrow) {
     Replies replies;
     for (int i = 0; i < 10'000; ++i) replies.expectErrors();
     EXPECT_EQ(replies.open(), Replies::kMostOpen);
+    EXPECT_EQ(replies.broken(), 10'000U - Replies::kMostOpen) << "each that was given up is told";
+}
+
+/// The oldest question is given up, with the half answer that has come to it; the next bytes answer the next one.
+TEST(MaestroReplies, GiveUpTheOldestQuestionWithItsHalfAnswer) {
+    for (const bool half : {false, true}) {
+        Replies replies;
+        for (int channel = 0; channel < static_cast<int>(Replies::kMostOpen); ++channel)
+            replies.expectPosition(channel);
+        if (half) {
+            EXPECT_TRUE(replies.feed(Bytes{0x11}).empty());
+        }
+        EXPECT_EQ(replies.broken(), 0U);
+        replies.expectPosition(99);
+        EXPECT_EQ(replies.open(), Replies::kMostOpen);
+        EXPECT_EQ(replies.broken(), 1U);
+        EXPECT_EQ(replies.feed(Bytes{0x70, 0x17}), (std::vector<Message>{Position{1, 6000}}));
+        EXPECT_EQ(replies.feed(Bytes{0x00, 0x10}), (std::vector<Message>{Position{2, 4096}}));
+        for (std::size_t rest = Replies::kMostOpen - 3; rest > 0; --rest) (void)replies.feed(Bytes{0x00, 0x00});
+        EXPECT_EQ(replies.feed(Bytes{0x01, 0x00}), (std::vector<Message>{Position{99, 1}}));
+        EXPECT_EQ(replies.broken(), 1U);
+    }
 }
 
 } // namespace

@@ -230,6 +230,53 @@ TEST(NatNet, BothEndsOfFramesThatSourcesDisagreeOnAreTaken) {
     }
 }
 
+// The first flag alone tells whether a body is tracked; Motive has come to set others beside it.
+TEST(NatNet, OtherFlagsOfABodyDoNotTellWhetherItIsTracked) {
+    for (const Version version : test::kNatNetVersions) {
+        if (version < Version{2, 6}) continue;
+        for (const int others : {0, 2, 4, 6, 0x100, 0x7ffe, -2}) {
+            test::NatNetWriter writer(version);
+            writer.bodyParams = static_cast<std::int16_t>(others);
+            Frame sent = test::RandomFrames(9).frame(version);
+            sent.bodies.resize(2);
+            sent.bodies[0].valid = true;
+            sent.bodies[1].valid = false;
+            const Frame read = frameOf(writer.frame(sent), version);
+            ASSERT_EQ(read.bodies.size(), 2U);
+            EXPECT_TRUE(read.bodies[0].valid) << others;
+            EXPECT_FALSE(read.bodies[1].valid) << others;
+        }
+    }
+}
+
+TEST(NatNet, FlagsOfAFrameAreReadBitByBit) {
+    const Version version{3, 1};
+    test::NatNetWriter writer(version);
+    for (const auto& [params, changed] :
+         {std::pair{0, false}, {1, false}, {2, true}, {3, true}, {4, false}, {-3, false}}) {
+        Frame sent = test::RandomFrames(2).frame(version);
+        sent.params = static_cast<std::int16_t>(params);
+        EXPECT_EQ(frameOf(writer.frame(sent), version).modelsChanged(), changed) << params;
+    }
+}
+
+// The time by the network's clock came with 4.1: the same eight bytes in an older frame are a broken frame.
+TEST(NatNet, PreciseTimeIsOfVersion41Alone) {
+    for (const Version version : test::kNatNetVersions) {
+        test::NatNetWriter writer(version);
+        writer.preciseTime = false;
+        Datagram longer = writer.frame(test::RandomFrames(6).frame(version));
+        const std::ptrdiff_t end = version >= Version{2, 6} ? 6 : 4; // flags and the end's mark
+        longer.insert(longer.end() - end, 8, std::byte{0x11});
+        const auto size = static_cast<std::uint16_t>(longer.size() - 4);
+        std::memcpy(longer.data() + 2, &size, sizeof size);
+        if (version >= Version{4, 1})
+            EXPECT_NO_THROW((void)frameOf(longer, version));
+        else
+            EXPECT_THROW((void)frameOf(longer, version), DataError) << version.major << "." << version.minor;
+    }
+}
+
 TEST(NatNet, ModelsOfEveryVersionComeBackAsTheyWereSent) {
     for (const Version version : test::kNatNetVersions) {
         const std::vector<Model> sent = test::allModels(version);

@@ -46,6 +46,24 @@ protected:
         return troubles_.empty() ? LinkTrouble{} : troubles_.back();
     }
 
+    /// A name of the pseudo-terminal that goes when it is unplugged, as a real port's node does; its number may be
+    /// another program's in the next moment.
+    class Node {
+    public:
+        explicit Node(const Pty& pty) : path_(testing::TempDir() + "lumorph_node_" + std::to_string(::getpid())) {
+            ::unlink(path_.c_str());
+            if (::symlink(pty.path().c_str(), path_.c_str()) != 0) throw std::runtime_error("no link");
+        }
+        ~Node() { remove(); }
+        Node(const Node&) = delete;
+        Node& operator=(const Node&) = delete;
+        [[nodiscard]] const std::string& path() const { return path_; }
+        void remove() const { ::unlink(path_.c_str()); }
+
+    private:
+        std::string path_;
+    };
+
     EventLoop loop_;
     Pty pty_;
     int opened_ = 0;
@@ -78,11 +96,13 @@ TEST_F(SerialTransport, CarriesEveryByteBothWays) {
 }
 
 TEST_F(SerialTransport, ADeadPortIsClosedOnceAndCostsNothing) {
-    make(pty_.path());
+    const Node node(pty_);
+    make(node.path());
     transport_->open();
     ASSERT_TRUE(transport_->isOpen());
     g_messages = 0;
     const auto before = qInstallMessageHandler(countMessage);
+    node.remove();
     pty_.unplug();
     ASSERT_TRUE(EventLoop::runUntil([&] { return !troubles_.empty(); }, 1s));
     EXPECT_FALSE(transport_->isOpen());
@@ -101,7 +121,7 @@ TEST_F(SerialTransport, ADeadPortIsClosedOnceAndCostsNothing) {
     ASSERT_EQ(troubles_.size(), 2u);
     // The node is gone with its far end, so both tell the same.
     EXPECT_EQ(troubles_[0], troubles_[1]);
-    EXPECT_EQ(troubles_[0].why, "there is no port " + pty_.path());
+    EXPECT_EQ(troubles_[0].why, "there is no port " + node.path());
 }
 
 TEST_F(SerialTransport, AWriteMayBeWhatFindsItDead) {

@@ -351,5 +351,53 @@ INSTANTIATE_TEST_SUITE_P(Boards, ServoEngineWire,
                                          EngineCase{"maestro", ControllerKind::maestro, 0, 0.25, 0.05}),
                          [](const auto& board) { return std::string(board.param.board); });
 
+/// The first pulse that a channel gets from now on.
+std::optional<double> firstPulse(EngineBench& bench, WireReader& reader, int channel) {
+    std::optional<double> pulse;
+    bench.onWrite = [&](const auto& message) {
+        for (const WireOrder& order : reader.receive(message))
+            if (!pulse && order.channel == channel && order.pulse) pulse = order.pulse;
+    };
+    bench.runUntil([&] { return pulse.has_value(); }, 5.0);
+    bench.onWrite = nullptr;
+    return pulse;
+}
+
+// A board that reads positions tells of a time when the servo was still on its way: started again by that, it would
+// jump back. Whatever the moment of the STOP and of the start after it.
+TEST(ServoEngine, AfterAStopAServoStartsWhereItIsNotWhereItWasReadInMotion) {
+    DeviceProfile profile;
+    profile.controller = ControllerKind::lewansoul;
+    profile.address = "sim://xarm";
+    profile.staggerSeconds = 0.05;
+    profile.servos = {{.channel = 1, .maxVelocity = 1.5, .maxAcceleration = 30.0}};
+    double farthest = 0.0;
+    double fastest = 0.0;
+    for (int round = 0; round < 40; ++round) {
+        EngineBench bench(profile);
+        WireReader reader(ControllerKind::lewansoul);
+        bench.onWrite = [&](const auto& message) { (void)reader.receive(message); };
+        ASSERT_TRUE(bench.connect());
+        bench.tell(in::Command{{0.0}});
+        bench.tell(in::Arm{true});
+        ASSERT_TRUE(bench.reaches(LinkPhase::live));
+        bench.run(2.0);
+        bench.tell(in::Command{{1.0}});
+        bench.run(0.25 + 0.0073 * round);
+        fastest = std::max(fastest, bench.board->servos()[0].fastest);
+        bench.tell(in::Stop{});
+        bench.run(0.005 + 0.011 * (round % 9));
+        const double before = bench.board->servos()[0].position;
+        bench.tell(in::Command{{bench.engine.status().servos[0].commanded}});
+        bench.tell(in::Arm{false});
+        const auto pulse = firstPulse(bench, reader, 1);
+        ASSERT_TRUE(pulse) << "it is known where it is";
+        farthest = std::max(farthest, std::abs(*pulse - before));
+    }
+    std::printf("at most %.0f us from where the servo was, at up to %.0f us/s\n", farthest, fastest);
+    EXPECT_GT(fastest, 1000.0);
+    EXPECT_LT(farthest, 120.0);
+}
+
 } // namespace
 } // namespace lumorph

@@ -19,10 +19,11 @@ public:
     explicit NatNetWriter(natnet::Version version) : version_(version) {}
 
     /// What sources disagree on.
-    bool preciseTime = true;   ///< since 4.1
-    bool earlyTime = false;    ///< a float before 2.7
-    int markersInBodies = 2;   ///< before 3.0
-    std::size_t moreBytes = 0; ///< at the end of each description, since 4.1
+    bool preciseTime = true;     ///< since 4.1
+    bool earlyTime = false;      ///< a float before 2.7
+    int markersInBodies = 2;     ///< before 3.0
+    std::size_t moreBytes = 0;   ///< at the end of each description, since 4.1
+    std::int16_t bodyParams = 0; ///< flags of bodies beside the first, which tells that they are tracked
 
     [[nodiscard]] std::vector<std::byte> frame(const natnet::Frame& f) {
         begin(7);
@@ -154,7 +155,7 @@ private:
                 for (int i = 0; i < markersInBodies; ++i) put(0.02F);
             }
             put(body.error);
-            if (version_ >= natnet::Version{2, 6}) put(static_cast<std::int16_t>(body.valid ? 1 : 0));
+            if (version_ >= natnet::Version{2, 6}) put(static_cast<std::int16_t>(bodyParams | (body.valid ? 1 : 0)));
         }
     }
     void labelled(const std::vector<natnet::LabelledMarker>& markers) {

@@ -8,6 +8,7 @@
 #include "core/loop/match_loop.h"
 #include "core/mdf/frame_matcher.h"
 #include "tests/core/loop/loop_fixture.h"
+#include "tests/support/literal_vote.h"
 #include "tests/support/not_a_number.h"
 
 namespace lumorph {
@@ -75,7 +76,27 @@ TEST_F(MatchLoopTest, StateIsThatOfVotingAndRefinement) {
     EXPECT_EQ(voted->wanted, votes.state());
     EXPECT_EQ(voted->statesSeen, 0);
     EXPECT_EQ(voted->iouWanted, voted->iouVoting);
-    for (std::size_t i = 0; i < 3; ++i) EXPECT_EQ(voted->wantedStrokes[i], votes.actuators[i].stroke);
+}
+
+// A stroke of a vote lies between the levels, and says more than they do.
+TEST_F(MatchLoopTest, VotedStrokesAreThoseOfTheLiteralEquation) {
+    int between = 0;
+    for (double seconds = 0.1; seconds < 2.0; seconds += 0.3) {
+        MatchWish wish = wishFor(field_, movingTarget());
+        wish.method = MatchMethod::voting;
+        wish.playing = false;
+        wish.seek = seconds;
+        MatchLoop loop(clock_);
+        const auto frame = loop.step(wish, 0.0);
+        const BitColumns target = voxelsOf(*frame);
+        for (std::size_t i = 0; i < 3; ++i) {
+            const test::LiteralVote literal = test::literalVote(field_->field, i, target);
+            EXPECT_EQ(frame->wanted[i].index, literal.level);
+            EXPECT_NEAR(frame->wantedStrokes[i], test::literalStroke(literal), 1e-6);
+            between += std::abs(8.0 * frame->wantedStrokes[i] - literal.level) > 1e-3;
+        }
+    }
+    EXPECT_GE(between, 3);
 }
 
 TEST_F(MatchLoopTest, FollowsAnAnimationWithoutFlicker) {

@@ -10,6 +10,7 @@
 #include <gtest/gtest.h>
 
 #include "core/base/error.h"
+#include "core/loop/viewer_stage.h"
 #include "tests/core/loop/scene_loop_fixture.h"
 #include "tests/support/not_a_number.h"
 
@@ -37,6 +38,38 @@ TEST_F(SceneLoopTest, SceneTimePlaysPausesAndIsSoughtOnce) {
     EXPECT_EQ(step(wish)->sceneSeconds, 1.5);
     wish.sceneSeek = kNan;
     EXPECT_THROW((void)step(wish), InvalidInput);
+}
+
+TEST_F(SceneLoopTest, APointerAloneIsNoViewerAndKeepsNothingAwake) {
+    SceneInRoom scene = emptyScene();
+    scene.eye = {0.1F, 0.5F, 0.6F};
+    scene.predictionSeconds = 0.06;
+    MatchWish wish = wishWith(scene);
+    const auto board = std::make_shared<PoseBoard>();
+    wish.poses = board;
+    const auto see = [&](const char* name, PoseRole role, const glm::dvec3& at) {
+        (void)board->stream(name, role)->push({clock_.now(), true, {at, {1, 0, 0, 0}}});
+    };
+    (void)step(wish);
+    see("stick", PoseRole::pointer, {0.0, 0.1, 0.0});
+    EXPECT_FALSE(anyTracked(*board, clock_.now()));
+    auto frame = step(wish);
+    EXPECT_TRUE(loop_.settled()) << "the picture is the same wherever a pointer is";
+    EXPECT_EQ(frame->ms.poseAge, 0.0) << "nothing that is drawn waited for it";
+    EXPECT_EQ(frame->ms.latency, 0.0);
+    ASSERT_TRUE(frame->eye);
+    EXPECT_EQ(*frame->eye, scene.eye) << "nobody's head is tracked: the simulated eye stays";
+    EXPECT_EQ(frame->worldFromDevice, scene.worldFromDevice);
+    EXPECT_TRUE(frame->viewer.empty());
+
+    // An old pointer does not make a head look late.
+    see("head", PoseRole::head, {0.0, 0.4, 0.5});
+    EXPECT_TRUE(anyTracked(*board, clock_.now()));
+    frame = step(wish, 0.01);
+    EXPECT_FALSE(loop_.settled());
+    EXPECT_EQ(frame->viewer, "head");
+    EXPECT_NEAR(frame->ms.poseAge, 10.0, 1e-9);
+    EXPECT_NEAR(frame->ms.latency, 70.0, 1e-9);
 }
 
 TEST_F(SceneLoopTest, RestsOnlyWhenNothingInTheSceneMoves) {

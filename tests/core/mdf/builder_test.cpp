@@ -273,6 +273,53 @@ INSTANTIATE_TEST_SUITE_P(SmallRigs, BuilderOracle,
                                          RigCase{"lifter", &test::lifterRig, 14}),
                          [](const auto& rig) { return rig.param.name; });
 
+// With many levels the work of an actuator is cut into parts, and each part's ramps must come to their own voxels.
+TEST(Builder, RampsOfAFineFieldLieInTheirOwnVoxels) {
+    BuildOptions options;
+    options.resolution = 26;
+    options.levels = 200;
+    options.samples = 3;
+    const Rig rig = test::cushionRig();
+    const Field field = buildField(rig, options);
+    const Coverage coverage(rig, field.frame, options.levels);
+    const ColumnRange& columns = coverage.columnsMovedBy(0);
+    const double bytes = 2.0 * columns.width() * (columns.z1 - columns.z0 + 1) * field.frame.dimensions.y * 200.0;
+    ASSERT_GT(bytes, 1.2 * 8'388'608.0) << "all of it is one part";
+    const std::vector<State> states = sampledStates(rig, options);
+    CoverageScratch scratch;
+    BitColumns now;
+    for (std::size_t actuator = 0; actuator < 3; ++actuator) {
+        std::vector<int> atRest(field.frame.voxelCount());
+        std::vector<int> atAll(field.frame.voxelCount());
+        for (State state : states) {
+            BitColumns seen(field.frame.dimensions);
+            for (int level = 0; level < options.levels; ++level) {
+                state[actuator] = Level{level};
+                coverage.covered(state, now, scratch);
+                seen |= now;
+                if (level != 0 && level + 1 != options.levels) continue;
+                std::vector<int>& counts = level == 0 ? atRest : atAll;
+                for (int z = 0; z < field.frame.dimensions.z; ++z)
+                    for (int x = 0; x < field.frame.dimensions.x; ++x)
+                        for (int y = 0; y < field.frame.dimensions.y; ++y)
+                            counts[field.voxelIndex(x, y, z)] += seen.test(x, y, z);
+            }
+        }
+        const std::vector<Ramp> ramps = denseRamps(field, actuator);
+        const auto stored = [&](int count) { return std::lround(255.0 * count / static_cast<double>(states.size())); };
+        std::size_t changed = 0;
+        std::size_t wrong = 0;
+        for (std::size_t v = 0; v < ramps.size(); ++v) {
+            const bool changes = atAll[v] > atRest[v];
+            changed += changes;
+            wrong += changes != (ramps[v].v0 != kUnchanged);
+            if (changes) wrong += ramps[v].base != stored(atRest[v]) || ramps[v].top != stored(atAll[v]);
+        }
+        EXPECT_GT(changed, 5'000U);
+        EXPECT_EQ(wrong, 0U) << "actuator " << actuator;
+    }
+}
+
 TEST(Builder, TheSameSeedGivesTheSameBytesOnAnyNumberOfThreads) {
     BuildOptions options;
     options.resolution = 16;

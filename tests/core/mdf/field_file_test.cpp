@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cstring>
+#include <limits>
 #include <random>
+#include <stdexcept>
 
 #include <gtest/gtest.h>
 
@@ -79,7 +81,96 @@ TEST(FieldFile, WrongMagicAndVersionAreNamed) {
     }
 }
 
-/// A length that claims terabytes must not be believed.
+/// Written with checksums that are right: what is wrong is said by the numbers alone.
+TEST(FieldFile, WellFormedButImpossibleFieldsAreRefusedWithTheirPlace) {
+    struct Case {
+        const char* what;
+        const char* place; ///< part of the message
+        void (*spoil)(Field& field);
+    };
+    constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+    static const auto firstRamp = [](Field& field) -> Ramp& {
+        for (Ramp& ramp : field.actuators[1].ramps)
+            if (ramp.v0 != kUnchanged) return ramp;
+        throw std::logic_error("no ramp");
+    };
+    const Case cases[] = {
+        {"a body above the frame", "body",
+         [](Field& f) { f.body.words().front() |= std::uint64_t{1} << (f.frame.dimensions.y % 64); }},
+        {"a body far above the frame", "body", [](Field& f) { f.body.words().back() |= std::uint64_t{1} << 63; }},
+        {"a ramp that ends after the last level", "actuator 1",
+         [](Field& f) { firstRamp(f).v1 = static_cast<std::uint8_t>(f.levels); }},
+        {"a ramp that begins before its first step", "actuator 1", [](Field& f) { firstRamp(f).v0 = 0; }},
+        {"a ramp that ends before it begins", "actuator 1",
+         [](Field& f) {
+             firstRamp(f) = {3, 2, 0, 255};
+         }},
+        {"a ramp that does not rise", "actuator 1",
+         [](Field& f) {
+             firstRamp(f) = {2, 3, 77, 77};
+         }},
+        {"a ramp that falls", "actuator 1",
+         [](Field& f) {
+             firstRamp(f) = {2, 3, 78, 77};
+         }},
+        {"a column that is not there", "actuator 1",
+         [](Field& f) { f.actuators[1].runs.back().column = static_cast<std::uint32_t>(f.body.columnCount()); }},
+        {"a column twice", "actuator 1",
+         [](Field& f) { f.actuators[1].runs[1].column = f.actuators[1].runs[0].column; }},
+        {"a run past the top", "actuator 1",
+         [](Field& f) {
+             f.actuators[1].runs[0].firstY =
+                 static_cast<std::uint16_t>(f.frame.dimensions.y - f.actuators[1].runs[0].count + 1);
+         }},
+        {"an empty run", "actuator 1",
+         [](Field& f) {
+             ActuatorField::Run& run = f.actuators[1].runs.back();
+             f.actuators[1].ramps.resize(f.actuators[1].ramps.size() - run.count);
+             run.count = 0;
+         }},
+        {"a run that skips a ramp", "actuator 1", [](Field& f) { ++f.actuators[1].runs[1].firstRamp; }},
+        {"a ramp too many", "actuator 1",
+         [](Field& f) {
+             f.actuators[1].ramps.push_back({1, 1, 0, 255});
+         }},
+        {"a ramp too few", "actuator 1", [](Field& f) { f.actuators[1].ramps.pop_back(); }},
+        {"one level", "header", [](Field& f) { f.levels = 1; }},
+        {"too many levels", "header", [](Field& f) { f.levels = kMaxLevels + 1; }},
+        {"no voxel side", "header", [](Field& f) { f.frame.voxelSize = 0.0; }},
+        {"an endless voxel side", "header",
+         [](Field& f) { f.frame.voxelSize = std::numeric_limits<double>::infinity(); }},
+        {"no origin", "header", [](Field& f) { f.frame.origin.y = kNan; }},
+        {"no rest surface", "header", [](Field& f) { f.restSurface = kNan; }},
+        {"no ramp error", "header", [](Field& f) { f.report.rampErrorMax = static_cast<double>(kNan); }},
+        {"a flat frame", "header", [](Field& f) { f.frame.dimensions.z = 0; }},
+        {"a frame below nothing", "header", [](Field& f) { f.frame.dimensions.x = -f.frame.dimensions.x; }},
+        {"a background too small", "background", [](Field& f) { f.background.pop_back(); }},
+        {"a background too large", "background", [](Field& f) { f.background.push_back(0); }},
+    };
+    const Field good = smallField();
+    ASSERT_LT(good.frame.dimensions.y, 63);
+    for (const Case& one : cases) {
+        Field field = good;
+        one.spoil(field);
+        try {
+            (void)parseField(writeField(field), "bad.mdf");
+            ADD_FAILURE() << one.what << " was accepted";
+        } catch (const DataError& error) {
+            const bool ofItsBlock =
+                error.why().find(one.place) != std::string::npos || error.why().find("block") != std::string::npos;
+            EXPECT_TRUE(ofItsBlock) << one.what << ": " << error.why();
+        }
+    }
+}
+
+/// The last level of a ramp is the last level of the field.
+TEST(FieldFile, ARampMayEndAtTheLastLevel) {
+    Field field = smallField();
+    for (Ramp& ramp : field.actuators[0].ramps)
+        if (ramp.v0 != kUnchanged) ramp.v1 = static_cast<std::uint8_t>(field.levels - 1);
+    EXPECT_EQ(parseField(writeField(field), "good.mdf"), field);
+}
+
 TEST(FieldFile, CoverageInsideTheBodyIsRefused) {
     const auto refuses = [](const Field& field, const std::string& place) {
         try {
@@ -111,6 +202,7 @@ TEST(FieldFile, CoverageInsideTheBodyIsRefused) {
     refuses(changed, "actuator 0");
 }
 
+/// A length that claims terabytes must not be believed.
 TEST(FieldFile, HostileLengthsDoNotTakeMemory) {
     const std::vector<std::byte> file = writeField(smallField());
     for (const std::size_t offset : {std::size_t{24 + 8}, std::size_t{24 + 16}}) {

@@ -156,5 +156,50 @@ TEST_F(PlacementTest, AClipFollowsItsAnimationUnderTheVelocityLimits) {
     EXPECT_THROW((void)matchClip(field_, coverage_, voting_, model, Model::Animation{}), InvalidInput);
 }
 
+// R19: the last frame shows the end, not a time before it nor the beginning again.
+TEST_F(PlacementTest, AClipWhoseLengthIsNoWholeNumberOfFramesEndsAtItsEnd) {
+    const Model model = growingBox();
+    const Placement placement = fitPlacement(field_, Box{{0.01F, 0.0F, 0.01F}, {0.09F, 0.03F, 0.07F}});
+    for (const double fps : {2.4, 3.7, 7.01}) {
+        const auto frames = matchClip(field_, coverage_, voting_, model, model.animations.front(),
+                                      {.framesPerSecond = fps, .placement = placement});
+        ASSERT_EQ(frames.size(), static_cast<std::size_t>(std::ceil(fps)) + 1) << fps;
+        EXPECT_LT(frames[frames.size() - 2].seconds, 1.0);
+        EXPECT_GE(frames.back().seconds, 1.0);
+        // Whole: 3 cm high.
+        TriangleMesh whole = test::boxMesh({0.01F, 0.0F, 0.01F}, {0.09F, 0.03F, 0.07F});
+        BitColumns target = voxelizeSolid(field_.frame, placed(whole, placement));
+        target &= coverage_.domain();
+        BitColumns covered;
+        CoverageScratch scratch;
+        coverage_.covered(frames.back().wanted, covered, scratch);
+        EXPECT_NEAR(frames.back().iouWanted, intersectionOverUnion(covered, target), 1e-12) << fps;
+    }
+}
+
+// R42
+TEST_F(PlacementTest, TheShareBeyondTheFrameIsToldOfClosedTargetsAlone) {
+    const Box frame = field_.frame.box();
+    const float width = frame.max.x - frame.min.x;
+    const glm::vec3 low(frame.max.x - 0.25F * width, field_.restSurface, 0.02F);
+    const glm::vec3 high(frame.max.x + 0.75F * width, field_.restSurface + 0.01F, 0.06F);
+    SolidVoxelizer voxelizer;
+    BitColumns bits;
+    Target box{test::boxMesh(low, high, 6), true, {}};
+    voxelizeTarget(field_.frame, box, voxelizer, bits);
+    EXPECT_NEAR(shareBeyondFrame(field_.frame, box, bits), 0.75, 0.06) << "three quarters hang out";
+    std::erase_if(box.mesh.triangles, [&](const glm::uvec3& t) { // no bottom
+        const auto& p = box.mesh.positions;
+        return std::max({p[t.x].y, p[t.y].y, p[t.z].y}) <= low.y;
+    });
+    box.closed = false;
+    voxelizeTarget(field_.frame, box, voxelizer, bits);
+    EXPECT_EQ(shareBeyondFrame(field_.frame, box, bits), 0.0) << "nobody knows its volume";
+    const Target inside{
+        test::boxMesh({0.02F, field_.restSurface, 0.02F}, {0.06F, field_.restSurface + 0.01F, 0.06F}), true, {}};
+    EXPECT_EQ(shareBeyondFrame(field_.frame, inside, BitColumns(field_.frame.dimensions)), 0.0)
+        << "thin things lose voxels, but not beyond the frame";
+}
+
 } // namespace
 } // namespace lumorph

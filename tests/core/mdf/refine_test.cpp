@@ -107,6 +107,63 @@ TEST_P(RefineOnRig, ReportsTrueQualityAndEndsWhereNoSingleActuatorHelps) {
         }
 }
 
+/// Whether another level of one actuator, or a step of two coupled ones together, gives more: by trying all of them.
+std::string whatHelps(const Coverage& coverage, const State& state, const BitColumns& wanted) {
+    CoverageScratch scratch;
+    BitColumns bits;
+    const auto iouOf = [&](const State& at) {
+        coverage.covered(at, bits, scratch);
+        return intersectionOverUnion(bits, wanted);
+    };
+    const double reached = iouOf(state) + 1e-12;
+    for (std::size_t i = 0; i < state.size(); ++i)
+        for (int level = 0; level < coverage.levels(); ++level) {
+            State other = state;
+            other[i] = Level{level};
+            if (iouOf(other) > reached) return "one";
+        }
+    for (const auto& [i, j] : coverage.coupledPairs())
+        for (const int first : {-4, -2, -1, 1, 2, 4})
+            for (const int second : {-4, -2, -1, 1, 2, 4}) {
+                State other = state;
+                other[i].index += first;
+                other[j].index += second;
+                const auto inRange = [&](Level level) { return level.index >= 0 && level.index < coverage.levels(); };
+                if (inRange(other[i]) && inRange(other[j]) && iouOf(other) > reached)
+                    return std::to_string(first) + " and " + std::to_string(second);
+            }
+    return "";
+}
+
+// Where one must give way for the other to gain, no single move helps: a move of two does, and after it single ones
+// may.
+TEST_P(RefineOnRig, EndsWhereNoStepOfACoupledPairHelpsEither) {
+    Refiner refiner(*coverage_);
+    std::mt19937 random(23);
+    const glm::ivec3 d = coverage_->frame().dimensions;
+    ASSERT_EQ(coverage_->coupledPairs().empty(), GetParam().make == &test::lifterRig);
+    const int rounds = GetParam().make == &test::armRig ? 25 : 120; // a body that sweeps takes long
+    for (int round = 0; round < rounds; ++round) {
+        // A ragged landscape with many hollows: blocks of columns of any height, and crumbs.
+        BitColumns target(d);
+        const int side = 1 + static_cast<int>(random() % 5);
+        std::vector<int> heights(1000);
+        for (int& height : heights) height = static_cast<int>(random() % static_cast<unsigned>(d.y + 1));
+        for (int z = 0; z < d.z; ++z)
+            for (int x = 0; x < d.x; ++x) {
+                const auto block = static_cast<std::size_t>(z / side * 29 + x / side) % heights.size();
+                for (int y = 0; y < d.y; ++y)
+                    if ((y < heights[block]) != (random() % 12 == 0)) target.set(x, y, z);
+            }
+        target &= coverage_->domain();
+        State start(3);
+        for (Level& level : start) level.index = static_cast<int>(random() % kRefineLevels);
+        const Refinement refined = refiner.refine(target, start, Microseconds{0}, clock_);
+        EXPECT_TRUE(refined.converged);
+        EXPECT_EQ(whatHelps(*coverage_, refined.state, target), "") << "round " << round;
+    }
+}
+
 INSTANTIATE_TEST_SUITE_P(SmallRigs, RefineOnRig,
                          testing::Values(RefineCase{"cushion", &test::cushionRig}, RefineCase{"arm", &test::armRig},
                                          RefineCase{"lifter", &test::lifterRig}),

@@ -8,10 +8,14 @@
 
 #include "core/base/error.h"
 #include "core/mdf/builder.h"
+#include "tests/support/literal_vote.h"
 #include "tests/support/small_rigs.h"
 
 namespace lumorph {
 namespace {
+
+using test::LiteralVote;
+using test::literalVote;
 
 Field fieldOf(const Rig& rig, int resolution, int levels, int samples) {
     BuildOptions options;
@@ -19,51 +23,6 @@ Field fieldOf(const Rig& rig, int resolution, int levels, int samples) {
     options.levels = levels;
     options.samples = samples;
     return buildField(rig, options);
-}
-
-struct LiteralVote {
-    int level = 0;
-    bool reached = false;
-    std::vector<double> errors;
-    std::vector<double> intersections;
-};
-
-/// Eq. 1 word for word: every voxel of the domain, for every level of one actuator.
-LiteralVote literalVote(const Field& field, std::size_t actuator, const BitColumns& target) {
-    LiteralVote vote;
-    const std::vector<Ramp> ramps = denseRamps(field, actuator);
-    std::size_t reachable = 0;
-    for (int level = 0; level < field.levels; ++level) {
-        double error = 0.0;
-        double intersection = 0.0;
-        reachable = 0;
-        for (int z = 0; z < field.frame.dimensions.z; ++z)
-            for (int x = 0; x < field.frame.dimensions.x; ++x)
-                for (int y = 0; y < field.frame.dimensions.y; ++y) {
-                    if (field.body.test(x, y, z)) continue;
-                    const std::size_t v = field.voxelIndex(x, y, z);
-                    const bool changed = ramps[v].v0 != kUnchanged;
-                    const double expectation = changed ? expectationAt(ramps[v], level) : field.background[v] / 255.0;
-                    const double wanted = target.test(x, y, z) ? 1.0 : 0.0;
-                    error += std::abs(expectation - wanted);
-                    intersection += expectation * wanted;
-                    reachable += changed && target.test(x, y, z);
-                }
-        vote.errors.push_back(error);
-        vote.intersections.push_back(intersection);
-    }
-    const double least = std::max(1.0, 0.01 * static_cast<double>(reachable));
-    double best = INFINITY;
-    for (int level = 0; level < field.levels && reachable > 0; ++level) {
-        const auto j = static_cast<std::size_t>(level);
-        if (vote.intersections[j] < least) continue;
-        const double ratio = vote.errors[j] / vote.intersections[j];
-        if (vote.reached && ratio >= best * (1.0 - 1e-9)) continue;
-        best = ratio;
-        vote.level = level;
-        vote.reached = true;
-    }
-    return vote;
 }
 
 /// A relief: columns filled up to a wave's height.
@@ -182,6 +141,51 @@ TEST(Voting, TheStrokeBetweenLevelsStaysWithinHalfALevelOfTheVote) {
         between += vote.reached && std::abs(20.0 * vote.stroke - vote.level.index) > 1e-6;
     }
     EXPECT_GT(between, 0);
+}
+
+/// Columns that a lift fills four voxels a level: a target of 4 k + 1 voxels is meant a quarter above level k.
+TEST(Voting, TheStrokeBetweenLevelsLiesOnTheSideOfTheTruth) {
+    constexpr int kLevels = 11;
+    constexpr int kColumns = 5;
+    Field field;
+    field.frame = {{0, 0, 0}, 0.01, {kColumns, 40, 1}};
+    field.levels = kLevels;
+    field.body = BitColumns(field.frame.dimensions);
+    field.background.assign(field.frame.voxelCount(), 128);
+    ActuatorField actuator{"lift", {}, {}};
+    for (std::uint32_t x = 0; x < kColumns; ++x) {
+        actuator.runs.push_back({x, 0, 40, 40 * x});
+        for (int y = 0; y < 40; ++y) {
+            const auto from = static_cast<std::uint8_t>(y / 4 + 1);
+            actuator.ramps.push_back({from, from, 0, 255});
+        }
+    }
+    field.actuators = {actuator};
+    const Voting voting(field);
+    for (int height = 9; height < 36; ++height) {
+        if (height % 4 == 0) continue;
+        BitColumns target(field.frame.dimensions);
+        for (int x = 0; x < kColumns; ++x)
+            for (int y = 0; y < height; ++y) target.set(x, y, 0);
+        const ActuatorVote vote = voting.match(target).actuators[0];
+        const double truth = height / 4.0;
+        const double found = vote.stroke * (kLevels - 1);
+        EXPECT_LT(std::abs(found - truth), std::abs(vote.level.index - truth)) << height;
+        EXPECT_NEAR(found, truth, 0.25) << height;
+    }
+}
+
+TEST(Voting, TheStrokeIsTheLowestPointOfTheParabolaThroughTheRatios) {
+    for (Rig (*const make)() : {&test::cushionRig, &test::armRig, &test::lifterRig}) {
+        const Field field = fieldOf(make(), 13, 21, 40);
+        const Voting voting(field);
+        for (int t = 0; t < 8; ++t) {
+            const BitColumns target = wave(field, 5.0 + t, 8.0 - 0.5 * t, 0.3 * t);
+            const Votes votes = voting.match(target);
+            for (std::size_t i = 0; i < votes.actuators.size(); ++i)
+                EXPECT_NEAR(votes.actuators[i].stroke, test::literalStroke(literalVote(field, i, target)), 1e-6);
+        }
+    }
 }
 
 TEST(Voting, ATargetOfAnotherShapeIsRefused) {

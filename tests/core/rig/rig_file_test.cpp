@@ -122,6 +122,27 @@ Model importedCube() {
 
 Rig rigOf(const Model& model) { return readRigGlb(writeGlb(model), "model.glb"); }
 
+// Where a file does not say, the whole range takes a second, whatever its unit and wherever it begins.
+TEST(RigFile, WithoutAVelocityTheWholeRangeTakesASecond) {
+    struct Case {
+        const char* deformer;
+        json range;
+        double given; ///< velocity in the unit of the range, for half a stroke a second
+    };
+    for (const Case& one : {Case{"hinge", {0, 90}, 45.0}, Case{"hinge", {-20, 40}, 30.0},
+                            Case{"slide", {0.01, 0.05}, 0.02}, Case{"slide", {-0.02, 0.0}, 0.01}}) {
+        Model model = importedCube();
+        json& extras = model.nodes[0].extras["lumorph"];
+        extras.erase("maxVelocity");
+        extras["deformer"] = one.deformer;
+        extras["direction"] = {0, 1, 0};
+        extras["range"] = one.range;
+        EXPECT_DOUBLE_EQ(rigOf(model).actuators()[0].maxVelocity, 1.0) << one.deformer << one.range;
+        extras["maxVelocity"] = one.given;
+        EXPECT_DOUBLE_EQ(rigOf(model).actuators()[0].maxVelocity, 0.5) << one.deformer << one.range;
+    }
+}
+
 // R4
 TEST(RigFile, ReadsAModelAsAModellingToolExportsIt) {
     const Rig rig = rigOf(importedCube());

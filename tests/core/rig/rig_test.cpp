@@ -7,6 +7,8 @@
 #include <numeric>
 #include <random>
 
+#include <glm/geometric.hpp>
+#include <glm/gtc/matrix_transform.hpp>
 #include <gtest/gtest.h>
 
 #include "core/base/error.h"
@@ -128,6 +130,40 @@ TEST(Rig, ReachHoldsEveryJointState) {
         }
         EXPECT_EQ(outside, 0U) << rig.name();
     }
+}
+
+/// A part that slides out of a joint that turns; between the steps of the search it swings the farther out, the farther
+/// it has come. How a skin moves is tested in deformer_test.
+TEST(Rig, ReachHoldsAPartThatSlidesOutOnATurningJoint) {
+    for (const double length : {0.2, 1.0, 3.0})
+        for (const glm::vec3& start : {glm::vec3(0.01F, 0.0F, 0.0F), {0.0F, 0.013F, 0.002F}}) {
+            RigParts parts = pointParts({start, 1.5F * start, start + glm::vec3(0.0F, 0.0F, 0.003F)},
+                                        {SkinJoint{0, SkinJoint::Motion::rotate, {0.1F, 0.2F, 1.0F}, -0.37, 5.1},
+                                         SkinJoint{1, SkinJoint::Motion::translate, {1.0F, 0.1F, 0.0F}, 0.0, length}});
+            Skeleton& skeleton = parts.skeleton.emplace();
+            skeleton.joints = {{-1, glm::mat4(1.0F)},
+                               {0, glm::translate(glm::mat4(1.0F), glm::vec3(0.005F, 0.0F, 0.0F))}};
+            skeleton.vertexJoints.assign(3, {1, 0, 0, 0});
+            skeleton.vertexWeights.assign(3, {1.0F, 0.0F, 0.0F, 0.0F});
+            const Rig rig(std::move(parts));
+            std::vector<glm::vec3> positions(3);
+            float farthest = 0.0F;
+            double beyond = 0.0;
+            for (int turn = 0; turn <= 4000; ++turn)
+                for (const double slide : {1.0, 0.99, 0.5, 0.0}) {
+                    rig.deform(std::vector<double>{turn / 4000.0, slide}, positions);
+                    for (std::uint32_t v = 0; v < 3; ++v) {
+                        farthest = std::max(farthest, glm::length(positions[v]));
+                        for (int axis = 0; axis < 3; ++axis) {
+                            const double low = rig.reachOf(v).min[axis];
+                            const double high = rig.reachOf(v).max[axis];
+                            beyond = std::max({beyond, low - positions[v][axis], positions[v][axis] - high});
+                        }
+                    }
+                }
+            EXPECT_GT(farthest, 0.99 * length);
+            EXPECT_LE(beyond, 0.0) << length << " m";
+        }
 }
 
 TEST(Rig, ReachIsExactForSlides) {

@@ -188,6 +188,27 @@ TEST_F(TakeAsset, AFolderOfStatesBringsItsMeshesOnly) {
     EXPECT_THROW((void)takeAsset(project, source / "empty"), DataError);
 }
 
+/// A folder is a rig of one mesh a state: one more file in the copy is another rig.
+TEST_F(TakeAsset, AFolderThatHoldsMoreIsNotTheSame) {
+    const std::string rest = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n";
+    write(source / "flap/rest.obj", rest);
+    write(source / "flap/left_1.obj", rest);
+    ASSERT_EQ(takeAsset(project, source / "flap"), "fish files/flap");
+    write(home / "fish files/flap/left_2.obj", rest);
+    EXPECT_EQ(takeAsset(project, source / "flap"), "fish files/flap 2");
+    write(home / "fish files/flap 2/deeper/left_2.obj", rest);
+    EXPECT_EQ(takeAsset(project, source / "flap"), "fish files/flap 3");
+    EXPECT_EQ(takeAsset(project, source / "flap"), "fish files/flap 3");
+    fs::remove(home / "fish files/flap 3/left_1.obj");
+    EXPECT_EQ(takeAsset(project, source / "flap"), "fish files/flap 4");
+    write(home / "fish files/flap 4/left_1.obj", "v 0 0 0\n");
+    EXPECT_EQ(takeAsset(project, source / "flap"), "fish files/flap 5");
+    // One that a link stands for may change without us.
+    fs::remove(home / "fish files/flap 5/left_1.obj");
+    fs::create_symlink(source / "flap/left_1.obj", home / "fish files/flap 5/left_1.obj");
+    EXPECT_EQ(takeAsset(project, source / "flap"), "fish files/flap 6");
+}
+
 TEST_F(TakeAsset, LeavesNothingWhenTheDiskIsFull) {
     writeGltf(source / "cow.gltf", std::string(100'000, 'p'));
     write(source / "cow.obj", std::string(100'000, 'v'));

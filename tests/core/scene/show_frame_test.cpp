@@ -131,6 +131,34 @@ TEST(LookupAreas, AreWhatAnEyeSeesDifferently) {
     EXPECT_GE(mirror[0].high.y, 0.45F);
 }
 
+// What reaches the height of the eye covers the table up to its horizon, or lies over it: no area is an end to it.
+TEST(LookupAreas, AreAllOfTheTableWhereAThingReachesTheEye) {
+    SceneInRoom scene = plainScene();
+    scene.tableSize = {1.2F, 0.9F};
+    scene.items.push_back(floating(0.1F));
+    scene.items.back().motion = {};
+    FogItem mist;
+    mist.size = {0.05F, 0.05F, 0.05F};
+    SceneInRoom foggy = plainScene();
+    foggy.tableSize = scene.tableSize;
+    foggy.items.push_back(floating(0.1F));
+    foggy.items.back().motion = {};
+    foggy.items.back().kind = mist;
+    struct Case {
+        float eye; ///< metres above the table
+        bool all;
+    };
+    for (const SceneInRoom& one : {scene, foggy})
+        for (const Case& c : {Case{0.35F, false}, Case{0.2F, false}, Case{0.11F, true}, Case{0.09F, true},
+                              Case{0.06F, true}, Case{0.01F, true}}) {
+            const auto areas = lookupAreas(at(one, 0.0, 0.0), {0.0F, c.eye, 0.4F});
+            ASSERT_EQ(areas.size(), 1U) << c.eye;
+            const bool all = areas[0].low.x <= -0.6F && areas[0].low.y <= -0.45F && areas[0].high.x >= 0.6F &&
+                             areas[0].high.y >= 0.45F;
+            EXPECT_EQ(all, c.all) << c.eye;
+        }
+}
+
 TEST(LookupAreas, AreFewAndHoldEveryThing) {
     const glm::vec3 eye(0.0F, 0.7F, 0.5F);
     const auto row = [&](int count, float from, float step) {

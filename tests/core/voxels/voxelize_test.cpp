@@ -175,10 +175,15 @@ TEST(VoxelFrame, SmallestAxisGetsTheResolutionAndTheOthersAreRoundedUp) {
         glm::vec3 size;
         int resolution;
         glm::ivec3 dimensions;
+        glm::vec3 origin{1, 2, 3};
     };
+    // 0.3F is three times 0.1F and a hair, which is rounding and no room for one more voxel.
+    ASSERT_GT(static_cast<double>(0.3F), 3.0 * static_cast<double>(0.1F));
     for (const Case& c : {Case{{0.210F, 0.0842F, 0.150F}, 33, {83, 33, 59}}, Case{{1, 1, 1}, 10, {10, 10, 10}},
-                          Case{{3, 1, 2.0000001F}, 4, {12, 4, 8}}, Case{{0.1F, 0.3F, 0.10001F}, 2, {2, 6, 3}}}) {
-        const VoxelFrame frame = frameOf({{1, 2, 3}, glm::vec3(1, 2, 3) + c.size}, c.resolution);
+                          Case{{0.3F, 0.1F, 0.2F}, 1, {3, 1, 2}, glm::vec3(0.0F)},
+                          Case{{0.3F, 0.1F, 0.2F}, 4, {12, 4, 8}, glm::vec3(0.0F)},
+                          Case{{3, 1, 2.0001F}, 4, {12, 4, 9}}, Case{{0.1F, 0.3F, 0.10001F}, 2, {2, 6, 3}}}) {
+        const VoxelFrame frame = frameOf({c.origin, c.origin + c.size}, c.resolution);
         EXPECT_EQ(frame.dimensions.x, c.dimensions.x);
         EXPECT_EQ(frame.dimensions.y, c.dimensions.y);
         EXPECT_EQ(frame.dimensions.z, c.dimensions.z);
@@ -214,6 +219,39 @@ TEST(Nrrd, ReadsWhatOtherProgramsWrite) {
     EXPECT_DOUBLE_EQ(grid.frame.voxelSize, 0.5);
     EXPECT_FLOAT_EQ(grid.frame.origin.x, 0.75F);
     EXPECT_TRUE(bitsOf(grid).test(1, 0, 1));
+}
+
+TEST(Nrrd, VoxelsMustBeCubesWhateverSideDiffers) {
+    struct Case {
+        const char* field;
+        double side; ///< 0: refused
+    };
+    const Case cases[] = {{"spacings: 0.25 0.25 0.25", 0.25},
+                          {"spacings: 0.25 0.25 0.5", 0.0},
+                          {"spacings: 0.25 0.5 0.25", 0.0},
+                          {"spacings: 0.5 0.25 0.25", 0.0},
+                          {"spacings: 0.25 0.25 -0.25", 0.0},
+                          {"spacings: 0.25 0.25", 0.0},
+                          {"spacings: 0 0 0", 0.0},
+                          {"space directions: (0.5,0,0) (0,0.5,0) (0,0,0.5)", 0.5},
+                          {"space directions: (0.5,0,0) (0,0.25,0) (0,0,0.5)", 0.0},
+                          {"space directions: (0.5,0,0) (0,0.5,0) (0,0,0.25)", 0.0},
+                          {"space directions: (0.25,0,0) (0,0.5,0) (0,0,0.5)", 0.0},
+                          {"space directions: (0.5,0,0) (0,-0.5,0) (0,0,0.5)", 0.0},
+                          {"space directions: (0.5,0,0.01) (0,0.5,0) (0,0,0.5)", 0.0},
+                          {"space directions: (0.5,0,0) (0,0.5,0.01) (0,0,0.5)", 0.0},
+                          {"space directions: (0.5,0,0) (0,0.5,0) (0.01,0,0.5)", 0.0},
+                          {"space directions: (0.5,0,0) (0,0.5,0)", 0.0},
+                          {"note: it says nothing", 1.0}};
+    for (const Case& one : cases) {
+        const std::string text =
+            std::string("NRRD0004\ntype: uint8\ndimension: 3\nencoding: raw\nsizes: 1 2 1\n") + one.field + "\n\n12";
+        try {
+            EXPECT_DOUBLE_EQ(parseNrrd(bytesOfText(text), "x.nrrd").frame.voxelSize, one.side) << one.field;
+        } catch (const DataError& error) {
+            EXPECT_EQ(one.side, 0.0) << one.field << ": " << error.why();
+        }
+    }
 }
 
 TEST(Nrrd, BrokenFilesAreRefusedByNameWithARemedy) {
