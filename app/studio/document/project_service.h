@@ -37,8 +37,8 @@ public:
     void setPlacesNewTargets(bool places);
     void removeTarget();
     void buildField(const BuildOptions& options);
-    void fit();       ///< the largest size that fits, standing on the device
-    void autoPlace(); ///< searches heading, size and place
+    void fit();                            ///< the largest size that fits, standing on the device
+    void autoPlace();                      ///< searches heading, size and place
     [[nodiscard]] bool autoPlaced() const; ///< it just did so: again would change nothing
 
     /// What is open, as it would be saved now.

@@ -19,8 +19,8 @@ QAction* addShellAction(Studio& studio, const char* id, const QString& text, con
 }
 
 void addStop(Studio& studio) {
-    QAction* stop = addShellAction(studio, "loop.stop", "STOP: hold the show, let all servos go", "stop", {}, "Hardware",
-                                   [&studio] { studio.loop.stop(); });
+    QAction* stop = addShellAction(studio, "loop.stop", "STOP: hold the show, let all servos go", "stop", {},
+                                   "Hardware", [&studio] { studio.loop.stop(); });
     stop->setToolTip(kStopPromise);
     QAction* resume = addShellAction(studio, "loop.resume", "Resume after STOP", "play", {}, "Hardware",
                                      [&studio] { studio.loop.resume(); });

@@ -15,8 +15,8 @@ namespace lumorph::studio {
 struct ShellActions {
     std::function<void()> startTour;
     std::function<void()> resetLayout;
-    std::function<QString()> present;                                  ///< title of the workspace that is shown
-    QUndoGroup* stacks = nullptr;                                      ///< of which the shown workspace's is active
+    std::function<QString()> present; ///< title of the workspace that is shown
+    QUndoGroup* stacks = nullptr;     ///< of which the shown workspace's is active
     std::function<void()> enterKiosk;
     std::function<void()> changePin;
     std::vector<std::pair<QString, std::function<void()>>> workspaces; ///< title and how to show it, in order

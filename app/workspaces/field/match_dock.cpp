@@ -5,6 +5,7 @@
 #include <QTreeView>
 #include <QVBoxLayout>
 
+#include "app/studio/document/hand_control.h"
 #include "app/studio/document/state_rules.h"
 #include "app/studio/look/palette.h"
 #include "app/studio/widgets/dock_parts.h"
@@ -12,7 +13,6 @@
 #include "app/studio/widgets/plot.h"
 #include "app/studio/widgets/throttle.h"
 #include "app/studio/widgets/value_field.h"
-#include "app/studio/document/hand_control.h"
 #include "app/workspaces/common/driver_hint.h"
 #include "app/workspaces/field/error_curves.h"
 #include "app/workspaces/field/match_numbers.h"
