@@ -383,7 +383,9 @@ TEST_F(SessionTest, TheStudioItselfKilledManyTimesLeavesOneSessionAndNoRubbish) 
         };
         ASSERT_TRUE(eventually(holdsTarget, std::chrono::seconds(120))) << studio.readAllStandardError().toStdString();
         test::pass(std::chrono::milliseconds(170 * (kill - 1)));
-        if (kill == 3) EXPECT_TRUE(eventually([&] { return rubbishIn(folder).empty(); }));
+        if (kill == 3) {
+            EXPECT_TRUE(eventually([&] { return rubbishIn(folder).empty(); }));
+        }
         studio.kill();
         ASSERT_TRUE(studio.waitForFinished());
         EXPECT_TRUE(holdsTarget());

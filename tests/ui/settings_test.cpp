@@ -8,7 +8,7 @@
 namespace lumorph::studio {
 namespace {
 
-class Settings : public ::testing::Test {
+class SettingsTest : public ::testing::Test {
 protected:
     void SetUp() override { QSettings(QSettings::IniFormat, QSettings::UserScope, "lumorph", "studio").clear(); }
 
@@ -22,7 +22,7 @@ protected:
     QTemporaryDir folder;
 };
 
-TEST_F(Settings, AreKeptFromOneStartToTheNext) {
+TEST_F(SettingsTest, AreKeptFromOneStartToTheNext) {
     {
         studio::Settings settings;
         EXPECT_EQ(settings.theme(), Theme::dark);
@@ -45,7 +45,7 @@ TEST_F(Settings, AreKeptFromOneStartToTheNext) {
     EXPECT_TRUE(settings.layout("rig").isEmpty());
 }
 
-TEST_F(Settings, TellAChangeOnce) {
+TEST_F(SettingsTest, TellAChangeOnce) {
     studio::Settings settings;
     QSignalSpy told(&settings, &studio::Settings::themeChanged);
     settings.setTheme(Theme::light);
@@ -53,7 +53,7 @@ TEST_F(Settings, TellAChangeOnce) {
     EXPECT_EQ(told.count(), 1);
 }
 
-TEST_F(Settings, TheLoopRateStaysInItsRangeWhateverTheFileSays) {
+TEST_F(SettingsTest, TheLoopRateStaysInItsRangeWhateverTheFileSays) {
     studio::Settings settings;
     settings.setLoopRate(5000.0);
     EXPECT_DOUBLE_EQ(settings.loopRate(), 120.0);
@@ -61,7 +61,7 @@ TEST_F(Settings, TheLoopRateStaysInItsRangeWhateverTheFileSays) {
     EXPECT_DOUBLE_EQ(settings.loopRate(), 60.0);
 }
 
-TEST_F(Settings, RecentFilesAreTheNewestTenThatAreStillThere) {
+TEST_F(SettingsTest, RecentFilesAreTheNewestTenThatAreStillThere) {
     studio::Settings settings;
     QStringList paths;
     for (int i = 0; i < 12; ++i) {
