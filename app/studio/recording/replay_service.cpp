@@ -1,5 +1,6 @@
 #include "app/studio/recording/replay_service.h"
 
+#include <optional>
 #include <utility>
 
 #include <QCoreApplication>
@@ -117,7 +118,7 @@ bool ReplayService::Data::fits() const {
 }
 
 void ReplayService::Data::take(const fs::path& from, ReadSession read) {
-    replay.close();
+    replay.close(); // one that was suspended, too
     file = from;
     session = std::move(read);
     notices.dismissAll(kReplayPlace);
@@ -136,12 +137,13 @@ void ReplayService::Data::take(const fs::path& from, ReadSession read) {
 
 void ReplayService::Data::show() {
     if (!fits()) return tellOther(false);
-    left.reset();
+    const std::optional<double> from = std::exchange(left, std::nullopt);
     replay.setDrivesServos(false);
     source = std::make_shared<ReplaySource>(session.recording);
-    source->play();
-    playing = true;
-    position = 0.0;
+    if (from) source->seek(*from);
+    if (!from || playedWhenLeft) source->play();
+    playing = source->playing();
+    position = source->position();
     loop.setSource(source);
     moves.start();
     emit replay.changed();
@@ -216,11 +218,7 @@ void ReplayService::suspend() {
 }
 
 void ReplayService::resume() {
-    if (!suspended()) return;
-    const double at = *data_->left;
-    data_->show();
-    seek(at);
-    setPlaying(data_->playedWhenLeft);
+    if (suspended()) data_->show();
 }
 
 bool ReplayService::suspended() const noexcept { return data_->left.has_value(); }

@@ -251,8 +251,7 @@ void ViewportWidget::Data::paintMarks(QPainter& painter) const {
     const ViewCamera& camera = motion.camera();
     const QSize view = self.size();
     if (!frame.image.isNull()) paintBodies(painter, view, camera, bodies, colors);
-    // A view smaller than its marks shows only the picture.
-    if (view.width() > 220 && view.height() > 160) {
+    if (hasRoomForMarks(view)) {
         const bool onEdge = std::abs(camera.pitch.inDegrees()) < kGridOnEdge;
         const QString grid =
             scene && scene->grid && !onEdge ? QString::fromStdString(gridOf(camera, size()).label) : QString();
@@ -443,6 +442,7 @@ std::optional<glm::vec2> arrowOf(int key) {
 } // namespace
 
 std::optional<CubeSide> ViewportWidget::Data::cubeAt(const QPointF& at) const {
+    if (!hasRoomForMarks(self.size())) return std::nullopt;
     return viewCubeAt(viewCubeBox(self.size()), motion.camera(), at);
 }
 

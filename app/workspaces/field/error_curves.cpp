@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include <QFontInfo>
 #include <QHelpEvent>
 #include <QKeyEvent>
 #include <QMouseEvent>
@@ -109,7 +110,7 @@ void ErrorCurves::paintEvent(QPaintEvent* /*event*/) {
     QPainter painter(this);
     painter.setRenderHint(QPainter::Antialiasing);
     QFont font = this->font();
-    font.setPointSizeF(0.85 * font.pointSizeF());
+    font.setPixelSize(std::max(8, static_cast<int>(std::lround(0.85 * QFontInfo(font).pixelSize()))));
     painter.setFont(font);
     for (int i = 0; i < names_.size(); ++i) drawCell(painter, i);
 }
