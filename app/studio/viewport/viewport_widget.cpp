@@ -127,6 +127,9 @@ ViewCamera firstCamera() {
     return camera;
 }
 
+/// In a small view cube and legend would lie over what it is there to show.
+bool hasRoomForMarks(const QSize& view) { return view.width() > 320 && view.height() > 220; }
+
 } // namespace
 
 ViewportWidget::Data::Data(ViewportWidget& widget, RenderThread& thread)

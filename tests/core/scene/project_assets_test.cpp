@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <fstream>
+#include <span>
+#include <string>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
