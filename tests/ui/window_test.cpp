@@ -157,6 +157,11 @@ TEST_F(Window, FirstHour) {
             QTest::keyClick(&window.window(), Qt::Key_Z, Qt::ControlModifier | Qt::ShiftModifier);
         EXPECT_EQ(window.state().field.field, finer);
         kept = window.state();
+        ViewCamera looks = window.view().camera();
+        looks.yaw = Angle::degrees(-70.0);
+        looks.pitch = Angle::degrees(51.0);
+        looks.distance *= 0.6;
+        window.view().setCamera(looks);
         EXPECT_TRUE(window.window().close());
     }
     StudioWindow again(session());
@@ -170,6 +175,9 @@ TEST_F(Window, FirstHour) {
     EXPECT_EQ(again.state().matching, kept.matching);
     EXPECT_EQ(again.state().playback, kept.playback);
     EXPECT_TRUE(again.studio().notices.at().empty());
+    EXPECT_TRUE(eventually([&] { return std::abs(again.view().camera().yaw.inDegrees() + 70.0) < 1e-6; }))
+        << "one looks from elsewhere: " << again.view().camera().yaw.inDegrees();
+    EXPECT_NEAR(again.view().camera().pitch.inDegrees(), 51.0, 1e-6);
     again.screenshot("7-reopened");
 }
 
