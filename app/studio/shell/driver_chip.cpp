@@ -17,6 +17,7 @@ namespace {
 
 constexpr int kLitMilliseconds = 4000;
 constexpr int kChipTextWidth = 150;
+constexpr int kIconGap = 6;
 
 struct DriverCommand {
     Driver driver;
@@ -135,7 +136,13 @@ void DriverChip::refresh() {
     chip_->setIcon(icon(DriverControl::iconOf(driver), lit_->isActive()  ? IconRole::onAccent
                                                        : still.isEmpty() ? IconRole::control
                                                                          : IconRole::warning));
-    chip_->setText(narrow_ ? QString() : chip_->fontMetrics().elidedText(words, Qt::ElideRight, kChipTextWidth));
+    leftOut_ = 0;
+    const auto say = [this](QPushButton* button, const QString& text) {
+        const QString fits = button->fontMetrics().elidedText(text, Qt::ElideRight, kChipTextWidth);
+        button->setText(narrow_ ? QString() : fits);
+        if (narrow_) leftOut_ += button->fontMetrics().horizontalAdvance(fits) + kIconGap;
+    };
+    say(chip_, words);
     const QString who = tr("%1 '%2' moves the servos.").arg(DriverControl::kindOf(driver), name);
     chip_->setToolTip(still.isEmpty() ? who : still);
     chip_->setAccessibleName(tr("Who moves the servos: %1").arg(still.isEmpty() ? name : still));
@@ -144,7 +151,7 @@ void DriverChip::refresh() {
     back_->setVisible(before.has_value());
     if (!before) return;
     const QString way = tr("Back to %1").arg(control.nameOf(*before));
-    back_->setText(narrow_ ? QString() : back_->fontMetrics().elidedText(way, Qt::ElideRight, kChipTextWidth));
+    say(back_, way);
     back_->setToolTip(tr("%1 moves the servos again").arg(control.nameOf(*before)));
 }
 

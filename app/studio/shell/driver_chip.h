@@ -23,12 +23,16 @@ public:
     /// Without words where there is no room: the icon alone.
     void setNarrow(bool narrow);
 
+    /// The width that its words would take, pixels; 0 while it shows them.
+    [[nodiscard]] int wordsLeftOut() const noexcept { return leftOut_; }
+
 private:
     void refresh();
     void light();
 
     Studio& studio_;
     bool narrow_ = false;
+    int leftOut_ = 0;
     QPushButton* chip_ = nullptr;
     QPushButton* back_ = nullptr;
     QTimer* lit_ = nullptr; ///< runs while it is lit

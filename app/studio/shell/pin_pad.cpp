@@ -87,8 +87,10 @@ protected:
     void mousePressEvent(QMouseEvent* event) override { event->accept(); }
 
     void arrange() override {
-        const int key = std::clamp((height() - kRestOfPad) / 4, 26, 56);
-        for (QPushButton* button : keys_) button->setFixedHeight(key);
+        const int key = std::clamp((height() - kRestOfPad) / 4, 26, 56); // large enough for fingers
+        if (key != std::exchange(keyHeight_, key))
+            card_->setStyleSheet(QString("QPushButton { min-height: %1px; max-height: %1px; font-size: 17px; }")
+                                     .arg(key - 2)); // and its edges
         card_->setFixedWidth(std::min(kPadWidth, width() - 16));
         card_->adjustSize();
         card_->move((width() - card_->width()) / 2, std::max(0, (height() - card_->height()) / 2));
@@ -233,6 +235,7 @@ private:
     std::function<void()> done_;
     QString typed_, first_;
     bool waited_ = false;
+    int keyHeight_ = 0;
     QTimer idle_, count_;
     QFrame* card_ = nullptr;
     QLabel *title_ = nullptr, *text_ = nullptr, *message_ = nullptr;

@@ -1,8 +1,10 @@
 #include "app/studio/shell/top_bar.h"
 
+#include <array>
 #include <utility>
 
 #include <QButtonGroup>
+#include <QEvent>
 #include <QHBoxLayout>
 #include <QPainter>
 #include <QPainterPath>
@@ -20,7 +22,7 @@ namespace {
 
 constexpr int kTopBarHeight = 40;
 constexpr int kSearchWidth = 240;
-constexpr int kNarrowTopBar = 880;
+constexpr int kGlassWidth = 32; ///< of the field without its words
 
 /// The mark of the program: a sheet that three actuators lift.
 class AppMark : public QWidget {
@@ -136,6 +138,7 @@ void TopBar::addTools(QHBoxLayout& row) {
     QAction* palette = commands.find("view.commandPalette");
     search_->setToolTip("Search commands (" + palette->shortcut().toString(QKeySequence::NativeText) + ")");
     connect(search_, &QPushButton::clicked, palette, &QAction::trigger);
+    search_->setFixedWidth(kGlassWidth);
     row.addWidget(search_);
     tools_.push_back(search_);
     row.addSpacing(8);
@@ -200,17 +203,29 @@ void TopBar::resizeEvent(QResizeEvent* event) {
     fitSearch();
 }
 
+bool TopBar::event(QEvent* event) {
+    const bool known = QWidget::event(event);
+    if (event->type() == QEvent::LayoutRequest) fitSearch(); // another workspace brought other menus
+    return known;
+}
+
 /// The field with its words where there is room, else the glass alone; in a narrow window undo, redo and recording are
 /// left to the menu, so that all menus are in sight.
 void TopBar::fitSearch() {
     if (kiosk_) return;
-    for (QWidget* tool : {tools_[0], tools_[1], tools_.back()}) tool->setVisible(width() >= kNarrowTopBar);
-    driver_->setNarrow(width() < kNarrowTopBar);
-    int others = 300 + driver_->sizeHint().width() + stop_->minimumWidth() + menus_->sizeHint().width();
-    if (!resume_->isHidden()) others += resume_->sizeHint().width();
-    for (const QToolButton* tab : tabs_) others += tab->sizeHint().width() + 4;
-    const bool roomy = width() - others > kSearchWidth;
-    search_->setFixedWidth(roomy ? kSearchWidth : 32);
+    const std::array<QWidget*, 3> spare{tools_[0], tools_[1], tools_.back()};
+    int needed = layout()->sizeHint().width() - search_->minimumWidth() + kGlassWidth;
+    for (const QWidget* tool : spare)
+        if (tool->isHidden()) needed += tool->sizeHint().width() + layout()->spacing();
+    needed += driver_->wordsLeftOut();
+    const bool tight = needed > width();
+    for (QWidget* tool : spare) {
+        tool->setVisible(!tight);
+        if (tight) needed -= tool->sizeHint().width() + layout()->spacing();
+    }
+    driver_->setNarrow(needed > width());
+    const bool roomy = !tight && needed + kSearchWidth - kGlassWidth <= width();
+    search_->setFixedWidth(roomy ? kSearchWidth : kGlassWidth);
     search_->setText(roomy ? "Search commands    Ctrl+K" : QString());
 }
 

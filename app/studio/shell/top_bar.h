@@ -35,6 +35,7 @@ signals:
     void workspaceChosen(const QString& id);
 
 protected:
+    bool event(QEvent* event) override;
     void resizeEvent(QResizeEvent* event) override;
 
 private:

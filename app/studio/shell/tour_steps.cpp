@@ -40,10 +40,11 @@ std::vector<TourStep> tourSteps(Studio& studio) {
          "scene.stage"},
         {{"dock.scene.inspector"},
          "Change what you choose",
-         "What is chosen shows all its numbers here. Drag one sideways, or click and type it with its unit. Everything "
-         "can be taken back with Ctrl+Z.",
+         "Choose something in the outliner: all its numbers are here. Drag one sideways, or click and type it with its "
+         "unit. Everything can be taken back with Ctrl+Z.",
          {},
-         {}},
+         {},
+         "dock.scene.outliner"},
         {{"tab.field"},
          "Match a shape",
          "In the Field workspace the device takes the shape of any 3D model, and you see how well it can. The Rig "
