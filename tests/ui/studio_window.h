@@ -62,7 +62,7 @@ public:
 
     void click(const QString& name);
     /// Presses a button by the mouse, and lets go of it after a while, or once it is gone.
-    void hold(const QString& name, std::chrono::milliseconds time = std::chrono::milliseconds(1600));
+    void hold(const QString& name, std::chrono::milliseconds time = std::chrono::seconds(10));
     /// Types over what a field holds, then presses Enter, which in a dialog is its first button too, or Tab.
     void enter(const QString& name, const QString& text, Qt::Key then = Qt::Key_Return);
     /// Ctrl+K, the words, Enter.
