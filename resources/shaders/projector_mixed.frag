@@ -25,7 +25,7 @@ uniform float gamma;
 
 layout(location = 0) out vec4 color;
 
-const float kAlike = 0.9; // smaller shares of the largest weight make a pixel mixed
+const float kAlike = 0.97; // smaller shares of the largest weight make a pixel mixed
 // Of a pixel's light on itself and on the pixel beside it along one axis: its box seen through a tent, the lens.
 const float kOwn = 0.75;
 const float kBeside = 0.125;
