@@ -61,16 +61,18 @@ TargetVoxels surfaceVoxels(const Field& field, TriangleMesh mesh, bool fit) {
 
 } // namespace
 
-TargetVoxels voxelsOf(const Field& field, const Target& target, const std::optional<Placement>& placement, int repeat) {
+TargetVoxels voxelsOf(const Session& session, const Field& field, const Target& target,
+                      const std::optional<Placement>& placement, int repeat) {
     TargetVoxels voxels{{}, placed(target.mesh, placement.value_or(Placement{})), 0.0, target.warnings};
     const Target standing{voxels.mesh, target.closed, {}};
     SolidVoxelizer voxelizer;
     std::vector<double> times;
     for (int i = 0; i < repeat; ++i) {
         const auto start = std::chrono::steady_clock::now();
-        voxelizeTarget(field.frame, standing, voxelizer, voxels.bits);
+        voxelizeTarget(field.frame, standing, voxelizer, voxels.bits, session.progress());
         times.push_back(std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count());
     }
+    if (!target.closed) Session::endProgress();
     voxels.voxelizeMilliseconds = median(std::move(times));
     const double beyond = shareBeyondFrame(field.frame, standing, voxels.bits);
     if (beyond > 0.01 && voxels.bits.count() > 0)
@@ -101,7 +103,7 @@ TargetVoxels readTarget(const Session& session, const Field& field, const Target
     const Target target = makeTarget(std::move(mesh));
     std::optional<Placement> placement;
     if (arguments.fit) placement = fitPlacement(field, boundingBox(target.mesh.positions));
-    return voxelsOf(field, target, placement, arguments.repeat);
+    return voxelsOf(session, field, target, placement, arguments.repeat);
 }
 
 } // namespace lumorph::cli

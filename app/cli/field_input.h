@@ -35,7 +35,7 @@ struct TargetArguments {
 /// Reads a mesh from a file, or from stdin for "-".
 [[nodiscard]] Target readTargetMesh(const Session& session, const std::string& path);
 /// Turns a mesh that has been read already into voxels; without a placement it stands where it is.
-[[nodiscard]] TargetVoxels voxelsOf(const Field& field, const Target& target, const std::optional<Placement>& placement,
-                                    int repeat);
+[[nodiscard]] TargetVoxels voxelsOf(const Session& session, const Field& field, const Target& target,
+                                    const std::optional<Placement>& placement, int repeat);
 
 } // namespace lumorph::cli

@@ -249,7 +249,7 @@ void match(const MatchArguments& arguments, const Session& session) {
         const Target mesh = readTargetMesh(session, arguments.target.path);
         placement = autoPlace(matcher.field, matcher.coverage, matcher.voting, mesh, {}, session.progress());
         Session::endProgress();
-        target = voxelsOf(matcher.field, mesh, placement->placement, arguments.target.repeat);
+        target = voxelsOf(session, matcher.field, mesh, placement->placement, arguments.target.repeat);
     } else {
         target = readTarget(session, matcher.field, arguments.target);
     }

@@ -20,6 +20,16 @@ void withoutRepeats(std::span<const std::int64_t> corners, std::vector<std::uint
 
 } // namespace
 
+void checkFaceCount(std::uint64_t faces, std::uint64_t vertices, const std::string& place) {
+    // A few vertices may meet in any number of faces: fans, stars.
+    constexpr std::uint64_t kFew = 10'000;
+    if (faces <= kFew || faces / kMaxFacesAVertex <= vertices) return;
+    throw DataError(place,
+                    "it has " + std::to_string(faces) + " faces on " + std::to_string(vertices) +
+                        " vertices, so that most of them repeat one another",
+                    "remove repeated faces in a modelling program, and export the model again");
+}
+
 MeshBuilder::MeshBuilder(std::string name, std::string placeName)
     : name_(std::move(name)), placeName_(std::move(placeName)) {}
 
@@ -65,6 +75,7 @@ TriangleMesh MeshBuilder::finish() {
                         positions_.empty() ? std::string("holds no mesh")
                                            : "holds " + std::to_string(positions_.size()) + " points but no faces",
                         "export the model as a surface of polygons");
+    checkFaceCount(polygons_.size(), positions_.size(), name_);
     if (positions_.size() > std::numeric_limits<std::uint32_t>::max())
         throw DataError(name_, "has too many vertices", "reduce its detail before exporting");
 

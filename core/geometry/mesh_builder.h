@@ -14,6 +14,13 @@ namespace lumorph {
 /// A polygon with more corners is refused: cutting it into triangles takes time with their square.
 inline constexpr std::size_t kMaxPolygonCorners = 10'000;
 
+/// A surface has about two triangles a vertex, a solid cut into tetrahedra a dozen; with more than so many, most repeat
+/// one another and only take memory.
+inline constexpr std::size_t kMaxFacesAVertex = 100;
+
+/// Throws DataError for more faces than that: `place` is where the file says so.
+void checkFaceCount(std::uint64_t faces, std::uint64_t vertices, const std::string& place);
+
 /// Gathers what a parser reads and makes the mesh of it. Polygons may come before their vertices;
 /// indices are checked at the end, and errors say where each polygon stood.
 class MeshBuilder {
@@ -34,7 +41,7 @@ public:
     [[nodiscard]] std::size_t vertexCount() const noexcept { return positions_.size(); }
     [[nodiscard]] std::size_t cornersUnderWay() const noexcept { return corners_.size() - polygonStart_; }
 
-    /// Checks indices and triangulates; leaves the builder empty.
+    /// Checks counts and indices and triangulates; leaves the builder empty.
     [[nodiscard]] TriangleMesh finish();
 
 private:

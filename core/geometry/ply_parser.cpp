@@ -154,6 +154,13 @@ public:
     }
 
 private:
+    [[nodiscard]] std::uint64_t countOf(std::string_view element) const {
+        std::uint64_t count = 0;
+        for (const PlyHeader::Element& each : header_.elements)
+            if (each.name == element) count += each.count;
+        return count;
+    }
+
     void checkCount(const PlyHeader::Element& element) const {
         const std::size_t least = leastBytes(element, header_.format);
         if (least > 0 && element.count > body_.remaining() / least)
@@ -199,6 +206,7 @@ private:
         });
         if (indices == element.properties.end() || !isInteger(indices->type))
             throw DataError(name_, "its faces have no list 'vertex_indices' of integers", "export the model again");
+        checkFaceCount(element.count, countOf("vertex"), name_ + ", its head");
         builder_.reserve(0, element.count, body_.remaining());
         for (std::uint64_t f = 0; f < element.count; ++f) {
             for (const Property& property : element.properties) {

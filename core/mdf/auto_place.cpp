@@ -36,7 +36,7 @@ public:
                     fitPlacement(field_, box_, Angle::radians(2.0 * std::numbers::pi * i / options_.yaws));
                 start = shrunk(start, share);
                 starts.emplace_back(scoreOf(poseOf(start)), poseOf(start));
-                progress_.report(0.4 * (i + 1) / options_.yaws, "trying headings");
+                progress_.report(done_ = 0.4 * (i + 1) / options_.yaws, "trying headings");
             }
         std::stable_sort(starts.begin(), starts.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
         constexpr std::size_t kClimbs = 3;
@@ -49,7 +49,7 @@ public:
                 best = score;
                 bestPose = pose;
             }
-            progress_.report(0.4 + 0.6 * static_cast<double>(k + 1) / kClimbs, "improving the placement");
+            progress_.report(done_ = 0.4 + 0.6 * static_cast<double>(k + 1) / kClimbs, "improving the placement");
         }
         if (best < 0.0)
             throw InvalidInput("target", "no placement shows enough of it: it is thinner than a voxel or has no volume",
@@ -85,7 +85,8 @@ private:
         const Placement placement = placementOf(pose);
         const double relative = placement.scale / fitScale_;
         if (relative < options_.minScale || relative > options_.maxScale) return -1.0;
-        voxelizeTarget(field_.frame, {placed(target_.mesh, placement), target_.closed, {}}, voxelizer_, bits_);
+        voxelizeTarget(field_.frame, {placed(target_.mesh, placement), target_.closed, {}}, voxelizer_, bits_,
+                       progress_.part(done_, done_));
         bits_ &= coverage_.domain();
         const double inside = static_cast<double>(bits_.count()) * field_.frame.voxelVolume();
         const double whole = volume_ * placement.scale * placement.scale * placement.scale;
@@ -135,6 +136,7 @@ private:
     Voting::Workspace workspace_;
     State lastState_;
     int seen_ = 0;
+    double done_ = 0.0; ///< of the progress
 };
 
 } // namespace

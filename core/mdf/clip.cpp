@@ -18,6 +18,18 @@ std::string number(double value, const char* format) {
     return text;
 }
 
+int frameCount(const Model::Animation& animation, double fps) {
+    const std::string subject = "animation '" + animation.name + "'";
+    if (!(animation.duration() > 0.0)) throw InvalidInput(subject, "it has no duration", "choose another animation");
+    const double frames = std::ceil(animation.duration() * fps);
+    if (frames < kMaxClipFrames) return static_cast<int>(frames);
+    throw InvalidInput(subject,
+                       "it lasts " + number(animation.duration(), "%.0f") + " s, which are " + number(frames, "%.0f") +
+                           " frames at " + number(fps, "%g") + " a second, more than the limit of " +
+                           std::to_string(kMaxClipFrames),
+                       "give a lower frame rate, or cut the animation into shorter ones");
+}
+
 } // namespace
 
 std::vector<ClipFrame> matchClip(const Field& field, const Coverage& coverage, const Voting& voting, const Model& model,
@@ -26,9 +38,7 @@ std::vector<ClipFrame> matchClip(const Field& field, const Coverage& coverage, c
     const double fps = options.framesPerSecond;
     if (!(fps >= 1.0 && fps <= 240.0))
         throw InvalidInput("frame rate", "it must be 1 to 240 frames a second", "give a rate in that range");
-    if (!(animation.duration() > 0.0))
-        throw InvalidInput("animation '" + animation.name + "'", "it has no duration", "choose another animation");
-    const int frames = static_cast<int>(std::ceil(animation.duration() * fps));
+    const int frames = frameCount(animation, fps);
     const Placement placement =
         options.placement
             ? *options.placement
@@ -44,12 +54,13 @@ std::vector<ClipFrame> matchClip(const Field& field, const Coverage& coverage, c
     BitColumns reached;
     const bool closed = isClosedSolid(flatten(model));
     std::vector<ClipFrame> result;
+    const auto matched = [&](int count) { return 0.3 + 0.7 * count / (frames + 1); };
     for (int k = 0; k <= frames; ++k) {
         progress.throwIfCancelled();
         ClipFrame frame;
         frame.seconds = k / fps;
         voxelizeTarget(field.frame, {placed(flatten(model, animation, frame.seconds), placement), closed, {}},
-                       voxelizer, target);
+                       voxelizer, target, progress.part(matched(k), matched(k + 1)));
         target &= coverage.domain();
         matcher.vote(target, votes);
         options.refined ? matcher.refine(target, options.budget, clock) : matcher.keepVotes(target);
@@ -61,7 +72,7 @@ std::vector<ClipFrame> matchClip(const Field& field, const Coverage& coverage, c
         coverage.coveredAt(frame.strokes, reached, scratch);
         frame.iouReached = compareVolumes(reached, target).iou();
         result.push_back(std::move(frame));
-        progress.report(0.3 + 0.7 * (k + 1) / (frames + 1), "matching the animation");
+        progress.report(matched(k + 1), "matching the animation");
     }
     return result;
 }

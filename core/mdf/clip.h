@@ -13,6 +13,9 @@
 
 namespace lumorph {
 
+/// More frames are refused: an hour at 30 a second has as many as can be matched overnight.
+inline constexpr int kMaxClipFrames = 120'000;
+
 struct ClipOptions {
     double framesPerSecond = 30.0;
     bool refined = true;         ///< false: by voting alone
@@ -32,7 +35,8 @@ struct ClipFrame {
 
 /// Matches an animation frame by frame and moves the actuators after it under their limits (R19),
 /// starting at rest. The target is placed once.
-/// Throws InvalidInput for a frame rate outside 1..240 or an animation without duration, Cancelled.
+/// Throws InvalidInput for a frame rate outside 1..240, an animation without duration or of more than kMaxClipFrames
+/// frames, Cancelled.
 [[nodiscard]] std::vector<ClipFrame> matchClip(const Field& field, const Coverage& coverage, const Voting& voting,
                                                const Model& model, const Model::Animation& animation,
                                                const ClipOptions& options = {}, const Progress& progress = {});

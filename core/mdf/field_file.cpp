@@ -26,6 +26,8 @@ constexpr std::uint32_t kVersion = 1;
 constexpr std::size_t kMaxName = 4096;
 constexpr std::size_t kMaxActuators = 65'000;
 constexpr std::size_t kMaxRigBytes = std::size_t{256} << 20U;
+/// Of all blocks together: sixteen bytes for each voxel of the largest frame, where a field has two or three.
+constexpr std::uint64_t kMaxContentBytes = std::uint64_t{1} << 30U;
 
 enum class Block : std::uint32_t { header = 1, rig = 2, body = 3, background = 4, actuator = 5 };
 
@@ -132,6 +134,23 @@ std::vector<std::byte> unpacked(std::span<const std::byte> packed, std::size_t l
         if (ZSTD_isError(remaining) || (out.pos == 0 && in.pos == in.size)) return {};
     }
     return content;
+}
+
+std::string inMebibytes(std::uint64_t bytes) { return std::to_string(bytes >> 20U) + " MiB"; }
+
+/// Refuses a file by what the heads of its blocks promise, before any of them is unpacked.
+void checkPromises(Reader file) {
+    std::uint64_t promised = 0;
+    for (std::size_t block = 1; !file.atEnd(); ++block) {
+        const auto header = file.get<BlockHeader>();
+        const std::uint64_t left = kMaxContentBytes - promised;
+        if (header.size > left)
+            file.fail("block " + std::to_string(block) + " brings what the file promises to unpack to more than " +
+                      inMebibytes(kMaxContentBytes) + ", the limit");
+        promised += header.size;
+        file.expect(header.storedSize <= std::numeric_limits<std::size_t>::max(), "a block is too large");
+        file.take(static_cast<std::size_t>(header.storedSize));
+    }
 }
 
 /// The next block's content, which must be of this kind and unpack to at most `limit` bytes.
@@ -283,7 +302,17 @@ std::vector<std::byte> writeField(const Field& field) {
     Writer background;
     background.putAll(std::span<const std::uint8_t>(field.background));
     putBlock(file, Block::background, background.take());
-    for (const ActuatorField& actuator : field.actuators) putBlock(file, Block::actuator, actuatorContent(actuator));
+    std::uint64_t content = 0;
+    for (const ActuatorField& actuator : field.actuators) {
+        std::vector<std::byte> part = actuatorContent(actuator);
+        content += part.size();
+        if (content > kMaxContentBytes / 2)
+            throw InvalidInput("field of '" + field.rigName + "'",
+                               "its ramps take more than " + inMebibytes(kMaxContentBytes / 2) +
+                                   ", the limit of a file",
+                               "build it with larger voxels");
+        putBlock(file, Block::actuator, std::move(part));
+    }
     return file.take();
 }
 
@@ -299,13 +328,16 @@ Field parseField(std::span<const std::byte> bytes, const std::string& name) {
                             std::to_string(kVersion),
                         "build the field again with 'lumorph mdf build'");
     file.get<std::uint32_t>();
+    checkPromises(file);
 
     Field field;
     const auto header = getBlock(file, Block::header, 256 + (kMaxActuators + 1) * (kMaxName + 4));
     readHeader(Reader(header, name, "header"), field);
     field.rigGlb = getBlock(file, Block::rig, kMaxRigBytes);
     const std::uint64_t voxels = field.frame.voxelCount();
-    const auto body = getBlock(file, Block::body, 8 * voxels);
+    const auto words = (static_cast<std::uint64_t>(field.frame.dimensions.y) + 63) / 64;
+    const std::uint64_t columns = voxels / static_cast<std::uint64_t>(field.frame.dimensions.y);
+    const auto body = getBlock(file, Block::body, 8 * words * columns);
     readBody(Reader(body, name, "body"), field);
     const auto background = getBlock(file, Block::background, voxels);
     readBackground(Reader(background, name, "background"), field);

@@ -33,11 +33,12 @@ Target makeTarget(TriangleMesh mesh) {
     return target;
 }
 
-void voxelizeTarget(const VoxelFrame& frame, const Target& target, SolidVoxelizer& voxelizer, BitColumns& out) {
+void voxelizeTarget(const VoxelFrame& frame, const Target& target, SolidVoxelizer& voxelizer, BitColumns& out,
+                    const Progress& progress) {
     if (target.closed)
         voxelizer.voxelize(frame, target.mesh.positions, target.mesh.triangles, out);
     else
-        out = voxelizeWinding(frame, target.mesh);
+        out = voxelizeWinding(frame, target.mesh, progress);
 }
 
 double shareBeyondFrame(const VoxelFrame& frame, const Target& target, const BitColumns& bits) noexcept {

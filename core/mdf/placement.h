@@ -6,6 +6,7 @@
 
 #include <glm/mat4x4.hpp>
 
+#include "core/base/progress.h"
 #include "core/base/units.h"
 #include "core/geometry/triangle_mesh.h"
 #include "core/mdf/field.h"
@@ -29,8 +30,10 @@ struct Target {
 [[nodiscard]] bool isClosedSolid(const TriangleMesh& mesh);
 
 /// Voxels of the frame inside the target: scan conversion when it is closed, else generalised winding
-/// numbers. The frame's zero-state body is not taken out.
-void voxelizeTarget(const VoxelFrame& frame, const Target& target, SolidVoxelizer& voxelizer, BitColumns& out);
+/// numbers, which can take seconds for thousands of loose triangles. The frame's zero-state body is not taken out.
+/// Throws Cancelled.
+void voxelizeTarget(const VoxelFrame& frame, const Target& target, SolidVoxelizer& voxelizer, BitColumns& out,
+                    const Progress& progress = {});
 
 /// Share of a target's volume, in [0, 1], that its voxels `bits` leave out because it reaches beyond
 /// the frame (R42). 0 for an open target, whose volume is not known.

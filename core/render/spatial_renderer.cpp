@@ -78,6 +78,7 @@ struct SpatialRenderer::Data {
     // Of a driver that refuses a program of projectors: what looks the eye's picture up, and what weighs them.
     std::string lookupProblem;
     std::string sharingProblem;
+    std::string mixedProblem;
 
     void beginFrame(const ShowFrame& next);
     void drawEye(const glm::vec3& from);
@@ -204,6 +205,12 @@ bool SpatialRenderer::Data::drawProjectors(const EyeViews& views, bool shared) {
         if (!target->region.empty()) {
             if (!lookUp([&] { projectorPass.drawSeen(*target, *frame, device, views); })) return false;
             pass.drawUnseen(*frame, unseenPlaces(*target, *frame->installation));
+            if (measuring) glFinish();
+            auto since = std::chrono::steady_clock::now();
+            const auto mix = [&] { projectorPass.drawMixed(*target, *frame, views); };
+            if (mixedProblem.empty() && !granted(mixedProblem, "thin lines stay along folds and outlines", mix))
+                return false;
+            times.mixed += finish(since);
         }
         if (!shared) target->changes.finish(*frame);
     }
@@ -293,8 +300,8 @@ SpatialTimes SpatialRenderer::times() const { return data_->times; }
 
 std::vector<std::string> SpatialRenderer::warnings() const {
     std::vector<std::string> warnings = data_->pass.warnings();
-    for (const std::string& problem :
-         {data_->eyeProblem, data_->lookupProblem, data_->sharingProblem, data_->lab.problem(), data_->out.problem()})
+    for (const std::string& problem : {data_->eyeProblem, data_->lookupProblem, data_->sharingProblem,
+                                       data_->mixedProblem, data_->lab.problem(), data_->out.problem()})
         if (!problem.empty()) warnings.push_back(problem);
     return warnings;
 }

@@ -16,6 +16,7 @@ namespace lumorph {
 /// measuring is on.
 struct SpatialTimes {
     double upload = 0.0, shadow = 0.0, eye = 0.0, projectors = 0.0, total = 0.0;
+    double mixed = 0.0; ///< within `projectors`: of pixels that lie on several surfaces
 };
 
 /// The two passes of spatial augmented reality (R26-R35) in the current OpenGL 4.1 context: what the eye should see,

@@ -9,8 +9,9 @@ namespace lumorph {
 
 /// Solid voxelisation for meshes with holes: a voxel is in when the generalised winding number of its
 /// centre (Jacobson et al. 2013) is at least one half. Far clusters of triangles are summed as one
-/// dipole each (after Barill et al. 2018), so the cost is about voxels x log(triangles); tens of
-/// milliseconds where the scan conversion takes one. Runs on all cores. Throws Cancelled.
+/// dipole each (after Barill et al. 2018), and what is far from a block of voxels is interpolated in it, so that
+/// thousands of large loose triangles cost seconds too; tens of milliseconds for an ordinary mesh, where the scan
+/// conversion takes one. Runs on all cores. Throws Cancelled.
 [[nodiscard]] BitColumns voxelizeWinding(const VoxelFrame& frame, const TriangleMesh& mesh,
                                          const Progress& progress = {});
 

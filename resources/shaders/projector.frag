@@ -1,8 +1,8 @@
 // What a projector sends to places that the eye sees. Pieces before: version.glsl, physical_normal.glsl,
-// packed_normal.glsl, projector_light.glsl, projector_output.glsl, eye_lookup.glsl, noise.glsl. In: of the
-// table (TABLE) worldPosition, of the device what projector_surface.frag has found; the eye's pictures of the device and
-// (TABLE_VIEW) of the table. Out: the value; 1 where this place is done, a half where it is hidden and done only next to
-// others.
+// packed_normal.glsl, projector_eye_weight.glsl, projector_light.glsl, projector_output.glsl, eye_lookup.glsl,
+// noise.glsl. In: of the table (TABLE) worldPosition, of the device what projector_surface.frag has found; the eye's
+// pictures of the device and (TABLE_VIEW) of the table. Out: the value; the eye's weight (projector_eye_weight.glsl)
+// where this place is done, -1 where it is hidden and done only next to others.
 
 #ifdef TABLE
 in vec3 worldPosition;
@@ -20,7 +20,9 @@ uniform sampler2D tableViewDepth;
 #endif
 
 layout(location = 0) out vec4 color;
-layout(location = 1) out float done;
+layout(location = 1) out float eyeWeight;
+
+const float kLeastWeight = 1e-4; // more than nothing, in half precision
 
 void main() {
 #ifdef TABLE
@@ -47,5 +49,6 @@ void main() {
     // A hidden place may be steep; made up for, it would outshine the side that is seen.
     vec3 turned = seen.a > 0.0 ? normal : normalize(projectorPosition - world);
     color = sentFor(seen.rgb, world, turned);
-    done = seen.a > 0.0 ? 1.0 : 0.5;
+    float weight = eyeWeightOf(world, normal, projectorPosition, dot(surfaceAlbedo, surfaceAlbedo) / 3.0);
+    eyeWeight = seen.a > 0.0 ? max(weight, kLeastWeight) : -1.0;
 }

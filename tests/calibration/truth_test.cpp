@@ -8,6 +8,7 @@
 
 #include "calibration/lab/lab_lens.h"
 #include "core/render/gl/headless_context.h"
+#include "tests/support/truth_band.h"
 #include "tests/support/truth_show.h"
 
 // R24, R26: lights the deformed device with the projector's picture in the virtual lab, looks from the eye, and
@@ -18,6 +19,9 @@ namespace {
 
 /// The bar is for device and table; lines seen from above come 0.1 dB short of it where the device is judged alone.
 constexpr double kDeviceSlack = 0.5; // decibels
+
+/// Of pixels beside edges, against the least squared error that any choice of them reaches for the eye.
+constexpr double kMostBandError = 2.0;
 
 /// All eyes in the long run (packaging/soak); else two of each state, so that every eye has its turn.
 std::vector<TruthEye> eyesOf(const TruthState& state) {
@@ -71,11 +75,18 @@ TEST_P(TruthTest, TheLitDeviceLooksAsTheEyePassSays) {
         const glm::vec3 from = positionOf(eye);
         TruthBench bench(setupOf(state, truthFrame(device, state, from, kTruthContents.front()), from));
         ASSERT_GT(bench.judgedPixels(), 100'000U);
+        const BandBench band(bench);
+        BandError besideEdges;
         for (const TruthContent content : kTruthContents) {
             const ShowFrame frame = truthFrame(device, state, from, content);
             ASSERT_EQ(deviceView(frame, from, bench.eye().size), bench.eye());
             renderer.draw(frame);
-            const auto [all, alone] = judge(bench, renderer.readEye(), renderer.readProjector(0));
+            const Image seen = renderer.readEye();
+            const Image sent = renderer.readProjector(0);
+            if (content == TruthContent::water ||
+                content == TruthContent::bricks) // smooth and sharp; others take as long
+                besideEdges += band.error(lightOf(seen), sent);
+            const auto [all, alone] = judge(bench, seen, sent);
             std::printf(
                 "truth %-11s | %-11s | %-7s | rendered %5.1f dB | ideal %5.1f dB | device alone %5.1f | %5.1f\n",
                 state.name, eye.name, nameOf(content), all.rendered, all.ideal, alone.rendered, alone.ideal);
@@ -83,6 +94,10 @@ TEST_P(TruthTest, TheLitDeviceLooksAsTheEyePassSays) {
             EXPECT_GE(alone.rendered, alone.bar() - kDeviceSlack)
                 << eye.name << ", " << nameOf(content) << ", device alone";
         }
+        std::printf("band  %-11s | %-11s | squared error %.0f | least %.0f | ratio %.2f | %zu rays\n", state.name,
+                    eye.name, besideEdges.rendered, besideEdges.least, besideEdges.ratio(), band.rays());
+        EXPECT_GT(band.rays(), 50'000U) << eye.name;
+        EXPECT_LE(besideEdges.ratio(), kMostBandError) << eye.name;
         const TruthCoverage coverage = coverageOf(bench, device, state, renderer.readMask());
         std::printf("cover %-11s | %-11s | device %4.1f %% | flaps %5.1f %% | mask differs %.2f %% | judged %4.1f %% | "
                     "of flaps %5.1f %%\n",

@@ -210,7 +210,17 @@ TruthBench::~TruthBench() = default;
 
 const Lab& TruthBench::lab() const { return data_->lab; }
 const CalibratedCamera& TruthBench::eye() const { return data_->setup.eye; }
+const InstalledProjector& TruthBench::projector() const { return data_->setup.projector; }
 const LabSight& TruthBench::sight() const { return data_->sight; }
+
+bool TruthBench::besideEdge(glm::ivec2 pixel) const {
+    const int margin = static_cast<int>(std::ceil(kBand)) + 1;
+    const glm::ivec2 low = data_->region.low + margin;
+    const glm::ivec2 high = data_->region.high - margin;
+    const bool inside = pixel.x >= low.x && pixel.y >= low.y && pixel.x < high.x && pixel.y < high.y;
+    return inside && !data_->isGood(pixel);
+}
+
 const std::vector<std::uint8_t>& TruthBench::judged() const { return data_->judged; }
 
 std::size_t TruthBench::judgedPixels() const {

@@ -30,8 +30,8 @@ struct TruthSetup {
 ///
 /// Judged is surface that the eye sees and the projector lights, except
 /// - within 2 projector pixels of where either ends. There a projector pixel lies on two surfaces, or on one that only
-///   half belongs to the eye, and no value can be right for both; and the low-pass kernel, 1.5 pixels wide to either
-///   side, would reach over the edge;
+///   half belongs to the eye, and no value can be right for both (BandBench judges which is best); and the low-pass
+///   kernel, 1.5 pixels wide to either side, would reach over the edge;
 /// - where light comes in at more than 70 degrees. A projector of peak 3 cannot reach white beyond acos(1/3) = 70.5
 ///   degrees at its reference distance, and the program warns of such places;
 /// - the outermost 3 % of the eye's frame, where its picture fades into that of the table on purpose;
@@ -50,6 +50,9 @@ public:
     [[nodiscard]] const CalibratedCamera& eye() const;
     /// What the eye's rays meet.
     [[nodiscard]] const LabSight& sight() const;
+    [[nodiscard]] const InstalledProjector& projector() const;
+    /// Whether a pixel of the projector lies in the band beside an edge, near enough to the device to be judged.
+    [[nodiscard]] bool besideEdge(glm::ivec2 pixel) const;
     /// One an eye pixel: 1 where it is judged.
     [[nodiscard]] const std::vector<std::uint8_t>& judged() const;
     [[nodiscard]] std::size_t judgedPixels() const;

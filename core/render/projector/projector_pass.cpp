@@ -21,6 +21,13 @@ ShaderFiles weightFiles(std::vector<std::string> defines) {
                          std::move(defines));
 }
 
+ShaderFiles mixedFiles(std::vector<std::string> defines) {
+    ShaderFiles files = shaderFiles(
+        {"full_frame.vert"}, {"version.glsl", "camera.glsl", "projector_eye_weight.glsl", "projector_mixed.frag"});
+    files.defines = std::move(defines);
+    return files;
+}
+
 void drawTableOf(const ProjectorTarget& target, Program& program) {
     program.set("worldFromMesh", glm::mat4(1.0F));
     target.table.draw();
@@ -38,6 +45,21 @@ void setLens(Program& program, const ProjectorTarget& target) {
     setCamera(program, target.projector.camera, target.range.near, target.range.far);
 }
 
+/// Binds texture units 2 and 3.
+void setEye(Program& program, const EyeViews& views) {
+    program.set("eyePosition", glm::vec3(positionOf(views.device->camera())));
+    views.device->set(program, "device", 2);
+}
+
+/// Where the eye's pictures are looked up.
+PixelRegion lookedUpPixels(const ProjectorTarget& target, const EyeViews& views) {
+    PixelRegion region(target.device);
+    for (const TableArea& area : views.tableAreas) region.include(lookupPixels(area, target.projector.camera));
+    return region;
+}
+
+float meanSquare(const glm::vec3& color) { return glm::dot(color, color) / 3.0F; }
+
 } // namespace
 
 ProjectorPass::ProjectorPass()
@@ -47,7 +69,8 @@ ProjectorPass::ProjectorPass()
       edges_(shaderFiles({"full_frame.vert"}, {"version.glsl", "projector_edges.frag"})),
       distance_(shaderFiles({"full_frame.vert"}, {"version.glsl", "projector_distance.frag"})),
       deviceWeight_(weightFiles({})), tableWeight_(weightFiles({"TABLE"})),
-      done_(shaderFiles({"full_frame.vert"}, {"version.glsl", "projector_done.frag"})) {}
+      done_(shaderFiles({"full_frame.vert"}, {"version.glsl", "projector_done.frag"})), mixed_(mixedFiles({})),
+      mixedGamma_(mixedFiles({"GAMMA"})) {}
 
 void ProjectorPass::drawDepth(ProjectorTarget& target, const ShowFrame& frame, const DeviceSurface& device,
                               const EyeViews& views, bool shared) {
@@ -161,10 +184,10 @@ void ProjectorPass::drawWeights(std::span<ProjectorTarget* const> targets, const
 Program& ProjectorPass::seenProgram(const std::vector<std::string>& defines) {
     const auto found = seen_.find(defines);
     if (found != seen_.end()) return found->second;
-    ShaderFiles files =
-        physicalFiles({"version.glsl", "physical_normal.glsl", "packed_normal.glsl", "projector_light.glsl",
-                       "projector_output.glsl", "eye_lookup.glsl", "noise.glsl", "projector.frag"},
-                      defines);
+    ShaderFiles files = physicalFiles({"version.glsl", "physical_normal.glsl", "packed_normal.glsl",
+                                       "projector_eye_weight.glsl", "projector_light.glsl", "projector_output.glsl",
+                                       "eye_lookup.glsl", "noise.glsl", "projector.frag"},
+                                      defines);
     if (std::ranges::find(defines, "TABLE") == defines.end())
         files.vertex = shaderFiles({"full_frame.vert"}, {}).vertex;
     return seen_.try_emplace(defines, files).first->second;
@@ -183,7 +206,7 @@ Program& ProjectorPass::beginLookup(const ProjectorTarget& target, const ShowFra
     setLens(program, target);
     setOutput(program, target, *frame.installation,
               onTable != nullptr ? PhysicalSurface::table : PhysicalSurface::device, 0);
-    views.device->set(program, "device", 2);
+    setEye(program, views);
     if (onTable == nullptr) return program;
     if (second) views.table->set(program, "table", 4);
     program.set("lookupArea", glm::vec4(onTable->low, onTable->high));
@@ -220,20 +243,48 @@ void ProjectorPass::hideDone(const ProjectorTarget& target, const EyeViews& view
     glBindFramebuffer(GL_FRAMEBUFFER, target.rest.name());
     clearRegion(target.region, GL_DEPTH_BUFFER_BIT);
     if (views.device == nullptr) return;
-    PixelRegion lookedUp(target.device);
-    for (const TableArea& area : views.tableAreas) lookedUp.include(lookupPixels(area, target.projector.camera));
     glDepthFunc(GL_ALWAYS);
     glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
     done_.use();
-    bindTexture(0, target.done.name());
-    done_.set("done", 0);
-    for (const PixelRectangle& part : lookedUp.parts()) drawFullFrame(part);
+    bindTexture(0, target.eyeWeight.name());
+    done_.set("eyeWeight", 0);
+    for (const PixelRectangle& part : lookedUpPixels(target, views).parts()) drawFullFrame(part);
     glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+}
+
+void ProjectorPass::drawMixed(const ProjectorTarget& target, const ShowFrame& frame, const EyeViews& views) {
+    if (views.device == nullptr) return;
+    const PixelRegion region = lookedUpPixels(target, views);
+    const bool encoded = target.projector.gamma > 0.0;
+    beginSurfaces(target.rest.name(), target.sent.size());
+    glDisable(GL_DEPTH_TEST);
+    glDepthMask(GL_FALSE);
+    for (const PixelRectangle& part : region.parts()) seenSurface_.keepPicture(part);
+    (encoded ? glDisable : glEnable)(GL_FRAMEBUFFER_SRGB);
+    Program& program = encoded ? mixedGamma_ : mixed_;
+    program.use();
+    setLens(program, target);
+    setEye(program, views);
+    program.set("projectorPosition", glm::vec3(positionOf(target.projector.camera)));
+    program.set("tableHalf", 0.5F * frame.installation->tableSize);
+    program.set("tableAlbedo", meanSquare(albedoOf(*frame.installation, PhysicalSurface::table)));
+    if (encoded) program.set("gamma", static_cast<float>(target.projector.gamma));
+    bindTexture(0, target.eyeWeight.name());
+    program.set("eyeWeight", 0);
+    seenSurface_.setPicture(program, 1);
+    seenSurface_.set(program, 4);
+    program.set("deviceArea", glm::vec4(target.device.low, target.device.high));
+    glEnable(GL_SCISSOR_TEST);
+    for (const PixelRectangle& part : region.parts()) drawFullFrame(part);
+    glDisable(GL_SCISSOR_TEST);
+    glDepthMask(GL_TRUE);
+    glEnable(GL_DEPTH_TEST);
 }
 
 std::size_t ProjectorPass::objectCount() const noexcept {
     std::size_t count = 1 + ProjectorSurface::kObjects;
-    for (const Program* program : {&depth_, &surface_, &edges_, &distance_, &deviceWeight_, &tableWeight_, &done_})
+    for (const Program* program :
+         {&depth_, &surface_, &edges_, &distance_, &deviceWeight_, &tableWeight_, &done_, &mixed_, &mixedGamma_})
         count += program->objectCount();
     for (const auto& [defines, program] : seen_) count += program.objectCount();
     return count;

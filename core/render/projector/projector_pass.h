@@ -36,6 +36,9 @@ public:
     /// The rest is the eye pass's.
     void drawSeen(const ProjectorTarget& target, const ShowFrame& frame, const DeviceSurface& device,
                   const EyeViews& views);
+    /// Gives pixels that lie on several surfaces the value that is best for all that the eye sees of these, when the
+    /// picture is complete.
+    void drawMixed(const ProjectorTarget& target, const ShowFrame& frame, const EyeViews& views);
 
     [[nodiscard]] std::size_t objectCount() const noexcept;
 
@@ -51,7 +54,7 @@ private:
 
     gl::VertexArray noAttributes_;
     ProjectorSurface seenSurface_;
-    Program depth_, surface_, edges_, distance_, deviceWeight_, tableWeight_, done_;
+    Program depth_, surface_, edges_, distance_, deviceWeight_, tableWeight_, done_, mixed_, mixedGamma_;
     std::map<std::vector<std::string>, Program> seen_; ///< by the defines of projector.frag
 };
 

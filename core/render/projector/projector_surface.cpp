@@ -23,6 +23,7 @@ void ProjectorSurface::fit(glm::ivec2 size) {
     };
     attach(GL_COLOR_ATTACHMENT0, place_, GL_RGBA32F);
     attach(GL_COLOR_ATTACHMENT1, along_, GL_RGBA16F);
+    attach(GL_COLOR_ATTACHMENT2, picture_, GL_SRGB8_ALPHA8);
     bindTexture(0, 0);
     constexpr std::array<GLenum, 2> kAll{GL_COLOR_ATTACHMENT0, GL_COLOR_ATTACHMENT1};
     glDrawBuffers(static_cast<GLsizei>(kAll.size()), kAll.data());
@@ -36,6 +37,17 @@ void ProjectorSurface::fit(glm::ivec2 size) {
 void ProjectorSurface::bind(GLuint depth) const {
     glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_.name());
     glFramebufferTexture2D(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_TEXTURE_2D, depth, 0);
+}
+
+void ProjectorSurface::keepPicture(const PixelRectangle& part) const {
+    bindTexture(0, picture_.name());
+    glCopyTexSubImage2D(GL_TEXTURE_2D, 0, part.low.x, part.low.y, part.low.x, part.low.y, part.high.x - part.low.x,
+                        part.high.y - part.low.y);
+}
+
+void ProjectorSurface::setPicture(Program& program, int unit) const {
+    bindTexture(unit, picture_.name());
+    program.set("before", unit);
 }
 
 void ProjectorSurface::set(Program& program, int unit) const {

@@ -16,17 +16,19 @@ constexpr float kDarkestSurface = 0.01F; // what is darker nobody makes bright
 ProjectorTarget::ProjectorTarget(const InstalledProjector& what)
     : projector(what), sent(what.camera.size), open(what.camera.size) {
     const glm::ivec2 size = sent.size();
-    bindTexture(0, done.name());
-    glTexImage2D(GL_TEXTURE_2D, 0, GL_R8, size.x, size.y, 0, GL_RED, GL_UNSIGNED_BYTE, nullptr);
+    bindTexture(0, eyeWeight.name());
+    glTexImage2D(GL_TEXTURE_2D, 0, GL_R16F, size.x, size.y, 0, GL_RED, GL_FLOAT, nullptr);
     glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
     glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
+    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
+    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
     bindTexture(0, 0);
     const auto attach = [](GLenum to, GLuint texture) {
         glFramebufferTexture2D(GL_FRAMEBUFFER, to, GL_TEXTURE_2D, texture, 0);
     };
     glBindFramebuffer(GL_FRAMEBUFFER, seen.name());
     attach(GL_COLOR_ATTACHMENT0, sent.texture());
-    attach(GL_COLOR_ATTACHMENT1, done.name());
+    attach(GL_COLOR_ATTACHMENT1, eyeWeight.name());
     attach(GL_DEPTH_ATTACHMENT, sent.depthTexture());
     constexpr GLenum kBoth[] = {GL_COLOR_ATTACHMENT0, GL_COLOR_ATTACHMENT1};
     glDrawBuffers(2, kBoth);

@@ -21,9 +21,9 @@ struct ProjectorTarget {
     InstalledProjector projector;
     DepthRange range;
     ColorTarget sent;      ///< what it sends out; its depth is that of the device, and of the table among several
-    gl::Texture done;      ///< 1 where what it sends out is drawn for the eye
+    gl::Texture eyeWeight; ///< where what it sends out is drawn for the eye: projector_eye_weight.glsl
     DepthMap open;         ///< by which that hides all else
-    gl::Framebuffer seen;  ///< `sent` and `done`, with the depth of `sent`
+    gl::Framebuffer seen;  ///< `sent` and `eyeWeight`, with the depth of `sent`
     gl::Framebuffer rest;  ///< `sent` with `open`
     PixelRegion region;    ///< what of its picture is drawn in this frame; the rest stays
     PixelRectangle device; ///< holds the device as it is

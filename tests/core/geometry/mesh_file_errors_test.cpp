@@ -53,6 +53,17 @@ std::string plyTriangle(int index, float x = 0.0F) {
     return text + '\3' + raw(0) + raw(1) + raw(index);
 }
 
+/// A triangle and many faces; what stands for these cannot be read, so that only the head can tell.
+std::string plyRepeats() {
+    return plyHead("3", "20000") + std::string(36, '\0') + std::string(std::size_t{20'000} * 13, '\xFF');
+}
+
+std::string repeated(const std::string& text, int count) {
+    std::string all;
+    for (int i = 0; i < count; ++i) all += text;
+    return all;
+}
+
 std::string plyText(const std::string& body) {
     return "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
            "element face 1\nproperty list uchar int vertex_indices\nend_header\n" +
@@ -94,6 +105,7 @@ INSTANTIATE_TEST_SUITE_P(Table, ReadMeshBrokenFiles, testing::Values(
     Broken{"ObjTruncated",       "a.obj", kV3 + "v 0.5 0.",                                 ", line 4",      "ends where the z coordinate"},
     Broken{"ObjAfterContinued",  "a.obj", kV3 + "f 1 \\\n2 \\\n3\nf 1 2 9\n",               ", line 7",      "vertex 8"},
     Broken{"ObjMissing",         "a.obj", "v 1 2\nv 3 4 5\n",                                 ", line 1",      "z coordinate is missing"},
+    Broken{"ObjRepeats",         "a.obj", kV3 + repeated("f 1 2 3\n", 20'000),              "",              "20000 faces on 3 vertices"},
     Broken{"OffEmpty",           "a.off", "",                                               "",              "empty"},
     Broken{"OffWrongKeyword",    "a.off", "FOO\n1 2 3\n",                                   ", line 1",      "begin with OFF"},
     Broken{"OffBinary",          "a.off", std::string("OFF BINARY\n\0\0\0\x08", 15),        ", line 1",      "binary OFF"},
@@ -126,6 +138,7 @@ INSTANTIATE_TEST_SUITE_P(Table, ReadMeshBrokenFiles, testing::Values(
     Broken{"PlyTextFraction",    "a.ply", plyText("0 0 0\n1 0 0\n0 1 0\n3 0 1 1.5\n"),      ", line 13",     "not a whole number"},
     Broken{"PlyTextTruncated",   "a.ply", plyText("0 0 0\n1 0 0\n0 1 0\n3 0 1"),            ", line 13",     "the file ends"},
     Broken{"PlyPointsOnly",      "a.ply", plyHead("1", "0") + std::string(12, '\0'),        "",              "1 points but no faces"},
+    Broken{"PlyRepeats",         "a.ply", plyRepeats(),                                     ", its head",    "20000 faces on 3 vertices"},
     Broken{"PlyNoPosition",      "a.ply", replaced(plyTriangle(2), "float z", "float w"),   "",              "no x, y and z"},
     Broken{"StlEmpty",           "a.stl", "",                                               "",              "empty"},
     Broken{"StlShort",           "a.stl", "garbage",                                        "",              "too short"},

@@ -214,5 +214,38 @@ TEST(FieldFile, HostileLengthsDoNotTakeMemory) {
     }
 }
 
+/// Where the heads of a file's blocks stand.
+std::vector<std::size_t> blockHeads(const std::vector<std::byte>& file) {
+    std::vector<std::size_t> heads;
+    for (std::size_t at = 24; at < file.size();) {
+        heads.push_back(at);
+        std::uint64_t stored = 0;
+        std::memcpy(&stored, &file[at + 16], sizeof stored);
+        at += 32 + stored;
+    }
+    return heads;
+}
+
+// Each block may be as large as the frame allows, and a few megabytes of zstd may hold thousands of them.
+TEST(FieldFile, PromisesOfAllBlocksTogetherAreBoundedBeforeAnyIsUnpacked) {
+    std::vector<std::byte> file = writeField(smallField());
+    const std::vector<std::size_t> heads = blockHeads(file);
+    ASSERT_GE(heads.size(), 5U);
+    file[heads[0] + 24] ^= std::byte{1}; // its checksum: who unpacks the first block trips over it
+    for (std::size_t i = 1; i < heads.size(); ++i) {
+        const std::uint64_t promised = std::uint64_t{300} << 20U;
+        std::memcpy(&file[heads[i] + 8], &promised, sizeof promised);
+    }
+    try {
+        (void)parseField(file, "bomb.mdf");
+        ADD_FAILURE() << "was accepted";
+    } catch (const DataError& error) {
+        EXPECT_EQ(error.subject(), "bomb.mdf");
+        EXPECT_NE(error.why().find("block 5"), std::string::npos) << error.why();
+        EXPECT_NE(error.why().find("1024 MiB"), std::string::npos) << error.why();
+        EXPECT_FALSE(error.remedy().empty());
+    }
+}
+
 } // namespace
 } // namespace lumorph

@@ -1,6 +1,7 @@
 #include "core/mdf/placement.h"
 
 #include <cmath>
+#include <tuple>
 
 #include <gtest/gtest.h>
 
@@ -199,6 +200,25 @@ TEST_F(PlacementTest, TheShareBeyondTheFrameIsToldOfClosedTargetsAlone) {
         test::boxMesh({0.02F, field_.restSurface, 0.02F}, {0.06F, field_.restSurface + 0.01F, 0.06F}), true, {}};
     EXPECT_EQ(shareBeyondFrame(field_.frame, inside, BitColumns(field_.frame.dimensions)), 0.0)
         << "thin things lose voxels, but not beyond the frame";
+}
+
+TEST_F(PlacementTest, AClipOfMoreFramesThanAnyoneWaitsForIsRefused) {
+    Model model = growingBox();
+    Model::Animation& animation = model.animations.front();
+    // The last would not even count in whole numbers of 32 bits.
+    for (const auto& [seconds, rate, frames] : {std::tuple(10'000.0F, 240.0, "2400000 frames at 240 a second"),
+                                                std::tuple(4'001.0F, 30.0, "120030 frames at 30 a second"),
+                                                std::tuple(1e12F, 1.0, "more than the limit of 120000")}) {
+        animation.channels.front().times.back() = seconds;
+        try {
+            (void)matchClip(field_, coverage_, voting_, model, animation, {.framesPerSecond = rate, .placement = {}});
+            ADD_FAILURE() << frames << " were matched";
+        } catch (const InvalidInput& error) {
+            EXPECT_EQ(error.subject(), "animation 'grow'");
+            EXPECT_NE(error.why().find(frames), std::string::npos) << error.why();
+            EXPECT_FALSE(error.remedy().empty());
+        }
+    }
 }
 
 } // namespace

@@ -158,6 +158,7 @@ TEST(SpatialFrames, WithoutAProjectorsShaderTheShowGoesOn) {
     for (const auto& [name, shares] : {std::pair("projector_surface.frag", kShares),
                                        {"projector.frag", kShares},
                                        {"projector_done.frag", kShares},
+                                       {"projector_mixed.frag", kShares},
                                        {"projector_edges.frag", !kShares},
                                        {"projector_distance.frag", !kShares},
                                        {"projector_weight.frag", !kShares}}) {

@@ -1,4 +1,6 @@
 #include <cmath>
+#include <cstdio>
+#include <ctime>
 #include <numbers>
 #include <random>
 
@@ -161,6 +163,81 @@ TEST(WindingVoxelizer, TheTreeAgreesWithTheFullSum) {
                 if (std::abs(winding - 0.5) > 0.02) wrong += bits.test(x, y, z) != (winding > 0.5);
             }
     EXPECT_EQ(wrong, 0U);
+}
+
+/// Loose triangles in a cube around the origin, with sides of up to `size`.
+TriangleMesh strayTriangles(int count, float size) {
+    std::mt19937 random(26);
+    std::uniform_real_distribution<float> place(-1.0F, 1.0F);
+    const auto point = [&] { return glm::vec3(place(random), place(random), place(random)); };
+    TriangleMesh mesh;
+    for (std::uint32_t i = 0; i < static_cast<std::uint32_t>(count); ++i) {
+        const glm::vec3 middle = point();
+        for (int corner = 0; corner < 3; ++corner) mesh.positions.push_back(middle + 0.5F * size * point());
+        mesh.triangles.emplace_back(3 * i, 3 * i + 1, 3 * i + 2);
+    }
+    return mesh;
+}
+
+TEST(WindingVoxelizer, StrayTrianglesAgreeWithTheFullSum) {
+    for (const float size : {0.05F, 0.4F, 2.0F}) {
+        const TriangleMesh mesh = strayTriangles(600, size);
+        const VoxelFrame frame = frameAround(mesh, 40);
+        const BitColumns bits = voxelizeWinding(frame, mesh);
+        int wrong = 0;
+        int decided = 0;
+        for (int x = 0; x < frame.dimensions.x; x += 3)
+            for (int y = 0; y < frame.dimensions.y; y += 3)
+                for (int z = 0; z < frame.dimensions.z; z += 3) {
+                    double angles = 0.0; // of Van Oosterom and Strackee, one by one
+                    for (const glm::uvec3& t : mesh.triangles) {
+                        const glm::dvec3 p = frame.centre(x, y, z);
+                        const glm::dvec3 a = glm::dvec3(mesh.positions[t.x]) - p;
+                        const glm::dvec3 b = glm::dvec3(mesh.positions[t.y]) - p;
+                        const glm::dvec3 c = glm::dvec3(mesh.positions[t.z]) - p;
+                        const double la = glm::length(a), lb = glm::length(b), lc = glm::length(c);
+                        angles += 2.0 * std::atan2(glm::dot(a, glm::cross(b, c)), la * lb * lc + glm::dot(a, b) * lc +
+                                                                                      glm::dot(b, c) * la +
+                                                                                      glm::dot(c, a) * lb);
+                    }
+                    const double winding = std::abs(angles) / (4.0 * std::numbers::pi);
+                    EXPECT_NEAR(std::abs(windingNumber(mesh, frame.centre(x, y, z))), winding, 1e-9);
+                    if (std::abs(winding - 0.5) < 0.03) continue;
+                    ++decided;
+                    wrong += bits.test(x, y, z) != (winding > 0.5);
+                }
+        EXPECT_GT(decided, 1000) << size;
+        EXPECT_EQ(wrong, 0) << size;
+    }
+}
+
+// Without a hierarchy over the voxels each of them asks for each triangle, and this takes minutes.
+TEST(WindingVoxelizer, StrayTrianglesTakeAFractionOfTheFullSum) {
+    for (const float size : {0.05F, 2.0F}) {
+        const TriangleMesh mesh = strayTriangles(20'000, size);
+        const VoxelFrame frame = frameAround(mesh, 54); // of about 160,000 voxels, as a field of the tablet
+        constexpr int kPoints = 50;
+        const auto seconds = [](const auto& work) {
+            timespec before{}, after{};
+            clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &before);
+            work();
+            clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &after);
+            return static_cast<double>(after.tv_sec - before.tv_sec) +
+                   1e-9 * static_cast<double>(after.tv_nsec - before.tv_nsec);
+        };
+        double sum = 0.0;
+        const double full = seconds([&] {
+                                for (int i = 0; i < kPoints; ++i) sum += windingNumber(mesh, frame.centre(i, i, i));
+                            }) /
+                            kPoints * static_cast<double>(frame.voxelCount());
+        BitColumns bits;
+        const double taken = seconds([&] { bits = voxelizeWinding(frame, mesh); });
+        EXPECT_TRUE(std::isfinite(sum));
+        EXPECT_GT(bits.count(), 0U);
+        std::printf("stray triangles of size %.2f: %.2f s of processor time, %.1f s in full\n",
+                    static_cast<double>(size), taken, full);
+        EXPECT_LT(taken, full / (size < 1.0F ? 20.0 : 4.0));
+    }
 }
 
 TEST(WindingVoxelizer, StopsWhenAsked) {
