@@ -36,12 +36,6 @@ constexpr QSize kFrame{8, 40}; // what a desktop puts around a window
 constexpr auto kGeometryKey = "window/geometry";
 constexpr auto kWorkspaceKey = "window/workspace";
 
-bool belongsTo(const QObject* watched, const QWidget* window) {
-    for (const QObject* object = watched; object != nullptr; object = object->parent())
-        if (object == window) return true;
-    return false;
-}
-
 } // namespace
 
 struct MainWindow::Data {
@@ -122,6 +116,7 @@ void MainWindow::keepOnScreen() {
 }
 
 MainWindow::~MainWindow() {
+    delete data_->kiosk; // it hears all that follows
     qApp->removeEventFilter(this);
     // Views and docks refer to their workspace, so they go first.
     delete takeCentralWidget();
