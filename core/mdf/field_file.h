@@ -16,7 +16,8 @@ namespace lumorph {
 [[nodiscard]] std::vector<std::byte> writeField(const Field& field);
 
 /// Reads it back. Every length, index and checksum is checked before it is used, no block may
-/// unpack to more than its kind can hold, nor all of them to more than 1 GiB by what their heads promise. Throws DataError naming `name`, the block and the remedy.
+/// unpack to more than its kind can hold, nor all of them to more than 1 GiB by what their heads promise. Throws
+/// DataError naming `name`, the block and the remedy.
 [[nodiscard]] Field parseField(std::span<const std::byte> bytes, const std::string& name);
 
 } // namespace lumorph

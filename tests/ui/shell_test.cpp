@@ -1,3 +1,6 @@
+#include <algorithm>
+#include <map>
+
 #include <QLabel>
 #include <QMenu>
 #include <QMenuBar>

@@ -57,13 +57,13 @@ bool isEscape(const QEvent& event) {
     return static_cast<const QKeyEvent&>(event).key() == Qt::Key_Escape;
 }
 
-bool isIn(const QObject* object, const QObject* ancestor) {
+} // namespace
+
+bool belongsTo(const QObject* object, const QObject* ancestor) {
     for (; object != nullptr; object = object->parent())
         if (object == ancestor) return true;
     return false;
 }
-
-} // namespace
 
 Kiosk::Kiosk(QWidget& window, Settings& settings, const Clock& clock, const Buttons& buttons)
     : QObject(&window), window_(window), clock_(clock), pin_(settings, clock), buttons_(buttons) {}
@@ -124,9 +124,9 @@ void Kiosk::knock(QWidget& door) {
 }
 
 bool Kiosk::mayHave(const QObject& watched) const {
-    if (isIn(&watched, buttons_.stop) || (pad_ && isIn(&watched, pad_))) return true;
-    if (clock_.now() < trustUntil_ && isIn(&watched, buttons_.resume)) return true;
-    return std::ranges::any_of(trusted_, [&](const auto& one) { return one && isIn(&watched, one); });
+    if (belongsTo(&watched, buttons_.stop) || (pad_ && belongsTo(&watched, pad_))) return true;
+    if (clock_.now() < trustUntil_ && belongsTo(&watched, buttons_.resume)) return true;
+    return std::ranges::any_of(trusted_, [&](const auto& one) { return one && belongsTo(&watched, one); });
 }
 
 bool Kiosk::eventFilter(QObject* watched, QEvent* event) {

@@ -10,6 +10,9 @@
 
 namespace lumorph::studio {
 
+/// Whether it is that object or below it, over the edges of windows: a menu belongs to what opened it.
+[[nodiscard]] bool belongsTo(const QObject* object, const QObject* ancestor);
+
 /// The doors of a window that visitors stand before. While they are closed, the whole program hears no key, pointer,
 /// touch or dropped file, but for STOP, Esc (twice: STOP), and the pad for the operator's PIN, which opens what only
 /// the operator may do. Whatever a widget would do with its input, it does not get any: nothing needs to know of a

@@ -39,6 +39,7 @@ constexpr auto kFrameKey = "window/frame";
 constexpr auto kGeometryKey = "window/geometry";
 constexpr auto kWorkspaceKey = "window/workspace";
 
+<<<<<<< HEAD
 bool belongsTo(const QObject* watched, const QWidget* window) {
     for (const QObject* object = watched; object != nullptr; object = object->parent())
         if (object == window) return true;
@@ -61,6 +62,8 @@ QVariantList frameOf(const QWidget& window) {
             outer.bottom() - inner.bottom()};
 }
 
+=======
+>>>>>>> 7c276468d4c18ebe1489a4ce5862aa1c6f70d288
 } // namespace
 
 struct MainWindow::Data {
@@ -153,6 +156,7 @@ void MainWindow::keepOnScreen() {
 }
 
 MainWindow::~MainWindow() {
+    delete data_->kiosk; // it hears all that follows
     qApp->removeEventFilter(this);
     // Views and docks refer to their workspace, so they go first.
     delete takeCentralWidget();

@@ -83,6 +83,8 @@ protected:
             takeBack();
         else if (key == Qt::Key_Return || key == Qt::Key_Enter)
             accept();
+        else
+            event->ignore();
     }
     void mousePressEvent(QMouseEvent* event) override { event->accept(); }
 

@@ -360,6 +360,8 @@ void SceneCentralView::setForVisitors(bool on) {
     data_->notices->setVisible(!on);
     data_->latency->setVisible(!on && data_->bar->latencyShown());
     if (on) setSelected(0);
+    layout()->activate();
+    data_->arrange();
 }
 
 void SceneCentralView::setSelected(int item) {
