@@ -39,7 +39,6 @@ constexpr auto kFrameKey = "window/frame";
 constexpr auto kGeometryKey = "window/geometry";
 constexpr auto kWorkspaceKey = "window/workspace";
 
-<<<<<<< HEAD
 bool belongsTo(const QObject* watched, const QWidget* window) {
     for (const QObject* object = watched; object != nullptr; object = object->parent())
         if (object == window) return true;
@@ -62,8 +61,6 @@ QVariantList frameOf(const QWidget& window) {
             outer.bottom() - inner.bottom()};
 }
 
-=======
->>>>>>> 7c276468d4c18ebe1489a4ce5862aa1c6f70d288
 } // namespace
 
 struct MainWindow::Data {

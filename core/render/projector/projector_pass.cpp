@@ -248,7 +248,8 @@ void ProjectorPass::hideDone(const ProjectorTarget& target, const EyeViews& view
     done_.use();
     bindTexture(0, target.eyeWeight.name());
     done_.set("eyeWeight", 0);
-    for (const PixelRectangle& part : lookedUpPixels(target, views).parts()) drawFullFrame(part);
+    const PixelRegion region = lookedUpPixels(target, views);
+    for (const PixelRectangle& part : region.parts()) drawFullFrame(part);
     glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
 }
 
