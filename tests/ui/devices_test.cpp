@@ -393,7 +393,7 @@ TEST_F(DevicesWindow, UndoIsOfTheSetUpHereAndOfTheDocumentElsewhereAndSaysWhatIt
     window.enter("servo.trim", "20");
     EXPECT_EQ(window.studio().devices.profile().servos[1].trim, 20.0);
     ASSERT_TRUE(undo->isEnabled());
-    QTest::keyClick(&window.window(), Qt::Key_Z, Qt::ControlModifier);
+    QTest::keyClick(window.find<QLineEdit>("servo.trim"), Qt::Key_Z, Qt::ControlModifier);
     EXPECT_EQ(window.studio().devices.profile().servos[1].trim, 0.0);
     EXPECT_EQ(window.studio().devices.profile().servos[1].pulseMax, 1900.0);
     const QString who = studio::servoName(studio::servoNamesOf(window.studio()), 1);

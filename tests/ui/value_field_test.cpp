@@ -3,6 +3,7 @@
 #include <memory>
 #include <numbers>
 
+#include <QAction>
 #include <QPushButton>
 #include <QSignalSpy>
 #include <QTest>
@@ -51,6 +52,38 @@ protected:
     QPushButton* other = nullptr;
     std::unique_ptr<QSignalSpy> committed, previewed, reverted;
 };
+
+TEST_F(ValueField, UndoIsTheWindowsUnlessSomethingIsBeingTyped) {
+    QAction undo;
+    undo.setShortcut(QKeySequence::Undo);
+    window.addAction(&undo);
+    QSignalSpy undone(&undo, &QAction::triggered);
+    click();
+    QTest::keyClicks(field, "3");
+    QTest::keyClick(field, Qt::Key_Z, Qt::ControlModifier);
+    EXPECT_EQ(undone.count(), 0) << "it is the text's";
+    QTest::keyClicks(field, "4");
+    QTest::keyClick(field, Qt::Key_Return);
+    ASSERT_EQ(committed->count(), 1);
+    QTest::keyClick(field, Qt::Key_Z, Qt::ControlModifier);
+    EXPECT_EQ(undone.count(), 1);
+}
+
+TEST_F(ValueField, ARefusingOneTakesNoOtherValueThanTheOneThatWasMeant) {
+    field->setRefusing(true);
+    QSignalSpy refused(field, &studio::ValueField::refused);
+    for (const char* text : {"11 cm", "-0.2 m"}) {
+        click();
+        QTest::keyClicks(field, text);
+        QTest::keyClick(field, Qt::Key_Return);
+        EXPECT_NEAR(field->value(), 0.02, 1e-12) << text;
+        other->setFocus();
+    }
+    EXPECT_EQ(committed->count(), 0);
+    ASSERT_GE(refused.count(), 2);
+    EXPECT_EQ(refused.first().first().toString(), "11.00 cm is not from -10.00 cm to 10.00 cm; it stays 2.00 cm");
+    EXPECT_EQ(field->text(), "2.00 cm");
+}
 
 TEST_F(ValueField, AClickAndTypingEntersAValueInAnyUnit) {
     click();

@@ -39,12 +39,6 @@ constexpr auto kFrameKey = "window/frame";
 constexpr auto kGeometryKey = "window/geometry";
 constexpr auto kWorkspaceKey = "window/workspace";
 
-bool belongsTo(const QObject* watched, const QWidget* window) {
-    for (const QObject* object = watched; object != nullptr; object = object->parent())
-        if (object == window) return true;
-    return false;
-}
-
 QSize sizeOf(const QMargins& frame) { return {frame.left() + frame.right(), frame.top() + frame.bottom()}; }
 
 /// Before it is shown nobody knows what the desktop will put around it, so the frame of last time stands for it.
