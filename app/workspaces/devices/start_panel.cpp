@@ -97,8 +97,8 @@ void StartPanel::refresh() {
     const std::vector<double> wanted = recording ? frame->estimatedStrokes : studio_.devices.wanted();
     const auto moves = startMoves(studio_.devices.status(), studio_.devices.profile(), wanted);
     StartQuestion next = startQuestion(deviceViewOf(studio_), moves, by_);
-    // Whoever holds it has agreed to what it said when he began.
-    if (next.jumps != question_.jumps || next.button != question_.button) hold_->cancel();
+    // Whoever holds it has agreed to what it said when he began, and to less: positions may be read meanwhile.
+    if (next.jumps && (!question_.jumps || next.button != question_.button)) hold_->cancel();
     const bool other = next != question_;
     question_ = std::move(next);
     title_->setText(question_.title);
