@@ -48,9 +48,10 @@ bool OperatorPin::choose(const QString& pin) {
 }
 
 OperatorPin::Answer OperatorPin::attempt(const QString& pin) {
+    if (!isSet()) return Answer::wrong; // nothing to guess, so nothing is counted
     if (secondsToWait() > 0) return Answer::paused;
     const QByteArray kept = settings_.value(kHashKey).toByteArray();
-    const bool right = !kept.isEmpty() && hashOf(pin, settings_.value(kSaltKey).toByteArray()).toHex() == kept;
+    const bool right = hashOf(pin, settings_.value(kSaltKey).toByteArray()).toHex() == kept;
     settings_.setValue(kWrongKey, right ? 0 : wrongAttempts() + 1);
     pause();
     return right ? Answer::right : Answer::wrong;
