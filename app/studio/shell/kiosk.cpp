@@ -125,7 +125,6 @@ void Kiosk::knock(QWidget& door) {
 
 bool Kiosk::mayHave(const QObject& watched) const {
     if (belongsTo(&watched, buttons_.stop) || (pad_ && belongsTo(&watched, pad_))) return true;
-    if (clock_.now() < trustUntil_ && belongsTo(&watched, buttons_.resume)) return true;
     return std::ranges::any_of(trusted_, [&](const auto& one) { return one && belongsTo(&watched, one); });
 }
 
