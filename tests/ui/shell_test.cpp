@@ -24,6 +24,8 @@ const QStringList kWorkspaces{"rig", "field", "scene", "devices"};
 
 class Shell : public ::testing::Test {
 protected:
+    /// The window comes back as the test before left it.
+    Shell() { window.window().resize(1440, 900); }
     [[nodiscard]] std::vector<QMenu*> menusInSight() {
         std::vector<QMenu*> menus;
         auto* bar = window.window().findChild<QMenuBar*>();

@@ -72,11 +72,14 @@ Kiosk::~Kiosk() { open(); }
 
 void Kiosk::requirePin(bool mayCancel, std::function<void()> chosen) {
     if (pin_.isSet()) return chosen();
-    if (!pad_) pad_ = choosePin(window_, pin_, mayCancel, std::move(chosen));
+    if (!padOpen()) pad_ = choosePin(window_, pin_, mayCancel, std::move(chosen));
 }
 
+/// One that left may not be deleted yet.
+bool Kiosk::padOpen() const { return pad_ && pad_->isVisible(); }
+
 void Kiosk::changePin() {
-    if (!pad_) pad_ = choosePin(window_, pin_, true, {});
+    if (!padOpen()) pad_ = choosePin(window_, pin_, true, {});
 }
 
 void Kiosk::close() {
@@ -106,7 +109,7 @@ void Kiosk::shutWindows() {
 
 void Kiosk::askOperator(const QString& why, std::function<void()> run) {
     if (!closed_ || !pin_.isSet()) return run();
-    if (pad_ && pad_->isVisible()) return;
+    if (padOpen()) return;
     pad_ = askPin(window_, pin_, why, std::move(run));
 }
 

@@ -52,6 +52,7 @@ private:
     [[nodiscard]] bool mayHave(const QObject& watched) const;
     void shutWindows();
     void letResume();
+    [[nodiscard]] bool padOpen() const;
     void knock(QWidget& door);
 
     QWidget& window_;
