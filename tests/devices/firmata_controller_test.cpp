@@ -208,6 +208,8 @@ TEST(FirmataController, TellsTheBatteryAndWarnsWhenItIsEmpty) {
     trial.receive(voltage(5600));
     EXPECT_NEAR(trial.state().volts.value_or(0), 5.6, 1e-9);
     EXPECT_THAT(trial.state().trouble->remedy, HasSubstr("charge it"));
+    for (const int millivolts : {6050, 6150, 6190}) trial.receive(voltage(millivolts));
+    EXPECT_TRUE(trial.state().trouble) << "under load it sags again: no warning that comes and goes";
     trial.receive(voltage(6500));
     EXPECT_FALSE(trial.state().trouble);
     trial.receive(voltage(200'000));

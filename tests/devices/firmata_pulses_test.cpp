@@ -355,5 +355,21 @@ TEST(FirmataPulses, AClockThatIsSetBackStopsNothing) {
     EXPECT_EQ(pulses.back(), (Bytes{0xE9, 0x24, 0x0D}));
 }
 
+// A board that may not have heard it must be told to let go again, whatever the clock says.
+TEST(FirmataPulses, AClockThatIsSetBackDoesNotEndTheLettingGo) {
+    ControllerTrial trial = readyTrial({9});
+    trial.send({{9, 1500.0, true}});
+    trial.wait(300);
+    trial.jump(Microseconds(3'600'000'000));
+    trial.send({{9, 1500.0, false}});
+    trial.wait(2000);
+    (void)trial.written();
+    trial.jump(Microseconds(1'000'000));
+    trial.wait(3000);
+    int told = 0;
+    for (const Bytes& message : trial.written()) told += message == detachOf(9) ? 1 : 0;
+    EXPECT_GE(told, 2) << "once a second";
+}
+
 } // namespace
 } // namespace lumorph

@@ -116,6 +116,23 @@ TEST(FirmataParser, AnEndlessMessageIsGivenUpAndCountedOnce) {
     EXPECT_EQ(parser.feed(Bytes{0xF0, 0x71, 'a', 0x00, 0xF7}), std::vector<Message>{Text{"a"}});
 }
 
+TEST(FirmataParser, TakesTheLongestMessageAndNoLonger) {
+    for (const bool fits : {true, false}) {
+        Bytes bytes(Parser::kLongest + (fits ? 1 : 2), 0x00);
+        bytes[0] = 0xF0;
+        bytes[1] = 0x01; // of somebody else, which is no error
+        bytes.push_back(0xF7);
+        Parser parser;
+        EXPECT_TRUE(parser.feed(bytes).empty());
+        EXPECT_EQ(parser.broken(), fits ? 0U : 1U);
+    }
+}
+
+TEST(FirmataParser, ReadsVoltagesAboveSixteenVolts) {
+    // 24 600 mV: 24600 = 1 x 16384 + 64 x 128 + 24
+    EXPECT_EQ(Parser().feed(Bytes{0xF0, 0x02, 24, 64, 1, 0xF7}), std::vector<Message>{Voltage{24.6}});
+}
+
 TEST(FirmataParser, HasRoomForTheLargestBoard) {
     Bytes bytes = {0xF0, 0x6C};
     for (int pin = 0; pin < 128; ++pin) {

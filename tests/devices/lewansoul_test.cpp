@@ -84,5 +84,15 @@ TEST(LewansoulParser, FramesDoNotGoOnInTheNextReport) {
     EXPECT_EQ(parser.broken(), 1U);
 }
 
+/// A header that cannot begin a frame holds nothing up that follows it.
+TEST(LewansoulParser, AFrameRightAfterAnImpossibleHeaderIsReadAtOnce) {
+    for (const std::uint8_t length : {7, 100, 250}) { // positions come in threes
+        Parser parser;
+        EXPECT_TRUE(parser.feed(Bytes{0x55, 0x55, length, 0x15}).empty());
+        // 7400 mV: 0x1CE8
+        EXPECT_EQ(parser.feed(Bytes{0x55, 0x55, 0x04, 0x0F, 0xE8, 0x1C}), std::vector<Message>{Voltage{7.4}}) << length;
+    }
+}
+
 } // namespace
 } // namespace lumorph::lewansoul

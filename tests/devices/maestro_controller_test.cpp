@@ -246,6 +246,22 @@ TEST(MaestroController, ABoardThatLetGoIsNoticed) {
     EXPECT_THAT(board.trial.state().trouble->why, HasSubstr("let go"));
 }
 
+TEST(MaestroController, OneOddAnswerIsNoReboot) {
+    AnsweringTrial board(sixServos());
+    board.trial.send({{3, 1500.0, true}});
+    board.wait(1500);
+    for (int round = 0; round < 5; ++round) {
+        const std::size_t before = board.asked.size();
+        board.quarters = 0; // a line that loses bytes also makes some up
+        for (int i = 0; i < 200 && board.asked.size() == before; ++i) board.wait(5);
+        ASSERT_EQ(board.asked.size(), before + 1);
+        board.quarters = 6000;
+        board.wait(1500);
+    }
+    EXPECT_EQ(board.trial.state().reboots, 0U);
+    EXPECT_FALSE(board.trial.state().trouble);
+}
+
 TEST(MaestroController, SilenceNamesNumberAndMode) {
     ControllerTrial trial(sixServos(), "serial:///dev/ttyACM0");
     trial.open("Maestro");

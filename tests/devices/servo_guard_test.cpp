@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <tuple>
 
 #include <gtest/gtest.h>
 
@@ -85,6 +86,38 @@ TEST(ServoGuard, IsSlowerInSlowModeAndBrakesIntoIt) {
     const double slow = bench.pulses[0].microseconds;
     bench.run(0.1);
     EXPECT_NEAR(bench.pulses[0].microseconds - slow, 0.25 * 1000.0 * 0.1, 2.0);
+}
+
+/// Up as well as down, and when it turns back on its way: what speeds up slowly one way must not leap the other.
+TEST(ServoGuard, SpeedsUpSlowlyBothWaysInSlowMode) {
+    DeviceProfile profile = oneServo();
+    profile.slowShare = 0.2;
+    const double most = 0.2 * profile.servos[0].maxAcceleration;
+    for (const auto& [from, to, back] : {std::tuple{0.1, 0.9, 0.1}, {0.9, 0.1, 0.9}, {0.5, 0.45, 0.55}}) {
+        Bench bench(profile);
+        bench.armAt({from});
+        bench.guard.setSlow(true);
+        ASSERT_TRUE(want(bench.guard, {to}));
+        double velocity = 0.0;
+        double fastest = 0.0;
+        for (int i = 0; i < 400; ++i) {
+            if (i == 150) {
+                ASSERT_TRUE(want(bench.guard, {back}));
+            }
+            const double before = bench.guard.strokes()[0];
+            bench.step();
+            const double next = (bench.guard.strokes()[0] - before) / 0.005;
+            // Braking may be as hard as ever; only gaining speed is slow.
+            const bool gains = next * velocity >= 0.0 ? std::abs(next) > std::abs(velocity) : true;
+            const double gained = next * velocity >= 0.0 ? std::abs(next - velocity) : std::abs(next);
+            if (gains) {
+                ASSERT_LE(gained, most * 0.005 * (1.0 + 1e-6)) << from << " to " << to << ", step " << i;
+            }
+            velocity = next;
+            fastest = std::max(fastest, std::abs(velocity));
+        }
+        EXPECT_GT(fastest, 0.02);
+    }
 }
 
 TEST(ServoGuard, StartsServosOneByOneFromWhereTheyAre) {
@@ -201,6 +234,27 @@ TEST(ServoGuard, WigglesOneServoSlowlyAroundWhereItIs) {
     EXPECT_EQ(turns, 4); // up, down, up, down, back
     EXPECT_LE(fastest, 250.0 + 1e-6);
     EXPECT_NEAR(last, 1500.0, 0.1);
+}
+
+/// A trim leaves room beside the strokes of the rig; pressing into the frame is not what a wiggle is for.
+TEST(ServoGuard, WigglesWithinTheStrokesOfTheRigWhateverItsTrim) {
+    for (const double trim : {120.0, -120.0})
+        for (const double at : {0.0, 1.0}) {
+            Bench bench(profileOf({{.channel = 3, .trim = trim}}));
+            const bool reachable = trim > 0.0 ? at == 0.0 : at == 1.0; // the trim takes room at the other end
+            bench.armAt({reachable ? at : at - std::copysign(0.12, trim)});
+            ASSERT_TRUE(bench.guard.wiggle(0));
+            double low = 1.0;
+            double high = 0.0;
+            for (int i = 0; i < 1000; ++i) {
+                bench.step();
+                low = std::min(low, bench.guard.strokes()[0]);
+                high = std::max(high, bench.guard.strokes()[0]);
+            }
+            EXPECT_GE(low, -1e-9) << trim << " at " << at;
+            EXPECT_LE(high, 1.0 + 1e-9) << trim << " at " << at;
+            EXPECT_GT(high - low, 0.04) << trim << " at " << at;
+        }
 }
 
 TEST(ServoGuard, RefusesWhatIsNotFiniteOrTheWrongCount) {

@@ -179,6 +179,23 @@ TEST_F(TrackerHubTest, AShortLossChangesNothingAndALongOneHandsOver) {
     EXPECT_LT(glm::distance(now("head")->position, kThere), 1e-9) << "who still says lost does not lose it";
 }
 
+// What is measured by a slower tracker is older than the last word of a quicker one that has lost the body.
+TEST_F(TrackerHubTest, ALateSecondTakesOverFromAFirstThatGoesOnSayingLost) {
+    hub.setRoles({{"head", PoseRole::head}});
+    clock->advance(Microseconds{1'000'000});
+    take("head", kHere, true, "first");
+    for (int i = 0; i < 60; ++i) {
+        take("head", kHere, false, "first");
+        clock->advance(Microseconds{5'000});
+        TrackerFrame frame;
+        frame.measured = clock->now() - Microseconds{60'000};
+        frame.bodies = {{1, "head", true, {kThere, {1, 0, 0, 0}}}};
+        hub.take("second", frame);
+    }
+    ASSERT_TRUE(now("head"));
+    EXPECT_LT(glm::distance(now("head")->position, kThere), 1e-9);
+}
+
 TEST_F(TrackerHubTest, ASecondThatHasNoPoseDoesNotTakeOver) {
     hub.setRoles({{"head", PoseRole::head}});
     take("head", kHere, true, "first");
