@@ -73,11 +73,10 @@ std::vector<cv::Point2f> findCircles(const cv::Mat& grey, cv::Size size) {
     blobs.minArea = 20.0F;
     blobs.maxArea = 0.02F * static_cast<float>(grey.total());
     std::vector<cv::Point2f> centres;
-    const bool found = cv::findCirclesGrid(grey, size, centres,
-                                           cv::CALIB_CB_ASYMMETRIC_GRID | cv::CALIB_CB_CLUSTERING,
-                                           cv::SimpleBlobDetector::create(blobs)) ||
-                       cv::findCirclesGrid(grey, size, centres, cv::CALIB_CB_ASYMMETRIC_GRID,
-                                           cv::SimpleBlobDetector::create(blobs));
+    const bool found =
+        cv::findCirclesGrid(grey, size, centres, cv::CALIB_CB_ASYMMETRIC_GRID | cv::CALIB_CB_CLUSTERING,
+                            cv::SimpleBlobDetector::create(blobs)) ||
+        cv::findCirclesGrid(grey, size, centres, cv::CALIB_CB_ASYMMETRIC_GRID, cv::SimpleBlobDetector::create(blobs));
     return found ? centres : std::vector<cv::Point2f>{};
 }
 

@@ -58,7 +58,8 @@ std::vector<std::filesystem::path> entriesOf(const std::filesystem::path& folder
     std::vector<std::filesystem::path> entries;
     for (std::filesystem::directory_iterator at(folder, error), end; !error && at != end; at.increment(error))
         entries.push_back(at->path());
-    if (error) throw DataError(folder.string(), "cannot be listed (" + error.message() + ")", "give a folder of images");
+    if (error)
+        throw DataError(folder.string(), "cannot be listed (" + error.message() + ")", "give a folder of images");
     std::ranges::sort(entries, comesBefore);
     return entries;
 }
@@ -99,7 +100,8 @@ cv::Mat readGrey(const std::filesystem::path& file, const std::string& view) {
     }
     const glm::ivec2 size = image.size();
     if (size.x < kFewestPixels || size.y < kFewestPixels)
-        refuse(Cause::unreadableImage, "has only " + std::to_string(size.x) + " x " + std::to_string(size.y) + " pixels");
+        refuse(Cause::unreadableImage,
+               "has only " + std::to_string(size.x) + " x " + std::to_string(size.y) + " pixels");
     cv::Mat grey(size.y, size.x, CV_8U);
     const Image::Pixel* from = image.pixels().data();
     for (int y = 0; y < size.y; ++y)
@@ -113,10 +115,10 @@ std::vector<cv::Mat> readImages(const CapturedView& view) {
     for (const std::filesystem::path& file : view.files) {
         images.push_back(readGrey(file, view.name));
         if (images.back().size() != images.front().size())
-            throw CaptureRefused({Cause::imageSize, view.name, file.filename().string(),
-                                  "is " + sizeText(images.back()) + " pixels, the images before it " +
-                                      sizeText(images.front()),
-                                  "capture this pose again with one camera setting"});
+            throw CaptureRefused(
+                {Cause::imageSize, view.name, file.filename().string(),
+                 "is " + sizeText(images.back()) + " pixels, the images before it " + sizeText(images.front()),
+                 "capture this pose again with one camera setting"});
     }
     return images;
 }

@@ -19,12 +19,12 @@ namespace lumorph {
 namespace {
 
 constexpr float kUnknown = std::numeric_limits<float>::quiet_NaN();
-constexpr double kLeastNoise = 0.4;      // grey levels: rounding alone makes 0.29
-constexpr double kLeastLight = 4.0;      // grey levels
-constexpr double kResolved = 0.2;        // contrast that the median pixel shows of a stripe that the camera resolves
-constexpr float kLeastDirect = 0.25F;    // of the light that is switched on and off
-constexpr float kSameEdge = 2.0F;        // camera pixels within which crossings of one edge are noise of each other
-constexpr float kOrderDoubt = 0.35F;     // periods by which a cue may miss the next finer set
+constexpr double kLeastNoise = 0.4;   // grey levels: rounding alone makes 0.29
+constexpr double kLeastLight = 4.0;   // grey levels
+constexpr double kResolved = 0.2;     // contrast that the median pixel shows of a stripe that the camera resolves
+constexpr float kLeastDirect = 0.25F; // of the light that is switched on and off
+constexpr float kSameEdge = 2.0F;     // camera pixels within which crossings of one edge are noise of each other
+constexpr float kOrderDoubt = 0.35F;  // periods by which a cue may miss the next finer set
 constexpr double kMedianToSigma = 1.4826;
 
 /// Pattern and inverse of one bit.
@@ -67,7 +67,8 @@ AxisImages imagesOf(const CaptureOrder& order, PatternAxis axis) {
             PhaseSet& set = sets[phase->periods];
             set.periods = phase->periods;
             set.images.resize(static_cast<std::size_t>(phase->steps), -1);
-            if (phase->step < static_cast<int>(set.images.size())) set.images[static_cast<std::size_t>(phase->step)] = i;
+            if (phase->step < static_cast<int>(set.images.size()))
+                set.images[static_cast<std::size_t>(phase->step)] = i;
         }
     }
     AxisImages all;
@@ -178,7 +179,8 @@ public:
             cv::Mat1s difference;
             const cv::Mat& pattern = images[static_cast<std::size_t>(pair.pattern)];
             if (pair.inverse >= 0)
-                cv::subtract(pattern, images[static_cast<std::size_t>(pair.inverse)], difference, cv::noArray(), CV_16S);
+                cv::subtract(pattern, images[static_cast<std::size_t>(pair.inverse)], difference, cv::noArray(),
+                             CV_16S);
             else
                 cv::addWeighted(pattern, 2.0, white + black, -1.0, 0.0, difference, CV_16S);
             differences_.push_back(difference);
@@ -297,7 +299,7 @@ private:
     }
 
     cv::Size size_;
-    float doubt_; ///< a difference below is no more than noise
+    float doubt_;   ///< a difference below is no more than noise
     int first_ = 0; ///< finest bit that the camera resolves
     cv::Mat1f light_;
     std::vector<cv::Mat1s> differences_;

@@ -8,10 +8,10 @@ namespace lumorph {
 namespace {
 
 constexpr std::array<std::string_view, kCauseCount> kCauseKeys = {
-    "missing_image",        "doubled_image", "late_frame",      "unreadable_image",   "image_size",
-    "black_white_swapped",  "inverse_swapped", "mirrored",      "rig_moved",          "projector_size",
-    "width_height_swapped", "frontal_views", "too_few_views",   "clipped",            "board_not_found",
-    "board_unlit",          "model_does_not_fit", "undetermined"};
+    "missing_image",   "doubled_image",        "late_frame",         "wrong_order",   "unreadable_image",
+    "image_size",      "black_white_swapped",  "inverse_swapped",    "mirrored",      "rig_moved",
+    "projector_size",  "width_height_swapped", "frontal_views",      "too_few_views", "clipped",
+    "board_not_found", "board_unlit",          "model_does_not_fit", "undetermined"};
 
 std::string placeOf(const Finding& finding) {
     if (finding.view.empty() && finding.file.empty()) return "capture";
@@ -23,9 +23,7 @@ std::string placeOf(const Finding& finding) {
 
 std::string_view keyOf(Cause cause) { return kCauseKeys.at(static_cast<std::size_t>(cause)); }
 
-std::string sentenceOf(const Finding& finding) {
-    return placeOf(finding) + ": " + finding.why + "; " + finding.remedy;
-}
+std::string sentenceOf(const Finding& finding) { return placeOf(finding) + ": " + finding.why + "; " + finding.remedy; }
 
 CaptureRefused::CaptureRefused(Finding finding)
     : DataError(placeOf(finding), finding.why, finding.remedy), finding_(std::move(finding)) {}

@@ -9,24 +9,25 @@ namespace lumorph {
 
 /// Why a capture is refused or doubted. `--json` and the studio name it by the key in quotes.
 enum class Cause {
-    missingImage,        ///< "missing_image": a pose has fewer images than the patterns
-    doubledImage,        ///< "doubled_image": an image is there twice, or there are too many
-    lateFrame,           ///< "late_frame": from some image on, each shows the pattern before
-    unreadableImage,     ///< "unreadable_image": broken, no picture, or of an absurd size
-    imageSize,           ///< "image_size": images of different sizes
-    blackWhiteSwapped,   ///< "black_white_swapped": the image called white is the dark one
-    inverseSwapped,      ///< "inverse_swapped": patterns and inverses are exchanged
-    mirrored,            ///< "mirrored": the camera's or the projector's picture is a mirror image
-    rigMoved,            ///< "rig_moved": camera, board or projector moved within a pose
-    projectorSize,       ///< "projector_size": the projector has another size than was said
-    widthHeightSwapped,  ///< "width_height_swapped": the projector's width and height are exchanged
-    frontalViews,        ///< "frontal_views": the board was tilted too little to tell focal lengths
-    tooFewViews,         ///< "too_few_views"
-    clipped,             ///< "clipped": the board is overexposed
-    boardNotFound,       ///< "board_not_found"
-    boardUnlit,          ///< "board_unlit": the projector's patterns cannot be read on the board
-    modelDoesNotFit,     ///< "model_does_not_fit": no model explains what was seen
-    undetermined,        ///< "undetermined": a parameter that the data cannot tell was locked
+    missingImage,       ///< "missing_image": a pose has fewer images than the patterns
+    doubledImage,       ///< "doubled_image": an image is there twice, or there are too many
+    lateFrame,          ///< "late_frame": from some image on, each shows the pattern before
+    wrongOrder,         ///< "wrong_order": images show other patterns than the order says
+    unreadableImage,    ///< "unreadable_image": broken, no picture, or of an absurd size
+    imageSize,          ///< "image_size": images of different sizes
+    blackWhiteSwapped,  ///< "black_white_swapped": the image called white is the dark one
+    inverseSwapped,     ///< "inverse_swapped": patterns and inverses are exchanged
+    mirrored,           ///< "mirrored": the camera's or the projector's picture is a mirror image
+    rigMoved,           ///< "rig_moved": camera, board or projector moved within a pose
+    projectorSize,      ///< "projector_size": the projector has another size than was said
+    widthHeightSwapped, ///< "width_height_swapped": the projector's width and height are exchanged
+    frontalViews,       ///< "frontal_views": the board was tilted too little to tell focal lengths
+    tooFewViews,        ///< "too_few_views"
+    clipped,            ///< "clipped": the board is overexposed
+    boardNotFound,      ///< "board_not_found"
+    boardUnlit,         ///< "board_unlit": the projector's patterns cannot be read on the board
+    modelDoesNotFit,    ///< "model_does_not_fit": no model explains what was seen
+    undetermined,       ///< "undetermined": a parameter that the data cannot tell was locked
 };
 
 /// All of them, in the order above.

@@ -68,7 +68,8 @@ CaptureOrder phaseOrder(std::string_view text, std::string_view sets, cv::Size p
         if (set->second < 3 || set->second > kMostSteps)
             refusePattern(text, std::to_string(set->second) + " steps, not 3 to " + std::to_string(kMostSteps));
         if (set->first < 1 || 4 * set->first > std::min(projector.width, projector.height))
-            refusePattern(text, std::to_string(set->first) + " periods, not one to a quarter of the projector's pixels");
+            refusePattern(text,
+                          std::to_string(set->first) + " periods, not one to a quarter of the projector's pixels");
         all.push_back(*set);
         begin = end + 1;
     }

@@ -12,7 +12,7 @@ namespace lumorph {
 
 namespace {
 
-constexpr double kRobust = 3.0; // standard deviations
+constexpr double kRobust = 3.0;   // standard deviations
 constexpr double kUnseen = 1e-14; // of the largest eigenvalue: a direction that the data do not tell
 
 template <typename T> void toFrame(const T* pose, const T* point, T* out) {
@@ -138,7 +138,8 @@ private:
         if (!options_.projectorPoints) return;
         const std::size_t count = view.projector.size();
         const std::size_t used = std::min(count, static_cast<std::size_t>(options_.most));
-        const double share = options_.independent * static_cast<double>(count) / std::max<double>(1.0, static_cast<double>(used));
+        const double share =
+            options_.independent * static_cast<double>(count) / std::max<double>(1.0, static_cast<double>(used));
         const double weight = std::sqrt(std::min(share, 1.0)) / options_.projectorSigma;
         for (std::size_t i = 0; i < used; ++i)
             problem_.AddResidualBlock(

@@ -102,9 +102,9 @@ std::vector<DeepPixel> deepPixels(const std::vector<ViewObservations>& views, co
         const auto& points = views[static_cast<std::size_t>(v)].projector;
         const std::size_t step = std::max<std::size_t>(1, points.size() / kTestPoints);
         for (std::size_t i = 0; i < points.size(); i += step)
-            pixels.push_back({points[i].camera, pointOnBoard(points[i].camera, state.camera,
-                                                             state.cameraFromBoard[static_cast<std::size_t>(v)])
-                                                    .z});
+            pixels.push_back(
+                {points[i].camera,
+                 pointOnBoard(points[i].camera, state.camera, state.cameraFromBoard[static_cast<std::size_t>(v)]).z});
     }
     return pixels;
 }

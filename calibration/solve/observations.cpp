@@ -69,8 +69,8 @@ double reachOf(const DecodedView& view, const cv::Mat1b& inside, int side) {
             if (inside(y, x) == 0) continue;
             const float across = std::abs(view.column(y, x + side) - view.column(y, x)) +
                                  std::abs(view.column(y + side, x) - view.column(y, x));
-            const float down = std::abs(view.row(y, x + side) - view.row(y, x)) +
-                               std::abs(view.row(y + side, x) - view.row(y, x));
+            const float down =
+                std::abs(view.row(y, x + side) - view.row(y, x)) + std::abs(view.row(y + side, x) - view.row(y, x));
             if (std::isfinite(across + down)) steps.push_back(std::max(across, down));
         }
     if (steps.empty()) return 0.0;
@@ -88,7 +88,8 @@ std::vector<ProjectorPoint> projectorPointsOn(const DecodedView& view, const std
     cv::convexHull(all, outline);
     cv::Mat1b inside = cv::Mat1b::zeros(view.column.size());
     cv::fillConvexPoly(inside, outline, cv::Scalar(255));
-    const int side = std::max(kSmallestSquare, static_cast<int>(std::lround(std::sqrt(cv::contourArea(outline) / most))));
+    const int side =
+        std::max(kSmallestSquare, static_cast<int>(std::lround(std::sqrt(cv::contourArea(outline) / most))));
     const double reach = reachOf(view, inside, side);
     std::vector<ProjectorPoint> points;
     std::vector<SquarePixel> pixels;

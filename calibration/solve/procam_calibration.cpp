@@ -18,12 +18,12 @@ namespace lumorph {
 namespace {
 
 constexpr int kFewestViews = 3;
-constexpr double kSimpler = 1.02;        // a model must be that much better on views left out to be worth its numbers
+constexpr double kSimpler = 1.02;         // a model must be that much better on views left out to be worth its numbers
 constexpr double kLeastTurnDegrees = 8.0; // between the two boards that are turned most against one another
-constexpr double kWorstFocal = 0.05;     // standard deviation of a focal length, as a share of it
-constexpr double kWorstPrincipal = 0.1;  // of a principal point, as a share of the image's width
-constexpr double kWorstCorner = 0.02;    // what a distortion term may be uncertain by at the image's corner, likewise
-constexpr int kPointsForChoice = 150;    // of a view
+constexpr double kWorstFocal = 0.05;      // standard deviation of a focal length, as a share of it
+constexpr double kWorstPrincipal = 0.1;   // of a principal point, as a share of the image's width
+constexpr double kWorstCorner = 0.02;     // what a distortion term may be uncertain by at the image's corner, likewise
+constexpr int kPointsForChoice = 150;     // of a view
 constexpr int kPointsForSolution = 600;
 constexpr double kLeastSigma = 0.01; // pixels
 constexpr double kFits = 2.0;        // pixels: above, the model does not fit
@@ -166,7 +166,8 @@ private:
             points.insert(points.end(), inProjector.begin(), inProjector.end());
             independent += independentShare(view, inProjector) / static_cast<double>(use_.size());
         }
-        const double parameters = static_cast<double>(6 * use_.size()) + static_cast<double>(std::ranges::count(bundle_.camera, true));
+        const double parameters =
+            static_cast<double>(6 * use_.size()) + static_cast<double>(std::ranges::count(bundle_.camera, true));
         const double freedom = std::max(1.0, 2.0 * static_cast<double>(corners.size()) - parameters);
         const double sum = rmsOf(corners) * rmsOf(corners) * static_cast<double>(corners.size());
         bundle_.cameraSigma = std::max(kLeastSigma, std::sqrt(sum / freedom));
@@ -209,8 +210,9 @@ private:
             refine(views_, use_, bundle_, state_);
             const auto covariance = covarianceOf(views_, use_, bundle_, state_);
             takeSigmas(covariance, projector);
-            const bool locked = lockOne(result_.camera, bundle_.camera, state_.camera, "camera") ||
-                                (projector && lockOne(result_.projector, bundle_.projector, state_.projector, "projector"));
+            const bool locked =
+                lockOne(result_.camera, bundle_.camera, state_.camera, "camera") ||
+                (projector && lockOne(result_.projector, bundle_.projector, state_.projector, "projector"));
             if (!locked) return;
         }
     }
@@ -277,8 +279,8 @@ private:
         finish(result_.projector, state_.projector, bundle_.projector);
         result_.state = state_;
         result_.projectorFromCamera = state_.projectorFromCamera;
-        const std::vector<double> held = projector ? heldOutTransfers(views_, use_, bundle_, state_)
-                                                   : heldOutCorners(views_, use_, bundle_, state_);
+        const std::vector<double> held =
+            projector ? heldOutTransfers(views_, use_, bundle_, state_) : heldOutCorners(views_, use_, bundle_, state_);
         for (std::size_t v = 0; v < views_.size(); ++v) {
             const PoseVector& pose = state_.cameraFromBoard[v];
             result_.views.push_back({views_[v].name, rmsOf(cameraErrors(views_[v], state_.camera, pose)),
@@ -308,15 +310,15 @@ private:
 
     void judge(bool projector) {
         const auto doubt = [](const CalibratedDevice& device) { return device.sigma[kFocal] / device.lens[kFocal]; };
-        if (doubt(result_.camera) > kWorstFocal || (projector && doubt(result_.projector) > kWorstFocal)) throw frontal();
+        if (doubt(result_.camera) > kWorstFocal || (projector && doubt(result_.projector) > kWorstFocal))
+            throw frontal();
         if (!(result_.rms < kFits))
             throw CaptureRefused({Cause::modelDoesNotFit, result_.worstView, "",
                                   "no lens explains the capture: " + pixels(result_.rms) + " of error remain",
                                   "look at this pose first; check the board's kind and that it is flat"});
         if (!projector) return;
         if (views_.size() < 4) {
-            result_.warnings.push_back({Cause::tooFewViews, "", "",
-                                        "with three poses no two halves can be compared",
+            result_.warnings.push_back({Cause::tooFewViews, "", "", "with three poses no two halves can be compared",
                                         "capture a fourth pose, better six"});
             return;
         }
@@ -326,8 +328,9 @@ private:
         result_.halvesAllowed = halves.allowed;
         if (halves.differ > halves.allowed)
             result_.warnings.push_back({Cause::modelDoesNotFit, result_.worstView, "",
-                                        "two halves of the poses disagree by " + pixels(halves.differ) + ", more than the " +
-                                            pixels(halves.allowed) + " that noise allows: the model does not fit",
+                                        "two halves of the poses disagree by " + pixels(halves.differ) +
+                                            ", more than the " + pixels(halves.allowed) +
+                                            " that noise allows: the model does not fit",
                                         "check that the board is flat and that nothing moved or refocused"});
     }
 
