@@ -198,11 +198,10 @@ void addCalibrateCommands(CLI::App& app, Session& session) {
     command->add_option("folder", both->folder, "A folder with one folder of images for each pose")->required();
     command->add_option("--board", both->board, kBoardHelp)->required();
     command->add_option("--projector", both->projector, "The projector's size in pixels, such as 1024x768")->required();
-    CLI::Option* pattern =
-        command->add_option("--pattern", both->pattern, "graycode, or phase:16x3+1x3 (periods x steps)")
-            ->capture_default_str();
-    command->add_option("--order", both->order, "A file that says, one line an image, what each shows")
-        ->excludes(pattern);
+    command->add_option("--pattern", both->pattern, "graycode, or phase:16x3+1x3 (periods x steps)")
+        ->capture_default_str();
+    command->add_option("--order", both->order,
+                        "In place of --pattern: a file that says, one line an image, what each shows");
     command->add_flag("--json", both->json, "Print one JSON value");
     command->callback([both, &session] { procam(*both, session); });
 

@@ -54,15 +54,19 @@ std::vector<ReadView> readAll(const std::vector<CapturedView>& views, const Cali
                               const CaptureOrder& order, const Progress& progress) {
     std::vector<ReadView> all(views.size());
     std::atomic<int> done = 0;
+    std::atomic<std::size_t> refused = views.size(); // the first pose that is; those after it need not be read
     // Two at a time: each holds all its images.
     tbb::task_arena arena(2);
     arena.execute([&] {
         tbb::parallel_for(std::size_t{0}, views.size(), [&](std::size_t i) {
-            if (progress.cancelled()) return;
+            if (progress.cancelled() || i > refused) return;
             try {
                 all[i] = readView(views[i], board, order);
-            } catch (const CaptureRefused& refused) {
-                all[i].refusal = refused.finding();
+            } catch (const CaptureRefused& why) {
+                all[i].refusal = why.finding();
+                std::size_t before = refused;
+                while (i < before && !refused.compare_exchange_weak(before, i)) {
+                }
             }
             progress.report(kReading * ++done / static_cast<double>(views.size()), "reading poses");
         });
