@@ -27,6 +27,13 @@ struct ReadView {
     std::vector<Finding> warnings;
 };
 
+/// Whether the patterns can be read where each is taken for its inverse.
+bool isReadableInverted(const std::vector<cv::Mat>& images, CaptureOrder order, const std::vector<cv::Point2d>& board) {
+    for (PatternImage& image : order.images)
+        if (auto* gray = std::get_if<GrayBit>(&image)) gray->inverse = !gray->inverse;
+    return projectorPointsOn(decodeView(images, order), board, kPointsWanted).size() > kFewestPoints;
+}
+
 /// Throws CaptureRefused at the first fault.
 ReadView readView(const CapturedView& view, const CalibrationBoard& board, const CaptureOrder& order) {
     const auto throwIf = [](const std::optional<Finding>& finding) {
@@ -44,6 +51,9 @@ ReadView readView(const CapturedView& view, const CalibrationBoard& board, const
     ReadView read{
         {view.name, *found, projectorPointsOn(decoded, found->seen, kPointsWanted)}, decoded.white.size(), {}, {}};
     if (const auto exposure = checkExposure(view.name, decoded, found->seen)) read.warnings.push_back(*exposure);
+    if (read.observations.projector.size() < kFewestPoints && isReadableInverted(images, order, found->seen))
+        throw CaptureRefused({Cause::inverseSwapped, view.name, "", "patterns and their inverses are exchanged",
+                              "name the images in the order pattern, inverse, or say so in an order file"});
     if (read.observations.projector.size() < kFewestPoints)
         throw CaptureRefused({Cause::boardUnlit, view.name, "", "the patterns can be read on too little of the board",
                               "bring the board into the projector's light, expose for longer, darken the room"});

@@ -309,13 +309,13 @@ private:
     }
 
     void judge(bool projector) {
-        const auto doubt = [](const CalibratedDevice& device) { return device.sigma[kFocal] / device.lens[kFocal]; };
-        if (doubt(result_.camera) > kWorstFocal || (projector && doubt(result_.projector) > kWorstFocal))
-            throw frontal();
         if (!(result_.rms < kFits))
             throw CaptureRefused({Cause::modelDoesNotFit, result_.worstView, "",
                                   "no lens explains the capture: " + pixels(result_.rms) + " of error remain",
                                   "look at this pose first; check the board's kind and that it is flat"});
+        const auto doubt = [](const CalibratedDevice& device) { return device.sigma[kFocal] / device.lens[kFocal]; };
+        if (doubt(result_.camera) > kWorstFocal || (projector && doubt(result_.projector) > kWorstFocal))
+            throw frontal();
         if (!projector) return;
         if (views_.size() < 4) {
             result_.warnings.push_back({Cause::tooFewViews, "", "", "with three poses no two halves can be compared",

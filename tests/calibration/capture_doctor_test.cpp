@@ -135,6 +135,13 @@ std::vector<Fault> faultsOf(const CaptureCopy& capture, cv::Size projector, cv::
              copy.put(0, count - 1, copy.original(0).files[count - 2]);
          },
          {}},
+        {"patterns and inverses exchanged",
+         "inverse_swapped",
+         "",
+         [count](const CaptureCopy& copy) {
+             for (std::size_t i = 0; i + 2 < count; ++i) copy.put(0, i, copy.original(0).files[i ^ 1U]);
+         },
+         {}},
         {"one pose mirrored", "mirrored", "", [](const CaptureCopy& copy) { copy.change(0, 0, mirror); }, {}},
         {"moved by 9 pixels half way",
          "rig_moved",
