@@ -117,12 +117,10 @@ std::optional<Finding> checkSteadiness(const CapturedView& view, const std::vect
         motion.push_back(isOther ? cv::Point2d(reach, reach) : motionOf(grey, board, reach));
     }
     for (std::size_t i = 1; i < motion.size(); ++i) {
-        const double moved = cv::norm(motion[i] - motion.front());
-        if (moved <= kMostMotion) continue;
+        if (cv::norm(motion[i] - motion.front()) <= kMostMotion) continue;
         const auto file = view.files[static_cast<std::size_t>(lit[i].firstImage)].filename().string();
         return Finding{Cause::rigMoved, view.name, file,
-                       "camera or board moved: at about this image the board is " +
-                           std::to_string(static_cast<int>(std::lround(moved))) + " pixels or more from where it was",
+                       "camera or board moved: from about this image on the board is elsewhere in the picture",
                        "fix both, touch nothing while patterns are shown, and capture this pose again"};
     }
     return std::nullopt;
