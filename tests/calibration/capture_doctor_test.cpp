@@ -64,7 +64,7 @@ void mirror(Image& image) {
         for (int x = 0; x < image.size().x / 2; ++x) std::swap(image.at(x, y), image.at(image.size().x - 1 - x, y));
 }
 
-void shift(Image& image, int by) {
+void moveRight(Image& image, int by) {
     const Image before = image;
     for (int y = 0; y < image.size().y; ++y)
         for (int x = 0; x < image.size().x; ++x) image.at(x, y) = before.at(std::max(0, x - by), y);
@@ -146,12 +146,12 @@ std::vector<Fault> faultsOf(const CaptureCopy& capture, cv::Size projector, cv::
         {"moved by 9 pixels half way",
          "rig_moved",
          "",
-         [count](const CaptureCopy& copy) { copy.change(0, count / 2 - 1, [](Image& image) { shift(image, 9); }); },
+         [count](const CaptureCopy& copy) { copy.change(0, count / 2 - 1, [](Image& image) { moveRight(image, 9); }); },
          {}},
         {"moved by 3 pixels",
          "rig_moved",
          "",
-         [count](const CaptureCopy& copy) { copy.change(0, count / 2 - 1, [](Image& image) { shift(image, 3); }); },
+         [count](const CaptureCopy& copy) { copy.change(0, count / 2 - 1, [](Image& image) { moveRight(image, 3); }); },
          {}},
         {"projector size wrong, same number of images", "projector_size", "", [](const CaptureCopy&) {}, wrongSize},
         {"projector size wrong",
