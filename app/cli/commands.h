@@ -18,6 +18,7 @@ void addDemoCommand(CLI::App& app);
 /// Not part of a build of the core alone: recordings need SQLite, and the virtual lab stands on calibration.
 void addRecordingCommands(CLI::App& app);
 void addRenderCommand(CLI::App& app, Session& session);
+void addCalibrateCommands(CLI::App& app, Session& session);
 /// Nor are these: devices and trackers are reached through Qt.
 void addDeviceCommands(CLI::App& app, Session& session);
 void addTrackCommand(CLI::App& app, Session& session);

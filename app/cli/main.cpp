@@ -52,6 +52,7 @@ int main(int argc, char** argv) {
 #ifdef LUMORPH_WITH_CALIBRATION
     lumorph::cli::addRecordingCommands(app);
     lumorph::cli::addRenderCommand(app, session);
+    lumorph::cli::addCalibrateCommands(app, session);
 #endif
 #ifdef LUMORPH_WITH_DEVICES
     lumorph::cli::addDeviceCommands(app, session);

@@ -10,29 +10,24 @@ namespace {
 
 bool grayBit(int index, int bit) { return ((index ^ (index >> 1)) >> bit) & 1; }
 
-void appendPair(std::vector<cv::Mat>& patterns, const cv::Mat& pattern) {
-    patterns.push_back(pattern);
-    patterns.push_back(255 - pattern);
-}
-
 } // namespace
 
 int grayCodeBits(int count) { return std::bit_width(static_cast<unsigned>(count - 1)); }
 
-std::vector<cv::Mat> grayCodePatterns(cv::Size size) {
+cv::Mat grayCodePattern(cv::Size size, PatternAxis axis, int bit, bool inverse) {
     if (size.width < 1 || size.height < 1)
         throw InvalidInput("projector size", "a pattern needs at least one pixel", "give width and height in pixels");
+    const int length = axis == PatternAxis::columns ? size.width : size.height;
+    cv::Mat line(1, length, CV_8U);
+    for (int n = 0; n < length; ++n) line.at<uchar>(n) = grayBit(n, bit) != inverse ? 255 : 0;
+    return axis == PatternAxis::columns ? cv::repeat(line, size.height, 1) : cv::repeat(line.t(), 1, size.width);
+}
+
+std::vector<cv::Mat> grayCodePatterns(cv::Size size) {
     std::vector<cv::Mat> patterns;
-    for (int bit = grayCodeBits(size.width) - 1; bit >= 0; --bit) {
-        cv::Mat row(1, size.width, CV_8U);
-        for (int x = 0; x < size.width; ++x) row.at<uchar>(x) = grayBit(x, bit) ? 255 : 0;
-        appendPair(patterns, cv::repeat(row, size.height, 1));
-    }
-    for (int bit = grayCodeBits(size.height) - 1; bit >= 0; --bit) {
-        cv::Mat column(size.height, 1, CV_8U);
-        for (int y = 0; y < size.height; ++y) column.at<uchar>(y) = grayBit(y, bit) ? 255 : 0;
-        appendPair(patterns, cv::repeat(column, 1, size.width));
-    }
+    for (const PatternAxis axis : {PatternAxis::columns, PatternAxis::rows})
+        for (int bit = grayCodeBits(axis == PatternAxis::columns ? size.width : size.height) - 1; bit >= 0; --bit)
+            for (const bool inverse : {false, true}) patterns.push_back(grayCodePattern(size, axis, bit, inverse));
     return patterns;
 }
 

@@ -1,0 +1,216 @@
+#include <cmath>
+#include <cstdio>
+#include <memory>
+#include <string>
+
+#include <opencv2/calib3d.hpp>
+
+#include "app/cli/commands.h"
+#include "calibration/doctor/capture_calibration.h"
+#include "core/base/error.h"
+
+namespace lumorph::cli {
+
+namespace {
+
+constexpr const char* kBoardHelp =
+    "The board: chess:9x7:75 (inner corners, side of a square), circles:4x11:20, charuco:5x7:30:22";
+constexpr double kDegreesPerRadian = 57.29577951308232;
+
+struct CalibrateArguments {
+    std::string folder;
+    std::string board;
+    std::string projector;
+    std::string pattern = "graycode";
+    std::string order;
+    bool json = false;
+};
+
+nlohmann::json jsonOf(const Finding& finding) {
+    const auto orNull = [](const std::string& text) { return text.empty() ? nlohmann::json() : nlohmann::json(text); };
+    return {{"cause", std::string(keyOf(finding.cause))},
+            {"view", orNull(finding.view)},
+            {"file", orNull(finding.file)},
+            {"sentence", sentenceOf(finding)}};
+}
+
+nlohmann::json jsonOf(const std::optional<double>& number) {
+    return number ? nlohmann::json(*number) : nlohmann::json();
+}
+
+/// OpenCV's matrix and k1, k2, p1, p2, k3.
+nlohmann::json jsonOf(const CalibratedDevice& device) {
+    const Lens& lens = device.lens;
+    const Lens& sigma = device.sigma;
+    const double fy = lens[kFocal] * lens[kAspect];
+    const double fySigma = std::hypot(sigma[kFocal] * lens[kAspect], lens[kFocal] * sigma[kAspect]);
+    return {{"K", {{lens[kFocal], 0.0, lens[kPrincipalX]}, {0.0, fy, lens[kPrincipalY]}, {0.0, 0.0, 1.0}}},
+            {"distortion", {lens[kK1], lens[kK2], lens[kP1], lens[kP2], lens[kK3]}},
+            {"size", {device.size.width, device.size.height}},
+            {"rms", device.rms},
+            {"model", device.model},
+            {"sigma",
+             {{"fx", sigma[kFocal]},
+              {"fy", fySigma},
+              {"cx", sigma[kPrincipalX]},
+              {"cy", sigma[kPrincipalY]},
+              {"k1", sigma[kK1]},
+              {"k2", sigma[kK2]},
+              {"p1", sigma[kP1]},
+              {"p2", sigma[kP2]},
+              {"k3", sigma[kK3]}}}};
+}
+
+nlohmann::json warningsOf(const ProcamCalibration& result) {
+    nlohmann::json warnings = nlohmann::json::array();
+    for (const Finding& warning : result.warnings) warnings.push_back(jsonOf(warning));
+    return warnings;
+}
+
+nlohmann::json procamJson(const ProcamCalibration& result) {
+    const PoseVector& rig = result.projectorFromCamera;
+    const PoseVector& sigma = result.projectorFromCameraSigma;
+    cv::Matx33d rotation;
+    cv::Rodrigues(cv::Vec3d(rig[0], rig[1], rig[2]), rotation);
+    nlohmann::json rows = nlohmann::json::array();
+    for (int row = 0; row < 3; ++row) rows.push_back({rotation(row, 0), rotation(row, 1), rotation(row, 2)});
+    nlohmann::json views = nlohmann::json::array();
+    for (const ViewQuality& view : result.views)
+        views.push_back({{"name", view.name},
+                         {"cameraRms", view.cameraRms},
+                         {"projectorRms", view.projectorRms},
+                         {"heldOutTransfer", jsonOf(view.heldOut)}});
+    return {{"camera", jsonOf(result.camera)},
+            {"projector", jsonOf(result.projector)},
+            {"R", rows},
+            {"T", {rig[3], rig[4], rig[5]}},
+            {"sigma",
+             {{"rotationDegrees",
+               {kDegreesPerRadian * sigma[0], kDegreesPerRadian * sigma[1], kDegreesPerRadian * sigma[2]}},
+              {"T", {sigma[3], sigma[4], sigma[5]}}}},
+            {"rms", result.rms},
+            {"views", views},
+            {"worstView", result.worstView},
+            {"halvesDiffer", jsonOf(result.halvesDiffer)},
+            {"halvesAllowed", jsonOf(result.halvesAllowed)},
+            {"model", "camera: " + result.camera.model + "; projector: " + result.projector.model},
+            {"warnings", warningsOf(result)},
+            {"degenerate", result.degenerate}};
+}
+
+nlohmann::json intrinsicsJson(const ProcamCalibration& result) {
+    nlohmann::json views = nlohmann::json::array();
+    for (const ViewQuality& view : result.views)
+        views.push_back({{"name", view.name}, {"rms", view.cameraRms}, {"heldOut", jsonOf(view.heldOut)}});
+    return {{"camera", jsonOf(result.camera)},
+            {"rms", result.rms},
+            {"views", views},
+            {"worstView", result.worstView},
+            {"model", result.camera.model},
+            {"warnings", warningsOf(result)},
+            {"degenerate", result.degenerate}};
+}
+
+void printDevice(const char* name, const CalibratedDevice& device) {
+    const Lens& lens = device.lens;
+    const Lens& sigma = device.sigma;
+    std::printf("%-10s %d x %d, model %s, RMS %.3f pixels\n", name, device.size.width, device.size.height,
+                device.model.c_str(), device.rms);
+    std::printf("  focal length    %9.2f +- %.2f pixels\n", lens[kFocal], sigma[kFocal]);
+    std::printf("  principal point %9.2f +- %.2f, %.2f +- %.2f pixels\n", lens[kPrincipalX], sigma[kPrincipalX],
+                lens[kPrincipalY], sigma[kPrincipalY]);
+    std::printf("  k1 %.4f  k2 %.4f  p1 %.5f  p2 %.5f  k3 %.4f\n", lens[kK1], lens[kK2], lens[kP1], lens[kP2],
+                lens[kK3]);
+}
+
+void printWarningsOf(const ProcamCalibration& result) {
+    std::vector<std::string> warnings;
+    for (const Finding& warning : result.warnings) warnings.push_back(sentenceOf(warning));
+    printWarnings(warnings);
+}
+
+void printProcam(const ProcamCalibration& result) {
+    printDevice("camera", result.camera);
+    printDevice("projector", result.projector);
+    const PoseVector& rig = result.projectorFromCamera;
+    std::printf("%-10s at (%.2f, %.2f, %.2f) in the projector's frame, in the board's unit\n", "camera", rig[3], rig[4],
+                rig[5]);
+    for (const ViewQuality& view : result.views)
+        std::printf("  %-20s camera %.3f  projector %.3f  held out %.3f pixels%s\n", view.name.c_str(), view.cameraRms,
+                    view.projectorRms, view.heldOut.value_or(0.0), view.name == result.worstView ? "  (worst)" : "");
+    if (result.halvesDiffer && result.halvesAllowed)
+        std::printf("two halves of the poses differ by %.3f pixels; noise allows %.3f\n", *result.halvesDiffer,
+                    *result.halvesAllowed);
+    printWarningsOf(result);
+}
+
+void printIntrinsics(const ProcamCalibration& result) {
+    printDevice("camera", result.camera);
+    for (const ViewQuality& view : result.views)
+        std::printf("  %-24s %.3f pixels%s\n", view.name.c_str(), view.cameraRms,
+                    view.name == result.worstView ? "  (worst)" : "");
+    printWarningsOf(result);
+}
+
+/// Runs it; a refusal is also told as JSON where that was asked for, and ends the program as any failure does.
+template <typename Run> ProcamCalibration orRefused(bool json, const Run& run) {
+    try {
+        return run();
+    } catch (const CaptureRefused& refused) {
+        if (json) printJson({{"refused", jsonOf(refused.finding())}});
+        throw;
+    }
+}
+
+void procam(const CalibrateArguments& arguments, const Session& session) {
+    const CalibrationBoard board = parseCalibrationBoard(arguments.board);
+    const cv::Size projector = parseProjectorSize(arguments.projector);
+    const CaptureOrder order = arguments.order.empty() ? parsePattern(arguments.pattern, projector)
+                                                       : readCaptureOrder(arguments.order, projector);
+    const ProcamCalibration result = orRefused(
+        arguments.json, [&] { return calibrateProcamFolder(arguments.folder, board, order, {}, session.progress()); });
+    Session::endProgress();
+    if (arguments.json)
+        printJson(procamJson(result));
+    else
+        printProcam(result);
+}
+
+void intrinsics(const CalibrateArguments& arguments, const Session& session) {
+    const CalibrationBoard board = parseCalibrationBoard(arguments.board);
+    const ProcamCalibration result = orRefused(
+        arguments.json, [&] { return calibrateIntrinsicsFolder(arguments.folder, board, {}, session.progress()); });
+    Session::endProgress();
+    if (arguments.json)
+        printJson(intrinsicsJson(result));
+    else
+        printIntrinsics(result);
+}
+
+} // namespace
+
+void addCalibrateCommands(CLI::App& app, Session& session) {
+    CLI::App* group = app.add_subcommand("calibrate", "Calibrate cameras and projectors from captured images");
+    group->require_subcommand(1);
+
+    auto both = std::make_shared<CalibrateArguments>();
+    CLI::App* command = group->add_subcommand("procam", "A projector and a camera, from patterns on a board");
+    command->add_option("folder", both->folder, "A folder with one folder of images for each pose")->required();
+    command->add_option("--board", both->board, kBoardHelp)->required();
+    command->add_option("--projector", both->projector, "The projector's size in pixels, such as 1024x768")->required();
+    command->add_option("--pattern", both->pattern, "graycode, or phase:16x3+1x3 (periods x steps)")
+        ->capture_default_str();
+    command->add_option("--order", both->order,
+                        "In place of --pattern: a file that says, one line an image, what each shows");
+    command->add_flag("--json", both->json, "Print one JSON value");
+    command->callback([both, &session] { procam(*both, session); });
+
+    auto alone = std::make_shared<CalibrateArguments>();
+    command = group->add_subcommand("intrinsics", "A camera alone, from pictures of a board");
+    command->add_option("folder", alone->folder, "A folder of pictures")->required();
+    command->add_option("--board", alone->board, kBoardHelp)->required();
+    command->add_flag("--json", alone->json, "Print one JSON value");
+    command->callback([alone, &session] { intrinsics(*alone, session); });
+}
+
+} // namespace lumorph::cli

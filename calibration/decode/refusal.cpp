@@ -1,0 +1,31 @@
+#include "calibration/decode/refusal.h"
+
+#include <array>
+#include <utility>
+
+namespace lumorph {
+
+namespace {
+
+constexpr std::array<std::string_view, kCauseCount> kCauseKeys = {
+    "missing_image",   "doubled_image",        "late_frame",         "wrong_order",   "unreadable_image",
+    "image_size",      "black_white_swapped",  "inverse_swapped",    "mirrored",      "rig_moved",
+    "projector_size",  "width_height_swapped", "frontal_views",      "too_few_views", "clipped",
+    "board_not_found", "board_unlit",          "model_does_not_fit", "undetermined"};
+
+std::string placeOf(const Finding& finding) {
+    if (finding.view.empty() && finding.file.empty()) return "capture";
+    if (finding.view.empty() || finding.file.empty()) return finding.view + finding.file;
+    return finding.view + ", " + finding.file;
+}
+
+} // namespace
+
+std::string_view keyOf(Cause cause) { return kCauseKeys.at(static_cast<std::size_t>(cause)); }
+
+std::string sentenceOf(const Finding& finding) { return placeOf(finding) + ": " + finding.why + "; " + finding.remedy; }
+
+CaptureRefused::CaptureRefused(Finding finding)
+    : DataError(placeOf(finding), finding.why, finding.remedy), finding_(std::move(finding)) {}
+
+} // namespace lumorph

@@ -1,0 +1,61 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "core/base/error.h"
+
+namespace lumorph {
+
+/// Why a capture is refused or doubted. `--json` and the studio name it by the key in quotes.
+enum class Cause {
+    missingImage,       ///< "missing_image": a pose has fewer images than the patterns
+    doubledImage,       ///< "doubled_image": an image is there twice, or there are too many
+    lateFrame,          ///< "late_frame": from some image on, each shows the pattern before
+    wrongOrder,         ///< "wrong_order": images show other patterns than the order says
+    unreadableImage,    ///< "unreadable_image": broken, no picture, or of an absurd size
+    imageSize,          ///< "image_size": images of different sizes
+    blackWhiteSwapped,  ///< "black_white_swapped": the image called white is the dark one
+    inverseSwapped,     ///< "inverse_swapped": patterns and inverses are exchanged
+    mirrored,           ///< "mirrored": the camera's or the projector's picture is a mirror image
+    rigMoved,           ///< "rig_moved": camera, board or projector moved within a pose
+    projectorSize,      ///< "projector_size": the projector has another size than was said
+    widthHeightSwapped, ///< "width_height_swapped": the projector's width and height are exchanged
+    frontalViews,       ///< "frontal_views": the board was tilted too little to tell focal lengths
+    tooFewViews,        ///< "too_few_views"
+    clipped,            ///< "clipped": the board is overexposed
+    boardNotFound,      ///< "board_not_found"
+    boardUnlit,         ///< "board_unlit": the projector's patterns cannot be read on the board
+    modelDoesNotFit,    ///< "model_does_not_fit": no model explains what was seen
+    undetermined,       ///< "undetermined": a parameter that the data cannot tell was locked
+};
+
+/// All of them, in the order above.
+inline constexpr int kCauseCount = static_cast<int>(Cause::undetermined) + 1;
+
+[[nodiscard]] std::string_view keyOf(Cause cause);
+
+/// What was found to be wrong, where, and what to do.
+struct Finding {
+    Cause cause = Cause::modelDoesNotFit;
+    std::string view; ///< name of the pose; empty where it is of no single one
+    std::string file; ///< name of the image in it; empty likewise
+    std::string why;
+    std::string remedy;
+    bool operator==(const Finding&) const = default;
+};
+
+/// "capture_1, graycode_07.png: why; remedy", with as much of the place as there is.
+[[nodiscard]] std::string sentenceOf(const Finding& finding);
+
+/// A capture that cannot be trusted.
+class CaptureRefused : public DataError {
+public:
+    explicit CaptureRefused(Finding finding);
+    [[nodiscard]] const Finding& finding() const noexcept { return finding_; }
+
+private:
+    Finding finding_;
+};
+
+} // namespace lumorph

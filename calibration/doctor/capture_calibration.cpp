@@ -1,0 +1,169 @@
+#include "calibration/doctor/capture_calibration.h"
+
+#include <atomic>
+#include <iterator>
+#include <optional>
+#include <utility>
+
+#include <tbb/parallel_for.h>
+
+#include "calibration/decode/capture_folder.h"
+#include "calibration/doctor/sequence_check.h"
+#include "calibration/doctor/view_check.h"
+
+namespace lumorph {
+
+namespace {
+
+constexpr int kPointsWanted = 3000; // squares on a board
+constexpr std::size_t kFewestPoints = 60;
+constexpr double kReading = 0.6; // of the whole time
+
+/// One pose as it was read.
+struct ReadView {
+    ViewObservations observations;
+    cv::Size size;
+    std::optional<Finding> refusal;
+    std::vector<Finding> warnings;
+};
+
+/// Whether the patterns can be read where each is taken for its inverse.
+bool isReadableInverted(const std::vector<cv::Mat>& images, CaptureOrder order, const std::vector<cv::Point2d>& board) {
+    for (PatternImage& image : order.images)
+        if (auto* gray = std::get_if<GrayBit>(&image)) gray->inverse = !gray->inverse;
+    return projectorPointsOn(decodeView(images, order), board, kPointsWanted).size() > kFewestPoints;
+}
+
+/// Throws CaptureRefused at the first fault.
+ReadView readView(const CapturedView& view, const CalibrationBoard& board, const CaptureOrder& order) {
+    const auto throwIf = [](const std::optional<Finding>& finding) {
+        if (finding) throw CaptureRefused(*finding);
+    };
+    const std::vector<cv::Mat> images = readImages(view);
+    throwIf(checkSequence(view, images, order));
+    const DecodedView decoded = decodeView(images, order);
+    throwIf(checkProjectorSize(view.name, decoded, order.projector));
+    const std::optional<BoardPoints> found = findBoard(decoded.white, board);
+    if (!found)
+        throw CaptureRefused({Cause::boardNotFound, view.name, "", "the board cannot be found under white light",
+                              "check --board, and that all of the board is lit, sharp and in the picture"});
+    throwIf(checkSteadiness(view, images, order, found->seen));
+    ReadView read{
+        {view.name, *found, projectorPointsOn(decoded, found->seen, kPointsWanted)}, decoded.white.size(), {}, {}};
+    if (const auto exposure = checkExposure(view.name, decoded, found->seen)) read.warnings.push_back(*exposure);
+    if (read.observations.projector.size() < kFewestPoints && isReadableInverted(images, order, found->seen))
+        throw CaptureRefused({Cause::inverseSwapped, view.name, "", "patterns and their inverses are exchanged",
+                              "name the images in the order pattern, inverse, or say so in an order file"});
+    if (read.observations.projector.size() < kFewestPoints)
+        throw CaptureRefused({Cause::boardUnlit, view.name, "", "the patterns can be read on too little of the board",
+                              "bring the board into the projector's light, expose for longer, darken the room"});
+    return read;
+}
+
+std::vector<ReadView> readAll(const std::vector<CapturedView>& views, const CalibrationBoard& board,
+                              const CaptureOrder& order, const Progress& progress) {
+    std::vector<ReadView> all(views.size());
+    std::atomic<int> done = 0;
+    std::atomic<std::size_t> refused = views.size(); // the first pose that is; those after it need not be read
+    // Two at a time: each holds all its images.
+    tbb::task_arena arena(2);
+    arena.execute([&] {
+        tbb::parallel_for(std::size_t{0}, views.size(), [&](std::size_t i) {
+            if (progress.cancelled() || i > refused) return;
+            try {
+                all[i] = readView(views[i], board, order);
+            } catch (const CaptureRefused& why) {
+                all[i].refusal = why.finding();
+                std::size_t before = refused;
+                while (i < before && !refused.compare_exchange_weak(before, i)) {
+                }
+            }
+            progress.report(kReading * ++done / static_cast<double>(views.size()), "reading poses");
+        });
+    });
+    progress.throwIfCancelled();
+    for (const ReadView& view : all) // the first of them, whichever was read first
+        if (view.refusal) throw CaptureRefused(*view.refusal);
+    return all;
+}
+
+void requireSameSize(const std::vector<ReadView>& views) {
+    for (const ReadView& view : views)
+        if (view.size != views.front().size)
+            throw CaptureRefused({Cause::imageSize, view.observations.name, "",
+                                  "its images have another size than those of " + views.front().observations.name,
+                                  "capture all poses with one camera setting"});
+}
+
+/// One pose that does not agree with the others: something moved between the devices, or within the pose.
+void requireAgreement(const ProcamCalibration& result) {
+    constexpr double kFar = 4.0;   // times the others
+    constexpr double kLeast = 0.7; // pixels
+    for (const ViewQuality& view : result.views) {
+        double others = 0.0;
+        for (const ViewQuality& other : result.views)
+            if (other.name != view.name) others = std::max(others, other.projectorRms);
+        if (view.projectorRms > kLeast && view.projectorRms > kFar * others)
+            throw CaptureRefused({Cause::rigMoved, view.name, "",
+                                  "this pose does not agree with the others: camera or projector moved",
+                                  "leave the pose out, or capture all again with both fixed"});
+    }
+}
+
+} // namespace
+
+ProcamCalibration calibrateProcamFolder(const std::filesystem::path& folder, const CalibrationBoard& board,
+                                        const CaptureOrder& order, const SolveOptions& options,
+                                        const Progress& progress) {
+    const std::vector<CapturedView> captured = viewsIn(folder);
+    if (const auto wrong = checkCounts(captured, order)) throw CaptureRefused(*wrong);
+    std::vector<ReadView> read = readAll(captured, board, order, progress);
+    requireSameSize(read);
+    std::vector<ViewObservations> views;
+    for (ReadView& view : read) views.push_back(std::move(view.observations));
+    if (const auto mirrored = checkMirrored(views)) throw CaptureRefused(*mirrored);
+    ProcamCalibration result =
+        calibrateProcam(views, read.front().size, order.projector, options, progress.part(kReading, 1.0));
+    requireAgreement(result);
+    for (const ReadView& view : read)
+        result.warnings.insert(result.warnings.end(), view.warnings.begin(), view.warnings.end());
+    return result;
+}
+
+ProcamCalibration calibrateIntrinsicsFolder(const std::filesystem::path& folder, const CalibrationBoard& board,
+                                            const SolveOptions& options, const Progress& progress) {
+    const std::vector<std::filesystem::path> files = imagesIn(folder);
+    std::vector<std::optional<BoardPoints>> found(files.size());
+    std::vector<cv::Size> sizes(files.size());
+    std::atomic<int> done = 0;
+    tbb::parallel_for(std::size_t{0}, files.size(), [&](std::size_t i) {
+        if (progress.cancelled()) return;
+        const cv::Mat grey = readGrey(files[i], "");
+        sizes[i] = grey.size();
+        found[i] = findBoard(grey, board);
+        progress.report(kReading * ++done / static_cast<double>(files.size()), "looking for the board");
+    });
+    progress.throwIfCancelled();
+    std::vector<ViewObservations> views;
+    std::vector<Finding> warnings;
+    for (std::size_t i = 0; i < files.size(); ++i) {
+        const std::string name = files[i].filename().string();
+        if (sizes[i] != sizes.front())
+            throw CaptureRefused({Cause::imageSize, "", name, "has another size than the pictures before it",
+                                  "give pictures of one camera with one setting"});
+        if (found[i])
+            views.push_back({name, *found[i], {}});
+        else
+            warnings.push_back({Cause::boardNotFound, "", name,
+                                "the board cannot be found, so the picture was left out",
+                                "check that all of the board is sharp and in the picture"});
+    }
+    if (views.empty())
+        throw CaptureRefused({Cause::boardNotFound, "", "", "the board is found in none of the pictures",
+                              "check --board: its kind and how many corners it has"});
+    ProcamCalibration result = calibrateIntrinsics(views, sizes.front(), options, progress.part(kReading, 1.0));
+    result.warnings.insert(result.warnings.end(), warnings.begin(), warnings.end());
+    return result;
+}
+
+} // namespace lumorph

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <span>
+#include <string_view>
+
+#include "calibration/solve/bundle.h"
+
+namespace lumorph {
+
+/// A distortion model: what of a lens is solved for.
+struct LensModel {
+    std::string_view name;
+    LensMask free;
+};
+
+/// From the pinhole to all of it, each with what the one before has.
+[[nodiscard]] std::span<const LensModel> lensModels();
+
+/// Corner errors of each view in `use` under a camera solved from the others, the view's own pose alone fitted to it;
+/// root mean square lengths, camera pixels. Needs three views.
+[[nodiscard]] std::vector<double> heldOutCorners(const std::vector<ViewObservations>& views, const ViewChoice& use,
+                                                 const BundleOptions& options, const BundleState& state);
+
+/// Projector errors of each view in `use` under a solution from the others: its pose from the camera alone, its decoded
+/// camera pixels on that plane reprojected into the projector; root mean square lengths, projector pixels. Needs three
+/// views.
+[[nodiscard]] std::vector<double> heldOutTransfers(const std::vector<ViewObservations>& views, const ViewChoice& use,
+                                                   const BundleOptions& options, const BundleState& state);
+
+/// How far two halves of the views agree.
+struct HalvesComparison {
+    double differ = 0.0;  ///< root mean square distance in the projector, pixels
+    double allowed = 0.0; ///< three times what their uncertainties make of it
+};
+
+/// Solves the even and the odd of `use` apart, from `state`, and compares where they put the light of the decoded
+/// camera pixels at their depth. With few views a half cannot tell distortion, which both then take from `state`.
+/// Needs four views.
+[[nodiscard]] HalvesComparison compareHalves(const std::vector<ViewObservations>& views, const ViewChoice& use,
+                                             const BundleOptions& options, const BundleState& state);
+
+} // namespace lumorph

@@ -1,0 +1,65 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "calibration/decode/refusal.h"
+#include "calibration/solve/bundle.h"
+#include "core/base/progress.h"
+
+namespace lumorph {
+
+/// A camera or a projector, calibrated.
+struct CalibratedDevice {
+    cv::Size size;
+    Lens lens{};
+    LensMask free{};   ///< parameters that were solved for; the others were held
+    Lens sigma{};      ///< standard deviations; 0 of those that were held
+    double rms = 0.0;  ///< reprojection error, root mean square length, its own pixels
+    std::string model; ///< "k1 k2", "pinhole"
+};
+
+/// How well one pose fits.
+struct ViewQuality {
+    std::string name;
+    double cameraRms = 0.0;    ///< camera pixels
+    double projectorRms = 0.0; ///< projector pixels
+    /// With the view left out of the solution: its pose from the camera alone, decoded camera pixels on its plane
+    /// reprojected into the projector, root mean square length, pixels. Of a camera alone: the error of its corners.
+    std::optional<double> heldOut;
+};
+
+/// Everything that a capture says of a projector and a camera.
+struct ProcamCalibration {
+    CalibratedDevice camera, projector;
+    PoseVector projectorFromCamera{}; ///< radians; the board's unit
+    PoseVector projectorFromCameraSigma{};
+    double rms = 0.0; ///< of both devices alike: root of the mean of the squares of both
+    std::vector<ViewQuality> views;
+    std::string worstView;
+    /// How far apart the solutions of two halves of the views put the same light in the projector, pixels, and how far
+    /// their uncertainties allow; nothing with fewer than four views.
+    std::optional<double> halvesDiffer, halvesAllowed;
+    std::vector<Finding> warnings;
+    bool degenerate = false;
+    BundleState state; ///< with the boards' poses, by view
+};
+
+struct SolveOptions {
+    std::optional<double> cameraFocal;    ///< pixels; to begin with. Nothing: found without
+    std::optional<double> projectorFocal; ///< likewise
+};
+
+/// Solves for camera, projector and boards together. The distortion model of each device is the simplest whose error on
+/// views left out of the solution is within 2 % of the best. What the data cannot tell is locked and named in the
+/// warnings. Throws CaptureRefused: too few views, boards not tilted, nothing that fits; Cancelled.
+[[nodiscard]] ProcamCalibration calibrateProcam(const std::vector<ViewObservations>& views, cv::Size camera,
+                                                cv::Size projector, const SolveOptions& options = {},
+                                                const Progress& progress = {});
+
+/// The camera alone; the projector's part stays empty.
+[[nodiscard]] ProcamCalibration calibrateIntrinsics(const std::vector<ViewObservations>& views, cv::Size camera,
+                                                    const SolveOptions& options = {}, const Progress& progress = {});
+
+} // namespace lumorph
