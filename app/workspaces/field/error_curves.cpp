@@ -18,7 +18,7 @@ namespace lumorph::studio {
 
 namespace {
 
-constexpr int kNarrowestCell = 84;
+constexpr int kNarrowestCell = 108;
 constexpr int kCellHeight = 66;
 constexpr int kCellGap = 4;
 constexpr int kNameHeight = 18;
@@ -135,7 +135,7 @@ void ErrorCurves::drawCell(QPainter& painter, int actuator) const {
     painter.setPen(colors.text);
     const int room = top.width() - painter.fontMetrics().horizontalAdvance(number) - 4;
     painter.drawText(top, Qt::AlignLeft | Qt::AlignVCenter,
-                     painter.fontMetrics().elidedText(names_[actuator], Qt::ElideRight, room));
+                     painter.fontMetrics().elidedText(names_[actuator], Qt::ElideMiddle, room));
     const QRect plot = plotOf(actuator);
     if (steps < 2) {
         painter.setPen(colors.warning);
