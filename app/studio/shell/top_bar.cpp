@@ -209,8 +209,8 @@ bool TopBar::event(QEvent* event) {
     return known;
 }
 
-/// The field with its words where there is room, else the glass alone; in a narrow window undo, redo, theme and recording
-/// are left to the menu, so that all menus are in sight.
+/// The field with its words where there is room, else the glass alone; in a narrow window undo, redo, theme and
+/// recording are left to the menu, so that all menus are in sight.
 void TopBar::fitSearch() {
     if (kiosk_) return;
     const std::array<QWidget*, 4> spare{tools_[0], tools_[1], tools_[3], tools_[4]}; // all but the search
