@@ -16,14 +16,22 @@ constexpr int kPointsOfView = 120; // enough to begin with
 
 LensMask firstMask() {
     LensMask mask{};
-    mask[kFocal] = mask[kPrincipalX] = mask[kPrincipalY] = mask[kK1] = true;
+    mask[kFocalLength] = mask[kPrincipalX] = mask[kPrincipalY] = mask[kK1] = true;
     return mask;
 }
 
 Lens plainLens(double focal, double x, double y) { return {focal, 1.0, x, y, 0.0, 0.0, 0.0, 0.0, 0.0}; }
 
 cv::Matx33d matrixOf(const Lens& lens) {
-    return {lens[kFocal], 0.0, lens[kPrincipalX], 0.0, lens[kFocal] * lens[kAspect], lens[kPrincipalY], 0.0, 0.0, 1.0};
+    return {lens[kFocalLength],
+            0.0,
+            lens[kPrincipalX],
+            0.0,
+            lens[kFocalLength] * lens[kAspect],
+            lens[kPrincipalY],
+            0.0,
+            0.0,
+            1.0};
 }
 
 PoseVector poseOf(const cv::Mat& turn, const cv::Mat& way) {
@@ -118,14 +126,14 @@ bool decompose(Eigen::Matrix<double, 3, 4> projection, const LitPoints& lit, Bun
     const double unit = upper(2, 2);
     state.projector = plainLens(0.5 * (upper(0, 0) + upper(1, 1)) / unit, upper(0, 2) / unit, upper(1, 2) / unit);
     state.projectorFromCamera = {axis[0], axis[1], axis[2], way[0], way[1], way[2]};
-    return std::isfinite(state.projector[kFocal]) && state.projector[kFocal] > 0.0;
+    return std::isfinite(state.projector[kFocalLength]) && state.projector[kFocalLength] > 0.0;
 }
 
 /// Keeps the better of two states.
 class BestStart {
 public:
     void offer(const BundleState& state, double cost) {
-        if (!(cost < cost_) || !(state.camera[kFocal] > 0.0) || state.projector[kFocal] < 0.0) return;
+        if (!(cost < cost_) || !(state.camera[kFocalLength] > 0.0) || state.projector[kFocalLength] < 0.0) return;
         cost_ = cost;
         state_ = state;
     }

@@ -12,7 +12,7 @@ namespace {
 constexpr LensMask freeUpTo(int extras) {
     constexpr int kOrder[] = {kK1, kK2, kP1, kP2, kAspect, kK3};
     LensMask mask{};
-    mask[kFocal] = mask[kPrincipalX] = mask[kPrincipalY] = true;
+    mask[kFocalLength] = mask[kPrincipalX] = mask[kPrincipalY] = true;
     for (int i = 0; i < extras; ++i) mask[static_cast<std::size_t>(kOrder[i])] = true;
     return mask;
 }

@@ -19,8 +19,8 @@ std::array<double, 4> distortionJacobian(const Lens& lens, double x, double y) {
 
 std::array<double, 2> directionOfPixel(const Lens& lens, double u, double v) {
     constexpr int kMostSteps = 30;
-    const double wantedX = (u - lens[kPrincipalX]) / lens[kFocal];
-    const double wantedY = (v - lens[kPrincipalY]) / (lens[kFocal] * lens[kAspect]);
+    const double wantedX = (u - lens[kPrincipalX]) / lens[kFocalLength];
+    const double wantedY = (v - lens[kPrincipalY]) / (lens[kFocalLength] * lens[kAspect]);
     double x = wantedX;
     double y = wantedY;
     for (int step = 0; step < kMostSteps; ++step) {

@@ -12,7 +12,7 @@ using Lens = std::array<double, kLensParameters>;
 /// Which of them are free to move.
 using LensMask = std::array<bool, kLensParameters>;
 
-enum LensParameter { kFocal, kAspect, kPrincipalX, kPrincipalY, kK1, kK2, kP1, kP2, kK3 };
+enum LensParameter { kFocalLength, kAspect, kPrincipalX, kPrincipalY, kK1, kK2, kP1, kP2, kK3 };
 
 /// Distorts a direction (x, y, 1).
 template <typename T> void distort(const T* lens, const T& x, const T& y, T& distortedX, T& distortedY) {
@@ -26,8 +26,8 @@ template <typename T> void distort(const T* lens, const T& x, const T& y, T& dis
 template <typename T> void projectPoint(const T* lens, const T* point, T* pixel) {
     T x, y;
     distort<T>(lens, point[0] / point[2], point[1] / point[2], x, y);
-    pixel[0] = lens[kPrincipalX] + lens[kFocal] * x;
-    pixel[1] = lens[kPrincipalY] + lens[kFocal] * lens[kAspect] * y;
+    pixel[0] = lens[kPrincipalX] + lens[kFocalLength] * x;
+    pixel[1] = lens[kPrincipalY] + lens[kFocalLength] * lens[kAspect] * y;
 }
 
 namespace lens_detail {
@@ -51,8 +51,8 @@ template <typename T> void directionOfPixel(const T* lens, double u, double v, T
     const auto [x0, y0] = directionOfPixel(values, u, v);
     T distortedX, distortedY;
     distort<T>(lens, T(x0), T(y0), distortedX, distortedY);
-    const T offX = distortedX - (T(u) - lens[kPrincipalX]) / lens[kFocal];
-    const T offY = distortedY - (T(v) - lens[kPrincipalY]) / (lens[kFocal] * lens[kAspect]);
+    const T offX = distortedX - (T(u) - lens[kPrincipalX]) / lens[kFocalLength];
+    const T offY = distortedY - (T(v) - lens[kPrincipalY]) / (lens[kFocalLength] * lens[kAspect]);
     const auto [a, b, c, d] = lens_detail::distortionJacobian(values, x0, y0);
     const double determinant = a * d - b * c;
     x = T(x0) - (T(d) * offX - T(b) * offY) / T(determinant);

@@ -124,7 +124,7 @@ private:
     void resetHeld() {
         const auto reset = [](Lens& lens, const LensMask& free) {
             for (int i = 0; i < kLensParameters; ++i)
-                if (!free[static_cast<std::size_t>(i)] && i != kFocal && i != kPrincipalX && i != kPrincipalY)
+                if (!free[static_cast<std::size_t>(i)] && i != kFocalLength && i != kPrincipalX && i != kPrincipalY)
                     lens[static_cast<std::size_t>(i)] = i == kAspect ? 1.0 : 0.0;
         };
         reset(state_.camera, bundle_.camera);
@@ -232,14 +232,14 @@ private:
     static double doubtOf(const CalibratedDevice& device, const Lens& lens, int parameter) {
         const double sigma = device.sigma[static_cast<std::size_t>(parameter)];
         const double width = device.size.width;
-        const double corner = 0.5 * std::hypot(device.size.width, device.size.height) / lens[kFocal];
-        const double shift = sigma * lens[kFocal] / (kWorstCorner * width);
+        const double corner = 0.5 * std::hypot(device.size.width, device.size.height) / lens[kFocalLength];
+        const double shift = sigma * lens[kFocalLength] / (kWorstCorner * width);
         switch (parameter) {
         case kPrincipalX:
         case kPrincipalY:
             return sigma / (kWorstPrincipal * width);
         case kAspect:
-            return sigma * corner * lens[kFocal] / (kWorstCorner * width);
+            return sigma * corner * lens[kFocalLength] / (kWorstCorner * width);
         case kK1:
             return shift * std::pow(corner, 3.0);
         case kK2:
@@ -313,7 +313,9 @@ private:
             throw CaptureRefused({Cause::modelDoesNotFit, result_.worstView, "",
                                   "no lens explains the capture: " + pixels(result_.rms) + " of error remain",
                                   "look at this pose first; check the board's kind and that it is flat"});
-        const auto doubt = [](const CalibratedDevice& device) { return device.sigma[kFocal] / device.lens[kFocal]; };
+        const auto doubt = [](const CalibratedDevice& device) {
+            return device.sigma[kFocalLength] / device.lens[kFocalLength];
+        };
         if (doubt(result_.camera) > kWorstFocal || (projector && doubt(result_.projector) > kWorstFocal))
             throw frontal();
         if (!projector) return;

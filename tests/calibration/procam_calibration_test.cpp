@@ -70,10 +70,10 @@ Cause refusalOf(const ProcamSetup& setup, const std::vector<ViewObservations>& v
 TEST(ProcamCalibration, ExactObservationsGiveTheTruthThoughThePrincipalPointLiesOutside) {
     const ProcamSetup setup = ProcamSetup::usual();
     const ProcamCalibration result = solve(setup, observe(setup, 0.0, 0.0, 1));
-    EXPECT_NEAR(result.camera.lens[kFocal], 960.0, 0.01);
+    EXPECT_NEAR(result.camera.lens[kFocalLength], 960.0, 0.01);
     EXPECT_NEAR(result.camera.lens[kPrincipalY], 172.0, 0.01);
     EXPECT_NEAR(result.camera.lens[kK1], -0.2, 1e-3);
-    EXPECT_NEAR(result.projector.lens[kFocal], 470.0, 0.01);
+    EXPECT_NEAR(result.projector.lens[kFocalLength], 470.0, 0.01);
     EXPECT_NEAR(result.projector.lens[kPrincipalX], 126.0, 0.01);
     EXPECT_NEAR(result.projector.lens[kPrincipalY], 213.0, 0.01);
     EXPECT_NEAR(result.projector.lens[kK1], -0.08, 1e-3);
@@ -88,7 +88,7 @@ TEST(ProcamCalibration, TheResultDoesNotDependOnTheStart) {
     const auto views = observe(setup, 0.1, 0.1, 2);
     for (const auto& [camera, projector] : {std::pair(300.0, 150.0), {960.0, 2000.0}, {4000.0, 470.0}}) {
         const ProcamCalibration result = solve(setup, views, {camera, projector});
-        EXPECT_NEAR(result.projector.lens[kFocal], 470.0, 2.0) << camera << " " << projector;
+        EXPECT_NEAR(result.projector.lens[kFocalLength], 470.0, 2.0) << camera << " " << projector;
         EXPECT_NEAR(result.projector.lens[kPrincipalY], 213.0, 3.0) << camera << " " << projector;
     }
 }
@@ -99,8 +99,8 @@ TEST(ProcamCalibration, UncertaintiesAreThoseOfRedrawnNoise) {
     double squares[4] = {};
     for (std::uint32_t seed = 0; seed < kRedraws; ++seed) {
         const ProcamCalibration r = solve(setup, observe(setup, 0.15, 0.1, 100 + seed));
-        const double off[4] = {(r.camera.lens[kFocal] - 960.0) / r.camera.sigma[kFocal],
-                               (r.projector.lens[kFocal] - 470.0) / r.projector.sigma[kFocal],
+        const double off[4] = {(r.camera.lens[kFocalLength] - 960.0) / r.camera.sigma[kFocalLength],
+                               (r.projector.lens[kFocalLength] - 470.0) / r.projector.sigma[kFocalLength],
                                (r.projector.lens[kPrincipalY] - 213.0) / r.projector.sigma[kPrincipalY],
                                (r.projectorFromCamera[4] - shiftOf(setup).y) / r.projectorFromCameraSigma[4]};
         for (int i = 0; i < 4; ++i) squares[i] += off[i] * off[i] / kRedraws;
@@ -176,8 +176,8 @@ protected:
     static void expectBars(const ProcamCalibration& result) {
         const PoseVector& rig = result.projectorFromCamera;
         EXPECT_LE(result.rms, 0.30);
-        EXPECT_GE(result.projector.lens[kFocal], 1880.0);
-        EXPECT_LE(result.projector.lens[kFocal], 1900.0);
+        EXPECT_GE(result.projector.lens[kFocalLength], 1880.0);
+        EXPECT_LE(result.projector.lens[kFocalLength], 1900.0);
         EXPECT_GE(result.projector.lens[kPrincipalY], 815.0);
         EXPECT_LE(result.projector.lens[kPrincipalY], 860.0);
         const double distance = std::hypot(rig[3], rig[4], rig[5]);
@@ -196,7 +196,7 @@ TEST_F(RealProcam, MeetsItsBars) {
     const std::chrono::duration<double> time = std::chrono::steady_clock::now() - begin;
     expectBars(result);
     std::printf("%.1f s; joint RMS %.3f, projector f %.1f, cy %.1f\n", time.count(), result.rms,
-                result.projector.lens[kFocal], result.projector.lens[kPrincipalY]);
+                result.projector.lens[kFocalLength], result.projector.lens[kPrincipalY]);
     for (const ViewQuality& view : result.views)
         std::printf("%s: camera %.3f, projector %.3f, held out %.3f pixels\n", view.name.c_str(), view.cameraRms,
                     view.projectorRms, view.heldOut.value_or(0.0));
