@@ -42,15 +42,15 @@ nlohmann::json jsonOf(const std::optional<double>& number) {
 nlohmann::json jsonOf(const CalibratedDevice& device) {
     const Lens& lens = device.lens;
     const Lens& sigma = device.sigma;
-    const double fy = lens[kFocal] * lens[kAspect];
-    const double fySigma = std::hypot(sigma[kFocal] * lens[kAspect], lens[kFocal] * sigma[kAspect]);
-    return {{"K", {{lens[kFocal], 0.0, lens[kPrincipalX]}, {0.0, fy, lens[kPrincipalY]}, {0.0, 0.0, 1.0}}},
+    const double fy = lens[kFocalLength] * lens[kAspect];
+    const double fySigma = std::hypot(sigma[kFocalLength] * lens[kAspect], lens[kFocalLength] * sigma[kAspect]);
+    return {{"K", {{lens[kFocalLength], 0.0, lens[kPrincipalX]}, {0.0, fy, lens[kPrincipalY]}, {0.0, 0.0, 1.0}}},
             {"distortion", {lens[kK1], lens[kK2], lens[kP1], lens[kP2], lens[kK3]}},
             {"size", {device.size.width, device.size.height}},
             {"rms", device.rms},
             {"model", device.model},
             {"sigma",
-             {{"fx", sigma[kFocal]},
+             {{"fx", sigma[kFocalLength]},
               {"fy", fySigma},
               {"cx", sigma[kPrincipalX]},
               {"cy", sigma[kPrincipalY]},
@@ -116,7 +116,7 @@ void printDevice(const char* name, const CalibratedDevice& device) {
     const Lens& sigma = device.sigma;
     std::printf("%-10s %d x %d, model %s, RMS %.3f pixels\n", name, device.size.width, device.size.height,
                 device.model.c_str(), device.rms);
-    std::printf("  focal length    %9.2f +- %.2f pixels\n", lens[kFocal], sigma[kFocal]);
+    std::printf("  focal length    %9.2f +- %.2f pixels\n", lens[kFocalLength], sigma[kFocalLength]);
     std::printf("  principal point %9.2f +- %.2f, %.2f +- %.2f pixels\n", lens[kPrincipalX], sigma[kPrincipalX],
                 lens[kPrincipalY], sigma[kPrincipalY]);
     std::printf("  k1 %.4f  k2 %.4f  p1 %.5f  p2 %.5f  k3 %.4f\n", lens[kK1], lens[kK2], lens[kP1], lens[kP2],
