@@ -49,7 +49,7 @@ TEST_F(ProjectCheck, TellsWhatAWholeProjectHolds) {
     EXPECT_EQ(outcome.err, "");
     const nlohmann::json report = outcome.json();
     EXPECT_EQ(report["ok"], true);
-    EXPECT_EQ(report["schemaVersion"], 3);
+    EXPECT_EQ(report["schemaVersion"], 4);
     EXPECT_EQ(report["rig"]["asset"], "rig.glb");
     EXPECT_EQ(report["rig"]["actuators"], nlohmann::json({"lift 0", "lift 1", "lift 2"}));
     EXPECT_EQ(report["field"]["levels"], 5);
@@ -137,7 +137,7 @@ TEST_F(ProjectCheck, TheBundledProjectsAreWhole) {
 }
 
 TEST_F(ProjectCheck, RefusesAFileThatIsNoProject) {
-    writeFile(w["newer.lumorph"], std::string(R"({"schemaVersion": 4, "rig": "rig.glb"})"));
+    writeFile(w["newer.lumorph"], std::string(R"({"schemaVersion": 5, "rig": "rig.glb"})"));
     for (const auto& [file, says] : {std::pair{"missing.lumorph", "missing.lumorph"},
                                      {"rig.glb", "not valid JSON"},
                                      {"newer.lumorph", "newest Lumorph"}}) {

@@ -136,11 +136,11 @@ void DriverChip::refresh() {
     chip_->setIcon(icon(DriverControl::iconOf(driver), lit_->isActive()  ? IconRole::onAccent
                                                        : still.isEmpty() ? IconRole::control
                                                                          : IconRole::warning));
-    leftOut_ = 0;
+    wordsWidth_ = 0;
     const auto say = [this](QPushButton* button, const QString& text) {
         const QString fits = button->fontMetrics().elidedText(text, Qt::ElideRight, kChipTextWidth);
         button->setText(narrow_ ? QString() : fits);
-        if (narrow_) leftOut_ += button->fontMetrics().horizontalAdvance(fits) + kIconGap;
+        wordsWidth_ += button->fontMetrics().horizontalAdvance(fits) + kIconGap;
     };
     say(chip_, words);
     const QString who = tr("%1 '%2' moves the servos.").arg(DriverControl::kindOf(driver), name);

@@ -23,8 +23,9 @@ public:
     /// Without words where there is no room: the icon alone.
     void setNarrow(bool narrow);
 
-    /// The width that its words would take, pixels; 0 while it shows them.
-    [[nodiscard]] int wordsLeftOut() const noexcept { return leftOut_; }
+    [[nodiscard]] bool isNarrow() const noexcept { return narrow_; }
+    /// The width that its words take, or would take, pixels.
+    [[nodiscard]] int wordsWidth() const noexcept { return wordsWidth_; }
 
 private:
     void refresh();
@@ -32,7 +33,7 @@ private:
 
     Studio& studio_;
     bool narrow_ = false;
-    int leftOut_ = 0;
+    int wordsWidth_ = 0;
     QPushButton* chip_ = nullptr;
     QPushButton* back_ = nullptr;
     QTimer* lit_ = nullptr; ///< runs while it is lit

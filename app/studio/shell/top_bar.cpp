@@ -214,16 +214,19 @@ bool TopBar::event(QEvent* event) {
 void TopBar::fitSearch() {
     if (kiosk_) return;
     const std::array<QWidget*, 4> spare{tools_[0], tools_[1], tools_[3], tools_[4]}; // all but the search
-    int needed = layout()->sizeHint().width() - search_->minimumWidth() + kGlassWidth;
+    int needed = layout()->sizeHint().width() + kGlassWidth;
+    needed += search_->isHidden() ? layout()->spacing() : -search_->minimumWidth();
     for (const QWidget* tool : spare)
         if (tool->isHidden()) needed += tool->sizeHint().width() + layout()->spacing();
-    needed += driver_->wordsLeftOut();
+    if (driver_->isNarrow()) needed += driver_->wordsWidth();
     const bool tight = needed > width();
     for (QWidget* tool : spare) {
         tool->setVisible(!tight);
         if (tight) needed -= tool->sizeHint().width() + layout()->spacing();
     }
-    driver_->setNarrow(needed > width());
+    const bool narrow = needed > width();
+    driver_->setNarrow(narrow);
+    search_->setVisible(!narrow || needed - driver_->wordsWidth() <= width());
     const bool roomy = !tight && needed + kSearchWidth - kGlassWidth <= width();
     search_->setFixedWidth(roomy ? kSearchWidth : kGlassWidth);
     search_->setText(roomy ? "Search commands    Ctrl+K" : QString());
