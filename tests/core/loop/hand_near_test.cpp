@@ -45,6 +45,8 @@ TEST(HandDistance, CountsHandsOnlyAndTheNearestOfThem) {
     see(board, "left", PoseRole::pointer, {0.0, 0.55, 0.0});
     see(board, "right", PoseRole::pointer, {0.0, 0.35, 0.0});
     EXPECT_NEAR(handDistance(board, kTablet, glm::mat4(1.0F), kNow).value_or(-1.0), 0.30, 1e-6);
+    see(board, "third", PoseRole::pointer, {0.0, 0.95, 0.0});
+    EXPECT_NEAR(handDistance(board, kTablet, glm::mat4(1.0F), kNow).value_or(-1.0), 0.30, 1e-6) << "whoever came last";
 }
 
 TEST(HandDistance, AHandThatIsLostOrLongSilentIsNotSensed) {

@@ -1,6 +1,7 @@
 #include <cmath>
 #include <limits>
 #include <random>
+#include <set>
 
 #include <gtest/gtest.h>
 
@@ -199,6 +200,44 @@ TEST_F(MatchLoopTest, WhatStandsStillIsNotWorkedOutAgain) {
     EXPECT_NEAR(moved->iouWanted, iouOf(*field_, moved->wanted, voxelsOf(*moved)), 1e-12);
 }
 
+// Servos that stand still reach another share of a target that is moved.
+TEST_F(MatchLoopTest, WhatIsReachedIsJudgedAnewWhenTheTargetMoves) {
+    MatchWish wish = wishFor(field_, block());
+    wish.driver = Driver::hand;
+    wish.strokes = {0.5, 0.75, 0.25};
+    for (int k = 0; k < 400; ++k) (void)loop_.step(wish, kFrame);
+    CoverageScratch scratch;
+    BitColumns reached;
+    std::set<double> seen;
+    for (const float aside : {0.0F, 0.012F, -0.03F}) {
+        MatchWish moved = wish;
+        moved.placement.translation.x += aside;
+        const auto frame = loop_.step(moved, kFrame);
+        ASSERT_EQ(frame->estimatedStrokes, wish.strokes);
+        field_->coverage.coveredAt(frame->estimatedStrokes, reached, scratch);
+        EXPECT_NEAR(frame->iouEstimated, intersectionOverUnion(reached, voxelsOf(*frame)), 1e-12) << aside;
+        seen.insert(frame->iouEstimated);
+    }
+    EXPECT_EQ(seen.size(), 3U);
+}
+
+// A level is kept while it is nearly as good, but not for another target: that one is matched as if it came first.
+TEST_F(MatchLoopTest, AnotherTargetIsMatchedAsIfItCameFirst) {
+    const auto boxOf = [](float height) {
+        return stillTarget(test::boxMesh({0.0F, 0.0F, 0.0F}, {0.08F, height, 0.06F}));
+    };
+    std::set<int> levels;
+    for (int k = 0; k < 160; ++k) {
+        MatchWish wish = wishFor(field_, boxOf(0.002F + 0.0002F * static_cast<float>(k)));
+        wish.placement.scale = 0.9; // so that another height is another level
+        wish.method = MatchMethod::voting;
+        const auto after = loop_.step(wish, 0.0);
+        EXPECT_EQ(after->wanted, MatchLoop(clock_).step(wish, 0.0)->wanted) << k;
+        levels.insert(after->wanted[0].index);
+    }
+    EXPECT_GT(levels.size(), 2U);
+}
+
 TEST_F(MatchLoopTest, RefinementOfAStillTargetGoesOnUntilNothingHelps) {
     const test::TickingClock clock;
     MatchLoop loop(clock);
@@ -374,7 +413,7 @@ TEST_F(MatchLoopTest, ActuatorsGoOnWithoutAJumpInARigThatIsEdited) {
     MatchWish wish = wishFor(field_, nullptr);
     wish.driver = Driver::hand;
     wish.rigOrigin = wish.rig;
-    wish.strokes = {1.0, 0.5, 0.0};
+    wish.strokes = {1.0, 0.5, 0.8}; // all move, the renamed one too
     MatchWish still = wish;
     MatchLoop reference(clock_);
     for (int i = 0; i < 20; ++i) {
@@ -427,6 +466,20 @@ TEST_F(MatchLoopTest, DanceIsLivelyAndTheSameEveryTime) {
     }
     wish.driver = Driver::hand;
     EXPECT_EQ(loop_.step(wish, kFrame)->wantedStrokes, wish.strokes);
+}
+
+TEST_F(MatchLoopTest, ADanceDoesNotMakeUpForAPause) {
+    MatchWish wish = wishFor(field_, nullptr);
+    wish.driver = Driver::dance;
+    (void)loop_.step(wish, kFrame);
+    std::vector<double> last = loop_.step(wish, 60.0)->wantedStrokes;
+    int changes = 0;
+    for (int k = 0; k < 30; ++k) {
+        const auto frame = loop_.step(wish, kFrame);
+        changes += frame->wantedStrokes != last;
+        last = frame->wantedStrokes;
+    }
+    EXPECT_EQ(changes, 0) << "half a second after a new pose";
 }
 
 TEST_F(MatchLoopTest, WishesThatContradictThemselvesAreRefused) {

@@ -265,6 +265,14 @@ TEST(PoseStream, LooksAheadNoFurtherThanItCanKnow) {
     EXPECT_EQ(stream.at(at(60.0), at(1.0))->position, stream.at(at(1.15), at(1.0))->position);
 }
 
+TEST(PoseStream, TellsALittleOfThePastToo) {
+    PoseStream stream;
+    for (int k = 0; k <= 120; ++k) (void)stream.push(sampleAt(k / kRate, {0.3 * k / kRate, 0, 0}));
+    EXPECT_NEAR(stream.at(at(0.97), at(1.0))->position.x, 0.291, 1e-3) << "30 ms before the newest sample";
+    EXPECT_NEAR(stream.at(at(0.96), at(1.0))->position.x, 0.288, 1e-3);
+    EXPECT_EQ(stream.at(at(0.5), at(1.0))->position, stream.at(at(0.95), at(1.0))->position) << "and no more";
+}
+
 TEST(PoseStream, TrackerAndLoopMayUseItAtOnce) {
     // A body that goes along x at 0.1 m/s, its y and z bound to x: a sample that was read while it was written would
     // tear them apart. Neither goes on without the other, whoever has the processor first.

@@ -36,8 +36,22 @@ TEST_F(SceneLoopTest, SceneTimePlaysPausesAndIsSoughtOnce) {
     (void)step(wish);
     wish.sceneSeek = 1.5;
     EXPECT_EQ(step(wish)->sceneSeconds, 1.5);
+    wish.sceneSeek.reset();
+    wish.scenePlaying = true;
+    EXPECT_GT(step(wish)->sceneSeconds, 1.5);
+    wish.sceneSeek = 1.5;
+    EXPECT_EQ(step(wish)->sceneSeconds, 1.5) << "the same moment, asked for anew";
     wish.sceneSeek = kNan;
     EXPECT_THROW((void)step(wish), InvalidInput);
+}
+
+TEST(LookAhead, IsByTheLongerOfBothDelays) {
+    Installation room;
+    room.predictionSeconds = 0.06;
+    EXPECT_EQ(lookAhead(room, 0.02), 0.06);
+    EXPECT_EQ(lookAhead(room, 0.09), 0.09) << "drawing takes longer than was set";
+    room.predictionSeconds = 0.0;
+    EXPECT_EQ(lookAhead(room, 0.09), 0.0) << "nothing is predicted";
 }
 
 TEST_F(SceneLoopTest, APointerAloneIsNoViewerAndKeepsNothingAwake) {
@@ -102,13 +116,15 @@ TEST_F(SceneLoopTest, RestsOnlyWhenNothingInTheSceneMoves) {
     still.drift = {0.0F, 0.0F};
     SceneInRoom fog = emptyScene();
     fog.items.push_back(itemOf(ItemRole::virtualOnly, drifting));
+    SceneInRoom standing = emptyScene();
+    standing.items.push_back(itemOf(ItemRole::virtualOnly, waves(0.01, 0.0)));
     SceneInRoom calm = emptyScene();
     calm.items.push_back(itemOf(ItemRole::virtualOnly, still));
     for (const Case& c : {Case{"nothing", emptyScene(), false}, Case{"light", lamp(0.0), false},
                           Case{"spinning light", lamp(0.2), true}, Case{"hidden", hidden(), false},
                           Case{"moving texture", texture({0.0F, 0.1F}, "waves"), true},
                           Case{"no texture", texture({0.0F, 0.1F}, ""), false}, Case{"fog", fog, true},
-                          Case{"calm fog", calm, false}}) {
+                          Case{"waves that stand", standing, false}, Case{"calm fog", calm, false}}) {
         MatchLoop loop(clock_);
         MatchWish wish = wishWith(c.scene);
         const auto first = loop.step(wish, kFrame);

@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <map>
+#include <tuple>
 
 #include <gtest/gtest.h>
 
@@ -331,6 +332,18 @@ TEST(Builder, TheSameSeedGivesTheSameBytesOnAnyNumberOfThreads) {
     EXPECT_EQ(writeField(buildField(test::cushionRig(), options)), one);
     options.seed = 2;
     EXPECT_NE(writeField(buildField(test::cushionRig(), options)), one);
+}
+
+TEST(Builder, AsManySamplesAsThereAreStatesAreAllOfThem) {
+    BuildOptions options;
+    options.resolution = 8;
+    options.levels = 3;
+    for (const auto& [samples, used, all] : {std::tuple{26, 26U, false}, {27, 27U, true}, {28, 27U, true}}) {
+        options.samples = samples;
+        const Field field = buildField(test::cushionRig(), options);
+        EXPECT_EQ(field.samples, used);
+        EXPECT_EQ(field.exhaustive, all) << samples;
+    }
 }
 
 TEST(Builder, ReportsProgressAndStopsWhenAsked) {

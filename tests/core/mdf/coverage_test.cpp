@@ -1,11 +1,14 @@
 #include "core/mdf/coverage.h"
 
 #include <array>
+#include <cmath>
 #include <thread>
 
 #include <gtest/gtest.h>
 
 #include "core/base/error.h"
+#include "core/mdf/builder.h"
+#include "core/mdf/sampling.h"
 #include "core/voxels/solid.h"
 #include "tests/support/cgal_oracle.h"
 #include "tests/support/small_rigs.h"
@@ -106,6 +109,104 @@ TEST(Coverage, ACavityInThePartThatStaysIsNotBody) {
     EXPECT_EQ(coverage.body(), voxelizeSolid(frame, rig.restMesh()));
     EXPECT_FALSE(coverage.body().test(12, 12, 12));
     EXPECT_TRUE(coverage.domain().test(12, 12, 12));
+}
+
+/// A hollow box in the hollow of another: each cavity is of the box around it, whichever comes first in the mesh.
+TEST(Coverage, CavitiesBelongToTheSmallestShellAroundThem) {
+    for (const bool innerFirst : {true, false}) {
+        RigParts parts;
+        parts.name = "nested";
+        parts.pathInside = true;
+        const auto addShell = [&](float from, float to, bool cavity) {
+            TriangleMesh shell = test::boxMesh(glm::vec3(from), glm::vec3(to));
+            if (cavity)
+                for (glm::uvec3& t : shell.triangles) std::swap(t.y, t.z);
+            append(parts.restMesh, shell);
+        };
+        for (const bool inner : {innerFirst, !innerFirst}) {
+            const float aside = inner ? 0.0352F : 0.0F;
+            addShell(aside, 0.1F - aside, false);
+            addShell(aside + 0.0081F, 0.0919F - aside, true);
+        }
+        Actuator lift;
+        lift.name = "lift";
+        lift.deformer = Slide{{0.0F, 1.0F, 0.0F}, 0.0, 0.02};
+        for (std::uint32_t v = 0; v < parts.restMesh.positions.size(); ++v)
+            if (parts.restMesh.positions[v].y > 0.099F) lift.influences.push_back({v, 1.0F});
+        parts.actuators.push_back(std::move(lift));
+        const Rig rig(std::move(parts));
+        const VoxelFrame frame = frameOf(rig.reach(), 30);
+        const Coverage coverage(rig, frame, kCoverageLevels);
+        // By plain geometry: within the walls of either box.
+        const auto withinWalls = [](const glm::dvec3& p, double aside) {
+            const double depth = std::min({p.x, p.y, p.z, 0.1 - p.x, 0.1 - p.y, 0.1 - p.z}) - aside;
+            return depth > 0.0 && depth < 0.0081;
+        };
+        std::size_t wrong = 0;
+        for (int z = 0; z < frame.dimensions.z; ++z)
+            for (int x = 0; x < frame.dimensions.x; ++x)
+                for (int y = 0; y < frame.dimensions.y; ++y) {
+                    const glm::dvec3 p = frame.centre(x, y, z);
+                    wrong += coverage.body().test(x, y, z) != (withinWalls(p, 0.0) || withinWalls(p, 0.0352));
+                }
+        EXPECT_EQ(wrong, 0U) << innerFirst;
+    }
+}
+
+/// A tower whose two storeys slide up: its frame is more than two words of bits high.
+Rig towerRig() {
+    RigParts parts;
+    parts.name = "tower";
+    parts.pathInside = true;
+    parts.restMesh = test::boxMesh({0.0F, 0.0F, 0.0F}, {0.0205F, 0.0713F, 0.0209F});
+    const TriangleMesh core = test::boxMesh({0.0041F, 0.0012F, 0.0039F}, {0.0157F, 0.0702F, 0.0163F});
+    for (const float length : {0.0611F, 0.1307F}) {
+        Actuator lift;
+        lift.name = "lift " + std::to_string(parts.actuators.size());
+        lift.deformer = Slide{{0.0F, 1.0F, 0.0F}, 0.0, static_cast<double>(length)};
+        parts.actuators.push_back(std::move(lift));
+    }
+    for (std::uint32_t v = 0; v < 8; ++v)
+        if (parts.restMesh.positions[v].y > 0.05F) parts.actuators[0].influences.push_back({v, 1.0F});
+    for (std::uint32_t v = 0; v < core.positions.size(); ++v)
+        if (core.positions[v].y > 0.05F) parts.actuators[1].influences.push_back({8 + v, 1.0F});
+    append(parts.restMesh, core);
+    return Rig(std::move(parts));
+}
+
+// R6, R8: columns of several words are whole at every word, in coverage and background alike.
+TEST(Coverage, TallFramesAgreeWithTheMeshAndTheirBackgroundWithTheMean) {
+    const Rig rig = towerRig();
+    BuildOptions options;
+    options.resolution = 14;
+    options.levels = 3;
+    options.samples = 9;
+    const Field field = buildField(rig, options);
+    ASSERT_TRUE(field.exhaustive);
+    ASSERT_GT(field.frame.dimensions.y, 128);
+    const Coverage coverage(rig, field.frame, options.levels);
+    CoverageScratch scratch;
+    std::vector<int> counts(field.frame.voxelCount());
+    std::size_t wrong = 0;
+    for (const State& state : allStates(2, options.levels)) {
+        BitColumns kept;
+        BitColumns afresh;
+        coverage.covered(state, kept, scratch);
+        coverage.coveredAt(strokesOf(rig, state, options.levels), afresh, scratch);
+        EXPECT_EQ(kept, afresh);
+        const test::InsideOracle inside(deformed(rig, strokesOf(rig, state, options.levels)));
+        for (int z = 0; z < field.frame.dimensions.z; ++z)
+            for (int x = 0; x < field.frame.dimensions.x; ++x)
+                for (int y = 0; y < field.frame.dimensions.y; ++y) {
+                    const bool covered = inside(field.frame.centre(x, y, z)) && !field.body.test(x, y, z);
+                    wrong += kept.test(x, y, z) != covered;
+                    counts[field.voxelIndex(x, y, z)] += covered;
+                }
+    }
+    EXPECT_EQ(wrong, 0U);
+    std::size_t off = 0;
+    for (std::size_t v = 0; v < counts.size(); ++v) off += field.background[v] != std::lround(255.0 * counts[v] / 9.0);
+    EXPECT_EQ(off, 0U);
 }
 
 // The kept pieces are filled by whoever asks first; several threads may ask at once.

@@ -163,6 +163,16 @@ TEST(FieldFile, WellFormedButImpossibleFieldsAreRefusedWithTheirPlace) {
     }
 }
 
+/// A block's kind stands before what its checksum guards.
+TEST(FieldFile, BlocksOfAnotherKindAreRefused) {
+    const std::vector<std::byte> file = writeField(smallField());
+    for (const std::uint32_t kind : {0U, 2U, 3U, 9U}) {
+        std::vector<std::byte> changed = file;
+        std::memcpy(&changed[24], &kind, sizeof kind);
+        expectRefused(changed, "a header of kind " + std::to_string(kind));
+    }
+}
+
 /// The last level of a ramp is the last level of the field.
 TEST(FieldFile, ARampMayEndAtTheLastLevel) {
     Field field = smallField();

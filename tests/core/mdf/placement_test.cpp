@@ -105,6 +105,30 @@ TEST_F(PlacementTest, AutoPlaceFindsAMatchAtLeastAsGoodAsTheFit) {
     EXPECT_GT(found.placementsSeen, 36);
 }
 
+TEST_F(PlacementTest, AutoPlaceKeepsTheScaleAndTheShareThatItIsGiven) {
+    const Target target = makeTarget(test::boxMesh({0, 0, 0}, {1.0F, 0.8F, 0.9F}));
+    const double volume = 1.0 * 0.8 * 0.9;
+    const double fit = fitPlacement(field_, boundingBox(target.mesh.positions)).scale;
+    struct Case {
+        double minScale, maxScale, minInside;
+    };
+    for (const Case& c : {Case{0.6, 1.0, 0.9}, Case{0.6, 1.05, 0.5}, Case{1.0, 3.0, 0.97}}) {
+        AutoPlaceOptions options;
+        options.minScale = c.minScale;
+        options.maxScale = c.maxScale;
+        options.minInside = c.minInside;
+        const AutoPlacement found = autoPlace(field_, coverage_, voting_, target, options);
+        EXPECT_GE(found.placement.scale / fit, c.minScale - 1e-9);
+        EXPECT_LE(found.placement.scale / fit, c.maxScale + 1e-9);
+        SolidVoxelizer voxelizer;
+        BitColumns bits;
+        voxelizeTarget(field_.frame, {placed(target.mesh, found.placement), true, {}}, voxelizer, bits);
+        bits &= coverage_.domain();
+        const double inside = static_cast<double>(bits.count()) * field_.frame.voxelVolume();
+        EXPECT_GE(inside, c.minInside * volume * std::pow(found.placement.scale, 3.0)) << c.maxScale;
+    }
+}
+
 TEST_F(PlacementTest, AutoPlaceRefusesATargetThinnerThanAVoxel) {
     const Target sliver = makeTarget(test::boxMesh({0, 0, 0}, {1.0F, 0.0005F, 1.0F}));
     EXPECT_THROW((void)autoPlace(field_, coverage_, voting_, sliver), InvalidInput);
@@ -158,22 +182,27 @@ TEST_F(PlacementTest, AClipFollowsItsAnimationUnderTheVelocityLimits) {
 
 // R19: the last frame shows the end, not a time before it nor the beginning again.
 TEST_F(PlacementTest, AClipWhoseLengthIsNoWholeNumberOfFramesEndsAtItsEnd) {
-    const Model model = growingBox();
-    const Placement placement = fitPlacement(field_, Box{{0.01F, 0.0F, 0.01F}, {0.09F, 0.03F, 0.07F}});
+    Model model = growingBox(); // here it shrinks to half its height
+    model.animations.front().channels.front().values = {1, 1, 1, 1, 0.5F, 1};
+    Placement placement = fitPlacement(field_, Box{{0.01F, 0.0F, 0.01F}, {0.09F, 0.03F, 0.07F}});
+    placement.translation.y -= 0.006F; // its foot lies in the body, which does not count
     for (const double fps : {2.4, 3.7, 7.01}) {
         const auto frames = matchClip(field_, coverage_, voting_, model, model.animations.front(),
                                       {.framesPerSecond = fps, .placement = placement});
         ASSERT_EQ(frames.size(), static_cast<std::size_t>(std::ceil(fps)) + 1) << fps;
+        EXPECT_NE(frames.front().wanted, State(3));
+        EXPECT_EQ(frames.front().strokes, std::vector<double>(3, 0.0)) << "it begins at rest";
         EXPECT_LT(frames[frames.size() - 2].seconds, 1.0);
         EXPECT_GE(frames.back().seconds, 1.0);
-        // Whole: 3 cm high.
-        TriangleMesh whole = test::boxMesh({0.01F, 0.0F, 0.01F}, {0.09F, 0.03F, 0.07F});
-        BitColumns target = voxelizeSolid(field_.frame, placed(whole, placement));
+        const TriangleMesh end = test::boxMesh({0.01F, 0.0F, 0.01F}, {0.09F, 0.015F, 0.07F});
+        BitColumns target = voxelizeSolid(field_.frame, placed(end, placement));
         target &= coverage_.domain();
         BitColumns covered;
         CoverageScratch scratch;
         coverage_.covered(frames.back().wanted, covered, scratch);
         EXPECT_NEAR(frames.back().iouWanted, intersectionOverUnion(covered, target), 1e-12) << fps;
+        coverage_.coveredAt(frames.back().strokes, covered, scratch);
+        EXPECT_NEAR(frames.back().iouReached, intersectionOverUnion(covered, target), 1e-12) << fps;
     }
 }
 

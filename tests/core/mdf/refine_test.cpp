@@ -169,6 +169,32 @@ INSTANTIATE_TEST_SUITE_P(SmallRigs, RefineOnRig,
                                          RefineCase{"lifter", &test::lifterRig}),
                          [](const auto& rig) { return rig.param.name; });
 
+// The same with many fine levels, where steps of four are far from all the way.
+TEST(Refine, EndsWhereNoStepOfACoupledPairHelpsAmongFineLevels) {
+    constexpr int kFineLevels = 25;
+    const Rig rig = test::cushionRig();
+    const Coverage coverage(rig, frameOf(rig.reach(), 14), kFineLevels);
+    Refiner refiner(coverage);
+    const SteadyClock clock;
+    std::mt19937 random(31);
+    for (int round = 0; round < 250; ++round) {
+        BitColumns target(coverage.frame().dimensions);
+        const glm::ivec3 d = target.dimensions();
+        const int side = 1 + static_cast<int>(random() % 9);
+        std::vector<int> heights(1000);
+        for (int& height : heights) height = static_cast<int>(random() % static_cast<unsigned>(d.y + 1));
+        for (int z = 0; z < d.z; ++z)
+            for (int x = 0; x < d.x; ++x)
+                for (int y = 0; y < heights[static_cast<std::size_t>(z / side * 29 + x / side) % heights.size()]; ++y)
+                    if (random() % 5 != 0) target.set(x, y, z);
+        target &= coverage.domain();
+        State start(3);
+        for (Level& level : start) level.index = static_cast<int>(random() % kFineLevels);
+        const Refinement refined = refiner.refine(target, start, Microseconds{0}, clock);
+        ASSERT_EQ(whatHelps(coverage, refined.state, target), "") << "round " << round;
+    }
+}
+
 /// A clock that moves on by a millisecond each time it is looked at.
 class TickingClock final : public Clock {
 public:

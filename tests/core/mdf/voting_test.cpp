@@ -3,6 +3,8 @@
 #include <cmath>
 #include <random>
 #include <set>
+#include <utility>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -185,6 +187,52 @@ TEST(Voting, TheStrokeIsTheLowestPointOfTheParabolaThroughTheRatios) {
             for (std::size_t i = 0; i < votes.actuators.size(); ++i)
                 EXPECT_NEAR(votes.actuators[i].stroke, test::literalStroke(literalVote(field, i, target)), 1e-6);
         }
+    }
+}
+
+/// Ramps of one step each, one a voxel of a row of columns, and a target of the voxels that are named.
+struct StepField {
+    explicit StepField(const std::vector<Ramp>& ramps, const std::vector<bool>& wanted) {
+        const auto height = static_cast<int>(ramps.size());
+        field.frame = {{0, 0, 0}, 0.01, {1, height, 1}};
+        field.levels = 4;
+        field.body = BitColumns(field.frame.dimensions);
+        field.background.assign(ramps.size(), 0);
+        field.actuators = {{"a", {{0, 0, static_cast<std::uint16_t>(height), 0}}, ramps}};
+        target = BitColumns(field.frame.dimensions);
+        for (int y = 0; y < height; ++y)
+            if (wanted[static_cast<std::size_t>(y)]) target.set(0, y, 0);
+    }
+    Field field;
+    BitColumns target;
+};
+
+TEST(Voting, LessThanAVoxelIsNoMatch) {
+    const StepField half({{2, 2, 0, 128}, {2, 2, 0, 255}}, {true, false});
+    EXPECT_FALSE(Voting(half.field).match(half.target).actuators[0].reached) << "half of one voxel";
+    const StepField whole({{2, 2, 0, 128}, {2, 2, 0, 128}}, {true, true});
+    EXPECT_TRUE(Voting(whole.field).match(whole.target).actuators[0].reached) << "two halves";
+    EXPECT_EQ(Voting(whole.field).match(whole.target).actuators[0].level.index, 2);
+}
+
+/// Level 1 reaches few wanted voxels and nothing else, level 2 a few more and very many that nobody wants.
+TEST(Voting, ALevelCountsFromOneInAHundredWantedVoxelsOn) {
+    for (const auto& [few, level] : {std::pair{5, 1}, {2, 1}}) {
+        std::vector<Ramp> ramps;
+        std::vector<bool> wanted;
+        for (int i = 0; i < 100; ++i) {
+            ramps.push_back(i < few ? Ramp{1, 1, 0, 255} : i < 20 ? Ramp{2, 2, 0, 255} : Ramp{3, 3, 0, 3});
+            wanted.push_back(true);
+        }
+        for (int i = 0; i < 2000; ++i) {
+            ramps.push_back({2, 2, 0, 255});
+            wanted.push_back(false);
+        }
+        const StepField steps(ramps, wanted);
+        const ActuatorVote vote = Voting(steps.field).match(steps.target).actuators[0];
+        EXPECT_TRUE(vote.reached);
+        EXPECT_EQ(vote.level.index, level) << few;
+        EXPECT_EQ(literalVote(steps.field, 0, steps.target).level, level);
     }
 }
 

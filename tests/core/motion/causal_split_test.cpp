@@ -259,5 +259,25 @@ TEST(CausalSplit, RefusesWhatIsNoWish) {
     EXPECT_GT(split.strokes(high, kCausalStep)[0], 0.2) << "begun anew";
 }
 
+/// Its low-passes are through long before a servo this slow has come where they lead it: until then it is not at rest.
+TEST(CausalSplit, IsNotAtRestWhileSlowServosAreOnTheirWay) {
+    RigParts parts = test::cushionRig().parts();
+    for (Actuator& actuator : parts.actuators) actuator.maxVelocity = 0.01;
+    const Rig rig(std::move(parts));
+    CausalSplit split(rig);
+    std::vector<float> heights(split.restHeights().begin(), split.restHeights().end());
+    (void)split.strokes(heights, 0.0);
+    for (float& height : heights) height += 0.015F;
+    std::vector<double> atRest;
+    std::vector<double> now;
+    for (int k = 0; k < 6000; ++k) {
+        now = split.strokes(heights, 0.05);
+        if (atRest.empty() && split.atRest()) atRest = now;
+    }
+    ASSERT_FALSE(atRest.empty());
+    for (std::size_t i = 0; i < now.size(); ++i) EXPECT_NEAR(atRest[i], now[i], 0.01) << "it went on after that";
+    EXPECT_GT(*std::ranges::max_element(now), 0.1);
+}
+
 } // namespace
 } // namespace lumorph

@@ -405,6 +405,21 @@ TEST(FrequencySplit, TimeThatRunsBackBeginsAnew) {
     EXPECT_EQ(split.strokes(wish, 5.0), anew);
 }
 
+/// A show that stands at one moment while its scene is edited: no time has passed in which a servo could move.
+TEST(FrequencySplit, TheSameTimeAgainMovesNothing) {
+    FrequencySplit split(tablet());
+    const auto flat = [](double, std::span<float>) {};
+    const auto high = [](double, std::span<float> heights) {
+        for (float& height : heights) height += 0.05F;
+    };
+    const std::vector<double> before = split.strokes(flat, 3.0);
+    EXPECT_EQ(split.strokes(high, 3.0), before);
+    const std::vector<double> after = split.strokes(high, 3.1);
+    EXPECT_NE(after, before);
+    for (std::size_t i = 0; i < after.size(); ++i)
+        EXPECT_LE(std::abs(after[i] - before[i]), tablet().actuators()[i].maxVelocity * 0.1 + 1e-9);
+}
+
 TEST(FrequencySplit, HeightsThatAreNoNumbersCountAsRest) {
     FrequencySplit split(tablet(), 0.01);
     const FrequencySplit::Wish nothing = [](double, std::span<float> heights) {

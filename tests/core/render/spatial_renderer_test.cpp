@@ -192,6 +192,92 @@ TEST(SpatialRenderer, FoldsShowNoRimOfWhatLiesHiddenBehindThem) {
     EXPECT_LE(rims, edges / 20);
 }
 
+/// A red device before an eye that sees nothing but a green wall: green is what was looked up in its picture.
+ShowFrame greenForTheEye(const glm::vec3& eye, const std::vector<double>& strokes) {
+    SceneInRoom scene = unlitScene({0.9F, 0.0F, 0.0F}, glm::vec3(0.0F), {overhead()});
+    scene.items.push_back(box({0.0F, 0.2F, 0.0F}, Anchor::world, {0.0F, 1.0F, 0.0F}, 0.3F));
+    scene.eye = eye;
+    return posed(frameOf(scene, strokes));
+}
+
+// Next to the rim of what the eye sees at a grazing angle, its surface drawn on beyond the rim would lie far behind
+// what is there: that must not hide it.
+TEST(SpatialRenderer, WhatHardlyTurnsToTheEyeIsSeenUpToItsRim) {
+    const HeadlessContext context;
+    SpatialRenderer renderer;
+    const CalibratedCamera camera = overhead().camera;
+    int seen = 0;
+    int lost = 0;
+    for (const glm::vec3& eye : {glm::vec3(0.0F, 0.45F, 0.55F), {0.45F, 0.5F, 0.1F}, {-0.5F, 0.35F, 0.3F}})
+        for (const double lift : {0.3, 0.5, 0.7}) {
+            std::vector<double> strokes(bundledTablet()->actuatorCount(), lift);
+            const ShowFrame frame = greenForTheEye(eye, strokes);
+            const RayOracle device = raysAt(physicalDevice(frame));
+            renderer.draw(frame);
+            const Image sent = renderer.readProjector(0);
+            const auto facesEye = [&](const glm::dvec2& pixel, double& facing) {
+                const Place place = placeOf(device, frame.installation->tableSize, camera, pixel);
+                if (place.on != Place::On::device) return false;
+                const glm::dvec3 way = place.point - glm::dvec3(eye);
+                const auto first = device.cast(glm::dvec3(eye), glm::normalize(way));
+                if (!first) return false;
+                facing = std::abs(glm::dot(first->normal, glm::normalize(way)));
+                return first->distance > glm::length(way) - 0.0002;
+            };
+            for (int y = 2; y < camera.size.y - 2; y += 2)
+                for (int x = 2; x < camera.size.x - 2; ++x) {
+                    double facing = 0.0;
+                    if (!facesEye({x, y}, facing) || facing > 0.35 || facing < 0.08) continue;
+                    bool whole = true;
+                    double aside = 0.0;
+                    for (const glm::dvec2& to : {glm::dvec2(0.7, 0.0), {-0.7, 0.0}, {0.0, 0.7}, {0.0, -0.7}})
+                        whole = whole && facesEye(glm::dvec2(x, y) + to, aside) && std::abs(aside - facing) < 0.1;
+                    if (!whole) continue;
+                    ++seen;
+                    lost += sent.at(x, y)[0] > sent.at(x, y)[1] ? 1 : 0;
+                }
+        }
+    std::printf("%d pixels at a grazing angle, %d of them lost\n", seen, lost);
+    EXPECT_GT(seen, 500);
+    EXPECT_LE(lost, seen / 100);
+}
+
+// A hidden place next to a seen one has the light of that one. Were its own slant made up for, it would outshine it.
+TEST(SpatialRenderer, HiddenPlacesBesideSeenOnesAreNoBrighterForBeingSteep) {
+    const HeadlessContext context;
+    SpatialRenderer renderer;
+    const CalibratedCamera camera = overhead().camera;
+    const glm::dvec3 projector = positionOf(camera);
+    const double reference = overhead().referenceDistance;
+    int steep = 0;
+    int outshining = 0;
+    for (const glm::vec3& eye : {glm::vec3(0.0F, 0.45F, 0.55F), {0.45F, 0.3F, 0.1F}, {-0.5F, 0.3F, -0.3F}}) {
+        const ShowFrame frame = greenForTheEye(eye, liftedFlaps());
+        const RayOracle device = raysAt(physicalDevice(frame));
+        renderer.draw(frame);
+        const Image sent = renderer.readProjector(0);
+        for (int y = 2; y < camera.size.y - 2; ++y)
+            for (int x = 2; x < camera.size.x - 2; ++x) {
+                const Image::Pixel& pixel = sent.at(x, y);
+                const Place place = placeOf(device, frame.installation->tableSize, camera, {x, y});
+                if (place.on != Place::On::device || pixel[0] > pixel[1]) continue;
+                const glm::dvec3 way = place.point - glm::dvec3(eye);
+                const auto first = device.cast(glm::dvec3(eye), glm::normalize(way));
+                if (!first || first->distance > glm::length(way) - 0.001) continue;
+                const glm::dvec3 light = projector - place.point;
+                const auto hit = device.cast(projector, -glm::normalize(light));
+                if (!hit || glm::dot(hit->normal, glm::normalize(light)) > 0.5) continue;
+                ++steep;
+                // Green is 1 for the eye; a third more than head on would be made up for a slant.
+                const double value = 1.33 * glm::dot(light, light) / (overhead().peak * reference * reference);
+                outshining += pixel[1] > 255.0 * (1.055 * std::pow(value, 1.0 / 2.4) - 0.055) ? 1 : 0;
+            }
+    }
+    std::printf("%d steep hidden pixels beside seen ones, %d outshine them\n", steep, outshining);
+    EXPECT_GT(steep, 20);
+    EXPECT_LE(outshining, steep / 20);
+}
+
 TEST(SpatialRenderer, ThingsFarFromTheDeviceAreDrawnOnTheTable) {
     const HeadlessContext context;
     SpatialRenderer renderer;

@@ -54,6 +54,25 @@ TEST(SceneFormat, EveryValueComesBackExactly) {
     EXPECT_TRUE(parseProject(projectText(projectWith(Scene{})), "a").scene == Scene{});
 }
 
+TEST(SceneFormat, AMirroredPoseIsNoPose) {
+    Installation room = test::fullInstallation();
+    ASSERT_NO_THROW(checkInstallation(room));
+    room.worldFromDevice[0] = -room.worldFromDevice[0];
+    EXPECT_THROW(checkInstallation(room), InvalidInput);
+    room = test::fullInstallation();
+    ASSERT_FALSE(room.projectors.empty());
+    for (int row = 0; row < 4; ++row) room.projectors[0].camera.cameraFromWorld[row].y *= -1.0;
+    EXPECT_THROW(checkInstallation(room), InvalidInput);
+}
+
+// What may be written may be read: the longest name there is, and not one byte more.
+TEST(SceneFormat, TheLongestTextComesBackToo) {
+    Project project = projectWith(test::fullScene());
+    project.scene.items[0].name.assign(1000, 'n');
+    EXPECT_EQ(parseProject(projectText(project), "a.lumorph").scene.items[0].name, project.scene.items[0].name);
+    EXPECT_THROW((void)parseProject(with("/items/0/name", std::string(1001, 'n')), "a.lumorph"), DataError);
+}
+
 TEST(SceneFormat, AnyFloatComesBackExactly) {
     std::mt19937 random(7);
     std::uniform_real_distribution<float> numbers(-90.0F, 90.0F);

@@ -95,6 +95,22 @@ TEST(DeviceView, HoldsWhatFloatsAboveAndFollowsTheDevice) {
     EXPECT_THROW((void)deviceView(frame, {0.2F, 0.12F, -0.1F}, kSize), InvalidInput);
 }
 
+// A tower beside the device is no reason to look higher over it: the device would be drawn the coarser.
+TEST(DeviceView, IsRaisedOnlyByWhatStandsOverTheDevice) {
+    const glm::vec3 eye(0.0F, 0.45F, 0.55F);
+    const CalibratedCamera plain = deviceView(at(plainScene(), 0.5, 0.0), eye, kSize);
+    const auto withCube = [&](const glm::vec3& place) {
+        SceneInRoom scene = plainScene();
+        scene.items.push_back(floating(0.0F));
+        scene.items.back().motion = {};
+        scene.items.back().position = place;
+        return deviceView(at(scene, 0.5, 0.0), eye, kSize);
+    };
+    EXPECT_EQ(withCube({0.4F, 0.25F, 0.0F}).focal, plain.focal);
+    EXPECT_EQ(withCube({0.0F, 0.25F, -0.4F}).focal, plain.focal);
+    EXPECT_LT(withCube({0.0F, 0.15F, 0.0F}).focal.x, plain.focal.x);
+}
+
 TEST(TableView, HoldsTheTableAsFarAsAnEyeCan) {
     const ShowFrame frame = at(plainScene(), 0.0, 0.0);
     const CalibratedCamera far = tableView(frame, {0.0F, 1.2F, 1.4F}, kSize);

@@ -169,6 +169,20 @@ TEST(HeightGrid, RefusesWhatIsNoGrid) {
     EXPECT_EQ(bits.count(), 1000U);
 }
 
+/// In numbers that are exact: a centre at the very height or floor lies neither below nor above it.
+TEST(HeightGrid, CentresOnAHeightOrOnTheFloorDoNotCount) {
+    const VoxelFrame frame{{0.0F, 0.0F, 0.0F}, 0.25, {3, 8, 3}};
+    BitColumns bits;
+    for (int floor = 0; floor < 8; ++floor)
+        for (int height = 0; height < 8; ++height) {
+            const auto top = static_cast<float>(0.125 + 0.25 * height); // of voxel `height`, its centre
+            const HeightGrid grid = gridOf(4, 4, {-1.0, -1.0}, {2.0, 2.0}, [&](double, double) { return top; });
+            voxelizeHeights(frame, grid, 0.125 + 0.25 * floor, bits);
+            for (int y = 0; y < 8; ++y)
+                ASSERT_EQ(bits.test(1, y, 1), y > floor && y < height) << floor << " to " << height << ": " << y;
+        }
+}
+
 TEST(HeightGrid, TakesFarLessThanAMillisecond) {
     const VoxelFrame frame{{-0.1245F, 0.0F, -0.0885F}, 0.003, {83, 33, 59}};
     const HeightGrid grid = gridOf(210, 150, {-0.1245, -0.0885}, {0.1245, 0.0885}, [](double x, double z) {

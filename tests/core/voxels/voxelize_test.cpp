@@ -111,6 +111,27 @@ TEST(SolidVoxelizer, AMeshThatReachesBeyondTheFrameIsCutAtIt) {
     EXPECT_EQ(bits.count(), 10U * 6U * 6U); // y up to 5.51 voxels: centres 0.5..5.5 minus rounding
 }
 
+/// A mesh thousands of frames large, of which one slanting face crosses the frame.
+TEST(SolidVoxelizer, AMeshFarLargerThanTheFrameKeepsItsPlace) {
+    const VoxelFrame frame{{0.0F, 0.0F, 0.0F}, 0.01, {20, 20, 20}};
+    for (const float half : {50.0F, 300.0F, 2000.0F}) {
+        TriangleMesh slab = test::boxMesh({-half, -half, -half}, {half, 0.1F, half});
+        for (glm::vec3& p : slab.positions)
+            if (p.y > 0.0F) p.y = 0.1F + 0.3F * (p.x - 0.1F) - 0.2F * (p.z - 0.1F);
+        const BitColumns bits = voxelizeSolid(frame, slab);
+        std::size_t wrong = 0;
+        for (int z = 0; z < 20; ++z)
+            for (int y = 0; y < 20; ++y)
+                for (int x = 0; x < 20; ++x) {
+                    const glm::dvec3 c = frame.centre(x, y, z);
+                    const double beneath = 0.1 + 0.3 * (c.x - 0.1) - 0.2 * (c.z - 0.1) - c.y;
+                    const double room = 0.002 + 1e-6 * static_cast<double>(half); // single precision out there
+                    if (std::abs(beneath) > room) wrong += bits.test(x, y, z) != (beneath > 0.0);
+                }
+        EXPECT_EQ(wrong, 0U) << half << " m";
+    }
+}
+
 TEST(SurfaceVoxelizer, AgreesWithCgalBoxByBox) {
     const VoxelFrame frame{{-0.011F, -0.013F, -0.012F}, 0.005, {7, 6, 8}};
     std::mt19937 random(3);
@@ -146,12 +167,15 @@ TEST(WindingVoxelizer, FillsAMeshWithAHoleAlmostLikeTheWholeOne) {
     const BitColumns expected = voxelizeSolid(frame, whole);
     EXPECT_GT(intersectionOverUnion(voxelizeWinding(frame, open), expected), 0.985);
     EXPECT_GT(intersectionOverUnion(voxelizeWinding(frame, whole), expected), 0.999);
+    TriangleMesh insideOut = open;
+    for (glm::uvec3& t : insideOut.triangles) std::swap(t.y, t.z);
+    EXPECT_EQ(voxelizeWinding(frame, insideOut), voxelizeWinding(frame, open)) << "whichever way its triangles turn";
 }
 
 TEST(WindingVoxelizer, TheTreeAgreesWithTheFullSum) {
-    TriangleMesh open = bumpyBall(16, 0.05F, {0, 0, 0});
+    TriangleMesh open = bumpyBall(40, 0.05F, {0, 0, 0});
     open.triangles.resize(open.triangles.size() / 2);
-    const VoxelFrame frame = frameAround(open, 12);
+    const VoxelFrame frame = frameAround(open, 14);
     const BitColumns bits = voxelizeWinding(frame, open);
     std::size_t wrong = 0;
     for (int z = 0; z < frame.dimensions.z; ++z)
@@ -252,6 +276,21 @@ TEST(Nrrd, VoxelsMustBeCubesWhateverSideDiffers) {
             EXPECT_EQ(one.side, 0.0) << one.field << ": " << error.why();
         }
     }
+}
+
+// Columns stand on x and z: a wide flat grid is too large, a high narrow one is not.
+TEST(Nrrd, ColumnsAreCountedOverXAndZ) {
+    const std::string head = "NRRD0004\ntype: uint8\ndimension: 3\nencoding: raw\nsizes: ";
+    const auto why = [&](const std::string& sizes) {
+        try {
+            (void)parseNrrd(bytesOfText(head + sizes + "\n\n1"), "x.nrrd");
+        } catch (const DataError& error) {
+            return error.why();
+        }
+        return std::string("it was accepted");
+    };
+    EXPECT_NE(why("3000 1 3000").find("columns"), std::string::npos) << why("3000 1 3000");
+    EXPECT_NE(why("3000 3000 1").find("bytes where the sizes ask"), std::string::npos) << why("3000 3000 1");
 }
 
 TEST(Nrrd, BrokenFilesAreRefusedByNameWithARemedy) {

@@ -252,6 +252,61 @@ TEST(EyeShadow, AnotherPlaceOfTheLightGivesAnotherShadow) {
     EXPECT_GT(changed, 5'000);
 }
 
+/// Of the flap that is lifted, at rest: a hole there lets light through that falls far from it.
+glm::vec2 middleOfFlap(const EyeStage& stage) {
+    Box box;
+    for (const std::uint32_t vertex : stage.rig->verticesOf(0)) box.include(stage.rig->restMesh().positions[vertex]);
+    return {box.centre().x, box.centre().z};
+}
+
+// The map is kept while nothing casts another shadow. Each of these changes it, and nothing else tells of them: the
+// light looks at the same box from the same side.
+TEST(EyeShadow, KeptShadowsAreDrawnAnewWhateverChangesThem) {
+    struct Case {
+        const char* what;
+        void (*change)(EyeStage& stage);
+        int least; ///< pixels that look otherwise
+    };
+    const Case cases[] = {
+        {"a hole",
+         [](EyeStage& s) {
+             s.scene.device.holes.push_back({middleOfFlap(s), 0.008});
+         },
+         40},
+        {"a wider hole", [](EyeStage& s) { s.scene.device.holes.front().radius = 0.014; }, 40},
+        {"a hole elsewhere", [](EyeStage& s) { s.scene.device.holes.front().centre.x += 0.012F; }, 40},
+        {"no hole", [](EyeStage& s) { s.scene.device.holes.clear(); }, 40},
+        {"a smaller skin", [](EyeStage& s) { s.scene.device.shrink = 0.3; }, 40},
+        {"a plate that turns",
+         [](EyeStage& s) { s.scene.items.back().rotation = glm::angleAxis(1.57F, glm::vec3(0.0F, 1.0F, 0.0F)); }, 40},
+        {"a plate that moves", [](EyeStage& s) { s.scene.items.back().position.x -= 0.02F; }, 40},
+        {"a plate that fades", [](EyeStage& s) { s.scene.items.back().opacity = 0.4F; }, 40},
+        {"a softer light", [](EyeStage& s) { s.sun().softness = 0.25; }, 40},
+        {"a flap that sinks", [](EyeStage& s) { s.strokes[0] = 0.35; }, 40},
+    };
+    EyeStage stage;
+    stage.strokes = kStates[2];
+    SceneItem& plate = stage.addBox({0.02F, 0.05F, -0.01F}, 0.06F);
+    std::get<ShapeItem>(plate.kind).size = {0.07F, 0.002F, 0.025F};
+    plate.rotation = {1.0F, 0.0F, 0.0F, 0.0F};
+    const auto differing = [](const LinearPicture& a, const LinearPicture& b) {
+        int pixels = 0;
+        for (std::size_t i = 0; i < a.pixels.size(); ++i)
+            pixels += std::abs(a.pixels[i].g - b.pixels[i].g) > 0.02F ? 1 : 0;
+        return pixels;
+    };
+    LinearPicture last = stage.draw();
+    for (const Case& one : cases) {
+        one.change(stage);
+        const ShowFrame frame = stage.frame();
+        const LinearPicture now = stage.draw(frame, stage.camera());
+        EyePass fresh;
+        EXPECT_EQ(differing(now, stage.drawBy(fresh, frame, stage.camera())), 0) << one.what;
+        EXPECT_GT(differing(now, last), one.least) << one.what;
+        last = now;
+    }
+}
+
 // What fades takes its shadow along.
 TEST(EyeShadow, FadesWithItsThing) {
     EyeStage stage;

@@ -116,9 +116,12 @@ public:
     }
 
     [[nodiscard]] LinearPicture draw(const ShowFrame& frame, const CalibratedCamera& camera) {
+        return drawBy(pass, frame, camera);
+    }
+    [[nodiscard]] LinearPicture drawBy(EyePass& by, const ShowFrame& frame, const CalibratedCamera& camera) {
         if (!target_ || target_->size() != camera.size) target_.emplace(camera.size, GL_RGBA32F);
-        pass.prepare(frame);
-        pass.draw(frame, camera, target_->framebuffer());
+        by.prepare(frame);
+        by.draw(frame, camera, target_->framebuffer());
         return read();
     }
     [[nodiscard]] LinearPicture draw() { return draw(frame(), camera()); }
