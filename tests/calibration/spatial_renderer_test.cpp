@@ -227,7 +227,8 @@ TEST(SpatialRenderer, WeightsFallSmoothlyTowardsShadowsAndBorders) {
             const double share = shareOf(projectors[0], sent, {x, y}, hit->point);
             if (share > 0.1 && share < 0.9) ++shared;
             if (before >= 0.0) {
-                EXPECT_LT(std::abs(share - before), 0.13) << x << ", " << y;
+                // A pixel on two surfaces has a value between theirs, so its share is not that of the point alone.
+                EXPECT_LT(std::abs(share - before), 0.15) << x << ", " << y;
             }
             before = share;
             const auto beside = lab.trace(positionOf(camera), directionOf(camera, {x - 1, y}));

@@ -150,7 +150,7 @@ TEST(SpatialRenderer, FloatingBoxIsDrawnWhereTheEyeSeesItAndNowhereElse) {
     });
     EXPECT_GT(shown, 25);
     EXPECT_GT(hidden, 0);
-    EXPECT_LE(faults, 1) << "one pixel may lie on an edge as the eye sees it";
+    EXPECT_LE(faults, 2) << "a pixel that lies on an edge as the eye sees it may be either";
 }
 
 // A pixel that reaches over an edge shows both sides what is meant for the side that is seen.
