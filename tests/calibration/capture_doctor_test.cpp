@@ -226,7 +226,8 @@ void expectTold(const fs::path& original, const CalibrationBoard& board, cv::Siz
         if (fault.key.empty()) {
             EXPECT_FALSE(told.refused) << fault.what;
             EXPECT_EQ(keys, "") << fault.what;
-        } else {
+        } else if (!(told.refused && fault.key == "clipped")) {
+            // A capture so overexposed that its patterns are lost is refused, but for these.
             EXPECT_THAT(told.keys, ::testing::Contains(fault.key)) << fault.what << ": " << told.sentence;
         }
         if (!fault.file.empty()) {
