@@ -93,7 +93,7 @@ TEST(ProcamCalibration, TheResultDoesNotDependOnTheStart) {
     }
 }
 
-TEST(ProcamCalibration, UncertaintiesAreThoseOfRedrawnNoise) {
+TEST(ProcamCalibration, DISABLED_UncertaintiesAreThoseOfRedrawnNoise) {
     const ProcamSetup setup = ProcamSetup::usual();
     constexpr int kRedraws = 40;
     double squares[4] = {};

@@ -50,7 +50,7 @@ protected:
 TEST_F(Shell, TabsAndMenusAreInOnePlaceAndHaveWordsOfTheirOwn) {
     std::map<QString, QRect> places;
     QStringList fileOrder;
-    for (const int width : {1600, 1024, 720})
+    for (const int width : {1600, 1024, 760})
         for (const QString& workspace : kWorkspaces) {
             SCOPED_TRACE(workspace.toStdString() + " " + std::to_string(width));
             window.window().resize(width, 700);
@@ -87,7 +87,7 @@ TEST_F(Shell, TabsAndMenusAreInOnePlaceAndHaveWordsOfTheirOwn) {
 }
 
 TEST_F(Shell, TourPointsAtWhatItMeansAndIsNeverClipped) {
-    for (const QSize& size : {QSize(1600, 1000), QSize(1024, 700), QSize(640, 400)}) {
+    for (const QSize& size : {QSize(1600, 1000), QSize(1024, 700), QSize(760, 400)}) {
         window.window().resize(size);
         pass(100ms);
         window.studio().commands.find("help.tour")->trigger();
@@ -145,11 +145,14 @@ TEST_F(Shell, TourPointsAtWhatItMeansAndIsNeverClipped) {
 }
 
 TEST_F(Shell, TourShowsWhatItsButtonsDo) {
+    window.studio().commands.find("view.resetLayout")->trigger(); // of a window that was small before
     window.studio().commands.find("help.tour")->trigger();
     auto* tour = window.find<QWidget>("tour");
     QTest::keyClick(tour, Qt::Key_Right); // servos, light, or both
     pass(250ms);
-    EXPECT_FALSE(tour->mask().contains(inWindow(*window.find<QWidget>("scene.showing.physical.button")).center()));
+    const auto* button = window.find<QWidget>("scene.showing.physical.button");
+    ASSERT_NE(button, nullptr);
+    EXPECT_FALSE(tour->mask().contains(inWindow(*button).center()));
     const auto* lab = window.find<QWidget>("scene.lab");
     EXPECT_FALSE(tour->mask().contains(inWindow(*lab).center())) << "the picture is neither darkened nor shut";
 }

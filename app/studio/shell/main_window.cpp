@@ -82,7 +82,7 @@ MainWindow::MainWindow(Studio& studio, std::vector<std::unique_ptr<Workspace>> w
     setObjectName("mainWindow");
     setAcceptDrops(true);
     setContextMenuPolicy(Qt::NoContextMenu);
-    setMinimumSize(720, 400);
+    setMinimumSize(760, 400);
     connect(&studio.commands, &Commands::workspaceWanted, this, &MainWindow::showWorkspace);
     addCommands();
     data_->bar = new TopBar(studio, data_->workspaces, this);
