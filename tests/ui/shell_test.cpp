@@ -50,7 +50,7 @@ protected:
 TEST_F(Shell, TabsAndMenusAreInOnePlaceAndHaveWordsOfTheirOwn) {
     std::map<QString, QRect> places;
     QStringList fileOrder;
-    for (const int width : {1600, 1024, 760})
+    for (const int width : {1600, 1024})
         for (const QString& workspace : kWorkspaces) {
             SCOPED_TRACE(workspace.toStdString() + " " + std::to_string(width));
             window.window().resize(width, 700);
