@@ -7,11 +7,28 @@ namespace lumorph {
 
 namespace {
 
-constexpr std::array<std::string_view, kCauseCount> kCauseKeys = {
-    "missing_image",   "doubled_image",        "late_frame",         "wrong_order",   "unreadable_image",
-    "image_size",      "black_white_swapped",  "inverse_swapped",    "mirrored",      "rig_moved",
-    "projector_size",  "width_height_swapped", "frontal_views",      "too_few_views", "clipped",
-    "board_not_found", "board_unlit",          "model_does_not_fit", "undetermined"};
+constexpr std::array<std::string_view, kCauseCount> kCauseKeys = {"missing_image",
+                                                                  "doubled_image",
+                                                                  "late_frame",
+                                                                  "wrong_order",
+                                                                  "unreadable_image",
+                                                                  "image_size",
+                                                                  "black_white_swapped",
+                                                                  "inverse_swapped",
+                                                                  "mirrored",
+                                                                  "rig_moved",
+                                                                  "projector_size",
+                                                                  "width_height_swapped",
+                                                                  "frontal_views",
+                                                                  "too_few_views",
+                                                                  "clipped",
+                                                                  "underexposed",
+                                                                  "exposure_drifts",
+                                                                  "board_not_found",
+                                                                  "board_unlit",
+                                                                  "model_does_not_fit",
+                                                                  "undetermined",
+                                                                  "keystone"};
 
 std::string placeOf(const Finding& finding) {
     if (finding.view.empty() && finding.file.empty()) return "capture";

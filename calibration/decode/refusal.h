@@ -24,14 +24,17 @@ enum class Cause {
     frontalViews,       ///< "frontal_views": the board was tilted too little to tell focal lengths
     tooFewViews,        ///< "too_few_views"
     clipped,            ///< "clipped": the board is overexposed
+    underexposed,       ///< "underexposed": light and dark hardly differ
+    exposureDrifts,     ///< "exposure_drifts": the camera's exposure or the lamp changes within a pose
     boardNotFound,      ///< "board_not_found"
     boardUnlit,         ///< "board_unlit": the projector's patterns cannot be read on the board
     modelDoesNotFit,    ///< "model_does_not_fit": no model explains what was seen
     undetermined,       ///< "undetermined": a parameter that the data cannot tell was locked
+    keystone,           ///< "keystone": the projector warps or scales its picture
 };
 
 /// All of them, in the order above.
-inline constexpr int kCauseCount = static_cast<int>(Cause::undetermined) + 1;
+inline constexpr int kCauseCount = static_cast<int>(Cause::keystone) + 1;
 
 [[nodiscard]] std::string_view keyOf(Cause cause);
 
