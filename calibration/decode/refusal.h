@@ -27,6 +27,11 @@ enum class Cause {
     clipped,            ///< "clipped": the board is overexposed
     boardNotFound,      ///< "board_not_found"
     boardUnlit,         ///< "board_unlit": the projector's patterns cannot be read on the board
+    tooFewPoints,       ///< "too_few_points": fewer known points than the unknown needs
+    pointsDegenerate,   ///< "points_degenerate": all known points on a line or in a plane
+    pointSuspicious,    ///< "point_suspicious": a point that the others contradict
+    disconnected,       ///< "disconnected": devices that share no view, by which they could be put into one world
+    mirrorUnknown,      ///< "mirror_unknown": nothing tells where the mirror stands
     modelDoesNotFit,    ///< "model_does_not_fit": no model explains what was seen
     undetermined,       ///< "undetermined": a parameter that the data cannot tell was locked
     keystone,           ///< "keystone": the projector warps or scales its picture
