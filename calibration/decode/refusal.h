@@ -25,6 +25,8 @@ enum class Cause {
     frontalViews,       ///< "frontal_views": the board was tilted too little to tell focal lengths
     tooFewViews,        ///< "too_few_views"
     clipped,            ///< "clipped": the board is overexposed
+    underexposed,       ///< "underexposed": light and dark hardly differ
+    exposureDrifts,     ///< "exposure_drifts": the camera's exposure or the lamp changes within a pose
     boardNotFound,      ///< "board_not_found"
     boardUnlit,         ///< "board_unlit": the projector's patterns cannot be read on the board
     tooFewPoints,       ///< "too_few_points": fewer known points than the unknown needs
