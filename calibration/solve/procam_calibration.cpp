@@ -26,6 +26,7 @@ constexpr double kWorstCorner = 0.02;     // what a distortion term may be uncer
 constexpr int kPointsForChoice = 150;     // of a view
 constexpr int kPointsForSolution = 600;
 constexpr double kLeastSigma = 0.01; // pixels
+constexpr double kMostNoise = 1.0;   // pixels: more than any noise
 constexpr double kFits = 2.0;        // pixels: above, the model does not fit
 constexpr double kPi = std::numbers::pi;
 
@@ -78,7 +79,7 @@ private:
                                   "capture the board in more poses, tilted differently; six are good"});
         bundle_.projectorPoints = false;
         const auto held = [this] { return heldOutCorners(views_, use_, bundle_, state_); };
-        result_.camera.model = chooseModel(bundle_.camera, held, 0.02, 0.3);
+        result_.camera.model = chooseModel(cameraPart(), held, 0.02, 0.3);
         estimateNoise();
     }
 
@@ -90,34 +91,73 @@ private:
         refine(views_, use_, bundle_, state_);
         estimateNoise();
         const auto held = [this] { return heldOutTransfers(views_, use_, bundle_, state_); };
-        result_.projector.model = chooseModel(bundle_.projector, held, 0.3, 0.7);
+        result_.projector.model = chooseModel(projectorPart(), held, 0.3, 0.7);
         bundle_.most = kPointsForSolution;
     }
 
-    /// The simplest model that predicts views it has not seen about as well as the best; `mask` and the state are left
-    /// with it.
+    /// One of the two devices: what is known of it, and what of it may move.
+    struct Part {
+        CalibratedDevice& device;
+        LensMask& mask;
+        Lens& lens;
+        const char* name;
+    };
+    Part cameraPart() { return {result_.camera, bundle_.camera, state_.camera, "camera"}; }
+    Part projectorPart() { return {result_.projector, bundle_.projector, state_.projector, "projector"}; }
+
+    /// The simplest model that predicts views it has not seen about as well as the best; the part's mask and the state
+    /// are left with it. Models with a distortion that the data cannot tell are not tried: they would lead astray.
     template <typename HeldOut>
-    std::string chooseModel(LensMask& mask, const HeldOut& heldOut, double from, double to) {
+    std::string chooseModel(const Part& part, const HeldOut& heldOut, double from, double to) {
         struct Try {
             BundleState state;
             double error = 0.0;
         };
         std::vector<Try> tries;
+        LensMask determined;
+        determined.fill(true);
         for (const LensModel& model : lensModels()) {
             progress_.throwIfCancelled();
             progress_.report(std::lerp(from, to, static_cast<double>(tries.size()) / std::size(lensModels())),
                              "choosing a lens model");
-            mask = model.free;
-            if (tries.empty()) resetHeld();
-            refine(views_, use_, bundle_, state_);
+            for (std::size_t i = 0; i < part.mask.size(); ++i) part.mask[i] = model.free[i] && determined[i];
+            if (tries.empty()) {
+                resetHeld();
+                lockPrincipalPoint(part);
+                determined[kPrincipalX] = part.mask[kPrincipalX];
+                determined[kPrincipalY] = part.mask[kPrincipalY];
+            } else if (!std::isfinite(refine(views_, use_, bundle_, state_)) || isDistortionInDoubt(part))
+                break;
             tries.push_back({state_, rmsOfNumbers(heldOut())});
         }
         const auto best = std::ranges::min_element(tries, {}, &Try::error);
         std::size_t chosen = 0;
         while (tries[chosen].error > kSimpler * best->error) ++chosen;
         state_ = tries[chosen].state;
-        mask = lensModels()[chosen].free;
+        for (std::size_t i = 0; i < part.mask.size(); ++i) part.mask[i] = lensModels()[chosen].free[i] && determined[i];
         return std::string(lensModels()[chosen].name);
+    }
+
+    /// Solves for a pinhole, whose principal point is locked where the data cannot tell it.
+    void lockPrincipalPoint(const Part& part) {
+        do refine(views_, use_, bundle_, state_);
+        while (takeBoundedSigmas(), lockOne(part, {kPrincipalX, kPrincipalY}));
+    }
+
+    bool isDistortionInDoubt(const Part& part) {
+        takeBoundedSigmas();
+        return std::ranges::any_of(std::initializer_list<int>{kK3, kAspect, kP2, kP1, kK2, kK1}, [&part](int i) {
+            return part.mask[static_cast<std::size_t>(i)] && doubtOf(part, i) > 1.0;
+        });
+    }
+
+    /// Uncertainties of a solution whose model may still be too poor: what it leaves is not all noise.
+    void takeBoundedSigmas() {
+        estimateNoise();
+        BundleOptions bounded = bundle_;
+        bounded.cameraSigma = std::min(bounded.cameraSigma, kMostNoise);
+        bounded.projectorSigma = std::min(bounded.projectorSigma, kMostNoise);
+        takeSigmas(covarianceOf(views_, use_, bounded, state_), bounded.projectorPoints);
     }
 
     /// What a model does not have is that of a pinhole.
@@ -210,10 +250,8 @@ private:
             refine(views_, use_, bundle_, state_);
             const auto covariance = covarianceOf(views_, use_, bundle_, state_);
             takeSigmas(covariance, projector);
-            const bool locked =
-                lockOne(result_.camera, bundle_.camera, state_.camera, "camera") ||
-                (projector && lockOne(result_.projector, bundle_.projector, state_.projector, "projector"));
-            if (!locked) return;
+            const auto order = {kK3, kAspect, kP2, kP1, kK2, kK1, kPrincipalX, kPrincipalY};
+            if (!lockOne(cameraPart(), order) && !(projector && lockOne(projectorPart(), order))) return;
         }
     }
 
@@ -229,7 +267,8 @@ private:
     }
 
     /// What a parameter's uncertainty is as a share of what is bearable.
-    static double doubtOf(const CalibratedDevice& device, const Lens& lens, int parameter) {
+    static double doubtOf(const Part& part, int parameter) {
+        const auto& [device, mask, lens, name] = part;
         const double sigma = device.sigma[static_cast<std::size_t>(parameter)];
         const double width = device.size.width;
         const double corner = 0.5 * std::hypot(device.size.width, device.size.height) / lens[kFocalLength];
@@ -254,10 +293,11 @@ private:
         }
     }
 
-    bool lockOne(CalibratedDevice& device, LensMask& mask, Lens& lens, const std::string& name) {
-        for (const int i : {kK3, kAspect, kP2, kP1, kK2, kK1, kPrincipalX, kPrincipalY}) {
+    bool lockOne(const Part& part, std::initializer_list<LensParameter> order) {
+        const auto& [device, mask, lens, name] = part;
+        for (const LensParameter i : order) {
             const auto index = static_cast<std::size_t>(i);
-            if (!mask[index] || doubtOf(device, lens, i) <= 1.0) continue;
+            if (!mask[index] || doubtOf(part, i) <= 1.0) continue;
             mask[index] = false;
             lens[index] = i == kAspect       ? 1.0
                           : i == kPrincipalX ? 0.5 * (device.size.width - 1)
