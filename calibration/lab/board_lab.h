@@ -25,7 +25,7 @@ struct BoardShape {
 struct BoardLabOptions {
     double metresPerUnit = 0.001; ///< of the board
     int samples = 2;              ///< rays a camera pixel, along each side
-    double whiteLevel = 190.0;    ///< grey of white paper that lies on the table under full white; above 255 it clips
+    double whiteLevel = 200.0;    ///< grey of white paper that lies on the table under full white; above 255 it clips
     double ambient = 0.03;        ///< the room's light, as a share of the projector's full white
     double vignetting = 0.2;      ///< of the light, lost in the corners
     double blur = 0.5;            ///< standard deviation, camera pixels
