@@ -2,27 +2,18 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <sstream>
 
 #include <Eigen/Core>
+
+#include "core/base/error.h"
 
 namespace lumorph {
 
 namespace {
 
-constexpr LensMask freeUpTo(int extras) {
-    constexpr int kOrder[] = {kK1, kK2, kP1, kP2, kAspect, kK3};
-    LensMask mask{};
-    mask[kFocalLength] = mask[kPrincipalX] = mask[kPrincipalY] = true;
-    for (int i = 0; i < extras; ++i) mask[static_cast<std::size_t>(kOrder[i])] = true;
-    return mask;
-}
-
-constexpr LensModel kLensModels[] = {{"pinhole", freeUpTo(0)},
-                                     {"k1", freeUpTo(1)},
-                                     {"k1 k2", freeUpTo(2)},
-                                     {"k1 k2 p1 p2", freeUpTo(4)},
-                                     {"k1 k2 p1 p2 aspect", freeUpTo(5)},
-                                     {"k1 k2 p1 p2 aspect k3", freeUpTo(6)}};
+constexpr const char* kTermNames[] = {"f", "aspect", "cx", "cy", "k1", "k2", "p1", "p2", "k3"};
 
 constexpr std::size_t kTestPoints = 60; // of a view, for comparing halves
 constexpr std::size_t kViewsForDistortion = 4;
@@ -113,7 +104,32 @@ std::vector<DeepPixel> deepPixels(const std::vector<ViewObservations>& views, co
 
 } // namespace
 
-std::span<const LensModel> lensModels() { return kLensModels; }
+std::span<const std::vector<LensParameter>> lensTerms() {
+    static const std::vector<LensParameter> kTerms[] = {{kK1}, {kK2}, {kP1, kP2}, {kAspect}, {kK3}};
+    return kTerms;
+}
+
+std::string lensModelName(const LensMask& free) {
+    std::string name;
+    for (const auto& terms : lensTerms())
+        for (const LensParameter term : terms)
+            if (free[static_cast<std::size_t>(term)]) name += (name.empty() ? "" : " ") + std::string(kTermNames[term]);
+    return name.empty() ? "pinhole" : name;
+}
+
+LensMask lensModelOf(const std::string& name) {
+    LensMask free{};
+    free[kFocalLength] = free[kPrincipalX] = free[kPrincipalY] = true;
+    if (name == "pinhole") return free;
+    std::istringstream words(name);
+    for (std::string word; words >> word;) {
+        const auto at = std::ranges::find(kTermNames, word);
+        if (at == std::end(kTermNames))
+            throw InvalidInput("lens model", "'" + word + "' is no term of it", "name some of k1 k2 p1 p2 aspect k3");
+        free[static_cast<std::size_t>(at - std::begin(kTermNames))] = true;
+    }
+    return free;
+}
 
 std::vector<double> heldOutCorners(const std::vector<ViewObservations>& views, const ViewChoice& use,
                                    const BundleOptions& options, const BundleState& state) {

@@ -1,20 +1,20 @@
 #pragma once
 
 #include <span>
-#include <string_view>
+#include <string>
+#include <vector>
 
 #include "calibration/solve/bundle.h"
 
 namespace lumorph {
 
-/// A distortion model: what of a lens is solved for.
-struct LensModel {
-    std::string_view name;
-    LensMask free;
-};
+/// The terms that a lens may have besides focal length and principal point, as they are tried: one after another.
+[[nodiscard]] std::span<const std::vector<LensParameter>> lensTerms();
 
-/// From the pinhole to all of it, each with what the one before has.
-[[nodiscard]] std::span<const LensModel> lensModels();
+/// What of a lens is solved for, in words: "pinhole", "k1 k2".
+[[nodiscard]] std::string lensModelName(const LensMask& free);
+/// The reverse. Throws InvalidInput where a word is none of aspect, k1, k2, p1, p2, k3.
+[[nodiscard]] LensMask lensModelOf(const std::string& name);
 
 /// Corner errors of each view in `use` under a camera solved from the others, the view's own pose alone fitted to it;
 /// root mean square lengths, camera pixels. Needs three views.

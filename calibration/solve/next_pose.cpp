@@ -16,7 +16,7 @@ namespace {
 constexpr int kPointsAcross = 14, kPointsDown = 10; // of a planned view, in the projector
 constexpr double kLitShare = 0.5;                   // of the board that the projector must reach
 constexpr double kMargin = 0.02;                    // of the camera's picture that stays free around the board
-constexpr double kTiltDegrees = 35.0;
+constexpr double kTiltsDegrees[] = {22.0, 45.0};    // more, and a board's points are hard to find
 constexpr double kUnknownCorner = 0.003; // of the width: what a distortion that was left out may do at the corner
 
 /// The grid of camera pixels and depths over which both devices see.
@@ -24,7 +24,7 @@ struct Grid {
     int across, down, deep;
 };
 constexpr Grid kPlaces{5, 4, 3};
-constexpr Grid kMiddles{4, 3, 3};
+constexpr Grid kMiddles{5, 4, 3};
 
 bool isInside(const cv::Point2d& pixel, cv::Size size, double margin) {
     return pixel.x >= margin && pixel.y >= margin && pixel.x <= size.width - 1 - margin &&
@@ -205,10 +205,13 @@ std::optional<NextPose> suggestNextPose(const ProcamCalibration& calibration, co
     if (places.empty()) return std::nullopt;
 
     const Planner planner(calibration, board);
-    const double tilt = kTiltDegrees * std::numbers::pi / 180.0;
-    const double half = tilt / std::numbers::sqrt2;
-    const std::pair<double, double> tilts[] = {{0.0, 0.0},   {tilt, 0.0},   {-tilt, 0.0},  {0.0, tilt},   {0.0, -tilt},
-                                               {half, half}, {-half, half}, {half, -half}, {-half, -half}};
+    std::vector<std::pair<double, double>> tilts = {{0.0, 0.0}};
+    for (const double degrees : kTiltsDegrees)
+        for (int side = 0; side < 8; ++side) {
+            const double tilt = degrees * std::numbers::pi / 180.0;
+            tilts.emplace_back(tilt * std::cos(side * std::numbers::pi / 4.0),
+                               tilt * std::sin(side * std::numbers::pi / 4.0));
+        }
     std::optional<PoseVector> best;
     double least = 0.0;
     const std::vector<Eigen::Vector3d> middles = gridOf(kMiddles, calibration, nearest, farthest);

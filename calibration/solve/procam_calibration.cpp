@@ -10,6 +10,7 @@
 
 #include <opencv2/calib3d.hpp>
 
+#include "calibration/solve/board_shape.h"
 #include "calibration/solve/first_guess.h"
 #include "calibration/solve/held_out.h"
 
@@ -18,7 +19,8 @@ namespace lumorph {
 namespace {
 
 constexpr int kFewestViews = 3;
-constexpr double kSimpler = 1.02;         // a model must be that much better on views left out to be worth its numbers
+constexpr double kWorthALook = 6.0;       // what a term must take off the sum of squares in units of noise: chance is 1
+constexpr double kGain = 2.0;             // likewise, off that of the views left out
 constexpr double kLeastTurnDegrees = 8.0; // between the two boards that are turned most against one another
 constexpr double kWorstFocal = 0.05;      // standard deviation of a focal length, as a share of it
 constexpr double kWorstPrincipal = 0.1;   // of a principal point, as a share of the image's width
@@ -94,6 +96,7 @@ public:
 
     ProcamCalibration camera() {
         solveCamera();
+        if (options_.judge) chooseBoard();
         settle(false);
         report(false);
         return std::move(result_);
@@ -102,6 +105,8 @@ public:
     ProcamCalibration both() {
         solveCamera();
         solveProjector();
+        if (options_.judge) chooseBoard();
+        bundle_.most = kPointsForSolution;
         settle(true);
         report(true);
         return std::move(result_);
@@ -109,29 +114,36 @@ public:
 
 private:
     void solveCamera() {
-        state_ = firstCamera(views_, use_, result_.camera.size, options_.cameraFocal);
+        if (options_.start)
+            takeStart();
+        else
+            state_ = firstCamera(views_, use_, result_.camera.size, options_.cameraFocal);
         requireTilt();
         if (static_cast<int>(views_.size()) < kFewestViews)
             throw CaptureRefused({Cause::tooFewViews, "", "",
                                   std::to_string(views_.size()) + " poses of the board, but three are needed",
                                   "capture the board in more poses, tilted differently; six are good"});
         bundle_.projectorPoints = false;
-        const auto held = [this] { return heldOutCorners(views_, use_, bundle_, state_); };
-        result_.camera.model = chooseModel(cameraPart(), held, 0.02, 0.3);
+        chooseModel(cameraPart(), options_.cameraModel, 0.02, 0.3);
         takeBoundedSigmas();
         if (boundedDoubt(0, state_.camera) > 2.0 * kWorstFocal) throw frontal();
     }
 
     void solveProjector() {
-        addFirstProjector(views_, use_, result_.projector.size, options_.projectorFocal, state_);
+        if (!options_.start) addFirstProjector(views_, use_, result_.projector.size, options_.projectorFocal, state_);
         bundle_.projectorPoints = true;
         bundle_.most = kPointsForChoice;
-        bundle_.projector = lensModels()[1].free;
+        bundle_.projector = lensModelOf("k1");
         refine(views_, use_, bundle_, state_);
         estimateNoise();
-        const auto held = [this] { return heldOutTransfers(views_, use_, bundle_, state_); };
-        result_.projector.model = chooseModel(projectorPart(), held, 0.3, 0.7);
-        bundle_.most = kPointsForSolution;
+        chooseModel(projectorPart(), options_.projectorModel, 0.3, 0.6);
+    }
+
+    void takeStart() {
+        state_ = *options_.start;
+        for (std::size_t v = state_.cameraFromBoard.size(); v < views_.size(); ++v)
+            state_.cameraFromBoard.push_back(poseFromCamera(views_[v], state_.camera));
+        state_.cameraFromBoard.resize(views_.size());
     }
 
     /// One of the two devices: what is known of it, and what of it may move.
@@ -144,37 +156,85 @@ private:
     Part cameraPart() { return {result_.camera, bundle_.camera, state_.camera, "camera"}; }
     Part projectorPart() { return {result_.projector, bundle_.projector, state_.projector, "projector"}; }
 
-    /// The simplest model that predicts views it has not seen about as well as the best; the part's mask and the state
-    /// are left with it. Models with a distortion that the data cannot tell are not tried: they would lead astray.
-    template <typename HeldOut>
-    std::string chooseModel(const Part& part, const HeldOut& heldOut, double from, double to) {
-        struct Try {
-            BundleState state;
-            double error = 0.0;
-        };
-        std::vector<Try> tries;
-        LensMask determined;
-        determined.fill(true);
-        for (const LensModel& model : lensModels()) {
-            progress_.throwIfCancelled();
-            progress_.report(std::lerp(from, to, static_cast<double>(tries.size()) / std::size(lensModels())),
-                             "choosing a lens model");
-            for (std::size_t i = 0; i < part.mask.size(); ++i) part.mask[i] = model.free[i] && determined[i];
-            if (tries.empty()) {
-                resetHeld();
-                lockPrincipalPoint(part);
-                determined[kPrincipalX] = part.mask[kPrincipalX];
-                determined[kPrincipalY] = part.mask[kPrincipalY];
-            } else if (!std::isfinite(refine(views_, use_, bundle_, state_)) || isDistortionInDoubt(part))
-                break;
-            tries.push_back({state_, rmsOfNumbers(heldOut())});
+    /// Lets go of one distortion term after another that predicts views left out better, from the pinhole on; the
+    /// part's mask and the state are left with them. Or of those in `wanted`.
+    void chooseModel(const Part& part, const std::string& wanted, double from, double to) {
+        if (!wanted.empty()) {
+            part.mask = lensModelOf(wanted);
+            resetHeld();
+            refine(views_, use_, bundle_, state_);
+            return;
         }
-        const auto best = std::ranges::min_element(tries, {}, &Try::error);
-        std::size_t chosen = 0;
-        while (tries[chosen].error > kSimpler * best->error) ++chosen;
-        state_ = tries[chosen].state;
-        for (std::size_t i = 0; i < part.mask.size(); ++i) part.mask[i] = lensModels()[chosen].free[i] && determined[i];
-        return std::string(lensModels()[chosen].name);
+        part.mask = lensModelOf("pinhole");
+        resetHeld();
+        lockPrincipalPoint(part);
+        std::optional<double> heldOut;
+        double step = 0.0;
+        for (const std::vector<LensParameter>& terms : lensTerms()) {
+            progress_.report(std::lerp(from, to, step++ / static_cast<double>(lensTerms().size())),
+                             "choosing a lens model");
+            letGo(part.mask, terms, heldOut, [&] { return !isDistortionInDoubt(part); });
+        }
+    }
+
+    /// Lets go of terms of a lens or the board if they lower the error on views left out, for which what they do for
+    /// the views that are in must be more than chance. `heldOut`: that error before, nothing if not known yet. Returns
+    /// whether they stay free.
+    template <typename Mask, typename Term, typename Sound>
+    bool letGo(Mask& mask, const std::vector<Term>& terms, std::optional<double>& heldOut, const Sound& isSound) {
+        progress_.throwIfCancelled();
+        const BundleState before = state_;
+        const BundleOptions noise = bundle_;
+        const auto set = [&](bool free) {
+            for (const Term term : terms) mask[static_cast<std::size_t>(term)] = free;
+        };
+        const double cost = refine(views_, use_, bundle_, state_);
+        const BundleState settled = std::isfinite(cost) ? state_ : before;
+        set(true);
+        const double lower = refine(views_, use_, bundle_, state_);
+        const bool looked = 2.0 * (cost - lower) > kWorthALook * static_cast<double>(terms.size()) && isSound();
+        bundle_ = noise; // which the look may have estimated anew
+        set(false);
+        if (looked) {
+            if (!heldOut) heldOut = heldOutError(settled);
+            set(true);
+            const double error = heldOutError(state_);
+            if (error * error * (1.0 + kGain / independentErrors()) < *heldOut * *heldOut) {
+                heldOut = error;
+                estimateNoise();
+                return true;
+            }
+            set(false);
+        }
+        state_ = settled;
+        return false;
+    }
+
+    /// Of views left out: of their corners, or where there is a projector, of their transfers.
+    [[nodiscard]] double heldOutError(const BundleState& state) const {
+        return rmsOfNumbers(bundle_.projectorPoints ? heldOutTransfers(views_, use_, bundle_, state)
+                                                    : heldOutCorners(views_, use_, bundle_, state));
+    }
+
+    /// How many coordinates of errors are independent.
+    [[nodiscard]] double independentErrors() const {
+        double count = 0.0;
+        for (const ViewObservations& view : views_)
+            count += bundle_.projectorPoints
+                         ? std::min<double>(bundle_.most,
+                                            bundle_.independentPoints * static_cast<double>(view.projector.size()))
+                         : bundle_.independentCorners * static_cast<double>(view.corners.seen.size());
+        return std::max(1.0, 2.0 * count);
+    }
+
+    /// Lets the board bend where that predicts views left out better, and tells how far it is bent.
+    void chooseBoard() {
+        progress_.report(0.65, "looking whether the board is flat");
+        std::optional<double> heldOut;
+        const auto always = [] { return true; };
+        if (letGo(bundle_.board, std::vector{kBendUU, kBendUV, kBendVV}, heldOut, always))
+            letGo(bundle_.board, std::vector{kBendUUU, kBendUUV, kBendUVV, kBendVVV}, heldOut, always);
+        letGo(bundle_.board, std::vector{kBoardStretch}, heldOut, always);
     }
 
     /// Solves for a pinhole, whose principal point is locked where the data cannot tell it.
@@ -357,12 +417,14 @@ private:
         result_.bundle = bundle_;
         takeInformation();
         result_.projectorFromCamera = state_.projectorFromCamera;
-        const std::vector<double> held =
-            projector ? heldOutTransfers(views_, use_, bundle_, state_) : heldOutCorners(views_, use_, bundle_, state_);
+        const std::vector<double> held = !options_.judge ? std::vector<double>()
+                                         : projector     ? heldOutTransfers(views_, use_, bundle_, state_)
+                                                         : heldOutCorners(views_, use_, bundle_, state_);
         for (std::size_t v = 0; v < views_.size(); ++v) {
             const PoseVector& pose = state_.cameraFromBoard[v];
             result_.views.push_back({views_[v].name, rmsOf(cameraErrors(views_[v], state_, pose)),
-                                     projector ? rmsOf(projectorErrors(views_[v], state_, pose)) : 0.0, held[v]});
+                                     projector ? rmsOf(projectorErrors(views_[v], state_, pose)) : 0.0,
+                                     held.empty() ? std::optional<double>() : held[v]});
         }
         result_.camera.rms = rmsOverViews(&ViewQuality::cameraRms);
         result_.projector.rms = rmsOverViews(&ViewQuality::projectorRms);
@@ -372,6 +434,7 @@ private:
         result_.worstView = std::ranges::max_element(result_.views, {}, [](const ViewQuality& view) {
                                 return std::hypot(view.cameraRms, view.projectorRms, view.heldOut.value_or(0.0));
                             })->name;
+        result_.boardBend = bendOf(state_.board, views_);
         judge(projector);
     }
 
@@ -389,6 +452,7 @@ private:
     static void finish(CalibratedDevice& device, const Lens& lens, const LensMask& free) {
         device.lens = lens;
         device.free = free;
+        device.model = lensModelName(free);
     }
 
     [[nodiscard]] double rmsOverViews(double ViewQuality::*error) const {
@@ -406,7 +470,8 @@ private:
             throw CaptureRefused({Cause::modelDoesNotFit, result_.worstView, "",
                                   "no lens explains the capture: " + pixels(result_.rms) + " of error remain",
                                   "look at this pose first; check the board's kind and that it is flat"});
-        if (!projector) return;
+        if (options_.judge) judgeBoard();
+        if (!projector || !options_.judge) return;
         if (views_.size() < 4) {
             result_.warnings.push_back({Cause::tooFewViews, "", "", "with three poses no two halves can be compared",
                                         "capture a fourth pose, better six"});
@@ -422,6 +487,22 @@ private:
                                             ", more than the " + pixels(halves.allowed) +
                                             " that noise allows: the model does not fit",
                                         "check that the board is flat and that nothing moved or refocused"});
+    }
+
+    void judgeBoard() {
+        const BoardMeasurement board = measureBoard(views_, result_);
+        std::ostringstream text;
+        text.precision(2);
+        if (board.isWarped()) {
+            text << std::fixed << "the board is bent by " << board.bend << " +- " << board.bendSigma
+                 << " in its own unit of length";
+            result_.warnings.push_back({Cause::boardWarped, "", "", text.str(), "mount it on glass or a stiff panel"});
+        } else if (board.isStretched()) {
+            text << std::fixed << "the board's squares are " << 100.0 * board.stretch
+                 << " % longer along its rows than along its columns";
+            result_.warnings.push_back(
+                {Cause::squareSize, "", "", text.str(), "print it without scaling to the page and measure both sides"});
+        }
     }
 
     static std::string pixels(double value) {

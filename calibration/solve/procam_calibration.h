@@ -41,6 +41,7 @@ struct ProcamCalibration {
     /// How far apart the solutions of two halves of the views put the same light in the projector, pixels, and how far
     /// their uncertainties allow; nothing with fewer than four views.
     std::optional<double> halvesDiffer, halvesAllowed;
+    double boardBend = 0.0; ///< between the board's highest and lowest point; 0 where a flat one explains all as well
     std::vector<Finding> warnings;
     bool degenerate = false;
     BundleState state;          ///< with the boards' poses, by view
@@ -53,13 +54,20 @@ struct ProcamCalibration {
 };
 
 struct SolveOptions {
-    std::optional<double> cameraFocal;    ///< pixels; to begin with. Nothing: found without
-    std::optional<double> projectorFocal; ///< likewise
+    std::optional<double> cameraFocal = {};    ///< pixels; one more value to begin with
+    std::optional<double> projectorFocal = {}; ///< likewise
+    /// An earlier result to begin with instead; poses of views that it lacks are worked out.
+    std::optional<BundleState> start = {};
+    std::string cameraModel = {}, projectorModel = {}; ///< "k1 k2", "pinhole"; empty: chosen
+    /// Whether the board's shape is tried, views are held out and halves compared. Without, a calibration takes a tenth
+    /// of the time: for many in a row.
+    bool judge = true;
 };
 
-/// Solves for camera, projector and boards together. The distortion model of each device is the simplest whose error on
-/// views left out of the solution is within 2 % of the best. What the data cannot tell is locked and named in the
-/// warnings. Throws CaptureRefused: too few views, boards not tilted, nothing that fits; Cancelled.
+/// Solves for camera, projector and boards together. Distortion terms of each device, and the board's bend, are let go
+/// one after another where they lower the error on views left out of the solution. What the data cannot tell is locked
+/// and named in the warnings. Throws CaptureRefused: too few views, boards not tilted, nothing that fits; Cancelled;
+/// InvalidInput where a model is none.
 [[nodiscard]] ProcamCalibration calibrateProcam(const std::vector<ViewObservations>& views, cv::Size camera,
                                                 cv::Size projector, const SolveOptions& options = {},
                                                 const Progress& progress = {});
