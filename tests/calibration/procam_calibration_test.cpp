@@ -5,7 +5,7 @@
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
-#include <random>
+#include <numbers>
 
 #include <glm/gtc/quaternion.hpp>
 #include <gmock/gmock.h>
@@ -183,6 +183,40 @@ TEST(ProcamCalibration, WhatThePosesCannotTellIsLockedAndNamed) {
     } catch (const CaptureRefused& refused) { // or all of it is told to be worth nothing
         EXPECT_EQ(refused.finding().cause, Cause::frontalViews);
     }
+}
+
+// R26. Set-ups as somebody might put them up, observed with a tenth of a pixel of noise from ten poses.
+TEST(ProcamCalibration, RandomSetUpsAreFoundToAMillimetreAndATwentiethOfADegree) {
+    const int setups = longTests() ? 20 : 6;
+    constexpr double kDegrees = 180.0 / std::numbers::pi;
+    double worstShift = 0.0;
+    double worstTurn = 0.0;
+    double worstRms = 0.0;
+    int within = 0;
+    for (int number = 0; number < setups; ++number) {
+        const auto seed = static_cast<std::uint32_t>(200 + number);
+        const ProcamSetup setup = randomSetup(seed, 10);
+        const ProcamCalibration found = solve(setup, observe(setup, {0.1, 0.1}, seed));
+        const glm::dmat3 truth(setup.projector.cameraFromWorld);
+        const PoseVector& rig = found.projectorFromCamera;
+        const glm::dvec3 axis(rig[0], rig[1], rig[2]);
+        const glm::dmat3 turn(glm::rotate(glm::dmat4(1.0), glm::length(axis), axis / glm::length(axis)));
+        const glm::dvec3 where = -glm::transpose(turn) * glm::dvec3(rig[3], rig[4], rig[5]);
+        const double shift = glm::distance(where, -glm::transpose(truth) * shiftOf(setup));
+        const double angle = kDegrees * glm::angle(glm::quat_cast(glm::transpose(truth) * turn));
+        const double turned = std::min(angle, 360.0 - angle);
+        within += shift <= 1.0 && turned <= 0.05 && found.rms <= 0.2 ? 1 : 0;
+        worstShift = std::max(worstShift, shift);
+        worstTurn = std::max(worstTurn, turned);
+        worstRms = std::max(worstRms, found.rms);
+        EXPECT_FALSE(found.degenerate) << seed;
+    }
+    std::printf("%d of %d set-ups within 1 mm, 0.05 degrees, 0.2 pixels; worst %.2f mm, %.3f degrees, RMS %.3f\n",
+                within, setups, worstShift, worstTurn, worstRms);
+    EXPECT_EQ(within, setups);
+    EXPECT_LE(worstShift, 2.0);
+    EXPECT_LE(worstTurn, 0.1);
+    EXPECT_LE(worstRms, 0.4);
 }
 
 // R26. Bars of a real capture with strong lens shift; what is true of it was found by others (FACTS.md beside it).
