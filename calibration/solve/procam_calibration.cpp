@@ -299,8 +299,7 @@ private:
     void estimateNoise() {
         std::vector<cv::Point2d> corners, points;
         PatchErrors ofCorners(9.0);
-        PatchErrors small(16.0);
-        PatchErrors large(64.0);
+        PatchErrors ofPoints(16.0);
         for (const int v : use_) {
             const auto& view = views_[static_cast<std::size_t>(v)];
             const PoseVector& pose = state_.cameraFromBoard[static_cast<std::size_t>(v)];
@@ -312,14 +311,13 @@ private:
             points.insert(points.end(), inProjector.begin(), inProjector.end());
             std::vector<cv::Point2d> places;
             for (const ProjectorPoint& point : view.projector) places.push_back(point.camera);
-            small.add(places, inProjector, kStray * bundle_.projectorSigma);
-            large.add(places, inProjector, kStray * bundle_.projectorSigma);
+            ofPoints.add(places, inProjector, kStray * bundle_.projectorSigma);
         }
         bundle_.cameraSigma = std::max(kLeastSigma, sigmaOf(corners, cameraFreedom_));
         bundle_.independentCorners = 1.0 / ofCorners.alike();
         if (!bundle_.projectorPoints) return;
         bundle_.projectorSigma = std::max(kLeastSigma, sigmaOf(points, projectorFreedom_));
-        bundle_.independentPoints = 1.0 / std::max(small.alike(), large.alike());
+        bundle_.independentPoints = 1.0 / ofPoints.alike();
     }
 
     /// Solves with what was chosen; locks what the data cannot tell, one after another.

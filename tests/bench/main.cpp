@@ -16,9 +16,10 @@ struct Group {
     void (*run)(const Filter&, Report&);
 };
 
-constexpr Group kGroups[] = {{"voting", benchVoting},   {"voxelize", benchVoxelize}, {"build", benchBuild},
-                             {"loop", benchLoop},       {"live", benchLive},         {"refine", benchRefine},
-                             {"scaling", benchScaling}, {"frame", benchFrame},       {"devices", benchDevices}};
+constexpr Group kGroups[] = {
+    {"voting", benchVoting},   {"voxelize", benchVoxelize},      {"build", benchBuild},     {"loop", benchLoop},
+    {"live", benchLive},       {"refine", benchRefine},          {"scaling", benchScaling}, {"frame", benchFrame},
+    {"devices", benchDevices}, {"calibration", benchCalibration}};
 
 } // namespace
 
