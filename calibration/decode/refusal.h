@@ -25,8 +25,15 @@ enum class Cause {
     frontalViews,       ///< "frontal_views": the board was tilted too little to tell focal lengths
     tooFewViews,        ///< "too_few_views"
     clipped,            ///< "clipped": the board is overexposed
+    underexposed,       ///< "underexposed": light and dark hardly differ
+    exposureDrifts,     ///< "exposure_drifts": the camera's exposure or the lamp changes within a pose
     boardNotFound,      ///< "board_not_found"
     boardUnlit,         ///< "board_unlit": the projector's patterns cannot be read on the board
+    tooFewPoints,       ///< "too_few_points": fewer known points than the unknown needs
+    pointsDegenerate,   ///< "points_degenerate": all known points on a line or in a plane
+    pointSuspicious,    ///< "point_suspicious": a point that the others contradict
+    disconnected,       ///< "disconnected": devices that share no view, by which they could be put into one world
+    mirrorUnknown,      ///< "mirror_unknown": nothing tells where the mirror stands
     modelDoesNotFit,    ///< "model_does_not_fit": no model explains what was seen
     undetermined,       ///< "undetermined": a parameter that the data cannot tell was locked
     keystone,           ///< "keystone": the projector warps or scales its picture

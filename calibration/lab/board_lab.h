@@ -14,7 +14,7 @@
 namespace lumorph {
 
 /// How a board differs from what it is called.
-struct BoardShape {
+struct PrintedBoard {
     /// Height of the sheet, towards the frame's +z, in the board's unit: at (X, Y), -1 to 1 between the outermost
     /// points, across X^2 + twist X Y + down Y^2. 0: flat.
     double across = 0.0, twist = 0.0, down = 0.0;
@@ -32,7 +32,7 @@ struct BoardLabOptions {
     double noise = 0.7;           ///< standard deviation of grey, levels
     double shotNoise = 0.008;     ///< variance that each level of grey adds
     double tremble = 0.03;        ///< standard deviation of where a picture lies, camera pixels
-    BoardShape shape;
+    PrintedBoard shape;
     double cameraWave = 0.0, projectorWave = 0.0; ///< pixels by which a lens bends what no distortion model has
     /// Where a pixel of what is shown lies in the projector's panel, as by a keystone correction.
     cv::Matx33d warp = cv::Matx33d::eye();
