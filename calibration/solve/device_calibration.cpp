@@ -5,7 +5,7 @@
 #include <limits>
 #include <map>
 #include <memory>
-#include <numbers>
+#include <set>
 #include <sstream>
 #include <utility>
 
@@ -29,7 +29,10 @@ constexpr std::size_t kFirstPoints = 500; // of a camera and a projector
 constexpr std::size_t kLastPoints = 3000;
 constexpr double kLeastLightNoise = 0.02; // pixels
 constexpr double kDeviceFits = 1.5;       // pixels
-constexpr double kFitShare = 0.7;         // of the light that falls on the device
+constexpr double kFitShare = 0.9;         // of the light that falls on the device
+constexpr double kRough = 0.008;          // of a projector's width: a guess that is as far off
+constexpr double kHopeless = 0.3;         // likewise: the right one lies far above
+constexpr double kSurely = 0.9;           // explained: no other guess is looked at
 constexpr double kUnlearnt = 0.7;         // of what was known before: such an observation tells nothing
 
 struct ReleaseEmbree {
@@ -89,6 +92,12 @@ private:
     TriangleMesh mesh_;
     std::vector<glm::dvec3> normals_;
     std::unique_ptr<RTCSceneTy, ReleaseEmbree> scene_;
+};
+
+/// One decoded place of a camera's picture.
+struct LightCell {
+    std::size_t shot = 0;
+    ProjectorPoint pixels;
 };
 
 /// Light that differs from that of the first shot: a raised part, in camera and projector.
@@ -165,8 +174,9 @@ public:
             state_.projectors[p].lens = firstLens(projectors[p].size, 1.8);
         if (options.start) state_ = *options.start;
         state_.worldFromBody = {PoseVector{}};
-        noise_.cameras = knownOf(state_.cameras, cameras, 0.1, 0.1);
-        noise_.projectors = knownOf(state_.projectors, projectors, 0.12, 0.7);
+        const double focal = options.start ? 0.3 : 1.5; // how far off it may be, as a share
+        noise_.cameras = knownOf(state_.cameras, cameras, focal, 0.1, 0.1);
+        noise_.projectors = knownOf(state_.projectors, projectors, focal, 0.12, 0.7);
         cameraPlaced_.resize(cameras.size());
         projectorPlaced_.resize(projectors.size());
     }
@@ -189,12 +199,12 @@ private:
 
     /// What is known of any lens: how far principal points lie from the middle, how strongly lenses distort.
     static std::vector<InstallationNoise::Known> knownOf(const std::vector<InstallationState::Device>& devices,
-                                                         const std::vector<NamedDevice>& names, double across,
-                                                         double down) {
+                                                         const std::vector<NamedDevice>& names, double focal,
+                                                         double across, double down) {
         std::vector<InstallationNoise::Known> all;
         for (std::size_t i = 0; i < devices.size(); ++i)
             all.push_back({devices[i].lens,
-                           {0.6 * devices[i].lens[kFocalLength], 0.01, across * names[i].size.width,
+                           {focal * devices[i].lens[kFocalLength], 0.01, across * names[i].size.width,
                             down * names[i].size.height, 0.3, 0.5, 0.004, 0.004, 0.5}});
         return all;
     }
@@ -225,6 +235,9 @@ private:
 
     /// Cells of the picture whose light is another than in the first shot: there, a part has risen.
     void findChanges() {
+        const std::vector<std::vector<LightCell>> none(projectors_.size());
+        all_.assign(cameras_.size(), none);
+        changed_ = all_;
         for (std::size_t c = 0; c < cameras_.size(); ++c)
             for (std::size_t p = 0; p < projectors_.size(); ++p) {
                 std::map<std::pair<long, long>, cv::Point2d> before;
@@ -232,11 +245,13 @@ private:
                     return std::pair(std::lround(2.0 * at.x), std::lround(2.0 * at.y));
                 };
                 for (const ProjectorPoint& point : shots_[0].light[c][p]) before[cell(point.camera)] = point.projector;
-                for (std::size_t s = 1; s < shots_.size(); ++s) {
+                for (std::size_t s = 0; s < shots_.size(); ++s) {
                     std::vector<cv::Point2d> seen, lit;
                     for (const ProjectorPoint& point : shots_[s].light[c][p]) {
+                        all_[c][p].push_back({s, point});
                         const auto was = before.find(cell(point.camera));
                         if (was != before.end() && cv::norm(was->second - point.projector) < kChanged) continue;
+                        changed_[c][p].push_back({s, point});
                         seen.push_back(point.camera);
                         lit.push_back(point.projector);
                     }
@@ -271,6 +286,7 @@ private:
     struct Matches {
         std::vector<cv::Point3d> points;
         std::vector<cv::Point2d> pixels;
+        std::set<std::size_t> shots;
     };
     template <typename Take> [[nodiscard]] Matches matchesWhere(const Take& take) const {
         Matches matches;
@@ -279,6 +295,7 @@ private:
             if (!pixel) continue;
             matches.points.push_back(middleOf(change));
             matches.pixels.push_back(*pixel);
+            matches.shots.insert(change.shot);
         }
         return matches;
     }
@@ -293,42 +310,46 @@ private:
         });
     }
 
-    /// Poses by which the middles of raised parts lie where they were seen, and the rough one that was given.
-    [[nodiscard]] std::vector<PoseVector> candidates(const Matches& matches, const Lens& lens,
-                                                     const std::optional<PoseVector>& given) const {
-        std::vector<PoseVector> poses;
-        if (matches.points.size() >= kFewestChanges) {
+    /// Lenses and poses by which the middles of raised parts lie where they were seen, and the rough one that was
+    /// given.
+    [[nodiscard]] std::vector<InstallationState::Device> candidates(const Matches& matches, const Lens& first,
+                                                                    const PoseVector* given) const {
+        std::vector<InstallationState::Device> found;
+        const std::vector<double> scales = given != nullptr ? std::vector{1.0} : std::vector{1.0, 2.0, 0.5};
+        for (const double scale : scales) {
+            if (matches.shots.size() < kFewestChanges) break;
+            Lens lens = first;
+            lens[kFocalLength] *= scale;
             const cv::Matx33d matrix(lens[kFocalLength], 0, lens[kPrincipalX], 0, lens[kFocalLength] * lens[kAspect],
                                      lens[kPrincipalY], 0, 0, 1);
             cv::Mat turn, way;
             try {
-                if (cv::solvePnP(matches.points, matches.pixels, matrix, cv::noArray(), turn, way, false,
-                                 cv::SOLVEPNP_SQPNP)) {
-                    PoseVector pose;
-                    for (int i = 0; i < 3; ++i) {
-                        pose[static_cast<std::size_t>(i)] = turn.at<double>(i);
-                        pose[static_cast<std::size_t>(3 + i)] = way.at<double>(i);
-                    }
-                    poses.push_back(pose);
-                    poses.push_back(turnedOver(pose, matches.points));
-                }
+                if (!cv::solvePnP(matches.points, matches.pixels, matrix, cv::noArray(), turn, way, false,
+                                  cv::SOLVEPNP_SQPNP))
+                    continue;
             } catch (const cv::Exception&) { // parts that moved where nothing can be told from
+                continue;
             }
+            PoseVector pose;
+            for (int i = 0; i < 3; ++i) {
+                pose[static_cast<std::size_t>(i)] = turn.at<double>(i);
+                pose[static_cast<std::size_t>(3 + i)] = way.at<double>(i);
+            }
+            found.push_back({lens, pose});
+            found.push_back({lens, turnedOver(pose, matches.points)});
         }
-        if (given) poses.push_back(*given);
-        std::erase_if(poses, [](const PoseVector& pose) { return !(placeOf(pose).y > 0.0); }); // from below: no device
-        return poses;
+        if (given != nullptr) found.push_back({first, *given});
+        std::erase_if(found, [](const auto& device) { return !(placeOf(device.fromWorld).y > 0.0); }); // from below
+        return found;
     }
 
-    [[nodiscard]] std::vector<PoseVector> cameraCandidates(std::size_t c) const {
-        const std::optional<PoseVector> given =
-            options_.start ? std::optional(options_.start->cameras[c].fromWorld) : std::nullopt;
-        return candidates(matchesOfCamera(c), state_.cameras[c].lens, given);
+    [[nodiscard]] std::vector<InstallationState::Device> cameraCandidates(std::size_t c) const {
+        return candidates(matchesOfCamera(c), state_.cameras[c].lens,
+                          options_.start ? &options_.start->cameras[c].fromWorld : nullptr);
     }
-    [[nodiscard]] std::vector<PoseVector> projectorCandidates(std::size_t p) const {
-        const std::optional<PoseVector> given =
-            options_.start ? std::optional(options_.start->projectors[p].fromWorld) : std::nullopt;
-        return candidates(matchesOfProjector(p), state_.projectors[p].lens, given);
+    [[nodiscard]] std::vector<InstallationState::Device> projectorCandidates(std::size_t p) const {
+        return candidates(matchesOfProjector(p), state_.projectors[p].lens,
+                          options_.start ? &options_.start->projectors[p].fromWorld : nullptr);
     }
 
     [[nodiscard]] std::size_t lightCount(std::size_t c, std::size_t p) const {
@@ -358,21 +379,21 @@ private:
         const InstallationState before = state_;
         double best = -1.0;
         InstallationState found;
-        for (const PoseVector& ofCamera : cameraCandidates(c))
-            for (const PoseVector& ofProjector : projectorCandidates(p)) {
+        for (const auto& ofCamera : cameraCandidates(c))
+            for (const auto& ofProjector : projectorCandidates(p)) {
+                if (best > kSurely) break;
                 progress_.throwIfCancelled();
                 state_ = before;
-                state_.cameras[c].fromWorld = ofCamera;
-                state_.projectors[p].fromWorld = ofProjector;
-                cameraPlaced_[c] = projectorPlaced_[p] = true;
+                state_.cameras[c] = ofCamera;
+                state_.projectors[p] = ofProjector;
                 approach(c, p, true, true);
                 const double explained = explainedShare(c, p);
-                cameraPlaced_[c] = projectorPlaced_[p] = false;
                 if (!(explained > best)) continue;
                 best = explained;
                 found = state_;
             }
         if (best < 0.0) throw noGuess(cameras_[c].name + " or " + projectors_[p].name);
+        if (best < kHopeless) throw misfit(std::numeric_limits<double>::infinity());
         state_ = found;
         cameraPlaced_[c] = projectorPlaced_[p] = true;
         progress_.report(0.4, "placing cameras and projectors");
@@ -390,23 +411,23 @@ private:
                 }
         if (most == 0) return false;
         const bool isCamera = !cameraPlaced_[c];
-        PoseVector& pose = isCamera ? state_.cameras[c].fromWorld : state_.projectors[p].fromWorld;
         const InstallationState before = state_;
         double best = -1.0;
         InstallationState found;
-        const auto poses = isCamera ? cameraCandidates(c) : projectorCandidates(p);
-        cameraPlaced_[c] = projectorPlaced_[p] = true;
-        for (const PoseVector& candidate : poses) {
+        for (const auto& candidate : isCamera ? cameraCandidates(c) : projectorCandidates(p)) {
+            if (best > kSurely) break;
             progress_.throwIfCancelled();
             state_ = before;
-            pose = candidate;
+            (isCamera ? state_.cameras[c] : state_.projectors[p]) = candidate;
             approach(c, p, isCamera, !isCamera);
             const double explained = explainedShare(c, p);
             if (!(explained > best)) continue;
             best = explained;
             found = state_;
         }
+        cameraPlaced_[c] = projectorPlaced_[p] = true;
         if (best < 0.0) throw noGuess(isCamera ? cameras_[c].name : projectors_[p].name);
+        if (best < kHopeless) throw misfit(std::numeric_limits<double>::infinity());
         state_ = found;
         return true;
     }
@@ -425,47 +446,54 @@ private:
 
     // ---- refinement ----
 
-    /// Light of a camera and a projector where the camera's rays meet the device, spread evenly over the shots.
-    void associate(std::size_t c, std::size_t p, std::size_t most, InstallationObservations& into,
-                   std::size_t* asked = nullptr) const {
+    /// Some of these cells, spread evenly over all, where the camera's ray meets the device. Returns how many were
+    /// looked at.
+    std::size_t associate(std::size_t c, std::size_t p, const std::vector<LightCell>& cells, std::size_t most,
+                          InstallationObservations& into) const {
         const auto& camera = state_.cameras[c];
         const glm::dvec3 from = placeOf(camera.fromWorld);
         const double back[3] = {-camera.fromWorld[0], -camera.fromWorld[1], -camera.fromWorld[2]};
-        const double step = std::max(1.0, static_cast<double>(lightCount(c, p)) / static_cast<double>(most));
-        double next = 0.0, index = 0.0;
-        for (std::size_t s = 0; s < shots_.size(); ++s)
-            for (const ProjectorPoint& pixels : shots_[s].light[c][p]) {
-                if (index++ < next) continue;
-                next += step;
-                if (asked != nullptr) ++*asked;
-                const auto direction = directionOfPixel(camera.lens, pixels.camera.x, pixels.camera.y);
-                const double way[3] = {direction[0], direction[1], 1.0};
-                double ray[3];
-                ceres::AngleAxisRotatePoint(back, way, ray);
-                const glm::dvec3 along = glm::normalize(glm::dvec3(ray[0], ray[1], ray[2]));
-                const int face = surfaces_[s].hit(from, along);
-                if (face < 0) continue;
-                const glm::dvec3 normal = glm::normalize(surfaces_[s].normal(static_cast<std::size_t>(face)));
-                if (!(-glm::dot(normal, along) > kGrazing)) continue;
-                SeenLight seen;
-                seen.camera = static_cast<int>(c);
-                seen.projector = static_cast<int>(p);
-                seen.normal = {normal.x, normal.y, normal.z};
-                seen.distance = glm::dot(normal, surfaces_[s].middle(static_cast<std::size_t>(face)));
-                seen.pixels = pixels;
-                into.lights.push_back(seen);
-            }
+        const std::size_t used = std::min(cells.size(), most);
+        for (std::size_t i = 0; i < used; ++i) {
+            const LightCell& cell = cells[i * cells.size() / used];
+            const DeviceSurface& surface = surfaces_[cell.shot];
+            const auto direction = directionOfPixel(camera.lens, cell.pixels.camera.x, cell.pixels.camera.y);
+            const double way[3] = {direction[0], direction[1], 1.0};
+            double ray[3];
+            ceres::AngleAxisRotatePoint(back, way, ray);
+            const glm::dvec3 along = glm::normalize(glm::dvec3(ray[0], ray[1], ray[2]));
+            if (!std::isfinite(along.x + along.y + along.z + from.x + from.y + from.z)) continue;
+            const int hit = surface.hit(from, along);
+            if (hit < 0) continue;
+            const auto face = static_cast<std::size_t>(hit);
+            const glm::dvec3 normal = glm::normalize(surface.normal(face));
+            if (!(-glm::dot(normal, along) > kGrazing)) continue;
+            SeenLight seen;
+            seen.camera = static_cast<int>(c);
+            seen.projector = static_cast<int>(p);
+            seen.normal = {normal.x, normal.y, normal.z};
+            seen.distance = glm::dot(normal, surface.middle(face));
+            seen.pixels = cell.pixels;
+            if (errorOf(seen, state_)) into.lights.push_back(seen);
+        }
+        return used;
     }
 
-    /// How much of the light is explained: a good guess has the device where light is, and the light where it belongs.
+    /// How well a guess explains the light: what has changed must lie on the device and be lit by the right pixels, and
+    /// so must whatever else lies on the device. 1 is perfect.
     [[nodiscard]] double explainedShare(std::size_t c, std::size_t p) const {
-        InstallationObservations seen;
-        std::size_t asked = 0;
-        associate(c, p, kFirstPoints, seen, &asked);
-        double sum = 0.0;
-        for (const SeenLight& light : seen.lights)
-            if (const auto error = errorOf(light, state_)) sum += std::max(0.0, 1.0 - cv::norm(*error) / kExplained);
-        return asked == 0 ? 0.0 : sum / static_cast<double>(asked);
+        const auto explained = [this](const InstallationObservations& seen) {
+            double sum = 0.0;
+            for (const SeenLight& light : seen.lights)
+                if (const auto error = errorOf(light, state_))
+                    sum += std::max(0.0, 1.0 - cv::norm(*error) / kExplained);
+            return sum;
+        };
+        InstallationObservations moved, any;
+        const std::size_t asked = associate(c, p, changed_[c][p], kFirstPoints, moved);
+        (void)associate(c, p, all_[c][p], kFirstPoints, any);
+        if (asked == 0 || any.lights.empty()) return 0.0;
+        return explained(moved) / static_cast<double>(asked) * explained(any) / static_cast<double>(any.lights.size());
     }
 
     static LensMask maskOf(bool principal, bool distortion) {
@@ -481,13 +509,16 @@ private:
         InstallationNoise noise = noise_;
         noise.robust = 1.0;
         for (double sigma = 0.03 * projectors_[p].size.width; sigma > 0.5; sigma *= 0.6) {
+            // What has changed is surely on the device; the rest may be the table, and has its say once that fits.
+            const bool rough = sigma > kRough * projectors_[p].size.width;
             InstallationObservations seen;
-            associate(c, p, kFirstPoints, seen);
+            (void)associate(c, p, changed_[c][p], kFirstPoints, seen);
+            if (!rough) (void)associate(c, p, all_[c][p], kFirstPoints, seen);
             if (seen.lights.size() < 30) return;
             InstallationFree free;
             free.cameras.resize(cameras_.size());
             free.projectors.resize(projectors_.size());
-            const LensMask mask = maskOf(sigma < 0.008 * projectors_[p].size.width, false);
+            const LensMask mask = maskOf(!rough, false);
             if (moveCamera) free.cameras[c] = {mask, true};
             if (moveProjector) free.projectors[p] = {mask, true};
             noise.projector = sigma;
@@ -508,8 +539,7 @@ private:
 
     void gatherAll(std::size_t most, InstallationObservations& seen) const {
         for (std::size_t c = 0; c < cameras_.size(); ++c)
-            for (std::size_t p = 0; p < projectors_.size(); ++p)
-                if (lightCount(c, p) > 0) associate(c, p, most, seen);
+            for (std::size_t p = 0; p < projectors_.size(); ++p) (void)associate(c, p, all_[c][p], most, seen);
     }
 
     void refineAll() {
@@ -592,7 +622,8 @@ private:
     const DeviceSolveOptions& options_;
     const Progress& progress_;
     std::unique_ptr<RTCDeviceTy, ReleaseEmbree> embree_;
-    std::vector<DeviceSurface> surfaces_; ///< one a shot
+    std::vector<DeviceSurface> surfaces_;                            ///< one a shot
+    std::vector<std::vector<std::vector<LightCell>>> all_, changed_; ///< by camera and projector
     std::vector<ChangedLight> changes_;
     std::vector<bool> cameraPlaced_, projectorPlaced_;
     InstallationNoise noise_;

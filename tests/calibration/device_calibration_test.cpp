@@ -14,6 +14,7 @@
 #include "core/base/resources.h"
 #include "core/rig/rig_file.h"
 #include "tests/support/long_tests.h"
+#include "tests/support/procam_capture.h"
 
 namespace lumorph::test {
 namespace {
@@ -168,6 +169,116 @@ TEST(DeviceCalibration, TwoProjectorsAndTwoCamerasOnTheDeviceAloneWithinHalfAPix
         for (std::size_t c = 0; c < 2; ++c)
             EXPECT_NEAR(result.cameras[c].lens[kFocalLength], room.cameras[c].focal.x, 0.02 * room.cameras[c].focal.x);
     }
+}
+
+TEST(DeviceCalibration, ARoughStartThatIsWrongByTenCentimetresDegreesAndPercentLeadsToTheSame) {
+    const std::uint32_t rooms = longTests() ? 10 : 1;
+    for (std::uint32_t seed = 21; seed < 21 + rooms; ++seed) {
+        const DeviceRoom room(seed);
+        DeviceSolveOptions options;
+        options.start = room.roughStart(seed);
+        const DeviceCalibration result =
+            calibrateOnDevice(deviceRig(), room.capture(6, 0.15, seed), room.cameraNames, room.projectorNames, options);
+        std::printf("room %u from a rough start: %.3f and %.3f projector pixels\n", seed,
+                    room.projectorError(result, 0), room.projectorError(result, 1));
+        EXPECT_LT(room.projectorError(result, 0), 0.5);
+        EXPECT_LT(room.projectorError(result, 1), 0.5);
+    }
+}
+
+/// Grey pictures of Gray code on the tablet, decoded: what a capture goes through.
+std::vector<DeviceShot> photographed(const DeviceRoom& room, std::uint32_t seed) {
+    std::mt19937 random(seed);
+    std::normal_distribution<double> grain(0.0, 1.0); // grey levels
+    std::vector<DeviceShot> shots;
+    for (const auto& strokes : DeviceRoom::states()) {
+        DeviceShot shot{"state_" + std::to_string(shots.size()), strokes, {}};
+        shot.light.assign(2, std::vector<std::vector<ProjectorPoint>>(2));
+        for (std::size_t p = 0; p < 2; ++p) {
+            LabWorld world;
+            world.surfaces = {{deformed(deviceRig(), strokes), glm::vec3(0.8F)}};
+            world.ambient = glm::vec3(0.05F);
+            InstalledProjector projector;
+            projector.camera = room.projectors[p];
+            projector.peak = 1.0;
+            projector.gamma = 1.0;
+            world.projectors = {{projector, Image(projector.camera.size)}};
+            Lab lab(std::move(world));
+            for (std::size_t c = 0; c < 2; ++c) {
+                const LabSight sight = lab.look(room.cameras[c], 3);
+                std::vector<cv::Mat> images;
+                for (const Light& light : grayCodeLights(projector.camera.size)) {
+                    Image pattern(projector.camera.size);
+                    for (int y = 0; y < pattern.size().y; ++y)
+                        for (int x = 0; x < pattern.size().x; ++x) {
+                            const auto value = static_cast<std::uint8_t>(255.0 * light(x, y));
+                            pattern.at(x, y) = {value, value, value, 255};
+                        }
+                    lab.show(0, pattern);
+                    const std::vector<glm::vec3> radiance = lab.radiance(sight);
+                    cv::Mat& grey = images.emplace_back(room.cameras[c].size.y, room.cameras[c].size.x, CV_8UC1);
+                    for (std::size_t i = 0; i < radiance.size(); ++i)
+                        grey.data[i] = cv::saturate_cast<std::uint8_t>(200.0 * radiance[i].g + grain(random));
+                }
+                const CaptureOrder order = parsePattern("graycode", {projector.camera.size.x, projector.camera.size.y});
+                shot.light[c][p] = lightOf(decodeView(images, order), 20000);
+            }
+        }
+        shots.push_back(std::move(shot));
+    }
+    return shots;
+}
+
+TEST(DeviceCalibration, PicturesOfGrayCodeOnTheDeviceSuffice) {
+    if (!longTests()) GTEST_SKIP() << "1,200 pictures: LUMORPH_LONG_TESTS=1 takes them";
+    DeviceRoom room(41);
+    for (CalibratedCamera& projector : room.projectors) { // a camera pixel must resolve the stripes
+        projector.size /= 2;
+        projector.focal *= 0.5;
+        projector.principal *= 0.5;
+    }
+    for (std::size_t p = 0; p < 2; ++p)
+        room.projectorNames[p].size = {room.projectors[p].size.x, room.projectors[p].size.y};
+    const DeviceCalibration result =
+        calibrateOnDevice(deviceRig(), photographed(room, 5), room.cameraNames, room.projectorNames);
+    std::printf("from pictures: %.3f and %.3f projector pixels; noise found %.3f, %.0f %% fits\n",
+                room.projectorError(result, 0), room.projectorError(result, 1), result.rms, 100.0 * result.onDevice);
+    EXPECT_LT(room.projectorError(result, 0), 0.5);
+    EXPECT_LT(room.projectorError(result, 1), 0.5);
+}
+
+Finding deviceRefusal(const DeviceRoom& room, const std::vector<DeviceShot>& shots, const Rig& rig = deviceRig()) {
+    try {
+        (void)calibrateOnDevice(rig, shots, room.cameraNames, room.projectorNames);
+    } catch (const CaptureRefused& refused) {
+        return refused.finding();
+    }
+    ADD_FAILURE() << "it was accepted";
+    return {Cause::unreadableImage, "", "", "", ""};
+}
+
+TEST(DeviceCalibration, WhatTellsTooLittleOrContradictsTheRigIsRefused) {
+    const DeviceRoom room(3);
+    const auto shots = room.capture(8, 0.15, 3);
+    const std::vector<DeviceShot> rest(shots.begin(), shots.begin() + 1);
+    EXPECT_EQ(deviceRefusal(room, rest).cause, Cause::tooFewViews);
+    const std::vector<DeviceShot> three(shots.begin(), shots.begin() + 3); // two flaps place nothing
+    EXPECT_EQ(deviceRefusal(room, three).cause, Cause::tooFewViews);
+    auto apart = shots; // each camera sees a projector of its own
+    for (DeviceShot& shot : apart) shot.light[0][1] = shot.light[1][0] = {};
+    const Finding finding = deviceRefusal(room, apart);
+    EXPECT_EQ(finding.cause, Cause::disconnected);
+    EXPECT_THAT(finding.why, ::testing::AnyOf(::testing::HasSubstr("camera 1, projector 1 share"),
+                                              ::testing::HasSubstr("camera 2, projector 2 share")));
+    auto dark = shots;
+    for (DeviceShot& shot : dark) shot.light.assign(2, std::vector<std::vector<ProjectorPoint>>(2));
+    EXPECT_EQ(deviceRefusal(room, dark).cause, Cause::boardUnlit);
+    auto exchanged = shots; // flaps that are not those they are said to be
+    for (DeviceShot& shot : exchanged) std::ranges::reverse(shot.strokes);
+    EXPECT_EQ(deviceRefusal(room, exchanged).cause, Cause::modelDoesNotFit);
+    auto broken = shots;
+    broken[1].strokes.pop_back();
+    EXPECT_THROW((void)calibrateOnDevice(deviceRig(), broken, room.cameraNames, room.projectorNames), InvalidInput);
 }
 
 } // namespace
