@@ -19,6 +19,7 @@ void addDemoCommand(CLI::App& app);
 void addRecordingCommands(CLI::App& app);
 void addRenderCommand(CLI::App& app, Session& session);
 void addCalibrateCommands(CLI::App& app, Session& session);
+void addLabCommands(CLI::App& app, Session& session);
 /// Nor are these: devices and trackers are reached through Qt.
 void addDeviceCommands(CLI::App& app, Session& session);
 void addTrackCommand(CLI::App& app, Session& session);

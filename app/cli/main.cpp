@@ -53,6 +53,7 @@ int main(int argc, char** argv) {
     lumorph::cli::addRecordingCommands(app);
     lumorph::cli::addRenderCommand(app, session);
     lumorph::cli::addCalibrateCommands(app, session);
+    lumorph::cli::addLabCommands(app, session);
 #endif
 #ifdef LUMORPH_WITH_DEVICES
     lumorph::cli::addDeviceCommands(app, session);

@@ -80,6 +80,7 @@ std::vector<CapturedView> viewsIn(const std::filesystem::path& folder) {
     for (const std::filesystem::path& entry : entriesOf(folder)) {
         std::error_code ignored;
         if (!std::filesystem::is_directory(entry, ignored)) continue;
+        if (entry.filename().string().starts_with('.')) continue; // one that is being written
         const auto inside = entriesOf(entry);
         if (std::ranges::any_of(inside, isImageName)) views.push_back({entry.filename().string(), imagesIn(entry)});
     }

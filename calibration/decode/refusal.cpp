@@ -1,5 +1,6 @@
 #include "calibration/decode/refusal.h"
 
+#include <algorithm>
 #include <array>
 #include <utility>
 
@@ -8,11 +9,17 @@ namespace lumorph {
 namespace {
 
 constexpr std::array<std::string_view, kCauseCount> kCauseKeys = {
-    "missing_image",   "doubled_image",        "late_frame",         "wrong_order",       "unreadable_image",
-    "image_size",      "black_white_swapped",  "inverse_swapped",    "mirrored",          "rig_moved",
-    "projector_size",  "width_height_swapped", "frontal_views",      "too_few_views",     "clipped",
-    "board_not_found", "board_unlit",          "too_few_points",     "points_degenerate", "point_suspicious",
-    "disconnected",    "mirror_unknown",       "model_does_not_fit", "undetermined"};
+    "missing_image",       "doubled_image",    "late_frame",
+    "wrong_order",         "unreadable_image", "image_size",
+    "black_white_swapped", "inverse_swapped",  "mirrored",
+    "rig_moved",           "projector_size",   "width_height_swapped",
+    "frontal_views",       "too_few_views",    "clipped",
+    "underexposed",        "exposure_drifts",  "board_not_found",
+    "board_unlit",         "too_few_points",   "points_degenerate",
+    "point_suspicious",    "disconnected",     "mirror_unknown",
+    "model_does_not_fit",  "undetermined",     "keystone",
+    "board_warped",        "square_size",      "strange_lens",
+    "projector_gamma",     "camera_refocused"};
 
 std::string placeOf(const Finding& finding) {
     if (finding.view.empty() && finding.file.empty()) return "capture";
@@ -23,6 +30,12 @@ std::string placeOf(const Finding& finding) {
 } // namespace
 
 std::string_view keyOf(Cause cause) { return kCauseKeys.at(static_cast<std::size_t>(cause)); }
+
+std::optional<Cause> causeOf(std::string_view key) {
+    const auto found = std::ranges::find(kCauseKeys, key);
+    if (found == kCauseKeys.end()) return std::nullopt;
+    return static_cast<Cause>(found - kCauseKeys.begin());
+}
 
 std::string sentenceOf(const Finding& finding) { return placeOf(finding) + ": " + finding.why + "; " + finding.remedy; }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -24,6 +25,8 @@ enum class Cause {
     frontalViews,       ///< "frontal_views": the board was tilted too little to tell focal lengths
     tooFewViews,        ///< "too_few_views"
     clipped,            ///< "clipped": the board is overexposed
+    underexposed,       ///< "underexposed": light and dark hardly differ
+    exposureDrifts,     ///< "exposure_drifts": the camera's exposure or the lamp changes within a pose
     boardNotFound,      ///< "board_not_found"
     boardUnlit,         ///< "board_unlit": the projector's patterns cannot be read on the board
     tooFewPoints,       ///< "too_few_points": fewer known points than the unknown needs
@@ -33,12 +36,20 @@ enum class Cause {
     mirrorUnknown,      ///< "mirror_unknown": nothing tells where the mirror stands
     modelDoesNotFit,    ///< "model_does_not_fit": no model explains what was seen
     undetermined,       ///< "undetermined": a parameter that the data cannot tell was locked
+    keystone,           ///< "keystone": the projector warps or scales its picture
+    boardWarped,        ///< "board_warped": the board is not flat
+    squareSize,         ///< "square_size": the board's squares are not as said; not square
+    strangeLens,        ///< "strange_lens": a lens bends light as no pinhole with distortion does
+    projectorGamma,     ///< "projector_gamma": the projector's gamma bends the phases
+    cameraRefocused,    ///< "camera_refocused": the camera's focal length changed between poses
 };
 
 /// All of them, in the order above.
-inline constexpr int kCauseCount = static_cast<int>(Cause::undetermined) + 1;
+inline constexpr int kCauseCount = static_cast<int>(Cause::cameraRefocused) + 1;
 
 [[nodiscard]] std::string_view keyOf(Cause cause);
+/// The cause of a key; empty where there is none.
+[[nodiscard]] std::optional<Cause> causeOf(std::string_view key);
 
 /// What was found to be wrong, where, and what to do.
 struct Finding {

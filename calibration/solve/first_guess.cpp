@@ -159,7 +159,7 @@ BundleState firstCamera(const std::vector<ViewObservations>& views, const ViewCh
                         const std::optional<double>& focal) {
     std::vector<double> starts = {0.6, 1.2, 2.4, 4.8};
     for (double& start : starts) start *= std::max(camera.width, camera.height);
-    if (focal) starts = {*focal};
+    if (focal) starts.push_back(*focal); // one more: a guess that is off must not cost the others
     BundleOptions options;
     options.camera = firstMask();
     options.projectorPoints = false;
@@ -167,6 +167,7 @@ BundleState firstCamera(const std::vector<ViewObservations>& views, const ViewCh
     BestStart best;
     for (const double start : starts) {
         BundleState state;
+        state.board = flatBoard(views);
         state.camera = plainLens(start, 0.5 * (camera.width - 1), 0.5 * (camera.height - 1));
         state.cameraFromBoard.resize(views.size());
         for (const int v : use)
@@ -195,9 +196,9 @@ void addFirstProjector(const std::vector<ViewObservations>& views, const ViewCho
         best.offer(start, cost);
     };
     BundleState linear = state;
-    if (!focal && decompose(projectionOf(lit), lit, linear)) tryStart(linear);
+    if (decompose(projectionOf(lit), lit, linear)) tryStart(linear);
     std::vector<double> focals = {1.0 * projector.width, 2.0 * projector.width};
-    if (focal) focals = {*focal};
+    if (focal) focals.push_back(*focal);
     for (const double start : focals)
         for (const double shift : {0.5, 1.1, -0.1}) { // where the principal point lies, of the height
             BundleState guess = state;

@@ -6,6 +6,7 @@
 #include <QCoreApplication>
 #include <QElapsedTimer>
 #include <QEventLoop>
+#include <QTimer>
 
 namespace lumorph::test {
 
@@ -23,9 +24,12 @@ inline void needApplication() {
                                      std::chrono::milliseconds patience = std::chrono::seconds(60)) {
     QElapsedTimer since;
     since.start();
+    // processEvents with a time limit does not wait, it turns round and round: a core for each waiting test.
+    QTimer wake;
+    wake.start(5);
     while (!holds()) {
         if (since.elapsed() > patience.count()) return false;
-        QCoreApplication::processEvents(QEventLoop::AllEvents | QEventLoop::WaitForMoreEvents, 10);
+        QCoreApplication::processEvents(QEventLoop::AllEvents | QEventLoop::WaitForMoreEvents);
     }
     return true;
 }

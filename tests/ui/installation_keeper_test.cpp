@@ -129,6 +129,47 @@ TEST_F(InstallationKeeperTest, TheProjectsIsTakenByAStepOfUndo) {
     EXPECT_EQ(room(), measuredRoom());
 }
 
+TEST_F(InstallationKeeperTest, MeasurementIsAVersionThatIsTakenBackAtOnce) {
+    InstallationVersion version;
+    version.title = "Structured light";
+    version.figures = {{"RMS", 0.12, "px"}};
+    version.installation = measuredRoom();
+    version.installation.projectors.front().camera.focal *= 1.1;
+    version.installation.projectors.front().lens = {Origin::Way::measured, "structured light, 6 boards",
+                                                    "2026-11-25T10:00:00Z"};
+    ASSERT_TRUE(keeper->takeVersion(version));
+    EXPECT_EQ(room(), version.installation) << "with the origins that it brought";
+    auto versions = keeper->versions();
+    ASSERT_EQ(versions.size(), 2U) << "the room as it stood before is one too";
+    EXPECT_EQ(versions[0].version.title, version.title);
+    EXPECT_FALSE(versions[0].version.date.empty());
+    EXPECT_TRUE(keeper->isCurrent(versions[0].version));
+    EXPECT_EQ(versions[1].version.installation, measuredRoom());
+    keeper->bringBackVersion(versions[1].file);
+    EXPECT_TRUE(isSameRoom(room(), measuredRoom()));
+    EXPECT_TRUE(keeper->isCurrent(versions[1].version));
+    world.document.undoStack().undo();
+    EXPECT_EQ(room(), version.installation);
+    // A second measurement: the state before it is a version already.
+    version.installation.projectors.front().camera.focal *= 1.1;
+    ASSERT_TRUE(keeper->takeVersion(version));
+    EXPECT_EQ(keeper->versions().size(), 3U);
+    keeper->removeVersion(versions[1].file);
+    EXPECT_EQ(keeper->versions().size(), 2U);
+    keeper->bringBackVersion(versions[1].file);
+    EXPECT_FALSE(world.notices.at("project").empty()) << "it is gone";
+}
+
+TEST_F(InstallationKeeperTest, MeasurementThatCannotBeKeptChangesNothing) {
+    InstallationVersion version;
+    version.installation = measuredRoom();
+    version.installation.projectors.front().camera.focal.x = -1.0;
+    EXPECT_FALSE(keeper->takeVersion(version));
+    EXPECT_EQ(room(), measuredRoom());
+    EXPECT_TRUE(keeper->versions().empty());
+    EXPECT_FALSE(world.notices.at("project").empty());
+}
+
 TEST_F(InstallationKeeperTest, KeepsAnEditForTheNextStartAndTheOneBefore) {
     editInstallation(world.document, "Table", [](Installation& edited) { edited.tableSize = {1.5F, 1.0F}; });
     const Installation edited = room();

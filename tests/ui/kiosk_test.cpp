@@ -165,6 +165,9 @@ TEST_F(KioskTest, StopIsForAnyoneAndResumeForTheOperator) {
 
 TEST_F(KioskTest, TheOperatorLeavesByThePinAndAllIsAsItWas) {
     auto* outliner = window.find<QWidget>("dock.scene.outliner");
+    pass(100ms); // the first layout
+    ASSERT_TRUE(eventually([&] { return !buttonsInSight().contains("job.cancel"); })) << "the field is being read";
+    const QStringList before = buttonsInSight();
     enter();
     EXPECT_FALSE(outliner->isVisible());
     window.click("bar.leaveKiosk");
@@ -196,6 +199,8 @@ TEST_F(KioskTest, TheOperatorLeavesByThePinAndAllIsAsItWas) {
     window.click("bar.leaveKiosk");
     tap("2718");
     EXPECT_TRUE(eventually([&] { return !window.window().isFullScreen() && outliner->isVisible(); }));
+    EXPECT_TRUE(eventually([&] { return buttonsInSight() == before; })) << before.join(" ").toStdString() << "\n"
+                                                                        << buttonsInSight().join(" ").toStdString();
     QTest::keyClick(&window.window(), Qt::Key_2, Qt::ControlModifier);
     EXPECT_TRUE(eventually([&] { return window.window().workspace() == "field"; })) << "keys work again";
 }

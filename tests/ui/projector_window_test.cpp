@@ -1,5 +1,10 @@
 #include "app/studio/output/projector_window.h"
 
+#include <algorithm>
+#include <atomic>
+#include <cstdio>
+#include <thread>
+
 #include <QGuiApplication>
 #include <QPointer>
 #include <QScreen>
@@ -9,8 +14,10 @@
 #include <gtest/gtest.h>
 
 #include "app/studio/document/scene_edit.h"
+#include "app/studio/output/pattern_screen.h"
 #include "app/studio/output/projector_outputs.h"
 #include "app/studio/shell/escape_twice.h"
+#include "calibration/patterns/capture_order.h"
 #include "core/render/gl/headless_context.h"
 #include "core/render/spatial_renderer.h"
 #include "event_loop.h"
@@ -85,6 +92,98 @@ TEST_F(ProjectorOutput, OnePixelOfThePictureIsOnePixelOfTheScreen) {
     outputs.setPattern(TestPattern::grid);
     EXPECT_TRUE(eventually([&] { return samePixels(onScreen(), testPattern(TestPattern::grid, screenPixels())); }, 5s));
     EXPECT_TRUE(notices.at("output").empty());
+}
+
+/// A job that shows patterns, while the window's thread goes on.
+template <typename Work> void inAnotherThread(const Work& work) {
+    std::atomic<bool> done = false;
+    std::jthread thread([&] {
+        work();
+        done = true;
+    });
+    EXPECT_TRUE(eventually([&] { return done.load(); }, 20s));
+}
+
+TEST_F(ProjectorOutput, AcknowledgedPatternIsOnTheScreen) {
+    ASSERT_NE(cover(), nullptr);
+    const QSize size = screenPixels();
+    PatternScreen screen(outputs, 0);
+    ASSERT_EQ(screen.size(), cv::Size(size.width(), size.height()));
+    const CaptureOrder order = parsePattern("graycode", screen.size());
+    int shown = 0;
+    std::vector<double> waits;
+    for (std::size_t i = 0; i < order.images.size(); i += 3) {
+        const cv::Mat pattern = drawPattern(order.images[i], order.projector);
+        bool isThere = false;
+        inAnotherThread([&] {
+            const auto begun = std::chrono::steady_clock::now();
+            screen.show(pattern, {});
+            waits.push_back(
+                std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begun).count());
+            // Asked of the server at once, before the window's thread does anything more.
+            QMetaObject::invokeMethod(
+                &document,
+                [&] {
+                    const QImage there = onScreen();
+                    isThere = there.size() == size;
+                    for (int y = 0; y < size.height() && isThere; ++y)
+                        for (int x = 0; x < size.width() && isThere; ++x)
+                            isThere = qGray(there.pixel(x, y)) == pattern.at<uchar>(y, x);
+                },
+                Qt::BlockingQueuedConnection);
+        });
+        EXPECT_TRUE(isThere) << wordsOf(order.images[i]);
+        ++shown;
+    }
+    EXPECT_GE(shown, 12);
+    std::ranges::sort(waits);
+    std::printf("from show to acknowledgement: median %.1f ms, longest %.1f ms\n", waits[waits.size() / 2],
+                waits.back());
+}
+
+TEST_F(ProjectorOutput, PatternsGoWhateverHappens) {
+    ProjectorWindow* window = cover();
+    ASSERT_NE(window, nullptr);
+    outputs.setPattern(TestPattern::white);
+    const QColor white(Qt::white);
+    const auto middle = [&] { return onScreen().pixelColor(screenPixels().width() / 2, screenPixels().height() / 2); };
+    {
+        PatternScreen screen(outputs, 0);
+        const cv::Mat black = cv::Mat::zeros(screen.size(), CV_8U);
+        inAnotherThread([&] { screen.show(black, {}); });
+        EXPECT_EQ(middle(), QColor(Qt::black));
+        // Asked for by nobody who waits: a capture that was cancelled.
+        std::stop_source stop;
+        stop.request_stop();
+        inAnotherThread([&] { EXPECT_THROW(screen.show(black, Progress({}, stop.get_token())), Cancelled); });
+    }
+    EXPECT_TRUE(eventually([&] { return middle() == white; }, 5s)) << "deleted";
+    PatternScreen screen(outputs, 0);
+    inAnotherThread([&] { EXPECT_THROW(screen.show(cv::Mat::zeros(7, 9, CV_8U), {}), InvalidInput); });
+    inAnotherThread([&] { screen.show(cv::Mat::zeros(screen.size(), CV_8U), {}); });
+    screen.clear();
+    EXPECT_TRUE(eventually([&] { return middle() == white; }, 5s)) << "cleared";
+    outputs.close(0);
+    inAnotherThread([&] {
+        try {
+            screen.show(cv::Mat::zeros(screen.size(), CV_8U), {});
+            ADD_FAILURE() << "the window is closed";
+        } catch (const DeviceError& error) {
+            EXPECT_NE(error.remedy().find("open"), std::string::npos) << error.what();
+        }
+    });
+}
+
+TEST_F(ProjectorOutput, PatternsNeedEveryPixelOfTheProjector) {
+    EXPECT_THROW(PatternScreen(outputs, 0), DeviceError) << "not shown at all";
+    setProjectorSize(screenPixels() - QSize(200, 100));
+    ASSERT_NE(cover(), nullptr);
+    try {
+        const PatternScreen screen(outputs, 0);
+        ADD_FAILURE() << "another size";
+    } catch (const DeviceError& error) {
+        EXPECT_NE(error.remedy().find(std::to_string(screenPixels().width())), std::string::npos) << error.what();
+    }
 }
 
 TEST_F(ProjectorOutput, AnotherSizeIsCentredAndNotScaled) {

@@ -217,7 +217,7 @@ TEST_F(SessionTest, IsKeptAlsoWhereTheOneBeforeTakesItsTimeToDie) {
             const std::optional<Project> kept = keptNow(folder);
             return kept && kept->playback.spin == 0.3;
         },
-        std::chrono::seconds(5)));
+        std::chrono::seconds(30)));
 }
 
 TEST_F(SessionTest, HoldsWhatVanishedSince) {

@@ -50,7 +50,7 @@ protected:
 TEST_F(Shell, TabsAndMenusAreInOnePlaceAndHaveWordsOfTheirOwn) {
     std::map<QString, QRect> places;
     QStringList fileOrder;
-    for (const int width : {1600, 1024})
+    for (const int width : {1600, 1024, 760})
         for (const QString& workspace : kWorkspaces) {
             SCOPED_TRACE(workspace.toStdString() + " " + std::to_string(width));
             window.window().resize(width, 700);
@@ -144,7 +144,7 @@ TEST_F(Shell, TourPointsAtWhatItMeansAndIsNeverClipped) {
     }
 }
 
-TEST_F(Shell, DISABLED_TourShowsWhatItsButtonsDo) {
+TEST_F(Shell, TourShowsWhatItsButtonsDo) {
     window.studio().commands.find("view.resetLayout")->trigger(); // of a window that was small before
     window.studio().commands.find("help.tour")->trigger();
     auto* tour = window.find<QWidget>("tour");

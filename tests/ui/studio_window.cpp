@@ -135,7 +135,13 @@ QString StudioWindow::text(const QString& label) {
 }
 
 bool StudioWindow::settles() {
-    return eventually([this] { return studio_->jobs.running().empty() && view().settled(); });
+    QElapsedTimer quiet; // for a while: the end of one job may begin another
+    return eventually([&] {
+        const bool settled = studio_->jobs.running().empty() && view().settled();
+        if (!settled) quiet.invalidate();
+        if (settled && !quiet.isValid()) quiet.start();
+        return settled && quiet.elapsed() >= 150;
+    });
 }
 
 void StudioWindow::screenshot(const QString& name) {

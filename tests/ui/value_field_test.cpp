@@ -157,7 +157,7 @@ TEST_F(ValueField, CalculatesAndSaysWhatItCannot) {
     QTest::keyClicks(field, "3 m"); // a number beyond the range does not become another in silence
     QTest::keyClick(field, Qt::Key_Return);
     EXPECT_EQ(field->why().toStdString(), "At most 10.00 cm here.");
-    QTest::keyClicks(field, "-1");
+    QTest::keyClicks(field, "-1 m");
     QTest::keyClick(field, Qt::Key_Return);
     EXPECT_TRUE(field->why().startsWith("At least ")) << field->why().toStdString();
 }

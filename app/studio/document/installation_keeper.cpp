@@ -1,5 +1,6 @@
 #include "app/studio/document/installation_keeper.h"
 
+#include <algorithm>
 #include <utility>
 
 #include <QCryptographicHash>
@@ -85,6 +86,52 @@ void InstallationKeeper::bringBack(const std::filesystem::path& file) {
     } catch (const std::exception& error) {
         notices_.post(kPlace, noticeOf(error));
     }
+}
+
+bool InstallationKeeper::takeVersion(InstallationVersion version) {
+    const Installation& room = *document_.state().installation;
+    if (version.date.empty()) version.date = utcDate();
+    try {
+        checkInstallation(version.installation);
+        const std::vector<KeptVersion> kept = versions();
+        if (std::ranges::none_of(kept, [&](const KeptVersion& one) { return isCurrent(one.version); }))
+            store_.keepVersion({version.date, tr("As it stood before").toStdString(), {}, {}, {}, room});
+        store_.keepVersion(version);
+    } catch (const std::exception& error) {
+        Notice notice = noticeOf(error);
+        notice.why = tr("the result could not be kept: %1").arg(notice.why);
+        notice.subject = subject();
+        notices_.post(kPlace, notice);
+        return false;
+    }
+    const QString what = QString::fromStdString(version.title);
+    take(std::move(version.installation), version.title, what);
+    emit versionsChanged();
+    return true;
+}
+
+bool InstallationKeeper::isCurrent(const InstallationVersion& version) const {
+    return isSameRoom(version.installation, *document_.state().installation);
+}
+
+void InstallationKeeper::bringBackVersion(const std::filesystem::path& file) {
+    try {
+        InstallationVersion version = InstallationStore::readVersion(file);
+        take(std::move(version.installation), version.title,
+             tr("Bring back: %1").arg(QString::fromStdString(version.title)));
+    } catch (const std::exception& error) {
+        notices_.post(kPlace, noticeOf(error));
+    }
+    emit versionsChanged();
+}
+
+void InstallationKeeper::removeVersion(const std::filesystem::path& file) {
+    try {
+        InstallationStore::removeVersion(file);
+    } catch (const std::exception& error) {
+        notices_.post(kPlace, noticeOf(error));
+    }
+    emit versionsChanged();
 }
 
 /// Opening a project changes nothing in the room. One that comes from elsewhere has its own figures, which may be what

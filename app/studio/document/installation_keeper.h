@@ -24,6 +24,21 @@ public:
     /// Puts an earlier one back, as a step of undo.
     void bringBack(const std::filesystem::path& file);
 
+    /// What measurements made of the installation, the newest first.
+    [[nodiscard]] std::vector<KeptVersion> versions() const { return store_.versions(); }
+    /// Keeps a measured installation as a version and puts it into the document as a step of undo. Where no version
+    /// shows the room as it stood before, that is kept first, so that one can go back. False, with a notice, where the
+    /// disk refuses or the version is not sound: then nothing changes. An empty date becomes that of now.
+    bool takeVersion(InstallationVersion version);
+    /// Whether the document's installation has this version's figures.
+    [[nodiscard]] bool isCurrent(const InstallationVersion& version) const;
+    /// Puts a version back, as a step of undo.
+    void bringBackVersion(const std::filesystem::path& file);
+    void removeVersion(const std::filesystem::path& file);
+
+signals:
+    void versionsChanged();
+
 private:
     void load();
     void keep();

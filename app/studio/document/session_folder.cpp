@@ -104,7 +104,8 @@ void removeAllBut(const std::set<fs::path>& needed, const fs::path& folder) {
         if (!needed.contains(name)) removeQuietly(folder / name);
 }
 
-/// Sessions that could not be opened may hold what somebody misses, but not for ever.
+/// Sessions that could not be opened may hold what somebody misses, but not for ever. One that goes is called
+/// unfinished first: a folder that lost some of its files to a kill would be the newest of them.
 void clearBroken(const fs::path& folder) {
     std::vector<std::pair<fs::file_time_type, fs::path>> broken; // newest first
     for (const fs::path& name : namesIn(folder)) {
@@ -114,8 +115,13 @@ void clearBroken(const fs::path& folder) {
     }
     std::sort(broken.rbegin(), broken.rend());
     const auto oldest = fs::file_time_type::clock::now() - kBrokenKept;
-    for (std::size_t k = 0; k < broken.size(); ++k)
-        if (k >= kMostBroken || broken[k].first < oldest) removeQuietly(broken[k].second);
+    for (std::size_t k = 0; k < broken.size(); ++k) {
+        if (k < kMostBroken && broken[k].first >= oldest) continue;
+        const fs::path going = folder / (kTemporary + broken[k].second.filename().string());
+        std::error_code failed;
+        fs::rename(broken[k].second, going, failed);
+        removeQuietly(failed ? broken[k].second : going);
+    }
 }
 
 bool sameBytes(const fs::path& a, const fs::path& b) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include <QCloseEvent>
 #include <QKeyEvent>
@@ -74,7 +75,37 @@ void ProjectorWindow::identify(int milliseconds) {
     update();
 }
 
+void ProjectorWindow::setCalibrationPicture(const QImage& picture, quint64 ticket) {
+    calibrationPicture_ = picture;
+    ticket_ = picture.isNull() ? 0 : ticket;
+    update();
+}
+
+QString ProjectorWindow::calibrationProblem() const {
+    if (size_.isEmpty()) return tr("there is no such projector");
+    if (!isVisible() || isMinimized()) return tr("its window is not shown: open it on the projector's screen");
+    const QSize there = pixels();
+    const QSize more = there - size_;
+    const auto fits = [](int pixels) { return pixels == 0 || pixels == 1; }; // as at some desktop scales
+    if (fits(more.width()) && fits(more.height())) return {};
+    return tr("its window has %1 × %2 pixels, the projector %3 × %4: show it on all of the projector's screen, in that "
+              "screen's own resolution")
+        .arg(there.width())
+        .arg(there.height())
+        .arg(size_.width())
+        .arg(size_.height());
+}
+
+/// Qt hands a window's picture to the display server when paintEvent has returned, and says no more of it. What is
+/// called from the queue comes after that; and a server that gives a pixel back has worked off what came before.
+void ProjectorWindow::tellShown() {
+    if (ticket_ == 0) return;
+    screen()->grabWindow(winId(), 0, 0, 1, 1);
+    emit calibrationShown(std::exchange(ticket_, 0));
+}
+
 QImage ProjectorWindow::picture() const {
+    if (!calibrationPicture_.isNull()) return calibrationPicture_;
     if (identifying_.isActive()) return numberPicture(static_cast<int>(number_) + 1, size_);
     return pattern_ == TestPattern::none ? feed_.picture(id_) : patternPicture_;
 }
@@ -102,6 +133,7 @@ void ProjectorWindow::leaveScreen() {
 }
 
 void ProjectorWindow::paintEvent(QPaintEvent* /*event*/) {
+    if (ticket_ != 0) QMetaObject::invokeMethod(this, &ProjectorWindow::tellShown, Qt::QueuedConnection);
     QPainter painter(this);
     // In pixels of the screen: the picture is copied, whatever the desktop's scale.
     const double ratio = devicePixelRatioF();
@@ -113,7 +145,7 @@ void ProjectorWindow::paintEvent(QPaintEvent* /*event*/) {
         return;
     }
     QRect box(QPoint((room.width() - shown.width()) / 2, (room.height() - shown.height()) / 2), shown.size());
-    if (scaled_) {
+    if (scaled_ && calibrationPicture_.isNull()) {
         const QSize fitting = shown.size().scaled(room, Qt::KeepAspectRatio);
         box = QRect(QPoint((room.width() - fitting.width()) / 2, (room.height() - fitting.height()) / 2), fitting);
     }

@@ -25,10 +25,16 @@ public:
     [[nodiscard]] std::size_t number() const noexcept { return number_; }
     /// Pixels and name of the projector; an empty size: there is no such projector, and it stays black.
     void setProjector(const QString& name, QSize size);
+    [[nodiscard]] QSize projectorSize() const noexcept { return size_; }
     void setPattern(TestPattern pattern);
     void setScaled(bool on);
     /// Shows its number for a while.
     void identify(int milliseconds = 3000);
+    /// Shows a picture of a calibration in place of all else, pixel by pixel whatever `setScaled` says; a null one
+    /// takes it away. `calibrationShown` tells `ticket` when it has reached the screen.
+    void setCalibrationPicture(const QImage& picture, quint64 ticket);
+    /// Why a calibration's picture would not be on the screen pixel by pixel, with what to do; empty where it would.
+    [[nodiscard]] QString calibrationProblem() const;
     /// What it shows now, in the projector's pixels; null before the first picture of the scene.
     [[nodiscard]] QImage picture() const;
 
@@ -40,6 +46,7 @@ public:
 
 signals:
     void closed();
+    void calibrationShown(quint64 ticket);
     void covered(); ///< a screen as a whole, with its size known
     void leftScreen();
 
@@ -53,6 +60,7 @@ protected:
 
 private:
     void showTitle();
+    void tellShown();
 
     ShowFeed& feed_;
     const std::size_t number_;
@@ -61,6 +69,8 @@ private:
     QSize size_;
     TestPattern pattern_ = TestPattern::none;
     QImage patternPicture_;
+    QImage calibrationPicture_;
+    quint64 ticket_ = 0; ///< of the calibration's picture; 0: it was told
     bool scaled_ = false;
     QTimer identifying_;
 };

@@ -70,6 +70,7 @@ struct MainWindow::Data {
     QStackedWidget* stack = nullptr;
     QPointer<DropOverlay> drop;
     std::unique_ptr<StopKeyWatch> stopKeys;
+    EscapeTwice* escape = nullptr;
     QString present;
     Kiosk* kiosk = nullptr;
     IdleCursor* idleCursor = nullptr; ///< in the kiosk
@@ -112,7 +113,7 @@ MainWindow::MainWindow(Studio& studio, std::vector<std::unique_ptr<Workspace>> w
     const auto setPlacing = [&studio] { studio.project.setPlacesNewTargets(studio.settings.placesNewTargets()); };
     connect(&studio.settings, &Settings::placesNewTargetsChanged, this, setPlacing);
     setPlacing();
-    auto* escape = new EscapeTwice(data_->clock, this);
+    auto* escape = data_->escape = new EscapeTwice(data_->clock, this);
     connect(escape, &EscapeTwice::pressed, &studio.loop, &StudioLoop::stop);
     // Also while another program has the keyboard, and for the servos while this window is stuck.
     data_->stopKeys = std::make_unique<StopKeyWatch>([&studio] {
@@ -147,7 +148,8 @@ void MainWindow::keepOnScreen() {
 }
 
 MainWindow::~MainWindow() {
-    delete data_->kiosk; // it hears all that follows
+    delete data_->kiosk;  // it hears all that follows
+    delete data_->escape; // likewise, and it tells the watch, which is gone when the last child is hidden
     qApp->removeEventFilter(this);
     // Views and docks refer to their workspace, so they go first.
     delete takeCentralWidget();

@@ -109,6 +109,8 @@ void TopBar::addTabs(const std::vector<std::unique_ptr<Workspace>>& workspaces, 
         tab->setFocusPolicy(Qt::StrongFocus);
         group->addButton(tab);
         row.addWidget(tab);
+        tab->ensurePolished();
+        tab->setFixedWidth(tab->sizeHint().width()); // else menus that do not fit would squeeze it
         tabs_.push_back(tab);
         connect(tab, &QToolButton::clicked, this, [this, id = workspace->id()] { emit workspaceChosen(id); });
     }

@@ -256,21 +256,32 @@ TEST(SpatialRenderer, HiddenPlacesBesideSeenOnesAreNoBrighterForBeingSteep) {
         const RayOracle device = raysAt(physicalDevice(frame));
         renderer.draw(frame);
         const Image sent = renderer.readProjector(0);
+        const auto isSeen = [&](const Place& place) {
+            const glm::dvec3 way = place.point - glm::dvec3(eye);
+            const auto first = device.cast(glm::dvec3(eye), glm::normalize(way));
+            return !first || first->distance > glm::length(way) - 0.001;
+        };
+        // The brightest that is seen around a pixel; green is 1 for the eye, so head on it would have this value.
+        const auto brightestSeenAround = [&](int x, int y, const glm::dvec3& light) {
+            const double value = glm::dot(light, light) / (overhead().peak * reference * reference);
+            double most = 255.0 * (1.055 * std::pow(value, 1.0 / 2.4) - 0.055);
+            for (int k = 0; k < 25; ++k) {
+                const glm::ivec2 there(x + k % 5 - 2, y + k / 5 - 2);
+                if (!isSeen(placeOf(device, frame.installation->tableSize, camera, there))) continue;
+                most = std::max<double>(most, sent.at(there.x, there.y)[1]);
+            }
+            return most;
+        };
         for (int y = 2; y < camera.size.y - 2; ++y)
             for (int x = 2; x < camera.size.x - 2; ++x) {
                 const Image::Pixel& pixel = sent.at(x, y);
                 const Place place = placeOf(device, frame.installation->tableSize, camera, {x, y});
-                if (place.on != Place::On::device || pixel[0] > pixel[1]) continue;
-                const glm::dvec3 way = place.point - glm::dvec3(eye);
-                const auto first = device.cast(glm::dvec3(eye), glm::normalize(way));
-                if (!first || first->distance > glm::length(way) - 0.001) continue;
+                if (place.on != Place::On::device || pixel[0] > pixel[1] || isSeen(place)) continue;
                 const glm::dvec3 light = projector - place.point;
                 const auto hit = device.cast(projector, -glm::normalize(light));
                 if (!hit || glm::dot(hit->normal, glm::normalize(light)) > 0.5) continue;
                 ++steep;
-                // Green is 1 for the eye; a third more than head on would be made up for a slant.
-                const double value = 1.33 * glm::dot(light, light) / (overhead().peak * reference * reference);
-                outshining += pixel[1] > 255.0 * (1.055 * std::pow(value, 1.0 / 2.4) - 0.055) ? 1 : 0;
+                outshining += pixel[1] > 1.1 * brightestSeenAround(x, y, light) ? 1 : 0;
             }
     }
     std::printf("%d steep hidden pixels beside seen ones, %d outshine them\n", steep, outshining);

@@ -1,0 +1,132 @@
+#include <cstdio>
+#include <memory>
+#include <string>
+
+#include "app/cli/checks.h"
+#include "app/cli/commands.h"
+#include "app/cli/project_frame.h"
+#include "calibration/lab/lab_capture.h"
+#include "core/base/error.h"
+#include "core/scene/project.h"
+
+namespace lumorph::cli {
+
+namespace {
+
+struct LabArguments {
+    std::string project;
+    std::string board;
+    std::string pattern = "graycode";
+    std::string size;
+    std::string fault;
+    std::string output;
+    int poses = 6;
+    std::uint32_t seed = 1;
+    bool json = false;
+};
+
+std::string faultKeys() {
+    std::string keys;
+    for (const Cause cause : labFaults()) keys += (keys.empty() ? "" : ", ") + std::string(keyOf(cause));
+    return keys;
+}
+
+std::optional<Cause> faultOf(const std::string& key) {
+    if (key.empty()) return std::nullopt;
+    const std::optional<Cause> cause = causeOf(key);
+    if (!cause) throw InvalidInput("fault '" + key + "'", "there is no such fault", "choose one of: " + faultKeys());
+    return cause;
+}
+
+/// Boards are named in millimetres. One that is larger than the lab's lit place is taken as printed smaller.
+std::unique_ptr<LabCapturer> capturerOf(LabCapture capture) {
+    try {
+        return std::make_unique<LabCapturer>(capture);
+    } catch (const InvalidInput&) {
+        const CalibrationBoard board = parseCalibrationBoard(capture.board);
+        const double longest = board.spacing * (std::max(board.columns, board.rows) + 2) * 0.001;
+        constexpr double kFits = 0.29; // metres
+        if (longest <= kFits) throw;
+        capture.options.metresPerUnit *= kFits / longest;
+        auto capturer = std::make_unique<LabCapturer>(capture);
+        printWarnings({"The board is larger than what the lab's projector lights, so it is taken as printed smaller: "
+                       "one unit of its name is " +
+                       std::to_string(1000.0 * capture.options.metresPerUnit) + " mm."});
+        return capturer;
+    }
+}
+
+void capture(const LabArguments& arguments, const Session& session) {
+    LabCapture capture;
+    capture.room =
+        arguments.project.empty() ? defaultInstallation() : readProject(projectFile(arguments.project)).installation;
+    capture.board = arguments.board;
+    capture.pattern = arguments.pattern;
+    capture.poses = arguments.poses;
+    capture.seed = arguments.seed;
+    capture.fault = faultOf(arguments.fault);
+    if (capture.room.projectors.empty())
+        throw InvalidInput("installation", "it has no projector", "add one in the studio, or name no project");
+    if (capture.room.cameras.empty()) {
+        capture.room.cameras.push_back(
+            {"Camera", "", defaultLabCamera(capture.room.projectors.front().camera), {}, {}});
+        printWarnings({"The installation has no camera; one beside the projector is assumed."});
+    }
+    if (!arguments.size.empty()) {
+        CalibratedCamera& camera = capture.room.cameras.front().camera;
+        const cv::Size size = parseProjectorSize(arguments.size);
+        camera = withSize(camera, {size.width, size.height});
+    }
+    const std::unique_ptr<LabCapturer> capturer = capturerOf(capture);
+    writeLabCapture(*capturer, arguments.output, session.progress());
+    Session::endProgress();
+    const CalibratedCamera& projector = capturer->lab().projector().camera;
+    if (arguments.json) {
+        printJson({{"folder", arguments.output},
+                   {"poses", arguments.poses},
+                   {"board", arguments.board},
+                   {"pattern", arguments.pattern},
+                   {"projector", {projector.size.x, projector.size.y}},
+                   {"truth", arguments.output + "/truth.json"}});
+        return;
+    }
+    std::printf("%d poses of %s in %s; the truth is in truth.json\n", arguments.poses, arguments.board.c_str(),
+                arguments.output.c_str());
+    std::printf("  lumorph calibrate procam %s --board %s --projector %dx%d --pattern %s\n", arguments.output.c_str(),
+                arguments.board.c_str(), projector.size.x, projector.size.y, arguments.pattern.c_str());
+}
+
+} // namespace
+
+void addLabCommands(CLI::App& app, Session& session) {
+    CLI::App* group = app.add_subcommand("lab", "The virtual lab");
+    group->require_subcommand(1);
+    auto arguments = std::make_shared<LabArguments>();
+    CLI::App* command = group->add_subcommand(
+        "capture",
+        "Photograph a board under a projector's patterns, with the truth beside: for calibrating and trying");
+    command->add_option("project", arguments->project,
+                        "A .lumorph file whose installation is used, or a bundled one: resource:projects/NAME.lumorph "
+                        "(default: the virtual lab's installation)");
+    command
+        ->add_option("--board", arguments->board,
+                     "The board, millimetres: chess:9x7:25 (inner corners, side of a square), circles:4x11:20, "
+                     "charuco:5x7:30:22")
+        ->required();
+    command->add_option("--poses", arguments->poses, "How many; the first lies flat on the table")
+        ->check(CLI::Range(1, 100))
+        ->capture_default_str();
+    command->add_option("--seed", arguments->seed, "Other poses, noise and fault for another number")
+        ->check(seedNumber())
+        ->capture_default_str();
+    command->add_option("--fault", arguments->fault, "Make something wrong on purpose: " + faultKeys());
+    command->add_option("--pattern", arguments->pattern, "graycode, or phase:16x3+1x3 (periods x steps)")
+        ->capture_default_str();
+    command->add_option("--size", arguments->size,
+                        "Of the camera's pictures, WIDTHxHEIGHT (default: the camera's own)");
+    command->add_option("-o,--output", arguments->output, "A folder, new or empty")->required();
+    command->add_flag("--json", arguments->json, "Print one JSON value");
+    command->callback([arguments, &session] { capture(*arguments, session); });
+}
+
+} // namespace lumorph::cli

@@ -1,0 +1,222 @@
+#include "calibration/capture/capture_camera.h"
+
+#include <algorithm>
+#include <deque>
+#include <mutex>
+#include <system_error>
+
+#include <opencv2/core/utils/logger.hpp>
+#include <opencv2/imgproc.hpp>
+#include <opencv2/videoio.hpp>
+
+#include "calibration/capture/camera_controls.h"
+#include "calibration/decode/capture_folder.h"
+#include "calibration/lab/board_lab.h"
+#include "calibration/tracking/camera_source.h"
+#include "core/base/clock.h"
+#include "core/base/error.h"
+
+namespace lumorph {
+
+namespace {
+
+constexpr int kMostSkipped = 30; // frames that a driver may hold back
+
+/// What goes wrong is told in words of ours.
+void silenceVideo() {
+    static std::once_flag once;
+    std::call_once(once, [] { cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_SILENT); });
+}
+
+class DriverCamera final : public CaptureCamera {
+public:
+    DriverCamera(std::string path, cv::Size most) : path_(std::move(path)) {
+        silenceVideo();
+        const SourceFacts facts = lookAt(path_);
+        if (!facts.permitted || !capture_.open(path_, cv::CAP_V4L2))
+            throw DeviceError("camera " + path_, "cannot be opened", adviceFor(path_, facts));
+        // Webcams send large pictures quickly only when they are compressed.
+        capture_.set(cv::CAP_PROP_FOURCC, cv::VideoWriter::fourcc('M', 'J', 'P', 'G'));
+        if (!most.empty()) {
+            capture_.set(cv::CAP_PROP_FRAME_WIDTH, most.width);
+            capture_.set(cv::CAP_PROP_FRAME_HEIGHT, most.height);
+        }
+        capture_.set(cv::CAP_PROP_BUFFERSIZE, 1);
+        for (int warming = 0; warming < 5; ++warming) read(); // automatics find their values before they are held
+        automatics_ = switchAutomaticsOff(controlsOf(path_));
+    }
+
+    [[nodiscard]] cv::Mat grab(const Progress& progress) override {
+        const Microseconds called = clock_.now();
+        for (int skipped = 0; skipped < kMostSkipped; ++skipped) {
+            progress.throwIfCancelled();
+            const Microseconds asked = clock_.now();
+            const cv::Mat picture = read();
+            const Microseconds arrived = clock_.now();
+            const Microseconds told(static_cast<std::int64_t>(1e3 * capture_.get(cv::CAP_PROP_POS_MSEC)));
+            // Drivers tell by the same clock when a frame began or ended; where it ended, its exposure began up to a
+            // frame earlier.
+            if (told > Microseconds(0) && told <= arrived && arrived - told < Microseconds(1'000'000)) {
+                if (told - interval() >= called) return picture;
+                continue;
+            }
+            // Without a time: a frame that was waited for began after the one before, which came after the call.
+            const bool isWaitedFor = arrived - asked > Microseconds(interval().count() / 3);
+            if (isWaitedFor && skipped >= 2) return picture;
+        }
+        throw DeviceError("camera " + path_, "gives only old frames", "unplug it and plug it in again");
+    }
+    [[nodiscard]] std::string name() const override { return path_; }
+    [[nodiscard]] cv::Size size() const override { return size_; }
+    [[nodiscard]] std::vector<std::string> automatics() const override { return automatics_; }
+
+private:
+    cv::Mat read() {
+        cv::Mat picture;
+        bool isRead = false;
+        try {
+            isRead = capture_.read(picture);
+        } catch (const cv::Exception& error) {
+            throw DeviceError("camera " + path_, "its pictures cannot be used: " + error.err, "choose another camera");
+        }
+        if (!isRead || picture.empty())
+            throw DeviceError("camera " + path_, "gives no more pictures", "plug it in again, then capture this pose");
+        if (picture.depth() != CV_8U || (picture.channels() != 1 && picture.channels() != 3))
+            throw DeviceError("camera " + path_, "gives pictures that are not 8-bit grey or colour",
+                              "choose another format at the camera");
+        size_ = picture.size();
+        return picture.clone(); // the driver's buffer is used again
+    }
+    [[nodiscard]] Microseconds interval() const {
+        const double rate = capture_.get(cv::CAP_PROP_FPS);
+        return Microseconds(static_cast<std::int64_t>(1e6 / (rate > 1.0 && rate < 1000.0 ? rate : 30.0)));
+    }
+
+    std::string path_;
+    cv::VideoCapture capture_;
+    cv::Size size_;
+    SteadyClock clock_;
+    std::vector<std::string> automatics_;
+};
+
+class ImageFiles final : public CaptureCamera {
+public:
+    ImageFiles(std::vector<std::filesystem::path> files, std::string name)
+        : files_(std::move(files)), name_(std::move(name)) {}
+
+    [[nodiscard]] cv::Mat grab(const Progress& progress) override {
+        progress.throwIfCancelled();
+        if (next_ == files_.size())
+            throw DataError(name_, "holds only " + std::to_string(files_.size()) + " images",
+                            "give as many images as the order has patterns");
+        const std::filesystem::path& file = files_[next_++];
+        cv::Mat image = readGrey(file, file.parent_path().filename().string());
+        size_ = image.size();
+        return image;
+    }
+    [[nodiscard]] std::string name() const override { return name_; }
+    [[nodiscard]] cv::Size size() const override { return size_; }
+    [[nodiscard]] bool isLive() const override { return false; }
+
+private:
+    std::vector<std::filesystem::path> files_;
+    std::string name_;
+    std::size_t next_ = 0;
+    cv::Size size_;
+};
+
+class Film final : public CaptureCamera {
+public:
+    explicit Film(const std::filesystem::path& file) : name_(file.string()) {
+        silenceVideo();
+        const SourceFacts facts = lookAt(name_);
+        if (isCameraPath(name_) || !facts.permitted || !capture_.open(name_, cv::CAP_FFMPEG))
+            throw DataError(name_, "is no video that can be read", adviceFor(name_, facts));
+        const double width = capture_.get(cv::CAP_PROP_FRAME_WIDTH);
+        const double height = capture_.get(cv::CAP_PROP_FRAME_HEIGHT);
+        if (!(width >= 1.0 && height >= 1.0 && width <= 16384.0 && height <= 16384.0))
+            throw DataError(name_, "has frames of an absurd size", "convert it, for example to MP4");
+        size_ = {static_cast<int>(width), static_cast<int>(height)};
+    }
+
+    [[nodiscard]] cv::Mat grab(const Progress& progress) override {
+        for (;;) {
+            progress.throwIfCancelled();
+            cv::Mat frame;
+            const bool isRead = capture_.read(frame) && !frame.empty();
+            const bool changes = !isRead || stretch_.empty() || differs(frame, stretch_.back());
+            if (changes && stretch_.size() >= kLeastFrames) {
+                // The first and last frame may show some of the next pattern already.
+                cv::Mat middle = stretch_[stretch_.size() / 2];
+                stretch_.clear();
+                if (isRead) stretch_.push_back(frame.clone());
+                return middle;
+            }
+            if (!isRead)
+                throw DataError(name_, "comes to its end before the patterns do",
+                                "film all of them, and let each stand still for half a second");
+            if (changes) stretch_.clear();
+            stretch_.push_back(frame.clone());
+            if (stretch_.size() > kMostKept) stretch_.pop_front();
+        }
+    }
+    [[nodiscard]] std::string name() const override { return name_; }
+    [[nodiscard]] cv::Size size() const override { return size_; }
+    [[nodiscard]] bool isLive() const override { return false; }
+
+private:
+    static constexpr std::size_t kLeastFrames = 3;
+    static constexpr std::size_t kMostKept = 9;
+
+    /// More than compression and noise do to a still picture.
+    static bool differs(const cv::Mat& one, const cv::Mat& other) {
+        if (one.size() != other.size()) return true;
+        cv::Mat difference, coarse;
+        cv::absdiff(one, other, difference);
+        cv::resize(difference, coarse, {64, 48}, 0.0, 0.0, cv::INTER_AREA);
+        double most = 0.0;
+        cv::minMaxLoc(coarse.reshape(1), nullptr, &most);
+        return most > 12.0;
+    }
+
+    std::string name_;
+    cv::VideoCapture capture_;
+    cv::Size size_;
+    std::deque<cv::Mat> stretch_; ///< the newest frames of what stands still
+};
+
+class LabCamera final : public CaptureCamera {
+public:
+    explicit LabCamera(BoardLab& lab) : lab_(lab) {}
+
+    [[nodiscard]] cv::Mat grab(const Progress& progress) override {
+        progress.throwIfCancelled();
+        return lab_.photograph();
+    }
+    [[nodiscard]] std::string name() const override { return "virtual lab"; }
+    [[nodiscard]] cv::Size size() const override { return {lab_.camera().size.x, lab_.camera().size.y}; }
+
+private:
+    BoardLab& lab_;
+};
+
+} // namespace
+
+std::unique_ptr<CaptureCamera> openCaptureCamera(const std::string& path, cv::Size most) {
+    return std::make_unique<DriverCamera>(path, most);
+}
+
+std::unique_ptr<CaptureCamera> openImages(std::vector<std::filesystem::path> files) {
+    std::string name = files.empty() ? "list of images" : files.front().parent_path().string();
+    return std::make_unique<ImageFiles>(std::move(files), std::move(name));
+}
+
+std::unique_ptr<CaptureCamera> openImageFolder(const std::filesystem::path& folder) {
+    return std::make_unique<ImageFiles>(imagesIn(folder), folder.string());
+}
+
+std::unique_ptr<CaptureCamera> openVideo(const std::filesystem::path& file) { return std::make_unique<Film>(file); }
+
+std::unique_ptr<CaptureCamera> openLabCamera(BoardLab& lab) { return std::make_unique<LabCamera>(lab); }
+
+} // namespace lumorph

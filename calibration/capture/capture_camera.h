@@ -1,0 +1,51 @@
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <opencv2/core.hpp>
+
+#include "core/base/progress.h"
+
+namespace lumorph {
+
+class BoardLab;
+
+/// A source of camera pictures. One thread at a time.
+class CaptureCamera {
+public:
+    virtual ~CaptureCamera() = default;
+
+    /// The newest frame whose exposure began after the call, 8-bit grey or BGR; of what is recorded, the next one in
+    /// its order. Throws DeviceError for a camera that gives none, DataError for a recording that is broken or has come
+    /// to its end, Cancelled.
+    [[nodiscard]] virtual cv::Mat grab(const Progress& progress) = 0;
+    [[nodiscard]] virtual std::string name() const = 0;
+    /// Pixels; empty before the first frame of a camera that does not say.
+    [[nodiscard]] virtual cv::Size size() const = 0;
+    /// Whether it sees what is shown now; recordings do not.
+    [[nodiscard]] virtual bool isLive() const { return true; }
+    /// Automatics that are on and could not be switched off: sentences that say what to do.
+    [[nodiscard]] virtual std::vector<std::string> automatics() const { return {}; }
+};
+
+/// A camera of this machine, "/dev/video0", in the largest size that is at most `most` (empty: what it gives by
+/// itself). Exposure, white balance, focus and gain are fixed where they are, as far as the driver allows. Throws
+/// DeviceError with what to do.
+[[nodiscard]] std::unique_ptr<CaptureCamera> openCaptureCamera(const std::string& path, cv::Size most = {1920, 1080});
+
+/// PNG and JPEG files in this order.
+[[nodiscard]] std::unique_ptr<CaptureCamera> openImages(std::vector<std::filesystem::path> files);
+/// All of a folder, by name with numbers as numbers. Throws DataError where it has none.
+[[nodiscard]] std::unique_ptr<CaptureCamera> openImageFolder(const std::filesystem::path& folder);
+
+/// A film of patterns, each of which stood still for at least three frames: a grab gives a frame out of the middle of
+/// the next stretch in which nothing changes. Throws DataError for a file that is no video.
+[[nodiscard]] std::unique_ptr<CaptureCamera> openVideo(const std::filesystem::path& file);
+
+/// The virtual lab's; it outlives the camera.
+[[nodiscard]] std::unique_ptr<CaptureCamera> openLabCamera(BoardLab& lab);
+
+} // namespace lumorph

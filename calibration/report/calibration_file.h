@@ -1,0 +1,15 @@
+#pragma once
+
+#include <filesystem>
+
+#include "calibration/report/opencv_yaml.h"
+
+namespace lumorph {
+
+/// By the name's ending: .json, .yaml or .yml. Written whole or not at all. Throws InvalidInput for another ending,
+/// DeviceError where the disk refuses.
+void writeCalibration(const CalibrationRecord& record, const std::filesystem::path& file);
+/// Throws InvalidInput for another ending, DataError as above.
+[[nodiscard]] CalibrationRecord readCalibration(const std::filesystem::path& file, const KnownSizes& sizes = {});
+
+} // namespace lumorph

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "calibration/solve/procam_calibration.h"
+
+namespace lumorph {
+
+/// What a calibration was made of.
+struct CalibrationSource {
+    std::string date;                ///< UTC, such as "2026-11-24T17:05:00Z"; empty: not known
+    std::string board;               ///< as `parseCalibrationBoard` reads it; likewise
+    std::string pattern;             ///< as `parsePattern` reads it, or the name of an order file
+    std::vector<std::string> inputs; ///< folders and files
+    double metresPerUnit = 0.001;    ///< of the board's lengths
+    bool operator==(const CalibrationSource&) const = default;
+};
+
+/// A calibration as it is kept and exchanged.
+struct CalibrationRecord {
+    ProcamCalibration result;
+    CalibrationSource source;
+};
+
+/// Schema version of our JSON that this program writes; newer ones are refused.
+inline constexpr int kCalibrationSchema = 1;
+
+/// Our JSON; the README says what is in it ("Calibration files"). Throws InvalidInput for numbers that are not finite.
+[[nodiscard]] std::string calibrationText(const CalibrationRecord& record);
+/// Reads it back; what other programs leave out (figures of quality, views) stays empty. `name` stands in errors.
+/// Throws DataError naming the key and the remedy.
+[[nodiscard]] CalibrationRecord parseCalibration(std::string_view text, const std::string& name);
+
+// Parts of a calibration from OpenCV's matrices, for readers. Each returns what is wrong, as the end of a sentence
+// about the matrix; empty when nothing is.
+[[nodiscard]] std::string setIntrinsics(CalibratedDevice& device, const cv::Matx33d& matrix);
+[[nodiscard]] std::string setDistortion(CalibratedDevice& device, const std::vector<double>& terms);
+/// The camera's frame to the projector's.
+[[nodiscard]] std::string setRig(ProcamCalibration& result, const cv::Matx33d& rotation, const cv::Vec3d& shift);
+
+} // namespace lumorph
