@@ -10,6 +10,7 @@
 
 #include "app/studio/widgets/panel.h"
 #include "app/workspaces/calibrate/calibrate_commands.h"
+#include "calibration/lab/lab_capture.h"
 
 namespace lumorph::studio {
 namespace {
@@ -94,6 +95,8 @@ void SetupForm::addSource(QVBoxLayout& column) {
     fault_->setObjectName("calibrate.fault");
     fault_->setToolTip("To see what the studio says when something goes wrong");
     fault_->addItem("Nothing", -1);
+    for (const Cause fault : labFaults())
+        fault_->addItem(wordsOf(Finding{fault, {}, {}, {}, {}}).title, static_cast<int>(fault));
     faultRow_ = makeRow("&Goes wrong", fault_, this);
     connect(fault_, &QComboBox::activated, this, [this] {
         edit([this](CalibrationSetup& setup) {
