@@ -101,7 +101,7 @@ std::vector<PoseResiduals> residualsOf(const std::vector<ViewObservations>& view
     std::vector<PoseResiduals> all;
     for (std::size_t i = 0; i < views.size() && i < solved.state.cameraFromBoard.size(); ++i) {
         PoseResiduals one{views[i].name, {}, {}};
-        const auto corners = cameraErrors(views[i], solved.camera.lens, solved.state.cameraFromBoard[i]);
+        const auto corners = cameraErrors(views[i], solved.state, solved.state.cameraFromBoard[i]);
         for (std::size_t k = 0; k < corners.size(); ++k) one.camera.push_back({views[i].corners.seen[k], corners[k]});
         const auto points = projectorErrors(views[i], solved.state, solved.state.cameraFromBoard[i]);
         const std::size_t every = points.size() / kMost + 1;
