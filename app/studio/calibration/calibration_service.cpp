@@ -49,6 +49,15 @@ CalibrationPose poseOf(const std::string& name, const ReadPose& read, cv::Size p
     return pose;
 }
 
+/// Of the images of a pose the one that shows most.
+cv::Mat brightestOf(const std::vector<cv::Mat>& images) {
+    cv::Mat brightest;
+    double most = -1.0;
+    for (const cv::Mat& image : images)
+        if (const double mean = cv::mean(image)[0]; mean > most) most = mean, brightest = image;
+    return brightest;
+}
+
 CalibrationPose poseRefusedBy(const Finding& finding, const cv::Mat& picture) {
     CalibrationPose pose;
     pose.name = finding.view;
@@ -62,11 +71,12 @@ CalibrationPose poseRefusedBy(const Finding& finding, const cv::Mat& picture) {
     return pose;
 }
 
-/// The image that a refusal is about, or the last of its pose: by convention a flat one.
+/// The image that a refusal is about, or one of its pose.
 cv::Mat pictureOfFinding(const std::vector<CapturedView>& views, const Finding& finding) {
     for (const CapturedView& view : views) {
         if (view.name != finding.view || view.files.empty()) continue;
-        std::filesystem::path file = view.files.back();
+        // By custom white is the one before the last.
+        std::filesystem::path file = view.files.size() > 1 ? view.files[view.files.size() - 2] : view.files.back();
         for (const auto& one : view.files)
             if (one.filename() == finding.file) file = one;
         try {
@@ -491,7 +501,7 @@ void CalibrationService::photograph() {
         if (captured.findings.refusal) {
             Finding finding = *captured.findings.refusal;
             if (finding.view.empty()) finding.view = captured.name;
-            return poseRefusedBy(finding, captured.images.empty() ? cv::Mat() : captured.images.back());
+            return poseRefusedBy(finding, brightestOf(captured.images));
         }
         progress.report(0.85, "reading the patterns");
         const cv::Size projector(size.x, size.y);
@@ -508,7 +518,7 @@ void CalibrationService::photograph() {
             Finding finding = refused.finding();
             // A projector of another size, and such, is of the whole capture; here it shows in this pose.
             if (finding.view.empty()) finding.view = captured.name;
-            return poseRefusedBy(finding, captured.images.back());
+            return poseRefusedBy(finding, brightestOf(captured.images));
         }
     };
     jobs_.runWith<CalibrationPose>(

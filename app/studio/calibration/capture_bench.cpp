@@ -19,6 +19,7 @@ namespace lumorph::studio {
 namespace {
 
 constexpr int kLabSpare = 6; // poses beyond those that are wanted
+constexpr int kLabCameraWidth = 1280;
 constexpr std::uint32_t kLabSeed = 20;
 constexpr double kGuideFocal = 1.3; // of the picture's width, while nothing is known
 constexpr double kRadians = std::numbers::pi / 180.0;
@@ -35,7 +36,7 @@ cv::Mat greyOf(cv::Mat picture) {
 cv::Mat whiteOf(cv::Size size) { return {size, CV_8U, cv::Scalar(255)}; }
 
 /// The projector as somebody has put it up: near where the room has it, and with another zoom.
-Installation labTruth(const CalibrationSetup& setup, const Installation& room) {
+Installation labTruth(const Installation& room) {
     Installation truth = defaultInstallation();
     InstalledProjector& projector = truth.projectors.front();
     if (!room.projectors.empty()) projector.camera = withSize(projector.camera, room.projectors.front().camera.size);
@@ -46,8 +47,9 @@ Installation labTruth(const CalibrationSetup& setup, const Installation& room) {
     projector.camera.cameraFromWorld = turned;
     projector.camera.focal *= 1.01;
     truth.cameras.resize(1);
-    truth.cameras.front().camera =
-        withSize(defaultLabCamera(projector.camera), {setup.labCamera.width, setup.labCamera.height});
+    // As many pixels as the projector, as far as pictures are worked out quickly.
+    const int width = std::clamp(projector.camera.size.x, 320, kLabCameraWidth);
+    truth.cameras.front().camera = withSize(defaultLabCamera(projector.camera), {width, width * 4 / 5});
     return truth;
 }
 
@@ -72,7 +74,7 @@ private:
 class LabBench final : public CaptureBench {
 public:
     LabBench(const CalibrationSetup& setup, const Installation& room)
-        : setup_(setup), truth_(labTruth(setup, room)), lab_(truth_, setup.board, {}, kLabSeed), camera_(lab_, clock_),
+        : setup_(setup), truth_(labTruth(room)), lab_(truth_, setup.board, {}, kLabSeed), camera_(lab_, clock_),
           display_(openLabDisplay(lab_)), poses_(lab_.proposePoses(setup.poses + kLabSpare)) {
         if (!setup.fault) return;
         LabCapture capture;
