@@ -300,7 +300,7 @@ Alternative strangeLens(const std::vector<ViewObservations>& views, const Procam
     std::vector<PlacedError> camera, projector;
     for (std::size_t v = 0; v < views.size(); ++v) {
         const ViewObservations& view = views[v];
-        const auto corners = cameraErrors(view, result.state.camera, result.state.cameraFromBoard[v]);
+        const auto corners = cameraErrors(view, result.state, result.state.cameraFromBoard[v]);
         for (std::size_t i = 0; i < corners.size(); ++i)
             camera.push_back({view.corners.seen[i], corners[i], static_cast<int>(v)});
         const auto points = projectorErrors(view, result.state, result.state.cameraFromBoard[v]);
