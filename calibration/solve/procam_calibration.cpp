@@ -82,6 +82,13 @@ private:
     double single_ = 0.0, scaled_ = 0.0, patches_ = 0.0;
 };
 
+std::string pixels(double value) {
+    std::ostringstream text;
+    text.precision(2);
+    text << std::fixed << value << " pixels";
+    return text.str();
+}
+
 /// Solves a capture step by step; the state is what is known so far.
 class ProcamSolver {
 public:
@@ -388,10 +395,8 @@ private:
         if (std::max(boundedDoubt(0, state_.camera),
                      projector ? boundedDoubt(kProjectorPlace, state_.projector) : 0.0) > kWorstFocal)
             throw frontal();
-        if (!(result_.rms < kFits))
-            throw CaptureRefused({Cause::modelDoesNotFit, result_.worstView, "",
-                                  "no lens explains the capture: " + pixels(result_.rms) + " of error remain",
-                                  "look at this pose first; check the board's kind and that it is flat"});
+        const std::optional<Finding> misfit = misfitOf(result_);
+        if (misfit && options_.judgesFit) throw CaptureRefused(*misfit);
         if (!projector) return;
         if (views_.size() < 4) {
             result_.warnings.push_back({Cause::tooFewViews, "", "", "with three poses no two halves can be compared",
@@ -410,13 +415,6 @@ private:
                                         "check that the board is flat and that nothing moved or refocused"});
     }
 
-    static std::string pixels(double value) {
-        std::ostringstream text;
-        text.precision(2);
-        text << std::fixed << value << " pixels";
-        return text.str();
-    }
-
     const std::vector<ViewObservations>& views_;
     ViewChoice use_;
     Progress progress_;
@@ -428,6 +426,13 @@ private:
 };
 
 } // namespace
+
+std::optional<Finding> misfitOf(const ProcamCalibration& result) {
+    if (result.rms < kFits) return std::nullopt;
+    return Finding{Cause::modelDoesNotFit, result.worstView, "",
+                   "no lens explains the capture: " + pixels(result.rms) + " of error remain",
+                   "look at this pose first; check the board's kind and that it is flat"};
+}
 
 ProcamCalibration calibrateProcam(const std::vector<ViewObservations>& views, cv::Size camera, cv::Size projector,
                                   const SolveOptions& options, const Progress& progress) {

@@ -49,6 +49,7 @@ struct ProcamCalibration {
 struct SolveOptions {
     std::optional<double> cameraFocal;    ///< pixels; to begin with. Nothing: found without
     std::optional<double> projectorFocal; ///< likewise
+    bool judgesFit = true;                ///< refuses errors that no lens explains; else that is the caller's to do
 };
 
 /// Solves for camera, projector and boards together. The distortion model of each device is the simplest whose error on
@@ -57,6 +58,9 @@ struct SolveOptions {
 [[nodiscard]] ProcamCalibration calibrateProcam(const std::vector<ViewObservations>& views, cv::Size camera,
                                                 cv::Size projector, const SolveOptions& options = {},
                                                 const Progress& progress = {});
+
+/// Why a solution is to be refused for the errors that remain; nothing where they are bearable.
+[[nodiscard]] std::optional<Finding> misfitOf(const ProcamCalibration& result);
 
 /// The camera alone; the projector's part stays empty.
 [[nodiscard]] ProcamCalibration calibrateIntrinsics(const std::vector<ViewObservations>& views, cv::Size camera,
