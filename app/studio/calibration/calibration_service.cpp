@@ -2,7 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <condition_variable>
 #include <mutex>
+#include <stop_token>
+#include <thread>
 #include <utility>
 #include <variant>
 
@@ -13,6 +16,7 @@
 #include "app/studio/calibration/capture_bench.h"
 #include "app/studio/calibration/room_calibration.h"
 #include "calibration/doctor/capture_calibration.h"
+#include "calibration/doctor/sequence_check.h"
 #include "core/base/error.h"
 
 namespace lumorph::studio {
@@ -45,6 +49,15 @@ CalibrationPose poseOf(const std::string& name, const ReadPose& read, cv::Size p
     return pose;
 }
 
+/// Of the images of a pose the one that shows most.
+cv::Mat brightestOf(const std::vector<cv::Mat>& images) {
+    cv::Mat brightest;
+    double most = -1.0;
+    for (const cv::Mat& image : images)
+        if (const double mean = cv::mean(image)[0]; mean > most) most = mean, brightest = image;
+    return brightest;
+}
+
 CalibrationPose poseRefusedBy(const Finding& finding, const cv::Mat& picture) {
     CalibrationPose pose;
     pose.name = finding.view;
@@ -58,11 +71,12 @@ CalibrationPose poseRefusedBy(const Finding& finding, const cv::Mat& picture) {
     return pose;
 }
 
-/// The image that a refusal is about, or the last of its pose: by convention a flat one.
+/// The image that a refusal is about, or one of its pose.
 cv::Mat pictureOfFinding(const std::vector<CapturedView>& views, const Finding& finding) {
     for (const CapturedView& view : views) {
         if (view.name != finding.view || view.files.empty()) continue;
-        std::filesystem::path file = view.files.back();
+        // By custom white is the one before the last.
+        std::filesystem::path file = view.files.size() > 1 ? view.files[view.files.size() - 2] : view.files.back();
         for (const auto& one : view.files)
             if (one.filename() == finding.file) file = one;
         try {
@@ -130,10 +144,41 @@ struct CalibrationService::Mailbox {
     int index = 0, count = 0;
 };
 
+/// Looks through the camera beside the window, one look at a time; the newest order wins.
+class CalibrationService::Looker {
+public:
+    using Look = std::function<void(const Progress&)>;
+    Looker() : thread_([this](const std::stop_token& stop) { run(stop); }) {}
+    void look(Look look) {
+        const std::scoped_lock lock(mutex_);
+        next_ = std::move(look);
+        wake_.notify_one();
+    }
+
+private:
+    void run(const std::stop_token& stop) {
+        while (true) {
+            Look look;
+            {
+                std::unique_lock lock(mutex_);
+                if (!wake_.wait(lock, stop, [this] { return next_ != nullptr; })) return;
+                look = std::exchange(next_, nullptr);
+            }
+            look(Progress({}, stop));
+        }
+    }
+
+    std::mutex mutex_;
+    std::condition_variable_any wake_;
+    Look next_;
+    std::jthread thread_; ///< last, so that it has ended before the rest goes
+};
+
 CalibrationService::CalibrationService(Settings& settings, StudioDocument& document, Jobs& jobs, Notices& notices,
                                        DisplayOpener openDisplay, VersionTaker take, QObject* parent)
     : QObject(parent), settings_(settings), document_(document), openDisplay_(std::move(openDisplay)),
-      take_(std::move(take)), jobs_(*this, jobs, notices), liveTimer_(new QTimer(this)) {
+      take_(std::move(take)), jobs_(*this, jobs, notices), liveTimer_(new QTimer(this)),
+      looker_(std::make_unique<Looker>()) {
     state_.setup = keptSetup(settings, keptWay(settings));
     liveTimer_->setSingleShot(true);
     liveTimer_->setInterval(kLiveMilliseconds);
@@ -180,7 +225,6 @@ void CalibrationService::setSetup(const CalibrationSetup& setup) {
 void CalibrationService::beginAnew() {
     cancel();
     jobs_.stop("open");
-    jobs_.stop("look");
     isLooking_ = false;
     ++benchTry_;
     bench_ = nullptr;
@@ -386,30 +430,45 @@ void CalibrationService::look() {
     if (!active_ || !bench_ || isLooking_ || state_.work == CalibrationState::Work::capturing) return;
     isLooking_ = true;
     const int pose = state_.counting();
-    jobs_.runWith<LiveSight>(
-        "look", "calibrate.live", tr("Looking through the camera"),
-        [bench = bench_, board = state_.setup.board, pose](const Progress& progress) {
+    looker_->look([this, bench = bench_, board = state_.setup.board, pose](const Progress& progress) {
+        LiveSight sight;
+        std::string trouble;
+        try {
             const std::scoped_lock lock(bench->mutex);
             const cv::Mat picture = bench->look(progress);
-            LiveSight sight;
             sight.camera = {picture.cols, picture.rows};
             sight.picture = pictureOfMat(picture);
             sight.corners = liveCorners(picture, board);
             for (const cv::Point2d& point : bench->ghost(pose)) sight.ghost.emplace_back(point.x, point.y);
-            return sight;
-        },
-        [this](LiveSight sight) {
-            isLooking_ = false;
-            sight.words = sight.corners.empty() ? tr("No board in sight") : tr("Board in sight");
-            live_ = std::move(sight);
-            if (bench_ && bench_->isLive() && active_) liveTimer_->start();
-            emit liveChanged();
-        },
-        [this](const std::exception& error) {
-            isLooking_ = false;
-            bench_ = nullptr;
-            setTrouble(error);
-        });
+        } catch (const std::exception& error) {
+            trouble = error.what();
+        }
+        QMetaObject::invokeMethod(
+            this,
+            [this, bench, sight = std::move(sight), trouble = std::move(trouble)]() mutable {
+                takeSight(bench, std::move(sight), trouble);
+            },
+            Qt::QueuedConnection);
+    });
+}
+
+void CalibrationService::takeSight(const std::shared_ptr<CaptureBench>& from, LiveSight sight,
+                                   const std::string& trouble) {
+    if (from != bench_) return;
+    isLooking_ = false;
+    if (state_.work == CalibrationState::Work::capturing) return;
+    if (!trouble.empty()) {
+        bench_ = nullptr;
+        state_.trouble = QString::fromStdString(trouble);
+        live_ = {};
+        emit liveChanged();
+        emit changed();
+        return;
+    }
+    sight.words = sight.corners.empty() ? tr("No board in sight") : tr("Board in sight");
+    live_ = std::move(sight);
+    if (bench_->isLive() && active_) liveTimer_->start();
+    emit liveChanged();
 }
 
 void CalibrationService::photographRest() {
@@ -424,8 +483,6 @@ void CalibrationService::photograph() {
     clearResults();
     std::erase_if(state_.poses, [](const CalibrationPose& pose) { return pose.refusal.has_value(); });
     if (!bench_) return openBench();
-    jobs_.stop("look");
-    isLooking_ = false;
     state_.work = CalibrationState::Work::capturing;
     state_.stage = tr("Waiting for the camera");
     mailbox_ = std::make_shared<Mailbox>();
@@ -444,21 +501,24 @@ void CalibrationService::photograph() {
         if (captured.findings.refusal) {
             Finding finding = *captured.findings.refusal;
             if (finding.view.empty()) finding.view = captured.name;
-            return poseRefusedBy(finding, captured.images.empty() ? cv::Mat() : captured.images.back());
+            return poseRefusedBy(finding, brightestOf(captured.images));
         }
         progress.report(0.85, "reading the patterns");
         const cv::Size projector(size.x, size.y);
         const CapturedView view{captured.name, {captured.files.begin(), captured.files.end()}};
         try {
-            const ReadPose read = readPose(view, captured.images, setup.board, parsePattern(setup.pattern, projector));
+            const CaptureOrder order = parsePattern(setup.pattern, projector);
+            if (const auto wrong = checkCounts({view}, order)) throw CaptureRefused(*wrong);
+            const ReadPose read = readPose(view, captured.images, setup.board, order);
             CalibrationPose pose = poseOf(captured.name, read, projector);
             pose.warnings.insert(pose.warnings.end(), captured.findings.warnings.begin(),
                                  captured.findings.warnings.end());
             return pose;
         } catch (const CaptureRefused& refused) {
             Finding finding = refused.finding();
+            // A projector of another size, and such, is of the whole capture; here it shows in this pose.
             if (finding.view.empty()) finding.view = captured.name;
-            return poseRefusedBy(finding, captured.images.back());
+            return poseRefusedBy(finding, brightestOf(captured.images));
         }
     };
     jobs_.runWith<CalibrationPose>(

@@ -78,9 +78,11 @@ signals:
 
 private:
     struct Mailbox;
+    class Looker;
     void read();
     void openBench();
     void look();
+    void takeSight(const std::shared_ptr<CaptureBench>& from, LiveSight sight, const std::string& trouble);
     void clearResults();
     void poll();
     void endWork();
@@ -101,9 +103,10 @@ private:
     QTimer* liveTimer_;
     bool active_ = false;
     bool isLooking_ = false;
-    bool rest_ = false; ///< the poses that are missing follow by themselves
-    int benchTry_ = 0;  ///< counts, so that a bench that comes too late is not taken
-    cv::Size camera_;   ///< of the poses
+    bool rest_ = false;              ///< the poses that are missing follow by themselves
+    int benchTry_ = 0;               ///< counts, so that a bench that comes too late is not taken
+    cv::Size camera_;                ///< of the poses
+    std::unique_ptr<Looker> looker_; ///< last: it refers to the rest
 };
 
 } // namespace lumorph::studio

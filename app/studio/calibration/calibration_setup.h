@@ -29,7 +29,6 @@ struct CalibrationSetup {
     std::string camera;           ///< "/dev/video0"; empty: not chosen yet
     int poses = 6;                ///< that are wanted
     std::optional<Cause> fault;   ///< what goes wrong in the lab on purpose
-    cv::Size labCamera{1280, 1024};
     bool operator==(const CalibrationSetup&) const = default;
 };
 

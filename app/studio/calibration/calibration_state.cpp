@@ -260,6 +260,22 @@ QString causeTitle(Cause cause) {
         return tr("The poses contradict each other");
     case Cause::undetermined:
         return tr("The poses leave something open");
+    case Cause::underexposed:
+        return tr("The pictures are too dark");
+    case Cause::exposureDrifts:
+        return tr("The brightness changes by itself");
+    case Cause::keystone:
+        return tr("The projector bends or scales its picture");
+    case Cause::boardWarped:
+        return tr("The board is not flat");
+    case Cause::squareSize:
+        return tr("The board's squares are not as said");
+    case Cause::strangeLens:
+        return tr("A lens bends light in a way that no model knows");
+    case Cause::projectorGamma:
+        return tr("The projector's brightness curve bends the patterns");
+    case Cause::cameraRefocused:
+        return tr("The camera has refocused");
     default:
         return tr("This capture cannot be trusted");
     }
@@ -352,6 +368,31 @@ std::vector<Finding> doubtsOf(const CalibrationResult& result) {
                           "the other poses put its light " + number(worst, 1).toStdString() + " pixels beside",
                           "photograph it again, or leave it out"});
     return doubts;
+}
+
+InstallationVersion versionOf(const CalibrationState& state, const Installation& installation) {
+    const CalibrationResult& result = *state.result;
+    InstallationVersion version;
+    version.date = result.date;
+    version.title = "Projector and camera by structured light";
+    const auto add = [&](const char* name, const std::optional<double>& value, const char* unit) {
+        if (value) version.figures.push_back({name, *value, unit});
+    };
+    std::optional<double> heldOut;
+    for (const ViewQuality& view : result.solved.views)
+        if (view.heldOut) heldOut = std::max(heldOut.value_or(0.0), *view.heldOut);
+    add("Light lands within", result.millimetres, "mm");
+    add("Truly beside", result.trueMillimetres, "mm");
+    add("Held out, worst", heldOut, "px");
+    add("Camera error", result.solved.camera.rms, "px");
+    add("Projector error", result.solved.projector.rms, "px");
+    add("Projector focal", result.solved.projector.lens[kFocalLength], "px");
+    add("Camera focal", result.solved.camera.lens[kFocalLength], "px");
+    add("Poses", static_cast<double>(result.solved.views.size()), "");
+    version.inputs = {wayWords(result.setup).toStdString(), boardWords(result.setup.board).toStdString(),
+                      result.setup.pattern};
+    version.installation = installation;
+    return version;
 }
 
 std::vector<ViewObservations> countingViews(const CalibrationState& state) {

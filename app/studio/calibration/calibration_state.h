@@ -11,7 +11,7 @@
 #include "app/studio/calibration/pose_pictures.h"
 #include "calibration/solve/observations.h"
 #include "calibration/solve/procam_calibration.h"
-#include "core/geometry/calibrated_camera.h"
+#include "core/scene/installation_store.h"
 
 namespace lumorph::studio {
 
@@ -114,6 +114,9 @@ struct FindingWords {
 
 /// Reasons why a result is to be doubted, the gravest first; none: it is good.
 [[nodiscard]] std::vector<Finding> doubtsOf(const CalibrationResult& result);
+
+/// What is kept of it beside the installation: date, figures, inputs.
+[[nodiscard]] InstallationVersion versionOf(const CalibrationState& state, const Installation& installation);
 
 /// What the poses that count tell together.
 [[nodiscard]] std::vector<ViewObservations> countingViews(const CalibrationState& state);

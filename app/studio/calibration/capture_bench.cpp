@@ -11,12 +11,15 @@
 #include <opencv2/imgproc.hpp>
 
 #include "calibration/lab/board_lab.h"
+#include "calibration/lab/lab_capture.h"
+#include "core/base/clock.h"
 #include "core/base/error.h"
 
 namespace lumorph::studio {
 namespace {
 
 constexpr int kLabSpare = 6; // poses beyond those that are wanted
+constexpr int kLabCameraWidth = 1280;
 constexpr std::uint32_t kLabSeed = 20;
 constexpr double kGuideFocal = 1.3; // of the picture's width, while nothing is known
 constexpr double kRadians = std::numbers::pi / 180.0;
@@ -33,7 +36,7 @@ cv::Mat greyOf(cv::Mat picture) {
 cv::Mat whiteOf(cv::Size size) { return {size, CV_8U, cv::Scalar(255)}; }
 
 /// The projector as somebody has put it up: near where the room has it, and with another zoom.
-Installation labTruth(const CalibrationSetup& setup, const Installation& room) {
+Installation labTruth(const Installation& room) {
     Installation truth = defaultInstallation();
     InstalledProjector& projector = truth.projectors.front();
     if (!room.projectors.empty()) projector.camera = withSize(projector.camera, room.projectors.front().camera.size);
@@ -44,30 +47,61 @@ Installation labTruth(const CalibrationSetup& setup, const Installation& room) {
     projector.camera.cameraFromWorld = turned;
     projector.camera.focal *= 1.01;
     truth.cameras.resize(1);
-    truth.cameras.front().camera =
-        withSize(defaultLabCamera(projector.camera), {setup.labCamera.width, setup.labCamera.height});
+    // As many pixels as the projector, as far as pictures are worked out quickly.
+    const int width = std::clamp(projector.camera.size.x, 320, kLabCameraWidth);
+    truth.cameras.front().camera = withSize(defaultLabCamera(projector.camera), {width, width * 4 / 5});
     return truth;
 }
+
+/// The lab has a time of its own: a picture takes a tenth of a second, however long it takes to work it out.
+class LabTimeCamera final : public CaptureCamera {
+public:
+    LabTimeCamera(BoardLab& lab, std::shared_ptr<ManualClock> clock)
+        : camera_(openLabCamera(lab)), clock_(std::move(clock)) {}
+    [[nodiscard]] cv::Mat grab(const Progress& progress) override {
+        cv::Mat picture = camera_->grab(progress);
+        clock_->advance(Microseconds{100'000});
+        return picture;
+    }
+    [[nodiscard]] std::string name() const override { return camera_->name(); }
+    [[nodiscard]] cv::Size size() const override { return camera_->size(); }
+
+private:
+    std::unique_ptr<CaptureCamera> camera_;
+    std::shared_ptr<ManualClock> clock_;
+};
 
 class LabBench final : public CaptureBench {
 public:
     LabBench(const CalibrationSetup& setup, const Installation& room)
-        : setup_(setup), truth_(labTruth(setup, room)), lab_(truth_, setup.board, {}, kLabSeed),
-          camera_(openLabCamera(lab_)), display_(openLabDisplay(lab_)),
-          poses_(lab_.proposePoses(setup.poses + kLabSpare)) {}
+        : setup_(setup), truth_(labTruth(room)), lab_(truth_, setup.board, {}, kLabSeed), camera_(lab_, clock_),
+          display_(openLabDisplay(lab_)), poses_(lab_.proposePoses(setup.poses + kLabSpare)) {
+        if (!setup.fault) return;
+        LabCapture capture;
+        capture.room = truth_;
+        capture.board = boardText(setup.board);
+        capture.pattern = setup.pattern;
+        capture.poses = setup.poses;
+        capture.seed = kLabSeed;
+        capture.fault = setup.fault;
+        faulty_ = std::make_unique<LabCapturer>(std::move(capture));
+    }
 
     [[nodiscard]] CapturedPose capture(int pose, const std::function<void(const Shot&)>& onShot,
                                        const Progress& progress) override {
         lab_.lay(poses_[indexOf(pose)]);
+        // Once the fault was told it is mended: what is photographed again is sound.
+        if (faulty_ && pose == faultyPoses_ && pose < setup_.poses) return captureFaulty(pose, onShot, progress);
         if (!capturer_) {
             const glm::ivec2 size = lab_.projector().camera.size;
             PoseCaptureSettings settings;
             settings.order = parsePattern(setup_.pattern, {size.x, size.y});
             settings.board = setup_.board;
+            settings.clock = clock_;
             settings.onShot = [this](const Shot& shot) {
                 if (onShot_) onShot_(shot);
             };
-            capturer_ = std::make_unique<PoseCapture>(*camera_, *display_, std::move(settings));
+            capturer_ = std::make_unique<PoseCapture>(camera_, *display_, std::move(settings));
         }
         onShot_ = onShot;
         CapturedPose captured = capturer_->capture(poseName(pose), progress);
@@ -77,7 +111,7 @@ public:
 
     [[nodiscard]] cv::Mat look(const Progress& progress) override {
         display_->show(whiteOf(display_->size()), progress);
-        cv::Mat picture = camera_->grab(progress);
+        cv::Mat picture = camera_.grab(progress);
         display_->clear();
         return picture;
     }
@@ -96,6 +130,22 @@ public:
     [[nodiscard]] const Installation* truth() const override { return &truth_; }
 
 private:
+    [[nodiscard]] CapturedPose captureFaulty(int pose, const std::function<void(const Shot&)>& onShot,
+                                             const Progress& progress) {
+        ++faultyPoses_;
+        CapturedPose captured;
+        captured.name = poseName(pose);
+        const std::vector<LabShot> shots = faulty_->takeNext(progress);
+        for (const LabShot& shot : shots) {
+            captured.images.push_back(shot.grey);
+            captured.files.push_back(shot.file);
+        }
+        if (!shots.empty() && onShot)
+            onShot({static_cast<int>(shots.size()) - 1, static_cast<int>(shots.size()), shots.back().grey,
+                    shots.back().file});
+        return captured;
+    }
+
     [[nodiscard]] std::size_t indexOf(int pose) const {
         return static_cast<std::size_t>(std::max(0, pose)) % poses_.size();
     }
@@ -103,9 +153,12 @@ private:
     CalibrationSetup setup_;
     Installation truth_;
     BoardLab lab_;
-    std::unique_ptr<CaptureCamera> camera_;
+    std::shared_ptr<ManualClock> clock_ = std::make_shared<ManualClock>();
+    LabTimeCamera camera_;
     std::unique_ptr<PatternDisplay> display_;
     std::vector<glm::dmat4> poses_;
+    std::unique_ptr<LabCapturer> faulty_;
+    int faultyPoses_ = 0;
     std::function<void(const Shot&)> onShot_;
     std::unique_ptr<PoseCapture> capturer_;
 };

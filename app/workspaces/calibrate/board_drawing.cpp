@@ -10,14 +10,14 @@ namespace lumorph::studio {
 namespace {
 
 constexpr int kMostSquares = 60; // along a side: more could not be seen
-constexpr double kRing = 3.0;
+constexpr double kDot = 1.8;
 
 } // namespace
 
 BoardDrawing::BoardDrawing(QWidget* parent) : QWidget(parent) {
     setObjectName("calibrate.board.drawing");
     setAccessibleName("Drawing of the board");
-    setToolTip("Rings mark the points that are counted; the bar marks what is measured in millimetres");
+    setToolTip("Dots mark the points that are counted; the bar marks what is measured in millimetres");
     setMinimumHeight(110);
 }
 
@@ -64,10 +64,9 @@ void BoardDrawing::paintEvent(QPaintEvent* /*event*/) {
             }
     }
     if (chess && side > 5.0) {
-        painter.setBrush(Qt::NoBrush);
-        painter.setPen(QPen(colors.accent, 1.5));
+        painter.setBrush(colors.accent);
         for (int y = 1; y <= rows; ++y)
-            for (int x = 1; x <= columns; ++x) painter.drawEllipse(place(x, y), kRing, kRing);
+            for (int x = 1; x <= columns; ++x) painter.drawEllipse(place(x, y), kDot, kDot);
     }
     // What is measured.
     painter.setPen(QPen(colors.accent, 2.0));

@@ -19,6 +19,8 @@ struct CalibrateParts {
 [[nodiscard]] QWidget* makeStepsDock(const CalibrateParts& parts);
 /// Figures in words, residuals, and what is to be doubted.
 [[nodiscard]] QWidget* makeResultDock(const CalibrateParts& parts);
+/// Earlier results, beside what is in use.
+[[nodiscard]] QWidget* makeVersionsDock(const CalibrateParts& parts);
 /// The card with the next step over the picture.
 [[nodiscard]] QWidget* makeCalibrateView(const CalibrateParts& parts);
 

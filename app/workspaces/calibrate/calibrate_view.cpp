@@ -2,6 +2,7 @@
 
 #include <QHBoxLayout>
 #include <QLabel>
+#include <QProgressBar>
 #include <QVBoxLayout>
 #include <opencv2/imgproc.hpp>
 
@@ -47,7 +48,14 @@ public:
         column->setSpacing(8);
         column->addWidget(card_);
         column->addWidget(makeNoticeBar(parts.studio.notices, "calibrate"));
-        column->addWidget(makeJobBar(parts.studio.jobs, "calibrate"));
+        progress_ = new QProgressBar(this);
+        progress_->setObjectName("calibrate.progress");
+        progress_->setRange(0, 1000);
+        progress_->setTextVisible(false);
+        QSizePolicy keeps = progress_->sizePolicy();
+        keeps.setRetainSizeWhenHidden(true); // so that nothing jumps when work begins
+        progress_->setSizePolicy(keeps);
+        column->addWidget(progress_);
         column->addWidget(makeBar());
         column->addWidget(picture_, 1);
         legend_ = new QLabel(this);
@@ -97,6 +105,8 @@ private:
     void refresh() {
         const CalibrationState& state = parts_.service.state();
         card_->show(cardOf(nextOf(state)));
+        progress_->setVisible(state.work != CalibrationState::Work::none);
+        progress_->setValue(static_cast<int>(1000.0 * state.fraction));
         rest_->setVisible(state.setup.way == CaptureWay::lab && state.counting() < state.setup.poses &&
                           state.work == CalibrationState::Work::none && !state.result);
         // A pose that has just come in, or the one that was refused, is what one wants to see.
@@ -216,6 +226,7 @@ private:
     CalibrateParts parts_;
     StepCard* card_;
     CapturePicture* picture_;
+    QProgressBar* progress_ = nullptr;
     Segments* segments_ = nullptr;
     QLabel* poseName_ = nullptr;
     QPushButton* rest_ = nullptr;

@@ -1,23 +1,34 @@
 #include "app/workspaces/calibrate/calibrate_workspace.h"
 
+#include <QGuiApplication>
+#include <QScreen>
+
+#include "app/studio/output/pattern_screen.h"
 #include "app/workspaces/calibrate/calibrate_commands.h"
 #include "app/workspaces/calibrate/calibrate_docks.h"
-#include "core/base/error.h"
 
 namespace lumorph::studio {
 namespace {
 
-CalibrationService::DisplayOpener displayOpener(Studio& /*studio*/) {
-    return [](std::size_t) -> std::unique_ptr<PatternDisplay> {
-        throw DeviceError("projector", "patterns cannot be shown yet", "use a folder of images");
+/// The projector's own window; where it is not open yet it goes to a second screen, if there is one.
+CalibrationService::DisplayOpener displayOpener(Studio& studio) {
+    return [&studio](std::size_t projector) -> std::unique_ptr<PatternDisplay> {
+        if (studio.outputs.window(projector) == nullptr) {
+            const QScreen* own = QGuiApplication::primaryScreen();
+            for (const QScreen* screen : QGuiApplication::screens())
+                if (screen != own) {
+                    studio.outputs.showOnScreen(projector, screen->name());
+                    break;
+                }
+        }
+        if (studio.outputs.window(projector) == nullptr) studio.outputs.showInWindow(projector);
+        return std::make_unique<PatternScreen>(studio.outputs, projector);
     };
 }
 
 CalibrationService::VersionTaker versionTaker(Studio& studio) {
-    return [&studio](const CalibrationState& /*state*/, const Installation& installation) {
-        const auto taken = std::make_shared<const Installation>(installation);
-        studio.document.change("Use the calibration", [&](StudioState& state) { state.installation = taken; });
-        return true;
+    return [&studio](const CalibrationState& state, const Installation& installation) {
+        return studio.room.takeVersion(versionOf(state, installation));
     };
 }
 
@@ -37,7 +48,8 @@ QWidget* CalibrateWorkspace::makeCentralView() { return makeCalibrateView({studi
 std::vector<WorkspaceDock> CalibrateWorkspace::makeDocks() {
     const CalibrateParts parts{studio_, service_, selection_};
     return {{"dock.calibrate.steps", "Steps", "check", makeStepsDock(parts), Qt::LeftDockWidgetArea, false},
-            {"dock.calibrate.result", "Result", "target", makeResultDock(parts), Qt::RightDockWidgetArea, false}};
+            {"dock.calibrate.result", "Result", "target", makeResultDock(parts), Qt::RightDockWidgetArea, false},
+            {"dock.calibrate.versions", "Versions", "clock", makeVersionsDock(parts), Qt::RightDockWidgetArea, true}};
 }
 
 void CalibrateWorkspace::setActive(bool active) { service_.setActive(active); }

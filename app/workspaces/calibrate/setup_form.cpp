@@ -10,6 +10,7 @@
 
 #include "app/studio/widgets/panel.h"
 #include "app/workspaces/calibrate/calibrate_commands.h"
+#include "calibration/lab/lab_capture.h"
 
 namespace lumorph::studio {
 namespace {
@@ -93,7 +94,11 @@ void SetupForm::addSource(QVBoxLayout& column) {
     fault_ = new QComboBox(this);
     fault_->setObjectName("calibrate.fault");
     fault_->setToolTip("To see what the studio says when something goes wrong");
+    fault_->setSizeAdjustPolicy(QComboBox::AdjustToMinimumContentsLengthWithIcon);
+    fault_->setMinimumContentsLength(8);
     fault_->addItem("Nothing", -1);
+    for (const Cause fault : labFaults())
+        fault_->addItem(wordsOf(Finding{fault, {}, {}, {}, {}}).title, static_cast<int>(fault));
     faultRow_ = makeRow("&Goes wrong", fault_, this);
     connect(fault_, &QComboBox::activated, this, [this] {
         edit([this](CalibrationSetup& setup) {
@@ -110,6 +115,8 @@ void SetupForm::addBoard(QVBoxLayout& column) {
     column.addWidget(drawing_);
     kind_ = new QComboBox(this);
     kind_->setObjectName("calibrate.board.kind");
+    kind_->setSizeAdjustPolicy(QComboBox::AdjustToMinimumContentsLengthWithIcon);
+    kind_->setMinimumContentsLength(8);
     kind_->addItems({"Chessboard", "Circles, every second row shifted", "ChArUco (chessboard with markers)"});
     column.addWidget(makeRow("&Kind", kind_, this));
     connect(kind_, &QComboBox::activated, this, [this](int kind) {
