@@ -1,5 +1,6 @@
 #include "app/workspaces/workspaces.h"
 
+#include "app/workspaces/calibrate/calibrate_workspace.h"
 #include "app/workspaces/devices/devices_workspace.h"
 #include "app/workspaces/field/field_workspace.h"
 #include "app/workspaces/rig/rig_workspace.h"
@@ -12,6 +13,7 @@ std::vector<std::unique_ptr<Workspace>> makeWorkspaces(Studio& studio) {
     workspaces.push_back(std::make_unique<RigWorkspace>(studio));
     workspaces.push_back(std::make_unique<FieldWorkspace>(studio));
     workspaces.push_back(std::make_unique<SceneWorkspace>(studio));
+    workspaces.push_back(std::make_unique<CalibrateWorkspace>(studio));
     workspaces.push_back(std::make_unique<DevicesWorkspace>(studio));
     return workspaces;
 }

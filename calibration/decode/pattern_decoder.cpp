@@ -21,7 +21,7 @@ namespace {
 constexpr float kUnknown = std::numeric_limits<float>::quiet_NaN();
 constexpr double kLeastNoise = 0.4;   // grey levels: rounding alone makes 0.29
 constexpr double kLeastLight = 4.0;   // grey levels
-constexpr double kResolved = 0.2;     // contrast that the median pixel shows of a stripe that the camera resolves
+constexpr double kResolved = 0.45;    // contrast that the median pixel shows of a stripe that the camera resolves
 constexpr float kLeastDirect = 0.25F; // of the light that is switched on and off
 constexpr float kSameEdge = 2.0F;     // camera pixels within which crossings of one edge are noise of each other
 constexpr float kOrderDoubt = 0.35F;  // periods by which a cue may miss the next finer set

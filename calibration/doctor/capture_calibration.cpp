@@ -19,8 +19,8 @@ constexpr int kPointsWanted = 3000; // squares on a board
 constexpr std::size_t kFewestPoints = 60;
 constexpr double kReading = 0.6; // of the whole time
 
-/// One pose as it was read.
-struct ReadView {
+/// One pose of a folder.
+struct FolderPose {
     ViewObservations observations;
     cv::Size size;
     std::optional<Finding> refusal;
@@ -34,35 +34,9 @@ bool isReadableInverted(const std::vector<cv::Mat>& images, CaptureOrder order, 
     return projectorPointsOn(decodeView(images, order), board, kPointsWanted).size() > kFewestPoints;
 }
 
-/// Throws CaptureRefused at the first fault.
-ReadView readView(const CapturedView& view, const CalibrationBoard& board, const CaptureOrder& order) {
-    const auto throwIf = [](const std::optional<Finding>& finding) {
-        if (finding) throw CaptureRefused(*finding);
-    };
-    const std::vector<cv::Mat> images = readImages(view);
-    throwIf(checkSequence(view, images, order));
-    const DecodedView decoded = decodeView(images, order);
-    throwIf(checkProjectorSize(view.name, decoded, order.projector));
-    const std::optional<BoardPoints> found = findBoard(decoded.white, board);
-    if (!found)
-        throw CaptureRefused({Cause::boardNotFound, view.name, "", "the board cannot be found under white light",
-                              "check --board, and that all of the board is lit, sharp and in the picture"});
-    throwIf(checkSteadiness(view, images, order, found->seen));
-    ReadView read{
-        {view.name, *found, projectorPointsOn(decoded, found->seen, kPointsWanted)}, decoded.white.size(), {}, {}};
-    if (const auto exposure = checkExposure(view.name, decoded, found->seen)) read.warnings.push_back(*exposure);
-    if (read.observations.projector.size() < kFewestPoints && isReadableInverted(images, order, found->seen))
-        throw CaptureRefused({Cause::inverseSwapped, view.name, "", "patterns and their inverses are exchanged",
-                              "name the images in the order pattern, inverse, or say so in an order file"});
-    if (read.observations.projector.size() < kFewestPoints)
-        throw CaptureRefused({Cause::boardUnlit, view.name, "", "the patterns can be read on too little of the board",
-                              "bring the board into the projector's light, expose for longer, darken the room"});
-    return read;
-}
-
-std::vector<ReadView> readAll(const std::vector<CapturedView>& views, const CalibrationBoard& board,
-                              const CaptureOrder& order, const Progress& progress) {
-    std::vector<ReadView> all(views.size());
+std::vector<FolderPose> readAll(const std::vector<CapturedView>& views, const CalibrationBoard& board,
+                                const CaptureOrder& order, const PoseReader& onRead, const Progress& progress) {
+    std::vector<FolderPose> all(views.size());
     std::atomic<int> done = 0;
     std::atomic<std::size_t> refused = views.size(); // the first pose that is; those after it need not be read
     // Two at a time: each holds all its images.
@@ -71,24 +45,28 @@ std::vector<ReadView> readAll(const std::vector<CapturedView>& views, const Cali
         tbb::parallel_for(std::size_t{0}, views.size(), [&](std::size_t i) {
             if (progress.cancelled() || i > refused) return;
             try {
-                all[i] = readView(views[i], board, order);
+                ReadPose pose = readPose(views[i], readImages(views[i]), board, order);
+                if (onRead) onRead(i, pose);
+                all[i].size = pose.decoded.white.size();
+                all[i].observations = std::move(pose.observations);
+                all[i].warnings = std::move(pose.warnings);
             } catch (const CaptureRefused& why) {
                 all[i].refusal = why.finding();
                 std::size_t before = refused;
                 while (i < before && !refused.compare_exchange_weak(before, i)) {
                 }
             }
-            progress.report(kReading * ++done / static_cast<double>(views.size()), "reading poses");
+            progress.report(++done / static_cast<double>(views.size()), "reading poses");
         });
     });
     progress.throwIfCancelled();
-    for (const ReadView& view : all) // the first of them, whichever was read first
+    for (const FolderPose& view : all) // the first of them, whichever was read first
         if (view.refusal) throw CaptureRefused(*view.refusal);
     return all;
 }
 
-void requireSameSize(const std::vector<ReadView>& views) {
-    for (const ReadView& view : views)
+void requireSameSize(const std::vector<FolderPose>& views) {
+    for (const FolderPose& view : views)
         if (view.size != views.front().size)
             throw CaptureRefused({Cause::imageSize, view.observations.name, "",
                                   "its images have another size than those of " + views.front().observations.name,
@@ -112,22 +90,59 @@ void requireAgreement(const ProcamCalibration& result) {
 
 } // namespace
 
+ReadPose readPose(const CapturedView& view, const std::vector<cv::Mat>& images, const CalibrationBoard& board,
+                  const CaptureOrder& order) {
+    const auto throwIf = [](const std::optional<Finding>& finding) {
+        if (finding) throw CaptureRefused(*finding);
+    };
+    throwIf(checkSequence(view, images, order));
+    DecodedView decoded = decodeView(images, order);
+    throwIf(checkProjectorSize(view.name, decoded, order.projector));
+    const std::optional<BoardPoints> found = findBoard(decoded.white, board);
+    if (!found)
+        throw CaptureRefused({Cause::boardNotFound, view.name, "", "the board cannot be found under white light",
+                              "check --board, and that all of the board is lit, sharp and in the picture"});
+    throwIf(checkSteadiness(view, images, order, found->seen));
+    ReadPose read{{view.name, *found, projectorPointsOn(decoded, found->seen, kPointsWanted)}, std::move(decoded), {}};
+    if (const auto exposure = checkExposure(view.name, read.decoded, found->seen)) read.warnings.push_back(*exposure);
+    if (read.observations.projector.size() < kFewestPoints && isReadableInverted(images, order, found->seen))
+        throw CaptureRefused({Cause::inverseSwapped, view.name, "", "patterns and their inverses are exchanged",
+                              "name the images in the order pattern, inverse, or say so in an order file"});
+    if (read.observations.projector.size() < kFewestPoints)
+        throw CaptureRefused({Cause::boardUnlit, view.name, "", "the patterns can be read on too little of the board",
+                              "bring the board into the projector's light, expose for longer, darken the room"});
+    return read;
+}
+
+ReadCapture readPoses(const std::vector<CapturedView>& poses, const CalibrationBoard& board, const CaptureOrder& order,
+                      const PoseReader& onRead, const Progress& progress) {
+    if (poses.empty()) throw InvalidInput("poses", "there is none", "give at least one");
+    if (const auto wrong = checkCounts(poses, order)) throw CaptureRefused(*wrong);
+    std::vector<FolderPose> read = readAll(poses, board, order, onRead, progress);
+    requireSameSize(read);
+    ReadCapture capture;
+    capture.camera = read.front().size;
+    for (FolderPose& view : read) {
+        capture.views.push_back(std::move(view.observations));
+        capture.warnings.insert(capture.warnings.end(), view.warnings.begin(), view.warnings.end());
+    }
+    return capture;
+}
+
+ProcamCalibration calibrateCapture(const ReadCapture& capture, cv::Size projector, const SolveOptions& options,
+                                   const Progress& progress) {
+    if (const auto mirrored = checkMirrored(capture.views)) throw CaptureRefused(*mirrored);
+    ProcamCalibration result = calibrateProcam(capture.views, capture.camera, projector, options, progress);
+    requireAgreement(result);
+    result.warnings.insert(result.warnings.end(), capture.warnings.begin(), capture.warnings.end());
+    return result;
+}
+
 ProcamCalibration calibrateProcamFolder(const std::filesystem::path& folder, const CalibrationBoard& board,
                                         const CaptureOrder& order, const SolveOptions& options,
                                         const Progress& progress) {
-    const std::vector<CapturedView> captured = viewsIn(folder);
-    if (const auto wrong = checkCounts(captured, order)) throw CaptureRefused(*wrong);
-    std::vector<ReadView> read = readAll(captured, board, order, progress);
-    requireSameSize(read);
-    std::vector<ViewObservations> views;
-    for (ReadView& view : read) views.push_back(std::move(view.observations));
-    if (const auto mirrored = checkMirrored(views)) throw CaptureRefused(*mirrored);
-    ProcamCalibration result =
-        calibrateProcam(views, read.front().size, order.projector, options, progress.part(kReading, 1.0));
-    requireAgreement(result);
-    for (const ReadView& view : read)
-        result.warnings.insert(result.warnings.end(), view.warnings.begin(), view.warnings.end());
-    return result;
+    const ReadCapture capture = readPoses(viewsIn(folder), board, order, {}, progress.part(0.0, kReading));
+    return calibrateCapture(capture, order.projector, options, progress.part(kReading, 1.0));
 }
 
 ProcamCalibration calibrateIntrinsicsFolder(const std::filesystem::path& folder, const CalibrationBoard& board,

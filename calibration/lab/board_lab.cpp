@@ -148,7 +148,7 @@ struct BoardLab::Data {
         const cv::Rect2d& box = texture.points();
         const double u = (x - box.x) / box.width * 2.0 - 1.0;
         const double v = (y - box.y) / box.height * 2.0 - 1.0;
-        const BoardShape& shape = options.shape;
+        const PrintedBoard& shape = options.shape;
         const double height = shape.across * u * u + shape.twist * u * v + shape.down * v * v;
         return unit() * glm::dvec3(shape.stretch.x * x, shape.stretch.y * y, height);
     }
@@ -181,7 +181,7 @@ std::optional<glm::dvec2> BoardLab::Data::projectorPixel(const glm::dvec3& point
 }
 
 TriangleMesh BoardLab::Data::boardMesh() const {
-    const BoardShape& shape = options.shape;
+    const PrintedBoard& shape = options.shape;
     const bool isFlat = shape.across == 0.0 && shape.twist == 0.0 && shape.down == 0.0;
     const int facets = isFlat ? 1 : kBentFacets;
     const cv::Rect2d& page = texture.page();
@@ -459,6 +459,8 @@ std::vector<glm::dvec3> BoardLab::points() const {
     for (const cv::Point3d& point : pointsOf(data_->board)) all.push_back(data_->place(point.x, point.y));
     return all;
 }
+
+glm::dvec3 BoardLab::place(double x, double y) const { return data_->place(x, y); }
 
 std::optional<glm::dvec2> BoardLab::cameraPixel(const glm::dvec3& point) const {
     const auto ideal = imageOf(data_->cameraLens, point);

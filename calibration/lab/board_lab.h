@@ -14,7 +14,7 @@
 namespace lumorph {
 
 /// How a board differs from what it is called.
-struct BoardShape {
+struct PrintedBoard {
     /// Height of the sheet, towards the frame's +z, in the board's unit: at (X, Y), -1 to 1 between the outermost
     /// points, across X^2 + twist X Y + down Y^2. 0: flat.
     double across = 0.0, twist = 0.0, down = 0.0;
@@ -25,14 +25,14 @@ struct BoardShape {
 struct BoardLabOptions {
     double metresPerUnit = 0.001; ///< of the board
     int samples = 2;              ///< rays a camera pixel, along each side
-    double whiteLevel = 190.0;    ///< grey of white paper that lies on the table under full white; above 255 it clips
+    double whiteLevel = 200.0;    ///< grey of white paper that lies on the table under full white; above 255 it clips
     double ambient = 0.03;        ///< the room's light, as a share of the projector's full white
     double vignetting = 0.2;      ///< of the light, lost in the corners
     double blur = 0.5;            ///< standard deviation, camera pixels
     double noise = 0.7;           ///< standard deviation of grey, levels
     double shotNoise = 0.008;     ///< variance that each level of grey adds
     double tremble = 0.03;        ///< standard deviation of where a picture lies, camera pixels
-    BoardShape shape;
+    PrintedBoard shape;
     double cameraWave = 0.0, projectorWave = 0.0; ///< pixels by which a lens bends what no distortion model has
     /// Where a pixel of what is shown lies in the projector's panel, as by a keystone correction.
     cv::Matx33d warp = cv::Matx33d::eye();
@@ -79,6 +79,8 @@ public:
     [[nodiscard]] const BoardLabOptions& options() const noexcept;
     /// The board's points, in its frame, metres, as they truly are: stretched and bent.
     [[nodiscard]] std::vector<glm::dvec3> points() const;
+    /// Where a place of the board by its printed coordinates (the board's unit) truly is, likewise.
+    [[nodiscard]] glm::dvec3 place(double x, double y) const;
     /// Where a world point falls in the camera, and in what the projector shows, pixels; empty behind the lens.
     [[nodiscard]] std::optional<glm::dvec2> cameraPixel(const glm::dvec3& point) const;
     [[nodiscard]] std::optional<glm::dvec2> projectorPixel(const glm::dvec3& point) const;

@@ -10,7 +10,7 @@ namespace lumorph {
 namespace {
 
 constexpr float kPaper = 0.85F;
-constexpr float kInk = 0.05F;
+constexpr float kInk = 0.08F;
 constexpr double kMargin = 0.75;      // of the spacing
 constexpr double kCircleRadius = 0.4; // of the spacing
 constexpr int kMarkerCells = 6;       // a side, border included

@@ -3,10 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <memory>
+#include <numbers>
 
-#include <Eigen/Eigenvalues>
+#include <Eigen/Dense>
 #include <ceres/ceres.h>
-#include <ceres/rotation.h>
+
+#include "calibration/solve/projection.h"
 
 namespace lumorph {
 
@@ -14,59 +17,247 @@ namespace {
 
 constexpr double kRobust = 3.0;   // standard deviations
 constexpr double kUnseen = 1e-14; // of the largest eigenvalue: a direction that the data do not tell
+constexpr double kNearest = 1e-9; // a point nearer than that, or behind, is not seen
+constexpr int kBlockSizes[] = {kLensParameters, 6, kBoardParameters, 6, kLensParameters};
+constexpr int kColumns = 2 * kLensParameters + 12 + kBoardParameters; // of one view
 
-template <typename T> void toFrame(const T* pose, const T* point, T* out) {
-    ceres::AngleAxisRotatePoint(pose, point, out);
-    for (int i = 0; i < 3; ++i) out[i] += pose[3 + i];
+/// What one view's errors depend on, side by side.
+enum ViewColumn {
+    kCameraColumn = 0,
+    kPoseColumn = kCameraColumn + kLensParameters,
+    kBoardColumn = kPoseColumn + 6,
+    kStretchColumn = kBoardColumn + kBoardParameters - 1,
+    kRigColumn,
+    kProjectorColumn = kRigColumn + 6,
+};
+
+using Slopes = Eigen::Matrix<double, 2, kColumns>;
+Lens lensAt(const double* numbers) {
+    Lens lens;
+    std::copy_n(numbers, kLensParameters, lens.begin());
+    return lens;
 }
 
-/// A camera pixel's ray, cut with the plane z = 0 of the board.
-template <typename T> void cutWithBoard(const cv::Point2d& pixel, const T* lens, const T* pose, T* point) {
-    const T zAxis[3] = {T(0.0), T(0.0), T(1.0)};
-    T normal[3];
-    ceres::AngleAxisRotatePoint(pose, zAxis, normal);
-    T x, y;
-    directionOfPixel<T>(lens, pixel.x, pixel.y, x, y);
-    const T distance = normal[0] * pose[3] + normal[1] * pose[4] + normal[2] * pose[5];
-    const T depth = distance / (normal[0] * x + normal[1] * y + normal[2]);
-    point[0] = depth * x;
-    point[1] = depth * y;
-    point[2] = depth;
+/// A board's height over its plane, its slope, and how it moves with the terms.
+struct Height {
+    double value = 0.0;
+    Eigen::Vector2d slope = Eigen::Vector2d::Zero();
+    Eigen::Matrix<double, 7, 1> byTerm;
+};
+
+Height heightOf(const BoardShape& board, double x, double y) {
+    const double u = (x - board.middle.x) / board.half;
+    const double v = (y - board.middle.y) / board.half;
+    Height height;
+    height.byTerm << u * u, u * v, v * v, u * u * u, u * u * v, u * v * v, v * v * v;
+    const Eigen::Map<const Eigen::Matrix<double, 7, 1>> terms(board.terms.data());
+    height.value = terms.dot(height.byTerm);
+    Eigen::Matrix<double, 7, 2> slopes;
+    slopes << 2.0 * u, 0.0, v, u, 0.0, 2.0 * v, 3.0 * u * u, 0.0, 2.0 * u * v, u * u, v * v, 2.0 * u * v, 0.0,
+        3.0 * v * v;
+    height.slope = slopes.transpose() * terms / board.half;
+    return height;
 }
 
-/// Reprojection error of a board point in the camera, in standard deviations.
-struct CornerError {
-    cv::Point3d board;
-    cv::Point2d seen;
-    double weight = 1.0;
+bool isFlat(const BoardShape& board) {
+    return std::all_of(board.terms.begin(), board.terms.begin() + kBoardStretch, [](double t) { return t == 0.0; });
+}
 
-    template <typename T> bool operator()(const T* lens, const T* pose, T* error) const {
-        const T point[3] = {T(board.x), T(board.y), T(board.z)};
-        T inCamera[3], pixel[2];
-        toFrame(pose, point, inCamera);
-        if (inCamera[2] < T(1e-9)) return false;
-        projectPoint(lens, inCamera, pixel);
-        error[0] = T(weight) * (pixel[0] - T(seen.x));
-        error[1] = T(weight) * (pixel[1] - T(seen.y));
+/// How far along `direction` from the camera the board is met.
+double depthOfBoard(const Eigen::Vector3d& direction, const PoseMatrix& pose, const BoardShape& board) {
+    constexpr int kSteps = 4;
+    const Eigen::Vector3d way = pose.rotation.transpose() * direction;
+    const Eigen::Vector3d from = -pose.rotation.transpose() * pose.shift;
+    double depth = -from.z() / way.z();
+    if (isFlat(board)) return depth;
+    for (int step = 0; step < kSteps; ++step) {
+        const Eigen::Vector3d at = from + depth * way;
+        const Height height = heightOf(board, at.x(), at.y());
+        depth -= (at.z() - height.value) / (way.z() - height.slope.dot(way.head<2>()));
+    }
+    return depth;
+}
+
+/// One of a view's errors in standard deviations and, if wanted, its slopes.
+struct ViewTerms {
+    const ViewObservations& view;
+    const Lens camera, projector;
+    const PoseMatrix pose, rig;
+    const BoardShape board;
+
+    bool corner(std::size_t i, Eigen::Vector2d& error, Slopes* slopes) const {
+        const cv::Point3d& printed = view.corners.board[i];
+        const cv::Point3d placed = onBoard(board, printed);
+        const Eigen::Vector3d point(placed.x, placed.y, placed.z);
+        const Eigen::Vector3d seen = pose * point;
+        if (seen.z() < kNearest) return false;
+        const Projected projected = project(camera, seen);
+        error = projected.pixel - Eigen::Vector2d(view.corners.seen[i].x, view.corners.seen[i].y);
+        if (!slopes) return error.allFinite();
+        slopes->setZero();
+        slopes->middleCols<kLensParameters>(kCameraColumn) = projected.byLens;
+        const PixelByPoint byBoard = projected.byPoint * pose.rotation;
+        slopes->middleCols<3>(kPoseColumn) = -byBoard * crossOf(point) * pose.turn;
+        slopes->middleCols<3>(kPoseColumn + 3) = projected.byPoint;
+        const Height height = heightOf(board, point.x(), point.y());
+        slopes->middleCols<7>(kBoardColumn) = byBoard.col(2) * height.byTerm.transpose();
+        const Eigen::Vector3d stretch(1.0, 0.0, height.slope.x());
+        slopes->col(kStretchColumn) = byBoard * stretch * (printed.x - board.middle.x);
+        return error.allFinite();
+    }
+
+    bool transfer(const ProjectorPoint& at, Eigen::Vector2d& error, Slopes* slopes) const {
+        const auto [x, y] = directionOfPixel(camera, at.camera.x, at.camera.y);
+        const Eigen::Vector3d direction(x, y, 1.0);
+        const double depth = depthOfBoard(direction, pose, board);
+        const Eigen::Vector3d inCamera = depth * direction;
+        const Eigen::Vector3d inProjector = rig * inCamera;
+        const Projected projected = project(projector, inProjector);
+        error = projected.pixel - Eigen::Vector2d(at.projector.x, at.projector.y);
+        if (!error.allFinite()) return false;
+        if (!slopes) return true;
+        const PixelByPoint byPoint = projected.byPoint * rig.rotation; // by the point in the camera's frame
+        const Eigen::Vector3d inBoard = pose.rotation.transpose() * (inCamera - pose.shift);
+        const Height height = heightOf(board, inBoard.x(), inBoard.y());
+        const Eigen::Vector3d upward(-height.slope.x(), -height.slope.y(), 1.0);
+        const Eigen::Vector3d normal = pose.rotation * upward;
+        const double facing = normal.dot(direction);
+        // The point moves along its ray by what the board moves through it, and with the ray.
+        const Eigen::Vector2d alongRay = byPoint * direction / facing;
+        const Eigen::Matrix<double, 2, 2> byDirection =
+            depth * (byPoint.leftCols<2>() - alongRay * normal.head<2>().transpose());
+        slopes->middleCols<kLensParameters>(kCameraColumn) =
+            byDirection * directionByLens(camera, at.camera.x, at.camera.y, x, y);
+        slopes->middleCols<3>(kPoseColumn) = -alongRay * upward.cross(inBoard).transpose() * pose.turn;
+        slopes->middleCols<3>(kPoseColumn + 3) = alongRay * normal.transpose();
+        slopes->middleCols<7>(kBoardColumn) = alongRay * height.byTerm.transpose();
+        slopes->col(kStretchColumn).setZero();
+        slopes->middleCols<3>(kRigColumn) = -byPoint * crossOf(inCamera) * rig.turn;
+        slopes->middleCols<3>(kRigColumn + 3) = projected.byPoint;
+        slopes->middleCols<kLensParameters>(kProjectorColumn) = projected.byLens;
         return true;
     }
 };
 
-/// Error of a decoded camera pixel in the projector, in standard deviations.
-struct TransferError {
-    ProjectorPoint seen;
-    double weight = 1.0;
+/// A loss of a squared error, and its derivative.
+struct Loss {
+    double value, slope;
+};
 
-    template <typename T>
-    bool operator()(const T* camera, const T* pose, const T* rig, const T* projector, T* error) const {
-        T inCamera[3], inProjector[3], pixel[2];
-        cutWithBoard(seen.camera, camera, pose, inCamera);
-        toFrame(rig, inCamera, inProjector);
-        projectPoint(projector, inProjector, pixel);
-        error[0] = T(weight) * (pixel[0] - T(seen.projector.x));
-        error[1] = T(weight) * (pixel[1] - T(seen.projector.y));
-        return ceres::isfinite(error[0]) && ceres::isfinite(error[1]);
+Loss huber(double s) {
+    constexpr double kBend = kRobust * kRobust;
+    if (s <= kBend) return {s, 1.0};
+    const double root = std::sqrt(s);
+    return {2.0 * kRobust * root - kBend, kRobust / root};
+}
+
+Loss cauchy(double s) {
+    constexpr double kBend = kRobust * kRobust;
+    return {kBend * std::log1p(s / kBend), 1.0 / (1.0 + s / kBend)};
+}
+
+/// Makes the half square of an error its loss: error and slopes, scaled.
+void applyLoss(Loss (*loss)(double), Eigen::Vector2d& error, Slopes* slopes) {
+    const double s = error.squaredNorm();
+    if (s < 1e-12) return;
+    const auto [value, slope] = loss(s);
+    const double scale = std::sqrt(value / s);
+    if (slopes) {
+        const double bend = (slope * s - value) / (s * s) / scale; // twice the derivative of `scale` by s
+        *slopes = scale * *slopes + (bend * error) * (error.transpose() * *slopes);
     }
+    error *= scale;
+}
+
+/// All errors of one view in standard deviations, as one block: its rotations are worked out once.
+class ViewError : public ceres::CostFunction {
+public:
+    ViewError(const ViewObservations& view, const BundleOptions& options, const BoardShape& frame)
+        : view_(view), options_(options), frame_(frame),
+          cornerShare_(std::sqrt(std::min(options.independentCorners, 1.0))) {
+        const std::size_t count = options.projectorPoints ? view.projector.size() : 0;
+        points_ = std::min(count, static_cast<std::size_t>(options.most));
+        const double share = options.independentPoints * static_cast<double>(count) /
+                             std::max<double>(1.0, static_cast<double>(points_));
+        pointShare_ = std::sqrt(std::min(share, 1.0));
+        set_num_residuals(static_cast<int>(2 * (view.corners.seen.size() + points_)));
+        const std::size_t blocks = options.projectorPoints ? 5 : 3;
+        for (std::size_t i = 0; i < blocks; ++i) mutable_parameter_block_sizes()->push_back(kBlockSizes[i]);
+    }
+
+    bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override {
+        int row = 0;
+        return forEach(parameters, true, jacobians != nullptr,
+                       [&](const Eigen::Vector2d& error, const Slopes& slopes, bool) {
+                           residuals[row] = error.x();
+                           residuals[row + 1] = error.y();
+                           if (jacobians) copy(slopes, row, jacobians);
+                           row += 2;
+                       });
+    }
+
+    /// Normal matrices of corners and of projector points, without a loss.
+    void addNormal(double const* const* parameters, Eigen::MatrixXd& corners, Eigen::MatrixXd& points) const {
+        forEach(parameters, false, true, [&](const Eigen::Vector2d&, const Slopes& slopes, bool ofCamera) {
+            if (ofCamera)
+                corners.noalias() += slopes.transpose() * slopes;
+            else
+                points.noalias() += slopes.transpose() * slopes;
+        });
+    }
+
+private:
+    template <typename Take>
+    bool forEach(double const* const* parameters, bool robust, bool wantSlopes, const Take& take) const {
+        static constexpr double kNothing[6] = {};
+        BoardShape board = frame_;
+        std::copy_n(parameters[2], kBoardParameters, board.terms.begin());
+        const ViewTerms terms{view_,
+                              lensAt(parameters[0]),
+                              points_ ? lensAt(parameters[4]) : Lens{},
+                              PoseMatrix(parameters[1]),
+                              PoseMatrix(points_ ? parameters[3] : kNothing),
+                              board};
+        Eigen::Vector2d error;
+        Slopes storage;
+        Slopes* slopes = wantSlopes ? &storage : nullptr;
+        const auto finish = [&](double sigma, Loss (*loss)(double), double share, bool ofCamera) {
+            error /= sigma;
+            if (slopes) *slopes /= sigma;
+            if (robust) applyLoss(loss, error, slopes);
+            if (share != 1.0) {
+                error *= share;
+                if (slopes) *slopes *= share;
+            }
+            take(error, storage, ofCamera);
+        };
+        for (std::size_t i = 0; i < view_.corners.seen.size(); ++i) {
+            if (!terms.corner(i, error, slopes)) return false;
+            finish(options_.cameraSigma, huber, cornerShare_, true);
+        }
+        for (std::size_t i = 0; i < points_; ++i) {
+            if (!terms.transfer(view_.projector[i * view_.projector.size() / points_], error, slopes)) return false;
+            finish(options_.projectorSigma, cauchy, pointShare_, false);
+        }
+        return true;
+    }
+
+    void copy(const Slopes& slopes, int row, double** jacobians) const {
+        int column = 0;
+        for (std::size_t block = 0; block < parameter_block_sizes().size(); ++block) {
+            const int size = kBlockSizes[block];
+            if (jacobians[block])
+                for (int r = 0; r < 2; ++r)
+                    for (int c = 0; c < size; ++c) jacobians[block][(row + r) * size + c] = slopes(r, column + c);
+            column += size;
+        }
+    }
+
+    const ViewObservations& view_;
+    const BundleOptions& options_;
+    const BoardShape frame_;
+    std::size_t points_ = 0;
+    double cornerShare_ = 1.0, pointShare_ = 1.0;
 };
 
 /// The problem of some views around one state.
@@ -75,84 +266,125 @@ public:
     BundleProblem(const std::vector<ViewObservations>& views, const ViewChoice& use, const BundleOptions& options,
                   BundleState& state)
         : options_(options), state_(state) {
-        addLens(state.camera, options.camera);
+        addBlock(state.camera, options.camera);
+        addBlock(state.board.terms, options.board);
+        order_->AddElementToGroup(state.camera.data(), 1);
+        order_->AddElementToGroup(state.board.terms.data(), 1);
         if (options.projectorPoints) {
-            addLens(state.projector, options.projector);
+            addBlock(state.projector, options.projector);
             problem_.AddParameterBlock(state.projectorFromCamera.data(), 6);
             if (!options.rig) problem_.SetParameterBlockConstant(state.projectorFromCamera.data());
+            order_->AddElementToGroup(state.projector.data(), 1);
+            order_->AddElementToGroup(state.projectorFromCamera.data(), 1);
         }
         for (const int i : use) addView(views[static_cast<std::size_t>(i)], i);
     }
 
     double solve() {
         ceres::Solver::Options how;
-        how.linear_solver_type = ceres::DENSE_NORMAL_CHOLESKY;
+        how.linear_solver_type = options_.poses ? ceres::DENSE_SCHUR : ceres::DENSE_NORMAL_CHOLESKY;
+        if (options_.poses) how.linear_solver_ordering = order_;
         how.max_num_iterations = 100;
         how.function_tolerance = 1e-9;
         how.logging_type = ceres::SILENT;
-        how.num_threads = 2;
+        how.num_threads = 1;
         ceres::Solver::Summary summary;
         ceres::Solve(how, &problem_, &summary);
         return summary.termination_type == ceres::FAILURE ? std::numeric_limits<double>::infinity()
                                                           : summary.final_cost;
     }
 
-    /// The normal matrix of what may move, blocks in the order of `blocks`.
-    Eigen::MatrixXd normalMatrix(const std::vector<double*>& blocks) {
-        ceres::Problem::EvaluateOptions how;
-        how.parameter_blocks = blocks;
-        ceres::CRSMatrix jacobian;
-        problem_.Evaluate(how, nullptr, nullptr, nullptr, &jacobian);
-        Eigen::MatrixXd normal = Eigen::MatrixXd::Zero(jacobian.num_cols, jacobian.num_cols);
-        for (int row = 0; row < jacobian.num_rows; ++row)
-            for (int i = jacobian.rows[rowIndex(row)]; i < jacobian.rows[rowIndex(row + 1)]; ++i)
-                for (int k = jacobian.rows[rowIndex(row)]; k < jacobian.rows[rowIndex(row + 1)]; ++k)
-                    normal(jacobian.cols[rowIndex(i)], jacobian.cols[rowIndex(k)]) +=
-                        jacobian.values[rowIndex(i)] * jacobian.values[rowIndex(k)];
-        return normal;
-    }
-
 private:
-    static std::size_t rowIndex(int i) { return static_cast<std::size_t>(i); }
-
-    void addLens(Lens& lens, const LensMask& free) {
+    template <std::size_t Size> void addBlock(std::array<double, Size>& block, const std::array<bool, Size>& free) {
         std::vector<int> held;
-        for (int i = 0; i < kLensParameters; ++i)
-            if (!free[static_cast<std::size_t>(i)]) held.push_back(i);
-        problem_.AddParameterBlock(lens.data(), kLensParameters);
-        if (held.size() == kLensParameters)
-            problem_.SetParameterBlockConstant(lens.data());
+        for (std::size_t i = 0; i < Size; ++i)
+            if (!free[i]) held.push_back(static_cast<int>(i));
+        problem_.AddParameterBlock(block.data(), static_cast<int>(Size));
+        if (held.size() == Size)
+            problem_.SetParameterBlockConstant(block.data());
         else if (!held.empty())
-            problem_.SetManifold(lens.data(), new ceres::SubsetManifold(kLensParameters, held));
+            problem_.SetManifold(block.data(), new ceres::SubsetManifold(static_cast<int>(Size), held));
     }
 
     void addView(const ViewObservations& view, int index) {
         double* pose = state_.cameraFromBoard[static_cast<std::size_t>(index)].data();
         problem_.AddParameterBlock(pose, 6);
+        order_->AddElementToGroup(pose, 0);
         if (!options_.poses) problem_.SetParameterBlockConstant(pose);
-        for (std::size_t i = 0; i < view.corners.seen.size(); ++i)
-            problem_.AddResidualBlock(
-                new ceres::AutoDiffCostFunction<CornerError, 2, kLensParameters, 6>(
-                    new CornerError{view.corners.board[i], view.corners.seen[i], 1.0 / options_.cameraSigma}),
-                new ceres::HuberLoss(kRobust), state_.camera.data(), pose);
-        if (!options_.projectorPoints) return;
-        const std::size_t count = view.projector.size();
-        const std::size_t used = std::min(count, static_cast<std::size_t>(options_.most));
-        const double share =
-            options_.independent * static_cast<double>(count) / std::max<double>(1.0, static_cast<double>(used));
-        const double weight = std::sqrt(std::min(share, 1.0)) / options_.projectorSigma;
-        for (std::size_t i = 0; i < used; ++i)
-            problem_.AddResidualBlock(
-                new ceres::AutoDiffCostFunction<TransferError, 2, kLensParameters, 6, 6, kLensParameters>(
-                    new TransferError{view.projector[i * count / used], weight}),
-                new ceres::CauchyLoss(kRobust), state_.camera.data(), pose, state_.projectorFromCamera.data(),
-                state_.projector.data());
+        std::vector<double*> blocks = {state_.camera.data(), pose, state_.board.terms.data()};
+        if (options_.projectorPoints) {
+            blocks.push_back(state_.projectorFromCamera.data());
+            blocks.push_back(state_.projector.data());
+        }
+        problem_.AddResidualBlock(new ViewError(view, options_, state_.board), nullptr, blocks);
     }
 
     const BundleOptions& options_;
     BundleState& state_;
     ceres::Problem problem_;
+    std::shared_ptr<ceres::ParameterBlockOrdering> order_ = std::make_shared<ceres::ParameterBlockOrdering>();
 };
+
+/// Places in a covariance of the columns of a view.
+std::array<int, kColumns> placesOf(int view) {
+    std::array<int, kColumns> places;
+    const auto fill = [&places](int column, int size, int place) {
+        for (int i = 0; i < size; ++i) places[static_cast<std::size_t>(column + i)] = place + i;
+    };
+    fill(kCameraColumn, kLensParameters, 0);
+    fill(kPoseColumn, 6, kPosePlace + 6 * view);
+    fill(kBoardColumn, kBoardParameters, kBoardPlace);
+    fill(kRigColumn, 6, kRigPlace);
+    fill(kProjectorColumn, kLensParameters, kProjectorPlace);
+    return places;
+}
+
+/// Normal matrices of some views, by kind of observation.
+struct Normals {
+    Eigen::MatrixXd corners, points;
+};
+
+Normals normalsOf(const std::vector<ViewObservations>& views, const ViewChoice& use, const BundleOptions& options,
+                  const BundleState& state) {
+    const auto size = static_cast<Eigen::Index>(kPosePlace + 6 * state.cameraFromBoard.size());
+    Normals all{Eigen::MatrixXd::Zero(size, size), Eigen::MatrixXd::Zero(size, size)};
+    for (const int v : use) {
+        const auto index = static_cast<std::size_t>(v);
+        const double* parameters[] = {state.camera.data(), state.cameraFromBoard[index].data(),
+                                      state.board.terms.data(), state.projectorFromCamera.data(),
+                                      state.projector.data()};
+        Eigen::MatrixXd corners = Eigen::MatrixXd::Zero(kColumns, kColumns);
+        Eigen::MatrixXd points = corners;
+        ViewError(views[index], options, state.board).addNormal(parameters, corners, points);
+        const std::array<int, kColumns> places = placesOf(v);
+        for (int i = 0; i < kColumns; ++i)
+            for (int k = 0; k < kColumns; ++k) {
+                const int row = places[static_cast<std::size_t>(i)];
+                const int column = places[static_cast<std::size_t>(k)];
+                all.corners(row, column) += corners(i, k);
+                all.points(row, column) += points(i, k);
+            }
+    }
+    return all;
+}
+
+/// Places of what may move.
+std::vector<int> freePlaces(const ViewChoice& use, const BundleOptions& options) {
+    std::vector<int> places;
+    const auto add = [&places](const auto& mask, int first) {
+        for (std::size_t i = 0; i < mask.size(); ++i)
+            if (mask[i]) places.push_back(first + static_cast<int>(i));
+    };
+    add(options.camera, 0);
+    if (options.projectorPoints) add(options.projector, kProjectorPlace);
+    if (options.projectorPoints && options.rig)
+        for (int i = 0; i < 6; ++i) places.push_back(kRigPlace + i);
+    add(options.board, kBoardPlace);
+    if (options.poses)
+        for (const int v : use)
+            for (int i = 0; i < 6; ++i) places.push_back(kPosePlace + 6 * v + i);
+    return places;
+}
 
 /// The inverse of a normal matrix, whose parameters have very different units.
 Eigen::MatrixXd inverseOf(const Eigen::MatrixXd& normal) {
@@ -165,72 +397,119 @@ Eigen::MatrixXd inverseOf(const Eigen::MatrixXd& normal) {
 
 } // namespace
 
+BoardShape flatBoard(const std::vector<ViewObservations>& views) {
+    cv::Point2d low(1e300, 1e300);
+    cv::Point2d high = -low;
+    for (const ViewObservations& view : views)
+        for (const cv::Point3d& point : view.corners.board) {
+            low = {std::min(low.x, point.x), std::min(low.y, point.y)};
+            high = {std::max(high.x, point.x), std::max(high.y, point.y)};
+        }
+    BoardShape board;
+    if (!(low.x < high.x)) return board;
+    board.middle = 0.5 * (low + high);
+    board.half = 0.5 * std::max(high.x - low.x, high.y - low.y);
+    return board;
+}
+
+cv::Point3d onBoard(const BoardShape& board, const cv::Point3d& printed) {
+    const double x = printed.x + board.terms[kBoardStretch] * (printed.x - board.middle.x);
+    if (isFlat(board)) return {x, printed.y, printed.z};
+    return {x, printed.y, printed.z + heightOf(board, x, printed.y).value};
+}
+
 double refine(const std::vector<ViewObservations>& views, const ViewChoice& use, const BundleOptions& options,
               BundleState& state) {
     return BundleProblem(views, use, options, state).solve();
 }
 
-Eigen::Matrix<double, 24, 24> covarianceOf(const std::vector<ViewObservations>& views, const ViewChoice& use,
-                                           const BundleOptions& options, const BundleState& state) {
-    BundleState here = state;
-    BundleProblem problem(views, use, options, here);
-    std::vector<double*> blocks;
-    std::vector<int> places; // of each column among the 24
-    const auto addLens = [&](Lens& lens, const LensMask& free, int first) {
-        if (std::ranges::find(free, true) == free.end()) return;
-        blocks.push_back(lens.data());
-        for (int i = 0; i < kLensParameters; ++i)
-            if (free[static_cast<std::size_t>(i)]) places.push_back(first + i);
-    };
-    addLens(here.camera, options.camera, 0);
-    if (options.projectorPoints) addLens(here.projector, options.projector, kLensParameters);
-    if (options.projectorPoints && options.rig) {
-        blocks.push_back(here.projectorFromCamera.data());
-        for (int i = 0; i < 6; ++i) places.push_back(2 * kLensParameters + i);
-    }
-    if (options.poses)
-        for (const int i : use) blocks.push_back(here.cameraFromBoard[static_cast<std::size_t>(i)].data());
-    const Eigen::MatrixXd inverse = inverseOf(problem.normalMatrix(blocks));
-    Eigen::Matrix<double, 24, 24> covariance = Eigen::Matrix<double, 24, 24>::Zero();
-    for (std::size_t i = 0; i < places.size(); ++i)
-        for (std::size_t k = 0; k < places.size(); ++k)
-            covariance(places[i], places[k]) = inverse(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(k));
+BundleCovariance covarianceOf(const std::vector<ViewObservations>& views, const ViewChoice& use,
+                              const BundleOptions& options, const BundleState& state) {
+    const Normals normals = normalsOf(views, use, options, state);
+    const std::vector<int> places = freePlaces(use, options);
+    const Eigen::MatrixXd corners = normals.corners(places, places);
+    const Eigen::MatrixXd points = normals.points(places, places);
+    const Eigen::MatrixXd inverse = inverseOf(corners + points);
+    BundleCovariance covariance;
+    covariance.matrix = Eigen::MatrixXd::Zero(normals.corners.rows(), normals.corners.cols());
+    covariance.matrix(places, places) = inverse;
+    covariance.cameraFreedom = corners.cwiseProduct(inverse).sum();
+    covariance.projectorFreedom = points.cwiseProduct(inverse).sum();
     return covariance;
 }
 
-std::vector<cv::Point2d> cameraErrors(const ViewObservations& view, const Lens& camera,
+Eigen::MatrixXd normalMatrixOf(const std::vector<ViewObservations>& views, const ViewChoice& use,
+                               const BundleOptions& options, const BundleState& state) {
+    const Normals normals = normalsOf(views, use, options, state);
+    return normals.corners + normals.points;
+}
+
+Eigen::MatrixXd informationOf(const ViewObservations& view, const BundleOptions& options, const BundleState& state,
+                              const PoseVector& cameraFromBoard) {
+    BundleState alone = state;
+    alone.cameraFromBoard = {cameraFromBoard};
+    const Eigen::MatrixXd all = normalMatrixOf({view}, {0}, options, alone);
+    const Eigen::MatrixXd mixed = all.bottomLeftCorner(6, kPosePlace);
+    return all.topLeftCorner(kPosePlace, kPosePlace) -
+           mixed.transpose() * inverseOf(all.bottomRightCorner(6, 6)) * mixed;
+}
+
+std::vector<cv::Point2d> cameraErrors(const ViewObservations& view, const BundleState& state,
                                       const PoseVector& cameraFromBoard) {
+    const PoseMatrix pose(cameraFromBoard.data());
+    const ViewTerms terms{view, state.camera, {}, pose, pose, state.board};
     std::vector<cv::Point2d> errors;
     for (std::size_t i = 0; i < view.corners.seen.size(); ++i) {
-        std::array<double, 2> error{};
-        CornerError{view.corners.board[i], view.corners.seen[i], 1.0}(camera.data(), cameraFromBoard.data(),
-                                                                      error.data());
-        errors.emplace_back(error[0], error[1]);
+        Eigen::Vector2d error = Eigen::Vector2d::Zero();
+        terms.corner(i, error, nullptr);
+        errors.emplace_back(error.x(), error.y());
     }
     return errors;
 }
 
-cv::Point3d pointOnBoard(const cv::Point2d& pixel, const Lens& camera, const PoseVector& cameraFromBoard) {
-    double point[3];
-    cutWithBoard(pixel, camera.data(), cameraFromBoard.data(), point);
-    return {point[0], point[1], point[2]};
+cv::Point3d pointOnBoard(const cv::Point2d& pixel, const Lens& camera, const PoseVector& cameraFromBoard,
+                         const BoardShape& board) {
+    const auto [x, y] = directionOfPixel(camera, pixel.x, pixel.y);
+    const double depth = depthOfBoard({x, y, 1.0}, PoseMatrix(cameraFromBoard.data()), board);
+    return {depth * x, depth * y, depth};
 }
 
 cv::Point2d projectorPixel(const cv::Point3d& point, const BundleState& state) {
-    const double inCamera[3] = {point.x, point.y, point.z};
-    double inProjector[3], pixel[2];
-    toFrame(state.projectorFromCamera.data(), inCamera, inProjector);
-    projectPoint(state.projector.data(), inProjector, pixel);
+    const Eigen::Vector3d inProjector =
+        PoseMatrix(state.projectorFromCamera.data()) * Eigen::Vector3d(point.x, point.y, point.z);
+    double pixel[2];
+    projectPoint(state.projector.data(), inProjector.data(), pixel);
     return {pixel[0], pixel[1]};
 }
 
 std::vector<cv::Point2d> projectorErrors(const ViewObservations& view, const BundleState& state,
                                          const PoseVector& cameraFromBoard) {
+    const ViewTerms terms{view,
+                          state.camera,
+                          state.projector,
+                          PoseMatrix(cameraFromBoard.data()),
+                          PoseMatrix(state.projectorFromCamera.data()),
+                          state.board};
     std::vector<cv::Point2d> errors;
-    for (const ProjectorPoint& point : view.projector)
-        errors.push_back(projectorPixel(pointOnBoard(point.camera, state.camera, cameraFromBoard), state) -
-                         point.projector);
+    for (const ProjectorPoint& point : view.projector) {
+        Eigen::Vector2d error = Eigen::Vector2d::Zero();
+        terms.transfer(point, error, nullptr);
+        errors.emplace_back(error.x(), error.y());
+    }
     return errors;
+}
+
+double sigmaOf(const std::vector<cv::Point2d>& errors, double freedom) {
+    constexpr double kStray = 12.0; // standard deviations
+    std::vector<double> squares;
+    for (const cv::Point2d& error : errors) squares.push_back(error.dot(error));
+    if (squares.empty()) return 0.0;
+    const auto middle = squares.begin() + static_cast<std::ptrdiff_t>(squares.size() / 2);
+    std::ranges::nth_element(squares, middle);
+    const double most = kStray * kStray * *middle / (2.0 * std::numbers::ln2); // of normal noise, from the median
+    double sum = 0.0;
+    for (const double square : squares) sum += std::min(square, most);
+    return std::sqrt(sum / std::max(1.0, 2.0 * static_cast<double>(squares.size()) - freedom));
 }
 
 double rmsOf(const std::vector<cv::Point2d>& errors) {

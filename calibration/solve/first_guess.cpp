@@ -167,6 +167,7 @@ BundleState firstCamera(const std::vector<ViewObservations>& views, const ViewCh
     BestStart best;
     for (const double start : starts) {
         BundleState state;
+        state.board = flatBoard(views);
         state.camera = plainLens(start, 0.5 * (camera.width - 1), 0.5 * (camera.height - 1));
         state.cameraFromBoard.resize(views.size());
         for (const int v : use)

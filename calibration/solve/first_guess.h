@@ -7,8 +7,8 @@
 namespace lumorph {
 
 /// Camera and board poses to begin with: for several focal lengths, and for `focal` (pixels) if given, the boards'
-/// poses are worked out, all is refined with one radial term, and the best is kept. Returns the state, its camera free of any
-/// bound: the principal point goes where the data want it. Throws CaptureRefused where no start leads anywhere.
+/// poses are worked out, all is refined with one radial term, and the best is kept. Returns the state, its camera free
+/// of any bound: the principal point goes where the data want it. Throws CaptureRefused where no start leads anywhere.
 [[nodiscard]] BundleState firstCamera(const std::vector<ViewObservations>& views, const ViewChoice& use,
                                       cv::Size camera, const std::optional<double>& focal);
 

@@ -37,6 +37,7 @@ ViewChoice without(const ViewChoice& use, int view) {
 /// The view's pose, fitted to its corners under a camera that is held.
 void fitPose(const std::vector<ViewObservations>& views, int view, BundleOptions options, BundleState& state) {
     options.camera = {};
+    options.board = {};
     options.projectorPoints = false;
     refine(views, {view}, options, state);
 }
@@ -103,8 +104,9 @@ std::vector<DeepPixel> deepPixels(const std::vector<ViewObservations>& views, co
         const std::size_t step = std::max<std::size_t>(1, points.size() / kTestPoints);
         for (std::size_t i = 0; i < points.size(); i += step)
             pixels.push_back(
-                {points[i].camera,
-                 pointOnBoard(points[i].camera, state.camera, state.cameraFromBoard[static_cast<std::size_t>(v)]).z});
+                {points[i].camera, pointOnBoard(points[i].camera, state.camera,
+                                                state.cameraFromBoard[static_cast<std::size_t>(v)], state.board)
+                                       .z});
     }
     return pixels;
 }
@@ -123,7 +125,7 @@ std::vector<double> heldOutCorners(const std::vector<ViewObservations>& views, c
         refine(views, without(use, view), alone, rest);
         fitPose(views, view, alone, rest);
         const auto v = static_cast<std::size_t>(view);
-        errors.push_back(rmsOf(cameraErrors(views[v], rest.camera, rest.cameraFromBoard[v])));
+        errors.push_back(rmsOf(cameraErrors(views[v], rest, rest.cameraFromBoard[v])));
     }
     return errors;
 }
@@ -155,7 +157,7 @@ HalvesComparison compareHalves(const std::vector<ViewObservations>& views, const
                 for (const int i : {kAspect, kK1, kK2, kP1, kP2, kK3}) (*mask)[static_cast<std::size_t>(i)] = false;
         BundleState solved = state;
         refine(views, half, free, solved);
-        variance += varianceOf(pixels, solved, covarianceOf(views, half, free, solved));
+        variance += varianceOf(pixels, solved, covarianceOf(views, half, free, solved).matrix.topLeftCorner<24, 24>());
         halves.push_back(solved);
     }
     double sum = 0.0;

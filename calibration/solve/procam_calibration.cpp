@@ -26,6 +26,7 @@ constexpr double kWorstCorner = 0.02;     // what a distortion term may be uncer
 constexpr int kPointsForChoice = 150;     // of a view
 constexpr int kPointsForSolution = 600;
 constexpr double kLeastSigma = 0.01; // pixels
+constexpr double kStray = 3.0;       // standard deviations
 constexpr double kMostNoise = 1.0;   // pixels: more than any noise
 constexpr double kFits = 2.0;        // pixels: above, the model does not fit
 constexpr double kPi = std::numbers::pi;
@@ -43,6 +44,43 @@ double rmsOfNumbers(const std::vector<double>& numbers) {
     for (const double number : numbers) sum += number * number;
     return numbers.empty() ? 0.0 : std::sqrt(sum / static_cast<double>(numbers.size()));
 }
+
+/// Mean squares of the errors of single points, and of patches of some number of them: where neighbours err alike, a
+/// patch counts for fewer than it has.
+class PatchErrors {
+public:
+    explicit PatchErrors(double inPatch) : inPatch_(inPatch) {}
+
+    void add(const std::vector<cv::Point2d>& places, const std::vector<cv::Point2d>& errors, double most) {
+        if (static_cast<double>(errors.size()) < 4.0 * inPatch_) return;
+        cv::Rect2d box(places.front(), cv::Size2d(1.0, 1.0));
+        for (const cv::Point2d& place : places) box |= cv::Rect2d(place, cv::Size2d(1.0, 1.0));
+        const double side = std::sqrt(box.area() * inPatch_ / static_cast<double>(errors.size()));
+        std::map<std::pair<int, int>, std::pair<cv::Point2d, double>> patches;
+        for (std::size_t i = 0; i < errors.size(); ++i) {
+            if (errors[i].dot(errors[i]) > most * most) continue;
+            const cv::Point2d at = places[i] - box.tl();
+            auto& [sum, count] = patches[{static_cast<int>(at.x / side), static_cast<int>(at.y / side)}];
+            sum += errors[i];
+            count += 1.0;
+            single_ += errors[i].dot(errors[i]);
+        }
+        for (const auto& [place, patch] : patches) {
+            scaled_ += patch.first.dot(patch.first); // of independent errors: the sum of the squares of all
+            if (patch.second > 0.5 * inPatch_) patches_ += 1.0;
+        }
+    }
+
+    /// How many points err as one; 1 where nothing speaks against independence.
+    [[nodiscard]] double alike() const {
+        if (patches_ < 4.0 || !(single_ > 0.0)) return 1.0;
+        return std::max(1.0, scaled_ / single_ - 2.0 / std::sqrt(patches_));
+    }
+
+private:
+    double inPatch_;
+    double single_ = 0.0, scaled_ = 0.0, patches_ = 0.0;
+};
 
 /// Solves a capture step by step; the state is what is known so far.
 class ProcamSolver {
@@ -80,7 +118,8 @@ private:
         bundle_.projectorPoints = false;
         const auto held = [this] { return heldOutCorners(views_, use_, bundle_, state_); };
         result_.camera.model = chooseModel(cameraPart(), held, 0.02, 0.3);
-        estimateNoise();
+        takeBoundedSigmas();
+        if (boundedDoubt(0, state_.camera) > 2.0 * kWorstFocal) throw frontal();
     }
 
     void solveProjector() {
@@ -152,12 +191,16 @@ private:
     }
 
     /// Uncertainties of a solution whose model may still be too poor: what it leaves is not all noise.
-    void takeBoundedSigmas() {
-        estimateNoise();
+    [[nodiscard]] Eigen::MatrixXd boundedCovariance() const {
         BundleOptions bounded = bundle_;
         bounded.cameraSigma = std::min(bounded.cameraSigma, kMostNoise);
         bounded.projectorSigma = std::min(bounded.projectorSigma, kMostNoise);
-        takeSigmas(covarianceOf(views_, use_, bounded, state_), bounded.projectorPoints);
+        return covarianceOf(views_, use_, bounded, state_).matrix;
+    }
+
+    void takeBoundedSigmas() {
+        estimateNoise();
+        takeSigmas(boundedCovariance(), bundle_.projectorPoints);
     }
 
     /// What a model does not have is that of a pinhole.
@@ -195,49 +238,28 @@ private:
     /// From what is left of the observations: their noise, and how far neighbours err alike.
     void estimateNoise() {
         std::vector<cv::Point2d> corners, points;
-        double independent = 0.0;
+        PatchErrors ofCorners(9.0);
+        PatchErrors small(16.0);
+        PatchErrors large(64.0);
         for (const int v : use_) {
             const auto& view = views_[static_cast<std::size_t>(v)];
             const PoseVector& pose = state_.cameraFromBoard[static_cast<std::size_t>(v)];
-            const auto inCamera = cameraErrors(view, state_.camera, pose);
+            const auto inCamera = cameraErrors(view, state_, pose);
             corners.insert(corners.end(), inCamera.begin(), inCamera.end());
+            ofCorners.add(view.corners.seen, inCamera, kStray * bundle_.cameraSigma);
             if (!bundle_.projectorPoints) continue;
             const auto inProjector = projectorErrors(view, state_, pose);
             points.insert(points.end(), inProjector.begin(), inProjector.end());
-            independent += independentShare(view, inProjector) / static_cast<double>(use_.size());
+            std::vector<cv::Point2d> places;
+            for (const ProjectorPoint& point : view.projector) places.push_back(point.camera);
+            small.add(places, inProjector, kStray * bundle_.projectorSigma);
+            large.add(places, inProjector, kStray * bundle_.projectorSigma);
         }
-        const double parameters =
-            static_cast<double>(6 * use_.size()) + static_cast<double>(std::ranges::count(bundle_.camera, true));
-        const double freedom = std::max(1.0, 2.0 * static_cast<double>(corners.size()) - parameters);
-        const double sum = rmsOf(corners) * rmsOf(corners) * static_cast<double>(corners.size());
-        bundle_.cameraSigma = std::max(kLeastSigma, std::sqrt(sum / freedom));
+        bundle_.cameraSigma = std::max(kLeastSigma, sigmaOf(corners, cameraFreedom_));
+        bundle_.independentCorners = 1.0 / ofCorners.alike();
         if (!bundle_.projectorPoints) return;
-        bundle_.projectorSigma = std::max(kLeastSigma, rmsOf(points) / std::numbers::sqrt2);
-        bundle_.independent = independent;
-    }
-
-    /// Mean squares of the errors of single points, and of patches of about 16: where neighbours err alike, a patch
-    /// counts for fewer than it has.
-    static double independentShare(const ViewObservations& view, const std::vector<cv::Point2d>& errors) {
-        constexpr double kPatch = 16.0;
-        if (errors.size() < 4 * kPatch) return 1.0;
-        cv::Rect2d box(view.projector.front().camera, cv::Size2d(1.0, 1.0));
-        for (const ProjectorPoint& point : view.projector) box |= cv::Rect2d(point.camera, cv::Size2d(1.0, 1.0));
-        const double side = std::sqrt(box.area() * kPatch / static_cast<double>(errors.size()));
-        std::map<std::pair<int, int>, std::vector<cv::Point2d>> patches;
-        for (std::size_t i = 0; i < errors.size(); ++i) {
-            const cv::Point2d at = view.projector[i].camera - box.tl();
-            patches[{static_cast<int>(at.x / side), static_cast<int>(at.y / side)}].push_back(errors[i]);
-        }
-        double scaled = 0.0;
-        double count = 0.0;
-        for (const auto& [place, inside] : patches) {
-            const cv::Point2d sum = std::accumulate(inside.begin(), inside.end(), cv::Point2d());
-            scaled += sum.dot(sum); // of independent errors: as many times the mean square as there are
-            count += static_cast<double>(inside.size());
-        }
-        const double single = rmsOf(errors) * rmsOf(errors);
-        return 1.0 / std::max(1.0, scaled / count / std::max(single, 1e-12));
+        bundle_.projectorSigma = std::max(kLeastSigma, sigmaOf(points, projectorFreedom_));
+        bundle_.independentPoints = 1.0 / std::max(small.alike(), large.alike());
     }
 
     /// Solves with what was chosen; locks what the data cannot tell, one after another.
@@ -245,17 +267,26 @@ private:
         for (;;) {
             progress_.throwIfCancelled();
             progress_.report(projector ? 0.75 : 0.5, "solving");
+            for (int round = 0; round < 2; ++round) {
+                refine(views_, use_, bundle_, state_);
+                takeFreedom();
+                estimateNoise();
+            }
             refine(views_, use_, bundle_, state_);
-            estimateNoise();
-            refine(views_, use_, bundle_, state_);
-            const auto covariance = covarianceOf(views_, use_, bundle_, state_);
-            takeSigmas(covariance, projector);
+            result_.covariance = covarianceOf(views_, use_, bundle_, state_).matrix;
+            takeSigmas(result_.covariance, projector);
             const auto order = {kK3, kAspect, kP2, kP1, kK2, kK1, kPrincipalX, kPrincipalY};
             if (!lockOne(cameraPart(), order) && !(projector && lockOne(projectorPart(), order))) return;
         }
     }
 
-    void takeSigmas(const Eigen::Matrix<double, 24, 24>& covariance, bool projector) {
+    void takeFreedom() {
+        const BundleCovariance covariance = covarianceOf(views_, use_, bundle_, state_);
+        cameraFreedom_ = covariance.cameraFreedom;
+        projectorFreedom_ = covariance.projectorFreedom;
+    }
+
+    void takeSigmas(const Eigen::MatrixXd& covariance, bool projector) {
         const auto sigma = [&covariance](int i) { return std::sqrt(std::max(0.0, covariance(i, i))); };
         for (int i = 0; i < kLensParameters; ++i) {
             result_.camera.sigma[static_cast<std::size_t>(i)] = sigma(i);
@@ -264,6 +295,11 @@ private:
         if (!projector) return;
         for (int i = 0; i < 6; ++i)
             result_.projectorFromCameraSigma[static_cast<std::size_t>(i)] = sigma(2 * kLensParameters + i);
+    }
+
+    /// Uncertainty of a focal length as a share of it, as far as noise makes it.
+    double boundedDoubt(int place, const Lens& lens) const {
+        return std::sqrt(boundedCovariance()(place, place)) / lens[kFocalLength];
     }
 
     /// What a parameter's uncertainty is as a share of what is bearable.
@@ -318,12 +354,14 @@ private:
         finish(result_.camera, state_.camera, bundle_.camera);
         finish(result_.projector, state_.projector, bundle_.projector);
         result_.state = state_;
+        result_.bundle = bundle_;
+        takeInformation();
         result_.projectorFromCamera = state_.projectorFromCamera;
         const std::vector<double> held =
             projector ? heldOutTransfers(views_, use_, bundle_, state_) : heldOutCorners(views_, use_, bundle_, state_);
         for (std::size_t v = 0; v < views_.size(); ++v) {
             const PoseVector& pose = state_.cameraFromBoard[v];
-            result_.views.push_back({views_[v].name, rmsOf(cameraErrors(views_[v], state_.camera, pose)),
+            result_.views.push_back({views_[v].name, rmsOf(cameraErrors(views_[v], state_, pose)),
                                      projector ? rmsOf(projectorErrors(views_[v], state_, pose)) : 0.0, held[v]});
         }
         result_.camera.rms = rmsOverViews(&ViewQuality::cameraRms);
@@ -335,6 +373,17 @@ private:
                                 return std::hypot(view.cameraRms, view.projectorRms, view.heldOut.value_or(0.0));
                             })->name;
         judge(projector);
+    }
+
+    void takeInformation() {
+        result_.information = Eigen::MatrixXd::Zero(kPosePlace, kPosePlace);
+        for (const int v : use_) {
+            const auto index = static_cast<std::size_t>(v);
+            result_.information += informationOf(views_[index], bundle_, state_, state_.cameraFromBoard[index]);
+            const auto count = static_cast<double>(views_[index].projector.size());
+            result_.pointsOfView +=
+                std::min<double>(bundle_.most, count * bundle_.independentPoints) / static_cast<double>(use_.size());
+        }
     }
 
     static void finish(CalibratedDevice& device, const Lens& lens, const LensMask& free) {
@@ -349,15 +398,14 @@ private:
     }
 
     void judge(bool projector) {
+        // First what the poses are worth: without tilt any lens fits or none, whichever was found.
+        if (std::max(boundedDoubt(0, state_.camera),
+                     projector ? boundedDoubt(kProjectorPlace, state_.projector) : 0.0) > kWorstFocal)
+            throw frontal();
         if (!(result_.rms < kFits))
             throw CaptureRefused({Cause::modelDoesNotFit, result_.worstView, "",
                                   "no lens explains the capture: " + pixels(result_.rms) + " of error remain",
                                   "look at this pose first; check the board's kind and that it is flat"});
-        const auto doubt = [](const CalibratedDevice& device) {
-            return device.sigma[kFocalLength] / device.lens[kFocalLength];
-        };
-        if (doubt(result_.camera) > kWorstFocal || (projector && doubt(result_.projector) > kWorstFocal))
-            throw frontal();
         if (!projector) return;
         if (views_.size() < 4) {
             result_.warnings.push_back({Cause::tooFewViews, "", "", "with three poses no two halves can be compared",
@@ -389,6 +437,7 @@ private:
     SolveOptions options_;
     BundleOptions bundle_;
     BundleState state_;
+    double cameraFreedom_ = 0.0, projectorFreedom_ = 0.0;
     ProcamCalibration result_;
 };
 

@@ -1,0 +1,666 @@
+#include "app/studio/calibration/calibration_service.h"
+
+#include <algorithm>
+#include <cmath>
+#include <condition_variable>
+#include <mutex>
+#include <stop_token>
+#include <thread>
+#include <utility>
+#include <variant>
+
+#include <QCoreApplication>
+#include <QTimer>
+#include <opencv2/imgproc.hpp>
+
+#include "app/studio/calibration/capture_bench.h"
+#include "app/studio/calibration/room_calibration.h"
+#include "calibration/doctor/capture_calibration.h"
+#include "calibration/doctor/sequence_check.h"
+#include "core/base/error.h"
+
+namespace lumorph::studio {
+namespace {
+
+constexpr auto kPlace = "calibrate"; // of jobs and notices
+constexpr int kLiveMilliseconds = 60;
+constexpr int kSearchWidth = 640; // pixels; the live picture's board is found in a smaller one
+constexpr double kMetresPerUnit = 0.001;
+constexpr double kNinetyFive = 1.731; // of a length that is spread evenly to all sides, by its root mean square
+constexpr double kTable = 0.2;        // metres around the origin, where the lab tells the truth
+
+/// What came of reading or solving: a refusal is a result too.
+template <class Result> using OrFinding = std::variant<Result, Finding>;
+
+template <class Result, class Run> OrFinding<Result> orFinding(const Run& run) {
+    try {
+        return run();
+    } catch (const CaptureRefused& refused) {
+        return refused.finding();
+    }
+}
+
+CalibrationPose poseOf(const std::string& name, const ReadPose& read, cv::Size projector) {
+    CalibrationPose pose;
+    pose.name = name;
+    pose.pictures = std::make_shared<const PosePictures>(picturesOf(read.decoded, projector));
+    pose.seen = std::make_shared<const ViewObservations>(read.observations);
+    pose.warnings = read.warnings;
+    return pose;
+}
+
+/// Of the images of a pose the one that shows most.
+cv::Mat brightestOf(const std::vector<cv::Mat>& images) {
+    cv::Mat brightest;
+    double most = -1.0;
+    for (const cv::Mat& image : images)
+        if (const double mean = cv::mean(image)[0]; mean > most) most = mean, brightest = image;
+    return brightest;
+}
+
+CalibrationPose poseRefusedBy(const Finding& finding, const cv::Mat& picture) {
+    CalibrationPose pose;
+    pose.name = finding.view;
+    pose.refusal = finding;
+    if (!picture.empty()) {
+        PosePictures pictures;
+        pictures.camera = {picture.cols, picture.rows};
+        pictures.white = pictureOfMat(picture);
+        pose.pictures = std::make_shared<const PosePictures>(std::move(pictures));
+    }
+    return pose;
+}
+
+/// The image that a refusal is about, or one of its pose.
+cv::Mat pictureOfFinding(const std::vector<CapturedView>& views, const Finding& finding) {
+    for (const CapturedView& view : views) {
+        if (view.name != finding.view || view.files.empty()) continue;
+        // By custom white is the one before the last.
+        std::filesystem::path file = view.files.size() > 1 ? view.files[view.files.size() - 2] : view.files.back();
+        for (const auto& one : view.files)
+            if (one.filename() == finding.file) file = one;
+        try {
+            return readGrey(file, view.name);
+        } catch (const std::exception&) { // the image itself may be what is broken
+        }
+    }
+    return {};
+}
+
+double distanceOf(const PoseVector& pose) {
+    return std::sqrt(pose[3] * pose[3] + pose[4] * pose[4] + pose[5] * pose[5]);
+}
+
+/// How far light that was held out lands beside, in 95 of 100 places, on the boards.
+std::optional<double> millimetresOf(const ProcamCalibration& solved) {
+    double sum = 0.0;
+    int count = 0;
+    for (std::size_t i = 0; i < solved.views.size() && i < solved.state.cameraFromBoard.size(); ++i) {
+        if (!solved.views[i].heldOut) continue;
+        const double distance = distanceOf(solved.state.cameraFromBoard[i]);
+        const double length = *solved.views[i].heldOut * distance / solved.projector.lens[kFocalLength];
+        sum += length * length;
+        ++count;
+    }
+    if (count == 0) return std::nullopt;
+    return kNinetyFive * std::sqrt(sum / count);
+}
+
+std::vector<PoseResiduals> residualsOf(const std::vector<ViewObservations>& views, const ProcamCalibration& solved) {
+    constexpr std::size_t kMost = 400; // points of a view that are drawn
+    std::vector<PoseResiduals> all;
+    for (std::size_t i = 0; i < views.size() && i < solved.state.cameraFromBoard.size(); ++i) {
+        PoseResiduals one{views[i].name, {}, {}};
+        const auto corners = cameraErrors(views[i], solved.state, solved.state.cameraFromBoard[i]);
+        for (std::size_t k = 0; k < corners.size(); ++k) one.camera.push_back({views[i].corners.seen[k], corners[k]});
+        const auto points = projectorErrors(views[i], solved.state, solved.state.cameraFromBoard[i]);
+        const std::size_t every = points.size() / kMost + 1;
+        for (std::size_t k = 0; k < points.size(); k += every)
+            one.projector.push_back({views[i].projector[k].projector, points[k]});
+        all.push_back(std::move(one));
+    }
+    return all;
+}
+
+/// The board in a live picture; found in a small one, so that the picture stays live.
+std::vector<QPointF> liveCorners(const cv::Mat& picture, const CalibrationBoard& board) {
+    const double scale = std::min(1.0, static_cast<double>(kSearchWidth) / picture.cols);
+    cv::Mat small;
+    cv::resize(picture, small, {}, scale, scale, cv::INTER_AREA);
+    std::vector<QPointF> corners;
+    if (const auto found = findBoard(small, board))
+        for (const cv::Point2d& point : found->seen)
+            corners.emplace_back((point.x + 0.5) / scale - 0.5, (point.y + 0.5) / scale - 0.5);
+    return corners;
+}
+
+} // namespace
+
+/// What a worker hands over while it works; read in the window's thread.
+struct CalibrationService::Mailbox {
+    std::mutex mutex;
+    std::vector<std::pair<std::size_t, CalibrationPose>> poses;
+    cv::Mat shot;
+    int index = 0, count = 0;
+};
+
+/// Looks through the camera beside the window, one look at a time; the newest order wins.
+class CalibrationService::Looker {
+public:
+    using Look = std::function<void(const Progress&)>;
+    Looker() : thread_([this](const std::stop_token& stop) { run(stop); }) {}
+    void look(Look look) {
+        const std::scoped_lock lock(mutex_);
+        next_ = std::move(look);
+        wake_.notify_one();
+    }
+
+private:
+    void run(const std::stop_token& stop) {
+        while (true) {
+            Look look;
+            {
+                std::unique_lock lock(mutex_);
+                if (!wake_.wait(lock, stop, [this] { return next_ != nullptr; })) return;
+                look = std::exchange(next_, nullptr);
+            }
+            look(Progress({}, stop));
+        }
+    }
+
+    std::mutex mutex_;
+    std::condition_variable_any wake_;
+    Look next_;
+    std::jthread thread_; ///< last, so that it has ended before the rest goes
+};
+
+CalibrationService::CalibrationService(Settings& settings, StudioDocument& document, Jobs& jobs, Notices& notices,
+                                       DisplayOpener openDisplay, VersionTaker take, QObject* parent)
+    : QObject(parent), settings_(settings), document_(document), openDisplay_(std::move(openDisplay)),
+      take_(std::move(take)), jobs_(*this, jobs, notices), liveTimer_(new QTimer(this)),
+      looker_(std::make_unique<Looker>()) {
+    state_.setup = keptSetup(settings, keptWay(settings));
+    liveTimer_->setSingleShot(true);
+    liveTimer_->setInterval(kLiveMilliseconds);
+    connect(liveTimer_, &QTimer::timeout, this, [this] { look(); });
+    connect(&jobs, &Jobs::progressed, this, [this, &jobs](int id) {
+        for (const Jobs::Status& status : jobs.running())
+            if (status.id == id && status.place == kPlace && state_.work != CalibrationState::Work::none) {
+                state_.fraction = status.fraction;
+                state_.stage = status.stage;
+                poll();
+            }
+    });
+    connect(&document, &StudioDocument::changed, this, [this](StateParts parts) {
+        if (parts & StatePart::installation) followDocument();
+    });
+}
+
+CalibrationService::~CalibrationService() = default;
+
+void CalibrationService::setActive(bool active) {
+    active_ = active;
+    if (!active) return liveTimer_->stop();
+    if (!bench_ && state_.setup.way != CaptureWay::folder) return openBench();
+    look();
+}
+
+void CalibrationService::setWay(CaptureWay way) {
+    if (way != state_.setup.way) setSetup(keptSetup(settings_, way));
+}
+
+void CalibrationService::setSetup(const CalibrationSetup& setup) {
+    if (setup == state_.setup) return;
+    const bool onlyMore = [&] {
+        CalibrationSetup same = setup;
+        same.poses = state_.setup.poses;
+        return same == state_.setup && setup.poses >= state_.setup.poses && setup.way != CaptureWay::lab;
+    }();
+    state_.setup = setup;
+    keepSetup(settings_, setup);
+    if (!onlyMore) beginAnew();
+    emit changed();
+}
+
+void CalibrationService::beginAnew() {
+    cancel();
+    jobs_.stop("open");
+    isLooking_ = false;
+    ++benchTry_;
+    bench_ = nullptr;
+    state_.poses.clear();
+    state_.flatPose.clear();
+    state_.usedDate.clear();
+    clearResults();
+    live_ = {};
+    if (active_ && state_.setup.way != CaptureWay::folder) openBench();
+    emit changed();
+    emit liveChanged();
+}
+
+void CalibrationService::clearResults() {
+    state_.result = nullptr;
+    state_.refusal.reset();
+    state_.trouble.clear();
+}
+
+void CalibrationService::doNext() {
+    switch (const NextStep next = nextOf(state_); next.what) {
+    case NextStep::Do::read:
+        return read();
+    case NextStep::Do::photograph:
+    case NextStep::Do::photographAgain:
+        return photograph();
+    case NextStep::Do::solve:
+        return solve();
+    case NextStep::Do::use:
+        return use();
+    case NextStep::Do::stop:
+        return cancel();
+    case NextStep::Do::exchangeSides: {
+        CalibrationSetup setup = state_.setup;
+        std::swap(setup.projector.width, setup.projector.height);
+        setSetup(setup);
+        return read();
+    }
+    case NextStep::Do::leaveOut: {
+        for (const CalibrationPose& pose : state_.poses)
+            if (pose.refusal && !pose.leftOut) return setLeftOut(pose.name, true);
+        if (state_.refusal) setLeftOut(state_.refusal->view, true);
+        return;
+    }
+    case NextStep::Do::chooseFolder:
+    case NextStep::Do::nothing:
+        return;
+    }
+}
+
+void CalibrationService::cancel() {
+    for (const char* slot : {"read", "capture", "solve"}) jobs_.stop(slot);
+    rest_ = false;
+    endWork();
+    emit changed();
+}
+
+void CalibrationService::endWork() {
+    state_.work = CalibrationState::Work::none;
+    state_.stage.clear();
+    state_.fraction = 0.0;
+    mailbox_ = nullptr;
+}
+
+void CalibrationService::setTrouble(const std::exception& error) {
+    endWork();
+    rest_ = false;
+    const Notice notice = noticeOf(error);
+    QStringList parts;
+    for (const QString& part : {notice.subject, notice.why, notice.remedy})
+        if (!part.isEmpty()) parts << part;
+    state_.trouble = parts.join(": ");
+    emit changed();
+}
+
+void CalibrationService::takePose(CalibrationPose pose) {
+    auto& poses = state_.poses;
+    const auto same = std::ranges::find(poses, pose.name, &CalibrationPose::name);
+    if (same != poses.end())
+        *same = std::move(pose);
+    else
+        poses.push_back(std::move(pose));
+    if (state_.flatPose.empty() && poses.front().seen) state_.flatPose = poses.front().name;
+}
+
+/// What a worker has put into the mailbox so far.
+void CalibrationService::poll() {
+    if (mailbox_) {
+        std::vector<std::pair<std::size_t, CalibrationPose>> poses;
+        cv::Mat shot;
+        {
+            const std::scoped_lock lock(mailbox_->mutex);
+            poses.swap(mailbox_->poses);
+            std::swap(shot, mailbox_->shot);
+            if (mailbox_->count > 0 && state_.work == CalibrationState::Work::capturing)
+                state_.stage = tr("Pattern %1 of %2").arg(mailbox_->index + 1).arg(mailbox_->count);
+        }
+        for (auto& [index, pose] : poses) takePose(std::move(pose));
+        if (!poses.empty()) std::ranges::sort(state_.poses, {}, [](const CalibrationPose& pose) { return pose.name; });
+        if (!shot.empty()) {
+            live_.picture = pictureOfMat(shot);
+            live_.camera = {shot.cols, shot.rows};
+            live_.corners.clear();
+            live_.words = state_.stage;
+            emit liveChanged();
+        }
+    }
+    emit changed();
+}
+
+void CalibrationService::read() {
+    cancel();
+    clearResults();
+    std::vector<std::string> without;
+    for (const CalibrationPose& pose : state_.poses)
+        if (pose.leftOut) without.push_back(pose.name);
+    std::erase_if(state_.poses, [](const CalibrationPose& pose) { return !pose.leftOut; });
+    state_.work = CalibrationState::Work::reading;
+    state_.stage = tr("Looking for images");
+    mailbox_ = std::make_shared<Mailbox>();
+    const auto work = [setup = state_.setup, without, box = mailbox_](const Progress& progress) {
+        std::vector<CapturedView> views = viewsIn(setup.folder);
+        std::erase_if(views, [&](const CapturedView& view) { return std::ranges::count(without, view.name) > 0; });
+        const CaptureOrder order = parsePattern(setup.pattern, setup.projector);
+        return orFinding<ReadCapture>([&]() -> OrFinding<ReadCapture> {
+            try {
+                return readPoses(
+                    views, setup.board, order,
+                    [&](std::size_t index, const ReadPose& read) {
+                        CalibrationPose pose = poseOf(views[index].name, read, setup.projector);
+                        const std::scoped_lock lock(box->mutex);
+                        box->poses.emplace_back(index, std::move(pose));
+                    },
+                    progress);
+            } catch (const CaptureRefused& refused) {
+                if (!refused.finding().view.empty()) {
+                    CalibrationPose pose = poseRefusedBy(refused.finding(), pictureOfFinding(views, refused.finding()));
+                    const std::scoped_lock lock(box->mutex);
+                    box->poses.emplace_back(views.size(), std::move(pose));
+                }
+                throw;
+            }
+        });
+    };
+    jobs_.runWith<OrFinding<ReadCapture>>(
+        "read", kPlace, tr("Reading the images"), work,
+        [this](OrFinding<ReadCapture> read) {
+            poll();
+            endWork();
+            if (const auto* finding = std::get_if<Finding>(&read)) {
+                if (finding->view.empty()) state_.refusal = *finding;
+                emit changed();
+                return;
+            }
+            camera_ = std::get<ReadCapture>(read).camera;
+            solve();
+        },
+        [this](const std::exception& error) { setTrouble(error); });
+    emit changed();
+}
+
+void CalibrationService::openBench() {
+    CalibrationSetup setup = state_.setup;
+    if (setup.way == CaptureWay::camera && setup.camera.empty()) return;
+    const auto room = document_.state().installation;
+    if (projector() >= room->projectors.size()) {
+        state_.trouble = tr("The room has no projector. Add one in the Scene workspace.");
+        emit changed();
+        return;
+    }
+    std::shared_ptr<PatternDisplay> display;
+    if (setup.way == CaptureWay::camera) {
+        try {
+            // Deleted in the window's thread, whoever lets go of it last.
+            display = std::shared_ptr<PatternDisplay>(openDisplay_(projector()).release(), [](PatternDisplay* shown) {
+                QMetaObject::invokeMethod(
+                    qApp, [shown] { delete shown; }, Qt::QueuedConnection);
+            });
+        } catch (const std::exception& error) {
+            return setTrouble(error);
+        }
+    }
+    live_.words = setup.way == CaptureWay::lab ? tr("The lab is being set up") : tr("The camera is being opened");
+    const int attempt = ++benchTry_;
+    jobs_.runWith<std::shared_ptr<CaptureBench>>(
+        "open", kPlace, setup.way == CaptureWay::lab ? tr("Setting up the lab") : tr("Opening the camera"),
+        [setup, room, display](const Progress& progress) {
+            return setup.way == CaptureWay::lab ? openLabBench(setup, *room, progress)
+                                                : openCameraBench(setup, display, progress);
+        },
+        [this, attempt](std::shared_ptr<CaptureBench> bench) {
+            if (attempt != benchTry_) return;
+            bench_ = std::move(bench);
+            state_.trouble.clear();
+            look();
+            emit changed();
+        },
+        [this](const std::exception& error) { setTrouble(error); });
+    emit liveChanged();
+}
+
+void CalibrationService::look() {
+    if (!active_ || !bench_ || isLooking_ || state_.work == CalibrationState::Work::capturing) return;
+    isLooking_ = true;
+    const int pose = state_.counting();
+    looker_->look([this, bench = bench_, board = state_.setup.board, pose](const Progress& progress) {
+        LiveSight sight;
+        std::string trouble;
+        try {
+            const std::scoped_lock lock(bench->mutex);
+            const cv::Mat picture = bench->look(progress);
+            sight.camera = {picture.cols, picture.rows};
+            sight.picture = pictureOfMat(picture);
+            sight.corners = liveCorners(picture, board);
+            for (const cv::Point2d& point : bench->ghost(pose)) sight.ghost.emplace_back(point.x, point.y);
+        } catch (const std::exception& error) {
+            trouble = error.what();
+        }
+        QMetaObject::invokeMethod(
+            this,
+            [this, bench, sight = std::move(sight), trouble = std::move(trouble)]() mutable {
+                takeSight(bench, std::move(sight), trouble);
+            },
+            Qt::QueuedConnection);
+    });
+}
+
+void CalibrationService::takeSight(const std::shared_ptr<CaptureBench>& from, LiveSight sight,
+                                   const std::string& trouble) {
+    if (from != bench_) return;
+    isLooking_ = false;
+    if (state_.work == CalibrationState::Work::capturing) return;
+    if (!trouble.empty()) {
+        bench_ = nullptr;
+        state_.trouble = QString::fromStdString(trouble);
+        live_ = {};
+        emit liveChanged();
+        emit changed();
+        return;
+    }
+    sight.words = sight.corners.empty() ? tr("No board in sight") : tr("Board in sight");
+    live_ = std::move(sight);
+    if (bench_->isLive() && active_) liveTimer_->start();
+    emit liveChanged();
+}
+
+void CalibrationService::photographRest() {
+    rest_ = state_.setup.way == CaptureWay::lab;
+    photograph();
+}
+
+void CalibrationService::photograph() {
+    const bool rest = rest_;
+    cancel();
+    rest_ = rest;
+    clearResults();
+    std::erase_if(state_.poses, [](const CalibrationPose& pose) { return pose.refusal.has_value(); });
+    if (!bench_) return openBench();
+    state_.work = CalibrationState::Work::capturing;
+    state_.stage = tr("Waiting for the camera");
+    mailbox_ = std::make_shared<Mailbox>();
+    const int number = static_cast<int>(state_.poses.size());
+    const auto room = document_.state().installation;
+    const glm::ivec2 size = room->projectors.at(projector()).camera.size;
+    const auto work = [bench = bench_, setup = state_.setup, number, size, box = mailbox_](const Progress& progress) {
+        const std::scoped_lock lock(bench->mutex);
+        const auto onShot = [&](const Shot& shot) {
+            const std::scoped_lock boxLock(box->mutex);
+            box->shot = shot.image;
+            box->index = shot.index;
+            box->count = shot.count;
+        };
+        CapturedPose captured = bench->capture(number, onShot, progress.part(0.0, 0.8));
+        if (captured.findings.refusal) {
+            Finding finding = *captured.findings.refusal;
+            if (finding.view.empty()) finding.view = captured.name;
+            return poseRefusedBy(finding, brightestOf(captured.images));
+        }
+        progress.report(0.85, "reading the patterns");
+        const cv::Size projector(size.x, size.y);
+        const CapturedView view{captured.name, {captured.files.begin(), captured.files.end()}};
+        try {
+            const CaptureOrder order = parsePattern(setup.pattern, projector);
+            if (const auto wrong = checkCounts({view}, order)) throw CaptureRefused(*wrong);
+            const ReadPose read = readPose(view, captured.images, setup.board, order);
+            CalibrationPose pose = poseOf(captured.name, read, projector);
+            pose.warnings.insert(pose.warnings.end(), captured.findings.warnings.begin(),
+                                 captured.findings.warnings.end());
+            return pose;
+        } catch (const CaptureRefused& refused) {
+            Finding finding = refused.finding();
+            // A projector of another size, and such, is of the whole capture; here it shows in this pose.
+            if (finding.view.empty()) finding.view = captured.name;
+            return poseRefusedBy(finding, brightestOf(captured.images));
+        }
+    };
+    jobs_.runWith<CalibrationPose>(
+        "capture", kPlace, tr("Photographing a pose"), work,
+        [this](CalibrationPose pose) {
+            endWork();
+            const bool refused = pose.refusal.has_value();
+            if (pose.pictures) camera_ = {pose.pictures->camera.width(), pose.pictures->camera.height()};
+            takePose(std::move(pose));
+            emit changed();
+            if (refused) {
+                rest_ = false;
+                look();
+            } else if (state_.counting() >= state_.setup.poses) {
+                rest_ = false;
+                look();
+                solve();
+            } else if (rest_) {
+                photograph();
+            } else {
+                look();
+            }
+        },
+        [this](const std::exception& error) { setTrouble(error); });
+    emit changed();
+}
+
+void CalibrationService::solve() {
+    jobs_.stop("solve");
+    clearResults();
+    ReadCapture capture;
+    capture.views = countingViews(state_);
+    capture.camera = camera_;
+    for (const CalibrationPose& pose : state_.poses)
+        if (pose.counts()) capture.warnings.insert(capture.warnings.end(), pose.warnings.begin(), pose.warnings.end());
+    if (capture.views.size() < static_cast<std::size_t>(kFewestPoses)) {
+        state_.refusal = Finding{Cause::tooFewViews, "", "",
+                                 std::to_string(capture.views.size()) + " poses count, but three are needed",
+                                 "add poses of the board, tilted differently; six are good"};
+        emit changed();
+        return;
+    }
+    state_.work = CalibrationState::Work::solving;
+    state_.stage = tr("Working out camera and projector");
+    cv::Size size = state_.setup.projector;
+    if (state_.setup.way != CaptureWay::folder) {
+        const glm::ivec2 installed = document_.state().installation->projectors.at(projector()).camera.size;
+        size = {installed.x, installed.y};
+    }
+    using Result = std::shared_ptr<const CalibrationResult>;
+    const auto work = [capture = std::move(capture), size, setup = state_.setup](const Progress& progress) {
+        return orFinding<Result>([&]() -> OrFinding<Result> {
+            auto result = std::make_shared<CalibrationResult>();
+            result->solved = calibrateCapture(capture, size, {}, progress);
+            result->residuals = residualsOf(capture.views, result->solved);
+            result->millimetres = millimetresOf(result->solved);
+            result->date = utcDate();
+            result->setup = setup;
+            return Result(std::move(result));
+        });
+    };
+    jobs_.runWith<OrFinding<Result>>(
+        "solve", kPlace, tr("Working out camera and projector"), work,
+        [this](OrFinding<Result> solved) {
+            endWork();
+            if (const auto* finding = std::get_if<Finding>(&solved)) {
+                state_.refusal = *finding;
+            } else {
+                auto result = std::make_shared<CalibrationResult>(*std::get<Result>(solved));
+                state_.result = result;
+                if (bench_ && bench_->truth()) try {
+                        const Installation room = roomOfResult();
+                        if (const auto error = lightError(room.projectors[projector()].camera,
+                                                          bench_->truth()->projectors.front().camera, kTable))
+                            result->trueMillimetres = 1000.0 * *error;
+                    } catch (const Error&) { // told when it is to be used
+                    }
+            }
+            emit changed();
+        },
+        [this](const std::exception& error) { setTrouble(error); });
+    emit changed();
+}
+
+void CalibrationService::setLeftOut(const std::string& pose, bool leftOut) {
+    const auto found = std::ranges::find(state_.poses, pose, &CalibrationPose::name);
+    if (found == state_.poses.end() || found->leftOut == leftOut) return;
+    cancel();
+    found->leftOut = leftOut;
+    clearResults();
+    if (state_.flatPose == pose && leftOut) state_.flatPose.clear();
+    for (const CalibrationPose& one : state_.poses)
+        if (state_.flatPose.empty() && one.counts()) state_.flatPose = one.name;
+    // Of a folder, reading ended at the first refusal.
+    if (state_.setup.way == CaptureWay::folder)
+        read();
+    else if (state_.counting() >= kFewestPoses)
+        solve();
+    emit changed();
+}
+
+void CalibrationService::setFlatPose(const std::string& pose) {
+    if (pose == state_.flatPose) return;
+    state_.flatPose = pose;
+    emit changed();
+}
+
+Installation CalibrationService::roomOfResult() const {
+    const auto pose = std::ranges::find(state_.poses, state_.flatPose, &CalibrationPose::name);
+    if (!state_.result || pose == state_.poses.end() || !pose->counts())
+        throw InvalidInput("calibration", "nobody said in which pose the board lay on the table",
+                           "choose that pose at the left");
+    const Origin origin{Origin::Way::measured,
+                        "structured light, " + std::to_string(state_.result->solved.views.size()) + " boards",
+                        state_.result->date};
+    return roomWith(*document_.state().installation, state_.result->solved, *pose->seen, kMetresPerUnit, projector(),
+                    origin, state_.setup.way == CaptureWay::camera ? state_.setup.camera : std::string());
+}
+
+void CalibrationService::use() {
+    if (!state_.isSolved()) return;
+    try {
+        if (take_(state_, roomOfResult())) {
+            state_.trouble.clear();
+            followDocument();
+        }
+    } catch (const std::exception& error) {
+        setTrouble(error);
+    }
+    emit changed();
+}
+
+/// Undo takes a calibration out of the room, redo puts it back.
+void CalibrationService::followDocument() {
+    const auto& projectors = document_.state().installation->projectors;
+    std::string used;
+    if (projector() < projectors.size() && state_.result && projectors[projector()].lens.date == state_.result->date &&
+        projectors[projector()].pose.date == state_.result->date)
+        used = state_.result->date;
+    if (used == state_.usedDate) return;
+    state_.usedDate = used;
+    emit changed();
+}
+
+} // namespace lumorph::studio

@@ -1,0 +1,112 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include <QImage>
+#include <QObject>
+#include <QPointF>
+#include <QSize>
+
+#include "app/studio/base/jobs.h"
+#include "app/studio/base/notices.h"
+#include "app/studio/base/settings.h"
+#include "app/studio/calibration/calibration_state.h"
+#include "app/studio/document/job_slots.h"
+#include "app/studio/document/studio_document.h"
+#include "calibration/capture/pattern_display.h"
+
+class QTimer;
+
+namespace lumorph::studio {
+
+class CaptureBench;
+
+/// What the camera sees now.
+struct LiveSight {
+    QImage picture;               ///< null while there is none
+    QSize camera;                 ///< its pixels, in which all points are told
+    std::vector<QPointF> corners; ///< of the board; empty where it is not found
+    std::vector<QPointF> ghost;   ///< where the board should be next, its corners in turn; empty: no matter
+    QString words;                ///< what it shows, or why there is none
+};
+
+/// A calibration of projector and camera, step by step, without widgets: what is chosen, what was photographed or read,
+/// what came out, and what is to be done next. What takes long runs as a job. Lives in the window's thread.
+class CalibrationService : public QObject {
+    Q_OBJECT
+public:
+    /// Opens what shows patterns on the installed projector of this number; throws DeviceError with what to do. Called
+    /// in the window's thread; deleted there too.
+    using DisplayOpener = std::function<std::unique_ptr<PatternDisplay>(std::size_t projector)>;
+    /// Puts a measured installation into the document, as a step of undo and a version; false where that failed.
+    using VersionTaker = std::function<bool(const CalibrationState& state, const Installation& installation)>;
+
+    CalibrationService(Settings& settings, StudioDocument& document, Jobs& jobs, Notices& notices,
+                       DisplayOpener openDisplay, VersionTaker take, QObject* parent = nullptr);
+    ~CalibrationService() override;
+
+    [[nodiscard]] const CalibrationState& state() const noexcept { return state_; }
+    [[nodiscard]] const LiveSight& live() const noexcept { return live_; }
+
+    /// In sight or not: only then the camera is looked through.
+    void setActive(bool active);
+    /// Another way, board, folder ...: poses that were made with other ones go.
+    void setSetup(const CalibrationSetup& setup);
+    void setWay(CaptureWay way);
+
+    /// Does what `nextOf` says. `chooseFolder` is the window's: nothing happens.
+    void doNext();
+    void photograph();
+    /// Photographs until there are as many poses as wanted; the lab alone can, since nobody has to move the board.
+    void photographRest();
+    void solve();
+    void cancel();
+    void setLeftOut(const std::string& pose, bool leftOut);
+    void beginAnew();
+    void setFlatPose(const std::string& pose);
+    /// Puts the result into the room: a step of undo.
+    void use();
+    /// What would stand in the room; throws InvalidInput where it cannot.
+    [[nodiscard]] Installation roomOfResult() const;
+
+signals:
+    void changed();     ///< of the state
+    void liveChanged(); ///< of the live sight
+
+private:
+    struct Mailbox;
+    class Looker;
+    void read();
+    void openBench();
+    void look();
+    void takeSight(const std::shared_ptr<CaptureBench>& from, LiveSight sight, const std::string& trouble);
+    void clearResults();
+    void poll();
+    void endWork();
+    void takePose(CalibrationPose pose);
+    void setTrouble(const std::exception& error);
+    void followDocument();
+    [[nodiscard]] std::size_t projector() const { return 0; }
+
+    Settings& settings_;
+    StudioDocument& document_;
+    DisplayOpener openDisplay_;
+    VersionTaker take_;
+    CalibrationState state_;
+    LiveSight live_;
+    std::shared_ptr<CaptureBench> bench_;
+    std::shared_ptr<Mailbox> mailbox_; ///< of the work that runs
+    JobSlots jobs_;
+    QTimer* liveTimer_;
+    bool active_ = false;
+    bool isLooking_ = false;
+    bool rest_ = false;              ///< the poses that are missing follow by themselves
+    int benchTry_ = 0;               ///< counts, so that a bench that comes too late is not taken
+    cv::Size camera_;                ///< of the poses
+    std::unique_ptr<Looker> looker_; ///< last: it refers to the rest
+};
+
+} // namespace lumorph::studio

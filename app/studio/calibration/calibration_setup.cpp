@@ -1,0 +1,111 @@
+#include "app/studio/calibration/calibration_setup.h"
+
+#include <sstream>
+
+#include <QObject>
+
+#include "core/base/error.h"
+
+namespace lumorph::studio {
+namespace {
+
+constexpr auto kWayKey = "calibrate/way";
+constexpr int kMostPoses = 30;
+
+QString keyOf(CaptureWay way, const char* what) {
+    static constexpr const char* kNames[] = {"lab", "folder", "camera"};
+    return QString("calibrate/%1/%2").arg(kNames[static_cast<int>(way)], what);
+}
+
+std::string textOf(double number) {
+    std::ostringstream text;
+    text << number;
+    return text.str();
+}
+
+QString sideText(double millimetres) { return QString::number(millimetres, 'g', 6); }
+
+} // namespace
+
+CaptureWay keptWay(const Settings& settings) {
+    const int way = settings.value(kWayKey, 0).toInt();
+    return way >= 0 && way < kCaptureWays ? static_cast<CaptureWay>(way) : CaptureWay::lab;
+}
+
+CalibrationSetup keptSetup(const Settings& settings, CaptureWay way) {
+    CalibrationSetup setup;
+    setup.way = way;
+    const auto kept = [&](const char* what) { return settings.value(keyOf(way, what)).toString().toStdString(); };
+    try {
+        if (const std::string board = kept("board"); !board.empty()) setup.board = parseCalibrationBoard(board);
+        if (const std::string size = kept("projector"); !size.empty()) setup.projector = parseProjectorSize(size);
+        if (const std::string pattern = kept("pattern"); !pattern.empty()) {
+            (void)parsePattern(pattern, setup.projector);
+            setup.pattern = pattern;
+        }
+    } catch (const Error&) { // a settings file that somebody edited: what is usual is in use
+    }
+    setup.folder = kept("folder");
+    setup.camera = kept("camera");
+    setup.poses = std::clamp(settings.value(keyOf(way, "poses"), setup.poses).toInt(), 3, kMostPoses);
+    return setup;
+}
+
+void keepSetup(Settings& settings, const CalibrationSetup& setup) {
+    const auto keep = [&](const char* what, const std::string& value) {
+        settings.setValue(keyOf(setup.way, what), QString::fromStdString(value));
+    };
+    settings.setValue(kWayKey, static_cast<int>(setup.way));
+    keep("board", boardText(setup.board));
+    keep("projector", std::to_string(setup.projector.width) + "x" + std::to_string(setup.projector.height));
+    keep("pattern", setup.pattern);
+    keep("folder", setup.folder.string());
+    keep("camera", setup.camera);
+    settings.setValue(keyOf(setup.way, "poses"), setup.poses);
+}
+
+std::string boardText(const CalibrationBoard& board) {
+    const std::string size = std::to_string(board.columns) + "x" + std::to_string(board.rows);
+    switch (board.kind) {
+    case CalibrationBoard::Kind::circles:
+        return "circles:" + size + ":" + textOf(board.spacing);
+    case CalibrationBoard::Kind::charuco:
+        return "charuco:" + size + ":" + textOf(board.spacing) + ":" + textOf(board.marker);
+    case CalibrationBoard::Kind::chess:
+        break;
+    }
+    return "chess:" + size + ":" + textOf(board.spacing);
+}
+
+QString boardWords(const CalibrationBoard& board) {
+    switch (board.kind) {
+    case CalibrationBoard::Kind::circles:
+        return QObject::tr("circles, %1 a row in %2 rows, %3 mm")
+            .arg(board.columns)
+            .arg(board.rows)
+            .arg(sideText(board.spacing));
+    case CalibrationBoard::Kind::charuco:
+        return QObject::tr("ChArUco board, %1 × %2 squares of %3 mm")
+            .arg(board.columns)
+            .arg(board.rows)
+            .arg(sideText(board.spacing));
+    case CalibrationBoard::Kind::chess:
+        break;
+    }
+    return QObject::tr("chessboard, %1 × %2 inner corners, squares of %3 mm")
+        .arg(board.columns)
+        .arg(board.rows)
+        .arg(sideText(board.spacing));
+}
+
+QString problemOf(const CalibrationSetup& setup) {
+    try {
+        (void)parseCalibrationBoard(boardText(setup.board));
+        (void)parsePattern(setup.pattern, setup.projector);
+    } catch (const Error& error) {
+        return QString::fromStdString(error.what());
+    }
+    return {};
+}
+
+} // namespace lumorph::studio

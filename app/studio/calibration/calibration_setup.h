@@ -1,0 +1,48 @@
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <QString>
+
+#include "app/studio/base/settings.h"
+#include "calibration/decode/calibration_board.h"
+#include "calibration/decode/refusal.h"
+#include "calibration/patterns/capture_order.h"
+
+namespace lumorph::studio {
+
+/// Where the pictures of a calibration come from.
+enum class CaptureWay { lab, folder, camera };
+inline constexpr int kCaptureWays = 3;
+
+/// What a calibration is made with; lengths of the board in millimetres.
+struct CalibrationSetup {
+    CaptureWay way = CaptureWay::lab;
+    CalibrationBoard board{CalibrationBoard::Kind::chess, 9, 7, 25.0, 0.0};
+    cv::Size projector{1280, 800}; ///< of a folder; otherwise that of the installed projector
+    std::string pattern = "graycode";
+    std::filesystem::path folder; ///< one folder a pose; empty: not chosen yet
+    std::string camera;           ///< "/dev/video0"; empty: not chosen yet
+    int poses = 6;                ///< that are wanted
+    std::optional<Cause> fault;   ///< what goes wrong in the lab on purpose
+    bool operator==(const CalibrationSetup&) const = default;
+};
+
+/// What was chosen last for this way, or what is usual.
+[[nodiscard]] CalibrationSetup keptSetup(const Settings& settings, CaptureWay way);
+/// The way that was chosen last.
+[[nodiscard]] CaptureWay keptWay(const Settings& settings);
+void keepSetup(Settings& settings, const CalibrationSetup& setup);
+
+/// "chess:9x7:25", as `parseCalibrationBoard` reads it.
+[[nodiscard]] std::string boardText(const CalibrationBoard& board);
+/// "Chessboard, 9 × 7 inner corners, squares of 25 mm".
+[[nodiscard]] QString boardWords(const CalibrationBoard& board);
+/// Why it cannot be used; empty where it can.
+[[nodiscard]] QString problemOf(const CalibrationSetup& setup);
+
+} // namespace lumorph::studio

@@ -1,0 +1,405 @@
+#include "app/studio/calibration/calibration_state.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <QObject>
+
+namespace lumorph::studio {
+namespace {
+
+using How = CalibrationStep::How;
+using Do = NextStep::Do;
+using Tone = NextStep::Tone;
+
+constexpr double kDoubtfulTransfer = 1.0; // projector pixels, held out
+
+QString tr(const char* text) { return QObject::tr(text); }
+
+QString number(double value, int decimals) { return QString::number(value, 'f', decimals); }
+
+QString capitalised(const std::string& words) {
+    QString text = QString::fromStdString(words).trimmed();
+    if (text.isEmpty()) return text;
+    text[0] = text[0].toUpper();
+    if (!text.endsWith('.')) text += '.';
+    return text;
+}
+
+QString wayWords(const CalibrationSetup& setup) {
+    switch (setup.way) {
+    case CaptureWay::folder:
+        return setup.folder.empty() ? tr("Choose the folder of your images")
+                                    : QString::fromStdString(setup.folder.filename().string());
+    case CaptureWay::camera:
+        return setup.camera.empty() ? tr("Choose a camera") : QString::fromStdString(setup.camera);
+    case CaptureWay::lab:
+        break;
+    }
+    return tr("Virtual lab, no hardware");
+}
+
+bool isChosen(const CalibrationSetup& setup) {
+    if (setup.way == CaptureWay::folder) return !setup.folder.empty();
+    return setup.way == CaptureWay::lab || !setup.camera.empty();
+}
+
+CalibrationStep setupStep(const CalibrationState& state) {
+    CalibrationStep step{"setup", tr("Set up"), How::good, wayWords(state.setup)};
+    if (const QString problem = problemOf(state.setup); !problem.isEmpty())
+        step.how = How::needsYou, step.words = problem;
+    else if (!isChosen(state.setup))
+        step.how = How::needsYou;
+    return step;
+}
+
+const CalibrationPose* refusedPose(const CalibrationState& state) {
+    const auto found =
+        std::ranges::find_if(state.poses, [](const CalibrationPose& pose) { return pose.refusal && !pose.leftOut; });
+    return found == state.poses.end() ? nullptr : &*found;
+}
+
+CalibrationStep posesStep(const CalibrationState& state) {
+    CalibrationStep step{"poses", tr("Poses of the board"), How::notBegun, {}};
+    const int counting = state.counting();
+    const bool works = state.work == CalibrationState::Work::reading || state.work == CalibrationState::Work::capturing;
+    const auto warned = std::ranges::count_if(
+        state.poses, [](const CalibrationPose& pose) { return pose.counts() && !pose.warnings.empty(); });
+    if (works) {
+        step.how = How::running;
+        step.words = state.stage;
+    } else if (const CalibrationPose* refused = refusedPose(state)) {
+        step.how = How::refused;
+        step.words = wordsOf(*refused->refusal).title;
+    } else if (state.refusal && !state.refusal->view.empty()) {
+        step.how = How::refused;
+        step.words = wordsOf(*state.refusal).title;
+    } else if (state.poses.empty()) {
+        step.words = tr("None yet");
+        if (isChosen(state.setup)) step.how = How::needsYou;
+    } else if (counting < kFewestPoses || (state.setup.way != CaptureWay::folder && counting < state.setup.poses)) {
+        step.how = How::needsYou;
+        step.words =
+            tr("%1 of %2").arg(counting).arg(state.setup.way == CaptureWay::folder ? kFewestPoses : state.setup.poses);
+    } else {
+        step.how = warned > 0 ? How::doubtful : How::good;
+        step.words = warned > 0 ? tr("%1, of which %2 with a warning").arg(counting).arg(warned)
+                                : tr("%1, all readable").arg(counting);
+    }
+    return step;
+}
+
+QString lensWords(const CalibratedDevice& device) {
+    return tr("focal length %1 ± %2 px, error %3 px")
+        .arg(number(device.lens[kFocalLength], 0), number(device.sigma[kFocalLength], 1), number(device.rms, 2));
+}
+
+CalibrationStep solvedStep(const CalibrationState& state, const QString& id, const QString& title,
+                           CalibratedDevice ProcamCalibration::*device) {
+    CalibrationStep step{id, title, How::notBegun, tr("Follows from the poses")};
+    if (state.work == CalibrationState::Work::solving) {
+        step.how = How::running;
+        step.words = state.stage;
+    } else if (state.refusal) {
+        step.how = How::refused;
+        step.words = tr("No result that could be trusted");
+    } else if (state.result) {
+        const auto doubts = doubtsOf(*state.result);
+        step.how = doubts.empty() ? How::good : How::doubtful;
+        step.words = doubts.empty() ? lensWords(state.result->solved.*device) : wordsOf(doubts.front()).title;
+    }
+    return step;
+}
+
+CalibrationStep roomStep(const CalibrationState& state) {
+    CalibrationStep step{"room", tr("In the room"), How::notBegun, tr("The scene uses what was there before")};
+    if (!state.isSolved()) return step;
+    step.how = state.isUsed() ? How::good : How::needsYou;
+    step.words = state.isUsed() ? tr("The scene uses this calibration") : tr("Not in use yet");
+    return step;
+}
+
+NextStep refusedNext(const CalibrationState& state, const Finding& finding) {
+    const FindingWords words = wordsOf(finding);
+    NextStep next{Do::nothing, Tone::failure, words.title, words.text + ' ' + words.remedy, {}};
+    const bool isFolder = state.setup.way == CaptureWay::folder;
+    const bool isOfPose = !finding.view.empty();
+    if (finding.cause == Cause::widthHeightSwapped && isFolder) {
+        next.what = Do::exchangeSides;
+        next.button = tr("Exchange width and height");
+    } else if (!isFolder && isOfPose) {
+        next.what = Do::photographAgain;
+        next.button = tr("Photograph this pose again");
+    } else if (!isFolder) {
+        next.what = Do::photograph;
+        next.button = tr("Photograph another pose");
+    } else if (isOfPose && (finding.cause == Cause::rigMoved || finding.cause == Cause::boardNotFound ||
+                            finding.cause == Cause::boardUnlit || finding.cause == Cause::lateFrame ||
+                            finding.cause == Cause::mirrored || finding.cause == Cause::unreadableImage ||
+                            finding.cause == Cause::doubledImage || finding.cause == Cause::missingImage)) {
+        next.what = Do::leaveOut;
+        next.button = tr("Leave %1 out").arg(QString::fromStdString(finding.view));
+    } else {
+        next.what = Do::read;
+        next.button = tr("Read again");
+    }
+    return next;
+}
+
+NextStep workNext(const CalibrationState& state) {
+    NextStep next{Do::stop, Tone::live, {}, state.stage, tr("Cancel")};
+    switch (state.work) {
+    case CalibrationState::Work::reading:
+        next.title = tr("Reading the poses");
+        break;
+    case CalibrationState::Work::capturing:
+        next.title = tr("Photographing pose %1").arg(static_cast<int>(state.poses.size()) + 1);
+        next.text = state.setup.way == CaptureWay::lab
+                        ? tr("The lab's projector shows its patterns one after the other.")
+                        : tr("Touch nothing: camera, projector and board stand still until all patterns were shown.");
+        break;
+    default:
+        next.title = tr("Working out camera and projector");
+    }
+    return next;
+}
+
+NextStep photographNext(const CalibrationState& state) {
+    const int pose = static_cast<int>(state.poses.size()) + 1;
+    NextStep next{Do::photograph, Tone::quiet, {}, {}, tr("Photograph pose %1 of %2").arg(pose).arg(state.setup.poses)};
+    const bool isLab = state.setup.way == CaptureWay::lab;
+    if (pose == 1) {
+        next.title = isLab ? tr("Begin with the board flat on the table") : tr("Lay the board flat on the table");
+        next.text = isLab ? tr("The lab lays the board for you; its outline shows where. From this pose the studio "
+                               "learns where the table is.")
+                          : tr("Where the device will stand, its long side along the front. From this pose the studio "
+                               "learns where the table is.");
+    } else {
+        next.title = tr("Tilt the board as the outline shows");
+        next.text = isLab ? tr("Each pose is tilted to another side, so that distances can be told from focal lengths.")
+                          : tr("Prop it up so that it fills the outline, let go, and wait until it stands still. Each "
+                               "pose is tilted to another side.");
+    }
+    return next;
+}
+
+NextStep solvedNext(const CalibrationState& state) {
+    const CalibrationResult& result = *state.result;
+    const auto doubts = doubtsOf(result);
+    NextStep next;
+    next.tone = doubts.empty() ? Tone::good : Tone::warning;
+    const QString within = result.millimetres ? tr("Light lands within %1 mm of where it should, in 95 of 100 places.")
+                                                    .arg(number(*result.millimetres, 2))
+                                              : tr("How far it can be trusted needs more poses.");
+    if (state.isUsed()) {
+        next.title = tr("Calibrated, and in use");
+        next.text = within + ' ' + tr("Undo takes it back; in Versions it can be compared with those before.");
+        return next;
+    }
+    next.what = Do::use;
+    next.button = tr("Use this calibration");
+    if (doubts.empty()) {
+        next.title = tr("This calibration is good");
+        next.text = within;
+    } else {
+        const FindingWords words = wordsOf(doubts.front());
+        next.title = words.title;
+        next.text = words.text + ' ' + words.remedy;
+        if (state.setup.way != CaptureWay::folder && doubts.front().cause != Cause::clipped) {
+            next.what = Do::photograph;
+            next.button = tr("Photograph another pose");
+        }
+    }
+    return next;
+}
+
+QString placeOf(const Finding& finding) {
+    const QString view = QString::fromStdString(finding.view);
+    const QString file = QString::fromStdString(finding.file);
+    if (view.isEmpty()) return file;
+    return file.isEmpty() ? view : view + ", " + file;
+}
+
+QString causeTitle(Cause cause) {
+    switch (cause) {
+    case Cause::missingImage:
+        return tr("An image is missing");
+    case Cause::doubledImage:
+        return tr("An image is there twice");
+    case Cause::lateFrame:
+        return tr("The camera was one picture late");
+    case Cause::wrongOrder:
+        return tr("The images show other patterns than expected");
+    case Cause::unreadableImage:
+        return tr("An image cannot be read");
+    case Cause::imageSize:
+        return tr("The images differ in size");
+    case Cause::blackWhiteSwapped:
+        return tr("White and black are exchanged");
+    case Cause::inverseSwapped:
+        return tr("Patterns and their inverses are exchanged");
+    case Cause::mirrored:
+        return tr("The picture is mirrored");
+    case Cause::rigMoved:
+        return tr("Something moved");
+    case Cause::projectorSize:
+        return tr("The projector has another size");
+    case Cause::widthHeightSwapped:
+        return tr("Width and height are exchanged");
+    case Cause::frontalViews:
+        return tr("The board was not tilted enough");
+    case Cause::tooFewViews:
+        return tr("More poses are needed");
+    case Cause::clipped:
+        return tr("The board is overexposed");
+    case Cause::boardNotFound:
+        return tr("The board is not found");
+    case Cause::boardUnlit:
+        return tr("The projector's light does not reach the board");
+    case Cause::modelDoesNotFit:
+        return tr("The poses contradict each other");
+    case Cause::undetermined:
+        return tr("The poses leave something open");
+    case Cause::underexposed:
+        return tr("The pictures are too dark");
+    case Cause::exposureDrifts:
+        return tr("The brightness changes by itself");
+    case Cause::keystone:
+        return tr("The projector bends or scales its picture");
+    case Cause::boardWarped:
+        return tr("The board is not flat");
+    case Cause::squareSize:
+        return tr("The board's squares are not as said");
+    case Cause::strangeLens:
+        return tr("A lens bends light in a way that no model knows");
+    case Cause::projectorGamma:
+        return tr("The projector's brightness curve bends the patterns");
+    case Cause::cameraRefocused:
+        return tr("The camera has refocused");
+    default:
+        return tr("This capture cannot be trusted");
+    }
+}
+
+} // namespace
+
+int CalibrationState::counting() const {
+    return static_cast<int>(std::ranges::count_if(poses, [](const CalibrationPose& pose) { return pose.counts(); }));
+}
+
+std::vector<CalibrationStep> stepsOf(const CalibrationState& state) {
+    return {setupStep(state), posesStep(state), solvedStep(state, "camera", tr("Camera"), &ProcamCalibration::camera),
+            solvedStep(state, "projector", tr("Projector"), &ProcamCalibration::projector), roomStep(state)};
+}
+
+QString howWords(CalibrationStep::How how) {
+    switch (how) {
+    case How::needsYou:
+        return tr("Needs you");
+    case How::running:
+        return tr("Running");
+    case How::good:
+        return tr("Good");
+    case How::doubtful:
+        return tr("Doubtful");
+    case How::refused:
+        return tr("Refused");
+    case How::notBegun:
+        break;
+    }
+    return tr("Not begun");
+}
+
+NextStep nextOf(const CalibrationState& state) {
+    if (state.work != CalibrationState::Work::none) return workNext(state);
+    if (!state.trouble.isEmpty())
+        return {state.setup.way == CaptureWay::folder ? Do::chooseFolder : Do::photograph, Tone::failure,
+                tr("That did not work"), state.trouble,
+                state.setup.way == CaptureWay::folder ? tr("Choose a folder") : tr("Try again")};
+    if (state.refusal) return refusedNext(state, *state.refusal);
+    if (const CalibrationPose* refused = refusedPose(state)) return refusedNext(state, *refused->refusal);
+    if (const QString problem = problemOf(state.setup); !problem.isEmpty())
+        return {Do::nothing, Tone::warning, tr("Something in the set-up cannot be"), problem, {}};
+    const bool isFolder = state.setup.way == CaptureWay::folder;
+    if (isFolder && state.setup.folder.empty())
+        return {Do::chooseFolder, Tone::quiet, tr("Which images?"),
+                tr("A folder with one folder for each pose of the board, each with the photographs of all patterns in "
+                   "their order."),
+                tr("Choose a folder")};
+    if (state.setup.way == CaptureWay::camera && state.setup.camera.empty())
+        return {Do::nothing,
+                Tone::quiet,
+                tr("Which camera?"),
+                tr("Connect a camera that sees the table, and choose it at the left."),
+                {}};
+    const bool wantsMore = !isFolder && state.counting() < state.setup.poses;
+    if (state.result && (!wantsMore || state.isUsed())) return solvedNext(state);
+    if (isFolder && state.poses.empty())
+        return {Do::read, Tone::quiet, tr("Say which board and projector, then read the images"),
+                tr("What is set at the left must be what was photographed: count the board's inner corners and measure "
+                   "one square."),
+                tr("Read the images")};
+    if (wantsMore) return photographNext(state);
+    return {Do::solve, Tone::quiet, tr("All poses are there"), {}, tr("Work out camera and projector")};
+}
+
+FindingWords wordsOf(const Finding& finding) {
+    FindingWords words{causeTitle(finding.cause), {}, {}};
+    const QString place = placeOf(finding);
+    words.text = (place.isEmpty() ? QString() : place + ": ") +
+                 (place.isEmpty() ? capitalised(finding.why) : QString::fromStdString(finding.why) + '.');
+    // The command line's options have names of their own in the window.
+    QString remedy = capitalised(finding.remedy);
+    remedy.replace("--board", tr("the board at the left"))
+        .replace("--projector", tr("the projector's size at the left"));
+    remedy.replace(", or say so in an order file", "");
+    words.remedy = remedy;
+    return words;
+}
+
+std::vector<Finding> doubtsOf(const CalibrationResult& result) {
+    std::vector<Finding> doubts = result.solved.warnings;
+    double worst = 0.0;
+    std::string worstName;
+    for (const ViewQuality& view : result.solved.views)
+        if (view.heldOut && *view.heldOut > worst) worst = *view.heldOut, worstName = view.name;
+    if (worst > kDoubtfulTransfer && doubts.empty())
+        doubts.push_back({Cause::modelDoesNotFit, worstName, "",
+                          "the other poses put its light " + number(worst, 1).toStdString() + " pixels beside",
+                          "photograph it again, or leave it out"});
+    return doubts;
+}
+
+InstallationVersion versionOf(const CalibrationState& state, const Installation& installation) {
+    const CalibrationResult& result = *state.result;
+    InstallationVersion version;
+    version.date = result.date;
+    version.title = "Projector and camera by structured light";
+    const auto add = [&](const char* name, const std::optional<double>& value, const char* unit) {
+        if (value) version.figures.push_back({name, *value, unit});
+    };
+    std::optional<double> heldOut;
+    for (const ViewQuality& view : result.solved.views)
+        if (view.heldOut) heldOut = std::max(heldOut.value_or(0.0), *view.heldOut);
+    add("Light lands within", result.millimetres, "mm");
+    add("Truly beside", result.trueMillimetres, "mm");
+    add("Held out, worst", heldOut, "px");
+    add("Camera error", result.solved.camera.rms, "px");
+    add("Projector error", result.solved.projector.rms, "px");
+    add("Projector focal", result.solved.projector.lens[kFocalLength], "px");
+    add("Camera focal", result.solved.camera.lens[kFocalLength], "px");
+    add("Poses", static_cast<double>(result.solved.views.size()), "");
+    version.inputs = {wayWords(result.setup).toStdString(), boardWords(result.setup.board).toStdString(),
+                      result.setup.pattern};
+    version.installation = installation;
+    return version;
+}
+
+std::vector<ViewObservations> countingViews(const CalibrationState& state) {
+    std::vector<ViewObservations> views;
+    for (const CalibrationPose& pose : state.poses)
+        if (pose.counts()) views.push_back(*pose.seen);
+    return views;
+}
+
+} // namespace lumorph::studio

@@ -1,0 +1,124 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <QString>
+
+#include "app/studio/calibration/calibration_setup.h"
+#include "app/studio/calibration/pose_pictures.h"
+#include "calibration/solve/observations.h"
+#include "calibration/solve/procam_calibration.h"
+#include "core/scene/installation_store.h"
+
+namespace lumorph::studio {
+
+/// Fewer poses cannot be solved.
+inline constexpr int kFewestPoses = 3;
+
+/// One pose of the board, as far as it is known.
+struct CalibrationPose {
+    std::string name;
+    std::shared_ptr<const PosePictures> pictures; ///< null where nothing could be read
+    std::shared_ptr<const ViewObservations> seen; ///< null where it was refused
+    std::vector<Finding> warnings;
+    std::optional<Finding> refusal;
+    bool leftOut = false; ///< by the user
+    [[nodiscard]] bool counts() const noexcept { return seen && !refusal && !leftOut; }
+};
+
+/// A place in a picture and how far what was seen there is from where the solution puts it, pixels.
+struct Residual {
+    cv::Point2d at, error;
+};
+
+/// How well one pose fits.
+struct PoseResiduals {
+    std::string name;
+    std::vector<Residual> camera;    ///< corners, camera pixels
+    std::vector<Residual> projector; ///< decoded points, projector pixels
+};
+
+/// What was solved.
+struct CalibrationResult {
+    ProcamCalibration solved;
+    std::vector<PoseResiduals> residuals; ///< by view of the solution
+    std::string date;                     ///< ISO 8601 in UTC
+    CalibrationSetup setup;               ///< it was made with
+    /// 95 % of light lands within this on the boards, millimetres, by views that were held out; empty with too few.
+    std::optional<double> millimetres;
+    /// In the lab, where the truth is known: how far it truly lands beside, root mean square, millimetres.
+    std::optional<double> trueMillimetres;
+};
+
+/// Where the calibration stands: a plain value.
+struct CalibrationState {
+    enum class Work { none, reading, capturing, solving };
+    CalibrationSetup setup;
+    std::vector<CalibrationPose> poses;
+    std::optional<Finding> refusal;                  ///< of the capture as a whole
+    std::shared_ptr<const CalibrationResult> result; ///< of the poses that count
+    Work work = Work::none;
+    double fraction = 0.0; ///< of the work
+    QString stage;         ///< in words
+    QString trouble;       ///< what failed apart from the capture: a camera that is gone, a folder that is empty
+    std::string flatPose;  ///< name of the pose in which the board lay flat on the table
+    std::string usedDate;  ///< of the result that the room uses, as far as it came from here
+    [[nodiscard]] int counting() const;
+    [[nodiscard]] bool isSolved() const noexcept { return result != nullptr && !refusal; }
+    [[nodiscard]] bool isUsed() const { return result && usedDate == result->date; }
+};
+
+/// One step of the sequence.
+struct CalibrationStep {
+    enum class How { notBegun, needsYou, running, good, doubtful, refused };
+    QString id, title;
+    How how = How::notBegun;
+    QString words; ///< where it stands, and why
+    bool operator==(const CalibrationStep&) const = default;
+};
+[[nodiscard]] std::vector<CalibrationStep> stepsOf(const CalibrationState& state);
+/// "Good", "Needs you", ...
+[[nodiscard]] QString howWords(CalibrationStep::How how);
+
+/// What is to be done next: one sentence, why, and the one button.
+struct NextStep {
+    enum class Do {
+        nothing,
+        chooseFolder,
+        read,
+        photograph,
+        photographAgain,
+        solve,
+        use,
+        stop,
+        exchangeSides,
+        leaveOut
+    };
+    enum class Tone { quiet, live, good, warning, failure };
+    Do what = Do::nothing;
+    Tone tone = Tone::quiet;
+    QString title, text;
+    QString button; ///< empty: there is nothing to press
+    bool operator==(const NextStep&) const = default;
+};
+[[nodiscard]] NextStep nextOf(const CalibrationState& state);
+
+/// A finding in the studio's words: what happened where, and what to do, without words of the command line.
+struct FindingWords {
+    QString title, text, remedy;
+};
+[[nodiscard]] FindingWords wordsOf(const Finding& finding);
+
+/// Reasons why a result is to be doubted, the gravest first; none: it is good.
+[[nodiscard]] std::vector<Finding> doubtsOf(const CalibrationResult& result);
+
+/// What is kept of it beside the installation: date, figures, inputs.
+[[nodiscard]] InstallationVersion versionOf(const CalibrationState& state, const Installation& installation);
+
+/// What the poses that count tell together.
+[[nodiscard]] std::vector<ViewObservations> countingViews(const CalibrationState& state);
+
+} // namespace lumorph::studio

@@ -1,0 +1,268 @@
+#include "app/studio/calibration/capture_bench.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+#include <glm/gtc/matrix_transform.hpp>
+#include <opencv2/calib3d.hpp>
+#include <opencv2/imgproc.hpp>
+
+#include "calibration/lab/board_lab.h"
+#include "calibration/lab/lab_capture.h"
+#include "core/base/clock.h"
+#include "core/base/error.h"
+
+namespace lumorph::studio {
+namespace {
+
+constexpr int kLabSpare = 6; // poses beyond those that are wanted
+constexpr int kLabCameraWidth = 1280;
+constexpr std::uint32_t kLabSeed = 20;
+constexpr double kGuideFocal = 1.3; // of the picture's width, while nothing is known
+constexpr double kRadians = std::numbers::pi / 180.0;
+
+std::string poseName(int pose) { return "pose_" + std::to_string(pose + 1); }
+
+cv::Mat greyOf(cv::Mat picture) {
+    if (picture.channels() == 1) return picture;
+    cv::Mat grey;
+    cv::cvtColor(picture, grey, cv::COLOR_BGR2GRAY);
+    return grey;
+}
+
+cv::Mat whiteOf(cv::Size size) { return {size, CV_8U, cv::Scalar(255)}; }
+
+/// The projector as somebody has put it up: near where the room has it, and with another zoom.
+Installation labTruth(const Installation& room) {
+    Installation truth = defaultInstallation();
+    InstalledProjector& projector = truth.projectors.front();
+    if (!room.projectors.empty()) projector.camera = withSize(projector.camera, room.projectors.front().camera.size);
+    const glm::dvec3 position = positionOf(projector.camera) + glm::dvec3(0.03, -0.04, 0.02);
+    glm::dmat4 turned = projector.camera.cameraFromWorld;
+    turned = glm::rotate(glm::dmat4(1.0), 0.4 * kRadians, glm::dvec3(0.3, 1.0, 0.4)) * turned;
+    turned[3] = glm::dvec4(-(glm::dmat3(turned) * position), 1.0);
+    projector.camera.cameraFromWorld = turned;
+    projector.camera.focal *= 1.01;
+    truth.cameras.resize(1);
+    // As many pixels as the projector, as far as pictures are worked out quickly.
+    const int width = std::clamp(projector.camera.size.x, 320, kLabCameraWidth);
+    truth.cameras.front().camera = withSize(defaultLabCamera(projector.camera), {width, width * 4 / 5});
+    return truth;
+}
+
+/// The lab has a time of its own: a picture takes a tenth of a second, however long it takes to work it out.
+class LabTimeCamera final : public CaptureCamera {
+public:
+    LabTimeCamera(BoardLab& lab, std::shared_ptr<ManualClock> clock)
+        : camera_(openLabCamera(lab)), clock_(std::move(clock)) {}
+    [[nodiscard]] cv::Mat grab(const Progress& progress) override {
+        cv::Mat picture = camera_->grab(progress);
+        clock_->advance(Microseconds{100'000});
+        return picture;
+    }
+    [[nodiscard]] std::string name() const override { return camera_->name(); }
+    [[nodiscard]] cv::Size size() const override { return camera_->size(); }
+
+private:
+    std::unique_ptr<CaptureCamera> camera_;
+    std::shared_ptr<ManualClock> clock_;
+};
+
+class LabBench final : public CaptureBench {
+public:
+    LabBench(const CalibrationSetup& setup, const Installation& room)
+        : setup_(setup), truth_(labTruth(room)), lab_(truth_, setup.board, {}, kLabSeed), camera_(lab_, clock_),
+          display_(openLabDisplay(lab_)), poses_(lab_.proposePoses(setup.poses + kLabSpare)) {
+        if (!setup.fault) return;
+        LabCapture capture;
+        capture.room = truth_;
+        capture.board = boardText(setup.board);
+        capture.pattern = setup.pattern;
+        capture.poses = setup.poses;
+        capture.seed = kLabSeed;
+        capture.fault = setup.fault;
+        faulty_ = std::make_unique<LabCapturer>(std::move(capture));
+    }
+
+    [[nodiscard]] CapturedPose capture(int pose, const std::function<void(const Shot&)>& onShot,
+                                       const Progress& progress) override {
+        lab_.lay(poses_[indexOf(pose)]);
+        // Once the fault was told it is mended: what is photographed again is sound.
+        if (faulty_ && pose == faultyPoses_ && pose < setup_.poses) return captureFaulty(pose, onShot, progress);
+        if (!capturer_) {
+            const glm::ivec2 size = lab_.projector().camera.size;
+            PoseCaptureSettings settings;
+            settings.order = parsePattern(setup_.pattern, {size.x, size.y});
+            settings.board = setup_.board;
+            settings.clock = clock_;
+            settings.onShot = [this](const Shot& shot) {
+                if (onShot_) onShot_(shot);
+            };
+            capturer_ = std::make_unique<PoseCapture>(camera_, *display_, std::move(settings));
+        }
+        onShot_ = onShot;
+        CapturedPose captured = capturer_->capture(poseName(pose), progress);
+        onShot_ = nullptr;
+        return captured;
+    }
+
+    [[nodiscard]] cv::Mat look(const Progress& progress) override {
+        display_->show(whiteOf(display_->size()), progress);
+        cv::Mat picture = camera_.grab(progress);
+        display_->clear();
+        return picture;
+    }
+    [[nodiscard]] bool isLive() const override { return false; }
+
+    [[nodiscard]] BoardOutline ghost(int pose) const override {
+        BoardOutline outline;
+        for (const cv::Point3d& corner : cornersOf(setup_.board)) {
+            const double metres = lab_.options().metresPerUnit;
+            const glm::dvec4 point(metres * corner.x, metres * corner.y, 0.0, 1.0);
+            if (const auto pixel = lab_.cameraPixel(glm::dvec3(poses_[indexOf(pose)] * point)))
+                outline.emplace_back(pixel->x, pixel->y);
+        }
+        return outline;
+    }
+    [[nodiscard]] const Installation* truth() const override { return &truth_; }
+
+private:
+    [[nodiscard]] CapturedPose captureFaulty(int pose, const std::function<void(const Shot&)>& onShot,
+                                             const Progress& progress) {
+        ++faultyPoses_;
+        CapturedPose captured;
+        captured.name = poseName(pose);
+        const std::vector<LabShot> shots = faulty_->takeNext(progress);
+        for (const LabShot& shot : shots) {
+            captured.images.push_back(shot.grey);
+            captured.files.push_back(shot.file);
+        }
+        if (!shots.empty() && onShot)
+            onShot({static_cast<int>(shots.size()) - 1, static_cast<int>(shots.size()), shots.back().grey,
+                    shots.back().file});
+        return captured;
+    }
+
+    [[nodiscard]] std::size_t indexOf(int pose) const {
+        return static_cast<std::size_t>(std::max(0, pose)) % poses_.size();
+    }
+
+    CalibrationSetup setup_;
+    Installation truth_;
+    BoardLab lab_;
+    std::shared_ptr<ManualClock> clock_ = std::make_shared<ManualClock>();
+    LabTimeCamera camera_;
+    std::unique_ptr<PatternDisplay> display_;
+    std::vector<glm::dmat4> poses_;
+    std::unique_ptr<LabCapturer> faulty_;
+    int faultyPoses_ = 0;
+    std::function<void(const Shot&)> onShot_;
+    std::unique_ptr<PoseCapture> capturer_;
+};
+
+class CameraBench final : public CaptureBench {
+public:
+    CameraBench(const CalibrationSetup& setup, std::shared_ptr<PatternDisplay> display)
+        : setup_(setup), display_(std::move(display)), camera_(openCaptureCamera(setup.camera)) {}
+
+    [[nodiscard]] CapturedPose capture(int pose, const std::function<void(const Shot&)>& onShot,
+                                       const Progress& progress) override {
+        if (!capturer_) {
+            PoseCaptureSettings settings;
+            settings.order = parsePattern(setup_.pattern, display_->size());
+            settings.board = setup_.board;
+            settings.onShot = [this](const Shot& shot) {
+                if (onShot_) onShot_(shot);
+            };
+            capturer_ = std::make_unique<PoseCapture>(*camera_, *display_, std::move(settings));
+        }
+        onShot_ = onShot;
+        CapturedPose captured = capturer_->capture(poseName(pose), progress);
+        onShot_ = nullptr;
+        isLit_ = false;
+        return captured;
+    }
+
+    [[nodiscard]] cv::Mat look(const Progress& progress) override {
+        if (!isLit_) display_->show(whiteOf(display_->size()), progress);
+        isLit_ = true;
+        cv::Mat picture = greyOf(camera_->grab(progress)).clone();
+        size_ = picture.size();
+        return picture;
+    }
+    [[nodiscard]] bool isLive() const override { return camera_->isLive(); }
+    [[nodiscard]] BoardOutline ghost(int pose) const override {
+        const cv::Size size = size_.empty() ? camera_->size() : size_;
+        return size.empty() ? BoardOutline{} : guideOutline(setup_.board, size, kGuideFocal * size.width, pose);
+    }
+    [[nodiscard]] std::vector<std::string> automatics() const override { return camera_->automatics(); }
+
+private:
+    CalibrationSetup setup_;
+    std::shared_ptr<PatternDisplay> display_;
+    std::unique_ptr<CaptureCamera> camera_;
+    std::function<void(const Shot&)> onShot_;
+    std::unique_ptr<PoseCapture> capturer_;
+    bool isLit_ = false;
+    cv::Size size_;
+};
+
+} // namespace
+
+std::vector<cv::Point3d> cornersOf(const CalibrationBoard& board) {
+    const std::vector<cv::Point3d> points = pointsOf(board);
+    double right = 0.0, bottom = 0.0;
+    for (const cv::Point3d& point : points) right = std::max(right, point.x), bottom = std::max(bottom, point.y);
+    return {{0.0, 0.0, 0.0}, {right, 0.0, 0.0}, {right, bottom, 0.0}, {0.0, bottom, 0.0}};
+}
+
+BoardOutline guideOutline(const CalibrationBoard& board, cv::Size camera, double focal, int pose) {
+    struct Guide {
+        double aboutX, aboutY, aboutZ; // degrees
+        double x, y;                   // of its middle, shares of the picture from its middle
+        double width;                  // share of the picture's
+    };
+    static constexpr std::array kGuides{Guide{0, 0, 0, 0, 0, 0.5},
+                                        Guide{32, 0, 0, 0, -0.12, 0.5},
+                                        Guide{-32, 0, 0, 0, 0.12, 0.5},
+                                        Guide{0, 32, 0, -0.14, 0, 0.5},
+                                        Guide{0, -32, 0, 0.14, 0, 0.5},
+                                        Guide{22, 22, 25, -0.15, -0.12, 0.42},
+                                        Guide{-22, -22, -25, 0.15, 0.12, 0.42},
+                                        Guide{22, -22, 0, 0.15, -0.12, 0.42},
+                                        Guide{-22, 22, 0, -0.15, 0.12, 0.42}};
+    const Guide& guide = kGuides[static_cast<std::size_t>(pose) % kGuides.size()];
+    std::vector<cv::Point3d> corners = cornersOf(board);
+    const cv::Point3d far = corners[2];
+    const double distance = focal * far.x / (guide.width * camera.width);
+    cv::Mat about[3];
+    cv::Rodrigues(cv::Vec3d(guide.aboutX * kRadians, 0, 0), about[0]);
+    cv::Rodrigues(cv::Vec3d(0, guide.aboutY * kRadians, 0), about[1]);
+    cv::Rodrigues(cv::Vec3d(0, 0, guide.aboutZ * kRadians), about[2]);
+    const cv::Matx33d turn = cv::Mat(about[2] * about[1] * about[0]);
+    BoardOutline outline;
+    for (const cv::Point3d& corner : corners) {
+        const cv::Vec3d point =
+            turn * cv::Vec3d(corner.x - 0.5 * far.x, corner.y - 0.5 * far.y, 0.0) + cv::Vec3d(0, 0, distance);
+        outline.emplace_back((0.5 + guide.x) * camera.width + focal * point[0] / point[2],
+                             (0.5 + guide.y) * camera.height + focal * point[1] / point[2]);
+    }
+    return outline;
+}
+
+std::shared_ptr<CaptureBench> openLabBench(const CalibrationSetup& setup, const Installation& room,
+                                           const Progress& progress) {
+    progress.report(0.1, "setting up the lab");
+    return std::make_shared<LabBench>(setup, room);
+}
+
+std::shared_ptr<CaptureBench> openCameraBench(const CalibrationSetup& setup, std::shared_ptr<PatternDisplay> display,
+                                              const Progress& progress) {
+    progress.report(0.1, "opening the camera");
+    return std::make_shared<CameraBench>(setup, std::move(display));
+}
+
+} // namespace lumorph::studio

@@ -1,0 +1,16 @@
+#pragma once
+
+#include <filesystem>
+
+#include "app/workspaces/calibrate/calibrate_docks.h"
+
+namespace lumorph::studio {
+
+void addCalibrateCommands(const CalibrateParts& parts);
+
+/// Calibrates from the images in this folder.
+void useFolder(CalibrationService& service, Settings& settings, const std::filesystem::path& folder);
+/// Asks for it.
+void askForImages(const CalibrateParts& parts);
+
+} // namespace lumorph::studio

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <memory>
+
+#include "app/studio/calibration/calibration_service.h"
+#include "app/studio/shell/studio.h"
+#include "app/studio/shell/workspace.h"
+#include "app/workspaces/calibrate/calibrate_selection.h"
+
+namespace lumorph::studio {
+
+/// The workspace "Calibrate": projector and camera, measured step by step.
+class CalibrateWorkspace : public Workspace {
+    Q_OBJECT
+public:
+    explicit CalibrateWorkspace(Studio& studio);
+
+    [[nodiscard]] QString id() const override;
+    [[nodiscard]] QString title() const override;
+    [[nodiscard]] QWidget* makeCentralView() override;
+    [[nodiscard]] std::vector<WorkspaceDock> makeDocks() override;
+    void setActive(bool active) override;
+    /// A folder of images.
+    bool takeDrop(const std::vector<std::filesystem::path>& files) override;
+
+    [[nodiscard]] CalibrationService& service() noexcept { return service_; }
+
+private:
+    Studio& studio_;
+    CalibrationService service_;
+    CalibrateSelection selection_;
+};
+
+} // namespace lumorph::studio

@@ -1,0 +1,242 @@
+#include "app/workspaces/calibrate/setup_form.h"
+
+#include <cmath>
+#include <filesystem>
+
+#include <QAbstractItemView>
+#include <QHBoxLayout>
+#include <QSignalBlocker>
+#include <QVBoxLayout>
+
+#include "app/studio/widgets/panel.h"
+#include "app/workspaces/calibrate/calibrate_commands.h"
+#include "calibration/lab/lab_capture.h"
+
+namespace lumorph::studio {
+namespace {
+
+struct PatternChoice {
+    const char* words;
+    const char* text; ///< as `parsePattern` reads it
+    const char* hint;
+};
+constexpr PatternChoice kPatterns[] = {
+    {"Gray code (robust)", "graycode", "Stripes and their inverses: works on any board, with any camera"},
+    {"Phase shift (fewer images)", "phase:16x3+1x3", "Waves of grey: fewer images, but gamma must be right"}};
+
+QWidget* pairOf(QWidget* first, const QString& between, QWidget* second, QWidget* parent) {
+    auto* pair = new QWidget(parent);
+    auto* row = new QHBoxLayout(pair);
+    row->setContentsMargins(0, 0, 0, 0);
+    row->setSpacing(4);
+    row->addWidget(first, 1);
+    auto* label = new QLabel(between, pair);
+    label->setProperty("look", "muted");
+    row->addWidget(label);
+    row->addWidget(second, 1);
+    return pair;
+}
+
+QLabel* nameOfRow(QWidget* row) { return row->findChild<QLabel*>(QString(), Qt::FindDirectChildrenOnly); }
+
+} // namespace
+
+SetupForm::SetupForm(const CalibrateParts& parts, QWidget* parent) : QWidget(parent), parts_(parts) {
+    setObjectName("calibrate.setup");
+    auto* column = new QVBoxLayout(this);
+    column->setContentsMargins(0, 0, 0, 0);
+    column->setSpacing(8);
+    addSource(*column);
+    addBoard(*column);
+    addPatterns(*column);
+    connect(&parts_.service, &CalibrationService::changed, this, [this] { refresh(); });
+    refresh();
+}
+
+void SetupForm::edit(const std::function<void(CalibrationSetup&)>& change) {
+    CalibrationSetup setup = parts_.service.state().setup;
+    change(setup);
+    parts_.service.setSetup(setup);
+}
+
+ValueField* SetupForm::addNumber(const QString& name, Quantity quantity, double low, double high, double usual) {
+    auto* field = new ValueField(quantity, low, high, usual, this);
+    field->setObjectName(name);
+    field->setRefusing(true);
+    return field;
+}
+
+void SetupForm::addSource(QVBoxLayout& column) {
+    column.addWidget(makeHeading("Pictures come from", this));
+    way_ = new Segments({{"calibrate.way.lab", "Virtual lab", "Without any hardware; the truth is known"},
+                         {"calibrate.way.folder", "Folder", "Images that were taken before"},
+                         {"calibrate.way.camera", "Camera", "A camera of this machine and the projector's window"}},
+                        this);
+    connect(way_, &Segments::chosen, this, [this](int way) { parts_.service.setWay(static_cast<CaptureWay>(way)); });
+    column.addWidget(way_);
+    wayWords_ = new QLabel(this);
+    wayWords_->setObjectName("calibrate.way.words");
+    wayWords_->setProperty("look", "muted");
+    wayWords_->setWordWrap(true);
+    column.addWidget(wayWords_);
+    folder_ = new QPushButton(this);
+    folder_->setObjectName("calibrate.folder");
+    folder_->setToolTip("In it one folder for each pose, each with the images of all patterns in their order");
+    connect(folder_, &QPushButton::clicked, this, [this] { askForImages(parts_); });
+    column.addWidget(folder_);
+    camera_ = new QComboBox(this);
+    camera_->setObjectName("calibrate.camera");
+    cameraRow_ = makeRow("C&amera", camera_, this);
+    connect(camera_, &QComboBox::activated, this, [this] {
+        edit([this](CalibrationSetup& setup) { setup.camera = camera_->currentData().toString().toStdString(); });
+    });
+    column.addWidget(cameraRow_);
+    fault_ = new QComboBox(this);
+    fault_->setObjectName("calibrate.fault");
+    fault_->setToolTip("To see what the studio says when something goes wrong");
+    fault_->setSizeAdjustPolicy(QComboBox::AdjustToMinimumContentsLengthWithIcon);
+    fault_->setMinimumContentsLength(8);
+    fault_->addItem("Nothing", -1);
+    for (const Cause fault : labFaults())
+        fault_->addItem(wordsOf(Finding{fault, {}, {}, {}, {}}).title, static_cast<int>(fault));
+    faultRow_ = makeRow("&Goes wrong", fault_, this);
+    connect(fault_, &QComboBox::activated, this, [this] {
+        edit([this](CalibrationSetup& setup) {
+            const int cause = fault_->currentData().toInt();
+            setup.fault = cause < 0 ? std::nullopt : std::optional(static_cast<Cause>(cause));
+        });
+    });
+    column.addWidget(faultRow_);
+}
+
+void SetupForm::addBoard(QVBoxLayout& column) {
+    column.addWidget(makeHeading("Board", this));
+    drawing_ = new BoardDrawing(this);
+    column.addWidget(drawing_);
+    kind_ = new QComboBox(this);
+    kind_->setObjectName("calibrate.board.kind");
+    kind_->setSizeAdjustPolicy(QComboBox::AdjustToMinimumContentsLengthWithIcon);
+    kind_->setMinimumContentsLength(8);
+    kind_->addItems({"Chessboard", "Circles, every second row shifted", "ChArUco (chessboard with markers)"});
+    column.addWidget(makeRow("&Kind", kind_, this));
+    connect(kind_, &QComboBox::activated, this, [this](int kind) {
+        edit([kind](CalibrationSetup& setup) {
+            setup.board.kind = static_cast<CalibrationBoard::Kind>(kind);
+            const bool markers = setup.board.kind == CalibrationBoard::Kind::charuco;
+            setup.board.marker = markers ? 0.75 * setup.board.spacing : 0.0;
+        });
+    });
+    columns_ = addNumber("calibrate.board.columns", Quantity::level, 2, 50, 9);
+    rows_ = addNumber("calibrate.board.rows", Quantity::level, 2, 50, 7);
+    QWidget* count = makeRow("Inner corners", pairOf(columns_, "×", rows_, this), this);
+    countName_ = nameOfRow(count);
+    columns_->setAccessibleName("Columns of the board");
+    rows_->setAccessibleName("Rows of the board");
+    column.addWidget(count);
+    spacing_ = addNumber("calibrate.board.spacing", Quantity::plain, 0.1, 2000.0, 25.0);
+    QWidget* spacing = makeRow("Side of a square, mm", spacing_, this);
+    spacingName_ = nameOfRow(spacing);
+    column.addWidget(spacing);
+    marker_ = addNumber("calibrate.board.marker", Quantity::plain, 0.1, 2000.0, 20.0);
+    markerRow_ = makeRow("Side of a marker, mm", marker_, this);
+    column.addWidget(markerRow_);
+    const auto whole = [](double value) { return static_cast<int>(std::lround(value)); };
+    connect(columns_, &ValueField::committed, this, [this, whole](double value) {
+        edit([&](CalibrationSetup& setup) { setup.board.columns = whole(value); });
+    });
+    connect(rows_, &ValueField::committed, this,
+            [this, whole](double value) { edit([&](CalibrationSetup& setup) { setup.board.rows = whole(value); }); });
+    connect(spacing_, &ValueField::committed, this,
+            [this](double millimetres) { edit([&](CalibrationSetup& setup) { setup.board.spacing = millimetres; }); });
+    connect(marker_, &ValueField::committed, this,
+            [this](double millimetres) { edit([&](CalibrationSetup& setup) { setup.board.marker = millimetres; }); });
+}
+
+void SetupForm::addPatterns(QVBoxLayout& column) {
+    column.addWidget(makeHeading("Projector", this));
+    width_ = addNumber("calibrate.projector.width", Quantity::level, 16, 8192, 1280);
+    height_ = addNumber("calibrate.projector.height", Quantity::level, 16, 8192, 800);
+    width_->setAccessibleName("Width of the projector's picture in pixels");
+    height_->setAccessibleName("Height of the projector's picture in pixels");
+    projectorRow_ = makeRow("Pixels", pairOf(width_, "×", height_, this), this);
+    column.addWidget(projectorRow_);
+    connect(width_, &ValueField::committed, this, [this](double value) {
+        edit([&](CalibrationSetup& setup) { setup.projector.width = static_cast<int>(std::lround(value)); });
+    });
+    connect(height_, &ValueField::committed, this, [this](double value) {
+        edit([&](CalibrationSetup& setup) { setup.projector.height = static_cast<int>(std::lround(value)); });
+    });
+    pattern_ = new QComboBox(this);
+    pattern_->setObjectName("calibrate.pattern");
+    for (const PatternChoice& choice : kPatterns) {
+        pattern_->addItem(choice.words, QString(choice.text));
+        pattern_->setItemData(pattern_->count() - 1, choice.hint, Qt::ToolTipRole);
+    }
+    column.addWidget(makeRow("Pa&tterns", pattern_, this));
+    connect(pattern_, &QComboBox::activated, this, [this] {
+        edit([this](CalibrationSetup& setup) { setup.pattern = pattern_->currentData().toString().toStdString(); });
+    });
+    poses_ = addNumber("calibrate.poses", Quantity::level, kFewestPoses, 30, 6);
+    poses_->setToolTip("How many poses of the board are wanted; six are good");
+    posesRow_ = makeRow("Poses wanted", poses_, this);
+    column.addWidget(posesRow_);
+    connect(poses_, &ValueField::committed, this, [this](double value) {
+        edit([&](CalibrationSetup& setup) { setup.poses = static_cast<int>(std::lround(value)); });
+    });
+}
+
+/// Those that the machine has now.
+void SetupForm::listCameras() {
+    const QSignalBlocker quiet(camera_);
+    const QString chosen = QString::fromStdString(parts_.service.state().setup.camera);
+    QStringList found;
+    for (int i = 0; i < 32; ++i) {
+        std::error_code none;
+        const QString path = QString("/dev/video%1").arg(i);
+        if (std::filesystem::exists(path.toStdString(), none)) found << path;
+    }
+    if (!chosen.isEmpty() && !found.contains(chosen)) found << chosen;
+    camera_->clear();
+    camera_->addItem(found.isEmpty() ? "No camera is connected" : "Choose a camera", QString());
+    for (const QString& path : found) camera_->addItem(path, path);
+    camera_->setCurrentIndex(std::max(0, camera_->findData(chosen)));
+}
+
+void SetupForm::refresh() {
+    const CalibrationState& state = parts_.service.state();
+    const CalibrationSetup& setup = state.setup;
+    const bool lab = setup.way == CaptureWay::lab;
+    const bool folder = setup.way == CaptureWay::folder;
+    way_->setChosen(static_cast<int>(setup.way));
+    wayWords_->setText(lab ? "A simulated projector, camera and board. It tells at the end how near the result is to "
+                             "the truth."
+                       : folder ? "One folder for each pose of the board, each with the photographs of all patterns."
+                                : "The patterns are shown in the projector's output window; the camera looks at them.");
+    folder_->setVisible(folder);
+    folder_->setText(setup.folder.empty() ? "Choose a folder..."
+                                          : QString::fromStdString(setup.folder.filename().string()));
+    cameraRow_->setVisible(setup.way == CaptureWay::camera);
+    if (setup.way == CaptureWay::camera && !camera_->view()->isVisible()) listCameras();
+    faultRow_->setVisible(lab && fault_->count() > 1);
+    fault_->setCurrentIndex(std::max(0, fault_->findData(setup.fault ? static_cast<int>(*setup.fault) : -1)));
+    drawing_->show(setup.board);
+    const bool chess = setup.board.kind == CalibrationBoard::Kind::chess;
+    const bool circles = setup.board.kind == CalibrationBoard::Kind::circles;
+    kind_->setCurrentIndex(static_cast<int>(setup.board.kind));
+    countName_->setText(chess ? "Inner corners" : circles ? "In a row × rows" : "Squares");
+    spacingName_->setText(circles ? "Half a gap in a row, mm" : "Side of a square, mm");
+    columns_->setValue(setup.board.columns);
+    rows_->setValue(setup.board.rows);
+    spacing_->setValue(setup.board.spacing);
+    marker_->setValue(setup.board.marker);
+    markerRow_->setVisible(setup.board.kind == CalibrationBoard::Kind::charuco);
+    projectorRow_->setVisible(folder);
+    width_->setValue(setup.projector.width);
+    height_->setValue(setup.projector.height);
+    pattern_->setCurrentIndex(std::max(0, pattern_->findData(QString::fromStdString(setup.pattern))));
+    posesRow_->setVisible(!folder);
+    poses_->setValue(setup.poses);
+    setEnabled(state.work == CalibrationState::Work::none);
+}
+
+} // namespace lumorph::studio

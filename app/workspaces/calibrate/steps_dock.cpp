@@ -1,0 +1,211 @@
+#include <algorithm>
+#include <map>
+
+#include <QCheckBox>
+#include <QComboBox>
+#include <QHBoxLayout>
+#include <QLabel>
+#include <QListWidget>
+#include <QPushButton>
+#include <QSignalBlocker>
+#include <QVBoxLayout>
+
+#include "app/studio/widgets/dock_parts.h"
+#include "app/studio/widgets/icon_label.h"
+#include "app/studio/widgets/panel.h"
+#include "app/workspaces/calibrate/calibrate_docks.h"
+#include "app/workspaces/calibrate/setup_form.h"
+#include "app/workspaces/rig/actuator_item.h"
+
+namespace lumorph::studio {
+namespace {
+
+using How = CalibrationStep::How;
+
+std::pair<QString, IconRole> iconOf(How how) {
+    switch (how) {
+    case How::needsYou:
+        return {"hand", IconRole::accent};
+    case How::running:
+        return {"clock", IconRole::accent};
+    case How::good:
+        return {"check", IconRole::accent};
+    case How::doubtful:
+        return {"warning", IconRole::warning};
+    case How::refused:
+        return {"error", IconRole::danger};
+    case How::notBegun:
+        break;
+    }
+    return {"minus", IconRole::muted};
+}
+
+/// One step: its number, title, state, and why.
+class StepRow : public QWidget {
+public:
+    StepRow(int number, const QString& id, QWidget* parent)
+        : QWidget(parent), icon_(new IconLabel("minus", IconRole::muted, 20, this)), title_(new QLabel(this)),
+          how_(new QLabel(this)), words_(new QLabel(this)), number_(number) {
+        setObjectName("calibrate.step." + id);
+        title_->setProperty("look", "heading");
+        how_->setObjectName("calibrate.step." + id + ".how");
+        how_->setProperty("look", "badge");
+        words_->setObjectName("calibrate.step." + id + ".words");
+        words_->setProperty("look", "muted");
+        words_->setWordWrap(true);
+        auto* top = new QHBoxLayout;
+        top->setSpacing(8);
+        top->addWidget(title_);
+        top->addStretch(1);
+        top->addWidget(how_);
+        auto* texts = new QVBoxLayout;
+        texts->setSpacing(2);
+        texts->addLayout(top);
+        texts->addWidget(words_);
+        auto* row = new QHBoxLayout(this);
+        row->setContentsMargins(0, 4, 0, 4);
+        row->setSpacing(8);
+        row->addWidget(icon_, 0, Qt::AlignTop);
+        row->addLayout(texts, 1);
+    }
+    void show(const CalibrationStep& step) {
+        const auto [name, role] = iconOf(step.how);
+        icon_->setIcon(name, role);
+        title_->setText(QString("%1  %2").arg(number_).arg(step.title));
+        how_->setText(howWords(step.how));
+        words_->setText(step.words);
+        setAccessibleName(QString("Step %1, %2: %3").arg(number_).arg(step.title, howWords(step.how)));
+    }
+
+private:
+    IconLabel* icon_;
+    QLabel* title_;
+    QLabel* how_;
+    QLabel* words_;
+    int number_;
+};
+
+QString poseDetail(const CalibrationPose& pose, const CalibrationState& state) {
+    if (pose.leftOut) return "left out";
+    if (pose.refusal) return wordsOf(*pose.refusal).title;
+    if (!pose.warnings.empty()) return wordsOf(pose.warnings.front()).title;
+    if (state.result)
+        for (const ViewQuality& view : state.result->solved.views)
+            if (view.name == pose.name && view.heldOut)
+                return QString("held out: %1 px%2")
+                    .arg(*view.heldOut, 0, 'f', 2)
+                    .arg(view.name == state.result->solved.worstView ? ", the worst" : "");
+    return pose.seen ? QString("%1 points of the board").arg(pose.seen->corners.seen.size()) : QString();
+}
+
+QString poseIcon(const CalibrationPose& pose) {
+    if (pose.leftOut) return "eye-off";
+    if (pose.refusal) return "error";
+    return pose.warnings.empty() ? "check" : "warning";
+}
+
+class StepsDock : public QWidget {
+public:
+    explicit StepsDock(const CalibrateParts& parts) : parts_(parts), poses_(new QListWidget(this)) {
+        auto* whole = new QVBoxLayout(this);
+        whole->setContentsMargins(0, 0, 0, 0);
+        const Column column = makeColumn(this);
+        whole->addWidget(column.widget);
+        int number = 1;
+        for (const CalibrationStep& step : stepsOf(parts.service.state())) {
+            rows_[step.id] = new StepRow(number++, step.id, this);
+            column.layout->addWidget(rows_[step.id]);
+        }
+        addPoses(*column.layout);
+        column.layout->addWidget(new SetupForm(parts, this));
+        auto* end = new QHBoxLayout;
+        end->addWidget(makeCommandButton(parts.studio.commands.find("calibrate.anew"), "calibrate.anew", this));
+        column.layout->addLayout(end);
+        connect(&parts.service, &CalibrationService::changed, this, [this] { refresh(); });
+        connect(&parts.selection, &CalibrateSelection::changed, this, [this] { showChosen(); });
+        refresh();
+    }
+
+private:
+    void addPoses(QVBoxLayout& column) {
+        posesPart_ = new QWidget(this);
+        auto* part = new QVBoxLayout(posesPart_);
+        part->setContentsMargins(0, 0, 0, 0);
+        part->setSpacing(8);
+        part->addWidget(makeHeading("Poses", this));
+        poses_->setObjectName("calibrate.poses.list");
+        poses_->setAccessibleName("Poses of the board");
+        poses_->setItemDelegate(new ActuatorItem(poses_));
+        poses_->setUniformItemSizes(true);
+        poses_->setVerticalScrollMode(QAbstractItemView::ScrollPerPixel);
+        part->addWidget(poses_);
+        leaveOut_ = new QCheckBox("Leave this pose out", this);
+        leaveOut_->setObjectName("calibrate.leaveOut");
+        part->addWidget(leaveOut_);
+        flat_ = new QComboBox(this);
+        flat_->setObjectName("calibrate.flat");
+        flat_->setToolTip("From this pose the studio learns where the table is: its middle becomes the middle of the "
+                          "room");
+        part->addWidget(makeRow("Lay on the &table in", flat_, this));
+        column.addWidget(posesPart_);
+        connect(poses_, &QListWidget::currentRowChanged, this, [this](int row) {
+            const auto& poses = parts_.service.state().poses;
+            if (row >= 0 && static_cast<std::size_t>(row) < poses.size())
+                parts_.selection.setPose(poses[static_cast<std::size_t>(row)].name);
+        });
+        connect(leaveOut_, &QCheckBox::clicked, this,
+                [this](bool out) { parts_.service.setLeftOut(parts_.selection.pose(), out); });
+        connect(flat_, &QComboBox::activated, this,
+                [this] { parts_.service.setFlatPose(flat_->currentText().toStdString()); });
+    }
+
+    void refresh() {
+        const CalibrationState& state = parts_.service.state();
+        for (const CalibrationStep& step : stepsOf(state)) rows_.at(step.id)->show(step);
+        posesPart_->setVisible(!state.poses.empty());
+        {
+            const QSignalBlocker quiet(poses_);
+            while (poses_->count() > static_cast<int>(state.poses.size())) delete poses_->takeItem(poses_->count() - 1);
+            for (std::size_t k = 0; k < state.poses.size(); ++k) {
+                const CalibrationPose& pose = state.poses[k];
+                QListWidgetItem* item = poses_->item(static_cast<int>(k));
+                if (!item) item = new QListWidgetItem(poses_);
+                item->setText(QString::fromStdString(pose.name));
+                item->setData(kActuatorDetail, poseDetail(pose, state));
+                item->setData(kActuatorIcon, poseIcon(pose));
+                item->setData(Qt::AccessibleDescriptionRole, poseDetail(pose, state));
+            }
+            const int rows = std::clamp(poses_->count(), 1, 6);
+            poses_->setFixedHeight(rows * std::max(24, poses_->sizeHintForRow(0)) + 6);
+        }
+        const QSignalBlocker quiet(flat_);
+        flat_->clear();
+        for (const CalibrationPose& pose : state.poses)
+            if (pose.counts()) flat_->addItem(QString::fromStdString(pose.name));
+        flat_->setCurrentIndex(flat_->findText(QString::fromStdString(state.flatPose)));
+        showChosen();
+    }
+
+    void showChosen() {
+        const CalibrationState& state = parts_.service.state();
+        const auto& poses = state.poses;
+        const auto found = std::ranges::find(poses, parts_.selection.pose(), &CalibrationPose::name);
+        const QSignalBlocker quiet(poses_);
+        poses_->setCurrentRow(found == poses.end() ? -1 : static_cast<int>(found - poses.begin()));
+        leaveOut_->setEnabled(found != poses.end() && state.work == CalibrationState::Work::none);
+        leaveOut_->setChecked(found != poses.end() && found->leftOut);
+    }
+
+    CalibrateParts parts_;
+    std::map<QString, StepRow*> rows_;
+    QWidget* posesPart_ = nullptr;
+    QListWidget* poses_;
+    QCheckBox* leaveOut_ = nullptr;
+    QComboBox* flat_ = nullptr;
+};
+
+} // namespace
+
+QWidget* makeStepsDock(const CalibrateParts& parts) { return new StepsDock(parts); }
+
+} // namespace lumorph::studio
