@@ -25,7 +25,7 @@ using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::SizeIs;
 
-constexpr glm::ivec2 kCameraSize{320, 256};
+constexpr glm::ivec2 kCameraSize{360, 288};
 
 CalibratedCamera smallCamera() {
     return withSize(defaultLabCamera(defaultInstallation().projectors.front().camera), kCameraSize);
@@ -56,7 +56,7 @@ struct SlowLab {
     bool isShown = false;
 
     explicit SlowLab(const BoardLabOptions& options = {})
-        : lab(smallRoom(), parseCalibrationBoard("chess:9x6:36"), options) {
+        : lab(smallRoom(), parseCalibrationBoard("chess:6x5:48"), options) {
         lab.lay(lab.proposePoses(2)[1]);
         queue.push_back({Microseconds(-10'000'000), cv::Mat::zeros(200, 320, CV_8U)});
     }
@@ -322,12 +322,12 @@ TEST(PoseCapture, EachFaultIsToldByItsCauseAsItComes) {
          [&](SlowCapture& slow) {
              slow.lab.change = [first](int frame, const cv::Mat& seen) {
                  cv::Mat covered = seen.clone();
-                 if (frame > first + 25) covered(cv::Rect(150, 40, 40, 100)) = cv::Scalar(30);
+                 if (frame > first + 25) covered(cv::Rect(170, 45, 40, 110)) = cv::Scalar(30);
                  return covered;
              };
          },
          "wrong_order"},
-        {"another board", [&](SlowCapture& slow) { slow.settings.board = parseCalibrationBoard("chess:7x5:36"); },
+        {"another board", [&](SlowCapture& slow) { slow.settings.board = parseCalibrationBoard("chess:7x6:48"); },
          "board_not_found"},
     };
     for (const CaptureFault& fault : faults) {

@@ -7,7 +7,7 @@
 // An order file is read, or refused with a DataError; what was read can be written and read again.
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-    constexpr cv::Size kProjector(1024, 768);
+    const cv::Size kProjector(1024, 768);
     const std::string_view text(reinterpret_cast<const char*>(data), size);
     try {
         const lumorph::CaptureOrder order = lumorph::parseCaptureOrder(text, "fuzz", kProjector);
