@@ -17,7 +17,8 @@ constexpr double kMostSaturated = 0.1; // of the board
 constexpr double kMostStray = 0.002;   // of decoded pixels
 constexpr int kCameraBorder = 4;       // pixels that tell nothing of where the projector's picture ends
 constexpr int kBand = 8;               // projector pixels
-constexpr double kSameEnd = 1.2;       // projector pixels: an edge of something lit is hardly ever that parallel
+constexpr double kSameEnd = 1.2;       // resolved stripes: an edge of something lit is hardly ever that parallel
+constexpr double kEndSlack = 4.0;      // resolved stripes that may be lost at the picture's end
 constexpr int kStraightBands = 14;     // that end in the same place
 
 double medianOfNumbers(std::vector<double> numbers) {
@@ -63,7 +64,7 @@ struct PictureEnd {
     bool isSharp = false; ///< many bands end there
 };
 
-PictureEnd endOf(const cv::Mat1f& along, const cv::Mat1f& across) {
+PictureEnd endOf(const cv::Mat1f& along, const cv::Mat1f& across, int cell) {
     std::map<int, std::vector<float>> bands;
     for (int y = kCameraBorder; y + kCameraBorder < along.rows; ++y)
         for (int x = kCameraBorder; x + kCameraBorder < along.cols; ++x)
@@ -80,7 +81,7 @@ PictureEnd endOf(const cv::Mat1f& along, const cv::Mat1f& across) {
     if (ends.size() < 8) return {};
     std::ranges::sort(ends);
     const double last = ends[ends.size() - 3];
-    const auto same = std::ranges::count_if(ends, [last](double end) { return end > last - kSameEnd; });
+    const auto same = std::ranges::count_if(ends, [=](double end) { return end > last - kSameEnd * cell; });
     return {last, same >= kStraightBands};
 }
 
@@ -138,15 +139,16 @@ std::optional<Finding> checkExposure(const std::string& view, const DecodedView&
 }
 
 std::optional<Finding> checkProjectorSize(const std::string& view, const DecodedView& decoded, cv::Size projector) {
-    const PictureEnd column = endOf(decoded.column, decoded.row);
-    const PictureEnd row = endOf(decoded.row, decoded.column);
+    const PictureEnd column = endOf(decoded.column, decoded.row, decoded.columnCell);
+    const PictureEnd row = endOf(decoded.row, decoded.column, decoded.rowCell);
     const int width = projector.width;
     const int height = projector.height;
-    const auto endsAt = [](const PictureEnd& end, int length) {
-        return end.isSharp && std::abs(end.last + 1.0 - length) < 3.0;
+    const double slack = kEndSlack * std::max(decoded.columnCell, decoded.rowCell);
+    const auto endsAt = [slack](const PictureEnd& end, int length) {
+        return end.isSharp && std::abs(end.last + 1.0 - length) < slack;
     };
     const auto isWrong = [&](const PictureEnd& end, int length) {
-        return end.last > length - 0.4 || (end.isSharp && end.last + 1.0 < length - 3.0);
+        return end.last > length - 0.4 || (end.isSharp && end.last + 1.0 < length - slack);
     };
     if (!isWrong(column, width) && !isWrong(row, height)) return std::nullopt;
     const bool fitsSwapped = !isWrong(column, height) && !isWrong(row, width);
