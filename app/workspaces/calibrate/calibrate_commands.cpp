@@ -29,10 +29,11 @@ void useFolder(CalibrationService& service, Settings& settings, const std::files
 }
 
 void askForImages(const CalibrateParts& parts) {
-    askFolder(QApplication::activeWindow(), parts.studio.settings, "calibrate.folder",
-              "Folder of images: in it one folder for each pose", [parts](const QString& folder) {
-                  useFolder(parts.service, parts.studio.settings, folder.toStdString());
-              });
+    askFolder(
+        QApplication::activeWindow(), parts.studio.settings, "calibrate.folder",
+        "Folder of images: in it one folder for each pose",
+        [parts](const QString& folder) { useFolder(parts.service, parts.studio.settings, folder.toStdString()); },
+        "Choose");
 }
 
 void addCalibrateCommands(const CalibrateParts& parts) {
