@@ -80,13 +80,13 @@ private:
     double dark_ = 0.0, contrast_ = 0.0;
 };
 
-Image imageOf(const cv::Mat& grey) {
+void writeGrey(const cv::Mat& grey, const std::filesystem::path& file) {
     Image image({grey.cols, grey.rows});
     auto* to = image.pixels().data();
     for (int y = 0; y < grey.rows; ++y)
         for (const uchar* from = grey.ptr(y); from != grey.ptr(y) + grey.cols; ++from, ++to)
             *to = {*from, *from, *from, 255};
-    return image;
+    writePng(image, file);
 }
 
 std::string fileNameOf(int index, const PatternImage& pattern) {
@@ -268,7 +268,7 @@ void savePose(const std::filesystem::path& folder, const CapturedPose& pose, con
         if (!fs::create_directory(partial, failed)) throwWriteError(partial, failed.value());
         for (std::size_t i = 0; i < pose.images.size(); ++i) {
             progress.throwIfCancelled();
-            writePng(imageOf(pose.images[i]), partial / pose.files[i]);
+            writeGrey(pose.images[i], partial / pose.files[i]);
             progress.report(static_cast<double>(i + 1) / static_cast<double>(pose.images.size()), "saving the pose");
         }
         fs::remove_all(before, failed);

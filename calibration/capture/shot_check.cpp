@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
+#include <map>
 #include <utility>
 
 #include <opencv2/imgproc.hpp>
@@ -21,6 +21,7 @@ constexpr int kEveryPixel = 2;          // along both sides, of those that are l
 constexpr double kLeastSwitched = 12.0; // grey levels between light and dark, for a pixel to count
 constexpr double kDimSwitched = 40.0;   // of the brightest tenth: below, noise shows in the result
 constexpr double kStrange = 0.08;       // of the light that is switched: above, a set makes no even light
+constexpr double kResolved = 0.5;       // of that light: what a stripe switches at least where it is resolved
 constexpr double kSameShot = 0.05;      // below, two shots show the same
 constexpr double kDriftTold = 0.03;     // of the exposure
 constexpr double kDriftRefused = 0.12;
@@ -112,6 +113,7 @@ struct ShotCheck::Data {
     cv::Mat1b lit;    ///< by the projector
     cv::Mat1b counts; ///< where exposure counts: the board, or all that is lit
     std::vector<cv::Point2f> corners;
+    std::map<std::size_t, double> gains; ///< of the first set of so many images: a gamma makes phase sets darker
     bool isBurntTold = false, isDriftTold = false;
     std::optional<cv::Point2d> columnWay, rowWay; ///< in the camera, towards larger columns and rows
 
@@ -120,6 +122,10 @@ struct ShotCheck::Data {
     }
     void warn(Cause cause, const std::string& file, std::string why, std::string remedy) {
         findings.warnings.push_back({cause, name, file, std::move(why), std::move(remedy)});
+    }
+    void refuseMoved(const std::vector<int>& set) {
+        refuse(Cause::rigMoved, file(set.back()), "camera, board or projector moved within this pose",
+               "fix all of them, then capture this pose again");
     }
     [[nodiscard]] const PatternImage& pattern(int image) const { return order.images[static_cast<std::size_t>(image)]; }
     [[nodiscard]] const cv::Mat& shot(int image) const { return images[static_cast<std::size_t>(image)]; }
@@ -249,8 +255,7 @@ void ShotCheck::Data::explainStrange(const std::vector<int>& set, const cv::Mat1
         }
     }
     if (hasMoved(picture))
-        refuse(Cause::rigMoved, file(set.back()), "camera, board or projector moved within this pose",
-               "fix all of them, then capture this pose again");
+        refuseMoved(set);
     else
         refuse(Cause::wrongOrder, file(set.back()), "does not make even light with the others of its set",
                "check that nobody stepped into the light, and the order of the patterns");
@@ -293,18 +298,23 @@ void ShotCheck::Data::lookAtSet(const std::vector<int>& set) {
     }
     if (even.empty()) takeReference(mean, most - least, picture);
     if (findings.refusal) return;
+    // Of stripes that the camera does not resolve, it makes a light of its own.
+    if (differenceOf(most, least) < kResolved) {
+        if (hasMoved(picture)) refuseMoved(set);
+        return;
+    }
     const double gain = cv::mean(mean, lit)[0] / std::max(1.0, cv::mean(even, lit)[0]);
     if (differenceOf(mean, gain * even) > kStrange) {
         explainStrange(set, mean, gain);
         return;
     }
     if (hasMoved(picture)) {
-        refuse(Cause::rigMoved, file(set.back()), "camera, board or projector moved within this pose",
-               "fix all of them, then capture this pose again");
+        refuseMoved(set);
         return;
     }
-    const double drift = std::abs(gain - 1.0);
-    const std::string why = "is " + percentWords(drift) + (gain > 1.0 ? " brighter" : " darker") +
+    const double first = gains.try_emplace(set.size(), set.size() == 2 ? 1.0 : gain).first->second;
+    const double drift = std::abs(gain / first - 1.0);
+    const std::string why = "is " + percentWords(drift) + (gain > first ? " brighter" : " darker") +
                             " than the first patterns: the exposure drifts";
     const char* const remedy = "switch the camera's automatic exposure off, and let projector and camera warm up";
     if (drift > kDriftRefused) {

@@ -460,6 +460,8 @@ std::vector<glm::dvec3> BoardLab::points() const {
     return all;
 }
 
+glm::dvec3 BoardLab::place(double x, double y) const { return data_->place(x, y); }
+
 std::optional<glm::dvec2> BoardLab::cameraPixel(const glm::dvec3& point) const {
     const auto ideal = imageOf(data_->cameraLens, point);
     if (!ideal) return std::nullopt;

@@ -79,6 +79,8 @@ public:
     [[nodiscard]] const BoardLabOptions& options() const noexcept;
     /// The board's points, in its frame, metres, as they truly are: stretched and bent.
     [[nodiscard]] std::vector<glm::dvec3> points() const;
+    /// Where a place of the board by its printed coordinates (the board's unit) truly is, likewise.
+    [[nodiscard]] glm::dvec3 place(double x, double y) const;
     /// Where a world point falls in the camera, and in what the projector shows, pixels; empty behind the lens.
     [[nodiscard]] std::optional<glm::dvec2> cameraPixel(const glm::dvec3& point) const;
     [[nodiscard]] std::optional<glm::dvec2> projectorPixel(const glm::dvec3& point) const;

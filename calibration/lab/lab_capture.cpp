@@ -415,6 +415,7 @@ std::vector<LabShot> LabCapturer::takeNext(const Progress& progress) {
 
 const LabCapture& LabCapturer::capture() const noexcept { return data_->capture; }
 const BoardLab& LabCapturer::lab() const noexcept { return *data_->lab; }
+const std::vector<glm::dmat4>& LabCapturer::poses() const noexcept { return data_->poses; }
 const std::vector<LabFault>& LabCapturer::faults() const noexcept { return data_->faults; }
 
 std::string LabCapturer::truthText() const {

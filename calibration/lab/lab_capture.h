@@ -58,6 +58,8 @@ public:
 
     [[nodiscard]] const LabCapture& capture() const noexcept; ///< with what its fault makes of its options
     [[nodiscard]] const BoardLab& lab() const noexcept;
+    /// Where the board is laid, pose by pose: the world from its frame, metres.
+    [[nodiscard]] const std::vector<glm::dmat4>& poses() const noexcept;
     /// What is wrong, as far as it has been photographed.
     [[nodiscard]] const std::vector<LabFault>& faults() const noexcept;
     /// `truth.json` of what has been taken: see the README, "Photograph boards in the virtual lab".

@@ -167,11 +167,10 @@ void readWarning(JsonSection section, ProcamCalibration& result) {
     section.text("file", finding.file);
     section.text("why", finding.why);
     section.text("remedy", finding.remedy);
-    for (int cause = 0; cause < kCauseCount; ++cause)
-        if (keyOf(static_cast<Cause>(cause)) == key) {
-            finding.cause = static_cast<Cause>(cause);
-            result.warnings.push_back(finding);
-        }
+    const std::optional<Cause> cause = causeOf(key);
+    if (!cause) return;
+    finding.cause = *cause;
+    result.warnings.push_back(finding);
 }
 
 void readSource(json& document, JsonSection& root, CalibrationSource& source) {

@@ -9,6 +9,8 @@
 #include <Eigen/Dense>
 #include <ceres/ceres.h>
 
+#include "calibration/solve/projection.h"
+
 namespace lumorph {
 
 namespace {
@@ -30,80 +32,10 @@ enum ViewColumn {
 };
 
 using Slopes = Eigen::Matrix<double, 2, kColumns>;
-using PixelByPoint = Eigen::Matrix<double, 2, 3>;
-using PixelByLens = Eigen::Matrix<double, 2, kLensParameters>;
-
-Eigen::Matrix3d crossOf(const Eigen::Vector3d& v) {
-    Eigen::Matrix3d cross;
-    cross << 0.0, -v.z(), v.y(), v.z(), 0.0, -v.x(), -v.y(), v.x(), 0.0;
-    return cross;
-}
-
-/// A pose vector as a rotation, and the rotation's right Jacobian: R(w + d) = R(w) exp(J d).
-struct Pose {
-    Eigen::Matrix3d rotation, turn;
-    Eigen::Vector3d shift;
-
-    explicit Pose(const double* pose) : shift(pose[3], pose[4], pose[5]) {
-        const Eigen::Vector3d w(pose[0], pose[1], pose[2]);
-        const double angle = w.norm();
-        const Eigen::Matrix3d cross = crossOf(w);
-        const bool small = angle < 1e-4;
-        const double a2 = angle * angle;
-        const double first = small ? 1.0 - a2 / 6.0 : std::sin(angle) / angle;
-        const double second = small ? 0.5 - a2 / 24.0 : (1.0 - std::cos(angle)) / a2;
-        const double third = small ? 1.0 / 6.0 - a2 / 120.0 : (angle - std::sin(angle)) / (a2 * angle);
-        rotation = Eigen::Matrix3d::Identity() + first * cross + second * cross * cross;
-        turn = Eigen::Matrix3d::Identity() - second * cross + third * cross * cross;
-    }
-    [[nodiscard]] Eigen::Vector3d operator*(const Eigen::Vector3d& point) const { return rotation * point + shift; }
-};
-
-/// A point's pixel, and how it moves with point and lens.
-struct Projected {
-    Eigen::Vector2d pixel;
-    PixelByPoint byPoint;
-    PixelByLens byLens;
-};
-
-/// How a distorted direction moves with k1, k2, p1, p2 and k3.
-Eigen::Matrix<double, 2, 5> byDistortion(double x, double y) {
-    const double r2 = x * x + y * y;
-    Eigen::Matrix<double, 2, 5> slopes;
-    slopes << x * r2, x * r2 * r2, 2.0 * x * y, r2 + 2.0 * x * x, x * r2 * r2 * r2, //
-        y * r2, y * r2 * r2, r2 + 2.0 * y * y, 2.0 * x * y, y * r2 * r2 * r2;
-    return slopes;
-}
-
 Lens lensAt(const double* numbers) {
     Lens lens;
     std::copy_n(numbers, kLensParameters, lens.begin());
     return lens;
-}
-
-Eigen::Matrix2d distortionSlopes(const Lens& lens, double x, double y) {
-    const auto [a, b, c, d] = lens_detail::distortionJacobian(lens, x, y);
-    return (Eigen::Matrix2d() << a, b, c, d).finished();
-}
-
-Projected project(const Lens& lens, const Eigen::Vector3d& point) {
-    const double x = point.x() / point.z();
-    const double y = point.y() / point.z();
-    Eigen::Vector2d distorted;
-    distort(lens.data(), x, y, distorted.x(), distorted.y());
-    const double focal = lens[kFocalLength];
-    const Eigen::Vector2d scale(focal, focal * lens[kAspect]);
-    Projected out;
-    out.pixel = Eigen::Vector2d(lens[kPrincipalX], lens[kPrincipalY]) + scale.cwiseProduct(distorted);
-    PixelByPoint direction;
-    direction << 1.0, 0.0, -x, 0.0, 1.0, -y;
-    out.byPoint = scale.asDiagonal() * distortionSlopes(lens, x, y) * direction / point.z();
-    out.byLens.setZero();
-    out.byLens.col(kFocalLength) << distorted.x(), lens[kAspect] * distorted.y();
-    out.byLens(1, kAspect) = focal * distorted.y();
-    out.byLens(0, kPrincipalX) = out.byLens(1, kPrincipalY) = 1.0;
-    out.byLens.rightCols<5>() = scale.asDiagonal() * byDistortion(x, y);
-    return out;
 }
 
 /// A board's height over its plane, its slope, and how it moves with the terms.
@@ -132,7 +64,7 @@ bool isFlat(const BoardShape& board) {
 }
 
 /// How far along `direction` from the camera the board is met.
-double depthOfBoard(const Eigen::Vector3d& direction, const Pose& pose, const BoardShape& board) {
+double depthOfBoard(const Eigen::Vector3d& direction, const PoseMatrix& pose, const BoardShape& board) {
     constexpr int kSteps = 4;
     const Eigen::Vector3d way = pose.rotation.transpose() * direction;
     const Eigen::Vector3d from = -pose.rotation.transpose() * pose.shift;
@@ -150,7 +82,7 @@ double depthOfBoard(const Eigen::Vector3d& direction, const Pose& pose, const Bo
 struct ViewTerms {
     const ViewObservations& view;
     const Lens camera, projector;
-    const Pose pose, rig;
+    const PoseMatrix pose, rig;
     const BoardShape board;
 
     bool corner(std::size_t i, Eigen::Vector2d& error, Slopes* slopes) const {
@@ -194,7 +126,8 @@ struct ViewTerms {
         const Eigen::Vector2d alongRay = byPoint * direction / facing;
         const Eigen::Matrix<double, 2, 2> byDirection =
             depth * (byPoint.leftCols<2>() - alongRay * normal.head<2>().transpose());
-        slopes->middleCols<kLensParameters>(kCameraColumn) = byDirection * directionByLens(at.camera, x, y);
+        slopes->middleCols<kLensParameters>(kCameraColumn) =
+            byDirection * directionByLens(camera, at.camera.x, at.camera.y, x, y);
         slopes->middleCols<3>(kPoseColumn) = -alongRay * upward.cross(inBoard).transpose() * pose.turn;
         slopes->middleCols<3>(kPoseColumn + 3) = alongRay * normal.transpose();
         slopes->middleCols<7>(kBoardColumn) = alongRay * height.byTerm.transpose();
@@ -203,21 +136,6 @@ struct ViewTerms {
         slopes->middleCols<3>(kRigColumn + 3) = projected.byPoint;
         slopes->middleCols<kLensParameters>(kProjectorColumn) = projected.byLens;
         return true;
-    }
-
-private:
-    /// How the direction of a pixel moves with the lens: distort(direction) stays what the pixel says.
-    [[nodiscard]] PixelByLens directionByLens(const cv::Point2d& pixel, double x, double y) const {
-        const double focal = camera[kFocalLength];
-        const double across = (pixel.x - camera[kPrincipalX]) / focal;
-        const double down = (pixel.y - camera[kPrincipalY]) / (focal * camera[kAspect]);
-        PixelByLens wanted = PixelByLens::Zero();
-        wanted.col(kFocalLength) << -across / focal, -down / focal;
-        wanted(1, kAspect) = -down / camera[kAspect];
-        wanted(0, kPrincipalX) = -1.0 / focal;
-        wanted(1, kPrincipalY) = -1.0 / (focal * camera[kAspect]);
-        wanted.rightCols<5>() = -byDistortion(x, y);
-        return distortionSlopes(camera, x, y).inverse() * wanted;
     }
 };
 
@@ -297,8 +215,8 @@ private:
         const ViewTerms terms{view_,
                               lensAt(parameters[0]),
                               points_ ? lensAt(parameters[4]) : Lens{},
-                              Pose(parameters[1]),
-                              Pose(points_ ? parameters[3] : kNothing),
+                              PoseMatrix(parameters[1]),
+                              PoseMatrix(points_ ? parameters[3] : kNothing),
                               board};
         Eigen::Vector2d error;
         Slopes storage;
@@ -520,12 +438,17 @@ BundleCovariance covarianceOf(const std::vector<ViewObservations>& views, const 
     return covariance;
 }
 
+Eigen::MatrixXd normalMatrixOf(const std::vector<ViewObservations>& views, const ViewChoice& use,
+                               const BundleOptions& options, const BundleState& state) {
+    const Normals normals = normalsOf(views, use, options, state);
+    return normals.corners + normals.points;
+}
+
 Eigen::MatrixXd informationOf(const ViewObservations& view, const BundleOptions& options, const BundleState& state,
                               const PoseVector& cameraFromBoard) {
     BundleState alone = state;
     alone.cameraFromBoard = {cameraFromBoard};
-    const Normals normals = normalsOf({view}, {0}, options, alone);
-    const Eigen::MatrixXd all = normals.corners + normals.points;
+    const Eigen::MatrixXd all = normalMatrixOf({view}, {0}, options, alone);
     const Eigen::MatrixXd mixed = all.bottomLeftCorner(6, kPosePlace);
     return all.topLeftCorner(kPosePlace, kPosePlace) -
            mixed.transpose() * inverseOf(all.bottomRightCorner(6, 6)) * mixed;
@@ -533,7 +456,7 @@ Eigen::MatrixXd informationOf(const ViewObservations& view, const BundleOptions&
 
 std::vector<cv::Point2d> cameraErrors(const ViewObservations& view, const BundleState& state,
                                       const PoseVector& cameraFromBoard) {
-    const Pose pose(cameraFromBoard.data());
+    const PoseMatrix pose(cameraFromBoard.data());
     const ViewTerms terms{view, state.camera, {}, pose, pose, state.board};
     std::vector<cv::Point2d> errors;
     for (std::size_t i = 0; i < view.corners.seen.size(); ++i) {
@@ -547,13 +470,13 @@ std::vector<cv::Point2d> cameraErrors(const ViewObservations& view, const Bundle
 cv::Point3d pointOnBoard(const cv::Point2d& pixel, const Lens& camera, const PoseVector& cameraFromBoard,
                          const BoardShape& board) {
     const auto [x, y] = directionOfPixel(camera, pixel.x, pixel.y);
-    const double depth = depthOfBoard({x, y, 1.0}, Pose(cameraFromBoard.data()), board);
+    const double depth = depthOfBoard({x, y, 1.0}, PoseMatrix(cameraFromBoard.data()), board);
     return {depth * x, depth * y, depth};
 }
 
 cv::Point2d projectorPixel(const cv::Point3d& point, const BundleState& state) {
     const Eigen::Vector3d inProjector =
-        Pose(state.projectorFromCamera.data()) * Eigen::Vector3d(point.x, point.y, point.z);
+        PoseMatrix(state.projectorFromCamera.data()) * Eigen::Vector3d(point.x, point.y, point.z);
     double pixel[2];
     projectPoint(state.projector.data(), inProjector.data(), pixel);
     return {pixel[0], pixel[1]};
@@ -561,9 +484,12 @@ cv::Point2d projectorPixel(const cv::Point3d& point, const BundleState& state) {
 
 std::vector<cv::Point2d> projectorErrors(const ViewObservations& view, const BundleState& state,
                                          const PoseVector& cameraFromBoard) {
-    const ViewTerms terms{
-        view,       state.camera, state.projector, Pose(cameraFromBoard.data()), Pose(state.projectorFromCamera.data()),
-        state.board};
+    const ViewTerms terms{view,
+                          state.camera,
+                          state.projector,
+                          PoseMatrix(cameraFromBoard.data()),
+                          PoseMatrix(state.projectorFromCamera.data()),
+                          state.board};
     std::vector<cv::Point2d> errors;
     for (const ProjectorPoint& point : view.projector) {
         Eigen::Vector2d error = Eigen::Vector2d::Zero();

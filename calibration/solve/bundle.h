@@ -82,6 +82,10 @@ struct BundleCovariance {
 [[nodiscard]] BundleCovariance covarianceOf(const std::vector<ViewObservations>& views, const ViewChoice& use,
                                             const BundleOptions& options, const BundleState& state);
 
+/// The normal matrix itself, of all parameters at those places, whether they may move or not.
+[[nodiscard]] Eigen::MatrixXd normalMatrixOf(const std::vector<ViewObservations>& views, const ViewChoice& use,
+                                             const BundleOptions& options, const BundleState& state);
+
 /// What one view tells of the lenses, the rig and the board when its own pose is unknown: its normal matrix with the
 /// pose eliminated, `kPosePlace` square. Of errors it uses nothing, so that a view may be a planned one.
 [[nodiscard]] Eigen::MatrixXd informationOf(const ViewObservations& view, const BundleOptions& options,

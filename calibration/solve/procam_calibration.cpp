@@ -273,7 +273,8 @@ private:
                 estimateNoise();
             }
             refine(views_, use_, bundle_, state_);
-            takeSigmas(covarianceOf(views_, use_, bundle_, state_).matrix, projector);
+            result_.covariance = covarianceOf(views_, use_, bundle_, state_).matrix;
+            takeSigmas(result_.covariance, projector);
             const auto order = {kK3, kAspect, kP2, kP1, kK2, kK1, kPrincipalX, kPrincipalY};
             if (!lockOne(cameraPart(), order) && !(projector && lockOne(projectorPart(), order))) return;
         }
@@ -353,6 +354,8 @@ private:
         finish(result_.camera, state_.camera, bundle_.camera);
         finish(result_.projector, state_.projector, bundle_.projector);
         result_.state = state_;
+        result_.bundle = bundle_;
+        takeInformation();
         result_.projectorFromCamera = state_.projectorFromCamera;
         const std::vector<double> held =
             projector ? heldOutTransfers(views_, use_, bundle_, state_) : heldOutCorners(views_, use_, bundle_, state_);
@@ -370,6 +373,17 @@ private:
                                 return std::hypot(view.cameraRms, view.projectorRms, view.heldOut.value_or(0.0));
                             })->name;
         judge(projector);
+    }
+
+    void takeInformation() {
+        result_.information = Eigen::MatrixXd::Zero(kPosePlace, kPosePlace);
+        for (const int v : use_) {
+            const auto index = static_cast<std::size_t>(v);
+            result_.information += informationOf(views_[index], bundle_, state_, state_.cameraFromBoard[index]);
+            const auto count = static_cast<double>(views_[index].projector.size());
+            result_.pointsOfView +=
+                std::min<double>(bundle_.most, count * bundle_.independentPoints) / static_cast<double>(use_.size());
+        }
     }
 
     static void finish(CalibratedDevice& device, const Lens& lens, const LensMask& free) {

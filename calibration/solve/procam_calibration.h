@@ -43,7 +43,13 @@ struct ProcamCalibration {
     std::optional<double> halvesDiffer, halvesAllowed;
     std::vector<Finding> warnings;
     bool degenerate = false;
-    BundleState state; ///< with the boards' poses, by view
+    BundleState state;          ///< with the boards' poses, by view
+    BundleOptions bundle;       ///< what was free, and the noise that was found
+    Eigen::MatrixXd covariance; ///< of everything that was free, places as in bundle.h
+    /// What all views tell of lenses, rig and board, free or not: the normal matrix without the poses, `kPosePlace`
+    /// square.
+    Eigen::MatrixXd information;
+    double pointsOfView = 0.0; ///< how many independent projector points a view has, on average
 };
 
 struct SolveOptions {

@@ -12,48 +12,10 @@
 
 #include "calibration/decode/capture_folder.h"
 #include "calibration/doctor/capture_calibration.h"
-#include "tests/support/procam_capture.h"
+#include "tests/support/procam_observations.h"
 
 namespace lumorph::test {
 namespace {
-
-/// What a perfect decoder would see of a setup, with noise of that many pixels in each coordinate.
-std::vector<ViewObservations> observe(const ProcamSetup& setup, double cameraNoise, double projectorNoise,
-                                      std::uint32_t seed) {
-    std::mt19937 random(seed);
-    std::normal_distribution<double> grain(0.0, 1.0);
-    std::vector<ViewObservations> views;
-    for (const glm::dmat4& pose : setup.cameraFromBoard) {
-        ViewObservations& view = views.emplace_back();
-        view.name = "pose_" + std::to_string(views.size() - 1);
-        const auto place = [&](double x, double y) { return glm::dvec3(pose * glm::dvec4(x, y, 0.0, 1.0)); };
-        for (int row = 0; row < setup.rows; ++row)
-            for (int column = 0; column < setup.columns; ++column) {
-                const glm::dvec2 board(column * setup.square, row * setup.square);
-                const auto seen = pixelOf(setup.camera, place(board.x, board.y));
-                view.corners.board.emplace_back(board.x, board.y, 0.0);
-                view.corners.seen.emplace_back(seen->x + cameraNoise * grain(random),
-                                               seen->y + cameraNoise * grain(random));
-            }
-        for (int row = 0; row < 16; ++row)
-            for (int column = 0; column < 20; ++column) {
-                const glm::dvec3 at = place(column / 19.0 * setup.square * (setup.columns - 1),
-                                            row / 15.0 * setup.square * (setup.rows - 1));
-                const auto camera = pixelOf(setup.camera, at);
-                const auto lit = pixelOf(setup.projector, at);
-                view.projector.push_back(
-                    {{camera->x, camera->y},
-                     {lit->x + projectorNoise * grain(random), lit->y + projectorNoise * grain(random)}});
-            }
-    }
-    return views;
-}
-
-ProcamCalibration solve(const ProcamSetup& setup, const std::vector<ViewObservations>& views,
-                        const SolveOptions& options = {}) {
-    return calibrateProcam(views, {setup.camera.size.x, setup.camera.size.y},
-                           {setup.projector.size.x, setup.projector.size.y}, options);
-}
 
 glm::dvec3 shiftOf(const ProcamSetup& setup) { return glm::dvec3(setup.projector.cameraFromWorld[3]); }
 
@@ -69,7 +31,7 @@ Cause refusalOf(const ProcamSetup& setup, const std::vector<ViewObservations>& v
 
 TEST(ProcamCalibration, ExactObservationsGiveTheTruthThoughThePrincipalPointLiesOutside) {
     const ProcamSetup setup = ProcamSetup::usual();
-    const ProcamCalibration result = solve(setup, observe(setup, 0.0, 0.0, 1));
+    const ProcamCalibration result = solve(setup, observe(setup, {0.0, 0.0}, 1));
     EXPECT_NEAR(result.camera.lens[kFocalLength], 960.0, 0.01);
     EXPECT_NEAR(result.camera.lens[kPrincipalY], 172.0, 0.01);
     EXPECT_NEAR(result.camera.lens[kK1], -0.2, 1e-3);
@@ -85,7 +47,7 @@ TEST(ProcamCalibration, ExactObservationsGiveTheTruthThoughThePrincipalPointLies
 
 TEST(ProcamCalibration, TheResultDoesNotDependOnTheStart) {
     const ProcamSetup setup = ProcamSetup::usual();
-    const auto views = observe(setup, 0.1, 0.1, 2);
+    const auto views = observe(setup, {0.1, 0.1}, 2);
     for (const auto& [camera, projector] : {std::pair(300.0, 150.0), {960.0, 2000.0}, {4000.0, 470.0}}) {
         const ProcamCalibration result = solve(setup, views, {camera, projector});
         EXPECT_NEAR(result.projector.lens[kFocalLength], 470.0, 2.0) << camera << " " << projector;
@@ -98,7 +60,7 @@ TEST(ProcamCalibration, DISABLED_UncertaintiesAreThoseOfRedrawnNoise) {
     constexpr int kRedraws = 40;
     double squares[4] = {};
     for (std::uint32_t seed = 0; seed < kRedraws; ++seed) {
-        const ProcamCalibration r = solve(setup, observe(setup, 0.15, 0.1, 100 + seed));
+        const ProcamCalibration r = solve(setup, observe(setup, {0.15, 0.1}, 100 + seed));
         const double off[4] = {(r.camera.lens[kFocalLength] - 960.0) / r.camera.sigma[kFocalLength],
                                (r.projector.lens[kFocalLength] - 470.0) / r.projector.sigma[kFocalLength],
                                (r.projector.lens[kPrincipalY] - 213.0) / r.projector.sigma[kPrincipalY],
@@ -115,7 +77,7 @@ TEST(ProcamCalibration, DISABLED_UncertaintiesAreThoseOfRedrawnNoise) {
 
 TEST(ProcamCalibration, HeldOutErrorsAndHalvesOfASoundCaptureAreThoseOfItsNoise) {
     const ProcamSetup setup = ProcamSetup::usual();
-    const ProcamCalibration result = solve(setup, observe(setup, 0.05, 0.1, 5));
+    const ProcamCalibration result = solve(setup, observe(setup, {0.05, 0.1}, 5));
     ASSERT_EQ(result.views.size(), 6U);
     for (const ViewQuality& view : result.views) {
         ASSERT_TRUE(view.heldOut);
@@ -133,20 +95,20 @@ TEST(ProcamCalibration, HeldOutErrorsAndHalvesOfASoundCaptureAreThoseOfItsNoise)
 TEST(ProcamCalibration, BoardsThatAllLieTheSameWayAreRefused) {
     ProcamSetup setup = ProcamSetup::usual();
     setup.cameraFromBoard = {setup.pose(1, 1, 0), setup.pose(-1, 2, 20)};
-    EXPECT_EQ(refusalOf(setup, observe(setup, 0.1, 0.1, 1)), Cause::frontalViews);
+    EXPECT_EQ(refusalOf(setup, observe(setup, {0.1, 0.1}, 1)), Cause::frontalViews);
     setup.cameraFromBoard = {setup.pose(2, 1, 0), setup.pose(-1, 2, 20), setup.pose(0, -2, 5), setup.pose(-2, -1, 40)};
-    EXPECT_EQ(refusalOf(setup, observe(setup, 0.1, 0.1, 2)), Cause::frontalViews);
+    EXPECT_EQ(refusalOf(setup, observe(setup, {0.1, 0.1}, 2)), Cause::frontalViews);
 }
 
 TEST(ProcamCalibration, TwoTiltedPosesAreTooFew) {
     ProcamSetup setup = ProcamSetup::usual();
     setup.cameraFromBoard.resize(2);
-    EXPECT_EQ(refusalOf(setup, observe(setup, 0.1, 0.1, 1)), Cause::tooFewViews);
+    EXPECT_EQ(refusalOf(setup, observe(setup, {0.1, 0.1}, 1)), Cause::tooFewViews);
 }
 
 TEST(ProcamCalibration, ALensThatNoModelDescribesIsRefused) {
     const ProcamSetup setup = ProcamSetup::usual();
-    auto views = observe(setup, 0.1, 0.1, 1);
+    auto views = observe(setup, {0.1, 0.1}, 1);
     for (ViewObservations& view : views)
         for (ProjectorPoint& point : view.projector) point.projector.x += 6.0 * std::sin(point.projector.y / 9.0);
     EXPECT_EQ(refusalOf(setup, views), Cause::modelDoesNotFit);
@@ -157,7 +119,7 @@ TEST(ProcamCalibration, WhatThePosesCannotTellIsLockedAndNamed) {
     setup.square = 4.0; // a small board in the middle tells nothing of the corners
     setup.cameraFromBoard = {setup.pose(0, 0, 0), setup.pose(20, 3, 0), setup.pose(-4, 20, 0)};
     try {
-        const ProcamCalibration result = solve(setup, observe(setup, 0.3, 0.3, 3));
+        const ProcamCalibration result = solve(setup, observe(setup, {0.3, 0.3}, 3));
         EXPECT_TRUE(std::ranges::any_of(result.warnings, [](const Finding& warning) {
             return warning.cause == Cause::undetermined && warning.why.find("locked") != std::string::npos;
         }));
