@@ -14,7 +14,7 @@ namespace lumorph {
 
 namespace {
 
-constexpr std::size_t kFewestPoints = 4;
+constexpr std::size_t kFewestWorldPoints = 4;
 constexpr double kEdgeOn = 0.02; // cosine between the light and the surface's normal
 
 /// All that light depends on: both lenses, rig, world.
@@ -44,7 +44,7 @@ Eigen::Matrix<double, 3, 2> alongSurface(const Eigen::Vector3d& normal) {
 } // namespace
 
 WorldPose worldPoseFrom(const ProcamCalibration& calibration, const BoardPoints& seen, double sigma) {
-    if (seen.seen.size() < kFewestPoints || seen.board.size() != seen.seen.size())
+    if (seen.seen.size() < kFewestWorldPoints || seen.board.size() != seen.seen.size())
         throw InvalidInput("the world's pose", "fewer than four points were seen", "name more of them");
     ViewObservations view{"world", seen, {}};
     BundleState state;

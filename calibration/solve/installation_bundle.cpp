@@ -14,7 +14,7 @@ namespace lumorph {
 
 namespace {
 
-constexpr double kNearest = 1e-9;           // before a lens
+constexpr double kNearestPoint = 1e-9;      // before a lens
 constexpr double kHidden = 1e-14;           // of the largest eigenvalue: a direction that nothing tells of
 constexpr double kLeastInformation = 1e-30; // of a parameter
 
@@ -49,7 +49,7 @@ struct PointError {
         poseForward(body, point, inWorld);
         if (seen.mirrored) reflect(mirror, 1.0, inWorld);
         poseForward(camera, inWorld, inCamera);
-        if (inCamera[2] < T(kNearest)) return false;
+        if (inCamera[2] < T(kNearestPoint)) return false;
         projectPoint(lens, inCamera, pixel);
         error[0] = T(weight) * (pixel[0] - T(seen.pixel.x));
         error[1] = T(weight) * (pixel[1] - T(seen.pixel.y));
@@ -82,7 +82,7 @@ struct LightError {
         const T along = (T(seen.distance) + dotOf(n, body + 3) - dotOf(n, from)) / dotOf(n, ray);
         for (int i = 0; i < 3; ++i) place[i] = from[i] + along * ray[i];
         poseForward(projector, place, inProjector);
-        if (inProjector[2] < T(kNearest)) return false;
+        if (inProjector[2] < T(kNearestPoint)) return false;
         projectPoint(projectorLens, inProjector, pixel);
         error[0] = T(weight) * (pixel[0] - T(seen.pixels.projector.x));
         error[1] = T(weight) * (pixel[1] - T(seen.pixels.projector.y));

@@ -217,7 +217,7 @@ private:
         procam.projectorFromCamera = state.projectors[0].fromWorld;
         procam.projectorFromCameraSigma = sigma.projectors[0].fromWorld;
         procam.rms = std::hypot(procam.camera.rms, procam.projector.rms) / std::numbers::sqrt2;
-        procam.state = {procam.camera.lens, procam.projector.lens, procam.projectorFromCamera, state.worldFromBody};
+        procam.state = {procam.camera.lens, procam.projector.lens, procam.projectorFromCamera, {}, state.worldFromBody};
         double worst = -1.0;
         for (std::size_t v = 0; v < views_.size(); ++v) {
             ViewQuality& view = procam.views[v];

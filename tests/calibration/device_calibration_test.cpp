@@ -110,7 +110,9 @@ struct DeviceRoom {
     /// Root mean square of how far light beside where it belongs, over the device at rest and raised; projector pixels.
     [[nodiscard]] double projectorError(const DeviceCalibration& result, std::size_t p) const {
         double sum = 0.0, count = 0.0;
-        const BundleState solved{{}, result.state.projectors[p].lens, result.state.projectors[p].fromWorld, {}};
+        BundleState solved;
+        solved.projector = result.state.projectors[p].lens;
+        solved.projectorFromCamera = result.state.projectors[p].fromWorld;
         for (const double stroke : {0.0, 0.5, 1.0}) {
             const TriangleMesh mesh = deformed(deviceRig(), std::vector<double>(deviceRig().actuatorCount(), stroke));
             for (std::size_t i = 0; i < mesh.positions.size(); i += 11) {

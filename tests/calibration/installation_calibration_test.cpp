@@ -88,7 +88,9 @@ struct Room {
             for (const double y : {-90.0, 0.0, 90.0})
                 for (const double z : {930.0, 1000.0, 1070.0}) {
                     const auto& solved = result.state.projectors[p];
-                    const BundleState state{{}, solved.lens, solved.fromWorld, {}};
+                    BundleState state;
+                    state.projector = solved.lens;
+                    state.projectorFromCamera = solved.fromWorld;
                     const cv::Point2d at = projectorPixel({x, y, z}, state);
                     const auto truth = pixelOf(projectors[p], {x, y, z});
                     sum += std::pow(at.x - truth->x, 2) + std::pow(at.y - truth->y, 2);
