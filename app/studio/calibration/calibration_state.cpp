@@ -90,7 +90,7 @@ CalibrationStep posesStep(const CalibrationState& state) {
 }
 
 QString lensWords(const CalibratedDevice& device) {
-    return tr("focal length %1 ± %2 px, error %3 px")
+    return tr("focal %1 ± %2 px, error %3 px")
         .arg(number(device.lens[kFocalLength], 0), number(device.sigma[kFocalLength], 1), number(device.rms, 2));
 }
 
