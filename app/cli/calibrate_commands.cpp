@@ -1,13 +1,19 @@
 #include <cmath>
 #include <cstdio>
 #include <memory>
+#include <span>
 #include <string>
+#include <vector>
 
 #include <opencv2/calib3d.hpp>
 
 #include "app/cli/commands.h"
 #include "calibration/doctor/capture_calibration.h"
+#include "calibration/report/calibration_file.h"
+#include "calibration/report/report_page.h"
+#include "core/base/atomic_file.h"
 #include "core/base/error.h"
+#include "core/scene/installation.h"
 
 namespace lumorph::cli {
 
@@ -23,6 +29,8 @@ struct CalibrateArguments {
     std::string projector;
     std::string pattern = "graycode";
     std::string order;
+    std::string report;   ///< .html
+    std::string exported; ///< .json or .yaml
     bool json = false;
 };
 
@@ -162,29 +170,94 @@ template <typename Run> ProcamCalibration orRefused(bool json, const Run& run) {
     }
 }
 
+/// Before anything takes long. Throws InvalidInput.
+void checkOutputs(const CalibrateArguments& arguments) {
+    const std::string& report = arguments.report;
+    if (report.ends_with(".pdf"))
+        throw InvalidInput("--report " + report, "the command line writes no PDF",
+                           "write .html, or let the studio make the PDF");
+    if (!report.empty() && !report.ends_with(".html"))
+        throw InvalidInput("--report " + report, "is no .html", "name it OUT.html");
+    if (!arguments.exported.empty()) requireCalibrationName(arguments.exported);
+}
+
+CalibrationSource sourceOf(const CalibrateArguments& arguments, bool hasPatterns) {
+    CalibrationSource source;
+    source.date = utcDate();
+    source.board = arguments.board;
+    if (hasPatterns) source.pattern = arguments.order.empty() ? arguments.pattern : arguments.order;
+    source.inputs = {arguments.folder};
+    return source;
+}
+
+void writeReport(const CalibrateArguments& arguments, const CalibrationReport& report) {
+    if (arguments.report.empty()) return;
+    const std::string page = reportPage(report);
+    writeFileAtomically(arguments.report, std::as_bytes(std::span(page)));
+}
+
+void writeOutputs(const CalibrateArguments& arguments, const CalibrationReport& report) {
+    if (!arguments.exported.empty()) writeCalibration(report.record, arguments.exported);
+    writeReport(arguments, report);
+}
+
 void procam(const CalibrateArguments& arguments, const Session& session) {
+    checkOutputs(arguments);
     const CalibrationBoard board = parseCalibrationBoard(arguments.board);
     const cv::Size projector = parseProjectorSize(arguments.projector);
     const CaptureOrder order = arguments.order.empty() ? parsePattern(arguments.pattern, projector)
                                                        : readCaptureOrder(arguments.order, projector);
-    const ProcamCalibration result = orRefused(
-        arguments.json, [&] { return calibrateProcamFolder(arguments.folder, board, order, {}, session.progress()); });
+    CalibrationReport report;
+    report.record.source = sourceOf(arguments, true);
+    const auto run = [&] {
+        constexpr double kReading = 0.6; // of the whole time
+        const Progress progress = session.progress();
+        const std::vector<CapturedView> poses = viewsIn(arguments.folder);
+        report.sights.resize(poses.size());
+        const ReadCapture capture = readPoses(
+            poses, board, order,
+            [&](std::size_t index, const ReadPose& pose) {
+                if (!arguments.report.empty()) report.sights[index] = pose.decoded.white;
+            },
+            progress.part(0.0, kReading));
+        report.observations = capture.views;
+        return calibrateCapture(capture, order.projector, {}, progress.part(kReading, 1.0));
+    };
+    try {
+        report.record.result = orRefused(arguments.json, run);
+    } catch (const CaptureRefused& refused) {
+        report.refusal = refused.finding();
+        writeReport(arguments, report);
+        throw;
+    }
     Session::endProgress();
+    writeOutputs(arguments, report);
     if (arguments.json)
-        printJson(procamJson(result));
+        printJson(procamJson(report.record.result));
     else
-        printProcam(result);
+        printProcam(report.record.result);
 }
 
 void intrinsics(const CalibrateArguments& arguments, const Session& session) {
+    checkOutputs(arguments);
     const CalibrationBoard board = parseCalibrationBoard(arguments.board);
     const ProcamCalibration result = orRefused(
         arguments.json, [&] { return calibrateIntrinsicsFolder(arguments.folder, board, {}, session.progress()); });
     Session::endProgress();
+    CalibrationReport report;
+    report.record = {result, sourceOf(arguments, false)};
+    writeOutputs(arguments, report);
     if (arguments.json)
         printJson(intrinsicsJson(result));
     else
         printIntrinsics(result);
+}
+
+/// What both commands can write beside what they print.
+void addOutputs(CLI::App& command, CalibrateArguments& arguments) {
+    command.add_option("--export", arguments.exported,
+                       "Write the result to a file: .json (Lumorph's own) or .yaml (OpenCV's)");
+    command.add_option("--report", arguments.report, "Write a report with plots and pictures: .html");
 }
 
 } // namespace
@@ -202,6 +275,7 @@ void addCalibrateCommands(CLI::App& app, Session& session) {
         ->capture_default_str();
     command->add_option("--order", both->order,
                         "In place of --pattern: a file that says, one line an image, what each shows");
+    addOutputs(*command, *both);
     command->add_flag("--json", both->json, "Print one JSON value");
     command->callback([both, &session] { procam(*both, session); });
 
@@ -209,6 +283,7 @@ void addCalibrateCommands(CLI::App& app, Session& session) {
     command = group->add_subcommand("intrinsics", "A camera alone, from pictures of a board");
     command->add_option("folder", alone->folder, "A folder of pictures")->required();
     command->add_option("--board", alone->board, kBoardHelp)->required();
+    addOutputs(*command, *alone);
     command->add_flag("--json", alone->json, "Print one JSON value");
     command->callback([alone, &session] { intrinsics(*alone, session); });
 }
