@@ -1,4 +1,4 @@
-#include "resources/models/generator/models.h"
+#include "core/rig/templates/bundled_rigs.h"
 
 #include <gtest/gtest.h>
 
