@@ -20,9 +20,15 @@ struct BitStripes {
     int pattern = 0, inverse = 0;    ///< images
     double across = 0.0, down = 0.0; ///< edges met walking along rows, and along columns
     double strength = 0.0;           ///< mean contrast, as a share of the light
-    std::vector<int> jumps; ///< how far codes differ over each of its edges, stripes of the finest resolved bit
 
     [[nodiscard]] double edges() const { return across + down; }
+};
+
+/// Two neighbouring pixels that differ in one bit: its place, and the Gray codes of both; the finest resolved bit is
+/// the lowest.
+struct StripeEdge {
+    int bit = 0;
+    unsigned one = 0, other = 0;
 };
 
 class StripeWalk {
@@ -33,7 +39,7 @@ public:
             if (gray == nullptr || gray->axis != axis || gray->inverse) continue;
             const auto found = std::ranges::find(order.images, PatternImage(GrayBit{axis, gray->bit, true}));
             if (found != order.images.end())
-                bits_.push_back({gray->bit, i, static_cast<int>(found - order.images.begin()), 0, 0, 0, {}});
+                bits_.push_back({gray->bit, i, static_cast<int>(found - order.images.begin()), 0, 0, 0});
         }
         std::ranges::sort(bits_, std::greater<>(), &BitStripes::bit);
         if (bits_.size() < 3) return;
@@ -50,6 +56,7 @@ public:
 
     /// The coarsest first, without those that are not resolved.
     [[nodiscard]] const std::vector<BitStripes>& bits() const { return bits_; }
+    [[nodiscard]] const std::vector<StripeEdge>& edges() const { return edges_; }
 
 private:
     [[nodiscard]] const cv::Mat1b& image(int i) const {
@@ -75,35 +82,29 @@ private:
         bits_.erase(weak, bits_.end());
     }
 
-    /// Two pixels near one another: the one bit in which they differ, if it is one alone.
+    /// Two pixels near one another, if they differ in one bit alone.
     void look(cv::Point a, cv::Point b, double BitStripes::*direction) {
         if (range_(a) < kLeastRangeOfPixel || range_(b) < kLeastRangeOfPixel) return;
-        BitStripes* edge = nullptr;
-        int codeA = 0;
-        int codeB = 0;
-        bool lastA = false;
-        bool lastB = false;
-        for (BitStripes& bit : bits_) {
-            const float da = difference(bit, a) / range_(a);
-            const float db = difference(bit, b) / range_(b);
+        StripeEdge edge{-1, 0, 0};
+        for (std::size_t i = 0; i < bits_.size(); ++i) {
+            const float da = difference(bits_[i], a) / range_(a);
+            const float db = difference(bits_[i], b) / range_(b);
             if (std::abs(da) < kClear || std::abs(db) < kClear) return;
-            if ((da > 0.0F) != (db > 0.0F)) {
-                if (edge != nullptr) return;
-                edge = &bit;
-            }
-            lastA = lastA != (da > 0.0F);
-            lastB = lastB != (db > 0.0F);
-            codeA = 2 * codeA + (lastA ? 1 : 0);
-            codeB = 2 * codeB + (lastB ? 1 : 0);
+            const bool differs = (da > 0.0F) != (db > 0.0F);
+            if (differs && edge.bit >= 0) return;
+            if (differs) edge.bit = static_cast<int>(bits_.size() - 1 - i);
+            edge.one = 2 * edge.one + (da > 0.0F ? 1 : 0);
+            edge.other = 2 * edge.other + (db > 0.0F ? 1 : 0);
         }
-        if (edge == nullptr) return;
-        edge->*direction += 1.0;
-        edge->jumps.push_back(std::abs(codeA - codeB));
+        if (edge.bit < 0) return;
+        bits_[bits_.size() - 1 - static_cast<std::size_t>(edge.bit)].*direction += 1.0;
+        edges_.push_back(edge);
     }
 
     const std::vector<cv::Mat>& images_;
     cv::Mat1f range_;
     std::vector<BitStripes> bits_;
+    std::vector<StripeEdge> edges_;
 };
 
 std::string fileOf(const CapturedView& view, int image) {
@@ -127,38 +128,77 @@ std::optional<Finding> wrongDirection(const std::vector<BitStripes>& bits, const
     return std::nullopt;
 }
 
-std::optional<Finding> wrongWidth(const std::vector<BitStripes>& bits, const CapturedView& view,
-                                  const CaptureOrder& order) {
-    for (std::size_t i = 0; i + 1 < bits.size(); ++i) {
-        if (bits[i].edges() < 1.3 * bits[i + 1].edges() + kFewestEdges) continue;
-        return Finding{Cause::wrongOrder, view.name, fileOf(view, bits[i].pattern),
-                       "its stripes are finer than those of '" +
-                           wordsOf(order.images[static_cast<std::size_t>(bits[i].pattern)]) + "'",
-                       "put the images into the order of the patterns, or correct the order file"};
-    }
-    return std::nullopt;
+int stripeOf(unsigned gray) {
+    for (unsigned shift = 1; shift < 32; shift *= 2) gray ^= gray >> shift;
+    return static_cast<int>(gray);
 }
 
-std::optional<Finding> exchangedPair(const std::vector<BitStripes>& bits, const CapturedView& view,
-                                     const CaptureOrder& order) {
-    // The finest bit over whose edges codes do not follow one another: the pair below it is exchanged.
-    for (std::size_t i = bits.size(); i-- > 0;) {
-        std::vector<int> jumps = bits[i].jumps;
-        if (static_cast<double>(jumps.size()) < kFewestEdges) continue;
-        const auto middle = jumps.begin() + static_cast<std::ptrdiff_t>(jumps.size() / 2);
-        std::ranges::nth_element(jumps, middle);
-        if (*middle == 1) continue;
-        const std::size_t below = i + 1;
-        const int ofOne = (1 << (bits.size() - below + 1)) - 1; // what exchanging that pair alone makes
-        if (below >= bits.size() || *middle != ofOne)
-            return Finding{Cause::inverseSwapped, view.name, "", "patterns and their inverses are exchanged",
-                           "name the images in the order pattern, inverse, or say so in an order file"};
-        return Finding{Cause::inverseSwapped, view.name, fileOf(view, bits[below].pattern),
-                       "this image and its inverse are exchanged: '" +
-                           wordsOf(order.images[static_cast<std::size_t>(bits[below].pattern)]) + "'",
-                       "exchange the two images, or say so in an order file"};
+/// What may have been done to the images of an axis.
+struct Mixup {
+    unsigned exchanged = 0;           ///< bits whose pattern and inverse are
+    int swapped = -1, swappedBy = -1; ///< bits that are
+
+    [[nodiscard]] unsigned undo(unsigned gray) const {
+        gray ^= exchanged;
+        if (swapped < 0 || ((gray >> swapped) & 1U) == ((gray >> swappedBy) & 1U)) return gray;
+        return gray ^ (1U << swapped) ^ (1U << swappedBy);
     }
-    return std::nullopt;
+};
+
+/// How well codes on both sides of edges follow one another once a mix-up is undone: the share, of each bit's edges,
+/// all bits alike.
+double orderUnder(const Mixup& mixup, const std::vector<StripeEdge>& edges, std::size_t bits) {
+    std::vector<double> good(bits, 0.0), all(bits, 0.0);
+    for (const StripeEdge& edge : edges) {
+        const auto bit = static_cast<std::size_t>(edge.bit);
+        all[bit] += 1.0;
+        good[bit] += std::abs(stripeOf(mixup.undo(edge.one)) - stripeOf(mixup.undo(edge.other))) == 1;
+    }
+    double sum = 0.0;
+    double count = 0.0;
+    for (std::size_t bit = 0; bit < bits; ++bit)
+        if (all[bit] >= kFewestEdges) sum += good[bit] / all[bit], count += 1.0;
+    return count > 0.0 ? sum / count : 1.0;
+}
+
+/// The finest first where two explain as much, as one bit alone is likelier than all.
+std::vector<Mixup> mixupsOf(int bits) {
+    std::vector<Mixup> all;
+    for (int bit = 0; bit < bits; ++bit) all.push_back({1U << bit, -1, -1});
+    for (int bit = 0; bit < bits; ++bit)
+        for (int other = bit + 1; other < bits; ++other) all.push_back({0, other, bit});
+    all.push_back({(1U << bits) - 1U, -1, -1});
+    return all;
+}
+
+std::optional<Finding> wrongCodes(const StripeWalk& walk, const CapturedView& view, const CaptureOrder& order) {
+    constexpr double kOrdered = 0.85;
+    const std::vector<BitStripes>& bits = walk.bits();
+    if (bits.empty() || orderUnder({}, walk.edges(), bits.size()) >= kOrdered) return std::nullopt;
+    const auto count = static_cast<int>(bits.size());
+    Mixup best;
+    double most = kOrdered;
+    for (const Mixup& mixup : mixupsOf(count)) {
+        const double ordered = orderUnder(mixup, walk.edges(), bits.size());
+        if (ordered > most + 0.01) most = ordered, best = mixup;
+    }
+    const auto imageOfBit = [&](int bit) { return bits[static_cast<std::size_t>(count - 1 - bit)].pattern; };
+    const auto words = [&](int bit) {
+        return "'" + wordsOf(order.images[static_cast<std::size_t>(imageOfBit(bit))]) + "'";
+    };
+    if (best.swapped >= 0)
+        return Finding{Cause::wrongOrder, view.name, fileOf(view, imageOfBit(best.swapped)),
+                       "the images of " + words(best.swapped) + " and of " + words(best.swappedBy) + " are exchanged",
+                       "put the images into the order of the patterns, or correct the order file"};
+    if (best.exchanged == (1U << count) - 1U)
+        return Finding{Cause::inverseSwapped, view.name, "", "patterns and their inverses are exchanged",
+                       "name the images in the order pattern, inverse, or say so in an order file"};
+    for (int bit = 0; bit < count; ++bit)
+        if (best.exchanged == 1U << bit)
+            return Finding{Cause::inverseSwapped, view.name, fileOf(view, imageOfBit(bit)),
+                           words(bit) + " and its inverse are exchanged",
+                           "exchange the two images, or say so in an order file"};
+    return std::nullopt; // several things at once, or no Gray code of a projector: others find out
 }
 
 } // namespace
@@ -167,8 +207,8 @@ std::optional<Finding> checkStripes(const CapturedView& view, const std::vector<
                                     const CaptureOrder& order) {
     for (const PatternAxis axis : {PatternAxis::columns, PatternAxis::rows}) {
         const StripeWalk walk(images, order, axis);
-        for (const auto& check : {wrongDirection, wrongWidth, exchangedPair})
-            if (const auto finding = check(walk.bits(), view, order)) return finding;
+        if (const auto turned = wrongDirection(walk.bits(), view, order)) return turned;
+        if (const auto mixed = wrongCodes(walk, view, order)) return mixed;
     }
     return std::nullopt;
 }

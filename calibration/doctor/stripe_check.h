@@ -9,10 +9,11 @@
 
 namespace lumorph {
 
-/// Whether the stripes of a Gray code are those that the order says: each bit has twice as many edges as the next
-/// coarser one, all bits of an axis run the same way, and codes on both sides of an edge follow one another, which
-/// fails from a bit on whose pattern and inverse are exchanged. Bits that the camera does not resolve tell nothing.
-/// Nothing where all is well, or where there is no Gray code.
+/// Whether the stripes of a Gray code are those that the order says: all bits of an axis run the same way, and codes on
+/// both sides of an edge follow one another. Where they do not, what makes them so is tried: a pattern and its inverse
+/// exchanged, two bits exchanged, all inverses exchanged. Bits that the camera does not resolve tell nothing, and the
+/// coarsest pattern exchanged with its inverse makes a mirror image, which is told elsewhere. Nothing where all is
+/// well, or where there is no Gray code.
 [[nodiscard]] std::optional<Finding> checkStripes(const CapturedView& view, const std::vector<cv::Mat>& images,
                                                   const CaptureOrder& order);
 
