@@ -1,13 +1,25 @@
+#include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <cstdio>
 #include <memory>
+#include <span>
+#include <sstream>
 #include <string>
+#include <vector>
 
 #include <opencv2/calib3d.hpp>
 
 #include "app/cli/commands.h"
 #include "calibration/doctor/capture_calibration.h"
+#include "calibration/report/calibration_file.h"
+#include "calibration/report/report_page.h"
+#include "calibration/solve/crosshair_calibration.h"
+#include "calibration/solve/crosshair_points.h"
+#include "core/base/atomic_file.h"
 #include "core/base/error.h"
+#include "core/rig/rig_file.h"
+#include "core/scene/installation.h"
 
 namespace lumorph::cli {
 
@@ -23,6 +35,17 @@ struct CalibrateArguments {
     std::string projector;
     std::string pattern = "graycode";
     std::string order;
+    std::string report;   ///< .html
+    std::string exported; ///< .json or .yaml
+    bool json = false;
+};
+
+struct CrosshairArguments {
+    std::string input; ///< a table, or a rig
+    std::string projector;
+    double aimingSigma = 1.0;
+    std::vector<double> place{0.0, 2.0, 0.4};
+    int most = 8;
     bool json = false;
 };
 
@@ -67,13 +90,17 @@ nlohmann::json warningsOf(const ProcamCalibration& result) {
     return warnings;
 }
 
+nlohmann::json rotationOf(const PoseVector& pose) {
+    cv::Matx33d rotation;
+    cv::Rodrigues(cv::Vec3d(pose[0], pose[1], pose[2]), rotation);
+    nlohmann::json rows = nlohmann::json::array();
+    for (int row = 0; row < 3; ++row) rows.push_back({rotation(row, 0), rotation(row, 1), rotation(row, 2)});
+    return rows;
+}
+
 nlohmann::json procamJson(const ProcamCalibration& result) {
     const PoseVector& rig = result.projectorFromCamera;
     const PoseVector& sigma = result.projectorFromCameraSigma;
-    cv::Matx33d rotation;
-    cv::Rodrigues(cv::Vec3d(rig[0], rig[1], rig[2]), rotation);
-    nlohmann::json rows = nlohmann::json::array();
-    for (int row = 0; row < 3; ++row) rows.push_back({rotation(row, 0), rotation(row, 1), rotation(row, 2)});
     nlohmann::json views = nlohmann::json::array();
     for (const ViewQuality& view : result.views)
         views.push_back({{"name", view.name},
@@ -82,7 +109,7 @@ nlohmann::json procamJson(const ProcamCalibration& result) {
                          {"heldOutTransfer", jsonOf(view.heldOut)}});
     return {{"camera", jsonOf(result.camera)},
             {"projector", jsonOf(result.projector)},
-            {"R", rows},
+            {"R", rotationOf(rig)},
             {"T", {rig[3], rig[4], rig[5]}},
             {"sigma",
              {{"rotationDegrees",
@@ -153,7 +180,7 @@ void printIntrinsics(const ProcamCalibration& result) {
 }
 
 /// Runs it; a refusal is also told as JSON where that was asked for, and ends the program as any failure does.
-template <typename Run> ProcamCalibration orRefused(bool json, const Run& run) {
+template <typename Run> auto orRefused(bool json, const Run& run) {
     try {
         return run();
     } catch (const CaptureRefused& refused) {
@@ -162,29 +189,197 @@ template <typename Run> ProcamCalibration orRefused(bool json, const Run& run) {
     }
 }
 
+/// Points of crosshairs, one a line: x, y, z (metres), u, v (projector pixels) and, if there is one, a name. A first
+/// line that names the columns may stand before them.
+std::vector<Crosshair> readCrosshairs(const std::string& path, const Session& session) {
+    const std::vector<std::byte> bytes = session.readInput(path);
+    std::istringstream lines(std::string(reinterpret_cast<const char*>(bytes.data()), bytes.size()));
+    std::vector<Crosshair> crosshairs;
+    std::string line;
+    constexpr std::size_t kMostLines = 10'000;
+    for (std::size_t number = 1; std::getline(lines, line); ++number) {
+        if (line.find_first_not_of(" \t\r") == std::string::npos) continue;
+        const std::string place = inputName(path) + ", line " + std::to_string(number);
+        double values[5] = {};
+        const char* at = line.data();
+        const char* const end = line.data() + line.size();
+        const auto skip = [&](std::string_view what) {
+            while (at != end && what.find(*at) != std::string_view::npos) ++at;
+        };
+        bool whole = true;
+        for (int i = 0; i < 5 && whole; ++i) {
+            skip(" \t");
+            const auto [next, error] = std::from_chars(at, end, values[i]);
+            whole = error == std::errc() && std::isfinite(values[i]);
+            at = next;
+            skip(" \t\r");
+            whole = whole && (at == end ? i == 4 : *at == ',');
+            if (at != end) ++at;
+        }
+        if (!whole && number == 1) continue; // names of the columns
+        if (!whole || number > kMostLines)
+            throw DataError(place, whole ? "there are too many points" : "it has not five numbers",
+                            "write x, y, z in metres and the crosshair's column and row, separated by commas");
+        skip(" \t\"");
+        std::string name(at, end);
+        name.erase(name.find_last_not_of(" \t\r\"") + 1);
+        if (name.empty()) name = "point " + std::to_string(crosshairs.size() + 1);
+        crosshairs.push_back({name, {values[0], values[1], values[2]}, {values[3], values[4]}, true});
+    }
+    return crosshairs;
+}
+
+void crosshairs(const CrosshairArguments& arguments, const Session& session) {
+    const cv::Size size = parseProjectorSize(arguments.projector);
+    CrosshairOptions options;
+    options.aimingSigma = arguments.aimingSigma;
+    const std::vector<Crosshair> aimed = readCrosshairs(arguments.input, session);
+    const CrosshairCalibration result = orRefused(arguments.json, [&] {
+        CrosshairCalibration solved = calibrateCrosshairs(aimed, size, options);
+        if (solved.refusal) throw CaptureRefused(*solved.refusal);
+        return solved;
+    });
+    const PoseVector& pose = result.projectorFromWorld;
+    const PoseVector& sigma = result.projectorFromWorldSigma;
+    double worst = 0.0;
+    for (const Crosshair& at : aimed) worst = std::max(worst, result.error95At(at.point));
+    if (arguments.json) {
+        nlohmann::json points = nlohmann::json::array(), warnings = nlohmann::json::array();
+        for (std::size_t i = 0; i < aimed.size(); ++i)
+            points.push_back({{"name", aimed[i].name},
+                              {"error", {result.points[i].error.x, result.points[i].error.y}},
+                              {"contradiction", result.points[i].contradiction},
+                              {"suspicious", result.points[i].suspicious}});
+        for (const Finding& warning : result.warnings) warnings.push_back(jsonOf(warning));
+        printJson({{"projector", jsonOf(result.projector)},
+                   {"R", rotationOf(pose)},
+                   {"T", {pose[3], pose[4], pose[5]}},
+                   {"sigma",
+                    {{"rotationDegrees",
+                      {kDegreesPerRadian * sigma[0], kDegreesPerRadian * sigma[1], kDegreesPerRadian * sigma[2]}},
+                     {"T", {sigma[3], sigma[4], sigma[5]}}}},
+                   {"rms", result.projector.rms},
+                   {"points", points},
+                   {"error95", worst},
+                   {"model", result.projector.model},
+                   {"warnings", warnings},
+                   {"degenerate", false}});
+        return;
+    }
+    printDevice("projector", result.projector);
+    for (std::size_t i = 0; i < aimed.size(); ++i)
+        std::printf("  %-32s %7.2f %7.2f pixels%s\n", aimed[i].name.c_str(), result.points[i].error.x,
+                    result.points[i].error.y, result.points[i].suspicious ? "  (suspicious)" : "");
+    std::printf("light lies within %.1f mm of where it is meant to at these points, in 95 %% of cases\n", 1e3 * worst);
+    std::vector<std::string> warnings;
+    for (const Finding& warning : result.warnings) warnings.push_back(sentenceOf(warning));
+    printWarnings(warnings);
+}
+
+void points(const CrosshairArguments& arguments) {
+    const DevicePoints proposal = proposeDevicePoints(
+        readRig(arguments.input), {arguments.place[0], arguments.place[1], arguments.place[2]}, arguments.most);
+    if (arguments.json) {
+        nlohmann::json all = nlohmann::json::array();
+        for (const DevicePoint& at : proposal.points)
+            all.push_back({{"name", at.name}, {"point", {at.point.x, at.point.y, at.point.z}}});
+        printJson({{"strokes", proposal.strokes}, {"points", all}});
+        return;
+    }
+    std::printf("with all actuators raised; x, y, z in millimetres:\n");
+    for (const DevicePoint& at : proposal.points)
+        std::printf("  %-32s %7.1f %7.1f %7.1f\n", at.name.c_str(), 1e3 * at.point.x, 1e3 * at.point.y,
+                    1e3 * at.point.z);
+}
+
+/// Before anything takes long. Throws InvalidInput.
+void checkOutputs(const CalibrateArguments& arguments) {
+    const std::string& report = arguments.report;
+    if (report.ends_with(".pdf"))
+        throw InvalidInput("--report " + report, "the command line writes no PDF",
+                           "write .html, or let the studio make the PDF");
+    if (!report.empty() && !report.ends_with(".html"))
+        throw InvalidInput("--report " + report, "is no .html", "name it OUT.html");
+    if (!arguments.exported.empty()) requireCalibrationName(arguments.exported);
+}
+
+CalibrationSource sourceOf(const CalibrateArguments& arguments, bool hasPatterns) {
+    CalibrationSource source;
+    source.date = utcDate();
+    source.board = arguments.board;
+    if (hasPatterns) source.pattern = arguments.order.empty() ? arguments.pattern : arguments.order;
+    source.inputs = {arguments.folder};
+    return source;
+}
+
+void writeReport(const CalibrateArguments& arguments, const CalibrationReport& report) {
+    if (arguments.report.empty()) return;
+    const std::string page = reportPage(report);
+    writeFileAtomically(arguments.report, std::as_bytes(std::span(page)));
+}
+
+void writeOutputs(const CalibrateArguments& arguments, const CalibrationReport& report) {
+    if (!arguments.exported.empty()) writeCalibration(report.record, arguments.exported);
+    writeReport(arguments, report);
+}
+
 void procam(const CalibrateArguments& arguments, const Session& session) {
+    checkOutputs(arguments);
     const CalibrationBoard board = parseCalibrationBoard(arguments.board);
     const cv::Size projector = parseProjectorSize(arguments.projector);
     const CaptureOrder order = arguments.order.empty() ? parsePattern(arguments.pattern, projector)
                                                        : readCaptureOrder(arguments.order, projector);
-    const ProcamCalibration result = orRefused(
-        arguments.json, [&] { return calibrateProcamFolder(arguments.folder, board, order, {}, session.progress()); });
+    CalibrationReport report;
+    report.record.source = sourceOf(arguments, true);
+    const auto run = [&] {
+        constexpr double kReading = 0.6; // of the whole time
+        const Progress progress = session.progress();
+        const std::vector<CapturedView> poses = viewsIn(arguments.folder);
+        report.sights.resize(poses.size());
+        const ReadCapture capture = readPoses(
+            poses, board, order,
+            [&](std::size_t index, const ReadPose& pose) {
+                if (!arguments.report.empty()) report.sights[index] = pose.decoded.white;
+            },
+            progress.part(0.0, kReading));
+        report.observations = capture.views;
+        return calibrateCapture(capture, order.projector, {}, progress.part(kReading, 1.0));
+    };
+    try {
+        report.record.result = orRefused(arguments.json, run);
+    } catch (const CaptureRefused& refused) {
+        report.refusal = refused.finding();
+        writeReport(arguments, report);
+        throw;
+    }
     Session::endProgress();
+    writeOutputs(arguments, report);
     if (arguments.json)
-        printJson(procamJson(result));
+        printJson(procamJson(report.record.result));
     else
-        printProcam(result);
+        printProcam(report.record.result);
 }
 
 void intrinsics(const CalibrateArguments& arguments, const Session& session) {
+    checkOutputs(arguments);
     const CalibrationBoard board = parseCalibrationBoard(arguments.board);
     const ProcamCalibration result = orRefused(
         arguments.json, [&] { return calibrateIntrinsicsFolder(arguments.folder, board, {}, session.progress()); });
     Session::endProgress();
+    CalibrationReport report;
+    report.record = {result, sourceOf(arguments, false)};
+    writeOutputs(arguments, report);
     if (arguments.json)
         printJson(intrinsicsJson(result));
     else
         printIntrinsics(result);
+}
+
+/// What both commands can write beside what they print.
+void addOutputs(CLI::App& command, CalibrateArguments& arguments) {
+    command.add_option("--export", arguments.exported,
+                       "Write the result to a file: .json (Lumorph's own) or .yaml (OpenCV's)");
+    command.add_option("--report", arguments.report, "Write a report with plots and pictures: .html");
 }
 
 } // namespace
@@ -202,13 +397,39 @@ void addCalibrateCommands(CLI::App& app, Session& session) {
         ->capture_default_str();
     command->add_option("--order", both->order,
                         "In place of --pattern: a file that says, one line an image, what each shows");
+    addOutputs(*command, *both);
     command->add_flag("--json", both->json, "Print one JSON value");
     command->callback([both, &session] { procam(*both, session); });
+
+    auto aims = std::make_shared<CrosshairArguments>();
+    command = group->add_subcommand("crosshairs", "A projector without a camera, from crosshairs on known points");
+    command
+        ->add_option("points", aims->input,
+                     "A table with x, y, z (metres), u, v (projector pixels) and a name a line, separated by commas; - "
+                     "is standard input")
+        ->required();
+    command->add_option("--projector", aims->projector, "The projector's size in pixels, such as 1024x768")->required();
+    command->add_option("--aiming", aims->aimingSigma, "How well the crosshairs were aimed, pixels")
+        ->capture_default_str();
+    command->add_flag("--json", aims->json, "Print one JSON value");
+    command->callback([aims, &session] { crosshairs(*aims, session); });
+
+    auto wanted = std::make_shared<CrosshairArguments>();
+    command = group->add_subcommand("points", "Which points of a device to lay crosshairs onto");
+    command->add_option("rig", wanted->input, "A rig")->required();
+    command->add_option("--from", wanted->place, "Where the projector stands, X,Y,Z in the device's frame, metres")
+        ->delimiter(',')
+        ->expected(3)
+        ->capture_default_str();
+    command->add_option("--count", wanted->most, "How many at most")->capture_default_str()->check(CLI::Range(6, 64));
+    command->add_flag("--json", wanted->json, "Print one JSON value");
+    command->callback([wanted] { points(*wanted); });
 
     auto alone = std::make_shared<CalibrateArguments>();
     command = group->add_subcommand("intrinsics", "A camera alone, from pictures of a board");
     command->add_option("folder", alone->folder, "A folder of pictures")->required();
     command->add_option("--board", alone->board, kBoardHelp)->required();
+    addOutputs(*command, *alone);
     command->add_flag("--json", alone->json, "Print one JSON value");
     command->callback([alone, &session] { intrinsics(*alone, session); });
 }

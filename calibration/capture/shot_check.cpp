@@ -21,7 +21,7 @@ constexpr int kEveryPixel = 2;          // along both sides, of those that are l
 constexpr double kLeastSwitched = 12.0; // grey levels between light and dark, for a pixel to count
 constexpr double kDimSwitched = 40.0;   // of the brightest tenth: below, noise shows in the result
 constexpr double kStrange = 0.08;       // of the light that is switched: above, a set makes no even light
-constexpr double kResolved = 0.5;       // of that light: what a stripe switches at least where it is resolved
+constexpr double kResolved = 0.25;      // of that light: what a stripe switches at least where it is resolved
 constexpr double kSameShot = 0.05;      // below, two shots show the same
 constexpr double kDriftTold = 0.03;     // of the exposure
 constexpr double kDriftRefused = 0.12;
@@ -93,6 +93,47 @@ void refineCorners(const cv::Mat1b& image, std::vector<cv::Point2f>& corners) {
     cv::cornerSubPix(image, corners, {5, 5}, {-1, -1}, {cv::TermCriteria::COUNT | cv::TermCriteria::EPS, 20, 0.02});
 }
 
+/// Whether the same share of `way` lies in `off` all over `place`, not in one part: a hand is not a late picture.
+bool isEverywhere(const cv::Mat1f& off, const cv::Mat1f& way, double share, const cv::Rect& place) {
+    constexpr int kTiles = 5; // along both sides
+    int all = 0;
+    int alike = 0;
+    const double whole = way.dot(way);
+    for (int y = 0; y < kTiles; ++y)
+        for (int x = 0; x < kTiles; ++x) {
+            const cv::Rect tile(place.tl() + cv::Point(place.width * x / kTiles, place.height * y / kTiles),
+                                place.tl() +
+                                    cv::Point(place.width * (x + 1) / kTiles, place.height * (y + 1) / kTiles));
+            const cv::Mat1f wayHere = way(tile);
+            const double here = wayHere.dot(wayHere);
+            if (here < 0.2 * whole / (kTiles * kTiles)) continue;
+            ++all;
+            alike += cv::Mat1f(off(tile)).dot(wayHere) > 0.5 * share * here;
+        }
+    return alike * 10 > 7 * all;
+}
+
+/// Sine of the angle from the way in which the projector's columns grow in the camera to that of its rows; negative in
+/// a mirror image.
+double turnOf(const DecodedView& decoded) {
+    const cv::Mat1b known = (decoded.column == decoded.column) & (decoded.row == decoded.row); // not NaN
+    std::vector<cv::Point> places;
+    cv::findNonZero(known, places);
+    if (places.size() < 50) return 1.0;
+    cv::Mat1d here(static_cast<int>(places.size()), 3), there(here.rows, 2), fit;
+    for (int i = 0; i < here.rows; ++i) {
+        const cv::Point& place = places[static_cast<std::size_t>(i)];
+        here(i, 0) = place.x;
+        here(i, 1) = place.y;
+        here(i, 2) = 1.0;
+        there(i, 0) = decoded.column(place);
+        there(i, 1) = decoded.row(place);
+    }
+    if (!cv::solve(here, there, fit, cv::DECOMP_NORMAL | cv::DECOMP_CHOLESKY)) return 1.0;
+    const cv::Point2d column(fit(0, 0), fit(1, 0)), row(fit(0, 1), fit(1, 1));
+    return column.cross(row) / std::max(1e-12, cv::norm(column) * cv::norm(row));
+}
+
 std::string percentWords(double share) { return std::to_string(std::lround(100.0 * share)) + " %"; }
 
 } // namespace
@@ -123,6 +164,10 @@ struct ShotCheck::Data {
     void warn(Cause cause, const std::string& file, std::string why, std::string remedy) {
         findings.warnings.push_back({cause, name, file, std::move(why), std::move(remedy)});
     }
+    void refuseMirrored(const std::string& file) {
+        refuse(Cause::mirrored, file, "camera and projector see mirror images of each other",
+               "switch off mirroring (rear projection) in projector and camera; check that columns come before rows");
+    }
     void refuseMoved(const std::vector<int>& set) {
         refuse(Cause::rigMoved, file(set.back()), "camera, board or projector moved within this pose",
                "fix all of them, then capture this pose again");
@@ -137,6 +182,9 @@ struct ShotCheck::Data {
     void lookAtSet(const std::vector<int>& set);
     void lookAtWay(const std::vector<int>& set);
     void explainStrange(const std::vector<int>& set, const cv::Mat1f& mean, double gain);
+    [[nodiscard]] cv::Mat1f onLit(const cv::Mat1f& values) const;
+    [[nodiscard]] bool isEdgesAlone(const cv::Mat1f& off) const;
+    [[nodiscard]] double explainedByEarlier(int image, double gain) const;
     [[nodiscard]] double differenceOf(const cv::Mat1f& one, const cv::Mat1f& other) const;
     [[nodiscard]] bool hasMoved(const cv::Mat1b& picture) const;
 };
@@ -224,38 +272,75 @@ void ShotCheck::Data::lookAtExposure(const cv::Mat& image, const std::string& fi
     }
 }
 
+/// `values` where the projector lights, 0 elsewhere.
+cv::Mat1f ShotCheck::Data::onLit(const cv::Mat1f& values) const {
+    cv::Mat1f kept = cv::Mat1f::zeros(values.size());
+    values.copyTo(kept, lit);
+    return kept;
+}
+
+/// Edges that moved are bright on one side and dark on the other; light that is wrong is so over an area.
+bool ShotCheck::Data::isEdgesAlone(const cv::Mat1f& off) const {
+    const cv::Rect place = cv::boundingRect(lit);
+    const int side = std::max(5, std::min(place.width, place.height) / 6) | 1;
+    cv::Mat1f sum, count, ones;
+    lit.convertTo(ones, CV_32F, 1.0 / 255.0);
+    cv::boxFilter(off, sum, CV_32F, {side, side});
+    cv::boxFilter(ones, count, CV_32F, {side, side});
+    const cv::Mat1f calm = onLit(sum / cv::max(count, 0.05));
+    return calm.dot(calm) < 0.2 * off.dot(off);
+}
+
+/// How much of a shot is a sum of the three before it.
+double ShotCheck::Data::explainedByEarlier(int image, double gain) const {
+    const auto patternOf = [&](int i) { return cv::Mat1f(onLit(thinned(shot(i)) - gain * even)); };
+    const cv::Mat1f here = patternOf(image);
+    std::vector<cv::Mat1f> earlier;
+    for (int i = image - 1; i >= std::max(0, image - 3); --i) earlier.push_back(patternOf(i));
+    if (earlier.empty()) return 0.0;
+    const auto count = static_cast<int>(earlier.size());
+    cv::Mat1d products(count, count), right(count, 1), shares;
+    for (int i = 0; i < count; ++i) {
+        const cv::Mat1f& one = earlier[static_cast<std::size_t>(i)];
+        right(i) = one.dot(here);
+        for (int k = 0; k < count; ++k) products(i, k) = one.dot(earlier[static_cast<std::size_t>(k)]);
+    }
+    // A pattern and its inverse are nearly the same but for the sign: the shortest solution shares them out.
+    cv::solve(products, right, shares, cv::DECOMP_SVD);
+    cv::Mat1f left = here.clone();
+    for (int i = 0; i < count; ++i) left -= shares(i) * earlier[static_cast<std::size_t>(i)];
+    return 1.0 - left.dot(left) / std::max(1.0, here.dot(here));
+}
+
 void ShotCheck::Data::explainStrange(const std::vector<int>& set, const cv::Mat1f& mean, double gain) {
-    for (const int image : set) {
-        if (image == 0) continue;
-        if (differenceOf(thinned(shot(image)), thinned(shot(image - 1))) < kSameShot) {
+    for (const int image : set)
+        if (image > 0 && differenceOf(thinned(shot(image)), thinned(shot(image - 1))) < kSameShot) {
             refuse(Cause::lateFrame, file(image), "shows the pattern before its own", kSettleLonger);
             return;
         }
+    if (isEdgesAlone(onLit((mean - gain * even) / switched))) {
+        refuseMoved(set);
+        return;
     }
-    cv::Mat1b picture(shot(set.front()).size());
-    cv::Mat1f sum = cv::Mat1f::zeros(picture.size());
-    for (const int image : set) cv::accumulate(shot(image), sum);
-    cv::Mat1f(sum / static_cast<double>(set.size())).convertTo(picture, CV_8U);
+    const cv::Rect place = cv::boundingRect(lit);
     // What a shot should have been follows from the others of its set; how much of the one before is mixed in?
     for (const int image : set) {
         if (image == 0) continue;
         const cv::Mat1f here = thinned(shot(image));
         const cv::Mat1f own = here + static_cast<double>(set.size()) * (gain * even - mean);
-        const cv::Mat1f off = here - own;
-        const cv::Mat1f way = thinned(shot(image - 1)) - own;
-        cv::Mat1f litOff = cv::Mat1f::zeros(off.size()), litWay = litOff.clone();
-        off.copyTo(litOff, lit);
-        way.copyTo(litWay, lit);
-        const double share = litOff.dot(litWay) / std::max(1.0, litWay.dot(litWay));
-        const cv::Mat1f left = litOff - share * litWay;
-        if (share > 0.05 && share < 1.2 && left.dot(left) < 0.4 * litOff.dot(litOff)) {
+        const cv::Mat1f off = onLit(here - own);
+        const cv::Mat1f way = onLit(thinned(shot(image - 1)) - own);
+        const double share = off.dot(way) / std::max(1.0, way.dot(way));
+        const cv::Mat1f left = off - share * way;
+        if (share > 0.05 && share < 1.2 && left.dot(left) < 0.4 * off.dot(off) &&
+            isEverywhere(off, way, share, place)) {
             refuse(Cause::lateFrame, file(image), "still shows " + percentWords(share) + " of the pattern before",
                    kSettleLonger);
             return;
         }
     }
-    if (hasMoved(picture))
-        refuseMoved(set);
+    if (explainedByEarlier(set.front(), gain) > 0.6)
+        refuse(Cause::lateFrame, file(set.front()), "shows patterns before its own", kSettleLonger);
     else
         refuse(Cause::wrongOrder, file(set.back()), "does not make even light with the others of its set",
                "check that nobody stepped into the light, and the order of the patterns");
@@ -277,9 +362,7 @@ void ShotCheck::Data::lookAtWay(const std::vector<int>& set) {
     way = cv::Point2d(far.m10 / far.m00 - near.m10 / near.m00, far.m01 / far.m00 - near.m01 / near.m00);
     if (!columnWay || !rowWay) return;
     const double turn = columnWay->cross(*rowWay) / (cv::norm(*columnWay) * cv::norm(*rowWay));
-    if (turn < -0.3)
-        refuse(Cause::mirrored, file(set.front()), "camera and projector see mirror images of each other",
-               "switch off mirroring (rear projection) in projector and camera; check that columns come before rows");
+    if (turn < -0.3) refuseMirrored(file(set.front()));
 }
 
 void ShotCheck::Data::lookAtSet(const std::vector<int>& set) {
@@ -400,8 +483,11 @@ void ShotCheck::finish() {
         data.findings.refusal = std::move(finding);
         return;
     }
-    if (auto finding = checkProjectorSize(data.name, decodeView(data.images, data.order), data.order.projector))
+    const DecodedView decoded = decodeView(data.images, data.order);
+    if (auto finding = checkProjectorSize(data.name, decoded, data.order.projector))
         data.findings.refusal = std::move(finding);
+    else if (turnOf(decoded) < -0.3)
+        data.refuseMirrored("");
 }
 
 const ShotFindings& ShotCheck::findings() const noexcept { return data_->findings; }

@@ -107,7 +107,8 @@ cv::Mat1f meanOf(const std::vector<cv::Mat>& images, const std::vector<int>& whi
     return sum / static_cast<double>(which.size());
 }
 
-/// The images of each pair and each phase set.
+} // namespace
+
 std::vector<std::vector<int>> evenSets(const CaptureOrder& order) {
     std::vector<std::vector<int>> sets;
     for (const PatternAxis axis : {PatternAxis::columns, PatternAxis::rows}) {
@@ -120,6 +121,8 @@ std::vector<std::vector<int>> evenSets(const CaptureOrder& order) {
     std::ranges::sort(sets, {}, [](const auto& set) { return set.front(); });
     return sets;
 }
+
+namespace {
 
 double medianOf(std::vector<float>& values) {
     if (values.empty()) return 0.0;

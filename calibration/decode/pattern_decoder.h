@@ -30,6 +30,10 @@ struct DecodedView {
 /// of images differ, or the order lacks what an axis needs.
 [[nodiscard]] DecodedView decodeView(const std::vector<cv::Mat>& images, const CaptureOrder& order);
 
+/// Images that together make even light, by index: each pattern and its inverse, and the steps of each phase set; in
+/// the order in which they begin.
+[[nodiscard]] std::vector<std::vector<int>> evenSets(const CaptureOrder& order);
+
 /// Images that show the scene under even light, worked out of each pattern and its inverse, and of each phase set, with
 /// the index of the first image that it was made of. They differ only where something moved. 8-bit grey.
 struct EvenlyLit {

@@ -6,7 +6,6 @@
 #include <cstdio>
 #include <numbers>
 
-#include <Eigen/Dense>
 #include <ceres/ceres.h>
 #include <ceres/rotation.h>
 
@@ -15,8 +14,13 @@ namespace lumorph {
 namespace {
 
 constexpr std::size_t kPointsOfView = 250; // that are used
-constexpr double kRobustLoss = 3.0;        // standard deviations
+constexpr std::size_t kPointsForFields = 120;
+constexpr double kSigma = 0.1;      // pixels, of sound observations: what is above calls for an explanation
+constexpr double kRobustLoss = 3.0; // standard deviations
 constexpr double kTwoPi = 2.0 * std::numbers::pi;
+constexpr double kExplains = 0.35; // of the squares of errors that a cause must take away
+constexpr double kRefused = 2.0;   // times what is bearable: above, a capture is refused
+constexpr double kNoise = 0.3;     // pixels: errors that need no explanation
 
 /// What the causes do, one number each: of the whole capture.
 enum CommonParameter {
@@ -44,6 +48,29 @@ struct BoardExtent {
     }
 };
 
+constexpr int kWaves = 12; ///< cosines over an image, beyond shift and tilt
+using Waves = std::array<double, kWaves>;
+using Field = std::array<double, 2 * kWaves>; ///< of columns, then of rows; pixels
+
+Waves wavesAt(const cv::Point2d& place, cv::Size size) {
+    Waves waves{};
+    std::size_t i = 0;
+    for (int row = 0; row <= 4; ++row)
+        for (int column = 0; column + row <= 4; ++column)
+            if (column + row > 1)
+                waves[i++] = std::cos(std::numbers::pi * column * (place.x + 0.5) / size.width) *
+                             std::cos(std::numbers::pi * row * (place.y + 0.5) / size.height);
+    return waves;
+}
+
+/// A lens whose picture is moved by a field, here by `waves`.
+template <typename T> void moveBy(const T* field, const Waves& waves, T* lens) {
+    for (int i = 0; i < kWaves; ++i) {
+        lens[kPrincipalX] += field[i] * waves[static_cast<std::size_t>(i)];
+        lens[kPrincipalY] += field[kWaves + i] * waves[static_cast<std::size_t>(i)];
+    }
+}
+
 /// A camera lens refocused by a share.
 template <typename T> std::array<T, kLensParameters> refocused(const T* lens, const T* share) {
     std::array<T, kLensParameters> changed;
@@ -57,6 +84,15 @@ struct AlternativeCorner {
     cv::Point2d seen;
     BoardExtent extent;
     double weight = 1.0;
+    Waves waves{};
+
+    template <typename T>
+    bool operator()(const T* lens, const T* pose, const T* common, const T* focus, const T* field, T* error) const {
+        std::array<T, kLensParameters> moved;
+        std::copy(lens, lens + kLensParameters, moved.begin());
+        moveBy(field, waves, moved.data());
+        return (*this)(moved.data(), pose, common, focus, error);
+    }
 
     template <typename T>
     bool operator()(const T* lens, const T* pose, const T* common, const T* focus, T* error) const {
@@ -79,6 +115,18 @@ struct AlternativeTransfer {
     BoardExtent extent;
     double weight = 1.0;
     std::array<double, 4> ripple{}; ///< sine and cosine by which gamma bends columns, then rows
+    Waves cameraWaves{}, projectorWaves{};
+
+    template <typename T>
+    bool operator()(const T* camera, const T* pose, const T* rig, const T* projector, const T* common, const T* focus,
+                    const T* cameraField, const T* projectorField, T* error) const {
+        std::array<T, kLensParameters> one, other;
+        std::copy(camera, camera + kLensParameters, one.begin());
+        std::copy(projector, projector + kLensParameters, other.begin());
+        moveBy(cameraField, cameraWaves, one.data());
+        moveBy(projectorField, projectorWaves, other.data());
+        return (*this)(one.data(), pose, rig, other.data(), common, focus, error);
+    }
 
     template <typename T>
     bool operator()(const T* camera, const T* pose, const T* rig, const T* projector, const T* common, const T* focus,
@@ -127,35 +175,38 @@ struct AlternativeState {
     BundleState bundle;
     Common common{};
     std::vector<double> focus; ///< of each view
-    double squares = 0.0;      ///< of all errors, in standard deviations
+    Field cameraField{}, projectorField{};
+    double squares = 0.0; ///< of all errors, in standard deviations
 };
 
 /// Which numbers a cause sets free.
 struct Freedom {
-    std::vector<int> common;
+    std::vector<int> common{};
     bool projectorAspect = false;
     bool focus = false;
+    bool cameraField = false;
+    bool projectorField = false;
 };
 
 class AlternativeSolver {
 public:
     AlternativeSolver(const std::vector<ViewObservations>& views, const ProcamCalibration& result,
                       const CaptureOrder& order)
-        : views_(views), result_(result), order_(order), extent_(extentOf(views)) {
-        cameraSigma_ = std::max(0.02, result.camera.rms / std::numbers::sqrt2);
-        projectorSigma_ = std::max(0.02, result.projector.rms / std::numbers::sqrt2);
-    }
+        : views_(views), result_(result), order_(order), extent_(extentOf(views)) {}
 
     [[nodiscard]] const BoardExtent& extent() const { return extent_; }
 
     [[nodiscard]] AlternativeState solve(const Freedom& freedom) const {
-        AlternativeState state{result_.state, {}, std::vector<double>(views_.size(), 0.0), 0.0};
+        AlternativeState state{result_.state, {}, std::vector<double>(views_.size(), 0.0), {}, {}, 0.0};
+        // Real lenses have square pixels: what a model has made of other faults is taken back.
+        state.bundle.camera[kAspect] = 1.0;
+        if (!freedom.projectorAspect) state.bundle.projector[kAspect] = 1.0;
         ceres::Problem problem;
         addTo(problem, state, freedom);
         ceres::Solver::Options how;
         how.linear_solver_type = ceres::DENSE_NORMAL_CHOLESKY;
-        how.max_num_iterations = 60;
-        how.function_tolerance = 1e-7;
+        how.max_num_iterations = 40;
+        how.function_tolerance = 1e-5;
         how.logging_type = ceres::SILENT;
         how.num_threads = 2;
         ceres::Solver::Summary summary;
@@ -198,48 +249,82 @@ private:
     void addTo(ceres::Problem& problem, AlternativeState& state, const Freedom& freedom) const {
         std::vector<bool> camera(result_.camera.free.begin(), result_.camera.free.end());
         std::vector<bool> projector(result_.projector.free.begin(), result_.projector.free.end());
-        camera[kPrincipalX] = camera[kPrincipalY] = true;
-        projector[kAspect] = projector[kAspect] || freedom.projectorAspect;
+        camera[kAspect] = false;
+        projector[kAspect] = freedom.projectorAspect;
         hold(problem, state.bundle.camera.data(), kLensParameters, camera);
         hold(problem, state.bundle.projector.data(), kLensParameters, projector);
         std::vector<bool> common(kCommonParameters, false);
         for (const int i : freedom.common) common[static_cast<std::size_t>(i)] = true;
         hold(problem, state.common.data(), kCommonParameters, common);
-        const double columns = ripplesOf(order_, PatternAxis::columns);
-        const double rows = ripplesOf(order_, PatternAxis::rows);
+        if (freedom.cameraField || freedom.projectorField) {
+            hold(problem, state.cameraField.data(), 2 * kWaves, std::vector<bool>(2 * kWaves, freedom.cameraField));
+            hold(problem, state.projectorField.data(), 2 * kWaves,
+                 std::vector<bool>(2 * kWaves, freedom.projectorField));
+        }
         for (std::size_t v = 0; v < views_.size(); ++v) {
             const ViewObservations& view = views_[v];
-            double* pose = state.bundle.cameraFromBoard[v].data();
             double* focus = &state.focus[v];
             problem.AddParameterBlock(focus, 1);
             if (!freedom.focus || v == 0) problem.SetParameterBlockConstant(focus);
-            for (std::size_t i = 0; i < view.corners.seen.size(); ++i)
-                problem.AddResidualBlock(
-                    new ceres::AutoDiffCostFunction<AlternativeCorner, 2, kLensParameters, 6, kCommonParameters, 1>(
-                        new AlternativeCorner{view.corners.board[i], view.corners.seen[i], extent_,
-                                              1.0 / cameraSigma_}),
-                    new ceres::HuberLoss(kRobustLoss), state.bundle.camera.data(), pose, state.common.data(), focus);
+            for (std::size_t i = 0; i < view.corners.seen.size(); ++i) addCorner(problem, state, freedom, v, i);
             const std::size_t count = view.projector.size();
-            const std::size_t used = std::min(count, kPointsOfView);
-            for (std::size_t i = 0; i < used; ++i) {
-                const ProjectorPoint& point = view.projector[i * count / used];
-                const double c = kTwoPi * columns * (point.projector.x + 0.5) / order_.projector.width;
-                const double r = kTwoPi * rows * (point.projector.y + 0.5) / order_.projector.height;
-                problem.AddResidualBlock(
-                    new ceres::AutoDiffCostFunction<AlternativeTransfer, 2, kLensParameters, 6, 6, kLensParameters,
-                                                    kCommonParameters, 1>(new AlternativeTransfer{
-                        point, extent_, 1.0 / projectorSigma_, {std::sin(c), std::cos(c), std::sin(r), std::cos(r)}}),
-                    new ceres::HuberLoss(kRobustLoss), state.bundle.camera.data(), pose,
-                    state.bundle.projectorFromCamera.data(), state.bundle.projector.data(), state.common.data(), focus);
-            }
+            const std::size_t used =
+                std::min(count, freedom.cameraField || freedom.projectorField ? kPointsForFields : kPointsOfView);
+            for (std::size_t i = 0; i < used; ++i) addPoint(problem, state, freedom, v, i * count / used);
         }
+    }
+
+    void addCorner(ceres::Problem& problem, AlternativeState& state, const Freedom& freedom, std::size_t v,
+                   std::size_t i) const {
+        const BoardPoints& points = views_[v].corners;
+        auto* corner = new AlternativeCorner{points.board[i], points.seen[i], extent_, 1.0 / kSigma, {}};
+        double* pose = state.bundle.cameraFromBoard[v].data();
+        auto* loss = new ceres::HuberLoss(kRobustLoss);
+        if (!freedom.cameraField) {
+            problem.AddResidualBlock(
+                new ceres::AutoDiffCostFunction<AlternativeCorner, 2, kLensParameters, 6, kCommonParameters, 1>(corner),
+                loss, state.bundle.camera.data(), pose, state.common.data(), &state.focus[v]);
+            return;
+        }
+        corner->waves = wavesAt(points.seen[i], result_.camera.size);
+        problem.AddResidualBlock(
+            new ceres::AutoDiffCostFunction<AlternativeCorner, 2, kLensParameters, 6, kCommonParameters, 1, 2 * kWaves>(
+                corner),
+            loss, state.bundle.camera.data(), pose, state.common.data(), &state.focus[v], state.cameraField.data());
+    }
+
+    void addPoint(ceres::Problem& problem, AlternativeState& state, const Freedom& freedom, std::size_t v,
+                  std::size_t i) const {
+        const ProjectorPoint& seen = views_[v].projector[i];
+        const double c =
+            kTwoPi * ripplesOf(order_, PatternAxis::columns) * (seen.projector.x + 0.5) / order_.projector.width;
+        const double r =
+            kTwoPi * ripplesOf(order_, PatternAxis::rows) * (seen.projector.y + 0.5) / order_.projector.height;
+        auto* point = new AlternativeTransfer{
+            seen, extent_, 1.0 / kSigma, {std::sin(c), std::cos(c), std::sin(r), std::cos(r)}, {}, {}};
+        double* pose = state.bundle.cameraFromBoard[v].data();
+        auto* loss = new ceres::HuberLoss(kRobustLoss);
+        if (!freedom.cameraField && !freedom.projectorField) {
+            problem.AddResidualBlock(new ceres::AutoDiffCostFunction<AlternativeTransfer, 2, kLensParameters, 6, 6,
+                                                                     kLensParameters, kCommonParameters, 1>(point),
+                                     loss, state.bundle.camera.data(), pose, state.bundle.projectorFromCamera.data(),
+                                     state.bundle.projector.data(), state.common.data(), &state.focus[v]);
+            return;
+        }
+        point->cameraWaves = wavesAt(seen.camera, result_.camera.size);
+        point->projectorWaves = wavesAt(seen.projector, result_.projector.size);
+        problem.AddResidualBlock(
+            new ceres::AutoDiffCostFunction<AlternativeTransfer, 2, kLensParameters, 6, 6, kLensParameters,
+                                            kCommonParameters, 1, 2 * kWaves, 2 * kWaves>(point),
+            loss, state.bundle.camera.data(), pose, state.bundle.projectorFromCamera.data(),
+            state.bundle.projector.data(), state.common.data(), &state.focus[v], state.cameraField.data(),
+            state.projectorField.data());
     }
 
     const std::vector<ViewObservations>& views_;
     const ProcamCalibration& result_;
     const CaptureOrder& order_;
     BoardExtent extent_;
-    double cameraSigma_ = 1.0, projectorSigma_ = 1.0;
 };
 
 std::string number(double value, int digits) {
@@ -248,76 +333,18 @@ std::string number(double value, int digits) {
     return text;
 }
 
-/// A place in an image and the error there.
-struct PlacedError {
-    cv::Point2d place, error;
-    int view = 0;
-};
-
-/// Smooth fields over an image: products of cosines, the lowest aside.
-constexpr int kWaves = 5; // along each side
-Eigen::VectorXd wavesAt(const cv::Point2d& place, cv::Size size) {
-    Eigen::VectorXd waves(kWaves * kWaves);
-    for (int row = 0; row < kWaves; ++row)
-        for (int column = 0; column < kWaves; ++column)
-            waves[row * kWaves + column] = std::cos(std::numbers::pi * column * (place.x + 0.5) / size.width) *
-                                           std::cos(std::numbers::pi * row * (place.y + 0.5) / size.height);
-    return waves;
-}
-
-/// How much of the errors of each view a field over the image explains that was fitted to the others. At most 0 where
-/// errors have nothing to do with the place.
-double fieldShare(const std::vector<PlacedError>& errors, cv::Size size, int views) {
-    constexpr int kCount = kWaves * kWaves;
-    std::vector<Eigen::MatrixXd> normals(static_cast<std::size_t>(views), Eigen::MatrixXd::Zero(kCount, kCount));
-    std::vector<Eigen::MatrixXd> sums(static_cast<std::size_t>(views), Eigen::MatrixXd::Zero(kCount, 2));
-    for (const PlacedError& at : errors) {
-        const Eigen::VectorXd waves = wavesAt(at.place, size);
-        const auto v = static_cast<std::size_t>(at.view);
-        normals[v] += waves * waves.transpose();
-        sums[v] += waves * Eigen::RowVector2d(at.error.x, at.error.y);
+/// Root mean square of what a field does at the places where light was seen, without what a shift does; pixels.
+double strengthOf(const Field& field, const std::vector<cv::Point2d>& places, cv::Size size) {
+    std::vector<cv::Point2d> moves;
+    cv::Point2d mean;
+    for (const cv::Point2d& place : places) {
+        std::array<double, kLensParameters> lens{};
+        moveBy(field.data(), wavesAt(place, size), lens.data());
+        moves.emplace_back(lens[kPrincipalX], lens[kPrincipalY]);
+        mean += moves.back() / static_cast<double>(places.size());
     }
-    Eigen::MatrixXd normal = Eigen::MatrixXd::Zero(kCount, kCount);
-    Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(kCount, 2);
-    for (std::size_t v = 0; v < normals.size(); ++v) normal += normals[v], sum += sums[v];
-    const double ridge = 1e-3 * normal.trace() / kCount;
-    std::vector<Eigen::MatrixXd> fields;
-    for (std::size_t v = 0; v < normals.size(); ++v)
-        fields.push_back(
-            (normal - normals[v] + ridge * Eigen::MatrixXd::Identity(kCount, kCount)).ldlt().solve(sum - sums[v]));
-    double before = 0.0;
-    double after = 0.0;
-    for (const PlacedError& at : errors) {
-        const Eigen::Vector2d error(at.error.x, at.error.y);
-        const Eigen::Vector2d field = fields[static_cast<std::size_t>(at.view)].transpose() * wavesAt(at.place, size);
-        before += error.squaredNorm();
-        after += (error - field).squaredNorm();
-    }
-    return before > 0.0 ? 1.0 - after / before : 0.0;
-}
-
-Alternative strangeLens(const std::vector<ViewObservations>& views, const ProcamCalibration& result) {
-    std::vector<PlacedError> camera, projector;
-    for (std::size_t v = 0; v < views.size(); ++v) {
-        const ViewObservations& view = views[v];
-        const auto corners = cameraErrors(view, result.state, result.state.cameraFromBoard[v]);
-        for (std::size_t i = 0; i < corners.size(); ++i)
-            camera.push_back({view.corners.seen[i], corners[i], static_cast<int>(v)});
-        const auto points = projectorErrors(view, result.state, result.state.cameraFromBoard[v]);
-        for (std::size_t i = 0; i < points.size(); ++i)
-            projector.push_back({view.projector[i].projector, points[i], static_cast<int>(v)});
-    }
-    const auto count = static_cast<int>(views.size());
-    const double inCamera = fieldShare(camera, result.camera.size, count);
-    const double inProjector = fieldShare(projector, result.projector.size, count);
-    const bool isCamera = inCamera * result.camera.rms > inProjector * result.projector.rms;
-    const double rms = isCamera ? result.camera.rms : result.projector.rms;
-    const double share = std::max(0.0, isCamera ? inCamera : inProjector);
-    constexpr double kBearable = 0.12; // pixels
-    const double field = rms * std::sqrt(share);
-    return {Cause::strangeLens, field / kBearable, share, "",
-            std::string("the ") + (isCamera ? "camera" : "projector") + "'s lens bends its picture by " +
-                number(field, 2) + " pixels in a way that no radial or tangential distortion has"};
+    for (cv::Point2d& move : moves) move -= mean;
+    return rmsOf(moves);
 }
 
 /// The pose at which focal lengths change most.
@@ -334,72 +361,144 @@ std::size_t changeOf(const std::vector<double>& focus) {
     return at;
 }
 
-double spreadOfFocus(const std::vector<double>& focus) {
-    const auto [least, most] = std::ranges::minmax(focus);
-    return most - least;
-}
+/// What each cause does when a capture is solved with it.
+class CauseTrials {
+public:
+    CauseTrials(const std::vector<ViewObservations>& views, const ProcamCalibration& result, const CaptureOrder& order,
+                const Progress& progress)
+        : views_(views), result_(result), order_(order), progress_(progress), solver_(views, result, order),
+          before_(solver_.solve({}).squares) {}
 
-bool hasPhases(const CaptureOrder& order) { return ripplesOf(order, PatternAxis::columns) > 0.0; }
+    std::vector<Alternative> all() {
+        tryPicture();
+        tryBoard();
+        const AlternativeState focused = solver_.solve({.focus = true});
+        const double spread = spreadOf(focused.focus);
+        add(Cause::cameraRefocused, focused, spread / kSteadyFocus,
+            "the camera's focal length differs by " + number(100.0 * spread, 1) + " % between poses",
+            "switch off autofocus and zoom, touch neither between poses, and capture all again",
+            views_[changeOf(focused.focus)].name);
+        if (ripplesOf(order_, PatternAxis::columns) > 0.0) tryGamma();
+        std::ranges::sort(all_, std::greater<>(), &Alternative::explained);
+        return std::move(all_);
+    }
+
+    /// A lens that may bend its picture in any smooth way explains much; it is for what nothing else does.
+    Alternative anyLens() {
+        const AlternativeState camera = solver_.solve({.cameraField = true});
+        const AlternativeState projector = solver_.solve({.projectorField = true});
+        const bool isCamera = camera.squares < projector.squares;
+        std::vector<cv::Point2d> places;
+        for (const ViewObservations& view : views_) {
+            if (isCamera) places.insert(places.end(), view.corners.seen.begin(), view.corners.seen.end());
+            if (!isCamera)
+                for (const ProjectorPoint& point : view.projector) places.push_back(point.projector);
+        }
+        const std::string name = isCamera ? "camera" : "projector";
+        const double strength = isCamera ? strengthOf(camera.cameraField, places, result_.camera.size)
+                                         : strengthOf(projector.projectorField, places, result_.projector.size);
+        add(Cause::strangeLens, isCamera ? camera : projector, strength / kSmoothLens,
+            "the " + name + "'s lens bends its picture by about " + number(strength, 1) +
+                " pixels in a way that no radial or tangential distortion has",
+            "use another lens, or keep to the middle of its picture; a mirror or a pane in the way does the same");
+        return all_.back();
+    }
+
+private:
+    static constexpr double kSquarePixels = 0.015; // by which a projector's may differ
+    static constexpr double kStraight = 0.003;     // skew
+    static constexpr double kSquareSquares = 0.003;
+    static constexpr double kSteadyFocus = 0.003;
+    static constexpr double kFlatBoard = 0.004; // of half its diagonal
+    static constexpr double kRipple = 0.15;     // projector pixels
+    static constexpr double kSmoothLens = 0.3;  // pixels
+
+    void add(Cause cause, const AlternativeState& state, double amount, const std::string& words,
+             const std::string& remedy, const std::string& view = "") {
+        all_.push_back({cause, amount, 1.0 - state.squares / before_, view, words, remedy});
+        progress_.throwIfCancelled();
+        progress_.report(static_cast<double>(all_.size()) / 8.0, "comparing causes");
+    }
+
+    void tryPicture() {
+        const AlternativeState stretched = solver_.solve({.projectorAspect = true});
+        const double aspect = stretched.bundle.projector[kAspect];
+        const double shape = static_cast<double>(result_.projector.size.width) / result_.projector.size.height;
+        const double turned = std::abs(std::log(aspect) / (2.0 * std::log(shape)));
+        const bool isTurned = std::abs(turned - 1.0) < 0.15 && std::abs(shape - 1.0) > 0.05;
+        add(isTurned ? Cause::widthHeightSwapped : Cause::projectorSize, stretched,
+            std::abs(aspect - 1.0) / kSquarePixels,
+            "the projector's pixels would be " + number(1.0 / aspect, 3) + " times as high as wide: " +
+                (isTurned ? "width and height of the patterns are exchanged"
+                          : "its picture is stretched, or its size is not as said"),
+            isTurned ? "exchange width and height"
+                     : "give the size that the patterns were made for, and let the projector show it pixel by pixel");
+        const AlternativeState warped = solver_.solve({.common = {kSkew}, .projectorAspect = true});
+        const double skew = std::abs(warped.common[kSkew]);
+        add(Cause::keystone, warped, skew / kStraight,
+            "the projector's picture is skewed by " + number(100.0 * skew, 1) +
+                " %: it warps what it is sent, by a keystone correction or scaling",
+            "switch off keystone, corner and zoom corrections in the projector, and capture again");
+    }
+
+    void tryBoard() {
+        const BoardExtent& extent = solver_.extent();
+        const AlternativeState bent = solver_.solve({.common = {kBendAcross, kBendTwist, kBendDown}});
+        const double height = std::max(
+            {std::abs(bent.common[kBendAcross]), std::abs(bent.common[kBendTwist]), std::abs(bent.common[kBendDown])});
+        add(Cause::boardWarped, bent, height / (kFlatBoard * std::hypot(extent.halfX, extent.halfY)),
+            "the board is not flat: it bends by " + number(height, 2) + " of its units from the middle to the edge",
+            "fix the sheet to a flat plate, and capture again");
+        const AlternativeState high = solver_.solve({.common = {kBoardAspect}});
+        const double aspect = high.common[kBoardAspect];
+        add(Cause::squareSize, high, std::abs(aspect) / kSquareSquares,
+            "the board's squares are " + number(100.0 * std::abs(aspect), 1) +
+                (aspect > 0.0 ? " % higher than wide" : " % wider than high"),
+            "print the board without scaling, and measure its squares along both sides");
+    }
+
+    void tryGamma() {
+        const AlternativeState rippled = solver_.solve({.common = {kColumnSine, kColumnCosine, kRowSine, kRowCosine}});
+        const double ripple = std::max(std::hypot(rippled.common[kColumnSine], rippled.common[kColumnCosine]),
+                                       std::hypot(rippled.common[kRowSine], rippled.common[kRowCosine]));
+        add(Cause::projectorGamma, rippled, ripple / kRipple,
+            "phases are bent by " + number(ripple, 2) + " pixels in the rhythm of the steps, as a gamma does",
+            "set the projector's response to linear, use more steps (phase:16x8+1x8), or Gray code");
+    }
+
+    static double spreadOf(const std::vector<double>& focus) {
+        const auto [least, most] = std::ranges::minmax(focus);
+        return most - least;
+    }
+
+    const std::vector<ViewObservations>& views_;
+    const ProcamCalibration& result_;
+    const CaptureOrder& order_;
+    const Progress& progress_;
+    AlternativeSolver solver_;
+    double before_;
+    std::vector<Alternative> all_;
+};
 
 } // namespace
 
 std::vector<Alternative> alternativesOf(const std::vector<ViewObservations>& views, const ProcamCalibration& result,
                                         const CaptureOrder& order, const Progress& progress) {
-    const AlternativeSolver solver(views, result, order);
-    const double before = solver.solve({}).squares;
-    std::vector<Alternative> all;
-    const auto add = [&](Cause cause, const AlternativeState& state, double amount, const std::string& words,
-                         const std::string& view = "") {
-        all.push_back({cause, amount, 1.0 - state.squares / before, view, words});
-        progress.throwIfCancelled();
-        progress.report(static_cast<double>(all.size()) / 7.0, "comparing causes");
-    };
-    constexpr double kSquarePixels = 0.015; // by which a projector's may differ
-    constexpr double kStraight = 0.002;     // skew
-    constexpr double kSquareSquares = 0.003;
-    constexpr double kSteadyFocus = 0.003;
-    constexpr double kFlatBoard = 0.004; // of half its diagonal
-    constexpr double kRipple = 0.15;     // projector pixels
-
-    const AlternativeState stretched = solver.solve({{}, true, false});
-    const double aspect = stretched.bundle.projector[kAspect];
-    add(Cause::projectorSize, stretched, std::abs(aspect - 1.0) / kSquarePixels,
-        "the projector's pixels would be " + number(aspect, 3) +
-            " times as high as wide: its picture is stretched, or its size is not as said");
-    const AlternativeState warped = solver.solve({{kSkew}, true, false});
-    const double skew = warped.common[kSkew];
-    add(Cause::keystone, warped, std::abs(skew) / kStraight,
-        "the projector's picture is skewed by " + number(100.0 * std::abs(skew), 1) +
-            " %: a keystone correction or scaling is on");
-    const BoardExtent& extent = solver.extent();
-    const AlternativeState bent = solver.solve({{kBendAcross, kBendTwist, kBendDown}, false, false});
-    const double height = std::max(
-        {std::abs(bent.common[kBendAcross]), std::abs(bent.common[kBendTwist]), std::abs(bent.common[kBendDown])});
-    add(Cause::boardWarped, bent, height / (kFlatBoard * std::hypot(extent.halfX, extent.halfY)),
-        "the board is bent by " + number(height, 2) + " of its units between middle and edge");
-    const AlternativeState high = solver.solve({{kBoardAspect}, false, false});
-    add(Cause::squareSize, high, std::abs(high.common[kBoardAspect]) / kSquareSquares,
-        "the board's squares are " + number(100.0 * std::abs(high.common[kBoardAspect]), 1) +
-            (high.common[kBoardAspect] > 0.0 ? " % higher than wide" : " % wider than high"));
-    const AlternativeState focused = solver.solve({{}, false, true});
-    add(Cause::cameraRefocused, focused, spreadOfFocus(focused.focus) / kSteadyFocus,
-        "the camera's focal length differs by " + number(100.0 * spreadOfFocus(focused.focus), 1) + " % between poses",
-        views[changeOf(focused.focus)].name);
-    if (hasPhases(order)) {
-        const AlternativeState rippled =
-            solver.solve({{kColumnSine, kColumnCosine, kRowSine, kRowCosine}, false, false});
-        const double ripple = std::max(std::hypot(rippled.common[kColumnSine], rippled.common[kColumnCosine]),
-                                       std::hypot(rippled.common[kRowSine], rippled.common[kRowCosine]));
-        add(Cause::projectorGamma, rippled, ripple / kRipple,
-            "phases are bent by " + number(ripple, 2) + " pixels in the rhythm of the steps: the projector's gamma");
-    }
-    all.push_back(strangeLens(views, result));
-    std::ranges::sort(all, std::greater<>(), &Alternative::explained);
-    return all;
+    return CauseTrials(views, result, order, progress).all();
 }
 
-std::optional<Finding> explanationOf(const std::vector<Alternative>& alternatives) {
-    (void)alternatives;
+std::optional<Explanation> explanationOf(const std::vector<ViewObservations>& views, const ProcamCalibration& result,
+                                         const CaptureOrder& order, const Progress& progress) {
+    CauseTrials trials(views, result, order, progress);
+    const std::vector<Alternative> all = trials.all();
+    const auto told = [](const Alternative& by) {
+        return Explanation{{by.cause, by.view, "", by.words, by.remedy}, by.amount >= kRefused};
+    };
+    for (const Alternative& by : all) // the one that explains most first
+        if (by.amount >= 1.0 && by.explained >= kExplains) return told(by);
+    if (result.camera.rms < kNoise && result.projector.rms < kNoise) return std::nullopt;
+    const Alternative lens = trials.anyLens();
+    if (lens.amount >= 1.0 && lens.explained >= kExplains) return told(lens);
     return std::nullopt;
 }
 

@@ -17,18 +17,28 @@ struct Alternative {
     double explained = 0.0; ///< of the squares of all errors that remain without it
     std::string view;       ///< where it begins, or empty
     std::string words;      ///< what was found, with its figures
+    std::string remedy;
 };
 
 /// Solves the capture again under each cause that residuals alone do not tell apart: the projector's picture warped or
 /// stretched, the board bent or its squares not square, the camera refocused between poses, phases bent by the
-/// projector's gamma, a lens that bends its picture as no radial or tangential term does. From the cause that explains
-/// most on. Throws Cancelled.
+/// projector's gamma. The cause that explains most first. Throws Cancelled.
 [[nodiscard]] std::vector<Alternative> alternativesOf(const std::vector<ViewObservations>& views,
                                                       const ProcamCalibration& result, const CaptureOrder& order,
                                                       const Progress& progress = {});
 
+/// What was found to be wrong, and whether the calibration is worth nothing for it.
+struct Explanation {
+    Finding finding;
+    bool refused = true;
+};
+
 /// The cause that explains what was seen, where one is needed: it does more than is bearable and takes away a good part
-/// of the errors. Nothing for a sound capture.
-[[nodiscard]] std::optional<Finding> explanationOf(const std::vector<Alternative>& alternatives);
+/// of the errors. Where none does and large errors remain, a lens that bends its picture in any smooth way is tried.
+/// Nothing for a sound capture. That all of a board is larger or smaller than said no capture can tell: it scales all
+/// lengths. Throws Cancelled.
+[[nodiscard]] std::optional<Explanation> explanationOf(const std::vector<ViewObservations>& views,
+                                                       const ProcamCalibration& result, const CaptureOrder& order,
+                                                       const Progress& progress = {});
 
 } // namespace lumorph

@@ -8,7 +8,9 @@
 #include <tbb/parallel_for.h>
 
 #include "calibration/decode/capture_folder.h"
+#include "calibration/doctor/alternatives.h"
 #include "calibration/doctor/sequence_check.h"
+#include "calibration/doctor/stripe_check.h"
 #include "calibration/doctor/view_check.h"
 
 namespace lumorph {
@@ -88,6 +90,16 @@ void requireAgreement(const ProcamCalibration& result) {
     }
 }
 
+/// Names the cause of errors that are too large, or that another cause explains better than lenses do.
+void explain(const std::vector<ViewObservations>& views, const CaptureOrder& order, ProcamCalibration& result,
+             const Progress& progress) {
+    const std::optional<Explanation> explanation = explanationOf(views, result, order, progress);
+    if (explanation && (explanation->refused || misfitOf(result))) throw CaptureRefused(explanation->finding);
+    requireAgreement(result);
+    if (const std::optional<Finding> misfit = misfitOf(result)) throw CaptureRefused(*misfit);
+    if (explanation) result.warnings.push_back(explanation->finding);
+}
+
 } // namespace
 
 ReadPose readPose(const CapturedView& view, const std::vector<cv::Mat>& images, const CalibrationBoard& board,
@@ -96,9 +108,11 @@ ReadPose readPose(const CapturedView& view, const std::vector<cv::Mat>& images, 
         if (finding) throw CaptureRefused(*finding);
     };
     throwIf(checkSequence(view, images, order));
+    throwIf(checkStripes(view, images, order));
     DecodedView decoded = decodeView(images, order);
     throwIf(checkProjectorSize(view.name, decoded, order.projector));
     const std::optional<BoardPoints> found = findBoard(decoded.white, board);
+    if (!found) throwIf(checkLight(view.name, decoded));
     if (!found)
         throw CaptureRefused({Cause::boardNotFound, view.name, "", "the board cannot be found under white light",
                               "check --board, and that all of the board is lit, sharp and in the picture"});
@@ -121,6 +135,7 @@ ReadCapture readPoses(const std::vector<CapturedView>& poses, const CalibrationB
     std::vector<FolderPose> read = readAll(poses, board, order, onRead, progress);
     requireSameSize(read);
     ReadCapture capture;
+    capture.order = order;
     capture.camera = read.front().size;
     for (FolderPose& view : read) {
         capture.views.push_back(std::move(view.observations));
@@ -132,8 +147,13 @@ ReadCapture readPoses(const std::vector<CapturedView>& poses, const CalibrationB
 ProcamCalibration calibrateCapture(const ReadCapture& capture, cv::Size projector, const SolveOptions& options,
                                    const Progress& progress) {
     if (const auto mirrored = checkMirrored(capture.views)) throw CaptureRefused(*mirrored);
-    ProcamCalibration result = calibrateProcam(capture.views, capture.camera, projector, options, progress);
-    requireAgreement(result);
+    SolveOptions unjudged = options;
+    unjudged.judgesFit = false;
+    ProcamCalibration result =
+        calibrateProcam(capture.views, capture.camera, projector, unjudged, progress.part(0.0, 0.8));
+    CaptureOrder order = capture.order;
+    order.projector = projector;
+    explain(capture.views, order, result, progress.part(0.8, 1.0));
     result.warnings.insert(result.warnings.end(), capture.warnings.begin(), capture.warnings.end());
     return result;
 }

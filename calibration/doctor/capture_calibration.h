@@ -31,6 +31,7 @@ struct ReadCapture {
     std::vector<ViewObservations> views;
     cv::Size camera;
     std::vector<Finding> warnings;
+    CaptureOrder order{}; ///< what the images show
 };
 
 /// Is told of each pose once it is read, in the threads that read: which one, and what it tells.

@@ -11,17 +11,19 @@ namespace lumorph {
 
 namespace {
 
-constexpr int kEvery = 4;            // pixels that are looked at, along both sides
-constexpr double kUneven = 0.08;     // of the light that is switched: above, a set makes no even light
-constexpr double kAlike = 0.04;      // below, two images show the same
-constexpr double kMostShare = 0.8;   // of sets that must agree
-constexpr double kLeastRange = 12.0; // grey levels
+constexpr int kEvery = 4;              // pixels that are looked at, along both sides
+constexpr double kUneven = 0.08;       // of the light that is switched: above, a set makes no even light
+constexpr double kAlike = 0.04;        // below, two images show the same
+constexpr double kMostShare = 0.8;     // of sets that must agree
+constexpr double kLeastRange = 12.0;   // grey levels
+constexpr double kOverexposed = 254.0; // grey levels
+constexpr double kMostClipped = 0.4;   // of the lit pixels: above, nothing but that can be said
 
 /// The images of a pose at some of the pixels that the projector lights well.
 class SampledStack {
 public:
     SampledStack(const std::vector<cv::Mat>& images, const CaptureOrder& order) : images_(images) {
-        for (const EvenlyLit& set : evenlyLit(images, order)) sets_.push_back({set.firstImage, set.lastImage});
+        for (const std::vector<int>& set : evenSets(order)) sets_.push_back({set.front(), set.back()});
         choosePixels();
     }
 
@@ -60,11 +62,18 @@ public:
         return sum / static_cast<double>(pixels_.size());
     }
 
+    /// Share of the pixels that are overexposed in some image.
+    [[nodiscard]] double clippedShare() const {
+        const auto clipped = std::ranges::count_if(pixels_, &Pixel::isClipped);
+        return static_cast<double>(clipped) / static_cast<double>(std::max<std::size_t>(1, pixels_.size()));
+    }
+
 private:
     struct Pixel {
         int x = 0, y = 0;
         double mean = 0.0;  ///< over all images: nearly the even light, in whatever order they are
         double range = 1.0; ///< from the darkest to the brightest
+        bool isClipped = false;
     };
     struct Set {
         int first = 0, last = 0;
@@ -86,6 +95,7 @@ private:
                     pixel.mean += value / static_cast<double>(images_.size());
                 }
                 pixel.range = most - least;
+                pixel.isClipped = most >= kOverexposed;
                 if (pixel.range > kLeastRange) pixels_.push_back(pixel);
             }
         if (pixels_.empty()) return;
@@ -146,6 +156,34 @@ std::string doubledFile(const CapturedView& view) {
     return {};
 }
 
+/// One image is missing and the names do not tell which: all sets but its own make even light, those after it one image
+/// earlier. Of a pattern and its inverse the images themselves do not tell which of the two is left.
+Finding missingOne(const CapturedView& view, const CaptureOrder& order) {
+    Finding finding{Cause::missingImage, view.name, "", "holds " + countText(view, order), kCaptureAgain};
+    const std::vector<cv::Mat> images = readImages(view);
+    const SampledStack stack(images, order);
+    if (!stack.isLit()) return finding;
+    const int sets = stack.setCount();
+    int best = sets;
+    int most = -1;
+    for (int missing = 0; missing <= sets; ++missing) { // `sets`: an image that is of none, such as white or black
+        int even = 0;
+        for (int set = 0; set < sets; ++set) even += set != missing && stack.isEven(set, set < missing ? 0 : -1);
+        if (even > most) most = even, best = missing;
+    }
+    if (most < static_cast<int>(std::lround(kMostShare * (sets - 1)))) return finding;
+    const auto words = [&order](int image) { return wordsOf(order.images[static_cast<std::size_t>(image)]); };
+    if (best == sets) {
+        finding.why += "; white or black is missing";
+        finding.file = nameIn(view, static_cast<int>(view.files.size()) - 1);
+        return finding;
+    }
+    const int first = stack.firstImageOf(best);
+    finding.file = nameIn(view, first);
+    finding.why += "; beside this one '" + words(first) + "' or '" + words(stack.lastImageOf(best)) + "' is missing";
+    return finding;
+}
+
 Finding countFinding(const CapturedView& view, const CaptureOrder& order) {
     if (view.files.size() > order.images.size()) {
         const std::string file = doubledFile(view);
@@ -156,6 +194,7 @@ Finding countFinding(const CapturedView& view, const CaptureOrder& order) {
     if (const auto gap = gapIn(view))
         return {Cause::missingImage, view.name, nameIn(view, static_cast<int>(*gap)),
                 "holds " + countText(view, order) + "; before this one a number is left out", kCaptureAgain};
+    if (view.files.size() + 1 == order.images.size()) return missingOne(view, order);
     return {Cause::missingImage, view.name, "", "holds " + countText(view, order), kCaptureAgain};
 }
 
@@ -235,8 +274,15 @@ std::optional<Finding> checkSequence(const CapturedView& view, const std::vector
                                      const CaptureOrder& order) {
     const SampledStack stack(images, order);
     if (!stack.isLit()) return std::nullopt; // told when nothing can be decoded
-    for (int set = 0; set < stack.setCount(); ++set)
-        if (!stack.isEven(set, 0)) return brokenFrom(stack, view, set);
+    for (int set = 0; set < stack.setCount(); ++set) {
+        if (stack.isEven(set, 0)) continue;
+        const Finding broken = brokenFrom(stack, view, set);
+        if (broken.cause != Cause::wrongOrder || stack.clippedShare() < kMostClipped) return broken;
+        return Finding{Cause::clipped, view.name, "",
+                       std::to_string(static_cast<int>(std::lround(100.0 * stack.clippedShare()))) +
+                           " % of what the projector lights are overexposed, so that the patterns are lost",
+                       "expose for less time until white is below 250 of 255, and capture this pose again"};
+    }
     return checkFlatFields(stack, view, order);
 }
 

@@ -85,21 +85,42 @@ PictureEnd endOf(const cv::Mat1f& along, const cv::Mat1f& across, int cell) {
     return {last, same >= kStraightBands};
 }
 
-double orientationOf(const ViewObservations& view) {
+/// How projector coordinates grow with camera pixels: a pixel of the one by a pixel of the other, on average.
+cv::Matx22d growthOf(const std::vector<ProjectorPoint>& points) {
     cv::Matx22d spread = cv::Matx22d::zeros();
     cv::Matx22d mixed = cv::Matx22d::zeros();
     cv::Point2d camera, projector;
-    for (const ProjectorPoint& point : view.projector) {
-        camera += point.camera / static_cast<double>(view.projector.size());
-        projector += point.projector / static_cast<double>(view.projector.size());
+    for (const ProjectorPoint& point : points) {
+        camera += point.camera / static_cast<double>(points.size());
+        projector += point.projector / static_cast<double>(points.size());
     }
-    for (const ProjectorPoint& point : view.projector) {
+    for (const ProjectorPoint& point : points) {
         const cv::Vec2d c(point.camera.x - camera.x, point.camera.y - camera.y);
         const cv::Vec2d p(point.projector.x - projector.x, point.projector.y - projector.y);
         spread += c * c.t();
         mixed += p * c.t();
     }
-    return cv::determinant(mixed * spread.inv());
+    return mixed * spread.inv();
+}
+
+/// Whether rows of the projector lie along rows of the camera more than along its columns.
+bool isUpright(const cv::Matx22d& growth) {
+    return std::abs(growth(0, 0)) + std::abs(growth(1, 1)) > std::abs(growth(0, 1)) + std::abs(growth(1, 0));
+}
+
+std::vector<ProjectorPoint> somePointsOf(const DecodedView& decoded) {
+    constexpr int kEachPixel = 6;
+    std::vector<ProjectorPoint> points;
+    for (int y = kCameraBorder; y + kCameraBorder < decoded.column.rows; y += kEachPixel)
+        for (int x = kCameraBorder; x + kCameraBorder < decoded.column.cols; x += kEachPixel)
+            if (decoded.confidence(y, x) > 0.0F)
+                points.push_back({cv::Point2d(x, y), {decoded.column(y, x), decoded.row(y, x)}});
+    return points;
+}
+
+Finding exchangedAxes(const std::string& view) {
+    return {Cause::wrongOrder, view, "", "columns and rows of the patterns are exchanged",
+            "capture columns before rows, or correct the order file; and check width and height of the projector"};
 }
 
 } // namespace
@@ -138,6 +159,18 @@ std::optional<Finding> checkExposure(const std::string& view, const DecodedView&
                    "expose for less time until white is below 250 of 255"};
 }
 
+std::optional<Finding> checkLight(const std::string& view, const DecodedView& decoded) {
+    constexpr int kLit = 20;             // grey levels
+    constexpr double kMostClipped = 0.3; // of what is lit
+    const int lit = cv::countNonZero(decoded.white - decoded.black > kLit);
+    const double share = cv::countNonZero(decoded.white >= kSaturated) / std::max(1.0, static_cast<double>(lit));
+    if (share < kMostClipped) return std::nullopt;
+    return Finding{Cause::clipped, view, "",
+                   std::to_string(static_cast<int>(std::lround(100.0 * share))) +
+                       " % of what the projector lights are overexposed, so that the board cannot be found",
+                   "expose for less time until white is below 250 of 255"};
+}
+
 std::optional<Finding> checkProjectorSize(const std::string& view, const DecodedView& decoded, cv::Size projector) {
     const PictureEnd column = endOf(decoded.column, decoded.row, decoded.columnCell);
     const PictureEnd row = endOf(decoded.row, decoded.column, decoded.rowCell);
@@ -151,6 +184,14 @@ std::optional<Finding> checkProjectorSize(const std::string& view, const Decoded
         return end.last > length - 0.4 || (end.isSharp && end.last + 1.0 < length - slack);
     };
     if (!isWrong(column, width) && !isWrong(row, height)) return std::nullopt;
+    const cv::Matx22d growth = growthOf(somePointsOf(decoded));
+    const bool isMirror = cv::determinant(growth) < 0.0;
+    if (isMirror && !isUpright(growth)) return exchangedAxes(view);
+    if (isMirror && (column.last > width - 0.4 || row.last > height - 0.4))
+        return Finding{Cause::inverseSwapped, view, "",
+                       std::string("the coarsest pattern of the ") + (column.last > width - 0.4 ? "columns" : "rows") +
+                           " and its inverse are exchanged",
+                       "exchange the two images, or say so in an order file"};
     const bool fitsSwapped = !isWrong(column, height) && !isWrong(row, width);
     if (fitsSwapped &&
         (column.last > width - 0.4 || row.last > height - 0.4 || endsAt(column, height) || endsAt(row, width)))
@@ -166,13 +207,18 @@ std::optional<Finding> checkProjectorSize(const std::string& view, const Decoded
 }
 
 std::optional<Finding> checkMirrored(const std::vector<ViewObservations>& views) {
-    const auto isMirrored = [](const ViewObservations& view) { return orientationOf(view) < 0.0; };
+    const auto isMirrored = [](const ViewObservations& view) {
+        return cv::determinant(growthOf(view.projector)) < 0.0;
+    };
     const auto first = std::ranges::find_if(views, isMirrored);
     if (first == views.end()) return std::nullopt;
+    if (std::ranges::all_of(views, isMirrored) &&
+        std::ranges::none_of(views, [](const ViewObservations& view) { return isUpright(growthOf(view.projector)); }))
+        return exchangedAxes("");
     if (std::ranges::all_of(views, isMirrored))
-        return Finding{
-            Cause::mirrored, "", "", "camera and projector see all boards as mirror images of each other",
-            "switch off mirroring (rear projection) in projector and camera; check that columns come before rows"};
+        return Finding{Cause::mirrored, "", "", "camera and projector see all boards as mirror images of each other",
+                       "switch off mirroring (rear projection) in projector and camera; check that the first pattern "
+                       "comes before its inverse"};
     return Finding{Cause::mirrored, first->name, "", "the images of this pose are mirrored, others are not",
                    "capture this pose again with the camera's setting of the others"};
 }

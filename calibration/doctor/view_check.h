@@ -19,6 +19,9 @@ namespace lumorph {
 [[nodiscard]] std::optional<Finding> checkExposure(const std::string& view, const DecodedView& decoded,
                                                    const std::vector<cv::Point2d>& board);
 
+/// Whether so much of what the projector lights is overexposed that no board can be found.
+[[nodiscard]] std::optional<Finding> checkLight(const std::string& view, const DecodedView& decoded);
+
 /// Whether what was decoded can come from a projector of this size: coordinates past its edge, or a picture that ends
 /// in a straight line before it.
 [[nodiscard]] std::optional<Finding> checkProjectorSize(const std::string& view, const DecodedView& decoded,

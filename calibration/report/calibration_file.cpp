@@ -27,6 +27,8 @@ bool isYaml(const std::filesystem::path& file) {
 
 } // namespace
 
+void requireCalibrationName(const std::filesystem::path& file) { (void)isYaml(file); }
+
 void writeCalibration(const CalibrationRecord& record, const std::filesystem::path& file) {
     const std::string text = isYaml(file) ? calibrationYaml(record) : calibrationText(record);
     writeFileAtomically(file, std::as_bytes(std::span(text)));

@@ -6,6 +6,8 @@
 
 namespace lumorph {
 
+/// Throws InvalidInput unless the name ends in .json, .yaml or .yml.
+void requireCalibrationName(const std::filesystem::path& file);
 /// By the name's ending: .json, .yaml or .yml. Written whole or not at all. Throws InvalidInput for another ending,
 /// DeviceError where the disk refuses.
 void writeCalibration(const CalibrationRecord& record, const std::filesystem::path& file);

@@ -301,6 +301,23 @@ PoseVector inverted(const PoseVector& pose) {
     return result;
 }
 
+SeenLight lightOnBoard(const ProjectorPoint& pixels, const Lens& camera, const PoseVector& cameraFromBoard,
+                       const BoardShape& board) {
+    const cv::Point3d seen = pointOnBoard(pixels.camera, camera, cameraFromBoard, board);
+    const double inCamera[3] = {seen.x, seen.y, seen.z};
+    double place[3];
+    poseForward(inverted(cameraFromBoard).data(), inCamera, place);
+    const double step = 1e-4 * board.half;
+    const cv::Vec3d at = onBoard(board, {place[0], place[1], 0.0});
+    const cv::Vec3d across = cv::Vec3d(onBoard(board, {place[0] + step, place[1], 0.0})) - at;
+    const cv::Vec3d along = cv::Vec3d(onBoard(board, {place[0], place[1] + step, 0.0})) - at;
+    SeenLight light;
+    light.normal = cv::normalize(across.cross(along));
+    light.distance = light.normal.dot(at);
+    light.pixels = pixels;
+    return light;
+}
+
 std::optional<std::vector<cv::Point3d>> turnedBoard(const std::vector<cv::Point3d>& board) {
     cv::Point3d sum(0, 0, 0);
     for (const cv::Point3d& point : board) sum += (2.0 / static_cast<double>(board.size())) * point;

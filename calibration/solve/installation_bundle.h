@@ -87,6 +87,10 @@ double refineInstallation(const InstallationObservations& observations, const In
 [[nodiscard]] PoseVector composed(const PoseVector& a, const PoseVector& b);
 [[nodiscard]] PoseVector inverted(const PoseVector& pose);
 
+/// Light on a board that a camera saw: the plane is that of the board there, which need not be flat.
+[[nodiscard]] SeenLight lightOnBoard(const ProjectorPoint& pixels, const Lens& camera,
+                                     const PoseVector& cameraFromBoard, const BoardShape& board);
+
 /// A board's points as they are called when it is taken for turned by 180 degrees; nothing where those are others.
 [[nodiscard]] std::optional<std::vector<cv::Point3d>> turnedBoard(const std::vector<cv::Point3d>& board);
 

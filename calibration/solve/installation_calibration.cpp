@@ -170,8 +170,8 @@ private:
     [[nodiscard]] double boardError(std::size_t c, std::size_t v, const BoardPoints& corners,
                                     const PoseVector& cameraFromWorld) const {
         const ViewObservations view{views_[v].name, corners, {}};
-        const double error =
-            rmsOf(cameraErrors(view, state_.cameras[c].lens, composed(cameraFromWorld, state_.worldFromBody[v])));
+        const double error = rmsOf(cameraErrors(view, {state_.cameras[c].lens, {}, {}, board_, {}},
+                                                composed(cameraFromWorld, state_.worldFromBody[v])));
         return std::isfinite(error) ? std::min(error, kNotThere) : kNotThere;
     }
 
@@ -196,18 +196,19 @@ private:
         const auto& light = lightOf(v, c, p);
         double sum = 0.0;
         for (const ProjectorPoint& pixels : light) {
-            const auto error = errorOf(seenLight(c, p, v, pixels), there);
+            const auto error = errorOf(seenLight(c, p, v, pixels, there), there);
             sum += error ? std::min(cv::norm(*error), kNotThere) : kNotThere;
         }
         return light.empty() ? 0.0 : sum / static_cast<double>(light.size());
     }
 
-    static SeenLight seenLight(std::size_t c, std::size_t p, std::size_t v, const ProjectorPoint& pixels) {
-        SeenLight seen;
+    [[nodiscard]] SeenLight seenLight(std::size_t c, std::size_t p, std::size_t v, const ProjectorPoint& pixels,
+                                      const InstallationState& there) const {
+        SeenLight seen = lightOnBoard(pixels, there.cameras[c].lens,
+                                      composed(there.cameras[c].fromWorld, there.worldFromBody[v]), board_);
         seen.camera = static_cast<int>(c);
         seen.projector = static_cast<int>(p);
         seen.body = static_cast<int>(v);
-        seen.pixels = pixels;
         return seen;
     }
 
@@ -234,6 +235,7 @@ private:
         state_.projectors[p].fromWorld = composed(pair.projectorFromCamera, state_.cameras[*best].fromWorld);
         projectorPlaced_[p] = true;
         takeWarnings(pair.warnings, projectors_[p].name);
+        if (*best == 0) board_ = pair.state.board; // the boards are called as the first camera calls them
         return true;
     }
 
@@ -267,13 +269,13 @@ private:
                 if (!sees(c, v)) continue;
                 const BoardPoints& corners = views_[v].corners[c];
                 for (std::size_t i = 0; i < corners.seen.size(); ++i)
-                    observations_.points.push_back(
-                        {static_cast<int>(c), static_cast<int>(v), false, corners.board[i], corners.seen[i]});
+                    observations_.points.push_back({static_cast<int>(c), static_cast<int>(v), false,
+                                                    onBoard(board_, corners.board[i]), corners.seen[i]});
                 for (std::size_t p = 0; p < projectors_.size(); ++p) {
                     const auto& light = lightOf(v, c, p);
                     const std::size_t used = std::min(light.size(), kLightsOfView);
                     for (std::size_t i = 0; i < used; ++i)
-                        observations_.lights.push_back(seenLight(c, p, v, light[i * light.size() / used]));
+                        observations_.lights.push_back(seenLight(c, p, v, light[i * light.size() / used], state_));
                 }
             }
     }
@@ -354,6 +356,7 @@ private:
     const Progress& progress_;
     std::vector<std::vector<PoseVector>> boards_; ///< by camera and view, from the camera alone
     std::vector<bool> cameraPlaced_, projectorPlaced_, boardPlaced_;
+    BoardShape board_;
     InstallationState state_;
     InstallationObservations observations_;
     InstallationCalibration result_;

@@ -45,7 +45,9 @@ public:
         : views_(views), camera_(camera), projector_(projector), progress_(progress) {}
 
     MirrorCalibration solve() {
-        result_.procam = calibrateProcam(turnedViews(), camera_, projector_, {}, progress_.part(0.0, 0.8));
+        turned_ = turnedViews();
+        result_.procam = calibrateProcam(turned_, camera_, projector_, {}, progress_.part(0.0, 0.8));
+        takeLights();
         result_.procam.camera.lens = leftForRight(result_.procam.camera.lens, camera_);
         result_.procam.state.camera = result_.procam.camera.lens;
         if (const auto mirror = firstMirror()) {
@@ -70,6 +72,24 @@ private:
             for (ProjectorPoint& point : turned.back().projector) point.camera = turn(point.camera);
         }
         return turned;
+    }
+
+    /// Where on the boards light was seen, as long as all is still that of the picture turned left for right.
+    void takeLights() {
+        const BundleState& state = result_.procam.state;
+        for (std::size_t v = 0; v < views_.size(); ++v) {
+            const auto& light = views_[v].light;
+            const std::size_t used = std::min(light.size(), kLightsOfMirrorView);
+            for (std::size_t i = 0; i < used; ++i) {
+                const std::size_t at = i * light.size() / used;
+                SeenLight seen =
+                    lightOnBoard(turned_[v].projector[at], state.camera, state.cameraFromBoard[v], state.board);
+                seen.body = static_cast<int>(v);
+                seen.mirrored = true;
+                seen.pixels = light[at];
+                observations_.lights.push_back(seen);
+            }
+        }
     }
 
     [[nodiscard]] static bool seenDirectly(const MirrorView& view) {
@@ -166,8 +186,9 @@ private:
             direct_.push_back(views_[v].direct);
             if (!seenDirectly(views_[v])) continue;
             const auto error = [&](const BoardPoints& corners) {
-                return rmsOf(
-                    cameraErrors({views_[v].name, corners, {}}, state.cameras[0].lens, state.worldFromBody[v]));
+                return rmsOf(cameraErrors({views_[v].name, corners, {}},
+                                          {state.cameras[0].lens, {}, {}, result_.procam.state.board, {}},
+                                          state.worldFromBody[v]));
             };
             if (auto turned = turnedBoard(views_[v].direct.board)) {
                 BoardPoints other{std::move(*turned), views_[v].direct.seen};
@@ -181,19 +202,11 @@ private:
             const int body = static_cast<int>(v);
             const auto add = [&](const BoardPoints& corners, bool mirrored) {
                 for (std::size_t i = 0; i < corners.seen.size(); ++i)
-                    observations_.points.push_back({0, body, mirrored, corners.board[i], corners.seen[i]});
+                    observations_.points.push_back(
+                        {0, body, mirrored, onBoard(result_.procam.state.board, corners.board[i]), corners.seen[i]});
             };
             add(views_[v].mirrored, true);
             if (seenDirectly(views_[v])) add(direct_[v], false);
-            const auto& light = views_[v].light;
-            const std::size_t used = std::min(light.size(), kLightsOfMirrorView);
-            for (std::size_t i = 0; i < used; ++i) {
-                SeenLight seen;
-                seen.body = body;
-                seen.mirrored = true;
-                seen.pixels = light[i * light.size() / used];
-                observations_.lights.push_back(seen);
-            }
         }
     }
 
@@ -217,7 +230,8 @@ private:
         procam.projectorFromCamera = state.projectors[0].fromWorld;
         procam.projectorFromCameraSigma = sigma.projectors[0].fromWorld;
         procam.rms = std::hypot(procam.camera.rms, procam.projector.rms) / std::numbers::sqrt2;
-        procam.state = {procam.camera.lens, procam.projector.lens, procam.projectorFromCamera, {}, state.worldFromBody};
+        procam.state = {procam.camera.lens, procam.projector.lens, procam.projectorFromCamera, procam.state.board,
+                        state.worldFromBody};
         double worst = -1.0;
         for (std::size_t v = 0; v < views_.size(); ++v) {
             ViewQuality& view = procam.views[v];
@@ -245,6 +259,7 @@ private:
     const std::vector<MirrorView>& views_;
     cv::Size camera_, projector_;
     const Progress& progress_;
+    std::vector<ViewObservations> turned_; ///< the pictures turned left for right
     std::vector<BoardPoints> direct_;
     InstallationObservations observations_;
     MirrorCalibration result_;

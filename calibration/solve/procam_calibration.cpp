@@ -84,6 +84,13 @@ private:
     double single_ = 0.0, scaled_ = 0.0, patches_ = 0.0;
 };
 
+std::string pixels(double value) {
+    std::ostringstream text;
+    text.precision(2);
+    text << std::fixed << value << " pixels";
+    return text.str();
+}
+
 /// Solves a capture step by step; the state is what is known so far.
 class ProcamSolver {
 public:
@@ -464,10 +471,8 @@ private:
         if (std::max(boundedDoubt(0, state_.camera),
                      projector ? boundedDoubt(kProjectorPlace, state_.projector) : 0.0) > kWorstFocal)
             throw frontal();
-        if (!(result_.rms < kFits))
-            throw CaptureRefused({Cause::modelDoesNotFit, result_.worstView, "",
-                                  "no lens explains the capture: " + pixels(result_.rms) + " of error remain",
-                                  "look at this pose first; check the board's kind and that it is flat"});
+        const std::optional<Finding> misfit = misfitOf(result_);
+        if (misfit && options_.judgesFit) throw CaptureRefused(*misfit);
         if (options_.judge) judgeBoard();
         if (!projector || !options_.judge) return;
         if (views_.size() < 4) {
@@ -503,13 +508,6 @@ private:
         }
     }
 
-    static std::string pixels(double value) {
-        std::ostringstream text;
-        text.precision(2);
-        text << std::fixed << value << " pixels";
-        return text.str();
-    }
-
     const std::vector<ViewObservations>& views_;
     ViewChoice use_;
     Progress progress_;
@@ -521,6 +519,13 @@ private:
 };
 
 } // namespace
+
+std::optional<Finding> misfitOf(const ProcamCalibration& result) {
+    if (result.rms < kFits) return std::nullopt;
+    return Finding{Cause::modelDoesNotFit, result.worstView, "",
+                   "no lens explains the capture: " + pixels(result.rms) + " of error remain",
+                   "look at this pose first; check the board's kind and that it is flat"};
+}
 
 ProcamCalibration calibrateProcam(const std::vector<ViewObservations>& views, cv::Size camera, cv::Size projector,
                                   const SolveOptions& options, const Progress& progress) {

@@ -62,6 +62,7 @@ struct SolveOptions {
     /// Whether the board's shape is tried, views are held out and halves compared. Without, a calibration takes a tenth
     /// of the time: for many in a row.
     bool judge = true;
+    bool judgesFit = true; ///< refuses errors that no lens explains; else that is the caller's to do
 };
 
 /// Solves for camera, projector and boards together. Distortion terms of each device, and the board's bend, are let go
@@ -71,6 +72,9 @@ struct SolveOptions {
 [[nodiscard]] ProcamCalibration calibrateProcam(const std::vector<ViewObservations>& views, cv::Size camera,
                                                 cv::Size projector, const SolveOptions& options = {},
                                                 const Progress& progress = {});
+
+/// Why a solution is to be refused for the errors that remain; nothing where they are bearable.
+[[nodiscard]] std::optional<Finding> misfitOf(const ProcamCalibration& result);
 
 /// The camera alone; the projector's part stays empty.
 [[nodiscard]] ProcamCalibration calibrateIntrinsics(const std::vector<ViewObservations>& views, cv::Size camera,

@@ -1,4 +1,6 @@
 #include <filesystem>
+#include <fstream>
+#include <sstream>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -13,6 +15,12 @@ namespace {
 
 using ::testing::HasSubstr;
 using ::testing::MatchesRegex;
+
+std::string readText(const std::filesystem::path& file) {
+    std::ostringstream text;
+    text << std::ifstream(file, std::ios::binary).rdbuf();
+    return text.str();
+}
 
 /// A simulated capture of four poses by phase shift, and one picture under white light of each.
 class Calibrate : public ::testing::Test {
@@ -76,7 +84,39 @@ TEST_F(Calibrate, AnOrderFileSaysTheSameAsItsPattern) {
     writeFile(*folder_ / "order.txt", lines);
     const Outcome outcome = procam({"--order", (*folder_ / "order.txt").string(), "--json"});
     ASSERT_EQ(outcome.exitCode, 0) << outcome.err;
-    EXPECT_EQ(outcome.json(), procam({"--pattern", "phase:16x3+1x3", "--json"}).json());
+    // Beside what is printed, the same goes into files.
+    const auto exported = *folder_ / "procam.json";
+    const auto report = *folder_ / "report.html";
+    const nlohmann::json printed =
+        procam({"--pattern", "phase:16x3+1x3", "--json", "--export", exported.string(), "--report", report.string()})
+            .json();
+    EXPECT_EQ(outcome.json(), printed);
+    const nlohmann::json kept = nlohmann::json::parse(readText(exported));
+    EXPECT_EQ(kept["lumorph"], "calibration");
+    EXPECT_EQ(kept["board"], "chess:9x7:30");
+    for (const char* key : {"K", "distortion", "size", "rms", "sigma"}) {
+        EXPECT_EQ(kept["projector"][key], printed["projector"][key]) << key;
+        EXPECT_EQ(kept["camera"][key], printed["camera"][key]) << key;
+    }
+    for (const char* key : {"R", "T", "sigma", "rms", "worstView", "halvesDiffer", "degenerate"})
+        EXPECT_EQ(kept[key], printed[key]) << key;
+    const std::string page = readText(report);
+    EXPECT_THAT(page, HasSubstr("chess:9x7:30"));
+    for (const auto& view : printed["views"]) EXPECT_THAT(page, HasSubstr(std::string(view["name"])));
+    EXPECT_THAT(page, HasSubstr("What the camera saw"));
+}
+
+TEST_F(Calibrate, ARefusalIsReportedToo) {
+    const auto report = *folder_ / "refused.html";
+    EXPECT_EQ(procam({"--pattern", "graycode", "--report", report.string()}).exitCode, 1);
+    EXPECT_THAT(readText(report), HasSubstr("projector_size"));
+    for (const std::vector<std::string>& more :
+         {std::vector<std::string>{"--report", "x.pdf"}, std::vector<std::string>{"--report", "x.txt"},
+          std::vector<std::string>{"--export", "x.xml"}}) {
+        const Outcome outcome = procam(more);
+        EXPECT_EQ(outcome.exitCode, 2) << more[1];
+        EXPECT_THAT(outcome.err, MatchesRegex("lumorph: [^\n]+: [^\n]+; [^\n]+\n"));
+    }
 }
 
 TEST_F(Calibrate, ARefusalHasItsCauseOnBothStreams) {

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "calibration/report/calibration_file.h"
 #include "core/geometry/mesh_writers.h"
 #include "core/geometry/model.h"
 #include "core/mdf/builder.h"
@@ -152,6 +153,22 @@ int main(int argc, char** argv) {
               "parent": 1, "kind": "heights", "heights": {"waves": [{"phaseDegrees": 1e-9}]}}], "projectors": []}})");
     writeText("project/draft.lumorph",
               R"({"model": "a.glb", "author": "b", "matching": {"driver": "hand", "more": [1]}})");
+
+    CalibrationRecord calibration;
+    calibration.source = {"2026-11-24T17:05:00Z", "chess:9x7:75", "graycode", {"capture"}, 0.001};
+    ProcamCalibration& result = calibration.result;
+    result.camera = {{1280, 1024}, {1500, 1, 639, 511, -0.1, 0.01, 0, 0, 0}, {}, {1, 0, 1, 1}, 0.2, "k1 k2"};
+    result.projector = {{1024, 768}, {1890, 1, 511, 840}, {}, {2, 0, 1, 1}, 0.3, "pinhole"};
+    result.projectorFromCamera = {0.1, 0.2, 0.3, 400, 500, 60};
+    result.views = {{"pose_0", 0.1, 0.2, 0.3}};
+    result.state.cameraFromBoard = {{0.1, 0.2, 0.3, 1, 2, 900}};
+    result.warnings = {{Cause::clipped, "pose_0", "a.png", "too bright", "expose less"}};
+    writeText("calibration/own.json", "0" + calibrationText(calibration));
+    writeText("calibration/opencv.yaml", "1" + calibrationYaml(calibration));
+    writeText("calibration/lists.yaml", "1camera_matrix:\n- - 1000.0\n  - 0\n  - 320\n- [0, 1000, 240]\n- [0, 0, 1]\n"
+                                        "dist_coeffs: [[0.1, 0, 0, 0, 0]]\nimage_size: [640, 480]\n");
+    writeText("capture_order/gray", "column bit 9\ncolumn bit 9 inverse # stripes\nrow bit 0\nwhite\nblack\nunused\n");
+    writeText("capture_order/phase", "column phase 16 step 0 of 3\n\nrow phase 1 step 2 of 3\n");
 
     const auto writeBytes = [&](const char* name, const std::vector<std::uint8_t>& bytes) {
         write(name, std::as_bytes(std::span(bytes)));

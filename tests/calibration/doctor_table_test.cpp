@@ -1,0 +1,224 @@
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <functional>
+#include <map>
+#include <random>
+
+#include <gtest/gtest.h>
+
+#include "calibration/doctor/capture_calibration.h"
+#include "calibration/doctor/sequence_check.h"
+#include "calibration/lab/lab_capture.h"
+
+namespace lumorph::test {
+namespace {
+
+/// A few trials by default; all of them where LUMORPH_LONG_TESTS=1 says so.
+bool isLong() {
+    const char* text = std::getenv("LUMORPH_LONG_TESTS");
+    return text != nullptr && std::string(text) == "1";
+}
+
+/// What the doctor says of a capture.
+struct Verdict {
+    bool refused = false;
+    std::vector<Cause> causes;
+    std::string sentence;
+
+    [[nodiscard]] bool names(Cause cause) const { return std::ranges::find(causes, cause) != causes.end(); }
+};
+
+Verdict verdictOf(const std::function<ProcamCalibration()>& run) {
+    Verdict verdict;
+    try {
+        const ProcamCalibration result = run();
+        for (const Finding& warning : result.warnings) {
+            verdict.causes.push_back(warning.cause);
+            verdict.sentence += sentenceOf(warning) + " ";
+        }
+    } catch (const CaptureRefused& refused) {
+        verdict = {true, {refused.finding().cause}, sentenceOf(refused.finding())};
+    }
+    return verdict;
+}
+
+/// The lab with smaller pictures: projector 480 x 270, camera 640 x 512.
+LabCapture smallCapture(std::uint32_t seed, std::optional<Cause> fault) {
+    LabCapture capture;
+    capture.room = defaultInstallation();
+    CalibratedCamera& projector = capture.room.projectors.front().camera;
+    capture.room.cameras.push_back({"Camera", "", withSize(defaultLabCamera(projector), {640, 512}), {}, {}});
+    projector = withSize(projector, {480, 270});
+    capture.poses = 4;
+    capture.seed = seed;
+    capture.fault = fault;
+    return capture;
+}
+
+/// Photographs a capture and hands it to the doctor, without a disk in between.
+Verdict verdictOfImages(const LabCapture& what) {
+    LabCapturer capturer(what);
+    const glm::ivec2 size = capturer.lab().projector().camera.size;
+    const CaptureOrder order = parsePattern(what.pattern, {size.x, size.y});
+    return verdictOf([&] {
+        ReadCapture read;
+        read.order = order;
+        for (int pose = 0; pose < what.poses; ++pose) {
+            CapturedView view;
+            std::vector<cv::Mat> images;
+            for (const LabShot& shot : capturer.takeNext()) {
+                view.name = shot.view;
+                view.files.emplace_back(shot.file);
+                images.push_back(shot.grey);
+            }
+            if (const auto wrong = checkCounts({view}, order)) throw CaptureRefused(*wrong);
+            ReadPose got = readPose(view, images, capturer.lab().board(), order);
+            read.camera = images.front().size();
+            read.views.push_back(std::move(got.observations));
+            read.warnings.insert(read.warnings.end(), got.warnings.begin(), got.warnings.end());
+        }
+        return calibrateCapture(read, order.projector);
+    });
+}
+
+/// What three steps of phase say of a place when the projector shows value^gamma, as a share of a period.
+double phaseUnderGamma(double turns, double gamma) {
+    constexpr double kTurn = 2.0 * 3.14159265358979323846;
+    double sine = 0.0;
+    double cosine = 0.0;
+    for (int step = 0; step < 3; ++step) {
+        const double light = std::pow(0.5 + 0.5 * std::cos(kTurn * (turns - step / 3.0)), gamma);
+        sine += light * std::sin(kTurn * step / 3.0);
+        cosine += light * std::cos(kTurn * step / 3.0);
+    }
+    const double seen = std::atan2(sine, cosine) / kTurn;
+    return seen + std::round(turns - seen);
+}
+
+/// What a good decoder would see of a capture in the lab: points where the lab's truth puts them, with noise.
+std::vector<ViewObservations> observationsOf(LabCapturer& capturer, std::uint32_t seed) {
+    const LabCapture& capture = capturer.capture();
+    BoardLab lab(capture.room, capturer.lab().board(), capture.options, capture.seed);
+    const std::vector<cv::Point3d> named = pointsOf(lab.board());
+    const glm::dvec2 size = lab.projector().camera.size;
+    std::mt19937 random(seed);
+    std::normal_distribution<double> grain;
+    const bool phases = capture.fault == Cause::projectorGamma;
+    const double focus = 1.0 + (random() % 2 == 0 ? 1.0 : -1.0) * std::uniform_real_distribution<>(0.012, 0.03)(random);
+    const auto from = static_cast<std::size_t>(1 + random() % static_cast<unsigned>(capture.poses - 1));
+    std::vector<ViewObservations> views;
+    for (const glm::dmat4& pose : capturer.poses()) {
+        if (capture.fault == Cause::cameraRefocused && views.size() == from) {
+            CalibratedCamera camera = lab.camera();
+            camera.focal *= focus;
+            lab.setCamera(camera);
+        }
+        ViewObservations& view = views.emplace_back();
+        view.name = "pose_" + std::to_string(views.size() - 1);
+        const auto place = [&](double x, double y) { return glm::dvec3(pose * glm::dvec4(lab.place(x, y), 1.0)); };
+        for (const cv::Point3d& point : named) {
+            const auto seen = lab.cameraPixel(place(point.x, point.y));
+            view.corners.board.push_back(point);
+            view.corners.seen.emplace_back(seen->x + 0.07 * grain(random), seen->y + 0.07 * grain(random));
+        }
+        for (int row = 0; row < 20; ++row)
+            for (int column = 0; column < 25; ++column) {
+                const glm::dvec3 at = place(named.back().x * column / 24.0, named.back().y * row / 19.0);
+                const auto seen = lab.cameraPixel(at);
+                glm::dvec2 lit = *lab.projectorPixel(at);
+                if (phases)
+                    for (int axis = 0; axis < 2; ++axis)
+                        lit[axis] =
+                            phaseUnderGamma(16.0 * (lit[axis] + 0.5) / size[axis], 2.2) * size[axis] / 16.0 - 0.5;
+                view.projector.push_back(
+                    {{seen->x, seen->y}, {lit.x + 0.08 * grain(random), lit.y + 0.08 * grain(random)}});
+            }
+    }
+    return views;
+}
+
+Verdict verdictOfObservations(std::uint32_t seed, std::optional<Cause> fault) {
+    LabCapture capture;
+    capture.room = defaultInstallation();
+    capture.seed = seed;
+    capture.fault = fault;
+    if (fault == Cause::projectorGamma) capture.pattern = "phase:16x3+1x3";
+    LabCapturer capturer(capture);
+    ReadCapture read;
+    read.views = observationsOf(capturer, seed);
+    const glm::ivec2 camera = capturer.lab().camera().size;
+    const glm::ivec2 projector = capturer.lab().projector().camera.size;
+    read.camera = {camera.x, camera.y};
+    read.order = parsePattern(capture.pattern, {projector.x, projector.y});
+    return verdictOf([&] { return calibrateCapture(read, read.order.projector); });
+}
+
+/// One line of the table.
+void expectNamed(Cause fault, int trials, const std::function<Verdict(std::uint32_t)>& run) {
+    int right = 0;
+    int silent = 0;
+    std::string others;
+    for (int trial = 0; trial < trials; ++trial) {
+        const Verdict verdict = run(static_cast<std::uint32_t>(trial + 1));
+        if (verdict.names(fault))
+            ++right;
+        else
+            others += "  [" + std::to_string(trial + 1) + "] " + verdict.sentence;
+        silent += !verdict.refused && verdict.causes.empty();
+    }
+    std::printf("%-22s right %2d of %2d, accepted silently %d%s\n", std::string(keyOf(fault)).c_str(), right, trials,
+                silent, others.c_str());
+    std::fflush(stdout);
+    EXPECT_GE(right, 0.9 * trials) << keyOf(fault);
+    EXPECT_EQ(silent, 0) << keyOf(fault);
+}
+
+class DoctorTableOfImages : public ::testing::TestWithParam<Cause> {};
+
+TEST_P(DoctorTableOfImages, NamesTheCause) {
+    expectNamed(GetParam(), isLong() ? 20 : 1,
+                [](std::uint32_t seed) { return verdictOfImages(smallCapture(seed, GetParam())); });
+}
+
+const auto kKeyOfParam = [](const ::testing::TestParamInfo<Cause>& info) { return std::string(keyOf(info.param)); };
+
+INSTANTIATE_TEST_SUITE_P(All, DoctorTableOfImages,
+                         ::testing::Values(Cause::lateFrame, Cause::missingImage, Cause::doubledImage,
+                                           Cause::blackWhiteSwapped, Cause::inverseSwapped, Cause::mirrored,
+                                           Cause::rigMoved, Cause::projectorSize, Cause::widthHeightSwapped,
+                                           Cause::clipped),
+                         kKeyOfParam);
+
+class DoctorTableOfObservations : public ::testing::TestWithParam<Cause> {};
+
+TEST_P(DoctorTableOfObservations, NamesTheCause) {
+    expectNamed(GetParam(), isLong() ? 20 : 1,
+                [](std::uint32_t seed) { return verdictOfObservations(seed, GetParam()); });
+}
+
+INSTANTIATE_TEST_SUITE_P(All, DoctorTableOfObservations,
+                         ::testing::Values(Cause::frontalViews, Cause::keystone, Cause::boardWarped, Cause::squareSize,
+                                           Cause::strangeLens, Cause::projectorGamma, Cause::cameraRefocused),
+                         kKeyOfParam);
+
+TEST(DoctorTable, SoundCapturesAreAccepted) {
+    const int ofImages = isLong() ? 8 : 1;
+    const int ofObservations = isLong() ? 32 : 2;
+    int refused = 0;
+    int doubted = 0;
+    for (int trial = 0; trial < ofImages + ofObservations; ++trial) {
+        const auto seed = static_cast<std::uint32_t>(100 + trial);
+        const Verdict verdict =
+            trial < ofImages ? verdictOfImages(smallCapture(seed, {})) : verdictOfObservations(seed, {});
+        refused += verdict.refused;
+        doubted += !verdict.refused && !verdict.causes.empty();
+        if (!verdict.causes.empty()) std::printf("  [%u] %s\n", seed, verdict.sentence.c_str());
+    }
+    std::printf("%-22s refused %d of %d, with a warning %d\n", "sound", refused, ofImages + ofObservations, doubted);
+    EXPECT_EQ(refused, 0);
+}
+
+} // namespace
+} // namespace lumorph::test
