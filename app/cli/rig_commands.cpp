@@ -7,6 +7,8 @@
 #include "core/geometry/mesh_writers.h"
 #include "core/rig/rig_file.h"
 #include "core/rig/shape_report.h"
+#include "core/rig/templates/rig_templates.h"
+#include "core/rig/templates/sheet_file.h"
 
 namespace lumorph::cli {
 
@@ -134,10 +136,112 @@ void deform(const DeformOptions& options) {
         writeMesh(mesh, options.output);
 }
 
+void checkRigOutput(const std::string& output, const std::string& input) {
+    if (output.empty()) throw InvalidInput("--output", "it says nowhere to write to", "add -o RIG.glb");
+    checkOutput(output, input);
+    if (output != "-" && !output.ends_with(".glb"))
+        throw InvalidInput(output, "a rig is written as .glb", "name a .glb file");
+}
+
+void writeRig(const Rig& rig, const std::string& output) {
+    writeOutput(output, writeRigGlb(rig));
+    if (output == "-") return;
+    const glm::vec3 size = 100.0F * boundingBox(rig.restMesh().positions).size();
+    std::printf("%s: %zu actuators, %.1f x %.1f x %.1f cm at rest, %zu triangles\n", rig.name().c_str(),
+                rig.actuatorCount(), static_cast<double>(size.x), static_cast<double>(size.z),
+                static_cast<double>(size.y), rig.restMesh().triangles.size());
+}
+
+struct NewOptions {
+    std::string kind;
+    std::vector<std::string> choices;
+    std::string output;
+    bool list = false;
+    bool json = false;
+};
+
+const char* unitOf(TemplateParameter::Unit unit) {
+    return unit == TemplateParameter::Unit::centimetres ? "cm" : unit == TemplateParameter::Unit::degrees ? "deg" : "";
+}
+
+nlohmann::json parametersJson(const RigTemplate& kind) {
+    nlohmann::json parameters = nlohmann::json::array();
+    for (const TemplateParameter& p : kind.parameters)
+        parameters.push_back({{"name", p.name},
+                              {"meaning", p.meaning},
+                              {"unit", unitOf(p.unit)},
+                              {"value", p.value},
+                              {"range", {p.min, p.max}}});
+    return {{"template", kind.name}, {"meaning", kind.meaning}, {"parameters", parameters}};
+}
+
+void printParameters(const RigTemplate& kind) {
+    std::printf("%s: %s\n", std::string(kind.name).c_str(), std::string(kind.meaning).c_str());
+    for (const TemplateParameter& p : kind.parameters)
+        std::printf("  %-10s %8.2f %-3s  %s (%g to %g)\n", std::string(p.name).c_str(), p.value, unitOf(p.unit),
+                    std::string(p.meaning).c_str(), p.min, p.max);
+}
+
+void newRig(const NewOptions& options, const Session& session) {
+    const RigTemplate& kind = rigTemplate(options.kind);
+    if (options.list) {
+        options.json ? printJson(parametersJson(kind)) : printParameters(kind);
+        return;
+    }
+    checkRigOutput(options.output, {});
+    std::vector<TemplateChoice> choices;
+    for (const std::string& text : options.choices) choices.push_back(parseChoice(kind, text));
+    const Rig rig = rigOf(kind, choices, session.progress());
+    Session::endProgress();
+    writeRig(rig, options.output);
+}
+
+struct SheetOptions {
+    std::string outline;
+    std::string bends;
+    std::string output;
+};
+
+void sheet(const SheetOptions& options, const Session& session) {
+    checkRigOutput(options.output, options.outline);
+    checkRigOutput(options.output, options.bends);
+    const Rig rig = sheetRig(readSheetDevice(options.outline, options.bends), session.progress());
+    Session::endProgress();
+    writeRig(rig, options.output);
+}
+
+void addMakingCommands(CLI::App* group, Session& session) {
+    auto newOptions = std::make_shared<NewOptions>();
+    std::string names;
+    for (const RigTemplate& kind : rigTemplates()) names += (names.empty() ? "" : ", ") + std::string(kind.name);
+    CLI::App* newCommand = group->add_subcommand("new", "Make a rig from a template: " + names);
+    newCommand->add_option("template", newOptions->kind, names)->required();
+    newCommand->add_option("--set", newOptions->choices, "A parameter, such as width=21cm; again for each")
+        ->take_all()
+        ->allow_extra_args(false);
+    newCommand->add_flag("--list", newOptions->list, "Print the template's parameters instead");
+    newCommand->add_flag("--json", newOptions->json, "Print them as one JSON value");
+    newCommand->add_option("-o,--output", newOptions->output, "A .glb file, or - for standard output");
+    newCommand->callback([newOptions, &session] { newRig(*newOptions, session); });
+
+    auto sheetOptions = std::make_shared<SheetOptions>();
+    CLI::App* sheetCommand =
+        group->add_subcommand("sheet", "Make a rig of a sheet with an outline and bend lines across it");
+    sheetCommand->add_option("outline", sheetOptions->outline, "An SVG file with one closed shape")->required();
+    sheetCommand
+        ->add_option("--bends", sheetOptions->bends,
+                     "A JSON file: {\"bends\": [{\"name\", \"from\": [x, y], \"to\": [x, y], \"ends\": \"joined\" or "
+                     "\"free\", \"side\": \"smaller\", \"left\" or \"right\", \"angle\"}], \"name\", \"thickness\", "
+                     "\"housing\", \"arc\"}, in cm on the SVG's page and degrees")
+        ->required();
+    sheetCommand->add_option("-o,--output", sheetOptions->output, "A .glb file, or - for standard output")->required();
+    sheetCommand->callback([sheetOptions, &session] { sheet(*sheetOptions, session); });
+}
+
 } // namespace
 
 void addRigCommands(CLI::App& app, Session& session) {
-    CLI::App* group = app.add_subcommand("rig", "Look at a rig and deform it");
+    CLI::App* group = app.add_subcommand("rig", "Make a rig, look at it and deform it");
     group->require_subcommand(1);
 
     auto infoOptions = std::make_shared<InfoOptions>();
@@ -165,6 +269,8 @@ void addRigCommands(CLI::App& app, Session& session) {
                      "An .obj, .stl or .glb file, or - for OBJ on standard output")
         ->required();
     deformCommand->callback([deformOptions] { deform(*deformOptions); });
+
+    addMakingCommands(group, session);
 }
 
 } // namespace lumorph::cli

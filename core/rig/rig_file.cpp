@@ -124,7 +124,9 @@ Rig rigOf(Model model, const std::string& file) {
         entries = morphsOfMeshes(model, file);
         for (ActuatorEntry& joint : jointsOfAnimations(model, file, table)) entries.push_back(std::move(joint));
     }
-    if (entries.empty())
+    // A blank sheet that was made here moves nothing yet.
+    const bool madeHere = model.extras.is_object() && model.extras.contains("lumorph");
+    if (entries.empty() && !madeHere)
         throw DataError(file, "nothing in it moves",
                         "give a node the property \"lumorph\", or the mesh morph targets or an animated skin");
     if (entries.size() > kMaxActuators)

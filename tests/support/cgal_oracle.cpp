@@ -4,6 +4,7 @@
 
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/Polygon_mesh_processing/connected_components.h>
+#include <CGAL/Polygon_mesh_processing/self_intersections.h>
 #include <CGAL/Side_of_triangle_mesh.h>
 #include <CGAL/Surface_mesh.h>
 #include <CGAL/intersections.h>
@@ -47,6 +48,16 @@ bool boxMeetsTriangle(const glm::dvec3& low, const glm::dvec3& high, const glm::
                       const glm::dvec3& c) {
     return CGAL::do_intersect(Kernel::Iso_cuboid_3(pointOf(low), pointOf(high)),
                               Kernel::Triangle_3(pointOf(a), pointOf(b), pointOf(c)));
+}
+
+bool crossesItself(const TriangleMesh& mesh) {
+    Mesh judged;
+    std::vector<Mesh::Vertex_index> vertices;
+    vertices.reserve(mesh.positions.size());
+    for (const glm::vec3& p : mesh.positions) vertices.push_back(judged.add_vertex(pointOf(glm::dvec3(p))));
+    for (const glm::uvec3& t : mesh.triangles)
+        if (judged.add_face(vertices[t.x], vertices[t.y], vertices[t.z]) == Mesh::null_face()) return true;
+    return !CGAL::is_closed(judged) || CGAL::Polygon_mesh_processing::does_self_intersect(judged);
 }
 
 } // namespace lumorph::test

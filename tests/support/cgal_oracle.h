@@ -25,4 +25,8 @@ private:
 [[nodiscard]] bool boxMeetsTriangle(const glm::dvec3& low, const glm::dvec3& high, const glm::dvec3& a,
                                     const glm::dvec3& b, const glm::dvec3& c);
 
+/// Whether triangles of a mesh cross: CGAL's Polygon_mesh_processing::does_self_intersect. Open or not manifold meshes,
+/// which CGAL's own mesh cannot hold, count as crossing.
+[[nodiscard]] bool crossesItself(const TriangleMesh& mesh);
+
 } // namespace lumorph::test

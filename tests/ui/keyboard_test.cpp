@@ -182,6 +182,7 @@ TEST_F(Keyboard, ReachesEveryControlOfTheRigWorkspace) { expectAll("rig"); }
 
 TEST_F(Keyboard, ReachesEveryControlOfTheSceneWorkspace) { expectAll("scene"); }
 
+TEST_F(Keyboard, ReachesEveryControlOfTheCalibrateWorkspace) { expectAll("calibrate"); }
 TEST_F(Keyboard, ReachesEveryControlOfTheDevicesWorkspace) { expectAll("devices"); }
 
 TEST_F(Keyboard, ReachesEverythingOfWhatIsChosen) {

@@ -25,7 +25,7 @@
 namespace lumorph::studio {
 namespace {
 
-using Clock = std::chrono::steady_clock;
+using SteadyTime = std::chrono::steady_clock;
 
 /// The whole studio in a window of 1600 x 1000 with the bundled tablet, and a target of 70,000 triangles that moves.
 class WindowRate : public testing::Test {
@@ -78,9 +78,9 @@ Rates measure(Studio& studio, const ViewportWidget& view, std::chrono::milliseco
     (void)watch.takeLongest();
     matches = 0;
     const std::uint64_t before = view.framesPainted();
-    const auto start = Clock::now();
+    const auto start = SteadyTime::now();
     run(time);
-    const double seconds = std::chrono::duration<double>(Clock::now() - start).count();
+    const double seconds = std::chrono::duration<double>(SteadyTime::now() - start).count();
     QObject::disconnect(count);
     const auto middle = took.begin() + static_cast<std::ptrdiff_t>(took.size() / 2);
     std::nth_element(took.begin(), middle, took.end());

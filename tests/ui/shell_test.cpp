@@ -20,7 +20,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-const QStringList kWorkspaces{"rig", "field", "scene", "devices"};
+const QStringList kWorkspaces{"rig", "field", "scene", "calibrate", "devices"};
 
 class Shell : public ::testing::Test {
 protected:

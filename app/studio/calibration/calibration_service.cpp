@@ -14,9 +14,9 @@
 #include <opencv2/imgproc.hpp>
 
 #include "app/studio/calibration/capture_bench.h"
-#include "app/studio/calibration/room_calibration.h"
 #include "calibration/doctor/capture_calibration.h"
 #include "calibration/doctor/sequence_check.h"
+#include "calibration/report/calibration_file.h"
 #include "core/base/error.h"
 
 namespace lumorph::studio {
@@ -25,6 +25,7 @@ namespace {
 constexpr auto kPlace = "calibrate"; // of jobs and notices
 constexpr int kLiveMilliseconds = 60;
 constexpr int kSearchWidth = 640; // pixels; the live picture's board is found in a smaller one
+constexpr int kSolvedBetween = 4; // poses from which on it is solved after each
 constexpr double kMetresPerUnit = 0.001;
 constexpr double kNinetyFive = 1.731; // of a length that is spread evenly to all sides, by its root mean square
 constexpr double kTable = 0.2;        // metres around the origin, where the lab tells the truth
@@ -104,6 +105,18 @@ std::optional<double> millimetresOf(const ProcamCalibration& solved) {
     }
     if (count == 0) return std::nullopt;
     return kNinetyFive * std::sqrt(sum / count);
+}
+
+/// Nothing where it is not known in which pose the board lay on the table, or that cannot be.
+std::optional<ErrorPlan> planOf(const ProcamCalibration& solved, const std::optional<BoardPoints>& flat,
+                                const CalibrationBoard& board, const Installation& room, const RoomPlacement& placement,
+                                const Progress& progress) {
+    if (!flat) return std::nullopt;
+    try {
+        return errorPlanOf(solved, *flat, board, room, placement, progress);
+    } catch (const InvalidInput&) { // told when it is to be used
+        return std::nullopt;
+    }
 }
 
 std::vector<PoseResiduals> residualsOf(const std::vector<ViewObservations>& views, const ProcamCalibration& solved) {
@@ -240,6 +253,7 @@ void CalibrationService::beginAnew() {
 
 void CalibrationService::clearResults() {
     state_.result = nullptr;
+    state_.isImported = false;
     state_.refusal.reset();
     state_.trouble.clear();
 }
@@ -430,26 +444,35 @@ void CalibrationService::look() {
     if (!active_ || !bench_ || isLooking_ || state_.work == CalibrationState::Work::capturing) return;
     isLooking_ = true;
     const int pose = state_.counting();
-    looker_->look([this, bench = bench_, board = state_.setup.board, pose](const Progress& progress) {
-        LiveSight sight;
-        std::string trouble;
-        try {
-            const std::scoped_lock lock(bench->mutex);
-            const cv::Mat picture = bench->look(progress);
-            sight.camera = {picture.cols, picture.rows};
-            sight.picture = pictureOfMat(picture);
-            sight.corners = liveCorners(picture, board);
-            for (const cv::Point2d& point : bench->ghost(pose)) sight.ghost.emplace_back(point.x, point.y);
-        } catch (const std::exception& error) {
-            trouble = error.what();
-        }
-        QMetaObject::invokeMethod(
-            this,
-            [this, bench, sight = std::move(sight), trouble = std::move(trouble)]() mutable {
-                takeSight(bench, std::move(sight), trouble);
-            },
-            Qt::QueuedConnection);
-    });
+    looker_->look(
+        [this, bench = bench_, board = state_.setup.board, pose, wanted = wanted()](const Progress& progress) {
+            LiveSight sight;
+            std::string trouble;
+            try {
+                const std::scoped_lock lock(bench->mutex);
+                const cv::Mat picture = bench->look(progress);
+                sight.camera = {picture.cols, picture.rows};
+                sight.picture = pictureOfMat(picture);
+                sight.corners = liveCorners(picture, board);
+                bench->setWanted(wanted ? std::optional(wanted->cameraFromBoard) : std::nullopt);
+                for (const cv::Point2d& point : wanted ? wanted->outline : bench->ghost(pose))
+                    sight.ghost.emplace_back(point.x, point.y);
+            } catch (const std::exception& error) {
+                trouble = error.what();
+            }
+            QMetaObject::invokeMethod(
+                this,
+                [this, bench, sight = std::move(sight), trouble = std::move(trouble)]() mutable {
+                    takeSight(bench, std::move(sight), trouble);
+                },
+                Qt::QueuedConnection);
+        });
+}
+
+/// The pose that would help most, once enough is known to tell; the first poses follow a plan.
+std::optional<NextPose> CalibrationService::wanted() const {
+    if (!state_.result || state_.setup.way == CaptureWay::folder) return std::nullopt;
+    return state_.result->next;
 }
 
 void CalibrationService::takeSight(const std::shared_ptr<CaptureBench>& from, LiveSight sight,
@@ -478,6 +501,7 @@ void CalibrationService::photographRest() {
 
 void CalibrationService::photograph() {
     const bool rest = rest_;
+    const auto helpful = wanted();
     cancel();
     rest_ = rest;
     clearResults();
@@ -489,8 +513,10 @@ void CalibrationService::photograph() {
     const int number = static_cast<int>(state_.poses.size());
     const auto room = document_.state().installation;
     const glm::ivec2 size = room->projectors.at(projector()).camera.size;
-    const auto work = [bench = bench_, setup = state_.setup, number, size, box = mailbox_](const Progress& progress) {
+    const auto work = [bench = bench_, setup = state_.setup, number, size, helpful,
+                       box = mailbox_](const Progress& progress) {
         const std::scoped_lock lock(bench->mutex);
+        bench->setWanted(helpful ? std::optional(helpful->cameraFromBoard) : std::nullopt);
         const auto onShot = [&](const Shot& shot) {
             const std::scoped_lock boxLock(box->mutex);
             box->shot = shot.image;
@@ -540,6 +566,7 @@ void CalibrationService::photograph() {
                 photograph();
             } else {
                 look();
+                if (state_.counting() >= kSolvedBetween) solve(); // for the pose that helps most next
             }
         },
         [this](const std::exception& error) { setTrouble(error); });
@@ -569,14 +596,17 @@ void CalibrationService::solve() {
         size = {installed.x, installed.y};
     }
     using Result = std::shared_ptr<const CalibrationResult>;
-    const auto work = [capture = std::move(capture), size, setup = state_.setup](const Progress& progress) {
+    const auto work = [capture = std::move(capture), size, setup = state_.setup, flat = flatPoints(),
+                       room = document_.state().installation, placement = placement()](const Progress& progress) {
         return orFinding<Result>([&]() -> OrFinding<Result> {
             auto result = std::make_shared<CalibrationResult>();
-            result->solved = calibrateCapture(capture, size, {}, progress);
+            result->solved = calibrateCapture(capture, size, {}, progress.part(0.0, 0.8));
             result->residuals = residualsOf(capture.views, result->solved);
-            result->millimetres = millimetresOf(result->solved);
+            result->heldOutMillimetres = millimetresOf(result->solved);
             result->date = utcDate();
             result->setup = setup;
+            result->plan = planOf(result->solved, flat, setup.board, *room, placement, progress.part(0.8, 0.9));
+            result->next = suggestNextPose(result->solved, setup.board, {}, progress.part(0.9, 1.0));
             return Result(std::move(result));
         });
     };
@@ -587,15 +617,7 @@ void CalibrationService::solve() {
             if (const auto* finding = std::get_if<Finding>(&solved)) {
                 state_.refusal = *finding;
             } else {
-                auto result = std::make_shared<CalibrationResult>(*std::get<Result>(solved));
-                state_.result = result;
-                if (bench_ && bench_->truth()) try {
-                        const Installation room = roomOfResult();
-                        if (const auto error = lightError(room.projectors[projector()].camera,
-                                                          bench_->truth()->projectors.front().camera, kTable))
-                            result->trueMillimetres = 1000.0 * *error;
-                    } catch (const Error&) { // told when it is to be used
-                    }
+                takeResult(*std::get<Result>(solved));
             }
             emit changed();
         },
@@ -624,18 +646,118 @@ void CalibrationService::setFlatPose(const std::string& pose) {
     if (pose == state_.flatPose) return;
     state_.flatPose = pose;
     emit changed();
+    if (!state_.result) return;
+    using Plan = std::optional<ErrorPlan>;
+    jobs_.runWith<Plan>(
+        "plan", kPlace, tr("Working out where light can be trusted"),
+        [result = state_.result, flat = flatPoints(), room = document_.state().installation,
+         placement = placement()](const Progress& progress) {
+            return planOf(result->solved, flat, result->setup.board, *room, placement, progress);
+        },
+        [this, of = state_.result](Plan plan) {
+            if (of != state_.result) return;
+            CalibrationResult result = *of;
+            result.plan = std::move(plan);
+            takeResult(std::move(result));
+            emit changed();
+        },
+        [this](const std::exception& error) { setTrouble(error); });
+}
+
+RoomPlacement CalibrationService::placement() const {
+    RoomPlacement placement;
+    placement.projector = projector();
+    placement.metresPerUnit = kMetresPerUnit;
+    placement.tableView = state_.flatPose;
+    return placement;
+}
+
+std::optional<BoardPoints> CalibrationService::flatPoints() const {
+    const auto pose = std::ranges::find(state_.poses, state_.flatPose, &CalibrationPose::name);
+    if (pose == state_.poses.end() || !pose->counts()) return std::nullopt;
+    return pose->seen->corners;
+}
+
+void CalibrationService::takeResult(CalibrationResult result) {
+    if (bench_ && bench_->truth()) {
+        try {
+            RoomPlacement place = placement();
+            place.date = result.date;
+            const Installation room =
+                withCalibration(*document_.state().installation, result.solved, result.setup.board, place);
+            if (const auto error =
+                    lightError(room.projectors[projector()].camera, bench_->truth()->projectors.front().camera, kTable))
+                result.trueMillimetres = 1000.0 * *error;
+        } catch (const Error&) { // told when it is to be used
+        }
+    }
+    state_.result = std::make_shared<const CalibrationResult>(std::move(result));
+    followDocument();
+    look(); // the outline of the next pose is another one now
 }
 
 Installation CalibrationService::roomOfResult() const {
-    const auto pose = std::ranges::find(state_.poses, state_.flatPose, &CalibrationPose::name);
-    if (!state_.result || pose == state_.poses.end() || !pose->counts())
-        throw InvalidInput("calibration", "nobody said in which pose the board lay on the table",
-                           "choose that pose at the left");
-    const Origin origin{Origin::Way::measured,
-                        "structured light, " + std::to_string(state_.result->solved.views.size()) + " boards",
-                        state_.result->date};
-    return roomWith(*document_.state().installation, state_.result->solved, *pose->seen, kMetresPerUnit, projector(),
-                    origin, state_.setup.way == CaptureWay::camera ? state_.setup.camera : std::string());
+    if (!state_.result) throw InvalidInput("calibration", "there is no result", "photograph the board, or read a file");
+    RoomPlacement place = placement();
+    place.date = state_.result->date;
+    if (state_.isImported && tableViewsOf(state_.result->solved).empty()) {
+        // Nothing in the file says where its camera stood: the lenses alone are taken over.
+        Installation room = *document_.state().installation;
+        CalibratedCamera& lens = room.projectors.at(projector()).camera;
+        const glm::dmat4 pose = lens.cameraFromWorld;
+        lens = cameraOf(state_.result->solved.projector);
+        lens.cameraFromWorld = pose;
+        room.projectors[projector()].lens = {Origin::Way::measured, "read from a file", state_.result->date};
+        return room;
+    }
+    Installation room =
+        withCalibration(*document_.state().installation, state_.result->solved, state_.result->setup.board, place);
+    if (state_.setup.way == CaptureWay::camera && !room.cameras.empty())
+        room.cameras.front().address = state_.setup.camera;
+    return room;
+}
+
+void CalibrationService::exportTo(const std::filesystem::path& file) {
+    if (!state_.result) return;
+    jobs_.run<bool>(
+        "export", kPlace, tr("Writing the calibration"),
+        [record = recordOf(*state_.result), file](const Progress&) {
+            writeCalibration(record, file);
+            return true;
+        },
+        [](bool) {});
+}
+
+void CalibrationService::importFrom(const std::filesystem::path& file) {
+    cancel();
+    const glm::ivec2 installed = document_.state().installation->projectors.at(projector()).camera.size;
+    jobs_.run<CalibrationRecord>(
+        "import", kPlace, tr("Reading a calibration"),
+        [file, installed](const Progress&) {
+            KnownSizes sizes;
+            sizes.projector = {installed.x, installed.y};
+            return readCalibration(file, sizes);
+        },
+        [this, file](CalibrationRecord record) {
+            state_.poses.clear();
+            clearResults();
+            CalibrationResult result;
+            result.setup = state_.setup;
+            try {
+                if (!record.source.board.empty()) result.setup.board = parseCalibrationBoard(record.source.board);
+            } catch (const Error&) { // of another program; the board then only names a scale
+            }
+            result.setup.way = CaptureWay::folder;
+            result.setup.folder = file;
+            result.solved = std::move(record.result);
+            result.heldOutMillimetres = millimetresOf(result.solved);
+            result.date = record.source.date.empty() ? utcDate() : record.source.date;
+            const std::vector<std::string> views = tableViewsOf(result.solved);
+            state_.flatPose = views.empty() ? std::string() : views.front();
+            state_.isImported = true;
+            takeResult(std::move(result));
+            emit changed();
+        });
 }
 
 void CalibrationService::use() {

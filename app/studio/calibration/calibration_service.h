@@ -69,6 +69,10 @@ public:
     void setFlatPose(const std::string& pose);
     /// Puts the result into the room: a step of undo.
     void use();
+    /// Writes the result by the file's ending: .json, .yaml, .yml. A notice says what went wrong.
+    void exportTo(const std::filesystem::path& file);
+    /// Takes the result of another time or program in place of poses and result.
+    void importFrom(const std::filesystem::path& file);
     /// What would stand in the room; throws InvalidInput where it cannot.
     [[nodiscard]] Installation roomOfResult() const;
 
@@ -89,6 +93,10 @@ private:
     void takePose(CalibrationPose pose);
     void setTrouble(const std::exception& error);
     void followDocument();
+    void takeResult(CalibrationResult result);
+    [[nodiscard]] RoomPlacement placement() const;
+    [[nodiscard]] std::optional<BoardPoints> flatPoints() const;
+    [[nodiscard]] std::optional<NextPose> wanted() const;
     [[nodiscard]] std::size_t projector() const { return 0; }
 
     Settings& settings_;

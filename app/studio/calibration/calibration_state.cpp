@@ -90,7 +90,7 @@ CalibrationStep posesStep(const CalibrationState& state) {
 }
 
 QString lensWords(const CalibratedDevice& device) {
-    return tr("focal length %1 ± %2 px, error %3 px")
+    return tr("focal %1 ± %2 px, error %3 px")
         .arg(number(device.lens[kFocalLength], 0), number(device.sigma[kFocalLength], 1), number(device.rms, 2));
 }
 
@@ -183,14 +183,24 @@ NextStep photographNext(const CalibrationState& state) {
     return next;
 }
 
+/// Whether another pose is worth the trouble.
+QString nextPoseWords(const CalibrationState& state) {
+    const auto& next = state.result->next;
+    if (!next || state.setup.way == CaptureWay::folder) return {};
+    if (!next->worthIt) return tr("Another pose is no longer worth it.");
+    return tr("Another pose, as outlined in the live picture, would lower the mean error from %1 to %2 mm.")
+        .arg(number(next->meanBefore, 2), number(next->meanAfter, 2));
+}
+
 NextStep solvedNext(const CalibrationState& state) {
     const CalibrationResult& result = *state.result;
     const auto doubts = doubtsOf(result);
     NextStep next;
     next.tone = doubts.empty() ? Tone::good : Tone::warning;
-    const QString within = result.millimetres ? tr("Light lands within %1 mm of where it should, in 95 of 100 places.")
-                                                    .arg(number(*result.millimetres, 2))
-                                              : tr("How far it can be trusted needs more poses.");
+    const QString within = result.millimetres()
+                               ? tr("Light lands within %1 mm of where it should, in 95 of 100 places.")
+                                     .arg(number(*result.millimetres(), 2))
+                               : tr("How far it can be trusted needs more poses.");
     if (state.isUsed()) {
         next.title = tr("Calibrated, and in use");
         next.text = within + ' ' + tr("Undo takes it back; in Versions it can be compared with those before.");
@@ -198,9 +208,15 @@ NextStep solvedNext(const CalibrationState& state) {
     }
     next.what = Do::use;
     next.button = tr("Use this calibration");
+    if (state.isImported) {
+        next.tone = Tone::quiet;
+        next.title = tr("A calibration from a file");
+        next.text = tr("Its figures are told at the right, as far as the file has them.");
+        return next;
+    }
     if (doubts.empty()) {
         next.title = tr("This calibration is good");
-        next.text = within;
+        next.text = within + ' ' + nextPoseWords(state);
     } else {
         const FindingWords words = wordsOf(doubts.front());
         next.title = words.title;
@@ -370,6 +386,22 @@ std::vector<Finding> doubtsOf(const CalibrationResult& result) {
     return doubts;
 }
 
+std::optional<double> CalibrationResult::millimetres() const {
+    if (!plan || !std::isfinite(plan->worst)) return heldOutMillimetres;
+    return std::max(plan->worst, heldOutMillimetres.value_or(0.0));
+}
+
+CalibrationRecord recordOf(const CalibrationResult& result) {
+    CalibrationRecord record;
+    record.result = result.solved;
+    record.source.date = result.date;
+    record.source.board = boardText(result.setup.board);
+    record.source.pattern = result.setup.pattern;
+    record.source.inputs = {result.setup.way == CaptureWay::folder ? result.setup.folder.string()
+                                                                   : wayWords(result.setup).toStdString()};
+    return record;
+}
+
 InstallationVersion versionOf(const CalibrationState& state, const Installation& installation) {
     const CalibrationResult& result = *state.result;
     InstallationVersion version;
@@ -381,7 +413,7 @@ InstallationVersion versionOf(const CalibrationState& state, const Installation&
     std::optional<double> heldOut;
     for (const ViewQuality& view : result.solved.views)
         if (view.heldOut) heldOut = std::max(heldOut.value_or(0.0), *view.heldOut);
-    add("Light lands within", result.millimetres, "mm");
+    add("Light lands within", result.millimetres(), "mm");
     add("Truly beside", result.trueMillimetres, "mm");
     add("Held out, worst", heldOut, "px");
     add("Camera error", result.solved.camera.rms, "px");
@@ -391,6 +423,7 @@ InstallationVersion versionOf(const CalibrationState& state, const Installation&
     add("Poses", static_cast<double>(result.solved.views.size()), "");
     version.inputs = {wayWords(result.setup).toStdString(), boardWords(result.setup.board).toStdString(),
                       result.setup.pattern};
+    version.result = calibrationText(recordOf(result));
     version.installation = installation;
     return version;
 }

@@ -8,7 +8,10 @@
 #include <QString>
 
 #include "app/studio/calibration/calibration_setup.h"
+#include "app/studio/calibration/error_plan.h"
 #include "app/studio/calibration/pose_pictures.h"
+#include "calibration/report/calibration_record.h"
+#include "calibration/solve/next_pose.h"
 #include "calibration/solve/observations.h"
 #include "calibration/solve/procam_calibration.h"
 #include "core/scene/installation_store.h"
@@ -48,7 +51,12 @@ struct CalibrationResult {
     std::string date;                     ///< ISO 8601 in UTC
     CalibrationSetup setup;               ///< it was made with
     /// 95 % of light lands within this on the boards, millimetres, by views that were held out; empty with too few.
-    std::optional<double> millimetres;
+    std::optional<double> heldOutMillimetres;
+    std::optional<ErrorPlan> plan; ///< on table and device; empty while nobody knows where the table is
+    std::optional<NextPose> next;  ///< that would help most
+    /// 95 % of light lands within this where the device stands: the larger of what the errors of all parameters make of
+    /// it and of what held-out views show. Empty with too few poses.
+    [[nodiscard]] std::optional<double> millimetres() const;
     /// In the lab, where the truth is known: how far it truly lands beside, root mean square, millimetres.
     std::optional<double> trueMillimetres;
 };
@@ -61,11 +69,12 @@ struct CalibrationState {
     std::optional<Finding> refusal;                  ///< of the capture as a whole
     std::shared_ptr<const CalibrationResult> result; ///< of the poses that count
     Work work = Work::none;
-    double fraction = 0.0; ///< of the work
-    QString stage;         ///< in words
-    QString trouble;       ///< what failed apart from the capture: a camera that is gone, a folder that is empty
-    std::string flatPose;  ///< name of the pose in which the board lay flat on the table
-    std::string usedDate;  ///< of the result that the room uses, as far as it came from here
+    double fraction = 0.0;   ///< of the work
+    QString stage;           ///< in words
+    QString trouble;         ///< what failed apart from the capture: a camera that is gone, a folder that is empty
+    std::string flatPose;    ///< name of the pose in which the board lay flat on the table
+    bool isImported = false; ///< the result came from a file, without poses to look at
+    std::string usedDate;    ///< of the result that the room uses, as far as it came from here
     [[nodiscard]] int counting() const;
     [[nodiscard]] bool isSolved() const noexcept { return result != nullptr && !refusal; }
     [[nodiscard]] bool isUsed() const { return result && usedDate == result->date; }
@@ -117,6 +126,9 @@ struct FindingWords {
 
 /// What is kept of it beside the installation: date, figures, inputs.
 [[nodiscard]] InstallationVersion versionOf(const CalibrationState& state, const Installation& installation);
+
+/// The result as it is kept and exchanged.
+[[nodiscard]] CalibrationRecord recordOf(const CalibrationResult& result);
 
 /// What the poses that count tell together.
 [[nodiscard]] std::vector<ViewObservations> countingViews(const CalibrationState& state);

@@ -89,7 +89,7 @@ public:
 
     [[nodiscard]] CapturedPose capture(int pose, const std::function<void(const Shot&)>& onShot,
                                        const Progress& progress) override {
-        lab_.lay(poses_[indexOf(pose)]);
+        lab_.lay(wanted_.value_or(poses_[indexOf(pose)]));
         // Once the fault was told it is mended: what is photographed again is sound.
         if (faulty_ && pose == faultyPoses_ && pose < setup_.poses) return captureFaulty(pose, onShot, progress);
         if (!capturer_) {
@@ -122,12 +122,25 @@ public:
         for (const cv::Point3d& corner : cornersOf(setup_.board)) {
             const double metres = lab_.options().metresPerUnit;
             const glm::dvec4 point(metres * corner.x, metres * corner.y, 0.0, 1.0);
-            if (const auto pixel = lab_.cameraPixel(glm::dvec3(poses_[indexOf(pose)] * point)))
+            if (const auto pixel = lab_.cameraPixel(glm::dvec3(wanted_.value_or(poses_[indexOf(pose)]) * point)))
                 outline.emplace_back(pixel->x, pixel->y);
         }
         return outline;
     }
     [[nodiscard]] const Installation* truth() const override { return &truth_; }
+    void setWanted(const std::optional<PoseVector>& cameraFromBoard) override {
+        wanted_.reset();
+        if (!cameraFromBoard) return;
+        const PoseVector& pose = *cameraFromBoard;
+        cv::Matx33d turn;
+        cv::Rodrigues(cv::Vec3d(pose[0], pose[1], pose[2]), turn);
+        glm::dmat4 matrix(1.0);
+        for (int row = 0; row < 3; ++row) {
+            for (int column = 0; column < 3; ++column) matrix[column][row] = turn(row, column);
+            matrix[3][row] = lab_.options().metresPerUnit * pose[static_cast<std::size_t>(3 + row)];
+        }
+        wanted_ = glm::inverse(lab_.camera().cameraFromWorld) * matrix;
+    }
 
 private:
     [[nodiscard]] CapturedPose captureFaulty(int pose, const std::function<void(const Shot&)>& onShot,
@@ -157,6 +170,7 @@ private:
     LabTimeCamera camera_;
     std::unique_ptr<PatternDisplay> display_;
     std::vector<glm::dmat4> poses_;
+    std::optional<glm::dmat4> wanted_; ///< the world from the board, metres
     std::unique_ptr<LabCapturer> faulty_;
     int faultyPoses_ = 0;
     std::function<void(const Shot&)> onShot_;
@@ -211,6 +225,29 @@ private:
 };
 
 } // namespace
+
+std::optional<double> lightError(const CalibratedCamera& believed, const CalibratedCamera& truth, double side) {
+    constexpr int kSteps = 9;
+    double sum = 0.0;
+    int count = 0;
+    for (int i = 0; i < kSteps; ++i)
+        for (int j = 0; j < kSteps; ++j) {
+            const glm::dvec3 point(side * (i / (kSteps - 1.0) - 0.5), 0.0, side * (j / (kSteps - 1.0) - 0.5));
+            const auto pixel = pixelOf(believed, point);
+            if (!pixel || pixel->x < 0.0 || pixel->y < 0.0 || pixel->x >= believed.size.x ||
+                pixel->y >= believed.size.y)
+                continue;
+            // The pixel that is meant for this point truly lights another.
+            const glm::dvec3 from = positionOf(truth);
+            const glm::dvec3 direction = directionOf(truth, *pixel);
+            if (direction.y > -1e-6) continue;
+            const glm::dvec3 off = from - (from.y / direction.y) * direction - point;
+            sum += glm::dot(off, off);
+            ++count;
+        }
+    if (count == 0) return std::nullopt;
+    return std::sqrt(sum / count);
+}
 
 std::vector<cv::Point3d> cornersOf(const CalibrationBoard& board) {
     const std::vector<cv::Point3d> points = pointsOf(board);

@@ -10,6 +10,7 @@
 
 #include "app/studio/calibration/calibration_setup.h"
 #include "calibration/capture/pose_capture.h"
+#include "calibration/solve/bundle.h"
 #include "core/base/progress.h"
 #include "core/scene/installation.h"
 
@@ -32,6 +33,8 @@ public:
     [[nodiscard]] virtual bool isLive() const = 0;
     /// Where the board should be for the pose of this number.
     [[nodiscard]] virtual BoardOutline ghost(int pose) const = 0;
+    /// From now on this pose (the camera from the board, its unit) is the one to take next; nothing: as planned.
+    virtual void setWanted(const std::optional<PoseVector>& cameraFromBoard) { static_cast<void>(cameraFromBoard); }
     /// Automatics of the camera that are still on, and what to do about them.
     [[nodiscard]] virtual std::vector<std::string> automatics() const { return {}; }
     /// Camera and projector as they truly are; null where nobody knows.
@@ -52,6 +55,11 @@ openCameraBench(const CalibrationSetup& setup, std::shared_ptr<PatternDisplay> d
 /// Outlines of poses that together tell a camera well: flat first, then tilted to all sides and spread over the
 /// picture, as a camera of that focal length (pixels) would see them.
 [[nodiscard]] BoardOutline guideOutline(const CalibrationBoard& board, cv::Size camera, double focal, int pose);
+
+/// Root mean square distance, metres, by which light of `believed` lands beside where `truth` puts it, over a square of
+/// `side` metres on the table around the world's origin; empty where neither lights it.
+[[nodiscard]] std::optional<double> lightError(const CalibratedCamera& believed, const CalibratedCamera& truth,
+                                               double side);
 
 /// The four corners of the area that the board's points span, in the board's frame.
 [[nodiscard]] std::vector<cv::Point3d> cornersOf(const CalibrationBoard& board);

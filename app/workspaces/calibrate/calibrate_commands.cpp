@@ -1,6 +1,7 @@
 #include "app/workspaces/calibrate/calibrate_commands.h"
 
 #include <QApplication>
+#include <QFileDialog>
 
 #include "app/workspaces/common/export_dialogs.h"
 
@@ -19,6 +20,24 @@ QAction* addCalibrateAction(const CalibrateParts& parts, const char* id, const Q
     return action;
 }
 
+void askExport(const CalibrateParts& parts) {
+    askFile(QApplication::activeWindow(), parts.studio.settings, "calibrate.export", "Export the calibration",
+            "calibration.json", {{"Lumorph's calibration (JSON)", "json"}, {"OpenCV (YAML)", "yaml"}},
+            [parts](const QString& file) { parts.service.exportTo(file.toStdString()); });
+}
+
+void askImport(const CalibrateParts& parts) {
+    auto* dialog = new QFileDialog(QApplication::activeWindow(), "Import a calibration");
+    dialog->setObjectName("calibrate.import.file");
+    dialog->setOption(QFileDialog::DontUseNativeDialog);
+    dialog->setAttribute(Qt::WA_DeleteOnClose);
+    dialog->setFileMode(QFileDialog::ExistingFile);
+    dialog->setNameFilter("Calibrations (*.json *.yaml *.yml)");
+    QObject::connect(dialog, &QFileDialog::fileSelected, dialog,
+                     [parts](const QString& file) { parts.service.importFrom(file.toStdString()); });
+    dialog->open();
+}
+
 } // namespace
 
 void useFolder(CalibrationService& service, Settings& settings, const std::filesystem::path& folder) {
@@ -29,10 +48,11 @@ void useFolder(CalibrationService& service, Settings& settings, const std::files
 }
 
 void askForImages(const CalibrateParts& parts) {
-    askFolder(QApplication::activeWindow(), parts.studio.settings, "calibrate.folder",
-              "Folder of images: in it one folder for each pose", [parts](const QString& folder) {
-                  useFolder(parts.service, parts.studio.settings, folder.toStdString());
-              });
+    askFolder(
+        QApplication::activeWindow(), parts.studio.settings, "calibrate.folder",
+        "Folder of images: in it one folder for each pose",
+        [parts](const QString& folder) { useFolder(parts.service, parts.studio.settings, folder.toStdString()); },
+        "Choose");
 }
 
 void addCalibrateCommands(const CalibrateParts& parts) {
@@ -63,7 +83,15 @@ void addCalibrateCommands(const CalibrateParts& parts) {
     QAction* use = addCalibrateAction(parts, "calibrate.use", "Use this calibration", "check",
                                       "The room's projector gets these figures; undo takes them back",
                                       [&service] { service.use(); });
+    QAction* save = addCalibrateAction(parts, "calibrate.export", "Export the calibration...", "export",
+                                       "As JSON, or as YAML that OpenCV reads", [parts] { askExport(parts); });
+    save->setIconText("Export...");
+    addCalibrateAction(parts, "calibrate.import", "Import a calibration...", "open",
+                       "JSON of Lumorph, or YAML as users of OpenCV's stereoCalibrate write it",
+                       [parts] { askImport(parts); })
+        ->setIconText("Import...");
     const auto follow = [=, &service] {
+        save->setEnabled(service.state().result != nullptr);
         const CalibrationState& state = service.state();
         const NextStep step = nextOf(state);
         const bool works = state.work != CalibrationState::Work::none;

@@ -10,6 +10,7 @@
 #include "app/studio/widgets/panel.h"
 #include "app/workspaces/calibrate/calibrate_docks.h"
 #include "app/workspaces/calibrate/capture_picture.h"
+#include "app/workspaces/calibrate/error_map_view.h"
 #include "app/workspaces/common/step_card.h"
 #include "app/workspaces/scene/segments.h"
 
@@ -58,6 +59,8 @@ public:
         column->addWidget(progress_);
         column->addWidget(makeBar());
         column->addWidget(picture_, 1);
+        map_ = new ErrorMapView(this);
+        column->addWidget(map_, 1);
         legend_ = new QLabel(this);
         legend_->setObjectName("calibrate.legend");
         legend_->setProperty("look", "muted");
@@ -82,11 +85,12 @@ private:
              {"calibrate.show.columns", "Columns", "Which column of the projector lights each pixel, in colours"},
              {"calibrate.show.rows", "Rows", "Which row of the projector lights each pixel, in colours"},
              {"calibrate.show.confidence", "Confidence", "Bright where the patterns could be read well"},
-             {"calibrate.show.errors", "Errors", "Where points lie beside what was solved, enlarged"}},
+             {"calibrate.show.errors", "Errors", "Where points lie beside what was solved, enlarged"},
+             {"calibrate.show.map", "Map", "How far light may land beside, on table and device"}},
             bar);
         connect(segments_, &Segments::chosen, this, [this](int index) {
-            if (static_cast<Show>(index) != Show::live && parts_.selection.pose().empty() &&
-                !parts_.service.state().poses.empty())
+            if (static_cast<Show>(index) != Show::live && static_cast<Show>(index) != Show::map &&
+                parts_.selection.pose().empty() && !parts_.service.state().poses.empty())
                 parts_.selection.set(static_cast<Show>(index), parts_.service.state().poses.back().name);
             else
                 parts_.selection.setShow(static_cast<Show>(index));
@@ -140,6 +144,15 @@ private:
     void showPicture() {
         const Show show = parts_.selection.show();
         segments_->setChosen(static_cast<int>(show));
+        map_->setVisible(show == Show::map);
+        picture_->setVisible(show != Show::map);
+        if (show == Show::map) {
+            const auto& result = parts_.service.state().result;
+            poseName_->clear();
+            legend_->clear();
+            map_->show(result ? result->plan : std::nullopt, deviceOutline());
+            return;
+        }
         if (show == Show::live) return showLive();
         const CalibrationPose* pose = chosen();
         poseName_->setText(pose ? QString::fromStdString(pose->name) : QString());
@@ -180,6 +193,22 @@ private:
             for (const cv::Point2d& point : pose->seen->corners.seen) marks.corners.emplace_back(point.x, point.y);
         if (pose->refusal) marks.words = wordsOf(*pose->refusal).title;
         picture_->show(image, pictures.camera, std::move(marks), {});
+    }
+
+    /// Around the rig at rest, in the room.
+    [[nodiscard]] QPolygonF deviceOutline() const {
+        const StudioState& state = parts_.studio.document.state();
+        if (!state.rig.rig) return {};
+        glm::vec3 low(1e30F), high(-1e30F);
+        for (const glm::vec3& point : state.rig.rig->restMesh().positions)
+            low = glm::min(low, point), high = glm::max(high, point);
+        QPolygonF outline;
+        for (const glm::vec2 corner :
+             {glm::vec2(low.x, low.z), glm::vec2(high.x, low.z), glm::vec2(high.x, high.z), glm::vec2(low.x, high.z)}) {
+            const glm::vec4 world = state.installation->worldFromDevice * glm::vec4(corner.x, 0.0F, corner.y, 1.0F);
+            outline << QPointF(world.x, world.z);
+        }
+        return outline;
     }
 
     void addArrows(PictureMarks& marks, const std::string& pose) {
@@ -226,6 +255,7 @@ private:
     CalibrateParts parts_;
     StepCard* card_;
     CapturePicture* picture_;
+    ErrorMapView* map_ = nullptr;
     QProgressBar* progress_ = nullptr;
     Segments* segments_ = nullptr;
     QLabel* poseName_ = nullptr;

@@ -52,7 +52,7 @@ void PoseBars::paintEvent(QPaintEvent* /*event*/) {
         const char* name;
         QColor color;
     } kinds[] = {{"camera", colors.levelLow}, {"projector", colors.accent}, {"held out", colors.warning}};
-    double x = kBarName;
+    double x = 4.0;
     painter.setPen(colors.textMuted);
     for (const auto& kind : kinds) {
         painter.fillRect(QRectF(x, 6, 8, 8), kind.color);
@@ -133,7 +133,7 @@ void ResidualField::paintEvent(QPaintEvent* /*event*/) {
     const double enlarged = kFieldArrow * image_.width() / longest;
     painter.setClipRect(area);
     const auto draw = [&](const std::vector<Residual>& all, const QColor& color) {
-        painter.setPen(QPen(color, 1.0));
+        painter.setPen(QPen(color, 1.2));
         for (const Residual& one : all) {
             const QPointF at = area.topLeft() + QPointF(one.at.x + 0.5, one.at.y + 0.5) * scale;
             painter.drawLine(at, at + QPointF(one.error.x, one.error.y) * scale * enlarged);

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 #include <tuple>
 #include <vector>
 
@@ -71,6 +72,12 @@ public:
         column.layout->addWidget(findings_);
         addFigures(*column.layout);
         addPlots(*column.layout);
+        auto* files = new QHBoxLayout;
+        files->setSpacing(8);
+        for (const char* id : {"calibrate.export", "calibrate.import"})
+            files->addWidget(makeCommandButton(parts.studio.commands.find(id), QString("result.") + id, this), 1);
+        whole->addLayout(files);
+        files->setContentsMargins(16, 0, 16, 8);
         connect(&parts.service, &CalibrationService::changed, this, [this] { refresh(); });
         connect(&parts.selection, &CalibrateSelection::changed, this, [this] { showPlots(); });
         refresh();
@@ -102,6 +109,11 @@ private:
             const char* tip;
         } facts[] = {
             {"truth", "Truly beside", "Known in the lab alone: how far light really lands beside on the table"},
+            {"mapMean", "By uncertainty, mean",
+             "What the uncertainties of all parameters make of it, within 10 cm of the "
+             "middle: 95 of 100"},
+            {"mapWorst", "By uncertainty, worst", "The same at the worst place"},
+            {"heldOutMm", "By held-out poses", "What poses that were left out of the solution show: 95 of 100"},
             {"heldOut", "Held out, worst",
              "A pose that was left out of the solution: how far the others put its light "
              "beside, in projector pixels"},
@@ -198,10 +210,16 @@ private:
 
     void showFigures(const CalibrationResult& result) {
         const ProcamCalibration& solved = result.solved;
-        headline_->setText(result.millimetres ? QString("%1 mm").arg(*result.millimetres, 0, 'f', 2) : "not known");
-        headlineWords_->setText(result.millimetres
-                                    ? "Light lands no farther beside, in 95 of 100 places where boards have been."
-                                    : "With more poses the studio can tell how far light lands beside.");
+        const auto within = result.millimetres();
+        headline_->setText(within ? QString("%1 mm").arg(*within, 0, 'f', 2) : "not known");
+        headlineWords_->setText(within ? "Light lands no farther beside where the device stands, in 95 of 100 cases."
+                                       : "With more poses the studio can tell how far light lands beside.");
+        const auto millimetres = [](const std::optional<double>& value) {
+            return value && std::isfinite(*value) ? QString("%1 mm").arg(*value, 0, 'f', 2) : QString();
+        };
+        set("mapMean", result.plan ? millimetres(result.plan->mean) : QString());
+        set("mapWorst", result.plan ? millimetres(result.plan->worst) : QString());
+        set("heldOutMm", millimetres(result.heldOutMillimetres));
         set("truth", result.trueMillimetres ? QString("%1 mm").arg(*result.trueMillimetres, 0, 'f', 2) : QString());
         double worst = -1.0;
         for (const ViewQuality& view : solved.views) worst = std::max(worst, view.heldOut.value_or(-1.0));

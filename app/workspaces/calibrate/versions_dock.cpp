@@ -63,11 +63,13 @@ public:
         compared_->setObjectName("calibrate.versions.compared");
         compared_->setProperty("look", "muted");
         compared_->setWordWrap(true);
+        compared_->setSizePolicy(QSizePolicy::Preferred, QSizePolicy::Maximum);
         column.layout->addWidget(compared_);
         table_ = new QWidget(this);
         table_->setLayout(new QGridLayout);
         table_->layout()->setContentsMargins(0, 0, 0, 0);
         column.layout->addWidget(table_);
+        column.layout->addStretch(1);
         connect(list_, &QListWidget::currentRowChanged, this, [this] { showChosen(); });
         connect(back_, &QPushButton::clicked, this, [this] {
             if (const KeptVersion* version = chosen()) parts_.studio.room.bringBackVersion(version->file);

@@ -107,11 +107,11 @@ void askFile(QWidget* parent, Settings& settings, const QString& id, const QStri
 }
 
 void askFolder(QWidget* parent, Settings& settings, const QString& id, const QString& title,
-               std::function<void(const QString&)> chosen) {
+               std::function<void(const QString&)> chosen, const QString& accept) {
     QFileDialog* dialog = makeFileDialog(parent, settings, id, title);
     dialog->setFileMode(QFileDialog::Directory);
     dialog->setOption(QFileDialog::ShowDirsOnly);
-    dialog->setLabelText(QFileDialog::Accept, QObject::tr("Export here"));
+    dialog->setLabelText(QFileDialog::Accept, accept.isEmpty() ? QObject::tr("Export here") : accept);
     QObject::connect(dialog, &QFileDialog::fileSelected, dialog,
                      [&settings, chosen = std::move(chosen)](const QString& folder) {
                          settings.setValue(kFolderKey, folder);

@@ -24,9 +24,9 @@ struct SaveKind {
 /// Asks where to save; asks again before it replaces a file. `id` names the dialog; the folder used last is kept.
 void askFile(QWidget* parent, Settings& settings, const QString& id, const QString& title, const QString& name,
              const std::vector<SaveKind>& kinds, std::function<void(const QString&)> chosen);
-/// Asks for a folder that is there.
+/// Asks for a folder that is there. `accept`: of the button; empty: "Export here".
 void askFolder(QWidget* parent, Settings& settings, const QString& id, const QString& title,
-               std::function<void(const QString&)> chosen);
+               std::function<void(const QString&)> chosen, const QString& accept = {});
 
 /// Which shape to write: where the device stands, or where it is asked to be.
 void askShape(QWidget* parent, std::function<void(bool estimated)> chosen);

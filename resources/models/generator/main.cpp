@@ -5,7 +5,7 @@
 
 #include "core/base/error.h"
 #include "core/rig/rig_file.h"
-#include "resources/models/generator/models.h"
+#include "core/rig/templates/bundled_rigs.h"
 
 namespace {
 

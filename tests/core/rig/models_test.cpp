@@ -1,4 +1,4 @@
-#include "resources/models/generator/models.h"
+#include "core/rig/templates/bundled_rigs.h"
 
 #include <gtest/gtest.h>
 
@@ -36,7 +36,8 @@ TEST_P(BundledModels, AreClosedSolidsInEveryCorner) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Models, BundledModels,
-                         testing::Values(Bundled{"tablet.glb", tabletRig}, Bundled{"pin_display.glb", pinDisplayRig},
+                         testing::Values(Bundled{"tablet.glb", [] { return tabletRig(); }},
+                                         Bundled{"pin_display.glb", [] { return pinDisplayRig(); }},
                                          Bundled{"ribbon.glb", ribbonRig}, Bundled{"hills.glb", hillsRig}),
                          [](const auto& kind) {
                              const std::string file = kind.param.file;

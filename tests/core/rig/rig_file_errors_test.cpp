@@ -8,7 +8,7 @@
 #include "core/geometry/mesh_file.h"
 #include "core/geometry/model.h"
 #include "core/rig/rig_file.h"
-#include "resources/models/generator/models.h"
+#include "core/rig/templates/bundled_rigs.h"
 #include "tests/core/temporary_folder.h"
 #include "tests/support/small_rigs.h"
 

@@ -12,7 +12,7 @@
 #include "core/geometry/mesh_check.h"
 #include "core/geometry/mesh_file.h"
 #include "core/geometry/model.h"
-#include "resources/models/generator/models.h"
+#include "core/rig/templates/bundled_rigs.h"
 #include "tests/core/rig/point_rig.h"
 #include "tests/core/temporary_folder.h"
 #include "tests/support/small_rigs.h"
@@ -89,10 +89,10 @@ TEST_P(RigFileRoundTrips, GiveTheSameRig) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Rigs, RigFileRoundTrips,
-                         testing::Values(Kind{"Tablet", tabletRig}, Kind{"PinDisplay", pinDisplayRig},
-                                         Kind{"Ribbon", ribbonRig}, Kind{"Hills", hillsRig},
-                                         Kind{"Cushion", test::cushionRig}, Kind{"Arm", test::armRig},
-                                         Kind{"Crowded", crowdedRig}),
+                         testing::Values(Kind{"Tablet", [] { return tabletRig(); }},
+                                         Kind{"PinDisplay", [] { return pinDisplayRig(); }}, Kind{"Ribbon", ribbonRig},
+                                         Kind{"Hills", hillsRig}, Kind{"Cushion", test::cushionRig},
+                                         Kind{"Arm", test::armRig}, Kind{"Crowded", crowdedRig}),
                          [](const auto& kind) { return std::string(kind.param.name); });
 
 /// As a modelling tool exports it: a cube whose corners are split for normals, a hinge on its node.

@@ -12,7 +12,7 @@
 #include <gtest/gtest.h>
 
 #include "core/base/error.h"
-#include "resources/models/generator/models.h"
+#include "core/rig/templates/bundled_rigs.h"
 #include "tests/core/rig/point_rig.h"
 #include "tests/support/small_rigs.h"
 

@@ -5,7 +5,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "resources/models/generator/models.h"
+#include "core/rig/templates/bundled_rigs.h"
 #include "tests/core/rig/point_rig.h"
 #include "tests/support/small_rigs.h"
 

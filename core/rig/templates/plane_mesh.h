@@ -17,6 +17,15 @@ triangulatePlane(const std::vector<glm::dvec2>& points,
                  const std::vector<std::pair<std::uint32_t, std::uint32_t>>& edges,
                  const std::function<bool(const glm::dvec2&)>& keep);
 
+struct PlaneMesh {
+    std::vector<glm::dvec2> points;    ///< those given, in their order, and where edges cross
+    std::vector<glm::uvec3> triangles; ///< of the points' convex hull, counter-clockwise
+};
+
+/// The same for edges that may cross or overlap.
+[[nodiscard]] PlaneMesh triangulateCrossing(const std::vector<glm::dvec2>& points,
+                                            const std::vector<std::pair<std::uint32_t, std::uint32_t>>& edges);
+
 /// True inside the polygon (even-odd).
 [[nodiscard]] bool insidePolygon(const std::vector<glm::dvec2>& polygon, const glm::dvec2& point);
 

@@ -6,8 +6,9 @@
 
 #include <glm/geometric.hpp>
 
-#include "resources/models/generator/models.h"
-#include "resources/models/generator/plane_mesh.h"
+#include "core/base/error.h"
+#include "core/rig/templates/bundled_rigs.h"
+#include "core/rig/templates/plane_mesh.h"
 
 // The sheet is cut like an opened envelope. Bend lines cut off the four corners; two more, along x,
 // end the wide flaps of the long edges, which slits part from the rest. Seen from above, a flap that
@@ -19,31 +20,61 @@ namespace lumorph {
 namespace {
 
 // Millimetres.
-constexpr double kHalfLength = 105.0;
-constexpr double kHalfWidth = 75.0;
 constexpr double kInset = 0.5; ///< the sheet ends inside the housing, so that a skirt's bulge stays inside too
 constexpr double kLedge = 16.0;
 constexpr double kSheetBottom = 18.0;
 constexpr double kNeutral = 19.0;
 constexpr double kSheetTop = 20.0;
 constexpr double kArc = 20.0;
-constexpr double kFullHeight = 84.2;
-constexpr double kCornerAlongX = 66.0;
-constexpr double kCornerAlongZ = 69.0;
 constexpr double kStrip = 3.5; ///< of still sheet between a corner's bend line and the slit
 constexpr double kSlit = 1.0;
 constexpr double kRow = 2.0;     ///< between rows in the arc
 constexpr double kColumn = 11.0; ///< between columns where the sheet stays straight
 constexpr int kSkirtRows = 12;
 
-constexpr double kSheetX = kHalfLength - kInset;
-constexpr double kSheetZ = kHalfWidth - kInset;
+/// What can be chosen, and what follows from it.
+struct Measures {
+    explicit Measures(const TabletSize& size)
+        : halfLength(5.0 * size.width), halfWidth(5.0 * size.depth), cornerAlongX(10.0 * size.cornerAlongWidth),
+          cornerAlongZ(10.0 * size.cornerAlongDepth), sheetX(halfLength - kInset), sheetZ(halfWidth - kInset),
+          edgeLine(sheetZ - (10.0 * size.reach - kNeutral + kArc * (1.0 - 2.0 / std::numbers::pi))) {}
 
-/// The bend line of the edge flaps: at 90 degrees an arc of kArc rises by kArc * 2 / pi and the rest
-/// of the flap stands upright on it.
-constexpr double kEdgeLine = kSheetZ - (kFullHeight - kNeutral + kArc * (1.0 - 2.0 / std::numbers::pi));
+    double halfLength;
+    double halfWidth;
+    double cornerAlongX;
+    double cornerAlongZ;
+    double sheetX;
+    double sheetZ;
+    /// The bend line of the edge flaps: at 90 degrees an arc of kArc rises by kArc * 2 / pi and the rest
+    /// of the flap stands upright on it.
+    double edgeLine;
+};
 
-struct Flap {
+void requirePart(bool good, const char* parameter, const char* why, const char* remedy) {
+    if (!good) throw InvalidInput(std::string("tablet: ") + parameter, why, remedy);
+}
+
+/// Refuses measures with which a part would vanish or reach into another.
+void checkMeasures(const Measures& m) {
+    constexpr double kLeast = kArc + 2.0;
+    requirePart(m.sheetZ - m.edgeLine > kLeast, "reach", "the flaps of the long edges would vanish",
+                "choose a larger one");
+    requirePart(m.edgeLine > 2.0, "reach", "the flaps of the long edges would meet in the middle",
+                "choose a smaller one, or a larger depth");
+    requirePart(m.cornerAlongX * m.cornerAlongZ / std::hypot(m.cornerAlongX, m.cornerAlongZ) > kLeast,
+                "cornerX, cornerZ", "the corners would vanish", "choose larger ones");
+    requirePart(m.cornerAlongZ < m.sheetZ - 2.0, "cornerZ", "the corners of one side would meet",
+                "choose a smaller one, or a larger depth");
+    const double slope = m.cornerAlongX / m.cornerAlongZ;
+    const double slit = (kStrip + kSlit) * std::hypot(1.0, slope);
+    requirePart(m.sheetX - m.cornerAlongX - slit > 5.0, "cornerX",
+                "nothing would be left of the flaps of the long edges", "choose a smaller one, or a larger width");
+    requirePart(m.sheetX - m.cornerAlongX + slope * (m.sheetZ - m.edgeLine) - slit < m.sheetX - 1.0, "reach",
+                "the flaps of the long edges would reach past the corners",
+                "choose a smaller one, or a larger cornerZ");
+}
+
+struct TabletFlap {
     const char* name;
     glm::dvec2 origin;    ///< a point of its bend line, (x, z)
     glm::dvec2 direction; ///< to its free end
@@ -74,56 +105,56 @@ std::vector<double> columnDistances(double end) {
     return distances;
 }
 
-Quarter firstQuarter(int edgeFlap, int cornerFlap) {
-    const double slope = kCornerAlongX / kCornerAlongZ; // of the corner's bend line, x against z
-    const double perX = std::sqrt(1.0 + slope * slope); // distance across the line to distance along x
-    const double lineX = kSheetX - kCornerAlongX;
-    const auto side = [&](double z, double across) { return lineX + slope * (kSheetZ - z) - across * perX; };
+Quarter firstQuarter(const Measures& m, int edgeFlap, int cornerFlap) {
+    const double slope = m.cornerAlongX / m.cornerAlongZ; // of the corner's bend line, x against z
+    const double perX = std::sqrt(1.0 + slope * slope);   // distance across the line to distance along x
+    const double lineX = m.sheetX - m.cornerAlongX;
+    const auto side = [&](double z, double across) { return lineX + slope * (m.sheetZ - z) - across * perX; };
     Quarter quarter;
     auto& columns = quarter.columns;
 
-    const double tip = side(kSheetZ, kStrip + kSlit);
+    const double tip = side(m.sheetZ, kStrip + kSlit);
     const int steps = static_cast<int>(std::round(tip / kColumn));
     for (int k = 0; k < steps; ++k) // the middle itself lies between the first columns of two quarters
-        columns.push_back({{tip * (2 * k + 1) / (2 * steps + 1), kSheetZ}, edgeFlap, true, {}});
-    auto distances = columnDistances(kSheetZ - kEdgeLine);
+        columns.push_back({{tip * (2 * k + 1) / (2 * steps + 1), m.sheetZ}, edgeFlap, true, {}});
+    auto distances = columnDistances(m.sheetZ - m.edgeLine);
     for (auto u = distances.rbegin(); u != distances.rend(); ++u) {
-        const double z = u == distances.rbegin() ? kSheetZ : kEdgeLine + *u;
+        const double z = u == distances.rbegin() ? m.sheetZ : m.edgeLine + *u;
         columns.push_back({{side(z, kStrip + kSlit), z}, edgeFlap, true, {}});
     }
     quarter.edgeLineEnd = columns.size();
-    columns.push_back({{side(kEdgeLine, kStrip + kSlit), kEdgeLine}, -1, true, {}});
-    columns.push_back({{side(kEdgeLine, kStrip), kEdgeLine}, -1, false, {}});
-    columns.push_back({{side(kSheetZ, kStrip), kSheetZ}, -1, false, {}});
+    columns.push_back({{side(m.edgeLine, kStrip + kSlit), m.edgeLine}, -1, true, {}});
+    columns.push_back({{side(m.edgeLine, kStrip), m.edgeLine}, -1, false, {}});
+    columns.push_back({{side(m.sheetZ, kStrip), m.sheetZ}, -1, false, {}});
 
     quarter.cornerLineBegin = columns.size();
-    columns.push_back({{lineX, kSheetZ}, -1, true, {}});
-    const double altitude = kCornerAlongX * kCornerAlongZ / std::hypot(kCornerAlongX, kCornerAlongZ);
+    columns.push_back({{lineX, m.sheetZ}, -1, true, {}});
+    const double altitude = m.cornerAlongX * m.cornerAlongZ / std::hypot(m.cornerAlongX, m.cornerAlongZ);
     distances = columnDistances(altitude);
     for (const double u : distances)
         columns.push_back(
-            {{u == altitude ? kSheetX : lineX + kCornerAlongX * u / altitude, kSheetZ}, cornerFlap, true, {}});
-    columns.back().place.x = kSheetX;
+            {{u == altitude ? m.sheetX : lineX + m.cornerAlongX * u / altitude, m.sheetZ}, cornerFlap, true, {}});
+    columns.back().place.x = m.sheetX;
     for (auto u = distances.rbegin() + 1; u != distances.rend(); ++u)
-        columns.push_back({{kSheetX, kSheetZ - kCornerAlongZ * (1.0 - *u / altitude)}, cornerFlap, true, {}});
+        columns.push_back({{m.sheetX, m.sheetZ - m.cornerAlongZ * (1.0 - *u / altitude)}, cornerFlap, true, {}});
     quarter.cornerLineEnd = columns.size();
-    columns.push_back({{kSheetX, kSheetZ - kCornerAlongZ}, -1, true, {}});
+    columns.push_back({{m.sheetX, m.sheetZ - m.cornerAlongZ}, -1, true, {}});
     return quarter;
 }
 
 class TabletBuilder {
 public:
-    TabletBuilder() {
-        const glm::dvec2 corner = glm::normalize(glm::dvec2(kCornerAlongZ, kCornerAlongX));
+    explicit TabletBuilder(const Measures& measures) : m_(measures) {
+        const glm::dvec2 corner = glm::normalize(glm::dvec2(m_.cornerAlongZ, m_.cornerAlongX));
         const auto at = [&](double x, double z) {
-            return Flap{"", {x * (kSheetX - kCornerAlongX), z * kSheetZ}, {x * corner.x, z * corner.y}};
+            return TabletFlap{"", {x * (m_.sheetX - m_.cornerAlongX), z * m_.sheetZ}, {x * corner.x, z * corner.y}};
         };
         flaps_ = {at(-1, 1),
                   at(1, 1),
                   at(-1, -1),
                   at(1, -1),
-                  Flap{"", {0, kEdgeLine}, {0, 1}},
-                  Flap{"", {0, -kEdgeLine}, {0, -1}}};
+                  TabletFlap{"", {0, m_.edgeLine}, {0, 1}},
+                  TabletFlap{"", {0, -m_.edgeLine}, {0, -1}}};
         constexpr std::array kNames{"corner front left", "corner front right", "corner back left",
                                     "corner back right", "edge front",         "edge back"};
         for (std::size_t f = 0; f < flaps_.size(); ++f) flaps_[f].name = kNames[f];
@@ -155,7 +186,7 @@ private:
     void layOutline() {
         for (const auto& [sx, sz, edge, corner] :
              {std::tuple(1, 1, 4, 1), std::tuple(1, -1, 5, 3), std::tuple(-1, -1, 5, 2), std::tuple(-1, 1, 4, 0)}) {
-            Quarter quarter = firstQuarter(edge, corner);
+            Quarter quarter = firstQuarter(m_, edge, corner);
             for (Column& column : quarter.columns) column.place *= glm::dvec2(sx, sz);
             const std::size_t first = outline_.size();
             const std::size_t count = quarter.columns.size();
@@ -283,8 +314,8 @@ private:
         for (std::size_t k = 0; k < outline_.size(); ++k)
             lines.push_back({vertices[k], vertices[(k + 1) % outline_.size()]});
         const std::array<glm::dvec2, 4> corners{
-            glm::dvec2(-kHalfLength, kHalfWidth), glm::dvec2(kHalfLength, kHalfWidth),
-            glm::dvec2(kHalfLength, -kHalfWidth), glm::dvec2(-kHalfLength, -kHalfWidth)};
+            glm::dvec2(-m_.halfLength, m_.halfWidth), glm::dvec2(m_.halfLength, m_.halfWidth),
+            glm::dvec2(m_.halfLength, -m_.halfWidth), glm::dvec2(-m_.halfLength, -m_.halfWidth)};
         std::array<std::uint32_t, 4> high{};
         std::array<std::uint32_t, 4> low{};
         for (std::size_t k = 0; k < 4; ++k) {
@@ -305,7 +336,7 @@ private:
     }
 
     Actuator actuator(std::size_t f) {
-        const Flap& flap = flaps_[f];
+        const TabletFlap& flap = flaps_[f];
         const glm::dvec3 direction(flap.direction.x, 0.0, flap.direction.y);
         Actuator actuator;
         actuator.name = flap.name;
@@ -323,7 +354,8 @@ private:
         return actuator;
     }
 
-    std::vector<Flap> flaps_;
+    Measures m_;
+    std::vector<TabletFlap> flaps_;
     std::vector<Column> outline_;
     std::vector<std::pair<std::size_t, std::size_t>> cornerLines_; ///< columns at the ends of the corners' bend lines
     std::array<std::vector<std::size_t>, 2> edgeLineEnds_;
@@ -337,6 +369,10 @@ private:
 
 } // namespace
 
-Rig tabletRig() { return TabletBuilder().build(); }
+Rig tabletRig(const TabletSize& size) {
+    const Measures measures(size);
+    checkMeasures(measures);
+    return TabletBuilder(measures).build();
+}
 
 } // namespace lumorph

@@ -1,11 +1,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 #include <string>
 
 #include <glm/gtc/matrix_transform.hpp>
 
-#include "resources/models/generator/models.h"
+#include "core/base/error.h"
+#include "core/rig/templates/bundled_rigs.h"
 
 namespace lumorph {
 namespace {
@@ -61,24 +63,27 @@ double heightOf(const Hill& hill, double x, double z) {
     return hill.height * std::exp(-dx * dx - dz * dz) * fade(x) * fade(z);
 }
 
-TriangleMesh slab() {
+/// A slab with a grid of points on its top, `columns` x `rows` of them, row by row.
+TriangleMesh slab(int columns, int rows, double width, double depth, double thickness) {
     TriangleMesh mesh;
-    const auto at = [](int k) { return kSlab * (static_cast<double>(k) / (kGrid - 1) - 0.5); };
-    for (int j = 0; j < kGrid; ++j)
-        for (int i = 0; i < kGrid; ++i) mesh.positions.emplace_back(at(i), kSlabHeight, at(j));
-    const auto top = [](int i, int j) { return static_cast<std::uint32_t>(j * kGrid + i); };
+    const auto at = [](double size, int k, int count) { return size * (static_cast<double>(k) / (count - 1) - 0.5); };
+    for (int j = 0; j < rows; ++j)
+        for (int i = 0; i < columns; ++i)
+            mesh.positions.emplace_back(at(width, i, columns), thickness, at(depth, j, rows));
+    const auto top = [&](int i, int j) { return static_cast<std::uint32_t>(j * columns + i); };
     const auto quad = [&](std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_t d) {
         mesh.triangles.emplace_back(a, b, c);
         mesh.triangles.emplace_back(a, c, d);
     };
-    for (int j = 0; j + 1 < kGrid; ++j)
-        for (int i = 0; i + 1 < kGrid; ++i) quad(top(i, j + 1), top(i + 1, j + 1), top(i + 1, j), top(i, j));
+    for (int j = 0; j + 1 < rows; ++j)
+        for (int i = 0; i + 1 < columns; ++i) quad(top(i, j + 1), top(i + 1, j + 1), top(i + 1, j), top(i, j));
     std::vector<std::uint32_t> rim;
-    constexpr int kLast = kGrid - 1;
-    for (int k = 0; k < kLast; ++k) rim.push_back(top(k, kLast));
-    for (int k = 0; k < kLast; ++k) rim.push_back(top(kLast, kLast - k));
-    for (int k = 0; k < kLast; ++k) rim.push_back(top(kLast - k, 0));
-    for (int k = 0; k < kLast; ++k) rim.push_back(top(0, k));
+    const int lastX = columns - 1;
+    const int lastZ = rows - 1;
+    for (int k = 0; k < lastX; ++k) rim.push_back(top(k, lastZ));
+    for (int k = 0; k < lastZ; ++k) rim.push_back(top(lastX, lastZ - k));
+    for (int k = 0; k < lastX; ++k) rim.push_back(top(lastX - k, 0));
+    for (int k = 0; k < lastZ; ++k) rim.push_back(top(0, k));
     const auto first = static_cast<std::uint32_t>(mesh.positions.size());
     for (const std::uint32_t v : rim) mesh.positions.push_back(mesh.positions[v] * glm::vec3(1.0F, 0.0F, 1.0F));
     mesh.positions.emplace_back(0.0F, 0.0F, 0.0F);
@@ -89,6 +94,42 @@ TriangleMesh slab() {
         mesh.triangles.emplace_back(first + next, first + k, centre);
     }
     return mesh;
+}
+
+/// An actuator that lifts the slab's top by `height(x, z)` metres.
+template <typename Height>
+Actuator lift(const std::string& name, const TriangleMesh& mesh, std::uint32_t top, int channel, const Height& height) {
+    Actuator actuator;
+    actuator.name = name;
+    MorphTarget morph{name, {1.0F}, {{}}};
+    for (std::uint32_t v = 0; v < top; ++v) {
+        const glm::vec3& p = mesh.positions[v];
+        const auto lifted = static_cast<float>(height(p.x, p.z));
+        if (lifted < 1e-5F) continue;
+        actuator.influences.push_back({v, 1.0F});
+        morph.displacements.front().emplace_back(0.0F, lifted, 0.0F);
+    }
+    actuator.deformer = std::move(morph);
+    actuator.drive.channel = channel;
+    return actuator;
+}
+
+constexpr int kChamberSteps = 12; ///< of the grid, across a chamber
+constexpr int kMaxChambers = 100;
+
+void requireCushion(bool good, const char* parameter, const char* why, const char* remedy) {
+    if (!good) throw InvalidInput(std::string("cushion: ") + parameter, why, remedy);
+}
+
+void checkCushion(const CushionSize& size) {
+    requireCushion(size.columns >= 1 && size.rows >= 1, "columns, rows", "no chamber would be left",
+                   "choose 1 or more");
+    requireCushion(size.columns * static_cast<long long>(size.rows) <= kMaxChambers, "columns, rows",
+                   "so many chambers are too many", "choose at most 100 in all");
+    requireCushion(size.width / size.columns >= 1.0 && size.depth / size.rows >= 1.0, "width, depth",
+                   "the chambers would vanish", "leave 1 cm or more for each");
+    requireCushion(size.height >= 0.1, "height", "the cushion would vanish", "choose 0.1 cm or more");
+    requireCushion(size.swell >= 0.1, "swell", "the chambers would not move", "choose 0.1 cm or more");
 }
 
 } // namespace
@@ -131,23 +172,38 @@ Rig hillsRig() {
                                 Hill{"ridge", 0.0, -0.025, 0.05, 0.012, 0.02}};
     RigParts parts;
     parts.name = "hills";
-    parts.restMesh = slab();
+    parts.restMesh = slab(kGrid, kGrid, kSlab, kSlab, kSlabHeight);
     parts.pathInside = true; // every height only grows, so that each solid holds the ones before
-    for (const Hill& hill : kHills) {
-        Actuator actuator;
-        actuator.name = hill.name;
-        MorphTarget morph{hill.name, {1.0F}, {{}}};
-        for (std::uint32_t v = 0; v < kGrid * kGrid; ++v) {
-            const glm::vec3& p = parts.restMesh.positions[v];
-            const auto height = static_cast<float>(heightOf(hill, p.x, p.z));
-            if (height < 1e-5F) continue;
-            actuator.influences.push_back({v, 1.0F});
-            morph.displacements.front().emplace_back(0.0F, height, 0.0F);
+    for (const Hill& hill : kHills)
+        parts.actuators.push_back(lift(hill.name, parts.restMesh, kGrid * kGrid,
+                                       static_cast<int>(parts.actuators.size()),
+                                       [&](double x, double z) { return heightOf(hill, x, z); }));
+    return Rig(std::move(parts));
+}
+
+Rig cushionRig(const CushionSize& size) {
+    checkCushion(size);
+    const int columns = size.columns * kChamberSteps + 1;
+    const int rows = size.rows * kChamberSteps + 1;
+    const double width = 0.01 * size.width;
+    const double depth = 0.01 * size.depth;
+    RigParts parts;
+    parts.name = "cushion";
+    parts.restMesh = slab(columns, rows, width, depth, 0.01 * size.height);
+    parts.pathInside = true; // as above
+    for (int row = 0; row < size.rows; ++row)
+        for (int column = 0; column < size.columns; ++column) {
+            const auto bump = [](double place, double extent, int chamber, int chambers) {
+                const double share = (place / extent + 0.5) * chambers - chamber; // 0 to 1 across the chamber
+                const double sine = share > 0.0 && share < 1.0 ? std::sin(std::numbers::pi * share) : 0.0;
+                return sine * sine;
+            };
+            parts.actuators.push_back(lift(
+                "chamber " + std::to_string(row + 1) + "." + std::to_string(column + 1), parts.restMesh,
+                static_cast<std::uint32_t>(columns * rows), row * size.columns + column, [&](double x, double z) {
+                    return 0.01 * size.swell * bump(x, width, column, size.columns) * bump(z, depth, row, size.rows);
+                }));
         }
-        actuator.deformer = std::move(morph);
-        actuator.drive.channel = static_cast<int>(parts.actuators.size());
-        parts.actuators.push_back(std::move(actuator));
-    }
     return Rig(std::move(parts));
 }
 

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <optional>
+
+#include <QPolygonF>
+#include <QWidget>
+
+#include "app/studio/calibration/error_plan.h"
+
+namespace lumorph::studio {
+
+/// How far light may land beside, seen from above in colours: on the table, and as high as the device lifts its
+/// surface. The value under the pointer is told.
+class ErrorMapView : public QWidget {
+    Q_OBJECT
+public:
+    explicit ErrorMapView(QWidget* parent = nullptr);
+    /// `device`: its outline in world metres, x and z.
+    void show(std::optional<ErrorPlan> plan, QPolygonF device);
+    [[nodiscard]] QSize minimumSizeHint() const override { return {240, 160}; }
+
+protected:
+    void paintEvent(QPaintEvent* event) override;
+    void mouseMoveEvent(QMouseEvent* event) override;
+
+private:
+    [[nodiscard]] QRectF panelOf(int plane) const;
+
+    std::optional<ErrorPlan> plan_;
+    QPolygonF device_;
+};
+
+} // namespace lumorph::studio

@@ -1,0 +1,53 @@
+#pragma once
+
+#include "core/rig/rig.h"
+
+namespace lumorph {
+
+/// Measures in centimetres.
+struct TabletSize {
+    double width = 21.0;
+    double depth = 15.0;
+    double reach = 8.42;           ///< height of the upright flaps of the long edges above the table
+    double cornerAlongWidth = 6.6; ///< from a corner to where its bend line ends, along the width
+    double cornerAlongDepth = 6.9;
+};
+
+/// The tablet of the paper (R1): 21 x 15 x 2 cm, a flexible sheet on a fixed housing. Six actuators
+/// bend its four corners and the middles of its long edges upwards by up to 90 degrees.
+/// Throws InvalidInput when with other measures a part would vanish.
+[[nodiscard]] Rig tabletRig(const TabletSize& size = {});
+
+/// Measures in centimetres.
+struct PinDisplaySize {
+    int columns = 30;
+    int rows = 30;
+    double pitch = 0.5;
+    double pin = 0.47; ///< side of a pin
+    double stroke = 10.0;
+    double plate = 4.9; ///< height of the plate's top
+};
+
+/// Square pins that slide out of a base plate. Throws InvalidInput when the pins would touch or vanish.
+[[nodiscard]] Rig pinDisplayRig(const PinDisplaySize& size = {});
+
+/// Measures in centimetres.
+struct CushionSize {
+    double width = 30.0;
+    double depth = 30.0;
+    double height = 4.0;
+    double swell = 6.0; ///< of the middle of a chamber
+    int columns = 2;
+    int rows = 2;
+};
+
+/// A cushion whose chambers swell: morph targets, one a chamber. Throws InvalidInput when a part would vanish.
+[[nodiscard]] Rig cushionRig(const CushionSize& size = {});
+
+/// A strip of four links: a skin whose three joints curl it upwards.
+[[nodiscard]] Rig ribbonRig();
+
+/// A slab whose top swells in three places: morph targets.
+[[nodiscard]] Rig hillsRig();
+
+} // namespace lumorph

@@ -1,0 +1,134 @@
+#include "core/rig/templates/sheet_file.h"
+
+#include <algorithm>
+#include <array>
+#include <span>
+
+#include <glm/common.hpp>
+#include <nlohmann/json.hpp>
+
+#include "core/base/error.h"
+#include "core/base/file.h"
+#include "core/base/json_check.h"
+#include "core/base/text.h"
+#include "core/rig/templates/sheet_outline.h"
+
+namespace lumorph {
+namespace {
+
+constexpr std::size_t kMostBytes = std::size_t{16} << 20;
+constexpr double kCentimetre = 0.01;
+
+std::string contentOf(const std::filesystem::path& file) {
+    const std::vector<std::byte> bytes = readFile(file, kMostBytes);
+    return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+}
+
+/// An object of the bends file; says where it stands.
+class BendsEntry {
+public:
+    BendsEntry(const nlohmann::json& json, std::string subject, std::initializer_list<std::string_view> known)
+        : json_(json), subject_(std::move(subject)) {
+        if (!json.is_object()) fail("it is no object", "write {...}");
+        for (const auto& [key, value] : json.items())
+            if (std::ranges::find(known, key) == known.end()) {
+                std::string names;
+                for (const std::string_view name : known) names += (names.empty() ? "" : ", ") + std::string(name);
+                fail("it holds " + inQuotes(key) + ", which means nothing here", "use " + names);
+            }
+    }
+
+    [[noreturn]] void fail(const std::string& why, const std::string& remedy) const {
+        throw DataError(subject_, why, remedy);
+    }
+    [[nodiscard]] const nlohmann::json* find(const char* key) const {
+        const auto found = json_.find(key);
+        return found == json_.end() ? nullptr : &*found;
+    }
+    [[nodiscard]] double number(const char* key, double missing) const {
+        const nlohmann::json* value = find(key);
+        if (value == nullptr) return missing;
+        if (!value->is_number()) fail(std::string(key) + " is no number", "give a number");
+        return value->get<double>();
+    }
+    [[nodiscard]] std::string text(const char* key, const std::string& missing) const {
+        const nlohmann::json* value = find(key);
+        if (value == nullptr) return missing;
+        if (!value->is_string()) fail(std::string(key) + " is no text", "write it in quotes");
+        return value->get<std::string>();
+    }
+    [[nodiscard]] glm::dvec2 point(const char* key) const {
+        const nlohmann::json* value = find(key);
+        if (value == nullptr || !value->is_array() || value->size() != 2 || !(*value)[0].is_number() ||
+            !(*value)[1].is_number())
+            fail(std::string(key) + " is no point", "write two numbers in centimetres: [x, y]");
+        return kCentimetre * glm::dvec2((*value)[0].get<double>(), (*value)[1].get<double>());
+    }
+    /// The place of a word among those that are known.
+    [[nodiscard]] int choice(const char* key, std::span<const std::string_view> words, int missing) const {
+        const std::string word = text(key, std::string(words[static_cast<std::size_t>(missing)]));
+        const auto found = std::ranges::find(words, word);
+        if (found == words.end()) {
+            std::string names;
+            for (const std::string_view name : words) names += (names.empty() ? "" : ", ") + std::string(name);
+            fail(std::string(key) + " is " + inQuotes(word), "use one of " + names);
+        }
+        return static_cast<int>(found - words.begin());
+    }
+
+private:
+    const nlohmann::json& json_;
+    std::string subject_;
+};
+
+BendLine bendOf(const nlohmann::json& json, const std::string& file, std::size_t number) {
+    const BendsEntry entry(json, file + ", bend " + std::to_string(number),
+                           {"name", "from", "to", "ends", "side", "angle"});
+    static constexpr std::array<std::string_view, 2> kEnds{"free", "joined"};
+    static constexpr std::array<std::string_view, 3> kSides{"smaller", "left", "right"};
+    BendLine bend;
+    bend.name = entry.text("name", "bend " + std::to_string(number));
+    bend.from = entry.point("from");
+    bend.to = entry.point("to");
+    bend.ends = static_cast<BendLine::Ends>(entry.choice("ends", kEnds, 1));
+    bend.side = static_cast<BendLine::Side>(entry.choice("side", kSides, 0));
+    bend.angle = Angle::degrees(entry.number("angle", 90.0));
+    return bend;
+}
+
+} // namespace
+
+SheetDevice readSheetDevice(const std::filesystem::path& outline, const std::filesystem::path& bends) {
+    SheetDevice device;
+    device.name = outline.stem().string();
+    device.outline = svgOutline(contentOf(outline), outline.string());
+    const std::string text = contentOf(bends);
+    if (const std::string problem = jsonProblem(text); !problem.empty())
+        throw DataError(bends.string(), "it " + problem, "write a smaller one");
+    const nlohmann::json json = nlohmann::json::parse(text, nullptr, false);
+    if (json.is_discarded()) throw DataError(bends.string(), "it is no JSON", "write {\"bends\": [...]}");
+    const BendsEntry entry(json, bends.string(), {"bends", "name", "thickness", "housing", "arc"});
+    device.name = entry.text("name", device.name);
+    device.thickness = kCentimetre * entry.number("thickness", device.thickness / kCentimetre);
+    device.housing = kCentimetre * entry.number("housing", device.housing / kCentimetre);
+    device.arc = kCentimetre * entry.number("arc", device.arc / kCentimetre);
+    const nlohmann::json* list = entry.find("bends");
+    if (list == nullptr || !list->is_array()) entry.fail("it holds no list of bend lines", "write {\"bends\": [...]}");
+    for (const nlohmann::json& bend : *list)
+        device.bends.push_back(bendOf(bend, bends.string(), device.bends.size() + 1));
+    glm::dvec2 low = device.outline.front();
+    glm::dvec2 high = low;
+    for (const glm::dvec2& p : device.outline) {
+        low = glm::min(low, p);
+        high = glm::max(high, p);
+    }
+    const glm::dvec2 middle = 0.5 * (low + high);
+    for (glm::dvec2& p : device.outline) p -= middle;
+    for (BendLine& bend : device.bends) {
+        bend.from -= middle;
+        bend.to -= middle;
+    }
+    return device;
+}
+
+} // namespace lumorph

@@ -1,0 +1,125 @@
+#include <filesystem>
+
+#include <gtest/gtest.h>
+
+#include "tests/app/process.h"
+#include "tests/app/workspace.h"
+
+namespace lumorph::test {
+namespace {
+
+constexpr const char* kSvg = R"svg(<svg width="20cm" height="15cm" viewBox="0 0 200 150">
+  <g transform="translate(10 10)"><rect width="180" height="130" rx="12"/></g></svg>)svg";
+
+struct Made {
+    TemporaryFolder folder;
+    [[nodiscard]] std::string operator[](const std::string& name) const { return (folder / name).string(); }
+};
+
+TEST(RigNew, WritesWhatRigInfoReads) {
+    const Made made;
+    const Outcome outcome =
+        lumorph({"rig", "new", "flower", "--set", "petals=4", "--set", "diameter=260mm", "-o", made["f.glb"]});
+    ASSERT_EQ(outcome.exitCode, 0) << outcome.err;
+    EXPECT_NE(outcome.out.find("4 actuators"), std::string::npos) << outcome.out;
+    const auto info = lumorph({"rig", "info", made["f.glb"], "--states", "5", "--json"}).json();
+    EXPECT_EQ(info["actuators"].size(), 4U);
+    EXPECT_EQ(info["actuators"][0]["name"], "petal 1");
+    EXPECT_TRUE(info["mesh"]["closed"]);
+    EXPECT_EQ(info["shape"]["intersectingStates"], 0);
+}
+
+TEST(RigNew, TabletIsTheBundledOne) {
+    const Made made;
+    ASSERT_EQ(lumorph({"rig", "new", "tablet", "-o", made["t.glb"]}).exitCode, 0);
+    EXPECT_EQ(bytesOfFile(made["t.glb"]), bytesOfFile(resource("models/tablet.glb")));
+    EXPECT_EQ(lumorph({"rig", "new", "tablet", "-o", "-"}).out, textOfFile(resource("models/tablet.glb")));
+}
+
+TEST(RigNew, ListsParameters) {
+    const auto list = lumorph({"rig", "new", "phone", "--list", "--json"}).json();
+    EXPECT_EQ(list["parameters"][0]["name"], "width");
+    EXPECT_EQ(list["parameters"][0]["unit"], "cm");
+    EXPECT_EQ(list["parameters"][0]["value"], 7.5);
+}
+
+TEST(RigNew, BlankSheetOpens) {
+    const Made made;
+    ASSERT_EQ(lumorph({"rig", "new", "sheet", "--set", "width=30", "-o", made["s.glb"]}).exitCode, 0);
+    const auto info = lumorph({"rig", "info", made["s.glb"], "--json"}).json();
+    EXPECT_EQ(info["actuators"].size(), 0U);
+    EXPECT_TRUE(info["mesh"]["closed"]);
+}
+
+TEST(RigSheet, MakesFlapsOfBendLines) {
+    const Made made;
+    writeFile(made["o.svg"], std::string(kSvg));
+    writeFile(made["b.json"], std::string(R"({"thickness": 0.15, "bends": [
+        {"name": "corner", "from": [14, 1], "to": [19, 6], "angle": 80},
+        {"name": "tongue", "from": [6, 9], "to": [11, 9], "ends": "free"}]})"));
+    const Outcome outcome = lumorph({"rig", "sheet", made["o.svg"], "--bends", made["b.json"], "-o", made["s.glb"]});
+    ASSERT_EQ(outcome.exitCode, 0) << outcome.err;
+    const auto info = lumorph({"rig", "info", made["s.glb"], "--states", "10", "--json"}).json();
+    EXPECT_EQ(info["name"], "o");
+    EXPECT_EQ(info["actuators"][0]["name"], "corner");
+    EXPECT_NEAR(info["actuators"][0]["range"][1].get<double>(), 1.3963, 1e-3);
+    EXPECT_EQ(info["shape"]["intersectingStates"], 0);
+    EXPECT_EQ(info["shape"]["invertedStates"], 0);
+    // The sheet is centred: the corner at the upper right of the page is at +x, away from the viewer.
+    EXPECT_NEAR(info["reach"]["max"][0].get<double>(), 0.09, 0.002);
+    EXPECT_NEAR(info["reach"]["min"][2].get<double>(), -0.065, 0.002);
+}
+
+TEST(RigMaking, RefusesByNameAndLeavesNothing) {
+    const Made made;
+    writeFile(made["o.svg"], std::string(kSvg));
+    writeFile(made["empty.svg"], std::string("<svg><text>sheet</text></svg>"));
+    const auto bends = [&](const char* name, const std::string& text) { writeFile(made[name], text); };
+    bends("good.json", R"({"bends": []})");
+    bends("outside.json", R"({"bends": [{"name": "one", "from": [5, 3], "to": [10, 16]},
+                                        {"name": "two", "from": [15, 3], "to": [9, 16]}]})");
+    bends("zero.json", R"({"thickness": 0, "bends": []})");
+    bends("nan.json", R"({"bends": [{"from": [NaN, 3], "to": [10, 16]}]})");
+    bends("huge.json", R"({"bends": [{"from": [1e999, 3], "to": [10, 16]}]})");
+    bends("key.json", R"({"bends": [{"form": [1, 3], "to": [10, 16]}]})");
+    bends("side.json", R"({"bends": [{"from": [1, 3], "to": [10, 16], "side": "up"}]})");
+    std::string many = R"({"bends": [)";
+    for (int k = 0; k < 500; ++k) many += std::string(k == 0 ? "" : ",") + R"({"from": [1, 3], "to": [10, 16]})";
+    bends("many.json", many + "]}");
+    struct Wrong {
+        int exitCode;
+        std::vector<std::string> arguments;
+        const char* says;
+    };
+    const auto sheet = [&](const char* outline, const char* file) {
+        return std::vector<std::string>{"rig", "sheet", made[outline], "--bends", made[file], "-o", made["x.glb"]};
+    };
+    const auto before = filesIn(made.folder.path());
+    for (const Wrong& wrong : {
+             Wrong{1, sheet("empty.svg", "good.json"), "empty.svg: it holds no outline"},
+             Wrong{1, sheet("good.json", "good.json"), "no SVG drawing"},
+             Wrong{1, sheet("missing.svg", "good.json"), "missing.svg"},
+             Wrong{2, sheet("o.svg", "outside.json"), "meets bend line 'one' outside the sheet"},
+             Wrong{2, sheet("o.svg", "zero.json"), "sheet: thickness"},
+             Wrong{1, sheet("o.svg", "nan.json"), "nan.json: it is no JSON"},
+             Wrong{1, sheet("o.svg", "huge.json"), "huge.json"},
+             Wrong{1, sheet("o.svg", "key.json"), "bend 1: it holds 'form'"},
+             Wrong{1, sheet("o.svg", "side.json"), "bend 1: side is 'up'"},
+             Wrong{2, sheet("o.svg", "many.json"), "500 bend lines are too many"},
+             Wrong{2, {"rig", "new", "chair", "-o", made["x.glb"]}, "'chair': there is no such template"},
+             Wrong{2, {"rig", "new", "tablet", "--set", "width=nan", "-o", made["x.glb"]}, "no finite number"},
+             Wrong{2, {"rig", "new", "tablet", "--set", "reach=2", "-o", made["x.glb"]}, "would vanish"},
+             Wrong{2, {"rig", "new", "tablet", "-o", made["x.obj"]}, "written as .glb"},
+             Wrong{2, {"rig", "new", "tablet"}, "--output"},
+             Wrong{1, {"rig", "new", "tablet", "-o", made["no/x.glb"]}, "there is no folder"},
+         }) {
+        const Outcome outcome = lumorph(wrong.arguments);
+        EXPECT_EQ(outcome.exitCode, wrong.exitCode) << wrong.says << ": " << outcome.err;
+        EXPECT_NE(outcome.err.find(wrong.says), std::string::npos) << outcome.err;
+        EXPECT_TRUE(outcome.out.empty()) << outcome.out;
+    }
+    EXPECT_EQ(filesIn(made.folder.path()), before);
+}
+
+} // namespace
+} // namespace lumorph::test

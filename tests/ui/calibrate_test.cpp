@@ -1,0 +1,161 @@
+#include <filesystem>
+#include <memory>
+
+#include <QAction>
+#include <QLabel>
+#include <QListWidget>
+
+#include "app/studio/calibration/capture_bench.h"
+#include "app/studio/document/scene_edit.h"
+#include "calibration/lab/board_lab.h"
+#include "calibration/lab/lab_capture.h"
+#include "tests/ui/file_dialog.h"
+
+// A projector is calibrated in the window by the mouse alone: in the lab, and from a folder of images with a fault.
+
+namespace lumorph::test {
+namespace {
+
+namespace fs = std::filesystem;
+using namespace std::chrono_literals;
+
+constexpr glm::ivec2 kSmall{640, 360}; // pixels of the projector, so that a capture takes seconds
+constexpr auto kBoard = "chess:9x7:25";
+
+Installation smallRoom() {
+    Installation room = defaultInstallation();
+    room.projectors.front().camera = withSize(room.projectors.front().camera, kSmall);
+    return room;
+}
+
+void forgetCalibrations() {
+    const studio::Settings settings;
+    fs::remove_all(settings.folder() / "installation");
+}
+
+/// One start of the window for the whole file.
+struct Window {
+    Window() {
+        studio::Settings settings;
+        for (const char* key : {"calibrate/way", "calibrate/lab/poses", "calibrate/folder/folder"})
+            settings.remove(key);
+        settings.setValue("calibrate/lab/poses", 4);
+    }
+    [[nodiscard]] QString title() { return studio.text("calibrate.card.title"); }
+    [[nodiscard]] QString button() {
+        const auto* next = studio.findNow<QAbstractButton>("calibrate.card.next");
+        return next ? next->text() : QString();
+    }
+    [[nodiscard]] bool offers(const QString& words, std::chrono::milliseconds time = 60s) {
+        return eventually([&] { return button().startsWith(words); }, time);
+    }
+    void next() {
+        pass(std::chrono::milliseconds(QApplication::doubleClickInterval() + 50)); // two steps, no double click
+        studio.click("calibrate.card.next");
+    }
+    [[nodiscard]] QString step(const QString& id) { return studio.text("calibrate.step." + id + ".how"); }
+    [[nodiscard]] const InstalledProjector& projector() const {
+        return studio.state().installation->projectors.front();
+    }
+    [[nodiscard]] std::string story() {
+        return (title() + " [" + button() + "] " + studio.text("calibrate.card.text")).toStdString();
+    }
+
+    struct Forgotten {
+        Forgotten() { forgetCalibrations(); }
+        ~Forgotten() { forgetCalibrations(); }
+    } forgotten_;
+    TemporaryFolder folder;
+    mutable StudioWindow studio{folder / "session", "scene"};
+};
+
+class Calibrate : public ::testing::Test {
+protected:
+    static void SetUpTestSuite() {
+        window = std::make_unique<Window>();
+        studio::editInstallation(window->studio.studio().document, "Set up",
+                                 [](Installation& room) { room = smallRoom(); });
+        window->studio.window().showWorkspace("calibrate");
+    }
+    static void TearDownTestSuite() { window.reset(); }
+
+    static std::unique_ptr<Window> window;
+};
+
+std::unique_ptr<Window> Calibrate::window;
+
+TEST_F(Calibrate, TheLabLeadsFromNothingToAProjectorThatTheSceneUses) {
+    Window& w = *window;
+    ASSERT_TRUE(w.offers("Photograph pose 1 of 4"));
+    EXPECT_EQ(w.step("poses"), "Needs you");
+    EXPECT_EQ(w.step("projector"), "Not begun");
+    w.studio.screenshot("calibrate-begin");
+    w.next();
+    ASSERT_TRUE(w.offers("Photograph pose 2 of 4")) << w.story();
+    w.studio.click("calibrate.rest");
+    ASSERT_TRUE(w.offers("Use this calibration")) << w.story();
+    for (const char* step : {"setup", "poses", "camera", "projector"}) EXPECT_EQ(w.step(step), "Good") << step;
+    w.studio.screenshot("calibrate-good");
+    // What the lab truly is, from a lab of its own.
+    const CalibratedCamera truth = studio::openLabBench({}, smallRoom())->truth()->projectors.front().camera;
+    const auto away = [&] { return glm::length(positionOf(w.projector().camera) - positionOf(truth)); };
+    const double before = away();
+    EXPECT_GT(before, 0.03); // metres: the room has it wrong
+    w.next();
+    ASSERT_TRUE(eventually([&] { return w.projector().lens.way == Origin::Way::measured; })) << w.story();
+    EXPECT_LT(away(), 0.008);
+    EXPECT_NEAR(w.projector().camera.focal.x, truth.focal.x, 0.01 * truth.focal.x);
+    // On the table, where it counts: a place 10 cm aside gets the light that is meant for it.
+    for (const glm::dvec3 place : {glm::dvec3(0.0), glm::dvec3(0.1, 0.0, 0.0), glm::dvec3(-0.05, 0.0, 0.08)}) {
+        const auto believed = pixelOf(w.projector().camera, place);
+        const auto trueAt = pixelOf(truth, place);
+        ASSERT_TRUE(believed && trueAt);
+        EXPECT_LT(glm::length(*believed - *trueAt), 1.5) << place.x; // a pixel is a millimetre here
+    }
+    EXPECT_EQ(w.step("room"), "Good");
+    EXPECT_TRUE(w.button().isEmpty()) << "nothing is left to do";
+    // Kept, beside what stood there before.
+    EXPECT_EQ(w.studio.studio().room.versions().size(), 2U);
+    w.studio.studio().document.undoStack().undo();
+    EXPECT_NEAR(away(), before, 1e-9);
+    EXPECT_TRUE(w.offers("Use this calibration"));
+    w.studio.studio().document.undoStack().redo();
+    EXPECT_LT(away(), 0.008);
+}
+
+TEST_F(Calibrate, AFolderWithAFaultIsRefusedByCausePlaceAndRemedy) {
+    Window& w = *window;
+    LabCapture capture;
+    capture.room = smallRoom();
+    capture.board = kBoard;
+    capture.poses = 4;
+    capture.seed = 5;
+    capture.fault = Cause::rigMoved;
+    LabCapturer capturer(capture);
+    const fs::path folder = w.folder / "captured";
+    writeLabCapture(capturer, folder);
+    ASSERT_EQ(capturer.faults().size(), 1U);
+    const std::string view = capturer.faults().front().view;
+
+    w.studio.click("calibrate.way.folder");
+    ASSERT_TRUE(w.offers("Choose a folder"));
+    w.next();
+    answerFileDialog(w.studio, "calibrate.folder.file", folder, "Choose");
+    ASSERT_TRUE(w.offers("Read the images")) << w.story();
+    w.studio.enter("calibrate.projector.width", QString::number(kSmall.x), Qt::Key_Tab);
+    w.studio.enter("calibrate.projector.height", QString::number(kSmall.y), Qt::Key_Tab);
+    w.next();
+    ASSERT_TRUE(w.offers("Leave " + QString::fromStdString(view) + " out")) << w.story();
+    EXPECT_EQ(w.title(), "Something moved");
+    EXPECT_TRUE(w.studio.text("calibrate.card.text").contains(QString::fromStdString(view))) << w.story();
+    EXPECT_EQ(w.step("poses"), "Refused");
+    EXPECT_EQ(w.studio.findNow<QLabel>("calibrate.headline"), nullptr) << "a number that cannot be trusted is shown";
+    w.studio.screenshot("calibrate-refused");
+    w.next(); // the remedy that is offered
+    ASSERT_TRUE(w.offers("Use this calibration")) << w.story();
+    EXPECT_NE(w.studio.findNow<QLabel>("calibrate.headline"), nullptr);
+    w.studio.screenshot("calibrate-mended");
+}
+
+} // namespace
+} // namespace lumorph::test
