@@ -473,7 +473,7 @@ private:
             throw frontal();
         const std::optional<Finding> misfit = misfitOf(result_);
         if (misfit && options_.judgesFit) throw CaptureRefused(*misfit);
-        if (options_.judge) judgeBoard();
+        if (options_.judge && options_.judgesFit) judgeBoard(); // else the caller has causes of its own to compare
         if (!projector || !options_.judge) return;
         if (views_.size() < 4) {
             result_.warnings.push_back({Cause::tooFewViews, "", "", "with three poses no two halves can be compared",

@@ -67,7 +67,8 @@ TEST(BoardShape, OblongSquaresAreToldFromSquareOnes) {
     EXPECT_TRUE(board.isStretched());
     EXPECT_THAT(found.warnings, Contains(Field(&Finding::cause, Cause::squareSize)));
     EXPECT_THAT(found.warnings, Not(Contains(Field(&Finding::cause, Cause::boardWarped))));
-    EXPECT_NEAR(found.projector.lens[kFocalLength], setup.projector.focal.x, 4.0 * found.projector.sigma[kFocalLength]);
+    // Lenses may have taken some of it for their own aspect: warned of, and not far off.
+    EXPECT_NEAR(found.projector.lens[kFocalLength], setup.projector.focal.x, 0.005 * setup.projector.focal.x);
 }
 
 TEST(BoardShape, ASquareSizeThatIsWrongAltogetherOnlyScalesLengths) {

@@ -149,6 +149,19 @@ TEST(ProcamCalibration, HeldOutErrorsAndHalvesOfASoundCaptureAreThoseOfItsNoise)
     EXPECT_TRUE(result.warnings.empty());
 }
 
+TEST(ProcamCalibration, HalvesDisagreeWhereTheProjectorMovedBetweenPoses) {
+    ProcamSetup setup = randomSetup(31, 8);
+    const auto before = observe(setup, {0.1, 0.1}, 1);
+    setup.projector.cameraFromWorld =
+        glm::translate(glm::dmat4(1.0), {6.0, 0.0, 0.0}) * setup.projector.cameraFromWorld;
+    auto views = observe(setup, {0.1, 0.1}, 2);
+    for (std::size_t i = 0; i < views.size(); i += 2) views[i] = before[i];
+    const ProcamCalibration found = solve(setup, views);
+    EXPECT_GT(*found.halvesDiffer, *found.halvesAllowed);
+    EXPECT_TRUE(std::ranges::any_of(found.warnings,
+                                    [](const Finding& warning) { return warning.cause == Cause::modelDoesNotFit; }));
+}
+
 TEST(ProcamCalibration, BoardsThatAllLieTheSameWayAreRefused) {
     ProcamSetup setup = ProcamSetup::usual();
     setup.cameraFromBoard = {setup.pose(1, 1, 0), setup.pose(-1, 2, 20)};
