@@ -482,13 +482,6 @@ cv::Point2d projectorPixel(const cv::Point3d& point, const BundleState& state) {
     return {pixel[0], pixel[1]};
 }
 
-std::vector<cv::Point2d> cameraErrors(const ViewObservations& view, const Lens& camera,
-                                      const PoseVector& cameraFromBoard) {
-    BundleState state;
-    state.camera = camera;
-    return cameraErrors(view, state, cameraFromBoard);
-}
-
 std::vector<cv::Point2d> projectorErrors(const ViewObservations& view, const BundleState& state,
                                          const PoseVector& cameraFromBoard) {
     const ViewTerms terms{view,

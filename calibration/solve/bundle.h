@@ -94,9 +94,6 @@ struct BundleCovariance {
 /// Errors of a view's board points in the camera; pixels.
 [[nodiscard]] std::vector<cv::Point2d> cameraErrors(const ViewObservations& view, const BundleState& state,
                                                     const PoseVector& cameraFromBoard);
-/// The same of a flat board, by a lens alone.
-[[nodiscard]] std::vector<cv::Point2d> cameraErrors(const ViewObservations& view, const Lens& camera,
-                                                    const PoseVector& cameraFromBoard);
 /// Errors of a view's projector points in the projector; pixels.
 [[nodiscard]] std::vector<cv::Point2d> projectorErrors(const ViewObservations& view, const BundleState& state,
                                                        const PoseVector& cameraFromBoard);
