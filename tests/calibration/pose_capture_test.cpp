@@ -3,6 +3,7 @@
 #include <deque>
 #include <fstream>
 #include <map>
+#include <random>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -15,6 +16,7 @@
 #include "calibration/lab/board_lab.h"
 #include "core/base/error.h"
 #include "tests/core/temporary_folder.h"
+#include "tests/support/long_tests.h"
 
 namespace lumorph::test {
 namespace {
@@ -446,6 +448,56 @@ TEST(PoseCapture, ImagesOnDiskAreCheckedTheSameWay) {
         const CapturedPose pose = capture.capture("pose_1");
         EXPECT_EQ(refusalOf(pose), one.refused)
             << one.what << ": " << (pose.findings.refusal ? sentenceOf(*pose.findings.refusal) : "");
+    }
+}
+
+/// Other seeds, poses and amounts of noise, room light and trembling: none may be refused or doubted.
+TEST(PoseCapture, SoundCapturesAreNeitherRefusedNorDoubted) {
+    const int count = longTests() ? 40 : 4;
+    int refused = 0;
+    int warned = 0;
+    for (int seed = 0; seed < count; ++seed) {
+        std::mt19937 dice(static_cast<unsigned>(seed));
+        std::uniform_real_distribution<double> share(0.0, 1.0);
+        BoardLabOptions options;
+        options.noise = 0.4 + 1.2 * share(dice);
+        options.ambient = 0.1 * share(dice);
+        options.tremble = 0.1 * share(dice);
+        options.blur = 0.3 + 0.8 * share(dice);
+        options.vignetting = 0.4 * share(dice);
+        options.whiteLevel = 120.0 + 110.0 * share(dice);
+        SlowCapture slow(options);
+        slow.lab.lab.lay(slow.lab.lab.proposePoses(6)[static_cast<std::size_t>(seed) % 6]);
+        slow.lab.delay = Microseconds(static_cast<int>(120'000 * share(dice)));
+        if (seed % 2 != 0) slow.settings.order = parsePattern("phase:16x3+1x3", {320, 200});
+        const CapturedPose pose = slow.capture();
+        refused += !pose.isSound();
+        warned += !pose.findings.warnings.empty();
+        if (!pose.isSound()) std::printf("%d: %s\n", seed, sentenceOf(*pose.findings.refusal).c_str());
+        for (const Finding& warning : pose.findings.warnings)
+            std::printf("%d: %s\n", seed, sentenceOf(warning).c_str());
+    }
+    std::printf("of %d sound captures %d refused, %d doubted\n", count, refused, warned);
+    EXPECT_EQ(refused, 0);
+    EXPECT_EQ(warned, 0);
+}
+
+/// A real projector and camera.
+TEST(PoseCapture, RealCapturesAreNotRefused) {
+    const fs::path data = fs::path(LUMORPH_SHARED_DIR) / "data/procam_chess";
+    if (!fs::exists(data)) GTEST_SKIP() << "the shared data is not there";
+    const TemporaryFolder unused;
+    const auto display = openFileDisplay(unused.path(), {1024, 768});
+    for (const CapturedView& view : viewsIn(data)) {
+        const auto camera = openImages(view.files);
+        PoseCaptureSettings settings;
+        settings.order = parsePattern("graycode", {1024, 768});
+        settings.board = parseCalibrationBoard("chess:9x7:75");
+        PoseCapture capture(*camera, *display, settings);
+        const CapturedPose pose = capture.capture(view.name);
+        EXPECT_EQ(refusalOf(pose), "sound")
+            << view.name << ": " << (pose.findings.refusal ? sentenceOf(*pose.findings.refusal) : "");
+        for (const Finding& warning : pose.findings.warnings) std::printf("%s\n", sentenceOf(warning).c_str());
     }
 }
 
