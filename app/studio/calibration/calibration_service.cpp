@@ -4,6 +4,7 @@
 #include <cmath>
 #include <condition_variable>
 #include <mutex>
+#include <span>
 #include <stop_token>
 #include <thread>
 #include <utility>
@@ -14,9 +15,11 @@
 #include <opencv2/imgproc.hpp>
 
 #include "app/studio/calibration/capture_bench.h"
+#include "app/studio/calibration/report_pdf.h"
 #include "calibration/doctor/capture_calibration.h"
 #include "calibration/doctor/sequence_check.h"
 #include "calibration/report/calibration_file.h"
+#include "core/base/atomic_file.h"
 #include "core/base/error.h"
 
 namespace lumorph::studio {
@@ -39,6 +42,15 @@ template <class Result, class Run> OrFinding<Result> orFinding(const Run& run) {
     } catch (const CaptureRefused& refused) {
         return refused.finding();
     }
+}
+
+/// By name, where numbers count as numbers: pose_2 before pose_10.
+bool isBefore(const std::string& a, const std::string& b) {
+    const auto numberAt = [](const std::string& text) {
+        const std::size_t at = text.find_last_not_of("0123456789") + 1;
+        return std::pair(text.substr(0, at), std::pair(text.size() - at, text.substr(at)));
+    };
+    return numberAt(a) < numberAt(b);
 }
 
 CalibrationPose poseOf(const std::string& name, const ReadPose& read, cv::Size projector) {
@@ -243,6 +255,7 @@ void CalibrationService::beginAnew() {
     bench_ = nullptr;
     state_.poses.clear();
     state_.flatPose.clear();
+    isFlatChosen_ = false;
     state_.usedDate.clear();
     clearResults();
     live_ = {};
@@ -321,7 +334,10 @@ void CalibrationService::takePose(CalibrationPose pose) {
         *same = std::move(pose);
     else
         poses.push_back(std::move(pose));
-    if (state_.flatPose.empty() && poses.front().seen) state_.flatPose = poses.front().name;
+    std::ranges::sort(poses, isBefore, &CalibrationPose::name);
+    if (isFlatChosen_) return;
+    const auto first = std::ranges::find_if(poses, [](const CalibrationPose& one) { return one.counts(); });
+    state_.flatPose = first == poses.end() ? std::string() : first->name;
 }
 
 /// What a worker has put into the mailbox so far.
@@ -631,7 +647,10 @@ void CalibrationService::setLeftOut(const std::string& pose, bool leftOut) {
     cancel();
     found->leftOut = leftOut;
     clearResults();
-    if (state_.flatPose == pose && leftOut) state_.flatPose.clear();
+    if (state_.flatPose == pose && leftOut) {
+        state_.flatPose.clear();
+        isFlatChosen_ = false;
+    }
     for (const CalibrationPose& one : state_.poses)
         if (state_.flatPose.empty() && one.counts()) state_.flatPose = one.name;
     // Of a folder, reading ended at the first refusal.
@@ -644,6 +663,7 @@ void CalibrationService::setLeftOut(const std::string& pose, bool leftOut) {
 
 void CalibrationService::setFlatPose(const std::string& pose) {
     if (pose == state_.flatPose) return;
+    isFlatChosen_ = true;
     state_.flatPose = pose;
     emit changed();
     if (!state_.result) return;
@@ -723,6 +743,30 @@ void CalibrationService::exportTo(const std::filesystem::path& file) {
         "export", kPlace, tr("Writing the calibration"),
         [record = recordOf(*state_.result), file](const Progress&) {
             writeCalibration(record, file);
+            return true;
+        },
+        [](bool) {});
+}
+
+void CalibrationService::reportTo(const std::filesystem::path& file, std::vector<ReportPicture> pictures) {
+    CalibrationReport report;
+    report.pictures = std::move(pictures);
+    if (state_.result) report.record = recordOf(*state_.result);
+    report.refusal = state_.refusal;
+    for (const CalibrationPose& pose : state_.poses) {
+        if (pose.refusal && !pose.leftOut && !report.refusal) report.refusal = pose.refusal;
+        if (!pose.counts() || !pose.pictures) continue;
+        report.observations.push_back(*pose.seen);
+        report.sights.push_back(pose.pictures->grey);
+    }
+    jobs_.run<bool>(
+        "report", kPlace, tr("Writing the report"),
+        [report = std::move(report), file](const Progress&) {
+            const std::string page = reportPage(report);
+            if (file.extension() == ".pdf")
+                writeReportPdf(page, file);
+            else
+                writeFileAtomically(file, std::as_bytes(std::span(page)));
             return true;
         },
         [](bool) {});

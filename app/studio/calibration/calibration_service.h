@@ -17,6 +17,7 @@
 #include "app/studio/document/job_slots.h"
 #include "app/studio/document/studio_document.h"
 #include "calibration/capture/pattern_display.h"
+#include "calibration/report/report_page.h"
 
 class QTimer;
 
@@ -71,6 +72,8 @@ public:
     void use();
     /// Writes the result by the file's ending: .json, .yaml, .yml. A notice says what went wrong.
     void exportTo(const std::filesystem::path& file);
+    /// Writes a report of result or refusal, with these pictures beside those of the poses: .html or .pdf.
+    void reportTo(const std::filesystem::path& file, std::vector<ReportPicture> pictures);
     /// Takes the result of another time or program in place of poses and result.
     void importFrom(const std::filesystem::path& file);
     /// What would stand in the room; throws InvalidInput where it cannot.
@@ -111,6 +114,7 @@ private:
     QTimer* liveTimer_;
     bool active_ = false;
     bool isLooking_ = false;
+    bool isFlatChosen_ = false;      ///< by the user; else it is the first pose
     bool rest_ = false;              ///< the poses that are missing follow by themselves
     int benchTry_ = 0;               ///< counts, so that a bench that comes too late is not taken
     cv::Size camera_;                ///< of the poses

@@ -44,12 +44,20 @@ bool isChosen(const CalibrationSetup& setup) {
     return setup.way == CaptureWay::lab || !setup.camera.empty();
 }
 
+/// A refusal that other entries at the left mend.
+bool isOfSetup(const Finding& finding) {
+    return finding.cause == Cause::projectorSize || finding.cause == Cause::widthHeightSwapped ||
+           finding.cause == Cause::squareSize;
+}
+
 CalibrationStep setupStep(const CalibrationState& state) {
     CalibrationStep step{"setup", tr("Set up"), How::good, wayWords(state.setup)};
     if (const QString problem = problemOf(state.setup); !problem.isEmpty())
         step.how = How::needsYou, step.words = problem;
     else if (!isChosen(state.setup))
         step.how = How::needsYou;
+    else if (state.refusal && isOfSetup(*state.refusal))
+        step.how = How::needsYou, step.words = wordsOf(*state.refusal).title;
     return step;
 }
 
@@ -100,7 +108,7 @@ CalibrationStep solvedStep(const CalibrationState& state, const QString& id, con
     if (state.work == CalibrationState::Work::solving) {
         step.how = How::running;
         step.words = state.stage;
-    } else if (state.refusal) {
+    } else if (state.refusal && state.counting() > 0) {
         step.how = How::refused;
         step.words = tr("No result that could be trusted");
     } else if (state.result) {
@@ -139,7 +147,7 @@ NextStep refusedNext(const CalibrationState& state, const Finding& finding) {
                             finding.cause == Cause::doubledImage || finding.cause == Cause::missingImage)) {
         next.what = Do::leaveOut;
         next.button = tr("Leave %1 out").arg(QString::fromStdString(finding.view));
-    } else {
+    } else if (!isOfSetup(finding)) { // what is set wrong is not mended by reading again
         next.what = Do::read;
         next.button = tr("Read again");
     }

@@ -67,6 +67,7 @@ PosePictures picturesOf(const DecodedView& decoded, cv::Size projector) {
     PosePictures pictures;
     pictures.camera = {decoded.white.cols, decoded.white.rows};
     const cv::Size shown = shownSize(decoded.white.size());
+    pictures.grey = decoded.white;
     pictures.white = pictureOfMat(decoded.white);
     pictures.columns = coordinatePicture(decoded.column, decoded.confidence, projector.width, shown);
     pictures.rows = coordinatePicture(decoded.row, decoded.confidence, projector.height, shown);

@@ -10,7 +10,8 @@ namespace lumorph::studio {
 /// A pose as pictures to look at; at most 960 pixels wide, all of one size.
 struct PosePictures {
     QSize camera;         ///< pixels of the camera's picture, in which points are told
-    QImage white;         ///< under white light
+    cv::Mat grey;         ///< under white light, as it was taken, 8-bit
+    QImage white;         ///< the same
     QImage columns, rows; ///< the projector's coordinates in colours, with a line every 64 projector pixels
     QImage confidence;    ///< from dark (not known) to bright
 };

@@ -3,6 +3,7 @@
 #include <QApplication>
 #include <QFileDialog>
 
+#include "app/workspaces/calibrate/error_map_view.h"
 #include "app/workspaces/common/export_dialogs.h"
 
 namespace lumorph::studio {
@@ -24,6 +25,25 @@ void askExport(const CalibrateParts& parts) {
     askFile(QApplication::activeWindow(), parts.studio.settings, "calibrate.export", "Export the calibration",
             "calibration.json", {{"Lumorph's calibration (JSON)", "json"}, {"OpenCV (YAML)", "yaml"}},
             [parts](const QString& file) { parts.service.exportTo(file.toStdString()); });
+}
+
+/// The error map as it is seen on the screen.
+std::vector<ReportPicture> mapOf(const CalibrateParts& parts) {
+    const auto& result = parts.service.state().result;
+    if (!result || !result->plan) return {};
+    ErrorMapView view;
+    view.resize(1000, 460);
+    view.show(result->plan, deviceOutlineOf(parts.studio.document.state()));
+    const QImage image = view.grab().toImage().convertToFormat(QImage::Format_BGR888);
+    const cv::Mat picture(image.height(), image.width(), CV_8UC3, const_cast<uchar*>(image.bits()),
+                          static_cast<std::size_t>(image.bytesPerLine()));
+    return {{"How far light may land beside, on the table and above it", picture.clone()}};
+}
+
+void askReport(const CalibrateParts& parts) {
+    askFile(QApplication::activeWindow(), parts.studio.settings, "calibrate.report", "Write a report",
+            "calibration-report.pdf", {{"PDF", "pdf"}, {"Web page (HTML)", "html"}},
+            [parts](const QString& file) { parts.service.reportTo(file.toStdString(), mapOf(parts)); });
 }
 
 void askImport(const CalibrateParts& parts) {
@@ -90,7 +110,12 @@ void addCalibrateCommands(const CalibrateParts& parts) {
                        "JSON of Lumorph, or YAML as users of OpenCV's stereoCalibrate write it",
                        [parts] { askImport(parts); })
         ->setIconText("Import...");
+    QAction* report =
+        addCalibrateAction(parts, "calibrate.report", "Write a report of the calibration...", "file",
+                           "Figures, poses and pictures as PDF or as a web page", [parts] { askReport(parts); });
+    report->setIconText("Report...");
     const auto follow = [=, &service] {
+        report->setEnabled(service.state().result || !service.state().poses.empty());
         save->setEnabled(service.state().result != nullptr);
         const CalibrationState& state = service.state();
         const NextStep step = nextOf(state);

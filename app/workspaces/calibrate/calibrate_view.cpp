@@ -150,7 +150,7 @@ private:
             const auto& result = parts_.service.state().result;
             poseName_->clear();
             legend_->clear();
-            map_->show(result ? result->plan : std::nullopt, deviceOutline());
+            map_->show(result ? result->plan : std::nullopt, deviceOutlineOf(parts_.studio.document.state()));
             return;
         }
         if (show == Show::live) return showLive();
@@ -193,22 +193,6 @@ private:
             for (const cv::Point2d& point : pose->seen->corners.seen) marks.corners.emplace_back(point.x, point.y);
         if (pose->refusal) marks.words = wordsOf(*pose->refusal).title;
         picture_->show(image, pictures.camera, std::move(marks), {});
-    }
-
-    /// Around the rig at rest, in the room.
-    [[nodiscard]] QPolygonF deviceOutline() const {
-        const StudioState& state = parts_.studio.document.state();
-        if (!state.rig.rig) return {};
-        glm::vec3 low(1e30F), high(-1e30F);
-        for (const glm::vec3& point : state.rig.rig->restMesh().positions)
-            low = glm::min(low, point), high = glm::max(high, point);
-        QPolygonF outline;
-        for (const glm::vec2 corner :
-             {glm::vec2(low.x, low.z), glm::vec2(high.x, low.z), glm::vec2(high.x, high.z), glm::vec2(low.x, high.z)}) {
-            const glm::vec4 world = state.installation->worldFromDevice * glm::vec4(corner.x, 0.0F, corner.y, 1.0F);
-            outline << QPointF(world.x, world.z);
-        }
-        return outline;
     }
 
     void addArrows(PictureMarks& marks, const std::string& pose) {

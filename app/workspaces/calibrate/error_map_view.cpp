@@ -64,7 +64,7 @@ QRectF ErrorMapView::panelOf(int plane) const {
 void ErrorMapView::paintEvent(QPaintEvent* /*event*/) {
     const Palette& colors = currentPalette();
     QPainter painter(this);
-    painter.setRenderHint(QPainter::Antialiasing);
+    painter.setRenderHints(QPainter::Antialiasing | QPainter::SmoothPixmapTransform);
     if (!plan_) {
         painter.fillRect(rect(), colors.sunken);
         painter.setPen(colors.textMuted);
@@ -131,6 +131,20 @@ void ErrorMapView::mouseMoveEvent(QMouseEvent* event) {
                            std::isfinite(error) ? QString("%1 mm").arg(error, 0, 'f', 2) : QString("no light"), this);
         return;
     }
+}
+
+QPolygonF deviceOutlineOf(const StudioState& state) {
+    if (!state.rig.rig) return {};
+    glm::vec3 low(1e30F), high(-1e30F);
+    for (const glm::vec3& point : state.rig.rig->restMesh().positions)
+        low = glm::min(low, point), high = glm::max(high, point);
+    QPolygonF outline;
+    for (const glm::vec2 corner :
+         {glm::vec2(low.x, low.z), glm::vec2(high.x, low.z), glm::vec2(high.x, high.z), glm::vec2(low.x, high.z)}) {
+        const glm::vec4 world = state.installation->worldFromDevice * glm::vec4(corner.x, 0.0F, corner.y, 1.0F);
+        outline << QPointF(world.x, world.z);
+    }
+    return outline;
 }
 
 } // namespace lumorph::studio

@@ -6,6 +6,7 @@
 #include <QWidget>
 
 #include "app/studio/calibration/error_plan.h"
+#include "app/studio/document/studio_state.h"
 
 namespace lumorph::studio {
 
@@ -29,5 +30,8 @@ private:
     std::optional<ErrorPlan> plan_;
     QPolygonF device_;
 };
+
+/// Around the rig at rest, in the room: world metres, x and z; empty without a rig.
+[[nodiscard]] QPolygonF deviceOutlineOf(const StudioState& state);
 
 } // namespace lumorph::studio

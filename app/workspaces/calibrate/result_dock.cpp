@@ -74,7 +74,7 @@ public:
         addPlots(*column.layout);
         auto* files = new QHBoxLayout;
         files->setSpacing(8);
-        for (const char* id : {"calibrate.export", "calibrate.import"})
+        for (const char* id : {"calibrate.report", "calibrate.export", "calibrate.import"})
             files->addWidget(makeCommandButton(parts.studio.commands.find(id), QString("result.") + id, this), 1);
         whole->addLayout(files);
         files->setContentsMargins(16, 0, 16, 8);
