@@ -47,7 +47,7 @@ TEST(RigTemplates, ParametersAreCentimetresOrWithAUnit) {
     EXPECT_NEAR(sizeOf(rigWith("tablet", {"width=30"})).x, 0.3, 1e-6);
     EXPECT_NEAR(sizeOf(rigWith("tablet", {"width=300mm", "depth=0.2m"})).z, 0.2, 1e-6);
     EXPECT_NEAR(sizeOf(rigWith("cushion", {"height=7cm"})).y, 0.07, 1e-6);
-    EXPECT_NEAR(rigWith("tablet", {"reach=9cm"}).reach().max.y, 0.09, 1e-4);
+    EXPECT_NEAR(rigWith("tablet", {"reach=8cm"}).reach().max.y, 0.08, 1e-4);
     EXPECT_EQ(rigWith("flower", {"petals=4"}).actuatorCount(), 4U);
     EXPECT_EQ(rigWith("pins", {"columns=7", "rows=3"}).actuatorCount(), 21U);
     EXPECT_NEAR(rigWith("pins", {"columns=2", "rows=2", "stroke=3"}).reach().max.y, 0.08, 1e-6);

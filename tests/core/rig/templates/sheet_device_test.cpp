@@ -173,7 +173,7 @@ TEST(SheetDevice, WrongDrawingsAreRefusedByName) {
     expectSheetRefused(with([](auto& d) { d.housing = -0.01; }), "housing", "cannot be built");
     expectSheetRefused(with([](auto& d) { d.arc = 1.0; }), "arc", "cannot be built");
     expectSheetRefused(with([](auto& d) { d.outline.clear(); }), "sheet", "encloses nothing");
-    expectSheetRefused(with([](auto& d) { d.outline[2] = -d.outline[2] * 1.1; }), "sheet", "crosses itself");
+    expectSheetRefused(with([](auto& d) { std::swap(d.outline[1], d.outline[2]); }), "sheet", "crosses itself");
     expectSheetRefused(with([&](auto& d) { d.outline[1].x = nan; }), "sheet", "no finite number");
     expectSheetRefused(with([](auto& d) { d.outline = rectangleOutline(0.01, 0.01); }), "sheet", "large");
     expectSheetRefused(with([&](auto& d) { d.bends[0].to.y = nan; }), "'fold'", "no finite number");
