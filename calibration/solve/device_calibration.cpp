@@ -106,6 +106,13 @@ struct ChangedLight {
     cv::Point2d cameraPixel, projectorPixel; ///< the middles of it
 };
 
+/// Points of the device and where they were seen, in how many shots.
+struct PointMatches {
+    std::vector<cv::Point3d> points;
+    std::vector<cv::Point2d> pixels;
+    std::set<std::size_t> shots;
+};
+
 /// A middle that strays do not move.
 cv::Point2d steadyMiddle(const std::vector<cv::Point2d>& points) {
     const auto median = [](std::vector<double> numbers) {
@@ -155,6 +162,22 @@ PoseVector turnedOver(const PoseVector& pose, const std::vector<cv::Point3d>& po
     ceres::RotationMatrixToAngleAxis(other.data(), result.data());
     for (int i = 0; i < 3; ++i) result[static_cast<std::size_t>(3 + i)] = way[i];
     return result;
+}
+
+/// A rough pose, turned so that it looks where the points' middle was seen.
+PoseVector aimed(const PoseVector& pose, const Lens& lens, const PointMatches& matches) {
+    Eigen::Vector3d looks = Eigen::Vector3d::Zero(), shall = Eigen::Vector3d::Zero();
+    for (std::size_t i = 0; i < matches.points.size(); ++i) {
+        const double point[3] = {matches.points[i].x, matches.points[i].y, matches.points[i].z};
+        Eigen::Vector3d at;
+        ceres::AngleAxisRotatePoint(pose.data(), point, at.data());
+        looks += (at + Eigen::Vector3d(pose[3], pose[4], pose[5])).normalized();
+        const auto way = directionOfPixel(lens, matches.pixels[i].x, matches.pixels[i].y);
+        shall += Eigen::Vector3d(way[0], way[1], 1.0).normalized();
+    }
+    const Eigen::AngleAxisd turn(Eigen::Quaterniond::FromTwoVectors(looks, shall));
+    const Eigen::Vector3d axis = turn.angle() * turn.axis();
+    return composed({axis.x(), axis.y(), axis.z(), 0.0, 0.0, 0.0}, pose);
 }
 
 class DeviceSolver {
@@ -283,13 +306,8 @@ private:
         return {sum.x, sum.y, sum.z};
     }
 
-    struct Matches {
-        std::vector<cv::Point3d> points;
-        std::vector<cv::Point2d> pixels;
-        std::set<std::size_t> shots;
-    };
-    template <typename Take> [[nodiscard]] Matches matchesWhere(const Take& take) const {
-        Matches matches;
+    template <typename Take> [[nodiscard]] PointMatches matchesWhere(const Take& take) const {
+        PointMatches matches;
         for (const ChangedLight& change : changes_) {
             const std::optional<cv::Point2d> pixel = take(change);
             if (!pixel) continue;
@@ -299,12 +317,12 @@ private:
         }
         return matches;
     }
-    [[nodiscard]] Matches matchesOfCamera(std::size_t c) const {
+    [[nodiscard]] PointMatches matchesOfCamera(std::size_t c) const {
         return matchesWhere([c](const ChangedLight& change) {
             return change.camera == c ? std::optional(change.cameraPixel) : std::nullopt;
         });
     }
-    [[nodiscard]] Matches matchesOfProjector(std::size_t p) const {
+    [[nodiscard]] PointMatches matchesOfProjector(std::size_t p) const {
         return matchesWhere([p](const ChangedLight& change) {
             return change.projector == p ? std::optional(change.projectorPixel) : std::nullopt;
         });
@@ -312,7 +330,7 @@ private:
 
     /// Lenses and poses by which the middles of raised parts lie where they were seen, and the rough one that was
     /// given.
-    [[nodiscard]] std::vector<InstallationState::Device> candidates(const Matches& matches, const Lens& first,
+    [[nodiscard]] std::vector<InstallationState::Device> candidates(const PointMatches& matches, const Lens& first,
                                                                     const PoseVector* given) const {
         std::vector<InstallationState::Device> found;
         const std::vector<double> scales = given != nullptr ? std::vector{1.0} : std::vector{1.0, 2.0, 0.5};
@@ -338,7 +356,10 @@ private:
             found.push_back({lens, pose});
             found.push_back({lens, turnedOver(pose, matches.points)});
         }
-        if (given != nullptr) found.push_back({first, *given});
+        if (given != nullptr) {
+            found.push_back({first, *given});
+            if (!matches.points.empty()) found.push_back({first, aimed(*given, first, matches)});
+        }
         std::erase_if(found, [](const auto& device) { return !(placeOf(device.fromWorld).y > 0.0); }); // from below
         return found;
     }
