@@ -467,7 +467,7 @@ TEST(PoseCapture, SoundCapturesAreNeitherRefusedNorDoubted) {
         options.vignetting = 0.4 * share(dice);
         options.whiteLevel = 120.0 + 110.0 * share(dice);
         SlowCapture slow(options);
-        slow.lab.lab.lay(slow.lab.lab.proposePoses(6)[static_cast<std::size_t>(seed) % 6]);
+        slow.lab.lab.lay(slow.lab.lab.proposePoses(2)[static_cast<std::size_t>(seed / 2) % 2]);
         slow.lab.delay = Microseconds(static_cast<int>(120'000 * share(dice)));
         if (seed % 2 != 0) slow.settings.order = parsePattern("phase:16x3+1x3", {320, 200});
         const CapturedPose pose = slow.capture();
@@ -489,6 +489,7 @@ TEST(PoseCapture, RealCapturesAreNotRefused) {
     const TemporaryFolder unused;
     const auto display = openFileDisplay(unused.path(), {1024, 768});
     for (const CapturedView& view : viewsIn(data)) {
+        if (!longTests() && view.name != "capture_4") continue; // its board is near the picture's edge
         const auto camera = openImages(view.files);
         PoseCaptureSettings settings;
         settings.order = parsePattern("graycode", {1024, 768});
