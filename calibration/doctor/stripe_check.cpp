@@ -145,8 +145,8 @@ struct Mixup {
     }
 };
 
-/// How well codes on both sides of edges follow one another once a mix-up is undone: the share, of each bit's edges,
-/// all bits alike.
+/// How well codes on both sides of edges follow one another once a mix-up is undone: the share of edges,
+/// of the bit with the least.
 double orderUnder(const Mixup& mixup, const std::vector<StripeEdge>& edges, std::size_t bits) {
     std::vector<double> good(bits, 0.0), all(bits, 0.0);
     for (const StripeEdge& edge : edges) {
@@ -154,11 +154,10 @@ double orderUnder(const Mixup& mixup, const std::vector<StripeEdge>& edges, std:
         all[bit] += 1.0;
         good[bit] += std::abs(stripeOf(mixup.undo(edge.one)) - stripeOf(mixup.undo(edge.other))) == 1;
     }
-    double sum = 0.0;
-    double count = 0.0;
+    double least = 1.0;
     for (std::size_t bit = 0; bit < bits; ++bit)
-        if (all[bit] >= kFewestEdges) sum += good[bit] / all[bit], count += 1.0;
-    return count > 0.0 ? sum / count : 1.0;
+        if (all[bit] >= kFewestEdges) least = std::min(least, good[bit] / all[bit]);
+    return least;
 }
 
 /// The finest first where two explain as much, as one bit alone is likelier than all.
@@ -172,7 +171,7 @@ std::vector<Mixup> mixupsOf(int bits) {
 }
 
 std::optional<Finding> wrongCodes(const StripeWalk& walk, const CapturedView& view, const CaptureOrder& order) {
-    constexpr double kOrdered = 0.85;
+    constexpr double kOrdered = 0.6;
     const std::vector<BitStripes>& bits = walk.bits();
     if (bits.empty() || orderUnder({}, walk.edges(), bits.size()) >= kOrdered) return std::nullopt;
     const auto count = static_cast<int>(bits.size());

@@ -113,7 +113,7 @@ std::vector<ProjectorPoint> somePointsOf(const DecodedView& decoded) {
     std::vector<ProjectorPoint> points;
     for (int y = kCameraBorder; y + kCameraBorder < decoded.column.rows; y += kEachPixel)
         for (int x = kCameraBorder; x + kCameraBorder < decoded.column.cols; x += kEachPixel)
-            if (decoded.confidence(y, x) > 0.0F)
+            if (std::isfinite(decoded.column(y, x)) && std::isfinite(decoded.row(y, x)))
                 points.push_back({cv::Point2d(x, y), {decoded.column(y, x), decoded.row(y, x)}});
     return points;
 }

@@ -8,7 +8,6 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <opencv2/imgproc.hpp>
 
 #include "calibration/decode/capture_folder.h"
 #include "tests/core/temporary_folder.h"
@@ -69,15 +68,6 @@ void moveRight(Image& image, int by) {
     const Image before = image;
     for (int y = 0; y < image.size().y; ++y)
         for (int x = 0; x < image.size().x; ++x) image.at(x, y) = before.at(std::max(0, x - by), y);
-}
-
-/// As by a focal length that is 2 % longer.
-void enlarge(Image& image) {
-    cv::Mat pixels(image.size().y, image.size().x, CV_8UC4, image.pixels().data());
-    const cv::Point2f middle(0.5F * static_cast<float>(pixels.cols - 1), 0.5F * static_cast<float>(pixels.rows - 1));
-    cv::Mat enlarged;
-    cv::warpAffine(pixels, enlarged, cv::getRotationMatrix2D(middle, 0.0, 1.02), pixels.size(), cv::INTER_CUBIC);
-    enlarged.copyTo(pixels);
 }
 
 void overexpose(Image& image) {
@@ -176,11 +166,6 @@ std::vector<Fault> faultsOf(const CaptureCopy& capture, cv::Size projector, cv::
                  for (std::size_t i = 0; i < 2 * half; ++i)
                      copy.put(view, i, copy.original(view).files[(i + half) % (2 * half)]);
          },
-         {}},
-        {"camera refocused for the last pose",
-         "camera_refocused",
-         "",
-         [](const CaptureCopy& copy) { copy.change(copy.viewCount() - 1, 0, enlarge); },
          {}},
         {"one pose mirrored", "mirrored", "", [](const CaptureCopy& copy) { copy.change(0, 0, mirror); }, {}},
         {"moved by 9 pixels half way",
