@@ -149,10 +149,16 @@ private:
         CapturedPose captured;
         captured.name = poseName(pose);
         const std::vector<LabShot> shots = faulty_->takeNext(progress);
+        const glm::ivec2 size = lab_.projector().camera.size;
+        ShotCheck check(parsePattern(setup_.pattern, {size.x, size.y}), captured.name, setup_.board);
         for (const LabShot& shot : shots) {
+            progress.throwIfCancelled();
             captured.images.push_back(shot.grey);
             captured.files.push_back(shot.file);
+            if (!check.findings().refusal) check.look(shot.grey, shot.file);
         }
+        if (!check.findings().refusal) check.finish();
+        captured.findings = check.findings();
         if (!shots.empty() && onShot)
             onShot({static_cast<int>(shots.size()) - 1, static_cast<int>(shots.size()), shots.back().grey,
                     shots.back().file});
