@@ -142,8 +142,8 @@ TEST_F(Calibrate, AFolderWithAFaultIsRefusedByCausePlaceAndRemedy) {
     w.next();
     answerFileDialog(w.studio, "calibrate.folder.file", folder, "Choose");
     ASSERT_TRUE(w.offers("Read the images")) << w.story();
-    w.studio.enter("calibrate.projector.width", QString::number(kSmall.x), Qt::Key_Tab);
-    w.studio.enter("calibrate.projector.height", QString::number(kSmall.y), Qt::Key_Tab);
+    w.studio.enter("calibrate.projector.width", QString::number(kSmall.x));
+    w.studio.enter("calibrate.projector.height", QString::number(kSmall.y));
     w.next();
     ASSERT_TRUE(w.offers("Leave " + QString::fromStdString(view) + " out")) << w.story();
     EXPECT_EQ(w.title(), "Something moved");
