@@ -47,8 +47,9 @@ Installation labTruth(const Installation& room) {
     projector.camera.cameraFromWorld = turned;
     projector.camera.focal *= 1.01;
     truth.cameras.resize(1);
-    // As many pixels as the projector, as far as pictures are worked out quickly.
-    const int width = std::clamp(projector.camera.size.x, 320, kLabCameraWidth);
+    // Half as many pixels again as the projector, so that it resolves the finest stripes; up to what is worked out
+    // quickly.
+    const int width = std::clamp(projector.camera.size.x * 3 / 2, 320, kLabCameraWidth);
     truth.cameras.front().camera = withSize(defaultLabCamera(projector.camera), {width, width * 4 / 5});
     return truth;
 }
