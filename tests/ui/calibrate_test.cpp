@@ -35,12 +35,6 @@ void forgetCalibrations() {
 
 /// One start of the window for the whole file.
 struct Window {
-    Window() {
-        studio::Settings settings;
-        for (const char* key : {"calibrate/way", "calibrate/lab/poses", "calibrate/folder/folder"})
-            settings.remove(key);
-        settings.setValue("calibrate/lab/poses", 4);
-    }
     [[nodiscard]] QString title() { return studio.text("calibrate.card.title"); }
     [[nodiscard]] QString button() {
         const auto* next = studio.findNow<QAbstractButton>("calibrate.card.next");
@@ -62,7 +56,13 @@ struct Window {
     }
 
     struct Forgotten {
-        Forgotten() { forgetCalibrations(); }
+        Forgotten() {
+            forgetCalibrations();
+            studio::Settings settings; // before the window reads them
+            for (const char* key : {"calibrate/way", "calibrate/lab/board", "calibrate/folder/folder"})
+                settings.remove(key);
+            settings.setValue("calibrate/lab/poses", 4);
+        }
         ~Forgotten() { forgetCalibrations(); }
     } forgotten_;
     TemporaryFolder folder;
@@ -142,8 +142,8 @@ TEST_F(Calibrate, AFolderWithAFaultIsRefusedByCausePlaceAndRemedy) {
     w.next();
     answerFileDialog(w.studio, "calibrate.folder.file", folder, "Choose");
     ASSERT_TRUE(w.offers("Read the images")) << w.story();
-    w.studio.enter("calibrate.projector.width", QString::number(kSmall.x), Qt::Key_Tab);
-    w.studio.enter("calibrate.projector.height", QString::number(kSmall.y), Qt::Key_Tab);
+    w.studio.enter("calibrate.projector.width", QString::number(kSmall.x));
+    w.studio.enter("calibrate.projector.height", QString::number(kSmall.y));
     w.next();
     ASSERT_TRUE(w.offers("Leave " + QString::fromStdString(view) + " out")) << w.story();
     EXPECT_EQ(w.title(), "Something moved");

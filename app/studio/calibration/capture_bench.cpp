@@ -47,8 +47,9 @@ Installation labTruth(const Installation& room) {
     projector.camera.cameraFromWorld = turned;
     projector.camera.focal *= 1.01;
     truth.cameras.resize(1);
-    // As many pixels as the projector, as far as pictures are worked out quickly.
-    const int width = std::clamp(projector.camera.size.x, 320, kLabCameraWidth);
+    // Half as many pixels again as the projector, so that it resolves the finest stripes; up to what is worked out
+    // quickly.
+    const int width = std::clamp(projector.camera.size.x * 3 / 2, 320, kLabCameraWidth);
     truth.cameras.front().camera = withSize(defaultLabCamera(projector.camera), {width, width * 4 / 5});
     return truth;
 }
@@ -149,10 +150,16 @@ private:
         CapturedPose captured;
         captured.name = poseName(pose);
         const std::vector<LabShot> shots = faulty_->takeNext(progress);
+        const glm::ivec2 size = lab_.projector().camera.size;
+        ShotCheck check(parsePattern(setup_.pattern, {size.x, size.y}), captured.name, setup_.board);
         for (const LabShot& shot : shots) {
+            progress.throwIfCancelled();
             captured.images.push_back(shot.grey);
             captured.files.push_back(shot.file);
+            if (!check.findings().refusal) check.look(shot.grey, shot.file);
         }
+        if (!check.findings().refusal) check.finish();
+        captured.findings = check.findings();
         if (!shots.empty() && onShot)
             onShot({static_cast<int>(shots.size()) - 1, static_cast<int>(shots.size()), shots.back().grey,
                     shots.back().file});

@@ -119,6 +119,9 @@ private:
         const bool live = state.setup.way != CaptureWay::folder;
         if (!live && parts_.selection.show() == Show::live && !state.poses.empty())
             parts_.selection.set(Show::white, state.poses.front().name);
+        const Show show = parts_.selection.show();
+        if (live && state.poses.empty() && show != Show::live && show != Show::map)
+            parts_.selection.set(Show::live, {});
         if (live && state.work == CalibrationState::Work::capturing) parts_.selection.setShow(Show::live);
         showPicture();
     }

@@ -15,6 +15,8 @@
 namespace lumorph::studio {
 namespace {
 
+constexpr int kListWidth = 300; // of lists whose words are longer than the dock is wide
+
 struct PatternChoice {
     const char* words;
     const char* text; ///< as `parsePattern` reads it
@@ -96,6 +98,7 @@ void SetupForm::addSource(QVBoxLayout& column) {
     fault_->setToolTip("To see what the studio says when something goes wrong");
     fault_->setSizeAdjustPolicy(QComboBox::AdjustToMinimumContentsLengthWithIcon);
     fault_->setMinimumContentsLength(8);
+    fault_->view()->setMinimumWidth(kListWidth);
     fault_->addItem("Nothing", -1);
     for (const Cause fault : labFaults())
         fault_->addItem(wordsOf(Finding{fault, {}, {}, {}, {}}).title, static_cast<int>(fault));
@@ -117,6 +120,7 @@ void SetupForm::addBoard(QVBoxLayout& column) {
     kind_->setObjectName("calibrate.board.kind");
     kind_->setSizeAdjustPolicy(QComboBox::AdjustToMinimumContentsLengthWithIcon);
     kind_->setMinimumContentsLength(8);
+    kind_->view()->setMinimumWidth(kListWidth);
     kind_->addItems({"Chessboard", "Circles, every second row shifted", "ChArUco (chessboard with markers)"});
     column.addWidget(makeRow("&Kind", kind_, this));
     connect(kind_, &QComboBox::activated, this, [this](int kind) {
