@@ -8,8 +8,8 @@
 namespace lumorph::test {
 namespace {
 
-constexpr const char* kSvg = R"(<svg width="20cm" height="15cm" viewBox="0 0 200 150">
-  <g transform="translate(10 10)"><rect width="180" height="130" rx="12"/></g></svg>)";
+constexpr const char* kSvg = R"svg(<svg width="20cm" height="15cm" viewBox="0 0 200 150">
+  <g transform="translate(10 10)"><rect width="180" height="130" rx="12"/></g></svg>)svg";
 
 struct Made {
     TemporaryFolder folder;
@@ -101,7 +101,7 @@ TEST(RigMaking, RefusesByNameAndLeavesNothing) {
              Wrong{1, sheet("missing.svg", "good.json"), "missing.svg"},
              Wrong{2, sheet("o.svg", "outside.json"), "meets bend line 'one' outside the sheet"},
              Wrong{2, sheet("o.svg", "zero.json"), "sheet: thickness"},
-             Wrong{1, sheet("o.svg", "nan.json"), "nan.json: it is no JSON"},
+             Wrong{1, sheet("o.svg", "nan.json"), "nan.json: it is not valid JSON"},
              Wrong{1, sheet("o.svg", "huge.json"), "huge.json"},
              Wrong{1, sheet("o.svg", "key.json"), "bend 1: it holds 'form'"},
              Wrong{1, sheet("o.svg", "side.json"), "bend 1: side is 'up'"},
