@@ -101,7 +101,7 @@ TEST(RigMaking, RefusesByNameAndLeavesNothing) {
              Wrong{1, sheet("missing.svg", "good.json"), "missing.svg"},
              Wrong{2, sheet("o.svg", "outside.json"), "meets bend line 'one' outside the sheet"},
              Wrong{2, sheet("o.svg", "zero.json"), "sheet: thickness"},
-             Wrong{1, sheet("o.svg", "nan.json"), "nan.json: it is no JSON"},
+             Wrong{1, sheet("o.svg", "nan.json"), "nan.json: it is not valid JSON"},
              Wrong{1, sheet("o.svg", "huge.json"), "huge.json"},
              Wrong{1, sheet("o.svg", "key.json"), "bend 1: it holds 'form'"},
              Wrong{1, sheet("o.svg", "side.json"), "bend 1: side is 'up'"},

@@ -104,7 +104,7 @@ SheetDevice readSheetDevice(const std::filesystem::path& outline, const std::fil
     device.outline = svgOutline(contentOf(outline), outline.string());
     const std::string text = contentOf(bends);
     if (const std::string problem = jsonProblem(text); !problem.empty())
-        throw DataError(bends.string(), "it " + problem, "write a smaller one");
+        throw DataError(bends.string(), "it " + problem, "write {\"bends\": [...]} with finite numbers");
     const nlohmann::json json = nlohmann::json::parse(text, nullptr, false);
     if (json.is_discarded()) throw DataError(bends.string(), "it is no JSON", "write {\"bends\": [...]}");
     const BendsEntry entry(json, bends.string(), {"bends", "name", "thickness", "housing", "arc"});
