@@ -156,4 +156,19 @@ Installation withCalibration(Installation installation, const ProcamCalibration&
     return installation;
 }
 
+Installation withCrosshairs(Installation installation, const CrosshairCalibration& result, std::size_t points,
+                            std::size_t projector, const std::string& date) {
+    InstalledProjector& device = deviceAt(installation.projectors, projector, "projector");
+    const PoseVector& pose = result.projectorFromWorld;
+    device.camera = cameraOf(result.projector);
+    device.camera.cameraFromWorld =
+        rigid(rotationOf(pose), shiftOf(pose)) * inverseOf(glm::dmat4(installation.worldFromDevice));
+    requireAboveTable(device.camera, "projector");
+    device.lens = {Origin::Way::measured, "crosshairs, " + std::to_string(points) + " points",
+                   date.empty() ? utcDate() : date};
+    device.pose = device.lens;
+    checkInstallation(installation);
+    return installation;
+}
+
 } // namespace lumorph

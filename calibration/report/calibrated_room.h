@@ -9,6 +9,7 @@
 #include <glm/vec2.hpp>
 
 #include "calibration/decode/calibration_board.h"
+#include "calibration/solve/crosshair_calibration.h"
 #include "calibration/solve/procam_calibration.h"
 #include "core/scene/installation.h"
 
@@ -41,6 +42,12 @@ struct RoomPlacement {
 /// table, or the result is none (checkInstallation).
 [[nodiscard]] Installation withCalibration(Installation installation, const ProcamCalibration& result,
                                            const CalibrationBoard& board, const RoomPlacement& placement = {});
+
+/// The installation with a projector as crosshairs on points of the device (device frame) tell it: lens and pose, the
+/// device lying where the installation has it; all else as it was. `points` is how many were aimed at, for the origin;
+/// `date` as in RoomPlacement. Throws InvalidInput as above.
+[[nodiscard]] Installation withCrosshairs(Installation installation, const CrosshairCalibration& result,
+                                          std::size_t points, std::size_t projector = 0, const std::string& date = {});
 
 /// A lens as the installation holds it.
 [[nodiscard]] CalibratedCamera cameraOf(const CalibratedDevice& device);

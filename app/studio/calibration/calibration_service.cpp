@@ -226,7 +226,7 @@ CalibrationService::~CalibrationService() = default;
 void CalibrationService::setActive(bool active) {
     active_ = active;
     if (!active) return liveTimer_->stop();
-    if (!bench_ && state_.setup.way != CaptureWay::folder) return openBench();
+    if (!bench_ && isLive(state_.setup.way)) return openBench();
     look();
 }
 
@@ -259,7 +259,7 @@ void CalibrationService::beginAnew() {
     state_.usedDate.clear();
     clearResults();
     live_ = {};
-    if (active_ && state_.setup.way != CaptureWay::folder) openBench();
+    if (active_ && isLive(state_.setup.way)) openBench();
     emit changed();
     emit liveChanged();
 }

@@ -13,7 +13,7 @@ constexpr auto kWayKey = "calibrate/way";
 constexpr int kMostPoses = 30;
 
 QString keyOf(CaptureWay way, const char* what) {
-    static constexpr const char* kNames[] = {"lab", "folder", "camera"};
+    static constexpr const char* kNames[] = {"lab", "folder", "camera", "crosshairs"};
     return QString("calibrate/%1/%2").arg(kNames[static_cast<int>(way)], what);
 }
 

@@ -16,8 +16,17 @@
 namespace lumorph::studio {
 
 /// Where the pictures of a calibration come from.
-enum class CaptureWay { lab, folder, camera };
-inline constexpr int kCaptureWays = 3;
+enum class CaptureWay {
+    lab,
+    folder,
+    camera,
+    crosshairs ///< no pictures: a person lays crosshairs onto points of the device (crosshair_service.h)
+};
+inline constexpr int kCaptureWays = 4;
+/// Whether there is a camera to look through.
+[[nodiscard]] constexpr bool isLive(CaptureWay way) noexcept {
+    return way == CaptureWay::lab || way == CaptureWay::camera;
+}
 
 /// What a calibration is made with; lengths of the board in millimetres.
 struct CalibrationSetup {

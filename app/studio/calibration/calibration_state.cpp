@@ -33,6 +33,8 @@ QString wayWords(const CalibrationSetup& setup) {
                                     : QString::fromStdString(setup.folder.filename().string());
     case CaptureWay::camera:
         return setup.camera.empty() ? tr("Choose a camera") : QString::fromStdString(setup.camera);
+    case CaptureWay::crosshairs:
+        return tr("Crosshairs on the device, no camera");
     case CaptureWay::lab:
         break;
     }
@@ -335,6 +337,7 @@ QString howWords(CalibrationStep::How how) {
 }
 
 NextStep nextOf(const CalibrationState& state) {
+    if (state.setup.way == CaptureWay::crosshairs) return {};
     if (state.work != CalibrationState::Work::none) return workNext(state);
     if (!state.trouble.isEmpty())
         return {state.setup.way == CaptureWay::folder ? Do::chooseFolder : Do::photograph, Tone::failure,

@@ -35,25 +35,6 @@ cv::Mat greyOf(cv::Mat picture) {
 
 cv::Mat whiteOf(cv::Size size) { return {size, CV_8U, cv::Scalar(255)}; }
 
-/// The projector as somebody has put it up: near where the room has it, and with another zoom.
-Installation labTruth(const Installation& room) {
-    Installation truth = defaultInstallation();
-    InstalledProjector& projector = truth.projectors.front();
-    if (!room.projectors.empty()) projector.camera = withSize(projector.camera, room.projectors.front().camera.size);
-    const glm::dvec3 position = positionOf(projector.camera) + glm::dvec3(0.03, -0.04, 0.02);
-    glm::dmat4 turned = projector.camera.cameraFromWorld;
-    turned = glm::rotate(glm::dmat4(1.0), 0.4 * kRadians, glm::dvec3(0.3, 1.0, 0.4)) * turned;
-    turned[3] = glm::dvec4(-(glm::dmat3(turned) * position), 1.0);
-    projector.camera.cameraFromWorld = turned;
-    projector.camera.focal *= 1.01;
-    truth.cameras.resize(1);
-    // Half as many pixels again as the projector, so that it resolves the finest stripes; up to what is worked out
-    // quickly.
-    const int width = std::clamp(projector.camera.size.x * 3 / 2, 320, kLabCameraWidth);
-    truth.cameras.front().camera = withSize(defaultLabCamera(projector.camera), {width, width * 4 / 5});
-    return truth;
-}
-
 /// The lab has a time of its own: a picture takes a tenth of a second, however long it takes to work it out.
 class LabTimeCamera final : public CaptureCamera {
 public:
@@ -232,6 +213,24 @@ private:
 };
 
 } // namespace
+
+Installation labTruth(const Installation& room) {
+    Installation truth = defaultInstallation();
+    InstalledProjector& projector = truth.projectors.front();
+    if (!room.projectors.empty()) projector.camera = withSize(projector.camera, room.projectors.front().camera.size);
+    const glm::dvec3 position = positionOf(projector.camera) + glm::dvec3(0.03, -0.04, 0.02);
+    glm::dmat4 turned = projector.camera.cameraFromWorld;
+    turned = glm::rotate(glm::dmat4(1.0), 0.4 * kRadians, glm::dvec3(0.3, 1.0, 0.4)) * turned;
+    turned[3] = glm::dvec4(-(glm::dmat3(turned) * position), 1.0);
+    projector.camera.cameraFromWorld = turned;
+    projector.camera.focal *= 1.01;
+    truth.cameras.resize(1);
+    // Half as many pixels again as the projector, so that it resolves the finest stripes; up to what is worked out
+    // quickly.
+    const int width = std::clamp(projector.camera.size.x * 3 / 2, 320, kLabCameraWidth);
+    truth.cameras.front().camera = withSize(defaultLabCamera(projector.camera), {width, width * 4 / 5});
+    return truth;
+}
 
 std::optional<double> lightError(const CalibratedCamera& believed, const CalibratedCamera& truth, double side) {
     constexpr int kSteps = 9;

@@ -43,6 +43,10 @@ public:
     std::mutex mutex;
 };
 
+/// The lab's projector and camera as they truly are: as somebody has put them up, near where the room has them, and
+/// with another zoom.
+[[nodiscard]] Installation labTruth(const Installation& room);
+
 /// The virtual lab: a board before a projector that stands a little aside from where `room` has it. Takes a second or
 /// two. Throws InvalidInput where the board does not fit.
 [[nodiscard]] std::shared_ptr<CaptureBench> openLabBench(const CalibrationSetup& setup, const Installation& room,

@@ -100,6 +100,9 @@ void addCalibrateCommands(const CalibrateParts& parts) {
     addCalibrateAction(parts, "calibrate.camera", "Calibrate with a camera", "picture",
                        "A camera of this machine, and the projector's output window",
                        [&service] { service.setWay(CaptureWay::camera); });
+    addCalibrateAction(parts, "calibrate.crosshairs", "Calibrate without a camera", "target",
+                       "Lay the projector's crosshair onto points of the device",
+                       [&service] { service.setWay(CaptureWay::crosshairs); });
     QAction* use = addCalibrateAction(parts, "calibrate.use", "Use this calibration", "check",
                                       "The room's projector gets these figures; undo takes them back",
                                       [&service] { service.use(); });

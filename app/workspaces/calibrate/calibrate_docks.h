@@ -3,6 +3,7 @@
 #include <QWidget>
 
 #include "app/studio/calibration/calibration_service.h"
+#include "app/studio/calibration/crosshair_service.h"
 #include "app/studio/shell/studio.h"
 #include "app/workspaces/calibrate/calibrate_selection.h"
 
@@ -12,6 +13,7 @@ namespace lumorph::studio {
 struct CalibrateParts {
     Studio& studio;
     CalibrationService& service;
+    CrosshairService& crosshairs;
     CalibrateSelection& selection;
 };
 
@@ -23,5 +25,7 @@ struct CalibrateParts {
 [[nodiscard]] QWidget* makeVersionsDock(const CalibrateParts& parts);
 /// The card with the next step over the picture.
 [[nodiscard]] QWidget* makeCalibrateView(const CalibrateParts& parts);
+/// The same without a camera: points of the device, and the crosshair that is laid onto them.
+[[nodiscard]] QWidget* makeCrosshairView(const CalibrateParts& parts);
 
 } // namespace lumorph::studio

@@ -116,7 +116,7 @@ private:
         // A pose that has just come in, or the one that was refused, is what one wants to see.
         if (const auto* wanted = newlySeen(state)) parts_.selection.set(Show::white, wanted->name);
         count_ = state.poses.size();
-        const bool live = state.setup.way != CaptureWay::folder;
+        const bool live = isLive(state.setup.way);
         if (!live && parts_.selection.show() == Show::live && !state.poses.empty())
             parts_.selection.set(Show::white, state.poses.front().name);
         const Show show = parts_.selection.show();

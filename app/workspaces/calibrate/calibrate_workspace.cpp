@@ -2,26 +2,32 @@
 
 #include <QGuiApplication>
 #include <QScreen>
+#include <QStackedWidget>
 
 #include "app/studio/output/pattern_screen.h"
 #include "app/workspaces/calibrate/calibrate_commands.h"
 #include "app/workspaces/calibrate/calibrate_docks.h"
+#include "core/base/error.h"
 
 namespace lumorph::studio {
 namespace {
 
 /// The projector's own window; where it is not open yet it goes to a second screen, if there is one.
+void openOutput(ProjectorOutputs& outputs, std::size_t projector) {
+    if (outputs.window(projector) == nullptr) {
+        const QScreen* own = QGuiApplication::primaryScreen();
+        for (const QScreen* screen : QGuiApplication::screens())
+            if (screen != own) {
+                outputs.showOnScreen(projector, screen->name());
+                break;
+            }
+    }
+    if (outputs.window(projector) == nullptr) outputs.showInWindow(projector);
+}
+
 CalibrationService::DisplayOpener displayOpener(Studio& studio) {
     return [&studio](std::size_t projector) -> std::unique_ptr<PatternDisplay> {
-        if (studio.outputs.window(projector) == nullptr) {
-            const QScreen* own = QGuiApplication::primaryScreen();
-            for (const QScreen* screen : QGuiApplication::screens())
-                if (screen != own) {
-                    studio.outputs.showOnScreen(projector, screen->name());
-                    break;
-                }
-        }
-        if (studio.outputs.window(projector) == nullptr) studio.outputs.showInWindow(projector);
+        openOutput(studio.outputs, projector);
         return std::make_unique<PatternScreen>(studio.outputs, projector);
     };
 }
@@ -32,27 +38,59 @@ CalibrationService::VersionTaker versionTaker(Studio& studio) {
     };
 }
 
+CrosshairService::Shower crosshairShower(Studio& studio) {
+    return [&studio](const QImage& picture) {
+        if (!picture.isNull()) openOutput(studio.outputs, 0);
+        ProjectorWindow* window = studio.outputs.window(0);
+        if (window == nullptr) {
+            if (picture.isNull()) return;
+            throw DeviceError("projector 1", "its picture is not shown", "open it on the projector's screen");
+        }
+        window->setCalibrationPicture(picture, 0);
+        if (picture.isNull()) return;
+        if (const QString problem = window->calibrationProblem(); !problem.isEmpty())
+            throw DeviceError("projector 1", "cannot show the crosshair pixel by pixel", problem.toStdString());
+    };
+}
+
 } // namespace
 
 CalibrateWorkspace::CalibrateWorkspace(Studio& studio)
     : studio_(studio), service_(studio.settings, studio.document, studio.jobs, studio.notices, displayOpener(studio),
-                                versionTaker(studio)) {
-    addCalibrateCommands({studio_, service_, selection_});
+                                versionTaker(studio)),
+      crosshairs_(studio.document, crosshairShower(studio),
+                  [&studio](const InstallationVersion& version) { return studio.room.takeVersion(version); }) {
+    addCalibrateCommands({studio_, service_, crosshairs_, selection_});
+    connect(&service_, &CalibrationService::changed, this, [this] { setActive(active_); });
 }
 
 QString CalibrateWorkspace::id() const { return "calibrate"; }
 QString CalibrateWorkspace::title() const { return "Calibrate"; }
 
-QWidget* CalibrateWorkspace::makeCentralView() { return makeCalibrateView({studio_, service_, selection_}); }
+QWidget* CalibrateWorkspace::makeCentralView() {
+    auto* views = new QStackedWidget;
+    views->addWidget(makeCalibrateView({studio_, service_, crosshairs_, selection_}));
+    views->addWidget(makeCrosshairView({studio_, service_, crosshairs_, selection_}));
+    const auto follow = [this, views] {
+        views->setCurrentIndex(service_.state().setup.way == CaptureWay::crosshairs ? 1 : 0);
+    };
+    connect(&service_, &CalibrationService::changed, views, follow);
+    follow();
+    return views;
+}
 
 std::vector<WorkspaceDock> CalibrateWorkspace::makeDocks() {
-    const CalibrateParts parts{studio_, service_, selection_};
+    const CalibrateParts parts{studio_, service_, crosshairs_, selection_};
     return {{"dock.calibrate.steps", "Steps", "check", makeStepsDock(parts), Qt::LeftDockWidgetArea, false},
             {"dock.calibrate.result", "Result", "target", makeResultDock(parts), Qt::RightDockWidgetArea, false},
             {"dock.calibrate.versions", "Versions", "clock", makeVersionsDock(parts), Qt::RightDockWidgetArea, true}};
 }
 
-void CalibrateWorkspace::setActive(bool active) { service_.setActive(active); }
+void CalibrateWorkspace::setActive(bool active) {
+    if (active != active_) service_.setActive(active);
+    active_ = active;
+    crosshairs_.setActive(active && service_.state().setup.way == CaptureWay::crosshairs);
+}
 
 bool CalibrateWorkspace::takeDrop(const std::vector<std::filesystem::path>& files) {
     std::error_code none;

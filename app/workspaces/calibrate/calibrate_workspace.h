@@ -3,6 +3,7 @@
 #include <memory>
 
 #include "app/studio/calibration/calibration_service.h"
+#include "app/studio/calibration/crosshair_service.h"
 #include "app/studio/shell/studio.h"
 #include "app/studio/shell/workspace.h"
 #include "app/workspaces/calibrate/calibrate_selection.h"
@@ -24,10 +25,13 @@ public:
     bool takeDrop(const std::vector<std::filesystem::path>& files) override;
 
     [[nodiscard]] CalibrationService& service() noexcept { return service_; }
+    [[nodiscard]] CrosshairService& crosshairs() noexcept { return crosshairs_; }
 
 private:
     Studio& studio_;
     CalibrationService service_;
+    CrosshairService crosshairs_;
+    bool active_ = false;
     CalibrateSelection selection_;
 };
 

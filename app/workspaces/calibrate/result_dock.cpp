@@ -191,7 +191,7 @@ private:
                 if (!pose.leftOut)
                     for (const Finding& warning : pose.warnings) findings.emplace_back(warning, false);
         const bool any = state.result || !findings.empty();
-        empty_->setVisible(!any);
+        empty_->setVisible(!any && state.setup.way != CaptureWay::crosshairs); // whose figures are in the middle
         result_->setVisible(any);
         if (findings != shown_) {
             shown_ = findings;

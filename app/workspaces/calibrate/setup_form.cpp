@@ -49,8 +49,13 @@ SetupForm::SetupForm(const CalibrateParts& parts, QWidget* parent) : QWidget(par
     column->setContentsMargins(0, 0, 0, 0);
     column->setSpacing(8);
     addSource(*column);
-    addBoard(*column);
-    addPatterns(*column);
+    rest_ = new QWidget(this);
+    auto* rest = new QVBoxLayout(rest_);
+    rest->setContentsMargins(0, 0, 0, 0);
+    rest->setSpacing(8);
+    addBoard(*rest);
+    addPatterns(*rest);
+    column->addWidget(rest_);
     connect(&parts_.service, &CalibrationService::changed, this, [this] { refresh(); });
     refresh();
 }
@@ -72,7 +77,8 @@ void SetupForm::addSource(QVBoxLayout& column) {
     column.addWidget(makeHeading("Pictures come from", this));
     way_ = new Segments({{"calibrate.way.lab", "Virtual lab", "Without any hardware; the truth is known"},
                          {"calibrate.way.folder", "Folder", "Images that were taken before"},
-                         {"calibrate.way.camera", "Camera", "A camera of this machine and the projector's window"}},
+                         {"calibrate.way.camera", "Camera", "A camera of this machine and the projector's window"},
+                         {"calibrate.way.crosshairs", "No camera", "A crosshair that you lay onto the device"}},
                         this);
     connect(way_, &Segments::chosen, this, [this](int way) { parts_.service.setWay(static_cast<CaptureWay>(way)); });
     column.addWidget(way_);
@@ -211,9 +217,13 @@ void SetupForm::refresh() {
     const CalibrationSetup& setup = state.setup;
     const bool lab = setup.way == CaptureWay::lab;
     const bool folder = setup.way == CaptureWay::folder;
+    const bool byHand = setup.way == CaptureWay::crosshairs;
     way_->setChosen(static_cast<int>(setup.way));
+    rest_->setVisible(!byHand);
     wayWords_->setText(lab ? "A simulated projector, camera and board. It tells at the end how near the result is to "
                              "the truth."
+                       : byHand ? "You lay the projector\'s crosshair onto points of the device. Flaps stand raised, "
+                                  "so that the points differ in height."
                        : folder ? "One folder for each pose of the board, each with the photographs of all patterns."
                                 : "The patterns are shown in the projector's output window; the camera looks at them.");
     folder_->setVisible(folder);

@@ -31,6 +31,7 @@ private:
     CalibrateParts parts_;
     Segments* way_ = nullptr;
     QLabel* wayWords_ = nullptr;
+    QWidget* rest_ = nullptr; ///< what a board is calibrated with
     QPushButton* folder_ = nullptr;
     QWidget* cameraRow_ = nullptr;
     QComboBox* camera_ = nullptr;

@@ -119,7 +119,8 @@ public:
         addPoses(*column.layout);
         column.layout->addWidget(new SetupForm(parts, this));
         auto* end = new QHBoxLayout;
-        end->addWidget(makeCommandButton(parts.studio.commands.find("calibrate.anew"), "calibrate.anew", this));
+        anew_ = makeCommandButton(parts.studio.commands.find("calibrate.anew"), "calibrate.anew", this);
+        end->addWidget(anew_);
         column.layout->addLayout(end);
         connect(&parts.service, &CalibrationService::changed, this, [this] { refresh(); });
         connect(&parts.selection, &CalibrateSelection::changed, this, [this] { showChosen(); });
@@ -161,7 +162,12 @@ private:
 
     void refresh() {
         const CalibrationState& state = parts_.service.state();
-        for (const CalibrationStep& step : stepsOf(state)) rows_.at(step.id)->show(step);
+        const bool byHand = state.setup.way == CaptureWay::crosshairs; // its card says what is to be done
+        for (const CalibrationStep& step : stepsOf(state)) {
+            rows_.at(step.id)->show(step);
+            rows_.at(step.id)->setVisible(!byHand);
+        }
+        anew_->setVisible(!byHand);
         posesPart_->setVisible(!state.poses.empty());
         {
             const QSignalBlocker quiet(poses_);
@@ -202,6 +208,7 @@ private:
     QListWidget* poses_;
     QCheckBox* leaveOut_ = nullptr;
     QComboBox* flat_ = nullptr;
+    QPushButton* anew_ = nullptr;
 };
 
 } // namespace
