@@ -152,7 +152,7 @@ void CrosshairService::setLab(bool isLab) {
     if (isLab == state_.isLab) return;
     state_.isLab = isLab;
     state_.trouble.clear();
-    renderLabSight();
+    renderSight();
     showPicture();
     emit changed();
 }
@@ -184,7 +184,7 @@ void CrosshairService::begin() {
         const Notice notice = noticeOf(error);
         state_.trouble = QString("%1: %2; %3.").arg(notice.subject, notice.why, notice.remedy);
     }
-    renderLabSight();
+    renderSight();
     follow();
 }
 
@@ -204,7 +204,8 @@ void CrosshairService::doNext() {
     }
 }
 
-/// Where it is believed to be, until somebody aims it.
+/// Where the others put it, until somebody aims it. While they do not tell, it stays in the middle, where it proves
+/// nothing: what the room believes would only confirm itself.
 void CrosshairService::place(std::size_t index) {
     CrosshairSession& session = *state_.session;
     const Crosshair& crosshair = session.crosshairs()[index];
@@ -212,12 +213,6 @@ void CrosshairService::place(std::size_t index) {
     std::optional<cv::Point2d> guess;
     if (session.result()) {
         guess = session.result()->pixelOf(crosshair.point);
-    } else {
-        const Installation& room = *document_.state().installation;
-        const glm::dvec4 device(crosshair.point.x, crosshair.point.y, crosshair.point.z, 1.0);
-        if (const auto pixel =
-                pixelOf(room.projectors.front().camera, glm::dvec3(glm::dmat4(room.worldFromDevice) * device)))
-            guess = cv::Point2d(std::round(pixel->x), std::round(pixel->y));
     }
     if (!guess || !std::isfinite(guess->x) || !std::isfinite(guess->y)) return;
     session.aimAt(index, {std::round(guess->x), std::round(guess->y)});
@@ -348,12 +343,21 @@ void CrosshairService::showPicture() {
     }
 }
 
-/// Triangles from the farthest to the nearest, as the lab's true projector has them.
-void CrosshairService::renderLabSight() {
-    labSight_ = {};
-    if (!state_.isLab || !state_.session) return;
+QPointF CrosshairService::target() const {
+    if (!state_.session) return {};
+    const cv::Point3d& point = state_.session->crosshairs()[state_.current].point;
+    const glm::dmat4 worldFromDevice(document_.state().installation->worldFromDevice);
+    const auto pixel = pixelOf(sightCamera_, glm::dvec3(worldFromDevice * glm::dvec4(point.x, point.y, point.z, 1.0)));
+    return pixel ? QPointF(pixel->x, pixel->y) : QPointF(-1.0, -1.0);
+}
+
+/// Triangles from the farthest to the nearest.
+void CrosshairService::renderSight() {
+    sight_ = {};
+    if (!state_.session) return;
     const Installation& room = *document_.state().installation;
-    const CalibratedCamera projector = labTruth(room).projectors.front().camera;
+    sightCamera_ = (state_.isLab ? labTruth(room) : room).projectors.front().camera;
+    const CalibratedCamera& projector = sightCamera_;
     const TriangleMesh mesh = deformed(*rig_, state_.strokes);
     struct Facet {
         double distance;
@@ -390,7 +394,7 @@ void CrosshairService::renderLabSight() {
         painter.drawPolygon(facet.outline);
     }
     painter.end();
-    labSight_ = sight;
+    sight_ = sight;
 }
 
 } // namespace lumorph::studio

@@ -77,8 +77,11 @@ public:
 
     /// What the projector shows, its pixels; null without a session.
     [[nodiscard]] QImage picture() const;
-    /// The device as the lab's projector sees it, its pixels: black around; null outside of the lab.
-    [[nodiscard]] const QImage& labSight() const noexcept { return labSight_; }
+    /// The device as the projector sees it, its pixels: in the lab as it truly stands, else as the room has it; null
+    /// without a session.
+    [[nodiscard]] const QImage& sight() const noexcept { return sight_; }
+    /// The point that is meant, in `sight`.
+    [[nodiscard]] QPointF target() const;
 
 signals:
     void changed();
@@ -87,7 +90,7 @@ private:
     void place(std::size_t index);
     void follow();
     void showPicture();
-    void renderLabSight();
+    void renderSight();
     void followDocument();
 
     StudioDocument& document_;
@@ -96,7 +99,8 @@ private:
     CrosshairState state_;
     std::shared_ptr<const Rig> rig_;  ///< that the points are of
     std::vector<cv::Point3d> places_; ///< of the device, where the error is told; device frame
-    QImage labSight_;
+    QImage sight_;
+    CalibratedCamera sightCamera_;
     std::string resultDate_;
     bool active_ = false;
     bool shown_ = false; ///< the projector shows the crosshair

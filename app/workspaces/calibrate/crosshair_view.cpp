@@ -25,6 +25,7 @@ namespace {
 constexpr double kArrowScale = 20.0; // residuals are drawn so many times as long
 constexpr int kLoupe = 25;           // projector pixels on each side, an odd number
 constexpr int kLoupeScale = 7;
+constexpr int kStrip = kLoupe * kLoupeScale + 16; // below the picture
 constexpr int kSideWidth = 280;
 
 /// The projector's picture with the crosshair, as large as fits. It is dragged, or moved by keys.
@@ -68,7 +69,7 @@ protected:
         const CrosshairState& state = service_.state();
         if (!state.session) return;
         const QImage lit = service_.picture();
-        const QImage& sight = service_.labSight();
+        const QImage& sight = service_.sight();
         const QRectF area = areaOf(lit.size());
         const double scale = area.width() / lit.width();
         const auto on = [&](const cv::Point2d& pixel) {
@@ -76,7 +77,7 @@ protected:
         };
         painter.setRenderHints(QPainter::Antialiasing | QPainter::SmoothPixmapTransform);
         painter.fillRect(area, Qt::black);
-        if (!sight.isNull()) painter.drawImage(area, sight);
+        if (state.isLab) painter.drawImage(area, sight);
         painter.setClipRect(area);
         const auto& crosshairs = state.session->crosshairs();
         const cv::Point2d now = crosshairs[state.current].pixel;
@@ -95,7 +96,10 @@ protected:
             painter.setPen(QPen(suspicious ? colors.danger : colors.warning, 2.0));
             drawArrow(painter, on(crosshairs[i].pixel), QPointF(error.x, error.y) * scale * kArrowScale);
         }
-        drawLoupe(painter, area, now, lit, sight, on(now));
+        painter.setClipping(false);
+        QRectF strip(0.0, height() - kStrip + 8.0, width(), kStrip - 16.0);
+        if (state.isLab) strip.setLeft(drawLoupe(painter, strip, now, lit, sight) + 8.0);
+        drawMeant(painter, strip, sight);
     }
 
 private:
@@ -111,8 +115,9 @@ private:
         painter.drawLine(from + by, from + by - back - side);
     }
     [[nodiscard]] QRectF areaOf(const QSize& picture) const {
-        const QSizeF fitted = QSizeF(picture).scaled(QSizeF(size()), Qt::KeepAspectRatio);
-        return {QPointF((width() - fitted.width()) / 2.0, (height() - fitted.height()) / 2.0), fitted};
+        const QSizeF fitted =
+            QSizeF(picture).scaled(QSizeF(width(), std::max(80, height() - kStrip)), Qt::KeepAspectRatio);
+        return {QPointF((width() - fitted.width()) / 2.0, (height() - kStrip - fitted.height()) / 2.0), fitted};
     }
     void drag(QMouseEvent* event) {
         if (!event->buttons().testFlag(Qt::LeftButton) || !service_.state().session) return;
@@ -121,13 +126,10 @@ private:
         const QPointF at = (event->position() - area.topLeft()) * (size.width() / area.width());
         service_.moveTo({at.x() - 0.5, at.y() - 0.5});
     }
-    /// Pixel by pixel around the crosshair, in the corner that is farther away; where the lab is seen.
-    static void drawLoupe(QPainter& painter, const QRectF& area, const cv::Point2d& pixel, const QImage& lit,
-                          const QImage& sight, const QPointF& crosshair) {
-        if (sight.isNull()) return;
-        const double side = kLoupe * kLoupeScale;
-        const bool left = crosshair.x() > area.center().x();
-        const QRectF loupe(left ? area.left() + 8.0 : area.right() - side - 8.0, area.top() + 8.0, side, side);
+    /// Pixel by pixel around the crosshair, at the left of the strip. Returns where it ends.
+    static double drawLoupe(QPainter& painter, const QRectF& strip, const cv::Point2d& pixel, const QImage& lit,
+                            const QImage& sight) {
+        const QRectF loupe(strip.left(), strip.top(), strip.height(), strip.height());
         const QRect source(static_cast<int>(pixel.x) - kLoupe / 2, static_cast<int>(pixel.y) - kLoupe / 2, kLoupe,
                            kLoupe);
         painter.setRenderHint(QPainter::SmoothPixmapTransform, false);
@@ -135,8 +137,23 @@ private:
         painter.setCompositionMode(QPainter::CompositionMode_Plus);
         painter.drawImage(loupe, lit.copy(source));
         painter.setCompositionMode(QPainter::CompositionMode_SourceOver);
+        painter.setRenderHint(QPainter::SmoothPixmapTransform);
+        painter.setBrush(Qt::NoBrush);
         painter.setPen(QPen(currentPalette().border, 1.0));
         painter.drawRect(loupe);
+        return loupe.right();
+    }
+    /// Which point of the device is meant.
+    void drawMeant(QPainter& painter, const QRectF& strip, const QImage& sight) const {
+        const QSizeF fitted = QSizeF(sight.size()).scaled(strip.size(), Qt::KeepAspectRatio);
+        const QRectF area(strip.topLeft(), fitted);
+        painter.drawImage(area, sight);
+        painter.setBrush(Qt::NoBrush);
+        painter.setPen(QPen(currentPalette().border, 1.0));
+        painter.drawRect(area);
+        painter.setPen(QPen(currentPalette().accent, 2.0));
+        const QPointF at = area.topLeft() + (service_.target() + QPointF(0.5, 0.5)) * (fitted.width() / sight.width());
+        painter.drawEllipse(at, 6.0, 6.0);
     }
 
     CrosshairService& service_;
@@ -232,8 +249,10 @@ private:
         leftOut_->setEnabled(count > 0);
         leftOut_->setChecked(count > 0 && state.leftOut[state.current]);
         lab_->setChecked(state.isLab);
-        QString words = state.isLab ? "The device as the lab's projector lights it. "
-                                    : "What the projector shows; look at the device itself. ";
+        QString words = state.isLab
+                            ? "The device as the lab's projector lights it; below, the crosshair enlarged, and "
+                              "the point that is meant. "
+                            : "What the projector shows; look at the device itself. Below, the point that is meant. ";
         if (state.session && state.session->result())
             words += QString("Arrows: from a crosshair to where the others put its point, %1 times as long. ")
                          .arg(kArrowScale, 0, 'f', 0);
