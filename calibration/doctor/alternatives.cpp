@@ -372,12 +372,7 @@ public:
     std::vector<Alternative> all() {
         tryPicture();
         tryBoard();
-        const AlternativeState focused = solver_.solve({.focus = true});
-        const double spread = spreadOf(focused.focus);
-        add(Cause::cameraRefocused, focused, spread / kSteadyFocus,
-            "the camera's focal length differs by " + number(100.0 * spread, 1) + " % between poses",
-            "switch off autofocus and zoom, touch neither between poses, and capture all again",
-            views_[changeOf(focused.focus)].name);
+        if (views_.size() >= kFewestForFocus) tryFocus();
         if (ripplesOf(order_, PatternAxis::columns) > 0.0) tryGamma();
         std::ranges::sort(all_, std::greater<>(), &Alternative::explained);
         return std::move(all_);
@@ -409,6 +404,8 @@ private:
     static constexpr double kStraight = 0.003;     // skew
     static constexpr double kSquareSquares = 0.003;
     static constexpr double kSteadyFocus = 0.003;
+    /// With three poses each may have the focal length that its noise likes, at another distance.
+    static constexpr std::size_t kFewestForFocus = 4;
     static constexpr double kFlatBoard = 0.004; // of half its diagonal
     static constexpr double kRipple = 0.15;     // projector pixels
     static constexpr double kSmoothLens = 0.3;  // pixels
@@ -455,6 +452,15 @@ private:
             "the board's squares are " + number(100.0 * std::abs(aspect), 1) +
                 (aspect > 0.0 ? " % higher than wide" : " % wider than high"),
             "print the board without scaling, and measure its squares along both sides");
+    }
+
+    void tryFocus() {
+        const AlternativeState focused = solver_.solve({.focus = true});
+        const double spread = spreadOf(focused.focus);
+        add(Cause::cameraRefocused, focused, spread / kSteadyFocus,
+            "the camera's focal length differs by " + number(100.0 * spread, 1) + " % between poses",
+            "switch off autofocus and zoom, touch neither between poses, and capture all again",
+            views_[changeOf(focused.focus)].name);
     }
 
     void tryGamma() {

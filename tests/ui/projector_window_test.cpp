@@ -177,12 +177,13 @@ TEST_F(ProjectorOutput, PatternsGoWhateverHappens) {
 TEST_F(ProjectorOutput, PatternsNeedEveryPixelOfTheProjector) {
     EXPECT_THROW(PatternScreen(outputs, 0), DeviceError) << "not shown at all";
     setProjectorSize(screenPixels() - QSize(200, 100));
-    ASSERT_NE(cover(), nullptr);
+    const auto* window = cover();
+    ASSERT_NE(window, nullptr);
     try {
         const PatternScreen screen(outputs, 0);
         ADD_FAILURE() << "another size";
     } catch (const DeviceError& error) {
-        EXPECT_NE(error.remedy().find(std::to_string(screenPixels().width())), std::string::npos) << error.what();
+        EXPECT_NE(error.remedy().find(std::to_string(window->pixels().width())), std::string::npos) << error.what();
     }
 }
 
