@@ -67,8 +67,7 @@ public:
         std::vector<PlaneEdge> edges;
         for (const auto& [a, b] : edges_) splitAtPoints(a, b, edges);
         std::ranges::sort(edges);
-        const auto repeated = std::ranges::unique(edges);
-        edges.erase(repeated.begin(), repeated.end());
+        edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
         return triangulateCrossing(points_, edges);
     }
 
