@@ -68,6 +68,24 @@ PlaneMesh triangulateCrossing(const std::vector<glm::dvec2>& points,
     return mesh;
 }
 
+void addWall(const std::vector<std::uint32_t>& a, const std::vector<std::uint32_t>& b,
+             std::vector<glm::uvec3>& triangles) {
+    std::size_t i = 0;
+    std::size_t j = 0;
+    while (i + 1 < a.size() || j + 1 < b.size()) {
+        // Climb where the lower share of the way has been gone, so that rows meet rows.
+        const bool climbB =
+            i + 1 == a.size() || (j + 1 < b.size() && (j + 1) * (a.size() - 1) <= (i + 1) * (b.size() - 1));
+        if (climbB) {
+            triangles.emplace_back(a[i], b[j], b[j + 1]);
+            ++j;
+        } else {
+            triangles.emplace_back(a[i], b[j], a[i + 1]);
+            ++i;
+        }
+    }
+}
+
 bool insidePolygon(const std::vector<glm::dvec2>& polygon, const glm::dvec2& point) {
     bool inside = false;
     for (std::size_t k = 0; k < polygon.size(); ++k) {

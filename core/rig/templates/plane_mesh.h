@@ -26,6 +26,10 @@ struct PlaneMesh {
 [[nodiscard]] PlaneMesh triangulateCrossing(const std::vector<glm::dvec2>& points,
                                             const std::vector<std::pair<std::uint32_t, std::uint32_t>>& edges);
 
+/// Adds the triangles of a wall between two columns of vertices, each from the foot up.
+void addWall(const std::vector<std::uint32_t>& a, const std::vector<std::uint32_t>& b,
+             std::vector<glm::uvec3>& triangles);
+
 /// True inside the polygon (even-odd).
 [[nodiscard]] bool insidePolygon(const std::vector<glm::dvec2>& polygon, const glm::dvec2& point);
 

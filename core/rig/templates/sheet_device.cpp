@@ -490,25 +490,8 @@ private:
             };
             mesh_.triangles.emplace_back(at(c.x), at(c.y), at(c.z));
         }
-        for (const auto& [a, b] : walls_) addWall(columns_[a], columns_[b]);
+        for (const auto& [a, b] : walls_) addWall(columns_[a], columns_[b], mesh_.triangles);
         addHousing();
-    }
-
-    /// Climbs where the lower share of the way has been gone, so that rows meet rows.
-    void addWall(const std::vector<std::uint32_t>& a, const std::vector<std::uint32_t>& b) {
-        std::size_t i = 0;
-        std::size_t j = 0;
-        while (i + 1 < a.size() || j + 1 < b.size()) {
-            const bool climbB =
-                i + 1 == a.size() || (j + 1 < b.size() && (j + 1) * (a.size() - 1) <= (i + 1) * (b.size() - 1));
-            if (climbB) {
-                mesh_.triangles.emplace_back(a[i], b[j], b[j + 1]);
-                ++j;
-            } else {
-                mesh_.triangles.emplace_back(a[i], b[j], a[i + 1]);
-                ++i;
-            }
-        }
     }
 
     void addHousing() {

@@ -276,6 +276,7 @@ private:
             points.push_back(page(places[k]));
         }
         std::vector<std::pair<std::uint32_t, std::uint32_t>> edges;
+        edges.reserve(lines.size());
         for (const auto& [a, b] : lines) edges.push_back({number[a], number[b]});
         for (const glm::uvec3& t : triangulatePlane(points, edges, keep))
             mesh_.triangles.emplace_back(vertices[t.x], vertices[t.y], vertices[t.z]);
@@ -283,24 +284,8 @@ private:
 
     /// Walls between neighbouring columns: rim and skirt where they move, plain where they stay.
     void addWalls() {
-        for (std::size_t k = 0; k < outline_.size(); ++k) {
-            const auto& a = outline_[k].vertices;
-            const auto& b = outline_[(k + 1) % outline_.size()].vertices;
-            std::size_t i = 0;
-            std::size_t j = 0;
-            while (i + 1 < a.size() || j + 1 < b.size()) {
-                // Climb where the lower share of the way has been gone, so that rows meet rows.
-                const bool climbB =
-                    i + 1 == a.size() || (j + 1 < b.size() && (j + 1) * (a.size() - 1) <= (i + 1) * (b.size() - 1));
-                if (climbB) {
-                    mesh_.triangles.emplace_back(a[i], b[j], b[j + 1]);
-                    ++j;
-                } else {
-                    mesh_.triangles.emplace_back(a[i], b[j], a[i + 1]);
-                    ++i;
-                }
-            }
-        }
+        for (std::size_t k = 0; k < outline_.size(); ++k)
+            addWall(outline_[k].vertices, outline_[(k + 1) % outline_.size()].vertices, mesh_.triangles);
     }
 
     void addHousing() {
