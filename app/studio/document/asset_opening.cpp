@@ -14,12 +14,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A rig and the field that was found for it, if any.
-struct OpenedRig {
-    Stamped<StudioState::RigAsset> rig;
-    Stamped<StudioState::FieldAsset> field;
-};
-
 /// The field that lies beside a rig under the same name, when it is really its.
 Stamped<StudioState::FieldAsset> fieldBeside(const fs::path& rigPath, const Rig& rig) {
     const fs::path file = fs::path(rigPath).replace_extension(".mdf");
@@ -31,17 +25,6 @@ Stamped<StudioState::FieldAsset> fieldBeside(const fs::path& rigPath, const Rig&
     } catch (const DataError&) {
     } // it is built instead
     return {};
-}
-
-OpenedRig readOpenedRig(const fs::path& path, const FieldCache& cache, const Progress& progress) {
-    OpenedRig opened;
-    progress.report(0.1, "reading the rig");
-    opened.rig = readRigAsset(path);
-    progress.throwIfCancelled();
-    progress.report(0.6, "looking for its field");
-    opened.field = fieldBeside(path, *opened.rig.asset.rig);
-    if (!opened.field.asset.field) opened.field.asset.field = cache.find(*opened.rig.asset.rig);
-    return opened;
 }
 
 /// Fits the target to the state's rig where it can; elsewhere it stays as it is.
@@ -61,6 +44,12 @@ QString joined(const std::vector<std::string>& sentences) {
 }
 
 } // namespace
+
+/// A rig and the field that was found for it, if any.
+struct AssetOpening::OpenedRig {
+    Stamped<StudioState::RigAsset> rig;
+    Stamped<StudioState::FieldAsset> field;
+};
 
 AssetOpening::AssetOpening(StudioDocument& document, JobSlots& jobs, Notices& notices, ReadFiles& read,
                            FieldCache cache)
@@ -107,24 +96,51 @@ void AssetOpening::open(const fs::path& file) {
 }
 
 void AssetOpening::openRig(const fs::path& path) {
+    const auto read = [path, cache = cache_](const Progress& progress) {
+        OpenedRig opened;
+        progress.report(0.1, "reading the rig");
+        opened.rig = readRigAsset(path);
+        progress.throwIfCancelled();
+        progress.report(0.6, "looking for its field");
+        opened.field = fieldBeside(path, *opened.rig.asset.rig);
+        if (!opened.field.asset.field) opened.field.asset.field = cache.find(*opened.rig.asset.rig);
+        return opened;
+    };
     jobs_.run<OpenedRig>(
-        "rig", "rig", tr("Opening %1").arg(fileName(path)),
-        [path, cache = cache_](const Progress& progress) { return readOpenedRig(path, cache, progress); },
-        [this, path](const OpenedRig& result) {
-            jobs_.stop("field");
-            read_.remember(result.rig.asset.rig, result.rig.stamp);
-            if (result.field.stamp.there) read_.remember(result.field.asset.field, result.field.stamp);
-            notices_.dismissAll("rig");
-            notices_.dismissAll("field");
-            document_.change(tr("Open %1").arg(fullName(path.stem())), [&](StudioState& state) {
-                state.rig = result.rig.asset;
-                state.field = result.field.asset;
-                fitTarget(state);
-            });
-            emit opened(fullName(path));
+        "rig", "rig", tr("Opening %1").arg(fileName(path)), read,
+        [this, path](const OpenedRig& opened) {
+            read_.remember(opened.rig.asset.rig, opened.rig.stamp);
+            if (opened.field.stamp.there) read_.remember(opened.field.asset.field, opened.field.stamp);
+            takeOpened(opened, tr("Open %1").arg(fullName(path.stem())));
+            emit this->opened(fullName(path));
             emit rigOpened();
         },
         {chooseAnother("rig")});
+}
+
+void AssetOpening::takeRig(const std::shared_ptr<const Rig>& rig, const QString& name) {
+    const auto find = [rig, cache = cache_](const Progress&) {
+        OpenedRig made;
+        made.rig.asset.rig = rig;
+        made.field.asset.field = cache.find(*rig);
+        return made;
+    };
+    jobs_.run<OpenedRig>("rig", "rig", tr("Opening %1").arg(name), find, [this, name](const OpenedRig& made) {
+        takeOpened(made, tr("New %1").arg(name));
+        emit rigOpened();
+    });
+}
+
+/// One step of undo: the rig, its field where there is one, and the target fitted anew.
+void AssetOpening::takeOpened(const OpenedRig& opened, const QString& step) {
+    jobs_.stop("field");
+    notices_.dismissAll("rig");
+    notices_.dismissAll("field");
+    document_.change(step, [&](StudioState& state) {
+        state.rig = opened.rig.asset;
+        state.field = opened.field.asset;
+        fitTarget(state);
+    });
 }
 
 void AssetOpening::openField(const fs::path& file) {

@@ -21,6 +21,8 @@ public:
     /// Opens the file as the kind that it is.
     void open(const std::filesystem::path& file);
     void openRig(const std::filesystem::path& path);
+    /// A rig that was made here and has no file yet; `name` is what its step of undo says.
+    void takeRig(const std::shared_ptr<const Rig>& rig, const QString& name);
     void openField(const std::filesystem::path& file);
     void openTarget(const std::filesystem::path& file);
     /// What the target's file holds by now, where the target stands.
@@ -37,6 +39,8 @@ signals:
     void fileWanted(const QString& place);
 
 private:
+    struct OpenedRig;
+    void takeOpened(const OpenedRig& opened, const QString& step);
     void takeField(StudioState::FieldAsset field, const QString& what);
     void takeRigOfField(const StudioState::FieldAsset& field);
     void tellTarget(const StudioState::TargetAsset& target);

@@ -273,6 +273,9 @@ ProjectService::~ProjectService() = default;
 void ProjectService::open(const std::filesystem::path& file) { data_->opening.open(file); }
 void ProjectService::openProject(const std::filesystem::path& file) { data_->openProject(file); }
 void ProjectService::openRig(const std::filesystem::path& path) { data_->opening.openRig(path); }
+void ProjectService::takeRig(const std::shared_ptr<const Rig>& rig, const QString& name) {
+    data_->opening.takeRig(rig, name);
+}
 void ProjectService::openField(const std::filesystem::path& file) { data_->opening.openField(file); }
 void ProjectService::openTarget(const std::filesystem::path& file) { data_->opening.openTarget(file); }
 

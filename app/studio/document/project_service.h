@@ -28,6 +28,8 @@ public:
     void openProject(const std::filesystem::path& file);
     /// Opens a rig, and the field that lies beside it or was built for it last; else builds one.
     void openRig(const std::filesystem::path& path);
+    /// Opens a rig that was made here, "flower" for example; it has no file until the project or the rig is saved.
+    void takeRig(const std::shared_ptr<const Rig>& rig, const QString& name);
     /// A field of another rig is refused; the notice offers to open the field's own rig.
     void openField(const std::filesystem::path& file);
     /// Opens a target and places it: as large as fits the frame (`fitPlacement`).

@@ -12,10 +12,14 @@
 
 #include "app/studio/viewport/viewport_widget.h"
 #include "app/studio/widgets/bundled_shelf.h"
+#include "app/workspaces/common/export_dialogs.h"
 #include "app/workspaces/common/field_colors.h"
 #include "app/workspaces/common/kept_camera.h"
 #include "app/workspaces/rig/moved_part.h"
+#include "app/workspaces/rig/new_device.h"
 #include "app/workspaces/rig/rig_docks.h"
+#include "core/base/atomic_file.h"
+#include "core/rig/rig_file.h"
 
 namespace lumorph::studio {
 
@@ -40,7 +44,9 @@ struct RigWorkspace::Data : public QObject {
     void listen();
     void addCommands();
     void openRig();
+    void saveRig();
     [[nodiscard]] std::vector<Findable> thingsToFind();
+    [[nodiscard]] QWidget* window() const { return view ? view->window() : QApplication::activeWindow(); }
     void refresh();
     void select();
     void edited();
@@ -91,6 +97,14 @@ void RigWorkspace::Data::addCommands() {
     options.icon = "open";
     options.menu = "File";
     studio.commands.add("rig.open", "Open rig...", options, [this] { openRig(); });
+    options.icon = "plus";
+    studio.commands.add("rig.new", "New device...", options, [this] {
+        emit studio.commands.workspaceWanted("rig");
+        openNewDevice(studio, window());
+    });
+    options.icon = "save";
+    options.workspace = "rig";
+    studio.commands.add("rig.save", "Save the rig as...", options, [this] { saveRig(); });
     options.menu = "Actuators";
     options.icon = "actuator";
     options.workspace = "rig";
@@ -100,8 +114,21 @@ void RigWorkspace::Data::addCommands() {
     wiggleCommand->setEnabled(false);
 }
 
+void RigWorkspace::Data::saveRig() {
+    const StudioState::RigAsset& asset = studio.document.state().rig;
+    if (!asset.rig || !asset.compiled) return;
+    askFile(window(), studio.settings, "rig.save", "Save the rig", QString::fromStdString(asset.rig->name()),
+            {{"glTF, as Lumorph and Blender read it", "glb"}}, [this, rig = asset.rig](const QString& file) {
+                try {
+                    writeFileAtomically(std::filesystem::path(file.toStdU16String()), writeRigGlb(*rig));
+                } catch (const std::exception& error) {
+                    studio.notices.post("rig", noticeOf(error));
+                }
+            });
+}
+
 void RigWorkspace::Data::openRig() {
-    QWidget* parent = view ? view->window() : QApplication::activeWindow();
+    QWidget* parent = window();
     if (auto* open = parent ? parent->findChild<QFileDialog*>("dialog.rig") : nullptr) return open->raise();
     auto* dialog = new QFileDialog(parent, "Open rig", studio.settings.value(kRigFolder).toString());
     dialog->setObjectName("dialog.rig");

@@ -1,0 +1,316 @@
+#include "app/workspaces/rig/new_device.h"
+
+#include <cmath>
+#include <utility>
+#include <vector>
+
+#include <QButtonGroup>
+#include <QDialog>
+#include <QDialogButtonBox>
+#include <QHBoxLayout>
+#include <QLabel>
+#include <QPushButton>
+#include <QSlider>
+#include <QTimer>
+#include <QToolButton>
+#include <QVBoxLayout>
+
+#include "app/studio/document/job_slots.h"
+#include "app/studio/viewport/viewport_widget.h"
+#include "app/studio/widgets/dock_parts.h"
+#include "app/studio/widgets/panel.h"
+#include "app/studio/widgets/value_field.h"
+#include "app/workspaces/common/field_colors.h"
+#include "core/base/error.h"
+#include "core/rig/templates/rig_templates.h"
+
+namespace lumorph::studio {
+
+namespace {
+
+using Unit = TemplateParameter::Unit;
+
+constexpr const char* kPlace = "rig.new"; ///< of its job; notices are told in the window itself
+constexpr int kRaisedAtFirst = 60;        ///< percent: what a device is can only be seen when it moves
+
+/// What one unit of a parameter is in the field's own: metres, radians, pieces.
+double unitOf(const TemplateParameter& parameter) {
+    switch (parameter.unit) {
+    case Unit::centimetres:
+        return 0.01;
+    case Unit::degrees:
+        return Angle::degrees(1.0).inRadians();
+    case Unit::count:
+        break;
+    }
+    return 1.0;
+}
+
+Quantity quantityOf(const TemplateParameter& parameter) {
+    switch (parameter.unit) {
+    case Unit::centimetres:
+        return Quantity::length;
+    case Unit::degrees:
+        return Quantity::angle;
+    case Unit::count:
+        break;
+    }
+    return Quantity::level;
+}
+
+/// "corner" as "Corner", "cornerX" as "Corner x".
+QString labelOf(std::string_view name) {
+    QString label;
+    for (const char letter : name) {
+        const QChar character = QLatin1Char(letter);
+        if (character.isUpper()) label += ' ';
+        label += label.isEmpty() ? character.toUpper() : character.toLower();
+    }
+    return label;
+}
+
+QString sentence(std::string_view text) {
+    QString words = QString::fromUtf8(text.data(), static_cast<qsizetype>(text.size()));
+    if (!words.isEmpty()) words[0] = words[0].toUpper();
+    return words + '.';
+}
+
+class NewDevice : public QDialog {
+public:
+    NewDevice(Studio& studio, QWidget* parent);
+
+private:
+    QWidget* makeKinds();
+    QWidget* makeSide();
+    QWidget* makePreview();
+    QWidget* makeButtons();
+    void choose(const RigTemplate& kind);
+    void addParameter(const TemplateParameter& parameter);
+    void make(); ///< anew, beside the window; the newest wish wins
+    void take(const std::shared_ptr<const Rig>& rig);
+    void refuse(const std::exception& why);
+    void show();
+    void useIt();
+
+    Studio& studio_;
+    JobSlots jobs_;
+    FieldSceneBuilder builder_;
+    const RigTemplate* kind_ = nullptr;
+    std::vector<std::pair<const TemplateParameter*, ValueField*>> fields_;
+    std::shared_ptr<const Rig> rig_; ///< of the last measures that make one
+    bool isNewest_ = false;          ///< `rig_` is of the measures that are seen
+    bool reframes_ = true;           ///< another kind is looked at from where all of it is seen
+    QLabel* about_ = new QLabel;
+    QWidget* measures_ = new QWidget;
+    QLabel* wrong_ = new QLabel;
+    QLabel* facts_ = new QLabel;
+    ViewportWidget* view_ = nullptr;
+    QSlider* raised_ = new QSlider(Qt::Horizontal);
+    QPushButton* use_ = nullptr;
+};
+
+NewDevice::NewDevice(Studio& studio, QWidget* parent)
+    : QDialog(parent), studio_(studio), jobs_(*this, studio.jobs, studio.notices) {
+    setObjectName("rig.new.dialog");
+    setAttribute(Qt::WA_DeleteOnClose);
+    setWindowTitle(tr("New device"));
+    builder_.setPatient(false);
+    builder_.setColors(fieldSceneColors(studio.settings.theme()));
+    auto* layout = new QVBoxLayout(this);
+    layout->setContentsMargins(16, 16, 16, 16);
+    layout->setSpacing(12);
+    layout->addWidget(makeKinds());
+    auto* middle = new QHBoxLayout;
+    middle->setSpacing(16);
+    middle->addWidget(makeSide());
+    middle->addWidget(makePreview(), 1);
+    layout->addLayout(middle, 1);
+    layout->addWidget(makeButtons());
+    choose(rigTemplates().front());
+    resize(920, 620);
+}
+
+QWidget* NewDevice::makeKinds() {
+    auto* kinds = new QWidget;
+    auto* layout = new QHBoxLayout(kinds);
+    layout->setContentsMargins(0, 0, 0, 0);
+    layout->setSpacing(4);
+    auto* group = new QButtonGroup(kinds);
+    for (const RigTemplate& kind : rigTemplates()) {
+        auto* button = new QToolButton;
+        button->setObjectName("rig.new.kind." + QString::fromStdString(std::string(kind.name)));
+        button->setText(labelOf(kind.name));
+        button->setToolTip(sentence(kind.meaning));
+        button->setCheckable(true);
+        button->setChecked(layout->isEmpty());
+        button->setMinimumHeight(32);
+        button->setSizePolicy(QSizePolicy::Expanding, QSizePolicy::Fixed);
+        group->addButton(button);
+        layout->addWidget(button);
+        connect(button, &QToolButton::clicked, this, [this, kind = &kind] { choose(*kind); });
+    }
+    return kinds;
+}
+
+QWidget* NewDevice::makeSide() {
+    auto* side = new QWidget;
+    side->setFixedWidth(300);
+    auto* layout = new QVBoxLayout(side);
+    layout->setContentsMargins(0, 0, 0, 0);
+    layout->setSpacing(8);
+    about_->setWordWrap(true);
+    wrong_->setObjectName("rig.new.wrong");
+    wrong_->setProperty("look", "warning");
+    wrong_->setWordWrap(true);
+    facts_->setObjectName("rig.new.facts");
+    facts_->setProperty("look", "muted");
+    facts_->setWordWrap(true);
+    new QVBoxLayout(measures_);
+    measures_->layout()->setContentsMargins(0, 0, 0, 0);
+    measures_->layout()->setSpacing(4);
+    layout->addWidget(about_);
+    layout->addWidget(measures_);
+    layout->addWidget(wrong_);
+    layout->addWidget(facts_);
+    layout->addStretch(1);
+    layout->addWidget(makeJobBar(studio_.jobs, kPlace));
+    return side;
+}
+
+QWidget* NewDevice::makePreview() {
+    auto* preview = new QWidget;
+    auto* layout = new QVBoxLayout(preview);
+    layout->setContentsMargins(0, 0, 0, 0);
+    layout->setSpacing(8);
+    view_ = new ViewportWidget(studio_.renderer);
+    view_->setObjectName("rig.new.view");
+    view_->setAccessibleName(tr("The device as it would be"));
+    view_->setActive(true);
+    layout->addWidget(view_, 1);
+    raised_->setObjectName("rig.new.raised");
+    raised_->setRange(0, 100);
+    raised_->setValue(kRaisedAtFirst);
+    raised_->setToolTip(tr("Moves all actuators of this picture from rest to full stroke"));
+    layout->addWidget(makeRow(tr("&Rehearse"), raised_));
+    connect(raised_, &QSlider::valueChanged, this, &NewDevice::show);
+    return preview;
+}
+
+QWidget* NewDevice::makeButtons() {
+    auto* buttons = new QDialogButtonBox;
+    use_ = buttons->addButton(tr("Make this device"), QDialogButtonBox::AcceptRole);
+    use_->setObjectName("rig.new.accept");
+    use_->setProperty("look", "primary");
+    buttons->addButton(QDialogButtonBox::Cancel)->setObjectName("rig.new.cancel");
+    connect(buttons, &QDialogButtonBox::accepted, this, &NewDevice::useIt);
+    connect(buttons, &QDialogButtonBox::rejected, this, &QDialog::reject);
+    return buttons;
+}
+
+void NewDevice::choose(const RigTemplate& kind) {
+    if (kind_ == &kind) return;
+    kind_ = &kind;
+    about_->setText(sentence(kind.meaning));
+    fields_.clear();
+    while (QLayoutItem* item = measures_->layout()->takeAt(0)) {
+        item->widget()->hide();
+        item->widget()->deleteLater(); // the field that is left may be telling its number right now
+        delete item;
+    }
+    for (const TemplateParameter& parameter : kind.parameters) addParameter(parameter);
+    reframes_ = true;
+    make();
+}
+
+void NewDevice::addParameter(const TemplateParameter& parameter) {
+    const double unit = unitOf(parameter);
+    auto* field = new ValueField(quantityOf(parameter), unit * parameter.min, unit * parameter.max,
+                                 unit * parameter.value);
+    field->setObjectName("rig.new." + QString::fromStdString(std::string(parameter.name)));
+    field->setToolTip(sentence(parameter.meaning) + "\n" + field->toolTip());
+    field->setRefusing(true);
+    field->setStep(parameter.unit == Unit::count ? 1.0 : unit * (parameter.max < 5.0 ? 0.1 : 0.5));
+    field->setValue(unit * parameter.value);
+    QWidget* row = makeRow(labelOf(parameter.name), field);
+    row->setToolTip(sentence(parameter.meaning));
+    measures_->layout()->addWidget(row);
+    fields_.emplace_back(&parameter, field);
+    connect(field, &ValueField::previewed, this, &NewDevice::make);
+    connect(field, &ValueField::reverted, this, &NewDevice::make);
+    connect(field, &ValueField::committed, this, [this, field, counts = parameter.unit == Unit::count](double number) {
+        if (counts) field->setValue(std::round(number));
+        make();
+    });
+    connect(field, &ValueField::refused, wrong_, &QLabel::setText);
+}
+
+void NewDevice::make() {
+    isNewest_ = false;
+    use_->setEnabled(false);
+    std::vector<TemplateChoice> choices;
+    for (const auto& [parameter, field] : fields_) {
+        const double value = field->value() / unitOf(*parameter);
+        choices.emplace_back(std::string(parameter->name),
+                             parameter->unit == Unit::count ? std::round(value) : value);
+    }
+    jobs_.runWith<std::shared_ptr<const Rig>>(
+        "make", kPlace, tr("Making the device"),
+        [kind = kind_, choices](const Progress& progress) -> std::shared_ptr<const Rig> {
+            return std::make_shared<const Rig>(rigOf(*kind, choices, progress));
+        },
+        [this](const std::shared_ptr<const Rig>& rig) { take(rig); },
+        [this](const std::exception& error) { refuse(error); });
+}
+
+void NewDevice::take(const std::shared_ptr<const Rig>& rig) {
+    rig_ = rig;
+    isNewest_ = true;
+    use_->setEnabled(true);
+    wrong_->clear();
+    const Box reach = rig->reach();
+    facts_->setText(tr("Servos: %1. Over all states it takes %2.")
+                        .arg(rig->actuatorCount())
+                        .arg(sizeText(static_cast<double>(reach.size().x), static_cast<double>(reach.size().y),
+                                      static_cast<double>(reach.size().z))));
+    show();
+}
+
+/// The last device that could be made stays in sight, with why these measures make none.
+void NewDevice::refuse(const std::exception& why) {
+    const Notice notice = noticeOf(why);
+    wrong_->setText(tr("%1: %2. %3.").arg(notice.subject, notice.why, notice.remedy));
+}
+
+void NewDevice::show() {
+    if (!rig_) return;
+    MatchFrame frame;
+    frame.rig = rig_;
+    frame.estimatedStrokes.assign(rig_->actuatorCount(), 0.01 * raised_->value());
+    std::vector<glm::vec3> positions(rig_->restMesh().positions.size());
+    rig_->deform(frame.estimatedStrokes, positions);
+    frame.devicePositions = std::make_shared<const std::vector<glm::vec3>>(std::move(positions));
+    view_->setScene(builder_.build(frame, {}, false));
+    if (std::exchange(reframes_, false)) view_->frameAll();
+    constexpr int kSoon = 30;
+    if (builder_.pending()) QTimer::singleShot(kSoon, this, &NewDevice::show);
+}
+
+void NewDevice::useIt() {
+    if (!rig_ || !isNewest_) return;
+    const QString name = labelOf(kind_->name).toLower();
+    accept();
+    studio_.project.takeRig(rig_, name);
+}
+
+} // namespace
+
+void openNewDevice(Studio& studio, QWidget* parent) {
+    if (auto* open = parent->findChild<QDialog*>("rig.new.dialog")) {
+        open->raise();
+        open->activateWindow();
+        return;
+    }
+    (new NewDevice(studio, parent))->open();
+}
+
+} // namespace lumorph::studio
