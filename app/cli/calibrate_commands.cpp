@@ -44,30 +44,6 @@ struct CrosshairArguments {
     bool json = false;
 };
 
-nlohmann::json procamJson(const ProcamCalibration& result) {
-    const PoseVector& rig = result.projectorFromCamera;
-    const PoseVector& sigma = result.projectorFromCameraSigma;
-    nlohmann::json views = nlohmann::json::array();
-    for (const ViewQuality& view : result.views)
-        views.push_back({{"name", view.name},
-                         {"cameraRms", view.cameraRms},
-                         {"projectorRms", view.projectorRms},
-                         {"heldOutTransfer", jsonOf(view.heldOut)}});
-    return {{"camera", jsonOf(result.camera)},
-            {"projector", jsonOf(result.projector)},
-            {"R", rotationOf(rig)},
-            {"T", {rig[3], rig[4], rig[5]}},
-            {"sigma", poseSigmaOf(sigma)},
-            {"rms", result.rms},
-            {"views", views},
-            {"worstView", result.worstView},
-            {"halvesDiffer", jsonOf(result.halvesDiffer)},
-            {"halvesAllowed", jsonOf(result.halvesAllowed)},
-            {"model", "camera: " + result.camera.model + "; projector: " + result.projector.model},
-            {"warnings", jsonOf(result.warnings)},
-            {"degenerate", result.degenerate}};
-}
-
 nlohmann::json intrinsicsJson(const ProcamCalibration& result) {
     nlohmann::json views = nlohmann::json::array();
     for (const ViewQuality& view : result.views)
@@ -79,21 +55,6 @@ nlohmann::json intrinsicsJson(const ProcamCalibration& result) {
             {"model", result.camera.model},
             {"warnings", jsonOf(result.warnings)},
             {"degenerate", result.degenerate}};
-}
-
-void printProcam(const ProcamCalibration& result) {
-    printDevice("camera", result.camera);
-    printDevice("projector", result.projector);
-    const PoseVector& rig = result.projectorFromCamera;
-    std::printf("%-10s at (%.2f, %.2f, %.2f) in the projector's frame, in the board's unit\n", "camera", rig[3], rig[4],
-                rig[5]);
-    for (const ViewQuality& view : result.views)
-        std::printf("  %-20s camera %.3f  projector %.3f  held out %.3f pixels%s\n", view.name.c_str(), view.cameraRms,
-                    view.projectorRms, view.heldOut.value_or(0.0), view.name == result.worstView ? "  (worst)" : "");
-    if (result.halvesDiffer && result.halvesAllowed)
-        std::printf("two halves of the poses differ by %.3f pixels; noise allows %.3f\n", *result.halvesDiffer,
-                    *result.halvesAllowed);
-    printFindings(result.warnings);
 }
 
 void printIntrinsics(const ProcamCalibration& result) {
@@ -264,7 +225,7 @@ void procam(const CalibrateArguments& arguments, const Session& session) {
     Session::endProgress();
     writeOutputs(arguments, report);
     if (arguments.json)
-        printJson(procamJson(report.record.result));
+        printJson(jsonOf(report.record.result));
     else
         printProcam(report.record.result);
 }
@@ -341,6 +302,8 @@ void addCalibrateCommands(CLI::App& app, Session& session) {
     addOutputs(*command, *alone);
     command->add_flag("--json", alone->json, "Print one JSON value");
     command->callback([alone, &session] { intrinsics(*alone, session); });
+
+    addCalibrateRoomCommands(*group, session);
 }
 
 } // namespace lumorph::cli

@@ -62,6 +62,30 @@ nlohmann::json poseSigmaOf(const PoseVector& sigma) {
         {"T", {sigma[3], sigma[4], sigma[5]}}};
 }
 
+nlohmann::json jsonOf(const ProcamCalibration& result) {
+    const PoseVector& rig = result.projectorFromCamera;
+    const PoseVector& sigma = result.projectorFromCameraSigma;
+    nlohmann::json views = nlohmann::json::array();
+    for (const ViewQuality& view : result.views)
+        views.push_back({{"name", view.name},
+                         {"cameraRms", view.cameraRms},
+                         {"projectorRms", view.projectorRms},
+                         {"heldOutTransfer", jsonOf(view.heldOut)}});
+    return {{"camera", jsonOf(result.camera)},
+            {"projector", jsonOf(result.projector)},
+            {"R", rotationOf(rig)},
+            {"T", {rig[3], rig[4], rig[5]}},
+            {"sigma", poseSigmaOf(sigma)},
+            {"rms", result.rms},
+            {"views", views},
+            {"worstView", result.worstView},
+            {"halvesDiffer", jsonOf(result.halvesDiffer)},
+            {"halvesAllowed", jsonOf(result.halvesAllowed)},
+            {"model", "camera: " + result.camera.model + "; projector: " + result.projector.model},
+            {"warnings", jsonOf(result.warnings)},
+            {"degenerate", result.degenerate}};
+}
+
 void printDevice(const char* name, const CalibratedDevice& device) {
     const Lens& lens = device.lens;
     const Lens& sigma = device.sigma;
@@ -78,6 +102,21 @@ void printFindings(const std::vector<Finding>& warnings) {
     std::vector<std::string> sentences;
     for (const Finding& warning : warnings) sentences.push_back(sentenceOf(warning));
     printWarnings(sentences);
+}
+
+void printProcam(const ProcamCalibration& result) {
+    printDevice("camera", result.camera);
+    printDevice("projector", result.projector);
+    const PoseVector& rig = result.projectorFromCamera;
+    std::printf("%-10s at (%.2f, %.2f, %.2f) in the projector's frame, in the board's unit\n", "camera", rig[3], rig[4],
+                rig[5]);
+    for (const ViewQuality& view : result.views)
+        std::printf("  %-20s camera %.3f  projector %.3f  held out %.3f pixels%s\n", view.name.c_str(), view.cameraRms,
+                    view.projectorRms, view.heldOut.value_or(0.0), view.name == result.worstView ? "  (worst)" : "");
+    if (result.halvesDiffer && result.halvesAllowed)
+        std::printf("two halves of the poses differ by %.3f pixels; noise allows %.3f\n", *result.halvesDiffer,
+                    *result.halvesAllowed);
+    printFindings(result.warnings);
 }
 
 } // namespace lumorph::cli
