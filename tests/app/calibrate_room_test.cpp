@@ -28,7 +28,7 @@ void expectRefusal(const Outcome& outcome, const std::string& cause) {
     EXPECT_EQ(outcome.json()["refused"]["cause"], cause) << outcome.err;
 }
 
-/// Two cameras and two projectors; the second camera does not see the last pose, nor the first camera the second
+/// Two cameras and two projectors; the second camera does not see the last two poses, nor the first camera the second
 /// projector's light on it.
 class CalibrateRoom : public ::testing::Test {
 protected:
@@ -52,6 +52,7 @@ protected:
             look(at / "left" / "upper", setup_.camera, setup_.projector, pose);
             if (last) continue;
             look(at / "left" / "side", setup_.camera, side_, pose);
+            if (pose == 4) continue; // seen at too flat an angle from there
             look(at / "right" / "upper", second, setup_.projector, pose);
             look(at / "right" / "side", second, side_, pose);
         }
@@ -134,13 +135,12 @@ TEST_F(CalibrateRoom, AProjectorThatSharesNothingIsRefusedByName) {
     EXPECT_THAT(outcome.err, HasSubstr("side"));
 }
 
-TEST_F(CalibrateRoom, AMissingImageAndAWrongSizeAreRefusedByPlace) {
+TEST_F(CalibrateRoom, AMissingImageIsRefusedByPlace) {
     const auto spoiled = copied("missing");
     std::filesystem::remove(spoiled / "pose_1" / "right" / "side" / imageName(3));
     const Outcome missing = room(spoiled);
     expectRefusal(missing, "missing_image");
     EXPECT_THAT(missing.err, HasSubstr("pose_1/right/side"));
-    expectRefusal(room(*folder_ / "room", {"--json"}, "upper=200x192"), "projector_size");
 }
 
 TEST_F(CalibrateRoom, WrongFoldersAndNamesAreRefused) {
@@ -200,10 +200,9 @@ protected:
         return turned;
     }
 
-    static Outcome mirror(const std::filesystem::path& folder, const std::vector<std::string>& more = {"--json"},
-                          const std::string& size = "256x192") {
-        std::vector<std::string> arguments{"calibrate",   "mirror", folder.string(), "--board", "chess:9x7:30",
-                                           "--projector", size,     "--pattern",     kPattern};
+    static Outcome mirror(const std::filesystem::path& folder, const std::vector<std::string>& more = {"--json"}) {
+        std::vector<std::string> arguments{"calibrate",   "mirror",  folder.string(), "--board", "chess:9x7:30",
+                                           "--projector", "256x192", "--pattern",     kPattern};
         arguments.insert(arguments.end(), more.begin(), more.end());
         return lumorph(arguments);
     }
@@ -255,7 +254,6 @@ TEST_F(CalibrateMirror, WhatCannotBeTrustedIsRefused) {
     const Outcome outcome = mirror(missing);
     expectRefusal(outcome, "missing_image");
     EXPECT_THAT(outcome.err, HasSubstr("pose_2"));
-    expectRefusal(mirror(*folder_ / "capture", {"--json"}, "200x192"), "projector_size");
     EXPECT_EQ(mirror(*folder_ / "nowhere", {}).exitCode, 1);
     const auto again = copied("again");
     std::filesystem::copy_file(again / "pose_0" / imageName(0), again / "pose_0" / "direct.png",
