@@ -8,8 +8,7 @@
 #include <string>
 #include <vector>
 
-#include <opencv2/calib3d.hpp>
-
+#include "app/cli/calibrate_output.h"
 #include "app/cli/commands.h"
 #include "calibration/doctor/capture_calibration.h"
 #include "calibration/report/calibration_file.h"
@@ -24,10 +23,6 @@
 namespace lumorph::cli {
 
 namespace {
-
-constexpr const char* kBoardHelp =
-    "The board: chess:9x7:75 (inner corners, side of a square), circles:4x11:20, charuco:5x7:30:22";
-constexpr double kDegreesPerRadian = 57.29577951308232;
 
 struct CalibrateArguments {
     std::string folder;
@@ -49,82 +44,6 @@ struct CrosshairArguments {
     bool json = false;
 };
 
-nlohmann::json jsonOf(const Finding& finding) {
-    const auto orNull = [](const std::string& text) { return text.empty() ? nlohmann::json() : nlohmann::json(text); };
-    return {{"cause", std::string(keyOf(finding.cause))},
-            {"view", orNull(finding.view)},
-            {"file", orNull(finding.file)},
-            {"sentence", sentenceOf(finding)}};
-}
-
-nlohmann::json jsonOf(const std::optional<double>& number) {
-    return number ? nlohmann::json(*number) : nlohmann::json();
-}
-
-/// OpenCV's matrix and k1, k2, p1, p2, k3.
-nlohmann::json jsonOf(const CalibratedDevice& device) {
-    const Lens& lens = device.lens;
-    const Lens& sigma = device.sigma;
-    const double fy = lens[kFocalLength] * lens[kAspect];
-    const double fySigma = std::hypot(sigma[kFocalLength] * lens[kAspect], lens[kFocalLength] * sigma[kAspect]);
-    return {{"K", {{lens[kFocalLength], 0.0, lens[kPrincipalX]}, {0.0, fy, lens[kPrincipalY]}, {0.0, 0.0, 1.0}}},
-            {"distortion", {lens[kK1], lens[kK2], lens[kP1], lens[kP2], lens[kK3]}},
-            {"size", {device.size.width, device.size.height}},
-            {"rms", device.rms},
-            {"model", device.model},
-            {"sigma",
-             {{"fx", sigma[kFocalLength]},
-              {"fy", fySigma},
-              {"cx", sigma[kPrincipalX]},
-              {"cy", sigma[kPrincipalY]},
-              {"k1", sigma[kK1]},
-              {"k2", sigma[kK2]},
-              {"p1", sigma[kP1]},
-              {"p2", sigma[kP2]},
-              {"k3", sigma[kK3]}}}};
-}
-
-nlohmann::json warningsOf(const ProcamCalibration& result) {
-    nlohmann::json warnings = nlohmann::json::array();
-    for (const Finding& warning : result.warnings) warnings.push_back(jsonOf(warning));
-    return warnings;
-}
-
-nlohmann::json rotationOf(const PoseVector& pose) {
-    cv::Matx33d rotation;
-    cv::Rodrigues(cv::Vec3d(pose[0], pose[1], pose[2]), rotation);
-    nlohmann::json rows = nlohmann::json::array();
-    for (int row = 0; row < 3; ++row) rows.push_back({rotation(row, 0), rotation(row, 1), rotation(row, 2)});
-    return rows;
-}
-
-nlohmann::json procamJson(const ProcamCalibration& result) {
-    const PoseVector& rig = result.projectorFromCamera;
-    const PoseVector& sigma = result.projectorFromCameraSigma;
-    nlohmann::json views = nlohmann::json::array();
-    for (const ViewQuality& view : result.views)
-        views.push_back({{"name", view.name},
-                         {"cameraRms", view.cameraRms},
-                         {"projectorRms", view.projectorRms},
-                         {"heldOutTransfer", jsonOf(view.heldOut)}});
-    return {{"camera", jsonOf(result.camera)},
-            {"projector", jsonOf(result.projector)},
-            {"R", rotationOf(rig)},
-            {"T", {rig[3], rig[4], rig[5]}},
-            {"sigma",
-             {{"rotationDegrees",
-               {kDegreesPerRadian * sigma[0], kDegreesPerRadian * sigma[1], kDegreesPerRadian * sigma[2]}},
-              {"T", {sigma[3], sigma[4], sigma[5]}}}},
-            {"rms", result.rms},
-            {"views", views},
-            {"worstView", result.worstView},
-            {"halvesDiffer", jsonOf(result.halvesDiffer)},
-            {"halvesAllowed", jsonOf(result.halvesAllowed)},
-            {"model", "camera: " + result.camera.model + "; projector: " + result.projector.model},
-            {"warnings", warningsOf(result)},
-            {"degenerate", result.degenerate}};
-}
-
 nlohmann::json intrinsicsJson(const ProcamCalibration& result) {
     nlohmann::json views = nlohmann::json::array();
     for (const ViewQuality& view : result.views)
@@ -134,41 +53,8 @@ nlohmann::json intrinsicsJson(const ProcamCalibration& result) {
             {"views", views},
             {"worstView", result.worstView},
             {"model", result.camera.model},
-            {"warnings", warningsOf(result)},
+            {"warnings", jsonOf(result.warnings)},
             {"degenerate", result.degenerate}};
-}
-
-void printDevice(const char* name, const CalibratedDevice& device) {
-    const Lens& lens = device.lens;
-    const Lens& sigma = device.sigma;
-    std::printf("%-10s %d x %d, model %s, RMS %.3f pixels\n", name, device.size.width, device.size.height,
-                device.model.c_str(), device.rms);
-    std::printf("  focal length    %9.2f +- %.2f pixels\n", lens[kFocalLength], sigma[kFocalLength]);
-    std::printf("  principal point %9.2f +- %.2f, %.2f +- %.2f pixels\n", lens[kPrincipalX], sigma[kPrincipalX],
-                lens[kPrincipalY], sigma[kPrincipalY]);
-    std::printf("  k1 %.4f  k2 %.4f  p1 %.5f  p2 %.5f  k3 %.4f\n", lens[kK1], lens[kK2], lens[kP1], lens[kP2],
-                lens[kK3]);
-}
-
-void printWarningsOf(const ProcamCalibration& result) {
-    std::vector<std::string> warnings;
-    for (const Finding& warning : result.warnings) warnings.push_back(sentenceOf(warning));
-    printWarnings(warnings);
-}
-
-void printProcam(const ProcamCalibration& result) {
-    printDevice("camera", result.camera);
-    printDevice("projector", result.projector);
-    const PoseVector& rig = result.projectorFromCamera;
-    std::printf("%-10s at (%.2f, %.2f, %.2f) in the projector's frame, in the board's unit\n", "camera", rig[3], rig[4],
-                rig[5]);
-    for (const ViewQuality& view : result.views)
-        std::printf("  %-20s camera %.3f  projector %.3f  held out %.3f pixels%s\n", view.name.c_str(), view.cameraRms,
-                    view.projectorRms, view.heldOut.value_or(0.0), view.name == result.worstView ? "  (worst)" : "");
-    if (result.halvesDiffer && result.halvesAllowed)
-        std::printf("two halves of the poses differ by %.3f pixels; noise allows %.3f\n", *result.halvesDiffer,
-                    *result.halvesAllowed);
-    printWarningsOf(result);
 }
 
 void printIntrinsics(const ProcamCalibration& result) {
@@ -176,17 +62,7 @@ void printIntrinsics(const ProcamCalibration& result) {
     for (const ViewQuality& view : result.views)
         std::printf("  %-24s %.3f pixels%s\n", view.name.c_str(), view.cameraRms,
                     view.name == result.worstView ? "  (worst)" : "");
-    printWarningsOf(result);
-}
-
-/// Runs it; a refusal is also told as JSON where that was asked for, and ends the program as any failure does.
-template <typename Run> auto orRefused(bool json, const Run& run) {
-    try {
-        return run();
-    } catch (const CaptureRefused& refused) {
-        if (json) printJson({{"refused", jsonOf(refused.finding())}});
-        throw;
-    }
+    printFindings(result.warnings);
 }
 
 /// Points of crosshairs, one a line: x, y, z (metres), u, v (projector pixels) and, if there is one, a name. A first
@@ -244,25 +120,21 @@ void crosshairs(const CrosshairArguments& arguments, const Session& session) {
     double worst = 0.0;
     for (const Crosshair& at : aimed) worst = std::max(worst, result.error95At(at.point));
     if (arguments.json) {
-        nlohmann::json points = nlohmann::json::array(), warnings = nlohmann::json::array();
+        nlohmann::json points = nlohmann::json::array();
         for (std::size_t i = 0; i < aimed.size(); ++i)
             points.push_back({{"name", aimed[i].name},
                               {"error", {result.points[i].error.x, result.points[i].error.y}},
                               {"contradiction", result.points[i].contradiction},
                               {"suspicious", result.points[i].suspicious}});
-        for (const Finding& warning : result.warnings) warnings.push_back(jsonOf(warning));
         printJson({{"projector", jsonOf(result.projector)},
                    {"R", rotationOf(pose)},
                    {"T", {pose[3], pose[4], pose[5]}},
-                   {"sigma",
-                    {{"rotationDegrees",
-                      {kDegreesPerRadian * sigma[0], kDegreesPerRadian * sigma[1], kDegreesPerRadian * sigma[2]}},
-                     {"T", {sigma[3], sigma[4], sigma[5]}}}},
+                   {"sigma", poseSigmaOf(sigma)},
                    {"rms", result.projector.rms},
                    {"points", points},
                    {"error95", worst},
                    {"model", result.projector.model},
-                   {"warnings", warnings},
+                   {"warnings", jsonOf(result.warnings)},
                    {"degenerate", false}});
         return;
     }
@@ -271,9 +143,7 @@ void crosshairs(const CrosshairArguments& arguments, const Session& session) {
         std::printf("  %-32s %7.2f %7.2f pixels%s\n", aimed[i].name.c_str(), result.points[i].error.x,
                     result.points[i].error.y, result.points[i].suspicious ? "  (suspicious)" : "");
     std::printf("light lies within %.1f mm of where it is meant to at these points, in 95 %% of cases\n", 1e3 * worst);
-    std::vector<std::string> warnings;
-    for (const Finding& warning : result.warnings) warnings.push_back(sentenceOf(warning));
-    printWarnings(warnings);
+    printFindings(result.warnings);
 }
 
 void points(const CrosshairArguments& arguments) {
@@ -355,7 +225,7 @@ void procam(const CalibrateArguments& arguments, const Session& session) {
     Session::endProgress();
     writeOutputs(arguments, report);
     if (arguments.json)
-        printJson(procamJson(report.record.result));
+        printJson(jsonOf(report.record.result));
     else
         printProcam(report.record.result);
 }
@@ -432,6 +302,8 @@ void addCalibrateCommands(CLI::App& app, Session& session) {
     addOutputs(*command, *alone);
     command->add_flag("--json", alone->json, "Print one JSON value");
     command->callback([alone, &session] { intrinsics(*alone, session); });
+
+    addCalibrateRoomCommands(*group, session);
 }
 
 } // namespace lumorph::cli

@@ -26,8 +26,28 @@ std::string_view takeNumber(std::string_view& text) {
     return digits;
 }
 
-/// By name, with numbers as numbers.
-bool comesBefore(const std::filesystem::path& one, const std::filesystem::path& other) {
+bool isImageName(const std::filesystem::path& file) {
+    std::string extension = file.extension().string();
+    std::ranges::transform(extension, extension.begin(), [](unsigned char c) { return std::tolower(c); });
+    return extension == ".png" || extension == ".jpg" || extension == ".jpeg";
+}
+
+std::vector<std::filesystem::path> entriesOf(const std::filesystem::path& folder) {
+    std::error_code error;
+    std::vector<std::filesystem::path> entries;
+    for (std::filesystem::directory_iterator at(folder, error), end; !error && at != end; at.increment(error))
+        entries.push_back(at->path());
+    if (error)
+        throw DataError(folder.string(), "cannot be listed (" + error.message() + ")", "give a folder of images");
+    std::ranges::sort(entries, isNamedBefore);
+    return entries;
+}
+
+std::string sizeText(const cv::Mat& image) { return std::to_string(image.cols) + " x " + std::to_string(image.rows); }
+
+} // namespace
+
+bool isNamedBefore(const std::filesystem::path& one, const std::filesystem::path& other) {
     const std::string first = one.filename().string();
     const std::string second = other.filename().string();
     std::string_view a = first;
@@ -47,27 +67,6 @@ bool comesBefore(const std::filesystem::path& one, const std::filesystem::path& 
     return a.size() != b.size() ? a.size() < b.size() : first < second;
 }
 
-bool isImageName(const std::filesystem::path& file) {
-    std::string extension = file.extension().string();
-    std::ranges::transform(extension, extension.begin(), [](unsigned char c) { return std::tolower(c); });
-    return extension == ".png" || extension == ".jpg" || extension == ".jpeg";
-}
-
-std::vector<std::filesystem::path> entriesOf(const std::filesystem::path& folder) {
-    std::error_code error;
-    std::vector<std::filesystem::path> entries;
-    for (std::filesystem::directory_iterator at(folder, error), end; !error && at != end; at.increment(error))
-        entries.push_back(at->path());
-    if (error)
-        throw DataError(folder.string(), "cannot be listed (" + error.message() + ")", "give a folder of images");
-    std::ranges::sort(entries, comesBefore);
-    return entries;
-}
-
-std::string sizeText(const cv::Mat& image) { return std::to_string(image.cols) + " x " + std::to_string(image.rows); }
-
-} // namespace
-
 std::vector<std::filesystem::path> imagesIn(const std::filesystem::path& folder) {
     std::vector<std::filesystem::path> images = entriesOf(folder);
     std::erase_if(images, [](const auto& file) { return !isImageName(file) || std::filesystem::is_directory(file); });
@@ -75,12 +74,18 @@ std::vector<std::filesystem::path> imagesIn(const std::filesystem::path& folder)
     return images;
 }
 
+std::vector<std::filesystem::path> foldersIn(const std::filesystem::path& folder) {
+    std::vector<std::filesystem::path> folders = entriesOf(folder);
+    std::erase_if(folders, [](const auto& entry) {
+        std::error_code ignored;
+        return !std::filesystem::is_directory(entry, ignored) || entry.filename().string().starts_with('.');
+    });
+    return folders;
+}
+
 std::vector<CapturedView> viewsIn(const std::filesystem::path& folder) {
     std::vector<CapturedView> views;
-    for (const std::filesystem::path& entry : entriesOf(folder)) {
-        std::error_code ignored;
-        if (!std::filesystem::is_directory(entry, ignored)) continue;
-        if (entry.filename().string().starts_with('.')) continue; // one that is being written
+    for (const std::filesystem::path& entry : foldersIn(folder)) {
         const auto inside = entriesOf(entry);
         if (std::ranges::any_of(inside, isImageName)) views.push_back({entry.filename().string(), imagesIn(entry)});
     }

@@ -16,9 +16,14 @@ struct CapturedView {
     std::vector<std::filesystem::path> files;
 };
 
-/// PNG and JPEG files of a folder in the order of their names, where numbers count as numbers: 2 before 10. Throws
-/// DataError where it is no folder or has none.
+/// Whether a file comes before another by name, where numbers count as numbers: 2 before 10.
+[[nodiscard]] bool isNamedBefore(const std::filesystem::path& one, const std::filesystem::path& other);
+
+/// PNG and JPEG files of a folder in the order of their names. Throws DataError where it is no folder or has none.
 [[nodiscard]] std::vector<std::filesystem::path> imagesIn(const std::filesystem::path& folder);
+
+/// The folders in `folder` by name, but for hidden ones, which are being written. Throws DataError where it is none.
+[[nodiscard]] std::vector<std::filesystem::path> foldersIn(const std::filesystem::path& folder);
 
 /// The folders in `folder` that hold images, one a pose, by name. Throws DataError where there is none.
 [[nodiscard]] std::vector<CapturedView> viewsIn(const std::filesystem::path& folder);

@@ -37,7 +37,8 @@ bool isReadableInverted(const std::vector<cv::Mat>& images, CaptureOrder order, 
 }
 
 std::vector<FolderPose> readAll(const std::vector<CapturedView>& views, const CalibrationBoard& board,
-                                const CaptureOrder& order, const PoseReader& onRead, const Progress& progress) {
+                                const CaptureOrder& order, const PoseReader& onRead, const Progress& progress,
+                                Sight sight) {
     std::vector<FolderPose> all(views.size());
     std::atomic<int> done = 0;
     std::atomic<std::size_t> refused = views.size(); // the first pose that is; those after it need not be read
@@ -47,7 +48,10 @@ std::vector<FolderPose> readAll(const std::vector<CapturedView>& views, const Ca
         tbb::parallel_for(std::size_t{0}, views.size(), [&](std::size_t i) {
             if (progress.cancelled() || i > refused) return;
             try {
-                ReadPose pose = readPose(views[i], readImages(views[i]), board, order);
+                std::vector<cv::Mat> images = readImages(views[i]);
+                if (sight == Sight::mirrored)
+                    for (cv::Mat& image : images) cv::flip(image, image, 1);
+                ReadPose pose = readPose(views[i], images, board, order);
                 if (onRead) onRead(i, pose);
                 all[i].size = pose.decoded.white.size();
                 all[i].observations = std::move(pose.observations);
@@ -129,10 +133,10 @@ ReadPose readPose(const CapturedView& view, const std::vector<cv::Mat>& images, 
 }
 
 ReadCapture readPoses(const std::vector<CapturedView>& poses, const CalibrationBoard& board, const CaptureOrder& order,
-                      const PoseReader& onRead, const Progress& progress) {
+                      const PoseReader& onRead, const Progress& progress, Sight sight) {
     if (poses.empty()) throw InvalidInput("poses", "there is none", "give at least one");
     if (const auto wrong = checkCounts(poses, order)) throw CaptureRefused(*wrong);
-    std::vector<FolderPose> read = readAll(poses, board, order, onRead, progress);
+    std::vector<FolderPose> read = readAll(poses, board, order, onRead, progress, sight);
     requireSameSize(read);
     ReadCapture capture;
     capture.order = order;

@@ -37,10 +37,16 @@ struct ReadCapture {
 /// Is told of each pose once it is read, in the threads that read: which one, and what it tells.
 using PoseReader = std::function<void(std::size_t index, const ReadPose&)>;
 
+/// How the camera sees the boards.
+enum class Sight {
+    straight,
+    mirrored, ///< in a mirror: each picture is turned left for right first, and pixels are those of what comes out
+};
+
 /// Reads poses from disk, side by side. Throws as `calibrateProcamFolder`; InvalidInput where there is none.
 [[nodiscard]] ReadCapture readPoses(const std::vector<CapturedView>& poses, const CalibrationBoard& board,
                                     const CaptureOrder& order, const PoseReader& onRead = {},
-                                    const Progress& progress = {});
+                                    const Progress& progress = {}, Sight sight = Sight::straight);
 
 /// Solves what was read; the checks that need all poses are made on the way. Throws CaptureRefused, Cancelled.
 [[nodiscard]] ProcamCalibration calibrateCapture(const ReadCapture& capture, cv::Size projector,

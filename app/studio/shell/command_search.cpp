@@ -38,6 +38,8 @@ constexpr OtherWords kOtherWords[] = {
     {"target.spin", "rotate turn"},
     {"target.play", "animation pause"},
     {"rig.open", "load import device"},
+    {"rig.new", "create make begin template rig"},
+    {"rig.save", "export write glb device"},
     {"rig.rest", "home zero neutral flat reset pose"},
     {"rig.random", "shuffle"},
     {"rig.dance", "animate demo wiggle"},

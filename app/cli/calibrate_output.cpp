@@ -1,0 +1,122 @@
+#include "app/cli/calibrate_output.h"
+
+#include <cmath>
+#include <cstdio>
+#include <string>
+
+#include <opencv2/calib3d.hpp>
+
+namespace lumorph::cli {
+
+nlohmann::json jsonOf(const Finding& finding) {
+    const auto orNull = [](const std::string& text) { return text.empty() ? nlohmann::json() : nlohmann::json(text); };
+    return {{"cause", std::string(keyOf(finding.cause))},
+            {"view", orNull(finding.view)},
+            {"file", orNull(finding.file)},
+            {"sentence", sentenceOf(finding)}};
+}
+
+nlohmann::json jsonOf(const std::optional<double>& number) {
+    return number ? nlohmann::json(*number) : nlohmann::json();
+}
+
+nlohmann::json jsonOf(const CalibratedDevice& device) {
+    const Lens& lens = device.lens;
+    const Lens& sigma = device.sigma;
+    const double fy = lens[kFocalLength] * lens[kAspect];
+    const double fySigma = std::hypot(sigma[kFocalLength] * lens[kAspect], lens[kFocalLength] * sigma[kAspect]);
+    return {{"K", {{lens[kFocalLength], 0.0, lens[kPrincipalX]}, {0.0, fy, lens[kPrincipalY]}, {0.0, 0.0, 1.0}}},
+            {"distortion", {lens[kK1], lens[kK2], lens[kP1], lens[kP2], lens[kK3]}},
+            {"size", {device.size.width, device.size.height}},
+            {"rms", device.rms},
+            {"model", device.model},
+            {"sigma",
+             {{"fx", sigma[kFocalLength]},
+              {"fy", fySigma},
+              {"cx", sigma[kPrincipalX]},
+              {"cy", sigma[kPrincipalY]},
+              {"k1", sigma[kK1]},
+              {"k2", sigma[kK2]},
+              {"p1", sigma[kP1]},
+              {"p2", sigma[kP2]},
+              {"k3", sigma[kK3]}}}};
+}
+
+nlohmann::json jsonOf(const std::vector<Finding>& findings) {
+    nlohmann::json all = nlohmann::json::array();
+    for (const Finding& finding : findings) all.push_back(jsonOf(finding));
+    return all;
+}
+
+nlohmann::json rotationOf(const PoseVector& pose) {
+    cv::Matx33d rotation;
+    cv::Rodrigues(cv::Vec3d(pose[0], pose[1], pose[2]), rotation);
+    nlohmann::json rows = nlohmann::json::array();
+    for (int row = 0; row < 3; ++row) rows.push_back({rotation(row, 0), rotation(row, 1), rotation(row, 2)});
+    return rows;
+}
+
+nlohmann::json poseSigmaOf(const PoseVector& sigma) {
+    return {
+        {"rotationDegrees", {kDegreesPerRadian * sigma[0], kDegreesPerRadian * sigma[1], kDegreesPerRadian * sigma[2]}},
+        {"T", {sigma[3], sigma[4], sigma[5]}}};
+}
+
+nlohmann::json jsonOf(const ProcamCalibration& result) {
+    const PoseVector& rig = result.projectorFromCamera;
+    const PoseVector& sigma = result.projectorFromCameraSigma;
+    nlohmann::json views = nlohmann::json::array();
+    for (const ViewQuality& view : result.views)
+        views.push_back({{"name", view.name},
+                         {"cameraRms", view.cameraRms},
+                         {"projectorRms", view.projectorRms},
+                         {"heldOutTransfer", jsonOf(view.heldOut)}});
+    return {{"camera", jsonOf(result.camera)},
+            {"projector", jsonOf(result.projector)},
+            {"R", rotationOf(rig)},
+            {"T", {rig[3], rig[4], rig[5]}},
+            {"sigma", poseSigmaOf(sigma)},
+            {"rms", result.rms},
+            {"views", views},
+            {"worstView", result.worstView},
+            {"halvesDiffer", jsonOf(result.halvesDiffer)},
+            {"halvesAllowed", jsonOf(result.halvesAllowed)},
+            {"model", "camera: " + result.camera.model + "; projector: " + result.projector.model},
+            {"warnings", jsonOf(result.warnings)},
+            {"degenerate", result.degenerate}};
+}
+
+void printDevice(const char* name, const CalibratedDevice& device) {
+    const Lens& lens = device.lens;
+    const Lens& sigma = device.sigma;
+    std::printf("%-10s %d x %d, model %s, RMS %.3f pixels\n", name, device.size.width, device.size.height,
+                device.model.c_str(), device.rms);
+    std::printf("  focal length    %9.2f +- %.2f pixels\n", lens[kFocalLength], sigma[kFocalLength]);
+    std::printf("  principal point %9.2f +- %.2f, %.2f +- %.2f pixels\n", lens[kPrincipalX], sigma[kPrincipalX],
+                lens[kPrincipalY], sigma[kPrincipalY]);
+    std::printf("  k1 %.4f  k2 %.4f  p1 %.5f  p2 %.5f  k3 %.4f\n", lens[kK1], lens[kK2], lens[kP1], lens[kP2],
+                lens[kK3]);
+}
+
+void printFindings(const std::vector<Finding>& warnings) {
+    std::vector<std::string> sentences;
+    for (const Finding& warning : warnings) sentences.push_back(sentenceOf(warning));
+    printWarnings(sentences);
+}
+
+void printProcam(const ProcamCalibration& result) {
+    printDevice("camera", result.camera);
+    printDevice("projector", result.projector);
+    const PoseVector& rig = result.projectorFromCamera;
+    std::printf("%-10s at (%.2f, %.2f, %.2f) in the projector's frame, in the board's unit\n", "camera", rig[3], rig[4],
+                rig[5]);
+    for (const ViewQuality& view : result.views)
+        std::printf("  %-20s camera %.3f  projector %.3f  held out %.3f pixels%s\n", view.name.c_str(), view.cameraRms,
+                    view.projectorRms, view.heldOut.value_or(0.0), view.name == result.worstView ? "  (worst)" : "");
+    if (result.halvesDiffer && result.halvesAllowed)
+        std::printf("two halves of the poses differ by %.3f pixels; noise allows %.3f\n", *result.halvesDiffer,
+                    *result.halvesAllowed);
+    printFindings(result.warnings);
+}
+
+} // namespace lumorph::cli

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include "app/cli/session.h"
+#include "calibration/decode/refusal.h"
+#include "calibration/solve/procam_calibration.h"
+
+namespace lumorph::cli {
+
+inline constexpr const char* kBoardHelp =
+    "The board: chess:9x7:75 (inner corners, side of a square), circles:4x11:20, charuco:5x7:30:22";
+inline constexpr double kDegreesPerRadian = 57.29577951308232;
+
+[[nodiscard]] nlohmann::json jsonOf(const Finding& finding);
+[[nodiscard]] nlohmann::json jsonOf(const std::vector<Finding>& findings);
+/// null where there is none.
+[[nodiscard]] nlohmann::json jsonOf(const std::optional<double>& number);
+/// OpenCV's matrix and k1, k2, p1, p2, k3.
+[[nodiscard]] nlohmann::json jsonOf(const CalibratedDevice& device);
+/// All of it: see the README, "Calibrate projector and camera".
+[[nodiscard]] nlohmann::json jsonOf(const ProcamCalibration& result);
+/// The rows of a pose's rotation matrix.
+[[nodiscard]] nlohmann::json rotationOf(const PoseVector& pose);
+/// Standard deviations of a pose: of the rotation in degrees, of T in the unit of T.
+[[nodiscard]] nlohmann::json poseSigmaOf(const PoseVector& sigma);
+
+void printDevice(const char* name, const CalibratedDevice& device);
+void printProcam(const ProcamCalibration& result);
+void printFindings(const std::vector<Finding>& warnings);
+
+/// Runs it; a refusal is also told as JSON where that was asked for, and ends the program as any failure does.
+template <typename Run> auto orRefused(bool json, const Run& run) {
+    try {
+        return run();
+    } catch (const CaptureRefused& refused) {
+        if (json) printJson({{"refused", jsonOf(refused.finding())}});
+        throw;
+    }
+}
+
+} // namespace lumorph::cli
