@@ -106,16 +106,15 @@ void AssetOpening::openRig(const fs::path& path) {
         if (!opened.field.asset.field) opened.field.asset.field = cache.find(*opened.rig.asset.rig);
         return opened;
     };
-    jobs_.run<OpenedRig>(
-        "rig", "rig", tr("Opening %1").arg(fileName(path)), read,
-        [this, path](const OpenedRig& opened) {
-            read_.remember(opened.rig.asset.rig, opened.rig.stamp);
-            if (opened.field.stamp.there) read_.remember(opened.field.asset.field, opened.field.stamp);
-            takeOpened(opened, tr("Open %1").arg(fullName(path.stem())));
-            emit this->opened(fullName(path));
-            emit rigOpened();
-        },
-        {chooseAnother("rig")});
+    jobs_.run<OpenedRig>("rig", "rig", tr("Opening %1").arg(fileName(path)), read,
+                         [this, path](const OpenedRig& opened) {
+                             read_.remember(opened.rig.asset.rig, opened.rig.stamp);
+                             if (opened.field.stamp.there) read_.remember(opened.field.asset.field, opened.field.stamp);
+                             takeOpened(opened, tr("Open %1").arg(fullName(path.stem())));
+                             emit this->opened(fullName(path));
+                             emit rigOpened();
+                         },
+                         {chooseAnother("rig")});
 }
 
 void AssetOpening::takeRig(const std::shared_ptr<const Rig>& rig, const QString& name) {

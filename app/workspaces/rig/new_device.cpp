@@ -224,8 +224,8 @@ void NewDevice::choose(const RigTemplate& kind) {
 
 void NewDevice::addParameter(const TemplateParameter& parameter) {
     const double unit = unitOf(parameter);
-    auto* field = new ValueField(quantityOf(parameter), unit * parameter.min, unit * parameter.max,
-                                 unit * parameter.value);
+    auto* field =
+        new ValueField(quantityOf(parameter), unit * parameter.min, unit * parameter.max, unit * parameter.value);
     field->setObjectName("rig.new." + QString::fromStdString(std::string(parameter.name)));
     field->setToolTip(sentence(parameter.meaning) + "\n" + field->toolTip());
     field->setRefusing(true);
@@ -250,8 +250,7 @@ void NewDevice::make() {
     std::vector<TemplateChoice> choices;
     for (const auto& [parameter, field] : fields_) {
         const double value = field->value() / unitOf(*parameter);
-        choices.emplace_back(std::string(parameter->name),
-                             parameter->unit == Unit::count ? std::round(value) : value);
+        choices.emplace_back(std::string(parameter->name), parameter->unit == Unit::count ? std::round(value) : value);
     }
     jobs_.runWith<std::shared_ptr<const Rig>>(
         "make", kPlace, tr("Making the device"),
