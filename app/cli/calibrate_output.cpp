@@ -100,6 +100,7 @@ void printDevice(const char* name, const CalibratedDevice& device) {
 
 void printFindings(const std::vector<Finding>& warnings) {
     std::vector<std::string> sentences;
+    sentences.reserve(warnings.size());
     for (const Finding& warning : warnings) sentences.push_back(sentenceOf(warning));
     printWarnings(sentences);
 }

@@ -226,6 +226,7 @@ void room(const RoomArguments& arguments, const Session& session) {
     const CalibrationBoard board = parseCalibrationBoard(arguments.board);
     const std::vector<NamedDevice> projectors = parseProjectors(arguments.projectors);
     std::vector<CaptureOrder> orders;
+    orders.reserve(projectors.size());
     for (const NamedDevice& projector : projectors) orders.push_back(parsePattern(arguments.pattern, projector.size));
     const RoomFolder folder = listRoom(arguments.folder, projectors);
     ReadRoom read;

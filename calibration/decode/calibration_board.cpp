@@ -57,11 +57,25 @@ double leastDistance(const std::vector<cv::Point2f>& points) {
     return least;
 }
 
+/// The picture with every place as bright as its surroundings are on average: a board in a projector's light has bright
+/// paper on one side and its own deep shadow on the other, and no normalisation of the whole picture suits both.
+cv::Mat evenlyLit(const cv::Mat& grey) {
+    constexpr double kMean = 100.0; // of 255: white squares come to about twice that
+    constexpr double kNoise = 10.0; // what is darker all around is noise, which stays dark
+    const int reach = std::max(31, std::min(grey.cols, grey.rows) / 8) | 1;
+    cv::Mat light, mean, even;
+    grey.convertTo(light, CV_32F);
+    cv::blur(light, mean, cv::Size(reach, reach));
+    cv::Mat(kMean * light / (mean + kNoise)).convertTo(even, CV_8U);
+    return even;
+}
+
 std::vector<cv::Point2f> findChess(const cv::Mat& grey, cv::Size size) {
     std::vector<cv::Point2f> corners;
     if (cv::findChessboardCornersSB(grey, size, corners, cv::CALIB_CB_NORMALIZE_IMAGE | cv::CALIB_CB_ACCURACY))
         return corners;
-    if (!cv::findChessboardCorners(grey, size, corners, cv::CALIB_CB_ADAPTIVE_THRESH | cv::CALIB_CB_NORMALIZE_IMAGE))
+    if (!cv::findChessboardCorners(grey, size, corners, cv::CALIB_CB_ADAPTIVE_THRESH | cv::CALIB_CB_NORMALIZE_IMAGE) &&
+        !cv::findChessboardCornersSB(evenlyLit(grey), size, corners, cv::CALIB_CB_ACCURACY))
         return {};
     refineCorners(grey, corners, 0.35 * leastDistance(corners));
     return corners;
