@@ -154,6 +154,7 @@ struct ShotCheck::Data {
     cv::Mat1b lit;    ///< by the projector
     cv::Mat1b counts; ///< where exposure counts: the board, or all that is lit
     std::vector<cv::Point2f> corners;
+    std::vector<cv::Point2d> onBoard;    ///< the board's points, in the picture; empty where none is looked for
     std::map<std::size_t, double> gains; ///< of the first set of so many images: a gamma makes phase sets darker
     bool isBurntTold = false, isDriftTold = false;
     std::optional<cv::Point2d> columnWay, rowWay; ///< in the camera, towards larger columns and rows
@@ -250,9 +251,9 @@ void ShotCheck::Data::takeBoard() {
                    "bring the board into the projector's light");
     }
     // What is on the board tells more of its motion than the room around it.
-    std::vector<cv::Point2f> onBoard(found->seen.begin(), found->seen.end());
-    refineCorners(evenLight, onBoard);
-    corners = onBoard;
+    onBoard = found->seen;
+    corners.assign(onBoard.begin(), onBoard.end());
+    refineCorners(evenLight, corners);
 }
 
 void ShotCheck::Data::lookAtExposure(const cv::Mat& image, const std::string& file) {
@@ -484,7 +485,7 @@ void ShotCheck::finish() {
         return;
     }
     const DecodedView decoded = decodeView(data.images, data.order);
-    if (auto finding = checkProjectorSize(data.name, decoded, data.order.projector))
+    if (auto finding = checkProjectorSize(data.name, decoded, data.order.projector, data.onBoard))
         data.findings.refusal = std::move(finding);
     else if (turnOf(decoded) < -0.3)
         data.refuseMirrored("");

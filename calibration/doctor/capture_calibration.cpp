@@ -114,8 +114,8 @@ ReadPose readPose(const CapturedView& view, const std::vector<cv::Mat>& images, 
     throwIf(checkSequence(view, images, order));
     throwIf(checkStripes(view, images, order));
     DecodedView decoded = decodeView(images, order);
-    throwIf(checkProjectorSize(view.name, decoded, order.projector));
     const std::optional<BoardPoints> found = findBoard(decoded.white, board);
+    throwIf(checkProjectorSize(view.name, decoded, order.projector, found ? found->seen : std::vector<cv::Point2d>()));
     if (!found) throwIf(checkLight(view.name, decoded));
     if (!found)
         throw CaptureRefused({Cause::boardNotFound, view.name, "", "the board cannot be found under white light",

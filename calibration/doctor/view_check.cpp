@@ -19,6 +19,9 @@ constexpr int kCameraBorder = 4;       // pixels that tell nothing of where the 
 constexpr int kBand = 8;               // projector pixels
 constexpr double kSameEnd = 1.2;       // resolved stripes: an edge of something lit is hardly ever that parallel
 constexpr double kEndSlack = 4.0;      // resolved stripes that may be lost at the picture's end
+constexpr double kPaper = 1.6;         // a board with its margin to the outline of its points
+constexpr double kLeastBeside = 0.05;  // of the light
+constexpr int kRim = 3;                // camera pixels
 constexpr int kStraightBands = 14;     // that end in the same place
 
 double medianOfNumbers(std::vector<double> numbers) {
@@ -34,6 +37,18 @@ cv::Mat1b outlineMask(cv::Size size, const std::vector<cv::Point2d>& board) {
     cv::Mat1b mask = cv::Mat1b::zeros(size);
     cv::fillConvexPoly(mask, outline, cv::Scalar(255));
     return mask;
+}
+
+/// Share of the decoded light that lies beside the board, its margin of paper counted with it; 1 without a board.
+double shareBeside(const DecodedView& decoded, const std::vector<cv::Point2d>& board) {
+    if (board.empty()) return 1.0;
+    cv::Point2d centre;
+    for (const cv::Point2d& point : board) centre += point / static_cast<double>(board.size());
+    std::vector<cv::Point2d> paper;
+    for (const cv::Point2d& point : board) paper.push_back(centre + kPaper * (point - centre));
+    const cv::Mat1b beside = ~outlineMask(decoded.column.size(), paper);
+    const cv::Mat1b lit = decoded.column == decoded.column; // false where it is not a number
+    return static_cast<double>(cv::countNonZero(lit & beside)) / std::max(1, cv::countNonZero(lit));
 }
 
 /// How far the board's points moved from where they are; the median of each coordinate.
@@ -61,27 +76,40 @@ double correlationOf(const cv::Mat1f& one, const cv::Mat1f& other, const cv::Mat
 /// Coordinates of one axis at the end of what is decoded, by bands of the other axis.
 struct PictureEnd {
     double last = 0.0;    ///< largest coordinate that is no stray
-    bool isSharp = false; ///< many bands end there
+    bool isSharp = false; ///< many bands end there, within the camera's picture
+};
+
+struct Band {
+    std::vector<float> values;
+    std::vector<float> atRim; ///< those at the rim of the camera's picture
 };
 
 PictureEnd endOf(const cv::Mat1f& along, const cv::Mat1f& across, int cell) {
-    std::map<int, std::vector<float>> bands;
+    const cv::Rect inside(kCameraBorder + kRim, kCameraBorder + kRim, along.cols - 2 * (kCameraBorder + kRim),
+                          along.rows - 2 * (kCameraBorder + kRim));
+    std::map<int, Band> bands;
     for (int y = kCameraBorder; y + kCameraBorder < along.rows; ++y)
         for (int x = kCameraBorder; x + kCameraBorder < along.cols; ++x)
-            if (std::isfinite(along(y, x)) && std::isfinite(across(y, x)))
-                bands[static_cast<int>(across(y, x)) / kBand].push_back(along(y, x));
+            if (std::isfinite(along(y, x)) && std::isfinite(across(y, x))) {
+                Band& band = bands[static_cast<int>(across(y, x)) / kBand];
+                band.values.push_back(along(y, x));
+                if (!inside.contains({x, y})) band.atRim.push_back(along(y, x));
+            }
     std::vector<double> ends;
-    for (auto& [band, values] : bands) {
-        if (values.size() < 40) continue;
-        const auto stray = static_cast<std::size_t>(kMostStray * static_cast<double>(values.size())) + 1;
-        const auto at = values.end() - static_cast<std::ptrdiff_t>(stray) - 1;
-        std::ranges::nth_element(values, at);
+    std::vector<double> within; // ends that are not where the camera's picture ends
+    for (auto& [number, band] : bands) {
+        if (band.values.size() < 40) continue;
+        const auto stray = static_cast<std::size_t>(kMostStray * static_cast<double>(band.values.size())) + 1;
+        const auto at = band.values.end() - static_cast<std::ptrdiff_t>(stray) - 1;
+        std::ranges::nth_element(band.values, at);
         ends.push_back(*at);
+        const float near = *at - static_cast<float>(kSameEnd * cell);
+        if (std::ranges::count_if(band.atRim, [near](float value) { return value > near; }) < 2) within.push_back(*at);
     }
     if (ends.size() < 8) return {};
     std::ranges::sort(ends);
     const double last = ends[ends.size() - 3];
-    const auto same = std::ranges::count_if(ends, [=](double end) { return end > last - kSameEnd * cell; });
+    const auto same = std::ranges::count_if(within, [=](double end) { return end > last - kSameEnd * cell; });
     return {last, same >= kStraightBands};
 }
 
@@ -171,17 +199,20 @@ std::optional<Finding> checkLight(const std::string& view, const DecodedView& de
                    "expose for less time until white is below 250 of 255"};
 }
 
-std::optional<Finding> checkProjectorSize(const std::string& view, const DecodedView& decoded, cv::Size projector) {
+std::optional<Finding> checkProjectorSize(const std::string& view, const DecodedView& decoded, cv::Size projector,
+                                          const std::vector<cv::Point2d>& board) {
     const PictureEnd column = endOf(decoded.column, decoded.row, decoded.columnCell);
     const PictureEnd row = endOf(decoded.row, decoded.column, decoded.rowCell);
     const int width = projector.width;
     const int height = projector.height;
     const double slack = kEndSlack * std::max(decoded.columnCell, decoded.rowCell);
-    const auto endsAt = [slack](const PictureEnd& end, int length) {
-        return end.isSharp && std::abs(end.last + 1.0 - length) < slack;
+    // A board before the dark, nothing lit beside it: the light then ends where the board does.
+    const bool isBoardAlone = shareBeside(decoded, board) < kLeastBeside;
+    const auto endsAt = [slack, isBoardAlone](const PictureEnd& end, int length) {
+        return end.isSharp && !isBoardAlone && std::abs(end.last + 1.0 - length) < slack;
     };
     const auto isWrong = [&](const PictureEnd& end, int length) {
-        return end.last > length - 0.4 || (end.isSharp && end.last + 1.0 < length - slack);
+        return end.last > length - 0.4 || (end.isSharp && !isBoardAlone && end.last + 1.0 < length - slack);
     };
     if (!isWrong(column, width) && !isWrong(row, height)) return std::nullopt;
     const cv::Matx22d growth = growthOf(somePointsOf(decoded));

@@ -52,7 +52,6 @@ protected:
             look(at / "left" / "upper", setup_.camera, setup_.projector, pose);
             if (last) continue;
             look(at / "left" / "side", setup_.camera, side_, pose);
-            if (pose == 4) continue; // its outermost light, seen slantwise, passes for that of another projector size
             look(at / "right" / "upper", second, setup_.projector, pose);
             look(at / "right" / "side", second, side_, pose);
         }
