@@ -341,6 +341,7 @@ void addCalibrateCommands(CLI::App& app, Session& session) {
     addOutputs(*command, *alone);
     command->add_flag("--json", alone->json, "Print one JSON value");
     command->callback([alone, &session] { intrinsics(*alone, session); });
+    addCalibrateDevice(*group, session);
 }
 
 } // namespace lumorph::cli

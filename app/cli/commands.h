@@ -19,6 +19,8 @@ void addDemoCommand(CLI::App& app);
 void addRecordingCommands(CLI::App& app);
 void addRenderCommand(CLI::App& app, Session& session);
 void addCalibrateCommands(CLI::App& app, Session& session);
+/// Into the group of the calibrate commands.
+void addCalibrateDevice(CLI::App& group, Session& session);
 void addLabCommands(CLI::App& app, Session& session);
 /// Nor are these: devices and trackers are reached through Qt.
 void addDeviceCommands(CLI::App& app, Session& session);

@@ -20,6 +20,10 @@ struct CapturedView {
 /// DataError where it is no folder or has none.
 [[nodiscard]] std::vector<std::filesystem::path> imagesIn(const std::filesystem::path& folder);
 
+/// The folders in a folder in the order of their names, likewise, but for hidden ones. Throws DataError where it is no
+/// folder.
+[[nodiscard]] std::vector<std::filesystem::path> foldersIn(const std::filesystem::path& folder);
+
 /// The folders in `folder` that hold images, one a pose, by name. Throws DataError where there is none.
 [[nodiscard]] std::vector<CapturedView> viewsIn(const std::filesystem::path& folder);
 
