@@ -60,6 +60,7 @@ void calibrateDevice(const DeviceCaptureArguments& arguments, const Session& ses
     constexpr double kReading = 0.5; // of the whole time
     DeviceCapture capture;
     std::vector<NamedDevice> projectors;
+    projectors.reserve(orders.size());
     for (const NamedOrder& order : orders) projectors.push_back({order.name, order.order.projector});
     DeviceCalibration result = orRefused(arguments.json, [&] {
         const Progress progress = session.progress();
