@@ -304,6 +304,7 @@ void addCalibrateCommands(CLI::App& app, Session& session) {
     command->callback([alone, &session] { intrinsics(*alone, session); });
 
     addCalibrateRoomCommands(*group, session);
+    addCalibrateDevice(*group, session);
 }
 
 } // namespace lumorph::cli

@@ -21,6 +21,8 @@ void addRenderCommand(CLI::App& app, Session& session);
 void addCalibrateCommands(CLI::App& app, Session& session);
 /// Adds those of several cameras and projectors, and of a mirror, to the group of the others.
 void addCalibrateRoomCommands(CLI::App& group, Session& session);
+/// Into the group of the calibrate commands.
+void addCalibrateDevice(CLI::App& group, Session& session);
 void addLabCommands(CLI::App& app, Session& session);
 /// Nor are these: devices and trackers are reached through Qt.
 void addDeviceCommands(CLI::App& app, Session& session);

@@ -77,7 +77,7 @@ std::vector<std::filesystem::path> imagesIn(const std::filesystem::path& folder)
 std::vector<std::filesystem::path> foldersIn(const std::filesystem::path& folder) {
     std::vector<std::filesystem::path> folders = entriesOf(folder);
     std::erase_if(folders, [](const auto& entry) {
-        std::error_code ignored;
+        std::error_code ignored; // one that begins with a point is being written
         return !std::filesystem::is_directory(entry, ignored) || entry.filename().string().starts_with('.');
     });
     return folders;
@@ -85,10 +85,9 @@ std::vector<std::filesystem::path> foldersIn(const std::filesystem::path& folder
 
 std::vector<CapturedView> viewsIn(const std::filesystem::path& folder) {
     std::vector<CapturedView> views;
-    for (const std::filesystem::path& entry : foldersIn(folder)) {
-        const auto inside = entriesOf(entry);
-        if (std::ranges::any_of(inside, isImageName)) views.push_back({entry.filename().string(), imagesIn(entry)});
-    }
+    for (const std::filesystem::path& entry : foldersIn(folder))
+        if (std::ranges::any_of(entriesOf(entry), isImageName))
+            views.push_back({entry.filename().string(), imagesIn(entry)});
     if (views.empty())
         throw DataError(folder.string(), "holds no folder with images", "give a folder with one folder for each pose");
     return views;
