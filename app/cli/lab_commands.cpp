@@ -5,8 +5,10 @@
 #include "app/cli/checks.h"
 #include "app/cli/commands.h"
 #include "app/cli/project_frame.h"
+#include "calibration/lab/device_lab.h"
 #include "calibration/lab/lab_capture.h"
 #include "core/base/error.h"
+#include "core/rig/rig_file.h"
 #include "core/scene/project.h"
 
 namespace lumorph::cli {
@@ -16,6 +18,7 @@ namespace {
 struct LabArguments {
     std::string project;
     std::string board;
+    std::string device; ///< a rig, in place of a board
     std::string pattern = "graycode";
     std::string size;
     std::string fault;
@@ -56,27 +59,64 @@ std::unique_ptr<LabCapturer> capturerOf(LabCapture capture) {
     }
 }
 
-void capture(const LabArguments& arguments, const Session& session) {
-    LabCapture capture;
-    capture.room =
+/// The installation in which a capture is taken, with a camera.
+Installation roomOf(const LabArguments& arguments) {
+    Installation room =
         arguments.project.empty() ? defaultInstallation() : readProject(projectFile(arguments.project)).installation;
+    if (room.projectors.empty())
+        throw InvalidInput("installation", "it has no projector", "add one in the studio, or name no project");
+    if (room.cameras.empty()) {
+        room.cameras.push_back({"Camera", "", defaultLabCamera(room.projectors.front().camera), {}, {}});
+        printWarnings({"The installation has no camera; one beside the projector is assumed."});
+    }
+    if (!arguments.size.empty()) {
+        CalibratedCamera& camera = room.cameras.front().camera;
+        const cv::Size size = parseProjectorSize(arguments.size);
+        camera = withSize(camera, {size.width, size.height});
+    }
+    return room;
+}
+
+void captureDevice(const LabArguments& arguments, const Session& session) {
+    if (!arguments.board.empty() || !arguments.fault.empty())
+        throw InvalidInput("--device", "boards and faults are not for captures of the device",
+                           "leave --board and --fault out, or --device");
+    DeviceLabCapture capture;
+    capture.room = roomOf(arguments);
+    capture.pattern = arguments.pattern;
+    capture.seed = arguments.seed;
+    const Rig rig = readRig(arguments.device);
+    writeDeviceLabCapture(capture, rig, arguments.output, session.progress());
+    Session::endProgress();
+    const glm::ivec2 projector = capture.room.projectors.front().camera.size;
+    const std::size_t shots = rig.actuatorCount() + 1;
+    if (arguments.json) {
+        printJson({{"folder", arguments.output},
+                   {"shots", shots},
+                   {"rig", arguments.device},
+                   {"pattern", arguments.pattern},
+                   {"projector", {projector.x, projector.y}},
+                   {"truth", arguments.output + "/truth.json"}});
+        return;
+    }
+    std::printf("%zu shots of %s in %s; the truth is in truth.json\n", shots, rig.name().c_str(),
+                arguments.output.c_str());
+    std::printf("  lumorph calibrate device %s --rig %s --projector %dx%d --pattern %s\n", arguments.output.c_str(),
+                arguments.device.c_str(), projector.x, projector.y, arguments.pattern.c_str());
+}
+
+void capture(const LabArguments& arguments, const Session& session) {
+    if (!arguments.device.empty()) return captureDevice(arguments, session);
+    if (arguments.board.empty())
+        throw InvalidInput("--board", "it says no board to photograph",
+                           "add --board chess:9x7:25, or --device RIG.glb for the device itself");
+    LabCapture capture;
+    capture.room = roomOf(arguments);
     capture.board = arguments.board;
     capture.pattern = arguments.pattern;
     capture.poses = arguments.poses;
     capture.seed = arguments.seed;
     capture.fault = faultOf(arguments.fault);
-    if (capture.room.projectors.empty())
-        throw InvalidInput("installation", "it has no projector", "add one in the studio, or name no project");
-    if (capture.room.cameras.empty()) {
-        capture.room.cameras.push_back(
-            {"Camera", "", defaultLabCamera(capture.room.projectors.front().camera), {}, {}});
-        printWarnings({"The installation has no camera; one beside the projector is assumed."});
-    }
-    if (!arguments.size.empty()) {
-        CalibratedCamera& camera = capture.room.cameras.front().camera;
-        const cv::Size size = parseProjectorSize(arguments.size);
-        camera = withSize(camera, {size.width, size.height});
-    }
     const std::unique_ptr<LabCapturer> capturer = capturerOf(capture);
     writeLabCapture(*capturer, arguments.output, session.progress());
     Session::endProgress();
@@ -102,17 +142,16 @@ void addLabCommands(CLI::App& app, Session& session) {
     CLI::App* group = app.add_subcommand("lab", "The virtual lab");
     group->require_subcommand(1);
     auto arguments = std::make_shared<LabArguments>();
-    CLI::App* command = group->add_subcommand(
-        "capture",
-        "Photograph a board under a projector's patterns, with the truth beside: for calibrating and trying");
+    CLI::App* command = group->add_subcommand("capture", "Photograph a board, or the device, under a projector's "
+                                                         "patterns, with the truth beside: for calibrating and trying");
     command->add_option("project", arguments->project,
                         "A .lumorph file whose installation is used, or a bundled one: resource:projects/NAME.lumorph "
                         "(default: the virtual lab's installation)");
-    command
-        ->add_option("--board", arguments->board,
-                     "The board, millimetres: chess:9x7:25 (inner corners, side of a square), circles:4x11:20, "
-                     "charuco:5x7:30:22")
-        ->required();
+    command->add_option("--board", arguments->board,
+                        "The board, millimetres: chess:9x7:25 (inner corners, side of a square), circles:4x11:20, "
+                        "charuco:5x7:30:22");
+    command->add_option("--device", arguments->device,
+                        "A rig, photographed in place of a board: at rest, and with each actuator raised");
     command->add_option("--poses", arguments->poses, "How many; the first lies flat on the table")
         ->check(CLI::Range(1, 100))
         ->capture_default_str();

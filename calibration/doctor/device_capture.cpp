@@ -23,6 +23,8 @@ namespace lumorph {
 
 namespace {
 
+constexpr int kMostCells = 40'000; // of a picture: a flap that fills a two-hundredth of it must show in many
+
 namespace fs = std::filesystem;
 
 constexpr std::size_t kMostTableBytes = std::size_t{1} << 20;
@@ -190,7 +192,7 @@ void readView(ShotView& view, const CaptureOrder& order) {
     throwIf(lightPastTheEdge(view.images.name, decoded, order.projector));
     view.warning = checkLight(view.images.name, decoded);
     if (view.warning) view.warning->why = "much of what the projector lights is overexposed";
-    view.light = lightOf(decoded);
+    view.light = lightOf(decoded, kMostCells);
 }
 
 void readAll(std::vector<ShotView>& views, const std::vector<NamedOrder>& projectors, const Progress& progress) {

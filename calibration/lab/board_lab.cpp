@@ -68,21 +68,6 @@ std::uint32_t scrambled(std::uint32_t x) {
     return x;
 }
 
-void addNoise(cv::Mat1f& light, const BoardLabOptions& options, std::uint32_t seed, cv::Mat1b& grey) {
-    const std::vector<float>& grain = grains();
-    const auto still = static_cast<float>(options.noise * options.noise);
-    const auto shot = static_cast<float>(options.shotNoise);
-    tbb::parallel_for(0, light.rows, [&](int y) {
-        std::uint32_t random = scrambled(scrambled(seed * 2654435761U + static_cast<std::uint32_t>(y) * 40503U + 1U));
-        for (int x = 0; x < light.cols; ++x) {
-            random = scrambled(random);
-            const float value = std::max(0.0F, light(y, x));
-            const float noise = std::sqrt(still + shot * value) * grain[random % kGrains];
-            grey(y, x) = cv::saturate_cast<uchar>(value + noise);
-        }
-    });
-}
-
 bool isRigid(const glm::dmat4& matrix) {
     for (int column = 0; column < 4; ++column)
         for (int row = 0; row < 4; ++row)
@@ -428,9 +413,7 @@ cv::Mat BoardLab::photograph() {
         cv::warpAffine(light, moved, shift, light.size(), cv::INTER_CUBIC, cv::BORDER_REPLICATE);
         light = moved;
     }
-    cv::Mat1b grey(light.size());
-    addNoise(light, options, data_->seed * 65537U + data_->pictures++, grey);
-    return grey;
+    return withNoise(light, options, data_->seed * 65537U + data_->pictures++);
 }
 
 void BoardLab::setCamera(const CalibratedCamera& camera) {
@@ -470,6 +453,23 @@ std::optional<glm::dvec2> BoardLab::cameraPixel(const glm::dvec3& point) const {
 
 std::optional<glm::dvec2> BoardLab::projectorPixel(const glm::dvec3& point) const {
     return data_->projectorPixel(point);
+}
+
+cv::Mat withNoise(const cv::Mat& light, const BoardLabOptions& options, std::uint32_t seed) {
+    const std::vector<float>& grain = grains();
+    const auto still = static_cast<float>(options.noise * options.noise);
+    const auto shot = static_cast<float>(options.shotNoise);
+    cv::Mat1b grey(light.size());
+    tbb::parallel_for(0, light.rows, [&](int y) {
+        std::uint32_t random = scrambled(scrambled(seed * 2654435761U + static_cast<std::uint32_t>(y) * 40503U + 1U));
+        for (int x = 0; x < light.cols; ++x) {
+            random = scrambled(random);
+            const float value = std::max(0.0F, light.at<float>(y, x));
+            const float noise = std::sqrt(still + shot * value) * grain[random % kGrains];
+            grey(y, x) = cv::saturate_cast<uchar>(value + noise);
+        }
+    });
+    return grey;
 }
 
 CalibratedCamera defaultLabCamera(const CalibratedCamera& projector) {

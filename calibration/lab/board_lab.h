@@ -90,6 +90,9 @@ private:
     std::unique_ptr<Data> data_;
 };
 
+/// 32-bit grey levels as 8-bit ones with the camera's noise; the same for the same seed.
+[[nodiscard]] cv::Mat withNoise(const cv::Mat& light, const BoardLabOptions& options, std::uint32_t seed);
+
 /// A camera of 1280 x 1024 beside the projector that sees the place it lights, with a distortion as lenses have.
 [[nodiscard]] CalibratedCamera defaultLabCamera(const CalibratedCamera& projector);
 

@@ -2,31 +2,25 @@
 
 #include <algorithm>
 #include <array>
-#include <cerrno>
 #include <cmath>
 #include <cstdio>
-#include <fstream>
 #include <random>
-#include <system_error>
 #include <utility>
 
 #include <glm/gtc/matrix_transform.hpp>
 #include <nlohmann/json.hpp>
-#include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
-#include <tbb/parallel_for.h>
-#include <unistd.h>
 
+#include "calibration/lab/lab_folder.h"
 #include "calibration/lab/lab_light.h"
+#include "calibration/lab/lab_truth.h"
 #include "calibration/patterns/gray_code.h"
-#include "core/base/atomic_file.h"
 #include "core/base/error.h"
 
 namespace lumorph {
 
 namespace {
 
-namespace fs = std::filesystem;
 using Json = nlohmann::json;
 
 constexpr int kMostPoses = 100;
@@ -71,72 +65,6 @@ cv::Size otherSize(cv::Size size, std::mt19937& dice) {
         dice() % 2 == 0 ? cv::Size(smaller(size.width), size.height) : cv::Size(size.width, smaller(size.height));
     return other != size ? other : cv::Size(smaller(size.width), smaller(size.height));
 }
-
-Json jsonOf(const glm::dmat4& matrix) {
-    Json rows = Json::array();
-    for (int row = 0; row < 4; ++row) rows.push_back({matrix[0][row], matrix[1][row], matrix[2][row], matrix[3][row]});
-    return rows;
-}
-
-Json rotationJson(const glm::dmat4& matrix) {
-    Json rows = Json::array();
-    for (int row = 0; row < 3; ++row) rows.push_back({matrix[0][row], matrix[1][row], matrix[2][row]});
-    return rows;
-}
-
-Json shiftJson(const glm::dmat4& matrix, double metresPerUnit) {
-    return {matrix[3][0] / metresPerUnit, matrix[3][1] / metresPerUnit, matrix[3][2] / metresPerUnit};
-}
-
-Json jsonOf(const CalibratedCamera& camera) {
-    return {
-        {"K", {{camera.focal.x, 0.0, camera.principal.x}, {0.0, camera.focal.y, camera.principal.y}, {0.0, 0.0, 1.0}}},
-        {"distortion", camera.distortion},
-        {"size", {camera.size.x, camera.size.y}},
-        {"fromWorld", jsonOf(camera.cameraFromWorld)}};
-}
-
-void writeBytes(const fs::path& file, std::span<const std::byte> bytes) {
-    errno = 0;
-    std::ofstream out(file, std::ios::binary);
-    out.write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
-    out.close();
-    if (!out) throwWriteError(file, errno != 0 ? errno : EIO);
-}
-
-/// A folder that takes another's place in the end, or vanishes.
-class FolderInTheMaking {
-public:
-    explicit FolderInTheMaking(fs::path target) : target_(std::move(target)) {
-        std::error_code error;
-        if (target_.filename().empty()) target_ = target_.parent_path();
-        if (fs::exists(target_, error) && !(fs::is_directory(target_, error) && fs::is_empty(target_, error)))
-            throw InvalidInput(target_.string(), "is there already and not an empty folder",
-                               "name a new folder, or empty this one");
-        const fs::path parent = target_.has_parent_path() ? target_.parent_path() : fs::path(".");
-        fs::create_directories(parent, error);
-        if (error) throwWriteError(parent, error.value());
-        place_ = parent / (".lumorph-" + std::to_string(::getpid()) + "-" + target_.filename().string() + ".part");
-        fs::create_directory(place_, error);
-        if (error) throwWriteError(place_, error.value());
-    }
-    FolderInTheMaking(const FolderInTheMaking&) = delete;
-    FolderInTheMaking& operator=(const FolderInTheMaking&) = delete;
-    ~FolderInTheMaking() {
-        std::error_code ignored;
-        if (!place_.empty()) fs::remove_all(place_, ignored);
-    }
-    [[nodiscard]] const fs::path& place() const { return place_; }
-    void finish() {
-        std::error_code error;
-        fs::rename(place_, target_, error); // takes the place of an empty folder
-        if (error) throwWriteError(target_, error.value());
-        place_.clear();
-    }
-
-private:
-    fs::path target_, place_;
-};
 
 } // namespace
 
@@ -474,24 +402,12 @@ std::string LabCapturer::truthText() const {
 }
 
 void writeLabCapture(LabCapturer& capturer, const std::filesystem::path& folder, const Progress& progress) {
-    FolderInTheMaking making(folder);
+    LabFolder making(folder);
     const int count = capturer.capture().poses;
-    for (int pose = 0; pose < count; ++pose) {
-        const std::vector<LabShot> shots =
-            capturer.takeNext(progress.part(static_cast<double>(pose) / count, (pose + 0.8) / count));
-        std::error_code error;
-        fs::create_directory(making.place() / shots.front().view, error);
-        if (error) throwWriteError(making.place() / shots.front().view, error.value());
-        tbb::parallel_for(std::size_t{0}, shots.size(), [&](std::size_t i) {
-            if (progress.cancelled()) return;
-            std::vector<uchar> bytes; // grey in one channel, packed for speed: noise hardly packs
-            cv::imencode(".png", shots[i].grey, bytes, {cv::IMWRITE_PNG_COMPRESSION, 1});
-            writeBytes(making.place() / shots[i].view / shots[i].file, std::as_bytes(std::span(bytes)));
-        });
-        progress.throwIfCancelled();
-    }
-    const std::string truth = capturer.truthText();
-    writeBytes(making.place() / "truth.json", std::as_bytes(std::span(truth)));
+    for (int pose = 0; pose < count; ++pose)
+        making.write(capturer.takeNext(progress.part(static_cast<double>(pose) / count, (pose + 0.8) / count)),
+                     progress);
+    making.write("truth.json", capturer.truthText());
     making.finish();
 }
 

@@ -10,6 +10,7 @@
 
 #include "calibration/decode/refusal.h"
 #include "calibration/lab/board_lab.h"
+#include "calibration/lab/lab_folder.h"
 #include "calibration/patterns/capture_order.h"
 #include "core/base/progress.h"
 
@@ -34,12 +35,6 @@ struct LabFault {
     Cause cause = Cause::lateFrame;
     std::string view, file; ///< empty where it is of no single one
     std::string what;
-};
-
-/// One picture of a capture, as it is called.
-struct LabShot {
-    std::string view, file;
-    cv::Mat grey; ///< 8 bits
 };
 
 /// Takes a capture, pose by pose.

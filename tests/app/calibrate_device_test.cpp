@@ -237,6 +237,43 @@ TEST_F(CalibrateDevice, RefusesFlapsThatStandOtherwiseAndImagesThatAreMissing) {
     EXPECT_EQ(size.json()["refused"]["cause"], "projector_size");
 }
 
+/// From nothing, by the program alone: what it photographs in its lab, it calibrates.
+TEST(CalibrateDeviceInTheLab, ACaptureOfTheLabGivesItsProjectorBack) {
+    const TemporaryFolder folder;
+    const std::string at = (folder / "capture").string();
+    const Outcome taken =
+        lumorph({"lab", "capture", "--device", rigFile(), "--size", "960x768", "--seed", "3", "-o", at, "--json"});
+    ASSERT_EQ(taken.exitCode, 0) << taken.err;
+    EXPECT_EQ(taken.json()["shots"], 7);
+    const auto size = taken.json()["projector"];
+    const std::string projector = size[0].dump() + "x" + size[1].dump();
+    const Outcome outcome =
+        lumorph({"calibrate", "device", at, "--rig", rigFile(), "--projector", projector, "--json"});
+    ASSERT_EQ(outcome.exitCode, 0) << outcome.err << outcome.out;
+    const nlohmann::json truth = nlohmann::json::parse(textOfFile(folder / "capture/truth.json"));
+    CalibratedCamera should;
+    const nlohmann::json& is = truth["projector"];
+    should.size = {size[0], size[1]};
+    should.focal = {is["K"][0][0], is["K"][1][1]};
+    should.principal = {is["K"][0][2], is["K"][1][2]};
+    for (std::size_t i = 0; i < 5; ++i) should.distortion[i] = is["distortion"][i];
+    for (int row = 0; row < 3; ++row) {
+        for (int column = 0; column < 3; ++column) should.cameraFromWorld[column][row] = is["R"][row][column];
+        should.cameraFromWorld[3][row] = is["T"][row];
+    }
+    const double error = errorOf(outcome.json()["projectors"][0], should);
+    std::printf("light beside where it belongs by %.3f projector pixels\n", error);
+    EXPECT_LE(error, 0.5);
+
+    EXPECT_EQ(lumorph({"lab", "capture", "-o", (folder / "none").string()}).exitCode, 2);
+    EXPECT_EQ(
+        lumorph({"lab", "capture", "--device", rigFile(), "--board", "chess:9x7:25", "-o", (folder / "none").string()})
+            .exitCode,
+        2);
+    EXPECT_EQ(lumorph({"lab", "capture", "--device", rigFile(), "-o", at}).exitCode, 2) << "the folder is not empty";
+    EXPECT_FALSE(fs::exists(folder / "none"));
+}
+
 TEST(CalibrateDevices, SeveralLieInFoldersByCameraAndProjector) {
     if (!longTests()) GTEST_SKIP() << "1,000 pictures: LUMORPH_LONG_TESTS=1 takes them";
     const TemporaryFolder folder;
