@@ -66,7 +66,10 @@ Installation roomOf(const LabArguments& arguments) {
     if (room.projectors.empty())
         throw InvalidInput("installation", "it has no projector", "add one in the studio, or name no project");
     if (room.cameras.empty()) {
-        room.cameras.push_back({"Camera", "", defaultLabCamera(room.projectors.front().camera), {}, {}});
+        CalibratedCamera camera = defaultLabCamera(room.projectors.front().camera);
+        constexpr double kCloser = 1.7; // zoomed in, since a device is smaller than where boards are held
+        if (!arguments.device.empty()) camera.focal *= kCloser;
+        room.cameras.push_back({"Camera", "", camera, {}, {}});
         printWarnings({"The installation has no camera; one beside the projector is assumed."});
     }
     if (!arguments.size.empty()) {

@@ -23,8 +23,8 @@ namespace lumorph {
 [[nodiscard]] std::optional<Finding> checkLight(const std::string& view, const DecodedView& decoded);
 
 /// Whether what was decoded can come from a projector of this size: coordinates past its edge, or a picture that ends
-/// in a straight line before it. Where only the board is lit (its points in the camera's picture; empty: not known), its
-/// own rim is no such end.
+/// in a straight line before it. Where only the board is lit (its points in the camera's picture; empty: not known),
+/// its own rim is no such end.
 [[nodiscard]] std::optional<Finding> checkProjectorSize(const std::string& view, const DecodedView& decoded,
                                                         cv::Size projector, const std::vector<cv::Point2d>& board);
 
