@@ -1,9 +1,14 @@
 #include <filesystem>
+#include <fstream>
 #include <memory>
 
 #include <QAction>
+#include <QJsonArray>
+#include <QJsonDocument>
+#include <QJsonObject>
 #include <QLabel>
 #include <QListWidget>
+#include <QProcess>
 
 #include "app/studio/calibration/capture_bench.h"
 #include "app/studio/document/scene_edit.h"
@@ -26,6 +31,20 @@ Installation smallRoom() {
     Installation room = defaultInstallation();
     room.projectors.front().camera = withSize(room.projectors.front().camera, kSmall);
     return room;
+}
+
+std::vector<fs::path> entriesOf(const fs::path& folder) {
+    return {fs::directory_iterator(folder), fs::directory_iterator()};
+}
+
+/// What `lumorph calibrate procam` makes of a folder of poses.
+QJsonObject solvedByCommandLine(const fs::path& folder) {
+    QProcess program;
+    program.start(LUMORPH_BIN_DIR "/lumorph", {"calibrate", "procam", QString::fromStdString(folder), "--board", kBoard,
+                                               "--projector", QString("%1x%2").arg(kSmall.x).arg(kSmall.y), "--json"});
+    EXPECT_TRUE(program.waitForFinished(60'000));
+    EXPECT_EQ(program.exitCode(), 0) << program.readAllStandardError().toStdString();
+    return QJsonDocument::fromJson(program.readAllStandardOutput()).object();
 }
 
 void forgetCalibrations() {
@@ -51,21 +70,24 @@ struct Window {
     [[nodiscard]] const InstalledProjector& projector() const {
         return studio.state().installation->projectors.front();
     }
+    [[nodiscard]] std::size_t notices() { return studio.studio().notices.at("calibrate").size(); }
     [[nodiscard]] std::string story() {
         return (title() + " [" + button() + "] " + studio.text("calibrate.card.text")).toStdString();
     }
 
+    TemporaryFolder folder;
     struct Forgotten {
-        Forgotten() {
+        explicit Forgotten(const fs::path& folder) {
             forgetCalibrations();
             studio::Settings settings; // before the window reads them
             for (const char* key : {"calibrate/way", "calibrate/lab/board", "calibrate/folder/folder"})
                 settings.remove(key);
             settings.setValue("calibrate/lab/poses", 4);
+            std::ofstream(folder / "file") << "no folder";
+            settings.setValue("calibrate/saved", QString::fromStdString(folder / "file" / "poses"));
         }
         ~Forgotten() { forgetCalibrations(); }
-    } forgotten_;
-    TemporaryFolder folder;
+    } forgotten_{folder.path()};
     mutable StudioWindow studio{folder / "session", "scene"};
 };
 
@@ -92,10 +114,24 @@ TEST_F(Calibrate, TheLabLeadsFromNothingToAProjectorThatTheSceneUses) {
     w.studio.screenshot("calibrate-begin");
     w.next();
     ASSERT_TRUE(w.offers("Photograph pose 2 of 4")) << w.story();
+    // Where poses are to be saved is a file. That is told, and spoils nothing.
+    EXPECT_EQ(w.studio.text("calibrate.saved"), "not saved yet: 1");
+    EXPECT_EQ(w.notices(), 1U);
+    fs::create_directory(w.folder / "poses");
+    w.studio.click("calibrate.saved.folder");
+    answerFileDialog(w.studio, "calibrate.saved.file", w.folder / "poses", "Choose");
+    ASSERT_TRUE(eventually([&] { return w.studio.text("calibrate.saved").startsWith("Saved in "); }, 20s));
+    EXPECT_EQ(w.notices(), 0U);
+    EXPECT_TRUE(w.offers("Photograph pose 2 of 4")) << "another folder is no other calibration: " << w.story();
     w.studio.click("calibrate.rest");
     ASSERT_TRUE(w.offers("Use this calibration")) << w.story();
     for (const char* step : {"setup", "poses", "camera", "projector"}) EXPECT_EQ(w.step(step), "Good") << step;
     w.studio.screenshot("calibrate-good");
+    EXPECT_EQ(w.notices(), 0U);
+    const std::vector<fs::path> dated = entriesOf(w.folder / "poses");
+    ASSERT_EQ(dated.size(), 1U);
+    EXPECT_EQ(entriesOf(dated.front()).size(), 4U);
+    const QJsonObject again = solvedByCommandLine(dated.front());
     // What the lab truly is, from a lab of its own.
     const CalibratedCamera truth = studio::openLabBench({}, smallRoom())->truth()->projectors.front().camera;
     const auto away = [&] { return glm::length(positionOf(w.projector().camera) - positionOf(truth)); };
@@ -105,6 +141,8 @@ TEST_F(Calibrate, TheLabLeadsFromNothingToAProjectorThatTheSceneUses) {
     ASSERT_TRUE(eventually([&] { return w.projector().lens.way == Origin::Way::measured; })) << w.story();
     EXPECT_LT(away(), 0.008);
     EXPECT_NEAR(w.projector().camera.focal.x, truth.focal.x, 0.01 * truth.focal.x);
+    // The command line finds the same in what was saved.
+    EXPECT_NEAR(again["projector"]["K"][0][0].toDouble(), w.projector().camera.focal.x, 1e-4);
     // On the table, where it counts: a place 10 cm aside gets the light that is meant for it.
     for (const glm::dvec3 place : {glm::dvec3(0.0), glm::dvec3(0.1, 0.0, 0.0), glm::dvec3(-0.05, 0.0, 0.08)}) {
         const auto believed = pixelOf(w.projector().camera, place);

@@ -15,6 +15,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "app/studio/calibration/capture_bench.h"
+#include "app/studio/calibration/pose_store.h"
 #include "app/studio/calibration/report_pdf.h"
 #include "calibration/doctor/capture_calibration.h"
 #include "calibration/doctor/sequence_check.h"
@@ -42,15 +43,6 @@ template <class Result, class Run> OrFinding<Result> orFinding(const Run& run) {
     } catch (const CaptureRefused& refused) {
         return refused.finding();
     }
-}
-
-/// By name, where numbers count as numbers: pose_2 before pose_10.
-bool isBefore(const std::string& a, const std::string& b) {
-    const auto numberAt = [](const std::string& text) {
-        const std::size_t at = text.find_last_not_of("0123456789") + 1;
-        return std::pair(text.substr(0, at), std::pair(text.size() - at, text.substr(at)));
-    };
-    return numberAt(a) < numberAt(b);
 }
 
 CalibrationPose poseOf(const std::string& name, const ReadPose& read, cv::Size projector) {
@@ -169,6 +161,16 @@ struct CalibrationService::Mailbox {
     int index = 0, count = 0;
 };
 
+/// What stood in the way of saving the images of the poses.
+struct CalibrationService::SavedPoses {
+    std::optional<Notice> trouble;
+};
+
+struct CalibrationService::TakenPose {
+    CalibrationPose pose;
+    std::optional<SavedPoses> saved; ///< none where the pose was refused
+};
+
 /// Looks through the camera beside the window, one look at a time; the newest order wins.
 class CalibrationService::Looker {
 public:
@@ -201,9 +203,9 @@ private:
 
 CalibrationService::CalibrationService(Settings& settings, StudioDocument& document, Jobs& jobs, Notices& notices,
                                        DisplayOpener openDisplay, VersionTaker take, QObject* parent)
-    : QObject(parent), settings_(settings), document_(document), openDisplay_(std::move(openDisplay)),
-      take_(std::move(take)), jobs_(*this, jobs, notices), liveTimer_(new QTimer(this)),
-      looker_(std::make_unique<Looker>()) {
+    : QObject(parent), settings_(settings), document_(document), notices_(notices),
+      openDisplay_(std::move(openDisplay)), take_(std::move(take)), store_(std::make_shared<PoseStore>()),
+      jobs_(*this, jobs, notices), liveTimer_(new QTimer(this)), looker_(std::make_unique<Looker>()) {
     state_.setup = keptSetup(settings, keptWay(settings));
     liveTimer_->setSingleShot(true);
     liveTimer_->setInterval(kLiveMilliseconds);
@@ -236,14 +238,20 @@ void CalibrationService::setWay(CaptureWay way) {
 
 void CalibrationService::setSetup(const CalibrationSetup& setup) {
     if (setup == state_.setup) return;
-    const bool onlyMore = [&] {
+    const bool onlyMore = [&] { // nothing that the poses so far were made with
         CalibrationSetup same = setup;
         same.poses = state_.setup.poses;
-        return same == state_.setup && setup.poses >= state_.setup.poses && setup.way != CaptureWay::lab;
+        same.saved = state_.setup.saved;
+        return same == state_.setup &&
+               (setup.poses == same.poses || (setup.poses > same.poses && setup.way != CaptureWay::lab));
     }();
+    const bool isElsewhere = setup.saved != state_.setup.saved;
     state_.setup = setup;
     keepSetup(settings_, setup);
-    if (!onlyMore) beginAnew();
+    if (!onlyMore)
+        beginAnew();
+    else if (isElsewhere && (!state_.savedIn.empty() || state_.unsaved > 0))
+        savePoses();
     emit changed();
 }
 
@@ -253,7 +261,7 @@ void CalibrationService::beginAnew() {
     isLooking_ = false;
     ++benchTry_;
     bench_ = nullptr;
-    state_.poses.clear();
+    forgetPoses();
     state_.flatPose.clear();
     isFlatChosen_ = false;
     state_.usedDate.clear();
@@ -262,6 +270,15 @@ void CalibrationService::beginAnew() {
     if (active_ && isLive(state_.setup.way)) openBench();
     emit changed();
     emit liveChanged();
+}
+
+/// Those that come now get a folder of their own.
+void CalibrationService::forgetPoses() {
+    jobs_.stop("save");
+    store_ = std::make_shared<PoseStore>();
+    state_.poses.clear();
+    state_.savedIn.clear();
+    state_.unsaved = 0;
 }
 
 void CalibrationService::clearResults() {
@@ -334,7 +351,7 @@ void CalibrationService::takePose(CalibrationPose pose) {
         *same = std::move(pose);
     else
         poses.push_back(std::move(pose));
-    std::ranges::sort(poses, isBefore, &CalibrationPose::name);
+    std::ranges::sort(poses, isNamedBefore, &CalibrationPose::name);
     if (isFlatChosen_) return;
     const auto first = std::ranges::find_if(poses, [](const CalibrationPose& one) { return one.counts(); });
     state_.flatPose = first == poses.end() ? std::string() : first->name;
@@ -353,7 +370,6 @@ void CalibrationService::poll() {
                 state_.stage = tr("Pattern %1 of %2").arg(mailbox_->index + 1).arg(mailbox_->count);
         }
         for (auto& [index, pose] : poses) takePose(std::move(pose));
-        if (!poses.empty()) std::ranges::sort(state_.poses, {}, [](const CalibrationPose& pose) { return pose.name; });
         if (!shot.empty()) {
             live_.picture = pictureOfMat(shot);
             live_.camera = {shot.cols, shot.rows};
@@ -529,8 +545,8 @@ void CalibrationService::photograph() {
     const int number = static_cast<int>(state_.poses.size());
     const auto room = document_.state().installation;
     const glm::ivec2 size = room->projectors.at(projector()).camera.size;
-    const auto work = [bench = bench_, setup = state_.setup, number, size, helpful,
-                       box = mailbox_](const Progress& progress) {
+    const auto work = [bench = bench_, store = store_, setup = state_.setup, number, size, helpful,
+                       box = mailbox_](const Progress& progress) -> TakenPose {
         const std::scoped_lock lock(bench->mutex);
         bench->setWanted(helpful ? std::optional(helpful->cameraFromBoard) : std::nullopt);
         const auto onShot = [&](const Shot& shot) {
@@ -539,13 +555,14 @@ void CalibrationService::photograph() {
             box->index = shot.index;
             box->count = shot.count;
         };
-        CapturedPose captured = bench->capture(number, onShot, progress.part(0.0, 0.8));
-        if (captured.findings.refusal) {
-            Finding finding = *captured.findings.refusal;
+        CapturedPose captured = bench->capture(number, onShot, progress.part(0.0, 0.7));
+        const auto refusedBy = [&](Finding finding) {
+            // A projector of another size, and such, is of the whole capture; here it shows in this pose.
             if (finding.view.empty()) finding.view = captured.name;
-            return poseRefusedBy(finding, brightestOf(captured.images));
-        }
-        progress.report(0.85, "reading the patterns");
+            return TakenPose{poseRefusedBy(finding, brightestOf(captured.images)), std::nullopt};
+        };
+        if (captured.findings.refusal) return refusedBy(*captured.findings.refusal);
+        progress.report(0.75, "reading the patterns");
         const cv::Size projector(size.x, size.y);
         const CapturedView view{captured.name, {captured.files.begin(), captured.files.end()}};
         try {
@@ -555,18 +572,18 @@ void CalibrationService::photograph() {
             CalibrationPose pose = poseOf(captured.name, read, projector);
             pose.warnings.insert(pose.warnings.end(), captured.findings.warnings.begin(),
                                  captured.findings.warnings.end());
-            return pose;
+            return {std::move(pose), saveTo(setup.saved, *store, std::make_shared<CapturedPose>(std::move(captured)),
+                                            progress.part(0.85, 1.0))};
         } catch (const CaptureRefused& refused) {
-            Finding finding = refused.finding();
-            // A projector of another size, and such, is of the whole capture; here it shows in this pose.
-            if (finding.view.empty()) finding.view = captured.name;
-            return poseRefusedBy(finding, brightestOf(captured.images));
+            return refusedBy(refused.finding());
         }
     };
-    jobs_.runWith<CalibrationPose>(
+    jobs_.runWith<TakenPose>(
         "capture", kPlace, tr("Photographing a pose"), work,
-        [this](CalibrationPose pose) {
+        [this](TakenPose taken) {
             endWork();
+            CalibrationPose& pose = taken.pose;
+            if (taken.saved) takeSaved(*taken.saved);
             const bool refused = pose.refusal.has_value();
             if (pose.pictures) camera_ = {pose.pictures->camera.width(), pose.pictures->camera.height()};
             takePose(std::move(pose));
@@ -587,6 +604,46 @@ void CalibrationService::photograph() {
         },
         [this](const std::exception& error) { setTrouble(error); });
     emit changed();
+}
+
+/// A disk that refuses does not spoil the pose.
+CalibrationService::SavedPoses CalibrationService::saveTo(const std::filesystem::path& parent, PoseStore& store,
+                                                          std::shared_ptr<const CapturedPose> pose,
+                                                          const Progress& progress) {
+    try {
+        store.save(parent, std::move(pose), progress);
+    } catch (const Cancelled&) {
+        throw;
+    } catch (const std::exception& error) {
+        return {noticeOf(error)};
+    }
+    return {};
+}
+
+void CalibrationService::takeSaved(const SavedPoses& saved) {
+    state_.savedIn = store_->folder();
+    state_.unsaved = store_->unsaved();
+    if (!saveTrouble_.isEmpty()) notices_.dismiss(kPlace, saveTrouble_);
+    saveTrouble_.clear();
+    if (!saved.trouble) return;
+    Notice notice = *saved.trouble;
+    notice.level = Notice::Level::warning;
+    notice.why += tr("; the calibration goes on, its images stay in memory until they can be saved");
+    notice.actions = {{tr("Save again"), [this] { savePoses(); }}};
+    saveTrouble_ = notice.subject;
+    notices_.post(kPlace, std::move(notice));
+}
+
+void CalibrationService::savePoses() {
+    jobs_.run<SavedPoses>(
+        "save", kPlace, tr("Saving the poses"),
+        [store = store_, parent = state_.setup.saved](const Progress& progress) {
+            return saveTo(parent, *store, nullptr, progress);
+        },
+        [this](const SavedPoses& saved) {
+            takeSaved(saved);
+            emit changed();
+        });
 }
 
 void CalibrationService::solve() {
@@ -783,7 +840,7 @@ void CalibrationService::importFrom(const std::filesystem::path& file) {
             return readCalibration(file, sizes);
         },
         [this, file](CalibrationRecord record) {
-            state_.poses.clear();
+            forgetPoses();
             clearResults();
             CalibrationResult result;
             result.setup = state_.setup;

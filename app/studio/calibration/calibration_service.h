@@ -17,6 +17,7 @@
 #include "app/studio/document/job_slots.h"
 #include "app/studio/document/studio_document.h"
 #include "calibration/capture/pattern_display.h"
+#include "calibration/capture/pose_capture.h"
 #include "calibration/report/report_page.h"
 
 class QTimer;
@@ -24,6 +25,7 @@ class QTimer;
 namespace lumorph::studio {
 
 class CaptureBench;
+class PoseStore;
 
 /// What the camera sees now.
 struct LiveSight {
@@ -67,6 +69,8 @@ public:
     void cancel();
     void setLeftOut(const std::string& pose, bool leftOut);
     void beginAnew();
+    /// Tries again to save the images of poses that are only in memory, and brings all into the folder that is chosen.
+    void savePoses();
     void setFlatPose(const std::string& pose);
     /// Puts the result into the room: a step of undo.
     void use();
@@ -85,6 +89,10 @@ signals:
 
 private:
     struct Mailbox;
+    struct SavedPoses;
+    struct TakenPose;
+    [[nodiscard]] static SavedPoses saveTo(const std::filesystem::path& parent, PoseStore& store,
+                                           std::shared_ptr<const CapturedPose> pose, const Progress& progress);
     class Looker;
     void read();
     void openBench();
@@ -94,6 +102,8 @@ private:
     void poll();
     void endWork();
     void takePose(CalibrationPose pose);
+    void takeSaved(const SavedPoses& saved);
+    void forgetPoses();
     void setTrouble(const std::exception& error);
     void followDocument();
     void takeResult(CalibrationResult result);
@@ -104,11 +114,14 @@ private:
 
     Settings& settings_;
     StudioDocument& document_;
+    Notices& notices_;
     DisplayOpener openDisplay_;
     VersionTaker take_;
     CalibrationState state_;
     LiveSight live_;
     std::shared_ptr<CaptureBench> bench_;
+    std::shared_ptr<PoseStore> store_; ///< of the poses of this calibration
+    QString saveTrouble_;              ///< subject of the notice about it
     std::shared_ptr<Mailbox> mailbox_; ///< of the work that runs
     JobSlots jobs_;
     QTimer* liveTimer_;

@@ -3,6 +3,7 @@
 #include <sstream>
 
 #include <QObject>
+#include <QStandardPaths>
 
 #include "core/base/error.h"
 
@@ -10,6 +11,7 @@ namespace lumorph::studio {
 namespace {
 
 constexpr auto kWayKey = "calibrate/way";
+constexpr auto kSavedKey = "calibrate/saved"; // of all ways
 constexpr int kMostPoses = 30;
 
 QString keyOf(CaptureWay way, const char* what) {
@@ -26,6 +28,11 @@ std::string textOf(double number) {
 QString sideText(double millimetres) { return QString::number(millimetres, 'g', 6); }
 
 } // namespace
+
+std::filesystem::path usualSaved() {
+    const QString data = QStandardPaths::writableLocation(QStandardPaths::GenericDataLocation);
+    return std::filesystem::path(data.toStdString()) / "lumorph" / "captures";
+}
 
 CaptureWay keptWay(const Settings& settings) {
     const int way = settings.value(kWayKey, 0).toInt();
@@ -47,6 +54,8 @@ CalibrationSetup keptSetup(const Settings& settings, CaptureWay way) {
     }
     setup.folder = kept("folder");
     setup.camera = kept("camera");
+    const std::string saved = settings.value(kSavedKey).toString().toStdString();
+    setup.saved = saved.empty() ? usualSaved() : std::filesystem::path(saved);
     setup.poses = std::clamp(settings.value(keyOf(way, "poses"), setup.poses).toInt(), 3, kMostPoses);
     return setup;
 }
@@ -62,6 +71,7 @@ void keepSetup(Settings& settings, const CalibrationSetup& setup) {
     keep("folder", setup.folder.string());
     keep("camera", setup.camera);
     settings.setValue(keyOf(setup.way, "poses"), setup.poses);
+    settings.setValue(kSavedKey, QString::fromStdString(setup.saved.string()));
 }
 
 std::string boardText(const CalibrationBoard& board) {

@@ -37,12 +37,15 @@ struct CalibrationSetup {
     std::filesystem::path folder; ///< one folder a pose; empty: not chosen yet
     std::string camera;           ///< "/dev/video0"; empty: not chosen yet
     int poses = 6;                ///< that are wanted
+    std::filesystem::path saved;  ///< each calibration's poses are saved in a dated folder in here
     std::optional<Cause> fault;   ///< what goes wrong in the lab on purpose
     bool operator==(const CalibrationSetup&) const = default;
 };
 
 /// What was chosen last for this way, or what is usual.
 [[nodiscard]] CalibrationSetup keptSetup(const Settings& settings, CaptureWay way);
+/// Where poses are saved unless somebody chooses another folder: in the user's data.
+[[nodiscard]] std::filesystem::path usualSaved();
 /// The way that was chosen last.
 [[nodiscard]] CaptureWay keptWay(const Settings& settings);
 void keepSetup(Settings& settings, const CalibrationSetup& setup);

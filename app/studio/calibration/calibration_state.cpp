@@ -434,6 +434,7 @@ InstallationVersion versionOf(const CalibrationState& state, const Installation&
     add("Poses", static_cast<double>(result.solved.views.size()), "");
     version.inputs = {wayWords(result.setup).toStdString(), boardWords(result.setup.board).toStdString(),
                       result.setup.pattern};
+    if (!state.savedIn.empty()) version.inputs.push_back("poses in " + state.savedIn.string());
     version.result = calibrationText(recordOf(result));
     version.installation = installation;
     return version;

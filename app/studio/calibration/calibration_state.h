@@ -74,7 +74,9 @@ struct CalibrationState {
     QString trouble;         ///< what failed apart from the capture: a camera that is gone, a folder that is empty
     std::string flatPose;    ///< name of the pose in which the board lay flat on the table
     bool isImported = false; ///< the result came from a file, without poses to look at
-    std::string usedDate;    ///< of the result that the room uses, as far as it came from here
+    std::filesystem::path savedIn; ///< folder of the images of the poses; empty while there are none
+    int unsaved = 0;               ///< poses whose images are only in memory
+    std::string usedDate;          ///< of the result that the room uses, as far as it came from here
     [[nodiscard]] int counting() const;
     [[nodiscard]] bool isSolved() const noexcept { return result != nullptr && !refusal; }
     [[nodiscard]] bool isUsed() const { return result && usedDate == result->date; }

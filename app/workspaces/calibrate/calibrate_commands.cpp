@@ -75,6 +75,18 @@ void askForImages(const CalibrateParts& parts) {
         "Choose");
 }
 
+void askForSaved(const CalibrateParts& parts) {
+    askFolder(
+        QApplication::activeWindow(), parts.studio.settings, "calibrate.saved",
+        "Folder for poses: each calibration gets a dated one in it",
+        [parts](const QString& folder) {
+            CalibrationSetup setup = parts.service.state().setup;
+            setup.saved = folder.toStdString();
+            parts.service.setSetup(setup);
+        },
+        "Choose");
+}
+
 void addCalibrateCommands(const CalibrateParts& parts) {
     CalibrationService& service = parts.service;
     QAction* next = addCalibrateAction(

@@ -12,5 +12,7 @@ void addCalibrateCommands(const CalibrateParts& parts);
 void useFolder(CalibrationService& service, Settings& settings, const std::filesystem::path& folder);
 /// Asks for it.
 void askForImages(const CalibrateParts& parts);
+/// Asks where poses are saved.
+void askForSaved(const CalibrateParts& parts);
 
 } // namespace lumorph::studio

@@ -1,6 +1,7 @@
 #include "app/workspaces/calibrate/residual_plots.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
@@ -13,7 +14,9 @@
 namespace lumorph::studio {
 namespace {
 
-constexpr int kBarTop = 20;
+constexpr int kLegendLine = 17;
+constexpr int kLegendSquare = 8;
+constexpr const char* kKinds[] = {"camera", "projector", "held out"};
 constexpr int kBarRow = 32;
 constexpr int kBarName = 86;
 constexpr double kFieldArrow = 0.07; // of the image's width, for the longest
@@ -21,6 +24,19 @@ constexpr double kFieldArrow = 0.07; // of the image's width, for the longest
 QColor faint(QColor color, int alpha) {
     color.setAlpha(alpha);
     return color;
+}
+
+/// Where the square of each kind stands; a word that does not fit begins a line.
+std::array<QPoint, std::size(kKinds)> legendOf(const QFontMetrics& metrics, int width) {
+    std::array<QPoint, std::size(kKinds)> places;
+    QPoint at(4, 6);
+    for (std::size_t i = 0; i < places.size(); ++i) {
+        const int word = kLegendSquare + 4 + metrics.horizontalAdvance(kKinds[i]);
+        if (at.x() > 4 && at.x() + word > width) at = {4, at.y() + kLegendLine};
+        places[i] = at;
+        at.rx() += word + 12;
+    }
+    return places;
 }
 
 } // namespace
@@ -41,6 +57,15 @@ void PoseBars::show(const ProcamCalibration& solved, const std::string& chosen) 
     update();
 }
 
+int PoseBars::rowsTop() const { return legendOf(fontMetrics(), width()).back().y() + kLegendLine - 3; }
+
+QSize PoseBars::sizeHint() const { return {260, rowsTop() + 4 + kBarRow * static_cast<int>(views_.size())}; }
+
+void PoseBars::resizeEvent(QResizeEvent* event) {
+    QWidget::resizeEvent(event);
+    if (event->size().width() != event->oldSize().width()) updateGeometry(); // the legend may take another line
+}
+
 void PoseBars::paintEvent(QPaintEvent* /*event*/) {
     const Palette& colors = currentPalette();
     QPainter painter(this);
@@ -48,21 +73,17 @@ void PoseBars::paintEvent(QPaintEvent* /*event*/) {
     double most = 0.1;
     for (const ViewQuality& view : views_)
         most = std::max({most, view.cameraRms, view.projectorRms, view.heldOut.value_or(0.0)});
-    const struct {
-        const char* name;
-        QColor color;
-    } kinds[] = {{"camera", colors.levelLow}, {"projector", colors.accent}, {"held out", colors.warning}};
-    double x = 4.0;
+    const QColor kinds[] = {colors.levelLow, colors.accent, colors.warning};
+    const auto legend = legendOf(fontMetrics(), width());
     painter.setPen(colors.textMuted);
-    for (const auto& kind : kinds) {
-        painter.fillRect(QRectF(x, 6, 8, 8), kind.color);
-        painter.drawText(QPointF(x + 12, 14), kind.name);
-        x += 24 + painter.fontMetrics().horizontalAdvance(kind.name);
+    for (std::size_t i = 0; i < legend.size(); ++i) {
+        painter.fillRect(QRect(legend[i], QSize(kLegendSquare, kLegendSquare)), kinds[i]);
+        painter.drawText(legend[i] + QPoint(kLegendSquare + 4, kLegendSquare), kKinds[i]);
     }
     const double room = width() - kBarName - 44;
     for (std::size_t k = 0; k < views_.size(); ++k) {
         const ViewQuality& view = views_[k];
-        const double top = kBarTop + kBarRow * static_cast<double>(k);
+        const double top = rowsTop() + kBarRow * static_cast<double>(k);
         if (view.name == chosen_) painter.fillRect(QRectF(0, top, width(), kBarRow - 2), selectedColor(colors));
         painter.setPen(view.name == worst_ ? colors.warning : colors.text);
         painter.drawText(
@@ -71,7 +92,7 @@ void PoseBars::paintEvent(QPaintEvent* /*event*/) {
         const double values[] = {view.cameraRms, view.projectorRms, view.heldOut.value_or(0.0)};
         for (int i = 0; i < 3; ++i) {
             const QRectF bar(kBarName, top + 3 + 9 * i, std::max(1.0, room * values[i] / most), 7);
-            painter.fillRect(bar, kinds[i].color);
+            painter.fillRect(bar, kinds[i]);
         }
         painter.setPen(colors.textMuted);
         const double shown = view.heldOut.value_or(view.projectorRms);
@@ -86,8 +107,9 @@ void PoseBars::paintEvent(QPaintEvent* /*event*/) {
 }
 
 void PoseBars::mousePressEvent(QMouseEvent* event) {
-    const int row = (static_cast<int>(event->position().y()) - kBarTop) / kBarRow;
-    if (event->position().y() >= kBarTop && row >= 0 && row < static_cast<int>(views_.size()))
+    const int below = static_cast<int>(event->position().y()) - rowsTop();
+    const int row = below / kBarRow;
+    if (below >= 0 && row >= 0 && row < static_cast<int>(views_.size()))
         emit chosen(QString::fromStdString(views_[static_cast<std::size_t>(row)].name));
 }
 

@@ -15,14 +15,17 @@ class PoseBars : public QWidget {
 public:
     explicit PoseBars(QWidget* parent = nullptr);
     void show(const ProcamCalibration& solved, const std::string& chosen);
-    [[nodiscard]] QSize sizeHint() const override { return {260, 40 + 32 * static_cast<int>(views_.size())}; }
+    [[nodiscard]] QSize sizeHint() const override;
     [[nodiscard]] QSize minimumSizeHint() const override { return sizeHint(); }
+    /// Upper edge of the first pose's row, below the legend, which takes as many lines as the width asks for.
+    [[nodiscard]] int rowsTop() const;
 
 signals:
     void chosen(const QString& pose);
 
 protected:
     void paintEvent(QPaintEvent* event) override;
+    void resizeEvent(QResizeEvent* event) override;
     void mousePressEvent(QMouseEvent* event) override;
     void keyPressEvent(QKeyEvent* event) override;
 

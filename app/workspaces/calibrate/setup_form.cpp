@@ -99,6 +99,12 @@ void SetupForm::addSource(QVBoxLayout& column) {
         edit([this](CalibrationSetup& setup) { setup.camera = camera_->currentData().toString().toStdString(); });
     });
     column.addWidget(cameraRow_);
+    saved_ = new QPushButton(this);
+    saved_->setObjectName("calibrate.saved.folder");
+    saved_->setAccessibleName("Folder in which poses are saved");
+    savedRow_ = makeRow("&Save poses in", saved_, this);
+    connect(saved_, &QPushButton::clicked, this, [this] { askForSaved(parts_); });
+    column.addWidget(savedRow_);
     fault_ = new QComboBox(this);
     fault_->setObjectName("calibrate.fault");
     fault_->setToolTip("To see what the studio says when something goes wrong");
@@ -231,6 +237,10 @@ void SetupForm::refresh() {
                                           : QString::fromStdString(setup.folder.filename().string()));
     cameraRow_->setVisible(setup.way == CaptureWay::camera);
     if (setup.way == CaptureWay::camera && !camera_->view()->isVisible()) listCameras();
+    savedRow_->setVisible(isLive(setup.way));
+    saved_->setText(QString::fromStdString(setup.saved.filename().string()));
+    saved_->setToolTip(QString::fromStdString(setup.saved.string()) +
+                       "\nEach calibration gets a dated folder in it, with one folder for each pose");
     faultRow_->setVisible(lab && fault_->count() > 1);
     fault_->setCurrentIndex(std::max(0, fault_->findData(setup.fault ? static_cast<int>(*setup.fault) : -1)));
     drawing_->show(setup.board);

@@ -35,6 +35,8 @@ private:
     QPushButton* folder_ = nullptr;
     QWidget* cameraRow_ = nullptr;
     QComboBox* camera_ = nullptr;
+    QWidget* savedRow_ = nullptr;
+    QPushButton* saved_ = nullptr;
     QWidget* faultRow_ = nullptr;
     QComboBox* fault_ = nullptr;
     BoardDrawing* drawing_ = nullptr;

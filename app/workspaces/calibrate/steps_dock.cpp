@@ -3,11 +3,13 @@
 
 #include <QCheckBox>
 #include <QComboBox>
+#include <QDesktopServices>
 #include <QHBoxLayout>
 #include <QLabel>
 #include <QListWidget>
 #include <QPushButton>
 #include <QSignalBlocker>
+#include <QUrl>
 #include <QVBoxLayout>
 
 #include "app/studio/widgets/dock_parts.h"
@@ -140,6 +142,14 @@ private:
         poses_->setUniformItemSizes(true);
         poses_->setVerticalScrollMode(QAbstractItemView::ScrollPerPixel);
         part->addWidget(poses_);
+        saved_ = new QLabel(this);
+        saved_->setObjectName("calibrate.saved");
+        saved_->setProperty("look", "muted");
+        saved_->setWordWrap(true);
+        saved_->setTextFormat(Qt::RichText);
+        connect(saved_, &QLabel::linkActivated, this,
+                [](const QString& folder) { QDesktopServices::openUrl(QUrl::fromLocalFile(folder)); });
+        part->addWidget(saved_);
         leaveOut_ = new QCheckBox("Leave this pose out", this);
         leaveOut_->setObjectName("calibrate.leaveOut");
         part->addWidget(leaveOut_);
@@ -184,12 +194,25 @@ private:
             const int rows = std::clamp(poses_->count(), 1, 6);
             poses_->setFixedHeight(rows * std::max(24, poses_->sizeHintForRow(0)) + 6);
         }
+        showSaved(state);
         const QSignalBlocker quiet(flat_);
         flat_->clear();
         for (const CalibrationPose& pose : state.poses)
             if (pose.counts()) flat_->addItem(QString::fromStdString(pose.name));
         flat_->setCurrentIndex(flat_->findText(QString::fromStdString(state.flatPose)));
         showChosen();
+    }
+
+    void showSaved(const CalibrationState& state) {
+        saved_->setVisible(!state.savedIn.empty() || state.unsaved > 0);
+        const QString folder = QString::fromStdString(state.savedIn.string());
+        const QString name = QString::fromStdString(state.savedIn.filename().string());
+        QStringList words;
+        if (!name.isEmpty())
+            words << QString("Saved in <a href=\"%1\">%2</a>").arg(folder.toHtmlEscaped(), name.toHtmlEscaped());
+        if (state.unsaved > 0) words << QString("not saved yet: %1").arg(state.unsaved);
+        saved_->setText(words.join(", "));
+        saved_->setToolTip(folder);
     }
 
     void showChosen() {
@@ -207,6 +230,7 @@ private:
     QWidget* posesPart_ = nullptr;
     QListWidget* poses_;
     QCheckBox* leaveOut_ = nullptr;
+    QLabel* saved_ = nullptr;
     QComboBox* flat_ = nullptr;
     QPushButton* anew_ = nullptr;
 };
