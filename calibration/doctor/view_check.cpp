@@ -45,6 +45,7 @@ double shareBeside(const DecodedView& decoded, const std::vector<cv::Point2d>& b
     cv::Point2d centre;
     for (const cv::Point2d& point : board) centre += point / static_cast<double>(board.size());
     std::vector<cv::Point2d> paper;
+    paper.reserve(board.size());
     for (const cv::Point2d& point : board) paper.push_back(centre + kPaper * (point - centre));
     const cv::Mat1b beside = ~outlineMask(decoded.column.size(), paper);
     const cv::Mat1b lit = decoded.column == decoded.column; // false where it is not a number

@@ -234,7 +234,7 @@ void BoardLab::Data::look() {
     if (isLooked) return;
     const Lab room = lab();
     const int samples = options.samples;
-    const auto each = static_cast<std::size_t>(samples * samples);
+    const auto each = static_cast<std::size_t>(samples) * static_cast<std::size_t>(samples);
     const auto width = static_cast<std::size_t>(camera.size.x);
     gleams.assign(each * width * static_cast<std::size_t>(camera.size.y), {});
     even = cv::Mat1f::zeros(camera.size.y, camera.size.x);
@@ -260,7 +260,7 @@ void BoardLab::Data::look() {
 
 cv::Mat1f BoardLab::Data::exposed() const {
     cv::Mat1f grey = even.clone();
-    const auto each = static_cast<std::size_t>(options.samples * options.samples);
+    const auto each = static_cast<std::size_t>(options.samples) * static_cast<std::size_t>(options.samples);
     const auto width = static_cast<std::size_t>(grey.cols);
     const auto lastColumn = static_cast<float>(shown.cols - 1);
     const auto lastRow = static_cast<float>(shown.rows - 1);

@@ -59,7 +59,7 @@ struct Window {
         const auto* next = studio.findNow<QAbstractButton>("calibrate.card.next");
         return next ? next->text() : QString();
     }
-    [[nodiscard]] bool offers(const QString& words, std::chrono::milliseconds time = 60s) {
+    [[nodiscard]] bool offers(const QString& words, std::chrono::milliseconds time = 180s) {
         return eventually([&] { return button().startsWith(words); }, time);
     }
     void next() {

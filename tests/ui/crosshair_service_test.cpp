@@ -22,13 +22,13 @@ struct CrosshairServiceTest : testing::Test {
     StudioDocument document;
     QImage onProjector;
     std::vector<InstallationVersion> versions;
-    CrosshairService service{document, [this](const QImage& picture) { onProjector = picture; },
-                             [this](const InstallationVersion& version) {
-                                 versions.push_back(version);
-                                 editInstallation(document, "Calibrate",
-                                                  [&](Installation& room) { room = version.installation; });
-                                 return true;
-                             }};
+    CrosshairService service{
+        document, [this](std::size_t /*projector*/, const QImage& picture) { onProjector = picture; },
+        [this](const InstallationVersion& version) {
+            versions.push_back(version);
+            editInstallation(document, "Calibrate", [&](Installation& room) { room = version.installation; });
+            return true;
+        }};
 
     CrosshairServiceTest() { test::needApplication(); }
 

@@ -12,8 +12,8 @@
 
 #include <QCoreApplication>
 #include <QTimer>
-#include <opencv2/imgproc.hpp>
 
+#include "app/studio/calibration/calibration_work.h"
 #include "app/studio/calibration/capture_bench.h"
 #include "app/studio/calibration/pose_store.h"
 #include "app/studio/calibration/report_pdf.h"
@@ -28,11 +28,9 @@ namespace {
 
 constexpr auto kPlace = "calibrate"; // of jobs and notices
 constexpr int kLiveMilliseconds = 60;
-constexpr int kSearchWidth = 640; // pixels; the live picture's board is found in a smaller one
 constexpr int kSolvedBetween = 4; // poses from which on it is solved after each
 constexpr double kMetresPerUnit = 0.001;
-constexpr double kNinetyFive = 1.731; // of a length that is spread evenly to all sides, by its root mean square
-constexpr double kTable = 0.2;        // metres around the origin, where the lab tells the truth
+constexpr double kTable = 0.2; // metres around the origin, where the lab tells the truth
 
 /// What came of reading or solving: a refusal is a result too.
 template <class Result> using OrFinding = std::variant<Result, Finding>;
@@ -43,112 +41,6 @@ template <class Result, class Run> OrFinding<Result> orFinding(const Run& run) {
     } catch (const CaptureRefused& refused) {
         return refused.finding();
     }
-}
-
-CalibrationPose poseOf(const std::string& name, const ReadPose& read, cv::Size projector) {
-    CalibrationPose pose;
-    pose.name = name;
-    pose.pictures = std::make_shared<const PosePictures>(picturesOf(read.decoded, projector));
-    pose.seen = std::make_shared<const ViewObservations>(read.observations);
-    pose.warnings = read.warnings;
-    return pose;
-}
-
-/// Of the images of a pose the one that shows most.
-cv::Mat brightestOf(const std::vector<cv::Mat>& images) {
-    cv::Mat brightest;
-    double most = -1.0;
-    for (const cv::Mat& image : images)
-        if (const double mean = cv::mean(image)[0]; mean > most) most = mean, brightest = image;
-    return brightest;
-}
-
-CalibrationPose poseRefusedBy(const Finding& finding, const cv::Mat& picture) {
-    CalibrationPose pose;
-    pose.name = finding.view;
-    pose.refusal = finding;
-    if (!picture.empty()) {
-        PosePictures pictures;
-        pictures.camera = {picture.cols, picture.rows};
-        pictures.white = pictureOfMat(picture);
-        pose.pictures = std::make_shared<const PosePictures>(std::move(pictures));
-    }
-    return pose;
-}
-
-/// The image that a refusal is about, or one of its pose.
-cv::Mat pictureOfFinding(const std::vector<CapturedView>& views, const Finding& finding) {
-    for (const CapturedView& view : views) {
-        if (view.name != finding.view || view.files.empty()) continue;
-        // By custom white is the one before the last.
-        std::filesystem::path file = view.files.size() > 1 ? view.files[view.files.size() - 2] : view.files.back();
-        for (const auto& one : view.files)
-            if (one.filename() == finding.file) file = one;
-        try {
-            return readGrey(file, view.name);
-        } catch (const std::exception&) { // the image itself may be what is broken
-        }
-    }
-    return {};
-}
-
-double distanceOf(const PoseVector& pose) {
-    return std::sqrt(pose[3] * pose[3] + pose[4] * pose[4] + pose[5] * pose[5]);
-}
-
-/// How far light that was held out lands beside, in 95 of 100 places, on the boards.
-std::optional<double> millimetresOf(const ProcamCalibration& solved) {
-    double sum = 0.0;
-    int count = 0;
-    for (std::size_t i = 0; i < solved.views.size() && i < solved.state.cameraFromBoard.size(); ++i) {
-        if (!solved.views[i].heldOut) continue;
-        const double distance = distanceOf(solved.state.cameraFromBoard[i]);
-        const double length = *solved.views[i].heldOut * distance / solved.projector.lens[kFocalLength];
-        sum += length * length;
-        ++count;
-    }
-    if (count == 0) return std::nullopt;
-    return kNinetyFive * std::sqrt(sum / count);
-}
-
-/// Nothing where it is not known in which pose the board lay on the table, or that cannot be.
-std::optional<ErrorPlan> planOf(const ProcamCalibration& solved, const std::optional<BoardPoints>& flat,
-                                const CalibrationBoard& board, const Installation& room, const RoomPlacement& placement,
-                                const Progress& progress) {
-    if (!flat) return std::nullopt;
-    try {
-        return errorPlanOf(solved, *flat, board, room, placement, progress);
-    } catch (const InvalidInput&) { // told when it is to be used
-        return std::nullopt;
-    }
-}
-
-std::vector<PoseResiduals> residualsOf(const std::vector<ViewObservations>& views, const ProcamCalibration& solved) {
-    constexpr std::size_t kMost = 400; // points of a view that are drawn
-    std::vector<PoseResiduals> all;
-    for (std::size_t i = 0; i < views.size() && i < solved.state.cameraFromBoard.size(); ++i) {
-        PoseResiduals one{views[i].name, {}, {}};
-        const auto corners = cameraErrors(views[i], solved.state, solved.state.cameraFromBoard[i]);
-        for (std::size_t k = 0; k < corners.size(); ++k) one.camera.push_back({views[i].corners.seen[k], corners[k]});
-        const auto points = projectorErrors(views[i], solved.state, solved.state.cameraFromBoard[i]);
-        const std::size_t every = points.size() / kMost + 1;
-        for (std::size_t k = 0; k < points.size(); k += every)
-            one.projector.push_back({views[i].projector[k].projector, points[k]});
-        all.push_back(std::move(one));
-    }
-    return all;
-}
-
-/// The board in a live picture; found in a small one, so that the picture stays live.
-std::vector<QPointF> liveCorners(const cv::Mat& picture, const CalibrationBoard& board) {
-    const double scale = std::min(1.0, static_cast<double>(kSearchWidth) / picture.cols);
-    cv::Mat small;
-    cv::resize(picture, small, {}, scale, scale, cv::INTER_AREA);
-    std::vector<QPointF> corners;
-    if (const auto found = findBoard(small, board))
-        for (const cv::Point2d& point : found->seen)
-            corners.emplace_back((point.x + 0.5) / scale - 0.5, (point.y + 0.5) / scale - 0.5);
-    return corners;
 }
 
 } // namespace
@@ -215,9 +107,11 @@ CalibrationService::CalibrationService(Settings& settings, StudioDocument& docum
             if (status.id == id && status.place == kPlace && state_.work != CalibrationState::Work::none) {
                 state_.fraction = status.fraction;
                 state_.stage = status.stage;
+                if (!state_.stage.isEmpty()) state_.stage[0] = state_.stage[0].toUpper();
                 poll();
             }
     });
+    followDocument();
     connect(&document, &StudioDocument::changed, this, [this](StateParts parts) {
         if (parts & StatePart::installation) followDocument();
     });
@@ -230,6 +124,11 @@ void CalibrationService::setActive(bool active) {
     if (!active) return liveTimer_->stop();
     if (!bench_ && isLive(state_.setup.way)) return openBench();
     look();
+}
+
+std::size_t CalibrationService::projector() const {
+    // The room may have lost projectors since one was chosen.
+    return state_.setup.installed < document_.state().installation->projectors.size() ? state_.setup.installed : 0;
 }
 
 void CalibrationService::setWay(CaptureWay way) {
@@ -264,8 +163,8 @@ void CalibrationService::beginAnew() {
     forgetPoses();
     state_.flatPose.clear();
     isFlatChosen_ = false;
-    state_.usedDate.clear();
     clearResults();
+    followDocument();
     live_ = {};
     if (active_ && isLive(state_.setup.way)) openBench();
     emit changed();
@@ -394,7 +293,7 @@ void CalibrationService::read() {
     const auto work = [setup = state_.setup, without, box = mailbox_](const Progress& progress) {
         std::vector<CapturedView> views = viewsIn(setup.folder);
         std::erase_if(views, [&](const CapturedView& view) { return std::ranges::count(without, view.name) > 0; });
-        const CaptureOrder order = parsePattern(setup.pattern, setup.projector);
+        const CaptureOrder order = orderOf(setup);
         return orFinding<ReadCapture>([&]() -> OrFinding<ReadCapture> {
             try {
                 return readPoses(
@@ -434,6 +333,7 @@ void CalibrationService::read() {
 
 void CalibrationService::openBench() {
     CalibrationSetup setup = state_.setup;
+    setup.installed = projector();
     if (setup.way == CaptureWay::camera && setup.camera.empty()) return;
     const auto room = document_.state().installation;
     if (projector() >= room->projectors.size()) {
@@ -473,6 +373,7 @@ void CalibrationService::openBench() {
 }
 
 void CalibrationService::look() {
+    isStale_ = isLooking_;
     if (!active_ || !bench_ || isLooking_ || state_.work == CalibrationState::Work::capturing) return;
     isLooking_ = true;
     const int pose = state_.counting();
@@ -523,6 +424,7 @@ void CalibrationService::takeSight(const std::shared_ptr<CaptureBench>& from, Li
     sight.words = sight.corners.empty() ? tr("No board in sight") : tr("Board in sight");
     live_ = std::move(sight);
     if (bench_->isLive() && active_) liveTimer_->start();
+    if (isStale_) look();
     emit liveChanged();
 }
 
@@ -562,7 +464,11 @@ void CalibrationService::photograph() {
             return TakenPose{poseRefusedBy(finding, brightestOf(captured.images)), std::nullopt};
         };
         if (captured.findings.refusal) return refusedBy(*captured.findings.refusal);
-        progress.report(0.75, "reading the patterns");
+        {
+            const std::scoped_lock boxLock(box->mutex);
+            box->count = 0; // all are photographed: from here on the stage is told
+        }
+        progress.report(0.75, "Reading the patterns");
         const cv::Size projector(size.x, size.y);
         const CapturedView view{captured.name, {captured.files.begin(), captured.files.end()}};
         try {
@@ -675,7 +581,7 @@ void CalibrationService::solve() {
             auto result = std::make_shared<CalibrationResult>();
             result->solved = calibrateCapture(capture, size, {}, progress.part(0.0, 0.8));
             result->residuals = residualsOf(capture.views, result->solved);
-            result->heldOutMillimetres = millimetresOf(result->solved);
+            result->heldOutMillimetres = heldOutMillimetresOf(result->solved);
             result->date = utcDate();
             result->setup = setup;
             result->plan = planOf(result->solved, flat, setup.board, *room, placement, progress.part(0.8, 0.9));
@@ -851,7 +757,7 @@ void CalibrationService::importFrom(const std::filesystem::path& file) {
             result.setup.way = CaptureWay::folder;
             result.setup.folder = file;
             result.solved = std::move(record.result);
-            result.heldOutMillimetres = millimetresOf(result.solved);
+            result.heldOutMillimetres = heldOutMillimetresOf(result.solved);
             result.date = record.source.date.empty() ? utcDate() : record.source.date;
             const std::vector<std::string> views = tableViewsOf(result.solved);
             state_.flatPose = views.empty() ? std::string() : views.front();
@@ -877,12 +783,15 @@ void CalibrationService::use() {
 /// Undo takes a calibration out of the room, redo puts it back.
 void CalibrationService::followDocument() {
     const auto& projectors = document_.state().installation->projectors;
-    std::string used;
+    std::string used, room;
+    if (projector() < projectors.size() && projectors[projector()].lens.way == Origin::Way::measured)
+        room = projectors[projector()].lens.date;
     if (projector() < projectors.size() && state_.result && projectors[projector()].lens.date == state_.result->date &&
         projectors[projector()].pose.date == state_.result->date)
         used = state_.result->date;
-    if (used == state_.usedDate) return;
+    if (used == state_.usedDate && room == state_.roomDate) return;
     state_.usedDate = used;
+    state_.roomDate = room;
     emit changed();
 }
 

@@ -53,6 +53,8 @@ public:
 
     [[nodiscard]] const CalibrationState& state() const noexcept { return state_; }
     [[nodiscard]] const LiveSight& live() const noexcept { return live_; }
+    /// Number of the room's projector that is calibrated.
+    [[nodiscard]] std::size_t projector() const;
 
     /// In sight or not: only then the camera is looked through.
     void setActive(bool active);
@@ -110,7 +112,6 @@ private:
     [[nodiscard]] RoomPlacement placement() const;
     [[nodiscard]] std::optional<BoardPoints> flatPoints() const;
     [[nodiscard]] std::optional<NextPose> wanted() const;
-    [[nodiscard]] std::size_t projector() const { return 0; }
 
     Settings& settings_;
     StudioDocument& document_;
@@ -127,6 +128,7 @@ private:
     QTimer* liveTimer_;
     bool active_ = false;
     bool isLooking_ = false;
+    bool isStale_ = false; ///< what is looked at has changed meanwhile: another look follows
     bool isFlatChosen_ = false;      ///< by the user; else it is the first pose
     bool rest_ = false;              ///< the poses that are missing follow by themselves
     int benchTry_ = 0;               ///< counts, so that a bench that comes too late is not taken

@@ -11,7 +11,8 @@ namespace lumorph::studio {
 namespace {
 
 constexpr auto kWayKey = "calibrate/way";
-constexpr auto kSavedKey = "calibrate/saved"; // of all ways
+constexpr auto kSavedKey = "calibrate/saved";         // of all ways
+constexpr auto kInstalledKey = "calibrate/installed"; // of all ways
 constexpr int kMostPoses = 30;
 
 QString keyOf(CaptureWay way, const char* what) {
@@ -53,7 +54,9 @@ CalibrationSetup keptSetup(const Settings& settings, CaptureWay way) {
     } catch (const Error&) { // a settings file that somebody edited: what is usual is in use
     }
     setup.folder = kept("folder");
+    setup.order = kept("order");
     setup.camera = kept("camera");
+    setup.installed = settings.value(kInstalledKey, 0).toUInt();
     const std::string saved = settings.value(kSavedKey).toString().toStdString();
     setup.saved = saved.empty() ? usualSaved() : std::filesystem::path(saved);
     setup.poses = std::clamp(settings.value(keyOf(way, "poses"), setup.poses).toInt(), 3, kMostPoses);
@@ -69,9 +72,16 @@ void keepSetup(Settings& settings, const CalibrationSetup& setup) {
     keep("projector", std::to_string(setup.projector.width) + "x" + std::to_string(setup.projector.height));
     keep("pattern", setup.pattern);
     keep("folder", setup.folder.string());
+    keep("order", setup.order.string());
     keep("camera", setup.camera);
+    settings.setValue(kInstalledKey, static_cast<uint>(setup.installed));
     settings.setValue(keyOf(setup.way, "poses"), setup.poses);
     settings.setValue(kSavedKey, QString::fromStdString(setup.saved.string()));
+}
+
+CaptureOrder orderOf(const CalibrationSetup& setup) {
+    return setup.order.empty() ? parsePattern(setup.pattern, setup.projector)
+                               : readCaptureOrder(setup.order, setup.projector);
 }
 
 std::string boardText(const CalibrationBoard& board) {

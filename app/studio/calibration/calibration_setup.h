@@ -34,8 +34,10 @@ struct CalibrationSetup {
     CalibrationBoard board{CalibrationBoard::Kind::chess, 9, 7, 25.0, 0.0};
     cv::Size projector{1280, 800}; ///< of a folder; otherwise that of the installed projector
     std::string pattern = "graycode";
+    std::filesystem::path order;  ///< of a folder: what each image shows, in place of `pattern`; empty: none
     std::filesystem::path folder; ///< one folder a pose; empty: not chosen yet
     std::string camera;           ///< "/dev/video0"; empty: not chosen yet
+    std::size_t installed = 0;    ///< number of the room's projector that is calibrated
     int poses = 6;                ///< that are wanted
     std::filesystem::path saved;  ///< each calibration's poses are saved in a dated folder in here
     std::optional<Cause> fault;   ///< what goes wrong in the lab on purpose
@@ -50,6 +52,8 @@ struct CalibrationSetup {
 [[nodiscard]] CaptureWay keptWay(const Settings& settings);
 void keepSetup(Settings& settings, const CalibrationSetup& setup);
 
+/// What the images of a pose show. Throws InvalidInput; DataError where the order file cannot be used.
+[[nodiscard]] CaptureOrder orderOf(const CalibrationSetup& setup);
 /// "chess:9x7:25", as `parseCalibrationBoard` reads it.
 [[nodiscard]] std::string boardText(const CalibrationBoard& board);
 /// "Chessboard, 9 × 7 inner corners, squares of 25 mm".

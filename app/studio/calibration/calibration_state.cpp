@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include <QDateTime>
+#include <QLocale>
 #include <QObject>
 
 namespace lumorph::studio {
@@ -121,8 +123,17 @@ CalibrationStep solvedStep(const CalibrationState& state, const QString& id, con
     return step;
 }
 
+QString dayWords(const std::string& date) {
+    const QDateTime when = QDateTime::fromString(QString::fromStdString(date), Qt::ISODate).toLocalTime();
+    return when.isValid() ? QLocale().toString(when.date(), QLocale::ShortFormat) : QString::fromStdString(date);
+}
+
 CalibrationStep roomStep(const CalibrationState& state) {
-    CalibrationStep step{"room", tr("In the room"), How::notBegun, tr("The scene uses what was there before")};
+    CalibrationStep step{"room", tr("In the room"), How::notBegun, tr("The scene uses an assumed projector")};
+    if (!state.roomDate.empty()) {
+        step.how = How::good;
+        step.words = tr("In use: measured %1").arg(dayWords(state.roomDate));
+    }
     if (!state.isSolved()) return step;
     step.how = state.isUsed() ? How::good : How::needsYou;
     step.words = state.isUsed() ? tr("The scene uses this calibration") : tr("Not in use yet");
@@ -198,8 +209,9 @@ QString nextPoseWords(const CalibrationState& state) {
     const auto& next = state.result->next;
     if (!next || state.setup.way == CaptureWay::folder) return {};
     if (!next->worthIt) return tr("Another pose is no longer worth it.");
-    return tr("Another pose, as outlined in the live picture, would lower the mean error from %1 to %2 mm.")
-        .arg(number(next->meanBefore, 2), number(next->meanAfter, 2));
+    return tr("Another pose, as outlined in the live picture, would lower the uncertainty over the whole room of the "
+              "poses by %1 %.")
+        .arg(number(100.0 * (1.0 - next->meanAfter / next->meanBefore), 0));
 }
 
 NextStep solvedNext(const CalibrationState& state) {
@@ -241,7 +253,7 @@ NextStep solvedNext(const CalibrationState& state) {
 
 QString placeOf(const Finding& finding) {
     const QString view = QString::fromStdString(finding.view);
-    const QString file = QString::fromStdString(finding.file);
+    QString file = QString::fromStdString(finding.file);
     if (view.isEmpty()) return file;
     return file.isEmpty() ? view : view + ", " + file;
 }
@@ -402,12 +414,21 @@ std::optional<double> CalibrationResult::millimetres() const {
     return std::max(plan->worst, heldOutMillimetres.value_or(0.0));
 }
 
+namespace {
+
+/// The pattern, or the order file in its place.
+std::string patternOf(const CalibrationSetup& setup) {
+    return setup.order.empty() ? setup.pattern : setup.order.string();
+}
+
+} // namespace
+
 CalibrationRecord recordOf(const CalibrationResult& result) {
     CalibrationRecord record;
     record.result = result.solved;
     record.source.date = result.date;
     record.source.board = boardText(result.setup.board);
-    record.source.pattern = result.setup.pattern;
+    record.source.pattern = patternOf(result.setup);
     record.source.inputs = {result.setup.way == CaptureWay::folder ? result.setup.folder.string()
                                                                    : wayWords(result.setup).toStdString()};
     return record;
@@ -433,7 +454,7 @@ InstallationVersion versionOf(const CalibrationState& state, const Installation&
     add("Camera focal", result.solved.camera.lens[kFocalLength], "px");
     add("Poses", static_cast<double>(result.solved.views.size()), "");
     version.inputs = {wayWords(result.setup).toStdString(), boardWords(result.setup.board).toStdString(),
-                      result.setup.pattern};
+                      patternOf(result.setup)};
     if (!state.savedIn.empty()) version.inputs.push_back("poses in " + state.savedIn.string());
     version.result = calibrationText(recordOf(result));
     version.installation = installation;

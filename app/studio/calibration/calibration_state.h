@@ -77,6 +77,7 @@ struct CalibrationState {
     std::filesystem::path savedIn; ///< folder of the images of the poses; empty while there are none
     int unsaved = 0;               ///< poses whose images are only in memory
     std::string usedDate;          ///< of the result that the room uses, as far as it came from here
+    std::string roomDate;          ///< of the measurement that the room's projector has now; empty: none
     [[nodiscard]] int counting() const;
     [[nodiscard]] bool isSolved() const noexcept { return result != nullptr && !refusal; }
     [[nodiscard]] bool isUsed() const { return result && usedDate == result->date; }

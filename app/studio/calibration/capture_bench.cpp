@@ -56,8 +56,8 @@ private:
 class LabBench final : public CaptureBench {
 public:
     LabBench(const CalibrationSetup& setup, const Installation& room)
-        : setup_(setup), truth_(labTruth(room)), lab_(truth_, setup.board, {}, kLabSeed), camera_(lab_, clock_),
-          display_(openLabDisplay(lab_)), poses_(lab_.proposePoses(setup.poses + kLabSpare)) {
+        : setup_(setup), truth_(labTruth(room, setup.installed)), lab_(truth_, setup.board, {}, kLabSeed),
+          camera_(lab_, clock_), display_(openLabDisplay(lab_)), poses_(lab_.proposePoses(setup.poses + kLabSpare)) {
         if (!setup.fault) return;
         LabCapture capture;
         capture.room = truth_;
@@ -214,10 +214,15 @@ private:
 
 } // namespace
 
-Installation labTruth(const Installation& room) {
+Installation labTruth(const Installation& room, std::size_t number) {
     Installation truth = defaultInstallation();
     InstalledProjector& projector = truth.projectors.front();
-    if (!room.projectors.empty()) projector.camera = withSize(projector.camera, room.projectors.front().camera.size);
+    if (number < room.projectors.size())
+        projector.camera = withSize(projector.camera, room.projectors[number].camera.size);
+    // Each further projector stands a quarter of the way round the table from the one before it.
+    const glm::dmat4 aside =
+        glm::rotate(glm::dmat4(1.0), 90.0 * kRadians * static_cast<double>(number), glm::dvec3(0.0, 1.0, 0.0));
+    projector.camera.cameraFromWorld *= aside;
     const glm::dvec3 position = positionOf(projector.camera) + glm::dvec3(0.03, -0.04, 0.02);
     glm::dmat4 turned = projector.camera.cameraFromWorld;
     turned = glm::rotate(glm::dmat4(1.0), 0.4 * kRadians, glm::dvec3(0.3, 1.0, 0.4)) * turned;

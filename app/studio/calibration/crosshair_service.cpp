@@ -157,6 +157,25 @@ void CrosshairService::setLab(bool isLab) {
     emit changed();
 }
 
+void CrosshairService::setProjector(std::size_t projector) {
+    if (projector == chosen_) return;
+    if (shown_) show_(chosen_, {});
+    shown_ = false;
+    chosen_ = projector;
+    const bool hadBegun = state_.session.has_value();
+    const bool isLab = state_.isLab;
+    state_ = {};
+    state_.isLab = isLab;
+    resultDate_.clear();
+    if (hadBegun) return begin();
+    emit changed();
+}
+
+const InstalledProjector* CrosshairService::projector() const {
+    const auto& projectors = document_.state().installation->projectors;
+    return chosen_ < projectors.size() ? &projectors[chosen_] : nullptr;
+}
+
 void CrosshairService::begin() {
     const bool isLab = state_.isLab;
     state_ = {};
@@ -167,8 +186,8 @@ void CrosshairService::begin() {
     try {
         if (!rig_) throw InvalidInput("device", "none is open", "open a device, or a project with one");
         const Installation& room = *document_.state().installation;
-        if (room.projectors.empty()) throw InvalidInput("projector", "the room has none", "add one in Scene");
-        const CalibratedCamera& believed = room.projectors.front().camera;
+        if (projector() == nullptr) throw InvalidInput("projector", "the room has none", "add one in Scene");
+        const CalibratedCamera& believed = projector()->camera;
         const glm::dmat4 deviceFromWorld = glm::inverse(glm::dmat4(room.worldFromDevice));
         const glm::dvec3 at(deviceFromWorld * glm::dvec4(positionOf(believed), 1.0));
         const DevicePoints proposal = proposeDevicePoints(*rig_, {at.x, at.y, at.z}, kMostPoints);
@@ -292,7 +311,7 @@ void CrosshairService::use() {
         version.figures.push_back({"Points", static_cast<double>(points), ""});
         for (const Crosshair& crosshair : state_.session->crosshairs())
             if (crosshair.aimed) version.inputs.push_back(crosshair.name);
-        version.installation = withCrosshairs(*document_.state().installation, *result, points, 0, version.date);
+        version.installation = withCrosshairs(*document_.state().installation, *result, points, chosen_, version.date);
         if (take_(version)) {
             state_.trouble.clear();
             resultDate_ = version.date;
@@ -307,17 +326,16 @@ void CrosshairService::use() {
 
 /// Undo takes a calibration out of the room, redo puts it back.
 void CrosshairService::followDocument() {
-    const auto& projectors = document_.state().installation->projectors;
     std::string used;
-    if (!resultDate_.empty() && !projectors.empty() && projectors.front().pose.date == resultDate_) used = resultDate_;
+    if (!resultDate_.empty() && projector() != nullptr && projector()->pose.date == resultDate_) used = resultDate_;
     if (used == state_.usedDate) return;
     state_.usedDate = used;
     emit changed();
 }
 
 QImage CrosshairService::picture() const {
-    if (!state_.session) return {};
-    const glm::ivec2 size = document_.state().installation->projectors.front().camera.size;
+    if (!state_.session || projector() == nullptr) return {};
+    const glm::ivec2 size = projector()->camera.size;
     QImage picture(size.x, size.y, QImage::Format_RGB32);
     picture.fill(Qt::black);
     const cv::Point2d pixel = state_.session->crosshairs()[state_.current].pixel;
@@ -335,7 +353,7 @@ void CrosshairService::showPicture() {
     if (!wanted && !shown_) return;
     shown_ = wanted;
     try {
-        show_(wanted ? picture() : QImage());
+        show_(chosen_, wanted ? picture() : QImage());
         if (wanted) state_.trouble.clear();
     } catch (const std::exception& error) {
         const Notice notice = noticeOf(error);
@@ -354,9 +372,9 @@ QPointF CrosshairService::target() const {
 /// Triangles from the farthest to the nearest.
 void CrosshairService::renderSight() {
     sight_ = {};
-    if (!state_.session) return;
+    if (!state_.session || projector() == nullptr) return;
     const Installation& room = *document_.state().installation;
-    sightCamera_ = (state_.isLab ? labTruth(room) : room).projectors.front().camera;
+    sightCamera_ = state_.isLab ? labTruth(room, chosen_).projectors.front().camera : projector()->camera;
     const CalibratedCamera& projector = sightCamera_;
     const TriangleMesh mesh = deformed(*rig_, state_.strokes);
     struct Facet {

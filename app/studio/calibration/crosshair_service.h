@@ -45,13 +45,14 @@ struct CrosshairNext {
 /// How it stands about one point, in a few words.
 [[nodiscard]] QString wordsOfPoint(const CrosshairState& state, std::size_t index);
 
-/// The first projector, calibrated without a camera: a person moves a crosshair that it shows onto named points of the
-/// device. Without widgets; lives in the window's thread.
+/// One projector of the room, calibrated without a camera: a person moves a crosshair that it shows onto named points
+/// of the device. Without widgets; lives in the window's thread.
 class CrosshairService : public QObject {
     Q_OBJECT
 public:
-    /// Shows a picture on the projector; a null one brings the scene back. Throws DeviceError with what to do.
-    using Shower = std::function<void(const QImage& picture)>;
+    /// Shows a picture on the room's projector of this number; a null one brings the scene back. Throws DeviceError
+    /// with what to do.
+    using Shower = std::function<void(std::size_t projector, const QImage& picture)>;
     /// Puts the installation of a version into the document and keeps it; false where that failed.
     using VersionTaker = std::function<bool(const InstallationVersion& version)>;
 
@@ -62,6 +63,8 @@ public:
     /// In sight or not: only then the projector shows the crosshair.
     void setActive(bool active);
     void setLab(bool isLab);
+    /// Number of the projector in the room; what was aimed with another one is forgotten.
+    void setProjector(std::size_t projector);
     /// Proposes points of the device that is open, and forgets what was aimed.
     void begin();
     void doNext();
@@ -92,6 +95,8 @@ private:
     void showPicture();
     void renderSight();
     void followDocument();
+    /// Null where the room has none.
+    [[nodiscard]] const InstalledProjector* projector() const;
 
     StudioDocument& document_;
     Shower show_;
@@ -102,6 +107,7 @@ private:
     QImage sight_;
     CalibratedCamera sightCamera_;
     std::string resultDate_;
+    std::size_t chosen_ = 0;
     bool active_ = false;
     bool shown_ = false; ///< the projector shows the crosshair
 };

@@ -37,7 +37,7 @@ fs::path makeDatedFolder(const fs::path& parent) {
     if (failed) throwWriteError(parent, failed.value());
     const std::string date = dateName();
     for (int number = 1;; ++number) {
-        const fs::path folder = parent / (number == 1 ? date : date + "-" + std::to_string(number));
+        fs::path folder = parent / (number == 1 ? date : date + "-" + std::to_string(number));
         if (fs::create_directory(folder, failed)) return folder;
         if (failed) throwWriteError(folder, failed.value());
     }

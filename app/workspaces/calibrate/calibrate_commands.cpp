@@ -46,16 +46,22 @@ void askReport(const CalibrateParts& parts) {
             [parts](const QString& file) { parts.service.reportTo(file.toStdString(), mapOf(parts)); });
 }
 
-void askImport(const CalibrateParts& parts) {
-    auto* dialog = new QFileDialog(QApplication::activeWindow(), "Import a calibration");
-    dialog->setObjectName("calibrate.import.file");
+void askToRead(const QString& name, const QString& title, const QString& filter,
+               const std::function<void(const std::filesystem::path&)>& chosen) {
+    auto* dialog = new QFileDialog(QApplication::activeWindow(), title);
+    dialog->setObjectName(name);
     dialog->setOption(QFileDialog::DontUseNativeDialog);
     dialog->setAttribute(Qt::WA_DeleteOnClose);
     dialog->setFileMode(QFileDialog::ExistingFile);
-    dialog->setNameFilter("Calibrations (*.json *.yaml *.yml)");
+    dialog->setNameFilter(filter);
     QObject::connect(dialog, &QFileDialog::fileSelected, dialog,
-                     [parts](const QString& file) { parts.service.importFrom(file.toStdString()); });
+                     [chosen](const QString& file) { chosen(file.toStdString()); });
     dialog->open();
+}
+
+void askImport(const CalibrateParts& parts) {
+    askToRead("calibrate.import.file", "Import a calibration", "Calibrations (*.json *.yaml *.yml)",
+              [parts](const std::filesystem::path& file) { parts.service.importFrom(file); });
 }
 
 } // namespace
@@ -75,6 +81,15 @@ void askForImages(const CalibrateParts& parts) {
         "Choose");
 }
 
+void askForOrder(const CalibrateParts& parts) {
+    askToRead("calibrate.order.file", "What each image shows: one line an image", "Order files (*.txt);;All files (*)",
+              [parts](const std::filesystem::path& file) {
+                  CalibrationSetup setup = parts.service.state().setup;
+                  setup.order = file;
+                  parts.service.setSetup(setup);
+              });
+}
+
 void askForSaved(const CalibrateParts& parts) {
     askFolder(
         QApplication::activeWindow(), parts.studio.settings, "calibrate.saved",
@@ -85,6 +100,11 @@ void askForSaved(const CalibrateParts& parts) {
             parts.service.setSetup(setup);
         },
         "Choose");
+}
+
+bool offersAnother(const CalibrationState& state) {
+    return isLive(state.setup.way) && state.isSolved() && !state.isImported &&
+           state.work == CalibrationState::Work::none;
 }
 
 void addCalibrateCommands(const CalibrateParts& parts) {
@@ -101,6 +121,9 @@ void addCalibrateCommands(const CalibrateParts& parts) {
     QAction* rest =
         addCalibrateAction(parts, "calibrate.rest", "Photograph all poses", "record",
                            "The lab lays the board for you, pose after pose", [&service] { service.photographRest(); });
+    QAction* another = addCalibrateAction(parts, "calibrate.another", "Photograph another pose", "record",
+                                          "As the outline in the live picture shows; it is solved again with all",
+                                          [&service] { service.photograph(); });
     QAction* anew =
         addCalibrateAction(parts, "calibrate.anew", "Begin the calibration anew", "reset",
                            "Forgets poses and result; what the room uses stays", [&service] { service.beginAnew(); });
@@ -137,6 +160,7 @@ void addCalibrateCommands(const CalibrateParts& parts) {
         const bool works = state.work != CalibrationState::Work::none;
         next->setEnabled(!step.button.isEmpty());
         rest->setEnabled(state.setup.way == CaptureWay::lab && !works && state.counting() < state.setup.poses);
+        another->setEnabled(offersAnother(state));
         anew->setEnabled(!state.poses.empty() || state.refusal || !state.trouble.isEmpty());
         use->setEnabled(state.isSolved() && !state.isUsed() && !works);
     };

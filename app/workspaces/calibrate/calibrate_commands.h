@@ -6,12 +6,17 @@
 
 namespace lumorph::studio {
 
+/// Whether there is a result that one more pose could make better.
+[[nodiscard]] bool offersAnother(const CalibrationState& state);
+
 void addCalibrateCommands(const CalibrateParts& parts);
 
 /// Calibrates from the images in this folder.
 void useFolder(CalibrationService& service, Settings& settings, const std::filesystem::path& folder);
 /// Asks for it.
 void askForImages(const CalibrateParts& parts);
+/// Asks for a file that says what each image of a folder shows.
+void askForOrder(const CalibrateParts& parts);
 /// Asks where poses are saved.
 void askForSaved(const CalibrateParts& parts);
 

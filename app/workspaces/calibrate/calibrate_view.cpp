@@ -103,6 +103,8 @@ private:
         row->addWidget(poseName_);
         rest_ = makeCommandButton(parts_.studio.commands.find("calibrate.rest"), "calibrate.rest", bar);
         row->addWidget(rest_);
+        another_ = makeCommandButton(parts_.studio.commands.find("calibrate.another"), "calibrate.another", bar);
+        row->addWidget(another_);
         return bar;
     }
 
@@ -113,6 +115,7 @@ private:
         progress_->setValue(static_cast<int>(1000.0 * state.fraction));
         rest_->setVisible(state.setup.way == CaptureWay::lab && state.counting() < state.setup.poses &&
                           state.work == CalibrationState::Work::none && !state.result);
+        another_->setVisible(offersAnother(state));
         // A pose that has just come in, or the one that was refused, is what one wants to see.
         if (const auto* wanted = newlySeen(state)) parts_.selection.set(Show::white, wanted->name);
         count_ = state.poses.size();
@@ -247,6 +250,7 @@ private:
     Segments* segments_ = nullptr;
     QLabel* poseName_ = nullptr;
     QPushButton* rest_ = nullptr;
+    QPushButton* another_ = nullptr;
     QLabel* legend_ = nullptr;
     std::size_t count_ = 0;
     std::string refused_;

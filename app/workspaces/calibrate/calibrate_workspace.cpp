@@ -39,17 +39,18 @@ CalibrationService::VersionTaker versionTaker(Studio& studio) {
 }
 
 CrosshairService::Shower crosshairShower(Studio& studio) {
-    return [&studio](const QImage& picture) {
-        if (!picture.isNull()) openOutput(studio.outputs, 0);
-        ProjectorWindow* window = studio.outputs.window(0);
+    return [&studio](std::size_t projector, const QImage& picture) {
+        const std::string name = "projector " + std::to_string(projector + 1);
+        if (!picture.isNull()) openOutput(studio.outputs, projector);
+        ProjectorWindow* window = studio.outputs.window(projector);
         if (window == nullptr) {
             if (picture.isNull()) return;
-            throw DeviceError("projector 1", "its picture is not shown", "open it on the projector's screen");
+            throw DeviceError(name, "its picture is not shown", "open it on the projector's screen");
         }
         window->setCalibrationPicture(picture, 0);
         if (picture.isNull()) return;
         if (const QString problem = window->calibrationProblem(); !problem.isEmpty())
-            throw DeviceError("projector 1", "cannot show the crosshair pixel by pixel", problem.toStdString());
+            throw DeviceError(name, "cannot show the crosshair pixel by pixel", problem.toStdString());
     };
 }
 
@@ -89,6 +90,7 @@ std::vector<WorkspaceDock> CalibrateWorkspace::makeDocks() {
 void CalibrateWorkspace::setActive(bool active) {
     if (active != active_) service_.setActive(active);
     active_ = active;
+    crosshairs_.setProjector(service_.projector());
     crosshairs_.setActive(active && service_.state().setup.way == CaptureWay::crosshairs);
 }
 

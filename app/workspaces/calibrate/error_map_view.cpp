@@ -35,6 +35,28 @@ double scaleOf(const ErrorPlan& plan) {
     return 100.0;
 }
 
+/// World metres as columns and rows of the plan.
+QPointF cellOf(const ErrorPlan& plan, const QPointF& world) {
+    return {(world.x() / plan.size.x + 0.5) * ErrorPlan::kColumns, (world.y() / plan.size.y + 0.5) * ErrorPlan::kRows};
+}
+
+/// Where light falls on one of the planes, and the device, with a little around: a plan is mostly dark table.
+QRect partOf(const ErrorPlan& plan, const QPolygonF& device) {
+    constexpr int kAround = 2;
+    const QRect whole(0, 0, ErrorPlan::kColumns, ErrorPlan::kRows);
+    QRect part;
+    for (int row = 0; row < whole.height(); ++row)
+        for (int column = 0; column < whole.width(); ++column) {
+            const auto index = static_cast<std::size_t>(row * ErrorPlan::kColumns + column);
+            if (std::isfinite(plan.table[index]) || std::isfinite(plan.device[index])) part |= QRect(column, row, 1, 1);
+        }
+    if (part.isEmpty()) return whole;
+    QPolygonF outline;
+    for (const QPointF& corner : device) outline << cellOf(plan, corner);
+    part |= outline.boundingRect().toAlignedRect();
+    return part.adjusted(-kAround, -kAround, kAround, kAround) & whole;
+}
+
 } // namespace
 
 ErrorMapView::ErrorMapView(QWidget* parent) : QWidget(parent) {
@@ -47,11 +69,13 @@ ErrorMapView::ErrorMapView(QWidget* parent) : QWidget(parent) {
 void ErrorMapView::show(std::optional<ErrorPlan> plan, QPolygonF device) {
     plan_ = std::move(plan);
     device_ = std::move(device);
+    if (plan_) part_ = partOf(*plan_, device_);
     update();
 }
 
 QRectF ErrorMapView::panelOf(int plane) const {
-    const QSizeF table(plan_->size.x, plan_->size.y);
+    const QSizeF table(part_.width() * plan_->size.x / ErrorPlan::kColumns,
+                       part_.height() * plan_->size.y / ErrorPlan::kRows);
     const bool wide = width() > height();
     const QSizeF room = wide ? QSizeF((width() - kGap) / 2.0, height() - kTitleHeight - kScaleHeight)
                              : QSizeF(width(), (height() - kScaleHeight - kGap) / 2.0 - kTitleHeight);
@@ -89,10 +113,11 @@ void ErrorMapView::paintEvent(QPaintEvent* /*event*/) {
                 const double error = errors[static_cast<std::size_t>(row * ErrorPlan::kColumns + column)];
                 picture.setPixelColor(column, row, std::isfinite(error) ? errorColor(error / most) : Qt::transparent);
             }
-        painter.drawImage(panel, picture);
+        painter.drawImage(panel, picture, part_);
         const auto on = [&](const QPointF& world) {
-            return QPointF(panel.left() + (world.x() / plan_->size.x + 0.5) * panel.width(),
-                           panel.top() + (world.y() / plan_->size.y + 0.5) * panel.height());
+            const QPointF cell = cellOf(*plan_, world) - part_.topLeft();
+            return QPointF(panel.left() + cell.x() / part_.width() * panel.width(),
+                           panel.top() + cell.y() / part_.height() * panel.height());
         };
         QPolygonF outline;
         for (const QPointF& corner : device_) outline << on(corner);
@@ -121,10 +146,10 @@ void ErrorMapView::mouseMoveEvent(QMouseEvent* event) {
         const QRectF panel = panelOf(plane);
         if (!panel.contains(event->position())) continue;
         const QPointF share = (event->position() - panel.topLeft());
-        const int column =
-            std::clamp(static_cast<int>(share.x() / panel.width() * ErrorPlan::kColumns), 0, ErrorPlan::kColumns - 1);
-        const int row =
-            std::clamp(static_cast<int>(share.y() / panel.height() * ErrorPlan::kRows), 0, ErrorPlan::kRows - 1);
+        const int column = std::clamp(part_.left() + static_cast<int>(share.x() / panel.width() * part_.width()), 0,
+                                      ErrorPlan::kColumns - 1);
+        const int row = std::clamp(part_.top() + static_cast<int>(share.y() / panel.height() * part_.height()), 0,
+                                   ErrorPlan::kRows - 1);
         const double error =
             (plane == 0 ? plan_->table : plan_->device)[static_cast<std::size_t>(row * ErrorPlan::kColumns + column)];
         QToolTip::showText(event->globalPosition().toPoint(),

@@ -29,6 +29,7 @@ private:
 
     std::optional<ErrorPlan> plan_;
     QPolygonF device_;
+    QRect part_; ///< of the plan that is drawn, its columns and rows: where light falls, and the device
 };
 
 /// Around the rig at rest, in the room: world metres, x and z; empty without a rig.

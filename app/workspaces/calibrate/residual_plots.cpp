@@ -30,7 +30,7 @@ QColor faint(QColor color, int alpha) {
 std::array<QPoint, std::size(kKinds)> legendOf(const QFontMetrics& metrics, int width) {
     std::array<QPoint, std::size(kKinds)> places;
     QPoint at(4, 6);
-    for (std::size_t i = 0; i < places.size(); ++i) {
+    for (std::size_t i = 0; i < std::size(kKinds); ++i) {
         const int word = kLegendSquare + 4 + metrics.horizontalAdvance(kKinds[i]);
         if (at.x() > 4 && at.x() + word > width) at = {4, at.y() + kLegendLine};
         places[i] = at;
@@ -76,7 +76,7 @@ void PoseBars::paintEvent(QPaintEvent* /*event*/) {
     const QColor kinds[] = {colors.levelLow, colors.accent, colors.warning};
     const auto legend = legendOf(fontMetrics(), width());
     painter.setPen(colors.textMuted);
-    for (std::size_t i = 0; i < legend.size(); ++i) {
+    for (std::size_t i = 0; i < std::size(kKinds); ++i) {
         painter.fillRect(QRect(legend[i], QSize(kLegendSquare, kLegendSquare)), kinds[i]);
         painter.drawText(legend[i] + QPoint(kLegendSquare + 4, kLegendSquare), kKinds[i]);
     }

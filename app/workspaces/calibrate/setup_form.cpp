@@ -26,6 +26,8 @@ constexpr PatternChoice kPatterns[] = {
     {"Gray code (robust)", "graycode", "Stripes and their inverses: works on any board, with any camera"},
     {"Phase shift (fewer images)", "phase:16x3+1x3", "Waves of grey: fewer images, but gamma must be right"}};
 
+constexpr auto kOrderFile = "order"; // data of the choice that opens one
+
 QWidget* pairOf(QWidget* first, const QString& between, QWidget* second, QWidget* parent) {
     auto* pair = new QWidget(parent);
     auto* row = new QHBoxLayout(pair);
@@ -87,6 +89,19 @@ void SetupForm::addSource(QVBoxLayout& column) {
     wayWords_->setProperty("look", "muted");
     wayWords_->setWordWrap(true);
     column.addWidget(wayWords_);
+    installed_ = new QComboBox(this);
+    installed_->setObjectName("calibrate.projector");
+    installed_->setToolTip("Which projector of the room is calibrated; each for itself, one after the other");
+    installed_->setSizeAdjustPolicy(QComboBox::AdjustToMinimumContentsLengthWithIcon);
+    installed_->setMinimumContentsLength(8);
+    installedRow_ = makeRow("Pro&jector", installed_, this);
+    column.addWidget(installedRow_);
+    connect(installed_, &QComboBox::activated, this, [this](int number) {
+        edit([number](CalibrationSetup& setup) { setup.installed = static_cast<std::size_t>(number); });
+    });
+    connect(&parts_.studio.document, &StudioDocument::changed, this, [this](StateParts changed) {
+        if (changed & StatePart::installation) listProjectors();
+    });
     folder_ = new QPushButton(this);
     folder_->setObjectName("calibrate.folder");
     folder_->setToolTip("In it one folder for each pose, each with the images of all patterns in their order");
@@ -190,7 +205,15 @@ void SetupForm::addPatterns(QVBoxLayout& column) {
     }
     column.addWidget(makeRow("Pa&tterns", pattern_, this));
     connect(pattern_, &QComboBox::activated, this, [this] {
-        edit([this](CalibrationSetup& setup) { setup.pattern = pattern_->currentData().toString().toStdString(); });
+        const QString chosen = pattern_->currentData().toString();
+        if (chosen == kOrderFile) {
+            askForOrder(parts_);
+            return refresh(); // until a file is chosen, what was chosen before holds
+        }
+        edit([&chosen](CalibrationSetup& setup) {
+            setup.pattern = chosen.toStdString();
+            setup.order.clear();
+        });
     });
     poses_ = addNumber("calibrate.poses", Quantity::level, kFewestPoses, 30, 6);
     poses_->setToolTip("How many poses of the board are wanted; six are good");
@@ -199,6 +222,33 @@ void SetupForm::addPatterns(QVBoxLayout& column) {
     connect(poses_, &ValueField::committed, this, [this](double value) {
         edit([&](CalibrationSetup& setup) { setup.poses = static_cast<int>(std::lround(value)); });
     });
+}
+
+/// Of the room; one that is alone needs no choice.
+void SetupForm::listProjectors() {
+    const auto& projectors = parts_.studio.document.state().installation->projectors;
+    const QSignalBlocker quiet(installed_);
+    installed_->clear();
+    for (std::size_t i = 0; i < projectors.size(); ++i)
+        installed_->addItem(QString("%1  %2").arg(i + 1).arg(QString::fromStdString(projectors[i].name)));
+    installed_->setCurrentIndex(static_cast<int>(parts_.service.projector()));
+    installedRow_->setVisible(projectors.size() > 1);
+}
+
+/// Where images were taken before, a file can say what each shows.
+void SetupForm::listPatterns() {
+    const CalibrationSetup& setup = parts_.service.state().setup;
+    const int own = static_cast<int>(std::size(kPatterns));
+    const QSignalBlocker quiet(pattern_);
+    while (pattern_->count() > own) pattern_->removeItem(own);
+    if (setup.way == CaptureWay::folder) {
+        pattern_->addItem(setup.order.empty() ? "From an order file..."
+                                              : "Order: " + QString::fromStdString(setup.order.filename().string()),
+                          QString(kOrderFile));
+        pattern_->setItemData(own, "A text file with one line for each image: what it shows", Qt::ToolTipRole);
+    }
+    const int chosen = setup.order.empty() ? pattern_->findData(QString::fromStdString(setup.pattern)) : own;
+    pattern_->setCurrentIndex(std::max(0, chosen));
 }
 
 /// Those that the machine has now.
@@ -257,7 +307,8 @@ void SetupForm::refresh() {
     projectorRow_->setVisible(folder);
     width_->setValue(setup.projector.width);
     height_->setValue(setup.projector.height);
-    pattern_->setCurrentIndex(std::max(0, pattern_->findData(QString::fromStdString(setup.pattern))));
+    if (!pattern_->view()->isVisible()) listPatterns();
+    if (!installed_->view()->isVisible()) listProjectors();
     posesRow_->setVisible(!folder);
     poses_->setValue(setup.poses);
     setEnabled(state.work == CalibrationState::Work::none);

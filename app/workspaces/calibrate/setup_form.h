@@ -11,6 +11,8 @@
 #include "app/workspaces/calibrate/calibrate_docks.h"
 #include "app/workspaces/scene/segments.h"
 
+class QVBoxLayout;
+
 namespace lumorph::studio {
 
 /// How it is calibrated: where pictures come from, the board in words and as a drawing, the projector and its patterns.
@@ -20,10 +22,12 @@ public:
     explicit SetupForm(const CalibrateParts& parts, QWidget* parent = nullptr);
 
 private:
-    void addSource(class QVBoxLayout& column);
+    void addSource(QVBoxLayout& column);
     void addBoard(QVBoxLayout& column);
     void addPatterns(QVBoxLayout& column);
     ValueField* addNumber(const QString& name, Quantity quantity, double low, double high, double usual);
+    void listProjectors();
+    void listPatterns();
     void listCameras();
     void refresh();
     void edit(const std::function<void(CalibrationSetup&)>& change);
@@ -31,7 +35,9 @@ private:
     CalibrateParts parts_;
     Segments* way_ = nullptr;
     QLabel* wayWords_ = nullptr;
-    QWidget* rest_ = nullptr; ///< what a board is calibrated with
+    QWidget* installedRow_ = nullptr;
+    QComboBox* installed_ = nullptr; ///< the room's projectors
+    QWidget* rest_ = nullptr;        ///< what a board is calibrated with
     QPushButton* folder_ = nullptr;
     QWidget* cameraRow_ = nullptr;
     QComboBox* camera_ = nullptr;

@@ -96,7 +96,7 @@ QString poseDetail(const CalibrationPose& pose, const CalibrationState& state) {
             if (view.name == pose.name && view.heldOut)
                 return QString("held out: %1 px%2")
                     .arg(*view.heldOut, 0, 'f', 2)
-                    .arg(view.name == state.result->solved.worstView ? ", the worst" : "");
+                    .arg(view.name == state.result->solved.worstView ? "; fits worst" : "");
     return pose.seen ? QString("%1 points of the board").arg(pose.seen->corners.seen.size()) : QString();
 }
 

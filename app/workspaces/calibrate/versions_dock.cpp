@@ -25,6 +25,7 @@ QString dateWords(const std::string& date) {
 }
 
 QString figureWords(double value, const std::string& unit) {
+    if (unit.empty() && value == std::round(value)) return QString::number(value, 'f', 0); // a count
     const QString number = QString::number(value, 'f', std::abs(value) >= 100.0 ? 1 : std::abs(value) >= 10.0 ? 2 : 3);
     return unit.empty() ? number : number + ' ' + QString::fromStdString(unit);
 }
