@@ -3,6 +3,7 @@
 #include <memory>
 
 #include <QAction>
+#include <QComboBox>
 #include <QJsonArray>
 #include <QJsonDocument>
 #include <QJsonObject>
@@ -193,6 +194,24 @@ TEST_F(Calibrate, AFolderWithAFaultIsRefusedByCausePlaceAndRemedy) {
     ASSERT_TRUE(w.offers("Use this calibration")) << w.story();
     EXPECT_NE(w.studio.findNow<QLabel>("calibrate.headline"), nullptr);
     w.studio.screenshot("calibrate-mended");
+
+    // What the images show may be told by a file, which may be wrong.
+    const fs::path order = w.folder / "order.txt";
+    std::ofstream(order) << "white\ncolumn bit 99\n";
+    auto* patterns = w.studio.find<QComboBox>("calibrate.pattern");
+    ASSERT_EQ(patterns->count(), 3);
+    patterns->setCurrentIndex(2);
+    emit patterns->activated(2);
+    answerFileDialog(w.studio, "calibrate.order.file", order, "Open");
+    ASSERT_TRUE(w.offers("Read the images")) << w.story();
+    EXPECT_EQ(patterns->currentText(), "Order: order.txt");
+    w.next();
+    ASSERT_TRUE(eventually([&] { return w.title() == "That did not work"; }, 20s)) << w.story();
+    EXPECT_TRUE(w.studio.text("calibrate.card.text").contains("line 2")) << w.story();
+    patterns->setCurrentIndex(0);
+    emit patterns->activated(0);
+    EXPECT_TRUE(w.offers("Read the images")) << w.story();
+    EXPECT_EQ(patterns->itemText(2), "From an order file...");
 }
 
 } // namespace

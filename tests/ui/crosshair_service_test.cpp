@@ -21,9 +21,10 @@ struct CrosshairServiceTest : testing::Test {
     std::shared_ptr<const Rig> rig = std::make_shared<const Rig>(readRig(resourceFile("models/tablet.glb")));
     StudioDocument document;
     QImage onProjector;
+    std::size_t lit = 0; ///< number of the projector that was asked last
     std::vector<InstallationVersion> versions;
     CrosshairService service{
-        document, [this](std::size_t /*projector*/, const QImage& picture) { onProjector = picture; },
+        document, [this](std::size_t projector, const QImage& picture) { lit = projector, onProjector = picture; },
         [this](const InstallationVersion& version) {
             versions.push_back(version);
             editInstallation(document, "Calibrate", [&](Installation& room) { room = version.installation; });
@@ -139,6 +140,36 @@ TEST_F(CrosshairServiceTest, TheProjectorShowsTheCrosshairWhereItIs) {
     EXPECT_EQ(onProjector.pixelColor(0, 1199), QColor(Qt::white)); // within the picture
     service.setActive(false);
     EXPECT_TRUE(onProjector.isNull()); // the scene is back
+}
+
+TEST_F(CrosshairServiceTest, AnotherProjectorShowsItAndGetsTheResult) {
+    openTablet();
+    editInstallation(document, "Add", [](Installation& room) {
+        room.projectors.push_back(room.projectors.front());
+        room.projectors.back().camera = withSize(room.projectors.back().camera, {1024, 768});
+    });
+    const CalibratedCamera aside = labTruth(room(), 1).projectors.front().camera;
+    EXPECT_GT(glm::length(positionOf(aside) - positionOf(truth())), 0.3); // another one, at the table's other side
+    service.setActive(true);
+    service.setLab(false);
+    EXPECT_EQ(lit, 0U);
+    service.setProjector(1);
+    EXPECT_EQ(service.state().aimed(), 0U);
+    EXPECT_EQ(lit, 1U);
+    EXPECT_EQ(onProjector.size(), QSize(1024, 768));
+    service.setLab(true);
+    const InstalledProjector first = room().projectors.front();
+    for (std::size_t i = 0; i < service.state().session->crosshairs().size(); ++i) {
+        const cv::Point3d& point = service.state().session->crosshairs()[service.state().current].point;
+        const auto pixel = pixelOf(aside, inWorld({point.x, point.y, point.z}));
+        ASSERT_TRUE(pixel);
+        service.moveTo({pixel->x, pixel->y});
+        if (nextOf(service.state()).what == CrosshairNext::Do::confirm) service.doNext();
+    }
+    ASSERT_EQ(nextOf(service.state()).what, CrosshairNext::Do::use);
+    service.doNext();
+    EXPECT_EQ(room().projectors.front(), first);
+    EXPECT_LT(glm::length(positionOf(room().projectors.back().camera) - positionOf(aside)), 0.1); // of 2 m
 }
 
 } // namespace
