@@ -27,13 +27,15 @@ constexpr double kGrazing = 0.12;         // cosine: light that grazes a face mo
 constexpr double kExplained = 10.0;       // projector pixels that an error of a good guess stays below
 constexpr std::size_t kFirstPoints = 500; // of a camera and a projector
 constexpr std::size_t kLastPoints = 3000;
-constexpr double kLeastLightNoise = 0.02; // pixels
-constexpr double kDeviceFits = 1.5;       // pixels
-constexpr double kFitShare = 0.9;         // of the light that falls on the device
-constexpr double kRough = 0.008;          // of a projector's width: a guess that is as far off
-constexpr double kHopeless = 0.3;         // likewise: the right one lies far above
-constexpr double kSurely = 0.9;           // explained: no other guess is looked at
-constexpr double kUnlearnt = 0.7;         // of what was known before: such an observation tells nothing
+constexpr double kLeastLightNoise = 0.02;  // pixels, that uncertainties count with
+constexpr double kLeastSolveNoise = 0.005; // pixels
+constexpr double kSettled = 2e-4;          // of a focal length
+constexpr double kDeviceFits = 1.5;        // pixels
+constexpr double kFitShare = 0.9;          // of the light that falls on the device
+constexpr double kRough = 0.008;           // of a projector's width: a guess that is as far off
+constexpr double kHopeless = 0.3;          // likewise: the right one lies far above
+constexpr double kSurely = 0.9;            // explained: no other guess is looked at
+constexpr double kUnlearnt = 0.7;          // of what was known before: such an observation tells nothing
 
 struct ReleaseEmbree {
     void operator()(RTCDevice device) const noexcept { rtcReleaseDevice(device); }
@@ -467,22 +469,27 @@ private:
 
     // ---- refinement ----
 
+    /// Where a camera looks with this pixel; unit length, the world's frame.
+    static glm::dvec3 rayOf(const InstallationState::Device& camera, const cv::Point2d& pixel) {
+        const double back[3] = {-camera.fromWorld[0], -camera.fromWorld[1], -camera.fromWorld[2]};
+        const auto direction = directionOfPixel(camera.lens, pixel.x, pixel.y);
+        const double way[3] = {direction[0], direction[1], 1.0};
+        double ray[3];
+        ceres::AngleAxisRotatePoint(back, way, ray);
+        return glm::normalize(glm::dvec3(ray[0], ray[1], ray[2]));
+    }
+
     /// Some of these cells, spread evenly over all, where the camera's ray meets the device. Returns how many were
     /// looked at.
     std::size_t associate(std::size_t c, std::size_t p, const std::vector<LightCell>& cells, std::size_t most,
                           InstallationObservations& into) const {
         const auto& camera = state_.cameras[c];
         const glm::dvec3 from = placeOf(camera.fromWorld);
-        const double back[3] = {-camera.fromWorld[0], -camera.fromWorld[1], -camera.fromWorld[2]};
         const std::size_t used = std::min(cells.size(), most);
         for (std::size_t i = 0; i < used; ++i) {
             const LightCell& cell = cells[i * cells.size() / used];
             const DeviceSurface& surface = surfaces_[cell.shot];
-            const auto direction = directionOfPixel(camera.lens, cell.pixels.camera.x, cell.pixels.camera.y);
-            const double way[3] = {direction[0], direction[1], 1.0};
-            double ray[3];
-            ceres::AngleAxisRotatePoint(back, way, ray);
-            const glm::dvec3 along = glm::normalize(glm::dvec3(ray[0], ray[1], ray[2]));
+            const glm::dvec3 along = rayOf(camera, cell.pixels.camera);
             if (!std::isfinite(along.x + along.y + along.z + from.x + from.y + from.z)) continue;
             const int hit = surface.hit(from, along);
             if (hit < 0) continue;
@@ -558,33 +565,67 @@ private:
         return *middle / 1.1774; // the median length of two normal coordinates of deviation 1
     }
 
-    void gatherAll(std::size_t most, InstallationObservations& seen) const {
+    /// The cells that lie on the device as it is believed to stand now: most of a picture may be table.
+    [[nodiscard]] std::vector<LightCell> onDevice(std::size_t c, std::size_t p) const {
+        std::vector<LightCell> cells;
+        InstallationObservations one;
+        for (const LightCell& cell : all_[c][p]) {
+            one.lights.clear();
+            (void)associate(c, p, {cell}, 1, one);
+            if (!one.lights.empty()) cells.push_back(cell);
+        }
+        return cells;
+    }
+
+    void gatherAll(std::size_t most, bool anew) {
+        if (anew) onDevice_.assign(cameras_.size(), std::vector<std::vector<LightCell>>(projectors_.size()));
+        seen_.lights.clear();
         for (std::size_t c = 0; c < cameras_.size(); ++c)
-            for (std::size_t p = 0; p < projectors_.size(); ++p) (void)associate(c, p, all_[c][p], most, seen);
+            for (std::size_t p = 0; p < projectors_.size(); ++p) {
+                if (anew) onDevice_[c][p] = onDevice(c, p);
+                (void)associate(c, p, onDevice_[c][p], most, seen_);
+                // What has risen is little of the light, and all that tells distances from focal lengths.
+                (void)associate(c, p, changed_[c][p], most, seen_);
+            }
     }
 
     void refineAll() {
         free_.cameras.assign(cameras_.size(), {maskOf(true, false), true});
         free_.projectors.assign(projectors_.size(), {maskOf(true, false), true});
-        constexpr int kRounds = 9;
-        constexpr int kWithoutDistortion = 4;
-        for (int round = 0; round < kRounds; ++round) {
+        constexpr int kWithoutDistortion = 4, kBefore = 6; // rounds
+        constexpr int kMostRounds = 20;
+        constexpr int kRoughSteps = 10, kSteps = 60; // from afar a small device tells focal length from distance only
+                                                     // in a long valley
+        for (int round = 0; round < kMostRounds; ++round) {
             progress_.throwIfCancelled();
-            progress_.report(0.6 + 0.04 * round, "solving for all together");
+            progress_.report(0.6 + 0.36 * round / kMostRounds, "solving for all together");
             if (round == kWithoutDistortion) {
                 free_.cameras.assign(cameras_.size(), {maskOf(true, true), true});
                 free_.projectors.assign(projectors_.size(), {maskOf(true, true), true});
             }
-            seen_.lights.clear();
-            gatherAll(round < kRounds - 3 ? kFirstPoints : kLastPoints, seen_);
-            noise_.projector = std::max(kLeastLightNoise, noiseOf(seen_));
+            const bool isRough = round < kBefore;
+            gatherAll(isRough ? kFirstPoints : kLastPoints, round == 0 || round == kBefore);
+            noise_.projector = std::max(kLeastSolveNoise, noiseOf(seen_));
             noise_.robust = 3.0;
             if (!std::isfinite(noise_.projector)) throw misfit(noise_.projector);
-            refineInstallation(seen_, free_, noise_, state_, 10);
+            const InstallationState before = state_;
+            refineInstallation(seen_, free_, noise_, state_, isRough ? kRoughSteps : kSteps);
+            if (round > kBefore && isSettled(before)) break;
         }
         noise_.projector = std::max(kLeastLightNoise, noiseOf(seen_));
         progress_.report(0.97, "uncertainties");
         result_.sigma = installationSigmas(seen_, free_, noise_, state_);
+    }
+
+    /// Whether no focal length moves any more.
+    [[nodiscard]] bool isSettled(const InstallationState& before) const {
+        const auto rests = [](const std::vector<InstallationState::Device>& now,
+                              const std::vector<InstallationState::Device>& then) {
+            for (std::size_t i = 0; i < now.size(); ++i)
+                if (std::abs(now[i].lens[kFocalLength] / then[i].lens[kFocalLength] - 1.0) > kSettled) return false;
+            return true;
+        };
+        return rests(state_.cameras, before.cameras) && rests(state_.projectors, before.projectors);
     }
 
     [[nodiscard]] static CaptureRefused misfit(double noise) {
@@ -645,6 +686,7 @@ private:
     std::unique_ptr<RTCDeviceTy, ReleaseEmbree> embree_;
     std::vector<DeviceSurface> surfaces_;                            ///< one a shot
     std::vector<std::vector<std::vector<LightCell>>> all_, changed_; ///< by camera and projector
+    std::vector<std::vector<std::vector<LightCell>>> onDevice_;      ///< of `all_`
     std::vector<ChangedLight> changes_;
     std::vector<bool> cameraPlaced_, projectorPlaced_;
     InstallationNoise noise_;
