@@ -59,8 +59,8 @@ void printAlternatives(const ReadCapture& read) {
                     result.camera.rms, result.projector.model.c_str(), result.projector.rms,
                     result.halvesDiffer.value_or(0.0), result.halvesAllowed.value_or(0.0));
         for (const Alternative& by : alternativesOf(read.views, result, read.order))
-            std::printf("  %-20s amount %8.2f explained %6.3f  %s\n", std::string(keyOf(by.cause)).c_str(), by.amount,
-                        by.explained, by.words.c_str());
+            std::printf("  %-20s amount %8.2f explained %6.3f sigmas %7.1f  %s\n", std::string(keyOf(by.cause)).c_str(),
+                        by.amount, by.explained, by.sigmas, by.words.c_str());
     } catch (const CaptureRefused& refused) {
         std::printf("  solver: %s\n", sentenceOf(refused.finding()).c_str());
     }
@@ -176,21 +176,25 @@ std::vector<ViewObservations> observationsOf(LabCapturer& capturer, std::uint32_
     return views;
 }
 
+Verdict verdictOfObservations(const LabCapture& what) {
+    LabCapturer capturer(what);
+    ReadCapture read;
+    read.views = observationsOf(capturer, what.seed);
+    const glm::ivec2 camera = capturer.lab().camera().size;
+    const glm::ivec2 projector = capturer.lab().projector().camera.size;
+    read.camera = {camera.x, camera.y};
+    read.order = parsePattern(what.pattern, {projector.x, projector.y});
+    if (loneSeed()) printAlternatives(read);
+    return verdictOf([&] { return calibrateCapture(read, read.order.projector); });
+}
+
 Verdict verdictOfObservations(std::uint32_t seed, std::optional<Cause> fault) {
     LabCapture capture;
     capture.room = defaultInstallation();
     capture.seed = seed;
     capture.fault = fault;
     if (fault == Cause::projectorGamma) capture.pattern = "phase:16x3+1x3";
-    LabCapturer capturer(capture);
-    ReadCapture read;
-    read.views = observationsOf(capturer, seed);
-    const glm::ivec2 camera = capturer.lab().camera().size;
-    const glm::ivec2 projector = capturer.lab().projector().camera.size;
-    read.camera = {camera.x, camera.y};
-    read.order = parsePattern(capture.pattern, {projector.x, projector.y});
-    if (loneSeed()) printAlternatives(read);
-    return verdictOf([&] { return calibrateCapture(read, read.order.projector); });
+    return verdictOfObservations(capture);
 }
 
 /// One line of the table.
@@ -214,6 +218,8 @@ void expectNamed(Cause fault, int trials, const std::function<Verdict(std::uint3
     EXPECT_EQ(silent, 0) << keyOf(fault);
 }
 
+const auto kKeyOfParam = [](const ::testing::TestParamInfo<Cause>& info) { return std::string(keyOf(info.param)); };
+
 class DoctorTableOfImages : public ::testing::TestWithParam<Cause> {};
 
 TEST_P(DoctorTableOfImages, NamesTheCause) {
@@ -221,13 +227,11 @@ TEST_P(DoctorTableOfImages, NamesTheCause) {
                 [](std::uint32_t seed) { return verdictOfImages(smallCapture(seed, GetParam())); });
 }
 
-const auto kKeyOfParam = [](const ::testing::TestParamInfo<Cause>& info) { return std::string(keyOf(info.param)); };
-
 INSTANTIATE_TEST_SUITE_P(All, DoctorTableOfImages,
                          ::testing::Values(Cause::lateFrame, Cause::missingImage, Cause::doubledImage,
                                            Cause::blackWhiteSwapped, Cause::inverseSwapped, Cause::mirrored,
                                            Cause::rigMoved, Cause::projectorSize, Cause::widthHeightSwapped,
-                                           Cause::clipped),
+                                           Cause::clipped, Cause::cameraRefocused),
                          kKeyOfParam);
 
 class DoctorTableOfObservations : public ::testing::TestWithParam<Cause> {};
@@ -237,34 +241,54 @@ TEST_P(DoctorTableOfObservations, NamesTheCause) {
                 [](std::uint32_t seed) { return verdictOfObservations(seed, GetParam()); });
 }
 
+class DoctorTableOfFourPoses : public ::testing::TestWithParam<Cause> {};
+
+// As in the table's photographs: fewer poses, smaller pictures.
+TEST_P(DoctorTableOfFourPoses, NamesTheCause) {
+    expectNamed(GetParam(), isLong() ? 20 : 1,
+                [](std::uint32_t seed) { return verdictOfObservations(smallCapture(seed, GetParam())); });
+}
+
+INSTANTIATE_TEST_SUITE_P(All, DoctorTableOfFourPoses, ::testing::Values(Cause::boardWarped, Cause::cameraRefocused),
+                         kKeyOfParam);
+
 INSTANTIATE_TEST_SUITE_P(All, DoctorTableOfObservations,
                          ::testing::Values(Cause::frontalViews, Cause::keystone, Cause::boardWarped, Cause::squareSize,
                                            Cause::strangeLens, Cause::projectorGamma, Cause::cameraRefocused),
                          kKeyOfParam);
 
-/// One line of sound captures: none may be refused, and few may be doubted.
-void expectSound(const std::vector<std::uint32_t>& seeds, const std::function<Verdict(std::uint32_t)>& run) {
+/// One line of sound captures: none may be refused, and only those doubted that are overexposed in places.
+void expectSound(const std::vector<std::uint32_t>& seeds, int mostOverexposed,
+                 const std::function<Verdict(std::uint32_t)>& run) {
     int refused = 0;
-    int doubted = 0;
+    int overexposed = 0;
+    int doubted = 0; // for anything else
     for (const std::uint32_t seed : seeds) {
         const Verdict verdict = run(seed);
         refused += verdict.refused;
-        doubted += !verdict.refused && !verdict.causes.empty();
+        overexposed += !verdict.refused && verdict.names(Cause::clipped);
+        doubted += !verdict.refused && !std::ranges::all_of(verdict.causes, [](Cause cause) {
+            return cause == Cause::clipped;
+        });
         if (!verdict.causes.empty()) std::printf("  [%u] %s\n", seed, verdict.sentence.c_str());
     }
-    std::printf("%-22s refused %d of %zu, with a warning %d\n", "sound", refused, seeds.size(), doubted);
+    std::printf("%-22s refused %d of %zu, overexposed in places %d, doubted for anything else %d\n", "sound", refused,
+                seeds.size(), overexposed, doubted);
     std::fflush(stdout);
     EXPECT_EQ(refused, 0);
+    EXPECT_EQ(doubted, 0);
+    EXPECT_LE(overexposed, mostOverexposed);
 }
 
 TEST(DoctorTableOfSound, ImagesAreAccepted) {
-    // The second has its board between bright light and its own shadow.
-    expectSound(seedsOf(100, isLong() ? 8 : 2),
+    // The second has its board between bright light and its own shadow. The lab holds some of the boards where the
+    // projector's light is too bright for the exposure: that warning is true.
+    expectSound(seedsOf(100, isLong() ? 8 : 2), 3,
                 [](std::uint32_t seed) { return verdictOfImages(smallCapture(seed, {})); });
 }
 
 TEST(DoctorTableOfSound, ObservationsAreAccepted) {
-    expectSound(seedsOf(isLong() ? 108 : 102, isLong() ? 32 : 2),
+    expectSound(seedsOf(isLong() ? 108 : 102, isLong() ? 32 : 2), 0,
                 [](std::uint32_t seed) { return verdictOfObservations(seed, {}); });
 }
 
