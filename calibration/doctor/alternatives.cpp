@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <limits>
 #include <numbers>
+#include <numeric>
 
 #include <ceres/ceres.h>
 #include <ceres/rotation.h>
@@ -530,10 +531,35 @@ ProcamCalibration cameraOfFocal(const std::vector<ViewObservations>& views, cv::
     camera.camera.size = size;
     for (const LensParameter free : {kFocalLength, kPrincipalX, kPrincipalY, kK1, kK2})
         camera.camera.free[static_cast<std::size_t>(free)] = true;
+    camera.state.board = flatBoard(views);
     camera.state.camera = {focal, 1.0, 0.5 * (size.width - 1), 0.5 * (size.height - 1), 0.0, 0.0, 0.0, 0.0, 0.0};
     for (const ViewObservations& view : views)
         camera.state.cameraFromBoard.push_back(poseFromCamera(view, camera.state.camera));
     return camera;
+}
+
+constexpr std::array kFocalStarts = {0.6, 1.2, 2.4, 4.8}; ///< shares of a picture's longer side
+
+/// Camera and projector begun anew, for where a solution got lost: of the camera's lens the focal length alone is taken
+/// from the boards, since all else may have followed a fault.
+ProcamCalibration begunAnew(const std::vector<ViewObservations>& views, cv::Size camera, cv::Size projector) {
+    ViewChoice use(views.size());
+    std::iota(use.begin(), use.end(), 0);
+    BundleOptions focalAlone;
+    focalAlone.camera[kFocalLength] = true;
+    focalAlone.projectorPoints = false;
+    ProcamCalibration best;
+    double least = std::numeric_limits<double>::infinity();
+    for (const double share : kFocalStarts) {
+        ProcamCalibration start = cameraOfFocal(views, camera, share * std::max(camera.width, camera.height));
+        const double cost = refine(views, use, focalAlone, start.state);
+        if (cost < least) least = cost, best = std::move(start);
+    }
+    if (!std::isfinite(least)) best = cameraOfFocal(views, camera, std::max(camera.width, camera.height));
+    best.projector.size = projector;
+    best.projector.free = best.camera.free;
+    addFirstProjector(views, use, projector, std::nullopt, best.state);
+    return best;
 }
 
 } // namespace
@@ -544,7 +570,7 @@ std::optional<Finding> causeInCamera(const std::vector<ViewObservations>& views,
     double plain = std::numeric_limits<double>::infinity();
     double least = plain;
     std::optional<Alternative> best;
-    for (const double share : {0.6, 1.2, 2.4, 4.8}) {
+    for (const double share : kFocalStarts) {
         const ProcamCalibration start = cameraOfFocal(views, camera, share * std::max(camera.width, camera.height));
         CauseTrials trials(views, start, {}, progress);
         plain = std::min(plain, trials.before());
@@ -564,8 +590,13 @@ std::vector<Alternative> alternativesOf(const std::vector<ViewObservations>& vie
 
 std::optional<Explanation> explanationOf(const std::vector<ViewObservations>& views, const ProcamCalibration& result,
                                          const CaptureOrder& order, const Progress& progress) {
-    if (result.camera.rms > kLost)
+    if (result.camera.rms > kLost) {
         if (const auto cause = causeInCamera(views, result.camera.size, progress)) return Explanation{*cause};
+        const ProcamCalibration anew = begunAnew(views, result.camera.size, result.projector.size);
+        for (const Alternative& by : CauseTrials(views, anew, order, progress).all())
+            if (by.amount >= kRefused && by.explained >= kOutright)
+                return Explanation{{by.cause, by.view, "", by.words, by.remedy}};
+    }
     CauseTrials trials(views, result, order, progress);
     const std::vector<Alternative> all = trials.all();
     const auto told = [](const Alternative& by) {
