@@ -28,8 +28,8 @@ constexpr double kNoise = 0.3;     // pixels: errors that need no explanation
 constexpr double kLost = 5.0;      // pixels: above, the camera was not found at all
 constexpr double kOutright = 0.5;  // of the squares, where nothing is known of the camera
 // No lens makes a projector's pixels askew, so that little tells: other terms may have made up for most of the errors.
-constexpr double kSomeSkew = 0.3;  // of what is bearable
-constexpr double kSureSkew = 8.0;  // standard deviations
+constexpr double kSomeSkew = 0.3; // of what is bearable
+constexpr double kSureSkew = 8.0; // standard deviations
 
 /// What the causes do, one number each: of the whole capture.
 enum CommonParameter {

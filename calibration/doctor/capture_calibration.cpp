@@ -112,8 +112,7 @@ ProcamCalibration solveUnexplained(const ReadCapture& capture, cv::Size projecto
         return calibrateProcam(capture.views, capture.camera, projector, options, progress);
     } catch (const CaptureRefused& refused) {
         if (refused.finding().cause != Cause::frontalViews) throw;
-        if (const auto cause = causeInCamera(capture.views, capture.camera, progress))
-            throw CaptureRefused(*cause);
+        if (const auto cause = causeInCamera(capture.views, capture.camera, progress)) throw CaptureRefused(*cause);
         throw;
     }
 }

@@ -267,9 +267,8 @@ void expectSound(const std::vector<std::uint32_t>& seeds, int mostOverexposed,
         const Verdict verdict = run(seed);
         refused += verdict.refused;
         overexposed += !verdict.refused && verdict.names(Cause::clipped);
-        doubted += !verdict.refused && !std::ranges::all_of(verdict.causes, [](Cause cause) {
-            return cause == Cause::clipped;
-        });
+        doubted += !verdict.refused &&
+                   !std::ranges::all_of(verdict.causes, [](Cause cause) { return cause == Cause::clipped; });
         if (!verdict.causes.empty()) std::printf("  [%u] %s\n", seed, verdict.sentence.c_str());
     }
     std::printf("%-22s refused %d of %zu, overexposed in places %d, doubted for anything else %d\n", "sound", refused,
