@@ -4,10 +4,14 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <limits>
 #include <numbers>
+#include <numeric>
 
 #include <ceres/ceres.h>
 #include <ceres/rotation.h>
+
+#include "calibration/solve/first_guess.h"
 
 namespace lumorph {
 
@@ -21,6 +25,11 @@ constexpr double kTwoPi = 2.0 * std::numbers::pi;
 constexpr double kExplains = 0.35; // of the squares of errors that a cause must take away
 constexpr double kRefused = 2.0;   // times what is bearable: above, a capture is refused
 constexpr double kNoise = 0.3;     // pixels: errors that need no explanation
+constexpr double kLost = 5.0;      // pixels: above, the camera was not found at all
+constexpr double kOutright = 0.5;  // of the squares, where nothing is known of the camera
+// No lens makes a projector's pixels askew, so that little tells: other terms may have made up for most of the errors.
+constexpr double kSomeSkew = 0.3; // of what is bearable
+constexpr double kSureSkew = 8.0; // standard deviations
 
 /// What the causes do, one number each: of the whole capture.
 enum CommonParameter {
@@ -196,6 +205,15 @@ public:
 
     [[nodiscard]] const BoardExtent& extent() const { return extent_; }
 
+    /// How many coordinates of errors are independent of their neighbours.
+    [[nodiscard]] double independentErrors() const {
+        double count = 0.0;
+        for (const ViewObservations& view : views_)
+            count += static_cast<double>(view.corners.seen.size()) * result_.bundle.independentCorners +
+                     static_cast<double>(pointsOf(view, kPointsOfView)) * result_.bundle.independentPoints;
+        return 2.0 * count;
+    }
+
     [[nodiscard]] AlternativeState solve(const Freedom& freedom) const {
         AlternativeState state{result_.state, {}, std::vector<double>(views_.size(), 0.0), {}, {}, 0.0};
         // Real lenses have square pixels: what a model has made of other faults is taken back.
@@ -235,6 +253,11 @@ private:
         return {0.5 * (left + right), 0.5 * (top + bottom), 0.5 * (right - left), 0.5 * (bottom - top)};
     }
 
+    /// How many of a view's projector points are used; none where there is no projector.
+    [[nodiscard]] std::size_t pointsOf(const ViewObservations& view, std::size_t most) const {
+        return result_.projector.size.empty() ? 0 : std::min(view.projector.size(), most);
+    }
+
     static void hold(ceres::Problem& problem, double* block, int size, const std::vector<bool>& free) {
         std::vector<int> held;
         for (int i = 0; i < size; ++i)
@@ -269,7 +292,7 @@ private:
             for (std::size_t i = 0; i < view.corners.seen.size(); ++i) addCorner(problem, state, freedom, v, i);
             const std::size_t count = view.projector.size();
             const std::size_t used =
-                std::min(count, freedom.cameraField || freedom.projectorField ? kPointsForFields : kPointsOfView);
+                pointsOf(view, freedom.cameraField || freedom.projectorField ? kPointsForFields : kPointsOfView);
             for (std::size_t i = 0; i < used; ++i) addPoint(problem, state, freedom, v, i * count / used);
         }
     }
@@ -369,12 +392,22 @@ public:
         : views_(views), result_(result), order_(order), progress_(progress), solver_(views, result, order),
           before_(solver_.solve({}).squares) {}
 
+    /// Squares of all errors without any cause, in standard deviations.
+    [[nodiscard]] double before() const { return before_; }
+
     std::vector<Alternative> all() {
         tryPicture();
         tryBoard();
         if (views_.size() >= kFewestForFocus) tryFocus();
         if (ripplesOf(order_, PatternAxis::columns) > 0.0) tryGamma();
         std::ranges::sort(all_, std::greater<>(), &Alternative::explained);
+        return std::move(all_);
+    }
+
+    /// Those that boards in a camera alone can have.
+    std::vector<Alternative> ofCamera() {
+        tryBoard();
+        if (views_.size() >= kFewestForFocus) tryFocus();
         return std::move(all_);
     }
 
@@ -412,9 +445,14 @@ private:
 
     void add(Cause cause, const AlternativeState& state, double amount, const std::string& words,
              const std::string& remedy, const std::string& view = "") {
-        all_.push_back({cause, amount, 1.0 - state.squares / before_, view, words, remedy});
+        all_.push_back({cause, amount, 1.0 - state.squares / before_, sigmasOf(state, before_), view, words, remedy});
         progress_.throwIfCancelled();
         progress_.report(static_cast<double>(all_.size()) / 8.0, "comparing causes");
+    }
+
+    /// By how many standard deviations a state is better than one that leaves so many squares.
+    [[nodiscard]] double sigmasOf(const AlternativeState& state, double without) const {
+        return std::sqrt(solver_.independentErrors() * std::max(0.0, without / state.squares - 1.0));
     }
 
     void tryPicture() {
@@ -436,6 +474,7 @@ private:
             "the projector's picture is skewed by " + number(100.0 * skew, 1) +
                 " %: it warps what it is sent, by a keystone correction or scaling",
             "switch off keystone, corner and zoom corrections in the projector, and capture again");
+        all_.back().sigmas = sigmasOf(warped, stretched.squares); // the skew's own part
     }
 
     void tryBoard() {
@@ -486,7 +525,63 @@ private:
     std::vector<Alternative> all_;
 };
 
+/// A camera of which nothing is known but a focal length, and the boards as it sees them.
+ProcamCalibration cameraOfFocal(const std::vector<ViewObservations>& views, cv::Size size, double focal) {
+    ProcamCalibration camera;
+    camera.camera.size = size;
+    for (const LensParameter free : {kFocalLength, kPrincipalX, kPrincipalY, kK1, kK2})
+        camera.camera.free[static_cast<std::size_t>(free)] = true;
+    camera.state.board = flatBoard(views);
+    camera.state.camera = {focal, 1.0, 0.5 * (size.width - 1), 0.5 * (size.height - 1), 0.0, 0.0, 0.0, 0.0, 0.0};
+    for (const ViewObservations& view : views)
+        camera.state.cameraFromBoard.push_back(poseFromCamera(view, camera.state.camera));
+    return camera;
+}
+
+constexpr std::array kFocalStarts = {0.6, 1.2, 2.4, 4.8}; ///< shares of a picture's longer side
+
+/// Camera and projector begun anew, for where a solution got lost: of the camera's lens the focal length alone is taken
+/// from the boards, since all else may have followed a fault.
+ProcamCalibration begunAnew(const std::vector<ViewObservations>& views, cv::Size camera, cv::Size projector) {
+    ViewChoice use(views.size());
+    std::iota(use.begin(), use.end(), 0);
+    BundleOptions focalAlone;
+    focalAlone.camera[kFocalLength] = true;
+    focalAlone.projectorPoints = false;
+    ProcamCalibration best;
+    double least = std::numeric_limits<double>::infinity();
+    for (const double share : kFocalStarts) {
+        ProcamCalibration start = cameraOfFocal(views, camera, share * std::max(camera.width, camera.height));
+        const double cost = refine(views, use, focalAlone, start.state);
+        if (cost < least) least = cost, best = std::move(start);
+    }
+    if (!std::isfinite(least)) best = cameraOfFocal(views, camera, std::max(camera.width, camera.height));
+    best.projector.size = projector;
+    best.projector.free = best.camera.free;
+    addFirstProjector(views, use, projector, std::nullopt, best.state);
+    return best;
+}
+
 } // namespace
+
+std::optional<Finding> causeInCamera(const std::vector<ViewObservations>& views, cv::Size camera,
+                                     const Progress& progress) {
+    // From each focal length to begin with: where the plain camera ended, the others may not start.
+    double plain = std::numeric_limits<double>::infinity();
+    double least = plain;
+    std::optional<Alternative> best;
+    for (const double share : kFocalStarts) {
+        const ProcamCalibration start = cameraOfFocal(views, camera, share * std::max(camera.width, camera.height));
+        CauseTrials trials(views, start, {}, progress);
+        plain = std::min(plain, trials.before());
+        for (const Alternative& by : trials.ofCamera()) {
+            const double squares = (1.0 - by.explained) * trials.before();
+            if (by.amount >= kRefused && squares < least) least = squares, best = by;
+        }
+    }
+    if (!best || least > (1.0 - kOutright) * plain) return std::nullopt;
+    return Finding{best->cause, best->view, "", best->words, best->remedy};
+}
 
 std::vector<Alternative> alternativesOf(const std::vector<ViewObservations>& views, const ProcamCalibration& result,
                                         const CaptureOrder& order, const Progress& progress) {
@@ -495,6 +590,13 @@ std::vector<Alternative> alternativesOf(const std::vector<ViewObservations>& vie
 
 std::optional<Explanation> explanationOf(const std::vector<ViewObservations>& views, const ProcamCalibration& result,
                                          const CaptureOrder& order, const Progress& progress) {
+    if (result.camera.rms > kLost) {
+        if (const auto cause = causeInCamera(views, result.camera.size, progress)) return Explanation{*cause};
+        const ProcamCalibration anew = begunAnew(views, result.camera.size, result.projector.size);
+        for (const Alternative& by : CauseTrials(views, anew, order, progress).all())
+            if (by.amount >= kRefused && by.explained >= kOutright)
+                return Explanation{{by.cause, by.view, "", by.words, by.remedy}};
+    }
     CauseTrials trials(views, result, order, progress);
     const std::vector<Alternative> all = trials.all();
     const auto told = [](const Alternative& by) {
@@ -502,9 +604,12 @@ std::optional<Explanation> explanationOf(const std::vector<ViewObservations>& vi
     };
     for (const Alternative& by : all) // the one that explains most first
         if (by.amount >= 1.0 && by.explained >= kExplains) return told(by);
-    if (result.camera.rms < kNoise && result.projector.rms < kNoise) return std::nullopt;
-    const Alternative lens = trials.anyLens();
-    if (lens.amount >= 1.0 && lens.explained >= kExplains) return told(lens);
+    if (result.camera.rms >= kNoise || result.projector.rms >= kNoise) {
+        const Alternative lens = trials.anyLens(); // explains much: it is for what nothing else does
+        if (lens.amount >= 1.0 && lens.explained >= kExplains) return told(lens);
+    }
+    const auto skewed = std::ranges::find(all, Cause::keystone, &Alternative::cause);
+    if (skewed->amount >= kSomeSkew && skewed->sigmas >= kSureSkew) return told(*skewed);
     return std::nullopt;
 }
 

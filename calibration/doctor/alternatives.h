@@ -15,6 +15,7 @@ struct Alternative {
     Cause cause = Cause::modelDoesNotFit;
     double amount = 0.0;    ///< of what the cause does, as a share of what is bearable
     double explained = 0.0; ///< of the squares of all errors that remain without it
+    double sigmas = 0.0;    ///< standard deviations by which it explains more than nothing would
     std::string view;       ///< where it begins, or empty
     std::string words;      ///< what was found, with its figures
     std::string remedy;
@@ -27,6 +28,12 @@ struct Alternative {
                                                       const ProcamCalibration& result, const CaptureOrder& order,
                                                       const Progress& progress = {});
 
+/// The cause that keeps a camera from being found, told from the board's points in a camera of that size alone: a bent
+/// board or a camera that refocused takes a plain lens to a focal length at which all boards seem to lie the same way,
+/// or nowhere. Nothing where a plain lens explains the points as well. Throws Cancelled.
+[[nodiscard]] std::optional<Finding> causeInCamera(const std::vector<ViewObservations>& views, cv::Size camera,
+                                                   const Progress& progress = {});
+
 /// What was found to be wrong, and whether the calibration is worth nothing for it.
 struct Explanation {
     Finding finding;
@@ -34,9 +41,9 @@ struct Explanation {
 };
 
 /// The cause that explains what was seen, where one is needed: it does more than is bearable and takes away a good part
-/// of the errors. Where none does and large errors remain, a lens that bends its picture in any smooth way is tried.
-/// Nothing for a sound capture. That all of a board is larger or smaller than said no capture can tell: it scales all
-/// lengths. Throws Cancelled.
+/// of the errors. Where none does and large errors remain, a lens that bends its picture in any smooth way is tried;
+/// and a projector whose pixels are certainly askew is named however small the errors are. Nothing for a sound capture.
+/// That all of a board is larger or smaller than said no capture can tell: it scales all lengths. Throws Cancelled.
 [[nodiscard]] std::optional<Explanation> explanationOf(const std::vector<ViewObservations>& views,
                                                        const ProcamCalibration& result, const CaptureOrder& order,
                                                        const Progress& progress = {});

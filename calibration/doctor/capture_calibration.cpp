@@ -104,6 +104,19 @@ void explain(const std::vector<ViewObservations>& views, const CaptureOrder& ord
     if (explanation) result.warnings.push_back(explanation->finding);
 }
 
+/// Solves a capture whose errors are explained later. Boards that seem to lie all the same way are looked at again.
+ProcamCalibration solveUnexplained(const ReadCapture& capture, cv::Size projector, SolveOptions options,
+                                   const Progress& progress) {
+    options.judgesFit = false;
+    try {
+        return calibrateProcam(capture.views, capture.camera, projector, options, progress);
+    } catch (const CaptureRefused& refused) {
+        if (refused.finding().cause != Cause::frontalViews) throw;
+        if (const auto cause = causeInCamera(capture.views, capture.camera, progress)) throw CaptureRefused(*cause);
+        throw;
+    }
+}
+
 } // namespace
 
 ReadPose readPose(const CapturedView& view, const std::vector<cv::Mat>& images, const CalibrationBoard& board,
@@ -151,10 +164,7 @@ ReadCapture readPoses(const std::vector<CapturedView>& poses, const CalibrationB
 ProcamCalibration calibrateCapture(const ReadCapture& capture, cv::Size projector, const SolveOptions& options,
                                    const Progress& progress) {
     if (const auto mirrored = checkMirrored(capture.views)) throw CaptureRefused(*mirrored);
-    SolveOptions unjudged = options;
-    unjudged.judgesFit = false;
-    ProcamCalibration result =
-        calibrateProcam(capture.views, capture.camera, projector, unjudged, progress.part(0.0, 0.8));
+    ProcamCalibration result = solveUnexplained(capture, projector, options, progress.part(0.0, 0.8));
     CaptureOrder order = capture.order;
     order.projector = projector;
     explain(capture.views, order, result, progress.part(0.8, 1.0));

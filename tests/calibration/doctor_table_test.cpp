@@ -4,10 +4,12 @@
 #include <cstdlib>
 #include <functional>
 #include <map>
+#include <numeric>
 #include <random>
 
 #include <gtest/gtest.h>
 
+#include "calibration/doctor/alternatives.h"
 #include "calibration/doctor/capture_calibration.h"
 #include "calibration/doctor/sequence_check.h"
 #include "calibration/lab/lab_capture.h"
@@ -29,6 +31,40 @@ struct Verdict {
 
     [[nodiscard]] bool names(Cause cause) const { return std::ranges::find(causes, cause) != causes.end(); }
 };
+
+/// The table's trials alone where LUMORPH_DOCTOR_SEED=14 names one, for who wants to look at it: then what each cause
+/// that residuals do not tell apart would explain is printed too, here for `keystone`:
+///     LUMORPH_DOCTOR_SEED=14 lumorph_calibration_tests --gtest_filter='*OfObservations*/keystone'
+std::optional<std::uint32_t> loneSeed() {
+    const char* text = std::getenv("LUMORPH_DOCTOR_SEED");
+    if (text == nullptr) return std::nullopt;
+    return static_cast<std::uint32_t>(std::strtoul(text, nullptr, 10));
+}
+
+/// Seeds of a line of the table.
+std::vector<std::uint32_t> seedsOf(std::uint32_t first, int count) {
+    if (const auto lone = loneSeed()) return {*lone};
+    std::vector<std::uint32_t> seeds(static_cast<std::size_t>(count));
+    std::iota(seeds.begin(), seeds.end(), first);
+    return seeds;
+}
+
+/// What each cause would explain of a capture.
+void printAlternatives(const ReadCapture& read) {
+    SolveOptions unjudged;
+    unjudged.judgesFit = false;
+    try {
+        const ProcamCalibration result = calibrateProcam(read.views, read.camera, read.order.projector, unjudged);
+        std::printf("  camera %s %.3f px, projector %s %.3f px, halves %.2f of %.2f\n", result.camera.model.c_str(),
+                    result.camera.rms, result.projector.model.c_str(), result.projector.rms,
+                    result.halvesDiffer.value_or(0.0), result.halvesAllowed.value_or(0.0));
+        for (const Alternative& by : alternativesOf(read.views, result, read.order))
+            std::printf("  %-20s amount %8.2f explained %6.3f sigmas %7.1f  %s\n", std::string(keyOf(by.cause)).c_str(),
+                        by.amount, by.explained, by.sigmas, by.words.c_str());
+    } catch (const CaptureRefused& refused) {
+        std::printf("  solver: %s\n", sentenceOf(refused.finding()).c_str());
+    }
+}
 
 Verdict verdictOf(const std::function<ProcamCalibration()>& run) {
     Verdict verdict;
@@ -79,6 +115,7 @@ Verdict verdictOfImages(const LabCapture& what) {
             read.views.push_back(std::move(got.observations));
             read.warnings.insert(read.warnings.end(), got.warnings.begin(), got.warnings.end());
         }
+        if (loneSeed()) printAlternatives(read);
         return calibrateCapture(read, order.projector);
     });
 }
@@ -139,20 +176,25 @@ std::vector<ViewObservations> observationsOf(LabCapturer& capturer, std::uint32_
     return views;
 }
 
+Verdict verdictOfObservations(const LabCapture& what) {
+    LabCapturer capturer(what);
+    ReadCapture read;
+    read.views = observationsOf(capturer, what.seed);
+    const glm::ivec2 camera = capturer.lab().camera().size;
+    const glm::ivec2 projector = capturer.lab().projector().camera.size;
+    read.camera = {camera.x, camera.y};
+    read.order = parsePattern(what.pattern, {projector.x, projector.y});
+    if (loneSeed()) printAlternatives(read);
+    return verdictOf([&] { return calibrateCapture(read, read.order.projector); });
+}
+
 Verdict verdictOfObservations(std::uint32_t seed, std::optional<Cause> fault) {
     LabCapture capture;
     capture.room = defaultInstallation();
     capture.seed = seed;
     capture.fault = fault;
     if (fault == Cause::projectorGamma) capture.pattern = "phase:16x3+1x3";
-    LabCapturer capturer(capture);
-    ReadCapture read;
-    read.views = observationsOf(capturer, seed);
-    const glm::ivec2 camera = capturer.lab().camera().size;
-    const glm::ivec2 projector = capturer.lab().projector().camera.size;
-    read.camera = {camera.x, camera.y};
-    read.order = parsePattern(capture.pattern, {projector.x, projector.y});
-    return verdictOf([&] { return calibrateCapture(read, read.order.projector); });
+    return verdictOfObservations(capture);
 }
 
 /// One line of the table.
@@ -160,20 +202,23 @@ void expectNamed(Cause fault, int trials, const std::function<Verdict(std::uint3
     int right = 0;
     int silent = 0;
     std::string others;
-    for (int trial = 0; trial < trials; ++trial) {
-        const Verdict verdict = run(static_cast<std::uint32_t>(trial + 1));
+    const std::vector<std::uint32_t> seeds = seedsOf(1, trials);
+    for (const std::uint32_t seed : seeds) {
+        const Verdict verdict = run(seed);
         if (verdict.names(fault))
             ++right;
         else
-            others += "  [" + std::to_string(trial + 1) + "] " + verdict.sentence;
+            others += "  [" + std::to_string(seed) + "] " + verdict.sentence;
         silent += !verdict.refused && verdict.causes.empty();
     }
-    std::printf("%-22s right %2d of %2d, accepted silently %d%s\n", std::string(keyOf(fault)).c_str(), right, trials,
-                silent, others.c_str());
+    std::printf("%-22s right %2d of %2d, accepted silently %d%s\n", std::string(keyOf(fault)).c_str(), right,
+                static_cast<int>(seeds.size()), silent, others.c_str());
     std::fflush(stdout);
-    EXPECT_GE(right, 0.9 * trials) << keyOf(fault);
+    EXPECT_GE(right, 0.9 * static_cast<double>(seeds.size())) << keyOf(fault);
     EXPECT_EQ(silent, 0) << keyOf(fault);
 }
+
+const auto kKeyOfParam = [](const ::testing::TestParamInfo<Cause>& info) { return std::string(keyOf(info.param)); };
 
 class DoctorTableOfImages : public ::testing::TestWithParam<Cause> {};
 
@@ -182,13 +227,11 @@ TEST_P(DoctorTableOfImages, NamesTheCause) {
                 [](std::uint32_t seed) { return verdictOfImages(smallCapture(seed, GetParam())); });
 }
 
-const auto kKeyOfParam = [](const ::testing::TestParamInfo<Cause>& info) { return std::string(keyOf(info.param)); };
-
 INSTANTIATE_TEST_SUITE_P(All, DoctorTableOfImages,
                          ::testing::Values(Cause::lateFrame, Cause::missingImage, Cause::doubledImage,
                                            Cause::blackWhiteSwapped, Cause::inverseSwapped, Cause::mirrored,
                                            Cause::rigMoved, Cause::projectorSize, Cause::widthHeightSwapped,
-                                           Cause::clipped),
+                                           Cause::clipped, Cause::cameraRefocused),
                          kKeyOfParam);
 
 class DoctorTableOfObservations : public ::testing::TestWithParam<Cause> {};
@@ -198,26 +241,54 @@ TEST_P(DoctorTableOfObservations, NamesTheCause) {
                 [](std::uint32_t seed) { return verdictOfObservations(seed, GetParam()); });
 }
 
+class DoctorTableOfFourPoses : public ::testing::TestWithParam<Cause> {};
+
+// As in the table's photographs: fewer poses, smaller pictures.
+TEST_P(DoctorTableOfFourPoses, NamesTheCause) {
+    expectNamed(GetParam(), isLong() ? 20 : 1,
+                [](std::uint32_t seed) { return verdictOfObservations(smallCapture(seed, GetParam())); });
+}
+
+INSTANTIATE_TEST_SUITE_P(All, DoctorTableOfFourPoses, ::testing::Values(Cause::boardWarped, Cause::cameraRefocused),
+                         kKeyOfParam);
+
 INSTANTIATE_TEST_SUITE_P(All, DoctorTableOfObservations,
                          ::testing::Values(Cause::frontalViews, Cause::keystone, Cause::boardWarped, Cause::squareSize,
                                            Cause::strangeLens, Cause::projectorGamma, Cause::cameraRefocused),
                          kKeyOfParam);
 
-TEST(DoctorTable, SoundCapturesAreAccepted) {
-    const int ofImages = isLong() ? 8 : 2; // the second has its board between bright light and its own shadow
-    const int ofObservations = isLong() ? 32 : 2;
+/// One line of sound captures: none may be refused, and only those doubted that are overexposed in places.
+void expectSound(const std::vector<std::uint32_t>& seeds, int mostOverexposed,
+                 const std::function<Verdict(std::uint32_t)>& run) {
     int refused = 0;
-    int doubted = 0;
-    for (int trial = 0; trial < ofImages + ofObservations; ++trial) {
-        const auto seed = static_cast<std::uint32_t>(100 + trial);
-        const Verdict verdict =
-            trial < ofImages ? verdictOfImages(smallCapture(seed, {})) : verdictOfObservations(seed, {});
+    int overexposed = 0;
+    int doubted = 0; // for anything else
+    for (const std::uint32_t seed : seeds) {
+        const Verdict verdict = run(seed);
         refused += verdict.refused;
-        doubted += !verdict.refused && !verdict.causes.empty();
+        overexposed += !verdict.refused && verdict.names(Cause::clipped);
+        doubted += !verdict.refused &&
+                   !std::ranges::all_of(verdict.causes, [](Cause cause) { return cause == Cause::clipped; });
         if (!verdict.causes.empty()) std::printf("  [%u] %s\n", seed, verdict.sentence.c_str());
     }
-    std::printf("%-22s refused %d of %d, with a warning %d\n", "sound", refused, ofImages + ofObservations, doubted);
+    std::printf("%-22s refused %d of %zu, overexposed in places %d, doubted for anything else %d\n", "sound", refused,
+                seeds.size(), overexposed, doubted);
+    std::fflush(stdout);
     EXPECT_EQ(refused, 0);
+    EXPECT_EQ(doubted, 0);
+    EXPECT_LE(overexposed, mostOverexposed);
+}
+
+TEST(DoctorTableOfSound, ImagesAreAccepted) {
+    // The second has its board between bright light and its own shadow. The lab holds some of the boards where the
+    // projector's light is too bright for the exposure: that warning is true.
+    expectSound(seedsOf(100, isLong() ? 8 : 2), 3,
+                [](std::uint32_t seed) { return verdictOfImages(smallCapture(seed, {})); });
+}
+
+TEST(DoctorTableOfSound, ObservationsAreAccepted) {
+    expectSound(seedsOf(isLong() ? 108 : 102, isLong() ? 32 : 2), 0,
+                [](std::uint32_t seed) { return verdictOfObservations(seed, {}); });
 }
 
 } // namespace
