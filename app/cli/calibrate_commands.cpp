@@ -10,6 +10,7 @@
 
 #include "app/cli/calibrate_output.h"
 #include "app/cli/commands.h"
+#include "app/cli/pattern_arguments.h"
 #include "calibration/doctor/capture_calibration.h"
 #include "calibration/report/calibration_file.h"
 #include "calibration/report/report_page.h"
@@ -28,8 +29,7 @@ struct CalibrateArguments {
     std::string folder;
     std::string board;
     std::string projector;
-    std::string pattern = "graycode";
-    std::string order;
+    PatternArguments patterns;
     std::string report;   ///< .html
     std::string exported; ///< .json or .yaml
     bool json = false;
@@ -177,7 +177,7 @@ CalibrationSource sourceOf(const CalibrateArguments& arguments, bool hasPatterns
     CalibrationSource source;
     source.date = utcDate();
     source.board = arguments.board;
-    if (hasPatterns) source.pattern = arguments.order.empty() ? arguments.pattern : arguments.order;
+    if (hasPatterns) source.pattern = arguments.patterns.name();
     source.inputs = {arguments.folder};
     return source;
 }
@@ -197,8 +197,7 @@ void procam(const CalibrateArguments& arguments, const Session& session) {
     checkOutputs(arguments);
     const CalibrationBoard board = parseCalibrationBoard(arguments.board);
     const cv::Size projector = parseProjectorSize(arguments.projector);
-    const CaptureOrder order = arguments.order.empty() ? parsePattern(arguments.pattern, projector)
-                                                       : readCaptureOrder(arguments.order, projector);
+    const CaptureOrder order = arguments.patterns.orderFor(projector);
     CalibrationReport report;
     report.record.source = sourceOf(arguments, true);
     const auto run = [&] {
@@ -263,10 +262,7 @@ void addCalibrateCommands(CLI::App& app, Session& session) {
     command->add_option("folder", both->folder, "A folder with one folder of images for each pose")->required();
     command->add_option("--board", both->board, kBoardHelp)->required();
     command->add_option("--projector", both->projector, "The projector's size in pixels, such as 1024x768")->required();
-    command->add_option("--pattern", both->pattern, "graycode, or phase:16x3+1x3 (periods x steps)")
-        ->capture_default_str();
-    command->add_option("--order", both->order,
-                        "In place of --pattern: a file that says, one line an image, what each shows");
+    both->patterns.addTo(*command);
     addOutputs(*command, *both);
     command->add_flag("--json", both->json, "Print one JSON value");
     command->callback([both, &session] { procam(*both, session); });

@@ -6,6 +6,7 @@
 
 #include "app/cli/calibrate_output.h"
 #include "app/cli/commands.h"
+#include "app/cli/pattern_arguments.h"
 #include "calibration/doctor/device_capture.h"
 #include "core/base/error.h"
 #include "core/rig/rig_file.h"
@@ -17,7 +18,7 @@ namespace {
 struct DeviceCaptureArguments {
     std::string folder, rig;
     std::vector<std::string> projectors; ///< "NAME=WIDTHxHEIGHT", or the size alone
-    std::string pattern = "graycode";
+    PatternArguments patterns;
     bool json = false;
 };
 
@@ -33,7 +34,7 @@ std::vector<NamedOrder> ordersOf(const DeviceCaptureArguments& arguments) {
             throw InvalidInput("--projector " + text, name.empty() ? "its name is empty" : "its name is there twice",
                                "name each as its folders: NAME=1024x768");
         const cv::Size size = parseProjectorSize(equals == std::string::npos ? text : text.substr(equals + 1));
-        orders.push_back({name, parsePattern(arguments.pattern, size)});
+        orders.push_back({name, arguments.patterns.orderFor(size)});
     }
     return orders;
 }
@@ -112,8 +113,7 @@ void addCalibrateDevice(CLI::App& group, Session& session) {
         ->required()
         ->expected(1)
         ->take_all();
-    command->add_option("--pattern", arguments->pattern, "graycode, or phase:16x3+1x3 (periods x steps)")
-        ->capture_default_str();
+    arguments->patterns.addTo(*command);
     command->add_flag("--json", arguments->json, "Print one JSON value");
     command->callback([arguments, &session] { calibrateDevice(*arguments, session); });
 }

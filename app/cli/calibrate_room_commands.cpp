@@ -13,6 +13,7 @@
 
 #include "app/cli/calibrate_output.h"
 #include "app/cli/commands.h"
+#include "app/cli/pattern_arguments.h"
 #include "calibration/doctor/capture_calibration.h"
 #include "calibration/doctor/view_check.h"
 #include "calibration/solve/installation_calibration.h"
@@ -29,7 +30,7 @@ struct RoomArguments {
     std::string folder;
     std::string board;
     std::vector<std::string> projectors; ///< NAME=1024x768; of a mirror, one without a name
-    std::string pattern = "graycode";
+    PatternArguments patterns;
     bool json = false;
 };
 
@@ -227,7 +228,7 @@ void room(const RoomArguments& arguments, const Session& session) {
     const std::vector<NamedDevice> projectors = parseProjectors(arguments.projectors);
     std::vector<CaptureOrder> orders;
     orders.reserve(projectors.size());
-    for (const NamedDevice& projector : projectors) orders.push_back(parsePattern(arguments.pattern, projector.size));
+    for (const NamedDevice& projector : projectors) orders.push_back(arguments.patterns.orderFor(projector.size));
     const RoomFolder folder = listRoom(arguments.folder, projectors);
     ReadRoom read;
     const InstallationCalibration result = orRefused(arguments.json, [&] {
@@ -344,7 +345,7 @@ void printMirror(const MirrorCalibration& result) {
 void mirror(const RoomArguments& arguments, const Session& session) {
     const CalibrationBoard board = parseCalibrationBoard(arguments.board);
     const cv::Size projector = parseProjectorSize(arguments.projectors.front());
-    const CaptureOrder order = parsePattern(arguments.pattern, projector);
+    const CaptureOrder order = arguments.patterns.orderFor(projector);
     const MirrorCalibration result = orRefused(arguments.json, [&] {
         const Progress progress = session.progress();
         const MirrorFolder folder = listMirror(arguments.folder);
@@ -366,8 +367,7 @@ void mirror(const RoomArguments& arguments, const Session& session) {
 
 void addCommonOptions(CLI::App& command, RoomArguments& arguments) {
     command.add_option("--board", arguments.board, kBoardHelp)->required();
-    command.add_option("--pattern", arguments.pattern, "graycode, or phase:16x3+1x3 (periods x steps)")
-        ->capture_default_str();
+    arguments.patterns.addTo(command);
     command.add_flag("--json", arguments.json, "Print one JSON value");
 }
 

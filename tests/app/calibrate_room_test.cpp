@@ -1,4 +1,5 @@
 #include <filesystem>
+#include <fstream>
 #include <memory>
 
 #include <gmock/gmock.h>
@@ -149,6 +150,11 @@ TEST_F(CalibrateRoom, WrongFoldersAndNamesAreRefused) {
     const Outcome unknown = room(*folder_ / "room", {}, "top=256x192");
     EXPECT_EQ(unknown.exitCode, 1);
     EXPECT_THAT(unknown.err, HasSubstr("upper"));
+    const auto order = *folder_ / "order.txt";
+    std::ofstream(order) << "white\nrow bit x\n";
+    const Outcome badOrder = room(*folder_ / "room", {"--order", order.string()});
+    EXPECT_EQ(badOrder.exitCode, 1);
+    EXPECT_THAT(badOrder.err, HasSubstr("order.txt, line 2"));
     EXPECT_EQ(room(*folder_ / "room", {}, "256x192").exitCode, 2);
     EXPECT_EQ(room(*folder_ / "room", {}, "side=256x192").exitCode, 2);
 }
