@@ -70,6 +70,48 @@ TEST(RigSheet, MakesFlapsOfBendLines) {
     EXPECT_NEAR(info["reach"]["min"][2].get<double>(), -0.065, 0.002);
 }
 
+TEST(RigReport, SaysWhatADeviceCanBe) {
+    const Made made;
+    std::filesystem::create_directory(made["targets"]);
+    ASSERT_EQ(lumorph({"rig", "deform", resource("models/tablet.glb"), "--state", "9,21,32,14,13,7", "-o",
+                       made["targets/pose.obj"]})
+                  .exitCode,
+              0);
+    std::filesystem::copy(resource("targets/dunes.glb"), made["targets"]);
+    const auto report =
+        lumorph({"rig", "report", resource("models/tablet.glb"), "--targets", made["targets"], "--json"}).json();
+    EXPECT_EQ(report["metrics"].size(), 10U);
+    EXPECT_EQ(report["metrics"][6]["key"], "closure");
+    EXPECT_TRUE(report["metrics"][6]["light"].is_null());
+    EXPECT_EQ(report["references"].size(), 3U);
+    EXPECT_EQ(report["loads"].size(), 6U);
+    EXPECT_EQ(report["fit"]["best"], "pose");
+    EXPECT_EQ(report["fit"]["targets"][1]["state"].dump(), "[9,21,32,14,13,7]");
+    EXPECT_GT(report["fit"]["targets"][1]["iou"], 0.99);
+    EXPECT_EQ(report["fit"]["byActuators"].size(), 6U);
+    // As `match --fit --method refined` finds it in a field.
+    EXPECT_NEAR(report["fit"]["targets"][0]["iou"].get<double>(), 0.650, 0.003);
+    const std::string text = lumorph({"rig", "report", resource("models/tablet.glb"), "--coarse"}).out;
+    for (const char* part : {"Zero-crossing", "with light", "pins", "SG90", "bloom", "without"})
+        EXPECT_NE(text.find(part), std::string::npos) << part;
+}
+
+TEST(RigReport, RefusesByName) {
+    const Made made;
+    std::filesystem::create_directory(made["empty"]);
+    ASSERT_EQ(lumorph({"rig", "new", "sheet", "-o", made["s.glb"]}).exitCode, 0);
+    const std::string tablet = resource("models/tablet.glb");
+    const auto expect = [](const Outcome& outcome, int code, const char* part) {
+        EXPECT_EQ(outcome.exitCode, code) << outcome.err;
+        EXPECT_NE(outcome.err.find(part), std::string::npos) << outcome.err;
+    };
+    expect(lumorph({"rig", "report", tablet, "--targets", made["empty"]}), 1, "holds no mesh");
+    expect(lumorph({"rig", "report", tablet, "--targets", made["none"]}), 1, "none");
+    expect(lumorph({"rig", "report", made["s.glb"]}), 2, "no actuator");
+    expect(lumorph({"rig", "report", tablet, "--servo", "AX-12"}), 2, "SG90");
+    expect(lumorph({"rig", "report", tablet, "--pixel-mm", "nan"}), 2, "--pixel-mm");
+}
+
 TEST(RigMaking, RefusesByNameAndLeavesNothing) {
     const Made made;
     writeFile(made["o.svg"], std::string(kSvg));
