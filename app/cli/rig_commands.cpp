@@ -272,6 +272,7 @@ void addRigCommands(CLI::App& app, Session& session) {
 
     addMakingCommands(group, session);
     addRigReport(*group, session);
+    addRigSearch(*group, session);
 }
 
 } // namespace lumorph::cli

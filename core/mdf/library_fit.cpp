@@ -55,11 +55,12 @@ State bestBySums(const LevelGains& gains, int both, int covered, int wanted) {
 }
 
 VoxelFrame frameFor(const Rig& rig, const LibraryFitOptions& options) {
+    const Box& box = options.space.empty() ? rig.reach() : options.space;
     for (int resolution = options.resolution; resolution > 1; --resolution) {
-        VoxelFrame frame = frameOf(rig.reach(), resolution);
+        VoxelFrame frame = frameOf(box, resolution);
         if (frame.voxelCount() <= options.voxels) return frame;
     }
-    return frameOf(rig.reach(), 1);
+    return frameOf(box, 1);
 }
 
 } // namespace

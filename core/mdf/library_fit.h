@@ -18,9 +18,10 @@ struct LibraryFitOptions {
     std::size_t voxels = 400'000; ///< at most
     int levels = 33;
     TargetPlacing placing = TargetPlacing::automatic;
+    Box space; ///< what the frame holds; empty: what the rig reaches
 
     /// For an answer while somebody drags: voxels and levels so coarse that twelve targets take a part of a second.
-    [[nodiscard]] static LibraryFitOptions coarse() { return {12, 12'000, 17, TargetPlacing::automatic}; }
+    [[nodiscard]] static LibraryFitOptions coarse() { return {12, 12'000, 17, TargetPlacing::automatic, {}}; }
 };
 
 /// How well a rig takes the shape of one target.
