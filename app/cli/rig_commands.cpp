@@ -271,6 +271,8 @@ void addRigCommands(CLI::App& app, Session& session) {
     deformCommand->callback([deformOptions] { deform(*deformOptions); });
 
     addMakingCommands(group, session);
+    addRigReport(*group, session);
+    addRigSearch(*group, session);
 }
 
 } // namespace lumorph::cli

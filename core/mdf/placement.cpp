@@ -69,6 +69,10 @@ TriangleMesh placed(const TriangleMesh& mesh, const Placement& placement) {
 }
 
 Placement fitPlacement(const Field& field, const Box& box, Angle yaw) {
+    return fitPlacement(field.frame, field.restSurface, box, yaw);
+}
+
+Placement fitPlacement(const VoxelFrame& voxels, float restSurface, const Box& box, Angle yaw) {
     Box turned;
     Placement placement{1.0, yaw, glm::vec3(0.0F)};
     const glm::mat4 turn = placement.deviceFromTarget();
@@ -79,17 +83,16 @@ Placement fitPlacement(const Field& field, const Box& box, Angle yaw) {
     const glm::vec3 size = turned.size();
     if (box.empty() || !(std::max({size.x, size.y, size.z}) > 0.0F) || !std::isfinite(size.x + size.y + size.z))
         throw InvalidInput("target", "it has no extent", "give a mesh with a volume");
-    const Box frame = field.frame.box();
-    const glm::vec3 room(frame.max.x - frame.min.x, frame.max.y - field.restSurface, frame.max.z - frame.min.z);
-    if (!(room.y > 0.0F))
-        throw InvalidInput("field", "its frame has no room above the rest surface", "use a rig that lifts");
+    const Box frame = voxels.box();
+    const glm::vec3 room(frame.max.x - frame.min.x, frame.max.y - restSurface, frame.max.z - frame.min.z);
+    if (!(room.y > 0.0F)) throw InvalidInput("frame", "it has no room above the rest surface", "use a rig that lifts");
     double scale = std::numeric_limits<double>::infinity();
     for (int axis = 0; axis < 3; ++axis)
         if (size[axis] > 0.0F)
             scale = std::min(scale, static_cast<double>(room[axis]) / static_cast<double>(size[axis]));
     placement.scale = scale;
     const glm::vec3 stand = static_cast<float>(scale) * glm::vec3(turned.centre().x, turned.min.y, turned.centre().z);
-    placement.translation = glm::vec3(frame.centre().x, field.restSurface, frame.centre().z) - stand;
+    placement.translation = glm::vec3(frame.centre().x, restSurface, frame.centre().z) - stand;
     return placement;
 }
 

@@ -58,6 +58,7 @@ void placePoints(std::span<const glm::vec3> points, const glm::mat4& deviceFromT
 /// The largest uniform scale at which a box fits into the frame above the rest surface, centred in x
 /// and z and standing on the rest surface. Throws InvalidInput for an empty or flat box, or a frame
 /// with no room above the rest surface.
+[[nodiscard]] Placement fitPlacement(const VoxelFrame& frame, float restSurface, const Box& box, Angle yaw = {});
 [[nodiscard]] Placement fitPlacement(const Field& field, const Box& box, Angle yaw = {});
 
 } // namespace lumorph

@@ -24,6 +24,7 @@ public:
     explicit Search(const Coverage& coverage) : coverage_(coverage) {
         for (std::size_t i = 0; i < coverage.rig().actuatorCount(); ++i)
             windows_.push_back(coverage.window(coverage.columnsMovedBy(i)));
+        held_.resize(windows_.size(), false);
         for (const auto& [i, j] : coverage.coupledPairs()) {
             ColumnRange range = coverage.columnsMovedBy(i);
             range.include(coverage.columnsMovedBy(j));
@@ -66,6 +67,18 @@ public:
         result.statesSeen = statesSeen_;
         result.converged = phase_ == kPhases;
         return result;
+    }
+
+    void hold(const std::vector<std::size_t>& actuators) {
+        std::vector<bool> held(windows_.size(), false);
+        for (const std::size_t actuator : actuators) {
+            if (actuator >= held.size())
+                throw InvalidInput("actuator " + std::to_string(actuator),
+                                   "the rig has " + std::to_string(held.size()) + " actuators",
+                                   "give indices of actuators that are there");
+            held[actuator] = true;
+        }
+        held_ = std::move(held);
     }
 
     [[nodiscard]] bool outOfTime() const { return hasDeadline_ && clock_->now() >= deadline_; }
@@ -131,6 +144,7 @@ private:
         for (; cursor_ < pairs_.size() * kCount * kCount && !helped_; ++cursor_) {
             if (outOfTime()) return false;
             const Pair& pair = pairs_[cursor_ / (kCount * kCount)];
+            if (held_[pair.first] || held_[pair.second]) continue;
             State next = state_;
             next[pair.first].index += kPairSteps[cursor_ / kCount % kCount];
             next[pair.second].index += kPairSteps[cursor_ % kCount];
@@ -149,7 +163,7 @@ private:
     /// Goes to the level if that raises the IoU.
     bool tryLevel(std::size_t actuator, int level) {
         const Level was = state_[actuator];
-        if (!inRange(Level{level}) || level == was.index) return false;
+        if (held_[actuator] || !inRange(Level{level}) || level == was.index) return false;
         State next = state_;
         next[actuator] = Level{level};
         return tryState(next, windows_[actuator]);
@@ -197,6 +211,7 @@ private:
 
     const Coverage& coverage_;
     std::vector<Coverage::Window> windows_;
+    std::vector<bool> held_; ///< one an actuator
     std::vector<Pair> pairs_;
     CoverageScratch scratch_;
     BitColumns target_;
@@ -218,6 +233,8 @@ Refiner::Refiner(const Coverage& coverage) : search_(std::make_unique<Search>(co
 Refiner::~Refiner() = default;
 Refiner::Refiner(Refiner&&) noexcept = default;
 Refiner& Refiner::operator=(Refiner&&) noexcept = default;
+
+void Refiner::hold(const std::vector<std::size_t>& actuators) { search_->hold(actuators); }
 
 Refinement Refiner::refine(const BitColumns& target, const State& start, Microseconds budget, const Clock& clock) {
     search_->start(budget, clock);

@@ -30,6 +30,10 @@ public:
     Refiner(Refiner&&) noexcept;
     Refiner& operator=(Refiner&&) noexcept;
 
+    /// Actuators that stay at the level they start with, by index; none unless told. Throws InvalidInput for one that
+    /// is not there.
+    void hold(const std::vector<std::size_t>& actuators);
+
     /// `target` has the frame's shape; voxels inside the body are ignored. A budget of zero or less
     /// means no limit; the time is looked at after each state.
     /// Throws InvalidInput when target or state do not fit the coverage.

@@ -38,14 +38,6 @@ struct Edge {
     bool shown = false; ///< borders the surface that looks up at rest
 };
 
-/// Whether a triangle is part of the surface that shows: it looks up at rest, by 45 degrees or more.
-bool facesUp(const TriangleMesh& mesh, std::uint32_t triangle) {
-    const glm::uvec3& t = mesh.triangles[triangle];
-    const glm::vec3 normal =
-        glm::cross(mesh.positions[t.y] - mesh.positions[t.x], mesh.positions[t.z] - mesh.positions[t.x]);
-    return normal.y > 0.70F * glm::length(normal);
-}
-
 std::vector<Edge> edgesOf(const TriangleMesh& mesh) {
     std::map<std::pair<std::uint32_t, std::uint32_t>, std::vector<std::uint32_t>> found;
     for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t)
@@ -259,6 +251,13 @@ private:
 };
 
 } // namespace
+
+bool facesUp(const TriangleMesh& mesh, std::uint32_t triangle) {
+    const glm::uvec3& t = mesh.triangles[triangle];
+    const glm::vec3 normal =
+        glm::cross(mesh.positions[t.y] - mesh.positions[t.x], mesh.positions[t.z] - mesh.positions[t.x]);
+    return normal.y > 0.70F * glm::length(normal);
+}
 
 double amplitudeOf(const Rig& rig, std::size_t actuator) {
     const auto vertices = rig.verticesOf(actuator);

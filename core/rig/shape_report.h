@@ -44,6 +44,9 @@ struct ShapeReport {
     std::vector<std::string> warnings; ///< plain sentences (R42)
 };
 
+/// Whether a triangle is part of the surface that shows, the top: it looks up at rest, by 45 degrees or more.
+[[nodiscard]] bool facesUp(const TriangleMesh& mesh, std::uint32_t triangle);
+
 /// The farthest that a vertex gets from where it rests while this actuator alone goes through its stroke, metres, along
 /// a straight line: not the way it goes round a bend. Looked at in 16 states.
 [[nodiscard]] double amplitudeOf(const Rig& rig, std::size_t actuator);

@@ -21,8 +21,11 @@ TEST(BundledTargets, AreWhatTheGeneratorWrites) {
     const TemporaryFolder folder;
     const Outcome made = Process(LUMORPH_BIN_DIR "/lumorph_targets", {folder.path().string()}).wait();
     ASSERT_EQ(made.exitCode, 0) << made.err;
-    for (const char* name : {"dunes.glb", "swell.glb", "bloom.glb"}) {
-        const std::vector<std::byte> committed = bytesOfFile(resource(std::string("targets/") + name));
+    std::vector<std::string> names{"dunes.glb", "swell.glb", "bloom.glb"};
+    for (const auto& [name, model] : shapeModels()) names.push_back(name + ".glb");
+    EXPECT_EQ(names.size(), 15U);
+    for (const std::string& name : names) {
+        const std::vector<std::byte> committed = bytesOfFile(resource("targets/" + name));
         EXPECT_TRUE(bytesOfFile(folder / name) == committed) << name << ": run lumorph_targets and commit the result";
         EXPECT_LT(committed.size(), kMegabyte) << name;
     }
@@ -38,6 +41,14 @@ TEST(BundledTargets, DunesAreACleanSolidOfTheTabletsSize) {
     EXPECT_NEAR(box.size().y, 0.055F, 0.01F);
     EXPECT_NEAR(box.size().z, 0.15F, 1e-5F);
     EXPECT_EQ(box.min.y, 0.0F);
+}
+
+TEST(BundledTargets, PlainShapesAreCleanSmallSolids) {
+    for (const auto& [name, model] : shapeModels()) {
+        const MeshReport report = checkMesh(flatten(model));
+        EXPECT_TRUE(report.solid()) << name << ::testing::PrintToString(report.findings());
+        EXPECT_LT(writeGlb(model).size(), 64U << 10U) << name;
+    }
 }
 
 TEST(BundledTargets, SwellIsAWaveThatTravelsAndComesBack) {

@@ -1,3 +1,5 @@
+#include <chrono>
+#include <csignal>
 #include <filesystem>
 
 #include <gtest/gtest.h>
@@ -68,6 +70,134 @@ TEST(RigSheet, MakesFlapsOfBendLines) {
     // The sheet is centred: the corner at the upper right of the page is at +x, away from the viewer.
     EXPECT_NEAR(info["reach"]["max"][0].get<double>(), 0.09, 0.002);
     EXPECT_NEAR(info["reach"]["min"][2].get<double>(), -0.065, 0.002);
+}
+
+TEST(RigReport, SaysWhatADeviceCanBe) {
+    const Made made;
+    std::filesystem::create_directory(made["targets"]);
+    ASSERT_EQ(lumorph({"rig", "deform", resource("models/tablet.glb"), "--state", "9,21,32,14,13,7", "-o",
+                       made["targets/pose.obj"]})
+                  .exitCode,
+              0);
+    std::filesystem::copy(resource("targets/dunes.glb"), made["targets"]);
+    const auto report =
+        lumorph({"rig", "report", resource("models/tablet.glb"), "--targets", made["targets"], "--json"}).json();
+    EXPECT_EQ(report["metrics"].size(), 10U);
+    EXPECT_EQ(report["metrics"][6]["key"], "closure");
+    EXPECT_TRUE(report["metrics"][6]["light"].is_null());
+    EXPECT_EQ(report["references"].size(), 3U);
+    EXPECT_EQ(report["loads"].size(), 6U);
+    EXPECT_EQ(report["fit"]["best"], "pose");
+    EXPECT_EQ(report["fit"]["targets"][1]["state"].dump(), "[9,21,32,14,13,7]");
+    EXPECT_GT(report["fit"]["targets"][1]["iou"], 0.99);
+    EXPECT_EQ(report["fit"]["byActuators"].size(), 6U);
+    // As `match --fit --method refined` finds it in a field.
+    EXPECT_NEAR(report["fit"]["targets"][0]["iou"].get<double>(), 0.650, 0.003);
+    const std::string text = lumorph({"rig", "report", resource("models/tablet.glb"), "--coarse"}).out;
+    for (const char* part : {"Zero-crossing", "with light", "pins", "SG90", "bloom", "without"})
+        EXPECT_NE(text.find(part), std::string::npos) << part;
+}
+
+TEST(RigReport, RefusesByName) {
+    const Made made;
+    std::filesystem::create_directory(made["empty"]);
+    ASSERT_EQ(lumorph({"rig", "new", "sheet", "-o", made["s.glb"]}).exitCode, 0);
+    const std::string tablet = resource("models/tablet.glb");
+    const auto expect = [](const Outcome& outcome, int code, const char* part) {
+        EXPECT_EQ(outcome.exitCode, code) << outcome.err;
+        EXPECT_NE(outcome.err.find(part), std::string::npos) << outcome.err;
+    };
+    expect(lumorph({"rig", "report", tablet, "--targets", made["empty"]}), 1, "holds no mesh");
+    expect(lumorph({"rig", "report", tablet, "--targets", made["none"]}), 1, "none");
+    expect(lumorph({"rig", "report", made["s.glb"]}), 2, "no actuator");
+    expect(lumorph({"rig", "report", tablet, "--servo", "AX-12"}), 2, "SG90");
+    expect(lumorph({"rig", "report", tablet, "--pixel-mm", "nan"}), 2, "--pixel-mm");
+}
+
+/// Targets that are poses of a sheet device with two flaps, and a blank sheet of the same outline.
+struct SearchInput : Made {
+    SearchInput() {
+        const Made& made = *this;
+        writeFile(made["o.svg"], std::string(kSvg));
+        writeFile(made["b.json"], std::string(R"({"bends": [{"from": [14, 1], "to": [19, 6]},
+                                                            {"from": [6, 1], "to": [6, 14]}]})"));
+        writeFile(made["none.json"], std::string(R"({"bends": []})"));
+        std::filesystem::create_directory(made["t"]);
+        EXPECT_EQ(lumorph({"rig", "sheet", made["o.svg"], "--bends", made["b.json"], "-o", made["h.glb"]}).exitCode, 0);
+        EXPECT_EQ(lumorph({"rig", "sheet", made["o.svg"], "--bends", made["none.json"], "-o", made["s.glb"]}).exitCode,
+                  0);
+        EXPECT_EQ(lumorph({"rig", "deform", made["h.glb"], "--state", "20,32", "-o", made["t/one.obj"]}).exitCode, 0);
+        EXPECT_EQ(lumorph({"rig", "deform", made["h.glb"], "--state", "32,9", "-o", made["t/two.obj"]}).exitCode, 0);
+    }
+    [[nodiscard]] std::vector<std::string> command(const std::string& folder, const std::string& generations) const {
+        return {"rig",          "search", (*this)["s.glb"], "--targets", (*this)["t"], "--generations", generations,
+                "--population", "16",     "--servos",       "3",         "-o",         (*this)[folder], "--json"};
+    }
+};
+
+TEST(RigSearch, FindsAFrontAndGoesOn) {
+    const SearchInput made;
+    const auto found = lumorph(made.command("found", "12")).json();
+    ASSERT_GE(found["front"].size(), 1U);
+    EXPECT_EQ(found["generations"], 12);
+    double fit = 0.0;
+    for (const auto& design : found["front"]) {
+        EXPECT_GT(design["fit"].get<double>(), fit);
+        fit = design["fit"];
+        const auto info = lumorph({"rig", "info", design["file"], "--states", "3", "--json"}).json();
+        EXPECT_EQ(info["actuators"].size(), design["servos"]);
+        EXPECT_TRUE(info["mesh"]["closed"]);
+    }
+    EXPECT_GT(fit, 0.8); // the hidden device's is 1
+    EXPECT_EQ(textOfFile(made["found/front.csv"]).substr(0, 27), "servos,price,fit,file,one,t");
+    // In two parts, and from the drawing instead of the rig.
+    ASSERT_EQ(lumorph(made.command("parts", "5")).exitCode, 0);
+    const auto whole = lumorph(made.command("parts", "12")).json();
+    EXPECT_EQ(textOfFile(made["parts/front.csv"]), textOfFile(made["found/front.csv"]));
+    EXPECT_EQ(whole["evaluations"], found["evaluations"]);
+    for (const auto& design : found["front"]) {
+        const std::string name = std::filesystem::path(design["file"].get<std::string>()).filename();
+        EXPECT_TRUE(bytesOfFile(made["parts/" + name]) == bytesOfFile(made["found/" + name])) << name;
+    }
+    std::vector<std::string> drawn = made.command("drawn", "0");
+    drawn[2] = made["o.svg"];
+    EXPECT_EQ(lumorph(drawn).exitCode, 0);
+}
+
+TEST(RigSearch, RefusesByName) {
+    const SearchInput made;
+    const auto expect = [](const Outcome& outcome, int code, const char* part) {
+        EXPECT_EQ(outcome.exitCode, code) << outcome.err;
+        EXPECT_NE(outcome.err.find(part), std::string::npos) << outcome.err;
+    };
+    ASSERT_EQ(lumorph(made.command("found", "0")).exitCode, 0);
+    std::vector<std::string> other = made.command("found", "0");
+    other[2] = made["h.glb"];
+    expect(lumorph(other), 2, "the search of another rig, 's");
+    other = made.command("found", "0");
+    other.insert(other.end(), {"--seed", "5"});
+    expect(lumorph(other), 2, "seed 1");
+    other = made.command("found", "0");
+    other[2] = resource("models/pin_display.glb");
+    expect(lumorph(other), 2, "pin display");
+    writeFile(made["file"], std::string("in the way"));
+    expect(lumorph(made.command("file", "0")), 1, "file");
+}
+
+TEST(RigSearch, StopsWithAWholeStateAndGoesOn) {
+    const SearchInput made;
+    const std::vector<std::string> endless = made.command("found", "1000000");
+    Process search(lumorphProgram(), endless, {}, Process::ErrorStream::terminal);
+    for (int k = 0; k < 600 && !std::filesystem::exists(made["found/search.json"]); ++k)
+        (void)search.gatherFor(std::chrono::milliseconds(100));
+    (void)search.gatherFor(std::chrono::milliseconds(500));
+    search.send(SIGINT);
+    const Outcome outcome = search.wait(std::chrono::seconds(20));
+    EXPECT_EQ(outcome.exitCode, 1);
+    EXPECT_NE(outcome.err.find("the same command goes on from there"), std::string::npos) << outcome.err;
+    EXPECT_EQ(filesIn(made["found"]), std::vector<std::string>{"search.json"});
+    const auto found = lumorph(made.command("found", "1")).json();
+    EXPECT_GE(found["generations"], 1);
 }
 
 TEST(RigMaking, RefusesByNameAndLeavesNothing) {

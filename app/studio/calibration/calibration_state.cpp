@@ -209,8 +209,8 @@ QString nextPoseWords(const CalibrationState& state) {
     const auto& next = state.result->next;
     if (!next || state.setup.way == CaptureWay::folder) return {};
     if (!next->worthIt) return tr("Another pose is no longer worth it.");
-    return tr("Another pose, as outlined in the live picture, would lower the uncertainty over the whole room of the "
-              "poses by %1 %.")
+    return tr("Another pose, as outlined in the live picture, would lower the uncertainty over the space that the "
+              "poses cover by %1 %.")
         .arg(number(100.0 * (1.0 - next->meanAfter / next->meanBefore), 0));
 }
 

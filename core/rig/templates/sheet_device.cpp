@@ -20,7 +20,7 @@ namespace lumorph {
 namespace {
 
 // Millimetres.
-constexpr double kGap = 2.0; ///< of skirt between housing and sheet
+constexpr double kGap = 1e3 * kSheetAboveHousing; ///< of skirt between housing and sheet
 constexpr int kArcRows = 10;
 constexpr int kSkirtShares = 12;
 constexpr double kSpacing = 10.0; ///< between points where the sheet stays straight
@@ -102,18 +102,7 @@ private:
 
 /// The housing: the convex hull, `margin` larger on every side.
 Polygon grownHull(Polygon points, double margin) {
-    std::ranges::sort(points, [](const auto& a, const auto& b) { return a.x < b.x || (a.x == b.x && a.y < b.y); });
-    Polygon hull;
-    for (const int pass : {0, 1}) {
-        const std::size_t base = hull.size();
-        for (const glm::dvec2& p : points) {
-            while (hull.size() > base + 1 && turnOf(hull.back() - hull[hull.size() - 2], p - hull.back()) <= 1e-9)
-                hull.pop_back();
-            hull.push_back(p);
-        }
-        hull.pop_back();
-        if (pass == 0) std::ranges::reverse(points);
-    }
+    const Polygon hull = convexHull(std::move(points));
     Polygon grown;
     const std::size_t count = hull.size();
     for (std::size_t k = 0; k < count; ++k) {
@@ -181,12 +170,9 @@ void checkSheet(const SheetDevice& device) {
 class SheetBuilder {
 public:
     explicit SheetBuilder(const SheetDevice& device) : device_(device) {
-        checkSheet(device);
+        clearance_ = flapClearance(device);
         for (const glm::dvec2& p : checkedOutline(device.outline, "sheet")) outline_.push_back(pageOf(p));
-        double widest = 0.0;
-        for (const BendLine& bend : device.bends) widest = std::max(widest, bend.angle.inRadians());
         const double thickness = 1e3 * device.thickness;
-        clearance_.bulge = bulgeOf(thickness, 1e3 * device.arc, std::clamp(widest, 0.1, 0.5 * std::numbers::pi));
         ledge_ = 1e3 * device.housing;
         bottom_ = ledge_ + kGap;
         top_ = bottom_ + thickness;
@@ -549,6 +535,13 @@ private:
 };
 
 } // namespace
+
+FlapClearance flapClearance(const SheetDevice& device) {
+    checkSheet(device);
+    double widest = 0.0;
+    for (const BendLine& bend : device.bends) widest = std::max(widest, bend.angle.inRadians());
+    return {bulgeOf(1e3 * device.thickness, 1e3 * device.arc, std::clamp(widest, 0.1, 0.5 * std::numbers::pi))};
+}
 
 Rig sheetRig(const SheetDevice& device, const Progress& progress) {
     progress.report(0.0, "laying out the flaps");

@@ -33,12 +33,18 @@ struct SheetDevice {
     std::string name = "sheet";
     std::vector<glm::dvec2> outline; ///< of the sheet, either way round
     double thickness = 0.002;        ///< of the sheet
-    double housing = 0.016;          ///< height of the housing; the sheet lies 2 mm above it
+    double housing = 0.016;          ///< height of the housing; the sheet lies kSheetAboveHousing above it
     double arc = 0.02;               ///< length of sheet that a bend curves
     std::vector<BendLine> bends;
 };
 
 inline constexpr std::size_t kMaxBendLines = 64;
+inline constexpr double kSheetAboveHousing = 0.002; ///< metres
+
+struct FlapClearance;
+/// How far the flaps of such a sheet keep from one another (see flap_layout.h). Throws InvalidInput as `sheetRig` does
+/// for its measures.
+[[nodiscard]] FlapClearance flapClearance(const SheetDevice& device);
 
 /// The sheet as a closed solid over a housing that is the convex hull of the outline and a little more. Each flap is
 /// what can be seen of the sheet from its bend line, straight on, up to the sheet's edge, another bend line or a flap

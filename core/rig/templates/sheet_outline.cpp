@@ -118,4 +118,21 @@ std::vector<glm::dvec2> checkedOutline(const std::vector<glm::dvec2>& outline, c
     return points;
 }
 
+std::vector<glm::dvec2> convexHull(std::vector<glm::dvec2> points) {
+    const auto turnBetween = [](const glm::dvec2& in, const glm::dvec2& out) { return in.x * out.y - in.y * out.x; };
+    std::ranges::sort(points, [](const auto& a, const auto& b) { return a.x < b.x || (a.x == b.x && a.y < b.y); });
+    std::vector<glm::dvec2> hull;
+    for (const int pass : {0, 1}) {
+        const std::size_t base = hull.size();
+        for (const glm::dvec2& p : points) {
+            while (hull.size() > base + 1 && turnBetween(hull.back() - hull[hull.size() - 2], p - hull.back()) <= 1e-9)
+                hull.pop_back();
+            hull.push_back(p);
+        }
+        hull.pop_back();
+        if (pass == 0) std::ranges::reverse(points);
+    }
+    return hull;
+}
+
 } // namespace lumorph

@@ -15,6 +15,8 @@ int main(int argc, char** argv) {
         lumorph::writeFileAtomically(folder / "dunes.glb", lumorph::writeGlb(lumorph::dunesModel()));
         lumorph::writeFileAtomically(folder / "bloom.glb", lumorph::writeGlb(lumorph::bloomModel()));
         lumorph::writeFileAtomically(folder / "swell.glb", lumorph::writeGlb(lumorph::swellModel()));
+        for (const auto& [name, model] : lumorph::shapeModels())
+            lumorph::writeFileAtomically(folder / (name + ".glb"), lumorph::writeGlb(model));
     } catch (const std::exception& error) {
         std::fprintf(stderr, "lumorph_targets: %s\n", error.what());
         return 1;

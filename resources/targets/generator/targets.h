@@ -1,5 +1,9 @@
 #pragma once
 
+#include <string>
+#include <utility>
+#include <vector>
+
 #include "core/geometry/model.h"
 
 namespace lumorph {
@@ -14,5 +18,8 @@ namespace lumorph {
 /// Six petals over the corners and the long edges of such a tablet, which rise and sink one after another, as the
 /// animation "bloom" of six seconds: the mean shape, and the first harmonics of the loop as morph targets.
 [[nodiscard]] Model bloomModel();
+
+/// Plain shapes of the same footprint, each named by what it is: what a maker may ask a device for.
+[[nodiscard]] std::vector<std::pair<std::string, Model>> shapeModels();
 
 } // namespace lumorph

@@ -54,6 +54,24 @@ TEST_P(RefineOnRig, FindsHiddenStatesFromRest) {
     EXPECT_GE(worst, 0.9);
 }
 
+TEST_P(RefineOnRig, LeavesWhatIsHeldWhereItStarts) {
+    Refiner refiner(*coverage_);
+    const BitColumns target = volumeOf({Level{6}, Level{7}, Level{5}});
+    const State start{Level{2}, Level{0}, Level{1}};
+    refiner.hold({0, 2});
+    const Refinement refined = refiner.refine(target, start, Microseconds{0}, clock_);
+    EXPECT_EQ(refined.state[0], start[0]);
+    EXPECT_EQ(refined.state[2], start[2]);
+    // Every level of the one that is free, looked at one by one.
+    double best = 0.0;
+    for (int level = 0; level < kRefineLevels; ++level)
+        best = std::max(best, refiner.qualityOf(target, {start[0], Level{level}, start[2]}).iou());
+    EXPECT_DOUBLE_EQ(refined.after.iou(), best);
+    refiner.hold({});
+    EXPECT_GT(refiner.refine(target, start, Microseconds{0}, clock_).after.iou(), best);
+    EXPECT_THROW(refiner.hold({3}), InvalidInput);
+}
+
 /// Runs out of time after so many looks at it.
 class CountingClock final : public Clock {
 public:
