@@ -128,7 +128,7 @@ private:
     QTimer* liveTimer_;
     bool active_ = false;
     bool isLooking_ = false;
-    bool isStale_ = false; ///< what is looked at has changed meanwhile: another look follows
+    bool isStale_ = false;           ///< what is looked at has changed meanwhile: another look follows
     bool isFlatChosen_ = false;      ///< by the user; else it is the first pose
     bool rest_ = false;              ///< the poses that are missing follow by themselves
     int benchTry_ = 0;               ///< counts, so that a bench that comes too late is not taken
