@@ -8,6 +8,8 @@ namespace lumorph::cli {
 
 /// Each adds its group to the program; the session outlives the parsing.
 void addRigCommands(CLI::App& app, Session& session);
+/// Into the group of the rig commands.
+void addPartsCommand(CLI::App& group, Session& session);
 void addMdfCommands(CLI::App& app, Session& session);
 void addVoxelizeCommand(CLI::App& app, Session& session);
 void addMatchCommand(CLI::App& app, Session& session);

@@ -271,6 +271,7 @@ void addRigCommands(CLI::App& app, Session& session) {
     deformCommand->callback([deformOptions] { deform(*deformOptions); });
 
     addMakingCommands(group, session);
+    addPartsCommand(*group, session);
 }
 
 } // namespace lumorph::cli

@@ -1,5 +1,7 @@
 #include "core/rig/templates/plane_mesh.h"
 
+#include <algorithm>
+
 #include <CGAL/Constrained_Delaunay_triangulation_2.h>
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/Triangulation_vertex_base_with_info_2.h>
@@ -27,6 +29,11 @@ std::vector<typename Plane::Vertex_handle> insertPoints(Plane& plane, const std:
     if (plane.number_of_vertices() != points.size())
         throw InvalidInput("plane mesh", "two points are at the same place", "remove one");
     return handles;
+}
+
+/// Twice the area of a triangle, counter-clockwise positive.
+double turnOf(const glm::dvec2& a, const glm::dvec2& b, const glm::dvec2& c) {
+    return (b.x - a.x) * (c.y - b.y) - (b.y - a.y) * (c.x - b.x);
 }
 
 template <typename Face> glm::uvec3 verticesOf(const Face& face) {
@@ -84,6 +91,21 @@ void addWall(const std::vector<std::uint32_t>& a, const std::vector<std::uint32_
             ++i;
         }
     }
+}
+
+std::vector<glm::dvec2> convexHull(std::vector<glm::dvec2> points) {
+    std::ranges::sort(points, [](const auto& a, const auto& b) { return a.x < b.x || (a.x == b.x && a.y < b.y); });
+    std::vector<glm::dvec2> hull;
+    for (const int pass : {0, 1}) {
+        const std::size_t base = hull.size();
+        for (const glm::dvec2& p : points) {
+            while (hull.size() > base + 1 && turnOf(hull[hull.size() - 2], hull.back(), p) <= 1e-9) hull.pop_back();
+            hull.push_back(p);
+        }
+        hull.pop_back();
+        if (pass == 0) std::ranges::reverse(points);
+    }
+    return hull;
 }
 
 bool insidePolygon(const std::vector<glm::dvec2>& polygon, const glm::dvec2& point) {

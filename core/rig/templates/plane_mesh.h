@@ -30,6 +30,9 @@ struct PlaneMesh {
 void addWall(const std::vector<std::uint32_t>& a, const std::vector<std::uint32_t>& b,
              std::vector<glm::uvec3>& triangles);
 
+/// The corners of the points' convex hull, counter-clockwise.
+[[nodiscard]] std::vector<glm::dvec2> convexHull(std::vector<glm::dvec2> points);
+
 /// True inside the polygon (even-odd).
 [[nodiscard]] bool insidePolygon(const std::vector<glm::dvec2>& polygon, const glm::dvec2& point);
 
