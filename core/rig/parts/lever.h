@@ -30,8 +30,12 @@ struct Lever {
 /// end its nose lies on the flap beyond the arc and its arm clears the arc, at rest its nose is within the flap.
 /// `depth` is the flap's, `below` as in Lever. The flap is lifted less than its angle where it is too short; none when
 /// that would be less than 20 degrees.
-[[nodiscard]] std::optional<Lever> leverFor(const SheetFlap& flap, double thickness, double depth, double below);
+[[nodiscard]] std::optional<Lever> leverFor(const SheetFlap& flap, double thickness, double depth, double below,
+                                            const ServoBody& body, double tolerance);
 
+/// What a lever is made of, seen from the side: around shaft and horn, beam, nose. Its shaft lies at the origin, the
+/// arm along x, the flap on the side of +y.
+[[nodiscard]] std::vector<PlanePolygon> leverShapes(const Lever& lever, const ServoBody& body, double tolerance);
 /// The lever as it is printed: its shaft at the origin, the arm along x, with a bed for the servo's own horn that looks
 /// up. The flap is on the side of +y, of -y when it is `mirrored`.
 [[nodiscard]] LayeredDrawing leverDrawing(const Lever& lever, const ServoBody& body, double tolerance, bool mirrored);

@@ -23,7 +23,8 @@ constexpr double kPostsApart = 70.0;
 constexpr std::size_t kMostPosts = 12;
 constexpr glm::dvec2 kBoard{33.0, 18.0}; ///< of an Arduino Pro Mini
 constexpr double kCable = 10.0;
-constexpr std::size_t kMostTries = 300'000;
+constexpr double kWireHole = 3.0;
+constexpr std::size_t kMostTries = 100'000;
 constexpr std::size_t kCandidates = 96; ///< a flap
 
 /// Whether a line along a side of the first parts the convex polygons by `apart`.
@@ -77,6 +78,7 @@ public:
         for (std::size_t f = 0; f < candidates_.size(); ++f) result.servos.push_back(candidates_[f][chosen_[f]].servo);
         for (const PlacedServo& servo : result.servos) result.leverless += servo.lever ? 0 : 1;
         placeBoard(result);
+        for (const PlacedServo& servo : result.servos) taken_.push_back(servo.slot); // of no concern to seats and board
         placePosts(result);
         return result;
     }
@@ -89,7 +91,8 @@ private:
         for (double along = middle; along < flap.high - kStep; along += kStep)
             for (const double w : {along, 2.0 * middle - along}) {
                 const double depth = std::min({flap.depthAt(w), flap.depthAt(w - kStep), flap.depthAt(w + kStep)});
-                const auto lever = leverFor(flap, sheet_.top - sheet_.underside, depth, heights_.below);
+                const auto lever = leverFor(flap, sheet_.top - sheet_.underside, depth, heights_.below, options_.servo,
+                                            options_.tolerance);
                 if (!lever) continue;
                 for (const double side : {1.0, -1.0})
                     for (const double out : {1.0, -1.0}) addCandidate(index, w, *lever, side, out, candidates);
@@ -109,7 +112,11 @@ private:
     [[nodiscard]] std::vector<Candidate> candidatesElsewhere(std::size_t index) const {
         std::vector<Candidate> candidates;
         const SheetFlap& flap = sheet_.flaps[index];
-        const glm::dvec2 goal = flap.frame.page({0.5 * (flap.low + flap.high), 0.0});
+        const double middle = 0.5 * (flap.low + flap.high);
+        const glm::dvec2 goal = flap.frame.page({middle, 0.0});
+        const glm::dvec2 hole(middle, 0.5 * flap.depthAt(middle));
+        PlanePolygon wire = rectangle(hole - 0.5 * kWireHole, hole + 0.5 * kWireHole);
+        for (glm::dvec2& p : wire) p = flap.frame.page(p);
         const auto [low, high] = Region().add(sheet_.housing).bounds();
         for (double x = low.x; x < high.x; x += kStep)
             for (double y = low.y; y < high.y; y += kStep)
@@ -118,6 +125,7 @@ private:
                         Candidate candidate;
                         PlacedServo& servo = candidate.servo;
                         servo.flap = index;
+                        servo.slot = wire;
                         servo.seat = {{x, y}, side, hand * glm::dvec2(-side.y, side.x)};
                         candidate.score = glm::distance(servo.seat.page({0.0, leverPlane(options_.servo)}), goal);
                         const double hub = leverHub(options_.servo, options_.tolerance);

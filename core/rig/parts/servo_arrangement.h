@@ -29,7 +29,7 @@ struct PlacedServo {
     std::size_t flap = 0;
     SeatPlace seat;
     std::optional<Lever> lever; ///< none where the flap is too short for one
-    PlanePolygon slot;          ///< in the lid, for the lever; empty without one
+    PlanePolygon slot;          ///< in the lid, for the lever; without one a hole for a wire
 };
 
 struct HousingArrangement {

@@ -108,11 +108,10 @@ private:
             plate.cut(disc(post, 0.5 * ServoSeat::kScrewHole));
             pads.cut(disc(post, 0.5 * kScrewHead));
         }
-        for (const PlacedServo& servo : arrangement_.servos)
-            if (servo.lever) {
-                plate.cut(servo.slot);
-                pads.cut(servo.slot);
-            }
+        for (const PlacedServo& servo : arrangement_.servos) {
+            plate.cut(servo.slot);
+            pads.cut(servo.slot);
+        }
         return {{{HousingHeights::kLid, plate}, {HousingHeights::kLid + sheet_.underside - sheet_.ledge, pads}}};
     }
 
@@ -212,7 +211,7 @@ private:
         const double wanted = flap.angle.inDegrees();
         if (!servo.lever)
             plan_.notes.push_back("No lever fits under the flap of " + inQuotes(name) +
-                                  "; link it to its servo by a wire.");
+                                  "; link it to its servo by a wire, through the hole of the lid.");
         else if (servo.lever->lifted.inDegrees() < wanted - 1.0)
             plan_.notes.push_back("The flap of " + inQuotes(name) + " is short: its lever lifts it by " +
                                   std::to_string(std::lround(servo.lever->lifted.inDegrees())) + " of its " +
@@ -228,7 +227,7 @@ private:
             picture.add(servo.seat.page(seat_.outline()), "seat");
             const ServoBody& b = options_.servo;
             picture.add(servo.seat.page(rectangle({-b.shaft, 0.0}, {b.length - b.shaft, b.height})), "servo");
-            if (servo.lever) picture.add(servo.slot, "lever");
+            picture.add(servo.slot, "lever");
         }
         for (const glm::dvec2& post : arrangement_.posts) picture.add(disc(post, HousingArrangement::kPost), "screw");
         picture.add(arrangement_.cable, "floor");
@@ -258,8 +257,11 @@ private:
         for (const double share : kShares) {
             const double angle = lever.rest.inRadians() + share * lever.turn().inRadians();
             const glm::dvec2 shaft(lever.pivot, -lever.below);
-            const glm::dvec2 nose = shaft + lever.length * glm::dvec2(std::cos(angle), std::sin(angle));
-            picture.add(arm(shaft, leverHub(options_.servo, options_.tolerance), nose, Lever::kNose), "lever");
+            const glm::dvec2 way(std::cos(angle), std::sin(angle));
+            for (PlanePolygon& shape : leverShapes(lever, options_.servo, options_.tolerance)) {
+                for (glm::dvec2& p : shape) p = shaft + p.x * way + p.y * glm::dvec2(-way.y, way.x);
+                picture.add(shape, "lever");
+            }
         }
         const double thickness = sheet_.top - sheet_.underside;
         picture.add(rectangle({-10.0, 0.0}, {depth, thickness}), "seat");

@@ -291,6 +291,12 @@ TEST(Levers, TouchTheFlapAtRestAndAtTheEndAndNothingBetween) {
                 const glm::dvec2 onArm = shaft + (nose(lever.end) - shaft) * (s / 50.0);
                 EXPECT_GT(distanceTo(up, onArm), 0.3);
             }
+            for (PlanePolygon& shape : leverShapes(lever, servoBodies().front(), 0.2))
+                for (const glm::dvec2& p : shape) {
+                    const glm::dvec2 way = (nose(lever.end) - shaft) / lever.length;
+                    const glm::dvec2 place = shaft + p.x * way + p.y * glm::dvec2(-way.y, way.x);
+                    EXPECT_GT(distanceTo(up, place), glm::distance(p, {lever.length, 0.0}) < 1.6 ? 0.0 : 0.15);
+                }
             // The turn is within what the rig's pulses allow, and is what the pulses say.
             EXPECT_NEAR(0.09 * (plan.wiring[k].pulseMax - plan.wiring[k].pulseMin), lever.turn().inDegrees(), 0.1);
         }
