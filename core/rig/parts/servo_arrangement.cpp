@@ -66,14 +66,22 @@ public:
 
     HousingArrangement arrange() {
         for (std::size_t f = 0; f < sheet_.flaps.size(); ++f) candidates_.push_back(candidatesOf(f));
-        order_.resize(candidates_.size());
-        std::iota(order_.begin(), order_.end(), 0);
-        std::ranges::sort(order_, {}, [&](std::size_t f) { return candidates_[f].size(); });
-        chosen_.assign(candidates_.size(), 0);
-        if (!place(0))
-            throw InvalidInput(names_[order_[std::min(deepest_, order_.size() - 1)]],
-                               "its servo has no room in the housing beside the others",
-                               "choose a smaller servo, a larger device or fewer actuators");
+        std::vector<bool> searched(candidates_.size(), false);
+        const auto lookElsewhere = [&](std::size_t f) {
+            std::vector<Candidate> more = candidatesElsewhere(f);
+            candidates_[f].insert(candidates_[f].end(), more.begin(), more.end());
+            searched[f] = true;
+        };
+        for (std::size_t f = 0; f < candidates_.size(); ++f)
+            if (candidates_[f].empty()) lookElsewhere(f);
+        if (!placeAll()) {
+            for (std::size_t f = 0; f < candidates_.size(); ++f)
+                if (!searched[f]) lookElsewhere(f);
+            if (!placeAll())
+                throw InvalidInput(names_[order_[std::min(deepest_, order_.size() - 1)]],
+                                   "its servo has no room in the housing beside the others",
+                                   "choose a smaller servo, a larger device or fewer actuators");
+        }
         HousingArrangement result;
         for (std::size_t f = 0; f < candidates_.size(); ++f) result.servos.push_back(candidates_[f][chosen_[f]].servo);
         for (const PlacedServo& servo : result.servos) result.leverless += servo.lever ? 0 : 1;
@@ -98,8 +106,6 @@ private:
                     for (const double out : {1.0, -1.0}) addCandidate(index, w, *lever, side, out, candidates);
             }
         keepBest(candidates);
-        std::vector<Candidate> elsewhere = candidatesElsewhere(index);
-        candidates.insert(candidates.end(), elsewhere.begin(), elsewhere.end());
         return candidates;
     }
 
@@ -171,6 +177,16 @@ private:
             for (const PlanePolygon& other : taken)
                 if (!apart(area, other)) return false;
         return true;
+    }
+
+    /// Those with the fewest places first.
+    bool placeAll() {
+        order_.resize(candidates_.size());
+        std::iota(order_.begin(), order_.end(), 0);
+        std::ranges::sort(order_, {}, [&](std::size_t f) { return candidates_[f].size(); });
+        chosen_.assign(candidates_.size(), 0);
+        deepest_ = tries_ = 0;
+        return place(0);
     }
 
     bool place(std::size_t k) {
