@@ -58,15 +58,20 @@ std::string partsTable(const BuildPlan& plan) {
 
 std::string channelText(int channel) { return channel < 0 ? "" : std::to_string(channel); }
 
+// Whole microseconds within the limits, as the sketch has them.
+std::string leastPulse(const WiringRow& row) { return fixed(std::ceil(row.pulseMin), 0); }
+std::string greatestPulse(const WiringRow& row) { return fixed(std::floor(row.pulseMax), 0); }
+std::string restPulse(const WiringRow& row) { return row.reversed ? greatestPulse(row) : leastPulse(row); }
+std::string endPulse(const WiringRow& row) { return row.reversed ? leastPulse(row) : greatestPulse(row); }
+
 std::string wiringTable(const BuildPlan& plan) {
     std::string text = "actuator,channel,pin,pulse at rest (us),pulse at the end (us),least pulse (us),greatest pulse "
                        "(us),reversed,seat,lever at rest (deg),lever at the end (deg)\n";
     for (const WiringRow& row : plan.wiring)
         text += csvField(row.actuator) + "," + channelText(row.channel) + "," + channelText(row.pin) + "," +
-                fixed(row.reversed ? row.pulseMax : row.pulseMin, 0) + "," +
-                fixed(row.reversed ? row.pulseMin : row.pulseMax, 0) + "," + fixed(std::ceil(row.pulseMin), 0) + "," +
-                fixed(std::floor(row.pulseMax), 0) + "," + (row.reversed ? "yes" : "no") + "," + csvField(row.seat) +
-                "," + (row.lever ? fixed(row.lever->rest.inDegrees(), 1) : "") + "," +
+                restPulse(row) + "," + endPulse(row) + "," + leastPulse(row) + "," + greatestPulse(row) + "," +
+                (row.reversed ? "yes" : "no") + "," + csvField(row.seat) + "," +
+                (row.lever ? fixed(row.lever->rest.inDegrees(), 1) : "") + "," +
                 (row.lever ? fixed(row.lever->end.inDegrees(), 1) : "") + "\n";
     return text;
 }
@@ -99,10 +104,9 @@ std::string wiringOnPage(const BuildPlan& plan) {
     constexpr std::size_t kMost = 100;
     for (std::size_t k = 0; k < std::min(kMost, plan.wiring.size()); ++k) {
         const WiringRow& row = plan.wiring[k];
-        html += cells(
-            {escaped(row.actuator), channelText(row.pin), fixed(row.reversed ? row.pulseMax : row.pulseMin, 0),
-             fixed(row.reversed ? row.pulseMin : row.pulseMax, 0), row.reversed ? "yes" : "no", escaped(row.seat)},
-            "td");
+        html += cells({escaped(row.actuator), channelText(row.pin), restPulse(row), endPulse(row),
+                       row.reversed ? "yes" : "no", escaped(row.seat)},
+                      "td");
     }
     html += "</table>\n";
     if (plan.wiring.size() > kMost)
