@@ -11,6 +11,7 @@ void addRigCommands(CLI::App& app, Session& session);
 /// Into the group of the rig commands.
 void addRigReport(CLI::App& group, Session& session);
 void addRigSearch(CLI::App& group, Session& session);
+void addPartsCommand(CLI::App& group, Session& session);
 void addMdfCommands(CLI::App& app, Session& session);
 void addVoxelizeCommand(CLI::App& app, Session& session);
 void addMatchCommand(CLI::App& app, Session& session);

@@ -273,6 +273,7 @@ void addRigCommands(CLI::App& app, Session& session) {
     addMakingCommands(group, session);
     addRigReport(*group, session);
     addRigSearch(*group, session);
+    addPartsCommand(*group, session);
 }
 
 } // namespace lumorph::cli

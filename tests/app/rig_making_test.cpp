@@ -251,5 +251,40 @@ TEST(RigMaking, RefusesByNameAndLeavesNothing) {
     EXPECT_EQ(filesIn(made.folder.path()), before);
 }
 
+TEST(RigParts, WritesSketchAndProfileWithTheWiringsPins) {
+    const Made made;
+    ASSERT_EQ(lumorph({"rig", "new", "tablet", "-o", made["t.glb"]}).exitCode, 0);
+    const auto plan = lumorph({"rig", "parts", made["t.glb"], "-o", made["out"], "--json"}).json();
+    EXPECT_EQ(plan["wiring"].size(), 6U);
+    const std::string header = textOfFile(made["out/tablet/channels.h"]);
+    const auto profile = nlohmann::json::parse(textOfFile(made["out/profile.json"]));
+    for (std::size_t k = 0; k < 6; ++k) {
+        const auto& row = plan["wiring"][k];
+        EXPECT_NE(header.find("{" + std::to_string(row["pin"].get<int>()) + ", "), std::string::npos) << header;
+        EXPECT_EQ(profile["servos"][k]["channel"], row["pin"]);
+        EXPECT_EQ(profile["servos"][k]["reversed"], row["reversed"]);
+        EXPECT_EQ(profile["servos"][k]["pulseMax"], row["pulse"][1]);
+    }
+    for (const auto& part : plan["parts"])
+        EXPECT_TRUE(std::filesystem::exists(made["out/" + part["name"].get<std::string>() + ".stl"])) << part;
+}
+
+TEST(RigParts, LeavesNothingOfWhatFails) {
+    const Made made;
+    ASSERT_EQ(lumorph({"rig", "new", "cushion", "-o", made["c.glb"]}).exitCode, 0);
+    const auto fails = [&](const std::vector<std::string>& more, const char* named) {
+        std::vector<std::string> arguments{"rig", "parts", made["c.glb"], "-o", made["out"]};
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        const Outcome outcome = lumorph(arguments);
+        EXPECT_NE(outcome.exitCode, 0);
+        EXPECT_NE(outcome.err.find(named), std::string::npos) << outcome.err;
+    };
+    fails({"--tolerance", "5mm"}, "--tolerance");
+    fails({"--tolerance", "wide"}, "--tolerance");
+    fails({"--bed", "1mm"}, "--bed");
+    fails({"--servo", "SG9000"}, "SG90, MG996R");
+    EXPECT_EQ(filesIn(made.folder.path()), std::vector<std::string>{"c.glb"});
+}
+
 } // namespace
 } // namespace lumorph::test

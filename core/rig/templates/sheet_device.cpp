@@ -12,6 +12,7 @@
 #include "core/base/text.h"
 #include "core/geometry/disjoint_sets.h"
 #include "core/rig/templates/flap_layout.h"
+#include "core/rig/templates/plane_drawing.h"
 #include "core/rig/templates/plane_mesh.h"
 #include "core/rig/templates/sheet_outline.h"
 #include "core/rig/templates/sound_rig.h"
@@ -24,85 +25,15 @@ constexpr double kGap = 1e3 * kSheetAboveHousing; ///< of skirt between housing 
 constexpr int kArcRows = 10;
 constexpr int kSkirtShares = 12;
 constexpr double kSpacing = 10.0; ///< between points where the sheet stays straight
-constexpr double kSnap = 0.03;    ///< points nearer than this become one
 constexpr double kIsland = 4.0;   ///< square millimetres: smaller still pieces between slits are left out
 
 using Polygon = std::vector<glm::dvec2>;
-using PlaneEdge = std::pair<std::uint32_t, std::uint32_t>;
 
 double turnOf(const glm::dvec2& a, const glm::dvec2& b) { return a.x * b.y - a.y * b.x; }
 
-/// Points on the page, one for places that are all but the same, and the lines between them.
-class PointPool {
-public:
-    std::uint32_t add(const glm::dvec2& p) {
-        const glm::ivec2 cell = cellOf(p);
-        for (int dx = -1; dx <= 1; ++dx)
-            for (int dy = -1; dy <= 1; ++dy) {
-                const auto found = cells_.find({cell.x + dx, cell.y + dy});
-                if (found == cells_.end()) continue;
-                for (const std::uint32_t k : found->second)
-                    if (glm::distance(points_[k], p) < kSnap) return k;
-            }
-        const auto index = static_cast<std::uint32_t>(points_.size());
-        points_.push_back(p);
-        cells_[{cell.x, cell.y}].push_back(index);
-        return index;
-    }
-
-    void addEdge(const glm::dvec2& from, const glm::dvec2& to) { edges_.emplace_back(add(from), add(to)); }
-
-    /// Points at most kSpacing apart on the way from one to the other.
-    void addLine(const glm::dvec2& from, const glm::dvec2& to) {
-        const int steps = std::max(1, static_cast<int>(std::ceil(glm::distance(from, to) / kSpacing - 1e-9)));
-        glm::dvec2 last = from;
-        for (int k = 1; k <= steps; ++k) {
-            const glm::dvec2 next = k == steps ? to : from + (to - from) * (static_cast<double>(k) / steps);
-            addEdge(last, next);
-            last = next;
-        }
-    }
-
-    [[nodiscard]] PlaneMesh triangulate() const {
-        std::vector<PlaneEdge> edges;
-        for (const auto& [a, b] : edges_) splitAtPoints(a, b, edges);
-        std::ranges::sort(edges);
-        edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
-        return triangulateCrossing(points_, edges);
-    }
-
-private:
-    static glm::ivec2 cellOf(const glm::dvec2& p) { return glm::ivec2(glm::floor(p / (2.0 * kSnap))); }
-
-    /// A line that passes a point closely goes through it.
-    void splitAtPoints(std::uint32_t a, std::uint32_t b, std::vector<PlaneEdge>& edges) const {
-        if (a == b) return;
-        const glm::dvec2 way = points_[b] - points_[a];
-        const double length = glm::length(way);
-        std::vector<std::pair<double, std::uint32_t>> on;
-        for (std::uint32_t k = 0; k < points_.size(); ++k) {
-            const glm::dvec2 to = points_[k] - points_[a];
-            const double along = glm::dot(to, way) / length;
-            if (k != a && k != b && along > 0.0 && along < length && std::abs(turnOf(way, to)) < kSnap * length)
-                on.emplace_back(along, k);
-        }
-        std::ranges::sort(on);
-        std::uint32_t last = a;
-        on.emplace_back(length, b);
-        for (const auto& [along, k] : on) {
-            edges.push_back(std::minmax(last, k));
-            last = k;
-        }
-    }
-
-    std::vector<glm::dvec2> points_;
-    std::vector<PlaneEdge> edges_;
-    std::map<std::pair<int, int>, std::vector<std::uint32_t>> cells_;
-};
-
 /// The housing: the convex hull, `margin` larger on every side.
-Polygon grownHull(Polygon points, double margin) {
-    const Polygon hull = convexHull(std::move(points));
+Polygon grownHull(const Polygon& points, double margin) {
+    const Polygon hull = convexHull(points);
     Polygon grown;
     const std::size_t count = hull.size();
     for (std::size_t k = 0; k < count; ++k) {
@@ -226,11 +157,11 @@ private:
             glm::dvec2 last = rim[k];
             for (const double share : shares) {
                 const glm::dvec2 next = rim[k] + share * (rim[k + 1] - rim[k]);
-                pool_.addLine(flap.frame.page(last), flap.frame.page(next));
+                pool_.addLine(flap.frame.page(last), flap.frame.page(next), kSpacing);
                 last = next;
             }
         }
-        pool_.addLine(flap.outline.back(), flap.outline.front());
+        pool_.addLine(flap.outline.back(), flap.outline.front(), kSpacing);
         for (int r = 1; r <= kArcRows; ++r) {
             std::vector<double> ends;
             for (std::size_t k = 0; k + 1 < rim.size(); ++k)
@@ -239,7 +170,7 @@ private:
                                    (r * row - rim[k].y) * (rim[k + 1].x - rim[k].x) / (rim[k + 1].y - rim[k].y));
             std::ranges::sort(ends);
             for (std::size_t k = 0; k + 1 < ends.size(); k += 2)
-                pool_.addLine(flap.frame.page({ends[k], r * row}), flap.frame.page({ends[k + 1], r * row}));
+                pool_.addLine(flap.frame.page({ends[k], r * row}), flap.frame.page({ends[k + 1], r * row}), kSpacing);
         }
     }
 
@@ -431,7 +362,7 @@ private:
             for (const int label : around_[v]) {
                 if (label < 0) continue;
                 const Flap& flap = flaps_[static_cast<std::size_t>(label)];
-                if (flap.frame.local(plane_.points[v]).y < 0.5 * kSnap) continue;
+                if (flap.frame.local(plane_.points[v]).y < 0.5 * PlaneDrawing::kSnap) continue;
                 if (std::ranges::any_of(around_[v], [&](int l) { return l != label && l != kNoSheet; }))
                     throw InvalidInput("bend line " + inQuotes(flap.name), "its flap cannot be cut free of the rest",
                                        "move the line a little");
@@ -522,13 +453,13 @@ private:
     double top_ = 0.0;
     std::vector<Flap> flaps_;
     Polygon housing_;
-    PointPool pool_;
+    PlaneDrawing pool_;
     PlaneMesh plane_;
     std::vector<int> labels_; ///< one a triangle
     std::unordered_map<std::uint64_t, std::uint32_t> faces_;
-    std::vector<std::vector<int>> around_; ///< labels around each point
-    std::vector<PlaneEdge> walls_;         ///< edges of the sheet, the sheet to their left
-    std::vector<int> mover_;               ///< the flap that moves each point; -1 for none
+    std::vector<std::vector<int>> around_;                       ///< labels around each point
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> walls_; ///< edges of the sheet, the sheet to their left
+    std::vector<int> mover_;                                     ///< the flap that moves each point; -1 for none
     std::vector<std::vector<std::uint32_t>> columns_;
     std::vector<std::vector<Influence>> influences_;
     TriangleMesh mesh_;

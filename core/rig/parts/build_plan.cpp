@@ -1,0 +1,130 @@
+#include "core/rig/parts/build_plan.h"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "core/base/error.h"
+#include "core/base/text.h"
+#include "core/rig/parts/plan_making.h"
+#include "core/rig/parts/servo_seat.h"
+
+namespace lumorph {
+namespace {
+
+constexpr double kLeastPulse = 500.0; // microseconds that hobby servos follow
+constexpr double kGreatestPulse = 2500.0;
+constexpr int kFirstPin = 2; ///< of an Arduino Pro Mini that servos may have
+
+void checkOptions(const PartOptions& options) {
+    if (!(options.tolerance >= 0.0 && options.tolerance <= 1.0))
+        throw InvalidInput("--tolerance", "parts would not hold one another", "choose 0 to 1 mm");
+    if (!(options.bed >= 50.0 && options.bed <= 2000.0))
+        throw InvalidInput("--bed", "no printer has such a bed", "choose 50 to 2000 mm");
+}
+
+/// The rig's own channels, where all are pins that the board has for servos; otherwise pins in their order.
+std::vector<int> pinsFor(const Rig& rig) {
+    std::vector<int> pins;
+    std::set<int> taken;
+    bool own = true;
+    for (const Actuator& actuator : rig.actuators()) {
+        const int channel = actuator.drive.channel;
+        own = own && channel >= kFirstPin && channel <= 13 && taken.insert(channel).second;
+    }
+    for (std::size_t k = 0; k < rig.actuatorCount(); ++k)
+        pins.push_back(rig.actuatorCount() > kBoardServos ? -1
+                       : own                              ? rig.actuators()[k].drive.channel
+                                                          : kFirstPin + static_cast<int>(k));
+    return pins;
+}
+
+void addWiring(BuildPlan& plan, const Rig& rig) {
+    const std::vector<int> pins = pinsFor(rig);
+    for (std::size_t k = 0; k < rig.actuatorCount(); ++k) {
+        const Actuator& actuator = rig.actuators()[k];
+        WiringRow row;
+        row.actuator = actuator.name;
+        row.channel = actuator.drive.channel;
+        row.pin = pins[k];
+        const auto [least, greatest] = std::minmax(actuator.drive.pulseMin, actuator.drive.pulseMax);
+        row.pulseMin = std::clamp(least, kLeastPulse, kGreatestPulse - 1.0);
+        row.pulseMax = std::clamp(greatest, row.pulseMin + 1.0, kGreatestPulse);
+        row.reversed = actuator.drive.pulseMin > actuator.drive.pulseMax;
+        plan.wiring.push_back(std::move(row));
+    }
+}
+
+void addBoard(BuildPlan& plan) {
+    if (plan.wiring.empty()) return;
+    if (plan.wiring.size() > kBoardServos) {
+        plan.notes.push_back("The sketch drives " + std::to_string(kBoardServos) + " servos and this rig has " +
+                             std::to_string(plan.wiring.size()) +
+                             ": there is no sketch here. Take Pololu Maestros, 24 channels each, and set them up in "
+                             "Devices.");
+        return;
+    }
+    plan.bought.push_back({"Arduino Pro Mini, 5 V", "drives the servos with the sketch of this folder", 1});
+    plan.bought.push_back({"power supply, 5 V", "0.7 A for each servo that moves at once; not from the board", 1});
+}
+
+} // namespace
+
+void addPart(BuildPlan& plan, const PartOptions& options, const LayeredDrawing& drawing, PrintPart part) {
+    part.solid = solidOf(drawing, part.name);
+    const Box box = boundingBox(part.solid.mesh.positions);
+    if (box.size().x > options.bed + 1e-3 || box.size().y > options.bed + 1e-3)
+        throw InvalidInput("part " + inQuotes(part.name),
+                           std::to_string(std::lround(std::max(box.size().x, box.size().y))) +
+                               " mm are longer than the bed",
+                           "choose a larger --bed");
+    const glm::dvec2 low(box.min.x, box.min.y);
+    for (glm::vec3& p : part.solid.mesh.positions) p -= glm::vec3(box.min.x, box.min.y, 0.0F);
+    for (LayerOutline& layer : part.solid.layers)
+        for (PlanePolygon& border : layer.borders)
+            for (glm::dvec2& p : border) p -= low;
+    plan.parts.push_back(std::move(part));
+}
+
+void addLoneSeats(BuildPlan& plan, const PartOptions& options) {
+    const int servos = static_cast<int>(plan.wiring.size());
+    if (servos == 0) return;
+    const ServoSeat seat(options.servo, options.tolerance);
+    addPart(plan, options, seat.drawing({}, 2.0), {"seat", "holds a servo on its side", "PLA or PETG", servos, {}});
+    addPart(plan, options, seat.cap(), {"seat-cap", "holds the servo down in its seat", "PLA or PETG", servos, {}});
+    plan.bought.push_back({std::string(options.servo.name) + " servo, with its horn", "move the device", servos});
+    plan.bought.push_back({"self-tapping screw 2 x 8 mm", "caps onto seats", 2 * servos});
+    for (WiringRow& row : plan.wiring) row.seat = "seat";
+    plan.steps.push_back({"Lay the servos into their seats",
+                          "On their side, the tabs in the slots, the cable out of the notch. Screw the caps on.",
+                          {}});
+    plan.steps.push_back({"Fix the seats where they drive your device",
+                          "Glue or screw them from below, and link each horn to the part that it moves.",
+                          {}});
+}
+
+BuildPlan buildPlanOf(const Rig& rig, const PartOptions& options, const Progress& progress) {
+    checkOptions(options);
+    progress.report(0.0, "reading the rig");
+    BuildPlan plan;
+    plan.device = rig.name();
+    addWiring(plan, rig);
+    if (const auto sheet = sheetPlanOf(rig)) {
+        addSheetParts(plan, *sheet, options, progress);
+    } else if (isPinDisplay(rig)) {
+        addPinParts(plan, rig, options, progress);
+    } else if (rig.actuatorCount() == 0) {
+        throw InvalidInput(inQuotes(rig.name()),
+                           "it has no actuator and is no sheet on a housing: there is nothing to build",
+                           "give it actuators");
+    } else {
+        plan.notes.push_back("There is no housing: only a level sheet that bends up from a housing, or pins that slide "
+                             "up, can be taken apart into printable parts. Here are seats for its servos.");
+        addLoneSeats(plan, options);
+    }
+    addBoard(plan);
+    progress.report(1.0, "parts");
+    return plan;
+}
+
+} // namespace lumorph

@@ -1,0 +1,117 @@
+#include "core/rig/parts/lever.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <glm/geometric.hpp>
+
+namespace lumorph {
+namespace {
+
+// Millimetres.
+constexpr double kHornWall = 1.4;
+constexpr double kBase = 1.6;       ///< of the lever, under the horn
+constexpr double kShaftHole = 4.8;  ///< diameter, for the screw of the horn and its driver
+constexpr double kMargin = 2.2;     ///< of flap beyond the nose at rest
+constexpr double kArmTop = 0.3;     ///< of the arm above the line from shaft to nose
+constexpr double kArmBelow = 2.7;   ///< of the arm below it, near the shaft
+constexpr double kClear = 0.2;      ///< from arm to arc
+constexpr double kBeyond = 1.0;     ///< of straight flap that the nose reaches at least at the end
+constexpr double kLeastLift = 20.0; ///< degrees
+constexpr double kMostLean = 25.0;  ///< degrees between flap and arm at the end
+
+/// From the shaft to the middle of the horn's round end; a horn that is too long for the lever is cut off.
+double hornEnd(double length, const ServoBody& body) {
+    return std::min(body.hornReach - 0.5 * body.hornTip, 0.4 * length);
+}
+/// Radius of the bed there.
+double hornTip(const ServoBody& body, double tolerance) { return 0.5 * body.hornTip + tolerance; }
+
+double distanceToSegment(const glm::dvec2& p, const glm::dvec2& a, const glm::dvec2& b) {
+    const double share = std::clamp(glm::dot(p - a, b - a) / glm::dot(b - a, b - a), 0.0, 1.0);
+    return glm::distance(p, a + share * (b - a));
+}
+
+/// The lever of a given length that holds the flap at an angle, itself leaning back from it by `lean`. `horn`: how far
+/// along the lever the horn ends, and the radius there.
+std::optional<Lever> leverAlong(const SheetFlap& flap, double thickness, double below, double angle, double lean,
+                                double length, const glm::dvec2& horn) {
+    const double rise = below - Lever::kNose;
+    if (rise >= length || rise < 0.0) return std::nullopt;
+    const double rest = std::asin(rise / length);
+    if (rest >= angle - lean) return std::nullopt;
+    // Underside of the flap where its arc ends, and the way straight on from there.
+    const double radius = flap.arc / angle;
+    const glm::dvec2 end = glm::dvec2(0.0, 0.5 * thickness) +
+                           radius * glm::dvec2(std::sin(angle), 1.0 - std::cos(angle)) +
+                           0.5 * thickness * glm::dvec2(std::sin(angle), -std::cos(angle));
+    const glm::dvec2 way(std::cos(angle), std::sin(angle));
+    const glm::dvec2 out(way.y, -way.x);
+    const glm::dvec2 arm(std::cos(angle - lean), std::sin(angle - lean));
+    // (nose - end) . out = kNose, where nose = (pivot, -below) + length * arm.
+    Lever lever;
+    lever.pivot = (Lever::kNose + glm::dot(end - length * arm, out) + below * out.y) / out.x;
+    lever.below = below;
+    lever.length = length;
+    lever.rest = Angle::radians(rest);
+    lever.end = Angle::radians(angle - lean);
+    lever.lifted = Angle::radians(angle);
+    const glm::dvec2 shaft(lever.pivot, -below);
+    const glm::dvec2 nose = shaft + length * arm;
+    const glm::dvec2 centre(0.0, 0.5 * thickness + radius);
+    const double outside = radius + 0.5 * thickness + kClear;
+    if (distanceToSegment(centre, shaft, nose) < outside + kArmTop) return std::nullopt;
+    if (glm::distance(centre, shaft + horn.x * arm) < outside + horn.y) return std::nullopt;
+    return glm::dot(nose - end, way) >= kBeyond ? std::optional(lever) : std::nullopt;
+}
+
+} // namespace
+
+double Lever::reach() const { return pivot + length * std::cos(rest.inRadians()) + kNose; }
+
+std::optional<Lever> leverFor(const SheetFlap& flap, double thickness, double depth, double below,
+                              const ServoBody& body, double tolerance) {
+    const double most = std::min(90.0, flap.angle.inDegrees());
+    for (double degrees = most; degrees >= kLeastLift; degrees -= 5.0) {
+        std::optional<Lever> best;
+        for (double lean = 0.0; lean <= kMostLean; lean += 5.0)
+            for (double length = 12.0; length <= 120.0; length += 0.5) {
+                const auto lever = leverAlong(flap, thickness, below, Angle::degrees(degrees).inRadians(),
+                                              Angle::degrees(lean).inRadians(), length,
+                                              {hornEnd(length, body), hornTip(body, tolerance) + kHornWall});
+                if (!lever) continue;
+                if (!best || lever->reach() < best->reach()) best = lever;
+                break; // longer ones reach farther
+            }
+        if (best && best->reach() <= depth - kMargin) return best;
+    }
+    return std::nullopt;
+}
+
+double leverPlane(const ServoBody& body) { return body.hornTop + kBase - 0.5 * Lever::kThickness; }
+
+double leverHub(const ServoBody& body, double tolerance) { return 0.5 * body.hornHub + tolerance + kHornWall; }
+
+std::vector<PlanePolygon> leverShapes(const Lever& lever, const ServoBody& body, double tolerance) {
+    const glm::dvec2 tip(hornEnd(lever.length, body), 0.0);
+    const glm::dvec2 nose(lever.length, 0.0);
+    return {arm({0.0, 0.0}, leverHub(body, tolerance), tip, hornTip(body, tolerance) + kHornWall),
+            {{tip.x, kArmTop}, {tip.x, -kArmBelow}, {nose.x, -Lever::kNose}, {nose.x, kArmTop}},
+            disc(nose, Lever::kNose)};
+}
+
+LayeredDrawing leverDrawing(const Lever& lever, const ServoBody& body, double tolerance, bool mirrored) {
+    Region base;
+    for (PlanePolygon& shape : leverShapes(lever, body, tolerance)) {
+        if (mirrored)
+            for (glm::dvec2& p : shape) p.y = -p.y;
+        base.add(std::move(shape));
+    }
+    base.cut(disc({0.0, 0.0}, 0.5 * kShaftHole));
+    Region bed = base;
+    bed.cut(
+        arm({0.0, 0.0}, 0.5 * body.hornHub + tolerance, {hornEnd(lever.length, body), 0.0}, hornTip(body, tolerance)));
+    return {{{kBase, base}, {Lever::kThickness, bed}}};
+}
+
+} // namespace lumorph

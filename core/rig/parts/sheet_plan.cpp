@@ -1,0 +1,157 @@
+#include "core/rig/parts/sheet_plan.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+
+#include <glm/geometric.hpp>
+
+#include "core/rig/templates/plane_mesh.h"
+#include "core/rig/templates/sheet_outline.h"
+
+namespace lumorph {
+namespace {
+
+constexpr double kLevel = 1e-5;     ///< metres: heights nearer than this are one
+constexpr double kUsualGap = 0.002; ///< metres, from a housing to its sheet, where no bend tells it
+constexpr double kLeastSheet = 0.1; ///< millimetres
+
+glm::dvec2 onPage(const glm::vec3& p) { return pageOf({p.x, p.z}); }
+
+/// Level triangles at a height that look up (or down).
+std::vector<bool> levelAt(const TriangleMesh& mesh, double height, bool up) {
+    std::vector<bool> keep;
+    for (const glm::uvec3& t : mesh.triangles) {
+        bool level = true;
+        for (int k = 0; k < 3; ++k) level = level && std::abs(mesh.positions[t[k]].y - height) < kLevel;
+        const glm::dvec3 a(mesh.positions[t.x]);
+        const glm::dvec3 n = glm::cross(glm::dvec3(mesh.positions[t.y]) - a, glm::dvec3(mesh.positions[t.z]) - a);
+        keep.push_back(level && (n.y > 0.0) == up && n.y != 0.0);
+    }
+    return keep;
+}
+
+/// The height of the largest level area that looks up, below the top; none where there is none.
+std::optional<double> ledgeOf(const TriangleMesh& mesh, double top) {
+    std::map<long, double> areas; // by height in hundredths of a millimetre
+    for (const glm::uvec3& t : mesh.triangles) {
+        const glm::dvec3 a(mesh.positions[t.x]);
+        const glm::dvec3 b(mesh.positions[t.y]);
+        const glm::dvec3 c(mesh.positions[t.z]);
+        const glm::dvec3 n = glm::cross(b - a, c - a);
+        if (std::max({a.y, b.y, c.y}) - std::min({a.y, b.y, c.y}) < kLevel && n.y > 0.0 && a.y < top - kLevel)
+            areas[std::lround(1e5 * a.y)] += n.y;
+    }
+    if (areas.empty()) return std::nullopt;
+    return 1e-5 * std::ranges::max_element(areas, {}, [](const auto& entry) { return entry.second; })->first;
+}
+
+/// The bend, where this actuator bends a level sheet upwards.
+const Bend* upwardBend(const Actuator& actuator) {
+    const auto* bend = std::get_if<Bend>(&actuator.deformer);
+    if (bend == nullptr || bend->max.inRadians() <= 0.0) return nullptr;
+    const glm::dvec3 axis = glm::normalize(glm::dvec3(bend->axis));
+    const glm::dvec3 across = glm::normalize(glm::dvec3(bend->direction));
+    const bool level = std::abs(axis.y) < 1e-3 && std::abs(across.y) < 1e-3;
+    return level && glm::cross(axis, across).y > 0.9 ? bend : nullptr;
+}
+
+SheetFlap flapOf(const Rig& rig, std::size_t index, const Bend& bend, const std::vector<bool>& top) {
+    SheetFlap flap;
+    flap.actuator = index;
+    flap.arc = 1e3 * bend.length;
+    flap.angle = bend.max;
+    flap.frame.origin = onPage(bend.origin);
+    flap.frame.across = glm::normalize(glm::dvec2(bend.direction.x, -bend.direction.z));
+    flap.frame.along = {flap.frame.across.y, -flap.frame.across.x};
+    std::set<std::uint32_t> moved;
+    for (const Influence& influence : rig.actuators()[index].influences)
+        if (influence.weight > 0.5F) moved.insert(influence.vertex);
+    const TriangleMesh& mesh = rig.restMesh();
+    for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+        const glm::uvec3& c = mesh.triangles[t];
+        if (!top[t] || (!moved.contains(c.x) && !moved.contains(c.y) && !moved.contains(c.z))) continue;
+        flap.triangles.push_back({});
+        for (int k = 0; k < 3; ++k) flap.triangles.back().push_back(flap.frame.local(onPage(mesh.positions[c[k]])));
+    }
+    if (flap.triangles.empty()) return flap;
+    flap.low = flap.high = flap.triangles.front().front().x;
+    for (const PlanePolygon& triangle : flap.triangles)
+        for (const glm::dvec2& p : triangle) {
+            flap.low = std::min(flap.low, p.x);
+            flap.high = std::max(flap.high, p.x);
+        }
+    return flap;
+}
+
+} // namespace
+
+double SheetFlap::depthAt(double along) const {
+    double depth = 0.0;
+    for (const PlanePolygon& triangle : triangles)
+        for (std::size_t k = 0; k < 3; ++k) {
+            const glm::dvec2& a = triangle[k];
+            const glm::dvec2& b = triangle[(k + 1) % 3];
+            if ((a.x > along) != (b.x > along))
+                depth = std::max(depth, a.y + (b.y - a.y) * (along - a.x) / (b.x - a.x));
+        }
+    return depth;
+}
+
+std::vector<PlanePolygon> bordersOf(const TriangleMesh& mesh, const std::vector<bool>& keep) {
+    std::set<std::pair<std::uint32_t, std::uint32_t>> edges;
+    for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
+        for (int k = 0; keep[t] && k < 3; ++k) edges.emplace(mesh.triangles[t][k], mesh.triangles[t][(k + 1) % 3]);
+    std::multimap<std::uint32_t, std::uint32_t> next;
+    for (const auto& [a, b] : edges)
+        if (!edges.contains({b, a})) next.emplace(a, b);
+    std::vector<PlanePolygon> borders;
+    while (!next.empty()) {
+        PlanePolygon border;
+        for (auto at = next.begin(); at != next.end();) {
+            border.push_back(onPage(mesh.positions[at->first]));
+            const std::uint32_t to = at->second;
+            next.erase(at);
+            at = next.find(to);
+        }
+        borders.push_back(std::move(border));
+    }
+    return borders;
+}
+
+std::optional<SheetPlan> sheetPlanOf(const Rig& rig) {
+    const TriangleMesh& mesh = rig.restMesh();
+    const Box box = boundingBox(mesh.positions);
+    const std::vector<bool> top = levelAt(mesh, box.max.y, true);
+    const std::vector<bool> bottom = levelAt(mesh, box.min.y, false);
+    const std::optional<double> ledge = ledgeOf(mesh, box.max.y);
+    if (!ledge || *ledge < box.min.y + kLevel || std::ranges::find(bottom, true) == bottom.end()) return std::nullopt;
+    SheetPlan plan;
+    std::vector<bool> still = top;
+    double neutral = 0.5 * (*ledge + kUsualGap + box.max.y);
+    for (std::size_t a = 0; a < rig.actuatorCount(); ++a) {
+        const Bend* bend = upwardBend(rig.actuators()[a]);
+        if (bend == nullptr) return std::nullopt;
+        plan.flaps.push_back(flapOf(rig, a, *bend, top));
+        if (plan.flaps.back().triangles.empty()) return std::nullopt;
+        neutral = bend->origin.y;
+        std::vector<bool> moves(mesh.positions.size(), false);
+        for (const Influence& influence : rig.actuators()[a].influences) moves[influence.vertex] = true;
+        for (std::size_t t = 0; t < still.size(); ++t)
+            for (int k = 0; k < 3; ++k) still[t] = still[t] && !moves[mesh.triangles[t][k]];
+    }
+    plan.ledge = 1e3 * (*ledge - box.min.y);
+    plan.top = 1e3 * (static_cast<double>(box.max.y) - box.min.y);
+    plan.underside = plan.top - 2e3 * (box.max.y - neutral);
+    if (plan.underside < plan.ledge + kLeastSheet || plan.top < plan.underside + kLeastSheet) return std::nullopt;
+    PlanePolygon corners;
+    for (std::size_t t = 0; t < bottom.size(); ++t)
+        for (int k = 0; bottom[t] && k < 3; ++k) corners.push_back(onPage(mesh.positions[mesh.triangles[t][k]]));
+    plan.housing = convexHull(std::move(corners));
+    plan.sheet = bordersOf(mesh, top);
+    plan.still = bordersOf(mesh, still);
+    return plan;
+}
+
+} // namespace lumorph

@@ -1,0 +1,17 @@
+#pragma once
+
+#include <filesystem>
+
+#include "core/rig/parts/build_plan.h"
+#include "devices/controllers/device_profile.h"
+
+namespace lumorph {
+
+/// A profile for the rig with the pins, the limits and the directions of its building plan.
+[[nodiscard]] DeviceProfile profileOf(const Rig& rig, const BuildPlan& plan);
+
+/// Adds profile.json and the sketch's folder, where the plan has servos and one board drives them all.
+/// Throws DataError where the sketch is missing, DeviceError where the disk refuses.
+void addBoardFiles(const Rig& rig, const BuildPlan& plan, const std::filesystem::path& folder);
+
+} // namespace lumorph
