@@ -13,6 +13,8 @@
 #include "core/geometry/disjoint_sets.h"
 #include "core/rig/templates/flap_layout.h"
 #include "core/rig/templates/plane_mesh.h"
+#include "core/rig/templates/point_pool.h"
+#include "core/rig/templates/sheet_file.h"
 #include "core/rig/templates/sheet_outline.h"
 #include "core/rig/templates/sound_rig.h"
 
@@ -23,82 +25,9 @@ namespace {
 constexpr double kGap = 2.0; ///< of skirt between housing and sheet
 constexpr int kArcRows = 10;
 constexpr int kSkirtShares = 12;
-constexpr double kSpacing = 10.0; ///< between points where the sheet stays straight
-constexpr double kSnap = 0.03;    ///< points nearer than this become one
-constexpr double kIsland = 4.0;   ///< square millimetres: smaller still pieces between slits are left out
+constexpr double kIsland = 4.0; ///< square millimetres: smaller still pieces between slits are left out
 
 using Polygon = std::vector<glm::dvec2>;
-using PlaneEdge = std::pair<std::uint32_t, std::uint32_t>;
-
-double turnOf(const glm::dvec2& a, const glm::dvec2& b) { return a.x * b.y - a.y * b.x; }
-
-/// Points on the page, one for places that are all but the same, and the lines between them.
-class PointPool {
-public:
-    std::uint32_t add(const glm::dvec2& p) {
-        const glm::ivec2 cell = cellOf(p);
-        for (int dx = -1; dx <= 1; ++dx)
-            for (int dy = -1; dy <= 1; ++dy) {
-                const auto found = cells_.find({cell.x + dx, cell.y + dy});
-                if (found == cells_.end()) continue;
-                for (const std::uint32_t k : found->second)
-                    if (glm::distance(points_[k], p) < kSnap) return k;
-            }
-        const auto index = static_cast<std::uint32_t>(points_.size());
-        points_.push_back(p);
-        cells_[{cell.x, cell.y}].push_back(index);
-        return index;
-    }
-
-    void addEdge(const glm::dvec2& from, const glm::dvec2& to) { edges_.emplace_back(add(from), add(to)); }
-
-    /// Points at most kSpacing apart on the way from one to the other.
-    void addLine(const glm::dvec2& from, const glm::dvec2& to) {
-        const int steps = std::max(1, static_cast<int>(std::ceil(glm::distance(from, to) / kSpacing - 1e-9)));
-        glm::dvec2 last = from;
-        for (int k = 1; k <= steps; ++k) {
-            const glm::dvec2 next = k == steps ? to : from + (to - from) * (static_cast<double>(k) / steps);
-            addEdge(last, next);
-            last = next;
-        }
-    }
-
-    [[nodiscard]] PlaneMesh triangulate() const {
-        std::vector<PlaneEdge> edges;
-        for (const auto& [a, b] : edges_) splitAtPoints(a, b, edges);
-        std::ranges::sort(edges);
-        edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
-        return triangulateCrossing(points_, edges);
-    }
-
-private:
-    static glm::ivec2 cellOf(const glm::dvec2& p) { return glm::ivec2(glm::floor(p / (2.0 * kSnap))); }
-
-    /// A line that passes a point closely goes through it.
-    void splitAtPoints(std::uint32_t a, std::uint32_t b, std::vector<PlaneEdge>& edges) const {
-        if (a == b) return;
-        const glm::dvec2 way = points_[b] - points_[a];
-        const double length = glm::length(way);
-        std::vector<std::pair<double, std::uint32_t>> on;
-        for (std::uint32_t k = 0; k < points_.size(); ++k) {
-            const glm::dvec2 to = points_[k] - points_[a];
-            const double along = glm::dot(to, way) / length;
-            if (k != a && k != b && along > 0.0 && along < length && std::abs(turnOf(way, to)) < kSnap * length)
-                on.emplace_back(along, k);
-        }
-        std::ranges::sort(on);
-        std::uint32_t last = a;
-        on.emplace_back(length, b);
-        for (const auto& [along, k] : on) {
-            edges.push_back(std::minmax(last, k));
-            last = k;
-        }
-    }
-
-    std::vector<glm::dvec2> points_;
-    std::vector<PlaneEdge> edges_;
-    std::map<std::pair<int, int>, std::vector<std::uint32_t>> cells_;
-};
 
 /// The housing: the convex hull, `margin` larger on every side.
 Polygon grownHull(Polygon points, double margin) {
@@ -107,7 +36,7 @@ Polygon grownHull(Polygon points, double margin) {
     for (const int pass : {0, 1}) {
         const std::size_t base = hull.size();
         for (const glm::dvec2& p : points) {
-            while (hull.size() > base + 1 && turnOf(hull.back() - hull[hull.size() - 2], p - hull.back()) <= 1e-9)
+            while (hull.size() > base + 1 && crossOf(hull.back() - hull[hull.size() - 2], p - hull.back()) <= 1e-9)
                 hull.pop_back();
             hull.push_back(p);
         }
@@ -192,8 +121,10 @@ public:
         top_ = bottom_ + thickness;
     }
 
+    [[nodiscard]] std::vector<Flap> layOut() const { return layOutFlaps(outline_, device_.bends, clearance_); }
+
     RigParts build() {
-        flaps_ = layOutFlaps(outline_, device_.bends, clearance_);
+        flaps_ = layOut();
         housing_ = grownHull(outline_, clearance_.slit());
         draw();
         plane_ = pool_.triangulate();
@@ -207,6 +138,7 @@ public:
         parts.name = device_.name;
         parts.restMesh = std::move(mesh_);
         parts.pathInside = true;
+        parts.drawing = writeSheetDevice(device_);
         for (std::size_t f = 0; f < flaps_.size(); ++f) parts.actuators.push_back(actuator(f));
         return parts;
     }
@@ -283,10 +215,10 @@ private:
         for (std::size_t k = 0; k < other.size(); ++k) {
             const glm::dvec2 to = other[k] - a;
             const glm::dvec2 next = other[(k + 1) % other.size()] - other[k];
-            const double turn = turnOf(way, next);
+            const double turn = crossOf(way, next);
             if (turn == 0.0) continue;
-            const double s = turnOf(to, next) / turn;
-            const double t = turnOf(to, way) / turn;
+            const double s = crossOf(to, next) / turn;
+            const double t = crossOf(to, way) / turn;
             if (s > 0.0 && s < 1.0 && t >= 0.0 && t <= 1.0) shares.push_back(s);
         }
     }
@@ -346,7 +278,7 @@ private:
             if (labels_[t] != kBody) continue;
             const glm::uvec3& c = plane_.triangles[t];
             areas[sets.find(t)] +=
-                0.5 * turnOf(plane_.points[c.y] - plane_.points[c.x], plane_.points[c.z] - plane_.points[c.x]);
+                0.5 * crossOf(plane_.points[c.y] - plane_.points[c.x], plane_.points[c.z] - plane_.points[c.x]);
         }
         eachEdge([&](std::uint32_t t, std::uint32_t a, std::uint32_t b) {
             if (across(a, b) >= 0) areas[sets.find(t)] = kIsland;
@@ -399,7 +331,7 @@ private:
             double sum = 0.0;
             for (const std::uint32_t t : fan) {
                 const glm::uvec3& c = plane_.triangles[t];
-                sum += turnOf(plane_.points[c.y] - plane_.points[c.x], plane_.points[c.z] - plane_.points[c.x]);
+                sum += crossOf(plane_.points[c.y] - plane_.points[c.x], plane_.points[c.z] - plane_.points[c.x]);
             }
             return sum;
         };
@@ -445,7 +377,7 @@ private:
             for (const int label : around_[v]) {
                 if (label < 0) continue;
                 const Flap& flap = flaps_[static_cast<std::size_t>(label)];
-                if (flap.frame.local(plane_.points[v]).y < 0.5 * kSnap) continue;
+                if (flap.frame.local(plane_.points[v]).y < 0.5 * PointPool::kSnap) continue;
                 if (std::ranges::any_of(around_[v], [&](int l) { return l != label && l != kNoSheet; }))
                     throw InvalidInput("bend line " + inQuotes(flap.name), "its flap cannot be cut free of the rest",
                                        "move the line a little");
@@ -556,6 +488,15 @@ Rig sheetRig(const SheetDevice& device, const Progress& progress) {
     requireSound(rig, progress);
     progress.report(1.0, "looking the solid over");
     return rig;
+}
+
+std::vector<std::vector<glm::dvec2>> sheetFlaps(const SheetDevice& device) {
+    std::vector<std::vector<glm::dvec2>> polygons;
+    for (const Flap& flap : SheetBuilder(device).layOut()) {
+        polygons.emplace_back();
+        for (const glm::dvec2& p : flap.outline) polygons.back().push_back(placeOf(p));
+    }
+    return polygons;
 }
 
 } // namespace lumorph
