@@ -46,7 +46,7 @@ void DevicePreview::show(std::shared_ptr<const Rig> rig) {
 }
 
 void DevicePreview::refresh() {
-    if (!rig_) return;
+    if (!rig_) return view_->setScene(std::make_shared<const ViewportScene>());
     MatchFrame frame;
     frame.rig = rig_;
     frame.estimatedStrokes.assign(rig_->actuatorCount(), 0.01 * raised_->value());

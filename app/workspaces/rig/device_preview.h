@@ -19,7 +19,8 @@ public:
     /// `prefix` begins the names of its widgets: "rig.new" makes "rig.new.view" and "rig.new.raised".
     DevicePreview(Studio& studio, const QString& prefix, QWidget* parent = nullptr);
 
-    /// Shows another one; from where all of it is seen when it is the first, or when `frameNext` was called before.
+    /// Shows another one, or nothing; from where all of it is seen when it is the first, or when `frameNext` was called
+    /// before.
     void show(std::shared_ptr<const Rig> rig);
     void frameNext() { reframes_ = true; }
     void setActive(bool active) { view_->setActive(active); }

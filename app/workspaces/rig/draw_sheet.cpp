@@ -39,12 +39,14 @@ constexpr const char* kDrawPlace = "rig.draw"; ///< of its jobs; what goes wrong
 constexpr const char* kSvgFolder = "folders/svg";
 constexpr int kMostCopies = 12;
 
+QString begun(QString sentence) {
+    if (!sentence.isEmpty()) sentence[0] = sentence[0].toUpper();
+    return sentence;
+}
+
 /// "Bend line 'flap 2': it is shorter than 6 mm. Draw it across the sheet."
-QString sentenceOf(const QString& subject, const QString& why, QString remedy) {
-    if (!remedy.isEmpty()) remedy[0] = remedy[0].toUpper();
-    QString text = QObject::tr("%1: %2. %3.").arg(subject, why, remedy);
-    text[0] = text[0].toUpper();
-    return text;
+QString sentenceOf(const QString& subject, const QString& why, const QString& remedy) {
+    return QObject::tr("%1: %2. %3.").arg(subject, why, begun(remedy));
 }
 
 QFrame* makeDivider() {
@@ -83,9 +85,11 @@ private:
     void copy(const QString& step,
               const std::function<SheetDevice(const SheetDevice&, std::optional<std::size_t>)>& of);
     void importOutline();
+    void tell(const std::exception& error);
     void plan(const SheetDevice& device); ///< beside the window; while one is at work the newest waits
     void planNow();
     void take(const std::shared_ptr<const SheetPlan>& plan, const SheetDevice& device);
+    [[nodiscard]] bool canBeMade() const; ///< as far as it is known
     void useIt();
 
     Studio& studio_;
@@ -97,6 +101,7 @@ private:
     SheetDevice working_; ///< what is being planned
     SheetDevice wished_;  ///< what is to be planned
     std::optional<Jobs::Id> planning_;
+    bool makesSoon_ = false;         ///< as soon as what is wished is planned
     std::vector<glm::dvec2> framed_; ///< the outline that the preview was framed for
     SheetCanvas* canvas_ = new SheetCanvas;
     SheetForm* form_ = new SheetForm;
@@ -173,6 +178,8 @@ QWidget* DrawSheet::makeTools() {
     row->addWidget(makeDivider());
     mirror_ = addButton(*row, "sheet.mirror", "mirror", tr("Mirror all"), {});
     around_ = addButton(*row, "sheet.around", "around", tr("All around"), {});
+    for (QToolButton* button : {mirror_, around_}) // what is beside them stays when they tell of one line
+        button->setStyleSheet("QToolButton { min-width: 104px; }");
     copies_->setObjectName("sheet.copies");
     copies_->setRange(2, kMostCopies);
     copies_->setValue(4);
@@ -208,7 +215,6 @@ QWidget* DrawSheet::makeSide() {
     layout->addWidget(facts_);
     form_->setSizePolicy(QSizePolicy::Preferred, QSizePolicy::Fixed);
     layout->addWidget(form_);
-    layout->addWidget(makeJobBar(studio_.jobs, kDrawPlace));
     return side;
 }
 
@@ -223,6 +229,9 @@ QWidget* DrawSheet::makeFoot() {
     wrong_->setProperty("look", "warning");
     wrong_->setWordWrap(true);
     wrong_->hide();
+    QSizePolicy kept = wrong_->sizePolicy(); // the page stays where it is when it speaks
+    kept.setRetainSizeWhenHidden(true);
+    wrong_->setSizePolicy(kept);
     hint_->setObjectName("sheet.hint");
     hint_->setWordWrap(true);
     texts->addWidget(wrong_);
@@ -230,7 +239,7 @@ QWidget* DrawSheet::makeFoot() {
     row->addLayout(texts, 1);
     auto* close = new QPushButton(tr("Close"));
     close->setObjectName("sheet.close");
-    close->setToolTip(tr("The drawing is kept: Draw on it, in New device, goes on with it"));
+    close->setToolTip(tr("Loses nothing: the next time that you draw, Ctrl+Z leads back to this"));
     close->setAutoDefault(false);
     connect(close, &QPushButton::clicked, this, &QDialog::reject);
     make_ = new QPushButton(tr("Make this device"));
@@ -238,6 +247,12 @@ QWidget* DrawSheet::makeFoot() {
     make_->setProperty("look", "primary");
     make_->setAutoDefault(false);
     connect(make_, &QPushButton::clicked, this, &DrawSheet::useIt);
+    auto* working = new QWidget; // of one size, so that nothing moves when the bar in it comes and goes
+    working->setFixedSize(300, 40);
+    auto* bar = new QVBoxLayout(working);
+    bar->setContentsMargins(0, 0, 0, 0);
+    bar->addWidget(makeJobBar(studio_.jobs, kDrawPlace));
+    row->addWidget(working, 0, Qt::AlignBottom);
     row->addWidget(close, 0, Qt::AlignBottom);
     row->addWidget(make_, 0, Qt::AlignBottom);
     return foot;
@@ -302,6 +317,7 @@ void DrawSheet::listen() {
 
 void DrawSheet::begin(SheetDevice drawing, std::shared_ptr<const RigParts> before) {
     before_ = std::move(before);
+    drawing = parseSheetDevice(writeSheetDevice(drawing), drawing.name);
     const bool other = drawing != history_.now();
     if (other) {
         canvas_->choose({});
@@ -327,7 +343,9 @@ void DrawSheet::hideEvent(QHideEvent* event) {
 }
 
 void DrawSheet::edit(const SheetDevice& device, const QString& step) {
-    if (device != history_.now()) history_.push(device, step);
+    // As its text holds it, so that a drawing that is taken up again makes the very same device.
+    const SheetDevice drawn = parseSheetDevice(writeSheetDevice(device), device.name);
+    if (drawn != history_.now()) history_.push(drawn, step);
     showNow();
 }
 
@@ -376,11 +394,15 @@ void DrawSheet::copy(const QString& step,
     try {
         edit(of(history_.now(), canvas_->chosenLine()), step);
     } catch (const std::exception& error) {
-        const Notice notice = noticeOf(error);
-        wrong_->setText(sentenceOf(notice.subject, notice.why, notice.remedy));
-        wrong_->show();
+        tell(error);
     }
     canvas_->setFocus();
+}
+
+void DrawSheet::tell(const std::exception& error) {
+    const Notice notice = noticeOf(error);
+    wrong_->setText(sentenceOf(notice.subject, notice.why, notice.remedy));
+    wrong_->show();
 }
 
 void DrawSheet::importOutline() {
@@ -403,22 +425,20 @@ void DrawSheet::importOutline() {
                 canvas_->showAll();
                 canvas_->setTool(SheetTool::line);
             },
-            [this](const std::exception& error) {
-                const Notice notice = noticeOf(error);
-                wrong_->setText(sentenceOf(notice.subject, notice.why, notice.remedy));
-                wrong_->show();
-            });
+            [this](const std::exception& error) { tell(error); });
     });
     dialog->open();
 }
 
 void DrawSheet::plan(const SheetDevice& device) {
     wished_ = device;
-    make_->setEnabled(plan_ && planned_ == wished_ && plan_->whole());
+    makesSoon_ = false;
+    make_->setEnabled(canBeMade());
     if (wished_.outline.empty()) {
-        facts_->clear();
+        facts_->setText(tr("Nothing is drawn yet."));
         wrong_->hide();
         canvas_->setPlan(nullptr);
+        preview_->show(nullptr);
     } else if (!planning_ && !(plan_ && planned_ == wished_)) {
         planNow();
     }
@@ -449,11 +469,11 @@ void DrawSheet::take(const std::shared_ptr<const SheetPlan>& plan, const SheetDe
     plan_ = plan;
     planned_ = device;
     canvas_->setPlan(plan);
-    make_->setEnabled(planned_ == wished_ && plan->whole());
+    make_->setEnabled(canBeMade());
     wrong_->setVisible(!plan->refusals.empty());
     if (!plan->refusals.empty()) {
         const SheetRefusal& first = plan->refusals.front();
-        QString text = sentenceOf(QString::fromStdString(first.subject), QString::fromStdString(first.why),
+        QString text = sentenceOf(begun(QString::fromStdString(first.subject)), QString::fromStdString(first.why),
                                   QString::fromStdString(first.remedy));
         if (plan->refusals.size() > 1) text += tr(" (%1 more)").arg(plan->refusals.size() - 1);
         wrong_->setText(text);
@@ -465,10 +485,18 @@ void DrawSheet::take(const std::shared_ptr<const SheetPlan>& plan, const SheetDe
             .arg(plan->rig->actuatorCount())
             .arg(sizeText(static_cast<double>(size.x), static_cast<double>(size.y), static_cast<double>(size.z))));
     preview_->show(plan->rig);
+    if (makesSoon_) useIt();
+}
+
+bool DrawSheet::canBeMade() const {
+    const bool known = plan_ && planned_ == wished_;
+    return known ? plan_->whole() : !wished_.outline.empty();
 }
 
 void DrawSheet::useIt() {
-    if (!plan_ || planned_ != wished_ || !plan_->whole()) return;
+    if (!canBeMade()) return;
+    makesSoon_ = planned_ != wished_ || !plan_; // whoever is quicker than the solid need not press again
+    if (makesSoon_) return;
     const std::shared_ptr<const Rig> rig = plan_->rig;
     accept();
     studio_.project.takeRig(rig, QString::fromStdString(rig->name()));

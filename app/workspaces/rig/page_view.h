@@ -11,6 +11,7 @@ struct PageView {
     glm::dvec2 middle{0.0}; ///< the place at `centre`
     double scale = 2000.0;  ///< pixels a metre
     QPointF centre;         ///< pixels
+    bool operator==(const PageView&) const = default;
 
     [[nodiscard]] QPointF pixel(const glm::dvec2& place) const {
         return centre + scale * QPointF(place.x - middle.x, place.y - middle.y);

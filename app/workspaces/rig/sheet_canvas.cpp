@@ -12,7 +12,7 @@
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
-#include "app/studio/widgets/quantity.h"
+#include "app/studio/look/palette.h"
 #include "core/rig/templates/sheet_outline.h"
 
 namespace lumorph::studio {
@@ -21,7 +21,7 @@ namespace {
 
 using Kind = SheetPart::Kind;
 
-constexpr double kLeast = 0.003; ///< metres: a shorter drag was a click
+constexpr double kLeastDrag = 0.003; ///< metres: a shorter drag was a click
 const Angle kTurnStep = Angle::degrees(15.0);
 
 /// The same away from `from` in both directions, for squares and circles.
@@ -54,7 +54,7 @@ void SheetCanvas::show(const SheetDevice& device) {
 
 void SheetCanvas::setPlan(std::shared_ptr<const SheetPlan> plan) {
     plan_ = std::move(plan);
-    update();
+    changed();
 }
 
 void SheetCanvas::setTool(SheetTool tool) {
@@ -145,7 +145,7 @@ void SheetCanvas::beginSelect(QMouseEvent* event) {
 
 void SheetCanvas::pressPolygon(const SnappedPoint& point) {
     if (polygon_.size() >= 3 && glm::distance(point.point, polygon_.front()) < reach()) return closePolygon();
-    if (polygon_.empty() || glm::distance(point.point, polygon_.back()) > kLeast) polygon_.push_back(point.point);
+    if (polygon_.empty() || glm::distance(point.point, polygon_.back()) > kLeastDrag) polygon_.push_back(point.point);
     changed();
 }
 
@@ -243,12 +243,12 @@ void SheetCanvas::endShape() {
     const Begun shape = *std::exchange(begun_, std::nullopt);
     const glm::dvec2 size = glm::abs(shape.to - shape.from);
     if (tool_ == SheetTool::line) {
-        if (glm::length(size) >= kLeast) {
+        if (glm::length(size) >= kLeastDrag) {
             const std::size_t line = device_.bends.size();
             emit edited(withLine(device_, shape.from, shape.to), tr("Draw a bend line"));
             if (line < device_.bends.size()) choose({Kind::line, line});
         }
-    } else if (std::min(size.x, size.y) >= kLeast) {
+    } else if (std::min(size.x, size.y) >= kLeastDrag) {
         const SheetDevice next = withOutline(device_, std::move(outline));
         setTool(SheetTool::line);
         emit edited(next, tr("Draw the outline"));
@@ -368,8 +368,23 @@ QString SheetCanvas::readout() const {
         return tr("%1 × %2 cm").arg(centimetres(size.x), centimetres(size.y));
     }
     if ((drag_ && drag_->moved) || tool_ != SheetTool::select)
-        return pointer_ ? tr("%1, %2 cm").arg(centimetres(pointer_->point.x), centimetres(pointer_->point.y)) : QString();
+        return pointer_ ? tr("%1, %2 cm").arg(centimetres(pointer_->point.x), centimetres(pointer_->point.y))
+                        : QString();
     return {};
+}
+
+const QPixmap& SheetCanvas::page() {
+    const double ratio = devicePixelRatioF();
+    const QSize pixels = (QSizeF(size()) * ratio).toSize();
+    if (page_.size() == pixels && pageView_ == view_ && pageTheme_ == currentTheme()) return page_;
+    page_ = QPixmap(pixels);
+    page_.setDevicePixelRatio(ratio);
+    pageView_ = view_;
+    pageTheme_ = currentTheme();
+    QPainter painter(&page_);
+    painter.setFont(font());
+    paintPage(painter, view_, rect());
+    return page_;
 }
 
 void SheetCanvas::paintEvent(QPaintEvent*) {
@@ -381,7 +396,11 @@ void SheetCanvas::paintEvent(QPaintEvent*) {
         picture.outlineCloses = false;
     }
     if (begun_ && tool_ == SheetTool::line) picture.lineBegun = {begun_->from, begun_->to};
-    paintSheet(painter, picture);
+    paintSheet(painter, picture, page());
+}
+
+bool SheetCanvas::chosenRefused() const {
+    return plan_ && chosenLine() && plan_->flaps.size() == device_.bends.size() && !plan_->actuators[*chosenLine()];
 }
 
 QString SheetCanvas::hint() const {
@@ -402,10 +421,13 @@ QString SheetCanvas::hint() const {
         if (begun_) return tr("Drag to where the bend line ends, and let go. Shift: steps of 15°. Ctrl: no snapping.");
         if (device_.bends.empty())
             return tr("Now draw where the sheet bends: press at one edge, drag across to another, let go.");
+        if (chosenRefused())
+            return tr("The red line has no flap. Delete takes it away; with Select (V) you can move it.");
         if (chosenLine())
             return tr("Draw the next bend line, or copy this one with Mirror or Around. Esc lets go of it: then they "
                       "copy the whole sheet.");
-        return tr("Draw the next bend line. Mirror and Around now copy the whole sheet. Or make the device.");
+        return tr("Rehearse it on the right, draw another bend line, or make the device. Mirror and Around now copy "
+                  "the whole sheet.");
     case SheetTool::select:
         break;
     }
@@ -415,6 +437,7 @@ QString SheetCanvas::hint() const {
     case Kind::line:
     case Kind::lineFrom:
     case Kind::lineTo:
+        if (chosenRefused()) return tr("The red line has no flap. Drag it or its ends elsewhere, or press Delete.");
         return tr("Drag the bend line, or one of its ends. Delete removes it; its angle and side are on the right.");
     case Kind::corner:
         return tr("Drag the corner to where it is to be. Delete removes it.");

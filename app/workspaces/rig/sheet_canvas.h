@@ -29,6 +29,7 @@ public:
 
     /// Another drawing. What is being dragged right now goes on from it only when it is what was previewed.
     void show(const SheetDevice& device);
+    [[nodiscard]] const SheetDevice& device() const noexcept { return device_; } ///< as it is seen
     void setPlan(std::shared_ptr<const SheetPlan> plan);
     void setTool(SheetTool tool);
     [[nodiscard]] SheetTool tool() const noexcept { return tool_; }
@@ -86,8 +87,10 @@ private:
     void endShape();
     bool leave(); ///< what was begun, chosen or picked up; false where there is nothing to leave
     void removeChosen();
+    [[nodiscard]] bool chosenRefused() const;
     [[nodiscard]] std::vector<glm::dvec2> shapeBegun() const;
     [[nodiscard]] QString readout() const;
+    [[nodiscard]] const QPixmap& page(); ///< painted anew where the view has changed
     void changed();
 
     static constexpr double kReach = 9.0; ///< pixels
@@ -95,6 +98,9 @@ private:
     SheetDevice device_;
     std::shared_ptr<const SheetPlan> plan_;
     PageView view_;
+    QPixmap page_;
+    PageView pageView_; ///< of `page_`
+    Theme pageTheme_ = Theme::dark;
     bool fitted_ = false; ///< the view was chosen by the user, or shows all already
     SheetTool tool_ = SheetTool::select;
     SheetPart chosen_, hovered_;

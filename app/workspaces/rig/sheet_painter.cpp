@@ -21,15 +21,117 @@ using Kind = SheetPart::Kind;
 constexpr double kHandle = 4.5; ///< pixels, half a handle's side
 constexpr double kFinest = 9.0; ///< pixels between lines of a grid that one can aim at
 
-class SheetPainter {
+class PagePainter {
 public:
-    SheetPainter(QPainter& painter, const SheetPicture& picture) : painter_(painter), picture_(picture) {}
+    PagePainter(QPainter& painter, const PageView& view, const QRect& area)
+        : painter_(painter), view_(view), area_(area) {}
 
     void paint() {
-        painter_.setRenderHint(QPainter::Antialiasing);
-        painter_.fillRect(picture_.area, colors_.sunken);
+        painter_.fillRect(area_, colors_.sunken);
         drawGrid();
+        drawRulers();
+    }
+
+private:
+    void drawGrid() {
+        const double fine = gridSpacing(view_);
+        drawGridLines(fine, blend(colors_.sunken, colors_.line, 0.55));
+        drawGridLines(labelSpacing(fine),
+                      blend(colors_.sunken, colors_.line, currentTheme() == Theme::dark ? 1.4 : 1.0));
+    }
+
+    /// Between two labels of a ruler: a whole number of fine steps, and nice itself.
+    [[nodiscard]] double labelSpacing(double fine) const {
+        constexpr double kLeast = 56.0; // pixels
+        const double decade = std::pow(10.0, std::floor(std::log10(fine) + 1e-9));
+        for (const double step : {1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0}) {
+            const double steps = step * decade / fine;
+            if (step * decade * view_.scale >= kLeast && std::abs(steps - std::round(steps)) < 1e-6)
+                return step * decade;
+        }
+        return 100.0 * decade;
+    }
+
+    void drawGridLines(double spacing, const QColor& color) {
+        painter_.setPen(QPen(color, 1.0));
+        const QRectF area = area_;
+        const glm::dvec2 low = view_.place(area.topLeft()), high = view_.place(area.bottomRight());
+        for (double x = spacing * std::ceil(low.x / spacing); x < high.x; x += spacing) {
+            const double at = std::round(view_.pixel({x, 0.0}).x());
+            painter_.drawLine(QPointF(at, area.top()), QPointF(at, area.bottom()));
+        }
+        for (double y = spacing * std::ceil(low.y / spacing); y < high.y; y += spacing) {
+            const double at = std::round(view_.pixel({0.0, y}).y());
+            painter_.drawLine(QPointF(area.left(), at), QPointF(area.right(), at));
+        }
+    }
+
+    void drawRulers() {
+        const QRectF area = area_;
+        painter_.setPen(Qt::NoPen);
+        painter_.setBrush(colors_.panel);
+        painter_.drawRect(QRectF(area.left(), area.top(), area.width(), kRulerWidth));
+        painter_.drawRect(QRectF(area.left(), area.top(), kRulerWidth, area.height()));
+        painter_.setFont(plotFont(painter_.font()));
+        drawTicks(true);
+        drawTicks(false);
+        painter_.setPen(QPen(colors_.line, 1.0));
+        painter_.drawLine(QPointF(area.left(), kRulerWidth), QPointF(area.right(), kRulerWidth));
+        painter_.drawLine(QPointF(kRulerWidth, area.top()), QPointF(kRulerWidth, area.bottom()));
+        painter_.setPen(Qt::NoPen);
+        painter_.setBrush(colors_.panel);
+        painter_.drawRect(QRectF(area.left(), area.top(), kRulerWidth - 1, kRulerWidth - 1));
+        painter_.setPen(colors_.textMuted);
+        painter_.drawText(QRectF(area.left(), area.top(), kRulerWidth, kRulerWidth), Qt::AlignCenter, "cm");
+    }
+
+    void drawTicks(bool across) {
+        const double fine = gridSpacing(view_);
+        const double labelled = labelSpacing(fine);
+        const long every = std::lround(labelled / fine);
+        const glm::dvec2 low = view_.place(area_.topLeft());
+        const glm::dvec2 high = view_.place(area_.bottomRight());
+        const int axis = across ? 0 : 1;
+        const int decimals = labelled < 0.0099 ? 1 : 0;
+        const auto first = static_cast<long>(std::ceil(low[axis] / fine));
+        const auto last = static_cast<long>(std::floor(high[axis] / fine));
+        for (long k = first; k <= last; ++k) {
+            glm::dvec2 place(0.0);
+            place[axis] = static_cast<double>(k) * fine;
+            const QPointF pixel = view_.pixel(place);
+            const double at = std::round(across ? pixel.x() : pixel.y());
+            const bool major = k % every == 0;
+            const double length = major ? 8.0 : 4.0;
+            painter_.setPen(QPen(major ? colors_.textMuted : colors_.border, 1.0));
+            if (across)
+                painter_.drawLine(QPointF(at, kRulerWidth - length), QPointF(at, kRulerWidth));
+            else
+                painter_.drawLine(QPointF(kRulerWidth - length, at), QPointF(kRulerWidth, at));
+            if (!major) continue;
+            const QString text = QString::number(100.0 * place[axis] + 0.0, 'f', decimals);
+            painter_.save();
+            painter_.translate(across ? QPointF(at, 7.0) : QPointF(8.0, at));
+            if (!across) painter_.rotate(-90.0);
+            painter_.drawText(QRectF(-30.0, -7.0, 60.0, 14.0), Qt::AlignCenter, text);
+            painter_.restore();
+        }
+    }
+
+    QPainter& painter_;
+    const PageView& view_;
+    const QRect& area_;
+    const Palette& colors_ = currentPalette();
+};
+
+class SheetPainter {
+public:
+    SheetPainter(QPainter& painter, const SheetPicture& picture, const QPixmap& page)
+        : painter_(painter), picture_(picture), page_(page) {}
+
+    void paint() {
+        painter_.drawPixmap(picture_.area.topLeft(), page_);
         drawSheet();
+        painter_.setRenderHint(QPainter::Antialiasing);
         drawFlaps();
         drawOutline();
         drawMiddle();
@@ -47,31 +149,9 @@ private:
         return polygon;
     }
 
-    void drawGrid() {
-        const double fine = gridSpacing(picture_.view);
-        drawGridLines(fine, blend(colors_.sunken, colors_.line, 0.55));
-        drawGridLines(5.0 * fine, blend(colors_.sunken, colors_.line, currentTheme() == Theme::dark ? 1.4 : 1.0));
-    }
-
-    void drawGridLines(double spacing, const QColor& color) {
-        painter_.setPen(QPen(color, 1.0));
-        painter_.setRenderHint(QPainter::Antialiasing, false);
-        const QRectF area = picture_.area;
-        const glm::dvec2 low = picture_.view.place(area.topLeft()), high = picture_.view.place(area.bottomRight());
-        for (double x = spacing * std::ceil(low.x / spacing); x < high.x; x += spacing) {
-            const double at = std::round(picture_.view.pixel({x, 0.0}).x());
-            painter_.drawLine(QPointF(at, area.top()), QPointF(at, area.bottom()));
-        }
-        for (double y = spacing * std::ceil(low.y / spacing); y < high.y; y += spacing) {
-            const double at = std::round(picture_.view.pixel({0.0, y}).y());
-            painter_.drawLine(QPointF(area.left(), at), QPointF(area.right(), at));
-        }
-        painter_.setRenderHint(QPainter::Antialiasing);
-    }
-
     void drawSheet() {
         QColor fill = blend(colors_.raised, colors_.text, currentTheme() == Theme::dark ? 0.10 : 0.04);
-        fill.setAlphaF(0.82); // the grid goes on under it
+        fill.setAlphaF(0.72); // the grid goes on under it
         painter_.setPen(Qt::NoPen);
         painter_.setBrush(fill);
         painter_.drawPolygon(polygon(picture_.device.outline));
@@ -262,60 +342,16 @@ private:
     }
 
     void drawRulers() {
-        const QRectF area = picture_.area;
-        painter_.setPen(Qt::NoPen);
-        painter_.setBrush(colors_.panel);
-        painter_.drawRect(QRectF(area.left(), area.top(), area.width(), kRulerWidth));
-        painter_.drawRect(QRectF(area.left(), area.top(), kRulerWidth, area.height()));
-        painter_.setFont(plotFont(painter_.font()));
-        drawTicks(true);
-        drawTicks(false);
-        painter_.setPen(QPen(colors_.line, 1.0));
-        painter_.drawLine(QPointF(area.left(), kRulerWidth), QPointF(area.right(), kRulerWidth));
-        painter_.drawLine(QPointF(kRulerWidth, area.top()), QPointF(kRulerWidth, area.bottom()));
-        painter_.setPen(Qt::NoPen);
-        painter_.setBrush(colors_.panel);
-        painter_.drawRect(QRectF(area.left(), area.top(), kRulerWidth - 1, kRulerWidth - 1));
-        painter_.setPen(colors_.textMuted);
-        painter_.drawText(QRectF(area.left(), area.top(), kRulerWidth, kRulerWidth), Qt::AlignCenter, "cm");
-    }
-
-    void drawTicks(bool across) {
-        const double fine = gridSpacing(picture_.view);
-        const double labelled = 5.0 * fine;
-        const glm::dvec2 low = picture_.view.place(picture_.area.topLeft());
-        const glm::dvec2 high = picture_.view.place(picture_.area.bottomRight());
-        const int axis = across ? 0 : 1;
-        const int decimals = labelled < 0.0099 ? 1 : 0;
-        const auto first = static_cast<long>(std::ceil(low[axis] / fine));
-        const auto last = static_cast<long>(std::floor(high[axis] / fine));
-        for (long k = first; k <= last; ++k) {
-            glm::dvec2 place(0.0);
-            place[axis] = static_cast<double>(k) * fine;
-            const QPointF pixel = picture_.view.pixel(place);
-            const double at = std::round(across ? pixel.x() : pixel.y());
-            const bool major = k % 5 == 0;
-            const double length = major ? 8.0 : 4.0;
-            painter_.setPen(QPen(major ? colors_.textMuted : colors_.border, 1.0));
-            if (across)
-                painter_.drawLine(QPointF(at, kRulerWidth - length), QPointF(at, kRulerWidth));
-            else
-                painter_.drawLine(QPointF(kRulerWidth - length, at), QPointF(kRulerWidth, at));
-            if (!major) continue;
-            const QString text = QString::number(100.0 * place[axis] + 0.0, 'f', decimals);
-            painter_.save();
-            painter_.translate(across ? QPointF(at, 7.0) : QPointF(8.0, at));
-            if (!across) painter_.rotate(-90.0);
-            painter_.drawText(QRectF(-30.0, -7.0, 60.0, 14.0), Qt::AlignCenter, text);
-            painter_.restore();
-        }
+        const double ratio = page_.devicePixelRatio();
+        const QRectF across(0.0, 0.0, picture_.area.width(), kRulerWidth + 1.0);
+        const QRectF down(0.0, 0.0, kRulerWidth + 1.0, picture_.area.height());
+        for (const QRectF& strip : {across, down})
+            painter_.drawPixmap(strip, page_, QRectF(strip.topLeft() * ratio, strip.size() * ratio));
         if (!picture_.pointer) return;
-        const QPointF pixel = picture_.view.pixel(picture_.pointer->point);
+        const QPointF at = picture_.view.pixel(picture_.pointer->point);
         painter_.setPen(QPen(colors_.accent, 2.0));
-        if (across)
-            painter_.drawLine(QPointF(pixel.x(), 0.0), QPointF(pixel.x(), kRulerWidth));
-        else
-            painter_.drawLine(QPointF(0.0, pixel.y()), QPointF(kRulerWidth, pixel.y()));
+        painter_.drawLine(QPointF(at.x(), 0.0), QPointF(at.x(), kRulerWidth));
+        painter_.drawLine(QPointF(0.0, at.y()), QPointF(kRulerWidth, at.y()));
     }
 
     void drawReadout() {
@@ -335,6 +371,7 @@ private:
 
     QPainter& painter_;
     const SheetPicture& picture_;
+    const QPixmap& page_;
     const Palette& colors_ = currentPalette();
 };
 
@@ -355,6 +392,10 @@ double gridSpacing(const PageView& view) {
     return std::max(spacing, 0.001);
 }
 
-void paintSheet(QPainter& painter, const SheetPicture& picture) { SheetPainter(painter, picture).paint(); }
+void paintPage(QPainter& painter, const PageView& view, const QRect& area) { PagePainter(painter, view, area).paint(); }
+
+void paintSheet(QPainter& painter, const SheetPicture& picture, const QPixmap& page) {
+    SheetPainter(painter, picture, page).paint();
+}
 
 } // namespace lumorph::studio

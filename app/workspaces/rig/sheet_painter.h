@@ -6,6 +6,7 @@
 
 #include <QColor>
 #include <QPainter>
+#include <QPixmap>
 #include <QRect>
 #include <QString>
 
@@ -38,6 +39,11 @@ struct SheetPicture {
     QString readout;                     ///< beside the pointer
 };
 
-void paintSheet(QPainter& painter, const SheetPicture& picture);
+/// The page itself: grid and rulers. It changes only with the view, the size and the theme, and takes longer than all
+/// else, so that its owner keeps it.
+void paintPage(QPainter& painter, const PageView& view, const QRect& area);
+
+/// What is drawn on it. `page` is a picture of `paintPage`, whose rulers stay on top.
+void paintSheet(QPainter& painter, const SheetPicture& picture, const QPixmap& page);
 
 } // namespace lumorph::studio

@@ -23,6 +23,7 @@ using Kind = SheetPart::Kind;
 using To = SnappedPoint::To;
 
 constexpr double kCornerTurn = 25.0 * std::numbers::pi / 180.0;
+constexpr double kLeastLine = 0.006;  ///< metres
 constexpr double kSameLine = 1e-4;    ///< metres; bend lines whose ends are nearer are one
 constexpr double kSameOutline = 2e-4; ///< metres; an outline that strays no further from another is the same
 
@@ -120,10 +121,11 @@ std::pair<double, double> sharesOnSheet(const Outline& outline, const glm::dvec2
         first = std::min(first, along);
         last = std::max(last, along);
     });
-    const bool begins = insidePolygon(outline, from);
-    const bool ends = insidePolygon(outline, to);
-    if (first > last && !begins && !ends) return {0.0, 1.0};
-    return {begins ? 0.0 : first, ends ? 1.0 : last};
+    if (insidePolygon(outline, from)) first = 0.0;
+    if (insidePolygon(outline, to)) last = 1.0;
+    // What is cut to a dot would not be found again.
+    if ((last - first) * glm::length(way) < kLeastLine) return {0.0, 1.0};
+    return {first, last};
 }
 
 std::string freeName(const SheetDevice& device, std::string base) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <span>
 
 #include <nlohmann/json.hpp>
@@ -125,7 +126,15 @@ void readBends(const BendsEntry& entry, const std::string& subject, SheetDevice&
     for (const nlohmann::json& bend : *list) device.bends.push_back(bendOf(bend, subject, device.bends.size() + 1));
 }
 
-nlohmann::json pointJson(const glm::dvec2& point) { return {point.x / kCentimetre, point.y / kCentimetre}; }
+/// A number as it is written: with nine decimals, so that reading it and writing it again changes nothing.
+double rounded(double number) {
+    constexpr double kDecimals = 1e9;
+    return std::round(number * kDecimals) / kDecimals;
+}
+
+double inCentimetres(double metres) { return rounded(metres / kCentimetre); }
+
+nlohmann::json pointJson(const glm::dvec2& point) { return {inCentimetres(point.x), inCentimetres(point.y)}; }
 
 } // namespace
 
@@ -154,9 +163,9 @@ std::vector<glm::dvec2> readOutline(const std::filesystem::path& file) {
 
 std::string writeSheetDevice(const SheetDevice& device) {
     nlohmann::json json{{"name", device.name},
-                        {"thickness", device.thickness / kCentimetre},
-                        {"housing", device.housing / kCentimetre},
-                        {"arc", device.arc / kCentimetre},
+                        {"thickness", inCentimetres(device.thickness)},
+                        {"housing", inCentimetres(device.housing)},
+                        {"arc", inCentimetres(device.arc)},
                         {"outline", nlohmann::json::array()},
                         {"bends", nlohmann::json::array()}};
     for (const glm::dvec2& p : device.outline) json["outline"].push_back(pointJson(p));
@@ -166,7 +175,7 @@ std::string writeSheetDevice(const SheetDevice& device) {
                                  {"to", pointJson(bend.to)},
                                  {"ends", kEnds[static_cast<std::size_t>(bend.ends)]},
                                  {"side", kSides[static_cast<std::size_t>(bend.side)]},
-                                 {"angle", bend.angle.inDegrees()}});
+                                 {"angle", rounded(bend.angle.inDegrees())}});
     return json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
 }
 

@@ -24,9 +24,9 @@ namespace lumorph {
 [[nodiscard]] std::vector<glm::dvec2> readOutline(const std::filesystem::path& file);
 
 /// A drawing as one text: the bends file above with the outline in it, {"outline": [[x, y], ...], "bends": ...}, and
-/// the device's origin as that of its points.
+/// the device's origin as that of its points. Numbers have nine decimals: what such a text holds comes back bit by bit.
 [[nodiscard]] std::string writeSheetDevice(const SheetDevice& device);
-/// The drawing in such a text, each number to the last bit or two. Throws DataError naming `subject` and the entry.
+/// The drawing in such a text. Throws DataError naming `subject` and the entry.
 [[nodiscard]] SheetDevice parseSheetDevice(std::string_view text, const std::string& subject);
 
 } // namespace lumorph
