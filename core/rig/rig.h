@@ -70,11 +70,14 @@ struct RigParts {
     /// True when the solid at a state holds all it passed on the way from rest (its skirt follows
     /// the path), so that the covered volume needs no sweep. `shapeReport` measures it.
     bool pathInside = false;
+    /// What the rig was drawn as, so that the drawing can be taken up again: a text that only `parseSheetDevice`
+    /// reads. Empty for a rig that was not drawn. Later edits of the rig leave it as it was.
+    std::string drawing;
     bool operator==(const RigParts&) const = default;
 };
 
 /// Whether both are the same solid in every joint state, so that a field of the one is a field of the other: names,
-/// suggested levels, velocity limits, damping and drives may differ, because V(s) depends on none of them.
+/// suggested levels, velocity limits, damping, drives and drawing may differ, because V(s) depends on none of them.
 [[nodiscard]] bool deformAlike(const RigParts& a, const RigParts& b);
 
 class DeformProgram;

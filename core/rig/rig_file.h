@@ -30,7 +30,8 @@ namespace lumorph {
 /// what it displaces. Vertices of one mesh that agree in place and in all that moves them become one,
 /// so that a solid whose corners were split for normals closes again, unless the scene's
 /// `extras.lumorph.uniqueVertices` is true. `extras.lumorph.pathInside` there states that the solid
-/// holds its own path.
+/// holds its own path; `extras.lumorph.drawing` is a text, what the rig was drawn as (`RigParts::drawing`), which is
+/// carried along and not looked at.
 ///
 /// A folder holds `rest.obj` and `ACTUATOR_KEY.obj` (any mesh format; KEY 1, 2, ... evenly spaced
 /// strokes), all with the same triangles.

@@ -57,6 +57,8 @@ public:
         if (model.extras.is_object() && extras != model.extras.end() && extras->is_object()) {
             parts_.pathInside = extras->value("pathInside", nlohmann::json(false)) == true;
             unique_ = extras->value("uniqueVertices", nlohmann::json(false)) == true;
+            if (const auto drawing = extras->find("drawing"); drawing != extras->end() && drawing->is_string())
+                parts_.drawing = drawing->get<std::string>();
         }
         for (const Model::Mesh& mesh : model.meshes)
             for (const Model::Primitive& primitive : mesh.primitives)

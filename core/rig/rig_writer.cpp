@@ -38,6 +38,8 @@ public:
     std::vector<std::byte> write() {
         model_.name = rig_.name();
         model_.extras["lumorph"] = {{"pathInside", rig_.pathInside()}, {"uniqueVertices", true}};
+        if (const std::string& drawing = rig_.parts().drawing; !drawing.empty())
+            model_.extras["lumorph"]["drawing"] = drawing;
         model_.meshes.emplace_back();
         model_.meshes.front().name = rig_.name();
         model_.meshes.front().primitives.emplace_back();

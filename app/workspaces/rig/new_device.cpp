@@ -10,19 +10,18 @@
 #include <QHBoxLayout>
 #include <QLabel>
 #include <QPushButton>
-#include <QSlider>
-#include <QTimer>
 #include <QToolButton>
 #include <QVBoxLayout>
 
 #include "app/studio/document/job_slots.h"
-#include "app/studio/viewport/viewport_widget.h"
 #include "app/studio/widgets/dock_parts.h"
 #include "app/studio/widgets/panel.h"
 #include "app/studio/widgets/value_field.h"
-#include "app/workspaces/common/field_colors.h"
+#include "app/workspaces/rig/device_preview.h"
+#include "app/workspaces/rig/draw_sheet.h"
 #include "core/base/error.h"
 #include "core/rig/templates/rig_templates.h"
+#include "core/rig/templates/sheet_file.h"
 
 namespace lumorph::studio {
 
@@ -31,7 +30,6 @@ namespace {
 using Unit = TemplateParameter::Unit;
 
 constexpr const char* kPlace = "rig.new"; ///< of its job; notices are told in the window itself
-constexpr int kRaisedAtFirst = 60;        ///< percent: what a device is can only be seen when it moves
 
 /// What one unit of a parameter is in the field's own: metres, radians, pieces.
 double unitOf(const TemplateParameter& parameter) {
@@ -82,40 +80,36 @@ public:
 private:
     QWidget* makeKinds();
     QWidget* makeSide();
-    QWidget* makePreview();
     QWidget* makeButtons();
     void choose(const RigTemplate& kind);
     void addParameter(const TemplateParameter& parameter);
     void make(); ///< anew, beside the window; the newest wish wins
     void take(const std::shared_ptr<const Rig>& rig);
     void refuse(const std::exception& why);
-    void show();
     void useIt();
+    void drawIt();
 
     Studio& studio_;
     JobSlots jobs_;
-    FieldSceneBuilder builder_;
     const RigTemplate* kind_ = nullptr;
     std::vector<std::pair<const TemplateParameter*, ValueField*>> fields_;
     std::shared_ptr<const Rig> rig_; ///< of the last measures that make one
     bool isNewest_ = false;          ///< `rig_` is of the measures that are seen
-    bool reframes_ = true;           ///< another kind is looked at from where all of it is seen
     QLabel* about_ = new QLabel;
     QWidget* measures_ = new QWidget;
     QLabel* wrong_ = new QLabel;
     QLabel* facts_ = new QLabel;
-    ViewportWidget* view_ = nullptr;
-    QSlider* raised_ = new QSlider(Qt::Horizontal);
+    DevicePreview* preview_;
+    QPushButton* draw_ = nullptr;
     QPushButton* use_ = nullptr;
 };
 
 NewDevice::NewDevice(Studio& studio, QWidget* parent)
-    : QDialog(parent), studio_(studio), jobs_(*this, studio.jobs, studio.notices) {
+    : QDialog(parent), studio_(studio), jobs_(*this, studio.jobs, studio.notices),
+      preview_(new DevicePreview(studio, kPlace)) {
     setObjectName("rig.new.dialog");
     setAttribute(Qt::WA_DeleteOnClose);
     setWindowTitle(tr("New device"));
-    builder_.setPatient(false);
-    builder_.setColors(fieldSceneColors(studio.settings.theme()));
     auto* layout = new QVBoxLayout(this);
     layout->setContentsMargins(16, 16, 16, 16);
     layout->setSpacing(12);
@@ -123,7 +117,7 @@ NewDevice::NewDevice(Studio& studio, QWidget* parent)
     auto* middle = new QHBoxLayout;
     middle->setSpacing(16);
     middle->addWidget(makeSide());
-    middle->addWidget(makePreview(), 1);
+    middle->addWidget(preview_, 1);
     layout->addLayout(middle, 1);
     layout->addWidget(makeButtons());
     choose(rigTemplates().front());
@@ -177,30 +171,16 @@ QWidget* NewDevice::makeSide() {
     return side;
 }
 
-QWidget* NewDevice::makePreview() {
-    auto* preview = new QWidget;
-    auto* layout = new QVBoxLayout(preview);
-    layout->setContentsMargins(0, 0, 0, 0);
-    layout->setSpacing(8);
-    view_ = new ViewportWidget(studio_.renderer);
-    view_->setObjectName("rig.new.view");
-    view_->setAccessibleName(tr("The device as it would be"));
-    view_->setActive(true);
-    layout->addWidget(view_, 1);
-    raised_->setObjectName("rig.new.raised");
-    raised_->setRange(0, 100);
-    raised_->setValue(kRaisedAtFirst);
-    raised_->setToolTip(tr("Moves all actuators of this picture from rest to full stroke"));
-    layout->addWidget(makeRow(tr("&Rehearse"), raised_));
-    connect(raised_, &QSlider::valueChanged, this, &NewDevice::show);
-    return preview;
-}
-
 QWidget* NewDevice::makeButtons() {
     auto* buttons = new QDialogButtonBox;
+    draw_ = buttons->addButton(tr("Draw on it..."), QDialogButtonBox::ActionRole);
+    draw_->setObjectName("rig.new.draw");
+    draw_->setToolTip(tr("Opens the page on which this sheet's outline and bend lines are drawn"));
+    draw_->setAutoDefault(false);
+    draw_->hide();
     use_ = buttons->addButton(tr("Make this device"), QDialogButtonBox::AcceptRole);
     use_->setObjectName("rig.new.accept");
-    use_->setProperty("look", "primary");
+    connect(draw_, &QPushButton::clicked, this, &NewDevice::drawIt);
     buttons->addButton(QDialogButtonBox::Cancel)->setObjectName("rig.new.cancel");
     connect(buttons, &QDialogButtonBox::accepted, this, &NewDevice::useIt);
     connect(buttons, &QDialogButtonBox::rejected, this, &QDialog::reject);
@@ -218,7 +198,7 @@ void NewDevice::choose(const RigTemplate& kind) {
         delete item;
     }
     for (const TemplateParameter& parameter : kind.parameters) addParameter(parameter);
-    reframes_ = true;
+    preview_->frameNext(); // another kind is looked at from where all of it is seen
     make();
 }
 
@@ -247,6 +227,7 @@ void NewDevice::addParameter(const TemplateParameter& parameter) {
 void NewDevice::make() {
     isNewest_ = false;
     use_->setEnabled(false);
+    draw_->setEnabled(false);
     std::vector<TemplateChoice> choices;
     for (const auto& [parameter, field] : fields_) {
         const double value = field->value() / unitOf(*parameter);
@@ -265,13 +246,18 @@ void NewDevice::take(const std::shared_ptr<const Rig>& rig) {
     rig_ = rig;
     isNewest_ = true;
     use_->setEnabled(true);
+    draw_->setEnabled(true);
     wrong_->clear();
     const Box reach = rig->reach();
     facts_->setText(tr("Servos: %1. Over all states it takes %2.")
                         .arg(rig->actuatorCount())
                         .arg(sizeText(static_cast<double>(reach.size().x), static_cast<double>(reach.size().y),
                                       static_cast<double>(reach.size().z))));
-    show();
+    // What moves nothing yet is there to be drawn on.
+    draw_->setVisible(!rig->parts().drawing.empty());
+    const bool blank = rig->actuatorCount() == 0;
+    (blank ? draw_ : use_)->setDefault(true);
+    preview_->show(rig);
 }
 
 /// The last device that could be made stays in sight, with why these measures make none.
@@ -280,25 +266,18 @@ void NewDevice::refuse(const std::exception& why) {
     wrong_->setText(tr("%1: %2. %3.").arg(notice.subject, notice.why, notice.remedy));
 }
 
-void NewDevice::show() {
-    if (!rig_) return;
-    MatchFrame frame;
-    frame.rig = rig_;
-    frame.estimatedStrokes.assign(rig_->actuatorCount(), 0.01 * raised_->value());
-    std::vector<glm::vec3> positions(rig_->restMesh().positions.size());
-    rig_->deform(frame.estimatedStrokes, positions);
-    frame.devicePositions = std::make_shared<const std::vector<glm::vec3>>(std::move(positions));
-    view_->setScene(builder_.build(frame, {}, false));
-    if (std::exchange(reframes_, false)) view_->frameAll();
-    constexpr int kSoon = 30;
-    if (builder_.pending()) QTimer::singleShot(kSoon, this, &NewDevice::show);
-}
-
 void NewDevice::useIt() {
     if (!rig_ || !isNewest_) return;
     const QString name = labelOf(kind_->name).toLower();
     accept();
     studio_.project.takeRig(rig_, name);
+}
+
+void NewDevice::drawIt() {
+    if (!rig_ || !isNewest_) return;
+    SheetDevice drawing = parseSheetDevice(rig_->parts().drawing, rig_->name());
+    accept();
+    openDrawSheet(studio_, parentWidget(), std::move(drawing));
 }
 
 } // namespace

@@ -15,6 +15,7 @@
 #include "app/workspaces/common/export_dialogs.h"
 #include "app/workspaces/common/field_colors.h"
 #include "app/workspaces/common/kept_camera.h"
+#include "app/workspaces/rig/draw_sheet.h"
 #include "app/workspaces/rig/moved_part.h"
 #include "app/workspaces/rig/new_device.h"
 #include "app/workspaces/rig/rig_docks.h"
@@ -64,6 +65,7 @@ struct RigWorkspace::Data : public QObject {
     std::optional<MovedPart> part;
     std::shared_ptr<const Rig> partOf;
     QAction* wiggleCommand = nullptr;
+    QAction* drawCommand = nullptr; ///< there is something to take up again only for a rig that was drawn
     QElapsedTimer wiggling;
     QTimer tick;
     bool active = false;
@@ -85,6 +87,8 @@ void RigWorkspace::Data::listen() {
         refresh();
     });
     connect(&studio.document, &StudioDocument::changed, this, [this](StateParts parts) {
+        const auto& now = studio.document.state().rig.parts;
+        drawCommand->setEnabled(now && !now->drawing.empty());
         if (parts & StatePart::rigEdited) edited();
         if (!(parts & StatePart::rig)) return;
         unframed = true;
@@ -102,6 +106,13 @@ void RigWorkspace::Data::addCommands() {
         emit studio.commands.workspaceWanted("rig");
         openNewDevice(studio, window());
     });
+    options.icon = "bend-line";
+    drawCommand = studio.commands.add("rig.draw", "Edit the drawing...", options, [this] {
+        emit studio.commands.workspaceWanted("rig");
+        openDrawingOfRig(studio, window());
+    });
+    drawCommand->setToolTip("Take up again the drawing that this device was made of");
+    drawCommand->setEnabled(false);
     options.icon = "save";
     options.workspace = "rig";
     studio.commands.add("rig.save", "Save the rig as...", options, [this] { saveRig(); });

@@ -16,6 +16,7 @@
 #include "core/base/text.h"
 #include "core/geometry/mesh_check.h"
 #include "core/rig/templates/plane_drawing.h"
+#include "core/rig/templates/sheet_outline.h"
 
 namespace lumorph {
 namespace {

@@ -5,7 +5,7 @@
 #include "core/base/units.h"
 #include "core/rig/parts/layered_solid.h"
 #include "core/rig/parts/servo_body.h"
-#include "core/rig/parts/sheet_plan.h"
+#include "core/rig/parts/sheet_layout.h"
 
 namespace lumorph {
 

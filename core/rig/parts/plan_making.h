@@ -1,7 +1,7 @@
 #pragma once
 
 #include "core/rig/parts/build_plan.h"
-#include "core/rig/parts/sheet_plan.h"
+#include "core/rig/parts/sheet_layout.h"
 
 namespace lumorph {
 
@@ -9,7 +9,7 @@ namespace lumorph {
 void addPart(BuildPlan& plan, const PartOptions& options, const LayeredDrawing& drawing, PrintPart part);
 
 /// Housing, lid, sheet, seats and levers. `plan` has its wiring, one row an actuator.
-void addSheetParts(BuildPlan& plan, const SheetPlan& sheet, const PartOptions& options, const Progress& progress);
+void addSheetParts(BuildPlan& plan, const SheetLayout& sheet, const PartOptions& options, const Progress& progress);
 
 /// Whether all actuators are upright square pins that slide up.
 [[nodiscard]] bool isPinDisplay(const Rig& rig);

@@ -58,7 +58,7 @@ struct Candidate {
 
 class Arranger {
 public:
-    Arranger(const SheetPlan& sheet, const std::vector<std::string>& names, const PartOptions& options,
+    Arranger(const SheetLayout& sheet, const std::vector<std::string>& names, const PartOptions& options,
              const HousingHeights& heights, const BedSplit& split)
         : sheet_(sheet), names_(names), options_(options), heights_(heights), seat_(options.servo, options.tolerance),
           taken_(split.strips()), room_(shrunk(sheet.housing, HousingHeights::kWall + 0.4)),
@@ -281,7 +281,7 @@ private:
                                "choose a smaller servo, a larger device or fewer actuators");
     }
 
-    const SheetPlan& sheet_;
+    const SheetLayout& sheet_;
     const std::vector<std::string>& names_;
     const PartOptions& options_;
     const HousingHeights& heights_;
@@ -298,13 +298,13 @@ private:
 
 } // namespace
 
-HousingHeights::HousingHeights(const SheetPlan& sheet, const ServoSeat& seat, const ServoBody& body)
+HousingHeights::HousingHeights(const SheetLayout& sheet, const ServoSeat& seat, const ServoBody& body)
     : tray(std::max(sheet.ledge - kLid, kFloor + seat.thickness())),
       plinth(ServoSeat::plinthOf(tray - kFloor - seat.thickness())),
       below(tray + kLid + sheet.underside - sheet.ledge - kFloor - plinth - 0.5 * body.width),
       deeper(tray + kLid - sheet.ledge) {}
 
-HousingArrangement arrangeHousing(const SheetPlan& sheet, const std::vector<std::string>& names,
+HousingArrangement arrangeHousing(const SheetLayout& sheet, const std::vector<std::string>& names,
                                   const PartOptions& options, const HousingHeights& heights, const BedSplit& split) {
     return Arranger(sheet, names, options, heights, split).arrange();
 }

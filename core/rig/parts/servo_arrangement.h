@@ -7,7 +7,7 @@
 #include "core/rig/parts/bed_split.h"
 #include "core/rig/parts/build_plan.h"
 #include "core/rig/parts/servo_seat.h"
-#include "core/rig/parts/sheet_plan.h"
+#include "core/rig/parts/sheet_layout.h"
 
 namespace lumorph {
 
@@ -17,7 +17,7 @@ struct HousingHeights {
     static constexpr double kLid = 2.0;
     static constexpr double kWall = 2.0;
 
-    HousingHeights(const SheetPlan& sheet, const ServoSeat& seat, const ServoBody& body);
+    HousingHeights(const SheetLayout& sheet, const ServoSeat& seat, const ServoBody& body);
     double tray = 0.0;   ///< top of the walls, where the lid lies
     double plinth = 0.0; ///< solid foot of the seats
     double below = 0.0;  ///< from the sheet's underside down to the shafts
@@ -44,7 +44,7 @@ struct HousingArrangement {
 
 /// Finds room in a housing for servos, screw posts and the board. Throws InvalidInput naming the actuator for whose
 /// servo there is none, or when no lid can be screwed on.
-[[nodiscard]] HousingArrangement arrangeHousing(const SheetPlan& sheet, const std::vector<std::string>& names,
+[[nodiscard]] HousingArrangement arrangeHousing(const SheetLayout& sheet, const std::vector<std::string>& names,
                                                 const PartOptions& options, const HousingHeights& heights,
                                                 const BedSplit& split);
 

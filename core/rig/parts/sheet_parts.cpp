@@ -28,7 +28,7 @@ std::string tenths(double value) {
 
 class SheetParts {
 public:
-    SheetParts(BuildPlan& plan, const SheetPlan& sheet, const PartOptions& options)
+    SheetParts(BuildPlan& plan, const SheetLayout& sheet, const PartOptions& options)
         : plan_(plan), sheet_(sheet), options_(options), seat_(options.servo, options.tolerance),
           heights_(sheet, seat_, options.servo), split_(sheet.housing, options.bed, options.tolerance) {
         arrange();
@@ -341,7 +341,7 @@ private:
     }
 
     BuildPlan& plan_;
-    const SheetPlan& sheet_;
+    const SheetLayout& sheet_;
     const PartOptions& options_;
     ServoSeat seat_;
     HousingHeights heights_;
@@ -351,7 +351,7 @@ private:
 
 } // namespace
 
-void addSheetParts(BuildPlan& plan, const SheetPlan& sheet, const PartOptions& options, const Progress& progress) {
+void addSheetParts(BuildPlan& plan, const SheetLayout& sheet, const PartOptions& options, const Progress& progress) {
     SheetParts(plan, sheet, options).make(progress);
 }
 

@@ -23,8 +23,6 @@ constexpr double kTiny = 0.25;  ///< features of a rim that are smaller are smoo
 constexpr double kSlope = 0.25; ///< a rim that runs out flatter than this is cut
 constexpr double kSame = 1e-6;
 
-double crossOf(const glm::dvec2& a, const glm::dvec2& b) { return a.x * b.y - a.y * b.x; }
-
 /// A piece of a rim or of what limits it, in a line's frame, from left to right.
 struct Piece {
     glm::dvec2 from;

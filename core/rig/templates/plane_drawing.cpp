@@ -34,14 +34,14 @@ void PlaneDrawing::addLine(const glm::dvec2& from, const glm::dvec2& to, double 
 }
 
 PlaneMesh PlaneDrawing::triangulate() const {
-    std::vector<Edge> edges;
+    std::vector<PlaneEdge> edges;
     for (const auto& [a, b] : edges_) splitAtPoints(a, b, edges);
     std::ranges::sort(edges);
     edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
     return triangulateCrossing(points_, edges);
 }
 
-void PlaneDrawing::splitAtPoints(std::uint32_t a, std::uint32_t b, std::vector<Edge>& edges) const {
+void PlaneDrawing::splitAtPoints(std::uint32_t a, std::uint32_t b, std::vector<PlaneEdge>& edges) const {
     if (a == b) return;
     const glm::dvec2 way = points_[b] - points_[a];
     const double length = glm::length(way);

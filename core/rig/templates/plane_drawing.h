@@ -11,6 +11,9 @@
 
 namespace lumorph {
 
+/// An edge of a drawing in the plane: two indices of points.
+using PlaneEdge = std::pair<std::uint32_t, std::uint32_t>;
+
 /// Points on the page in millimetres, one for places that are all but the same, and the lines between them.
 class PlaneDrawing {
 public:
@@ -25,11 +28,10 @@ public:
     [[nodiscard]] PlaneMesh triangulate() const;
 
 private:
-    using Edge = std::pair<std::uint32_t, std::uint32_t>;
-    void splitAtPoints(std::uint32_t a, std::uint32_t b, std::vector<Edge>& edges) const;
+    void splitAtPoints(std::uint32_t a, std::uint32_t b, std::vector<PlaneEdge>& edges) const;
 
     std::vector<glm::dvec2> points_;
-    std::vector<Edge> edges_;
+    std::vector<PlaneEdge> edges_;
     std::map<std::pair<int, int>, std::vector<std::uint32_t>> cells_;
 };
 

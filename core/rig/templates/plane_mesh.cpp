@@ -86,6 +86,13 @@ void addWall(const std::vector<std::uint32_t>& a, const std::vector<std::uint32_
     }
 }
 
+double signedArea(const std::vector<glm::dvec2>& polygon) noexcept {
+    double area = 0.0;
+    for (std::size_t k = 0; k < polygon.size(); ++k)
+        area += 0.5 * crossOf(polygon[k], polygon[(k + 1) % polygon.size()]);
+    return area;
+}
+
 bool insidePolygon(const std::vector<glm::dvec2>& polygon, const glm::dvec2& point) {
     bool inside = false;
     for (std::size_t k = 0; k < polygon.size(); ++k) {

@@ -30,6 +30,12 @@ struct PlaneMesh {
 void addWall(const std::vector<std::uint32_t>& a, const std::vector<std::uint32_t>& b,
              std::vector<glm::uvec3>& triangles);
 
+/// The cross product of two ways in the plane: positive where the second turns left of the first.
+[[nodiscard]] inline double crossOf(const glm::dvec2& a, const glm::dvec2& b) noexcept { return a.x * b.y - a.y * b.x; }
+
+/// Positive for a polygon that runs counter-clockwise.
+[[nodiscard]] double signedArea(const std::vector<glm::dvec2>& polygon) noexcept;
+
 /// True inside the polygon (even-odd).
 [[nodiscard]] bool insidePolygon(const std::vector<glm::dvec2>& polygon, const glm::dvec2& point);
 

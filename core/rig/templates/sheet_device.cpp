@@ -14,6 +14,7 @@
 #include "core/rig/templates/flap_layout.h"
 #include "core/rig/templates/plane_drawing.h"
 #include "core/rig/templates/plane_mesh.h"
+#include "core/rig/templates/sheet_file.h"
 #include "core/rig/templates/sheet_outline.h"
 #include "core/rig/templates/sound_rig.h"
 
@@ -28,8 +29,6 @@ constexpr double kSpacing = 10.0; ///< between points where the sheet stays stra
 constexpr double kIsland = 4.0;   ///< square millimetres: smaller still pieces between slits are left out
 
 using Polygon = std::vector<glm::dvec2>;
-
-double turnOf(const glm::dvec2& a, const glm::dvec2& b) { return a.x * b.y - a.y * b.x; }
 
 /// The housing: the convex hull, `margin` larger on every side.
 Polygon grownHull(const Polygon& points, double margin) {
@@ -109,8 +108,10 @@ public:
         top_ = bottom_ + thickness;
     }
 
+    [[nodiscard]] std::vector<Flap> layOut() const { return layOutFlaps(outline_, device_.bends, clearance_); }
+
     RigParts build() {
-        flaps_ = layOutFlaps(outline_, device_.bends, clearance_);
+        flaps_ = layOut();
         housing_ = grownHull(outline_, clearance_.slit());
         draw();
         plane_ = pool_.triangulate();
@@ -124,6 +125,7 @@ public:
         parts.name = device_.name;
         parts.restMesh = std::move(mesh_);
         parts.pathInside = true;
+        parts.drawing = writeSheetDevice(device_);
         for (std::size_t f = 0; f < flaps_.size(); ++f) parts.actuators.push_back(actuator(f));
         return parts;
     }
@@ -200,10 +202,10 @@ private:
         for (std::size_t k = 0; k < other.size(); ++k) {
             const glm::dvec2 to = other[k] - a;
             const glm::dvec2 next = other[(k + 1) % other.size()] - other[k];
-            const double turn = turnOf(way, next);
+            const double turn = crossOf(way, next);
             if (turn == 0.0) continue;
-            const double s = turnOf(to, next) / turn;
-            const double t = turnOf(to, way) / turn;
+            const double s = crossOf(to, next) / turn;
+            const double t = crossOf(to, way) / turn;
             if (s > 0.0 && s < 1.0 && t >= 0.0 && t <= 1.0) shares.push_back(s);
         }
     }
@@ -263,7 +265,7 @@ private:
             if (labels_[t] != kBody) continue;
             const glm::uvec3& c = plane_.triangles[t];
             areas[sets.find(t)] +=
-                0.5 * turnOf(plane_.points[c.y] - plane_.points[c.x], plane_.points[c.z] - plane_.points[c.x]);
+                0.5 * crossOf(plane_.points[c.y] - plane_.points[c.x], plane_.points[c.z] - plane_.points[c.x]);
         }
         eachEdge([&](std::uint32_t t, std::uint32_t a, std::uint32_t b) {
             if (across(a, b) >= 0) areas[sets.find(t)] = kIsland;
@@ -316,7 +318,7 @@ private:
             double sum = 0.0;
             for (const std::uint32_t t : fan) {
                 const glm::uvec3& c = plane_.triangles[t];
-                sum += turnOf(plane_.points[c.y] - plane_.points[c.x], plane_.points[c.z] - plane_.points[c.x]);
+                sum += crossOf(plane_.points[c.y] - plane_.points[c.x], plane_.points[c.z] - plane_.points[c.x]);
             }
             return sum;
         };
@@ -480,6 +482,15 @@ Rig sheetRig(const SheetDevice& device, const Progress& progress) {
     requireSound(rig, progress);
     progress.report(1.0, "looking the solid over");
     return rig;
+}
+
+std::vector<std::vector<glm::dvec2>> sheetFlaps(const SheetDevice& device) {
+    std::vector<std::vector<glm::dvec2>> polygons;
+    for (const Flap& flap : SheetBuilder(device).layOut()) {
+        polygons.emplace_back();
+        for (const glm::dvec2& p : flap.outline) polygons.back().push_back(placeOf(p));
+    }
+    return polygons;
 }
 
 } // namespace lumorph

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <span>
 
-#include <glm/common.hpp>
 #include <nlohmann/json.hpp>
 
 #include "core/base/error.h"
@@ -18,6 +18,8 @@ namespace {
 
 constexpr std::size_t kMostBytes = std::size_t{16} << 20;
 constexpr double kCentimetre = 0.01;
+constexpr std::array<std::string_view, 2> kEnds{"free", "joined"};
+constexpr std::array<std::string_view, 3> kSides{"smaller", "left", "right"};
 
 std::string contentOf(const std::filesystem::path& file) {
     const std::vector<std::byte> bytes = readFile(file, kMostBytes);
@@ -59,10 +61,14 @@ public:
     }
     [[nodiscard]] glm::dvec2 point(const char* key) const {
         const nlohmann::json* value = find(key);
-        if (value == nullptr || !value->is_array() || value->size() != 2 || !(*value)[0].is_number() ||
-            !(*value)[1].is_number())
-            fail(std::string(key) + " is no point", "write two numbers in centimetres: [x, y]");
-        return kCentimetre * glm::dvec2((*value)[0].get<double>(), (*value)[1].get<double>());
+        return pointOf(value == nullptr ? nlohmann::json() : *value, key);
+    }
+    [[nodiscard]] std::vector<glm::dvec2> points(const char* key) const {
+        const nlohmann::json* value = find(key);
+        if (value == nullptr || !value->is_array()) fail(std::string(key) + " is no list", "write [[x, y], ...]");
+        std::vector<glm::dvec2> points;
+        for (const nlohmann::json& one : *value) points.push_back(pointOf(one, key));
+        return points;
     }
     /// The place of a word among those that are known.
     [[nodiscard]] int choice(const char* key, std::span<const std::string_view> words, int missing) const {
@@ -77,6 +83,12 @@ public:
     }
 
 private:
+    [[nodiscard]] glm::dvec2 pointOf(const nlohmann::json& value, const char* key) const {
+        if (!value.is_array() || value.size() != 2 || !value[0].is_number() || !value[1].is_number())
+            fail(std::string(key) + " is no point", "write two numbers in centimetres: [x, y]");
+        return kCentimetre * glm::dvec2(value[0].get<double>(), value[1].get<double>());
+    }
+
     const nlohmann::json& json_;
     std::string subject_;
 };
@@ -84,8 +96,6 @@ private:
 BendLine bendOf(const nlohmann::json& json, const std::string& file, std::size_t number) {
     const BendsEntry entry(json, file + ", bend " + std::to_string(number),
                            {"name", "from", "to", "ends", "side", "angle"});
-    static constexpr std::array<std::string_view, 2> kEnds{"free", "joined"};
-    static constexpr std::array<std::string_view, 3> kSides{"smaller", "left", "right"};
     BendLine bend;
     bend.name = entry.text("name", "bend " + std::to_string(number));
     bend.from = entry.point("from");
@@ -96,38 +106,86 @@ BendLine bendOf(const nlohmann::json& json, const std::string& file, std::size_t
     return bend;
 }
 
-} // namespace
-
-SheetDevice readSheetDevice(const std::filesystem::path& outline, const std::filesystem::path& bends) {
-    SheetDevice device;
-    device.name = outline.stem().string();
-    device.outline = svgOutline(contentOf(outline), outline.string());
-    const std::string text = contentOf(bends);
+nlohmann::json parsed(std::string_view text, const std::string& subject) {
+    const char* const remedy = "write {\"bends\": [...]} with finite numbers";
     if (const std::string problem = jsonProblem(text); !problem.empty())
-        throw DataError(bends.string(), "it " + problem, "write {\"bends\": [...]} with finite numbers");
-    const nlohmann::json json = nlohmann::json::parse(text, nullptr, false);
-    if (json.is_discarded()) throw DataError(bends.string(), "it is no JSON", "write {\"bends\": [...]}");
-    const BendsEntry entry(json, bends.string(), {"bends", "name", "thickness", "housing", "arc"});
+        throw DataError(subject, "it " + problem, remedy);
+    nlohmann::json json = nlohmann::json::parse(text, nullptr, false);
+    if (json.is_discarded()) throw DataError(subject, "it is no JSON", remedy);
+    return json;
+}
+
+/// All that such an object says but the outline, over what `device` holds already.
+void readBends(const BendsEntry& entry, const std::string& subject, SheetDevice& device) {
     device.name = entry.text("name", device.name);
     device.thickness = kCentimetre * entry.number("thickness", device.thickness / kCentimetre);
     device.housing = kCentimetre * entry.number("housing", device.housing / kCentimetre);
     device.arc = kCentimetre * entry.number("arc", device.arc / kCentimetre);
     const nlohmann::json* list = entry.find("bends");
     if (list == nullptr || !list->is_array()) entry.fail("it holds no list of bend lines", "write {\"bends\": [...]}");
-    for (const nlohmann::json& bend : *list)
-        device.bends.push_back(bendOf(bend, bends.string(), device.bends.size() + 1));
-    glm::dvec2 low = device.outline.front();
-    glm::dvec2 high = low;
-    for (const glm::dvec2& p : device.outline) {
-        low = glm::min(low, p);
-        high = glm::max(high, p);
-    }
-    const glm::dvec2 middle = 0.5 * (low + high);
+    for (const nlohmann::json& bend : *list) device.bends.push_back(bendOf(bend, subject, device.bends.size() + 1));
+}
+
+/// A number as it is written: with nine decimals, so that reading it and writing it again changes nothing.
+double rounded(double number) {
+    constexpr double kDecimals = 1e9;
+    return std::round(number * kDecimals) / kDecimals;
+}
+
+double inCentimetres(double metres) { return rounded(metres / kCentimetre); }
+
+nlohmann::json pointJson(const glm::dvec2& point) { return {inCentimetres(point.x), inCentimetres(point.y)}; }
+
+} // namespace
+
+SheetDevice readSheetDevice(const std::filesystem::path& outline, const std::filesystem::path& bends) {
+    SheetDevice device;
+    device.name = outline.stem().string();
+    device.outline = svgOutline(contentOf(outline), outline.string());
+    const nlohmann::json json = parsed(contentOf(bends), bends.string());
+    readBends(BendsEntry(json, bends.string(), {"bends", "name", "thickness", "housing", "arc"}), bends.string(),
+              device);
+    const glm::dvec2 middle = boxOf(device.outline).middle();
     for (glm::dvec2& p : device.outline) p -= middle;
     for (BendLine& bend : device.bends) {
         bend.from -= middle;
         bend.to -= middle;
     }
+    return device;
+}
+
+std::vector<glm::dvec2> readOutline(const std::filesystem::path& file) {
+    std::vector<glm::dvec2> outline = svgOutline(contentOf(file), file.string());
+    const glm::dvec2 middle = boxOf(outline).middle();
+    for (glm::dvec2& p : outline) p -= middle;
+    return outline;
+}
+
+std::string writeSheetDevice(const SheetDevice& device) {
+    nlohmann::json json{{"name", device.name},
+                        {"thickness", inCentimetres(device.thickness)},
+                        {"housing", inCentimetres(device.housing)},
+                        {"arc", inCentimetres(device.arc)},
+                        {"outline", nlohmann::json::array()},
+                        {"bends", nlohmann::json::array()}};
+    for (const glm::dvec2& p : device.outline) json["outline"].push_back(pointJson(p));
+    for (const BendLine& bend : device.bends)
+        json["bends"].push_back({{"name", bend.name},
+                                 {"from", pointJson(bend.from)},
+                                 {"to", pointJson(bend.to)},
+                                 {"ends", kEnds[static_cast<std::size_t>(bend.ends)]},
+                                 {"side", kSides[static_cast<std::size_t>(bend.side)]},
+                                 {"angle", rounded(bend.angle.inDegrees())}});
+    return json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+}
+
+SheetDevice parseSheetDevice(std::string_view text, const std::string& subject) {
+    if (text.size() > kMostBytes) throw DataError(subject, "it is larger than 16 MB", "simplify the drawing");
+    const nlohmann::json json = parsed(text, subject);
+    const BendsEntry entry(json, subject, {"outline", "bends", "name", "thickness", "housing", "arc"});
+    SheetDevice device;
+    device.outline = entry.points("outline");
+    readBends(entry, subject, device);
     return device;
 }
 

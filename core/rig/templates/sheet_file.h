@@ -1,6 +1,11 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <glm/vec2.hpp>
 
 #include "core/rig/templates/sheet_device.h"
 
@@ -14,5 +19,14 @@ namespace lumorph {
 /// and `to` are required. The device's origin is the middle of the outline.
 /// Throws DataError naming the file and the entry.
 [[nodiscard]] SheetDevice readSheetDevice(const std::filesystem::path& outline, const std::filesystem::path& bends);
+
+/// The outline in an SVG file (see `svgOutline`), its middle at the origin. Throws DataError naming the file.
+[[nodiscard]] std::vector<glm::dvec2> readOutline(const std::filesystem::path& file);
+
+/// A drawing as one text: the bends file above with the outline in it, {"outline": [[x, y], ...], "bends": ...}, and
+/// the device's origin as that of its points. Numbers have nine decimals: what such a text holds comes back bit by bit.
+[[nodiscard]] std::string writeSheetDevice(const SheetDevice& device);
+/// The drawing in such a text. Throws DataError naming `subject` and the entry.
+[[nodiscard]] SheetDevice parseSheetDevice(std::string_view text, const std::string& subject);
 
 } // namespace lumorph

@@ -8,6 +8,7 @@
 #include <glm/geometric.hpp>
 
 #include "core/base/error.h"
+#include "core/rig/templates/plane_mesh.h"
 
 namespace lumorph {
 namespace {
@@ -16,16 +17,10 @@ constexpr double kChord = 1e-4;   ///< metres between a round edge and its chord
 constexpr double kNearest = 3e-4; ///< metres; nearer points are one
 constexpr std::size_t kMaxOutlinePoints = 1000;
 
-double turn(const glm::dvec2& a, const glm::dvec2& b) { return a.x * b.y - a.y * b.x; }
-
-double areaOf(const std::vector<glm::dvec2>& polygon) {
-    double area = 0.0;
-    for (std::size_t k = 0; k < polygon.size(); ++k) area += 0.5 * turn(polygon[k], polygon[(k + 1) % polygon.size()]);
-    return area;
-}
-
 bool segmentsMeet(const glm::dvec2& a, const glm::dvec2& b, const glm::dvec2& c, const glm::dvec2& d) {
-    const auto side = [](const glm::dvec2& p, const glm::dvec2& q, const glm::dvec2& r) { return turn(q - p, r - p); };
+    const auto side = [](const glm::dvec2& p, const glm::dvec2& q, const glm::dvec2& r) {
+        return crossOf(q - p, r - p);
+    };
     return side(a, b, c) * side(a, b, d) <= 0.0 && side(c, d, a) * side(c, d, b) <= 0.0 &&
            std::max(a.x, b.x) >= std::min(c.x, d.x) && std::max(c.x, d.x) >= std::min(a.x, b.x) &&
            std::max(a.y, b.y) >= std::min(c.y, d.y) && std::max(c.y, d.y) >= std::min(a.y, b.y);
@@ -50,7 +45,7 @@ std::vector<glm::dvec2> thinned(const std::vector<glm::dvec2>& outline) {
         const glm::dvec2& before = kept.empty() ? points.back() : kept.back();
         const glm::dvec2 in = points[k] - before;
         const glm::dvec2 out = points[(k + 1) % points.size()] - points[k];
-        if (std::abs(turn(in, out)) > 1e-6 * glm::length(in) * glm::length(out) || glm::dot(in, out) < 0.0)
+        if (std::abs(crossOf(in, out)) > 1e-6 * glm::length(in) * glm::length(out) || glm::dot(in, out) < 0.0)
             kept.push_back(points[k]);
     }
     return kept;
@@ -90,6 +85,16 @@ std::vector<glm::dvec2> ellipseOutline(double width, double depth) {
     return outline;
 }
 
+OutlineBox boxOf(const std::vector<glm::dvec2>& outline) noexcept {
+    if (outline.empty()) return {};
+    OutlineBox box{outline.front(), outline.front()};
+    for (const glm::dvec2& p : outline) {
+        box.low = glm::min(box.low, p);
+        box.high = glm::max(box.high, p);
+    }
+    return box;
+}
+
 std::vector<glm::dvec2> checkedOutline(const std::vector<glm::dvec2>& outline, const std::string& subject) {
     for (const glm::dvec2& p : outline)
         if (!std::isfinite(p.x) || !std::isfinite(p.y))
@@ -100,13 +105,7 @@ std::vector<glm::dvec2> checkedOutline(const std::vector<glm::dvec2>& outline, c
     if (points.size() > kMaxOutlinePoints)
         throw InvalidInput(subject, "the outline has " + std::to_string(points.size()) + " corners",
                            "simplify it to at most " + std::to_string(kMaxOutlinePoints));
-    glm::dvec2 low = points.front();
-    glm::dvec2 high = points.front();
-    for (const glm::dvec2& p : points) {
-        low = glm::min(low, p);
-        high = glm::max(high, p);
-    }
-    const glm::dvec2 size = high - low;
+    const glm::dvec2 size = boxOf(points).size();
     if (std::min(size.x, size.y) < 0.02 || std::max(size.x, size.y) > 2.0)
         throw InvalidInput(subject,
                            "the outline is " + std::to_string(100.0 * size.x) + " x " + std::to_string(100.0 * size.y) +
@@ -114,7 +113,7 @@ std::vector<glm::dvec2> checkedOutline(const std::vector<glm::dvec2>& outline, c
                            "make it 2 to 200 cm wide and deep");
     if (!simple(points))
         throw InvalidInput(subject, "the outline crosses itself", "draw it as one loop without a knot");
-    if (areaOf(points) < 0.0) std::ranges::reverse(points);
+    if (signedArea(points) < 0.0) std::ranges::reverse(points);
     return points;
 }
 

@@ -14,6 +14,15 @@ namespace lumorph {
 /// Within 0.1 mm of the ellipse.
 [[nodiscard]] std::vector<glm::dvec2> ellipseOutline(double width, double depth);
 
+/// The box around points; of none it is the origin.
+struct OutlineBox {
+    glm::dvec2 low{0.0};
+    glm::dvec2 high{0.0};
+    [[nodiscard]] glm::dvec2 size() const noexcept { return high - low; }
+    [[nodiscard]] glm::dvec2 middle() const noexcept { return 0.5 * (low + high); }
+};
+[[nodiscard]] OutlineBox boxOf(const std::vector<glm::dvec2>& outline) noexcept;
+
 /// The outline without points that add nothing. Throws InvalidInput naming `subject` unless it is a simple polygon of
 /// finite points, 2 cm to 2 m wide and deep.
 [[nodiscard]] std::vector<glm::dvec2> checkedOutline(const std::vector<glm::dvec2>& outline,

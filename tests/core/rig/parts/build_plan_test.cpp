@@ -352,7 +352,7 @@ TEST(BuildPlan, RefusesWhatCannotBeBuilt) {
     EXPECT_THAT(refusal(templateRig("phone"), options), testing::HasSubstr("no room"));
     EXPECT_THAT(
         refusal(
-            Rig({"thing", tablet.skeleton() ? tablet.restMesh() : templateRig("cushion").restMesh(), {}, {}, false}),
+            Rig({"thing", tablet.skeleton() ? tablet.restMesh() : templateRig("cushion").restMesh(), {}, {}, false, {}}),
             {}),
         testing::HasSubstr("no actuator"));
 }

@@ -26,7 +26,7 @@ struct SheetFlap {
 };
 
 /// What a rig of a sheet on a housing is made of, read from its mesh at rest; millimetres, heights above its bottom.
-struct SheetPlan {
+struct SheetLayout {
     PlanePolygon housing;            ///< convex, counter-clockwise
     std::vector<PlanePolygon> sheet; ///< with its slits, even-odd
     std::vector<PlanePolygon> still; ///< what no actuator moves of it, even-odd
@@ -38,7 +38,7 @@ struct SheetPlan {
 
 /// None where the rig is no sheet on a housing: something moves otherwise than by bending upwards, or there is no
 /// level top, ledge and bottom.
-[[nodiscard]] std::optional<SheetPlan> sheetPlanOf(const Rig& rig);
+[[nodiscard]] std::optional<SheetLayout> sheetPlanOf(const Rig& rig);
 
 /// The borders of the triangles that `keep` accepts, seen from above, on the page in millimetres; even-odd.
 /// (x right, y away from the viewer.)

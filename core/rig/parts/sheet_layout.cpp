@@ -1,4 +1,4 @@
-#include "core/rig/parts/sheet_plan.h"
+#include "core/rig/parts/sheet_layout.h"
 
 #include <algorithm>
 #include <cmath>
@@ -120,14 +120,14 @@ std::vector<PlanePolygon> bordersOf(const TriangleMesh& mesh, const std::vector<
     return borders;
 }
 
-std::optional<SheetPlan> sheetPlanOf(const Rig& rig) {
+std::optional<SheetLayout> sheetPlanOf(const Rig& rig) {
     const TriangleMesh& mesh = rig.restMesh();
     const Box box = boundingBox(mesh.positions);
     const std::vector<bool> top = levelAt(mesh, box.max.y, true);
     const std::vector<bool> bottom = levelAt(mesh, box.min.y, false);
     const std::optional<double> ledge = ledgeOf(mesh, box.max.y);
     if (!ledge || *ledge < box.min.y + kLevel || std::ranges::find(bottom, true) == bottom.end()) return std::nullopt;
-    SheetPlan plan;
+    SheetLayout plan;
     std::vector<bool> still = top;
     double neutral = 0.5 * (*ledge + kUsualGap + box.max.y);
     for (std::size_t a = 0; a < rig.actuatorCount(); ++a) {
