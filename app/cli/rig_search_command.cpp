@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cstdio>
+#include <exception>
 #include <filesystem>
 #include <memory>
 #include <system_error>
@@ -14,6 +15,7 @@
 #include "core/rig/templates/sheet_outline.h"
 #include "core/search/search_file.h"
 #include "core/search/search_front.h"
+#include "core/search/shared_batch.h"
 
 namespace lumorph::cli {
 
@@ -72,18 +74,33 @@ struct Found {
 
 /// Lets generations pass, each kept on the disk, so that a search that is ended goes on where it was.
 SearchState search(const SheetDesigns& designs, const DesignScorer& scorer, const SheetDevice& start,
-                   const SearchIdentity& identity, const SearchOptions& options, const Session& session) {
+                   const SearchIdentity& identity, const SearchOptions& options, const Ranks* ranks,
+                   const Session& session) {
     const Progress progress = session.progress();
-    const ScoreBatch score = [&](const std::vector<DesignPoint>& points) { return scorer.batch(points, progress); };
+    const ScoreBatch own = [&](const std::vector<DesignPoint>& points) { return scorer.batch(points, progress); };
+    const ScoreBatch score = [&](const std::vector<DesignPoint>& points) {
+        return ranks != nullptr ? ranks->score(points, own) : own(points);
+    };
+    const auto keep = [&](const SearchState& state) {
+        std::exception_ptr failure;
+        try {
+            if (ranks == nullptr || ranks->first()) writeSearchState(options.output, identity, state);
+        } catch (const Error&) {
+            failure = std::current_exception();
+        }
+        // The others do not go on without the one that writes.
+        const bool failed = ranks != nullptr ? ranks->any(failure != nullptr) : failure != nullptr;
+        if (failure) std::rethrow_exception(failure);
+        if (failed) throw Cancelled();
+    };
     std::optional<SearchState> kept = readSearchState(options.output, identity);
     SearchState state = kept ? std::move(*kept)
                              : beginSearch(designs, options.population, options.seed, {designs.pointOf(start)}, score);
     try {
-        if (!kept) writeSearchState(options.output, identity, state);
+        if (!kept) keep(state);
         while (state.generation < options.generations) {
-            progress.throwIfCancelled();
-            nextGeneration(state, score);
-            writeSearchState(options.output, identity, state);
+            nextGeneration(state, score); // asks whether it is to stop
+            keep(state);
             char stage[64];
             std::snprintf(stage, sizeof stage, "generation %d of %d", state.generation, options.generations);
             progress.report(0.9 * state.generation / options.generations, stage);
@@ -149,6 +166,7 @@ void printFound(const Found& found, const SearchOptions& options) {
 }
 
 void rigSearch(const SearchOptions& options, const Session& session) {
+    const std::optional<Ranks> ranks = Ranks::join(fs::read_symlink("/proc/self/exe").parent_path());
     const Start start = startOf(options.rig);
     std::vector<LibraryTarget> library = readTargetLibrary(options.targets.folder(), session.progress());
     const SearchTargets targets =
@@ -165,7 +183,8 @@ void rigSearch(const SearchOptions& options, const Session& session) {
     const DesignScorer scorer(designs, fit, identity.cost);
     makeFolder(options.output);
     Found found;
-    found.state = search(designs, scorer, start.sheet, identity, options, session);
+    found.state = search(designs, scorer, start.sheet, identity, options, ranks ? &*ranks : nullptr, session);
+    if (ranks && !ranks->first()) return;
     found.front = buildFront(designs, scorer, identity.cost, found.state, targets, session.progress().part(0.9, 1.0));
     Session::endProgress();
     writeFront(found, options.output);

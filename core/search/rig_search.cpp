@@ -172,6 +172,7 @@ void keepBest(SearchState& state, const ScoredDesign& design) {
 std::vector<ScoredDesign> scored(const std::vector<DesignPoint>& points, const ScoreBatch& score) {
     const std::vector<DesignScore> scores = score(points);
     std::vector<ScoredDesign> designs;
+    designs.reserve(points.size());
     for (std::size_t k = 0; k < points.size(); ++k) designs.push_back({points[k], scores[k]});
     return designs;
 }
@@ -191,6 +192,7 @@ std::vector<ScoredDesign> selected(const std::vector<ScoredDesign>& among, std::
         return different;
     }
     std::vector<pagmo::vector_double> fitness;
+    fitness.reserve(different.size());
     for (const ScoredDesign& design : different) fitness.push_back({design.score.cost, -design.score.fit});
     std::vector<ScoredDesign> chosen;
     for (const auto k : pagmo::select_best_N_mo(fitness, count)) chosen.push_back(different[k]);

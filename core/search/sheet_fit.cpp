@@ -60,6 +60,7 @@ struct SheetFit::Tables {
     void drawProfiles(double arc, double thickness, double angle, double longest);
     void countTarget(std::size_t target, const BitColumns& bits);
     [[nodiscard]] FlapGains gainsOf(const Flap& flap) const;
+    [[nodiscard]] std::vector<FlapGains> gainsOf(const std::vector<Flap>& flaps) const;
     void addColumn(std::size_t column, double u, double depth, FlapGains& gains) const;
     [[nodiscard]] double mostWon(const FlapGains& flap, std::size_t target) const;
     [[nodiscard]] double bestRatio(const std::vector<FlapGains>& flaps, std::size_t target) const;
@@ -111,7 +112,7 @@ void SheetFit::Tables::countTarget(std::size_t target, const BitColumns& bits) {
 void SheetFit::Tables::addColumn(std::size_t column, double u, double depth, FlapGains& gains) const {
     const auto height = static_cast<int>(frame.dimensions.y);
     const double perVoxel = 1.0 / (1e3 * frame.voxelSize);
-    const std::size_t place = std::min(places - 1, static_cast<std::size_t>(u / kCell + 0.5));
+    const std::size_t place = std::min(places - 1, static_cast<std::size_t>(std::lround(u / kCell)));
     const std::uint8_t* const counts = &below[column * static_cast<std::size_t>(height + 1) * targets];
     double highest = 0.0;
     bool passed = false;
@@ -128,7 +129,7 @@ void SheetFit::Tables::addColumn(std::size_t column, double u, double depth, Fla
             highest = std::max(highest, static_cast<double>(before.height) +
                                             share * static_cast<double>(now.height - before.height));
         }
-        const int covered = static_cast<int>(highest * perVoxel + 0.5);
+        const int covered = static_cast<int>(std::lround(highest * perVoxel));
         if (covered == 0) continue;
         gains.covered[static_cast<std::size_t>(level)] += covered;
         const std::uint8_t* const of = counts + static_cast<std::size_t>(std::min(covered, height)) * targets;
@@ -164,6 +165,13 @@ FlapGains SheetFit::Tables::gainsOf(const Flap& flap) const {
                               static_cast<std::size_t>(x),
                           local.y, depth, gains);
         }
+    return gains;
+}
+
+std::vector<FlapGains> SheetFit::Tables::gainsOf(const std::vector<Flap>& flaps) const {
+    std::vector<FlapGains> gains;
+    gains.reserve(flaps.size());
+    for (const Flap& flap : flaps) gains.push_back(gainsOf(flap));
     return gains;
 }
 
@@ -251,16 +259,14 @@ SheetFit::~SheetFit() = default;
 SheetFit::SheetFit(SheetFit&&) noexcept = default;
 
 std::vector<double> SheetFit::each(const std::vector<Flap>& flaps) const {
-    std::vector<FlapGains> gains;
-    for (const Flap& flap : flaps) gains.push_back(tables_->gainsOf(flap));
+    const std::vector<FlapGains> gains = tables_->gainsOf(flaps);
     std::vector<double> fits;
     for (std::size_t t = 0; t < tables_->targets; ++t) fits.push_back(tables_->bestRatio(gains, t));
     return fits;
 }
 
 SheetFit::Worth SheetFit::of(const std::vector<Flap>& flaps) const {
-    std::vector<FlapGains> gains;
-    for (const Flap& flap : flaps) gains.push_back(tables_->gainsOf(flap));
+    const std::vector<FlapGains> gains = tables_->gainsOf(flaps);
     Worth worth;
     for (std::size_t t = 0; t < tables_->targets; ++t) {
         worth.fit += tables_->bestRatio(gains, t);
