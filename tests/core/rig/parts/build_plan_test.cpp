@@ -350,11 +350,14 @@ TEST(BuildPlan, RefusesWhatCannotBeBuilt) {
     options = {};
     options.servo = servoBody("MG996R");
     EXPECT_THAT(refusal(templateRig("phone"), options), testing::HasSubstr("no room"));
-    EXPECT_THAT(
-        refusal(
-            Rig({"thing", tablet.skeleton() ? tablet.restMesh() : templateRig("cushion").restMesh(), {}, {}, false, {}}),
-            {}),
-        testing::HasSubstr("no actuator"));
+    EXPECT_THAT(refusal(Rig({"thing",
+                             tablet.skeleton() ? tablet.restMesh() : templateRig("cushion").restMesh(),
+                             {},
+                             {},
+                             false,
+                             {}}),
+                        {}),
+                testing::HasSubstr("no actuator"));
 }
 
 TEST(BuildPlan, NamesTheActuatorOfManyThatHasNoRoom) {
