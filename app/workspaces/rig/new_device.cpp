@@ -21,6 +21,7 @@
 #include "app/studio/widgets/panel.h"
 #include "app/studio/widgets/value_field.h"
 #include "app/workspaces/common/field_colors.h"
+#include "app/workspaces/rig/rig_facts.h"
 #include "core/base/error.h"
 #include "core/rig/templates/rig_templates.h"
 
@@ -70,7 +71,7 @@ QString labelOf(std::string_view name) {
 }
 
 QString sentence(std::string_view text) {
-    QString words = QString::fromUtf8(text.data(), static_cast<qsizetype>(text.size()));
+    QString words = shownText(text);
     if (!words.isEmpty()) words[0] = words[0].toUpper();
     return words + '.';
 }
