@@ -164,24 +164,6 @@ nlohmann::json reportJson(const Report& report, const ReportOptions& options) {
 
 // Text.
 
-/// A number of a metric in the unit that a maker measures in.
-std::string inUsualUnit(const std::optional<double>& value, std::string_view unit) {
-    if (!value) return "-";
-    double scale = 1.0;
-    const char* name = "";
-    if (unit == "m2") scale = 1e4, name = " cm2";
-    if (unit == "1/m2") scale = 1e-4, name = "/cm2";
-    if (unit == "m") scale = 1e3, name = " mm";
-    if (unit == "1/m") name = "/m";
-    if (unit == "N") name = " N";
-    if (unit == "m/s") scale = 1e3, name = " mm/s";
-    const double shown = *value * scale;
-    char text[48];
-    std::snprintf(text, sizeof text, std::abs(shown) >= 100.0 || shown == std::floor(shown) ? "%.0f%s" : "%.3g%s",
-                  shown, name);
-    return text;
-}
-
 void printWrapped(const std::string& text, int indent) {
     constexpr std::size_t kWidth = 96;
     std::string line;

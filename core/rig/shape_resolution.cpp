@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <numbers>
 #include <random>
 
@@ -439,6 +440,23 @@ const ShapeMetric& metricOf(const ShapeResolution& resolution, std::string_view 
     for (const ShapeMetric& metric : resolution.metrics)
         if (metric.key == key) return metric;
     throw InvalidInput(inQuotes(key), "there is no such feature of shape resolution", "use a key of the ten");
+}
+
+std::string inUsualUnit(const std::optional<double>& value, std::string_view unit) {
+    if (!value) return "-";
+    double scale = 1.0;
+    const char* name = "";
+    if (unit == "m2") scale = 1e4, name = " cm2";
+    if (unit == "1/m2") scale = 1e-4, name = "/cm2";
+    if (unit == "m") scale = 1e3, name = " mm";
+    if (unit == "1/m") name = "/m";
+    if (unit == "N") name = " N";
+    if (unit == "m/s") scale = 1e3, name = " mm/s";
+    const double shown = *value * scale;
+    char text[48];
+    std::snprintf(text, sizeof text, std::abs(shown) >= 100.0 || shown == std::floor(shown) ? "%.0f%s" : "%.3g%s",
+                  shown, name);
+    return text;
 }
 
 } // namespace lumorph

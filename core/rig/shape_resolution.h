@@ -80,4 +80,7 @@ struct ShapeResolution {
 /// The metric of a key. Throws InvalidInput when there is none.
 [[nodiscard]] const ShapeMetric& metricOf(const ShapeResolution& resolution, std::string_view key);
 
+/// A metric's value in the unit that a maker measures in: "12.3 cm2", "40 mm", "0.8"; "-" where there is none.
+[[nodiscard]] std::string inUsualUnit(const std::optional<double>& value, std::string_view unit);
+
 } // namespace lumorph

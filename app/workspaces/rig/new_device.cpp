@@ -19,6 +19,7 @@
 #include "app/studio/widgets/value_field.h"
 #include "app/workspaces/rig/device_preview.h"
 #include "app/workspaces/rig/draw_sheet.h"
+#include "app/workspaces/rig/rig_facts.h"
 #include "core/base/error.h"
 #include "core/rig/templates/rig_templates.h"
 #include "core/rig/templates/sheet_file.h"
@@ -68,7 +69,7 @@ QString labelOf(std::string_view name) {
 }
 
 QString sentence(std::string_view text) {
-    QString words = QString::fromUtf8(text.data(), static_cast<qsizetype>(text.size()));
+    QString words = shownText(text);
     if (!words.isEmpty()) words[0] = words[0].toUpper();
     return words + '.';
 }

@@ -13,4 +13,8 @@ namespace lumorph::studio {
 /// Checks of the mesh and the shape report of the rig. Adds the command "rig.check".
 [[nodiscard]] QWidget* makeRigReport(Studio& studio);
 
+/// What the device can be: how well it takes the shapes of the bundled targets, with pictures, and its shape
+/// resolution. Follows edits while it is seen. Adds the command "rig.fit.take".
+[[nodiscard]] QWidget* makeRigFit(Studio& studio, RigSelection& selection);
+
 } // namespace lumorph::studio

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <string_view>
 #include <vector>
 
 #include <QString>
@@ -9,6 +10,11 @@
 #include "devices/controllers/device_profile.h"
 
 namespace lumorph::studio {
+
+/// Words of the core as the window shows them.
+[[nodiscard]] inline QString shownText(std::string_view words) {
+    return QString::fromUtf8(words.data(), static_cast<qsizetype>(words.size()));
+}
 
 /// One thing to know about a rig, in plain words.
 struct RigFact {

@@ -1,12 +1,14 @@
 #pragma once
 
 #include <optional>
+#include <utility>
+#include <vector>
 
 #include <QObject>
 
 namespace lumorph::studio {
 
-/// Which actuator the Rig workspace points at; not part of the document, no undo.
+/// Which actuator the Rig workspace points at, and what it tries in the view; not part of the document, no undo.
 class RigSelection : public QObject {
     Q_OBJECT
 public:
@@ -19,13 +21,22 @@ public:
     }
     /// Shows in the view alone what the selected actuator does.
     void wiggle() { emit wiggleWanted(); }
+    /// The joint state that is shown in the view alone, one stroke an actuator; empty: as the device stands.
+    [[nodiscard]] const std::vector<double>& rehearsed() const noexcept { return rehearsed_; }
+    void rehearse(std::vector<double> strokes) {
+        if (strokes == rehearsed_) return;
+        rehearsed_ = std::move(strokes);
+        emit rehearsalChanged();
+    }
 
 signals:
     void changed();
     void wiggleWanted();
+    void rehearsalChanged();
 
 private:
     std::optional<std::size_t> actuator_;
+    std::vector<double> rehearsed_;
 };
 
 } // namespace lumorph::studio

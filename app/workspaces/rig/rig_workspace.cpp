@@ -1,6 +1,7 @@
 #include "app/workspaces/rig/rig_workspace.h"
 
 #include <algorithm>
+#include <cmath>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -28,6 +29,7 @@ namespace {
 
 constexpr int kSettleMilliseconds = 200;
 constexpr int kWiggleMilliseconds = 33;
+constexpr qint64 kRehearseMilliseconds = 500; ///< to get from one shape to another, so that one sees what moves
 constexpr const char* kRigFolder = "folders/rig";
 
 ViewCamera firstCamera() {
@@ -53,8 +55,9 @@ struct RigWorkspace::Data : public QObject {
     void edited();
     void markPart();
     void wiggle();
+    void rehearse();
     void frameOnce(const ViewportScene& scene);
-    /// The frame as shown: the loop's, with the selected actuator wiggling on top.
+    /// The frame as shown: the loop's, or what is rehearsed, with the selected actuator wiggling on top.
     [[nodiscard]] MatchFrame shownFrame(const MatchFrame& frame);
 
     Studio& studio;
@@ -67,6 +70,9 @@ struct RigWorkspace::Data : public QObject {
     QAction* wiggleCommand = nullptr;
     QAction* drawCommand = nullptr; ///< there is something to take up again only for a rig that was drawn
     QElapsedTimer wiggling;
+    std::vector<double> rehearsedFrom; ///< strokes that were shown when another state was asked for
+    std::vector<double> shownStrokes;
+    QElapsedTimer rehearsing; ///< valid while the view is on its way
     QTimer tick;
     bool active = false;
     bool unframed = true;
@@ -82,6 +88,7 @@ void RigWorkspace::Data::listen() {
     connect(&studio.loop, &StudioLoop::framed, this, &Data::refresh);
     connect(&selection, &RigSelection::changed, this, &Data::select);
     connect(&selection, &RigSelection::wiggleWanted, this, &Data::wiggle);
+    connect(&selection, &RigSelection::rehearsalChanged, this, &Data::rehearse);
     connect(&studio.settings, &Settings::themeChanged, this, [this] {
         builder.setColors(fieldSceneColors(studio.settings.theme()));
         refresh();
@@ -170,7 +177,7 @@ std::vector<Findable> RigWorkspace::Data::thingsToFind() {
 
 void RigWorkspace::Data::select() {
     part.reset();
-    tick.stop();
+    wiggling.invalidate();
     markPart();
     wiggle();
     wiggleCommand->setEnabled(part.has_value());
@@ -205,15 +212,37 @@ void RigWorkspace::Data::wiggle() {
     tick.start();
 }
 
+void RigWorkspace::Data::rehearse() {
+    rehearsedFrom = shownStrokes;
+    rehearsing.start();
+    tick.start();
+    refresh();
+}
+
 MatchFrame RigWorkspace::Data::shownFrame(const MatchFrame& frame) {
     MatchFrame shown = frame;
+    std::vector<double>& strokes = shown.estimatedStrokes;
     const auto chosen = selection.actuator();
-    const double stroke = tick.isActive() ? wiggleStroke(1e-3 * static_cast<double>(wiggling.elapsed())) : -1.0;
-    if (stroke < 0.0) tick.stop();
-    if (stroke < 0.0 || !chosen || *chosen >= shown.estimatedStrokes.size()) return shown;
-    shown.estimatedStrokes[*chosen] = stroke;
+    const double stroke =
+        part && wiggling.isValid() ? wiggleStroke(1e-3 * static_cast<double>(wiggling.elapsed())) : -1.0;
+    const bool wiggles = stroke >= 0.0 && chosen && *chosen < strokes.size();
+    const bool rehearses = selection.rehearsed().size() == strokes.size() && !strokes.empty();
+    if (rehearses) strokes = selection.rehearsed();
+    const bool onItsWay =
+        rehearsing.isValid() && rehearsing.elapsed() < kRehearseMilliseconds && rehearsedFrom.size() == strokes.size();
+    if (onItsWay) {
+        const double done = static_cast<double>(rehearsing.elapsed()) / static_cast<double>(kRehearseMilliseconds);
+        const double eased = done * done * (3.0 - 2.0 * done);
+        for (std::size_t i = 0; i < strokes.size(); ++i) strokes[i] = std::lerp(rehearsedFrom[i], strokes[i], eased);
+    } else {
+        rehearsing.invalidate();
+    }
+    shownStrokes = strokes;
+    if (!wiggles && !onItsWay) tick.stop();
+    if (!wiggles && !onItsWay && !rehearses) return shown;
+    if (wiggles) strokes[*chosen] = stroke;
     std::vector<glm::vec3> positions(shown.rig->restMesh().positions.size());
-    shown.rig->deform(shown.estimatedStrokes, positions);
+    shown.rig->deform(strokes, positions);
     shown.devicePositions = std::make_shared<const std::vector<glm::vec3>>(std::move(positions));
     return shown;
 }
@@ -275,7 +304,9 @@ std::vector<WorkspaceDock> RigWorkspace::makeDocks() {
     Studio& studio = data_->studio;
     return {{"dock.rig.actuators", "Actuators", "actuator", makeRigActuators(studio, data_->selection),
              Qt::LeftDockWidgetArea, false},
-            {"dock.rig.report", "Report", "check", makeRigReport(studio), Qt::RightDockWidgetArea, false}};
+            {"dock.rig.fit", "What it can be", "target", makeRigFit(studio, data_->selection), Qt::RightDockWidgetArea,
+             false},
+            {"dock.rig.report", "Report", "check", makeRigReport(studio), Qt::RightDockWidgetArea, true}};
 }
 
 void RigWorkspace::setActive(bool active) {
