@@ -10,7 +10,10 @@
 namespace lumorph::studio {
 namespace {
 
-QString torqueText(double newtonMetres) { return QString::number(newtonMetres, 'g', 2) + " N m"; }
+/// Never broken between number and sign.
+QString wholeShare(double share) { return shareText(share).replace(' ', QChar::Nbsp); }
+
+QString torqueText(double newtonMetres) { return QString::number(newtonMetres, 'g', 2) + "\u00A0N\u00A0m"; }
 
 } // namespace
 
@@ -45,10 +48,10 @@ QString targetTitle(const std::string& name) {
 QString fitText(const LibraryFit& fit) {
     const TargetFit& best = fit.targets.at(fit.best);
     const TargetFit& worst = fit.targets.at(fit.worst);
-    return QString("It takes on %1 shapes by %2 on average: best %3 (%4), worst %5 (%6).")
+    return QString("Over %1 shapes it fits by %2 on average: best %3 (%4), worst %5 (%6).")
         .arg(fit.targets.size())
-        .arg(shareText(fit.mean), targetTitle(best.name), shareText(best.iou), targetTitle(worst.name),
-             shareText(worst.iou));
+        .arg(wholeShare(fit.mean), targetTitle(best.name), wholeShare(best.iou), targetTitle(worst.name),
+             wholeShare(worst.iou));
 }
 
 QString targetText(const TargetFit& target) {
@@ -56,14 +59,14 @@ QString targetText(const TargetFit& target) {
     const double covered = static_cast<double>(target.quality.both + target.quality.overfilled);
     if (wanted <= 0.0) return QString("%1 lies out of the device's reach.").arg(targetTitle(target.name));
     QString words = QString("%1: %2 fit. %3 of the shape stays unmatched")
-                        .arg(targetTitle(target.name), shareText(target.iou),
-                             shareText(static_cast<double>(target.quality.unmatched) / wanted));
+                        .arg(targetTitle(target.name), wholeShare(target.iou),
+                             wholeShare(static_cast<double>(target.quality.unmatched) / wanted));
     if (covered > 0.0)
         words += QString(", %1 of what the device covers is too much")
-                     .arg(shareText(static_cast<double>(target.quality.overfilled) / covered));
+                     .arg(wholeShare(static_cast<double>(target.quality.overfilled) / covered));
     words += '.';
     if (target.unreachable >= 0.01)
-        words += QString(" No single actuator gets to %1 of it.").arg(shareText(target.unreachable));
+        words += QString(" No single actuator gets to %1 of it.").arg(wholeShare(target.unreachable));
     return words;
 }
 

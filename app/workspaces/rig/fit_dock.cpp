@@ -12,6 +12,7 @@
 #include <QShowEvent>
 #include <QStackedWidget>
 #include <QVBoxLayout>
+#include <QWheelEvent>
 
 #include "app/studio/document/hand_control.h"
 #include "app/studio/document/job_slots.h"
@@ -41,6 +42,12 @@ constexpr int kFitMilliseconds = 120;
 struct Matched {
     std::shared_ptr<const Library> library;
     DeviceFit device;
+};
+
+/// A chooser in a column that scrolls: the wheel scrolls on instead of choosing.
+class CalmChooser : public QComboBox {
+protected:
+    void wheelEvent(QWheelEvent* event) override { event->ignore(); }
 };
 
 class RigFit : public QWidget {
@@ -91,8 +98,8 @@ private:
     QLabel* triedText_ = new QLabel;
     Plot* steps_ = new Plot;
     MetricTable* metrics_ = new MetricTable;
-    QComboBox* servo_ = new QComboBox;
-    QComboBox* reference_ = new QComboBox;
+    QComboBox* servo_ = new CalmChooser;
+    QComboBox* reference_ = new CalmChooser;
     QAction* takeCommand_ = nullptr;
 
     std::shared_ptr<const Library> library_;

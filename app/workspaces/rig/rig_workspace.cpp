@@ -72,6 +72,9 @@ struct RigWorkspace::Data : public QObject {
     QElapsedTimer wiggling;
     std::vector<double> rehearsedFrom; ///< strokes that were shown when another state was asked for
     std::vector<double> shownStrokes;
+    std::shared_ptr<const std::vector<glm::vec3>> tried; ///< positions of `triedOf` at `triedStrokes`
+    std::shared_ptr<const Rig> triedOf;
+    std::vector<double> triedStrokes;
     QElapsedTimer rehearsing; ///< valid while the view is on its way
     QTimer tick;
     bool active = false;
@@ -241,9 +244,15 @@ MatchFrame RigWorkspace::Data::shownFrame(const MatchFrame& frame) {
     if (!wiggles && !onItsWay) tick.stop();
     if (!wiggles && !onItsWay && !rehearses) return shown;
     if (wiggles) strokes[*chosen] = stroke;
-    std::vector<glm::vec3> positions(shown.rig->restMesh().positions.size());
-    shown.rig->deform(strokes, positions);
-    shown.devicePositions = std::make_shared<const std::vector<glm::vec3>>(std::move(positions));
+    // A device that stands still is drawn anew by nobody.
+    if (!tried || triedOf != shown.rig || triedStrokes != strokes) {
+        std::vector<glm::vec3> positions(shown.rig->restMesh().positions.size());
+        shown.rig->deform(strokes, positions);
+        tried = std::make_shared<const std::vector<glm::vec3>>(std::move(positions));
+        triedOf = shown.rig;
+        triedStrokes = strokes;
+    }
+    shown.devicePositions = tried;
     return shown;
 }
 
