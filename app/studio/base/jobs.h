@@ -26,7 +26,7 @@ public:
         Id id = 0;
         QString title; ///< what the user sees, such as "Building the field"
         QString place; ///< as in Notices
-        double fraction = 0.0;
+        double fraction = 0.0; ///< negative: nobody knows the end
         QString stage;
     };
 

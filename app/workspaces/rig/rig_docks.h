@@ -13,4 +13,7 @@ namespace lumorph::studio {
 /// Checks of the mesh and the shape report of the rig. Adds the command "rig.check".
 [[nodiscard]] QWidget* makeRigReport(Studio& studio);
 
+/// Searches for bend lines of the rig's sheet: few servos, or cheap ones, against the fit over some shapes.
+[[nodiscard]] QWidget* makeRigSuggest(Studio& studio);
+
 } // namespace lumorph::studio

@@ -264,7 +264,8 @@ std::vector<WorkspaceDock> RigWorkspace::makeDocks() {
     Studio& studio = data_->studio;
     return {{"dock.rig.actuators", "Actuators", "actuator", makeRigActuators(studio, data_->selection),
              Qt::LeftDockWidgetArea, false},
-            {"dock.rig.report", "Report", "check", makeRigReport(studio), Qt::RightDockWidgetArea, false}};
+            {"dock.rig.report", "Report", "check", makeRigReport(studio), Qt::RightDockWidgetArea, false},
+            {"dock.rig.suggest", "Suggest", "search", makeRigSuggest(studio), Qt::RightDockWidgetArea, true}};
 }
 
 void RigWorkspace::setActive(bool active) {
