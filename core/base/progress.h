@@ -13,7 +13,7 @@ namespace lumorph {
 /// from any thread as long as the report function is.
 class Progress {
 public:
-    /// Called with a fraction in [0, 1] and a short name of the stage.
+    /// Called with a fraction in [0, 1], or a negative one where nobody knows the end, and a short name of the stage.
     using Report = std::function<void(double fraction, std::string_view stage)>;
 
     Progress() = default;

@@ -12,6 +12,8 @@ namespace {
 /// So much of the body must lie in a target that is taken for a pose of the device.
 constexpr double kHoldsBody = 0.95;
 
+} // namespace
+
 std::vector<std::filesystem::path> meshFilesIn(const std::filesystem::path& folder) {
     std::error_code error;
     std::vector<std::filesystem::path> files;
@@ -26,10 +28,7 @@ std::vector<std::filesystem::path> meshFilesIn(const std::filesystem::path& fold
     return files;
 }
 
-} // namespace
-
-std::vector<LibraryTarget> readTargetLibrary(const std::filesystem::path& folder, const Progress& progress) {
-    const std::vector<std::filesystem::path> files = meshFilesIn(folder);
+std::vector<LibraryTarget> readTargets(const std::vector<std::filesystem::path>& files, const Progress& progress) {
     std::vector<LibraryTarget> library;
     for (std::size_t k = 0; k < files.size(); ++k) {
         progress.throwIfCancelled();
@@ -41,10 +40,14 @@ std::vector<LibraryTarget> readTargetLibrary(const std::filesystem::path& folder
         target.box = boundingBox(target.target.mesh.positions);
         const glm::vec3 size = target.box.size();
         if (target.box.empty() || !(std::min({size.x, size.y, size.z}) > 0.0F))
-            throw DataError(files[k].string(), "it has no volume", "give a solid, or take it out of the folder");
+            throw DataError(files[k].string(), "it has no volume", "give a solid, or leave it out");
         library.push_back(std::move(target));
     }
     return library;
+}
+
+std::vector<LibraryTarget> readTargetLibrary(const std::filesystem::path& folder, const Progress& progress) {
+    return readTargets(meshFilesIn(folder), progress);
 }
 
 Placement placeTarget(const VoxelFrame& frame, float restSurface, const BitColumns& body, const LibraryTarget& target,

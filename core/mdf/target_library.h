@@ -16,6 +16,15 @@ struct LibraryTarget {
     Box box; ///< of its mesh
 };
 
+/// Every mesh that lies in the folder itself (see `isMeshFile`), by name. Throws DataError naming the folder that is
+/// not there or holds none.
+[[nodiscard]] std::vector<std::filesystem::path> meshFilesIn(const std::filesystem::path& folder);
+
+/// The meshes of some files, in their order; files of the same name but for the extension keep that in their names.
+/// Throws DataError naming the file that cannot be read or has no volume; Cancelled.
+[[nodiscard]] std::vector<LibraryTarget> readTargets(const std::vector<std::filesystem::path>& files,
+                                                     const Progress& progress = {});
+
 /// Every mesh that lies in the folder itself (see `isMeshFile`; an animated one as it is drawn), by name; two that
 /// differ in their extension alone keep it in their names. Throws DataError naming the folder that is not there or
 /// holds no mesh, or the file that cannot be read or has no volume; Cancelled.

@@ -24,9 +24,9 @@ public:
     using Id = int;
     struct Status {
         Id id = 0;
-        QString title; ///< what the user sees, such as "Building the field"
-        QString place; ///< as in Notices
-        double fraction = 0.0;
+        QString title;         ///< what the user sees, such as "Building the field"
+        QString place;         ///< as in Notices
+        double fraction = 0.0; ///< negative: nobody knows the end
         QString stage;
     };
 

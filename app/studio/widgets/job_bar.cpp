@@ -26,6 +26,11 @@ QProgressBar* makeBar(QWidget* parent) {
     return bar;
 }
 
+void showFraction(QProgressBar& bar, double fraction) {
+    bar.setRange(0, fraction < 0.0 ? 0 : 1000); // without a range it says that something goes on
+    bar.setValue(static_cast<int>(fraction * 1000));
+}
+
 QToolButton* makeCancel(QWidget* parent) {
     auto* cancel = new QToolButton(parent);
     cancel->setObjectName("job.cancel");
@@ -104,7 +109,7 @@ private:
             if (row == rows_.constEnd()) continue;
             row->text->setText(status.stage.isEmpty() ? status.title : status.title + ": " + status.stage);
             row->text->setToolTip(row->text->text());
-            row->bar->setValue(static_cast<int>(status.fraction * 1000));
+            showFraction(*row->bar, status.fraction);
         }
     }
 
@@ -151,7 +156,7 @@ private:
         shown_ = newest.id;
         text_->setText(newest.title);
         text_->setToolTip(newest.stage);
-        bar_->setValue(static_cast<int>(newest.fraction * 1000));
+        showFraction(*bar_, newest.fraction);
     }
 
     Jobs& jobs_;

@@ -17,4 +17,7 @@ namespace lumorph::studio {
 /// resolution. Follows edits while it is seen. Adds the command "rig.fit.take".
 [[nodiscard]] QWidget* makeRigFit(Studio& studio, RigSelection& selection);
 
+/// Searches for bend lines of the rig's sheet: few servos, or cheap ones, against the fit over some shapes.
+[[nodiscard]] QWidget* makeRigSuggest(Studio& studio);
+
 } // namespace lumorph::studio
