@@ -389,7 +389,7 @@ const QPixmap& SheetCanvas::page() {
 
 void SheetCanvas::paintEvent(QPaintEvent*) {
     QPainter painter(this);
-    SheetPicture picture{device_, plan_, view_, rect(), chosen_, hovered_, shapeBegun(), true, {}, pointer_, readout()};
+    SheetPage picture{device_, plan_, view_, rect(), chosen_, hovered_, shapeBegun(), true, {}, pointer_, readout()};
     if (!polygon_.empty()) {
         picture.outlineBegun = polygon_;
         if (pointer_) picture.outlineBegun.push_back(pointer_->point);

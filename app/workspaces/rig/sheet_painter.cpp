@@ -125,7 +125,7 @@ private:
 
 class SheetPainter {
 public:
-    SheetPainter(QPainter& painter, const SheetPicture& picture, const QPixmap& page)
+    SheetPainter(QPainter& painter, const SheetPage& picture, const QPixmap& page)
         : painter_(painter), picture_(picture), page_(page) {}
 
     void paint() {
@@ -370,7 +370,7 @@ private:
     }
 
     QPainter& painter_;
-    const SheetPicture& picture_;
+    const SheetPage& picture_;
     const QPixmap& page_;
     const Palette& colors_ = currentPalette();
 };
@@ -394,7 +394,7 @@ double gridSpacing(const PageView& view) {
 
 void paintPage(QPainter& painter, const PageView& view, const QRect& area) { PagePainter(painter, view, area).paint(); }
 
-void paintSheet(QPainter& painter, const SheetPicture& picture, const QPixmap& page) {
+void paintSheet(QPainter& painter, const SheetPage& picture, const QPixmap& page) {
     SheetPainter(painter, picture, page).paint();
 }
 

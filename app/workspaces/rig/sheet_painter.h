@@ -25,7 +25,7 @@ inline constexpr int kRulerWidth = 24; ///< pixels
 [[nodiscard]] double gridSpacing(const PageView& view);
 
 /// What is on the page right now.
-struct SheetPicture {
+struct SheetPage {
     const SheetDevice& device;
     std::shared_ptr<const SheetPlan> plan; ///< of this drawing or one before it; may be empty
     PageView view;
@@ -44,6 +44,6 @@ struct SheetPicture {
 void paintPage(QPainter& painter, const PageView& view, const QRect& area);
 
 /// What is drawn on it. `page` is a picture of `paintPage`, whose rulers stay on top.
-void paintSheet(QPainter& painter, const SheetPicture& picture, const QPixmap& page);
+void paintSheet(QPainter& painter, const SheetPage& picture, const QPixmap& page);
 
 } // namespace lumorph::studio
