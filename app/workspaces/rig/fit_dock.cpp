@@ -34,7 +34,7 @@ namespace {
 
 using Library = std::vector<LibraryTarget>;
 
-constexpr const char* kPlace = "rig.fit";
+constexpr const char* kFitPlace = "rig.fit";
 /// Edits that come faster, as in a drag, are looked at together.
 constexpr int kFitMilliseconds = 120;
 
@@ -121,8 +121,8 @@ RigFit::RigFit(Studio& studio, RigSelection& selection)
     auto* layout = new QVBoxLayout(this);
     layout->setContentsMargins(0, 0, 0, 0);
     layout->setSpacing(0);
-    layout->addWidget(makeNoticeBar(studio.notices, kPlace));
-    layout->addWidget(makeJobBar(studio.jobs, kPlace));
+    layout->addWidget(makeNoticeBar(studio.notices, kFitPlace));
+    layout->addWidget(makeJobBar(studio.jobs, kFitPlace));
     layout->addWidget(pages_, 1);
     pages_->setObjectName("rig.fit.pages");
     QAction* anew = studio.commands.find("rig.new");
@@ -285,7 +285,7 @@ void RigFit::follow() {
     if (asset.rig == rig_ || (matching_ && studio_.document.previewing())) return tellState();
     const bool samePictures = complete_ && shownOf_ && deformAlike(shownOf_->parts(), asset.rig->parts());
     rig_ = asset.rig;
-    studio_.notices.dismissAll(kPlace);
+    studio_.notices.dismissAll(kFitPlace);
     if (samePictures) {
         shownOf_ = rig_;
         measure();
@@ -306,7 +306,7 @@ void RigFit::clear() {
     for (QWidget* left : {static_cast<QWidget*>(weak_), static_cast<QWidget*>(tiles_), static_cast<QWidget*>(metrics_)})
         left->hide();
     steps_->setCurves({});
-    studio_.notices.dismissAll(kPlace);
+    studio_.notices.dismissAll(kFitPlace);
 }
 
 void RigFit::matchCoarsely() {
@@ -315,7 +315,7 @@ void RigFit::matchCoarsely() {
     matching_ = true;
     using Result = std::shared_ptr<const Matched>;
     jobs_.runWith<Result>(
-        "coarse", kPlace, "Matching the targets coarsely",
+        "coarse", kFitPlace, "Matching the targets coarsely",
         [rig = rig_, library = library_](const Progress& progress) -> Result {
             Matched matched;
             matched.library = library ? library
@@ -343,7 +343,7 @@ void RigFit::measure() {
     ShapeResolutionOptions options;
     options.servo = &servo();
     jobs_.runWith<Result>(
-        "measure", kPlace, "Measuring shape resolution",
+        "measure", kFitPlace, "Measuring shape resolution",
         [rig = rig_, options](const Progress& progress) -> Result {
             return std::make_shared<const ShapeResolution>(shapeResolution(*rig, options, progress));
         },
@@ -357,7 +357,7 @@ void RigFit::measure() {
 void RigFit::matchFully() {
     using Result = std::shared_ptr<const DeviceFit>;
     jobs_.runWith<Result>(
-        "full", kPlace, "Matching the targets finely",
+        "full", kFitPlace, "Matching the targets finely",
         [rig = rig_, library = library_](const Progress& progress) -> Result {
             return std::make_shared<const DeviceFit>(fitDevice(*rig, *library, {}, progress));
         },
@@ -371,7 +371,7 @@ void RigFit::matchFully() {
 void RigFit::leaveActuatorsOut() {
     using Result = std::vector<FitWithout>;
     jobs_.runWith<Result>(
-        "steps", kPlace, "Leaving actuators out",
+        "steps", kFitPlace, "Leaving actuators out",
         [rig = rig_, library = library_](const Progress& progress) -> Result {
             LibraryMatcher matcher(*rig, *library, LibraryFitOptions::coarse(), progress.part(0.0, 0.2));
             return matcher.fitByActuators(progress.part(0.2, 1.0));
@@ -394,7 +394,7 @@ void RigFit::compare() {
     ShapeResolutionOptions options;
     options.servo = &servo();
     jobs_.runWith<Result>(
-        "reference", kPlace, "Measuring what to compare with",
+        "reference", kFitPlace, "Measuring what to compare with",
         [wanted = name.toStdString(), options](const Progress& progress) -> Result {
             const std::vector<Rig> rigs = referenceRigs(progress.part(0.0, 0.4));
             const auto found = std::ranges::find(rigs, wanted, &Rig::name);
@@ -447,7 +447,7 @@ void RigFit::takeSteps(const std::vector<FitWithout>& steps) {
 void RigFit::fail(const std::exception& error) {
     complete_ = false;
     if (!fit_) verdict_->setText("The targets could not be matched.");
-    jobs_.fail(kPlace, error);
+    jobs_.fail(kFitPlace, error);
     tellState();
 }
 
