@@ -12,6 +12,7 @@ namespace lumorph::studio {
 
 /// One target on the device: its picture, its name and how well it fits, as a bar and in percent.
 class TargetTile : public QAbstractButton {
+    Q_OBJECT
 public:
     TargetTile(const QString& name, QWidget* parent);
 
