@@ -170,6 +170,7 @@ std::size_t LitDevice::states() const noexcept { return data_->spots.size(); }
 
 std::vector<glm::vec3> LitDevice::corners() const {
     std::vector<glm::vec3> corners;
+    corners.reserve(8);
     for (int k = 0; k < 8; ++k)
         corners.emplace_back((k & 1) != 0 ? data_->box.max.x : data_->box.min.x,
                              (k & 2) != 0 ? data_->box.max.y : data_->box.min.y,
