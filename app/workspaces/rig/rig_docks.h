@@ -20,4 +20,7 @@ namespace lumorph::studio {
 /// Searches for bend lines of the rig's sheet: few servos, or cheap ones, against the fit over some shapes.
 [[nodiscard]] QWidget* makeRigSuggest(Studio& studio);
 
+/// How light reaches the device over all its states, as a map from above, and where a projector should hang.
+[[nodiscard]] QWidget* makeRigLight(Studio& studio);
+
 } // namespace lumorph::studio

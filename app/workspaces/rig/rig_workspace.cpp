@@ -316,7 +316,8 @@ std::vector<WorkspaceDock> RigWorkspace::makeDocks() {
             {"dock.rig.fit", "What it can be", "target", makeRigFit(studio, data_->selection), Qt::RightDockWidgetArea,
              false},
             {"dock.rig.report", "Report", "check", makeRigReport(studio), Qt::RightDockWidgetArea, true},
-            {"dock.rig.suggest", "Suggest", "search", makeRigSuggest(studio), Qt::RightDockWidgetArea, true}};
+            {"dock.rig.suggest", "Suggest", "search", makeRigSuggest(studio), Qt::RightDockWidgetArea, true},
+            {"dock.rig.light", "Light", "projector", makeRigLight(studio), Qt::RightDockWidgetArea, true}};
 }
 
 void RigWorkspace::setActive(bool active) {

@@ -13,6 +13,7 @@
 #include <QVBoxLayout>
 
 #include "app/studio/document/job_slots.h"
+#include "app/studio/widgets/dock_parts.h"
 #include "app/studio/widgets/panel.h"
 #include "app/studio/widgets/throttle.h"
 #include "app/studio/widgets/value_field.h"
