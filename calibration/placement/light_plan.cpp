@@ -91,6 +91,33 @@ std::optional<Ray> rayTo(const Spot& spot, const CalibratedCamera& projector, co
     return Ray{pixelsPerMillimetreAt(projector, spot, *pixel), std::acos(std::min(1.0, cosine))};
 }
 
+/// The triangles that look up at rest and are not hidden under others, as the folds of a skirt are.
+std::vector<std::uint32_t> upperSide(const TriangleMesh& rest, const TriangleMesh& placed, const Lab& lab) {
+    constexpr double kAbove = 10.0; // metres
+    std::vector<std::uint32_t> upper;
+    for (std::uint32_t t = 0; t < rest.triangles.size(); ++t) {
+        if (!facesUp(rest, t)) continue;
+        const Spot spot = spotOf(placed.positions, placed.triangles[t]);
+        if (lab.sees(spot.point, spot.normal, spot.point + glm::dvec3(0.0, kAbove, 0.0))) upper.push_back(t);
+    }
+    return upper;
+}
+
+/// Every `each`-th triangle stands for its neighbours in the mesh: they lie beside each other there.
+void addPlaces(const TriangleMesh& mesh, const std::vector<std::uint32_t>& upper, std::size_t each,
+               std::vector<LightAt>& places) {
+    for (std::size_t k = 0; k < upper.size(); k += each) {
+        LightAt& place = places.emplace_back();
+        place.place = glm::vec3(spotOf(mesh.positions, mesh.triangles[upper[k]]).point);
+        for (std::size_t n = k; n < std::min(k + each, upper.size()); ++n) {
+            const glm::uvec3& near = mesh.triangles[upper[n]];
+            const glm::dvec3 a(mesh.positions[near.x]);
+            place.area += 0.5 * glm::length(glm::cross(glm::dvec3(mesh.positions[near.y]) - a,
+                                                       glm::dvec3(mesh.positions[near.z]) - a));
+        }
+    }
+}
+
 /// The value that all but `kShare` of the area reach, of pairs of a value and its area, sorted.
 double withoutTheWorst(const std::vector<std::pair<double, double>>& sorted) {
     double whole = 0.0;
@@ -123,42 +150,33 @@ struct LitDevice::Data {
 LitDevice::LitDevice(const Rig& rig, const glm::mat4& worldFromDevice, int randomStates, std::size_t places,
                      const Progress& progress)
     : data_(std::make_unique<Data>()) {
-    const auto& triangles = rig.restMesh().triangles;
-    std::vector<std::uint32_t> upper;
-    for (std::uint32_t t = 0; t < triangles.size(); ++t)
-        if (facesUp(rig.restMesh(), t)) upper.push_back(t);
-    if (upper.empty())
-        throw InvalidInput("Rig " + rig.name(), "no part of it looks up, so that no light can fall on it",
-                           "turn it so that +Y is up");
-    // Every n-th triangle stands for its neighbours in the mesh: they lie beside each other there.
-    const std::size_t each = std::max<std::size_t>(1, (upper.size() + places - 1) / std::max<std::size_t>(1, places));
     const auto states = statesOf(rig.actuatorCount(), randomStates);
+    std::vector<std::uint32_t> upper; // every triangle that looks up, and then those that stand for their neighbours
+    std::size_t each = 1;
     for (std::size_t s = 0; s < states.size(); ++s) {
         progress.throwIfCancelled();
         progress.report(static_cast<double>(s) / static_cast<double>(states.size()), "preparing states");
-        TriangleMesh mesh{std::vector<glm::vec3>(rig.restMesh().positions.size()), triangles};
+        TriangleMesh mesh{std::vector<glm::vec3>(rig.restMesh().positions.size()), rig.restMesh().triangles};
         rig.deform(states[s], mesh.positions);
         for (glm::vec3& point : mesh.positions) point = glm::vec3(worldFromDevice * glm::vec4(point, 1.0F));
         const Box box = boundingBox(mesh.positions);
         data_->box = s == 0 ? box : Box{glm::min(data_->box.min, box.min), glm::max(data_->box.max, box.max)};
-        std::vector<Spot> spots;
-        for (std::size_t k = 0; k < upper.size(); k += each) {
-            const glm::uvec3& t = triangles[upper[k]];
-            spots.push_back(spotOf(mesh.positions, t));
-            if (s > 0) continue;
-            LightAt& place = data_->places.emplace_back();
-            place.place = glm::vec3(spots.back().point);
-            for (std::size_t n = k; n < std::min(k + each, upper.size()); ++n) {
-                const glm::uvec3& near = triangles[upper[n]];
-                const glm::dvec3 a(mesh.positions[near.x]);
-                place.area += 0.5 * glm::length(glm::cross(glm::dvec3(mesh.positions[near.y]) - a,
-                                                           glm::dvec3(mesh.positions[near.z]) - a));
-            }
-        }
-        data_->spots.push_back(std::move(spots));
         LabWorld world;
-        world.surfaces.push_back({std::move(mesh), glm::vec3(1.0F)});
+        world.surfaces.push_back({mesh, glm::vec3(1.0F)});
         data_->labs.push_back(std::make_unique<Lab>(std::move(world)));
+        if (s == 0) {
+            upper = upperSide(rig.restMesh(), mesh, *data_->labs.front());
+            if (upper.empty())
+                throw InvalidInput("Rig " + rig.name(), "no part of it looks up, so that no light can fall on it",
+                                   "turn it so that +Y is up");
+            each = std::max<std::size_t>(1, (upper.size() + places - 1) / std::max<std::size_t>(1, places));
+            addPlaces(mesh, upper, each, data_->places);
+        }
+        std::vector<Spot> spots;
+        spots.reserve(data_->places.size());
+        for (std::size_t k = 0; k < upper.size(); k += each)
+            spots.push_back(spotOf(mesh.positions, mesh.triangles[upper[k]]));
+        data_->spots.push_back(std::move(spots));
     }
 }
 

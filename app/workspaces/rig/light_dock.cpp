@@ -51,13 +51,13 @@ QString lightText(const LightMap& map) {
         .arg(std::lround(map.incidence.inDegrees()));
 }
 
-QWidget* makePair(ValueField* from, ValueField* to) {
+QWidget* makePair(ValueField* from, ValueField* to, const QString& between = "to") {
     auto* pair = new QWidget;
     auto* layout = new QHBoxLayout(pair);
     layout->setContentsMargins(0, 0, 0, 0);
     layout->setSpacing(4);
     layout->addWidget(from, 1);
-    layout->addWidget(new QLabel("to"));
+    layout->addWidget(new QLabel(between));
     layout->addWidget(to, 1);
     pair->setFocusProxy(from);
     return pair;
@@ -176,7 +176,7 @@ QWidget* RigLight::makeForm() {
         low_[k] = addNumber(QString("low.") + kAxes[k], Quantity::length, least, kFarthest, kLow[k]);
         high_[k] = addNumber(QString("high.") + kAxes[k], Quantity::length, least, kFarthest, kHigh[k]);
     }
-    layout->addWidget(makeRow("Pi&xels", makePair(size_[0], size_[1])));
+    layout->addWidget(makeRow("Pi&xels", makePair(size_[0], size_[1], "\u00D7")));
     layout->addWidget(makeRow("&Throw ratio", makePair(throw_[0], throw_[1])));
     layout->addWidget(makeRow("&Lens shift", shift_));
     layout->addWidget(makeRow("Left to &right", makePair(low_[0], high_[0])));
