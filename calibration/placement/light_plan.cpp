@@ -91,14 +91,21 @@ std::optional<Ray> rayTo(const Spot& spot, const CalibratedCamera& projector, co
     return Ray{pixelsPerMillimetreAt(projector, spot, *pixel), std::acos(std::min(1.0, cosine))};
 }
 
-/// The triangles that look up at rest and are not hidden under others, as the folds of a skirt are.
+/// The triangles that look up at rest and lie open: not hidden under others, as the folds of a skirt are, nor the
+/// bottoms of slits, which only light from straight above finds.
 std::vector<std::uint32_t> upperSide(const TriangleMesh& rest, const TriangleMesh& placed, const Lab& lab) {
-    constexpr double kAbove = 10.0; // metres
+    constexpr double kFar = 10.0;   // metres
+    constexpr int kSlantedRays = 3; // of four
     std::vector<std::uint32_t> upper;
     for (std::uint32_t t = 0; t < rest.triangles.size(); ++t) {
         if (!facesUp(rest, t)) continue;
         const Spot spot = spotOf(placed.positions, placed.triangles[t]);
-        if (lab.sees(spot.point, spot.normal, spot.point + glm::dvec3(0.0, kAbove, 0.0))) upper.push_back(t);
+        const auto isOpenTo = [&](double x, double z) {
+            return lab.sees(spot.point, spot.normal, spot.point + kFar * glm::dvec3(x, 1.0, z));
+        };
+        const int slanted = static_cast<int>(isOpenTo(1, 0)) + static_cast<int>(isOpenTo(-1, 0)) +
+                            static_cast<int>(isOpenTo(0, 1)) + static_cast<int>(isOpenTo(0, -1));
+        if (isOpenTo(0, 0) && slanted >= kSlantedRays) upper.push_back(t);
     }
     return upper;
 }
