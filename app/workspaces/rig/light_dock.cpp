@@ -270,14 +270,13 @@ void RigLight::search() {
 }
 
 void RigLight::showAll() {
-    const bool known = found_ != nullptr;
     const bool fromBest = proposed_ && whose_->currentIndex() == 1;
-    text_->setText(!rig_    ? "Open a rig to see how light reaches it."
-                   : !known ? "Light is followed to the device in all its states..."
-                            : lightText(found_->now));
+    text_->setText(!rig_     ? "Open a rig to see how light reaches it."
+                   : !found_ ? "Light is followed to the device in all its states..."
+                             : lightText(found_->now));
     whose_->setVisible(proposed_.has_value());
-    button_->setEnabled(known);
-    if (known)
+    button_->setEnabled(found_ != nullptr);
+    if (found_)
         map_->show(std::make_shared<const LightMap>(fromBest ? proposed_->light : found_->now), found_->mesh, {});
     else
         map_->show(nullptr, nullptr, {});
