@@ -47,6 +47,7 @@ constexpr OtherWords kOtherWords[] = {
     {"match.refined", "optimise optimize accurate"},
     {"match.voting", "equation fast"},
     {"field.build", "mdf voxels distance compute calculate"},
+    {"export.parts", "print stl 3mf build make housing seat servo wiring assembly sketch fabricate"},
     {"export.picture", "screenshot image snapshot photo"},
     {"export.turntable", "film movie animation"},
     {"record.start", "capture log film video"},
