@@ -38,7 +38,7 @@ constexpr OtherWords kOtherWords[] = {
     {"target.spin", "rotate turn"},
     {"target.play", "animation pause"},
     {"rig.open", "load import device"},
-    {"rig.new", "create make begin template rig"},
+    {"rig.new", "create make begin template rig import mesh gltf obj folder states joints"},
     {"rig.save", "export write glb device"},
     {"rig.rest", "home zero neutral flat reset pose"},
     {"rig.random", "shuffle"},
