@@ -297,9 +297,9 @@ TEST(RigParts, LeavesNothingOfWhatFails) {
         EXPECT_NE(outcome.exitCode, 0);
         EXPECT_NE(outcome.err.find(named), std::string::npos) << outcome.err;
     };
-    fails({"--tolerance", "5mm"}, "--tolerance");
+    fails({"--tolerance", "5mm"}, "tolerance");
     fails({"--tolerance", "wide"}, "--tolerance");
-    fails({"--bed", "1mm"}, "--bed");
+    fails({"--bed", "1mm"}, "print bed");
     fails({"--servo", "SG9000"}, "SG90, MG996R");
     EXPECT_EQ(filesIn(made.folder.path()), std::vector<std::string>{"c.glb"});
 }

@@ -19,6 +19,7 @@
 #include "app/workspaces/rig/draw_sheet.h"
 #include "app/workspaces/rig/moved_part.h"
 #include "app/workspaces/rig/new_device.h"
+#include "app/workspaces/rig/parts_dialog.h"
 #include "app/workspaces/rig/rig_docks.h"
 #include "core/base/atomic_file.h"
 #include "core/rig/rig_file.h"
@@ -30,7 +31,6 @@ namespace {
 constexpr int kSettleMilliseconds = 200;
 constexpr int kWiggleMilliseconds = 33;
 constexpr qint64 kRehearseMilliseconds = 500; ///< to get from one shape to another, so that one sees what moves
-constexpr const char* kRigFolder = "folders/rig";
 
 ViewCamera firstCamera() {
     ViewCamera camera;
@@ -68,6 +68,7 @@ struct RigWorkspace::Data : public QObject {
     std::optional<MovedPart> part;
     std::shared_ptr<const Rig> partOf;
     QAction* wiggleCommand = nullptr;
+    QAction* partsCommand = nullptr;
     QAction* drawCommand = nullptr; ///< there is something to take up again only for a rig that was drawn
     QElapsedTimer wiggling;
     std::vector<double> rehearsedFrom; ///< strokes that were shown when another state was asked for
@@ -99,6 +100,7 @@ void RigWorkspace::Data::listen() {
     connect(&studio.document, &StudioDocument::changed, this, [this](StateParts parts) {
         const auto& now = studio.document.state().rig.parts;
         drawCommand->setEnabled(now && !now->drawing.empty());
+        partsCommand->setEnabled(studio.document.state().rig.rig != nullptr);
         if (parts & StatePart::rigEdited) edited();
         if (!(parts & StatePart::rig)) return;
         unframed = true;
@@ -123,6 +125,13 @@ void RigWorkspace::Data::addCommands() {
     });
     drawCommand->setToolTip("Take up again the drawing that this device was made of");
     drawCommand->setEnabled(false);
+    options.icon = "build";
+    partsCommand = studio.commands.add("export.parts", "Export parts to build...", options, [this] {
+        emit studio.commands.workspaceWanted("rig");
+        openPartsDialog(studio, window());
+    });
+    partsCommand->setToolTip("What is to be printed, bought and wired to build this device, with the board's sketch");
+    partsCommand->setEnabled(false);
     options.icon = "save";
     options.workspace = "rig";
     studio.commands.add("rig.save", "Save the rig as...", options, [this] { saveRig(); });
