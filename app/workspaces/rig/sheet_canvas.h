@@ -9,6 +9,7 @@
 
 #include "app/workspaces/rig/page_view.h"
 #include "app/workspaces/rig/sheet_painter.h"
+#include "core/render/viewport/theme.h"
 
 namespace lumorph::studio {
 
