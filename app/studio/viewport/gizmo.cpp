@@ -46,10 +46,11 @@ public:
           accent_(accent) {}
 
     std::vector<ViewportLine> lines() && {
-        drawRing();
-        drawSquare();
-        for (const auto arrow : {GizmoHandle::moveX, GizmoHandle::moveZ, GizmoHandle::moveY}) drawArrow(arrow);
-        drawSize();
+        if (offers(gizmo_, GizmoHandle::turn)) drawRing();
+        if (offers(gizmo_, GizmoHandle::moveGround)) drawSquare();
+        for (const auto arrow : {GizmoHandle::moveX, GizmoHandle::moveZ, GizmoHandle::moveY})
+            if (offers(gizmo_, arrow)) drawArrow(arrow);
+        if (offers(gizmo_, GizmoHandle::size)) drawSize();
         return std::move(lines_);
     }
 
@@ -186,11 +187,11 @@ std::optional<GizmoHandle> gizmoAt(const Gizmo& gizmo, const ViewCamera& camera,
     if (!(length > 0.0F)) return std::nullopt;
     const Finder finder(camera, pixel, size);
     const glm::vec3 cube = sizeCube(gizmo, camera, length);
-    if (finder.toPath({cube, cube}) <= 11.0 * scale) return GizmoHandle::size;
+    if (offers(gizmo, GizmoHandle::size) && finder.toPath({cube, cube}) <= 11.0 * scale) return GizmoHandle::size;
     std::optional<GizmoHandle> nearest;
     double least = 8.0 * scale;
     const auto offer = [&](GizmoHandle handle, double distance) {
-        if (distance > least) return;
+        if (distance > least || !offers(gizmo, handle)) return;
         least = distance;
         nearest = handle;
     };

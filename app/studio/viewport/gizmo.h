@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstdint>
+#include <numbers>
 #include <optional>
 #include <string>
 #include <vector>
@@ -21,10 +23,16 @@ enum class GizmoHandle { moveX, moveY, moveZ, moveGround, turn, size };
 /// at the camera is neither drawn nor grabbed.
 struct Gizmo {
     Placement placement;
-    glm::vec3 centre{0.0F}; ///< where the handles meet: the middle of the placed object's foot, device metres
+    glm::vec3 centre{0.0F};      ///< where the handles meet: the middle of the placed object's foot, device metres
+    std::uint8_t handles = 0x3F; ///< that there are, one a bit, in the order of GizmoHandle
 
     bool operator==(const Gizmo&) const = default;
 };
+
+/// Whether there is this handle.
+[[nodiscard]] constexpr bool offers(const Gizmo& gizmo, GizmoHandle handle) {
+    return (gizmo.handles >> static_cast<unsigned>(handle) & 1U) != 0;
+}
 
 /// Length of the arrows in pixels at 100 %.
 inline constexpr double kGizmoReach = 90.0;
@@ -37,6 +45,16 @@ inline constexpr double kGizmoReach = 90.0;
 /// The handle within some pixels of the pointer.
 [[nodiscard]] std::optional<GizmoHandle> gizmoAt(const Gizmo& gizmo, const ViewCamera& camera, glm::vec2 pixel,
                                                  glm::vec2 size, double scale);
+
+/// The place along an axis (of length 1) whose picture is nearest to a pixel, metres from `origin`; 0 where the axis
+/// points at the camera or `origin` lies behind it.
+[[nodiscard]] double placeAlongAxis(const glm::vec3& origin, const glm::vec3& axis, const ViewCamera& camera,
+                                    glm::vec2 pixel, glm::vec2 size);
+
+/// The steps of a coarse drag.
+inline constexpr double kCoarseMove = 0.005; ///< metres
+inline constexpr double kCoarseTurn = std::numbers::pi / 12.0;
+inline constexpr double kCoarseShare = 0.1;
 
 /// Where a drag has come to, and what to write beside the pointer ("x 2.4 cm", "35 deg", "120 %": all measured from
 /// where the drag began). `coarse` snaps to 5 mm, 15 degrees and 10 %.

@@ -8,9 +8,6 @@
 namespace lumorph::studio {
 namespace {
 
-constexpr double kMoveStep = 0.005;
-constexpr double kTurnStep = std::numbers::pi / 12.0;
-constexpr double kSizeStep = 0.1;
 // A plane seen flatter than this (sine of the angle) cannot be dragged in by its depth.
 constexpr double kFlatPlane = 0.06;
 constexpr double kFlatRing = 0.17;
@@ -126,7 +123,7 @@ GizmoDrag moved(const Gizmo& start, const glm::dvec3& by, std::string label) {
 GizmoDrag movedAlong(const Projection& view, const Gizmo& start, GizmoHandle arrow, const ViewCamera& camera,
                      glm::vec2 from, glm::vec2 to, bool coarse) {
     const glm::vec3 axis = axisOf(arrow);
-    const double by = snapped(alongAxis(view, start, camera, axis, from, to), kMoveStep, coarse);
+    const double by = snapped(alongAxis(view, start, camera, axis, from, to), kCoarseMove, coarse);
     const char* name = arrow == GizmoHandle::moveX ? "x " : arrow == GizmoHandle::moveY ? "y " : "z ";
     return moved(start, by * glm::dvec3(axis), centimetres(name, by));
 }
@@ -140,7 +137,7 @@ GizmoDrag movedOnGround(const Projection& view, const Gizmo& start, glm::vec2 fr
         by = glm::dvec3(view.axes().right) * (static_cast<double>(to.x - from.x) / view.pixelsPerMetre(start.centre));
     else
         by = onGround(view, start, to) - onGround(view, start, from);
-    by = {snapped(by.x, kMoveStep, coarse), 0.0, snapped(by.z, kMoveStep, coarse)};
+    by = {snapped(by.x, kCoarseMove, coarse), 0.0, snapped(by.z, kCoarseMove, coarse)};
     return moved(start, by, centimetres("x ", by.x) + ", " + centimetres("z ", by.z));
 }
 
@@ -156,7 +153,7 @@ GizmoDrag turned(const Projection& view, const Gizmo& start, glm::vec2 from, glm
         const glm::dvec3 b = onGround(view, start, to);
         by = std::remainder(std::atan2(b.x, b.z) - std::atan2(a.x, a.z), 2.0 * std::numbers::pi);
     }
-    by = snapped(by, kTurnStep, coarse);
+    by = snapped(by, kCoarseTurn, coarse);
     GizmoDrag drag{start.placement, text("%.0f deg", Angle::radians(by).inDegrees()), start.centre};
     drag.placement.yaw = Angle::radians(start.placement.yaw.inRadians() + by);
     const glm::dvec3 arm = glm::dvec3(start.placement.translation) - glm::dvec3(start.centre);
@@ -172,7 +169,7 @@ GizmoDrag sized(const Projection& view, const Gizmo& start, glm::vec2 from, glm:
     const glm::dvec2 outwards = glm::normalize(glm::dvec2(1.0, -1.0));
     const double grabbed = std::max(glm::dot(glm::dvec2(from) - centre, outwards), 0.25 * kGizmoReach);
     double factor = 1.0 + glm::dot(glm::dvec2(to) - glm::dvec2(from), outwards) / grabbed;
-    factor = std::clamp(snapped(factor, kSizeStep, coarse), coarse ? kSizeStep : 0.01, 100.0);
+    factor = std::clamp(snapped(factor, kCoarseShare, coarse), coarse ? kCoarseShare : 0.01, 100.0);
     GizmoDrag drag{start.placement, text("%.0f %%", 100.0 * factor), start.centre};
     drag.placement.scale = factor * start.placement.scale;
     const glm::dvec3 arm = glm::dvec3(start.placement.translation) - glm::dvec3(start.centre);
@@ -181,6 +178,13 @@ GizmoDrag sized(const Projection& view, const Gizmo& start, glm::vec2 from, glm:
 }
 
 } // namespace
+
+double placeAlongAxis(const glm::vec3& origin, const glm::vec3& axis, const ViewCamera& camera, glm::vec2 pixel,
+                      glm::vec2 size) {
+    const Projection view(camera, size);
+    if (pointsAtCamera(axis, origin, camera) || (!view.parallel() && !(view.depthOf(origin) > 1e-6))) return 0.0;
+    return AxisRuler(view, origin, axis).placeOf(pixel);
+}
 
 GizmoDrag dragGizmo(const Gizmo& start, GizmoHandle handle, const ViewCamera& camera, glm::vec2 from, glm::vec2 to,
                     glm::vec2 size, bool coarse) {

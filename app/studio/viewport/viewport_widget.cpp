@@ -30,7 +30,7 @@ struct ViewportWidget::Data {
     static constexpr QPointF kNowhere{-1e4, -1e4};
 
     /// What a pressed button does.
-    enum class Drag { none, undecided, orbit, pan, cube, gizmo };
+    enum class Drag { none, undecided, orbit, pan, cube, gizmo, overlay };
 
     /// The drag of a handle.
     struct Grip {
@@ -68,6 +68,9 @@ struct ViewportWidget::Data {
     void click(const QPointF& at);
     void dragGrip(const QPointF& to, bool coarse);
     void cancelGrip(bool tell);
+    void cancelOverlay();
+    void snapChanged(bool coarse);                                                 ///< Ctrl went down or up
+    [[nodiscard]] bool holds() const { return grip || dragging == Drag::overlay; } ///< a handle
     void dropGrip();
     void setHot(std::optional<GizmoHandle> handle, std::optional<CubeSide> side);
     void showCursor();
@@ -87,6 +90,8 @@ struct ViewportWidget::Data {
     Box selection;
     std::optional<Gizmo> gizmo;
     std::vector<BodyMark> bodies;
+    PaneOverlay* overlay = nullptr;
+    bool overlayMoved = false; ///< a drag of it has begun
     bool active = true;
     bool cameraGiven = false; ///< the owner or the user has chosen where to look from
     CameraMotion motion;
@@ -254,6 +259,7 @@ void ViewportWidget::Data::paintMarks(QPainter& painter) const {
     const ViewCamera& camera = motion.camera();
     const QSize view = self.size();
     if (!frame.image.isNull()) paintBodies(painter, view, camera, bodies, colors);
+    if (overlay && !frame.image.isNull()) overlay->paint(painter, view);
     if (hasRoomForMarks(view)) {
         const bool onEdge = std::abs(camera.pitch.inDegrees()) < kGridOnEdge;
         const QString grid =
@@ -310,6 +316,12 @@ void ViewportWidget::setGizmo(std::optional<Gizmo> gizmo) {
     data_->gizmo = gizmo;
     if (!data_->gizmo) data_->setHot(std::nullopt, data_->hotSide);
     data_->changed();
+}
+
+void ViewportWidget::setOverlay(PaneOverlay* overlay) {
+    if (data_->dragging == Data::Drag::overlay) data_->cancelOverlay();
+    data_->overlay = overlay;
+    update();
 }
 
 void ViewportWidget::setBodies(std::vector<BodyMark> bodies) {
@@ -384,6 +396,7 @@ void ViewportWidget::showEvent(QShowEvent* event) {
 void ViewportWidget::hideEvent(QHideEvent* event) {
     QWidget::hideEvent(event);
     if (data_->grip) data_->cancelGrip(true);
+    if (data_->dragging == Data::Drag::overlay) data_->cancelOverlay();
     data_->dragging = Data::Drag::none;
     data_->renderer.forget(data_->number);
 }
@@ -486,6 +499,7 @@ void ViewportWidget::Data::showCursor() {
         case Drag::orbit:
         case Drag::cube:
         case Drag::gizmo:
+        case Drag::overlay:
             return Qt::ClosedHandCursor;
         case Drag::pan:
             return Qt::SizeAllCursor;
@@ -493,7 +507,7 @@ void ViewportWidget::Data::showCursor() {
             break;
         }
         if (hotSide) return Qt::PointingHandCursor;
-        return hotHandle ? Qt::OpenHandCursor : Qt::ArrowCursor;
+        return hotHandle || (overlay && overlay->hot()) ? Qt::OpenHandCursor : Qt::ArrowCursor;
     }();
     if (self.cursor().shape() != shape) self.setCursor(shape);
 }
@@ -502,8 +516,10 @@ void ViewportWidget::Data::hover(const QPointF& at) {
     if (dragging != Drag::none) return;
     const bool inside = QRectF(self.rect()).contains(at);
     const auto side = inside ? cubeAt(at) : std::nullopt;
+    if (overlay && overlay->hover(inside && !side ? at : kNowhere, self.size())) self.update();
     std::optional<GizmoHandle> handle;
-    if (inside && gizmo && !side) handle = gizmoAt(*gizmo, motion.camera(), toVec(at), size(), 1.0);
+    if (inside && gizmo && !side && !(overlay && overlay->hot()))
+        handle = gizmoAt(*gizmo, motion.camera(), toVec(at), size(), 1.0);
     setHot(handle, side);
     showCursor();
 }
@@ -522,6 +538,9 @@ void ViewportWidget::Data::press(const QPointF& at, Qt::MouseButton with, Qt::Ke
         dragging = Drag::orbit;
     } else if (with == Qt::LeftButton && hotSide) {
         dragging = Drag::cube;
+    } else if (with == Qt::LeftButton && overlay && overlay->press(at, self.size(), modifiers)) {
+        dragging = Drag::overlay;
+        overlayMoved = false;
     } else if (with == Qt::LeftButton && hotHandle) {
         dragging = Drag::gizmo;
         grip = Grip{*gizmo, *hotHandle, at, modifiers.testFlag(Qt::ControlModifier), false, {}};
@@ -560,6 +579,11 @@ void ViewportWidget::Data::drag(const QPointF& to, Qt::KeyboardModifiers modifie
     case Drag::gizmo:
         if (grip->moved || wandered) dragGrip(to, modifiers.testFlag(Qt::ControlModifier));
         break;
+    case Drag::overlay:
+        overlayMoved = overlayMoved || wandered;
+        if (overlayMoved) overlay->drag(to, self.size(), modifiers);
+        self.update();
+        break;
     default:
         break;
     }
@@ -570,6 +594,10 @@ void ViewportWidget::Data::release(const QPointF& at) {
     button = Qt::NoButton;
     if (ended == Drag::cube && hotSide) self.viewFrom(glm::vec3(*hotSide));
     if (ended == Drag::gizmo) dropGrip();
+    if (ended == Drag::overlay) {
+        overlay->release();
+        self.update();
+    }
     if (ended == Drag::undecided) click(at);
     hover(at);
 }
@@ -580,7 +608,7 @@ void ViewportWidget::Data::dragGrip(const QPointF& to, bool coarse) {
     grip->moved = true;
     grip->coarse = coarse;
     grip->label = QString::fromStdString(now.label);
-    gizmo = Gizmo{now.placement, now.centre};
+    gizmo = Gizmo{now.placement, now.centre, grip->start.handles};
     changed();
     self.update();
     emit self.gizmoDragged(now.placement);
@@ -595,6 +623,18 @@ void ViewportWidget::Data::cancelGrip(bool tell) {
     self.update();
     showCursor();
     if (moved && tell) emit self.gizmoCancelled();
+}
+
+void ViewportWidget::Data::cancelOverlay() {
+    dragging = Drag::none;
+    overlay->cancel();
+    self.update();
+    showCursor();
+}
+
+void ViewportWidget::Data::snapChanged(bool coarse) {
+    if (grip && grip->moved) dragGrip(pointer, coarse);
+    if (dragging == Drag::overlay && overlayMoved) drag(pointer, coarse ? Qt::ControlModifier : Qt::NoModifier);
 }
 
 void ViewportWidget::Data::dropGrip() {
@@ -617,9 +657,9 @@ void ViewportWidget::Data::click(const QPointF& at) {
 }
 
 bool ViewportWidget::Data::key(int key, Qt::KeyboardModifiers modifiers) {
-    if (grip) {
+    if (holds()) {
         // The camera stands still during a drag.
-        if (key == Qt::Key_Escape) cancelGrip(true);
+        if (key == Qt::Key_Escape) grip ? cancelGrip(true) : cancelOverlay();
         return key == Qt::Key_Escape || isOurs(key);
     }
     if (modifiers & (Qt::ControlModifier | Qt::AltModifier | Qt::MetaModifier)) return false;
@@ -664,7 +704,7 @@ bool ViewportWidget::event(QEvent* event) {
     if (event->type() == QEvent::ShortcutOverride) {
         const auto* pressed = static_cast<QKeyEvent*>(event);
         const bool plain = !(pressed->modifiers() & (Qt::ControlModifier | Qt::AltModifier | Qt::MetaModifier));
-        if ((data_->grip && pressed->key() == Qt::Key_Escape) || (plain && isOurs(pressed->key()))) {
+        if ((data_->holds() && pressed->key() == Qt::Key_Escape) || (plain && isOurs(pressed->key()))) {
             event->accept();
             return true;
         }
@@ -703,17 +743,17 @@ void ViewportWidget::mouseReleaseEvent(QMouseEvent* event) {
 void ViewportWidget::wheelEvent(QWheelEvent* event) {
     // A touchpad's pixels are worth what a wheel's notches of the same way are.
     const double notches = event->angleDelta().y() / 120.0;
-    if (notches != 0.0 && !data_->grip) data_->zoomBy(std::pow(kWheelNotch, notches), event->position());
+    if (notches != 0.0 && !data_->holds()) data_->zoomBy(std::pow(kWheelNotch, notches), event->position());
     event->accept();
 }
 
 void ViewportWidget::keyPressEvent(QKeyEvent* event) {
-    if (data_->grip && event->key() == Qt::Key_Control && data_->grip->moved) data_->dragGrip(data_->pointer, true);
+    if (event->key() == Qt::Key_Control) data_->snapChanged(true);
     if (!data_->key(event->key(), event->modifiers())) QWidget::keyPressEvent(event);
 }
 
 void ViewportWidget::keyReleaseEvent(QKeyEvent* event) {
-    if (data_->grip && event->key() == Qt::Key_Control && data_->grip->moved) data_->dragGrip(data_->pointer, false);
+    if (event->key() == Qt::Key_Control) data_->snapChanged(false);
     QWidget::keyReleaseEvent(event);
 }
 

@@ -9,6 +9,7 @@
 #include "app/studio/rendering/render_thread.h"
 #include "app/studio/viewport/body_marks.h"
 #include "app/studio/viewport/gizmo.h"
+#include "app/studio/viewport/pane_overlay.h"
 #include "core/render/viewport/viewport_renderer.h"
 
 namespace lumorph::studio {
@@ -36,6 +37,9 @@ public:
     void setSelectionBox(const Box& box);
     /// Shows or hides the gizmo. During a drag it follows the pointer by itself; the owner may set it all the same.
     void setGizmo(std::optional<Gizmo> gizmo);
+    /// Drawn over the picture, and takes a left drag that begins on its handles, before the gizmo; Esc takes that back.
+    /// It outlives the viewport, or is taken away before; null: none.
+    void setOverlay(PaneOverlay* overlay);
     /// Tracked bodies, painted over the picture: no frame is drawn anew for them.
     void setBodies(std::vector<BodyMark> bodies);
     /// A hidden viewport asks for no frames.

@@ -21,7 +21,7 @@ void showRow(ValueField* field, bool shown) { field->parentWidget()->setVisible(
 } // namespace
 
 ActuatorForm::ActuatorForm(StudioDocument& document, QWidget* parent)
-    : QWidget(parent), document_(document), name_(new QLineEdit) {
+    : QWidget(parent), document_(document), preview_(document), name_(new QLineEdit) {
     auto* layout = new QVBoxLayout(this);
     layout->setContentsMargins(0, 0, 0, 0);
     layout->setSpacing(4);
@@ -59,12 +59,11 @@ ValueField* ActuatorForm::addField(const Words& words, const Limits& limits, con
     field->setObjectName(words.name);
     field->setToolTip(words.hint + ".\n" + field->toolTip());
     layout()->addWidget(makeRow(words.label, field, this));
-    connect(field, &ValueField::previewed, this,
-            [this, edit](double value) { previewRig(document_, onActuator(edit, value)); });
+    connect(field, &ValueField::previewed, this, [this, edit](double value) { preview(edit, value); });
     connect(field, &ValueField::committed, this, [this, edit, step = words.step](double value) {
         if (!shown()) return;
         const QString name = QString::fromStdString(shown()->name);
-        previewRig(document_, onActuator(edit, value));
+        preview(edit, value);
         document_.commitPreview(step.arg(name));
         emit motionChanged();
     });
@@ -72,14 +71,8 @@ ValueField* ActuatorForm::addField(const Words& words, const Limits& limits, con
     return field;
 }
 
-std::function<void(RigParts&)> ActuatorForm::onActuator(const Edit& edit, double value) {
-    if (!document_.previewing()) base_ = document_.state().rig.parts;
-    return [edit, value, base = base_, index = actuator_](RigParts& parts) {
-        if (!index || *index >= parts.actuators.size()) return;
-        Actuator& actuator = parts.actuators[*index];
-        if (base && *index < base->actuators.size()) actuator = base->actuators[*index];
-        edit(actuator, value);
-    };
+void ActuatorForm::preview(const Edit& edit, double value) {
+    if (actuator_) preview_.show(*actuator_, [&](Actuator& actuator) { edit(actuator, value); });
 }
 
 const Actuator* ActuatorForm::shown() const {

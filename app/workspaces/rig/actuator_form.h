@@ -1,7 +1,6 @@
 #pragma once
 
 #include <functional>
-#include <memory>
 #include <optional>
 
 #include <QLineEdit>
@@ -9,6 +8,7 @@
 
 #include "app/studio/document/studio_document.h"
 #include "app/studio/widgets/value_field.h"
+#include "app/workspaces/rig/actuator_preview.h"
 
 namespace lumorph::studio {
 
@@ -42,12 +42,11 @@ private:
     void showRange(const Actuator& actuator);
     void rename();
     [[nodiscard]] const Actuator* shown() const;
-    /// As the edit makes it of the actuator as it was when the drag began.
-    [[nodiscard]] std::function<void(RigParts&)> onActuator(const Edit& edit, double value);
+    void preview(const Edit& edit, double value);
 
     StudioDocument& document_;
     std::optional<std::size_t> actuator_;
-    std::shared_ptr<const RigParts> base_; ///< the parts when a drag began
+    ActuatorPreview preview_;
     QLineEdit* name_;
     ValueField *from_ = nullptr, *to_ = nullptr;             ///< of one that turns
     ValueField *fromLength_ = nullptr, *toLength_ = nullptr; ///< of one that moves along a line

@@ -77,6 +77,7 @@ private:
         layout->addWidget(form_);
         layout->addLayout(details_);
         layout->addWidget(makeCommandButton(studio_.commands.find("rig.wiggle"), "rig.wiggleButton", nullptr));
+        layout->addWidget(makeCommandButton(studio_.commands.find("rig.back"), "rig.backButton", nullptr));
         return contents;
     }
 

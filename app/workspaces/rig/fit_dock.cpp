@@ -80,6 +80,7 @@ private:
     void fail(const std::exception& error);
     void tellState();
     void showTried();
+    void takeBack();
     [[nodiscard]] const ServoType& servo() const {
         return servoTypes()[static_cast<std::size_t>(servo_->currentIndex())];
     }
@@ -95,6 +96,7 @@ private:
     QLabel* state_ = new QLabel;
     TargetTiles* tiles_ = new TargetTiles;
     QWidget* tried_ = nullptr;
+    std::vector<double> asked_; ///< strokes in the view that a tile asked for
     QLabel* triedText_ = new QLabel;
     Plot* steps_ = new Plot;
     MetricTable* metrics_ = new MetricTable;
@@ -141,7 +143,8 @@ RigFit::RigFit(Studio& studio, RigSelection& selection)
     });
     connect(soon_, &Throttle::due, this, &RigFit::follow);
     connect(&selection, &RigSelection::rehearsalChanged, this, [this] {
-        if (selection_.rehearsed().empty()) tiles_->choose(std::nullopt);
+        // A pose of somebody else's in the view is not that of the tile.
+        if (selection_.rehearsed() != asked_) tiles_->choose(std::nullopt), asked_.clear();
         showTried();
     });
     connect(tiles_, &TargetTiles::chosenChanged, this, &RigFit::showTried);
@@ -261,7 +264,8 @@ void RigFit::hideEvent(QHideEvent* event) {
     QWidget::hideEvent(event);
     stopAll();
     if (!complete_) rig_.reset(); // begins anew when it is seen again
-    selection_.rehearse({});
+    tiles_->choose(std::nullopt);
+    showTried();
 }
 
 void RigFit::stopAll() {
@@ -301,7 +305,8 @@ void RigFit::clear() {
     shownOf_.reset();
     fit_.reset();
     complete_ = false;
-    selection_.rehearse({});
+    tiles_->choose(std::nullopt);
+    takeBack();
     verdict_->setText("Matching the targets...");
     for (QWidget* left : {static_cast<QWidget*>(weak_), static_cast<QWidget*>(tiles_), static_cast<QWidget*>(metrics_)})
         left->hide();
@@ -465,13 +470,24 @@ void RigFit::tellState() {
                               : "");
 }
 
+/// Ends the pose in the view that a tile asked for.
+void RigFit::takeBack() {
+    const std::vector<double> asked = std::exchange(asked_, {});
+    if (!asked.empty() && asked == selection_.rehearsed()) selection_.rehearse({});
+}
+
 void RigFit::showTried() {
     const auto chosen = tiles_->chosen();
     const bool tries = fit_ && chosen && *chosen < fit_->targets.size();
     takeCommand_->setEnabled(tries);
     tried_->setVisible(tries);
     if (tries) triedText_->setText(targetText(fit_->targets[*chosen]));
-    selection_.rehearse(tries ? strokesOf(*fit_, *chosen) : std::vector<double>());
+    if (tries) {
+        asked_ = strokesOf(*fit_, *chosen);
+        selection_.rehearse(asked_);
+    } else {
+        takeBack();
+    }
 }
 
 } // namespace

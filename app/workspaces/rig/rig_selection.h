@@ -23,16 +23,17 @@ public:
     void wiggle() { emit wiggleWanted(); }
     /// The joint state that is shown in the view alone, one stroke an actuator; empty: as the device stands.
     [[nodiscard]] const std::vector<double>& rehearsed() const noexcept { return rehearsed_; }
-    void rehearse(std::vector<double> strokes) {
+    /// `glides`: the view takes a moment to get there, so that one sees what moves.
+    void rehearse(std::vector<double> strokes, bool glides = true) {
         if (strokes == rehearsed_) return;
         rehearsed_ = std::move(strokes);
-        emit rehearsalChanged();
+        emit rehearsalChanged(glides);
     }
 
 signals:
     void changed();
     void wiggleWanted();
-    void rehearsalChanged();
+    void rehearsalChanged(bool glides);
 
 private:
     std::optional<std::size_t> actuator_;

@@ -16,6 +16,7 @@
 #include "app/workspaces/common/export_dialogs.h"
 #include "app/workspaces/common/field_colors.h"
 #include "app/workspaces/common/kept_camera.h"
+#include "app/workspaces/rig/actuator_handles.h"
 #include "app/workspaces/rig/draw_sheet.h"
 #include "app/workspaces/rig/moved_part.h"
 #include "app/workspaces/rig/new_device.h"
@@ -42,7 +43,12 @@ ViewCamera firstCamera() {
 } // namespace
 
 struct RigWorkspace::Data : public QObject {
-    explicit Data(Studio& shared) : studio(shared) {}
+    explicit Data(Studio& shared)
+        : studio(shared), handles(shared.document, selection, [this] { return view->camera(); }),
+          linePreview(shared.document) {}
+    ~Data() override {
+        if (view) view->setOverlay(nullptr);
+    }
 
     void listen();
     void addCommands();
@@ -55,7 +61,10 @@ struct RigWorkspace::Data : public QObject {
     void edited();
     void markPart();
     void wiggle();
-    void rehearse();
+    void rehearse(bool glides);
+    void listenToView();
+    void followHandles();
+    void moveLineBy(const Placement& placement);
     void frameOnce(const ViewportScene& scene);
     /// The frame as shown: the loop's, or what is rehearsed, with the selected actuator wiggling on top.
     [[nodiscard]] MatchFrame shownFrame(const MatchFrame& frame);
@@ -71,6 +80,10 @@ struct RigWorkspace::Data : public QObject {
     QAction* partsCommand = nullptr;
     QAction* drawCommand = nullptr; ///< there is something to take up again only for a rig that was drawn
     QElapsedTimer wiggling;
+    ActuatorHandles handles;
+    ActuatorPreview linePreview;
+    std::optional<glm::vec3> lineFrom; ///< the pivot when the arrows began to carry it
+    QAction* backCommand = nullptr;
     std::vector<double> rehearsedFrom; ///< strokes that were shown when another state was asked for
     std::vector<double> shownStrokes;
     std::shared_ptr<const std::vector<glm::vec3>> tried; ///< positions of `triedOf` at `triedStrokes`
@@ -102,8 +115,10 @@ void RigWorkspace::Data::listen() {
         drawCommand->setEnabled(now && !now->drawing.empty());
         partsCommand->setEnabled(studio.document.state().rig.rig != nullptr);
         if (parts & StatePart::rigEdited) edited();
+        if (parts & StatePart::rigEdited) followHandles();
         if (!(parts & StatePart::rig)) return;
         unframed = true;
+        selection.rehearse({}, false);
         selection.select(std::nullopt);
     });
 }
@@ -142,6 +157,11 @@ void RigWorkspace::Data::addCommands() {
     wiggleCommand = studio.commands.add("rig.wiggle", "Show what it moves", options, [this] { wiggle(); });
     wiggleCommand->setToolTip("Move the chosen actuator in this view alone; the device stays where it is");
     wiggleCommand->setEnabled(false);
+    options.icon = "reset";
+    options.shortcut = {};
+    backCommand = studio.commands.add("rig.back", "Show it as it stands", options, [this] { selection.rehearse({}); });
+    backCommand->setToolTip("End what is rehearsed in this view");
+    backCommand->setEnabled(false);
 }
 
 void RigWorkspace::Data::saveRig() {
@@ -191,6 +211,7 @@ void RigWorkspace::Data::select() {
     part.reset();
     wiggling.invalidate();
     markPart();
+    followHandles();
     wiggle();
     wiggleCommand->setEnabled(part.has_value());
     refresh();
@@ -224,11 +245,69 @@ void RigWorkspace::Data::wiggle() {
     tick.start();
 }
 
-void RigWorkspace::Data::rehearse() {
+void RigWorkspace::Data::rehearse(bool glides) {
     rehearsedFrom = shownStrokes;
-    rehearsing.start();
-    tick.start();
+    backCommand->setEnabled(!selection.rehearsed().empty());
+    wiggling.invalidate();
+    if (glides) {
+        rehearsing.start();
+        tick.start();
+    } else {
+        rehearsing.invalidate();
+    }
     refresh();
+}
+
+void RigWorkspace::Data::listenToView() {
+    view->setOverlay(&handles);
+    connect(view, &ViewportWidget::gizmoDragged, this, &Data::moveLineBy);
+    connect(view, &ViewportWidget::gizmoDropped, this, [this] {
+        const auto& parts = studio.document.state().rig.parts;
+        const auto chosen = selection.actuator();
+        lineFrom.reset();
+        if (studio.document.previewing() && parts && chosen && *chosen < parts->actuators.size())
+            studio.document.commitPreview(
+                QString("Move the axis of %1").arg(QString::fromStdString(parts->actuators[*chosen].name)));
+        followHandles();
+    });
+    connect(view, &ViewportWidget::gizmoCancelled, this, [this] {
+        lineFrom.reset();
+        studio.document.cancelPreview();
+        followHandles();
+    });
+}
+
+void RigWorkspace::Data::moveLineBy(const Placement& placement) {
+    const auto& guide = handles.guide();
+    const auto chosen = selection.actuator();
+    if (!guide || !chosen) return;
+    if (!lineFrom) lineFrom = guide->pivot;
+    const glm::vec3 by = placement.translation - *lineFrom;
+    linePreview.show(*chosen, [&by](Actuator& actuator) { moveLine(actuator, by); });
+}
+
+/// The arrows that make sense for a line: along it nothing changes.
+Gizmo lineGizmo(const ActuatorGuide& guide) {
+    constexpr float kAligned = 0.999F;
+    Gizmo gizmo{{1.0, {}, guide.pivot}, guide.pivot, 0};
+    const auto offer = [&](GizmoHandle handle) {
+        gizmo.handles = static_cast<std::uint8_t>(gizmo.handles | 1U << static_cast<unsigned>(handle));
+    };
+    if (std::abs(guide.axis.x) < kAligned) offer(GizmoHandle::moveX);
+    if (std::abs(guide.axis.y) < kAligned) offer(GizmoHandle::moveY);
+    if (std::abs(guide.axis.z) < kAligned) offer(GizmoHandle::moveZ);
+    return gizmo;
+}
+
+void RigWorkspace::Data::followHandles() {
+    if (!view) return;
+    const auto& rig = studio.document.state().rig.rig;
+    const auto chosen = selection.actuator();
+    const bool there = rig && chosen && *chosen < rig->actuatorCount();
+    handles.follow(there ? chosen : std::nullopt, there ? rig->verticesOf(*chosen) : std::span<const std::uint32_t>());
+    const auto& guide = handles.guide();
+    if (!lineFrom) view->setGizmo(guide && guide->hasLine ? std::optional(lineGizmo(*guide)) : std::nullopt);
+    view->update();
 }
 
 MatchFrame RigWorkspace::Data::shownFrame(const MatchFrame& frame) {
@@ -274,6 +353,7 @@ void RigWorkspace::Data::refresh() {
     display.showTarget = false;
     display.showMismatch = false;
     const MatchFrame shown = shownFrame(*frame);
+    handles.setStrokes(shown.estimatedStrokes, frame->estimatedStrokes);
     auto scene = std::make_shared<ViewportScene>(*builder.build(shown, display, false));
     if (part && shown.devicePositions) {
         const auto lines = part->lines(*shown.devicePositions, scene->accent);
@@ -315,6 +395,7 @@ QWidget* RigWorkspace::makeCentralView() {
     data_->view->setAccessibleName("Device");
     data_->keptCamera = new KeptCamera(data_->studio.settings, "rig", data_->view);
     data_->view->setActive(data_->active);
+    data_->listenToView();
     return data_->view;
 }
 

@@ -49,6 +49,7 @@ public:
     void release() override;
     void cancel() override;
     bool hover(const QPointF& at, const QSize& size) override;
+    [[nodiscard]] bool hot() const override { return hot_.has_value(); }
 
 private:
     struct Grip {

@@ -8,6 +8,7 @@
 #include <QWidget>
 
 #include "app/studio/rendering/show_feed.h"
+#include "app/studio/viewport/pane_overlay.h"
 
 namespace lumorph::studio {
 
@@ -26,20 +27,6 @@ private:
     QString title_;
     QString state_;
     bool live_ = false;
-};
-
-/// Something that is drawn over a pane's picture and may take the pointer: the handles of an item.
-class PaneOverlay {
-public:
-    virtual ~PaneOverlay() = default;
-    virtual void paint(QPainter& painter, const QSize& size) = 0;
-    /// True: the drag that begins here is the overlay's.
-    virtual bool press(const QPointF& at, const QSize& size, Qt::KeyboardModifiers modifiers) = 0;
-    virtual void drag(const QPointF& to, const QSize& size, Qt::KeyboardModifiers modifiers) = 0;
-    virtual void release() = 0;
-    virtual void cancel() = 0;
-    /// True when something changed that has to be painted.
-    virtual bool hover(const QPointF& at, const QSize& size) = 0;
 };
 
 /// One picture of the show, as large as the pane, with its caption. It asks for pictures while it is in sight, and says
