@@ -41,7 +41,8 @@ struct LightWish {
     Angle mostIncidence = Angle::degrees(70.0); ///< beyond it light is spread so thinly that it counts as none
 };
 
-/// A device as light meets it: the side that looks up at rest and lies open, in a number of joint states, which also shadow it.
+/// A device as light meets it: the side that looks up at rest and lies open, in a number of joint states, which also
+/// shadow it.
 ///
 /// `worth` of a LightMap is the mean over area and states of min(pixels a millimetre / wished for, 1), 0 where no light
 /// arrives. Where several projectors light a place, the one with the most pixels counts.

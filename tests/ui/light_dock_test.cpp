@@ -28,7 +28,8 @@ TEST(LightDock, MapFollowsTheRoomAndTheBestPlaceIsHungByOneStep) {
     ASSERT_TRUE(map);
     const QPointF middle(0.5 * map->width(), 0.4 * map->height());
     ASSERT_TRUE(eventually([&] { return map->at(middle) != nullptr; }, seconds(30)));
-    EXPECT_TRUE(window.text("rig.light.text").startsWith("Over all its states ")) << window.text("rig.light.text").toStdString();
+    EXPECT_TRUE(window.text("rig.light.text").startsWith("Over all its states "))
+        << window.text("rig.light.text").toStdString();
     const double often = map->at(middle)->lit;
     EXPECT_GT(often, 0.5) << "the middle of the tablet, under a projector above it";
     EXPECT_GT(colorAt(*map, middle).green(), colorAt(*map, middle).red());
@@ -52,7 +53,8 @@ TEST(LightDock, MapFollowsTheRoomAndTheBestPlaceIsHungByOneStep) {
     window.enter("rig.light.high.y", "150cm");
     window.click("rig.light.search");
     ASSERT_TRUE(eventually([&] { return window.findNow<QPushButton>("rig.light.hang") != nullptr; }, seconds(60)));
-    EXPECT_TRUE(window.text("rig.light.best").startsWith("Best place: ")) << window.text("rig.light.best").toStdString();
+    EXPECT_TRUE(window.text("rig.light.best").startsWith("Best place: "))
+        << window.text("rig.light.best").toStdString();
     window.screenshot("light_dock");
     const int steps = window.studio().document.undoStack().index();
     window.click("rig.light.hang");
