@@ -80,6 +80,9 @@ private:
     void fail(const std::exception& error);
     void tellState();
     void showTried();
+    /// What the chosen tile shows in the view; empty where none is chosen.
+    [[nodiscard]] std::vector<double> triedStrokes() const;
+    void tellTried();
     [[nodiscard]] const ServoType& servo() const {
         return servoTypes()[static_cast<std::size_t>(servo_->currentIndex())];
     }
@@ -141,8 +144,9 @@ RigFit::RigFit(Studio& studio, RigSelection& selection)
     });
     connect(soon_, &Throttle::due, this, &RigFit::follow);
     connect(&selection, &RigSelection::rehearsalChanged, this, [this] {
-        if (selection_.rehearsed().empty()) tiles_->choose(std::nullopt);
-        showTried();
+        // Another dock, or nobody, has the view now.
+        if (selection_.rehearsed() != triedStrokes()) tiles_->choose(std::nullopt);
+        tellTried();
     });
     connect(tiles_, &TargetTiles::chosenChanged, this, &RigFit::showTried);
 }
@@ -465,13 +469,21 @@ void RigFit::tellState() {
                               : "");
 }
 
-void RigFit::showTried() {
+std::vector<double> RigFit::triedStrokes() const {
     const auto chosen = tiles_->chosen();
-    const bool tries = fit_ && chosen && *chosen < fit_->targets.size();
+    return fit_ && chosen && *chosen < fit_->targets.size() ? strokesOf(*fit_, *chosen) : std::vector<double>();
+}
+
+void RigFit::tellTried() {
+    const bool tries = !triedStrokes().empty();
     takeCommand_->setEnabled(tries);
     tried_->setVisible(tries);
-    if (tries) triedText_->setText(targetText(fit_->targets[*chosen]));
-    selection_.rehearse(tries ? strokesOf(*fit_, *chosen) : std::vector<double>());
+    if (tries) triedText_->setText(targetText(fit_->targets[*tiles_->chosen()]));
+}
+
+void RigFit::showTried() {
+    tellTried();
+    selection_.rehearse(triedStrokes());
 }
 
 } // namespace

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include <QObject>
+#include <glm/vec3.hpp>
 
 namespace lumorph::studio {
 
@@ -23,11 +24,10 @@ public:
     void wiggle() { emit wiggleWanted(); }
     /// The joint state that is shown in the view alone, one stroke an actuator; empty: as the device stands.
     [[nodiscard]] const std::vector<double>& rehearsed() const noexcept { return rehearsed_; }
-    void rehearse(std::vector<double> strokes) {
-        if (strokes == rehearsed_) return;
-        rehearsed_ = std::move(strokes);
-        emit rehearsalChanged();
-    }
+    void rehearse(std::vector<double> strokes) { show(std::move(strokes), std::nullopt); }
+    /// The same, with a place of the device (metres) that the view turns to and marks.
+    void inspect(std::vector<double> strokes, const glm::vec3& place) { show(std::move(strokes), place); }
+    [[nodiscard]] const std::optional<glm::vec3>& inspectedPlace() const noexcept { return place_; }
 
 signals:
     void changed();
@@ -35,8 +35,16 @@ signals:
     void rehearsalChanged();
 
 private:
+    void show(std::vector<double> strokes, const std::optional<glm::vec3>& place) {
+        if (strokes == rehearsed_ && place == place_) return;
+        rehearsed_ = std::move(strokes);
+        place_ = place;
+        emit rehearsalChanged();
+    }
+
     std::optional<std::size_t> actuator_;
     std::vector<double> rehearsed_;
+    std::optional<glm::vec3> place_;
 };
 
 } // namespace lumorph::studio

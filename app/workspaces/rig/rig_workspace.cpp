@@ -30,6 +30,8 @@ namespace {
 constexpr int kSettleMilliseconds = 200;
 constexpr int kWiggleMilliseconds = 33;
 constexpr qint64 kRehearseMilliseconds = 500; ///< to get from one shape to another, so that one sees what moves
+constexpr float kShownAround = 0.35F; ///< of the device's longest side, to each side of a place that is looked at
+constexpr float kMarkSize = 0.025F;
 constexpr const char* kRigFolder = "folders/rig";
 
 ViewCamera firstCamera() {
@@ -37,6 +39,15 @@ ViewCamera firstCamera() {
     camera.yaw = Angle::degrees(32.0);
     camera.pitch = Angle::degrees(28.0);
     return camera;
+}
+
+/// An octahedron around a place, which nothing hides.
+void addMark(const glm::vec3& place, float size, const glm::vec3& color, std::vector<ViewportLine>& lines) {
+    const glm::vec3 axes[] = {{size, 0, 0}, {0, size, 0}, {0, 0, size}};
+    for (int k = 0; k < 3; ++k)
+        for (const float side : {-1.0F, 1.0F})
+            for (const float other : {-1.0F, 1.0F})
+                lines.push_back({place + side * axes[k], place + other * axes[(k + 1) % 3], color, 2.5F, true});
 }
 
 } // namespace
@@ -56,6 +67,8 @@ struct RigWorkspace::Data : public QObject {
     void markPart();
     void wiggle();
     void rehearse();
+    /// Looks from where the place lies, seen from the middle of the device, so that nothing but itself is in the way.
+    void turnTo(const glm::vec3& place);
     void frameOnce(const ViewportScene& scene);
     /// The frame as shown: the loop's, or what is rehearsed, with the selected actuator wiggling on top.
     [[nodiscard]] MatchFrame shownFrame(const MatchFrame& frame);
@@ -103,6 +116,7 @@ void RigWorkspace::Data::listen() {
         if (!(parts & StatePart::rig)) return;
         unframed = true;
         selection.select(std::nullopt);
+        selection.rehearse({});
     });
 }
 
@@ -219,7 +233,27 @@ void RigWorkspace::Data::rehearse() {
     rehearsedFrom = shownStrokes;
     rehearsing.start();
     tick.start();
+    if (const auto& place = selection.inspectedPlace()) {
+        wiggling.invalidate(); // the state is looked at as it is
+        turnTo(*place);
+    }
     refresh();
+}
+
+void RigWorkspace::Data::turnTo(const glm::vec3& place) {
+    const auto& rig = studio.document.state().rig.rig;
+    if (!view || !rig) return;
+    const Box& reach = rig->reach();
+    const glm::vec3 size = reach.size();
+    const float side = std::max({size.x, size.y, size.z});
+    const glm::vec3 out = place - reach.centre();
+    ViewCamera camera = view->camera();
+    if (std::hypot(out.x, out.z) > 0.1F * side)
+        camera.yaw = Angle::radians(static_cast<double>(std::atan2(out.x, out.z)));
+    camera.pitch = firstCamera().pitch;
+    const glm::vec3 around(kShownAround * side);
+    const float aspect = static_cast<float>(view->width()) / static_cast<float>(std::max(1, view->height()));
+    view->setCamera(framed(camera, {place - around, place + around}, aspect), true);
 }
 
 MatchFrame RigWorkspace::Data::shownFrame(const MatchFrame& frame) {
@@ -270,6 +304,11 @@ void RigWorkspace::Data::refresh() {
         const auto lines = part->lines(*shown.devicePositions, scene->accent);
         scene->lines.insert(scene->lines.end(), lines.begin(), lines.end());
     }
+    if (const auto& place = selection.inspectedPlace()) {
+        const glm::vec3 size = shown.rig->reach().size();
+        addMark(*place, kMarkSize * std::max({size.x, size.y, size.z}), sceneColor(currentPalette().danger),
+                scene->lines);
+    }
     if (unframed) frameOnce(*scene);
     view->setScene(std::move(scene));
     if (builder.pending()) QTimer::singleShot(kWiggleMilliseconds, this, &Data::refresh);
@@ -315,7 +354,7 @@ std::vector<WorkspaceDock> RigWorkspace::makeDocks() {
              Qt::LeftDockWidgetArea, false},
             {"dock.rig.fit", "What it can be", "target", makeRigFit(studio, data_->selection), Qt::RightDockWidgetArea,
              false},
-            {"dock.rig.report", "Report", "check", makeRigReport(studio), Qt::RightDockWidgetArea, true},
+            {"dock.rig.report", "Report", "check", makeRigReport(studio, data_->selection), Qt::RightDockWidgetArea, true},
             {"dock.rig.suggest", "Suggest", "search", makeRigSuggest(studio), Qt::RightDockWidgetArea, true}};
 }
 
