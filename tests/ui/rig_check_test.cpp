@@ -89,7 +89,7 @@ TEST_F(RigFaults, AClickOnARowShowsTheStateAndChoosesTheActuator) {
     EXPECT_TRUE(window.text("rig.finding.remedy").contains("'left' end at 9.6 degrees"));
     ASSERT_TRUE(eventually([&] { return window.find<ViewportWidget>("rig.viewport")->camera().pivot.x < -0.02F; }));
     EXPECT_FALSE(window.find<ViewportWidget>("rig.viewport")->camera() == before);
-    ASSERT_TRUE(window.settles());
+    ASSERT_TRUE(eventually([&] { return window.find<ViewportWidget>("rig.viewport")->settled(); }));
     window.screenshot("rig_fault_shown");
 
     // The keyboard does the same; then the device is seen as it stands.
@@ -106,12 +106,14 @@ TEST_F(RigFaults, AClickOnARowShowsTheStateAndChoosesTheActuator) {
 
     // What is allowed is the user's to say; with it, and a range that ends before, there is nothing left.
     window.enter("rig.maxSpeed", "1");
-    ASSERT_TRUE(eventually([&] { return window.findNow<QAbstractButton>("rig.finding.1") == nullptr &&
-                                        window.findNow<QAbstractButton>("rig.finding.0") != nullptr; },
-                           seconds(30)));
-    editRig(window.studio().document, "Narrow", [](RigParts& parts) {
-        setRange(parts.actuators[1], 0.0, Angle::degrees(9.5).inRadians());
-    });
+    ASSERT_TRUE(eventually(
+        [&] {
+            return window.findNow<QAbstractButton>("rig.finding.1") == nullptr &&
+                   window.findNow<QAbstractButton>("rig.finding.0") != nullptr;
+        },
+        seconds(30)));
+    editRig(window.studio().document, "Narrow",
+            [](RigParts& parts) { setRange(parts.actuators[1], 0.0, Angle::degrees(9.5).inRadians()); });
     ASSERT_TRUE(eventually([&] { return window.findNow<QLabel>("rig.report.looked") == nullptr; }))
         << "what was found is of another shape";
     ASSERT_TRUE(eventually([&] { return window.state().rig.compiled; }));
