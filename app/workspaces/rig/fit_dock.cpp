@@ -478,7 +478,11 @@ void RigFit::takeBack() {
 
 void RigFit::showTried() {
     const auto chosen = tiles_->chosen();
-    const bool tries = fit_ && chosen && *chosen < fit_->targets.size();
+    return fit_ && chosen && *chosen < fit_->targets.size() ? strokesOf(*fit_, *chosen) : std::vector<double>();
+}
+
+void RigFit::tellTried() {
+    const bool tries = !triedStrokes().empty();
     takeCommand_->setEnabled(tries);
     tried_->setVisible(tries);
     if (tries) triedText_->setText(targetText(fit_->targets[*chosen]));
