@@ -350,12 +350,13 @@ QWidget* RigWorkspace::makeCentralView() {
 
 std::vector<WorkspaceDock> RigWorkspace::makeDocks() {
     Studio& studio = data_->studio;
-    return {{"dock.rig.actuators", "Actuators", "actuator", makeRigActuators(studio, data_->selection),
-             Qt::LeftDockWidgetArea, false},
-            {"dock.rig.fit", "What it can be", "target", makeRigFit(studio, data_->selection), Qt::RightDockWidgetArea,
-             false},
-            {"dock.rig.report", "Report", "check", makeRigReport(studio, data_->selection), Qt::RightDockWidgetArea, true},
-            {"dock.rig.suggest", "Suggest", "search", makeRigSuggest(studio), Qt::RightDockWidgetArea, true}};
+    return {
+        {"dock.rig.actuators", "Actuators", "actuator", makeRigActuators(studio, data_->selection),
+         Qt::LeftDockWidgetArea, false},
+        {"dock.rig.fit", "What it can be", "target", makeRigFit(studio, data_->selection), Qt::RightDockWidgetArea,
+         false},
+        {"dock.rig.report", "Report", "check", makeRigReport(studio, data_->selection), Qt::RightDockWidgetArea, true},
+        {"dock.rig.suggest", "Suggest", "search", makeRigSuggest(studio), Qt::RightDockWidgetArea, true}};
 }
 
 void RigWorkspace::setActive(bool active) {
