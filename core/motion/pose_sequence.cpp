@@ -13,7 +13,8 @@ namespace {
 const NamedPose& poseOf(const PoseSequence& sequence, const PoseStep& step) {
     const auto at = std::ranges::find(sequence.poses, step.pose, &NamedPose::name);
     if (at == sequence.poses.end())
-        throw InvalidInput("pose " + inQuotes(step.pose), "no pose has this name", "add the pose, or take out the step");
+        throw InvalidInput("pose " + inQuotes(step.pose), "no pose has this name",
+                           "add the pose, or take out the step");
     return *at;
 }
 
@@ -127,9 +128,8 @@ PoseSequence withinLimits(PoseSequence sequence, std::span<const double> from, s
         step.travelSeconds = std::max(step.travelSeconds, secondsBetween(before, to, step.easing));
         // The first way of a later round comes from the last pose.
         if (k == 0 && sequence.loop)
-            step.travelSeconds =
-                std::max(step.travelSeconds,
-                         secondsBetween(poseOf(sequence, sequence.steps.back()).strokes, to, step.easing));
+            step.travelSeconds = std::max(
+                step.travelSeconds, secondsBetween(poseOf(sequence, sequence.steps.back()).strokes, to, step.easing));
         before = to;
     }
     return sequence;

@@ -58,8 +58,7 @@ void requirePlayable(const PoseSequence& sequence, std::size_t actuators);
 /// Where the device is to be, `seconds` >= 0 after the beginning: one stroke an actuator. `from` is where it stood at
 /// the beginning: the first way of the first round leads from there. After the end a sequence that is no loop stays in
 /// its last pose. The sequence is playable and `from` has as many strokes.
-[[nodiscard]] std::vector<double> strokesAt(const PoseSequence& sequence, std::span<const double> from,
-                                            double seconds);
+[[nodiscard]] std::vector<double> strokesAt(const PoseSequence& sequence, std::span<const double> from, double seconds);
 
 /// The same sequence, each travel made as long as the actuators' velocity limits need, so that a device that keeps them
 /// is where it is to be: `from` as in strokesAt, for the first. Throws InvalidInput where the counts do not match.

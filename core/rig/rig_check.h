@@ -61,7 +61,8 @@ struct RigCheck {
 /// meet, both to the full, and one beside the other at its end; at all extremes jointly (of up to six actuators, or
 /// as many random ones) and at random joint states. Of each fault it finds where it begins, between the last sound
 /// state looked at and the first bad one, by bisection; of many actuators, the fewest that make it. What is wrong at
-/// rest is found once, without actuators: pieces of the mesh that overlap there do so by design. Throws InvalidInput for limits below zero or not finite; Cancelled.
+/// rest is found once, without actuators: pieces of the mesh that overlap there do so by design. Throws InvalidInput
+/// for limits below zero or not finite; Cancelled.
 [[nodiscard]] RigCheck checkRig(const Rig& rig, const RigCheckOptions& options = {}, const Progress& progress = {});
 
 } // namespace lumorph

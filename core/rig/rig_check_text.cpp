@@ -123,8 +123,9 @@ std::string sentenceOf(const Rig& rig, const RigFinding& finding) {
         return names + " stretch" + (alone ? "es" : " together") + " the surface by up to " + percent(finding.amount) +
                ", more than " + percent(finding.limit) + from + ".";
     case Kind::speed:
-        return names + " moves a point at " + metresASecond(finding.amount) + ", which startles who is near: more than " +
-               metresASecond(finding.limit) + (finding.first[finding.actuators.front()] > 0.0 ? from : "") + ".";
+        return names + " moves a point at " + metresASecond(finding.amount) +
+               ", which startles who is near: more than " + metresASecond(finding.limit) +
+               (finding.first[finding.actuators.front()] > 0.0 ? from : "") + ".";
     }
     return {};
 }
@@ -138,10 +139,9 @@ std::string remedyOf(const Rig& rig, const RigFinding& finding) {
                inModeller + ", and open the rig again.";
     const bool alone = finding.actuators.size() == 1;
     const std::size_t a = finding.actuators.front();
-    const std::string narrow =
-        alone ? "Let the range of " + inQuotes(rig.actuators()[a].name) + " end at " +
-                    standing(rig, a, finding.first[a])
-              : std::string("Narrow the range of one of them");
+    const std::string narrow = alone ? "Let the range of " + inQuotes(rig.actuators()[a].name) + " end at " +
+                                           standing(rig, a, finding.first[a])
+                                     : std::string("Narrow the range of one of them");
     switch (finding.kind) {
     case Kind::open:
         return "Let both sides of the seam follow the same actuators" + inModeller + ". Or: " + narrow + ".";
@@ -154,8 +154,8 @@ std::string remedyOf(const Rig& rig, const RigFinding& finding) {
         return narrow + ", spread the motion over more of the surface, or take a material that gives more.";
     case Kind::speed: {
         const double seconds = finding.amount / finding.limit / rig.actuators()[a].maxVelocity;
-        return finding.limit > 0.0 ? "Let its full stroke take " + number(std::ceil(100.0 * seconds - 0.01) / 100.0, "%.2f") +
-                                         " s or more."
+        return finding.limit > 0.0 ? "Let its full stroke take " +
+                                         number(std::ceil(100.0 * seconds - 0.01) / 100.0, "%.2f") + " s or more."
                                    : "Let it stand still, or allow a speed above zero.";
     }
     }

@@ -135,14 +135,14 @@ Rig checkedRig(RigParts parts, const std::string& file) {
     }
 }
 
-using Kind = ActuatorOffer::Kind;
+using OfferKind = ActuatorOffer::Kind;
 
 /// What moves in a model that states no actuators: usual ones first.
 struct Offers {
     std::vector<ActuatorOffer> offers;
     std::vector<ActuatorEntry> entries; ///< one an offer
 
-    void add(std::vector<ActuatorEntry> more, Kind kind) {
+    void add(std::vector<ActuatorEntry> more, OfferKind kind) {
         for (ActuatorEntry& entry : more) {
             const auto taken = [&](const ActuatorOffer& other) { return other.name == entry.actuator.name; };
             while (std::ranges::any_of(offers, taken)) entry.actuator.name += " (joint)";
@@ -163,10 +163,10 @@ struct Offers {
 
 Offers offersOf(const Model& model, const std::string& file, const JointTable& table) {
     Offers offers;
-    offers.add(morphsOfMeshes(model, file), Kind::morphTarget);
+    offers.add(morphsOfMeshes(model, file), OfferKind::morphTarget);
     const std::vector<ActuatorEntry> animated = jointsOfAnimations(model, file, table);
-    offers.add(animated, Kind::animatedJoint);
-    offers.add(jointsAtRest(model, file, table, animated), Kind::jointAtRest);
+    offers.add(animated, OfferKind::animatedJoint);
+    offers.add(jointsAtRest(model, file, table, animated), OfferKind::jointAtRest);
     return offers;
 }
 
@@ -198,7 +198,7 @@ Rig rigOf(Model model, const std::string& file, const std::optional<std::vector<
 std::vector<std::size_t> usualOffers(std::span<const ActuatorOffer> offers) {
     std::vector<std::size_t> usual;
     for (std::size_t k = 0; k < offers.size(); ++k)
-        if (offers[k].kind != Kind::jointAtRest) usual.push_back(k);
+        if (offers[k].kind != OfferKind::jointAtRest) usual.push_back(k);
     return usual;
 }
 

@@ -30,8 +30,7 @@ glm::vec3 centreOf(const TriangleMesh& mesh, std::uint32_t triangle) {
 
 /// Six times the volume between a triangle and the origin.
 double sixVolumes(const std::vector<glm::vec3>& positions, const glm::uvec3& t) {
-    return glm::dot(glm::dvec3(positions[t.x]),
-                    glm::cross(glm::dvec3(positions[t.y]), glm::dvec3(positions[t.z])));
+    return glm::dot(glm::dvec3(positions[t.x]), glm::cross(glm::dvec3(positions[t.y]), glm::dvec3(positions[t.z])));
 }
 
 double diagonalOf(const Box& box) { return static_cast<double>(glm::length(box.size())); }
@@ -115,8 +114,7 @@ std::vector<StateFault> RestShape::faults() const {
         if (inverted.amount++ == 0.0) inverted.place = centreOf(mesh, t);
     }
     if (inverted.amount > 0.0) faults.push_back(std::move(inverted));
-    if (!crossing_.empty())
-        faults.push_back({Kind::crossing, {}, diagonalOf(crossingBox_), crossingBox_.centre()});
+    if (!crossing_.empty()) faults.push_back({Kind::crossing, {}, diagonalOf(crossingBox_), crossingBox_.centre()});
     return faults;
 }
 

@@ -49,14 +49,14 @@ private:
 
     Rig rig_;
     RigCheckOptions options_;
-    std::vector<Edge> shown_;                                   ///< edges of the surface that looks up at rest
+    std::vector<Edge> shown_;                                    ///< edges of the surface that looks up at rest
     std::vector<std::pair<std::uint32_t, std::uint32_t>> seams_; ///< vertices at one place that hold the mesh closed
     std::vector<std::pair<std::uint32_t, std::uint32_t>> holes_; ///< edges with one triangle
     std::vector<Piece> pieces_;
     std::vector<std::uint32_t> pieceOf_; ///< one a triangle; none for those that belong to no piece
     std::vector<std::size_t> inward_;    ///< pieces that look inwards at rest
     std::vector<bool> flat_;             ///< triangles
-    std::set<std::pair<std::uint32_t, std::uint32_t>> crossing_; ///< pairs of triangles, the lower number first
+    std::set<std::pair<std::uint32_t, std::uint32_t>> crossing_;    ///< pairs of triangles, the lower number first
     std::set<std::pair<std::uint32_t, std::uint32_t>> overlapping_; ///< pairs of pieces
     Box crossingBox_;
 };
@@ -87,8 +87,8 @@ private:
     const RestShape* rest_;
     std::vector<std::uint32_t> vertices_;
     Rig::Subset subset_;
-    std::vector<glm::vec3> moved_; ///< one a listed vertex
-    TriangleMesh mesh_;            ///< as it stands now
+    std::vector<glm::vec3> moved_;         ///< one a listed vertex
+    TriangleMesh mesh_;                    ///< as it stands now
     std::vector<std::uint32_t> triangles_; ///< with a vertex that moves
     std::vector<std::uint32_t> near_;      ///< others that those can reach
     std::vector<std::size_t> edges_;       ///< of RestShape::shown_

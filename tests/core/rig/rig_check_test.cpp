@@ -50,7 +50,8 @@ Rig growingBox(const glm::vec3& direction, double length, double maxVelocity = 0
     actuator.deformer = Slide{direction, 0.0, length};
     actuator.maxVelocity = maxVelocity;
     for (std::uint32_t v = 0; v < parts.restMesh.positions.size(); ++v)
-        if (glm::dot(parts.restMesh.positions[v], glm::abs(direction)) > 0.05F) actuator.influences.push_back({v, 1.0F});
+        if (glm::dot(parts.restMesh.positions[v], glm::abs(direction)) > 0.05F)
+            actuator.influences.push_back({v, 1.0F});
     parts.actuators.push_back(std::move(actuator));
     return Rig(std::move(parts));
 }
@@ -130,7 +131,8 @@ TEST(RigCheck, FindsAFlapThatTurnsIntoTheBody) {
     EXPECT_TRUE(crossesAt(rig, found.first, 1e-4));
     EXPECT_NEAR(found.place.y, 0.03F, 0.01F) << "at the body's top";
     EXPECT_EQ(found.worst[0], 1.0) << "the deeper the longer where they meet";
-    EXPECT_THAT(found.sentence, HasSubstr("'lid' runs into a part that stands still, from 9.6 degrees on (level 11 of"));
+    EXPECT_THAT(found.sentence,
+                HasSubstr("'lid' runs into a part that stands still, from 9.6 degrees on (level 11 of"));
     EXPECT_THAT(found.remedy, HasSubstr("'lid' end at 9.6 degrees"));
 }
 
