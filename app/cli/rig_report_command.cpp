@@ -110,6 +110,7 @@ nlohmann::json loadsJson(const ShapeResolution& device) {
     nlohmann::json loads = nlohmann::json::array();
     for (const ServoLoad& load : device.loads)
         loads.push_back({{"actuator", load.actuator},
+                         {"servo", load.servo->name},
                          {"lever", load.lever},
                          {"torqueNeeded", load.torque},
                          {"force", load.force},

@@ -30,6 +30,7 @@ struct ActuatorDrive {
     int channel = -1;
     double pulseMin = 1000.0; ///< microseconds at rest
     double pulseMax = 2000.0; ///< microseconds at full stroke
+    std::string servo{};      ///< its kind, by the name in the table of `servo_types`; empty: not said
     bool operator==(const ActuatorDrive&) const = default;
 };
 

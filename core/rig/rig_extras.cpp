@@ -244,6 +244,8 @@ ActuatorEntry readActuatorEntry(const json& extras, const EntryPlace& place, con
         actuator.drive.pulseMin = pulse[0];
         actuator.drive.pulseMax = pulse[1];
     }
+    // One that this version's table lacks is kept all the same.
+    if (named.has("servo")) actuator.drive.servo = named.text("servo", "name the kind of servo, for example SG90");
     return entry;
 }
 
@@ -254,6 +256,7 @@ json actuatorExtras(const Actuator& actuator, std::size_t order) {
     out["maxVelocity"] = tidyVelocity(actuator.maxVelocity, range);
     out["channel"] = actuator.drive.channel;
     out["pulse"] = {actuator.drive.pulseMin, actuator.drive.pulseMax};
+    if (!actuator.drive.servo.empty()) out["servo"] = actuator.drive.servo;
     return out;
 }
 

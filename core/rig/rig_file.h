@@ -18,17 +18,17 @@ namespace lumorph {
 /// the node's frame), `length` (metres), `range` (two numbers: degrees for hinge, bend and a
 /// turning joint, metres for slide and a moving joint, weights for morph), `motion` ("rotate" | "translate",
 /// joint), `target` (morph target's name), `levels`, `maxVelocity` (degrees, metres or weight a
-/// second), `damping` (1 or more), `channel`, `pulse` (two numbers, microseconds), `order`. A node with
-/// several actuators holds a list of such objects. The object or list may also be a text in JSON. A morph actuator with
-/// several keys has the lists `targets` and `keys` (strokes). The model as drawn is the shape at the lower end of every
-/// range; only of morph targets is the lower end worked out from the weights. Actuators stand in the order of `order`;
-/// without it in that of the nodes, an inner one before those around it, so that a flap on a flap turns in the frame in
-/// which it was drawn. Which vertices an actuator moves: those of the vertex attributes `_ACTUATORS_0`, `_1`, ... (up
-/// to four actuator indices a vertex each; -1 for none) and `_INFLUENCES_0`, ... (their weights) where present; else
-/// all vertices of the node's own mesh and of its descendants. A morph target moves what it displaces. Vertices of one
-/// mesh that agree in place and in all that moves them become one, so that a solid whose corners were split for normals
-/// closes again, unless the scene's `extras.lumorph.uniqueVertices` is true. `extras.lumorph.pathInside` there states
-/// that the solid holds its own path; `extras.lumorph.drawing` is a text, what the rig was drawn as
+/// second), `damping` (1 or more), `channel`, `pulse` (two numbers, microseconds), `servo` (its kind), `order`. A node
+/// with several actuators holds a list of such objects. The object or list may also be a text in JSON. A morph actuator
+/// with several keys has the lists `targets` and `keys` (strokes). The model as drawn is the shape at the lower end of
+/// every range; only of morph targets is the lower end worked out from the weights. Actuators stand in the order of
+/// `order`; without it in that of the nodes, an inner one before those around it, so that a flap on a flap turns in the
+/// frame in which it was drawn. Which vertices an actuator moves: those of the vertex attributes `_ACTUATORS_0`, `_1`,
+/// ... (up to four actuator indices a vertex each; -1 for none) and `_INFLUENCES_0`, ... (their weights) where present;
+/// else all vertices of the node's own mesh and of its descendants. A morph target moves what it displaces. Vertices of
+/// one mesh that agree in place and in all that moves them become one, so that a solid whose corners were split for
+/// normals closes again, unless the scene's `extras.lumorph.uniqueVertices` is true. `extras.lumorph.pathInside` there
+/// states that the solid holds its own path; `extras.lumorph.drawing` is a text, what the rig was drawn as
 /// (`RigParts::drawing`), which is carried along and not looked at.
 ///
 /// A folder holds `rest.obj` and `ACTUATOR_KEY.obj` (any mesh format; KEY 1, 2, ... evenly spaced

@@ -90,9 +90,13 @@ bool sameName(std::string_view a, std::string_view b) {
 
 std::span<const ServoType> servoTypes() { return kServoTypes; }
 
+const ServoType* findServo(std::string_view name) {
+    const auto found = std::ranges::find_if(kServoTypes, [&](const ServoType& t) { return sameName(t.name, name); });
+    return found == kServoTypes.end() ? nullptr : &*found;
+}
+
 const ServoType& servoType(std::string_view name) {
-    for (const ServoType& type : kServoTypes)
-        if (sameName(type.name, name)) return type;
+    if (const ServoType* found = findServo(name)) return *found;
     std::string names;
     for (const ServoType& type : kServoTypes) names += (names.empty() ? "" : ", ") + std::string(type.name);
     throw InvalidInput(inQuotes(name), "there is no such servo in the table", "choose one of " + names);

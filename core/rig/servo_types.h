@@ -29,7 +29,9 @@ struct ServoType {
 
 /// Common ones, the weakest first.
 [[nodiscard]] std::span<const ServoType> servoTypes();
-/// By its name in any case. Throws InvalidInput naming those there are.
+/// By its name in any case; none where the table has no such.
+[[nodiscard]] const ServoType* findServo(std::string_view name);
+/// The same. Throws InvalidInput naming those there are.
 [[nodiscard]] const ServoType& servoType(std::string_view name);
 /// The cheapest one whose usable torque (newton metres) is at least so large; none where all are too weak.
 [[nodiscard]] const ServoType* cheapestServo(double torque);

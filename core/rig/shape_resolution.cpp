@@ -122,12 +122,74 @@ SectionReading readSection(const std::vector<glm::dvec3>& points, const glm::dve
     return reading;
 }
 
+double topAreaOf(const TriangleMesh& mesh, const glm::uvec3& t) {
+    const glm::dvec3 a(mesh.positions[t.x]);
+    return 0.5 * glm::length(glm::cross(glm::dvec3(mesh.positions[t.y]) - a, glm::dvec3(mesh.positions[t.z]) - a));
+}
+
+/// What of the top hangs on each vertex, kilograms.
+std::vector<double> topMasses(const TriangleMesh& mesh, double arealDensity) {
+    std::vector<double> masses(mesh.positions.size(), 0.0);
+    for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
+        if (!facesUp(mesh, t)) continue;
+        const double third = arealDensity * topAreaOf(mesh, mesh.triangles[t]) / 3.0;
+        for (int k = 0; k < 3; ++k) masses[mesh.triangles[t][k]] += third;
+    }
+    return masses;
+}
+
+/// What an actuator alone does where it is fastest and where it lifts most.
+struct StrokeWork {
+    double way = 0.0;  ///< metres a stroke of the fastest point
+    double lift = 0.0; ///< joules a stroke against weight
+};
+
+StrokeWork workOf(const Rig& rig, std::size_t index, const std::vector<double>& masses) {
+    StrokeWork most;
+    const auto vertices = rig.verticesOf(index);
+    const Rig::Subset subset = rig.subset(vertices);
+    std::vector<double> strokes(rig.actuatorCount(), 0.0);
+    std::vector<glm::vec3> before(vertices.size());
+    std::vector<glm::vec3> now(vertices.size());
+    subset.deform(strokes, before);
+    for (int step = 1; step <= kStrokeSteps; ++step) {
+        strokes[index] = static_cast<double>(step) / kStrokeSteps;
+        subset.deform(strokes, now);
+        double work = 0.0;
+        for (std::size_t v = 0; v < now.size(); ++v) {
+            most.way = std::max(most.way, kStrokeSteps * static_cast<double>(glm::distance(now[v], before[v])));
+            work += masses[vertices[v]] * kGravity * static_cast<double>(now[v].y - before[v].y);
+        }
+        most.lift = std::max(most.lift, kStrokeSteps * work);
+        before.swap(now);
+    }
+    return most;
+}
+
+/// Its own, as far as the rig names it and the table has it.
+const ServoType& servoOf(const Actuator& actuator, const ServoType* otherwise) {
+    if (const ServoType* own = findServo(actuator.drive.servo)) return *own;
+    return otherwise != nullptr ? *otherwise : servoTypes().front();
+}
+
+ServoLoad loadOf(const Actuator& actuator, const StrokeWork& work, const ServoType& servo, const DeviceLoad& device) {
+    const double angle = servoAngle(actuator, servo).inRadians();
+    ServoLoad load;
+    load.actuator = actuator.name;
+    load.servo = &servo;
+    load.lever = work.way / angle;
+    load.torque = work.lift / angle + device.push * load.lever;
+    load.force = load.lever > 0.0 ? servo.stallTorque / load.lever : 0.0;
+    load.weak = load.torque > servo.usableTorque();
+    if (const ServoType* stronger = cheapestServo(load.torque)) load.stronger = stronger->name;
+    return load;
+}
+
 class ResolutionMeter {
 public:
     ResolutionMeter(const Rig& rig, const ShapeResolutionOptions& options, const Progress& progress)
-        : rig_(rig), options_(options), progress_(progress),
-          servo_(options.servo != nullptr ? *options.servo : servoTypes().front()), mesh_(rig.restMesh()),
-          outer_(rig.reach(), 2 * kSectionPoints), masses_(mesh_.positions.size(), 0.0) {
+        : rig_(rig), options_(options), progress_(progress), mesh_(rig.restMesh()),
+          outer_(rig.reach(), 2 * kSectionPoints), masses_(topMasses(mesh_, options.load.arealDensity)) {
         findTop();
     }
 
@@ -166,68 +228,23 @@ private:
         }
         topBox_ = box;
         for (const glm::uvec3& t : top_) {
-            const glm::dvec3 a(mesh_.positions[t.x]);
-            const double area = 0.5 * glm::length(glm::cross(glm::dvec3(mesh_.positions[t.y]) - a,
-                                                             glm::dvec3(mesh_.positions[t.z]) - a));
+            const double area = topAreaOf(mesh_, t);
             int moved = 0;
-            for (int k = 0; k < 3; ++k) {
-                masses_[t[k]] += options_.load.arealDensity * area / 3.0;
-                moved += rig_.actuatorsOf(t[k]).empty() ? 0 : 1;
-            }
+            for (int k = 0; k < 3; ++k) moved += rig_.actuatorsOf(t[k]).empty() ? 0 : 1;
             topArea_ += area;
             movedArea_ += area * moved / 3.0;
         }
     }
 
-    /// The angle that the servo turns for the full stroke: that of what turns, else what its pulses turn it.
-    [[nodiscard]] double servoAngle(const Actuator& actuator) const {
-        double angle = 0.0;
-        if (const auto* hinge = std::get_if<Hinge>(&actuator.deformer))
-            angle = hinge->max.inRadians() - hinge->min.inRadians();
-        else if (const auto* bend = std::get_if<Bend>(&actuator.deformer))
-            angle = bend->max.inRadians() - bend->min.inRadians();
-        else if (const auto* joint = std::get_if<SkinJoint>(&actuator.deformer);
-                 joint != nullptr && joint->motion == SkinJoint::Motion::rotate)
-            angle = joint->max - joint->min;
-        else
-            angle = servo_.travel.inRadians() * (actuator.drive.pulseMax - actuator.drive.pulseMin) /
-                    (servo_.pulseMax - servo_.pulseMin);
-        return std::max(std::abs(angle), 1e-3);
-    }
-
     /// Lever and weight of one actuator, and what it does to amplitude, curvature, strength and speed.
     void moveAlone(std::size_t index) {
         const Actuator& actuator = rig_.actuators()[index];
-        const auto vertices = rig_.verticesOf(index);
-        const Rig::Subset subset = rig_.subset(vertices);
-        std::vector<double> strokes(rig_.actuatorCount(), 0.0);
-        std::vector<glm::vec3> before(vertices.size());
-        std::vector<glm::vec3> now(vertices.size());
-        subset.deform(strokes, before);
-        double way = 0.0;  // metres a stroke of the fastest point
-        double lift = 0.0; // joules a stroke against weight
-        for (int step = 1; step <= kStrokeSteps; ++step) {
-            strokes[index] = static_cast<double>(step) / kStrokeSteps;
-            subset.deform(strokes, now);
-            double work = 0.0;
-            for (std::size_t v = 0; v < now.size(); ++v) {
-                way = std::max(way, kStrokeSteps * static_cast<double>(glm::distance(now[v], before[v])));
-                work += masses_[vertices[v]] * kGravity * static_cast<double>(now[v].y - before[v].y);
-            }
-            lift = std::max(lift, kStrokeSteps * work);
-            before.swap(now);
-        }
+        const StrokeWork work = workOf(rig_, index, masses_);
         amplitude_ = std::max(amplitude_, amplitudeOf(rig_, index));
-        const double angle = servoAngle(actuator);
-        ServoLoad load;
-        load.actuator = actuator.name;
-        load.lever = way / angle;
-        load.torque = lift / angle + options_.load.push * load.lever;
-        load.force = load.lever > 0.0 ? servo_.stallTorque / load.lever : 0.0;
-        load.weak = load.torque > servo_.usableTorque();
-        if (const ServoType* stronger = cheapestServo(load.torque)) load.stronger = stronger->name;
+        const ServoLoad load = loadOf(actuator, work, servoOf(actuator, options_.servo), options_.load);
+        const double angle = servoAngle(actuator, *load.servo).inRadians();
         if (load.lever > 0.0) force_ = force_ > 0.0 ? std::min(force_, load.force) : load.force;
-        speed_ = std::max(speed_, way * std::min(actuator.maxVelocity, servo_.speed / angle));
+        speed_ = std::max(speed_, work.way * std::min(actuator.maxVelocity, load.servo->speed / angle));
         if (const auto* bend = std::get_if<Bend>(&actuator.deformer))
             bendCurvature_ = std::max(bendCurvature_, angle / bend->length);
         else
@@ -385,8 +402,8 @@ private:
         if (!load.weak) return;
         char numbers[128];
         std::snprintf(numbers, sizeof numbers, "needs %.3f N m with a lever of %.0f mm, more than the %.3f N m",
-                      load.torque, 1e3 * load.lever, servo_.usableTorque());
-        out_.warnings.push_back("The " + std::string(servo_.name) + " is too weak for " + inQuotes(load.actuator) +
+                      load.torque, 1e3 * load.lever, load.servo->usableTorque());
+        out_.warnings.push_back("The " + std::string(load.servo->name) + " is too weak for " + inQuotes(load.actuator) +
                                 ": it " + numbers + " it can hold; " +
                                 (load.stronger.empty() ? "no servo in the table does, shorten the lever."
                                                        : "a " + std::string(load.stronger) + " does."));
@@ -395,7 +412,6 @@ private:
     const Rig& rig_;
     const ShapeResolutionOptions& options_;
     const Progress& progress_;
-    const ServoType& servo_;
     const TriangleMesh& mesh_;
     PlaneGrid outer_;
     std::vector<double> masses_; ///< of the top, one a vertex, kilograms
@@ -424,6 +440,27 @@ void requirePositive(double value, bool orZero, const char* what) {
 }
 
 } // namespace
+
+Angle servoAngle(const Actuator& actuator, const ServoType& servo) {
+    double angle = 0.0;
+    if (const auto* hinge = std::get_if<Hinge>(&actuator.deformer))
+        angle = hinge->max.inRadians() - hinge->min.inRadians();
+    else if (const auto* bend = std::get_if<Bend>(&actuator.deformer))
+        angle = bend->max.inRadians() - bend->min.inRadians();
+    else if (const auto* joint = std::get_if<SkinJoint>(&actuator.deformer);
+             joint != nullptr && joint->motion == SkinJoint::Motion::rotate)
+        angle = joint->max - joint->min;
+    else
+        angle = servo.travel.inRadians() * (actuator.drive.pulseMax - actuator.drive.pulseMin) /
+                (servo.pulseMax - servo.pulseMin);
+    return Angle::radians(std::max(std::abs(angle), 1e-3));
+}
+
+ServoLoad servoLoad(const Rig& rig, std::size_t actuator, const ServoType* servo, const DeviceLoad& load) {
+    const Actuator& one = rig.actuators()[actuator];
+    const std::vector<double> masses = topMasses(rig.restMesh(), load.arealDensity);
+    return loadOf(one, workOf(rig, actuator, masses), servoOf(one, servo), load);
+}
 
 ShapeResolution shapeResolution(const Rig& rig, const ShapeResolutionOptions& options, const Progress& progress) {
     requirePositive(options.light.pixelPitch, false, "the light's pixel pitch");

@@ -41,19 +41,27 @@ struct ShapeMetric {
 /// What one actuator's servo has to do.
 struct ServoLoad {
     std::string actuator;
-    double lever = 0.0;        ///< metres that its farthest point moves for a radian of the servo, at most
-    double torque = 0.0;       ///< newton metres needed against weight and push, where it is hardest
-    double force = 0.0;        ///< newtons that its servo brings to that point when it stalls
-    bool weak = false;         ///< needs more than the servo's usable torque
-    std::string_view stronger; ///< the cheapest servo that is strong enough; empty: none in the table
+    const ServoType* servo = nullptr; ///< the one it is judged for, of the table
+    double lever = 0.0;               ///< metres that its farthest point moves for a radian of the servo, at most
+    double torque = 0.0;              ///< newton metres needed against weight and push, where it is hardest
+    double force = 0.0;               ///< newtons that its servo brings to that point when it stalls
+    bool weak = false;                ///< needs more than the servo's usable torque
+    std::string_view stronger;        ///< the cheapest servo that is strong enough; empty: none in the table
 };
 
 struct ShapeResolutionOptions {
     DeviceLight light;
     DeviceLoad load;
-    const ServoType* servo = nullptr; ///< none: the SG90
+    const ServoType* servo = nullptr; ///< of actuators whose own the rig does not name; none: the SG90
     std::uint64_t seed = 1;           ///< which joint states, where there are too many for all
 };
+
+/// The angle that a servo turns for an actuator's full stroke: that of what turns, else what its pulses turn it.
+[[nodiscard]] Angle servoAngle(const Actuator& actuator, const ServoType& servo);
+/// What the servo of one actuator has to do: its own where the rig names one of the table, else `servo` (none: the
+/// SG90).
+[[nodiscard]] ServoLoad servoLoad(const Rig& rig, std::size_t actuator, const ServoType* servo = nullptr,
+                                  const DeviceLoad& load = {});
 
 /// Shape resolution after A. Roudaut, A. Karnik, M. Löchtefeld, S. Subramanian, "Morphees: toward high 'shape
 /// resolution' in self-actuated flexible mobile devices", CHI 2013: ten features, of which light adds to some.

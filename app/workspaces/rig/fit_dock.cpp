@@ -478,20 +478,13 @@ void RigFit::takeBack() {
 
 void RigFit::showTried() {
     const auto chosen = tiles_->chosen();
-    return fit_ && chosen && *chosen < fit_->targets.size() ? strokesOf(*fit_, *chosen) : std::vector<double>();
-}
-
-void RigFit::tellTried() {
-    const bool tries = !triedStrokes().empty();
+    const bool tries = fit_ && chosen && *chosen < fit_->targets.size();
     takeCommand_->setEnabled(tries);
     tried_->setVisible(tries);
-    if (tries) triedText_->setText(targetText(fit_->targets[*chosen]));
-    if (tries) {
-        asked_ = strokesOf(*fit_, *chosen);
-        selection_.rehearse(asked_);
-    } else {
-        takeBack();
-    }
+    if (!tries) return takeBack();
+    triedText_->setText(targetText(fit_->targets[*chosen]));
+    asked_ = strokesOf(*fit_, *chosen);
+    selection_.rehearse(asked_);
 }
 
 } // namespace

@@ -122,6 +122,21 @@ Model importedCube() {
 
 Rig rigOf(const Model& model) { return readRigGlb(writeGlb(model), "model.glb"); }
 
+TEST(RigFile, KeepsTheKindOfServoAndOneThatTheTableLacks) {
+    for (const char* servo : {"MG92B", "a servo of tomorrow", ""}) {
+        RigParts parts = tabletRig().parts();
+        parts.actuators[1].drive.servo = servo;
+        const auto bytes = writeRigGlb(Rig(parts));
+        const Rig read = readRigGlb(bytes, "test");
+        EXPECT_EQ(read.actuators()[1].drive, parts.actuators[1].drive);
+        EXPECT_EQ(read.actuators()[0].drive.servo, "");
+        EXPECT_EQ(writeRigGlb(read), bytes);
+    }
+    Model model = importedCube();
+    model.nodes[0].extras["lumorph"]["servo"] = 90;
+    EXPECT_THROW((void)rigOf(model), DataError);
+}
+
 // Where a file does not say, the whole range takes a second, whatever its unit and wherever it begins.
 TEST(RigFile, WithoutAVelocityTheWholeRangeTakesASecond) {
     struct Case {

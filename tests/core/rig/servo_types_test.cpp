@@ -13,6 +13,8 @@ TEST(ServoTypes, AreFoundByNameInAnyCase) {
     EXPECT_EQ(servoType("sg90").name, "SG90");
     EXPECT_EQ(servoType("hs-422").name, "HS-422");
     EXPECT_THROW((void)servoType("AX-12"), InvalidInput);
+    EXPECT_EQ(findServo("mg996r"), &servoType("MG996R"));
+    EXPECT_EQ(findServo("AX-12"), nullptr);
 }
 
 TEST(ServoTypes, AreInSiUnits) {

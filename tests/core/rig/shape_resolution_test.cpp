@@ -59,6 +59,28 @@ TEST(ShapeResolution, OfASlideFollowsFromItsMeasures) {
     EXPECT_THAT(resolution.warnings[0], HasSubstr("too weak for 'actuator 0'"));
 }
 
+TEST(ShapeResolution, JudgesAnActuatorByItsOwnServo) {
+    RigParts parts = liftedBox().parts();
+    parts.actuators[0].drive.servo = "DS3218";
+    const ShapeResolution resolution = shapeResolution(Rig(parts));
+    ASSERT_EQ(resolution.loads.size(), 1U);
+    const ServoLoad& load = resolution.loads[0];
+    EXPECT_EQ(load.servo, &servoType("DS3218"));
+    EXPECT_FALSE(load.weak);
+    // 1000 of its 2000 us turn it by 90 degrees.
+    const double lever = 0.5 / (0.5 * std::numbers::pi);
+    EXPECT_NEAR(load.torque, (0.5 + 2.4 * 0.02 * 9.80665) * lever, 1e-5);
+    EXPECT_TRUE(resolution.warnings.empty());
+    EXPECT_NEAR(servoAngle(parts.actuators[0], *load.servo).inDegrees(), 90.0, 1e-9);
+
+    const ServoLoad alone = servoLoad(Rig(parts), 0, &servoType("SG90"));
+    EXPECT_EQ(alone.servo, load.servo) << "its own comes first";
+    EXPECT_EQ(alone.torque, load.torque);
+    parts.actuators[0].drive.servo.clear();
+    EXPECT_EQ(servoLoad(Rig(parts), 0).servo, &servoType("SG90"));
+    EXPECT_TRUE(servoLoad(Rig(parts), 0).weak);
+}
+
 TEST(ShapeResolution, OfLightFollowsFromItsPixels) {
     ShapeResolutionOptions options;
     options.light = {0.001, 60.0, Angle::degrees(60.0)};
