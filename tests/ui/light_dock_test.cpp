@@ -10,7 +10,6 @@
 namespace lumorph::studio {
 namespace {
 
-using std::chrono::seconds;
 using test::eventually;
 
 QColor colorAt(LightMapView& map, const QPointF& point) {
@@ -27,7 +26,7 @@ TEST(LightDock, MapFollowsTheRoomAndTheBestPlaceIsHungByOneStep) {
     auto* map = window.find<LightMapView>("rig.light.map");
     ASSERT_TRUE(map);
     const QPointF middle(0.5 * map->width(), 0.4 * map->height());
-    ASSERT_TRUE(eventually([&] { return map->at(middle) != nullptr; }, seconds(30)));
+    ASSERT_TRUE(eventually([&] { return map->at(middle) != nullptr; }, std::chrono::seconds(30)));
     EXPECT_TRUE(window.text("rig.light.text").startsWith("Over all its states "))
         << window.text("rig.light.text").toStdString();
     const double often = map->at(middle)->lit;
@@ -40,11 +39,11 @@ TEST(LightDock, MapFollowsTheRoomAndTheBestPlaceIsHungByOneStep) {
     for (InstalledProjector& projector : dark->projectors) projector.enabled = false;
     const auto before = window.state().installation;
     window.studio().document.setInstallation(dark);
-    ASSERT_TRUE(
-        eventually([&] { return window.text("rig.light.text") == "No light reaches the device."; }, seconds(30)));
+    ASSERT_TRUE(eventually([&] { return window.text("rig.light.text") == "No light reaches the device."; },
+                           std::chrono::seconds(30)));
     EXPECT_LT(colorAt(*map, middle).green(), colorAt(*map, middle).red());
     window.studio().document.setInstallation(before);
-    ASSERT_TRUE(eventually([&] { return map->at(middle) && map->at(middle)->lit == often; }, seconds(30)));
+    ASSERT_TRUE(eventually([&] { return map->at(middle) && map->at(middle)->lit == often; }, std::chrono::seconds(30)));
 
     window.enter("rig.light.throwLeast", "1.3");
     window.enter("rig.light.throwMost", "2.1");
@@ -52,7 +51,8 @@ TEST(LightDock, MapFollowsTheRoomAndTheBestPlaceIsHungByOneStep) {
     window.enter("rig.light.low.y", "100cm");
     window.enter("rig.light.high.y", "150cm");
     window.click("rig.light.search");
-    ASSERT_TRUE(eventually([&] { return window.findNow<QPushButton>("rig.light.hang") != nullptr; }, seconds(60)));
+    ASSERT_TRUE(
+        eventually([&] { return window.findNow<QPushButton>("rig.light.hang") != nullptr; }, std::chrono::seconds(60)));
     EXPECT_TRUE(window.text("rig.light.best").startsWith("Best place: "))
         << window.text("rig.light.best").toStdString();
     window.screenshot("light_dock");
@@ -75,7 +75,7 @@ TEST(LightDock, MapFollowsTheRoomAndTheBestPlaceIsHungByOneStep) {
     window.studio().document.setInstallation(measured);
     ASSERT_TRUE(eventually(
         [&] { return !window.find<QPushButton>("rig.light.hang")->isEnabled() && map->at(middle) != nullptr; },
-        seconds(30)));
+        std::chrono::seconds(30)));
 }
 
 } // namespace

@@ -14,7 +14,6 @@
 namespace lumorph::studio {
 namespace {
 
-using std::chrono::seconds;
 using test::eventually;
 
 /// A body and two flaps on it: "left" may turn down into the body, "right" is sound but goes fast.
@@ -44,7 +43,8 @@ std::shared_ptr<const Rig> faultyRig() {
 struct RigFaults : testing::Test {
     void check() {
         window.command("Check the rig");
-        ASSERT_TRUE(eventually([&] { return window.findNow<QLabel>("rig.report.looked") != nullptr; }, seconds(60)));
+        ASSERT_TRUE(eventually([&] { return window.findNow<QLabel>("rig.report.looked") != nullptr; },
+                               std::chrono::seconds(60)));
     }
     [[nodiscard]] std::vector<glm::vec3> seen() {
         const auto& scene = window.find<ViewportWidget>("rig.viewport")->scene();
@@ -111,7 +111,7 @@ TEST_F(RigFaults, AClickOnARowShowsTheStateAndChoosesTheActuator) {
             return window.findNow<QAbstractButton>("rig.finding.1") == nullptr &&
                    window.findNow<QAbstractButton>("rig.finding.0") != nullptr;
         },
-        seconds(30)));
+        std::chrono::seconds(30)));
     editRig(window.studio().document, "Narrow",
             [](RigParts& parts) { setRange(parts.actuators[1], 0.0, Angle::degrees(9.5).inRadians()); });
     ASSERT_TRUE(eventually([&] { return window.findNow<QLabel>("rig.report.looked") == nullptr; }))
