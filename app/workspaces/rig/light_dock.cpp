@@ -117,6 +117,7 @@ RigLight::RigLight(Studio& studio) : studio_(studio), slots_(*this, studio.jobs,
     shown_->addItems({"Pixels a millimetre", "Slant of the light", "How often it is lit"});
     shown_->setToolTip("In the worst state in which a place is lit");
     whose_->setObjectName("rig.light.whose");
+    whose_->setAccessibleName("Whose light the map shows");
     whose_->addItems({"As projectors hang now", "From the best place"});
     column.layout->addWidget(text_);
     column.layout->addWidget(makeRow("Ma&p of", shown_));
@@ -175,6 +176,16 @@ QWidget* RigLight::makeForm() {
         const double least = k == 1 ? 0.05 : -kFarthest;
         low_[k] = addNumber(QString("low.") + kAxes[k], Quantity::length, least, kFarthest, kLow[k]);
         high_[k] = addNumber(QString("high.") + kAxes[k], Quantity::length, least, kFarthest, kHigh[k]);
+    }
+    size_[0]->setAccessibleName("Pixels across");
+    size_[1]->setAccessibleName("Pixels down");
+    throw_[0]->setAccessibleName("Least throw ratio");
+    throw_[1]->setAccessibleName("Largest throw ratio");
+    constexpr std::array<const char*, 3> kFirst{"Farthest left", "Lowest above the table", "Farthest back"};
+    constexpr std::array<const char*, 3> kLast{"Farthest right", "Highest above the table", "Farthest to the front"};
+    for (std::size_t k = 0; k < 3; ++k) {
+        low_[k]->setAccessibleName(kFirst[k]);
+        high_[k]->setAccessibleName(kLast[k]);
     }
     layout->addWidget(makeRow("Pi&xels", makePair(size_[0], size_[1], "\u00D7")));
     layout->addWidget(makeRow("&Throw ratio", makePair(throw_[0], throw_[1])));
