@@ -87,7 +87,9 @@ TEST_F(RigFaults, AClickOnARowShowsTheStateAndChoosesTheActuator) {
     EXPECT_EQ(window.find<QListWidget>("rig.list")->currentRow(), 1);
     EXPECT_EQ(window.state().strokes, strokes) << "in the view alone";
     EXPECT_TRUE(window.text("rig.finding.remedy").contains("'left' end at 9.6 degrees"));
-    ASSERT_TRUE(eventually([&] { return window.find<ViewportWidget>("rig.viewport")->camera().pivot.x < -0.02F; }));
+    ASSERT_TRUE(eventually([&] { return window.find<ViewportWidget>("rig.viewport")->camera().pivot.x < -0.02F; }))
+        << "it looks at " << window.find<ViewportWidget>("rig.viewport")->camera().pivot.x << ", before at "
+        << before.pivot.x;
     EXPECT_FALSE(window.find<ViewportWidget>("rig.viewport")->camera() == before);
     test::pass(std::chrono::milliseconds(800)); // the view turns and glides
     window.screenshot("rig_fault_shown");

@@ -327,6 +327,7 @@ void RigWorkspace::Data::followHandles() {
 void RigWorkspace::Data::turnTo(const glm::vec3& place) {
     const auto& rig = studio.document.state().rig.rig;
     if (!view || !rig) return;
+    unframed = false; // now the place says where one looks
     const Box& reach = rig->reach();
     const glm::vec3 size = reach.size();
     const float side = std::max({size.x, size.y, size.z});
