@@ -163,8 +163,7 @@ LitDevice::LitDevice(const Rig& rig, const glm::mat4& worldFromDevice, int rando
     for (std::size_t s = 0; s < states.size(); ++s) {
         progress.throwIfCancelled();
         progress.report(static_cast<double>(s) / static_cast<double>(states.size()), "preparing states");
-        TriangleMesh mesh{std::vector<glm::vec3>(rig.restMesh().positions.size()), rig.restMesh().triangles};
-        rig.deform(states[s], mesh.positions);
+        TriangleMesh mesh = deformed(rig, states[s]);
         for (glm::vec3& point : mesh.positions) point = glm::vec3(worldFromDevice * glm::vec4(point, 1.0F));
         const Box box = boundingBox(mesh.positions);
         data_->box = s == 0 ? box : Box{glm::min(data_->box.min, box.min), glm::max(data_->box.max, box.max)};

@@ -27,12 +27,6 @@ Rig stepRig() {
     return Rig(std::move(parts));
 }
 
-std::vector<glm::vec3> deformed(const Rig& rig, double stroke) {
-    std::vector<glm::vec3> positions(rig.restMesh().positions.size());
-    rig.deform(std::vector<double>(rig.actuatorCount(), stroke), positions);
-    return positions;
-}
-
 /// Every triangle, one after the other (Moeller and Trumbore).
 bool isBlocked(const std::vector<glm::vec3>& positions, const std::vector<glm::uvec3>& triangles,
                const glm::dvec3& from, const glm::dvec3& to, std::size_t but) {
@@ -95,7 +89,7 @@ TEST(LightPlan, ShadowsAreThoseOfEachTriangle) {
         if (!facesUp(rig.restMesh(), t)) continue;
         int lit = 0;
         for (const double stroke : {0.0, 1.0}) {
-            const auto positions = deformed(rig, stroke);
+            const auto positions = deformed(rig, std::vector{stroke}).positions;
             const glm::uvec3& corners = rig.restMesh().triangles[t];
             const glm::dvec3 a(positions[corners.x]), b(positions[corners.y]), c(positions[corners.z]);
             const glm::dvec3 normal = glm::normalize(glm::cross(b - a, c - a));

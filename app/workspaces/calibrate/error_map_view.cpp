@@ -10,6 +10,7 @@
 #include <QToolTip>
 
 #include "app/studio/look/palette.h"
+#include "app/workspaces/common/field_colors.h"
 
 namespace lumorph::studio {
 namespace {
@@ -22,8 +23,7 @@ constexpr int kTitleHeight = 24;
 constexpr int kScaleHeight = 40;
 constexpr int kGap = 16;
 
-/// Green is good, red is bad; in between the hue tells.
-QColor errorColor(double share) { return QColor::fromHsvF(0.38 * (1.0 - std::clamp(share, 0.0, 1.0)), 0.62, 0.85); }
+QColor errorColor(double share) { return gradeColor(1.0 - share); }
 
 /// What stands at the red end: a round number above what most of the light has.
 double scaleOf(const ErrorPlan& plan) {

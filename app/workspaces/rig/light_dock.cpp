@@ -16,6 +16,7 @@
 #include "app/studio/document/scene_edit.h"
 #include "app/studio/widgets/dock_parts.h"
 #include "app/studio/widgets/panel.h"
+#include "app/studio/widgets/throttle.h"
 #include "app/studio/widgets/value_field.h"
 #include "app/workspaces/rig/light_map_view.h"
 #include "app/workspaces/rig/rig_docks.h"
@@ -26,7 +27,8 @@ namespace lumorph::studio {
 namespace {
 
 constexpr const char* kLightPlace = "rig.light";
-constexpr double kFarthest = 10.0; ///< metres from the middle of the table
+constexpr int kLightMilliseconds = 200; ///< edits that come faster, as in a drag, are looked at together
+constexpr double kFarthest = 10.0;      ///< metres from the middle of the table
 
 /// What the dock knows of a device and the light on it.
 struct LightFound {
@@ -89,6 +91,8 @@ private:
     QLabel* text_ = new QLabel;
     QComboBox* shown_ = new QComboBox;
     QComboBox* whose_ = new QComboBox;
+    QWidget* whoseRow_ = nullptr;
+    Throttle* soon_;
     LightMapView* map_ = new LightMapView;
     std::array<ValueField*, 2> size_{}, throw_{};
     std::array<ValueField*, 3> low_{}, high_{};
@@ -103,7 +107,8 @@ private:
     std::optional<ProjectorPlace> proposed_;
 };
 
-RigLight::RigLight(Studio& studio) : studio_(studio), slots_(*this, studio.jobs, studio.notices) {
+RigLight::RigLight(Studio& studio)
+    : studio_(studio), slots_(*this, studio.jobs, studio.notices), soon_(new Throttle(kLightMilliseconds, this)) {
     auto* layout = new QVBoxLayout(this);
     layout->setContentsMargins(0, 0, 0, 0);
     layout->setSpacing(0);
@@ -117,11 +122,11 @@ RigLight::RigLight(Studio& studio) : studio_(studio), slots_(*this, studio.jobs,
     shown_->addItems({"Pixels a millimetre", "Slant of the light", "How often it is lit"});
     shown_->setToolTip("In the worst state in which a place is lit");
     whose_->setObjectName("rig.light.whose");
-    whose_->setAccessibleName("Whose light the map shows");
     whose_->addItems({"As projectors hang now", "From the best place"});
     column.layout->addWidget(text_);
     column.layout->addWidget(makeRow("Ma&p of", shown_));
-    column.layout->addWidget(whose_);
+    whoseRow_ = makeRow("Light", whose_);
+    column.layout->addWidget(whoseRow_);
     column.layout->addWidget(map_, 1);
     column.layout->addWidget(makeForm());
     column.layout->addWidget(button_);
@@ -138,8 +143,9 @@ RigLight::RigLight(Studio& studio) : studio_(studio), slots_(*this, studio.jobs,
     connect(button_, &QPushButton::clicked, this, [this] { search(); });
     connect(hang_, &QPushButton::clicked, this, [this] { hang(); });
     connect(&studio.document, &StudioDocument::changed, this, [this](StateParts parts) {
-        if (parts & (StatePart::rig | StatePart::rigEdited | StatePart::installation)) follow();
+        if (parts & (StatePart::rig | StatePart::rigEdited | StatePart::installation)) soon_->request();
     });
+    connect(soon_, &Throttle::due, this, [this] { follow(); });
     showAll();
 }
 
@@ -215,6 +221,7 @@ void RigLight::follow() {
     const bool sameRoom = room_ && state.installation && isSameRoom(*room_, *state.installation);
     if (sameRig && sameRoom) return;
     const bool first = !room_;
+    const bool samePlace = room_ && state.installation && room_->worldFromDevice == state.installation->worldFromDevice;
     rig_ = state.rig.rig;
     room_ = state.installation;
     if (first && hanging()) { // the lens that is there is the first to ask about
@@ -224,7 +231,7 @@ void RigLight::follow() {
         for (ValueField* field : throw_) field->setValue(camera.focal.x / camera.size.x);
         shift_->setValue((camera.principal.y - 0.5 * (camera.size.y - 1)) / camera.size.y);
     }
-    if (!sameRig) proposed_.reset();
+    if (!sameRig || !samePlace) proposed_.reset();
     measure();
 }
 
@@ -233,7 +240,8 @@ void RigLight::measure() {
         found_.reset();
         return showAll();
     }
-    slots_.run<std::shared_ptr<const LightFound>>(
+    text_->setEnabled(false); // what it says is of before
+    slots_.runWith<std::shared_ptr<const LightFound>>(
         "measure", kLightPlace, tr("Following the light"),
         [rig = rig_, room = room_](const Progress& progress) {
             auto found = std::make_shared<LightFound>();
@@ -252,6 +260,12 @@ void RigLight::measure() {
         },
         [this](std::shared_ptr<const LightFound> found) {
             found_ = std::move(found);
+            text_->setEnabled(true);
+            showAll();
+        },
+        [this](const std::exception& error) {
+            found_.reset(); // it was of another rig
+            slots_.fail(kLightPlace, error);
             showAll();
         });
     showAll();
@@ -265,12 +279,15 @@ void RigLight::search() {
         low[k] = std::min(low_[axis]->value(), high_[axis]->value());
         high[k] = std::max(low_[axis]->value(), high_[axis]->value());
     }
+    std::vector<CalibratedCamera> others; // what hangs beside the first projector, whose place is looked for
+    for (std::size_t k = 1; room_ && k < room_->projectors.size(); ++k)
+        if (room_->projectors[k].enabled) others.push_back(room_->projectors[k].camera);
     studio_.notices.dismissAll(kLightPlace);
     slots_.run<ProjectorPlace>(
         "search", kLightPlace, tr("Looking for the best place"),
-        [device = found_->device, lens = lens(), low, high](const Progress& progress) {
+        [device = found_->device, lens = lens(), low, high, others](const Progress& progress) {
             std::optional<ProjectorPlace> best;
-            leavingACore([&] { best = bestProjectorPlace(*device, lens, low, high, {}, {}, progress); });
+            leavingACore([&] { best = bestProjectorPlace(*device, lens, low, high, others, {}, progress); });
             return *best;
         },
         [this](ProjectorPlace best) {
@@ -283,9 +300,9 @@ void RigLight::search() {
 void RigLight::showAll() {
     const bool fromBest = proposed_ && whose_->currentIndex() == 1;
     text_->setText(!rig_     ? "Open a rig to see how light reaches it."
-                   : !found_ ? "Light is followed to the device in all its states..."
+                   : !found_ ? "How light reaches it is not known yet."
                              : lightText(found_->now));
-    whose_->setVisible(proposed_.has_value());
+    whoseRow_->setVisible(proposed_.has_value());
     button_->setEnabled(found_ != nullptr);
     if (found_)
         map_->show(std::make_shared<const LightMap>(fromBest ? proposed_->light : found_->now), found_->mesh, {});

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <utility>
+#include <vector>
 
 #include <QMouseEvent>
 #include <QPainter>
@@ -12,6 +12,7 @@
 
 #include "app/studio/look/palette.h"
 #include "app/studio/widgets/dock_parts.h"
+#include "app/workspaces/common/field_colors.h"
 
 namespace lumorph::studio {
 
@@ -20,8 +21,6 @@ namespace {
 constexpr int kScaleRoom = 44;
 constexpr int kMargin = 12;
 constexpr int kCell = 3; ///< pixels of the widget that one look-up colours
-
-QColor lightColor(double goodness) { return QColor::fromHsvF(0.38 * std::clamp(goodness, 0.0, 1.0), 0.62, 0.85); }
 
 QString degreesText(Angle angle) { return QString("%1\u00B0").arg(std::lround(angle.inDegrees())); }
 
@@ -40,11 +39,14 @@ void LightMapView::show(std::shared_ptr<const LightMap> map, std::shared_ptr<con
     device_ = std::move(device);
     wish_ = wish;
     if (device_) box_ = boundingBox(device_->positions);
+    picture_ = {};
     update();
 }
 
 void LightMapView::setShown(Shown shown) {
-    if (std::exchange(shown_, shown) != shown) update();
+    if (std::exchange(shown_, shown) == shown) return;
+    picture_ = {};
+    update();
 }
 
 QRectF LightMapView::mapArea() const {
@@ -62,16 +64,12 @@ QPointF LightMapView::pixelOf(const glm::vec3& place) const {
 
 const LightAt* LightMapView::at(const QPointF& point) const {
     if (!map_ || !device_ || !mapArea().contains(point)) return nullptr;
-    const LightAt* nearest = nullptr;
-    double least = std::numeric_limits<double>::infinity();
-    for (const LightAt& place : map_->places) {
+    const auto squaredWay = [&](const LightAt& place) {
         const QPointF way = pixelOf(place.place) - point;
-        const double distance = QPointF::dotProduct(way, way);
-        if (distance >= least) continue;
-        least = distance;
-        nearest = &place;
-    }
-    return nearest;
+        return QPointF::dotProduct(way, way);
+    };
+    const auto nearest = std::ranges::min_element(map_->places, {}, squaredWay);
+    return nearest == map_->places.end() ? nullptr : &*nearest;
 }
 
 double LightMapView::goodness(const LightAt& at) const {
@@ -99,13 +97,34 @@ void LightMapView::paintEvent(QPaintEvent* /*event*/) {
                          "The device from above, coloured by the light that reaches it");
         return;
     }
-    paintMap(painter);
+    if (picture_.isNull()) picture_ = makePicture();
+    painter.drawImage(0, 0, picture_);
     paintScale(painter);
 }
 
 /// Colours by the nearest place, cut out by the triangles of the device.
-void LightMapView::paintMap(QPainter& painter) const {
+QImage LightMapView::makePicture() const {
+    struct Dot {
+        QPointF pixel;
+        QColor color;
+    };
+    std::vector<Dot> dots;
+    dots.reserve(map_->places.size());
+    for (const LightAt& place : map_->places) dots.push_back({pixelOf(place.place), gradeColor(goodness(place))});
     const QRectF area = mapArea();
+    QImage coloured(size(), QImage::Format_ARGB32_Premultiplied);
+    coloured.fill(Qt::transparent);
+    QPainter cells(&coloured);
+    for (int y = static_cast<int>(area.top()); y < area.bottom(); y += kCell)
+        for (int x = static_cast<int>(area.left()); x < area.right(); x += kCell) {
+            const QPointF middle(x + 0.5 * kCell, y + 0.5 * kCell);
+            const auto nearest = std::ranges::min_element(dots, {}, [&middle](const Dot& dot) {
+                const QPointF way = dot.pixel - middle;
+                return QPointF::dotProduct(way, way);
+            });
+            if (nearest != dots.end()) cells.fillRect(x, y, kCell, kCell, nearest->color);
+        }
+    cells.end();
     QImage shape(size(), QImage::Format_ARGB32_Premultiplied);
     shape.fill(Qt::transparent);
     QPainter cut(&shape);
@@ -115,24 +134,20 @@ void LightMapView::paintMap(QPainter& painter) const {
         cut.drawPolygon(QPolygonF{pixelOf(device_->positions[t.x]), pixelOf(device_->positions[t.y]),
                                   pixelOf(device_->positions[t.z])});
     cut.setCompositionMode(QPainter::CompositionMode_SourceIn);
-    QImage coloured(size(), QImage::Format_ARGB32_Premultiplied);
-    coloured.fill(Qt::transparent);
-    QPainter cells(&coloured);
-    for (int y = static_cast<int>(area.top()); y < area.bottom(); y += kCell)
-        for (int x = static_cast<int>(area.left()); x < area.right(); x += kCell)
-            if (const LightAt* place = at(QPointF(x + 0.5 * kCell, y + 0.5 * kCell)))
-                cells.fillRect(x, y, kCell, kCell, lightColor(goodness(*place)));
-    cells.end();
     cut.drawImage(0, 0, coloured);
-    cut.end();
-    painter.drawImage(0, 0, shape);
+    return shape;
+}
+
+void LightMapView::resizeEvent(QResizeEvent* event) {
+    QWidget::resizeEvent(event);
+    picture_ = {};
 }
 
 void LightMapView::paintScale(QPainter& painter) const {
     const Palette& colors = currentPalette();
     const QRectF bar(kMargin, height() - 30, width() - 2 * kMargin, 6);
     QLinearGradient gradient(bar.topLeft(), bar.topRight());
-    for (int k = 0; k <= 8; ++k) gradient.setColorAt(k / 8.0, lightColor(k / 8.0));
+    for (int k = 0; k <= 8; ++k) gradient.setColorAt(k / 8.0, gradeColor(k / 8.0));
     painter.fillRect(bar, gradient);
     painter.setPen(colors.textMuted);
     const QRectF words(bar.left(), bar.bottom() + 2, bar.width(), 20);

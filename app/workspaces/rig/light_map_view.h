@@ -3,6 +3,7 @@
 #include <memory>
 #include <optional>
 
+#include <QImage>
 #include <QWidget>
 
 #include "calibration/placement/light_plan.h"
@@ -29,12 +30,13 @@ public:
 protected:
     void paintEvent(QPaintEvent* event) override;
     void mouseMoveEvent(QMouseEvent* event) override;
+    void resizeEvent(QResizeEvent* event) override;
 
 private:
     [[nodiscard]] QRectF mapArea() const; ///< pixels that the device's box from above takes
     [[nodiscard]] QPointF pixelOf(const glm::vec3& place) const;
     [[nodiscard]] double goodness(const LightAt& at) const; ///< in [0, 1]
-    void paintMap(QPainter& painter) const;
+    [[nodiscard]] QImage makePicture() const;
     void paintScale(QPainter& painter) const;
 
     std::shared_ptr<const LightMap> map_;
@@ -42,6 +44,7 @@ private:
     Box box_; ///< of the device
     LightWish wish_;
     Shown shown_ = Shown::pixels;
+    QImage picture_; ///< of the map, made when it is first painted: each pixel looks for its place; null: not yet
 };
 
 } // namespace lumorph::studio

@@ -127,8 +127,10 @@ void RigWorkspace::Data::listen() {
         const auto& now = studio.document.state().rig.parts;
         drawCommand->setEnabled(now && !now->drawing.empty());
         partsCommand->setEnabled(studio.document.state().rig.rig != nullptr);
-        if (parts & StatePart::rigEdited) edited();
-        if (parts & StatePart::rigEdited) followHandles();
+        if (parts & StatePart::rigEdited) {
+            edited();
+            followHandles();
+        }
         if (!(parts & StatePart::rig)) return;
         unframed = true;
         selection.rehearse({}, false);
