@@ -151,6 +151,7 @@ struct LitDevice::Data {
     std::vector<LightAt> places;            ///< without light
     std::vector<std::vector<Spot>> spots;   ///< one list a state, a spot a place
     std::vector<std::unique_ptr<Lab>> labs; ///< one a state
+    std::vector<int> placeOfTriangle;
     Box box;
 };
 
@@ -177,6 +178,9 @@ LitDevice::LitDevice(const Rig& rig, const glm::mat4& worldFromDevice, int rando
                                    "turn it so that +Y is up");
             each = std::max<std::size_t>(1, (upper.size() + places - 1) / std::max<std::size_t>(1, places));
             addPlaces(mesh, upper, each, data_->places);
+            data_->placeOfTriangle.assign(mesh.triangles.size(), -1);
+            for (std::size_t k = 0; k < upper.size(); ++k)
+                data_->placeOfTriangle[upper[k]] = static_cast<int>(k / each);
         }
         std::vector<Spot> spots;
         spots.reserve(data_->places.size());
@@ -191,6 +195,8 @@ LitDevice::LitDevice(LitDevice&&) noexcept = default;
 LitDevice& LitDevice::operator=(LitDevice&&) noexcept = default;
 
 std::size_t LitDevice::states() const noexcept { return data_->spots.size(); }
+
+const std::vector<int>& LitDevice::placeOfTriangle() const noexcept { return data_->placeOfTriangle; }
 
 std::vector<glm::vec3> LitDevice::corners() const {
     std::vector<glm::vec3> corners;

@@ -11,6 +11,9 @@ namespace lumorph {
 /// std::string.
 [[nodiscard]] std::string inQuotes(std::string_view text, std::size_t most = 80);
 
+/// The same text in small letters; only those of ASCII are changed.
+[[nodiscard]] std::string lowerCase(std::string_view text);
+
 /// A text as one field of a table of comma separated values (RFC 4180): in quotes where it needs them.
 [[nodiscard]] std::string csvField(std::string_view text);
 
