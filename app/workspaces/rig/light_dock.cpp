@@ -5,9 +5,11 @@
 #include <optional>
 #include <vector>
 
+#include <QCheckBox>
 #include <QComboBox>
 #include <QHBoxLayout>
 #include <QLabel>
+#include <QPointer>
 #include <QPushButton>
 #include <QShowEvent>
 #include <QSignalBlocker>
@@ -19,6 +21,7 @@
 #include "app/studio/widgets/panel.h"
 #include "app/studio/widgets/throttle.h"
 #include "app/studio/widgets/value_field.h"
+#include "app/workspaces/common/field_colors.h"
 #include "app/workspaces/rig/light_map_view.h"
 #include "app/workspaces/rig/rig_docks.h"
 #include "calibration/placement/projector_models.h"
@@ -79,12 +82,17 @@ QWidget* makePair(ValueField* from, ValueField* to, const QString& between = "to
 
 class RigLight : public QWidget {
 public:
-    explicit RigLight(Studio& studio);
+    RigLight(Studio& studio, RigSelection& selection);
 
 protected:
     void showEvent(QShowEvent* event) override {
         QWidget::showEvent(event);
         follow();
+        colourDevice();
+    }
+    void hideEvent(QHideEvent* event) override {
+        QWidget::hideEvent(event);
+        if (selection_) selection_->showColours(nullptr); // nothing would tell any more what they mean
     }
 
 private:
@@ -97,12 +105,14 @@ private:
     void measure();    ///< the light of the room's projectors
     void search();
     void showAll();
+    void colourDevice();                            ///< in the view, as the map is
     [[nodiscard]] const LightMap* shownMap() const; ///< null: none yet
     void hang();
     [[nodiscard]] ProjectorLens lens() const;
     [[nodiscard]] const InstalledProjector* hanging() const;
 
     Studio& studio_;
+    QPointer<RigSelection> selection_; ///< the window hides its docks also when the workspace is gone
     JobSlots slots_;
     QLabel* text_ = new QLabel;
     QComboBox* shown_ = new QComboBox;
@@ -111,6 +121,7 @@ private:
     QLabel* modelNote_ = new QLabel;
     Throttle* soon_;
     LightMapView* map_ = new LightMapView;
+    QCheckBox* onDevice_ = new QCheckBox("Colour the &device in the view too");
     std::array<ValueField*, 2> size_{}, throw_{};
     std::array<ValueField*, 3> low_{}, high_{};
     ValueField* shift_ = nullptr;
@@ -124,8 +135,9 @@ private:
     std::optional<ProjectorPlace> proposed_;
 };
 
-RigLight::RigLight(Studio& studio)
-    : studio_(studio), slots_(*this, studio.jobs, studio.notices), soon_(new Throttle(kLightMilliseconds, this)) {
+RigLight::RigLight(Studio& studio, RigSelection& selection)
+    : studio_(studio), selection_(&selection), slots_(*this, studio.jobs, studio.notices),
+      soon_(new Throttle(kLightMilliseconds, this)) {
     auto* layout = new QVBoxLayout(this);
     layout->setContentsMargins(0, 0, 0, 0);
     layout->setSpacing(0);
@@ -144,6 +156,9 @@ RigLight::RigLight(Studio& studio)
     column.layout->addWidget(makeRow("Ma&p of", shown_));
     column.layout->addWidget(makeRow("&By", whose_));
     column.layout->addWidget(map_, 1);
+    onDevice_->setObjectName("rig.light.onDevice");
+    connect(onDevice_, &QCheckBox::toggled, this, [this] { colourDevice(); });
+    column.layout->addWidget(onDevice_);
     column.layout->addWidget(makeForm());
     column.layout->addWidget(button_);
     best_->setObjectName("rig.light.best");
@@ -153,8 +168,10 @@ RigLight::RigLight(Studio& studio)
     button_->setObjectName("rig.light.search");
     button_->setProperty("look", "primary");
     hang_->setObjectName("rig.light.hang");
-    connect(shown_, &QComboBox::currentIndexChanged, this,
-            [this](int index) { map_->setShown(static_cast<LightMapView::Shown>(index)); });
+    connect(shown_, &QComboBox::currentIndexChanged, this, [this](int index) {
+        map_->setShown(static_cast<LightMapView::Shown>(index));
+        colourDevice();
+    });
     connect(whose_, &QComboBox::currentIndexChanged, this, [this] { showAll(); });
     connect(button_, &QPushButton::clicked, this, [this] { search(); });
     connect(hang_, &QPushButton::clicked, this, [this] { hang(); });
@@ -399,6 +416,8 @@ void RigLight::showAll() {
         map_->show(std::make_shared<const LightMap>(*map), found_->mesh, {});
     else
         map_->show(nullptr, nullptr, {});
+    onDevice_->setEnabled(map != nullptr);
+    colourDevice();
     best_->setVisible(proposed_.has_value());
     hang_->setVisible(proposed_.has_value());
     if (!proposed_) return;
@@ -412,6 +431,22 @@ void RigLight::showAll() {
                                : "The room's first projector gets this lens and place, by one step of undo");
 }
 
+void RigLight::colourDevice() {
+    const LightMap* map = shownMap();
+    if (!map || !isVisible() || !onDevice_->isChecked()) return selection_->showColours(nullptr);
+    std::vector<int> bands;
+    bands.reserve(found_->device->placeOfTriangle().size());
+    for (const int place : found_->device->placeOfTriangle())
+        bands.push_back(place < 0 ? -1
+                                  : SurfaceBands::bandOf(map_->goodness(map->places[static_cast<std::size_t>(place)])));
+    std::vector<glm::vec3> colors;
+    colors.reserve(SurfaceBands::kBands);
+    for (int b = 0; b < SurfaceBands::kBands; ++b)
+        colors.push_back(sceneColor(gradeColor(static_cast<double>(b) / (SurfaceBands::kBands - 1))));
+    selection_->showColours(std::make_shared<const RigSelection::Colours>(
+        RigSelection::Colours{SurfaceBands(*found_->mesh, bands), std::move(colors)}));
+}
+
 void RigLight::hang() {
     if (!proposed_ || !hanging()) return;
     editInstallation(studio_.document, tr("Hang the projector"), [camera = proposed_->camera](Installation& room) {
@@ -423,6 +458,6 @@ void RigLight::hang() {
 
 } // namespace
 
-QWidget* makeRigLight(Studio& studio) { return new RigLight(studio); }
+QWidget* makeRigLight(Studio& studio, RigSelection& selection) { return new RigLight(studio, selection); }
 
 } // namespace lumorph::studio

@@ -21,7 +21,8 @@ namespace lumorph::studio {
 /// Searches for bend lines of the rig's sheet: few servos, or cheap ones, against the fit over some shapes.
 [[nodiscard]] QWidget* makeRigSuggest(Studio& studio);
 
-/// How light reaches the device over all its states, as a map from above, and where a projector should hang.
-[[nodiscard]] QWidget* makeRigLight(Studio& studio);
+/// How light reaches the device over all its states, as a map from above and on the device in the view, and where a
+/// projector should hang.
+[[nodiscard]] QWidget* makeRigLight(Studio& studio, RigSelection& selection);
 
 } // namespace lumorph::studio

@@ -119,6 +119,7 @@ void RigWorkspace::Data::listen() {
     connect(&selection, &RigSelection::changed, this, &Data::select);
     connect(&selection, &RigSelection::wiggleWanted, this, &Data::wiggle);
     connect(&selection, &RigSelection::rehearsalChanged, this, &Data::rehearse);
+    connect(&selection, &RigSelection::coloursChanged, this, &Data::refresh);
     connect(&studio.settings, &Settings::themeChanged, this, [this] {
         builder.setColors(fieldSceneColors(studio.settings.theme()));
         refresh();
@@ -392,6 +393,9 @@ void RigWorkspace::Data::refresh() {
         const auto lines = part->lines(*shown.devicePositions, scene->accent);
         scene->lines.insert(scene->lines.end(), lines.begin(), lines.end());
     }
+    if (const auto& colours = selection.colours(); colours && shown.devicePositions)
+        for (ViewportSurface& band : colours->bands.surfaces(shown.devicePositions, colours->colors))
+            scene->surfaces.push_back(std::move(band));
     if (const auto& place = selection.inspectedPlace()) {
         const glm::vec3 size = shown.rig->reach().size();
         addMark(*place, kMarkSize * std::max({size.x, size.y, size.z}), sceneColor(currentPalette().danger),
@@ -446,7 +450,8 @@ std::vector<WorkspaceDock> RigWorkspace::makeDocks() {
          false},
         {"dock.rig.report", "Report", "check", makeRigReport(studio, data_->selection), Qt::RightDockWidgetArea, true},
         {"dock.rig.suggest", "Suggest", "search", makeRigSuggest(studio), Qt::RightDockWidgetArea, true},
-        {"dock.rig.light", "Light", "projector", makeRigLight(studio), Qt::RightDockWidgetArea, true}};
+        {"dock.rig.light", "Light", "projector", makeRigLight(studio, data_->selection), Qt::RightDockWidgetArea,
+         true}};
 }
 
 void RigWorkspace::setActive(bool active) {
