@@ -28,6 +28,7 @@ constexpr OtherWords kOtherWords[] = {
     {"view.resetLayout", "restore docks panels windows"},
     {"loop.stop", "halt emergency panic freeze"},
     {"loop.resume", "continue go on"},
+    {"help.guide", "manual documentation handbook help pages how to"},
     {"help.shortcuts", "hotkeys keys bindings manual"},
     {"help.tour", "introduction tutorial guide"},
     {"help.about", "version licence license"},

@@ -15,6 +15,7 @@
 
 #include "app/studio/document/hand_control.h"
 #include "app/studio/document/job_slots.h"
+#include "app/studio/shell/guide_window.h"
 #include "app/studio/widgets/dock_parts.h"
 #include "app/studio/widgets/panel.h"
 #include "app/studio/widgets/plot.h"
@@ -185,6 +186,7 @@ QWidget* RigFit::makeContents() {
     column.layout->addWidget(makeHeading("Shape resolution"));
     column.layout->addWidget(makeChoosers());
     column.layout->addWidget(metrics_);
+    column.layout->addWidget(makeGuideLink("What these figures mean", "shape-resolution"));
     return column.widget;
 }
 
