@@ -1,11 +1,14 @@
 #include "core/mdf/field_story.h"
 
 #include <algorithm>
+#include <array>
 #include <mutex>
-#include <set>
+#include <span>
 #include <tuple>
 #include <utility>
+#include <vector>
 
+#include <glm/common.hpp>
 #include <tbb/parallel_for.h>
 
 #include "core/base/error.h"
@@ -21,29 +24,46 @@ constexpr Microseconds kRefineSlice{40'000}; ///< between two looks at whether t
 /// The axis along which a plane runs.
 int acrossOf(const VoxelPlane& plane) noexcept { return plane.axis == 0 ? 2 : 0; }
 
-VoxelPlane middlePlane(const glm::ivec3& dimensions) noexcept { return {2, dimensions.z / 2}; }
-
-/// The upright plane that `worth` rates highest; of a run of equals its middle.
-template <typename Worth> VoxelPlane bestPlane(const glm::ivec3& dimensions, Worth&& worth) {
-    VoxelPlane best = middlePlane(dimensions);
-    double highest = 0.0;
-    for (const int axis : {2, 0}) {
-        int run = 0;
-        for (int index = 0; index < dimensions[axis]; ++index) {
-            const double own = worth(VoxelPlane{axis, index});
-            if (own > highest) {
-                best = {axis, index};
-                highest = own;
-                run = 1;
-            } else if (run > 0 && own == highest && axis == best.axis) {
-                best.index = index - run / 2;
-                ++run;
-            } else {
-                run = 0;
-            }
+/// The upright plane across one of some axes that holds the most of these voxels; of a run of equals its middle.
+VoxelPlane fullestOf(const BitColumns& voxels, std::span<const int> axes) {
+    const glm::ivec3 size = voxels.dimensions();
+    std::array<std::vector<std::size_t>, 3> counts;
+    for (const int axis : {0, 2}) counts[static_cast<std::size_t>(axis)].resize(static_cast<std::size_t>(size[axis]));
+    const auto words = static_cast<std::size_t>(voxels.wordsPerColumn());
+    for (int z = 0; z < size.z; ++z)
+        for (int x = 0; x < size.x; ++x) {
+            const std::size_t count = countBits(voxels.words().subspan(voxels.columnIndex(x, z) * words, words));
+            counts[0][static_cast<std::size_t>(x)] += count;
+            counts[2][static_cast<std::size_t>(z)] += count;
         }
+    VoxelPlane best{2, size.z / 2};
+    std::size_t most = 0;
+    for (const int axis : axes) {
+        const std::vector<std::size_t>& own = counts[static_cast<std::size_t>(axis)];
+        const auto first = std::ranges::max_element(own);
+        if (*first <= most) continue;
+        const auto last = std::find_if(first, own.end(), [&](std::size_t count) { return count != *first; });
+        best = {axis, static_cast<int>((first - own.begin()) + (last - first - 1) / 2)};
+        most = *first;
     }
     return best;
+}
+
+/// The axes along which an actuator moves least: both where it moves along both alike, or only upwards.
+std::vector<int> axesOfLeastMotion(const Rig& rig, std::size_t actuator) {
+    constexpr double kAlike = 0.8;
+    std::vector<double> strokes(rig.actuatorCount(), 0.0);
+    strokes[actuator] = 1.0;
+    const auto vertices = rig.verticesOf(actuator);
+    std::vector<glm::vec3> moved(vertices.size()), rest(vertices.size());
+    rig.deform(strokes, vertices, moved);
+    strokes[actuator] = 0.0;
+    rig.deform(strokes, vertices, rest);
+    glm::dvec3 motion(0.0);
+    for (std::size_t v = 0; v < moved.size(); ++v) motion += glm::abs(glm::dvec3(moved[v] - rest[v]));
+    const double least = std::min(motion.x, motion.z), other = std::max(motion.x, motion.z);
+    if (least >= kAlike * other || other < 0.05 * motion.y) return {2, 0};
+    return {motion.x < motion.z ? 0 : 2};
 }
 
 /// All voxels that single actuators reach.
@@ -125,39 +145,21 @@ double middleOf(const VoxelPlane& plane, const VoxelFrame& frame) noexcept {
     return static_cast<double>(frame.origin[plane.axis]) + frame.voxelSize * (plane.index + 0.5);
 }
 
-VoxelPlane tellingPlane(const Field& field, std::size_t actuator) {
-    const std::vector<std::uint8_t> levels = firstLevels(field, actuator);
-    const glm::ivec3 size = field.frame.dimensions;
-    return bestPlane(size, [&](const VoxelPlane& plane) {
-        std::size_t voxels = 0;
-        std::set<int> heights;
-        const glm::ivec2 extent = sizeOf(plane, size);
-        for (int across = 0; across < extent.x; ++across) {
-            int height = 0;
-            for (int up = 0; up < extent.y; ++up) {
-                const glm::ivec3 v = voxelOf(plane, size, {across, up});
-                height += levels[field.voxelIndex(v.x, v.y, v.z)] != kUnchanged ? 1 : 0;
-            }
-            voxels += static_cast<std::size_t>(height);
-            if (height > 0) heights.insert(height);
-        }
-        return static_cast<double>(voxels) * static_cast<double>(heights.size());
-    });
+BitColumns changedVoxels(const Field& field, std::size_t actuator) {
+    FieldViewOptions options;
+    options.actuator = actuator;
+    options.surfaceOnly = false;
+    BitColumns changed(field.frame.dimensions);
+    for (const FieldVoxel& one : fieldVoxels(field, options)) changed.set(one.voxel.x, one.voxel.y, one.voxel.z);
+    return changed;
 }
 
-VoxelPlane fullestPlane(const BitColumns& voxels) {
-    const glm::ivec3 size = voxels.dimensions();
-    return bestPlane(size, [&](const VoxelPlane& plane) {
-        double count = 0.0;
-        const glm::ivec2 extent = sizeOf(plane, size);
-        for (int across = 0; across < extent.x; ++across)
-            for (int up = 0; up < extent.y; ++up) {
-                const glm::ivec3 v = voxelOf(plane, size, {across, up});
-                count += voxels.test(v.x, v.y, v.z) ? 1.0 : 0.0;
-            }
-        return count;
-    });
+VoxelPlane tellingPlane(const Field& field, const Rig& rig, std::size_t actuator) {
+    const BitColumns changed = changedVoxels(field, actuator); // looks whether it is there
+    return fullestOf(changed, axesOfLeastMotion(rig, actuator));
 }
+
+VoxelPlane fullestPlane(const BitColumns& voxels) { return fullestOf(voxels, std::array{2, 0}); }
 
 JointReach jointReach(const Coverage& coverage, const Progress& progress) {
     JointReach reach;

@@ -11,6 +11,7 @@
 #include "core/mdf/coverage.h"
 #include "core/mdf/field.h"
 #include "core/mdf/voting.h"
+#include "core/rig/rig.h"
 
 namespace lumorph {
 
@@ -34,10 +35,11 @@ struct VoxelPlane {
 /// The coordinate of the layer's middle along its axis, metres.
 [[nodiscard]] double middleOf(const VoxelPlane& plane, const VoxelFrame& frame) noexcept;
 
-/// The plane that shows best what an actuator does: it changes many voxels there, at many heights, as across a bend
-/// rather than along it. Of planes that are as good the middle one; the frame's middle for an actuator that changes
-/// nothing. Throws InvalidInput for one that is not there.
-[[nodiscard]] VoxelPlane tellingPlane(const Field& field, std::size_t actuator);
+/// The plane that shows best what an actuator does: one in which it moves rather than one that it moves through (across
+/// a bend, not along it), and of those the one with the most voxels that it changes. Of planes that are as good the
+/// middle one; the frame's middle for an actuator that changes nothing. `rig` is that of the field. Throws InvalidInput
+/// for an actuator that is not there.
+[[nodiscard]] VoxelPlane tellingPlane(const Field& field, const Rig& rig, std::size_t actuator);
 /// The plane with the most of these voxels; the frame's middle when there are none.
 [[nodiscard]] VoxelPlane fullestPlane(const BitColumns& voxels);
 
@@ -55,6 +57,9 @@ struct JointReach {
 /// Looks at every level of every actuator and at all levels of every two that are coupled: no others reach more
 /// together than alone. Throws Cancelled.
 [[nodiscard]] JointReach jointReach(const Coverage& coverage, const Progress& progress = {});
+
+/// The voxels that an actuator changes. Throws InvalidInput for one that is not there.
+[[nodiscard]] BitColumns changedVoxels(const Field& field, std::size_t actuator);
 
 /// How many voxels of a target speak for each level of an actuator: those that it first covers at that level (v0 of
 /// their ramps). Throws InvalidInput for an actuator that is not there or a target of another shape.

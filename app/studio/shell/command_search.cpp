@@ -29,6 +29,7 @@ constexpr OtherWords kOtherWords[] = {
     {"loop.stop", "halt emergency panic freeze"},
     {"loop.resume", "continue go on"},
     {"help.shortcuts", "hotkeys keys bindings manual"},
+    {"field.story", "mdf explain learn story voxels tutorial"},
     {"help.tour", "introduction tutorial guide"},
     {"help.about", "version licence license"},
     {"target.open", "load import shape model mesh"},
