@@ -24,6 +24,7 @@
 #include "app/studio/viewport/viewport_widget.h"
 #include "app/studio/widgets/dock_parts.h"
 #include "app/studio/widgets/panel.h"
+#include "app/studio/widgets/throttle.h"
 #include "app/workspaces/common/field_colors.h"
 #include "app/workspaces/field/story_canvas.h"
 #include "app/workspaces/field/story_export.h"
@@ -36,6 +37,7 @@ namespace {
 constexpr const char* kWindowName = "story.window";
 const QString kStoryPlace = QStringLiteral("story");
 const QString kFieldPlaceOfBuild = QStringLiteral("field");
+constexpr int kAgainMilliseconds = 150;
 constexpr int kRunMilliseconds = 3000; ///< through all levels
 
 /// From the front, a little from the right and from above: what is in front of the plane is cut away.
@@ -122,6 +124,7 @@ private:
                 *video_ = new QPushButton;
     std::array<QShortcut*, 2> arrows_{};
     QTimer running_;
+    Throttle again_{kAgainMilliseconds}; ///< while something is dragged
 };
 
 FieldStoryWindow::FieldStoryWindow(Studio& studio, QWidget* parent)
@@ -342,7 +345,10 @@ void FieldStoryWindow::listen() {
     connect(&studio_.document, &StudioDocument::changed, this, [this](StateParts parts) {
         const StateParts ours = StateParts(StatePart::rig) | StatePart::rigEdited | StatePart::field |
                                 StatePart::target | StatePart::placement;
-        if (isVisible() && (parts & ours) && !studio_.document.previewing()) tellAgain();
+        if (isVisible() && (parts & ours)) again_.request();
+    });
+    connect(&again_, &Throttle::due, this, [this] {
+        if (isVisible()) tellAgain();
     });
     connect(&studio_.jobs, &Jobs::finished, this, [this] {
         if (isVisible() && !story_) showControls();
