@@ -3,6 +3,7 @@
 #include <chrono>
 #include <future>
 
+#include <QApplication>
 #include <QDesktopServices>
 #include <QFileInfo>
 #include <QPointer>

@@ -573,7 +573,7 @@ StoryShot FieldStoryWindow::shot() const {
 
 } // namespace
 
-void addFieldStory(Studio& studio, std::function<QWidget*()> parent) {
+void addFieldStory(Studio& studio, const std::function<QWidget*()>& parent) {
     Commands::Options options;
     options.icon = "help";
     options.menu = "Help";
