@@ -30,6 +30,7 @@ constexpr OtherWords kOtherWords[] = {
     {"loop.resume", "continue go on"},
     {"help.guide", "manual documentation handbook help pages how to"},
     {"help.shortcuts", "hotkeys keys bindings manual"},
+    {"field.story", "mdf explain learn story voxels tutorial"},
     {"help.tour", "introduction tutorial guide"},
     {"help.about", "version licence license"},
     {"target.open", "load import shape model mesh"},

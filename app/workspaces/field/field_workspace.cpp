@@ -17,6 +17,7 @@
 #include "app/workspaces/field/field_commands.h"
 #include "app/workspaces/field/field_dock.h"
 #include "app/workspaces/field/field_exports.h"
+#include "app/workspaces/field/field_story_window.h"
 #include "app/workspaces/field/match_dock.h"
 #include "app/workspaces/field/target_dock.h"
 #include "app/workspaces/field/view_commands.h"
@@ -224,6 +225,7 @@ FieldWorkspace::FieldWorkspace(Studio& studio) : data_(std::make_unique<Data>(st
                          return view;
                      },
                      nullptr});
+    addFieldStory(studio, [&data] { return data.stage ? data.stage->window() : nullptr; });
     data.listen();
 }
 
