@@ -70,10 +70,13 @@ std::vector<QRectF> cellsIn(const QRectF& box, std::size_t count, double ratio, 
     const std::size_t rows = (count + columns - 1) / columns;
     const QSizeF size((box.width() + gap) / static_cast<double>(columns) - gap,
                       (box.height() + gap) / static_cast<double>(rows) - gap);
-    for (std::size_t k = 0; k < count; ++k)
-        cells.emplace_back(QPointF(box.left() + static_cast<double>(k % columns) * (size.width() + gap),
-                                   box.top() + static_cast<double>(k / columns) * (size.height() + gap)),
+    for (std::size_t k = 0; k < count; ++k) {
+        const std::size_t row = k / columns;
+        const std::size_t column = k % columns;
+        cells.emplace_back(QPointF(box.left() + static_cast<double>(column) * (size.width() + gap),
+                                   box.top() + static_cast<double>(row) * (size.height() + gap)),
                            size);
+    }
     return cells;
 }
 
