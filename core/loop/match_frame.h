@@ -62,6 +62,7 @@ struct MatchFrame {
     /// the driver, or those of `program`. Never while the scene's item drives.
     bool matched = false;
     std::optional<ItemFit> itemFit; ///< with a field, while the scene's item drives
+    std::optional<double> poseSeconds; ///< how far the poses have come that play; empty: none do
     double seconds = 0.0;           ///< of the target's animation
     Angle turned;                   ///< by spinning, on top of the placement's yaw
     glm::mat4 deviceFromTarget{1.0F};
