@@ -287,16 +287,14 @@ BoardSequence posesOf(const SketchArguments& arguments, const Project& project, 
     for (const Actuator& actuator : rig.actuators()) names.push_back(actuator.name);
     if (project.poses.sequence.steps.empty())
         throw DataError(arguments.project, "it has no sequence of poses", "make one in the studio's dock Poses");
-    return {sequenceFor(project.poses, names),
-            arguments.atPower ? std::nullopt : std::optional<int>(arguments.button)};
+    return {sequenceFor(project.poses, names), arguments.atPower ? std::nullopt : std::optional<int>(arguments.button)};
 }
 
 void sketch(const SketchArguments& arguments) {
     const Project project = readProject(arguments.project);
     const Rig rig = readRig(assetPath(arguments.project, project.rig));
-    const DeviceProfile profile = arguments.profile.empty()
-                                      ? profileFor(rig, firstChannel(ControllerKind::firmata))
-                                      : readProfile(arguments.profile);
+    const DeviceProfile profile = arguments.profile.empty() ? profileFor(rig, firstChannel(ControllerKind::firmata))
+                                                            : readProfile(arguments.profile);
     const BoardSequence poses = posesOf(arguments, project, rig);
     const BoardPlan plan = planForBoard(profile, poses);
     const std::filesystem::path folder = writeSketch(profile, arguments.output, &poses);

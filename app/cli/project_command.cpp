@@ -55,9 +55,10 @@ public:
         nlohmann::json problems = nlohmann::json::array();
         for (const Error& problem : problems_)
             problems.push_back({{"subject", problem.subject()}, {"why", problem.why()}, {"remedy", problem.remedy()}});
-        return {{"ok", problems_.empty()}, {"schemaVersion", kProjectSchema}, {"rig", rig_.json},
-                {"field", field_.json},    {"target", target_.json},          {"poses", poses_.json},
-                {"scene", scene_.json},                {"problems", problems}};
+        return {{"ok", problems_.empty()}, {"schemaVersion", kProjectSchema},
+                {"rig", rig_.json},        {"field", field_.json},
+                {"target", target_.json},  {"poses", poses_.json},
+                {"scene", scene_.json},    {"problems", problems}};
     }
 
     void throwIfBroken() const {

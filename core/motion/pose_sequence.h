@@ -72,24 +72,24 @@ void requirePlayable(const PoseSequence& sequence, std::size_t actuators);
 
 /// What an actuator may do on its way from pose to pose, in strokes.
 struct PoseLimits {
-    double maxVelocity = 1.0; ///< a second
+    double maxVelocity = 1.0;                                         ///< a second
     double maxAcceleration = std::numeric_limits<double>::infinity(); ///< a second, a second
 };
 /// Velocities alone, as a rig says them.
 [[nodiscard]] std::vector<PoseLimits> poseLimits(std::span<const MotionLimits> limits);
 
 /// The same sequence, each travel made as long as the actuators' limits need, so that a device that keeps them is where
-/// it is to be: `from` as in strokesAt, for the first. Of linear ways only the velocity is looked at (peakAcceleration).
-/// Throws InvalidInput where the counts do not match.
+/// it is to be: `from` as in strokesAt, for the first. Of linear ways only the velocity is looked at
+/// (peakAcceleration). Throws InvalidInput where the counts do not match.
 [[nodiscard]] PoseSequence withinLimits(PoseSequence sequence, std::span<const double> from,
                                         std::span<const PoseLimits> limits);
 
 /// A sequence that plays.
 struct PosePlay {
-    PoseSequence sequence;         ///< playable
-    std::vector<double> from;      ///< as in strokesAt
-    Microseconds since{0};         ///< when it began, by the clock of who plays it
-    std::optional<double> heldAt;  ///< seconds from its beginning at which it waits
+    PoseSequence sequence;        ///< playable
+    std::vector<double> from;     ///< as in strokesAt
+    Microseconds since{0};        ///< when it began, by the clock of who plays it
+    std::optional<double> heldAt; ///< seconds from its beginning at which it waits
     bool operator==(const PosePlay&) const = default;
 };
 /// How far it has come, seconds from its beginning; of a loop over all rounds.

@@ -60,9 +60,8 @@ PoseBook readPoses(JsonSection section) {
         entry.text("name", pose.name);
         entry.numbers("strokes", pose.strokes, 0.0, 1.0, kMaxActuators);
     });
-    section.sections("steps", kMaxPoseSteps, [&](JsonSection entry) {
-        book.sequence.steps.push_back(readPoseStep(std::move(entry)));
-    });
+    section.sections("steps", kMaxPoseSteps,
+                     [&](JsonSection entry) { book.sequence.steps.push_back(readPoseStep(std::move(entry))); });
     section.flag("loop", book.sequence.loop);
     try {
         requireSound(book);
@@ -74,8 +73,7 @@ PoseBook readPoses(JsonSection section) {
 
 json posesDocument(const PoseBook& book) {
     json named = json::array();
-    for (const NamedPose& pose : book.sequence.poses)
-        named.push_back({{"name", pose.name}, {"strokes", pose.strokes}});
+    for (const NamedPose& pose : book.sequence.poses) named.push_back({{"name", pose.name}, {"strokes", pose.strokes}});
     json steps = json::array();
     for (const PoseStep& step : book.sequence.steps)
         steps.push_back({{"pose", step.pose},

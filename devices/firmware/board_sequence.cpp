@@ -57,8 +57,8 @@ PoseSequence withinLimitsFromAnywhere(const PoseSequence& sequence, const std::v
                                       const std::vector<PoseLimits>& limits) {
     PoseSequence slow = withinLimits(sequence, from, limits);
     for (const NamedPose& pose : sequence.poses)
-        slow.steps.front().travelSeconds = std::max(slow.steps.front().travelSeconds,
-                                                    withinLimits(sequence, pose.strokes, limits).steps[0].travelSeconds);
+        slow.steps.front().travelSeconds = std::max(
+            slow.steps.front().travelSeconds, withinLimits(sequence, pose.strokes, limits).steps[0].travelSeconds);
     return slow;
 }
 

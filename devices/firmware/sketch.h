@@ -16,8 +16,8 @@ namespace lumorph {
 /// folder: "tablet", or "tablet-2" and so on where that is there already. The Arduino IDE can open it, since its main
 /// file is called as the folder. Whole or not at all; nothing that is there is replaced.
 /// With poses the board shows them without a computer.
-/// Throws InvalidInput as channelsHeader and posesHeader do, DataError where the sketch is missing, DeviceError where the disk
-/// refuses.
+/// Throws InvalidInput as channelsHeader and posesHeader do, DataError where the sketch is missing, DeviceError where
+/// the disk refuses.
 [[nodiscard]] std::filesystem::path writeSketch(const DeviceProfile& profile, const std::filesystem::path& parent,
                                                 const BoardSequence* poses = nullptr);
 

@@ -1,5 +1,5 @@
-// Writes the headers of one of the variants that the sketch is tested in: channels.h, and poses.h where it has poses, else
-// a copy of the sketch's own.
+// Writes the headers of one of the variants that the sketch is tested in: channels.h, and poses.h where it has poses,
+// else a copy of the sketch's own.
 
 #include <filesystem>
 #include <fstream>

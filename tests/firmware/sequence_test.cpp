@@ -132,7 +132,8 @@ TEST_P(FirmwareSequence, AButtonPlaysThePosesAsTheCoreReckonsThem) {
         starts.push_back(first);
     }
     const auto frames = static_cast<std::size_t>(std::ceil(50.0 * seconds)) + 20U; // and it stays in its last pose
-    const Fit fit = bestFit(widths, variant.profile, plan.sequence, plan.from, starts.back(), starts.back() + 20U, frames);
+    const Fit fit =
+        bestFit(widths, variant.profile, plan.sequence, plan.from, starts.back(), starts.back() + 20U, frames);
     RecordProperty("worst", std::to_string(fit.worst));
     EXPECT_LE(fit.worst, kResolution);
     expectWithinLimits(widths, variant.profile);

@@ -55,7 +55,7 @@ struct StudioState {
     FieldAsset field; ///< of this rig or an edit of it before, or empty
     TargetAsset target;
     Placement placement;
-    std::vector<double> strokes; ///< set by hand; one an actuator of the rig's parts, each in [0, 1]
+    std::vector<double> strokes;           ///< set by hand; one an actuator of the rig's parts, each in [0, 1]
     std::shared_ptr<const PoseBook> poses; ///< named, and their sequence; in a document never empty
     Matching matching;
     Playback playback;

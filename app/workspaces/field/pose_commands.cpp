@@ -15,8 +15,9 @@ namespace {
 class PoseCommands : public QObject {
 public:
     PoseCommands(Studio& studio, PoseDesk& desk) : QObject(&desk), studio_(studio), desk_(desk) {
-        keep_ = add("keep", "Keep this pose", "mark", "Where the device is asked to be now, under a name",
-                    [this] { keep(); }, QKeySequence("Ctrl+Shift+P"));
+        keep_ = add(
+            "keep", "Keep this pose", "mark", "Where the device is asked to be now, under a name", [this] { keep(); },
+            QKeySequence("Ctrl+Shift+P"));
         update_ = add("update", "Take the pose again", "replay", "The chosen pose becomes where the device is now",
                       [this] { desk_.update(); });
         go_ = add("go", "Go to the pose", "hand", "The device takes the chosen pose", [this] { desk_.go(); });
@@ -28,11 +29,14 @@ public:
                           [this] { desk_.removeStep(); });
         play_ = add("play", "Play the poses", "play", "", [this] { playOrPause(); });
         stop_ = add("stop", "Stop the poses", "stop", "The device stays where it is", [this] { desk_.stop(); });
-        loop_ = add("loop", "Loop the poses", "reset", "From the last pose on to the first, until you stop it",
-                    [this] { desk_.setLoop(!desk_.book().sequence.loop); }, {}, true);
+        loop_ = add(
+            "loop", "Loop the poses", "reset", "From the last pose on to the first, until you stop it",
+            [this] { desk_.setLoop(!desk_.book().sequence.loop); }, {}, true);
         export_ = add("export", "Export the poses with the firmware...", "export",
                       "The board's sketch with the sequence in it: the device shows it without a computer",
                       [this] { openPoseExport(studio_, QApplication::activeWindow()); });
+        keep_->setIconText("Keep");
+        export_->setIconText("Export...");
         connect(&desk, &PoseDesk::changed, this, &PoseCommands::follow);
         connect(&studio.document, &StudioDocument::changed, this, &PoseCommands::follow);
         connect(&studio.loop, &StudioLoop::stoppedChanged, this, &PoseCommands::follow);

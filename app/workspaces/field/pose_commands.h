@@ -5,8 +5,8 @@
 
 namespace lumorph::studio {
 
-/// Adds the commands of named poses and their sequence: poses.keep, update, go, remove, addStep, removeStep, play, stop,
-/// loop and export. They are enabled while they can do something. Keeping a pose shows the dock of poses.
+/// Adds the commands of named poses and their sequence: poses.keep, update, go, remove, addStep, removeStep, play,
+/// stop, loop and export. They are enabled while they can do something. Keeping a pose shows the dock of poses.
 void addPoseCommands(Studio& studio, PoseDesk& desk);
 
 } // namespace lumorph::studio

@@ -36,14 +36,17 @@ QIcon barsOf(const std::vector<double>& strokes, qreal ratio) {
     picture.fill(Qt::transparent);
     QPainter painter(&picture);
     const Palette& colors = currentPalette();
-    const double width = static_cast<double>(kBars.width()) / std::max<double>(1.0, static_cast<double>(strokes.size()));
+    const double width =
+        static_cast<double>(kBars.width()) / std::max<double>(1.0, static_cast<double>(strokes.size()));
     for (std::size_t k = 0; k < strokes.size(); ++k) {
         const double height = 1.0 + strokes[k] * (kBars.height() - 1.0);
         const double gap = width > 3.0 ? 1.0 : 0.0;
         painter.fillRect(QRectF(static_cast<double>(k) * width, kBars.height() - height, width - gap, height),
                          colors.accent);
     }
-    return QIcon(picture);
+    QIcon bars(picture);
+    bars.addPixmap(picture, QIcon::Selected); // else it is tinted, and dim
+    return bars;
 }
 
 class PoseDock : public QWidget {
@@ -94,6 +97,13 @@ private:
         return makeCommandIcon(studio_.commands.find(QString("poses.") + command), QString("poses.") + command, parent);
     }
 
+    /// With the short words of the command beside its icon.
+    QToolButton* wordsOf(const char* command, QWidget* parent) {
+        QToolButton* button = iconOf(command, parent);
+        button->setToolButtonStyle(Qt::ToolButtonTextBesideIcon);
+        return button;
+    }
+
     QWidget* makePoses() {
         auto* column = new QWidget;
         column->setFixedWidth(kListWidth);
@@ -102,8 +112,7 @@ private:
         layout->setSpacing(4);
         auto* bar = new QHBoxLayout;
         bar->setSpacing(4);
-        bar->addWidget(
-            makeCommandButton(studio_.commands.find("poses.keep"), "poses.keep", column));
+        bar->addWidget(wordsOf("keep", column));
         bar->addStretch(1);
         for (const char* command : {"go", "update", "addStep", "remove"}) bar->addWidget(iconOf(command, column));
         layout->addLayout(bar);
@@ -125,12 +134,12 @@ private:
         layout->setContentsMargins(0, 0, 0, 0);
         layout->setSpacing(4);
         for (const char* command : {"play", "stop", "loop"}) layout->addWidget(iconOf(command, bar));
-        time_ = makeNumber("poses.time", "0000.0 / 0000.0 s", bar);
+        time_ = makeNumber("poses.time", "000.0 / 000.0 s", bar);
+        time_->setAlignment(Qt::AlignLeft | Qt::AlignVCenter);
         layout->addSpacing(8);
         layout->addWidget(time_);
         layout->addStretch(1);
-        auto* button = makeCommandButton(studio_.commands.find("poses.export"), "poses.export", bar);
-        layout->addWidget(button);
+        layout->addWidget(wordsOf("export", bar));
         return bar;
     }
 
@@ -195,9 +204,8 @@ private:
         easing_->setItemData(2, "The same speed all the way (linear)", Qt::ToolTipRole);
         easing_->setToolTip("How it moves: as hands do, smoothly, or at the same speed all the way");
         connect(easing_, &QComboBox::activated, this, [this](int index) {
-            desk_.editStep("Change how a step moves", [index](PoseStep& step) {
-                step.easing = kEasings.at(static_cast<std::size_t>(index));
-            });
+            desk_.editStep("Change how a step moves",
+                           [index](PoseStep& step) { step.easing = kEasings.at(static_cast<std::size_t>(index)); });
         });
         layout->addWidget(easing_);
         layout->addStretch(1);
@@ -215,9 +223,8 @@ private:
         field->setStep(0.1);
         field->setFixedWidth(88);
         label->setBuddy(field);
-        connect(field, &ValueField::previewed, this, [this, set](double value) {
-            desk_.previewStep([&](PoseStep& step) { set(step, value); });
-        });
+        connect(field, &ValueField::previewed, this,
+                [this, set](double value) { desk_.previewStep([&](PoseStep& step) { set(step, value); }); });
         connect(field, &ValueField::committed, this, [this, set](double value) {
             desk_.previewStep([&](PoseStep& step) { set(step, value); });
             studio_.document.commitPreview("Change a step's time");
@@ -308,10 +315,9 @@ private:
         slowed_->setVisible(!slow.isEmpty());
         const auto seconds = desk_.seconds();
         timeline_->setPlayhead(seconds);
-        time_->setText(planned ? QString("%1 / %2 s")
-                                     .arg(seconds.value_or(0.0), 0, 'f', 1)
-                                     .arg(durationOf(*planned), 0, 'f', 1)
-                               : QString());
+        time_->setText(
+            planned ? QString("%1 / %2 s").arg(seconds.value_or(0.0), 0, 'f', 1).arg(durationOf(*planned), 0, 'f', 1)
+                    : QString());
         if (seconds) scroll_->ensureVisible(static_cast<int>(timeline_->playheadX()), 0, 40, 0);
         if (desk_.state() == PoseDesk::State::playing) refresh_->request();
     }

@@ -53,9 +53,10 @@ public:
         auto* layout = new QVBoxLayout(this);
         layout->setContentsMargins(16, 16, 16, 16);
         layout->setSpacing(12);
-        auto* what = new QLabel(tr("The sketch for the Arduino Pro Mini, with pins and limits of the set-up in Devices. "
-                                   "Uploaded, it shows the sequence without a computer, and a computer that connects "
-                                   "takes over at once."));
+        auto* what =
+            new QLabel(tr("The sketch for the Arduino Pro Mini, with pins and limits of the set-up in Devices. "
+                          "Uploaded, it shows the sequence without a computer, and a computer that connects "
+                          "takes over at once."));
         what->setWordWrap(true);
         layout->addWidget(what);
         layout->addWidget(makeChoice());

@@ -122,8 +122,7 @@ int PoseTimeline::stepAt(double x) const {
 double PoseTimeline::xOf(double seconds) const {
     for (std::size_t k = 0; k < planned_.steps.size(); ++k) {
         const double length = secondsOf(planned_.steps[k]);
-        if (seconds < length)
-            return edges_[k] + (edges_[k + 1] - edges_[k]) * seconds / length;
+        if (seconds < length) return edges_[k] + (edges_[k + 1] - edges_[k]) * seconds / length;
         seconds -= length;
     }
     return edges_.empty() ? kSide : edges_.back();

@@ -15,7 +15,7 @@ struct PoseStep {
 
 constexpr uint16_t kPoseSteps = 0; // 0: none, the board waits for a computer
 constexpr bool kPoseLoop = false;
-constexpr uint8_t kPoseButton = 0; // pin of a button to ground; 0: it begins by itself at power on
+constexpr uint8_t kPoseButton = 0;  // pin of a button to ground; 0: it begins by itself at power on
 constexpr uint8_t kPoseStagger = 1; // frames between one servo's start and the next
 
 // Microseconds of each channel; first where it begins that the board does not know.

@@ -16,15 +16,15 @@ constexpr uint8_t kSteadyFrames = 2; // a button's contacts bounce for less than
 
 enum State : uint8_t { kIdle, kStarting, kPlaying, kEnded };
 State state;
-uint16_t step;            // that plays
-uint32_t frame;           // of that step
+uint16_t step;                // that plays
+uint32_t frame;               // of that step
 uint16_t from[kChannelCount]; // where its way begins
-uint8_t next;             // channel that is started next
-uint8_t wait;             // frames until then
-bool waitsForPower;       // it will begin by itself
-uint8_t quiet;            // frames since power on
-uint8_t low;              // frames for which the button has been down
-bool wasLow = true;       // one that is down at power on does not count
+uint8_t next;                 // channel that is started next
+uint8_t wait;                 // frames until then
+bool waitsForPower;           // it will begin by itself
+uint8_t quiet;                // frames since power on
+uint8_t low;                  // frames for which the button has been down
+bool wasLow = true;           // one that is down at power on does not count
 
 uint16_t pulseAt(uint8_t row, uint8_t channel) { return pgm_read_word(&kPosePulses[row][channel]); }
 
@@ -36,17 +36,17 @@ PoseStep stepAt(uint16_t index) {
 
 /// The share of the way after `done` of `all` frames, in 1 / 32768.
 uint16_t shareOf(PoseEasing easing, uint32_t done, uint32_t all) {
-    const uint32_t u = (done << 14) / all;                            // of 2^14; an hour has 180,000 frames
-    const uint32_t u2 = (u * u + (1UL << 11)) >> 12;                  // of 2^16
+    const uint32_t u = (done << 14) / all;           // of 2^14; an hour has 180,000 frames
+    const uint32_t u2 = (u * u + (1UL << 11)) >> 12; // of 2^16
     if (easing == kSmoothly) return (u2 * ((3UL << 14) - 2 * u) + (1UL << 14)) >> 15; // u^2 (3 - 2 u)
-    const uint32_t u3 = (u2 * u + (1UL << 13)) >> 14;                 // of 2^16
-    const uint32_t rest = (10UL << 14) + ((6 * u2) >> 2) - 15 * u;    // 10 - 15 u + 6 u^2, of 2^14
+    const uint32_t u3 = (u2 * u + (1UL << 13)) >> 14;                                 // of 2^16
+    const uint32_t rest = (10UL << 14) + ((6 * u2) >> 2) - 15 * u;                    // 10 - 15 u + 6 u^2, of 2^14
     return (u3 * rest + (1UL << 14)) >> 15;
 }
 
 bool pressed() {
     if (kPoseButton == 0) return false;
-    const bool isLow = !(kPoseButton < 8 ? PIND & _BV(kPoseButton & 7)
+    const bool isLow = !(kPoseButton < 8    ? PIND & _BV(kPoseButton & 7)
                          : kPoseButton < 14 ? PINB & _BV((kPoseButton - 8) & 7)
                                             : PINC & _BV((kPoseButton - 14) & 7));
     low = !isLow ? 0 : low < kSteadyFrames ? low + 1 : low;
