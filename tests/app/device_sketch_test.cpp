@@ -47,7 +47,7 @@ TEST(DeviceSketch, SaysWhatIsMissing) {
     EXPECT_THAT(none.err, HasSubstr("it has no sequence of poses"));
     writeFile(project, projectWithPoses(R"([{"pose": "up"}])"));
     const Outcome lamp = lumorph({"device", "sketch", project, "--button", "13", "-o", (folder / ".").string()});
-    EXPECT_EQ(lamp.exitCode, 1);
+    EXPECT_EQ(lamp.exitCode, 2);
     EXPECT_THAT(lamp.err, HasSubstr("pin 13"));
     EXPECT_EQ(lumorph({"device", "sketch", project, "-o", (folder / ".").string()}).exitCode, 2);
     EXPECT_EQ(lumorph({"device", "sketch", project, "--button", "12", "--at-power-on", "-o", "."}).exitCode, 2);
