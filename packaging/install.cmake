@@ -2,6 +2,10 @@
 include(GNUInstallDirs)
 
 install(TARGETS lumorph RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+if(TARGET lumorph_mpi)
+    # core/search/shared_batch.cpp looks for ../lib/lumorph beside the program.
+    install(TARGETS lumorph_mpi LIBRARY DESTINATION lib/lumorph)
+endif()
 # core/base/resources.cpp looks for ../share/lumorph beside the program.
 install(DIRECTORY resources/fonts resources/guide resources/icons resources/materials resources/models resources/projects
                   resources/shaders resources/targets resources/thumbnails
@@ -40,5 +44,7 @@ set(CPACK_DEBIAN_PACKAGE_SECTION graphics)
 # Libraries are found by what the programs link; these are loaded at run time.
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_PACKAGE_DEPENDS "libegl1, libgl1-mesa-dri | libgl1-nvidia-glvnd-glx, qt6-qpa-plugins, shared-mime-info, hicolor-icon-theme")
+# What starts a search on several machines at once.
+set(CPACK_DEBIAN_PACKAGE_SUGGESTS "openmpi-bin")
 set(CPACK_DEBIAN_PACKAGE_CONTROL_STRICT_PERMISSION ON)
 include(CPack)

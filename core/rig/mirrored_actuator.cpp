@@ -10,6 +10,7 @@
 
 #include "core/base/error.h"
 #include "core/base/text.h"
+#include "core/rig/rig_validation.h"
 
 namespace lumorph {
 namespace {
@@ -122,6 +123,7 @@ float middleOf(const RigParts& parts, int axis) {
 } // namespace
 
 MirroredActuator mirroredActuator(const RigParts& parts, std::size_t index, MirrorPlane plane) {
+    validate(parts); // while they are edited they may be no rig
     const Actuator& first = parts.actuators.at(index);
     const std::string subject = "actuator " + inQuotes(first.name);
     const TurnOver over{middleOf(parts, axisOf(plane)), axisOf(plane), subject};

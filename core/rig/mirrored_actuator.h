@@ -19,7 +19,8 @@ struct MirroredActuator {
 /// A rig with the mirror image of one of its actuators. Where another actuator moves just the mirrored vertices, that
 /// one takes over deformer, range, weights and velocity; else a new one, without a channel, is added at the end. Each
 /// vertex's image is the vertex within 0.5 mm of the mirrored place. Throws InvalidInput naming the actuator where the
-/// mesh has no such vertices, where the image is the actuator itself, and for joints of a skin.
+/// mesh has no such vertices, where the image is the actuator itself, for joints of a skin, and for parts that are no
+/// rig.
 [[nodiscard]] MirroredActuator mirroredActuator(const RigParts& parts, std::size_t actuator, MirrorPlane plane);
 
 /// The plane across which an actuator's part lies farther from the middle.
