@@ -16,7 +16,7 @@ namespace lumorph::studio {
 
 namespace {
 
-constexpr double kGap = 12.0;         ///< between parts, of a usual window's pixels
+constexpr double kStoryGap = 12.0;    ///< between parts, of a usual window's pixels
 constexpr double kLine = 18.0;        ///< height of a line of text there
 constexpr double kStatesShare = 0.22; ///< of the height, for the states one by one
 constexpr double kChartsShare = 0.40; ///< for the vote charts
@@ -421,7 +421,7 @@ private:
             painter_.fillRect(bar, gradient);
             x = bar.right() + 6.0 * unit_;
             text(QString::number(field_.levels - 1), colors_.textMuted);
-            x += kGap * unit_;
+            x += kStoryGap * unit_;
         }
         for (const Entry& entry : entries) {
             if (entry.line) {
@@ -433,7 +433,7 @@ private:
                 x += side + 6.0 * unit_;
             }
             text(entry.text, colors_.text);
-            x += kGap * unit_;
+            x += kStoryGap * unit_;
         }
     }
 
@@ -454,14 +454,15 @@ private:
 /// Two planes as large as they can be, beside or below each other, with a line of words above each.
 void layFit(StoryLayout& layout, const glm::ivec2& extent, const QRectF& room, double unit) {
     const double words = 1.4 * kLine * unit;
-    const QSizeF beside((room.width() - kGap * unit) / 2.0, room.height() - words);
-    const QSizeF below(room.width(), (room.height() - kGap * unit) / 2.0 - words);
+    const QSizeF beside((room.width() - kStoryGap * unit) / 2.0, room.height() - words);
+    const QSizeF below(room.width(), (room.height() - kStoryGap * unit) / 2.0 - words);
     const bool isBeside = voxelFor(extent, beside) >= voxelFor(extent, below);
     const QSizeF size = isBeside ? beside : below;
     layout.voxel = voxelFor(extent, size);
     QRectF first(room.topLeft() + QPointF(0, words), size);
     layout.section = planeIn(extent, layout.voxel, first);
-    first.translate(isBeside ? size.width() + kGap * unit : 0.0, isBeside ? 0.0 : size.height() + words + kGap * unit);
+    first.translate(isBeside ? size.width() + kStoryGap * unit : 0.0,
+                    isBeside ? 0.0 : size.height() + words + kStoryGap * unit);
     layout.second = planeIn(extent, layout.voxel, first);
 }
 
@@ -471,7 +472,7 @@ StoryLayout layoutOf(const StoryPicture& picture, const QRectF& area, double uni
     StoryLayout layout;
     const glm::ivec2 extent = sizeOf(picture.view.plane, dimensionsOf(picture));
     const StoryStep step = picture.view.step;
-    const double gap = kGap * unit;
+    const double gap = kStoryGap * unit;
     QRectF room = area;
     layout.legend = QRectF(room.left(), room.bottom() - 1.3 * kLine * unit, room.width(), 1.3 * kLine * unit);
     room.setBottom(layout.legend.top() - gap);
