@@ -5,9 +5,12 @@
 #include <ctime>
 #include <numbers>
 
+#include <QComboBox>
 #include <QListWidget>
 
+#include "app/studio/widgets/value_field.h"
 #include "app/workspaces/rig/actuator_guide.h"
+#include "app/workspaces/rig/influence_map.h"
 #include "core/rig/rig_file.h"
 #include "core/rig/templates/reference_rigs.h"
 #include "tests/ui/stall_watch.h"
@@ -296,6 +299,82 @@ TEST_F(RigHandles, AWayIsDraggedByItsEndsAndTurned) {
     EXPECT_LT(glm::distance(unit(std::get<Slide>(actuator().deformer).direction), glm::normalize(goal)), 1e-4);
     window.screenshot("rig_handles_way");
     expectOneStep(before, step);
+}
+
+TEST_F(RigHandles, TheKindOfServoIsChosenAndSaysWhetherItIsStrongEnough) {
+    choose(4);
+    const auto before = bytes();
+    const int step = steps();
+    auto* servo = window.find<QComboBox>("rig.edit.servo");
+    const auto pick = [&](const QString& name) {
+        servo->setCurrentIndex(servo->findText(name));
+        emit servo->activated(servo->currentIndex());
+    };
+    const ServoLoad needed = servoLoad(*window.state().rig.rig, chosen);
+    pick("SG90");
+    EXPECT_EQ(actuator().drive.servo, "SG90");
+    EXPECT_EQ(steps(), step + 1);
+    ASSERT_TRUE(eventually([&] { return window.text("rig.edit.load").contains("SG90"); }));
+    EXPECT_EQ(window.text("rig.edit.load").contains("Too weak"), needed.torque > 0.5 * 0.17652);
+    window.screenshot("rig_servo_weak");
+    pick("DS3218");
+    ASSERT_TRUE(eventually([&] { return window.text("rig.edit.load").contains("DS3218"); }));
+    EXPECT_FALSE(window.text("rig.edit.load").contains("Too weak"));
+    // 90 degrees at 0.16 s for 60.
+    auto* stroke = window.find<ValueField>("rig.edit.stroke");
+    window.enter("rig.edit.stroke", "0.1");
+    EXPECT_NEAR(1.0 / actuator().maxVelocity, 0.24, 1e-9);
+    EXPECT_TRUE(stroke->toolTip().contains("0.24 s at best"));
+    window.screenshot("rig_servo");
+    while (steps() > step) window.studio().document.undoStack().undo();
+    EXPECT_EQ(bytes(), before);
+}
+
+TEST_F(RigHandles, TheMirrorImageTakesOverHowTheChosenOneMoves) {
+    choose(0);
+    dragMouse(view, seen(RigHandle::to), {-31.0, 23.0});
+    const double max = rangeOf(actuator()).max;
+    const auto before = bytes();
+    const int step = steps();
+    window.command("mirror to the other side");
+    ASSERT_TRUE(eventually([&] { return steps() == step + 1; }));
+    EXPECT_EQ(parts().actuators.size(), 6U);
+    EXPECT_EQ(rangeOf(parts().actuators[1]).max, max) << "corner front right as corner front left";
+    expectOneStep(before, step);
+}
+
+TEST_F(RigHandles, ColoursSayHowFarEachPlaceGoes) {
+    choose(0);
+    const std::size_t without = view->scene()->surfaces.size();
+    window.click("rig.influenceButton");
+    ASSERT_TRUE(eventually([&] { return view->scene()->surfaces.size() > without && view->settled(); }));
+    window.screenshot("rig_influence");
+    // A triangle of a higher band goes farther than one of a lower, at the end of its stroke, and the rest stays.
+    const Rig& rig = *window.state().rig.rig;
+    const std::vector<int> bands = InfluenceMap(rig, 0).bands();
+    std::vector<double> strokes(rig.actuatorCount(), 0.0);
+    const auto rest = deformed(strokes);
+    strokes[0] = 1.0;
+    const auto now = deformed(strokes);
+    std::vector<double> least(InfluenceMap::kBands, 1e9), most(InfluenceMap::kBands, 0.0);
+    for (std::size_t t = 0; t < bands.size(); ++t) {
+        double way = 0.0;
+        for (int k = 0; k < 3; ++k) {
+            const std::uint32_t v = rig.restMesh().triangles[t][k];
+            way += static_cast<double>(glm::distance(now[v], rest[v])) / 3.0;
+        }
+        if (bands[t] < 0) {
+            EXPECT_LT(way, 1e-5);
+            continue;
+        }
+        least[bands[t]] = std::min(least[bands[t]], way);
+        most[bands[t]] = std::max(most[bands[t]], way);
+    }
+    EXPECT_GT(most.back(), 0.04) << "its tip goes farthest";
+    for (int b = 1; b < InfluenceMap::kBands; ++b)
+        EXPECT_LE(most[b - 1], least[b] + 0.0005) << b; // an empty band says nothing
+    window.click("rig.influenceButton");
+    EXPECT_TRUE(eventually([&] { return view->scene()->surfaces.size() == without; }));
 }
 
 /// What the window's own thread has worked so far, whoever else has the processor.

@@ -11,6 +11,7 @@
 #include <QFileDialog>
 #include <QPointer>
 
+#include "app/studio/document/rig_edit.h"
 #include "app/studio/viewport/viewport_widget.h"
 #include "app/studio/widgets/bundled_shelf.h"
 #include "app/workspaces/common/export_dialogs.h"
@@ -18,10 +19,13 @@
 #include "app/workspaces/common/kept_camera.h"
 #include "app/workspaces/rig/actuator_handles.h"
 #include "app/workspaces/rig/draw_sheet.h"
+#include "app/workspaces/rig/influence_map.h"
 #include "app/workspaces/rig/moved_part.h"
 #include "app/workspaces/rig/new_device.h"
 #include "app/workspaces/rig/rig_docks.h"
 #include "core/base/atomic_file.h"
+#include "core/base/error.h"
+#include "core/rig/mirrored_actuator.h"
 #include "core/rig/rig_file.h"
 
 namespace lumorph::studio {
@@ -61,6 +65,8 @@ struct RigWorkspace::Data : public QObject {
     void edited();
     void markPart();
     void wiggle();
+    void mirror();
+    void mapInfluence();
     void rehearse(bool glides);
     void listenToView();
     void followHandles();
@@ -83,7 +89,10 @@ struct RigWorkspace::Data : public QObject {
     ActuatorPreview linePreview;
     std::optional<glm::vec3> lineFrom; ///< the pivot when the arrows began to carry it
     QAction* backCommand = nullptr;
-    std::vector<double> rehearsedFrom; ///< strokes that were shown when another state was asked for
+    QAction* mirrorCommand = nullptr;
+    QAction* influenceCommand = nullptr;
+    std::optional<InfluenceMap> influence; ///< of the chosen actuator, while that is shown
+    std::vector<double> rehearsedFrom;     ///< strokes that were shown when another state was asked for
     std::vector<double> shownStrokes;
     std::shared_ptr<const std::vector<glm::vec3>> tried; ///< positions of `triedOf` at `triedStrokes`
     std::shared_ptr<const Rig> triedOf;
@@ -153,6 +162,19 @@ void RigWorkspace::Data::addCommands() {
     backCommand = studio.commands.add("rig.back", "Show it as it stands", options, [this] { selection.rehearse({}); });
     backCommand->setToolTip("End what is rehearsed in this view");
     backCommand->setEnabled(false);
+    options.icon = "mirror";
+    mirrorCommand = studio.commands.add("rig.mirror", "Mirror to the other side", options, [this] { mirror(); });
+    mirrorCommand->setToolTip("The chosen actuator once more across the middle of the device; one that stands there "
+                              "already takes over how it moves");
+    mirrorCommand->setEnabled(false);
+    options.icon = "heights";
+    options.checkable = true;
+    influenceCommand = studio.commands.add("rig.influence", "Show how far each place goes", options, [this] {
+        mapInfluence();
+        refresh();
+    });
+    influenceCommand->setToolTip("Colours what the chosen actuator moves: the farther a place goes at full stroke, the "
+                                 "darker");
 }
 
 void RigWorkspace::Data::saveRig() {
@@ -205,6 +227,8 @@ void RigWorkspace::Data::select() {
     followHandles();
     wiggle();
     wiggleCommand->setEnabled(part.has_value());
+    mirrorCommand->setEnabled(part.has_value());
+    mapInfluence();
     refresh();
 }
 
@@ -227,6 +251,8 @@ void RigWorkspace::Data::edited() {
                             std::ranges::equal(partOf->verticesOf(*chosen), rig->verticesOf(*chosen));
     if (!sameBorder) markPart();
     partOf = rig;
+    // In a drag the colours stay those of before it: sorting a fine mesh anew takes longer than a frame.
+    if (!studio.document.previewing()) mapInfluence();
     refresh();
 }
 
@@ -234,6 +260,28 @@ void RigWorkspace::Data::wiggle() {
     if (!part) return;
     wiggling.start();
     tick.start();
+}
+
+void RigWorkspace::Data::mirror() {
+    const auto parts = studio.document.state().rig.parts;
+    const auto chosen = selection.actuator();
+    if (!parts || !chosen || *chosen >= parts->actuators.size()) return;
+    try {
+        const MirroredActuator mirrored = mirroredActuator(*parts, *chosen, mirrorPlaneOf(*parts, *chosen));
+        const QString name = QString::fromStdString(parts->actuators[*chosen].name);
+        editRig(studio.document, QString("Mirror %1").arg(name),
+                [&mirrored](RigParts& now) { now.actuators = mirrored.parts.actuators; });
+    } catch (const Error& error) {
+        studio.notices.post("rig", noticeOf(error));
+    }
+}
+
+void RigWorkspace::Data::mapInfluence() {
+    const auto& rig = studio.document.state().rig.rig;
+    const auto chosen = selection.actuator();
+    influence.reset();
+    if (influenceCommand->isChecked() && rig && chosen && *chosen < rig->actuatorCount())
+        influence.emplace(*rig, *chosen);
 }
 
 void RigWorkspace::Data::rehearse(bool glides) {
@@ -349,6 +397,11 @@ void RigWorkspace::Data::refresh() {
     if (part && shown.devicePositions) {
         const auto lines = part->lines(*shown.devicePositions, scene->accent);
         scene->lines.insert(scene->lines.end(), lines.begin(), lines.end());
+    }
+    if (influence && shown.devicePositions) {
+        const FieldSceneColors colors = fieldSceneColors(studio.settings.theme());
+        for (ViewportSurface& band : influence->surfaces(shown.devicePositions, colors.levelLow, colors.levelHigh))
+            scene->surfaces.push_back(std::move(band));
     }
     if (unframed) frameOnce(*scene);
     view->setScene(std::move(scene));
