@@ -28,6 +28,8 @@ void addCalibrateRoomCommands(CLI::App& group, Session& session);
 /// Into the group of the calibrate commands.
 void addCalibrateDevice(CLI::App& group, Session& session);
 void addLabCommands(CLI::App& app, Session& session);
+/// Into the group of the lab.
+void addPlacementCommand(CLI::App& group, Session& session);
 /// Nor are these: devices and trackers are reached through Qt.
 void addDeviceCommands(CLI::App& app, Session& session);
 void addTrackCommand(CLI::App& app, Session& session);

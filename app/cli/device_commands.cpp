@@ -75,7 +75,6 @@ DeviceProfile profileOf(const DeviceArguments& arguments) {
         const std::string rig = arguments.rig.empty() ? resourceFile("models/tablet.glb").string() : arguments.rig;
         profile = profileFor(readRig(rig), firstChannel(kind));
         profile.controller = kind;
-        countChannelsFrom(profile, firstChannel(kind));
     }
     profile.address = arguments.uri;
     profile.restOnExit = false; // a command leaves things where it was told to

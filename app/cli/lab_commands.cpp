@@ -169,6 +169,7 @@ void addLabCommands(CLI::App& app, Session& session) {
     command->add_option("-o,--output", arguments->output, "A folder, new or empty")->required();
     command->add_flag("--json", arguments->json, "Print one JSON value");
     command->callback([arguments, &session] { capture(*arguments, session); });
+    addPlacementCommand(*group, session);
 }
 
 } // namespace lumorph::cli

@@ -5,6 +5,7 @@
 #include "app/cli/commands.h"
 #include "core/geometry/mesh_file.h"
 #include "core/geometry/mesh_writers.h"
+#include "core/rig/rig_check.h"
 #include "core/rig/rig_file.h"
 #include "core/rig/shape_report.h"
 #include "core/rig/templates/rig_templates.h"
@@ -19,6 +20,8 @@ struct InfoOptions {
     bool json = false;
     int states = 100;
     std::uint64_t seed = 1;
+    double maxStretch = RigCheckOptions{}.maxStretch;
+    double maxSpeed = RigCheckOptions{}.maxSpeed;
 };
 
 nlohmann::json vectorJson(const glm::vec3& v) { return {v.x, v.y, v.z}; }
@@ -36,6 +39,38 @@ nlohmann::json meshJson(const MeshReport& mesh) {
             {"inwardComponents", mesh.inwardComponents},
             {"volume", mesh.volume},
             {"findings", mesh.findings()}};
+}
+
+nlohmann::json checkJson(const Rig& rig, const RigCheck& check) {
+    nlohmann::json findings = nlohmann::json::array();
+    for (const RigFinding& finding : check.findings) {
+        nlohmann::json names = nlohmann::json::array();
+        for (const std::size_t a : finding.actuators) names.push_back(rig.actuators()[a].name);
+        findings.push_back({{"kind", nameOf(finding.kind)},
+                            {"actuators", names},
+                            {"first", finding.first},
+                            {"worst", finding.worst},
+                            {"amount", finding.amount},
+                            {"unit", unitOf(finding.kind)},
+                            {"limit", finding.limit},
+                            {"place", vectorJson(finding.place)},
+                            {"sentence", finding.sentence},
+                            {"remedy", finding.remedy}});
+    }
+    return {{"findings", findings},
+            {"levels", check.levelsLookedAt},
+            {"pairs", check.pairsLookedAt},
+            {"jointStates", check.jointStates}};
+}
+
+void printCheck(const RigCheck& check) {
+    std::printf("\n  Each actuator alone in %d levels, %d pairs that can meet, %d joint states: ", check.levelsLookedAt,
+                check.pairsLookedAt, check.jointStates);
+    std::printf(check.findings.empty() ? "nothing wrong.\n" : "%zu found.\n", check.findings.size());
+    constexpr std::size_t kMost = 24;
+    for (std::size_t k = 0; k < std::min(kMost, check.findings.size()); ++k)
+        std::printf("  ! %s\n      %s\n", check.findings[k].sentence.c_str(), check.findings[k].remedy.c_str());
+    if (check.findings.size() > kMost) std::printf("  ... and %zu more\n", check.findings.size() - kMost);
 }
 
 nlohmann::json reportJson(const Rig& rig, const ShapeReport& report) {
@@ -110,9 +145,22 @@ void printShapes(const Rig& rig, const ShapeReport& report) {
 
 void rigInfo(const InfoOptions& options, const Session& session) {
     const Rig rig = readRig(options.rig);
-    const ShapeReport report = shapeReport(rig, options.states, options.seed, session.progress());
+    const Progress progress = session.progress();
+    const ShapeReport report = shapeReport(rig, options.states, options.seed, progress.part(0.0, 0.5));
+    RigCheckOptions limits;
+    limits.maxStretch = options.maxStretch;
+    limits.maxSpeed = options.maxSpeed;
+    limits.states = options.states;
+    limits.seed = options.seed;
+    const RigCheck check = checkRig(rig, limits, progress.part(0.5, 1.0));
     Session::endProgress();
-    options.json ? printJson(reportJson(rig, report)) : printShapes(rig, report);
+    if (options.json) {
+        nlohmann::json json = reportJson(rig, report);
+        json["check"] = checkJson(rig, check);
+        return printJson(json);
+    }
+    printShapes(rig, report);
+    printCheck(check);
 }
 
 struct DeformOptions {
@@ -255,6 +303,16 @@ void addRigCommands(CLI::App& app, Session& session) {
         ->capture_default_str();
     infoCommand->add_option("--seed", infoOptions->seed, "Which random states")
         ->check(seedNumber())
+        ->capture_default_str();
+    infoCommand
+        ->add_option("--max-stretch", infoOptions->maxStretch,
+                     "How much longer than at rest the material may get: 0.1 is a tenth")
+        ->check(CLI::Range(0.0, 100.0))
+        ->capture_default_str();
+    infoCommand
+        ->add_option("--max-speed", infoOptions->maxSpeed,
+                     "Above this a point of the surface startles, in metres a second")
+        ->check(CLI::Range(0.0, 100.0))
         ->capture_default_str();
     infoCommand->callback([infoOptions, &session] { rigInfo(*infoOptions, session); });
 

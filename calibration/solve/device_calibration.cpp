@@ -162,7 +162,7 @@ PoseVector turnedOver(const PoseVector& pose, const std::vector<cv::Point3d>& po
     const Eigen::Vector3d way = seen - other * middle;
     PoseVector result;
     ceres::RotationMatrixToAngleAxis(other.data(), result.data());
-    for (int i = 0; i < 3; ++i) result[static_cast<std::size_t>(3 + i)] = way[i];
+    for (int i = 0; i < 3; ++i) result[3 + static_cast<std::size_t>(i)] = way[i];
     return result;
 }
 
@@ -353,7 +353,7 @@ private:
             PoseVector pose;
             for (int i = 0; i < 3; ++i) {
                 pose[static_cast<std::size_t>(i)] = turn.at<double>(i);
-                pose[static_cast<std::size_t>(3 + i)] = way.at<double>(i);
+                pose[3 + static_cast<std::size_t>(i)] = way.at<double>(i);
             }
             found.push_back({lens, pose});
             found.push_back({lens, turnedOver(pose, matches.points)});

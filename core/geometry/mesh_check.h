@@ -1,6 +1,8 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -42,6 +44,19 @@ inline constexpr std::size_t kMaxIntersectionsCounted = 1'000'000;
 /// Number of pairs of triangles that cross or overlap, neighbours that only share an edge or a
 /// corner excepted, at most kMaxIntersectionsCounted. Triangles without area cross nothing.
 [[nodiscard]] std::size_t countSelfIntersections(const TriangleMesh& mesh);
+
+/// Two triangles that cross or overlap, by number, and the box of where they meet.
+struct TriangleCrossing {
+    std::uint32_t first = 0;
+    std::uint32_t second = 0;
+    Box where;
+};
+
+/// The same pairs among some triangles, and between them and `others`, at most `most` of them in no order. No triangle
+/// stands in both lists.
+[[nodiscard]] std::vector<TriangleCrossing> findCrossings(const TriangleMesh& mesh,
+                                                          std::span<const std::uint32_t> triangles,
+                                                          std::span<const std::uint32_t> others, std::size_t most);
 
 struct MeshRepair {
     TriangleMesh mesh;

@@ -24,10 +24,15 @@ struct JointTable {
 /// Joints of all skins in the scene, at the pose as drawn. Throws DataError when there are too many.
 [[nodiscard]] JointTable tableOfJoints(const Model& model, const std::string& file);
 
-/// Joints that an animation turns, as actuators over the range it uses; the table is set to the
-/// lower end of every range.
+/// Joints that an animation turns, as actuators over the range it uses, about the axis of its widest turn.
 [[nodiscard]] std::vector<ActuatorEntry> jointsOfAnimations(const Model& model, const std::string& file,
-                                                            JointTable& table);
+                                                            const JointTable& table);
+/// All other joints, as actuators that turn about their own X axis by 45 degrees from the pose as drawn.
+[[nodiscard]] std::vector<ActuatorEntry> jointsAtRest(const Model& model, const std::string& file,
+                                                      const JointTable& table,
+                                                      const std::vector<ActuatorEntry>& animated);
+/// Sets the table to the lower end of the range of each of these joints.
+void restAtLowerEnds(const std::vector<ActuatorEntry>& entries, JointTable& table);
 
 /// Gathers the model's meshes into one, in device coordinates, with the skin and the influences of
 /// the actuators, whose entries it completes. Throws DataError.

@@ -1,8 +1,11 @@
 #include "core/rig/rig_file.h"
 
 #include <algorithm>
+#include <optional>
 
 #include "core/base/error.h"
+#include "core/base/json_check.h"
+#include "core/geometry/mesh_file.h"
 #include "core/rig/rig_document.h"
 #include "core/rig/rig_folder.h"
 #include "core/rig/rig_validation.h"
@@ -12,13 +15,21 @@ namespace {
 
 using nlohmann::json;
 
-/// The entries under `extras.lumorph`: one object or a list of them.
+constexpr JsonLimits kTextLimits{std::size_t{1} << 20, 8, 100'000}; ///< of an entry that is written as a text
+
+/// The entries under `extras.lumorph`: one object or a list of them, also as a text in JSON.
 std::vector<json> entriesOf(const json& extras) {
-    if (!extras.is_object()) return {};
-    const auto found = extras.find("lumorph");
-    if (found == extras.end() || found->is_null()) return {};
-    if (found->is_array()) return {found->begin(), found->end()};
-    return {*found};
+    if (!extras.is_object() || !extras.contains("lumorph")) return {};
+    json stated = extras["lumorph"];
+    // A modelling tool whose panel takes nothing but plain texts gives the object as one.
+    if (stated.is_string()) {
+        const auto& text = stated.get_ref<const std::string&>();
+        json parsed = jsonProblem(text, kTextLimits).empty() ? json::parse(text, nullptr, false) : json();
+        if (parsed.is_structured()) stated = std::move(parsed);
+    }
+    if (stated.is_null()) return {};
+    if (stated.is_array()) return {stated.begin(), stated.end()};
+    return {stated};
 }
 
 /// Nodes of the scene, an inner one before those around it: a hinge on a hinge turns first, in the
@@ -108,6 +119,14 @@ void nameTargets(Model& model) {
     }
 }
 
+/// A mesh of another kind than glTF has one state.
+Model modelAt(const std::filesystem::path& path) {
+    if (isMeshFile(path) && !isGltfFile(path))
+        throw DataError(path.string(), "nothing in it moves: it is a mesh in one state",
+                        "open a folder of one mesh a state, or a glTF with morph targets or a skin");
+    return readModel(path);
+}
+
 Rig checkedRig(RigParts parts, const std::string& file) {
     try {
         return Rig(std::move(parts));
@@ -116,13 +135,50 @@ Rig checkedRig(RigParts parts, const std::string& file) {
     }
 }
 
-Rig rigOf(Model model, const std::string& file) {
+using OfferKind = ActuatorOffer::Kind;
+
+/// What moves in a model that states no actuators: usual ones first.
+struct Offers {
+    std::vector<ActuatorOffer> offers;
+    std::vector<ActuatorEntry> entries; ///< one an offer
+
+    void add(std::vector<ActuatorEntry> more, OfferKind kind) {
+        for (ActuatorEntry& entry : more) {
+            const auto taken = [&](const ActuatorOffer& other) { return other.name == entry.actuator.name; };
+            while (std::ranges::any_of(offers, taken)) entry.actuator.name += " (joint)";
+            offers.push_back({entry.actuator.name, kind});
+            entries.push_back(std::move(entry));
+        }
+    }
+    /// Those that are taken, in their order. Throws DataError.
+    [[nodiscard]] std::vector<ActuatorEntry> chosen(std::span<const std::size_t> taken, const std::string& file) const {
+        std::vector<ActuatorEntry> some;
+        for (const std::size_t k : taken) {
+            if (k >= entries.size()) throw DataError(file, "it is another than was looked at", "open it again");
+            some.push_back(entries[k]);
+        }
+        return some;
+    }
+};
+
+Offers offersOf(const Model& model, const std::string& file, const JointTable& table) {
+    Offers offers;
+    offers.add(morphsOfMeshes(model, file), OfferKind::morphTarget);
+    const std::vector<ActuatorEntry> animated = jointsOfAnimations(model, file, table);
+    offers.add(animated, OfferKind::animatedJoint);
+    offers.add(jointsAtRest(model, file, table, animated), OfferKind::jointAtRest);
+    return offers;
+}
+
+/// `taken`: of the offers; none: the usual ones.
+Rig rigOf(Model model, const std::string& file, const std::optional<std::vector<std::size_t>>& taken = {}) {
     nameTargets(model);
     JointTable table = tableOfJoints(model, file);
     std::vector<ActuatorEntry> entries = statedActuators(model, file, table);
     if (entries.empty()) {
-        entries = morphsOfMeshes(model, file);
-        for (ActuatorEntry& joint : jointsOfAnimations(model, file, table)) entries.push_back(std::move(joint));
+        const Offers offers = offersOf(model, file, table);
+        entries = offers.chosen(taken ? *taken : usualOffers(offers.offers), file);
+        restAtLowerEnds(entries, table);
     }
     // A blank sheet that was made here moves nothing yet.
     const bool madeHere = model.extras.is_object() && model.extras.contains("lumorph");
@@ -139,10 +195,31 @@ Rig rigOf(Model model, const std::string& file) {
 
 } // namespace
 
+std::vector<std::size_t> usualOffers(std::span<const ActuatorOffer> offers) {
+    std::vector<std::size_t> usual;
+    for (std::size_t k = 0; k < offers.size(); ++k)
+        if (offers[k].kind != OfferKind::jointAtRest) usual.push_back(k);
+    return usual;
+}
+
+std::vector<ActuatorOffer> offeredActuators(const std::filesystem::path& path) {
+    std::error_code error;
+    if (std::filesystem::is_directory(path, error)) return {};
+    Model model = modelAt(path);
+    nameTargets(model);
+    const JointTable table = tableOfJoints(model, path.string());
+    if (!statedActuators(model, path.string(), table).empty()) return {};
+    return offersOf(model, path.string(), table).offers;
+}
+
 Rig readRig(const std::filesystem::path& path) {
     std::error_code error;
     if (std::filesystem::is_directory(path, error)) return checkedRig(readRigFolder(path), path.string());
-    return rigOf(readModel(path), path.string());
+    return rigOf(modelAt(path), path.string());
+}
+
+Rig readRig(const std::filesystem::path& path, std::span<const std::size_t> taken) {
+    return rigOf(modelAt(path), path.string(), std::vector<std::size_t>(taken.begin(), taken.end()));
 }
 
 Rig readRigGlb(std::span<const std::byte> bytes, const std::string& name) { return rigOf(readGlb(bytes, name), name); }

@@ -11,6 +11,8 @@
 namespace lumorph {
 namespace {
 
+const Angle kUsualTurn = Angle::degrees(45.0); ///< of a joint whose range nothing tells
+
 glm::mat4 localTransform(const Model::Node& node) {
     if (node.matrix) return *node.matrix;
     return glm::scale(glm::translate(glm::mat4(1.0F), node.translation) * glm::mat4_cast(node.rotation), node.scale);
@@ -63,6 +65,15 @@ Turning turningOf(const Model::Node& node, const std::vector<const Model::Channe
     return turning;
 }
 
+ActuatorEntry jointEntry(const Model& model, const std::string& file, std::size_t node, const SkinJoint& joint) {
+    ActuatorEntry entry;
+    entry.node = static_cast<int>(node);
+    entry.actuator.name = model.nodes[node].name.empty() ? "joint " + std::to_string(node) : model.nodes[node].name;
+    entry.place = {file, "joint \"" + entry.actuator.name + "\""};
+    entry.actuator.deformer = joint;
+    return entry;
+}
+
 } // namespace
 
 int JointTable::above(const Model& model, int node) const noexcept {
@@ -105,7 +116,7 @@ JointTable tableOfJoints(const Model& model, const std::string& file) {
     return table;
 }
 
-std::vector<ActuatorEntry> jointsOfAnimations(const Model& model, const std::string& file, JointTable& table) {
+std::vector<ActuatorEntry> jointsOfAnimations(const Model& model, const std::string& file, const JointTable& table) {
     std::vector<ActuatorEntry> entries;
     for (std::size_t n = 0; n < model.nodes.size(); ++n) {
         if (table.jointOfNode[n] < 0) continue;
@@ -116,20 +127,33 @@ std::vector<ActuatorEntry> jointsOfAnimations(const Model& model, const std::str
                     channels.push_back(&channel);
         const Turning turning = turningOf(model.nodes[n], channels);
         if (!(turning.min < turning.max)) continue;
-        ActuatorEntry entry;
-        entry.node = static_cast<int>(n);
-        entry.actuator.name = model.nodes[n].name.empty() ? "joint " + std::to_string(n) : model.nodes[n].name;
-        entry.place = {file, "joint \"" + entry.actuator.name + "\""};
-        entry.actuator.deformer =
-            SkinJoint{table.jointOfNode[n], SkinJoint::Motion::rotate, turning.axis, turning.min, turning.max};
-        if (turning.min != 0.0) {
-            glm::mat4& rest = table.joints[table.jointOfNode[n]].localRest;
-            rest = glm::rotate(rest, static_cast<float>(turning.min), turning.axis);
-        }
-        entries.push_back(std::move(entry));
+        entries.push_back(jointEntry(
+            model, file, n, {table.jointOfNode[n], SkinJoint::Motion::rotate, turning.axis, turning.min, turning.max}));
+    }
+    return entries;
+}
+
+std::vector<ActuatorEntry> jointsAtRest(const Model& model, const std::string& file, const JointTable& table,
+                                        const std::vector<ActuatorEntry>& animated) {
+    std::vector<ActuatorEntry> entries;
+    for (std::size_t n = 0; n < model.nodes.size(); ++n) {
+        const auto isThis = [n](const ActuatorEntry& entry) { return entry.node == static_cast<int>(n); };
+        if (table.jointOfNode[n] < 0 || std::ranges::any_of(animated, isThis)) continue;
+        entries.push_back(jointEntry(
+            model, file, n,
+            {table.jointOfNode[n], SkinJoint::Motion::rotate, {1.0F, 0.0F, 0.0F}, 0.0, kUsualTurn.inRadians()}));
+    }
+    return entries;
+}
+
+void restAtLowerEnds(const std::vector<ActuatorEntry>& entries, JointTable& table) {
+    for (const ActuatorEntry& entry : entries) {
+        const auto* joint = std::get_if<SkinJoint>(&entry.actuator.deformer);
+        if (joint == nullptr || joint->min == 0.0) continue;
+        glm::mat4& rest = table.joints[joint->joint].localRest;
+        rest = glm::rotate(rest, static_cast<float>(joint->min), joint->axis);
     }
     if (!table.empty()) place(table);
-    return entries;
 }
 
 } // namespace lumorph

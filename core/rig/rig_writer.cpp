@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <map>
 
+#include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 
 #include "core/base/error.h"
@@ -20,6 +21,10 @@ std::string keyName(const Actuator& actuator, std::size_t key, std::size_t keys,
     while (std::ranges::find(taken, name) != taken.end()) name += '\'';
     return name;
 }
+
+/// Added to a place it makes -0 to 0, as which a transform would give it back.
+constexpr glm::vec3 kZero{0.0F};
+constexpr float kLeastArrow = 0.01F; ///< metres
 
 /// True when reading back the displacements alone finds the same influences.
 bool influencesFollow(const Actuator& actuator, const MorphTarget& morph) {
@@ -51,6 +56,7 @@ public:
         addNode(std::move(meshNode));
         if (rig_.skeleton()) addSkeleton(*rig_.skeleton());
         for (std::size_t a = 0; a < rig_.actuatorCount(); ++a) addActuator(rig_.actuators()[a], a);
+        nameJoints();
         addInfluences();
         return writeGlb(model_);
     }
@@ -100,13 +106,54 @@ private:
             at.push_back(std::move(extras));
             return;
         }
+        const Box moved = boxOf(actuator);
+        const float arrow = arrowLength(moved);
         Model::Node node;
         node.name = actuator.name;
-        if (const auto* hinge = std::get_if<Hinge>(&actuator.deformer)) node.translation = hinge->origin;
-        if (const auto* bend = std::get_if<Bend>(&actuator.deformer)) node.translation = bend->origin;
         node.extras["lumorph"] = std::move(extras);
-        addNode(std::move(node));
+        if (const auto* hinge = std::get_if<Hinge>(&actuator.deformer)) {
+            node.translation = hinge->origin + kZero;
+            addArrow(addNode(std::move(node)), "axis", arrow * glm::normalize(hinge->axis));
+        } else if (const auto* bend = std::get_if<Bend>(&actuator.deformer)) {
+            node.translation = bend->origin + kZero;
+            const int at = addNode(std::move(node));
+            addArrow(at, "axis", arrow * glm::normalize(bend->axis));
+            addArrow(at, "direction", arrow * glm::normalize(bend->direction));
+        } else if (const auto* slide = std::get_if<Slide>(&actuator.deformer)) {
+            // A slide has no origin: it stands where one sees what it moves.
+            if (!moved.empty()) node.translation = moved.centre();
+            addArrow(addNode(std::move(node)), "direction", arrow * glm::normalize(slide->direction));
+        }
         listInfluences(actuator, order);
+    }
+
+    [[nodiscard]] Box boxOf(const Actuator& actuator) const {
+        Box box;
+        for (const Influence& influence : actuator.influences) box.include(rig_.restMesh().positions[influence.vertex]);
+        return box;
+    }
+
+    static float arrowLength(const Box& moved) {
+        if (moved.empty()) return kLeastArrow;
+        const glm::vec3 size = moved.size();
+        return std::max(kLeastArrow, 0.5F * std::max({size.x, size.y, size.z}));
+    }
+
+    /// A node without a mesh at the tip of an arrow. Modelling tools show it with a line to its parent; a reader of
+    /// rigs passes over it.
+    void addArrow(int parent, const char* what, const glm::vec3& tip) {
+        Model::Node node;
+        node.name = model_.nodes[parent].name + " " + what;
+        node.parent = parent;
+        node.translation = tip;
+        addNode(std::move(node));
+    }
+
+    /// A joint is found by the name of what moves it.
+    void nameJoints() {
+        for (const Actuator& actuator : rig_.actuators())
+            if (const auto* joint = std::get_if<SkinJoint>(&actuator.deformer))
+                model_.nodes[jointNodes_[joint->joint]].name = actuator.name;
     }
 
     void addMorph(const Actuator& actuator, const MorphTarget& morph, std::size_t order, json extras) {

@@ -107,12 +107,6 @@ ControllerKind likelyController(std::string_view words) {
 
 int firstChannel(ControllerKind controller) { return knownController(controller).firstChannel; }
 
-void countChannelsFrom(DeviceProfile& profile, int first) {
-    if (profile.servos.empty()) return;
-    const int least = std::ranges::min(profile.servos, {}, &ServoSetup::channel).channel;
-    for (ServoSetup& servo : profile.servos) servo.channel += first - least;
-}
-
 bool sameOptions(const DeviceProfile& a, const DeviceProfile& b) {
     for (const KnownController& known : knownControllers())
         for (const ControllerOption& option : known.options)

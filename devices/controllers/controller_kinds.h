@@ -49,10 +49,6 @@ struct KnownController {
 /// Where a kind of controller begins to count its channels.
 [[nodiscard]] int firstChannel(ControllerKind controller);
 
-/// Rigs count their drives from 0; boards from where their own numbers begin. Shifts all channels, so that the least is
-/// `first`.
-void countChannelsFrom(DeviceProfile& profile, int first);
-
 /// Whether both profiles tell the same of what single kinds of controllers have to be told.
 [[nodiscard]] bool sameOptions(const DeviceProfile& a, const DeviceProfile& b);
 

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <set>
 #include <string_view>
 #include <type_traits>
 #include <utility>
@@ -15,6 +14,7 @@
 #include "core/base/file.h"
 #include "core/base/json_check.h"
 #include "core/base/text.h"
+#include "core/rig/drive_channels.h"
 #include "core/scene/json_section.h"
 #include "devices/controllers/controller_kinds.h"
 
@@ -204,15 +204,10 @@ DeviceProfile profileOf(json& document, const std::string& file) {
 DeviceProfile profileFor(const Rig& rig, int first) {
     DeviceProfile profile;
     profile.name = rig.name().substr(0, kLongestText);
-    std::set<int> taken;
-    for (const Actuator& actuator : rig.actuators()) taken.insert(actuator.drive.channel);
+    const std::vector<int> channels = boardChannels(rig, first);
     for (const Actuator& actuator : rig.actuators()) {
         ServoSetup servo;
-        servo.channel = actuator.drive.channel;
-        if (servo.channel < 0) {
-            while (taken.contains(first)) ++first;
-            servo.channel = first++;
-        }
+        servo.channel = channels[profile.servos.size()];
         // A rig that tells the greater pulse for rest means a servo that turns the other way.
         servo.reversed = actuator.drive.pulseMin > actuator.drive.pulseMax;
         const auto [least, greatest] = std::minmax(actuator.drive.pulseMin, actuator.drive.pulseMax);

@@ -59,7 +59,7 @@ inline constexpr ProfileLimits kControllerNumber{0.0, 127.0};
 inline constexpr ProfileLimits kHandDistance{0.0, 1.0};
 } // namespace profile_limits
 
-/// A profile for a rig as its file describes its drives; channels that it does not tell are counted from `first`.
+/// A profile for a rig as its file describes its drives, on a board whose channels begin at `first` (`boardChannels`).
 [[nodiscard]] DeviceProfile profileFor(const Rig& rig, int first = 0);
 /// Width of the pulse for a stroke in [0, 1], within pulseMin and pulseMax whatever the trim; and back.
 [[nodiscard]] double pulseOf(const ServoSetup& servo, double stroke);

@@ -4,8 +4,7 @@
 
 namespace lumorph {
 
-DeviceProfile profileOf(const Rig& rig, const BuildPlan& plan) {
-    DeviceProfile profile = profileFor(rig);
+void wireAs(const BuildPlan& plan, DeviceProfile& profile) {
     for (std::size_t k = 0; k < plan.wiring.size() && k < profile.servos.size(); ++k) {
         const WiringRow& row = plan.wiring[k];
         ServoSetup& servo = profile.servos[k];
@@ -14,6 +13,11 @@ DeviceProfile profileOf(const Rig& rig, const BuildPlan& plan) {
         servo.pulseMax = row.pulseMax;
         servo.reversed = row.reversed;
     }
+}
+
+DeviceProfile profileOf(const Rig& rig, const BuildPlan& plan) {
+    DeviceProfile profile = profileFor(rig);
+    wireAs(plan, profile);
     return profile;
 }
 

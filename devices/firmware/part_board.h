@@ -7,7 +7,10 @@
 
 namespace lumorph {
 
-/// A profile for the rig with the pins, the limits and the directions of its building plan.
+/// Sets a profile up as a building plan wires the rig's servos: pins, limits and directions. Everything else stays.
+void wireAs(const BuildPlan& plan, DeviceProfile& profile);
+
+/// A profile for the rig, wired as its building plan says.
 [[nodiscard]] DeviceProfile profileOf(const Rig& rig, const BuildPlan& plan);
 
 /// Adds profile.json and the sketch's folder, where the plan has servos and one board drives them all.

@@ -43,7 +43,7 @@ TEST_F(CommandLine, HelpAndVersionAreNoErrors) {
 
 TEST_F(CommandLine, RigInfoTellsActuatorsRangesAndMesh) {
     const nlohmann::json info = succeed({"rig", "info", w["rig.glb"], "--states", "5", "--json"}).json();
-    EXPECT_THAT(keysOf(info), ElementsAre("actuators", "mesh", "name", "reach", "shape", "warnings"));
+    EXPECT_THAT(keysOf(info), ElementsAre("actuators", "check", "mesh", "name", "reach", "shape", "warnings"));
     ASSERT_EQ(info["actuators"].size(), 3U);
     const nlohmann::json& lift = info["actuators"][1];
     EXPECT_EQ(lift["name"], "lift 1");

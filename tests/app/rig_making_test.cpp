@@ -72,6 +72,27 @@ TEST(RigSheet, MakesFlapsOfBendLines) {
     EXPECT_NEAR(info["reach"]["min"][2].get<double>(), -0.065, 0.002);
 }
 
+TEST(RigInfo, SaysWhatGoesWrongInMotionAndFromWhereOn) {
+    const Made made;
+    ASSERT_EQ(lumorph({"rig", "new", "book", "-o", made["b.glb"]}).exitCode, 0);
+    const auto check =
+        lumorph({"rig", "info", made["b.glb"], "--states", "10", "--max-speed", "0.2", "--json"}).json()["check"];
+    ASSERT_EQ(check["findings"].size(), 2U) << check;
+    const auto& found = check["findings"][0];
+    EXPECT_EQ(found["kind"], "speed");
+    EXPECT_EQ(found["unit"], "m/s");
+    EXPECT_EQ(found["actuators"].size(), 1U);
+    EXPECT_EQ(found["limit"], 0.2);
+    EXPECT_GT(found["amount"], 0.2);
+    EXPECT_EQ(found["worst"].size(), 2U);
+    const std::string text = lumorph({"rig", "info", made["b.glb"], "--states", "10", "--max-speed", "0.2"}).out;
+    EXPECT_NE(text.find("moves a point at"), std::string::npos) << text;
+    EXPECT_NE(text.find("Let its full stroke take"), std::string::npos) << text;
+    EXPECT_NE(lumorph({"rig", "info", made["b.glb"], "--states", "10", "--max-speed", "1"}).out.find("nothing wrong"),
+              std::string::npos);
+    EXPECT_EQ(lumorph({"rig", "info", made["b.glb"], "--states", "10", "--max-stretch", "-1"}).exitCode, 2);
+}
+
 TEST(RigReport, SaysWhatADeviceCanBe) {
     const Made made;
     std::filesystem::create_directory(made["targets"]);
@@ -297,9 +318,9 @@ TEST(RigParts, LeavesNothingOfWhatFails) {
         EXPECT_NE(outcome.exitCode, 0);
         EXPECT_NE(outcome.err.find(named), std::string::npos) << outcome.err;
     };
-    fails({"--tolerance", "5mm"}, "--tolerance");
+    fails({"--tolerance", "5mm"}, "tolerance");
     fails({"--tolerance", "wide"}, "--tolerance");
-    fails({"--bed", "1mm"}, "--bed");
+    fails({"--bed", "1mm"}, "print bed");
     fails({"--servo", "SG9000"}, "SG90, MG996R");
     EXPECT_EQ(filesIn(made.folder.path()), std::vector<std::string>{"c.glb"});
 }

@@ -27,18 +27,6 @@ TEST(ControllerKinds, AreToldByAddressAndName) {
     EXPECT_EQ(likelyController(""), ControllerKind::firmata);
 }
 
-TEST(ControllerKinds, ChannelsAreCountedFromWhereTheBoardBegins) {
-    DeviceProfile profile;
-    for (const int channel : {4, 3, 8}) profile.servos.push_back({channel});
-    countChannelsFrom(profile, firstChannel(ControllerKind::firmata));
-    EXPECT_EQ(profile.servos[0].channel, 3);
-    EXPECT_EQ(profile.servos[1].channel, 2);
-    EXPECT_EQ(profile.servos[2].channel, 7);
-    profile.servos.clear();
-    countChannelsFrom(profile, 5);
-    EXPECT_TRUE(profile.servos.empty());
-}
-
 TEST(ControllerKinds, NoTwoShareAKeyATitleAWordOrASimulatedBoard) {
     std::set<std::string_view> seen;
     std::set<ControllerKind> kinds;

@@ -121,7 +121,7 @@ TEST_F(Calibrate, TheLabLeadsFromNothingToAProjectorThatTheSceneUses) {
     fs::create_directory(w.folder / "poses");
     w.studio.click("calibrate.saved.folder");
     answerFileDialog(w.studio, "calibrate.saved.file", w.folder / "poses", "Choose");
-    ASSERT_TRUE(eventually([&] { return w.studio.text("calibrate.saved").startsWith("Saved in "); }, 20s));
+    ASSERT_TRUE(eventually([&] { return w.studio.text("calibrate.saved").startsWith("Saved in "); }, 60s));
     EXPECT_EQ(w.notices(), 0U);
     EXPECT_TRUE(w.offers("Photograph pose 2 of 4")) << "another folder is no other calibration: " << w.story();
     w.studio.click("calibrate.rest");

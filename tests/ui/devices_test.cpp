@@ -431,8 +431,8 @@ TEST_F(DevicesWindow, TheRigShowsTheSameChannel) {
     auto* list = window.find<QListWidget>("rig.list");
     ASSERT_NE(list, nullptr);
     list->setCurrentRow(0);
-    EXPECT_TRUE(eventually([&] { return window.text("rig.actuator.channel") == "11"; }))
-        << window.text("rig.actuator.channel").toStdString();
+    EXPECT_TRUE(eventually([&] { return window.text("rig.actuator.at-the-board") == "11"; }))
+        << window.text("rig.actuator.at-the-board").toStdString();
 }
 
 TEST(StartMoves, SayWhoMayJumpAndHowFar) {

@@ -18,7 +18,6 @@
 namespace lumorph::studio {
 namespace {
 
-using std::chrono::seconds;
 using test::eventually;
 
 constexpr const char* kStale = "Of the rig before your edit";
@@ -62,7 +61,7 @@ struct RigFit : testing::Test {
                 return state && state->text().isEmpty() && !tiles().empty() && window.state().rig.compiled &&
                        !window.findNow<Plot>("rig.fit.steps")->curves().empty() && !isWorking();
             },
-            seconds(60));
+            std::chrono::seconds(60));
     }
     [[nodiscard]] bool isWorking() {
         return std::ranges::any_of(window.studio().jobs.running(),
@@ -118,7 +117,7 @@ TEST_F(RigFit, FollowsTheRigAndShowsEachShape) {
     window.click("rig.fit.target.bloom");
     EXPECT_TRUE(window.text("rig.fit.tried").contains("stays unmatched"));
     ASSERT_TRUE(eventually([&] { return seen() != asItStands; }));
-    test::pass(seconds(1));
+    test::pass(std::chrono::seconds(1));
     const auto shown = seen();
     EXPECT_EQ(window.state().strokes, before.strokes);
     window.click("rig.fit.takeButton");
@@ -154,7 +153,7 @@ TEST_F(RigFit, FollowsTheRigAndShowsEachShape) {
     // Out of sight nothing is worked out.
     window.window().showWorkspace("field");
     takeRig(std::make_shared<const Rig>(rigOf(rigTemplate("phone"), {})));
-    EXPECT_FALSE(eventually([&] { return isWorking(); }, seconds(1)));
+    EXPECT_FALSE(eventually([&] { return isWorking(); }, std::chrono::seconds(1)));
     window.window().showWorkspace("rig");
     ASSERT_TRUE(isNew());
 

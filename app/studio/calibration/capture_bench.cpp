@@ -119,7 +119,7 @@ public:
         glm::dmat4 matrix(1.0);
         for (int row = 0; row < 3; ++row) {
             for (int column = 0; column < 3; ++column) matrix[column][row] = turn(row, column);
-            matrix[3][row] = lab_.options().metresPerUnit * pose[static_cast<std::size_t>(3 + row)];
+            matrix[3][row] = lab_.options().metresPerUnit * pose[3 + static_cast<std::size_t>(row)];
         }
         wanted_ = glm::inverse(lab_.camera().cameraFromWorld) * matrix;
     }

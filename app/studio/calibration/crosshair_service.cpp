@@ -372,9 +372,10 @@ QPointF CrosshairService::target() const {
 /// Triangles from the farthest to the nearest.
 void CrosshairService::renderSight() {
     sight_ = {};
-    if (!state_.session || projector() == nullptr) return;
+    const InstalledProjector* installed = projector();
+    if (!state_.session || installed == nullptr) return;
     const Installation& room = *document_.state().installation;
-    sightCamera_ = state_.isLab ? labTruth(room, chosen_).projectors.front().camera : projector()->camera;
+    sightCamera_ = state_.isLab ? labTruth(room, chosen_).projectors.front().camera : installed->camera;
     const CalibratedCamera& projector = sightCamera_;
     const TriangleMesh mesh = deformed(*rig_, state_.strokes);
     struct Facet {

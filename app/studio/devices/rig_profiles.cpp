@@ -40,9 +40,8 @@ void RigProfiles::keep(const DeviceProfile& profile, const Rig& rig) {
 }
 
 DeviceProfile freshProfile(const Rig& rig, ControllerKind kind) {
-    DeviceProfile profile = profileFor(rig);
+    DeviceProfile profile = profileFor(rig, firstChannel(kind));
     profile.controller = kind;
-    countChannelsFrom(profile, firstChannel(kind));
     profile.name = usualName(rig).toStdString();
     return profile;
 }
@@ -56,8 +55,9 @@ DeviceProfile readdressed(const DeviceProfile& profile, const Rig& rig, const st
     }
     next.address = address;
     next.controller = kind;
-    if (kind != profile.controller && sameChannels(freshProfile(rig, profile.controller), profile))
-        countChannelsFrom(next, firstChannel(kind));
+    if (kind == profile.controller || !sameChannels(freshProfile(rig, profile.controller), profile)) return next;
+    const DeviceProfile fresh = freshProfile(rig, kind);
+    for (std::size_t k = 0; k < next.servos.size(); ++k) next.servos[k].channel = fresh.servos[k].channel;
     return next;
 }
 

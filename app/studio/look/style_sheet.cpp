@@ -36,7 +36,7 @@ QPushButton:disabled { background: @panel; border-color: @line; color: @disabled
 QPushButton[look="primary"], QDialogButtonBox QPushButton:default { background: @accent; border-color: @accent; color: @onAccent; }
 QPushButton[look="primary"]:hover, QDialogButtonBox QPushButton:default:hover { background: @accentHover; border-color: @accentHover; }
 QPushButton[look="primary"]:pressed { background: @accentPressed; border-color: @accentPressed; }
-QPushButton[look="primary"]:disabled { background: @panel; border-color: @line; color: @disabled; }
+QPushButton[look="primary"]:disabled, QDialogButtonBox QPushButton:default:disabled { background: @panel; border-color: @line; color: @disabled; }
 QPushButton[look="danger"] { background: @danger; border-color: @danger; color: @onDanger; font-weight: 600; }
 QPushButton[look="danger"]:hover { background: @dangerHover; border-color: @dangerHover; }
 QPushButton[look="danger"]:pressed { background: @dangerPressed; border-color: @dangerPressed; }

@@ -1,6 +1,8 @@
 #include "app/studio/widgets/panel.h"
 
 #include <QAction>
+#include <QComboBox>
+#include <QEvent>
 #include <QLabel>
 #include <QPushButton>
 #include <QScrollArea>
@@ -105,6 +107,23 @@ Column makeColumn(QWidget* parent) {
     return {area, layout};
 }
 
+namespace {
+
+/// Over a chooser in a column that scrolls, the wheel scrolls on instead of choosing.
+class CalmWheel : public QObject {
+public:
+    using QObject::QObject;
+
+protected:
+    bool eventFilter(QObject* /*watched*/, QEvent* event) override {
+        if (event->type() != QEvent::Wheel) return false;
+        event->ignore();
+        return true;
+    }
+};
+
+} // namespace
+
 QWidget* makeRow(const QString& label, QWidget* control, QWidget* parent) {
     auto* row = new QWidget(parent);
     auto* layout = new QHBoxLayout(row);
@@ -114,6 +133,7 @@ QWidget* makeRow(const QString& label, QWidget* control, QWidget* parent) {
     name->setProperty("look", "muted");
     name->setBuddy(control);
     if (control->accessibleName().isEmpty()) control->setAccessibleName(QString(label).remove('&'));
+    if (qobject_cast<QComboBox*>(control)) control->installEventFilter(new CalmWheel(control));
     layout->addWidget(name, 2);
     layout->addWidget(control, 3);
     return row;

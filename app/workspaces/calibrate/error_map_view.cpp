@@ -10,16 +10,20 @@
 #include <QToolTip>
 
 #include "app/studio/look/palette.h"
+#include "app/workspaces/common/field_colors.h"
 
 namespace lumorph::studio {
 namespace {
+
+std::size_t cellOf(int row, int column) {
+    return static_cast<std::size_t>(row) * ErrorPlan::kColumns + static_cast<std::size_t>(column);
+}
 
 constexpr int kTitleHeight = 24;
 constexpr int kScaleHeight = 40;
 constexpr int kGap = 16;
 
-/// Green is good, red is bad; in between the hue tells.
-QColor errorColor(double share) { return QColor::fromHsvF(0.38 * (1.0 - std::clamp(share, 0.0, 1.0)), 0.62, 0.85); }
+QColor errorColor(double share) { return gradeColor(1.0 - share); }
 
 /// What stands at the red end: a round number above what most of the light has.
 double scaleOf(const ErrorPlan& plan) {
@@ -47,7 +51,7 @@ QRect partOf(const ErrorPlan& plan, const QPolygonF& device) {
     QRect part;
     for (int row = 0; row < whole.height(); ++row)
         for (int column = 0; column < whole.width(); ++column) {
-            const auto index = static_cast<std::size_t>(row * ErrorPlan::kColumns + column);
+            const auto index = cellOf(row, column);
             if (std::isfinite(plan.table[index]) || std::isfinite(plan.device[index])) part |= QRect(column, row, 1, 1);
         }
     if (part.isEmpty()) return whole;
@@ -110,7 +114,7 @@ void ErrorMapView::paintEvent(QPaintEvent* /*event*/) {
         QImage picture(ErrorPlan::kColumns, ErrorPlan::kRows, QImage::Format_ARGB32);
         for (int row = 0; row < ErrorPlan::kRows; ++row)
             for (int column = 0; column < ErrorPlan::kColumns; ++column) {
-                const double error = errors[static_cast<std::size_t>(row * ErrorPlan::kColumns + column)];
+                const double error = errors[cellOf(row, column)];
                 picture.setPixelColor(column, row, std::isfinite(error) ? errorColor(error / most) : Qt::transparent);
             }
         painter.drawImage(panel, picture, part_);
@@ -150,8 +154,7 @@ void ErrorMapView::mouseMoveEvent(QMouseEvent* event) {
                                       ErrorPlan::kColumns - 1);
         const int row = std::clamp(part_.top() + static_cast<int>(share.y() / panel.height() * part_.height()), 0,
                                    ErrorPlan::kRows - 1);
-        const double error =
-            (plane == 0 ? plan_->table : plan_->device)[static_cast<std::size_t>(row * ErrorPlan::kColumns + column)];
+        const double error = (plane == 0 ? plan_->table : plan_->device)[cellOf(row, column)];
         QToolTip::showText(event->globalPosition().toPoint(),
                            std::isfinite(error) ? QString("%1 mm").arg(error, 0, 'f', 2) : QString("no light"), this);
         return;

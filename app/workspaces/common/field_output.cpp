@@ -33,13 +33,6 @@ std::string fileNameOf(const std::string& text) {
     return name.empty() ? "field" : name.substr(0, 80);
 }
 
-/// A folder of this name that is not there yet: the name, then "name 2", "name 3" and so on.
-fs::path freshFolder(const fs::path& parent, const std::string& name) {
-    fs::path folder = parent / name;
-    for (int k = 2; fs::exists(fs::symlink_status(folder)); ++k) folder = parent / (name + " " + std::to_string(k));
-    return folder;
-}
-
 /// A folder that is removed with all in it unless it was kept.
 class HalfFolder {
 public:
@@ -57,6 +50,12 @@ private:
 };
 
 } // namespace
+
+fs::path freshFolder(const fs::path& parent, const std::string& name) {
+    fs::path folder = parent / name;
+    for (int k = 2; fs::exists(fs::symlink_status(folder)); ++k) folder = parent / (name + " " + std::to_string(k));
+    return folder;
+}
 
 void writeShape(const MatchFrame& frame, bool estimated, const fs::path& file) {
     writeMesh(deformed(*frame.rig, estimated ? frame.estimatedStrokes : frame.wantedStrokes), file);

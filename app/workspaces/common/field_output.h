@@ -26,6 +26,9 @@ void writeShape(const MatchFrame& frame, bool estimated, const std::filesystem::
 /// The field as an .mdf file.
 void writeFieldFile(const Field& field, const std::filesystem::path& file);
 
+/// A folder of this name inside `parent` that is not there yet: the name, then "name 2", "name 3" and so on.
+[[nodiscard]] std::filesystem::path freshFolder(const std::filesystem::path& parent, const std::string& name);
+
 /// The field as NRRD files in a new folder inside `parent`, named after the rig; gives that folder. Nothing that is
 /// there is replaced.
 [[nodiscard]] std::filesystem::path writeFieldGrids(const Field& field, const std::filesystem::path& parent,

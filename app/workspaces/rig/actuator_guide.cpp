@@ -21,8 +21,7 @@ constexpr float kLeastRadius = 64.0F; // pixels of an arc
 constexpr float kReachShare = 0.85F;  // of the part's reach
 // A plane seen flatter than this (sine of the angle) cannot be pointed at.
 constexpr float kFlatPlane = 0.12F;
-constexpr float kPointerAside = 18.0F;   // pixels from the arc or the way to the pointer of the stroke
-constexpr float kDirectionAhead = 44.0F; // pixels from the way's end to what turns it
+constexpr float kPointerAside = 18.0F; // pixels from the arc or the way to the pointer of the stroke
 // The sine of an arm that still counts as level: skirts below a sheet pull its middle down.
 constexpr float kLevelArm = 0.5F;
 

@@ -15,6 +15,9 @@
 
 namespace lumorph::studio {
 
+/// Pixels from the way's end to what turns it.
+inline constexpr float kDirectionAhead = 44.0F;
+
 /// What of an actuator can be taken hold of in the view, in device metres: the line it turns about or bends at, and its
 /// range as an arc or a way. Where it is while all others are at rest. Pure geometry; no window, no document.
 struct ActuatorGuide {

@@ -161,7 +161,7 @@ private:
         const glm::vec3 from = placeOf(guide, guide.range.min, 0.0F), to = placeOf(guide, guide.range.max, 0.0F);
         line(from, to, colors_.text, 2.0);
         if (guide.hasWay)
-            line(to, to + 44.0F * metresPerPixel(camera_, to, size_) * guide.axis,
+            line(to, to + kDirectionAhead * metresPerPixel(camera_, to, size_) * guide.axis,
                  hot == RigHandle::direction ? colors_.accent : kLineColor, 2.0, Qt::DashLine);
         const auto a = at(from), b = at(to);
         if (!a || !b) return;
@@ -241,7 +241,7 @@ bool ActuatorHandles::press(const QPointF& at, const QSize& size, Qt::KeyboardMo
     if (!hot_ || document_.previewing()) return false;
     const ActuatorRange& range = guide_->range;
     const glm::vec2 pixels(static_cast<float>(size.width()), static_cast<float>(size.height()));
-    grip_ = Grip{*hot_, *guide_, selection_.rehearsed(), 0.0, toVec(at), glm::vec2(0.0F), at, {}};
+    grip_ = Grip{*hot_, *guide_, selection_.rehearsed(), 0.0, glm::vec2(0.0F), at, {}};
     for (const SeenHandle& seen : seenHandles(*guide_, stroke(), camera_(), pixels))
         if (seen.handle == *hot_) grip_->offset = seen.pixel - toVec(at);
     grip_->value = *hot_ == RigHandle::to     ? range.max
@@ -337,7 +337,7 @@ void ActuatorHandles::dragDirection(glm::vec2 pixel, glm::vec2 size, bool coarse
     const auto handle = placeOf(start, start.range.max, 0.0F);
     const Ray ray = rayThrough(camera, pixel, size);
     const glm::vec3 back = pictureAxes(camera).back;
-    const glm::vec3 tip = handle + 44.0F * metresPerPixel(camera, handle, size) * start.axis;
+    const glm::vec3 tip = handle + kDirectionAhead * metresPerPixel(camera, handle, size) * start.axis;
     const glm::vec3 to = ray.origin + glm::dot(tip - ray.origin, back) / glm::dot(ray.direction, back) * ray.direction;
     if (glm::distance(to, start.pivot) < kLeastLine) return;
     glm::vec3 direction = glm::normalize(to - start.pivot);

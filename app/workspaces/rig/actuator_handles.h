@@ -23,7 +23,6 @@ public:
     /// The strokes that the view shows, and those of the device itself.
     void setStrokes(const std::vector<double>& shown, const std::vector<double>& device);
     [[nodiscard]] const std::optional<ActuatorGuide>& guide() const { return guide_; }
-    [[nodiscard]] bool held() const { return grip_.has_value(); }
 
     void paint(QPainter& painter, const QSize& size) override;
     bool press(const QPointF& at, const QSize& size, Qt::KeyboardModifiers modifiers) override;
@@ -39,8 +38,7 @@ private:
         ActuatorGuide start;
         std::vector<double> rehearsed; ///< before the drag
         double value = 0.0;            ///< of a limit or the stroke, as it was dragged so far
-        glm::vec2 from{0.0F};
-        glm::vec2 offset{0.0F}; ///< from where it was taken to the handle's middle
+        glm::vec2 offset{0.0F};        ///< from where it was taken to the handle's middle
         QPointF pointer;
         QString label;
     };

@@ -12,7 +12,6 @@
 #include <QShowEvent>
 #include <QStackedWidget>
 #include <QVBoxLayout>
-#include <QWheelEvent>
 
 #include "app/studio/document/hand_control.h"
 #include "app/studio/document/job_slots.h"
@@ -42,12 +41,6 @@ constexpr int kFitMilliseconds = 120;
 struct Matched {
     std::shared_ptr<const Library> library;
     DeviceFit device;
-};
-
-/// A chooser in a column that scrolls: the wheel scrolls on instead of choosing.
-class CalmChooser : public QComboBox {
-protected:
-    void wheelEvent(QWheelEvent* event) override { event->ignore(); }
 };
 
 class RigFit : public QWidget {
@@ -100,8 +93,8 @@ private:
     QLabel* triedText_ = new QLabel;
     Plot* steps_ = new Plot;
     MetricTable* metrics_ = new MetricTable;
-    QComboBox* servo_ = new CalmChooser;
-    QComboBox* reference_ = new CalmChooser;
+    QComboBox* servo_ = new QComboBox;
+    QComboBox* reference_ = new QComboBox;
     QAction* takeCommand_ = nullptr;
 
     std::shared_ptr<const Library> library_;
@@ -144,7 +137,10 @@ RigFit::RigFit(Studio& studio, RigSelection& selection)
     connect(soon_, &Throttle::due, this, &RigFit::follow);
     connect(&selection, &RigSelection::rehearsalChanged, this, [this] {
         // A pose of somebody else's in the view is not that of the tile.
-        if (selection_.rehearsed() != asked_) tiles_->choose(std::nullopt), asked_.clear();
+        if (selection_.rehearsed() != asked_) {
+            tiles_->choose(std::nullopt);
+            asked_.clear();
+        }
         showTried();
     });
     connect(tiles_, &TargetTiles::chosenChanged, this, &RigFit::showTried);
@@ -482,13 +478,10 @@ void RigFit::showTried() {
     const bool tries = fit_ && chosen && *chosen < fit_->targets.size();
     takeCommand_->setEnabled(tries);
     tried_->setVisible(tries);
-    if (tries) triedText_->setText(targetText(fit_->targets[*chosen]));
-    if (tries) {
-        asked_ = strokesOf(*fit_, *chosen);
-        selection_.rehearse(asked_);
-    } else {
-        takeBack();
-    }
+    if (!tries) return takeBack();
+    triedText_->setText(targetText(fit_->targets[*chosen]));
+    asked_ = strokesOf(*fit_, *chosen);
+    selection_.rehearse(asked_);
 }
 
 } // namespace

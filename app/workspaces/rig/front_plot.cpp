@@ -19,7 +19,7 @@ constexpr double kDot = 4.0;    ///< radius, pixels
 constexpr double kReach = 14.0; ///< how near to a dot the pointer has to be
 constexpr double kCross = 5.0;
 
-QPointF pixelOf(const PlotAxes& axes, const FrontPlot::Dot& dot) { return axes.pointOf(dot.cost, dot.fit); }
+QPointF pixelOf(const PlotAxes& axes, const FrontPlot::Dot& dot) { return axes.pointOf(dot.cost, 100.0 * dot.fit); }
 
 } // namespace
 
@@ -65,7 +65,7 @@ PlotAxes FrontPlot::axes() const {
     for (const Dot& dot : dots_) hold(dot);
     if (open_) hold(*open_);
     const QFontMetricsF metrics(plotFont(font()));
-    return makeAxes(static_cast<int>(most), 0.0, best, false, rect(), metrics.height() + 4, metrics);
+    return makeAxes(static_cast<int>(most), 0.0, 100.0 * best, false, rect(), metrics.height() + 4, metrics);
 }
 
 QPointF FrontPlot::placeOf(const Dot& dot) const { return pixelOf(axes(), dot); }
@@ -84,7 +84,7 @@ void FrontPlot::paintEvent(QPaintEvent* /*event*/) {
         return;
     }
     const PlotAxes axes = this->axes();
-    drawAxes(painter, axes, cost_, tr("fit"));
+    drawAxes(painter, axes, cost_, tr("fit, %"));
     if (open_) drawOpenDevice(painter, axes);
     drawDots(painter, axes);
 }

@@ -17,7 +17,7 @@ class FrontPlot : public QWidget {
 public:
     struct Dot {
         double cost = 0.0;
-        double fit = 0.0;
+        double fit = 0.0; ///< 0 to 1; drawn in percent
         bool operator==(const Dot&) const = default;
     };
 

@@ -1,19 +1,26 @@
 #include "app/workspaces/rig/new_device.h"
 
+#include <algorithm>
 #include <cmath>
+#include <filesystem>
+#include <optional>
 #include <utility>
 #include <vector>
 
 #include <QButtonGroup>
 #include <QDialog>
 #include <QDialogButtonBox>
+#include <QFileDialog>
+#include <QFileInfo>
 #include <QHBoxLayout>
 #include <QLabel>
+#include <QListWidget>
 #include <QPushButton>
 #include <QToolButton>
 #include <QVBoxLayout>
 
 #include "app/studio/document/job_slots.h"
+#include "app/studio/look/icons.h"
 #include "app/studio/widgets/dock_parts.h"
 #include "app/studio/widgets/panel.h"
 #include "app/studio/widgets/value_field.h"
@@ -21,6 +28,7 @@
 #include "app/workspaces/rig/draw_sheet.h"
 #include "app/workspaces/rig/rig_facts.h"
 #include "core/base/error.h"
+#include "core/rig/rig_file.h"
 #include "core/rig/templates/rig_templates.h"
 #include "core/rig/templates/sheet_file.h"
 
@@ -74,17 +82,57 @@ QString sentence(std::string_view text) {
     return words + '.';
 }
 
+QString offerText(ActuatorOffer::Kind kind) {
+    switch (kind) {
+    case ActuatorOffer::Kind::morphTarget:
+        return QObject::tr("a shape key");
+    case ActuatorOffer::Kind::animatedJoint:
+        return QObject::tr("turned as its animation turns it");
+    case ActuatorOffer::Kind::jointAtRest:
+        break;
+    }
+    return QObject::tr("turned by 45° about its X axis");
+}
+
+/// A device as it was read from files.
+struct ReadDevice {
+    std::vector<ActuatorOffer> offers;
+    std::shared_ptr<const Rig> rig;   ///< none while nothing of what is offered is taken
+    std::shared_ptr<const Rig> still; ///< then, to look at: without actuators
+};
+
+/// `taken`: of the offers; none: what is usual.
+ReadDevice readDevice(const std::filesystem::path& path, const std::optional<std::vector<std::size_t>>& taken) {
+    ReadDevice device{offeredActuators(path), nullptr, nullptr};
+    const std::vector<std::size_t> some = taken.value_or(usualOffers(device.offers));
+    if (device.offers.empty())
+        device.rig = std::make_shared<const Rig>(readRig(path));
+    else if (!some.empty())
+        device.rig = std::make_shared<const Rig>(readRig(path, some));
+    if (device.rig) return device;
+    RigParts still = readRig(path, std::vector<std::size_t>{0}).parts();
+    still.actuators.clear();
+    device.still = std::make_shared<const Rig>(std::move(still));
+    return device;
+}
+
 class NewDevice : public QDialog {
 public:
     NewDevice(Studio& studio, QWidget* parent);
 
 private:
     QWidget* makeKinds();
+    QWidget* makeSources();
     QWidget* makeSide();
     QWidget* makeButtons();
     void choose(const RigTemplate& kind);
     void addParameter(const TemplateParameter& parameter);
+    void askSource(bool folder);
+    void chooseSource(const std::filesystem::path& path);
+    void forgetMeasures();
+    void showOffers();
     void make(); ///< anew, beside the window; the newest wish wins
+    void read(); ///< the same for what is not made of a template
     void take(const std::shared_ptr<const Rig>& rig);
     void refuse(const std::exception& why);
     void useIt();
@@ -93,9 +141,14 @@ private:
     Studio& studio_;
     JobSlots jobs_;
     const RigTemplate* kind_ = nullptr;
+    std::filesystem::path source_; ///< of a device that is read; empty for one of a template
+    std::vector<ActuatorOffer> offers_;
+    std::optional<std::vector<std::size_t>> taken_; ///< of the offers; none before they are known
+    QAbstractButton* chosen_ = nullptr;             ///< the button of what is shown
     std::vector<std::pair<const TemplateParameter*, ValueField*>> fields_;
     std::shared_ptr<const Rig> rig_; ///< of the last measures that make one
     bool isNewest_ = false;          ///< `rig_` is of the measures that are seen
+    QButtonGroup* kinds_ = new QButtonGroup(this);
     QLabel* about_ = new QLabel;
     QWidget* measures_ = new QWidget;
     QLabel* wrong_ = new QLabel;
@@ -115,14 +168,16 @@ NewDevice::NewDevice(Studio& studio, QWidget* parent)
     layout->setContentsMargins(16, 16, 16, 16);
     layout->setSpacing(12);
     layout->addWidget(makeKinds());
+    layout->addWidget(makeSources());
     auto* middle = new QHBoxLayout;
     middle->setSpacing(16);
     middle->addWidget(makeSide());
     middle->addWidget(preview_, 1);
     layout->addLayout(middle, 1);
     layout->addWidget(makeButtons());
+    chosen_ = kinds_->buttons().front();
     choose(rigTemplates().front());
-    resize(920, 620);
+    resize(920, 660);
 }
 
 QWidget* NewDevice::makeKinds() {
@@ -130,7 +185,6 @@ QWidget* NewDevice::makeKinds() {
     auto* layout = new QHBoxLayout(kinds);
     layout->setContentsMargins(0, 0, 0, 0);
     layout->setSpacing(4);
-    auto* group = new QButtonGroup(kinds);
     for (const RigTemplate& kind : rigTemplates()) {
         auto* button = new QToolButton;
         button->setObjectName("rig.new.kind." + QString::fromStdString(std::string(kind.name)));
@@ -140,11 +194,115 @@ QWidget* NewDevice::makeKinds() {
         button->setChecked(layout->isEmpty());
         button->setMinimumHeight(32);
         button->setSizePolicy(QSizePolicy::Expanding, QSizePolicy::Fixed);
-        group->addButton(button);
+        kinds_->addButton(button);
         layout->addWidget(button);
-        connect(button, &QToolButton::clicked, this, [this, kind = &kind] { choose(*kind); });
+        connect(button, &QToolButton::clicked, this, [this, button, kind = &kind] {
+            chosen_ = button;
+            choose(*kind);
+        });
     }
     return kinds;
+}
+
+/// What is not made of a template but of files there are.
+QWidget* NewDevice::makeSources() {
+    auto* sources = new QWidget;
+    auto* layout = new QHBoxLayout(sources);
+    layout->setContentsMargins(0, 0, 0, 0);
+    layout->setSpacing(4);
+    auto* label = new QLabel(tr("Or of what you have:"));
+    label->setProperty("look", "muted");
+    layout->addWidget(label);
+    const auto add = [&](const char* name, const QString& text, const QString& tip, bool folder) {
+        auto* button = new QToolButton;
+        button->setObjectName(name);
+        button->setText(text);
+        button->setToolTip(tip);
+        button->setIcon(icon(folder ? "folder" : "open"));
+        button->setToolButtonStyle(Qt::ToolButtonTextBesideIcon);
+        button->setCheckable(true);
+        button->setMinimumHeight(32);
+        button->setSizePolicy(QSizePolicy::Expanding, QSizePolicy::Fixed);
+        kinds_->addButton(button);
+        layout->addWidget(button, 1);
+        connect(button, &QToolButton::clicked, this, [this, folder] { askSource(folder); });
+    };
+    add("rig.new.mesh", tr("From a mesh or glTF..."),
+        tr("A glTF with actuators, or with bones or shape keys (morph targets), of which you choose"), false);
+    add("rig.new.states", tr("From a folder of states..."),
+        tr("rest.obj and one mesh of the same triangles for each state: left_1.obj, left_2.obj, right_1.obj"), true);
+    return sources;
+}
+
+void NewDevice::askSource(bool folder) {
+    auto* dialog = new QFileDialog(this, folder ? tr("A folder of one mesh a state") : tr("A mesh or glTF"),
+                                   studio_.settings.value(kRigFolder).toString());
+    dialog->setObjectName("rig.new.file");
+    dialog->setOption(QFileDialog::DontUseNativeDialog);
+    dialog->setAttribute(Qt::WA_DeleteOnClose);
+    dialog->setFileMode(folder ? QFileDialog::Directory : QFileDialog::ExistingFile);
+    if (folder)
+        dialog->setOption(QFileDialog::ShowDirsOnly);
+    else
+        dialog->setNameFilters({tr("Models (*.glb *.gltf *.obj *.stl *.ply *.off)"), tr("All files (*)")});
+    connect(dialog, &QFileDialog::fileSelected, this, [this, folder](const QString& path) {
+        studio_.settings.setValue(kRigFolder, QFileInfo(path).absolutePath());
+        chosen_ = findChild<QAbstractButton*>(folder ? "rig.new.states" : "rig.new.mesh");
+        chosen_->setChecked(true);
+        chooseSource(std::filesystem::path(path.toStdU16String()));
+    });
+    connect(dialog, &QFileDialog::finished, this, [this] { chosen_->setChecked(true); });
+    dialog->open();
+}
+
+void NewDevice::chooseSource(const std::filesystem::path& path) {
+    kind_ = nullptr;
+    source_ = path;
+    offers_.clear();
+    taken_.reset();
+    forgetMeasures();
+    about_->setText(tr("Read from %1.").arg(QString::fromStdString(path.string())));
+    facts_->clear();
+    wrong_->clear();
+    rig_.reset();
+    preview_->show(nullptr);
+    preview_->frameNext();
+    make();
+}
+
+/// What may become actuators, to be ticked.
+void NewDevice::showOffers() {
+    auto* heading = new QLabel(tr("Tick what servos shall move:"));
+    auto* list = new QListWidget;
+    list->setObjectName("rig.new.offers");
+    list->setAccessibleName(tr("Joints and morph targets"));
+    list->setSelectionMode(QAbstractItemView::NoSelection);
+    list->setMinimumHeight(220);
+    list->setSpacing(2);
+    for (const ActuatorOffer& offer : offers_) {
+        auto* item = new QListWidgetItem(tr("%1, %2").arg(QString::fromStdString(offer.name), offerText(offer.kind)));
+        item->setFlags(Qt::ItemIsEnabled | Qt::ItemIsUserCheckable);
+        const auto index = static_cast<std::size_t>(list->count());
+        item->setCheckState(std::ranges::find(*taken_, index) != taken_->end() ? Qt::Checked : Qt::Unchecked);
+        list->addItem(item);
+    }
+    connect(list, &QListWidget::itemChanged, this, [this, list] {
+        taken_.emplace();
+        for (int row = 0; row < list->count(); ++row)
+            if (list->item(row)->checkState() == Qt::Checked) taken_->push_back(static_cast<std::size_t>(row));
+        make();
+    });
+    measures_->layout()->addWidget(heading);
+    measures_->layout()->addWidget(list);
+}
+
+void NewDevice::forgetMeasures() {
+    fields_.clear();
+    while (QLayoutItem* item = measures_->layout()->takeAt(0)) {
+        item->widget()->hide();
+        item->widget()->deleteLater(); // the field that is left may be telling its number right now
+        delete item;
+    }
 }
 
 QWidget* NewDevice::makeSide() {
@@ -191,13 +349,9 @@ QWidget* NewDevice::makeButtons() {
 void NewDevice::choose(const RigTemplate& kind) {
     if (kind_ == &kind) return;
     kind_ = &kind;
+    source_.clear();
     about_->setText(sentence(kind.meaning));
-    fields_.clear();
-    while (QLayoutItem* item = measures_->layout()->takeAt(0)) {
-        item->widget()->hide();
-        item->widget()->deleteLater(); // the field that is left may be telling its number right now
-        delete item;
-    }
+    forgetMeasures();
     for (const TemplateParameter& parameter : kind.parameters) addParameter(parameter);
     preview_->frameNext(); // another kind is looked at from where all of it is seen
     make();
@@ -229,6 +383,7 @@ void NewDevice::make() {
     isNewest_ = false;
     use_->setEnabled(false);
     draw_->setEnabled(false);
+    if (!source_.empty()) return read();
     std::vector<TemplateChoice> choices;
     for (const auto& [parameter, field] : fields_) {
         const double value = field->value() / unitOf(*parameter);
@@ -240,6 +395,26 @@ void NewDevice::make() {
             return std::make_shared<const Rig>(rigOf(*kind, choices, progress));
         },
         [this](const std::shared_ptr<const Rig>& rig) { take(rig); },
+        [this](const std::exception& error) { refuse(error); });
+}
+
+void NewDevice::read() {
+    jobs_.runWith<ReadDevice>(
+        "make", kPlace, tr("Reading the device"),
+        [path = source_, taken = taken_](const Progress&) { return readDevice(path, taken); },
+        [this](const ReadDevice& device) {
+            const bool first = !taken_;
+            offers_ = device.offers;
+            if (first && !offers_.empty()) {
+                taken_ = usualOffers(offers_);
+                showOffers();
+            }
+            if (device.rig) return take(device.rig);
+            rig_.reset();
+            facts_->clear();
+            wrong_->setText(tr("Tick at least one: a device without actuators does not change its shape."));
+            preview_->show(device.still);
+        },
         [this](const std::exception& error) { refuse(error); });
 }
 
@@ -269,7 +444,7 @@ void NewDevice::refuse(const std::exception& why) {
 
 void NewDevice::useIt() {
     if (!rig_ || !isNewest_) return;
-    const QString name = labelOf(kind_->name).toLower();
+    const QString name = kind_ ? labelOf(kind_->name).toLower() : QString::fromStdString(source_.stem().string());
     accept();
     studio_.project.takeRig(rig_, name);
 }

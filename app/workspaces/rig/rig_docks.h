@@ -10,8 +10,9 @@ namespace lumorph::studio {
 /// The actuators of the rig; choosing one shows what it is and, in the view, what it moves.
 [[nodiscard]] QWidget* makeRigActuators(Studio& studio, RigSelection& selection);
 
-/// Checks of the mesh and the shape report of the rig. Adds the command "rig.check".
-[[nodiscard]] QWidget* makeRigReport(Studio& studio);
+/// What is wrong with the rig at rest and in motion, as rows that show it in the view, and its shape report. Adds the
+/// command "rig.check".
+[[nodiscard]] QWidget* makeRigReport(Studio& studio, RigSelection& selection);
 
 /// What the device can be: how well it takes the shapes of the bundled targets, with pictures, and its shape
 /// resolution. Follows edits while it is seen. Adds the command "rig.fit.take".
@@ -19,5 +20,8 @@ namespace lumorph::studio {
 
 /// Searches for bend lines of the rig's sheet: few servos, or cheap ones, against the fit over some shapes.
 [[nodiscard]] QWidget* makeRigSuggest(Studio& studio);
+
+/// How light reaches the device over all its states, as a map from above, and where a projector should hang.
+[[nodiscard]] QWidget* makeRigLight(Studio& studio);
 
 } // namespace lumorph::studio

@@ -108,21 +108,24 @@ std::vector<RigFact> factsOf(const Rig& rig, std::size_t index, const ServoSetup
     const Actuator& actuator = rig.actuators()[index];
     ActuatorDrive drive = actuator.drive;
     if (setup) {
-        drive.channel = setup->channel;
         drive.pulseMin = setup->reversed ? setup->pulseMax : setup->pulseMin;
         drive.pulseMax = setup->reversed ? setup->pulseMin : setup->pulseMax;
     }
-    return {
+    std::vector<RigFact> facts{
         {"Moves by", deformerText(actuator), "How its part changes shape"},
         {"Amplitude", lengthText(amplitudeOf(rig, index)),
          "The farthest that a point of the surface gets from where it rests"},
         {"Levels", QString::number(actuator.levels), "Steps that the rig suggests for a field"},
         {"Moves", countText(rig.verticesOf(index).size()) + " vertices", "How much of the mesh follows it"},
         {"Channel", drive.channel < 0 ? QString("none") : QString::number(drive.channel),
-         "Where its servo is connected to the controller"},
+         "The number of its servo in the rig's file and in the wiring table of its parts; the first is 0"},
         {"Pulse", shortNumber(drive.pulseMin) + " to " + shortNumber(drive.pulseMax) + " µs",
          "What the servo is sent at rest and at full stroke"},
     };
+    if (setup)
+        facts.push_back({"At the board", QString::number(setup->channel),
+                         "The pin or channel to which Devices sends, in the board's own numbers"});
+    return facts;
 }
 
 std::vector<RigFact> meshFacts(const ShapeReport& report) {

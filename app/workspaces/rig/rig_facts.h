@@ -47,8 +47,8 @@ void setRange(Actuator& actuator, double min, double max);
 /// The shortest time that a servo takes from rest to full stroke, seconds: as it turns without load.
 [[nodiscard]] double fastestStroke(const Actuator& actuator, const ServoType& servo);
 /// What a maker and a controller need to know of an actuator beside what they edit. Deforms the rig for its amplitude.
-/// Channel and pulse are those of its servo's set-up, the same that the Devices workspace shows; null: as the rig's
-/// file says.
+/// The channel is the rig's; its pulse and its place at the board are those of its servo's set-up, the same that the
+/// Devices workspace shows; null: as the rig's file says.
 [[nodiscard]] std::vector<RigFact> factsOf(const Rig& rig, std::size_t actuator, const ServoSetup* setup = nullptr);
 
 [[nodiscard]] std::vector<RigFact> meshFacts(const ShapeReport& report);

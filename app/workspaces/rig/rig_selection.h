@@ -5,6 +5,7 @@
 #include <vector>
 
 #include <QObject>
+#include <glm/vec3.hpp>
 
 namespace lumorph::studio {
 
@@ -24,11 +25,10 @@ public:
     /// The joint state that is shown in the view alone, one stroke an actuator; empty: as the device stands.
     [[nodiscard]] const std::vector<double>& rehearsed() const noexcept { return rehearsed_; }
     /// `glides`: the view takes a moment to get there, so that one sees what moves.
-    void rehearse(std::vector<double> strokes, bool glides = true) {
-        if (strokes == rehearsed_) return;
-        rehearsed_ = std::move(strokes);
-        emit rehearsalChanged(glides);
-    }
+    void rehearse(std::vector<double> strokes, bool glides = true) { show(std::move(strokes), std::nullopt, glides); }
+    /// The same, with a place of the device (metres) that the view turns to and marks.
+    void inspect(std::vector<double> strokes, const glm::vec3& place) { show(std::move(strokes), place, true); }
+    [[nodiscard]] const std::optional<glm::vec3>& inspectedPlace() const noexcept { return place_; }
 
 signals:
     void changed();
@@ -36,8 +36,16 @@ signals:
     void rehearsalChanged(bool glides);
 
 private:
+    void show(std::vector<double> strokes, const std::optional<glm::vec3>& place, bool glides) {
+        if (strokes == rehearsed_ && place == place_) return;
+        rehearsed_ = std::move(strokes);
+        place_ = place;
+        emit rehearsalChanged(glides);
+    }
+
     std::optional<std::size_t> actuator_;
     std::vector<double> rehearsed_;
+    std::optional<glm::vec3> place_;
 };
 
 } // namespace lumorph::studio

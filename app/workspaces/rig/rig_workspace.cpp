@@ -22,6 +22,7 @@
 #include "app/workspaces/rig/influence_map.h"
 #include "app/workspaces/rig/moved_part.h"
 #include "app/workspaces/rig/new_device.h"
+#include "app/workspaces/rig/parts_dialog.h"
 #include "app/workspaces/rig/rig_docks.h"
 #include "core/base/atomic_file.h"
 #include "core/base/error.h"
@@ -35,13 +36,23 @@ namespace {
 constexpr int kSettleMilliseconds = 200;
 constexpr int kWiggleMilliseconds = 33;
 constexpr qint64 kRehearseMilliseconds = 500; ///< to get from one shape to another, so that one sees what moves
-constexpr const char* kRigFolder = "folders/rig";
+constexpr float kShownAround = 0.35F; ///< of the device's longest side, to each side of a place that is looked at
+constexpr float kMarkSize = 0.025F;
 
 ViewCamera firstCamera() {
     ViewCamera camera;
     camera.yaw = Angle::degrees(32.0);
     camera.pitch = Angle::degrees(28.0);
     return camera;
+}
+
+/// An octahedron around a place, which nothing hides.
+void addMark(const glm::vec3& place, float size, const glm::vec3& color, std::vector<ViewportLine>& lines) {
+    const glm::vec3 axes[] = {{size, 0, 0}, {0, size, 0}, {0, 0, size}};
+    for (int k = 0; k < 3; ++k)
+        for (const float side : {-1.0F, 1.0F})
+            for (const float other : {-1.0F, 1.0F})
+                lines.push_back({place + side * axes[k], place + other * axes[(k + 1) % 3], color, 2.5F, true});
 }
 
 } // namespace
@@ -71,6 +82,8 @@ struct RigWorkspace::Data : public QObject {
     void listenToView();
     void followHandles();
     void moveLineBy(const Placement& placement);
+    /// Looks from where the place lies, seen from the middle of the device, so that nothing but itself is in the way.
+    void turnTo(const glm::vec3& place);
     void frameOnce(const ViewportScene& scene);
     /// The frame as shown: the loop's, or what is rehearsed, with the selected actuator wiggling on top.
     [[nodiscard]] MatchFrame shownFrame(const MatchFrame& frame);
@@ -83,6 +96,7 @@ struct RigWorkspace::Data : public QObject {
     std::optional<MovedPart> part;
     std::shared_ptr<const Rig> partOf;
     QAction* wiggleCommand = nullptr;
+    QAction* partsCommand = nullptr;
     QAction* drawCommand = nullptr; ///< there is something to take up again only for a rig that was drawn
     QElapsedTimer wiggling;
     ActuatorHandles handles;
@@ -121,8 +135,11 @@ void RigWorkspace::Data::listen() {
     connect(&studio.document, &StudioDocument::changed, this, [this](StateParts parts) {
         const auto& now = studio.document.state().rig.parts;
         drawCommand->setEnabled(now && !now->drawing.empty());
-        if (parts & StatePart::rigEdited) edited();
-        if (parts & StatePart::rigEdited) followHandles();
+        partsCommand->setEnabled(studio.document.state().rig.rig != nullptr);
+        if (parts & StatePart::rigEdited) {
+            edited();
+            followHandles();
+        }
         if (!(parts & StatePart::rig)) return;
         unframed = true;
         selection.rehearse({}, false);
@@ -147,6 +164,13 @@ void RigWorkspace::Data::addCommands() {
     });
     drawCommand->setToolTip("Take up again the drawing that this device was made of");
     drawCommand->setEnabled(false);
+    options.icon = "build";
+    partsCommand = studio.commands.add("export.parts", "Export parts to build...", options, [this] {
+        emit studio.commands.workspaceWanted("rig");
+        openPartsDialog(studio, window());
+    });
+    partsCommand->setToolTip("What is to be printed, bought and wired to build this device, with the board's sketch");
+    partsCommand->setEnabled(false);
     options.icon = "save";
     options.workspace = "rig";
     studio.commands.add("rig.save", "Save the rig as...", options, [this] { saveRig(); });
@@ -294,6 +318,7 @@ void RigWorkspace::Data::rehearse(bool glides) {
     } else {
         rehearsing.invalidate();
     }
+    if (const auto& place = selection.inspectedPlace()) turnTo(*place);
     refresh();
 }
 
@@ -347,6 +372,23 @@ void RigWorkspace::Data::followHandles() {
     const auto& guide = handles.guide();
     if (!lineFrom) view->setGizmo(guide && guide->hasLine ? std::optional(lineGizmo(*guide)) : std::nullopt);
     view->update();
+}
+
+void RigWorkspace::Data::turnTo(const glm::vec3& place) {
+    const auto& rig = studio.document.state().rig.rig;
+    if (!view || !rig) return;
+    unframed = false; // now the place says where one looks
+    const Box& reach = rig->reach();
+    const glm::vec3 size = reach.size();
+    const float side = std::max({size.x, size.y, size.z});
+    const glm::vec3 out = place - reach.centre();
+    ViewCamera camera = view->camera();
+    if (std::hypot(out.x, out.z) > 0.1F * side)
+        camera.yaw = Angle::radians(static_cast<double>(std::atan2(out.x, out.z)));
+    camera.pitch = firstCamera().pitch;
+    const glm::vec3 around(kShownAround * side);
+    const float aspect = static_cast<float>(view->width()) / static_cast<float>(std::max(1, view->height()));
+    view->setCamera(framed(camera, {place - around, place + around}, aspect), true);
 }
 
 MatchFrame RigWorkspace::Data::shownFrame(const MatchFrame& frame) {
@@ -403,6 +445,11 @@ void RigWorkspace::Data::refresh() {
         for (ViewportSurface& band : influence->surfaces(shown.devicePositions, colors.levelLow, colors.levelHigh))
             scene->surfaces.push_back(std::move(band));
     }
+    if (const auto& place = selection.inspectedPlace()) {
+        const glm::vec3 size = shown.rig->reach().size();
+        addMark(*place, kMarkSize * std::max({size.x, size.y, size.z}), sceneColor(currentPalette().danger),
+                scene->lines);
+    }
     if (unframed) frameOnce(*scene);
     view->setScene(std::move(scene));
     if (builder.pending()) QTimer::singleShot(kWiggleMilliseconds, this, &Data::refresh);
@@ -445,12 +492,14 @@ QWidget* RigWorkspace::makeCentralView() {
 
 std::vector<WorkspaceDock> RigWorkspace::makeDocks() {
     Studio& studio = data_->studio;
-    return {{"dock.rig.actuators", "Actuators", "actuator", makeRigActuators(studio, data_->selection),
-             Qt::LeftDockWidgetArea, false},
-            {"dock.rig.fit", "What it can be", "target", makeRigFit(studio, data_->selection), Qt::RightDockWidgetArea,
-             false},
-            {"dock.rig.report", "Report", "check", makeRigReport(studio), Qt::RightDockWidgetArea, true},
-            {"dock.rig.suggest", "Suggest", "search", makeRigSuggest(studio), Qt::RightDockWidgetArea, true}};
+    return {
+        {"dock.rig.actuators", "Actuators", "actuator", makeRigActuators(studio, data_->selection),
+         Qt::LeftDockWidgetArea, false},
+        {"dock.rig.fit", "What it can be", "target", makeRigFit(studio, data_->selection), Qt::RightDockWidgetArea,
+         false},
+        {"dock.rig.report", "Report", "check", makeRigReport(studio, data_->selection), Qt::RightDockWidgetArea, true},
+        {"dock.rig.suggest", "Suggest", "search", makeRigSuggest(studio), Qt::RightDockWidgetArea, true},
+        {"dock.rig.light", "Light", "projector", makeRigLight(studio), Qt::RightDockWidgetArea, true}};
 }
 
 void RigWorkspace::setActive(bool active) {

@@ -13,6 +13,7 @@
 #include <QVBoxLayout>
 
 #include "app/studio/document/job_slots.h"
+#include "app/studio/widgets/dock_parts.h"
 #include "app/studio/widgets/panel.h"
 #include "app/studio/widgets/throttle.h"
 #include "app/studio/widgets/value_field.h"
@@ -30,8 +31,6 @@ namespace {
 constexpr int kMostServos = 12;
 constexpr int kUsualServos = 8;
 constexpr int kShowMilliseconds = 100;
-
-QString fitText(double fit) { return QString::number(fit, 'f', 2); }
 
 QString servosText(std::size_t count) { return QString("%1 %2").arg(count).arg(count == 1 ? "servo" : "servos"); }
 
@@ -66,14 +65,14 @@ public:
         picture_->show(found.outline, candidate.flaps);
         title_->setText(servosText(candidate.flaps.size()));
         QStringList lines{QString("About %1 EUR").arg(candidate.price, 0, 'f', 0),
-                          QString("Fit %1").arg(fitText(candidate.design.score.fit))};
+                          QString("Fit %1").arg(shareText(candidate.design.score.fit))};
         if (candidate.fits.size() > 1 && candidate.fits.size() == found.targets.size()) {
             const auto [worst, best] = std::ranges::minmax_element(candidate.fits);
             const auto name = [&](auto at) {
                 return QString::fromStdString(found.targets[static_cast<std::size_t>(at - candidate.fits.begin())]);
             };
-            lines << QString("Best: %1 %2").arg(name(best), fitText(*best))
-                  << QString("Worst: %1 %2").arg(name(worst), fitText(*worst));
+            lines << QString("Best: %1 %2").arg(name(best), shareText(*best))
+                  << QString("Worst: %1 %2").arg(name(worst), shareText(*worst));
         }
         numbers_->setText(lines.join('\n'));
     }
@@ -312,7 +311,7 @@ void RigSuggest::showStatus() {
                               : QString("Generation %1").arg(QLocale::c().toString(found_->generation));
     status_->setText(QString("%1, %2 designs looked at, best fit %3")
                          .arg(begun, QLocale(QLocale::English).toString(static_cast<qulonglong>(found_->evaluations)),
-                              fitText(best)));
+                              shareText(best)));
 }
 
 void RigSuggest::showFront() {

@@ -31,7 +31,8 @@ struct SuggestSearch::Bench {
     Bench& operator=(const Bench&) = delete;
 
     static std::shared_ptr<const Bench> of(const Rig& rig, const SuggestChoice& choice, const Progress& progress);
-    /// How the rig itself would be judged; it may have more lines than a design may.
+    /// How the rig itself would be judged; it may have more lines than a design may. None where the search would see
+    /// less than the rig has, as of a tablet whose edges bend together with their corners: designs do not overlap.
     [[nodiscard]] std::optional<DesignScore> startScore() const;
     [[nodiscard]] Candidate candidateOf(const ScoredDesign& design) const;
 
@@ -56,7 +57,9 @@ std::shared_ptr<const SuggestSearch::Bench> SuggestSearch::Bench::of(const Rig& 
 std::optional<DesignScore> SuggestSearch::Bench::startScore() const {
     if (start.bends.empty()) return std::nullopt;
     const SheetDesigns roomy(start, start.bends.size());
-    return DesignScorer(roomy, fit, cost).of(roomy.pointOf(start));
+    const DesignPoint point = roomy.pointOf(start);
+    if (roomy.flapsOf(point).size() < start.bends.size()) return std::nullopt;
+    return DesignScorer(roomy, fit, cost).of(point);
 }
 
 Candidate SuggestSearch::Bench::candidateOf(const ScoredDesign& design) const {

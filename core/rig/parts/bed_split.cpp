@@ -51,7 +51,7 @@ std::vector<BedSplit::Seam> BedSplit::seamsAlong(int axis, double bed, double sh
     if (length <= bed) return {};
     const double room = bed - kTongue - clearance_;
     if (room < 3.0 * kTongue)
-        throw InvalidInput("--bed", "no piece with its dovetails would fit", "choose a larger bed");
+        throw InvalidInput("print bed", "no piece with its dovetails would fit", "choose a larger bed");
     const int count = static_cast<int>(std::ceil(length / room));
     const double slack = 0.95 * shift * (room - length / count);
     std::vector<Seam> seams;

@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <set>
 
 #include "core/base/error.h"
 #include "core/base/text.h"
+#include "core/rig/drive_channels.h"
 #include "core/rig/parts/plan_making.h"
 #include "core/rig/parts/servo_seat.h"
 
@@ -15,27 +17,23 @@ namespace {
 constexpr double kLeastPulse = 500.0; // microseconds that hobby servos follow
 constexpr double kGreatestPulse = 2500.0;
 constexpr int kFirstPin = 2; ///< of an Arduino Pro Mini that servos may have
+constexpr int kLastPin = 13;
 
 void checkOptions(const PartOptions& options) {
     if (!(options.tolerance >= 0.0 && options.tolerance <= 1.0))
-        throw InvalidInput("--tolerance", "parts would not hold one another", "choose 0 to 1 mm");
+        throw InvalidInput("tolerance", "parts would not hold one another", "choose 0 to 1 mm");
     if (!(options.bed >= 50.0 && options.bed <= 2000.0))
-        throw InvalidInput("--bed", "no printer has such a bed", "choose 50 to 2000 mm");
+        throw InvalidInput("print bed", "no printer has such a bed", "choose 50 to 2000 mm");
 }
 
-/// The rig's own channels, where all are pins that the board has for servos; otherwise pins in their order.
+/// Pins for the rig's channels, as the studio sets the board up; where the board has not all of them, pins in the
+/// actuators' order.
 std::vector<int> pinsFor(const Rig& rig) {
-    std::vector<int> pins;
+    if (rig.actuatorCount() > kBoardServos) return std::vector<int>(rig.actuatorCount(), -1);
+    std::vector<int> pins = boardChannels(rig, kFirstPin);
     std::set<int> taken;
-    bool own = true;
-    for (const Actuator& actuator : rig.actuators()) {
-        const int channel = actuator.drive.channel;
-        own = own && channel >= kFirstPin && channel <= 13 && taken.insert(channel).second;
-    }
-    for (std::size_t k = 0; k < rig.actuatorCount(); ++k)
-        pins.push_back(rig.actuatorCount() > kBoardServos ? -1
-                       : own                              ? rig.actuators()[k].drive.channel
-                                                          : kFirstPin + static_cast<int>(k));
+    const auto fits = [&](int pin) { return pin <= kLastPin && taken.insert(pin).second; };
+    if (!std::ranges::all_of(pins, fits)) std::iota(pins.begin(), pins.end(), kFirstPin);
     return pins;
 }
 
@@ -77,7 +75,7 @@ void addPart(BuildPlan& plan, const PartOptions& options, const LayeredDrawing& 
         throw InvalidInput("part " + inQuotes(part.name),
                            std::to_string(std::lround(std::max(box.size().x, box.size().y))) +
                                " mm are longer than the bed",
-                           "choose a larger --bed");
+                           "choose a larger print bed");
     const glm::dvec2 low(box.min.x, box.min.y);
     for (glm::vec3& p : part.solid.mesh.positions) p -= glm::vec3(box.min.x, box.min.y, 0.0F);
     for (LayerOutline& layer : part.solid.layers)
@@ -118,8 +116,10 @@ BuildPlan buildPlanOf(const Rig& rig, const PartOptions& options, const Progress
                            "it has no actuator and is no sheet on a housing: there is nothing to build",
                            "give it actuators");
     } else {
-        plan.notes.push_back("There is no housing: only a level sheet that bends up from a housing, or pins that slide "
-                             "up, can be taken apart into printable parts. Here are seats for its servos.");
+        plan.notes.push_back(
+            "There is no housing: only a level sheet that bends up from a housing, or pins that slide "
+            "up, can be taken apart into printable parts. Here are seats for its servos; for the other parts "
+            "begin with a sheet or a pin display.");
         addLoneSeats(plan, options);
     }
     addBoard(plan);

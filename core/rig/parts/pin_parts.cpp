@@ -194,7 +194,8 @@ private:
         LayeredDrawing bank;
         Region floor;
         for (int k = 0; k < seats; ++k) {
-            const glm::dvec2 at(size.x * (k % columns), size.y * (k / columns));
+            const int row = k / columns;
+            const glm::dvec2 at(size.x * (k % columns), size.y * row);
             const LayeredDrawing seat = seat_.drawing({at, {1.0, 0.0}, {0.0, 1.0}}, 0.0);
             floor.add(rectangle(at + seat_.outline()[0], at + seat_.outline()[0] + size));
             for (const glm::dvec2& screw : seat_.screws()) floor.cut(disc(at + screw, 0.5 * ServoSeat::kScrewPilot));

@@ -338,12 +338,12 @@ TEST(BuildPlan, RefusesWhatCannotBeBuilt) {
     PartOptions options;
     for (const double tolerance : {-0.1, 1.5, 1e9, std::numeric_limits<double>::quiet_NaN()}) {
         options.tolerance = tolerance;
-        EXPECT_THAT(refusal(tablet, options), testing::HasSubstr("--tolerance"));
+        EXPECT_THAT(refusal(tablet, options), testing::HasSubstr("tolerance"));
     }
     options = {};
     for (const double bed : {0.0, 20.0, 1e6, std::numeric_limits<double>::quiet_NaN()}) {
         options.bed = bed;
-        EXPECT_THAT(refusal(tablet, options), testing::HasSubstr("--bed"));
+        EXPECT_THAT(refusal(tablet, options), testing::HasSubstr("print bed"));
     }
     options.bed = 100.0; // pins of 150 mm
     EXPECT_THAT(refusal(templateRig("pins"), options), testing::HasSubstr("pin"));
