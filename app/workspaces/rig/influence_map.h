@@ -1,28 +1,34 @@
 #pragma once
 
 #include <memory>
+#include <span>
 #include <vector>
 
-#include "core/render/viewport/viewport_scene.h"
+#include <QColor>
+#include <QPainter>
+#include <QSize>
+#include <QString>
+#include <glm/gtc/type_precision.hpp>
+
 #include "core/rig/rig.h"
 
 namespace lumorph::studio {
 
-/// How far an actuator's full stroke alone takes each place of the surface, in bands of colour over the device.
-class InfluenceMap {
-public:
-    static constexpr int kBands = 8;
-    InfluenceMap(const Rig& rig, std::size_t actuator);
+/// Metres that each vertex of the rest mesh goes, at most, while an actuator alone goes through its stroke.
+[[nodiscard]] std::vector<float> waysOf(const Rig& rig, std::size_t actuator);
 
-    /// The bands where the vertices are now, from the colour of what hardly moves to that of what goes farthest.
-    [[nodiscard]] std::vector<ViewportSurface> surfaces(std::shared_ptr<const std::vector<glm::vec3>> positions,
-                                                        const glm::vec3& low, const glm::vec3& high) const;
-    /// Which band each triangle of the rest mesh is in; -1: it stays where it is.
-    [[nodiscard]] const std::vector<int>& bands() const noexcept { return bands_; }
+/// From dark violet (0) over red to yellow (1), each lighter than the one before, so that it is read without seeing
+/// colours too.
+[[nodiscard]] QColor heatColor(double share);
+/// A colour for each value over that of the surface, `most` at the ramp's end; what is 0 stays as it is.
+[[nodiscard]] std::shared_ptr<const std::vector<glm::u8vec4>> heatColors(std::span<const float> values, float most);
 
-private:
-    std::vector<int> bands_;
-    std::vector<std::shared_ptr<const SurfaceShading>> shadings_; ///< one a band; null: it is empty
+/// What the colours say.
+struct HeatLegend {
+    QString title;
+    QString most; ///< at the ramp's end; at its beginning stands 0
 };
+/// In the lower right corner of a view.
+void paintHeatLegend(QPainter& painter, const QSize& view, const HeatLegend& legend);
 
 } // namespace lumorph::studio

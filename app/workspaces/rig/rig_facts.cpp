@@ -41,7 +41,6 @@ QString shortNumber(double value) {
     return text == "-0" ? "0" : text;
 }
 
-QString lengthText(double metres) { return shortNumber(1000.0 * metres) + " mm"; }
 QString percentText(double share) { return shortNumber(100.0 * share) + " %"; }
 
 QString statesText(int count, int of) {
@@ -62,6 +61,8 @@ void setRange(Actuator& actuator, double min, double max) {
     std::visit(SetRange{min, max}, actuator.deformer);
     if (before.max > before.min && max > min) actuator.maxVelocity *= (before.max - before.min) / (max - min);
 }
+
+QString lengthText(double metres) { return shortNumber(1000.0 * metres) + " mm"; }
 
 QString rangeText(const Actuator& actuator) {
     const ActuatorRange range = rangeOf(actuator);

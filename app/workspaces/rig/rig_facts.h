@@ -38,6 +38,8 @@ void setRange(Actuator& actuator, double min, double max);
 [[nodiscard]] QString deformerText(const Actuator& actuator);
 /// "0° to 45°", "0 to 20 mm" or "0 to 1".
 [[nodiscard]] QString rangeText(const Actuator& actuator);
+/// "53.6 mm" of metres.
+[[nodiscard]] QString lengthText(double metres);
 /// "0.094 N m", in two digits.
 [[nodiscard]] QString torqueText(double newtonMetres);
 /// Torque, speed, pulses, size and price of a kind of servo, in a line each.
