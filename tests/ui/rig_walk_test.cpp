@@ -18,7 +18,7 @@
 #include "app/workspaces/rig/actuator_guide.h"
 #include "app/workspaces/rig/rig_facts.h"
 #include "core/base/error.h"
-#include "core/rig/mirrored_actuator.h"
+#include "core/rig/actuator_copies.h"
 #include "core/rig/rig_file.h"
 #include "core/rig/servo_types.h"
 #include "core/rig/templates/bundled_rigs.h"

@@ -3,6 +3,7 @@
 #include <QWidget>
 
 #include "app/studio/shell/studio.h"
+#include "app/workspaces/rig/influence_tools.h"
 #include "app/workspaces/rig/rig_selection.h"
 
 namespace lumorph::studio {
@@ -17,6 +18,9 @@ namespace lumorph::studio {
 /// What the device can be: how well it takes the shapes of the bundled targets, with pictures, and its shape
 /// resolution. Follows edits while it is seen. Adds the command "rig.fit.take".
 [[nodiscard]] QWidget* makeRigFit(Studio& studio, RigSelection& selection);
+
+/// Which places of the device follow the chosen actuator: tools to edit that in the view. Needs the command "rig.paint".
+[[nodiscard]] QWidget* makeRigInfluence(Studio& studio, RigSelection& selection, InfluenceTools& tools);
 
 /// Searches for bend lines of the rig's sheet: few servos, or cheap ones, against the fit over some shapes.
 [[nodiscard]] QWidget* makeRigSuggest(Studio& studio);

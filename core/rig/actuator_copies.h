@@ -2,6 +2,9 @@
 
 #include <cstddef>
 #include <string>
+#include <vector>
+
+#include <glm/vec3.hpp>
 
 #include "core/rig/rig.h"
 
@@ -25,5 +28,19 @@ struct MirroredActuator {
 
 /// The plane across which an actuator's part lies farther from the middle.
 [[nodiscard]] MirrorPlane mirrorPlaneOf(const RigParts& parts, std::size_t actuator);
+
+struct ActuatorCopies {
+    RigParts parts;
+    std::vector<std::size_t> actuators; ///< the copies, in the order of their places
+    int added = 0;                      ///< of them; the others were there before
+};
+
+inline constexpr int kMostCopies = 200;
+
+/// A rig in which one of its actuators stands `count` times (2 to 200, itself among them) around the upright line
+/// through the middle of the rest mesh's box, at even angles. What is said of a mirror image holds for each copy.
+[[nodiscard]] ActuatorCopies copiesAround(const RigParts& parts, std::size_t actuator, int count);
+/// The same along a line: each copy is `step` (metres) from the one before.
+[[nodiscard]] ActuatorCopies copiesAlong(const RigParts& parts, std::size_t actuator, int count, const glm::vec3& step);
 
 } // namespace lumorph
