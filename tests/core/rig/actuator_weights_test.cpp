@@ -16,7 +16,7 @@ namespace {
 const glm::vec3 kUp(0.0F, 1.0F, 0.0F);
 
 /// A board of 16 x 16 cm whose top is raised by one actuator of any kind.
-RigParts board(Deformer deformer, float thick = 0.01F) {
+RigParts weightBoard(Deformer deformer, float thick = 0.01F) {
     RigParts parts;
     parts.name = "board";
     parts.restMesh = test::boxMesh({-0.08F, 0.0F, -0.08F}, {0.08F, thick, 0.08F}, 16);
@@ -40,7 +40,7 @@ const Deformer kSlide = Slide{{0.0F, 1.0F, 0.0F}, 0.0, 0.03};
 
 /// One joint below another, and every vertex follows the first alone.
 RigParts skinned() {
-    RigParts parts = board(SkinJoint{1, SkinJoint::Motion::translate, {0.0F, 1.0F, 0.0F}, 0.0, 0.03});
+    RigParts parts = weightBoard(SkinJoint{1, SkinJoint::Motion::translate, {0.0F, 1.0F, 0.0F}, 0.0, 0.03});
     Skeleton skeleton;
     skeleton.joints = {{-1, glm::mat4(1.0F)}, {0, glm::mat4(1.0F)}};
     skeleton.vertexJoints.assign(parts.restMesh.positions.size(), glm::u16vec4(0));
@@ -51,7 +51,7 @@ RigParts skinned() {
 
 TEST(ActuatorWeights, SetMoveEachVertexByItsShare) {
     for (const Deformer& kind : {kSlide, Deformer(MorphTarget{"raised", {}, {}})}) {
-        RigParts parts = board(kind);
+        RigParts parts = weightBoard(kind);
         const std::vector<bool> follows = canFollow(parts, 0);
         std::vector<float> weights;
         for (const glm::vec3& p : parts.restMesh.positions) weights.push_back(std::abs(p.z) / 0.08F);
@@ -70,7 +70,7 @@ TEST(ActuatorWeights, SetMoveEachVertexByItsShare) {
 }
 
 TEST(ActuatorWeights, OfAMorphTargetCanBeTakenAwayAndGivenBack) {
-    const RigParts before = board(MorphTarget{"raised", {}, {}});
+    const RigParts before = weightBoard(MorphTarget{"raised", {}, {}});
     RigParts parts = before;
     const std::vector<float> weights = actuatorWeights(parts, 0);
     setActuatorWeights(parts, 0, std::vector<float>(weights.size(), 0.0F));
@@ -110,7 +110,7 @@ TEST(ActuatorWeights, FallOffSmoothly) {
 }
 
 TEST(ActuatorWeights, SpreadAroundAPlaceAndToOneSideOfALine) {
-    const RigParts thin = board(kSlide, 0.003F);
+    const RigParts thin = weightBoard(kSlide, 0.003F);
     const auto& at = thin.restMesh.positions;
     const WeightFalloff falloff{0.02, 0.03};
     const auto expected = [&](double metres) { return weightsByDistance(std::vector{float(metres)}, falloff)[0]; };
@@ -127,7 +127,7 @@ TEST(ActuatorWeights, SpreadAroundAPlaceAndToOneSideOfALine) {
 }
 
 TEST(ActuatorWeights, AreRefusedWhenTheyAreNone) {
-    RigParts parts = board(kSlide);
+    RigParts parts = weightBoard(kSlide);
     const RigParts before = parts;
     std::vector<float> weights(parts.restMesh.positions.size(), 0.5F);
     weights[3] = 1.5F;
@@ -142,7 +142,7 @@ TEST(ActuatorWeights, AreRefusedWhenTheyAreNone) {
 TEST(WeightStroke, PaintsWithinItsRadiusAndOnBothSidesOfASheetAlone) {
     const WeightBrush brush{WeightBrush::Tool::paint, 0.03, 0.4};
     for (const float thick : {0.004F, 0.01F}) {
-        const RigParts parts = board(kSlide, thick);
+        const RigParts parts = weightBoard(kSlide, thick);
         const glm::vec3 place(0.0F, thick, 0.0F);
         WeightStroke stroke(parts, 0);
         stroke.moveTo(place, kUp, brush);
@@ -154,7 +154,7 @@ TEST(WeightStroke, PaintsWithinItsRadiusAndOnBothSidesOfASheetAlone) {
             EXPECT_NEAR(stroke.weights()[v], 0.4 * inside * inside, 1e-5) << v;
         }
     }
-    const RigParts parts = board(kSlide);
+    const RigParts parts = weightBoard(kSlide);
     WeightStroke stroke(parts, 0);
     // Again and again: never above 1; the eraser takes it all away.
     for (int i = 0; i < 40; ++i) stroke.moveTo({i % 2 == 0 ? 0.008F : 0.0F, 0.01F, 0.0F}, kUp, brush);
@@ -165,7 +165,7 @@ TEST(WeightStroke, PaintsWithinItsRadiusAndOnBothSidesOfASheetAlone) {
 }
 
 TEST(WeightStroke, ComesToTheSameInFewMovesAndInMany) {
-    const RigParts parts = board(kSlide);
+    const RigParts parts = weightBoard(kSlide);
     const WeightBrush brush{WeightBrush::Tool::paint, 0.02, 0.1};
     WeightStroke few(parts, 0), many(parts, 0);
     few.moveTo({-0.05F, 0.01F, 0.0F}, kUp, brush);
@@ -178,7 +178,7 @@ TEST(WeightStroke, ComesToTheSameInFewMovesAndInMany) {
 }
 
 TEST(WeightStroke, SmoothsTowardsTheMeanAround) {
-    RigParts parts = board(kSlide);
+    RigParts parts = weightBoard(kSlide);
     const auto& mesh = parts.restMesh;
     std::vector<float> weights;
     for (std::size_t v = 0; v < mesh.positions.size(); ++v) weights.push_back(v % 2 == 0 ? 1.0F : 0.0F);
@@ -199,7 +199,7 @@ TEST(WeightStroke, SmoothsTowardsTheMeanAround) {
 }
 
 TEST(WeightStroke, LeavesWhatCannotFollow) {
-    const RigParts parts = board(MorphTarget{"raised", {}, {}});
+    const RigParts parts = weightBoard(MorphTarget{"raised", {}, {}});
     WeightStroke stroke(parts, 0);
     stroke.moveTo({0.0F, 0.01F, 0.0F}, kUp, {WeightBrush::Tool::paint, 0.2, 1.0});
     const auto follows = canFollow(parts, 0);
