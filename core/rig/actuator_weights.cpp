@@ -153,14 +153,13 @@ void WeightStroke::moveTo(const glm::vec3& place, const glm::vec3& normal, const
         last_ = place;
         return dab(place, normal, brush);
     }
-    const double gap = std::max(brush.radius / kDabsInRadius, 1e-6);
     const double far = glm::distance(glm::dvec3(place), glm::dvec3(last_));
-    const int dabs = static_cast<int>(std::min<double>(far / gap, kMostDabs));
+    const double gap = std::max({brush.radius / kDabsInRadius, far / kMostDabs, 1e-6});
+    const int dabs = static_cast<int>(far / gap + 1e-3);
     if (dabs == 0) return; // the next move is farther
     const glm::vec3 from = last_;
-    for (int i = 1; i <= dabs; ++i)
-        dab(from + static_cast<float>(i) / static_cast<float>(dabs) * (place - from), normal, brush);
-    last_ = place;
+    const glm::vec3 step = static_cast<float>(gap / far) * (place - from);
+    for (int i = 1; i <= dabs; ++i) dab(last_ = from + static_cast<float>(i) * step, normal, brush);
 }
 
 void WeightStroke::dab(const glm::vec3& place, const glm::vec3& normal, const WeightBrush& brush) {

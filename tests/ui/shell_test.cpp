@@ -162,7 +162,7 @@ TEST(RigFacts, AmplitudeIsThatOfTheReport) {
     const Rig rig = readRig(resourceFile("models/tablet.glb"));
     const ShapeReport report = shapeReport(rig, 1, 1);
     for (std::size_t actuator = 0; actuator < rig.actuatorCount(); ++actuator) {
-        const auto facts = studio::factsOf(rig, actuator);
+        const auto facts = studio::factsOf(rig, actuator, amplitudeOf(rig, actuator));
         const auto fact = std::ranges::find(facts, QString("Amplitude"), &studio::RigFact::name);
         ASSERT_NE(fact, facts.end());
         EXPECT_EQ(fact->value, QString("%1 mm").arg(1000.0 * report.actuators[actuator].amplitude, 0, 'f', 1));

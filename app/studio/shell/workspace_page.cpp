@@ -1,8 +1,7 @@
 #include "app/studio/shell/workspace_page.h"
 
-#include <utility>
-
 #include <algorithm>
+#include <utility>
 
 #include <QDockWidget>
 #include <QPainter>
@@ -52,11 +51,11 @@ WorkspacePage::WorkspacePage(Workspace& workspace, Settings& settings, Commands&
         before = docks_.back();
         addCommands(commands, before, brought);
     }
-    for (QDockWidget* dock : docks_) // of docks behind each other the first one is in front
-        if (!tabifiedDockWidgets(dock).isEmpty()) {
-            dock->raise();
-            break;
-        }
+    for (auto dock = docks_.begin(); dock != docks_.end(); ++dock) { // of docks behind each other the first is in front
+        const QList<QDockWidget*> behind = tabifiedDockWidgets(*dock);
+        const auto isBehind = [&](QDockWidget* other) { return behind.contains(other); };
+        if (!behind.isEmpty() && std::none_of(docks_.begin(), dock, isBehind)) (*dock)->raise();
+    }
     firstLayout_ = saveState(kLayoutVersion);
     settled_.setSingleShot(true);
     connect(&settled_, &QTimer::timeout, this, [this] { restored_.clear(); });

@@ -157,10 +157,9 @@ void ActuatorForm::showServo(const Actuator& actuator) {
                              : hint + "Drag sideways, type, or press the arrow keys.");
 }
 
-void ActuatorForm::showLoad(const Rig& rig) {
+void ActuatorForm::showLoad(const ServoLoad& load) {
     const Actuator* now = shown();
-    if (!now || *actuator_ >= rig.actuatorCount()) return load_->hide();
-    const ServoLoad load = servoLoad(rig, *actuator_);
+    if (!now) return load_->hide();
     const ServoType* type = findServo(now->drive.servo);
     const bool weak = type && load.weak;
     if (type)

@@ -11,6 +11,7 @@
 #include "app/studio/document/studio_document.h"
 #include "app/studio/widgets/value_field.h"
 #include "app/workspaces/rig/actuator_preview.h"
+#include "core/rig/shape_resolution.h"
 
 namespace lumorph::studio {
 
@@ -25,7 +26,7 @@ public:
     /// Shows one of the document's actuators as it is now; hidden without one.
     void show(std::optional<std::size_t> actuator);
     /// What its servo has to hold, of the newest rig that was compiled; the actuators' order is the document's.
-    void showLoad(const Rig& rig);
+    void showLoad(const ServoLoad& load);
 
 signals:
     /// How far or how fast it moves was edited.

@@ -4,6 +4,7 @@
 #include <QStackedWidget>
 #include <QVBoxLayout>
 
+#include "app/studio/document/job_slots.h"
 #include "app/studio/widgets/dock_parts.h"
 #include "app/studio/widgets/panel.h"
 #include "app/studio/widgets/throttle.h"
@@ -19,13 +20,27 @@ namespace {
 
 /// While something is dragged, what stands in the list and below it follows a little later than the view.
 constexpr int kFollowMilliseconds = 100;
+/// Of a rig with more vertices the work of an actuator is found beside the window, which would stand still meanwhile.
+constexpr std::size_t kQuickVertices = 20'000;
+
+/// What an actuator does, which takes deforming the rig.
+struct ActuatorWork {
+    std::shared_ptr<const Rig> rig;
+    std::size_t actuator = 0;
+    ServoLoad load;
+    double amplitude = 0.0; ///< metres
+};
+
+ActuatorWork workOf(std::shared_ptr<const Rig> rig, std::size_t actuator) {
+    return {rig, actuator, servoLoad(*rig, actuator), amplitudeOf(*rig, actuator)};
+}
 
 class RigActuators : public QWidget {
 public:
     RigActuators(Studio& studio, RigSelection& selection)
         : studio_(studio), selection_(selection), pages_(new QStackedWidget(this)), list_(new QListWidget(this)),
           form_(new ActuatorForm(studio.document)), details_(new QVBoxLayout),
-          soon_(new Throttle(kFollowMilliseconds, this)) {
+          slots_(*this, studio.jobs, studio.notices), soon_(new Throttle(kFollowMilliseconds, this)) {
         auto* layout = new QVBoxLayout(this);
         layout->setContentsMargins(0, 0, 0, 0);
         layout->setSpacing(0);
@@ -126,10 +141,26 @@ private:
         const auto& rig = studio_.document.state().rig.rig; // may be that of an edit before
         if (!rig || !chosen || *chosen >= rig->actuatorCount()) return;
         if (list_->currentRow() != static_cast<int>(*chosen)) list_->setCurrentRow(static_cast<int>(*chosen));
-        form_->showLoad(*rig);
+        if (!work_ || work_->rig != rig || work_->actuator != *chosen) findWork(rig, *chosen);
+        if (!work_ || work_->actuator != *chosen) return; // of an edit before it may be, for a moment
+        form_->showLoad(work_->load);
         const auto& servos = studio_.devices.profile().servos;
         const ServoSetup* setup = servos.size() == rig->actuatorCount() ? &servos[*chosen] : nullptr;
-        details_->addWidget(makeFacts(factsOf(*rig, *chosen, setup), "rig.actuator.", this));
+        details_->addWidget(makeFacts(factsOf(*rig, *chosen, work_->amplitude, setup), "rig.actuator.", this));
+    }
+
+    void findWork(const std::shared_ptr<const Rig>& rig, std::size_t chosen) {
+        if (rig->restMesh().positions.size() <= kQuickVertices) {
+            work_ = workOf(rig, chosen);
+            return;
+        }
+        slots_.run<ActuatorWork>(
+            "work", "rig", tr("Finding what the actuator does"),
+            [rig, chosen](const Progress&) { return workOf(rig, chosen); },
+            [this](ActuatorWork work) {
+                work_ = std::move(work);
+                if (work_->rig == studio_.document.state().rig.rig) showDetails();
+            });
     }
 
     Studio& studio_;
@@ -138,6 +169,8 @@ private:
     QListWidget* list_;
     ActuatorForm* form_;
     QVBoxLayout* details_;
+    JobSlots slots_;
+    std::optional<ActuatorWork> work_; ///< of the actuator that was shown last
     Throttle* soon_;
     QLabel* summary_ = nullptr;
     QWidget* title_ = nullptr;

@@ -6,6 +6,7 @@
 #include <QComboBox>
 #include <QDialog>
 #include <QDialogButtonBox>
+#include <QKeyEvent>
 #include <QLabel>
 #include <QPushButton>
 #include <QStyle>
@@ -61,6 +62,14 @@ public:
         for (ValueField* field : {count_, along_, across_})
             connect(field, &ValueField::committed, this, &CopiesDialog::look);
         look();
+    }
+
+protected:
+    void keyPressEvent(QKeyEvent* event) override {
+        // Return ends a number, and tells what would come of it; only on the button it makes the copies.
+        const bool isReturn = event->key() == Qt::Key_Return || event->key() == Qt::Key_Enter;
+        if (isReturn && !qobject_cast<QAbstractButton*>(focusWidget())) return;
+        QDialog::keyPressEvent(event);
     }
 
 private:

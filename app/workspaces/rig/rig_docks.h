@@ -19,7 +19,8 @@ namespace lumorph::studio {
 /// resolution. Follows edits while it is seen. Adds the command "rig.fit.take".
 [[nodiscard]] QWidget* makeRigFit(Studio& studio, RigSelection& selection);
 
-/// Which places of the device follow the chosen actuator: tools to edit that in the view. Needs the command "rig.paint".
+/// Which places of the device follow the chosen actuator: tools to edit that in the view. Needs the command
+/// "rig.paint".
 [[nodiscard]] QWidget* makeRigInfluence(Studio& studio, RigSelection& selection, InfluenceTools& tools);
 
 /// Searches for bend lines of the rig's sheet: few servos, or cheap ones, against the fit over some shapes.

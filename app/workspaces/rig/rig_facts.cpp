@@ -105,7 +105,7 @@ double fastestStroke(const Actuator& actuator, const ServoType& servo) {
     return servoAngle(actuator, servo).inRadians() / servo.speed;
 }
 
-std::vector<RigFact> factsOf(const Rig& rig, std::size_t index, const ServoSetup* setup) {
+std::vector<RigFact> factsOf(const Rig& rig, std::size_t index, double amplitude, const ServoSetup* setup) {
     const Actuator& actuator = rig.actuators()[index];
     ActuatorDrive drive = actuator.drive;
     if (setup) {
@@ -114,8 +114,7 @@ std::vector<RigFact> factsOf(const Rig& rig, std::size_t index, const ServoSetup
     }
     std::vector<RigFact> facts{
         {"Moves by", deformerText(actuator), "How its part changes shape"},
-        {"Amplitude", lengthText(amplitudeOf(rig, index)),
-         "The farthest that a point of the surface gets from where it rests"},
+        {"Amplitude", lengthText(amplitude), "The farthest that a point of the surface gets from where it rests"},
         {"Levels", QString::number(actuator.levels), "Steps that the rig suggests for a field"},
         {"Moves", countText(rig.verticesOf(index).size()) + " vertices", "How much of the mesh follows it"},
         {"Channel", drive.channel < 0 ? QString("none") : QString::number(drive.channel),

@@ -48,10 +48,11 @@ void setRange(Actuator& actuator, double min, double max);
 [[nodiscard]] QString servoLoadText(const ServoLoad& load);
 /// The shortest time that a servo takes from rest to full stroke, seconds: as it turns without load.
 [[nodiscard]] double fastestStroke(const Actuator& actuator, const ServoType& servo);
-/// What a maker and a controller need to know of an actuator beside what they edit. Deforms the rig for its amplitude.
+/// What a maker and a controller need to know of an actuator beside what they edit. `amplitude` is that of amplitudeOf.
 /// The channel is the rig's; its pulse and its place at the board are those of its servo's set-up, the same that the
 /// Devices workspace shows; null: as the rig's file says.
-[[nodiscard]] std::vector<RigFact> factsOf(const Rig& rig, std::size_t actuator, const ServoSetup* setup = nullptr);
+[[nodiscard]] std::vector<RigFact> factsOf(const Rig& rig, std::size_t actuator, double amplitude,
+                                           const ServoSetup* setup = nullptr);
 
 [[nodiscard]] std::vector<RigFact> meshFacts(const ShapeReport& report);
 [[nodiscard]] std::vector<RigFact> shapeFacts(const ShapeReport& report);

@@ -551,11 +551,11 @@ std::vector<WorkspaceDock> RigWorkspace::makeDocks() {
     return {
         {"dock.rig.actuators", "Actuators", "actuator", makeRigActuators(studio, data_->selection),
          Qt::LeftDockWidgetArea, false},
+        {"dock.rig.influence", "Influence", "drop", makeRigInfluence(studio, data_->selection, data_->tools),
+         Qt::LeftDockWidgetArea, true},
         {"dock.rig.fit", "What it can be", "target", makeRigFit(studio, data_->selection), Qt::RightDockWidgetArea,
          false},
         {"dock.rig.report", "Report", "check", makeRigReport(studio, data_->selection), Qt::RightDockWidgetArea, true},
-        {"dock.rig.influence", "Influence", "drop", makeRigInfluence(studio, data_->selection, data_->tools),
-         Qt::RightDockWidgetArea, true},
         {"dock.rig.suggest", "Suggest", "search", makeRigSuggest(studio), Qt::RightDockWidgetArea, true},
         {"dock.rig.light", "Light", "projector", makeRigLight(studio, data_->selection), Qt::RightDockWidgetArea,
          true}};

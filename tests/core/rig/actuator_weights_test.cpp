@@ -160,7 +160,7 @@ TEST(WeightStroke, PaintsWithinItsRadiusAndOnBothSidesOfASheetAlone) {
     for (int i = 0; i < 40; ++i) stroke.moveTo({i % 2 == 0 ? 0.008F : 0.0F, 0.01F, 0.0F}, kUp, brush);
     EXPECT_EQ(*std::max_element(stroke.weights().begin(), stroke.weights().end()), 1.0F);
     for (int i = 0; i < 60; ++i)
-        stroke.moveTo({i % 2 == 0 ? 0.008F : 0.0F, 0.01F, 0.0F}, kUp, {WeightBrush::Tool::erase, 0.06, 1.0});
+        stroke.moveTo({i % 2 == 0 ? 0.02F : -0.02F, 0.01F, 0.0F}, kUp, {WeightBrush::Tool::erase, 0.06, 1.0});
     EXPECT_EQ(*std::max_element(stroke.weights().begin(), stroke.weights().end()), 0.0F);
 }
 
