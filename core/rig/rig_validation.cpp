@@ -131,8 +131,8 @@ void checkActuator(const RigParts& parts, const Actuator& actuator, const std::s
             "use 1 (critical) or more");
     require(actuator.dampingRatio <= 1e3, subject, "the damping ratio is so large that the device would stand still",
             "use 1 (critical) to 1000");
-    require(within(actuator.drive.pulseMin) && within(actuator.drive.pulseMax), subject, "a pulse width is not finite",
-            "give microseconds, for example 1000 and 2000");
+    require(std::isfinite(actuator.drive.pulseMin) && std::isfinite(actuator.drive.pulseMax), subject,
+            "a pulse width is not finite", "give microseconds, for example 1000 and 2000");
     requireText(actuator.drive.servo, subject, "the name of its servo is no text");
 }
 

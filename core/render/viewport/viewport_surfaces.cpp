@@ -58,6 +58,7 @@ ViewportSurfaces::Entry& ViewportSurfaces::add(const ViewportSurface& surface) {
     entry.shading = surface.shading;
     entry.detail = detailOf(surface);
     glBindVertexArray(entry.array.name());
+    glBindBuffer(GL_ARRAY_BUFFER, entry.tints.name()); // GL makes a buffer when it is first bound
     glBindBuffer(GL_ARRAY_BUFFER, entry.vertices.name());
     surfaceAttribute(0, sizeof(Vertex), offsetof(Vertex, position));
     surfaceAttribute(1, sizeof(Vertex), offsetof(Vertex, normal));
