@@ -13,7 +13,7 @@ using Shift = ProjectorModel::Shift;
 
 /// An "offset" of 116 % in a data sheet: the picture's upper edge lies 1.16 picture heights above the lens' axis.
 constexpr Shift offset(double percentLeast, double percentMost) {
-    return {0.01 * percentLeast - 0.5, 0.01 * percentMost - 0.5};
+    return {(percentLeast - 50.0) / 100.0, (percentMost - 50.0) / 100.0};
 }
 
 constexpr std::array kModels{

@@ -108,8 +108,8 @@ TEST(LightDock, MapFollowsTheRoomAndTheBestPlaceIsHungByOneStep) {
     window.enter("rig.light.low.y", "100cm");
     window.enter("rig.light.high.y", "150cm");
     window.click("rig.light.search");
-    ASSERT_TRUE(
-        eventually([&] { return window.findNow<QPushButton>("rig.light.hang") != nullptr; }, std::chrono::seconds(60)));
+    ASSERT_TRUE(eventually([&] { return window.findNow<QPushButton>("rig.light.hang") != nullptr; },
+                           std::chrono::seconds(150)));
     EXPECT_TRUE(window.text("rig.light.best").startsWith("Best place: "))
         << window.text("rig.light.best").toStdString();
     window.screenshot("light_dock");

@@ -161,7 +161,8 @@ private:
                    influence.weight <= 1.0F && (i == 0 || a.influences[i - 1].vertex < influence.vertex);
         }
         good = good && a.levels >= 2 && a.levels <= 200 && a.maxVelocity >= 1e-6 && a.maxVelocity <= 1e6 &&
-               a.dampingRatio >= 1.0 && a.dampingRatio <= 1e3 && number(a.drive.pulseMin) && number(a.drive.pulseMax);
+               a.dampingRatio >= 1.0 && a.dampingRatio <= 1e3 && std::isfinite(a.drive.pulseMin) &&
+               std::isfinite(a.drive.pulseMax);
         return good && std::visit([this](const auto& deformer) { return fits(deformer); }, a.deformer);
     }
     bool all() {

@@ -59,7 +59,7 @@ public:
 
     [[nodiscard]] QVariant loadResource(int type, const QUrl& name) override {
         if (name.fileName().endsWith(".md")) return htmlOf(name);
-        const QVariant loaded = QTextBrowser::loadResource(type, name);
+        QVariant loaded = QTextBrowser::loadResource(type, name);
         if (type != QTextDocument::ImageResource) return loaded;
         QImage picture = loaded.metaType().id() == QMetaType::QByteArray ? QImage::fromData(loaded.toByteArray())
                                                                          : qvariant_cast<QImage>(loaded);
