@@ -158,11 +158,25 @@ double readDeformer(const std::string& kind, const Members& members, const glm::
     return entry.weightMax - entry.weightMin;
 }
 
-/// The shortest number of degrees that gives back exactly this angle.
+/// The number of degrees that gives back exactly this angle, the shortest where it has few digits. Not every angle has
+/// one: then that of the nearest angle which has, so that what is read and written again does not change any more.
 double tidyDegrees(double radians) {
-    const double degrees = Angle::radians(radians).inDegrees();
-    const double tidy = std::round(degrees * 1e6) / 1e6;
-    return Angle::degrees(tidy).inRadians() == radians ? tidy : degrees;
+    const auto meets = [&radians](double degrees) { return Angle::degrees(degrees).inRadians() == radians; };
+    for (int attempt = 0; attempt < 2; ++attempt) {
+        const double degrees = Angle::radians(radians).inDegrees();
+        const double tidy = std::round(degrees * 1e6) / 1e6;
+        if (meets(tidy)) return tidy;
+        double below = degrees;
+        double above = degrees;
+        for (int step = 0; step < 4; ++step) { // rounding moves it by no more
+            if (meets(below)) return below;
+            if (meets(above)) return above;
+            below = std::nextafter(below, -INFINITY);
+            above = std::nextafter(above, INFINITY);
+        }
+        radians = Angle::degrees(degrees).inRadians();
+    }
+    return Angle::radians(radians).inDegrees();
 }
 
 json triple(const glm::vec3& v) { return {v.x, v.y, v.z}; }
