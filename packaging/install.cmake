@@ -3,7 +3,7 @@ include(GNUInstallDirs)
 
 install(TARGETS lumorph RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 # core/base/resources.cpp looks for ../share/lumorph beside the program.
-install(DIRECTORY resources/fonts resources/icons resources/materials resources/models resources/projects
+install(DIRECTORY resources/fonts resources/icons resources/levels resources/materials resources/models resources/projects
                   resources/shaders resources/targets resources/thumbnails
         DESTINATION ${CMAKE_INSTALL_DATADIR}/lumorph
         PATTERN generator EXCLUDE PATTERN CMakeLists.txt EXCLUDE)
