@@ -15,7 +15,9 @@
 #include "core/base/error.h"
 #include "core/base/resources.h"
 #include "core/rig/rig_file.h"
+#include "core/scene/project.h"
 #include "devices/controllers/controller_kinds.h"
+#include "devices/firmware/sketch.h"
 #include "devices/simulator/simulated_bench.h"
 #include "devices/transport/discovery.h"
 
@@ -270,6 +272,67 @@ void move(const DeviceArguments& arguments, Session& session) {
         printText(arguments.uri, after);
 }
 
+struct SketchArguments {
+    std::string project;
+    std::string profile;
+    std::string output;
+    int button = 0;
+    bool atPower = false;
+    bool json = false;
+};
+
+/// The poses of a project for the rig that it names.
+BoardSequence posesOf(const SketchArguments& arguments, const Project& project, const Rig& rig) {
+    std::vector<std::string> names;
+    for (const Actuator& actuator : rig.actuators()) names.push_back(actuator.name);
+    if (project.poses.sequence.steps.empty())
+        throw DataError(arguments.project, "it has no sequence of poses", "make one in the studio's dock Poses");
+    return {sequenceFor(project.poses, names), arguments.atPower ? std::nullopt : std::optional<int>(arguments.button)};
+}
+
+void sketch(const SketchArguments& arguments) {
+    const Project project = readProject(arguments.project);
+    const Rig rig = readRig(assetPath(arguments.project, project.rig));
+    const DeviceProfile profile = arguments.profile.empty() ? profileFor(rig, firstChannel(ControllerKind::firmata))
+                                                            : readProfile(arguments.profile);
+    const BoardSequence poses = posesOf(arguments, project, rig);
+    const BoardPlan plan = planForBoard(profile, poses);
+    const std::filesystem::path folder = writeSketch(profile, arguments.output, &poses);
+    if (arguments.json) {
+        printJson({{"folder", folder.string()},
+                   {"steps", plan.sequence.steps.size()},
+                   {"seconds", durationOf(plan.sequence)},
+                   {"bytes", plan.bytes},
+                   {"mostBytes", kMostSequenceBytes},
+                   {"loop", plan.sequence.loop},
+                   {"button", poses.button ? nlohmann::json(*poses.button) : nlohmann::json()},
+                   {"notes", plan.notes}});
+        return;
+    }
+    std::printf("%s: %zu steps in %.1f s, %zu of %zu bytes; %s\n", folder.c_str(), plan.sequence.steps.size(),
+                durationOf(plan.sequence), plan.bytes, kMostSequenceBytes,
+                poses.button ? ("a button on pin " + std::to_string(*poses.button) + " starts it").c_str()
+                             : "it starts when the board gets power");
+    for (const std::string& note : plan.notes) std::printf("  ! %s\n", note.c_str());
+}
+
+void addSketchCommand(CLI::App& group) {
+    auto arguments = std::make_shared<SketchArguments>();
+    CLI::App* command = group.add_subcommand(
+        "sketch", "Write the board's sketch with a project's poses, which it shows without a computer");
+    command->add_option("project", arguments->project, "A .lumorph file with a sequence of poses")->required();
+    command->add_option("--profile", arguments->profile,
+                        "Channels, pulses and limits of the servos (default: as the rig says, from pin 2 on)");
+    CLI::Option_group* start = command->add_option_group("start", "What starts it");
+    start->add_option("--button", arguments->button, "Pin of a button to ground that starts it");
+    start->add_flag("--at-power-on", arguments->atPower, "It starts by itself, and never ends");
+    start->require_option(1);
+    command->add_option("-o,--output", arguments->output, "The folder in which the sketch's own folder is made")
+        ->required();
+    command->add_flag("--json", arguments->json, "Print one JSON value");
+    command->callback([arguments] { sketch(*arguments); });
+}
+
 CLI::App* addCommand(CLI::App& group, const char* name, const char* what, DeviceArguments& arguments) {
     CLI::App* command = group.add_subcommand(name, what);
     command
@@ -302,6 +365,7 @@ void addDeviceCommands(CLI::App& app, Session& session) {
     CLI::App* lists = group->add_subcommand("list", "What is connected to this machine, and the simulated boards");
     lists->add_flag("--json", arguments->json, "Print one JSON value");
     lists->callback([arguments] { list(*arguments); });
+    addSketchCommand(*group);
     CLI::App* probes =
         addCommand(*group, "probe", "Ask a controller what it is; nothing is driven, and servos that are on are let go",
                    *arguments);

@@ -7,10 +7,13 @@
 #include "app/cli/commands.h"
 #include "app/cli/field_input.h"
 #include "core/base/error.h"
+#include "core/loop/match_field.h"
 #include "core/mdf/builder.h"
 #include "core/mdf/field_export.h"
 #include "core/mdf/field_file.h"
+#include "core/mdf/field_story.h"
 #include "core/rig/rig_file.h"
+#include "core/voxels/nrrd.h"
 
 namespace lumorph::cli {
 
@@ -102,6 +105,47 @@ void info(const FieldArguments& arguments, const Session& session) {
     arguments.json ? printJson(infoJson(field, bytes.size())) : printInfo(field, bytes.size());
 }
 
+nlohmann::json reachJson(const Field& field, const JointReach& reach) {
+    nlohmann::json pairs = nlohmann::json::array();
+    for (const JointReach::Pair& pair : reach.pairs)
+        pairs.push_back({{"first", field.actuators[pair.first].name},
+                         {"second", field.actuators[pair.second].name},
+                         {"voxels", pair.voxels}});
+    return {{"alone", reach.alone.count()},
+            {"together", reach.together.count()},
+            {"voxelVolume", field.frame.voxelVolume()},
+            {"pairs", pairs}};
+}
+
+void printReach(const Field& field, const JointReach& reach) {
+    const double cubicCentimetres = 1e6 * field.frame.voxelVolume();
+    const auto volume = [cubicCentimetres](std::size_t voxels) {
+        return cubicCentimetres * static_cast<double>(voxels);
+    };
+    std::printf("%s: actuators one at a time reach %zu voxels (%.1f cm3)\n", field.rigName.c_str(), reach.alone.count(),
+                volume(reach.alone.count()));
+    std::printf("  only two of them together reach %zu more (%.1f cm3)\n", reach.together.count(),
+                volume(reach.together.count()));
+    for (const JointReach::Pair& pair : reach.pairs)
+        std::printf("  %8zu  %s with %s\n", pair.voxels, field.actuators[pair.first].name.c_str(),
+                    field.actuators[pair.second].name.c_str());
+}
+
+void reach(const FieldArguments& arguments, const Session& session) {
+    if (arguments.json && arguments.output == "-")
+        throw InvalidInput("--json", "standard output would hold the grid and the report", "name a file with -o");
+    if (!arguments.output.empty()) checkOutput(arguments.output, arguments.field);
+    const MatchField field(readFieldFile(session, arguments.field));
+    const JointReach found = jointReach(field.coverage, session.progress());
+    Session::endProgress();
+    if (!arguments.output.empty())
+        writeOutput(arguments.output, writeNrrd(bytesOf(field.field.frame, found.together), "only two together"));
+    if (arguments.json)
+        printJson(reachJson(field.field, found));
+    else if (arguments.output != "-")
+        printReach(field.field, found);
+}
+
 } // namespace
 
 Field readFieldFile(const Session& session, const std::string& path) {
@@ -139,6 +183,14 @@ void addMdfCommands(CLI::App& app, Session& session) {
     infoCommand->add_option("field", i->field, "A .mdf file (- for standard input)")->required();
     infoCommand->add_flag("--json", i->json, "Print one JSON value");
     infoCommand->callback([i, &session] { info(*i, session); });
+
+    auto r = std::make_shared<FieldArguments>();
+    CLI::App* reachCommand =
+        group->add_subcommand("reach", "What actuators reach one at a time, and what only two of them together reach");
+    reachCommand->add_option("field", r->field, "A .mdf file (- for standard input)")->required();
+    reachCommand->add_option("-o,--output", r->output, "Write the voxels of the latter as an NRRD grid");
+    reachCommand->add_flag("--json", r->json, "Print one JSON value");
+    reachCommand->callback([r, &session] { reach(*r, session); });
 
     auto e = std::make_shared<FieldArguments>();
     CLI::App* exportCommand =

@@ -9,6 +9,7 @@
 #include "app/cli/commands.h"
 #include "app/cli/project_frame.h"
 #include "calibration/placement/light_plan.h"
+#include "calibration/placement/projector_models.h"
 #include "core/base/error.h"
 #include "core/rig/rig_file.h"
 #include "core/scene/project.h"
@@ -36,7 +37,15 @@ std::vector<double> numbersOf(const std::string& text, const std::string& betwee
     return stream.eof() ? numbers : std::vector<double>{};
 }
 
+std::string modelNames() {
+    std::string names;
+    for (const ProjectorModel& model : projectorModels())
+        names += (names.empty() ? "" : ", ") + std::string(model.name);
+    return names;
+}
+
 ProjectorLens lensOf(const std::string& text) {
+    if (const ProjectorModel* model = findProjectorModel(text)) return lensOf(*model);
     const std::size_t x = text.find('x');
     const std::size_t colon = text.find(':');
     const std::size_t second = colon == std::string::npos ? colon : text.find(':', colon + 1);
@@ -47,9 +56,10 @@ ProjectorLens lensOf(const std::string& text) {
         second == std::string::npos ? std::vector<double>{0.0} : numbersOf(text.substr(second + 1), "");
     if (x == std::string::npos || size.size() != 2 || ratio.empty() || ratio.size() > 2 || shift.size() != 1 ||
         !(size[0] >= 1 && size[0] <= 20000 && size[1] >= 1 && size[1] <= 20000))
-        throw InvalidInput(
-            "--lens " + text, "it is no lens",
-            "write pixels, throw ratio and shift, such as 1920x1080:1.32-2.15:0 or 1920x1080:0.496:0.66");
+        throw InvalidInput("--lens " + text, "it is no lens",
+                           "write pixels, throw ratio and shift, such as 1920x1080:1.32-2.15:0 or "
+                           "1920x1080:0.496:0.66, or name one of " +
+                               modelNames());
     return {{static_cast<int>(size[0]), static_cast<int>(size[1])}, ratio.front(), ratio.back(), shift.front()};
 }
 
@@ -89,6 +99,8 @@ void plan(const PlacementArguments& arguments, const Session& session) {
     for (const InstalledProjector& projector : room.projectors)
         if (projector.enabled) hanging.push_back(projector.camera);
     const LightMap now = device.lightOf(hanging, wish);
+    std::vector<LightMap> seen; // by each camera: a tracker loses a device that it does not see
+    for (const InstalledCamera& camera : room.cameras) seen.push_back(device.lightOf({&camera.camera, 1}, wish));
     std::optional<ProjectorPlace> best;
     // With a lens of its own the question is where the one projector goes; beside those of a project, where one more.
     if (lens)
@@ -97,7 +109,13 @@ void plan(const PlacementArguments& arguments, const Session& session) {
                                   progress.part(0.2, 1.0));
     Session::endProgress();
     if (arguments.json) {
-        nlohmann::json all{{"now", jsonOf(now)}};
+        nlohmann::json all{{"now", jsonOf(now)}, {"cameras", nlohmann::json::array()}};
+        for (std::size_t k = 0; k < seen.size(); ++k) {
+            all["cameras"].push_back({{"name", room.cameras[k].name},
+                                      {"sees", seen[k].lit},
+                                      {"pixelsPerMillimetre", seen[k].pixelsPerMillimetre},
+                                      {"incidence", seen[k].incidence.inDegrees()}});
+        }
         if (best) {
             const glm::dvec3 place = positionOf(best->camera);
             const glm::dvec3 towards = directionOf(best->camera, 0.5 * glm::dvec2(best->camera.size - 1));
@@ -111,6 +129,10 @@ void plan(const PlacementArguments& arguments, const Session& session) {
         return;
     }
     printLight(arguments.project.empty() ? "The lab's projector" : "The projectors that hang there", now);
+    for (std::size_t k = 0; k < seen.size(); ++k)
+        std::printf("%s\n  sees            %.1f %% of the upper side over all states, with %.2f pixels a millimetre at "
+                    "least on 95 %% of it\n",
+                    room.cameras[k].name.c_str(), 100.0 * seen[k].lit, seen[k].pixelsPerMillimetre);
     if (!best) return;
     const glm::dvec3 place = positionOf(best->camera);
     std::printf("\nBest place  (%.3f, %.3f, %.3f) m%s, throw ratio %.2f\n", place.x, place.y, place.z,
@@ -130,7 +152,8 @@ void addPlacementCommand(CLI::App& group, Session& session) {
                         "lab's)");
     command->add_option("--lens", arguments->lens,
                         "Of the projector to place: pixels, throw ratio or its range, and how far the picture's middle "
-                        "lies above the lens in picture heights: 1920x1080:1.32-2.15:0");
+                        "lies above the lens in picture heights: 1920x1080:1.32-2.15:0; or a model: " +
+                            modelNames());
     command
         ->add_option("--within", arguments->within,
                      "Where its lens may be, metres in the room (x right, y up, z to the viewer): two corners")

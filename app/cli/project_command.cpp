@@ -35,6 +35,7 @@ public:
         field_ = look(project_.field, [this](const std::filesystem::path& path) { return readFieldAsset(path); });
         target_ = look(project_.target, [this](const std::filesystem::path& path) { return readTargetAsset(path); });
         checkStrokes();
+        lookAtPoses();
         checkScenery();
     }
 
@@ -45,6 +46,7 @@ public:
         std::printf("  target  %s\n", target_.text.c_str());
         std::printf("  servos  follow %s; matching %s, within %g ms\n", nameOf(project_.matching.driver),
                     project_.matching.refined ? "refined" : "voting", project_.matching.budgetMilliseconds);
+        std::printf("  poses   %s\n", poses_.text.c_str());
         std::printf("  scene   %s\n", scene_.text.c_str());
         for (const Error& problem : problems_) std::printf("  ! %s\n", problem.what());
     }
@@ -53,9 +55,10 @@ public:
         nlohmann::json problems = nlohmann::json::array();
         for (const Error& problem : problems_)
             problems.push_back({{"subject", problem.subject()}, {"why", problem.why()}, {"remedy", problem.remedy()}});
-        return {{"ok", problems_.empty()}, {"schemaVersion", kProjectSchema}, {"rig", rig_.json},
-                {"field", field_.json},    {"target", target_.json},          {"scene", scene_.json},
-                {"problems", problems}};
+        return {{"ok", problems_.empty()}, {"schemaVersion", kProjectSchema},
+                {"rig", rig_.json},        {"field", field_.json},
+                {"target", target_.json},  {"poses", poses_.json},
+                {"scene", scene_.json},    {"problems", problems}};
     }
 
     void throwIfBroken() const {
@@ -123,6 +126,26 @@ private:
                                "give one an actuator, or remove them");
     }
 
+    /// Poses of other actuators are no mistake: they are kept for the rig that has them.
+    void lookAtPoses() {
+        const PoseSequence& sequence = project_.poses.sequence;
+        poses_ = {{{"count", sequence.poses.size()},
+                   {"steps", sequence.steps.size()},
+                   {"seconds", durationOf(sequence)},
+                   {"loop", sequence.loop}},
+                  sequence.poses.empty() ? "none"
+                                         : std::to_string(sequence.poses.size()) + " poses, " +
+                                               std::to_string(sequence.steps.size()) + " steps"};
+        if (!actuators_) return;
+        const PoseFit fit = fitOf(project_.poses, *actuators_);
+        poses_.json["atRest"] = fit.atRest;
+        poses_.json["kept"] = fit.kept;
+        if (!fit.atRest.empty())
+            poses_.text += "; " + std::to_string(fit.atRest.size()) + " actuators of the rig rest in them";
+        if (!fit.kept.empty())
+            poses_.text += "; of " + std::to_string(fit.kept.size()) + " actuators that the rig does not have";
+    }
+
     void checkScenery() {
         session_.throwIfCancelled();
         const SceneReport report = sceneReport(project_.scene, project_.installation, file_);
@@ -134,7 +157,7 @@ private:
     const Session& session_;
     Project project_;
     std::optional<std::vector<std::string>> actuators_; ///< of the rig, once it has been read
-    AssetReport rig_, field_, target_, scene_;
+    AssetReport rig_, field_, target_, poses_, scene_;
     std::vector<DataError> problems_;
 };
 

@@ -110,19 +110,28 @@ std::vector<std::uint32_t> upperSide(const TriangleMesh& rest, const TriangleMes
     return upper;
 }
 
-/// Every `each`-th triangle stands for its neighbours in the mesh: they lie beside each other there.
-void addPlaces(const TriangleMesh& mesh, const std::vector<std::uint32_t>& upper, std::size_t each,
-               std::vector<LightAt>& places) {
-    for (std::size_t k = 0; k < upper.size(); k += each) {
-        LightAt& place = places.emplace_back();
-        place.place = glm::vec3(spotOf(mesh.positions, mesh.triangles[upper[k]]).point);
-        for (std::size_t n = k; n < std::min(k + each, upper.size()); ++n) {
-            const glm::uvec3& near = mesh.triangles[upper[n]];
-            const glm::dvec3 a(mesh.positions[near.x]);
-            place.area += 0.5 * glm::length(glm::cross(glm::dvec3(mesh.positions[near.y]) - a,
-                                                       glm::dvec3(mesh.positions[near.z]) - a));
-        }
+/// Every `each`-th triangle is a place, and stands for all triangles that are nearest to it. Returns which each of the
+/// upper ones is nearest to.
+std::vector<int> addPlaces(const TriangleMesh& mesh, const std::vector<std::uint32_t>& upper, std::size_t each,
+                           std::vector<LightAt>& places) {
+    for (std::size_t k = 0; k < upper.size(); k += each)
+        places.push_back({glm::vec3(spotOf(mesh.positions, mesh.triangles[upper[k]]).point), 0.0, 0.0, 0.0, {}});
+    std::vector<int> nearest(upper.size());
+    tbb::parallel_for(std::size_t{0}, upper.size(), [&](std::size_t k) {
+        const glm::vec3 middle(spotOf(mesh.positions, mesh.triangles[upper[k]]).point);
+        const auto squaredWay = [&](const LightAt& place) {
+            const glm::vec3 way = place.place - middle;
+            return glm::dot(way, way);
+        };
+        nearest[k] = static_cast<int>(std::ranges::min_element(places, {}, squaredWay) - places.begin());
+    });
+    for (std::size_t k = 0; k < upper.size(); ++k) {
+        const glm::uvec3& t = mesh.triangles[upper[k]];
+        const glm::dvec3 a(mesh.positions[t.x]);
+        places[static_cast<std::size_t>(nearest[k])].area +=
+            0.5 * glm::length(glm::cross(glm::dvec3(mesh.positions[t.y]) - a, glm::dvec3(mesh.positions[t.z]) - a));
     }
+    return nearest;
 }
 
 /// The value that all but `kShare` of the area reach, of pairs of a value and its area, sorted.
@@ -151,6 +160,7 @@ struct LitDevice::Data {
     std::vector<LightAt> places;            ///< without light
     std::vector<std::vector<Spot>> spots;   ///< one list a state, a spot a place
     std::vector<std::unique_ptr<Lab>> labs; ///< one a state
+    std::vector<int> placeOfTriangle;
     Box box;
 };
 
@@ -176,7 +186,9 @@ LitDevice::LitDevice(const Rig& rig, const glm::mat4& worldFromDevice, int rando
                 throw InvalidInput("Rig " + rig.name(), "no part of it looks up, so that no light can fall on it",
                                    "turn it so that +Y is up");
             each = std::max<std::size_t>(1, (upper.size() + places - 1) / std::max<std::size_t>(1, places));
-            addPlaces(mesh, upper, each, data_->places);
+            const std::vector<int> nearest = addPlaces(mesh, upper, each, data_->places);
+            data_->placeOfTriangle.assign(mesh.triangles.size(), -1);
+            for (std::size_t k = 0; k < upper.size(); ++k) data_->placeOfTriangle[upper[k]] = nearest[k];
         }
         std::vector<Spot> spots;
         spots.reserve(data_->places.size());
@@ -191,6 +203,8 @@ LitDevice::LitDevice(LitDevice&&) noexcept = default;
 LitDevice& LitDevice::operator=(LitDevice&&) noexcept = default;
 
 std::size_t LitDevice::states() const noexcept { return data_->spots.size(); }
+
+const std::vector<int>& LitDevice::placeOfTriangle() const noexcept { return data_->placeOfTriangle; }
 
 std::vector<glm::vec3> LitDevice::corners() const {
     std::vector<glm::vec3> corners;

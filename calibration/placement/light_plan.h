@@ -56,10 +56,13 @@ public:
     LitDevice(LitDevice&&) noexcept;
     LitDevice& operator=(LitDevice&&) noexcept;
 
+    /// Light and sight go the same way: of a camera it tells how the camera sees the device, in its own pixels.
     [[nodiscard]] LightMap lightOf(std::span<const CalibratedCamera> projectors, const LightWish& wish = {}) const;
     /// The corners of the box that holds it in every state looked at, world metres.
     [[nodiscard]] std::vector<glm::vec3> corners() const;
     [[nodiscard]] std::size_t states() const noexcept;
+    /// Which of the map's places each triangle of the rest mesh is counted with; -1: it does not look up.
+    [[nodiscard]] const std::vector<int>& placeOfTriangle() const noexcept;
 
 private:
     struct Data;

@@ -11,6 +11,12 @@ namespace lumorph {
 /// std::string.
 [[nodiscard]] std::string inQuotes(std::string_view text, std::size_t most = 80);
 
+/// The same text in small letters; only those of ASCII are changed.
+[[nodiscard]] std::string lowerCase(std::string_view text);
+
+/// Whether all of it is UTF-8 (RFC 3629), as every file of ours is.
+[[nodiscard]] bool isUtf8(std::string_view text) noexcept;
+
 /// A text as one field of a table of comma separated values (RFC 4180): in quotes where it needs them.
 [[nodiscard]] std::string csvField(std::string_view text);
 

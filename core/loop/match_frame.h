@@ -62,9 +62,10 @@ struct MatchFrame {
     /// A target's voxels were compared with the device in this frame: those of `target`, which servos follow if it is
     /// the driver, or those of `program`. Never while the scene's item drives.
     bool matched = false;
-    std::optional<ItemFit> itemFit; ///< with a field, while the scene's item drives
-    double seconds = 0.0;           ///< of the target's animation
-    Angle turned;                   ///< by spinning, on top of the placement's yaw
+    std::optional<ItemFit> itemFit;    ///< with a field, while the scene's item drives
+    std::optional<double> poseSeconds; ///< how far the poses have come that play; empty: none do
+    double seconds = 0.0;              ///< of the target's animation
+    Angle turned;                      ///< by spinning, on top of the placement's yaw
     glm::mat4 deviceFromTarget{1.0F};
     std::shared_ptr<const std::vector<glm::vec3>>
         targetPositions; ///< target's own frame; the same object while it stands still

@@ -48,6 +48,15 @@ void checkStrokes(const MatchWish& wish) {
     for (const double stroke : wish.strokes) requireFinite("stroke", stroke);
 }
 
+void checkPosePlay(const MatchWish& wish) {
+    if (wish.driver != Driver::hand || !wish.posePlay) return;
+    requirePlayable(wish.posePlay->sequence, wish.rig->actuatorCount());
+    if (wish.posePlay->from.size() != wish.rig->actuatorCount())
+        throw InvalidInput("poses", "they begin with another number of actuators than the device has",
+                           "play them again");
+    for (const double stroke : wish.posePlay->from) requireFinite("stroke", stroke);
+}
+
 void checkWish(const MatchWish& wish, double sinceLast) {
     if (!wish.rig) throw InvalidInput("device", "there is no rig", "open one first");
     if (wish.field && wish.field->rig.actuatorCount() != wish.rig->actuatorCount())
@@ -69,6 +78,7 @@ void checkWish(const MatchWish& wish, double sinceLast) {
     // With a program the driver may turn out to have nothing to follow.
     const bool holds = !matchesTarget(wish) && DriveStage::modeOf(wish) == DriveStage::Mode::asWished;
     if (wish.program || holds) checkStrokes(wish);
+    checkPosePlay(wish);
 }
 
 State nearestLevels(const std::vector<double>& strokes, int levels) {
@@ -158,6 +168,10 @@ MatchWish MatchLoop::Data::driven(const MatchWish& wish, double sinceLast, Match
     if (mode == DriveStage::Mode::asWished) {
         if (matchesTarget(wish) || program.matches() || wish.driver == Driver::dance) return servos;
         servos.driver = Driver::hand;
+        if (wish.driver == Driver::hand && wish.posePlay) {
+            frame.poseSeconds = secondsOf(*wish.posePlay, frame.time);
+            servos.strokes = strokesAt(wish.posePlay->sequence, wish.posePlay->from, *frame.poseSeconds);
+        }
         if (!program.splitStrokes().empty()) servos.strokes = frame.splitStrokes = program.splitStrokes();
         return servos;
     }
@@ -184,6 +198,7 @@ bool MatchLoop::Data::restsAfter(const MatchWish& wish, const MatchFrame& frame)
     if (program.moves() || (wish.inputs && wish.program && !wish.inputs->empty())) return false;
     if (wish.scene && (viewer.moves() || time.moves())) return false;
     if (TargetStage::moves(wish)) return false;
+    if (frame.poseSeconds && movesOn(*wish.posePlay, frame.time)) return false;
     if (!wish.stopped && !motion.arrived(frame.wantedStrokes)) return false;
     if (!itemFit.current()) return false;
     return isMatched(wish) ? matching.converged() : wish.driver != Driver::dance;

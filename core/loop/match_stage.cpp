@@ -81,7 +81,7 @@ void MatchStage::judge(const MatchWish& wish, const TargetVoxels& target, MatchF
     judgeEstimated(target, frame);
     newVoxels_ = false;
     if (!wish.showTint) return;
-    if (!classes_) classify(target);
+    if (!classes_) classes_ = std::make_shared<const std::vector<std::uint8_t>>(voxelClasses(covered_, target.bits()));
     frame.classes = classes_;
 }
 
@@ -107,29 +107,30 @@ void MatchStage::judgeEstimated(const TargetVoxels& target, MatchFrame& frame) {
     frame.iouEstimated = iouReached_;
 }
 
-void MatchStage::classify(const TargetVoxels& target) {
-    const glm::ivec3 size = covered_.dimensions();
+std::vector<std::uint8_t> voxelClasses(const BitColumns& covered, const BitColumns& target) {
+    const glm::ivec3 size = covered.dimensions();
     const auto rowLength = static_cast<std::size_t>(size.x);
-    auto classes = std::make_shared<std::vector<std::uint8_t>>(field_->field.frame.voxelCount(), std::uint8_t{0});
-    const auto words = static_cast<std::size_t>(covered_.wordsPerColumn());
+    std::vector<std::uint8_t> classes(rowLength * static_cast<std::size_t>(size.y) * static_cast<std::size_t>(size.z),
+                                      0);
+    const auto words = static_cast<std::size_t>(covered.wordsPerColumn());
     for (int z = 0; z < size.z; ++z)
         for (int x = 0; x < size.x; ++x)
             for (std::size_t w = 0; w < words; ++w) {
-                const std::size_t word = covered_.columnIndex(x, z) * words + w;
-                const std::uint64_t covered = std::as_const(covered_).words()[word];
-                const std::uint64_t wanted = target.bits().words()[word];
-                for (std::uint64_t left = covered | wanted; left != 0; left &= left - 1) {
+                const std::size_t word = covered.columnIndex(x, z) * words + w;
+                const std::uint64_t isCovered = covered.words()[word];
+                const std::uint64_t isWanted = target.words()[word];
+                for (std::uint64_t left = isCovered | isWanted; left != 0; left &= left - 1) {
                     const auto bit = static_cast<std::size_t>(std::countr_zero(left));
                     const std::size_t y = 64 * w + bit;
-                    const bool in = (covered >> bit) & 1U;
-                    const bool asked = (wanted >> bit) & 1U;
+                    const bool in = (isCovered >> bit) & 1U;
+                    const bool asked = (isWanted >> bit) & 1U;
                     const std::size_t row = static_cast<std::size_t>(z) * static_cast<std::size_t>(size.y) + y;
-                    (*classes)[row * rowLength + static_cast<std::size_t>(x)] = in && asked ? kVoxelMatched
-                                                                                : asked     ? kVoxelUnmatched
-                                                                                            : kVoxelOverfilled;
+                    classes[row * rowLength + static_cast<std::size_t>(x)] = in && asked ? kVoxelMatched
+                                                                             : asked     ? kVoxelUnmatched
+                                                                                         : kVoxelOverfilled;
                 }
             }
-    classes_ = std::move(classes);
+    return classes;
 }
 
 } // namespace lumorph

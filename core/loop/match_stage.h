@@ -34,7 +34,6 @@ private:
     void decide(const MatchWish& wish, const TargetVoxels& target, const Clock& clock, MatchTimes& ms);
     void judgeWanted(const TargetVoxels& target, MatchFrame& frame);
     void judgeEstimated(const TargetVoxels& target, MatchFrame& frame);
-    void classify(const TargetVoxels& target);
 
     std::shared_ptr<const MatchField> field_;
     std::optional<FrameMatcher> matcher_;
@@ -52,5 +51,9 @@ private:
     BitColumns reached_; ///< covered at `reachedStrokes_`
     double iouReached_ = 0.0;
 };
+
+/// The class of each voxel, x fastest, then y, then z: kVoxelMatched and so on, 0 for what is in neither. Both grids
+/// have one shape.
+[[nodiscard]] std::vector<std::uint8_t> voxelClasses(const BitColumns& covered, const BitColumns& target);
 
 } // namespace lumorph

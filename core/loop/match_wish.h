@@ -8,6 +8,7 @@
 #include "core/loop/match_field.h"
 #include "core/loop/match_target.h"
 #include "core/loop/pose_stream.h"
+#include "core/motion/pose_sequence.h"
 #include "core/scene/driver.h"
 #include "core/scene/installation.h"
 #include "core/scene/scene.h"
@@ -35,11 +36,13 @@ struct MatchWish {
     MatchMethod method = MatchMethod::refined;
     Microseconds budget{8'000};  ///< for refinement, each frame
     std::vector<double> strokes; ///< held, or begun from, as `driver` says; one an actuator
-    bool playing = true;         ///< the target's animation runs
-    std::optional<double> seek;  ///< animation time to show while not playing, seconds
-    double spin = 0.0;           ///< radians a second that the target turns about +Y
-    bool stopped = false;        ///< STOP: servos stay where they are until it is taken back
-    bool showTint = true;        ///< work out which voxels are unmatched and overfilled
+    /// By hand: poses that play in place of `strokes`, by the loop's clock. Empty: none do.
+    std::shared_ptr<const PosePlay> posePlay;
+    bool playing = true;        ///< the target's animation runs
+    std::optional<double> seek; ///< animation time to show while not playing, seconds
+    double spin = 0.0;          ///< radians a second that the target turns about +Y
+    bool stopped = false;       ///< STOP: servos stay where they are until it is taken back
+    bool showTint = true;       ///< work out which voxels are unmatched and overfilled
 
     std::shared_ptr<const Scene> scene;               ///< what light shows, and what of it servos follow; may be empty
     std::shared_ptr<const Installation> installation; ///< where; always there with a scene

@@ -59,13 +59,6 @@ BitColumns shownVoxels(const Field& field, const FieldViewOptions& options, cons
     return shown;
 }
 
-bool hidden(const BitColumns& shown, int x, int y, int z) {
-    const glm::ivec3 last = shown.dimensions() - 1;
-    if (x == 0 || y == 0 || z == 0 || x == last.x || y == last.y || z == last.z) return false;
-    return shown.test(x - 1, y, z) && shown.test(x + 1, y, z) && shown.test(x, y - 1, z) && shown.test(x, y + 1, z) &&
-           shown.test(x, y, z - 1) && shown.test(x, y, z + 1);
-}
-
 /// Expected coverage at voxel centres, zero beyond the frame.
 struct CoverageGrid {
     glm::ivec3 size;
@@ -177,22 +170,47 @@ private:
 
 } // namespace
 
+std::vector<std::uint8_t> firstLevels(const Field& field, std::optional<std::size_t> actuator) {
+    requireActuator(field, actuator);
+    std::vector<std::uint8_t> levels(field.frame.voxelCount(), kUnchanged);
+    eachRamp(field, actuator, [&](std::size_t v, const Ramp& ramp) { levels[v] = std::min(levels[v], ramp.v0); });
+    return levels;
+}
+
+std::vector<glm::ivec3> surfaceVoxels(const BitColumns& voxels, const glm::ivec3& from, const glm::ivec3& to) {
+    const glm::ivec3 first = glm::max(from, glm::ivec3(0));
+    const glm::ivec3 last = glm::min(to, voxels.dimensions() - 1);
+    const auto outside = [&](int x, int y, int z) {
+        return x < first.x || y < first.y || z < first.z || x > last.x || y > last.y || z > last.z ||
+               !voxels.test(x, y, z);
+    };
+    std::vector<glm::ivec3> surface;
+    for (int z = first.z; z <= last.z; ++z)
+        for (int x = first.x; x <= last.x; ++x)
+            for (int y = first.y; y <= last.y; ++y)
+                if (voxels.test(x, y, z) && (outside(x - 1, y, z) || outside(x + 1, y, z) || outside(x, y - 1, z) ||
+                                             outside(x, y + 1, z) || outside(x, y, z - 1) || outside(x, y, z + 1)))
+                    surface.emplace_back(x, y, z);
+    return surface;
+}
+
 std::vector<FieldVoxel> fieldVoxels(const Field& field, const FieldViewOptions& options) {
-    requireActuator(field, options.actuator);
     if (options.touchedBy && options.touchedBy->dimensions() != field.frame.dimensions)
         throw InvalidInput("target", "its voxel grid has another shape than the field's",
                            "voxelise it into the field's own frame");
-    std::vector<std::uint8_t> levels(field.frame.voxelCount(), kUnchanged);
-    eachRamp(field, options.actuator,
-             [&](std::size_t v, const Ramp& ramp) { levels[v] = std::min(levels[v], ramp.v0); });
+    const std::vector<std::uint8_t> levels = firstLevels(field, options.actuator);
     const BitColumns shown = shownVoxels(field, options, levels);
     std::vector<FieldVoxel> voxels;
+    const auto add = [&](const glm::ivec3& v) { voxels.push_back({v, levels[field.voxelIndex(v.x, v.y, v.z)]}); };
+    if (options.surfaceOnly) {
+        for (const glm::ivec3& v : surfaceVoxels(shown)) add(v);
+        return voxels;
+    }
     const Slice slice = sliceOf(field, options);
     for (int z = slice.from.z; z <= slice.to.z; ++z)
         for (int x = slice.from.x; x <= slice.to.x; ++x)
             for (int y = slice.from.y; y <= slice.to.y; ++y)
-                if (shown.test(x, y, z) && !(options.surfaceOnly && hidden(shown, x, y, z)))
-                    voxels.push_back({{x, y, z}, levels[field.voxelIndex(x, y, z)]});
+                if (shown.test(x, y, z)) add({x, y, z});
     return voxels;
 }
 

@@ -30,6 +30,16 @@ struct FieldVoxel {
     int level = 0;
 };
 
+/// The level at which an actuator first covers each voxel (v0 of its ramp), or the lowest of any when `actuator` is
+/// empty; kUnchanged where none changes it. In Field::voxelIndex order. Throws InvalidInput for an actuator that is not
+/// there.
+[[nodiscard]] std::vector<std::uint8_t> firstLevels(const Field& field, std::optional<std::size_t> actuator);
+
+/// The voxels that can be seen of those from `from` to `to`, both included: at least one of their six neighbours is
+/// not set, or not in that box. Column by column.
+[[nodiscard]] std::vector<glm::ivec3> surfaceVoxels(const BitColumns& voxels, const glm::ivec3& from = glm::ivec3(0),
+                                                    const glm::ivec3& to = glm::ivec3(0x7FFF));
+
 /// The voxels to show, column by column. Throws InvalidInput for an actuator that is not there or a target of another
 /// shape.
 [[nodiscard]] std::vector<FieldVoxel> fieldVoxels(const Field& field, const FieldViewOptions& options);

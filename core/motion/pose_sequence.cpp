@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <set>
 
 #include "core/base/error.h"
@@ -26,6 +27,9 @@ void requireSeconds(double seconds, const std::string& place) {
 void requirePose(const NamedPose& pose, std::size_t actuators) {
     const std::string place = "pose " + inQuotes(pose.name);
     if (pose.name.empty()) throw InvalidInput("a pose", "it has no name", "name it");
+    if (pose.name.size() > kMaxPoseName)
+        throw InvalidInput("pose " + inQuotes(pose.name.substr(0, 20) + "..."), "its name is too long",
+                           "give it a name of at most " + std::to_string(kMaxPoseName) + " letters");
     if (pose.strokes.size() != actuators)
         throw InvalidInput(place,
                            "it has " + std::to_string(pose.strokes.size()) + " strokes, the device " +
@@ -62,14 +66,27 @@ double peakSpeed(Easing easing) noexcept {
     return 1.0;
 }
 
-void requirePlayable(const PoseSequence& sequence, std::size_t actuators) {
+double peakAcceleration(Easing easing) noexcept {
+    switch (easing) {
+    case Easing::linear:
+        break;
+    case Easing::smooth:
+        return 6.0;
+    case Easing::minimumJerk:
+        return 10.0 / std::numbers::sqrt3;
+    }
+    return 0.0;
+}
+
+void requireSound(const PoseSequence& sequence, std::size_t actuators) {
+    if (sequence.poses.size() > kMaxPoses)
+        throw InvalidInput("the poses", "there are more than " + std::to_string(kMaxPoses), "remove some");
     std::set<std::string_view> names;
     for (const NamedPose& pose : sequence.poses) {
         requirePose(pose, actuators);
         if (!names.insert(pose.name).second)
             throw InvalidInput("pose " + inQuotes(pose.name), "another pose has the same name", "rename one of them");
     }
-    if (sequence.steps.empty()) throw InvalidInput("the sequence", "it has no step", "add a pose to it");
     if (sequence.steps.size() > kMaxPoseSteps)
         throw InvalidInput("the sequence", "it has more than " + std::to_string(kMaxPoseSteps) + " steps",
                            "make it a loop, or leave steps out");
@@ -79,6 +96,11 @@ void requirePlayable(const PoseSequence& sequence, std::size_t actuators) {
         requireSeconds(sequence.steps[k].travelSeconds, place);
         requireSeconds(sequence.steps[k].holdSeconds, place);
     }
+}
+
+void requirePlayable(const PoseSequence& sequence, std::size_t actuators) {
+    if (sequence.steps.empty()) throw InvalidInput("the sequence", "it has no step", "add a pose to it");
+    requireSound(sequence, actuators);
 }
 
 double durationOf(const PoseSequence& sequence) noexcept {
@@ -111,14 +133,23 @@ std::vector<double> strokesAt(const PoseSequence& sequence, std::span<const doub
     return before;
 }
 
-PoseSequence withinLimits(PoseSequence sequence, std::span<const double> from, std::span<const MotionLimits> limits) {
+std::vector<PoseLimits> poseLimits(std::span<const MotionLimits> limits) {
+    std::vector<PoseLimits> velocities;
+    for (const MotionLimits& limit : limits) velocities.push_back({limit.maxVelocity});
+    return velocities;
+}
+
+PoseSequence withinLimits(PoseSequence sequence, std::span<const double> from, std::span<const PoseLimits> limits) {
     requirePlayable(sequence, limits.size());
     if (from.size() != limits.size())
         throw InvalidInput("where the sequence begins", "it has not one stroke for each actuator", "take it again");
     const auto secondsBetween = [&](std::span<const double> a, std::span<const double> b, Easing easing) {
         double seconds = 0.0;
-        for (std::size_t k = 0; k < limits.size(); ++k)
-            seconds = std::max(seconds, peakSpeed(easing) * std::abs(b[k] - a[k]) / limits[k].maxVelocity);
+        for (std::size_t k = 0; k < limits.size(); ++k) {
+            const double way = std::abs(b[k] - a[k]);
+            seconds = std::max({seconds, peakSpeed(easing) * way / limits[k].maxVelocity,
+                                std::sqrt(peakAcceleration(easing) * way / limits[k].maxAcceleration)});
+        }
         return seconds;
     };
     std::vector<double> before(from.begin(), from.end());
@@ -133,6 +164,14 @@ PoseSequence withinLimits(PoseSequence sequence, std::span<const double> from, s
         before = to;
     }
     return sequence;
+}
+
+double secondsOf(const PosePlay& play, Microseconds now) noexcept {
+    return play.heldAt ? *play.heldAt : std::max(0.0, 1e-6 * static_cast<double>((now - play.since).count()));
+}
+
+bool movesOn(const PosePlay& play, Microseconds now) noexcept {
+    return !play.heldAt && (play.sequence.loop || secondsOf(play, now) < durationOf(play.sequence));
 }
 
 } // namespace lumorph

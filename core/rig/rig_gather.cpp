@@ -125,13 +125,27 @@ private:
             if (at == next) append(vertex, next);
             index.push_back(at);
         }
-        const bool mirrored = glm::determinant(glm::mat3(world_[node])) < 0.0F && model_.nodes[node].skin < 0;
+        const bool mirrored = isMirrored(node, primitive);
         for (const glm::uvec3& t : primitive.triangles) {
             glm::uvec3 triangle(index[t.x], index[t.y], index[t.z]);
             if (mirrored) std::swap(triangle.y, triangle.z);
             const bool collapsed = triangle.x == triangle.y || triangle.y == triangle.z || triangle.z == triangle.x;
             if (!collapsed || unique_) parts_.restMesh.triangles.push_back(triangle);
         }
+    }
+
+    /// Whether the mesh is placed inside out: a skinned one where most of its joints do so, whatever its node.
+    [[nodiscard]] bool isMirrored(int node, const Model::Primitive& primitive) const {
+        const int skin = model_.nodes[node].skin;
+        if (table_.empty() || skin < 0 || primitive.joints.empty())
+            return glm::determinant(glm::mat3(world_[node])) < 0.0F;
+        const Model::Skin& of = model_.skins[skin];
+        std::size_t turned = 0;
+        for (std::size_t k = 0; k < of.joints.size(); ++k)
+            if (glm::determinant(
+                    glm::mat3(table_.placed[table_.jointOfNode[of.joints[k]]] * of.inverseBindMatrices[k])) < 0.0F)
+                ++turned;
+        return 2 * turned > of.joints.size();
     }
 
     void addListed(const Model::Primitive& primitive, std::size_t v, Vertex& vertex, const EntryPlace& place) const {

@@ -82,12 +82,27 @@ int JointTable::above(const Model& model, int node) const noexcept {
     return fixed;
 }
 
+namespace {
+
+/// Of the scene's nodes those that are in it; a file may hold other scenes beside it.
+std::vector<bool> nodesShown(const Model& model) {
+    std::vector<bool> shown(model.nodes.size(), false);
+    for (const int root : model.roots) shown[root] = true;
+    for (std::size_t n = 0; n < shown.size(); ++n) // a parent stands before its children
+        if (model.nodes[n].parent >= 0 && shown[model.nodes[n].parent]) shown[n] = true;
+    return shown;
+}
+
+} // namespace
+
 JointTable tableOfJoints(const Model& model, const std::string& file) {
     JointTable table;
     std::vector<bool> isJoint(model.nodes.size(), false);
+    const std::vector<bool> shown = nodesShown(model);
     bool unskinned = false;
-    for (const Model::Node& node : model.nodes) {
-        if (node.mesh < 0) continue;
+    for (std::size_t n = 0; n < model.nodes.size(); ++n) {
+        const Model::Node& node = model.nodes[n];
+        if (node.mesh < 0 || !shown[n]) continue;
         if (node.skin < 0)
             unskinned = true;
         else

@@ -7,23 +7,41 @@
 #include <glm/geometric.hpp>
 
 #include "core/base/error.h"
+#include "core/base/text.h"
 #include "core/rig/motion_setup.h"
 
 namespace lumorph {
 namespace {
 
-bool finite(const glm::vec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
+// What is farther away would be beyond the numbers of a pose once it is turned and multiplied.
+constexpr double kFar = 1e6;
+
+bool within(double value) { return std::abs(value) <= kFar; } // false for what is no number
+bool within(const glm::vec3& v) {
+    return within(static_cast<double>(v.x)) && within(static_cast<double>(v.y)) && within(static_cast<double>(v.z));
+}
 
 void require(bool good, const std::string& subject, const char* why, const char* remedy) {
     if (!good) throw InvalidInput(subject, why, remedy);
 }
 
+void requireText(const std::string& text, const std::string& subject, const char* why) {
+    require(isUtf8(text), subject, why, "write it in UTF-8, for example in plain letters");
+}
+
 void requireAxis(const glm::vec3& axis, const std::string& subject, const char* what) {
-    require(finite(axis) && glm::length(axis) > 1e-6F, subject, what, "give three finite numbers, not all zero");
+    require(within(axis) && glm::length(axis) > 1e-6F, subject, what,
+            "give three numbers of at most a million, not all zero");
+}
+
+void requirePlace(const glm::vec3& origin, const std::string& subject) {
+    require(within(origin), subject, "the origin is not finite, or farther than 1,000 km away",
+            "give three numbers in metres");
 }
 
 void requireRange(double min, double max, const std::string& subject) {
-    require(std::isfinite(min) && std::isfinite(max), subject, "the range is not finite", "give two finite numbers");
+    require(within(min) && within(max), subject, "the range is not finite, or beyond all measure",
+            "give two numbers of at most a million");
     require(min < max, subject, "the range is empty or runs backwards",
             "put the smaller number first; to move the other way turn the axis round");
 }
@@ -41,16 +59,16 @@ struct DeformerCheck {
 
     void operator()(const Hinge& hinge) const {
         requireAxis(hinge.axis, subject, "the axis has no direction");
-        require(finite(hinge.origin), subject, "the origin is not finite", "give three finite numbers");
+        requirePlace(hinge.origin, subject);
         requireTurn(hinge.min.inRadians(), hinge.max.inRadians(), subject);
     }
     void operator()(const Bend& bend) const {
         requireAxis(bend.axis, subject, "the axis has no direction");
         requireAxis(bend.direction, subject, "the direction to the free end is missing");
-        require(finite(bend.origin), subject, "the origin is not finite", "give three finite numbers");
+        requirePlace(bend.origin, subject);
         require(std::abs(glm::dot(glm::normalize(bend.axis), glm::normalize(bend.direction))) < 1e-3F, subject,
                 "axis and direction are not perpendicular", "let the direction point straight away from the bend line");
-        require(std::isfinite(bend.length) && bend.length > 1e-6, subject, "the arc has no length",
+        require(within(bend.length) && bend.length > 1e-6, subject, "the arc has no length",
                 "give the length of the arc in metres, or use a hinge");
         requireTurn(bend.min.inRadians(), bend.max.inRadians(), subject);
         require(bend.min.inRadians() == 0.0, subject, "the range of a bend does not start at 0",
@@ -61,6 +79,7 @@ struct DeformerCheck {
         requireRange(slide.min, slide.max, subject);
     }
     void operator()(const MorphTarget& morph) const {
+        requireText(morph.target, subject, "the name of the morph target is no text");
         require(!morph.keys.empty() && morph.keys.size() == morph.displacements.size(), subject,
                 "the morph target has no keys or not one set of displacements a key",
                 "give displacements for every key");
@@ -73,7 +92,8 @@ struct DeformerCheck {
             require(displacements.size() == actuator.influences.size(), subject,
                     "there is not one displacement an influence", "give each influenced vertex its displacement");
             for (const glm::vec3& d : displacements)
-                require(finite(d), subject, "a displacement is not finite", "export the shape again");
+                require(within(d), subject, "a displacement is not finite, or beyond all measure",
+                        "export the shape again");
         }
     }
     void operator()(const SkinJoint& joint) const {
@@ -102,12 +122,18 @@ void checkActuator(const RigParts& parts, const Actuator& actuator, const std::s
     }
     require(actuator.levels >= 2 && actuator.levels <= kMaxLevels, subject, "the level count is out of range",
             "use 2 to 200 levels");
-    require(std::isfinite(actuator.maxVelocity) && actuator.maxVelocity > 0.0, subject,
-            "the maximum velocity is not a positive number", "give the speed of the servo");
-    require(std::isfinite(actuator.dampingRatio) && actuator.dampingRatio >= 1.0, subject,
-            "the damping ratio is below 1, so that the device would oscillate", "use 1 (critical) or more");
-    require(std::isfinite(actuator.drive.pulseMin) && std::isfinite(actuator.drive.pulseMax), subject,
-            "a pulse width is not finite", "give microseconds, for example 1000 and 2000");
+    // As far as the motion after it goes.
+    require(actuator.maxVelocity > 0.0, subject, "the maximum velocity is not a positive number",
+            "give the speed of the servo");
+    require(actuator.maxVelocity >= 1e-6 && actuator.maxVelocity <= 1e6, subject,
+            "the maximum velocity is that of no servo", "use 1e-6 to 1e6 strokes a second");
+    require(actuator.dampingRatio >= 1.0, subject, "the damping ratio is below 1, so that the device would oscillate",
+            "use 1 (critical) or more");
+    require(actuator.dampingRatio <= 1e3, subject, "the damping ratio is so large that the device would stand still",
+            "use 1 (critical) to 1000");
+    require(within(actuator.drive.pulseMin) && within(actuator.drive.pulseMax), subject, "a pulse width is not finite",
+            "give microseconds, for example 1000 and 2000");
+    requireText(actuator.drive.servo, subject, "the name of its servo is no text");
 }
 
 void checkSkeleton(const Skeleton& skeleton, std::size_t vertices) {
@@ -120,7 +146,7 @@ void checkSkeleton(const Skeleton& skeleton, std::size_t vertices) {
         const glm::mat3 m(joint.localRest);
         const float scale = glm::length(m[0]);
         const glm::mat3 gram = glm::transpose(m) * m;
-        require(scale > 1e-6F && std::isfinite(scale) && finite(glm::vec3(joint.localRest[3])), subject,
+        require(scale > 1e-6F && within(static_cast<double>(scale)) && within(glm::vec3(joint.localRest[3])), subject,
                 "a joint's place is not finite or its scale is zero", "export the model again");
         for (int column = 0; column < 3; ++column)
             for (int row = 0; row < 3; ++row)
@@ -147,10 +173,11 @@ void checkSkeleton(const Skeleton& skeleton, std::size_t vertices) {
 
 void validate(const RigParts& parts) {
     const std::string rig = parts.name.empty() ? "rig" : parts.name;
+    if (!isUtf8(rig)) throw InvalidInput(inQuotes(rig), "the name is no text", "rename the file");
     require(!parts.restMesh.positions.empty() && !parts.restMesh.triangles.empty(), rig, "the mesh is empty",
             "give the device a closed mesh");
     for (const glm::vec3& p : parts.restMesh.positions)
-        require(finite(p), rig, "a vertex is not finite", "export the mesh again");
+        require(within(p), rig, "a vertex is not finite, or farther than 1,000 km away", "export the mesh again");
     for (const glm::uvec3& t : parts.restMesh.triangles)
         for (int corner = 0; corner < 3; ++corner)
             require(t[corner] < parts.restMesh.positions.size(), rig, "a triangle names a vertex that does not exist",
@@ -161,6 +188,9 @@ void validate(const RigParts& parts) {
     std::set<std::string> names;
     for (const Actuator& actuator : parts.actuators) {
         require(!actuator.name.empty(), rig, "an actuator has no name", "give every actuator a name");
+        if (!isUtf8(actuator.name))
+            throw InvalidInput(rig + ", actuator " + inQuotes(actuator.name), "the name is no text",
+                               "give it a name in plain letters");
         const std::string subject = rig + ", actuator \"" + actuator.name + "\"";
         require(names.insert(actuator.name).second, subject, "the name is used twice",
                 "give every actuator a name of its own");

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <numbers>
 
 #include "core/base/error.h"
@@ -80,18 +79,14 @@ constexpr std::array kServoTypes{
               15.0},
 };
 
-bool sameName(std::string_view a, std::string_view b) {
-    return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](char x, char y) {
-        return std::tolower(static_cast<unsigned char>(x)) == std::tolower(static_cast<unsigned char>(y));
-    });
-}
-
 } // namespace
 
 std::span<const ServoType> servoTypes() { return kServoTypes; }
 
 const ServoType* findServo(std::string_view name) {
-    const auto found = std::ranges::find_if(kServoTypes, [&](const ServoType& t) { return sameName(t.name, name); });
+    const std::string wanted = lowerCase(name);
+    const auto found =
+        std::ranges::find_if(kServoTypes, [&](const ServoType& type) { return lowerCase(type.name) == wanted; });
     return found == kServoTypes.end() ? nullptr : &*found;
 }
 

@@ -69,6 +69,19 @@ void JsonSection::numbers(const std::string& key, std::vector<double>& values, d
     object_->erase(key);
 }
 
+void JsonSection::texts(const std::string& key, std::vector<std::string>& values, std::size_t most) {
+    const json* found = find(key);
+    if (!found) return;
+    refuseNoList(key, *found, most);
+    values.clear();
+    for (const json& value : *found) {
+        if (!value.is_string())
+            refuse(key + "[" + std::to_string(values.size()) + "]", "is not a text", "put it in quotes, or remove it");
+        values.push_back(value.get<std::string>());
+    }
+    object_->erase(key);
+}
+
 void JsonSection::refuse(const std::string& key, const std::string& why, const std::string& remedy) const {
     throw DataError(*file_, prefix_ + key + ": " + why, remedy);
 }

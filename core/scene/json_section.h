@@ -27,6 +27,8 @@ public:
     /// Numbers; `most` of them where it is to be exactly so many.
     void numbers(const std::string& key, std::vector<double>& values, double min, double max, std::size_t most,
                  bool exactly = false);
+    /// At most `most` texts.
+    void texts(const std::string& key, std::vector<std::string>& values, std::size_t most);
     /// Reads what lies under `key`; of that object only what is not known stays.
     template <typename Read> void section(const std::string& key, Read read) {
         if (!has(key)) return;

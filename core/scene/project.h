@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/mdf/placement.h"
+#include "core/motion/pose_book.h"
 #include "core/scene/driver.h"
 #include "core/scene/installation.h"
 #include "core/scene/project_assets.h"
@@ -39,6 +40,7 @@ struct Project {
         double spin = 0.0; ///< radians a second
         bool operator==(const Playback&) const = default;
     } playback;
+    PoseBook poses;               ///< named by the user, and their sequence
     Scene scene = defaultScene(); ///< what is shown
     /// A copy of the room's when it was saved. Who opens the project in another room decides which to use.
     Installation installation = defaultInstallation();

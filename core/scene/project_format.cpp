@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "core/base/error.h"
+#include "core/base/text.h"
 #include "core/rig/rig_validation.h"
 #include "core/scene/json_section.h"
 #include "core/scene/scene_format.h"
@@ -23,6 +24,63 @@ const char* driverKey(Driver driver) {
         throw InvalidInput("driver of the servos", "a project keeps only target, scene item and hand",
                            "give one of these");
     return found->second;
+}
+
+constexpr std::array kEasingKeys = {std::pair(Easing::linear, "linear"), std::pair(Easing::smooth, "smooth"),
+                                    std::pair(Easing::minimumJerk, "minimumJerk")};
+
+const char* easingKey(Easing easing) {
+    return std::ranges::find(kEasingKeys, easing, &std::pair<Easing, const char*>::first)->second;
+}
+
+void readEasing(JsonSection& section, Easing& easing) {
+    std::string key = easingKey(easing);
+    section.text("easing", key);
+    const auto* found = std::ranges::find_if(kEasingKeys, [&](const auto& one) { return key == one.second; });
+    if (found == kEasingKeys.end())
+        section.refuse("easing", "is " + inQuotes(key) + ", not a way to move",
+                       R"(write "linear", "smooth" or "minimumJerk")");
+    easing = found->first;
+}
+
+PoseStep readPoseStep(JsonSection section) {
+    PoseStep step;
+    section.text("pose", step.pose);
+    section.number("travelSeconds", step.travelSeconds, 0.0, kMaxStepSeconds);
+    section.number("holdSeconds", step.holdSeconds, 0.0, kMaxStepSeconds);
+    readEasing(section, step.easing);
+    return step;
+}
+
+PoseBook readPoses(JsonSection section) {
+    PoseBook book;
+    section.texts("actuators", book.actuators, kMaxActuators);
+    section.sections("named", kMaxPoses, [&](JsonSection entry) {
+        NamedPose& pose = book.sequence.poses.emplace_back();
+        entry.text("name", pose.name);
+        entry.numbers("strokes", pose.strokes, 0.0, 1.0, kMaxActuators);
+    });
+    section.sections("steps", kMaxPoseSteps,
+                     [&](JsonSection entry) { book.sequence.steps.push_back(readPoseStep(std::move(entry))); });
+    section.flag("loop", book.sequence.loop);
+    try {
+        requireSound(book);
+    } catch (const InvalidInput& error) {
+        section.refuse(error.subject(), error.why(), error.remedy());
+    }
+    return book;
+}
+
+json posesDocument(const PoseBook& book) {
+    json named = json::array();
+    for (const NamedPose& pose : book.sequence.poses) named.push_back({{"name", pose.name}, {"strokes", pose.strokes}});
+    json steps = json::array();
+    for (const PoseStep& step : book.sequence.steps)
+        steps.push_back({{"pose", step.pose},
+                         {"travelSeconds", step.travelSeconds},
+                         {"holdSeconds", step.holdSeconds},
+                         {"easing", easingKey(step.easing)}});
+    return {{"actuators", book.actuators}, {"named", named}, {"steps", steps}, {"loop", book.sequence.loop}};
 }
 
 void readDriver(JsonSection& section, Driver& driver) {
@@ -173,6 +231,7 @@ Project projectOf(json document, const std::string& file) {
         section.flag("playing", project.playback.playing);
         section.number("spin", project.playback.spin, -100.0, 100.0);
     });
+    root.section("poses", [&](JsonSection section) { project.poses = readPoses(std::move(section)); });
     root.section("scene", [&](const JsonSection& section) { readScene(section, project.scene); });
     root.section("installation", [&](const JsonSection& section) { readInstallation(section, project.installation); });
     if (const auto view = document.find("view"); view != document.end()) {
@@ -202,6 +261,8 @@ json documentOf(const Project& project) {
            {"refined", project.matching.refined},
            {"budgetMilliseconds", project.matching.budgetMilliseconds}});
     merge(document, "playback", {{"playing", project.playback.playing}, {"spin", project.playback.spin}});
+    if (document.contains("poses") || project.poses != PoseBook())
+        merge(document, "poses", posesDocument(project.poses));
     merge(document, "scene", documentOf(project.scene));
     merge(document, "installation", documentOf(project.installation));
     document.erase("view");

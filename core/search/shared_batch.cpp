@@ -2,6 +2,7 @@
 
 #include <cstdlib>
 #include <string>
+#include <system_error>
 
 #include <dlfcn.h>
 
@@ -17,15 +18,27 @@ struct Ranks::Library {
     LumorphRanksLeave leave = nullptr;
 };
 
-std::optional<Ranks> Ranks::join(const std::filesystem::path& folder) {
+namespace {
+
+std::filesystem::path libraryFile(const std::filesystem::path& programFolder) {
+    constexpr const char* kName = "liblumorph_mpi.so";
+    std::error_code error;
+    const std::filesystem::path built = programFolder / kName;
+    if (std::filesystem::exists(built, error)) return built;
+    return (programFolder / "../lib/lumorph" / kName).lexically_normal();
+}
+
+} // namespace
+
+std::optional<Ranks> Ranks::join(const std::filesystem::path& programFolder) {
     const char* count = std::getenv("OMPI_COMM_WORLD_SIZE");
     if (count == nullptr || std::atoi(count) < 2) return std::nullopt;
-    const std::string file = (folder / "liblumorph_mpi.so").string();
+    const std::string file = libraryFile(programFolder).string();
     // Never unloaded: MPI leaves threads and handlers behind.
     void* const handle = dlopen(file.c_str(), RTLD_NOW | RTLD_GLOBAL);
     if (handle == nullptr)
         throw DeviceError(file, "it cannot be loaded (" + std::string(dlerror()) + ")",
-                          "build where libopenmpi-dev is installed, or run without mpirun");
+                          "install Lumorph again, build where libopenmpi-dev is installed, or run without mpirun");
     auto library = std::make_unique<Library>();
     const auto join = reinterpret_cast<LumorphRanksJoin>(dlsym(handle, "lumorphRanksJoin"));
     library->most = reinterpret_cast<LumorphRanksMost>(dlsym(handle, "lumorphRanksMost"));

@@ -13,9 +13,10 @@ namespace lumorph {
 class Ranks {
 public:
     /// Joins the others when the environment is that of `mpirun` with more than one process (Open MPI's); else
-    /// nothing, and no library is loaded. Throws DeviceError when the library that speaks MPI is not in `folder` (it is
+    /// nothing, and no library is loaded. The library that speaks MPI is looked for in the folder of the program, where
+    /// it is built, and in `../lib/lumorph`, where it is installed. Throws DeviceError when it is in neither (it is
     /// built where MPI is installed) or refuses.
-    [[nodiscard]] static std::optional<Ranks> join(const std::filesystem::path& folder);
+    [[nodiscard]] static std::optional<Ranks> join(const std::filesystem::path& programFolder);
     ~Ranks(); ///< leaves, once all do
     Ranks(Ranks&&) noexcept;
     Ranks& operator=(Ranks&&) noexcept;

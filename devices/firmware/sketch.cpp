@@ -60,11 +60,15 @@ fs::path sketchFolder(const fs::path& resources) {
     throw DataError(places.front().string(), "the sketch for the board is missing", "install Lumorph again");
 }
 
-fs::path writeSketch(const DeviceProfile& profile, const fs::path& parent) {
+fs::path writeSketch(const DeviceProfile& profile, const fs::path& parent, const BoardSequence* poses) {
     const std::string header = channelsHeader(profile);
     Files files = readSketch(sketchFolder());
-    const auto bytes = std::as_bytes(std::span(header));
-    files["channels.h"].assign(bytes.begin(), bytes.end());
+    const auto put = [&files](const std::string& name, const std::string& text) {
+        const auto bytes = std::as_bytes(std::span(text));
+        files[name].assign(bytes.begin(), bytes.end());
+    };
+    put("channels.h", header);
+    if (poses) put("poses.h", posesHeader(profile, *poses));
     fs::path folder = makeFreshFolder(parent);
     const std::string mainFile = folder.filename().string() + ".ino";
     try {

@@ -1,13 +1,14 @@
 // A surface of a viewport in motion, lit at its vertices; follows version.glsl, light_colors.glsl and
-// moving_tone.glsl. In: position, normal (mesh, metres), worldFromMesh, normalFromMesh, clipFromWorld of
+// moving_tone.glsl. In: position, normal (mesh, metres), tint (sRGB and how much of it), worldFromMesh, normalFromMesh, clipFromWorld of
 // the camera, eye (world; w is 0 for the direction towards a parallel eye), keyDirection (world),
 // keyMapFromWorld (world to map, 0 to 1), shadowBias (metres along the normal), baseColor (linear),
 // exposure, opacity, rim, twoSided (1: the normal that faces the eye counts), tintFromWorld and tintNudge
 // as in tint.glsl. Out: mapPlace (of the key's map), litColor and shadedColor (sRGB-encoded), litLight and
-// shadedLight (linear), tintPlace (voxels), alpha; clip space.
+// shadedLight (linear), surfaceColor (linear), tintPlace (voxels), alpha; clip space.
 
 layout(location = 0) in vec3 position;
 layout(location = 1) in vec3 normal;
+layout(location = 2) in vec4 tint;
 
 uniform mat4 worldFromMesh;
 uniform mat4 normalFromMesh;
@@ -30,6 +31,7 @@ out vec3 shadedColor;
 out vec3 litLight;
 out vec3 shadedLight;
 out vec3 tintPlace;
+out vec3 surfaceColor;
 out float alpha;
 
 void main() {
@@ -46,8 +48,9 @@ void main() {
     float gain = exposure * (1.0 + 0.15 * grazing);
     shadedLight = gain * studioLight(0.0, sky, 1.0 - sky);
     litLight = gain * studioLight(max(dot(n, keyDirection), 0.0), sky, 1.0 - sky);
-    shadedColor = shown(baseColor * shadedLight);
-    litColor = shown(baseColor * litLight);
+    surfaceColor = mix(baseColor, pow(tint.rgb, vec3(2.2)), tint.a);
+    shadedColor = shown(surfaceColor * shadedLight);
+    litColor = shown(surfaceColor * litLight);
     alpha = mix(opacity, 1.0, rim * 0.55 * grazing);
     mapPlace = (keyMapFromWorld * vec4(world + shadowBias.x * n, 1.0)).xyz;
     tintPlace = (tintFromWorld * vec4(world - tintNudge * n, 1.0)).xyz;

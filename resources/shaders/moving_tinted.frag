@@ -1,15 +1,15 @@
 // A tinted surface of a viewport in motion; follows version.glsl and moving_tone.glsl. In: see
-// moving_surface.vert; keyShadow (depth map, 1 is lit), baseColor (linear), keepAlpha (0 marks outlined
+// moving_surface.vert; keyShadow (depth map, 1 is lit), keepAlpha (0 marks outlined
 // surfaces), tintClasses and tintColors as in tint.glsl. Out: color, sRGB-encoded.
 
 in vec3 mapPlace;
 in vec3 litLight;
 in vec3 shadedLight;
 in vec3 tintPlace;
+in vec3 surfaceColor;
 in float alpha;
 
 uniform sampler2DArrayShadow keyShadow;
-uniform vec3 baseColor;
 uniform float keepAlpha;
 uniform usampler3D tintClasses;
 uniform vec4 tintColors[4];
@@ -23,5 +23,5 @@ void main() {
     bool inside = all(greaterThanEqual(voxel, ivec3(0))) && all(lessThanEqual(voxel, last));
     uint found = min(texelFetch(tintClasses, clamp(voxel, ivec3(0), last), 0).r, 3u);
     vec4 tint = tintColors[inside ? found : 0u];
-    color = vec4(shown(mix(baseColor, tint.rgb, tint.a) * mix(shadedLight, litLight, key)), keepAlpha * alpha);
+    color = vec4(shown(mix(surfaceColor, tint.rgb, tint.a) * mix(shadedLight, litLight, key)), keepAlpha * alpha);
 }

@@ -1,6 +1,6 @@
 // A surface in a still viewport; follows version.glsl, backdrop.glsl, studio_light.glsl, light_colors.glsl,
 // tone.glsl and, where it is tinted, tint.glsl.
-// In: worldPosition, worldNormal (world), fibrePlace (mesh, metres), eye (world; w is 0 for the direction
+// In: worldPosition, worldNormal (world), fibrePlace (mesh, metres), vertexTint (linear, and how much of it), eye (world; w is 0 for the direction
 // towards a parallel eye), baseColor (linear), opacity, rim (0 or 1: a translucent surface grows denser
 // where it is seen edge-on), fibre (texture, 0.5 is plain), paper (0 to 1), fibreTile (metres), exposure,
 // keepAlpha (0 marks outlined surfaces). Out: color, sRGB-encoded.
@@ -8,6 +8,7 @@
 in vec3 worldPosition;
 in vec3 worldNormal;
 in vec3 fibrePlace;
+in vec4 vertexTint;
 
 uniform vec4 eye;
 uniform vec3 baseColor;
@@ -31,7 +32,7 @@ void main() {
     float sky = skyLight(worldPosition, normal);
     vec3 light = studioLight(key, sky, 0.5 - 0.5 * normal.y);
 
-    vec3 base = baseColor;
+    vec3 base = mix(baseColor, vertexTint.rgb, vertexTint.a);
 #ifdef TINTED
     vec4 tint = tintAt(worldPosition, normal);
     base = mix(base, tint.rgb / max(tint.a, 1e-4), tint.a);

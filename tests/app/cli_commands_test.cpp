@@ -3,9 +3,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "core/base/file.h"
 #include "core/geometry/mesh_file.h"
 #include "core/geometry/mesh_writers.h"
 #include "core/geometry/model.h"
+#include "core/voxels/nrrd.h"
 #include "tests/app/process.h"
 #include "tests/app/workspace.h"
 
@@ -102,6 +104,20 @@ TEST_F(CommandLine, MdfInfoTellsWhatTheFieldHolds) {
     info["seconds"] = built["seconds"];
     EXPECT_EQ(info, built);
     EXPECT_THAT(succeed({"mdf", "info", w["x.mdf"]}).out, HasSubstr("3 actuators with 5 levels"));
+}
+
+TEST_F(CommandLine, MdfReachTellsWhatOnlyTwoActuatorsReachTogether) {
+    const nlohmann::json reach = succeed({"mdf", "reach", w["field.mdf"], "--json", "-o", w["together.nrrd"]}).json();
+    // All three lift the same top, and two together lift it higher than one.
+    EXPECT_GT(reach["alone"].get<int>(), 0);
+    EXPECT_GT(reach["together"].get<int>(), 0);
+    const ByteGrid grid = parseNrrd(readFile(w["together.nrrd"], std::size_t{1} << 30), "together.nrrd");
+    EXPECT_EQ(reach["together"].get<std::ptrdiff_t>(), std::ranges::count(grid.values, 1));
+    ASSERT_GT(reach["pairs"].size(), 0U);
+    EXPECT_LE(reach["pairs"].size(), 3U);
+    EXPECT_LE(reach["pairs"][0]["voxels"], reach["together"]);
+    EXPECT_THAT(succeed({"mdf", "reach", w["field.mdf"]}).out,
+                HasSubstr("reach " + reach["together"].dump() + " more"));
 }
 
 TEST_F(CommandLine, MdfExportWritesOneGridForEachPart) {

@@ -85,6 +85,7 @@ TEST_F(CommandLineErrors, WrongUsageExitsWithTwo) {
         {2, {"mdf", "build", "{rig.glb}", "-o", "{x.mdf}", "--samples", "many"}, "--samples"},
         {2, {"mdf", "build", "{rig.glb}", "-o", "{x.mdf}", "--seed", "-1"}, "--seed"},
         {2, {"mdf", "build", "{rig.glb}", "-o", "-", "--json"}, "--json"},
+        {2, {"mdf", "reach", "{field.mdf}", "-o", "-", "--json"}, "--json"},
         {2, {"mdf", "build", "{rig.glb}", "-o", "{rig.glb}"}, "replace"},
         {2, {"voxelize", "{target.obj}", "-o", "{x.nrrd}"}, "--like"},
         {2, {"voxelize", "{good.nrrd}", "--like", "{field.mdf}", "--fit", "-o", "{x.nrrd}"}, "--fit"},

@@ -1,6 +1,7 @@
 #include <chrono>
 #include <csignal>
 #include <filesystem>
+#include <map>
 
 #include <gtest/gtest.h>
 
@@ -239,6 +240,61 @@ TEST(RigSearch, StopsWithAWholeStateAndGoesOn) {
     EXPECT_GE(found["generations"], 1);
 }
 
+// As a power cut ends it, again and again.
+TEST(RigSearch, KilledGoesOnToTheSameFront) {
+    const SearchInput made;
+    ASSERT_EQ(lumorph(made.command("whole", "60")).exitCode, 0);
+    const std::vector<std::string> killed = made.command("killed", "60");
+    for (int k = 0; k < 4; ++k) {
+        Process search(lumorphProgram(), killed);
+        for (int wait = 0; wait < 300 && !std::filesystem::exists(made["killed/search.json"]); ++wait)
+            (void)search.gatherFor(std::chrono::milliseconds(20));
+        (void)search.gatherFor(std::chrono::milliseconds(70 * k));
+        search.send(SIGKILL);
+        (void)search.wait(std::chrono::seconds(20));
+    }
+    const auto found = lumorph(killed).json();
+    EXPECT_EQ(found["generations"], 60);
+    EXPECT_EQ(textOfFile(made["killed/front.csv"]), textOfFile(made["whole/front.csv"]));
+    EXPECT_EQ(textOfFile(made["killed/search.json"]), textOfFile(made["whole/search.json"]));
+}
+
+/// Runs `lumorph` where no file may grow beyond so many blocks of 512 bytes, which stands for a full disk.
+Outcome lumorphOnAFullDisk(int blocks, const std::vector<std::string>& arguments) {
+    std::vector<std::string> shell{"-c", "ulimit -f " + std::to_string(blocks) + "; trap '' XFSZ; exec \"$0\" \"$@\"",
+                                   lumorphProgram()};
+    shell.insert(shell.end(), arguments.begin(), arguments.end());
+    return Process("/bin/sh", shell).wait();
+}
+
+TEST(RigMaking, FullDiskLeavesWhatWasThere) {
+    const SearchInput made;
+    ASSERT_EQ(lumorph({"rig", "new", "tablet", "-o", made["old.glb"]}).exitCode, 0);
+    ASSERT_EQ(lumorph(made.command("found", "2")).exitCode, 0);
+    const auto contents = [&] {
+        std::map<std::string, std::string> all;
+        for (const auto& entry : std::filesystem::recursive_directory_iterator(made.folder.path()))
+            all[entry.path()] = entry.is_regular_file() ? textOfFile(entry.path()) : "folder";
+        return all;
+    };
+    const auto before = contents();
+    struct Wrong {
+        std::vector<std::string> arguments;
+        std::string names;
+    };
+    for (const Wrong& wrong :
+         {Wrong{{"rig", "new", "flower", "-o", made["old.glb"]}, "old.glb"},
+          Wrong{{"rig", "sheet", made["o.svg"], "--bends", made["b.json"], "-o", made["new.glb"]}, "new.glb"},
+          Wrong{{"rig", "parts", made["old.glb"], "-o", made["parts"]}, "parts"},
+          Wrong{made.command("found", "3"), "found"}}) {
+        const Outcome outcome = lumorphOnAFullDisk(2, wrong.arguments);
+        EXPECT_EQ(outcome.exitCode, 1) << wrong.names << ": " << outcome.err;
+        EXPECT_NE(outcome.err.find(wrong.names), std::string::npos) << outcome.err;
+        EXPECT_TRUE(contents() == before) << wrong.names;
+    }
+    EXPECT_EQ(lumorph(made.command("found", "3")).json()["generations"], 3);
+}
+
 TEST(RigMaking, RefusesByNameAndLeavesNothing) {
     const Made made;
     writeFile(made["o.svg"], std::string(kSvg));
@@ -252,6 +308,8 @@ TEST(RigMaking, RefusesByNameAndLeavesNothing) {
     bends("huge.json", R"({"bends": [{"from": [1e999, 3], "to": [10, 16]}]})");
     bends("key.json", R"({"bends": [{"form": [1, 3], "to": [10, 16]}]})");
     bends("side.json", R"({"bends": [{"from": [1, 3], "to": [10, 16], "side": "up"}]})");
+    bends("short.json", R"({"bends": [{"name": "dot", "from": [10, 7], "to": [10, 7]}]})");
+    bends("away.json", R"({"bends": [{"name": "away", "from": [40, 3], "to": [40, 16]}]})");
     std::string many = R"({"bends": [)";
     for (int k = 0; k < 500; ++k) many += std::string(k == 0 ? "" : ",") + R"({"from": [1, 3], "to": [10, 16]})";
     bends("many.json", many + "]}");
@@ -275,6 +333,8 @@ TEST(RigMaking, RefusesByNameAndLeavesNothing) {
              Wrong{1, sheet("o.svg", "key.json"), "bend 1: it holds 'form'"},
              Wrong{1, sheet("o.svg", "side.json"), "bend 1: side is 'up'"},
              Wrong{2, sheet("o.svg", "many.json"), "500 bend lines are too many"},
+             Wrong{2, sheet("o.svg", "short.json"), "'dot'"},
+             Wrong{2, sheet("o.svg", "away.json"), "'away'"},
              Wrong{2, {"rig", "new", "chair", "-o", made["x.glb"]}, "'chair': there is no such template"},
              Wrong{2, {"rig", "new", "tablet", "--set", "width=nan", "-o", made["x.glb"]}, "no finite number"},
              Wrong{2, {"rig", "new", "tablet", "--set", "reach=2", "-o", made["x.glb"]}, "would vanish"},
@@ -323,6 +383,17 @@ TEST(RigParts, LeavesNothingOfWhatFails) {
     fails({"--bed", "1mm"}, "print bed");
     fails({"--servo", "SG9000"}, "SG90, MG996R");
     EXPECT_EQ(filesIn(made.folder.path()), std::vector<std::string>{"c.glb"});
+}
+
+TEST(LabPlacement, TakesAProjectorByItsName) {
+    const std::string tablet = resource("models/tablet.glb");
+    const auto named = lumorph({"lab", "placement", tablet, "--lens", "optoma gt1080hdr", "--json"}).json();
+    const auto typed = lumorph({"lab", "placement", tablet, "--lens", "1920x1080:0.496:0.66", "--json"}).json();
+    EXPECT_EQ(named["best"], typed["best"]);
+    EXPECT_GT(named["best"]["lit"].get<double>(), 0.9);
+    const Outcome unknown = lumorph({"lab", "placement", tablet, "--lens", "Optoma GT1"});
+    EXPECT_EQ(unknown.exitCode, 2);
+    EXPECT_NE(unknown.err.find("Optoma GT1080HDR"), std::string::npos) << unknown.err;
 }
 
 } // namespace

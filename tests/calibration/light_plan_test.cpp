@@ -5,6 +5,7 @@
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
+#include "calibration/placement/projector_models.h"
 #include "core/base/error.h"
 #include "core/rig/shape_report.h"
 #include "tests/support/small_rigs.h"
@@ -192,6 +193,42 @@ TEST(LightPlan, WhatIsNoLensOrNoPlaceIsRefused) {
     std::stop_source stopped;
     stopped.request_stop();
     EXPECT_THROW((void)LitDevice(stepRig(), glm::mat4(1.0F), 0, 100, Progress({}, stopped.get_token())), Cancelled);
+}
+
+TEST(LightPlan, EachTriangleThatLooksUpIsCountedWithOnePlace) {
+    const Rig rig = stepRig();
+    const LitDevice device(rig, glm::mat4(1.0F), 2, 20);
+    const LightMap map = device.lightOf({});
+    const TriangleMesh& mesh = rig.restMesh();
+    ASSERT_EQ(device.placeOfTriangle().size(), mesh.triangles.size());
+    std::vector<double> area(map.places.size(), 0.0);
+    for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+        const glm::dvec3 a(mesh.positions[mesh.triangles[t].x]);
+        const glm::dvec3 normal = glm::cross(glm::dvec3(mesh.positions[mesh.triangles[t].y]) - a,
+                                             glm::dvec3(mesh.positions[mesh.triangles[t].z]) - a);
+        const int place = device.placeOfTriangle()[t];
+        EXPECT_EQ(place >= 0, normal.y > 0.9 * glm::length(normal)) << "triangle " << t;
+        if (place >= 0) area.at(static_cast<std::size_t>(place)) += 0.5 * glm::length(normal);
+    }
+    for (std::size_t k = 0; k < area.size(); ++k) EXPECT_NEAR(area[k], map.places[k].area, 1e-9) << "place " << k;
+}
+
+TEST(ProjectorModel, NamedLensesAreAsTheirDataSheetsSay) {
+    const ProjectorModel* optoma = findProjectorModel("optoma gt1080hdr");
+    ASSERT_TRUE(optoma);
+    // Its sheet: throw ratio 0.496, offset 116 %: the lower edge stands 16 % of the height above the lens.
+    const CalibratedCamera camera = aimedProjector(lensOf(*optoma), {0.0, 1.0, 0.0}, std::vector{glm::vec3(0.0F)});
+    EXPECT_NEAR(camera.focal.x / camera.size.x, 0.496, 1e-9);
+    EXPECT_NEAR((camera.principal.y - (camera.size.y - 0.5)) / camera.size.y, 0.16, 1e-9);
+    EXPECT_EQ(findProjectorModel("no such"), nullptr);
+    double before = 0.0;
+    for (const ProjectorModel& model : projectorModels()) {
+        EXPECT_GE(model.throwMost, model.throwLeast) << model.name;
+        EXPECT_GE(model.throwLeast, before) << model.name << ": the shortest throw comes first";
+        before = model.throwLeast;
+        EXPECT_EQ(findProjectorModel(model.name), &model);
+        EXPECT_EQ(lensOf(model, 9.0).shift, model.shift ? model.shift->most : 9.0);
+    }
 }
 
 } // namespace

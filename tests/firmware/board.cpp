@@ -32,6 +32,7 @@ std::pair<char, int> portOf(int pin) {
 struct Board::Data {
     avr_t* avr = nullptr;
     double hertz = 0.0;
+    std::size_t flashBytes = 0;
     std::deque<std::uint8_t> line; // to be sent
     bool sending = false;
     avr_cycle_count_t byteCycles = 0;
@@ -96,6 +97,7 @@ Board::Board(const std::string& sketch, int megahertz) : data_(std::make_unique<
     data.avr->sleep = [](avr_t*, avr_cycle_count_t) {}; // costs no time of ours
     firmware.frequency = static_cast<std::uint32_t>(megahertz) * 1'000'000U;
     avr_load_firmware(data.avr, &firmware);
+    data.flashBytes = firmware.flashsize;
     // Interrupts of low pins, which nobody uses, would be looked for in every cycle.
     avr_extint_set_strict_lvl_trig(data.avr, 0, 0);
     avr_extint_set_strict_lvl_trig(data.avr, 1, 0);
@@ -148,6 +150,18 @@ double Board::now() const { return 1e3 * static_cast<double>(data_->avr->cycle) 
 Bytes Board::takeSaid() { return std::exchange(data_->said, {}); }
 std::vector<Pulse> Board::takePulses() { return std::exchange(data_->pulses, {}); }
 bool Board::isHigh(int pin) const { return data_->pins[static_cast<std::size_t>(pin)].high; }
+std::size_t Board::flashBytes() const { return data_->flashBytes; }
+
+void Board::setButton(int pin, bool down) {
+    const auto [port, bit] = portOf(pin);
+    avr_ioport_external_t external{};
+    external.name = static_cast<unsigned long>(port);
+    external.mask = 1UL << static_cast<unsigned>(bit);
+    external.value = down ? 0UL : external.mask;
+    avr_ioctl(data_->avr, AVR_IOCTL_IOPORT_SET_EXTERNAL(port), &external);
+    avr_raise_irq(avr_io_getirq(data_->avr, AVR_IOCTL_IOPORT_GETIRQ(port), bit), down ? 0U : 1U);
+}
+
 void Board::onSaid(std::function<void(std::uint8_t)> say) { data_->say = std::move(say); }
 
 void Board::setPinMillivolts(int millivolts) {

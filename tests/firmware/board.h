@@ -22,7 +22,7 @@ struct Pulse {
 /// An ATmega328P with the sketch in it. Its time is that of its own clock.
 class Board {
 public:
-    /// `sketch` as in "six" or "twelve".
+    /// `sketch` as in "six" or `variantOf`.
     Board(const std::string& sketch, int megahertz);
     ~Board();
 
@@ -39,6 +39,9 @@ public:
     [[nodiscard]] Bytes takeSaid();
     [[nodiscard]] std::vector<Pulse> takePulses();
     [[nodiscard]] bool isHigh(int pin) const;
+    /// A button between a pin and ground; let go, the pin is pulled up.
+    void setButton(int pin, bool down);
+    [[nodiscard]] std::size_t flashBytes() const; ///< of the sketch
 
     void setPinMillivolts(int millivolts); ///< on A0
     /// The processor goes round in one instruction for ever; the interrupts of the pulses' timer go on or end too.

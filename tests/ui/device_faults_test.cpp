@@ -181,7 +181,7 @@ TEST_P(DeviceFaults, TheWordThatThisIsTheBoardIsKeptForThisBoardAlone) {
         << story();
     if (next().startsWith("Hold to start")) return; // what it says of itself is enough
     EXPECT_TRUE(tells("Is this your device?"));
-    window.click("devices.next");
+    window.click("devices.card.next");
     ASSERT_TRUE(offersStart());
     EXPECT_EQ(window.studio().devices.profile().identity, "simulated " + board->name());
 
@@ -196,7 +196,7 @@ TEST_P(DeviceFaults, TheWordThatThisIsTheBoardIsKeptForThisBoardAlone) {
 
     expectAnotherIsAskedAbout();
     EXPECT_EQ(phase(), LinkPhase::unidentified);
-    window.click("devices.next");
+    window.click("devices.card.next");
     ASSERT_TRUE(offersStart());
     EXPECT_EQ(window.studio().devices.profile().identity, "simulated " + board->name());
 }

@@ -223,7 +223,7 @@ TEST_F(DevicesWindow, TheRowThatMovedGetsTheChannelThatWiggled) {
 TEST_F(DevicesWindow, DoubleClicksOnConnectAndOnStartStartNothing) {
     setByHand(0, 0.0);
     ASSERT_TRUE(offers("Connect the simulated tablet"));
-    auto* connect = window.find<QWidget>("devices.next");
+    auto* connect = window.find<QWidget>("devices.card.next");
     const QPoint place = connect->mapTo(&window.window(), connect->rect().center());
     for (int press = 0; press < 10 || !next().startsWith("Hold"); ++press) {
         ASSERT_LT(press, 200);

@@ -56,7 +56,7 @@ protected:
     [[nodiscard]] QString next() {
         if (const auto* hold = window.findNow<QAbstractButton>("start.hold"); hold && hold->isEnabled())
             return hold->text();
-        const auto* button = window.findNow<QAbstractButton>("devices.next");
+        const auto* button = window.findNow<QAbstractButton>("devices.card.next");
         return button ? button->text() : QString();
     }
     [[nodiscard]] bool offersStart() {
@@ -69,7 +69,7 @@ protected:
     void goLive() {
         setByHand(0, 0.0); // the show stands still
         ASSERT_TRUE(offers("Connect the simulated tablet"));
-        window.click("devices.next");
+        window.click("devices.card.next");
         ASSERT_TRUE(offersStart());
         startServos();
     }

@@ -71,6 +71,12 @@ TEST_F(DocumentTest, EachPartIsToldAloneAndComesBackExactlyByUndoAndRedo) {
          [](StudioState& s) {
              s.matching = {Driver::hand, MatchMethod::voting, Microseconds(5000)};
          }},
+        {StatePart::poses,
+         [](StudioState& s) {
+             PoseBook poses = *s.poses;
+             keepPose(poses, "open", std::vector<std::string>{"left", "right"}, std::vector{1.0, 0.5});
+             s.poses = std::make_shared<const PoseBook>(poses);
+         }},
         {StatePart::scene,
          [](StudioState& s) {
              Scene scene = *s.scene;
@@ -189,6 +195,34 @@ TEST_F(DocumentTest, ThereIsOneStrokeAnActuatorWithinItsRange) {
     EXPECT_EQ(document.state().strokes, (std::vector<double>{0.0, 1.0, 0.5}));
     document.change("Too few", [](StudioState& s) { s.strokes = {0.75}; });
     EXPECT_EQ(document.state().strokes, (std::vector<double>{0.75, 0.0, 0.0}));
+}
+
+TEST_F(DocumentTest, PosesThatAreNotSoundAreRefusedAndFollowActuatorsThatAreRenamed) {
+    std::vector<std::string> names;
+    for (const Actuator& actuator : document.state().rig.parts->actuators) names.push_back(actuator.name);
+    PoseBook poses;
+    keepPose(poses, "open", names, std::vector<double>(names.size(), 0.5));
+    document.change("Keep", [&](StudioState& s) { s.poses = std::make_shared<const PoseBook>(poses); });
+    PoseBook wrong = poses;
+    wrong.sequence.poses[0].strokes[0] = nan;
+    document.change("Spoil", [&](StudioState& s) { s.poses = std::make_shared<const PoseBook>(wrong); });
+    EXPECT_EQ(*document.state().poses, poses);
+    EXPECT_EQ(document.undoStack().count(), 1);
+    document.change("Rename", [](StudioState& s) {
+        RigParts parts = *s.rig.parts;
+        parts.actuators[1].name = "heart";
+        s.rig.parts = std::make_shared<const RigParts>(parts);
+    });
+    EXPECT_EQ(document.state().poses->actuators[1], "heart");
+    document.change("Fewer", [](StudioState& s) {
+        RigParts parts = *s.rig.parts;
+        parts.actuators.pop_back();
+        s.rig.parts = std::make_shared<const RigParts>(parts);
+    });
+    EXPECT_EQ(document.state().poses->actuators.size(), names.size()) << "nothing is lost";
+    document.undoStack().undo();
+    document.undoStack().undo();
+    EXPECT_EQ(*document.state().poses, poses);
 }
 
 TEST_F(DocumentTest, ANumberThatIsNoneIsRefused) {

@@ -218,7 +218,7 @@ TEST_F(Keyboard, ReachesTheFieldsControlsInEveryView) {
 
 TEST_F(Keyboard, ReachesEveryControlOfTheDialogs) {
     window->showWorkspace("field");
-    for (const char* command : {"settings", "help.shortcuts", "help.about", "field.build", "export.mesh",
+    for (const char* command : {"settings", "help.guide", "help.shortcuts", "help.about", "field.build", "export.mesh",
                                 "export.picture", "export.turntable"})
         expectDialog(command);
 }

@@ -1,9 +1,13 @@
+#include <cmath>
+
 #include <gtest/gtest.h>
 
 #include <QComboBox>
 #include <QDockWidget>
 #include <QPushButton>
 
+#include "app/studio/viewport/viewport_widget.h"
+#include "app/studio/widgets/value_field.h"
 #include "app/workspaces/rig/light_map_view.h"
 #include "tests/ui/studio_window.h"
 
@@ -34,6 +38,26 @@ TEST(LightDock, MapFollowsTheRoomAndTheBestPlaceIsHungByOneStep) {
     EXPECT_GT(colorAt(*map, middle).green(), colorAt(*map, middle).red());
     EXPECT_FALSE(window.findNow<QPushButton>("rig.light.hang"));
 
+    // The device in the view takes the same colours: hardly any grey is left on its upper side.
+    auto* view = window.find<ViewportWidget>("rig.viewport");
+    ASSERT_TRUE(view);
+    const auto greenShare = [&] {
+        const QImage picture = view->grab().toImage();
+        int green = 0;
+        for (int y = 0; y < picture.height(); ++y)
+            for (int x = 0; x < picture.width(); ++x) {
+                const QColor pixel = picture.pixelColor(x, y);
+                green += pixel.green() > pixel.red() + 40 && pixel.green() > pixel.blue() + 40 ? 1 : 0;
+            }
+        return static_cast<double>(green) / (picture.width() * picture.height());
+    };
+    EXPECT_LT(greenShare(), 0.01);
+    window.click("rig.light.onDevice");
+    EXPECT_TRUE(eventually([&] { return greenShare() > 0.03; }, std::chrono::seconds(30)));
+    window.screenshot("light_on_device");
+    window.click("rig.light.onDevice");
+    EXPECT_TRUE(eventually([&] { return greenShare() < 0.01; }, std::chrono::seconds(30)));
+
     // A projector that is off lights nothing, and the map says so.
     auto dark = std::make_shared<Installation>(*window.state().installation);
     for (InstalledProjector& projector : dark->projectors) projector.enabled = false;
@@ -45,7 +69,40 @@ TEST(LightDock, MapFollowsTheRoomAndTheBestPlaceIsHungByOneStep) {
     window.studio().document.setInstallation(before);
     ASSERT_TRUE(eventually([&] { return map->at(middle) && map->at(middle)->lit == often; }, std::chrono::seconds(30)));
 
+    // What a camera sees is shown beside.
+    auto* whose = window.find<QComboBox>("rig.light.whose");
+    ASSERT_TRUE(whose);
+    ASSERT_EQ(whose->count(), 1);
+    auto watched = std::make_shared<Installation>(*before);
+    watched->cameras.push_back({});
+    watched->cameras.back().name = "Ceiling";
+    watched->cameras.back().camera = cameraLookingAt({0.0, 1.0, 0.0}, {0.0, 0.0, 0.0}, {1280, 960}, 2560.0);
+    window.studio().document.setInstallation(watched);
+    ASSERT_TRUE(eventually([&] { return whose->count() == 2; }, std::chrono::seconds(30)));
+    whose->setCurrentIndex(1);
+    EXPECT_TRUE(window.text("rig.light.text").startsWith("Ceiling sees "));
+    EXPECT_NEAR(map->at(middle)->pixelsPerMillimetre,
+                2560.0 / 1000.0 * std::cos(map->at(middle)->incidence.inRadians()), 0.13)
+        << "focal length over distance, and shortened by the slant of the worst state";
+    window.studio().document.setInstallation(before);
+    ASSERT_TRUE(eventually([&] { return whose->count() == 1; }, std::chrono::seconds(30)));
+    EXPECT_TRUE(eventually([&] { return map->at(middle)->lit == often; })) << "the text above has its lines again";
+
+    // A known projector brings its numbers; its shift goes as far as its lens allows.
+    auto* model = window.find<QComboBox>("rig.light.model");
+    const auto choose = [&](const char* name) {
+        model->setCurrentIndex(model->findText(name));
+        emit model->activated(model->currentIndex());
+    };
+    ASSERT_GE(model->findText("Optoma GT1080HDR"), 1);
+    choose("Optoma GT1080HDR");
+    EXPECT_DOUBLE_EQ(window.find<ValueField>("rig.light.throwMost")->value(), 0.496);
+    EXPECT_DOUBLE_EQ(window.find<ValueField>("rig.light.shift")->value(), 0.66);
+    choose("Epson EH-TW7100");
+    EXPECT_DOUBLE_EQ(window.find<ValueField>("rig.light.shift")->value(), 0.6);
+    EXPECT_TRUE(window.text("rig.light.model.note").contains("-60"));
     window.enter("rig.light.throwLeast", "1.3");
+    EXPECT_EQ(model->currentIndex(), 0) << "other numbers are of another projector";
     window.enter("rig.light.throwMost", "2.1");
     window.enter("rig.light.shift", "0");
     window.enter("rig.light.low.y", "100cm");

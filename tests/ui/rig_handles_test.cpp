@@ -5,9 +5,14 @@
 #include <ctime>
 #include <numbers>
 
+#include <QComboBox>
 #include <QListWidget>
+#include <QPushButton>
 
+#include "app/studio/widgets/value_field.h"
 #include "app/workspaces/rig/actuator_guide.h"
+#include "core/render/viewport/viewport_renderer.h"
+#include "core/rig/actuator_weights.h"
 #include "core/rig/rig_file.h"
 #include "core/rig/templates/reference_rigs.h"
 #include "tests/ui/stall_watch.h"
@@ -298,6 +303,283 @@ TEST_F(RigHandles, AWayIsDraggedByItsEndsAndTurned) {
     expectOneStep(before, step);
 }
 
+TEST_F(RigHandles, TheKindOfServoIsChosenAndSaysWhetherItIsStrongEnough) {
+    choose(4);
+    const auto before = bytes();
+    const int step = steps();
+    auto* servo = window.find<QComboBox>("rig.edit.servo");
+    const auto pick = [&](const QString& name) {
+        servo->setCurrentIndex(servo->findText(name));
+        emit servo->activated(servo->currentIndex());
+    };
+    const ServoLoad needed = servoLoad(*window.state().rig.rig, chosen);
+    pick("SG90");
+    EXPECT_EQ(actuator().drive.servo, "SG90");
+    EXPECT_EQ(steps(), step + 1);
+    ASSERT_TRUE(eventually([&] { return window.state().rig.compiled; }));
+    ASSERT_TRUE(eventually([&] { return window.text("rig.edit.load").contains("can hold"); }));
+    EXPECT_EQ(window.text("rig.edit.load").contains("Too weak"), needed.torque > 0.5 * 0.17652);
+    window.screenshot("rig_servo_weak");
+    pick("DS3218");
+    ASSERT_TRUE(eventually([&] { return window.text("rig.edit.load").contains("DS3218"); }));
+    EXPECT_FALSE(window.text("rig.edit.load").contains("Too weak"));
+    // 90 degrees at 0.16 s for 60.
+    auto* stroke = window.find<ValueField>("rig.edit.stroke");
+    window.enter("rig.edit.stroke", "0.1");
+    EXPECT_NEAR(1.0 / actuator().maxVelocity, 0.24, 1e-9);
+    EXPECT_TRUE(stroke->toolTip().contains("0.24 s at best"));
+    window.screenshot("rig_servo");
+    while (steps() > step) window.studio().document.undoStack().undo();
+    EXPECT_EQ(bytes(), before);
+}
+
+TEST_F(RigHandles, AServoThatIsTooWeakIsWarnedOf) {
+    // The tablet four times as large in every direction: its flaps weigh and reach too much for the smallest servo.
+    RigParts large = parts();
+    for (glm::vec3& p : large.restMesh.positions) p *= 4.0F;
+    for (Actuator& one : large.actuators) {
+        auto& bend = std::get<Bend>(one.deformer);
+        bend.origin *= 4.0F;
+        bend.length *= 4.0;
+        one.drive.servo = "SG90";
+    }
+    large.drawing.clear();
+    take(Rig(large));
+    choose(4);
+    ASSERT_TRUE(eventually([&] { return window.text("rig.edit.load").contains("can hold"); }));
+    EXPECT_TRUE(servoLoad(*window.state().rig.rig, chosen).weak);
+    EXPECT_TRUE(window.text("rig.edit.load").startsWith("Too weak")) << window.text("rig.edit.load").toStdString();
+    window.screenshot("rig_servo_too_weak");
+}
+
+TEST_F(RigHandles, TheMirrorImageTakesOverHowTheChosenOneMoves) {
+    choose(0);
+    dragMouse(view, seen(RigHandle::to), {-31.0, 23.0});
+    const double max = rangeOf(actuator()).max;
+    const auto before = bytes();
+    const int step = steps();
+    window.command("mirror to the other side");
+    ASSERT_TRUE(eventually([&] { return steps() == step + 1; }));
+    EXPECT_EQ(parts().actuators.size(), 6U);
+    EXPECT_EQ(rangeOf(parts().actuators[1]).max, max) << "corner front right as corner front left";
+    expectOneStep(before, step);
+}
+
+/// How light a colour looks.
+int lightness(const glm::u8vec4& color) { return 2 * color.r + 7 * color.g + color.b; }
+
+TEST_F(RigHandles, ColoursSayHowFarEachPlaceGoes) {
+    choose(0);
+    EXPECT_FALSE(view->scene()->surfaces.front().vertexColors);
+    window.click("rig.influenceButton");
+    ASSERT_TRUE(eventually([&] { return view->scene()->surfaces.front().vertexColors && view->settled(); }));
+    window.screenshot("rig_influence");
+    // What goes farther is lighter; what stays keeps its colour. The way is looked for along the whole stroke.
+    std::vector<double> strokes(parts().actuators.size(), 0.0);
+    const auto rest = deformed(strokes);
+    std::vector<std::pair<float, std::size_t>> ways;
+    for (std::size_t v = 0; v < rest.size(); ++v) ways.emplace_back(0.0F, v);
+    for (const double stroke : {0.25, 0.5, 0.75, 1.0}) {
+        strokes[0] = stroke;
+        const auto now = deformed(strokes);
+        for (auto& [way, v] : ways) way = std::max(way, glm::distance(now[v], rest[v]));
+    }
+    std::ranges::sort(ways);
+    const auto colors = view->scene()->surfaces.front().vertexColors;
+    ASSERT_EQ(colors->size(), rest.size());
+    int lightest = 0;
+    for (const auto& [way, v] : ways) {
+        const glm::u8vec4& color = (*colors)[v];
+        if (way < 1e-6F) {
+            EXPECT_EQ(color.a, 0);
+        }
+        if (way > 0.1F * ways.back().first) {
+            EXPECT_EQ(color.a, 229) << "nine tenths";
+        }
+        if (color.a < 229) continue;
+        EXPECT_GE(lightness(color), lightest - 8);
+        lightest = std::max(lightest, lightness(color));
+    }
+    EXPECT_GT(ways.back().first, 0.04F) << "its tip goes farthest";
+    // The picture has it: at the pixel of the tip it is yellow.
+    const auto tip = pixelOf(view->camera(), shown()[ways.back().second], size());
+    ASSERT_TRUE(tip);
+    const QImage frame = view->frameImage();
+    const double scale = static_cast<double>(frame.width()) / view->width();
+    bool yellow = false;
+    for (int dy = -6; dy <= 6; ++dy)
+        for (int dx = -6; dx <= 6; ++dx) {
+            const QPoint at(static_cast<int>((tip->x + dx) * scale), static_cast<int>((tip->y + dy) * scale));
+            if (!frame.rect().contains(at)) continue;
+            const QColor color = frame.pixelColor(at);
+            yellow = yellow || (color.red() > 120 && color.green() > 110 && color.blue() < color.red() / 2);
+        }
+    EXPECT_TRUE(yellow);
+    window.click("rig.influenceButton");
+    EXPECT_TRUE(eventually([&] { return !view->scene()->surfaces.front().vertexColors; }));
+}
+
+/// A vertex that the chosen actuator moves and that is seen well in the middle of its part.
+class InfluenceInView : public RigHandles {
+protected:
+    void edit(const QString& tool) {
+        window.command("edit the influence in the view");
+        auto* button = window.find<QPushButton>("rig.influence." + tool);
+        button->click();
+        ASSERT_TRUE(eventually([&] { return view->scene()->surfaces.front().vertexColors && view->settled(); }));
+    }
+    /// Where the surface is hit at a pixel, at rest.
+    [[nodiscard]] std::optional<glm::vec3> restAt(const QPointF& pixel) {
+        const auto hit =
+            pick(*view->scene(), rayThrough(view->camera(), {pixel.x(), pixel.y()}, size()));
+        if (!hit || !hit->corners) return std::nullopt;
+        glm::vec3 place(0.0F);
+        for (int k = 0; k < 3; ++k)
+            place += hit->corners->shares[k] * parts().restMesh.positions[hit->corners->vertices[k]];
+        return place;
+    }
+    /// A pixel at which something is seen that the actuator moves fully, far from its border.
+    [[nodiscard]] QPointF onPart() {
+        const std::vector<float> weights = actuatorWeights(parts(), chosen);
+        glm::vec2 sum(0.0F);
+        int count = 0;
+        for (std::size_t v = 0; v < weights.size(); ++v)
+            if (weights[v] > 0.4F && parts().restMesh.positions[v].y > 0.0015F)
+                if (const auto pixel = pixelOf(view->camera(), shown()[v], size())) sum += *pixel, ++count;
+        return {std::round(sum.x / static_cast<float>(count)), std::round(sum.y / static_cast<float>(count))};
+    }
+    [[nodiscard]] std::vector<float> weights() { return actuatorWeights(parts(), chosen); }
+};
+
+TEST_F(InfluenceInView, ADabErasesWhatLiesUnderIt) {
+    choose(0);
+    edit("erase");
+    const auto before = bytes();
+    const int step = steps();
+    const auto was = weights();
+    const QPointF at = onPart();
+    const auto place = restAt(at);
+    ASSERT_TRUE(place);
+    const double radius = window.find<ValueField>("rig.influence.radius")->value();
+    const double strength = window.find<ValueField>("rig.influence.strength")->value();
+    QTest::mouseClick(view, Qt::LeftButton, {}, at.toPoint());
+    EXPECT_EQ(steps(), step + 1);
+    const auto now = weights();
+    int changed = 0;
+    for (std::size_t v = 0; v < now.size(); ++v) {
+        const glm::vec3& p = parts().restMesh.positions[v];
+        if (p.y < place->y - 0.001F) continue; // below, what looks away is left alone
+        const double far = glm::distance(p, *place);
+        const double inside = std::max(0.0, 1.0 - far * far / (radius * radius));
+        EXPECT_NEAR(now[v], std::max(0.0, was[v] - strength * inside * inside), 0.002) << v;
+        changed += now[v] != was[v];
+    }
+    EXPECT_GT(changed, 3);
+    ASSERT_TRUE(eventually([&] { return window.state().rig.compiled && view->settled(); }));
+    window.screenshot("rig_influence_dab");
+    expectOneStep(before, step);
+    EXPECT_EQ(weights(), was);
+}
+
+TEST_F(InfluenceInView, AStrokeIsOneStepAndEscTakesItBack) {
+    choose(0);
+    edit("paint");
+    const QPointF from = onPart();
+    const auto before = bytes();
+    const int step = steps();
+    const ViewCamera camera = view->camera();
+    dragMouse(view, from, {120.0, -20.0}, {}, false);
+    EXPECT_EQ(steps(), step) << "a stroke is no step until it ends";
+    EXPECT_NE(bytes(), before);
+    window.screenshot("rig_influence_stroke");
+    QTest::keyClick(view, Qt::Key_Escape);
+    QTest::mouseRelease(view, Qt::LeftButton);
+    EXPECT_EQ(bytes(), before);
+    const auto count = std::ranges::count_if(weights(), [](float w) { return w > 0.0F; });
+    dragMouse(view, from, {120.0, -20.0});
+    EXPECT_GT(std::ranges::count_if(weights(), [](float w) { return w > 0.0F; }), count) << "more follows now";
+    EXPECT_EQ(view->camera(), camera) << "a stroke does not turn the view";
+    // What is shown follows: the rig that was compiled moves by these weights.
+    ASSERT_TRUE(eventually([&] { return window.state().rig.compiled && view->settled(); }));
+    EXPECT_EQ(window.state().rig.rig->parts(), parts());
+    const auto colors = view->scene()->surfaces.front().vertexColors;
+    const auto now = weights();
+    for (std::size_t v = 0; v < now.size(); ++v)
+        if (now[v] == 0.0F) {
+            EXPECT_EQ((*colors)[v].a, 0);
+        }
+    window.screenshot("rig_influence_painted");
+    expectOneStep(before, step);
+    // Beside the device the view turns as ever.
+    dragMouse(view, {20.0, 20.0}, {30.0, 10.0});
+    EXPECT_NE(view->camera(), camera);
+    EXPECT_EQ(bytes(), before);
+}
+
+TEST_F(InfluenceInView, IsSetByDistanceFromAPlaceAndFromTheLine) {
+    choose(4);
+    edit("distance");
+    window.enter("rig.influence.full", "1 cm");
+    window.enter("rig.influence.range", "2 cm");
+    const auto before = bytes();
+    const int step = steps();
+    const QPointF at = onPart();
+    const auto place = restAt(at);
+    ASSERT_TRUE(place);
+    QTest::mouseClick(view, Qt::LeftButton, {}, at.toPoint());
+    ASSERT_TRUE(eventually([&] { return steps() == step + 1; }, std::chrono::seconds(30)));
+    const auto now = weights();
+    float farthest = 0.0F;
+    for (std::size_t v = 0; v < now.size(); ++v) {
+        const float straight = glm::distance(parts().restMesh.positions[v], *place);
+        if (now[v] > 0.0F) farthest = std::max(farthest, straight);
+        if (straight > 0.031F) {
+            EXPECT_EQ(now[v], 0.0F) << "no way along the surface is shorter than the straight one";
+        }
+    }
+    EXPECT_GT(farthest, 0.015F);
+    EXPECT_EQ(std::ranges::max(now), 1.0F);
+    ASSERT_TRUE(eventually([&] { return window.state().rig.compiled && view->settled(); }));
+    window.screenshot("rig_influence_distance");
+    expectOneStep(before, step);
+    const Line line = lineOf(actuator());
+    window.click("rig.influence.line");
+    ASSERT_TRUE(eventually([&] { return steps() == step + 1; }, std::chrono::seconds(30)));
+    const auto beside = weights();
+    for (std::size_t v = 0; v < beside.size(); ++v) {
+        const glm::dvec3 p(parts().restMesh.positions[v]);
+        if (beside[v] > 0.0F) {
+            EXPECT_GT(glm::dot(p - line.origin, unit(std::get<Bend>(actuator().deformer).direction)), -1e-4) << v;
+        }
+        if (distanceFrom(line, p) > 0.0301) {
+            EXPECT_EQ(beside[v], 0.0F) << v;
+        }
+    }
+    EXPECT_EQ(std::ranges::max(beside), 1.0F);
+    expectOneStep(before, step);
+}
+
+TEST_F(RigHandles, CopiesStandAroundTheMiddleByOneStep) {
+    choose(0);
+    dragMouse(view, seen(RigHandle::to), {-31.0, 23.0});
+    const double max = rangeOf(actuator()).max;
+    const auto before = bytes();
+    const int step = steps();
+    window.command("copy around or along");
+    auto* count = window.find<ValueField>("rig.copies.count");
+    ASSERT_TRUE(eventually([&] { return count->isVisible(); }));
+    EXPECT_FALSE(window.find<QPushButton>("rig.copies.make")->isEnabled()) << "a tablet is no square";
+    window.screenshot("rig_copies_refused");
+    window.enter("rig.copies.count", "2");
+    EXPECT_TRUE(window.text("rig.copies.says").contains("stands there already"));
+    window.screenshot("rig_copies");
+    window.click("rig.copies.make");
+    ASSERT_TRUE(eventually([&] { return steps() == step + 1; }));
+    EXPECT_EQ(parts().actuators.size(), 6U);
+    EXPECT_EQ(rangeOf(parts().actuators[3]).max, max) << "corner back right as corner front left";
+    expectOneStep(before, step);
+}
+
 /// What the window's own thread has worked so far, whoever else has the processor.
 double workedMilliseconds() {
     timespec time{};
@@ -331,6 +613,101 @@ TEST_F(RigHandles, ADragHoldsTheWindowUpByLessThanATenthOfASecond) {
                 worked[worked.size() / 2]);
     EXPECT_LT(longest, 100.0);
     EXPECT_LT(worked[worked.size() / 2], 1000.0 / 60.0) << "60 edits a second";
+}
+
+/// A sheet of 200,000 triangles, closed, one half of which is bent by one actuator and raised in the middle by another.
+Rig largeSheet() {
+    constexpr int kSquares = 222; // to a side, on top and below
+    constexpr float kSide = 0.2F, kThick = 0.002F;
+    RigParts parts;
+    parts.name = "large sheet";
+    TriangleMesh& mesh = parts.restMesh;
+    const auto at = [&](int side, int x, int y) {
+        return static_cast<std::uint32_t>((side * (kSquares + 1) + y) * (kSquares + 1) + x);
+    };
+    for (int side = 0; side < 2; ++side)
+        for (int y = 0; y <= kSquares; ++y)
+            for (int x = 0; x <= kSquares; ++x)
+                mesh.positions.emplace_back(kSide * x / kSquares, side == 0 ? kThick : 0.0F, kSide * y / kSquares);
+    const auto quad = [&](std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_t d) {
+        mesh.triangles.emplace_back(a, b, c);
+        mesh.triangles.emplace_back(a, c, d);
+    };
+    for (int y = 0; y < kSquares; ++y)
+        for (int x = 0; x < kSquares; ++x) {
+            quad(at(0, x, y), at(0, x, y + 1), at(0, x + 1, y + 1), at(0, x + 1, y));
+            quad(at(1, x, y), at(1, x + 1, y), at(1, x + 1, y + 1), at(1, x, y + 1));
+        }
+    for (int i = 0; i < kSquares; ++i) {
+        quad(at(0, i, 0), at(0, i + 1, 0), at(1, i + 1, 0), at(1, i, 0));
+        quad(at(0, i + 1, kSquares), at(0, i, kSquares), at(1, i, kSquares), at(1, i + 1, kSquares));
+        quad(at(0, 0, i + 1), at(0, 0, i), at(1, 0, i), at(1, 0, i + 1));
+        quad(at(0, kSquares, i), at(0, kSquares, i + 1), at(1, kSquares, i + 1), at(1, kSquares, i));
+    }
+    Actuator bend, raise;
+    bend.name = "half";
+    bend.deformer = Bend{{0.1F, 0.001F, 0.1F}, {0.0F, 0.0F, 1.0F}, {1.0F, 0.0F, 0.0F}, 0.03, {}, Angle::degrees(60.0)};
+    raise.name = "middle";
+    raise.deformer = Slide{{0.0F, 1.0F, 0.0F}, 0.0, 0.03};
+    for (std::uint32_t v = 0; v < mesh.positions.size(); ++v) {
+        const glm::vec3& p = mesh.positions[v];
+        if (p.x > 0.1F) bend.influences.push_back({v, 1.0F});
+        if (glm::distance(p, glm::vec3(0.05F, 0.0F, 0.1F)) < 0.03F) raise.influences.push_back({v, 0.5F});
+    }
+    parts.actuators = {bend, raise};
+    return Rig(parts);
+}
+
+/// What the window's thread worked, in milliseconds: for a move of the pointer with all that follows until the next.
+struct DragWork {
+    double usual = 0.0, most = 0.0;
+};
+
+/// Sixty moves of the pressed button, as many a second.
+DragWork dragSlowly(ViewportWidget* view, const QPointF& from, const QPointF& by) {
+    std::vector<double> worked;
+    QTest::mousePress(view, Qt::LeftButton, {}, from.toPoint());
+    for (int i = 1; i <= 60; ++i) {
+        const QPointF at = from + by * i / 60.0;
+        QMouseEvent move(QEvent::MouseMove, at, view->mapToGlobal(at), Qt::NoButton, Qt::LeftButton, {});
+        const double before = workedMilliseconds();
+        QApplication::sendEvent(view, &move);
+        test::pass(std::chrono::milliseconds(15));
+        worked.push_back(workedMilliseconds() - before);
+    }
+    const double before = workedMilliseconds();
+    QTest::mouseRelease(view, Qt::LeftButton, {}, (from + by).toPoint());
+    worked.push_back(workedMilliseconds() - before);
+    std::ranges::sort(worked);
+    return {worked[worked.size() / 2], worked.back()};
+}
+
+// The clock of the thread, not of the wall: other programs may have the processor meanwhile.
+TEST_F(InfluenceInView, ARigOf200000TrianglesStaysUsable) {
+    take(largeSheet());
+    ASSERT_GT(parts().restMesh.triangles.size(), 198'000U);
+    choose(0);
+    const auto report = [](const char* what, const DragWork& work) {
+        std::printf("%s: a move costs the window %.1f ms, %.1f ms at most\n", what, work.usual, work.most);
+        EXPECT_LT(work.usual, 1000.0 / 60.0) << what << ": 60 moves a second";
+        EXPECT_LT(work.most, 100.0) << what;
+    };
+    const int step = steps();
+    report("limit", dragSlowly(view, seen(RigHandle::to), {-40.0, 30.0}));
+    EXPECT_EQ(steps(), step + 1);
+    report("bend line", dragSlowly(view, seen(RigHandle::lineEnd), {10.0, 14.0}));
+    choose(1);
+    edit("paint");
+    report("brush", dragSlowly(view, onPart(), {80.0, 30.0}));
+    EXPECT_EQ(steps(), step + 3);
+    ASSERT_TRUE(eventually([&] { return window.state().rig.compiled && view->settled(); }, std::chrono::seconds(20)));
+    window.screenshot("rig_large_painted");
+    const auto start = std::chrono::steady_clock::now();
+    window.find<QPushButton>("rig.influence.distance")->click();
+    QTest::mouseClick(view, Qt::LeftButton, {}, onPart().toPoint());
+    ASSERT_TRUE(eventually([&] { return steps() == step + 4; }, std::chrono::seconds(60)));
+    std::printf("influence by distance: %.1f s\n",
+                std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
 }
 
 } // namespace

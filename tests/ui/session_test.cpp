@@ -63,6 +63,11 @@ StudioState edited(ProjectWorld& world, const SessionFiles& files) {
         s.strokes = {0.1, 0.2, 1.0 / 3.0};
         s.matching = {Driver::hand, MatchMethod::voting, Microseconds(5250)};
         s.playback = {false, 0.3};
+        PoseBook poses;
+        keepPose(poses, "open", std::vector<std::string>{"a", "b"}, std::vector{0.25, 1.0 / 3.0});
+        poses.sequence.steps = {{"open", 1.5, 0.25, Easing::linear}};
+        poses.sequence.loop = true;
+        s.poses = std::make_shared<const PoseBook>(poses);
         s.placement = {0.7, Angle::radians(1.1), {0.01F, 0.02F, 0.03F}};
     });
     return world.state();

@@ -27,7 +27,7 @@ std::vector<double> HandControl::strokes() const {
     const StudioState& state = document_.state();
     if (!state.rig.rig) return {};
     const auto& frame = loop_.frame();
-    const bool driven = loop_.driver() != Driver::hand;
+    const bool driven = loop_.driver() != Driver::hand || loop_.posePlay();
     const bool known = frame && isOf(*frame, state);
     return soundStrokesOf(*state.rig.rig, driven && known ? frame->wantedStrokes : state.strokes);
 }

@@ -53,6 +53,7 @@ StudioState stateOf(const Project& project) {
     state.matching.method = project.matching.refined ? MatchMethod::refined : MatchMethod::voting;
     state.matching.budget = Microseconds(std::llround(1000.0 * project.matching.budgetMilliseconds));
     state.playback = {project.playback.playing, project.playback.spin};
+    state.poses = std::make_shared<const PoseBook>(project.poses);
     return state;
 }
 
@@ -65,6 +66,7 @@ Project projectOf(const ProjectSource& source) {
     project.matching = {state.matching.driver, state.matching.method == MatchMethod::refined,
                         static_cast<double>(state.matching.budget.count()) / 1000.0};
     project.playback = {state.playback.playing, state.playback.spin};
+    if (state.poses) project.poses = *state.poses;
     if (state.installation) project.installation = *state.installation;
     project.view = source.extras.view;
     if (project.view.is_object()) project.view.erase(kEarlierRig);

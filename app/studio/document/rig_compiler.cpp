@@ -4,7 +4,6 @@
 #include <utility>
 
 #include "app/studio/document/state_rules.h"
-#include "core/base/error.h"
 
 namespace lumorph::studio {
 
@@ -58,7 +57,7 @@ void RigCompiler::work(const std::stop_token& stop) {
         std::function<void()> report;
         try {
             report = [this, asset, rig = std::make_shared<const Rig>(*asset.parts)] { take(asset, rig); };
-        } catch (const Error& error) {
+        } catch (const std::exception&) { // also what only the library says, such as that memory is short
             report = [this, asset, failure = std::current_exception()] { tell(asset, failure); };
         }
         QMetaObject::invokeMethod(this, std::move(report), Qt::QueuedConnection);

@@ -70,6 +70,32 @@ StudioState::FieldAsset soundField(const StudioState& before, const StudioState&
     return field;
 }
 
+std::vector<std::string> namesOf(const StudioState::RigAsset& rig) {
+    std::vector<std::string> names;
+    if (rig.parts)
+        for (const Actuator& actuator : rig.parts->actuators) names.push_back(actuator.name);
+    return names;
+}
+
+std::shared_ptr<const PoseBook> soundPoses(const StudioState& before, const StudioState& edited) {
+    std::shared_ptr<const PoseBook> sound = before.poses ? before.poses : std::make_shared<const PoseBook>();
+    try {
+        if (edited.poses && edited.poses != before.poses) {
+            requireSound(*edited.poses);
+            sound = edited.poses;
+        }
+    } catch (const InvalidInput&) {
+    } // they stay as they were
+    if (edited.rig.parts == before.rig.parts || edited.rig.origin != before.rig.origin) return sound;
+    auto followed = std::make_shared<PoseBook>(*sound);
+    followRenames(*followed, namesOf(before.rig), namesOf(edited.rig));
+    return *followed == *sound ? sound : followed;
+}
+
+bool samePoses(const std::shared_ptr<const PoseBook>& a, const std::shared_ptr<const PoseBook>& b) {
+    return a == b || (a && b && *a == *b);
+}
+
 bool sameScene(const std::shared_ptr<const Scene>& a, const std::shared_ptr<const Scene>& b) {
     return a == b || (a && b && *a == *b);
 }
@@ -119,6 +145,7 @@ StateParts differenceOf(const StudioState& a, const StudioState& b) {
     parts.setFlag(StatePart::target, !(a.target == b.target));
     parts.setFlag(StatePart::placement, a.placement != b.placement);
     parts.setFlag(StatePart::strokes, a.strokes != b.strokes);
+    parts.setFlag(StatePart::poses, !samePoses(a.poses, b.poses));
     parts.setFlag(StatePart::matching, !(a.matching == b.matching));
     parts.setFlag(StatePart::playback, !(a.playback == b.playback));
     parts.setFlag(StatePart::scene, !sameScene(a.scene, b.scene));
@@ -173,6 +200,7 @@ StudioState settled(const StudioState& before, StudioState edited) {
     edited.placement = soundPlacement(before.placement, edited.placement);
     edited.strokes =
         soundStrokes(before.strokes, edited.strokes, edited.rig.parts ? edited.rig.parts->actuators.size() : 0);
+    edited.poses = soundPoses(before, edited);
     edited.matching.budget = std::clamp(edited.matching.budget, Microseconds{100}, Microseconds{10'000'000});
     edited.playback.spin = soundNumber(before.playback.spin, edited.playback.spin, -100.0, 100.0);
     edited.scene = soundScene(before.scene, edited.scene);

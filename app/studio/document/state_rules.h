@@ -26,8 +26,9 @@ namespace lumorph::studio {
 
 /// The one place where a state is made sound after an edit of `before`: a rig that was put in the place of another
 /// begins a line of edits, a field of another line is dropped and one of an earlier edit is stale, there is one stroke
-/// an actuator, and every number is finite and within what a project file can hold. A number that is not finite
-/// is refused: it stays what it was; so does a scene or an installation that is not sound.
+/// an actuator, poses go along with actuators that were renamed, and every number is finite and within what a project
+/// file can hold. A number that is not finite is refused: it stays what it was; so do poses, a scene or an installation
+/// that are not sound.
 [[nodiscard]] StudioState settled(const StudioState& before, StudioState edited);
 
 } // namespace lumorph::studio

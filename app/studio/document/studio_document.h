@@ -22,7 +22,8 @@ enum class StatePart : unsigned {
     playback = 64,
     scene = 128,
     installation = 256,
-    all = 511,
+    poses = 1024,
+    all = 511 | poses,
     rigEdited = 512, ///< not in `all`, which replaces the rig
 };
 Q_DECLARE_FLAGS(StateParts, StatePart)

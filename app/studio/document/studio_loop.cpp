@@ -59,8 +59,17 @@ void StudioLoop::resume() {
 
 void StudioLoop::setDancing(bool dancing) {
     if (std::exchange(dancing_, dancing) == dancing) return;
+    if (dancing) setPosePlay(nullptr);
     sendSoon();
     emit dancingChanged();
+    emit driverChanged();
+}
+
+void StudioLoop::setPosePlay(std::shared_ptr<const PosePlay> play) {
+    if (std::exchange(posePlay_, play) == play) return;
+    if (play) setDancing(false);
+    sendSoon();
+    emit posePlayChanged();
     emit driverChanged();
 }
 
@@ -104,6 +113,7 @@ void StudioLoop::setRate(double framesPerSecond) {
 
 void StudioLoop::setSource(std::shared_ptr<FrameSource> source) {
     source_ = std::move(source);
+    if (source_) setPosePlay(nullptr);
     send();
     emit driverChanged();
 }
@@ -111,6 +121,7 @@ void StudioLoop::setSource(std::shared_ptr<FrameSource> source) {
 Driver StudioLoop::driver() const noexcept {
     if (source_) return Driver::recording;
     if (dancing_) return Driver::dance;
+    if (posePlay_) return Driver::hand;
     return program_ && programDrives_ ? Driver::program : document_.state().matching.driver;
 }
 
@@ -119,7 +130,10 @@ void StudioLoop::setProgram(std::shared_ptr<ShowProgram> program) {
     program_ = std::move(program);
     inputs_ = program_ ? std::make_shared<ShowInputs>() : nullptr;
     programDrives_ = program_ != nullptr;
-    if (programDrives_) setDancing(false);
+    if (programDrives_) {
+        setDancing(false);
+        setPosePlay(nullptr);
+    }
     send(); // not a turn of the event loop later: frames that begin from now on are of this program
     programSince_ = SteadyClock().now();
     emit driverChanged();
@@ -127,7 +141,10 @@ void StudioLoop::setProgram(std::shared_ptr<ShowProgram> program) {
 
 void StudioLoop::setProgramDrives(bool drives) {
     programDrives_ = drives && program_;
-    if (programDrives_) setDancing(false);
+    if (programDrives_) {
+        setDancing(false);
+        setPosePlay(nullptr);
+    }
     sendSoon();
     emit driverChanged();
 }
@@ -163,7 +180,10 @@ void StudioLoop::onChanged(StateParts parts) {
     const Driver before = std::exchange(documentDriver_, document_.state().matching.driver);
     const bool newTarget = (parts & StatePart::target) && document_.state().target.target;
     const bool taken = before != documentDriver_ || newTarget || (parts & StatePart::strokes);
+    const bool otherActuators =
+        posePlay_ && document_.state().rig.rig && document_.state().rig.rig->actuatorCount() != posePlay_->from.size();
     if (taken || (parts & StatePart::rig)) setDancing(false);
+    if (taken || (parts & StatePart::rig) || otherActuators) setPosePlay(nullptr);
     if (taken) {
         programDrives_ = false;
         if (!(parts & StatePart::rig)) emit this->taken();
@@ -185,6 +205,7 @@ void StudioLoop::send() {
     wish.program = program_;
     wish.inputs = inputs_;
     wish.driver = driver();
+    wish.posePlay = posePlay_;
     wish.stopped = stopped_;
     wish.seek = seek_;
     wish.showTint = tint_;

@@ -36,12 +36,16 @@ public:
     /// STOP: the servos stay where they are until `resume`. Pressed again it is ordered again.
     void stop();
     void resume();
-    /// Who moves the servos by the newest wish: the recording that is shown, the dance, the program that shows and was
-    /// not sent off the servos, else whom the document says.
+    /// Who moves the servos by the newest wish: the recording that is shown, the dance, the hand where poses play, the
+    /// program that shows and was not sent off the servos, else whom the document says.
     [[nodiscard]] Driver driver() const noexcept;
     [[nodiscard]] bool dancing() const noexcept { return dancing_; }
     /// Random smooth moves; takes the rig off the target.
     void setDancing(bool dancing);
+    /// Poses move the servos by hand in place of the document's strokes, until it is set to nothing, or somebody else
+    /// takes the servos or brings another device. The sequence is playable with the rig.
+    void setPosePlay(std::shared_ptr<const PosePlay> play);
+    [[nodiscard]] const std::shared_ptr<const PosePlay>& posePlay() const noexcept { return posePlay_; }
     /// Time of the target's animation to show while it does not play.
     void seek(double seconds);
     void setTint(bool shown);
@@ -81,6 +85,7 @@ signals:
     void stopOrdered();
     void stoppedChanged();
     void dancingChanged();
+    void posePlayChanged();
     void scenePlayingChanged();
     /// `driver` may be another now.
     void driverChanged();
@@ -100,6 +105,7 @@ private:
     std::shared_ptr<const MatchFrame> frame_;
     bool stopped_ = false;
     bool dancing_ = false;
+    std::shared_ptr<const PosePlay> posePlay_;
     bool tint_ = true;
     std::optional<double> seek_;
     bool scenePlaying_ = true;

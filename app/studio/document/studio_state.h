@@ -7,6 +7,7 @@
 #include "core/loop/match_target.h"
 #include "core/loop/match_wish.h"
 #include "core/mdf/placement.h"
+#include "core/motion/pose_book.h"
 #include "core/rig/rig.h"
 #include "core/scene/installation.h"
 #include "core/scene/scene.h"
@@ -54,7 +55,8 @@ struct StudioState {
     FieldAsset field; ///< of this rig or an edit of it before, or empty
     TargetAsset target;
     Placement placement;
-    std::vector<double> strokes; ///< set by hand; one an actuator of the rig's parts, each in [0, 1]
+    std::vector<double> strokes;           ///< set by hand; one an actuator of the rig's parts, each in [0, 1]
+    std::shared_ptr<const PoseBook> poses; ///< named, and their sequence; in a document never empty
     Matching matching;
     Playback playback;
     std::shared_ptr<const Scene> scene; ///< in a document never empty

@@ -1,4 +1,5 @@
 #include "app/studio/shell/shell_commands.h"
+#include "app/studio/shell/guide_window.h"
 
 #include "app/studio/look/icons.h"
 #include "app/studio/shell/command_palette.h"
@@ -76,8 +77,10 @@ void addShellCommands(Studio& studio, QMainWindow& window, const ShellActions& d
     addView(studio, window, does);
     addStop(studio);
     addDriverCommands(studio);
+    addShellAction(studio, "help.guide", "&Guide", "help", QKeySequence(Qt::Key_F1), "Help",
+                   [&window] { openGuide(window); });
     addShellAction(studio, "help.tour", "&Tour", "tour", {}, "Help", does.startTour);
-    addShellAction(studio, "help.shortcuts", "&Keyboard and mouse", "help", QKeySequence(Qt::Key_F1), "Help",
+    addShellAction(studio, "help.shortcuts", "&Keyboard and mouse", "", QKeySequence(Qt::SHIFT | Qt::Key_F1), "Help",
                    [&studio, &window] { openShortcuts(studio, window); });
     addShellAction(studio, "help.about", "&About Lumorph", "info", {}, "Help", [&window] { openAbout(window); });
 }

@@ -19,6 +19,7 @@ struct WorkspaceDock {
     QWidget* content = nullptr;
     Qt::DockWidgetArea area = Qt::LeftDockWidgetArea;
     bool tabbedWithPrevious = false; ///< behind the dock before it, in the first layout
+    bool hiddenAtFirst = false;      ///< until the user, or a command, shows it
 };
 
 /// One of the tabs in the top bar: a central view, docks, and actions of its own. The main window never names a panel.

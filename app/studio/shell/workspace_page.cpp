@@ -73,6 +73,7 @@ void WorkspacePage::addDock(const WorkspaceDock& brought, QDockWidget* before) {
     dock->setWidget(brought.content);
     addDockWidget(brought.area, dock);
     if (before != nullptr) tabifyDockWidget(before, dock);
+    if (brought.hiddenAtFirst) dock->hide();
     docks_.push_back(dock);
 }
 

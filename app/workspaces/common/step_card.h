@@ -26,6 +26,7 @@ class StepCard : public QFrame {
 public:
     StepCard(const QString& name, const QString& icon, QWidget* parent);
     void show(const StepCardText& text);
+    void setButtonHint(const QString& hint) { next_->setToolTip(hint); }
 
 signals:
     void nextWanted();

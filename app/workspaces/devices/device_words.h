@@ -4,13 +4,14 @@
 #include <QStringList>
 
 #include "app/studio/devices/hand_watch.h"
+#include "app/workspaces/common/step_card.h"
 #include "devices/controllers/servo_link.h"
 
 namespace lumorph::studio {
 
 /// What the card over the servos says: how things are, in one sentence, and the one sensible next step.
 struct DeviceCard {
-    enum class Tone { quiet, live, warning, failure };
+    using Tone = StepCardText::Tone;
     enum class Step { none, openRig, connect, confirm, start, startAnyway, startAgain };
     Tone tone = Tone::quiet;
     QString title;

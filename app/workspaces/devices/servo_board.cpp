@@ -9,7 +9,7 @@
 
 #include "app/studio/widgets/dock_parts.h"
 #include "app/studio/widgets/panel.h"
-#include "app/workspaces/devices/device_card.h"
+#include "app/workspaces/common/step_card.h"
 #include "app/workspaces/devices/device_facts.h"
 #include "app/workspaces/devices/servo_row.h"
 #include "app/workspaces/devices/start_panel.h"
@@ -38,7 +38,8 @@ QString lately(const DeviceService& service) {
 class ServoBoard : public QWidget {
 public:
     ServoBoard(Studio& studio, ServoSelection& selection)
-        : studio_(studio), selection_(selection), card_(new DeviceCardWidget(this)), facts_(new DeviceFacts(this)) {
+        : studio_(studio), selection_(selection), card_(new StepCard("devices.card", "device", this)),
+          facts_(new DeviceFacts(this)) {
         setObjectName("devices.board");
         setProperty("look", "panel");
         setAttribute(Qt::WA_StyledBackground);
@@ -59,7 +60,8 @@ public:
         layout->addWidget(rows_.widget, 1);
         layout->addWidget(makeHands());
         layout->addWidget(facts_);
-        connect(card_, &DeviceCardWidget::nextWanted, studio.commands.find("device.next"), &QAction::trigger);
+        card_->setButtonHint("The next step (Ctrl+Return)");
+        connect(card_, &StepCard::nextWanted, studio.commands.find("device.next"), &QAction::trigger);
         connect(&studio.devices, &DeviceService::changed, this, [this] { refresh(); });
         connect(&studio.devices, &DeviceService::startAsked, this, [this] {
             if (start_->isVisible()) start_->focusButton();
@@ -176,7 +178,7 @@ private:
     void refresh() {
         const DeviceService& service = studio_.devices;
         const DeviceCard card = cardOf(deviceViewOf(studio_));
-        card_->show(card);
+        card_->show({card.tone, card.title, card.text, card.button, false});
         start_->setVisible(card.starts());
         facts_->show(service.status(), service.stopKeysProblem());
         showHands(service.hands());
@@ -228,7 +230,7 @@ private:
 
     Studio& studio_;
     ServoSelection& selection_;
-    DeviceCardWidget* card_;
+    StepCard* card_;
     DeviceFacts* facts_;
     StartPanel* start_ = nullptr;
     QTimer marks_;

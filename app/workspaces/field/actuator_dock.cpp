@@ -45,12 +45,16 @@ public:
 private:
     QWidget* makeButtons() {
         auto* bar = new QWidget(this);
-        auto* layout = new QHBoxLayout(bar);
+        auto* layout = new QGridLayout(bar);
         layout->setContentsMargins(16, 12, 16, 4);
         layout->setSpacing(8);
+        int column = 0;
         for (const char* id : {"rest", "random", "dance"})
             layout->addWidget(
-                makeCommandButton(studio_.commands.find(QString("rig.") + id), QString("actuators.") + id, bar), 1);
+                makeCommandButton(studio_.commands.find(QString("rig.") + id), QString("actuators.") + id, bar), 0,
+                column++);
+        layout->addWidget(makeCommandButton(studio_.commands.find("poses.keep"), "actuators.keep", bar), 1, 0, 1,
+                          column);
         return bar;
     }
 

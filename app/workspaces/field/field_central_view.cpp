@@ -87,6 +87,8 @@ QWidget* FieldCentralView::makeTools() {
     add("match.live");
     layout->addWidget(makeBar(card));
     add("view.frameAll");
+    layout->addWidget(makeBar(card));
+    add("field.story");
     return card;
 }
 

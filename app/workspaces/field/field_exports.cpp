@@ -3,6 +3,7 @@
 #include <chrono>
 #include <future>
 
+#include <QApplication>
 #include <QDesktopServices>
 #include <QFileInfo>
 #include <QPointer>
@@ -23,35 +24,23 @@ using Path = std::filesystem::path;
 
 Path pathOf(const QString& text) { return Path(text.toStdString()); }
 
-/// Draws by the render thread, called by a job. The window's thread hands the request over; a studio that is being
-/// closed does not answer any more, and the job is cancelled.
-Painter painterOf(Studio& studio) {
-    struct Drawn {
-        QImage image;
-        QString why;
-    };
-    return [jobs = &studio.jobs, renderer = QPointer<RenderThread>(&studio.renderer)](const FrameRequest& request,
-                                                                                      const Progress& progress) {
-        auto promise = std::make_shared<std::promise<Drawn>>();
-        std::future<Drawn> answer = promise->get_future();
-        QMetaObject::invokeMethod(jobs, [renderer, request, promise = std::move(promise)] {
-            if (renderer)
-                renderer->picture(request, [promise](QImage image, QString why) {
-                    promise->set_value({std::move(image), std::move(why)});
-                });
-        });
-        while (answer.wait_for(std::chrono::milliseconds(20)) != std::future_status::ready) progress.throwIfCancelled();
-        Drawn drawn;
-        try {
-            drawn = answer.get();
-        } catch (const std::future_error&) {
-            throw Cancelled();
-        }
-        if (drawn.image.isNull())
-            throw DeviceError("picture", drawn.why.isEmpty() ? "it could not be drawn" : drawn.why.toStdString(),
-                              "choose a smaller size");
-        return drawn.image;
-    };
+void tellWritten(Studio& studio, const Path& path) {
+    const QString text = QString::fromStdString(path.string());
+    const QFileInfo file(text);
+    Notice notice;
+    notice.level = Notice::Level::info;
+    notice.subject = file.fileName();
+    notice.why = QObject::tr("written to %1").arg(file.absolutePath());
+    const QString folder = file.isDir() ? file.absoluteFilePath() : file.absolutePath();
+    notice.actions.push_back(
+        {QObject::tr("Open its folder"), [folder] { QDesktopServices::openUrl(QUrl::fromLocalFile(folder)); }});
+    studio.notices.post(kExportPlace, std::move(notice));
+}
+
+void tellFailed(Studio& studio, const std::exception& error, std::function<void()> again) {
+    Notice notice = noticeOf(error);
+    notice.actions.push_back({QObject::tr("Choose another place"), std::move(again)});
+    studio.notices.post(kExportPlace, std::move(notice));
 }
 
 /// All exports of one workspace; lives as long as the commands it added.
@@ -75,8 +64,6 @@ private:
 
     /// Runs `write` as a job; it gives what was written. `again` is offered when that failed.
     void run(const QString& title, const QString& again, std::function<Path(const Progress&)> write);
-    void tellWritten(const Path& path);
-    void tellFailed(const std::exception& error, const QString& again);
     [[nodiscard]] PreviewPainter preview() const;
     [[nodiscard]] QString suggestedName(const QString& ending = {}) const;
     /// What dialogs belong to.
@@ -140,36 +127,13 @@ QString FieldExports::suggestedName(const QString& ending) const {
 }
 
 void FieldExports::run(const QString& title, const QString& again, std::function<Path(const Progress&)> write) {
-    studio().jobs.run<Path>(
-        kExportPlace, title, std::move(write),
-        [self = QPointer<FieldExports>(this)](const Path& path) {
-            if (self) self->tellWritten(path);
+    runExport(
+        studio(), title,
+        [self = QPointer<FieldExports>(this), again] {
+            if (!self) return;
+            if (QAction* action = self->studio().commands.find(again)) action->trigger();
         },
-        [self = QPointer<FieldExports>(this), again](const std::exception& error) {
-            if (self) self->tellFailed(error, again);
-        });
-}
-
-void FieldExports::tellWritten(const Path& path) {
-    const QString text = QString::fromStdString(path.string());
-    const QFileInfo file(text);
-    Notice notice;
-    notice.level = Notice::Level::info;
-    notice.subject = file.fileName();
-    notice.why = tr("written to %1").arg(file.absolutePath());
-    const QString folder = file.isDir() ? file.absoluteFilePath() : file.absolutePath();
-    notice.actions.push_back(
-        {tr("Open its folder"), [folder] { QDesktopServices::openUrl(QUrl::fromLocalFile(folder)); }});
-    studio().notices.post(kExportPlace, std::move(notice));
-}
-
-void FieldExports::tellFailed(const std::exception& error, const QString& again) {
-    Notice notice = noticeOf(error);
-    notice.actions.push_back({tr("Choose another place"), [self = QPointer<FieldExports>(this), again] {
-                                  if (!self) return;
-                                  if (QAction* action = self->studio().commands.find(again)) action->trigger();
-                              }});
-    studio().notices.post(kExportPlace, std::move(notice));
+        std::move(write));
 }
 
 void FieldExports::exportShape() {
@@ -289,6 +253,42 @@ void FieldExports::exportTurntable() {
 }
 
 } // namespace
+
+Painter painterOf(Studio& studio) {
+    struct Drawn {
+        QImage image;
+        QString why;
+    };
+    return [jobs = &studio.jobs, renderer = QPointer<RenderThread>(&studio.renderer)](const FrameRequest& request,
+                                                                                      const Progress& progress) {
+        auto promise = std::make_shared<std::promise<Drawn>>();
+        std::future<Drawn> answer = promise->get_future();
+        QMetaObject::invokeMethod(jobs, [renderer, request, promise = std::move(promise)] {
+            if (renderer)
+                renderer->picture(request, [promise](QImage image, QString why) {
+                    promise->set_value({std::move(image), std::move(why)});
+                });
+        });
+        while (answer.wait_for(std::chrono::milliseconds(20)) != std::future_status::ready) progress.throwIfCancelled();
+        Drawn drawn;
+        try {
+            drawn = answer.get();
+        } catch (const std::future_error&) {
+            throw Cancelled();
+        }
+        if (drawn.image.isNull())
+            throw DeviceError("picture", drawn.why.isEmpty() ? "it could not be drawn" : drawn.why.toStdString(),
+                              "choose a smaller size");
+        return drawn.image;
+    };
+}
+
+void runExport(Studio& studio, const QString& title, std::function<void()> again,
+               std::function<Path(const Progress&)> write) {
+    studio.jobs.run<Path>(
+        kExportPlace, title, std::move(write), [&studio](const Path& path) { tellWritten(studio, path); },
+        [&studio, again = std::move(again)](const std::exception& error) { tellFailed(studio, error, again); });
+}
 
 void addFieldExports(const ExportContext& context) {
     // Owned by the commands, with which it ends.

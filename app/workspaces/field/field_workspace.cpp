@@ -17,7 +17,11 @@
 #include "app/workspaces/field/field_commands.h"
 #include "app/workspaces/field/field_dock.h"
 #include "app/workspaces/field/field_exports.h"
+#include "app/workspaces/field/field_story_window.h"
 #include "app/workspaces/field/match_dock.h"
+#include "app/workspaces/field/pose_commands.h"
+#include "app/workspaces/field/pose_desk.h"
+#include "app/workspaces/field/pose_dock.h"
 #include "app/workspaces/field/target_dock.h"
 #include "app/workspaces/field/view_commands.h"
 
@@ -79,6 +83,7 @@ struct FieldWorkspace::Data : public QObject {
     explicit Data(Studio& shared) : studio(shared) {}
 
     Studio& studio;
+    PoseDesk poses{studio};
     FieldDisplayModel display;
     FieldSceneBuilder builder;
     QPointer<FieldCentralView> stage;
@@ -212,6 +217,7 @@ void FieldWorkspace::Data::connectView() {
 FieldWorkspace::FieldWorkspace(Studio& studio) : data_(std::make_unique<Data>(studio)) {
     Data& data = *data_;
     addFieldCommands(studio, [&data] { return data.stage ? data.stage->window() : nullptr; });
+    addPoseCommands(studio, data.poses);
     data.gizmoShown = addViewCommands(studio.commands, [&data] { return data.view(); });
     connect(data.gizmoShown, &QAction::toggled, &data, &Data::refresh);
     addFieldExports({studio,
@@ -224,6 +230,7 @@ FieldWorkspace::FieldWorkspace(Studio& studio) : data_(std::make_unique<Data>(st
                          return view;
                      },
                      nullptr});
+    addFieldStory(studio, [&data] { return data.stage ? data.stage->window() : nullptr; });
     data.listen();
 }
 
@@ -251,7 +258,8 @@ std::vector<WorkspaceDock> FieldWorkspace::makeDocks() {
     return {{"dock.actuators", "Actuators", "actuator", makeActuatorDock(studio), Qt::LeftDockWidgetArea, false},
             {"dock.field", "Field", "field", field, Qt::LeftDockWidgetArea, true},
             {"dock.target", "Target", "target", target, Qt::RightDockWidgetArea, false},
-            {"dock.match", "Match", "live", makeMatchDock(studio, data_->numbers), Qt::RightDockWidgetArea, false}};
+            {"dock.match", "Match", "live", makeMatchDock(studio, data_->numbers), Qt::RightDockWidgetArea, false},
+            {"dock.poses", "Poses", "mark", makePoseDock(studio, data_->poses), Qt::BottomDockWidgetArea, false, true}};
 }
 
 bool FieldWorkspace::setForVisitors(bool on) {

@@ -3,6 +3,8 @@
 #include <functional>
 #include <optional>
 
+#include <QComboBox>
+#include <QLabel>
 #include <QLineEdit>
 #include <QWidget>
 
@@ -12,9 +14,9 @@
 
 namespace lumorph::studio {
 
-/// The chosen actuator's name, range, velocity and damping to be edited, each edit by one step of undo; what is dragged
-/// shows at once. Fields are named "rig.edit.name", ".from", ".to", ".stroke" and ".damping", and
-/// ".fromLength" and ".toLength" of one that moves along a line.
+/// The chosen actuator's name, range, velocity, damping and kind of servo to be edited, each edit by one step of undo;
+/// what is dragged shows at once. Fields are named "rig.edit.name", ".from", ".to", ".stroke" and ".damping", and
+/// ".fromLength" and ".toLength" of one that moves along a line, ".servo" and below it what that has to hold, ".load".
 class ActuatorForm : public QWidget {
     Q_OBJECT
 public:
@@ -22,6 +24,8 @@ public:
 
     /// Shows one of the document's actuators as it is now; hidden without one.
     void show(std::optional<std::size_t> actuator);
+    /// What its servo has to hold, of the newest rig that was compiled; the actuators' order is the document's.
+    void showLoad(const Rig& rig);
 
 signals:
     /// How far or how fast it moves was edited.
@@ -39,7 +43,10 @@ private:
         double low, high, reset;
     };
     ValueField* addField(const Words& words, const Limits& limits, const Edit& edit);
+    void addServo();
+    void chooseServo(int row);
     void showRange(const Actuator& actuator);
+    void showServo(const Actuator& actuator);
     void rename();
     [[nodiscard]] const Actuator* shown() const;
     void preview(const Edit& edit, double value);
@@ -51,6 +58,8 @@ private:
     ValueField *from_ = nullptr, *to_ = nullptr;             ///< of one that turns
     ValueField *fromLength_ = nullptr, *toLength_ = nullptr; ///< of one that moves along a line
     ValueField *stroke_ = nullptr, *damping_ = nullptr;
+    QComboBox* servo_;
+    QLabel* load_;
 };
 
 } // namespace lumorph::studio

@@ -157,12 +157,26 @@ void setLineOf(glm::vec3& origin, glm::vec3& axis, const ActuatorGuide& guide, c
     axis = glm::length(axis) * glm::normalize(ends[1] - ends[0]);
 }
 
+/// Whether an actuator has the joint or the displacements of which it speaks; while they are edited it may not.
+bool hasParts(const RigParts& parts, const Actuator& actuator) {
+    if (const auto* joint = std::get_if<SkinJoint>(&actuator.deformer))
+        return parts.skeleton && joint->joint >= 0 &&
+               static_cast<std::size_t>(joint->joint) < parts.skeleton->joints.size();
+    const auto* morph = std::get_if<MorphTarget>(&actuator.deformer);
+    return !morph ||
+           (!morph->displacements.empty() && morph->displacements.back().size() == actuator.influences.size() &&
+            std::ranges::all_of(actuator.influences, [&](const Influence& influence) {
+                return influence.vertex < parts.restMesh.positions.size();
+            }));
+}
+
 } // namespace
 
 std::optional<ActuatorGuide> guideOf(const RigParts& parts, std::size_t index,
                                      std::span<const std::uint32_t> vertices) {
     if (index >= parts.actuators.size() || vertices.empty()) return std::nullopt;
     if (std::ranges::max(vertices) >= parts.restMesh.positions.size()) return std::nullopt;
+    if (!hasParts(parts, parts.actuators[index])) return std::nullopt;
     return GuideMaker(parts, parts.actuators[index], vertices).make();
 }
 

@@ -216,6 +216,7 @@ void ActuatorHandles::setStrokes(const std::vector<double>& shown, const std::ve
 double ActuatorHandles::stroke() const { return actuator_ && *actuator_ < shown_.size() ? shown_[*actuator_] : 0.0; }
 
 void ActuatorHandles::paint(QPainter& painter, const QSize& size) {
+    if (legend_) paintHeatLegend(painter, size, *legend_);
     if (!guide_) return;
     painter.save();
     painter.setRenderHint(QPainter::Antialiasing);

@@ -6,6 +6,7 @@
 #include "app/studio/viewport/pane_overlay.h"
 #include "app/workspaces/rig/actuator_guide.h"
 #include "app/workspaces/rig/actuator_preview.h"
+#include "app/workspaces/rig/influence_map.h"
 #include "app/workspaces/rig/rig_selection.h"
 
 namespace lumorph::studio {
@@ -23,6 +24,9 @@ public:
     /// The strokes that the view shows, and those of the device itself.
     void setStrokes(const std::vector<double>& shown, const std::vector<double>& device);
     [[nodiscard]] const std::optional<ActuatorGuide>& guide() const { return guide_; }
+
+    /// Says what the colours of the device tell; none: it has none.
+    void setLegend(std::optional<HeatLegend> legend) { legend_ = std::move(legend); }
 
     void paint(QPainter& painter, const QSize& size) override;
     bool press(const QPointF& at, const QSize& size, Qt::KeyboardModifiers modifiers) override;
@@ -58,6 +62,7 @@ private:
     std::optional<std::size_t> actuator_;
     std::optional<ActuatorGuide> guide_; ///< as it is shown, during a drag too
     std::vector<double> shown_, device_;
+    std::optional<HeatLegend> legend_;
     std::optional<RigHandle> hot_;
     std::optional<Grip> grip_;
 };

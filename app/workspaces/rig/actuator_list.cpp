@@ -77,6 +77,7 @@ private:
         layout->addWidget(form_);
         layout->addLayout(details_);
         layout->addWidget(makeCommandButton(studio_.commands.find("rig.wiggle"), "rig.wiggleButton", nullptr));
+        layout->addWidget(makeCommandButton(studio_.commands.find("rig.influence"), "rig.influenceButton", nullptr));
         layout->addWidget(makeCommandButton(studio_.commands.find("rig.back"), "rig.backButton", nullptr));
         return contents;
     }
@@ -125,6 +126,7 @@ private:
         const auto& rig = studio_.document.state().rig.rig; // may be that of an edit before
         if (!rig || !chosen || *chosen >= rig->actuatorCount()) return;
         if (list_->currentRow() != static_cast<int>(*chosen)) list_->setCurrentRow(static_cast<int>(*chosen));
+        form_->showLoad(*rig);
         const auto& servos = studio_.devices.profile().servos;
         const ServoSetup* setup = servos.size() == rig->actuatorCount() ? &servos[*chosen] : nullptr;
         details_->addWidget(makeFacts(factsOf(*rig, *chosen, setup), "rig.actuator.", this));

@@ -13,8 +13,6 @@ namespace {
 /// Never broken between number and sign.
 QString wholeShare(double share) { return shareText(share).replace(' ', QChar::Nbsp); }
 
-QString torqueText(double newtonMetres) { return QString::number(newtonMetres, 'g', 2) + "\u00A0N\u00A0m"; }
-
 } // namespace
 
 DeviceFit fitDevice(const Rig& rig, std::span<const LibraryTarget> library, const LibraryFitOptions& options,
@@ -70,12 +68,16 @@ QString targetText(const TargetFit& target) {
     return words;
 }
 
-QString weakServosText(std::span<const ServoLoad> loads, const ServoType& servo) {
+QString weakServosText(std::span<const ServoLoad> loads) {
     QStringList names;
+    const ServoType* servo = nullptr; // of them all; none where they differ
+    bool alike = true;
     double most = 0.0;
     for (const ServoLoad& load : loads) {
         if (!load.weak) continue;
         names << QString::fromStdString(load.actuator);
+        alike = alike && (servo == nullptr || servo == load.servo);
+        servo = load.servo;
         most = std::max(most, load.torque);
     }
     if (names.isEmpty()) return {};
@@ -83,8 +85,9 @@ QString weakServosText(std::span<const ServoLoad> loads, const ServoType& servo)
     const qsizetype others = names.size() - kNamed;
     QString who = names.mid(0, kNamed).join(", ");
     if (others > 0) who += QString(" and %1 more").arg(others);
-    QString words = QString("Too weak: the %1 of %2 can hold %3 and would need %4. ")
-                        .arg(shownText(servo.name), who, torqueText(servo.usableTorque()), torqueText(most));
+    QString words = alike ? QString("Too weak: the %1 of %2 can hold %3 and would need %4. ")
+                                .arg(shownText(servo->name), who, torqueText(servo->usableTorque()), torqueText(most))
+                          : QString("Too weak: the servos of %1 would need up to %2. ").arg(who, torqueText(most));
     const ServoType* enough = cheapestServo(most);
     return words + (enough ? QString("The cheapest that is strong enough is the %1.").arg(shownText(enough->name))
                            : QString("No servo of the table is strong enough: shorten the lever, or split the flap."));

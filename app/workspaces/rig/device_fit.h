@@ -33,6 +33,6 @@ struct DeviceFit {
 /// What the device makes of one target, in numbers.
 [[nodiscard]] QString targetText(const TargetFit& target);
 /// Which servos are too weak, and which would do; empty where none is.
-[[nodiscard]] QString weakServosText(std::span<const ServoLoad> loads, const ServoType& servo);
+[[nodiscard]] QString weakServosText(std::span<const ServoLoad> loads);
 
 } // namespace lumorph::studio

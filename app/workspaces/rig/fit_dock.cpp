@@ -15,6 +15,7 @@
 
 #include "app/studio/document/hand_control.h"
 #include "app/studio/document/job_slots.h"
+#include "app/studio/shell/guide_window.h"
 #include "app/studio/widgets/dock_parts.h"
 #include "app/studio/widgets/panel.h"
 #include "app/studio/widgets/plot.h"
@@ -185,6 +186,7 @@ QWidget* RigFit::makeContents() {
     column.layout->addWidget(makeHeading("Shape resolution"));
     column.layout->addWidget(makeChoosers());
     column.layout->addWidget(metrics_);
+    column.layout->addWidget(makeGuideLink("What these figures mean", "shape-resolution"));
     return column.widget;
 }
 
@@ -234,7 +236,8 @@ QWidget* RigFit::makeChoosers() {
     for (const ServoType& type : servoTypes()) servo_->addItem(shownText(type.name));
     servo_->setCurrentIndex(std::max(0, servo_->findText("SG90")));
     servo_->setObjectName("rig.fit.servo");
-    servo_->setToolTip("Which servos the device has: strength and speed follow from it");
+    servo_->setToolTip(
+        "Which servos the device has where an actuator names none of its own: strength and speed follow from it");
     reference_->addItem("nothing", "");
     reference_->addItem("phone", "phone");
     reference_->addItem("tablet", "tablet");
@@ -423,7 +426,7 @@ void RigFit::takeMeasures(const ShapeResolution& resolution) {
     metrics_->setDevice(resolution);
     metrics_->show();
     compare();
-    const QString weak = weakServosText(resolution.loads, servo());
+    const QString weak = weakServosText(resolution.loads);
     weak_->setText(weak);
     weak_->setVisible(!weak.isEmpty());
     tellState();

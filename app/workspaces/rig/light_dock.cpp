@@ -5,11 +5,14 @@
 #include <optional>
 #include <vector>
 
+#include <QCheckBox>
 #include <QComboBox>
 #include <QHBoxLayout>
 #include <QLabel>
+#include <QPointer>
 #include <QPushButton>
 #include <QShowEvent>
+#include <QSignalBlocker>
 #include <QVBoxLayout>
 
 #include "app/studio/document/job_slots.h"
@@ -18,8 +21,10 @@
 #include "app/studio/widgets/panel.h"
 #include "app/studio/widgets/throttle.h"
 #include "app/studio/widgets/value_field.h"
+#include "app/workspaces/common/field_colors.h"
 #include "app/workspaces/rig/light_map_view.h"
 #include "app/workspaces/rig/rig_docks.h"
+#include "calibration/placement/projector_models.h"
 #include "core/base/spare_core.h"
 
 namespace lumorph::studio {
@@ -28,13 +33,16 @@ namespace {
 
 constexpr const char* kLightPlace = "rig.light";
 constexpr int kLightMilliseconds = 200; ///< edits that come faster, as in a drag, are looked at together
-constexpr double kFarthest = 10.0;      ///< metres from the middle of the table
+const QString kSightOf = "Sight of ";
+constexpr double kFarthest = 10.0; ///< metres from the middle of the table
 
 /// What the dock knows of a device and the light on it.
 struct LightFound {
     std::shared_ptr<const LitDevice> device;
     std::shared_ptr<const TriangleMesh> mesh; ///< at rest, world metres
     LightMap now;                             ///< of the projectors that hang in the room
+    std::shared_ptr<const Installation> room; ///< it was found in
+    std::vector<LightMap> seen;               ///< by each of its cameras
 };
 
 QString placeText(const glm::dvec3& place) {
@@ -53,6 +61,13 @@ QString lightText(const LightMap& map) {
         .arg(std::lround(map.incidence.inDegrees()));
 }
 
+QString seenText(const LightMap& map, const QString& camera) {
+    if (!(map.lit > 0.0)) return QString("%1 sees nothing of the device.").arg(camera);
+    return QString("%1 sees %2 of its upper side over all its states; of that, 95\u00A0% with %3 pixels a mm or more.")
+        .arg(camera, shareText(map.lit).replace(' ', QChar::Nbsp))
+        .arg(map.pixelsPerMillimetre, 0, 'f', 2);
+}
+
 QWidget* makePair(ValueField* from, ValueField* to, const QString& between = "to") {
     auto* pair = new QWidget;
     auto* layout = new QHBoxLayout(pair);
@@ -67,33 +82,46 @@ QWidget* makePair(ValueField* from, ValueField* to, const QString& between = "to
 
 class RigLight : public QWidget {
 public:
-    explicit RigLight(Studio& studio);
+    RigLight(Studio& studio, RigSelection& selection);
 
 protected:
     void showEvent(QShowEvent* event) override {
         QWidget::showEvent(event);
         follow();
+        colourDevice();
+    }
+    void hideEvent(QHideEvent* event) override {
+        QWidget::hideEvent(event);
+        if (selection_) selection_->showColours(nullptr); // nothing would tell any more what they mean
     }
 
 private:
     QWidget* makeForm();
     ValueField* addNumber(const QString& name, Quantity quantity, double least, double most, double value);
-    void follow();  ///< the rig and the room as they are now
-    void measure(); ///< the light of the room's projectors
+    void chooseModel();
+    void showModel();  ///< which one the lens' numbers are of
+    void listSights(); ///< whose light, or sight, the map can show
+    void follow();     ///< the rig and the room as they are now
+    void measure();    ///< the light of the room's projectors
     void search();
     void showAll();
+    void colourDevice();                            ///< in the view, as the map is
+    [[nodiscard]] const LightMap* shownMap() const; ///< null: none yet
     void hang();
     [[nodiscard]] ProjectorLens lens() const;
     [[nodiscard]] const InstalledProjector* hanging() const;
 
     Studio& studio_;
+    QPointer<RigSelection> selection_; ///< the window hides its docks also when the workspace is gone
     JobSlots slots_;
     QLabel* text_ = new QLabel;
     QComboBox* shown_ = new QComboBox;
     QComboBox* whose_ = new QComboBox;
-    QWidget* whoseRow_ = nullptr;
+    QComboBox* model_ = new QComboBox;
+    QLabel* modelNote_ = new QLabel;
     Throttle* soon_;
     LightMapView* map_ = new LightMapView;
+    QCheckBox* onDevice_ = new QCheckBox("Colour the &device in the view too");
     std::array<ValueField*, 2> size_{}, throw_{};
     std::array<ValueField*, 3> low_{}, high_{};
     ValueField* shift_ = nullptr;
@@ -107,8 +135,9 @@ private:
     std::optional<ProjectorPlace> proposed_;
 };
 
-RigLight::RigLight(Studio& studio)
-    : studio_(studio), slots_(*this, studio.jobs, studio.notices), soon_(new Throttle(kLightMilliseconds, this)) {
+RigLight::RigLight(Studio& studio, RigSelection& selection)
+    : studio_(studio), selection_(&selection), slots_(*this, studio.jobs, studio.notices),
+      soon_(new Throttle(kLightMilliseconds, this)) {
     auto* layout = new QVBoxLayout(this);
     layout->setContentsMargins(0, 0, 0, 0);
     layout->setSpacing(0);
@@ -122,12 +151,14 @@ RigLight::RigLight(Studio& studio)
     shown_->addItems({"Pixels a millimetre", "Slant of the light", "How often it is lit"});
     shown_->setToolTip("In the worst state in which a place is lit");
     whose_->setObjectName("rig.light.whose");
-    whose_->addItems({"As projectors hang now", "From the best place"});
+    whose_->setToolTip("Whose light is shown, or what a camera sees: a tracker loses a device that it does not see");
     column.layout->addWidget(text_);
     column.layout->addWidget(makeRow("Ma&p of", shown_));
-    whoseRow_ = makeRow("Light", whose_);
-    column.layout->addWidget(whoseRow_);
+    column.layout->addWidget(makeRow("&By", whose_));
     column.layout->addWidget(map_, 1);
+    onDevice_->setObjectName("rig.light.onDevice");
+    connect(onDevice_, &QCheckBox::toggled, this, [this] { colourDevice(); });
+    column.layout->addWidget(onDevice_);
     column.layout->addWidget(makeForm());
     column.layout->addWidget(button_);
     best_->setObjectName("rig.light.best");
@@ -137,8 +168,10 @@ RigLight::RigLight(Studio& studio)
     button_->setObjectName("rig.light.search");
     button_->setProperty("look", "primary");
     hang_->setObjectName("rig.light.hang");
-    connect(shown_, &QComboBox::currentIndexChanged, this,
-            [this](int index) { map_->setShown(static_cast<LightMapView::Shown>(index)); });
+    connect(shown_, &QComboBox::currentIndexChanged, this, [this](int index) {
+        map_->setShown(static_cast<LightMapView::Shown>(index));
+        colourDevice();
+    });
     connect(whose_, &QComboBox::currentIndexChanged, this, [this] { showAll(); });
     connect(button_, &QPushButton::clicked, this, [this] { search(); });
     connect(hang_, &QPushButton::clicked, this, [this] { hang(); });
@@ -162,11 +195,21 @@ QWidget* RigLight::makeForm() {
     layout->setContentsMargins(0, 0, 0, 0);
     layout->setSpacing(4);
     layout->addWidget(makeHeading("Where should a projector hang?"));
+    model_->setObjectName("rig.light.model");
+    model_->addItem("Other, by its numbers");
+    for (const ProjectorModel& model : projectorModels())
+        model_->addItem(QString::fromUtf8(model.name.data(), std::ssize(model.name)));
+    modelNote_->setObjectName("rig.light.model.note");
+    modelNote_->setWordWrap(true);
+    modelNote_->setProperty("look", "muted");
+    connect(model_, &QComboBox::activated, this, [this] { chooseModel(); });
     size_ = {addNumber("width", Quantity::plain, 16, 16384, 1920),
              addNumber("height", Quantity::plain, 16, 16384, 1080)};
     throw_ = {addNumber("throwLeast", Quantity::plain, 0.1, 20.0, 1.2),
               addNumber("throwMost", Quantity::plain, 0.1, 20.0, 1.2)};
     shift_ = addNumber("shift", Quantity::share, -2.0, 2.0, 0.0);
+    for (ValueField* field : {size_[0], size_[1], throw_[0], throw_[1], shift_})
+        connect(field, &ValueField::committed, this, [this] { showModel(); });
     for (ValueField* field : size_) field->setStep(1.0);
     for (ValueField* field : throw_) {
         field->setStep(0.05);
@@ -193,13 +236,64 @@ QWidget* RigLight::makeForm() {
         low_[k]->setAccessibleName(kFirst[k]);
         high_[k]->setAccessibleName(kLast[k]);
     }
+    layout->addWidget(makeRow("Pro&jector", model_));
     layout->addWidget(makeRow("Pi&xels", makePair(size_[0], size_[1], "\u00D7")));
     layout->addWidget(makeRow("&Throw ratio", makePair(throw_[0], throw_[1])));
     layout->addWidget(makeRow("&Lens shift", shift_));
+    layout->addWidget(modelNote_);
     layout->addWidget(makeRow("Left to &right", makePair(low_[0], high_[0])));
     layout->addWidget(makeRow("&Above the table", makePair(low_[1], high_[1])));
     layout->addWidget(makeRow("&Back to front", makePair(low_[2], high_[2])));
     return form;
+}
+
+void RigLight::chooseModel() {
+    const int chosen = model_->currentIndex() - 1;
+    if (chosen >= 0) {
+        const ProjectorLens lens = lensOf(projectorModels()[static_cast<std::size_t>(chosen)], shift_->value());
+        size_[0]->setValue(lens.size.x);
+        size_[1]->setValue(lens.size.y);
+        throw_[0]->setValue(lens.throwLeast);
+        throw_[1]->setValue(lens.throwMost);
+        shift_->setValue(lens.shift);
+    }
+    showModel();
+}
+
+void RigLight::showModel() {
+    const ProjectorLens now = lens();
+    const auto isOf = [&](const ProjectorModel& model) {
+        const ProjectorLens its = lensOf(model, now.shift);
+        return its.size == now.size && std::abs(its.throwLeast - now.throwLeast) < 5e-4 &&
+               std::abs(its.throwMost - now.throwMost) < 5e-4 && std::abs(its.shift - now.shift) < 5e-4;
+    };
+    const auto models = projectorModels();
+    const auto found = std::ranges::find_if(models, isOf);
+    model_->setCurrentIndex(found == models.end() ? 0 : static_cast<int>(found - models.begin()) + 1);
+    QString note;
+    if (found != models.end() && !found->shift)
+        note = "How far its picture stands above its lens is not known here: look into its data sheet.";
+    else if (found != models.end() && found->shift->least < found->shift->most)
+        note = QString("Its lens can be shifted from %1 to %2.")
+                   .arg(shareText(found->shift->least), shareText(found->shift->most));
+    modelNote_->setText(note);
+    modelNote_->setVisible(!note.isEmpty());
+}
+
+void RigLight::listSights() {
+    QStringList names{"Projectors as they hang now"};
+    if (proposed_) names.push_back("A projector at the best place");
+    if (found_)
+        for (const InstalledCamera& camera : found_->room->cameras)
+            names.push_back(kSightOf + QString::fromStdString(camera.name));
+    QStringList there;
+    for (int k = 0; k < whose_->count(); ++k) there.push_back(whose_->itemText(k));
+    if (names == there) return;
+    const QString chosen = whose_->currentText();
+    const QSignalBlocker quiet(whose_);
+    whose_->clear();
+    whose_->addItems(names);
+    whose_->setCurrentIndex(std::max<int>(0, static_cast<int>(names.indexOf(chosen))));
 }
 
 const InstalledProjector* RigLight::hanging() const {
@@ -230,6 +324,7 @@ void RigLight::follow() {
         size_[1]->setValue(camera.size.y);
         for (ValueField* field : throw_) field->setValue(camera.focal.x / camera.size.x);
         shift_->setValue((camera.principal.y - 0.5 * (camera.size.y - 1)) / camera.size.y);
+        showModel();
     }
     if (!sameRig || !samePlace) proposed_.reset();
     measure();
@@ -247,6 +342,7 @@ void RigLight::measure() {
             auto found = std::make_shared<LightFound>();
             leavingACore([&] {
                 found->device = std::make_shared<const LitDevice>(*rig, room->worldFromDevice, 8, 1000, progress);
+                found->room = room;
                 auto mesh = std::make_shared<TriangleMesh>(rig->restMesh());
                 for (glm::vec3& point : mesh->positions)
                     point = glm::vec3(room->worldFromDevice * glm::vec4(point, 1.0F));
@@ -255,6 +351,8 @@ void RigLight::measure() {
                 for (const InstalledProjector& projector : room->projectors)
                     if (projector.enabled) cameras.push_back(projector.camera);
                 found->now = found->device->lightOf(cameras);
+                for (const InstalledCamera& camera : room->cameras)
+                    found->seen.push_back(found->device->lightOf({&camera.camera, 1}));
             });
             return std::shared_ptr<const LightFound>(std::move(found));
         },
@@ -292,22 +390,34 @@ void RigLight::search() {
         },
         [this](ProjectorPlace best) {
             proposed_ = std::move(best);
+            listSights();
             whose_->setCurrentIndex(1);
             showAll();
         });
 }
 
+const LightMap* RigLight::shownMap() const {
+    if (!found_) return nullptr;
+    const int chosen = whose_->currentIndex() - (proposed_ ? 1 : 0);
+    if (whose_->currentIndex() <= 0) return &found_->now;
+    return chosen == 0 ? &proposed_->light : &found_->seen[static_cast<std::size_t>(chosen - 1)];
+}
+
 void RigLight::showAll() {
-    const bool fromBest = proposed_ && whose_->currentIndex() == 1;
-    text_->setText(!rig_     ? "Open a rig to see how light reaches it."
-                   : !found_ ? "How light reaches it is not known yet."
-                             : lightText(found_->now));
-    whoseRow_->setVisible(proposed_.has_value());
+    listSights();
+    const LightMap* map = shownMap();
+    const int camera = whose_->currentIndex() - (proposed_ ? 2 : 1);
+    text_->setText(!rig_         ? "Open a rig to see how light reaches it."
+                   : !found_     ? "How light reaches it is not known yet."
+                   : camera >= 0 ? seenText(*map, whose_->currentText().mid(kSightOf.size()))
+                                 : lightText(found_->now));
     button_->setEnabled(found_ != nullptr);
-    if (found_)
-        map_->show(std::make_shared<const LightMap>(fromBest ? proposed_->light : found_->now), found_->mesh, {});
+    if (map)
+        map_->show(std::make_shared<const LightMap>(*map), found_->mesh, {});
     else
         map_->show(nullptr, nullptr, {});
+    onDevice_->setEnabled(map != nullptr);
+    colourDevice();
     best_->setVisible(proposed_.has_value());
     hang_->setVisible(proposed_.has_value());
     if (!proposed_) return;
@@ -321,6 +431,22 @@ void RigLight::showAll() {
                                : "The room's first projector gets this lens and place, by one step of undo");
 }
 
+void RigLight::colourDevice() {
+    const LightMap* map = shownMap();
+    if (!map || !isVisible() || !onDevice_->isChecked()) return selection_->showColours(nullptr);
+    std::vector<int> bands;
+    bands.reserve(found_->device->placeOfTriangle().size());
+    for (const int place : found_->device->placeOfTriangle())
+        bands.push_back(place < 0 ? -1
+                                  : SurfaceBands::bandOf(map_->goodness(map->places[static_cast<std::size_t>(place)])));
+    std::vector<glm::vec3> colors;
+    colors.reserve(SurfaceBands::kBands);
+    for (int b = 0; b < SurfaceBands::kBands; ++b)
+        colors.push_back(sceneColor(gradeColor(static_cast<double>(b) / (SurfaceBands::kBands - 1))));
+    selection_->showColours(std::make_shared<const RigSelection::Colours>(
+        RigSelection::Colours{SurfaceBands(*found_->mesh, bands), std::move(colors)}));
+}
+
 void RigLight::hang() {
     if (!proposed_ || !hanging()) return;
     editInstallation(studio_.document, tr("Hang the projector"), [camera = proposed_->camera](Installation& room) {
@@ -332,6 +458,6 @@ void RigLight::hang() {
 
 } // namespace
 
-QWidget* makeRigLight(Studio& studio) { return new RigLight(studio); }
+QWidget* makeRigLight(Studio& studio, RigSelection& selection) { return new RigLight(studio, selection); }
 
 } // namespace lumorph::studio

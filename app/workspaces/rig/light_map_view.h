@@ -24,6 +24,8 @@ public:
     void setShown(Shown shown);
     /// The place nearest to a point of the widget; null beside the device.
     [[nodiscard]] const LightAt* at(const QPointF& point) const;
+    /// How good the light at a place is by what is shown: 0 bad, 1 as wished.
+    [[nodiscard]] double goodness(const LightAt& at) const;
     [[nodiscard]] QSize sizeHint() const override { return {280, 200}; }
     [[nodiscard]] QSize minimumSizeHint() const override { return {160, 140}; }
 
@@ -35,7 +37,6 @@ protected:
 private:
     [[nodiscard]] QRectF mapArea() const; ///< pixels that the device's box from above takes
     [[nodiscard]] QPointF pixelOf(const glm::vec3& place) const;
-    [[nodiscard]] double goodness(const LightAt& at) const; ///< in [0, 1]
     [[nodiscard]] QImage makePicture() const;
     void paintScale(QPainter& painter) const;
 

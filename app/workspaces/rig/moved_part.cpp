@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
+#include <cstdint>
 #include <numbers>
-#include <utility>
+#include <span>
 
 #include <glm/geometric.hpp>
 
@@ -17,36 +17,51 @@ constexpr std::size_t kMostEdges = 4000;
 constexpr double kWiggleSeconds = 1.2;
 constexpr int kWiggles = 2;
 
-/// What lies on the two sides of an edge.
-struct Sides {
-    int moved = 0;
-    int still = 0;
+/// One triangle's side of an edge.
+struct Side {
+    std::uint64_t edge = 0; ///< both vertices, the smaller one first
     glm::vec3 normal{0.0F};
-    bool creased = false;
+    bool moved = false;
 };
+
+std::uint64_t edgeOf(std::uint32_t a, std::uint32_t b) {
+    return static_cast<std::uint64_t>(std::min(a, b)) << 32U | std::max(a, b);
+}
+
+/// Of the triangles at an edge: some are moved, and it is where the part ends or is creased.
+bool isBorder(std::span<const Side> sides) {
+    const auto moved = std::ranges::count_if(sides, &Side::moved);
+    bool creased = false;
+    for (std::size_t i = 1; i < sides.size(); ++i)
+        creased = creased || glm::dot(sides[i - 1].normal, sides[i].normal) < 0.8F;
+    return moved > 0 && (moved < static_cast<std::ptrdiff_t>(sides.size()) || moved == 1 || creased);
+}
 
 } // namespace
 
 MovedPart::MovedPart(const Rig& rig, std::size_t actuator) {
     const TriangleMesh& mesh = rig.restMesh();
-    std::vector<bool> moves(mesh.positions.size(), false);
+    std::vector<bool> moves(mesh.positions.size(), false), near(mesh.positions.size(), false);
     for (const std::uint32_t vertex : rig.verticesOf(actuator)) moves[vertex] = true;
-    std::map<std::pair<std::uint32_t, std::uint32_t>, Sides> edges;
+    const auto isMoved = [&](const glm::uvec3& t) { return moves[t.x] || moves[t.y] || moves[t.z]; };
+    for (const glm::uvec3& t : mesh.triangles)
+        if (isMoved(t)) near[t.x] = near[t.y] = near[t.z] = true;
+    std::vector<Side> sides; // of triangles that touch the part
     for (const glm::uvec3& t : mesh.triangles) {
-        const bool moved = moves[t.x] || moves[t.y] || moves[t.z];
+        if (!near[t.x] && !near[t.y] && !near[t.z]) continue;
         const glm::vec3 across =
             glm::cross(mesh.positions[t.y] - mesh.positions[t.x], mesh.positions[t.z] - mesh.positions[t.x]);
         const glm::vec3 normal = glm::length(across) > 0.0F ? glm::normalize(across) : glm::vec3(0.0F);
-        for (int k = 0; k < 3; ++k) {
-            Sides& sides = edges[std::minmax(t[k], t[(k + 1) % 3])];
-            sides.creased = sides.creased || (sides.moved > 0 && glm::dot(sides.normal, normal) < 0.8F);
-            sides.normal = normal;
-            ++(moved ? sides.moved : sides.still);
-        }
+        for (int k = 0; k < 3; ++k) sides.push_back({edgeOf(t[k], t[(k + 1) % 3]), normal, isMoved(t)});
     }
-    for (const auto& [edge, sides] : edges)
-        if (sides.moved > 0 && (sides.still > 0 || sides.moved == 1 || sides.creased) && edges_.size() < kMostEdges)
-            edges_.emplace_back(edge.first, edge.second);
+    std::ranges::sort(sides, {}, &Side::edge);
+    for (auto first = sides.begin(); first != sides.end() && edges_.size() < kMostEdges;) {
+        const auto last = std::find_if(first, sides.end(), [&](const Side& side) { return side.edge != first->edge; });
+        if (isBorder({first, last}))
+            edges_.emplace_back(static_cast<std::uint32_t>(first->edge >> 32U),
+                                static_cast<std::uint32_t>(first->edge));
+        first = last;
+    }
 }
 
 std::vector<ViewportLine> MovedPart::lines(const std::vector<glm::vec3>& positions, const glm::vec3& color) const {

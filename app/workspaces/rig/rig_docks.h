@@ -3,6 +3,7 @@
 #include <QWidget>
 
 #include "app/studio/shell/studio.h"
+#include "app/workspaces/rig/influence_tools.h"
 #include "app/workspaces/rig/rig_selection.h"
 
 namespace lumorph::studio {
@@ -18,10 +19,14 @@ namespace lumorph::studio {
 /// resolution. Follows edits while it is seen. Adds the command "rig.fit.take".
 [[nodiscard]] QWidget* makeRigFit(Studio& studio, RigSelection& selection);
 
+/// Which places of the device follow the chosen actuator: tools to edit that in the view. Needs the command "rig.paint".
+[[nodiscard]] QWidget* makeRigInfluence(Studio& studio, RigSelection& selection, InfluenceTools& tools);
+
 /// Searches for bend lines of the rig's sheet: few servos, or cheap ones, against the fit over some shapes.
 [[nodiscard]] QWidget* makeRigSuggest(Studio& studio);
 
-/// How light reaches the device over all its states, as a map from above, and where a projector should hang.
-[[nodiscard]] QWidget* makeRigLight(Studio& studio);
+/// How light reaches the device over all its states, as a map from above and on the device in the view, and where a
+/// projector should hang.
+[[nodiscard]] QWidget* makeRigLight(Studio& studio, RigSelection& selection);
 
 } // namespace lumorph::studio

@@ -41,7 +41,6 @@ QString shortNumber(double value) {
     return text == "-0" ? "0" : text;
 }
 
-QString lengthText(double metres) { return shortNumber(1000.0 * metres) + " mm"; }
 QString percentText(double share) { return shortNumber(100.0 * share) + " %"; }
 
 QString statesText(int count, int of) {
@@ -63,6 +62,8 @@ void setRange(Actuator& actuator, double min, double max) {
     if (before.max > before.min && max > min) actuator.maxVelocity *= (before.max - before.min) / (max - min);
 }
 
+QString lengthText(double metres) { return shortNumber(1000.0 * metres) + " mm"; }
+
 QString rangeText(const Actuator& actuator) {
     const ActuatorRange range = rangeOf(actuator);
     switch (range.motion) {
@@ -76,6 +77,32 @@ QString rangeText(const Actuator& actuator) {
         break;
     }
     return shortNumber(range.min) + " to " + shortNumber(range.max);
+}
+
+QString torqueText(double newtonMetres) { return QString::number(newtonMetres, 'g', 2) + "\u00A0N\u00A0m"; }
+
+QString servoTypeText(const ServoType& type) {
+    return QString("Holds %1, half of what stalls it\n%2 s for 60° without load\n%3 to %4 µs for %5°\n"
+                   "%6 x %7 x %8 mm, %9 g")
+               .arg(torqueText(type.usableTorque()),
+                    QString::number(Angle::degrees(60.0).inRadians() / type.speed, 'f', 2), shortNumber(type.pulseMin),
+                    shortNumber(type.pulseMax), shortNumber(type.travel.inDegrees()), shortNumber(1e3 * type.size.x),
+                    shortNumber(1e3 * type.size.y), shortNumber(1e3 * type.size.z), shortNumber(1e3 * type.mass)) +
+           QString("\nAbout %1 EUR").arg(type.price, 0, 'f', 2);
+}
+
+QString servoLoadText(const ServoLoad& load) {
+    if (load.lever == 0.0) return "It moves nothing.";
+    const QString needed = QString("%1 for a lever of %2").arg(torqueText(load.torque), lengthText(load.lever));
+    const QString name = shownText(load.servo->name), can = torqueText(load.servo->usableTorque());
+    if (!load.weak) return QString("Needs %1; the %2 can hold %3.").arg(needed, name, can);
+    return QString("Too weak: it needs %1, and the %2 can hold %3. ").arg(needed, name, can) +
+           (load.stronger.empty() ? QString("No servo of the table can: shorten the lever, or split the flap.")
+                                  : QString("The %1 can.").arg(shownText(load.stronger)));
+}
+
+double fastestStroke(const Actuator& actuator, const ServoType& servo) {
+    return servoAngle(actuator, servo).inRadians() / servo.speed;
 }
 
 std::vector<RigFact> factsOf(const Rig& rig, std::size_t index, const ServoSetup* setup) {

@@ -7,6 +7,7 @@
 #include <QWidget>
 
 #include "core/rig/shape_report.h"
+#include "core/rig/shape_resolution.h"
 #include "devices/controllers/device_profile.h"
 
 namespace lumorph::studio {
@@ -37,6 +38,16 @@ void setRange(Actuator& actuator, double min, double max);
 [[nodiscard]] QString deformerText(const Actuator& actuator);
 /// "0° to 45°", "0 to 20 mm" or "0 to 1".
 [[nodiscard]] QString rangeText(const Actuator& actuator);
+/// "53.6 mm" of metres.
+[[nodiscard]] QString lengthText(double metres);
+/// "0.094 N m", in two digits.
+[[nodiscard]] QString torqueText(double newtonMetres);
+/// Torque, speed, pulses, size and price of a kind of servo, in a line each.
+[[nodiscard]] QString servoTypeText(const ServoType& type);
+/// What an actuator's servo has to hold and whether it can, in a sentence or two; where it is too weak, which would do.
+[[nodiscard]] QString servoLoadText(const ServoLoad& load);
+/// The shortest time that a servo takes from rest to full stroke, seconds: as it turns without load.
+[[nodiscard]] double fastestStroke(const Actuator& actuator, const ServoType& servo);
 /// What a maker and a controller need to know of an actuator beside what they edit. Deforms the rig for its amplitude.
 /// The channel is the rig's; its pulse and its place at the board are those of its servo's set-up, the same that the
 /// Devices workspace shows; null: as the rig's file says.

@@ -1,11 +1,14 @@
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <utility>
 #include <vector>
 
 #include <QObject>
 #include <glm/vec3.hpp>
+
+#include "app/workspaces/rig/surface_bands.h"
 
 namespace lumorph::studio {
 
@@ -30,8 +33,21 @@ public:
     void inspect(std::vector<double> strokes, const glm::vec3& place) { show(std::move(strokes), place, true); }
     [[nodiscard]] const std::optional<glm::vec3>& inspectedPlace() const noexcept { return place_; }
 
+    /// Colours over the device in the view, of the rig that is open; null: none.
+    struct Colours {
+        SurfaceBands bands;
+        std::vector<glm::vec3> colors; ///< one a band, sRGB
+    };
+    [[nodiscard]] const std::shared_ptr<const Colours>& colours() const noexcept { return colours_; }
+    void showColours(std::shared_ptr<const Colours> colours) {
+        if (colours == colours_) return;
+        colours_ = std::move(colours);
+        emit coloursChanged();
+    }
+
 signals:
     void changed();
+    void coloursChanged();
     void wiggleWanted();
     void rehearsalChanged(bool glides);
 
@@ -46,6 +62,7 @@ private:
     std::optional<std::size_t> actuator_;
     std::vector<double> rehearsed_;
     std::optional<glm::vec3> place_;
+    std::shared_ptr<const Colours> colours_;
 };
 
 } // namespace lumorph::studio

@@ -11,18 +11,24 @@
 #include <QFileDialog>
 #include <QPointer>
 
+#include "app/studio/document/rig_edit.h"
 #include "app/studio/viewport/viewport_widget.h"
 #include "app/studio/widgets/bundled_shelf.h"
 #include "app/workspaces/common/export_dialogs.h"
 #include "app/workspaces/common/field_colors.h"
 #include "app/workspaces/common/kept_camera.h"
 #include "app/workspaces/rig/actuator_handles.h"
+#include "app/workspaces/rig/copies_dialog.h"
 #include "app/workspaces/rig/draw_sheet.h"
+#include "app/workspaces/rig/influence_brush.h"
+#include "app/workspaces/rig/influence_map.h"
 #include "app/workspaces/rig/moved_part.h"
 #include "app/workspaces/rig/new_device.h"
 #include "app/workspaces/rig/parts_dialog.h"
 #include "app/workspaces/rig/rig_docks.h"
 #include "core/base/atomic_file.h"
+#include "core/base/error.h"
+#include "core/rig/actuator_copies.h"
 #include "core/rig/rig_file.h"
 
 namespace lumorph::studio {
@@ -56,7 +62,9 @@ void addMark(const glm::vec3& place, float size, const glm::vec3& color, std::ve
 struct RigWorkspace::Data : public QObject {
     explicit Data(Studio& shared)
         : studio(shared), handles(shared.document, selection, [this] { return view->camera(); }),
-          linePreview(shared.document) {}
+          linePreview(shared.document),
+          brush(shared.document, tools, {[this] { return view->camera(); }, [this] { return view->scene(); }},
+                [this] { painted(); }) {}
     ~Data() override {
         if (view) view->setOverlay(nullptr);
     }
@@ -72,6 +80,12 @@ struct RigWorkspace::Data : public QObject {
     void edited();
     void markPart();
     void wiggle();
+    void mirror();
+    void copies();
+    [[nodiscard]] bool painting() const { return tools.editing() && selection.actuator().has_value(); }
+    void painted();
+    void setPainting();
+    void mapInfluence();
     void rehearse(bool glides);
     void listenToView();
     void followHandles();
@@ -95,8 +109,16 @@ struct RigWorkspace::Data : public QObject {
     QElapsedTimer wiggling;
     ActuatorHandles handles;
     ActuatorPreview linePreview;
+    InfluenceTools tools;
+    InfluenceBrush brush;
     std::optional<glm::vec3> lineFrom; ///< the pivot when the arrows began to carry it
     QAction* backCommand = nullptr;
+    QAction* mirrorCommand = nullptr;
+    QAction* influenceCommand = nullptr;
+    QAction* copiesCommand = nullptr;
+    QAction* paintCommand = nullptr;
+    std::shared_ptr<const std::vector<glm::u8vec4>> colors; ///< of the device, while it shows an influence
+    bool borderStale = false;                               ///< a drag has changed which vertices are moved
     std::vector<double> rehearsedFrom; ///< strokes that were shown when another state was asked for
     std::vector<double> shownStrokes;
     std::shared_ptr<const std::vector<glm::vec3>> tried; ///< positions of `triedOf` at `triedStrokes`
@@ -119,6 +141,8 @@ void RigWorkspace::Data::listen() {
     connect(&selection, &RigSelection::changed, this, &Data::select);
     connect(&selection, &RigSelection::wiggleWanted, this, &Data::wiggle);
     connect(&selection, &RigSelection::rehearsalChanged, this, &Data::rehearse);
+    connect(&selection, &RigSelection::coloursChanged, this, &Data::refresh);
+    connect(&tools, &InfluenceTools::changed, this, &Data::setPainting);
     connect(&studio.settings, &Settings::themeChanged, this, [this] {
         builder.setColors(fieldSceneColors(studio.settings.theme()));
         refresh();
@@ -177,6 +201,28 @@ void RigWorkspace::Data::addCommands() {
     backCommand = studio.commands.add("rig.back", "Show it as it stands", options, [this] { selection.rehearse({}); });
     backCommand->setToolTip("End what is rehearsed in this view");
     backCommand->setEnabled(false);
+    options.icon = "mirror";
+    mirrorCommand = studio.commands.add("rig.mirror", "Mirror to the other side", options, [this] { mirror(); });
+    mirrorCommand->setToolTip("The chosen actuator once more across the middle of the device; one that stands there "
+                              "already takes over how it moves");
+    mirrorCommand->setEnabled(false);
+    options.icon = "duplicate";
+    copiesCommand = studio.commands.add("rig.copies", "Copy around or along...", options, [this] { copies(); });
+    copiesCommand->setToolTip("The chosen actuator several times, around the middle of the device or along a line");
+    copiesCommand->setEnabled(false);
+    options.icon = "heights";
+    options.checkable = true;
+    influenceCommand = studio.commands.add("rig.influence", "Show how far each place goes", options, [this] {
+        mapInfluence();
+        refresh();
+    });
+    influenceCommand->setToolTip("Colours what the chosen actuator moves: the farther a place goes at full stroke, the "
+                                 "lighter");
+    options.icon = "drop";
+    paintCommand = studio.commands.add("rig.paint", "Edit the influence in the view", options,
+                                       [this] { tools.setEditing(paintCommand->isChecked()); });
+    paintCommand->setToolTip("Draw on the device what follows the chosen actuator, and how much");
+    paintCommand->setEnabled(false);
 }
 
 void RigWorkspace::Data::saveRig() {
@@ -229,6 +275,8 @@ void RigWorkspace::Data::select() {
     followHandles();
     wiggle();
     wiggleCommand->setEnabled(part.has_value());
+    for (QAction* command : {mirrorCommand, copiesCommand, paintCommand}) command->setEnabled(part.has_value());
+    setPainting();
     refresh();
 }
 
@@ -237,6 +285,7 @@ void RigWorkspace::Data::markPart() {
     const auto chosen = selection.actuator();
     part.reset();
     partOf = rig;
+    borderStale = false;
     if (rig && chosen && *chosen < rig->actuatorCount()) part.emplace(*rig, *chosen);
 }
 
@@ -244,13 +293,17 @@ void RigWorkspace::Data::markPart() {
 void RigWorkspace::Data::edited() {
     const auto& rig = studio.document.state().rig.rig;
     const auto chosen = selection.actuator();
-    if (!chosen || rig == partOf) return;
+    brush.follow(chosen);
+    if (!chosen || (rig == partOf && (studio.document.previewing() || !studio.document.state().rig.compiled))) return;
     if (*chosen >= rig->actuatorCount()) return selection.select(std::nullopt);
     // Finding the border takes longer than a frame of a drag, and most edits leave it where it is.
-    const bool sameBorder = part && *chosen < partOf->actuatorCount() && partOf->restMesh() == rig->restMesh() &&
-                            std::ranges::equal(partOf->verticesOf(*chosen), rig->verticesOf(*chosen));
-    if (!sameBorder) markPart();
+    borderStale = borderStale || !part || *chosen >= partOf->actuatorCount() || partOf->restMesh() != rig->restMesh() ||
+                  !std::ranges::equal(partOf->verticesOf(*chosen), rig->verticesOf(*chosen));
     partOf = rig;
+    // In a drag the colours and the border stay those of before it.
+    if (studio.document.previewing()) return refresh();
+    if (borderStale) markPart();
+    mapInfluence();
     refresh();
 }
 
@@ -258,6 +311,55 @@ void RigWorkspace::Data::wiggle() {
     if (!part) return;
     wiggling.start();
     tick.start();
+}
+
+void RigWorkspace::Data::mirror() {
+    const auto parts = studio.document.state().rig.parts;
+    const auto chosen = selection.actuator();
+    if (!parts || !chosen || *chosen >= parts->actuators.size()) return;
+    try {
+        const MirroredActuator mirrored = mirroredActuator(*parts, *chosen, mirrorPlaneOf(*parts, *chosen));
+        const QString name = QString::fromStdString(parts->actuators[*chosen].name);
+        editRig(studio.document, QString("Mirror %1").arg(name),
+                [&mirrored](RigParts& now) { now.actuators = mirrored.parts.actuators; });
+    } catch (const Error& error) {
+        studio.notices.post("rig", noticeOf(error));
+    }
+}
+
+void RigWorkspace::Data::copies() {
+    if (const auto chosen = selection.actuator()) openCopiesDialog(studio, *chosen, window());
+}
+
+/// The brush has other weights to show.
+void RigWorkspace::Data::painted() {
+    mapInfluence();
+    refresh();
+}
+
+/// Takes up the brush, or the handles again.
+void RigWorkspace::Data::setPainting() {
+    if (paintCommand->isChecked() != tools.editing()) paintCommand->setChecked(tools.editing());
+    brush.follow(selection.actuator());
+    if (view) view->setOverlay(painting() ? static_cast<PaneOverlay*>(&brush) : &handles);
+    followHandles();
+    mapInfluence();
+    refresh();
+}
+
+void RigWorkspace::Data::mapInfluence() {
+    const auto& rig = studio.document.state().rig.rig;
+    const auto chosen = selection.actuator();
+    colors.reset();
+    handles.setLegend(std::nullopt);
+    if (painting()) {
+        colors = heatColors(brush.weights(), 1.0F);
+    } else if (influenceCommand->isChecked() && rig && chosen && *chosen < rig->actuatorCount()) {
+        const std::vector<float> ways = waysOf(*rig, *chosen);
+        const float most = ways.empty() ? 0.0F : std::ranges::max(ways);
+        colors = heatColors(ways, most);
+        handles.setLegend(HeatLegend{"Goes at full stroke", lengthText(static_cast<double>(most))});
+    }
 }
 
 void RigWorkspace::Data::rehearse(bool glides) {
@@ -322,7 +424,8 @@ void RigWorkspace::Data::followHandles() {
     const bool there = rig && chosen && *chosen < rig->actuatorCount();
     handles.follow(there ? chosen : std::nullopt, there ? rig->verticesOf(*chosen) : std::span<const std::uint32_t>());
     const auto& guide = handles.guide();
-    if (!lineFrom) view->setGizmo(guide && guide->hasLine ? std::optional(lineGizmo(*guide)) : std::nullopt);
+    if (!lineFrom)
+        view->setGizmo(guide && guide->hasLine && !painting() ? std::optional(lineGizmo(*guide)) : std::nullopt);
     view->update();
 }
 
@@ -388,10 +491,16 @@ void RigWorkspace::Data::refresh() {
     const MatchFrame shown = shownFrame(*frame);
     handles.setStrokes(shown.estimatedStrokes, frame->estimatedStrokes);
     auto scene = std::make_shared<ViewportScene>(*builder.build(shown, display, false));
-    if (part && shown.devicePositions) {
+    if (part && shown.devicePositions && !painting()) {
         const auto lines = part->lines(*shown.devicePositions, scene->accent);
         scene->lines.insert(scene->lines.end(), lines.begin(), lines.end());
     }
+    if (const auto& colours = selection.colours(); colours && shown.devicePositions)
+        for (ViewportSurface& band : colours->bands.surfaces(shown.devicePositions, colours->colors))
+            scene->surfaces.push_back(std::move(band));
+    if (colors)
+        for (ViewportSurface& surface : scene->surfaces)
+            if (surface.id == kDeviceId) surface.vertexColors = colors;
     if (const auto& place = selection.inspectedPlace()) {
         const glm::vec3 size = shown.rig->reach().size();
         addMark(*place, kMarkSize * std::max({size.x, size.y, size.z}), sceneColor(currentPalette().danger),
@@ -445,8 +554,11 @@ std::vector<WorkspaceDock> RigWorkspace::makeDocks() {
         {"dock.rig.fit", "What it can be", "target", makeRigFit(studio, data_->selection), Qt::RightDockWidgetArea,
          false},
         {"dock.rig.report", "Report", "check", makeRigReport(studio, data_->selection), Qt::RightDockWidgetArea, true},
+        {"dock.rig.influence", "Influence", "drop", makeRigInfluence(studio, data_->selection, data_->tools),
+         Qt::RightDockWidgetArea, true},
         {"dock.rig.suggest", "Suggest", "search", makeRigSuggest(studio), Qt::RightDockWidgetArea, true},
-        {"dock.rig.light", "Light", "projector", makeRigLight(studio), Qt::RightDockWidgetArea, true}};
+        {"dock.rig.light", "Light", "projector", makeRigLight(studio, data_->selection), Qt::RightDockWidgetArea,
+         true}};
 }
 
 void RigWorkspace::setActive(bool active) {

@@ -35,22 +35,33 @@ float entryOf(const Ray& ray, const glm::vec3& low, const glm::vec3& high) {
     return first <= last ? first : kNever;
 }
 
-// Where a ray meets a triangle, in units of its direction; both sides count.
-float meeting(const Ray& ray, const glm::vec3& a, const glm::vec3& b, const glm::vec3& c) {
+struct TriangleMeeting {
+    float distance = kNever; // in units of the ray's direction
+    float u = 0.0F;          // shares of the second and the third corner
+    float v = 0.0F;
+};
+
+// Where a ray meets a triangle; both sides count.
+TriangleMeeting meeting(const Ray& ray, const glm::vec3& a, const glm::vec3& b, const glm::vec3& c) {
     const glm::vec3 ab = b - a;
     const glm::vec3 ac = c - a;
     const glm::vec3 p = glm::cross(ray.direction, ac);
     const float volume = glm::dot(ab, p);
-    if (volume == 0.0F) return kNever;
+    if (volume == 0.0F) return {};
     const glm::vec3 from = ray.origin - a;
     const float u = glm::dot(from, p) / volume;
     const glm::vec3 q = glm::cross(from, ab);
     const float v = glm::dot(ray.direction, q) / volume;
     const float t = glm::dot(ac, q) / volume;
-    return u >= 0.0F && v >= 0.0F && u + v <= 1.0F && t > 0.0F ? t : kNever;
+    return {u >= 0.0F && v >= 0.0F && u + v <= 1.0F && t > 0.0F ? t : kNever, u, v};
 }
 
-float meeting(const Ray& ray, const ViewportSurface& surface) {
+struct SurfaceMeeting {
+    float distance = kNever;
+    ViewportHit::Corners corners;
+};
+
+SurfaceMeeting meeting(const Ray& ray, const ViewportSurface& surface) {
     const glm::mat4 surfaceFromWorld = glm::inverse(surface.worldFromSurface);
     // Not made of length 1: distances along it stay those of the world.
     Ray local{glm::vec3(surfaceFromWorld * glm::vec4(ray.origin, 1.0F)),
@@ -59,16 +70,20 @@ float meeting(const Ray& ray, const ViewportSurface& surface) {
     // From near the surface, where small numbers are exact.
     const Box box = boundingBox(positions);
     const float start = entryOf(local, box.min, box.max);
-    if (start == kNever) return kNever;
+    if (start == kNever) return {};
     local.origin += start * local.direction;
-    const float back = 1e-4F * glm::length(box.size()) / glm::length(local.direction);
-    local.origin -= std::min(back, start) * local.direction;
+    const float back = std::min(1e-4F * glm::length(box.size()) / glm::length(local.direction), start);
+    local.origin -= back * local.direction;
     const std::span<const std::uint32_t> sources = surface.shading->sources();
-    float nearest = kNever;
-    for (const glm::uvec3& t : surface.shading->triangles())
-        nearest = std::min(nearest,
-                           meeting(local, positions[sources[t.x]], positions[sources[t.y]], positions[sources[t.z]]));
-    return start - std::min(back, start) + nearest;
+    SurfaceMeeting nearest;
+    for (const glm::uvec3& t : surface.shading->triangles()) {
+        const glm::uvec3 at(sources[t.x], sources[t.y], sources[t.z]);
+        const TriangleMeeting met = meeting(local, positions[at.x], positions[at.y], positions[at.z]);
+        if (met.distance < nearest.distance)
+            nearest = {met.distance, {at, glm::vec3(1.0F - met.u - met.v, met.u, met.v)}};
+    }
+    nearest.distance += start - back;
+    return nearest;
 }
 
 struct VoxelMeeting {
@@ -100,13 +115,13 @@ std::optional<ViewportHit> pick(const ViewportScene& scene, const Ray& ray) {
     nearest.distance = kNever;
     for (const ViewportSurface& surface : scene.surfaces) {
         if (!pickable(surface)) continue;
-        const float distance = meeting(ray, surface);
-        if (distance < nearest.distance) nearest = {surface.id, {}, distance, std::nullopt};
+        const SurfaceMeeting met = meeting(ray, surface);
+        if (met.distance < nearest.distance) nearest = {surface.id, {}, met.distance, std::nullopt, met.corners};
     }
     for (const ViewportVoxels& cloud : scene.voxels) {
         if (cloud.id == 0 || !cloud.voxels || !(cloud.opacity > 0.0F)) continue;
         const VoxelMeeting met = meeting(ray, cloud);
-        if (met.distance < nearest.distance) nearest = {cloud.id, {}, met.distance, met.voxel};
+        if (met.distance < nearest.distance) nearest = {cloud.id, {}, met.distance, met.voxel, std::nullopt};
     }
     if (nearest.distance == kNever) return std::nullopt;
     nearest.point = ray.origin + nearest.distance * ray.direction;

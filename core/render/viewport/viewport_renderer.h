@@ -23,6 +23,12 @@ struct ViewportHit {
     glm::vec3 point{0.0F};           ///< world metres
     float distance = 0.0F;           ///< from the ray's origin, metres
     std::optional<glm::ivec3> voxel; ///< where voxels were hit
+    /// Where a surface was hit: the vertices of its mesh around the place, and the share of each in it.
+    struct Corners {
+        glm::uvec3 vertices{0};
+        glm::vec3 shares{0.0F};
+    };
+    std::optional<Corners> corners;
 };
 
 /// The nearest thing in the scene that a ray meets; no GL. Costs one pass over the triangles.

@@ -6,6 +6,7 @@
 #include <optional>
 #include <vector>
 
+#include <glm/gtc/type_precision.hpp>
 #include <glm/mat4x4.hpp>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
@@ -25,7 +26,9 @@ struct ViewportSurface {
     std::shared_ptr<const SurfaceShading> shading;
     std::shared_ptr<const std::vector<glm::vec3>> positions; ///< one a mesh vertex, metres, in the surface's own frame
     glm::mat4 worldFromSurface{1.0F};
-    glm::vec3 color{0.8F};        ///< sRGB
+    glm::vec3 color{0.8F}; ///< sRGB
+    /// Over that, one a mesh vertex: sRGB, and 0 to 255 how much of it. Null: none.
+    std::shared_ptr<const std::vector<glm::u8vec4>> vertexColors;
     float opacity = 1.0F;         ///< below 1 it is drawn after the opaque ones and casts no shadow
     float paper = 0.0F;           ///< 0 smooth, 1 the fine fibre of paper
     bool tinted = false;          ///< coloured by the scene's tint,

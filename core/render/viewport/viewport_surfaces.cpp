@@ -8,6 +8,8 @@ namespace {
 
 using Vertex = ShadedMesh::Vertex;
 
+constexpr GLuint kTintAttribute = 2;
+
 template <class Values> void fill(GLenum target, const Values& values, GLenum usage) {
     glBufferData(target, static_cast<GLsizeiptr>(values.size() * sizeof(*values.data())), values.data(), usage);
 }
@@ -19,6 +21,8 @@ void surfaceAttribute(GLuint index, std::size_t stride, std::size_t offset) {
 }
 
 bool sound(const ViewportSurface& surface) {
+    if (surface.vertexColors && surface.positions && surface.vertexColors->size() != surface.positions->size())
+        return false;
     return surface.shading && surface.positions && !surface.shading->triangles().empty() && surface.opacity > 0.0F &&
            surface.positions->size() == surface.shading->meshVertexCount();
 }
@@ -43,7 +47,8 @@ SurfaceShading::Detail ViewportSurfaces::detailOf(const ViewportSurface& surface
 ViewportSurfaces::Entry* ViewportSurfaces::reuse(const ViewportSurface& surface, bool exact) {
     const auto found = std::find_if(entries_.begin(), entries_.end(), [&](const auto& entry) {
         if (entry->shading != surface.shading || entry->detail != detailOf(surface)) return false;
-        return exact ? entry->positions == surface.positions : entry->lastFrame != frame_;
+        return exact ? entry->positions == surface.positions && entry->colors == surface.vertexColors
+                     : entry->lastFrame != frame_;
     });
     return found == entries_.end() ? nullptr : found->get();
 }
@@ -62,7 +67,27 @@ ViewportSurfaces::Entry& ViewportSurfaces::add(const ViewportSurface& surface) {
     return entry;
 }
 
+void ViewportSurfaces::uploadColors(Entry& entry, const ViewportSurface& surface) {
+    entry.colors = surface.vertexColors;
+    glBindVertexArray(entry.array.name());
+    glBindBuffer(GL_ARRAY_BUFFER, entry.tints.name());
+    if (entry.colors) {
+        const auto sources = surface.shading->sources(entry.detail);
+        tinted_.resize(sources.size());
+        for (std::size_t v = 0; v < sources.size(); ++v) tinted_[v] = (*entry.colors)[sources[v]];
+        fill(GL_ARRAY_BUFFER, tinted_, GL_STREAM_DRAW);
+        glEnableVertexAttribArray(kTintAttribute);
+        glVertexAttribPointer(kTintAttribute, 4, GL_UNSIGNED_BYTE, GL_TRUE, sizeof(glm::u8vec4), nullptr);
+    } else {
+        glDisableVertexAttribArray(kTintAttribute);
+    }
+    glBindBuffer(GL_ARRAY_BUFFER, 0);
+    glBindVertexArray(0);
+}
+
 void ViewportSurfaces::upload(Entry& entry, const ViewportSurface& surface) {
+    if (entry.colors != surface.vertexColors) uploadColors(entry, surface);
+    if (entry.positions == surface.positions) return;
     entry.positions = surface.positions;
     entry.box = boundingBox(*surface.positions);
     entry.version = ++versions_;
@@ -94,12 +119,13 @@ void ViewportSurfaces::update(const std::vector<ViewportSurface>& surfaces, Surf
             boxes_[i] = moved(entry->box, surfaces[i].worldFromSurface);
         }
     std::erase_if(entries_, [&](const auto& entry) { return entry->lastFrame + 1 < frame_; });
-    if (entries_.empty()) shaded_ = {};
+    if (entries_.empty()) shaded_ = {}, tinted_ = {};
 }
 
 void ViewportSurfaces::draw(std::size_t surface) const {
     const Entry& entry = *shown_[surface];
     glBindVertexArray(entry.array.name());
+    glVertexAttrib4f(kTintAttribute, 0.0F, 0.0F, 0.0F, 0.0F); // of a surface without colours of its own
     glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(3 * entry.shading->triangles(entry.detail).size()),
                    GL_UNSIGNED_INT, nullptr);
     glBindVertexArray(0);

@@ -26,15 +26,16 @@ public:
     [[nodiscard]] std::uint64_t version(std::size_t surface) const noexcept { return shown_[surface]->version; }
     [[nodiscard]] bool closed(std::size_t surface) const noexcept { return shown_[surface]->shading->closed(); }
 
-    [[nodiscard]] std::size_t objectCount() const noexcept { return 3 * entries_.size(); }
+    [[nodiscard]] std::size_t objectCount() const noexcept { return 4 * entries_.size(); }
 
 private:
     struct Entry {
         std::shared_ptr<const SurfaceShading> shading;
         SurfaceShading::Detail detail;
         std::shared_ptr<const std::vector<glm::vec3>> positions;
+        std::shared_ptr<const std::vector<glm::u8vec4>> colors; // null: none
         gl::VertexArray array;
-        gl::Buffer vertices, indices;
+        gl::Buffer vertices, indices, tints;
         Box box; // of the positions
         std::uint64_t version = 0;
         std::uint64_t lastFrame = 0;
@@ -43,12 +44,14 @@ private:
     [[nodiscard]] Entry* reuse(const ViewportSurface& surface, bool exact);
     Entry& add(const ViewportSurface& surface);
     void upload(Entry& entry, const ViewportSurface& surface);
+    void uploadColors(Entry& entry, const ViewportSurface& surface);
 
     std::vector<std::unique_ptr<Entry>> entries_;
     std::vector<const Entry*> shown_;
     std::vector<Box> boxes_;
     SurfaceShading::Detail detail_ = SurfaceShading::Detail::fine;
     std::vector<ShadedMesh::Vertex> shaded_;
+    std::vector<glm::u8vec4> tinted_;
     std::uint64_t frame_ = 0;
     std::uint64_t versions_ = 0;
 };

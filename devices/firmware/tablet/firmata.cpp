@@ -7,6 +7,7 @@
 #include "channels.h"
 #include "guards.h"
 #include "pulses.h"
+#include "sequence.h"
 #include "uart.h"
 
 namespace {
@@ -280,12 +281,15 @@ void firmataRead() {
         const int16_t byte = uartRead();
         if (byte < 0) return;
         silentFrames = 0;
+        sequenceTakenOver();
         if (byte & 0x80)
             takeCommand(uint8_t(byte));
         else
             takeData(uint8_t(byte));
     }
 }
+
+bool firmataIsSilent() { return silentFrames >= kSilence; }
 
 void firmataFrame() {
     if (uartLostBytes()) {
@@ -296,7 +300,7 @@ void firmataFrame() {
         ++silentFrames;
         return;
     }
-    if (!anyOn()) return;
+    if (!anyOn() || sequencePlays()) return;
     allOff();
     sayError("Silence: servos let go");
 }

@@ -11,3 +11,5 @@ void firmataBegin();
 void firmataRead();
 /// Once a frame: lets all servos go after half a second without any byte.
 void firmataFrame();
+/// No byte has come for that long.
+bool firmataIsSilent();

@@ -8,6 +8,7 @@
 #include "core/base/error.h"
 #include "core/loop/match_loop.h"
 #include "core/mdf/frame_matcher.h"
+#include "core/motion/rig_motion.h"
 #include "tests/core/loop/loop_fixture.h"
 #include "tests/support/literal_vote.h"
 #include "tests/support/not_a_number.h"
@@ -466,6 +467,47 @@ TEST_F(MatchLoopTest, DanceIsLivelyAndTheSameEveryTime) {
     }
     wish.driver = Driver::hand;
     EXPECT_EQ(loop_.step(wish, kFrame)->wantedStrokes, wish.strokes);
+}
+
+// Each frame against the poses' own formula, written out here; STOP holds the device whatever plays.
+TEST_F(MatchLoopTest, PosesPlayByHandUnderTheMotionLimits) {
+    MatchWish wish = wishFor(field_, nullptr);
+    wish.driver = Driver::hand;
+    const std::size_t count = wish.rig->actuatorCount();
+    const std::vector<double> from(count, 0.0);
+    auto play = std::make_shared<PosePlay>();
+    play->sequence.poses = {{"up", std::vector<double>(count, 1.0)}};
+    play->sequence.steps = {{"up", 2.0, 0.5, Easing::smooth}};
+    play->from = from;
+    play->since = clock_.now();
+    wish.posePlay = play;
+    MotionModel motion(motionLimits(*wish.rig));
+    for (int k = 0; k <= 150; ++k) {
+        const auto frame = loop_.step(wish, k == 0 ? 0.0 : kFrame);
+        const double u = std::min(1.0, 1e-6 * static_cast<double>((frame->time - play->since).count()) / 2.0);
+        ASSERT_TRUE(frame->poseSeconds);
+        EXPECT_NEAR(*frame->poseSeconds, 1e-6 * static_cast<double>((frame->time - play->since).count()), 1e-12);
+        const std::vector<double> wanted(count, u * u * (3.0 - 2.0 * u));
+        for (std::size_t a = 0; a < count; ++a) ASSERT_NEAR(frame->wantedStrokes[a], wanted[a], 1e-12);
+        const auto moved = motion.step(wanted, k == 0 ? 0.0 : kFrame);
+        for (std::size_t a = 0; a < count; ++a) ASSERT_NEAR(frame->estimatedStrokes[a], moved[a], 1e-9);
+        if (*frame->poseSeconds < 2.5) {
+            EXPECT_FALSE(loop_.settled());
+        }
+        clock_.advance(Microseconds(static_cast<std::int64_t>(1e6 * kFrame)));
+    }
+    wish.stopped = true;
+    play = std::make_shared<PosePlay>(*play);
+    play->since = clock_.now();
+    wish.posePlay = play;
+    const auto before = loop_.step(wish, 0.0)->estimatedStrokes;
+    clock_.advance(Microseconds(1'000'000));
+    EXPECT_EQ(loop_.step(wish, 1.0)->estimatedStrokes, before);
+    wish.stopped = false;
+    play->from.pop_back();
+    EXPECT_THROW((void)loop_.step(wish, kFrame), InvalidInput);
+    wish.driver = Driver::target;
+    EXPECT_FALSE(loop_.step(wish, kFrame)->poseSeconds) << "poses are the hand's";
 }
 
 TEST_F(MatchLoopTest, ADanceDoesNotMakeUpForAPause) {

@@ -76,8 +76,8 @@ TEST(PoseSequence, IsMadeSlowEnoughForItsServosAndNoSlower) {
                 {name, 0.01 + 0.3 * number(random), 0.1 * number(random), static_cast<Easing>(random() % 3)});
         }
         const std::vector<double> from = {number(random), number(random), number(random)};
-        std::vector<MotionLimits> limits(3);
-        for (MotionLimits& limit : limits) limit.maxVelocity = 0.5 + number(random);
+        std::vector<PoseLimits> limits(3);
+        for (PoseLimits& limit : limits) limit.maxVelocity = 0.5 + number(random);
         const PoseSequence slow = withinLimits(sequence, from, limits);
         constexpr double kTick = 1e-3;
         double fullest = 0.0;
@@ -98,6 +98,44 @@ TEST(PoseSequence, IsMadeSlowEnoughForItsServosAndNoSlower) {
     }
 }
 
+// Differences of differences of what is sampled; the smooth easing has its largest acceleration at its ends.
+TEST(PoseSequence, IsMadeSlowEnoughForAccelerationToo) {
+    for (const Easing easing : {Easing::smooth, Easing::minimumJerk}) {
+        PoseSequence sequence;
+        sequence.poses = {{"up", {1.0, 0.3}}, {"down", {0.0, 0.9}}};
+        sequence.steps = {{"up", 0.0, 0.2, easing}, {"down", 0.0, 0.1, easing}};
+        sequence.loop = true;
+        const std::vector<PoseLimits> limits = {{50.0, 4.0}, {50.0, 9.0}};
+        const std::vector<double> from = {0.0, 0.9};
+        const PoseSequence slow = withinLimits(sequence, from, limits);
+        constexpr double kTick = 1e-3;
+        double fullest = 0.0;
+        for (double t = kTick; t < 2.0 * durationOf(slow); t += kTick) {
+            const std::vector<double> a = strokesAt(slow, from, t - kTick);
+            const std::vector<double> b = strokesAt(slow, from, t);
+            const std::vector<double> c = strokesAt(slow, from, t + kTick);
+            for (std::size_t k = 0; k < 2; ++k)
+                fullest =
+                    std::max(fullest, std::abs(a[k] - 2.0 * b[k] + c[k]) / (kTick * kTick) / limits[k].maxAcceleration);
+        }
+        EXPECT_LE(fullest, 1.01);
+        EXPECT_GT(fullest, 0.98);
+    }
+}
+
+TEST(PoseSequence, PlaysByAClockAndWaitsWhereItIsHeld) {
+    PosePlay play{wave(false), kFrom, Microseconds{2'000'000}, std::nullopt};
+    EXPECT_EQ(secondsOf(play, Microseconds{1'000'000}), 0.0);
+    EXPECT_EQ(secondsOf(play, Microseconds{5'500'000}), 3.5);
+    EXPECT_TRUE(movesOn(play, Microseconds{5'500'000}));
+    EXPECT_FALSE(movesOn(play, Microseconds{6'500'000})) << "it has ended";
+    play.sequence.loop = true;
+    EXPECT_TRUE(movesOn(play, Microseconds{6'500'000}));
+    play.heldAt = 0.75;
+    EXPECT_EQ(secondsOf(play, Microseconds{6'500'000}), 0.75);
+    EXPECT_FALSE(movesOn(play, Microseconds{6'500'000}));
+}
+
 TEST(PoseSequence, RefusesByName) {
     const auto refused = [](auto&& change) -> std::string {
         PoseSequence sequence = wave(false);
@@ -113,6 +151,8 @@ TEST(PoseSequence, RefusesByName) {
     EXPECT_THAT(refused([](PoseSequence& s) { s.steps[1].pose = "gone"; }), HasSubstr("'gone'"));
     EXPECT_THAT(refused([](PoseSequence& s) { s.poses[1].name = "up"; }), HasSubstr("same name"));
     EXPECT_THAT(refused([](PoseSequence& s) { s.poses[0].name.clear(); }), HasSubstr("no name"));
+    EXPECT_THAT(refused([](PoseSequence& s) { s.poses[0].name.assign(200, 'a'); }), HasSubstr("too long"));
+    EXPECT_THAT(refused([](PoseSequence& s) { s.poses.resize(kMaxPoses + 1, s.poses[0]); }), HasSubstr("250"));
     EXPECT_THAT(refused([](PoseSequence& s) { s.poses[1].strokes.pop_back(); }), HasSubstr("'down'"));
     EXPECT_THAT(refused([](PoseSequence& s) { s.poses[1].strokes[0] = std::nan(""); }), HasSubstr("not from 0 to 1"));
     EXPECT_THAT(refused([](PoseSequence& s) { s.steps[1].travelSeconds = std::nan(""); }), HasSubstr("step 2"));

@@ -43,6 +43,10 @@ Project fullProject() {
     project.strokes = {0.0, 1.0, 1.0 / 3.0, 0.1, 1e-300, 0.999999999999999};
     project.matching = {Driver::hand, false, 12.5};
     project.playback = {false, -0.7853981633974483};
+    project.poses.actuators = {"left", "right"};
+    project.poses.sequence.poses = {{"Öffnen", {1.0 / 3.0, 1.0}}, {"shut", {0.0, 1e-300}}};
+    project.poses.sequence.steps = {{"shut", 0.1, 0.0, Easing::linear}, {"Öffnen", 2.5, 1.0 / 3.0, Easing::smooth}};
+    project.poses.sequence.loop = true;
     project.view = {{"camera", {{"yaw", 0.25}}}, {"slices", {1, 2, 3}}};
     return project;
 }
@@ -69,6 +73,7 @@ TEST(ProjectFile, ComesBackAsItWasWritten) {
     EXPECT_EQ(back.strokes, project.strokes);
     EXPECT_EQ(back.matching, project.matching);
     EXPECT_EQ(back.playback, project.playback);
+    EXPECT_EQ(back.poses, project.poses);
     EXPECT_EQ(back.view, project.view);
     writeProject(back, folder / "b.lumorph");
     EXPECT_EQ(textOf(folder / "a.lumorph"), textOf(folder / "b.lumorph"));
@@ -97,6 +102,8 @@ TEST(ProjectFile, WhatIsNotStatedIsAsInANewProject) {
     EXPECT_TRUE(project.strokes.empty());
     EXPECT_EQ(project.matching, fresh.matching);
     EXPECT_EQ(project.playback, fresh.playback);
+    EXPECT_EQ(project.poses, PoseBook());
+    EXPECT_FALSE(json::parse(projectText(project)).contains("poses")) << "a project without any is as before";
 }
 
 TEST(ProjectFile, KeepsTheKeysItDoesNotKnow) {
@@ -183,6 +190,21 @@ TEST(ProjectFile, EveryBrokenValueIsNamedWithItsKey) {
         {projectWith("/playback", nullptr), "playback: is not an object"},
         {projectWith("/playback/playing", "on"), "playback.playing: is neither true nor false"},
         {projectWith("/playback/spin", 1000), "playback.spin: is not a number from -100.0 to 100.0"},
+        {projectWith("/poses", 3), "poses: is not an object"},
+        {projectWith("/poses/actuators", {"a", 1}), "poses.actuators[1]: is not a text"},
+        {projectWith("/poses/named", json::parse(R"([{"name": "a", "strokes": []}, {"name": "a", "strokes": []}])")),
+         "poses.pose 'a': another pose has the same name"},
+        {projectWith("/poses", json::parse(R"({"actuators": ["x"], "named": [{"name": "a", "strokes": [0, 1]}]})")),
+         "poses.pose 'a': it has 2 strokes, the device 1 actuators"},
+        {projectWith("/poses", json::parse(R"({"actuators": ["x"], "named": [{"name": "a", "strokes": [null]}]})")),
+         "poses.named[0].strokes[0]: is not a number from 0.0 to 1.0"},
+        {projectWith("/poses/steps", json::parse(R"([{"pose": "gone"}])")), "poses.pose 'gone': no pose has this name"},
+        {projectWith("/poses/steps", json::parse(R"([{"pose": "a", "travelSeconds": 1e9}])")),
+         "poses.steps[0].travelSeconds: is not a number from 0.0 to 3600.0"},
+        {projectWith("/poses/steps", json::parse(R"([{"pose": "a", "easing": "wild"}])")),
+         "poses.steps[0].easing: is 'wild', not a way to move"},
+        {projectWith("/poses/steps", json(std::vector<json>(kMaxPoseSteps + 1, json::object()))),
+         "poses.steps: has 1001 entries, and 1000 is the most"},
         {projectWith("/view", {1, 2}), "view: is not an object"},
     };
     for (const auto& c : cases) {

@@ -150,6 +150,85 @@ TEST_P(TemplateParts, GiveEachActuatorOneServoInASeat) {
     }
 }
 
+/// Where a line from inside first leaves the solid or the room, to 0.005 mm.
+double wayToChange(const test::InsideOracle& inside, const glm::dvec3& from, const glm::dvec3& way) {
+    const bool start = inside(from);
+    double near = 0.0;
+    while (inside(from + (near + 0.05) * way) == start && near < 100.0) near += 0.05;
+    double far = near + 0.05;
+    while (far - near > 0.005) {
+        const double middle = 0.5 * (near + far);
+        (inside(from + middle * way) == start ? near : far) = middle;
+    }
+    return 0.5 * (near + far);
+}
+
+/// Where a line from outside is in the room between two walls, and how wide that is, to 0.01 mm.
+struct Gap {
+    double middle = 0.0;
+    double width = 0.0;
+};
+std::vector<Gap> gapsAlong(const test::InsideOracle& inside, const glm::dvec3& from, double length) {
+    constexpr double kStep = 0.5; // walls are 2 mm
+    const auto in = [&](double x) { return inside(from + glm::dvec3(x, 0.0, 0.0)); };
+    const auto edge = [&](double low, double high) {
+        const bool start = in(low);
+        while (high - low > 0.005) (in(0.5 * (low + high)) == start ? low : high) = 0.5 * (low + high);
+        return 0.5 * (low + high);
+    };
+    std::vector<Gap> gaps;
+    double opened = -1.0; // where the last wall ended
+    for (double x = 0.0; x < length; x += kStep) {
+        if (in(x) && !in(x + kStep)) opened = edge(x, x + kStep);
+        if (!in(x) && in(x + kStep) && opened >= 0.0) {
+            const double closed = edge(x, x + kStep);
+            gaps.push_back({from.x + 0.5 * (opened + closed), closed - opened});
+        }
+    }
+    return gaps;
+}
+
+/// A servo's case and tabs by the drawing of an SG90, in the seat whose slots have their middle in `slot`.
+void expectHoldsAnSg90(const test::InsideOracle& inside, const glm::dvec3& slot, double tolerance) {
+    const glm::dvec3 right(1, 0, 0);
+    const glm::dvec3 back(0, 1, 0);
+    const glm::dvec3 tab = slot - (11.4 + 2.3) * right;
+    const double below = wayToChange(inside, tab, -back);
+    EXPECT_NEAR(below + wayToChange(inside, tab, back), 2.5 + 2.0 * tolerance, 0.1);
+    const double bottom = wayToChange(inside, slot, -back);
+    EXPECT_NEAR(bottom - below, 15.9, 0.1);
+    const glm::dvec3 casing = slot - (bottom - 12.0) * back; // in front of the notch for the cable
+    EXPECT_NEAR(wayToChange(inside, casing, right) + wayToChange(inside, casing, -right), 22.8 + 2.0 * tolerance, 0.1);
+    // Down to the seat's floor, or to that of the housing on which it stands.
+    const double floor = std::min(wayToChange(inside, casing, glm::dvec3(0, 0, -1)), casing.z);
+    EXPECT_NEAR(floor + 2.0, 12.2 + tolerance, 0.1);
+    for (const double side : {-1.0, 1.0}) // nothing before the whole breadth of the case, up to where it ends
+        EXPECT_GT(wayToChange(inside, slot + side * 11.0 * right, back), 22.7 - 15.9 - 1.25);
+}
+
+TEST_P(TemplateParts, HoldAnSg90InEverySeat) {
+    const BuildPlan& plan = templatePlan(GetParam());
+    const double tolerance = PartOptions{}.tolerance;
+    for (const PrintPart& part : plan.parts) {
+        if (!part.name.starts_with("seat") || part.name == "seat-cap") continue;
+        SCOPED_TRACE(part.name);
+        const test::InsideOracle inside(part.solid.mesh);
+        const glm::dvec3 size(boundingBox(part.solid.mesh.positions).max);
+        int seats = 0;
+        std::size_t before = 0;
+        for (double y = 0.25; y < size.y; y += 0.7) { // slots are 2.9 mm
+            std::vector<Gap> slots;
+            for (const Gap& gap : gapsAlong(inside, {-0.1, y, size.z - 2.0}, size.x + 1.0))
+                if (std::abs(gap.width - (32.2 + 2.0 * tolerance)) < 0.1) slots.push_back(gap);
+            if (before == 0)
+                for (const Gap& gap : slots) expectHoldsAnSg90(inside, {gap.middle, y + 0.1, size.z - 2.0}, tolerance);
+            if (before == 0) seats += static_cast<int>(slots.size());
+            before = slots.size();
+        }
+        EXPECT_EQ(seats, part.use.find(" servo seats") != std::string::npos ? std::stoi(part.use) : 1);
+    }
+}
+
 INSTANTIATE_TEST_SUITE_P(BuildPlan, TemplateParts,
                          testing::Values("tablet", "phone", "pins", "flower", "book", "cushion", "sheet"),
                          [](const auto& name) { return std::string(name.param); });
@@ -184,19 +263,6 @@ TEST(BuildPlan, TabletKeepsItsMeasures) {
         if (high && n.y > 0.0) top += 0.5e6 * n.y;
     }
     EXPECT_NEAR(signedVolume(partOf(plan, "sheet").solid.mesh), 2.0 * top, 2e-3 * top);
-}
-
-/// Where a line from inside first leaves the solid or the room, to 0.005 mm.
-double wayToChange(const test::InsideOracle& inside, const glm::dvec3& from, const glm::dvec3& way) {
-    const bool start = inside(from);
-    double near = 0.0;
-    while (inside(from + (near + 0.05) * way) == start && near < 100.0) near += 0.05;
-    double far = near + 0.05;
-    while (far - near > 0.005) {
-        const double middle = 0.5 * (near + far);
-        (inside(from + middle * way) == start ? near : far) = middle;
-    }
-    return 0.5 * (near + far);
 }
 
 // Case 22.8 x 12.2 x 22.7, tabs 32.2 x 2.5 whose underside is 15.9 above the bottom.

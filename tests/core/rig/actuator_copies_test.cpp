@@ -1,8 +1,11 @@
-#include "core/rig/mirrored_actuator.h"
+#include "core/rig/actuator_copies.h"
 
+#include <functional>
+#include <numbers>
 #include <numeric>
 
 #include <glm/geometric.hpp>
+#include <glm/gtc/matrix_transform.hpp>
 #include <gtest/gtest.h>
 
 #include "core/base/error.h"
@@ -110,6 +113,103 @@ TEST(MirroredActuator, OfTheTabletsCornerIsTheCornerOppositeIt) {
     EXPECT_FALSE(mirrored.added);
     EXPECT_EQ(mirrored.parts.actuators.size(), tablet.actuators.size());
     EXPECT_NE(mirrored.actuator, 0U);
+}
+
+/// Every copy moves the place that is the first one's, turned and carried, as the first one moves that: by a search
+/// through all vertices.
+void expectCopies(const RigParts& parts, std::size_t first, const std::vector<std::size_t>& copies,
+                  const std::function<glm::dmat4(int)>& placed) {
+    const Rig rig(parts);
+    const auto& rest = parts.restMesh.positions;
+    const auto at = [&](std::size_t actuator) {
+        std::vector<double> strokes(parts.actuators.size(), 0.0);
+        strokes[actuator] = 0.6;
+        return deformed(rig, strokes).positions;
+    };
+    const auto one = at(first);
+    for (std::size_t k = 0; k < copies.size(); ++k) {
+        const auto other = at(copies[k]);
+        const glm::dmat4 to = placed(static_cast<int>(k) + 1);
+        double farthest = 0.0;
+        int moved = 0;
+        for (std::size_t v = 0; v < rest.size(); ++v) {
+            if (glm::distance(one[v], rest[v]) < 1e-6F) continue;
+            ++moved;
+            const glm::vec3 there(to * glm::dvec4(rest[v], 1.0));
+            std::size_t image = 0;
+            for (std::size_t w = 0; w < rest.size(); ++w)
+                if (glm::distance(rest[w], there) < glm::distance(rest[image], there)) image = w;
+            farthest =
+                std::max(farthest, glm::distance(glm::dvec3(other[image]), glm::dvec3(to * glm::dvec4(one[v], 1.0))));
+        }
+        EXPECT_GT(moved, 3);
+        EXPECT_EQ(rig.verticesOf(copies[k]).size(), rig.verticesOf(first).size());
+        EXPECT_LT(farthest, 1e-5) << k;
+    }
+}
+
+/// A square board about the middle, one corner of which moves.
+RigParts square(Deformer deformer) {
+    RigParts parts = board(std::move(deformer));
+    parts.restMesh = test::boxMesh({-0.08F, 0.0F, -0.08F}, {0.08F, 0.01F, 0.08F}, 8);
+    auto& influences = parts.actuators[0].influences;
+    influences.clear();
+    for (std::uint32_t v = 0; v < parts.restMesh.positions.size(); ++v) {
+        const glm::vec3& p = parts.restMesh.positions[v];
+        if (p.x > 0.03F && p.z > 0.03F) influences.push_back({v, 10.0F * p.x});
+    }
+    return parts;
+}
+
+TEST(ActuatorCopies, StandAroundTheMiddle) {
+    const Deformer kinds[] = {
+        Hinge{{0.03F, 0.01F, 0.03F}, {-0.4F, 0.1F, 1.0F}, {}, Angle::degrees(70.0)},
+        Bend{{0.03F, 0.005F, 0.03F}, {-1.0F, 0.0F, 1.0F}, {1.0F, 0.0F, 1.0F}, 0.02, {}, Angle::degrees(70.0)},
+        Slide{{0.3F, 1.0F, 0.2F}, 0.0, 0.03},
+    };
+    for (const Deformer& kind : kinds) {
+        const ActuatorCopies copies = copiesAround(square(kind), 0, 4);
+        EXPECT_EQ(copies.added, 3);
+        EXPECT_EQ(copies.actuators, (std::vector<std::size_t>{1, 2, 3}));
+        EXPECT_EQ(copies.parts.actuators[1].name, "right copy");
+        EXPECT_EQ(copies.parts.actuators[3].name, "right copy 3");
+        EXPECT_EQ(copies.parts.actuators[2].drive.channel, -1);
+        expectCopies(copies.parts, 0, copies.actuators, [](int k) {
+            return glm::rotate(glm::dmat4(1.0), 0.5 * std::numbers::pi * k, glm::dvec3(0, 1, 0));
+        });
+        const ActuatorCopies again = copiesAround(copies.parts, 0, 4);
+        EXPECT_EQ(again.added, 0);
+        EXPECT_EQ(again.parts, copies.parts) << "they are there already";
+    }
+}
+
+TEST(ActuatorCopies, StandAlongALine) {
+    RigParts parts = board(Slide{{0.2F, 1.0F, 0.0F}, 0.0, 0.02});
+    auto& influences = parts.actuators[0].influences;
+    influences.clear();
+    for (std::uint32_t v = 0; v < parts.restMesh.positions.size(); ++v) {
+        const glm::vec3& p = parts.restMesh.positions[v];
+        if (p.x < -0.07F && p.y > 0.005F && std::abs(p.z) < 0.03F) influences.push_back({v, 0.5F});
+    }
+    const glm::vec3 step(0.05F, 0.0F, 0.0F);
+    const ActuatorCopies copies = copiesAlong(parts, 0, 4, step);
+    EXPECT_EQ(copies.added, 3);
+    expectCopies(copies.parts, 0, copies.actuators,
+                 [&](int k) { return glm::translate(glm::dmat4(1.0), static_cast<double>(k) * glm::dvec3(step)); });
+}
+
+TEST(ActuatorCopies, SayWhyThereAreNone) {
+    const RigParts parts = square(Slide{{0.0F, 1.0F, 0.0F}, 0.0, 0.03});
+    EXPECT_THROW((void)copiesAround(parts, 0, 5), InvalidInput) << "a square has no five corners";
+    EXPECT_THROW((void)copiesAround(parts, 0, 1), InvalidInput);
+    EXPECT_THROW((void)copiesAround(parts, 0, kMostCopies + 1), InvalidInput);
+    EXPECT_THROW((void)copiesAlong(parts, 0, 3, {0.0F, 0.0F, 0.0F}), InvalidInput);
+    EXPECT_THROW((void)copiesAlong(parts, 0, 3, {0.02F, 0.0F, 0.0F}), InvalidInput) << "beyond the edge";
+    RigParts upright = parts;
+    upright.actuators[0].influences.clear();
+    for (std::uint32_t v = 0; v < upright.restMesh.positions.size(); ++v)
+        upright.actuators[0].influences.push_back({v, 1.0F});
+    EXPECT_THROW((void)copiesAround(upright, 0, 4), InvalidInput) << "each would be itself";
 }
 
 TEST(MirroredActuator, SaysWhyThereIsNone) {
