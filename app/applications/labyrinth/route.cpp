@@ -75,7 +75,7 @@ public:
 private:
     void comeFrom(const Spot& to, Way way, double cost) {
         const glm::ivec2 cell = to.cell - stepOf(way);
-        if (!level_.holds(cell)) return;
+        if (!level_.holds(cell) || cell == level_.goal) return;
         for (const bool deck : {false, true}) {
             if (deck && level_.at(cell).tile != Tile::bridge) continue;
             const Spot from{cell, deck};

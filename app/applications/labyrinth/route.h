@@ -18,7 +18,8 @@ struct Spot {
 };
 
 /// Ways over the cells of a level to one of them, from everywhere: level or uphill over ramps, down over ledges and
-/// stairs, along and under bridges, never over holes and beside them only where there is no other way.
+/// stairs, along and under bridges, never over holes and beside them only where there is no other way. A run ends at
+/// the level's goal, so a way to another cell does not lead over it.
 class Routes {
 public:
     Routes(const Level& level, glm::ivec2 target);

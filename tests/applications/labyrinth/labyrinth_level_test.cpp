@@ -83,7 +83,7 @@ TEST(LabyrinthLevel, MistakesAreNamedWithLineColumnAndRemedy) {
         {"#@.>>.r.#", "#@.>>#r.#", "line 6, column 5", "leads up to nothing", "floor"},
         {".0001222.", ".0021222.", "line 6, column 4", "rises by -1", "1 to 2"},
         {".0001222.", ".1101222.", "line 6, column 4", "does not begin where the floor", "height"},
-        {".0001222.", ".000x222.", "line 12, column 5", "no height", "0 to 9"},
+        {".0001222.", ".000x222.", "line 13, column 5", "no height", "0 to 9"},
         {"#.O##.X.#", "#.O##.==#", "line", "no goal", "put an X"},
         {"#.O##.X.#", "#..==.X.#", "line 7, column 4", "ends do not lie equally high", "one height"},
     };
