@@ -5,6 +5,8 @@
 #include <numbers>
 #include <string>
 
+#include <glm/geometric.hpp>
+
 #include "app/applications/demo_items.h"
 #include "app/applications/labyrinth/board_model.h"
 #include "core/scene/material_library.h"
@@ -13,9 +15,13 @@ namespace lumorph::labyrinth {
 namespace {
 
 constexpr const char* kMazeModel = "labyrinth level"; ///< an asset that is in memory alone
-constexpr float kGem = 0.0046F;                       ///< side of a pick-up, metres
+constexpr float kGem = 0.0050F;                       ///< side of a pick-up, metres
 constexpr double kGemFloats = 0.0042;                 ///< its middle over the floor, metres
 constexpr double kTimeWidth = 0.0016;                 ///< of the bar of time, metres
+constexpr double kBeamHeight = 0.016;                 ///< of the light over the goal, metres
+constexpr double kRingSpeed = 0.045;                  ///< by which its side grows, metres a second
+constexpr double kRingSeconds = 1.4;                  ///< until it has faded
+constexpr int kTrail = kFirstPickUp - kFirstTrail;
 
 glm::vec3 colorOf(PickUp pickUp) {
     switch (pickUp) {
@@ -49,12 +55,14 @@ SceneItem ball() {
     SceneItem item = demoItem(kBallItem, "Ball", ShapeItem{ShapeItem::Form::sphere, glm::vec3(2.0 * kBallRadius)});
     item.material = readyMaterial("Stone");
     item.material.name = "Ball";
-    // Marbled, so that one sees it roll.
-    item.material.color = {1.0F, 0.42F, 0.20F};
-    item.material.colorTexture.tile = glm::vec2(0.02F);
+    // Marbled, so that one sees it roll, and with a light of its own, so that nobody loses it in a shadow.
+    item.material.color = {1.0F, 0.62F, 0.30F};
+    item.material.colorTexture.tile = glm::vec2(0.012F);
     item.material.normalMaps[0] = {};
-    item.material.roughness = 0.18F;
-    item.material.reflection = 0.12F;
+    item.material.roughness = 0.12F;
+    item.material.reflection = 0.15F;
+    item.material.emission = {1.0F, 0.34F, 0.08F};
+    item.material.emissionStrength = 0.55F;
     return item;
 }
 
@@ -74,6 +82,37 @@ SceneItem goalDisc(const Level& level) {
     return item;
 }
 
+SceneItem goalBeam(const Level& level) {
+    const auto side = static_cast<float>(0.5 * level.cell);
+    SceneItem item =
+        demoItem(kBeamItem, "Light over the goal",
+                 ShapeItem{ShapeItem::Form::cylinder, {side, static_cast<float>(kBeamHeight), side}});
+    item.position = overFloor(level, level.goal, 0.5 * kBeamHeight);
+    item.material = glowing("Light", {0.25F, 0.95F, 0.45F}, 0.8F);
+    item.material.reflection = 0.0F;
+    item.opacity = 0.28F;
+    return item;
+}
+
+SceneItem goalRing(const Level& level) {
+    SceneItem item = demoItem(kRingItem, "Goal reached", ShapeItem{ShapeItem::Form::cylinder, glm::vec3(1.0F)});
+    item.position = overFloor(level, level.goal, 0.5 * level.wall);
+    item.material = glowing("Reached", {0.45F, 1.0F, 0.60F}, 1.0F);
+    item.visible = false;
+    return item;
+}
+
+SceneItem trailLight(int number) {
+    const double share = 1.0 - static_cast<double>(number) / kTrail;
+    const auto side = static_cast<float>(2.0 * kBallRadius * (0.25 + 0.55 * share));
+    SceneItem item = demoItem(kFirstTrail + number, "Trail", ShapeItem{ShapeItem::Form::sphere, glm::vec3(side)});
+    item.material = glowing("Trail", {1.0F, 0.55F, 0.18F}, 0.9F);
+    item.material.reflection = 0.0F;
+    item.opacity = static_cast<float>(0.30 * share);
+    item.visible = false;
+    return item;
+}
+
 SceneItem gem(const Level& level, glm::ivec2 cell, int id, int number) {
     const glm::vec3 color = colorOf(level.at(cell).pickUp);
     SceneItem item = demoItem(id, "Pick-up " + std::to_string(number + 1), ShapeItem{ShapeItem::Form::box, glm::vec3(kGem)});
@@ -81,7 +120,9 @@ SceneItem gem(const Level& level, glm::ivec2 cell, int id, int number) {
     // On its corner, turning.
     item.rotation = glm::angleAxis(0.9553F, glm::normalize(glm::vec3(1.0F, 0.0F, 1.0F)));
     item.motion = {1.6, 0.0008, 1.8 + 0.2 * (number % 4)};
-    item.material = glowing("Gem", color, 0.35F);
+    item.material = glowing("Gem", color, 0.18F);
+    item.material.roughness = 0.12F;
+    item.material.reflection = 0.2F;
     return item;
 }
 
@@ -90,7 +131,7 @@ SceneItem timeBar(const Level& level) {
     const double top = wallTop(level, {level.columns / 2, level.rows - 1});
     item.position = {glm::dvec3(0.0, static_cast<double>(kSheet) + top,
                                 0.5 * level.cell * level.rows - 0.5 * level.cell)};
-    item.material = glowing("Time", {1.0F, 0.85F, 0.35F}, 0.6F);
+    item.material = glowing("Time", {1.0F, 0.78F, 0.25F}, 0.3F);
     return item;
 }
 
@@ -120,6 +161,38 @@ void showPickUps(Scene& scene, const Game& game, const std::vector<glm::ivec2>& 
         item.position = trophyPlace(game.level(), place);
         item.motion.bob = 0.0;
     }
+}
+
+/// Where the ball was at the last times of its run; a ball that lies leaves none.
+void showTrail(Scene& scene, const Game& game) {
+    const std::vector<glm::vec3>& run = game.run().positions;
+    glm::vec3 before(game.ball().position);
+    for (int k = 0; k < kTrail && static_cast<std::size_t>(k) < run.size() && !game.fallen() && !game.done(); ++k) {
+        const glm::vec3& at = run[run.size() - 1 - static_cast<std::size_t>(k)];
+        constexpr float kJump = 0.03F; // after a fall the ball is elsewhere at once, metres
+        if (glm::distance(at, before) > kJump) return;
+        if (glm::distance(at, glm::vec3(game.ball().position)) > static_cast<float>(kBallRadius)) {
+            SceneItem& light = itemOf(scene, kFirstTrail + k);
+            light.visible = true;
+            light.position = shown(glm::dvec3(at));
+        }
+        before = at;
+    }
+}
+
+void showGoal(Scene& scene, const Game& game, double inGoal) {
+    SceneItem& beam = itemOf(scene, kBeamItem);
+    const double breath = 0.5 + 0.5 * std::sin(2.0 * std::numbers::pi * 0.6 * game.seconds());
+    beam.opacity = static_cast<float>(0.18 + 0.16 * breath);
+    if (!game.done()) return;
+    itemOf(scene, kGoalItem).material.emissionStrength = 2.0F;
+    beam.opacity = 0.45F;
+    if (inGoal > kRingSeconds) return;
+    SceneItem& ring = itemOf(scene, kRingItem);
+    const double side = game.level().cell + kRingSpeed * inGoal;
+    ring.visible = true;
+    ring.scale = {glm::dvec3(side, 0.0008, side)};
+    ring.opacity = static_cast<float>(0.45 * (1.0 - inGoal / kRingSeconds));
 }
 
 void showTime(SceneItem& item, const Game& game) {
@@ -155,6 +228,9 @@ Board::Board(const Game& game, const SceneAssets& pictures) : still_(defaultScen
     still_.items.push_back(ghostBall());
     still_.items.push_back(goalDisc(level));
     still_.items.push_back(timeBar(level));
+    still_.items.push_back(goalBeam(level));
+    still_.items.push_back(goalRing(level));
+    for (int k = 0; k < kTrail; ++k) still_.items.push_back(trailLight(k));
     int number = 0;
     for (const glm::ivec2 cell : pickUps_) {
         still_.items.push_back(gem(level, cell, kFirstPickUp + number, number));
@@ -165,7 +241,7 @@ Board::Board(const Game& game, const SceneAssets& pictures) : still_(defaultScen
     assets_ = std::move(assets);
 }
 
-std::shared_ptr<const Scene> Board::show(const Game& game, const Ghost* best) const {
+std::shared_ptr<const Scene> Board::show(const Game& game, const Ghost* best, double inGoal) const {
     auto scene = std::make_shared<Scene>(still_);
     SceneItem& rolling = itemOf(*scene, kBallItem);
     rolling.position = shown(game.ball().position);
@@ -176,7 +252,8 @@ std::shared_ptr<const Scene> Board::show(const Game& game, const Ghost* best) co
         ghost.visible = true;
         ghost.position = shown(glm::dvec3(positionAt(*best, game.seconds())));
     }
-    if (game.done()) itemOf(*scene, kGoalItem).material.emissionStrength = 2.0F;
+    showTrail(*scene, game);
+    showGoal(*scene, game, inGoal);
     showTime(itemOf(*scene, kTimeItem), game);
     showPickUps(*scene, game, pickUps_);
     return scene;

@@ -12,7 +12,18 @@
 namespace lumorph::labyrinth {
 
 /// Items of the scene of a level.
-enum BoardItem : int { kSun = 1, kMaze, kBallItem, kGhostItem, kGoalItem, kTimeItem, kFirstPickUp = 10 };
+enum BoardItem : int {
+    kSun = 1,
+    kMaze,
+    kBallItem,
+    kGhostItem,
+    kGoalItem,
+    kTimeItem,
+    kBeamItem,      ///< the light over the goal
+    kRingItem,      ///< the light that runs out from the goal when the ball is in it
+    kFirstTrail,    ///< where the ball has been, the newest first
+    kFirstPickUp = kFirstTrail + 16
+};
 
 /// A level as a visitor sees it: what stands still is made once, and `show` puts in what moves.
 class Board {
@@ -21,8 +32,9 @@ public:
     Board(const Game& game, const SceneAssets& pictures);
 
     [[nodiscard]] const std::shared_ptr<const SceneAssets>& assets() const noexcept { return assets_; }
-    /// The game now, with the best run so far beside it (may be null).
-    [[nodiscard]] std::shared_ptr<const Scene> show(const Game& game, const Ghost* best) const;
+    /// The game now, with the best run so far beside it (may be null); the ball has been in the goal for so many
+    /// seconds.
+    [[nodiscard]] std::shared_ptr<const Scene> show(const Game& game, const Ghost* best, double inGoal) const;
 
 private:
     Scene still_;

@@ -1,5 +1,6 @@
 #include "app/applications/labyrinth/board_model.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include <glm/geometric.hpp>
@@ -10,6 +11,8 @@ namespace lumorph::labyrinth {
 namespace {
 
 constexpr std::size_t kDepth = 5; ///< material below the holes, after those of the kinds of blocks
+constexpr std::size_t kMiddleFloor = 6, kHighFloor = 7;
+constexpr int kMiddle = 3, kHigh = 6; ///< from so many steps a floor is one of these
 constexpr double kBevel = 0.0007; ///< at the upper edges of walls, metres
 
 using Primitive = Model::Primitive;
@@ -81,16 +84,34 @@ std::vector<Material> boardMaterials(const Level& level) {
     depth.name = "Depth";
     depth.color = glm::vec3(0.015F);
     depth.roughness = 1.0F;
-    return {floor, wall, slope, deck, rail, depth};
+    // The higher, the warmer: a glance tells terraces apart.
+    Material low = floor, high = floor;
+    const bool terraces =
+        std::ranges::any_of(level.cells, [](const LevelCell& cell) { return cell.height >= kMiddle; });
+    if (terraces) low.color *= glm::vec3(0.84F, 0.92F, 1.0F);
+    high.color *= glm::vec3(1.0F, 0.90F, 0.66F);
+    low.name = "Low floor";
+    high.name = "High floor";
+    return {low, wall, slope, deck, rail, depth, floor, high};
 }
+
+namespace {
+
+std::size_t materialOf(const Level& level, const Block& block) {
+    if (block.kind != Block::Kind::floor) return static_cast<std::size_t>(block.kind);
+    const auto steps = std::lround(block.tops[0] / level.step);
+    return steps >= kHigh ? kHighFloor : steps >= kMiddle ? kMiddleFloor : static_cast<std::size_t>(block.kind);
+}
+
+} // namespace
 
 SceneModel boardModel(const Level& level, const std::vector<Block>& blocks) {
     SceneModel made;
     made.materials = boardMaterials(level);
     Model::Mesh mesh;
-    mesh.primitives.resize(kDepth + 1);
+    mesh.primitives.resize(made.materials.size());
     for (std::size_t k = 0; k < mesh.primitives.size(); ++k) mesh.primitives[k].material = static_cast<int>(k);
-    for (const Block& block : blocks) addBlock(mesh.primitives[static_cast<std::size_t>(block.kind)], block);
+    for (const Block& block : blocks) addBlock(mesh.primitives[materialOf(level, block)], block);
     const glm::dvec2 half = 0.5 * level.cell * glm::dvec2(level.columns, level.rows) - 1e-4;
     addFace(mesh.primitives[kDepth], {at({-half.x, half.y}, kGround), at(half, kGround), at({half.x, -half.y}, kGround),
                                       at(-half, kGround)});

@@ -8,7 +8,8 @@
 
 namespace lumorph::labyrinth {
 
-/// Materials of the pieces of a level, in the order of Block::Kind, and of the depth below its holes.
+/// Materials of the pieces of a level, in the order of Block::Kind, of the depth below its holes, and of the floors of
+/// the middle and of the highest terraces.
 [[nodiscard]] std::vector<Material> boardMaterials(const Level& level);
 
 /// The pieces of a level as a model with these materials, height 0 at the sheet; textures are mapped in metres.

@@ -46,7 +46,7 @@ ShowContent LabyrinthProgram::frame(const ShowMoment& moment) {
     ShowContent content;
     content.sounds = sounds();
     finish(moment.step);
-    content.scene = board_->show(*game_, best());
+    content.scene = board_->show(*game_, best(), rests_);
     content.assets = board_->assets();
     const glm::dvec3& ball = game_->ball().position;
     content.target = game_->fallen() ? relief_->level() : relief_->withBall({ball.x, ball.z});

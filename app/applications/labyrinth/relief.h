@@ -9,12 +9,12 @@
 
 namespace lumorph::labyrinth {
 
-/// What servos are to lift of a level: the tops of its blocks, holes as hollows, and the ball as a bump wide enough to
-/// be felt under a hand. Samples stand 2 mm apart.
+/// What servos are to lift of a level: the tops of its blocks, holes as hollows, and the ball as a bump about as wide
+/// as a part of the tablet that a servo lifts, so that it is felt through it. Samples stand 2 mm apart.
 class Relief {
 public:
-    static constexpr double kBumpHeight = 0.008; ///< metres
-    static constexpr double kBumpWidth = 0.009;  ///< standard deviation of its bell, metres
+    static constexpr double kBumpHeight = 0.014; ///< metres
+    static constexpr double kBumpWidth = 0.026;  ///< standard deviation of its bell, metres
 
     Relief(const Level& level, const std::vector<Block>& blocks);
 
