@@ -154,6 +154,7 @@ ShowRates playShow(const ProjectContents& contents, const std::string& name, con
         if (k % kStepsAPicture != 0) continue;
         const Image picture = recorder.lab();
         if (writer) writer->add(picture);
+        if (!show.last.empty() && k + kStepsAPicture >= steps) writePng(picture, show.last);
     }
     if (writer) writer->finish();
     ShowRates rates = recorder.rates();
@@ -179,6 +180,7 @@ ShowScript scriptOf(const Demo& demo, const DemoPlay& play) {
 void playDemo(const Demo& demo, const DemoPlay& play, std::ostream& out) {
     ShowPictures show;
     show.seconds = play.seconds;
+    show.last = play.last;
     const ShowScript script = scriptOf(demo, play);
     const ShowRates rates = playShow(demo.open({}), demo.name, show, {}, play.video, script);
     if (play.json) {

@@ -19,6 +19,7 @@ struct ShowPictures {
     double seconds = 4.0;
     glm::ivec2 video{960, 600};     ///< pixels of the video, both even
     glm::ivec2 picture{1600, 1000}; ///< pixels of the pictures of eye and lab
+    std::filesystem::path last;     ///< the video's last picture as a PNG file; empty: none
 };
 
 /// An application that takes the place of a project's scene, and what is done to it.
@@ -49,6 +50,7 @@ ShowRates playShow(const ProjectContents& contents, const std::string& name, con
 struct DemoPlay {
     double seconds = 6.0;
     std::filesystem::path video;  ///< .mp4; empty: none
+    std::filesystem::path last;   ///< its last picture, .png; empty: none
     std::filesystem::path inputs; ///< as `readInputScript` reads them; empty: none
     std::uint64_t seed = 1;       ///< of an application
     bool json = false;            ///< its rates as JSON

@@ -68,8 +68,8 @@ TEST(Demo, AnApplicationAnswersRecordedInputs) {
     writeFile(inputs, std::string(R"({"inputs": [{"seconds": 0.1, "name": "key.next", "value": 1},
                                                 {"seconds": 0.12, "name": "key.next", "value": 1}]})"));
     const auto play = [&](const std::string& name, const std::vector<std::string>& more) {
-        std::vector<std::string> all{"demo", "labyrinth", "--seconds", "0.3", "--json", "--record",
-                                     (folder / (name + ".mp4")).string()};
+        std::vector<std::string> all{
+            "demo", "labyrinth", "--seconds", "0.3", "--json", "--record", (folder / (name + ".mp4")).string()};
         all.insert(all.end(), more.begin(), more.end());
         const Outcome outcome = lumorph(all);
         EXPECT_EQ(outcome.exitCode, 0) << outcome.err;

@@ -45,7 +45,9 @@ TEST_F(LabyrinthWindow, PlaysByItselfAndAnswersTheMouse) {
     EXPECT_TRUE(eventually([&] {
         const glm::vec3 at = place();
         return at.x > 0.015F && std::abs(at.z - -0.06F) < 0.006F;
-    })) << place().x << " " << place().z;
+    })) << place().x
+        << " " << place().z;
+    EXPECT_TRUE(eventually([&] { return !pane->picture().isNull(); }, 60s));
     window.screenshot("labyrinth");
 }
 
@@ -57,9 +59,8 @@ TEST_F(LabyrinthWindow, KeysLeanItAndDoNotTurnTheEye) {
     QTest::keyRelease(pane, Qt::Key_Down);
     EXPECT_EQ(window.state().installation->eye, eye);
     QTest::keyClick(pane, Qt::Key_N);
-    EXPECT_TRUE(eventually([&] {
-        return findItem(*window.studio().loop.frame()->scene, labyrinth::kMaze)->name == "Mind the holes";
-    }));
+    EXPECT_TRUE(eventually(
+        [&] { return findItem(*window.studio().loop.frame()->scene, labyrinth::kMaze)->name == "Mind the holes"; }));
 }
 
 TEST_F(LabyrinthWindow, EndsWhenSomethingElseIsOpened) {

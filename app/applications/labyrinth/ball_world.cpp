@@ -10,10 +10,10 @@ namespace {
 
 /// Bullet's margins and thresholds are made for things of about one unit, so its unit is the centimetre.
 constexpr double kUnits = 100.0;
-constexpr double kCeiling = 0.05;   ///< metres over the sheet; nothing a ball does leads there
-constexpr double kMostSpeed = 0.7;  ///< metres a second: less than a radius a step
+constexpr double kCeiling = 0.05;    ///< metres over the sheet; nothing a ball does leads there
+constexpr double kMostSpeed = 0.7;   ///< metres a second: less than a radius a step
 constexpr btScalar kMargin = 0.002F; ///< units by which edges are rounded: seams between blocks stay shallow
-constexpr btScalar kSide = 0.7F;    ///< normals that rise less are of sides
+constexpr btScalar kSide = 0.7F;     ///< normals that rise less are of sides
 
 btVector3 toBullet(const glm::dvec3& v) {
     const glm::dvec3 units = kUnits * v;
@@ -105,8 +105,10 @@ struct BallWorld::Data {
             for (int c = 0; c < manifold.getNumContacts(); ++c) {
                 const btManifoldPoint& point = manifold.getContactPoint(c);
                 if (point.getAppliedImpulse() <= 0) continue;
-                if (sign * point.m_normalWorldOnB.y() > kSide) onGround = true;
-                else bump = std::max(bump, static_cast<double>(point.getAppliedImpulse()) / kUnits); // of mass 1
+                if (sign * point.m_normalWorldOnB.y() > kSide)
+                    onGround = true;
+                else
+                    bump = std::max(bump, static_cast<double>(point.getAppliedImpulse()) / kUnits); // of mass 1
             }
         }
     }

@@ -25,11 +25,16 @@ constexpr int kTrail = kFirstPickUp - kFirstTrail;
 
 glm::vec3 colorOf(PickUp pickUp) {
     switch (pickUp) {
-    case PickUp::red: return {0.95F, 0.16F, 0.14F};
-    case PickUp::green: return {0.15F, 0.78F, 0.30F};
-    case PickUp::blue: return {0.14F, 0.42F, 0.95F};
-    case PickUp::yellow: return {0.99F, 0.80F, 0.10F};
-    default: return {0.72F, 0.26F, 0.92F};
+    case PickUp::red:
+        return {0.95F, 0.16F, 0.14F};
+    case PickUp::green:
+        return {0.15F, 0.78F, 0.30F};
+    case PickUp::blue:
+        return {0.14F, 0.42F, 0.95F};
+    case PickUp::yellow:
+        return {0.99F, 0.80F, 0.10F};
+    default:
+        return {0.72F, 0.26F, 0.92F};
     }
 }
 
@@ -84,9 +89,8 @@ SceneItem goalDisc(const Level& level) {
 
 SceneItem goalBeam(const Level& level) {
     const auto side = static_cast<float>(0.5 * level.cell);
-    SceneItem item =
-        demoItem(kBeamItem, "Light over the goal",
-                 ShapeItem{ShapeItem::Form::cylinder, {side, static_cast<float>(kBeamHeight), side}});
+    SceneItem item = demoItem(kBeamItem, "Light over the goal",
+                              ShapeItem{ShapeItem::Form::cylinder, {side, static_cast<float>(kBeamHeight), side}});
     item.position = overFloor(level, level.goal, 0.5 * kBeamHeight);
     item.material = glowing("Light", {0.25F, 0.95F, 0.45F}, 0.8F);
     item.material.reflection = 0.0F;
@@ -115,7 +119,8 @@ SceneItem trailLight(int number) {
 
 SceneItem gem(const Level& level, glm::ivec2 cell, int id, int number) {
     const glm::vec3 color = colorOf(level.at(cell).pickUp);
-    SceneItem item = demoItem(id, "Pick-up " + std::to_string(number + 1), ShapeItem{ShapeItem::Form::box, glm::vec3(kGem)});
+    SceneItem item =
+        demoItem(id, "Pick-up " + std::to_string(number + 1), ShapeItem{ShapeItem::Form::box, glm::vec3(kGem)});
     item.position = overFloor(level, cell, kGemFloats);
     // On its corner, turning.
     item.rotation = glm::angleAxis(0.9553F, glm::normalize(glm::vec3(1.0F, 0.0F, 1.0F)));
@@ -129,8 +134,8 @@ SceneItem gem(const Level& level, glm::ivec2 cell, int id, int number) {
 SceneItem timeBar(const Level& level) {
     SceneItem item = demoItem(kTimeItem, "Time left", ShapeItem{ShapeItem::Form::box, glm::vec3(1.0F)});
     const double top = wallTop(level, {level.columns / 2, level.rows - 1});
-    item.position = {glm::dvec3(0.0, static_cast<double>(kSheet) + top,
-                                0.5 * level.cell * level.rows - 0.5 * level.cell)};
+    item.position = {
+        glm::dvec3(0.0, static_cast<double>(kSheet) + top, 0.5 * level.cell * level.rows - 0.5 * level.cell)};
     item.material = glowing("Time", {1.0F, 0.78F, 0.25F}, 0.3F);
     return item;
 }
@@ -144,9 +149,7 @@ glm::vec3 trophyPlace(const Level& level, std::size_t number) {
                        -0.5 * level.cell * (level.rows - 1))};
 }
 
-SceneItem& itemOf(Scene& scene, int id) {
-    return *std::ranges::find(scene.items, id, &SceneItem::id);
-}
+SceneItem& itemOf(Scene& scene, int id) { return *std::ranges::find(scene.items, id, &SceneItem::id); }
 
 void showPickUps(Scene& scene, const Game& game, const std::vector<glm::ivec2>& all) {
     std::vector<PickUp> waiting = game.taken(); // which lie on the wall, in the order in which they were taken

@@ -19,9 +19,9 @@ enum BoardItem : int {
     kGhostItem,
     kGoalItem,
     kTimeItem,
-    kBeamItem,      ///< the light over the goal
-    kRingItem,      ///< the light that runs out from the goal when the ball is in it
-    kFirstTrail,    ///< where the ball has been, the newest first
+    kBeamItem,   ///< the light over the goal
+    kRingItem,   ///< the light that runs out from the goal when the ball is in it
+    kFirstTrail, ///< where the ball has been, the newest first
     kFirstPickUp = kFirstTrail + 16
 };
 

@@ -13,7 +13,7 @@ namespace {
 constexpr std::size_t kDepth = 5; ///< material below the holes, after those of the kinds of blocks
 constexpr std::size_t kMiddleFloor = 6, kHighFloor = 7;
 constexpr int kMiddle = 3, kHigh = 6; ///< from so many steps a floor is one of these
-constexpr double kBevel = 0.0007; ///< at the upper edges of walls, metres
+constexpr double kBevel = 0.0007;     ///< at the upper edges of walls, metres
 
 using Primitive = Model::Primitive;
 
@@ -113,8 +113,8 @@ SceneModel boardModel(const Level& level, const std::vector<Block>& blocks) {
     for (std::size_t k = 0; k < mesh.primitives.size(); ++k) mesh.primitives[k].material = static_cast<int>(k);
     for (const Block& block : blocks) addBlock(mesh.primitives[materialOf(level, block)], block);
     const glm::dvec2 half = 0.5 * level.cell * glm::dvec2(level.columns, level.rows) - 1e-4;
-    addFace(mesh.primitives[kDepth], {at({-half.x, half.y}, kGround), at(half, kGround), at({half.x, -half.y}, kGround),
-                                      at(-half, kGround)});
+    addFace(mesh.primitives[kDepth],
+            {at({-half.x, half.y}, kGround), at(half, kGround), at({half.x, -half.y}, kGround), at(-half, kGround)});
     Model& model = made.model;
     model.name = level.name;
     for (const Material& material : made.materials) model.materials.emplace_back().name = material.name;

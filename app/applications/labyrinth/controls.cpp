@@ -31,16 +31,26 @@ void Controls::take(const ShowMoment& moment) {
 void Controls::take(const ShowInput& input) {
     const double held = input.value > 0.5 ? 1.0 : 0.0;
     active_ = active_ || input.value != 0.0;
-    if (input.name == "key.left") negative_.x = held;
-    else if (input.name == "key.right") positive_.x = held;
-    else if (input.name == "key.up") negative_.y = held;
-    else if (input.name == "key.down") positive_.y = held;
-    else if (input.name == "pointer.x") pointer_.x = stick(input.value);
-    else if (input.name == "pointer.y") pointer_.y = stick(input.value);
-    else if (input.name == "pad.x") pad_.x = stick(input.value);
-    else if (input.name == "pad.y") pad_.y = stick(input.value);
-    else if (input.name == "key.restart") restart_ = restart_ || held > 0.0;
-    else if (input.name == "key.next") next_ = next_ || held > 0.0;
+    if (input.name == "key.left")
+        negative_.x = held;
+    else if (input.name == "key.right")
+        positive_.x = held;
+    else if (input.name == "key.up")
+        negative_.y = held;
+    else if (input.name == "key.down")
+        positive_.y = held;
+    else if (input.name == "pointer.x")
+        pointer_.x = stick(input.value);
+    else if (input.name == "pointer.y")
+        pointer_.y = stick(input.value);
+    else if (input.name == "pad.x")
+        pad_.x = stick(input.value);
+    else if (input.name == "pad.y")
+        pad_.y = stick(input.value);
+    else if (input.name == "key.restart")
+        restart_ = restart_ || held > 0.0;
+    else if (input.name == "key.next")
+        next_ = next_ || held > 0.0;
 }
 
 void Controls::follow(const ShowMoment& moment) {

@@ -19,7 +19,7 @@ public:
     /// Takes what has come since the frame before.
     void take(const ShowMoment& moment);
 
-    [[nodiscard]] glm::dvec2 lean() const noexcept; ///< radians: as Game::advance takes it
+    [[nodiscard]] glm::dvec2 lean() const noexcept;                  ///< radians: as Game::advance takes it
     [[nodiscard]] bool active() const noexcept { return active_; }   ///< somebody did something in this frame
     [[nodiscard]] bool restart() const noexcept { return restart_; } ///< was pressed in this frame
     [[nodiscard]] bool next() const noexcept { return next_; }       ///< was pressed in this frame

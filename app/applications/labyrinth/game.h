@@ -17,8 +17,8 @@ namespace lumorph::labyrinth {
 struct GameEvent {
     enum class Kind : std::uint8_t { roll, bump, pickUp, fall, goal };
     Kind kind = Kind::roll;
-    double strength = 0.0;     ///< of roll and bump: metres a second; of a pick-up: how many there are now
-    glm::dvec3 place{0.0};     ///< device frame, height 0 at the sheet
+    double strength = 0.0; ///< of roll and bump: metres a second; of a pick-up: how many there are now
+    glm::dvec3 place{0.0}; ///< device frame, height 0 at the sheet
     bool operator==(const GameEvent&) const = default;
 };
 
@@ -42,8 +42,8 @@ public:
     [[nodiscard]] const std::vector<Block>& blocks() const noexcept { return blocks_; }
     [[nodiscard]] const Ball& ball() const noexcept { return world_.ball(); }
     [[nodiscard]] const std::vector<GameEvent>& events() const noexcept { return events_; } ///< of the last `advance`
-    [[nodiscard]] glm::dvec2 lean() const noexcept { return lean_; } ///< that works on the ball
-    [[nodiscard]] double seconds() const noexcept;                   ///< since the start; stands still at the goal
+    [[nodiscard]] glm::dvec2 lean() const noexcept { return lean_; }                        ///< that works on the ball
+    [[nodiscard]] double seconds() const noexcept; ///< since the start; stands still at the goal
     [[nodiscard]] bool fallen() const noexcept { return fallenSteps_ > 0; } ///< the ball is gone for a moment
     [[nodiscard]] bool done() const noexcept { return done_; }
     [[nodiscard]] int falls() const noexcept { return falls_; }
@@ -70,8 +70,8 @@ private:
     glm::dvec3 safe_{0.0}; ///< where the ball goes on after a fall
     double left_ = 0.0;    ///< seconds that made no whole step yet
     std::int64_t steps_ = 0;
-    int fallenSteps_ = 0;  ///< until the ball comes back
-    int quietSteps_ = 0;   ///< until a bump is told again
+    int fallenSteps_ = 0; ///< until the ball comes back
+    int quietSteps_ = 0;  ///< until a bump is told again
     int falls_ = 0;
     bool done_ = false;
     Ghost run_;

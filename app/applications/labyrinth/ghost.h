@@ -12,8 +12,8 @@ namespace lumorph::labyrinth {
 struct Ghost {
     static constexpr double kInterval = 1.0 / 30.0; ///< seconds between positions
 
-    std::string level;                ///< its name
-    double seconds = 0.0;             ///< from the start to the goal
+    std::string level;    ///< its name
+    double seconds = 0.0; ///< from the start to the goal
     int score = 0;
     std::vector<glm::vec3> positions; ///< of the ball's middle, the first at the start; metres, height 0 at the sheet
     bool operator==(const Ghost&) const = default;

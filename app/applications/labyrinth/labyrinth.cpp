@@ -13,11 +13,16 @@ constexpr double kRest = 2.0; ///< seconds in the goal until the next level
 
 const char* soundOf(GameEvent::Kind kind) {
     switch (kind) {
-    case GameEvent::Kind::roll: return "labyrinth.roll";
-    case GameEvent::Kind::bump: return "labyrinth.bump";
-    case GameEvent::Kind::pickUp: return "labyrinth.pickup";
-    case GameEvent::Kind::fall: return "labyrinth.fall";
-    default: return "labyrinth.goal";
+    case GameEvent::Kind::roll:
+        return "labyrinth.roll";
+    case GameEvent::Kind::bump:
+        return "labyrinth.bump";
+    case GameEvent::Kind::pickUp:
+        return "labyrinth.pickup";
+    case GameEvent::Kind::fall:
+        return "labyrinth.fall";
+    default:
+        return "labyrinth.goal";
     }
 }
 
@@ -79,8 +84,10 @@ void LabyrinthProgram::finish(double step) {
 void LabyrinthProgram::keepRun() {
     const Ghost& run = game_->run();
     const auto known = std::ranges::find(best_, run.level, &Ghost::level);
-    if (known == best_.end()) best_.push_back(run);
-    else if (run.score > known->score) *known = run;
+    if (known == best_.end())
+        best_.push_back(run);
+    else if (run.score > known->score)
+        *known = run;
 }
 
 const Ghost* LabyrinthProgram::best() const {

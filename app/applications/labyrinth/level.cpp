@@ -56,8 +56,9 @@ std::optional<int> entry(const Level& level, glm::ivec2 cell, Way way) {
 
 void checkRange(const char* what, double value, double least, double most) {
     if (!(value >= least && value <= most))
-        throw InvalidInput(what, "is " + std::to_string(value) + ", not between " + std::to_string(least) + " and " +
-                                     std::to_string(most),
+        throw InvalidInput(what,
+                           "is " + std::to_string(value) + ", not between " + std::to_string(least) + " and " +
+                               std::to_string(most),
                            "choose a number between them");
 }
 
@@ -65,7 +66,8 @@ void checkNumbers(const Level& level) {
     const auto sound = [](int cells) { return cells >= kMinCells && cells <= kMaxCells; };
     if (!sound(level.columns) || !sound(level.rows) ||
         level.cells.size() != static_cast<std::size_t>(level.columns) * static_cast<std::size_t>(level.rows))
-        throw InvalidInput("map", "has " + std::to_string(level.columns) + " x " + std::to_string(level.rows) + " cells",
+        throw InvalidInput("map",
+                           "has " + std::to_string(level.columns) + " x " + std::to_string(level.rows) + " cells",
                            "give it " + std::to_string(kMinCells) + " to " + std::to_string(kMaxCells) + " a side");
     checkRange("cell", level.cell, 0.009, 0.04);
     checkRange("step", level.step, 0.0005, 0.005);
@@ -87,7 +89,8 @@ void checkSlope(const Level& level, glm::ivec2 cell) {
     const LevelCell& slope = level.at(cell);
     const char* what = slope.tile == Tile::ramp ? "ramp" : "stairs";
     const std::optional<int> upper = upperEnd(level, cell);
-    if (!upper) refuse(cell, std::string(what) + " leads up to nothing that can be walked on", "turn it, or put floor there");
+    if (!upper)
+        refuse(cell, std::string(what) + " leads up to nothing that can be walked on", "turn it, or put floor there");
     const int rise = *upper - slope.height;
     const int most = slope.tile == Tile::ramp ? kMaxRampRise : kMaxStairsRise;
     if (rise < 1 || rise > most)
@@ -105,7 +108,8 @@ void checkSlope(const Level& level, glm::ivec2 cell) {
 void checkBridge(const Level& level, glm::ivec2 cell) {
     const LevelCell& bridge = level.at(cell);
     const std::optional<double> deck = deckOf(level, cell);
-    if (!deck) refuse(cell, "bridge whose ends do not lie equally high", "put floor or ramps of one height at both ends");
+    if (!deck)
+        refuse(cell, "bridge whose ends do not lie equally high", "put floor or ramps of one height at both ends");
     const double least = bridge.height * level.step + 2.0 * kBallRadius + kDeckThickness + 0.0005;
     if (*deck < least)
         refuse(cell, "the ball does not fit below the bridge",

@@ -27,7 +27,7 @@ enum class PickUp : std::uint8_t { none, red, green, blue, yellow, violet };
 struct LevelCell {
     Tile tile = Tile::floor;
     Way way = Way::right; ///< of ramps and stairs: uphill; of bridges: along the deck (right or down)
-    int height = 0;       ///< of the floor, in steps; of ramps and stairs: their lower end; of bridges: what lies beneath
+    int height = 0; ///< of the floor, in steps; of ramps and stairs: their lower end; of bridges: what lies beneath
     PickUp pickUp = PickUp::none; ///< on plain floor alone
     bool operator==(const LevelCell&) const = default;
 };
@@ -35,11 +35,11 @@ struct LevelCell {
 /// A labyrinth as a plain value. Its middle is the device's, its height 0 the device's sheet at rest.
 struct Level {
     std::string name;
-    std::string idea;                  ///< one sentence: what is new in it
-    double cell = 0.010;               ///< side of a cell, metres
-    double step = 0.0015;              ///< one unit of height, metres
-    double wall = 0.006;               ///< of walls over the highest floor beside them, metres
-    double seconds = 60.0;             ///< who is faster scores
+    std::string idea;                   ///< one sentence: what is new in it
+    double cell = 0.010;                ///< side of a cell, metres
+    double step = 0.0015;               ///< one unit of height, metres
+    double wall = 0.006;                ///< of walls over the highest floor beside them, metres
+    double seconds = 60.0;              ///< who is faster scores
     std::string floorMaterial = "Wood"; ///< names of ready materials
     std::string wallMaterial = "Brick";
     int columns = 0;
@@ -63,8 +63,9 @@ inline constexpr double kDeckThickness = 0.0012; ///< of bridges, metres
 [[nodiscard]] glm::dvec2 centreOf(const Level& level, glm::ivec2 cell) noexcept;
 [[nodiscard]] glm::ivec2 cellAt(const Level& level, const glm::dvec2& place) noexcept;
 
-/// How high the ground of a cell lies at one of its sides, metres over the sheet: of ramps and stairs at their lower and
-/// upper end, of bridges that of the passage. Nothing where one cannot go: walls, holes, and beside ramps and stairs.
+/// How high the ground of a cell lies at one of its sides, metres over the sheet: of ramps and stairs at their lower
+/// and upper end, of bridges that of the passage. Nothing where one cannot go: walls, holes, and beside ramps and
+/// stairs.
 [[nodiscard]] std::optional<double> groundAt(const Level& level, glm::ivec2 cell, Way side) noexcept;
 /// The deck of a bridge, metres over the sheet; nothing of other cells.
 [[nodiscard]] std::optional<double> deckOf(const Level& level, glm::ivec2 cell) noexcept;

@@ -46,10 +46,14 @@ private:
         if (taken(cell)) return;
         if (const std::optional<Flat> flat = flatOf(cell)) return addFlat(cell, *flat);
         switch (level_.at(cell).tile) {
-        case Tile::hole: return addHole(cell);
-        case Tile::ramp: return addRamp(cell);
-        case Tile::stairs: return addStairs(cell);
-        default: return addBridge(cell);
+        case Tile::hole:
+            return addHole(cell);
+        case Tile::ramp:
+            return addRamp(cell);
+        case Tile::stairs:
+            return addStairs(cell);
+        default:
+            return addBridge(cell);
         }
     }
 
@@ -57,9 +61,7 @@ private:
         return taken_[static_cast<std::size_t>(cell.y * level_.columns + cell.x)];
     }
 
-    bool joins(glm::ivec2 cell, const Flat& flat) {
-        return level_.holds(cell) && !taken(cell) && flatOf(cell) == flat;
-    }
+    bool joins(glm::ivec2 cell, const Flat& flat) { return level_.holds(cell) && !taken(cell) && flatOf(cell) == flat; }
 
     /// The largest rectangle along the row, then as many rows as are alike.
     void addFlat(glm::ivec2 cell, const Flat& flat) {
@@ -149,8 +151,7 @@ private:
         const int across = isAcross(bridge.way) ? 1 : 0;
         for (const bool far : {false, true}) {
             Rectangle rail = area;
-            (far ? rail.min : rail.max)[across] =
-                far ? area.max[across] - kRailWidth : area.min[across] + kRailWidth;
+            (far ? rail.min : rail.max)[across] = far ? area.max[across] - kRailWidth : area.min[across] + kRailWidth;
             addBox(Block::Kind::rail, rail, deck, deck + kRailHeight);
         }
     }

@@ -50,7 +50,8 @@ char letterOf(LevelCell cell) {
     cell.height = 0;
     for (const Sign& sign : kSigns)
         if (sign.cell == cell) return sign.letter;
-    throw InvalidInput("cell of a level", "no sign of a map says it", "use ways of bridges and pick-ups as the map has");
+    throw InvalidInput("cell of a level", "no sign of a map says it",
+                       "use ways of bridges and pick-ups as the map has");
 }
 
 std::string_view trimmed(std::string_view text) {
@@ -98,8 +99,10 @@ private:
         if (block_ == Block::none) refuse("has cells before 'map:'", "write 'map:' in a line before them");
         // Blanks before and after a row say nothing.
         column_ = static_cast<int>(text.data() - text_.data()) + 1;
-        if (block_ == Block::map) readRow(text);
-        else readHeights(text);
+        if (block_ == Block::map)
+            readRow(text);
+        else
+            readHeights(text);
     }
 
     void readHeader(std::size_t colon) {
@@ -112,14 +115,22 @@ private:
             if (key == "map" ? level_.rows > 0 : heightRows_ > 0 || level_.rows == 0)
                 refuse("'" + key + ":' comes too late or too early", "write the map once, and its heights after it");
             block_ = key == "map" ? Block::map : Block::heights;
-        } else if (key == "name") level_.name = value;
-        else if (key == "idea") level_.idea = value;
-        else if (key == "floor") level_.floorMaterial = value;
-        else if (key == "walls") level_.wallMaterial = value;
-        else if (key == "time") level_.seconds = number(value, "s", 1.0);
-        else if (key == "cell") level_.cell = number(value, "mm", 0.001);
-        else if (key == "step") level_.step = number(value, "mm", 0.001);
-        else if (key == "wall") level_.wall = number(value, "mm", 0.001);
+        } else if (key == "name")
+            level_.name = value;
+        else if (key == "idea")
+            level_.idea = value;
+        else if (key == "floor")
+            level_.floorMaterial = value;
+        else if (key == "walls")
+            level_.wallMaterial = value;
+        else if (key == "time")
+            level_.seconds = number(value, "s", 1.0);
+        else if (key == "cell")
+            level_.cell = number(value, "mm", 0.001);
+        else if (key == "step")
+            level_.step = number(value, "mm", 0.001);
+        else if (key == "wall")
+            level_.wall = number(value, "mm", 0.001);
         else {
             column_ = 1;
             refuse(inQuotes(key) + " is no line of a level",
@@ -132,7 +143,8 @@ private:
         const auto [end, error] = std::from_chars(value.data(), value.data() + value.size(), number);
         const std::string_view behind = trimmed(value.substr(static_cast<std::size_t>(end - value.data())));
         if (error != std::errc() || !std::isfinite(number) || behind != unit)
-            refuse(inQuotes(value) + " is no number in " + std::string(unit), "write it as '10 " + std::string(unit) + "'");
+            refuse(inQuotes(value) + " is no number in " + std::string(unit),
+                   "write it as '10 " + std::string(unit) + "'");
         return number * scale;
     }
 
@@ -147,7 +159,8 @@ private:
     void readRow(std::string_view row) {
         const bool first = level_.rows == 0;
         checkWidth(row, first ? kMinCells : level_.columns, first ? kMaxCells : level_.columns);
-        if (level_.rows == kMaxCells) refuse("the map has too many rows", "make it at most " + std::to_string(kMaxCells));
+        if (level_.rows == kMaxCells)
+            refuse("the map has too many rows", "make it at most " + std::to_string(kMaxCells));
         level_.columns = static_cast<int>(row.size());
         const int from = column_;
         for (const char letter : row) {
@@ -179,8 +192,8 @@ private:
         for (const char& digit : row) {
             if (digit != '.' && (digit < '0' || digit > '9'))
                 refuse(inQuotes(std::string_view(&digit, 1)) + " is no height", "write 0 to 9, or . for 0");
-            const auto index = static_cast<std::size_t>(heightRows_) * row.size() +
-                               static_cast<std::size_t>(&digit - row.data());
+            const auto index =
+                static_cast<std::size_t>(heightRows_) * row.size() + static_cast<std::size_t>(&digit - row.data());
             level_.cells[index].height = digit == '.' ? 0 : digit - '0';
             ++column_;
         }
@@ -251,7 +264,8 @@ std::string levelText(const Level& level) {
     text += "name: " + level.name + "\nidea: " + level.idea + "\n";
     text += "floor: " + level.floorMaterial + "\nwalls: " + level.wallMaterial + "\n";
     text += "time: " + shortest(level.seconds) + " s\n";
-    text += "cell: " + millimetres(level.cell) + "step: " + millimetres(level.step) + "wall: " + millimetres(level.wall);
+    text +=
+        "cell: " + millimetres(level.cell) + "step: " + millimetres(level.step) + "wall: " + millimetres(level.wall);
     std::string map, heights;
     for (int row = 0; row < level.rows; ++row) {
         for (int column = 0; column < level.columns; ++column) {

@@ -49,7 +49,7 @@ double stepCost(const Level& level, const Spot& from, Way way, const Spot& to) {
     const LevelCell& entered = level.at(to.cell);
     const bool fromBelow = !from.deck && level.at(from.cell).tile == Tile::bridge;
     const bool underDeck = !to.deck && entered.tile == Tile::bridge && isAcross(entered.way) == isAcross(way);
-    if (underDeck && !fromBelow) return kNone; // its deck is in the way
+    if (underDeck && !fromBelow) return kNone;                                        // its deck is in the way
     if (!to.deck && entered.tile == Tile::stairs && entered.way == way) return kNone; // too steep
     return 1.0 + (*out - *in > kLevel ? kDropCost : 0.0) + danger(level, to.cell);
 }

@@ -12,8 +12,7 @@
 namespace lumorph {
 
 std::span<const Demo> demos() {
-    static const std::vector<Demo> all{waterDemo(), techniquesDemo(), fieldDemo(),
-                                       labyrinth::labyrinthDemo()};
+    static const std::vector<Demo> all{waterDemo(), techniquesDemo(), fieldDemo(), labyrinth::labyrinthDemo()};
     return all;
 }
 

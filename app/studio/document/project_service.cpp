@@ -38,7 +38,9 @@ struct Bundled {
 };
 
 /// The same visitor's move shall not meet the same chance in each show.
-std::uint64_t newSeed() { return static_cast<std::uint64_t>(std::chrono::steady_clock::now().time_since_epoch().count()); }
+std::uint64_t newSeed() {
+    return static_cast<std::uint64_t>(std::chrono::steady_clock::now().time_since_epoch().count());
+}
 
 /// A demonstration by its name; without one a new project, the bundled tablet. Neither belongs to a file of the user's.
 Bundled readBundled(const std::string& demo, const FieldCache& cache, const Progress& progress) {

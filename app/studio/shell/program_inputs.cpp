@@ -100,8 +100,10 @@ void ProgramInputs::letGo() {
 }
 
 bool ProgramInputs::press(int key, bool down) {
-    if (down) held_.insert(key);
-    else if (!held_.remove(key)) return true; // pressed elsewhere
+    if (down)
+        held_.insert(key);
+    else if (!held_.remove(key))
+        return true; // pressed elsewhere
     loop_.input(inputOf(key), down ? 1.0 : 0.0);
     return true;
 }

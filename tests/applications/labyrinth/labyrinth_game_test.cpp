@@ -43,9 +43,7 @@ bool same(const Ball& a, const Ball& b) {
            std::memcmp(&a.rotation, &b.rotation, sizeof a.rotation) == 0;
 }
 
-Level withoutGoal(const char* map) {
-    return readLevel(std::string("lumorph labyrinth 1\nmap:\n") + map, "test");
-}
+Level withoutGoal(const char* map) { return readLevel(std::string("lumorph labyrinth 1\nmap:\n") + map, "test"); }
 
 TEST(LabyrinthGame, TheBallNeverLeavesThroughAWall) {
     const std::vector<Level> levels = bundledLevels();
@@ -60,8 +58,8 @@ TEST(LabyrinthGame, TheBallNeverLeavesThroughAWall) {
             const glm::dvec3& at = game.ball().position;
             const glm::ivec2 cell = cellAt(level, {at.x, at.z});
             ASSERT_TRUE(level.holds(cell)) << "run " << run << ", step " << step;
-            ASSERT_NE(level.at(cell).tile, Tile::wall) << level.name << ", run " << run << ", step " << step << ", at "
-                                                      << at.x << " " << at.y << " " << at.z;
+            ASSERT_NE(level.at(cell).tile, Tile::wall)
+                << level.name << ", run " << run << ", step " << step << ", at " << at.x << " " << at.y << " " << at.z;
             ASSERT_LT(at.y, 0.05);
         }
     }

@@ -110,8 +110,10 @@ TEST(LabyrinthLevel, DamagedTextsAreReadOrRefusedAndNothingElse) {
         std::string text = kSmall;
         for (int edits = 1 + static_cast<int>(random() % 3); edits > 0; --edits) {
             const std::size_t at = random() % text.size();
-            if (random() % 3 == 0) text.erase(at, 1);
-            else text[at] = "#.OX@><v^RDLU=Hr0129\n: "[random() % 23];
+            if (random() % 3 == 0)
+                text.erase(at, 1);
+            else
+                text[at] = "#.OX@><v^RDLU=Hr0129\n: "[random() % 23];
         }
         try {
             const Level level = readLevel(text, "damaged");
@@ -129,13 +131,15 @@ double literalHeight(const Level& level, const glm::dvec2& place) {
     const LevelCell& here = level.at(cell);
     const glm::dvec2 from = place - centreOf(level, cell);
     switch (here.tile) {
-    case Tile::hole: return glm::length(from) < 0.39 * level.cell ? std::nan("") : here.height * level.step;
+    case Tile::hole:
+        return glm::length(from) < 0.39 * level.cell ? std::nan("") : here.height * level.step;
     case Tile::ramp: {
         const glm::ivec2 up = stepOf(here.way);
         const double low = *groundAt(level, cell, opposite(here.way)), high = *groundAt(level, cell, here.way);
         return low + (high - low) * (0.5 + (from.x * up.x + from.y * up.y) / level.cell);
     }
-    default: return here.height * level.step;
+    default:
+        return here.height * level.step;
     }
 }
 
@@ -150,14 +154,17 @@ TEST(LabyrinthLevel, BlocksLieWhereTheMapSays) {
             const glm::ivec2 cell = cellAt(level, place);
             const Tile tile = level.at(cell).tile;
             const double fromMiddle = glm::length(place - centreOf(level, cell)) / level.cell;
-            if (tile == Tile::stairs || tile == Tile::bridge || (tile == Tile::hole && fromMiddle > 0.38 && fromMiddle < 0.41))
+            if (tile == Tile::stairs || tile == Tile::bridge ||
+                (tile == Tile::hole && fromMiddle > 0.38 && fromMiddle < 0.41))
                 continue;
             double top = std::nan("");
             for (const Block& block : blocks)
                 if (const double height = topAt(block, place); !std::isnan(height)) top = std::fmax(top, height);
             const double expected = tile == Tile::wall ? wallTop(level, cell) : literalHeight(level, place);
-            if (std::isnan(expected)) EXPECT_TRUE(std::isnan(top)) << level.name;
-            else EXPECT_NEAR(top, expected, 1e-9) << level.name << " " << cell.x << " " << cell.y;
+            if (std::isnan(expected))
+                EXPECT_TRUE(std::isnan(top)) << level.name;
+            else
+                EXPECT_NEAR(top, expected, 1e-9) << level.name << " " << cell.x << " " << cell.y;
         }
     }
 }
