@@ -49,7 +49,7 @@ TEST(Demo, OfAMatchedTargetPlaysWithoutAWindowToo) {
     EXPECT_TRUE(told["warnings"].empty()) << told["warnings"];
 }
 
-/// The frames of a video, and how far apart the last ones of two are, a pixel.
+/// How far apart the last frames of two videos are, a pixel.
 double lastFramesDiffer(const std::string& one, const std::string& other) {
     cv::Mat last[2];
     int k = 0;
@@ -65,11 +65,11 @@ double lastFramesDiffer(const std::string& one, const std::string& other) {
 TEST(Demo, AnApplicationAnswersRecordedInputs) {
     const TemporaryFolder folder;
     const std::string inputs = (folder / "inputs.json").string();
-    writeFile(inputs, std::string(R"({"inputs": [{"seconds": 0.1, "name": "key.next", "value": 1},
-                                                {"seconds": 0.12, "name": "key.next", "value": 1}]})"));
+    writeFile(inputs, std::string(R"({"inputs": [{"seconds": 0.0, "name": "key.next", "value": 1},
+                                                {"seconds": 0.02, "name": "key.next", "value": 1}]})"));
     const auto play = [&](const std::string& name, const std::vector<std::string>& more) {
         std::vector<std::string> all{
-            "demo", "labyrinth", "--seconds", "0.3", "--json", "--record", (folder / (name + ".mp4")).string()};
+            "demo", "labyrinth", "--seconds", "0.1", "--json", "--record", (folder / (name + ".mp4")).string()};
         all.insert(all.end(), more.begin(), more.end());
         const Outcome outcome = lumorph(all);
         EXPECT_EQ(outcome.exitCode, 0) << outcome.err;
@@ -98,8 +98,8 @@ TEST(Demo, WrongUseIsNamed) {
     EXPECT_TRUE(filesIn(folder.path()).empty());
     const std::string inputs = (folder / "inputs.json").string();
     writeFile(inputs, std::string(R"({"inputs": [{"seconds": -1, "name": "key.left", "value": 1}]})"));
-    refused({"labyrinth", "--json", "--input", inputs}, 2, "inputs[0].seconds");
-    refused({"labyrinth", "--json", "--input", (folder / "none.json").string()}, 2, "none.json");
+    refused({"labyrinth", "--json", "--input", inputs}, 1, "inputs[0].seconds");
+    refused({"labyrinth", "--json", "--input", (folder / "none.json").string()}, 1, "none.json");
     refused({"water", "--json", "--input", inputs}, 2, "goes by time alone");
 }
 
