@@ -1,8 +1,11 @@
 #pragma once
 
+#include <cstdint>
+#include <memory>
 #include <string>
 #include <vector>
 
+#include "core/loop/show_program.h"
 #include "core/show/project_contents.h"
 
 namespace lumorph {
@@ -28,6 +31,9 @@ struct Demo {
     ProjectContents (*open)(const Progress& progress) = nullptr;
     /// All have the same items with the same ids; empty for one that shows one thing.
     std::vector<DemoStep> (*steps)() = nullptr;
+    /// An application that answers what happens, in place of the scene of `open`; none: it goes by time alone. The same
+    /// seed and inputs give the same show. Throws DataError where a resource is missing.
+    std::unique_ptr<ShowProgram> (*program)(std::uint64_t seed) = nullptr;
 };
 
 /// A demonstration whose scene is a bundled project: `projects/NAME.lumorph`.

@@ -21,9 +21,8 @@ namespace {
 
 struct DemoOptions {
     std::string name;
-    double seconds = 6.0;
-    std::string record;
-    bool json = false;
+    DemoPlay play;
+    std::string record, picture, inputs;
 };
 
 /// Replaces this process by `lumorph-studio`, which lies beside it: only it has a window.
@@ -50,16 +49,28 @@ void addDemoCommand(CLI::App& app) {
         const bool known = std::ranges::find(demos(), name, &Demo::name) != demos().end();
         return known ? std::string() : "there is no demo '" + name + "'; there are: " + demoNames();
     });
-    CLI::Option* seconds = command->add_option("--seconds", options->seconds, "Without a window: how long it lasts")
-                               ->check(CLI::Range(0.1, 600.0))
-                               ->capture_default_str();
+    CLI::Option* seconds =
+        command->add_option("--seconds", options->play.seconds, "Without a window: how long it lasts")
+            ->check(CLI::Range(0.1, 600.0))
+            ->capture_default_str();
     CLI::Option* record =
         command->add_option("--record", options->record, "Without a window: a video of the lit device, OUT.mp4");
-    command->add_flag("--json", options->json, "Without a window: print its rates as one JSON value");
-    command->callback([options, seconds, record] {
+    CLI::Option* picture =
+        command->add_option("--picture", options->picture, "Without a window: the last picture of that, OUT.png");
+    CLI::Option* inputs =
+        command->add_option("--input", options->inputs,
+                            "Without a window: what visitors do, as JSON: seconds, name and value of each input");
+    CLI::Option* seed =
+        command->add_option("--seed", options->play.seed, "Without a window: of an application's chance")
+            ->capture_default_str();
+    command->add_flag("--json", options->play.json, "Without a window: print its rates as one JSON value");
+    command->callback([options, seconds, record, picture, inputs, seed] {
         const Demo& demo = demoNamed(options->name);
-        if (*seconds || *record || options->json)
-            playDemo(demo, options->seconds, options->record, options->json, std::cout);
+        options->play.video = options->record;
+        options->play.last = options->picture;
+        options->play.inputs = options->inputs;
+        if (*seconds || *record || *picture || *inputs || *seed || options->play.json)
+            playDemo(demo, options->play, std::cout);
         else
             showInWindow(demo);
     });

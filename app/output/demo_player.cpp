@@ -12,6 +12,7 @@
 #include "app/output/video_writer.h"
 #include "core/base/error.h"
 #include "core/base/statistics.h"
+#include "core/loop/show_program.h"
 #include "core/mdf/builder.h"
 #include "core/render/gl/headless_context.h"
 #include "core/render/spatial_renderer.h"
@@ -40,9 +41,14 @@ glm::vec3 walkedEye(const glm::vec3& eye, double seconds) {
 }
 
 /// A show that nobody watches waits for its field.
-MatchWish completeWish(const ProjectContents& contents) {
+MatchWish completeWish(const ProjectContents& contents, const std::shared_ptr<ShowProgram>& program) {
     MatchWish wish = wishOf(contents);
     wish.showTint = false;
+    if (program) {
+        wish.program = program;
+        wish.inputs = std::make_shared<ShowInputs>();
+        wish.driver = Driver::program;
+    }
     if (wish.target && !wish.field) wish.field = std::make_shared<const MatchField>(buildField(*wish.rig, {}));
     return wish;
 }
@@ -50,20 +56,25 @@ MatchWish completeWish(const ProjectContents& contents) {
 /// A show, drawn and measured step by step.
 class Recorder {
 public:
-    Recorder(const ProjectContents& contents, const std::string& name, const ShowPictures& show)
-        : name_(name), show_(show), room_(contents.project.installation), player_(clock_, completeWish(contents)) {
+    Recorder(const ProjectContents& contents, const std::string& name, const ShowPictures& show,
+             const ShowScript& script)
+        : name_(name), show_(show), room_(contents.project.installation), inputs_(script.inputs),
+          player_(clock_, completeWish(contents, script.program)) {
         renderer_.setMeasuring(true);
         renderer_.setEyeSize(show.video);
     }
 
     void step() {
+        const double seconds = player_.frame() ? player_.seconds() + ShowPlayer::kStep : 0.0;
         Installation room = room_;
-        room.eye = walkedEye(room_.eye, player_.frame() ? player_.seconds() + ShowPlayer::kStep : 0.0);
+        room.eye = walkedEye(room_.eye, seconds);
         MatchWish wish = player_.wish();
         wish.installation = std::make_shared<const Installation>(std::move(room));
         player_.setWish(std::move(wish));
+        if (player_.wish().inputs) giveInputs(seconds);
         const auto begun = Clock::now();
-        player_.step();
+        const MatchFrame& frame = *player_.step();
+        if (!frame.programError.empty()) programError_ = frame.programError;
         loopTimes_.push_back(since(begun));
     }
 
@@ -100,10 +111,15 @@ public:
         rates.loopMilliseconds = loopTimes_.empty() ? 0.0 : median(loopTimes_);
         rates.passMilliseconds = passTimes_.empty() ? 0.0 : median(passTimes_);
         rates.warnings = renderer_.warnings();
+        if (!programError_.empty()) rates.warnings.push_back("The application has ended: " + programError_);
         return rates;
     }
 
 private:
+    void giveInputs(double seconds) {
+        for (; given_ < inputs_.size() && inputs_[given_].seconds <= seconds; ++given_)
+            player_.wish().inputs->push(inputs_[given_].input);
+    }
     static CalibratedCamera viewOf(const ShowFrame& frame, glm::ivec2 size) {
         return deviceView(frame, frame.eye.value_or(frame.installation->eye), size);
     }
@@ -111,6 +127,9 @@ private:
     const std::string& name_;
     const ShowPictures& show_;
     const Installation room_;
+    const InputScript& inputs_;
+    std::size_t given_ = 0;
+    std::string programError_;
     ManualClock clock_;
     ShowPlayer player_;
     HeadlessContext context_;
@@ -121,11 +140,11 @@ private:
 } // namespace
 
 ShowRates playShow(const ProjectContents& contents, const std::string& name, const ShowPictures& show,
-                   const fs::path& pictures, const fs::path& video) {
+                   const fs::path& pictures, const fs::path& video, const ShowScript& script) {
     if (!(show.seconds > 0.0 && show.seconds <= kMaxSeconds))
         throw InvalidInput("--seconds", "the show lasts more than 0 and at most 600 seconds",
                            "give a number in that range");
-    Recorder recorder(contents, name, show);
+    Recorder recorder(contents, name, show, script);
     std::optional<VideoWriter> writer;
     if (!video.empty()) writer.emplace(video, show.video, 1.0 / (ShowPlayer::kStep * kStepsAPicture));
     const int steps = std::max(kStepsAPicture, static_cast<int>(std::lround(show.seconds / ShowPlayer::kStep)));
@@ -135,6 +154,7 @@ ShowRates playShow(const ProjectContents& contents, const std::string& name, con
         if (k % kStepsAPicture != 0) continue;
         const Image picture = recorder.lab();
         if (writer) writer->add(picture);
+        if (!show.last.empty() && k + kStepsAPicture >= steps) writePng(picture, show.last);
     }
     if (writer) writer->finish();
     ShowRates rates = recorder.rates();
@@ -142,17 +162,34 @@ ShowRates playShow(const ProjectContents& contents, const std::string& name, con
     return rates;
 }
 
-void playDemo(const Demo& demo, double seconds, const fs::path& video, bool json, std::ostream& out) {
+namespace {
+
+ShowScript scriptOf(const Demo& demo, const DemoPlay& play) {
+    ShowScript script;
+    if (!play.inputs.empty()) {
+        if (!demo.program)
+            throw InvalidInput("--input", "the demo '" + demo.name + "' goes by time alone", "leave it out");
+        script.inputs = readInputScriptFile(play.inputs);
+    }
+    if (demo.program) script.program = demo.program(play.seed);
+    return script;
+}
+
+} // namespace
+
+void playDemo(const Demo& demo, const DemoPlay& play, std::ostream& out) {
     ShowPictures show;
-    show.seconds = seconds;
-    const ShowRates rates = playShow(demo.open({}), demo.name, show, {}, video);
-    if (json) {
+    show.seconds = play.seconds;
+    show.last = play.last;
+    const ShowScript script = scriptOf(demo, play);
+    const ShowRates rates = playShow(demo.open({}), demo.name, show, {}, play.video, script);
+    if (play.json) {
         const nlohmann::json value{{"demo", demo.name},
-                                   {"seconds", seconds},
+                                   {"seconds", play.seconds},
                                    {"frames", rates.frames},
                                    {"framesPerSecond", rates.framesPerSecond},
                                    {"ms", {{"loop", rates.loopMilliseconds}, {"passes", rates.passMilliseconds}}},
-                                   {"record", video.string()},
+                                   {"record", play.video.string()},
                                    {"warnings", rates.warnings}};
         out << value.dump(2) << std::endl;
         return;
@@ -161,7 +198,7 @@ void playDemo(const Demo& demo, double seconds, const fs::path& video, bool json
         << rates.loopMilliseconds << " ms, both passes " << rates.passMilliseconds << " ms, with the lab "
         << rates.framesPerSecond << " frames/s" << std::endl;
     for (const std::string& warning : rates.warnings) out << warning << std::endl;
-    if (!video.empty()) out << "Video: " << fs::absolute(video).lexically_normal().string() << std::endl;
+    if (!play.video.empty()) out << "Video: " << fs::absolute(play.video).lexically_normal().string() << std::endl;
 }
 
 } // namespace lumorph

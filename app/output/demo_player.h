@@ -1,13 +1,16 @@
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <iosfwd>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include <glm/vec2.hpp>
 
 #include "app/applications/demo.h"
+#include "core/show/input_script.h"
 
 namespace lumorph {
 
@@ -16,6 +19,13 @@ struct ShowPictures {
     double seconds = 4.0;
     glm::ivec2 video{960, 600};     ///< pixels of the video, both even
     glm::ivec2 picture{1600, 1000}; ///< pixels of the pictures of eye and lab
+    std::filesystem::path last;     ///< the video's last picture as a PNG file; empty: none
+};
+
+/// An application that takes the place of a project's scene, and what is done to it.
+struct ShowScript {
+    std::shared_ptr<ShowProgram> program; ///< empty: the project's own scene
+    InputScript inputs;
 };
 
 /// What came of it.
@@ -31,11 +41,23 @@ struct ShowRates {
 /// renderer as in the window; the viewer walks slowly around the device. `name` begins the names of pictures.
 /// `pictures` may be empty: else the moment in the middle is written there as NAME-eye.png, NAME-projector.png and
 /// NAME-lab.png. `video` may be empty. Throws DeviceError where nothing can be drawn or written, InvalidInput for a
-/// time outside (0, 600].
+/// time outside (0, 600]. A program that ends by an error is told among the warnings.
 ShowRates playShow(const ProjectContents& contents, const std::string& name, const ShowPictures& show,
-                   const std::filesystem::path& pictures, const std::filesystem::path& video);
+                   const std::filesystem::path& pictures, const std::filesystem::path& video,
+                   const ShowScript& script = {});
 
-/// Plays a demonstration and tells its rates on `out`, as JSON if wanted. Throws as `Demo::open` and `playShow` do.
-void playDemo(const Demo& demo, double seconds, const std::filesystem::path& video, bool json, std::ostream& out);
+/// How a demonstration is played without a window.
+struct DemoPlay {
+    double seconds = 6.0;
+    std::filesystem::path video;  ///< .mp4; empty: none
+    std::filesystem::path last;   ///< its last picture, .png; empty: none
+    std::filesystem::path inputs; ///< as `readInputScript` reads them; empty: none
+    std::uint64_t seed = 1;       ///< of an application
+    bool json = false;            ///< its rates as JSON
+};
+
+/// Plays a demonstration and tells its rates on `out`. Throws InvalidInput for inputs of one that takes none, and as
+/// `Demo::open`, `Demo::program`, `readInputScript` and `playShow` do.
+void playDemo(const Demo& demo, const DemoPlay& play, std::ostream& out);
 
 } // namespace lumorph

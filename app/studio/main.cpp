@@ -81,11 +81,15 @@ int forgetPin() {
 /// Needs no display, and so no application.
 int showHeadless(const Arguments& arguments) {
     try {
-        if (arguments.play > 0.0)
-            lumorph::playDemo(lumorph::demoNamed(arguments.demo), arguments.play, arguments.record, arguments.json,
-                              std::cout);
-        else
+        if (arguments.play <= 0.0) {
             runHeadlessShow(arguments.headless, arguments.seconds, std::cout);
+            return 0;
+        }
+        lumorph::DemoPlay play;
+        play.seconds = arguments.play;
+        play.video = arguments.record;
+        play.json = arguments.json;
+        lumorph::playDemo(lumorph::demoNamed(arguments.demo), play, std::cout);
         return 0;
     } catch (const std::exception& error) {
         std::fprintf(stderr, "lumorph-studio: %s\n", error.what());

@@ -13,6 +13,7 @@
 #include "core/loop/match_field.h"
 #include "core/loop/match_target.h"
 #include "core/loop/show_inputs.h"
+#include "core/loop/show_sound.h"
 #include "core/mdf/placement.h"
 #include "core/scene/driver.h"
 #include "core/scene/installation.h"
@@ -99,6 +100,7 @@ struct MatchFrame {
     std::shared_ptr<const ShowProgram> program; ///< that was asked in this frame; empty: none
     double programSeconds = 0.0;                ///< its time, ShowMoment::seconds
     std::vector<ShowInput> inputs;              ///< that it was given in this frame: a recording of them can replay it
+    std::vector<ShowSound> sounds;              ///< that it lets be heard
     /// Why the wish's program is asked no more, and that the show goes on without it; in every frame from its end on.
     std::string programError;
 

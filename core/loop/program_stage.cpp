@@ -132,6 +132,7 @@ MatchWish ProgramStage::answered(const MatchWish& wish, std::span<const double> 
         if (content.scene && content.scene != checked_) checkScene(*content.scene);
         checked_ = content.scene;
     }
+    frame.sounds = std::move(content.sounds);
     MatchWish shown = wish;
     if (content.scene) {
         shown.scene = content.scene;

@@ -4,6 +4,7 @@
 #include <span>
 #include <string>
 #include <variant>
+#include <vector>
 
 #include <glm/mat4x4.hpp>
 
@@ -11,6 +12,7 @@
 #include "core/loop/match_field.h"
 #include "core/loop/pose_stream.h"
 #include "core/loop/show_inputs.h"
+#include "core/loop/show_sound.h"
 #include "core/rig/rig.h"
 #include "core/scene/installation.h"
 #include "core/scene/scene.h"
@@ -58,6 +60,8 @@ struct ShowContent {
     Following following = Following::matched;
 
     bool moves = true; ///< another frame without a new input or pose would be another one
+
+    std::vector<ShowSound> sounds; ///< that begin in this frame, or go on in it
 };
 
 /// An application: asked once a frame for what is shown and felt. It runs in the loop's thread, knows neither window

@@ -49,6 +49,38 @@ TEST(Demo, OfAMatchedTargetPlaysWithoutAWindowToo) {
     EXPECT_TRUE(told["warnings"].empty()) << told["warnings"];
 }
 
+/// How far apart the last frames of two videos are, a pixel.
+double lastFramesDiffer(const std::string& one, const std::string& other) {
+    cv::Mat last[2];
+    int k = 0;
+    for (const std::string& file : {one, other}) {
+        cv::VideoCapture video(file, cv::CAP_FFMPEG);
+        for (cv::Mat frame; video.read(frame);) last[k] = frame.clone();
+        ++k;
+    }
+    return cv::norm(last[0], last[1], cv::NORM_L1) / static_cast<double>(last[0].total());
+}
+
+// The same seed and inputs are the same show.
+TEST(Demo, AnApplicationAnswersRecordedInputs) {
+    const TemporaryFolder folder;
+    const std::string inputs = (folder / "inputs.json").string();
+    writeFile(inputs, std::string(R"({"inputs": [{"seconds": 0.0, "name": "key.next", "value": 1},
+                                                {"seconds": 0.02, "name": "key.next", "value": 1}]})"));
+    const auto play = [&](const std::string& name, const std::vector<std::string>& more) {
+        std::vector<std::string> all{
+            "demo", "labyrinth", "--seconds", "0.1", "--json", "--record", (folder / (name + ".mp4")).string()};
+        all.insert(all.end(), more.begin(), more.end());
+        const Outcome outcome = lumorph(all);
+        EXPECT_EQ(outcome.exitCode, 0) << outcome.err;
+        EXPECT_TRUE(outcome.json()["warnings"].empty()) << outcome.json()["warnings"];
+        return (folder / (name + ".mp4")).string();
+    };
+    const std::string itself = play("itself", {"--seed", "7"});
+    EXPECT_EQ(lastFramesDiffer(itself, play("again", {"--seed", "7"})), 0.0);
+    EXPECT_GT(lastFramesDiffer(itself, play("next", {"--seed", "7", "--input", inputs})), 3.0) << "another level";
+}
+
 TEST(Demo, WrongUseIsNamed) {
     const TemporaryFolder folder;
     const auto refused = [&](const std::vector<std::string>& arguments, int code, const std::string& says) {
@@ -64,6 +96,11 @@ TEST(Demo, WrongUseIsNamed) {
     refused({"water", "--seconds", "0.5", "--record", (folder / "none/w.mp4").string()}, 1, "its folder is not there");
     refused({"water", "--seconds", "0.5", "--record", (folder / "w.txt").string()}, 2, "ends in .mp4");
     EXPECT_TRUE(filesIn(folder.path()).empty());
+    const std::string inputs = (folder / "inputs.json").string();
+    writeFile(inputs, std::string(R"({"inputs": [{"seconds": -1, "name": "key.left", "value": 1}]})"));
+    refused({"labyrinth", "--json", "--input", inputs}, 1, "inputs[0].seconds");
+    refused({"labyrinth", "--json", "--input", (folder / "none.json").string()}, 1, "none.json");
+    refused({"water", "--json", "--input", inputs}, 2, "goes by time alone");
 }
 
 } // namespace

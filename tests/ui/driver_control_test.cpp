@@ -160,5 +160,19 @@ TEST_F(DriverControlTest, DanceAndProgramLetGoWhenSomebodyTakesTheServos) {
     EXPECT_EQ(driver(), Driver::target);
 }
 
+TEST_F(DriverControlTest, AFieldThatComesLaterTakesNothing) {
+    studio_.loop.setProgram(std::make_shared<StillProgram>());
+    int takeovers = 0;
+    QObject::connect(&studio_.loop, &StudioLoop::taken, [&] { ++takeovers; });
+    const std::shared_ptr<const MatchField> field = studio_.document.state().field.field;
+    studio_.document.complete([](StudioState& state) { state.field.field.reset(); });
+    studio_.document.complete([&](StudioState& state) { state.field.field = field; });
+    EXPECT_EQ(studio_.document.state().field.field, field);
+    EXPECT_EQ(driver(), Driver::program);
+    EXPECT_EQ(takeovers, 0);
+    EXPECT_FALSE(studio_.document.modified());
+    EXPECT_EQ(studio_.document.undoStack().count(), 0);
+}
+
 } // namespace
 } // namespace lumorph::studio

@@ -48,13 +48,10 @@ void FieldBuilding::build(const BuildOptions& options, bool asked) {
             notices_.dismissAll("field");
             const auto put = [&](StudioState& state) { state.field = {{}, field, rig.parts}; };
             // A field that comes with a project just opened is part of opening it, not the user's change.
-            if (!asked && !document_.modified() && document_.undoStack().count() == 0 && !document_.previewing()) {
-                StudioState state = document_.state();
-                put(state);
-                document_.reset(std::move(state), document_.file());
-            } else {
+            if (!asked && !document_.modified() && document_.undoStack().count() == 0 && !document_.previewing())
+                document_.complete(put);
+            else
                 document_.change(tr("Build the field"), put);
-            }
         },
         std::move(remedies));
 }

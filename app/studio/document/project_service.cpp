@@ -1,5 +1,6 @@
 #include "app/studio/document/project_service.h"
 
+#include <chrono>
 #include <cstdlib>
 #include <map>
 #include <utility>
@@ -30,18 +31,33 @@ namespace fs = std::filesystem;
 /// What the scene's files are watched as, before their names.
 constexpr const char* kScenePlace = "scene:";
 
-/// A demonstration by its name; without one a new project, the bundled tablet. Neither belongs to a file of the user's.
-LoadedProject readBundled(const std::string& demo, const FieldCache& cache, const Progress& progress) {
+/// What comes with the program.
+struct Bundled {
     LoadedProject loaded;
+    std::shared_ptr<ShowProgram> program; ///< empty: it goes by time alone
+};
+
+/// The same visitor's move shall not meet the same chance in each show.
+std::uint64_t newSeed() {
+    return static_cast<std::uint64_t>(std::chrono::steady_clock::now().time_since_epoch().count());
+}
+
+/// A demonstration by its name; without one a new project, the bundled tablet. Neither belongs to a file of the user's.
+Bundled readBundled(const std::string& demo, const FieldCache& cache, const Progress& progress) {
+    Bundled bundled;
+    LoadedProject& loaded = bundled.loaded;
     if (demo.empty()) {
         auto rig = readRigAsset(resourceFile("models/tablet.glb"));
         loaded.state.rig = std::move(rig.asset);
         loaded.stamps.rig = rig.stamp;
     } else {
-        loaded = loadedProject(demoNamed(demo).open(progress));
+        const Demo& named = demoNamed(demo);
+        loaded = loadedProject(named.open(progress));
+        progress.throwIfCancelled();
+        if (named.program) bundled.program = named.program(newSeed());
     }
     if (!loaded.state.field.field) loaded.state.field.field = cache.find(*loaded.state.rig.rig);
-    return loaded;
+    return bundled;
 }
 
 } // namespace
@@ -55,7 +71,7 @@ struct ProjectService::Data {
     void openProject(const fs::path& file);
     /// A demo by its name, or a new project.
     void openBundled(const std::string& demo, std::function<void()> onReady);
-    void replaceAll(LoadedProject loaded, const fs::path& file);
+    void replaceAll(LoadedProject loaded, const fs::path& file, std::shared_ptr<ShowProgram> program = {});
     void saveTo(const fs::path& file);
     void restore(std::function<void()> onReady);
     [[nodiscard]] ProjectSource source() const;
@@ -134,11 +150,11 @@ void ProjectService::Data::openProject(const fs::path& file) {
 
 void ProjectService::Data::openBundled(const std::string& demo, std::function<void()> onReady) {
     const auto ready = std::make_shared<std::function<void()>>(std::move(onReady));
-    jobs.runWith<LoadedProject>(
+    jobs.runWith<Bundled>(
         "project", "project", demo.empty() ? tr("Opening the tablet") : tr("Opening the demo"),
         [demo, cache = cache](const Progress& progress) { return readBundled(demo, cache, progress); },
-        [this, ready](const LoadedProject& loaded) {
-            replaceAll(loaded, {});
+        [this, ready](const Bundled& bundled) {
+            replaceAll(bundled.loaded, {}, bundled.program);
             if (*ready) (*ready)();
         },
         [this, ready](const std::exception& error) {
@@ -147,7 +163,8 @@ void ProjectService::Data::openBundled(const std::string& demo, std::function<vo
         });
 }
 
-void ProjectService::Data::replaceAll(LoadedProject loaded, const fs::path& file) {
+void ProjectService::Data::replaceAll(LoadedProject loaded, const fs::path& file,
+                                      std::shared_ptr<ShowProgram> program) {
     for (const char* slot : {"rig", "field", "target", "place"}) jobs.stop(slot);
     scene.reset();
     for (const char* place : {"rig", "field", "target", "match", "project", "scene"}) notices.dismissAll(place);
@@ -158,6 +175,7 @@ void ProjectService::Data::replaceAll(LoadedProject loaded, const fs::path& file
     extras = std::move(loaded.extras);
     loaded.state.installation.reset(); // the room stays as it is, whatever is opened in it
     document.reset(std::move(loaded.state), file);
+    emit service.programOpened(std::move(program));
     scene.takeOpened();
     building.buildMissing();
     if (!unsaved || !before.source.state.rig.rig) return;

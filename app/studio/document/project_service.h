@@ -11,6 +11,7 @@
 #include "app/studio/base/notices.h"
 #include "app/studio/document/project_io.h"
 #include "app/studio/document/studio_document.h"
+#include "core/loop/show_program.h"
 #include "core/mdf/builder.h"
 
 namespace lumorph::studio {
@@ -70,6 +71,8 @@ signals:
     void saved(const QString& path);
     /// A project was opened, which holds a copy of the installation that it was made in. The document's is the room's.
     void openedElsewhere(const QString& path, std::shared_ptr<const lumorph::Installation> installation);
+    /// Something else is open now, and with it the application that answers what happens; null: none does.
+    void programOpened(std::shared_ptr<lumorph::ShowProgram> program);
     /// A recording was to be opened, which is no part of the document.
     void recordingChosen(const QString& path);
     /// The remedy of a notice: ask for another file of this place ("target", "rig", "field", "project"; "viewport" for

@@ -111,6 +111,12 @@ void StudioDocument::setCompiled(const StudioState::RigAsset& of, const std::sha
     exchange(next);
 }
 
+void StudioDocument::complete(const std::function<void(StudioState&)>& put) {
+    StudioState next = state_;
+    put(next);
+    exchange(settled(state_, std::move(next)));
+}
+
 void StudioDocument::reset(StudioState state, const std::filesystem::path& file) {
     previewing_ = false;
     beforePreview_ = {};

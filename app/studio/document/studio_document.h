@@ -55,6 +55,9 @@ public:
     /// compiled; where they are already, or the rig is another one by now, nothing happens.
     void setCompiled(const StudioState::RigAsset& of, const std::shared_ptr<const Rig>& rig);
 
+    /// What belongs to a project that was just opened and comes after it, such as its field; no step of undo.
+    void complete(const std::function<void(StudioState&)>& put);
+
     /// What the machine has kept of the room; no step of undo.
     void setInstallation(std::shared_ptr<const Installation> installation);
 

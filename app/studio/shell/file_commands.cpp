@@ -11,6 +11,7 @@
 #include <QLocale>
 #include <QMenu>
 
+#include "app/applications/registry/demos.h"
 #include "app/studio/look/icons.h"
 #include "app/studio/shell/record_commands.h"
 #include "app/studio/widgets/bundled_shelf.h"
@@ -119,6 +120,22 @@ void offerEarlierInstallations(Studio& studio, QWidget& window) {
     menu->popup(QCursor::pos());
 }
 
+/// One for each demonstration; it is shown in the workspace in which it is seen best.
+void addDemoCommands(Studio& studio) {
+    for (const Demo& demo : demos()) {
+        Commands::Options options;
+        options.icon = "play";
+        options.menu = "File";
+        const QString title = QObject::tr("Demonstration: %1").arg(QString::fromStdString(demo.title));
+        QAction* action = studio.commands.add(
+            QString("demo.%1").arg(QString::fromStdString(demo.name)), title, options, [&studio, &demo] {
+                emit studio.commands.workspaceWanted(QString::fromStdString(demo.workspace));
+                studio.project.openDemo(demo.name);
+            });
+        action->setToolTip(QString::fromStdString(demo.sentence));
+    }
+}
+
 } // namespace
 
 void addFileCommands(Studio& studio, QWidget& window) {
@@ -139,6 +156,8 @@ void addFileCommands(Studio& studio, QWidget& window) {
     });
     add("file.new", "&New project", "file", QKeySequence::New, [&studio] { studio.project.newProject(); });
     add("file.open", "&Open...", "open", QKeySequence::Open, [&studio, &window] { openWithDialog(studio, window); });
+    addDemoCommands(studio);
+    QObject::connect(&studio.project, &ProjectService::programOpened, &studio.loop, &StudioLoop::setProgram);
     add("file.save", "&Save", "save", QKeySequence::Save, [&studio, &window] {
         if (!studio.project.save()) saveWithDialog(studio, window);
     });

@@ -8,6 +8,7 @@
 #include <QVBoxLayout>
 
 #include "app/studio/rendering/show_frames.h"
+#include "app/studio/shell/program_inputs.h"
 #include "app/studio/viewport/gl_page.h"
 #include "app/studio/viewport/viewport_widget.h"
 #include "app/studio/widgets/panel.h"
@@ -116,6 +117,7 @@ ViewPane* SceneCentralView::Data::addPane(ScenePane part, const ShowView& view, 
     panes[part] = pane;
     connect(pane, &ViewPane::enlarged, &self, [this, part] { enlarge(part); });
     if (part == ScenePane::projector) return pane;
+    if (part == ScenePane::eye || part == ScenePane::lab) new ProgramInputs(studio.loop, *pane);
     connect(pane, &ViewPane::dragBegan, &self,
             [this, part](Qt::MouseButton button, Qt::KeyboardModifiers held) { beginDrag(part, button, held); });
     connect(pane, &ViewPane::dragged, &self, [this, part](const QPointF& by) { drag(part, by); });

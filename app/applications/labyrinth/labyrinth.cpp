@@ -1,0 +1,122 @@
+#include "app/applications/labyrinth/labyrinth.h"
+
+#include <algorithm>
+#include <string>
+#include <utility>
+
+#include "core/base/error.h"
+
+namespace lumorph::labyrinth {
+namespace {
+
+constexpr double kRest = 2.0; ///< seconds in the goal until the next level
+
+const char* soundOf(GameEvent::Kind kind) {
+    switch (kind) {
+    case GameEvent::Kind::roll:
+        return "labyrinth.roll";
+    case GameEvent::Kind::bump:
+        return "labyrinth.bump";
+    case GameEvent::Kind::pickUp:
+        return "labyrinth.pickup";
+    case GameEvent::Kind::fall:
+        return "labyrinth.fall";
+    default:
+        return "labyrinth.goal";
+    }
+}
+
+} // namespace
+
+LabyrinthProgram::LabyrinthProgram(std::uint64_t seed, std::vector<Level> levels, std::vector<Ghost> best)
+    : seed_(seed), levels_(std::move(levels)), best_(std::move(best)) {
+    if (levels_.empty()) throw InvalidInput("labyrinth", "has no level", "give it one");
+    pictures_ = boardPictures(levels_);
+    begin(0);
+}
+
+void LabyrinthProgram::begin(std::size_t level) {
+    number_ = level;
+    rests_ = 0.0;
+    game_.emplace(levels_[level], seed_ + level);
+    pilot_.emplace(levels_[level], true);
+    board_.emplace(*game_, *pictures_);
+    relief_.emplace(levels_[level], game_->blocks());
+}
+
+ShowContent LabyrinthProgram::frame(const ShowMoment& moment) {
+    controls_.take(moment);
+    hand(moment);
+    game_->advance(moment.step, alone_ ? pilot_->lean(game_->ball(), game_->pickUps()) : controls_.lean());
+    ShowContent content;
+    content.sounds = sounds();
+    finish(moment.step);
+    content.scene = board_->show(*game_, best(), rests_);
+    content.assets = board_->assets();
+    const glm::dvec3& ball = game_->ball().position;
+    content.target = game_->fallen() ? relief_->level() : relief_->withBall({ball.x, ball.z});
+    content.following = Following::split;
+    return content;
+}
+
+/// Who plays: whoever leans it begins anew, and who has gone leaves it to itself.
+void LabyrinthProgram::hand(const ShowMoment& moment) {
+    silence_ = controls_.active() ? 0.0 : silence_ + moment.step;
+    if (controls_.active() && alone_) {
+        alone_ = false;
+        return begin(0);
+    }
+    if (!alone_ && silence_ > kSilence) {
+        alone_ = true;
+        return begin(0);
+    }
+    if (controls_.next()) return begin((number_ + 1) % levels_.size());
+    if (controls_.restart()) begin(number_);
+}
+
+void LabyrinthProgram::finish(double step) {
+    if (!game_->done()) return;
+    if (rests_ == 0.0 && !alone_) keepRun();
+    rests_ += step;
+    if (rests_ > kRest) begin((number_ + 1) % levels_.size());
+}
+
+void LabyrinthProgram::keepRun() {
+    const Ghost& run = game_->run();
+    const auto known = std::ranges::find(best_, run.level, &Ghost::level);
+    if (known == best_.end())
+        best_.push_back(run);
+    else if (run.score > known->score)
+        *known = run;
+}
+
+const Ghost* LabyrinthProgram::best() const {
+    const auto known = std::ranges::find(best_, game_->level().name, &Ghost::level);
+    return known == best_.end() ? nullptr : &*known;
+}
+
+std::vector<ShowSound> LabyrinthProgram::sounds() const {
+    std::vector<ShowSound> sounds;
+    for (const GameEvent& event : game_->events())
+        sounds.push_back({soundOf(event.kind), event.strength, glm::vec3(event.place)});
+    return sounds;
+}
+
+Demo labyrinthDemo() {
+    return {"labyrinth",
+            "A labyrinth under your hands",
+            "Lean it, and the ball rolls: over ramps, bridges and stairs, past holes, to the green goal.",
+            "thumbnails/labyrinth.png",
+            "scene",
+            [](const Progress& progress) {
+                Project project;
+                project.rig = "resource:models/tablet.glb";
+                return readContents(std::move(project), {}, progress);
+            },
+            [] { return std::vector<DemoStep>(); },
+            [](std::uint64_t seed) -> std::unique_ptr<ShowProgram> {
+                return std::make_unique<LabyrinthProgram>(seed, bundledLevels());
+            }};
+}
+
+} // namespace lumorph::labyrinth

@@ -1,0 +1,60 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "app/applications/demo.h"
+#include "app/applications/labyrinth/board.h"
+#include "app/applications/labyrinth/controls.h"
+#include "app/applications/labyrinth/game.h"
+#include "app/applications/labyrinth/relief.h"
+#include "app/applications/labyrinth/route.h"
+#include "core/loop/show_program.h"
+
+namespace lumorph::labyrinth {
+
+/// The labyrinth as an application: levels one after another, shown by light, their relief and the ball felt through
+/// the servos. Until somebody leans it, and again after 45 s of silence, it plays by itself. Sounds of a frame are
+/// `labyrinth.roll`, `.bump`, `.pickup`, `.fall` and `.goal`.
+class LabyrinthProgram final : public ShowProgram {
+public:
+    static constexpr double kSilence = 45.0; ///< seconds without a player until it plays by itself
+
+    /// `best` are the best runs so far, by the names of their levels. Throws InvalidInput without a level.
+    LabyrinthProgram(std::uint64_t seed, std::vector<Level> levels, std::vector<Ghost> best = {});
+
+    [[nodiscard]] ShowContent frame(const ShowMoment& moment) override;
+
+    [[nodiscard]] const Game& game() const noexcept { return *game_; }
+    [[nodiscard]] std::size_t level() const noexcept { return number_; } ///< from 0
+    [[nodiscard]] bool playsItself() const noexcept { return alone_; }
+    [[nodiscard]] const std::vector<Ghost>& bestRuns() const noexcept { return best_; }
+
+private:
+    void begin(std::size_t level);
+    void hand(const ShowMoment& moment);
+    void finish(double step);
+    void keepRun();
+    [[nodiscard]] const Ghost* best() const;
+    [[nodiscard]] std::vector<ShowSound> sounds() const;
+
+    std::uint64_t seed_;
+    std::vector<Level> levels_;
+    std::vector<Ghost> best_;
+    std::shared_ptr<const SceneAssets> pictures_;
+    Controls controls_;
+    std::size_t number_ = 0;
+    bool alone_ = true;
+    double silence_ = 0.0; ///< seconds
+    double rests_ = 0.0;   ///< seconds in the goal
+    std::optional<Game> game_;
+    std::optional<Pilot> pilot_;
+    std::optional<Board> board_;
+    std::optional<Relief> relief_;
+};
+
+[[nodiscard]] Demo labyrinthDemo();
+
+} // namespace lumorph::labyrinth

@@ -1,0 +1,303 @@
+#include <algorithm>
+#include <cmath>
+#include <ctime>
+#include <map>
+#include <numeric>
+#include <set>
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include <glm/geometric.hpp>
+
+#include "app/applications/labyrinth/labyrinth.h"
+#include "core/base/error.h"
+#include "core/base/resources.h"
+#include "core/mdf/builder.h"
+#include "core/motion/causal_split.h"
+#include "core/motion/surface_heights.h"
+#include "core/rig/rig_file.h"
+
+// R39: the labyrinth as visitors meet it: who plays, what is seen and heard, what is felt, and what a frame costs.
+
+namespace lumorph::labyrinth {
+namespace {
+
+constexpr double kFrame = 1.0 / 60.0;
+
+const std::shared_ptr<const Rig>& tablet() {
+    static const auto rig = std::make_shared<const Rig>(readRig(resourceFile("models/tablet.glb")));
+    return rig;
+}
+
+/// Asks the program frame by frame, as the loop does.
+class Visit {
+public:
+    explicit Visit(LabyrinthProgram& program) : program_(program) {
+        moment_.rig = tablet();
+        moment_.installation = std::make_shared<const Installation>(defaultInstallation());
+    }
+
+    const ShowContent& frame(std::vector<ShowInput> inputs = {}) {
+        moment_.inputs = inputs;
+        moment_.bodies = bodies_;
+        content_ = program_.frame(moment_);
+        moment_.inputs = {};
+        moment_.step = kFrame;
+        moment_.seconds += kFrame;
+        for (const ShowSound& sound : content_.sounds) ++heard_[sound.name];
+        return content_;
+    }
+    void frames(double seconds) {
+        for (int k = 0; k < std::lround(seconds / kFrame); ++k) frame();
+    }
+    /// The tracked device leans so far about the world's axes, radians.
+    void lean(float aboutX, float aboutZ) {
+        bodies_ = {ShowBody{"Tablet", PoseRole::device, {}}};
+        moment_.worldFromDevice = glm::mat4_cast(glm::angleAxis(aboutX, glm::vec3(1.0F, 0.0F, 0.0F)) *
+                                                 glm::angleAxis(aboutZ, glm::vec3(0.0F, 0.0F, 1.0F)));
+    }
+    [[nodiscard]] const SceneItem& item(int id) const { return *findItem(*content_.scene, id); }
+    [[nodiscard]] int heard(const std::string& sound) const {
+        const auto found = heard_.find("labyrinth." + sound);
+        return found == heard_.end() ? 0 : found->second;
+    }
+    [[nodiscard]] const ShowContent& content() const { return content_; }
+
+private:
+    LabyrinthProgram& program_;
+    ShowMoment moment_;
+    std::vector<ShowBody> bodies_;
+    ShowContent content_;
+    std::map<std::string, int> heard_;
+};
+
+TEST(LabyrinthProgram, PlaysByItselfFromLevelToLevel) {
+    LabyrinthProgram program(1, bundledLevels());
+    Visit visit(program);
+    std::set<std::size_t> seen;
+    for (int k = 0; k < 60 * 60; ++k) {
+        visit.frame();
+        ASSERT_NO_THROW(checkScene(*visit.content().scene)) << k;
+        seen.insert(program.level());
+    }
+    EXPECT_GE(seen.size(), 3U) << "in a minute";
+    EXPECT_TRUE(program.playsItself());
+    EXPECT_TRUE(program.bestRuns().empty()) << "its own runs are nobody's best";
+    EXPECT_GE(visit.heard("goal"), 2);
+    EXPECT_GE(visit.heard("pickup"), 5);
+    EXPECT_GT(visit.heard("roll"), 1000);
+}
+
+TEST(LabyrinthProgram, WhoLeansItPlaysAtOnceAndWhoGoesLeavesItToItself) {
+    LabyrinthProgram program(1, bundledLevels());
+    Visit visit(program);
+    visit.frames(20.0);
+    visit.frame({{"key.right", 1.0}});
+    EXPECT_FALSE(program.playsItself()) << "one key";
+    EXPECT_EQ(program.level(), 0U) << "from the first level on";
+    const float from = visit.item(kBallItem).position.x;
+    visit.frames(0.5);
+    EXPECT_GT(visit.item(kBallItem).position.x, from + 0.01F) << "to the right";
+    visit.frame({{"key.right", 0.0}});
+    visit.frame({{"key.next", 1.0}});
+    EXPECT_EQ(program.level(), 1U);
+    visit.frames(2.0);
+    visit.frame({{"key.restart", 1.0}});
+    EXPECT_EQ(program.level(), 1U);
+    EXPECT_LT(program.game().seconds(), 0.1);
+    visit.frames(LabyrinthProgram::kSilence - 1.0);
+    EXPECT_FALSE(program.playsItself());
+    visit.frames(2.0);
+    EXPECT_TRUE(program.playsItself());
+}
+
+TEST(LabyrinthProgram, PointerStickAndDeviceLeanAlike) {
+    const struct {
+        std::vector<ShowInput> inputs;
+        float aboutX, aboutZ;
+        glm::dvec2 way; ///< in which the ball rolls
+    } rows[] = {
+        {{{"pointer.x", 1.0}}, 0.0F, 0.0F, {1.0, 0.0}},
+        {{{"pad.y", 1.0}}, 0.0F, 0.0F, {0.0, 1.0}},
+        {{{"key.right", 1.0}, {"key.down", 1.0}}, 0.0F, 0.0F, {1.0, 1.0}},
+        {{}, 0.0F, -0.2F, {1.0, 0.0}}, // its right side down
+        {{}, 0.2F, 0.0F, {0.0, 1.0}},  // its near side down
+    };
+    for (const auto& row : rows) {
+        LabyrinthProgram program(1, bundledLevels());
+        Visit visit(program);
+        if (row.inputs.empty()) visit.lean(row.aboutX, row.aboutZ);
+        visit.frame(row.inputs);
+        EXPECT_FALSE(program.playsItself());
+        const glm::dvec3 from = program.game().ball().position;
+        visit.frames(0.35);
+        const glm::dvec3 moved = program.game().ball().position - from;
+        const std::string name = row.inputs.empty() ? "device" : row.inputs.front().name;
+        EXPECT_GT(moved.x, row.way.x > 0.0 ? 0.008 : -0.001) << name;
+        EXPECT_LT(moved.x, row.way.x > 0.0 ? 0.1 : 0.001) << name;
+        EXPECT_GT(moved.z, row.way.y > 0.0 ? 0.008 : -0.001) << name;
+        EXPECT_LT(moved.z, row.way.y > 0.0 ? 0.1 : 0.001) << name;
+    }
+}
+
+TEST(LabyrinthProgram, ABestRunGoesBesideTheNextOneAsAGhost) {
+    LabyrinthProgram program(1, bundledLevels());
+    Visit visit(program);
+    Pilot hand(bundledLevels().front(), false);
+    visit.frame({{"key.restart", 1.0}});
+    for (int k = 0; k < 60 * 60 && !program.game().done(); ++k) {
+        const glm::dvec2 lean = hand.lean(program.game().ball(), {}) / Game::kMostLean;
+        visit.frame({{"pointer.x", lean.x}, {"pointer.y", lean.y}});
+        EXPECT_FALSE(visit.item(kGhostItem).visible) << "there is none yet";
+    }
+    ASSERT_TRUE(program.game().done());
+    visit.frame();
+    EXPECT_TRUE(visit.item(kRingItem).visible) << "the goal shines";
+    ASSERT_EQ(program.bestRuns().size(), 1U);
+    const Ghost best = program.bestRuns().front();
+    EXPECT_EQ(best, program.game().run());
+    visit.frame({{"key.restart", 1.0}});
+    visit.frames(1.5);
+    const SceneItem& ghost = visit.item(kGhostItem);
+    ASSERT_TRUE(ghost.visible);
+    const glm::vec3 expected = positionAt(best, program.game().seconds()) + glm::vec3(0.0F, 0.02F, 0.0F);
+    EXPECT_LT(glm::distance(ghost.position, expected), 1e-5F);
+}
+
+TEST(LabyrinthProgram, NeedsALevel) { EXPECT_THROW(LabyrinthProgram(1, {}), InvalidInput); }
+
+/// Where a bump over a relief is highest.
+glm::dvec2 peakOf(const HeightGrid& with, const HeightGrid& without) {
+    std::size_t highest = 0;
+    const auto bump = [&](std::size_t k) {
+        return static_cast<double>(with.heights[k]) - static_cast<double>(without.heights[k]);
+    };
+    for (std::size_t k = 1; k < with.heights.size(); ++k)
+        if (bump(k) > bump(highest)) highest = k;
+    const auto columns = static_cast<std::size_t>(with.columns);
+    const glm::dvec2 share(static_cast<double>(highest % columns) / (with.columns - 1),
+                           static_cast<double>(highest / columns) / (with.rows - 1));
+    return with.min + (with.max - with.min) * share;
+}
+
+TEST(LabyrinthProgram, TheBumpIsWithinAVoxelOfTheBall) {
+    const auto voxel = static_cast<double>(frameOf(tablet()->reach(), BuildOptions{}.resolution).voxelSize);
+    LabyrinthProgram program(3, bundledLevels());
+    Visit visit(program);
+    visit.frame();
+    std::size_t level = 0;
+    Relief relief(program.game().level(), program.game().blocks());
+    int looked = 0;
+    for (int k = 0; k < 60 * 60; ++k) {
+        visit.frame();
+        if (program.level() != level) relief = Relief(program.game().level(), program.game().blocks());
+        level = program.level();
+        const auto& grid = std::get<HeightGrid>(visit.content().target);
+        ASSERT_NO_THROW(checkHeightGrid(grid));
+        const glm::dvec3& ball = program.game().ball().position;
+        const glm::dvec2 at(ball.x, ball.z);
+        if (program.game().fallen()) continue;
+        ++looked;
+        ASSERT_LT(glm::distance(peakOf(grid, relief.level()), at), voxel) << k;
+    }
+    EXPECT_GT(looked, 3000);
+}
+
+double mean(const std::vector<double>& values) {
+    return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
+}
+
+/// How alike two series are, -1 to 1.
+double correlation(const std::vector<double>& a, const std::vector<double>& b) {
+    const double meanA = mean(a), meanB = mean(b);
+    double ab = 0.0, aa = 0.0, bb = 0.0;
+    for (std::size_t k = 0; k < a.size(); ++k) {
+        ab += (a[k] - meanA) * (b[k] - meanB);
+        aa += (a[k] - meanA) * (a[k] - meanA);
+        bb += (b[k] - meanB) * (b[k] - meanB);
+    }
+    return ab / std::sqrt(aa * bb);
+}
+
+/// The heights that the tablet takes for a relief that has always been so, over rest.
+std::vector<double> carried(CausalSplit& split, const HeightGrid& relief) {
+    std::vector<float> heights;
+    for (const glm::vec2& point : split.points())
+        heights.push_back(static_cast<float>(heightAt(relief, glm::dvec2(point))));
+    split.restart();
+    const std::vector<double> strokes = split.strokes(heights, 0.0);
+    std::vector<float> top(split.restHeights().begin(), split.restHeights().end());
+    TriangleMesh shape = tablet()->restMesh();
+    shape.positions = deformed(*tablet(), strokes).positions;
+    heightsOfMesh(shape, split.points(), top);
+    std::vector<double> over;
+    for (std::size_t k = 0; k < top.size(); ++k)
+        over.push_back(static_cast<double>(top[k]) - static_cast<double>(split.restHeights()[k]));
+    return over;
+}
+
+/// The mean of what lies within 25 mm of a place.
+double around(const glm::dvec2& place, const CausalSplit& split, const std::vector<double>& values) {
+    double sum = 0.0;
+    int count = 0;
+    for (std::size_t k = 0; k < values.size(); ++k) {
+        if (glm::distance(glm::dvec2(split.points()[k]), place) > 0.025) continue;
+        sum += values[k];
+        ++count;
+    }
+    return sum / count;
+}
+
+// What hands feel without light. Six servos lift four corners and two halves: walls are too narrow for them, so that a
+// third of a level's relief and more is what there is to carry.
+TEST(LabyrinthProgram, TheTabletCarriesTheReliefOfALevel) {
+    CausalSplit split(*tablet());
+    for (const Level& level : bundledLevels()) {
+        const Relief relief(level, blocksOf(level));
+        std::vector<double> wanted;
+        for (const glm::vec2& point : split.points())
+            wanted.push_back(heightAt(relief.level(), glm::dvec2(point)) - 0.02);
+        EXPECT_GT(correlation(wanted, carried(split, relief.level())), 0.3) << level.name;
+    }
+}
+
+// By 5 to 8 mm; a millimetre is felt.
+TEST(LabyrinthProgram, TheTabletRisesWhereTheBallIs) {
+    CausalSplit split(*tablet());
+    for (const Level& level : bundledLevels()) {
+        const Relief relief(level, blocksOf(level));
+        for (const glm::dvec2& ball : {glm::dvec2(0.0, 0.045), {0.0, -0.045}, {0.085, 0.055}, {-0.085, -0.055}}) {
+            const std::vector<double> there = carried(split, relief.withBall(ball));
+            const std::vector<double> opposite = carried(split, relief.withBall(-ball));
+            const double more = around(ball, split, there) - around(ball, split, opposite);
+            EXPECT_GT(more, 0.004) << level.name << ", ball at " << ball.x << " " << ball.y;
+        }
+    }
+}
+
+double threadSeconds() {
+    timespec now{};
+    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+    return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
+TEST(LabyrinthProgram, AFrameTakesASmallPartOfItsTime) {
+    LabyrinthProgram program(1, bundledLevels());
+    Visit visit(program);
+    std::vector<double> milliseconds;
+    for (int k = 0; k < 60 * 90; ++k) {
+        const double begun = threadSeconds();
+        visit.frame();
+        milliseconds.push_back(1e3 * (threadSeconds() - begun));
+    }
+    std::ranges::sort(milliseconds);
+    const double middle = milliseconds[milliseconds.size() / 2], late = milliseconds[milliseconds.size() * 99 / 100];
+    RecordProperty("medianMilliseconds", std::to_string(middle));
+    RecordProperty("percentile99Milliseconds", std::to_string(late));
+    EXPECT_LE(middle, 2.0);
+    EXPECT_LE(late, 8.0);
+}
+
+} // namespace
+} // namespace lumorph::labyrinth
