@@ -1,5 +1,6 @@
 #include "devices/transport/hid_transport.h"
 
+#include <algorithm>
 #include <cerrno>
 #include <chrono>
 #include <system_error>
@@ -188,8 +189,9 @@ TEST_F(HidTransportTest, AStuckDeviceHoldsUpNobody) {
     transport_->write(Bytes{7});
     ASSERT_TRUE(EventLoop::runUntil([&] { return transport_->unsent() == 0; }, 2s));
     const auto written = with(board, [](const FakeHidDevice& device) { return device.written; });
-    EXPECT_EQ(written.back()[1], 7);
-    EXPECT_LE(written.size(), 2u); // what had not been begun was dropped
+    // What had not been begun was dropped; the one that hung comes through before or after.
+    EXPECT_EQ(std::ranges::count_if(written, [](const auto& report) { return report[1] == 7; }), 1);
+    EXPECT_LE(written.size(), 2u);
     EXPECT_TRUE(troubles_.empty());
 }
 
