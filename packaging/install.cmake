@@ -7,7 +7,7 @@ if(TARGET lumorph_mpi)
     install(TARGETS lumorph_mpi LIBRARY DESTINATION lib/lumorph)
 endif()
 # core/base/resources.cpp looks for ../share/lumorph beside the program.
-install(DIRECTORY resources/fonts resources/guide resources/icons resources/levels resources/materials resources/models resources/projects
+install(DIRECTORY resources/examples resources/fonts resources/guide resources/icons resources/levels resources/materials resources/models resources/projects
                   resources/shaders resources/targets resources/thumbnails
         DESTINATION ${CMAKE_INSTALL_DATADIR}/lumorph
         PATTERN generator EXCLUDE PATTERN CMakeLists.txt EXCLUDE)

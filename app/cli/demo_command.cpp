@@ -11,6 +11,7 @@
 
 #include "app/applications/registry/demos.h"
 #include "app/cli/commands.h"
+#include "app/cli/new_demo.h"
 #include "app/cli/session.h"
 #include "app/output/demo_player.h"
 #include "core/base/error.h"
@@ -40,12 +41,29 @@ void showInWindow(const Demo& demo) {
     throw DeviceError(program, std::strerror(errno), "check that it may be run");
 }
 
+CLI::App* addNew(CLI::App& demo) {
+    struct NewOptions {
+        std::string name, tree = ".";
+    };
+    auto options = std::make_shared<NewOptions>();
+    CLI::App* command =
+        demo.add_subcommand("new", "Write an application of your own into the source tree, to begin with");
+    command->add_option("NAME", options->name, "Its name: small letters, digits and _")->required();
+    command->add_option("--tree", options->tree, "The folder of Lumorph's sources")->capture_default_str();
+    command->callback([options] {
+        for (const std::filesystem::path& file : writeNewDemo(options->tree, options->name))
+            std::cout << file.string() << "\n";
+        std::cout << "Build it, and play it: lumorph demo " << options->name << "\n";
+    });
+    return command;
+}
+
 } // namespace
 
 void addDemoCommand(CLI::App& app) {
     auto options = std::make_shared<DemoOptions>();
     CLI::App* command = app.add_subcommand("demo", "Start a demonstration, or play one without a window");
-    command->add_option("NAME", options->name, "Which: " + demoNames())->required()->check([](const std::string& name) {
+    command->add_option("NAME", options->name, "Which: " + demoNames())->check([](const std::string& name) {
         const bool known = std::ranges::find(demos(), name, &Demo::name) != demos().end();
         return known ? std::string() : "there is no demo '" + name + "'; there are: " + demoNames();
     });
@@ -64,7 +82,12 @@ void addDemoCommand(CLI::App& app) {
         command->add_option("--seed", options->play.seed, "Without a window: of an application's chance")
             ->capture_default_str();
     command->add_flag("--json", options->play.json, "Without a window: print its rates as one JSON value");
-    command->callback([options, seconds, record, picture, inputs, seed] {
+    CLI::App* own = addNew(*command);
+    command->callback([options, seconds, record, picture, inputs, seed, own] {
+        if (own->parsed()) return;
+        if (options->name.empty())
+            throw InvalidInput("demo", "which one is not said",
+                               "name one of " + demoNames() + ", or 'new' to write one");
         const Demo& demo = demoNamed(options->name);
         options->play.video = options->record;
         options->play.last = options->picture;
