@@ -1,4 +1,8 @@
 #include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <string>
+#include <vector>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -101,6 +105,84 @@ TEST(Demo, WrongUseIsNamed) {
     refused({"labyrinth", "--json", "--input", inputs}, 1, "inputs[0].seconds");
     refused({"labyrinth", "--json", "--input", (folder / "none.json").string()}, 1, "none.json");
     refused({"water", "--json", "--input", inputs}, 2, "goes by time alone");
+}
+
+/// What `demo new` changes of a source tree.
+std::vector<std::filesystem::path> filesOfATree() {
+    return {"app/applications/CMakeLists.txt", "app/applications/registry/demos.cpp", "ARCHITECTURE.md"};
+}
+
+class OwnDemo : public ::testing::Test {
+protected:
+    OwnDemo() {
+        for (const auto& file : filesOfATree()) {
+            std::filesystem::create_directories((tree() / file).parent_path());
+            std::filesystem::copy_file(std::filesystem::path(LUMORPH_SOURCE_DIR) / file, tree() / file);
+        }
+    }
+    [[nodiscard]] std::filesystem::path tree() const { return folder_ / "tree"; }
+    [[nodiscard]] std::string text(const std::filesystem::path& file) const {
+        std::ifstream in(tree() / file);
+        return {std::istreambuf_iterator<char>(in), {}};
+    }
+    [[nodiscard]] Outcome make(const std::string& name) const {
+        return lumorph({"demo", "new", name, "--tree", tree().string()});
+    }
+    void expectUntouched() const {
+        for (const auto& file : filesOfATree()) {
+            std::ifstream in(std::filesystem::path(LUMORPH_SOURCE_DIR) / file);
+            EXPECT_EQ(text(file), std::string(std::istreambuf_iterator<char>(in), {})) << file;
+        }
+    }
+
+private:
+    TemporaryFolder folder_;
+};
+
+TEST_F(OwnDemo, IsWrittenAndNamedWhereItHasToBe) {
+    const Outcome outcome = make("ripple_ring");
+    ASSERT_EQ(outcome.exitCode, 0) << outcome.err;
+    EXPECT_THAT(outcome.out, HasSubstr("app/applications/ripple_ring/ripple_ring.cpp\n"));
+    const std::string source = text("app/applications/ripple_ring/ripple_ring.cpp");
+    EXPECT_THAT(source, HasSubstr("RippleRingProgram::frame"));
+    EXPECT_THAT(source, HasSubstr("Demo rippleRingDemo() {"));
+    EXPECT_THAT(source, HasSubstr("\"Ripple ring\""));
+    EXPECT_EQ(source.find("xample"), std::string::npos);
+    EXPECT_THAT(text("app/applications/CMakeLists.txt"), HasSubstr("    ripple_ring/ripple_ring.cpp\n"));
+    EXPECT_THAT(text("app/applications/registry/demos.cpp"), HasSubstr("ripple_ring::rippleRingDemo()"));
+    EXPECT_THAT(text("ARCHITECTURE.md"), HasSubstr(" app/applications/ripple_ring\n    app/applications/registry"));
+    EXPECT_TRUE(std::filesystem::exists(tree() / "resources/thumbnails/ripple_ring.png"));
+    const Outcome again = make("ripple_ring");
+    EXPECT_EQ(again.exitCode, 2);
+    EXPECT_THAT(again.err, HasSubstr("there is one already"));
+    EXPECT_EQ(make("second").exitCode, 0);
+    EXPECT_THAT(text("app/applications/registry/demos.cpp"), HasSubstr("second::secondDemo()"));
+}
+
+TEST_F(OwnDemo, IsRefusedWithAWrongNameAndNothingIsWritten) {
+    for (const char* name : {"Ripple", "../out", "a__b", "class"}) {
+        const Outcome outcome = make(name);
+        EXPECT_EQ(outcome.exitCode, 2) << name;
+        EXPECT_FALSE(outcome.err.empty());
+    }
+    expectUntouched();
+}
+
+TEST_F(OwnDemo, IsRefusedWhereNoPlaceIsFoundForIt) {
+    std::ofstream(tree() / "ARCHITECTURE.md") << "# Another house\n";
+    const Outcome outcome = make("ripple");
+    EXPECT_NE(outcome.exitCode, 0);
+    EXPECT_THAT(outcome.err, HasSubstr("ARCHITECTURE.md"));
+    EXPECT_THAT(outcome.err, HasSubstr("by hand"));
+    EXPECT_FALSE(std::filesystem::exists(tree() / "app/applications/ripple"));
+    std::filesystem::remove(tree() / "app/applications/registry/demos.cpp");
+    EXPECT_THAT(make("ripple").err, HasSubstr("--tree"));
+}
+
+TEST(Demo, SaysWhatThereIsWhenNoneIsNamed) {
+    const Outcome outcome = lumorph({"demo"});
+    EXPECT_EQ(outcome.exitCode, 2);
+    EXPECT_THAT(outcome.err, HasSubstr("labyrinth"));
 }
 
 } // namespace
