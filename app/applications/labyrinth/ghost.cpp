@@ -61,7 +61,7 @@ std::vector<Ghost> readGhosts(std::string_view text, const std::string& name) {
     if (!root.is_object() || !root.contains("labyrinthRuns"))
         throw DataError(name, "holds no runs of the labyrinth", "remove the file; best runs begin anew");
     std::vector<Ghost> ghosts;
-    JsonSection(root, "", name).sections("labyrinthRuns", kMostGhosts, [&](JsonSection section) {
+    JsonSection(root, "", name).sections("labyrinthRuns", kMostGhosts, [&](const JsonSection& section) {
         ghosts.push_back(ghostOf(section));
     });
     return ghosts;

@@ -133,7 +133,8 @@ bool Level::holds(glm::ivec2 place) const noexcept {
 }
 
 const LevelCell& Level::at(glm::ivec2 place) const noexcept {
-    return cells[static_cast<std::size_t>(place.y * columns + place.x)];
+    return cells[static_cast<std::size_t>(place.y) * static_cast<std::size_t>(columns) +
+                 static_cast<std::size_t>(place.x)];
 }
 
 glm::dvec2 centreOf(const Level& level, glm::ivec2 cell) noexcept {

@@ -58,7 +58,8 @@ private:
     }
 
     std::vector<bool>::reference taken(glm::ivec2 cell) {
-        return taken_[static_cast<std::size_t>(cell.y * level_.columns + cell.x)];
+        return taken_[static_cast<std::size_t>(cell.y) * static_cast<std::size_t>(level_.columns) +
+                      static_cast<std::size_t>(cell.x)];
     }
 
     bool joins(glm::ivec2 cell, const Flat& flat) { return level_.holds(cell) && !taken(cell) && flatOf(cell) == flat; }

@@ -34,7 +34,8 @@ void forSamples(const HeightGrid& grid, const glm::dvec2& from, const glm::dvec2
     const Range rows = samplesIn(from.y, to.y, grid.min.y, grid.max.y, grid.rows);
     for (int j = rows.first; j <= rows.last; ++j)
         for (int i = columns.first; i <= columns.last; ++i)
-            each(static_cast<std::size_t>(j * grid.columns + i), sampleAt(grid, i, j));
+            each(static_cast<std::size_t>(j) * static_cast<std::size_t>(grid.columns) + static_cast<std::size_t>(i),
+                 sampleAt(grid, i, j));
 }
 
 } // namespace

@@ -140,7 +140,7 @@ void addDemoCommands(Studio& studio) {
 
 void addFileCommands(Studio& studio, QWidget& window) {
     Commands& commands = studio.commands;
-    const auto add = [&commands](const char* id, const char* text, const char* iconName, QKeySequence keys,
+    const auto add = [&commands](const char* id, const char* text, const char* iconName, const QKeySequence& keys,
                                  std::function<void()> run) {
         Commands::Options options;
         options.icon = iconName;
