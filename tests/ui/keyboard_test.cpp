@@ -34,6 +34,7 @@ namespace {
 using test::eventually;
 
 constexpr int kMostSteps = 400;
+constexpr int kMostLinks = 40; ///< of a page that is read: Tab visits each before it leaves the page
 
 /// Which have a command with a key, or belong to another control that is reached.
 bool reachedOtherwise(const QWidget& control) {
@@ -76,7 +77,7 @@ std::string named(const QWidget& widget) {
 std::set<const QWidget*> walk(QWidget& window, bool backwards) {
     std::set<const QWidget*> reached;
     int steps = 0;
-    for (int idle = 0; steps < kMostSteps && idle < 8; ++steps) {
+    for (int idle = 0; steps < kMostSteps && idle < kMostLinks; ++steps) {
         QWidget* now = window.focusWidget() ? window.focusWidget() : &window;
         QTest::keyClick(now, backwards ? Qt::Key_Backtab : Qt::Key_Tab, backwards ? Qt::ShiftModifier : Qt::NoModifier);
         if (const QWidget* next = window.focusWidget()) idle = reached.insert(next).second ? 0 : idle + 1;
