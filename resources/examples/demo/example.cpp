@@ -9,7 +9,6 @@
 #include <glm/geometric.hpp>
 
 #include "app/applications/demo_items.h"
-#include "core/scene/material_library.h"
 
 namespace lumorph::example {
 namespace {
@@ -31,7 +30,7 @@ ShowContent ExampleProgram::frame(const ShowMoment& moment) {
     ShowContent content;
     content.scene = std::make_shared<const Scene>(scene());
     content.target = heights();
-    content.following = Following::split; // servos take what is slow of it, light all the rest
+    content.following = Following::split; // servos take what is slow of it; the scene shows all
     return content;
 }
 
@@ -67,7 +66,14 @@ HeightGrid ExampleProgram::heights() const {
 
 Scene ExampleProgram::scene() const {
     Scene scene = defaultScene();
-    scene.device.material = readyMaterial("Wood");
+    scene.device.material.color = {0.30F, 0.46F, 0.40F};
+    // Light shows the hill whole; the device has it only where its servos reach.
+    const auto across = static_cast<float>(2.0 * kHillRadius);
+    SceneItem hill = demoItem(
+        101, "Hill", ShapeItem{ShapeItem::Form::sphere, {across, static_cast<float>(2.0 * heightAt(ball_)), across}});
+    hill.position = {ball_.x, kSheet, ball_.y};
+    hill.material.color = {0.86F, 0.74F, 0.42F};
+    scene.items.push_back(hill);
     SceneItem ball = demoItem(100, "Ball", ShapeItem{ShapeItem::Form::sphere, glm::vec3(2.0 * kRadius)});
     ball.position = {glm::dvec3(ball_.x, static_cast<double>(kSheet) + heightAt(ball_) + kRadius, ball_.y)};
     ball.material.name = "Paint";
