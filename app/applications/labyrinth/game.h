@@ -10,6 +10,7 @@
 #include "app/applications/labyrinth/ball_world.h"
 #include "app/applications/labyrinth/ghost.h"
 #include "app/applications/labyrinth/level.h"
+#include "app/applications/visitor.h"
 
 namespace lumorph::labyrinth {
 
@@ -26,7 +27,7 @@ struct GameEvent {
 /// of level, seed and what is asked of it, bit for bit.
 class Game {
 public:
-    static constexpr double kMostLean = 0.26; ///< radians, 15 degrees: steeper than any ramp
+    static constexpr double kMostLean = Visitor::kMostLean; ///< steeper than any ramp
     /// As on a board two and a half times as large, so that a hand can follow. Metres a second squared.
     static constexpr double kGravity = 4.0;
 

@@ -45,9 +45,9 @@ void LabyrinthProgram::begin(std::size_t level) {
 }
 
 ShowContent LabyrinthProgram::frame(const ShowMoment& moment) {
-    controls_.take(moment);
-    hand(moment);
-    game_->advance(moment.step, alone_ ? pilot_->lean(game_->ball(), game_->pickUps()) : controls_.lean());
+    visitor_.take(moment);
+    turn();
+    game_->advance(moment.step, playsItself() ? pilot_->lean(game_->ball(), game_->pickUps()) : visitor_.lean());
     ShowContent content;
     content.sounds = sounds();
     finish(moment.step);
@@ -59,24 +59,16 @@ ShowContent LabyrinthProgram::frame(const ShowMoment& moment) {
     return content;
 }
 
-/// Who plays: whoever leans it begins anew, and who has gone leaves it to itself.
-void LabyrinthProgram::hand(const ShowMoment& moment) {
-    silence_ = controls_.active() ? 0.0 : silence_ + moment.step;
-    if (controls_.active() && alone_) {
-        alone_ = false;
-        return begin(0);
-    }
-    if (!alone_ && silence_ > kSilence) {
-        alone_ = true;
-        return begin(0);
-    }
-    if (controls_.next()) return begin((number_ + 1) % levels_.size());
-    if (controls_.restart()) begin(number_);
+/// Whoever comes begins anew, and who has gone leaves it to itself.
+void LabyrinthProgram::turn() {
+    if (visitor_.came() || visitor_.left()) return begin(0);
+    if (visitor_.next()) return begin((number_ + 1) % levels_.size());
+    if (visitor_.restart()) begin(number_);
 }
 
 void LabyrinthProgram::finish(double step) {
     if (!game_->done()) return;
-    if (rests_ == 0.0 && !alone_) keepRun();
+    if (rests_ == 0.0 && !playsItself()) keepRun();
     rests_ += step;
     if (rests_ > kRest) begin((number_ + 1) % levels_.size());
 }

@@ -7,21 +7,19 @@
 
 #include "app/applications/demo.h"
 #include "app/applications/labyrinth/board.h"
-#include "app/applications/labyrinth/controls.h"
 #include "app/applications/labyrinth/game.h"
 #include "app/applications/labyrinth/relief.h"
 #include "app/applications/labyrinth/route.h"
+#include "app/applications/visitor.h"
 #include "core/loop/show_program.h"
 
 namespace lumorph::labyrinth {
 
 /// The labyrinth as an application: levels one after another, shown by light, their relief and the ball felt through
-/// the servos. Until somebody leans it, and again after 45 s of silence, it plays by itself. Sounds of a frame are
+/// the servos. Without a visitor it plays by itself. Sounds of a frame are
 /// `labyrinth.roll`, `.bump`, `.pickup`, `.fall` and `.goal`.
 class LabyrinthProgram final : public ShowProgram {
 public:
-    static constexpr double kSilence = 45.0; ///< seconds without a player until it plays by itself
-
     /// `best` are the best runs so far, by the names of their levels. Throws InvalidInput without a level.
     LabyrinthProgram(std::uint64_t seed, std::vector<Level> levels, std::vector<Ghost> best = {});
 
@@ -29,12 +27,12 @@ public:
 
     [[nodiscard]] const Game& game() const noexcept { return *game_; }
     [[nodiscard]] std::size_t level() const noexcept { return number_; } ///< from 0
-    [[nodiscard]] bool playsItself() const noexcept { return alone_; }
+    [[nodiscard]] bool playsItself() const noexcept { return !visitor_.there(); }
     [[nodiscard]] const std::vector<Ghost>& bestRuns() const noexcept { return best_; }
 
 private:
     void begin(std::size_t level);
-    void hand(const ShowMoment& moment);
+    void turn();
     void finish(double step);
     void keepRun();
     [[nodiscard]] const Ghost* best() const;
@@ -44,11 +42,9 @@ private:
     std::vector<Level> levels_;
     std::vector<Ghost> best_;
     std::shared_ptr<const SceneAssets> pictures_;
-    Controls controls_;
+    Visitor visitor_;
     std::size_t number_ = 0;
-    bool alone_ = true;
-    double silence_ = 0.0; ///< seconds
-    double rests_ = 0.0;   ///< seconds in the goal
+    double rests_ = 0.0; ///< seconds in the goal
     std::optional<Game> game_;
     std::optional<Pilot> pilot_;
     std::optional<Board> board_;

@@ -98,10 +98,11 @@ QString ProjectorWindow::calibrationProblem() const {
 
 /// Qt hands a window's picture to the display server when paintEvent has returned, and says no more of it. What is
 /// called from the queue comes after that; and a server that gives a pixel back has worked off what came before.
-void ProjectorWindow::tellShown() {
-    if (ticket_ == 0) return;
+void ProjectorWindow::tellShown(quint64 ticket) {
+    if (ticket != ticket_) return; // painted twice: told already, and a later one is not painted yet
     screen()->grabWindow(winId(), 0, 0, 1, 1);
-    emit calibrationShown(std::exchange(ticket_, 0));
+    ticket_ = 0;
+    emit calibrationShown(ticket);
 }
 
 QImage ProjectorWindow::picture() const {
@@ -133,7 +134,9 @@ void ProjectorWindow::leaveScreen() {
 }
 
 void ProjectorWindow::paintEvent(QPaintEvent* /*event*/) {
-    if (ticket_ != 0) QMetaObject::invokeMethod(this, &ProjectorWindow::tellShown, Qt::QueuedConnection);
+    if (ticket_ != 0)
+        QMetaObject::invokeMethod(
+            this, [this, ticket = ticket_] { tellShown(ticket); }, Qt::QueuedConnection);
     QPainter painter(this);
     // In pixels of the screen: the picture is copied, whatever the desktop's scale.
     const double ratio = devicePixelRatioF();

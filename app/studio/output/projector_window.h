@@ -60,7 +60,7 @@ protected:
 
 private:
     void showTitle();
-    void tellShown();
+    void tellShown(quint64 ticket);
 
     ShowFeed& feed_;
     const std::size_t number_;

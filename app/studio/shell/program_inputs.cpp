@@ -27,6 +27,8 @@ const char* inputOf(int key) {
         return "key.restart";
     case Qt::Key_N:
         return "key.next";
+    case Qt::Key_A:
+        return "key.attract";
     default:
         return nullptr;
     }
@@ -95,6 +97,7 @@ void ProgramInputs::letGo() {
     if (std::exchange(pointed_, false)) {
         loop_.input("pointer.x", 0.0);
         loop_.input("pointer.y", 0.0);
+        loop_.input("pointer.over", 0.0);
     }
     for (const int key : std::exchange(held_, {})) loop_.input(inputOf(key), 0.0);
 }

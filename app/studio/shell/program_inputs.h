@@ -10,8 +10,9 @@
 namespace lumorph::studio {
 
 /// Hands what is done to a view on to the application that shows: where the pointer stands over it as `pointer.x` and
-/// `pointer.y`, -1 to 1 from its middle, and keys as `key.left`, `key.right`, `key.up`, `key.down`, `key.restart` (R)
-/// and `key.next` (N). Where none shows, the view keeps its own keys.
+/// `pointer.y`, -1 to 1 from its middle (`pointer.over` 0 once it leaves), and keys as `key.left`, `key.right`,
+/// `key.up`, `key.down`, `key.restart` (R), `key.next` (N) and `key.attract` (A). Where none shows, the view keeps its
+/// own keys.
 class ProgramInputs : public QObject {
     Q_OBJECT
 public:

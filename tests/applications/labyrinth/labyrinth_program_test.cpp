@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <cmath>
 #include <ctime>
-#include <map>
 #include <numeric>
 #include <set>
 #include <string>
@@ -12,65 +11,19 @@
 
 #include "app/applications/labyrinth/labyrinth.h"
 #include "core/base/error.h"
-#include "core/base/resources.h"
 #include "core/mdf/builder.h"
 #include "core/motion/causal_split.h"
 #include "core/motion/surface_heights.h"
-#include "core/rig/rig_file.h"
+#include "program_visit.h"
 
 // R39: the labyrinth as visitors meet it: who plays, what is seen and heard, what is felt, and what a frame costs.
 
 namespace lumorph::labyrinth {
 namespace {
 
-constexpr double kFrame = 1.0 / 60.0;
-
-const std::shared_ptr<const Rig>& tablet() {
-    static const auto rig = std::make_shared<const Rig>(readRig(resourceFile("models/tablet.glb")));
-    return rig;
-}
-
-/// Asks the program frame by frame, as the loop does.
-class Visit {
-public:
-    explicit Visit(LabyrinthProgram& program) : program_(program) {
-        moment_.rig = tablet();
-        moment_.installation = std::make_shared<const Installation>(defaultInstallation());
-    }
-
-    const ShowContent& frame(std::vector<ShowInput> inputs = {}) {
-        moment_.inputs = inputs;
-        moment_.bodies = bodies_;
-        content_ = program_.frame(moment_);
-        moment_.inputs = {};
-        moment_.step = kFrame;
-        moment_.seconds += kFrame;
-        for (const ShowSound& sound : content_.sounds) ++heard_[sound.name];
-        return content_;
-    }
-    void frames(double seconds) {
-        for (int k = 0; k < std::lround(seconds / kFrame); ++k) frame();
-    }
-    /// The tracked device leans so far about the world's axes, radians.
-    void lean(float aboutX, float aboutZ) {
-        bodies_ = {ShowBody{"Tablet", PoseRole::device, {}}};
-        moment_.worldFromDevice = glm::mat4_cast(glm::angleAxis(aboutX, glm::vec3(1.0F, 0.0F, 0.0F)) *
-                                                 glm::angleAxis(aboutZ, glm::vec3(0.0F, 0.0F, 1.0F)));
-    }
-    [[nodiscard]] const SceneItem& item(int id) const { return *findItem(*content_.scene, id); }
-    [[nodiscard]] int heard(const std::string& sound) const {
-        const auto found = heard_.find("labyrinth." + sound);
-        return found == heard_.end() ? 0 : found->second;
-    }
-    [[nodiscard]] const ShowContent& content() const { return content_; }
-
-private:
-    LabyrinthProgram& program_;
-    ShowMoment moment_;
-    std::vector<ShowBody> bodies_;
-    ShowContent content_;
-    std::map<std::string, int> heard_;
-};
+using test::tabletRig;
+using Visit = test::ProgramVisit;
+using test::kFrame;
 
 TEST(LabyrinthProgram, PlaysByItselfFromLevelToLevel) {
     LabyrinthProgram program(1, bundledLevels());
@@ -84,9 +37,9 @@ TEST(LabyrinthProgram, PlaysByItselfFromLevelToLevel) {
     EXPECT_GE(seen.size(), 3U) << "in a minute";
     EXPECT_TRUE(program.playsItself());
     EXPECT_TRUE(program.bestRuns().empty()) << "its own runs are nobody's best";
-    EXPECT_GE(visit.heard("goal"), 2);
-    EXPECT_GE(visit.heard("pickup"), 5);
-    EXPECT_GT(visit.heard("roll"), 1000);
+    EXPECT_GE(visit.heard("labyrinth.goal"), 2);
+    EXPECT_GE(visit.heard("labyrinth.pickup"), 5);
+    EXPECT_GT(visit.heard("labyrinth.roll"), 1000);
 }
 
 TEST(LabyrinthProgram, WhoLeansItPlaysAtOnceAndWhoGoesLeavesItToItself) {
@@ -106,7 +59,7 @@ TEST(LabyrinthProgram, WhoLeansItPlaysAtOnceAndWhoGoesLeavesItToItself) {
     visit.frame({{"key.restart", 1.0}});
     EXPECT_EQ(program.level(), 1U);
     EXPECT_LT(program.game().seconds(), 0.1);
-    visit.frames(LabyrinthProgram::kSilence - 1.0);
+    visit.frames(Visitor::kSilence - 1.0);
     EXPECT_FALSE(program.playsItself());
     visit.frames(2.0);
     EXPECT_TRUE(program.playsItself());
@@ -182,7 +135,7 @@ glm::dvec2 peakOf(const HeightGrid& with, const HeightGrid& without) {
 }
 
 TEST(LabyrinthProgram, TheBumpIsWithinAVoxelOfTheBall) {
-    const auto voxel = static_cast<double>(frameOf(tablet()->reach(), BuildOptions{}.resolution).voxelSize);
+    const auto voxel = static_cast<double>(frameOf(tabletRig()->reach(), BuildOptions{}.resolution).voxelSize);
     LabyrinthProgram program(3, bundledLevels());
     Visit visit(program);
     visit.frame();
@@ -228,8 +181,8 @@ std::vector<double> carried(CausalSplit& split, const HeightGrid& relief) {
     split.restart();
     const std::vector<double> strokes = split.strokes(heights, 0.0);
     std::vector<float> top(split.restHeights().begin(), split.restHeights().end());
-    TriangleMesh shape = tablet()->restMesh();
-    shape.positions = deformed(*tablet(), strokes).positions;
+    TriangleMesh shape = tabletRig()->restMesh();
+    shape.positions = deformed(*tabletRig(), strokes).positions;
     heightsOfMesh(shape, split.points(), top);
     std::vector<double> over;
     for (std::size_t k = 0; k < top.size(); ++k)
@@ -252,7 +205,7 @@ double around(const glm::dvec2& place, const CausalSplit& split, const std::vect
 // What hands feel without light. Six servos lift four corners and two halves: walls are too narrow for them, so that a
 // third of a level's relief and more is what there is to carry.
 TEST(LabyrinthProgram, TheTabletCarriesTheReliefOfALevel) {
-    CausalSplit split(*tablet());
+    CausalSplit split(*tabletRig());
     for (const Level& level : bundledLevels()) {
         const Relief relief(level, blocksOf(level));
         std::vector<double> wanted;
@@ -264,7 +217,7 @@ TEST(LabyrinthProgram, TheTabletCarriesTheReliefOfALevel) {
 
 // By 5 to 8 mm; a millimetre is felt.
 TEST(LabyrinthProgram, TheTabletRisesWhereTheBallIs) {
-    CausalSplit split(*tablet());
+    CausalSplit split(*tabletRig());
     for (const Level& level : bundledLevels()) {
         const Relief relief(level, blocksOf(level));
         for (const glm::dvec2& ball : {glm::dvec2(0.0, 0.045), {0.0, -0.045}, {0.085, 0.055}, {-0.085, -0.055}}) {
