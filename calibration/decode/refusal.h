@@ -42,10 +42,18 @@ enum class Cause {
     strangeLens,        ///< "strange_lens": a lens bends light as no pinhole with distortion does
     projectorGamma,     ///< "projector_gamma": the projector's gamma bends the phases
     cameraRefocused,    ///< "camera_refocused": the camera's focal length changed between poses
+    wrongUnits,         ///< "wrong_units": metres and something else
+    doubledRows,        ///< "doubled_rows": a recording repeats itself
+    clockJumps,         ///< "clock_jumps": a clock goes back, or jumps within a recording
+    clocksUnknown,      ///< "clocks_unknown": nothing tells how two clocks differ
+    motionDegenerate,   ///< "motion_degenerate": a motion is missing without which something stays open
+    bodySwapped,        ///< "body_swapped": a tracked body is elsewhere for a while
+    tipSlipped,         ///< "tip_slipped": a pointer's tip left its dimple
+    tipWrong,           ///< "tip_wrong": the pointer's tip is elsewhere than was said
 };
 
 /// All of them, in the order above.
-inline constexpr int kCauseCount = static_cast<int>(Cause::cameraRefocused) + 1;
+inline constexpr int kCauseCount = static_cast<int>(Cause::tipWrong) + 1;
 
 [[nodiscard]] std::string_view keyOf(Cause cause);
 /// The cause of a key; empty where there is none.

@@ -1,0 +1,134 @@
+#include "calibration/registration/hand_eye_fit.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/Cholesky>
+#include <glm/geometric.hpp>
+
+#include "core/base/statistics.h"
+
+namespace lumorph::hand_eye {
+
+namespace {
+
+constexpr int kUnknowns = 13;
+constexpr int kRounds = 12;
+constexpr double kMedianOfNorm = 1.538;                 ///< of a normal vector in space with sigma 1
+constexpr double kLeastTurn = 1e-6, kLeastPlace = 1e-7; ///< noise below which numbers end
+constexpr double kCauchy = 2.4;                         ///< sigmas of a vector's part
+using Vector = Eigen::Matrix<double, kUnknowns, 1>;
+using Matrix = Eigen::Matrix<double, kUnknowns, kUnknowns>;
+using Slopes = Eigen::Matrix<double, 6, kUnknowns>;
+
+Pose stepOf(const double* d) { return {{d[3], d[4], d[5]}, rotationOfTurn({d[0], d[1], d[2]})}; }
+
+Unknowns moved(const Unknowns& u, const Vector& d) {
+    return {u.bFromA * stepOf(d.data()), stepOf(d.data() + 6) * u.worldBFromWorldA, u.timeOffset + d[12]};
+}
+
+const glm::dvec3& placeOf(const Deviation& d, Place place) { return place == Place::body ? d.place : d.origin; }
+
+double distanceOf(const TimedPose& pose) { return glm::length(pose.pose.position); }
+
+/// Weight of a vector of this length under Cauchy's function, over its variance.
+double weightOf(const glm::dvec3& error, double sigma) {
+    const double far = glm::length(error) / (std::sqrt(3.0) * sigma * kCauchy);
+    return 1.0 / (sigma * sigma * (1.0 + far * far));
+}
+
+} // namespace
+
+Noise::Noise(std::span<const Deviation> deviations, const PoseTrack& b, Place place) {
+    std::vector<const Deviation*> byDistance;
+    for (const Deviation& d : deviations) byDistance.push_back(&d);
+    const auto distance = [&](const Deviation* d) { return distanceOf(b.poses[d->pose]); };
+    std::ranges::sort(byDistance, {}, distance);
+    for (std::size_t ring = 0; ring < kRings; ++ring) {
+        const std::size_t from = ring * byDistance.size() / kRings, to = (ring + 1) * byDistance.size() / kRings;
+        std::vector<double> turns, places;
+        for (std::size_t i = from; i < to; ++i) {
+            turns.push_back(glm::length(byDistance[i]->turn));
+            places.push_back(glm::length(placeOf(*byDistance[i], place)));
+        }
+        farthest_[ring] = to > from ? distance(byDistance[to - 1]) : 0.0;
+        turns_[ring] = std::max(kLeastTurn, median(turns) / kMedianOfNorm);
+        places_[ring] = std::max(kLeastPlace, median(places) / kMedianOfNorm);
+        logarithm_ += (std::log(turns_[ring]) + std::log(places_[ring])) / double(kRings);
+    }
+}
+
+double Noise::at(const std::array<double, kRings>& of, double distance) const {
+    std::size_t ring = 0;
+    while (ring + 1 < kRings && distance > farthest_[ring]) ++ring;
+    return of[ring];
+}
+
+std::optional<Deviation> Fit::deviation(const Unknowns& unknowns, std::size_t pose) const {
+    const TimedPose& seen = b_.poses[pose];
+    const auto a = poseAt(a_, seen.seconds - unknowns.timeOffset);
+    if (!a) return std::nullopt;
+    const Pose told = unknowns.worldBFromWorldA * *a * inverseOf(unknowns.bFromA);
+    Deviation d;
+    d.pose = pose;
+    d.turn = turnOf(glm::conjugate(seen.pose.rotation) * told.rotation);
+    d.place = told.position - seen.pose.position;
+    d.origin = inverseOf(told).position - inverseOf(seen.pose).position;
+    return d;
+}
+
+std::vector<Deviation> Fit::deviations(const Unknowns& unknowns) const {
+    std::vector<Deviation> all;
+    for (std::size_t i = 0; i < b_.poses.size(); ++i)
+        if (const auto d = deviation(unknowns, i)) all.push_back(*d);
+    return all;
+}
+
+Unknowns Fit::refined(Unknowns u, Place place, Range use, Range leave, bool offsetAlone) const {
+    constexpr double kStep = 1e-6; // of a central difference: radians, metres, seconds
+    for (int round = 0; round < kRounds; ++round) {
+        std::vector<Deviation> all = deviations(u);
+        std::erase_if(all, [&](const Deviation& d) { return !use.has(d.pose) || leave.has(d.pose); });
+        if (all.size() < 10) break;
+        const Noise noise(all, b_, place);
+        std::array<Unknowns, kUnknowns> more, less;
+        for (int k = 0; k < kUnknowns; ++k) {
+            more[static_cast<std::size_t>(k)] = moved(u, kStep * Vector::Unit(k));
+            less[static_cast<std::size_t>(k)] = moved(u, -kStep * Vector::Unit(k));
+        }
+        Matrix normal = Matrix::Zero();
+        Vector right = Vector::Zero();
+        for (const Deviation& d : all) {
+            Slopes slopes = Slopes::Zero();
+            bool whole = true;
+            for (int k = offsetAlone ? 12 : 0; k < kUnknowns && whole; ++k) {
+                const auto up = deviation(more[static_cast<std::size_t>(k)], d.pose);
+                const auto down = deviation(less[static_cast<std::size_t>(k)], d.pose);
+                whole = up && down;
+                if (!whole) break;
+                const glm::dvec3 turn = (up->turn - down->turn) / (2.0 * kStep);
+                const glm::dvec3 at = (placeOf(*up, place) - placeOf(*down, place)) / (2.0 * kStep);
+                slopes.col(k) << turn.x, turn.y, turn.z, at.x, at.y, at.z;
+            }
+            if (!whole) continue; // at the rim of a gap
+            const double distance = distanceOf(b_.poses[d.pose]);
+            const glm::dvec3& at = placeOf(d, place);
+            const double turnWeight = weightOf(d.turn, noise.turn(distance));
+            const double placeWeight = weightOf(at, noise.place(distance));
+            Eigen::Matrix<double, 6, 1> weights, error;
+            weights << turnWeight, turnWeight, turnWeight, placeWeight, placeWeight, placeWeight;
+            error << d.turn.x, d.turn.y, d.turn.z, at.x, at.y, at.z;
+            normal += slopes.transpose() * weights.asDiagonal() * slopes;
+            right -= slopes.transpose() * weights.asDiagonal() * error;
+        }
+        // What is kept has no slopes; the smallest of dampings also keeps what the data cannot tell where it is.
+        const double damping = 1e-9 * normal.diagonal().maxCoeff();
+        normal.diagonal().array() += damping;
+        const Vector step = normal.ldlt().solve(right);
+        u = moved(u, step);
+        if (step.cwiseAbs().maxCoeff() < 1e-6) break;
+    }
+    return u;
+}
+
+} // namespace lumorph::hand_eye
