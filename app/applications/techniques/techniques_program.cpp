@@ -98,22 +98,31 @@ void TechniquesProgram::playItself(double step) {
 }
 
 void TechniquesProgram::answer(const ShowMoment& moment) {
-    for (const ShowInput& input : moment.inputs) {
-        if (!(input.value > kPressed)) continue;
-        for (std::size_t k = 0; k < all_.size(); ++k)
-            if (input.name == "key." + std::to_string(k)) choose(k);
-        if (input.name == "key.off") on_ = !on_;
-    }
-    const glm::dvec2 before = std::exchange(pushed_, visitor_.push());
-    const auto pressed = [](double was, double is) { return std::abs(was) <= kPressed && std::abs(is) > kPressed; };
-    if (pressed(before.x, pushed_.x)) step(pushed_.x > 0.0 ? 1 : -1);
-    if (pressed(before.y, pushed_.y)) on_ = pushed_.y < 0.0;
+    for (const ShowInput& input : moment.inputs) press(input);
     if (visitor_.next()) step(1);
     if (visitor_.restart()) choose(1);
-    const double aside = visitor_.pointer() ? visitor_.pointer()->x : visitor_.lean().x / Visitor::kMostLean - pushed_.x;
+    const double leant = visitor_.lean().x / Visitor::kMostLean - visitor_.push().x;
+    const double aside = visitor_.pointer() ? visitor_.pointer()->x : leant;
     const auto side = std::abs(aside) > kAside ? std::optional(aside > 0.0) : std::nullopt;
     if (side && side != side_) on_ = *side;
     if (side) side_ = side;
+}
+
+/// One after the other, so that none is too short to be seen.
+void TechniquesProgram::press(const ShowInput& input) {
+    const auto pushes = [&](double& before) {
+        return std::abs(std::exchange(before, input.value)) <= kPressed && std::abs(input.value) > kPressed;
+    };
+    if (input.name == "pad.x" && pushes(stick_.x)) return step(input.value > 0.0 ? 1 : -1);
+    if (input.name == "pad.y" && pushes(stick_.y)) on_ = input.value < 0.0;
+    if (!(input.value > kPressed)) return;
+    if (input.name == "key.right") step(1);
+    if (input.name == "key.left") step(-1);
+    if (input.name == "key.up") on_ = true;
+    if (input.name == "key.down") on_ = false;
+    if (input.name == "key.off") on_ = !on_;
+    for (std::size_t k = 0; k < all_.size(); ++k)
+        if (input.name == "key." + std::to_string(k)) choose(k);
 }
 
 void TechniquesProgram::step(int by) {

@@ -34,6 +34,7 @@ private:
 
     void playItself(double step);
     void answer(const ShowMoment& moment);
+    void press(const ShowInput& input);
     void step(int by);
     void choose(std::size_t technique);
 
@@ -42,8 +43,8 @@ private:
     Visitor visitor_;
     std::size_t shown_ = 1;
     bool on_ = false;
-    double alone_ = 0.0;      ///< seconds of the present one that it was left to itself
-    glm::dvec2 pushed_{0.0};  ///< by keys or stick in the frame before
+    double alone_ = 0.0;       ///< seconds of the present one that it was left to itself
+    glm::dvec2 stick_{0.0};    ///< as it was told last
     std::optional<bool> side_; ///< to which side he points or leans; nothing in the middle
 };
 

@@ -72,11 +72,10 @@ ProjectSource withMemory(const SessionState& session) {
     ProjectSource source = session.source;
     if (!source.extras.view.is_object()) source.extras.view = nlohmann::json::object();
     const StudioState& state = source.state;
-    source.extras.view[kKey] = {{"file", utf8Of(session.file)},        {"modified", session.modified},
-                                {"rig", utf8Of(state.rig.path)},       {"field", utf8Of(state.field.path)},
-                                {"target", utf8Of(state.target.path)}, {"scene", sceneFiles(state)},
-                                {"rigInMemory", !source.stamps.rig},   {"demo", session.demo.name},
-                                {"plays", session.demo.plays}};
+    source.extras.view[kKey] = {
+        {"file", utf8Of(session.file)},      {"modified", session.modified},        {"rig", utf8Of(state.rig.path)},
+        {"field", utf8Of(state.field.path)}, {"target", utf8Of(state.target.path)}, {"scene", sceneFiles(state)},
+        {"rigInMemory", !source.stamps.rig}, {"demo", session.demo.name},           {"plays", session.demo.plays}};
     return source;
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include <QFocusEvent>
 #include <QGridLayout>
 #include <QHBoxLayout>
 #include <QLabel>
@@ -59,7 +60,7 @@ public:
 protected:
     void paintEvent(QPaintEvent* /*event*/) override {
         const Palette& colors = currentPalette();
-        const bool lit = underMouse() || hasFocus();
+        const bool lit = underMouse() || (byKey_ && hasFocus());
         QPainter painter(this);
         painter.setRenderHint(QPainter::Antialiasing);
         painter.setRenderHint(QPainter::SmoothPixmapTransform);
@@ -82,6 +83,12 @@ protected:
         painter.drawPath(shape);
     }
 
+    /// Marked only where keys are used: else nobody asks for it.
+    void focusInEvent(QFocusEvent* event) override {
+        byKey_ = event->reason() == Qt::TabFocusReason || event->reason() == Qt::BacktabFocusReason;
+        QAbstractButton::focusInEvent(event);
+    }
+
 private:
     /// A hand on those that answer: the others go by time alone.
     void paintPlayable(QPainter& painter, const QRectF& picture) const {
@@ -100,7 +107,8 @@ private:
         title.setWeight(QFont::DemiBold);
         painter.setFont(title);
         painter.setPen(colors.text);
-        painter.drawText(room, Qt::AlignLeft | Qt::AlignTop, QFontMetricsF(title).elidedText(text(), Qt::ElideRight, room.width()));
+        painter.drawText(room, Qt::AlignLeft | Qt::AlignTop,
+                         QFontMetricsF(title).elidedText(text(), Qt::ElideRight, room.width()));
         QFont sentence = font();
         sentence.setPixelSize(14);
         painter.setFont(sentence);
@@ -111,6 +119,7 @@ private:
     Studio& studio_;
     const Demo& demo_;
     QPixmap picture_;
+    bool byKey_ = false; ///< the focus came by a key
 };
 
 } // namespace
@@ -145,11 +154,12 @@ ApplicationsPage::ApplicationsPage(Studio& studio, QWidget& window, For whom) : 
 
 void ApplicationsPage::addCards() {
     auto* shelf = new QWidget;
-    area_->viewport()->setAutoFillBackground(false);
-    shelf->setAutoFillBackground(false);
-    grid_ = new QGridLayout(shelf);
-    grid_->setContentsMargins(2, 2, 2, 2);
+    shelf->setProperty("look", "column"); // see through
+    auto* middle = new QGridLayout(shelf);
+    middle->setContentsMargins(2, 2, 2, 2);
+    grid_ = new QGridLayout;
     grid_->setSpacing(kGap);
+    middle->addLayout(grid_, 0, 0, Qt::AlignCenter);
     for (const Demo& demo : demos()) {
         auto* card = new Card(studio_, demo, shelf);
         connect(card, &QAbstractButton::clicked, this, [this, &demo] { emit chosen(demo); });
@@ -216,7 +226,7 @@ void ApplicationsPage::arrange() {
     }
     for (int k = 0; k < count; ++k) {
         static_cast<Card*>(cards_[static_cast<std::size_t>(k)])->setWide(card);
-        grid_->addWidget(cards_[static_cast<std::size_t>(k)], k / columns, k % columns, Qt::AlignCenter);
+        grid_->addWidget(cards_[static_cast<std::size_t>(k)], k / columns, k % columns);
     }
     coverAllBut(QRect(0, 0, width(), kTop));
 }

@@ -16,8 +16,8 @@ namespace lumorph::studio {
 
 /// The doors of a window that visitors stand before. While they are closed, the whole program hears no key, pointer,
 /// touch or dropped file, but for STOP, Esc (twice: STOP), what an application has for visitors, and the pad for the
-/// operator's PIN, which opens what only the operator may do. Whatever a widget would do with its input, it does not get any: nothing needs to know of a
-/// kiosk to be shut by it.
+/// operator's PIN, which opens what only the operator may do. Whatever a widget would do with its input, it does not
+/// get any: nothing needs to know of a kiosk to be shut by it.
 class Kiosk : public QObject {
     Q_OBJECT
 public:

@@ -160,7 +160,7 @@ void MainWindow::keepOnScreen() {
 }
 
 MainWindow::~MainWindow() {
-    delete data_->kiosk;  // it hears all that follows
+    delete data_->kiosk; // it hears all that follows
     delete std::exchange(data_->desk, nullptr);
     delete data_->escape; // likewise, and it tells the watch, which is gone when the last child is hidden
     qApp->removeEventFilter(this);

@@ -22,7 +22,8 @@ class DriverChip;
 class TopBar : public QWidget {
     Q_OBJECT
 public:
-    /// The commands applications, edit.undo, edit.redo, view.commandPalette, view.theme and those of the drivers must be there.
+    /// The commands applications, edit.undo, edit.redo, view.commandPalette, view.theme and those of the drivers must
+    /// be there.
     TopBar(Studio& studio, const std::vector<std::unique_ptr<Workspace>>& workspaces, QWidget* parent);
 
     [[nodiscard]] QMenuBar& menuBar() noexcept { return *menus_; }

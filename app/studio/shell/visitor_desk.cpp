@@ -19,8 +19,12 @@ constexpr int kBarMargin = 16;
 bool isHelpKey(int key) { return key == Qt::Key_H || key == Qt::Key_Question || key == Qt::Key_F1; }
 
 bool isPointing(QEvent::Type type) {
-    constexpr std::array kTypes{QEvent::MouseButtonPress, QEvent::MouseButtonRelease, QEvent::MouseButtonDblClick,
-                                QEvent::Wheel,            QEvent::TouchBegin,         QEvent::TouchUpdate,
+    constexpr std::array kTypes{QEvent::MouseButtonPress,
+                                QEvent::MouseButtonRelease,
+                                QEvent::MouseButtonDblClick,
+                                QEvent::Wheel,
+                                QEvent::TouchBegin,
+                                QEvent::TouchUpdate,
                                 QEvent::TouchEnd};
     return std::ranges::find(kTypes, type) != kTypes.end();
 }

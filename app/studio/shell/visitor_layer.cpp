@@ -15,9 +15,10 @@ constexpr int kFrameMilliseconds = 50;
 constexpr double kBeginSeconds = 9.0; ///< that the ways to play are in sight
 constexpr double kHelpSeconds = 30.0;
 constexpr int kMargin = 20;
-constexpr double kWay = 56.0; ///< side of a way to play, small
+constexpr double kWay = 60.0; ///< side of a way to play, small
+constexpr double kWayGap = 18.0;
 constexpr double kWayLarge = 84.0;
-constexpr double kHand = 84.0;
+constexpr double kHand = 76.0;
 constexpr double kCaptionWidth = 420.0;
 constexpr double kKeyRow = 34.0;
 
@@ -150,7 +151,7 @@ void VisitorLayer::animate() {
 
 QRect VisitorLayer::animated() const {
     if (help_) return helpBox().toAlignedRect();
-    return handBox().united(waysBox()).toAlignedRect();
+    return {0, height() - 120, width(), 120};
 }
 
 double VisitorLayer::turn(double seconds) const {
@@ -158,12 +159,14 @@ double VisitorLayer::turn(double seconds) const {
 }
 
 QRectF VisitorLayer::waysBox() const {
-    const double wide = kWay * static_cast<double>(ways().size()) + kMargin;
+    const double wide = (kWay + kWayGap) * static_cast<double>(ways().size()) + kWayGap;
     return {0.5 * (width() - wide), height() - kWay - 2.0 * kMargin, wide, kWay + 8.0};
 }
 
+/// Below the picture's middle, and beside the ways to play while they are in sight.
 QRectF VisitorLayer::handBox() const {
-    return {0.5 * (width() - kHand), height() - kWay - 3.0 * kMargin - kHand, kHand, kHand};
+    const double left = waysShown() ? waysBox().left() - kHand - 0.5 * kMargin : 0.5 * (width() - kHand);
+    return {left, height() - kHand - 1.4 * kMargin, kHand, kHand};
 }
 
 QRectF VisitorLayer::helpBox() const {
@@ -185,10 +188,10 @@ void VisitorLayer::paintEvent(QPaintEvent* /*event*/) {
 void VisitorLayer::paintWays(QPainter& painter) const {
     const QRectF box = waysBox();
     paintPlate(painter, box, kPlate);
-    double left = box.left() + 0.5 * kMargin;
+    double left = box.left() + kWayGap;
     for (const Way& way : ways()) {
         paintPictogram(painter, way.picture, {left, box.top() + 6.0, kWay, kWay - 4.0}, kInk, turn(2.4));
-        left += kWay;
+        left += kWay + kWayGap;
     }
 }
 
@@ -215,9 +218,9 @@ void VisitorLayer::paintCaption(QPainter& painter) const {
     painter.drawText(QRectF(plate.left() + 16.0, plate.top() + 12.0, room.width() + 2.0, titleBox.height()),
                      Qt::TextWordWrap, captionTitle());
     painter.setFont(text);
-    painter.drawText(QRectF(plate.left() + 16.0, plate.top() + 16.0 + titleBox.height(), room.width() + 2.0,
-                            textBox.height()),
-                     Qt::TextWordWrap, sentence);
+    painter.drawText(
+        QRectF(plate.left() + 16.0, plate.top() + 16.0 + titleBox.height(), room.width() + 2.0, textBox.height()),
+        Qt::TextWordWrap, sentence);
 }
 
 void VisitorLayer::paintHelp(QPainter& painter) const {

@@ -53,9 +53,9 @@ private:
 
     Studio& studio_;
     std::shared_ptr<const ShowCaption> caption_;
-    QElapsedTimer since_;  ///< it is there: what moves goes by it
-    QElapsedTimer begun_;  ///< since the application began; invalid: long ago
-    QElapsedTimer helped_; ///< since help was asked for
+    QElapsedTimer since_;   ///< it is there: what moves goes by it
+    QElapsedTimer begun_;   ///< since the application began; invalid: long ago
+    QElapsedTimer helped_;  ///< since help was asked for
     bool hasSteps_ = false; ///< of which number keys choose one
     QTimer animation_;
     bool forVisitors_ = false;

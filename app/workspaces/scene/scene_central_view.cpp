@@ -83,7 +83,7 @@ struct SceneCentralView::Data {
     GlPage* page = nullptr;
     LatencyCard* latency = nullptr;
     QWidget* notices = nullptr;
-    std::optional<ScenePane> alone; ///< enlarged by a double click, or for visitors
+    std::optional<ScenePane> alone;          ///< enlarged by a double click, or for visitors
     std::optional<ScenePane> aloneElsewhere; ///< for the host while visitors have it, and the other way round
     std::optional<glm::vec3> observer;
     bool observing = false; ///< this drag moves the observer, not the viewer

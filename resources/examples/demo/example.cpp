@@ -88,7 +88,8 @@ Demo exampleDemo() {
             {"Example", "Beispiel"},
             {"Point somewhere, and the ball rolls there; your hand feels the hill it stands on.",
              "Zeige irgendwohin, und die Kugel rollt dorthin; die Hand fühlt den Hügel, auf dem sie steht."},
-            "thumbnails/example.png", "scene",
+            "thumbnails/example.png",
+            "scene",
             [](const Progress& progress) {
                 Project project;
                 project.rig = "resource:models/tablet.glb";

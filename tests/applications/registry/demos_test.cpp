@@ -41,16 +41,20 @@ bool differ(const ShowContent& one, const ShowContent& other) {
 }
 
 // From the attract loop to the first play in two actions at most, by a mouse or by a hand that leans the device.
-TEST(Demos, ThatPlayAnswerTheFirstMoveOfAMouseAndOfAHand) {
+TEST(Demos, ThatPlayAnswerTwoMovesOfAMouseAndOfAHand) {
     for (const Demo& demo : demos()) {
         if (!demo.program) continue;
         const auto alone = demo.program(3), pointed = demo.program(3), leant = demo.program(3);
         ProgramVisit nobody(*alone), mouse(*pointed), hand(*leant);
         for (ProgramVisit* visit : {&nobody, &mouse, &hand}) visit->frames(2.0);
         EXPECT_FALSE(differ(nobody.content(), mouse.content())) << demo.name << " is the same show by itself";
-        mouse.frame({{"pointer.x", -0.9}, {"pointer.y", 0.4}});
-        hand.lean(0.1F, 0.2F);
-        for (ProgramVisit* visit : {&nobody, &mouse, &hand}) visit->frames(1.0);
+        for (const double side : {-1.0, 1.0}) {
+            mouse.frame({{"pointer.x", 0.9 * side}, {"pointer.y", 0.4}});
+            hand.lean(0.1F, static_cast<float>(-0.2 * side));
+            nobody.frame();
+            hand.frame();
+            for (ProgramVisit* visit : {&nobody, &mouse, &hand}) visit->frames(0.3);
+        }
         EXPECT_TRUE(differ(nobody.content(), mouse.content())) << demo.name << " and a mouse";
         EXPECT_TRUE(differ(nobody.content(), hand.content())) << demo.name << " and a hand";
     }
