@@ -73,7 +73,7 @@ void VisitorDesk::takeOpened() {
     watch_.beginAnew(false);
     layer_->begin();
     follow();
-    if (mode_ != Mode::studio && !cards_) giveKeyboard();
+    if (mode_ != Mode::studio) giveKeyboard();
 }
 
 void VisitorDesk::follow() {
@@ -93,10 +93,11 @@ void VisitorDesk::arrange() {
     bar_->raise();
 }
 
-/// To the view in sight that takes an application's keys.
+/// To the view in sight that takes an application's keys, where no sheet lies over it.
 void VisitorDesk::giveKeyboard() {
+    if (cards_ || otherSheetOpen()) return;
     for (QWidget* view : stage_.findChildren<QWidget*>())
-        if (view->isVisible() && takesProgramInputs(*view)) return view->setFocus(Qt::OtherFocusReason);
+        if (view->isVisible() && takesProgramInputs(*view)) return view->setFocus(Qt::MouseFocusReason); // no ring
 }
 
 void VisitorDesk::showCards() {
@@ -161,6 +162,9 @@ bool VisitorDesk::mayHave(const QObject& watched, const QEvent& event) const {
 
 /// Whatever shows, and whoever does something with it, stays; so does what the host has changed.
 void VisitorDesk::goOnWhereNobodyPlays() {
+    // A sheet that went may have left the keyboard to nobody.
+    if (mode_ != Mode::studio && studio_.loop.program() && (!window_.focusWidget() || window_.hasFocus()))
+        giveKeyboard();
     const double minutes = studio_.settings.nextMinutes(mode_ == Mode::kiosk);
     const bool wanted = mode_ != Mode::studio && minutes > 0.0 && offers() && !otherSheetOpen();
     if (!wanted || watch_.there() || watch_.quiet() < Microseconds(static_cast<std::int64_t>(6e7 * minutes))) return;
