@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "core/base/words.h"
 #include "core/loop/show_program.h"
 #include "core/show/project_contents.h"
 
@@ -13,23 +14,25 @@ namespace lumorph {
 /// A scene that a demonstration shows at the press of a number key.
 struct DemoStep {
     int key = 0; ///< the number key
-    std::string name;
-    std::string sentence; ///< what is to be seen
+    Words name;
+    Words sentence; ///< what is to be seen
     Scene scene;
+    Scene without; ///< the same without what it is to show, to compare
 };
 
 /// A demonstration, as those who offer it know it: the window, the command line, tests. What it is made of stays in its
 /// own folder.
 struct Demo {
     std::string name;      ///< on the command line
-    std::string title;     ///< for visitors
-    std::string sentence;  ///< what is to be seen, for visitors
+    Words title;           ///< for visitors
+    Words sentence;        ///< what is to be seen or done, for visitors
     std::string thumbnail; ///< a picture among the resources, 320 x 200
     std::string workspace; ///< in which it is seen best
     /// What it shows, ready but for the field of its rig, which takes its time. Throws DataError where a resource is
     /// missing, Cancelled.
     ProjectContents (*open)(const Progress& progress) = nullptr;
-    /// All have the same items with the same ids; empty for one that shows one thing.
+    /// All have the same items with the same ids; empty for one that shows one thing. A host chooses among them, and
+    /// may change what he sees; visitors get `program`.
     std::vector<DemoStep> (*steps)() = nullptr;
     /// An application that answers what happens, in place of the scene of `open`; none: it goes by time alone. The same
     /// seed and inputs give the same show. Throws DataError where a resource is missing.

@@ -75,7 +75,7 @@ std::string asFunction(const std::string& name) {
 
 std::string exampleAs(const std::string& name, const char* file) {
     std::string text = textOf(resourceFile(std::string("examples/demo/") + file));
-    replaceAll(text, "\"Example\"", "\"" + asTitle(name) + "\"");
+    for (const char* title : {"\"Example\"", "\"Beispiel\""}) replaceAll(text, title, "\"" + asTitle(name) + "\"");
     replaceAll(text, "Example", asClass(name));
     replaceAll(text, "exampleDemo", asFunction(name) + "Demo");
     replaceAll(text, "example", name);

@@ -31,10 +31,12 @@ QString firstWorkspace(const Arguments& arguments) {
 /// A project brings everything; a target or a field needs the device that was there last time.
 bool isProject(const std::filesystem::path& file) { return file.extension() == ".lumorph"; }
 
-/// What was asked for, else what was there last time; the tour once, when that is ready.
+/// What was asked for, else what was there last time; at the very first start the cards, when that is ready.
 void openFirst(Studio& studio, MainWindow& window, const Arguments& arguments) {
-    const auto tourOnce = [&studio, &window] {
-        if (!studio.settings.tourSeen()) window.startTour();
+    const auto cardsOnce = [&studio, &window] {
+        if (studio.settings.tourSeen()) return;
+        studio.settings.setTourSeen(true);
+        window.showApplications();
     };
     if (isProject(arguments.project))
         studio.project.open(arguments.project);
@@ -43,7 +45,7 @@ void openFirst(Studio& studio, MainWindow& window, const Arguments& arguments) {
     else if (!arguments.demo.empty())
         studio.project.openDemo(arguments.demo);
     else
-        studio.project.restoreSession(arguments.kiosk ? std::function<void()>() : tourOnce);
+        studio.project.restoreSession(arguments.kiosk ? std::function<void()>() : cardsOnce);
 }
 
 int run(int argc, char** argv, const Arguments& arguments) {

@@ -12,6 +12,7 @@
 #include "core/base/units.h"
 #include "core/loop/match_field.h"
 #include "core/loop/match_target.h"
+#include "core/loop/show_caption.h"
 #include "core/loop/show_inputs.h"
 #include "core/loop/show_sound.h"
 #include "core/mdf/placement.h"
@@ -101,6 +102,7 @@ struct MatchFrame {
     double programSeconds = 0.0;                ///< its time, ShowMoment::seconds
     std::vector<ShowInput> inputs;              ///< that it was given in this frame: a recording of them can replay it
     std::vector<ShowSound> sounds;              ///< that it lets be heard
+    std::shared_ptr<const ShowCaption> caption; ///< that it lets be read; empty: nothing
     /// Why the wish's program is asked no more, and that the show goes on without it; in every frame from its end on.
     std::string programError;
 

@@ -11,6 +11,7 @@
 #include "core/geometry/triangle_mesh.h"
 #include "core/loop/match_field.h"
 #include "core/loop/pose_stream.h"
+#include "core/loop/show_caption.h"
 #include "core/loop/show_inputs.h"
 #include "core/loop/show_sound.h"
 #include "core/rig/rig.h"
@@ -62,6 +63,9 @@ struct ShowContent {
     bool moves = true; ///< another frame without a new input or pose would be another one
 
     std::vector<ShowSound> sounds; ///< that begin in this frame, or go on in it
+
+    /// What visitors may read now, such as a level's name; the same object while it stays. Empty: nothing.
+    std::shared_ptr<const ShowCaption> caption;
 };
 
 /// An application: asked once a frame for what is shown and felt. It runs in the loop's thread, knows neither window

@@ -41,7 +41,8 @@ protected:
 
 TEST_F(OwnApplication, IsNamedAsItsMakerSaid) {
     EXPECT_EQ(demo_.name, "ripple");
-    EXPECT_EQ(demo_.title, "Ripple");
+    EXPECT_EQ(demo_.title.in(Language::english), "Ripple");
+    EXPECT_FALSE(demo_.sentence.german.empty()) << "to be changed, and so not forgotten";
     EXPECT_EQ(demo_.open({}).rig->actuators().size(), moment_.rig->actuators().size());
 }
 

@@ -11,12 +11,16 @@
 #include "core/base/resources.h"
 #include "tests/ui/studio_window.h"
 
-// What a visitor can do before the kiosk: stop it, and nothing else.
+// What a visitor can do before the kiosk: stop it, choose among demonstrations, and nothing else.
 
 namespace lumorph::test {
 namespace {
 
 using namespace std::chrono_literals;
+
+/// A demonstration is open: visitors may choose another.
+const QStringList kShut{"bar.leaveKiosk", "stop", "visitors.cards", "visitors.language"};
+const QStringList kStopped{"bar.leaveKiosk", "resume", "stop", "visitors.cards", "visitors.language"};
 
 class KioskTest : public ::testing::Test {
 protected:
@@ -63,7 +67,7 @@ TEST_F(KioskTest, HearsNothingButStop) {
     const studio::StudioState before = window.state();
     enter();
     window.screenshot("kiosk");
-    EXPECT_EQ(buttonsInSight(), (QStringList{"bar.leaveKiosk", "stop"}));
+    EXPECT_EQ(buttonsInSight(), kShut);
     for (const auto& entry : studio.commands.all())
         EXPECT_FALSE(entry.action->isVisible()) << entry.action->objectName().toStdString();
     const int steps = studio.document.undoStack().index();
@@ -101,7 +105,7 @@ TEST_F(KioskTest, HearsNothingButStop) {
     pass(400ms);
 
     EXPECT_EQ(windowsInSight(), 1);
-    EXPECT_EQ(buttonsInSight(), (QStringList{"bar.leaveKiosk", "stop"}));
+    EXPECT_EQ(buttonsInSight(), kShut);
     EXPECT_TRUE(window.window().isFullScreen());
     EXPECT_EQ(window.window().workspace(), "scene");
     EXPECT_EQ(studio.document.undoStack().index(), steps);
@@ -127,7 +131,7 @@ TEST_F(KioskTest, StopIsForAnyoneAndResumeForTheOperator) {
     enter();
     window.click("stop");
     EXPECT_TRUE(stopped());
-    EXPECT_EQ(buttonsInSight(), (QStringList{"bar.leaveKiosk", "resume", "stop"}));
+    EXPECT_EQ(buttonsInSight(), kStopped);
     window.click("resume");
     ASSERT_TRUE(eventually([&] { return pad() != nullptr; }));
     EXPECT_TRUE(stopped());
@@ -217,7 +221,7 @@ TEST_F(KioskTest, AStartAsAKioskClosesTheDoorsBeforeItAsksForAPin) {
     EXPECT_TRUE(window.text("pin.message").contains("not the same"));
     choosePinOnTheWay();
     EXPECT_EQ(pad(), nullptr);
-    EXPECT_EQ(buttonsInSight(), (QStringList{"bar.leaveKiosk", "stop"}));
+    EXPECT_EQ(buttonsInSight(), kShut);
 }
 
 } // namespace

@@ -317,14 +317,20 @@ TEST_F(SceneDocks, TheNumberKeysShowTheTechniquesOfTheirDemoAlone) {
     ASSERT_EQ(measured.deviceColor, grey);
     for (const Technique& technique : techniques()) {
         QTest::keyClick(&window.window(), static_cast<Qt::Key>(Qt::Key_0 + technique.key));
-        EXPECT_TRUE(scene().items == techniqueScene(technique.key).items) << technique.name;
+        EXPECT_TRUE(scene().items == techniqueScene(technique.key).items) << technique.name.english;
         EXPECT_TRUE(room() == measured) << "the same device on the same table, in the same light";
         EXPECT_TRUE(window.find<QAbstractButton>(QString("technique.%1.button").arg(technique.key))->isChecked());
-        EXPECT_TRUE(window.text("technique.sentence").contains(QString::fromStdString(technique.name)));
+        EXPECT_TRUE(window.text("technique.sentence").contains(QString::fromStdString(technique.name.english)));
+        QTest::keyClick(&window.window(), Qt::Key_O);
+        EXPECT_TRUE(scene().items == techniqueScene(technique.key, false).items) << technique.name.english;
+        EXPECT_TRUE(scene().device == techniqueScene(technique.key, false).device) << technique.name.english;
+        EXPECT_EQ(window.find<QAbstractButton>("technique.off.button")->isChecked(), technique.key != 0);
+        window.click("technique.off.button");
+        EXPECT_TRUE(scene().items == techniqueScene(technique.key).items) << technique.name.english;
         pass(1s);
         window.screenshot(QString("technique-%1").arg(technique.key));
     }
-    undo();
+    for (int k = 0; k < 3; ++k) undo(); // with, without, the number
     EXPECT_TRUE(scene().items == techniqueScene(5).items);
 }
 

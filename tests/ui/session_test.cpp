@@ -18,6 +18,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "app/applications/demo.h"
 #include "app/studio/document/state_rules.h"
 #include "core/scene/project.h"
 #include "tests/ui/project_world.h"
@@ -112,6 +113,41 @@ TEST_F(SessionTest, GoesOnWhereItEnded) {
     EXPECT_FALSE(world.document.modified());
     test::pass(std::chrono::milliseconds(1500));
     EXPECT_TRUE(world.notices.at().empty()) << "nothing has changed on disk";
+}
+
+TEST_F(SessionTest, TheApplicationThatShowedShowsAgain) {
+    const auto follow = [](ProjectWorld& world, std::shared_ptr<ShowProgram>& program) {
+        QObject::connect(&world.service, &ProjectService::programOpened,
+                         [&program](std::shared_ptr<ShowProgram> opened) { program = std::move(opened); });
+    };
+    struct Row {
+        const char* demo;
+        Audience audience;
+        bool plays;
+    };
+    for (const Row& row : {Row{"labyrinth", Audience::host, true}, Row{"water", Audience::visitors, false},
+                           Row{"techniques", Audience::host, false}, Row{"techniques", Audience::visitors, true}}) {
+        {
+            ProjectWorld world;
+            std::shared_ptr<ShowProgram> program;
+            follow(world, program);
+            world.service.openDemo(row.demo, row.audience);
+            ASSERT_TRUE(eventually([&] { return world.jobs.running().empty() && world.service.demo(); }));
+            EXPECT_EQ(program != nullptr, row.plays) << row.demo;
+            world.service.keepSession();
+        }
+        ProjectWorld world;
+        std::shared_ptr<ShowProgram> program;
+        follow(world, program);
+        restore(world);
+        ASSERT_NE(world.service.demo(), nullptr) << row.demo;
+        EXPECT_EQ(world.service.demo()->name, row.demo);
+        EXPECT_EQ(program != nullptr, row.plays) << row.demo;
+        world.service.endProgram();
+        EXPECT_EQ(program, nullptr);
+        world.service.newProject();
+        ASSERT_TRUE(eventually([&] { return world.jobs.running().empty() && !world.service.demo(); }));
+    }
 }
 
 /// Numbers of the sessions in a folder, newest first; what lies beside them is in `others`.

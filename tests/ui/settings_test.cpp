@@ -33,6 +33,11 @@ TEST_F(SettingsTest, AreKeptFromOneStartToTheNext) {
         EXPECT_TRUE(settings.placesNewTargets());
         settings.setPlacesNewTargets(false);
         settings.setTourSeen(true);
+        EXPECT_EQ(settings.nextMinutes(true), 2.0) << "in the kiosk";
+        EXPECT_EQ(settings.nextMinutes(false), 0.0);
+        settings.setNextMinutes(false, 5.0);
+        EXPECT_EQ(settings.say({"Ice", "Eis"}), "Ice") << "the test's system is no German one";
+        settings.setLanguage(Language::german);
         settings.setLayout("field", QByteArray("\0\1\2", 3));
     }
     const studio::Settings settings;
@@ -41,6 +46,9 @@ TEST_F(SettingsTest, AreKeptFromOneStartToTheNext) {
     EXPECT_FALSE(settings.stillQuality());
     EXPECT_FALSE(settings.placesNewTargets());
     EXPECT_TRUE(settings.tourSeen());
+    EXPECT_EQ(settings.nextMinutes(true), 2.0);
+    EXPECT_EQ(settings.nextMinutes(false), 5.0);
+    EXPECT_EQ(settings.say({"Ice", "Eis"}), "Eis");
     EXPECT_EQ(settings.layout("field"), QByteArray("\0\1\2", 3));
     EXPECT_TRUE(settings.layout("rig").isEmpty());
 }

@@ -22,8 +22,9 @@ ProjectContents openField(const Progress& progress) {
 
 Demo fieldDemo() {
     return {"field",
-            "A flower on six servos",
-            "A tablet follows an opening flower as well as it can; colour shows what is left out.",
+            {"A flower on six servos", "Eine Blume aus sechs Servos"},
+            {"A tablet follows an opening flower as well as it can; colour shows what is left out.",
+             "Ein Tablet folgt einer Blüte, die sich öffnet, so gut es kann; Farbe zeigt, was fehlt."},
             "thumbnails/field.png",
             "field",
             openField,

@@ -26,6 +26,13 @@ const char* soundOf(GameEvent::Kind kind) {
     }
 }
 
+std::shared_ptr<const ShowCaption> captionOf(const Level& level, std::size_t number) {
+    const std::string count = std::to_string(number) + "  ";
+    return std::make_shared<const ShowCaption>(
+        ShowCaption{{count + level.name, count + (level.nameGerman.empty() ? level.name : level.nameGerman)},
+                    {level.idea, level.ideaGerman}});
+}
+
 } // namespace
 
 LabyrinthProgram::LabyrinthProgram(std::uint64_t seed, std::vector<Level> levels, std::vector<Ghost> best)
@@ -42,6 +49,7 @@ void LabyrinthProgram::begin(std::size_t level) {
     pilot_.emplace(levels_[level], true);
     board_.emplace(*game_, *pictures_);
     relief_.emplace(levels_[level], game_->blocks());
+    caption_ = captionOf(levels_[level], level + 1);
 }
 
 ShowContent LabyrinthProgram::frame(const ShowMoment& moment) {
@@ -56,6 +64,7 @@ ShowContent LabyrinthProgram::frame(const ShowMoment& moment) {
     const glm::dvec3& ball = game_->ball().position;
     content.target = game_->fallen() ? relief_->level() : relief_->withBall({ball.x, ball.z});
     content.following = Following::split;
+    content.caption = caption_;
     return content;
 }
 
@@ -96,8 +105,9 @@ std::vector<ShowSound> LabyrinthProgram::sounds() const {
 
 Demo labyrinthDemo() {
     return {"labyrinth",
-            "A labyrinth under your hands",
-            "Lean it, and the ball rolls: over ramps, bridges and stairs, past holes, to the green goal.",
+            {"A labyrinth under your hands", "Ein Labyrinth unter den Händen"},
+            {"Lean it, and the ball rolls: over ramps, bridges and stairs, past holes, to the green goal.",
+             "Neige es, und die Kugel rollt: über Rampen, Brücken und Treppen, an Löchern vorbei, ins grüne Ziel."},
             "thumbnails/labyrinth.png",
             "scene",
             [](const Progress& progress) {

@@ -42,6 +42,7 @@ private:
     std::vector<Level> levels_;
     std::vector<Ghost> best_;
     std::shared_ptr<const SceneAssets> pictures_;
+    std::shared_ptr<const ShowCaption> caption_; ///< the level's name and idea
     Visitor visitor_;
     std::size_t number_ = 0;
     double rests_ = 0.0; ///< seconds in the goal

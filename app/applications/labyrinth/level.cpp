@@ -73,7 +73,7 @@ void checkNumbers(const Level& level) {
     checkRange("step", level.step, 0.0005, 0.005);
     checkRange("wall", level.wall, 0.004, 0.02);
     checkRange("time", level.seconds, 1.0, 3600.0);
-    for (const std::string* text : {&level.name, &level.idea})
+    for (const std::string* text : {&level.name, &level.idea, &level.nameGerman, &level.ideaGerman})
         if (text->size() > 200 || text->find_first_of("\r\n") != std::string::npos)
             throw InvalidInput("name or idea", "is no line of at most 200 characters", "make it shorter");
     (void)readyMaterial(level.floorMaterial);

@@ -36,6 +36,7 @@ struct LevelCell {
 struct Level {
     std::string name;
     std::string idea;                   ///< one sentence: what is new in it
+    std::string nameGerman, ideaGerman; ///< the same in German; empty: there is none
     double cell = 0.010;                ///< side of a cell, metres
     double step = 0.0015;               ///< one unit of height, metres
     double wall = 0.006;                ///< of walls over the highest floor beside them, metres

@@ -119,6 +119,10 @@ private:
             level_.name = value;
         else if (key == "idea")
             level_.idea = value;
+        else if (key == "name-de")
+            level_.nameGerman = value;
+        else if (key == "idea-de")
+            level_.ideaGerman = value;
         else if (key == "floor")
             level_.floorMaterial = value;
         else if (key == "walls")
@@ -134,7 +138,7 @@ private:
         else {
             column_ = 1;
             refuse(inQuotes(key) + " is no line of a level",
-                   "choose among name, idea, floor, walls, time, cell, step, wall, map, heights");
+                   "choose among name, idea, name-de, idea-de, floor, walls, time, cell, step, wall, map, heights");
         }
     }
 
@@ -262,6 +266,8 @@ std::string levelText(const Level& level) {
     checkLevel(level);
     std::string text = std::string(kFirstLine) + "\n";
     text += "name: " + level.name + "\nidea: " + level.idea + "\n";
+    if (!level.nameGerman.empty()) text += "name-de: " + level.nameGerman + "\n";
+    if (!level.ideaGerman.empty()) text += "idea-de: " + level.ideaGerman + "\n";
     text += "floor: " + level.floorMaterial + "\nwalls: " + level.wallMaterial + "\n";
     text += "time: " + shortest(level.seconds) + " s\n";
     text +=

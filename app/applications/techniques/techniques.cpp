@@ -1,6 +1,7 @@
 #include "app/applications/techniques/techniques.h"
 
 #include "app/applications/demo_items.h"
+#include "app/applications/techniques/techniques_program.h"
 #include "core/base/error.h"
 #include "core/scene/material_library.h"
 
@@ -80,24 +81,77 @@ Material skinOf(int key) {
     }
 }
 
+/// Leaves the scene of a technique without it.
+void takeAway(Scene& scene, int key) {
+    Material& skin = scene.device.material;
+    switch (key) {
+    case kBump:
+        skin.normalMaps = {};
+        break;
+    case kAnimated:
+        skin.colorTexture.velocity = glm::vec2(0.0F);
+        skin.colorTexture.framesPerSecond = 0.0;
+        break;
+    case kShadows:
+        for (SceneItem& item : scene.items)
+            if (auto* light = std::get_if<LightItem>(&item.kind)) light->shadows = false;
+        break;
+    case kCreases:
+        scene.device.creases.emphasis = 0.0;
+        break;
+    case kCubes:
+        for (SceneItem& item : scene.items)
+            if (item.id == kFloating) item.visible = false;
+        break;
+    case kHoles:
+        skin.holes = {};
+        scene.device.shrink = 0.0;
+        scene.device.holes = {};
+        break;
+    default:
+        break;
+    }
+}
+
 } // namespace
 
 std::vector<Technique> techniques() {
     return {
-        {kPlain, "Plain device", "The device as it is: paper over six servos, with nothing but light on it."},
-        {kBump, "Bump map",
-         "Only the directions of the surface change, and flat paper looks like a wall of bricks as the sun goes "
-         "round."},
-        {kAnimated, "Animated texture",
-         "Quick ripples of light run over a sheet that rises and falls slowly: speed that no servo has."},
-        {kShadows, "Shadows", "One shape, and a sun that only light makes: its shadow wanders while nothing moves."},
-        {kCreases, "Edges", "The folds of the sheet are drawn as sharp lines, so that a soft bend looks like an edge."},
-        {kCubes, "Floating objects", "Cubes turn in the air above the sheet; their shadows say how high they are."},
-        {kHoles, "Holes", "The table shows through holes in the ice, and the device seems smaller than it is."},
+        {kPlain,
+         {"Plain device", "Nur das Gerät"},
+         {"The device as it is: paper over six servos, with nothing but light on it.",
+          "Das Gerät, wie es ist: Papier über sechs Servos, und nichts als Licht darauf."}},
+        {kBump,
+         {"Bump map", "Relief aus Licht"},
+         {"Only the directions of the surface change, and flat paper looks like a wall of bricks as the sun goes "
+          "round.",
+          "Nur die Richtungen der Oberfläche ändern sich, und flaches Papier sieht aus wie eine Ziegelwand, um die die "
+          "Sonne geht."}},
+        {kAnimated,
+         {"Animated texture", "Bewegtes Muster"},
+         {"Quick ripples of light run over a sheet that rises and falls slowly: speed that no servo has.",
+          "Schnelle Wellen aus Licht laufen über ein Blatt, das sich langsam hebt und senkt: so schnell ist kein "
+          "Servo."}},
+        {kShadows,
+         {"Shadows", "Schatten"},
+         {"One shape, and a sun that only light makes: its shadow wanders while nothing moves.",
+          "Eine Form, und eine Sonne nur aus Licht: Ihr Schatten wandert, und nichts bewegt sich."}},
+        {kCreases,
+         {"Edges", "Kanten"},
+         {"The folds of the sheet are drawn as sharp lines, so that a soft bend looks like an edge.",
+          "Die Falten des Blattes werden scharf gezeichnet, und eine weiche Biegung sieht aus wie eine Kante."}},
+        {kCubes,
+         {"Floating objects", "Schwebende Dinge"},
+         {"Cubes turn in the air above the sheet; their shadows say how high they are.",
+          "Würfel drehen sich in der Luft über dem Blatt; ihre Schatten sagen, wie hoch sie sind."}},
+        {kHoles,
+         {"Holes", "Löcher"},
+         {"The table shows through holes in the ice, and the device seems smaller than it is.",
+          "Durch Löcher im Eis sieht man den Tisch, und das Gerät scheint kleiner, als es ist."}},
     };
 }
 
-Scene techniqueScene(int key) {
+Scene techniqueScene(int key, bool on) {
     if (key < kPlain || key > kHoles)
         throw InvalidInput("technique " + std::to_string(key), "there is none of this number",
                            "choose one from 0 to 6");
@@ -111,22 +165,26 @@ Scene techniqueScene(int key) {
         scene.device.shrink = 0.12;
         scene.device.holes = {{{0.045F, -0.02F}, 0.017}};
     }
+    if (!on) takeAway(scene, key);
     return scene;
 }
 
 Demo techniquesDemo() {
     return {"techniques",
-            "What light adds",
-            "Six ways in which light extends what six servos can show, one number key each.",
+            {"What light adds", "Was Licht hinzufügt"},
+            {"Six ways in which light extends what six servos can show, one number key each.",
+             "Sechs Arten, wie Licht erweitert, was sechs Servos zeigen können; jede hat eine Zifferntaste."},
             "thumbnails/techniques.png",
             "scene",
             [](const Progress& progress) { return bundledProject("techniques", progress); },
             [] {
                 std::vector<DemoStep> steps;
                 for (const Technique& technique : techniques())
-                    steps.push_back({technique.key, technique.name, technique.sentence, techniqueScene(technique.key)});
+                    steps.push_back({technique.key, technique.name, technique.sentence, techniqueScene(technique.key),
+                                     techniqueScene(technique.key, false)});
                 return steps;
-            }};
+            },
+            [](std::uint64_t) -> std::unique_ptr<ShowProgram> { return std::make_unique<TechniquesProgram>(); }};
 }
 
 } // namespace lumorph

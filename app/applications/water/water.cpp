@@ -48,8 +48,9 @@ Scene waterScene() {
 
 Demo waterDemo() {
     return {"water",
-            "A sea you can feel",
-            "The tablet lifts the long waves, light paints the short ones, and a buoy floats on both.",
+            {"A sea you can feel", "Ein Meer, das man fühlt"},
+            {"The tablet lifts the long waves, light paints the short ones, and a buoy floats on both.",
+             "Das Tablet hebt die langen Wellen, Licht malt die kurzen, und eine Boje schwimmt auf beiden."},
             "thumbnails/water.png",
             "scene",
             [](const Progress& progress) { return bundledProject("water", progress); },

@@ -3,12 +3,17 @@
 #include <algorithm>
 
 #include <QFileInfo>
+#include <QLocale>
 
 namespace lumorph::studio {
 namespace {
 
 constexpr int kMostRecentFiles = 10;
 constexpr double kLowestRate = 10.0, kHighestRate = 120.0, kUsualRate = 60.0;
+
+constexpr double kUsualNextMinutes = 2.0, kMostNextMinutes = 120.0; // in the kiosk
+
+QString nextKey(bool kiosk) { return kiosk ? "visitors/nextInKiosk" : "visitors/next"; }
 
 QString layoutKey(const QString& workspace) { return "layout/" + workspace; }
 
@@ -57,6 +62,30 @@ void Settings::setPlacesNewTargets(bool on) {
 bool Settings::tourSeen() const { return store_.value("tour/seen", false).toBool(); }
 
 void Settings::setTourSeen(bool seen) { store_.setValue("tour/seen", seen); }
+
+Language Settings::language() const {
+    const QString chosen = store_.value("visitors/language").toString();
+    if (chosen == "de") return Language::german;
+    if (chosen == "en") return Language::english;
+    return QLocale::system().language() == QLocale::German ? Language::german : Language::english;
+}
+
+void Settings::setLanguage(Language language) {
+    const bool other = language != this->language();
+    store_.setValue("visitors/language", language == Language::german ? "de" : "en");
+    if (other) emit languageChanged();
+}
+
+QString Settings::say(const Words& words) const { return QString::fromStdString(words.in(language())); }
+
+double Settings::nextMinutes(bool kiosk) const {
+    const double usual = kiosk ? kUsualNextMinutes : 0.0;
+    bool isNumber = false;
+    const double minutes = store_.value(nextKey(kiosk), usual).toDouble(&isNumber);
+    return isNumber ? std::clamp(minutes, 0.0, kMostNextMinutes) : usual;
+}
+
+void Settings::setNextMinutes(bool kiosk, double minutes) { store_.setValue(nextKey(kiosk), minutes); }
 
 QStringList Settings::recentFiles() const {
     QStringList there;

@@ -8,6 +8,7 @@
 #include <QStringList>
 
 #include "core/base/clock.h"
+#include "core/base/words.h"
 #include "core/render/viewport/theme.h"
 
 namespace lumorph::studio {
@@ -28,6 +29,14 @@ public:
     void setPlacesNewTargets(bool on);
     [[nodiscard]] bool tourSeen() const;
     void setTourSeen(bool seen);
+    /// That of visitors; as long as none was chosen, the system's where it is one of them, else English.
+    [[nodiscard]] Language language() const;
+    void setLanguage(Language language);
+    /// A text in that language.
+    [[nodiscard]] QString say(const Words& words) const;
+    /// Minutes without a visitor after which the next application shows; 0: it stays.
+    [[nodiscard]] double nextMinutes(bool kiosk) const; ///< 2 in the kiosk and 0 outside, as long as none were chosen
+    void setNextMinutes(bool kiosk, double minutes);
     [[nodiscard]] QStringList recentFiles() const; ///< newest first, at most ten, those that are still there
     void addRecentFile(const QString& path);
     void clearRecentFiles();
@@ -46,6 +55,7 @@ signals:
     void loopRateChanged();
     void qualityChanged();
     void placesNewTargetsChanged();
+    void languageChanged();
     void recentFilesChanged();
 
 private:

@@ -1,5 +1,6 @@
 #include "app/studio/document/project_service.h"
 
+#include <algorithm>
 #include <chrono>
 #include <cstdlib>
 #include <map>
@@ -31,10 +32,17 @@ namespace fs = std::filesystem;
 /// What the scene's files are watched as, before their names.
 constexpr const char* kScenePlace = "scene:";
 
-/// What comes with the program.
-struct Bundled {
+/// What was opened, and the program that shows with it.
+struct Opened {
     LoadedProject loaded;
-    std::shared_ptr<ShowProgram> program; ///< empty: it goes by time alone
+    OpenDemo demo;
+    std::shared_ptr<ShowProgram> program; ///< of `demo`; empty: it goes by time alone
+};
+
+/// The session that was kept, and the program that showed.
+struct Kept {
+    SessionState session;
+    std::shared_ptr<ShowProgram> program;
 };
 
 /// The same visitor's move shall not meet the same chance in each show.
@@ -42,10 +50,38 @@ std::uint64_t newSeed() {
     return static_cast<std::uint64_t>(std::chrono::steady_clock::now().time_since_epoch().count());
 }
 
+/// Null for one that is unknown here: another version may have kept the session.
+const Demo* findDemo(const std::string& name) {
+    const auto found = std::ranges::find(demos(), name, &Demo::name);
+    return found == demos().end() ? nullptr : &*found;
+}
+
+/// Null where it has none that plays. Throws as `Demo::program`.
+std::shared_ptr<ShowProgram> programOf(const OpenDemo& open) {
+    const Demo* demo = open.plays ? findDemo(open.name) : nullptr;
+    return demo != nullptr && demo->program ? demo->program(newSeed()) : nullptr;
+}
+
+bool playsFor(Audience audience, const Demo& demo) {
+    return demo.program && (audience == Audience::visitors || demo.steps().empty());
+}
+
+std::optional<Kept> readSession(const fs::path& folder, const Progress& progress) {
+    std::optional<SessionState> session = SessionFolder::restore(folder, progress);
+    if (!session) return std::nullopt;
+    std::shared_ptr<ShowProgram> program;
+    try {
+        program = programOf(session->demo);
+    } catch (const DataError&) { // the session is whole without it
+        session->demo.plays = false;
+    }
+    return Kept{std::move(*session), std::move(program)};
+}
+
 /// A demonstration by its name; without one a new project, the bundled tablet. Neither belongs to a file of the user's.
-Bundled readBundled(const std::string& demo, const FieldCache& cache, const Progress& progress) {
-    Bundled bundled;
-    LoadedProject& loaded = bundled.loaded;
+Opened readBundled(const std::string& demo, Audience audience, const FieldCache& cache, const Progress& progress) {
+    Opened opened;
+    LoadedProject& loaded = opened.loaded;
     if (demo.empty()) {
         auto rig = readRigAsset(resourceFile("models/tablet.glb"));
         loaded.state.rig = std::move(rig.asset);
@@ -54,10 +90,11 @@ Bundled readBundled(const std::string& demo, const FieldCache& cache, const Prog
         const Demo& named = demoNamed(demo);
         loaded = loadedProject(named.open(progress));
         progress.throwIfCancelled();
-        if (named.program) bundled.program = named.program(newSeed());
+        opened.demo = {demo, playsFor(audience, named)};
+        opened.program = programOf(opened.demo);
     }
     if (!loaded.state.field.field) loaded.state.field.field = cache.find(*loaded.state.rig.rig);
-    return bundled;
+    return opened;
 }
 
 } // namespace
@@ -70,8 +107,9 @@ struct ProjectService::Data {
     void watch();
     void openProject(const fs::path& file);
     /// A demo by its name, or a new project.
-    void openBundled(const std::string& demo, std::function<void()> onReady);
-    void replaceAll(LoadedProject loaded, const fs::path& file, std::shared_ptr<ShowProgram> program = {});
+    void openBundled(const std::string& name, Audience audience, std::function<void()> onReady);
+    void replaceAll(Opened opened, const fs::path& file);
+    void goOn(Kept kept);
     void saveTo(const fs::path& file);
     void restore(std::function<void()> onReady);
     [[nodiscard]] ProjectSource source() const;
@@ -85,6 +123,7 @@ struct ProjectService::Data {
     JobSlots jobs;
     ReadFiles read;
     ProjectExtras extras;
+    OpenDemo demo;
     FieldCache cache;
     FileWatch files;
     SessionKeeper keeper;
@@ -138,7 +177,7 @@ void ProjectService::Data::openProject(const fs::path& file) {
         "project", "project", tr("Opening %1").arg(fileName(file)),
         [file](const Progress& progress) { return loadProject(file, progress); },
         [this, file](const LoadedProject& loaded) {
-            replaceAll(loaded, file);
+            replaceAll({loaded, {}, {}}, file);
             for (const std::string& warning : loaded.warnings)
                 notices.post("field",
                              {Notice::Level::warning, fileName(file), QString::fromStdString(warning), {}, {}});
@@ -148,13 +187,15 @@ void ProjectService::Data::openProject(const fs::path& file) {
         {{tr("Choose another file..."), [this] { emit service.chooseFile("project"); }}});
 }
 
-void ProjectService::Data::openBundled(const std::string& demo, std::function<void()> onReady) {
+void ProjectService::Data::openBundled(const std::string& name, Audience audience, std::function<void()> onReady) {
     const auto ready = std::make_shared<std::function<void()>>(std::move(onReady));
-    jobs.runWith<Bundled>(
-        "project", "project", demo.empty() ? tr("Opening the tablet") : tr("Opening the demo"),
-        [demo, cache = cache](const Progress& progress) { return readBundled(demo, cache, progress); },
-        [this, ready](const Bundled& bundled) {
-            replaceAll(bundled.loaded, {}, bundled.program);
+    jobs.runWith<Opened>(
+        "project", "project", name.empty() ? tr("Opening the tablet") : tr("Opening the demo"),
+        [name, audience, cache = cache](const Progress& progress) {
+            return readBundled(name, audience, cache, progress);
+        },
+        [this, ready](const Opened& opened) {
+            replaceAll(opened, {});
             if (*ready) (*ready)();
         },
         [this, ready](const std::exception& error) {
@@ -163,24 +204,25 @@ void ProjectService::Data::openBundled(const std::string& demo, std::function<vo
         });
 }
 
-void ProjectService::Data::replaceAll(LoadedProject loaded, const fs::path& file,
-                                      std::shared_ptr<ShowProgram> program) {
+void ProjectService::Data::replaceAll(Opened opened, const fs::path& file) {
     for (const char* slot : {"rig", "field", "target", "place"}) jobs.stop(slot);
     scene.reset();
     for (const char* place : {"rig", "field", "target", "match", "project", "scene"}) notices.dismissAll(place);
     const bool unsaved = document.modified();
-    const SessionState before{source(), document.file(), unsaved};
+    const SessionState before{source(), document.file(), unsaved, demo};
     const QString name = document.name();
+    LoadedProject& loaded = opened.loaded;
     read.remember(loaded.state, loaded.stamps);
     extras = std::move(loaded.extras);
+    demo = std::move(opened.demo);
     loaded.state.installation.reset(); // the room stays as it is, whatever is opened in it
     document.reset(std::move(loaded.state), file);
-    emit service.programOpened(std::move(program));
+    emit service.programOpened(std::move(opened.program));
     scene.takeOpened();
     building.buildMissing();
     if (!unsaved || !before.source.state.rig.rig) return;
     const auto bringBack = [this, before] {
-        replaceAll({before.source.state, {}, before.source.stamps, before.source.extras, {}}, before.file);
+        goOn({before, programOf(before.demo)});
         document.undoStack().resetClean();
     };
     notices.post("project", {Notice::Level::info,
@@ -190,11 +232,17 @@ void ProjectService::Data::replaceAll(LoadedProject loaded, const fs::path& file
                              {{tr("Bring it back"), bringBack}}});
 }
 
+void ProjectService::Data::goOn(Kept kept) {
+    const ProjectSource& source = kept.session.source;
+    replaceAll({{source.state, {}, source.stamps, source.extras, {}}, kept.session.demo, std::move(kept.program)},
+               kept.session.file);
+}
+
 ProjectSource ProjectService::Data::source() const { return {document.state(), read.of(document.state()), extras}; }
 
 std::optional<SessionState> ProjectService::Data::session() const {
     if (!document.state().rig.rig) return std::nullopt;
-    return SessionState{source(), document.file(), document.modified()};
+    return SessionState{source(), document.file(), document.modified(), demo};
 }
 
 void ProjectService::Data::saveTo(const fs::path& file) {
@@ -213,16 +261,16 @@ void ProjectService::Data::saveTo(const fs::path& file) {
 
 void ProjectService::Data::restore(std::function<void()> onReady) {
     const auto ready = std::make_shared<std::function<void()>>(std::move(onReady));
-    jobs.runWith<std::optional<SessionState>>(
+    jobs.runWith<std::optional<Kept>>(
         "project", "project", tr("Opening the last session"),
-        [folder = sessionFolder()](const Progress& progress) { return SessionFolder::restore(folder, progress); },
-        [this, ready](const std::optional<SessionState>& session) {
-            if (!session) {
-                openBundled(demos().front().name, *ready);
+        [folder = sessionFolder()](const Progress& progress) { return readSession(folder, progress); },
+        [this, ready](const std::optional<Kept>& kept) {
+            if (!kept) {
+                openBundled(demos().front().name, Audience::host, *ready);
                 return;
             }
-            replaceAll({session->source.state, {}, session->source.stamps, session->source.extras, {}}, session->file);
-            if (session->modified) document.undoStack().resetClean();
+            goOn(*kept);
+            if (kept->session.modified) document.undoStack().resetClean();
             if (*ready) (*ready)();
         },
         [this, ready](const std::exception& error) {
@@ -231,7 +279,7 @@ void ProjectService::Data::restore(std::function<void()> onReady) {
             notice.why = tr("the last session could not be opened: %1").arg(notice.why);
             notice.remedy = tr("what is left of it lies in %1").arg(fullName(aside));
             // Told when the demo is there: what opens clears the notices of what was open.
-            openBundled(demos().front().name, [this, notice, ready] {
+            openBundled(demos().front().name, Audience::host, [this, notice, ready] {
                 notices.post("project", notice);
                 if (*ready) (*ready)();
             });
@@ -313,9 +361,15 @@ bool ProjectService::autoPlaced() const { return data_->placing.autoPlaced(); }
 void ProjectService::relink(const std::string& asset, const std::filesystem::path& file) {
     data_->scene.relink(asset, file);
 }
-void ProjectService::newProject() { data_->openBundled({}, {}); }
-void ProjectService::openDemo(const std::string& name) {
-    data_->openBundled(name.empty() ? demos().front().name : name, {});
+void ProjectService::newProject() { data_->openBundled({}, Audience::host, {}); }
+void ProjectService::openDemo(const std::string& name, Audience audience) {
+    data_->openBundled(name.empty() ? demos().front().name : name, audience, {});
+}
+const Demo* ProjectService::demo() const noexcept { return findDemo(data_->demo.name); }
+void ProjectService::endProgram() {
+    if (!std::exchange(data_->demo.plays, false)) return;
+    emit programOpened({});
+    data_->keeper.touch();
 }
 
 bool ProjectService::save() {

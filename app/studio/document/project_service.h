@@ -14,7 +14,15 @@
 #include "core/loop/show_program.h"
 #include "core/mdf/builder.h"
 
+namespace lumorph {
+struct Demo;
+}
+
 namespace lumorph::studio {
+
+/// For whom a demonstration is opened. Visitors get its program. So do hosts, but of one with steps, of which they
+/// choose one by one and change what they see.
+enum class Audience { host, visitors };
 
 /// Opens, builds, saves and keeps: whatever turns files into document and back. Each takes its time as a job and tells
 /// failures as notices with a remedy; the document changes only when all went well, by one step of undo.
@@ -52,7 +60,11 @@ public:
 
     void newProject(); ///< the bundled tablet, no target
     /// A demonstration of app/applications by its name; without one the first.
-    void openDemo(const std::string& name = {});
+    void openDemo(const std::string& name = {}, Audience audience = Audience::host);
+    /// The demonstration that is open, as long as nothing else is opened; null: none.
+    [[nodiscard]] const Demo* demo() const noexcept;
+    /// The program that shows is over; the demonstration stays open.
+    void endProgram();
     /// Saves to the project's file; it is on disk when this returns, or the document is still modified and a notice
     /// says why. False when it has no file; ask for one and use saveAs.
     bool save();

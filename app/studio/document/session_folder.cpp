@@ -72,10 +72,10 @@ ProjectSource withMemory(const SessionState& session) {
     ProjectSource source = session.source;
     if (!source.extras.view.is_object()) source.extras.view = nlohmann::json::object();
     const StudioState& state = source.state;
-    source.extras.view[kKey] = {{"file", utf8Of(session.file)},        {"modified", session.modified},
-                                {"rig", utf8Of(state.rig.path)},       {"field", utf8Of(state.field.path)},
-                                {"target", utf8Of(state.target.path)}, {"scene", sceneFiles(state)},
-                                {"rigInMemory", !source.stamps.rig}};
+    source.extras.view[kKey] = {
+        {"file", utf8Of(session.file)},      {"modified", session.modified},        {"rig", utf8Of(state.rig.path)},
+        {"field", utf8Of(state.field.path)}, {"target", utf8Of(state.target.path)}, {"scene", sceneFiles(state)},
+        {"rigInMemory", !source.stamps.rig}, {"demo", session.demo.name},           {"plays", session.demo.plays}};
     return source;
 }
 
@@ -255,6 +255,7 @@ std::optional<SessionState> SessionFolder::restore(const fs::path& folder, const
     SessionState session;
     session.file = textIn(memory, "file");
     session.modified = memory.is_object() && memory.value("modified", true);
+    session.demo = {textIn(memory, "demo"), memory.is_object() && memory.value("plays", false)};
     if (loaded.extras.view.is_object()) loaded.extras.view.erase(kKey);
     StudioState& state = loaded.state;
     // An edited rig is in no file, though it goes by the name of the one that was opened.

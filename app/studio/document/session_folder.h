@@ -2,16 +2,25 @@
 
 #include <filesystem>
 #include <optional>
+#include <string>
 
 #include "app/studio/document/project_io.h"
 
 namespace lumorph::studio {
+
+/// The demonstration that is open.
+struct OpenDemo {
+    std::string name;   ///< of app/applications; empty: what is open is none
+    bool plays = false; ///< its program shows
+    bool operator==(const OpenDemo&) const = default;
+};
 
 /// What is needed to go on where a session ended.
 struct SessionState {
     ProjectSource source;
     std::filesystem::path file; ///< the project's own file; empty while it has none
     bool modified = false;
+    OpenDemo demo; ///< which its program begins anew
 };
 
 /// Where a session is kept: a numbered folder with a project in it, the newest complete one counting, so that a kill at

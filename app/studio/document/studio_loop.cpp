@@ -153,6 +153,7 @@ void StudioLoop::input(const std::string& name, double value) {
     if (!inputs_ || !std::isfinite(value)) return;
     inputs_->push({name, value});
     sendSoon(); // a loop that rests looks at it now
+    emit inputGiven(QString::fromStdString(name), value);
 }
 
 void StudioLoop::refresh() { sendSoon(); }

@@ -91,6 +91,8 @@ signals:
     void driverChanged();
     /// An edit took the servos: strokes, another driver or a new target. Not when a rig or a project is opened.
     void taken();
+    /// The program that shows was given an input.
+    void inputGiven(const QString& name, double value);
     void failed(const QString& why);
 
 private:

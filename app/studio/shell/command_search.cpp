@@ -56,6 +56,8 @@ constexpr OtherWords kOtherWords[] = {
     {"export.parts", "print stl 3mf build make housing seat servo wiring assembly sketch fabricate"},
     {"export.picture", "screenshot image snapshot photo"},
     {"export.turntable", "film movie animation"},
+    {"applications", "cards games demos examples welcome play visitors"},
+    {"view.language", "german translation"},
     {"record.start", "capture log film video"},
     {"output.identify", "beamer number which"},
     {"output.close", "beamer blank off"},

@@ -6,6 +6,7 @@
 #include <QComboBox>
 #include <QDialog>
 #include <QDialogButtonBox>
+#include <QDoubleSpinBox>
 #include <QLabel>
 #include <QPushButton>
 #include <QSpinBox>
@@ -87,6 +88,41 @@ void addMatching(Studio& studio, QDialog& dialog) {
     dialog.layout()->addWidget(place);
 }
 
+QDoubleSpinBox* makeMinutes(Studio& studio, QWidget* parent, bool kiosk, const QString& name) {
+    auto* minutes = new QDoubleSpinBox(parent);
+    minutes->setObjectName(name);
+    minutes->setRange(0.0, 120.0);
+    minutes->setDecimals(0);
+    minutes->setSuffix(" min");
+    minutes->setSpecialValueText("Never");
+    minutes->setValue(studio.settings.nextMinutes(kiosk));
+    minutes->setKeyboardTracking(false);
+    QObject::connect(minutes, &QDoubleSpinBox::valueChanged, &studio.settings,
+                     [&studio, kiosk](double value) { studio.settings.setNextMinutes(kiosk, value); });
+    return minutes;
+}
+
+void addVisitors(Studio& studio, QDialog& dialog) {
+    dialog.layout()->addWidget(makeHeading("Visitors", &dialog));
+    auto* language = new QComboBox(&dialog);
+    language->setObjectName("settings.language");
+    language->addItems({"English", "Deutsch"});
+    const auto show = [language, &studio] {
+        language->setCurrentIndex(studio.settings.language() == Language::german ? 1 : 0);
+    };
+    show();
+    QObject::connect(language, &QComboBox::activated, &studio.settings, [&studio](int index) {
+        studio.settings.setLanguage(index == 1 ? Language::german : Language::english);
+    });
+    QObject::connect(&studio.settings, &Settings::languageChanged, language, show);
+    dialog.layout()->addWidget(makeRow("&Language", language, &dialog));
+    dialog.layout()->addWidget(
+        makeRow("Next in the &kiosk after", makeMinutes(studio, &dialog, true, "settings.nextInKiosk"), &dialog));
+    dialog.layout()->addWidget(
+        makeRow("Next in full &view after", makeMinutes(studio, &dialog, false, "settings.next"), &dialog));
+    dialog.layout()->addWidget(muted("Without a visitor for so long, the next application shows.", &dialog));
+}
+
 void addMemory(Studio& studio, QDialog& dialog) {
     dialog.layout()->addWidget(makeHeading("Memory", &dialog));
     auto* row = new QWidget(&dialog);
@@ -156,6 +192,7 @@ void openSettings(Studio& studio, QWidget& window) {
     if (dialog == nullptr) return;
     addLook(studio, *dialog);
     addMatching(studio, *dialog);
+    addVisitors(studio, *dialog);
     addMemory(studio, *dialog);
     static_cast<QVBoxLayout*>(dialog->layout())->addStretch(1);
     addClose(*dialog);

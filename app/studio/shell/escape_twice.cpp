@@ -27,7 +27,7 @@ EscapeTwice::EscapeTwice(const Clock& clock, QObject* parent) : QObject(parent),
     QCoreApplication::instance()->installEventFilter(this);
 }
 
-void EscapeTwice::setCloses(QWidget& widget) { widget.setProperty(kCloses, true); }
+void EscapeTwice::setCloses(QWidget& widget, bool closes) { widget.setProperty(kCloses, closes); }
 
 bool EscapeTwice::eventFilter(QObject* watched, QEvent* event) {
     const auto type = event->type();
@@ -68,6 +68,8 @@ void EscapeTwice::settle() {
         emit spent();
     } else if (twice_.press(downAt_)) {
         emit pressed();
+    } else {
+        emit single();
     }
 }
 

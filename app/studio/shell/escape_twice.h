@@ -18,10 +18,11 @@ public:
     explicit EscapeTwice(const Clock& clock, QObject* parent = nullptr);
 
     /// Marks a widget that is no window as one that Esc closes.
-    static void setCloses(QWidget& widget);
+    static void setCloses(QWidget& widget, bool closes = true);
 
 signals:
     void pressed();
+    void single();              ///< one press, which closed nothing; another may follow and make it `pressed`
     void spent();               ///< a press that closed something
     void openChanged(bool any); ///< whether anything is open that Esc may close
 

@@ -126,13 +126,13 @@ void addDemoCommands(Studio& studio) {
         Commands::Options options;
         options.icon = "play";
         options.menu = "File";
-        const QString title = QObject::tr("Demonstration: %1").arg(QString::fromStdString(demo.title));
+        const QString title = QObject::tr("Demonstration: %1").arg(QString::fromStdString(demo.title.english));
         QAction* action = studio.commands.add(
             QString("demo.%1").arg(QString::fromStdString(demo.name)), title, options, [&studio, &demo] {
                 emit studio.commands.workspaceWanted(QString::fromStdString(demo.workspace));
                 studio.project.openDemo(demo.name);
             });
-        action->setToolTip(QString::fromStdString(demo.sentence));
+        action->setToolTip(QString::fromStdString(demo.sentence.english));
     }
 }
 

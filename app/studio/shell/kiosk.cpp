@@ -143,7 +143,7 @@ bool Kiosk::eventFilter(QObject* watched, QEvent* event) {
     if (!isInput(type) || isEscape(*event)) return false;
     // A window hands its input on to its widgets, and there it is judged.
     if (watched->inherits("QWidgetWindow")) return false;
-    if (mayHave(*watched)) return false;
+    if (mayHave(*watched) || (visitorsMayHave_ && visitorsMayHave_(*watched, *event))) return false;
     for (QWidget* door : {buttons_.resume, buttons_.leave}) {
         if (door == nullptr || watched != door) continue;
         if (type == QEvent::TouchBegin || type == QEvent::TouchUpdate || type == QEvent::TouchEnd)

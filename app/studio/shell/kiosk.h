@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <utility>
 #include <vector>
 
 #include <QPointer>
@@ -14,9 +15,9 @@ namespace lumorph::studio {
 [[nodiscard]] bool belongsTo(const QObject* object, const QObject* ancestor);
 
 /// The doors of a window that visitors stand before. While they are closed, the whole program hears no key, pointer,
-/// touch or dropped file, but for STOP, Esc (twice: STOP), and the pad for the operator's PIN, which opens what only
-/// the operator may do. Whatever a widget would do with its input, it does not get any: nothing needs to know of a
-/// kiosk to be shut by it.
+/// touch or dropped file, but for STOP, Esc (twice: STOP), what an application has for visitors, and the pad for the
+/// operator's PIN, which opens what only the operator may do. Whatever a widget would do with its input, it does not
+/// get any: nothing needs to know of a kiosk to be shut by it.
 class Kiosk : public QObject {
     Q_OBJECT
 public:
@@ -38,6 +39,10 @@ public:
     /// Shuts all dialogs and menus, and the doors.
     void close();
     void open();
+    /// What visitors may do beside: asked for each input of a widget.
+    void setVisitors(std::function<bool(const QObject& watched, const QEvent& event)> mayHave) {
+        visitorsMayHave_ = std::move(mayHave);
+    }
     /// Runs `run` after the right PIN; at once where the doors are open, or the PIN was forgotten by --forget-pin.
     void askOperator(const QString& why, std::function<void()> run);
 
@@ -59,6 +64,7 @@ private:
     const Clock& clock_;
     OperatorPin pin_;
     Buttons buttons_;
+    std::function<bool(const QObject&, const QEvent&)> visitorsMayHave_;
     QPointer<Overlay> pad_;
     QPointer<QWidget> pressed_;              ///< the operator's button that is held down
     std::vector<QPointer<QWidget>> trusted_; ///< questions that came of what the operator did

@@ -13,6 +13,7 @@
 #include <QTimer>
 #include <QVBoxLayout>
 
+#include "app/applications/demo.h"
 #include "app/studio/look/palette.h"
 #include "app/studio/shell/command_palette.h"
 #include "app/studio/shell/dialog_fit.h"
@@ -28,6 +29,7 @@
 #include "app/studio/shell/stop_key_watch.h"
 #include "app/studio/shell/top_bar.h"
 #include "app/studio/shell/tour.h"
+#include "app/studio/shell/visitor_desk.h"
 #include "app/studio/shell/workspace_page.h"
 
 namespace lumorph::studio {
@@ -73,8 +75,9 @@ struct MainWindow::Data {
     EscapeTwice* escape = nullptr;
     QString present;
     Kiosk* kiosk = nullptr;
-    IdleCursor* idleCursor = nullptr; ///< in the kiosk
-    bool maximized = false;           ///< before the kiosk
+    VisitorDesk* desk = nullptr;
+    IdleCursor* idleCursor = nullptr; ///< while visitors have the window
+    bool maximized = false;           ///< before they had it
     QUndoGroup stacks{nullptr};
 };
 
@@ -101,6 +104,13 @@ MainWindow::MainWindow(Studio& studio, std::vector<std::unique_ptr<Workspace>> w
     setCentralWidget(body);
     data_->kiosk = new Kiosk(*this, studio.settings, data_->clock, data_->bar->kioskButtons());
     connect(data_->kiosk, &Kiosk::leaveWanted, this, &MainWindow::leaveKiosk);
+    auto* desk = data_->desk = new VisitorDesk(studio, *this, *data_->stack, data_->clock);
+    data_->kiosk->setVisitors(
+        [desk](const QObject& watched, const QEvent& event) { return desk->mayHave(watched, event); });
+    connect(desk, &VisitorDesk::applicationWanted, this, &MainWindow::openApplication);
+    connect(desk, &VisitorDesk::studioWanted, this, &MainWindow::leaveFullView);
+    connect(desk, &VisitorDesk::tourWanted, this, &MainWindow::startTour);
+    connect(data_->bar, &TopBar::leaveWanted, this, &MainWindow::leaveFullView);
     connect(data_->bar, &TopBar::workspaceChosen, this, &MainWindow::showWorkspace);
     connect(&studio.document, &StudioDocument::titleChanged, this, &MainWindow::showTitle);
     connect(&studio.settings, &Settings::themeChanged, this, &MainWindow::retheme);
@@ -115,6 +125,8 @@ MainWindow::MainWindow(Studio& studio, std::vector<std::unique_ptr<Workspace>> w
     setPlacing();
     auto* escape = data_->escape = new EscapeTwice(data_->clock, this);
     connect(escape, &EscapeTwice::pressed, &studio.loop, &StudioLoop::stop);
+    connect(escape, &EscapeTwice::single, desk, &VisitorDesk::escape);
+    connect(escape, &EscapeTwice::pressed, desk, &VisitorDesk::hideCards); // which the first of both may have brought
     // Also while another program has the keyboard, and for the servos while this window is stuck.
     data_->stopKeys = std::make_unique<StopKeyWatch>([&studio] {
         studio.devices.stopNow();
@@ -148,7 +160,8 @@ void MainWindow::keepOnScreen() {
 }
 
 MainWindow::~MainWindow() {
-    delete data_->kiosk;  // it hears all that follows
+    delete data_->kiosk; // it hears all that follows
+    delete std::exchange(data_->desk, nullptr);
     delete data_->escape; // likewise, and it tells the watch, which is gone when the last child is hidden
     qApp->removeEventFilter(this);
     // Views and docks refer to their workspace, so they go first.
@@ -159,6 +172,7 @@ void MainWindow::addCommands() {
     addFileCommands(data_->studio, *this);
     ShellActions does;
     does.startTour = [this] { startTour(); };
+    does.showApplications = [this] { showApplications(); };
     does.resetLayout = [this] {
         if (const auto page = data_->pages.find(data_->present); page != data_->pages.end())
             page->second->resetLayout();
@@ -185,6 +199,7 @@ void MainWindow::showWorkspace(const QString& id) {
     const auto found = std::find_if(all.begin(), all.end(), [&id](const auto& one) { return one->id() == id; });
     if (found == all.end()) return;
     data_->bar->setWorkspace(id);
+    if (data_->desk != nullptr) data_->desk->hideCards();
     if (id == data_->present) return;
     if (const auto old = data_->pages.find(data_->present); old != data_->pages.end()) old->second->setActive(false);
     data_->present = id;
@@ -192,7 +207,7 @@ void MainWindow::showWorkspace(const QString& id) {
     if (page == nullptr) {
         page = new WorkspacePage(**found, data_->studio.settings, data_->studio.commands, data_->stack);
         data_->stack->addWidget(page);
-        if (data_->kiosk->closed()) page->setKiosk(true);
+        if (data_->desk != nullptr && data_->desk->mode() != VisitorDesk::Mode::studio) page->setKiosk(true);
     }
     QUndoStack* own = (*found)->undoStack();
     data_->stacks.setActiveStack(own != nullptr ? own : &data_->studio.document.undoStack());
@@ -211,16 +226,27 @@ void MainWindow::showFirstWorkspace() {
 QString MainWindow::workspace() const { return data_->present; }
 
 void MainWindow::startTour() {
+    leaveFullView();
     showWorkspace("scene");
     const auto seen = [this] { data_->studio.settings.setTourSeen(true); };
     showTour(*this, tourSteps(data_->studio), seen);
 }
 
+void MainWindow::showApplications() { data_->desk->showCards(); }
+
+/// From the cards; visitors stay before the view that fills the window.
+void MainWindow::openApplication(const Demo& demo) {
+    showWorkspace(QString::fromStdString(demo.workspace));
+    enterFullView();
+    data_->studio.project.openDemo(demo.name, Audience::visitors);
+}
+
 void MainWindow::enterKiosk() {
     if (data_->kiosk->closed()) return;
+    leaveFullView();
     data_->maximized = isMaximized();
     data_->kiosk->close();
-    setKiosk(true);
+    setForVisitors(true, true);
     showFullScreen();
     data_->kiosk->requirePin(false, [] {});
 }
@@ -228,15 +254,31 @@ void MainWindow::enterKiosk() {
 void MainWindow::leaveKiosk() {
     if (!data_->kiosk->closed()) return;
     data_->kiosk->open();
-    setKiosk(false);
+    setForVisitors(false, true);
     data_->maximized ? showMaximized() : showNormal();
 }
 
-void MainWindow::setKiosk(bool on) {
+/// As in the kiosk, but for its doors.
+void MainWindow::enterFullView() {
+    if (data_->desk->mode() != VisitorDesk::Mode::studio) return;
+    data_->maximized = isMaximized();
+    setForVisitors(true, false);
+    showFullScreen();
+}
+
+void MainWindow::leaveFullView() {
+    if (data_->desk->mode() != VisitorDesk::Mode::full) return;
+    setForVisitors(false, false);
+    data_->maximized ? showMaximized() : showNormal();
+}
+
+void MainWindow::setForVisitors(bool on, bool locked) {
+    using Mode = VisitorDesk::Mode;
     data_->menus->setShut(on);
-    data_->bar->setKiosk(on);
+    data_->bar->setForVisitors(on, locked);
     data_->status->setVisible(!on);
     for (const auto& [id, page] : data_->pages) page->setKiosk(on);
+    data_->desk->setMode(!on ? Mode::studio : locked ? Mode::kiosk : Mode::full);
     if (on && !data_->pages.at(data_->present)->hasVisitors()) showWorkspace("scene");
     if (on)
         data_->idleCursor = new IdleCursor(this);
@@ -262,6 +304,7 @@ void MainWindow::closeEvent(QCloseEvent* event) {
         data_->kiosk->askOperator("To close Lumorph.", [this] { closeNow(); });
         return;
     }
+    leaveFullView(); // it is no layout to come back to
     for (const auto& [id, page] : data_->pages)
         if (id == data_->present) page->keepLayout();
     if (!data_->kiosk->closed()) {
@@ -319,6 +362,11 @@ void MainWindow::changeEvent(QEvent* event) {
 /// Fields inside the window would take a dropped file as text; files are the window's, wherever they are dropped.
 bool MainWindow::eventFilter(QObject* watched, QEvent* event) {
     const auto type = event->type();
+    if (data_->desk != nullptr && (type == QEvent::KeyPress || type == QEvent::ShortcutOverride))
+        if (data_->desk->takeKey(*watched, *static_cast<QKeyEvent*>(event))) {
+            event->accept();
+            return true;
+        }
     if (type == QEvent::Show)
         if (auto* dialog = qobject_cast<QDialog*>(watched); dialog != nullptr && !event->spontaneous())
             fitDialog(*dialog);

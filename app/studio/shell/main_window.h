@@ -8,6 +8,10 @@
 #include "app/studio/shell/studio.h"
 #include "app/studio/shell/workspace.h"
 
+namespace lumorph {
+struct Demo;
+}
+
 namespace lumorph::studio {
 
 /// The one window: workspaces as tabs in a slim top bar, STOP always in sight, each workspace's docks and central view
@@ -23,6 +27,8 @@ public:
     [[nodiscard]] QString workspace() const;
     /// The first-run tour, from its first step.
     void startTour();
+    /// The cards of all applications, to choose from.
+    void showApplications();
     /// Full screen with the view and STOP alone, which alone hear anything; a still pointer is hidden. Asks for a PIN
     /// where there is none yet; with it the operator leaves.
     void enterKiosk();
@@ -40,7 +46,10 @@ protected:
 private:
     void addCommands();
     void leaveKiosk();
-    void setKiosk(bool on);
+    void openApplication(const Demo& demo);
+    void enterFullView();
+    void leaveFullView();
+    void setForVisitors(bool on, bool locked);
     void showFirstWorkspace();
     void showTitle();
     void keepOnScreen();

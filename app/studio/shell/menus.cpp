@@ -11,8 +11,9 @@ namespace lumorph::studio {
 namespace {
 
 /// The order of the File menu, whatever was added first. What begins with a name stands with it.
-const QStringList kFileOrder{"file.new", "file.open", "rig.open", "file.save",   "file.saveAs", "demo.", "rig.new",
-                             "rig.draw", "rig.save",  "record.",  "replay.open", "export.",     "room.", "file.quit"};
+const QStringList kFileOrder{"file.new",     "file.open",   "rig.open", "file.save", "file.saveAs",
+                             "applications", "demo.",       "rig.new",  "rig.draw",  "rig.save",
+                             "record.",      "replay.open", "export.",  "room.",     "file.quit"};
 
 int rankOf(const QString& id) {
     const auto found = std::find_if(kFileOrder.begin(), kFileOrder.end(), [&id](const QString& one) {
@@ -26,7 +27,7 @@ QString kindOf(const QString& id) { return id.section('.', 0, -2); }
 
 bool startsGroup(const QString& id, const QString& before) {
     if (id == "file.save" || id == "file.quit") return true;
-    if (before.isEmpty() || id == "rig.open") return false;
+    if (before.isEmpty() || id == "rig.open" || before == "applications") return false;
     return kindOf(before) != kindOf(id) && !(id == "replay.open" && before.startsWith("record."));
 }
 

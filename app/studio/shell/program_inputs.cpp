@@ -2,10 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <utility>
 
 #include <QKeyEvent>
-#include <QMouseEvent>
+#include <QPointingDevice>
 
 namespace lumorph::studio {
 namespace {
@@ -13,25 +14,28 @@ namespace {
 constexpr double kWholeLean = 0.35; ///< of the view's shorter side, from its middle
 constexpr double kRests = 0.06;     ///< of the whole: a pointer in the middle asks for nothing
 
+constexpr auto kTakes = "takesProgramInputs";
+
+struct KeyInput {
+    int key;
+    const char* input;
+};
+constexpr KeyInput kKeys[] = {
+    {Qt::Key_Left, "key.left"}, {Qt::Key_Right, "key.right"}, {Qt::Key_Up, "key.up"},     {Qt::Key_Down, "key.down"},
+    {Qt::Key_R, "key.restart"}, {Qt::Key_N, "key.next"},      {Qt::Key_A, "key.attract"}, {Qt::Key_O, "key.off"},
+    {Qt::Key_0, "key.0"},       {Qt::Key_1, "key.1"},         {Qt::Key_2, "key.2"},       {Qt::Key_3, "key.3"},
+    {Qt::Key_4, "key.4"},       {Qt::Key_5, "key.5"},         {Qt::Key_6, "key.6"},       {Qt::Key_7, "key.7"},
+    {Qt::Key_8, "key.8"},       {Qt::Key_9, "key.9"},
+};
+
 const char* inputOf(int key) {
-    switch (key) {
-    case Qt::Key_Left:
-        return "key.left";
-    case Qt::Key_Right:
-        return "key.right";
-    case Qt::Key_Up:
-        return "key.up";
-    case Qt::Key_Down:
-        return "key.down";
-    case Qt::Key_R:
-        return "key.restart";
-    case Qt::Key_N:
-        return "key.next";
-    case Qt::Key_A:
-        return "key.attract";
-    default:
-        return nullptr;
-    }
+    const auto found = std::ranges::find(kKeys, key, &KeyInput::key);
+    return found == std::end(kKeys) ? nullptr : found->input;
+}
+
+bool isByTouch(const QMouseEvent& mouse) {
+    const QPointingDevice* device = mouse.pointingDevice();
+    return device != nullptr && device->type() == QInputDevice::DeviceType::TouchScreen;
 }
 
 double share(double from, double whole) {
@@ -43,6 +47,7 @@ double share(double from, double whole) {
 
 ProgramInputs::ProgramInputs(StudioLoop& loop, QWidget& view) : QObject(&view), loop_(loop), view_(view) {
     view.setMouseTracking(true);
+    view.setProperty(kTakes, true);
     view.installEventFilter(this);
 }
 
@@ -71,9 +76,16 @@ bool ProgramInputs::eventFilter(QObject* watched, QEvent* event) {
         break;
     case QEvent::MouseMove: { // a drag leads the eye around
         const auto* mouse = static_cast<QMouseEvent*>(event);
-        if (mouse->buttons() == Qt::NoButton) point(mouse->position());
+        if (forVisitors_ || mouse->buttons() == Qt::NoButton) point(mouse->position());
+        if (forVisitors_) return true;
         break;
     }
+    case QEvent::MouseButtonPress:
+    case QEvent::MouseButtonRelease:
+    case QEvent::MouseButtonDblClick:
+    case QEvent::Wheel:
+        if (forVisitors_) return pointByPress(*event);
+        break;
     case QEvent::Leave:
     case QEvent::FocusOut:
     case QEvent::Hide:
@@ -83,6 +95,17 @@ bool ProgramInputs::eventFilter(QObject* watched, QEvent* event) {
         break;
     }
     return QObject::eventFilter(watched, event);
+}
+
+/// A finger points as long as it lies there, a mouse anyway.
+bool ProgramInputs::pointByPress(const QEvent& event) {
+    if (event.type() == QEvent::Wheel) return true;
+    const auto& mouse = static_cast<const QMouseEvent&>(event);
+    if (event.type() != QEvent::MouseButtonRelease)
+        point(mouse.position());
+    else if (isByTouch(mouse))
+        letGo();
+    return true;
 }
 
 void ProgramInputs::point(const QPointF& at) {
@@ -110,5 +133,9 @@ bool ProgramInputs::press(int key, bool down) {
     loop_.input(inputOf(key), down ? 1.0 : 0.0);
     return true;
 }
+
+bool isProgramKey(int key) { return inputOf(key) != nullptr; }
+
+bool takesProgramInputs(const QObject& view) { return view.property(kTakes).toBool(); }
 
 } // namespace lumorph::studio

@@ -44,6 +44,21 @@ void addTheme(Studio& studio) {
     follow();
 }
 
+/// Names the language that it leads to, in that language.
+void addLanguage(Studio& studio) {
+    QAction* language = addShellAction(studio, "view.language", {}, "", {}, "View", [&studio] {
+        const bool german = studio.settings.language() == Language::german;
+        studio.settings.setLanguage(german ? Language::english : Language::german);
+    });
+    language->setToolTip("The language of what visitors read: applications, their cards and their help");
+    const auto follow = [&studio, language] {
+        const bool german = studio.settings.language() == Language::german;
+        language->setText(german ? "Language for visitors: &English" : "Language for visitors: &Deutsch");
+    };
+    QObject::connect(&studio.settings, &Settings::languageChanged, language, follow);
+    follow();
+}
+
 void addView(Studio& studio, QMainWindow& window, const ShellActions& does) {
     int number = 1;
     for (const auto& [title, show] : does.workspaces) {
@@ -54,6 +69,7 @@ void addView(Studio& studio, QMainWindow& window, const ShellActions& does) {
     addShellAction(studio, "view.commandPalette", "&Search commands", "search", QKeySequence(Qt::CTRL | Qt::Key_K),
                    "View", [&studio, &window] { toggleCommandPalette(window, studio.commands); });
     addTheme(studio);
+    addLanguage(studio);
     Commands::Options options;
     options.icon = "frame";
     options.shortcut = QKeySequence(Qt::Key_F11);
@@ -74,6 +90,9 @@ void addShellCommands(Studio& studio, QMainWindow& window, const ShellActions& d
                    [&studio, &window] { openSettings(studio, window); });
     addShellAction(studio, "settings.pin", "Operator's &PIN...", "lock", {}, "Edit", does.changePin)
         ->setToolTip("Choose the number by which one leaves the kiosk");
+    addShellAction(studio, "applications", "A&pplications...", "grid", QKeySequence(Qt::CTRL | Qt::SHIFT | Qt::Key_A),
+                   "File", does.showApplications)
+        ->setToolTip("All that visitors can play, to choose from");
     addView(studio, window, does);
     addStop(studio);
     addDriverCommands(studio);

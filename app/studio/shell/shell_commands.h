@@ -14,6 +14,7 @@ namespace lumorph::studio {
 /// What only the main window can do.
 struct ShellActions {
     std::function<void()> startTour;
+    std::function<void()> showApplications;
     std::function<void()> resetLayout;
     std::function<QString()> present; ///< title of the workspace that is shown
     QUndoGroup* stacks = nullptr;     ///< of which the shown workspace's is active

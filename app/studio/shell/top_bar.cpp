@@ -77,6 +77,8 @@ TopBar::TopBar(Studio& studio, const std::vector<std::unique_ptr<Workspace>>& wo
     mark_ = new AppMark(this);
     row->addWidget(mark_);
     row->addSpacing(8);
+    row->addWidget(makeTool(studio.commands.find("applications"), this));
+    row->addSpacing(4);
     // Before the menus, whose number changes with the workspace: a tab stays where it was clicked.
     addTabs(workspaces, *row);
     addLeave(*row);
@@ -119,10 +121,9 @@ void TopBar::addTabs(const std::vector<std::unique_ptr<Workspace>>& workspaces, 
 void TopBar::addLeave(QHBoxLayout& row) {
     leave_ = new QToolButton(this);
     leave_->setObjectName("bar.leaveKiosk");
-    leave_->setIcon(icon("lock", IconRole::muted));
     leave_->setIconSize(QSize(18, 18));
-    leave_->setAccessibleName("Leave the kiosk, by the operator's PIN");
     leave_->hide();
+    connect(leave_, &QToolButton::clicked, this, &TopBar::leaveWanted);
     row.addWidget(leave_);
 }
 
@@ -183,8 +184,11 @@ void TopBar::setWorkspace(const QString& id) {
     for (QToolButton* tab : tabs_) tab->setChecked(tab->property("workspace").toString() == id);
 }
 
-void TopBar::setKiosk(bool on) {
-    kiosk_ = on;
+void TopBar::setForVisitors(bool on, bool locked) {
+    forVisitors_ = on;
+    leave_->setIcon(icon(locked ? "lock" : "close", IconRole::muted));
+    leave_->setAccessibleName(locked ? "Leave the kiosk, by the operator's PIN" : "Back to the studio");
+    leave_->setToolTip(locked ? QString() : leave_->accessibleName());
     if (on) {
         for (QWidget* child : findChildren<QWidget*>(Qt::FindDirectChildrenOnly)) {
             const bool stays = child == mark_ || child == stop_ || child == resume_ || child == leave_;
@@ -214,7 +218,7 @@ bool TopBar::event(QEvent* event) {
 /// The field with its words where there is room, else the glass alone; in a narrow window undo, redo, theme and
 /// recording are left to the menu, so that all menus are in sight.
 void TopBar::fitSearch() {
-    if (kiosk_) return;
+    if (forVisitors_) return;
     const std::array<QWidget*, 4> spare{tools_[0], tools_[1], tools_[3], tools_[4]}; // all but the search
     int needed = layout()->sizeHint().width() + kGlassWidth;
     needed += search_->isHidden() ? layout()->spacing() : -search_->minimumWidth();

@@ -22,17 +22,20 @@ class DriverChip;
 class TopBar : public QWidget {
     Q_OBJECT
 public:
-    /// The commands edit.undo, edit.redo, view.commandPalette, view.theme and those of the drivers must be there.
+    /// The commands applications, edit.undo, edit.redo, view.commandPalette, view.theme and those of the drivers must
+    /// be there.
     TopBar(Studio& studio, const std::vector<std::unique_ptr<Workspace>>& workspaces, QWidget* parent);
 
     [[nodiscard]] QMenuBar& menuBar() noexcept { return *menus_; }
     void setWorkspace(const QString& id);
-    /// Only the mark, STOP, and a lock for the operator stay; or all again.
-    void setKiosk(bool on);
+    /// Only the mark, STOP, and a way out stay, which is a lock for the operator where the doors are shut; or all
+    /// again.
+    void setForVisitors(bool on, bool locked);
     [[nodiscard]] Kiosk::Buttons kioskButtons() const noexcept { return {stop_, resume_, leave_}; }
 
 signals:
     void workspaceChosen(const QString& id);
+    void leaveWanted(); ///< by the way out, where it is not locked
 
 protected:
     bool event(QEvent* event) override;
@@ -51,9 +54,9 @@ private:
     QMenuBar* menus_ = nullptr;
     std::vector<QToolButton*> tabs_;
     std::vector<QWidget*> tools_;
-    bool kiosk_ = false;
+    bool forVisitors_ = false;
     DriverChip* driver_ = nullptr;
-    std::vector<QPointer<QWidget>> shut_; ///< what the kiosk hides
+    std::vector<QPointer<QWidget>> shut_; ///< what visitors do not see
     QToolButton* leave_ = nullptr;
     QPushButton* search_ = nullptr;
     QPushButton* resume_ = nullptr;

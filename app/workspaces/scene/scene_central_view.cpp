@@ -53,6 +53,7 @@ struct SceneCentralView::Data {
     void addDevice();
     void addFloating();
     void arrange();
+    void showForVisitors(bool on);
     void enlarge(ScenePane part);
     void showScene();    ///< of the device
     void showCaptions(); ///< of all pictures
@@ -76,12 +77,14 @@ struct SceneCentralView::Data {
     QWidget* views;
     std::map<ScenePane, ViewPane*> panes;
     std::map<ScenePane, std::unique_ptr<ItemHandles>> handles;
+    std::vector<ProgramInputs*> inputs; ///< of the panes that visitors may play in
     ViewportWidget* device = nullptr;
     PaneCaption* deviceCaption = nullptr;
     GlPage* page = nullptr;
     LatencyCard* latency = nullptr;
     QWidget* notices = nullptr;
-    std::optional<ScenePane> alone; ///< enlarged by a double click
+    std::optional<ScenePane> alone;          ///< enlarged by a double click, or for visitors
+    std::optional<ScenePane> aloneElsewhere; ///< for the host while visitors have it, and the other way round
     std::optional<glm::vec3> observer;
     bool observing = false; ///< this drag moves the observer, not the viewer
     bool active = false;
@@ -117,7 +120,7 @@ ViewPane* SceneCentralView::Data::addPane(ScenePane part, const ShowView& view, 
     panes[part] = pane;
     connect(pane, &ViewPane::enlarged, &self, [this, part] { enlarge(part); });
     if (part == ScenePane::projector) return pane;
-    if (part == ScenePane::eye || part == ScenePane::lab) new ProgramInputs(studio.loop, *pane);
+    if (part == ScenePane::eye || part == ScenePane::lab) inputs.push_back(new ProgramInputs(studio.loop, *pane));
     connect(pane, &ViewPane::dragBegan, &self,
             [this, part](Qt::MouseButton button, Qt::KeyboardModifiers held) { beginDrag(part, button, held); });
     connect(pane, &ViewPane::dragged, &self, [this, part](const QPointF& by) { drag(part, by); });
@@ -162,6 +165,9 @@ void SceneCentralView::Data::addFloating() {
     notices->setMaximumWidth(kNoticeWidth);
     connect(&studio.notices, &Notices::changed, &self, [this] { arrange(); });
     connect(&studio.renderer, &RenderThread::ready, &self, [this] { showReason(); });
+    connect(&studio.project, &ProjectService::programOpened, &self, [this] {
+        if (forVisitors) showForVisitors(true);
+    });
     connect(&studio.show, &ShowFeed::shown, &self, [this] {
         const double seconds = studio.show.newest().match->sceneSeconds;
         for (const auto& [part, one] : handles) one->setSeconds(seconds);
@@ -217,6 +223,20 @@ void SceneCentralView::Data::arrange() {
     notices->raise();
     showScene();
     showCaptions();
+}
+
+/// A demonstration is seen by one eye, and large; a host's own show as he has arranged it.
+void SceneCentralView::Data::showForVisitors(bool on) {
+    if (on != std::exchange(forVisitors, on)) std::swap(alone, aloneElsewhere);
+    if (on) alone = studio.project.demo() != nullptr ? std::optional(ScenePane::eye) : aloneElsewhere;
+    for (ProgramInputs* one : inputs) one->setForVisitors(on);
+    for (const auto& [part, pane] : panes) pane->caption().setVisible(!on);
+    deviceCaption->setVisible(!on);
+    bar->setVisible(!on);
+    notices->setVisible(!on);
+    latency->setVisible(!on && bar->latencyShown());
+    self.layout()->activate();
+    arrange();
 }
 
 void SceneCentralView::Data::enlarge(ScenePane part) {
@@ -357,13 +377,8 @@ void SceneCentralView::setActive(bool active) {
 }
 
 void SceneCentralView::setForVisitors(bool on) {
-    data_->forVisitors = on;
-    data_->bar->setVisible(!on);
-    data_->notices->setVisible(!on);
-    data_->latency->setVisible(!on && data_->bar->latencyShown());
+    data_->showForVisitors(on);
     if (on) setSelected(0);
-    layout()->activate();
-    data_->arrange();
 }
 
 void SceneCentralView::setSelected(int item) {

@@ -4,10 +4,12 @@
 #include <utility>
 
 #include <QLabel>
+#include <QPushButton>
 #include <QVBoxLayout>
 
 #include "app/applications/registry/demos.h"
 #include "app/studio/document/scene_edit.h"
+#include "app/studio/look/icons.h"
 #include "app/workspaces/scene/segments.h"
 #include "core/base/error.h"
 
@@ -33,7 +35,7 @@ bool isTechniqueScene(const Scene& scene, const Scene& plain) {
 }
 
 QString titleOf(const DemoStep& technique) {
-    return QObject::tr("Technique: %1").arg(QString::fromStdString(technique.name).toLower());
+    return QObject::tr("Technique: %1").arg(QString::fromStdString(technique.name.english).toLower());
 }
 
 class TechniqueCommands : public QObject {
@@ -41,6 +43,7 @@ public:
     explicit TechniqueCommands(Studio& studio)
         : QObject(&studio.commands), studio_(studio), steps_(demoOfSteps().steps()) {
         for (const DemoStep& technique : steps_) add(technique);
+        addOff();
         connect(&studio.document, &StudioDocument::changed, this, [this](StateParts parts) {
             if (parts & StatePart::scene) follow();
         });
@@ -54,7 +57,7 @@ private:
         options.workspace = "scene";
         const QString id = QString("technique.%1").arg(technique.key);
         QAction* action = studio_.commands.add(id, titleOf(technique), options, [this, technique] { show(technique); });
-        action->setToolTip(QString::fromStdString(technique.sentence));
+        action->setToolTip(QString::fromStdString(technique.sentence.english));
         actions_.emplace_back(technique.key, action);
     }
 
@@ -64,7 +67,27 @@ private:
             studio_.project.openDemo(demoOfSteps().name);
             return;
         }
+        studio_.project.endProgram(); // the host takes over from visitors
         editScene(studio_.document, titleOf(technique), [&](Scene& scene) { scene = technique.scene; });
+    }
+
+    void addOff() {
+        Commands::Options options;
+        options.icon = "compare";
+        options.workspace = "scene";
+        off_ = studio_.commands.add("technique.off", QObject::tr("Technique: with and without"), options,
+                                    [this] { exchange(); });
+        off_->setToolTip(QObject::tr("The same scene without what the technique adds, and with it again"));
+    }
+
+    /// Of a scene that the host has changed there is no other.
+    void exchange() {
+        const Scene& now = *studio_.document.state().scene;
+        for (const DemoStep& step : steps_) {
+            if (!(now == step.scene) && !(now == step.without)) continue;
+            const Scene& other = now == step.scene ? step.without : step.scene;
+            return editScene(studio_.document, off_->text(), [&](Scene& scene) { scene = other; });
+        }
     }
 
     /// The number keys belong to the demo: elsewhere a stray key must not change a scene.
@@ -74,12 +97,14 @@ private:
         open_ = open;
         for (const auto& [key, action] : actions_)
             action->setShortcut(open ? QKeySequence(Qt::Key_0 + key) : QKeySequence());
+        off_->setShortcut(open ? QKeySequence(Qt::Key_O) : QKeySequence());
         if (open && wanted_)
             QTimer::singleShot(0, this, [this, technique = *std::exchange(wanted_, std::nullopt)] { show(technique); });
     }
 
     Studio& studio_;
     const std::vector<DemoStep> steps_;
+    QAction* off_ = nullptr;
     bool open_ = false;
     std::optional<DemoStep> wanted_; ///< as soon as the demo is there
     std::vector<std::pair<int, QAction*>> actions_;
@@ -92,16 +117,26 @@ public:
         std::vector<Segments::Segment> segments;
         for (const DemoStep& technique : all_) {
             segments.push_back({QString("technique.%1.button").arg(technique.key), QString::number(technique.key),
-                                QString::fromStdString(technique.name)});
+                                studio.settings.say(technique.name)});
         }
         numbers_ = new Segments(segments, this);
         numbers_->setAccessibleName(tr("Techniques"));
         sentence_->setObjectName("technique.sentence");
         sentence_->setWordWrap(true);
+        off_ = new QPushButton(icon("compare"), tr("Without it"), this);
+        off_->setObjectName("technique.off.button");
+        off_->setCheckable(true);
+        off_->setToolTip(tr("The same scene without what the technique adds, to compare (O)"));
+        connect(off_, &QPushButton::clicked, this, [this] {
+            if (QAction* action = studio_.commands.find("technique.off")) action->trigger();
+            refresh();
+        });
+        connect(&studio.settings, &Settings::languageChanged, this, &TechniqueBar::refresh);
         auto* column = new QVBoxLayout(this);
         column->setContentsMargins(0, 0, 0, 0);
         column->setSpacing(4);
         column->addWidget(numbers_);
+        column->addWidget(off_, 0, Qt::AlignLeft);
         column->addWidget(sentence_);
         connect(numbers_, &Segments::chosen, this, [this](int index) {
             if (QAction* action =
@@ -121,11 +156,13 @@ private:
         setVisible(open);
         if (!open) return;
         for (std::size_t i = 0; i < all_.size(); ++i) {
-            if (!(all_[i].scene == scene)) continue;
+            const bool on = all_[i].scene == scene;
+            if (!on && !(all_[i].without == scene)) continue;
             numbers_->setChosen(static_cast<int>(i));
+            off_->setChecked(!on);
             sentence_->setText(QString("<b>%1</b><br>%2")
-                                   .arg(QString::fromStdString(all_[i].name).toHtmlEscaped(),
-                                        QString::fromStdString(all_[i].sentence).toHtmlEscaped()));
+                                   .arg(studio_.settings.say(all_[i].name).toHtmlEscaped(),
+                                        studio_.settings.say(all_[i].sentence).toHtmlEscaped()));
             return;
         }
     }
@@ -133,6 +170,7 @@ private:
     Studio& studio_;
     const std::vector<DemoStep> all_ = demoOfSteps().steps();
     Segments* numbers_ = nullptr;
+    QPushButton* off_ = nullptr;
     QLabel* sentence_;
 };
 

@@ -84,8 +84,12 @@ Scene ExampleProgram::scene() const {
 }
 
 Demo exampleDemo() {
-    return {"example", "Example", "Point somewhere, and the ball rolls there; your hand feels the hill it stands on.",
-            "thumbnails/example.png", "scene",
+    return {"example",
+            {"Example", "Beispiel"},
+            {"Point somewhere, and the ball rolls there; your hand feels the hill it stands on.",
+             "Zeige irgendwohin, und die Kugel rollt dorthin; die Hand fühlt den Hügel, auf dem sie steht."},
+            "thumbnails/example.png",
+            "scene",
             [](const Progress& progress) {
                 Project project;
                 project.rig = "resource:models/tablet.glb";

@@ -1,0 +1,60 @@
+#pragma once
+
+#include <vector>
+
+#include <QAbstractButton>
+#include <QScrollArea>
+
+#include "app/studio/shell/overlay.h"
+#include "app/studio/shell/studio.h"
+
+class QGridLayout;
+class QLabel;
+class QPushButton;
+
+namespace lumorph {
+struct Demo;
+}
+
+namespace lumorph::studio {
+
+/// A card for each demonstration that the registry knows, with its picture and one sentence; a click starts it. It lies
+/// over the window but for the bar at the top.
+class ApplicationsPage : public Overlay {
+    Q_OBJECT
+public:
+    enum class For { host, visitors };
+    /// `studio` outlives it.
+    ApplicationsPage(Studio& studio, QWidget& window, For whom);
+
+signals:
+    void chosen(const lumorph::Demo& demo);
+    void tourWanted();
+    void studioWanted();
+    void backWanted(); ///< to what shows
+
+protected:
+    void arrange() override;
+    void paintEvent(QPaintEvent* event) override;
+    void mousePressEvent(QMouseEvent* event) override { event->accept(); }
+
+private:
+    void addCards();
+    void addFoot(For whom);
+    QPushButton* addFootButton(const char* name, const Words& words);
+    void say();
+
+    struct Said {
+        QAbstractButton* button;
+        Words words;
+    };
+    Studio& studio_;
+    QLabel* heading_ = nullptr;
+    QScrollArea* area_ = nullptr;
+    QGridLayout* grid_ = nullptr;
+    QWidget* foot_ = nullptr;
+    std::vector<QAbstractButton*> cards_;
+    std::vector<Said> said_;
+};
+
+} // namespace lumorph::studio

@@ -1,0 +1,70 @@
+#pragma once
+
+#include <QMainWindow>
+#include <QPointer>
+
+#include "app/studio/shell/applications_page.h"
+#include "app/studio/shell/studio.h"
+#include "app/studio/shell/visitor_bar.h"
+#include "app/studio/shell/visitor_layer.h"
+#include "app/studio/shell/visitor_watch.h"
+
+class QKeyEvent;
+
+namespace lumorph::studio {
+
+/// What stands between applications and their visitors in the window: the cards to choose from, the keys and buttons
+/// that all share, hints and help over the view, and the next application when nobody comes.
+class VisitorDesk : public QObject {
+    Q_OBJECT
+public:
+    /// Who has the window: the host at work, or visitors before a view that fills it, whose doors are open or shut.
+    enum class Mode { studio, full, kiosk };
+
+    /// `stage` is where the views are. All outlive it.
+    VisitorDesk(Studio& studio, QMainWindow& window, QWidget& stage, const Clock& clock);
+
+    [[nodiscard]] Mode mode() const noexcept { return mode_; }
+    void setMode(Mode mode);
+    void showCards();
+    void hideCards();
+    /// Esc, once: help goes, else the cards come or go.
+    void escape();
+    /// The keys that ask for help over a view that shows an application. True: taken.
+    bool takeKey(const QObject& watched, const QKeyEvent& event);
+    /// Whether visitors may do that though the doors are shut. A host's own show has nothing to choose and to play.
+    [[nodiscard]] bool mayHave(const QObject& watched, const QEvent& event) const;
+
+signals:
+    /// Of the cards, or because nobody came.
+    void applicationWanted(const lumorph::Demo& demo);
+    void studioWanted();
+    void tourWanted();
+
+protected:
+    bool eventFilter(QObject* watched, QEvent* event) override;
+
+private:
+    void takeOpened();
+    void follow();
+    void arrange();
+    void giveKeyboard();
+    void goOnWhereNobodyPlays();
+    [[nodiscard]] bool offers() const;
+    [[nodiscard]] bool otherSheetOpen() const;
+
+    Studio& studio_;
+    QMainWindow& window_;
+    QWidget& stage_;
+    Mode mode_ = Mode::studio;
+    VisitorWatch watch_;
+    VisitorLayer* layer_;
+    VisitorBar* bar_;
+    QPointer<ApplicationsPage> cards_;
+};
+
+/// The application after that of a name among those that answer visitors, in a circle; the first for any other name.
+/// Null where there is none.
+[[nodiscard]] const Demo* applicationAfter(const std::string& name);
+
+} // namespace lumorph::studio

@@ -1,0 +1,175 @@
+#include <algorithm>
+
+#include <QAbstractButton>
+#include <QLabel>
+
+#include "app/applications/registry/demos.h"
+#include "app/studio/base/operator_pin.h"
+#include "app/studio/shell/applications_page.h"
+#include "app/studio/shell/visitor_desk.h"
+#include "app/studio/shell/visitor_layer.h"
+#include "app/workspaces/scene/view_pane.h"
+#include "tests/ui/studio_window.h"
+
+// Applications in the real window, from their cards to the next one when nobody comes: as a host and his visitors find
+// them.
+
+namespace lumorph::test {
+namespace {
+
+using namespace std::chrono_literals;
+using studio::ViewPane;
+using studio::VisitorLayer;
+
+class ApplicationsWindow : public ::testing::Test {
+protected:
+    ApplicationsWindow() {
+        studio::OperatorPin::forget(studio().settings);
+        studio().settings.setLanguage(Language::english);
+    }
+    ~ApplicationsWindow() override {
+        studio::OperatorPin::forget(studio().settings);
+        studio().settings.setNextMinutes(true, 2.0);
+    }
+
+    studio::Studio& studio() { return window.studio(); }
+    [[nodiscard]] bool shows(const std::string& name) {
+        const Demo* demo = studio().project.demo();
+        const auto& frame = studio().loop.frame();
+        return demo != nullptr && demo->name == name && studio().jobs.running().empty() && frame && frame->program &&
+               frame->program == studio().loop.program();
+    }
+    [[nodiscard]] VisitorLayer& layer() { return *window.window().findChild<VisitorLayer*>("visitors.layer"); }
+    [[nodiscard]] ViewPane& eye() { return *window.find<ViewPane>("scene.eye"); }
+    void moveOver(double x, double y) {
+        ViewPane& pane = eye();
+        QTest::mouseMove(&pane, QPoint(static_cast<int>(x * pane.width()), static_cast<int>(y * pane.height())));
+    }
+    void picture(const QString& name) {
+        (void)eventually([&] { return !eye().picture().isNull(); }, 60s);
+        pass(1500ms);
+        window.screenshot(name);
+    }
+
+    TemporaryFolder folder;
+    StudioWindow window{folder.path(), "scene"};
+};
+
+TEST_F(ApplicationsWindow, StartByOneClickOnACardAndExplainThemselves) {
+    auto* outliner = window.find<QWidget>("dock.scene.outliner");
+    window.click("bar.applications");
+    auto* page = window.find<studio::ApplicationsPage>("applications");
+    ASSERT_NE(page, nullptr);
+    for (const Demo& demo : demos()) {
+        auto* card = window.find<QAbstractButton>(QString::fromStdString("applications." + demo.name));
+        ASSERT_NE(card, nullptr) << demo.name;
+        EXPECT_EQ(card->text().toStdString(), demo.title.english);
+        EXPECT_GE(card->width(), 260);
+    }
+    pass(200ms);
+    window.screenshot("applications");
+    window.click("applications.language");
+    EXPECT_EQ(window.find<QAbstractButton>("applications.labyrinth")->text().toStdString(),
+              demoNamed("labyrinth").title.german);
+    window.screenshot("applications-german");
+    window.click("applications.labyrinth");
+
+    ASSERT_TRUE(eventually([&] { return shows("labyrinth"); }, 30s));
+    EXPECT_TRUE(eventually([&] { return window.window().isFullScreen(); }));
+    EXPECT_EQ(window.findNow<QWidget>("applications"), nullptr);
+    EXPECT_FALSE(outliner->isVisible());
+    EXPECT_GT(eye().width(), window.window().width() - 10) << "the view fills the window";
+    EXPECT_TRUE(layer().waysShown()) << "how it is played appears by itself";
+    EXPECT_TRUE(layer().handShown()) << "and that it may be touched";
+    EXPECT_TRUE(eventually([&] { return layer().captionTitle() == "1  Erstes Rollen"; }));
+    picture("labyrinth-attract");
+
+    moveOver(0.5, 0.5);
+    moveOver(0.7, 0.6);
+    EXPECT_TRUE(eventually([&] { return !layer().handShown(); })) << "somebody plays";
+    picture("labyrinth-played");
+    QTest::keyClick(&eye(), Qt::Key_H);
+    EXPECT_TRUE(layer().helpShown());
+    picture("labyrinth-help");
+    QTest::keyClick(&eye(), Qt::Key_Escape);
+    EXPECT_TRUE(eventually([&] { return !layer().helpShown(); }));
+    EXPECT_EQ(window.findNow<QWidget>("applications"), nullptr) << "Esc took the help away";
+    QTest::keyClick(&eye(), Qt::Key_A);
+    EXPECT_TRUE(eventually([&] { return layer().handShown(); })) << "left to itself";
+
+    pass(700ms); // no second of Esc Esc
+    QTest::keyClick(&eye(), Qt::Key_Escape);
+    ASSERT_NE(window.find<QWidget>("applications"), nullptr) << "Esc leads back to the cards";
+    EXPECT_FALSE(studio().loop.stopped());
+    window.click("applications.techniques");
+    ASSERT_TRUE(eventually([&] { return shows("techniques"); }, 30s));
+    QTest::keyClick(&eye(), Qt::Key_4);
+    EXPECT_TRUE(eventually([&] { return layer().captionTitle() == "4  Kanten"; }));
+    EXPECT_FALSE(layer().captionSentence().isEmpty());
+    picture("techniques-edges");
+    window.click("visitors.off");
+    EXPECT_TRUE(eventually([&] { return layer().captionTitle() == "4  Kanten: aus"; }));
+    picture("techniques-edges-off");
+    window.click("visitors.language");
+    EXPECT_TRUE(eventually([&] { return layer().captionTitle() == "4  Edges: off"; }));
+
+    window.click("bar.leaveKiosk");
+    EXPECT_TRUE(eventually([&] { return !window.window().isFullScreen() && outliner->isVisible(); }));
+    EXPECT_FALSE(layer().isVisible());
+    EXPECT_NE(studio().loop.program(), nullptr) << "it goes on";
+    QTest::keyClick(&window.window(), Qt::Key_3);
+    EXPECT_TRUE(eventually([&] { return studio().loop.program() == nullptr; })) << "the host takes over";
+}
+
+TEST_F(ApplicationsWindow, EscEscStopsWhereItAlsoLeadsToTheCards) {
+    window.command("Applications");
+    window.click("applications.labyrinth");
+    ASSERT_TRUE(eventually([&] { return shows("labyrinth"); }, 30s));
+    QTest::keyClick(&eye(), Qt::Key_Escape);
+    QTest::keyClick(&eye(), Qt::Key_Escape);
+    EXPECT_TRUE(eventually([&] { return studio().loop.stopped(); }));
+    EXPECT_EQ(window.findNow<QWidget>("applications"), nullptr);
+}
+
+TEST_F(ApplicationsWindow, InTheKioskVisitorsChooseAndPlayAndTheNextComesWhenTheyHaveGone) {
+    studio().settings.setNextMinutes(true, 0.0);
+    studio().project.openDemo("labyrinth");
+    ASSERT_TRUE(eventually([&] { return shows("labyrinth"); }, 30s));
+    studio().commands.find("view.kiosk")->trigger();
+    for (int twice = 0; twice < 2; ++twice) {
+        for (const char* digit : {"2", "7", "1", "8"}) window.click(QString("pin.digit.") + digit);
+        window.click("pin.accept");
+    }
+    ASSERT_TRUE(eventually([&] { return window.window().isFullScreen(); }));
+    EXPECT_TRUE(layer().handShown());
+    QTest::mouseClick(&eye(), Qt::LeftButton, {}, QPoint(eye().width() - 40, eye().height() / 2));
+    EXPECT_TRUE(eventually([&] { return !layer().handShown(); })) << "a press plays, too";
+    QTest::keyClick(&eye(), Qt::Key_N);
+    EXPECT_TRUE(eventually([&] { return layer().captionTitle() == "2  Mind the holes"; }));
+    QTest::keyClick(&window.window(), Qt::Key_F1);
+    EXPECT_TRUE(layer().helpShown());
+    EXPECT_EQ(window.findNow<QWidget>("guide"), nullptr);
+    picture("kiosk-help");
+    window.click("visitors.help");
+    EXPECT_FALSE(layer().helpShown());
+
+    window.click("visitors.cards");
+    ASSERT_NE(window.find<QWidget>("applications"), nullptr);
+    EXPECT_EQ(window.findNow<QWidget>("applications.tour"), nullptr) << "that is the host's";
+    window.screenshot("kiosk-applications");
+    window.click("applications.techniques");
+    ASSERT_TRUE(eventually([&] { return shows("techniques"); }, 30s));
+    EXPECT_TRUE(window.window().isFullScreen());
+    picture("kiosk-techniques");
+
+    studio().settings.setNextMinutes(true, 0.04); // 2.4 s
+    moveOver(0.8, 0.5);
+    pass(3500ms);
+    EXPECT_TRUE(shows("techniques")) << "somebody plays";
+    QTest::keyClick(&eye(), Qt::Key_A);
+    const std::string next = studio::applicationAfter("techniques")->name;
+    EXPECT_TRUE(eventually([&] { return shows(next); }, 30s)) << "nobody came";
+}
+
+} // namespace
+} // namespace lumorph::test
