@@ -12,8 +12,8 @@
 namespace lumorph::ambient {
 namespace {
 
-constexpr double kCloudHeight = 0.104;       ///< metres
-constexpr glm::dvec2 kCloudRoom{0.30, 0.21}; ///< metres in x and z; who leaves it comes back on the other side
+constexpr double kCloudHeight = 0.084;       ///< metres
+constexpr glm::dvec2 kCloudRoom{0.27, 0.19}; ///< metres in x and z; who leaves it comes back on the other side
 constexpr double kFallRoom = 0.060;          ///< metres through which rain and snow fall
 constexpr double kRainSpeed = 0.30, kFlakeSpeed = 0.026; ///< metres a second
 
@@ -62,8 +62,8 @@ void showClouds(Scene& scene, const View& view) {
         item.visible = seen > 0.03;
         const glm::dvec2 place = at * kCloudRoom;
         item.position = {glm::dvec3(place.x, kCloudHeight + 0.003 * (k % 3), place.y)};
-        item.scale = glm::vec3(static_cast<float>(0.75 + 0.45 * share) * (k % 2 == 0 ? 1.0F : 0.85F));
-        item.opacity = static_cast<float>(seen * (0.72 + 0.2 * dark));
+        item.scale = glm::vec3(static_cast<float>(0.50 + 0.30 * share) * (k % 2 == 0 ? 1.0F : 0.80F));
+        item.opacity = static_cast<float>(seen * 0.96);
         item.material.color = color;
         // Lit from inside by lightning.
         item.material.emission = {0.75F, 0.80F, 1.0F};

@@ -198,7 +198,10 @@ Demo ambientDemo() {
                 return readContents(std::move(project), {}, progress);
             },
             [] { return std::vector<DemoStep>(); },
-            [](std::uint64_t seed) -> std::unique_ptr<ShowProgram> { return std::make_unique<AmbientProgram>(seed); }};
+            [](std::uint64_t seed) -> std::unique_ptr<ShowProgram> { return std::make_unique<AmbientProgram>(seed); },
+            [](std::uint64_t seed, const DemoSettings& settings) -> std::unique_ptr<ShowProgram> {
+                return std::make_unique<AmbientProgram>(seed, settingsFrom(settings));
+            }};
 }
 
 } // namespace lumorph::ambient

@@ -11,8 +11,8 @@
 namespace lumorph::ambient {
 namespace {
 
-constexpr double kRowZ = -0.094, kRowY = 0.060; ///< metres: behind the far rim, over it
-constexpr double kRowLeft = -0.098, kRowRight = 0.104;
+constexpr double kRowZ = -0.071, kRowY = 0.052; ///< metres: over the far rim
+constexpr double kRowLeft = -0.050, kRowRight = 0.108;
 constexpr double kMostFall = 0.020; ///< length of what falls, metres
 
 int idOf(int hour, int part) { return kFirstComing + 3 * hour + part; }

@@ -2,7 +2,9 @@
 
 #include <array>
 #include <charconv>
+#include <chrono>
 #include <cmath>
+#include <cstdio>
 #include <string>
 
 #include "core/base/error.h"
@@ -54,6 +56,16 @@ Place placeFrom(std::string_view text) {
     const Place place{latitude, longitude, kHour * (count == 3 ? hours : std::round(longitude / 15.0))};
     checkPlace(place);
     return place;
+}
+
+std::optional<double> timeFrom(const std::string& text, double utcOffset) {
+    int year = 0, used = 0;
+    unsigned month = 0, day = 0, hour = 0, minute = 0;
+    if (std::sscanf(text.c_str(), "%4d-%2u-%2uT%2u:%2u%n", &year, &month, &day, &hour, &minute, &used) != 5) return {};
+    const std::chrono::year_month_day date{std::chrono::year(year), std::chrono::month(month), std::chrono::day(day)};
+    if (static_cast<std::size_t>(used) != text.size() || !date.ok() || hour > 23 || minute > 59) return {};
+    const auto days = static_cast<double>(std::chrono::sys_days(date).time_since_epoch().count());
+    return kDay * days + kHour * hour + 60.0 * minute - utcOffset;
 }
 
 double localMidnight(const Place& place, double utc) noexcept {

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <optional>
+#include <string>
 #include <string_view>
 
 #include <glm/vec2.hpp>
@@ -26,6 +28,9 @@ void checkPlace(const Place& place);
 [[nodiscard]] double localHour(const Place& place, double utc) noexcept;
 /// When the day of a time began.
 [[nodiscard]] double localMidnight(const Place& place, double utc) noexcept;
+
+/// A local time as 2026-05-17T14:00 in seconds since 1970 UTC; nothing for another form.
+[[nodiscard]] std::optional<double> timeFrom(const std::string& text, double utcOffset);
 
 /// A compass bearing (radians, clockwise from north) as a direction in x and z of the device: whoever stands before it
 /// looks towards the noon sun, as through a window: south in the north, and north in the south.

@@ -163,13 +163,13 @@ constexpr std::array<glm::dvec3, 13> kTrees{{// x, z and height
                                              {-0.0975, -0.0520, 0.0130},
                                              {-0.0800, -0.0665, 0.0140},
                                              {-0.0890, -0.0570, 0.0170},
-                                             {-0.0720, -0.0690, 0.0110},
+                                             {-0.0770, -0.0715, 0.0110},
                                              {-0.1000, -0.0410, 0.0105},
                                              {-0.0800, -0.0560, 0.0120},
                                              {-0.0985, 0.0050, 0.0110},
                                              {-0.0915, 0.0110, 0.0135},
                                              {-0.0995, 0.0165, 0.0095},
-                                             {-0.0640, -0.0650, 0.0090},
+                                             {-0.0730, -0.0600, 0.0090},
                                              {-0.0965, -0.0300, 0.0090}}};
 
 void addTrees(Scene& scene, SceneAssets& assets) {
@@ -206,7 +206,7 @@ void addStones(Scene& scene) {
 glm::vec3 colorOfTemperature(double celsius) {
     const glm::vec3 cold(0.16F, 0.38F, 0.95F), mild(0.95F, 0.92F, 0.80F), hot(0.98F, 0.28F, 0.10F);
     return celsius < 10.0 ? glm::mix(cold, mild, static_cast<float>(rise(-8.0, 10.0, celsius)))
-                          : glm::mix(mild, hot, static_cast<float>(rise(10.0, 32.0, celsius)));
+                          : glm::mix(mild, hot, static_cast<float>(rise(10.0, 36.0, celsius)));
 }
 
 void showStones(Scene& scene, const View& view) {

@@ -89,6 +89,7 @@ void showSea(Scene& scene, const View& view) {
     const auto grey = static_cast<float>(rise(0.4, 1.0, view.weather.cloudCover));
     const glm::vec3 fair(0.050F, 0.385F, 0.510F), dull(0.13F, 0.30F, 0.35F), stormy(0.09F, 0.22F, 0.26F);
     sea.material.color = glm::mix(glm::mix(fair, dull, 0.8F * grey), stormy, rough);
+    sea.material.roughness = 0.08F + 0.24F * grey; // no glitter without a sun
     sea.material.normalStrength = 0.22F + 0.40F * rough;
     const double foamy = rise(5.0, 19.0, view.sea.wind);
     SceneItem& foam = itemOf(scene, kFoam);

@@ -1,9 +1,7 @@
 #include "app/applications/ambient/weather_file.h"
 
 #include <array>
-#include <chrono>
 #include <cmath>
-#include <cstdio>
 #include <numbers>
 #include <utility>
 #include <vector>
@@ -105,27 +103,18 @@ std::string placeOf(const char* key, std::size_t k) {
     return std::string("hourly.") + key + "[" + std::to_string(k) + "]";
 }
 
-double localSeconds(const Reader& reader, const json& value, std::size_t k) {
-    int year = 0;
-    unsigned month = 0, day = 0, hour = 0, minute = 0;
-    int used = 0;
-    const std::string text = value.is_string() ? value.get<std::string>() : std::string();
-    const bool read =
-        std::sscanf(text.c_str(), "%4d-%2u-%2uT%2u:%2u%n", &year, &month, &day, &hour, &minute, &used) == 5;
-    const std::chrono::year_month_day date{std::chrono::year(year), std::chrono::month(month), std::chrono::day(day)};
-    if (!read || static_cast<std::size_t>(used) != text.size() || !date.ok() || hour > 23 || minute > 59)
-        reader.refuse(placeOf("time", k) + " is no time", "write it as 2026-05-17T14:00");
-    const auto days = static_cast<double>(std::chrono::sys_days(date).time_since_epoch().count());
-    return 86'400.0 * days + kSecondsOfHour * hour + 60.0 * minute;
-}
-
 /// When the first hour is, UTC; the others follow one after another.
 double beginOf(const Reader& reader, const json& times, double utcOffset) {
     if (times.empty()) reader.refuse("hourly.time is empty");
     if (times.size() > Weather::kMostHours) reader.refuse("has too many hours", "ask for fewer days");
     const bool unix = reader.unitOf("time", "iso8601") == "unixtime";
     const auto at = [&](std::size_t k) {
-        if (!unix) return localSeconds(reader, times[k], k) - utcOffset;
+        if (!unix) {
+            const std::string text = times[k].is_string() ? times[k].get<std::string>() : std::string();
+            const std::optional<double> time = timeFrom(text, utcOffset);
+            if (!time) reader.refuse(placeOf("time", k) + " is no time", "write it as 2026-05-17T14:00");
+            return *time;
+        }
         if (!times[k].is_number() || std::abs(times[k].get<double>()) > 1e11)
             reader.refuse(placeOf("time", k) + " is no time", "write seconds since 1970");
         return times[k].get<double>();
