@@ -81,7 +81,7 @@ enum SceneryItem : int {
 inline constexpr int kFogs = 2, kClouds = 7, kStones = 24, kRings = 22, kRainLayers = 4, kFlakeLayers = 5;
 
 /// Heights over the device's ground plane, metres.
-inline constexpr double kSeaLevel = 0.038;
+inline constexpr double kSeaLevel = 0.032;
 /// The land at a place, x and z of the device; below the sea it goes on as its bed.
 [[nodiscard]] double landHeight(const glm::dvec2& place) noexcept;
 /// Where the lighthouse stands, whose shadow falls on the stone of the hour.

@@ -15,8 +15,8 @@ namespace lumorph::ambient {
 namespace {
 
 constexpr glm::vec2 kLandMin{-0.105F, -0.075F}, kLandMax{0.046F, 0.062F}; ///< x and z, metres
-constexpr double kPlateau = 0.0270;                                       ///< over the sheet, metres
-constexpr double kBed = -0.004;                                           ///< likewise
+constexpr double kPlateau = 0.0212;                                       ///< over the sheet, metres
+constexpr double kBed = -0.0065;                                          ///< likewise
 constexpr double kTowerHeight = 0.0330;
 
 glm::vec3 onLand(const glm::dvec2& place, double over = 0.0) {

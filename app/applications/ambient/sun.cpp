@@ -3,9 +3,12 @@
 #include <cmath>
 #include <numbers>
 
+#include <libnova/aberration.h>
 #include <libnova/dynamical_time.h>
 #include <libnova/ln_types.h>
 #include <libnova/lunar.h>
+#include <libnova/nutation.h>
+#include <libnova/precession.h>
 #include <libnova/solar.h>
 #include <libnova/transform.h>
 
@@ -30,6 +33,13 @@ SkyPosition seenFrom(const Place& place, double julian, ln_equ_posn& equatorial)
     return {std::fmod(horizontal.az + 180.0, 360.0) * kRadiansADegree, horizontal.alt * kRadiansADegree};
 }
 
+/// libnova keeps the nutation of a time nearby for the next question; a time shall give the same place whatever was
+/// asked before.
+void forgetOtherTimes() {
+    ln_nutation nutation{};
+    ln_get_nutation(0.0, &nutation);
+}
+
 /// Where the sun crosses the horizon between two times, one of which is before and one after.
 double crossing(const Place& place, double from, double to) {
     const bool up = sunAt(place, from).elevation < kHorizon;
@@ -44,18 +54,24 @@ double crossing(const Place& place, double from, double to) {
 
 const double kHorizon = -0.833 * kRadiansADegree;
 
+/// libnova 0.16 gives sun and moon for the equinox of 2000, whatever its headers say.
 SkyPosition sunAt(const Place& place, double utc) {
-    ln_equ_posn equatorial{};
+    forgetOtherTimes();
+    ln_equ_posn of2000{}, ofDate{}, apparent{};
     const double julian = julianOf(utc);
-    ln_get_solar_equ_coords(ln_get_jde(julian), &equatorial);
-    return seenFrom(place, julian, equatorial);
+    ln_get_solar_equ_coords(ln_get_jde(julian), &of2000);
+    ln_get_equ_prec(&of2000, julian, &ofDate);
+    ln_get_equ_aber(&ofDate, julian, &apparent);
+    return seenFrom(place, julian, apparent);
 }
 
 Moon moonAt(const Place& place, double utc) {
-    ln_equ_posn equatorial{};
+    forgetOtherTimes();
+    ln_equ_posn of2000{}, ofDate{};
     const double julian = julianOf(utc);
-    ln_get_lunar_equ_coords_prec(ln_get_jde(julian), &equatorial, kMoonPrecision);
-    Moon moon{seenFrom(place, julian, equatorial), ln_get_lunar_disk(julian)};
+    ln_get_lunar_equ_coords_prec(ln_get_jde(julian), &of2000, kMoonPrecision);
+    ln_get_equ_prec(&of2000, julian, &ofDate);
+    Moon moon{seenFrom(place, julian, ofDate), ln_get_lunar_disk(julian)};
     // It is near: from the surface it stands lower than from the middle of the earth.
     moon.position.elevation -= std::cos(moon.position.elevation) / kEarthRadii;
     return moon;

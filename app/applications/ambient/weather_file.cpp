@@ -191,7 +191,6 @@ Forecast readForecast(std::string_view text, const std::string& name) {
     if (const std::string problem = jsonProblem(text); !problem.empty()) throw DataError(name, problem, kAskAgain);
     const json root = json::parse(text, nullptr, false);
     const Reader reader(root, name);
-    if (root.is_discarded()) reader.refuse("is not JSON: NaN and unfinished texts are none");
     if (!root.is_object()) reader.refuse("is not a JSON object");
     if (root.contains("error")) {
         const bool says = root.contains("reason") && root.at("reason").is_string();

@@ -123,7 +123,7 @@ double literalCrossing(double latitude, double longitude, double midnight, bool 
 }
 
 TEST(AmbientSun, RisesAndSetsWithinAMinuteOverAYear) {
-    const Place places[] = {{52.52, 13.405, 3600.0}, {-33.87, 151.21, 36'000.0}, {64.15, -21.94, 0.0}};
+    const Place places[] = {{52.52, 13.405, 3600.0}, {-33.87, 151.21, 36'000.0}, {60.17, 24.94, 7200.0}};
     double worst = 0.0;
     for (const Place& place : places) {
         for (int day = 0; day < 365; day += 3) {
@@ -140,6 +140,17 @@ TEST(AmbientSun, RisesAndSetsWithinAMinuteOverAYear) {
     }
     RecordProperty("worstSeconds", std::to_string(worst));
     EXPECT_LT(worst, 30.0);
+}
+
+TEST(AmbientSun, IsTheSameWhateverWasAskedBefore) {
+    const Place berlin;
+    const double noon = utcOf(2026, 5, 17, 11.0);
+    const SkyPosition first = sunAt(berlin, noon);
+    const Moon moon = moonAt(berlin, noon);
+    (void)sunAt(berlin, noon + 4000.0);
+    EXPECT_EQ(sunAt(berlin, noon).azimuth, first.azimuth);
+    (void)sunAt(berlin, noon - 4000.0);
+    EXPECT_EQ(moonAt(berlin, noon).position.elevation, moon.position.elevation);
 }
 
 TEST(AmbientSun, NeitherRisesNorSetsInThePolarNightAndDay) {
