@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <string>
 #include <vector>
@@ -20,6 +21,10 @@ struct DemoStep {
     Scene without; ///< the same without what it is to show, to compare
 };
 
+/// What an application may be told before it begins, by name, as text: `weather` a file, `place` "LAT,LON", `begin` a
+/// time, `day` seconds, `anticipation` seconds. Those it does not know it refuses.
+using DemoSettings = std::map<std::string, std::string>;
+
 /// A demonstration, as those who offer it know it: the window, the command line, tests. What it is made of stays in its
 /// own folder.
 struct Demo {
@@ -37,6 +42,9 @@ struct Demo {
     /// An application that answers what happens, in place of the scene of `open`; none: it goes by time alone. The same
     /// seed and inputs give the same show. Throws DataError where a resource is missing.
     std::unique_ptr<ShowProgram> (*program)(std::uint64_t seed) = nullptr;
+    /// The same with settings; none: it takes none. Throws InvalidInput for a setting that is wrong or not known, and
+    /// DataError for a file that is.
+    std::unique_ptr<ShowProgram> (*configured)(std::uint64_t seed, const DemoSettings& settings) = nullptr;
 };
 
 /// A demonstration whose scene is a bundled project: `projects/NAME.lumorph`.

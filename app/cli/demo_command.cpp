@@ -26,6 +26,21 @@ struct DemoOptions {
     std::string record, picture, inputs;
 };
 
+/// What `ambient` may be told: --NAME VALUE each.
+constexpr std::pair<const char*, const char*> kSettings[] = {
+    {"weather", "Without a window, of ambient: a forecast in Open-Meteo's JSON"},
+    {"place", "Without a window, of ambient: LAT,LON or LAT,LON,HOURS ahead of UTC"},
+    {"begin", "Without a window, of ambient: its first time, 2026-05-17T14:00 at the place"},
+    {"day", "Without a window, of ambient: seconds that a day takes; 86400 is the world's own time"},
+    {"anticipation", "Without a window, of ambient: seconds by which light is ahead of the servos"}};
+
+void addSettings(CLI::App& command, DemoSettings& settings) {
+    for (const auto& [name, help] : kSettings)
+        command.add_option_function<std::string>(
+            std::string("--") + name,
+            [&settings, key = std::string(name)](const std::string& value) { settings[key] = value; }, help);
+}
+
 /// Replaces this process by `lumorph-studio`, which lies beside it: only it has a window.
 void showInWindow(const Demo& demo) {
     std::error_code error;
@@ -82,6 +97,7 @@ void addDemoCommand(CLI::App& app) {
         command->add_option("--seed", options->play.seed, "Without a window: of an application's chance")
             ->capture_default_str();
     command->add_flag("--json", options->play.json, "Without a window: print its rates as one JSON value");
+    addSettings(*command, options->play.settings);
     CLI::App* own = addNew(*command);
     command->callback([options, seconds, record, picture, inputs, seed, own] {
         if (own->parsed()) return;
@@ -92,7 +108,8 @@ void addDemoCommand(CLI::App& app) {
         options->play.video = options->record;
         options->play.last = options->picture;
         options->play.inputs = options->inputs;
-        if (*seconds || *record || *picture || *inputs || *seed || options->play.json)
+        if (*seconds || *record || *picture || *inputs || *seed || options->play.json ||
+            !options->play.settings.empty())
             playDemo(demo, options->play, std::cout);
         else
             showInWindow(demo);

@@ -171,7 +171,14 @@ ShowScript scriptOf(const Demo& demo, const DemoPlay& play) {
             throw InvalidInput("--input", "the demo '" + demo.name + "' goes by time alone", "leave it out");
         script.inputs = readInputScriptFile(play.inputs);
     }
-    if (demo.program) script.program = demo.program(play.seed);
+    if (!play.settings.empty()) {
+        if (!demo.configured)
+            throw InvalidInput("--" + play.settings.begin()->first, "the demo '" + demo.name + "' has no such setting",
+                               "leave it out");
+        script.program = demo.configured(play.seed, play.settings);
+    } else if (demo.program) {
+        script.program = demo.program(play.seed);
+    }
     return script;
 }
 

@@ -53,10 +53,12 @@ struct DemoPlay {
     std::filesystem::path last;   ///< its last picture, .png; empty: none
     std::filesystem::path inputs; ///< as `readInputScript` reads them; empty: none
     std::uint64_t seed = 1;       ///< of an application
+    DemoSettings settings;        ///< likewise
     bool json = false;            ///< its rates as JSON
 };
 
-/// Plays a demonstration and tells its rates on `out`. Throws InvalidInput for inputs of one that takes none, and as
+/// Plays a demonstration and tells its rates on `out`. Throws InvalidInput for inputs or settings of one that takes
+/// none, and as
 /// `Demo::open`, `Demo::program`, `readInputScript` and `playShow` do.
 void playDemo(const Demo& demo, const DemoPlay& play, std::ostream& out);
 

@@ -12,15 +12,16 @@ namespace {
 
 constexpr double kShareOfStroke = 0.5; ///< of the time for a whole stroke
 
-double lagOf(const std::vector<double>& speeds) {
-    if (speeds.empty()) return CausalSplit::kMostLag;
-    return std::min(kShareOfStroke / std::ranges::min(speeds), CausalSplit::kMostLag);
-}
-
 } // namespace
 
+double causalLag(const Rig& rig) noexcept {
+    double lag = rig.actuatorCount() > 0 ? 0.0 : CausalSplit::kMostLag;
+    for (const Actuator& actuator : rig.actuators()) lag = std::max(lag, kShareOfStroke / actuator.maxVelocity);
+    return std::min(lag, CausalSplit::kMostLag);
+}
+
 struct CausalSplit::Data {
-    Data(const Rig& rig, double spacing) : fit(rig, spacing), lag(lagOf(fit.speeds())) {}
+    Data(const Rig& rig, double spacing) : fit(rig, spacing), lag(causalLag(rig)) {}
 
     void begin(std::span<const float> heights);
     void pass(std::span<const float> heights, double seconds);

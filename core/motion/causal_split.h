@@ -58,4 +58,7 @@ private:
     std::unique_ptr<Data> data_;
 };
 
+/// The lag that a rig's actuators give it, seconds: who knows the wish ahead can wish so much earlier.
+[[nodiscard]] double causalLag(const Rig& rig) noexcept;
+
 } // namespace lumorph

@@ -43,7 +43,7 @@ struct Line {
 HeightSurface::HeightSurface(const HeightItem& item, std::shared_ptr<const Image> image)
     : item_(item), image_(std::move(image)), quads_(quadsAlong(item.size.x), quadsAlong(item.size.y)),
       xs_(steps(item.size.x, quads_.x)), zs_(steps(item.size.y, quads_.y)) {
-    still_ = std::ranges::none_of(item.waves, [](const Wave& w) { return w.period > 0.0 && w.amplitude != 0.0; });
+    setWaves(item.waves);
     for (const float z : zs_) {
         for (const float x : xs_) {
             if (item.calmEdge > 0.0) calm_.push_back(calmness(item, {x, z}));
@@ -54,6 +54,11 @@ HeightSurface::HeightSurface(const HeightItem& item, std::shared_ptr<const Image
     addTop(topology);
     addWalls(topology);
     topology_ = std::make_shared<const SurfaceTopology>(std::move(topology));
+}
+
+void HeightSurface::setWaves(const std::vector<Wave>& waves) {
+    item_.waves = waves;
+    still_ = std::ranges::none_of(waves, [](const Wave& w) { return w.period > 0.0 && w.amplitude != 0.0; });
 }
 
 void HeightSurface::addTop(SurfaceTopology& topology) const {

@@ -45,6 +45,8 @@ class HeightSurface {
 public:
     HeightSurface(const HeightItem& item, std::shared_ptr<const Image> image);
     [[nodiscard]] ItemSurface at(double seconds) const;
+    /// Other waves over the same grid: costs no new one, so that a program may change them each frame.
+    void setWaves(const std::vector<Wave>& waves);
     [[nodiscard]] const HeightItem& item() const noexcept { return item_; }
     [[nodiscard]] const std::shared_ptr<const Image>& image() const noexcept { return image_; }
     /// Whether no time changes it.

@@ -67,12 +67,20 @@ const ItemSurface& shapeOf(Kept& kept, const ShapeItem& shape) {
     return std::get<KeptShape>(kept).surface;
 }
 
+bool sameButForWaves(const HeightItem& a, const HeightItem& b) {
+    return a.size == b.size && a.image == b.image && a.imageHeight == b.imageHeight && a.floor == b.floor &&
+           a.calmEdge == b.calmEdge;
+}
+
+/// The grid is kept where only the waves are others: a program may change them each frame.
 const ItemSurface& heightsOf(Kept& kept, const HeightItem& item, const std::shared_ptr<const Image>& image,
                              double seconds) {
     auto* known = std::get_if<KeptHeights>(&kept);
-    const bool same = known && known->heights.item() == item && known->heights.image() == image;
-    if (same && known->heights.still()) return known->surface;
-    if (!same) known = &kept.emplace<KeptHeights>(KeptHeights{HeightSurface(item, image), {}});
+    if (!known || known->heights.image() != image || !sameButForWaves(known->heights.item(), item))
+        known = &kept.emplace<KeptHeights>(KeptHeights{HeightSurface(item, image), {}});
+    const bool sameWaves = known->heights.item().waves == item.waves;
+    if (sameWaves && known->heights.still() && known->surface.positions) return known->surface;
+    if (!sameWaves) known->heights.setWaves(item.waves);
     known->surface = known->heights.at(seconds);
     return known->surface;
 }

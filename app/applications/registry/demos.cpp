@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <vector>
 
+#include "app/applications/ambient/ambient.h"
 #include "app/applications/field/field_demo.h"
 #include "app/applications/labyrinth/labyrinth.h"
 #include "app/applications/techniques/techniques.h"
@@ -12,7 +13,8 @@
 namespace lumorph {
 
 std::span<const Demo> demos() {
-    static const std::vector<Demo> all{waterDemo(), techniquesDemo(), fieldDemo(), labyrinth::labyrinthDemo()};
+    static const std::vector<Demo> all{waterDemo(), techniquesDemo(), fieldDemo(), labyrinth::labyrinthDemo(),
+                                        ambient::ambientDemo()};
     return all;
 }
 

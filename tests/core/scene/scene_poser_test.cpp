@@ -293,6 +293,33 @@ TEST(ScenePoser, WhatDoesNotDeformStaysTheSameObject) {
     EXPECT_NE(poser.pose(scene, {}, input).surfaces[0].positions, second.surfaces[0].positions);
 }
 
+// A program that changes its waves each frame pays for heights, not for a grid.
+TEST(ScenePoser, OtherWavesKeepTheGridAndAnotherRectangleDoesNot) {
+    HeightItem item = sea();
+    for (Wave& wave : item.waves) wave.period = 0.0; // its phases say where they are
+    item.calmEdge = 0.01;
+    Scene scene = sceneOf({itemOf(1, item)});
+    ScenePoser poser;
+    const PosedScene first = poser.pose(scene, {}, {});
+    auto& heights = std::get<HeightItem>(scene.items[0].kind);
+    heights.waves[0].phase = Angle::degrees(170.0);
+    heights.waves[1].amplitude = 0.003;
+    heights.waves.push_back({0.001, 0.04, 0.0, {}, {}});
+    const PosedScene second = poser.pose(scene, {}, {});
+    EXPECT_EQ(first.surfaces[0].topology, second.surfaces[0].topology);
+    EXPECT_NE(first.surfaces[0].positions, second.surfaces[0].positions);
+    const PosedScene fresh = posed(scene);
+    EXPECT_EQ(*second.surfaces[0].positions, *fresh.surfaces[0].positions) << "as of one that never was another";
+    EXPECT_EQ(*second.surfaces[0].normals, *fresh.surfaces[0].normals);
+    EXPECT_EQ(poser.pose(scene, {}, {}).surfaces[0].positions, second.surfaces[0].positions) << "the same waves rest";
+    heights.waves[0].period = 2.0;
+    PoseInput later;
+    later.seconds = 0.5;
+    EXPECT_NE(*poser.pose(scene, {}, later).surfaces[0].positions, *second.surfaces[0].positions) << "they travel again";
+    heights.calmEdge = 0.02;
+    EXPECT_NE(poser.pose(scene, {}, later).surfaces[0].topology, second.surfaces[0].topology);
+}
+
 TEST(ScenePoser, LightsShineFromWhereTheyStand) {
     SceneItem sun = itemOf(1, LightItem{LightItem::Kind::sun, {1.0F, 0.5F, 0.0F}, 2.0, 0.1, true});
     sun.position = {0.0F, 3.0F, 4.0F};

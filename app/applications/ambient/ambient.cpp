@@ -1,0 +1,207 @@
+#include "app/applications/ambient/ambient.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <string>
+#include <utility>
+
+#include <glm/geometric.hpp>
+
+#include "app/applications/ambient/simulated_year.h"
+#include "app/applications/demo_items.h"
+#include "core/base/error.h"
+#include "core/motion/causal_split.h"
+
+namespace lumorph::ambient {
+namespace {
+
+constexpr glm::dvec2 kHalf{0.105, 0.075}; ///< of the tablet, metres
+constexpr double kFirstHour = 8.0;        ///< of the day with which a show begins
+constexpr double kWindSettles = 1.2;      ///< seconds until light shows the wind of another hour, by a factor of e
+constexpr double kCarriedByWind = 0.0022; ///< speed of clouds for each metre a second of wind
+constexpr double kFogByWind = 0.0070;     ///< likewise of fog, which is near
+constexpr double kFogLife = 14.0;         ///< seconds that a bank of fog is seen
+constexpr double kMoonMoves = 600.0;      ///< seconds of the world after which the moon is looked for again
+constexpr double kBoltsASecond = 0.35;    ///< in a thunderstorm
+constexpr double kFlashSeconds = 0.75;
+constexpr double kThunderAfter = 0.6; ///< seconds after its bolt
+
+AmbientSettings complete(AmbientSettings settings, std::uint64_t seed) {
+    checkPlace(settings.place);
+    if (!(settings.daySeconds >= 1.0 && settings.daySeconds <= 86'400.0))
+        throw InvalidInput("length of a day", "is not 1 to 86400 seconds", "correct it");
+    if (!settings.weather) settings.weather = std::make_shared<const Weather>(simulatedYear(settings.place, seed));
+    return settings;
+}
+
+/// Two flickers.
+double flashAt(double seconds) {
+    const auto flicker = [](double t) { return t < 0.0 ? 0.0 : std::exp(-t / 0.09); };
+    return std::min(1.0, flicker(seconds) + 0.8 * flicker(seconds - 0.17));
+}
+
+glm::dvec2 placeAt(const HeightGrid& grid, int column, int row) {
+    return {std::lerp(grid.min.x, grid.max.x, static_cast<double>(column) / (grid.columns - 1)),
+            std::lerp(grid.min.y, grid.max.y, static_cast<double>(row) / (grid.rows - 1))};
+}
+
+} // namespace
+
+HeightGrid landGrid() {
+    HeightGrid grid{-kHalf, kHalf, 29, 21, {}};
+    for (int j = 0; j < grid.rows; ++j)
+        for (int i = 0; i < grid.columns; ++i)
+            grid.heights.push_back(static_cast<float>(landHeight(placeAt(grid, i, j))));
+    return grid;
+}
+
+AmbientProgram::AmbientProgram(std::uint64_t seed, AmbientSettings settings)
+    : settings_(complete(std::move(settings), seed)), sea_(seed), anticipation_(settings_.anticipation),
+      land_(landGrid()), chance_(seed) {
+    const std::vector<double> days = notableDays(*settings_.weather, settings_.place);
+    const double begin =
+        settings_.begin.value_or(std::max(settings_.weather->begin(), days.front() + 3600.0 * kFirstHour));
+    clock_.emplace(settings_.place, days, begin, settings_.daySeconds);
+    view_.place = settings_.place;
+    view_.sea = {settings_.weather->at(begin).windSpeed, {1.0, 0.0}};
+    view_.sea.towards = onDevice(settings_.place, settings_.weather->at(begin).windFrom + std::numbers::pi);
+}
+
+ShowContent AmbientProgram::frame(const ShowMoment& moment) {
+    visitor_.take(moment);
+    clock_->advance(moment.step, visitor_);
+    view_.seconds = moment.seconds;
+    view_.utc = clock_->utc();
+    view_.touched.reset();
+    if (visitor_.there() && visitor_.pointer()) view_.touched = *visitor_.pointer() * kHalf;
+    lookUp();
+    lookAhead();
+    blow(moment.step);
+    turnFog(moment.step);
+    thunder(moment.step);
+    anticipation_.note(view_.seconds, view_.sea);
+    followed_ = anticipation_.followed();
+
+    ShowContent content;
+    content.scene = scenery_.show(view_);
+    content.assets = scenery_.assets();
+    content.target = wish(causalLag(*moment.rig));
+    content.following = Following::split;
+    content.sounds = sounds();
+    return content;
+}
+
+/// Weather, sun and moon now, and the hours of the day at hand.
+void AmbientProgram::lookUp() {
+    view_.weather = settings_.weather->at(view_.utc);
+    view_.snowLying = settings_.weather->snowLying(view_.utc);
+    view_.sun = sunAt(settings_.place, view_.utc);
+    if (std::abs(view_.utc - moonSeen_) > kMoonMoves) {
+        moonSeen_ = view_.utc;
+        view_.moon = moonAt(settings_.place, view_.utc);
+    }
+    const double midnight = localMidnight(settings_.place, view_.utc);
+    if (midnight == day_) return;
+    day_ = midnight;
+    for (std::size_t k = 0; k < view_.dayHours.size(); ++k) {
+        const double then = midnight + 3600.0 * static_cast<double>(k);
+        view_.dayHours[k] = sunAt(settings_.place, then);
+        view_.dayTemperatures[k] = settings_.weather->at(then).temperature;
+    }
+}
+
+/// The next whole hours.
+void AmbientProgram::lookAhead() {
+    const double hour = 3600.0 * std::floor(view_.utc / 3600.0);
+    for (std::size_t k = 0; k < view_.coming.size(); ++k) {
+        const double then = hour + 3600.0 * static_cast<double>(k + 1);
+        View::Coming& coming = view_.coming[k];
+        coming.ahead = (then - view_.utc) / 3600.0;
+        if (hour == hour_) continue;
+        coming.weather = settings_.weather->at(then);
+        coming.day = sunAt(settings_.place, then).elevation > kHorizon;
+    }
+    hour_ = hour;
+}
+
+/// Light's sea goes after the wind; clouds go with it.
+void AmbientProgram::blow(double step) {
+    const SeaState wind{view_.weather.windSpeed, onDevice(settings_.place, view_.weather.windFrom + std::numbers::pi)};
+    view_.sea = between(view_.sea, wind, 1.0 - std::exp(-step / kWindSettles));
+    view_.waves = sea_.waves(view_.sea, view_.seconds);
+    view_.drifted += view_.sea.towards * (kCarriedByWind * (1.5 + view_.sea.wind) * step);
+}
+
+/// Each bank keeps the drift with which it began, for what drifts at another speed would jump.
+void AmbientProgram::turnFog(double step) {
+    for (std::size_t k = 0; k < view_.fog.size(); ++k) {
+        const double lives = view_.seconds / kFogLife + 0.5 * static_cast<double>(k);
+        const double before = (view_.seconds - step) / kFogLife + 0.5 * static_cast<double>(k);
+        if (step == 0.0 || std::floor(lives) > std::floor(before))
+            view_.fog[k].drift = view_.sea.towards * (kFogByWind * (0.5 + view_.sea.wind));
+        const double up = std::sin(std::numbers::pi * (lives - std::floor(lives)));
+        view_.fog[k].share = up * up;
+    }
+}
+
+void AmbientProgram::thunder(double step) {
+    const auto share = [&] { return static_cast<double>(chance_() >> 11U) * 0x1p-53; };
+    const double before = flashed_.value_or(kFlashSeconds);
+    if (flashed_) *flashed_ += step;
+    rumbles_ = flashed_ && before < kThunderAfter && *flashed_ >= kThunderAfter;
+    if (flashed_ && *flashed_ > kFlashSeconds) flashed_.reset();
+    if (!flashed_ && share() < kBoltsASecond * view_.weather.thunder * step) {
+        flashed_ = 0.0;
+        strength_ = 0.4 + 0.6 * share();
+        view_.struck = {std::lerp(0.010, 0.098, share()), std::lerp(-0.068, 0.030, share())};
+    }
+    view_.lightning = flashed_ ? flashAt(*flashed_) : 0.0;
+}
+
+HeightGrid AmbientProgram::wish(double lag) const {
+    HeightGrid grid = land_;
+    const std::vector<Wave> waves = sea_.slowWaves(followed_, view_.seconds, lag);
+    for (int j = 0; j < grid.rows; ++j) {
+        for (int i = 0; i < grid.columns; ++i) {
+            float& height = grid.heights[static_cast<std::size_t>(j * grid.columns + i)];
+            height = std::max(height, static_cast<float>(kSeaLevel + heightOf(waves, placeAt(grid, i, j))));
+        }
+    }
+    return grid;
+}
+
+std::vector<ShowSound> AmbientProgram::sounds() const {
+    constexpr double kGale = 18.0, kDownpour = 8.0; // that sound loudest: metres a second, mm an hour
+    const glm::vec3 overSea(0.05F, static_cast<float>(kSeaLevel), 0.02F);
+    std::vector<ShowSound> sounds;
+    sounds.push_back({"ambient.wind", std::min(1.0, view_.sea.wind / kGale), overSea});
+    sounds.push_back({"ambient.wave", Sea::significantHeight(view_.sea.wind) / Sea::kMostHeight, overSea});
+    if (view_.weather.rain > 0.0)
+        sounds.push_back({"ambient.rain", std::min(1.0, view_.weather.rain / kDownpour), overSea});
+    if (rumbles_) {
+        const glm::dvec2& at = view_.struck;
+        sounds.push_back({"ambient.thunder", strength_, glm::vec3(glm::dvec3(at.x, kSeaLevel, at.y))});
+    }
+    return sounds;
+}
+
+Demo ambientDemo() {
+    return {"ambient",
+            "A coast that tells time and weather",
+            "The lighthouse's shadow tells the hour, the sea the wind, and the next hours come along the horizon.",
+            "thumbnails/ambient.png",
+            "scene",
+            [](const Progress& progress) {
+                Project project;
+                project.rig = "resource:models/tablet.glb";
+                return readContents(std::move(project), {}, progress);
+            },
+            [] { return std::vector<DemoStep>(); },
+            [](std::uint64_t seed) -> std::unique_ptr<ShowProgram> { return std::make_unique<AmbientProgram>(seed); },
+            [](std::uint64_t seed, const DemoSettings& settings) -> std::unique_ptr<ShowProgram> {
+                return std::make_unique<AmbientProgram>(seed, settingsFrom(settings));
+            }};
+}
+
+} // namespace lumorph::ambient

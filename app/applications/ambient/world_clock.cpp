@@ -1,0 +1,37 @@
+#include "app/applications/ambient/world_clock.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace lumorph::ambient {
+namespace {
+
+constexpr double kWorldDay = 86'400.0;
+constexpr double kMorning = 7.0; ///< hours: when a visitor's next day begins
+
+} // namespace
+
+WorldClock::WorldClock(const Place& place, std::vector<double> days, double begin, double daySeconds)
+    : place_(place), days_(std::move(days)), begin_(begin), utc_(begin), usualSpeed_(kWorldDay / daySeconds),
+      speed_(usualSpeed_) {
+    const auto today = std::ranges::find(days_, localMidnight(place, begin));
+    if (today != days_.end()) day_ = static_cast<std::size_t>(today - days_.begin());
+}
+
+void WorldClock::goToNextDay(double hour) {
+    day_ = (day_ + 1) % days_.size();
+    utc_ = days_[day_] + 3600.0 * hour;
+}
+
+void WorldClock::advance(double step, const Visitor& visitor) {
+    const double push = visitor.push().x;
+    speed_ = usualSpeed_ * (push >= 0.0 ? std::lerp(1.0, kScrub, push) : std::lerp(1.0, -kScrub, -push));
+    const double midnight = localMidnight(place_, utc_);
+    utc_ += speed_ * step;
+    if (visitor.restart()) utc_ = begin_;
+    if (visitor.next()) return goToNextDay(kMorning);
+    const bool night = localMidnight(place_, utc_) > midnight;
+    if (night && !visitor.there() && usualSpeed_ > 1.0) goToNextDay((utc_ - localMidnight(place_, utc_)) / 3600.0);
+}
+
+} // namespace lumorph::ambient

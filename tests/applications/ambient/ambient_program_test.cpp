@@ -1,0 +1,428 @@
+#include <algorithm>
+#include <cmath>
+#include <ctime>
+#include <numeric>
+#include <string>
+#include <vector>
+
+#include <malloc.h>
+
+#include <gtest/gtest.h>
+
+#include <glm/geometric.hpp>
+
+#include "app/applications/ambient/ambient.h"
+#include "app/applications/ambient/simulated_year.h"
+#include "core/base/error.h"
+#include "core/motion/causal_split.h"
+#include "core/motion/frequency_split.h"
+#include "core/motion/surface_heights.h"
+#include "core/show/show_player.h"
+#include "tests/support/program_visit.h"
+
+// R37, R38: the ambient display as visitors meet it: what is seen, heard and felt, what comes first, and what it costs.
+
+namespace lumorph::ambient {
+namespace {
+
+using test::tabletRig;
+using Visit = test::ProgramVisit;
+using test::kFrame;
+
+/// Weather of one kind for a day and more.
+AmbientSettings constant(const WeatherHour& hour) {
+    AmbientSettings settings;
+    settings.weather = std::make_shared<const Weather>(1'780'000'000.0, std::vector<WeatherHour>(72, hour));
+    return settings;
+}
+
+WeatherHour windy(double speed) {
+    WeatherHour hour;
+    hour.windSpeed = speed;
+    return hour;
+}
+
+int shownAmong(const Scene& scene, int first, int count) {
+    int shown = 0;
+    for (int k = 0; k < count; ++k) shown += findItem(scene, first + k)->visible ? 1 : 0;
+    return shown;
+}
+
+TEST(AmbientProgram, ShowsEveryNotableDayByItself) {
+    AmbientSettings settings;
+    settings.daySeconds = 20.0;
+    AmbientProgram program(1, settings);
+    Visit visit(program);
+    const std::vector<double> days = notableDays(program.weather(), settings.place);
+    std::vector<bool> seen(days.size(), false);
+    bool snowed = false, rained = false, fogged = false;
+    for (int k = 0; k < 60 * 100; ++k) {
+        visit.frame();
+        if (k % 10 != 0) continue;
+        ASSERT_NO_THROW(checkScene(*visit.content().scene)) << k;
+        ASSERT_NO_THROW(checkHeightGrid(std::get<HeightGrid>(visit.content().target))) << k;
+        const double today = localMidnight(settings.place, program.clock().utc());
+        for (std::size_t d = 0; d < days.size(); ++d) seen[d] = seen[d] || days[d] == today;
+        const Scene& scene = *visit.content().scene;
+        snowed = snowed || (shownAmong(scene, kFirstFlakes, kFlakeLayers) > 0 && visit.item(kLandSnow).visible);
+        rained =
+            rained || (shownAmong(scene, kFirstRain, kRainLayers) > 0 && shownAmong(scene, kFirstRing, kRings) > 3);
+        fogged = fogged || visit.item(kFirstFog).visible;
+    }
+    EXPECT_EQ(std::ranges::count(seen, true), std::ssize(days));
+    EXPECT_TRUE(snowed);
+    EXPECT_TRUE(rained);
+    EXPECT_TRUE(fogged);
+    EXPECT_GE(visit.heard("ambient.thunder"), 2);
+    EXPECT_GT(visit.heard("ambient.rain"), 100);
+    EXPECT_EQ(visit.heard("ambient.wind"), 60 * 100);
+    EXPECT_EQ(visit.heard("ambient.wave"), 60 * 100);
+}
+
+TEST(AmbientProgram, KeysLetTimeRunFasterBackToAnotherDayAndToNow) {
+    AmbientProgram program(1);
+    Visit visit(program);
+    visit.frame();
+    const double begin = program.clock().utc();
+    visit.frames(1.0);
+    EXPECT_NEAR(program.clock().utc() - begin, 720.0, 15.0) << "a day in two minutes";
+    visit.frame({{"key.right", 1.0}});
+    visit.frames(1.0);
+    EXPECT_GT(program.clock().utc() - begin, 720.0 + 0.9 * 8.0 * 720.0);
+    visit.frame({{"key.right", 0.0}, {"key.left", 1.0}});
+    visit.frames(0.5);
+    EXPECT_LT(program.clock().speed(), 0.0) << "back";
+    visit.frame({{"key.left", 0.0}});
+    visit.frame({{"key.next", 1.0}});
+    const std::vector<double> days = notableDays(program.weather(), {});
+    EXPECT_EQ(localMidnight({}, program.clock().utc()), days[1]);
+    visit.frame({{"key.restart", 1.0}});
+    EXPECT_EQ(program.clock().utc(), begin);
+}
+
+TEST(AmbientProgram, AVisitorsPointerMakesRings) {
+    AmbientProgram program(1, constant(windy(2.0)));
+    Visit visit(program);
+    visit.frames(0.1);
+    EXPECT_EQ(shownAmong(*visit.content().scene, kFirstRing, kRings), 0) << "it does not rain";
+    visit.frame({{"pointer.x", 0.5}, {"pointer.y", 0.5}});
+    visit.frames(1.0);
+    const SceneItem& ring = visit.item(kFirstRing + kRings - 1);
+    EXPECT_TRUE(ring.visible);
+    EXPECT_LT(glm::distance(glm::dvec2(ring.position.x, ring.position.z), glm::dvec2(0.0525, 0.0375)), 1e-4);
+    EXPECT_NEAR(ring.position.y, kSeaLevel, 0.01);
+}
+
+// At each whole hour by day the shadow of the lighthouse points at the stone of the hour.
+TEST(AmbientProgram, TheShadowOfTheLighthouseTellsTheHour) {
+    for (const char* where : {"52.52,13.405", "-33.87,151.21", "64.15,-21.94"}) {
+        AmbientSettings settings;
+        settings.place = placeFrom(where);
+        settings.daySeconds = 24.0 / 20.0; // an hour in three frames
+        settings.begin = *timeFrom("2026-04-20T05:00", settings.place.utcOffset);
+        AmbientProgram program(1, settings);
+        Visit visit(program);
+        visit.frame();
+        int looked = 0;
+        for (int hour = 5; hour <= 20; ++hour, visit.frames(3.0 * kFrame)) {
+            ASSERT_NEAR(localHour(settings.place, program.view().utc), hour, 1e-6);
+            if (program.view().sun.elevation < 0.07) continue;
+            const glm::dvec3 light(visit.item(kKeyLight).position);
+            const glm::dvec2 shadow = -glm::normalize(glm::dvec2(light.x, light.z));
+            const glm::dvec3 stone(visit.item(kFirstStone + hour).position);
+            const glm::dvec2 at = glm::dvec2(stone.x, stone.z) - kGnomon;
+            EXPECT_NEAR(glm::length(at), kDialRadius, 1e-6);
+            EXPECT_GT(glm::dot(glm::normalize(at), shadow), std::cos(0.01)) << where << " at " << hour;
+            ++looked;
+        }
+        EXPECT_GE(looked, 9) << where;
+    }
+}
+
+TEST(AmbientProgram, NightIsDarkAndItsLampBurns) {
+    AmbientSettings settings = constant({});
+    settings.daySeconds = 24.0 / 20.0;
+    settings.begin = *timeFrom("2026-06-03T00:00", settings.place.utcOffset);
+    AmbientProgram program(1, settings);
+    Visit visit(program);
+    visit.frame();
+    const auto light = [&] {
+        const auto& lamp = std::get<LightItem>(visit.item(kKeyLight).kind);
+        return lamp.intensity + static_cast<double>(glm::length(visit.content().scene->sky));
+    };
+    const double midnight = light();
+    EXPECT_TRUE(visit.item(kBeam).visible);
+    visit.frames(12 * 3 * kFrame);
+    EXPECT_GT(light(), 4.0 * midnight);
+    EXPECT_FALSE(visit.item(kBeam).visible);
+}
+
+TEST(AmbientProgram, FogAndCloudsDriftWithTheWind) {
+    WeatherHour foggy = windy(3.0);
+    foggy.windFrom = 1.2;
+    foggy.visibility = 200.0;
+    foggy.cloudCover = 1.0;
+    AmbientProgram program(1, constant(foggy));
+    Visit visit(program);
+    visit.frames(1.0);
+    const glm::dvec2 towards = onDevice({}, 1.2 + 3.14159265358979);
+    for (int k = 0; k < kFogs; ++k) {
+        const glm::vec2 drift = std::get<FogItem>(visit.item(kFirstFog + k).kind).drift;
+        EXPECT_GT(glm::dot(glm::normalize(glm::dvec2(drift)), towards), 0.9999);
+        EXPECT_GT(glm::length(drift), 0.005F);
+    }
+    EXPECT_NEAR(static_cast<double>(visit.item(kFirstFog).opacity + visit.item(kFirstFog + 1).opacity), 1.0, 0.02)
+        << "one comes as the other goes";
+    EXPECT_GT(glm::dot(program.view().drifted, towards), 0.003);
+}
+
+TEST(AmbientProgram, TheComingHoursAreThoseOfTheForecast) {
+    std::vector<WeatherHour> hours(48);
+    for (std::size_t k = 0; k < hours.size(); ++k) hours[k].rain = k == 14 ? 5.0 : 0.0;
+    AmbientSettings settings;
+    settings.weather = std::make_shared<const Weather>(*timeFrom("2026-05-17T00:00", 3600.0), hours);
+    settings.begin = timeFrom("2026-05-17T09:30", 3600.0);
+    AmbientProgram program(1, settings);
+    Visit visit(program);
+    visit.frame();
+    float before = -1.0F;
+    for (int k = 0; k < kComingHours; ++k) {
+        const float x = visit.item(kFirstComing + 3 * k).position.x;
+        EXPECT_GT(x, before) << "the nearest first";
+        before = x;
+        EXPECT_EQ(visit.item(kFirstComing + 3 * k + 2).visible, k == 4) << "it rains at 14, in hour " << 10 + k;
+        EXPECT_NEAR(program.view().coming[static_cast<std::size_t>(k)].ahead, 0.5 + k, 1e-9);
+    }
+    const float from = visit.item(kFirstComing + 3 * 4).position.x;
+    visit.frames(1.0);
+    EXPECT_LT(visit.item(kFirstComing + 3 * 4).position.x, from) << "it comes nearer";
+}
+
+TEST(AmbientProgram, RefusesSettingsThatAreNone) {
+    for (const DemoSettings& wrong : {DemoSettings{{"place", "here"}},
+                                      {{"begin", "noon"}},
+                                      {{"day", "0"}},
+                                      {{"day", "x"}},
+                                      {{"anticipation", "-1"}},
+                                      {{"anticipation", "1s"}},
+                                      {{"colour", "red"}},
+                                      {{"weather", "/none.json"}}})
+        EXPECT_THROW(AmbientProgram(1, settingsFrom(wrong)), Error) << wrong.begin()->first;
+    const AmbientSettings read = settingsFrom({{"place", "48.2,16.4,2"}, {"begin", "2026-05-17T12:00"}, {"day", "60"}});
+    EXPECT_EQ(read.begin, timeFrom("2026-05-17T10:00", 0.0));
+    EXPECT_EQ(read.daySeconds, 60.0);
+}
+
+TEST(AmbientProgram, TheSameSeedAndInputsAreTheSameShow) {
+    AmbientProgram a(5), b(5);
+    Visit first(a), second(b);
+    for (int k = 0; k < 400; ++k) {
+        std::vector<ShowInput> inputs;
+        if (k == 50 || k == 150) inputs.push_back({"key.next", 1.0});
+        first.frame(inputs);
+        second.frame(inputs);
+        if (k % 40 == 0) {
+            ASSERT_EQ(*first.content().scene, *second.content().scene) << k;
+        }
+        ASSERT_EQ(std::get<HeightGrid>(first.content().target).heights,
+                  std::get<HeightGrid>(second.content().target).heights);
+    }
+}
+
+MatchWish wishFor(std::shared_ptr<ShowProgram> program) {
+    MatchWish wish;
+    wish.rig = tabletRig();
+    wish.strokes.assign(wish.rig->actuatorCount(), 0.0);
+    wish.installation = std::make_shared<const Installation>(defaultInstallation());
+    wish.program = std::move(program);
+    wish.inputs = std::make_shared<ShowInputs>();
+    wish.driver = Driver::program;
+    return wish;
+}
+
+// In a recording of the loop with a change of weather and in one without: when light differs first, and when servos do.
+TEST(AmbientProgram, LightIsAheadOfTheServosByTheAnticipationInARecording) {
+    for (const double delay : {0.5, 2.0}) {
+        const auto record = [&](bool changes) {
+            AmbientSettings settings;
+            settings.anticipation = delay;
+            ManualClock clock;
+            ShowPlayer player(clock, wishFor(std::make_shared<AmbientProgram>(1, settings)));
+            std::vector<std::shared_ptr<const MatchFrame>> frames;
+            for (int k = 0; k < 60 * 4; ++k) {
+                if (changes && k == 60) player.wish().inputs->push({"key.next", 1.0});
+                frames.push_back(player.step());
+            }
+            return frames;
+        };
+        const auto calm = record(false), changed = record(true);
+        const auto wavesOf = [](const MatchFrame& frame) {
+            return std::get<HeightItem>(findItem(*frame.scene, kSea)->kind).waves;
+        };
+        double seen = -1.0, felt = -1.0;
+        for (std::size_t k = 0; k < calm.size(); ++k) {
+            if (seen < 0.0 && wavesOf(*calm[k]) != wavesOf(*changed[k])) seen = changed[k]->programSeconds;
+            if (felt < 0.0 && calm[k]->splitStrokes != changed[k]->splitStrokes) felt = changed[k]->programSeconds;
+        }
+        ASSERT_GE(seen, 0.9);
+        ASSERT_GE(felt, seen);
+        RecordProperty("delay", std::to_string(felt - seen));
+        EXPECT_NEAR(felt - seen, delay, kFrame + 1e-6);
+    }
+}
+
+TEST(AmbientProgram, ItsProgramSaysWhatLightShowsAndWhatServosFollow) {
+    AmbientProgram program(1);
+    Visit visit(program);
+    std::vector<SeaState> shown;
+    for (int k = 0; k < 60 * 8; ++k) {
+        visit.frame(k == 120 ? std::vector<ShowInput>{{"key.next", 1.0}} : std::vector<ShowInput>{});
+        shown.push_back(program.view().sea);
+        const std::size_t then = k < 120 ? 0 : static_cast<std::size_t>(k - 120);
+        if (k >= 120) {
+            ASSERT_NEAR(program.followed().wind, shown[then].wind, 0.02 + 0.02 * shown[then].wind) << k;
+        }
+    }
+}
+
+/// What light shows over the points of a split: sea and land.
+void shownHeights(const View& view, std::span<const glm::vec2> points, std::span<float> out) {
+    for (std::size_t p = 0; p < points.size(); ++p) {
+        const glm::dvec2 at(points[p]);
+        out[p] = static_cast<float>(std::max(landHeight(at), kSeaLevel + heightOf(view.waves, at)));
+    }
+}
+
+/// What moves of series of heights, one series a point: sums over all points and times.
+struct Motion {
+    double energy = 0.0, kept = 0.0;
+};
+Motion motionOf(const std::vector<std::vector<float>>& ideal, const std::vector<std::vector<float>>& ours) {
+    Motion motion;
+    for (std::size_t p = 0; p < ideal.front().size(); ++p) {
+        double a = 0.0, b = 0.0, aa = 0.0, ab = 0.0;
+        for (std::size_t k = 0; k < ideal.size(); ++k) {
+            const auto x = static_cast<double>(ideal[k][p]), y = static_cast<double>(ours[k][p]);
+            a += x;
+            b += y;
+            aa += x * x;
+            ab += x * y;
+        }
+        const auto count = static_cast<double>(ideal.size());
+        motion.energy += aa - a * a / count;
+        motion.kept += ab - a * b / count;
+    }
+    return motion;
+}
+
+struct Felt {
+    double kept = 0.0;        ///< of the motion that the rig could show of what light shows, looking ahead
+    double correlation = 0.0; ///< of what moves: the device with light off, and the slow heights that are wished
+};
+
+Felt feltIn(const WeatherHour& weather) {
+    AmbientProgram program(1, constant(weather));
+    Visit visit(program);
+    FrequencySplit ideal(*tabletRig());
+    CausalSplit causal(*tabletRig());
+    SurfaceHeights reader(causal.points());
+    std::vector<std::vector<float>> bests, devices, wishes;
+    std::vector<float> heights(causal.points().size());
+    // The ideal one asks for the waves of other times as well: with steady weather they are known.
+    const Sea sea(1);
+    const auto wishAt = [&](double t, std::span<float> out) {
+        View then = program.view();
+        then.waves = sea.waves(then.sea, t);
+        shownHeights(then, ideal.points(), out);
+    };
+    for (int k = 0; k < 60 * 16; ++k) {
+        visit.frame();
+        const auto& grid = std::get<HeightGrid>(visit.content().target);
+        for (std::size_t p = 0; p < heights.size(); ++p)
+            heights[p] = static_cast<float>(heightAt(grid, glm::dvec2(causal.points()[p])));
+        const std::vector<double> strokes = causal.strokes(heights, k == 0 ? 0.0 : kFrame);
+        if (k < 60 * 4 || k % 6 != 0) continue;
+        std::vector<float> device(causal.restHeights().begin(), causal.restHeights().end());
+        const std::vector<double> best = ideal.strokes(wishAt, program.view().seconds);
+        std::vector<float> bestDevice(device.size());
+        ideal.heights(best, bestDevice);
+        ideal.heights(strokes, device);
+        View slow = program.view();
+        std::erase_if(slow.waves, [](const Wave& wave) { return wave.length < Sea::kServoLength; });
+        shownHeights(slow, causal.points(), heights);
+        bests.push_back(bestDevice);
+        devices.push_back(device);
+        wishes.push_back(heights);
+    }
+    const Motion motion = motionOf(bests, devices);
+    const Motion wished = motionOf(wishes, wishes), felt = motionOf(devices, devices), both = motionOf(wishes, devices);
+    return {motion.kept / motion.energy, both.kept / std::sqrt(wished.energy * felt.energy)};
+}
+
+TEST(AmbientProgram, ServosKeepTheSlowEnergyOfTheWavesThatTheTabletReaches) {
+    for (const double wind : {8.0, 16.0}) {
+        const Felt felt = feltIn(windy(wind));
+        std::printf("wind %.0f m/s: kept %.3f, height correlation %.3f\n", wind, felt.kept, felt.correlation);
+        EXPECT_GE(felt.kept, 0.9) << wind;
+        EXPECT_LE(felt.kept, 1.25) << wind;
+        EXPECT_GT(felt.correlation, 0.5) << wind << " m/s: what hands feel with the light off";
+    }
+}
+
+double threadSeconds() {
+    timespec now{};
+    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+    return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
+TEST(AmbientProgram, AFrameTakesASmallPartOfItsTime) {
+    AmbientProgram program(1);
+    Visit visit(program);
+    std::vector<double> milliseconds;
+    for (int k = 0; k < 60 * 60; ++k) {
+        const double begun = threadSeconds();
+        visit.frame(k % 600 == 300 ? std::vector<ShowInput>{{"key.next", 1.0}} : std::vector<ShowInput>{});
+        milliseconds.push_back(1e3 * (threadSeconds() - begun));
+    }
+    std::ranges::sort(milliseconds);
+    const double middle = milliseconds[milliseconds.size() / 2], late = milliseconds[milliseconds.size() * 99 / 100];
+    std::printf("a frame takes %.2f ms in the middle, %.2f ms at the 99th percentile\n", middle, late);
+    EXPECT_LE(middle, 2.0);
+    EXPECT_LE(late, 8.0);
+}
+
+// Half an hour with visitors who come, press and go, by the real loop ten times a second.
+TEST(AmbientProgram, HalfAnHourKeepsItsMemoryAndTheLimitsOfTheServos) {
+    ManualClock clock;
+    ShowPlayer player(clock, wishFor(std::make_shared<AmbientProgram>(3)));
+    constexpr double kStep = 0.1;
+    std::vector<double> before;
+    double fastest = 0.0;
+    std::size_t afterAMinute = 0;
+    for (int k = 0; k < 30 * 600; ++k) {
+        if (k % 700 == 200) player.wish().inputs->push({"key.next", 1.0});
+        if (k % 700 == 300) player.wish().inputs->push({"key.right", 1.0});
+        if (k % 700 == 330) player.wish().inputs->push({"key.right", 0.0});
+        if (k % 1900 == 1000) player.wish().inputs->push({"key.restart", 1.0});
+        if (k % 50 == 0 && k % 1900 < 800) player.wish().inputs->push({"pointer.x", std::sin(0.01 * k)});
+        const MatchFrame& frame = *player.step(kStep);
+        ASSERT_EQ(frame.programError, "");
+        for (std::size_t i = 0; i < frame.estimatedStrokes.size(); ++i) {
+            ASSERT_GE(frame.estimatedStrokes[i], 0.0);
+            ASSERT_LE(frame.estimatedStrokes[i], 1.0);
+            if (before.empty()) continue;
+            const double speed = std::abs(frame.estimatedStrokes[i] - before[i]) / kStep;
+            fastest = std::max(fastest, speed / tabletRig()->actuators()[i].maxVelocity);
+        }
+        before = frame.estimatedStrokes;
+        if (k == 600) afterAMinute = mallinfo2().uordblks;
+    }
+    const double grown = (static_cast<double>(mallinfo2().uordblks) - static_cast<double>(afterAMinute)) / (1 << 20);
+    std::printf("memory grew by %.2f MiB, the fastest servo went at %.3f of its limit\n", grown, fastest);
+    EXPECT_LT(grown, 5.0);
+    EXPECT_LE(fastest, 1.0 + 1e-6);
+    EXPECT_GT(fastest, 0.05) << "they did move";
+}
+
+} // namespace
+} // namespace lumorph::ambient
