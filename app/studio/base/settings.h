@@ -26,6 +26,10 @@ public:
     void setStillQuality(bool on);
     [[nodiscard]] bool placesNewTargets() const; ///< a new target is moved where it matches best
     void setPlacesNewTargets(bool on);
+    [[nodiscard]] bool sound() const; ///< applications may be heard
+    void setSound(bool on);
+    [[nodiscard]] double loudness() const; ///< 0 to 1, in steps of a tenth
+    void setLoudness(double share);
     [[nodiscard]] bool tourSeen() const;
     void setTourSeen(bool seen);
     [[nodiscard]] QStringList recentFiles() const; ///< newest first, at most ten, those that are still there
@@ -46,6 +50,7 @@ signals:
     void loopRateChanged();
     void qualityChanged();
     void placesNewTargetsChanged();
+    void soundChanged();
     void recentFilesChanged();
 
 private:

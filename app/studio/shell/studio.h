@@ -16,6 +16,7 @@
 #include "app/studio/rendering/render_thread.h"
 #include "app/studio/rendering/show_feed.h"
 #include "app/studio/shell/driver_control.h"
+#include "app/studio/sound/sound_service.h"
 
 namespace lumorph::studio {
 
@@ -37,6 +38,7 @@ struct Studio {
     RecordingService recorder{settings, document, project, loop, devices, trackers, jobs, notices};
     ReplayService replay{document, project, loop, devices, jobs, notices};
     DriverControl driver{document, loop, replay};
+    SoundService sound{settings, loop};
 };
 
 } // namespace lumorph::studio
