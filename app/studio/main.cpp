@@ -61,6 +61,7 @@ int run(int argc, char** argv, const Arguments& arguments) {
     application.closeOnInterrupt([&window] { window.closeNow(); });
     window.showWorkspace(firstWorkspace(arguments)); // empty: stays as it is
     studio.sound.open();
+    studio.gamepads.open();
     arguments.kiosk ? window.enterKiosk() : window.show();
     openFirst(studio, window, arguments);
     const int status = QApplication::exec();

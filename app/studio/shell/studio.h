@@ -5,6 +5,7 @@
 #include "app/studio/base/notices.h"
 #include "app/studio/base/settings.h"
 #include "app/studio/devices/device_service.h"
+#include "app/studio/devices/gamepad_service.h"
 #include "app/studio/devices/tracker_service.h"
 #include "app/studio/document/installation_keeper.h"
 #include "app/studio/document/project_service.h"
@@ -39,6 +40,7 @@ struct Studio {
     ReplayService replay{document, project, loop, devices, jobs, notices};
     DriverControl driver{document, loop, replay};
     SoundService sound{settings, loop};
+    GamepadService gamepads{loop};
 };
 
 } // namespace lumorph::studio
