@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/loop/show_program.h"
@@ -34,6 +35,10 @@ struct Demo {
     /// An application that answers what happens, in place of the scene of `open`; none: it goes by time alone. The same
     /// seed and inputs give the same show. Throws DataError where a resource is missing.
     std::unique_ptr<ShowProgram> (*program)(std::uint64_t seed) = nullptr;
+    /// The same, with what it wanted kept the last time (ShowContent::keepsake), which `file` held; none: it keeps
+    /// nothing. Throws DataError naming the file where that is damaged.
+    std::unique_ptr<ShowProgram> (*remembering)(std::uint64_t seed, std::string_view kept,
+                                                const std::string& file) = nullptr;
 };
 
 /// A demonstration whose scene is a bundled project: `projects/NAME.lumorph`.

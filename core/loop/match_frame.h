@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <glm/mat4x4.hpp>
 #include <glm/vec3.hpp>
 #include <memory>
@@ -101,6 +102,7 @@ struct MatchFrame {
     double programSeconds = 0.0;                ///< its time, ShowMoment::seconds
     std::vector<ShowInput> inputs;              ///< that it was given in this frame: a recording of them can replay it
     std::vector<ShowSound> sounds;              ///< that it lets be heard
+    std::function<std::string()> keepsake;      ///< that it wants kept: ShowContent::keepsake
     /// Why the wish's program is asked no more, and that the show goes on without it; in every frame from its end on.
     std::string programError;
 

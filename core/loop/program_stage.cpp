@@ -133,6 +133,7 @@ MatchWish ProgramStage::answered(const MatchWish& wish, std::span<const double> 
         checked_ = content.scene;
     }
     frame.sounds = std::move(content.sounds);
+    frame.keepsake = std::move(content.keepsake);
     MatchWish shown = wish;
     if (content.scene) {
         shown.scene = content.scene;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <span>
 #include <string>
@@ -62,6 +63,10 @@ struct ShowContent {
     bool moves = true; ///< another frame without a new input or pose would be another one
 
     std::vector<ShowSound> sounds; ///< that begin in this frame, or go on in it
+
+    /// In the frame in which it has changed: makes what the program shall be given at its next start, best runs for
+    /// example. It is called by whoever keeps that, later and in another thread, so it holds copies. Empty: as before.
+    std::function<std::string()> keepsake;
 };
 
 /// An application: asked once a frame for what is shown and felt. It runs in the loop's thread, knows neither window

@@ -7,6 +7,7 @@
 
 #include <QStandardPaths>
 
+#include "app/applications/keepsake.h"
 #include "app/applications/registry/demos.h"
 #include "app/studio/document/asset_opening.h"
 #include "app/studio/document/assets.h"
@@ -35,6 +36,8 @@ constexpr const char* kScenePlace = "scene:";
 struct Bundled {
     LoadedProject loaded;
     std::shared_ptr<ShowProgram> program; ///< empty: it goes by time alone
+    fs::path keepsake;                    ///< of that program; empty: none is kept
+    std::optional<Notice> trouble;        ///< with what was kept
 };
 
 /// The same visitor's move shall not meet the same chance in each show.
@@ -42,8 +45,23 @@ std::uint64_t newSeed() {
     return static_cast<std::uint64_t>(std::chrono::steady_clock::now().time_since_epoch().count());
 }
 
+/// Its program, which knows again what it wanted kept.
+void beginOwnProgram(const Demo& demo, Bundled& bundled) {
+    if (demo.remembering) bundled.keepsake = ProjectService::sessionFolder() / "applications" / (demo.name + ".json");
+    BegunProgram begun = beginProgram(demo, newSeed(), bundled.keepsake);
+    bundled.program = std::move(begun.program);
+    if (begun.problem.empty()) return;
+    bundled.trouble = Notice{Notice::Level::warning,
+                             fileName(bundled.keepsake),
+                             QString::fromStdString(begun.problem),
+                             QObject::tr("what was kept lies in %1; it begins anew").arg(fullName(begun.aside)),
+                             {}};
+}
+
 /// A demonstration by its name; without one a new project, the bundled tablet. Neither belongs to a file of the user's.
-Bundled readBundled(const std::string& demo, const FieldCache& cache, const Progress& progress) {
+/// `make`, where there is one, takes the place of its program.
+Bundled readBundled(const std::string& demo, const ProjectService::MakeProgram& make, const FieldCache& cache,
+                    const Progress& progress) {
     Bundled bundled;
     LoadedProject& loaded = bundled.loaded;
     if (demo.empty()) {
@@ -54,7 +72,10 @@ Bundled readBundled(const std::string& demo, const FieldCache& cache, const Prog
         const Demo& named = demoNamed(demo);
         loaded = loadedProject(named.open(progress));
         progress.throwIfCancelled();
-        if (named.program) bundled.program = named.program(newSeed());
+        if (make)
+            bundled.program = make(newSeed());
+        else if (named.program)
+            beginOwnProgram(named, bundled);
     }
     if (!loaded.state.field.field) loaded.state.field.field = cache.find(*loaded.state.rig.rig);
     return bundled;
@@ -70,8 +91,9 @@ struct ProjectService::Data {
     void watch();
     void openProject(const fs::path& file);
     /// A demo by its name, or a new project.
-    void openBundled(const std::string& demo, std::function<void()> onReady);
-    void replaceAll(LoadedProject loaded, const fs::path& file, std::shared_ptr<ShowProgram> program = {});
+    void openBundled(const std::string& demo, std::function<void()> onReady, MakeProgram make = {});
+    void replaceAll(LoadedProject loaded, const fs::path& file, std::shared_ptr<ShowProgram> program = {},
+                    const fs::path& keepsake = {});
     void saveTo(const fs::path& file);
     void restore(std::function<void()> onReady);
     [[nodiscard]] ProjectSource source() const;
@@ -148,13 +170,16 @@ void ProjectService::Data::openProject(const fs::path& file) {
         {{tr("Choose another file..."), [this] { emit service.chooseFile("project"); }}});
 }
 
-void ProjectService::Data::openBundled(const std::string& demo, std::function<void()> onReady) {
+void ProjectService::Data::openBundled(const std::string& demo, std::function<void()> onReady, MakeProgram make) {
     const auto ready = std::make_shared<std::function<void()>>(std::move(onReady));
     jobs.runWith<Bundled>(
         "project", "project", demo.empty() ? tr("Opening the tablet") : tr("Opening the demo"),
-        [demo, cache = cache](const Progress& progress) { return readBundled(demo, cache, progress); },
+        [demo, make = std::move(make), cache = cache](const Progress& progress) {
+            return readBundled(demo, make, cache, progress);
+        },
         [this, ready](const Bundled& bundled) {
-            replaceAll(bundled.loaded, {}, bundled.program);
+            replaceAll(bundled.loaded, {}, bundled.program, bundled.keepsake);
+            if (bundled.trouble) notices.post("project", *bundled.trouble);
             if (*ready) (*ready)();
         },
         [this, ready](const std::exception& error) {
@@ -163,8 +188,8 @@ void ProjectService::Data::openBundled(const std::string& demo, std::function<vo
         });
 }
 
-void ProjectService::Data::replaceAll(LoadedProject loaded, const fs::path& file,
-                                      std::shared_ptr<ShowProgram> program) {
+void ProjectService::Data::replaceAll(LoadedProject loaded, const fs::path& file, std::shared_ptr<ShowProgram> program,
+                                      const fs::path& keepsake) {
     for (const char* slot : {"rig", "field", "target", "place"}) jobs.stop(slot);
     scene.reset();
     for (const char* place : {"rig", "field", "target", "match", "project", "scene"}) notices.dismissAll(place);
@@ -175,7 +200,7 @@ void ProjectService::Data::replaceAll(LoadedProject loaded, const fs::path& file
     extras = std::move(loaded.extras);
     loaded.state.installation.reset(); // the room stays as it is, whatever is opened in it
     document.reset(std::move(loaded.state), file);
-    emit service.programOpened(std::move(program));
+    emit service.programOpened(std::move(program), keepsake);
     scene.takeOpened();
     building.buildMissing();
     if (!unsaved || !before.source.state.rig.rig) return;
@@ -316,6 +341,9 @@ void ProjectService::relink(const std::string& asset, const std::filesystem::pat
 void ProjectService::newProject() { data_->openBundled({}, {}); }
 void ProjectService::openDemo(const std::string& name) {
     data_->openBundled(name.empty() ? demos().front().name : name, {});
+}
+void ProjectService::openDemo(const std::string& name, MakeProgram make) {
+    data_->openBundled(name, {}, std::move(make));
 }
 
 bool ProjectService::save() {

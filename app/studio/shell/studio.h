@@ -8,6 +8,7 @@
 #include "app/studio/devices/gamepad_service.h"
 #include "app/studio/devices/tracker_service.h"
 #include "app/studio/document/installation_keeper.h"
+#include "app/studio/document/keepsake_keeper.h"
 #include "app/studio/document/project_service.h"
 #include "app/studio/document/studio_document.h"
 #include "app/studio/document/studio_loop.h"
@@ -41,6 +42,7 @@ struct Studio {
     DriverControl driver{document, loop, replay};
     SoundService sound{settings, loop};
     GamepadService gamepads{loop};
+    KeepsakeKeeper keepsakes{loop, notices};
 };
 
 } // namespace lumorph::studio
