@@ -36,6 +36,7 @@ constexpr OtherWords kOtherWords[] = {
     {"field.story", "mdf explain learn story voxels tutorial"},
     {"help.tour", "introduction tutorial guide"},
     {"help.about", "version licence license"},
+    {"labyrinth.levels", "editor draw paint maze game own"},
     {"target.open", "load import shape model mesh"},
     {"target.remove", "delete clear"},
     {"target.fit", "scale size centre center"},
