@@ -4,6 +4,7 @@
 #include <map>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/base/words.h"
@@ -45,6 +46,10 @@ struct Demo {
     /// The same with settings; none: it takes none. Throws InvalidInput for a setting that is wrong or not known, and
     /// DataError for a file that is.
     std::unique_ptr<ShowProgram> (*configured)(std::uint64_t seed, const DemoSettings& settings) = nullptr;
+    /// The same, with what it wanted kept the last time (ShowContent::keepsake), which `file` held; none: it keeps
+    /// nothing. Throws DataError naming the file where that is damaged.
+    std::unique_ptr<ShowProgram> (*remembering)(std::uint64_t seed, std::string_view kept,
+                                                const std::string& file) = nullptr;
 };
 
 /// A demonstration whose scene is a bundled project: `projects/NAME.lumorph`.

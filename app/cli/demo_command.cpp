@@ -23,7 +23,7 @@ namespace {
 struct DemoOptions {
     std::string name;
     DemoPlay play;
-    std::string record, picture, inputs;
+    std::string record, picture, inputs, kept;
 };
 
 /// What `ambient` may be told: --NAME VALUE each.
@@ -93,13 +93,15 @@ void addDemoCommand(CLI::App& app) {
     CLI::Option* inputs =
         command->add_option("--input", options->inputs,
                             "Without a window: what visitors do, as JSON: seconds, name and value of each input");
+    CLI::Option* keep = command->add_option(
+        "--keep", options->kept, "Without a window: the file in which an application keeps best runs and the like");
     CLI::Option* seed =
         command->add_option("--seed", options->play.seed, "Without a window: of an application's chance")
             ->capture_default_str();
     command->add_flag("--json", options->play.json, "Without a window: print its rates as one JSON value");
     addSettings(*command, options->play.settings);
     CLI::App* own = addNew(*command);
-    command->callback([options, seconds, record, picture, inputs, seed, own] {
+    command->callback([options, seconds, record, picture, inputs, keep, seed, own] {
         if (own->parsed()) return;
         if (options->name.empty())
             throw InvalidInput("demo", "which one is not said",
@@ -108,7 +110,8 @@ void addDemoCommand(CLI::App& app) {
         options->play.video = options->record;
         options->play.last = options->picture;
         options->play.inputs = options->inputs;
-        if (*seconds || *record || *picture || *inputs || *seed || options->play.json ||
+        options->play.kept = options->kept;
+        if (*seconds || *record || *picture || *inputs || *keep || *seed || options->play.json ||
             !options->play.settings.empty())
             playDemo(demo, options->play, std::cout);
         else

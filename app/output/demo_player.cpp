@@ -9,6 +9,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "app/applications/keepsake.h"
 #include "app/output/video_writer.h"
 #include "core/base/error.h"
 #include "core/base/statistics.h"
@@ -75,6 +76,7 @@ public:
         const auto begun = Clock::now();
         const MatchFrame& frame = *player_.step();
         if (!frame.programError.empty()) programError_ = frame.programError;
+        if (frame.keepsake) keepsake_ = frame.keepsake;
         loopTimes_.push_back(since(begun));
     }
 
@@ -111,6 +113,7 @@ public:
         rates.loopMilliseconds = loopTimes_.empty() ? 0.0 : median(loopTimes_);
         rates.passMilliseconds = passTimes_.empty() ? 0.0 : median(passTimes_);
         rates.warnings = renderer_.warnings();
+        rates.keepsake = keepsake_;
         if (!programError_.empty()) rates.warnings.push_back("The application has ended: " + programError_);
         return rates;
     }
@@ -130,6 +133,7 @@ private:
     const InputScript& inputs_;
     std::size_t given_ = 0;
     std::string programError_;
+    std::function<std::string()> keepsake_;
     ManualClock clock_;
     ShowPlayer player_;
     HeadlessContext context_;
@@ -164,8 +168,10 @@ ShowRates playShow(const ProjectContents& contents, const std::string& name, con
 
 namespace {
 
-ShowScript scriptOf(const Demo& demo, const DemoPlay& play) {
+ShowScript scriptOf(const Demo& demo, const DemoPlay& play, std::vector<std::string>& warnings) {
     ShowScript script;
+    if (!play.kept.empty() && !demo.remembering)
+        throw InvalidInput("--keep", "the demo '" + demo.name + "' keeps nothing", "leave it out");
     if (!play.inputs.empty()) {
         if (!demo.program)
             throw InvalidInput("--input", "the demo '" + demo.name + "' goes by time alone", "leave it out");
@@ -176,9 +182,13 @@ ShowScript scriptOf(const Demo& demo, const DemoPlay& play) {
             throw InvalidInput("--" + play.settings.begin()->first, "the demo '" + demo.name + "' has no such setting",
                                "leave it out");
         script.program = demo.configured(play.seed, play.settings);
-    } else if (demo.program) {
-        script.program = demo.program(play.seed);
+        return script;
     }
+    if (!demo.program) return script;
+    BegunProgram begun = beginProgram(demo, play.seed, play.kept);
+    script.program = std::move(begun.program);
+    if (!begun.problem.empty())
+        warnings.push_back(play.kept.string() + ": " + begun.problem + "; it lies in " + begun.aside.string() + " now");
     return script;
 }
 
@@ -188,8 +198,11 @@ void playDemo(const Demo& demo, const DemoPlay& play, std::ostream& out) {
     ShowPictures show;
     show.seconds = play.seconds;
     show.last = play.last;
-    const ShowScript script = scriptOf(demo, play);
-    const ShowRates rates = playShow(demo.open({}), demo.name, show, {}, play.video, script);
+    std::vector<std::string> warnings;
+    const ShowScript script = scriptOf(demo, play, warnings);
+    ShowRates rates = playShow(demo.open({}), demo.name, show, {}, play.video, script);
+    rates.warnings.insert(rates.warnings.begin(), warnings.begin(), warnings.end());
+    if (!play.kept.empty() && rates.keepsake) writeKeepsake(play.kept, rates.keepsake());
     if (play.json) {
         const nlohmann::json value{{"demo", demo.name},
                                    {"seconds", play.seconds},

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <iosfwd>
 #include <memory>
 #include <string>
@@ -30,11 +31,12 @@ struct ShowScript {
 
 /// What came of it.
 struct ShowRates {
-    int frames = 0;                    ///< of the video
-    double framesPerSecond = 0.0;      ///< that could have been drawn live: both passes and the lab, median
-    double loopMilliseconds = 0.0;     ///< of one frame of the loop, median
-    double passMilliseconds = 0.0;     ///< of shadow, eye and projector passes, median
-    std::vector<std::string> warnings; ///< plain sentences
+    int frames = 0;                        ///< of the video
+    double framesPerSecond = 0.0;          ///< that could have been drawn live: both passes and the lab, median
+    double loopMilliseconds = 0.0;         ///< of one frame of the loop, median
+    double passMilliseconds = 0.0;         ///< of shadow, eye and projector passes, median
+    std::vector<std::string> warnings;     ///< plain sentences
+    std::function<std::string()> keepsake; ///< the newest that the program wants kept; empty: none
 };
 
 /// Plays a show for a while and records what a viewer sees of the lit device (the lab) as a video, by the same loop and
@@ -52,6 +54,7 @@ struct DemoPlay {
     std::filesystem::path video;  ///< .mp4; empty: none
     std::filesystem::path last;   ///< its last picture, .png; empty: none
     std::filesystem::path inputs; ///< as `readInputScript` reads them; empty: none
+    std::filesystem::path kept;   ///< what an application wants kept is read from here and written back; empty: not
     std::uint64_t seed = 1;       ///< of an application
     DemoSettings settings;        ///< likewise
     bool json = false;            ///< its rates as JSON

@@ -62,6 +62,8 @@ int run(int argc, char** argv, const Arguments& arguments) {
     MainWindow window(studio, std::move(workspaces));
     application.closeOnInterrupt([&window] { window.closeNow(); });
     window.showWorkspace(firstWorkspace(arguments)); // empty: stays as it is
+    studio.sound.open();
+    studio.gamepads.open();
     arguments.kiosk ? window.enterKiosk() : window.show();
     openFirst(studio, window, arguments);
     const int status = QApplication::exec();

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <glm/mat4x4.hpp>
 #include <glm/vec3.hpp>
 #include <memory>
@@ -103,6 +104,7 @@ struct MatchFrame {
     std::vector<ShowInput> inputs;              ///< that it was given in this frame: a recording of them can replay it
     std::vector<ShowSound> sounds;              ///< that it lets be heard
     std::shared_ptr<const ShowCaption> caption; ///< that it lets be read; empty: nothing
+    std::function<std::string()> keepsake;      ///< that it wants kept: ShowContent::keepsake
     /// Why the wish's program is asked no more, and that the show goes on without it; in every frame from its end on.
     std::string programError;
 

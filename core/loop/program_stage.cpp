@@ -134,6 +134,7 @@ MatchWish ProgramStage::answered(const MatchWish& wish, std::span<const double> 
     }
     frame.sounds = std::move(content.sounds);
     frame.caption = std::move(content.caption);
+    frame.keepsake = std::move(content.keepsake);
     MatchWish shown = wish;
     if (content.scene) {
         shown.scene = content.scene;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <span>
 #include <string>
@@ -66,6 +67,9 @@ struct ShowContent {
 
     /// What visitors may read now, such as a level's name; the same object while it stays. Empty: nothing.
     std::shared_ptr<const ShowCaption> caption;
+    /// In the frame in which it has changed: makes what the program shall be given at its next start, best runs for
+    /// example. It is called by whoever keeps that, later and in another thread, so it holds copies. Empty: as before.
+    std::function<std::string()> keepsake;
 };
 
 /// An application: asked once a frame for what is shown and felt. It runs in the loop's thread, knows neither window

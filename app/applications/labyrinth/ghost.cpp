@@ -14,12 +14,12 @@ namespace lumorph::labyrinth {
 namespace {
 
 constexpr std::size_t kMostGhosts = 1000;
-constexpr std::size_t kMostPositions = 3U * 3600U * 30U; ///< numbers of an hour
+constexpr std::size_t kMostPositions = 3U * 3600U * 30U + 3U; ///< numbers of an hour
 
 Ghost ghostOf(JsonSection section) {
     Ghost ghost;
     section.text("level", ghost.level);
-    section.number("seconds", ghost.seconds, 0.0, 3600.0);
+    section.number("seconds", ghost.seconds, 0.0, Ghost::kMostSeconds);
     section.wholeNumber("score", ghost.score, 0, 1'000'000);
     std::vector<double> numbers;
     section.numbers("positions", numbers, -1.0, 1.0, kMostPositions);

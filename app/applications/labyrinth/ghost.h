@@ -11,6 +11,7 @@ namespace lumorph::labyrinth {
 /// A whole run through a level, to be shown again beside the next ones: where the ball was, at even times.
 struct Ghost {
     static constexpr double kInterval = 1.0 / 30.0; ///< seconds between positions
+    static constexpr double kMostSeconds = 3600.0;  ///< no longer run is kept
 
     std::string level;    ///< its name
     double seconds = 0.0; ///< from the start to the goal

@@ -58,7 +58,7 @@ ShowContent LabyrinthProgram::frame(const ShowMoment& moment) {
     game_->advance(moment.step, playsItself() ? pilot_->lean(game_->ball(), game_->pickUps()) : visitor_.lean());
     ShowContent content;
     content.sounds = sounds();
-    finish(moment.step);
+    if (finish(moment.step)) content.keepsake = [best = best_] { return ghostsText(best); };
     content.scene = board_->show(*game_, best(), rests_);
     content.assets = board_->assets();
     const glm::dvec3& ball = game_->ball().position;
@@ -75,20 +75,26 @@ void LabyrinthProgram::turn() {
     if (visitor_.restart()) begin(number_);
 }
 
-void LabyrinthProgram::finish(double step) {
-    if (!game_->done()) return;
-    if (rests_ == 0.0 && !playsItself()) keepRun();
+/// Whether there is another best run now.
+bool LabyrinthProgram::finish(double step) {
+    if (!game_->done()) return false;
+    const bool kept = rests_ == 0.0 && !playsItself() && keepRun();
     rests_ += step;
     if (rests_ > kRest) begin((number_ + 1) % levels_.size());
+    return kept;
 }
 
-void LabyrinthProgram::keepRun() {
+bool LabyrinthProgram::keepRun() {
     const Ghost& run = game_->run();
+    if (run.seconds > Ghost::kMostSeconds) return false;
     const auto known = std::ranges::find(best_, run.level, &Ghost::level);
     if (known == best_.end())
         best_.push_back(run);
     else if (run.score > known->score)
         *known = run;
+    else
+        return false;
+    return true;
 }
 
 const Ghost* LabyrinthProgram::best() const {
@@ -118,6 +124,9 @@ Demo labyrinthDemo() {
             [] { return std::vector<DemoStep>(); },
             [](std::uint64_t seed) -> std::unique_ptr<ShowProgram> {
                 return std::make_unique<LabyrinthProgram>(seed, bundledLevels());
+            },
+            [](std::uint64_t seed, std::string_view kept, const std::string& file) -> std::unique_ptr<ShowProgram> {
+                return std::make_unique<LabyrinthProgram>(seed, bundledLevels(), readGhosts(kept, file));
             }};
 }
 

@@ -33,8 +33,8 @@ public:
 private:
     void begin(std::size_t level);
     void turn();
-    void finish(double step);
-    void keepRun();
+    bool finish(double step);
+    bool keepRun();
     [[nodiscard]] const Ghost* best() const;
     [[nodiscard]] std::vector<ShowSound> sounds() const;
 

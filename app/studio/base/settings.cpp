@@ -1,6 +1,7 @@
 #include "app/studio/base/settings.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include <QFileInfo>
 #include <QLocale>
@@ -10,6 +11,7 @@ namespace {
 
 constexpr int kMostRecentFiles = 10;
 constexpr double kLowestRate = 10.0, kHighestRate = 120.0, kUsualRate = 60.0;
+constexpr double kUsualLoudness = 0.7;
 
 constexpr double kUsualNextMinutes = 2.0, kMostNextMinutes = 120.0; // in the kiosk
 
@@ -57,6 +59,27 @@ void Settings::setPlacesNewTargets(bool on) {
     if (on == placesNewTargets()) return;
     store_.setValue("target/placeNew", on);
     emit placesNewTargetsChanged();
+}
+
+bool Settings::sound() const { return store_.value("sound/on", true).toBool(); }
+
+void Settings::setSound(bool on) {
+    if (on == sound()) return;
+    store_.setValue("sound/on", on);
+    emit soundChanged();
+}
+
+double Settings::loudness() const {
+    bool isNumber = false;
+    const double share = store_.value("sound/loudness", kUsualLoudness).toDouble(&isNumber);
+    return isNumber ? std::clamp(share, 0.0, 1.0) : kUsualLoudness;
+}
+
+void Settings::setLoudness(double share) {
+    const double tenths = std::round(10.0 * std::clamp(share, 0.0, 1.0)) / 10.0;
+    if (tenths == loudness()) return;
+    store_.setValue("sound/loudness", tenths);
+    emit soundChanged();
 }
 
 bool Settings::tourSeen() const { return store_.value("tour/seen", false).toBool(); }

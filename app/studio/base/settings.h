@@ -27,6 +27,10 @@ public:
     void setStillQuality(bool on);
     [[nodiscard]] bool placesNewTargets() const; ///< a new target is moved where it matches best
     void setPlacesNewTargets(bool on);
+    [[nodiscard]] bool sound() const; ///< applications may be heard
+    void setSound(bool on);
+    [[nodiscard]] double loudness() const; ///< 0 to 1, in steps of a tenth
+    void setLoudness(double share);
     [[nodiscard]] bool tourSeen() const;
     void setTourSeen(bool seen);
     /// That of visitors; as long as none was chosen, the system's where it is one of them, else English.
@@ -56,6 +60,7 @@ signals:
     void qualityChanged();
     void placesNewTargetsChanged();
     void languageChanged();
+    void soundChanged();
     void recentFilesChanged();
 
 private:

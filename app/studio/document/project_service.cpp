@@ -8,6 +8,7 @@
 
 #include <QStandardPaths>
 
+#include "app/applications/keepsake.h"
 #include "app/applications/registry/demos.h"
 #include "app/studio/document/asset_opening.h"
 #include "app/studio/document/assets.h"
@@ -32,17 +33,24 @@ namespace fs = std::filesystem;
 /// What the scene's files are watched as, before their names.
 constexpr const char* kScenePlace = "scene:";
 
+/// A program that shows.
+struct Played {
+    std::shared_ptr<ShowProgram> program; ///< empty: it goes by time alone
+    fs::path keepsake;                    ///< what it wants kept; empty: nothing is
+    std::optional<Notice> trouble;        ///< with what was kept
+};
+
 /// What was opened, and the program that shows with it.
 struct Opened {
     LoadedProject loaded;
     OpenDemo demo;
-    std::shared_ptr<ShowProgram> program; ///< of `demo`; empty: it goes by time alone
+    Played played;
 };
 
 /// The session that was kept, and the program that showed.
 struct Kept {
     SessionState session;
-    std::shared_ptr<ShowProgram> program;
+    Played played;
 };
 
 /// The same visitor's move shall not meet the same chance in each show.
@@ -56,10 +64,21 @@ const Demo* findDemo(const std::string& name) {
     return found == demos().end() ? nullptr : &*found;
 }
 
-/// Null where it has none that plays. Throws as `Demo::program`.
-std::shared_ptr<ShowProgram> programOf(const OpenDemo& open) {
+/// Its program, which knows again what it wanted kept; none where it has none that plays. Throws as `Demo::program`.
+Played playedOf(const OpenDemo& open) {
     const Demo* demo = open.plays ? findDemo(open.name) : nullptr;
-    return demo != nullptr && demo->program ? demo->program(newSeed()) : nullptr;
+    if (demo == nullptr || !demo->program) return {};
+    Played played;
+    if (demo->remembering) played.keepsake = ProjectService::sessionFolder() / "applications" / (demo->name + ".json");
+    BegunProgram begun = beginProgram(*demo, newSeed(), played.keepsake);
+    played.program = std::move(begun.program);
+    if (!begun.problem.empty())
+        played.trouble = Notice{Notice::Level::warning,
+                                fileName(played.keepsake),
+                                QString::fromStdString(begun.problem),
+                                QObject::tr("what was kept lies in %1; it begins anew").arg(fullName(begun.aside)),
+                                {}};
+    return played;
 }
 
 bool playsFor(Audience audience, const Demo& demo) {
@@ -69,17 +88,25 @@ bool playsFor(Audience audience, const Demo& demo) {
 std::optional<Kept> readSession(const fs::path& folder, const Progress& progress) {
     std::optional<SessionState> session = SessionFolder::restore(folder, progress);
     if (!session) return std::nullopt;
-    std::shared_ptr<ShowProgram> program;
+    Played played;
     try {
-        program = programOf(session->demo);
+        played = playedOf(session->demo);
     } catch (const DataError&) { // the session is whole without it
         session->demo.plays = false;
     }
-    return Kept{std::move(*session), std::move(program)};
+    return Kept{std::move(*session), std::move(played)};
 }
 
-/// A demonstration by its name; without one a new project, the bundled tablet. Neither belongs to a file of the user's.
-Opened readBundled(const std::string& demo, Audience audience, const FieldCache& cache, const Progress& progress) {
+/// Which demonstration is opened, and how.
+struct Wanted {
+    std::string name; ///< empty: a new project, the bundled tablet
+    Audience audience = Audience::host;
+    ProjectService::MakeProgram make; ///< takes the place of its program
+};
+
+/// Neither a demonstration nor a new project belongs to a file of the user's.
+Opened readBundled(const Wanted& wanted, const FieldCache& cache, const Progress& progress) {
+    const std::string& demo = wanted.name;
     Opened opened;
     LoadedProject& loaded = opened.loaded;
     if (demo.empty()) {
@@ -90,8 +117,11 @@ Opened readBundled(const std::string& demo, Audience audience, const FieldCache&
         const Demo& named = demoNamed(demo);
         loaded = loadedProject(named.open(progress));
         progress.throwIfCancelled();
-        opened.demo = {demo, playsFor(audience, named)};
-        opened.program = programOf(opened.demo);
+        opened.demo = {demo, wanted.make || playsFor(wanted.audience, named)};
+        if (wanted.make)
+            opened.played.program = wanted.make(newSeed());
+        else
+            opened.played = playedOf(opened.demo);
     }
     if (!loaded.state.field.field) loaded.state.field.field = cache.find(*loaded.state.rig.rig);
     return opened;
@@ -107,7 +137,7 @@ struct ProjectService::Data {
     void watch();
     void openProject(const fs::path& file);
     /// A demo by its name, or a new project.
-    void openBundled(const std::string& name, Audience audience, std::function<void()> onReady);
+    void openBundled(Wanted wanted, std::function<void()> onReady);
     void replaceAll(Opened opened, const fs::path& file);
     void goOn(Kept kept);
     void saveTo(const fs::path& file);
@@ -187,12 +217,13 @@ void ProjectService::Data::openProject(const fs::path& file) {
         {{tr("Choose another file..."), [this] { emit service.chooseFile("project"); }}});
 }
 
-void ProjectService::Data::openBundled(const std::string& name, Audience audience, std::function<void()> onReady) {
+void ProjectService::Data::openBundled(Wanted wanted, std::function<void()> onReady) {
     const auto ready = std::make_shared<std::function<void()>>(std::move(onReady));
+    const QString told = wanted.name.empty() ? tr("Opening the tablet") : tr("Opening the demo");
     jobs.runWith<Opened>(
-        "project", "project", name.empty() ? tr("Opening the tablet") : tr("Opening the demo"),
-        [name, audience, cache = cache](const Progress& progress) {
-            return readBundled(name, audience, cache, progress);
+        "project", "project", told,
+        [wanted = std::move(wanted), cache = cache](const Progress& progress) {
+            return readBundled(wanted, cache, progress);
         },
         [this, ready](const Opened& opened) {
             replaceAll(opened, {});
@@ -217,12 +248,13 @@ void ProjectService::Data::replaceAll(Opened opened, const fs::path& file) {
     demo = std::move(opened.demo);
     loaded.state.installation.reset(); // the room stays as it is, whatever is opened in it
     document.reset(std::move(loaded.state), file);
-    emit service.programOpened(std::move(opened.program));
+    emit service.programOpened(std::move(opened.played.program), opened.played.keepsake);
+    if (opened.played.trouble) notices.post("project", *opened.played.trouble);
     scene.takeOpened();
     building.buildMissing();
     if (!unsaved || !before.source.state.rig.rig) return;
     const auto bringBack = [this, before] {
-        goOn({before, programOf(before.demo)});
+        goOn({before, playedOf(before.demo)});
         document.undoStack().resetClean();
     };
     notices.post("project", {Notice::Level::info,
@@ -234,7 +266,7 @@ void ProjectService::Data::replaceAll(Opened opened, const fs::path& file) {
 
 void ProjectService::Data::goOn(Kept kept) {
     const ProjectSource& source = kept.session.source;
-    replaceAll({{source.state, {}, source.stamps, source.extras, {}}, kept.session.demo, std::move(kept.program)},
+    replaceAll({{source.state, {}, source.stamps, source.extras, {}}, kept.session.demo, std::move(kept.played)},
                kept.session.file);
 }
 
@@ -266,7 +298,7 @@ void ProjectService::Data::restore(std::function<void()> onReady) {
         [folder = sessionFolder()](const Progress& progress) { return readSession(folder, progress); },
         [this, ready](const std::optional<Kept>& kept) {
             if (!kept) {
-                openBundled(demos().front().name, Audience::host, *ready);
+                openBundled({demos().front().name, Audience::host, {}}, *ready);
                 return;
             }
             goOn(*kept);
@@ -279,7 +311,7 @@ void ProjectService::Data::restore(std::function<void()> onReady) {
             notice.why = tr("the last session could not be opened: %1").arg(notice.why);
             notice.remedy = tr("what is left of it lies in %1").arg(fullName(aside));
             // Told when the demo is there: what opens clears the notices of what was open.
-            openBundled(demos().front().name, Audience::host, [this, notice, ready] {
+            openBundled({demos().front().name, Audience::host, {}}, [this, notice, ready] {
                 notices.post("project", notice);
                 if (*ready) (*ready)();
             });
@@ -361,15 +393,18 @@ bool ProjectService::autoPlaced() const { return data_->placing.autoPlaced(); }
 void ProjectService::relink(const std::string& asset, const std::filesystem::path& file) {
     data_->scene.relink(asset, file);
 }
-void ProjectService::newProject() { data_->openBundled({}, Audience::host, {}); }
+void ProjectService::newProject() { data_->openBundled({}, {}); }
 void ProjectService::openDemo(const std::string& name, Audience audience) {
-    data_->openBundled(name.empty() ? demos().front().name : name, audience, {});
+    data_->openBundled({name.empty() ? demos().front().name : name, audience, {}}, {});
 }
 const Demo* ProjectService::demo() const noexcept { return findDemo(data_->demo.name); }
 void ProjectService::endProgram() {
     if (!std::exchange(data_->demo.plays, false)) return;
     emit programOpened({});
     data_->keeper.touch();
+}
+void ProjectService::openDemo(const std::string& name, MakeProgram make) {
+    data_->openBundled({name, Audience::visitors, std::move(make)}, {});
 }
 
 bool ProjectService::save() {

@@ -61,6 +61,10 @@ public:
     void newProject(); ///< the bundled tablet, no target
     /// A demonstration of app/applications by its name; without one the first.
     void openDemo(const std::string& name = {}, Audience audience = Audience::host);
+    /// Makes a program by a seed, in a job's thread; what it throws is told.
+    using MakeProgram = std::function<std::unique_ptr<ShowProgram>(std::uint64_t seed)>;
+    /// A demonstration with another program than its own, of which nothing is kept.
+    void openDemo(const std::string& name, MakeProgram make);
     /// The demonstration that is open, as long as nothing else is opened; null: none.
     [[nodiscard]] const Demo* demo() const noexcept;
     /// The program that shows is over; the demonstration stays open.
@@ -84,7 +88,8 @@ signals:
     /// A project was opened, which holds a copy of the installation that it was made in. The document's is the room's.
     void openedElsewhere(const QString& path, std::shared_ptr<const lumorph::Installation> installation);
     /// Something else is open now, and with it the application that answers what happens; null: none does.
-    void programOpened(std::shared_ptr<lumorph::ShowProgram> program);
+    /// What it wants kept belongs into `keepsake`; empty: that of none is kept.
+    void programOpened(std::shared_ptr<lumorph::ShowProgram> program, const std::filesystem::path& keepsake);
     /// A recording was to be opened, which is no part of the document.
     void recordingChosen(const QString& path);
     /// The remedy of a notice: ask for another file of this place ("target", "rig", "field", "project"; "viewport" for

@@ -157,7 +157,11 @@ void addFileCommands(Studio& studio, QWidget& window) {
     add("file.new", "&New project", "file", QKeySequence::New, [&studio] { studio.project.newProject(); });
     add("file.open", "&Open...", "open", QKeySequence::Open, [&studio, &window] { openWithDialog(studio, window); });
     addDemoCommands(studio);
-    QObject::connect(&studio.project, &ProjectService::programOpened, &studio.loop, &StudioLoop::setProgram);
+    QObject::connect(&studio.project, &ProjectService::programOpened, &studio.loop,
+                     [&studio](const std::shared_ptr<ShowProgram>& program, const std::filesystem::path& keepsake) {
+                         studio.keepsakes.keep(program, keepsake);
+                         studio.loop.setProgram(program);
+                     });
     add("file.save", "&Save", "save", QKeySequence::Save, [&studio, &window] {
         if (!studio.project.save()) saveWithDialog(studio, window);
     });

@@ -1,6 +1,8 @@
 #include "app/studio/shell/shell_commands.h"
 #include "app/studio/shell/guide_window.h"
 
+#include <cmath>
+
 #include "app/studio/look/icons.h"
 #include "app/studio/shell/command_palette.h"
 #include "app/studio/shell/dialogs.h"
@@ -59,6 +61,36 @@ void addLanguage(Studio& studio) {
     follow();
 }
 
+/// What applications let be heard.
+void addSound(Studio& studio) {
+    constexpr double kStep = 0.1;
+    Settings& settings = studio.settings;
+    Commands::Options options;
+    options.icon = "sound";
+    options.menu = "View";
+    options.checkable = true;
+    QAction* sound =
+        studio.commands.add("view.sound.on", "S&ound", options, [&settings] { settings.setSound(!settings.sound()); });
+    sound->setToolTip("What applications let be heard");
+    const auto by = [&settings](double step) {
+        settings.setSound(true); // whoever turns it up wants to hear it
+        settings.setLoudness(settings.loudness() + step);
+    };
+    QAction* louder = addShellAction(studio, "view.sound.louder", "Lou&der", "louder", {}, "View", [by] { by(kStep); });
+    QAction* quieter =
+        addShellAction(studio, "view.sound.quieter", "&Quieter", "quieter", {}, "View", [by] { by(-kStep); });
+    const auto follow = [&settings, sound, louder, quieter] {
+        sound->setChecked(settings.sound());
+        louder->setEnabled(!settings.sound() || settings.loudness() < 1.0);
+        quieter->setEnabled(settings.sound() && settings.loudness() > kStep);
+        const QString percent = QString("Now at %1 %").arg(std::lround(100.0 * settings.loudness()));
+        louder->setToolTip(percent);
+        quieter->setToolTip(percent);
+    };
+    QObject::connect(&settings, &Settings::soundChanged, sound, follow);
+    follow();
+}
+
 void addView(Studio& studio, QMainWindow& window, const ShellActions& does) {
     int number = 1;
     for (const auto& [title, show] : does.workspaces) {
@@ -70,6 +102,7 @@ void addView(Studio& studio, QMainWindow& window, const ShellActions& does) {
                    "View", [&studio, &window] { toggleCommandPalette(window, studio.commands); });
     addTheme(studio);
     addLanguage(studio);
+    addSound(studio);
     Commands::Options options;
     options.icon = "frame";
     options.shortcut = QKeySequence(Qt::Key_F11);

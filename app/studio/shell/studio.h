@@ -5,8 +5,10 @@
 #include "app/studio/base/notices.h"
 #include "app/studio/base/settings.h"
 #include "app/studio/devices/device_service.h"
+#include "app/studio/devices/gamepad_service.h"
 #include "app/studio/devices/tracker_service.h"
 #include "app/studio/document/installation_keeper.h"
+#include "app/studio/document/keepsake_keeper.h"
 #include "app/studio/document/project_service.h"
 #include "app/studio/document/studio_document.h"
 #include "app/studio/document/studio_loop.h"
@@ -16,6 +18,7 @@
 #include "app/studio/rendering/render_thread.h"
 #include "app/studio/rendering/show_feed.h"
 #include "app/studio/shell/driver_control.h"
+#include "app/studio/sound/sound_service.h"
 
 namespace lumorph::studio {
 
@@ -37,6 +40,9 @@ struct Studio {
     RecordingService recorder{settings, document, project, loop, devices, trackers, jobs, notices};
     ReplayService replay{document, project, loop, devices, jobs, notices};
     DriverControl driver{document, loop, replay};
+    SoundService sound{settings, loop};
+    GamepadService gamepads{loop};
+    KeepsakeKeeper keepsakes{loop, notices};
 };
 
 } // namespace lumorph::studio

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <ctime>
 #include <numeric>
+#include <random>
 #include <set>
 #include <string>
 
@@ -116,6 +117,31 @@ TEST(LabyrinthProgram, ABestRunGoesBesideTheNextOneAsAGhost) {
     ASSERT_TRUE(ghost.visible);
     const glm::vec3 expected = positionAt(best, program.game().seconds()) + glm::vec3(0.0F, 0.02F, 0.0F);
     EXPECT_LT(glm::distance(ghost.position, expected), 1e-5F);
+}
+
+// Over all levels, with a hand that leans, goes on and begins again by chance.
+TEST(LabyrinthProgram, SameSeedAndInputsGiveTheSameShowToTheBit) {
+    LabyrinthProgram first(7, bundledLevels()), second(7, bundledLevels());
+    Visit one(first), two(second);
+    std::mt19937 random(3);
+    const auto chance = [&random] { return static_cast<double>(random()) * 0x1p-32; };
+    std::set<std::size_t> seen;
+    for (int k = 0; k < 60 * 40; ++k) {
+        std::vector<ShowInput> inputs;
+        if (k % 15 == 0) inputs = {{"pointer.x", 2.0 * chance() - 1.0}, {"pad.y", 2.0 * chance() - 1.0}};
+        if (k % 240 == 239) inputs.push_back({chance() < 0.8 ? "key.next" : "key.restart", 1.0});
+        const ShowContent &a = one.frame(inputs), &b = two.frame(inputs);
+        ASSERT_EQ(a.sounds, b.sounds) << k;
+        ASSERT_EQ(std::get<HeightGrid>(a.target).heights, std::get<HeightGrid>(b.target).heights) << k;
+        ASSERT_EQ(a.scene->items.size(), b.scene->items.size()) << k;
+        for (std::size_t i = 0; i < a.scene->items.size(); ++i) {
+            ASSERT_EQ(a.scene->items[i].position, b.scene->items[i].position) << k;
+            ASSERT_EQ(a.scene->items[i].visible, b.scene->items[i].visible) << k;
+        }
+        seen.insert(first.level());
+    }
+    EXPECT_GE(seen.size(), 4U);
+    EXPECT_EQ(first.game().score(), second.game().score());
 }
 
 TEST(LabyrinthProgram, NeedsALevel) { EXPECT_THROW(LabyrinthProgram(1, {}), InvalidInput); }
