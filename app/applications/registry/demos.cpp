@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "app/applications/field/field_demo.h"
+#include "app/applications/ice/ice.h"
 #include "app/applications/labyrinth/labyrinth.h"
 #include "app/applications/techniques/techniques.h"
 #include "app/applications/water/water.h"
@@ -12,7 +13,7 @@
 namespace lumorph {
 
 std::span<const Demo> demos() {
-    static const std::vector<Demo> all{waterDemo(), techniquesDemo(), fieldDemo(), labyrinth::labyrinthDemo()};
+    static const std::vector<Demo> all{waterDemo(), techniquesDemo(), fieldDemo(), labyrinth::labyrinthDemo(), ice::iceDemo()};
     return all;
 }
 
