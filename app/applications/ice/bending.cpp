@@ -10,7 +10,7 @@ namespace {
 
 constexpr int kSamplesX = 36, kSamplesZ = 26;
 constexpr double kSmallStroke = 0.25; ///< flaps turn: more of a stroke lifts them less
-constexpr double kBendArm = 0.014;        ///< over which bends are measured, metres
+constexpr double kBendArm = 0.014;    ///< over which bends are measured, metres
 
 std::vector<float> heightsOf(const Rig& rig, std::span<const double> strokes, std::span<const glm::vec2> places) {
     std::vector<float> heights(places.size(), NAN);

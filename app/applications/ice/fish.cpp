@@ -12,7 +12,7 @@ namespace lumorph::ice {
 namespace {
 
 constexpr double kStep = 1.0 / 60.0; ///< seconds
-constexpr double kMostSwum = 0.25; ///< seconds
+constexpr double kMostSwum = 0.25;   ///< seconds
 constexpr double kCruise = 0.016;    ///< metres a second
 constexpr double kFlight = 0.075;    ///< metres a second, at most
 constexpr double kTurns = 1.5;       ///< radians a second, at leisure
@@ -37,20 +37,27 @@ School::School(const Polygon& shore, int count, std::uint64_t seed) : shore_(sho
     }
 }
 
-void School::advance(double seconds, std::span<const Warmth> warmths) {
+void School::advance(double seconds, std::span<const Warmth> warmths, std::span<const glm::dvec2> openings) {
     if (std::isfinite(seconds)) left_ += std::clamp(seconds, 0.0, kMostSwum);
     for (; left_ >= kStep; left_ -= kStep) {
         seconds_ += kStep;
-        for (std::size_t k = 0; k < fish_.size(); ++k) swim(k, kStep, warmths);
+        for (std::size_t k = 0; k < fish_.size(); ++k) swim(k, kStep, wishOf(k, warmths, openings));
     }
 }
 
-/// Where it would go, as a sum of what draws and drives it; `hurry` from 0 to 1.
-glm::dvec2 School::wish(std::size_t k, std::span<const Warmth> warmths, double& hurry) const {
+School::Wish School::wishOf(std::size_t k, std::span<const Warmth> warmths,
+                            std::span<const glm::dvec2> openings) const {
     const Fish& fish = fish_[k];
     const double roam =
         fish.heading + 1.1 * std::sin(0.37 * seconds_ + fish.mood) + 0.5 * std::sin(0.91 * seconds_ + 2.0 * fish.mood);
-    glm::dvec2 way(std::cos(roam), std::sin(roam));
+    Wish wish;
+    glm::dvec2& way = wish.way;
+    way = {std::cos(roam), std::sin(roam)};
+    if (!openings.empty()) { // each looks at one for a while, and then at the next
+        const auto turn = static_cast<std::size_t>(0.06 * seconds_ + fish.mood);
+        const glm::dvec2 there = openings[turn % openings.size()] - fish.place;
+        way += 0.9 * there / (0.015 + glm::length(there));
+    }
     const glm::dvec2 bank = nearestOnRim(shore_, fish.place);
     const double room = glm::distance(bank, fish.place);
     if (room < kBankRoom && room > 0.0) way += 2.5 * (1.0 - room / kBankRoom) * (fish.place - bank) / room;
@@ -59,22 +66,20 @@ glm::dvec2 School::wish(std::size_t k, std::span<const Warmth> warmths, double& 
         const double far = glm::length(from);
         if (other != k && far > 1e-6 && far < kRoom) way += 1.2 * (1.0 - far / kRoom) * from / far;
     }
-    hurry = 0.0;
     for (const Warmth& warmth : warmths) {
         const glm::dvec2 from = fish.place - warmth.place;
         const double far = glm::length(from);
-        if (!(far > 1e-6) || far > kFear) continue;
+        if (!(far > 1e-6 && far < kFear && warmth.power > 0.0)) continue;
         const double fear = (1.0 - far / kFear) * std::min(1.0, warmth.power);
         way += 4.0 * fear * from / far;
-        hurry = std::max(hurry, fear);
+        wish.hurry = std::max(wish.hurry, fear);
     }
-    return way;
+    return wish;
 }
 
-void School::swim(std::size_t k, double seconds, std::span<const Warmth> warmths) {
+void School::swim(std::size_t k, double seconds, const Wish& wish) {
     Fish& fish = fish_[k];
-    double hurry = 0.0;
-    const glm::dvec2 way = wish(k, warmths, hurry);
+    const auto& [way, hurry] = wish;
     const double off = std::remainder(std::atan2(way.y, way.x) - fish.heading, 2.0 * std::numbers::pi);
     const double most = kTurns * (1.0 + 3.0 * hurry) * seconds;
     fish.heading = std::remainder(fish.heading + std::clamp(off, -most, most), 2.0 * std::numbers::pi);

@@ -28,12 +28,18 @@ class School {
 public:
     School(const Polygon& shore, int count, std::uint64_t seed);
 
-    void advance(double seconds, std::span<const Warmth> warmths);
+    /// `openings` are places of open water, which they like to look at.
+    void advance(double seconds, std::span<const Warmth> warmths, std::span<const glm::dvec2> openings = {});
     [[nodiscard]] const std::vector<Fish>& fish() const noexcept { return fish_; }
 
 private:
-    void swim(std::size_t k, double seconds, std::span<const Warmth> warmths);
-    [[nodiscard]] glm::dvec2 wish(std::size_t k, std::span<const Warmth> warmths, double& hurry) const;
+    struct Wish {
+        glm::dvec2 way{0.0}; ///< a sum of what draws and drives it
+        double hurry = 0.0;  ///< 0 to 1
+    };
+    void swim(std::size_t k, double seconds, const Wish& wish);
+    [[nodiscard]] Wish wishOf(std::size_t k, std::span<const Warmth> warmths,
+                              std::span<const glm::dvec2> openings) const;
 
     Polygon shore_;
     std::vector<Fish> fish_;

@@ -17,6 +17,8 @@ using Primitive = Model::Primitive;
 constexpr double kBevelWide = 0.0009, kBevelDeep = 0.0006; ///< metres
 constexpr double kFoot = 0.0007;                           ///< by which sides draw in down to the foot, metres
 
+constexpr double kShortEdge = 0.0008; ///< metres
+
 /// A floe in the making.
 class FloeMesh {
 public:
@@ -76,6 +78,19 @@ private:
     glm::dvec2 middle_;
 };
 
+/// Which edges of a cell have no ice beyond. One that is too short for a bond is as its neighbours are.
+std::vector<bool> freeEdges(const Sheet& sheet, int cell) {
+    const Polygon& outline = sheet.cells()[static_cast<std::size_t>(cell)].outline;
+    const std::size_t count = outline.size();
+    std::vector<bool> free(count);
+    for (std::size_t k = 0; k < count; ++k) free[k] = !sheet.isJoined(cell, k);
+    for (std::size_t k = 0; k < count; ++k) {
+        const bool isShort = glm::distance(outline[k], outline[(k + 1) % count]) < kShortEdge;
+        if (isShort && !free[(k + 1) % count] && !free[(k + count - 1) % count]) free[k] = false;
+    }
+    return free;
+}
+
 } // namespace
 
 const std::vector<Material>& iceMaterials() {
@@ -107,10 +122,8 @@ SceneModel floeModel(const IceCover& ice, const Floe& floe) {
         const Polygon outline = ice.grown(k);
         if (outline.empty()) continue;
         const double growth = ice.growth(k);
-        std::vector<bool> free(outline.size(), true);
-        for (std::size_t edge = 0; growth >= 1.0 && edge < outline.size(); ++edge)
-            free[edge] = !ice.sheet().isJoined(k, edge);
-        mesh.add(outline, free, growth < 1.0 ? 0.3 + 0.7 * (1.0 - growth) : 1.0);
+        mesh.add(outline, growth < 1.0 ? std::vector(outline.size(), true) : freeEdges(ice.sheet(), k),
+                 growth < 1.0 ? 0.3 + 0.7 * (1.0 - growth) : 1.0);
     }
     SceneModel made;
     made.materials = iceMaterials();

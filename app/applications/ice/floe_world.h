@@ -28,7 +28,7 @@ struct FloeBump {
 /// bit.
 class FloeWorld {
 public:
-    static constexpr double kStep = 1.0 / 120.0; ///< seconds
+    static constexpr double kStep = 1.0 / 60.0; ///< seconds
 
     /// Within a convex bank.
     explicit FloeWorld(const Polygon& shore);

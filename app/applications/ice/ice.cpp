@@ -24,11 +24,23 @@ constexpr double kOpen = 0.10;         ///< share of ice below which the pond is
 constexpr double kUntilFrost = 5.0;    ///< seconds it stays so
 constexpr double kVisitorsThaw = 6e-5; ///< metres a second: slow, so that there is room for floes to move
 
+constexpr double kOpenings = 0.02; ///< metres between two that fish know of
+constexpr std::size_t kMostOpenings = 6;
+
 /// A show of its own, from one frost to the next.
 struct OwnShow {
     static constexpr double kSunFrom = IceCover::kFreezing + 0.6, kSunUntil = 33.0;
-    static constexpr double kStrikes[]{9.5, 13.5, 18.0};
-    static constexpr double kSwaysFrom = 15.0;
+    struct Strike {
+        double seconds;
+        glm::dvec2 place;
+    };
+    static constexpr Strike kStrikes[]{{9.0, {0.01, 0.012}},
+                                       {12.0, {-0.05, -0.02}},
+                                       {15.0, {0.055, -0.022}},
+                                       {18.0, {0.03, 0.035}},
+                                       {21.5, {-0.045, 0.03}}};
+    static constexpr double kSwaysFrom = 14.0;
+    static constexpr double kSlowThaw = 1.6e-4; ///< metres a second, from then on
     static constexpr double kThawFrom = 34.0;
     static constexpr double kThaw = 0.0016; ///< metres a second
     static constexpr double kUntil = 50.0;
@@ -73,7 +85,8 @@ ShowContent IceProgram::frame(const ShowMoment& moment) {
     turn();
     around_.lift = [this](const glm::dvec2& place) { return swell_.at(place); };
     ice_.advance(moment.step, around_);
-    school_.advance(moment.step, around_.warmths);
+    noteOpenings();
+    school_.advance(moment.step, around_.warmths, openings_);
     if (bending_) swell_.advance(ice_, *bending_, moment.step);
     open_ = ice_.iceArea() < kOpen * ice_.sheet().area() && !ice_.freezing() ? open_ + moment.step : 0.0;
     if (open_ > kUntilFrost) ice_.freeze();
@@ -138,16 +151,28 @@ void IceProgram::play(double step) {
     const double before = played_;
     played_ += step;
     around_.lean = {};
-    around_.thaw = played_ > OwnShow::kThawFrom ? OwnShow::kThaw : 0.0;
+    around_.thaw = played_ > OwnShow::kThawFrom    ? OwnShow::kThaw
+                   : played_ > OwnShow::kSwaysFrom ? OwnShow::kSlowThaw
+                                                   : 0.0;
     if (played_ > OwnShow::kSunFrom && played_ < OwnShow::kSunUntil)
         around_.warmths.push_back({sunAt(played_), 0.020, 1.25});
-    for (const double strike : OwnShow::kStrikes)
-        if (before < strike && played_ >= strike) ice_.strike(sunAt(strike) + glm::dvec2(0.016, -0.010));
+    for (const OwnShow::Strike& strike : OwnShow::kStrikes)
+        if (before < strike.seconds && played_ >= strike.seconds) ice_.strike(strike.place);
     if (played_ > OwnShow::kSwaysFrom)
         around_.lean = 0.11 * glm::dvec2(std::sin(0.5 * played_), std::cos(0.37 * played_));
     if (played_ < OwnShow::kUntil) return;
     ice_.freeze();
     played_ = -IceCover::kLeaving;
+}
+
+void IceProgram::noteOpenings() {
+    if (ice_.freezing()) openings_.clear();
+    for (const IceEvent& event : ice_.events()) {
+        const auto known = [&](const glm::dvec2& place) { return glm::distance(place, event.place) < kOpenings; };
+        if (event.kind != IceEvent::Kind::drip || std::ranges::any_of(openings_, known)) continue;
+        if (openings_.size() == kMostOpenings) openings_.erase(openings_.begin());
+        openings_.push_back(event.place);
+    }
 }
 
 void IceProgram::turn() {

@@ -37,6 +37,7 @@ private:
     void takePointer(double step);
     void play(double step);
     void turn();
+    void noteOpenings();
     [[nodiscard]] std::vector<ShowSound> sounds() const;
 
     Visitor visitor_;
@@ -47,9 +48,10 @@ private:
     std::shared_ptr<const Rig> rig_;
     std::optional<Bending> bending_;
     Surroundings around_;
-    glm::dvec2 deviceLean_{0.0};      ///< of a tracked device, radians
-    std::optional<glm::dvec2> rests_; ///< where the pointer rests
-    double resting_ = 0.0;            ///< seconds for which it has
+    glm::dvec2 deviceLean_{0.0};       ///< of a tracked device, radians
+    std::optional<glm::dvec2> rests_;  ///< where the pointer rests
+    double resting_ = 0.0;             ///< seconds for which it has
+    std::vector<glm::dvec2> openings_; ///< where holes came to be in this winter, the last few
     bool alone_ = true;
     double played_ = 0.0; ///< seconds of the show that it plays by itself
     double open_ = 0.0;   ///< seconds for which there has been hardly any ice

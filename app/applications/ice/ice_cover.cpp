@@ -13,9 +13,9 @@ namespace lumorph::ice {
 namespace {
 
 constexpr double kMostAtOnce = 0.25;    ///< seconds
-constexpr std::uint64_t kMeltEvery = 4; ///< steps
-constexpr std::uint64_t kShapeEvery = 24;
-constexpr std::uint64_t kStrainEvery = 12;
+constexpr std::uint64_t kMeltEvery = 2; ///< steps
+constexpr std::uint64_t kShapeEvery = 12;
+constexpr std::uint64_t kStrainEvery = 6;
 constexpr double kStarReach = 0.016;  ///< metres around a blow: cells there are divided
 constexpr double kCrackLength = 0.14; ///< metres
 constexpr double kLeastFloe = 14e-6;  ///< square metres: smaller ones melt away
@@ -41,6 +41,20 @@ WaterLevel rippleAt(const glm::dvec2& place, double seconds) {
     const glm::dvec2 wave = 2.0 * std::numbers::pi / kRippleLength * glm::dvec2(0.8, 0.6);
     const double phase = glm::dot(wave, place) - 2.0 * std::numbers::pi * seconds / kRipplePeriod;
     return {kRipple * std::sin(phase), kRipple * wave * std::cos(phase)};
+}
+
+/// Without what is no number.
+Surroundings sound(Surroundings around) {
+    const auto isFinite = [](const glm::dvec2& v) { return std::isfinite(v.x) && std::isfinite(v.y); };
+    std::erase_if(around.warmths, [&](const Warmth& warmth) {
+        return !isFinite(warmth.place) || !(warmth.radius > 0.0) || !std::isfinite(warmth.radius) ||
+               !(warmth.power > 0.0) || !std::isfinite(warmth.power);
+    });
+    std::erase_if(around.presses,
+                  [&](const Press& press) { return !isFinite(press.place) || !std::isfinite(press.volume); });
+    if (!isFinite(around.lean)) around.lean = {};
+    if (!std::isfinite(around.thaw)) around.thaw = 0.0;
+    return around;
 }
 
 } // namespace
@@ -107,9 +121,11 @@ double IceCover::iceArea() const noexcept {
 
 double IceCover::melted() const noexcept { return freezing() ? sheet_.area() - iceArea() : sheet_.melted(); }
 
-void IceCover::advance(double seconds, const Surroundings& around) {
+void IceCover::advance(double seconds, const Surroundings& given) {
     events_.clear();
     if (std::isfinite(seconds)) left_ += std::clamp(seconds, 0.0, kMostAtOnce);
+    if (left_ < FloeWorld::kStep) return;
+    const Surroundings around = sound(given);
     for (; left_ >= FloeWorld::kStep; left_ -= FloeWorld::kStep) step(around);
 }
 

@@ -34,14 +34,16 @@ SceneItem waterItem() {
     SceneItem item = demoItem(kWaterItem, "Water", ShapeItem{ShapeItem::Form::plane, {size.x, 0.001F, size.y}});
     item.position.y = static_cast<float>(kWaterLevel);
     item.material = readyMaterial("Water");
-    item.material.color = {0.03F, 0.20F, 0.27F};
+    item.material.color = {0.03F, 0.24F, 0.32F};
+    item.material.emission = {0.02F, 0.36F, 0.48F};
+    item.material.emissionStrength = 0.30F;
     item.material.refraction = 0.0F;
     item.material.reflection = 0.10F;
     item.material.roughness = 0.12F;
     item.material.normalStrength = 0.22F;
     item.material.normalMaps[0].velocity *= 0.4F;
     item.material.normalMaps[1].velocity *= 0.4F;
-    item.opacity = 0.45F;
+    item.opacity = 0.38F;
     return item;
 }
 
@@ -53,8 +55,8 @@ SceneItem fishItem(int number) {
     item.material.colorTexture.image = koiCoat(number % kKoiPictures);
     item.material.colorTexture.tile = glm::vec2(1.0F);
     item.material.roughness = 0.35F;
-    item.material.emission = {1.0F, 0.35F, 0.12F};
-    item.material.emissionStrength = 0.05F;
+    item.material.emission = {1.0F, 0.40F, 0.16F};
+    item.material.emissionStrength = 0.22F;
     return item;
 }
 

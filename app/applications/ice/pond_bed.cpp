@@ -173,9 +173,9 @@ std::vector<Material> bedMaterials() {
         material.colorTexture.tile = material.normalMaps[0].tile = glm::vec2(tile);
         return material;
     };
-    materials[kGround] = pictured("Stone", "Ground", {0.22F, 0.34F, 0.36F}, 0.05F);
-    materials[kPebble] = pictured("Stone", "Pebble", {0.66F, 0.70F, 0.66F}, 0.06F);
-    materials[kDarkPebble] = pictured("Stone", "Dark pebble", {0.36F, 0.40F, 0.44F}, 0.06F);
+    materials[kGround] = pictured("Stone", "Ground", {0.30F, 0.46F, 0.48F}, 0.05F);
+    materials[kPebble] = pictured("Stone", "Pebble", {0.92F, 0.95F, 0.90F}, 0.06F);
+    materials[kDarkPebble] = pictured("Stone", "Dark pebble", {0.55F, 0.62F, 0.66F}, 0.06F);
     materials[kStone] = pictured("Stone", "Stone", {0.72F, 0.72F, 0.76F}, 0.05F);
     Material& snow = materials[kSnow];
     snow.name = "Snow";
@@ -185,6 +185,11 @@ std::vector<Material> bedMaterials() {
     snow.normalMaps[0].tile = glm::vec2(0.03F);
     snow.emission = {0.30F, 0.42F, 0.60F};
     snow.emissionStrength = 0.12F;
+    // Light that has come through the ice.
+    for (const BedMaterial deep : {kGround, kPebble, kDarkPebble}) {
+        materials[deep].emission = {0.10F, 0.42F, 0.50F};
+        materials[deep].emissionStrength = 0.10F;
+    }
     materials[kReed].name = "Reed";
     materials[kReed].color = {0.80F, 0.66F, 0.36F};
     materials[kCattail].name = "Cattail";

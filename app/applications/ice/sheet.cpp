@@ -14,7 +14,7 @@ namespace {
 
 constexpr int kCells = 42;            ///< of a sheet without cracks
 constexpr double kSliver = 4e-6;      ///< square metres: no smaller cell is made
-constexpr double kLeastBond = 0.0003; ///< metres
+constexpr double kLeastBond = 0.0001; ///< metres
 constexpr double kLeastEdge = 0.0004; ///< metres: shorter ones of a melting rim become one
 constexpr double kOnLine = 2e-6;      ///< metres
 
