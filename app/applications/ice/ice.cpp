@@ -19,7 +19,7 @@ constexpr double kFinger = 4e-7;       ///< cubic metres: how heavy a touch is
 constexpr double kHandNear = 0.07;     ///< metres over the sheet from where on a hand warms
 constexpr double kHandOn = 0.012;      ///< where it also presses
 constexpr double kRests = 0.006;       ///< metres within which a pointer rests
-constexpr double kUntilCrack = 1.1;    ///< seconds of rest
+constexpr double kUntilCrack = 0.8;    ///< seconds of rest
 constexpr double kOpen = 0.10;         ///< share of ice below which the pond is open
 constexpr double kUntilFrost = 5.0;    ///< seconds it stays so
 constexpr double kVisitorsThaw = 6e-5; ///< metres a second: slow, so that there is room for floes to move
@@ -66,6 +66,13 @@ const char* soundOf(IceEvent::Kind kind) {
     }
 }
 
+std::vector<ShowSound> soundsOf(const std::vector<IceEvent>& events) {
+    std::vector<ShowSound> sounds;
+    for (const IceEvent& event : events)
+        sounds.push_back({soundOf(event.kind), event.strength, {glm::dvec3(event.place.x, kIceTop, event.place.y)}});
+    return sounds;
+}
+
 } // namespace
 
 IceProgram::IceProgram(std::uint64_t seed)
@@ -85,17 +92,18 @@ ShowContent IceProgram::frame(const ShowMoment& moment) {
     turn();
     around_.lift = [this](const glm::dvec2& place) { return swell_.at(place); };
     ice_.advance(moment.step, around_);
-    noteOpenings();
+    const std::vector<IceEvent> events = ice_.takeEvents();
+    noteOpenings(events);
     school_.advance(moment.step, around_.warmths, openings_);
     if (bending_) swell_.advance(ice_, *bending_, moment.step);
     open_ = ice_.iceArea() < kOpen * ice_.sheet().area() && !ice_.freezing() ? open_ + moment.step : 0.0;
-    if (open_ > kUntilFrost) ice_.freeze();
+    if (open_ > kUntilFrost) freeze();
     ShowContent content;
     content.scene = pond_.show(ice_, school_, around_.warmths);
     content.assets = pond_.assets();
     content.target = swell_.heights();
     content.following = Following::split;
-    content.sounds = sounds();
+    content.sounds = soundsOf(events);
     return content;
 }
 
@@ -160,14 +168,18 @@ void IceProgram::play(double step) {
         if (before < strike.seconds && played_ >= strike.seconds) ice_.strike(strike.place);
     if (played_ > OwnShow::kSwaysFrom)
         around_.lean = 0.11 * glm::dvec2(std::sin(0.5 * played_), std::cos(0.37 * played_));
-    if (played_ < OwnShow::kUntil) return;
+    if (played_ > OwnShow::kUntil) freeze();
+}
+
+/// Frost, and its own show begins with it.
+void IceProgram::freeze() {
     ice_.freeze();
     played_ = -IceCover::kLeaving;
 }
 
-void IceProgram::noteOpenings() {
+void IceProgram::noteOpenings(const std::vector<IceEvent>& events) {
     if (ice_.freezing()) openings_.clear();
-    for (const IceEvent& event : ice_.events()) {
+    for (const IceEvent& event : events) {
         const auto known = [&](const glm::dvec2& place) { return glm::distance(place, event.place) < kOpenings; };
         if (event.kind != IceEvent::Kind::drip || std::ranges::any_of(openings_, known)) continue;
         if (openings_.size() == kMostOpenings) openings_.erase(openings_.begin());
@@ -176,20 +188,10 @@ void IceProgram::noteOpenings() {
 }
 
 void IceProgram::turn() {
-    if (visitor_.restart() || visitor_.left()) {
-        ice_.freeze();
-        played_ = -IceCover::kLeaving;
-    }
+    if (visitor_.restart() || visitor_.left()) freeze();
     if (!visitor_.next()) return;
     const glm::dvec2 place = visitor_.pointer() ? *visitor_.pointer() * kPondHalf : glm::dvec2(0.0);
     if (!ice_.strike(place)) ice_.strike({});
-}
-
-std::vector<ShowSound> IceProgram::sounds() const {
-    std::vector<ShowSound> sounds;
-    for (const IceEvent& event : ice_.events())
-        sounds.push_back({soundOf(event.kind), event.strength, {glm::dvec3(event.place.x, kIceTop, event.place.y)}});
-    return sounds;
 }
 
 Demo iceDemo() {

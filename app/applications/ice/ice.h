@@ -37,8 +37,8 @@ private:
     void takePointer(double step);
     void play(double step);
     void turn();
-    void noteOpenings();
-    [[nodiscard]] std::vector<ShowSound> sounds() const;
+    void freeze();
+    void noteOpenings(const std::vector<IceEvent>& events);
 
     Visitor visitor_;
     IceCover ice_;

@@ -12,8 +12,9 @@
 namespace lumorph::ice {
 namespace {
 
-constexpr double kMostAtOnce = 0.25;    ///< seconds
-constexpr std::uint64_t kMeltEvery = 2; ///< steps
+constexpr std::size_t kMostEvents = 100; ///< that nobody has asked for
+constexpr double kMostAtOnce = 0.25;     ///< seconds
+constexpr std::uint64_t kMeltEvery = 2;  ///< steps
 constexpr std::uint64_t kShapeEvery = 12;
 constexpr std::uint64_t kStrainEvery = 6;
 constexpr double kStarReach = 0.016;  ///< metres around a blow: cells there are divided
@@ -87,7 +88,7 @@ void IceCover::beginWinter() {
 }
 
 void IceCover::happened(IceEvent::Kind kind, double strength, const glm::dvec2& place) {
-    events_.push_back({kind, strength, place});
+    if (events_.size() < kMostEvents) events_.push_back({kind, strength, place});
 }
 
 void IceCover::freeze() {
@@ -122,7 +123,6 @@ double IceCover::iceArea() const noexcept {
 double IceCover::melted() const noexcept { return freezing() ? sheet_.area() - iceArea() : sheet_.melted(); }
 
 void IceCover::advance(double seconds, const Surroundings& given) {
-    events_.clear();
     if (std::isfinite(seconds)) left_ += std::clamp(seconds, 0.0, kMostAtOnce);
     if (left_ < FloeWorld::kStep) return;
     const Surroundings around = sound(given);
@@ -161,66 +161,90 @@ void IceCover::meltAll(const Surroundings& around, double seconds) {
     }
 }
 
-/// Bonds suffer where the device bends sharply, and all over where it leans; the first that gives way lets a crack run.
-void IceCover::strain(const Surroundings& around, double seconds) {
-    calm_ -= seconds;
+/// Of the floe of a bond, by the device's bend and lean; above 0 it harms.
+double IceCover::stressOn(const Bond& bond, const Surroundings& around) const {
+    const Floe& floe = floeOf(bond);
+    const double large = std::min(1.0, 4.0 * floe.area / sheet_.area());
     const double steep = std::max(0.0, glm::length(around.lean) / kSteepLean - 1.0);
-    std::size_t weakest = sheet_.bonds().size();
-    for (std::size_t k = 0; k < sheet_.bonds().size(); ++k) {
-        const Bond& bond = sheet_.bonds()[k];
-        const Floe& floe = floes_[static_cast<std::size_t>(sheet_.cells()[static_cast<std::size_t>(bond.a)].plate)];
-        const double large = std::min(1.0, 4.0 * floe.area / sheet_.area());
-        double stress = floe.fixed ? 1.2 * steep * large : 0.0;
+    double stress = floe.fixed ? 1.2 * steep : 0.0; // what floats slides instead
+    if (around.bending) {
         const glm::dvec2 from = placed(floe.motion.placement, bond.edge.from);
         const glm::dvec2 to = placed(floe.motion.placement, bond.edge.to);
         const glm::dvec2 along = (to - from) / glm::distance(from, to);
-        if (around.bending) {
-            const double bend = around.bending->curvatureAt(0.5 * (from + to), {-along.y, along.x});
-            stress += large * std::max(0.0, std::abs(bend) / kSharpBend - 1.0);
-        }
-        sheet_.addDamage(k, stress * seconds);
-        const bool gives = bond.damage > bond.strength;
-        if (gives && (weakest == sheet_.bonds().size() ||
-                      bond.damage - bond.strength > sheet_.bonds()[weakest].damage - sheet_.bonds()[weakest].strength))
-            weakest = k;
+        const double bend = around.bending->curvatureAt(0.5 * (from + to), {-along.y, along.x});
+        stress += std::max(0.0, std::abs(bend) / kSharpBend - 1.0);
+    }
+    return large * stress;
+}
+
+const Floe& IceCover::floeOf(const Bond& bond) const {
+    return floes_[static_cast<std::size_t>(sheet_.cells()[static_cast<std::size_t>(bond.a)].plate)];
+}
+
+/// Bonds suffer from stress; the one that is farthest gone gives way, and a crack runs from there both ways.
+void IceCover::strain(const Surroundings& around, double seconds) {
+    calm_ -= seconds;
+    std::size_t weakest = sheet_.bonds().size();
+    double farthest = 0.0;
+    for (std::size_t k = 0; k < sheet_.bonds().size(); ++k) {
+        sheet_.addDamage(k, stressOn(sheet_.bonds()[k], around) * seconds);
+        const Bond& bond = sheet_.bonds()[k];
+        if (bond.damage - bond.strength <= farthest) continue;
+        farthest = bond.damage - bond.strength;
+        weakest = k;
     }
     if (weakest == sheet_.bonds().size() || calm_ > 0.0) return;
     calm_ = kCalm;
-    const Bond bond = sheet_.bonds()[weakest];
-    const glm::dvec2 along = glm::normalize(bond.edge.to - bond.edge.from);
-    const Floe& floe = floes_[static_cast<std::size_t>(sheet_.cells()[static_cast<std::size_t>(bond.a)].plate)];
-    happened(IceEvent::Kind::crack, 1.0, placed(floe.motion.placement, bond.edge.from));
+    const Segment edge = sheet_.bonds()[weakest].edge;
+    happened(IceEvent::Kind::crack, 1.0, placed(floeOf(sheet_.bonds()[weakest]).motion.placement, edge.from));
     sheet_.breakBond(weakest);
-    cracks_.start(bond.edge.to, along, kCrackLength);
-    cracks_.start(bond.edge.from, -along, kCrackLength);
+    const glm::dvec2 along = glm::normalize(edge.to - edge.from);
+    cracks_.start(edge.to, along, kCrackLength);
+    cracks_.start(edge.from, -along, kCrackLength);
 }
 
-const Floe* IceCover::floeAt(const glm::dvec2& place) const {
-    for (std::size_t k = 0; k < floes_.size(); ++k)
-        if (sheet_.cellAt(static_cast<int>(k), homeOf(floes_[k].motion.placement, place)) >= 0) return &floes_[k];
-    return nullptr;
+/// The ice at a place, or what is nearest to it within the reach of a blow.
+IceCover::Target IceCover::nearestIce(const glm::dvec2& place) const {
+    Target target;
+    double least = kStarReach;
+    for (std::size_t k = 0; k < floes_.size(); ++k) {
+        const glm::dvec2 home = homeOf(floes_[k].motion.placement, place);
+        for (const int cell : floes_[k].cells) {
+            const Polygon& outline = sheet_.cells()[static_cast<std::size_t>(cell)].outline;
+            if (outline.empty()) continue;
+            if (holds(outline, home)) return {static_cast<int>(k), home};
+            const glm::dvec2 nearest = nearestOnRim(outline, home);
+            if (glm::distance(nearest, home) >= least) continue;
+            least = glm::distance(nearest, home);
+            target = {static_cast<int>(k), nearest};
+        }
+    }
+    return target;
 }
 
 bool IceCover::strike(const glm::dvec2& place) {
     if (freezing() || leaving_ > 0.0 || !std::isfinite(place.x) || !std::isfinite(place.y)) return false;
-    const Floe* floe = floeAt(place);
-    if (floe == nullptr) return false;
-    const glm::dvec2 home = homeOf(floe->motion.placement, place);
-    sheet_.divide(static_cast<int>(floe - floes_.data()), home, kStarReach, starSites(home, random_));
-    const double first = 2.0 * std::numbers::pi * chance(random_);
-    for (int k = 0; k < 3; ++k) {
-        const double angle = first + 2.0 * std::numbers::pi * (k + 0.4 * chance(random_)) / 3.0;
-        // From the corner that is nearest to the blow.
-        glm::dvec2 from = home;
-        double least = kStarReach;
-        for (const Bond& bond : sheet_.bonds())
-            for (const glm::dvec2& end : {bond.edge.from, bond.edge.to})
-                if (glm::distance(end, home) < least) least = glm::distance(from = end, home);
-        cracks_.start(from, {std::cos(angle), std::sin(angle)}, kCrackLength);
-    }
+    const Target target = nearestIce(place);
+    if (target.floe < 0) return false;
+    sheet_.divide(target.floe, target.home, kStarReach, starSites(target.home, random_));
+    startStar(target.home);
     happened(IceEvent::Kind::crack, 1.5, place);
     if (sheet_.isDirty()) gather();
     return true;
+}
+
+/// Cracks on three sides, from the corner of cells that is nearest to the blow.
+void IceCover::startStar(const glm::dvec2& home) {
+    glm::dvec2 from = home;
+    double least = kStarReach;
+    for (const Bond& bond : sheet_.bonds())
+        for (const glm::dvec2& end : {bond.edge.from, bond.edge.to})
+            if (glm::distance(end, home) < least) least = glm::distance(from = end, home);
+    const double first = 2.0 * std::numbers::pi * chance(random_);
+    for (int k = 0; k < 3; ++k) {
+        const double angle = first + 2.0 * std::numbers::pi * (k + 0.4 * chance(random_)) / 3.0;
+        cracks_.start(from, {std::cos(angle), std::sin(angle)}, kCrackLength);
+    }
 }
 
 std::vector<Polygon> IceCover::piecesOf(const Floe& floe) const {
@@ -263,31 +287,37 @@ void IceCover::gather() {
             std::ranges::any_of(floe.cells, [&](int k) { return sheet_.cells()[static_cast<std::size_t>(k)].ashore; });
         measure(floe);
         const int parent = before[static_cast<std::size_t>(floe.cells.front())];
-        Floe* from = parent >= 0 && parent < std::ssize(old) ? &old[static_cast<std::size_t>(parent)] : nullptr;
-        if (from) {
-            floe.motion = from->motion;
-            floe.bob = from->bob;
-        }
-        if (from && from->body >= 0 && from->cells == floe.cells && from->fixed == floe.fixed) {
-            floe.body = std::exchange(from->body, -1);
-            floe.shaped = from->shaped;
-            floe.number = from->number;
-        } else {
-            if (from)
-                floe.motion.velocity += from->motion.spin * [](const glm::dvec2& v) {
-                    return glm::dvec2(-v.y, v.x);
-                }(centreNow(floe) - centreNow(*from));
-            if (from && !floe.fixed)
-                rock(floe.bob, floe.area, 0.01 * floe.area * (glm::dvec2(chance(random_), chance(random_)) - 0.5));
-            floe.body = world_.add(piecesOf(floe), floe.motion, floe.fixed);
-            floe.shaped = floe.version;
-            floe.number = ++numbers_;
-        }
+        inherit(floe, parent >= 0 && parent < std::ssize(old) ? &old[static_cast<std::size_t>(parent)] : nullptr);
         floes_.push_back(std::move(floe));
     }
     for (const Floe& floe : old)
         if (floe.body >= 0) world_.remove(floe.body);
     loosen();
+}
+
+/// Place and motion of the floe from which it came; its body too, where it is the same floe.
+void IceCover::inherit(Floe& floe, Floe* from) {
+    if (from) {
+        floe.motion = from->motion;
+        floe.bob = from->bob;
+    }
+    if (from && from->body >= 0 && from->cells == floe.cells && from->fixed == floe.fixed) {
+        floe.body = std::exchange(from->body, -1);
+        floe.shaped = from->shaped;
+        floe.number = from->number;
+        return;
+    }
+    if (from) {
+        const glm::dvec2 aside = centreNow(floe) - centreNow(*from);
+        floe.motion.velocity += from->motion.spin * glm::dvec2(-aside.y, aside.x);
+    }
+    if (from && !floe.fixed) { // it rocks as it comes off
+        const double x = chance(random_), z = chance(random_);
+        rock(floe.bob, floe.area, 0.01 * floe.area * (glm::dvec2(x, z) - 0.5));
+    }
+    floe.body = world_.add(piecesOf(floe), floe.motion, floe.fixed);
+    floe.shaped = floe.version;
+    floe.number = ++numbers_;
 }
 
 /// Only a plate that is large enough holds to the bank.

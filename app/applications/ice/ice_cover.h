@@ -4,6 +4,7 @@
 #include <functional>
 #include <random>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "app/applications/ice/bending.h"
@@ -67,7 +68,7 @@ public:
     IceCover(Polygon shore, std::uint64_t seed);
 
     void advance(double seconds, const Surroundings& around);
-    /// Begins a star of cracks where ice lies; false where none does.
+    /// Begins a star of cracks where ice lies, or a little beside; false where none does.
     bool strike(const glm::dvec2& place);
     /// Old ice goes, and frost closes the pond.
     void freeze();
@@ -75,7 +76,8 @@ public:
     [[nodiscard]] const Polygon& shore() const noexcept { return shore_; }
     [[nodiscard]] const Sheet& sheet() const noexcept { return sheet_; }
     [[nodiscard]] const std::vector<Floe>& floes() const noexcept { return floes_; }
-    [[nodiscard]] const std::vector<IceEvent>& events() const noexcept { return events_; } ///< of the last `advance`
+    /// What has happened since this was asked last.
+    [[nodiscard]] std::vector<IceEvent> takeEvents() noexcept { return std::exchange(events_, {}); }
     [[nodiscard]] bool freezing() const noexcept { return frost_ < 1.0; }
     /// A cell as it is now in home coordinates: smaller than its outline while frost grows.
     [[nodiscard]] Polygon grown(int cell) const;
@@ -90,14 +92,22 @@ private:
     void step(const Surroundings& around);
     void meltAll(const Surroundings& around, double seconds);
     void strain(const Surroundings& around, double seconds);
+    [[nodiscard]] double stressOn(const Bond& bond, const Surroundings& around) const;
+    [[nodiscard]] const Floe& floeOf(const Bond& bond) const;
     void gather();
+    void inherit(Floe& floe, Floe* from);
     void loosen();
     void reshape();
     void measure(Floe& floe) const;
     void move(const Surroundings& around);
     void readBumps();
     [[nodiscard]] std::vector<Polygon> piecesOf(const Floe& floe) const;
-    [[nodiscard]] const Floe* floeAt(const glm::dvec2& place) const;
+    struct Target {
+        int floe = -1;
+        glm::dvec2 home{0.0};
+    };
+    [[nodiscard]] Target nearestIce(const glm::dvec2& place) const;
+    void startStar(const glm::dvec2& home);
     void happened(IceEvent::Kind kind, double strength, const glm::dvec2& place);
 
     Polygon shore_;

@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 
+#include <glm/common.hpp>
+
 #include "app/applications/demo_items.h"
 #include "app/applications/ice/pond_bed.h"
 
@@ -14,6 +16,7 @@ constexpr int kColumns = 43, kRows = 31; ///< 5 mm apart
 constexpr int kTaps = 6;                 ///< samples to either side
 constexpr double kWidth = 2.6;           ///< of the bell by which mounds are broad, samples
 constexpr double kFollows = 0.9;         ///< seconds: a mound comes up slowly, as servos do
+constexpr double kRoom = 1.6;            ///< mounds fade where the device rises less than 1 / kRoom of its most
 constexpr double kLarge = 450e-6;        ///< square metres of a floe that is lifted whole
 
 std::array<float, 2 * kTaps + 1> bell() {
@@ -26,9 +29,14 @@ std::array<float, 2 * kTaps + 1> bell() {
     return weights;
 }
 
-int sampleOf(double at, double min, double max, int samples, double (*round)(double)) {
-    return std::clamp(static_cast<int>(round((at - min) / (max - min) * (samples - 1))), 0, samples - 1);
+constexpr glm::dvec2 kSamples{kColumns - 1, kRows - 1};
+
+glm::dvec2 samplePlace(int column, int row) {
+    return -kPondHalf + 2.0 * kPondHalf * glm::dvec2(column, row) / kSamples;
 }
+
+/// Columns and rows between the first sample and a place.
+glm::dvec2 samplesFromCorner(const glm::dvec2& place) { return (place + kPondHalf) / (2.0 * kPondHalf) * kSamples; }
 
 } // namespace
 
@@ -43,35 +51,36 @@ void Swell::advance(const IceCover& ice, const Bending& device, double seconds) 
     for (const Floe& floe : ice.floes()) {
         if (floe.fixed || ice.freezing()) continue;
         const double size = std::min(1.0, floe.area / kLarge);
-        addFloe(ice, floe, kMost * size * std::min(1.0, 1.6 * device.roomAt(centreNow(floe))));
+        addFloe(ice, floe, kMost * size);
     }
     smooth();
     const auto follows = static_cast<float>(1.0 - std::exp(-std::clamp(seconds, 0.0, 1.0) / kFollows));
-    for (std::size_t k = 0; k < wanted_.size(); ++k)
+    for (std::size_t k = 0; k < wanted_.size(); ++k) {
+        const int column = static_cast<int>(k) % kColumns, row = static_cast<int>(k) / kColumns;
+        wanted_[k] *= static_cast<float>(std::min(1.0, kRoom * device.roomAt(samplePlace(column, row))));
         heights_.heights[k] += follows * (kSheet + wanted_[k] - heights_.heights[k]);
+    }
 }
 
 void Swell::addFloe(const IceCover& ice, const Floe& floe, double lift) {
     for (const int cell : floe.cells) {
         Polygon outline = ice.sheet().cells()[static_cast<std::size_t>(cell)].outline;
-        if (outline.empty()) continue;
         for (glm::dvec2& corner : outline) corner = placed(floe.motion.placement, corner);
-        glm::dvec2 min(outline.front()), max(min);
-        for (const glm::dvec2& corner : outline) {
-            min = glm::min(min, corner);
-            max = glm::max(max, corner);
-        }
-        const glm::dvec2 from = heights_.min, to = heights_.max;
-        for (int j = sampleOf(min.y, from.y, to.y, kRows, std::ceil);
-             j <= sampleOf(max.y, from.y, to.y, kRows, std::floor); ++j)
-            for (int i = sampleOf(min.x, from.x, to.x, kColumns, std::ceil);
-                 i <= sampleOf(max.x, from.x, to.x, kColumns, std::floor); ++i) {
-                const glm::dvec2 place(std::lerp(from.x, to.x, static_cast<double>(i) / (kColumns - 1)),
-                                       std::lerp(from.y, to.y, static_cast<double>(j) / (kRows - 1)));
-                if (holds(outline, place))
-                    wanted_[static_cast<std::size_t>(j * kColumns + i)] = static_cast<float>(lift);
-            }
+        if (!outline.empty()) addCell(outline, lift);
     }
+}
+
+void Swell::addCell(const Polygon& outline, double lift) {
+    glm::dvec2 min(outline.front()), max(min);
+    for (const glm::dvec2& corner : outline) {
+        min = glm::min(min, corner);
+        max = glm::max(max, corner);
+    }
+    const glm::ivec2 first(glm::ceil(samplesFromCorner(min))), last(glm::floor(samplesFromCorner(max)));
+    for (int row = std::max(first.y, 0); row <= std::min(last.y, kRows - 1); ++row)
+        for (int column = std::max(first.x, 0); column <= std::min(last.x, kColumns - 1); ++column)
+            if (holds(outline, samplePlace(column, row)))
+                wanted_[static_cast<std::size_t>(row * kColumns + column)] = static_cast<float>(lift);
 }
 
 /// A bell along rows and columns; beyond the rim it goes on as at the rim.

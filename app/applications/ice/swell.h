@@ -24,6 +24,7 @@ public:
 
 private:
     void addFloe(const IceCover& ice, const Floe& floe, double lift);
+    void addCell(const Polygon& outline, double lift);
     void smooth();
 
     HeightGrid heights_;
