@@ -5,6 +5,7 @@
 
 #include "app/applications/ambient/ambient.h"
 #include "app/applications/field/field_demo.h"
+#include "app/applications/ice/ice.h"
 #include "app/applications/labyrinth/labyrinth.h"
 #include "app/applications/techniques/techniques.h"
 #include "app/applications/water/water.h"
@@ -15,6 +16,7 @@ namespace lumorph {
 std::span<const Demo> demos() {
     static const std::vector<Demo> all{waterDemo(), techniquesDemo(), fieldDemo(), labyrinth::labyrinthDemo(),
                                         ambient::ambientDemo()};
+    static const std::vector<Demo> all{waterDemo(), techniquesDemo(), fieldDemo(), labyrinth::labyrinthDemo(), ice::iceDemo()};
     return all;
 }
 
