@@ -5,6 +5,7 @@
 
 #include "app/applications/field/field_demo.h"
 #include "app/applications/labyrinth/labyrinth.h"
+#include "app/applications/navigation/navigation.h"
 #include "app/applications/techniques/techniques.h"
 #include "app/applications/water/water.h"
 #include "core/base/error.h"
@@ -12,7 +13,8 @@
 namespace lumorph {
 
 std::span<const Demo> demos() {
-    static const std::vector<Demo> all{waterDemo(), techniquesDemo(), fieldDemo(), labyrinth::labyrinthDemo()};
+    static const std::vector<Demo> all{waterDemo(), techniquesDemo(), fieldDemo(), labyrinth::labyrinthDemo(),
+                                       navigation::navigationDemo()};
     return all;
 }
 
