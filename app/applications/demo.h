@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <string>
 #include <vector>
@@ -18,6 +19,13 @@ struct DemoStep {
     Scene scene;
 };
 
+/// What an application may be told when it starts, beside its seed.
+struct DemoOption {
+    std::string name; ///< on the command line: `--NAME TEXT`
+    std::string help;
+};
+using DemoTold = std::map<std::string, std::string>; ///< texts by the names of options
+
 /// A demonstration, as those who offer it know it: the window, the command line, tests. What it is made of stays in its
 /// own folder.
 struct Demo {
@@ -34,7 +42,16 @@ struct Demo {
     /// An application that answers what happens, in place of the scene of `open`; none: it goes by time alone. The same
     /// seed and inputs give the same show. Throws DataError where a resource is missing.
     std::unique_ptr<ShowProgram> (*program)(std::uint64_t seed) = nullptr;
+    std::vector<DemoOption> options = {}; ///< of an application; `programTold` is there where there are some
+    /// As `program`, told something. Throws InvalidInput and DataError naming what cannot be, Cancelled.
+    std::unique_ptr<ShowProgram> (*programTold)(std::uint64_t seed, const DemoTold& told,
+                                                const Progress& progress) = nullptr;
 };
+
+/// The application of a demonstration; null for one that goes by time alone. Throws InvalidInput where it is told
+/// something that it has no option for.
+[[nodiscard]] std::unique_ptr<ShowProgram> startProgram(const Demo& demo, std::uint64_t seed, const DemoTold& told = {},
+                                                        const Progress& progress = {});
 
 /// A demonstration whose scene is a bundled project: `projects/NAME.lumorph`.
 [[nodiscard]] ProjectContents bundledProject(const std::string& name, const Progress& progress);

@@ -159,6 +159,7 @@ ShowRates playShow(const ProjectContents& contents, const std::string& name, con
     if (writer) writer->finish();
     ShowRates rates = recorder.rates();
     rates.warnings.insert(rates.warnings.end(), contents.warnings.begin(), contents.warnings.end());
+    rates.warnings.insert(rates.warnings.end(), script.notes.begin(), script.notes.end());
     return rates;
 }
 
@@ -171,7 +172,10 @@ ShowScript scriptOf(const Demo& demo, const DemoPlay& play) {
             throw InvalidInput("--input", "the demo '" + demo.name + "' goes by time alone", "leave it out");
         script.inputs = readInputScriptFile(play.inputs);
     }
-    if (demo.program) script.program = demo.program(play.seed);
+    const Progress notes([&script](double share, std::string_view text) {
+        if (share < 0.0) script.notes.emplace_back(text); // what it has to say, and no stage
+    });
+    script.program = startProgram(demo, play.seed, play.told, notes);
     return script;
 }
 

@@ -26,6 +26,7 @@ struct ShowPictures {
 struct ShowScript {
     std::shared_ptr<ShowProgram> program; ///< empty: the project's own scene
     InputScript inputs;
+    std::vector<std::string> notes; ///< of the application about what it was told, plain sentences
 };
 
 /// What came of it.
@@ -53,6 +54,7 @@ struct DemoPlay {
     std::filesystem::path last;   ///< its last picture, .png; empty: none
     std::filesystem::path inputs; ///< as `readInputScript` reads them; empty: none
     std::uint64_t seed = 1;       ///< of an application
+    DemoTold told;                ///< to an application, by the names of its options
     bool json = false;            ///< its rates as JSON
 };
 

@@ -21,6 +21,7 @@ constexpr double kShortestPole = 0.012, kPlateStep = 1.12 * Labels::kPlateHeight
 constexpr int kPlateSteps = 4;                                                    ///< by which a plate may stand higher
 constexpr double kFades = 0.22;                                                   ///< seconds
 constexpr double kPoleWidth = 0.0005;                                             ///< metres
+constexpr double kNamedTo = 9.0;  ///< times its own width a view may be and still name a place
 constexpr double kInside = 0.003; ///< metres from the rim within which a place has a name
 
 /// Dark letters on a light plate with round ends.
@@ -125,18 +126,18 @@ void Labels::arrange(const Map& map, const ViewGround& ground, const glm::dvec3&
     for (Plate& plate : plates_) {
         const glm::dvec2 point = ground.view().pointAt(map.places[plate.place].at);
         const glm::dvec2 inside = kHalf - glm::abs(point);
-        const bool over = std::min(inside.x, inside.y) > kInside;
+        const Place& place = map.places[plate.place];
+        const bool near = place.rank == 0 || ground.view().width < kNamedTo * place.width;
+        const bool over = near && std::min(inside.x, inside.y) > kInside;
+        if (over) plate.foot = {point.x, ground.surfaceAt(point), point.y};
         plate.wanted = over && shown.size() < kMostShown;
         if (plate.wanted) {
-            plate.foot = {point.x, ground.surfaceAt(point), point.y};
             const double lift = findRoom(plate, shown, eye);
             plate.wanted = lift >= 0.0;
             if (plate.wanted) {
                 plate.lift = plate.opacity > 0.0 ? std::lerp(lift, plate.lift, std::exp(-seconds / kFades)) : lift;
                 shown.push_back(&plate);
             }
-        } else if (!over) {
-            plate.opacity = std::min(plate.opacity, 0.0);
         }
         const double goal = plate.wanted ? 1.0 : 0.0;
         plate.opacity = std::lerp(goal, plate.opacity, std::exp(-seconds / kFades));
@@ -162,7 +163,6 @@ void Labels::show(Scene& scene) const {
         pole.scale = {glm::dvec3(kPoleWidth, height, kPoleWidth)};
         pole.material.name = "Pole";
         pole.material.color = {0.95F, 0.93F, 0.88F};
-        pole.opacity = sheet.opacity;
         pole.opacity = static_cast<float>(plate.opacity);
         scene.items.push_back(std::move(pole));
     }

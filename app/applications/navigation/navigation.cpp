@@ -9,6 +9,7 @@
 #include <glm/matrix.hpp>
 
 #include "app/applications/demo_items.h"
+#include "app/applications/navigation/map_import.h"
 #include "app/applications/navigation/map_model.h"
 #include "app/applications/navigation/noise.h"
 #include "app/applications/navigation/search.h"
@@ -86,6 +87,21 @@ glm::dvec3 eyeOf(const ShowMoment& moment) {
             break;
         }
     return glm::dvec3(glm::inverse(glm::dmat4(moment.worldFromDevice)) * glm::dvec4(eye, 1.0));
+}
+
+std::unique_ptr<ShowProgram> toldProgram(std::uint64_t seed, const DemoTold& told, const Progress& progress) {
+    const auto map = told.find("map"), place = told.find("goto");
+    std::shared_ptr<const Map> shown;
+    if (map == told.end()) {
+        shown = std::make_shared<const Map>(bundledValley(29, progress));
+    } else {
+        ImportedMap imported = importMap(map->second, progress);
+        for (const std::string& note : imported.report.notes) progress.report(-1.0, note);
+        shown = std::make_shared<const Map>(std::move(imported.map));
+    }
+    auto program = std::make_unique<NavigationProgram>(seed, std::move(shown));
+    if (place != told.end()) program->flyTo(place->second);
+    return program;
 }
 
 } // namespace
@@ -284,7 +300,11 @@ Demo navigationDemo() {
             [] { return std::vector<DemoStep>(); },
             [](std::uint64_t seed) -> std::unique_ptr<ShowProgram> {
                 return std::make_unique<NavigationProgram>(seed, std::make_shared<const Map>(bundledValley()));
-            }};
+            },
+            {{"map", "A map of one's own: a file or folder of heights (GeoTIFF, 16-bit PNG, .hgt) and of outlines "
+                     "(GeoJSON, CityJSON, .osm, .pbf)"},
+             {"goto", "A place to fly to at first, by its name or some of it"}},
+            toldProgram};
 }
 
 } // namespace lumorph::navigation

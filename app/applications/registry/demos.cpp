@@ -25,6 +25,14 @@ const Demo& demoNamed(const std::string& name) {
     return *found;
 }
 
+std::vector<DemoOption> demoOptions() {
+    std::vector<DemoOption> options;
+    for (const Demo& demo : demos())
+        for (const DemoOption& option : demo.options)
+            if (std::ranges::find(options, option.name, &DemoOption::name) == options.end()) options.push_back(option);
+    return options;
+}
+
 std::string demoNames() {
     std::string names;
     for (const Demo& demo : demos()) names += (names.empty() ? "" : ", ") + demo.name;

@@ -43,7 +43,7 @@ std::uint64_t newSeed() {
 }
 
 /// A demonstration by its name; without one a new project, the bundled tablet. Neither belongs to a file of the user's.
-Bundled readBundled(const std::string& demo, const FieldCache& cache, const Progress& progress) {
+Bundled readBundled(const std::string& demo, const DemoTold& told, const FieldCache& cache, const Progress& progress) {
     Bundled bundled;
     LoadedProject& loaded = bundled.loaded;
     if (demo.empty()) {
@@ -54,7 +54,7 @@ Bundled readBundled(const std::string& demo, const FieldCache& cache, const Prog
         const Demo& named = demoNamed(demo);
         loaded = loadedProject(named.open(progress));
         progress.throwIfCancelled();
-        if (named.program) bundled.program = named.program(newSeed());
+        bundled.program = startProgram(named, newSeed(), told, progress);
     }
     if (!loaded.state.field.field) loaded.state.field.field = cache.find(*loaded.state.rig.rig);
     return bundled;
@@ -70,7 +70,7 @@ struct ProjectService::Data {
     void watch();
     void openProject(const fs::path& file);
     /// A demo by its name, or a new project.
-    void openBundled(const std::string& demo, std::function<void()> onReady);
+    void openBundled(const std::string& demo, std::function<void()> onReady, const DemoTold& told = {});
     void replaceAll(LoadedProject loaded, const fs::path& file, std::shared_ptr<ShowProgram> program = {});
     void saveTo(const fs::path& file);
     void restore(std::function<void()> onReady);
@@ -148,11 +148,11 @@ void ProjectService::Data::openProject(const fs::path& file) {
         {{tr("Choose another file..."), [this] { emit service.chooseFile("project"); }}});
 }
 
-void ProjectService::Data::openBundled(const std::string& demo, std::function<void()> onReady) {
+void ProjectService::Data::openBundled(const std::string& demo, std::function<void()> onReady, const DemoTold& told) {
     const auto ready = std::make_shared<std::function<void()>>(std::move(onReady));
     jobs.runWith<Bundled>(
         "project", "project", demo.empty() ? tr("Opening the tablet") : tr("Opening the demo"),
-        [demo, cache = cache](const Progress& progress) { return readBundled(demo, cache, progress); },
+        [demo, told, cache = cache](const Progress& progress) { return readBundled(demo, told, cache, progress); },
         [this, ready](const Bundled& bundled) {
             replaceAll(bundled.loaded, {}, bundled.program);
             if (*ready) (*ready)();
@@ -314,8 +314,8 @@ void ProjectService::relink(const std::string& asset, const std::filesystem::pat
     data_->scene.relink(asset, file);
 }
 void ProjectService::newProject() { data_->openBundled({}, {}); }
-void ProjectService::openDemo(const std::string& name) {
-    data_->openBundled(name.empty() ? demos().front().name : name, {});
+void ProjectService::openDemo(const std::string& name, const DemoTold& told) {
+    data_->openBundled(name.empty() ? demos().front().name : name, {}, told);
 }
 
 bool ProjectService::save() {

@@ -51,8 +51,8 @@ public:
     void relink(const std::string& asset, const std::filesystem::path& file);
 
     void newProject(); ///< the bundled tablet, no target
-    /// A demonstration of app/applications by its name; without one the first.
-    void openDemo(const std::string& name = {});
+    /// A demonstration of app/applications by its name, told what its options say; without a name the first.
+    void openDemo(const std::string& name = {}, const DemoTold& told = {});
     /// Saves to the project's file; it is on disk when this returns, or the document is still modified and a notice
     /// says why. False when it has no file; ask for one and use saveAs.
     bool save();

@@ -29,6 +29,19 @@ const char* inputOf(int key) {
         return "key.next";
     case Qt::Key_A:
         return "key.attract";
+    case Qt::Key_Plus:
+    case Qt::Key_Equal: // the same key, without Shift
+        return "key.in";
+    case Qt::Key_Minus:
+        return "key.out";
+    case Qt::Key_Comma:
+        return "key.turnLeft";
+    case Qt::Key_Period:
+        return "key.turnRight";
+    case Qt::Key_W:
+        return "key.rain";
+    case Qt::Key_V:
+        return "key.bend";
     default:
         return nullptr;
     }

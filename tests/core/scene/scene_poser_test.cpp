@@ -405,6 +405,14 @@ TEST(ScenePoser, WhatIsHardlyThereThrowsNoShadow) {
     EXPECT_FALSE(casts(1.0F, Material::Alpha::blend, 0.3F));
 }
 
+TEST(ScenePoser, ASignInTheAirThrowsNoShadow) {
+    SceneItem item = itemOf(1, ShapeItem{});
+    item.material.unlit = true;
+    EXPECT_TRUE(posed(sceneOf({item})).surfaces.at(0).castsShadow) << "a lamp's housing";
+    item.material.alpha = Material::Alpha::blend;
+    EXPECT_FALSE(posed(sceneOf({item})).surfaces.at(0).castsShadow);
+}
+
 TEST(ScenePoser, WhatIsGoneIsForgotten) {
     ScenePoser poser;
     const Scene scene = sceneOf({itemOf(1, ShapeItem{})});
