@@ -14,7 +14,7 @@
 #include "core/mdf/builder.h"
 #include "core/motion/causal_split.h"
 #include "core/motion/surface_heights.h"
-#include "program_visit.h"
+#include "tests/support/program_visit.h"
 
 // R39: the labyrinth as visitors meet it: who plays, what is seen and heard, what is felt, and what a frame costs.
 

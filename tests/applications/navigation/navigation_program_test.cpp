@@ -18,7 +18,7 @@
 #include "core/base/error.h"
 #include "core/motion/causal_split.h"
 #include "core/motion/surface_heights.h"
-#include "program_visit.h"
+#include "tests/support/program_visit.h"
 
 // R36: the map as visitors meet it: where one flies, what is seen, read and felt, and what a frame costs.
 
