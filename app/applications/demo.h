@@ -22,9 +22,12 @@ struct DemoStep {
     Scene without; ///< the same without what it is to show, to compare
 };
 
-/// What an application may be told before it begins, by name, as text: `weather` a file, `place` "LAT,LON", `begin` a
-/// time, `day` seconds, `anticipation` seconds. Those it does not know it refuses.
-using DemoSettings = std::map<std::string, std::string>;
+/// What an application may be told when it starts, beside its seed.
+struct DemoOption {
+    std::string name; ///< on the command line: `--NAME TEXT`
+    std::string help;
+};
+using DemoTold = std::map<std::string, std::string>; ///< texts by the names of options
 
 /// A demonstration, as those who offer it know it: the window, the command line, tests. What it is made of stays in its
 /// own folder.
@@ -43,14 +46,20 @@ struct Demo {
     /// An application that answers what happens, in place of the scene of `open`; none: it goes by time alone. The same
     /// seed and inputs give the same show. Throws DataError where a resource is missing.
     std::unique_ptr<ShowProgram> (*program)(std::uint64_t seed) = nullptr;
-    /// The same with settings; none: it takes none. Throws InvalidInput for a setting that is wrong or not known, and
-    /// DataError for a file that is.
-    std::unique_ptr<ShowProgram> (*configured)(std::uint64_t seed, const DemoSettings& settings) = nullptr;
     /// The same, with what it wanted kept the last time (ShowContent::keepsake), which `file` held; none: it keeps
     /// nothing. Throws DataError naming the file where that is damaged.
     std::unique_ptr<ShowProgram> (*remembering)(std::uint64_t seed, std::string_view kept,
                                                 const std::string& file) = nullptr;
+    std::vector<DemoOption> options = {}; ///< of an application; `programTold` is there where there are some
+    /// As `program`, told something. Throws InvalidInput and DataError naming what cannot be, Cancelled.
+    std::unique_ptr<ShowProgram> (*programTold)(std::uint64_t seed, const DemoTold& told,
+                                                const Progress& progress) = nullptr;
 };
+
+/// The application of a demonstration; null for one that goes by time alone. Throws InvalidInput where it is told
+/// something that it has no option for.
+[[nodiscard]] std::unique_ptr<ShowProgram> startProgram(const Demo& demo, std::uint64_t seed, const DemoTold& told = {},
+                                                        const Progress& progress = {});
 
 /// A demonstration whose scene is a bundled project: `projects/NAME.lumorph`.
 [[nodiscard]] ProjectContents bundledProject(const std::string& name, const Progress& progress);

@@ -26,33 +26,20 @@ struct DemoOptions {
     std::string record, picture, inputs, kept;
 };
 
-/// What `ambient` may be told: --NAME VALUE each.
-constexpr std::pair<const char*, const char*> kSettings[] = {
-    {"weather", "Without a window, of ambient: a forecast in Open-Meteo's JSON"},
-    {"place", "Without a window, of ambient: LAT,LON or LAT,LON,HOURS ahead of UTC"},
-    {"begin", "Without a window, of ambient: its first time, 2026-05-17T14:00 at the place"},
-    {"day", "Without a window, of ambient: seconds that a day takes; 86400 is the world's own time"},
-    {"anticipation", "Without a window, of ambient: seconds by which light is ahead of the servos"}};
-
-void addSettings(CLI::App& command, DemoSettings& settings) {
-    for (const auto& [name, help] : kSettings)
-        command.add_option_function<std::string>(
-            std::string("--") + name,
-            [&settings, key = std::string(name)](const std::string& value) { settings[key] = value; }, help);
-}
-
 /// Replaces this process by `lumorph-studio`, which lies beside it: only it has a window.
-void showInWindow(const Demo& demo) {
+void showInWindow(const Demo& demo, const DemoTold& told) {
     std::error_code error;
     const std::filesystem::path self = std::filesystem::read_symlink("/proc/self/exe", error);
     std::string program = (self.parent_path() / "lumorph-studio").string();
     if (error || !std::filesystem::exists(program))
         throw DeviceError("demo", "the program lumorph-studio is not beside this one", "build it, or install it again");
-    std::string option = "--demo";
-    std::string name = demo.name;
-    char* const argv[] = {program.data(), option.data(), name.data(), nullptr};
+    std::vector<std::string> words{program, "--demo", demo.name};
+    for (const auto& [name, text] : told) words.insert(words.end(), {"--" + name, text});
+    std::vector<char*> argv;
+    for (std::string& word : words) argv.push_back(word.data());
+    argv.push_back(nullptr);
     Session::releaseSignals();
-    execv(argv[0], argv);
+    execv(argv[0], argv.data());
     throw DeviceError(program, std::strerror(errno), "check that it may be run");
 }
 
@@ -99,7 +86,10 @@ void addDemoCommand(CLI::App& app) {
         command->add_option("--seed", options->play.seed, "Without a window: of an application's chance")
             ->capture_default_str();
     command->add_flag("--json", options->play.json, "Without a window: print its rates as one JSON value");
-    addSettings(*command, options->play.settings);
+    for (const DemoOption& told : demoOptions())
+        command->add_option_function<std::string>(
+            "--" + told.name, [options, name = told.name](const std::string& text) { options->play.told[name] = text; },
+            told.help);
     CLI::App* own = addNew(*command);
     command->callback([options, seconds, record, picture, inputs, keep, seed, own] {
         if (own->parsed()) return;
@@ -111,11 +101,10 @@ void addDemoCommand(CLI::App& app) {
         options->play.last = options->picture;
         options->play.inputs = options->inputs;
         options->play.kept = options->kept;
-        if (*seconds || *record || *picture || *inputs || *keep || *seed || options->play.json ||
-            !options->play.settings.empty())
+        if (*seconds || *record || *picture || *inputs || *keep || *seed || options->play.json)
             playDemo(demo, options->play, std::cout);
         else
-            showInWindow(demo);
+            showInWindow(demo, options->play.told);
     });
 }
 

@@ -163,6 +163,7 @@ ShowRates playShow(const ProjectContents& contents, const std::string& name, con
     if (writer) writer->finish();
     ShowRates rates = recorder.rates();
     rates.warnings.insert(rates.warnings.end(), contents.warnings.begin(), contents.warnings.end());
+    rates.warnings.insert(rates.warnings.end(), script.notes.begin(), script.notes.end());
     return rates;
 }
 
@@ -177,11 +178,11 @@ ShowScript scriptOf(const Demo& demo, const DemoPlay& play, std::vector<std::str
             throw InvalidInput("--input", "the demo '" + demo.name + "' goes by time alone", "leave it out");
         script.inputs = readInputScriptFile(play.inputs);
     }
-    if (!play.settings.empty()) {
-        if (!demo.configured)
-            throw InvalidInput("--" + play.settings.begin()->first, "the demo '" + demo.name + "' has no such setting",
-                               "leave it out");
-        script.program = demo.configured(play.seed, play.settings);
+    if (!play.told.empty() || demo.programTold) {
+        const Progress notes([&script](double share, std::string_view text) {
+            if (share < 0.0) script.notes.emplace_back(text); // what it has to say, and no stage
+        });
+        script.program = startProgram(demo, play.seed, play.told, notes);
         return script;
     }
     if (!demo.program) return script;

@@ -27,6 +27,7 @@ struct ShowPictures {
 struct ShowScript {
     std::shared_ptr<ShowProgram> program; ///< empty: the project's own scene
     InputScript inputs;
+    std::vector<std::string> notes; ///< of the application about what it was told, plain sentences
 };
 
 /// What came of it.
@@ -56,7 +57,7 @@ struct DemoPlay {
     std::filesystem::path inputs; ///< as `readInputScript` reads them; empty: none
     std::filesystem::path kept;   ///< what an application wants kept is read from here and written back; empty: not
     std::uint64_t seed = 1;       ///< of an application
-    DemoSettings settings;        ///< likewise
+    DemoTold told;                ///< to an application, by the names of its options
     bool json = false;            ///< its rates as JSON
 };
 

@@ -43,7 +43,7 @@ void openFirst(Studio& studio, MainWindow& window, const Arguments& arguments) {
     else if (!arguments.project.empty())
         studio.project.restoreSession([&studio, file = arguments.project] { studio.project.open(file); });
     else if (!arguments.demo.empty())
-        studio.project.openDemo(arguments.demo);
+        studio.project.openDemo(arguments.demo, Audience::host, arguments.told);
     else
         studio.project.restoreSession(arguments.kiosk ? std::function<void()>() : cardsOnce);
 }
@@ -92,6 +92,7 @@ int showHeadless(const Arguments& arguments) {
         lumorph::DemoPlay play;
         play.seconds = arguments.play;
         play.video = arguments.record;
+        play.told = arguments.told;
         play.json = arguments.json;
         lumorph::playDemo(lumorph::demoNamed(arguments.demo), play, std::cout);
         return 0;

@@ -178,9 +178,10 @@ private:
     void addSurface(const SceneItem& item, const ItemSurface& surface, const glm::mat4& worldFromSurface,
                     const Material& material, float opacity) {
         if (!usable(worldFromSurface)) return;
-        // What is hardly there throws no shadow.
-        const float own = material.alpha == Material::Alpha::blend ? material.opacity : 1.0F;
-        const bool casts = own * opacity >= 0.5F;
+        // What is hardly there throws no shadow, nor does a sign that stands in the air to be read.
+        const bool blended = material.alpha == Material::Alpha::blend;
+        const float own = blended ? material.opacity : 1.0F;
+        const bool casts = own * opacity >= 0.5F && !(blended && material.unlit);
         posed_.surfaces.push_back({item.id, surface.topology, surface.positions, surface.normals, worldFromSurface,
                                    material, opacity, casts});
     }

@@ -4,6 +4,7 @@
 #include <map>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <glm/gtc/quaternion.hpp>
@@ -48,6 +49,8 @@ public:
         moment_.worldFromDevice = glm::mat4_cast(glm::angleAxis(aboutX, glm::vec3(1.0F, 0.0F, 0.0F)) *
                                                  glm::angleAxis(aboutZ, glm::vec3(0.0F, 0.0F, 1.0F)));
     }
+    /// These bodies are tracked from now on.
+    void see(std::vector<ShowBody> bodies) { bodies_ = std::move(bodies); }
     [[nodiscard]] const SceneItem& item(int id) const { return *findItem(*content_.scene, id); }
     [[nodiscard]] int heard(const std::string& sound) const {
         const auto found = heard_.find(sound);

@@ -24,7 +24,7 @@ double localBegin(const std::string& text, const Place& place) {
 
 } // namespace
 
-AmbientSettings settingsFrom(const DemoSettings& settings) {
+AmbientSettings settingsFrom(const DemoTold& settings) {
     AmbientSettings read;
     // The place first: weather may bring another, and times are of the place.
     if (const auto weather = settings.find("weather"); weather != settings.end()) {

@@ -7,6 +7,7 @@
 #include "app/applications/field/field_demo.h"
 #include "app/applications/ice/ice.h"
 #include "app/applications/labyrinth/labyrinth.h"
+#include "app/applications/navigation/navigation.h"
 #include "app/applications/techniques/techniques.h"
 #include "app/applications/water/water.h"
 #include "core/base/error.h"
@@ -14,9 +15,13 @@
 namespace lumorph {
 
 std::span<const Demo> demos() {
-    static const std::vector<Demo> all{waterDemo(), techniquesDemo(), fieldDemo(), labyrinth::labyrinthDemo(),
-                                        ambient::ambientDemo()};
-    static const std::vector<Demo> all{waterDemo(), techniquesDemo(), fieldDemo(), labyrinth::labyrinthDemo(), ice::iceDemo()};
+    static const std::vector<Demo> all{waterDemo(),
+                                       techniquesDemo(),
+                                       fieldDemo(),
+                                       labyrinth::labyrinthDemo(),
+                                       navigation::navigationDemo(),
+                                       ambient::ambientDemo(),
+                                       ice::iceDemo()};
     return all;
 }
 
@@ -25,6 +30,14 @@ const Demo& demoNamed(const std::string& name) {
     if (found == demos().end())
         throw InvalidInput("demo '" + name + "'", "there is none of that name", "choose one of " + demoNames());
     return *found;
+}
+
+std::vector<DemoOption> demoOptions() {
+    std::vector<DemoOption> options;
+    for (const Demo& demo : demos())
+        for (const DemoOption& option : demo.options)
+            if (std::ranges::find(options, option.name, &DemoOption::name) == options.end()) options.push_back(option);
+    return options;
 }
 
 std::string demoNames() {

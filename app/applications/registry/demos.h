@@ -2,6 +2,7 @@
 
 #include <span>
 #include <string>
+#include <vector>
 
 #include "app/applications/demo.h"
 
@@ -13,6 +14,9 @@ namespace lumorph {
 
 /// Throws InvalidInput for a name that none has, with those there are.
 [[nodiscard]] const Demo& demoNamed(const std::string& name);
+
+/// The options of all of them, each name once.
+[[nodiscard]] std::vector<DemoOption> demoOptions();
 
 /// "water, techniques, ..."
 [[nodiscard]] std::string demoNames();

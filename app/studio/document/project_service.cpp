@@ -65,10 +65,14 @@ const Demo* findDemo(const std::string& name) {
 }
 
 /// Its program, which knows again what it wanted kept; none where it has none that plays. Throws as `Demo::program`.
-Played playedOf(const OpenDemo& open) {
+Played playedOf(const OpenDemo& open, const DemoTold& told = {}, const Progress& progress = {}) {
     const Demo* demo = open.plays ? findDemo(open.name) : nullptr;
     if (demo == nullptr || !demo->program) return {};
     Played played;
+    if (!told.empty() || demo->programTold) {
+        played.program = startProgram(*demo, newSeed(), told, progress);
+        return played;
+    }
     if (demo->remembering) played.keepsake = ProjectService::sessionFolder() / "applications" / (demo->name + ".json");
     BegunProgram begun = beginProgram(*demo, newSeed(), played.keepsake);
     played.program = std::move(begun.program);
@@ -101,7 +105,8 @@ std::optional<Kept> readSession(const fs::path& folder, const Progress& progress
 struct Wanted {
     std::string name; ///< empty: a new project, the bundled tablet
     Audience audience = Audience::host;
-    ProjectService::MakeProgram make; ///< takes the place of its program
+    DemoTold told = {};                    ///< by the names of its options
+    ProjectService::MakeProgram make = {}; ///< takes the place of its program
 };
 
 /// Neither a demonstration nor a new project belongs to a file of the user's.
@@ -121,7 +126,7 @@ Opened readBundled(const Wanted& wanted, const FieldCache& cache, const Progress
         if (wanted.make)
             opened.played.program = wanted.make(newSeed());
         else
-            opened.played = playedOf(opened.demo);
+            opened.played = playedOf(opened.demo, wanted.told, progress);
     }
     if (!loaded.state.field.field) loaded.state.field.field = cache.find(*loaded.state.rig.rig);
     return opened;
@@ -298,7 +303,7 @@ void ProjectService::Data::restore(std::function<void()> onReady) {
         [folder = sessionFolder()](const Progress& progress) { return readSession(folder, progress); },
         [this, ready](const std::optional<Kept>& kept) {
             if (!kept) {
-                openBundled({demos().front().name, Audience::host, {}}, *ready);
+                openBundled({demos().front().name, Audience::host}, *ready);
                 return;
             }
             goOn(*kept);
@@ -311,7 +316,7 @@ void ProjectService::Data::restore(std::function<void()> onReady) {
             notice.why = tr("the last session could not be opened: %1").arg(notice.why);
             notice.remedy = tr("what is left of it lies in %1").arg(fullName(aside));
             // Told when the demo is there: what opens clears the notices of what was open.
-            openBundled({demos().front().name, Audience::host, {}}, [this, notice, ready] {
+            openBundled({demos().front().name, Audience::host}, [this, notice, ready] {
                 notices.post("project", notice);
                 if (*ready) (*ready)();
             });
@@ -394,17 +399,17 @@ void ProjectService::relink(const std::string& asset, const std::filesystem::pat
     data_->scene.relink(asset, file);
 }
 void ProjectService::newProject() { data_->openBundled({}, {}); }
-void ProjectService::openDemo(const std::string& name, Audience audience) {
-    data_->openBundled({name.empty() ? demos().front().name : name, audience, {}}, {});
+void ProjectService::openDemo(const std::string& name, Audience audience, const DemoTold& told) {
+    data_->openBundled({name.empty() ? demos().front().name : name, audience, told}, {});
 }
 const Demo* ProjectService::demo() const noexcept { return findDemo(data_->demo.name); }
 void ProjectService::endProgram() {
     if (!std::exchange(data_->demo.plays, false)) return;
-    emit programOpened({});
+    emit programOpened({}, {});
     data_->keeper.touch();
 }
 void ProjectService::openDemo(const std::string& name, MakeProgram make) {
-    data_->openBundled({name, Audience::visitors, std::move(make)}, {});
+    data_->openBundled({name, Audience::visitors, {}, std::move(make)}, {});
 }
 
 bool ProjectService::save() {

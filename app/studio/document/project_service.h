@@ -7,16 +7,13 @@
 #include <QObject>
 #include <QString>
 
+#include "app/applications/demo.h"
 #include "app/studio/base/jobs.h"
 #include "app/studio/base/notices.h"
 #include "app/studio/document/project_io.h"
 #include "app/studio/document/studio_document.h"
 #include "core/loop/show_program.h"
 #include "core/mdf/builder.h"
-
-namespace lumorph {
-struct Demo;
-}
 
 namespace lumorph::studio {
 
@@ -59,8 +56,8 @@ public:
     void relink(const std::string& asset, const std::filesystem::path& file);
 
     void newProject(); ///< the bundled tablet, no target
-    /// A demonstration of app/applications by its name; without one the first.
-    void openDemo(const std::string& name = {}, Audience audience = Audience::host);
+    /// A demonstration of app/applications by its name, told what its options say; without a name the first.
+    void openDemo(const std::string& name = {}, Audience audience = Audience::host, const DemoTold& told = {});
     /// Makes a program by a seed, in a job's thread; what it throws is told.
     using MakeProgram = std::function<std::unique_ptr<ShowProgram>(std::uint64_t seed)>;
     /// A demonstration with another program than its own, of which nothing is kept.

@@ -36,6 +36,11 @@ ParsedArguments parseArguments(int argc, const char* const* argv) {
     app.set_version_flag("--version", "lumorph-studio " LUMORPH_VERSION);
     app.add_option("PROJECT", project, "a project, recording, rig, field or 3D model to open");
     app.add_option("--demo", arguments.demo, "start a demonstration: " + demoNames());
+    for (const DemoOption& told : demoOptions())
+        app.add_option_function<std::string>(
+               "--" + told.name,
+               [&arguments, name = told.name](const std::string& text) { arguments.told[name] = text; }, told.help)
+            ->needs("--demo");
     app.add_option("--workspace", arguments.workspace, "the workspace to show first, such as field");
     CLI::Option* kiosk = app.add_flag(
         "--kiosk", arguments.kiosk, "full screen for visitors: the view and STOP alone; the operator leaves by a PIN");

@@ -4,14 +4,17 @@
 #include <optional>
 #include <string>
 
+#include "app/applications/demo.h"
+
 namespace lumorph::studio {
 
-/// What the program was started with: `lumorph-studio [PROJECT] [--demo NAME] [--kiosk] [--workspace ID]`,
-/// `lumorph-studio --forget-pin`, which does only that, or `lumorph-studio --headless FOLDER [--seconds S]`, which
-/// opens no window, nor does `--demo NAME --play S [--record OUT.mp4] [--json]`.
+/// What the program was started with: `lumorph-studio [PROJECT] [--demo NAME [--OPTION TEXT]] [--kiosk] [--workspace
+/// ID]`, `lumorph-studio --forget-pin`, which does only that, or `lumorph-studio --headless FOLDER [--seconds S]`,
+/// which opens no window, nor does `--demo NAME --play S [--record OUT.mp4] [--json]`.
 struct Arguments {
     std::filesystem::path project; ///< or a rig, a field or a target; empty: none
     std::string demo;
+    DemoTold told; ///< to the demo, by the names of its options
     std::string workspace;
     bool kiosk = false;
     bool forgetPin = false;         ///< of the kiosk's operator; no window opens

@@ -21,11 +21,31 @@ struct KeyInput {
     const char* input;
 };
 constexpr KeyInput kKeys[] = {
-    {Qt::Key_Left, "key.left"}, {Qt::Key_Right, "key.right"}, {Qt::Key_Up, "key.up"},     {Qt::Key_Down, "key.down"},
-    {Qt::Key_R, "key.restart"}, {Qt::Key_N, "key.next"},      {Qt::Key_A, "key.attract"}, {Qt::Key_O, "key.off"},
-    {Qt::Key_0, "key.0"},       {Qt::Key_1, "key.1"},         {Qt::Key_2, "key.2"},       {Qt::Key_3, "key.3"},
-    {Qt::Key_4, "key.4"},       {Qt::Key_5, "key.5"},         {Qt::Key_6, "key.6"},       {Qt::Key_7, "key.7"},
-    {Qt::Key_8, "key.8"},       {Qt::Key_9, "key.9"},
+    {Qt::Key_Left, "key.left"},
+    {Qt::Key_Right, "key.right"},
+    {Qt::Key_Up, "key.up"},
+    {Qt::Key_Down, "key.down"},
+    {Qt::Key_R, "key.restart"},
+    {Qt::Key_N, "key.next"},
+    {Qt::Key_A, "key.attract"},
+    {Qt::Key_O, "key.off"},
+    {Qt::Key_0, "key.0"},
+    {Qt::Key_1, "key.1"},
+    {Qt::Key_2, "key.2"},
+    {Qt::Key_3, "key.3"},
+    {Qt::Key_4, "key.4"},
+    {Qt::Key_5, "key.5"},
+    {Qt::Key_6, "key.6"},
+    {Qt::Key_7, "key.7"},
+    {Qt::Key_8, "key.8"},
+    {Qt::Key_9, "key.9"},
+    {Qt::Key_Plus, "key.in"},
+    {Qt::Key_Equal, "key.in"}, // the same key, without Shift
+    {Qt::Key_Minus, "key.out"},
+    {Qt::Key_Comma, "key.turnLeft"},
+    {Qt::Key_Period, "key.turnRight"},
+    {Qt::Key_W, "key.rain"},
+    {Qt::Key_V, "key.bend"},
 };
 
 const char* inputOf(int key) {

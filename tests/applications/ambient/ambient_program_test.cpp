@@ -199,14 +199,14 @@ TEST(AmbientProgram, TheComingHoursAreThoseOfTheForecast) {
 }
 
 TEST(AmbientProgram, RefusesSettingsThatAreNone) {
-    for (const DemoSettings& wrong : {DemoSettings{{"place", "here"}},
-                                      {{"begin", "noon"}},
-                                      {{"day", "0"}},
-                                      {{"day", "x"}},
-                                      {{"anticipation", "-1"}},
-                                      {{"anticipation", "1s"}},
-                                      {{"colour", "red"}},
-                                      {{"weather", "/none.json"}}})
+    for (const DemoTold& wrong : {DemoTold{{"place", "here"}},
+                                  {{"begin", "noon"}},
+                                  {{"day", "0"}},
+                                  {{"day", "x"}},
+                                  {{"anticipation", "-1"}},
+                                  {{"anticipation", "1s"}},
+                                  {{"colour", "red"}},
+                                  {{"weather", "/none.json"}}})
         EXPECT_THROW(AmbientProgram(1, settingsFrom(wrong)), Error) << wrong.begin()->first;
     const AmbientSettings read = settingsFrom({{"place", "48.2,16.4,2"}, {"begin", "2026-05-17T12:00"}, {"day", "60"}});
     EXPECT_EQ(read.begin, timeFrom("2026-05-17T10:00", 0.0));

@@ -315,7 +315,8 @@ TEST(ScenePoser, OtherWavesKeepTheGridAndAnotherRectangleDoesNot) {
     heights.waves[0].period = 2.0;
     PoseInput later;
     later.seconds = 0.5;
-    EXPECT_NE(*poser.pose(scene, {}, later).surfaces[0].positions, *second.surfaces[0].positions) << "they travel again";
+    EXPECT_NE(*poser.pose(scene, {}, later).surfaces[0].positions, *second.surfaces[0].positions)
+        << "they travel again";
     heights.calmEdge = 0.02;
     EXPECT_NE(poser.pose(scene, {}, later).surfaces[0].topology, second.surfaces[0].topology);
 }
@@ -430,6 +431,14 @@ TEST(ScenePoser, WhatIsHardlyThereThrowsNoShadow) {
     EXPECT_TRUE(casts(0.9F, Material::Alpha::blend, 0.8F));
     EXPECT_FALSE(casts(0.0F, Material::Alpha::opaque, 1.0F));
     EXPECT_FALSE(casts(1.0F, Material::Alpha::blend, 0.3F));
+}
+
+TEST(ScenePoser, ASignInTheAirThrowsNoShadow) {
+    SceneItem item = itemOf(1, ShapeItem{});
+    item.material.unlit = true;
+    EXPECT_TRUE(posed(sceneOf({item})).surfaces.at(0).castsShadow) << "a lamp's housing";
+    item.material.alpha = Material::Alpha::blend;
+    EXPECT_FALSE(posed(sceneOf({item})).surfaces.at(0).castsShadow);
 }
 
 TEST(ScenePoser, WhatIsGoneIsForgotten) {

@@ -1,0 +1,59 @@
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include <glm/gtc/quaternion.hpp>
+#include <glm/vec3.hpp>
+
+#include "app/applications/navigation/map.h"
+#include "app/applications/navigation/view_ground.h"
+#include "core/scene/scene.h"
+#include "core/scene/scene_assets.h"
+
+namespace lumorph::navigation {
+
+inline constexpr int kFirstLabel = 100; ///< ids of items: a plate and its pole for each place, in their order
+
+/// Names of places on plates that stand over them and always turn to who looks.
+class Labels {
+public:
+    static constexpr double kPlateHeight = 0.0078; ///< metres
+    static constexpr std::size_t kMost = 60;       ///< places that have a plate: those of the least rank
+    static constexpr std::size_t kMostShown = 9;
+
+    /// Writes the plates. Throws DataError where the font is missing.
+    explicit Labels(const Map& map);
+
+    /// Their models and pictures are added to these assets.
+    void addTo(SceneAssets& assets) const;
+
+    /// Chooses whose names there is room for, seen by an eye (device metres), and moves them there.
+    void arrange(const Map& map, const ViewGround& ground, const glm::dvec3& eye, double seconds);
+    /// Adds the items of those that show.
+    void show(Scene& scene) const;
+
+private:
+    struct Plate {
+        std::size_t place = 0;
+        double width = 0.0; ///< metres
+        std::string model;
+        Material material;
+        std::shared_ptr<const SceneModel> shape;
+        std::shared_ptr<const Image> picture;
+
+        glm::dvec3 foot{0.0}, middle{0.0};
+        glm::quat rotation{1.0F, 0.0F, 0.0F, 0.0F};
+        double opacity = 0.0, lift = 0.0; ///< metres over its pole's shortest
+        bool wanted = false;
+    };
+    [[nodiscard]] double findRoom(const Plate& plate, const std::vector<const Plate*>& before,
+                                  const glm::dvec3& eye) const;
+
+    std::vector<Plate> plates_; ///< the least rank first
+};
+
+/// The rotation of a plate whose picture faces +z with its text along +x, so that an eye reads it upright.
+[[nodiscard]] glm::dquat facing(const glm::dvec3& from, const glm::dvec3& eye) noexcept;
+
+} // namespace lumorph::navigation

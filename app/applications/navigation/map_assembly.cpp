@@ -1,0 +1,291 @@
+#include "app/applications/navigation/map_assembly.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+#include <utility>
+
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+
+#include "app/applications/navigation/noise.h"
+#include "app/applications/navigation/shapes.h"
+#include "core/base/error.h"
+#include "core/geometry/polygon_triangulation.h"
+
+namespace lumorph::navigation {
+namespace {
+
+constexpr double kUnknownHeight = 6.0;    ///< metres, of a building
+constexpr double kSmallest = 4.0;         ///< square metres of an outline
+constexpr int kLevelSamples = 129;        ///< of ground without heights, along its longer side
+constexpr std::size_t kMostCorners = 400; ///< of an outline
+
+/// Rounds in which each missing height becomes the mean of its known neighbours.
+double fillHoles(glm::ivec2 samples, std::vector<float>& heights) {
+    std::vector<std::size_t> missing;
+    for (std::size_t k = 0; k < heights.size(); ++k)
+        if (!std::isfinite(heights[k])) missing.push_back(k);
+    const double share = static_cast<double>(missing.size()) / static_cast<double>(heights.size());
+    const auto columns = static_cast<std::size_t>(samples.x);
+    while (!missing.empty()) {
+        std::vector<std::pair<std::size_t, float>> found;
+        std::vector<std::size_t> left;
+        for (const std::size_t k : missing) {
+            float sum = 0.0F;
+            int count = 0;
+            const auto take = [&](bool inside, std::size_t n) {
+                if (!inside || !std::isfinite(heights[n])) return;
+                sum += heights[n];
+                ++count;
+            };
+            take(k % columns > 0, k - 1);
+            take(k % columns + 1 < columns, k + 1);
+            take(k >= columns, k - columns);
+            take(k + columns < heights.size(), k + columns);
+            if (count > 0)
+                found.emplace_back(k, sum / static_cast<float>(count));
+            else
+                left.push_back(k);
+        }
+        if (found.empty()) throw InvalidInput("heights", "all of them are missing", "choose another file");
+        for (const auto& [k, height] : found) heights[k] = height;
+        missing = std::move(left);
+    }
+    return share;
+}
+
+/// Level ground under all that there is.
+void levelGround(MapSources& sources, MapReport& report) {
+    glm::dvec2 min(std::numeric_limits<double>::infinity()), max = -min;
+    const auto take = [&](const glm::dvec2& p) {
+        min = glm::min(min, p);
+        max = glm::max(max, p);
+    };
+    for (const auto& outline : sources.outlines) std::ranges::for_each(outline.ring, take);
+    for (const auto& line : sources.lines) std::ranges::for_each(line.points, take);
+    for (const auto& name : sources.names) take(name.at);
+    if (!(min.x <= max.x)) throw InvalidInput("map", "it has neither heights nor outlines", "choose other files");
+    const double margin = std::max(60.0, 0.1 * std::max(max.x - min.x, max.y - min.y));
+    min -= margin;
+    max += margin;
+    sources.spacing = std::max(max.x - min.x, max.y - min.y) / (kLevelSamples - 1);
+    sources.samples = glm::ivec2(glm::ceil((max - min) / sources.spacing)) + 1;
+    sources.origin = {min.x, max.y};
+    sources.heights.assign(static_cast<std::size_t>(sources.samples.x) * static_cast<std::size_t>(sources.samples.y),
+                           0.0F);
+    report.notes.emplace_back("No file has heights: the ground is level.");
+}
+
+void addSea(Map& map) {
+    const std::vector<float>& heights = map.heights.heights();
+    const auto wet = std::ranges::count_if(heights, [](float h) { return h <= 0.0F; });
+    if (map.heights.highest() <= 1.0 || wet < std::ssize(heights) / 200) return;
+    map.water.assign(heights.size(), std::numeric_limits<float>::quiet_NaN());
+    for (std::size_t k = 0; k < heights.size(); ++k)
+        if (heights[k] <= 3.0F) map.water[k] = 0.3F;
+}
+
+/// Green below, rock where it is steep, snow on what is high for such a place.
+void addColors(Map& map) {
+    std::vector<float> sorted = map.heights.heights();
+    std::ranges::sort(sorted);
+    const double low = static_cast<double>(sorted[sorted.size() / 50]), high = static_cast<double>(sorted.back());
+    const double relief = std::max(high - low, 1.0);
+    const glm::ivec2 samples = map.heights.samples();
+    const double spacing = map.heights.spacing();
+    map.cover.reserve(sorted.size());
+    for (int y = 0; y < samples.y; ++y)
+        for (int x = 0; x < samples.x; ++x) {
+            const glm::dvec2 place = spacing * glm::dvec2(x, y);
+            const double height = static_cast<double>(map.heights.at(glm::ivec2(x, y)));
+            const double steep = glm::length(map.heights.slopeAt(place, 0.0)), share = (height - low) / relief;
+            const double patch = 0.5 * noiseAt(glm::dvec2(x, y) / 17.0, 3) + 0.5 * noiseAt(glm::dvec2(x, y) / 5.0, 4);
+            const auto mixed = [](const glm::vec3& a, const glm::vec3& b, double t) {
+                return glm::mix(a, b, static_cast<float>(t));
+            };
+            glm::vec3 color =
+                mixed({0.50F, 0.62F, 0.32F}, {0.68F, 0.66F, 0.42F}, smoothStep(0.1, 0.6, share + 0.1 * patch));
+            color = mixed(color, {0.64F, 0.60F, 0.54F}, smoothStep(0.5, 1.0, steep + 0.2 * patch));
+            if (relief > 500.0)
+                color = mixed(color, {0.96F, 0.97F, 1.0F}, smoothStep(0.72, 0.84, share + 0.06 * patch));
+            if (height <= 0.0 && !map.water.empty())
+                color = mixed({0.42F, 0.68F, 0.70F}, {0.10F, 0.34F, 0.48F}, smoothStep(0.0, 30.0, -height));
+            map.cover.push_back(color * static_cast<float>(1.0 + 0.04 * patch));
+        }
+}
+
+bool isConvex(const std::vector<glm::dvec2>& ring) {
+    for (std::size_t k = 0; k < ring.size(); ++k) {
+        const glm::dvec2 a = ring[(k + 1) % ring.size()] - ring[k];
+        const glm::dvec2 b = ring[(k + 2) % ring.size()] - ring[(k + 1) % ring.size()];
+        if (a.x * b.y - a.y * b.x < -1e-9) return false;
+    }
+    return true;
+}
+
+std::vector<std::vector<glm::dvec2>> convexParts(const std::vector<glm::dvec2>& ring) {
+    if (isConvex(ring)) return {ring};
+    std::vector<glm::vec3> positions;
+    std::vector<std::uint32_t> corners;
+    for (const glm::dvec2& p : ring) {
+        corners.push_back(static_cast<std::uint32_t>(positions.size()));
+        positions.emplace_back(glm::vec2(p - ring.front()), 0.0F);
+    }
+    std::vector<glm::uvec3> triangles;
+    triangulatePolygon(positions, corners, triangles);
+    std::vector<std::vector<glm::dvec2>> parts;
+    for (const glm::uvec3& t : triangles) {
+        std::vector<glm::dvec2> part{ring[t.x], ring[t.y], ring[t.z]};
+        if (doubleArea(part) < 0.0) std::swap(part[1], part[2]);
+        if (doubleArea(part) > 0.1) parts.push_back(std::move(part));
+    }
+    return parts;
+}
+
+void addBuilding(Map& map, std::vector<glm::dvec2> ring, double height, std::size_t number) {
+    constexpr Paint kTops[] = {Paint::tile, Paint::brick, Paint::slate, Paint::ochre, Paint::rust};
+    double base = std::numeric_limits<double>::infinity();
+    for (const glm::dvec2& p : ring) base = std::min(base, map.heights.at(p, 0.0));
+    for (std::vector<glm::dvec2>& part : convexParts(ring)) {
+        Building building;
+        building.outline = std::move(part);
+        building.base = base;
+        building.eaves = building.ridge = base + height;
+        building.walls = Paint::cream;
+        building.top = kTops[number % std::size(kTops)];
+        map.buildings.push_back(std::move(building));
+    }
+}
+
+/// From easting and northing to places of the map.
+class Assembly {
+public:
+    Assembly(const MapSources& sources, Map& map, MapReport& report) : sources_(sources), map_(map), report_(report) {}
+
+    void addOutlines() {
+        std::vector<std::pair<double, std::size_t>> order; // the largest first
+        std::vector<std::vector<glm::dvec2>> rings;
+        for (std::size_t k = 0; k < sources_.outlines.size(); ++k) {
+            std::vector<glm::dvec2> ring = placesOf(sources_.outlines[k].ring);
+            if (doubleArea(ring) < 0.0) std::ranges::reverse(ring);
+            const double area = 0.5 * doubleArea(ring);
+            const bool inside = std::ranges::all_of(ring, [&](const glm::dvec2& p) { return onMap(p); });
+            if (ring.size() < 3 || ring.size() > kMostCorners || area < kSmallest || !inside)
+                ++report_.leftOut;
+            else
+                order.emplace_back(-area, k);
+            rings.push_back(std::move(ring));
+        }
+        std::ranges::sort(order);
+        if (order.size() > kMostBuildings) {
+            report_.notes.push_back("Of " + std::to_string(order.size()) + " buildings the " +
+                                    std::to_string(kMostBuildings) + " largest are shown.");
+            order.resize(kMostBuildings);
+        }
+        for (const auto& [area, k] : order) add(sources_.outlines[k], std::move(rings[k]), k);
+    }
+
+    void addLines() {
+        for (const MapSources::Line& line : sources_.lines) {
+            std::vector<glm::dvec2> points = placesOf(line.points);
+            std::erase_if(points, [&](const glm::dvec2& p) { return !onMap(p); });
+            if (points.size() < 2) {
+                ++report_.leftOut;
+                continue;
+            }
+            Road road;
+            road.line = std::move(points);
+            road.width = line.width;
+            map_.roads.push_back(std::move(road));
+            ++report_.roads;
+        }
+    }
+
+    void addNames() {
+        for (const MapSources::Name& name : sources_.names) {
+            const glm::dvec2 at = placeOf(name.at);
+            if (!onMap(at)) {
+                ++report_.leftOut;
+                continue;
+            }
+            map_.places.push_back({name.text, at, name.width, name.rank});
+            ++report_.places;
+        }
+        std::ranges::stable_sort(map_.places, {}, &Place::rank);
+        addSummit();
+    }
+
+private:
+    [[nodiscard]] glm::dvec2 placeOf(const glm::dvec2& p) const {
+        return {p.x - sources_.origin.x, sources_.origin.y - p.y};
+    }
+    [[nodiscard]] std::vector<glm::dvec2> placesOf(const std::vector<glm::dvec2>& points) const {
+        std::vector<glm::dvec2> places;
+        for (const glm::dvec2& p : points) places.push_back(placeOf(p));
+        return places;
+    }
+    [[nodiscard]] bool onMap(const glm::dvec2& p) const {
+        const glm::dvec2 size = map_.heights.size();
+        return p.x >= 0.0 && p.y >= 0.0 && p.x <= size.x && p.y <= size.y;
+    }
+    void add(const MapSources::Outline& outline, std::vector<glm::dvec2> ring, std::size_t number) {
+        if (!outline.height) ++report_.heightMissing;
+        glm::dvec2 middle(0.0);
+        for (const glm::dvec2& p : ring) middle += p / static_cast<double>(ring.size());
+        if (!outline.name.empty()) map_.places.push_back({outline.name, middle, 500.0, 4});
+        addBuilding(map_, std::move(ring), outline.height.value_or(kUnknownHeight), number);
+        ++report_.buildings;
+    }
+    void addSummit() {
+        if (sources_.heights.empty() || map_.heights.highest() - map_.heights.lowest() < 1.0) return;
+        const std::vector<float>& heights = map_.heights.heights();
+        const auto k = static_cast<int>(std::ranges::max_element(heights) - heights.begin());
+        const int columns = map_.heights.samples().x;
+        char name[64];
+        (void)std::snprintf(name, sizeof name, "Summit, %.0f m", map_.heights.highest());
+        map_.places.push_back(
+            {name, map_.heights.spacing() * glm::dvec2(k % columns, k / columns), 0.3 * map_.heights.size().x, 1});
+    }
+
+    const MapSources& sources_;
+    Map& map_;
+    MapReport& report_;
+};
+
+void tell(MapReport& report) {
+    const auto note = [&](std::size_t count, const std::string& what) {
+        if (count > 0) report.notes.push_back(std::to_string(count) + " " + what);
+    };
+    note(report.heightMissing, "buildings have no height in the file: they are drawn 6 m high.");
+    note(report.mended, "outlines crossed themselves and were mended.");
+    note(report.leftOut, "things were left out: beyond the ground, too small, or without a usable outline.");
+    if (report.filled > 0.0) {
+        char share[96];
+        (void)std::snprintf(share, sizeof share, "%.2f %% of the heights were missing and are filled from around.",
+                            100.0 * report.filled);
+        report.notes.emplace_back(share);
+    }
+}
+
+} // namespace
+
+Map assembled(MapSources sources, MapReport& report) {
+    if (sources.heights.empty())
+        levelGround(sources, report);
+    else
+        report.filled = fillHoles(sources.samples, sources.heights);
+    Map map;
+    map.heights = HeightMap(sources.samples, sources.spacing, sources.heights);
+    addSea(map);
+    addColors(map);
+    Assembly assembly(sources, map, report);
+    assembly.addOutlines();
+    assembly.addLines();
+    assembly.addNames();
+    tell(report);
+    return map;
+}
+
+} // namespace lumorph::navigation

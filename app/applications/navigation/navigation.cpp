@@ -1,0 +1,313 @@
+#include "app/applications/navigation/navigation.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
+
+#include "app/applications/demo_items.h"
+#include "app/applications/navigation/map_import.h"
+#include "app/applications/navigation/map_model.h"
+#include "app/applications/navigation/noise.h"
+#include "app/applications/navigation/search.h"
+#include "app/applications/navigation/valley.h"
+#include "core/base/error.h"
+
+namespace lumorph::navigation {
+namespace {
+
+constexpr const char* kLandModel = "navigation land"; ///< assets that are in memory alone
+constexpr const char* kRainModel = "navigation rain";
+constexpr double kPanSpeed = 0.075;    ///< device metres a second at full lean
+constexpr double kZoomSpeed = 0.9;     ///< by which the width's logarithm changes, a second
+constexpr double kTurnSpeed = 0.7;     ///< radians a second
+constexpr double kDrift = 0.045;       ///< radians a second in which it turns while nobody is there
+constexpr double kSmooth = 0.18;       ///< seconds in which panning follows the hand
+constexpr double kStay = 4.5;          ///< seconds at a place
+constexpr double kNarrowest = 140.0;   ///< metres
+constexpr double kLookAhead = 0.8;     ///< seconds
+constexpr double kCloudHeight = 0.082; ///< y of the cloud, device metres
+constexpr float kPuff = 0.014F;
+
+Scene settingOf() {
+    Scene scene = defaultScene();
+    scene.device.show = DeviceSkin::Show::content;
+    scene.sky = {0.27F, 0.31F, 0.38F};
+    SceneItem& sun = scene.items.front();
+    sun.id = kSunItem;
+    sun.position = {-0.62F, 0.62F, -0.42F};
+    std::get<LightItem>(sun.kind).intensity = 1.08;
+    std::get<LightItem>(sun.kind).color = {1.0F, 0.95F, 0.86F};
+    std::get<LightItem>(sun.kind).softness = 0.05;
+    SceneItem land = demoItem(kLandItem, "Land", MeshItem{.model = kLandModel, .animation = -1});
+    scene.items.push_back(std::move(land));
+    return scene;
+}
+
+std::shared_ptr<const SceneAssets> stillAssets(const Labels& labels) {
+    // The pictures of table and water.
+    Scene all = defaultScene();
+    SceneItem water = demoItem(2, "Water", ShapeItem{});
+    water.material = waterMaterial();
+    all.items.push_back(std::move(water));
+    auto assets = std::make_shared<SceneAssets>(*loadSceneAssets(all, {}));
+    assets->images[kPaletteImage] = paletteImage();
+    assets->images[kRainImage] = rainImage();
+    labels.addTo(*assets);
+    return assets;
+}
+
+void addCloud(Scene& scene, const glm::dvec2& at) {
+    constexpr struct {
+        float x, y, z, size;
+    } kPuffs[] = {{0.0F, 0.001F, 0.0F, 1.25F},   {-0.011F, -0.001F, 0.002F, 0.95F}, {0.011F, -0.001F, -0.001F, 1.0F},
+                  {0.004F, 0.0F, 0.008F, 0.85F}, {-0.005F, 0.001F, -0.008F, 0.9F},  {0.019F, -0.003F, 0.003F, 0.6F}};
+    for (int k = 0; k < 6; ++k) {
+        const auto& puff = kPuffs[k];
+        SceneItem item = demoItem(
+            kFirstCloud + k, "Cloud",
+            ShapeItem{ShapeItem::Form::sphere, glm::vec3(kPuff) * glm::vec3(puff.size, 0.72F * puff.size, puff.size)});
+        item.position = glm::vec3(glm::dvec3(at.x, kCloudHeight, at.y)) + glm::vec3(puff.x, puff.y, puff.z);
+        item.material.name = "Cloud";
+        item.material.color = {0.90F, 0.92F, 0.96F};
+        item.material.roughness = 1.0F;
+        item.opacity = 0.9F;
+        scene.items.push_back(std::move(item));
+    }
+}
+
+glm::dvec3 eyeOf(const ShowMoment& moment) {
+    glm::dvec3 eye(moment.installation->eye);
+    for (const ShowBody& body : moment.bodies)
+        if (body.role == PoseRole::head) {
+            eye = glm::dvec3(matrixOf(body.pose) * glm::dvec4(glm::dvec3(moment.installation->eyeFromHead), 1.0));
+            break;
+        }
+    return glm::dvec3(glm::inverse(glm::dmat4(moment.worldFromDevice)) * glm::dvec4(eye, 1.0));
+}
+
+std::unique_ptr<ShowProgram> toldProgram(std::uint64_t seed, const DemoTold& told, const Progress& progress) {
+    const auto map = told.find("map"), place = told.find("goto");
+    std::shared_ptr<const Map> shown;
+    if (map == told.end()) {
+        shown = std::make_shared<const Map>(bundledValley(29, progress));
+    } else {
+        ImportedMap imported = importMap(map->second, progress);
+        for (const std::string& note : imported.report.notes) progress.report(-1.0, note);
+        shown = std::make_shared<const Map>(std::move(imported.map));
+    }
+    auto program = std::make_unique<NavigationProgram>(seed, std::move(shown));
+    if (place != told.end()) program->flyTo(place->second);
+    return program;
+}
+
+} // namespace
+
+NavigationProgram::NavigationProgram(std::uint64_t seed, std::shared_ptr<const Map> map)
+    : map_(std::move(map)), seed_(seed), rain_(seed), labels_(*map_), setting_(settingOf()) {
+    if (map_->heights.heights().empty() || map_->cover.size() != map_->heights.heights().size())
+        throw InvalidInput("map", "it has no heights, or no cover for each of them", "read it again");
+    still_ = stillAssets(labels_);
+    whole_ = std::make_unique<GroundPicture>(*map_, wholeWindow(*map_));
+    while (!whole_->paint(GroundPicture::kSide * GroundPicture::kSide)) {
+    }
+    view_ = home();
+    rested_ = kStay - 2.0;
+}
+
+MapView NavigationProgram::home() const noexcept {
+    const glm::dvec2 size = map_->heights.size();
+    MapView view{0.5 * size, 0.8 * widestView(size), 0.0};
+    if (!map_->places.empty()) view.centre = glm::mix(view.centre, map_->places.front().at, 0.4);
+    return within(view, size, kNarrowest);
+}
+
+void NavigationProgram::flyTo(const std::string& name) {
+    const std::optional<std::size_t> place = find(map_->places, name);
+    if (place) return fly(viewOf(map_->places[*place], view_.turn));
+    std::string names;
+    for (const Place& known : map_->places) names += (names.empty() ? "" : ", ") + known.name;
+    throw InvalidInput("place '" + name + "'", "the map has none of that name", "choose one of " + names);
+}
+
+MapView NavigationProgram::viewOf(const Place& place, double turn) const {
+    return within({place.at, place.width, turn}, map_->heights.size(), kNarrowest);
+}
+
+void NavigationProgram::fly(const MapView& to) {
+    flight_.emplace(view_, to);
+    flown_ = rested_ = 0.0;
+    velocity_ = {};
+}
+
+void NavigationProgram::listen(const ShowMoment& moment) {
+    visitor_.take(moment);
+    for (const ShowInput& input : moment.inputs) {
+        const double held = input.value > 0.5 ? 1.0 : 0.0;
+        if (input.name == "key.in") in_ = held;
+        if (input.name == "key.out") out_ = held;
+        if (input.name == "key.turnLeft") left_ = held;
+        if (input.name == "key.turnRight") right_ = held;
+        if (input.name == "key.rain") raining_ = held > 0.0;
+        if (input.name == "key.bend" && held > 0.0) bends_ = !bends_;
+    }
+    if (visitor_.left()) in_ = out_ = left_ = right_ = 0.0, raining_ = bends_ = false;
+}
+
+void NavigationProgram::move(double step) {
+    if (visitor_.came()) flight_.reset();
+    if (visitor_.restart()) fly(home());
+    if (visitor_.next() && !map_->places.empty())
+        fly(viewOf(map_->places[visited_++ % map_->places.size()], view_.turn));
+    if (visitor_.there())
+        steer(step);
+    else
+        tour(step);
+    if (!flight_) return;
+    flown_ += step;
+    view_ = within(flight_->at(flown_), map_->heights.size(), kNarrowest);
+    if (flown_ >= flight_->seconds()) flight_.reset();
+}
+
+void NavigationProgram::tour(double step) {
+    if (flight_) return;
+    view_.turn += kDrift * step;
+    view_ = within(view_, map_->heights.size(), kNarrowest);
+    rested_ += step;
+    if (rested_ < kStay) return;
+    const auto stop = static_cast<int>(visited_++);
+    const std::size_t places = map_->places.size();
+    if (places == 0 || stop % 5 == 4) return fly(home());
+    const double turn = view_.turn + 1.6 * (chanceOf({stop, 7}, seed_) - 0.3);
+    fly(viewOf(map_->places[static_cast<std::size_t>(stop) * 3 % places], turn));
+}
+
+void NavigationProgram::steer(double step) {
+    const glm::dvec2 lean = visitor_.lean() / Visitor::kMostLean;
+    const bool asks = glm::length(lean) > 0.1;
+    if (asks || in_ + out_ + left_ + right_ > 0.0) flight_.reset();
+    if (flight_) return;
+    const glm::dvec2 wanted = asks ? kPanSpeed * lean : glm::dvec2(0.0);
+    velocity_ = glm::mix(wanted, velocity_, std::exp(-step / kSmooth));
+    if (glm::length(velocity_) < 1e-4) velocity_ = {};
+    view_.width *= std::exp(kZoomSpeed * step * (out_ - in_));
+    view_.turn += kTurnSpeed * step * (right_ - left_);
+    view_.centre = view_.placeAt(velocity_ * step);
+    view_ = within(view_, map_->heights.size(), kNarrowest);
+}
+
+/// A sharper picture of where it goes is begun as soon as there is none; until it is done an older one serves.
+void NavigationProgram::paintGround() {
+    MapView target = flight_ ? flight_->end() : view_;
+    if (!flight_) target.centre = view_.placeAt(velocity_ * kLookAhead);
+    const PictureWindow wanted = windowFor(target);
+    const auto serves = [&](const std::unique_ptr<GroundPicture>& picture) {
+        return picture && picture->window().covers(target) && picture->window().side < 1.01 * wanted.side;
+    };
+    if (!serves(sharp_) && !serves(making_) && wanted.side < 0.8 * whole_->window().side)
+        making_ = std::make_unique<GroundPicture>(*map_, wanted);
+    if (!making_) return;
+    if (making_->paint(GroundPicture::kFramePixels)) sharp_ = std::move(making_);
+}
+
+const GroundPicture& NavigationProgram::picture() const {
+    return sharp_ && sharp_->window().covers(view_) && sharp_->window().side < whole_->window().side ? *sharp_
+                                                                                                     : *whole_;
+}
+
+/// What stays the same keeps its identity, so that nobody has to look at it again.
+void NavigationProgram::makeLand(double step) {
+    const GroundPicture& shown = picture();
+    const bool same = ground_ && ground_->settled() && ground_->view() == view_ && window_ == shown.window();
+    if (same && land_) return;
+    if (!ground_ || !ground_->settled() || ground_->view() != view_)
+        ground_ = ViewGround(*map_, view_, ground_ ? &*ground_ : nullptr, step);
+    window_ = shown.window();
+    land_ = std::make_shared<const SceneModel>(landModel(*map_, *ground_, window_));
+    auto assets = std::make_shared<SceneAssets>(*still_);
+    assets->models[kLandModel] = land_;
+    assets->images[kGroundImage] = shown.color();
+    assets->images[kReliefImage] = shown.relief();
+    assets_ = std::move(assets);
+}
+
+/// From a hand that is held over the device, or from its middle at the press of a key.
+void NavigationProgram::letRain(const ShowMoment& moment) {
+    constexpr double kHeld = 0.35; // metres over the device, at most
+    cloud_.reset();
+    if (raining_) cloud_ = glm::dvec2(0.0);
+    for (const ShowBody& body : moment.bodies) {
+        if (body.role != PoseRole::pointer) continue;
+        const glm::dvec3 at(glm::inverse(glm::dmat4(moment.worldFromDevice)) * matrixOf(body.pose)[3]);
+        const glm::dvec2 inside = kHalf - glm::abs(glm::dvec2(at.x, at.z));
+        if (std::min(inside.x, inside.y) > 0.0 && at.y > 0.0 && at.y < kHeld) cloud_ = glm::dvec2(at.x, at.z);
+    }
+    rain_.advance(*map_, view_, cloud_, moment.step);
+}
+
+std::shared_ptr<const Scene> NavigationProgram::scene(const ShowMoment& moment) {
+    labels_.arrange(*map_, *ground_, eyeOf(moment), moment.step);
+    auto scene = std::make_shared<Scene>(setting_);
+    scene->viewDependence.on = bends_;
+    labels_.show(*scene);
+    if (cloud_) addCloud(*scene, *cloud_);
+    if (rain_.dry()) return scene;
+    SceneItem water =
+        demoItem(kRainItem, "Rain", MeshItem{.model = kRainModel, .animation = -1, .ownMaterials = false});
+    water.material.name = "Running water";
+    water.material.colorTexture.image = kRainImage;
+    water.material.colorTexture.tile = glm::vec2(1.0F);
+    water.material.color = glm::vec3(1.0F);
+    water.material.unlit = true;
+    water.material.alpha = Material::Alpha::blend;
+    scene->items.push_back(std::move(water));
+    return scene;
+}
+
+ShowContent NavigationProgram::frame(const ShowMoment& moment) {
+    listen(moment);
+    move(moment.step);
+    paintGround();
+    makeLand(moment.step);
+    letRain(moment);
+    ShowContent content;
+    content.scene = scene(moment);
+    content.assets = assets_;
+    if (!rain_.dry()) {
+        auto assets = std::make_shared<SceneAssets>(*assets_);
+        assets->models[kRainModel] = std::make_shared<const SceneModel>(rain_.model(*ground_, kCloudHeight));
+        content.assets = std::move(assets);
+    }
+    content.target = ground_->grid();
+    content.following = Following::split;
+    return content;
+}
+
+Demo navigationDemo() {
+    return {
+        "navigation",
+        {"A map that rises to meet you", "Eine Karte, die dir entgegenwächst"},
+        {"Fly over a valley and its harbour town: the tablet takes the land's shape, wherever you look.",
+         "Flieg über ein Tal mit seiner Hafenstadt: Das Tablet nimmt die Form des Landes an, wohin du auch schaust."},
+        "thumbnails/navigation.png",
+        "scene",
+        [](const Progress& progress) {
+            Project project;
+            project.rig = "resource:models/tablet.glb";
+            return readContents(std::move(project), {}, progress);
+        },
+        [] { return std::vector<DemoStep>(); },
+        [](std::uint64_t seed) -> std::unique_ptr<ShowProgram> {
+            return std::make_unique<NavigationProgram>(seed, std::make_shared<const Map>(bundledValley()));
+        },
+        nullptr,
+        {{"map", "A map of one's own: a file or folder of heights (GeoTIFF, 16-bit PNG, .hgt) and of outlines "
+                 "(GeoJSON, CityJSON, .osm, .pbf)"},
+         {"goto", "A place to fly to at first, by its name or some of it"}},
+        toldProgram};
+}
+
+} // namespace lumorph::navigation

@@ -1,0 +1,71 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <vector>
+
+#include <glm/vec2.hpp>
+
+#include "app/applications/navigation/map.h"
+#include "app/applications/navigation/view_ground.h"
+#include "core/base/image.h"
+#include "core/scene/scene_assets.h"
+
+namespace lumorph::navigation {
+
+inline constexpr const char* kRainImage = "navigation rain"; ///< an asset that is in memory alone
+
+/// The sample into which water runs from one: of the eight around it the one to which it falls most steeply. Nothing
+/// in a hollow.
+[[nodiscard]] std::optional<glm::ivec2> steepestDescent(const HeightMap& heights, glm::ivec2 sample) noexcept;
+
+/// Drops that fall from a cloud and run down the map, from sample to sample, until they come to water. Where many have
+/// run the water stands higher, and slowly runs off.
+class Rain {
+public:
+    struct Drop {
+        glm::dvec2 at{0.0}; ///< place, metres
+        glm::ivec2 to{0};   ///< sample that it runs to
+        double falls = 0.0; ///< seconds until it is on the ground
+        double rests = 0.0; ///< seconds in a hollow
+    };
+    static constexpr std::size_t kMostDrops = 420;
+
+    explicit Rain(std::uint64_t seed) : seed_(seed) {}
+
+    /// Lets drops fall around a point of the device for a while (nothing: from nowhere), and all run.
+    void advance(const Map& map, const MapView& view, const std::optional<glm::dvec2>& cloud, double seconds);
+
+    [[nodiscard]] const std::vector<Drop>& drops() const noexcept { return drops_; }
+    [[nodiscard]] std::size_t reachedWater() const noexcept { return reached_; } ///< drops, so far
+    [[nodiscard]] bool dry() const noexcept { return drops_.empty() && streams_.empty(); }
+
+    /// Falling drops and running water as light, device metres.
+    [[nodiscard]] SceneModel model(const ViewGround& ground, double cloudHeight) const;
+
+private:
+    /// Water that runs through a cell of the map.
+    struct Stream {
+        glm::dvec2 from{0.0}, to{0.0};
+        float depth = 0.0F; ///< drops that lately came through
+    };
+    using Key = std::pair<std::int32_t, std::pair<std::int32_t, std::int32_t>>; ///< octave, cell
+
+    void fall(const Map& map, const MapView& view, const glm::dvec2& cloud, double seconds);
+    /// Whether it is still there.
+    bool run(const Map& map, const MapView& view, Drop& drop, double seconds);
+    void wet(const Map& map, const MapView& view, glm::ivec2 from, glm::ivec2 to);
+
+    std::uint64_t seed_;
+    std::int32_t fallen_ = 0;
+    double due_ = 0.0; ///< drops
+    std::size_t reached_ = 0;
+    std::vector<Drop> drops_;
+    std::map<Key, Stream> streams_;
+};
+
+/// Its picture: the deeper, the brighter.
+[[nodiscard]] std::shared_ptr<const Image> rainImage();
+
+} // namespace lumorph::navigation

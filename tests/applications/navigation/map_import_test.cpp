@@ -1,0 +1,386 @@
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <iostream>
+#include <string>
+#include <vector>
+
+#include <unistd.h>
+
+#include <gtest/gtest.h>
+
+#include <glm/geometric.hpp>
+
+#include "app/applications/navigation/map_import.h"
+#include "core/base/error.h"
+
+// Maps of one's own. Files are written here byte by byte, so that what is read is held against known places and
+// heights.
+
+namespace lumorph::navigation {
+namespace {
+
+namespace fs = std::filesystem;
+
+class MapImport : public ::testing::Test {
+protected:
+    MapImport() : folder_(fs::temp_directory_path() / ("lumorph-map-" + std::to_string(getpid()))) {
+        fs::remove_all(folder_);
+        fs::create_directories(folder_);
+    }
+    ~MapImport() override { fs::remove_all(folder_); }
+
+    fs::path write(const std::string& name, const std::string& bytes) const {
+        std::ofstream(folder_ / name, std::ios::binary) << bytes;
+        return folder_ / name;
+    }
+    fs::path folder_;
+};
+
+template <typename T> void put(std::string& bytes, T value) {
+    bytes.append(reinterpret_cast<const char*>(&value), sizeof value); // little endian, as all machines of ours
+}
+
+struct Georeference {
+    double west = 0.0, north = 0.0, step = 10.0;
+    int epsg = 32632; ///< 0: none is named
+    bool degrees = false;
+};
+
+/// An uncompressed GeoTIFF of floats, one strip (TIFF 6.0, OGC GeoTIFF 1.1).
+template <typename Height> std::string geoTiff(int columns, int rows, const Georeference& geo, const Height& height) {
+    struct Entry {
+        std::uint16_t tag, type;
+        std::uint32_t count, value;
+    };
+    std::string doubles, keys;
+    for (const double v : {geo.step, geo.step, 0.0}) put(doubles, v);
+    for (const double v : {0.0, 0.0, 0.0, geo.west, geo.north, 0.0}) put(doubles, v);
+    const std::vector<std::uint16_t> directory{1,
+                                               1,
+                                               0,
+                                               3,
+                                               1024,
+                                               0,
+                                               1,
+                                               static_cast<std::uint16_t>(geo.degrees ? 2 : 1),
+                                               1025,
+                                               0,
+                                               1,
+                                               1,
+                                               static_cast<std::uint16_t>(geo.degrees ? 2048 : 3072),
+                                               0,
+                                               1,
+                                               static_cast<std::uint16_t>(geo.epsg)};
+    for (const std::uint16_t v : directory) put(keys, v);
+    const std::uint32_t entries = geo.epsg > 0 ? 13 : 12;
+    const std::uint32_t after = 8 + 2 + 12 * entries + 4;
+    const auto keysAt = after + static_cast<std::uint32_t>(doubles.size());
+    const auto dataAt = keysAt + static_cast<std::uint32_t>(keys.size());
+    const auto size = static_cast<std::uint32_t>(4 * columns * rows);
+    std::vector<Entry> list{{256, 4, 1, static_cast<std::uint32_t>(columns)},
+                            {257, 4, 1, static_cast<std::uint32_t>(rows)},
+                            {258, 3, 1, 32},
+                            {259, 3, 1, 1},
+                            {262, 3, 1, 1},
+                            {273, 4, 1, dataAt},
+                            {277, 3, 1, 1},
+                            {278, 4, 1, static_cast<std::uint32_t>(rows)},
+                            {279, 4, 1, size},
+                            {339, 3, 1, 3},
+                            {33550, 12, 3, after},
+                            {33922, 12, 6, after + 24}};
+    if (geo.epsg > 0) list.push_back({34735, 3, static_cast<std::uint32_t>(directory.size()), keysAt});
+    std::string bytes = "II*";
+    bytes.push_back('\0');
+    put(bytes, std::uint32_t{8});
+    put(bytes, static_cast<std::uint16_t>(list.size()));
+    for (const Entry& entry : list) {
+        put(bytes, entry.tag);
+        put(bytes, entry.type);
+        put(bytes, entry.count);
+        put(bytes, entry.value);
+    }
+    put(bytes, std::uint32_t{0});
+    bytes += doubles + keys;
+    for (int y = 0; y < rows; ++y)
+        for (int x = 0; x < columns; ++x) put(bytes, static_cast<float>(height(x, y)));
+    return bytes;
+}
+
+std::uint32_t crcOf(const std::string& bytes) {
+    std::uint32_t crc = 0xFFFFFFFFU;
+    for (const char c : bytes) {
+        crc ^= static_cast<std::uint8_t>(c);
+        for (int k = 0; k < 8; ++k) crc = (crc >> 1U) ^ ((crc & 1U) != 0 ? 0xEDB88320U : 0U);
+    }
+    return ~crc;
+}
+
+void putBig(std::string& bytes, std::uint32_t value) {
+    for (int shift = 24; shift >= 0; shift -= 8)
+        bytes.push_back(static_cast<char>(value >> static_cast<unsigned>(shift)));
+}
+
+/// A grey PNG of 16 bits, stored without compression; at most 64 KiB of pixels.
+template <typename Value> std::string png16(int columns, int rows, const Value& value) {
+    std::string raw;
+    for (int y = 0; y < rows; ++y) {
+        raw.push_back('\0');
+        for (int x = 0; x < columns; ++x) {
+            const int v = value(x, y);
+            raw.push_back(static_cast<char>(v >> 8));
+            raw.push_back(static_cast<char>(v & 255));
+        }
+    }
+    std::uint32_t a = 1, b = 0;
+    for (const char c : raw) {
+        a = (a + static_cast<std::uint8_t>(c)) % 65521;
+        b = (b + a) % 65521;
+    }
+    std::string stream("\x78\x01\x01", 3);
+    put(stream, static_cast<std::uint16_t>(raw.size()));
+    put(stream, static_cast<std::uint16_t>(~raw.size()));
+    stream += raw;
+    putBig(stream, b << 16U | a);
+    std::string bytes("\x89PNG\r\n\x1a\n", 8);
+    const auto chunk = [&](const std::string& name, const std::string& data) {
+        putBig(bytes, static_cast<std::uint32_t>(data.size()));
+        bytes += name + data;
+        putBig(bytes, crcOf(name + data));
+    };
+    std::string head;
+    putBig(head, static_cast<std::uint32_t>(columns));
+    putBig(head, static_cast<std::uint32_t>(rows));
+    head += std::string("\x10\0\0\0\0", 5);
+    chunk("IHDR", head);
+    chunk("IDAT", stream);
+    chunk("IEND", "");
+    return bytes;
+}
+
+bool tells(const MapReport& report, const std::string& words) {
+    return std::ranges::any_of(report.notes,
+                               [&](const std::string& note) { return note.find(words) != std::string::npos; });
+}
+
+std::string all(const MapReport& report) {
+    std::string text;
+    for (const std::string& note : report.notes) text += note + "\n";
+    return text;
+}
+
+/// A slope: 100 m at its western edge, 2 m more for each sample, and 1 m a row to the south.
+double slope(int x, int y) { return 100.0 + 2.0 * x + y; }
+
+TEST_F(MapImport, AGeoTiffInMetresIsWhereItSays) {
+    write("ground.tif", geoTiff(101, 81, {500000.0, 5200000.0, 10.0}, slope));
+    const ImportedMap imported = importMap(folder_);
+    const HeightMap& heights = imported.map.heights;
+    EXPECT_EQ(imported.projection, "EPSG:32632");
+    EXPECT_NEAR(heights.spacing(), 10.0, 1e-6);
+    EXPECT_EQ(heights.samples(), glm::ivec2(101, 81));
+    EXPECT_NEAR(imported.origin.x, 500005.0, 0.01) << "the middle of its first pixel";
+    EXPECT_NEAR(imported.origin.y, 5199995.0, 0.01);
+    for (const glm::ivec2 at : {glm::ivec2(0, 0), {50, 40}, {99, 3}, {7, 80}})
+        EXPECT_NEAR(static_cast<double>(heights.at(at)), slope(at.x, at.y), 0.01) << at.x << " " << at.y;
+}
+
+// A degree of longitude at the equator is 111319.49 m (WGS 84, 6378137 m), and UTM shrinks the zone's middle by 0.9996.
+TEST_F(MapImport, DegreesBecomeMetres) {
+    write("ground.tif", geoTiff(101, 101, {8.95, 0.05, 0.001, 4326, true}, slope));
+    const ImportedMap imported = importMap(folder_);
+    const glm::dvec2 size = imported.map.heights.size();
+    EXPECT_EQ(imported.projection, "EPSG:32632");
+    EXPECT_NEAR(size.x, 0.101 * 111319.49 * 0.9996, 260.0);
+    // Ten thousandths of a degree east of the zone's middle meridian, on the equator.
+    const glm::dvec2 place(500000.0 + 0.01 * 111319.49 * 0.9996 - imported.origin.x, imported.origin.y - 0.0);
+    EXPECT_NEAR(imported.map.heights.at(place, 0.0), slope(0, 0) + 2.0 * 59.5 + 49.5, 1.0);
+}
+
+TEST_F(MapImport, AnSrtmTileIsRead) {
+    std::string bytes;
+    for (int y = 0; y < 1201; ++y)
+        for (int x = 0; x < 1201; ++x) {
+            const int height = x == 600 && y == 600 ? -32768 : 300 + x / 2;
+            bytes.push_back(static_cast<char>(height >> 8));
+            bytes.push_back(static_cast<char>(height & 255));
+        }
+    const auto begun = std::chrono::steady_clock::now();
+    const ImportedMap imported = importMap(write("N46E007.hgt", bytes));
+    EXPECT_LT(std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count(), 10.0);
+    EXPECT_GT(imported.report.filled, 0.0) << "a void, and corners beyond the tile";
+    EXPECT_NEAR(imported.map.heights.highest(), 900.0, 3.0);
+    EXPECT_NEAR(imported.map.heights.at(0.5 * imported.map.heights.size(), 0.0), 600.0, 6.0);
+}
+
+TEST_F(MapImport, APictureWithoutAPlaceIsTakenAsMetres) {
+    const ImportedMap imported =
+        importMap(write("heights.png", png16(80, 60, [](int x, int y) { return 1000 + 10 * x + y; })));
+    EXPECT_TRUE(tells(imported.report, "where it lies")) << all(imported.report);
+    EXPECT_EQ(imported.map.heights.samples(), glm::ivec2(80, 60));
+    EXPECT_NEAR(static_cast<double>(imported.map.heights.at({70, 50})), 1750.0, 0.5);
+}
+
+TEST_F(MapImport, AWrongProjectionIsSeenThrough) {
+    write("ground.tif", geoTiff(60, 60, {8.95, 0.05, 0.001, 32632, false}, slope)); // degrees that say they are metres
+    const ImportedMap imported = importMap(folder_);
+    EXPECT_TRUE(tells(imported.report, "look like degrees")) << all(imported.report);
+    EXPECT_NEAR(imported.map.heights.size().x, 0.06 * 111319.49, 300.0);
+}
+
+/// 0.0001 degrees are 11.13 m at the equator.
+constexpr const char* kHouses = R"({"type":"FeatureCollection","features":[
+ {"type":"Feature","properties":{"height":12.5,"name":"Mill"},"geometry":{"type":"Polygon","coordinates":[[[9.0,0.0],[9.0002,0.0],[9.0002,0.0001],[9.0,0.0001],[9.0,0.0]]]}},
+ {"type":"Feature","properties":{},"geometry":{"type":"Polygon","coordinates":[[[9.001,0.0],[9.0012,0.0],[9.0012,0.0001],[9.001,0.0001],[9.001,0.0]]]}},
+ {"type":"Feature","properties":{"height":9},"geometry":{"type":"Polygon","coordinates":[[[9.002,0.0],[9.0023,0.0003],[9.0023,0.0],[9.002,0.0003],[9.002,0.0]]]}},
+ {"type":"Feature","properties":{"height":9},"geometry":{"type":"Polygon","coordinates":[[[9.003,0.0],[9.0033,0.0],[9.0033,0.0003],[9.0032,0.0003],[9.0032,0.0001],[9.003,0.0001],[9.003,0.0]]]}},
+ {"type":"Feature","properties":{"name":"Square"},"geometry":{"type":"Point","coordinates":[9.0001,0.0005]}},
+ {"type":"Feature","properties":{"height":9},"geometry":null},
+ {"type":"Feature","properties":{"height":5},"geometry":{"type":"Polygon","coordinates":[[[29.0,0.0],[29.0002,0.0],[29.0002,0.0001],[29.0,0.0]]]}}]})";
+
+TEST_F(MapImport, OutlinesStandWhereAndAsHighAsTheySay) {
+    write("ground.tif", geoTiff(101, 101, {8.95, 0.05, 0.001, 4326, true}, [](int, int) { return 50.0; }));
+    write("houses.geojson", kHouses);
+    const ImportedMap imported = importMap(folder_);
+    const MapReport& report = imported.report;
+    EXPECT_EQ(report.heightMissing, 1U) << all(report);
+    EXPECT_EQ(report.mended, 1U);
+    EXPECT_GE(report.leftOut, 2U) << "without geometry, and beyond the ground";
+    EXPECT_TRUE(tells(report, "no height")) << all(report);
+    EXPECT_TRUE(tells(report, "crossed themselves"));
+    const auto mill = std::ranges::find_if(imported.map.buildings,
+                                           [](const Building& b) { return std::abs(b.eaves - b.base - 12.5) < 1e-6; });
+    ASSERT_NE(mill, imported.map.buildings.end());
+    EXPECT_NEAR(mill->base, 50.0, 0.1);
+    const glm::dvec2 corner(500000.0 - imported.origin.x, imported.origin.y - 0.0); // 9 degrees east, on the equator
+    double nearest = 1e9;
+    for (const glm::dvec2& p : mill->outline) nearest = std::min(nearest, glm::distance(p, corner));
+    EXPECT_LT(nearest, 0.05) << "metres";
+    EXPECT_TRUE(std::ranges::any_of(imported.map.places, [](const Place& p) { return p.name == "Square"; }));
+}
+
+TEST_F(MapImport, AnOsmExtractHasHousesRoadsAndNames) {
+    const ImportedMap imported = importMap(write("town.osm", R"(<?xml version="1.0"?><osm version="0.6">
+ <node id="1" lat="0.0" lon="9.0"/><node id="2" lat="0.0" lon="9.0002"/><node id="3" lat="0.0002" lon="9.0002"/><node id="4" lat="0.0002" lon="9.0"/>
+ <node id="5" lat="0.001" lon="8.999"/><node id="6" lat="0.001" lon="9.003"/>
+ <node id="7" lat="0.0005" lon="9.001"><tag k="place" v="town"/><tag k="name" v="Nowhere"/></node>
+ <way id="10"><nd ref="1"/><nd ref="2"/><nd ref="3"/><nd ref="4"/><nd ref="1"/><tag k="building" v="yes"/><tag k="building:levels" v="3"/></way>
+ <way id="11"><nd ref="5"/><nd ref="6"/><tag k="highway" v="primary"/></way></osm>)"));
+    EXPECT_EQ(imported.report.buildings, 1U) << all(imported.report);
+    EXPECT_EQ(imported.report.roads, 1U);
+    ASSERT_FALSE(imported.map.buildings.empty());
+    EXPECT_NEAR(imported.map.buildings[0].eaves - imported.map.buildings[0].base, 10.0, 1e-6)
+        << "three storeys and a roof";
+    ASSERT_FALSE(imported.map.places.empty());
+    EXPECT_EQ(imported.map.places[0].name, "Nowhere");
+    EXPECT_TRUE(tells(imported.report, "level")) << "no heights";
+}
+
+TEST_F(MapImport, ACityJsonHasHousesWithTheirHeights) {
+    const std::string city =
+        R"({"type":"CityJSON","version":"1.1","metadata":{"referenceSystem":"https://www.opengis.net/def/crs/EPSG/0/32632"},
+ "transform":{"scale":[0.01,0.01,0.01],"translate":[500000,5200000,100]},
+ "vertices":[[0,0,0],[1000,0,0],[1000,800,0],[0,800,0],[0,0,700],[1000,0,700],[1000,800,700],[0,800,700]],
+ "CityObjects":{"a":{"type":"Building","geometry":[{"type":"Solid","lod":"1","boundaries":[[[[0,3,2,1]],[[4,5,6,7]],[[0,1,5,4]],[[1,2,6,5]],[[2,3,7,6]],[[3,0,4,7]]]]}]},
+ "b":{"type":"Building","geometry":[]}}})";
+    const ImportedMap imported = importMap(write("city.json", city));
+    ASSERT_EQ(imported.map.buildings.size(), 1U) << all(imported.report);
+    EXPECT_NEAR(imported.map.buildings[0].eaves - imported.map.buildings[0].base, 7.0, 1e-6);
+    const auto& outline = imported.map.buildings[0].outline;
+    EXPECT_NEAR(glm::distance(outline[0], outline[1]), 10.0, 0.01);
+    EXPECT_GE(imported.report.leftOut, 1U) << "one without a shape";
+    const std::string broken =
+        city.substr(0, city.find("[[[[0,3,2,1]]")) + "[[[[0,3,2,99]]" + city.substr(city.find("[[[[0,3,2,1]]") + 13);
+    EXPECT_THROW((void)importMap(write("city.json", broken)), DataError);
+}
+
+TEST_F(MapImport, DamagedEmptyAndForeignFilesAreRefusedWithWords) {
+    const std::string tiff = geoTiff(50, 50, {500000.0, 5200000.0, 10.0}, slope);
+    const struct {
+        const char* name;
+        std::string bytes;
+    } rows[] = {{"empty.tif", ""},
+                {"noise.tif", "II*_this is no picture at all"},
+                {"empty.geojson", ""},
+                {"cut.geojson", std::string(kHouses).substr(0, 150)},
+                {"none.geojson", R"({"type":"FeatureCollection","features":[]})"},
+                {"note.txt", "hello"},
+                {"N46E007.hgt", "short"}};
+    for (const auto& row : rows) {
+        try {
+            (void)importMap(write(row.name, row.bytes));
+            ADD_FAILURE() << row.name << " was read";
+        } catch (const DataError& error) {
+            EXPECT_FALSE(error.why().empty()) << row.name;
+            EXPECT_FALSE(error.remedy().empty()) << row.name;
+        }
+    }
+    EXPECT_THROW((void)importMap(folder_ / "nothing.tif"), DataError);
+    // What is sound beside it is shown anyway.
+    fs::remove_all(folder_);
+    fs::create_directories(folder_);
+    write("ground.tif", tiff);
+    write("broken.tif", "II*_this is no picture at all");
+    write("cut.geojson", std::string(kHouses).substr(0, 150));
+    const ImportedMap imported = importMap(folder_);
+    EXPECT_TRUE(tells(imported.report, "broken.tif")) << all(imported.report);
+    EXPECT_TRUE(tells(imported.report, "cut.geojson")) << all(imported.report);
+}
+
+TEST_F(MapImport, ATruncatedTiffShowsWhatThereIsOrSaysWhy) {
+    const std::string tiff = geoTiff(200, 200, {500000.0, 5200000.0, 10.0}, slope);
+    try {
+        const ImportedMap imported = importMap(write("cut.tif", tiff.substr(0, tiff.size() / 2)));
+        EXPECT_FALSE(imported.report.notes.empty());
+    } catch (const DataError& error) {
+        EXPECT_FALSE(error.why().empty());
+    }
+}
+
+TEST_F(MapImport, ATileOfTwentyKilometresTakesLessThanTenSeconds) {
+    const fs::path file = write("tile.tif", geoTiff(2200, 2200, {500000.0, 5200000.0, 9.1}, slope));
+    int told = 0;
+    const auto begun = std::chrono::steady_clock::now();
+    const ImportedMap imported = importMap(file, Progress([&](double, std::string_view) { ++told; }));
+    const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
+    std::cout << "a tile of 20 km: " << seconds << " s" << std::endl;
+    EXPECT_LT(seconds, 10.0);
+    EXPECT_GT(told, 5);
+    EXPECT_LE(imported.map.heights.samples().x, kMostSamples);
+    EXPECT_NEAR(imported.map.heights.size().x, 2200 * 9.1, 50.0);
+}
+
+TEST_F(MapImport, AHugeFileIsReadInParts) {
+    // A gigabyte of heights that takes no room on the disk: TIFF's data are a hole in the file.
+    const std::string head = geoTiff(1, 1, {500000.0, 5200000.0, 1.0}, [](int, int) { return 0.0; });
+    std::string bytes = head;
+    constexpr std::uint32_t kSide = 16000, kBytes = 4 * kSide * kSide;
+    const auto patch = [&](std::uint16_t tag, std::uint32_t value) {
+        for (std::size_t at = 10; at < 10 + 13 * 12; at += 12) {
+            std::uint16_t here = 0;
+            std::memcpy(&here, bytes.data() + at, 2);
+            if (here == tag) std::memcpy(bytes.data() + at + 8, &value, 4);
+        }
+    };
+    patch(256, kSide);
+    patch(257, kSide);
+    patch(278, kSide);
+    patch(279, kBytes);
+    const fs::path file = write("huge.tif", bytes);
+    fs::resize_file(file, head.size() - 4 + kBytes);
+    const auto begun = std::chrono::steady_clock::now();
+    const ImportedMap imported = importMap(file);
+    std::cout << "a gigabyte: " << std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count()
+              << " s" << std::endl;
+    EXPECT_TRUE(tells(imported.report, "only some are read")) << all(imported.report);
+    EXPECT_LE(imported.map.heights.samples().x, kMostSamples);
+    EXPECT_NEAR(imported.map.heights.size().x, 16000.0, 20.0);
+}
+
+} // namespace
+} // namespace lumorph::navigation

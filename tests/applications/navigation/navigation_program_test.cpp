@@ -1,0 +1,356 @@
+#include <algorithm>
+#include <cmath>
+#include <ctime>
+#include <fstream>
+#include <iostream>
+#include <numeric>
+#include <set>
+#include <string>
+
+#include <unistd.h>
+
+#include <gtest/gtest.h>
+
+#include <glm/geometric.hpp>
+
+#include "app/applications/navigation/navigation.h"
+#include "app/applications/navigation/valley.h"
+#include "core/base/error.h"
+#include "core/motion/causal_split.h"
+#include "core/motion/surface_heights.h"
+#include "tests/support/program_visit.h"
+
+// R36: the map as visitors meet it: where one flies, what is seen, read and felt, and what a frame costs.
+
+namespace lumorph::navigation {
+namespace {
+
+using test::kFrame;
+using test::tabletRig;
+using Visit = test::ProgramVisit;
+
+const std::shared_ptr<const Map>& valley() {
+    static const auto map = std::make_shared<const Map>(bundledValley());
+    return map;
+}
+
+const Place& placeNamed(const std::string& name) { return *std::ranges::find(valley()->places, name, &Place::name); }
+
+void land(NavigationProgram& program, Visit& visit, const std::string& name) {
+    visit.frame({{"key.left", 1.0}}); // somebody is there
+    visit.frame({{"key.left", 0.0}});
+    program.flyTo(name);
+    visit.frames(12.0);
+    ASSERT_FALSE(program.flies());
+}
+
+TEST(NavigationProgram, FliesByItselfFromPlaceToPlace) {
+    NavigationProgram program(1, valley());
+    Visit visit(program);
+    std::set<std::pair<int, int>> seen; // by hundreds of metres
+    const glm::dvec2 size = valley()->heights.size();
+    for (int k = 0; k < 60 * 60; ++k) {
+        visit.frame();
+        if (k % 60 == 0) {
+            ASSERT_NO_THROW(checkScene(*visit.content().scene)) << k;
+        }
+        for (const glm::dvec2& way : {glm::dvec2(-1, -1), {1, -1}, {1, 1}, {-1, 1}}) {
+            const glm::dvec2 corner = program.view().placeAt(way * kHalf);
+            ASSERT_GE(std::min(corner.x, corner.y), -0.01) << "beyond the map";
+            ASSERT_LE(std::max(corner.x - size.x, corner.y - size.y), 0.01) << "beyond the map";
+        }
+        if (!program.flies())
+            seen.insert(
+                {static_cast<int>(program.view().centre.x / 100), static_cast<int>(program.view().centre.y / 100)});
+    }
+    EXPECT_TRUE(program.playsItself());
+    EXPECT_GE(seen.size(), 4U) << "in a minute";
+}
+
+TEST(NavigationProgram, WhoComesPansZoomsAndTurnsAtOnce) {
+    const struct {
+        const char* key;
+        glm::dvec2 way; ///< of the view, on the device
+        double zoom, turn;
+    } rows[] = {
+        {"key.right", {1.0, 0.0}, 0.0, 0.0}, {"key.up", {0.0, -1.0}, 0.0, 0.0}, {"pointer.x", {1.0, 0.0}, 0.0, 0.0},
+        {"pad.y", {0.0, 1.0}, 0.0, 0.0},     {"key.in", {}, -1.0, 0.0},         {"key.turnRight", {}, 0.0, 1.0},
+        {"key.turnLeft", {}, 0.0, -1.0},
+    };
+    for (const auto& row : rows) {
+        NavigationProgram program(1, valley());
+        Visit visit(program);
+        visit.frame({{"key.in", 1.0}}); // there is room to pan
+        visit.frames(1.0);
+        visit.frame({{"key.in", 0.0}});
+        const MapView from = program.view();
+        visit.frame({{row.key, 1.0}});
+        visit.frames(0.5);
+        EXPECT_FALSE(program.playsItself()) << row.key;
+        const MapView& to = program.view();
+        const glm::dvec2 moved = from.pointAt(to.centre);
+        EXPECT_NEAR(moved.x, 0.025 * row.way.x, 0.02 * std::abs(row.way.x) + 1e-6) << row.key;
+        EXPECT_NEAR(moved.y, 0.025 * row.way.y, 0.02 * std::abs(row.way.y) + 1e-6) << row.key;
+        EXPECT_NEAR(std::log(to.width / from.width), 0.45 * row.zoom, 0.06) << row.key;
+        EXPECT_NEAR(to.turn - from.turn, 0.35 * row.turn, 0.06) << row.key;
+    }
+}
+
+TEST(NavigationProgram, TheLeaningDevicePans) {
+    NavigationProgram program(1, valley());
+    Visit visit(program);
+    visit.frame({{"key.in", 1.0}});
+    visit.frames(1.0);
+    visit.frame({{"key.in", 0.0}});
+    const MapView from = program.view();
+    visit.lean(0.0F, -0.2F); // its right side down
+    visit.frames(0.5);
+    EXPECT_GT(from.pointAt(program.view().centre).x, 0.01);
+}
+
+TEST(NavigationProgram, NextRestartAndGoToFlyThere) {
+    NavigationProgram program(1, valley());
+    Visit visit(program);
+    land(program, visit, "castle harow"); // a slip of the fingers
+    EXPECT_LT(glm::distance(program.view().centre, placeNamed("Castle Harrow").at), 1.0);
+    visit.frame({{"key.restart", 1.0}});
+    visit.frames(10.0);
+    EXPECT_LT(glm::distance(program.view().centre, program.home().centre), 1.0);
+    EXPECT_NEAR(program.view().width, program.home().width, 1.0);
+    visit.frame({{"key.next", 1.0}});
+    EXPECT_TRUE(program.flies());
+    visit.frames(10.0);
+    EXPECT_FALSE(program.flies());
+    EXPECT_THROW(program.flyTo("Atlantis"), InvalidInput);
+    visit.frames(Visitor::kSilence);
+    EXPECT_TRUE(program.playsItself());
+}
+
+TEST(NavigationProgram, TheSameInputsGiveTheSameShow) {
+    const auto play = [] {
+        NavigationProgram program(7, valley());
+        Visit visit(program);
+        visit.frames(8.0);
+        visit.frame({{"key.rain", 1.0}, {"pointer.x", 0.6}});
+        visit.frames(2.0);
+        return std::pair(program.view(), std::get<HeightGrid>(visit.content().target).heights);
+    };
+    EXPECT_EQ(play(), play());
+}
+
+/// A label's text runs along the item's x, and it faces along z.
+TEST(NavigationProgram, LabelsAreReadFromAllFourSides) {
+    NavigationProgram program(1, valley());
+    Visit visit(program);
+    land(program, visit, "Merinhaven");
+    int read = 0;
+    for (int side = 0; side < 4; ++side) {
+        const double angle = 1.5707963 * side;
+        const glm::dvec3 eye(0.55 * std::sin(angle), 0.45, 0.55 * std::cos(angle));
+        visit.see({ShowBody{"Head", PoseRole::head, {eye, {1.0, 0.0, 0.0, 0.0}}}});
+        visit.frames(1.0);
+        for (const SceneItem& item : visit.content().scene->items) {
+            if (item.name != "Label" || item.opacity < 0.9F) continue;
+            ++read;
+            const glm::dvec3 way = glm::normalize(eye - glm::dvec3(item.position));
+            const glm::dvec3 faces = glm::dvec3(item.rotation * glm::vec3(0.0F, 0.0F, 1.0F));
+            const glm::dvec3 text = glm::dvec3(item.rotation * glm::vec3(1.0F, 0.0F, 0.0F));
+            const glm::dvec3 right = glm::normalize(glm::cross(glm::dvec3(0.0, 1.0, 0.0), way)); // the viewer's
+            EXPECT_GT(glm::dot(faces, way), std::cos(0.2)) << side;
+            EXPECT_GT(glm::dot(text, right), std::cos(0.785)) << side << ": within 45 degrees of level";
+        }
+    }
+    EXPECT_GE(read, 4 * 3);
+}
+
+/// Where the loop's own formula puts a point of the device on the map, written out once more.
+double trueHeight(const MapView& view, const glm::dvec2& point) {
+    const double metres = view.width / 0.21, c = std::cos(view.turn), s = std::sin(view.turn);
+    const glm::dvec2 cell = (view.centre + metres * glm::dvec2(c * point.x + s * point.y, c * point.y - s * point.x)) /
+                            valley()->heights.spacing();
+    const glm::ivec2 at(glm::floor(cell));
+    const glm::dvec2 t = cell - glm::dvec2(at);
+    const auto h = [&](int x, int y) {
+        return static_cast<double>(
+            valley()->heights.at(glm::clamp(at + glm::ivec2(x, y), glm::ivec2(0), valley()->heights.samples() - 1)));
+    };
+    return std::lerp(std::lerp(h(0, 0), h(1, 0), t.x), std::lerp(h(0, 1), h(1, 1), t.x), t.y);
+}
+
+std::vector<double> carried(CausalSplit& split, const std::vector<float>& heights) {
+    split.restart();
+    const std::vector<double> strokes = split.strokes(heights, 0.0);
+    std::vector<float> top(split.restHeights().begin(), split.restHeights().end());
+    TriangleMesh shape = tabletRig()->restMesh();
+    shape.positions = deformed(*tabletRig(), strokes).positions;
+    heightsOfMesh(shape, split.points(), top);
+    return {top.begin(), top.end()};
+}
+
+double meanOf(const std::vector<double>& values) {
+    return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
+}
+
+double alike(const std::vector<double>& a, const std::vector<double>& b) {
+    const double meanA = meanOf(a), meanB = meanOf(b);
+    double ab = 0.0, aa = 0.0, bb = 0.0;
+    for (std::size_t k = 0; k < a.size(); ++k) {
+        ab += (a[k] - meanA) * (b[k] - meanB);
+        aa += (a[k] - meanA) * (a[k] - meanA);
+        bb += (b[k] - meanB) * (b[k] - meanB);
+    }
+    return ab / std::sqrt(aa * bb);
+}
+
+// What the device takes away of the true heights' energy over rest, against what its rig can take away of it at best.
+TEST(NavigationProgram, TheTabletTakesTheShapeOfTheLandAtEveryZoom) {
+    CausalSplit split(*tabletRig());
+    for (const char* name : {"Merinhaven", "Castle Harrow", "Lake Merin", "Kestrel Horn", "Fennick"}) {
+        NavigationProgram program(1, valley());
+        Visit visit(program);
+        land(program, visit, name);
+        const auto& grid = std::get<HeightGrid>(visit.content().target);
+        ASSERT_NO_THROW(checkHeightGrid(grid));
+        std::vector<float> truth, target;
+        for (const glm::vec2& point : split.points()) {
+            truth.push_back(static_cast<float>(program.ground().lift(trueHeight(program.view(), glm::dvec2(point)))));
+            target.push_back(static_cast<float>(heightAt(grid, glm::dvec2(point))));
+        }
+        const std::vector<double> best = carried(split, truth), got = carried(split, target);
+        double whole = 0.0, leftBest = 0.0, leftGot = 0.0;
+        std::vector<double> wanted;
+        for (std::size_t k = 0; k < truth.size(); ++k) {
+            const auto rest = static_cast<double>(split.restHeights()[k]);
+            wanted.push_back(static_cast<double>(std::isnan(truth[k]) ? split.restHeights()[k] : truth[k]));
+            whole += (wanted[k] - rest) * (wanted[k] - rest);
+            leftBest += (wanted[k] - best[k]) * (wanted[k] - best[k]);
+            leftGot += (wanted[k] - got[k]) * (wanted[k] - got[k]);
+        }
+        const double share = (whole - leftGot) / (whole - leftBest), correlation = alike(wanted, got);
+        std::cout << name << ": " << 100.0 * share
+                  << " % of the slow energy that the rig can reach, correlation with light off " << correlation
+                  << std::endl;
+        EXPECT_GE(share, 0.9) << name;
+        EXPECT_GT(correlation, 0.3) << name;
+    }
+}
+
+TEST(NavigationProgram, RainFromAHeldHandEndsInTheWater) {
+    NavigationProgram program(3, valley());
+    Visit visit(program);
+    land(program, visit, "River Orra");
+    visit.see({ShowBody{"Hand", PoseRole::pointer, {{0.03, 0.15, -0.02}, {1.0, 0.0, 0.0, 0.0}}}});
+    visit.frames(1.0);
+    EXPECT_FALSE(program.rain().drops().empty());
+    EXPECT_TRUE(findItem(*visit.content().scene, kFirstCloud));
+    visit.frames(5.0);
+    EXPECT_GT(program.rain().reachedWater(), 50U);
+    visit.see({});
+    visit.frames(30.0);
+    EXPECT_TRUE(program.rain().dry()) << "it runs off";
+    EXPECT_FALSE(findItem(*visit.content().scene, kFirstCloud));
+}
+
+TEST(NavigationProgram, TheFarEdgeBendsForWhoLooksWhereHeWants) {
+    NavigationProgram program(1, valley());
+    Visit visit(program);
+    visit.frame();
+    EXPECT_FALSE(visit.content().scene->viewDependence.on);
+    visit.frame({{"key.bend", 1.0}});
+    EXPECT_TRUE(visit.content().scene->viewDependence.on);
+    visit.frame({{"key.bend", 0.0}});
+    visit.frame({{"key.bend", 1.0}});
+    EXPECT_FALSE(visit.content().scene->viewDependence.on);
+}
+
+TEST(NavigationProgram, WhatStandsStillKeepsItsIdentity) {
+    NavigationProgram program(1, valley());
+    Visit visit(program);
+    land(program, visit, "Merinhaven");
+    visit.frames(6.0);
+    const auto assets = visit.content().assets;
+    visit.frames(1.0);
+    EXPECT_EQ(visit.content().assets, assets);
+    visit.frame({{"key.right", 1.0}});
+    visit.frames(0.3);
+    EXPECT_NE(visit.content().assets, assets);
+    EXPECT_EQ(visit.content().assets->images.at("navigation palette"), assets->images.at("navigation palette"));
+    EXPECT_EQ(visit.content().assets->images.at("navigation ground"), assets->images.at("navigation ground"));
+    EXPECT_LE(assets->images.at("navigation ground")->size().x, 1024);
+}
+
+double threadSeconds() {
+    timespec now{};
+    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+    return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
+TEST(NavigationProgram, AFrameTakesASmallPartOfItsTime) {
+    NavigationProgram program(1, valley());
+    Visit visit(program);
+    std::vector<double> milliseconds;
+    for (int k = 0; k < 60 * 60; ++k) {
+        std::vector<ShowInput> inputs;
+        if (k == 1800) inputs = {{"pointer.x", 0.4}, {"key.rain", 1.0}};
+        if (k == 2400) inputs = {{"pointer.x", 0.0}, {"key.rain", 0.0}, {"key.in", 1.0}};
+        if (k == 2500) inputs = {{"key.in", 0.0}, {"key.next", 1.0}};
+        const double begun = threadSeconds();
+        visit.frame(inputs);
+        milliseconds.push_back(1e3 * (threadSeconds() - begun));
+    }
+    std::ranges::sort(milliseconds);
+    const double middle = milliseconds[milliseconds.size() / 2], late = milliseconds[milliseconds.size() * 99 / 100];
+    std::cout << "median " << middle << " ms, 99th percentile " << late << " ms, longest " << milliseconds.back()
+              << " ms" << std::endl;
+    EXPECT_LE(middle, 2.0);
+    EXPECT_LE(late, 8.0);
+}
+
+double residentMegabytes() {
+    std::ifstream statm("/proc/self/statm");
+    double size = 0.0, resident = 0.0;
+    statm >> size >> resident;
+    return resident * static_cast<double>(sysconf(_SC_PAGESIZE)) / 1048576.0;
+}
+
+TEST(NavigationProgram, HalfAnHourLeavesMemoryFlatAndStrokesInLimits) {
+    constexpr double kStep = 0.25; // seconds; in steps of a frame it would take minutes
+    NavigationProgram program(5, valley());
+    CausalSplit split(*tabletRig());
+    ShowMoment moment;
+    moment.rig = tabletRig();
+    moment.installation = std::make_shared<const Installation>(defaultInstallation());
+    std::vector<double> before;
+    double afterAMinute = 0.0;
+    std::vector<float> heights(split.points().size());
+    for (int k = 0; k < 4 * 60 * 30; ++k) {
+        std::vector<ShowInput> inputs;
+        if (k % 480 == 100) inputs = {{"pointer.x", 0.7}, {"key.rain", 1.0}};
+        if (k % 480 == 130) inputs = {{"pointer.x", 0.0}, {"key.rain", 0.0}};
+        moment.inputs = inputs;
+        const ShowContent content = program.frame(moment);
+        moment.step = kStep;
+        const auto& grid = std::get<HeightGrid>(content.target);
+        for (std::size_t p = 0; p < heights.size(); ++p)
+            heights[p] = static_cast<float>(heightAt(grid, glm::dvec2(split.points()[p])));
+        if (k % 4 == 0) {
+            const std::vector<double> strokes = split.strokes(heights, 4.0 * kStep);
+            for (std::size_t a = 0; a < strokes.size(); ++a) {
+                ASSERT_GE(strokes[a], 0.0);
+                ASSERT_LE(strokes[a], 1.0);
+                if (!before.empty()) {
+                    ASSERT_LE(std::abs(strokes[a] - before[a]),
+                              tabletRig()->actuators()[a].maxVelocity * 4.0 * kStep + 1e-9);
+                }
+            }
+            before = strokes;
+        }
+        if (k == 240) afterAMinute = residentMegabytes();
+    }
+    const double grown = residentMegabytes() - afterAMinute;
+    std::cout << "grown by " << grown << " MB" << std::endl;
+    EXPECT_LT(grown, 5.0);
+}
+
+} // namespace
+} // namespace lumorph::navigation
