@@ -17,16 +17,18 @@ constexpr double kMostAtOnce = 0.25;     ///< seconds
 constexpr std::uint64_t kMeltEvery = 2;  ///< steps
 constexpr std::uint64_t kShapeEvery = 12;
 constexpr std::uint64_t kStrainEvery = 6;
-constexpr double kStarReach = 0.016;  ///< metres around a blow: cells there are divided
-constexpr double kCrackLength = 0.14; ///< metres
-constexpr double kLeastFloe = 14e-6;  ///< square metres: smaller ones melt away
-constexpr double kHoldsToBank = 0.5;  ///< of the pond: smaller plates come off the bank
-constexpr double kSlides = 0.16;      ///< acceleration of floes a radian of lean, metres a second squared
-constexpr double kCurrent = 0.0022;   ///< acceleration by the water's own motion, metres a second squared
-constexpr double kSharpBend = 2.6;    ///< curvature that harms ice, 1 over metres
-constexpr double kSteepLean = 0.10;   ///< radians that harm it
-constexpr double kCalm = 1.6;         ///< seconds between two cracks by stress
-constexpr double kRipple = 0.0005;    ///< of the water under floes, metres
+constexpr double kStarReach = 0.016;   ///< metres around a blow: cells there are divided
+constexpr double kCrackLength = 0.14;  ///< metres
+constexpr double kLeastFloe = 14e-6;   ///< square metres: smaller ones melt away
+constexpr double kHoldsToBank = 0.5;   ///< of the pond: smaller plates come off the bank
+constexpr double kLeastThaw = 5e-5;    ///< metres at once: rims draw back in steps that nobody sees
+constexpr double kLeavingThaw = 0.025; ///< of old ice, metres a second
+constexpr double kSlides = 0.16;       ///< acceleration of floes a radian of lean, metres a second squared
+constexpr double kCurrent = 0.0022;    ///< acceleration by the water's own motion, metres a second squared
+constexpr double kSharpBend = 2.6;     ///< curvature that harms ice, 1 over metres
+constexpr double kSteepLean = 0.10;    ///< radians that harm it
+constexpr double kCalm = 1.6;          ///< seconds between two cracks by stress
+constexpr double kRipple = 0.0005;     ///< of the water under floes, metres
 constexpr double kRippleLength = 0.09;
 constexpr double kRipplePeriod = 3.1;
 constexpr double kLoudBump = 1.5e-6; ///< cubic metres a second
@@ -76,7 +78,7 @@ void IceCover::beginWinter() {
     cracks_ = Cracks(seed);
     world_.clear();
     floes_.clear();
-    frost_ = leaving_ = 0.0;
+    frost_ = leaving_ = thawing_ = 0.0;
     calm_ = kCalm;
     frostBegins_.clear();
     for (const Cell& cell : sheet_.cells()) {
@@ -145,11 +147,11 @@ void IceCover::step(const Surroundings& around) {
 }
 
 void IceCover::meltAll(const Surroundings& around, double seconds) {
-    double thawing = around.thaw * seconds;
-    if (leaving_ > 0.0) thawing += 0.03 * seconds / kLeaving;
+    thawing_ += (around.thaw + (leaving_ > 0.0 ? kLeavingThaw : 0.0)) * seconds;
+    const double depth = thawing_ < kLeastThaw ? 0.0 : std::exchange(thawing_, 0.0);
     for (std::size_t k = 0; k < floes_.size(); ++k) {
         Floe& floe = floes_[k];
-        if (thawing > 0.0) thaw(sheet_, floe.cells, thawing);
+        if (depth > 0.0) thaw(sheet_, floe.cells, depth);
         std::vector<Warmth> near;
         for (const Warmth& warmth : around.warmths)
             if (glm::distance(warmth.place, centreNow(floe)) < floe.radius + warmth.radius) near.push_back(warmth);

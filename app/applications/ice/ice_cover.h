@@ -123,6 +123,7 @@ private:
     double frost_ = 0.0;
     double leaving_ = 0.0; ///< seconds for which old ice still goes
     double left_ = 0.0;    ///< seconds that no step has taken yet
+    double thawing_ = 0.0; ///< metres by which free rims are still to draw back
     double calm_ = 0.0;    ///< seconds until stress may crack it again
     std::uint64_t steps_ = 0;
     int numbers_ = 0;

@@ -34,6 +34,14 @@ std::optional<Segment> overlap(const glm::dvec2& a, const glm::dvec2& b, const g
     return Segment{a + along * from, a + along * to};
 }
 
+bool boxesTouch(const Polygon& a, const Polygon& b) noexcept {
+    constexpr double kFar = 1e9;
+    glm::dvec2 minA(kFar), maxA(-kFar), minB(kFar), maxB(-kFar);
+    for (const glm::dvec2& corner : a) minA = glm::min(minA, corner), maxA = glm::max(maxA, corner);
+    for (const glm::dvec2& corner : b) minB = glm::min(minB, corner), maxB = glm::max(maxB, corner);
+    return minA.x <= maxB.x + kSame && minB.x <= maxA.x + kSame && minA.y <= maxB.y + kSame && minB.y <= maxA.y + kSame;
+}
+
 } // namespace
 
 glm::dvec2 placed(const Placement& placement, const glm::dvec2& home) noexcept {
@@ -115,6 +123,7 @@ HalfPlane insideOf(const glm::dvec2& from, const glm::dvec2& to, double inset) n
 
 std::optional<Segment> sharedEdge(const Polygon& a, const Polygon& b) noexcept {
     std::optional<Segment> longest;
+    if (!boxesTouch(a, b)) return longest;
     for (std::size_t i = 0; i < a.size(); ++i) {
         for (std::size_t j = 0; j < b.size(); ++j) {
             if (glm::dot(next(a, i) - a[i], next(b, j) - b[j]) >= 0.0) continue;
