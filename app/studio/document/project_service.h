@@ -7,6 +7,7 @@
 #include <QObject>
 #include <QString>
 
+#include "app/applications/demo.h"
 #include "app/studio/base/jobs.h"
 #include "app/studio/base/notices.h"
 #include "app/studio/document/project_io.h"
