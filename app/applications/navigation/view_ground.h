@@ -12,8 +12,10 @@ namespace lumorph::navigation {
 class ViewGround {
 public:
     static constexpr int kColumns = 106, kRows = 76; ///< samples, 2 mm apart
-    static constexpr double kLowest = 0.0215;        ///< y of the lowest place, device metres: just over the sheet
-    static constexpr double kReach = 0.030;          ///< metres from there to the highest place, at most
+    static constexpr double kLowest =
+        0.0130; ///< y of the lowest place, device metres: below the sheet at rest, so that servos
+                ///< spend their range on what differs, and not on lifting it all
+    static constexpr double kReach = 0.030; ///< metres from there to the highest place, at most
     static constexpr double kMostExaggeration = 2.2;
 
     /// Samples the map. Heights come to their new extent by and by, `seconds` after the ground before; at once without.
