@@ -77,7 +77,10 @@ TopBar::TopBar(Studio& studio, const std::vector<std::unique_ptr<Workspace>>& wo
     mark_ = new AppMark(this);
     row->addWidget(mark_);
     row->addSpacing(8);
-    row->addWidget(makeTool(studio.commands.find("applications"), this));
+    auto* cards = makeTool(studio.commands.find("applications"), this);
+    cards->ensurePolished();
+    cards->setFixedWidth(cards->sizeHint().width()); // else menus that do not fit would move the tabs
+    row->addWidget(cards);
     row->addSpacing(4);
     // Before the menus, whose number changes with the workspace: a tab stays where it was clicked.
     addTabs(workspaces, *row);
