@@ -19,7 +19,8 @@ struct DemoStep {
     Scene scene;
 };
 
-/// What an application may be told before it begins, by name, as text: `weather` a file, `place` "LAT,LON", `begin` a
+/// What an application may be told before it begins, by name, as text: `weather` a file (or an
+/// address, with what came from there as `forecast`), `place` "LAT,LON", `begin` a
 /// time, `day` seconds, `anticipation` seconds. Those it does not know it refuses.
 using DemoSettings = std::map<std::string, std::string>;
 

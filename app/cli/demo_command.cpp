@@ -9,11 +9,14 @@
 
 #include <unistd.h>
 
+#include <QCoreApplication>
+
 #include "app/applications/registry/demos.h"
 #include "app/cli/commands.h"
 #include "app/cli/new_demo.h"
 #include "app/cli/session.h"
 #include "app/output/demo_player.h"
+#include "app/weather/weather_fetch.h"
 #include "core/base/error.h"
 
 namespace lumorph::cli {
@@ -28,7 +31,7 @@ struct DemoOptions {
 
 /// What `ambient` may be told: --NAME VALUE each.
 constexpr std::pair<const char*, const char*> kSettings[] = {
-    {"weather", "Without a window, of ambient: a forecast in Open-Meteo's JSON"},
+    {"weather", "Without a window, of ambient: a forecast in Open-Meteo's JSON, a file or an http(s) address"},
     {"place", "Without a window, of ambient: LAT,LON or LAT,LON,HOURS ahead of UTC"},
     {"begin", "Without a window, of ambient: its first time, 2026-05-17T14:00 at the place"},
     {"day", "Without a window, of ambient: seconds that a day takes; 86400 is the world's own time"},
@@ -54,6 +57,17 @@ void showInWindow(const Demo& demo) {
     Session::releaseSignals();
     execv(argv[0], argv);
     throw DeviceError(program, std::strerror(errno), "check that it may be run");
+}
+
+/// A forecast on the web is fetched here, because applications know no network.
+void fetchForecast(DemoSettings& settings) {
+    const auto weather = settings.find("weather");
+    if (weather == settings.end() || !isWebAddress(weather->second)) return;
+    int count = 1;
+    char name[] = "lumorph";
+    char* words[] = {name, nullptr};
+    const QCoreApplication application(count, words); // sockets need it
+    settings["forecast"] = fetchWeather(weather->second);
 }
 
 CLI::App* addNew(CLI::App& demo) {
@@ -105,6 +119,7 @@ void addDemoCommand(CLI::App& app) {
             throw InvalidInput("demo", "which one is not said",
                                "name one of " + demoNames() + ", or 'new' to write one");
         const Demo& demo = demoNamed(options->name);
+        fetchForecast(options->play.settings);
         options->play.video = options->record;
         options->play.last = options->picture;
         options->play.inputs = options->inputs;

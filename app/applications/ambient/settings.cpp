@@ -28,7 +28,9 @@ AmbientSettings settingsFrom(const DemoSettings& settings) {
     AmbientSettings read;
     // The place first: weather may bring another, and times are of the place.
     if (const auto weather = settings.find("weather"); weather != settings.end()) {
-        Forecast forecast = readForecastFile(weather->second);
+        const auto text = settings.find("forecast");
+        Forecast forecast =
+            text == settings.end() ? readForecastFile(weather->second) : readForecast(text->second, weather->second);
         read.place = forecast.place.value_or(read.place);
         read.begin = forecast.weather.begin();
         read.weather = std::make_shared<const Weather>(std::move(forecast.weather));
@@ -41,7 +43,7 @@ AmbientSettings settingsFrom(const DemoSettings& settings) {
             read.daySeconds = secondsOf(name, text);
         else if (name == "anticipation")
             read.anticipation = secondsOf(name, text);
-        else if (name != "weather" && name != "place")
+        else if (name != "weather" && name != "forecast" && name != "place")
             throw InvalidInput("setting '" + name.substr(0, 40) + "'", "the coast has none of this name",
                                "use weather, place, begin, day or anticipation");
     }
