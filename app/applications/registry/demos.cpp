@@ -14,7 +14,7 @@ namespace lumorph {
 
 std::span<const Demo> demos() {
     static const std::vector<Demo> all{waterDemo(), techniquesDemo(), fieldDemo(), labyrinth::labyrinthDemo(),
-                                        ambient::ambientDemo()};
+                                       ambient::ambientDemo()};
     return all;
 }
 

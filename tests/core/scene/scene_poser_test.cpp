@@ -315,7 +315,8 @@ TEST(ScenePoser, OtherWavesKeepTheGridAndAnotherRectangleDoesNot) {
     heights.waves[0].period = 2.0;
     PoseInput later;
     later.seconds = 0.5;
-    EXPECT_NE(*poser.pose(scene, {}, later).surfaces[0].positions, *second.surfaces[0].positions) << "they travel again";
+    EXPECT_NE(*poser.pose(scene, {}, later).surfaces[0].positions, *second.surfaces[0].positions)
+        << "they travel again";
     heights.calmEdge = 0.02;
     EXPECT_NE(poser.pose(scene, {}, later).surfaces[0].topology, second.surfaces[0].topology);
 }
