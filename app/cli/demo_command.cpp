@@ -4,16 +4,22 @@
 #include <filesystem>
 #include <iostream>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
 #include <unistd.h>
+
+#include <QCoreApplication>
+#include <QStandardPaths>
 
 #include "app/applications/registry/demos.h"
 #include "app/cli/commands.h"
 #include "app/cli/new_demo.h"
 #include "app/cli/session.h"
 #include "app/output/demo_player.h"
+#include "app/weather/weather_fetch.h"
+#include "core/base/atomic_file.h"
 #include "core/base/error.h"
 
 namespace lumorph::cli {
@@ -41,6 +47,23 @@ void showInWindow(const Demo& demo, const DemoTold& told) {
     Session::releaseSignals();
     execv(argv[0], argv.data());
     throw DeviceError(program, std::strerror(errno), "check that it may be run");
+}
+
+/// A forecast on the web is fetched into a file, because applications know no network.
+void fetchForecast(DemoTold& told) {
+    const auto weather = told.find("weather");
+    if (weather == told.end() || !isWebAddress(weather->second)) return;
+    int count = 1;
+    char name[] = "lumorph";
+    char* words[] = {name, nullptr};
+    const QCoreApplication application(count, words); // sockets need it
+    const std::string answer = fetchWeather(weather->second);
+    const std::filesystem::path cache =
+        QStandardPaths::writableLocation(QStandardPaths::GenericCacheLocation).toStdString();
+    const std::filesystem::path file = cache / "lumorph" / "forecast.json";
+    std::filesystem::create_directories(file.parent_path());
+    writeFileAtomically(file, std::as_bytes(std::span(answer)));
+    weather->second = file.string();
 }
 
 CLI::App* addNew(CLI::App& demo) {
@@ -97,6 +120,7 @@ void addDemoCommand(CLI::App& app) {
             throw InvalidInput("demo", "which one is not said",
                                "name one of " + demoNames() + ", or 'new' to write one");
         const Demo& demo = demoNamed(options->name);
+        fetchForecast(options->play.told);
         options->play.video = options->record;
         options->play.last = options->picture;
         options->play.inputs = options->inputs;

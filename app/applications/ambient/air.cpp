@@ -12,10 +12,11 @@
 namespace lumorph::ambient {
 namespace {
 
-constexpr double kCloudHeight = 0.084;       ///< metres
-constexpr glm::dvec2 kCloudRoom{0.27, 0.19}; ///< metres in x and z; who leaves it comes back on the other side
-constexpr double kFallRoom = 0.060;          ///< metres through which rain and snow fall
-constexpr double kRainSpeed = 0.30, kFlakeSpeed = 0.026; ///< metres a second
+constexpr double kCloudHeight = 0.065;         ///< metres
+constexpr glm::dvec2 kCloudRoom{0.235, 0.165}; ///< metres in x and z; who leaves it comes back on the other side
+constexpr double kFallRoom = 0.028; ///< metres through which rain and snow fall: below the reach of the tablet's flaps
+constexpr float kRainLean = 0.30F;  ///< tangent by which streaks lean
+constexpr double kRainSpeed = 0.17, kFlakeSpeed = 0.016; ///< metres a second
 
 /// Cover that each of the clouds stands for, one after another.
 double shareOfCloud(double cover, int k) { return std::clamp(cover * (kClouds + 0.6) - k, 0.0, 1.0); }
@@ -62,7 +63,7 @@ void showClouds(Scene& scene, const View& view) {
         item.visible = seen > 0.03;
         const glm::dvec2 place = at * kCloudRoom;
         item.position = {glm::dvec3(place.x, kCloudHeight + 0.003 * (k % 3), place.y)};
-        item.scale = glm::vec3(static_cast<float>(0.50 + 0.30 * share) * (k % 2 == 0 ? 1.0F : 0.80F));
+        item.scale = glm::vec3(static_cast<float>(0.42 + 0.26 * share) * (k % 2 == 0 ? 1.0F : 0.80F));
         item.opacity = static_cast<float>(seen * 0.96);
         item.material.color = color;
         // Lit from inside by lightning.
@@ -110,7 +111,11 @@ Primitive scattered(std::uint32_t seed, int count, const std::function<void(Prim
 
 void addFalling(Scene& scene, SceneAssets& assets) {
     const auto streak = [](Primitive& to, const glm::vec3& at) {
-        addTurned(to, at, std::array{glm::vec2(0.00022F, 0.0F), glm::vec2(0.00022F, 0.0085F)}, 4);
+        const glm::vec3 up(-0.006F * kRainLean, 0.006F, 0.0F);
+        for (const glm::vec3& across : {glm::vec3(0.0002F, 0.0F, 0.0F), glm::vec3(0.0F, 0.0F, 0.0002F)}) {
+            addFace(to, std::array{at - across, at + across, at + across + up, at - across + up});
+            addFace(to, std::array{at + across, at - across, at - across + up, at + across + up});
+        }
     };
     const auto flake = [](Primitive& to, const glm::vec3& at) { addBall(to, at, glm::vec3(0.00075F), 6); };
     for (int k = 0; k < kRainLayers; ++k) {
@@ -134,21 +139,21 @@ void showLayer(SceneItem& item, const View& view, int k, int layers, double spee
     if (!item.visible) return;
     const double life = view.seconds * speed / kFallRoom + static_cast<double>(k) / layers;
     const double fallen = life - std::floor(life);
-    // The wind takes it along: fast rain leans, slow snow goes far.
-    const double lean = std::min(0.05 * view.weather.windSpeed, 0.7);
+    // The wind takes it along: streaks lean with it, slow snow goes far.
+    const double lean = std::min(0.06 * view.weather.windSpeed, 1.0);
     const glm::dvec2 aside = view.sea.towards * (lean * kFallRoom * (fallen - 0.5));
-    item.position = {glm::dvec3(aside.x, 0.075 - kFallRoom * (fallen - 0.5), aside.y)};
-    const glm::vec3 axis(glm::dvec3(-view.sea.towards.y, 0.0, view.sea.towards.x));
-    item.rotation = glm::angleAxis(static_cast<float>(std::atan(lean)), axis);
+    item.position = {glm::dvec3(aside.x, 0.052 - kFallRoom * (fallen - 0.5), aside.y)};
+    const double bearing = std::atan2(view.sea.towards.y, view.sea.towards.x);
+    item.rotation = glm::angleAxis(static_cast<float>(-bearing), glm::vec3(0.0F, 1.0F, 0.0F));
     item.opacity = static_cast<float>(amount * std::sin(3.14159 * fallen));
 }
 
 void addBolt(Scene& scene, SceneAssets& assets) {
     Primitive bolt;
-    glm::vec3 from(0.0F, 0.078F, 0.0F);
+    glm::vec3 from(0.0F, 0.050F, 0.0F);
     for (int k = 1; k <= 7; ++k) {
         const auto side = [&](std::uint32_t seed) { return static_cast<float>(noiseAt({5.0 * k, 0.0}, seed)) - 0.5F; };
-        const glm::vec3 to(0.022F * side(61U), 0.078F - 0.0112F * static_cast<float>(k), 0.016F * side(62U));
+        const glm::vec3 to(0.022F * side(61U), 0.050F - 0.00715F * static_cast<float>(k), 0.016F * side(62U));
         const float wide = 0.0009F - 0.0001F * static_cast<float>(k);
         for (const glm::vec3& across : {glm::vec3(wide, 0.0F, 0.0F), glm::vec3(0.0F, 0.0F, wide)}) {
             addFace(bolt, std::array{from - across, to - across, to + across, from + across});

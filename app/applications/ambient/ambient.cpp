@@ -202,7 +202,7 @@ Demo ambientDemo() {
             [] { return std::vector<DemoStep>(); },
             [](std::uint64_t seed) -> std::unique_ptr<ShowProgram> { return std::make_unique<AmbientProgram>(seed); },
             nullptr,
-            {{"weather", "Of ambient: a forecast in Open-Meteo's JSON"},
+            {{"weather", "Of ambient: a forecast in Open-Meteo's JSON, a file or an http(s) address"},
              {"place", "Of ambient: LAT,LON or LAT,LON,HOURS ahead of UTC"},
              {"begin", "Of ambient: its first time, 2026-05-17T14:00 at the place"},
              {"day", "Of ambient: seconds that a day takes; 86400 is the world's own time"},

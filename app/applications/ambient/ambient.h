@@ -23,7 +23,8 @@ struct AmbientSettings {
     double anticipation = 2.0;              ///< seconds by which light shows the sea before servos follow (R38)
 };
 
-/// Settings by name, as they come from outside: `weather` a file in Open-Meteo's JSON, whose place counts where none is
+/// Settings by name, as they come from outside: `weather` a file in Open-Meteo's JSON (or where it came from, with its
+/// text as `forecast`), whose place counts where none is
 /// given, `place` as `placeFrom` reads it, `begin` a local time (2026-05-17T14:00), `day` and `anticipation` seconds.
 /// Without `begin` a forecast begins with its first hour. Throws InvalidInput and DataError naming the setting.
 [[nodiscard]] AmbientSettings settingsFrom(const DemoTold& settings);

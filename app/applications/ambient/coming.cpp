@@ -26,14 +26,14 @@ Primitive smallCloud() {
 }
 
 void showLightOf(SceneItem& light, const View::Coming& hour, const glm::vec3& place, double seen) {
-    const glm::vec3 sun(1.0F, 0.76F, 0.22F), moon(0.62F, 0.70F, 0.95F);
+    const glm::vec3 sun(1.0F, 0.66F, 0.12F), moon(0.62F, 0.70F, 0.95F);
     const double clear = 1.0 - 0.9 * rise(0.2, 1.0, hour.weather.cloudCover);
     const double fog = rise(300.0, 4000.0, hour.weather.visibility);
     light.position = place;
     light.scale = glm::vec3(static_cast<float>((hour.day ? 1.0 : 0.7) * (0.55 + 0.45 * clear)));
     light.material.color = light.material.emission = hour.day ? sun : moon;
-    light.material.emissionStrength = static_cast<float>((0.25 + 0.75 * clear) * (0.3 + 0.7 * fog));
-    light.opacity = static_cast<float>(seen);
+    light.material.emissionStrength = static_cast<float>((0.4 + 0.9 * clear) * (0.3 + 0.7 * fog));
+    light.opacity = static_cast<float>(0.49 * seen); // so that it throws no shadow on the sea
 }
 
 void showCloudOf(SceneItem& cloud, const View& view, const View::Coming& hour, const glm::vec3& place, double seen) {

@@ -107,16 +107,18 @@ void addTower(Scene& scene, SceneAssets& assets) {
     scene.items.push_back(std::move(lantern));
 }
 
-/// Two fans of light, one behind the other, that turn with the lamp.
+/// Two fans of light, one behind the other, that turn with the lamp; of layers that end one after another, so that they
+/// fade.
 void addBeam(Scene& scene, SceneAssets& assets) {
     Primitive fan;
+    constexpr int kLayers = 7;
     for (const float side : {-1.0F, 1.0F}) {
-        constexpr float kFar = 0.15F;
-        const std::array upper{glm::vec3(0.002F * side, 0.0F, 0.0F), glm::vec3(kFar * side, 0.0F, -0.016F * side),
-                               glm::vec3(kFar * side, 0.0F, 0.016F * side)};
-        addFace(fan, upper);
-        const std::array lower{upper[0], upper[2], upper[1]};
-        addFace(fan, lower);
+        for (int layer = 1; layer <= kLayers; ++layer) {
+            const float far = 0.105F * static_cast<float>(layer) / kLayers, wide = 0.075F * far + 0.0008F;
+            const float y = 0.00004F * static_cast<float>(layer); // none hides another
+            addFace(fan, std::array{glm::vec3(0.001F * side, y, 0.0F), glm::vec3(far * side, y, -wide * side),
+                                    glm::vec3(far * side, y, wide * side)});
+        }
     }
     SceneItem& beam = addModel(scene, assets, kBeam, "Beam", modelOf("beam", {fan}));
     beam.position = onLand(kGnomon, 0.0278);
@@ -271,7 +273,7 @@ void showShore(Scene& scene, const View& view) {
     itemOf(scene, kWindow).material.emissionStrength = static_cast<float>(0.05 + 1.2 * night);
     SceneItem& beam = itemOf(scene, kBeam);
     beam.visible = dim > 0.05;
-    beam.opacity = static_cast<float>(0.20 * dim);
+    beam.opacity = static_cast<float>(0.085 * dim);
     constexpr double kBeamTurn = 9.0; // seconds
     const double turn = 2.0 * std::numbers::pi * std::fmod(view.seconds / kBeamTurn, 1.0);
     beam.rotation = glm::angleAxis(static_cast<float>(turn), glm::vec3(0.0F, 1.0F, 0.0F));

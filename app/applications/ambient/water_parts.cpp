@@ -43,10 +43,12 @@ void addSea(Scene& scene) {
     water.material.refraction = 0.05F;
     water.material.reflection = 0.16F;
     scene.items.push_back(water);
-    SceneItem foam = demoItem(kFoam, "Foam", sea);
+    HeightItem crests;
+    crests.floor = 1.0; // no walls
+    SceneItem foam = demoItem(kFoam, "Foam", crests);
     foam.material = plain("Foam", {0.93F, 0.96F, 0.97F}, 0.9F);
     foam.material.holes.image = "ambient cover";
-    foam.material.holes.tile = {0.085F, 0.055F};
+    foam.material.holes.tile = {0.055F, 0.034F};
     foam.material.holes.velocity = {0.004F, 0.002F};
     foam.visible = false;
     scene.items.push_back(std::move(foam));
@@ -89,8 +91,8 @@ void showSea(Scene& scene, const View& view) {
     const auto grey = static_cast<float>(rise(0.4, 1.0, view.weather.cloudCover));
     const glm::vec3 fair(0.050F, 0.385F, 0.510F), dull(0.13F, 0.30F, 0.35F), stormy(0.09F, 0.22F, 0.26F);
     sea.material.color = glm::mix(glm::mix(fair, dull, 0.8F * grey), stormy, rough);
-    sea.material.roughness = 0.08F + 0.24F * grey; // no glitter without a sun
-    sea.material.normalStrength = 0.22F + 0.40F * rough;
+    sea.material.roughness = 0.15F + 0.20F * grey; // no glitter without a sun
+    sea.material.normalStrength = 0.16F + 0.40F * rough;
     const double foamy = rise(5.0, 19.0, view.sea.wind);
     SceneItem& foam = itemOf(scene, kFoam);
     foam.visible = foamy > 0.01;
@@ -100,8 +102,8 @@ void showSea(Scene& scene, const View& view) {
     auto& waves = std::get<HeightItem>(foam.kind).waves;
     waves = view.waves;
     for (Wave& wave : waves) wave.amplitude *= 1.0 + kFoamLift;
-    foam.position.y = static_cast<float>(kSeaLevel - kFoamLift * deviation * (1.5 - 0.9 * foamy) + 0.00005);
-    foam.material.holeThreshold = static_cast<float>(0.93 - 0.45 * foamy);
+    foam.position.y = static_cast<float>(kSeaLevel - kFoamLift * deviation * (1.7 - 0.7 * foamy) + 0.00005);
+    foam.material.holeThreshold = static_cast<float>(0.95 - 0.38 * foamy);
     const auto bearing = std::atan2(view.sea.towards.y, view.sea.towards.x);
     foam.material.holes.turn = Angle::radians(bearing);
 }

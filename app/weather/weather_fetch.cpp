@@ -1,0 +1,70 @@
+#include "app/weather/weather_fetch.h"
+
+#include <cmath>
+#include <memory>
+
+#include <QEventLoop>
+#include <QNetworkAccessManager>
+#include <QNetworkReply>
+#include <QNetworkRequest>
+#include <QTimer>
+#include <QUrl>
+
+#include "core/base/error.h"
+
+namespace lumorph {
+namespace {
+
+constexpr qint64 kMostBytes = qint64{16} << 20;
+constexpr const char* kWaitRemedy = "look whether the network is there, or give a file";
+
+QUrl urlOf(const std::string& address) {
+    const QUrl url(QString::fromStdString(address), QUrl::StrictMode);
+    if (!url.isValid() || url.host().isEmpty() || !isWebAddress(address))
+        throw InvalidInput(address.substr(0, 200), "is no address of the web", "write https://api.open-meteo.com/...");
+    return url;
+}
+
+/// Lets the reply come; aborts it where it is too large or its bytes come too slowly. Whether it was for its size.
+bool waitFor(QNetworkReply& reply, double seconds) {
+    bool tooLarge = false;
+    QEventLoop loop;
+    QTimer silence;
+    silence.setSingleShot(true);
+    silence.setInterval(static_cast<int>(std::lround(1000.0 * seconds)));
+    QObject::connect(&silence, &QTimer::timeout, &reply, &QNetworkReply::abort);
+    QObject::connect(&reply, &QNetworkReply::downloadProgress, &loop, [&](qint64 received, qint64 total) {
+        silence.start();
+        if (received <= kMostBytes && total <= kMostBytes) return;
+        tooLarge = true;
+        reply.abort();
+    });
+    QObject::connect(&reply, &QNetworkReply::finished, &loop, &QEventLoop::quit);
+    silence.start();
+    if (!reply.isFinished()) loop.exec();
+    return tooLarge;
+}
+
+} // namespace
+
+bool isWebAddress(const std::string& text) { return text.starts_with("http://") || text.starts_with("https://"); }
+
+std::string fetchWeather(const std::string& address, double seconds) {
+    QNetworkRequest request(urlOf(address));
+    request.setHeader(QNetworkRequest::UserAgentHeader, QStringLiteral("Lumorph"));
+    QNetworkAccessManager manager;
+    const std::unique_ptr<QNetworkReply> reply(manager.get(request));
+    if (waitFor(*reply, seconds)) throw DataError(address, "its answer is larger than 16 MiB", "ask for fewer days");
+    const int status = reply->attribute(QNetworkRequest::HttpStatusCodeAttribute).toInt();
+    const QByteArray body = reply->isOpen() ? reply->readAll() : QByteArray(); // one that was aborted is closed
+    if (status >= 400 && status < 500 && body.trimmed().startsWith('{')) return body.toStdString();
+    if (status >= 400)
+        throw DeviceError(address, "the server answers with status " + std::to_string(status), "correct the address");
+    if (reply->error() == QNetworkReply::OperationCanceledError)
+        throw DeviceError(address, "no answer came in time", kWaitRemedy);
+    if (reply->error() != QNetworkReply::NoError)
+        throw DeviceError(address, reply->errorString().toStdString(), kWaitRemedy);
+    return body.toStdString();
+}
+
+} // namespace lumorph
