@@ -42,7 +42,7 @@ public:
         HeightGrid grid{{box.min.x, box.min.z}, {box.max.x, box.max.z}, 24, 20, {}};
         for (int k = 0; k < 24 * 20; ++k)
             grid.heights.push_back(box.max.y + static_cast<float>(level_ + 0.002 * std::sin(k % 24 + moment.seconds)));
-        return {std::move(scene), nullptr, std::move(grid), Following::matched, true, {}};
+        return {std::move(scene), nullptr, std::move(grid), Following::matched, true, {}, {}, {}};
     }
 
 private:

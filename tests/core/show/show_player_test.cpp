@@ -33,7 +33,7 @@ public:
         const Box box = boundingBox(moment.rig->restMesh().positions);
         HeightGrid grid{{box.min.x, box.min.z}, {box.max.x, box.max.z}, 16, 12, {}};
         grid.heights.assign(16 * 12, box.max.y + static_cast<float>(height));
-        return {std::move(scene), nullptr, std::move(grid), Following::matched, true, {}};
+        return {std::move(scene), nullptr, std::move(grid), Following::matched, true, {}, {}, {}};
     }
 
 private:
