@@ -199,8 +199,8 @@ Demo iceDemo() {
         "ice",
         {"Ice on a pond", "Eis auf einem Teich"},
         {"Warm it, and it gets holes; tap it, and it cracks: floes drift and rise under your hands, koi swim below.",
-         "Wärme es, und es bekommt Löcher; tippe darauf, und es bricht: Schollen treiben und heben sich unter den "
-         "Händen, darunter schwimmen Koi."},
+         "Wärme es, und es bekommt Löcher; tippe darauf, und es bricht: Schollen treiben, heben sich, und "
+         "darunter schwimmen Koi."},
         "thumbnails/ice.png",
         "scene",
         [](const Progress& progress) {

@@ -129,7 +129,7 @@ TEST(Techniques, EachKeyHasASceneThatCanBeSavedAndShown) {
     ASSERT_EQ(all.size(), 7U);
     std::set<std::string> texts;
     for (std::size_t i = 0; i < all.size(); ++i) {
-        SCOPED_TRACE(all[i].name);
+        SCOPED_TRACE(all[i].name.english);
         EXPECT_EQ(all[i].key, static_cast<int>(i));
         EXPECT_FALSE(all[i].sentence.empty());
         const Scene scene = techniqueScene(all[i].key);
