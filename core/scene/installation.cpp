@@ -11,7 +11,8 @@ bool sameLens(const CalibratedCamera& a, const CalibratedCamera& b) {
 }
 
 bool sameResponse(const InstalledProjector& a, const InstalledProjector& b) {
-    return a.referenceDistance == b.referenceDistance && a.peak == b.peak && a.gain == b.gain && a.gamma == b.gamma;
+    return a.referenceDistance == b.referenceDistance && a.peak == b.peak && a.gain == b.gain && a.gamma == b.gamma &&
+           a.black == b.black && a.responseCurve == b.responseCurve;
 }
 
 /// An edit that comes with an origin of its own, as a calibration does, keeps it.
@@ -68,7 +69,12 @@ void markOrigins(const Installation& before, Installation& edited, const Origin&
     mark(before.deviceColor == edited.deviceColor && before.tableColor == edited.tableColor, then.colors, now.colors,
          origin);
     mark(before.eyeFromHead == edited.eyeFromHead, then.eyeOffset, now.eyeOffset, origin);
-    mark(before.predictionSeconds == edited.predictionSeconds, then.delays, now.delays, origin);
+    mark(before.predictionSeconds == edited.predictionSeconds && before.trackerSeconds == edited.trackerSeconds,
+         then.delays, now.delays, origin);
+    mark(before.worldFromTracker == edited.worldFromTracker, then.tracker, now.tracker, origin);
+    mark(before.bodyFromDevice == edited.bodyFromDevice, then.deviceBody, now.deviceBody, origin);
+    mark(before.pointerTip == edited.pointerTip, then.pointer, now.pointer, origin);
+    mark(before.servos == edited.servos, then.servos, now.servos, origin);
 }
 
 std::string utcDate() {

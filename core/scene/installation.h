@@ -33,8 +33,16 @@ struct InstalledProjector {
     CalibratedCamera camera;
     double referenceDistance = 2.0; ///< metres
     double peak = 3.0;
-    glm::vec3 gain{1.0F}; ///< relative response of red, green, blue; 1 until measured
-    double gamma = 0.0;   ///< light = value^gamma; 0: sRGB
+    glm::vec3 gain{1.0F};  ///< relative response of red, green, blue; 1 until measured
+    glm::vec3 black{0.0F}; ///< light of each channel at value 0, where its white is 1
+    double gamma = 0.0;    ///< light = value^gamma; 0: sRGB
+    /// How much light a value makes, where that was measured.
+    struct ResponsePoint {
+        double value = 0.0;    ///< in [0, 1], of all channels
+        glm::vec3 light{0.0F}; ///< of each channel above its black, 1 at value 1
+        bool operator==(const ResponsePoint&) const = default;
+    };
+    std::vector<ResponsePoint> responseCurve; ///< by rising values from 0 to 1; empty: `gamma` says it
     Origin lens, pose, response;
     bool operator==(const InstalledProjector&) const = default;
 };
@@ -46,6 +54,21 @@ struct InstalledCamera {
     CalibratedCamera camera;
     Origin lens, pose;
     bool operator==(const InstalledCamera&) const = default;
+};
+
+/// Where an actuator truly is for what it is told, as a camera saw it. Gears have play: on the way up it stands
+/// elsewhere than on the way down.
+struct MeasuredServo {
+    std::string actuator; ///< its name in the rig
+    /// Strokes, as in Actuator: 0 is rest, 1 the end of the range of the rig.
+    struct Point {
+        double commanded = 0.0;
+        double rising = 0.0, falling = 0.0; ///< where it really is when it came from below, and from above
+        bool operator==(const Point&) const = default;
+    };
+    std::vector<Point> points; ///< by rising `commanded`, from 0 to 1
+    double lagSeconds = 0.0;   ///< from a command to its motion
+    bool operator==(const MeasuredServo&) const = default;
 };
 
 /// Whom the show follows when several heads are tracked.
@@ -62,13 +85,18 @@ struct Installation {
     glm::vec3 tableColor{1.0F};      ///< of the bare table, as the device's
     glm::vec3 eye{0.0F, 0.45F, 0.55F}; ///< simulated viewer, world metres: followed while nobody is tracked
     glm::vec3 eyeFromHead{0.0F};       ///< the eye in the frame of a tracked head's body, metres
+    glm::vec3 pointerTip{0.0F};        ///< of a tracked pointer or hand, in the frame of its body, metres
+    glm::mat4 worldFromTracker{1.0F};  ///< rigid: the world of the trackers in the room's
+    glm::mat4 bodyFromDevice{1.0F};    ///< rigid: the device in the frame of its tracked body
+    std::vector<MeasuredServo> servos; ///< those of the device that were measured; the others do what they are told
     ViewerChoice viewer = ViewerChoice::automatic;
     bool compensation = true; ///< of incidence and distance
     double predictionSeconds =
-        0.06; ///< from a pose to its light, by which poses are extrapolated at least; 0: not at all
+        0.06;                    ///< from a pose to its light, by which poses are extrapolated at least; 0: not at all
+    double trackerSeconds = 0.0; ///< by which poses are older when they arrive than their trackers know
     /// Of what is not a projector's or a camera's own.
     struct Origins {
-        Origin table, devicePlace, colors, eyeOffset, delays;
+        Origin table, devicePlace, colors, eyeOffset, delays, tracker, deviceBody, pointer, servos;
         bool operator==(const Origins&) const = default;
     } origins;
     bool operator==(const Installation&) const = default;

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <map>
 #include <sstream>
 #include <string>
@@ -151,6 +152,16 @@ void checkDriving(const std::vector<SceneItem>& items) {
     }
 }
 
+/// A measured curve begins at 0, rises and ends at 1; or there is none.
+template <typename Point>
+void checkRising(const Checker& checker, const std::string& what, const std::vector<Point>& points,
+                 double Point::*value) {
+    if (points.empty()) return;
+    const bool whole = points.size() >= 2 && points.front().*value == 0.0 && points.back().*value == 1.0;
+    if (!whole || !std::ranges::is_sorted(points, std::less_equal{}, value))
+        checker.refuse(what + " does not rise from 0 to 1", "measure it again");
+}
+
 } // namespace
 
 void checkScene(const Scene& scene) {
@@ -163,6 +174,12 @@ void checkScene(const Scene& scene) {
 void checkInstallation(const Installation& installation) {
     Checker checker("installation");
     fields(checker, installation);
+    for (const InstalledProjector& projector : installation.projectors)
+        checkRising(Checker("projector \"" + projector.name.substr(0, 80) + "\""), "responseCurve.value",
+                    projector.responseCurve, &InstalledProjector::ResponsePoint::value);
+    for (const MeasuredServo& servo : installation.servos)
+        checkRising(Checker("servo \"" + servo.actuator.substr(0, 80) + "\""), "points.commanded", servo.points,
+                    &MeasuredServo::Point::commanded);
 }
 
 } // namespace lumorph

@@ -44,6 +44,9 @@ inline constexpr Range kShare{0.0, 1.0};
 inline constexpr std::size_t kMaxWaves = 32;
 inline constexpr std::size_t kMaxHoles = 256;
 inline constexpr std::size_t kMaxProjectors = 16;
+inline constexpr std::size_t kMaxServos = 256;
+inline constexpr std::size_t kMaxCurvePoints = 257;
+inline constexpr Range kTrueStroke{-1.0, 2.0}; ///< where a servo really is may lie beyond the rig's range
 
 template <typename V, Is<SceneTexture> T> void fields(V& v, T& texture) {
     v.asset("image", texture.image);
@@ -184,6 +187,23 @@ template <typename V, Is<Origin> T> void fields(V& v, T& origin) {
     v.text("date", origin.date);
 }
 
+template <typename V, Is<InstalledProjector::ResponsePoint> T> void fields(V& v, T& point) {
+    v.number("value", point.value, kShare);
+    v.vector("light", point.light, {0.0, 2.0});
+}
+
+template <typename V, Is<MeasuredServo::Point> T> void fields(V& v, T& point) {
+    v.number("commanded", point.commanded, kShare);
+    v.number("rising", point.rising, kTrueStroke);
+    v.number("falling", point.falling, kTrueStroke);
+}
+
+template <typename V, Is<MeasuredServo> T> void fields(V& v, T& servo) {
+    v.text("actuator", servo.actuator);
+    v.list("points", servo.points, kMaxCurvePoints);
+    v.number("lagSeconds", servo.lagSeconds, kShare);
+}
+
 template <typename V, Is<InstalledProjector> T> void fields(V& v, T& projector) {
     v.text("name", projector.name);
     v.flag("enabled", projector.enabled);
@@ -192,6 +212,8 @@ template <typename V, Is<InstalledProjector> T> void fields(V& v, T& projector) 
     v.number("peak", projector.peak, {0.01, 1000.0});
     v.vector("gain", projector.gain, {0.001, 1000.0});
     v.number("gamma", projector.gamma, {0.0, 5.0});
+    v.vector("black", projector.black, kShare);
+    v.list("responseCurve", projector.responseCurve, kMaxCurvePoints);
     v.plain("lensOrigin", projector.lens);
     v.plain("poseOrigin", projector.pose);
     v.plain("responseOrigin", projector.response);
@@ -230,14 +252,23 @@ template <typename V, Is<Installation> T> void fields(V& v, T& installation) {
     v.color("tableColor", installation.tableColor);
     v.vector("eye", installation.eye, kPlace);
     v.vector("eyeFromHead", installation.eyeFromHead, {-1.0, 1.0});
+    v.vector("pointerTip", installation.pointerTip, {-2.0, 2.0});
+    v.rigid("worldFromTracker", installation.worldFromTracker);
+    v.rigid("bodyFromDevice", installation.bodyFromDevice);
+    v.list("servos", installation.servos, kMaxServos);
     v.word("viewer", installation.viewer, kViewers);
     v.flag("compensation", installation.compensation);
     v.number("predictionSeconds", installation.predictionSeconds, kShare);
+    v.number("trackerSeconds", installation.trackerSeconds, kShare);
     v.plain("tableOrigin", installation.origins.table);
     v.plain("devicePlaceOrigin", installation.origins.devicePlace);
     v.plain("colorsOrigin", installation.origins.colors);
     v.plain("eyeOffsetOrigin", installation.origins.eyeOffset);
     v.plain("delaysOrigin", installation.origins.delays);
+    v.plain("trackerOrigin", installation.origins.tracker);
+    v.plain("deviceBodyOrigin", installation.origins.deviceBody);
+    v.plain("pointerOrigin", installation.origins.pointer);
+    v.plain("servosOrigin", installation.origins.servos);
 }
 
 } // namespace lumorph

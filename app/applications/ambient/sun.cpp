@@ -34,9 +34,10 @@ SkyPosition seenFrom(const Place& place, double julian, ln_equ_posn& equatorial)
 }
 
 /// libnova keeps the nutation of a time nearby for the next question; a time shall give the same place whatever was
-/// asked before.
+/// asked before. It begins near the time 0 without any, so one far from all others is asked before that.
 void forgetOtherTimes() {
     ln_nutation nutation{};
+    ln_get_nutation(1e6, &nutation);
     ln_get_nutation(0.0, &nutation);
 }
 

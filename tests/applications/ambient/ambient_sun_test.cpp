@@ -148,9 +148,9 @@ TEST(AmbientSun, IsTheSameWhateverWasAskedBefore) {
     const SkyPosition first = sunAt(berlin, noon);
     const Moon moon = moonAt(berlin, noon);
     (void)sunAt(berlin, noon + 4000.0);
-    EXPECT_NEAR(sunAt(berlin, noon).azimuth, first.azimuth, 1e-12);
+    EXPECT_EQ(sunAt(berlin, noon).azimuth, first.azimuth);
     (void)sunAt(berlin, noon - 4000.0);
-    EXPECT_NEAR(moonAt(berlin, noon).position.elevation, moon.position.elevation, 1e-12);
+    EXPECT_EQ(moonAt(berlin, noon).position.elevation, moon.position.elevation);
 }
 
 TEST(AmbientSun, NeitherRisesNorSetsInThePolarNightAndDay) {

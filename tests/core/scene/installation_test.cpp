@@ -102,6 +102,25 @@ const PartEdit kPartEdits[] = {
      [](Installation& i) -> Origin& { return i.origins.eyeOffset; }},
     {"delay", [](Installation& i) { i.predictionSeconds = 0.1; },
      [](Installation& i) -> Origin& { return i.origins.delays; }},
+    {"age of poses", [](Installation& i) { i.trackerSeconds = 0.02; },
+     [](Installation& i) -> Origin& { return i.origins.delays; }},
+    {"black", [](Installation& i) { i.projectors[0].black.g = 0.01F; }, kFirstResponse},
+    {"response",
+     [](Installation& i) {
+         i.projectors[0].responseCurve = {{}, {1.0, glm::vec3(1.0F)}};
+     },
+     kFirstResponse},
+    {"tracker", [](Installation& i) { i.worldFromTracker[3].x = 0.2F; },
+     [](Installation& i) -> Origin& { return i.origins.tracker; }},
+    {"device on its body", [](Installation& i) { i.bodyFromDevice[3].y = -0.01F; },
+     [](Installation& i) -> Origin& { return i.origins.deviceBody; }},
+    {"pointer's tip", [](Installation& i) { i.pointerTip.y = -0.16F; },
+     [](Installation& i) -> Origin& { return i.origins.pointer; }},
+    {"servos",
+     [](Installation& i) {
+         i.servos = {{"flap 1", {{}, {1.0, 0.9, 0.92}}, 0.08}};
+     },
+     [](Installation& i) -> Origin& { return i.origins.servos; }},
 };
 
 const Origin kByHand{Origin::Way::entered, {}, "2026-11-24T17:05:00Z"};
@@ -222,6 +241,11 @@ TEST(SameRoom, IgnoresTheSimulatedEyeAndOriginsAndNothingElse) {
         {"viewer", [](Installation& i) { i.viewer = ViewerChoice::none; }, false},
         {"compensation", [](Installation& i) { i.compensation = true; }, false},
         {"delay", [](Installation& i) { i.predictionSeconds = 0.07; }, false},
+        {"servos",
+         [](Installation& i) {
+             i.servos = {{"flap 1", {{}, {1.0, 0.9, 0.92}}, 0.08}};
+         },
+         false},
     };
     const Installation room = fullInstallation();
     for (const auto& [what, edit, same] : rows) {
@@ -248,6 +272,20 @@ TEST(InstallationCheck, RefusesWhatCouldNotBeWrittenAndSaysWhoseItIs) {
         {[](Installation& i) { i.worldFromDevice = glm::mat4(2.0F); }, "installation",
          "worldFromDevice is not a rotation"},
         {[](Installation& i) { i.worldFromDevice[3].x = kNaN; }, "installation", "worldFromDevice is nan"},
+        {[](Installation& i) { i.bodyFromDevice = glm::mat4(2.0F); }, "installation",
+         "bodyFromDevice is not a rotation"},
+        {[](Installation& i) {
+             i.servos = {{"flap 1", {{0.5, 0.5, 0.5}, {0.5, 0.6, 0.6}}, 0.0}};
+         },
+         "servo \"flap 1\"", "points.commanded does not rise from 0 to 1"},
+        {[](Installation& i) {
+             i.servos = {{"flap 1", {{}, {0.5, 0.5, 3.0}, {1.0, 1.0, 1.0}}, 0.0}};
+         },
+         "installation", "servos[0].points[1].falling is 3"},
+        {[](Installation& i) {
+             i.projectors[0].responseCurve = {{}, {0.9, glm::vec3(1.0F)}};
+         },
+         "projector \"Beamer\"", "responseCurve.value does not rise from 0 to 1"},
         {[](Installation& i) { i.projectors.resize(17); }, "installation", "projectors are 17, and 16 is the most"},
         {[](Installation& i) { i.cameras.resize(17); }, "installation", "cameras are 17, and 16 is the most"},
         {[](Installation& i) { i.origins.table.method = std::string(1001, 'x'); }, "installation",

@@ -116,6 +116,14 @@ inline Installation fullInstallation() {
     installation.tableColor = {0.5F, 0.4F, 0.3F};
     installation.eye = {0.1F, 0.5F, 0.6F};
     installation.eyeFromHead = {0.01F, -0.07F, 0.09F};
+    installation.pointerTip = {0.002F, -0.16F, 0.01F};
+    installation.worldFromTracker = glm::mat4_cast(glm::angleAxis(-0.4F, glm::vec3(0.6F, 0.8F, 0.0F)));
+    installation.worldFromTracker[3] = {0.3F, 0.8F, -0.2F, 1.0F};
+    installation.bodyFromDevice[3] = {0.01F, -0.02F, 0.07F, 1.0F};
+    installation.servos = {{"flap 1", {{}, {0.5, 0.46, 0.49}, {1.0, 0.93, 0.95}}, 0.11}, {"flap 2", {}, 0.09}};
+    installation.trackerSeconds = 0.012;
+    installation.projectors[1].black = {0.004F, 0.003F, 0.005F};
+    installation.projectors[1].responseCurve = {{}, {0.5, {0.21F, 0.22F, 0.24F}}, {1.0, glm::vec3(1.0F)}};
     installation.viewer = ViewerChoice::nearest;
     installation.compensation = false;
     installation.predictionSeconds = 0.08;
@@ -124,6 +132,10 @@ inline Installation fullInstallation() {
     installation.origins.colors = measured("white and black pictures", "2026-11-23T12:20:00Z");
     installation.origins.eyeOffset = measured("sights", "2026-11-23T12:30:00Z");
     installation.origins.delays = measured("flashing square", "2026-11-23T12:40:00Z");
+    installation.origins.tracker = measured("touched points", "2026-11-23T12:50:00Z");
+    installation.origins.deviceBody = measured("9 landmarks", "2026-11-23T13:00:00Z");
+    installation.origins.pointer = measured("pivot", "2026-11-23T13:10:00Z");
+    installation.origins.servos = measured("structured light", "2026-11-23T13:20:00Z");
     return installation;
 }
 
