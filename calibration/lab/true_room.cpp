@@ -61,8 +61,9 @@ void changeLight(InstalledProjector& projector, const LabErrors& errors, Dice& d
 } // namespace
 
 std::optional<double> degreesOf(const Actuator& actuator) {
-    if (const auto* hinge = std::get_if<Hinge>(&actuator.deformer)) return (hinge->max - hinge->min).degrees();
-    if (const auto* bend = std::get_if<Bend>(&actuator.deformer)) return (bend->max - bend->min).degrees();
+    if (const auto* hinge = std::get_if<Hinge>(&actuator.deformer))
+        return hinge->max.inDegrees() - hinge->min.inDegrees();
+    if (const auto* bend = std::get_if<Bend>(&actuator.deformer)) return bend->max.inDegrees() - bend->min.inDegrees();
     if (const auto* joint = std::get_if<SkinJoint>(&actuator.deformer))
         if (joint->motion == SkinJoint::Motion::rotate) return (joint->max - joint->min) / kDegree;
     return std::nullopt;
@@ -74,7 +75,7 @@ Installation trueRoom(const Installation& believed, std::span<const Actuator> ac
     Installation room = believed;
     if (errors.unknownTracker) {
         const double turn = dice.between(-std::numbers::pi, std::numbers::pi);
-        const glm::dvec3 place(dice.between(-1.0, 1.0), dice.between(-0.2, 1.0), dice.between(-1.0, 1.0));
+        const glm::dvec3 place{dice.between(-1.0, 1.0), dice.between(-0.2, 1.0), dice.between(-1.0, 1.0)};
         const glm::dmat4 stands = glm::translate(glm::dmat4(1.0), place);
         room.worldFromTracker =
             glm::mat4(glm::rotate(stands, turn, glm::dvec3(0.0, 1.0, 0.0)) * dice.rigid(0.0, 10.0 * kDegree));
