@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <memory>
 #include <string>
@@ -24,44 +25,52 @@ struct DemoStep {
 
 /// What an application may be told when it starts, beside its seed.
 struct DemoOption {
-    std::string name; ///< on the command line: `--NAME TEXT`
-    std::string help;
+    std::string name;  ///< on the command line: `--NAME TEXT`
+    std::string help;  ///< there
+    Words title;       ///< in the studio, for the host
+    Words hint;        ///< what is expected there: "48.1,11.6"
+    bool file = false; ///< a file or folder, which one may choose
 };
 using DemoTold = std::map<std::string, std::string>; ///< texts by the names of options
+
+/// What an application begins with.
+struct ProgramStart {
+    std::uint64_t seed = 0;     ///< of its chance: the same seed and inputs give the same show
+    DemoTold told = {};         ///< by the names of its options
+    std::string_view kept = {}; ///< what it wanted kept the last time (ShowContent::keepsake); empty: nothing
+    std::string keptIn = {};    ///< the file that held it, for messages
+    /// Takes what there is to say of the start: what of a map could not be shown.
+    std::function<void(const std::string&)> note = [](const std::string&) {};
+};
+
+/// Of a demonstration that shows one thing.
+[[nodiscard]] std::vector<DemoStep> noSteps();
 
 /// A demonstration, as those who offer it know it: the window, the command line, tests. What it is made of stays in its
 /// own folder.
 struct Demo {
-    std::string name;      ///< on the command line
-    Words title;           ///< for visitors
-    Words sentence;        ///< what is to be seen or done, for visitors
-    std::string thumbnail; ///< a picture among the resources, 320 x 200
-    std::string workspace; ///< in which it is seen best
+    std::string name;                ///< on the command line
+    Words title;                     ///< for visitors
+    Words sentence;                  ///< what is to be seen or done, for visitors
+    std::string thumbnail;           ///< a picture among the resources, 320 x 200
+    std::string workspace = "scene"; ///< in which it is seen best
     /// What it shows, ready but for the field of its rig, which takes its time. Throws DataError where a resource is
     /// missing, Cancelled.
     ProjectContents (*open)(const Progress& progress) = nullptr;
     /// All have the same items with the same ids; empty for one that shows one thing. A host chooses among them, and
     /// may change what he sees; visitors get `program`.
-    std::vector<DemoStep> (*steps)() = nullptr;
-    /// An application that answers what happens, in place of the scene of `open`; none: it goes by time alone. The same
-    /// seed and inputs give the same show. Throws DataError where a resource is missing.
-    std::unique_ptr<ShowProgram> (*program)(std::uint64_t seed) = nullptr;
-    /// The same, with what it wanted kept the last time (ShowContent::keepsake), which `file` held; none: it keeps
-    /// nothing. Throws DataError naming the file where that is damaged.
-    std::unique_ptr<ShowProgram> (*remembering)(std::uint64_t seed, std::string_view kept,
-                                                const std::string& file) = nullptr;
-    std::vector<DemoOption> options = {}; ///< of an application; `programTold` is there where there are some
-    /// As `program`, told something. Throws InvalidInput and DataError naming what cannot be, Cancelled.
-    std::unique_ptr<ShowProgram> (*programTold)(std::uint64_t seed, const DemoTold& told,
-                                                const Progress& progress) = nullptr;
+    std::vector<DemoStep> (*steps)() = noSteps;
+    /// An application that answers what happens, in place of the scene of `open`; none: it goes by time alone. Call it
+    /// by `beginProgram` (program_start.h). Throws DataError where a resource is missing, or what was kept is damaged,
+    /// and names it; InvalidInput and DataError for what it is told; Cancelled.
+    std::unique_ptr<ShowProgram> (*program)(const ProgramStart& start, const Progress& progress) = nullptr;
+    bool keeps = false;                   ///< its program wants something kept (ShowContent::keepsake)
+    std::vector<DemoOption> options = {}; ///< that its program may be told
 };
-
-/// The application of a demonstration; null for one that goes by time alone. Throws InvalidInput where it is told
-/// something that it has no option for.
-[[nodiscard]] std::unique_ptr<ShowProgram> startProgram(const Demo& demo, std::uint64_t seed, const DemoTold& told = {},
-                                                        const Progress& progress = {});
 
 /// A demonstration whose scene is a bundled project: `projects/NAME.lumorph`.
 [[nodiscard]] ProjectContents bundledProject(const std::string& name, const Progress& progress);
+/// A demonstration that makes its scene itself, on the bundled tablet.
+[[nodiscard]] ProjectContents bundledTablet(const Progress& progress);
 
 } // namespace lumorph

@@ -4,14 +4,12 @@
 #include <filesystem>
 #include <iostream>
 #include <memory>
-#include <span>
 #include <string>
 #include <vector>
 
 #include <unistd.h>
 
 #include <QCoreApplication>
-#include <QStandardPaths>
 
 #include "app/applications/registry/demos.h"
 #include "app/cli/commands.h"
@@ -19,7 +17,6 @@
 #include "app/cli/session.h"
 #include "app/output/demo_player.h"
 #include "app/weather/weather_fetch.h"
-#include "core/base/atomic_file.h"
 #include "core/base/error.h"
 
 namespace lumorph::cli {
@@ -49,7 +46,7 @@ void showInWindow(const Demo& demo, const DemoTold& told) {
     throw DeviceError(program, std::strerror(errno), "check that it may be run");
 }
 
-/// A forecast on the web is fetched into a file, because applications know no network.
+/// Applications know no network.
 void fetchForecast(DemoTold& told) {
     const auto weather = told.find("weather");
     if (weather == told.end() || !isWebAddress(weather->second)) return;
@@ -57,13 +54,7 @@ void fetchForecast(DemoTold& told) {
     char name[] = "lumorph";
     char* words[] = {name, nullptr};
     const QCoreApplication application(count, words); // sockets need it
-    const std::string answer = fetchWeather(weather->second);
-    const std::filesystem::path cache =
-        QStandardPaths::writableLocation(QStandardPaths::GenericCacheLocation).toStdString();
-    const std::filesystem::path file = cache / "lumorph" / "forecast.json";
-    std::filesystem::create_directories(file.parent_path());
-    writeFileAtomically(file, std::as_bytes(std::span(answer)));
-    weather->second = file.string();
+    weather->second = fetchedForecast(weather->second).string();
 }
 
 CLI::App* addNew(CLI::App& demo) {
@@ -120,15 +111,16 @@ void addDemoCommand(CLI::App& app) {
             throw InvalidInput("demo", "which one is not said",
                                "name one of " + demoNames() + ", or 'new' to write one");
         const Demo& demo = demoNamed(options->name);
-        fetchForecast(options->play.told);
         options->play.video = options->record;
         options->play.last = options->picture;
         options->play.inputs = options->inputs;
         options->play.kept = options->kept;
-        if (*seconds || *record || *picture || *inputs || *keep || *seed || options->play.json)
+        if (*seconds || *record || *picture || *inputs || *keep || *seed || options->play.json) {
+            fetchForecast(options->play.told);
             playDemo(demo, options->play, std::cout);
-        else
+        } else {
             showInWindow(demo, options->play.told);
+        }
     });
 }
 

@@ -9,7 +9,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "app/applications/keepsake.h"
+#include "app/applications/program_start.h"
 #include "app/output/video_writer.h"
 #include "core/base/error.h"
 #include "core/base/statistics.h"
@@ -171,22 +171,15 @@ namespace {
 
 ShowScript scriptOf(const Demo& demo, const DemoPlay& play, std::vector<std::string>& warnings) {
     ShowScript script;
-    if (!play.kept.empty() && !demo.remembering)
+    if (!play.kept.empty() && !demo.keeps)
         throw InvalidInput("--keep", "the demo '" + demo.name + "' keeps nothing", "leave it out");
     if (!play.inputs.empty()) {
         if (!demo.program)
             throw InvalidInput("--input", "the demo '" + demo.name + "' goes by time alone", "leave it out");
         script.inputs = readInputScriptFile(play.inputs);
     }
-    if (!play.told.empty() || demo.programTold) {
-        const Progress notes([&script](double share, std::string_view text) {
-            if (share < 0.0) script.notes.emplace_back(text); // what it has to say, and no stage
-        });
-        script.program = startProgram(demo, play.seed, play.told, notes);
-        return script;
-    }
-    if (!demo.program) return script;
-    BegunProgram begun = beginProgram(demo, play.seed, play.kept);
+    BegunProgram begun = beginProgram(demo, {play.seed, play.told, play.kept});
+    script.notes = std::move(begun.notes);
     script.program = std::move(begun.program);
     if (!begun.problem.empty())
         warnings.push_back(play.kept.string() + ": " + begun.problem + "; it lies in " + begun.aside.string() + " now");

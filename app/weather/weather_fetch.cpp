@@ -2,14 +2,18 @@
 
 #include <cmath>
 #include <memory>
+#include <span>
+#include <system_error>
 
 #include <QEventLoop>
 #include <QNetworkAccessManager>
 #include <QNetworkReply>
 #include <QNetworkRequest>
+#include <QStandardPaths>
 #include <QTimer>
 #include <QUrl>
 
+#include "core/base/atomic_file.h"
 #include "core/base/error.h"
 
 namespace lumorph {
@@ -65,6 +69,17 @@ std::string fetchWeather(const std::string& address, double seconds) {
     if (reply->error() != QNetworkReply::NoError)
         throw DeviceError(address, reply->errorString().toStdString(), kWaitRemedy);
     return body.toStdString();
+}
+
+std::filesystem::path fetchedForecast(const std::string& address) {
+    const std::string answer = fetchWeather(address);
+    const std::filesystem::path cache =
+        QStandardPaths::writableLocation(QStandardPaths::GenericCacheLocation).toStdString();
+    const std::filesystem::path file = cache / "lumorph" / "forecast.json";
+    std::error_code failed; // the writer names it
+    std::filesystem::create_directories(file.parent_path(), failed);
+    writeFileAtomically(file, std::as_bytes(std::span(answer)));
+    return file;
 }
 
 } // namespace lumorph

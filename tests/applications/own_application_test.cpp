@@ -35,7 +35,7 @@ protected:
     }
 
     Demo demo_ = ripple::rippleDemo();
-    std::unique_ptr<ShowProgram> program_ = demo_.program(1);
+    std::unique_ptr<ShowProgram> program_ = demo_.program({.seed = 1}, {});
     ShowMoment moment_;
 };
 

@@ -2,6 +2,7 @@
 
 #include <QAbstractButton>
 #include <QLabel>
+#include <QLineEdit>
 
 #include "app/applications/registry/demos.h"
 #include "app/studio/base/operator_pin.h"
@@ -172,6 +173,33 @@ TEST_F(ApplicationsWindow, InTheKioskVisitorsChooseAndPlayAndTheNextComesWhenThe
     QTest::keyClick(&eye(), Qt::Key_A);
     const std::string next = studio::applicationAfter("techniques")->name;
     EXPECT_TRUE(eventually([&] { return shows(next); }, 30s)) << "nobody came";
+}
+
+TEST_F(ApplicationsWindow, AreToldByTheHostWhatToShow) {
+    studio().settings.setToldTo("ambient", {});
+    window.click("bar.applications");
+    EXPECT_EQ(window.findNow<QWidget>("applications.labyrinth.options"), nullptr) << "it has nothing to be told";
+    window.click("applications.ambient.options");
+    window.enter("options.place", "north of here", Qt::Key_Tab);
+    window.screenshot("application-options");
+    window.click("options.start");
+    ASSERT_TRUE(eventually([&] { return !studio().notices.at("project").empty(); }, 30s));
+    EXPECT_TRUE(studio().notices.at("project").front().subject.contains("north of here"));
+    EXPECT_TRUE(eventually([&] { return !window.window().isFullScreen(); })) << "where it can be read";
+    EXPECT_TRUE(eventually([&] { return window.find<QWidget>("notices.project")->findChild<QLabel*>() != nullptr; }));
+    picture("application-options-wrong");
+
+    window.click("bar.applications");
+    window.click("applications.ambient.options");
+    EXPECT_EQ(window.find<QLineEdit>("options.place")->text(), "north of here") << "as it was said";
+    window.click("options.usual");
+    EXPECT_TRUE(window.find<QLineEdit>("options.place")->text().isEmpty());
+    window.enter("options.place", "-33.9,18.4,2", Qt::Key_Tab);
+    window.click("options.start");
+    ASSERT_TRUE(eventually([&] { return shows("ambient"); }, 30s));
+    EXPECT_EQ(studio().settings.toldTo("ambient"), (DemoTold{{"place", "-33.9,18.4,2"}}));
+    picture("ambient-told");
+    studio().settings.setToldTo("ambient", {});
 }
 
 } // namespace

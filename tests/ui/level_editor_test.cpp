@@ -276,7 +276,6 @@ TEST_F(LevelEditorWindow, SaysWhatIsWrongAndPlaysNothingThatIsNoLevel) {
     EXPECT_TRUE(window.text("levels.finding").contains("column 10, row 8"))
         << window.text("levels.finding").toStdString();
     EXPECT_FALSE(window.find<QPushButton>("levels.play")->isEnabled());
-    EXPECT_FALSE(window.find<QToolButton>("levels.save")->isEnabled());
     window.screenshot("level_editor_wrong");
     window.click("levels.undo");
     EXPECT_TRUE(window.find<QPushButton>("levels.play")->isEnabled());
@@ -285,6 +284,26 @@ TEST_F(LevelEditorWindow, SaysWhatIsWrongAndPlaysNothingThatIsNoLevel) {
     test::answerFileDialog(window, "dialog.levels.open", folder / "no.txt", "Open");
     EXPECT_TRUE(eventually([&] { return window.text("levels.finding").contains("line 1"); }))
         << window.text("levels.finding").toStdString();
+}
+
+TEST_F(LevelEditorWindow, KeepsWhatIsNotFinishedYet) {
+    window.click("levels.piece.ramp-up-to-the-right");
+    QTest::mouseClick(canvas, Qt::LeftButton, {}, at(9, 7));
+    ASSERT_FALSE(window.find<QPushButton>("levels.play")->isEnabled());
+    const std::filesystem::path file = folder / "half.txt";
+    window.click("levels.save");
+    test::answerFileDialog(window, "dialog.levels.save", file);
+    ASSERT_TRUE(eventually([&] { return std::filesystem::exists(file); }));
+    EXPECT_TRUE(window.text("levels.finding").contains("cannot be played yet"))
+        << window.text("levels.finding").toStdString();
+    EXPECT_THROW((void)readLevelFile(file), DataError) << "the labyrinth itself does not take it";
+    window.click("levels.undo");
+    ASSERT_TRUE(window.find<QPushButton>("levels.play")->isEnabled());
+    window.click("levels.open");
+    test::answerFileDialog(window, "dialog.levels.open", file, "Open");
+    EXPECT_TRUE(eventually([&] { return window.text("levels.finding").contains("column 10, row 8"); }))
+        << window.text("levels.finding").toStdString();
+    EXPECT_FALSE(window.find<QPushButton>("levels.play")->isEnabled());
 }
 
 TEST_F(LevelEditorWindow, OpensEveryLevelThatComesWithIt) {

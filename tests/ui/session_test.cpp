@@ -18,7 +18,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "app/applications/demo.h"
+#include "app/applications/ambient/ambient.h"
 #include "app/studio/document/state_rules.h"
 #include "core/scene/project.h"
 #include "tests/ui/project_world.h"
@@ -148,6 +148,32 @@ TEST_F(SessionTest, TheApplicationThatShowedShowsAgain) {
         world.service.newProject();
         ASSERT_TRUE(eventually([&] { return world.jobs.running().empty() && !world.service.demo(); }));
     }
+}
+
+TEST_F(SessionTest, WhatAnApplicationWasToldIsToldAgain) {
+    const auto timeOf = [](ProjectWorld& world, const auto& open) {
+        std::shared_ptr<ShowProgram> program;
+        QObject::connect(&world.service, &ProjectService::programOpened,
+                         [&program](std::shared_ptr<ShowProgram> opened) { program = std::move(opened); });
+        open();
+        const auto* coast = dynamic_cast<const ambient::AmbientProgram*>(program.get());
+        return coast ? std::optional(coast->clock().utc()) : std::nullopt;
+    };
+    constexpr double kNewYear2027 = 1798801200.0; // 11:00 in UTC
+    {
+        ProjectWorld world;
+        EXPECT_EQ(timeOf(world,
+                         [&] {
+                             world.service.openDemo("ambient", Audience::host,
+                                                    {{"place", "52.5,13.4,1"}, {"begin", "2027-01-01T12:00"}});
+                             EXPECT_TRUE(
+                                 eventually([&] { return world.jobs.running().empty() && world.service.demo(); }));
+                         }),
+                  kNewYear2027);
+        world.service.keepSession();
+    }
+    ProjectWorld world;
+    EXPECT_EQ(timeOf(world, [&] { restore(world); }), kNewYear2027);
 }
 
 /// Numbers of the sessions in a folder, newest first; what lies beside them is in `others`.

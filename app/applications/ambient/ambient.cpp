@@ -187,29 +187,18 @@ std::vector<ShowSound> AmbientProgram::sounds() const {
 }
 
 Demo ambientDemo() {
-    return {"ambient",
-            {"A coast that tells time and weather", "Eine Küste, die Zeit und Wetter zeigt"},
-            {"The lighthouse's shadow tells the hour, the sea the wind, and the next hours come along the horizon.",
-             "Der Schatten des Leuchtturms zeigt die Stunde, das Meer den Wind, und am Horizont kommen die nächsten "
-             "Stunden."},
-            "thumbnails/ambient.png",
-            "scene",
-            [](const Progress& progress) {
-                Project project;
-                project.rig = "resource:models/tablet.glb";
-                return readContents(std::move(project), {}, progress);
+    return {.name = "ambient",
+            .title = {"A coast that tells time and weather", "Eine Küste, die Zeit und Wetter zeigt"},
+            .sentence = {"The lighthouse's shadow tells the hour, the sea the wind, and the next hours come along the "
+                         "horizon.",
+                         "Der Schatten des Leuchtturms zeigt die Stunde, das Meer den Wind, und am Horizont kommen die "
+                         "nächsten Stunden."},
+            .thumbnail = "thumbnails/ambient.png",
+            .open = bundledTablet,
+            .program = [](const ProgramStart& start, const Progress&) -> std::unique_ptr<ShowProgram> {
+                return std::make_unique<AmbientProgram>(start.seed, settingsFrom(start.told));
             },
-            [] { return std::vector<DemoStep>(); },
-            [](std::uint64_t seed) -> std::unique_ptr<ShowProgram> { return std::make_unique<AmbientProgram>(seed); },
-            nullptr,
-            {{"weather", "Of ambient: a forecast in Open-Meteo's JSON, a file or an http(s) address"},
-             {"place", "Of ambient: LAT,LON or LAT,LON,HOURS ahead of UTC"},
-             {"begin", "Of ambient: its first time, 2026-05-17T14:00 at the place"},
-             {"day", "Of ambient: seconds that a day takes; 86400 is the world's own time"},
-             {"anticipation", "Of ambient: seconds by which light is ahead of the servos"}},
-            [](std::uint64_t seed, const DemoTold& told, const Progress&) -> std::unique_ptr<ShowProgram> {
-                return std::make_unique<AmbientProgram>(seed, settingsFrom(told));
-            }};
+            .options = settingOptions()};
 }
 
 } // namespace lumorph::ambient

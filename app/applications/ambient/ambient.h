@@ -28,6 +28,8 @@ struct AmbientSettings {
 /// given, `place` as `placeFrom` reads it, `begin` a local time (2026-05-17T14:00), `day` and `anticipation` seconds.
 /// Without `begin` a forecast begins with its first hour. Throws InvalidInput and DataError naming the setting.
 [[nodiscard]] AmbientSettings settingsFrom(const DemoTold& settings);
+/// What it knows.
+[[nodiscard]] std::vector<DemoOption> settingOptions();
 
 /// The ambient display: the tablet as a coast that tells time and weather without a word. Light shows all of it, and
 /// servos follow the land and the long waves, a set time after light has shown how they change.

@@ -24,6 +24,30 @@ double localBegin(const std::string& text, const Place& place) {
 
 } // namespace
 
+std::vector<DemoOption> settingOptions() {
+    return {{"weather",
+             "Of ambient: a forecast in Open-Meteo's JSON, a file or an http(s) address",
+             {"Weather", "Wetter"},
+             {"file or address of a forecast (Open-Meteo's JSON)", "Datei oder Adresse (JSON von Open-Meteo)"},
+             true},
+            {"place",
+             "Of ambient: LAT,LON or LAT,LON,HOURS ahead of UTC",
+             {"Place", "Ort"},
+             {"latitude,longitude,hours ahead of UTC: 48.1,11.6,2", "Breite,Länge,Stunden vor UTC: 48.1,11.6,2"}},
+            {"begin",
+             "Of ambient: its first time, 2026-05-17T14:00 at the place",
+             {"First time", "Erste Zeit"},
+             {"2026-05-17T14:00", "2026-05-17T14:00"}},
+            {"day",
+             "Of ambient: seconds that a day takes; 86400 is the world's own time",
+             {"Length of a day", "Dauer eines Tages"},
+             {"seconds; 86400 is the world's own time", "Sekunden; 86400 ist die wirkliche Zeit"}},
+            {"anticipation",
+             "Of ambient: seconds by which light is ahead of the servos",
+             {"Light ahead of servos", "Licht vor den Servos"},
+             {"seconds", "Sekunden"}}};
+}
+
 AmbientSettings settingsFrom(const DemoTold& settings) {
     AmbientSettings read;
     // The place first: weather may bring another, and times are of the place.

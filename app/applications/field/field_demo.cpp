@@ -21,14 +21,13 @@ ProjectContents openField(const Progress& progress) {
 } // namespace
 
 Demo fieldDemo() {
-    return {"field",
-            {"A flower on six servos", "Eine Blume aus sechs Servos"},
-            {"A tablet follows an opening flower as well as it can; colour shows what is left out.",
-             "Ein Tablet folgt einer Blüte, die sich öffnet, so gut es kann; Farbe zeigt, was fehlt."},
-            "thumbnails/field.png",
-            "field",
-            openField,
-            [] { return std::vector<DemoStep>(); }};
+    return {.name = "field",
+            .title = {"A flower on six servos", "Eine Blume aus sechs Servos"},
+            .sentence = {"A tablet follows an opening flower as well as it can; colour shows what is left out.",
+                         "Ein Tablet folgt einer Blüte, die sich öffnet, so gut es kann; Farbe zeigt, was fehlt."},
+            .thumbnail = "thumbnails/field.png",
+            .workspace = "field",
+            .open = openField};
 }
 
 } // namespace lumorph

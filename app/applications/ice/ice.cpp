@@ -195,21 +195,17 @@ void IceProgram::turn() {
 }
 
 Demo iceDemo() {
-    return {
-        "ice",
-        {"Ice on a pond", "Eis auf einem Teich"},
-        {"Warm it, and it gets holes; tap it, and it cracks: floes drift and rise under your hands, koi swim below.",
-         "Wärme es, und es bekommt Löcher; tippe darauf, und es bricht: Schollen treiben, heben sich, und "
-         "darunter schwimmen Koi."},
-        "thumbnails/ice.png",
-        "scene",
-        [](const Progress& progress) {
-            Project project;
-            project.rig = "resource:models/tablet.glb";
-            return readContents(std::move(project), {}, progress);
-        },
-        [] { return std::vector<DemoStep>(); },
-        [](std::uint64_t seed) -> std::unique_ptr<ShowProgram> { return std::make_unique<IceProgram>(seed); }};
+    return {.name = "ice",
+            .title = {"Ice on a pond", "Eis auf einem Teich"},
+            .sentence = {"Warm it, and it gets holes; tap it, and it cracks: floes drift and rise under your hands, "
+                         "koi swim below.",
+                         "Wärme es, und es bekommt Löcher; tippe darauf, und es bricht: Schollen treiben, heben sich, "
+                         "und darunter schwimmen Koi."},
+            .thumbnail = "thumbnails/ice.png",
+            .open = bundledTablet,
+            .program = [](const ProgramStart& start, const Progress&) -> std::unique_ptr<ShowProgram> {
+                return std::make_unique<IceProgram>(start.seed);
+            }};
 }
 
 } // namespace lumorph::ice

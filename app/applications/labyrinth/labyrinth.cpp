@@ -110,24 +110,19 @@ std::vector<ShowSound> LabyrinthProgram::sounds() const {
 }
 
 Demo labyrinthDemo() {
-    return {"labyrinth",
-            {"A labyrinth under your hands", "Ein Labyrinth unter den Händen"},
-            {"Lean it, and the ball rolls: over ramps, bridges and stairs, past holes, to the green goal.",
-             "Neige es, und die Kugel rollt: über Rampen, Brücken und Treppen, an Löchern vorbei, ins grüne Ziel."},
-            "thumbnails/labyrinth.png",
-            "scene",
-            [](const Progress& progress) {
-                Project project;
-                project.rig = "resource:models/tablet.glb";
-                return readContents(std::move(project), {}, progress);
+    return {.name = "labyrinth",
+            .title = {"A labyrinth under your hands", "Ein Labyrinth unter den Händen"},
+            .sentence = {"Lean it, and the ball rolls: over ramps, bridges and stairs, past holes, to the green goal.",
+                         "Neige es, und die Kugel rollt: über Rampen, Brücken und Treppen, an Löchern vorbei, ins "
+                         "grüne Ziel."},
+            .thumbnail = "thumbnails/labyrinth.png",
+            .open = bundledTablet,
+            .program = [](const ProgramStart& start, const Progress&) -> std::unique_ptr<ShowProgram> {
+                std::vector<Ghost> best;
+                if (!start.kept.empty()) best = readGhosts(start.kept, start.keptIn);
+                return std::make_unique<LabyrinthProgram>(start.seed, bundledLevels(), std::move(best));
             },
-            [] { return std::vector<DemoStep>(); },
-            [](std::uint64_t seed) -> std::unique_ptr<ShowProgram> {
-                return std::make_unique<LabyrinthProgram>(seed, bundledLevels());
-            },
-            [](std::uint64_t seed, std::string_view kept, const std::string& file) -> std::unique_ptr<ShowProgram> {
-                return std::make_unique<LabyrinthProgram>(seed, bundledLevels(), readGhosts(kept, file));
-            }};
+            .keeps = true};
 }
 
 } // namespace lumorph::labyrinth

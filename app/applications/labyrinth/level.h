@@ -84,6 +84,11 @@ void checkLevel(const Level& level);
 /// The text that is read as the same level. Throws as `checkLevel`.
 [[nodiscard]] std::string levelText(const Level& level);
 
+/// A level that somebody still makes, in the same text: what `checkLevel` refuses is taken, and goes back and forth.
+/// Its sizes are those of a level all the same. Throws DataError and InvalidInput.
+[[nodiscard]] Level readUnfinishedLevel(const std::filesystem::path& file);
+[[nodiscard]] std::string unfinishedLevelText(const Level& level);
+
 /// The levels that come with the program, in the order in which they are played. Throws DataError.
 [[nodiscard]] std::vector<Level> bundledLevels();
 

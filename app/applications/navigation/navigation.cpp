@@ -89,17 +89,18 @@ glm::dvec3 eyeOf(const ShowMoment& moment) {
     return glm::dvec3(glm::inverse(glm::dmat4(moment.worldFromDevice)) * glm::dvec4(eye, 1.0));
 }
 
-std::unique_ptr<ShowProgram> toldProgram(std::uint64_t seed, const DemoTold& told, const Progress& progress) {
+std::unique_ptr<ShowProgram> begin(const ProgramStart& start, const Progress& progress) {
+    const DemoTold& told = start.told;
     const auto map = told.find("map"), place = told.find("goto");
     std::shared_ptr<const Map> shown;
     if (map == told.end()) {
         shown = std::make_shared<const Map>(bundledValley(29, progress));
     } else {
         ImportedMap imported = importMap(map->second, progress);
-        for (const std::string& note : imported.report.notes) progress.report(-1.0, note);
+        for (const std::string& note : imported.report.notes) start.note(note);
         shown = std::make_shared<const Map>(std::move(imported.map));
     }
-    auto program = std::make_unique<NavigationProgram>(seed, std::move(shown));
+    auto program = std::make_unique<NavigationProgram>(start.seed, std::move(shown));
     if (place != told.end()) program->flyTo(place->second);
     return program;
 }
@@ -288,26 +289,25 @@ ShowContent NavigationProgram::frame(const ShowMoment& moment) {
 
 Demo navigationDemo() {
     return {
-        "navigation",
-        {"A map that rises to meet you", "Eine Karte, die dir entgegenwächst"},
-        {"Fly over a valley and its harbour town: the tablet takes the land's shape, wherever you look.",
-         "Flieg über ein Tal mit seiner Hafenstadt: Das Tablet nimmt die Form des Landes an, wohin du auch schaust."},
-        "thumbnails/navigation.png",
-        "scene",
-        [](const Progress& progress) {
-            Project project;
-            project.rig = "resource:models/tablet.glb";
-            return readContents(std::move(project), {}, progress);
-        },
-        [] { return std::vector<DemoStep>(); },
-        [](std::uint64_t seed) -> std::unique_ptr<ShowProgram> {
-            return std::make_unique<NavigationProgram>(seed, std::make_shared<const Map>(bundledValley()));
-        },
-        nullptr,
-        {{"map", "A map of one's own: a file or folder of heights (GeoTIFF, 16-bit PNG, .hgt) and of outlines "
-                 "(GeoJSON, CityJSON, .osm, .pbf)"},
-         {"goto", "A place to fly to at first, by its name or some of it"}},
-        toldProgram};
+        .name = "navigation",
+        .title = {"A map that rises to meet you", "Eine Karte, die dir entgegenwächst"},
+        .sentence = {"Fly over a valley and its harbour town: the tablet takes the land's shape, wherever you look.",
+                     "Flieg über ein Tal mit seiner Hafenstadt: Das Tablet nimmt die Form des Landes an, wohin du auch "
+                     "schaust."},
+        .thumbnail = "thumbnails/navigation.png",
+        .open = bundledTablet,
+        .program = begin,
+        .options = {{"map",
+                     "A map of one's own: a file or folder of heights (GeoTIFF, 16-bit PNG, .hgt) and of outlines "
+                     "(GeoJSON, CityJSON, .osm, .pbf)",
+                     {"Map", "Karte"},
+                     {"heights and outlines: GeoTIFF, PNG, .hgt, GeoJSON, CityJSON, .osm, .pbf",
+                      "Höhen und Umrisse: GeoTIFF, PNG, .hgt, GeoJSON, CityJSON, .osm, .pbf"},
+                     true},
+                    {"goto",
+                     "A place to fly to at first, by its name or some of it",
+                     {"Begin at", "Beginnen bei"},
+                     {"name of a place", "Name eines Ortes"}}}};
 }
 
 } // namespace lumorph::navigation

@@ -170,13 +170,14 @@ Scene techniqueScene(int key, bool on) {
 }
 
 Demo techniquesDemo() {
-    return {"techniques",
-            {"What light adds", "Was Licht hinzufügt"},
-            {"Six ways in which light extends what six servos can show, one number key each.",
-             "Sechs Arten, wie Licht erweitert, was sechs Servos zeigen können; jede hat eine Zifferntaste."},
-            "thumbnails/techniques.png",
-            "scene",
-            [](const Progress& progress) { return bundledProject("techniques", progress); },
+    return {
+        .name = "techniques",
+        .title = {"What light adds", "Was Licht hinzufügt"},
+        .sentence = {"Six ways in which light extends what six servos can show, one number key each.",
+                     "Sechs Arten, wie Licht erweitert, was sechs Servos zeigen können; jede hat eine Zifferntaste."},
+        .thumbnail = "thumbnails/techniques.png",
+        .open = [](const Progress& progress) { return bundledProject("techniques", progress); },
+        .steps =
             [] {
                 std::vector<DemoStep> steps;
                 for (const Technique& technique : techniques())
@@ -184,7 +185,9 @@ Demo techniquesDemo() {
                                      techniqueScene(technique.key, false)});
                 return steps;
             },
-            [](std::uint64_t) -> std::unique_ptr<ShowProgram> { return std::make_unique<TechniquesProgram>(); }};
+        .program = [](const ProgramStart&, const Progress&) -> std::unique_ptr<ShowProgram> {
+            return std::make_unique<TechniquesProgram>();
+        }};
 }
 
 } // namespace lumorph

@@ -47,14 +47,13 @@ Scene waterScene() {
 }
 
 Demo waterDemo() {
-    return {"water",
-            {"A sea you can feel", "Ein Meer, das man fühlt"},
-            {"The tablet lifts the long waves, light paints the short ones, and a buoy floats on both.",
-             "Das Tablet hebt die langen Wellen, Licht malt die kurzen, und eine Boje schwimmt auf beiden."},
-            "thumbnails/water.png",
-            "scene",
-            [](const Progress& progress) { return bundledProject("water", progress); },
-            [] { return std::vector<DemoStep>(); }};
+    return {
+        .name = "water",
+        .title = {"A sea you can feel", "Ein Meer, das man fühlt"},
+        .sentence = {"The tablet lifts the long waves, light paints the short ones, and a buoy floats on both.",
+                     "Das Tablet hebt die langen Wellen, Licht malt die kurzen, und eine Boje schwimmt auf beiden."},
+        .thumbnail = "thumbnails/water.png",
+        .open = [](const Progress& progress) { return bundledProject("water", progress); }};
 }
 
 } // namespace lumorph

@@ -17,6 +17,8 @@ constexpr double kUsualNextMinutes = 2.0, kMostNextMinutes = 120.0; // in the ki
 
 QString nextKey(bool kiosk) { return kiosk ? "visitors/nextInKiosk" : "visitors/next"; }
 
+QString toldKey(const std::string& demo) { return "applications/told/" + QString::fromStdString(demo); }
+
 QString layoutKey(const QString& workspace) { return "layout/" + workspace; }
 
 } // namespace
@@ -100,6 +102,22 @@ void Settings::setLanguage(Language language) {
 }
 
 QString Settings::say(const Words& words) const { return QString::fromStdString(words.in(language())); }
+
+std::map<std::string, std::string> Settings::toldTo(const std::string& demo) const {
+    std::map<std::string, std::string> told;
+    const QVariantMap kept = store_.value(toldKey(demo)).toMap();
+    for (auto at = kept.begin(); at != kept.end(); ++at) told[at.key().toStdString()] = at->toString().toStdString();
+    return told;
+}
+
+void Settings::setToldTo(const std::string& demo, const std::map<std::string, std::string>& told) {
+    QVariantMap kept;
+    for (const auto& [name, text] : told) kept[QString::fromStdString(name)] = QString::fromStdString(text);
+    if (kept.isEmpty())
+        store_.remove(toldKey(demo));
+    else
+        store_.setValue(toldKey(demo), kept);
+}
 
 double Settings::nextMinutes(bool kiosk) const {
     const double usual = kiosk ? kUsualNextMinutes : 0.0;

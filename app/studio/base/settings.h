@@ -1,6 +1,8 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
+#include <string>
 
 #include <QObject>
 #include <QSettings>
@@ -38,6 +40,9 @@ public:
     void setLanguage(Language language);
     /// A text in that language.
     [[nodiscard]] QString say(const Words& words) const;
+    /// What the host wants a demonstration to be told, by the names of its options.
+    [[nodiscard]] std::map<std::string, std::string> toldTo(const std::string& demo) const;
+    void setToldTo(const std::string& demo, const std::map<std::string, std::string>& told);
     /// Minutes without a visitor after which the next application shows; 0: it stays.
     [[nodiscard]] double nextMinutes(bool kiosk) const; ///< 2 in the kiosk and 0 outside, as long as none were chosen
     void setNextMinutes(bool kiosk, double minutes);

@@ -3,7 +3,7 @@
 #include <exception>
 #include <utility>
 
-#include "app/applications/keepsake.h"
+#include "app/applications/program_start.h"
 #include "app/studio/document/path_text.h"
 
 namespace lumorph::studio {

@@ -8,7 +8,7 @@
 
 #include <QStandardPaths>
 
-#include "app/applications/keepsake.h"
+#include "app/applications/program_start.h"
 #include "app/applications/registry/demos.h"
 #include "app/studio/document/asset_opening.h"
 #include "app/studio/document/assets.h"
@@ -21,6 +21,7 @@
 #include "app/studio/document/scene_assets_reader.h"
 #include "app/studio/document/session_keeper.h"
 #include "app/studio/document/target_placing.h"
+#include "app/weather/weather_fetch.h"
 #include "core/base/error.h"
 #include "core/base/resources.h"
 
@@ -37,7 +38,7 @@ constexpr const char* kScenePlace = "scene:";
 struct Played {
     std::shared_ptr<ShowProgram> program; ///< empty: it goes by time alone
     fs::path keepsake;                    ///< what it wants kept; empty: nothing is
-    std::optional<Notice> trouble;        ///< with what was kept
+    std::vector<Notice> notices;          ///< what it has to say: of its map, of what was kept
 };
 
 /// What was opened, and the program that shows with it.
@@ -64,24 +65,31 @@ const Demo* findDemo(const std::string& name) {
     return found == demos().end() ? nullptr : &*found;
 }
 
-/// Its program, which knows again what it wanted kept; none where it has none that plays. Throws as `Demo::program`.
-Played playedOf(const OpenDemo& open, const DemoTold& told = {}, const Progress& progress = {}) {
+/// A forecast on the web is fetched first: applications know no network.
+DemoTold withForecast(DemoTold told) {
+    if (const auto weather = told.find("weather"); weather != told.end() && isWebAddress(weather->second))
+        weather->second = fetchedForecast(weather->second).string();
+    return told;
+}
+
+/// Its program, which knows again what it wanted kept; none where it has none that plays. For a job's thread. Throws as
+/// `beginProgram`, and DeviceError where a forecast does not come.
+Played playedOf(const OpenDemo& open, const Progress& progress) {
     const Demo* demo = open.plays ? findDemo(open.name) : nullptr;
     if (demo == nullptr || !demo->program) return {};
     Played played;
-    if (!told.empty() || demo->programTold) {
-        played.program = startProgram(*demo, newSeed(), told, progress);
-        return played;
-    }
-    if (demo->remembering) played.keepsake = ProjectService::sessionFolder() / "applications" / (demo->name + ".json");
-    BegunProgram begun = beginProgram(*demo, newSeed(), played.keepsake);
+    if (demo->keeps) played.keepsake = ProjectService::sessionFolder() / "applications" / (demo->name + ".json");
+    BegunProgram begun = beginProgram(*demo, {newSeed(), withForecast(open.told), played.keepsake}, progress);
     played.program = std::move(begun.program);
+    const QString name = QString::fromStdString(demo->name);
+    for (const std::string& note : begun.notes)
+        played.notices.push_back({Notice::Level::info, name, QString::fromStdString(note), {}, {}});
     if (!begun.problem.empty())
-        played.trouble = Notice{Notice::Level::warning,
-                                fileName(played.keepsake),
-                                QString::fromStdString(begun.problem),
-                                QObject::tr("what was kept lies in %1; it begins anew").arg(fullName(begun.aside)),
-                                {}};
+        played.notices.push_back({Notice::Level::warning,
+                                  fileName(played.keepsake),
+                                  QString::fromStdString(begun.problem),
+                                  QObject::tr("what was kept lies in %1; it begins anew").arg(fullName(begun.aside)),
+                                  {}});
     return played;
 }
 
@@ -90,13 +98,18 @@ bool playsFor(Audience audience, const Demo& demo) {
 }
 
 std::optional<Kept> readSession(const fs::path& folder, const Progress& progress) {
-    std::optional<SessionState> session = SessionFolder::restore(folder, progress);
+    std::optional<SessionState> session = SessionFolder::restore(folder, progress.part(0.0, 0.9));
     if (!session) return std::nullopt;
     Played played;
     try {
-        played = playedOf(session->demo);
-    } catch (const DataError&) { // the session is whole without it
+        played = playedOf(session->demo, progress.part(0.9, 1.0));
+    } catch (const Error& error) { // the session is whole without it
         session->demo.plays = false;
+        played.notices.push_back({Notice::Level::warning,
+                                  QString::fromStdString(error.subject()),
+                                  QString::fromStdString(error.why()),
+                                  QString::fromStdString(error.remedy()),
+                                  {}});
     }
     return Kept{std::move(*session), std::move(played)};
 }
@@ -122,11 +135,11 @@ Opened readBundled(const Wanted& wanted, const FieldCache& cache, const Progress
         const Demo& named = demoNamed(demo);
         loaded = loadedProject(named.open(progress));
         progress.throwIfCancelled();
-        opened.demo = {demo, wanted.make || playsFor(wanted.audience, named)};
+        opened.demo = {demo, wanted.make || playsFor(wanted.audience, named), wanted.told};
         if (wanted.make)
             opened.played.program = wanted.make(newSeed());
         else
-            opened.played = playedOf(opened.demo, wanted.told, progress);
+            opened.played = playedOf(opened.demo, progress);
     }
     if (!loaded.state.field.field) loaded.state.field.field = cache.find(*loaded.state.rig.rig);
     return opened;
@@ -236,6 +249,7 @@ void ProjectService::Data::openBundled(Wanted wanted, std::function<void()> onRe
         },
         [this, ready](const std::exception& error) {
             jobs.fail("project", error);
+            emit service.demoFailed();
             if (*ready) (*ready)();
         });
 }
@@ -254,13 +268,18 @@ void ProjectService::Data::replaceAll(Opened opened, const fs::path& file) {
     loaded.state.installation.reset(); // the room stays as it is, whatever is opened in it
     document.reset(std::move(loaded.state), file);
     emit service.programOpened(std::move(opened.played.program), opened.played.keepsake);
-    if (opened.played.trouble) notices.post("project", *opened.played.trouble);
+    for (const Notice& notice : opened.played.notices) notices.post("project", notice);
     scene.takeOpened();
     building.buildMissing();
     if (!unsaved || !before.source.state.rig.rig) return;
     const auto bringBack = [this, before] {
-        goOn({before, playedOf(before.demo)});
-        document.undoStack().resetClean();
+        jobs.run<Played>(
+            "project", "project", tr("Bringing it back"),
+            [open = before.demo](const Progress& progress) { return playedOf(open, progress); },
+            [this, before](const Played& played) {
+                goOn({before, played});
+                document.undoStack().resetClean();
+            });
     };
     notices.post("project", {Notice::Level::info,
                              name,

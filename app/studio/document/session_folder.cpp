@@ -72,10 +72,11 @@ ProjectSource withMemory(const SessionState& session) {
     ProjectSource source = session.source;
     if (!source.extras.view.is_object()) source.extras.view = nlohmann::json::object();
     const StudioState& state = source.state;
-    source.extras.view[kKey] = {
-        {"file", utf8Of(session.file)},      {"modified", session.modified},        {"rig", utf8Of(state.rig.path)},
-        {"field", utf8Of(state.field.path)}, {"target", utf8Of(state.target.path)}, {"scene", sceneFiles(state)},
-        {"rigInMemory", !source.stamps.rig}, {"demo", session.demo.name},           {"plays", session.demo.plays}};
+    source.extras.view[kKey] = {{"file", utf8Of(session.file)},        {"modified", session.modified},
+                                {"rig", utf8Of(state.rig.path)},       {"field", utf8Of(state.field.path)},
+                                {"target", utf8Of(state.target.path)}, {"scene", sceneFiles(state)},
+                                {"rigInMemory", !source.stamps.rig},   {"demo", session.demo.name},
+                                {"plays", session.demo.plays},         {"told", session.demo.told}};
     return source;
 }
 
@@ -181,6 +182,16 @@ std::string textIn(const nlohmann::json& object, const char* key) {
     return found != object.end() && found->is_string() ? found->get<std::string>() : std::string();
 }
 
+/// What an application was told; the file may be edited by hand.
+DemoTold toldIn(const nlohmann::json& memory) {
+    DemoTold told;
+    const auto found = memory.find("told");
+    if (found == memory.end() || !found->is_object()) return told;
+    for (const auto& [name, text] : found->items())
+        if (text.is_string()) told[name] = text.get<std::string>();
+    return told;
+}
+
 } // namespace
 
 void SessionFolder::write(const SessionState& session) {
@@ -255,7 +266,7 @@ std::optional<SessionState> SessionFolder::restore(const fs::path& folder, const
     SessionState session;
     session.file = textIn(memory, "file");
     session.modified = memory.is_object() && memory.value("modified", true);
-    session.demo = {textIn(memory, "demo"), memory.is_object() && memory.value("plays", false)};
+    session.demo = {textIn(memory, "demo"), memory.is_object() && memory.value("plays", false), toldIn(memory)};
     if (loaded.extras.view.is_object()) loaded.extras.view.erase(kKey);
     StudioState& state = loaded.state;
     // An edited rig is in no file, though it goes by the name of the one that was opened.

@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 
+#include "app/applications/demo.h"
 #include "app/studio/document/project_io.h"
 
 namespace lumorph::studio {
@@ -12,6 +13,7 @@ namespace lumorph::studio {
 struct OpenDemo {
     std::string name;   ///< of app/applications; empty: what is open is none
     bool plays = false; ///< its program shows
+    DemoTold told = {}; ///< what that was told, by the names of its options
     bool operator==(const OpenDemo&) const = default;
 };
 

@@ -8,11 +8,14 @@
 #include <QLabel>
 #include <QPainter>
 #include <QPainterPath>
+#include <QPointer>
 #include <QPushButton>
 #include <QVBoxLayout>
 
 #include "app/applications/registry/demos.h"
+#include "app/studio/look/icons.h"
 #include "app/studio/look/palette.h"
+#include "app/studio/shell/demo_options.h"
 #include "app/studio/shell/escape_twice.h"
 #include "app/studio/shell/pictograms.h"
 #include "core/base/error.h"
@@ -124,7 +127,8 @@ private:
 
 } // namespace
 
-ApplicationsPage::ApplicationsPage(Studio& studio, QWidget& window, For whom) : Overlay(window), studio_(studio) {
+ApplicationsPage::ApplicationsPage(Studio& studio, QWidget& window, For whom)
+    : Overlay(window), studio_(studio), whom_(whom) {
     setObjectName("applications");
     EscapeTwice::setCloses(*this, false); // the window does, and Esc Esc stops all the same
     auto* column = new QVBoxLayout(this);
@@ -164,10 +168,34 @@ void ApplicationsPage::addCards() {
         auto* card = new Card(studio_, demo, shelf);
         connect(card, &QAbstractButton::clicked, this, [this, &demo] { emit chosen(demo); });
         connect(&studio_.settings, &Settings::languageChanged, card, [card] { card->say(); });
+        if (whom_ == For::host && !demo.options.empty()) addOptions(*card, demo);
         cards_.push_back(card);
     }
     area_->setWidget(shelf);
     setFocusProxy(cards_.front());
+}
+
+/// On the card's picture: what this application may be told.
+void ApplicationsPage::addOptions(QAbstractButton& card, const Demo& demo) {
+    auto* row = new QHBoxLayout(&card);
+    row->setContentsMargins(10, 10, 10, 10);
+    auto* button = new QPushButton(icon("settings"), {}, &card);
+    button->setObjectName(card.objectName() + ".options");
+    button->setFixedSize(36, 36);
+    button->setCursor(Qt::ArrowCursor);
+    row->addWidget(button, 0, Qt::AlignRight | Qt::AlignTop);
+    const auto say = [this, button] {
+        const QString text = studio_.settings.say({"What it shows...", "Was gezeigt wird..."});
+        button->setToolTip(text);
+        button->setAccessibleName(text);
+    };
+    say();
+    connect(&studio_.settings, &Settings::languageChanged, button, say);
+    connect(button, &QPushButton::clicked, this, [this, &demo] {
+        openDemoOptions(studio_, *window(), demo, [page = QPointer(this), &demo] {
+            if (page) emit page->chosen(demo);
+        });
+    });
 }
 
 void ApplicationsPage::addFoot(For whom) {

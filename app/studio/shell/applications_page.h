@@ -40,6 +40,7 @@ protected:
 
 private:
     void addCards();
+    void addOptions(QAbstractButton& card, const Demo& demo);
     void addFoot(For whom);
     QPushButton* addFootButton(const char* name, const Words& words);
     void say();
@@ -49,6 +50,7 @@ private:
         Words words;
     };
     Studio& studio_;
+    For whom_;
     QLabel* heading_ = nullptr;
     QScrollArea* area_ = nullptr;
     QGridLayout* grid_ = nullptr;

@@ -130,7 +130,7 @@ void addDemoCommands(Studio& studio) {
         QAction* action = studio.commands.add(
             QString("demo.%1").arg(QString::fromStdString(demo.name)), title, options, [&studio, &demo] {
                 emit studio.commands.workspaceWanted(QString::fromStdString(demo.workspace));
-                studio.project.openDemo(demo.name);
+                studio.project.openDemo(demo.name, Audience::host, studio.settings.toldTo(demo.name));
             });
         action->setToolTip(QString::fromStdString(demo.sentence.english));
     }

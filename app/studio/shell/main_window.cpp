@@ -111,6 +111,8 @@ MainWindow::MainWindow(Studio& studio, std::vector<std::unique_ptr<Workspace>> w
     connect(desk, &VisitorDesk::studioWanted, this, &MainWindow::leaveFullView);
     connect(desk, &VisitorDesk::tourWanted, this, &MainWindow::startTour);
     connect(data_->bar, &TopBar::leaveWanted, this, &MainWindow::leaveFullView);
+    // The notice about it is for the host, and stands in the studio.
+    connect(&data_->studio.project, &ProjectService::demoFailed, this, &MainWindow::leaveFullView);
     connect(data_->bar, &TopBar::workspaceChosen, this, &MainWindow::showWorkspace);
     connect(&studio.document, &StudioDocument::titleChanged, this, &MainWindow::showTitle);
     connect(&studio.settings, &Settings::themeChanged, this, &MainWindow::retheme);
@@ -238,7 +240,7 @@ void MainWindow::showApplications() { data_->desk->showCards(); }
 void MainWindow::openApplication(const Demo& demo) {
     showWorkspace(QString::fromStdString(demo.workspace));
     enterFullView();
-    data_->studio.project.openDemo(demo.name, Audience::visitors);
+    data_->studio.project.openDemo(demo.name, Audience::visitors, data_->studio.settings.toldTo(demo.name));
 }
 
 void MainWindow::enterKiosk() {

@@ -29,7 +29,7 @@ struct OfferedPiece {
 struct LevelFinding {
     std::optional<glm::ivec2> cell;
     std::string text;     ///< whole sentences
-    bool prevents = true; ///< it can neither be played nor saved
+    bool prevents = true; ///< it cannot be played
 };
 
 /// A level that is being made, with all steps that led to it. The rim is always wall. No window.

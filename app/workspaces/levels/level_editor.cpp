@@ -269,8 +269,8 @@ void LevelEditor::showFinding() {
     const LevelFinding* finding = draft_.firstFinding();
     const bool sound = !finding || !finding->prevents;
     play_->setEnabled(sound);
-    save_->setEnabled(sound);
-    save_->setToolTip(sound ? tr("Save the level's text (Ctrl+S)") : tr("What is wrong has to be put right first"));
+    save_->setToolTip(sound ? tr("Save the level's text (Ctrl+S)")
+                            : tr("Save what there is, to go on another day (Ctrl+S)"));
     QString text = tr("It can be solved: the dotted line is a way to the goal.");
     if (finding) text = QString::fromStdString(finding->text);
     if (!failure_.isEmpty()) text = failure_;
@@ -306,7 +306,7 @@ void LevelEditor::openFile() {
     connect(dialog, &QFileDialog::fileSelected, this, [this](const QString& file) {
         studio_.settings.setValue(kFolderKey, QFileInfo(file).absolutePath());
         try {
-            take(labyrinth::readLevelFile(file.toStdString()), tr("Open a level"));
+            take(labyrinth::readUnfinishedLevel(file.toStdString()), tr("Open a level"));
         } catch (const std::exception& error) {
             tell(error);
         }
@@ -318,7 +318,6 @@ void LevelEditor::takeForm() { take(form_->filled(draft_.level()), tr("Change th
 
 void LevelEditor::save() {
     takeForm();
-    if (!save_->isEnabled()) return;
     QFileDialog* dialog = makeFileDialog("dialog.levels.save", tr("Save the level"));
     if (!dialog) return;
     dialog->setAcceptMode(QFileDialog::AcceptSave);
@@ -333,9 +332,14 @@ void LevelEditor::save() {
 
 void LevelEditor::write(const std::filesystem::path& file) {
     try {
-        const std::string text = labyrinth::levelText(draft_.level());
+        const std::string text = labyrinth::unfinishedLevelText(draft_.level());
         writeFileAtomically(file, std::as_bytes(std::span(text)));
-        finding_->setText(tr("Saved: %1").arg(QString::fromStdString(file.string())));
+        const LevelFinding* finding = draft_.firstFinding();
+        const QString name = QString::fromStdString(file.string());
+        finding_->setText(
+            finding && finding->prevents
+                ? tr("Saved: %1. It cannot be played yet: %2").arg(name, QString::fromStdString(finding->text))
+                : tr("Saved: %1").arg(name));
     } catch (const std::exception& error) {
         tell(error);
     }

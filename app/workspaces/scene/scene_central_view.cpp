@@ -160,6 +160,7 @@ void SceneCentralView::Data::addFloating() {
     column->setContentsMargins(0, 0, 0, 0);
     column->setSpacing(8);
     column->addWidget(makeNoticeBar(studio.notices, "viewport", notices));
+    column->addWidget(makeNoticeBar(studio.notices, "project", notices));
     column->addWidget(makeNoticeBar(studio.notices, "output", notices));
     column->addStretch(1);
     notices->setMaximumWidth(kNoticeWidth);

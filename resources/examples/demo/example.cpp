@@ -84,20 +84,17 @@ Scene ExampleProgram::scene() const {
 }
 
 Demo exampleDemo() {
-    return {"example",
-            {"Example", "Beispiel"},
-            {"Point somewhere, and the ball rolls there; your hand feels the hill it stands on.",
-             "Zeige irgendwohin, und die Kugel rollt dorthin; die Hand fühlt den Hügel, auf dem sie steht."},
-            "thumbnails/example.png",
-            "scene",
-            [](const Progress& progress) {
-                Project project;
-                project.rig = "resource:models/tablet.glb";
-                return readContents(std::move(project), {}, progress);
-            },
-            [] { return std::vector<DemoStep>(); },
-            // The seed is for a program with chance in it; this one has none.
-            [](std::uint64_t) -> std::unique_ptr<ShowProgram> { return std::make_unique<ExampleProgram>(); }};
+    return {
+        .name = "example",
+        .title = {"Example", "Beispiel"},
+        .sentence = {"Point somewhere, and the ball rolls there; your hand feels the hill it stands on.",
+                     "Zeige irgendwohin, und die Kugel rollt dorthin; die Hand fühlt den Hügel, auf dem sie steht."},
+        .thumbnail = "thumbnails/example.png",
+        .open = bundledTablet,
+        // A start brings a seed, for a program with chance in it; this one has none.
+        .program = [](const ProgramStart&, const Progress&) -> std::unique_ptr<ShowProgram> {
+            return std::make_unique<ExampleProgram>();
+        }};
 }
 
 } // namespace lumorph::example

@@ -44,7 +44,8 @@ bool differ(const ShowContent& one, const ShowContent& other) {
 TEST(Demos, ThatPlayAnswerTwoMovesOfAMouseAndOfAHand) {
     for (const Demo& demo : demos()) {
         if (!demo.program) continue;
-        const auto alone = demo.program(3), pointed = demo.program(3), leant = demo.program(3);
+        const auto begin = [&demo] { return demo.program({.seed = 3}, {}); };
+        const auto alone = begin(), pointed = begin(), leant = begin();
         ProgramVisit nobody(*alone), mouse(*pointed), hand(*leant);
         for (ProgramVisit* visit : {&nobody, &mouse, &hand}) visit->frames(2.0);
         EXPECT_FALSE(differ(nobody.content(), mouse.content())) << demo.name << " is the same show by itself";

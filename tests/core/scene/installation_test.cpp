@@ -114,7 +114,7 @@ const PartEdit kPartEdits[] = {
      [](Installation& i) -> Origin& { return i.origins.tracker; }},
     {"device on its body", [](Installation& i) { i.bodyFromDevice[3].y = -0.01F; },
      [](Installation& i) -> Origin& { return i.origins.deviceBody; }},
-    {"pointer's tip", [](Installation& i) { i.pointerTip.y = -0.16F; },
+    {"pointer's tip", [](Installation& i) { i.pointerTip.y = -0.15F; },
      [](Installation& i) -> Origin& { return i.origins.pointer; }},
     {"servos",
      [](Installation& i) {

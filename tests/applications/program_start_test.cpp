@@ -1,4 +1,4 @@
-#include "app/applications/keepsake.h"
+#include "app/applications/program_start.h"
 
 #include <fstream>
 #include <sstream>
@@ -53,10 +53,10 @@ TEST(Keepsake, ABestRunIsThereAtTheNextStart) {
     const TemporaryFolder folder;
     const fs::path file = folder / "kept/labyrinth.json";
     const Demo& demo = demoNamed("labyrinth");
-    const BegunProgram first = beginProgram(demo, 1, file);
+    const BegunProgram first = beginProgram(demo, {.seed = 1, .kept = file});
     EXPECT_TRUE(first.problem.empty()) << "there is nothing yet";
     writeKeepsake(file, keptOfARun(*first.program));
-    const BegunProgram second = beginProgram(demo, 2, file);
+    const BegunProgram second = beginProgram(demo, {.seed = 2, .kept = file});
     EXPECT_TRUE(second.problem.empty()) << second.problem;
     const auto& before = dynamic_cast<LabyrinthProgram&>(*first.program);
     const auto& after = dynamic_cast<LabyrinthProgram&>(*second.program);
@@ -69,7 +69,7 @@ TEST(Keepsake, ABestRunIsThereAtTheNextStart) {
 }
 
 TEST(Keepsake, WithoutAFileNothingIsRemembered) {
-    const BegunProgram begun = beginProgram(demoNamed("labyrinth"), 1, {});
+    const BegunProgram begun = beginProgram(demoNamed("labyrinth"), {.seed = 1});
     EXPECT_TRUE(begun.problem.empty());
     EXPECT_TRUE(dynamic_cast<LabyrinthProgram&>(*begun.program).bestRuns().empty());
 }
@@ -81,7 +81,7 @@ TEST(Keepsake, ADamagedFileIsNamedAndSetAsideAndNotLost) {
                                    R"({"labyrinthRuns":[{"level":"a","positions":[1e9,0,0]}]})"};
     for (const std::string& text : damaged) {
         std::ofstream(file) << text;
-        const BegunProgram begun = beginProgram(demoNamed("labyrinth"), 1, file);
+        const BegunProgram begun = beginProgram(demoNamed("labyrinth"), {.seed = 1, .kept = file});
         ASSERT_TRUE(begun.program) << "it begins anew";
         EXPECT_FALSE(begun.problem.empty());
         EXPECT_FALSE(fs::exists(file));
