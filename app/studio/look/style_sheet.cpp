@@ -48,6 +48,9 @@ QPushButton[look="hold"]:disabled { background: @panel; border-color: @line; col
 QPushButton[look="flat"] { background: transparent; border-color: transparent; padding: 0 8px; color: @text; }
 QPushButton[look="flat"]:hover { background: @hovered; border-color: transparent; }
 QPushButton[look="flat"]:disabled { color: @disabled; }
+QPushButton[look="row"] { background: transparent; border: 1px solid transparent; text-align: left; padding: 0; }
+QPushButton[look="row"]:hover { background: @hovered; }
+QPushButton[look="row"]:checked { background: @raised; border-color: @border; }
 QPushButton[look="link"] { background: transparent; border: none; padding: 0; color: @accentText; text-align: left; }
 QPushButton[look="link"]:hover { text-decoration: underline; }
 QPushButton::menu-indicator { image: none; width: 0; }

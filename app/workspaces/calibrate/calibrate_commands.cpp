@@ -64,7 +64,26 @@ void askImport(const CalibrateParts& parts) {
               [parts](const std::filesystem::path& file) { parts.service.importFrom(file); });
 }
 
+void doNextOfCalibration(const CalibrateParts& parts) {
+    const NextStep::Do what = nextOf(parts.service.state()).what;
+    if (what == NextStep::Do::chooseFolder) return askForImages(parts);
+    if (what == NextStep::Do::nothing && parts.service.state().isUsed()) return parts.selection.setWhole(true);
+    parts.service.doNext();
+}
+
+void doNextOfChain(const CalibrateParts& parts) {
+    if (stepOf(parts.chain.state()).what == ChainStep::Do::sequence)
+        parts.selection.setWhole(false);
+    else
+        parts.chain.doNext();
+}
+
 } // namespace
+
+QString buttonOf(const CalibrationState& state) {
+    const NextStep step = nextOf(state);
+    return step.button.isEmpty() && state.isUsed() ? "Go on with the chain" : step.button;
+}
 
 void useFolder(CalibrationService& service, Settings& settings, const std::filesystem::path& folder) {
     CalibrationSetup setup = keptSetup(settings, CaptureWay::folder);
@@ -111,12 +130,7 @@ void addCalibrateCommands(const CalibrateParts& parts) {
     CalibrationService& service = parts.service;
     QAction* next = addCalibrateAction(
         parts, "calibrate.next", "Next step of the calibration", "play", "What the card over the picture offers",
-        [parts] {
-            if (nextOf(parts.service.state()).what == NextStep::Do::chooseFolder)
-                askForImages(parts);
-            else
-                parts.service.doNext();
-        },
+        [parts] { parts.selection.whole() ? doNextOfChain(parts) : doNextOfCalibration(parts); },
         QKeySequence(Qt::CTRL | Qt::Key_Return));
     QAction* rest =
         addCalibrateAction(parts, "calibrate.rest", "Photograph all poses", "record",
@@ -152,19 +166,29 @@ void addCalibrateCommands(const CalibrateParts& parts) {
         addCalibrateAction(parts, "calibrate.report", "Write a report of the calibration...", "file",
                            "Figures, poses and pictures as PDF or as a web page", [parts] { askReport(parts); });
     report->setIconText("Report...");
+    addCalibrateAction(parts, "calibrate.chain", "From boxes to a calibrated show", "target",
+                       "Projector, pointer tip, tracker, device, eye, servos, delays, light: measured one after the "
+                       "other, and verified",
+                       [parts] { parts.selection.setWhole(true); });
+    QAction* rest2 = addCalibrateAction(parts, "calibrate.chain.rest", "Measure all that is missing", "play",
+                                        "In the lab, one after the other; ends where something needs you",
+                                        [parts] { parts.chain.measureRest(); });
     const auto follow = [=, &service] {
         report->setEnabled(service.state().result || !service.state().poses.empty());
         save->setEnabled(service.state().result != nullptr);
         const CalibrationState& state = service.state();
-        const NextStep step = nextOf(state);
         const bool works = state.work != CalibrationState::Work::none;
-        next->setEnabled(!step.button.isEmpty());
+        const ChainState& chain = parts.chain.state();
+        next->setEnabled(parts.selection.whole() ? !stepOf(chain).button.isEmpty() : !buttonOf(state).isEmpty());
+        rest2->setEnabled(!chain.running && nextLink(chain.stands).has_value());
         rest->setEnabled(state.setup.way == CaptureWay::lab && !works && state.counting() < state.setup.poses);
         another->setEnabled(offersAnother(state));
         anew->setEnabled(!state.poses.empty() || state.refusal || !state.trouble.isEmpty());
         use->setEnabled(state.isSolved() && !state.isUsed() && !works);
     };
     QObject::connect(&service, &CalibrationService::changed, next, follow);
+    QObject::connect(&parts.chain, &ChainService::changed, next, follow);
+    QObject::connect(&parts.selection, &CalibrateSelection::wholeChanged, next, follow);
     follow();
 }
 

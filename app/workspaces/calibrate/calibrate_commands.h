@@ -9,6 +9,9 @@ namespace lumorph::studio {
 /// Whether there is a result that one more pose could make better.
 [[nodiscard]] bool offersAnother(const CalibrationState& state);
 
+/// Of the card with the next step; empty: there is none.
+[[nodiscard]] QString buttonOf(const CalibrationState& state);
+
 void addCalibrateCommands(const CalibrateParts& parts);
 
 /// Calibrates from the images in this folder.

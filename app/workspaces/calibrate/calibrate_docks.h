@@ -3,6 +3,7 @@
 #include <QWidget>
 
 #include "app/studio/calibration/calibration_service.h"
+#include "app/studio/calibration/chain_service.h"
 #include "app/studio/calibration/crosshair_service.h"
 #include "app/studio/shell/studio.h"
 #include "app/workspaces/calibrate/calibrate_selection.h"
@@ -14,6 +15,7 @@ struct CalibrateParts {
     Studio& studio;
     CalibrationService& service;
     CrosshairService& crosshairs;
+    ChainService& chain;
     CalibrateSelection& selection;
 };
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <utility>
 
 #include <QObject>
 
@@ -26,12 +27,20 @@ public:
         set(show_ == Show::live || show_ == Show::map ? Show::white : show_, pose);
     }
 
+    /// The whole chain is seen, in place of the sequence of projector and camera.
+    [[nodiscard]] bool whole() const noexcept { return whole_; }
+    void setWhole(bool whole) {
+        if (std::exchange(whole_, whole) != whole) emit wholeChanged();
+    }
+
 signals:
+    void wholeChanged();
     void changed();
 
 private:
     Show show_ = Show::live;
     std::string pose_;
+    bool whole_ = false;
 };
 
 } // namespace lumorph::studio

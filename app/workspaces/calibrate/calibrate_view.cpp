@@ -111,7 +111,9 @@ private:
 
     void refresh() {
         const CalibrationState& state = parts_.service.state();
-        card_->show(cardOf(nextOf(state)));
+        StepCardText card = cardOf(nextOf(state));
+        card.button = buttonOf(state);
+        card_->show(card);
         progress_->setVisible(state.work != CalibrationState::Work::none);
         progress_->setValue(static_cast<int>(1000.0 * state.fraction));
         rest_->setVisible(state.setup.way == CaptureWay::lab && state.counting() < state.setup.poses &&

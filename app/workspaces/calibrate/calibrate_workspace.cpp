@@ -1,12 +1,16 @@
 #include "app/workspaces/calibrate/calibrate_workspace.h"
 
 #include <QGuiApplication>
+#include <QHBoxLayout>
 #include <QScreen>
 #include <QStackedWidget>
+#include <QVBoxLayout>
 
 #include "app/studio/output/pattern_screen.h"
 #include "app/workspaces/calibrate/calibrate_commands.h"
 #include "app/workspaces/calibrate/calibrate_docks.h"
+#include "app/workspaces/calibrate/chain_docks.h"
+#include "app/workspaces/scene/segments.h"
 #include "core/base/error.h"
 
 namespace lumorph::studio {
@@ -60,8 +64,10 @@ CalibrateWorkspace::CalibrateWorkspace(Studio& studio)
     : studio_(studio), service_(studio.settings, studio.document, studio.jobs, studio.notices, displayOpener(studio),
                                 versionTaker(studio)),
       crosshairs_(studio.document, crosshairShower(studio),
-                  [&studio](const InstallationVersion& version) { return studio.room.takeVersion(version); }) {
-    addCalibrateCommands({studio_, service_, crosshairs_, selection_});
+                  [&studio](const InstallationVersion& version) { return studio.room.takeVersion(version); }),
+      chain_(studio.document, studio.loop, studio.jobs, studio.notices,
+             [&studio](InstallationVersion version) { return studio.room.takeVersion(std::move(version)); }) {
+    addCalibrateCommands(parts());
     connect(&service_, &CalibrationService::changed, this, [this] { setActive(active_); });
 }
 
@@ -70,21 +76,61 @@ QString CalibrateWorkspace::title() const { return "Calibrate"; }
 
 QWidget* CalibrateWorkspace::makeCentralView() {
     auto* views = new QStackedWidget;
-    views->addWidget(makeCalibrateView({studio_, service_, crosshairs_, selection_}));
-    views->addWidget(makeCrosshairView({studio_, service_, crosshairs_, selection_}));
+    views->addWidget(makeCalibrateView(parts()));
+    views->addWidget(makeCrosshairView(parts()));
     const auto follow = [this, views] {
         views->setCurrentIndex(service_.state().setup.way == CaptureWay::crosshairs ? 1 : 0);
     };
     connect(&service_, &CalibrationService::changed, views, follow);
     follow();
-    return views;
+    return makeSwitched(views, makeChainView(parts()));
 }
 
+CalibrateParts CalibrateWorkspace::parts() { return {studio_, service_, crosshairs_, chain_, selection_}; }
+
+/// One or the other, by what is looked at.
+QWidget* CalibrateWorkspace::makeSwitched(QWidget* single, QWidget* whole) {
+    auto* both = new QStackedWidget;
+    both->addWidget(single);
+    both->addWidget(whole);
+    const auto follow = [this, both] { both->setCurrentIndex(selection_.whole() ? 1 : 0); };
+    connect(&selection_, &CalibrateSelection::wholeChanged, both, follow);
+    follow();
+    return both;
+}
+
+namespace {
+
+/// What of both is seen, over what is switched.
+QWidget* withSwitch(CalibrateSelection& selection, QWidget* switched) {
+    auto* dock = new QWidget;
+    auto* column = new QVBoxLayout(dock);
+    column->setContentsMargins(0, 8, 0, 0);
+    column->setSpacing(8);
+    auto* segments = new Segments({{"calibrate.single", "Projector and camera", "Their sequence, step by step"},
+                                   {"calibrate.whole", "Whole chain", "From boxes to a calibrated show"}},
+                                  dock);
+    auto* row = new QHBoxLayout;
+    row->setContentsMargins(16, 0, 16, 0);
+    row->addWidget(segments);
+    column->addLayout(row);
+    column->addWidget(switched, 1);
+    QObject::connect(segments, &Segments::chosen, &selection,
+                     [&selection](int index) { selection.setWhole(index == 1); });
+    const auto follow = [segments, &selection] { segments->setChosen(selection.whole() ? 1 : 0); };
+    QObject::connect(&selection, &CalibrateSelection::wholeChanged, segments, follow);
+    follow();
+    return dock;
+}
+
+} // namespace
+
 std::vector<WorkspaceDock> CalibrateWorkspace::makeDocks() {
-    const CalibrateParts parts{studio_, service_, crosshairs_, selection_};
-    return {{"dock.calibrate.steps", "Steps", "check", makeStepsDock(parts), Qt::LeftDockWidgetArea, false},
-            {"dock.calibrate.result", "Result", "target", makeResultDock(parts), Qt::RightDockWidgetArea, false},
-            {"dock.calibrate.versions", "Versions", "clock", makeVersionsDock(parts), Qt::RightDockWidgetArea, true}};
+    QWidget* steps = withSwitch(selection_, makeSwitched(makeStepsDock(parts()), makeChainLinks(parts())));
+    QWidget* result = makeSwitched(makeResultDock(parts()), makeChainResult(parts()));
+    return {{"dock.calibrate.steps", "Steps", "check", steps, Qt::LeftDockWidgetArea, false},
+            {"dock.calibrate.result", "Result", "target", result, Qt::RightDockWidgetArea, false},
+            {"dock.calibrate.versions", "Versions", "clock", makeVersionsDock(parts()), Qt::RightDockWidgetArea, true}};
 }
 
 void CalibrateWorkspace::setActive(bool active) {

@@ -3,6 +3,7 @@
 #include <memory>
 
 #include "app/studio/calibration/calibration_service.h"
+#include "app/studio/calibration/chain_service.h"
 #include "app/studio/calibration/crosshair_service.h"
 #include "app/studio/shell/studio.h"
 #include "app/studio/shell/workspace.h"
@@ -10,7 +11,9 @@
 
 namespace lumorph::studio {
 
-/// The workspace "Calibrate": projector and camera, measured step by step.
+struct CalibrateParts;
+
+/// The workspace "Calibrate": projector and camera, measured step by step, and the whole chain after them.
 class CalibrateWorkspace : public Workspace {
     Q_OBJECT
 public:
@@ -27,10 +30,15 @@ public:
     [[nodiscard]] CalibrationService& service() noexcept { return service_; }
     [[nodiscard]] CrosshairService& crosshairs() noexcept { return crosshairs_; }
 
+    [[nodiscard]] ChainService& chain() noexcept { return chain_; }
+
 private:
+    [[nodiscard]] CalibrateParts parts();
+    [[nodiscard]] QWidget* makeSwitched(QWidget* single, QWidget* whole);
     Studio& studio_;
     CalibrationService service_;
     CrosshairService crosshairs_;
+    ChainService chain_;
     bool active_ = false;
     CalibrateSelection selection_;
 };

@@ -4,16 +4,15 @@
 #include <vector>
 
 #include <QDateTime>
-#include <QFrame>
 #include <QGridLayout>
 #include <QLabel>
 #include <QLocale>
 #include <QVBoxLayout>
 
 #include "app/studio/widgets/dock_parts.h"
-#include "app/studio/widgets/icon_label.h"
 #include "app/studio/widgets/panel.h"
 #include "app/workspaces/calibrate/calibrate_docks.h"
+#include "app/workspaces/calibrate/finding_card.h"
 #include "app/workspaces/calibrate/residual_plots.h"
 #include "app/workspaces/scene/segments.h"
 
@@ -22,34 +21,6 @@ namespace {
 
 QString plusMinus(double value, double sigma, int decimals) {
     return QString("%1 ± %2 px").arg(value, 0, 'f', decimals).arg(sigma, 0, 'f', decimals + (sigma < 1.0 ? 1 : 0));
-}
-
-/// One finding as a plate: what, where, and what to do.
-QWidget* makeFinding(const Finding& finding, bool refusal, QWidget* parent) {
-    const FindingWords words = wordsOf(finding);
-    auto* card = new QFrame(parent);
-    card->setProperty("look", "card");
-    auto* row = new QHBoxLayout(card);
-    row->setContentsMargins(12, 8, 12, 8);
-    row->setSpacing(8);
-    row->addWidget(
-        new IconLabel(refusal ? "error" : "warning", refusal ? IconRole::danger : IconRole::warning, 20, card), 0,
-        Qt::AlignTop);
-    auto* texts = new QVBoxLayout;
-    texts->setSpacing(2);
-    const std::pair<QString, const char*> lines[] = {
-        {words.title, "heading"}, {words.text, ""}, {words.remedy, "muted"}};
-    for (const auto& [line, look] : lines) {
-        if (line.isEmpty()) continue;
-        auto* label = new QLabel(line, card);
-        label->setTextFormat(Qt::PlainText);
-        label->setProperty("look", look);
-        label->setWordWrap(true);
-        label->setTextInteractionFlags(Qt::TextSelectableByMouse);
-        texts->addWidget(label);
-    }
-    row->addLayout(texts, 1);
-    return card;
 }
 
 class ResultDock : public QWidget {
@@ -200,7 +171,7 @@ private:
                 delete item;
             }
             for (const auto& [finding, refusal] : findings)
-                findings_->layout()->addWidget(makeFinding(finding, refusal, findings_));
+                findings_->layout()->addWidget(makeFindingCard(wordsOf(finding), refusal, findings_));
         }
         figures_->setVisible(state.result != nullptr);
         plots_->setVisible(state.result != nullptr);

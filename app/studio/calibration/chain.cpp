@@ -1,0 +1,106 @@
+#include "app/studio/calibration/chain.h"
+
+#include <algorithm>
+
+#include <QCoreApplication>
+#include <QDateTime>
+#include <QLocale>
+
+namespace lumorph::studio {
+namespace {
+
+QString tr(const char* text) { return QCoreApplication::translate("Chain", text); }
+
+std::size_t placeOf(LinkId id) {
+    const auto& links = chainLinks();
+    return static_cast<std::size_t>(std::ranges::find(links, id, &ChainLink::id) - links.begin());
+}
+
+QString dateText(const std::string& date) {
+    const QDateTime time = QDateTime::fromString(QString::fromStdString(date), Qt::ISODate).toLocalTime();
+    return time.isValid() ? QLocale::c().toString(time, "d MMMM, hh:mm") : QString();
+}
+
+QString measuredText(const Origin& origin) {
+    const QString method = QString::fromStdString(origin.method), date = dateText(origin.date);
+    if (method.isEmpty()) return date;
+    return date.isEmpty() ? method : method + ", " + date;
+}
+
+/// Alone, whatever those before it are.
+LinkStand ownStand(const ChainLink& link, const Installation& room, const std::string& checked) {
+    if (link.origin == nullptr)
+        return checked.empty() ? LinkStand{LinkStand::How::open, {}}
+                               : LinkStand{LinkStand::How::measured, tr("still good, %1").arg(dateText(checked))};
+    const Origin* origin = link.origin(room);
+    if (origin == nullptr || origin->way == Origin::Way::assumed) return {};
+    if (origin->way == Origin::Way::entered) return {LinkStand::How::entered, tr("entered by hand")};
+    return {LinkStand::How::measured, measuredText(*origin)};
+}
+
+std::string dateOf(const ChainLink& link, const Installation& room, const std::string& checked) {
+    if (link.origin == nullptr) return checked;
+    const Origin* origin = link.origin(room);
+    return origin && origin->way == Origin::Way::measured ? origin->date : std::string();
+}
+
+} // namespace
+
+std::vector<LinkStand> standsOf(const Installation& room, const std::string& checked) {
+    const auto& links = chainLinks();
+    std::vector<LinkStand> stands;
+    for (const ChainLink& link : links) {
+        LinkStand stand = ownStand(link, room, checked);
+        for (const LinkId need : link.needs) {
+            const std::size_t place = placeOf(need);
+            const LinkStand::How before = stands[place].how;
+            if (stand.how == LinkStand::How::open &&
+                (before == LinkStand::How::open || before == LinkStand::How::waits)) {
+                stand = {LinkStand::How::waits, tr("after %1").arg(links[place].title.toLower())};
+                break;
+            }
+            // Dates of one form are in the order of their texts.
+            if (stand.how == LinkStand::How::measured &&
+                dateOf(links[place], room, checked) > dateOf(link, room, checked)) {
+                stand = {LinkStand::How::stale, tr("%1 was measured after it").arg(links[place].title)};
+                break;
+            }
+        }
+        stands.push_back(std::move(stand));
+    }
+    return stands;
+}
+
+std::optional<std::size_t> nextLink(const std::vector<LinkStand>& stands) {
+    const auto wanted = [](const LinkStand& stand) {
+        return stand.how == LinkStand::How::open || stand.how == LinkStand::How::stale;
+    };
+    const auto found = std::ranges::find_if(stands, wanted);
+    if (found == stands.end()) return std::nullopt;
+    return static_cast<std::size_t>(found - stands.begin());
+}
+
+InstallationVersion versionOf(const ChainLink& link, const LinkOutcome& outcome, const Installation& room) {
+    InstallationVersion version;
+    version.title = link.title.toStdString();
+    for (const LinkFigure& figure : outcome.figures)
+        version.inputs.push_back((figure.name + ": " + figure.value).toStdString());
+    double worst = -1.0;
+    for (const LinkPoint& point : outcome.points)
+        if (point.isFresh) worst = std::max(worst, point.millimetres);
+    if (worst >= 0.0) version.figures.push_back({"worst fresh point", worst, "mm"});
+    version.installation = room;
+    link.apply(*outcome.installation, version.installation);
+    const Origin* origin = link.origin ? link.origin(version.installation) : nullptr;
+    if (origin) version.date = origin->date;
+    return version;
+}
+
+bool isUsed(const ChainLink& link, const LinkOutcome& outcome, const Installation& room) {
+    if (!outcome.installation) return outcome.isGood;
+    Installation with = room;
+    link.apply(*outcome.installation, with);
+    return with == room;
+}
+
+} // namespace lumorph::studio

@@ -1,0 +1,81 @@
+#pragma once
+
+#include <functional>
+#include <map>
+#include <optional>
+
+#include <QObject>
+
+#include "app/studio/calibration/chain.h"
+#include "app/studio/document/job_slots.h"
+#include "app/studio/document/studio_document.h"
+#include "app/studio/document/studio_loop.h"
+
+namespace lumorph::studio {
+
+/// Where the whole chain stands: a plain value.
+struct ChainState {
+    std::vector<LinkStand> stands; ///< by links
+    std::size_t chosen = 0;
+    std::optional<std::size_t> running; ///< link that is measured now
+    double fraction = 0.0;              ///< of that; negative: nobody knows
+    QString stage;
+    std::map<std::size_t, LinkOutcome> outcomes; ///< measured, by links; one that is used stays to be read
+    std::map<std::size_t, QString> troubles;     ///< why a measurement came to nothing
+    bool goesOn = false;                         ///< the rest follows by itself
+};
+
+/// The one thing that is to be done with the chosen link.
+struct ChainStep {
+    enum class Do { nothing, sequence, measure, use, cancel, goOn };
+    enum class Tone { quiet, live, good, warning, failure };
+    Do what = Do::nothing;
+    Tone tone = Tone::quiet;
+    QString title, text, button;
+    bool operator==(const ChainStep&) const = default;
+};
+[[nodiscard]] ChainStep stepOf(const ChainState& state);
+
+/// Measures the links of the chain in the virtual lab, one at a time, as jobs. What was measured is shown first and
+/// used when one says so: a step of undo, and a version. Lives in the window's thread.
+class ChainService : public QObject {
+    Q_OBJECT
+public:
+    /// Puts a measured installation into the document, as a step of undo and a version; false where that failed.
+    using VersionTaker = std::function<bool(InstallationVersion version)>;
+    /// STOP of the loop ends what is measured.
+    ChainService(StudioDocument& document, StudioLoop& loop, Jobs& jobs, Notices& notices, VersionTaker take);
+
+    [[nodiscard]] const ChainState& state() const noexcept { return state_; }
+    void choose(std::size_t link);
+    /// Does what `stepOf` says; a sequence of its own is the window's: nothing happens.
+    void doNext();
+    void measure();
+    /// All that is open or stale, in turn, each used when it is good; ends with the first that is not.
+    void measureRest();
+    void use();
+    void cancel();
+
+signals:
+    void changed();
+
+private:
+    void begin(std::size_t link);
+    void take(std::size_t link, LinkOutcome outcome);
+    bool useOf(std::size_t link);
+    void goOn();
+    void follow();
+    [[nodiscard]] const Installation& truth(const Rig& rig);
+
+    StudioDocument& document_;
+    StudioLoop& loop_;
+    VersionTaker take_;
+    JobSlots jobs_;
+    ChainState state_;
+    std::string checked_;                ///< date of the last check that found all well
+    std::optional<Installation> truth_;  ///< of the lab, the same for as long as the studio runs
+    std::shared_ptr<const Rig> truthOf_; ///< that it was made for
+    std::uint32_t seed_ = 1;             ///< another for each measurement
+};
+
+} // namespace lumorph::studio

@@ -1,0 +1,289 @@
+#include <QFrame>
+#include <QHBoxLayout>
+#include <QLabel>
+#include <QProgressBar>
+#include <QPushButton>
+#include <QScrollArea>
+#include <QVBoxLayout>
+
+#include "app/studio/calibration/chain_service.h"
+#include "app/studio/widgets/dock_parts.h"
+#include "app/studio/widgets/icon_label.h"
+#include "app/studio/widgets/panel.h"
+#include "app/workspaces/calibrate/chain_docks.h"
+#include "app/workspaces/calibrate/finding_card.h"
+#include "app/workspaces/common/step_card.h"
+
+namespace lumorph::studio {
+namespace {
+
+using How = LinkStand::How;
+
+struct StandLook {
+    QString icon;
+    IconRole role;
+    QString word;
+};
+
+StandLook lookOf(const ChainState& state, std::size_t link) {
+    if (state.running == link) return {"clock", IconRole::accent, "Running"};
+    if (state.troubles.contains(link)) return {"error", IconRole::danger, "Refused"};
+    if (const auto found = state.outcomes.find(link); found != state.outcomes.end() && !found->second.isUsed)
+        return found->second.isGood ? StandLook{"hand", IconRole::accent, "To be used"}
+                                    : StandLook{"warning", IconRole::warning, "Needs you"};
+    switch (state.stands[link].how) {
+    case How::measured:
+        return {"check", IconRole::accent, "Measured"};
+    case How::entered:
+        return {"check", IconRole::muted, "By hand"};
+    case How::stale:
+        return {"warning", IconRole::warning, "Again"};
+    case How::waits:
+        return {"minus", IconRole::muted, "Later"};
+    case How::open:
+        break;
+    }
+    const bool next = nextLink(state.stands) == link;
+    return {next ? "hand" : "minus", next ? IconRole::accent : IconRole::muted, next ? "Next" : "Open"};
+}
+
+/// One link as a button: number, title, where it stands, and why.
+class LinkRow : public QPushButton {
+public:
+    LinkRow(std::size_t link, QWidget* parent)
+        : QPushButton(parent), link_(link), icon_(new IconLabel("minus", IconRole::muted, 20, this)),
+          title_(new QLabel(this)), how_(new QLabel(this)), words_(new QLabel(this)) {
+        const ChainLink& shown = chainLinks()[link];
+        setObjectName(QString("chain.link.") + shown.key);
+        setProperty("look", "row");
+        setCheckable(true);
+        setAutoExclusive(true);
+        title_->setText(QString("%1  %2").arg(link + 1).arg(shown.title));
+        title_->setProperty("look", "heading");
+        how_->setProperty("look", "badge");
+        how_->setObjectName(objectName() + ".how");
+        words_->setProperty("look", "muted");
+        words_->setWordWrap(true);
+        for (QLabel* label : {title_, how_, words_}) label->setAttribute(Qt::WA_TransparentForMouseEvents);
+        auto* top = new QHBoxLayout;
+        top->addWidget(title_);
+        top->addStretch(1);
+        top->addWidget(how_);
+        auto* texts = new QVBoxLayout;
+        texts->setSpacing(2);
+        texts->addLayout(top);
+        texts->addWidget(words_);
+        auto* row = new QHBoxLayout(this);
+        row->setContentsMargins(8, 6, 8, 6);
+        row->setSpacing(8);
+        row->addWidget(icon_, 0, Qt::AlignTop);
+        row->addLayout(texts, 1);
+        setSizePolicy(QSizePolicy::Preferred, QSizePolicy::Minimum);
+    }
+    void show(const ChainState& state) {
+        const StandLook look = lookOf(state, link_);
+        const ChainLink& shown = chainLinks()[link_];
+        icon_->setIcon(look.icon, look.role);
+        how_->setText(look.word);
+        const QString words = state.stands[link_].words;
+        words_->setText(words.isEmpty() ? shown.purpose : words.left(1).toUpper() + words.mid(1));
+        setChecked(state.chosen == link_);
+        setAccessibleName(QString("Step %1, %2: %3").arg(link_ + 1).arg(shown.title, look.word));
+    }
+    [[nodiscard]] QSize sizeHint() const override { return layout()->sizeHint(); }
+    [[nodiscard]] QSize minimumSizeHint() const override { return layout()->minimumSize(); }
+
+private:
+    std::size_t link_;
+    IconLabel* icon_;
+    QLabel *title_, *how_, *words_;
+};
+
+class ChainLinks : public QWidget {
+public:
+    explicit ChainLinks(const CalibrateParts& parts) : parts_(parts) {
+        auto* whole = new QVBoxLayout(this);
+        whole->setContentsMargins(0, 0, 0, 0);
+        const Column column = makeColumn(this);
+        whole->addWidget(column.widget);
+        for (std::size_t k = 0; k < chainLinks().size(); ++k) {
+            auto* row = new LinkRow(k, this);
+            connect(row, &QPushButton::clicked, this, [this, k] { parts_.chain.choose(k); });
+            rows_.push_back(row);
+            column.layout->addWidget(row);
+        }
+        rest_ = makeCommandButton(parts.studio.commands.find("calibrate.chain.rest"), "chain.rest", this);
+        column.layout->addWidget(rest_);
+        column.layout->addStretch(1);
+        connect(&parts.chain, &ChainService::changed, this, [this] { refresh(); });
+        refresh();
+    }
+
+private:
+    void refresh() {
+        for (LinkRow* row : rows_) row->show(parts_.chain.state());
+    }
+
+    CalibrateParts parts_;
+    std::vector<LinkRow*> rows_;
+    QPushButton* rest_ = nullptr;
+};
+
+QLabel* makeText(const QString& name, const char* look, QWidget* parent) {
+    auto* label = new QLabel(parent);
+    label->setObjectName(name);
+    label->setProperty("look", look);
+    label->setWordWrap(true);
+    label->setTextFormat(Qt::PlainText);
+    return label;
+}
+
+StepCardText cardOf(const ChainStep& step) {
+    return {static_cast<StepCardText::Tone>(static_cast<int>(step.tone)), step.title, step.text, step.button,
+            step.what == ChainStep::Do::cancel};
+}
+
+/// The chosen link: its next step, what will happen, and what it came to.
+class ChainView : public QWidget {
+public:
+    explicit ChainView(const CalibrateParts& parts)
+        : parts_(parts), card_(new StepCard("chain.card", "target", this)), progress_(new QProgressBar(this)),
+          warning_(makeText("chain.warning", "", this)), how_(makeText("chain.how", "", this)),
+          points_(new PointBars(this)) {
+        setObjectName("chain.view");
+        setProperty("look", "panel");
+        setAttribute(Qt::WA_StyledBackground);
+        auto* column = new QVBoxLayout(this);
+        column->setContentsMargins(16, 8, 16, 8);
+        column->setSpacing(12);
+        column->addWidget(card_);
+        progress_->setObjectName("chain.progress");
+        progress_->setTextVisible(false);
+        QSizePolicy keeps = progress_->sizePolicy();
+        keeps.setRetainSizeWhenHidden(true);
+        progress_->setSizePolicy(keeps);
+        column->addWidget(progress_);
+        const Column page = makeColumn(this);
+        column->addWidget(page.widget, 1);
+        makeLarge(warning_, 30, {});
+        warning_->setAlignment(Qt::AlignCenter);
+        warning_->setMinimumHeight(90);
+        page.layout->addWidget(warning_);
+        heading_ = makeHeading("What happens", this);
+        page.layout->addWidget(heading_);
+        page.layout->addWidget(how_);
+        points_->setMaximumWidth(900);
+        pointsHeading_ = makeHeading("How far points lie beside", this);
+        page.layout->addWidget(pointsHeading_);
+        page.layout->addWidget(points_);
+        page.layout->addStretch(1);
+        connect(card_, &StepCard::nextWanted, parts.studio.commands.find("calibrate.next"), &QAction::trigger);
+        connect(&parts.chain, &ChainService::changed, this, [this] { refresh(); });
+        refresh();
+    }
+
+private:
+    void refresh() {
+        const ChainState& state = parts_.chain.state();
+        const ChainLink& link = chainLinks()[state.chosen];
+        card_->show(cardOf(stepOf(state)));
+        progress_->setVisible(state.running.has_value());
+        progress_->setRange(0, state.fraction < 0.0 ? 0 : 1000);
+        progress_->setValue(static_cast<int>(1000.0 * state.fraction));
+        const bool runs = state.running == state.chosen;
+        warning_->setText(link.warning);
+        warning_->setVisible(!link.warning.isEmpty() && (runs || !state.outcomes.contains(state.chosen)));
+        QString text;
+        for (std::size_t k = 0; k < link.how.size(); ++k)
+            text += QString("%1%2.  %3").arg(k == 0 ? "" : "\n").arg(k + 1).arg(link.how[k]);
+        how_->setText(text);
+        const auto found = state.outcomes.find(state.chosen);
+        const std::vector<LinkPoint> points =
+            found == state.outcomes.end() ? std::vector<LinkPoint>() : found->second.points;
+        pointsHeading_->setVisible(!points.empty());
+        points_->setVisible(!points.empty());
+        points_->show(points);
+    }
+
+    CalibrateParts parts_;
+    StepCard* card_;
+    QProgressBar* progress_;
+    QLabel *warning_, *how_;
+    QWidget* heading_ = nullptr;
+    QWidget* pointsHeading_ = nullptr;
+    PointBars* points_;
+};
+
+/// Figures and findings of the chosen link.
+class ChainResult : public QWidget {
+public:
+    explicit ChainResult(const CalibrateParts& parts) : parts_(parts) {
+        auto* whole = new QVBoxLayout(this);
+        whole->setContentsMargins(0, 0, 0, 0);
+        empty_ = makeEmptyState("target", "Not measured yet",
+                                "What a measurement came to is told here, with the points that the fit never saw.",
+                                nullptr, this);
+        whole->addWidget(empty_);
+        const Column column = makeColumn(this);
+        page_ = column.widget;
+        list_ = column.layout;
+        whole->addWidget(page_);
+        connect(&parts.chain, &ChainService::changed, this, [this] { refresh(); });
+        refresh();
+    }
+
+private:
+    void refresh() {
+        const ChainState& state = parts_.chain.state();
+        const auto found = state.outcomes.find(state.chosen);
+        const bool any = found != state.outcomes.end();
+        empty_->setVisible(!any);
+        page_->setVisible(any);
+        while (QLayoutItem* old = list_->takeAt(0)) {
+            if (old->widget()) {
+                old->widget()->hide();
+                old->widget()->deleteLater();
+            }
+            delete old;
+        }
+        if (!any) return;
+        const LinkOutcome& outcome = found->second;
+        list_->addWidget(makeHeading(chainLinks()[state.chosen].title, page_));
+        for (const FindingWords& words : outcome.findings)
+            list_->addWidget(makeFindingCard(words, !outcome.isGood, page_));
+        for (const LinkFigure& figure : outcome.figures) list_->addWidget(makeFigure(figure));
+        list_->addStretch(1);
+    }
+
+    QWidget* makeFigure(const LinkFigure& figure) {
+        auto* plate = new QWidget(page_);
+        auto* column = new QVBoxLayout(plate);
+        column->setContentsMargins(0, 4, 0, 4);
+        column->setSpacing(0);
+        auto* value = new QLabel(figure.value, plate);
+        value->setObjectName("chain.figure." + figure.name);
+        value->setAccessibleName(figure.name);
+        makeLarge(value, 20, {});
+        if (!figure.isGood) value->setProperty("look", "warning");
+        value->setTextInteractionFlags(Qt::TextSelectableByMouse);
+        value->setWordWrap(true);
+        auto* name = new QLabel(figure.name, plate);
+        name->setProperty("look", "muted");
+        column->addWidget(value);
+        column->addWidget(name);
+        return plate;
+    }
+
+    CalibrateParts parts_;
+    QWidget* empty_;
+    QWidget* page_ = nullptr;
+    QVBoxLayout* list_ = nullptr;
+};
+
+} // namespace
+
+QWidget* makeChainLinks(const CalibrateParts& parts) { return new ChainLinks(parts); }
+QWidget* makeChainView(const CalibrateParts& parts) { return new ChainView(parts); }
+QWidget* makeChainResult(const CalibrateParts& parts) { return new ChainResult(parts); }
+
+} // namespace lumorph::studio
