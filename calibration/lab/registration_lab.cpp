@@ -226,6 +226,7 @@ Registration measureAllInLab(const Rig& rig, const Installation& believed, const
     progress.throwIfCancelled();
     JointCapture capture;
     capture.pivotTip = glm::dvec3(pointer.installation.pointerTip);
+    capture.pivotSigma = glm::dvec3(pointer.shiftSigma / std::sqrt(3.0));
     capture.dots = captureDotsInLab(rig, believed, truth, seed, options);
     const Registration tracker = registerTracker(capture.dots, pointer.installation, progress.part(0.2, 0.4));
     if (!tracker.good()) return refusedAs(tracker);

@@ -175,7 +175,7 @@ Alignment TrackerLab::align(const std::string& name, const glm::dvec3& mark, con
     const glm::dvec3 aim = dice(hands_.aimPixels / kEyeFocal), phase = dice(3.0);
     const glm::dvec3 aside = glm::normalize(glm::cross(mark - eye, glm::dvec3(0.0, 1.0, 0.0)));
     const glm::dvec3 upwards = glm::normalize(glm::cross(aside, mark - eye));
-    const double share = 0.55 + 0.08 * uniform(engine_);
+    const double share = 0.38 + 0.05 * uniform(engine_);
     const glm::dvec3 eyeFromHead(truth_.eyeFromHead);
     const double tremor = 1e-3 * hands_.tremorMillimetres;
     // The eye sways by a millimetre or two, and the hand follows what it sees.

@@ -53,10 +53,10 @@ public:
     [[nodiscard]] Touch touchDot(const std::string& name, const glm::dvec3& place);
     [[nodiscard]] Touch touchDimple(const std::string& name, const glm::dvec3& place);
     [[nodiscard]] Touch touchDevice(const std::string& name, const glm::dvec3& onModel);
-    /// The tip held between a mark and the eye, which is at `eye`; the head is turned about the way that it looks by up
-    /// to so many degrees.
+    /// The tip held between the eye, which is at `eye`, and a mark, a good third of the way; the head is turned about
+    /// the way that it looks by up to so many degrees.
     [[nodiscard]] Alignment align(const std::string& name, const glm::dvec3& mark, const glm::dvec3& eye,
-                                  double turnDegrees = 12.0);
+                                  double turnDegrees = 18.0);
     /// The device's body at rest.
     [[nodiscard]] PoseTrack recordDevice(double seconds);
 

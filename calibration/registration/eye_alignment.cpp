@@ -54,7 +54,7 @@ void checkLines(const std::vector<Line>& lines) {
                              "the tip was held " + number(1000.0 * length, 0) +
                                  " mm from its marks: too near to tell "
                                  "a direction",
-                             "hold it half-way between mark and eye");
+                             "hold it a good third of the way from the eye to the mark");
     double squares = 0.0;
     for (const Line& line : lines)
         squares += std::pow(std::acos(std::clamp(glm::dot(line.direction, glm::normalize(mean)), -1.0, 1.0)), 2);

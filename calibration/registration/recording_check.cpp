@@ -163,6 +163,9 @@ const std::array kFaults{
                  [](const glm::dvec3& p) { return glm::dvec3(p.x, p.y, -p.z); }},
     CaptureFault{Cause::mirrored, kLeftHanded, kTurnRight, mirroredAlongX, same},
     CaptureFault{Cause::mirrored, kLeftHanded, kTurnRight, mirroredAlongY, same},
+    CaptureFault{Cause::bodySwapped, "it fits if pointer and body are each other: the tracker takes one for the other",
+                 "give the tracker's bodies their names again, and let their markers differ",
+                 [](const Pose& p) { return p; }, same, true},
 };
 
 } // namespace

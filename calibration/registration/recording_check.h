@@ -22,8 +22,9 @@ struct CaptureFault {
     const char* remedy = "";
     Pose (*pose)(const Pose&) = nullptr;              ///< as it were without the fault
     glm::dvec3 (*point)(const glm::dvec3&) = nullptr; ///< likewise a point in a body's frame
+    bool exchanged = false;                           ///< the pointer is the body, and the body the pointer
 };
-/// Left-handed worlds, centimetres and millimetres.
+/// Left-handed worlds, centimetres and millimetres, two bodies taken for one another all the time.
 [[nodiscard]] std::span<const CaptureFault> captureFaults();
 
 [[nodiscard]] PoseTrack withoutFault(PoseTrack track, const CaptureFault& fault);

@@ -247,8 +247,7 @@ void solveJointly(const JointCapture& capture, const Progress& progress, Registr
     const DotRows dots = rowsOf(capture.dots.dots, room, start.tip, capture.dots.tableHeight);
     const LandmarkRows landmarks = rowsOf(capture.landmarks.touches, start.tip);
     const SightRows sights = rowsOf(capture.eye.alignments, start.tip);
-    const registration::Rows rows{dots.rows, landmarks.rows, sights.rows,
-                                  TipRow{capture.pivotTip, capture.dots.tipSigma}};
+    const registration::Rows rows{dots.rows, landmarks.rows, sights.rows, TipRow{capture.pivotTip, capture.pivotSigma}};
     const registration::Refined refined = registration::refine(rows, start, {true, true, true, true}, progress);
     result.turnSigma = refined.sigmas.trackerTurn;
     result.shiftSigma = refined.sigmas.trackerShift;

@@ -44,7 +44,7 @@ struct PointerCapture {
 struct DotCapture {
     std::vector<TouchedDot> dots, fresh;
     std::optional<double> tableHeight = 0.0; ///< of the plane on which they lie; empty: unknown
-    glm::dvec3 tipSigma{0.0005};             ///< metres: how well the installation's tip is known
+    glm::dvec3 tipSigma{0.0002};             ///< metres: how well the installation's tip is known
 };
 [[nodiscard]] Registration registerTracker(const DotCapture& capture, const Installation& believed,
                                            const Progress& progress = {});
@@ -68,7 +68,7 @@ struct BoardCapture {
 /// Points of the device's model that a pointer touches.
 struct LandmarkCapture {
     std::vector<TouchedLandmark> touches, fresh;
-    glm::dvec3 tipSigma{0.0005}; ///< metres
+    glm::dvec3 tipSigma{0.0002}; ///< metres
 };
 [[nodiscard]] Registration registerDevice(const LandmarkCapture& capture, const Installation& believed,
                                           const Progress& progress = {});
@@ -104,7 +104,7 @@ struct JointCapture {
     DotCapture dots;
     LandmarkCapture landmarks;
     EyeCapture eye;
-    glm::dvec3 pivotTip{0.0}; ///< of the swings, metres
+    glm::dvec3 pivotTip{0.0}, pivotSigma{0.0002}; ///< of the swings, metres
 };
 [[nodiscard]] Registration registerJointly(const JointCapture& capture, const Installation& believed,
                                            const Progress& progress = {});

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include <glm/geometric.hpp>
 
@@ -108,6 +109,7 @@ Touch withoutFault(const Touch& touch, const CaptureFault* fault) {
     if (!fault) return touch;
     Touch right{touch.name, withoutFault(touch.pointer, *fault), std::nullopt};
     if (touch.body) right.body = withoutFault(*touch.body, *fault);
+    if (right.body && fault->exchanged) std::swap(right.pointer, *right.body);
     return right;
 }
 

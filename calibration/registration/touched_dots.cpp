@@ -23,10 +23,11 @@ constexpr const char* kDots = "points between tracker and room";
 constexpr double kDotSigma = 0.0007;   ///< metres: how well a visitor meets a dot
 constexpr double kMarkerSigma = 0.001; ///< metres
 constexpr std::size_t kFewest = 4, kFewestWithoutTable = 6;
-constexpr double kShortest = 0.12; ///< metres between the two that are farthest apart
-constexpr double kAstray = 0.005;  ///< metres by which a single point errs too much
-constexpr double kOpen = 0.003;    ///< metres of sigma: more says nothing
-constexpr double kLongTip = 0.03;  ///< metres from which on a pointer shows on which side it stands
+constexpr double kShortest = 0.12;                      ///< metres between the two that are farthest apart
+constexpr double kAstray = 0.005;                       ///< metres by which a single point errs too much
+constexpr double kOpen = 0.003;                         ///< metres of sigma: more says nothing
+constexpr double kLoose = 0.25 * registration::kDegree; ///< of sigma: more shows at the height of a head
+constexpr double kLongTip = 0.03; ///< metres from which on a pointer shows on which side it stands
 
 void checkNumber(std::size_t count, std::size_t fewest, const char* more) {
     if (count < fewest)
@@ -137,6 +138,13 @@ void judge(TrackerPlace& place, const DotRows& dots) {
         registration::refuse(Cause::pointsDegenerate, kDots,
                              "they leave the place open by " + number(1000.0 * place.shiftSigma, 1) + " mm",
                              "add points farther apart, at several heights, or say how high the table is");
+    if (place.turnSigma > kLoose)
+        place.warnings.push_back({Cause::pointsDegenerate,
+                                  kDots,
+                                  {},
+                                  "they leave its turn open by " + number(place.turnSigma / registration::kDegree, 1) +
+                                      " degrees, which shows above the table",
+                                  "also touch dots that fall on a box, or say how high the table is"});
 }
 
 } // namespace

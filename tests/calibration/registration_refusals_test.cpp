@@ -268,6 +268,20 @@ TEST(RegistrationRefusals, EveryFaultOfATrackerIsNamedInEveryStep) {
     }
 }
 
+TEST(RegistrationRefusals, APointerThatIsTakenForTheBodyIsNamed) {
+    const KnownRoom room(8);
+    LandmarkCapture touches = captureLandmarksInLab(device(), room.truth, 8);
+    for (TouchedLandmark& at : touches.touches) std::swap(at.touch.pointer, *at.touch.body);
+    for (TouchedLandmark& at : touches.fresh) std::swap(at.touch.pointer, *at.touch.body);
+    expectRefused(registerDevice(touches, room.known), Cause::bodySwapped, "names again", room.known,
+                  "device and pointer exchanged");
+    EyeCapture sights = captureEyeInLab(device(), room.known, room.truth, 8);
+    for (Alignment& at : sights.alignments) std::swap(at.touch.pointer, *at.touch.body);
+    for (Alignment& at : sights.fresh) std::swap(at.touch.pointer, *at.touch.body);
+    expectRefused(registerEye(sights, room.known), Cause::bodySwapped, "names again", room.known,
+                  "head and pointer exchanged");
+}
+
 TEST(RegistrationRefusals, DoubledRowsAreLeftOutAndSaid) {
     const KnownRoom room(7);
     RegistrationLabOptions options;
