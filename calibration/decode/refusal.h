@@ -50,10 +50,13 @@ enum class Cause {
     bodySwapped,        ///< "body_swapped": a tracked body is elsewhere for a while
     tipSlipped,         ///< "tip_slipped": a pointer's tip left its dimple
     tipWrong,           ///< "tip_wrong": the pointer's tip is elsewhere than was said
+    trackerLost,        ///< "tracker_lost": the tracker saw a body no more while it was recorded
+    notANumber,         ///< "not_a_number": a recording holds numbers that are none
+    freshPointsFar,     ///< "fresh_points_far": points that a fit never saw contradict it
 };
 
 /// All of them, in the order above.
-inline constexpr int kCauseCount = static_cast<int>(Cause::tipWrong) + 1;
+inline constexpr int kCauseCount = static_cast<int>(Cause::freshPointsFar) + 1;
 
 [[nodiscard]] std::string_view keyOf(Cause cause);
 /// The cause of a key; empty where there is none.

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include <Eigen/Dense>
 #include <glm/geometric.hpp>
 
 #include "calibration/registration/clock_offset.h"
+#include "calibration/registration/hand_eye_closed.h"
 #include "calibration/registration/hand_eye_fit.h"
 #include "calibration/registration/refusing.h"
 #include "core/base/statistics.h"
@@ -15,203 +15,19 @@ namespace lumorph {
 
 namespace {
 
-using registration::eigen;
 using registration::kDegree;
 using registration::number;
 
-constexpr const char* kBodies = "recordings of two bodies";
-
 using hand_eye::Deviation;
 using hand_eye::Fit;
+using hand_eye::kBodies;
 using hand_eye::Place;
 using hand_eye::Range;
 using hand_eye::Unknowns;
 
-constexpr double kLeastCorrelation = 0.5;      ///< of angular speeds: below, they are of two bodies
-constexpr double kLeastTurn = 8.0 * kDegree;   ///< spread of relative turns about the axis of most
-constexpr double kLeastAcross = 5.0 * kDegree; ///< and about the second
-constexpr std::size_t kMostPairs = 6000;
-constexpr double kJump = 0.05;     ///< seconds by which a clock that runs evenly does not err
-constexpr std::size_t kBlocks = 8; ///< of the recording, for sigmas
-
-/// Poses of both at the same moments.
-struct Both {
-    Pose a, b;
-};
-
-std::vector<Both> together(const PoseTrack& a, const PoseTrack& b, double timeOffset) {
-    std::vector<Both> both;
-    for (const TimedPose& pose : b.poses)
-        if (const auto at = poseAt(a, pose.seconds - timeOffset)) both.push_back({*at, pose.pose});
-    return both;
-}
-
-/// Relative motions of both between two moments: X A = B X.
-struct Motion {
-    Pose a, b;
-    glm::dvec3 turnA{0.0}, turnB{0.0};
-};
-
-/// Pairs of moments at many distances in time, which turn enough to tell something.
-std::vector<Motion> motionsOf(const std::vector<Both>& both) {
-    std::vector<Motion> motions;
-    const std::size_t n = both.size();
-    const std::size_t stride = std::max<std::size_t>(1, n * 10 / kMostPairs);
-    for (std::size_t i = 0; i < n; i += stride)
-        for (std::size_t k = 1; k <= 10; ++k) {
-            const std::size_t j = i + std::max<std::size_t>(k, k * k * n / 200);
-            if (j >= n) break;
-            Motion m;
-            m.a = inverseOf(both[i].a) * both[j].a;
-            m.b = inverseOf(both[i].b) * both[j].b;
-            m.turnA = turnOf(m.a.rotation);
-            m.turnB = turnOf(m.b.rotation);
-            if (glm::length(m.turnA) < 3.0) motions.push_back(m); // near a half turn the axis may be either
-        }
-    return motions;
-}
-
-/// Turning about one axis alone tells neither the other angle nor the place along it.
-void checkTurns(const std::vector<Motion>& motions, const std::vector<Both>& both) {
-    Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
-    for (const Motion& m : motions) spread += eigen(m.turnA) * eigen(m.turnA).transpose();
-    spread /= std::max<double>(1.0, double(motions.size()));
-    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(spread);
-    const double most = std::sqrt(std::max(0.0, axes.eigenvalues()[2]));
-    const double second = std::sqrt(std::max(0.0, axes.eigenvalues()[1]));
-    if (most < kLeastTurn)
-        registration::refuse(Cause::motionDegenerate, kBodies,
-                             "the bodies hardly turned, " + number(most / kDegree, 1) + " degrees",
-                             "turn them by 30 degrees and more about two axes, not only move them");
-    if (second >= kLeastAcross) return;
-    // Named in the world of A where it is upright or lies; worlds of ours have Y up.
-    glm::dvec3 axis(axes.eigenvectors()(0, 2), axes.eigenvectors()(1, 2), axes.eigenvectors()(2, 2));
-    axis = both.front().a.rotation * axis;
-    const bool upright = std::abs(axis.y) > 0.94;
-    registration::refuse(Cause::motionDegenerate, kBodies,
-                         "the bodies turned about one axis alone, (" + number(axis.x, 2) + ", " + number(axis.y, 2) +
-                             ", " + number(axis.z, 2) + ") in the world of the first" +
-                             (upright ? ", which is upright" : ""),
-                         upright ? "also tilt them forwards and sideways by 20 degrees and more"
-                                 : "also turn them about the vertical axis by 30 degrees and more");
-}
-
-/// Motions whose turns have the same angle: only those can be of one body.
-std::vector<Motion> agreeing(const std::vector<Motion>& motions) {
-    std::vector<double> differences;
-    const auto difference = [](const Motion& m) { return std::abs(glm::length(m.turnA) - glm::length(m.turnB)); };
-    for (const Motion& m : motions) differences.push_back(difference(m));
-    const double usual = std::max(0.2 * kDegree, median(differences));
-    std::vector<Motion> kept;
-    std::ranges::copy_if(motions, std::back_inserter(kept),
-                         [&](const Motion& m) { return difference(m) < 3.0 * usual; });
-    if (usual > 10.0 * kDegree)
-        registration::refuse(Cause::modelDoesNotFit, kBodies,
-                             "they do not turn alike: angles differ by " + number(usual / kDegree, 0) + " degrees",
-                             "record two bodies that are joined rigidly, and see that the tracker does not swap them");
-    return kept;
-}
-
-/// turnB = R turnA, in closed form; motions that contradict it are left out of `motions`.
-glm::dquat rotationOf(std::vector<Motion>& motions) {
-    glm::dquat rotation(1.0, 0.0, 0.0, 0.0);
-    double limit = 1e9;
-    for (int round = 0; round < 3; ++round) {
-        Eigen::Matrix3d cross = Eigen::Matrix3d::Zero();
-        std::vector<double> left;
-        for (const Motion& m : motions) {
-            const double error = glm::length(m.turnB - rotation * m.turnA);
-            if (error < limit) cross += eigen(m.turnB) * eigen(m.turnA).transpose();
-        }
-        const Eigen::JacobiSVD<Eigen::Matrix3d> svd(cross, Eigen::ComputeFullU | Eigen::ComputeFullV);
-        const double hand = (svd.matrixU() * svd.matrixV().transpose()).determinant();
-        const Eigen::Quaterniond q(
-            Eigen::Matrix3d(svd.matrixU() * Eigen::Vector3d(1.0, 1.0, hand).asDiagonal() * svd.matrixV().transpose()));
-        rotation = {q.w(), q.x(), q.y(), q.z()};
-        for (const Motion& m : motions) left.push_back(glm::length(m.turnB - rotation * m.turnA));
-        limit = 3.0 * std::max(0.1 * kDegree, median(left));
-    }
-    std::erase_if(motions, [&](const Motion& m) { return glm::length(m.turnB - rotation * m.turnA) >= limit; });
-    return rotation;
-}
-
-/// The place of A in B, and by how much A's unit of length is too long: (R_B - 1) t - s R t_A = -t_B, least squares
-/// with weights that spare what fits badly.
-struct PlaceFit {
-    glm::dvec3 place{0.0};
-    double scale = 1.0, scaleSigma = 0.0;
-    double left = 0.0; ///< median of what is left, metres
-};
-PlaceFit placeOf(const std::vector<Motion>& motions, const glm::dquat& bFromA) {
-    PlaceFit fit;
-    double usual = 1e9;
-    for (int round = 0; round < 6; ++round) {
-        Eigen::Matrix4d normal = Eigen::Matrix4d::Zero();
-        Eigen::Vector4d right = Eigen::Vector4d::Zero();
-        Eigen::Vector4d solution(fit.place.x, fit.place.y, fit.place.z, fit.scale);
-        const auto rowsOf = [&](const Motion& m) {
-            Eigen::Matrix<double, 3, 4> rows;
-            const Eigen::Quaterniond turn(m.b.rotation.w, m.b.rotation.x, m.b.rotation.y, m.b.rotation.z);
-            rows.leftCols<3>() = turn.toRotationMatrix() - Eigen::Matrix3d::Identity();
-            rows.col(3) = -eigen(bFromA * m.a.position);
-            return rows;
-        };
-        for (const Motion& m : motions) {
-            const auto rows = rowsOf(m);
-            const double error = round == 0 ? 0.0 : (rows * solution + eigen(m.b.position)).norm() / usual;
-            const double weight = 1.0 / (1.0 + error * error);
-            normal += weight * rows.transpose() * rows;
-            right -= weight * rows.transpose() * eigen(m.b.position);
-        }
-        solution = normal.ldlt().solve(right);
-        std::vector<double> left;
-        for (const Motion& m : motions) left.push_back((rowsOf(m) * solution + eigen(m.b.position)).norm());
-        usual = std::max(1e-6, median(left));
-        fit = {{solution[0], solution[1], solution[2]}, solution[3], 0.0, usual};
-        // Pairs share poses: as if a tenth of them were independent.
-        fit.scaleSigma = usual * std::sqrt(10.0 * std::max(0.0, normal.inverse()(3, 3)));
-    }
-    return fit;
-}
-
-Pose worldsOf(const std::vector<Both>& both, const Pose& bFromA) {
-    std::vector<double> x, y, z;
-    Eigen::Matrix4d sum = Eigen::Matrix4d::Zero();
-    for (const Both& at : both) {
-        const Pose world = at.b * bFromA * inverseOf(at.a);
-        x.push_back(world.position.x);
-        y.push_back(world.position.y);
-        z.push_back(world.position.z);
-        const Eigen::Vector4d q(world.rotation.w, world.rotation.x, world.rotation.y, world.rotation.z);
-        sum += q * q.transpose();
-    }
-    // The mean of rotations whatever their signs (Markley et al. 2007).
-    const Eigen::Vector4d q = Eigen::SelfAdjointEigenSolver<Eigen::Matrix4d>(sum).eigenvectors().col(3);
-    return {{median(x), median(y), median(z)}, {q[0], q[1], q[2], q[3]}};
-}
-
-Unknowns closedForm(const PoseTrack& a, const PoseTrack& b, double offset) {
-    const std::vector<Both> both = together(a, b, offset);
-    if (both.size() < 20)
-        registration::refuse(Cause::tooFewPoints, kBodies, "they share fewer than 20 moments",
-                             "record both at the same time, for 20 s or more");
-    const std::vector<Motion> all = motionsOf(both);
-    checkTurns(all, both);
-    std::vector<Motion> motions = agreeing(all);
-    const glm::dquat rotation = rotationOf(motions);
-    const PlaceFit place = placeOf(motions, rotation);
-    if (place.scale < -3.0 * place.scaleSigma && place.scale < -0.5)
-        registration::refuse(Cause::mirrored, kBodies,
-                             "they fit only as mirror images: one of the two worlds is left-handed",
-                             "turn one of them into right-handed coordinates: negate z, qx and qy");
-    if (std::abs(place.scale - 1.0) > std::max(0.1, 6.0 * place.scaleSigma))
-        registration::refuse(Cause::wrongUnits, kBodies,
-                             "the second's places are " + number(place.scale, place.scale < 0.1 ? 4 : 2) +
-                                 " times as large as the first's",
-                             "write both in metres");
-    const Pose bFromA{place.place, rotation};
-    return {bFromA, worldsOf(both, bFromA), offset};
-}
+constexpr double kLeastCorrelation = 0.5; ///< of angular speeds: below, they are of two bodies
+constexpr double kJump = 0.05;            ///< seconds by which a clock that runs evenly does not err
+constexpr std::size_t kBlocks = 8;        ///< of the recording, for sigmas
 
 double turnBetween(const Pose& a, const Pose& b) { return angleOf(glm::conjugate(a.rotation) * b.rotation); }
 
@@ -325,7 +141,7 @@ HandEye solveSparse(const PoseTrack& a, const PoseTrack& b, const Progress& prog
             "their speeds of turning agree at no offset of the clocks (at best " + number(clocks.correlation, 2) + ")",
             "record both at the same time, joined rigidly, and turn them now fast, now slowly, for 20 s or more");
     progress.report(0.2, "joint");
-    Unknowns solved = closedForm(a, b, clocks.seconds);
+    Unknowns solved = hand_eye::closedForm(a, b, clocks.seconds);
     const Fit fit(a, b);
     const Range all{0, b.poses.size()};
     const auto as = [&](Place place) { return fit.refined(solved, place, all); };

@@ -7,21 +7,27 @@
 #include <glm/mat3x3.hpp>
 #include <glm/matrix.hpp>
 
+#include "core/loop/tracked_room.h"
+
 namespace lumorph {
 
 std::optional<double> handDistance(const PoseBoard& board, const Box& box, const glm::mat4& worldFromDevice,
-                                   Microseconds now) {
+                                   Microseconds now, const Installation& installation) {
     if (box.empty()) return std::nullopt;
     const glm::dmat3 deviceFromWorld = glm::transpose(glm::dmat3(worldFromDevice));
     const glm::dvec3 place(worldFromDevice[3]);
     std::optional<double> nearest;
+    const auto look = [&](const Pose& pose) {
+        const glm::dvec3 at = deviceFromWorld * (pose.position - place);
+        const double distance = glm::distance(at, glm::clamp(at, glm::dvec3(box.min), glm::dvec3(box.max)));
+        nearest = nearest ? std::min(*nearest, distance) : distance;
+    };
     for (const PoseBoard::Entry& entry : board.entries()) {
         if (entry.role != PoseRole::pointer) continue;
         const std::optional<Pose> hand = entry.stream->at(now, now);
         if (!hand) continue;
-        const glm::dvec3 at = deviceFromWorld * (hand->position - place);
-        const double distance = glm::distance(at, glm::clamp(at, glm::dvec3(box.min), glm::dvec3(box.max)));
-        nearest = nearest ? std::min(*nearest, distance) : distance;
+        look(bodyInRoom(installation, *hand));
+        look(inRoom(installation, entry.role, *hand));
     }
     return nearest;
 }

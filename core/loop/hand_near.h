@@ -6,14 +6,17 @@
 
 #include "core/geometry/triangle_mesh.h"
 #include "core/loop/pose_stream.h"
+#include "core/scene/installation.h"
 
 namespace lumorph {
 
 /// Metres from the nearest tracked hand (a body in the role `pointer`) to the device's box; 0 inside it. Empty where
 /// `now` no hand is seen: then nothing senses hands, and none may be said to be far. `box` is in the device's frame,
-/// in metres; `worldFromDevice` is rigid, as in MatchFrame. A tracker tells one point of a hand: fingers reach up to
-/// 0.2 m beyond it.
+/// in metres; `worldFromDevice` is rigid, as in MatchFrame; the installation says where its trackers are and where the
+/// tip of a hand is. Of tip and body the nearer counts. A tracker tells no more of a hand: where the tip was not
+/// measured, fingers reach up to 0.2 m beyond it.
 [[nodiscard]] std::optional<double> handDistance(const PoseBoard& board, const Box& box,
-                                                 const glm::mat4& worldFromDevice, Microseconds now);
+                                                 const glm::mat4& worldFromDevice, Microseconds now,
+                                                 const Installation& installation = {});
 
 } // namespace lumorph

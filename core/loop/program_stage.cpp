@@ -11,6 +11,7 @@
 #include "core/base/error.h"
 #include "core/geometry/mesh_file.h"
 #include "core/loop/stage_timer.h"
+#include "core/loop/tracked_room.h"
 #include "core/loop/viewer_stage.h"
 #include "core/mdf/placement.h"
 
@@ -105,10 +106,11 @@ void ProgramStage::lookAround(const MatchWish& wish, MatchFrame& frame) {
     const Microseconds then =
         frame.time + Microseconds(std::llround(1e6 * lookAhead(*wish.installation, wish.lightDelay)));
     for (const PoseBoard::Entry& entry : wish.poses->entries()) {
-        const std::optional<Pose> pose = entry.stream->at(then, frame.time);
-        if (!pose) continue;
-        bodies_.push_back({entry.name, entry.role, *pose});
-        if (entry.role == PoseRole::device) worldFromDevice_ = glm::mat4(matrixOf(*pose));
+        const std::optional<Pose> seen = entry.stream->at(then, frame.time);
+        if (!seen) continue;
+        const Pose pose = inRoom(*wish.installation, entry.role, *seen);
+        bodies_.push_back({entry.name, entry.role, pose});
+        if (entry.role == PoseRole::device) worldFromDevice_ = glm::mat4(matrixOf(pose));
     }
     moves_ = !bodies_.empty();
 }

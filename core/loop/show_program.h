@@ -28,7 +28,9 @@ namespace lumorph {
 struct ShowBody {
     std::string name;
     PoseRole role = PoseRole::head;
-    Pose pose; ///< predicted for the moment at which the frame is seen; world metres
+    /// Predicted for the moment at which the frame is seen; world metres. A pointer is its tip, the device is its own
+    /// frame, and a head is its body, with the eye at the installation's `eyeFromHead`.
+    Pose pose;
 };
 
 /// What a program may know when it is asked for a frame. Spans hold until it answers.

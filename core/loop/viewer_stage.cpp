@@ -6,6 +6,8 @@
 
 #include <glm/gtc/matrix_transform.hpp>
 
+#include "core/loop/tracked_room.h"
+
 namespace lumorph {
 
 namespace {
@@ -13,14 +15,15 @@ namespace {
 /// What the board's streams say about one moment to come.
 class Outlook {
 public:
-    Outlook(const PoseBoard* board, double seconds, const glm::vec3& eyeFromHead, MatchFrame& frame)
-        : eyeFromHead_(eyeFromHead), frame_(frame) {
+    Outlook(const PoseBoard* board, double seconds, const Installation& installation, MatchFrame& frame)
+        : installation_(installation), frame_(frame) {
         const Microseconds then = frame.time + Microseconds(std::llround(1e6 * seconds));
         if (board)
             for (const PoseBoard::Entry& entry : board->entries()) take(entry, then);
         if (!tracked) return;
-        frame.ms.poseAge = 1e-3 * static_cast<double>(std::max(frame.time - oldest_, Microseconds{0}).count());
-        frame.ms.latency = std::min(frame.ms.poseAge + 1e3 * seconds, 1e3 * PoseStream::kFarthestAhead);
+        const double sinceSaid = 1e-3 * static_cast<double>(std::max(frame.time - oldest_, Microseconds{0}).count());
+        frame.ms.poseAge = sinceSaid + 1e3 * installation.trackerSeconds;
+        frame.ms.latency = std::min(sinceSaid + 1e3 * seconds, 1e3 * PoseStream::kFarthestAhead);
     }
 
     std::vector<TrackedHead> heads;
@@ -30,15 +33,17 @@ public:
 private:
     void take(const PoseBoard::Entry& entry, Microseconds then) {
         headsExpected |= entry.role == PoseRole::head;
-        const std::optional<Pose> pose = entry.stream->at(then, frame_.time);
-        if (!pose || entry.role == PoseRole::pointer) return;
+        const std::optional<Pose> seen = entry.stream->at(then, frame_.time);
+        if (!seen || entry.role == PoseRole::pointer) return;
         tracked = true;
+        const Pose pose = inRoom(installation_, entry.role, *seen);
         if (const std::optional<PoseSample> sample = entry.stream->latest()) oldest_ = std::min(oldest_, sample->time);
-        if (entry.role == PoseRole::head) heads.push_back({entry.name, pose->position + pose->rotation * eyeFromHead_});
-        if (entry.role == PoseRole::device) frame_.worldFromDevice = glm::mat4(matrixOf(*pose));
+        if (entry.role == PoseRole::head)
+            heads.push_back({entry.name, pose.position + pose.rotation * glm::dvec3(installation_.eyeFromHead)});
+        if (entry.role == PoseRole::device) frame_.worldFromDevice = glm::mat4(matrixOf(pose));
     }
 
-    glm::dvec3 eyeFromHead_; ///< in the frame of a head's body
+    const Installation& installation_;
     MatchFrame& frame_;
     Microseconds oldest_ = Microseconds::max();
 };
@@ -46,13 +51,14 @@ private:
 } // namespace
 
 double lookAhead(const Installation& installation, double lightDelay) {
-    return installation.predictionSeconds > 0.0 ? std::max(installation.predictionSeconds, lightDelay) : 0.0;
+    if (!(installation.predictionSeconds > 0.0)) return 0.0;
+    return std::max(installation.predictionSeconds, lightDelay) + installation.trackerSeconds;
 }
 
 void ViewerStage::look(const MatchWish& wish, double sinceLast, MatchFrame& frame) {
     const Installation& installation = *wish.installation;
     frame.worldFromDevice = installation.worldFromDevice;
-    const Outlook outlook(wish.poses.get(), lookAhead(installation, wish.lightDelay), installation.eyeFromHead, frame);
+    const Outlook outlook(wish.poses.get(), lookAhead(installation, wish.lightDelay), installation, frame);
     const glm::dvec3 centre(frame.worldFromDevice[3]);
     const std::optional<ViewerDirector::View> view =
         director_.step(outlook.heads, centre, installation.viewer, sinceLast);

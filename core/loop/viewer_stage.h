@@ -19,8 +19,9 @@ private:
     bool moves_ = false;
 };
 
-/// How far ahead poses are predicted, seconds: at least by the installation's delay; where drawing takes longer (as was
-/// measured: `lightDelay`), by that. 0 where the installation predicts nothing.
+/// How far ahead of what trackers say poses are predicted, seconds: at least by the installation's delay; where drawing
+/// takes longer (as was measured: `lightDelay`), by that; and by how much poses are older than they say
+/// (`trackerSeconds`). 0 where the installation predicts nothing.
 [[nodiscard]] double lookAhead(const Installation& installation, double lightDelay);
 
 /// Whether a tracker has seen one of the board's bodies lately.

@@ -37,6 +37,7 @@ void HandWatch::setLimit(double metres) {
 void HandWatch::follow(const MatchFrame& frame) {
     const std::scoped_lock lock(mutex_);
     worldFromDevice_ = frame.worldFromDevice;
+    if (frame.installation) installation_ = frame.installation;
     if (frame.devicePositions == measured_) return;
     measured_ = frame.devicePositions;
     box_ = measured_ ? boundingBox(*measured_) : Box{};
@@ -44,7 +45,7 @@ void HandWatch::follow(const MatchFrame& frame) {
 
 bool HandWatch::look(Microseconds now) {
     const std::scoped_lock lock(mutex_);
-    distance_ = poses_ ? handDistance(*poses_, box_, worldFromDevice_, now) : std::nullopt;
+    distance_ = poses_ ? handDistance(*poses_, box_, worldFromDevice_, now, *installation_) : std::nullopt;
     if (limit_ <= 0.0) return near_ = false;
     if (distance_ && *distance_ <= limit_ + (near_ ? kMargin : 0.0)) {
         nearAt_ = now;

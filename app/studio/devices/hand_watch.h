@@ -37,7 +37,7 @@ public:
     void setPoses(std::shared_ptr<const PoseBoard> poses);
     /// Metres to the device's box at which a hand is near; 0: no hand ever is.
     void setLimit(double metres);
-    /// Where the device is, and how large it is right now.
+    /// Where the device and its trackers are, and how large it is right now.
     void follow(const MatchFrame& frame);
     /// Whether a hand is near `now`, by the clock of the poses.
     [[nodiscard]] bool look(Microseconds now);
@@ -51,6 +51,7 @@ private:
     std::shared_ptr<const std::vector<glm::vec3>> measured_; ///< what `box_` is of
     Box box_;
     glm::mat4 worldFromDevice_{1.0F};
+    std::shared_ptr<const Installation> installation_ = std::make_shared<const Installation>();
     double limit_ = 0.1;
     std::optional<double> distance_;
     bool near_ = false;

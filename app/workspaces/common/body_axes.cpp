@@ -5,6 +5,8 @@
 #include <glm/gtc/quaternion.hpp>
 #include <glm/matrix.hpp>
 
+#include "core/loop/tracked_room.h"
+
 namespace lumorph::studio {
 namespace {
 
@@ -15,11 +17,12 @@ constexpr auto kKey = "view/bodies";
 /// In steps that the eye cannot tell apart, so that a body at rest asks for no painting.
 float rounded(double value, double step) { return static_cast<float>(std::round(value / step) * step); }
 
-BodyMark markOf(const SeenBody& body, const glm::dmat4& deviceFromWorld) {
+BodyMark markOf(const SeenBody& body, const Installation& installation, const glm::dmat4& deviceFromWorld) {
     BodyMark mark;
     mark.name = QString::fromStdString(body.name);
-    const glm::dvec4 at = deviceFromWorld * glm::dvec4(body.pose.position, 1.0);
-    const glm::dquat turn = glm::quat_cast(glm::dmat3(deviceFromWorld)) * body.pose.rotation;
+    const Pose pose = body.role ? inRoom(installation, *body.role, body.pose) : bodyInRoom(installation, body.pose);
+    const glm::dvec4 at = deviceFromWorld * glm::dvec4(pose.position, 1.0);
+    const glm::dquat turn = glm::quat_cast(glm::dmat3(deviceFromWorld)) * pose.rotation;
     for (int axis = 0; axis < 3; ++axis) mark.position[axis] = rounded(at[axis], 5e-4);
     mark.rotation =
         glm::quat(rounded(turn.w, 2e-3), rounded(turn.x, 2e-3), rounded(turn.y, 2e-3), rounded(turn.z, 2e-3));
@@ -70,8 +73,9 @@ void BodyAxes::look() {
     if (!view_->isVisible()) return timer_.stop();
     const auto& frame = studio_.loop.frame();
     const glm::dmat4 deviceFromWorld = frame ? glm::inverse(glm::dmat4(frame->worldFromDevice)) : glm::dmat4(1.0);
+    const Installation room = frame && frame->installation ? *frame->installation : Installation{};
     std::vector<BodyMark> marks;
-    for (const SeenBody& body : studio_.trackers.bodies()) marks.push_back(markOf(body, deviceFromWorld));
+    for (const SeenBody& body : studio_.trackers.bodies()) marks.push_back(markOf(body, room, deviceFromWorld));
     view_->setBodies(std::move(marks));
 }
 

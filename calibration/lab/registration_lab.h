@@ -1,0 +1,59 @@
+#pragma once
+
+#include <cstdint>
+
+#include "calibration/lab/tracker_lab.h"
+#include "calibration/registration/registration.h"
+#include "core/base/progress.h"
+#include "core/rig/rig.h"
+
+/// Tracker, pointer, device and eye registered in the virtual lab from beginning to end: what a visitor would be asked
+/// to do is done in the true room, with the noise of tracker and hands, and solved as that of hardware is.
+namespace lumorph {
+
+struct RegistrationLabOptions {
+    std::size_t dots = 12, landmarks = 12, alignments = 8, fresh = 4;
+    LabErrors errors;
+    LabHands hands;
+    TrackerFault fault = TrackerFault::none;
+};
+
+// What is recorded. `believed` says where dots are shown and the device is thought to lie, `truth` where they are.
+
+[[nodiscard]] PointerCapture capturePointerInLab(const Installation& truth, std::uint32_t seed,
+                                                 const RegistrationLabOptions& options = {});
+/// Throws InvalidInput without a projector, or where it lights no table beside the device.
+[[nodiscard]] DotCapture captureDotsInLab(const Rig& rig, const Installation& believed, const Installation& truth,
+                                          std::uint32_t seed, const RegistrationLabOptions& options = {});
+[[nodiscard]] LandmarkCapture captureLandmarksInLab(const Rig& rig, const Installation& truth, std::uint32_t seed,
+                                                    const RegistrationLabOptions& options = {});
+/// Structured light on the device at rest, as the first camera (or the lab's) and projector would decode it: rays, with
+/// a tenth of a pixel of noise at both ends.
+[[nodiscard]] SurfaceCapture captureSurfaceInLab(const Rig& rig, const Installation& truth, std::uint32_t seed,
+                                                 const RegistrationLabOptions& options = {});
+[[nodiscard]] EyeCapture captureEyeInLab(const Rig& rig, const Installation& believed, const Installation& truth,
+                                         std::uint32_t seed, const RegistrationLabOptions& options = {});
+
+// Recorded and solved. Where it is refused the installation is `believed`. Throws Cancelled.
+
+[[nodiscard]] Registration measurePointerInLab(const Rig& rig, const Installation& believed, const Installation& truth,
+                                               std::uint32_t seed, const Progress& progress = {},
+                                               const RegistrationLabOptions& options = {});
+/// By touched dots. The pointer's tip was measured before.
+[[nodiscard]] Registration measureTrackerInLab(const Rig& rig, const Installation& believed, const Installation& truth,
+                                               std::uint32_t seed, const Progress& progress = {},
+                                               const RegistrationLabOptions& options = {});
+/// By touched landmarks. The pointer's tip was measured before.
+[[nodiscard]] Registration measureDeviceInLab(const Rig& rig, const Installation& believed, const Installation& truth,
+                                              std::uint32_t seed, const Progress& progress = {},
+                                              const RegistrationLabOptions& options = {});
+/// By alignments. Pointer and tracker were measured before.
+[[nodiscard]] Registration measureEyeInLab(const Rig& rig, const Installation& believed, const Installation& truth,
+                                           std::uint32_t seed, const Progress& progress = {},
+                                           const RegistrationLabOptions& options = {});
+/// All four, one after the other, then solved together. The first that is refused ends it.
+[[nodiscard]] Registration measureAllInLab(const Rig& rig, const Installation& believed, const Installation& truth,
+                                           std::uint32_t seed, const Progress& progress = {},
+                                           const RegistrationLabOptions& options = {});
+
+} // namespace lumorph

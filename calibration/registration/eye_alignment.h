@@ -1,0 +1,53 @@
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "calibration/registration/fresh_points.h"
+#include "calibration/registration/registration_fit.h"
+#include "calibration/registration/touch.h"
+
+/// The eye in the frame of a tracked head, by what it sees covered.
+namespace lumorph {
+
+/// A visitor holds the pointer so that its tip covers a mark on the table for the one eye that counts. The touch's body
+/// is the head.
+struct Alignment {
+    glm::dvec3 mark{0.0}; ///< in the room, metres
+    Touch touch;
+};
+
+struct EyePlace {
+    glm::dvec3 eyeFromHead{0.0}; ///< metres
+    glm::dvec3 sigma{0.0};       ///< metres
+    double rms = 0.0;            ///< metres between the eye and the lines on which it should lie
+    std::vector<PointError> points;
+    std::vector<Finding> warnings;
+};
+
+/// The rows of alignments. Throws CaptureRefused as restOf does, and `tracker_lost` for one without a head.
+struct SightRows {
+    std::vector<registration::SightRow> rows;
+    std::vector<std::string> names;
+    std::vector<Finding> warnings;
+};
+[[nodiscard]] SightRows rowsOf(std::span<const Alignment> alignments, const glm::dvec3& tip,
+                               const CaptureFault* undo = nullptr);
+
+/// The point nearest to all lines from marks through tips, then by the angles that it sees. Throws CaptureRefused:
+/// `too_few_points` for fewer than 8, `points_degenerate` where the tip was too near to its mark, `motion_degenerate`
+/// where the head saw all marks in one direction, so that how far away the eye is stays open, `model_does_not_fit`.
+[[nodiscard]] EyePlace placeEye(const SightRows& alignments, const Pose& worldFromTracker, const glm::dvec3& tip,
+                                const Progress& progress = {});
+
+/// One offset for all who wear a rig: the mean of several visitors' eyes, and how far single ones are from it.
+struct UsualEye {
+    glm::dvec3 eyeFromHead{0.0};
+    double spread = 0.0; ///< metres, RMS
+    std::size_t visitors = 0;
+};
+/// Throws InvalidInput for none.
+[[nodiscard]] UsualEye usualEye(std::span<const EyePlace> visitors);
+
+} // namespace lumorph

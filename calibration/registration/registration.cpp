@@ -1,0 +1,342 @@
+#include "calibration/registration/registration.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include <glm/geometric.hpp>
+#include <glm/gtc/quaternion.hpp>
+
+#include "calibration/registration/hand_eye.h"
+#include "calibration/registration/pivot.h"
+#include "calibration/registration/refusing.h"
+#include "calibration/registration/surface_fit.h"
+
+namespace lumorph {
+
+namespace {
+
+using registration::Figures;
+using registration::kDegree;
+using registration::number;
+using registration::TipRow;
+
+// What fresh points may be off, metres RMS. They are touched no better than the others, so this is more than what the
+// figures are good for.
+constexpr double kFreshTip = 0.0015, kFreshTracker = 0.0025, kFreshBoard = 0.006, kFreshDevice = 0.002,
+                 kFreshEye = 0.01;
+constexpr double kTable = 0.004;       ///< metres over the table from which on a point may be of the device
+constexpr std::size_t kFreshShare = 5; ///< of a board's recording, one in so many is kept for the fresh points
+constexpr std::size_t kFreshBoards = 8;
+
+std::string mm(double metres) { return number(1000.0 * metres, 2) + " mm"; }
+
+glm::mat4 matrix(const Pose& pose) { return glm::mat4(matrixOf(pose)); }
+Pose poseOf(const glm::mat4& rigid) {
+    return {glm::dvec3(rigid[3]), glm::normalize(glm::quat_cast(glm::dmat3(glm::mat3(rigid))))};
+}
+Figures figuresIn(const Installation& room) {
+    return {poseOf(room.worldFromTracker), glm::dvec3(room.pointerTip), poseOf(room.bodyFromDevice),
+            glm::dvec3(room.eyeFromHead)};
+}
+
+/// Runs a registration as a whole or not at all: what is refused leaves the installation as it was.
+template <typename Work> Registration orRefusal(const Installation& believed, const Work& work) {
+    Registration result;
+    result.installation = believed;
+    try {
+        work(result);
+    } catch (const CaptureRefused& refused) {
+        Registration nothing;
+        nothing.installation = believed;
+        nothing.refusal = refused.finding();
+        nothing.summary = sentenceOf(refused.finding());
+        return nothing;
+    }
+    return result;
+}
+
+std::string worthOf(const Registration& result) {
+    return std::to_string(result.fresh.points.size()) + " fresh points lie " + mm(result.fresh.rms) +
+           " off (RMS), the worst " + mm(result.fresh.worst);
+}
+
+Origin measured(std::string method) { return {Origin::Way::measured, std::move(method), utcDate()}; }
+
+template <typename Place> void take(Registration& result, Place&& place) {
+    result.rms = place.rms;
+    result.points = std::move(place.points);
+    result.turnSigma = place.turnSigma;
+    result.shiftSigma = place.shiftSigma;
+    result.warnings = std::move(place.warnings);
+}
+
+/// Errors of rows that no fit saw.
+template <typename AnyRows> std::vector<PointError> errorsOf(const AnyRows& fresh, const Figures& figures) {
+    std::vector<PointError> errors;
+    for (std::size_t i = 0; i < fresh.rows.size(); ++i)
+        errors.push_back({fresh.names[i], registration::missOf(fresh.rows[i], figures)});
+    return errors;
+}
+
+// A pointer.
+
+/// Where the tip should be is unknown at a fresh dimple; that it is one place is not. Of n touches the mean takes part
+/// of each error, which the factor gives back.
+std::vector<PointError> dimpleErrors(const PointerCapture& capture, const glm::dvec3& tip) {
+    std::vector<PointError> errors;
+    for (const std::vector<Touch>& dimple : capture.fresh) {
+        if (dimple.size() < 2) continue; // alone it tells nothing
+        std::vector<glm::dvec3> places;
+        glm::dvec3 mean(0.0);
+        for (const Touch& touch : dimple) {
+            places.push_back(restOf(touch, tip).pointer * tip);
+            mean += places.back() / double(dimple.size());
+        }
+        double squares = 0.0;
+        for (const glm::dvec3& place : places) squares += glm::dot(place - mean, place - mean);
+        errors.push_back({dimple.front().name, std::sqrt(squares / double(places.size() - 1))});
+    }
+    return errors;
+}
+
+void solvePointer(const PointerCapture& capture, Registration& result) {
+    const Pivot pivot = solvePivot(soundTrack(capture.swings, "swings of the pointer"));
+    result.warnings = pivot.warnings;
+    result.rms = pivot.rms;
+    result.shiftSigma = glm::length(pivot.tipSigma);
+    result.fresh = checkFresh(dimpleErrors(capture, pivot.tip), kFreshTip);
+    result.installation.pointerTip = glm::vec3(pivot.tip);
+    result.installation.origins.pointer = measured("pivoting, " + std::to_string(pivot.poses) + " poses");
+    result.summary = "The pointer's tip is known to " + mm(result.shiftSigma) + "; " + worthOf(result) + ".";
+}
+
+// The tracker.
+
+void keepTracker(Registration& result, const Pose& worldFromTracker, std::string method) {
+    result.installation.worldFromTracker = matrix(worldFromTracker);
+    result.installation.origins.tracker = measured(std::move(method));
+    result.summary = "The tracker's world lies in the room's to " + mm(result.shiftSigma) + " and " +
+                     number(result.turnSigma / kDegree, 2) + " degrees; " + worthOf(result) + ".";
+}
+
+void solveDots(const DotCapture& capture, const CaptureFault* undo, const Progress& progress, Registration& result) {
+    const Installation& room = result.installation;
+    const glm::dvec3 tip = withoutFault(glm::dvec3(room.pointerTip), undo);
+    TrackerPlace place =
+        placeTracker(rowsOf(capture.dots, room, tip, capture.tableHeight, undo), {tip, capture.tipSigma}, progress);
+    const Figures figures = place.figures;
+    take(result, std::move(place));
+    result.fresh =
+        checkFresh(errorsOf(rowsOf(capture.fresh, room, tip, capture.tableHeight, undo), figures), kFreshTracker);
+    keepTracker(result, figures.worldFromTracker, "touched dots, " + std::to_string(capture.dots.size()));
+}
+
+void solveMarkers(const MarkerCapture& capture, const CaptureFault* undo, const Progress& progress,
+                  Registration& result) {
+    TrackerPlace place = placeTracker(rowsOf(capture.markers, result.installation, undo), TipRow{}, progress);
+    const Figures figures = place.figures;
+    take(result, std::move(place));
+    result.fresh = checkFresh(errorsOf(rowsOf(capture.fresh, result.installation, undo), figures), kFreshTracker);
+    keepTracker(result, figures.worldFromTracker, "seen markers, " + std::to_string(capture.markers.size()));
+}
+
+/// Moments of the board that the fit never saw: how far the tracker has it from where the camera does.
+std::vector<PointError> boardErrors(const HandEye& joint, const PoseTrack& body, const PoseTrack& board,
+                                    std::size_t from) {
+    std::vector<PointError> errors;
+    const std::size_t count = board.poses.size() - from;
+    for (std::size_t k = 0; k < kFreshBoards; ++k) {
+        // The mean of a stretch: a single view of a board is worse than what is judged by it.
+        glm::dvec3 off(0.0);
+        double views = 0.0;
+        for (std::size_t i = from + k * count / kFreshBoards; i < from + (k + 1) * count / kFreshBoards; ++i)
+            if (const auto at = poseAt(body, board.poses[i].seconds - joint.timeOffset)) {
+                const Pose told = joint.worldBFromWorldA * *at * inverseOf(joint.bFromA);
+                off += told.position - board.poses[i].pose.position;
+                views += 1.0;
+            }
+        if (views > 0.0) errors.push_back({"view " + std::to_string(k + 1), glm::length(off / views)});
+    }
+    return errors;
+}
+
+void solveBoard(const BoardCapture& capture, const Progress& progress, Registration& result) {
+    const PoseTrack body = soundTrack(capture.body, "body of the board");
+    const PoseTrack board = soundTrack(capture.board, "board before the camera");
+    const std::size_t used = board.poses.size() - board.poses.size() / kFreshShare;
+    PoseTrack seen = board;
+    seen.poses.resize(used);
+    const HandEye joint = solveHandEye(body, seen, progress);
+    result.rms = joint.medianShift;
+    result.turnSigma = joint.turnSigma;
+    result.shiftSigma = joint.shiftSigma;
+    result.warnings = joint.warnings;
+    result.fresh = checkFresh(boardErrors(joint, body, board, used), kFreshBoard);
+    keepTracker(result, joint.worldBFromWorldA, "tracked board, " + std::to_string(joint.poses) + " views");
+}
+
+// The device.
+
+void keepDevice(Registration& result, const Pose& bodyFromDevice, std::string method) {
+    result.installation.bodyFromDevice = matrix(bodyFromDevice);
+    result.installation.origins.deviceBody = measured(std::move(method));
+    result.summary = "The device lies on its body to " + mm(result.shiftSigma) + " and " +
+                     number(result.turnSigma / kDegree, 2) + " degrees; " + worthOf(result) + ".";
+}
+
+void judgeDevice(DevicePlace place, const std::vector<TouchedLandmark>& fresh, const CaptureFault* undo,
+                 std::string method, Registration& result) {
+    const glm::dvec3 tip = withoutFault(glm::dvec3(result.installation.pointerTip), undo);
+    Figures figures = place.figures;
+    figures.tip = tip;
+    take(result, std::move(place));
+    result.fresh = checkFresh(errorsOf(rowsOf(fresh, tip, undo), figures), kFreshDevice);
+    keepDevice(result, figures.bodyFromDevice, std::move(method));
+}
+
+void solveLandmarks(const LandmarkCapture& capture, const CaptureFault* undo, const Progress& progress,
+                    Registration& result) {
+    const glm::dvec3 tip = withoutFault(glm::dvec3(result.installation.pointerTip), undo);
+    judgeDevice(placeDevice(rowsOf(capture.touches, tip, undo), {tip, capture.tipSigma}, progress), capture.fresh, undo,
+                "touched points, " + std::to_string(capture.touches.size()), result);
+}
+
+void solveSurface(const SurfaceCapture& capture, const Progress& progress, Registration& result) {
+    const Figures figures = figuresIn(result.installation);
+    std::vector<glm::dvec3> above;
+    std::ranges::copy_if(capture.points, std::back_inserter(above),
+                         [](const glm::dvec3& p) { return !(p.y < kTable); });
+    const SurfaceFit fit = fitSurface(capture.model, above, poseOf(result.installation.worldFromDevice), progress);
+    judgeDevice(placeDeviceBySurface(fit, capture.body, figures.worldFromTracker), capture.fresh, nullptr,
+                "structured light, " + std::to_string(above.size()) + " points", result);
+}
+
+// The eye.
+
+void solveEye(const EyeCapture& capture, const CaptureFault* undo, const Progress& progress, Registration& result) {
+    Figures figures = figuresIn(result.installation);
+    figures.tip = withoutFault(figures.tip, undo);
+    EyePlace place =
+        placeEye(rowsOf(capture.alignments, figures.tip, undo), figures.worldFromTracker, figures.tip, progress);
+    figures.eyeFromHead = place.eyeFromHead;
+    result.rms = place.rms;
+    result.points = std::move(place.points);
+    result.shiftSigma = glm::length(place.sigma);
+    result.warnings = std::move(place.warnings);
+    result.fresh = checkFresh(errorsOf(rowsOf(capture.fresh, figures.tip, undo), figures), kFreshEye);
+    result.installation.eyeFromHead = glm::vec3(figures.eyeFromHead);
+    result.installation.origins.eyeOffset = measured("alignments, " + std::to_string(capture.alignments.size()));
+    result.summary = "The eye is known to " + mm(result.shiftSigma) + "; " + worthOf(result) + ".";
+}
+
+// All of it.
+
+/// What no single fit saw, against all figures at once.
+std::vector<PointError> jointErrors(const JointCapture& capture, const Installation& room, const Figures& figures) {
+    const glm::dvec3& tip = figures.tip;
+    std::vector<PointError> all = errorsOf(rowsOf(capture.dots.fresh, room, tip, capture.dots.tableHeight), figures);
+    std::ranges::move(errorsOf(rowsOf(capture.landmarks.fresh, tip), figures), std::back_inserter(all));
+    std::ranges::move(errorsOf(rowsOf(capture.eye.fresh, tip), figures), std::back_inserter(all));
+    return all;
+}
+
+void solveJointly(const JointCapture& capture, const Progress& progress, Registration& result) {
+    const Installation& room = result.installation;
+    const Figures start = figuresIn(room);
+    const DotRows dots = rowsOf(capture.dots.dots, room, start.tip, capture.dots.tableHeight);
+    const LandmarkRows landmarks = rowsOf(capture.landmarks.touches, start.tip);
+    const SightRows sights = rowsOf(capture.eye.alignments, start.tip);
+    const registration::Rows rows{dots.rows, landmarks.rows, sights.rows, TipRow{capture.pivotTip, capture.pivotSigma}};
+    const registration::Refined refined = registration::refine(rows, start, {true, true, true, true}, progress);
+    result.turnSigma = refined.sigmas.trackerTurn;
+    result.shiftSigma = refined.sigmas.trackerShift;
+    for (const auto& errors :
+         {errorsOf(dots, refined.figures), errorsOf(landmarks, refined.figures), errorsOf(sights, refined.figures)})
+        result.points.insert(result.points.end(), errors.begin(), errors.end());
+    result.rms = rmsOf(result.points);
+    result.fresh = checkFresh(jointErrors(capture, room, refined.figures), kFreshEye);
+    result.installation.worldFromTracker = matrix(refined.figures.worldFromTracker);
+    result.installation.pointerTip = glm::vec3(refined.figures.tip);
+    result.installation.bodyFromDevice = matrix(refined.figures.bodyFromDevice);
+    result.installation.eyeFromHead = glm::vec3(refined.figures.eyeFromHead);
+    const Origin origin = measured("all that was touched and aimed at, together");
+    Installation::Origins& origins = result.installation.origins;
+    origins.tracker = origins.pointer = origins.deviceBody = origins.eyeOffset = origin;
+    result.summary = "All together: " + worthOf(result) + ".";
+}
+
+} // namespace
+
+Registration registerPointer(const PointerCapture& capture, const Installation& believed, const Progress& progress) {
+    progress.report(0.0, "the pointer's tip");
+    return orRefusal(believed, [&](Registration& result) { solvePointer(capture, result); });
+}
+
+Registration registerTracker(const DotCapture& capture, const Installation& believed, const Progress& progress) {
+    progress.report(0.0, "the tracker in the room");
+    return orRefusal(believed, [&](Registration& result) {
+        result = orNamed("touched dots", [&](const CaptureFault* undo) {
+            Registration one = result;
+            solveDots(capture, undo, progress, one);
+            return one;
+        });
+    });
+}
+
+Registration registerTracker(const MarkerCapture& capture, const Installation& believed, const Progress& progress) {
+    progress.report(0.0, "the tracker in the room");
+    return orRefusal(believed, [&](Registration& result) {
+        result = orNamed("seen markers", [&](const CaptureFault* undo) {
+            Registration one = result;
+            solveMarkers(capture, undo, progress, one);
+            return one;
+        });
+    });
+}
+
+Registration registerTracker(const BoardCapture& capture, const Installation& believed, const Progress& progress) {
+    progress.report(0.0, "the tracker in the room");
+    return orRefusal(believed, [&](Registration& result) { solveBoard(capture, progress, result); });
+}
+
+Registration registerDevice(const LandmarkCapture& capture, const Installation& believed, const Progress& progress) {
+    progress.report(0.0, "the device on its body");
+    return orRefusal(believed, [&](Registration& result) {
+        result = orNamed("touched points of the device", [&](const CaptureFault* undo) {
+            Registration one = result;
+            solveLandmarks(capture, undo, progress, one);
+            return one;
+        });
+    });
+}
+
+Registration registerDevice(const SurfaceCapture& capture, const Installation& believed, const Progress& progress) {
+    return orRefusal(believed, [&](Registration& result) { solveSurface(capture, progress, result); });
+}
+
+Registration registerDevice(const GluedBoardCapture& capture, const Installation& believed, const Progress& progress) {
+    progress.report(0.0, "the device on its body");
+    return orRefusal(believed, [&](Registration& result) {
+        judgeDevice(placeDeviceByBoard(capture.board, figuresIn(result.installation).worldFromTracker), capture.fresh,
+                    nullptr, "board on the device", result);
+    });
+}
+
+Registration registerEye(const EyeCapture& capture, const Installation& believed, const Progress& progress) {
+    progress.report(0.0, "the eye in its head");
+    return orRefusal(believed, [&](Registration& result) {
+        result = orNamed("alignments of the eye", [&](const CaptureFault* undo) {
+            Registration one = result;
+            solveEye(capture, undo, progress, one);
+            return one;
+        });
+    });
+}
+
+Registration registerJointly(const JointCapture& capture, const Installation& believed, const Progress& progress) {
+    progress.report(0.0, "all together");
+    return orRefusal(believed, [&](Registration& result) { solveJointly(capture, progress, result); });
+}
+
+} // namespace lumorph

@@ -1,0 +1,112 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "calibration/registration/device_place.h"
+#include "calibration/registration/eye_alignment.h"
+#include "calibration/registration/fresh_points.h"
+#include "calibration/registration/touched_dots.h"
+#include "core/geometry/triangle_mesh.h"
+#include "core/scene/installation.h"
+
+/// Tracker, pointer, device and eye: from what was recorded, in the lab or of hardware, to figures of the installation.
+/// All of them end with points that the fit never saw; without three of them, or where they contradict it, nothing is
+/// kept.
+namespace lumorph {
+
+/// What a registration came to.
+struct Registration {
+    /// As it was believed to be, with the measured part replaced and its origin said; unchanged where it was refused.
+    Installation installation;
+    std::optional<Finding> refusal;
+    std::vector<Finding> warnings;
+
+    std::string summary;                      ///< one sentence with the figures that count
+    double rms = 0.0;                         ///< metres: the fit's own residual
+    std::vector<PointError> points;           ///< of the fit
+    FreshCheck fresh;                         ///< of points that it never saw
+    double turnSigma = 0.0, shiftSigma = 0.0; ///< what the fit thinks of itself: radians, metres
+    [[nodiscard]] bool good() const { return !refusal && fresh.good(); }
+};
+
+/// A pointer swung about its tip in one dimple; then held in three others or more, each twice or more as differently as
+/// the hand can, which the fit does not see.
+struct PointerCapture {
+    PoseTrack swings;
+    std::vector<std::vector<Touch>> fresh; ///< by dimple
+};
+[[nodiscard]] Registration registerPointer(const PointerCapture& capture, const Installation& believed,
+                                           const Progress& progress = {});
+
+/// Projected dots that a pointer touches.
+struct DotCapture {
+    std::vector<TouchedDot> dots, fresh;
+    std::optional<double> tableHeight = 0.0; ///< of the plane on which they lie; empty: unknown
+    glm::dvec3 tipSigma{0.0002};             ///< metres: how well the installation's tip is known
+};
+[[nodiscard]] Registration registerTracker(const DotCapture& capture, const Installation& believed,
+                                           const Progress& progress = {});
+
+/// Single markers of the tracker that calibrated cameras see as points.
+struct MarkerCapture {
+    std::vector<SeenMarker> markers, fresh;
+};
+[[nodiscard]] Registration registerTracker(const MarkerCapture& capture, const Installation& believed,
+                                           const Progress& progress = {});
+
+/// A marker board that is tracked and moved before a calibrated camera, each by its own clock. Of its last fifth
+/// the fit sees nothing: what the camera sees then is the fresh points.
+struct BoardCapture {
+    PoseTrack body;  ///< in the tracker's world
+    PoseTrack board; ///< in the room's
+};
+[[nodiscard]] Registration registerTracker(const BoardCapture& capture, const Installation& believed,
+                                           const Progress& progress = {});
+
+/// Points of the device's model that a pointer touches.
+struct LandmarkCapture {
+    std::vector<TouchedLandmark> touches, fresh;
+    glm::dvec3 tipSigma{0.0002}; ///< metres
+};
+[[nodiscard]] Registration registerDevice(const LandmarkCapture& capture, const Installation& believed,
+                                          const Progress& progress = {});
+
+/// The device's surface by structured light, while its body is tracked and rests; and landmarks as fresh points.
+struct SurfaceCapture {
+    TriangleMesh model;             ///< device frame, metres, as it stood
+    std::vector<glm::dvec3> points; ///< room, metres; the table's may be among them
+    PoseTrack body;                 ///< in the tracker's world
+    std::vector<TouchedLandmark> fresh;
+};
+[[nodiscard]] Registration registerDevice(const SurfaceCapture& capture, const Installation& believed,
+                                          const Progress& progress = {});
+
+/// A marker board glued to the device; and landmarks as fresh points.
+struct GluedBoardCapture {
+    BoardOnDevice board;
+    std::vector<TouchedLandmark> fresh;
+};
+[[nodiscard]] Registration registerDevice(const GluedBoardCapture& capture, const Installation& believed,
+                                          const Progress& progress = {});
+
+/// Marks that the pointer's tip covers for the visitor's eye.
+struct EyeCapture {
+    std::vector<Alignment> alignments, fresh;
+};
+[[nodiscard]] Registration registerEye(const EyeCapture& capture, const Installation& believed,
+                                       const Progress& progress = {});
+
+/// All that was recorded solved together, from the installation that the single steps made: what one of them tells of
+/// the tip or the tracker helps the others. Fresh points are those of all of them.
+struct JointCapture {
+    DotCapture dots;
+    LandmarkCapture landmarks;
+    EyeCapture eye;
+    glm::dvec3 pivotTip{0.0}, pivotSigma{0.0002}; ///< of the swings, metres
+};
+[[nodiscard]] Registration registerJointly(const JointCapture& capture, const Installation& believed,
+                                           const Progress& progress = {});
+
+} // namespace lumorph

@@ -1,0 +1,261 @@
+#include "calibration/lab/registration_lab.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <memory>
+
+#include <glm/geometric.hpp>
+#include <glm/gtc/matrix_transform.hpp>
+#include <gtest/gtest.h>
+
+#include "calibration/lab/board_lab.h"
+#include "calibration/registration/surface_fit.h"
+#include "core/rig/templates/bundled_rigs.h"
+
+// R24, R25, R26: tracker, pointer, device and eye in millimetres, against the lab's truth.
+
+namespace lumorph {
+namespace {
+
+constexpr double kDegree = 0.017453292519943295;
+
+const Rig& tablet() {
+    static const Rig rig = tabletRig();
+    return rig;
+}
+
+constexpr unsigned kSetUps = 20;
+
+struct Room {
+    Installation believed = defaultInstallation();
+    Installation truth;
+    explicit Room(std::uint32_t seed) {
+        believed.cameras.resize(1);
+        believed.cameras.front().camera = defaultLabCamera(believed.projectors.front().camera);
+        truth = trueRoom(believed, tablet().actuators(), seed);
+    }
+    /// All before a step is known exactly.
+    [[nodiscard]] Installation knowing(bool tip, bool tracker) const {
+        Installation room = believed;
+        if (tip) room.pointerTip = truth.pointerTip;
+        if (tracker) room.worldFromTracker = truth.worldFromTracker;
+        return room;
+    }
+};
+
+struct Off {
+    double millimetres = 0.0, degrees = 0.0;
+};
+
+/// How far a rigid figure puts a place that truly is `place` in the frame to which it leads.
+Off offOf(const glm::mat4& estimated, const glm::mat4& truth, const glm::dvec3& place) {
+    const glm::dmat4 error = glm::dmat4(estimated) * glm::inverse(glm::dmat4(truth));
+    const glm::dmat3 turn(error);
+    const double sine =
+        0.5 * glm::length(glm::dvec3(turn[1][2] - turn[2][1], turn[2][0] - turn[0][2], turn[0][1] - turn[1][0]));
+    return {1000.0 * glm::distance(glm::dvec3(error * glm::dvec4(place, 1.0)), place), std::asin(sine) / kDegree};
+}
+Off trackerOff(const Installation& room, const Installation& truth) {
+    return offOf(room.worldFromTracker, truth.worldFromTracker, {0.0, 0.02, 0.0});
+}
+/// At the middle of the device.
+Off deviceOff(const Installation& room, const Installation& truth) {
+    return offOf(room.bodyFromDevice, truth.bodyFromDevice,
+                 glm::dvec3(truth.bodyFromDevice * glm::vec4(0.0F, 0.01F, 0.0F, 1.0F)));
+}
+double tipOff(const Installation& room, const Installation& truth) {
+    return 1000.0 * static_cast<double>(glm::distance(room.pointerTip, truth.pointerTip));
+}
+double eyeOff(const Installation& room, const Installation& truth) {
+    return 1000.0 * static_cast<double>(glm::distance(room.eyeFromHead, truth.eyeFromHead));
+}
+
+TEST(RegistrationLab, SetUpsAreRegisteredToAMillimetreAndTheEyeToFive) {
+    std::printf("set-up   tip mm   tracker mm deg (fresh)   device mm deg (fresh)   eye mm (fresh)\n");
+    for (unsigned seed = 1; seed <= kSetUps; ++seed) {
+        const Room room(seed);
+        const Registration pointer = measurePointerInLab(tablet(), room.believed, room.truth, seed);
+        ASSERT_TRUE(pointer.good()) << pointer.summary;
+        const Registration tracker = measureTrackerInLab(tablet(), pointer.installation, room.truth, seed);
+        ASSERT_TRUE(tracker.good()) << tracker.summary;
+        const Registration device = measureDeviceInLab(tablet(), tracker.installation, room.truth, seed);
+        ASSERT_TRUE(device.good()) << device.summary;
+        const Registration eye = measureEyeInLab(tablet(), device.installation, room.truth, seed);
+        ASSERT_TRUE(eye.good()) << eye.summary;
+        const Off inRoom = trackerOff(eye.installation, room.truth), onBody = deviceOff(eye.installation, room.truth);
+        const double tip = tipOff(eye.installation, room.truth), eyes = eyeOff(eye.installation, room.truth);
+        std::printf("%5u %9.2f %10.2f %6.3f (%.2f) %11.2f %6.3f (%.2f) %9.2f (%.2f)\n", seed, tip, inRoom.millimetres,
+                    inRoom.degrees, 1000.0 * tracker.fresh.rms, onBody.millimetres, onBody.degrees,
+                    1000.0 * device.fresh.rms, eyes, 1000.0 * eye.fresh.rms);
+        EXPECT_LE(inRoom.millimetres, 1.0);
+        EXPECT_LE(inRoom.degrees, 0.2);
+        EXPECT_LE(onBody.millimetres, 1.0);
+        EXPECT_LE(onBody.degrees, 0.2);
+        EXPECT_LE(eyes, 5.0) << "from 8 alignments with 2 px aiming noise";
+        EXPECT_EQ(eye.installation.origins.eyeOffset.way, Origin::Way::measured);
+        EXPECT_EQ(tracker.fresh.points.size(), 4U);
+    }
+}
+
+TEST(RegistrationLab, AllTogetherIsNoWorseThanOneByOne) {
+    double before = 0.0, after = 0.0, tipBefore = 0.0, tipAfter = 0.0, eyeBefore = 0.0, eyeAfter = 0.0;
+    for (unsigned seed = 1; seed <= kSetUps; ++seed) {
+        const Room room(seed);
+        Installation single = measurePointerInLab(tablet(), room.believed, room.truth, seed).installation;
+        single = measureTrackerInLab(tablet(), single, room.truth, seed).installation;
+        single = measureDeviceInLab(tablet(), single, room.truth, seed).installation;
+        single = measureEyeInLab(tablet(), single, room.truth, seed).installation;
+        const Registration all = measureAllInLab(tablet(), room.believed, room.truth, seed);
+        ASSERT_TRUE(all.good()) << all.summary;
+        before += trackerOff(single, room.truth).millimetres / kSetUps;
+        after += trackerOff(all.installation, room.truth).millimetres / kSetUps;
+        tipBefore += tipOff(single, room.truth) / kSetUps;
+        tipAfter += tipOff(all.installation, room.truth) / kSetUps;
+        eyeBefore += eyeOff(single, room.truth) / kSetUps;
+        eyeAfter += eyeOff(all.installation, room.truth) / kSetUps;
+        EXPECT_LE(trackerOff(all.installation, room.truth).millimetres, 1.0);
+        EXPECT_LE(deviceOff(all.installation, room.truth).degrees, 0.2);
+        EXPECT_LE(eyeOff(all.installation, room.truth), 5.0);
+    }
+    std::printf("mean errors, one by one -> together: tip %.2f -> %.2f mm, tracker %.2f -> %.2f mm, eye %.2f -> %.2f "
+                "mm\n",
+                tipBefore, tipAfter, before, after, eyeBefore, eyeAfter);
+    EXPECT_LE(tipAfter, tipBefore + 0.05);
+    EXPECT_LE(after, before + 0.1);
+}
+
+TEST(RegistrationLab, DotsOnATableOfUnknownHeightTellThePlaceToo) {
+    const Room room(3);
+    RegistrationLabOptions options;
+    options.dots = 20;
+    DotCapture capture = captureDotsInLab(tablet(), room.believed, room.truth, 3, options);
+    capture.tableHeight.reset();
+    const Registration result = registerTracker(capture, room.knowing(true, false));
+    ASSERT_TRUE(result.good()) << result.summary;
+    const Off off = trackerOff(result.installation, room.truth);
+    std::printf("unknown table: %.2f mm, %.3f degrees; %s\n", off.millimetres, off.degrees, result.summary.c_str());
+    EXPECT_LT(off.millimetres, 3.0 * 1000.0 * result.shiftSigma) << "it knows its own worth";
+    EXPECT_LT(off.degrees, 3.0 * result.turnSigma / kDegree);
+    EXPECT_LT(off.millimetres, 5.0);
+    ASSERT_EQ(result.warnings.size(), 1U) << "and says what is missing";
+    EXPECT_NE(result.warnings[0].remedy.find("on a box"), std::string::npos);
+}
+
+TEST(RegistrationLab, DotsThatFallOnABoxNeedNoTable) {
+    const Room room(10);
+    const CalibratedCamera& lens = room.truth.projectors.front().camera;
+    const glm::dvec3 from = positionOf(lens);
+    TrackerLab lab(room.truth, 10);
+    DotCapture capture;
+    capture.tableHeight.reset();
+    for (int i = 0; i < 24; ++i) {
+        const glm::dvec2 pixel(100.0 + 1700.0 * (i % 6) / 5.0, 80.0 + 900.0 * double(i / 6) / 3.0);
+        const glm::dvec3 way = directionOf(lens, pixel);
+        const double height = i % 2 == 0 ? 0.0 : 0.2;
+        const Touch touch = lab.touchDot("dot " + std::to_string(i + 1), from - (from.y - height) / way.y * way);
+        (i % 6 == 3 ? capture.fresh : capture.dots).push_back({0, pixel, touch});
+    }
+    const Registration result = registerTracker(capture, room.knowing(true, false));
+    ASSERT_TRUE(result.good()) << result.summary;
+    const Off off = trackerOff(result.installation, room.truth);
+    std::printf("dots on a box: %.2f mm, %.3f degrees; %s\n", off.millimetres, off.degrees, result.summary.c_str());
+    EXPECT_LT(off.degrees, 0.2);
+    EXPECT_LT(off.millimetres, 2.0);
+}
+
+TEST(RegistrationLab, MarkersThatTheCameraSeesTellThePlace) {
+    const Room room(4);
+    TrackerLab lab(room.truth, 4);
+    std::vector<glm::dvec3> places;
+    for (int i = 0; i < 24; ++i)
+        places.emplace_back(0.3 * std::sin(1.7 * i), 0.15 + 0.14 * std::cos(2.9 * i), 0.22 * std::sin(2.3 * i + 0.4));
+    const std::vector<SeenMarker> seen = lab.seeMarkers(places, room.truth.cameras.front().camera);
+    ASSERT_GE(seen.size(), 14U);
+    const MarkerCapture capture{{seen.begin(), seen.end() - 4}, {seen.end() - 4, seen.end()}};
+    const Registration result = registerTracker(capture, room.believed);
+    ASSERT_TRUE(result.good()) << result.summary;
+    const Off off = trackerOff(result.installation, room.truth);
+    std::printf("markers: %.2f mm, %.3f degrees; %s\n", off.millimetres, off.degrees, result.summary.c_str());
+    EXPECT_LT(off.millimetres, 1.0);
+    EXPECT_LT(off.degrees, 0.2);
+}
+
+TEST(RegistrationLab, ATrackedBoardBeforeTheCameraTellsThePlace) {
+    const Room room(5);
+    TrackerLab lab(room.truth, 5);
+    const CalibrationBoard board = parseCalibrationBoard("chess:9x7:20");
+    const BoardCapture capture = lab.moveBoard(room.truth.cameras.front().camera, board, 0.001);
+    const Registration result = registerTracker(capture, room.believed);
+    ASSERT_TRUE(result.good()) << result.summary;
+    const Off off = trackerOff(result.installation, room.truth);
+    std::printf("board: %.2f mm, %.3f degrees; %s\n", off.millimetres, off.degrees, result.summary.c_str());
+    EXPECT_LT(off.millimetres, 1.0);
+    EXPECT_LT(off.degrees, 0.2);
+}
+
+TEST(RegistrationLab, StructuredLightOnTheDeviceTellsItsBody) {
+    const Room room(6);
+    const SurfaceCapture capture = captureSurfaceInLab(tablet(), room.truth, 6);
+    const Registration result = registerDevice(capture, room.knowing(true, true));
+    ASSERT_TRUE(result.good()) << result.summary;
+    const Off off = deviceOff(result.installation, room.truth);
+    std::printf("surface, %zu points: %.2f mm, %.3f degrees; %s\n", capture.points.size(), off.millimetres, off.degrees,
+                result.summary.c_str());
+    EXPECT_LT(off.millimetres, 1.0);
+    EXPECT_LT(off.degrees, 0.2);
+}
+
+TEST(RegistrationLab, ABoardOnTheDeviceTellsItsBody) {
+    const Room room(7);
+    TrackerLab lab(room.truth, 7);
+    const CalibrationBoard board = parseCalibrationBoard("chess:9x7:12");
+    const Pose deviceFromBoard{{0.01, 0.021, -0.01}, rotationOfTurn({1.5707963, 0.0, 0.3})};
+    GluedBoardCapture capture;
+    capture.board = lab.glueBoard(room.truth.cameras.front().camera, board, 0.001, deviceFromBoard);
+    capture.fresh = captureLandmarksInLab(tablet(), room.truth, 7).fresh;
+    const Registration result = registerDevice(capture, room.knowing(true, true));
+    ASSERT_TRUE(result.good()) << result.summary;
+    const Off off = deviceOff(result.installation, room.truth);
+    std::printf("glued board: %.2f mm, %.3f degrees; %s\n", off.millimetres, off.degrees, result.summary.c_str());
+    EXPECT_LT(off.millimetres, 1.0);
+    EXPECT_LT(off.degrees, 0.2);
+}
+
+TEST(RegistrationLab, ADotThatWasMissedIsNamedAndHardlyCounts) {
+    const Room room(8);
+    DotCapture capture = captureDotsInLab(tablet(), room.believed, room.truth, 8);
+    for (TimedPose& at : capture.dots[5].touch.pointer.poses) at.pose.position.x += 0.03; // the dot beside it
+    const Registration result = registerTracker(capture, room.knowing(true, false));
+    ASSERT_TRUE(result.good()) << result.summary;
+    ASSERT_EQ(result.warnings.size(), 1U);
+    EXPECT_EQ(result.warnings[0].cause, Cause::pointSuspicious);
+    EXPECT_EQ(result.warnings[0].view, "dot 6");
+    EXPECT_LT(trackerOff(result.installation, room.truth).millimetres, 1.0);
+}
+
+TEST(RegistrationLab, EyesOfSeveralVisitorsMakeAUsualOneWithItsSpread) {
+    std::vector<EyePlace> visitors(3);
+    visitors[0].eyeFromHead = {0.03, -0.05, -0.08};
+    visitors[1].eyeFromHead = {0.03, -0.05, -0.07};
+    visitors[2].eyeFromHead = {0.03, -0.05, -0.09};
+    const UsualEye usual = usualEye(visitors);
+    EXPECT_LT(glm::distance(usual.eyeFromHead, glm::dvec3(0.03, -0.05, -0.08)), 1e-12);
+    EXPECT_NEAR(usual.spread, 0.01 * std::sqrt(2.0 / 3.0), 1e-12);
+    EXPECT_EQ(usual.visitors, 3U);
+    EXPECT_THROW((void)usualEye({}), InvalidInput);
+}
+
+TEST(RegistrationLab, CancelStopsAndRepeatsAreEqual) {
+    const Room room(9);
+    std::stop_source stop;
+    stop.request_stop();
+    EXPECT_THROW((void)measureTrackerInLab(tablet(), room.believed, room.truth, 9, Progress({}, stop.get_token())),
+                 Cancelled);
+    const Installation known = room.knowing(true, false);
+    const auto once = [&] { return measureTrackerInLab(tablet(), known, room.truth, 9).installation.worldFromTracker; };
+    EXPECT_EQ(once(), once());
+}
+
+} // namespace
+} // namespace lumorph
