@@ -12,7 +12,7 @@
 namespace lumorph::studio {
 namespace {
 
-std::string contentOf(const std::filesystem::path& file) {
+std::string bytesOf(const std::filesystem::path& file) {
     std::ostringstream text;
     text << std::ifstream(file, std::ios::binary).rdbuf();
     return text.str();
@@ -43,8 +43,8 @@ TEST(ReportPdf, HasPagesPicturesAndPlots) {
     const TemporaryFolder folder;
     writeReportPdf(pageOf(1), folder / "short.pdf");
     writeReportPdf(pageOf(12), folder / "long.pdf");
-    const std::string few = contentOf(folder / "short.pdf");
-    const std::string many = contentOf(folder / "long.pdf");
+    const std::string few = bytesOf(folder / "short.pdf");
+    const std::string many = bytesOf(folder / "long.pdf");
     EXPECT_TRUE(few.starts_with("%PDF-"));
     EXPECT_NE(few.find("%%EOF"), std::string::npos);
     const int fewPages = countOf(few, "/Type /Page\n") + countOf(few, "/Type /Page ");

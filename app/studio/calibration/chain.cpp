@@ -2,14 +2,12 @@
 
 #include <algorithm>
 
-#include <QCoreApplication>
 #include <QDateTime>
 #include <QLocale>
+#include <QObject>
 
 namespace lumorph::studio {
 namespace {
-
-QString tr(const char* text) { return QCoreApplication::translate("Chain", text); }
 
 std::size_t placeOf(LinkId id) {
     const auto& links = chainLinks();
@@ -30,11 +28,12 @@ QString measuredText(const Origin& origin) {
 /// Alone, whatever those before it are.
 LinkStand ownStand(const ChainLink& link, const Installation& room, const std::string& checked) {
     if (link.origin == nullptr)
-        return checked.empty() ? LinkStand{LinkStand::How::open, {}}
-                               : LinkStand{LinkStand::How::measured, tr("still good, %1").arg(dateText(checked))};
+        return checked.empty()
+                   ? LinkStand{LinkStand::How::open, {}}
+                   : LinkStand{LinkStand::How::measured, QObject::tr("still good, %1").arg(dateText(checked))};
     const Origin* origin = link.origin(room);
     if (origin == nullptr || origin->way == Origin::Way::assumed) return {};
-    if (origin->way == Origin::Way::entered) return {LinkStand::How::entered, tr("entered by hand")};
+    if (origin->way == Origin::Way::entered) return {LinkStand::How::entered, QObject::tr("entered by hand")};
     return {LinkStand::How::measured, measuredText(*origin)};
 }
 
@@ -56,13 +55,13 @@ std::vector<LinkStand> standsOf(const Installation& room, const std::string& che
             const LinkStand::How before = stands[place].how;
             if (stand.how == LinkStand::How::open &&
                 (before == LinkStand::How::open || before == LinkStand::How::waits)) {
-                stand = {LinkStand::How::waits, tr("after %1").arg(links[place].title.toLower())};
+                stand = {LinkStand::How::waits, QObject::tr("after %1").arg(links[place].title.toLower())};
                 break;
             }
             // Dates of one form are in the order of their texts.
             if (stand.how == LinkStand::How::measured &&
                 dateOf(links[place], room, checked) > dateOf(link, room, checked)) {
-                stand = {LinkStand::How::stale, tr("%1 was measured after it").arg(links[place].title)};
+                stand = {LinkStand::How::stale, QObject::tr("%1 was measured after it").arg(links[place].title)};
                 break;
             }
         }

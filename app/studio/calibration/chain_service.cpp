@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include <QCoreApplication>
+#include <QObject>
 
 #include "calibration/lab/true_room.h"
 #include "core/base/error.h"
@@ -10,10 +10,8 @@
 namespace lumorph::studio {
 namespace {
 
-constexpr auto kPlace = "chain"; // of jobs and notices
+constexpr auto kChainPlace = "chain"; // of jobs and notices
 constexpr std::uint32_t kLabSeed = 7;
-
-QString tr(const char* text) { return QCoreApplication::translate("Chain", text); }
 
 QString wordsOfError(const std::exception& error) {
     const Notice notice = noticeOf(error);
@@ -30,35 +28,39 @@ ChainStep stepOf(const ChainState& state) {
     const ChainLink& link = chainLinks()[state.chosen];
     const LinkStand& stand = state.stands[state.chosen];
     if (state.running == state.chosen)
-        return {Do::cancel, Tone::live, tr("%1 is being measured").arg(link.title), state.stage, tr("Cancel")};
+        return {Do::cancel, Tone::live, QObject::tr("%1 is being measured").arg(link.title), state.stage,
+                QObject::tr("Cancel")};
     if (state.running)
-        return {Do::cancel, Tone::live, tr("%1 is being measured").arg(chainLinks()[*state.running].title),
-                tr("This one can be measured after it."), tr("Cancel")};
+        return {Do::cancel, Tone::live, QObject::tr("%1 is being measured").arg(chainLinks()[*state.running].title),
+                QObject::tr("This one can be measured after it."), QObject::tr("Cancel")};
     if (const auto trouble = state.troubles.find(state.chosen); trouble != state.troubles.end())
-        return {Do::measure, Tone::failure, tr("It could not be measured"), trouble->second, tr("Measure again")};
+        return {Do::measure, Tone::failure, QObject::tr("It could not be measured"), trouble->second,
+                QObject::tr("Measure again")};
     if (const auto found = state.outcomes.find(state.chosen); found != state.outcomes.end()) {
         const LinkOutcome& outcome = found->second;
         const QString summary = outcome.summary;
         if (!outcome.isGood && !outcome.installation)
-            return {Do::measure, Tone::failure, tr("This is not to be trusted"), summary, tr("Measure again")};
+            return {Do::measure, Tone::failure, QObject::tr("This is not to be trusted"), summary,
+                    QObject::tr("Measure again")};
         if (!outcome.isUsed)
             return {Do::use, outcome.isGood ? Tone::good : Tone::warning,
-                    outcome.isGood ? tr("Measured") : tr("Something has changed"), summary, tr("Use it")};
-        return {Do::goOn, Tone::good, tr("In use"), summary,
-                nextLink(state.stands) ? tr("Go on") : QString()};
+                    outcome.isGood ? QObject::tr("Measured") : QObject::tr("Something has changed"), summary,
+                    QObject::tr("Use it")};
+        return {Do::goOn, Tone::good, QObject::tr("In use"), summary,
+                nextLink(state.stands) ? QObject::tr("Go on") : QString()};
     }
     switch (stand.how) {
     case LinkStand::How::waits:
-        return {Do::goOn, Tone::quiet, tr("Its turn comes later"),
-                tr("%1 What it builds on is measured first.").arg(link.purpose), tr("What is next?")};
+        return {Do::goOn, Tone::quiet, QObject::tr("Its turn comes later"),
+                QObject::tr("%1 What it builds on is measured first.").arg(link.purpose), QObject::tr("What is next?")};
     case LinkStand::How::measured:
-        return {Do::measure, Tone::good, tr("Measured"), stand.words, tr("Measure again")};
+        return {Do::measure, Tone::good, QObject::tr("Measured"), stand.words, QObject::tr("Measure again")};
     case LinkStand::How::stale:
-        return {link.inLab ? Do::measure : Do::sequence, Tone::warning, tr("To be measured again"),
-                stand.words + ".", link.inLab ? tr("Measure again") : tr("Open it")};
+        return {link.inLab ? Do::measure : Do::sequence, Tone::warning, QObject::tr("To be measured again"),
+                stand.words + ".", link.inLab ? QObject::tr("Measure again") : QObject::tr("Open it")};
     default:
         return {link.inLab ? Do::measure : Do::sequence, Tone::live, link.title, link.purpose,
-                link.inLab ? tr("Measure in the lab") : tr("Open it")};
+                link.inLab ? QObject::tr("Measure in the lab") : QObject::tr("Open it")};
     }
 }
 
@@ -74,7 +76,7 @@ ChainService::ChainService(StudioDocument& document, StudioLoop& loop, Jobs& job
     });
     connect(&jobs, &Jobs::progressed, this, [this, &jobs](int id) {
         for (const Jobs::Status& status : jobs.running()) {
-            if (status.id != id || status.place != kPlace || !state_.running) continue;
+            if (status.id != id || status.place != kChainPlace || !state_.running) continue;
             state_.fraction = status.fraction;
             state_.stage = status.stage.left(1).toUpper() + status.stage.mid(1);
             emit changed();
@@ -147,7 +149,7 @@ void ChainService::begin(std::size_t link) {
     state_.troubles.erase(link);
     emit changed();
     jobs_.runWith<LinkOutcome>(
-        kPlace, kPlace, tr("Measuring: %1").arg(measured.title),
+        kChainPlace, kChainPlace, QObject::tr("Measuring: %1").arg(measured.title),
         [run = measured.inLab, task = std::move(task)](const Progress& progress) { return run(task, progress); },
         [this, link](LinkOutcome outcome) { take(link, std::move(outcome)); },
         [this, link](const std::exception& error) {
@@ -186,7 +188,7 @@ void ChainService::cancel() {
     state_.goesOn = false;
     if (!state_.running) return;
     state_.running.reset(); // nothing is handed over after a cancel
-    jobs_.stop(kPlace);
+    jobs_.stop(kChainPlace);
     emit changed();
 }
 

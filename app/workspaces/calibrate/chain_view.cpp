@@ -12,6 +12,7 @@
 #include "app/studio/widgets/panel.h"
 #include "app/workspaces/calibrate/chain_docks.h"
 #include "app/workspaces/calibrate/finding_card.h"
+#include "app/workspaces/calibrate/point_bars.h"
 #include "app/workspaces/common/step_card.h"
 
 namespace lumorph::studio {

@@ -1,9 +1,10 @@
+#include "app/workspaces/calibrate/point_bars.h"
+
 #include <algorithm>
 
 #include <QPainter>
 
 #include "app/studio/look/palette.h"
-#include "app/workspaces/calibrate/chain_docks.h"
 
 namespace lumorph::studio {
 namespace {
@@ -24,7 +25,10 @@ void PointBars::show(std::vector<LinkPoint> points) {
     if (points_.size() > kMostRows) points_.resize(kMostRows);
     QStringList words;
     for (const LinkPoint& point : points_)
-        words << QString("%1: %2 mm%3").arg(point.name).arg(point.millimetres, 0, 'f', 2).arg(point.isFresh ? ", fresh" : "");
+        words << QString("%1: %2 mm%3")
+                     .arg(point.name)
+                     .arg(point.millimetres, 0, 'f', 2)
+                     .arg(point.isFresh ? ", fresh" : "");
     setAccessibleDescription(words.join("; "));
     updateGeometry();
     update();

@@ -1,0 +1,65 @@
+#include <QAbstractButton>
+#include <QLabel>
+
+#include "app/studio/calibration/chain.h"
+#include "tests/ui/studio_window.h"
+
+// From boxes to a calibrated show in the window, by the mouse: each link is measured in the lab, shown, and used.
+
+namespace lumorph::test {
+namespace {
+
+using namespace std::chrono_literals;
+using studio::LinkStand;
+
+class Chain : public ::testing::Test {
+protected:
+    Chain() {
+        window.window().showWorkspace("calibrate");
+        window.click("calibrate.whole");
+    }
+    [[nodiscard]] QString badge(const QString& link) { return window.text("chain.link." + link + ".how"); }
+    [[nodiscard]] QString button() {
+        const auto* next = window.findNow<QAbstractButton>("chain.card.next");
+        return next ? next->text() : QString();
+    }
+    [[nodiscard]] bool offers(const QString& words) {
+        return eventually([&] { return button() == words; }, 120s);
+    }
+    void next() {
+        pass(std::chrono::milliseconds(QApplication::doubleClickInterval() + 50));
+        window.click("chain.card.next");
+    }
+    [[nodiscard]] const Installation& room() { return *window.state().installation; }
+    [[nodiscard]] std::string story() {
+        return (window.text("chain.card.title") + ": " + window.text("chain.card.text")).toStdString();
+    }
+
+    TemporaryFolder folder;
+    StudioWindow window{folder.path(), "scene"};
+};
+
+TEST_F(Chain, EachLinkIsMeasuredShownAndUsed) {
+    ASSERT_TRUE(eventually([&] { return window.state().rig.rig && window.studio().jobs.running().empty(); }, 60s));
+    window.screenshot("chain");
+    window.click("chain.link.tracker");
+    EXPECT_EQ(badge("tracker"), "Later") << "the pointer comes first";
+    window.click("chain.link.pointer");
+    ASSERT_TRUE(offers("Measure in the lab")) << story();
+    next();
+    ASSERT_TRUE(offers("Use it")) << story();
+    window.screenshot("chain-pointer");
+    EXPECT_EQ(room().origins.pointer.way, Origin::Way::assumed) << "nothing is used before one says so";
+    next();
+    ASSERT_TRUE(eventually([&] { return badge("pointer") == "Measured"; })) << story();
+    EXPECT_EQ(room().origins.pointer.way, Origin::Way::measured);
+    EXPECT_GT(glm::length(room().pointerTip), 0.1F) << "the lab's pointer is long";
+    window.studio().document.undoStack().undo();
+    EXPECT_EQ(room().origins.pointer.way, Origin::Way::assumed);
+    EXPECT_EQ(badge("pointer"), "To be used") << "undo gives it back to be used";
+    window.studio().document.undoStack().redo();
+    EXPECT_EQ(badge("pointer"), "Measured");
+}
+
+} // namespace
+} // namespace lumorph::test
