@@ -96,6 +96,14 @@ std::vector<glm::dvec3> decodedPoints(const Lab& lab, const LabLens& camera, con
     return points;
 }
 
+/// Servos that came down to rest stop where their play lets them.
+std::vector<double> strokesAtRest(const Rig& rig, const Installation& room) {
+    std::vector<double> strokes(rig.actuatorCount(), 0.0);
+    for (std::size_t i = 0; i < strokes.size() && i < room.servos.size(); ++i)
+        if (!room.servos[i].points.empty()) strokes[i] = std::clamp(room.servos[i].points.front().falling, 0.0, 1.0);
+    return strokes;
+}
+
 std::vector<TouchedLandmark> touchAll(TrackerLab& lab, const std::vector<PlannedLandmark>& planned, std::size_t from,
                                       std::size_t to, const char* what) {
     std::vector<TouchedLandmark> touches;
@@ -147,13 +155,14 @@ LandmarkCapture captureLandmarksInLab(const Rig& rig, const Installation& truth,
     return capture;
 }
 
-SurfaceCapture captureSurfaceInLab(const Rig& rig, const Installation& truth, std::uint32_t seed,
-                                   const RegistrationLabOptions& options) {
+SurfaceCapture captureSurfaceInLab(const Rig& rig, const Installation& believed, const Installation& truth,
+                                   std::uint32_t seed, const RegistrationLabOptions& options) {
     const InstalledProjector& projector = firstProjector(truth);
     const CalibratedCamera camera = cameraIn(truth);
     SurfaceCapture capture;
-    capture.model = rig.restMesh();
-    TriangleMesh placed = capture.model;
+    capture.model = deformed(rig, strokesAtRest(rig, believed));
+    capture.seenFrom = positionOf(camera);
+    TriangleMesh placed = deformed(rig, strokesAtRest(rig, truth));
     for (glm::vec3& point : placed.positions) point = glm::vec3(truth.worldFromDevice * glm::vec4(point, 1.0F));
     LabWorld world;
     world.surfaces = {{std::move(placed), glm::vec3(1.0F)}, {tableMesh(truth.tableSize), glm::vec3(1.0F)}};
@@ -203,7 +212,14 @@ Registration measureDeviceInLab(const Rig& rig, const Installation& believed, co
     progress.throwIfCancelled();
     progress.report(0.0, "touching points of the device");
     const LandmarkCapture capture = captureLandmarksInLab(rig, truth, seed, options);
-    return registerDevice(capture, believed, progress.part(0.7, 1.0));
+    const Registration touched = registerDevice(capture, believed, progress.part(0.3, 0.5));
+    if (!touched.good() || believed.cameras.empty()) return touched;
+    progress.throwIfCancelled();
+    progress.report(0.5, "structured light on the device");
+    const SurfaceCapture lit = captureSurfaceInLab(rig, believed, truth, seed, options);
+    Registration seen = registerDevice(lit, touched.installation, progress.part(0.7, 1.0));
+    if (seen.refusal) seen.installation = believed;
+    return seen;
 }
 
 Registration measureEyeInLab(const Rig& rig, const Installation& believed, const Installation& truth,
@@ -231,13 +247,20 @@ Registration measureAllInLab(const Rig& rig, const Installation& believed, const
     const Registration tracker = registerTracker(capture.dots, pointer.installation, progress.part(0.2, 0.4));
     if (!tracker.good()) return refusedAs(tracker);
     capture.landmarks = captureLandmarksInLab(rig, truth, seed, options);
-    const Registration device = registerDevice(capture.landmarks, tracker.installation, progress.part(0.4, 0.6));
+    const Registration device = registerDevice(capture.landmarks, tracker.installation, progress.part(0.4, 0.5));
     if (!device.good()) return refusedAs(device);
     capture.eye = captureEyeInLab(rig, believed, truth, seed, options);
-    const Registration eye = registerEye(capture.eye, device.installation, progress.part(0.6, 0.8));
+    const Registration eye = registerEye(capture.eye, device.installation, progress.part(0.5, 0.6));
     if (!eye.good()) return refusedAs(eye);
-    Registration all = registerJointly(capture, eye.installation, progress.part(0.8, 1.0));
-    return all.good() ? all : refusedAs(all);
+    Registration all = registerJointly(capture, eye.installation, progress.part(0.6, 0.8));
+    if (!all.good()) return refusedAs(all);
+    if (believed.cameras.empty()) return all;
+    const Registration lit = registerDevice(captureSurfaceInLab(rig, believed, truth, seed, options), all.installation,
+                                            progress.part(0.8, 1.0));
+    if (!lit.good()) return refusedAs(lit);
+    all.installation = lit.installation;
+    all.summary += " " + lit.summary;
+    return all;
 }
 
 } // namespace lumorph

@@ -12,7 +12,7 @@
 namespace lumorph {
 
 struct RegistrationLabOptions {
-    std::size_t dots = 12, landmarks = 12, alignments = 8, fresh = 4;
+    std::size_t dots = 12, landmarks = 16, alignments = 8, fresh = 4;
     LabErrors errors;
     LabHands hands;
     TrackerFault fault = TrackerFault::none;
@@ -27,9 +27,10 @@ struct RegistrationLabOptions {
                                           std::uint32_t seed, const RegistrationLabOptions& options = {});
 [[nodiscard]] LandmarkCapture captureLandmarksInLab(const Rig& rig, const Installation& truth, std::uint32_t seed,
                                                     const RegistrationLabOptions& options = {});
-/// Structured light on the device at rest, as the first camera (or the lab's) and projector would decode it: rays, with
-/// a tenth of a pixel of noise at both ends.
-[[nodiscard]] SurfaceCapture captureSurfaceInLab(const Rig& rig, const Installation& truth, std::uint32_t seed,
+/// Structured light on the device at rest, its flaps as high as the play of the true servos leaves them, as the first
+/// camera (or the lab's) and projector would decode it: rays, with a tenth of a pixel of noise at both ends.
+[[nodiscard]] SurfaceCapture captureSurfaceInLab(const Rig& rig, const Installation& believed,
+                                                 const Installation& truth, std::uint32_t seed,
                                                  const RegistrationLabOptions& options = {});
 [[nodiscard]] EyeCapture captureEyeInLab(const Rig& rig, const Installation& believed, const Installation& truth,
                                          std::uint32_t seed, const RegistrationLabOptions& options = {});
@@ -43,7 +44,8 @@ struct RegistrationLabOptions {
 [[nodiscard]] Registration measureTrackerInLab(const Rig& rig, const Installation& believed, const Installation& truth,
                                                std::uint32_t seed, const Progress& progress = {},
                                                const RegistrationLabOptions& options = {});
-/// By touched landmarks. The pointer's tip was measured before.
+/// By touched landmarks, and where the room has a camera, from there on by structured light on the device. The
+/// pointer's tip, for the light also the tracker, was measured before.
 [[nodiscard]] Registration measureDeviceInLab(const Rig& rig, const Installation& believed, const Installation& truth,
                                               std::uint32_t seed, const Progress& progress = {},
                                               const RegistrationLabOptions& options = {});

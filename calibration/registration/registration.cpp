@@ -161,8 +161,8 @@ std::vector<PointError> boardErrors(const HandEye& joint, const PoseTrack& body,
     return errors;
 }
 
-void solveBoard(const BoardCapture& capture, const Progress& progress, Registration& result) {
-    const PoseTrack body = soundTrack(capture.body, "body of the board");
+void solveBoard(const BoardCapture& capture, const CaptureFault* undo, const Progress& progress, Registration& result) {
+    const PoseTrack body = soundTrack(undo ? withoutFault(capture.body, *undo) : capture.body, "body of the board");
     const PoseTrack board = soundTrack(capture.board, "board before the camera");
     const std::size_t used = board.poses.size() - board.poses.size() / kFreshShare;
     PoseTrack seen = board;
@@ -202,13 +202,25 @@ void solveLandmarks(const LandmarkCapture& capture, const CaptureFault* undo, co
                 "touched points, " + std::to_string(capture.touches.size()), result);
 }
 
-void solveSurface(const SurfaceCapture& capture, const Progress& progress, Registration& result) {
+/// Where the device lies as far as is known.
+Pose startOf(const SurfaceCapture& capture, const Installation& room, const Figures& figures) {
+    if (room.origins.deviceBody.way != Origin::Way::measured || capture.body.poses.empty())
+        return poseOf(room.worldFromDevice);
+    return figures.worldFromTracker * capture.body.poses.front().pose * figures.bodyFromDevice;
+}
+
+void solveSurface(const SurfaceCapture& capture, const CaptureFault* undo, const Progress& progress,
+                  Registration& result) {
     const Figures figures = figuresIn(result.installation);
+    SurfaceCapture right = capture;
+    if (undo) right.body = withoutFault(capture.body, *undo);
+    right.body = soundTrack(right.body, "body of the device");
     std::vector<glm::dvec3> above;
     std::ranges::copy_if(capture.points, std::back_inserter(above),
                          [](const glm::dvec3& p) { return !(p.y < kTable); });
-    const SurfaceFit fit = fitSurface(capture.model, above, poseOf(result.installation.worldFromDevice), progress);
-    judgeDevice(placeDeviceBySurface(fit, capture.body, figures.worldFromTracker), capture.fresh, nullptr,
+    const SurfaceFit fit =
+        fitSurface(capture.model, above, capture.seenFrom, startOf(right, result.installation, figures), progress);
+    judgeDevice(placeDeviceBySurface(fit, right.body, figures.worldFromTracker), capture.fresh, undo,
                 "structured light, " + std::to_string(above.size()) + " points", result);
 }
 
@@ -297,7 +309,13 @@ Registration registerTracker(const MarkerCapture& capture, const Installation& b
 
 Registration registerTracker(const BoardCapture& capture, const Installation& believed, const Progress& progress) {
     progress.report(0.0, "the tracker in the room");
-    return orRefusal(believed, [&](Registration& result) { solveBoard(capture, progress, result); });
+    return orRefusal(believed, [&](Registration& result) {
+        result = orNamed("tracked board", [&](const CaptureFault* undo) {
+            Registration one = result;
+            solveBoard(capture, undo, progress, one);
+            return one;
+        });
+    });
 }
 
 Registration registerDevice(const LandmarkCapture& capture, const Installation& believed, const Progress& progress) {
@@ -312,14 +330,26 @@ Registration registerDevice(const LandmarkCapture& capture, const Installation& 
 }
 
 Registration registerDevice(const SurfaceCapture& capture, const Installation& believed, const Progress& progress) {
-    return orRefusal(believed, [&](Registration& result) { solveSurface(capture, progress, result); });
+    return orRefusal(believed, [&](Registration& result) {
+        result = orNamed("the device's surface", [&](const CaptureFault* undo) {
+            Registration one = result;
+            solveSurface(capture, undo, progress, one);
+            return one;
+        });
+    });
 }
 
 Registration registerDevice(const GluedBoardCapture& capture, const Installation& believed, const Progress& progress) {
     progress.report(0.0, "the device on its body");
     return orRefusal(believed, [&](Registration& result) {
-        judgeDevice(placeDeviceByBoard(capture.board, figuresIn(result.installation).worldFromTracker), capture.fresh,
-                    nullptr, "board on the device", result);
+        result = orNamed("board on the device", [&](const CaptureFault* undo) {
+            Registration one = result;
+            BoardOnDevice board = capture.board;
+            if (undo) board.body = withoutFault(board.body, *undo);
+            judgeDevice(placeDeviceByBoard(board, figuresIn(result.installation).worldFromTracker), capture.fresh, undo,
+                        "board on the device", one);
+            return one;
+        });
     });
 }
 

@@ -73,10 +73,12 @@ struct LandmarkCapture {
 [[nodiscard]] Registration registerDevice(const LandmarkCapture& capture, const Installation& believed,
                                           const Progress& progress = {});
 
-/// The device's surface by structured light, while its body is tracked and rests; and landmarks as fresh points.
+/// The device's surface by structured light, while its body is tracked and rests; and landmarks as fresh points. It
+/// begins where the device's body was measured to have it, else at the installation's place of the device.
 struct SurfaceCapture {
     TriangleMesh model;             ///< device frame, metres, as it stood
     std::vector<glm::dvec3> points; ///< room, metres; the table's may be among them
+    glm::dvec3 seenFrom{0.0};       ///< where the camera stands, room, metres
     PoseTrack body;                 ///< in the tracker's world
     std::vector<TouchedLandmark> fresh;
 };

@@ -88,6 +88,17 @@ private:
     double size_ = 0.1;
 };
 
+/// The triangles whose outer side a camera sees, or would with the model turned by a little.
+TriangleMesh facing(TriangleMesh mesh, const glm::dvec3& camera) {
+    constexpr double kLeastCosine = -0.3;
+    std::erase_if(mesh.triangles, [&](const glm::uvec3& t) {
+        const glm::dvec3 a(mesh.positions[t.x]);
+        const glm::dvec3 normal = glm::cross(glm::dvec3(mesh.positions[t.y]) - a, glm::dvec3(mesh.positions[t.z]) - a);
+        return glm::dot(normal, camera - a) < kLeastCosine * glm::length(normal) * glm::distance(camera, a);
+    });
+    return mesh;
+}
+
 void checkPoints(std::span<const glm::dvec3> points) {
     for (const glm::dvec3& p : points)
         if (!std::isfinite(p.x + p.y + p.z))
@@ -114,10 +125,10 @@ void checkHold(const Sums& sums) {
 
 } // namespace
 
-SurfaceFit fitSurface(const TriangleMesh& model, std::span<const glm::dvec3> points, const Pose& start,
-                      const Progress& progress) {
+SurfaceFit fitSurface(const TriangleMesh& model, std::span<const glm::dvec3> points, const glm::dvec3& seenFrom,
+                      const Pose& start, const Progress& progress) {
     checkPoints(points);
-    const SurfaceFitter fitter(model, points);
+    const SurfaceFitter fitter(facing(model, inverseOf(start) * seenFrom), points);
     SurfaceFit fit;
     fit.worldFromModel = start;
     double reach = kFirstReach;

@@ -178,7 +178,7 @@ TEST(RegistrationRefusals, SurfacesThatMaySlide) {
         for (int k = 0; k < 40; ++k) top.emplace_back(-0.08 + 0.004 * i, 0.02, -0.06 + 0.003 * k);
     const auto cause = [&](const std::vector<glm::dvec3>& points) {
         try {
-            (void)fitSurface(plate, points, {});
+            (void)fitSurface(plate, points, {0.5, 2.0, 0.6}, {});
         } catch (const CaptureRefused& refused) {
             return std::string(keyOf(refused.finding().cause));
         }
@@ -280,6 +280,41 @@ TEST(RegistrationRefusals, APointerThatIsTakenForTheBodyIsNamed) {
     for (Alignment& at : sights.fresh) std::swap(at.touch.pointer, *at.touch.body);
     expectRefused(registerEye(sights, room.known), Cause::bodySwapped, "names again", room.known,
                   "head and pointer exchanged");
+}
+
+TEST(RegistrationRefusals, FaultsAreNamedWithACameraToo) {
+    const KnownRoom room(9);
+    const CalibratedCamera camera = defaultLabCamera(room.truth.projectors.front().camera);
+    Installation seeing = room.known;
+    seeing.cameras.resize(1);
+    seeing.cameras.front().camera = camera;
+    const CalibrationBoard board = parseCalibrationBoard("chess:9x7:12");
+    const struct {
+        TrackerFault fault;
+        const char* name;
+        Cause cause;
+    } faults[] = {
+        {TrackerFault::dropsOut, "drops out", Cause::trackerLost},
+        {TrackerFault::swapsBodies, "swaps bodies", Cause::bodySwapped},
+        {TrackerFault::clockJumpsBack, "clock jumps back", Cause::clockJumps},
+        {TrackerFault::leftHanded, "left-handed", Cause::mirrored},
+        {TrackerFault::centimetres, "centimetres", Cause::wrongUnits},
+        {TrackerFault::notANumber, "no number", Cause::notANumber},
+    };
+    for (const auto& row : faults) {
+        RegistrationLabOptions options;
+        options.fault = row.fault;
+        const auto expect = [&](const char* step, const Registration& result) {
+            expectRefused(result, row.cause, "", seeing, std::string(step) + ": " + row.name);
+        };
+        TrackerLab lab(room.truth, 9, {}, {}, row.fault);
+        expect("moved board", registerTracker(lab.moveBoard(camera, board, 0.001), seeing));
+        GluedBoardCapture glued;
+        glued.board = lab.glueBoard(camera, board, 0.001, {{0.0, 0.021, 0.0}, rotationOfTurn({1.5707963, 0.0, 0.0})});
+        glued.fresh = captureLandmarksInLab(device(), room.truth, 9, options).fresh;
+        expect("glued board", registerDevice(glued, seeing));
+        expect("surface", registerDevice(captureSurfaceInLab(device(), seeing, room.truth, 9, options), seeing));
+    }
 }
 
 TEST(RegistrationRefusals, DoubledRowsAreLeftOutAndSaid) {
