@@ -47,7 +47,11 @@ constexpr std::array<std::string_view, kCauseCount> kCauseKeys = {"missing_image
                                                                   "motion_degenerate",
                                                                   "body_swapped",
                                                                   "tip_slipped",
-                                                                  "tip_wrong"};
+                                                                  "tip_wrong",
+                                                                  "servo_dead",
+                                                                  "servo_swapped",
+                                                                  "servo_reversed",
+                                                                  "servo_jammed"};
 
 std::string placeOf(const Finding& finding) {
     if (finding.view.empty() && finding.file.empty()) return "capture";

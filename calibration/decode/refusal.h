@@ -50,10 +50,14 @@ enum class Cause {
     bodySwapped,        ///< "body_swapped": a tracked body is elsewhere for a while
     tipSlipped,         ///< "tip_slipped": a pointer's tip left its dimple
     tipWrong,           ///< "tip_wrong": the pointer's tip is elsewhere than was said
+    servoDead,          ///< "servo_dead": a servo does not move
+    servoSwapped,       ///< "servo_swapped": a servo moves the part of another
+    servoReversed,      ///< "servo_reversed": a servo runs from the end of its range
+    servoJammed,        ///< "servo_jammed": a servo stops before its range ends
 };
 
 /// All of them, in the order above.
-inline constexpr int kCauseCount = static_cast<int>(Cause::tipWrong) + 1;
+inline constexpr int kCauseCount = static_cast<int>(Cause::servoJammed) + 1;
 
 [[nodiscard]] std::string_view keyOf(Cause cause);
 /// The cause of a key; empty where there is none.
