@@ -23,7 +23,8 @@ constexpr std::array<std::string_view, kCauseCount> kCauseKeys = {
     "doubled_rows",        "clock_jumps",      "clocks_unknown",
     "motion_degenerate",   "body_swapped",     "tip_slipped",
     "tip_wrong",           "tracker_lost",     "not_a_number",
-    "fresh_points_far"};
+    "fresh_points_far",    "servo_dead",       "servo_swapped",
+    "servo_reversed",      "servo_jammed"};
 
 std::string placeOf(const Finding& finding) {
     if (finding.view.empty() && finding.file.empty()) return "capture";

@@ -53,10 +53,14 @@ enum class Cause {
     trackerLost,        ///< "tracker_lost": the tracker saw a body no more while it was recorded
     notANumber,         ///< "not_a_number": a recording holds numbers that are none
     freshPointsFar,     ///< "fresh_points_far": points that a fit never saw contradict it
+    servoDead,          ///< "servo_dead": a servo does not move
+    servoSwapped,       ///< "servo_swapped": a servo moves the part of another
+    servoReversed,      ///< "servo_reversed": a servo runs from the end of its range
+    servoJammed,        ///< "servo_jammed": a servo stops before its range ends
 };
 
 /// All of them, in the order above.
-inline constexpr int kCauseCount = static_cast<int>(Cause::freshPointsFar) + 1;
+inline constexpr int kCauseCount = static_cast<int>(Cause::servoJammed) + 1;
 
 [[nodiscard]] std::string_view keyOf(Cause cause);
 /// The cause of a key; empty where there is none.

@@ -75,17 +75,20 @@ struct MatchFrame {
 
     State wanted;                         ///< levels asked for (of the field; empty without one)
     std::vector<double> wantedStrokes;    ///< what the actuators are asked for, one each
-    std::vector<double> estimatedStrokes; ///< where they are under their velocity limits
-    std::shared_ptr<const Votes> votes;   ///< error curves; only when matched
-    double iouVoting = 0.0;               ///< of V(s) by voting alone
-    double iouWanted = 0.0;               ///< of V(wanted)
-    double iouEstimated = 0.0;            ///< of the volume really covered now
-    int statesSeen = 0;                   ///< joint states that refinement looked at
-    double unmatchedVolume = 0.0;         ///< cubic metres of the target that V(wanted) leaves out
-    double overfilledVolume = 0.0;        ///< cubic metres of V(wanted) outside the target
-    double targetVolume = 0.0;            ///< cubic metres of the target in the frame, outside the body
-    double shareBeyondFrame = 0.0;        ///< of the target's volume
-    double shareUnreachable = 0.0;        ///< of the target's voxels that no actuator changes
+    std::vector<double> estimatedStrokes; ///< where they really are under their velocity limits
+    /// What their servos are told for that: the same, but for servos whose curve was measured. Empty in a frame that
+    /// was recorded.
+    std::vector<double> commandedStrokes;
+    std::shared_ptr<const Votes> votes; ///< error curves; only when matched
+    double iouVoting = 0.0;             ///< of V(s) by voting alone
+    double iouWanted = 0.0;             ///< of V(wanted)
+    double iouEstimated = 0.0;          ///< of the volume really covered now
+    int statesSeen = 0;                 ///< joint states that refinement looked at
+    double unmatchedVolume = 0.0;       ///< cubic metres of the target that V(wanted) leaves out
+    double overfilledVolume = 0.0;      ///< cubic metres of V(wanted) outside the target
+    double targetVolume = 0.0;          ///< cubic metres of the target in the frame, outside the body
+    double shareBeyondFrame = 0.0;      ///< of the target's volume
+    double shareUnreachable = 0.0;      ///< of the target's voxels that no actuator changes
     std::shared_ptr<const std::vector<std::uint8_t>> classes; ///< one a voxel, x fastest; empty unless asked for
 
     std::shared_ptr<const Scene> scene;               ///< of the wish

@@ -124,6 +124,7 @@ struct MatchLoop::Data {
 void MatchLoop::Data::fill(const MatchWish& wish, double sinceLast, MatchFrame& frame) {
     const StageTimer timer(clock, frame.ms.total);
     motion.follow(wish.rig, wish.rigOrigin);
+    motion.use(wish.installation);
     fillShown(program.ask(wish, sinceLast, motion.strokes(), clock, frame), sinceLast, frame);
 }
 
@@ -215,8 +216,10 @@ void MatchLoop::Data::hold(const MatchWish& wish, double sinceLast, MatchFrame& 
 void MatchLoop::Data::move(const MatchWish& wish, double sinceLast, MatchFrame& frame) {
     {
         const StageTimer timer(clock, frame.ms.motion);
+        motion.limit(frame.wantedStrokes);
         motion.move(frame.wantedStrokes, sinceLast, wish.stopped);
         frame.estimatedStrokes.assign(motion.strokes().begin(), motion.strokes().end());
+        frame.commandedStrokes.assign(motion.commands().begin(), motion.commands().end());
     }
     const StageTimer timer(clock, frame.ms.deform);
     frame.devicePositions = motion.deformed();
@@ -234,6 +237,7 @@ std::shared_ptr<const MatchFrame> MatchLoop::Data::shown(const MatchWish& wish) 
     if (!wish.source) throw InvalidInput("recording", "there is none to show", "open one first");
     std::shared_ptr<const MatchFrame> frame = wish.source->frame(wish, clock.now());
     motion.follow(wish.rig, wish.rigOrigin);
+    motion.use(wish.installation);
     motion.standAt(frame->estimatedStrokes);
     settled = !wish.source->moves();
     return frame;

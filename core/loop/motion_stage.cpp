@@ -31,14 +31,32 @@ void MotionStage::follow(const std::shared_ptr<const Rig>& rig, const std::share
     const bool edited = rig_ && origin && origin == origin_;
     const bool stay = edited || (rig_ && sameActuators(*rig_, *rig));
     const MotionModel last = std::exchange(motion_, MotionModel(motionLimits(*rig)));
+    const std::vector<double> real = std::exchange(real_, std::vector<double>(rig->actuatorCount(), 0.0));
     limits_ = motionLimits(*rig);
-    if (stay) goOn(last, *rig_, *rig);
+    if (stay) goOn(last, real, *rig_, *rig);
+    if (installation_) curves_ = ServoCurves(rig->actuators(), installation_->servos);
+    curves_.follow(commands(), real_);
     rig_ = rig;
     origin_ = origin;
     deformed_ = nullptr;
 }
 
-void MotionStage::goOn(const MotionModel& last, const Rig& from, const Rig& to) {
+void MotionStage::use(const std::shared_ptr<const Installation>& installation) {
+    if (installation == installation_) return;
+    const bool same = installation && installation_ && installation->servos == installation_->servos;
+    installation_ = installation;
+    if (same) return;
+    curves_ = installation && rig_ ? ServoCurves(rig_->actuators(), installation->servos) : ServoCurves();
+    curves_.follow(commands(), real_);
+}
+
+void MotionStage::standAt(std::span<const double> strokes) {
+    motion_.reset(strokes);
+    real_.assign(strokes.begin(), strokes.end());
+    if (!curves_.empty()) motion_.reset(curves_.commandsAt(strokes));
+}
+
+void MotionStage::goOn(const MotionModel& last, const std::vector<double>& real, const Rig& from, const Rig& to) {
     const bool sameCount = from.actuatorCount() == to.actuatorCount();
     std::vector<double> positions(to.actuatorCount(), 0.0), velocities(to.actuatorCount(), 0.0);
     for (std::size_t i = 0; i < to.actuatorCount(); ++i) {
@@ -47,6 +65,7 @@ void MotionStage::goOn(const MotionModel& last, const Rig& from, const Rig& to) 
         if (!before) continue;
         positions[i] = last.positions()[*before];
         velocities[i] = last.velocities()[*before];
+        real_[i] = real[*before];
     }
     motion_.resume(positions, velocities);
 }
@@ -57,17 +76,23 @@ void MotionStage::move(std::span<const double> wanted, double seconds, bool stop
         motion_.reset(before); // velocities become zero
         return;
     }
-    motion_.step(wanted, seconds);
+    const std::vector<double> aims = curves_.commandsFor(wanted, real_, before);
+    motion_.step(aims, seconds);
     // The approach has no end; its last, invisible bit is done at once where the limits allow it.
-    bool ends = arrived(wanted);
+    bool ends = isAt(aims);
     for (std::size_t i = 0; i < before.size() && ends; ++i)
-        ends = std::abs(wanted[i] - before[i]) <= limits_[i].maxVelocity * seconds;
-    if (ends) motion_.reset(wanted);
+        ends = std::abs(aims[i] - before[i]) <= limits_[i].maxVelocity * seconds;
+    if (ends) motion_.reset(aims);
+    curves_.follow(commands(), real_);
 }
 
-bool MotionStage::arrived(std::span<const double> wanted) const noexcept {
+bool MotionStage::arrived(std::span<const double> wanted) const {
+    return isAt(curves_.commandsFor(wanted, real_, commands()));
+}
+
+bool MotionStage::isAt(std::span<const double> commands) const noexcept {
     const auto near = [](double a, double b) { return std::abs(a - b) <= kArrived; };
-    return std::ranges::equal(motion_.positions(), wanted, near);
+    return std::ranges::equal(motion_.positions(), commands, near);
 }
 
 const std::shared_ptr<const std::vector<glm::vec3>>& MotionStage::deformed() {

@@ -6,33 +6,48 @@
 
 #include "core/motion/motion.h"
 #include "core/rig/rig.h"
+#include "core/scene/measured_servos.h"
 
 namespace lumorph {
 
 /// Last stages of a frame: the actuators move under their limits, and the device is deformed to where they are.
+/// What moves under the limits are the commands: a measured servo is told what brings it where it is wanted, and where
+/// it really is follows from its curve. So play is taken up as fast as the servo may move, and until that is done the
+/// device is known to stand still.
 class MotionStage {
 public:
     /// An actuator stays where it is when the rig has the same actuators as the one before. In an edit of that rig,
     /// which has the same `origin`, each goes on, as fast as it was: by its name, or where it was renamed by its place;
     /// one that is new is at rest. Else all are at rest.
     void follow(const std::shared_ptr<const Rig>& rig, const std::shared_ptr<const void>& origin);
-    /// The actuators stand there, one stroke each.
-    void standAt(std::span<const double> strokes) { motion_.reset(strokes); }
-    /// Moves towards the wanted strokes; while stopped all hold still, and start softly afterwards.
+    /// The servos as they were measured, from now on; null: as they are told. Commands stay as they are.
+    void use(const std::shared_ptr<const Installation>& installation);
+    /// The actuators really stand there, one stroke each.
+    void standAt(std::span<const double> strokes);
+    /// Strokes that are wanted, within what measured servos reach.
+    void limit(std::span<double> wanted) const noexcept { curves_.limit(wanted); }
+    /// Moves towards the strokes that are really wanted; while stopped all hold still, and start softly afterwards.
     void move(std::span<const double> wanted, double seconds, bool stopped);
     /// Within 1e-5 strokes of what is wanted they have arrived; then a motion ends exactly there.
-    [[nodiscard]] bool arrived(std::span<const double> wanted) const noexcept;
-    [[nodiscard]] std::span<const double> strokes() const noexcept { return motion_.positions(); }
+    [[nodiscard]] bool arrived(std::span<const double> wanted) const;
+    /// Where the actuators really are.
+    [[nodiscard]] std::span<const double> strokes() const noexcept { return real_; }
+    /// What their servos are told.
+    [[nodiscard]] std::span<const double> commands() const noexcept { return motion_.positions(); }
     /// Positions of the rig's vertices; the same object while nothing moves.
     [[nodiscard]] const std::shared_ptr<const std::vector<glm::vec3>>& deformed();
 
 private:
-    void goOn(const MotionModel& last, const Rig& from, const Rig& to);
+    void goOn(const MotionModel& last, const std::vector<double>& real, const Rig& from, const Rig& to);
+    [[nodiscard]] bool isAt(std::span<const double> commands) const noexcept;
 
     std::shared_ptr<const Rig> rig_;
     std::shared_ptr<const void> origin_;
     std::vector<MotionLimits> limits_;
-    MotionModel motion_{{}};
+    MotionModel motion_{{}}; ///< of the commands
+    std::vector<double> real_;
+    std::shared_ptr<const Installation> installation_;
+    ServoCurves curves_;
     std::vector<double> deformedAt_;
     std::shared_ptr<const std::vector<glm::vec3>> deformed_;
 };

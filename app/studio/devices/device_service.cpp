@@ -31,6 +31,11 @@ constexpr int kTestMilliseconds = 33;
 
 bool drives(LinkPhase phase) { return phase == LinkPhase::live || phase == LinkPhase::starting; }
 
+/// What a frame tells the servos. A recording knows where the device was, not what it was told.
+const std::vector<double>& commandsOf(const MatchFrame& frame) {
+    return frame.commandedStrokes.empty() ? frame.estimatedStrokes : frame.commandedStrokes;
+}
+
 /// The set-up of one profile on the board of another.
 DeviceProfile onBoardOf(DeviceProfile setup, const DeviceProfile& board) {
     setup.address = board.address;
@@ -176,7 +181,7 @@ void DeviceService::Data::follow(const MatchFrame& frame) {
     feed.setSlow(SlowCause::hand, handWatch.look(SteadyClock().now()));
     const bool anew = std::exchange(apart, !drives) && drives;
     if (!drives) return;
-    feed.follow(frame.estimatedStrokes, anew);
+    feed.follow(commandsOf(frame), anew);
     if (anew)
         QMetaObject::invokeMethod(
             &service, [this] { startTicking(); }, Qt::QueuedConnection);
@@ -492,7 +497,7 @@ void DeviceService::askStart(StartBy by) { emit startAsked(by); }
 std::vector<double> DeviceService::wanted() const {
     std::vector<double> shown = data_->feed.shown();
     const auto& frame = data_->loop.frame();
-    return shown.empty() && frame && !frame->recorded ? frame->estimatedStrokes : shown;
+    return shown.empty() && frame && !frame->recorded ? commandsOf(*frame) : shown;
 }
 
 void DeviceService::setFollowsRecordings(bool follows) { data_->followsRecordings = follows; }

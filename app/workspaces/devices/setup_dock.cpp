@@ -143,7 +143,9 @@ private:
         const LinkStatus& link = studio_.devices.status();
         if (servo < link.servos.size() && link.servos[servo].attached) return link.servos[servo].commanded;
         const auto& frame = studio_.loop.frame();
-        return frame && servo < frame->estimatedStrokes.size() ? frame->estimatedStrokes[servo] : 0.0;
+        if (!frame) return 0.0;
+        const auto& strokes = frame->commandedStrokes.empty() ? frame->estimatedStrokes : frame->commandedStrokes;
+        return servo < strokes.size() ? strokes[servo] : 0.0;
     }
 
     void addController(QVBoxLayout& rows) {

@@ -1,0 +1,213 @@
+#include "calibration/servos/servo_calibration.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include <glm/geometric.hpp>
+
+#include "calibration/lab/true_room.h"
+#include "calibration/servos/servo_judge.h"
+#include "core/base/error.h"
+#include "core/scene/measured_servos.h"
+
+namespace lumorph {
+
+namespace {
+
+using servos::BothWays;
+using servos::LevelSeen;
+using servos::Mover;
+using Kind = ServoStep::Kind;
+using Estimates = std::vector<std::optional<StrokeEstimate>>;
+
+constexpr double kKnownTurn = 0.001;   // radians: how still the device lies between two passes
+constexpr double kKnownShift = 0.0003; // metres
+constexpr double kBumped = 0.003;      // metres, or as many radians a tenth of a metre: somebody pushed it
+constexpr double kSureEnough = 0.05;   // strokes: of a part that has been seen
+constexpr double kFreshMost = 2.0;     // degrees: of the median fresh error that curves are believed with
+
+/// Passes one after the other: each begins where the one before was, or where it was told to go.
+Estimates estimatesOf(const Rig& rig, const glm::dmat4& worldFromDevice, const ServoPlan& plan,
+                      const std::vector<ServoPass>& passes, const Progress& progress) {
+    StrokeSolver solver(rig, worldFromDevice);
+    Estimates found;
+    DeviceNudge place;
+    std::vector<std::vector<double>> guesses;
+    for (std::size_t k = 0; k < passes.size(); ++k) {
+        progress.throwIfCancelled();
+        progress.report(static_cast<double>(k) / static_cast<double>(passes.size()), "working out the servos");
+        const ServoStep& step = plan.steps[k];
+        guesses = {step.commanded};
+        if (k > 0 && found.back()) guesses.push_back(found.back()->strokes);
+        const bool thoroughly = step.kind == Kind::rest || step.kind == Kind::find;
+        found.push_back(solver.solve(passes[k], guesses, place, thoroughly));
+        if (!found.back() || place.shiftSigma == kKnownShift) continue;
+        place = found.back()->place;
+        place.turnSigma = kKnownTurn;
+        place.shiftSigma = kKnownShift;
+    }
+    return found;
+}
+
+void requireSeen(const Estimates& estimates) {
+    const auto seen = std::ranges::count_if(estimates, [](const auto& one) { return one.has_value(); });
+    if (!estimates.empty() && estimates.front() && 2 * static_cast<std::size_t>(seen) > estimates.size()) return;
+    throw CaptureRefused({Cause::boardUnlit, "servos", "",
+                          "camera and projector see too little of the device to tell how it stands",
+                          "place the device where both see it, and check the calibration of projector and camera"});
+}
+
+void requireStill(const Estimates& estimates) {
+    const DeviceNudge& first = estimates.front()->place;
+    int moved = 0;
+    for (const auto& one : estimates) {
+        if (!one) continue;
+        const double shift = glm::length(one->place.shift - first.shift);
+        const double turn = 0.1 * glm::length(one->place.turn - first.turn);
+        moved += shift + turn > kBumped ? 1 : 0;
+    }
+    if (moved * 5 < static_cast<int>(estimates.size())) return;
+    throw CaptureRefused({Cause::rigMoved, "servos", "", "the device moved on the table while it was measured",
+                          "fix it, keep your hands off, and measure again"});
+}
+
+/// Who moved in the pass in which this servo alone was told to.
+Mover moverOf(const StrokeEstimate& rest, const StrokeEstimate& now) {
+    Mover mover;
+    for (std::size_t i = 0; i < now.strokes.size(); ++i) {
+        const double by = now.strokes[i] - rest.strokes[i];
+        if (now.sigma[i] < kSureEnough && std::abs(by) > std::abs(mover.by)) mover = {i, by};
+    }
+    return mover;
+}
+
+std::vector<Mover> moversOf(const ServoPlan& plan, const Estimates& estimates, std::size_t count) {
+    std::vector<Mover> movers(count);
+    for (std::size_t i = 0; i < count; ++i) movers[i].part = i;
+    for (std::size_t k = 0; k < plan.steps.size(); ++k) {
+        if (plan.steps[k].kind != Kind::find || !estimates[k]) continue;
+        const std::size_t servo = plan.steps[k].servos.front();
+        const Mover mover = moverOf(*estimates.front(), *estimates[k]);
+        if (mover.by != 0.0) movers[servo] = mover;
+    }
+    return movers;
+}
+
+/// The levels of one servo: those of its group, up to the highest and down again.
+BothWays levelsOf(const ServoPlan& plan, const Estimates& estimates, std::size_t servo, std::size_t part) {
+    BothWays ways;
+    double before = -1.0;
+    for (std::size_t k = 0; k < plan.steps.size(); ++k) {
+        const ServoStep& step = plan.steps[k];
+        if (step.kind != Kind::level || std::ranges::find(step.servos, servo) == step.servos.end()) continue;
+        const double commanded = step.commanded[servo];
+        const bool rises = commanded > before;
+        before = commanded;
+        if (!estimates[k]) continue;
+        const LevelSeen seen{commanded, estimates[k]->strokes[part], estimates[k]->sigma[part]};
+        (rises ? ways.up : ways.down).push_back(seen);
+        // Each end belongs to both ways.
+        if (rises && commanded >= 1.0) ways.down.push_back(seen);
+    }
+    std::ranges::sort(ways.down, {}, &LevelSeen::commanded);
+    return ways;
+}
+
+/// What curves say of fresh states, against what was seen of them.
+void judgeFresh(const Rig& rig, const ServoPlan& plan, ServoCalibration& result) {
+    std::vector<double> errors;
+    const std::size_t count = rig.actuatorCount();
+    std::vector<double> real(count, 0.0);
+    for (std::size_t k = 0; k < plan.steps.size(); ++k)
+        for (std::size_t i = 0; i < count; ++i) {
+            const ServoFinding& servo = result.servos[i];
+            real[i] = realStroke(servo.curve, plan.steps[k].commanded[i], real[i]);
+            const auto& seen = result.estimates[k];
+            if (plan.steps[k].kind != Kind::fresh || !seen || seen->sigma[i] > kSureEnough) continue;
+            errors.push_back(servo.degrees * std::abs(seen->strokes[i] - real[i]));
+        }
+    if (errors.empty()) return;
+    std::ranges::sort(errors);
+    result.freshDegrees = errors[errors.size() / 2];
+    result.freshWorst = errors.back();
+}
+
+double medianRms(const Estimates& estimates) {
+    std::vector<double> all;
+    for (const auto& one : estimates)
+        if (one) all.push_back(one->rms);
+    std::ranges::nth_element(all, all.begin() + static_cast<std::ptrdiff_t>(all.size() / 2));
+    return all[all.size() / 2];
+}
+
+/// Curves of all servos, and who stops too early.
+void drawCurves(const Rig& rig, const ServoPlan& plan, ServoCalibration& result) {
+    for (std::size_t i = 0; i < result.servos.size(); ++i) {
+        ServoFinding& servo = result.servos[i];
+        const BothWays ways = levelsOf(plan, result.estimates, i, i);
+        servo.stopsAt = servos::stopOf(ways);
+        drawCurve(ways, servo);
+        if (servo.curve.points.empty()) {
+            result.findings.push_back({Cause::tooFewPoints, servo.curve.actuator, "",
+                                       "too little of the part of servo \"" + servo.curve.actuator + "\" was seen",
+                                       "move camera or projector so that both see it while it moves"});
+            result.usable = false;
+        } else if (servo.stopsAt) {
+            result.findings.push_back(
+                servos::jammedFinding(rig, i, *servo.stopsAt, servo.curve.points.back().rising, servo.degrees));
+        }
+    }
+}
+
+} // namespace
+
+ServoCalibration solveServos(const Rig& rig, const glm::dmat4& worldFromDevice, const ServoPlan& plan,
+                             const std::vector<ServoPass>& passes, const Progress& progress) {
+    if (passes.size() != plan.steps.size() || passes.empty())
+        throw InvalidInput("measurement of servos",
+                           std::to_string(passes.size()) + " passes for " + std::to_string(plan.steps.size()) +
+                               " steps of the plan",
+                           "take one pass for each step");
+    ServoCalibration result;
+    result.estimates = estimatesOf(rig, worldFromDevice, plan, passes, progress);
+    requireSeen(result.estimates);
+    requireStill(result.estimates);
+    const std::vector<Mover> movers = moversOf(plan, result.estimates, rig.actuatorCount());
+    for (std::size_t i = 0; i < rig.actuatorCount(); ++i) {
+        const Actuator& actuator = rig.actuators()[i];
+        ServoFinding& servo = result.servos.emplace_back();
+        servo.curve.actuator = actuator.name;
+        servo.degrees = degreesOf(actuator).value_or(kDegreesOfUnturned);
+        servo.moves = movers[i].part;
+    }
+    result.rms = medianRms(result.estimates);
+    result.usable = servos::judgeWiring(rig, movers, *result.estimates.front(), result.findings);
+    if (!result.usable) return result;
+    drawCurves(rig, plan, result);
+    judgeFresh(rig, plan, result);
+    if (result.freshDegrees > kFreshMost) {
+        result.usable = false;
+        result.findings.push_back(
+            {Cause::modelDoesNotFit, "servos", "",
+             "fresh states are " + std::to_string(result.freshDegrees) + " degrees from where the curves put them",
+             "look for loose parts, then measure again"});
+    }
+    return result;
+}
+
+Installation withServos(const Installation& room, const ServoCalibration& measured, const std::string& method) {
+    if (!measured.usable) return room;
+    Installation edited = room;
+    edited.servos.clear();
+    for (const ServoFinding& servo : measured.servos) {
+        MeasuredServo curve = servo.curve;
+        const auto before = std::ranges::find(room.servos, curve.actuator, &MeasuredServo::actuator);
+        if (before != room.servos.end()) curve.lagSeconds = before->lagSeconds; // another measurement's figure
+        edited.servos.push_back(std::move(curve));
+    }
+    markOrigins(room, edited, {Origin::Way::measured, method, utcDate()});
+    return edited;
+}
+
+} // namespace lumorph

@@ -1,0 +1,181 @@
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <stop_token>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "calibration/lab/true_room.h"
+#include "calibration/servos/servo_gain.h"
+#include "calibration/servos/servo_lab.h"
+#include "core/base/error.h"
+#include "core/base/resources.h"
+#include "core/rig/rig_file.h"
+#include "core/scene/measured_servos.h"
+
+namespace lumorph {
+namespace {
+
+bool takesLong() { return std::getenv("LUMORPH_LONG_TESTS") != nullptr; }
+
+const Rig& tablet() {
+    static const Rig rig = readRig(resourceFile("models/tablet.glb"));
+    return rig;
+}
+
+/// As the camera can see it: the device cannot bend beyond its range.
+double trueAt(const MeasuredServo& servo, double commanded, bool rises) {
+    return realStroke(servo, commanded, rises ? 0.0 : 1.0);
+}
+
+struct CurveErrors {
+    double worst = 0.0;    ///< degrees, over both ways
+    double backlash = 0.0; ///< degrees
+};
+
+/// Between the levels too, at 97 commands; without the ends, which only one way reaches.
+CurveErrors errorsOf(const ServoCalibration& measured, const Installation& truth, double backlashDegrees) {
+    CurveErrors errors;
+    for (std::size_t i = 0; i < measured.servos.size(); ++i) {
+        const ServoFinding& servo = measured.servos[i];
+        for (int k = 0; k <= 96; ++k)
+            for (const bool rises : {true, false}) {
+                const double seen = realStroke(servo.curve, k / 96.0, rises ? 0.0 : 1.0);
+                const double real = trueAt(truth.servos[i], k / 96.0, rises);
+                errors.worst = std::max(errors.worst, servo.degrees * std::abs(seen - real));
+            }
+        errors.backlash = std::max(errors.backlash, std::abs(servo.backlashDegrees - backlashDegrees));
+    }
+    return errors;
+}
+
+TEST(ServoCalibrationTest, SixBentServosWithTwoDegreesOfBacklash) {
+    const int seeds = takesLong() ? 8 : 2;
+    std::printf("seed  groups  passes  seconds  worst curve  worst backlash  fresh median / worst  rms\n");
+    for (int seed = 1; seed <= seeds; ++seed) {
+        const Installation believed = defaultInstallation();
+        const Installation truth = trueRoom(believed, tablet().actuators(), seed);
+        const ServoLabResult result = measureServosInLab(tablet(), believed, truth, seed);
+        ASSERT_EQ(result.measured.servos.size(), 6U);
+        for (const Finding& finding : result.measured.findings) ADD_FAILURE() << sentenceOf(finding);
+        ASSERT_TRUE(result.measured.usable);
+        const CurveErrors errors = errorsOf(result.measured, truth, LabErrors{}.backlashDegrees);
+        std::printf("%4d  %6zu  %6zu  %7.1f  %7.2f deg  %10.2f deg  %6.2f / %.2f deg  %.2f mm\n", seed,
+                    result.plan.groups.size(), result.plan.steps.size(), result.seconds, errors.worst, errors.backlash,
+                    result.measured.freshDegrees, result.measured.freshWorst, 1e3 * result.measured.rms);
+        EXPECT_LE(errors.worst, 1.0);
+        EXPECT_LE(errors.backlash, 0.3);
+        EXPECT_LE(result.seconds, 180.0);
+        EXPECT_EQ(result.room.servos.size(), 6U);
+        EXPECT_EQ(result.room.origins.servos.way, Origin::Way::measured);
+    }
+}
+
+struct FaultCase {
+    ServoFault fault;
+    Cause cause;
+    const char* name;
+};
+
+class ServoFaultTest : public testing::TestWithParam<FaultCase> {};
+
+TEST_P(ServoFaultTest, IsNamedWithItsServoAndNobodyElse) {
+    const Installation believed = defaultInstallation();
+    const Installation truth = trueRoom(believed, tablet().actuators(), 3);
+    ServoLabOptions options;
+    options.fault = GetParam().fault;
+    const ServoLabResult result = measureServosInLab(tablet(), believed, truth, 3, {}, options);
+    std::vector<std::string> expected, named;
+    for (const std::size_t i : faultyServos(GetParam().fault, 6)) expected.push_back(tablet().actuators()[i].name);
+    for (const Finding& finding : result.measured.findings) {
+        std::printf("%s\n", sentenceOf(finding).c_str());
+        EXPECT_EQ(keyOf(finding.cause), keyOf(GetParam().cause));
+        named.push_back(finding.view);
+    }
+    EXPECT_EQ(named, expected);
+    const bool jammed = GetParam().fault == ServoFault::jammed;
+    EXPECT_EQ(result.measured.usable, jammed);
+    EXPECT_EQ(result.room == believed, !jammed); // nothing is kept of servos that are wired wrongly
+    if (jammed) {
+        const MeasuredServo& servo = result.room.servos[faultyServos(ServoFault::jammed, 6).front()];
+        EXPECT_NEAR(reachOf(servo).high, kLabStop, 1.0 / 90.0);
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(Lab, ServoFaultTest,
+                         testing::Values(FaultCase{ServoFault::swapped, Cause::servoSwapped, "swapped"},
+                                         FaultCase{ServoFault::reversed, Cause::servoReversed, "reversed"},
+                                         FaultCase{ServoFault::dead, Cause::servoDead, "dead"},
+                                         FaultCase{ServoFault::jammed, Cause::servoJammed, "jammed"}),
+                         [](const auto& info) { return info.param.name; });
+
+TEST(ServoCalibrationTest, MatchedIouOfTheRealDeviceRises) {
+    const Installation believed = defaultInstallation();
+    const Installation truth = trueRoom(believed, tablet().actuators(), 1);
+    const ServoLabResult result = measureServosInLab(tablet(), believed, truth, 1);
+    const auto library = readTargets({resourceFile("targets/bowl.glb"), resourceFile("targets/corners.glb"),
+                                      resourceFile("targets/cove.glb"), resourceFile("targets/valley.glb")});
+    LibraryFitOptions options;
+    options.resolution = 25;
+    const ServoGain gain = servoGain(tablet(), library, result.room, truth, options);
+    std::printf("IoU wanted %.4f, real device before %.4f, after %.4f; projection off by %.2f mm before, %.2f after\n",
+                gain.wanted, gain.told, gain.measured, 1e3 * gain.toldOff, 1e3 * gain.measuredOff);
+    EXPECT_GT(gain.measured, gain.told);
+    EXPECT_NEAR(gain.measured, gain.wanted, 0.01);
+    EXPECT_LT(gain.measuredOff, 0.25 * gain.toldOff);
+}
+
+TEST(ServoCalibrationTest, StopEndsItWithNothingKept) {
+    const Installation believed = defaultInstallation();
+    const Installation truth = trueRoom(believed, tablet().actuators(), 1);
+    std::stop_source stop;
+    int reports = 0;
+    std::string first;
+    const Progress progress(
+        [&](double, std::string_view stage) {
+            if (reports == 0) first = stage;
+            if (++reports == 5) stop.request_stop();
+        },
+        stop.get_token());
+    EXPECT_THROW(static_cast<void>(measureServosInLab(tablet(), believed, truth, 1, progress)), Cancelled);
+    EXPECT_LE(reports, 6);
+    EXPECT_NE(first.find("hands off"), std::string::npos) << first;
+}
+
+TEST(ServoCalibrationTest, RefusesWhatIsNoMeasurement) {
+    const ServoPlan plan = planServos(tablet(), {{0, 1, 2, 3}, {4, 5}});
+    EXPECT_THROW(static_cast<void>(solveServos(tablet(), glm::dmat4(1.0), plan, {})), InvalidInput);
+    const std::vector<ServoPass> nothing(plan.steps.size());
+    EXPECT_THROW(static_cast<void>(solveServos(tablet(), glm::dmat4(1.0), plan, nothing)), CaptureRefused);
+    const std::vector<ServoPass> broken(plan.steps.size(),
+                                        ServoPass(1000, {glm::dvec3(std::numeric_limits<double>::quiet_NaN()), 1.0}));
+    EXPECT_THROW(static_cast<void>(solveServos(tablet(), glm::dmat4(1.0), plan, broken)), CaptureRefused);
+    EXPECT_THROW(static_cast<void>(planServos(tablet(), {{0, 1}})), InvalidInput);
+    EXPECT_THROW(static_cast<void>(planServos(tablet(), {{0, 1, 2, 3, 4, 5}}, {.steps = 1})), InvalidInput);
+    Installation dark = defaultInstallation();
+    dark.projectors.clear();
+    EXPECT_THROW(static_cast<void>(measureServosInLab(tablet(), dark, dark, 1)), InvalidInput);
+}
+
+TEST(ServoPlanTest, PartsOfTheSameVerticesMoveOneAfterTheOther) {
+    const auto groups = servoGroups(tablet(), [](std::span<const double>) { return std::vector<int>(6, 100); });
+    for (const auto& group : groups)
+        for (const std::size_t a : group)
+            for (const std::size_t b : group)
+                for (const std::uint32_t vertex : tablet().verticesOf(a)) {
+                    const auto others = tablet().verticesOf(b);
+                    ASSERT_TRUE(a == b || !std::ranges::binary_search(others, vertex));
+                }
+    // Where one hides another, each is measured by itself.
+    const auto hidden = servoGroups(tablet(), [](std::span<const double> strokes) {
+        const auto up = std::ranges::count_if(strokes, [](double s) { return s > 0.0; });
+        return std::vector<int>(6, up > 1 ? 10 : 100);
+    });
+    EXPECT_EQ(hidden.size(), 6U);
+}
+
+} // namespace
+} // namespace lumorph
