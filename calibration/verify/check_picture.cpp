@@ -16,9 +16,9 @@ namespace lumorph {
 
 namespace {
 
-constexpr double kLonger = 10.0;                                                        // times: arrows
+constexpr double kLonger = 8.0;                                                         // times: arrows
 constexpr double kReddest = 3e-3;                                                       // metres
-constexpr int kCell = 26;                                                               // pixels between arrows
+constexpr int kCell = 44;                                                               // pixels between arrows
 constexpr double kFineGrid = 0.01, kCoarseGrid = 0.05, kLine = 0.00045, kCross = 0.006; // metres
 
 cv::Scalar colorOf(double metres) {
@@ -30,20 +30,24 @@ cv::Scalar colorOf(double metres) {
 class Plan {
 public:
     Plan(const Box& box, int width) : low_(box.min), scale_(width / static_cast<double>(box.size().x)) {
-        image_ = cv::Mat(static_cast<int>(scale_ * static_cast<double>(box.size().z)), width, CV_8UC3,
-                         cv::Scalar(38, 34, 32));
+        const int height = static_cast<int>(scale_ * static_cast<double>(box.size().z));
+        whole_ = cv::Mat(kTop + height + kBottom, width, CV_8UC3, cv::Scalar(24, 21, 20));
+        image_ = whole_(cv::Rect(0, kTop, width, height));
+        image_.setTo(cv::Scalar(38, 34, 32));
     }
     [[nodiscard]] cv::Point at(const glm::dvec3& p) const {
         return {static_cast<int>(std::lround(scale_ * (p.x - static_cast<double>(low_.x)))),
                 static_cast<int>(std::lround(scale_ * (p.z - static_cast<double>(low_.z))))};
     }
     [[nodiscard]] cv::Mat& image() { return image_; }
-    [[nodiscard]] double scale() const { return scale_; }
+    [[nodiscard]] cv::Mat& whole() { return whole_; } ///< with room for words above and below
+
+    static constexpr int kTop = 128, kBottom = 44; ///< pixels
 
 private:
     glm::vec3 low_;
     double scale_;
-    cv::Mat image_;
+    cv::Mat whole_, image_;
 };
 
 /// From below upwards, so that what lies on top hides the rest.
@@ -93,8 +97,8 @@ void drawArrows(Plan& plan, const std::vector<LightError>& map) {
 void drawWords(Plan& plan, const RoomCheck& check) {
     char figures[120];
     std::snprintf(figures, sizeof figures,
-                  "median %.1f mm, 95 %% within %.1f mm, worst %.1f mm; arrows 10 times as long",
-                  1e3 * check.now.median, 1e3 * check.now.most, 1e3 * check.now.worst);
+                  "median %.1f mm, 95 %% within %.1f mm, worst %.1f mm; arrows 8 times as long", 1e3 * check.now.median,
+                  1e3 * check.now.most, 1e3 * check.now.worst);
     const cv::Scalar ink(235, 235, 235);
     std::string first = check.sentence;
     std::vector<std::string> lines;
@@ -107,13 +111,13 @@ void drawWords(Plan& plan, const RoomCheck& check) {
     lines.push_back(first);
     lines.emplace_back(figures);
     for (std::size_t i = 0; i < lines.size(); ++i)
-        cv::putText(plan.image(), lines[i], {16, 30 + 26 * static_cast<int>(i)}, cv::FONT_HERSHEY_SIMPLEX, 0.62, ink, 1,
+        cv::putText(plan.whole(), lines[i], {16, 30 + 26 * static_cast<int>(i)}, cv::FONT_HERSHEY_SIMPLEX, 0.62, ink, 1,
                     cv::LINE_AA);
-    const int bottom = plan.image().rows - 22;
+    const int bottom = plan.whole().rows - 22;
     for (int i = 0; i <= 3; ++i) {
         const int x = 24 + 110 * i;
-        cv::circle(plan.image(), {x, bottom}, 7, colorOf(1e-3 * i), cv::FILLED, cv::LINE_AA);
-        cv::putText(plan.image(), std::to_string(i) + " mm", {x + 14, bottom + 6}, cv::FONT_HERSHEY_SIMPLEX, 0.55, ink,
+        cv::circle(plan.whole(), {x, bottom}, 7, colorOf(1e-3 * i), cv::FILLED, cv::LINE_AA);
+        cv::putText(plan.whole(), std::to_string(i) + " mm", {x + 14, bottom + 6}, cv::FONT_HERSHEY_SIMPLEX, 0.55, ink,
                     1, cv::LINE_AA);
     }
 }
@@ -153,7 +157,7 @@ Image errorPicture(const RoomCheck& check, const Rig& rig, const Installation& b
     drawDevice(plan, device);
     drawArrows(plan, check.map);
     drawWords(plan, check);
-    return imageOf(plan.image());
+    return imageOf(plan.whole());
 }
 
 Image gridPicture(const Rig& rig, const Installation& believed, std::span<const double> strokes,

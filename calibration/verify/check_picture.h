@@ -11,7 +11,7 @@
 namespace lumorph {
 
 /// An error map from above: the device on its table, and an arrow from where light was meant to be to where it is, made
-/// ten times as long and coloured from green (none) to red (3 mm and more). `strokes`: the bend that is drawn.
+/// eight times as long and coloured from green (none) to red (3 mm and more). `strokes`: the bend that is drawn.
 [[nodiscard]] Image errorPicture(const RoomCheck& check, const Rig& rig, const Installation& believed,
                                  std::span<const double> strokes, int width = 1200);
 
