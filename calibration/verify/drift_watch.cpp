@@ -10,6 +10,7 @@
 
 #include "calibration/verify/picture_shift.h"
 #include "calibration/verify/show_prediction.h"
+#include "calibration/verify/silhouette_watch.h"
 #include "core/base/error.h"
 
 namespace lumorph {
@@ -26,7 +27,7 @@ constexpr double kDarkPicture = 10.0; // grey levels that 99 % stay below
 constexpr double kSharpEnough = 0.35; // of the contrast between neighbours that was predicted
 constexpr double kGainLearns = 0.2;
 constexpr double kSureSigmas = 4.0;
-constexpr double kAlikeShare = 0.9;                                         // of what the best cause explains
+constexpr double kAlikeShare = 0.97;                                        // of what the best cause explains
 constexpr double kWatchTurn = 0.02, kWatchShift = 0.03, kWatchStroke = 0.2; // nobody believes more
 
 /// Sums over the cells of looks, fading.
@@ -71,12 +72,13 @@ std::string besideWords(double metres) {
 struct DriftWatch::Data {
     Data(const Rig& rig, const Installation& believed, const DriftWatchOptions& wish)
         : options(wish), prediction(rig, believed, wish.width, wish.camera), parts(partsOf(believed, rig)),
-          evidence(parts.size()) {}
+          evidence(parts.size()), silhouettes(rig, believed, wish.width, wish.camera, wish.memory) {}
 
     DriftWatchOptions options;
     ShowPrediction prediction;
     RoomParts parts;
     Evidence evidence;
+    SilhouetteWatch silhouettes;
     std::vector<WatchCell> cells;
     std::shared_ptr<const RoomSurface> cellsOfRays; ///< of which they are
     double gain = 0.0;                              ///< grey levels a unit of light, as looks had it
@@ -128,7 +130,8 @@ std::optional<NoVerdict> DriftWatch::Data::obstacleOf(const cv::Mat1f& seen, con
 
 DriftWatch::Data::Glance DriftWatch::Data::glance(const ShowLook& show) {
     Glance glance;
-    cv::Mat1f predicted = prediction.predict(show.sent, show.strokes), seen;
+    const CoarseShow sent = prediction.coarse(show.sent, show.strokes);
+    cv::Mat1f predicted = prediction.predict(sent, show.strokes), seen;
     if (show.photograph.empty()) {
         glance.obstacle =
             NoVerdict{Obstacle::cameraLost, "the camera gives no picture", "look whether it is plugged in"};
@@ -140,6 +143,7 @@ DriftWatch::Data::Glance DriftWatch::Data::glance(const ShowLook& show) {
         glance.obstacle = NoVerdict{Obstacle::cameraLost, wrong.why(), wrong.remedy()};
         return glance;
     }
+    const cv::Mat1f sharp = predicted.clone(), sharpSeen = seen.clone();
     for (cv::Mat1f* picture : {&predicted, &seen}) cv::GaussianBlur(*picture, *picture, {}, kSoften);
     const ShowSight& sight = prediction.sight(show.strokes);
     if (sight.rays != cellsOfRays) {
@@ -162,7 +166,9 @@ DriftWatch::Data::Glance DriftWatch::Data::glance(const ShowLook& show) {
         if (auto equation = model.equation(*sight.rays, point)) glance.equations.emplace_back(*equation, point);
     }
     glance.obstacle = obstacleOf(seen, predicted, unlike, static_cast<int>(glance.equations.size()));
-    if (!glance.obstacle) learnGain(std::move(gains));
+    if (glance.obstacle) return glance;
+    learnGain(std::move(gains));
+    silhouettes.look(show.seconds, sent, show.strokes, sharp, sharpSeen, gain);
     return glance;
 }
 
@@ -228,9 +234,10 @@ Explanation DriftWatch::Data::explain(const RoomPart& part) const {
 void DriftWatch::Data::judge(const ShowLook& show, const Glance& glance) {
     report.cells = static_cast<int>(glance.equations.size());
     std::vector<Explanation> explanations;
-    // A flap fills too few cells to tell of its servo; that is the check's.
+    // Of the device the outline tells; a flap fills too few cells to tell of its servo, which is the check's.
     for (const RoomPart& part : parts.all())
-        if (part.kind != RoomPart::Kind::servo) explanations.push_back(explain(part));
+        if (part.kind == RoomPart::Kind::projector || part.kind == RoomPart::Kind::camera)
+            explanations.push_back(explain(part));
     std::ranges::sort(explanations, std::greater{}, &Explanation::explained);
     const bool isEnough = evidence.looks >= kEnoughLooks;
     const auto lamp = std::ranges::find(explanations, RoomPart::Kind::projector,
@@ -247,6 +254,11 @@ void DriftWatch::Data::judge(const ShowLook& show, const Glance& glance) {
 }
 
 void DriftWatch::Data::say(std::vector<Explanation> explanations, double now) {
+    // As long as projector and camera are where they were, what moved at the outline is the device.
+    const SilhouetteWatch::Result outline = silhouettes.result();
+    const bool isDevice = explanations.front().beside < 0.5 * options.alarm && outline.looks >= kEnoughLooks &&
+                          outline.beside > explanations.front().beside && outline.beside > kSureSigmas * outline.sigma;
+    if (isDevice) explanations = {{parts.device(), 0.0, outline.beside, outline.sigma}};
     const Explanation& best = explanations.front();
     report.obstacle.reset();
     report.part = nameOf(best.part, prediction.room(), prediction.rig());
@@ -285,6 +297,7 @@ const DriftReport& DriftWatch::look(const ShowLook& show) {
     if (data_->lastLook)
         data_->evidence.fade(std::exp(-std::max(0.0, show.seconds - *data_->lastLook) / data_->options.memory));
     data_->lastLook = show.seconds;
+    data_->silhouettes.fadeTo(show.seconds);
     if (!glance.obstacle) data_->gather(glance);
     data_->judge(show, glance);
     return data_->report;

@@ -110,19 +110,35 @@ const ShowSight& ShowPrediction::sight(std::span<const double> strokes) {
     return sight_;
 }
 
-cv::Mat1f ShowPrediction::predict(std::span<const Image> sent, std::span<const double> strokes) {
+CoarseShow ShowPrediction::coarse(std::span<const Image> sent, std::span<const double> strokes) {
     if (sent.size() != room_.projectors.size())
         throw InvalidInput("watch of the show", "there is not one picture for each projector", "give one for each");
     const ShowSight& now = sight(strokes);
-    cv::Mat1f all = cv::Mat1f::zeros(size());
+    CoarseShow show;
     for (std::size_t i = 0; i < sent.size(); ++i) {
         const InstalledProjector& projector = room_.projectors[i];
+        cv::Mat1f& light = show.light.emplace_back();
         if (sent[i].pixels().empty() || !projector.enabled) continue;
         if (sent[i].size() != projector.camera.size)
             throw InvalidInput("watch of the show", "a picture has not its projector's size", "give what was sent");
-        const cv::Mat1f light = coarseLight(sent[i], projector, now.coarser[i]);
-        const double across = static_cast<double>(light.cols) / projector.camera.size.x;
-        const double down = static_cast<double>(light.rows) / projector.camera.size.y;
+        light = coarseLight(sent[i], projector, now.coarser[i]);
+    }
+    return show;
+}
+
+cv::Mat1f ShowPrediction::predict(std::span<const Image> sent, std::span<const double> strokes) {
+    return predict(coarse(sent, strokes), strokes);
+}
+
+cv::Mat1f ShowPrediction::predict(const CoarseShow& sent, std::span<const double> strokes) {
+    const ShowSight& now = sight(strokes);
+    cv::Mat1f all = cv::Mat1f::zeros(size());
+    for (std::size_t i = 0; i < sent.light.size(); ++i) {
+        const cv::Mat1f& light = sent.light[i];
+        if (light.empty()) continue;
+        const glm::ivec2 panel = room_.projectors[i].camera.size;
+        const double across = static_cast<double>(light.cols) / panel.x;
+        const double down = static_cast<double>(light.rows) / panel.y;
         cv::Mat2f places(size());
         std::transform(now.panel[i].begin(), now.panel[i].end(), places.begin(), [&](const cv::Vec2f& p) {
             return cv::Vec2f(static_cast<float>((static_cast<double>(p[0]) + 0.5) * across - 0.5),

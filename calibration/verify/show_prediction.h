@@ -24,6 +24,11 @@ struct ShowSight {
     std::shared_ptr<const RoomSurface> rays;
 };
 
+/// Pictures that projectors send, as grey light and as coarse as the camera sees them.
+struct CoarseShow {
+    std::vector<cv::Mat1f> light; ///< one a projector; empty: it is dark
+};
+
 /// What a camera should see of a show, by the room as it is believed to be. Pictures are small and grey: a watch has
 /// all evening. One thread at a time.
 class ShowPrediction {
@@ -36,6 +41,9 @@ public:
     /// The light that comes back from what projectors send (one picture each, of its size; an empty one is dark),
     /// without the room's; up to a factor. Throws InvalidInput for other sizes.
     [[nodiscard]] cv::Mat1f predict(std::span<const Image> sent, std::span<const double> strokes);
+    /// The same in two steps, of which the first serves several predictions.
+    [[nodiscard]] CoarseShow coarse(std::span<const Image> sent, std::span<const double> strokes);
+    [[nodiscard]] cv::Mat1f predict(const CoarseShow& sent, std::span<const double> strokes);
     /// A photograph, 8-bit grey or BGR, as small. Throws InvalidInput for one of another shape.
     [[nodiscard]] cv::Mat1f shrink(const cv::Mat& photograph) const;
 
