@@ -151,7 +151,10 @@ SilhouetteWatch::Result SilhouetteWatch::result() const {
     if (!(looks_ > 0.0)) return {};
     const double excess = std::max(1.0, squares_ / std::max(1e-9, 3.0 * weights_));
     const Eigen::Matrix3d covariance = excess * looks_ * matrix_.inverse();
-    return {(matrix_.inverse() * vector_).norm(), std::sqrt(std::max(0.0, covariance.trace())), looks_};
+    const Eigen::Vector3d motion = matrix_.inverse() * vector_;
+    const double beside = motion.norm();
+    const double variance = beside > 0.0 ? motion.dot(covariance * motion) / (beside * beside) : covariance.trace();
+    return {beside, std::sqrt(std::max(0.0, variance)), looks_};
 }
 
 } // namespace lumorph

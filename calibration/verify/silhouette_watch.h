@@ -26,8 +26,8 @@ public:
 
     struct Result {
         double beside = 0.0; ///< metres, root mean square over the device
-        double sigma = 1.0;
-        double looks = 0.0; ///< that count
+        double sigma = 1.0;  ///< standard deviation of it
+        double looks = 0.0;  ///< that count
     };
     [[nodiscard]] Result result() const;
 
