@@ -303,6 +303,7 @@ void addCalibrateCommands(CLI::App& app, Session& session) {
     addCalibrateDevice(*group, session);
     addCalibrateServos(*group, session);
     addCalibrateTracking(*group, session);
+    addCalibrateVerify(*group, session);
 }
 
 } // namespace lumorph::cli

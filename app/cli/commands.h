@@ -29,6 +29,7 @@ void addCalibrateRoomCommands(CLI::App& group, Session& session);
 void addCalibrateDevice(CLI::App& group, Session& session);
 void addCalibrateServos(CLI::App& group, Session& session);
 void addCalibrateTracking(CLI::App& group, Session& session);
+void addCalibrateVerify(CLI::App& group, Session& session);
 void addLabCommands(CLI::App& app, Session& session);
 /// Into the group of the lab.
 void addPlacementCommand(CLI::App& group, Session& session);
