@@ -13,7 +13,7 @@
 namespace lumorph {
 
 /// What was seen in one step of a plan: places on everything that camera and projector see, world metres.
-using ServoPass = std::vector<SurfacePoint>;
+using ServoPass = std::vector<MeasuredPoint>;
 
 /// A whole stroke of an actuator that does not turn counts as so many degrees.
 inline constexpr double kDegreesOfUnturned = 60.0;

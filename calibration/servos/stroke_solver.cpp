@@ -49,13 +49,13 @@ struct StrokeSolver::Data {
     std::vector<glm::vec3> positions;
     std::vector<std::vector<glm::vec3>> moved; ///< by each actuator, moved by kProbe
     std::vector<double> probes;                ///< its size and direction
-    std::vector<SurfacePoint> points;          ///< on the device, in its frame
+    std::vector<MeasuredPoint> points;          ///< on the device, in its frame
 
     Data(const Rig& r, const glm::dmat4& place)
         : rig(r), worldFromDevice(place), deviceFromWorld(glm::inverse(place)), surface(r.restMesh()),
           positions(r.restMesh().positions.size()), moved(r.actuatorCount(), positions), probes(r.actuatorCount()) {}
 
-    void take(std::span<const SurfacePoint> seen);
+    void take(std::span<const MeasuredPoint> seen);
     void standAt(const Strokes& strokes);
     void probe(const Strokes& strokes);
     [[nodiscard]] double misfit(const Strokes& strokes, const DeviceNudge& place, std::size_t stride);
@@ -67,7 +67,7 @@ struct StrokeSolver::Data {
         int inliers = 0;
     };
     [[nodiscard]] System build(const Strokes& strokes, const DeviceNudge& place, const DeviceNudge& prior, double gate);
-    [[nodiscard]] double addPoint(const SurfacePoint& point, const DeviceNudge& place, double gate, System& system,
+    [[nodiscard]] double addPoint(const MeasuredPoint& point, const DeviceNudge& place, double gate, System& system,
                                   Eigen::VectorXd& row) const;
     [[nodiscard]] StrokeEstimate refine(Strokes strokes, const DeviceNudge& prior);
     [[nodiscard]] static glm::dvec3 nudged(const glm::dvec3& point, const DeviceNudge& place) {
@@ -76,11 +76,11 @@ struct StrokeSolver::Data {
 };
 
 /// Keeps what can be the device's: the table is seen too, and what lies about.
-void StrokeSolver::Data::take(std::span<const SurfacePoint> seen) {
+void StrokeSolver::Data::take(std::span<const MeasuredPoint> seen) {
     points.clear();
     const glm::dvec3 low = glm::dvec3(rig.reach().min) - kBesideDevice;
     const glm::dvec3 high = glm::dvec3(rig.reach().max) + kBesideDevice;
-    for (const SurfacePoint& one : seen) {
+    for (const MeasuredPoint& one : seen) {
         if (!isFinite(one.place) || !(one.weight > 0.0) || one.place.y < kAboveTable) continue;
         const glm::dvec3 local(deviceFromWorld * glm::dvec4(one.place, 1.0));
         const bool inside = glm::all(glm::greaterThan(local, low)) && glm::all(glm::lessThan(local, high));
@@ -134,7 +134,7 @@ StrokeSolver::Data::Strokes StrokeSolver::Data::search(Strokes strokes, const De
 }
 
 /// Adds what one point says; returns its distance along the normal, or NaN where it does not count.
-double StrokeSolver::Data::addPoint(const SurfacePoint& point, const DeviceNudge& place, double gate, System& system,
+double StrokeSolver::Data::addPoint(const MeasuredPoint& point, const DeviceNudge& place, double gate, System& system,
                                     Eigen::VectorXd& row) const {
     const glm::dvec3 at = nudged(point.place, place);
     const auto found = surface.nearest(at, gate);
@@ -173,7 +173,7 @@ StrokeSolver::Data::System StrokeSolver::Data::build(const Strokes& strokes, con
     const auto size = static_cast<Eigen::Index>(strokes.size()) + kPlaceUnknowns;
     System system{Eigen::MatrixXd::Zero(size, size), Eigen::VectorXd::Zero(size)};
     Eigen::VectorXd row(size);
-    for (const SurfacePoint& point : points) static_cast<void>(addPoint(point, place, gate, system, row));
+    for (const MeasuredPoint& point : points) static_cast<void>(addPoint(point, place, gate, system, row));
     system.normal.triangularView<Eigen::Upper>() = system.normal.transpose();
     const auto pull = [&](Eigen::Index at, double off, double sigma) {
         system.normal(at, at) += 1.0 / (sigma * sigma);
@@ -237,7 +237,7 @@ StrokeSolver::~StrokeSolver() = default;
 StrokeSolver::StrokeSolver(StrokeSolver&&) noexcept = default;
 StrokeSolver& StrokeSolver::operator=(StrokeSolver&&) noexcept = default;
 
-std::optional<StrokeEstimate> StrokeSolver::solve(std::span<const SurfacePoint> points,
+std::optional<StrokeEstimate> StrokeSolver::solve(std::span<const MeasuredPoint> points,
                                                   std::span<const std::vector<double>> guesses,
                                                   const DeviceNudge& place, bool thoroughly) {
     Data& d = *data_;

@@ -46,7 +46,7 @@ public:
     /// `thoroughly`: it does that in any case, which tells a servo that stands elsewhere than anybody thinks. Empty
     /// where fewer than `kFewest` points lie on the device. Throws InvalidInput where a guess has not one stroke an
     /// actuator; points that are no numbers are left out.
-    [[nodiscard]] std::optional<StrokeEstimate> solve(std::span<const SurfacePoint> points,
+    [[nodiscard]] std::optional<StrokeEstimate> solve(std::span<const MeasuredPoint> points,
                                                       std::span<const std::vector<double>> guesses,
                                                       const DeviceNudge& place, bool thoroughly = false);
 

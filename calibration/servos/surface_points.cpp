@@ -25,10 +25,10 @@ std::optional<glm::dvec3> meeting(const glm::dvec3& from, const glm::dvec3& way,
 
 } // namespace
 
-std::vector<SurfacePoint> surfacePoints(std::span<const ProjectorPoint> light, const CalibratedCamera& camera,
+std::vector<MeasuredPoint> surfacePoints(std::span<const ProjectorPoint> light, const CalibratedCamera& camera,
                                         const CalibratedCamera& projector) {
     const glm::dvec3 eye = positionOf(camera), lamp = positionOf(projector);
-    std::vector<SurfacePoint> points;
+    std::vector<MeasuredPoint> points;
     points.reserve(light.size());
     for (const ProjectorPoint& one : light) {
         const glm::dvec3 seen = directionOf(camera, {one.camera.x, one.camera.y});

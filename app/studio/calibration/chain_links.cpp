@@ -1,9 +1,13 @@
 #include <algorithm>
+#include <cmath>
+#include <utility>
 
 #include <QObject>
 
 #include "app/studio/calibration/chain.h"
 #include "calibration/lab/registration_lab.h"
+#include "calibration/servos/servo_lab.h"
+#include "calibration/verify/verify_lab.h"
 
 // The links themselves: what each is for, what happens, what it builds on, and how it is measured in the lab.
 
@@ -139,10 +143,91 @@ ChainLink eyeLink() {
     return link;
 }
 
+QString degrees(double value) { return QString("%1°").arg(value, 0, 'f', 2); }
+
+LinkOutcome measureServos(const LinkTask& task, const Progress& progress) {
+    const ServoLabResult measured = measureServosInLab(*task.rig, task.believed, task.truth, task.seed, progress);
+    LinkOutcome outcome;
+    outcome.isGood = measured.measured.usable;
+    for (const Finding& finding : measured.measured.findings) outcome.findings.push_back(wordsOf(finding));
+    outcome.summary = outcome.isGood ? QObject::tr("Fresh states are met to %1; it took %2 of the device's time.")
+                                           .arg(degrees(measured.measured.freshDegrees),
+                                                QObject::tr("%1 s").arg(std::lround(measured.seconds)))
+                      : outcome.findings.empty() ? QObject::tr("The curves do not tell fresh states.")
+                                                 : outcome.findings.front().title;
+    if (outcome.isGood) outcome.installation = measured.room;
+    outcome.figures = {{QObject::tr("Fresh states: median"), degrees(measured.measured.freshDegrees)},
+                       {QObject::tr("The worst of them"), degrees(measured.measured.freshWorst)},
+                       {QObject::tr("Points off the surface"), millimetres(measured.measured.rms)}};
+    for (std::size_t k = 0; k < measured.measured.servos.size(); ++k) {
+        const ServoFinding& servo = measured.measured.servos[k];
+        if (servo.curve.points.empty()) continue;
+        outcome.figures.push_back(
+            {QObject::tr("%1: play").arg(QString::fromStdString(task.rig->actuators()[k].name)),
+             QString("%1 ± %2").arg(degrees(servo.backlashDegrees), degrees(servo.backlashSigma))});
+    }
+    return outcome;
+}
+
+ChainLink servosLink() {
+    ChainLink link;
+    link.id = LinkId::servos;
+    link.key = "servos";
+    link.title = QObject::tr("Servos");
+    link.purpose = QObject::tr("Where each servo really goes, with its play: pictures fit the surface as it stands.");
+    link.warning = QObject::tr("Hands off: the servos move");
+    link.how = {QObject::tr("Each servo goes slowly through its levels, up and down."),
+                QObject::tr("At each of them patterns are projected and photographed: two to three minutes in all."),
+                QObject::tr("STOP ends it at any time, and nothing of it is kept.")};
+    link.needs = {LinkId::projector};
+    link.origin = [](const Installation& room) { return &room.origins.servos; };
+    link.apply = [](const Installation& measured, Installation& room) {
+        const std::vector<MeasuredServo> before = std::exchange(room.servos, measured.servos);
+        for (MeasuredServo& servo : room.servos) { // lags are another link's
+            const auto known = std::ranges::find(before, servo.actuator, &MeasuredServo::actuator);
+            servo.lagSeconds = known == before.end() ? 0.0 : known->lagSeconds;
+        }
+        room.origins.servos = measured.origins.servos;
+    };
+    link.inLab = measureServos;
+    return link;
+}
+
+LinkOutcome checkTheRoom(const LinkTask& task, const Progress& progress) {
+    const VerifiedInLab verified = measureVerifyInLab(*task.rig, task.believed, task.truth, task.seed, progress);
+    const RoomCheck& check = verified.check;
+    LinkOutcome outcome;
+    outcome.isGood = check.verdict == RoomCheck::Verdict::good;
+    outcome.summary = QString::fromStdString(check.sentence);
+    if (check.verdict == RoomCheck::Verdict::moved) outcome.installation = verified.installation;
+    outcome.figures = {{QObject::tr("Light lies beside: median"), millimetres(check.now.median), outcome.isGood},
+                       {QObject::tr("In 95 of 100 places at most"), millimetres(check.now.most), outcome.isGood}};
+    if (verified.fresh.places > 0)
+        outcome.figures.push_back(
+            {QObject::tr("On a bend that the check did not see"), millimetres(verified.fresh.median)});
+    return outcome;
+}
+
+ChainLink checkLink() {
+    ChainLink link;
+    link.id = LinkId::check;
+    link.key = "check";
+    link.title = QObject::tr("Check");
+    link.purpose = QObject::tr("One minute before a show: is all still where it was?");
+    link.warning = QObject::tr("Hands off: the servos move");
+    link.how = {QObject::tr("The device takes two bends; patterns are projected on it and photographed."),
+                QObject::tr("Where the light lies beside, it is told what has moved, and one button puts it right.")};
+    link.needs = {LinkId::projector};
+    link.apply = [](const Installation& measured, Installation& room) { room = measured; };
+    link.inLab = checkTheRoom;
+    return link;
+}
+
 } // namespace
 
 const std::vector<ChainLink>& chainLinks() {
-    static const std::vector<ChainLink> links{projectorLink(), pointerLink(), trackerLink(), deviceLink(), eyeLink()};
+    static const std::vector<ChainLink> links{projectorLink(), pointerLink(), trackerLink(), deviceLink(),
+                                              eyeLink(),       servosLink(),  checkLink()};
     return links;
 }
 
