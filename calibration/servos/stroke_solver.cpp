@@ -11,7 +11,7 @@
 #include <glm/matrix.hpp>
 #include <glm/vector_relational.hpp>
 
-#include "calibration/servos/nearest_surface.h"
+#include "calibration/registration/nearest_surface.h"
 #include "core/base/error.h"
 
 namespace lumorph {
@@ -109,7 +109,7 @@ double StrokeSolver::Data::misfit(const Strokes& strokes, const DeviceNudge& pla
     double sum = 0.0;
     int count = 0;
     for (std::size_t k = 0; k < points.size(); k += stride) {
-        const auto found = surface.nearest(nudged(points[k].place, place), kFar);
+        const auto found = surface.of(nudged(points[k].place, place), kFar);
         sum += found ? found->distance : kFar;
         ++count;
     }
@@ -137,7 +137,7 @@ StrokeSolver::Data::Strokes StrokeSolver::Data::search(Strokes strokes, const De
 double StrokeSolver::Data::addPoint(const MeasuredPoint& point, const DeviceNudge& place, double gate, System& system,
                                     Eigen::VectorXd& row) const {
     const glm::dvec3 at = nudged(point.place, place);
-    const auto found = surface.nearest(at, gate);
+    const auto found = surface.of(at, gate);
     if (!found) return std::numeric_limits<double>::quiet_NaN();
     const glm::uvec3& corners = rig.restMesh().triangles[found->triangle];
     glm::dvec3 nearest(0.0);

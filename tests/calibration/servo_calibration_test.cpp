@@ -21,7 +21,7 @@ namespace {
 
 bool takesLong() { return std::getenv("LUMORPH_LONG_TESTS") != nullptr; }
 
-const Rig& tablet() {
+const Rig& servoTablet() {
     static const Rig rig = readRig(resourceFile("models/tablet.glb"));
     return rig;
 }
@@ -57,8 +57,8 @@ TEST(ServoCalibrationTest, SixBentServosWithTwoDegreesOfBacklash) {
     std::printf("seed  groups  passes  seconds  worst curve  worst backlash  fresh median / worst  rms\n");
     for (int seed = 1; seed <= seeds; ++seed) {
         const Installation believed = defaultInstallation();
-        const Installation truth = trueRoom(believed, tablet().actuators(), seed);
-        const ServoLabResult result = measureServosInLab(tablet(), believed, truth, seed);
+        const Installation truth = trueRoom(believed, servoTablet().actuators(), seed);
+        const ServoLabResult result = measureServosInLab(servoTablet(), believed, truth, seed);
         ASSERT_EQ(result.measured.servos.size(), 6U);
         for (const Finding& finding : result.measured.findings) ADD_FAILURE() << sentenceOf(finding);
         ASSERT_TRUE(result.measured.usable);
@@ -84,12 +84,12 @@ class ServoFaultTest : public testing::TestWithParam<FaultCase> {};
 
 TEST_P(ServoFaultTest, IsNamedWithItsServoAndNobodyElse) {
     const Installation believed = defaultInstallation();
-    const Installation truth = trueRoom(believed, tablet().actuators(), 3);
+    const Installation truth = trueRoom(believed, servoTablet().actuators(), 3);
     ServoLabOptions options;
     options.fault = GetParam().fault;
-    const ServoLabResult result = measureServosInLab(tablet(), believed, truth, 3, {}, options);
+    const ServoLabResult result = measureServosInLab(servoTablet(), believed, truth, 3, {}, options);
     std::vector<std::string> expected, named;
-    for (const std::size_t i : faultyServos(GetParam().fault, 6)) expected.push_back(tablet().actuators()[i].name);
+    for (const std::size_t i : faultyServos(GetParam().fault, 6)) expected.push_back(servoTablet().actuators()[i].name);
     for (const Finding& finding : result.measured.findings) {
         std::printf("%s\n", sentenceOf(finding).c_str());
         EXPECT_EQ(keyOf(finding.cause), keyOf(GetParam().cause));
@@ -110,17 +110,17 @@ INSTANTIATE_TEST_SUITE_P(Lab, ServoFaultTest,
                                          FaultCase{ServoFault::reversed, Cause::servoReversed, "reversed"},
                                          FaultCase{ServoFault::dead, Cause::servoDead, "dead"},
                                          FaultCase{ServoFault::jammed, Cause::servoJammed, "jammed"}),
-                         [](const auto& info) { return info.param.name; });
+                         [](const auto& given) { return given.param.name; });
 
 TEST(ServoCalibrationTest, MatchedIouOfTheRealDeviceRises) {
     const Installation believed = defaultInstallation();
-    const Installation truth = trueRoom(believed, tablet().actuators(), 1);
-    const ServoLabResult result = measureServosInLab(tablet(), believed, truth, 1);
+    const Installation truth = trueRoom(believed, servoTablet().actuators(), 1);
+    const ServoLabResult result = measureServosInLab(servoTablet(), believed, truth, 1);
     const auto library = readTargets({resourceFile("targets/bowl.glb"), resourceFile("targets/corners.glb"),
                                       resourceFile("targets/cove.glb"), resourceFile("targets/valley.glb")});
     LibraryFitOptions options;
     options.resolution = 25;
-    const ServoGain gain = servoGain(tablet(), library, result.room, truth, options);
+    const ServoGain gain = servoGain(servoTablet(), library, result.room, truth, options);
     std::printf("IoU wanted %.4f, real device before %.4f, after %.4f; projection off by %.2f mm before, %.2f after\n",
                 gain.wanted, gain.told, gain.measured, 1e3 * gain.toldOff, 1e3 * gain.measuredOff);
     EXPECT_GT(gain.measured, gain.told);
@@ -130,7 +130,7 @@ TEST(ServoCalibrationTest, MatchedIouOfTheRealDeviceRises) {
 
 TEST(ServoCalibrationTest, StopEndsItWithNothingKept) {
     const Installation believed = defaultInstallation();
-    const Installation truth = trueRoom(believed, tablet().actuators(), 1);
+    const Installation truth = trueRoom(believed, servoTablet().actuators(), 1);
     std::stop_source stop;
     int reports = 0;
     std::string first;
@@ -140,37 +140,37 @@ TEST(ServoCalibrationTest, StopEndsItWithNothingKept) {
             if (++reports == 5) stop.request_stop();
         },
         stop.get_token());
-    EXPECT_THROW(static_cast<void>(measureServosInLab(tablet(), believed, truth, 1, progress)), Cancelled);
+    EXPECT_THROW(static_cast<void>(measureServosInLab(servoTablet(), believed, truth, 1, progress)), Cancelled);
     EXPECT_LE(reports, 6);
     EXPECT_NE(first.find("hands off"), std::string::npos) << first;
 }
 
 TEST(ServoCalibrationTest, RefusesWhatIsNoMeasurement) {
-    const ServoPlan plan = planServos(tablet(), {{0, 1, 2, 3}, {4, 5}});
-    EXPECT_THROW(static_cast<void>(solveServos(tablet(), glm::dmat4(1.0), plan, {})), InvalidInput);
+    const ServoPlan plan = planServos(servoTablet(), {{0, 1, 2, 3}, {4, 5}});
+    EXPECT_THROW(static_cast<void>(solveServos(servoTablet(), glm::dmat4(1.0), plan, {})), InvalidInput);
     const std::vector<ServoPass> nothing(plan.steps.size());
-    EXPECT_THROW(static_cast<void>(solveServos(tablet(), glm::dmat4(1.0), plan, nothing)), CaptureRefused);
+    EXPECT_THROW(static_cast<void>(solveServos(servoTablet(), glm::dmat4(1.0), plan, nothing)), CaptureRefused);
     const std::vector<ServoPass> broken(plan.steps.size(),
                                         ServoPass(1000, {glm::dvec3(std::numeric_limits<double>::quiet_NaN()), 1.0}));
-    EXPECT_THROW(static_cast<void>(solveServos(tablet(), glm::dmat4(1.0), plan, broken)), CaptureRefused);
-    EXPECT_THROW(static_cast<void>(planServos(tablet(), {{0, 1}})), InvalidInput);
-    EXPECT_THROW(static_cast<void>(planServos(tablet(), {{0, 1, 2, 3, 4, 5}}, {.steps = 1})), InvalidInput);
+    EXPECT_THROW(static_cast<void>(solveServos(servoTablet(), glm::dmat4(1.0), plan, broken)), CaptureRefused);
+    EXPECT_THROW(static_cast<void>(planServos(servoTablet(), {{0, 1}})), InvalidInput);
+    EXPECT_THROW(static_cast<void>(planServos(servoTablet(), {{0, 1, 2, 3, 4, 5}}, {.steps = 1})), InvalidInput);
     Installation dark = defaultInstallation();
     dark.projectors.clear();
-    EXPECT_THROW(static_cast<void>(measureServosInLab(tablet(), dark, dark, 1)), InvalidInput);
+    EXPECT_THROW(static_cast<void>(measureServosInLab(servoTablet(), dark, dark, 1)), InvalidInput);
 }
 
 TEST(ServoPlanTest, PartsOfTheSameVerticesMoveOneAfterTheOther) {
-    const auto groups = servoGroups(tablet(), [](std::span<const double>) { return std::vector<int>(6, 100); });
+    const auto groups = servoGroups(servoTablet(), [](std::span<const double>) { return std::vector<int>(6, 100); });
     for (const auto& group : groups)
         for (const std::size_t a : group)
             for (const std::size_t b : group)
-                for (const std::uint32_t vertex : tablet().verticesOf(a)) {
-                    const auto others = tablet().verticesOf(b);
+                for (const std::uint32_t vertex : servoTablet().verticesOf(a)) {
+                    const auto others = servoTablet().verticesOf(b);
                     ASSERT_TRUE(a == b || !std::ranges::binary_search(others, vertex));
                 }
     // Where one hides another, each is measured by itself.
-    const auto hidden = servoGroups(tablet(), [](std::span<const double> strokes) {
+    const auto hidden = servoGroups(servoTablet(), [](std::span<const double> strokes) {
         const auto up = std::ranges::count_if(strokes, [](double s) { return s > 0.0; });
         return std::vector<int>(6, up > 1 ? 10 : 100);
     });

@@ -2,6 +2,7 @@
 #include <QLabel>
 
 #include "app/studio/calibration/chain.h"
+#include "app/studio/document/scene_edit.h"
 #include "tests/ui/studio_window.h"
 
 // From boxes to a calibrated show in the window, by the mouse: each link is measured in the lab, shown, and used.
@@ -59,6 +60,32 @@ TEST_F(Chain, EachLinkIsMeasuredShownAndUsed) {
     EXPECT_EQ(badge("pointer"), "To be used") << "undo gives it back to be used";
     window.studio().document.undoStack().redo();
     EXPECT_EQ(badge("pointer"), "Measured");
+}
+
+TEST_F(Chain, AllThatIsMissingIsMeasuredOneAfterTheOther) {
+    ASSERT_TRUE(eventually([&] { return window.state().rig.rig && window.studio().jobs.running().empty(); }, 60s));
+    studio::editInstallation(window.studio().document, "Measured before", [](Installation& room) {
+        room.projectors.front().lens = {Origin::Way::measured, "structured light", "2026-11-20T10:00:00Z"};
+    });
+    window.click("chain.rest");
+    ASSERT_TRUE(eventually([&] { return badge("servos") == "Running"; }, 120s)) << story();
+    EXPECT_EQ(window.text("chain.warning"), "Hands off: the servos move");
+    window.screenshot("chain-servos");
+    // STOP ends it, and nothing of it is kept.
+    window.studio().loop.stop();
+    EXPECT_TRUE(eventually([&] { return badge("servos") == "Next"; }));
+    EXPECT_TRUE(room().servos.empty());
+    window.studio().loop.resume();
+    window.click("chain.rest");
+    ASSERT_TRUE(eventually([&] { return badge("check") == "Measured"; }, 300s)) << story();
+    for (const studio::ChainLink& link : studio::chainLinks())
+        EXPECT_EQ(badge(link.key), "Measured") << link.key << ": " << story();
+    EXPECT_EQ(room().servos.size(), window.state().rig.rig->actuatorCount());
+    window.screenshot("chain-checked");
+    window.click("chain.link.servos");
+    window.screenshot("chain-servos-measured");
+    window.click("chain.link.eye");
+    window.screenshot("chain-eye");
 }
 
 } // namespace

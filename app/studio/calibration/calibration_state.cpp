@@ -314,6 +314,36 @@ QString causeTitle(Cause cause) {
         return tr("The projector's brightness curve bends the patterns");
     case Cause::cameraRefocused:
         return tr("The camera has refocused");
+    case Cause::wrongUnits:
+        return tr("Lengths in different units");
+    case Cause::doubledRows:
+        return tr("A recording repeats itself");
+    case Cause::clockJumps:
+        return tr("A clock jumps");
+    case Cause::clocksUnknown:
+        return tr("Nothing tells how the clocks differ");
+    case Cause::motionDegenerate:
+        return tr("A motion is missing");
+    case Cause::bodySwapped:
+        return tr("Another body was tracked for a while");
+    case Cause::tipSlipped:
+        return tr("The tip left its dimple");
+    case Cause::tipWrong:
+        return tr("The pointer's tip is elsewhere");
+    case Cause::trackerLost:
+        return tr("The tracker lost the body");
+    case Cause::notANumber:
+        return tr("Numbers that are none");
+    case Cause::freshPointsFar:
+        return tr("Fresh points contradict it");
+    case Cause::servoDead:
+        return tr("A servo does not move");
+    case Cause::servoSwapped:
+        return tr("Two servos are exchanged");
+    case Cause::servoReversed:
+        return tr("A servo runs the wrong way");
+    case Cause::servoJammed:
+        return tr("A servo meets a stop");
     default:
         return tr("This capture cannot be trusted");
     }
