@@ -33,6 +33,7 @@ void addCalibrateVerify(CLI::App& group, Session& session);
 void addLabCommands(CLI::App& app, Session& session);
 /// Into the group of the lab.
 void addPlacementCommand(CLI::App& group, Session& session);
+void addLabRegisterCommand(CLI::App& group, Session& session);
 /// Nor are these: devices and trackers are reached through Qt.
 void addDeviceCommands(CLI::App& app, Session& session);
 void addTrackCommand(CLI::App& app, Session& session);

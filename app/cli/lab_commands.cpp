@@ -170,6 +170,7 @@ void addLabCommands(CLI::App& app, Session& session) {
     command->add_flag("--json", arguments->json, "Print one JSON value");
     command->callback([arguments, &session] { capture(*arguments, session); });
     addPlacementCommand(*group, session);
+    addLabRegisterCommand(*group, session);
 }
 
 } // namespace lumorph::cli

@@ -113,6 +113,13 @@ std::vector<TouchedLandmark> touchAll(TrackerLab& lab, const std::vector<Planned
     return touches;
 }
 
+/// What light tells of the device, where it does: where it is refused, what was touched still holds.
+Registration betterOf(Registration touched, const Registration& lit) {
+    if (lit.good()) return lit;
+    if (lit.refusal) touched.warnings.push_back(*lit.refusal);
+    return touched;
+}
+
 } // namespace
 
 PointerCapture capturePointerInLab(const Installation& truth, std::uint32_t seed,
@@ -217,9 +224,7 @@ Registration measureDeviceInLab(const Rig& rig, const Installation& believed, co
     progress.throwIfCancelled();
     progress.report(0.5, "structured light on the device");
     const SurfaceCapture lit = captureSurfaceInLab(rig, believed, truth, seed, options);
-    Registration seen = registerDevice(lit, touched.installation, progress.part(0.7, 1.0));
-    if (seen.refusal) seen.installation = believed;
-    return seen;
+    return betterOf(touched, registerDevice(lit, touched.installation, progress.part(0.7, 1.0)));
 }
 
 Registration measureEyeInLab(const Rig& rig, const Installation& believed, const Installation& truth,
@@ -255,11 +260,10 @@ Registration measureAllInLab(const Rig& rig, const Installation& believed, const
     Registration all = registerJointly(capture, eye.installation, progress.part(0.6, 0.8));
     if (!all.good()) return refusedAs(all);
     if (believed.cameras.empty()) return all;
-    const Registration lit = registerDevice(captureSurfaceInLab(rig, believed, truth, seed, options), all.installation,
-                                            progress.part(0.8, 1.0));
-    if (!lit.good()) return refusedAs(lit);
-    all.installation = lit.installation;
-    all.summary += " " + lit.summary;
+    const SurfaceCapture lit = captureSurfaceInLab(rig, believed, truth, seed, options);
+    const Registration seen = betterOf(all, registerDevice(lit, all.installation, progress.part(0.8, 1.0)));
+    all.installation = seen.installation;
+    all.warnings = seen.warnings;
     return all;
 }
 

@@ -244,13 +244,18 @@ void solveEye(const EyeCapture& capture, const CaptureFault* undo, const Progres
 
 // All of it.
 
-/// What no single fit saw, against all figures at once.
-std::vector<PointError> jointErrors(const JointCapture& capture, const Installation& room, const Figures& figures) {
+/// What no single fit saw, against all figures at once: each kind by what it allows, then all as one.
+FreshCheck jointCheck(const JointCapture& capture, const Installation& room, const Figures& figures) {
     const glm::dvec3& tip = figures.tip;
-    std::vector<PointError> all = errorsOf(rowsOf(capture.dots.fresh, room, tip, capture.dots.tableHeight), figures);
-    std::ranges::move(errorsOf(rowsOf(capture.landmarks.fresh, tip), figures), std::back_inserter(all));
-    std::ranges::move(errorsOf(rowsOf(capture.eye.fresh, tip), figures), std::back_inserter(all));
-    return all;
+    std::vector<PointError> all;
+    const auto add = [&](const std::vector<PointError>& errors, double allowed) {
+        (void)checkFresh(errors, allowed);
+        all.insert(all.end(), errors.begin(), errors.end());
+    };
+    add(errorsOf(rowsOf(capture.dots.fresh, room, tip, capture.dots.tableHeight), figures), kFreshTracker);
+    add(errorsOf(rowsOf(capture.landmarks.fresh, tip), figures), kFreshDevice);
+    add(errorsOf(rowsOf(capture.eye.fresh, tip), figures), kFreshEye);
+    return checkFresh(std::move(all), kFreshEye);
 }
 
 void solveJointly(const JointCapture& capture, const Progress& progress, Registration& result) {
@@ -267,7 +272,9 @@ void solveJointly(const JointCapture& capture, const Progress& progress, Registr
          {errorsOf(dots, refined.figures), errorsOf(landmarks, refined.figures), errorsOf(sights, refined.figures)})
         result.points.insert(result.points.end(), errors.begin(), errors.end());
     result.rms = rmsOf(result.points);
-    result.fresh = checkFresh(jointErrors(capture, room, refined.figures), kFreshEye);
+    result.fresh = jointCheck(capture, room, refined.figures);
+    for (const auto* warnings : {&dots.warnings, &landmarks.warnings, &sights.warnings})
+        result.warnings.insert(result.warnings.end(), warnings->begin(), warnings->end());
     result.installation.worldFromTracker = matrix(refined.figures.worldFromTracker);
     result.installation.pointerTip = glm::vec3(refined.figures.tip);
     result.installation.bodyFromDevice = matrix(refined.figures.bodyFromDevice);
