@@ -27,6 +27,9 @@ constexpr double kDarkPicture = 10.0; // grey levels that 99 % stay below
 constexpr double kSharpEnough = 0.35; // of the contrast between neighbours that was predicted
 constexpr double kGainLearns = 0.2;
 constexpr double kSureSigmas = 4.0;
+constexpr double kRivalsFade = 0.7; // a look
+constexpr int kFewestSquares = 8;
+constexpr double kClearly = 0.85;                                           // of what the worse leaves
 constexpr double kAlikeShare = 0.97;                                        // of what the best cause explains
 constexpr double kWatchTurn = 0.02, kWatchShift = 0.03, kWatchStroke = 0.2; // nobody believes more
 
@@ -59,7 +62,23 @@ struct Evidence {
 struct Explanation {
     RoomPart part;
     double explained = 0.0, beside = 0.0, sigma = 0.0;
+    Eigen::VectorXd motion{}; ///< of all parts, where only this one moved
 };
+
+/// Two causes that move light alike, and what each leaves of outlines and folds: sums that fade.
+struct Rivals {
+    RoomPart first, second;
+    double leftOfFirst = 0.0, leftOfSecond = 0.0;
+    int squares = 0;
+    [[nodiscard]] bool areThese(const RoomPart& a, const RoomPart& b) const {
+        return (first == a && second == b) || (first == b && second == a);
+    }
+};
+
+/// Whether the cells tell a cause from the likeliest.
+bool areAlike(const std::vector<Explanation>& explanations, std::size_t other) {
+    return other < explanations.size() && explanations[other].explained >= kAlikeShare * explanations.front().explained;
+}
 
 std::string besideWords(double metres) {
     char text[32];
@@ -82,6 +101,7 @@ struct DriftWatch::Data {
     std::vector<WatchCell> cells;
     std::shared_ptr<const RoomSurface> cellsOfRays; ///< of which they are
     double gain = 0.0;                              ///< grey levels a unit of light, as looks had it
+    Rivals rivals;
     std::optional<double> lastLook, movedSince;
     DriftReport report;
 
@@ -89,6 +109,8 @@ struct DriftWatch::Data {
     struct Glance {
         std::vector<std::pair<LightEquation, LitPoint>> equations;
         std::optional<NoVerdict> obstacle;
+        CoarseShow sent;
+        cv::Mat1f seen; ///< blurred
     };
     Glance glance(const ShowLook& show);
     [[nodiscard]] std::optional<NoVerdict> obstacleOf(const cv::Mat1f& seen, const cv::Mat1f& predicted, int unlike,
@@ -98,7 +120,8 @@ struct DriftWatch::Data {
     [[nodiscard]] Eigen::MatrixXd known(const Eigen::MatrixXd& matrix) const;
     [[nodiscard]] Explanation explain(const RoomPart& part) const;
     void judge(const ShowLook& show, const Glance& glance);
-    void say(std::vector<Explanation> explanations, double now);
+    void judgeRivals(std::vector<Explanation>& explanations, const ShowLook& show, const Glance& glance);
+    void say(const std::vector<Explanation>& explanations, double now);
 };
 
 std::optional<NoVerdict> DriftWatch::Data::obstacleOf(const cv::Mat1f& seen, const cv::Mat1f& predicted, int unlike,
@@ -130,8 +153,8 @@ std::optional<NoVerdict> DriftWatch::Data::obstacleOf(const cv::Mat1f& seen, con
 
 DriftWatch::Data::Glance DriftWatch::Data::glance(const ShowLook& show) {
     Glance glance;
-    const CoarseShow sent = prediction.coarse(show.sent, show.strokes);
-    cv::Mat1f predicted = prediction.predict(sent, show.strokes), seen;
+    glance.sent = prediction.coarse(show.sent, show.strokes);
+    cv::Mat1f predicted = prediction.predict(glance.sent, show.strokes), seen;
     if (show.photograph.empty()) {
         glance.obstacle =
             NoVerdict{Obstacle::cameraLost, "the camera gives no picture", "look whether it is plugged in"};
@@ -145,6 +168,7 @@ DriftWatch::Data::Glance DriftWatch::Data::glance(const ShowLook& show) {
     }
     const cv::Mat1f sharp = predicted.clone(), sharpSeen = seen.clone();
     for (cv::Mat1f* picture : {&predicted, &seen}) cv::GaussianBlur(*picture, *picture, {}, kSoften);
+    glance.seen = seen;
     const ShowSight& sight = prediction.sight(show.strokes);
     if (sight.rays != cellsOfRays) {
         cells = cellsOf(sight);
@@ -168,7 +192,7 @@ DriftWatch::Data::Glance DriftWatch::Data::glance(const ShowLook& show) {
     glance.obstacle = obstacleOf(seen, predicted, unlike, static_cast<int>(glance.equations.size()));
     if (glance.obstacle) return glance;
     learnGain(std::move(gains));
-    silhouettes.look(show.seconds, sent, show.strokes, sharp, sharpSeen, gain);
+    silhouettes.look(show.seconds, glance.sent, show.strokes, sharp, sharpSeen, gain);
     return glance;
 }
 
@@ -227,8 +251,10 @@ Explanation DriftWatch::Data::explain(const RoomPart& part) const {
     const Eigen::VectorXd motion = covariance * vector;
     const double seen = std::max(1e-9, evidence.seen.segment(part.first, part.count).maxCoeff());
     const Eigen::MatrixXd mean = block(evidence.beside) / seen;
+    Eigen::VectorXd all = Eigen::VectorXd::Zero(parts.size());
+    all.segment(part.first, part.count) = motion;
     return {part, vector.dot(motion), std::sqrt(std::max(0.0, motion.dot(mean * motion))),
-            std::sqrt(std::max(0.0, (mean * covariance).trace()))};
+            std::sqrt(std::max(0.0, (mean * covariance).trace())), all};
 }
 
 void DriftWatch::Data::judge(const ShowLook& show, const Glance& glance) {
@@ -243,7 +269,10 @@ void DriftWatch::Data::judge(const ShowLook& show, const Glance& glance) {
     const auto lamp = std::ranges::find(explanations, RoomPart::Kind::projector,
                                         [](const Explanation& one) { return one.part.kind; });
     const bool isBlind = glance.obstacle || (isEnough && lamp->sigma > options.blindFrom);
-    if (!isBlind && isEnough) return say(std::move(explanations), show.seconds);
+    if (!isBlind && isEnough) {
+        judgeRivals(explanations, show, glance);
+        return say(explanations, show.seconds);
+    }
     movedSince = report.state == DriftReport::State::moved ? movedSince : std::nullopt;
     report.obstacle = glance.obstacle;
     report.state = isBlind ? DriftReport::State::blind : DriftReport::State::watching;
@@ -253,12 +282,41 @@ void DriftWatch::Data::judge(const ShowLook& show, const Glance& glance) {
     report.sentence = isBlind ? "The watch cannot tell: " + sentenceOf(*report.obstacle) : "Watching.";
 }
 
-void DriftWatch::Data::say(std::vector<Explanation> explanations, double now) {
+/// On a plane a projector and a camera that moved make the same picture; where the device is in it they do not: light
+/// moves over an outline that stays, or the outline moves as well. Of the likeliest two the one that predicts it
+/// worse is taken away, as soon as that is clear.
+void DriftWatch::Data::judgeRivals(std::vector<Explanation>& explanations, const ShowLook& show, const Glance& glance) {
     // As long as projector and camera are where they were, what moved at the outline is the device.
     const SilhouetteWatch::Result outline = silhouettes.result();
     const bool isDevice = explanations.front().beside < 0.5 * options.alarm && outline.looks >= kEnoughLooks &&
                           outline.beside > explanations.front().beside && outline.beside > kSureSigmas * outline.sigma;
-    if (isDevice) explanations = {{parts.device(), 0.0, outline.beside, outline.sigma}};
+    if (isDevice) {
+        explanations = {{parts.device(), 0.0, outline.beside, outline.sigma}};
+        return;
+    }
+    if (explanations.front().beside < options.alarm || !areAlike(explanations, 1)) return;
+    const Explanation &first = explanations[0], &second = explanations[1];
+    if (!rivals.areThese(first.part, second.part)) rivals = {first.part, second.part};
+    const auto predicted = [&](const RoomPart& part) {
+        const Explanation& by = first.part == part ? first : second;
+        const Installation room = movedBy(prediction.room(), parts, by.motion, options.camera);
+        cv::Mat1f picture =
+            ShowPrediction(prediction.rig(), room, options.width, options.camera).predict(glance.sent, show.strokes);
+        cv::GaussianBlur(picture, picture, {}, kSoften);
+        return picture;
+    };
+    const Rivalry told = rivalryOf(predicted(rivals.first), predicted(rivals.second), glance.seen, gain);
+    rivals.leftOfFirst = kRivalsFade * rivals.leftOfFirst + told.first;
+    rivals.leftOfSecond = kRivalsFade * rivals.leftOfSecond + told.second;
+    rivals.squares += told.squares;
+    const double more = std::max(rivals.leftOfFirst, rivals.leftOfSecond);
+    const double less = std::min(rivals.leftOfFirst, rivals.leftOfSecond);
+    if (rivals.squares < kFewestSquares || less > kClearly * more) return;
+    const RoomPart worse = rivals.leftOfFirst > rivals.leftOfSecond ? rivals.first : rivals.second;
+    explanations.erase(explanations.begin() + (worse == first.part ? 0 : 1));
+}
+
+void DriftWatch::Data::say(const std::vector<Explanation>& explanations, double now) {
     const Explanation& best = explanations.front();
     report.obstacle.reset();
     report.part = nameOf(best.part, prediction.room(), prediction.rig());
@@ -275,9 +333,9 @@ void DriftWatch::Data::say(std::vector<Explanation> explanations, double now) {
         return;
     }
     std::string any = report.part;
-    for (const Explanation& other : explanations) {
-        if (other.part == best.part || other.explained < kAlikeShare * best.explained) continue;
-        report.couldAlsoBe.push_back(nameOf(other.part, prediction.room(), prediction.rig()));
+    for (std::size_t i = 1; i < explanations.size(); ++i) {
+        if (!areAlike(explanations, i)) continue;
+        report.couldAlsoBe.push_back(nameOf(explanations[i].part, prediction.room(), prediction.rig()));
         any += " or the " + report.couldAlsoBe.back();
     }
     report.sentence =

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <utility>
 
 #include <Eigen/Dense>
 #include <opencv2/imgproc.hpp>
@@ -125,7 +126,36 @@ CellShift fineShift(const cv::Mat1f& predicted, const cv::Mat1f& seen, const cv:
     return shift;
 }
 
+/// What brightness and offset leave of a square; and how much of it varies at all.
+std::pair<double, double> leftAndVariance(const cv::Mat1f& predicted, const cv::Mat1f& seen) {
+    const double count = static_cast<double>(seen.total());
+    const double light = cv::mean(predicted)[0], grey = cv::mean(seen)[0];
+    const double lights = predicted.dot(predicted) - count * light * light;
+    const double greys = seen.dot(seen) - count * grey * grey;
+    const double both = predicted.dot(seen) - count * light * grey;
+    if (!(lights > 1e-12) || both <= 0.0) return {greys, greys};
+    return {greys - both * both / lights, greys};
+}
+
 } // namespace
+
+Rivalry rivalryOf(const cv::Mat1f& first, const cv::Mat1f& second, const cv::Mat1f& seen, double usualGain) {
+    constexpr int kSide = 16;
+    constexpr double kDiffers = 5.0; // grey levels
+    Rivalry rivalry;
+    for (int y = 0; y + kSide <= seen.rows; y += kSide)
+        for (int x = 0; x + kSide <= seen.cols; x += kSide) {
+            const cv::Rect place(x, y, kSide, kSide);
+            if (usualGain * cv::norm(first(place), second(place), cv::NORM_INF) < kDiffers) continue;
+            const auto [leftOfFirst, variance] = leftAndVariance(first(place).clone(), seen(place).clone());
+            const double leftOfSecond = leftAndVariance(second(place).clone(), seen(place).clone()).first;
+            if (std::min(leftOfFirst, leftOfSecond) > (1.0 - kExplains) * variance) continue;
+            rivalry.first += leftOfFirst;
+            rivalry.second += leftOfSecond;
+            ++rivalry.squares;
+        }
+    return rivalry;
+}
 
 std::vector<WatchCell> cellsOf(const ShowSight& sight, int size, int step) {
     std::vector<WatchCell> cells;

@@ -38,4 +38,13 @@ struct CellShift {
 [[nodiscard]] CellShift shiftOf(const cv::Mat1f& predicted, const cv::Mat1f& seen, const cv::Rect& cell,
                                 double usualGain = 0.0);
 
+/// What two predictions leave unexplained of a photograph, where they differ: sums of squares, grey levels.
+struct Rivalry {
+    double first = 0.0, second = 0.0;
+    int squares = 0; ///< of the picture, that tell
+};
+/// Brightness and offset are free in each small square; squares that neither explains are left out.
+[[nodiscard]] Rivalry rivalryOf(const cv::Mat1f& first, const cv::Mat1f& second, const cv::Mat1f& seen,
+                                double usualGain);
+
 } // namespace lumorph
