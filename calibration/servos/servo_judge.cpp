@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include <Eigen/Cholesky>
+
 #include "calibration/registration/refusing.h"
 
 namespace lumorph::servos {
@@ -16,6 +18,8 @@ constexpr double kMoved = 0.06;     // strokes: less is no motion
 constexpr double kFromTheEnd = 0.6; // real stroke at rest from which on a servo runs from the wrong end
 constexpr double kStalled = 0.25;   // of the usual way a level: less is a stop
 constexpr int kStalledLevels = 2;
+constexpr double kFloor = 2e-4; // strokes: nobody is surer
+constexpr double kBend = 0.006; // strokes: by how much a curve turns from one level to the next
 
 /// Values at a command between those that were seen.
 std::optional<double> at(const std::vector<LevelSeen>& seen, double commanded) {
@@ -33,6 +37,28 @@ std::vector<LevelSeen> sure(const std::vector<LevelSeen>& seen) {
     return kept;
 }
 
+/// Levels made as smooth as servos' curves are, as far as they are unsure: who is seen well stays where it is, who is
+/// hidden takes what its neighbours say (Whittaker, "On a new method of graduation", 1923).
+std::vector<LevelSeen> smoothed(std::vector<LevelSeen> seen) {
+    const auto count = static_cast<Eigen::Index>(seen.size());
+    if (count < 4) return seen;
+    Eigen::MatrixXd normal = Eigen::MatrixXd::Zero(count, count);
+    Eigen::VectorXd right = Eigen::VectorXd::Zero(count);
+    for (Eigen::Index k = 0; k < count; ++k) {
+        const LevelSeen& one = seen[static_cast<std::size_t>(k)];
+        const double weight = 1.0 / (one.sigma * one.sigma + kFloor * kFloor);
+        normal(k, k) += weight;
+        right[k] += weight * one.real;
+    }
+    for (Eigen::Index k = 1; k + 1 < count; ++k) {
+        const Eigen::Vector3d bend(1.0, -2.0, 1.0);
+        normal.block<3, 3>(k - 1, k - 1) += bend * bend.transpose() / (kBend * kBend);
+    }
+    const Eigen::VectorXd smooth = normal.ldlt().solve(right);
+    for (Eigen::Index k = 0; k < count; ++k) seen[static_cast<std::size_t>(k)].real = smooth[k];
+    return seen;
+}
+
 std::string quoted(const Rig& rig, std::size_t actuator) { return "\"" + rig.actuators()[actuator].name + "\""; }
 
 } // namespace
@@ -40,8 +66,13 @@ std::string quoted(const Rig& rig, std::size_t actuator) { return "\"" + rig.act
 /// At rest a servo has come from above, at its end from below: how it would stand there after the other way follows
 /// from its play.
 void drawCurve(const BothWays& seen, ServoFinding& servo) {
-    const std::vector<LevelSeen> up = sure(seen.up), down = sure(seen.down);
+    std::vector<LevelSeen> up = sure(seen.up), down = sure(seen.down);
     if (up.size() < 3 || down.size() < 3) return;
+    // A stop is a corner that is meant.
+    if (!servo.stopsAt) {
+        up = smoothed(up);
+        down = smoothed(down);
+    }
     std::vector<double> plays;
     for (const LevelSeen& one : up) {
         const bool inside = one.commanded > 1e-6 && one.commanded < 1.0 - 1e-6;
@@ -60,8 +91,8 @@ void drawCurve(const BothWays& seen, ServoFinding& servo) {
     for (const LevelSeen& level : seen.up) {
         const double u = level.commanded;
         MeasuredServo::Point point{u, at(up, u).value(), at(down, u).value()};
-        if (u < 1e-6) point.rising = std::max(0.0, point.falling - mean);
-        if (u > 1.0 - 1e-6) point.falling = std::min(1.0, point.rising + mean);
+        if (u < 1e-6) point.rising = point.falling - mean; // below rest, where the stop holds it
+        if (u > 1.0 - 1e-6) point.falling = point.rising + mean;
         servo.curve.points.push_back(point);
         sigmas.push_back(level.sigma);
     }

@@ -42,7 +42,7 @@ struct ServoPlan {
 };
 
 /// Which servos can move at once, so that camera and projector still see each of them: in no group two that move the
-/// same vertices, and none whose visible part shrinks by more than a third when the others of the group stand as it
+/// same vertices, and none whose visible part shrinks by more than a seventh when the others of the group stand as it
 /// does. Greedy, in the order of the actuators. `seen` says how many points of each actuator's part are seen in a
 /// state. Throws Cancelled as `seen` does.
 [[nodiscard]] std::vector<std::vector<std::size_t>>
