@@ -12,7 +12,7 @@ namespace lumorph {
 
 /// How servos are stepped and how long that takes.
 struct ServoPlanOptions {
-    int steps = 12;              ///< of a servo's range, up and again down
+    int steps = 16;              ///< of a servo's range, up and again down
     int fresh = 4;               ///< states at the end that no curve is made of
     double velocity = 0.25;      ///< strokes a second: slowly
     double settleSeconds = 0.5;  ///< after a motion, until nothing trembles any more

@@ -114,7 +114,7 @@ INSTANTIATE_TEST_SUITE_P(Lab, ServoFaultTest,
                                          FaultCase{ServoFault::reversed, Cause::servoReversed, "reversed"},
                                          FaultCase{ServoFault::dead, Cause::servoDead, "dead"},
                                          FaultCase{ServoFault::jammed, Cause::servoJammed, "jammed"}),
-                         [](const auto& info) { return info.param.name; });
+                         [](const auto& one) { return one.param.name; });
 
 TEST(ServoCalibrationTest, MatchedIouOfTheRealDeviceRises) {
     const Installation believed = defaultInstallation();
