@@ -49,7 +49,7 @@ struct StrokeSolver::Data {
     std::vector<glm::vec3> positions;
     std::vector<std::vector<glm::vec3>> moved; ///< by each actuator, moved by kProbe
     std::vector<double> probes;                ///< its size and direction
-    std::vector<MeasuredPoint> points;          ///< on the device, in its frame
+    std::vector<MeasuredPoint> points;         ///< on the device, in its frame
 
     Data(const Rig& r, const glm::dmat4& place)
         : rig(r), worldFromDevice(place), deviceFromWorld(glm::inverse(place)), surface(r.restMesh()),
