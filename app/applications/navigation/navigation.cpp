@@ -134,7 +134,8 @@ void NavigationProgram::flyTo(const std::string& name) {
 }
 
 MapView NavigationProgram::viewOf(const Place& place, double turn) const {
-    return within({place.at, place.width, turn}, map_->heights.size(), kNarrowest);
+    const MapView view = within({place.at, place.width, turn}, map_->heights.size(), kNarrowest);
+    return bestTurn_ ? bestTurn_->of(*map_, view) : view;
 }
 
 void NavigationProgram::fly(const MapView& to) {
@@ -144,6 +145,10 @@ void NavigationProgram::fly(const MapView& to) {
 }
 
 void NavigationProgram::listen(const ShowMoment& moment) {
+    if (moment.rig && moment.rig != rig_) {
+        rig_ = moment.rig;
+        bestTurn_.emplace(*rig_);
+    }
     visitor_.take(moment);
     for (const ShowInput& input : moment.inputs) {
         const double held = input.value > 0.5 ? 1.0 : 0.0;

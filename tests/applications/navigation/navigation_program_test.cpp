@@ -18,6 +18,7 @@
 #include "core/base/error.h"
 #include "core/motion/causal_split.h"
 #include "core/motion/surface_heights.h"
+#include "tests/support/long_tests.h"
 #include "tests/support/program_visit.h"
 
 // R36: the map as visitors meet it: where one flies, what is seen, read and felt, and what a frame costs.
@@ -232,7 +233,7 @@ TEST(NavigationProgram, TheTabletTakesTheShapeOfTheLandAtEveryZoom) {
                   << " % of the slow energy that the rig can reach, correlation with light off " << correlation
                   << std::endl;
         EXPECT_GE(share, 0.9) << name;
-        EXPECT_GT(correlation, 0.1) << name;
+        EXPECT_GT(correlation, 0.3) << name;
     }
 }
 
@@ -315,7 +316,9 @@ double residentMegabytes() {
 }
 
 TEST(NavigationProgram, HalfAnHourLeavesMemoryFlatAndStrokesInLimits) {
-    constexpr double kStep = 0.25; // seconds; in steps of a frame it would take minutes
+    // Frame by frame it takes minutes; in short steps it is the same half hour.
+    const int perSecond = test::longTests() ? 60 : 4;
+    const double step = 1.0 / perSecond;
     NavigationProgram program(5, valley());
     CausalSplit split(*tabletRig());
     ShowMoment moment;
@@ -324,33 +327,32 @@ TEST(NavigationProgram, HalfAnHourLeavesMemoryFlatAndStrokesInLimits) {
     std::vector<double> before;
     double early = 0.0, late = 0.0; // the most in minutes 2 and 3, and in the last two
     std::vector<float> heights(split.points().size());
-    for (int k = 0; k < 4 * 60 * 30; ++k) {
+    for (int k = 0; k < perSecond * 60 * 30; ++k) {
         std::vector<ShowInput> inputs;
-        if (k % 480 == 100) inputs = {{"pointer.x", 0.7}, {"key.rain", 1.0}};
-        if (k % 480 == 130) inputs = {{"pointer.x", 0.0}, {"key.rain", 0.0}};
+        if (k % (120 * perSecond) == 25 * perSecond) inputs = {{"pointer.x", 0.7}, {"key.rain", 1.0}};
+        if (k % (120 * perSecond) == 65 * perSecond / 2) inputs = {{"pointer.x", 0.0}, {"key.rain", 0.0}};
         moment.inputs = inputs;
         const ShowContent content = program.frame(moment);
-        moment.step = kStep;
-        const auto& grid = std::get<HeightGrid>(content.target);
-        for (std::size_t p = 0; p < heights.size(); ++p)
-            heights[p] = static_cast<float>(heightAt(grid, glm::dvec2(split.points()[p])));
-        if (k % 4 == 0) {
-            const std::vector<double> strokes = split.strokes(heights, 4.0 * kStep);
+        moment.step = step;
+        if (k % perSecond == 0) {
+            const auto& grid = std::get<HeightGrid>(content.target);
+            for (std::size_t p = 0; p < heights.size(); ++p)
+                heights[p] = static_cast<float>(heightAt(grid, glm::dvec2(split.points()[p])));
+            const std::vector<double> strokes = split.strokes(heights, 1.0);
             for (std::size_t a = 0; a < strokes.size(); ++a) {
                 ASSERT_GE(strokes[a], 0.0);
                 ASSERT_LE(strokes[a], 1.0);
                 if (!before.empty()) {
-                    ASSERT_LE(std::abs(strokes[a] - before[a]),
-                              tabletRig()->actuators()[a].maxVelocity * 4.0 * kStep + 1e-9);
+                    ASSERT_LE(std::abs(strokes[a] - before[a]), tabletRig()->actuators()[a].maxVelocity + 1e-9);
                 }
             }
             before = strokes;
         }
-        if (k >= 240 && k < 720) early = std::max(early, residentMegabytes());
-        if (k >= 4 * 60 * 28) late = std::max(late, residentMegabytes());
+        if (k >= 60 * perSecond && k < 180 * perSecond) early = std::max(early, residentMegabytes());
+        if (k >= perSecond * 60 * 28) late = std::max(late, residentMegabytes());
     }
     const double grown = late - early;
-    std::cout << "grown by " << grown << " MB" << std::endl;
+    std::cout << "grown by " << grown << " MB in " << perSecond << " frames a second" << std::endl;
     EXPECT_LT(grown, 5.0);
 }
 
