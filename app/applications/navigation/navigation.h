@@ -37,6 +37,9 @@ public:
     /// Flies to a place as `find` finds it; throws InvalidInput naming those there are where none is meant.
     void flyTo(const std::string& name);
 
+    /// Lets this be read in the first half minute.
+    void tell(ShowCaption caption);
+
     [[nodiscard]] const Map& map() const noexcept { return *map_; }
     [[nodiscard]] const MapView& view() const noexcept { return view_; }
     [[nodiscard]] const ViewGround& ground() const noexcept { return *ground_; }
@@ -82,6 +85,7 @@ private:
     PictureWindow window_; ///< of the land's picture
     std::shared_ptr<const SceneModel> land_;
     std::shared_ptr<const SceneAssets> assets_;
+    std::shared_ptr<const ShowCaption> told_;
 };
 
 [[nodiscard]] Demo navigationDemo();

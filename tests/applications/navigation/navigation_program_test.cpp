@@ -13,6 +13,7 @@
 
 #include <glm/geometric.hpp>
 
+#include "app/applications/navigation/import_caption.h"
 #include "app/applications/navigation/navigation.h"
 #include "app/applications/navigation/valley.h"
 #include "core/base/error.h"
@@ -29,6 +30,8 @@ namespace {
 using test::kFrame;
 using test::tabletRig;
 using Visit = test::ProgramVisit;
+
+constexpr double kLongFrame = 0.05; ///< seconds: where only the end of a flight is looked at
 
 const std::shared_ptr<const Map>& valley() {
     static const auto map = std::make_shared<const Map>(bundledValley());
@@ -112,7 +115,7 @@ TEST(NavigationProgram, TheLeaningDevicePans) {
 
 TEST(NavigationProgram, NextRestartAndGoToFlyThere) {
     NavigationProgram program(1, valley());
-    Visit visit(program);
+    Visit visit(program, kLongFrame);
     land(program, visit, "castle harow"); // a slip of the fingers
     EXPECT_LT(glm::distance(program.view().centre, placeNamed("Castle Harrow").at), 1.0);
     visit.frame({{"key.restart", 1.0}});
@@ -143,7 +146,7 @@ TEST(NavigationProgram, TheSameInputsGiveTheSameShow) {
 /// A label's text runs along the item's x, and it faces along z.
 TEST(NavigationProgram, LabelsAreReadFromAllFourSides) {
     NavigationProgram program(1, valley());
-    Visit visit(program);
+    Visit visit(program, kLongFrame);
     land(program, visit, "Merinhaven");
     int read = 0;
     for (int side = 0; side < 4; ++side) {
@@ -209,7 +212,7 @@ TEST(NavigationProgram, TheTabletTakesTheShapeOfTheLandAtEveryZoom) {
     CausalSplit split(*tabletRig());
     for (const char* name : {"Merinhaven", "Castle Harrow", "Lake Merin", "Kestrel Horn", "Fennick"}) {
         NavigationProgram program(1, valley());
-        Visit visit(program);
+        Visit visit(program, kLongFrame);
         land(program, visit, name);
         const auto& grid = std::get<HeightGrid>(visit.content().target);
         ASSERT_NO_THROW(checkHeightGrid(grid));
@@ -235,6 +238,30 @@ TEST(NavigationProgram, TheTabletTakesTheShapeOfTheLandAtEveryZoom) {
         EXPECT_GE(share, 0.9) << name;
         EXPECT_GT(correlation, 0.3) << name;
     }
+}
+
+TEST(NavigationProgram, WhoBringsAMapReadsWhatWasTakenOfIt) {
+    MapReport report;
+    report.buildings = 1;
+    report.roads = 2;
+    report.leftOut = 1;
+    report.filled = 0.25;
+    report.notes = {"It has no heights, so the ground is level."};
+    const ShowCaption caption = importCaption(report, "town.osm");
+    EXPECT_EQ(caption.title, Words("Read: town.osm", "Gelesen: town.osm"));
+    EXPECT_EQ(caption.sentence.english, "1 building, 2 roads, 1 thing left out, 25 % of the heights filled in. "
+                                        "It has no heights, so the ground is level.");
+    EXPECT_EQ(caption.sentence.german, "1 Gebäude, 2 Straßen, 1 Ding weggelassen, 25 % der Höhen ergänzt. "
+                                       "It has no heights, so the ground is level.");
+    EXPECT_EQ(importCaption({}, "a").sentence, Words("land alone.", "nur Land."));
+    NavigationProgram program(1, valley());
+    program.tell(caption);
+    Visit visit(program, 0.5);
+    visit.frame();
+    ASSERT_TRUE(visit.content().caption);
+    EXPECT_EQ(visit.content().caption->title, caption.title);
+    visit.frames(31.0);
+    EXPECT_FALSE(visit.content().caption) << "it is read, and then the show is by itself";
 }
 
 TEST(NavigationProgram, RainFromAHeldHandEndsInTheWater) {
