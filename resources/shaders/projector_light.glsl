@@ -18,10 +18,8 @@ vec3 fullLight(vec3 world, vec3 normal) {
 // The value that makes a radiance of 1; without compensation (0), as if the surface met the light head on at the
 // reference distance.
 vec3 valueFor(vec3 world, vec3 normal, float compensation) {
-    // Faces that light can only graze stay dark anyway. They get no more than one turned to the light would: made up
-    // for, the pixel would outshine what it also lights beyond their rims; left black, it would draw a dark seam there.
+    vec3 light = mix(projectorPeak, fullLight(world, normal), compensation);
+    // Faces that light can only graze stay dark anyway; full light for them would spill over their rims.
     float slant = dot(normal, normalize(projectorPosition - world));
-    vec3 turned = mix(normalize(projectorPosition - world), normal, smoothstep(0.0, kGrazing, slant));
-    vec3 light = mix(projectorPeak, fullLight(world, turned), compensation);
-    return 1.0 / max(light, vec3(1e-6));
+    return mix(1.0, smoothstep(0.0, kGrazing, slant), compensation) / max(light, vec3(1e-6));
 }
