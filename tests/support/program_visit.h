@@ -25,7 +25,8 @@ inline const std::shared_ptr<const Rig>& tabletRig() {
 
 class ProgramVisit {
 public:
-    explicit ProgramVisit(ShowProgram& program) : program_(program) {
+    /// A frame every `step` seconds: long ones where only what comes in the end counts.
+    explicit ProgramVisit(ShowProgram& program, double step = kFrame) : program_(program), step_(step) {
         moment_.rig = tabletRig();
         moment_.installation = std::make_shared<const Installation>(defaultInstallation());
     }
@@ -35,13 +36,13 @@ public:
         moment_.bodies = bodies_;
         content_ = program_.frame(moment_);
         moment_.inputs = {};
-        moment_.step = kFrame;
-        moment_.seconds += kFrame;
+        moment_.step = step_;
+        moment_.seconds += step_;
         for (const ShowSound& sound : content_.sounds) ++heard_[sound.name];
         return content_;
     }
     void frames(double seconds) {
-        for (int k = 0; k < std::lround(seconds / kFrame); ++k) frame();
+        for (int k = 0; k < std::lround(seconds / step_); ++k) frame();
     }
     /// The tracked device leans so far about the world's axes, radians.
     void lean(float aboutX, float aboutZ) {
@@ -60,6 +61,7 @@ public:
 
 private:
     ShowProgram& program_;
+    double step_;
     ShowMoment moment_;
     std::vector<ShowBody> bodies_;
     ShowContent content_;

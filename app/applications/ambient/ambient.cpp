@@ -20,6 +20,7 @@ constexpr glm::dvec2 kHalf{0.105, 0.075}; ///< of the tablet, metres
 constexpr double kFirstHour = 8.0;        ///< of the day with which a show begins
 constexpr double kWindSettles = 1.2;      ///< seconds until light shows the wind of another hour, by a factor of e
 constexpr double kCarriedByWind = 0.0022; ///< speed of clouds for each metre a second of wind
+constexpr double kSlopeLength = 2.0;      ///< metres of a wave that is a slope on the tablet
 constexpr double kFogByWind = 0.0070;     ///< likewise of fog, which is near
 constexpr double kFogLife = 14.0;         ///< seconds that a bank of fog is seen
 constexpr double kMoonMoves = 600.0;      ///< seconds of the world after which the moon is looked for again
@@ -78,6 +79,7 @@ ShowContent AmbientProgram::frame(const ShowMoment& moment) {
     lookUp();
     lookAhead();
     blow(moment.step);
+    slosh(moment);
     turnFog(moment.step);
     thunder(moment.step);
     anticipation_.note(view_.seconds, view_.sea);
@@ -133,6 +135,20 @@ void AmbientProgram::blow(double step) {
     view_.drifted += view_.sea.towards * (kCarriedByWind * (1.5 + view_.sea.wind) * step);
 }
 
+/// The sea stays level when a hand leans the coast: one more wave, so long that it is a slope.
+void AmbientProgram::slosh(const ShowMoment& moment) {
+    glm::dvec2 lean(0.0);
+    for (const ShowBody& body : moment.bodies)
+        if (body.role == PoseRole::device) lean = leanOf(moment.worldFromDevice);
+    slosh_.advance(moment.step, lean);
+    sloping_.clear();
+    if (slosh_.rests()) return;
+    const glm::dvec2& slope = slosh_.slope();
+    const double amplitude = glm::length(slope) * kSlopeLength / (2.0 * std::numbers::pi);
+    sloping_.push_back({amplitude, kSlopeLength, 0.0, Angle::radians(std::atan2(slope.y, slope.x)), Angle()});
+    view_.waves.insert(view_.waves.end(), sloping_.begin(), sloping_.end());
+}
+
 /// Each bank keeps the drift with which it began, for what drifts at another speed would jump.
 void AmbientProgram::turnFog(double step) {
     for (std::size_t k = 0; k < view_.fog.size(); ++k) {
@@ -161,7 +177,9 @@ void AmbientProgram::thunder(double step) {
 
 HeightGrid AmbientProgram::wish(double lag) const {
     HeightGrid grid = land_;
-    const std::vector<Wave> waves = sea_.slowWaves(followed_, view_.seconds, lag);
+    std::vector<Wave> waves = sea_.slowWaves(followed_, view_.seconds, lag);
+    // Who leans it expects it to move: no light has to go before.
+    waves.insert(waves.end(), sloping_.begin(), sloping_.end());
     for (int j = 0; j < grid.rows; ++j) {
         for (int i = 0; i < grid.columns; ++i) {
             float& height = grid.heights[static_cast<std::size_t>(j * grid.columns + i)];

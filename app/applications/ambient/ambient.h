@@ -4,11 +4,13 @@
 #include <memory>
 #include <optional>
 #include <random>
+#include <vector>
 
 #include "app/applications/ambient/anticipation.h"
 #include "app/applications/ambient/scenery.h"
 #include "app/applications/ambient/world_clock.h"
 #include "app/applications/demo.h"
+#include "app/applications/slosh.h"
 #include "app/applications/visitor.h"
 #include "core/loop/show_program.h"
 #include "core/voxels/height_grid.h"
@@ -35,7 +37,8 @@ struct AmbientSettings {
 /// servos follow the land and the long waves, a set time after light has shown how they change.
 ///
 /// Left and right (held) let time run faster and back, `key.next` goes to another day, `key.restart` back to where it
-/// began, and where the pointer stands rings run over the water. Sounds go on while they are there: `ambient.wind`,
+/// began, where the pointer stands rings run over the water, and when the device is leant the sea runs to its low
+/// side, and is felt there. Sounds go on while they are there: `ambient.wind`,
 /// `ambient.wave` and `ambient.rain`; `ambient.thunder` begins. Strengths are 0 to 1.
 class AmbientProgram final : public ShowProgram {
 public:
@@ -55,6 +58,7 @@ private:
     void lookUp();
     void lookAhead();
     void blow(double step);
+    void slosh(const ShowMoment& moment);
     void turnFog(double step);
     void thunder(double step);
     [[nodiscard]] HeightGrid wish(double lag) const;
@@ -66,6 +70,8 @@ private:
     Scenery scenery_;
     HeightGrid land_;
     Visitor visitor_;
+    Slosh slosh_{0.45};
+    std::vector<Wave> sloping_; ///< the slope of the sea in a leant device; empty while it is none
     std::optional<WorldClock> clock_;
     std::mt19937_64 chance_;
 

@@ -98,6 +98,22 @@ Primitive flatRing(double inner, int around) {
     return ring;
 }
 
+Primitive strip(float far, float narrow, float wide, int pieces) {
+    Primitive made;
+    for (int k = 0; k <= pieces; ++k) {
+        const float share = static_cast<float>(k) / static_cast<float>(pieces);
+        const float half = glm::mix(narrow, wide, share);
+        for (const float side : {-1.0F, 1.0F})
+            addVertex(made, {far * share, 0.0F, half * side}, {0.0F, 1.0F, 0.0F},
+                      {0.5F + 0.5F * share, 0.5F + 0.5F * side});
+    }
+    for (std::uint32_t k = 0; k < static_cast<std::uint32_t>(pieces); ++k) {
+        made.triangles.emplace_back(2 * k, 2 * k + 1, 2 * k + 2);
+        made.triangles.emplace_back(2 * k + 2, 2 * k + 1, 2 * k + 3);
+    }
+    return made;
+}
+
 namespace {
 
 /// Walls below the rim of a terrain: its vertices in order, counterclockwise seen from above.
@@ -169,6 +185,47 @@ double noiseAt(const glm::dvec2& at, std::uint32_t seed, int period) noexcept {
     const double low = std::lerp(cornerValue(x, y, seed, period), cornerValue(x + 1, y, seed, period), u);
     const double high = std::lerp(cornerValue(x, y + 1, seed, period), cornerValue(x + 1, y + 1, seed, period), u);
     return std::lerp(low, high, v);
+}
+
+std::shared_ptr<const Image> glowPicture(const glm::ivec2& size) {
+    auto picture = std::make_shared<Image>(size);
+    for (int y = 0; y < size.y; ++y) {
+        for (int x = 0; x < size.x; ++x) {
+            const glm::vec2 off = glm::abs(2.0F * (glm::vec2(x, y) + 0.5F) / glm::vec2(size) - 1.0F);
+            const float along = (1.0F - off.x) * (1.0F - off.x), across = std::exp(-3.5F * off.y * off.y);
+            const float rim = std::clamp(4.0F * (1.0F - off.y), 0.0F, 1.0F);
+            picture->at(x, y) = {255, 255, 255, static_cast<std::uint8_t>(255.0F * along * across * rim)};
+        }
+    }
+    return picture;
+}
+
+std::shared_ptr<const Image> lacePicture(int side, int bubbles, std::uint32_t seed) {
+    /// How much farther the second nearest of scattered middles is than the nearest: nothing on the seam between two.
+    const auto fromSeam = [&](const glm::dvec2& at) {
+        double nearest = 9.0, second = 9.0;
+        const int column = static_cast<int>(std::floor(at.x)), row = static_cast<int>(std::floor(at.y));
+        for (int j = row - 1; j <= row + 1; ++j) {
+            for (int i = column - 1; i <= column + 1; ++i) {
+                const glm::dvec2 middle(i + cornerValue(i, j, seed, bubbles),
+                                        j + cornerValue(i, j, seed + 1U, bubbles));
+                const double away = glm::distance(at, middle);
+                second = std::min(second, std::max(nearest, away));
+                nearest = std::min(nearest, away);
+            }
+        }
+        return second - nearest;
+    };
+    auto picture = std::make_shared<Image>(glm::ivec2(side));
+    for (int y = 0; y < side; ++y) {
+        for (int x = 0; x < side; ++x) {
+            const glm::dvec2 at = static_cast<double>(bubbles) / side * glm::dvec2(x, y);
+            const double grain = 0.25 * (noiseAt(4.0 * at, seed + 2U, 4 * bubbles) - 0.5);
+            const double lace = std::clamp(1.0 - (fromSeam(at) + grain) / 0.55, 0.0, 1.0);
+            picture->at(x, y) = {255, 255, 255, static_cast<std::uint8_t>(255.0 * lace * lace)};
+        }
+    }
+    return picture;
 }
 
 std::shared_ptr<const Image> coverPicture(int side, int cells, std::uint32_t seed) {

@@ -29,7 +29,7 @@ struct View {
     SkyPosition sun;
     Moon moon;
     SeaState sea;            ///< as light shows it
-    std::vector<Wave> waves; ///< of it, over the sea's level
+    std::vector<Wave> waves; ///< of it, and how it leans, over the sea's level
     glm::dvec2 drifted{0.0}; ///< way of what the wind has carried, metres in x and z
     double lightning = 0.0;  ///< 0 to 1
     glm::dvec2 struck{0.0};  ///< where, x and z of the device

@@ -107,22 +107,20 @@ void addTower(Scene& scene, SceneAssets& assets) {
     scene.items.push_back(std::move(lantern));
 }
 
-/// Two fans of light, one behind the other, that turn with the lamp; of layers that end one after another, so that they
-/// fade.
+/// Two shafts of light that turn with the lamp, and lose themselves in the haze.
 void addBeam(Scene& scene, SceneAssets& assets) {
-    Primitive fan;
-    constexpr int kLayers = 7;
-    for (const float side : {-1.0F, 1.0F}) {
-        for (int layer = 1; layer <= kLayers; ++layer) {
-            const float far = 0.105F * static_cast<float>(layer) / kLayers, wide = 0.075F * far + 0.0008F;
-            const float y = 0.00004F * static_cast<float>(layer); // none hides another
-            addFace(fan, std::array{glm::vec3(0.001F * side, y, 0.0F), glm::vec3(far * side, y, -wide * side),
-                                    glm::vec3(far * side, y, wide * side)});
-        }
-    }
-    SceneItem& beam = addModel(scene, assets, kBeam, "Beam", modelOf("beam", {fan}));
+    Primitive shafts = strip(0.125F, 0.0011F, 0.0125F), back = shafts;
+    for (glm::vec3& position : back.positions) position = {-position.x, position.y, -position.z};
+    const auto first = static_cast<std::uint32_t>(shafts.positions.size());
+    shafts.positions.insert(shafts.positions.end(), back.positions.begin(), back.positions.end());
+    shafts.normals.insert(shafts.normals.end(), back.normals.begin(), back.normals.end());
+    shafts.texcoords.insert(shafts.texcoords.end(), back.texcoords.begin(), back.texcoords.end());
+    for (const auto& corners : back.triangles) shafts.triangles.push_back(corners + first);
+    assets.images.emplace("ambient beam", glowPicture({256, 64}));
+    SceneItem& beam = addModel(scene, assets, kBeam, "Beam", modelOf("beam", {shafts}));
     beam.position = onLand(kGnomon, 0.0278);
-    beam.material = shining("Beam", {1.0F, 0.90F, 0.62F}, 1.0F);
+    beam.material = shining("Beam", {1.0F, 0.90F, 0.62F}, 0.0F);
+    beam.material.colorTexture = overLand("ambient beam");
     beam.material.unlit = true;
     beam.visible = false;
 }
@@ -273,7 +271,7 @@ void showShore(Scene& scene, const View& view) {
     itemOf(scene, kWindow).material.emissionStrength = static_cast<float>(0.05 + 1.2 * night);
     SceneItem& beam = itemOf(scene, kBeam);
     beam.visible = dim > 0.05;
-    beam.opacity = static_cast<float>(0.085 * dim);
+    beam.opacity = static_cast<float>(0.62 * dim);
     constexpr double kBeamTurn = 9.0; // seconds
     const double turn = 2.0 * std::numbers::pi * std::fmod(view.seconds / kBeamTurn, 1.0);
     beam.rotation = glm::angleAxis(static_cast<float>(turn), glm::vec3(0.0F, 1.0F, 0.0F));

@@ -34,7 +34,8 @@ glm::quat leanOfSea(const View& view, const glm::dvec2& place, double across) {
     return glm::quat(glm::vec3(0.0F, 1.0F, 0.0F), glm::normalize(glm::vec3(glm::dvec3(-slopes.x, 1.0, -slopes.y))));
 }
 
-void addSea(Scene& scene) {
+void addSea(Scene& scene, SceneAssets& assets) {
+    assets.images.emplace("ambient lace", lacePicture(256, 12, 31U));
     HeightItem sea;
     sea.floor = static_cast<double>(kSheet) - kSeaLevel - 0.010;
     SceneItem water = demoItem(kSea, "Sea", sea);
@@ -48,8 +49,14 @@ void addSea(Scene& scene) {
     SceneItem foam = demoItem(kFoam, "Foam", crests);
     foam.material = plain("Foam", {0.93F, 0.96F, 0.97F}, 0.9F);
     foam.material.holes.image = "ambient cover";
-    foam.material.holes.tile = {0.055F, 0.034F};
+    foam.material.holes.tile = {0.083F, 0.034F}; // longer along the wind
     foam.material.holes.velocity = {0.004F, 0.002F};
+    foam.material.colorTexture.image = "ambient lace";
+    foam.material.colorTexture.tile = {0.032F, 0.021F};
+    foam.material.colorTexture.velocity = {0.004F, 0.002F};
+    foam.material.emission = {0.85F, 0.93F, 1.0F};
+    foam.material.emissionStrength = 0.05F; // water full of air is bright within
+    foam.opacity = 0.92F;
     foam.visible = false;
     scene.items.push_back(std::move(foam));
 }
@@ -105,7 +112,7 @@ void showSea(Scene& scene, const View& view) {
     foam.position.y = static_cast<float>(kSeaLevel - kFoamLift * deviation * (1.7 - 0.7 * foamy) + 0.00005);
     foam.material.holeThreshold = static_cast<float>(0.95 - 0.38 * foamy);
     const auto bearing = std::atan2(view.sea.towards.y, view.sea.towards.x);
-    foam.material.holes.turn = Angle::radians(bearing);
+    foam.material.holes.turn = foam.material.colorTexture.turn = Angle::radians(bearing);
 }
 
 void showBoat(Scene& scene, const View& view) {
@@ -168,7 +175,7 @@ void showRings(Scene& scene, const View& view) {
 } // namespace
 
 void addWater(Scene& scene, SceneAssets& assets) {
-    addSea(scene);
+    addSea(scene, assets);
     addBoat(scene, assets);
     addRings(scene, assets);
 }

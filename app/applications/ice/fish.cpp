@@ -37,11 +37,16 @@ School::School(const Polygon& shore, int count, std::uint64_t seed) : shore_(sho
     }
 }
 
-void School::advance(double seconds, std::span<const Warmth> warmths, std::span<const glm::dvec2> openings) {
+void School::advance(double seconds, std::span<const Warmth> warmths, std::span<const glm::dvec2> openings,
+                     const glm::dvec2& current) {
     if (std::isfinite(seconds)) left_ += std::clamp(seconds, 0.0, kMostSwum);
     for (; left_ >= kStep; left_ -= kStep) {
         seconds_ += kStep;
-        for (std::size_t k = 0; k < fish_.size(); ++k) swim(k, kStep, wishOf(k, warmths, openings));
+        for (std::size_t k = 0; k < fish_.size(); ++k) {
+            swim(k, kStep, wishOf(k, warmths, openings));
+            const glm::dvec2 carried = fish_[k].place + current * kStep;
+            if (holds(shore_, carried)) fish_[k].place = carried;
+        }
     }
 }
 

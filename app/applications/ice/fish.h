@@ -28,8 +28,10 @@ class School {
 public:
     School(const Polygon& shore, int count, std::uint64_t seed);
 
-    /// `openings` are places of open water, which they like to look at.
-    void advance(double seconds, std::span<const Warmth> warmths, std::span<const glm::dvec2> openings = {});
+    /// `openings` are places of open water, which they like to look at; the water carries them along with `current`,
+    /// metres a second.
+    void advance(double seconds, std::span<const Warmth> warmths, std::span<const glm::dvec2> openings = {},
+                 const glm::dvec2& current = {});
     [[nodiscard]] const std::vector<Fish>& fish() const noexcept { return fish_; }
 
 private:

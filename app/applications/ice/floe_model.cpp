@@ -17,6 +17,8 @@ using Primitive = Model::Primitive;
 constexpr double kBevelWide = 0.0009, kBevelDeep = 0.0006; ///< metres
 constexpr double kFoot = 0.0007;                           ///< by which sides draw in down to the foot, metres
 
+constexpr double kCloses = 0.55;      ///< growth at which cells meet
+constexpr double kYoungDeep = 0.0030; ///< metres that ice lies lower when it begins: just under the water
 constexpr double kShortEdge = 0.0008; ///< metres
 
 /// A floe in the making.
@@ -24,8 +26,9 @@ class FloeMesh {
 public:
     explicit FloeMesh(const glm::dvec2& middle) : middle_(middle) {}
 
-    /// A cell whose k-th edge is free where `free[k]`; a smaller bevel while it grows.
-    void add(const Polygon& outline, const std::vector<bool>& free, double bevel) {
+    /// A cell whose k-th edge is free where `free[k]`; a smaller bevel and a top that is so much lower while it grows.
+    void add(const Polygon& outline, const std::vector<bool>& free, double bevel, double lower) {
+        lower_ = lower;
         Polygon inner = outline;
         for (std::size_t k = 0; k < outline.size(); ++k)
             if (free[k])
@@ -41,7 +44,7 @@ public:
 private:
     void vertex(Primitive& to, const glm::dvec2& place, double height, const glm::dvec3& normal,
                 const glm::dvec2& picture) const {
-        to.positions.emplace_back(glm::dvec3(place.x - middle_.x, height, place.y - middle_.y));
+        to.positions.emplace_back(glm::dvec3(place.x - middle_.x, height - lower_, place.y - middle_.y));
         to.normals.emplace_back(normal);
         to.texcoords.emplace_back(picture);
     }
@@ -76,6 +79,7 @@ private:
     }
 
     glm::dvec2 middle_;
+    double lower_ = 0.0; ///< metres
 };
 
 /// Which edges of a cell have no ice beyond. One that is too short for a bond is as its neighbours are.
@@ -89,6 +93,17 @@ std::vector<bool> freeEdges(const Sheet& sheet, int cell) {
         if (isShort && !free[(k + 1) % count] && !free[(k + count - 1) % count]) free[k] = false;
     }
     return free;
+}
+
+/// Young ice closes under the surface, as a skin, and then comes up as it gets thicker: cells that met only when they
+/// are done would be framed by dark water until then.
+Polygon youngOutline(const Polygon& whole, double growth) {
+    const double share = std::min(1.0, growth / kCloses);
+    if (share <= 0.0 || whole.empty()) return {};
+    const glm::dvec2 centre = centreOf(whole);
+    Polygon outline = whole;
+    for (glm::dvec2& corner : outline) corner = centre + share * (corner - centre);
+    return outline;
 }
 
 } // namespace
@@ -119,11 +134,11 @@ const std::vector<Material>& iceMaterials() {
 SceneModel floeModel(const IceCover& ice, const Floe& floe) {
     FloeMesh mesh(floe.centre);
     for (const int k : floe.cells) {
-        const Polygon outline = ice.grown(k);
-        if (outline.empty()) continue;
         const double growth = ice.growth(k);
+        const Polygon outline = youngOutline(ice.sheet().cells()[static_cast<std::size_t>(k)].outline, growth);
+        if (outline.empty()) continue;
         mesh.add(outline, growth < 1.0 ? std::vector(outline.size(), true) : freeEdges(ice.sheet(), k),
-                 growth < 1.0 ? 0.3 + 0.7 * (1.0 - growth) : 1.0);
+                 growth < 1.0 ? 0.3 + 0.7 * (1.0 - growth) : 1.0, (1.0 - growth) * kYoungDeep);
     }
     SceneModel made;
     made.materials = iceMaterials();

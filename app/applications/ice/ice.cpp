@@ -15,6 +15,7 @@ namespace lumorph::ice {
 namespace {
 
 constexpr std::size_t kFish = 7;
+constexpr double kCarries = 0.22;      ///< metres by which water that comes to slope by 1 carries fish along
 constexpr double kFinger = 4e-7;       ///< cubic metres: how heavy a touch is
 constexpr double kHandNear = 0.07;     ///< metres over the sheet from where on a hand warms
 constexpr double kHandOn = 0.012;      ///< where it also presses
@@ -90,16 +91,17 @@ ShowContent IceProgram::frame(const ShowMoment& moment) {
     else
         takePointer(moment.step);
     turn();
-    around_.lift = [this](const glm::dvec2& place) { return swell_.at(place); };
+    slosh_.advance(moment.step, around_.lean);
+    around_.lift = [this](const glm::dvec2& place) { return waterAt(place); };
     ice_.advance(moment.step, around_);
     const std::vector<IceEvent> events = ice_.takeEvents();
     noteOpenings(events);
-    school_.advance(moment.step, around_.warmths, openings_);
+    school_.advance(moment.step, around_.warmths, openings_, kCarries * slosh_.slopeSpeed());
     if (bending_) swell_.advance(ice_, *bending_, moment.step);
     open_ = ice_.iceArea() < kOpen * ice_.sheet().area() && !ice_.freezing() ? open_ + moment.step : 0.0;
     if (open_ > kUntilFrost) freeze();
     ShowContent content;
-    content.scene = pond_.show(ice_, school_, around_.warmths);
+    content.scene = pond_.show(ice_, school_, around_.warmths, slosh_.slope());
     content.assets = pond_.assets();
     content.target = swell_.heights();
     content.following = Following::split;
@@ -175,6 +177,14 @@ void IceProgram::play(double step) {
 void IceProgram::freeze() {
     ice_.freeze();
     played_ = -IceCover::kLeaving;
+}
+
+/// Mounds that servos lift, on water that stays level while the device leans.
+WaterLevel IceProgram::waterAt(const glm::dvec2& place) const noexcept {
+    WaterLevel water = swell_.at(place);
+    water.height += slosh_.heightAt(place);
+    water.slope += slosh_.slope();
+    return water;
 }
 
 void IceProgram::noteOpenings(const std::vector<IceEvent>& events) {

@@ -10,6 +10,7 @@
 #include "app/applications/ice/ice_cover.h"
 #include "app/applications/ice/pond.h"
 #include "app/applications/ice/swell.h"
+#include "app/applications/slosh.h"
 #include "app/applications/visitor.h"
 #include "core/loop/show_program.h"
 
@@ -38,6 +39,7 @@ private:
     void play(double step);
     void turn();
     void freeze();
+    [[nodiscard]] WaterLevel waterAt(const glm::dvec2& place) const noexcept;
     void noteOpenings(const std::vector<IceEvent>& events);
 
     Visitor visitor_;
@@ -45,6 +47,7 @@ private:
     School school_;
     Pond pond_;
     Swell swell_;
+    Slosh slosh_{0.10}; ///< little: the water stands 2.6 mm below the top of the ice
     std::shared_ptr<const Rig> rig_;
     std::optional<Bending> bending_;
     Surroundings around_;

@@ -114,11 +114,12 @@ glm::quat turnOf(double turn, const glm::dvec2& slope) {
     return glm::normalize(glm::quat(tilt * yaw));
 }
 
-void showFish(Scene& scene, const School& school) {
+void showFish(Scene& scene, const School& school, const glm::dvec2& waterSlope) {
     int number = 0;
     for (const Fish& fish : school.fish()) {
         SceneItem& item = itemOf(scene, kFirstFish + number++);
-        item.position = {glm::dvec3(fish.place.x, std::lerp(kDeepest, kShallowest, fish.depth), fish.place.y)};
+        const double risen = fish.depth * glm::dot(waterSlope, fish.place);
+        item.position = {glm::dvec3(fish.place.x, std::lerp(kDeepest, kShallowest, fish.depth) + risen, fish.place.y)};
         item.rotation = turnOf(fish.heading, {});
         item.scale = glm::vec3(fish.length);
         const double share = fish.stroke / (2.0 * std::numbers::pi);
@@ -171,10 +172,12 @@ SceneItem Pond::floeItem(const Floe& floe) const {
     return item;
 }
 
-std::shared_ptr<const Scene> Pond::show(const IceCover& ice, const School& school, std::span<const Warmth> warmths) {
+std::shared_ptr<const Scene> Pond::show(const IceCover& ice, const School& school, std::span<const Warmth> warmths,
+                                        const glm::dvec2& waterSlope) {
     updateShapes(ice);
     auto scene = std::make_shared<Scene>(still_);
-    showFish(*scene, school);
+    itemOf(*scene, kWaterItem).rotation = turnOf(0.0, waterSlope);
+    showFish(*scene, school, waterSlope);
     showWarmth(*scene, warmths);
     for (const Floe& floe : ice.floes())
         if (floe.area > 0.0) scene->items.push_back(floeItem(floe));

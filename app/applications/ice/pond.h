@@ -28,7 +28,7 @@ public:
     Pond(const Polygon& shore, std::size_t fish);
 
     [[nodiscard]] std::shared_ptr<const Scene> show(const IceCover& ice, const School& school,
-                                                    std::span<const Warmth> warmths);
+                                                    std::span<const Warmth> warmths, const glm::dvec2& waterSlope = {});
     /// Of the scene shown last.
     [[nodiscard]] const std::shared_ptr<const SceneAssets>& assets() const noexcept { return assets_; }
 

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
+#include <optional>
 #include <utility>
 
 #include <glm/common.hpp>
@@ -9,6 +11,7 @@
 #include <glm/matrix.hpp>
 
 #include "app/applications/demo_items.h"
+#include "app/applications/navigation/import_caption.h"
 #include "app/applications/navigation/map_import.h"
 #include "app/applications/navigation/map_model.h"
 #include "app/applications/navigation/noise.h"
@@ -27,6 +30,7 @@ constexpr double kTurnSpeed = 0.7;     ///< radians a second
 constexpr double kDrift = 0.045;       ///< radians a second in which it turns while nobody is there
 constexpr double kSmooth = 0.18;       ///< seconds in which panning follows the hand
 constexpr double kStay = 4.5;          ///< seconds at a place
+constexpr double kTold = 30.0;         ///< seconds in which the report of an import is read
 constexpr double kNarrowest = 140.0;   ///< metres
 constexpr double kLookAhead = 0.8;     ///< seconds
 constexpr double kCloudHeight = 0.082; ///< y of the cloud, device metres
@@ -93,14 +97,17 @@ std::unique_ptr<ShowProgram> begin(const ProgramStart& start, const Progress& pr
     const DemoTold& told = start.told;
     const auto map = told.find("map"), place = told.find("goto");
     std::shared_ptr<const Map> shown;
+    std::optional<ShowCaption> report;
     if (map == told.end()) {
         shown = std::make_shared<const Map>(bundledValley(29, progress));
     } else {
         ImportedMap imported = importMap(map->second, progress);
         for (const std::string& note : imported.report.notes) start.note(note);
+        report = importCaption(imported.report, std::filesystem::path(map->second).filename().string());
         shown = std::make_shared<const Map>(std::move(imported.map));
     }
     auto program = std::make_unique<NavigationProgram>(start.seed, std::move(shown));
+    if (report) program->tell(std::move(*report));
     if (place != told.end()) program->flyTo(place->second);
     return program;
 }
@@ -135,8 +142,11 @@ void NavigationProgram::flyTo(const std::string& name) {
 }
 
 MapView NavigationProgram::viewOf(const Place& place, double turn) const {
-    return within({place.at, place.width, turn}, map_->heights.size(), kNarrowest);
+    const MapView view = within({place.at, place.width, turn}, map_->heights.size(), kNarrowest);
+    return bestTurn_ ? bestTurn_->of(*map_, view) : view;
 }
+
+void NavigationProgram::tell(ShowCaption caption) { told_ = std::make_shared<const ShowCaption>(std::move(caption)); }
 
 void NavigationProgram::fly(const MapView& to) {
     flight_.emplace(view_, to);
@@ -145,6 +155,10 @@ void NavigationProgram::fly(const MapView& to) {
 }
 
 void NavigationProgram::listen(const ShowMoment& moment) {
+    if (moment.rig && moment.rig != rig_) {
+        rig_ = moment.rig;
+        bestTurn_.emplace(*rig_);
+    }
     visitor_.take(moment);
     for (const ShowInput& input : moment.inputs) {
         const double held = input.value > 0.5 ? 1.0 : 0.0;
@@ -284,6 +298,7 @@ ShowContent NavigationProgram::frame(const ShowMoment& moment) {
     }
     content.target = ground_->grid();
     content.following = Following::split;
+    if (moment.seconds < kTold) content.caption = told_;
     return content;
 }
 

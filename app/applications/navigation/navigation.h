@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "app/applications/demo.h"
+#include "app/applications/navigation/best_turn.h"
 #include "app/applications/navigation/ground_picture.h"
 #include "app/applications/navigation/labels.h"
 #include "app/applications/navigation/map.h"
@@ -22,9 +23,10 @@ namespace lumorph::navigation {
 enum LandItem : int { kSunItem = 1, kLandItem, kRainItem, kFirstCloud, kLastCloud = kFirstCloud + 5 };
 
 /// A map that one flies over, as an application: light shows land, houses and names, and the device takes the land's
-/// shape. Leaning pans, `key.in`, `key.out`, `key.turnLeft` and `key.turnRight` act while held, `key.next` flies to the
-/// next place, `key.restart` to where all is seen. A held pointer body, or `key.rain`, lets it rain; `key.bend` lets
-/// the far edge come up for who looks (view-dependent shape). Without a visitor it flies from place to place.
+/// shape; flights end with the turn at which it can do so best. Leaning pans, `key.in`, `key.out`, `key.turnLeft` and
+/// `key.turnRight` act while held, `key.next` flies to the next place, `key.restart` to where all is seen. A held
+/// pointer body, or `key.rain`, lets it rain; `key.bend` lets the far edge come up for who looks (view-dependent
+/// shape). Without a visitor it flies from place to place.
 class NavigationProgram final : public ShowProgram {
 public:
     /// Throws InvalidInput for a map without heights, or cover for each of them, DataError where the font is missing.
@@ -34,6 +36,9 @@ public:
 
     /// Flies to a place as `find` finds it; throws InvalidInput naming those there are where none is meant.
     void flyTo(const std::string& name);
+
+    /// Lets this be read in the first half minute.
+    void tell(ShowCaption caption);
 
     [[nodiscard]] const Map& map() const noexcept { return *map_; }
     [[nodiscard]] const MapView& view() const noexcept { return view_; }
@@ -64,6 +69,8 @@ private:
     std::shared_ptr<const SceneAssets> still_; ///< what never changes
     Scene setting_;
 
+    std::shared_ptr<const Rig> rig_;
+    std::optional<BestTurn> bestTurn_; ///< of `rig_`
     MapView view_;
     glm::dvec2 velocity_{0.0}; ///< of the middle, device metres a second
     std::optional<Flight> flight_;
@@ -78,6 +85,7 @@ private:
     PictureWindow window_; ///< of the land's picture
     std::shared_ptr<const SceneModel> land_;
     std::shared_ptr<const SceneAssets> assets_;
+    std::shared_ptr<const ShowCaption> told_;
 };
 
 [[nodiscard]] Demo navigationDemo();

@@ -8,12 +8,17 @@
 namespace lumorph::navigation {
 namespace {
 
-constexpr double kSettles = 0.5; ///< seconds in which heights come closer to their extent by e
+constexpr double kLeastRelief = 1e-3; ///< metres
+constexpr double kSettles = 0.5;      ///< seconds in which heights come closer to their extent by e
 
 } // namespace
 
 glm::dvec2 ViewGround::pointAt(int column, int row) noexcept {
     return kHalf * (2.0 * glm::dvec2(column, row) / glm::dvec2(kColumns - 1, kRows - 1) - 1.0);
+}
+
+double ViewGround::perMetreOf(double relief, const MapView& view) noexcept {
+    return std::min(kReach / std::max(relief, kLeastRelief), kMostExaggeration / view.scale());
 }
 
 ViewGround::ViewGround(const Map& map, const MapView& view, const ViewGround* before, double seconds) : view_(view) {
@@ -27,9 +32,9 @@ ViewGround::ViewGround(const Map& map, const MapView& view, const ViewGround* be
             heights_.push_back(static_cast<float>(
                 map.heights.at(corner + static_cast<double>(i) * across + static_cast<double>(j) * down, detail)));
     const auto [least, most] = std::ranges::minmax(heights_);
-    const double relief = std::max(static_cast<double>(most - least), 1e-3);
+    const double relief = std::max(static_cast<double>(most - least), kLeastRelief);
     low_ = static_cast<double>(least);
-    perMetre_ = std::min(kReach / relief, kMostExaggeration / view.scale());
+    perMetre_ = perMetreOf(relief, view);
     if (!before || seconds < 0.0) return;
     // Whoever flies must not see the land jump when a peak comes into view.
     const double share = 1.0 - std::exp(-seconds / kSettles);

@@ -26,6 +26,8 @@ public:
     [[nodiscard]] float height(int column, int row) const noexcept {
         return heights_[static_cast<std::size_t>(row * kColumns + column)];
     }
+    /// Metres on the device for a metre of height, of a view whose heights span so many metres.
+    [[nodiscard]] static double perMetreOf(double relief, const MapView& view) noexcept;
     /// y on the device of a height over the sea.
     [[nodiscard]] double lift(double height) const noexcept { return kLowest + (height - low_) * perMetre_; }
     /// Metres on the device for a metre of height.

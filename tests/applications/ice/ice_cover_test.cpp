@@ -87,8 +87,7 @@ std::vector<LyingCell> lyingCells(const IceCover& ice) {
 }
 
 /// How deep pairs of floes overlap, by their numbers; those that do not are left out.
-std::map<std::pair<int, int>, double> overlaps(const IceCover& ice) {
-    const std::vector<LyingCell> cells = lyingCells(ice);
+std::map<std::pair<int, int>, double> overlaps(const std::vector<LyingCell>& cells) {
     std::map<std::pair<int, int>, double> found;
     for (std::size_t a = 0; a < cells.size(); ++a)
         for (std::size_t b = 0; b < a; ++b) {
@@ -179,11 +178,12 @@ TEST(IceCover, KeepsItsAreaAndFloesKeepClearOfOneAnother) {
             script.play(ice, frame / 60.0);
             if (frame == 60 * 52) ice.freeze();
             double area = 0.0;
-            for (const LyingCell& cell : lyingCells(ice)) area += gaussArea(cell.points);
+            const std::vector<LyingCell> cells = lyingCells(ice);
+            for (const LyingCell& cell : cells) area += gaussArea(cell.points);
             worst = std::max(worst, std::abs(area + ice.melted() - pond) / pond);
             most = std::max(most, ice.floes().size());
             std::map<std::pair<int, int>, int> deep;
-            for (const auto& [pair, depth] : overlaps(ice)) {
+            for (const auto& [pair, depth] : overlaps(cells)) {
                 deepest = std::max(deepest, depth);
                 if (depth > 0.001) longest = std::max(longest, deep[pair] = deepSince[pair] + 1);
             }
@@ -205,12 +205,16 @@ TEST(IceCover, IsTheSameBitForBitForTheSameSeedAndInputs) {
     for (int frame = 0; frame < 60 * 25; ++frame) {
         script.play(one, frame / 60.0);
         same.play(other, frame / 60.0);
-        third.play(another, frame / 60.0);
+        if (frame < 60 * 10) third.play(another, frame / 60.0);
+        if (frame == 60 * 10 - 1) {
+            const std::vector<LyingCell> now = lyingCells(one), others = lyingCells(another);
+            EXPECT_FALSE(now.size() == others.size() && now.front().points == others.front().points)
+                << "another seed, other ice";
+        }
     }
-    const std::vector<LyingCell> a = lyingCells(one), b = lyingCells(other), c = lyingCells(another);
+    const std::vector<LyingCell> a = lyingCells(one), b = lyingCells(other);
     ASSERT_EQ(a.size(), b.size());
     for (std::size_t k = 0; k < a.size(); ++k) EXPECT_EQ(a[k].points, b[k].points) << k;
-    EXPECT_FALSE(a.size() == c.size() && a.front().points == c.front().points) << "another seed, other ice";
 }
 
 TEST(IceCover, WarmthMeltsAHoleThatGrowsAboutIt) {

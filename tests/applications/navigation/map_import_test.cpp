@@ -7,6 +7,7 @@
 #include <fstream>
 #include <iostream>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <unistd.h>
@@ -279,6 +280,100 @@ TEST_F(MapImport, AnOsmExtractHasHousesRoadsAndNames) {
     ASSERT_FALSE(imported.map.places.empty());
     EXPECT_EQ(imported.map.places[0].name, "Nowhere");
     EXPECT_TRUE(tells(imported.report, "level")) << "no heights";
+}
+
+/// A message of Protocol Buffers, field by field as their encoding says.
+class Message {
+public:
+    Message& number(int field, std::uint64_t value) {
+        varint(static_cast<std::uint64_t>(field) << 3U);
+        varint(value);
+        return *this;
+    }
+    Message& signedNumber(int field, std::int64_t value) { return number(field, zigzag(value)); }
+    Message& text(int field, const std::string& value) {
+        varint((static_cast<std::uint64_t>(field) << 3U) | 2U);
+        varint(value.size());
+        bytes_ += value;
+        return *this;
+    }
+    Message& packed(int field, const std::vector<std::uint64_t>& values) {
+        Message list;
+        for (const std::uint64_t value : values) list.varint(value);
+        return text(field, list.bytes_);
+    }
+    [[nodiscard]] const std::string& bytes() const { return bytes_; }
+    [[nodiscard]] static std::uint64_t zigzag(std::int64_t value) {
+        return (static_cast<std::uint64_t>(value) << 1U) ^ static_cast<std::uint64_t>(value >> 63U);
+    }
+
+private:
+    void varint(std::uint64_t value) {
+        for (; value > 127U; value >>= 7U) bytes_ += static_cast<char>((value & 127U) | 128U);
+        bytes_ += static_cast<char>(value);
+    }
+    std::string bytes_;
+};
+
+/// One block of an OSM extract, not compressed: the length of its head (big endian), its head, its blob.
+std::string osmBlock(const std::string& type, const std::string& content) {
+    const std::string blob = Message().text(1, content).number(2, content.size()).bytes();
+    const std::string head = Message().text(1, type).number(3, blob.size()).bytes();
+    std::string bytes;
+    for (const int shift : {24, 16, 8, 0})
+        bytes += static_cast<char>((head.size() >> static_cast<unsigned>(shift)) & 255U);
+    return bytes + head + blob;
+}
+
+/// The town of the .osm file above as .pbf (fileformat.proto and osmformat.proto of OpenStreetMap).
+std::string osmTown() {
+    const std::vector<std::string> words{"",      "building", "yes",  "building:levels", "3", "highway", "primary",
+                                         "place", "town",     "name", "Nowhere"};
+    Message table, group;
+    for (const std::string& word : words) table.text(1, word);
+    const auto node = [&](int id, double latitude, double longitude, const Message& tags = {}) {
+        const auto units = [](double degrees) { return static_cast<std::int64_t>(std::llround(1e7 * degrees)); };
+        Message made = tags; // its fields may come in any order
+        group.text(1,
+                   made.signedNumber(1, id).signedNumber(8, units(latitude)).signedNumber(9, units(longitude)).bytes());
+    };
+    const auto way = [&](int id, const std::vector<std::int64_t>& nodes, const Message& tags) {
+        std::vector<std::uint64_t> steps;
+        std::int64_t before = 0;
+        for (const std::int64_t next : nodes) steps.push_back(Message::zigzag(next - std::exchange(before, next)));
+        Message made = tags;
+        group.text(3, made.number(1, static_cast<std::uint64_t>(id)).packed(8, steps).bytes());
+    };
+    node(1, 0.0, 9.0);
+    node(2, 0.0, 9.0002);
+    node(3, 0.0002, 9.0002);
+    node(4, 0.0002, 9.0);
+    node(5, 0.001, 8.999);
+    node(6, 0.001, 9.003);
+    node(7, 0.0005, 9.001, Message().packed(2, {7, 9}).packed(3, {8, 10}));
+    way(10, {1, 2, 3, 4, 1}, Message().packed(2, {1, 3}).packed(3, {2, 4}));
+    way(11, {5, 6}, Message().packed(2, {5}).packed(3, {6}));
+    return osmBlock("OSMHeader", Message().text(4, "OsmSchema-V0.6").bytes()) +
+           osmBlock("OSMData", Message().text(1, table.bytes()).text(2, group.bytes()).bytes());
+}
+
+TEST_F(MapImport, AnOsmExtractInPbfHasTheSame) {
+    const std::string bytes = osmTown();
+    const ImportedMap imported = importMap(write("town.osm.pbf", bytes));
+    EXPECT_EQ(imported.report.buildings, 1U) << all(imported.report);
+    EXPECT_EQ(imported.report.roads, 1U);
+    ASSERT_FALSE(imported.map.buildings.empty());
+    const Building& house = imported.map.buildings[0];
+    EXPECT_NEAR(house.eaves - house.base, 10.0, 1e-6) << "three storeys and a roof";
+    // 0.0002 degrees of longitude and latitude at the equator; WGS 84 has 111,320 and 110,574 m a degree there.
+    const double a = glm::distance(house.outline[0], house.outline[1]);
+    const double b = glm::distance(house.outline[1], house.outline[2]);
+    EXPECT_NEAR(std::max(a, b), 0.0002 * 111320.0, 0.05);
+    EXPECT_NEAR(std::min(a, b), 0.0002 * 110574.0, 0.05);
+    ASSERT_FALSE(imported.map.places.empty());
+    EXPECT_EQ(imported.map.places[0].name, "Nowhere");
+    for (const std::size_t length : {std::size_t{3}, std::size_t{20}, bytes.size() / 2, bytes.size() - 1})
+        EXPECT_THROW(importMap(write("cut.osm.pbf", bytes.substr(0, length))), DataError) << length;
 }
 
 TEST_F(MapImport, ACityJsonHasHousesWithTheirHeights) {

@@ -13,11 +13,13 @@
 
 #include <glm/geometric.hpp>
 
+#include "app/applications/navigation/import_caption.h"
 #include "app/applications/navigation/navigation.h"
 #include "app/applications/navigation/valley.h"
 #include "core/base/error.h"
 #include "core/motion/causal_split.h"
 #include "core/motion/surface_heights.h"
+#include "tests/support/long_tests.h"
 #include "tests/support/program_visit.h"
 
 // R36: the map as visitors meet it: where one flies, what is seen, read and felt, and what a frame costs.
@@ -28,6 +30,8 @@ namespace {
 using test::kFrame;
 using test::tabletRig;
 using Visit = test::ProgramVisit;
+
+constexpr double kLongFrame = 0.05; ///< seconds: where only the end of a flight is looked at
 
 const std::shared_ptr<const Map>& valley() {
     static const auto map = std::make_shared<const Map>(bundledValley());
@@ -111,7 +115,7 @@ TEST(NavigationProgram, TheLeaningDevicePans) {
 
 TEST(NavigationProgram, NextRestartAndGoToFlyThere) {
     NavigationProgram program(1, valley());
-    Visit visit(program);
+    Visit visit(program, kLongFrame);
     land(program, visit, "castle harow"); // a slip of the fingers
     EXPECT_LT(glm::distance(program.view().centre, placeNamed("Castle Harrow").at), 1.0);
     visit.frame({{"key.restart", 1.0}});
@@ -142,7 +146,7 @@ TEST(NavigationProgram, TheSameInputsGiveTheSameShow) {
 /// A label's text runs along the item's x, and it faces along z.
 TEST(NavigationProgram, LabelsAreReadFromAllFourSides) {
     NavigationProgram program(1, valley());
-    Visit visit(program);
+    Visit visit(program, kLongFrame);
     land(program, visit, "Merinhaven");
     int read = 0;
     for (int side = 0; side < 4; ++side) {
@@ -208,7 +212,7 @@ TEST(NavigationProgram, TheTabletTakesTheShapeOfTheLandAtEveryZoom) {
     CausalSplit split(*tabletRig());
     for (const char* name : {"Merinhaven", "Castle Harrow", "Lake Merin", "Kestrel Horn", "Fennick"}) {
         NavigationProgram program(1, valley());
-        Visit visit(program);
+        Visit visit(program, kLongFrame);
         land(program, visit, name);
         const auto& grid = std::get<HeightGrid>(visit.content().target);
         ASSERT_NO_THROW(checkHeightGrid(grid));
@@ -232,8 +236,32 @@ TEST(NavigationProgram, TheTabletTakesTheShapeOfTheLandAtEveryZoom) {
                   << " % of the slow energy that the rig can reach, correlation with light off " << correlation
                   << std::endl;
         EXPECT_GE(share, 0.9) << name;
-        EXPECT_GT(correlation, 0.1) << name;
+        EXPECT_GT(correlation, 0.3) << name;
     }
+}
+
+TEST(NavigationProgram, WhoBringsAMapReadsWhatWasTakenOfIt) {
+    MapReport report;
+    report.buildings = 1;
+    report.roads = 2;
+    report.leftOut = 1;
+    report.filled = 0.25;
+    report.notes = {"It has no heights, so the ground is level."};
+    const ShowCaption caption = importCaption(report, "town.osm");
+    EXPECT_EQ(caption.title, Words("Read: town.osm", "Gelesen: town.osm"));
+    EXPECT_EQ(caption.sentence.english, "1 building, 2 roads, 1 thing left out, 25 % of the heights filled in. "
+                                        "It has no heights, so the ground is level.");
+    EXPECT_EQ(caption.sentence.german, "1 Gebäude, 2 Straßen, 1 Ding weggelassen, 25 % der Höhen ergänzt. "
+                                       "It has no heights, so the ground is level.");
+    EXPECT_EQ(importCaption({}, "a").sentence, Words("land alone.", "nur Land."));
+    NavigationProgram program(1, valley());
+    program.tell(caption);
+    Visit visit(program, 0.5);
+    visit.frame();
+    ASSERT_TRUE(visit.content().caption);
+    EXPECT_EQ(visit.content().caption->title, caption.title);
+    visit.frames(31.0);
+    EXPECT_FALSE(visit.content().caption) << "it is read, and then the show is by itself";
 }
 
 TEST(NavigationProgram, RainFromAHeldHandEndsInTheWater) {
@@ -315,7 +343,9 @@ double residentMegabytes() {
 }
 
 TEST(NavigationProgram, HalfAnHourLeavesMemoryFlatAndStrokesInLimits) {
-    constexpr double kStep = 0.25; // seconds; in steps of a frame it would take minutes
+    // Frame by frame it takes minutes; in short steps it is the same half hour.
+    const int perSecond = test::longTests() ? 60 : 4;
+    const double step = 1.0 / perSecond;
     NavigationProgram program(5, valley());
     CausalSplit split(*tabletRig());
     ShowMoment moment;
@@ -324,33 +354,32 @@ TEST(NavigationProgram, HalfAnHourLeavesMemoryFlatAndStrokesInLimits) {
     std::vector<double> before;
     double early = 0.0, late = 0.0; // the most in minutes 2 and 3, and in the last two
     std::vector<float> heights(split.points().size());
-    for (int k = 0; k < 4 * 60 * 30; ++k) {
+    for (int k = 0; k < perSecond * 60 * 30; ++k) {
         std::vector<ShowInput> inputs;
-        if (k % 480 == 100) inputs = {{"pointer.x", 0.7}, {"key.rain", 1.0}};
-        if (k % 480 == 130) inputs = {{"pointer.x", 0.0}, {"key.rain", 0.0}};
+        if (k % (120 * perSecond) == 25 * perSecond) inputs = {{"pointer.x", 0.7}, {"key.rain", 1.0}};
+        if (k % (120 * perSecond) == 65 * perSecond / 2) inputs = {{"pointer.x", 0.0}, {"key.rain", 0.0}};
         moment.inputs = inputs;
         const ShowContent content = program.frame(moment);
-        moment.step = kStep;
-        const auto& grid = std::get<HeightGrid>(content.target);
-        for (std::size_t p = 0; p < heights.size(); ++p)
-            heights[p] = static_cast<float>(heightAt(grid, glm::dvec2(split.points()[p])));
-        if (k % 4 == 0) {
-            const std::vector<double> strokes = split.strokes(heights, 4.0 * kStep);
+        moment.step = step;
+        if (k % perSecond == 0) {
+            const auto& grid = std::get<HeightGrid>(content.target);
+            for (std::size_t p = 0; p < heights.size(); ++p)
+                heights[p] = static_cast<float>(heightAt(grid, glm::dvec2(split.points()[p])));
+            const std::vector<double> strokes = split.strokes(heights, 1.0);
             for (std::size_t a = 0; a < strokes.size(); ++a) {
                 ASSERT_GE(strokes[a], 0.0);
                 ASSERT_LE(strokes[a], 1.0);
                 if (!before.empty()) {
-                    ASSERT_LE(std::abs(strokes[a] - before[a]),
-                              tabletRig()->actuators()[a].maxVelocity * 4.0 * kStep + 1e-9);
+                    ASSERT_LE(std::abs(strokes[a] - before[a]), tabletRig()->actuators()[a].maxVelocity + 1e-9);
                 }
             }
             before = strokes;
         }
-        if (k >= 240 && k < 720) early = std::max(early, residentMegabytes());
-        if (k >= 4 * 60 * 28) late = std::max(late, residentMegabytes());
+        if (k >= 60 * perSecond && k < 180 * perSecond) early = std::max(early, residentMegabytes());
+        if (k >= perSecond * 60 * 28) late = std::max(late, residentMegabytes());
     }
     const double grown = late - early;
-    std::cout << "grown by " << grown << " MB" << std::endl;
+    std::cout << "grown by " << grown << " MB in " << perSecond << " frames a second" << std::endl;
     EXPECT_LT(grown, 5.0);
 }
 
