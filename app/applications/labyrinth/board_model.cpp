@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
 #include "core/scene/material_library.h"
@@ -12,6 +13,9 @@ namespace {
 
 constexpr std::size_t kDepth = 5; ///< material below the holes, after those of the kinds of blocks
 constexpr std::size_t kMiddleFloor = 6, kHighFloor = 7;
+/// sRGB. A raised flap's wall meets the light from above so aslant that it cannot be made brighter than this: on a white
+/// floor it would stand out as a grey wedge.
+constexpr glm::vec3 kBrightestFloor{0.70F, 0.76F, 0.80F};
 constexpr int kMiddle = 3, kHigh = 6; ///< from so many steps a floor is one of these
 constexpr double kBevel = 0.0007;     ///< at the upper edges of walls, metres
 
@@ -65,7 +69,8 @@ void addBlock(Primitive& primitive, const Block& block) {
 } // namespace
 
 std::vector<Material> boardMaterials(const Level& level) {
-    const Material floor = readyMaterial(level.floorMaterial);
+    Material floor = readyMaterial(level.floorMaterial);
+    floor.color = glm::min(floor.color, kBrightestFloor);
     Material wall = readyMaterial(level.wallMaterial);
     wall.color *= glm::vec3(0.98F, 0.93F, 0.86F);
     wall.colorTexture.tile *= 0.6F;
