@@ -1,8 +1,12 @@
+#include <fstream>
+
 #include <QAbstractButton>
 #include <QLabel>
 
 #include "app/studio/calibration/chain.h"
 #include "app/studio/document/scene_edit.h"
+#include "calibration/lab/registration_lab.h"
+#include "tests/ui/file_dialog.h"
 #include "tests/ui/studio_window.h"
 
 // From boxes to a calibrated show in the window, by the mouse: each link is measured in the lab, shown, and used.
@@ -12,6 +16,39 @@ namespace {
 
 using namespace std::chrono_literals;
 using studio::LinkStand;
+
+void writePoses(std::ostream& out, const PoseTrack& track, double later) {
+    for (const TimedPose& at : track.poses) {
+        const auto& [p, q] = std::tie(at.pose.position, at.pose.rotation);
+        out << at.seconds + later << ',' << p.x << ',' << p.y << ',' << p.z << ',' << q.x << ',' << q.y << ',' << q.z
+            << ',' << q.w << '\n';
+    }
+}
+
+/// Swings, and rests in other dimples with ways between them, as a tracker records them.
+void writePointer(const PointerCapture& capture, const std::filesystem::path& swings,
+                  const std::filesystem::path& rests) {
+    std::ofstream first(swings), second(rests);
+    first.precision(12);
+    second.precision(12);
+    writePoses(first, capture.swings, 0.0);
+    double now = 0.0;
+    for (const std::vector<Touch>& dimple : capture.fresh)
+        for (const Touch& touch : dimple) {
+            const std::vector<TimedPose>& poses = touch.pointer.poses;
+            writePoses(second, touch.pointer, now - poses.front().seconds);
+            now += poses.back().seconds - poses.front().seconds;
+            PoseTrack away; // lifted
+            for (int k = 1; k <= 20; ++k) {
+                TimedPose at = poses.back();
+                at.seconds = k / 60.0;
+                at.pose.position += glm::dvec3(0.0, 0.01 * k, 0.0);
+                away.poses.push_back(at);
+            }
+            writePoses(second, away, now);
+            now += 0.4;
+        }
+}
 
 class Chain : public ::testing::Test {
 protected:
@@ -86,6 +123,73 @@ TEST_F(Chain, AllThatIsMissingIsMeasuredOneAfterTheOther) {
     window.screenshot("chain-servos-measured");
     window.click("chain.link.eye");
     window.screenshot("chain-eye");
+}
+
+TEST_F(Chain, RecordingsAreReadInPlaceOfTheLab) {
+    ASSERT_TRUE(eventually([&] { return window.state().rig.rig && window.studio().jobs.running().empty(); }, 60s));
+    const Installation truth = trueRoom(room(), window.state().rig.rig->actuators(), 31);
+    const std::filesystem::path swings = folder.path() / "swings.csv", rests = folder.path() / "rests.csv";
+    writePointer(capturePointerInLab(truth, 5), swings, rests);
+    window.click("chain.link.pointer");
+    window.click("chain.way.files");
+    ASSERT_TRUE(offers("Choose: Swings"));
+    next();
+    answerFileDialog(window, "chain.recording.file", rests, "Open");
+    ASSERT_TRUE(offers("Choose: Other dimples"));
+    next();
+    answerFileDialog(window, "chain.recording.file", rests, "Open");
+    ASSERT_TRUE(offers("Read the recordings"));
+    window.screenshot("chain-recordings");
+    next();
+    ASSERT_TRUE(offers("Measure again")) << story();
+    EXPECT_EQ(window.text("chain.card.title"), "This is not to be trusted") << "rests are no swings: " << story();
+    EXPECT_EQ(room().origins.pointer.way, Origin::Way::assumed);
+    window.screenshot("chain-recordings-refused");
+    window.click("chain.file.swings");
+    answerFileDialog(window, "chain.recording.file", swings, "Open");
+    ASSERT_TRUE(offers("Read the recordings")) << story();
+    next();
+    ASSERT_TRUE(offers("Use it")) << story();
+    window.screenshot("chain-recordings-read");
+    next();
+    ASSERT_TRUE(eventually([&] { return badge("pointer") == "Measured"; })) << story();
+    const float beside = glm::distance(room().pointerTip, truth.pointerTip);
+    std::printf("pointer tip from recordings: %.2f mm from the truth\n", 1e3F * beside);
+    EXPECT_LT(beside, 0.001F);
+}
+
+TEST_F(Chain, ARealDeviceIsPlacedByRecordings) {
+    const std::filesystem::path data = LUMORPH_SHARED_DIR "/data/landmarks";
+    if (!std::filesystem::exists(data)) GTEST_SKIP() << "without ../shared/data/landmarks";
+    ASSERT_TRUE(eventually([&] { return window.state().rig.rig && window.studio().jobs.running().empty(); }, 60s));
+    const auto tipAt = [&](glm::vec3 tip) {
+        studio::editInstallation(window.studio().document, "Tip", [tip](Installation& room) {
+            room.pointerTip = tip;
+            room.origins.pointer = {Origin::Way::entered, "", ""};
+        });
+    };
+    tipAt({0.0F, 0.0F, 0.0F}); // a wrong one
+    window.click("chain.link.device");
+    window.click("chain.way.files");
+    for (const char* file : {"pointer.csv", "reference.csv", "model.csv"}) {
+        ASSERT_TRUE(eventually([&] { return button().startsWith("Choose: "); })) << story();
+        next();
+        answerFileDialog(window, "chain.recording.file", data / file, "Open");
+    }
+    ASSERT_TRUE(offers("Read the recordings")) << story();
+    next();
+    ASSERT_TRUE(offers("Measure again")) << story();
+    EXPECT_EQ(window.text("chain.card.title"), "This is not to be trusted");
+    std::printf("wrong tip: %s\n", story().c_str());
+    window.screenshot("chain-device-wrong-tip");
+    tipAt({0.108565F, 0.00777385F, 0.0025389F}); // as the data's facts have it
+    next();
+    ASSERT_TRUE(offers("Use it")) << story();
+    std::printf("right tip: %s\n", story().c_str());
+    window.screenshot("chain-device-recorded");
+    next();
+    EXPECT_TRUE(eventually([&] { return badge("device") == "Measured"; })) << story();
+    EXPECT_EQ(room().origins.deviceBody.way, Origin::Way::measured);
 }
 
 } // namespace

@@ -173,6 +173,7 @@ public:
         heading_ = makeHeading("What happens", this);
         page.layout->addWidget(heading_);
         page.layout->addWidget(how_);
+        page.layout->addWidget(makeChainSource(parts, this));
         points_->setMaximumWidth(900);
         pointsHeading_ = makeHeading("How far points lie beside", this);
         page.layout->addWidget(pointsHeading_);
