@@ -7,6 +7,7 @@
 #include <glm/geometric.hpp>
 
 #include "calibration/lab/true_room.h"
+#include "calibration/registration/refusing.h"
 #include "calibration/servos/servo_judge.h"
 #include "core/base/error.h"
 #include "core/scene/measured_servos.h"
@@ -27,35 +28,22 @@ constexpr double kBumped = 0.003;      // metres, or as many radians a tenth of 
 constexpr double kSureEnough = 0.05;   // strokes: of a part that has been seen
 constexpr double kFreshMost = 2.0;     // degrees: of the median fresh error that curves are believed with
 
-/// Passes one after the other: each begins where the one before was, or where it was told to go.
-Estimates estimatesOf(const Rig& rig, const glm::dmat4& worldFromDevice, const ServoPlan& plan,
-                      const std::vector<ServoPass>& passes, const Progress& progress) {
-    StrokeSolver solver(rig, worldFromDevice);
-    Estimates found;
-    DeviceNudge place;
-    std::vector<std::vector<double>> guesses;
-    for (std::size_t k = 0; k < passes.size(); ++k) {
-        progress.throwIfCancelled();
-        progress.report(static_cast<double>(k) / static_cast<double>(passes.size()), "working out the servos");
-        const ServoStep& step = plan.steps[k];
-        guesses = {step.commanded};
-        if (k > 0 && found.back()) guesses.push_back(found.back()->strokes);
-        const bool thoroughly = step.kind == Kind::rest || step.kind == Kind::find;
-        found.push_back(solver.solve(passes[k], guesses, place, thoroughly));
-        if (!found.back() || place.shiftSigma == kKnownShift) continue;
-        place = found.back()->place;
-        place.turnSigma = kKnownTurn;
-        place.shiftSigma = kKnownShift;
-    }
-    return found;
+/// How many steps a plan has before its levels: after them it is known who moves what.
+std::size_t wiringSteps(const ServoPlan& plan) {
+    const auto later = std::ranges::find_if(
+        plan.steps, [](const ServoStep& step) { return step.kind == Kind::level || step.kind == Kind::fresh; });
+    return static_cast<std::size_t>(later - plan.steps.begin());
+}
+
+[[noreturn]] void refuseUnseen() {
+    throw CaptureRefused({Cause::boardUnlit, "servos", "",
+                          "camera and projector see too little of the device to tell how it stands",
+                          "place the device where both see it, and check the calibration of projector and camera"});
 }
 
 void requireSeen(const Estimates& estimates) {
     const auto seen = std::ranges::count_if(estimates, [](const auto& one) { return one.has_value(); });
-    if (!estimates.empty() && estimates.front() && 2 * static_cast<std::size_t>(seen) > estimates.size()) return;
-    throw CaptureRefused({Cause::boardUnlit, "servos", "",
-                          "camera and projector see too little of the device to tell how it stands",
-                          "place the device where both see it, and check the calibration of projector and camera"});
+    if (2 * static_cast<std::size_t>(seen) <= estimates.size()) refuseUnseen();
 }
 
 void requireStill(const Estimates& estimates) {
@@ -85,7 +73,7 @@ Mover moverOf(const StrokeEstimate& rest, const StrokeEstimate& now) {
 std::vector<Mover> moversOf(const ServoPlan& plan, const Estimates& estimates, std::size_t count) {
     std::vector<Mover> movers(count);
     for (std::size_t i = 0; i < count; ++i) movers[i].part = i;
-    for (std::size_t k = 0; k < plan.steps.size(); ++k) {
+    for (std::size_t k = 0; k < estimates.size(); ++k) {
         if (plan.steps[k].kind != Kind::find || !estimates[k]) continue;
         const std::size_t servo = plan.steps[k].servos.front();
         const Mover mover = moverOf(*estimates.front(), *estimates[k]);
@@ -162,38 +150,105 @@ void drawCurves(const Rig& rig, const ServoPlan& plan, ServoCalibration& result)
 
 } // namespace
 
-ServoCalibration solveServos(const Rig& rig, const glm::dmat4& worldFromDevice, const ServoPlan& plan,
-                             const std::vector<ServoPass>& passes, const Progress& progress) {
-    if (passes.size() != plan.steps.size() || passes.empty())
-        throw InvalidInput("measurement of servos",
-                           std::to_string(passes.size()) + " passes for " + std::to_string(plan.steps.size()) +
-                               " steps of the plan",
-                           "take one pass for each step");
+struct ServoSolver::Data {
+    Rig rig;
+    ServoPlan plan;
+    StrokeSolver solver;
+    Estimates estimates;
+    DeviceNudge place;
+    std::vector<Mover> movers;
+    std::vector<Finding> wiring;
+    bool isWiredWrongly = false;
+
+    Data(const Rig& r, const glm::dmat4& worldFromDevice, const ServoPlan& p)
+        : rig(r), plan(p), solver(r, worldFromDevice) {}
+
+    [[nodiscard]] ServoCalibration begun() const;
+};
+
+ServoSolver::ServoSolver(const Rig& rig, const glm::dmat4& worldFromDevice, const ServoPlan& plan) {
+    const auto fits = [&](const ServoStep& step) { return step.commanded.size() == rig.actuatorCount(); };
+    if (plan.steps.empty() || !std::ranges::all_of(plan.steps, fits))
+        throw InvalidInput("plan of servos", "it has no steps, or is another rig's", "plan anew for this rig");
+    data_ = std::make_unique<Data>(rig, worldFromDevice, plan);
+}
+
+ServoSolver::~ServoSolver() = default;
+ServoSolver::ServoSolver(ServoSolver&&) noexcept = default;
+ServoSolver& ServoSolver::operator=(ServoSolver&&) noexcept = default;
+
+/// Each pass begins where the one before was, or where it was told to go.
+void ServoSolver::take(const ServoPass& pass) {
+    Data& d = *data_;
+    if (ended()) throw InvalidInput("measurement of servos", "it has ended", "begin anew with another plan");
+    const ServoStep& step = d.plan.steps[d.estimates.size()];
+    std::vector<std::vector<double>> guesses{step.commanded};
+    if (!d.estimates.empty() && d.estimates.back()) guesses.push_back(d.estimates.back()->strokes);
+    const bool thoroughly = step.kind == Kind::rest || step.kind == Kind::find;
+    d.estimates.push_back(d.solver.solve(pass, guesses, d.place, thoroughly));
+    if (!d.estimates.front()) refuseUnseen();
+    if (d.estimates.size() == 1) {
+        d.place = d.estimates.front()->place;
+        d.place.turnSigma = kKnownTurn;
+        d.place.shiftSigma = kKnownShift;
+    }
+    if (d.estimates.size() != wiringSteps(d.plan)) return;
+    d.movers = moversOf(d.plan, d.estimates, d.rig.actuatorCount());
+    d.isWiredWrongly = !servos::judgeWiring(d.rig, d.movers, *d.estimates.front(), d.wiring);
+}
+
+bool ServoSolver::ended() const noexcept {
+    return data_->isWiredWrongly || data_->estimates.size() == data_->plan.steps.size();
+}
+
+ServoCalibration ServoSolver::Data::begun() const {
     ServoCalibration result;
-    result.estimates = estimatesOf(rig, worldFromDevice, plan, passes, progress);
-    requireSeen(result.estimates);
-    requireStill(result.estimates);
-    const std::vector<Mover> movers = moversOf(plan, result.estimates, rig.actuatorCount());
+    result.estimates = estimates;
+    result.findings = wiring;
+    result.rms = medianRms(estimates);
     for (std::size_t i = 0; i < rig.actuatorCount(); ++i) {
         const Actuator& actuator = rig.actuators()[i];
         ServoFinding& servo = result.servos.emplace_back();
         servo.curve.actuator = actuator.name;
         servo.degrees = degreesOf(actuator).value_or(kDegreesOfUnturned);
-        servo.moves = movers[i].part;
-    }
-    result.rms = medianRms(result.estimates);
-    result.usable = servos::judgeWiring(rig, movers, *result.estimates.front(), result.findings);
-    if (!result.usable) return result;
-    drawCurves(rig, plan, result);
-    judgeFresh(rig, plan, result);
-    if (result.freshDegrees > kFreshMost) {
-        result.usable = false;
-        result.findings.push_back(
-            {Cause::modelDoesNotFit, "servos", "",
-             "fresh states are " + std::to_string(result.freshDegrees) + " degrees from where the curves put them",
-             "look for loose parts, then measure again"});
+        servo.moves = i < movers.size() ? movers[i].part : i;
     }
     return result;
+}
+
+ServoCalibration ServoSolver::result() const {
+    const Data& d = *data_;
+    if (!ended())
+        throw InvalidInput("measurement of servos",
+                           std::to_string(d.estimates.size()) + " passes for " + std::to_string(d.plan.steps.size()) +
+                               " steps of the plan",
+                           "take one pass for each step");
+    requireSeen(d.estimates);
+    requireStill(d.estimates);
+    ServoCalibration result = d.begun();
+    if (d.isWiredWrongly) return result;
+    result.usable = true;
+    drawCurves(d.rig, d.plan, result);
+    judgeFresh(d.rig, d.plan, result);
+    if (result.freshDegrees > kFreshMost) {
+        result.usable = false;
+        result.findings.push_back({Cause::modelDoesNotFit, "servos", "",
+                                   "fresh states are " + registration::number(result.freshDegrees, 1) +
+                                       " degrees from where the curves put them",
+                                   "look for loose parts, then measure again"});
+    }
+    return result;
+}
+
+ServoCalibration solveServos(const Rig& rig, const glm::dmat4& worldFromDevice, const ServoPlan& plan,
+                             const std::vector<ServoPass>& passes, const Progress& progress) {
+    ServoSolver solver(rig, worldFromDevice, plan);
+    for (std::size_t k = 0; k < passes.size() && !solver.ended(); ++k) {
+        progress.throwIfCancelled();
+        progress.report(static_cast<double>(k) / static_cast<double>(passes.size()), "working out the servos");
+        solver.take(passes[k]);
+    }
+    return solver.result();
 }
 
 Installation withServos(const Installation& room, const ServoCalibration& measured, const std::string& method) {

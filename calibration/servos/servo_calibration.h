@@ -1,5 +1,6 @@
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -40,10 +41,33 @@ struct ServoCalibration {
     double rms = 0.0;          ///< of points off the surface, metres: the median pass
 };
 
-/// Servos by what was seen of the device: in each pass the strokes of all of them (StrokeSolver), then who moves what,
-/// the curve of each on the way up and down, its play, and where it stops. Throws InvalidInput where the passes are
-/// not as many as the plan's steps, CaptureRefused where most of them show nothing of the device or the device moved
-/// on the table, Cancelled.
+/// Works out servos pass by pass, as a plan is carried out: in each pass the strokes of all of them (StrokeSolver), and
+/// once each has moved alone, who moves what. Wiring that is wrong ends a measurement there.
+class ServoSolver {
+public:
+    /// `worldFromDevice` is where the device is believed to lie. Throws InvalidInput for a plan without steps, or of
+    /// another number of actuators.
+    ServoSolver(const Rig& rig, const glm::dmat4& worldFromDevice, const ServoPlan& plan);
+    ~ServoSolver();
+    ServoSolver(ServoSolver&&) noexcept;
+    ServoSolver& operator=(ServoSolver&&) noexcept;
+
+    /// What was seen in the plan's next step. Throws CaptureRefused where the first pass shows nothing of the device;
+    /// InvalidInput where no step is left.
+    void take(const ServoPass& pass);
+    /// Nothing is left to be seen: the plan has no more steps, or a servo is dead, swapped or reversed.
+    [[nodiscard]] bool ended() const noexcept;
+    /// The curve of each servo on the way up and down, its play, and where it stops. Throws InvalidInput before the
+    /// end, CaptureRefused where most passes show nothing of the device or the device moved on the table.
+    [[nodiscard]] ServoCalibration result() const;
+
+private:
+    struct Data;
+    std::unique_ptr<Data> data_;
+};
+
+/// The same of all passes of a plan, or of as many as there are until wiring that is wrong ends it. Throws what
+/// ServoSolver throws; Cancelled.
 [[nodiscard]] ServoCalibration solveServos(const Rig& rig, const glm::dmat4& worldFromDevice, const ServoPlan& plan,
                                            const std::vector<ServoPass>& passes, const Progress& progress = {});
 

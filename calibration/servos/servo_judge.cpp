@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include <Eigen/Cholesky>
+#include <Eigen/Core>
+
 #include "calibration/registration/refusing.h"
 
 namespace lumorph::servos {
@@ -16,16 +19,8 @@ constexpr double kMoved = 0.06;     // strokes: less is no motion
 constexpr double kFromTheEnd = 0.6; // real stroke at rest from which on a servo runs from the wrong end
 constexpr double kStalled = 0.25;   // of the usual way a level: less is a stop
 constexpr int kStalledLevels = 2;
-
-/// Values at a command between those that were seen.
-std::optional<double> at(const std::vector<LevelSeen>& seen, double commanded) {
-    if (seen.empty()) return std::nullopt;
-    const auto above = std::ranges::lower_bound(seen, commanded - 1e-9, {}, &LevelSeen::commanded);
-    if (above == seen.end()) return seen.back().real;
-    if (above == seen.begin() || std::abs(above->commanded - commanded) < 1e-9) return above->real;
-    const LevelSeen &low = *(above - 1), &high = *above;
-    return low.real + (high.real - low.real) * (commanded - low.commanded) / (high.commanded - low.commanded);
-}
+constexpr double kFloor = 2e-4;      // strokes: nobody is surer
+constexpr double kOffTheStop = 0.02; // strokes: at rest both ways meet, and that says nothing of the gears
 
 std::vector<LevelSeen> sure(const std::vector<LevelSeen>& seen) {
     std::vector<LevelSeen> kept;
@@ -33,40 +28,115 @@ std::vector<LevelSeen> sure(const std::vector<LevelSeen>& seen) {
     return kept;
 }
 
+/// Both ways at the same levels. Who was not seen there, or came from the other side, has no weight.
+struct Ladder {
+    std::vector<double> commanded;
+    Eigen::VectorXd up, down, upWeight, downWeight;
+};
+
+double weightOf(const LevelSeen& seen) { return 1.0 / (seen.sigma * seen.sigma + kFloor * kFloor); }
+
+/// At rest a servo has come from above, and at its end from below.
+Ladder ladderOf(const BothWays& seen) {
+    Ladder ladder;
+    for (const auto* way : {&seen.up, &seen.down})
+        for (const LevelSeen& one : *way) ladder.commanded.push_back(one.commanded);
+    std::ranges::sort(ladder.commanded);
+    const auto same = [](double a, double b) { return b - a < 1e-9; };
+    ladder.commanded.erase(std::unique(ladder.commanded.begin(), ladder.commanded.end(), same), ladder.commanded.end());
+    const auto count = static_cast<Eigen::Index>(ladder.commanded.size());
+    ladder.up = ladder.down = ladder.upWeight = ladder.downWeight = Eigen::VectorXd::Zero(count);
+    const auto fill = [&](const std::vector<LevelSeen>& way, Eigen::VectorXd& real, Eigen::VectorXd& weight) {
+        for (const LevelSeen& one : way) {
+            const auto at = std::ranges::lower_bound(ladder.commanded, one.commanded - 1e-9);
+            const auto k = static_cast<Eigen::Index>(at - ladder.commanded.begin());
+            real[k] = one.real;
+            weight[k] = weightOf(one);
+        }
+    };
+    fill(seen.up, ladder.up, ladder.upWeight);
+    fill(seen.down, ladder.down, ladder.downWeight);
+    ladder.upWeight[0] = 0.0;
+    ladder.downWeight[count - 1] = 0.0;
+    return ladder;
+}
+
+/// How a curve may turn from one level to the next, and how play may change, strokes.
+struct Stiffness {
+    double bend = 0.006;
+    double play = 0.001;
+};
+/// A stop is a corner that is meant, and against it both ways meet.
+constexpr Stiffness kWithStop{0.05, 0.05};
+
+/// Levels made as smooth as servos' curves are, as far as they are unsure: who is seen well stays where it is, who is
+/// hidden takes what its neighbours and the other way say (Whittaker, "On a new method of graduation", 1923).
+void smooth(Ladder& ladder, const Stiffness& stiffness) {
+    const auto count = static_cast<Eigen::Index>(ladder.commanded.size());
+    Eigen::MatrixXd normal = Eigen::MatrixXd::Zero(2 * count, 2 * count);
+    Eigen::VectorXd right(2 * count);
+    normal.diagonal() << ladder.upWeight, ladder.downWeight;
+    right << ladder.upWeight.cwiseProduct(ladder.up), ladder.downWeight.cwiseProduct(ladder.down);
+    Eigen::VectorXd row(2 * count);
+    const auto add = [&](double sigma) { normal += row * row.transpose() / (sigma * sigma); };
+    for (Eigen::Index way = 0; way < 2; ++way)
+        for (Eigen::Index k = 1; k + 1 < count; ++k) {
+            row.setZero();
+            row.segment<3>(way * count + k - 1) << 1.0, -2.0, 1.0;
+            add(stiffness.bend);
+        }
+    for (Eigen::Index k = 1; k < count; ++k) {
+        row.setZero();
+        row.segment<2>(k - 1) << 1.0, -1.0;
+        row.segment<2>(count + k - 1) << -1.0, 1.0;
+        add(stiffness.play);
+    }
+    const Eigen::VectorXd found = normal.ldlt().solve(right);
+    ladder.up = found.head(count);
+    ladder.down = found.tail(count);
+}
+
+/// Mean play of the levels at which both ways were seen and nothing stops the servo, and how sure that is.
+void measurePlay(const Ladder& ladder, ServoFinding& servo) {
+    double sum = 0.0, weights = 0.0, squares = 0.0;
+    int count = 0;
+    const auto eachPlay = [&](const auto& use) {
+        for (Eigen::Index k = 0; k < ladder.up.size(); ++k) {
+            const double commanded = ladder.commanded[static_cast<std::size_t>(k)];
+            if (servo.stopsAt && commanded > *servo.stopsAt - 1e-6) continue;
+            if (ladder.upWeight[k] <= 0.0 || ladder.downWeight[k] <= 0.0 || ladder.up[k] < kOffTheStop) continue;
+            use(ladder.down[k] - ladder.up[k], 1.0 / (1.0 / ladder.upWeight[k] + 1.0 / ladder.downWeight[k]));
+        }
+    };
+    eachPlay([&](double play, double weight) {
+        sum += weight * play;
+        weights += weight;
+        ++count;
+    });
+    if (count < 2) return;
+    const double mean = sum / weights;
+    eachPlay([&](double play, double weight) { squares += weight * (play - mean) * (play - mean); });
+    servo.backlashDegrees = servo.degrees * std::max(0.0, mean);
+    servo.backlashSigma = servo.degrees * std::sqrt(std::max(squares / (count - 1), 1.0) / weights);
+}
+
 std::string quoted(const Rig& rig, std::size_t actuator) { return "\"" + rig.actuators()[actuator].name + "\""; }
 
 } // namespace
 
-/// At rest a servo has come from above, at its end from below: how it would stand there after the other way follows
-/// from its play.
 void drawCurve(const BothWays& seen, ServoFinding& servo) {
-    const std::vector<LevelSeen> up = sure(seen.up), down = sure(seen.down);
-    if (up.size() < 3 || down.size() < 3) return;
-    std::vector<double> plays;
-    for (const LevelSeen& one : up) {
-        const bool inside = one.commanded > 1e-6 && one.commanded < 1.0 - 1e-6;
-        // Against a stop both ways meet, and that says nothing of the gears.
-        const bool free = one.real > 0.02 && (!servo.stopsAt || one.commanded < *servo.stopsAt - 1e-6);
-        if (inside && free) plays.push_back(at(down, one.commanded).value() - one.real);
-    }
-    double mean = 0.0, squares = 0.0;
-    for (const double play : plays) mean += play / static_cast<double>(plays.size());
-    for (const double play : plays) squares += (play - mean) * (play - mean);
-    const auto count = static_cast<double>(plays.size());
-    mean = std::max(0.0, mean);
-    servo.backlashDegrees = servo.degrees * mean;
-    servo.backlashSigma = count > 1.0 ? servo.degrees * std::sqrt(squares / (count - 1.0) / count) : servo.degrees;
+    if (sure(seen.up).size() < 3 || sure(seen.down).size() < 3) return;
+    Ladder ladder = ladderOf(seen);
+    measurePlay(ladder, servo);
+    smooth(ladder, servo.stopsAt ? kWithStop : Stiffness{});
     std::vector<double> sigmas;
-    for (const LevelSeen& level : seen.up) {
-        const double u = level.commanded;
-        MeasuredServo::Point point{u, at(up, u).value(), at(down, u).value()};
-        if (u < 1e-6) point.rising = std::max(0.0, point.falling - mean);
-        if (u > 1.0 - 1e-6) point.falling = std::min(1.0, point.rising + mean);
-        servo.curve.points.push_back(point);
-        sigmas.push_back(level.sigma);
-    }
+    for (const LevelSeen& level : seen.up) sigmas.push_back(level.sigma);
     std::ranges::nth_element(sigmas, sigmas.begin() + static_cast<std::ptrdiff_t>(sigmas.size() / 2));
     servo.curveSigma = servo.degrees * sigmas[sigmas.size() / 2];
+    for (std::size_t k = 0; k < ladder.commanded.size(); ++k) {
+        const auto at = static_cast<Eigen::Index>(k);
+        servo.curve.points.push_back({ladder.commanded[k], ladder.up[at], ladder.down[at]});
+    }
 }
 
 std::optional<double> stopOf(const BothWays& seen) {

@@ -18,8 +18,7 @@ namespace lumorph {
 namespace {
 
 constexpr std::array<std::string_view, 4> kServoFaults = {"swapped", "reversed", "dead", "jammed"};
-constexpr double kSteepest = 0.12;  // cosine: flatter light is too dim to read
-constexpr double kMeasuring = 0.35; // of the whole time: the rest is solving
+constexpr double kSteepest = 0.12; // cosine: flatter light is too dim to read
 
 /// The device and the table, without pictures.
 LabWorld dimWorld(const Installation& room, const Rig& rig, std::span<const double> strokes) {
@@ -148,21 +147,24 @@ ServoLabResult measureServosInLab(const Rig& rig, const Installation& believed, 
     ServoPlanOptions plan = options.plan;
     plan.seed = seed;
     result.plan = planServos(rig, groups, plan);
-    result.seconds = result.plan.seconds;
 
     ServoLab lab(rig, truth, seed, options);
-    std::vector<ServoPass> passes;
-    for (std::size_t k = 0; k < result.plan.steps.size(); ++k) {
+    ServoSolver solver(rig, glm::dmat4(believed.worldFromDevice), result.plan);
+    std::vector<double> at(rig.actuatorCount(), 0.0);
+    for (std::size_t k = 0; !solver.ended(); ++k) {
         progress.throwIfCancelled();
-        progress.report(kMeasuring * static_cast<double>(k) / static_cast<double>(result.plan.steps.size()),
+        progress.report(static_cast<double>(k) / static_cast<double>(result.plan.steps.size()),
                         "hands off: the servos move");
-        lab.command(result.plan.steps[k].commanded);
-        passes.push_back(surfacePoints(lab.look(), eyes.camera(), eyes.projector()));
+        const std::vector<double>& next = result.plan.steps[k].commanded;
+        lab.command(next);
+        result.seconds += secondsOf(plan, at, next);
+        at = next;
+        solver.take(surfacePoints(lab.look(), eyes.camera(), eyes.projector()));
     }
-    result.measured =
-        solveServos(rig, glm::dmat4(believed.worldFromDevice), result.plan, passes, progress.part(kMeasuring, 1.0));
-    result.room = withServos(believed, result.measured,
-                             "structured light, " + std::to_string(passes.size()) + " states of the device");
+    result.measured = solver.result();
+    result.room =
+        withServos(believed, result.measured,
+                   "structured light, " + std::to_string(result.measured.estimates.size()) + " states of the device");
     return result;
 }
 

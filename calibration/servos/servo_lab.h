@@ -25,7 +25,7 @@ inline constexpr double kLabStop = 0.55;
 struct ServoLabOptions {
     ServoPlanOptions plan;
     std::optional<ServoFault> fault;
-    int pixelStep = 6;         ///< camera pixels between two points
+    int pixelStep = 7;         ///< camera pixels between two points
     double decodeSigma = 0.15; ///< projector pixels, of each coordinate of each point
     double strayShare = 0.005; ///< of points: read anyhow
 };

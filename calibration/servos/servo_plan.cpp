@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::size_t kMostActuators = 64;
 constexpr double kAlone = 0.5; // of a stroke: far enough to tell who moves, and seen by everybody
-constexpr double kStillSeen = 2.0 / 3.0;
+constexpr double kStillSeen = 0.85;
 constexpr std::array kLooks = {0.25, 0.5, 0.75, 1.0};
 
 bool shareVertices(const Rig& rig, std::size_t a, std::size_t b) {

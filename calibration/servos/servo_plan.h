@@ -12,7 +12,7 @@ namespace lumorph {
 
 /// How servos are stepped and how long that takes.
 struct ServoPlanOptions {
-    int steps = 12;              ///< of a servo's range, up and again down
+    int steps = 16;              ///< of a servo's range, up and again down
     int fresh = 4;               ///< states at the end that no curve is made of
     double velocity = 0.25;      ///< strokes a second: slowly
     double settleSeconds = 0.5;  ///< after a motion, until nothing trembles any more
@@ -42,7 +42,7 @@ struct ServoPlan {
 };
 
 /// Which servos can move at once, so that camera and projector still see each of them: in no group two that move the
-/// same vertices, and none whose visible part shrinks by more than a third when the others of the group stand as it
+/// same vertices, and none whose visible part shrinks by more than a seventh when the others of the group stand as it
 /// does. Greedy, in the order of the actuators. `seen` says how many points of each actuator's part are seen in a
 /// state. Throws Cancelled as `seen` does.
 [[nodiscard]] std::vector<std::vector<std::size_t>>

@@ -20,7 +20,7 @@ namespace {
 
 constexpr int kPlaceUnknowns = 6;
 constexpr int kMostIterations = 25;
-constexpr double kSettled = 2e-6;      // strokes
+constexpr double kSettled = 2e-5;      // strokes
 constexpr double kProbe = 2e-3;        // strokes by which the surface is moved to see where it goes
 constexpr double kLongestStep = 0.12;  // strokes an iteration
 constexpr double kPointSigma = 2e-4;   // metres: what the points tremble by at least
@@ -32,7 +32,7 @@ constexpr double kWideGate = 0.012;    // metres: points that are farther away d
 constexpr double kNarrowGate = 0.0015; // and at last
 constexpr double kFits = 0.0012;       // metres: mean distance above which a fit is not believed
 constexpr int kSearchPoints = 350;
-constexpr int kSearchSteps = 9;
+constexpr int kSearchSteps = 7;
 
 Eigen::Vector3d eigenOf(const glm::dvec3& v) { return {v.x, v.y, v.z}; }
 
@@ -49,7 +49,7 @@ struct StrokeSolver::Data {
     std::vector<glm::vec3> positions;
     std::vector<std::vector<glm::vec3>> moved; ///< by each actuator, moved by kProbe
     std::vector<double> probes;                ///< its size and direction
-    std::vector<MeasuredPoint> points;          ///< on the device, in its frame
+    std::vector<MeasuredPoint> points;         ///< on the device, in its frame
 
     Data(const Rig& r, const glm::dmat4& place)
         : rig(r), worldFromDevice(place), deviceFromWorld(glm::inverse(place)), surface(r.restMesh()),
@@ -69,7 +69,7 @@ struct StrokeSolver::Data {
     [[nodiscard]] System build(const Strokes& strokes, const DeviceNudge& place, const DeviceNudge& prior, double gate);
     [[nodiscard]] double addPoint(const MeasuredPoint& point, const DeviceNudge& place, double gate, System& system,
                                   Eigen::VectorXd& row) const;
-    [[nodiscard]] StrokeEstimate refine(Strokes strokes, const DeviceNudge& prior);
+    [[nodiscard]] StrokeEstimate refine(Strokes strokes, const DeviceNudge& prior, double misfitNow);
     [[nodiscard]] static glm::dvec3 nudged(const glm::dvec3& point, const DeviceNudge& place) {
         return point + glm::cross(place.turn, point) + place.shift;
     }
@@ -120,7 +120,8 @@ double StrokeSolver::Data::misfit(const Strokes& strokes, const DeviceNudge& pla
 StrokeSolver::Data::Strokes StrokeSolver::Data::search(Strokes strokes, const DeviceNudge& place) {
     const std::size_t stride = std::max<std::size_t>(1, points.size() / kSearchPoints);
     double best = misfit(strokes, place, stride);
-    for (int round = 0; round < 2; ++round)
+    for (int round = 0; round < 2; ++round) {
+        const Strokes before = strokes;
         for (std::size_t i = 0; i < strokes.size(); ++i)
             for (int k = 0; k < kSearchSteps; ++k) {
                 Strokes other = strokes;
@@ -130,6 +131,8 @@ StrokeSolver::Data::Strokes StrokeSolver::Data::search(Strokes strokes, const De
                 best = now;
                 strokes = other;
             }
+        if (strokes == before) break;
+    }
     return strokes;
 }
 
@@ -188,11 +191,12 @@ StrokeSolver::Data::System StrokeSolver::Data::build(const Strokes& strokes, con
     return system;
 }
 
-StrokeEstimate StrokeSolver::Data::refine(Strokes strokes, const DeviceNudge& prior) {
+/// From a start with that misfit: the gate is as wide as that asks for, and narrows as the steps become short.
+StrokeEstimate StrokeSolver::Data::refine(Strokes strokes, const DeviceNudge& prior, double misfitNow) {
     StrokeEstimate result;
     DeviceNudge place = prior;
     const std::size_t count = strokes.size();
-    double gate = kWideGate;
+    double gate = std::clamp(4.0 * misfitNow, 2.0 * kNarrowGate, kWideGate);
     for (int k = 0; k < kMostIterations; ++k) {
         const System system = build(strokes, place, prior, gate);
         const Eigen::LDLT<Eigen::MatrixXd> factors(system.normal);
@@ -259,9 +263,9 @@ std::optional<StrokeEstimate> StrokeSolver::solve(std::span<const MeasuredPoint>
         start = guess;
     }
     if (thoroughly) start = d.search(start, place);
-    StrokeEstimate found = d.refine(start, place);
+    StrokeEstimate found = d.refine(start, place, thoroughly ? kFar : best);
     if (thoroughly || d.misfit(found.strokes, found.place, stride) < kFits) return found;
-    return d.refine(d.search(found.strokes, place), place);
+    return d.refine(d.search(found.strokes, place), place, kFar);
 }
 
 } // namespace lumorph

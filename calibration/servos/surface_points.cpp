@@ -26,7 +26,7 @@ std::optional<glm::dvec3> meeting(const glm::dvec3& from, const glm::dvec3& way,
 } // namespace
 
 std::vector<MeasuredPoint> surfacePoints(std::span<const ProjectorPoint> light, const CalibratedCamera& camera,
-                                        const CalibratedCamera& projector) {
+                                         const CalibratedCamera& projector) {
     const glm::dvec3 eye = positionOf(camera), lamp = positionOf(projector);
     std::vector<MeasuredPoint> points;
     points.reserve(light.size());

@@ -8,6 +8,9 @@
 
 #include <gtest/gtest.h>
 
+#include "calibration/doctor/device_capture.h"
+#include "calibration/lab/board_lab.h"
+#include "calibration/lab/device_lab.h"
 #include "calibration/lab/true_room.h"
 #include "calibration/servos/servo_gain.h"
 #include "calibration/servos/servo_lab.h"
@@ -15,6 +18,7 @@
 #include "core/base/resources.h"
 #include "core/rig/rig_file.h"
 #include "core/scene/measured_servos.h"
+#include "tests/core/temporary_folder.h"
 
 namespace lumorph {
 namespace {
@@ -158,6 +162,37 @@ TEST(ServoCalibrationTest, RefusesWhatIsNoMeasurement) {
     Installation dark = defaultInstallation();
     dark.projectors.clear();
     EXPECT_THROW(static_cast<void>(measureServosInLab(servoTablet(), dark, dark, 1)), InvalidInput);
+}
+
+/// The whole way from photographs: pictures of the lab's camera under phase patterns, decoded, then solved.
+TEST(ServoPhotographsTest, StrokesOfPhotographedFlaps) {
+    if (!takesLong()) GTEST_SKIP() << "renders 84 pictures";
+    const TemporaryFolder folder;
+    DeviceLabCapture capture;
+    capture.room = defaultInstallation();
+    capture.pattern = "phase:16x3+1x3";
+    CalibratedCamera camera = defaultLabCamera(capture.room.projectors.front().camera);
+    camera.focal *= 1.7; // zoomed in on the device
+    capture.room.cameras.push_back({"Camera", "", camera, {}, {}});
+    const auto place = folder.path() / "shots";
+    writeDeviceLabCapture(capture, servoTablet(), place);
+    const CalibratedCamera& lamp = capture.room.projectors.front().camera;
+    const cv::Size panel(lamp.size.x, lamp.size.y);
+    const DeviceCapture read = readDeviceCapture(place, 6, {{"projector", parsePattern(capture.pattern, panel)}});
+    StrokeSolver solver(servoTablet(), glm::dmat4(capture.room.worldFromDevice));
+    double worst = 0.0;
+    for (const DeviceShot& shot : read.shots) {
+        const auto points = surfacePoints(shot.light[0][0], camera, lamp);
+        const std::vector<std::vector<double>> guesses{std::vector<double>(6, 0.0)};
+        const auto found = solver.solve(points, guesses, {}, true);
+        ASSERT_TRUE(found) << shot.name;
+        for (std::size_t i = 0; i < 6; ++i)
+            worst = std::max(worst, 90.0 * std::abs(found->strokes[i] - shot.strokes[i]));
+        std::printf("%s: %zu points, rms %.2f mm, share %.2f\n", shot.name.c_str(), points.size(), 1e3 * found->rms,
+                    found->share);
+    }
+    std::printf("worst stroke %.2f degrees off\n", worst);
+    EXPECT_LE(worst, 1.0);
 }
 
 TEST(ServoPlanTest, PartsOfTheSameVerticesMoveOneAfterTheOther) {

@@ -120,8 +120,10 @@ TEST_F(Chain, AllThatIsMissingIsMeasuredOneAfterTheOther) {
     EXPECT_EQ(room().servos.size(), window.state().rig.rig->actuatorCount());
     window.screenshot("chain-checked");
     window.click("chain.link.servos");
+    pass(300ms);
     window.screenshot("chain-servos-measured");
     window.click("chain.link.eye");
+    pass(300ms);
     window.screenshot("chain-eye");
 }
 

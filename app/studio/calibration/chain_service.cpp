@@ -51,10 +51,10 @@ ChainStep stepOf(const ChainState& state) {
     const ChainLink& link = chainLinks()[state.chosen];
     const LinkStand& stand = state.stands[state.chosen];
     if (state.running == state.chosen)
-        return {Do::cancel, Tone::live, QObject::tr("%1 is being measured").arg(link.title), state.stage,
+        return {Do::cancel, Tone::live, QObject::tr("Measuring: %1").arg(link.title), state.stage,
                 QObject::tr("Cancel")};
     if (state.running)
-        return {Do::cancel, Tone::live, QObject::tr("%1 is being measured").arg(chainLinks()[*state.running].title),
+        return {Do::cancel, Tone::live, QObject::tr("Measuring: %1").arg(chainLinks()[*state.running].title),
                 QObject::tr("This one can be measured after it."), QObject::tr("Cancel")};
     if (const auto trouble = state.troubles.find(state.chosen); trouble != state.troubles.end())
         return {Do::measure, Tone::failure, QObject::tr("It could not be measured"), trouble->second,

@@ -9,7 +9,7 @@
 namespace lumorph::studio {
 namespace {
 
-constexpr int kRow = 20, kLegend = 24, kName = 110, kValue = 64;
+constexpr int kRow = 20, kLegend = 24, kName = 150, kValue = 64;
 constexpr std::size_t kMostRows = 40;
 
 } // namespace

@@ -1,0 +1,118 @@
+#include "app/studio/calibration/drift_service.h"
+
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "calibration/lab/moved_room.h"
+#include "calibration/verify/verify_lab.h"
+#include "core/base/error.h"
+#include "core/base/resources.h"
+#include "core/rig/rig_file.h"
+#include "tests/ui/event_loop.h"
+
+// The watch of a running show, without a window: pictures from a made-up show, photographs from the virtual lab.
+
+namespace lumorph::studio {
+namespace {
+
+/// Soft spots of light that wander.
+QImage spotsAt(double seconds) {
+    QImage picture(480, 270, QImage::Format_RGB32);
+    for (int y = 0; y < picture.height(); ++y)
+        for (int x = 0; x < picture.width(); ++x) {
+            const double a = std::sin(0.11 * x + 0.4 * seconds) * std::sin(0.13 * y - 0.3 * seconds);
+            const double b = std::sin(0.047 * x - 0.071 * y + 0.5 * seconds) * std::sin(0.031 * (x + y));
+            const int light = static_cast<int>(127.0 + 70.0 * a + 55.0 * b);
+            picture.setPixel(x, y, qRgb(light, light, light));
+        }
+    return picture;
+}
+
+/// A show whose clock the test moves.
+class MadeUpShow : public SentShowSource {
+public:
+    MadeUpShow(std::shared_ptr<const Rig> rig, std::shared_ptr<const Installation> room, const double& seconds)
+        : rig_(std::move(rig)), room_(std::move(room)), seconds_(seconds) {}
+    std::optional<SentShow> now() override {
+        return SentShow{rig_, room_, {spotsAt(seconds_)}, std::vector<double>(rig_->actuatorCount(), 0.2)};
+    }
+
+private:
+    std::shared_ptr<const Rig> rig_;
+    std::shared_ptr<const Installation> room_;
+    const double& seconds_;
+};
+
+struct DriftServiceTest : testing::Test {
+    std::shared_ptr<const Rig> rig = std::make_shared<const Rig>(readRig(resourceFile("models/tablet.glb")));
+    std::shared_ptr<const Installation> room = [] {
+        Installation small = defaultInstallation();
+        small.projectors.front().camera = withSize(small.projectors.front().camera, {480, 270});
+        return std::make_shared<const Installation>(withLabCamera(small));
+    }();
+    Notices notices;
+    double seconds = 0.0;
+    int checks = 0;
+
+    DriftServiceTest() { test::needApplication(); }
+
+    [[nodiscard]] std::unique_ptr<DriftService> serviceWith(ShowCamera camera) {
+        return std::make_unique<DriftService>(std::make_unique<MadeUpShow>(rig, room, seconds), std::move(camera),
+                                              notices, [this] { ++checks; });
+    }
+    void lookFor(DriftService& service, double duration) {
+        for (const double end = seconds + duration; seconds < end; seconds += 2.0) {
+            service.look(seconds);
+            ASSERT_TRUE(test::eventually([&] { return !service.isLooking(); }));
+        }
+    }
+};
+
+TEST_F(DriftServiceTest, TellsADriftByOneNoticeWithOneButton) {
+    const auto service = serviceWith(labShowCamera(pushed(*room, *rig, {"projector", 3e-3, 0.0}, 2)));
+    lookFor(*service, 60.0);
+    EXPECT_EQ(service->drift().state, DriftReport::State::moved) << service->drift().sentence;
+    EXPECT_EQ(service->output().state, OutputReport::State::shown);
+    const std::vector<Notice> told = notices.at("calibrate");
+    ASSERT_EQ(told.size(), 1U);
+    EXPECT_TRUE(told.front().why.contains("projector")) << told.front().why.toStdString();
+    ASSERT_EQ(told.front().actions.size(), 1U);
+    told.front().actions.front().run();
+    EXPECT_EQ(checks, 1);
+    service->setWatching(true); // anew, as after a check
+    EXPECT_TRUE(notices.at("calibrate").empty());
+}
+
+TEST_F(DriftServiceTest, TellsABlackOutputWithinTenSecondsAndTakesItBack) {
+    bool isBlack = false;
+    const ShowCamera lab = labShowCamera(*room);
+    const auto service = serviceWith([&](const ShowLook& look, const SentShow& show) {
+        ShowLook shown = look;
+        if (isBlack) shown.sent = {Image(room->projectors.front().camera.size)};
+        return lab(shown, show);
+    });
+    lookFor(*service, 10.0);
+    EXPECT_TRUE(notices.at("calibrate").empty());
+    isBlack = true;
+    lookFor(*service, 8.0);
+    EXPECT_EQ(service->output().state, OutputReport::State::black);
+    EXPECT_EQ(notices.at("calibrate").size(), 1U);
+    isBlack = false;
+    lookFor(*service, 6.0);
+    EXPECT_TRUE(notices.at("calibrate").empty());
+}
+
+TEST_F(DriftServiceTest, SaysNothingWhereTheCameraIsAway) {
+    const auto service = serviceWith(
+        [](const ShowLook&, const SentShow&) -> cv::Mat { throw DeviceError("camera", "it is away", "plug it in"); });
+    lookFor(*service, 20.0);
+    EXPECT_EQ(service->drift().state, DriftReport::State::blind);
+    ASSERT_TRUE(service->drift().obstacle);
+    EXPECT_EQ(keyOf(service->drift().obstacle->obstacle), "camera_lost");
+    EXPECT_EQ(service->output().state, OutputReport::State::blind);
+    EXPECT_TRUE(notices.at("calibrate").empty());
+}
+
+} // namespace
+} // namespace lumorph::studio
