@@ -2,8 +2,10 @@
 
 #include <QAbstractButton>
 #include <QLabel>
+#include <glm/gtc/quaternion.hpp>
 
 #include "app/studio/calibration/chain.h"
+#include "app/studio/calibration/chain_files.h"
 #include "app/studio/document/scene_edit.h"
 #include "calibration/lab/registration_lab.h"
 #include "tests/ui/file_dialog.h"
@@ -158,6 +160,51 @@ TEST_F(Chain, RecordingsAreReadInPlaceOfTheLab) {
     const float beside = glm::distance(room().pointerTip, truth.pointerTip);
     std::printf("pointer tip from recordings: %.2f mm from the truth\n", 1e3F * beside);
     EXPECT_LT(beside, 0.001F);
+    // The rest ends where the next recording is missing: nothing of the lab gets into a real room.
+    studio::editInstallation(window.studio().document, "Measured before", [](Installation& room) {
+        room.projectors.front().lens = {Origin::Way::measured, "structured light", "2026-11-20T10:00:00Z"};
+    });
+    window.click("chain.rest");
+    EXPECT_TRUE(offers("Choose: Tracked body")) << story();
+    EXPECT_EQ(badge("tracker"), "Next");
+    EXPECT_EQ(room().origins.tracker.way, Origin::Way::assumed);
+}
+
+/// A board that is moved and turned about all axes, by the tracker and by a camera whose clock is `later`.
+void writeBoard(const std::filesystem::path& tracked, const std::filesystem::path& seen, const Pose& worldFromTracker,
+                double later) {
+    const Pose bodyFromBoard{{0.03, -0.05, 0.02}, rotationOfTurn({0.2, -0.4, 0.9})};
+    PoseTrack inTracker, inRoom;
+    for (int k = 0; k < 1800; ++k) {
+        const double t = k / 60.0;
+        const Pose body{
+            {0.3 * std::sin(0.9 * t), 0.8 + 0.1 * std::sin(1.3 * t), 0.2 * std::cos(0.7 * t)},
+            rotationOfTurn({0.6 * std::sin(1.1 * t), 0.6 * std::sin(1.7 * t + 1.0), 0.6 * std::sin(0.8 * t + 2.0)})};
+        inTracker.poses.push_back({t, body});
+        inRoom.poses.push_back({t, worldFromTracker * body * bodyFromBoard});
+    }
+    std::ofstream first(tracked), second(seen);
+    first.precision(12);
+    second.precision(12);
+    writePoses(first, inTracker, 0.0);
+    writePoses(second, inRoom, later);
+}
+
+TEST(ChainFiles, TrackerIsPlacedByABoardThatMoves) {
+    const TemporaryFolder folder;
+    const std::filesystem::path tracked = folder.path() / "tracked.csv", seen = folder.path() / "seen.csv";
+    const Pose truth{{0.4, -0.2, 0.7}, rotationOfTurn({0.3, 1.9, -0.2})};
+    writeBoard(tracked, seen, truth, 0.05);
+    const Registration placed = studio::trackerFromFiles({defaultInstallation(), {tracked, seen}}, {});
+    ASSERT_TRUE(placed.good()) << placed.summary;
+    const glm::mat4& found = placed.installation.worldFromTracker;
+    EXPECT_LT(glm::distance(glm::dvec3(found[3]), truth.position), 0.001);
+    const Pose pose{glm::dvec3(found[3]), glm::normalize(glm::quat_cast(glm::dmat3(glm::mat3(found))))};
+    EXPECT_LT(angleOf((inverseOf(truth) * pose).rotation), 0.002);
+    std::ofstream(seen, std::ios::app) << "31,nan,0,0,0,0,0,1\n";
+    EXPECT_THROW((void)studio::trackerFromFiles({defaultInstallation(), {tracked, seen}}, {}), DataError);
+    EXPECT_THROW((void)studio::trackerFromFiles({defaultInstallation(), {tracked, folder.path() / "none.csv"}}, {}),
+                 DataError);
 }
 
 TEST_F(Chain, ARealDeviceIsPlacedByRecordings) {

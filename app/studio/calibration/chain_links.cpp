@@ -24,7 +24,7 @@ LinkOutcome outcomeOf(const Registration& measured) {
     for (const Finding& warning : measured.warnings) outcome.findings.push_back(wordsOf(warning));
     if (measured.refusal) {
         outcome.findings.insert(outcome.findings.begin(), wordsOf(*measured.refusal));
-        outcome.summary = outcome.findings.front().title;
+        outcome.summary = outcome.findings.front().title + ". " + outcome.findings.front().remedy;
         return outcome;
     }
     outcome.installation = measured.installation;

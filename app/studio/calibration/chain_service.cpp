@@ -23,13 +23,13 @@ QString wordsOfError(const std::exception& error) {
 /// The step with which a link is measured, by where it is measured.
 ChainStep measuringStep(const ChainState& state, ChainStep::Tone tone, const QString& title, const QString& text,
                         const QString& inLab) {
-    using Do = ChainStep::Do;
+    using What = ChainStep::Do;
     const ChainLink& link = chainLinks()[state.chosen];
-    if (!link.inLab) return {Do::sequence, tone, title, text, QObject::tr("Open it")};
-    if (!usesFiles(state, state.chosen)) return {Do::measure, tone, title, text, inLab};
+    if (!link.inLab) return {What::sequence, tone, title, text, QObject::tr("Open it")};
+    if (!usesFiles(state, state.chosen)) return {What::measure, tone, title, text, inLab};
     if (const auto missing = missingFile(state, state.chosen))
-        return {Do::chooseFile, tone, title, text, QObject::tr("Choose: %1").arg(link.files[*missing].title)};
-    return {Do::measure, tone, title, text, QObject::tr("Read the recordings")};
+        return {What::chooseFile, tone, title, text, QObject::tr("Choose: %1").arg(link.files[*missing].title)};
+    return {What::measure, tone, title, text, QObject::tr("Read the recordings")};
 }
 
 } // namespace
@@ -46,36 +46,36 @@ std::optional<std::size_t> missingFile(const ChainState& state, std::size_t link
 }
 
 ChainStep stepOf(const ChainState& state) {
-    using Do = ChainStep::Do;
+    using What = ChainStep::Do;
     using Tone = ChainStep::Tone;
     const ChainLink& link = chainLinks()[state.chosen];
     const LinkStand& stand = state.stands[state.chosen];
     if (state.running == state.chosen)
-        return {Do::cancel, Tone::live, QObject::tr("Measuring: %1").arg(link.title), state.stage,
+        return {What::cancel, Tone::live, QObject::tr("Measuring: %1").arg(link.title), state.stage,
                 QObject::tr("Cancel")};
     if (state.running)
-        return {Do::cancel, Tone::live, QObject::tr("Measuring: %1").arg(chainLinks()[*state.running].title),
+        return {What::cancel, Tone::live, QObject::tr("Measuring: %1").arg(chainLinks()[*state.running].title),
                 QObject::tr("This one can be measured after it."), QObject::tr("Cancel")};
     if (const auto trouble = state.troubles.find(state.chosen); trouble != state.troubles.end())
-        return {Do::measure, Tone::failure, QObject::tr("It could not be measured"), trouble->second,
+        return {What::measure, Tone::failure, QObject::tr("It could not be measured"), trouble->second,
                 QObject::tr("Measure again")};
     if (const auto found = state.outcomes.find(state.chosen); found != state.outcomes.end()) {
         const LinkOutcome& outcome = found->second;
         const QString summary = outcome.summary;
         if (!outcome.isGood && !outcome.installation)
-            return {Do::measure, Tone::failure, QObject::tr("This is not to be trusted"), summary,
+            return {What::measure, Tone::failure, QObject::tr("This is not to be trusted"), summary,
                     QObject::tr("Measure again")};
         if (!outcome.isUsed)
-            return {Do::use, outcome.isGood ? Tone::good : Tone::warning,
+            return {What::use, outcome.isGood ? Tone::good : Tone::warning,
                     outcome.isGood ? QObject::tr("Measured") : QObject::tr("Something has changed"), summary,
                     QObject::tr("Use it")};
-        return {Do::goOn, Tone::good, QObject::tr("In use"), summary,
+        return {What::goOn, Tone::good, QObject::tr("In use"), summary,
                 nextLink(state.stands) ? QObject::tr("Go on") : QString()};
     }
     const QString again = QObject::tr("Measure again");
     switch (stand.how) {
     case LinkStand::How::waits:
-        return {Do::goOn, Tone::quiet, QObject::tr("Its turn comes later"),
+        return {What::goOn, Tone::quiet, QObject::tr("Its turn comes later"),
                 QObject::tr("%1 What it builds on is measured first.").arg(link.purpose), QObject::tr("What is next?")};
     case LinkStand::How::measured:
         return measuringStep(state, Tone::good, QObject::tr("Measured"), stand.words, again);
