@@ -48,6 +48,8 @@ LabWorld worldOf(const Installation& room, const Rig& rig, const std::vector<dou
     InstalledProjector projector = room.projectors.front();
     projector.enabled = true;
     projector.gamma = 1.0;
+    projector.responseCurve.clear();
+    projector.black = glm::vec3(0.0F);
     world.ambient = glm::vec3(static_cast<float>(ambient * projector.peak));
     world.projectors = {{projector, Image(projector.camera.size)}};
     return world;

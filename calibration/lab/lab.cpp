@@ -230,7 +230,7 @@ void Lab::show(std::size_t projector, const Image& image) {
                                " pixels, the projector " + std::to_string(owner.camera.size.x) + " x " +
                                std::to_string(owner.camera.size.y),
                            "give it a picture of its own size");
-    data_->lamps[projector].picture = labPicture(image, owner.gamma, owner.gain);
+    data_->lamps[projector].picture = labPicture(image, owner);
 }
 
 std::vector<glm::vec3> Lab::radiance(const CalibratedCamera& observer, int samples) const {

@@ -18,6 +18,16 @@ std::array<float, 256> lightOfBytes(double gamma) {
     return light;
 }
 
+/// Linearly between the points of a curve. The lab computes by itself what the renderer inverts.
+glm::vec3 lightOnCurve(const std::vector<InstalledProjector::ResponsePoint>& curve, double value) {
+    for (std::size_t k = 1; k < curve.size(); ++k) {
+        if (curve[k].value < value) continue;
+        const double share = (value - curve[k - 1].value) / (curve[k].value - curve[k - 1].value);
+        return curve[k - 1].light + static_cast<float>(share) * (curve[k].light - curve[k - 1].light);
+    }
+    return curve.back().light;
+}
+
 } // namespace
 
 double lightOfSrgb(double value) noexcept {
@@ -39,6 +49,24 @@ LabPicture labPicture(const Image& image, double gamma, const glm::vec3& gain) {
     picture.light.reserve(image.pixels().size());
     for (const Image::Pixel& pixel : image.pixels())
         picture.light.push_back(gain * glm::vec3(light[pixel[0]], light[pixel[1]], light[pixel[2]]));
+    return picture;
+}
+
+LabPicture labPicture(const Image& image, const InstalledProjector& projector) {
+    if (projector.responseCurve.empty() && projector.black == glm::vec3(0.0F))
+        return labPicture(image, projector.gamma, projector.gain);
+    const std::array<float, 256> formula = lightOfBytes(projector.gamma);
+    std::array<glm::vec3, 256> light{};
+    for (std::size_t i = 0; i < light.size(); ++i) {
+        const glm::vec3 above = projector.responseCurve.empty()
+                                    ? glm::vec3(formula[i])
+                                    : lightOnCurve(projector.responseCurve, static_cast<double>(i) / 255.0);
+        light[i] = projector.gain * (projector.black + (1.0F - projector.black) * above);
+    }
+    LabPicture picture{image.size(), {}};
+    picture.light.reserve(image.pixels().size());
+    for (const Image::Pixel& pixel : image.pixels())
+        picture.light.emplace_back(light[pixel[0]].r, light[pixel[1]].g, light[pixel[2]].b);
     return picture;
 }
 

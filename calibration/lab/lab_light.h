@@ -6,6 +6,7 @@
 #include <glm/vec3.hpp>
 
 #include "core/base/image.h"
+#include "core/scene/installation.h"
 
 namespace lumorph {
 
@@ -17,6 +18,8 @@ struct LabPicture {
 
 /// `gamma` 0: the picture is sRGB; else light = value^gamma.
 [[nodiscard]] LabPicture labPicture(const Image& image, double gamma, const glm::vec3& gain);
+/// By all that is known of a projector's response: gain, black, and its curve or gamma.
+[[nodiscard]] LabPicture labPicture(const Image& image, const InstalledProjector& projector);
 
 /// Light at a place, between pixel centres linearly; beyond the outermost centres that of the nearest.
 [[nodiscard]] glm::vec3 lightAt(const LabPicture& picture, const glm::vec2& pixel) noexcept;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <functional>
 #include <utility>
 
 #include <Eigen/Dense>
@@ -120,6 +121,7 @@ struct DriftWatch::Data {
     [[nodiscard]] Eigen::MatrixXd known(const Eigen::MatrixXd& matrix) const;
     [[nodiscard]] Explanation explain(const RoomPart& part) const;
     void judge(const ShowLook& show, const Glance& glance);
+    [[nodiscard]] std::optional<Explanation> deviceAlone(const Explanation& likeliest) const;
     void judgeRivals(std::vector<Explanation>& explanations, const ShowLook& show, const Glance& glance);
     void say(const std::vector<Explanation>& explanations, double now);
 };
@@ -163,7 +165,8 @@ DriftWatch::Data::Glance DriftWatch::Data::glance(const ShowLook& show) {
     try {
         seen = prediction.shrink(show.photograph);
     } catch (const InvalidInput& wrong) {
-        glance.obstacle = NoVerdict{Obstacle::cameraLost, wrong.why(), wrong.remedy()};
+        glance.obstacle = NoVerdict{
+            Obstacle::cameraLost, "the camera's picture has another shape than it was calibrated with", wrong.remedy()};
         return glance;
     }
     const cv::Mat1f sharp = predicted.clone(), sharpSeen = seen.clone();
@@ -270,7 +273,10 @@ void DriftWatch::Data::judge(const ShowLook& show, const Glance& glance) {
                                         [](const Explanation& one) { return one.part.kind; });
     const bool isBlind = glance.obstacle || (isEnough && lamp->sigma > options.blindFrom);
     if (!isBlind && isEnough) {
-        judgeRivals(explanations, show, glance);
+        if (const auto device = deviceAlone(explanations.front()))
+            explanations = {*device};
+        else
+            judgeRivals(explanations, show, glance);
         return say(explanations, show.seconds);
     }
     movedSince = report.state == DriftReport::State::moved ? movedSince : std::nullopt;
@@ -282,18 +288,18 @@ void DriftWatch::Data::judge(const ShowLook& show, const Glance& glance) {
     report.sentence = isBlind ? "The watch cannot tell: " + sentenceOf(*report.obstacle) : "Watching.";
 }
 
+/// As long as projector and camera are where they were, what moved at the outline is the device.
+std::optional<Explanation> DriftWatch::Data::deviceAlone(const Explanation& likeliest) const {
+    const SilhouetteWatch::Result outline = silhouettes.result();
+    const bool isSure = outline.looks >= kEnoughLooks && outline.beside > kSureSigmas * outline.sigma;
+    if (!isSure || likeliest.beside > 0.5 * options.alarm || outline.beside < likeliest.beside) return std::nullopt;
+    return Explanation{parts.device(), 0.0, outline.beside, outline.sigma};
+}
+
 /// On a plane a projector and a camera that moved make the same picture; where the device is in it they do not: light
 /// moves over an outline that stays, or the outline moves as well. Of the likeliest two the one that predicts it
 /// worse is taken away, as soon as that is clear.
 void DriftWatch::Data::judgeRivals(std::vector<Explanation>& explanations, const ShowLook& show, const Glance& glance) {
-    // As long as projector and camera are where they were, what moved at the outline is the device.
-    const SilhouetteWatch::Result outline = silhouettes.result();
-    const bool isDevice = explanations.front().beside < 0.5 * options.alarm && outline.looks >= kEnoughLooks &&
-                          outline.beside > explanations.front().beside && outline.beside > kSureSigmas * outline.sigma;
-    if (isDevice) {
-        explanations = {{parts.device(), 0.0, outline.beside, outline.sigma}};
-        return;
-    }
     if (explanations.front().beside < options.alarm || !areAlike(explanations, 1)) return;
     const Explanation &first = explanations[0], &second = explanations[1];
     if (!rivals.areThese(first.part, second.part)) rivals = {first.part, second.part};

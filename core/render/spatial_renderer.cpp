@@ -8,6 +8,7 @@
 #include "core/render/gl/draw_state.h"
 #include "core/render/projector/lab_preview.h"
 #include "core/render/projector/projector_pass.h"
+#include "core/scene/projector_response.h"
 
 namespace lumorph {
 namespace {
@@ -143,6 +144,7 @@ void SpatialRenderer::Data::drawTableView(const glm::vec3& from) {
 void SpatialRenderer::Data::fitProjectors() {
     const auto& wanted = frame->installation->projectors;
     projectors.resize(wanted.size());
+    const glm::vec3 floor = blackFloor(*frame->installation);
     for (std::size_t i = 0; i < wanted.size(); ++i) {
         if (!wanted[i].enabled) {
             projectors[i].reset();
@@ -150,7 +152,7 @@ void SpatialRenderer::Data::fitProjectors() {
         }
         checkCamera(wanted[i].camera);
         if (!projectors[i] || projectors[i]->sent.size() != wanted[i].camera.size) projectors[i].emplace(wanted[i]);
-        projectors[i]->projector = wanted[i];
+        projectors[i]->become(wanted[i], floor);
     }
 }
 
@@ -198,7 +200,7 @@ bool SpatialRenderer::Data::drawProjectors(const EyeViews& views, bool shared) {
         if (target->region.empty()) continue;
         if (!lookUp([&] { projectorPass.drawDepth(*target, *frame, device, views, shared); })) return false;
     }
-    const auto weigh = [&] { projectorPass.drawWeights(targets, device); };
+    const auto weigh = [&] { projectorPass.drawWeights(targets, device, frame->installation->compensation); };
     if (shared && !granted(sharingProblem, "projectors do not share, and are too bright where they meet", weigh))
         return false;
     for (ProjectorTarget* target : targets) {

@@ -1,12 +1,15 @@
 // A projector's light on device and table, which are diffuse, seen by any observer. Pieces before: version.glsl,
-// camera.glsl, physical_normal.glsl, projector_light.glsl, projector_sight.glsl. In: what the projector sends out and
-// its gamma (0: sRGB), and the colour of the bare surface. Out: linear radiance, to be added up; white where the
+// camera.glsl, physical_normal.glsl, projector_light.glsl, projector_sight.glsl, where RESPONSE is defined
+// projector_response.glsl. In: what the projector sends out and, without RESPONSE, its gamma (0: sRGB), and the colour of
+// the bare surface. Out: linear radiance, to be added up; white where the
 // projector reaches when MASK is defined.
 
 in vec3 worldPosition;
 uniform vec3 viewerPosition;
 uniform sampler2D sent;
+#ifndef RESPONSE
 uniform float gamma;
+#endif
 uniform vec3 surfaceAlbedo; // linear
 
 out vec4 color;
@@ -17,7 +20,11 @@ vec3 encoded(vec3 value) {
 
 vec3 lightAt(ivec2 pixel) {
     vec3 value = texelFetch(sent, clamp(pixel, ivec2(0), textureSize(sent, 0) - 1), 0).rgb;
+#ifdef RESPONSE
+    return mix(projectorBlack, vec3(1.0), lightOfValue(encoded(value)));
+#else
     return gamma > 0.0 ? pow(max(encoded(value), vec3(1e-6)), vec3(gamma)) : value;
+#endif
 }
 
 vec3 lightBetween(vec2 uv) {

@@ -1,6 +1,6 @@
 // What a projector sends to places that the eye sees. Pieces before: version.glsl, physical_normal.glsl,
-// packed_normal.glsl, projector_eye_weight.glsl, projector_light.glsl, projector_output.glsl, eye_lookup.glsl,
-// noise.glsl. In: of the table (TABLE) worldPosition, of the device what projector_surface.frag has found; the eye's
+// packed_normal.glsl, projector_eye_weight.glsl, projector_light.glsl, projector_output.glsl (RESPONSE:
+// projector_response.glsl before it), eye_lookup.glsl, noise.glsl. In: of the table (TABLE) worldPosition, of the device what projector_surface.frag has found; the eye's
 // pictures of the device and (TABLE_VIEW) of the table. Out: the value; the eye's weight (projector_eye_weight.glsl)
 // where this place is done, -1 where it is hidden and done only next to others.
 

@@ -1,5 +1,5 @@
 // What a projector sends through a pixel that lies on several surfaces. Pieces before: version.glsl, camera.glsl (the
-// projector's), projector_eye_weight.glsl. In: its picture as it would be if each pixel lay on one surface; how much the
+// projector's), projector_eye_weight.glsl, where RESPONSE is defined projector_response.glsl. In: its picture as it would be if each pixel lay on one surface; how much the
 // eye sees of what each pixel's light does (0: nothing that was looked up, negative: hidden); where the device lies under
 // it; the table. Out: the value.
 // A pixel's light falls upon its neighbours' places too. Where they give back different shares g of it and the eye sees
@@ -32,9 +32,14 @@ const float kBeside = 0.125;
 
 vec3 valueAt(ivec2 pixel) {
     vec3 value = texelFetch(before, pixel, 0).rgb;
-#ifdef GAMMA
+#if defined(GAMMA) || defined(RESPONSE)
     value = mix(12.92 * value, 1.055 * pow(max(value, vec3(1e-6)), vec3(1.0 / 2.4)) - 0.055, step(0.0031308, value));
+#endif
+#ifdef GAMMA
     value = pow(max(value, vec3(1e-6)), vec3(gamma));
+#endif
+#ifdef RESPONSE
+    value = lightOfValue(value);
 #endif
     return value;
 }
@@ -93,6 +98,9 @@ void main() {
     vec3 value = sum.rgb / sum.a;
 #ifdef GAMMA
     value = pow(value, vec3(1.0 / gamma));
+#endif
+#ifdef RESPONSE
+    value = valueOfLight(value);
 #endif
     color = vec4(value, 1.0);
 }

@@ -241,5 +241,26 @@ TEST_F(Chain, ARealDeviceIsPlacedByRecordings) {
     EXPECT_EQ(room().origins.deviceBody.way, Origin::Way::measured);
 }
 
+// The lab's camera sees the room as it was when the watch began.
+TEST_F(Chain, TheWatchTellsAHostThatTheProjectorHasMoved) {
+    window.window().showWorkspace("scene");
+    ASSERT_TRUE(eventually([&] { return window.state().rig.rig && window.studio().jobs.running().empty(); }, 60s));
+    window.studio().commands.find("calibrate.watch")->setChecked(true);
+    pass(3s);
+    EXPECT_TRUE(window.studio().notices.at("calibrate").empty());
+    studio::editInstallation(window.studio().document, "Believed elsewhere",
+                             [](Installation& room) { room.projectors.front().camera.cameraFromWorld[3].x += 0.006; });
+    ASSERT_TRUE(eventually([&] { return !window.studio().notices.at("calibrate").empty(); }, 120s));
+    pass(500ms);
+    window.screenshot("watch-moved");
+    const studio::Notice notice = window.studio().notices.at("calibrate").front();
+    ASSERT_EQ(notice.actions.size(), 1U);
+    notice.actions.front().run();
+    EXPECT_EQ(window.window().workspace(), "calibrate");
+    EXPECT_EQ(window.text("chain.card.title"), "Check");
+    window.studio().commands.find("calibrate.watch")->setChecked(false);
+    EXPECT_TRUE(window.studio().notices.at("calibrate").empty()) << "nobody watches any more";
+}
+
 } // namespace
 } // namespace lumorph::test

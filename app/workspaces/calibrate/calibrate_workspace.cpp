@@ -1,5 +1,7 @@
 #include "app/workspaces/calibrate/calibrate_workspace.h"
 
+#include <algorithm>
+
 #include <QGuiApplication>
 #include <QHBoxLayout>
 #include <QScreen>
@@ -11,6 +13,7 @@
 #include "app/workspaces/calibrate/calibrate_docks.h"
 #include "app/workspaces/calibrate/chain_docks.h"
 #include "app/workspaces/scene/segments.h"
+#include "calibration/verify/verify_lab.h"
 #include "core/base/error.h"
 
 namespace lumorph::studio {
@@ -68,7 +71,36 @@ CalibrateWorkspace::CalibrateWorkspace(Studio& studio)
       chain_(studio.document, studio.loop, studio.jobs, studio.notices,
              [&studio](InstallationVersion version) { return studio.room.takeVersion(std::move(version)); }) {
     addCalibrateCommands(parts());
+    addWatchCommand();
     connect(&service_, &CalibrationService::changed, this, [this] { setActive(active_); });
+}
+
+/// By the room's camera; without one by the lab's, in a room where nothing moves.
+std::unique_ptr<DriftService> CalibrateWorkspace::makeWatch() {
+    const Installation& room = *studio_.document.state().installation;
+    const std::string address = room.cameras.empty() ? std::string() : room.cameras.front().address;
+    ShowCamera camera = address.empty() ? labShowCamera(withLabCamera(room)) : machineShowCamera(address);
+    const auto check = [this] {
+        emit studio_.commands.workspaceWanted("calibrate");
+        selection_.setWhole(true);
+        const auto& links = chainLinks();
+        const auto found = std::ranges::find(links, LinkId::check, &ChainLink::id);
+        chain_.choose(static_cast<std::size_t>(found - links.begin()));
+    };
+    return std::make_unique<DriftService>(sentShowOf(studio_.show), std::move(camera), studio_.notices, check);
+}
+
+void CalibrateWorkspace::addWatchCommand() {
+    Commands::Options options;
+    options.icon = "eye";
+    options.menu = "Hardware";
+    options.checkable = true;
+    QAction* watch = studio_.commands.add("calibrate.watch", "Watch the running show", options, {});
+    watch->setToolTip("By the room's camera: tells when something has moved, or a projector is black or frozen");
+    connect(watch, &QAction::toggled, this, [this](bool on) {
+        watch_ = on ? makeWatch() : nullptr;
+        if (watch_) watch_->setWatching(true);
+    });
 }
 
 QString CalibrateWorkspace::id() const { return "calibrate"; }

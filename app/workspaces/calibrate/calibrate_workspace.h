@@ -5,6 +5,7 @@
 #include "app/studio/calibration/calibration_service.h"
 #include "app/studio/calibration/chain_service.h"
 #include "app/studio/calibration/crosshair_service.h"
+#include "app/studio/calibration/drift_service.h"
 #include "app/studio/shell/studio.h"
 #include "app/studio/shell/workspace.h"
 #include "app/workspaces/calibrate/calibrate_selection.h"
@@ -34,11 +35,14 @@ public:
 
 private:
     [[nodiscard]] CalibrateParts parts();
+    void addWatchCommand();
+    [[nodiscard]] std::unique_ptr<DriftService> makeWatch();
     [[nodiscard]] QWidget* makeSwitched(QWidget* single, QWidget* whole);
     Studio& studio_;
     CalibrationService service_;
     CrosshairService crosshairs_;
     ChainService chain_;
+    std::unique_ptr<DriftService> watch_; ///< of the running show, while it is wanted
     bool active_ = false;
     CalibrateSelection selection_;
 };

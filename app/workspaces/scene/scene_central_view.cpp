@@ -162,6 +162,7 @@ void SceneCentralView::Data::addFloating() {
     column->addWidget(makeNoticeBar(studio.notices, "viewport", notices));
     column->addWidget(makeNoticeBar(studio.notices, "project", notices));
     column->addWidget(makeNoticeBar(studio.notices, "output", notices));
+    column->addWidget(makeNoticeBar(studio.notices, "calibrate", notices)); // of the watch
     column->addStretch(1);
     notices->setMaximumWidth(kNoticeWidth);
     connect(&studio.notices, &Notices::changed, &self, [this] { arrange(); });

@@ -139,7 +139,8 @@ void EyePass::Data::begin(const ShowFrame& frame, const View& view, unsigned fra
     glDepthFunc(GL_LESS);
     glDepthMask(GL_TRUE);
     glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
-    const bool encodes = view.unseen() && (view.unseenPlaces->features & eye_feature::gamma) != 0;
+    constexpr std::uint32_t kEncoding = eye_feature::gamma | eye_feature::response;
+    const bool encodes = view.unseen() && (view.unseenPlaces->features & kEncoding) != 0;
     (encodes ? glDisable : glEnable)(GL_FRAMEBUFFER_SRGB);
     if (view.unseen()) return; // what stands stays
     glClearDepth(1.0);

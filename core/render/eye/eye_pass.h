@@ -25,7 +25,7 @@ struct UnseenPlaces {
     PixelRectangle device;          ///< holds the device as it is
     unsigned framebuffer = 0;       ///< its depth hides all that is drawn already
     std::uint32_t features = 0;     ///< of eye_feature, for its output
-    /// Sets the uniforms of its output in the current program; may bind a texture to the unit.
+    /// Sets the uniforms of its output in the current program; may bind three textures, to this unit and the next ones.
     std::function<void(Program& program, PhysicalSurface surface, int unit)> setOutput;
 };
 

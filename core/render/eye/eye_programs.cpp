@@ -35,6 +35,7 @@ constexpr std::pair<std::uint32_t, const char*> kNames[] = {
     {projected, "PROJECTED"},
     {shared, "SHARED"},
     {gamma, "GAMMA"},
+    {response, "RESPONSE"},
 };
 
 std::vector<std::string> definesOf(std::uint32_t features) {
@@ -51,8 +52,11 @@ ShaderFiles filesOf(Stage stage, std::uint32_t features) {
     ShaderFiles files;
     std::vector<std::string> fragment{"version.glsl", "eye_holes.glsl"};
     if (stage != Stage::depth) fragment.emplace_back("eye_tone.glsl");
-    if (has(projected))
-        fragment.insert(fragment.end(), {"physical_normal.glsl", "projector_light.glsl", "projector_output.glsl"});
+    if (has(projected)) {
+        fragment.insert(fragment.end(), {"physical_normal.glsl", "projector_light.glsl"});
+        if (has(response)) fragment.emplace_back("projector_response.glsl");
+        fragment.emplace_back("projector_output.glsl");
+    }
     if (stage == Stage::depth) {
         fragment.emplace_back("eye_depth.frag");
         files = shaderFiles({"version.glsl", "eye_depth.vert"}, fragment);

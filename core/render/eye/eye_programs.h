@@ -34,10 +34,11 @@ enum Bit : std::uint32_t {
     dither = 1U << 18U,
     holesBelow = 1U << 19U, ///< the table under a device with holes
     secondFog = 1U << 20U,
-    shared = 1U << 21U, ///< by several projectors
-    gamma = 1U << 22U,  ///< of the projector
-    lightShift = 24U,   ///< the number of lights stands above this bit, in three bits
-    holeShift = 27U     ///< the number of the skin's round holes
+    shared = 1U << 21U,   ///< by several projectors
+    gamma = 1U << 22U,    ///< of the projector
+    response = 1U << 23U, ///< of the projector, measured
+    lightShift = 24U,     ///< the number of lights stands above this bit, in three bits
+    holeShift = 27U       ///< the number of the skin's round holes
 };
 } // namespace eye_feature
 

@@ -1,5 +1,9 @@
 #include "core/render/projector/lab_preview.h"
 
+#include <algorithm>
+#include <utility>
+#include <vector>
+
 #include "core/base/error.h"
 #include "core/render/gl/draw_state.h"
 
@@ -10,9 +14,11 @@ namespace {
 constexpr glm::vec2 kStandIn(0.5F, 0.1F);
 
 ShaderFiles litFiles(std::vector<std::string> defines) {
-    ShaderFiles files = shaderFiles({"version.glsl", "camera.glsl", "physical.vert"},
-                                    {"version.glsl", "camera.glsl", "physical_normal.glsl", "projector_light.glsl",
-                                     "projector_sight.glsl", "lab.frag"});
+    std::vector<std::string> pieces{"version.glsl", "camera.glsl", "physical_normal.glsl", "projector_light.glsl",
+                                    "projector_sight.glsl"};
+    if (std::ranges::find(defines, "RESPONSE") != defines.end()) pieces.emplace_back("projector_response.glsl");
+    pieces.emplace_back("lab.frag");
+    ShaderFiles files = shaderFiles({"version.glsl", "camera.glsl", "physical.vert"}, pieces);
     files.defines = std::move(defines);
     return files;
 }
@@ -21,8 +27,9 @@ ShaderFiles litFiles(std::vector<std::string> defines) {
 
 LabPreview::LabPreview()
     : flat_(shaderFiles({"version.glsl", "camera.glsl", "physical.vert"}, {"version.glsl", "flat.frag"})),
-      deviceLight_(litFiles({})), tableLight_(litFiles({"TABLE"})), deviceMask_(litFiles({"MASK"})),
-      tableMask_(litFiles({"MASK", "TABLE"})) {}
+      light_{Program(litFiles({})), Program(litFiles({"TABLE"}))},
+      measuredLight_{Program(litFiles({"RESPONSE"})), Program(litFiles({"RESPONSE", "TABLE"}))},
+      mask_{Program(litFiles({"MASK"})), Program(litFiles({"MASK", "TABLE"}))} {}
 
 void LabPreview::drawSurfaces(const Observer& observer, const DeviceSurface& device, float onDevice, float onTable) {
     glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
@@ -36,8 +43,8 @@ void LabPreview::drawSurfaces(const Observer& observer, const DeviceSurface& dev
 }
 
 void LabPreview::addProjector(const Observer& observer, const DeviceSurface& device, const ProjectorTarget& projector,
-                              Program& deviceProgram, Program& tableProgram) {
-    for (Program* program : {&deviceProgram, &tableProgram}) {
+                              Light& light) {
+    for (Program* program : {&light.device, &light.table}) {
         program->use();
         setCamera(*program, observer.camera, observer.range.near, observer.range.far);
         program->set("viewerPosition", glm::vec3(positionOf(observer.camera)));
@@ -46,7 +53,8 @@ void LabPreview::addProjector(const Observer& observer, const DeviceSurface& dev
         bindTexture(1, projector.sent.texture());
         program->set("sent", 1);
         program->set("gamma", static_cast<float>(projector.projector.gamma));
-        const bool onDevice = program == &deviceProgram;
+        if (projector.response) projector.response->set(*program, 2);
+        const bool onDevice = program == &light.device;
         program->set("surfaceAlbedo",
                      albedoOf(observer.installation, onDevice ? PhysicalSurface::device : PhysicalSurface::table));
         if (onDevice) device.draw(*program);
@@ -63,7 +71,7 @@ void LabPreview::addLight(const Observer& observer, const DeviceSurface& device,
     glBlendEquation(GL_FUNC_ADD);
     glBlendFunc(GL_ONE, GL_ONE);
     for (const ProjectorTarget* projector : projectors)
-        addProjector(observer, device, *projector, deviceLight_, tableLight_);
+        addProjector(observer, device, *projector, projector->response ? measuredLight_ : light_);
 }
 
 void LabPreview::drawLit(const Observer& observer, float ambient, const DeviceSurface& device,
@@ -110,13 +118,14 @@ void LabPreview::drawMask(GLuint framebuffer, const CalibratedCamera& observer, 
     glDepthMask(GL_FALSE);
     glEnable(GL_BLEND);
     glBlendEquation(GL_MAX);
-    for (const ProjectorTarget* projector : projectors) addProjector(seen, device, *projector, deviceMask_, tableMask_);
+    for (const ProjectorTarget* projector : projectors) addProjector(seen, device, *projector, mask_);
 }
 
 std::size_t LabPreview::objectCount() const noexcept {
     std::size_t count = TableGrid::kObjects + (radiance_ ? ColorTarget::kObjects : 0);
-    for (const Program* program : {&flat_, &deviceLight_, &tableLight_, &deviceMask_, &tableMask_})
-        count += program->objectCount();
+    count += flat_.objectCount();
+    for (const Light* light : {&light_, &measuredLight_, &mask_})
+        count += light->device.objectCount() + light->table.objectCount();
     return count;
 }
 

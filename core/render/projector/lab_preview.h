@@ -40,12 +40,17 @@ private:
     void drawStandIn(const Observer& observer, const DeviceSurface& device);
     void addLight(const Observer& observer, const DeviceSurface& device,
                   std::span<const ProjectorTarget* const> projectors);
+    /// Programs of one kind of light, on device and table.
+    struct Light {
+        Program device, table;
+    };
     void addProjector(const Observer& observer, const DeviceSurface& device, const ProjectorTarget& projector,
-                      Program& deviceProgram, Program& tableProgram);
+                      Light& light);
 
     TableGrid table_;
     std::optional<ColorTarget> radiance_;
-    Program flat_, deviceLight_, tableLight_, deviceMask_, tableMask_;
+    Program flat_;
+    Light light_, measuredLight_, mask_;
     std::string problem_;
     bool standInRefused_ = false;
 };

@@ -22,8 +22,10 @@ ShaderFiles weightFiles(std::vector<std::string> defines) {
 }
 
 ShaderFiles mixedFiles(std::vector<std::string> defines) {
-    ShaderFiles files = shaderFiles(
-        {"full_frame.vert"}, {"version.glsl", "camera.glsl", "projector_eye_weight.glsl", "projector_mixed.frag"});
+    std::vector<std::string> pieces{"version.glsl", "camera.glsl", "projector_eye_weight.glsl"};
+    if (std::ranges::find(defines, "RESPONSE") != defines.end()) pieces.emplace_back("projector_response.glsl");
+    pieces.emplace_back("projector_mixed.frag");
+    ShaderFiles files = shaderFiles({"full_frame.vert"}, pieces);
     files.defines = std::move(defines);
     return files;
 }
@@ -68,9 +70,10 @@ ProjectorPass::ProjectorPass()
           {"version.glsl", "physical_normal.glsl", "packed_normal.glsl", "eye_lookup.glsl", "projector_surface.frag"})),
       edges_(shaderFiles({"full_frame.vert"}, {"version.glsl", "projector_edges.frag"})),
       distance_(shaderFiles({"full_frame.vert"}, {"version.glsl", "projector_distance.frag"})),
-      deviceWeight_(weightFiles({})), tableWeight_(weightFiles({"TABLE"})),
+      deviceWeight_(weightFiles({})), tableWeight_(weightFiles({"TABLE"})), deviceBlack_(weightFiles({"BLACK"})),
+      tableBlack_(weightFiles({"BLACK", "TABLE"})),
       done_(shaderFiles({"full_frame.vert"}, {"version.glsl", "projector_done.frag"})), mixed_(mixedFiles({})),
-      mixedGamma_(mixedFiles({"GAMMA"})) {}
+      mixedGamma_(mixedFiles({"GAMMA"})), mixedResponse_(mixedFiles({"RESPONSE"})) {}
 
 void ProjectorPass::drawDepth(ProjectorTarget& target, const ShowFrame& frame, const DeviceSurface& device,
                               const EyeViews& views, bool shared) {
@@ -144,11 +147,15 @@ void ProjectorPass::drawDistance(ProjectorTarget& target) {
     pass(0);
 }
 
-void ProjectorPass::addWeight(const ProjectorTarget& shown, const ProjectorTarget& weighed,
-                              const DeviceSurface& device) {
+void ProjectorPass::addWeight(const ProjectorTarget& shown, const ProjectorTarget& weighed, const DeviceSurface& device,
+                              bool compensation) {
     const bool own = &shown == &weighed;
-    for (Program* program : {&deviceWeight_, &tableWeight_}) {
+    const bool black = shown.blend->hasBlacks();
+    Program& onDevice = black ? deviceBlack_ : deviceWeight_;
+    for (Program* program : {&onDevice, black ? &tableBlack_ : &tableWeight_}) {
         program->use();
+        program->set("weighedBlack", weighed.projector.black);
+        program->set("compensation", compensation ? 1.0F : 0.0F);
         setLens(*program, shown);
         program->set("viewerPosition", glm::vec3(positionOf(shown.projector.camera)));
         setLight(*program, weighed.projector);
@@ -158,13 +165,17 @@ void ProjectorPass::addWeight(const ProjectorTarget& shown, const ProjectorTarge
         program->set("own", own ? 1.0F : 0.0F);
         // The own depth tests these very fragments; it may not be read as well.
         if (own) bindTexture(0, weighed.blend->distance(0));
-        program == &deviceWeight_ ? device.draw(*program) : drawTableOf(shown, *program);
+        program == &onDevice ? device.draw(*program) : drawTableOf(shown, *program);
     }
 }
 
-void ProjectorPass::drawWeights(std::span<ProjectorTarget* const> targets, const DeviceSurface& device) {
+void ProjectorPass::drawWeights(std::span<ProjectorTarget* const> targets, const DeviceSurface& device,
+                                bool compensation) {
+    const bool black = std::ranges::any_of(
+        targets, [](const ProjectorTarget* target) { return target->projector.black != glm::vec3(0.0F); });
     for (ProjectorTarget* target : targets) {
-        if (!target->blend) target->blend.emplace(target->sent.size(), target->sent.depthTexture());
+        if (!target->blend || target->blend->hasBlacks() != black)
+            target->blend.emplace(target->sent.size(), target->sent.depthTexture(), black);
         drawDistance(*target);
     }
     for (ProjectorTarget* shown : targets) {
@@ -175,7 +186,7 @@ void ProjectorPass::drawWeights(std::span<ProjectorTarget* const> targets, const
         glEnable(GL_BLEND);
         glBlendEquation(GL_FUNC_ADD);
         glBlendFunc(GL_ONE, GL_ONE);
-        for (const ProjectorTarget* weighed : targets) addWeight(*shown, *weighed, device);
+        for (const ProjectorTarget* weighed : targets) addWeight(*shown, *weighed, device, compensation);
     }
     glDisable(GL_BLEND);
     glDepthMask(GL_TRUE);
@@ -184,12 +195,13 @@ void ProjectorPass::drawWeights(std::span<ProjectorTarget* const> targets, const
 Program& ProjectorPass::seenProgram(const std::vector<std::string>& defines) {
     const auto found = seen_.find(defines);
     if (found != seen_.end()) return found->second;
-    ShaderFiles files = physicalFiles({"version.glsl", "physical_normal.glsl", "packed_normal.glsl",
-                                       "projector_eye_weight.glsl", "projector_light.glsl", "projector_output.glsl",
-                                       "eye_lookup.glsl", "noise.glsl", "projector.frag"},
-                                      defines);
-    if (std::ranges::find(defines, "TABLE") == defines.end())
-        files.vertex = shaderFiles({"full_frame.vert"}, {}).vertex;
+    const auto has = [&](const char* name) { return std::ranges::find(defines, name) != defines.end(); };
+    std::vector<std::string> pieces{"version.glsl", "physical_normal.glsl", "packed_normal.glsl",
+                                    "projector_eye_weight.glsl", "projector_light.glsl"};
+    if (has("RESPONSE")) pieces.emplace_back("projector_response.glsl");
+    pieces.insert(pieces.end(), {"projector_output.glsl", "eye_lookup.glsl", "noise.glsl", "projector.frag"});
+    ShaderFiles files = physicalFiles(pieces, defines);
+    if (!has("TABLE")) files.vertex = shaderFiles({"full_frame.vert"}, {}).vertex;
     return seen_.try_emplace(defines, files).first->second;
 }
 
@@ -198,14 +210,14 @@ Program& ProjectorPass::beginLookup(const ProjectorTarget& target, const ShowFra
     const bool second = onTable != nullptr && views.table != nullptr && !holds(views.device->camera(), *onTable, frame);
     std::vector<std::string> defines;
     if (target.blend) defines.emplace_back("SHARED");
-    if (target.projector.gamma > 0.0) defines.emplace_back("GAMMA");
+    if (target.encodes()) defines.emplace_back(target.response ? "RESPONSE" : "GAMMA");
     if (onTable != nullptr) defines.emplace_back("TABLE");
     if (second) defines.emplace_back("TABLE_VIEW");
     Program& program = seenProgram(defines);
     program.use();
     setLens(program, target);
     setOutput(program, target, *frame.installation,
-              onTable != nullptr ? PhysicalSurface::table : PhysicalSurface::device, 0);
+              onTable != nullptr ? PhysicalSurface::table : PhysicalSurface::device, 6);
     setEye(program, views);
     if (onTable == nullptr) return program;
     if (second) views.table->set(program, "table", 4);
@@ -223,7 +235,7 @@ void ProjectorPass::drawSeen(const ProjectorTarget& target, const ShowFrame& fra
     }
     clearRegion(target.region, GL_COLOR_BUFFER_BIT);
     if (views.device != nullptr) {
-        (target.projector.gamma > 0.0 ? glDisable : glEnable)(GL_FRAMEBUFFER_SRGB);
+        (target.encodes() ? glDisable : glEnable)(GL_FRAMEBUFFER_SRGB);
         Program& program = beginLookup(target, frame, views, nullptr);
         seenSurface_.set(program, 4);
         glDisable(GL_DEPTH_TEST);
@@ -253,23 +265,28 @@ void ProjectorPass::hideDone(const ProjectorTarget& target, const EyeViews& view
     glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
 }
 
+Program& ProjectorPass::mixedProgram(const ProjectorTarget& target) {
+    if (target.response) return mixedResponse_;
+    return target.projector.gamma > 0.0 ? mixedGamma_ : mixed_;
+}
+
 void ProjectorPass::drawMixed(const ProjectorTarget& target, const ShowFrame& frame, const EyeViews& views) {
     if (views.device == nullptr) return;
     const PixelRegion region = lookedUpPixels(target, views);
-    const bool encoded = target.projector.gamma > 0.0;
     beginSurfaces(target.rest.name(), target.sent.size());
     glDisable(GL_DEPTH_TEST);
     glDepthMask(GL_FALSE);
     for (const PixelRectangle& part : region.parts()) seenSurface_.keepPicture(part);
-    (encoded ? glDisable : glEnable)(GL_FRAMEBUFFER_SRGB);
-    Program& program = encoded ? mixedGamma_ : mixed_;
+    (target.encodes() ? glDisable : glEnable)(GL_FRAMEBUFFER_SRGB);
+    Program& program = mixedProgram(target);
     program.use();
     setLens(program, target);
     setEye(program, views);
     program.set("projectorPosition", glm::vec3(positionOf(target.projector.camera)));
     program.set("tableHalf", 0.5F * frame.installation->tableSize);
     program.set("tableAlbedo", meanSquare(albedoOf(*frame.installation, PhysicalSurface::table)));
-    if (encoded) program.set("gamma", static_cast<float>(target.projector.gamma));
+    program.set("gamma", static_cast<float>(target.projector.gamma));
+    if (target.response) target.response->set(program, 6);
     bindTexture(0, target.eyeWeight.name());
     program.set("eyeWeight", 0);
     seenSurface_.setPicture(program, 1);
@@ -284,8 +301,8 @@ void ProjectorPass::drawMixed(const ProjectorTarget& target, const ShowFrame& fr
 
 std::size_t ProjectorPass::objectCount() const noexcept {
     std::size_t count = 1 + ProjectorSurface::kObjects;
-    for (const Program* program :
-         {&depth_, &surface_, &edges_, &distance_, &deviceWeight_, &tableWeight_, &done_, &mixed_, &mixedGamma_})
+    for (const Program* program : {&depth_, &surface_, &edges_, &distance_, &deviceWeight_, &tableWeight_,
+                                   &deviceBlack_, &tableBlack_, &done_, &mixed_, &mixedGamma_, &mixedResponse_})
         count += program->objectCount();
     for (const auto& [defines, program] : seen_) count += program.objectCount();
     return count;

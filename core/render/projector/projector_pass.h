@@ -30,8 +30,9 @@ public:
     /// lookups must know of it; of the table too where several projectors share the work.
     void drawDepth(ProjectorTarget& target, const ShowFrame& frame, const DeviceSurface& device, const EyeViews& views,
                    bool shared);
-    /// Weighs projectors against one another; all their depths are drawn.
-    void drawWeights(std::span<ProjectorTarget* const> targets, const DeviceSurface& device);
+    /// Weighs projectors against one another; all their depths are drawn. Where one has a measured black, adds up what
+    /// all blacks make of each place, with `compensation` as in the installation.
+    void drawWeights(std::span<ProjectorTarget* const> targets, const DeviceSurface& device, bool compensation);
     /// Begins the picture of one projector with what the eye sees, and hides what is done; depth and weights are drawn.
     /// The rest is the eye pass's.
     void drawSeen(const ProjectorTarget& target, const ShowFrame& frame, const DeviceSurface& device,
@@ -50,11 +51,14 @@ private:
     void hideDone(const ProjectorTarget& target, const EyeViews& views);
     void drawFullFrame(const PixelRectangle& part);
     void drawDistance(ProjectorTarget& target);
-    void addWeight(const ProjectorTarget& shown, const ProjectorTarget& weighed, const DeviceSurface& device);
+    void addWeight(const ProjectorTarget& shown, const ProjectorTarget& weighed, const DeviceSurface& device,
+                   bool compensation);
+    [[nodiscard]] Program& mixedProgram(const ProjectorTarget& target);
 
     gl::VertexArray noAttributes_;
     ProjectorSurface seenSurface_;
-    Program depth_, surface_, edges_, distance_, deviceWeight_, tableWeight_, done_, mixed_, mixedGamma_;
+    Program depth_, surface_, edges_, distance_, deviceWeight_, tableWeight_, deviceBlack_, tableBlack_, done_, mixed_,
+        mixedGamma_, mixedResponse_;
     std::map<std::vector<std::string>, Program> seen_; ///< by the defines of projector.frag
 };
 

@@ -5,6 +5,7 @@
 #include "core/base/srgb.h"
 #include "core/render/eye/eye_programs.h"
 #include "core/render/gl/draw_state.h"
+#include "core/scene/projector_response.h"
 
 namespace lumorph {
 namespace {
@@ -38,6 +39,14 @@ ProjectorTarget::ProjectorTarget(const InstalledProjector& what)
     glBindFramebuffer(GL_FRAMEBUFFER, 0);
 }
 
+void ProjectorTarget::become(const InstalledProjector& what, const glm::vec3& floor) {
+    projector = what;
+    blackFloor = floor;
+    if (!isResponseMeasured(what)) return response.reset();
+    if (!response) response.emplace();
+    response->update(what);
+}
+
 void setLight(Program& program, const InstalledProjector& projector) {
     program.set("projectorPosition", glm::vec3(positionOf(projector.camera)));
     program.set("projectorPeak", static_cast<float>(projector.peak) * projector.gain);
@@ -55,14 +64,23 @@ void setOutput(Program& program, const ProjectorTarget& target, const Installati
     program.set("compensation", installation.compensation ? 1.0F : 0.0F);
     program.set("surfaceAlbedo", glm::max(albedoOf(installation, surface), kDarkestSurface));
     if (target.projector.gamma > 0.0) program.set("inverseGamma", static_cast<float>(1.0 / target.projector.gamma));
+    if (target.response) {
+        target.response->set(program, unit + 1);
+        program.set("blackFloor", target.blackFloor);
+    }
     if (!target.blend) return;
     bindTexture(unit, target.blend->weights());
     program.set("weights", unit);
+    if (!target.response || !target.blend->hasBlacks()) return;
+    bindTexture(unit + 2, target.blend->blacks());
+    program.set("blacks", unit + 2);
 }
 
 UnseenPlaces unseenPlaces(const ProjectorTarget& target, const Installation& installation) {
     const std::uint32_t features = eye_feature::projected | (target.blend ? eye_feature::shared : 0U) |
-                                   (target.projector.gamma > 0.0 ? eye_feature::gamma : 0U);
+                                   (target.response                ? eye_feature::response
+                                    : target.projector.gamma > 0.0 ? eye_feature::gamma
+                                                                   : 0U);
     return {target.projector.camera,
             target.region,
             target.device,

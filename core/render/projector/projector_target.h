@@ -9,6 +9,7 @@
 #include "core/render/gl/color_target.h"
 #include "core/render/projector/blend_maps.h"
 #include "core/render/projector/picture_changes.h"
+#include "core/render/projector/response_table.h"
 #include "core/scene/installation.h"
 
 namespace lumorph {
@@ -29,10 +30,17 @@ struct ProjectorTarget {
     PixelRectangle device; ///< holds the device as it is
     PictureChanges changes;
     TableGrid table;
-    std::optional<BlendMaps> blend; ///< while another projector is on
+    std::optional<BlendMaps> blend;        ///< while another projector is on
+    std::optional<ResponseTable> response; ///< while its response is a measured one
+    glm::vec3 blackFloor{0.0F};            ///< no place is made darker, as light on white
 
+    /// Another projector of the same size, or other figures of it.
+    void become(const InstalledProjector& what, const glm::vec3& floor);
+    /// Whether its shaders make the bytes of its picture themselves, where else the framebuffer makes sRGB of light.
+    [[nodiscard]] bool encodes() const noexcept { return response || projector.gamma > 0.0; }
     [[nodiscard]] std::size_t objectCount() const noexcept {
-        return ColorTarget::kObjects + DepthMap::kObjects + 3 + TableGrid::kObjects + (blend ? BlendMaps::kObjects : 0);
+        return ColorTarget::kObjects + DepthMap::kObjects + 3 + TableGrid::kObjects +
+               (blend ? blend->objectCount() : 0) + (response ? ResponseTable::kObjects : 0);
     }
 };
 
@@ -40,7 +48,8 @@ struct ProjectorTarget {
 void setLight(Program& program, const InstalledProjector& projector);
 /// The share of light that it gives back, linear, in [0, 1].
 [[nodiscard]] glm::vec3 albedoOf(const Installation& installation, PhysicalSurface surface);
-/// Sets those of projector_output.glsl too; binds the weights of a shared one to a texture unit.
+/// Sets those of projector_output.glsl too; may bind up to kOutputUnits texture units from `unit` on.
+inline constexpr int kOutputUnits = 3;
 void setOutput(Program& program, const ProjectorTarget& target, const Installation& installation,
                PhysicalSurface surface, int unit);
 /// What of its picture the eye pass draws itself: places that no eye sees. Neither argument may go before the result.
