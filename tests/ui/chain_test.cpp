@@ -1,8 +1,14 @@
+#include <fstream>
+
 #include <QAbstractButton>
 #include <QLabel>
+#include <glm/gtc/quaternion.hpp>
 
 #include "app/studio/calibration/chain.h"
+#include "app/studio/calibration/chain_files.h"
 #include "app/studio/document/scene_edit.h"
+#include "calibration/lab/registration_lab.h"
+#include "tests/ui/file_dialog.h"
 #include "tests/ui/studio_window.h"
 
 // From boxes to a calibrated show in the window, by the mouse: each link is measured in the lab, shown, and used.
@@ -12,6 +18,39 @@ namespace {
 
 using namespace std::chrono_literals;
 using studio::LinkStand;
+
+void writePoses(std::ostream& out, const PoseTrack& track, double later) {
+    for (const TimedPose& at : track.poses) {
+        const auto& [p, q] = std::tie(at.pose.position, at.pose.rotation);
+        out << at.seconds + later << ',' << p.x << ',' << p.y << ',' << p.z << ',' << q.x << ',' << q.y << ',' << q.z
+            << ',' << q.w << '\n';
+    }
+}
+
+/// Swings, and rests in other dimples with ways between them, as a tracker records them.
+void writePointer(const PointerCapture& capture, const std::filesystem::path& swings,
+                  const std::filesystem::path& rests) {
+    std::ofstream first(swings), second(rests);
+    first.precision(12);
+    second.precision(12);
+    writePoses(first, capture.swings, 0.0);
+    double now = 0.0;
+    for (const std::vector<Touch>& dimple : capture.fresh)
+        for (const Touch& touch : dimple) {
+            const std::vector<TimedPose>& poses = touch.pointer.poses;
+            writePoses(second, touch.pointer, now - poses.front().seconds);
+            now += poses.back().seconds - poses.front().seconds;
+            PoseTrack away; // lifted
+            for (int k = 1; k <= 20; ++k) {
+                TimedPose at = poses.back();
+                at.seconds = k / 60.0;
+                at.pose.position += glm::dvec3(0.0, 0.01 * k, 0.0);
+                away.poses.push_back(at);
+            }
+            writePoses(second, away, now);
+            now += 0.4;
+        }
+}
 
 class Chain : public ::testing::Test {
 protected:
@@ -90,6 +129,118 @@ TEST_F(Chain, AllThatIsMissingIsMeasuredOneAfterTheOther) {
     window.screenshot("chain-eye");
 }
 
+TEST_F(Chain, RecordingsAreReadInPlaceOfTheLab) {
+    ASSERT_TRUE(eventually([&] { return window.state().rig.rig && window.studio().jobs.running().empty(); }, 60s));
+    const Installation truth = trueRoom(room(), window.state().rig.rig->actuators(), 31);
+    const std::filesystem::path swings = folder.path() / "swings.csv", rests = folder.path() / "rests.csv";
+    writePointer(capturePointerInLab(truth, 5), swings, rests);
+    window.click("chain.link.pointer");
+    window.click("chain.way.files");
+    ASSERT_TRUE(offers("Choose: Swings"));
+    next();
+    answerFileDialog(window, "chain.recording.file", rests, "Open");
+    ASSERT_TRUE(offers("Choose: Other dimples"));
+    next();
+    answerFileDialog(window, "chain.recording.file", rests, "Open");
+    ASSERT_TRUE(offers("Read the recordings"));
+    window.screenshot("chain-recordings");
+    next();
+    ASSERT_TRUE(offers("Measure again")) << story();
+    EXPECT_EQ(window.text("chain.card.title"), "This is not to be trusted") << "rests are no swings: " << story();
+    EXPECT_EQ(room().origins.pointer.way, Origin::Way::assumed);
+    window.screenshot("chain-recordings-refused");
+    window.click("chain.file.swings");
+    answerFileDialog(window, "chain.recording.file", swings, "Open");
+    ASSERT_TRUE(offers("Read the recordings")) << story();
+    next();
+    ASSERT_TRUE(offers("Use it")) << story();
+    window.screenshot("chain-recordings-read");
+    next();
+    ASSERT_TRUE(eventually([&] { return badge("pointer") == "Measured"; })) << story();
+    const float beside = glm::distance(room().pointerTip, truth.pointerTip);
+    std::printf("pointer tip from recordings: %.2f mm from the truth\n", 1e3F * beside);
+    EXPECT_LT(beside, 0.001F);
+    // The rest ends where the next recording is missing: nothing of the lab gets into a real room.
+    studio::editInstallation(window.studio().document, "Measured before", [](Installation& room) {
+        room.projectors.front().lens = {Origin::Way::measured, "structured light", "2026-11-20T10:00:00Z"};
+    });
+    window.click("chain.rest");
+    EXPECT_TRUE(offers("Choose: Tracked body")) << story();
+    EXPECT_EQ(badge("tracker"), "Next");
+    EXPECT_EQ(room().origins.tracker.way, Origin::Way::assumed);
+}
+
+/// A board that is moved and turned about all axes, by the tracker and by a camera whose clock is `later`.
+void writeBoard(const std::filesystem::path& tracked, const std::filesystem::path& seen, const Pose& worldFromTracker,
+                double later) {
+    const Pose bodyFromBoard{{0.03, -0.05, 0.02}, rotationOfTurn({0.2, -0.4, 0.9})};
+    PoseTrack inTracker, inRoom;
+    for (int k = 0; k < 1800; ++k) {
+        const double t = k / 60.0;
+        const Pose body{
+            {0.3 * std::sin(0.9 * t), 0.8 + 0.1 * std::sin(1.3 * t), 0.2 * std::cos(0.7 * t)},
+            rotationOfTurn({0.6 * std::sin(1.1 * t), 0.6 * std::sin(1.7 * t + 1.0), 0.6 * std::sin(0.8 * t + 2.0)})};
+        inTracker.poses.push_back({t, body});
+        inRoom.poses.push_back({t, worldFromTracker * body * bodyFromBoard});
+    }
+    std::ofstream first(tracked), second(seen);
+    first.precision(12);
+    second.precision(12);
+    writePoses(first, inTracker, 0.0);
+    writePoses(second, inRoom, later);
+}
+
+TEST(ChainFiles, TrackerIsPlacedByABoardThatMoves) {
+    const TemporaryFolder folder;
+    const std::filesystem::path tracked = folder.path() / "tracked.csv", seen = folder.path() / "seen.csv";
+    const Pose truth{{0.4, -0.2, 0.7}, rotationOfTurn({0.3, 1.9, -0.2})};
+    writeBoard(tracked, seen, truth, 0.05);
+    const Registration placed = studio::trackerFromFiles({defaultInstallation(), {tracked, seen}}, {});
+    ASSERT_TRUE(placed.good()) << placed.summary;
+    const glm::mat4& found = placed.installation.worldFromTracker;
+    EXPECT_LT(glm::distance(glm::dvec3(found[3]), truth.position), 0.001);
+    const Pose pose{glm::dvec3(found[3]), glm::normalize(glm::quat_cast(glm::dmat3(glm::mat3(found))))};
+    EXPECT_LT(angleOf((inverseOf(truth) * pose).rotation), 0.002);
+    std::ofstream(seen, std::ios::app) << "31,nan,0,0,0,0,0,1\n";
+    EXPECT_THROW((void)studio::trackerFromFiles({defaultInstallation(), {tracked, seen}}, {}), DataError);
+    EXPECT_THROW((void)studio::trackerFromFiles({defaultInstallation(), {tracked, folder.path() / "none.csv"}}, {}),
+                 DataError);
+}
+
+TEST_F(Chain, ARealDeviceIsPlacedByRecordings) {
+    const std::filesystem::path data = LUMORPH_SHARED_DIR "/data/landmarks";
+    if (!std::filesystem::exists(data)) GTEST_SKIP() << "without ../shared/data/landmarks";
+    ASSERT_TRUE(eventually([&] { return window.state().rig.rig && window.studio().jobs.running().empty(); }, 60s));
+    const auto tipAt = [&](glm::vec3 tip) {
+        studio::editInstallation(window.studio().document, "Tip", [tip](Installation& room) {
+            room.pointerTip = tip;
+            room.origins.pointer = {Origin::Way::entered, "", ""};
+        });
+    };
+    tipAt({0.0F, 0.0F, 0.0F}); // a wrong one
+    window.click("chain.link.device");
+    window.click("chain.way.files");
+    for (const char* file : {"pointer.csv", "reference.csv", "model.csv"}) {
+        ASSERT_TRUE(eventually([&] { return button().startsWith("Choose: "); })) << story();
+        next();
+        answerFileDialog(window, "chain.recording.file", data / file, "Open");
+    }
+    ASSERT_TRUE(offers("Read the recordings")) << story();
+    next();
+    ASSERT_TRUE(offers("Measure again")) << story();
+    EXPECT_EQ(window.text("chain.card.title"), "This is not to be trusted");
+    std::printf("wrong tip: %s\n", story().c_str());
+    window.screenshot("chain-device-wrong-tip");
+    tipAt({0.108565F, 0.00777385F, 0.0025389F}); // as the data's facts have it
+    next();
+    ASSERT_TRUE(offers("Use it")) << story();
+    std::printf("right tip: %s\n", story().c_str());
+    window.screenshot("chain-device-recorded");
+    next();
+    EXPECT_TRUE(eventually([&] { return badge("device") == "Measured"; })) << story();
+    EXPECT_EQ(room().origins.deviceBody.way, Origin::Way::measured);
+}
+
 // The lab's camera sees the room as it was when the watch began.
 TEST_F(Chain, TheWatchTellsAHostThatTheProjectorHasMoved) {
     window.window().showWorkspace("scene");
@@ -97,9 +248,8 @@ TEST_F(Chain, TheWatchTellsAHostThatTheProjectorHasMoved) {
     window.studio().commands.find("calibrate.watch")->setChecked(true);
     pass(3s);
     EXPECT_TRUE(window.studio().notices.at("calibrate").empty());
-    studio::editInstallation(window.studio().document, "Believed elsewhere", [](Installation& room) {
-        room.projectors.front().camera.cameraFromWorld[3].x += 0.006;
-    });
+    studio::editInstallation(window.studio().document, "Believed elsewhere",
+                             [](Installation& room) { room.projectors.front().camera.cameraFromWorld[3].x += 0.006; });
     ASSERT_TRUE(eventually([&] { return !window.studio().notices.at("calibrate").empty(); }, 120s));
     pass(500ms);
     window.screenshot("watch-moved");

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <filesystem>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -51,6 +52,18 @@ struct LinkTask {
     std::uint32_t seed = 1;
 };
 
+/// A recording that a link can be measured from.
+struct LinkFile {
+    const char* key = ""; ///< of names of widgets: "swings"
+    QString title, words; ///< what it is, and in a sentence what is in it
+};
+
+/// What a measurement from recordings begins with.
+struct FileTask {
+    Installation believed;
+    std::vector<std::filesystem::path> files; ///< as many, and in the order of, the link's
+};
+
 /// One thing that is measured. Those before it that it builds on are its needs.
 struct ChainLink {
     LinkId id = LinkId::projector;
@@ -64,6 +77,9 @@ struct ChainLink {
     void (*apply)(const Installation& measured, Installation& room) = nullptr;
     /// Throws as measurements do. Empty: the link has a sequence of its own.
     std::function<LinkOutcome(const LinkTask& task, const Progress& progress)> inLab;
+    std::vector<LinkFile> files; ///< all of them are needed
+    /// The same from recordings of a real tracker. Empty: it cannot be.
+    std::function<LinkOutcome(const FileTask& task, const Progress& progress)> fromFiles;
 };
 
 /// In the order in which they are measured.

@@ -5,6 +5,7 @@
 #include <QObject>
 
 #include "app/studio/calibration/chain.h"
+#include "app/studio/calibration/chain_files.h"
 #include "calibration/lab/registration_lab.h"
 #include "calibration/servos/servo_lab.h"
 #include "calibration/verify/verify_lab.h"
@@ -23,17 +24,18 @@ LinkOutcome outcomeOf(const Registration& measured) {
     for (const Finding& warning : measured.warnings) outcome.findings.push_back(wordsOf(warning));
     if (measured.refusal) {
         outcome.findings.insert(outcome.findings.begin(), wordsOf(*measured.refusal));
-        outcome.summary = outcome.findings.front().title;
+        outcome.summary = outcome.findings.front().title + ". " + outcome.findings.front().remedy;
         return outcome;
     }
     outcome.installation = measured.installation;
     const FreshCheck& fresh = measured.fresh;
-    outcome.figures = {
-        {QObject::tr("%1 points that the fit never saw: root mean square").arg(fresh.points.size()),
-         millimetres(fresh.rms), fresh.rms <= fresh.allowed},
-        {QObject::tr("The worst of them"), millimetres(fresh.worst), fresh.worst <= 2.5 * fresh.allowed},
-        {QObject::tr("Residual of the fit"), millimetres(measured.rms)},
-        {QObject::tr("Uncertainty of the place"), QString("± %1").arg(millimetres(measured.shiftSigma))}};
+    outcome.figures = {{QObject::tr("%1 points that the fit never saw: root mean square").arg(fresh.points.size()),
+                        millimetres(fresh.rms), fresh.rms <= fresh.allowed},
+                       {QObject::tr("The worst of them"), millimetres(fresh.worst), fresh.worst <= 2.5 * fresh.allowed},
+                       {QObject::tr("Residual of the fit"), millimetres(measured.rms)}};
+    if (measured.shiftSigma > 0.0)
+        outcome.figures.push_back(
+            {QObject::tr("Uncertainty of the place"), QString("± %1").arg(millimetres(measured.shiftSigma))});
     if (measured.turnSigma > 0.0)
         outcome.figures.push_back({QObject::tr("Uncertainty of the direction"),
                                    QString("± %1°").arg(57.29577951308232 * measured.turnSigma, 0, 'f', 2)});
@@ -48,6 +50,17 @@ LinkOutcome outcomeOf(const Registration& measured) {
 
 template <auto Measure> LinkOutcome registered(const LinkTask& task, const Progress& progress) {
     return outcomeOf(Measure(*task.rig, task.believed, task.truth, task.seed, progress, {}));
+}
+
+/// A recording that is refused before anything is fitted is a refusal as any other.
+template <auto Read> LinkOutcome recorded(const FileTask& task, const Progress& progress) {
+    Registration refusal;
+    try {
+        return outcomeOf(Read(task, progress));
+    } catch (const CaptureRefused& refused) {
+        refusal.refusal = refused.finding();
+    }
+    return outcomeOf(refusal);
 }
 
 ChainLink projectorLink() {
@@ -81,6 +94,11 @@ ChainLink pointerLink() {
         room.origins.pointer = measured.origins.pointer;
     };
     link.inLab = registered<measurePointerInLab>;
+    link.files = {
+        {"swings", QObject::tr("Swings"), QObject::tr("The pointer swung to all sides, its tip in a dimple.")},
+        {"rests", QObject::tr("Other dimples"),
+         QObject::tr("Its tip set into three other dimples for a second, each twice and held differently.")}};
+    link.fromFiles = recorded<pointerFromFiles>;
     return link;
 }
 
@@ -100,6 +118,12 @@ ChainLink trackerLink() {
         room.origins.tracker = measured.origins.tracker;
     };
     link.inLab = registered<measureTrackerInLab>;
+    link.files = {
+        {"tracked", QObject::tr("Tracked body"),
+         QObject::tr("A body that is moved and turned about two axes, in the tracker's world.")},
+        {"seen", QObject::tr("Seen in the room"),
+         QObject::tr("The board or camera that is fixed to it, in the room's world; its clock may be another.")}};
+    link.fromFiles = recorded<trackerFromFiles>;
     return link;
 }
 
@@ -120,6 +144,12 @@ ChainLink deviceLink() {
         room.origins.deviceBody = measured.origins.deviceBody;
     };
     link.inLab = registered<measureDeviceInLab>;
+    link.files = {{"touches", QObject::tr("Pointer"),
+                   QObject::tr("Its tip rests for a second on one point of the device after the other.")},
+                  {"body", QObject::tr("Body of the device"), QObject::tr("Tracked at the same time.")},
+                  {"model", QObject::tr("Points of the model"),
+                   QObject::tr("Rows of name, x, y, z in the device's frame, metres.")}};
+    link.fromFiles = recorded<deviceFromFiles>;
     return link;
 }
 

@@ -11,7 +11,7 @@ namespace lumorph::studio {
 namespace {
 
 constexpr auto kChainPlace = "chain"; // of jobs and notices
-constexpr std::uint32_t kLabSeed = 7;
+constexpr std::uint32_t kRoomSeed = 7;
 
 QString wordsOfError(const std::exception& error) {
     const Notice notice = noticeOf(error);
@@ -20,47 +20,69 @@ QString wordsOfError(const std::exception& error) {
     return words;
 }
 
+/// The step with which a link is measured, by where it is measured.
+ChainStep measuringStep(const ChainState& state, ChainStep::Tone tone, const QString& title, const QString& text,
+                        const QString& inLab) {
+    using What = ChainStep::Do;
+    const ChainLink& link = chainLinks()[state.chosen];
+    if (!link.inLab) return {What::sequence, tone, title, text, QObject::tr("Open it")};
+    if (!usesFiles(state, state.chosen)) return {What::measure, tone, title, text, inLab};
+    if (const auto missing = missingFile(state, state.chosen))
+        return {What::chooseFile, tone, title, text, QObject::tr("Choose: %1").arg(link.files[*missing].title)};
+    return {What::measure, tone, title, text, QObject::tr("Read the recordings")};
+}
+
 } // namespace
 
+bool usesFiles(const ChainState& state, std::size_t link) {
+    return state.fromFiles && chainLinks()[link].fromFiles != nullptr;
+}
+
+std::optional<std::size_t> missingFile(const ChainState& state, std::size_t link) {
+    const auto chosen = state.files.find(link);
+    for (std::size_t k = 0; k < chainLinks()[link].files.size(); ++k)
+        if (chosen == state.files.end() || chosen->second[k].empty()) return k;
+    return std::nullopt;
+}
+
 ChainStep stepOf(const ChainState& state) {
-    using Do = ChainStep::Do;
+    using What = ChainStep::Do;
     using Tone = ChainStep::Tone;
     const ChainLink& link = chainLinks()[state.chosen];
     const LinkStand& stand = state.stands[state.chosen];
     if (state.running == state.chosen)
-        return {Do::cancel, Tone::live, QObject::tr("Measuring: %1").arg(link.title), state.stage,
+        return {What::cancel, Tone::live, QObject::tr("Measuring: %1").arg(link.title), state.stage,
                 QObject::tr("Cancel")};
     if (state.running)
-        return {Do::cancel, Tone::live, QObject::tr("Measuring: %1").arg(chainLinks()[*state.running].title),
+        return {What::cancel, Tone::live, QObject::tr("Measuring: %1").arg(chainLinks()[*state.running].title),
                 QObject::tr("This one can be measured after it."), QObject::tr("Cancel")};
     if (const auto trouble = state.troubles.find(state.chosen); trouble != state.troubles.end())
-        return {Do::measure, Tone::failure, QObject::tr("It could not be measured"), trouble->second,
+        return {What::measure, Tone::failure, QObject::tr("It could not be measured"), trouble->second,
                 QObject::tr("Measure again")};
     if (const auto found = state.outcomes.find(state.chosen); found != state.outcomes.end()) {
         const LinkOutcome& outcome = found->second;
         const QString summary = outcome.summary;
         if (!outcome.isGood && !outcome.installation)
-            return {Do::measure, Tone::failure, QObject::tr("This is not to be trusted"), summary,
+            return {What::measure, Tone::failure, QObject::tr("This is not to be trusted"), summary,
                     QObject::tr("Measure again")};
         if (!outcome.isUsed)
-            return {Do::use, outcome.isGood ? Tone::good : Tone::warning,
+            return {What::use, outcome.isGood ? Tone::good : Tone::warning,
                     outcome.isGood ? QObject::tr("Measured") : QObject::tr("Something has changed"), summary,
                     QObject::tr("Use it")};
-        return {Do::goOn, Tone::good, QObject::tr("In use"), summary,
+        return {What::goOn, Tone::good, QObject::tr("In use"), summary,
                 nextLink(state.stands) ? QObject::tr("Go on") : QString()};
     }
+    const QString again = QObject::tr("Measure again");
     switch (stand.how) {
     case LinkStand::How::waits:
-        return {Do::goOn, Tone::quiet, QObject::tr("Its turn comes later"),
+        return {What::goOn, Tone::quiet, QObject::tr("Its turn comes later"),
                 QObject::tr("%1 What it builds on is measured first.").arg(link.purpose), QObject::tr("What is next?")};
     case LinkStand::How::measured:
-        return {Do::measure, Tone::good, QObject::tr("Measured"), stand.words, QObject::tr("Measure again")};
+        return measuringStep(state, Tone::good, QObject::tr("Measured"), stand.words, again);
     case LinkStand::How::stale:
-        return {link.inLab ? Do::measure : Do::sequence, Tone::warning, QObject::tr("To be measured again"),
-                stand.words + ".", link.inLab ? QObject::tr("Measure again") : QObject::tr("Open it")};
+        return measuringStep(state, Tone::warning, QObject::tr("To be measured again"), stand.words + ".", again);
     default:
-        return {link.inLab ? Do::measure : Do::sequence, Tone::live, link.title, link.purpose,
-                link.inLab ? QObject::tr("Measure in the lab") : QObject::tr("Open it")};
+        return measuringStep(state, Tone::live, link.title, link.purpose, QObject::tr("Measure in the lab"));
     }
 }
 
@@ -88,6 +110,31 @@ void ChainService::choose(std::size_t link) {
     if (link >= chainLinks().size() || link == state_.chosen) return;
     state_.chosen = link;
     emit changed();
+}
+
+void ChainService::setFromFiles(bool fromFiles) {
+    if (fromFiles == state_.fromFiles) return;
+    state_.goesOn = false;
+    state_.fromFiles = fromFiles;
+    for (std::size_t link = 0; link < chainLinks().size(); ++link)
+        if (chainLinks()[link].fromFiles) forget(link);
+    emit changed();
+}
+
+void ChainService::setFile(std::size_t link, std::size_t file, const std::filesystem::path& path) {
+    if (link >= chainLinks().size() || file >= chainLinks()[link].files.size()) return;
+    auto& files = state_.files[link];
+    files.resize(chainLinks()[link].files.size());
+    files[file] = path;
+    forget(link);
+    emit changed();
+}
+
+/// What came of it before, unless the room has it.
+void ChainService::forget(std::size_t link) {
+    state_.troubles.erase(link);
+    if (const auto found = state_.outcomes.find(link); found != state_.outcomes.end() && !found->second.isUsed)
+        state_.outcomes.erase(found);
 }
 
 void ChainService::doNext() {
@@ -118,7 +165,12 @@ void ChainService::measureRest() {
 
 void ChainService::goOn() {
     const auto next = nextLink(state_.stands);
-    if (!next || !chainLinks()[*next].inLab) {
+    // With recordings of a real room nothing of the lab slips in between.
+    const auto waitsForUser = [this](std::size_t link) {
+        if (!chainLinks()[link].inLab) return true;
+        return state_.fromFiles && (!usesFiles(state_, link) || missingFile(state_, link));
+    };
+    if (!next || waitsForUser(*next)) {
         state_.goesOn = false;
         if (next) state_.chosen = *next;
         emit changed();
@@ -131,17 +183,34 @@ void ChainService::goOn() {
 /// The lab has one truth, whatever is believed of it meanwhile.
 const Installation& ChainService::truth(const Rig& rig) {
     if (!truth_ || truthOf_ != document_.state().rig.rig) {
-        truth_ = trueRoom(*document_.state().installation, rig.actuators(), kLabSeed);
+        truth_ = trueRoom(*document_.state().installation, rig.actuators(), kRoomSeed);
         truthOf_ = document_.state().rig.rig;
     }
     return *truth_;
 }
 
-void ChainService::begin(std::size_t link) {
-    const std::shared_ptr<const Rig>& rig = document_.state().rig.rig;
+/// Null where it cannot be measured now.
+std::function<LinkOutcome(const Progress&)> ChainService::workOf(std::size_t link) {
     const ChainLink& measured = chainLinks()[link];
-    if (!rig || !measured.inLab || state_.running) return;
-    LinkTask task{rig, *document_.state().installation, truth(*rig), seed_++};
+    const Installation& room = *document_.state().installation;
+    if (usesFiles(state_, link)) {
+        if (missingFile(state_, link)) return nullptr;
+        return [run = measured.fromFiles, task = FileTask{room, state_.files[link]}](const Progress& progress) {
+            return run(task, progress);
+        };
+    }
+    const std::shared_ptr<const Rig>& rig = document_.state().rig.rig;
+    if (!rig || !measured.inLab) return nullptr;
+    return [run = measured.inLab, task = LinkTask{rig, room, truth(*rig), seed_++}](const Progress& progress) {
+        return run(task, progress);
+    };
+}
+
+void ChainService::begin(std::size_t link) {
+    if (state_.running) return;
+    const ChainLink& measured = chainLinks()[link];
+    auto work = workOf(link);
+    if (!work) return;
     state_.running = link;
     state_.fraction = 0.0;
     state_.stage.clear();
@@ -149,8 +218,7 @@ void ChainService::begin(std::size_t link) {
     state_.troubles.erase(link);
     emit changed();
     jobs_.runWith<LinkOutcome>(
-        kChainPlace, kChainPlace, QObject::tr("Measuring: %1").arg(measured.title),
-        [run = measured.inLab, task = std::move(task)](const Progress& progress) { return run(task, progress); },
+        kChainPlace, kChainPlace, QObject::tr("Measuring: %1").arg(measured.title), std::move(work),
         [this, link](LinkOutcome outcome) { take(link, std::move(outcome)); },
         [this, link](const std::exception& error) {
             state_.running.reset();

@@ -22,12 +22,19 @@ struct ChainState {
     QString stage;
     std::map<std::size_t, LinkOutcome> outcomes; ///< measured, by links; one that is used stays to be read
     std::map<std::size_t, QString> troubles;     ///< why a measurement came to nothing
-    bool goesOn = false;                         ///< the rest follows by itself
+    bool fromFiles = false; ///< links that can be are measured from recordings, the others in the lab
+    std::map<std::size_t, std::vector<std::filesystem::path>> files; ///< by links; empty paths: not chosen yet
+    bool goesOn = false;                                             ///< the rest follows by itself
 };
+
+/// Whether a link is measured from recordings now.
+[[nodiscard]] bool usesFiles(const ChainState& state, std::size_t link);
+/// Of its recordings the first that was not chosen yet.
+[[nodiscard]] std::optional<std::size_t> missingFile(const ChainState& state, std::size_t link);
 
 /// The one thing that is to be done with the chosen link.
 struct ChainStep {
-    enum class Do { nothing, sequence, measure, use, cancel, goOn };
+    enum class Do { nothing, sequence, chooseFile, measure, use, cancel, goOn };
     enum class Tone { quiet, live, good, warning, failure };
     Do what = Do::nothing;
     Tone tone = Tone::quiet;
@@ -36,8 +43,8 @@ struct ChainStep {
 };
 [[nodiscard]] ChainStep stepOf(const ChainState& state);
 
-/// Measures the links of the chain in the virtual lab, one at a time, as jobs. What was measured is shown first and
-/// used when one says so: a step of undo, and a version. Lives in the window's thread.
+/// Measures the links of the chain in the virtual lab or from recordings, one at a time, as jobs. What was measured is
+/// shown first and used when one says so: a step of undo, and a version. Lives in the window's thread.
 class ChainService : public QObject {
     Q_OBJECT
 public:
@@ -48,10 +55,14 @@ public:
 
     [[nodiscard]] const ChainState& state() const noexcept { return state_; }
     void choose(std::size_t link);
-    /// Does what `stepOf` says; a sequence of its own is the window's: nothing happens.
+    /// Recordings in place of the lab. What was measured and is not used goes.
+    void setFromFiles(bool fromFiles);
+    void setFile(std::size_t link, std::size_t file, const std::filesystem::path& path);
+    /// Does what `stepOf` says; a sequence of its own and choosing a file are the window's: nothing happens.
     void doNext();
     void measure();
-    /// All that is open or stale, in turn, each used when it is good; ends with the first that is not.
+    /// All that is open or stale, in turn, each used when it is good; ends with the first that is not,
+    /// and where recordings are used, with the first of which there are none.
     void measureRest();
     void use();
     void cancel();
@@ -61,6 +72,8 @@ signals:
 
 private:
     void begin(std::size_t link);
+    void forget(std::size_t link);
+    [[nodiscard]] std::function<LinkOutcome(const Progress&)> workOf(std::size_t link);
     void take(std::size_t link, LinkOutcome outcome);
     bool useOf(std::size_t link);
     void goOn();

@@ -72,10 +72,28 @@ void doNextOfCalibration(const CalibrateParts& parts) {
 }
 
 void doNextOfChain(const CalibrateParts& parts) {
-    if (stepOf(parts.chain.state()).what == ChainStep::Do::sequence)
-        parts.selection.setWhole(false);
-    else
-        parts.chain.doNext();
+    const ChainState& state = parts.chain.state();
+    const ChainStep::Do what = stepOf(state).what;
+    if (what == ChainStep::Do::sequence) return parts.selection.setWhole(false);
+    if (what == ChainStep::Do::chooseFile)
+        return askForRecording(parts, state.chosen, missingFile(state, state.chosen).value_or(0));
+    parts.chain.doNext();
+}
+
+/// Each link by its own name in the palette.
+void addChainCommands(const CalibrateParts& parts) {
+    for (std::size_t k = 1; k < chainLinks().size(); ++k) {
+        const ChainLink& link = chainLinks()[k];
+        Commands::Options options;
+        options.icon = "target";
+        options.workspace = "calibrate";
+        QAction* action = parts.studio.commands.add(QString("calibrate.chain.") + link.key, "Calibrate: " + link.title,
+                                                    options, [parts, k] {
+                                                        parts.selection.setWhole(true);
+                                                        parts.chain.choose(k);
+                                                    });
+        action->setToolTip(link.purpose);
+    }
 }
 
 } // namespace
@@ -107,6 +125,12 @@ void askForOrder(const CalibrateParts& parts) {
                   setup.order = file;
                   parts.service.setSetup(setup);
               });
+}
+
+void askForRecording(const CalibrateParts& parts, std::size_t link, std::size_t file) {
+    const LinkFile& wanted = chainLinks()[link].files[file];
+    askToRead("chain.recording.file", wanted.title + ": " + wanted.words, "Recordings (*.csv *.txt);;All files (*)",
+              [parts, link, file](const std::filesystem::path& path) { parts.chain.setFile(link, file, path); });
 }
 
 void askForSaved(const CalibrateParts& parts) {
@@ -173,6 +197,7 @@ void addCalibrateCommands(const CalibrateParts& parts) {
     QAction* rest2 = addCalibrateAction(parts, "calibrate.chain.rest", "Measure all that is missing", "play",
                                         "In the lab, one after the other; ends where something needs you",
                                         [parts] { parts.chain.measureRest(); });
+    addChainCommands(parts);
     const auto follow = [=, &service] {
         report->setEnabled(service.state().result || !service.state().poses.empty());
         save->setEnabled(service.state().result != nullptr);

@@ -20,6 +20,8 @@ void useFolder(CalibrationService& service, Settings& settings, const std::files
 void askForImages(const CalibrateParts& parts);
 /// Asks for a file that says what each image of a folder shows.
 void askForOrder(const CalibrateParts& parts);
+/// Asks for a recording of a link of the chain.
+void askForRecording(const CalibrateParts& parts, std::size_t link, std::size_t file);
 /// Asks where poses are saved.
 void askForSaved(const CalibrateParts& parts);
 

@@ -9,6 +9,8 @@ namespace lumorph::studio {
 // The whole chain beside the sequence of projector and camera: its links, the chosen one, and what that came to.
 [[nodiscard]] QWidget* makeChainLinks(const CalibrateParts& parts);
 [[nodiscard]] QWidget* makeChainView(const CalibrateParts& parts);
+/// Where the chosen link is measured: in the lab, or from recordings, which are chosen here.
+[[nodiscard]] QWidget* makeChainSource(const CalibrateParts& parts, QWidget* parent);
 [[nodiscard]] QWidget* makeChainResult(const CalibrateParts& parts);
 
 } // namespace lumorph::studio

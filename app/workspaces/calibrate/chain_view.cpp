@@ -173,6 +173,7 @@ public:
         heading_ = makeHeading("What happens", this);
         page.layout->addWidget(heading_);
         page.layout->addWidget(how_);
+        page.layout->addWidget(makeChainSource(parts, this));
         points_->setMaximumWidth(900);
         pointsHeading_ = makeHeading("How far points lie beside", this);
         page.layout->addWidget(pointsHeading_);
@@ -198,6 +199,8 @@ private:
         for (std::size_t k = 0; k < link.how.size(); ++k)
             text += QString("%1%2.  %3").arg(k == 0 ? "" : "\n").arg(k + 1).arg(link.how[k]);
         how_->setText(text);
+        // Recordings say themselves what is in them.
+        for (QWidget* part : {heading_, static_cast<QWidget*>(how_)}) part->setVisible(!usesFiles(state, state.chosen));
         const auto found = state.outcomes.find(state.chosen);
         const std::vector<LinkPoint> points =
             found == state.outcomes.end() ? std::vector<LinkPoint>() : found->second.points;

@@ -50,7 +50,8 @@ void PointBars::paintEvent(QPaintEvent* /*event*/) {
         painter.drawText(QRect(x + 16, 0, width(), 20), Qt::AlignVCenter, text);
     };
     square(0, colors.accent, "never seen by the fit");
-    square(160, colors.levelLow, "of the fit");
+    const bool any = std::ranges::any_of(points_, [](const LinkPoint& point) { return !point.isFresh; });
+    if (any) square(160, colors.levelLow, "of the fit");
     const double room = width() - kName - kValue;
     for (std::size_t k = 0; k < points_.size(); ++k) {
         const LinkPoint& point = points_[k];

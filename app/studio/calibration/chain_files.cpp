@@ -1,0 +1,107 @@
+#include "app/studio/calibration/chain_files.h"
+
+#include <algorithm>
+#include <string>
+
+#include <glm/geometric.hpp>
+
+#include "calibration/registration/dwells.h"
+#include "calibration/registration/landmarks.h"
+#include "calibration/registration/pivot.h"
+#include "core/base/file.h"
+#include "core/loop/pose_stream.h"
+
+namespace lumorph::studio {
+namespace {
+
+constexpr std::size_t kMostRecorded = 256'000'000; // bytes of one recording: hours of it
+constexpr double kDwellSeconds = 0.8;
+constexpr double kDwellRadius = 0.006;    // metres: a tracker trembles by a millimetre, a long pointer enlarges it
+constexpr double kSameDimple = 0.012;     // metres within which two rests are of one dimple
+constexpr double kLeftOutAllowed = 0.002; // metres RMS, as of points that are touched afresh
+constexpr double kMillimetresOfMetre = 1e3;
+
+std::string recordedText(const FileTask& task, std::size_t file) {
+    const std::vector<std::byte> bytes = readFile(task.files.at(file), kMostRecorded);
+    return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+}
+
+PoseTrack recordedTrack(const FileTask& task, std::size_t file) {
+    return parsePoseTrack(recordedText(task, file), task.files.at(file).filename().string());
+}
+
+/// The rests of a tip in one recording, by the places where it rested.
+std::vector<std::vector<Touch>> restsByDimple(const PoseTrack& track, const glm::dvec3& tip) {
+    std::vector<TimedPlace> places;
+    for (const TimedPose& at : track.poses) places.push_back({at.seconds, at.pose * tip});
+    std::vector<std::vector<Touch>> dimples;
+    std::vector<glm::dvec3> middles;
+    for (const Dwell& dwell : findDwells(places, kDwellSeconds, kDwellRadius)) {
+        const auto same = std::ranges::find_if(
+            middles, [&](const glm::dvec3& at) { return glm::distance(at, dwell.place) < kSameDimple; });
+        const auto number = static_cast<std::size_t>(same - middles.begin());
+        if (same == middles.end()) {
+            middles.push_back(dwell.place);
+            dimples.emplace_back();
+        }
+        Touch touch;
+        touch.name = "dimple " + std::to_string(number + 1);
+        const auto first = track.poses.begin() + static_cast<std::ptrdiff_t>(dwell.first);
+        touch.pointer.poses.assign(first, first + static_cast<std::ptrdiff_t>(dwell.count));
+        dimples[number].push_back(std::move(touch));
+    }
+    return dimples;
+}
+
+std::string millimetreText(double metres) {
+    return QString("%1 mm").arg(kMillimetresOfMetre * metres, 0, 'f', 2).toStdString();
+}
+
+} // namespace
+
+Registration pointerFromFiles(const FileTask& task, const Progress& progress) {
+    progress.report(0.0, "reading the recordings");
+    PointerCapture capture;
+    capture.swings = recordedTrack(task, 0);
+    const PoseTrack rests = recordedTrack(task, 1);
+    progress.report(0.3, "looking for rests");
+    capture.fresh = restsByDimple(rests, solvePivot(capture.swings).tip);
+    progress.throwIfCancelled();
+    return registerPointer(capture, task.believed, progress.part(0.4, 1.0));
+}
+
+Registration trackerFromFiles(const FileTask& task, const Progress& progress) {
+    progress.report(0.0, "reading the recordings");
+    const BoardCapture capture{recordedTrack(task, 0), recordedTrack(task, 1)};
+    progress.throwIfCancelled();
+    return registerTracker(capture, task.believed, progress.part(0.2, 1.0));
+}
+
+Registration deviceFromFiles(const FileTask& task, const Progress& progress) {
+    progress.report(0.0, "reading the recordings");
+    const PoseTrack pointer = recordedTrack(task, 0), body = recordedTrack(task, 1);
+    const auto model = parseNamedPoints(recordedText(task, 2), task.files.at(2).filename().string());
+    progress.report(0.3, "finding which point is which");
+    progress.throwIfCancelled();
+    const LandmarkFit fit = fitLandmarks(pointer, body, model, glm::dvec3(task.believed.pointerTip));
+    Registration result;
+    result.installation = task.believed;
+    result.rms = fit.rms;
+    result.warnings = fit.warnings;
+    std::vector<PointError> unseen;
+    for (const Landmark& point : fit.points) {
+        if (!point.touched) continue;
+        result.points.push_back({point.name, point.error});
+        unseen.push_back({point.name, point.leaveOneOut});
+    }
+    result.fresh = checkFresh(std::move(unseen), kLeftOutAllowed);
+    result.installation.bodyFromDevice = glm::mat4(matrixOf(inverseOf(fit.modelFromReference)));
+    result.installation.origins.deviceBody = {
+        Origin::Way::measured, "recorded touches, " + std::to_string(result.points.size()) + " points", utcDate()};
+    result.summary = std::to_string(result.points.size()) + " touched points fit to " + millimetreText(result.rms) +
+                     " (RMS); where the others have each of them it lies " + millimetreText(result.fresh.rms) +
+                     " off, the worst " + millimetreText(result.fresh.worst) + ".";
+    return result;
+}
+
+} // namespace lumorph::studio

@@ -1,0 +1,93 @@
+#include <QLabel>
+#include <QPushButton>
+#include <QVBoxLayout>
+
+#include "app/studio/calibration/chain_service.h"
+#include "app/studio/widgets/panel.h"
+#include "app/workspaces/calibrate/calibrate_commands.h"
+#include "app/workspaces/calibrate/chain_docks.h"
+#include "app/workspaces/scene/segments.h"
+
+namespace lumorph::studio {
+namespace {
+
+constexpr int kRecordingWidth = 900; // pixels; wider rows part a name from its button
+
+class ChainSource : public QWidget {
+public:
+    ChainSource(const CalibrateParts& parts, QWidget* parent)
+        : QWidget(parent), parts_(parts),
+          way_(new Segments({{"chain.way.lab", "Virtual lab", "Without any hardware; the truth is known"},
+                             {"chain.way.files", "Recordings", "Poses of a real tracker that were recorded before"}},
+                            this)) {
+        setMaximumWidth(kRecordingWidth);
+        auto* column = new QVBoxLayout(this);
+        column->setContentsMargins(0, 0, 0, 0);
+        column->setSpacing(8);
+        column->addWidget(makeHeading("Measured from", this));
+        column->addWidget(way_, 0, Qt::AlignLeft);
+        rows_ = new QVBoxLayout;
+        rows_->setSpacing(8);
+        column->addLayout(rows_);
+        connect(way_, &Segments::chosen, this, [this](int way) { parts_.chain.setFromFiles(way == 1); });
+        connect(&parts.chain, &ChainService::changed, this, [this] { refresh(); });
+        refresh();
+    }
+
+private:
+    void refresh() {
+        const ChainState& state = parts_.chain.state();
+        setVisible(chainLinks()[state.chosen].fromFiles != nullptr);
+        way_->setChosen(state.fromFiles ? 1 : 0);
+        setEnabled(!state.running);
+        const auto chosen = state.files.find(state.chosen);
+        const auto files = chosen == state.files.end() ? std::vector<std::filesystem::path>() : chosen->second;
+        const std::optional<std::size_t> shown =
+            usesFiles(state, state.chosen) ? std::optional(state.chosen) : std::nullopt;
+        if (shown == shown_ && files == files_) return; // a button that is pressed stays
+        shown_ = shown;
+        files_ = files;
+        while (QLayoutItem* old = rows_->takeAt(0)) {
+            if (old->widget()) {
+                old->widget()->hide();
+                old->widget()->deleteLater();
+            }
+            delete old;
+        }
+        if (shown)
+            for (std::size_t k = 0; k < chainLinks()[*shown].files.size(); ++k) addRow(*shown, k);
+    }
+
+    void addRow(std::size_t link, std::size_t file) {
+        const LinkFile& wanted = chainLinks()[link].files[file];
+        const std::filesystem::path path = file < files_.size() ? files_[file] : std::filesystem::path();
+        auto* plate = new QWidget(this);
+        auto* column = new QVBoxLayout(plate);
+        column->setContentsMargins(0, 0, 0, 0);
+        column->setSpacing(2);
+        auto* button = new QPushButton(
+            path.empty() ? QString("Choose...") : QString::fromStdString(path.filename().string()), plate);
+        button->setObjectName(QString("chain.file.") + wanted.key);
+        button->setAccessibleName(wanted.title);
+        button->setToolTip(path.empty() ? wanted.words : QString::fromStdString(path.string()));
+        connect(button, &QPushButton::clicked, this, [this, link, file] { askForRecording(parts_, link, file); });
+        column->addWidget(makeRow(wanted.title, button, plate));
+        auto* words = new QLabel(wanted.words, plate);
+        words->setProperty("look", "muted");
+        words->setWordWrap(true);
+        column->addWidget(words);
+        rows_->addWidget(plate);
+    }
+
+    CalibrateParts parts_;
+    Segments* way_;
+    QVBoxLayout* rows_ = nullptr;
+    std::optional<std::size_t> shown_; ///< link whose recordings are listed
+    std::vector<std::filesystem::path> files_;
+};
+
+} // namespace
+
+QWidget* makeChainSource(const CalibrateParts& parts, QWidget* parent) { return new ChainSource(parts, parent); }
+
+} // namespace lumorph::studio
