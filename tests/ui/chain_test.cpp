@@ -8,6 +8,7 @@
 #include "app/studio/calibration/chain_files.h"
 #include "app/studio/document/scene_edit.h"
 #include "calibration/lab/registration_lab.h"
+#include "calibration/verify/verify_lab.h"
 #include "tests/ui/file_dialog.h"
 #include "tests/ui/studio_window.h"
 
@@ -245,6 +246,8 @@ TEST_F(Chain, ARealDeviceIsPlacedByRecordings) {
 TEST_F(Chain, TheWatchTellsAHostThatTheProjectorHasMoved) {
     window.window().showWorkspace("scene");
     ASSERT_TRUE(eventually([&] { return window.state().rig.rig && window.studio().jobs.running().empty(); }, 60s));
+    studio::editInstallation(window.studio().document, "A camera",
+                             [](Installation& room) { room = withLabCamera(room); });
     window.studio().commands.find("calibrate.watch")->setChecked(true);
     pass(3s);
     EXPECT_TRUE(window.studio().notices.at("calibrate").empty());
