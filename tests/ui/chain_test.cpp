@@ -249,10 +249,10 @@ TEST_F(Chain, TheWatchTellsAHostThatTheProjectorHasMoved) {
     studio::editInstallation(window.studio().document, "A camera",
                              [](Installation& room) { room = withLabCamera(room); });
     window.studio().commands.find("calibrate.watch")->setChecked(true);
-    pass(3s);
+    pass(12s);
     EXPECT_TRUE(window.studio().notices.at("calibrate").empty());
     studio::editInstallation(window.studio().document, "Believed elsewhere",
-                             [](Installation& room) { room.projectors.front().camera.cameraFromWorld[3].x += 0.006; });
+                             [](Installation& room) { room.projectors.front().camera.cameraFromWorld[3].x += 0.003; });
     ASSERT_TRUE(eventually([&] { return !window.studio().notices.at("calibrate").empty(); }, 120s));
     pass(500ms);
     window.screenshot("watch-moved");

@@ -247,7 +247,6 @@ ChainLink checkLink() {
     link.warning = QObject::tr("Hands off: the servos move");
     link.how = {QObject::tr("The device takes two bends; patterns are projected on it and photographed."),
                 QObject::tr("Where the light lies beside, it is told what has moved, and one button puts it right.")};
-    link.needs = {LinkId::projector};
     link.apply = [](const Installation& measured, Installation& room) { room = measured; };
     link.inLab = checkTheRoom;
     return link;

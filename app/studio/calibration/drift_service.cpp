@@ -46,11 +46,10 @@ public:
         const DrawnShow& drawn = feed_.newest();
         want(drawn.frame ? drawn.frame->installation->projectors.size() : 1);
         if (!drawn.frame || !drawn.match) return std::nullopt;
-        SentShow show{drawn.frame->rig, drawn.frame->installation, {}, drawn.match->estimatedStrokes};
+        SentShow show{drawn.frame->rig, drawn.frame->installation, {}, drawn.match->commandedStrokes};
         for (const int id : ids_) {
-            const auto picture = std::ranges::find(drawn.pictures, id, &DrawnShow::Picture::id);
-            if (picture == drawn.pictures.end()) return std::nullopt;
-            show.pictures.push_back(picture->image);
+            show.pictures.push_back(feed_.picture(id));
+            if (show.pictures.back().isNull()) return std::nullopt; // not drawn yet
         }
         return show;
     }

@@ -273,13 +273,15 @@ void ProjectService::Data::replaceAll(Opened opened, const fs::path& file) {
     building.buildMissing();
     if (!unsaved || !before.source.state.rig.rig) return;
     const auto bringBack = [this, before] {
+        const auto goBack = [this, before](const Played& played) {
+            goOn({before, played});
+            document.undoStack().resetClean();
+        };
+        if (!before.demo.plays) return goBack({});
+        // Its application may have a map to read.
         jobs.run<Played>(
             "project", "project", tr("Bringing it back"),
-            [open = before.demo](const Progress& progress) { return playedOf(open, progress); },
-            [this, before](const Played& played) {
-                goOn({before, played});
-                document.undoStack().resetClean();
-            });
+            [open = before.demo](const Progress& progress) { return playedOf(open, progress); }, goBack);
     };
     notices.post("project", {Notice::Level::info,
                              name,

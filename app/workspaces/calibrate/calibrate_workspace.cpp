@@ -98,6 +98,7 @@ void CalibrateWorkspace::addWatchCommand() {
     QAction* watch = studio_.commands.add("calibrate.watch", "Watch the running show", options, {});
     watch->setToolTip("By the room's camera: tells when something has moved, or a projector is black or frozen");
     connect(watch, &QAction::toggled, this, [this](bool on) {
+        if (watch_) watch_->setWatching(false); // takes back what it said
         watch_ = on ? makeWatch() : nullptr;
         if (watch_) watch_->setWatching(true);
     });
