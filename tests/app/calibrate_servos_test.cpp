@@ -49,10 +49,10 @@ TEST(CalibrateServos, NamesAFaultAndKeepsNothing) {
 TEST(CalibrateServos, RefusesWhatItCannotDo) {
     const Outcome unknown =
         lumorph({"calibrate", "servos", "resource:projects/water.lumorph", "--fault", "tired", "--json"});
-    EXPECT_EQ(unknown.exitCode, 1);
+    EXPECT_EQ(unknown.exitCode, 2);
     EXPECT_THAT(unknown.err, HasSubstr("swapped, reversed, dead or jammed"));
     const Outcome bundled = lumorph({"calibrate", "servos", "resource:projects/water.lumorph", "--apply"});
-    EXPECT_EQ(bundled.exitCode, 1);
+    EXPECT_EQ(bundled.exitCode, 2);
     EXPECT_THAT(bundled.err, HasSubstr("copy it first"));
 }
 
