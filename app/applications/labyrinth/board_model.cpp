@@ -13,8 +13,8 @@ namespace {
 
 constexpr std::size_t kDepth = 5; ///< material below the holes, after those of the kinds of blocks
 constexpr std::size_t kMiddleFloor = 6, kHighFloor = 7;
-/// sRGB. A raised flap's wall meets the light from above so aslant that it cannot be made brighter than this: on a white
-/// floor it would stand out as a grey wedge.
+/// sRGB. A raised flap's wall meets the light from above so aslant that it cannot be made brighter than this: on a
+/// white floor it would stand out as a grey wedge.
 constexpr glm::vec3 kBrightestFloor{0.70F, 0.76F, 0.80F};
 constexpr int kMiddle = 3, kHigh = 6; ///< from so many steps a floor is one of these
 constexpr double kBevel = 0.0007;     ///< at the upper edges of walls, metres
