@@ -78,7 +78,8 @@ private:
     void keepSome(std::span<const LitShot> shots) {
         std::size_t count = 0;
         for (const LitShot& shot : shots) count += shot.points.size();
-        const std::size_t step = std::max<std::size_t>(1, count / std::max<std::size_t>(1, options_.mostPoints));
+        const std::size_t most = std::max<std::size_t>(1, options_.mostPoints);
+        const std::size_t step = std::max<std::size_t>(1, (count + most - 1) / most);
         for (const LitShot& shot : shots) {
             LitShot& some = shots_.emplace_back(LitShot{shot.strokes, {}});
             for (std::size_t i = 0; i < shot.points.size(); i += step) some.points.push_back(shot.points[i]);
@@ -252,6 +253,7 @@ private:
         moved.motion = best_.motion;
         moved.noise = noise_;
         moved.unexplained = median(best_.at.onSurface);
+        moved.compared = points_;
         const double most = 8.0 * noise_;
         moved.points = static_cast<std::size_t>(
             std::ranges::count_if(best_.at.errors, [&](double error) { return error < most; }));
