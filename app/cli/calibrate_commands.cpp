@@ -302,6 +302,7 @@ void addCalibrateCommands(CLI::App& app, Session& session) {
     addCalibrateRoomCommands(*group, session);
     addCalibrateDevice(*group, session);
     addCalibrateServos(*group, session);
+    addCalibrateDelays(*group, session);
     addCalibrateTracking(*group, session);
     addCalibrateVerify(*group, session);
 }

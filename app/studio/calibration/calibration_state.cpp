@@ -344,6 +344,14 @@ QString causeTitle(Cause cause) {
         return tr("A servo runs the wrong way");
     case Cause::servoJammed:
         return tr("A servo meets a stop");
+    case Cause::cameraSlow:
+        return tr("The camera is too slow");
+    case Cause::flashNotSeen:
+        return tr("The flashes are not seen");
+    case Cause::nothingMoves:
+        return tr("Nothing moves");
+    case Cause::motionPeriodic:
+        return tr("The motion repeats itself");
     default:
         return tr("This capture cannot be trusted");
     }

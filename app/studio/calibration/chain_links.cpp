@@ -6,6 +6,7 @@
 
 #include "app/studio/calibration/chain.h"
 #include "app/studio/calibration/chain_files.h"
+#include "calibration/delays/delays_lab.h"
 #include "calibration/lab/registration_lab.h"
 #include "calibration/servos/servo_lab.h"
 #include "calibration/verify/verify_lab.h"
@@ -223,6 +224,53 @@ ChainLink servosLink() {
     return link;
 }
 
+QString milliseconds(const MeasuredDelay& delay) {
+    return QString("%1 ± %2 ms").arg(1e3 * delay.seconds, 0, 'f', 1).arg(1e3 * delay.sigma, 0, 'f', 1);
+}
+
+LinkOutcome measureDelays(const LinkTask& task, const Progress& progress) {
+    const MeasuredDelays measured = measureDelaysInLab(*task.rig, task.believed, task.truth, task.seed, progress);
+    LinkOutcome outcome;
+    outcome.isGood = measured.good();
+    for (const Finding& warning : measured.warnings) outcome.findings.push_back(wordsOf(warning));
+    if (measured.refusal) {
+        outcome.findings.insert(outcome.findings.begin(), wordsOf(*measured.refusal));
+        outcome.summary = outcome.findings.front().title + ". " + outcome.findings.front().remedy;
+        return outcome;
+    }
+    outcome.installation = measured.installation;
+    outcome.summary = QObject::tr("Carried at 30 cm/s the device is lit %1 beside instead of %2.")
+                          .arg(millimetres(measured.gain.with.atSpeed), millimetres(measured.gain.without.atSpeed));
+    outcome.figures = {{QObject::tr("From a frame to its light"), milliseconds(measured.light)},
+                       {QObject::tr("Age of poses when they arrive"), milliseconds(measured.tracker)},
+                       {QObject::tr("Both together, by a mark that follows a hand"), milliseconds(measured.mark)},
+                       {QObject::tr("Beside the whole way, looking ahead"), millimetres(measured.gain.with.always)},
+                       {QObject::tr("Beside the whole way, without"), millimetres(measured.gain.without.always)}};
+    for (const MeasuredDelays::Servo& servo : measured.servos)
+        outcome.figures.push_back(
+            {QObject::tr("%1: lag").arg(QString::fromStdString(servo.name)), milliseconds(servo.step.lag)});
+    return outcome;
+}
+
+ChainLink delaysLink() {
+    ChainLink link;
+    link.id = LinkId::delays;
+    link.key = "delays";
+    link.title = QObject::tr("Delays");
+    link.purpose =
+        QObject::tr("How late light, poses and servos are: what moves is lit where it will be, not where it was.");
+    link.warning = QObject::tr("Hands off: the servos move");
+    link.how = {
+        QObject::tr("The projector flashes, and the camera sees when."),
+        QObject::tr("Carry a tracked body that a projected mark follows, then turn a board before tracker and camera."),
+        QObject::tr("At last each servo makes some steps: about three minutes in all. STOP ends it at any time.")};
+    link.needs = {LinkId::tracker};
+    link.origin = [](const Installation& room) { return &room.origins.delays; };
+    link.apply = takeDelays;
+    link.inLab = measureDelays;
+    return link;
+}
+
 LinkOutcome checkTheRoom(const LinkTask& task, const Progress& progress) {
     const VerifiedInLab verified = measureVerifyInLab(*task.rig, task.believed, task.truth, task.seed, progress);
     const RoomCheck& check = verified.check;
@@ -256,7 +304,7 @@ ChainLink checkLink() {
 
 const std::vector<ChainLink>& chainLinks() {
     static const std::vector<ChainLink> links{projectorLink(), pointerLink(), trackerLink(), deviceLink(),
-                                              eyeLink(),       servosLink(),  checkLink()};
+                                              eyeLink(),       servosLink(),  delaysLink(),  checkLink()};
     return links;
 }
 
