@@ -24,7 +24,9 @@ constexpr std::array<std::string_view, kCauseCount> kCauseKeys = {
     "motion_degenerate",   "body_swapped",     "tip_slipped",
     "tip_wrong",           "tracker_lost",     "not_a_number",
     "fresh_points_far",    "servo_dead",       "servo_swapped",
-    "servo_reversed",      "servo_jammed"};
+    "servo_reversed",      "servo_jammed",     "camera_saturates",
+    "light_too_dark",      "ambient_changes",  "camera_adjusts",
+    "response_not_rising", "surface_unseen"};
 
 std::string placeOf(const Finding& finding) {
     if (finding.view.empty() && finding.file.empty()) return "capture";
