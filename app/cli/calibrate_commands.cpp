@@ -301,6 +301,7 @@ void addCalibrateCommands(CLI::App& app, Session& session) {
 
     addCalibrateRoomCommands(*group, session);
     addCalibrateDevice(*group, session);
+    addCalibrateLight(*group, session);
     addCalibrateServos(*group, session);
     addCalibrateDelays(*group, session);
     addCalibrateTracking(*group, session);

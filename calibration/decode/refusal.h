@@ -61,10 +61,16 @@ enum class Cause {
     flashNotSeen,       ///< "flash_not_seen": the camera's pictures do not follow the projector's light
     nothingMoves,       ///< "nothing_moves": what should be moved rests
     motionPeriodic,     ///< "motion_periodic": a motion repeats itself, so that several delays fit
+    cameraSaturates,    ///< "camera_saturates": white is cut off at any exposure
+    lightTooDark,       ///< "light_too_dark": projected light hardly shows
+    ambientChanges,     ///< "ambient_changes": the light of the room changed meanwhile
+    cameraAdjusts,      ///< "camera_adjusts": a camera sets its exposure by itself
+    responseNotRising,  ///< "response_not_rising": a projector makes less light of a higher value
+    surfaceUnseen,      ///< "surface_unseen": a camera sees too little of what is lit
 };
 
 /// All of them, in the order above.
-inline constexpr int kCauseCount = static_cast<int>(Cause::motionPeriodic) + 1;
+inline constexpr int kCauseCount = static_cast<int>(Cause::surfaceUnseen) + 1;
 
 [[nodiscard]] std::string_view keyOf(Cause cause);
 /// The cause of a key; empty where there is none.

@@ -121,7 +121,13 @@ TEST_F(Chain, AllThatIsMissingIsMeasuredOneAfterTheOther) {
     for (const studio::ChainLink& link : studio::chainLinks())
         EXPECT_EQ(badge(link.key), "Measured") << link.key << ": " << story();
     EXPECT_EQ(room().servos.size(), window.state().rig.rig->actuatorCount());
+    EXPECT_EQ(room().projectors.front().responseCurve.size(), 65U);
+    EXPECT_GT(room().projectors.front().black.g, 0.0F);
+    EXPECT_EQ(room().origins.colors.way, Origin::Way::measured);
     window.screenshot("chain-checked");
+    window.click("chain.link.light");
+    pass(300ms);
+    window.screenshot("chain-light-measured");
     window.click("chain.link.servos");
     pass(300ms);
     window.screenshot("chain-servos-measured");
@@ -164,6 +170,7 @@ TEST_F(Chain, RecordingsAreReadInPlaceOfTheLab) {
     // The rest ends where the next recording is missing: nothing of the lab gets into a real room.
     studio::editInstallation(window.studio().document, "Measured before", [](Installation& room) {
         room.projectors.front().lens = {Origin::Way::measured, "structured light", "2026-11-20T10:00:00Z"};
+        room.projectors.front().response = {Origin::Way::measured, "flat light", "2026-11-20T10:10:00Z"};
     });
     window.click("chain.rest");
     EXPECT_TRUE(offers("Choose: Tracked body")) << story();

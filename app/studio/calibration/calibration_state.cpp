@@ -352,6 +352,18 @@ QString causeTitle(Cause cause) {
         return tr("Nothing moves");
     case Cause::motionPeriodic:
         return tr("The motion repeats itself");
+    case Cause::cameraSaturates:
+        return tr("The camera is overexposed");
+    case Cause::lightTooDark:
+        return tr("There is too little light");
+    case Cause::ambientChanges:
+        return tr("The light of the room has changed");
+    case Cause::cameraAdjusts:
+        return tr("The camera changes its exposure by itself");
+    case Cause::responseNotRising:
+        return tr("A brighter value makes less light");
+    case Cause::surfaceUnseen:
+        return tr("The camera sees too little of the light");
     default:
         return tr("This capture cannot be trusted");
     }

@@ -18,7 +18,7 @@
 /// The whole chain from boxes to a calibrated show: what is measured one after the other, and where it stands.
 namespace lumorph::studio {
 
-enum class LinkId { projector, pointer, tracker, device, eye, servos, delays, check };
+enum class LinkId { projector, light, pointer, tracker, device, eye, servos, delays, check };
 
 /// A figure of a measurement, as it is read.
 struct LinkFigure {

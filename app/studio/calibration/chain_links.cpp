@@ -8,6 +8,7 @@
 #include "app/studio/calibration/chain_files.h"
 #include "calibration/delays/delays_lab.h"
 #include "calibration/lab/registration_lab.h"
+#include "calibration/light/light_lab.h"
 #include "calibration/servos/servo_lab.h"
 #include "calibration/verify/verify_lab.h"
 
@@ -76,6 +77,77 @@ ChainLink projectorLink() {
     link.origin = [](const Installation& room) {
         return room.projectors.empty() ? nullptr : &room.projectors.front().lens;
     };
+    return link;
+}
+
+QString percent(double share) { return QString("%1 %").arg(100.0 * share, 0, 'f', 1); }
+
+LinkOutcome measureLight(const LinkTask& task, const Progress& progress) {
+    const LightCalibration measured = measureLightInLab(*task.rig, task.believed, task.truth, task.seed, progress);
+    LinkOutcome outcome;
+    outcome.isGood = measured.good();
+    for (const Finding& warning : measured.warnings) outcome.findings.push_back(wordsOf(warning));
+    if (measured.refusal) {
+        outcome.findings.insert(outcome.findings.begin(), wordsOf(*measured.refusal));
+        outcome.summary = outcome.findings.front().title + ". " + outcome.findings.front().remedy;
+        return outcome;
+    }
+    outcome.installation = measured.room;
+    outcome.summary =
+        QObject::tr("Greys that the fit never saw are met to %1 (before: %2). %3")
+            .arg(percent(measured.fresh.median), percent(measured.before.median),
+                 measured.hasWhiteSheet ? QObject::tr("White is what the sheet of paper is.")
+                                        : QObject::tr("Without a white sheet the lighter of device and table counts as "
+                                                      "white: its tint is among the projectors'."));
+    outcome.figures = {{QObject::tr("Fresh greys: median"), percent(measured.fresh.median)},
+                       {QObject::tr("In 95 of 100 places at most"), percent(measured.fresh.most)},
+                       {QObject::tr("By what was believed before"), percent(measured.before.median)},
+                       {QObject::tr("Exposures against the camera's curve"), percent(measured.responseRms)}};
+    for (const InstalledProjector& projector : measured.room.projectors) {
+        if (!projector.enabled) continue;
+        const QString name = QString::fromStdString(projector.name);
+        const glm::dvec3 gain(projector.gain);
+        outcome.figures.push_back(
+            {QObject::tr("%1: red, green, blue").arg(name),
+             QString("%1 %2 %3").arg(gain.r, 0, 'f', 3).arg(gain.g, 0, 'f', 3).arg(gain.b, 0, 'f', 3)});
+        outcome.figures.push_back({QObject::tr("%1: black, of white").arg(name),
+                                   QString("%1 %").arg(100.0 * static_cast<double>(projector.black.g), 0, 'f', 2)});
+    }
+    return outcome;
+}
+
+ChainLink lightLink() {
+    ChainLink link;
+    link.id = LinkId::light;
+    link.key = "light";
+    link.title = QObject::tr("Light");
+    link.purpose = QObject::tr("How much light each value makes, and on what it falls: colours come out as they are "
+                               "meant, and where projectors overlap nothing shows.");
+    link.how = {
+        QObject::tr("Lay a sheet of white paper beside the device, into the light, and leave the room's light as it "
+                    "is."),
+        QObject::tr("Flat colours are projected and photographed at several exposures: a few minutes."),
+        QObject::tr("Once for each projector you are asked to cover its lens for a moment.")};
+    link.needs = {LinkId::projector};
+    link.origin = [](const Installation& room) -> const Origin* {
+        const auto on = std::ranges::find_if(room.projectors, &InstalledProjector::enabled);
+        return on == room.projectors.end() ? nullptr : &on->response;
+    };
+    link.apply = [](const Installation& measured, Installation& room) {
+        for (std::size_t p = 0; p < std::min(room.projectors.size(), measured.projectors.size()); ++p) {
+            const InstalledProjector& from = measured.projectors[p];
+            InstalledProjector& to = room.projectors[p];
+            to.gain = from.gain;
+            to.black = from.black;
+            to.gamma = from.gamma;
+            to.responseCurve = from.responseCurve;
+            to.response = from.response;
+        }
+        room.deviceColor = measured.deviceColor;
+        room.tableColor = measured.tableColor;
+        room.origins.colors = measured.origins.colors;
+    };
+    link.inLab = measureLight;
     return link;
 }
 
@@ -303,8 +375,8 @@ ChainLink checkLink() {
 } // namespace
 
 const std::vector<ChainLink>& chainLinks() {
-    static const std::vector<ChainLink> links{projectorLink(), pointerLink(), trackerLink(), deviceLink(),
-                                              eyeLink(),       servosLink(),  delaysLink(),  checkLink()};
+    static const std::vector<ChainLink> links{projectorLink(), lightLink(),  pointerLink(), trackerLink(), deviceLink(),
+                                              eyeLink(),       servosLink(), delaysLink(),  checkLink()};
     return links;
 }
 
