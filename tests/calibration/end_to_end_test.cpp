@@ -15,6 +15,7 @@
 #include "tests/support/chain_judge.h"
 #include "tests/support/long_tests.h"
 #include "tests/support/procam_observations.h"
+#include "tests/support/truth.h"
 
 // R24, R25, R26: from a room of which nothing is known, through every link of the chain, to a show in the room as it
 // truly is, all of the lab's errors on at once.
