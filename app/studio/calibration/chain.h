@@ -42,6 +42,9 @@ struct LinkOutcome {
     std::vector<FindingWords> findings;       ///< what stands in the way, or is to be known
     std::optional<Installation> installation; ///< as the room would be; empty: refused, or nothing is to be changed
     bool isUsed = false;                      ///< the room has it
+    /// Refused because the tracker's coordinates are mirrored or in another unit: what was measured by the same tracker
+    /// before is as wrong, though it fits itself.
+    bool doubtsTracker = false;
 };
 
 /// What a measurement in the lab begins with.

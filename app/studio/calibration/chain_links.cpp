@@ -27,6 +27,8 @@ LinkOutcome outcomeOf(const Registration& measured) {
     if (measured.refusal) {
         outcome.findings.insert(outcome.findings.begin(), wordsOf(*measured.refusal));
         outcome.summary = outcome.findings.front().title + ". " + outcome.findings.front().remedy;
+        outcome.doubtsTracker =
+            measured.refusal->cause == Cause::mirrored || measured.refusal->cause == Cause::wrongUnits;
         return outcome;
     }
     outcome.installation = measured.installation;

@@ -4,14 +4,12 @@
 
 #include <QObject>
 
-#include "calibration/lab/true_room.h"
 #include "core/base/error.h"
 
 namespace lumorph::studio {
 namespace {
 
 constexpr auto kChainPlace = "chain"; // of jobs and notices
-constexpr std::uint32_t kRoomSeed = 7;
 
 QString wordsOfError(const std::exception& error) {
     const Notice notice = noticeOf(error);
@@ -86,8 +84,9 @@ ChainStep stepOf(const ChainState& state) {
     }
 }
 
-ChainService::ChainService(StudioDocument& document, StudioLoop& loop, Jobs& jobs, Notices& notices, VersionTaker take)
-    : document_(document), loop_(loop), take_(std::move(take)), jobs_(*this, jobs, notices) {
+ChainService::ChainService(StudioDocument& document, StudioLoop& loop, LabRoom& lab, Jobs& jobs, Notices& notices,
+                           VersionTaker take)
+    : document_(document), loop_(loop), lab_(lab), take_(std::move(take)), jobs_(*this, jobs, notices) {
     state_.stands = standsOf(*document.state().installation, checked_);
     state_.chosen = nextLink(state_.stands).value_or(0);
     connect(&document, &StudioDocument::changed, this, [this](StateParts parts) {
@@ -180,15 +179,6 @@ void ChainService::goOn() {
     begin(*next);
 }
 
-/// The lab has one truth, whatever is believed of it meanwhile.
-const Installation& ChainService::truth(const Rig& rig) {
-    if (!truth_ || truthOf_ != document_.state().rig.rig) {
-        truth_ = trueRoom(*document_.state().installation, rig.actuators(), kRoomSeed);
-        truthOf_ = document_.state().rig.rig;
-    }
-    return *truth_;
-}
-
 /// Null where it cannot be measured now.
 std::function<LinkOutcome(const Progress&)> ChainService::workOf(std::size_t link) {
     const ChainLink& measured = chainLinks()[link];
@@ -201,7 +191,8 @@ std::function<LinkOutcome(const Progress&)> ChainService::workOf(std::size_t lin
     }
     const std::shared_ptr<const Rig>& rig = document_.state().rig.rig;
     if (!rig || !measured.inLab) return nullptr;
-    return [run = measured.inLab, task = LinkTask{rig, room, truth(*rig), seed_++}](const Progress& progress) {
+    lab_.unpack();
+    return [run = measured.inLab, task = LinkTask{rig, room, lab_.truth(), seed_++}](const Progress& progress) {
         return run(task, progress);
     };
 }
@@ -231,12 +222,31 @@ void ChainService::begin(std::size_t link) {
 void ChainService::take(std::size_t link, LinkOutcome outcome) {
     state_.running.reset();
     const bool good = outcome.isGood;
+    const bool doubtsPointer = outcome.doubtsTracker && chainLinks()[link].id == LinkId::tracker;
     if (chainLinks()[link].origin == nullptr) checked_ = good ? utcDate() : std::string();
     state_.outcomes[link] = std::move(outcome);
+    if (doubtsPointer) doubtPointer();
     follow();
     if (!state_.goesOn) return;
     state_.goesOn = good && useOf(link);
     if (state_.goesOn) goOn();
+}
+
+/// Swings in a mirrored or wrongly scaled world fit a tip as well as true ones: only the tracker's dots tell. So the
+/// tip that was measured before does not stay as good; its figure stays, as nobody has a better one.
+void ChainService::doubtPointer() {
+    if (document_.state().installation->origins.pointer.way != Origin::Way::measured) return;
+    for (std::size_t link = 0; link < chainLinks().size(); ++link)
+        if (chainLinks()[link].id == LinkId::pointer) state_.outcomes.erase(link);
+    document_.change(QObject::tr("Pointer tip in doubt"), [](StudioState& state) {
+        Installation room = *state.installation;
+        room.origins.pointer = {
+            Origin::Way::assumed,
+            QObject::tr("in doubt: it was measured in coordinates that the tracker link refused; measure it again")
+                .toStdString(),
+            ""};
+        state.installation = std::make_shared<const Installation>(std::move(room));
+    });
 }
 
 void ChainService::use() {

@@ -7,6 +7,7 @@
 #include <QObject>
 
 #include "app/studio/calibration/chain.h"
+#include "app/studio/calibration/lab_room.h"
 #include "app/studio/document/job_slots.h"
 #include "app/studio/document/studio_document.h"
 #include "app/studio/document/studio_loop.h"
@@ -50,8 +51,9 @@ class ChainService : public QObject {
 public:
     /// Puts a measured installation into the document, as a step of undo and a version; false where that failed.
     using VersionTaker = std::function<bool(InstallationVersion version)>;
-    /// STOP of the loop ends what is measured.
-    ChainService(StudioDocument& document, StudioLoop& loop, Jobs& jobs, Notices& notices, VersionTaker take);
+    /// STOP of the loop ends what is measured. The first link that is measured in the lab unpacks it.
+    ChainService(StudioDocument& document, StudioLoop& loop, LabRoom& lab, Jobs& jobs, Notices& notices,
+                 VersionTaker take);
 
     [[nodiscard]] const ChainState& state() const noexcept { return state_; }
     void choose(std::size_t link);
@@ -76,19 +78,18 @@ private:
     [[nodiscard]] std::function<LinkOutcome(const Progress&)> workOf(std::size_t link);
     void take(std::size_t link, LinkOutcome outcome);
     bool useOf(std::size_t link);
+    void doubtPointer();
     void goOn();
     void follow();
-    [[nodiscard]] const Installation& truth(const Rig& rig);
 
     StudioDocument& document_;
     StudioLoop& loop_;
+    LabRoom& lab_;
     VersionTaker take_;
     JobSlots jobs_;
     ChainState state_;
-    std::string checked_;                ///< date of the last check that found all well
-    std::optional<Installation> truth_;  ///< of the lab, the same for as long as the studio runs
-    std::shared_ptr<const Rig> truthOf_; ///< that it was made for
-    std::uint32_t seed_ = 1;             ///< another for each measurement
+    std::string checked_;    ///< date of the last check that found all well
+    std::uint32_t seed_ = 1; ///< another for each measurement
 };
 
 } // namespace lumorph::studio

@@ -66,6 +66,9 @@ public:
     [[nodiscard]] std::optional<PoseRole> role(const std::string& body) const;
     /// Remembered by the body's name.
     void setRole(const std::string& body, std::optional<PoseRole> role);
+    /// The room in which simulated bodies truly move (see SimulatedSteering::room); null: trackers see rooms as they
+    /// are.
+    void setSimulatedRoom(std::shared_ptr<const Installation> room);
     /// As TrackerHub::setTap.
     void setTap(TrackerHub::Tap tap);
 

@@ -68,7 +68,7 @@ CalibrateWorkspace::CalibrateWorkspace(Studio& studio)
                                 versionTaker(studio)),
       crosshairs_(studio.document, crosshairShower(studio),
                   [&studio](const InstallationVersion& version) { return studio.room.takeVersion(version); }),
-      chain_(studio.document, studio.loop, studio.jobs, studio.notices,
+      chain_(studio.document, studio.loop, studio.lab, studio.jobs, studio.notices,
              [&studio](InstallationVersion version) { return studio.room.takeVersion(std::move(version)); }) {
     addCalibrateCommands(parts());
     addWatchCommand();

@@ -29,6 +29,17 @@ public:
         rows_ = new QVBoxLayout;
         rows_->setSpacing(8);
         column->addLayout(rows_);
+        lab_ = new QLabel(this);
+        lab_->setObjectName("chain.lab");
+        lab_->setProperty("look", "muted");
+        lab_->setWordWrap(true);
+        column->addWidget(lab_);
+        pack_ = new QPushButton("Pack the lab up", this);
+        pack_->setObjectName("chain.lab.pack");
+        pack_->setToolTip("All in the lab is again as the room is believed to be; what was measured stays in the room");
+        column->addWidget(pack_, 0, Qt::AlignLeft);
+        connect(pack_, &QPushButton::clicked, this, [this] { parts_.studio.lab.packUp(); });
+        connect(&parts.studio.lab, &LabRoom::changed, this, [this] { refresh(); });
         connect(way_, &Segments::chosen, this, [this](int way) { parts_.chain.setFromFiles(way == 1); });
         connect(&parts.chain, &ChainService::changed, this, [this] { refresh(); });
         refresh();
@@ -40,6 +51,13 @@ private:
         setVisible(chainLinks()[state.chosen].fromFiles != nullptr);
         way_->setChosen(state.fromFiles ? 1 : 0);
         setEnabled(!state.running);
+        const bool unpacked = parts_.studio.lab.isUnpacked();
+        lab_->setText(unpacked ? "The lab is unpacked: its tracker, pointer, device, eyes and servos are as they came "
+                                 "out of their boxes, for simulated trackers too. Only the chain finds out how."
+                               : "All in the lab is as the room is believed to be. The first measurement unpacks it: "
+                                 "then nobody knows how its things are, until the chain has measured them.");
+        lab_->setVisible(!state.fromFiles);
+        pack_->setVisible(!state.fromFiles && unpacked);
         const auto chosen = state.files.find(state.chosen);
         const auto files = chosen == state.files.end() ? std::vector<std::filesystem::path>() : chosen->second;
         const std::optional<std::size_t> shown =
@@ -81,6 +99,8 @@ private:
 
     CalibrateParts parts_;
     Segments* way_;
+    QLabel* lab_ = nullptr;
+    QPushButton* pack_ = nullptr;
     QVBoxLayout* rows_ = nullptr;
     std::optional<std::size_t> shown_; ///< link whose recordings are listed
     std::vector<std::filesystem::path> files_;
