@@ -293,6 +293,7 @@ void TrackerService::setRole(const std::string& body, std::optional<PoseRole> ro
     emit changed();
 }
 
-void TrackerService::setTap(TrackerHub::Tap tap) { data_->hub.setTap(std::move(tap)); }
+int TrackerService::addTap(TrackerHub::Tap tap) { return data_->hub.addTap(std::move(tap)); }
+void TrackerService::removeTap(int id) { data_->hub.removeTap(id); }
 
 } // namespace lumorph::studio

@@ -66,8 +66,9 @@ public:
     [[nodiscard]] std::optional<PoseRole> role(const std::string& body) const;
     /// Remembered by the body's name.
     void setRole(const std::string& body, std::optional<PoseRole> role);
-    /// As TrackerHub::setTap.
-    void setTap(TrackerHub::Tap tap);
+    /// Called with all that arrives, as TrackerHub::addTap.
+    int addTap(TrackerHub::Tap tap);
+    void removeTap(int id);
 
 signals:
     void changed(); ///< ten times a second while one is open; and when one was opened, closed, or got a role
