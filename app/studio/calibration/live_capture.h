@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include <QString>
 #include <glm/vec3.hpp>
 
 #include "calibration/registration/pose_track.h"
@@ -22,7 +23,7 @@ struct LiveStep {
         heldOtherwise ///< when it rests, and the pointer is turned otherwise than at the step before
     };
     std::string name;  ///< of what is touched: "dot 3"
-    std::string title; ///< what is to be done: "Touch dot 3 of 16"
+    QString title;     ///< what is to be done: "Touch dot 3 of 16"
     Ends ends = Ends::atNewPlace;
     std::optional<PlannedDot> dot = std::nullopt;         ///< that the first projector shows meanwhile
     std::optional<PlannedLandmark> corner = std::nullopt; ///< of the device, which is drawn meanwhile

@@ -16,7 +16,7 @@ namespace {
 
 constexpr int kLookMilliseconds = 50;
 constexpr double kSeenLately = 1.0;             // seconds
-constexpr std::size_t kMostWaiting = 20'000;    // poses, while the window stands still
+constexpr std::size_t kMostArrivals = 20'000;    // poses, while the window stands still
 constexpr int kDotRadius = 5, kRingRadius = 26; // projector pixels
 
 QString wordOf(PoseRole role) {
@@ -68,7 +68,7 @@ struct LiveService::Arrivals {
     void add(const std::string& source, const TrackerFrame& frame) {
         const double seconds = 1e-6 * static_cast<double>(frame.measured.count());
         const std::scoped_lock lock(mutex);
-        if (seen.size() > kMostWaiting) seen.clear();
+        if (seen.size() > kMostArrivals) seen.clear();
         for (const TrackedBody& body : frame.bodies)
             seen.push_back({source, body.name, seconds,
                             body.valid && body.isNumber ? std::optional(body.pose) : std::optional<Pose>()});
