@@ -198,6 +198,62 @@ void writeBoard(const std::filesystem::path& tracked, const std::filesystem::pat
     writePoses(second, inRoom, later);
 }
 
+/// A hand on the simulated tracker of the pointer.
+class PointerHand {
+public:
+    PointerHand(StudioWindow& window, const glm::dvec3& tip) : window_(window), tip_(tip) {}
+    /// The tip at a place for a moment, the pointer turned so.
+    void hold(const glm::dvec3& place, const glm::dvec3& turn, std::chrono::milliseconds time = 20ms) {
+        SimulatedSteering& steering = *window_.studio().trackers.trackers().at(0).steering;
+        SimulatedOrders orders = steering.orders();
+        const glm::dquat rotation = rotationOfTurn(turn);
+        orders.held = Pose{place - rotation * tip_, rotation};
+        steering.order(orders);
+        pass(time);
+    }
+    void swing(const glm::dvec3& dimple, const std::function<bool()>& untilDone) {
+        for (double t = 0.0; t < 40.0 && !untilDone(); t += 0.02)
+            hold(dimple, {0.7 * std::sin(2.1 * t), 0.9 * std::sin(0.9 * t), 0.7 * std::cos(1.7 * t)});
+    }
+
+private:
+    StudioWindow& window_;
+    glm::dvec3 tip_;
+};
+
+TEST_F(Chain, PointerIsMeasuredWithTheTrackerThatIsConnected) {
+    ASSERT_TRUE(eventually([&] { return window.state().rig.rig && window.studio().jobs.running().empty(); }, 60s));
+    window.click("chain.link.pointer");
+    window.click("chain.way.live");
+    EXPECT_TRUE(window.text("chain.live.seen").startsWith("No tracker is connected")) << story();
+    ASSERT_TRUE(offers("Begin, with the tracker")) << story();
+    window.screenshot("chain-live-nothing");
+    next();
+    EXPECT_EQ(window.text("chain.card.title"), "It could not be measured");
+    window.studio().trackers.open("sim://pointer?rate=60");
+    ASSERT_TRUE(
+        eventually([&] { return window.text("chain.live.seen") == "The tracker sees all that is needed."; }, 10s));
+    const glm::dvec3 tip(0.01, -0.15, 0.02);
+    PointerHand hand(window, tip);
+    next();
+    ASSERT_TRUE(offers("Cancel")) << story();
+    const auto title = [&] { return window.text("chain.card.title"); };
+    ASSERT_TRUE(title().startsWith("Set the tip into a dimple")) << story();
+    hand.swing({0.1, 0.0, 0.2}, [&] { return title().contains("1 of 3"); });
+    ASSERT_TRUE(title().contains("1 of 3")) << story();
+    window.screenshot("chain-live-step");
+    for (int dimple = 0; dimple < 3; ++dimple)
+        for (int way = 0; way < 2; ++way) hand.hold({0.2, 0.0, 0.1 * dimple}, {0.5 * way, 0.0, -0.4}, 1600ms);
+    ASSERT_TRUE(offers("Use it")) << story();
+    window.screenshot("chain-live-measured");
+    next();
+    ASSERT_TRUE(eventually([&] { return badge("pointer") == "Measured"; })) << story();
+    EXPECT_LT(glm::distance(room().pointerTip, glm::vec3(tip)), 0.0005F);
+    // What it builds on comes first; a body that nobody tracks is named.
+    window.click("chain.link.device");
+    EXPECT_TRUE(window.text("chain.live.seen").contains("device")) << window.text("chain.live.seen").toStdString();
+}
+
 TEST(ChainFiles, TrackerIsPlacedByABoardThatMoves) {
     const TemporaryFolder folder;
     const std::filesystem::path tracked = folder.path() / "tracked.csv", seen = folder.path() / "seen.csv";

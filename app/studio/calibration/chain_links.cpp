@@ -6,6 +6,7 @@
 
 #include "app/studio/calibration/chain.h"
 #include "app/studio/calibration/chain_files.h"
+#include "app/studio/calibration/chain_live.h"
 #include "calibration/delays/delays_lab.h"
 #include "calibration/lab/registration_lab.h"
 #include "calibration/light/light_lab.h"
@@ -57,7 +58,7 @@ template <auto Measure> LinkOutcome registered(const LinkTask& task, const Progr
 }
 
 /// A recording that is refused before anything is fitted is a refusal as any other.
-template <auto Read> LinkOutcome recorded(const FileTask& task, const Progress& progress) {
+template <auto Read, class Task> LinkOutcome recorded(const Task& task, const Progress& progress) {
     Registration refusal;
     try {
         return outcomeOf(Read(task, progress));
@@ -173,7 +174,10 @@ ChainLink pointerLink() {
         {"swings", QObject::tr("Swings"), QObject::tr("The pointer swung to all sides, its tip in a dimple.")},
         {"rests", QObject::tr("Other dimples"),
          QObject::tr("Its tip set into three other dimples for a second, each twice and held differently.")}};
-    link.fromFiles = recorded<pointerFromFiles>;
+    link.fromFiles = recorded<pointerFromFiles, FileTask>;
+    link.liveRoles = {PoseRole::pointer};
+    link.liveSteps = pointerSteps;
+    link.fromLive = recorded<pointerFromLive, LiveTask>;
     return link;
 }
 
@@ -198,7 +202,10 @@ ChainLink trackerLink() {
          QObject::tr("A body that is moved and turned about two axes, in the tracker's world.")},
         {"seen", QObject::tr("Seen in the room"),
          QObject::tr("The board or camera that is fixed to it, in the room's world; its clock may be another.")}};
-    link.fromFiles = recorded<trackerFromFiles>;
+    link.fromFiles = recorded<trackerFromFiles, FileTask>;
+    link.liveRoles = {PoseRole::pointer};
+    link.liveSteps = trackerSteps;
+    link.fromLive = recorded<trackerFromLive, LiveTask>;
     return link;
 }
 
@@ -224,7 +231,10 @@ ChainLink deviceLink() {
                   {"body", QObject::tr("Body of the device"), QObject::tr("Tracked at the same time.")},
                   {"model", QObject::tr("Points of the model"),
                    QObject::tr("Rows of name, x, y, z in the device's frame, metres.")}};
-    link.fromFiles = recorded<deviceFromFiles>;
+    link.fromFiles = recorded<deviceFromFiles, FileTask>;
+    link.liveRoles = {PoseRole::pointer, PoseRole::device};
+    link.liveSteps = deviceSteps;
+    link.fromLive = recorded<deviceFromLive, LiveTask>;
     return link;
 }
 
@@ -245,6 +255,9 @@ ChainLink eyeLink() {
         room.origins.eyeOffset = measured.origins.eyeOffset;
     };
     link.inLab = registered<measureEyeInLab>;
+    link.liveRoles = {PoseRole::pointer, PoseRole::head};
+    link.liveSteps = eyeSteps;
+    link.fromLive = recorded<eyeFromLive, LiveTask>;
     return link;
 }
 

@@ -306,6 +306,7 @@ void TrackerService::setSimulatedRoom(std::shared_ptr<const Installation> room) 
         if (steering) steering->setRoom(data_->simulatedRoom);
 }
 
-void TrackerService::setTap(TrackerHub::Tap tap) { data_->hub.setTap(std::move(tap)); }
+int TrackerService::addTap(TrackerHub::Tap tap) { return data_->hub.addTap(std::move(tap)); }
+void TrackerService::removeTap(int id) { data_->hub.removeTap(id); }
 
 } // namespace lumorph::studio
