@@ -19,8 +19,8 @@
 
 namespace lumorph::navigation {
 
-/// How the device bends for who looks.
-enum class Bending { off, on, beside /**< and is seen without it, too */ };
+/// How the device bends for who looks; `beside`: it does, and is seen without it, too.
+enum class Bending { off, on, beside };
 
 /// Items of the scene; labels are from kFirstLabel on.
 enum LandItem : int { kSunItem = 1, kLandItem, kRainItem, kFirstCloud, kLastCloud = kFirstCloud + 5 };

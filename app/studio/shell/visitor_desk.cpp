@@ -180,8 +180,7 @@ void VisitorDesk::goOnWhereNobodyPlays() {
     const bool wanted = mode_ != Mode::studio && minutes > 0.0 && offers() && !otherSheetOpen();
     if (!wanted || watch_.there() || watch_.quiet() < Microseconds(static_cast<std::int64_t>(6e7 * minutes))) return;
     watch_.beginAnew(false);
-    if (studio_.loop.stopped() || studio_.document.modified() || !studio_.jobs.running().empty()) return;
-    goOn();
+    if (studio_.jobs.running().empty()) goOn();
 }
 
 /// To the next whose turn it is; what plays goes on where there is none.
@@ -192,6 +191,7 @@ void VisitorDesk::goOn() {
     rest_->setVisible(mode_ == Mode::kiosk && broken_ && (rest_->isVisible() || next == nullptr));
     askedLast_ = clock_.now();
     if (next == nullptr || (plays && next == shown)) return;
+    if (studio_.loop.stopped() || studio_.document.modified()) return; // neither is an application's to end
     hideCards();
     chosen_ = false;
     emit applicationWanted(*next);
