@@ -29,13 +29,13 @@ protected:
     }
     /// Names of those whose turn it is, one after the other.
     std::string order(const std::string& from, int count) {
-        std::string all, name = from;
+        std::string names, name = from;
         for (int k = 0; k < count; ++k) {
             const Demo* next = turn.after(name);
             name = next != nullptr ? next->name : "-";
-            all += name;
+            names += name;
         }
-        return all;
+        return names;
     }
 
     TemporaryFolder folder;
