@@ -12,14 +12,14 @@ namespace lumorph {
 
 namespace {
 
-constexpr double kSmooth = 0.12;      ///< seconds to both sides
-constexpr double kGap = 0.15;         ///< seconds without a picture: nothing is known within
-constexpr double kLeastWay = 0.02;    ///< metres
-constexpr double kLeastSpeed = 0.03;  ///< metres a second, root mean square
-constexpr double kFollows = 0.8;      ///< of the mark's variance
-constexpr double kScan = 0.005;       ///< seconds
-constexpr double kElsewhere = 0.1;    ///< seconds from the best lag: another one
-constexpr double kOneOfSeveral = 2.0; ///< times the cost of the best lag: as good
+constexpr double kMarkSmooth = 0.12; ///< seconds to both sides
+constexpr double kGap = 0.15;        ///< seconds without a picture: nothing is known within
+constexpr double kLeastWay = 0.02;   ///< metres
+constexpr double kLeastSpeed = 0.03; ///< metres a second, root mean square
+constexpr double kMarkFollows = 0.8; ///< of the mark's variance
+constexpr double kMarkScan = 0.005;  ///< seconds
+constexpr double kOtherLag = 0.1;    ///< seconds from the best lag: another one
+constexpr double kAsGood = 2.0;      ///< times the cost of the best lag: as good
 constexpr int kBlocks = 10;
 
 using Way = glm::dvec3 MarkRecording::Picture::*;
@@ -29,13 +29,13 @@ struct Smooth {
     glm::dvec3 place{0.0}, velocity{0.0};
 };
 std::optional<Smooth> smoothAt(const std::vector<MarkRecording::Picture>& seen, Way way, double seconds) {
-    const auto first = std::ranges::lower_bound(seen, seconds - kSmooth, {}, &MarkRecording::Picture::seconds);
+    const auto first = std::ranges::lower_bound(seen, seconds - kMarkSmooth, {}, &MarkRecording::Picture::seconds);
     Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
     Eigen::Matrix3d right = Eigen::Matrix3d::Zero();
     double before = -1.0, after = -1.0; // seconds to the nearest picture on each side
     int count = 0;
-    for (auto picture = first; picture != seen.end() && picture->seconds <= seconds + kSmooth; ++picture) {
-        const double t = picture->seconds - seconds, reach = std::abs(t) / kSmooth;
+    for (auto picture = first; picture != seen.end() && picture->seconds <= seconds + kMarkSmooth; ++picture) {
+        const double t = picture->seconds - seconds, reach = std::abs(t) / kMarkSmooth;
         const double weight = std::pow(1.0 - reach * reach * reach, 3.0);
         const Eigen::Vector3d row(1.0, t, t * t);
         const glm::dvec3& place = (*picture).*way;
@@ -122,25 +122,25 @@ MeasuredDelay solveMarkDelay(const MarkRecording& recording, const Progress& pro
     const MarkFit fit(recording);
     const auto every = [](std::size_t) { return true; };
     std::vector<double> costs;
-    for (double lag = -0.05; lag < kLongestDelay; lag += kScan) {
+    for (double lag = -0.05; lag < kLongestDelay; lag += kMarkScan) {
         progress.throwIfCancelled();
         const MarkFit::Cost cost = fit.at(lag, every);
         costs.push_back(cost.pictures > 0.0 ? cost.square / cost.pictures : cost.square);
     }
     const auto best = std::ranges::min_element(costs);
-    const double near = -0.05 + kScan * static_cast<double>(best - costs.begin());
+    const double near = -0.05 + kMarkScan * static_cast<double>(best - costs.begin());
     const MarkFit::Cost found = fit.at(near, every);
-    if (!(found.share() < 1.0 - kFollows))
+    if (!(found.share() < 1.0 - kMarkFollows))
         delays::refuse(Cause::modelDoesNotFit, what, "the mark does not go the way of the body",
                        "look whether both were taken for what they are, and whether the tracker sees the body");
     for (std::size_t i = 0; i < costs.size(); ++i)
-        if (std::abs(-0.05 + kScan * static_cast<double>(i) - near) > kElsewhere &&
-            costs[i] < kOneOfSeveral * *best + 1e-8)
+        if (std::abs(-0.05 + kMarkScan * static_cast<double>(i) - near) > kOtherLag &&
+            costs[i] < kAsGood * *best + 1e-8)
             delays::refuse(Cause::motionPeriodic, what,
                            "the motion repeats itself so evenly that several lags explain it",
                            "move the body unevenly: now fast, now slow, and to all sides");
     const auto solved = [&](const auto& use) {
-        return delays::smallestBetween(near - 3.0 * kScan, near + 3.0 * kScan, 1e-5,
+        return delays::smallestBetween(near - 3.0 * kMarkScan, near + 3.0 * kMarkScan, 1e-5,
                                        [&](double lag) { return fit.at(lag, use).square; });
     };
     MeasuredDelay delay;

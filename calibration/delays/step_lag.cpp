@@ -28,12 +28,12 @@ struct Seen {
     std::vector<StepRecording::Sample> samples; ///< seconds after the command
 };
 
-struct Model {
+struct StepModel {
     double lag = 0.1, velocity = 1.0, play = 0.0;
 };
 
 /// Share of its way that the part has made so long after the command.
-double progressAt(const Model& model, const Seen& step, double seconds) {
+double progressAt(const StepModel& model, const Seen& step, double seconds) {
     const double way = std::abs(step.told), play = step.turns ? std::min(model.play, 0.9 * way) : 0.0;
     const double horn = std::clamp(model.velocity * (seconds - model.lag), 0.0, way);
     return std::clamp((horn - play) / (way - play), 0.0, 1.0);
@@ -51,7 +51,7 @@ int bendOf(const Seen& step) {
 }
 
 /// Square of what model and a straight way leave, and what of it a bend explains.
-double squareOf(const Model& model, const Seen& step, Bends& bends) {
+double squareOf(const StepModel& model, const Seen& step, Bends& bends) {
     double sum = 0.0;
     Bend& bend = bends[bendOf(step)];
     for (const StepRecording::Sample& sample : step.samples) {
@@ -70,7 +70,7 @@ public:
         for (const Seen& step : steps) turnsAndGoesOn_ |= step.turns != steps.front().turns;
     }
 
-    template <typename Use> [[nodiscard]] double cost(const Model& model, const Use& use) const {
+    template <typename Use> [[nodiscard]] double cost(const StepModel& model, const Use& use) const {
         double sum = 0.0;
         Bends bends;
         for (std::size_t k = 0; k < steps_.size(); ++k)
@@ -79,15 +79,15 @@ public:
         return sum;
     }
     /// Every lag, speed and play, coarsely.
-    [[nodiscard]] Model coarse(const Progress& progress) const {
+    [[nodiscard]] StepModel coarse(const Progress& progress) const {
         const auto every = [](std::size_t) { return true; };
-        Model best;
+        StepModel best;
         double least = std::numeric_limits<double>::infinity();
         for (double lag = 0.0; lag < kLongestDelay; lag += 0.01) {
             progress.throwIfCancelled();
             for (double velocity = 0.2; velocity < 15.0; velocity *= 1.2)
                 for (const double play : {0.0, 0.03, 0.06}) {
-                    const Model model{lag, velocity, play};
+                    const StepModel model{lag, velocity, play};
                     if (const double at = cost(model, every); at < least) {
                         least = at;
                         best = model;
@@ -98,20 +98,20 @@ public:
     }
     /// Downhill along one after the other, each as far as it goes (Powell's way without directions): the cost has
     /// corners where a motion begins and ends between two pictures.
-    template <typename Use> [[nodiscard]] Model refined(Model model, const Use& use) const {
-        const auto along = [&](double Model::*what, double reach, double low, double high) {
+    template <typename Use> [[nodiscard]] StepModel refined(StepModel model, const Use& use) const {
+        const auto along = [&](double StepModel::*what, double reach, double low, double high) {
             model.*what = delays::smallestBetween(std::max(low, model.*what - reach),
                                                   std::min(high, model.*what + reach), 1e-3 * reach, [&](double value) {
-                                                      Model other = model;
+                                                      StepModel other = model;
                                                       other.*what = value;
                                                       return cost(other, use);
                                                   });
         };
         double before = cost(model, use);
         for (int round = 0; round < 40; ++round) {
-            along(&Model::lag, 0.02, 0.0, kLongestDelay + 0.1);
-            along(&Model::velocity, 0.15 * model.velocity, 0.05, 30.0);
-            if (turnsAndGoesOn_) along(&Model::play, 0.02, 0.0, kMostPlay);
+            along(&StepModel::lag, 0.02, 0.0, kLongestDelay + 0.1);
+            along(&StepModel::velocity, 0.15 * model.velocity, 0.05, 30.0);
+            if (turnsAndGoesOn_) along(&StepModel::play, 0.02, 0.0, kMostPlay);
             // Lag against speed, and lag against play, are what the steps tell worst: the valleys along them.
             alongBoth(model, use, -1.0);
             if (turnsAndGoesOn_) alongPlay(model, use);
@@ -124,11 +124,11 @@ public:
 
 private:
     /// The middle of all motions stays where it is.
-    template <typename Use> void alongBoth(Model& model, const Use& use, double sign) const {
+    template <typename Use> void alongBoth(StepModel& model, const Use& use, double sign) const {
         double way = 0.0;
         for (const Seen& step : steps_) way += 0.5 * std::abs(step.told) / double(steps_.size());
         const auto moved = [&](double by) {
-            Model other = model;
+            StepModel other = model;
             other.lag = std::clamp(model.lag + by, 0.0, kLongestDelay + 0.1);
             const double middle = way / model.velocity + sign * by;
             other.velocity = middle > 1e-3 ? std::clamp(way / middle, 0.05, 30.0) : 30.0;
@@ -137,9 +137,9 @@ private:
         model = moved(delays::smallestBetween(-0.02, 0.02, 1e-5, [&](double by) { return cost(moved(by), use); }));
     }
     /// The begin of the motions after a turn stays where it is.
-    template <typename Use> void alongPlay(Model& model, const Use& use) const {
+    template <typename Use> void alongPlay(StepModel& model, const Use& use) const {
         const auto moved = [&](double by) {
-            Model other = model;
+            StepModel other = model;
             other.lag = std::clamp(model.lag + by, 0.0, kLongestDelay + 0.1);
             other.play = std::clamp(model.play - by * model.velocity, 0.0, kMostPlay);
             return other;
@@ -278,7 +278,7 @@ StepLag solveStepLag(const StepRecording& recording, const Progress& progress) {
     judge(recording, steps);
     const StepFit fit(steps);
     const auto every = [](std::size_t) { return true; };
-    const Model model = fit.refined(fit.coarse(progress), every);
+    const StepModel model = fit.refined(fit.coarse(progress), every);
     StepLag found;
     found.lag.seconds = model.lag;
     found.velocity = model.velocity;

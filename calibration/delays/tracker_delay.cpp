@@ -15,7 +15,7 @@ namespace lumorph {
 namespace {
 
 constexpr double kSlowestBoard = 0.125; ///< seconds between poses of the camera
-constexpr double kSmooth = 0.08;        ///< seconds
+constexpr double kTrackSmooth = 0.08;   ///< seconds
 constexpr double kLeastTurn = 0.175;    ///< radians
 constexpr double kAmbiguous = 0.9;      ///< of the evidence for the best offset
 
@@ -26,8 +26,8 @@ double turnedBy(const PoseTrack& track) {
     return most;
 }
 
-/// Without most of the noise, and not shifted: each pose by a parabola through those within kSmooth on both sides. A
-/// pose between two others is less noisy than they are, and where the camera keeps step with the tracker a fit would
+/// Without most of the noise, and not shifted: each pose by a parabola through those within kTrackSmooth on both sides.
+/// A pose between two others is less noisy than they are, and where the camera keeps step with the tracker a fit would
 /// take it for the better one: it would err by some milliseconds.
 PoseTrack smoothed(const PoseTrack& track) {
     PoseTrack smooth = track;
@@ -35,12 +35,12 @@ PoseTrack smoothed(const PoseTrack& track) {
     std::size_t first = 0;
     for (std::size_t i = 0; i < all.size(); ++i) {
         const TimedPose& middle = all[i];
-        while (all[first].seconds < middle.seconds - kSmooth) ++first;
+        while (all[first].seconds < middle.seconds - kTrackSmooth) ++first;
         Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
         Eigen::Matrix<double, 3, 6> right = Eigen::Matrix<double, 3, 6>::Zero();
         std::size_t before = 0, after = 0;
-        for (std::size_t k = first; k < all.size() && all[k].seconds <= middle.seconds + kSmooth; ++k) {
-            const double t = all[k].seconds - middle.seconds, weight = 1.0 - std::abs(t) / (1.05 * kSmooth);
+        for (std::size_t k = first; k < all.size() && all[k].seconds <= middle.seconds + kTrackSmooth; ++k) {
+            const double t = all[k].seconds - middle.seconds, weight = 1.0 - std::abs(t) / (1.05 * kTrackSmooth);
             const glm::dvec3 place = all[k].pose.position - middle.pose.position;
             const glm::dvec3 turn = turnOf(glm::conjugate(middle.pose.rotation) * all[k].pose.rotation);
             const Eigen::Vector3d row(1.0, t, t * t);

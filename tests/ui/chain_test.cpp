@@ -131,6 +131,14 @@ TEST_F(Chain, AllThatIsMissingIsMeasuredOneAfterTheOther) {
     window.click("chain.link.servos");
     pass(300ms);
     window.screenshot("chain-servos-measured");
+    window.click("chain.link.delays");
+    pass(300ms);
+    window.screenshot("chain-delays-measured");
+    EXPECT_EQ(room().origins.delays.way, Origin::Way::measured);
+    for (const MeasuredServo& servo : room().servos) {
+        EXPECT_GT(servo.lagSeconds, 0.02) << servo.actuator;
+        EXPECT_FALSE(servo.points.empty()) << "delays leave the curves as they are";
+    }
     window.click("chain.link.eye");
     pass(300ms);
     window.screenshot("chain-eye");
