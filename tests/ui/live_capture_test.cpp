@@ -85,7 +85,7 @@ TEST_F(LiveCaptureTest, WholeChainIsMeasuredByTouchingStepByStep) {
         const std::size_t step = marks.step();
         const glm::dvec3 eye = glm::dvec3(truth.eye) + 0.06 * glm::dvec3(turn % 3 - 1, turn % 2, (turn / 3) % 3 - 1);
         ++turn;
-        feed(marks, lab.align("mark", onTable(marks.plan().steps[step].dot->pixel), eye), PoseRole::head);
+        feed(marks, lab.align("mark", onTable(marks.plan().steps[step].dot->pixel), eye).touch, PoseRole::head);
         ASSERT_EQ(marks.step(), step + 1) << marks.trouble();
     }
     room = measured(LinkId::eye, marks, room);
