@@ -17,6 +17,7 @@ constexpr double kMostKept = 120.0;                            // seconds of one
 constexpr double kTurning = 0.15;                              // radians a second: a pointer that is swung, not held
 constexpr double kElsewhere = 0.015;                           // metres from where the tip rested before
 constexpr double kOtherwise = 15.0 * std::numbers::pi / 180.0; // between two ways to hold a pointer
+constexpr double kLongestGap = 0.2;                            // seconds between poses of a rest
 constexpr std::size_t kLeastPoses = 20;                        // of a rest
 
 } // namespace
@@ -83,8 +84,11 @@ void LiveCapture::followSwings() {
     if (turned_ < kSwingSeconds) return;
     LiveTake take;
     take[plan_.roles.front()].poses.assign(poses.begin(), poses.end());
+    Rested dimple;
     try {
-        tip_ = solvePivot(take.begin()->second).tip;
+        const Pivot pivot = solvePivot(take.begin()->second);
+        tip_ = pivot.tip;
+        dimple.tip = pivot.dimple;            // who swings on there touches nothing new
     } catch (const CaptureRefused& refused) { // better told now than at the end
         recent_.clear();
         turned_ = fraction_ = 0.0;
@@ -93,13 +97,14 @@ void LiveCapture::followSwings() {
         return;
     }
     finishStep(std::move(take));
-    rested_.push_back(std::nullopt);
+    rested_.push_back(dimple);
 }
 
 /// Where the tip rests now, if it has for long enough: on a tracked device in its frame, for that may be carried.
 std::optional<LiveCapture::Rested> LiveCapture::resting() const {
     const std::deque<TimedPose>& poses = recent_.at(plan_.roles.front());
     if (poses.empty() || poses.front().seconds > poses.back().seconds - kRestSeconds) return std::nullopt;
+    double before = poses.back().seconds - kRestSeconds;
     LiveTake take = lastMoments();
     const auto device = take.find(PoseRole::device);
     std::vector<glm::dvec3> tips;
@@ -107,6 +112,8 @@ std::optional<LiveCapture::Rested> LiveCapture::resting() const {
     for (const TimedPose& at : take[plan_.roles.front()].poses) {
         const std::optional<Pose> under = device == take.end() ? Pose{} : poseAt(device->second, at.seconds);
         if (!under) continue;
+        if (at.seconds - before > kLongestGap) return std::nullopt;
+        before = at.seconds;
         tips.push_back(inverseOf(*under) * (at.pose * tip_));
         sum += tips.back();
     }
@@ -123,9 +130,7 @@ void LiveCapture::followRest() {
     fraction_ = 0.0;
     if (!rests || !missing().empty()) return;
     const LiveStep& wanted = plan_.steps[step()];
-    const auto isNear = [&](const std::optional<Rested>& before) {
-        return before && glm::distance(before->tip, rests->tip) < kElsewhere;
-    };
+    const auto isNear = [&](const Rested& before) { return glm::distance(before.tip, rests->tip) < kElsewhere; };
     if (wanted.ends == LiveStep::Ends::atNewPlace) {
         // Where it still rests after the step before it is only slow to leave.
         if (!rested_.empty() && isNear(rested_.back())) return;
@@ -133,15 +138,15 @@ void LiveCapture::followRest() {
             trouble_ = "It rested here before; touch another place";
             return;
         }
-    } else if (!rested_.empty() && rested_.back()) {
-        if (angleOf(rests->turn * glm::inverse(rested_.back()->turn)) < kOtherwise) return;
+    } else if (!rested_.empty()) {
+        if (angleOf(rests->turn * glm::inverse(rested_.back().turn)) < kOtherwise) return;
         if (!isNear(rested_.back())) {
             trouble_ = "The tip has left its dimple; set it in again, and hold the pointer otherwise";
             return;
         }
     }
     finishStep(lastMoments());
-    rested_.push_back(rests);
+    rested_.push_back(*rests);
 }
 
 LiveTake LiveCapture::lastMoments() const {

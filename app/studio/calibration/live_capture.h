@@ -22,8 +22,8 @@ struct LiveStep {
         atNewPlace,   ///< when the tip rests where it did not rest before
         heldOtherwise ///< when it rests, and the pointer is turned otherwise than at the step before
     };
-    std::string name;  ///< of what is touched: "dot 3"
-    QString title;     ///< what is to be done: "Touch dot 3 of 16"
+    std::string name; ///< of what is touched: "dot 3"
+    QString title;    ///< what is to be done: "Touch dot 3 of 16"
     Ends ends = Ends::atNewPlace;
     std::optional<PlannedDot> dot = std::nullopt;         ///< that the first projector shows meanwhile
     std::optional<PlannedLandmark> corner = std::nullopt; ///< of the device, which is drawn meanwhile
@@ -43,7 +43,7 @@ using LiveTake = std::map<PoseRole, PoseTrack>;
 class LiveCapture {
 public:
     static constexpr double kSwingSeconds = 12.0; ///< of turning
-    static constexpr double kRestSeconds = 1.2;
+    static constexpr double kRestSeconds = 1.0;
     static constexpr double kRestRadius = 0.004; ///< metres, RMS, that a resting tip may stray
 
     /// `tip` in the pointer's frame, metres; a step with swings finds it anew.
@@ -79,7 +79,7 @@ private:
     LivePlan plan_;
     glm::dvec3 tip_;
     std::vector<LiveTake> takes_;
-    std::vector<std::optional<Rested>> rested_;        ///< one a take
+    std::vector<Rested> rested_;        ///< one a take
     std::map<PoseRole, std::deque<TimedPose>> recent_; ///< of this step
     double newest_ = 0.0;
     double turned_ = 0.0; ///< seconds of swings
