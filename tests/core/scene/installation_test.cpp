@@ -118,9 +118,14 @@ const PartEdit kPartEdits[] = {
      [](Installation& i) -> Origin& { return i.origins.pointer; }},
     {"servos",
      [](Installation& i) {
-         i.servos = {{"flap 1", {{}, {1.0, 0.9, 0.92}}, 0.08}};
+         i.servos = {{"flap 1", {{}, {1.0, 0.9, 0.92}}, 0.0}};
      },
      [](Installation& i) -> Origin& { return i.origins.servos; }},
+    {"a servo's lag",
+     [](Installation& i) {
+         i.servos = {{"flap 1", {}, 0.08}};
+     },
+     [](Installation& i) -> Origin& { return i.origins.delays; }},
 };
 
 const Origin kByHand{Origin::Way::entered, {}, "2026-11-24T17:05:00Z"};
