@@ -301,7 +301,9 @@ void addCalibrateCommands(CLI::App& app, Session& session) {
 
     addCalibrateRoomCommands(*group, session);
     addCalibrateDevice(*group, session);
+    addCalibrateLight(*group, session);
     addCalibrateServos(*group, session);
+    addCalibrateDelays(*group, session);
     addCalibrateTracking(*group, session);
     addCalibrateVerify(*group, session);
 }

@@ -27,7 +27,9 @@ void addCalibrateCommands(CLI::App& app, Session& session);
 void addCalibrateRoomCommands(CLI::App& group, Session& session);
 /// Into the group of the calibrate commands.
 void addCalibrateDevice(CLI::App& group, Session& session);
+void addCalibrateLight(CLI::App& group, Session& session);
 void addCalibrateServos(CLI::App& group, Session& session);
+void addCalibrateDelays(CLI::App& group, Session& session);
 void addCalibrateTracking(CLI::App& group, Session& session);
 void addCalibrateVerify(CLI::App& group, Session& session);
 void addLabCommands(CLI::App& app, Session& session);

@@ -68,7 +68,8 @@ CalibrateWorkspace::CalibrateWorkspace(Studio& studio)
                                 versionTaker(studio)),
       crosshairs_(studio.document, crosshairShower(studio),
                   [&studio](const InstallationVersion& version) { return studio.room.takeVersion(version); }),
-      chain_(studio.document, studio.loop, studio.jobs, studio.notices,
+      live_(studio.trackers, [show = crosshairShower(studio)](const QImage& picture) { show(0, picture); }),
+      chain_(studio.document, studio.loop, studio.lab, studio.jobs, studio.notices, live_,
              [&studio](InstallationVersion version) { return studio.room.takeVersion(std::move(version)); }) {
     addCalibrateCommands(parts());
     addWatchCommand();
@@ -119,7 +120,7 @@ QWidget* CalibrateWorkspace::makeCentralView() {
     return makeSwitched(views, makeChainView(parts()));
 }
 
-CalibrateParts CalibrateWorkspace::parts() { return {studio_, service_, crosshairs_, chain_, selection_}; }
+CalibrateParts CalibrateWorkspace::parts() { return {studio_, service_, crosshairs_, live_, chain_, selection_}; }
 
 /// One or the other, by what is looked at.
 QWidget* CalibrateWorkspace::makeSwitched(QWidget* single, QWidget* whole) {

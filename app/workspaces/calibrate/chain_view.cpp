@@ -200,7 +200,8 @@ private:
             text += QString("%1%2.  %3").arg(k == 0 ? "" : "\n").arg(k + 1).arg(link.how[k]);
         how_->setText(text);
         // Recordings say themselves what is in them.
-        for (QWidget* part : {heading_, static_cast<QWidget*>(how_)}) part->setVisible(!usesFiles(state, state.chosen));
+        for (QWidget* part : {heading_, static_cast<QWidget*>(how_)})
+            part->setVisible(wayOf(state, state.chosen) != LinkWay::files && !state.live);
         const auto found = state.outcomes.find(state.chosen);
         const std::vector<LinkPoint> points =
             found == state.outcomes.end() ? std::vector<LinkPoint>() : found->second.points;

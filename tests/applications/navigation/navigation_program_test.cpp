@@ -1,13 +1,9 @@
 #include <algorithm>
 #include <cmath>
-#include <ctime>
-#include <fstream>
-#include <iostream>
+#include <map>
 #include <numeric>
 #include <set>
 #include <string>
-
-#include <unistd.h>
 
 #include <gtest/gtest.h>
 
@@ -38,7 +34,9 @@ const std::shared_ptr<const Map>& valley() {
     return map;
 }
 
-const Place& placeNamed(const std::string& name) { return *std::ranges::find(valley()->places, name, &Place::name); }
+const Place& placeNamed(const std::string& name) {
+    return *std::ranges::find_if(valley()->places, [&](const Place& place) { return place.name.english == name; });
+}
 
 void land(NavigationProgram& program, Visit& visit, const std::string& name) {
     visit.frame({{"key.left", 1.0}}); // somebody is there
@@ -292,6 +290,64 @@ TEST(NavigationProgram, TheFarEdgeBendsForWhoLooksWhereHeWants) {
     EXPECT_FALSE(visit.content().scene->viewDependence.on);
 }
 
+TEST(NavigationProgram, ShowsTheBendBesideTheSameWithoutItWhereAskedOrTold) {
+    NavigationProgram program(1, valley());
+    Visit visit(program);
+    visit.frame();
+    EXPECT_FALSE(visit.content().comparesBend);
+    visit.frame({{"key.off", 1.0}});
+    EXPECT_TRUE(visit.content().comparesBend);
+    EXPECT_TRUE(visit.content().scene->viewDependence.on) << "the device itself bends";
+    ASSERT_TRUE(visit.content().caption);
+    EXPECT_FALSE(visit.content().caption->title.german.empty());
+    visit.frame({{"key.off", 1.0}});
+    EXPECT_FALSE(visit.content().comparesBend);
+    EXPECT_FALSE(visit.content().scene->viewDependence.on);
+    EXPECT_FALSE(visit.content().caption);
+
+    const auto told = navigationDemo().program({.seed = 1, .told = {{"bend", "beside"}}}, {});
+    Visit always(*told);
+    always.frame();
+    EXPECT_TRUE(always.content().comparesBend);
+    always.frame({{"key.bend", 1.0}});
+    EXPECT_FALSE(always.content().comparesBend);
+    always.frame({{"key.attract", 1.0}});
+    EXPECT_TRUE(always.content().comparesBend) << "whoever has gone leaves it as the host told";
+    EXPECT_THROW((void)navigationDemo().program({.seed = 1, .told = {{"bend", "sideways"}}}, {}), InvalidInput);
+}
+
+/// Pictures of the names that show, by the ids of their items.
+std::map<int, const Image*> namesShown(const ShowContent& content) {
+    std::map<int, const Image*> names;
+    for (const SceneItem& item : content.scene->items)
+        if (item.name == "Label") names[item.id] = content.assets->images.at(item.material.colorTexture.image).get();
+    return names;
+}
+
+TEST(NavigationProgram, NamesAreInTheLanguageThatIsChosenWhileItPlays) {
+    NavigationProgram program(1, valley());
+    Visit visit(program);
+    land(program, visit, "Castle Harrow");
+    const ShowContent english = visit.content();
+    visit.setLanguage(Language::german);
+    visit.frame();
+    const ShowContent german = visit.content();
+    visit.setLanguage(Language::english);
+    visit.frame();
+    int changed = 0;
+    const auto inGerman = namesShown(german), inEnglishAgain = namesShown(visit.content());
+    for (const auto& [id, picture] : namesShown(english)) {
+        const auto other = inGerman.find(id), again = inEnglishAgain.find(id);
+        if (other == inGerman.end() || again == inEnglishAgain.end()) continue;
+        const Words& name = valley()->places[static_cast<std::size_t>(id - kFirstLabel) / 2].name;
+        const bool same = name.in(Language::german) == name.english;
+        EXPECT_EQ(*other->second == *picture, same) << name.english;
+        EXPECT_TRUE(*again->second == *picture) << name.english;
+        changed += same ? 0 : 1;
+    }
+    EXPECT_GE(changed, 1) << "the castle at least";
+}
+
 TEST(NavigationProgram, WhatStandsStillKeepsItsIdentity) {
     NavigationProgram program(1, valley());
     Visit visit(program);
@@ -308,12 +364,6 @@ TEST(NavigationProgram, WhatStandsStillKeepsItsIdentity) {
     EXPECT_LE(assets->images.at("navigation ground")->size().x, 1024);
 }
 
-double threadSeconds() {
-    timespec now{};
-    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-    return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
-
 TEST(NavigationProgram, AFrameTakesASmallPartOfItsTime) {
     NavigationProgram program(1, valley());
     Visit visit(program);
@@ -323,64 +373,34 @@ TEST(NavigationProgram, AFrameTakesASmallPartOfItsTime) {
         if (k == 1800) inputs = {{"pointer.x", 0.4}, {"key.rain", 1.0}};
         if (k == 2400) inputs = {{"pointer.x", 0.0}, {"key.rain", 0.0}, {"key.in", 1.0}};
         if (k == 2500) inputs = {{"key.in", 0.0}, {"key.next", 1.0}};
-        const double begun = threadSeconds();
+        const double begun = test::threadSeconds();
         visit.frame(inputs);
-        milliseconds.push_back(1e3 * (threadSeconds() - begun));
+        milliseconds.push_back(1e3 * (test::threadSeconds() - begun));
     }
-    std::ranges::sort(milliseconds);
-    const double middle = milliseconds[milliseconds.size() / 2], late = milliseconds[milliseconds.size() * 99 / 100];
-    std::cout << "median " << middle << " ms, 99th percentile " << late << " ms, longest " << milliseconds.back()
-              << " ms" << std::endl;
-    EXPECT_LE(middle, 2.0);
-    EXPECT_LE(late, 8.0);
-}
-
-double residentMegabytes() {
-    std::ifstream statm("/proc/self/statm");
-    double size = 0.0, resident = 0.0;
-    statm >> size >> resident;
-    return resident * static_cast<double>(sysconf(_SC_PAGESIZE)) / 1048576.0;
+    EXPECT_LE(test::shareOf(milliseconds, 0.5), 2.0);
+    EXPECT_LE(test::shareOf(milliseconds, 0.99), 8.0);
 }
 
 TEST(NavigationProgram, HalfAnHourLeavesMemoryFlatAndStrokesInLimits) {
-    // Frame by frame it takes minutes; in short steps it is the same half hour.
+    // Frame by frame it takes minutes; in longer steps it is the same half hour.
     const int perSecond = test::longTests() ? 60 : 4;
-    const double step = 1.0 / perSecond;
     NavigationProgram program(5, valley());
-    CausalSplit split(*tabletRig());
-    ShowMoment moment;
-    moment.rig = tabletRig();
-    moment.installation = std::make_shared<const Installation>(defaultInstallation());
-    std::vector<double> before;
-    double early = 0.0, late = 0.0; // the most in minutes 2 and 3, and in the last two
-    std::vector<float> heights(split.points().size());
-    for (int k = 0; k < perSecond * 60 * 30; ++k) {
-        std::vector<ShowInput> inputs;
-        if (k % (120 * perSecond) == 25 * perSecond) inputs = {{"pointer.x", 0.7}, {"key.rain", 1.0}};
-        if (k % (120 * perSecond) == 65 * perSecond / 2) inputs = {{"pointer.x", 0.0}, {"key.rain", 0.0}};
-        moment.inputs = inputs;
-        const ShowContent content = program.frame(moment);
-        moment.step = step;
-        if (k % perSecond == 0) {
-            const auto& grid = std::get<HeightGrid>(content.target);
-            for (std::size_t p = 0; p < heights.size(); ++p)
-                heights[p] = static_cast<float>(heightAt(grid, glm::dvec2(split.points()[p])));
-            const std::vector<double> strokes = split.strokes(heights, 1.0);
-            for (std::size_t a = 0; a < strokes.size(); ++a) {
-                ASSERT_GE(strokes[a], 0.0);
-                ASSERT_LE(strokes[a], 1.0);
-                if (!before.empty()) {
-                    ASSERT_LE(std::abs(strokes[a] - before[a]), tabletRig()->actuators()[a].maxVelocity + 1e-9);
-                }
+    const test::LongVisit visit =
+        test::visitForLong(program, 1800.0, 1.0 / perSecond, [&](int k, double, ShowInputs& inputs) {
+            if (k % (120 * perSecond) == 25 * perSecond) {
+                inputs.push({"pointer.x", 0.7});
+                inputs.push({"key.rain", 1.0});
             }
-            before = strokes;
-        }
-        if (k >= 60 * perSecond && k < 180 * perSecond) early = std::max(early, residentMegabytes());
-        if (k >= perSecond * 60 * 28) late = std::max(late, residentMegabytes());
-    }
-    const double grown = late - early;
-    std::cout << "grown by " << grown << " MB in " << perSecond << " frames a second" << std::endl;
-    EXPECT_LT(grown, 5.0);
+            if (k % (120 * perSecond) == 65 * perSecond / 2) {
+                inputs.push({"pointer.x", 0.0});
+                inputs.push({"key.rain", 0.0});
+            }
+        });
+    test::expectLight(visit);
+    EXPECT_LE(visit.wished, 1.0 + 1e-9) << "nor are more asked for";
+    using Memory = test::LongVisit::Memory;
+    const double early = visit.mostOf(&Memory::resident, 60.0, 180.0);
+    EXPECT_LT(visit.mostOf(&Memory::resident, 1680.0, 1800.0) - early, 5.0) << "megabytes";
 }
 
 } // namespace
