@@ -62,7 +62,8 @@ ErrorBudget budgetOf(const Rig& rig, const SlipModel& model, const RoomErrors& e
         const double after = std::sqrt(sumOf(all(measuredAgain(errors, rig, part))));
         const bool isFirst = errors.sourceOf(part) == ErrorSource::assumed;
         const bool isUrgent = part == BudgetPart::tracker && !errors.isTrackerPlaced;
-        if (isUrgent || after < (1.0 - kWorthIt) * budget.total) budget.advice.push_back({part, isFirst, budget.total, after});
+        if (isUrgent || after < (1.0 - kWorthIt) * budget.total)
+            budget.advice.push_back({part, isFirst, budget.total, after});
     }
     std::ranges::stable_sort(budget.advice, {}, [&](const BudgetAdvice& advice) {
         const bool isUrgent = advice.part == BudgetPart::tracker && !errors.isTrackerPlaced;

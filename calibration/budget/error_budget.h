@@ -23,7 +23,7 @@ struct BudgetItem {
 /// What measuring a part again would do.
 struct BudgetAdvice {
     BudgetPart part = BudgetPart::projector;
-    bool isFirst = false; ///< it was not measured yet; else it is taken to come out half as large
+    bool isFirst = false;             ///< it was not measured yet; else it is taken to come out half as large
     double before = 0.0, after = 0.0; ///< metres, of all together
 };
 

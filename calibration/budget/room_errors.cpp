@@ -15,11 +15,11 @@ constexpr double kUsualDegrees = 60.0; // a whole stroke of something that does 
 
 /// How well measurements come out in the lab, for those that did not say it. Along each axis.
 namespace usually {
-constexpr double kLight = 0.0005;                                // metres
+constexpr double kLight = 0.0005; // metres
 constexpr PoseError kTracker{0.0005, 0.1 * kDegree}, kDevice{0.0005, 0.15 * kDegree};
-constexpr double kEye = 0.002;                                   // metres
-constexpr double kServo = 0.3 * kDegree;                         // of its horn
-constexpr double kDelay = 0.002;                                 // seconds
+constexpr double kEye = 0.002;           // metres
+constexpr double kServo = 0.3 * kDegree; // of its horn
+constexpr double kDelay = 0.002;         // seconds
 } // namespace usually
 
 /// A projector that was aimed by eye.
@@ -95,12 +95,12 @@ RoomErrors errorsOf(const Installation& room, const Rig& rig, const std::vector<
     errors.isTrackerPlaced = origins.tracker.way != Origin::Way::assumed;
     write.pose(BudgetPart::device, origins.deviceBody, errors.device,
                {1e-3 * usual.deviceMillimetres, usual.deviceDegrees * kDegree}, usually::kDevice);
-    write.number(BudgetPart::eye, origins.eyeOffset, errors.eye, sigmaOf(origins.eyeOffset).metres / std::numbers::sqrt3,
-                 usually::kEye, 1e-3 * usual.eyeMillimetres);
+    write.number(BudgetPart::eye, origins.eyeOffset, errors.eye,
+                 sigmaOf(origins.eyeOffset).metres / std::numbers::sqrt3, usually::kEye, 1e-3 * usual.eyeMillimetres);
     for (std::size_t i = 0; i < rig.actuatorCount(); ++i) {
         const Actuator& actuator = rig.actuators()[i];
-        const bool isMeasured = std::ranges::find(room.servos, actuator.name, &MeasuredServo::actuator) !=
-                                room.servos.end();
+        const auto servo = std::ranges::find(room.servos, actuator.name, &MeasuredServo::actuator);
+        const bool isMeasured = servo != room.servos.end() && !servo->points.empty(); // else only its lag was
         const double whole = degreesOfStroke(actuator) * kDegree;
         const double at = i < commanded.size() ? commanded[i] : 0.5;
         // A servo that a measurement left out is as it was before.

@@ -22,10 +22,10 @@ inline constexpr std::array<BudgetPart, kBudgetParts> kAllBudgetParts{
 
 /// How the error of a part is known.
 enum class ErrorSource {
-    told,    ///< its measurement said so
+    told,     ///< its measurement said so
     measured, ///< it was measured, but not said how well: as such measurements come out
     assumed,  ///< nobody has measured it: as large as it usually is
-    worked   ///< worked out from the others: the prediction
+    worked    ///< worked out from the others: the prediction
 };
 
 /// Standard deviations of a pose along each of three axes.
@@ -35,14 +35,14 @@ struct PoseError {
 
 /// How far a room's figures may be from the truth, as standard deviations.
 struct RoomErrors {
-    double light = 0.0;   ///< metres across the beam, both directions together: where a projector's light falls
-    PoseError tracker;    ///< of its world in the room's, about the middle of the table
-    PoseError device;     ///< on its body, about the device's origin
-    double eye = 0.0;     ///< metres along each axis, from its body
+    double light = 0.0;          ///< metres across the beam, both directions together: where a projector's light falls
+    PoseError tracker;           ///< of its world in the room's, about the middle of the table
+    PoseError device;            ///< on its body, about the device's origin
+    double eye = 0.0;            ///< metres along each axis, from its body
     std::vector<double> strokes; ///< one an actuator
-    double delay = 0.0;   ///< seconds, from a motion to its light, besides what is believed
-    PoseError noise;      ///< of each pose that a tracker tells
-    double ahead = 0.0;   ///< seconds by which poses are predicted
+    double delay = 0.0;          ///< seconds, from a motion to its light, besides what is believed
+    PoseError noise;             ///< of each pose that a tracker tells
+    double ahead = 0.0;          ///< seconds by which poses are predicted
     /// False: nobody has said where the tracker's world lies, so that no number tells how far a tracked thing's light
     /// falls beside.
     bool isTrackerPlaced = true;

@@ -37,7 +37,8 @@ std::vector<glm::dvec3> placesOn(const TriangleMesh& mesh, std::size_t count) {
         const double at = sum * (static_cast<double>(k) + 0.5) / static_cast<double>(count);
         const auto found = std::ranges::lower_bound(areas, at);
         const glm::uvec3& t = mesh.triangles[static_cast<std::size_t>(found - areas.begin())];
-        double u = std::fmod(static_cast<double>(k) * kFirst, 1.0), v = std::fmod(static_cast<double>(k) * kSecond, 1.0);
+        double u = std::fmod(static_cast<double>(k) * kFirst, 1.0),
+               v = std::fmod(static_cast<double>(k) * kSecond, 1.0);
         if (u + v > 1.0) {
             u = 1.0 - u;
             v = 1.0 - v;
@@ -136,8 +137,7 @@ SlipModel slipModelOf(const Rig& rig, const Installation& room, const SlipView& 
     if (!(view.floats >= 0.0 && view.floats <= kFloatsMost))
         throw InvalidInput("height that things float at", "it is not from 0 to 0.2 m", "give another");
     progress.report(0.0, "where the device is lit and seen");
-    const std::vector<double> strokes =
-        standingStrokes(room, rig, commandedOf(view, rig), StrokesFrom::anywhere);
+    const std::vector<double> strokes = standingStrokes(room, rig, commandedOf(view, rig), StrokesFrom::anywhere);
     const RoomSurface surface(room, rig, strokes);
     SlipModel model;
     model.points = pointsOf(rig, room, surface, strokes, view.tries, progress.part(0.3, 0.9));
