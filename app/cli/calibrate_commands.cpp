@@ -300,6 +300,7 @@ void addCalibrateCommands(CLI::App& app, Session& session) {
     command->callback([alone, &session] { intrinsics(*alone, session); });
 
     addCalibrateRoomCommands(*group, session);
+    addCalibrateBudget(*group, session);
     addCalibrateDevice(*group, session);
     addCalibrateLight(*group, session);
     addCalibrateServos(*group, session);

@@ -26,6 +26,7 @@ void addCalibrateCommands(CLI::App& app, Session& session);
 /// Adds those of several cameras and projectors, and of a mirror, to the group of the others.
 void addCalibrateRoomCommands(CLI::App& group, Session& session);
 /// Into the group of the calibrate commands.
+void addCalibrateBudget(CLI::App& group, Session& session);
 void addCalibrateDevice(CLI::App& group, Session& session);
 void addCalibrateLight(CLI::App& group, Session& session);
 void addCalibrateServos(CLI::App& group, Session& session);

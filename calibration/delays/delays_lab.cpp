@@ -16,6 +16,7 @@
 #include "calibration/servos/servo_lab.h"
 #include "core/base/error.h"
 #include "core/scene/measured_servos.h"
+#include "core/scene/measured_sigma.h"
 
 namespace lumorph {
 
@@ -289,9 +290,11 @@ Installation withDelays(const Installation& believed, const MeasuredDelays& dela
         else
             room.servos.push_back({measured.name, {}, measured.step.lag.seconds});
     }
+    const MeasuredSigma sigma{0.0, 0.0, std::hypot(delays.light.sigma, delays.tracker.sigma)};
     room.origins.delays = {Origin::Way::measured,
-                           std::to_string(delays.light.events) + " flashes, " + std::to_string(delays.tracker.events) +
-                               " poses of a board",
+                           withSigma(std::to_string(delays.light.events) + " flashes, " +
+                                         std::to_string(delays.tracker.events) + " poses of a board",
+                                     sigma),
                            utcDate()};
     return room;
 }

@@ -84,6 +84,7 @@ std::unique_ptr<DriftService> CalibrateWorkspace::makeWatch() {
     const auto check = [this] {
         emit studio_.commands.workspaceWanted("calibrate");
         selection_.setWhole(true);
+        selection_.setBudget(false);
         const auto& links = chainLinks();
         const auto found = std::ranges::find(links, LinkId::check, &ChainLink::id);
         chain_.choose(static_cast<std::size_t>(found - links.begin()));
@@ -117,7 +118,13 @@ QWidget* CalibrateWorkspace::makeCentralView() {
     };
     connect(&service_, &CalibrationService::changed, views, follow);
     follow();
-    return makeSwitched(views, makeChainView(parts()));
+    auto* chain = new QStackedWidget;
+    chain->addWidget(makeChainView(parts()));
+    chain->addWidget(makeBudgetView(parts()));
+    const auto turn = [this, chain] { chain->setCurrentIndex(selection_.budget() ? 1 : 0); };
+    connect(&selection_, &CalibrateSelection::budgetChanged, chain, turn);
+    turn();
+    return makeSwitched(views, chain);
 }
 
 CalibrateParts CalibrateWorkspace::parts() { return {studio_, service_, crosshairs_, live_, chain_, selection_}; }

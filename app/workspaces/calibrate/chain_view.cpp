@@ -109,12 +109,17 @@ public:
         whole->addWidget(column.widget);
         for (std::size_t k = 0; k < chainLinks().size(); ++k) {
             auto* row = new LinkRow(k, this);
-            connect(row, &QPushButton::clicked, this, [this, k] { parts_.chain.choose(k); });
+            connect(row, &QPushButton::clicked, this, [this, k] {
+                parts_.chain.choose(k);
+                parts_.selection.setBudget(false);
+            });
             rows_.push_back(row);
             column.layout->addWidget(row);
         }
         rest_ = makeCommandButton(parts.studio.commands.find("calibrate.chain.rest"), "chain.rest", this);
         column.layout->addWidget(rest_);
+        column.layout->addWidget(
+            makeCommandButton(parts.studio.commands.find("calibrate.budget"), "chain.budget", this));
         column.layout->addStretch(1);
         connect(&parts.chain, &ChainService::changed, this, [this] { refresh(); });
         refresh();
