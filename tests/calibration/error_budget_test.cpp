@@ -222,7 +222,8 @@ void expectWhatTheLabMeasures(const Draws& draws) {
     const auto compare = [](const char* name, double told, const Measured& lab) {
         std::printf("  %-10s budget %7.3f mm, lab %7.3f mm, %.1f %% of the places lost\n", name, 1e3 * told,
                     1e3 * lab.metres, 100.0 * lab.lost);
-        EXPECT_NEAR(told, lab.metres, 0.15 * lab.metres) << name;
+        // Twenty micrometres are less than its draws agree to.
+        EXPECT_NEAR(told, lab.metres, std::max(0.15 * lab.metres, 20e-6)) << name;
         EXPECT_LT(lab.lost, 0.05) << name;
     };
     for (const Row& row : rows) {

@@ -79,7 +79,7 @@ private:
     LivePlan plan_;
     glm::dvec3 tip_;
     std::vector<LiveTake> takes_;
-    std::vector<Rested> rested_;        ///< one a take
+    std::vector<Rested> rested_;                       ///< one a take
     std::map<PoseRole, std::deque<TimedPose>> recent_; ///< of this step
     double newest_ = 0.0;
     double turned_ = 0.0; ///< seconds of swings

@@ -16,7 +16,7 @@ namespace {
 
 constexpr int kLookMilliseconds = 50;
 constexpr double kSeenLately = 1.0;             // seconds
-constexpr std::size_t kMostArrivals = 20'000;    // poses, while the window stands still
+constexpr std::size_t kMostArrivals = 20'000;   // poses, while the window stands still
 constexpr int kDotRadius = 5, kRingRadius = 26; // projector pixels
 
 QString wordOf(PoseRole role) {
