@@ -12,11 +12,12 @@ namespace lumorph {
 
 namespace {
 
-constexpr double kRestShare = 0.25;  ///< of a hold, at its end: the part rests
-constexpr double kDeadShare = 0.15;  ///< of what was told: it does not move
-constexpr double kJammedShare = 0.6; ///< of what was told
-constexpr double kMostPlay = 0.12;   ///< strokes
-constexpr double kStiffness = 0.5;   ///< pictures of a motion that a bend has to be worth
+constexpr double kRestShare = 0.25; ///< of a hold, at its end: the part rests
+constexpr double kDeadShare = 0.15; ///< of what was told: it does not move
+constexpr double kJammedShare =
+    0.35;                          ///< of a step, whose curve may be steep elsewhere and whose play is not crossed yet
+constexpr double kMostPlay = 0.12; ///< strokes
+constexpr double kStiffness = 0.5; ///< pictures of a motion that a bend has to be worth
 constexpr int kFewestSteps = 4;
 
 /// One step as it was seen.
