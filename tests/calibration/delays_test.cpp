@@ -160,7 +160,7 @@ BoardCapture boardInLab(const Installation& room, std::uint32_t seed, TrackerFau
 
 TEST(TrackerDelay, IsFoundByTheSameBodyInTheCamera) {
     Spread spread;
-    const int seeds = delaysTakeLong() ? 40 : 2;
+    const int seeds = delaysTakeLong() ? 40 : 4;
     for (int seed = 1; seed <= seeds; ++seed) {
         const Installation room = roomWithDelays(0.07, 0.003 * (seed % 12));
         const BoardCapture capture = boardInLab(room, seed);
