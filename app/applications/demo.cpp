@@ -8,6 +8,12 @@ namespace lumorph {
 
 std::vector<DemoStep> noSteps() { return {}; }
 
+const std::array<Words, 2>& bendCaptions() {
+    static const std::array<Words, 2> captions{Words("Without bending", "Ohne Biegen"),
+                                               Words("Bent towards you", "Zu dir gebogen")};
+    return captions;
+}
+
 ProjectContents bundledProject(const std::string& name, const Progress& progress) {
     return readContents(resourceFile("projects/" + name + ".lumorph"), progress);
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <map>
@@ -66,7 +67,12 @@ struct Demo {
     std::unique_ptr<ShowProgram> (*program)(const ProgramStart& start, const Progress& progress) = nullptr;
     bool keeps = false;                   ///< its program wants something kept (ShowContent::keepsake)
     std::vector<DemoOption> options = {}; ///< that its program may be told
+    bool compares = false;                ///< its program shows at `key.off` what it does with and without
 };
+
+/// What is written under the device without and with view dependence, where both are seen beside each other
+/// (ShowContent::comparesBend).
+[[nodiscard]] const std::array<Words, 2>& bendCaptions();
 
 /// A demonstration whose scene is a bundled project: `projects/NAME.lumorph`.
 [[nodiscard]] ProjectContents bundledProject(const std::string& name, const Progress& progress);

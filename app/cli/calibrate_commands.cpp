@@ -300,8 +300,11 @@ void addCalibrateCommands(CLI::App& app, Session& session) {
     command->callback([alone, &session] { intrinsics(*alone, session); });
 
     addCalibrateRoomCommands(*group, session);
+    addCalibrateBudget(*group, session);
     addCalibrateDevice(*group, session);
+    addCalibrateLight(*group, session);
     addCalibrateServos(*group, session);
+    addCalibrateDelays(*group, session);
     addCalibrateTracking(*group, session);
     addCalibrateVerify(*group, session);
 }

@@ -26,8 +26,11 @@ void addCalibrateCommands(CLI::App& app, Session& session);
 /// Adds those of several cameras and projectors, and of a mirror, to the group of the others.
 void addCalibrateRoomCommands(CLI::App& group, Session& session);
 /// Into the group of the calibrate commands.
+void addCalibrateBudget(CLI::App& group, Session& session);
 void addCalibrateDevice(CLI::App& group, Session& session);
+void addCalibrateLight(CLI::App& group, Session& session);
 void addCalibrateServos(CLI::App& group, Session& session);
+void addCalibrateDelays(CLI::App& group, Session& session);
 void addCalibrateTracking(CLI::App& group, Session& session);
 void addCalibrateVerify(CLI::App& group, Session& session);
 void addLabCommands(CLI::App& app, Session& session);

@@ -26,11 +26,11 @@ namespace {
 struct DemoOptions {
     std::string name;
     DemoPlay play;
-    std::string record, picture, inputs, kept;
+    std::string record, picture, inputs, kept, language;
 };
 
 /// Replaces this process by `lumorph-studio`, which lies beside it: only it has a window.
-void showInWindow(const Demo& demo, const DemoTold& told) {
+void showInWindow(const Demo& demo, const DemoTold& told, const std::string& language) {
     std::error_code error;
     const std::filesystem::path self = std::filesystem::read_symlink("/proc/self/exe", error);
     std::string program = (self.parent_path() / "lumorph-studio").string();
@@ -38,6 +38,7 @@ void showInWindow(const Demo& demo, const DemoTold& told) {
         throw DeviceError("demo", "the program lumorph-studio is not beside this one", "build it, or install it again");
     std::vector<std::string> words{program, "--demo", demo.name};
     for (const auto& [name, text] : told) words.insert(words.end(), {"--" + name, text});
+    if (!language.empty()) words.insert(words.end(), {"--language", language});
     std::vector<char*> argv;
     for (std::string& word : words) argv.push_back(word.data());
     argv.push_back(nullptr);
@@ -99,6 +100,10 @@ void addDemoCommand(CLI::App& app) {
     CLI::Option* seed =
         command->add_option("--seed", options->play.seed, "Without a window: of an application's chance")
             ->capture_default_str();
+    command
+        ->add_option("--language", options->language,
+                     "Of what it writes and lets be read, en or de; else English, in the window as chosen there")
+        ->check(CLI::IsMember({"en", "de"}));
     command->add_flag("--json", options->play.json, "Without a window: print its rates as one JSON value");
     for (const DemoOption& told : demoOptions())
         command->add_option_function<std::string>(
@@ -115,11 +120,12 @@ void addDemoCommand(CLI::App& app) {
         options->play.last = options->picture;
         options->play.inputs = options->inputs;
         options->play.kept = options->kept;
+        options->play.language = options->language == "de" ? Language::german : Language::english;
         if (*seconds || *record || *picture || *inputs || *keep || *seed || options->play.json) {
             fetchForecast(options->play.told);
             playDemo(demo, options->play, std::cout);
         } else {
-            showInWindow(demo, options->play.told);
+            showInWindow(demo, options->play.told, options->language);
         }
     });
 }

@@ -10,9 +10,11 @@
 #include <nlohmann/json.hpp>
 
 #include "app/applications/program_start.h"
+#include "app/output/picture_pair.h"
 #include "app/output/video_writer.h"
 #include "core/base/error.h"
 #include "core/base/statistics.h"
+#include "core/loop/bend_comparison.h"
 #include "core/loop/show_program.h"
 #include "core/mdf/builder.h"
 #include "core/render/gl/headless_context.h"
@@ -42,8 +44,10 @@ glm::vec3 walkedEye(const glm::vec3& eye, double seconds) {
 }
 
 /// A show that nobody watches waits for its field.
-MatchWish completeWish(const ProjectContents& contents, const std::shared_ptr<ShowProgram>& program) {
+MatchWish completeWish(const ProjectContents& contents, const std::shared_ptr<ShowProgram>& program,
+                       Language language) {
     MatchWish wish = wishOf(contents);
+    wish.language = language;
     wish.showTint = false;
     if (program) {
         wish.program = program;
@@ -60,7 +64,7 @@ public:
     Recorder(const ProjectContents& contents, const std::string& name, const ShowPictures& show,
              const ShowScript& script)
         : name_(name), show_(show), room_(contents.project.installation), inputs_(script.inputs),
-          player_(clock_, completeWish(contents, script.program)) {
+          player_(clock_, completeWish(contents, script.program, script.language)) {
         renderer_.setMeasuring(true);
         renderer_.setEyeSize(show.video);
     }
@@ -84,6 +88,7 @@ public:
     [[nodiscard]] Image lab() {
         const auto begun = Clock::now();
         const ShowFrame frame = player_.shown();
+        if (player_.frame()->comparesBend) return comparedBends(frame, begun);
         renderer_.draw(frame);
         passTimes_.push_back(renderer_.times().total);
         Image picture = renderer_.readLab(viewOf(frame, show_.video));
@@ -119,6 +124,22 @@ public:
     }
 
 private:
+    /// Both halves through one camera, which holds the device that bends.
+    Image comparedBends(const ShowFrame& frame, Clock::time_point begun) {
+        const MatchFrame& match = *player_.frame();
+        const ShowFrame with = comparison_.half(match, frame, BendComparison::Half::with);
+        const ShowFrame without = comparison_.half(match, frame, BendComparison::Half::without);
+        const CalibratedCamera camera = viewOf(with, {show_.video.x / 2, show_.video.y});
+        std::vector<Image> halves;
+        for (const ShowFrame* half : {&without, &with}) {
+            renderer_.draw(*half);
+            passTimes_.push_back(renderer_.times().total);
+            halves.push_back(renderer_.readLab(camera));
+        }
+        frameTimes_.push_back(since(begun));
+        return besideEachOther(halves[0], halves[1], bendCaptions(), player_.wish().language);
+    }
+
     void giveInputs(double seconds) {
         for (; given_ < inputs_.size() && inputs_[given_].seconds <= seconds; ++given_)
             player_.wish().inputs->push(inputs_[given_].input);
@@ -136,6 +157,7 @@ private:
     std::function<std::string()> keepsake_;
     ManualClock clock_;
     ShowPlayer player_;
+    BendComparison comparison_;
     HeadlessContext context_;
     SpatialRenderer renderer_;
     std::vector<double> loopTimes_, passTimes_, frameTimes_;
@@ -179,6 +201,7 @@ ShowScript scriptOf(const Demo& demo, const DemoPlay& play, std::vector<std::str
         script.inputs = readInputScriptFile(play.inputs);
     }
     BegunProgram begun = beginProgram(demo, {play.seed, play.told, play.kept});
+    script.language = play.language;
     script.notes = std::move(begun.notes);
     script.program = std::move(begun.program);
     if (!begun.problem.empty())

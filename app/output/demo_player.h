@@ -27,7 +27,8 @@ struct ShowPictures {
 struct ShowScript {
     std::shared_ptr<ShowProgram> program; ///< empty: the project's own scene
     InputScript inputs;
-    std::vector<std::string> notes; ///< of the application about what it was told, plain sentences
+    Language language = Language::english; ///< in which it writes
+    std::vector<std::string> notes;        ///< of the application about what it was told, plain sentences
 };
 
 /// What came of it.
@@ -41,7 +42,8 @@ struct ShowRates {
 };
 
 /// Plays a show for a while and records what a viewer sees of the lit device (the lab) as a video, by the same loop and
-/// renderer as in the window; the viewer walks slowly around the device. `name` begins the names of pictures.
+/// renderer as in the window; the viewer walks slowly around the device. What compares the device without and with view
+/// dependence is seen so, in two halves. `name` begins the names of pictures.
 /// `pictures` may be empty: else the moment in the middle is written there as NAME-eye.png, NAME-projector.png and
 /// NAME-lab.png. `video` may be empty. Throws DeviceError where nothing can be drawn or written, InvalidInput for a
 /// time outside (0, 600]. A program that ends by an error is told among the warnings.
@@ -57,8 +59,9 @@ struct DemoPlay {
     std::filesystem::path inputs; ///< as `readInputScript` reads them; empty: none
     std::filesystem::path kept;   ///< what an application wants kept is read from here and written back; empty: not
     std::uint64_t seed = 1;       ///< of an application
-    DemoTold told;                ///< to an application, by the names of its options
-    bool json = false;            ///< its rates as JSON
+    Language language = Language::english; ///< of what it writes into its picture
+    DemoTold told;                         ///< to an application, by the names of its options
+    bool json = false;                     ///< its rates as JSON
 };
 
 /// Plays a demonstration and tells its rates on `out`. Throws InvalidInput for inputs or settings of one that takes

@@ -52,6 +52,7 @@ int run(int argc, char** argv, const Arguments& arguments) {
     StudioApplication application(argc, argv);
     Studio studio;
     application.setOnError([&studio](const std::exception& error) { studio.notices.post("project", noticeOf(error)); });
+    if (arguments.language) studio.settings.setLanguage(*arguments.language);
     applyTheme(application, studio.settings.theme());
     auto workspaces = makeWorkspaces(studio);
     if (!hasWorkspace(workspaces, arguments.workspace)) {
@@ -93,6 +94,7 @@ int showHeadless(const Arguments& arguments) {
         play.seconds = arguments.play;
         play.video = arguments.record;
         play.told = arguments.told;
+        play.language = arguments.language.value_or(lumorph::Language::english);
         play.json = arguments.json;
         lumorph::playDemo(lumorph::demoNamed(arguments.demo), play, std::cout);
         return 0;

@@ -57,10 +57,20 @@ enum class Cause {
     servoSwapped,       ///< "servo_swapped": a servo moves the part of another
     servoReversed,      ///< "servo_reversed": a servo runs from the end of its range
     servoJammed,        ///< "servo_jammed": a servo stops before its range ends
+    cameraSlow,         ///< "camera_slow": a camera gives too few pictures a second for what is timed by it
+    flashNotSeen,       ///< "flash_not_seen": the camera's pictures do not follow the projector's light
+    nothingMoves,       ///< "nothing_moves": what should be moved rests
+    motionPeriodic,     ///< "motion_periodic": a motion repeats itself, so that several delays fit
+    cameraSaturates,    ///< "camera_saturates": white is cut off at any exposure
+    lightTooDark,       ///< "light_too_dark": projected light hardly shows
+    ambientChanges,     ///< "ambient_changes": the light of the room changed meanwhile
+    cameraAdjusts,      ///< "camera_adjusts": a camera sets its exposure by itself
+    responseNotRising,  ///< "response_not_rising": a projector makes less light of a higher value
+    surfaceUnseen,      ///< "surface_unseen": a camera sees too little of what is lit
 };
 
 /// All of them, in the order above.
-inline constexpr int kCauseCount = static_cast<int>(Cause::servoJammed) + 1;
+inline constexpr int kCauseCount = static_cast<int>(Cause::surfaceUnseen) + 1;
 
 [[nodiscard]] std::string_view keyOf(Cause cause);
 /// The cause of a key; empty where there is none.

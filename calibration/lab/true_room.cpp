@@ -90,6 +90,9 @@ Installation trueRoom(const Installation& believed, std::span<const Actuator> ac
     room.trackerSeconds = errors.trackerSeconds * dice.between(0.6, 1.4);
     room.predictionSeconds = errors.lightSeconds * dice.between(0.7, 1.3);
     for (InstalledProjector& projector : room.projectors) changeLight(projector, errors, dice);
+    for (glm::vec3* color : {&room.deviceColor, &room.tableColor})
+        for (int channel = 0; channel < 3; ++channel)
+            (*color)[channel] *= static_cast<float>(std::exp(-std::abs(dice.normal(errors.color))));
     return room;
 }
 

@@ -24,14 +24,15 @@ struct LabErrors {
     double lightSeconds = 0.07;           ///< from a picture's frame to its light, in the mean
     double gain = 0.12;                   ///< of the channels of a projector
     double black = 0.004;                 ///< light of a projector's black
+    double color = 0.04;                  ///< of the bare device and table, sRGB: they are darker than believed
     double trackerNoiseMillimetres = 1.0; ///< of each pose
     double trackerNoiseDegrees = 0.2;     ///< of each pose
 };
 
 /// The virtual lab's truth beside a room as it is believed to be: what stands in the lab, with errors of these sizes in
 /// all that comes after projector and camera (tracker, device on its body, pointer, eye, servos of this rig, delays,
-/// light). Projectors and cameras keep their lenses and poses. Equal seeds give equal rooms. Every actuator gets a
-/// `MeasuredServo` with its true curve, which rises strictly.
+/// light, bare colours). Projectors and cameras keep their lenses and poses. Equal seeds give equal rooms. Every
+/// actuator gets a `MeasuredServo` with its true curve, which rises strictly.
 [[nodiscard]] Installation trueRoom(const Installation& believed, std::span<const Actuator> actuators,
                                     std::uint32_t seed, const LabErrors& errors = {});
 

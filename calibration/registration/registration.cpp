@@ -11,6 +11,7 @@
 #include "calibration/registration/pivot.h"
 #include "calibration/registration/refusing.h"
 #include "calibration/registration/surface_fit.h"
+#include "core/scene/measured_sigma.h"
 
 namespace lumorph {
 
@@ -61,7 +62,12 @@ std::string worthOf(const Registration& result) {
            " off (RMS), the worst " + mm(result.fresh.worst);
 }
 
-Origin measured(std::string method) { return {Origin::Way::measured, std::move(method), utcDate()}; }
+Origin measured(std::string method, const MeasuredSigma& sigma) {
+    return {Origin::Way::measured, withSigma(std::move(method), sigma), utcDate()};
+}
+Origin measured(std::string method, const Registration& result) {
+    return measured(std::move(method), {result.shiftSigma, result.turnSigma, 0.0});
+}
 
 template <typename Place> void take(Registration& result, Place&& place) {
     result.rms = place.rms;
@@ -107,7 +113,7 @@ void solvePointer(const PointerCapture& capture, Registration& result) {
     result.shiftSigma = glm::length(pivot.tipSigma);
     result.fresh = checkFresh(dimpleErrors(capture, pivot.tip), kFreshTip);
     result.installation.pointerTip = glm::vec3(pivot.tip);
-    result.installation.origins.pointer = measured("pivoting, " + std::to_string(pivot.poses) + " poses");
+    result.installation.origins.pointer = measured("pivoting, " + std::to_string(pivot.poses) + " poses", result);
     result.summary = "The pointer's tip is known to " + mm(result.shiftSigma) + "; " + worthOf(result) + ".";
 }
 
@@ -115,7 +121,7 @@ void solvePointer(const PointerCapture& capture, Registration& result) {
 
 void keepTracker(Registration& result, const Pose& worldFromTracker, std::string method) {
     result.installation.worldFromTracker = matrix(worldFromTracker);
-    result.installation.origins.tracker = measured(std::move(method));
+    result.installation.origins.tracker = measured(std::move(method), result);
     result.summary = "The tracker's world lies in the room's to " + mm(result.shiftSigma) + " and " +
                      number(result.turnSigma / kDegree, 2) + " degrees; " + worthOf(result) + ".";
 }
@@ -180,7 +186,7 @@ void solveBoard(const BoardCapture& capture, const CaptureFault* undo, const Pro
 
 void keepDevice(Registration& result, const Pose& bodyFromDevice, std::string method) {
     result.installation.bodyFromDevice = matrix(bodyFromDevice);
-    result.installation.origins.deviceBody = measured(std::move(method));
+    result.installation.origins.deviceBody = measured(std::move(method), result);
     result.summary = "The device lies on its body to " + mm(result.shiftSigma) + " and " +
                      number(result.turnSigma / kDegree, 2) + " degrees; " + worthOf(result) + ".";
 }
@@ -238,7 +244,8 @@ void solveEye(const EyeCapture& capture, const CaptureFault* undo, const Progres
     result.warnings = std::move(place.warnings);
     result.fresh = checkFresh(errorsOf(rowsOf(capture.fresh, figures.tip, undo), figures), kFreshEye);
     result.installation.eyeFromHead = glm::vec3(figures.eyeFromHead);
-    result.installation.origins.eyeOffset = measured("alignments, " + std::to_string(capture.alignments.size()));
+    result.installation.origins.eyeOffset =
+        measured("alignments, " + std::to_string(capture.alignments.size()), result);
     result.summary = "The eye is known to " + mm(result.shiftSigma) + "; " + worthOf(result) + ".";
 }
 
@@ -279,9 +286,13 @@ void solveJointly(const JointCapture& capture, const Progress& progress, Registr
     result.installation.pointerTip = glm::vec3(refined.figures.tip);
     result.installation.bodyFromDevice = matrix(refined.figures.bodyFromDevice);
     result.installation.eyeFromHead = glm::vec3(refined.figures.eyeFromHead);
-    const Origin origin = measured("all that was touched and aimed at, together");
+    const char* const method = "all that was touched and aimed at, together";
+    const registration::Sigmas& sigmas = refined.sigmas;
     Installation::Origins& origins = result.installation.origins;
-    origins.tracker = origins.pointer = origins.deviceBody = origins.eyeOffset = origin;
+    origins.tracker = measured(method, {sigmas.trackerShift, sigmas.trackerTurn, 0.0});
+    origins.pointer = measured(method, {glm::length(sigmas.tip), 0.0, 0.0});
+    origins.deviceBody = measured(method, {sigmas.deviceShift, sigmas.deviceTurn, 0.0});
+    origins.eyeOffset = measured(method, {glm::length(sigmas.eye), 0.0, 0.0});
     result.summary = "All together: " + worthOf(result) + ".";
 }
 

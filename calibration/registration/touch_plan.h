@@ -28,6 +28,7 @@ struct PlannedDot {
 struct PlannedLandmark {
     glm::dvec3 onModel{0.0}; ///< device frame, metres
     glm::dvec3 outward{0.0, 1.0, 0.0};
+    bool operator==(const PlannedLandmark&) const = default;
 };
 [[nodiscard]] std::vector<PlannedLandmark> planLandmarks(const Rig& rig, std::size_t count);
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <utility>
 
 #include <glm/geometric.hpp>
@@ -11,6 +12,7 @@
 #include "calibration/servos/servo_judge.h"
 #include "core/base/error.h"
 #include "core/scene/measured_servos.h"
+#include "core/scene/measured_sigma.h"
 
 namespace lumorph {
 
@@ -269,7 +271,10 @@ Installation withServos(const Installation& room, const ServoCalibration& measur
         if (before != room.servos.end()) curve.lagSeconds = before->lagSeconds; // another measurement's figure
         edited.servos.push_back(std::move(curve));
     }
-    markOrigins(room, edited, {Origin::Way::measured, method, utcDate()});
+    // The median of what the curves say of states that they were not made of, as a standard deviation.
+    constexpr double kSigmaOfMedian = 1.4826, kDegree = std::numbers::pi / 180.0;
+    const MeasuredSigma sigma{0.0, kSigmaOfMedian * kDegree * measured.freshDegrees, 0.0};
+    markOrigins(room, edited, {Origin::Way::measured, withSigma(method, sigma), utcDate()});
     return edited;
 }
 

@@ -95,12 +95,13 @@ struct MatchFrame {
     std::shared_ptr<const Installation> installation; ///< of the wish
     std::shared_ptr<const SceneAssets> assets;
     double sceneSeconds = 0.0;
-    glm::mat4 worldFromDevice{1.0F};  ///< predicted for the moment at which the frame is seen
-    std::optional<glm::vec3> eye;     ///< of the viewer who is followed, predicted likewise; world metres
-    std::string viewer;               ///< his name; empty for the scene's own eye
-    bool handingOver = false;         ///< the eye glides from one viewer to the next
-    std::vector<double> viewStrokes;  ///< what view dependence asks for; empty while it is off or servos rest
-    std::vector<double> splitStrokes; ///< what the frequency split asks for; empty where servos follow none
+    glm::mat4 worldFromDevice{1.0F};   ///< predicted for the moment at which the frame is seen
+    std::optional<glm::vec3> eye;      ///< of the viewer who is followed, predicted likewise; world metres
+    std::string viewer;                ///< his name; empty for the scene's own eye
+    bool handingOver = false;          ///< the eye glides from one viewer to the next
+    std::vector<double> viewStrokes;   ///< what view dependence asks for; empty while it is off or servos rest
+    std::vector<double> unbentStrokes; ///< `wantedStrokes` without it; empty likewise
+    std::vector<double> splitStrokes;  ///< what the frequency split asks for; empty where servos follow none
 
     std::shared_ptr<const ShowProgram> program; ///< that was asked in this frame; empty: none
     double programSeconds = 0.0;                ///< its time, ShowMoment::seconds
@@ -110,6 +111,7 @@ struct MatchFrame {
     std::function<std::string()> keepsake;      ///< that it wants kept: ShowContent::keepsake
     /// Why the wish's program is asked no more, and that the show goes on without it; in every frame from its end on.
     std::string programError;
+    bool comparesBend = false; ///< it wants the device seen without and with view dependence, see BendComparison
 
     MatchTimes ms;
 };

@@ -188,6 +188,7 @@ MatchWish MatchLoop::Data::driven(const MatchWish& wish, double sinceLast, Match
 void MatchLoop::Data::joinBends(const MatchWish& wish, MatchFrame& frame) {
     const StageTimer timer(clock, frame.ms.rule);
     frame.viewStrokes = drive.bends(wish, frame);
+    if (!frame.viewStrokes.empty()) frame.unbentStrokes = frame.wantedStrokes;
     for (std::size_t i = 0; i < frame.viewStrokes.size(); ++i)
         frame.wantedStrokes[i] = std::max(frame.wantedStrokes[i], frame.viewStrokes[i]);
     if (frame.viewStrokes.empty() || !wish.field) return;

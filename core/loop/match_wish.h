@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/base/clock.h"
+#include "core/base/words.h"
 #include "core/loop/match_field.h"
 #include "core/loop/match_target.h"
 #include "core/loop/pose_stream.h"
@@ -57,7 +58,8 @@ struct MatchWish {
     /// Asked once a frame for scene and assets, which then take the place of the wish's own, and for what servos follow
     /// if the driver is `program`; not asked while a recording shows. May be empty.
     std::shared_ptr<ShowProgram> program;
-    std::shared_ptr<ShowInputs> inputs; ///< of that program; the same queue in every wish for it; may be empty
+    std::shared_ptr<ShowInputs> inputs;    ///< of that program; the same queue in every wish for it; may be empty
+    Language language = Language::english; ///< in which that program writes
 };
 
 } // namespace lumorph

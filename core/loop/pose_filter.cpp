@@ -22,6 +22,9 @@ constexpr double kRestTurn = 5e-3;    // radians
 constexpr double kRestTurning = 0.25; // radians a second
 
 constexpr double kRestSeconds = 0.15;      // over which samples are averaged at rest
+constexpr double kNoiseSeconds = 0.7;      // over which the noise of samples is averaged
+constexpr double kSlowestNoise = 0.026;    // seconds between samples that tell their noise
+constexpr double kMostNoise = 8.0;         // times what is expected
 constexpr double kCalmSeconds = 0.12;      // in which motion is forgotten
 constexpr double kFadeSeconds = 0.15;      // in which an acceleration fades
 constexpr double kUsualSeconds = 0.25;     // over which the usual acceleration is averaged
@@ -96,6 +99,23 @@ glm::dvec3 MotionFilter::correct(const glm::dvec3& off) {
     return gain[0] * off;
 }
 
+void NoiseJudge::look(const glm::dvec3& way, double seconds) {
+    if (seconds > kSlowestNoise || std::abs(seconds - seconds_) > 0.3 * seconds_) count_ = 0;
+    seconds_ = seconds;
+    if (count_ == 2) {
+        const glm::dvec3 third = way - 2.0 * before_ + beforeThat_;
+        // 1 + 9 + 9 + 1 times the variance of a sample; one that is far off is a jump, no noise.
+        const double square = std::min(glm::dot(third, third) / (3.0 * 20.0), 9.0 * square_);
+        const double most = kMostNoise * kMostNoise * least_ * least_;
+        square_ = std::min(most, square_ + (1.0 - std::exp(-seconds / kNoiseSeconds)) * (square - square_));
+    }
+    beforeThat_ = before_;
+    before_ = way;
+    count_ = std::min(count_ + 1, 2);
+}
+
+double NoiseJudge::sigma() const { return seconds_ <= kSlowestNoise ? std::max(least_, std::sqrt(square_)) : least_; }
+
 void RestJudge::look(double way, double speed, double seconds) {
     excess_ = std::max({way / way_, speed / speed_, excess_ * std::exp(-seconds / kCalmSeconds)});
 }
@@ -106,15 +126,18 @@ double RestJudge::motion() const {
 }
 
 PoseFilter::PoseFilter()
-    : moving_(kMoving), moves_(kRestWay, kRestSpeed), turning_(kTurning), turns_(kRestTurn, kRestTurning) {}
+    : moving_(kMoving), moves_(kRestWay, kRestSpeed), places_(kMoving.measured), turning_(kTurning),
+      turns_(kRestTurn, kRestTurning), rotations_(kTurning.measured) {}
 
 void PoseFilter::restart(const Pose& pose) {
     moving_.restart();
     moves_.restart();
-    position_ = restPosition_ = pose.position;
+    places_.restart();
+    position_ = restPosition_ = measuredPosition_ = pose.position;
     turning_.restart();
     turns_.restart();
-    rotation_ = restRotation_ = pose.rotation;
+    rotations_.restart();
+    rotation_ = restRotation_ = measuredRotation_ = pose.rotation;
 }
 
 void PoseFilter::add(const Pose& pose, double seconds) {
@@ -128,9 +151,13 @@ void PoseFilter::addPosition(const glm::dvec3& measured, double seconds) {
     if (glm::length(off) > kJump + 0.5 * kMostAcceleration * seconds * seconds) {
         moving_.restart();
         moves_.restart();
-        position_ = restPosition_ = measured;
+        places_.restart();
+        position_ = restPosition_ = measuredPosition_ = measured;
         return;
     }
+    places_.look(measured - measuredPosition_, seconds);
+    measuredPosition_ = measured;
+    moving_.setMeasured(places_.sigma());
     position_ += moving_.correct(off);
     restPosition_ += restShare(seconds) * (measured - restPosition_);
     moves_.look(glm::distance(position_, restPosition_), glm::length(moving_.velocity()), seconds);
@@ -142,9 +169,13 @@ void PoseFilter::addRotation(const glm::dquat& measured, double seconds) {
     if (glm::length(off) > kJumpTurn + 0.5 * kMostTurning * seconds * seconds) {
         turning_.restart();
         turns_.restart();
-        rotation_ = restRotation_ = measured;
+        rotations_.restart();
+        rotation_ = restRotation_ = measuredRotation_ = measured;
         return;
     }
+    rotations_.look(turnBetween(measuredRotation_, measured), seconds);
+    measuredRotation_ = measured;
+    turning_.setMeasured(rotations_.sigma());
     rotation_ = turned(turning_.correct(off), rotation_);
     restRotation_ = turned(restShare(seconds) * turnBetween(restRotation_, measured), restRotation_);
     turns_.look(glm::length(turnBetween(restRotation_, rotation_)), glm::length(turning_.velocity()), seconds);

@@ -21,6 +21,8 @@ public:
         double acceleration = 0.0;
     };
     explicit MotionFilter(const Noise& noise) : noise_(noise) { restart(); }
+    /// Samples are noisier than was thought, or less: their standard deviation per axis.
+    void setMeasured(double sigma) noexcept { noise_.measured = sigma; }
 
     /// It has just been found, and nothing is known of its motion.
     void restart();
@@ -40,6 +42,26 @@ private:
     glm::dmat3 covariance_{0.0}; ///< of place, velocity and acceleration along one axis
     double usual_ = 0.0;         ///< length of the acceleration of late
     double step_ = 0.0;          ///< seconds of the last advance
+};
+
+/// How noisy samples are: by their third differences, in which no motion of a hand is left at 40 samples a second and
+/// more. A filter that trusts a noisy tracker too much swings when it looks ahead.
+class NoiseJudge {
+public:
+    /// Never less than `least`, which is also what slower samples are taken to have.
+    explicit NoiseJudge(double least) : least_(least), square_(least * least) {}
+    /// Nothing before counts, but for the noise.
+    void restart() noexcept { count_ = 0; }
+    /// The way from the sample before, which was so many seconds earlier.
+    void look(const glm::dvec3& way, double seconds);
+    /// Standard deviation per axis.
+    [[nodiscard]] double sigma() const;
+
+private:
+    double least_, square_;
+    glm::dvec3 before_{0.0}, beforeThat_{0.0}; ///< ways
+    double seconds_ = 0.0;                     ///< of the last
+    int count_ = 0;                            ///< of ways in even times, at most 2
 };
 
 /// Tells rest from motion, so that a thing at rest is still: its samples are averaged for long, and nothing is
@@ -77,10 +99,14 @@ private:
 
     MotionFilter moving_;
     RestJudge moves_;
+    NoiseJudge places_;
+    glm::dvec3 measuredPosition_{0.0};
     glm::dvec3 position_{0.0};
     glm::dvec3 restPosition_{0.0};
     MotionFilter turning_;
     RestJudge turns_;
+    NoiseJudge rotations_;
+    glm::dquat measuredRotation_{1.0, 0.0, 0.0, 0.0};
     glm::dquat rotation_{1.0, 0.0, 0.0, 0.0};
     glm::dquat restRotation_{1.0, 0.0, 0.0, 0.0};
 };

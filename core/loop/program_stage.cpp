@@ -127,6 +127,7 @@ MatchWish ProgramStage::answered(const MatchWish& wish, std::span<const double> 
     moment.installation = wish.installation;
     moment.worldFromDevice = worldFromDevice_;
     moment.inputs = frame.inputs;
+    moment.language = wish.language;
     ShowContent content;
     {
         const StageTimer timer(clock, frame.ms.program);
@@ -137,6 +138,7 @@ MatchWish ProgramStage::answered(const MatchWish& wish, std::span<const double> 
     frame.sounds = std::move(content.sounds);
     frame.caption = std::move(content.caption);
     frame.keepsake = std::move(content.keepsake);
+    frame.comparesBend = content.comparesBend;
     MatchWish shown = wish;
     if (content.scene) {
         shown.scene = content.scene;

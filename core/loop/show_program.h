@@ -9,6 +9,7 @@
 
 #include <glm/mat4x4.hpp>
 
+#include "core/base/words.h"
 #include "core/geometry/triangle_mesh.h"
 #include "core/loop/match_field.h"
 #include "core/loop/pose_stream.h"
@@ -44,6 +45,7 @@ struct ShowMoment {
     std::shared_ptr<const Installation> installation; ///< what stands in the room; always there
     glm::mat4 worldFromDevice{1.0F};                  ///< predicted as `bodies` are
     std::span<const ShowInput> inputs;                ///< since the frame before, the oldest first
+    Language language = Language::english;            ///< of what it writes into its scene
 };
 
 /// How servos follow a program's target.
@@ -72,6 +74,9 @@ struct ShowContent {
     /// In the frame in which it has changed: makes what the program shall be given at its next start, best runs for
     /// example. It is called by whoever keeps that, later and in another thread, so it holds copies. Empty: as before.
     std::function<std::string()> keepsake;
+    /// The device shall be seen twice, beside each other: without and with view dependence (R23), whichever the servos
+    /// do.
+    bool comparesBend = false;
 };
 
 /// An application: asked once a frame for what is shown and felt. It runs in the loop's thread, knows neither window

@@ -30,4 +30,20 @@ Pose inRoom(const Installation& installation, PoseRole role, const Pose& tracked
     return pose;
 }
 
+Pose trackedOf(const Installation& installation, PoseRole role, const Pose& stands) {
+    Pose body = stands;
+    if (role == PoseRole::device && installation.bodyFromDevice != kNowhereElse) {
+        body.rotation = body.rotation * glm::conjugate(turnOf(installation.bodyFromDevice));
+        body.position -= body.rotation * glm::dvec3(installation.bodyFromDevice[3]);
+    }
+    const glm::vec3 beside = role == PoseRole::pointer ? installation.pointerTip
+                             : role == PoseRole::head  ? installation.eyeFromHead
+                                                       : glm::vec3(0.0F);
+    if (beside != glm::vec3(0.0F)) body.position -= body.rotation * glm::dvec3(beside);
+    const glm::mat4& world = installation.worldFromTracker;
+    if (world == kNowhereElse) return body;
+    const glm::dquat back = glm::conjugate(turnOf(world));
+    return {back * (body.position - glm::dvec3(world[3])), back * body.rotation};
+}
+
 } // namespace lumorph

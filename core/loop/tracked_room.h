@@ -10,6 +10,11 @@ namespace lumorph {
 /// whose eye is `eyeFromHead` away. Figures that say nothing (identity, zero) leave the pose bit for bit.
 [[nodiscard]] Pose inRoom(const Installation& installation, PoseRole role, const Pose& tracked);
 
+/// What a tracker says of a body that stands for this there in the room: of a device, of a pointer's tip, or of the eye
+/// of a head, whose body is `eyeFromHead` away. `inRoom` leads back, for a head to its body. Figures that say nothing
+/// leave the pose bit for bit.
+[[nodiscard]] Pose trackedOf(const Installation& installation, PoseRole role, const Pose& stands);
+
 /// The body itself in the room, whatever it stands for.
 [[nodiscard]] Pose bodyInRoom(const Installation& installation, const Pose& tracked);
 

@@ -33,6 +33,19 @@ template <class Part> const Part* partBefore(const std::vector<Part>& parts, con
     return named;
 }
 
+/// A servo has two figures of two measurements: its curve, and its lag, which is one of the delays.
+std::vector<MeasuredServo> curvesOf(std::vector<MeasuredServo> servos) {
+    std::erase_if(servos, [](const MeasuredServo& servo) { return servo.points.empty(); });
+    for (MeasuredServo& servo : servos) servo.lagSeconds = 0.0;
+    return servos;
+}
+
+std::vector<MeasuredServo> lagsOf(std::vector<MeasuredServo> servos) {
+    std::erase_if(servos, [](const MeasuredServo& servo) { return servo.lagSeconds == 0.0; });
+    for (MeasuredServo& servo : servos) servo.points.clear();
+    return servos;
+}
+
 } // namespace
 
 Installation figuresOf(Installation installation) {
@@ -69,12 +82,13 @@ void markOrigins(const Installation& before, Installation& edited, const Origin&
     mark(before.deviceColor == edited.deviceColor && before.tableColor == edited.tableColor, then.colors, now.colors,
          origin);
     mark(before.eyeFromHead == edited.eyeFromHead, then.eyeOffset, now.eyeOffset, origin);
-    mark(before.predictionSeconds == edited.predictionSeconds && before.trackerSeconds == edited.trackerSeconds,
+    mark(before.predictionSeconds == edited.predictionSeconds && before.trackerSeconds == edited.trackerSeconds &&
+             lagsOf(before.servos) == lagsOf(edited.servos),
          then.delays, now.delays, origin);
     mark(before.worldFromTracker == edited.worldFromTracker, then.tracker, now.tracker, origin);
     mark(before.bodyFromDevice == edited.bodyFromDevice, then.deviceBody, now.deviceBody, origin);
     mark(before.pointerTip == edited.pointerTip, then.pointer, now.pointer, origin);
-    mark(before.servos == edited.servos, then.servos, now.servos, origin);
+    mark(curvesOf(before.servos) == curvesOf(edited.servos), then.servos, now.servos, origin);
 }
 
 std::string utcDate() {

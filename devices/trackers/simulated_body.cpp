@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "core/loop/tracked_room.h"
+
 namespace lumorph {
 
 namespace {
@@ -21,6 +23,11 @@ glm::dvec3 placeOf(const std::string& body) {
     return {0.0, 0.0, 0.0};
 }
 
+PoseRole roleOf(const std::string& body) {
+    if (body == "head") return PoseRole::head;
+    return body == "device" ? PoseRole::device : PoseRole::pointer;
+}
+
 } // namespace
 
 SimulatedOrders ordersOf(const SimulatedBodyAddress& address) {
@@ -33,7 +40,8 @@ SimulatedOrders ordersOf(const SimulatedBodyAddress& address) {
 }
 
 SimulatedBody::SimulatedBody(const SimulatedBodyAddress& address, Microseconds start)
-    : name_(address.body), orders_(ordersOf(address)), start_(start), paced_(start), random_(kSeed) {
+    : name_(address.body), role_(roleOf(address.body)), orders_(ordersOf(address)), start_(start), paced_(start),
+      random_(kSeed) {
     held_.emplace_back(start, std::nullopt);
     frame_.bodies = {{1, name_, true, {}}};
 }
@@ -51,6 +59,8 @@ void SimulatedBody::order(const SimulatedOrders& orders, Microseconds now) {
     orders_ = orders;
 }
 
+void SimulatedBody::setRoom(std::shared_ptr<const Installation> room) { room_ = std::move(room); }
+
 Pose SimulatedBody::path(double seconds) const {
     const double reach = name_ == "device" ? 0.05 : 0.2;
     const glm::dvec3 way(std::sin(0.7 * seconds), 0.3 * std::sin(0.5 * seconds), 0.6 * std::sin(1.1 * seconds + 1.0));
@@ -61,6 +71,12 @@ Pose SimulatedBody::truth(Microseconds time) const {
     auto last = std::find_if(held_.rbegin(), held_.rend(), [&](const auto& one) { return one.first <= time; });
     const std::optional<Pose>& held = last == held_.rend() ? held_.front().second : last->second;
     return held.value_or(path(1e-6 * static_cast<double>((time - start_).count())));
+}
+
+/// As the tracker has it in its own world, older than it knows.
+Pose SimulatedBody::reported(Microseconds time) const {
+    if (!room_) return truth(time);
+    return trackedOf(*room_, role_, truth(time - Microseconds(std::llround(1e6 * room_->trackerSeconds))));
 }
 
 Microseconds SimulatedBody::timeOf(std::uint64_t step) const {
@@ -91,7 +107,7 @@ void SimulatedBody::advance(Microseconds now, const std::function<void(const Tra
     for (; timeOf(step_) + late <= now; ++step_, ++frames_) {
         const bool dropped = chance(random_) < orders_.dropShare;
         TrackedBody& body = frame_.bodies.front();
-        body.pose = truth(timeOf(step_));
+        body.pose = reported(timeOf(step_));
         body.valid = !orders_.hidden;
         if (orders_.noiseMillimetres > 0.0)
             for (int axis = 0; axis < 3; ++axis) body.pose.position[axis] += noise(random_);

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <deque>
 #include <functional>
+#include <memory>
 #include <random>
 #include <utility>
 
@@ -22,19 +23,24 @@ public:
 
     /// From `now` on.
     void order(const SimulatedOrders& orders, Microseconds now);
+    /// The room in which it truly moves, as SimulatedSteering::room has it.
+    void setRoom(std::shared_ptr<const Installation> room);
     /// Hands over all frames that have arrived by `now`, oldest first; after a pause at most those of a second.
     void advance(Microseconds now, const std::function<void(const TrackerFrame&)>& onFrame);
     /// Where it is on its own way, so many seconds after the start: within 0.3 m of its place, never faster than 0.5
     /// m/s.
     [[nodiscard]] Pose path(double seconds) const;
-    /// Where the body truly was at a time of the last second or so.
+    /// Where what the body stands for truly was in the room at a time of the last second or so.
     [[nodiscard]] Pose truth(Microseconds time) const;
 
 private:
     [[nodiscard]] Microseconds timeOf(std::uint64_t step) const;
     void spoil(TrackedBody& body);
+    [[nodiscard]] Pose reported(Microseconds time) const;
 
     std::string name_;
+    PoseRole role_;
+    std::shared_ptr<const Installation> room_; ///< null: the tracker's world
     SimulatedOrders orders_;
     Microseconds start_;
     Microseconds paced_;                                            ///< since when frames come at this rate

@@ -27,6 +27,7 @@ public:
         const Microseconds now = options_.clock->now();
         const SimulatedOrders orders = steering_->orders();
         body_.order(orders, now);
+        body_.setRoom(steering_->room());
         body_.advance(now, [this](const TrackerFrame& frame) { deliver(frame); });
         steering_->tellTruth(body_.truth(now));
         if (orders.dropShare >= 1.0)

@@ -46,7 +46,8 @@ struct TrackerHub::Data {
     TrackerOpener opener;
 
     std::mutex tapping;
-    Tap tap;
+    std::map<int, Tap> taps;
+    int nextTap = 1;
 
     mutable std::mutex mutex; ///< never held while a tracker is opened or ended: its thread may be in take()
     RoleMap roles;
@@ -182,15 +183,21 @@ std::vector<TrackerStatus> TrackerHub::status() const {
     return all;
 }
 
-void TrackerHub::setTap(Tap tap) {
+int TrackerHub::addTap(Tap tap) {
     const std::scoped_lock lock(data_->tapping);
-    data_->tap = std::move(tap);
+    data_->taps[data_->nextTap] = std::move(tap);
+    return data_->nextTap++;
+}
+
+void TrackerHub::removeTap(int id) {
+    const std::scoped_lock lock(data_->tapping);
+    data_->taps.erase(id);
 }
 
 void TrackerHub::take(const std::string& source, const TrackerFrame& frame) {
     {
         const std::scoped_lock lock(data_->tapping);
-        if (data_->tap) data_->tap(source, frame);
+        for (const auto& [id, tap] : data_->taps) tap(source, frame);
     }
     const Microseconds now = data_->clock->now();
     // A time to come would make all that is measured before it come too late.

@@ -34,9 +34,11 @@ public:
     /// Poses from elsewhere (a camera that sees a board, a replay) take the same way.
     void take(const std::string& source, const TrackerFrame& frame);
     using Tap = std::function<void(const std::string& source, const TrackerFrame& frame)>;
-    /// Called with all that arrives, whatever role it has, in the thread that brings it; must return at once. When this
-    /// returns, the one before is called no more.
-    void setTap(Tap tap);
+    /// Called with all that arrives, whatever role it has, in the thread that brings it; must return at once. Returns
+    /// its number.
+    int addTap(Tap tap);
+    /// When this returns, it is called no more.
+    void removeTap(int id);
 
 private:
     struct Data;

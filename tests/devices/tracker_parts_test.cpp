@@ -8,6 +8,7 @@
 #include <glm/geometric.hpp>
 
 #include "core/base/error.h"
+#include "core/loop/tracked_room.h"
 #include "devices/trackers/clock_match.h"
 #include "devices/trackers/rate_meter.h"
 #include "devices/trackers/simulated_body.h"
@@ -150,6 +151,34 @@ TEST(SimulatedBody, NoiseAndDropsAreAsOrdered) {
     }
     EXPECT_NEAR(std::sqrt(sum / static_cast<double>(frames.size())), 0.002, 0.0002);
     EXPECT_EQ(framesOf({"head", 0.0, 1.0, 0.0, 100.0}, 5.0).size(), 0U);
+}
+
+TEST(SimulatedBody, IsSeenAsTheTrackerOfItsRoomSeesIt) {
+    Installation room;
+    room.worldFromTracker = glm::mat4_cast(glm::angleAxis(1.1F, glm::vec3(0.0F, 1.0F, 0.0F)));
+    room.worldFromTracker[3] = glm::vec4(0.6F, 0.3F, -0.4F, 1.0F);
+    room.bodyFromDevice[3] = glm::vec4(0.01F, -0.02F, 0.005F, 1.0F);
+    room.pointerTip = {0.0F, -0.16F, 0.01F};
+    room.eyeFromHead = {0.02F, -0.03F, 0.08F};
+    room.trackerSeconds = 0.012;
+    for (const auto& [name, role] :
+         {std::pair{"head", PoseRole::head}, {"device", PoseRole::device}, {"pointer", PoseRole::pointer}}) {
+        SimulatedBody body({name, 0.0, 0.0, 20.0, 100.0}, timeAt(100.0));
+        body.setRoom(std::make_shared<const Installation>(room));
+        std::vector<TrackerFrame> frames;
+        for (int k = 0; k < 500; ++k)
+            body.advance(timeAt(100.0 + 0.01 * k), [&](const TrackerFrame& frame) { frames.push_back(frame); });
+        const TrackerFrame& frame = frames.at(300);
+        EXPECT_EQ(frame.arrived - frame.measured, Microseconds{20'000}) << "as late as the tracker knows";
+        const double when = 1e-6 * static_cast<double>((frame.measured - timeAt(100.0)).count());
+        const Pose truly = body.path(when - 0.012);
+        Pose seen = inRoom(room, role, frame.bodies.at(0).pose);
+        if (role == PoseRole::head) seen.position += seen.rotation * glm::dvec3(room.eyeFromHead);
+        EXPECT_LT(glm::distance(seen.position, truly.position), 1e-6) << name;
+        EXPECT_GT(std::abs(glm::dot(seen.rotation, truly.rotation)), 1.0 - 1e-9) << name;
+        EXPECT_GT(glm::distance(frame.bodies.at(0).pose.position, truly.position), 0.2) << "in its own world";
+        EXPECT_EQ(body.truth(frame.measured), body.path(when)) << "the truth is the room's";
+    }
 }
 
 TEST(SimulatedBody, MovesSlowlyAndSleepsOverAPause) {

@@ -1,4 +1,8 @@
 #include <algorithm>
+#include <atomic>
+#include <filesystem>
+#include <fstream>
+#include <stdexcept>
 
 #include <QAbstractButton>
 #include <QLabel>
@@ -6,6 +10,7 @@
 
 #include "app/applications/registry/demos.h"
 #include "app/studio/base/operator_pin.h"
+#include "app/studio/shell/application_turn.h"
 #include "app/studio/shell/applications_page.h"
 #include "app/studio/shell/visitor_desk.h"
 #include "app/studio/shell/visitor_layer.h"
@@ -21,6 +26,38 @@ namespace {
 using namespace std::chrono_literals;
 using studio::ViewPane;
 using studio::VisitorLayer;
+
+/// A program that ends by an error when the test says so.
+class Breakable final : public ShowProgram {
+public:
+    explicit Breakable(const std::atomic<bool>& breaks) : breaks_(breaks) {}
+    ShowContent frame(const ShowMoment& /*moment*/) override {
+        if (breaks_) throw std::runtime_error("it broke");
+        return {};
+    }
+
+private:
+    const std::atomic<bool>& breaks_;
+};
+
+/// While it lives, nothing that is bundled is found.
+class ResourcesElsewhere {
+public:
+    explicit ResourcesElsewhere(const std::filesystem::path& folder) : before_(qgetenv("LUMORPH_RESOURCES")) {
+        qputenv("LUMORPH_RESOURCES", QByteArray::fromStdString(folder.string()));
+    }
+    ~ResourcesElsewhere() {
+        if (before_.isNull())
+            qunsetenv("LUMORPH_RESOURCES");
+        else
+            qputenv("LUMORPH_RESOURCES", before_);
+    }
+    ResourcesElsewhere(const ResourcesElsewhere&) = delete;
+    ResourcesElsewhere& operator=(const ResourcesElsewhere&) = delete;
+
+private:
+    QByteArray before_;
+};
 
 class ApplicationsWindow : public ::testing::Test {
 protected:
@@ -45,6 +82,14 @@ protected:
     void moveOver(double x, double y) {
         ViewPane& pane = eye();
         QTest::mouseMove(&pane, QPoint(static_cast<int>(x * pane.width()), static_cast<int>(y * pane.height())));
+    }
+    void enterKiosk() {
+        studio().commands.find("view.kiosk")->trigger();
+        for (int twice = 0; twice < 2; ++twice) {
+            for (const char* digit : {"2", "7", "1", "8"}) window.click(QString("pin.digit.") + digit);
+            window.click("pin.accept");
+        }
+        ASSERT_TRUE(eventually([&] { return window.window().isFullScreen(); }));
     }
     void picture(const QString& name) {
         (void)eventually([&] { return !eye().picture().isNull(); }, 60s);
@@ -136,12 +181,7 @@ TEST_F(ApplicationsWindow, InTheKioskVisitorsChooseAndPlayAndTheNextComesWhenThe
     studio().settings.setNextMinutes(true, 0.0);
     studio().project.openDemo("labyrinth");
     ASSERT_TRUE(eventually([&] { return shows("labyrinth"); }, 30s));
-    studio().commands.find("view.kiosk")->trigger();
-    for (int twice = 0; twice < 2; ++twice) {
-        for (const char* digit : {"2", "7", "1", "8"}) window.click(QString("pin.digit.") + digit);
-        window.click("pin.accept");
-    }
-    ASSERT_TRUE(eventually([&] { return window.window().isFullScreen(); }));
+    enterKiosk();
     EXPECT_TRUE(layer().handShown());
     QTest::mouseClick(&eye(), Qt::LeftButton, {}, QPoint(eye().width() - 40, eye().height() / 2));
     EXPECT_TRUE(eventually([&] { return !layer().handShown(); })) << "a press plays, too";
@@ -171,8 +211,67 @@ TEST_F(ApplicationsWindow, InTheKioskVisitorsChooseAndPlayAndTheNextComesWhenThe
     pass(3500ms);
     EXPECT_TRUE(shows("techniques")) << "somebody plays";
     QTest::keyClick(&eye(), Qt::Key_A);
-    const std::string next = studio::applicationAfter("techniques")->name;
+    const SteadyClock clock;
+    const std::string next = studio::ApplicationTurn(demos(), {}, clock).after("techniques")->name;
     EXPECT_TRUE(eventually([&] { return shows(next); }, 30s)) << "nobody came";
+}
+
+TEST_F(ApplicationsWindow, WhoseMapHasGoneAreLeftOutOfTheKiosksTurnUntilItIsBack) {
+    studio().settings.setNextMinutes(true, 0.0);
+    const std::filesystem::path map = folder / "valley.geojson", missing = folder / "missing.geojson";
+    studio().settings.setToldTo("navigation", {{"map", missing.string()}});
+    studio().project.openDemo("labyrinth");
+    ASSERT_TRUE(eventually([&] { return shows("labyrinth"); }, 30s));
+    enterKiosk();
+    studio().settings.setNextMinutes(true, 0.005); // 0.3 s
+    EXPECT_TRUE(eventually([&] { return shows("ambient"); }, 60s)) << "past navigation";
+    studio().settings.setNextMinutes(true, 0.0);
+    const auto notices = studio().notices.at("visitors");
+    ASSERT_EQ(notices.size(), 1U);
+    EXPECT_EQ(notices.front().subject.toStdString(), demoNamed("navigation").title.english);
+    EXPECT_TRUE(notices.front().why.contains("missing.geojson")) << notices.front().why.toStdString();
+    EXPECT_TRUE(notices.front().remedy.contains("10 minutes")) << notices.front().remedy.toStdString();
+    EXPECT_EQ(window.findNow<QWidget>("visitors.rest"), nullptr);
+
+    window.click("visitors.cards");
+    (void)window.find<QAbstractButton>("applications.labyrinth");
+    EXPECT_EQ(window.findNow<QWidget>("applications.navigation"), nullptr) << "nobody is led there in vain";
+    window.screenshot("kiosk-left-out");
+    window.click("applications.back");
+
+    std::ofstream(missing) << R"({"type":"FeatureCollection","features":[{"type":"Feature",)"
+                           << R"("properties":{"height":12},"geometry":{"type":"Polygon","coordinates":)"
+                           << R"([[[9.0,0.0],[9.001,0.0],[9.001,0.001],[9.0,0.001],[9.0,0.0]]]}}]})";
+    window.click("visitors.cards");
+    window.click("applications.navigation");
+    EXPECT_TRUE(eventually([&] { return shows("navigation"); }, 60s)) << "its file is back";
+    EXPECT_TRUE(studio().notices.at("visitors").empty());
+    studio().settings.setToldTo("navigation", {});
+}
+
+TEST_F(ApplicationsWindow, OfWhichNoneCanBeShownLeaveAQuietPageInTheKiosk) {
+    studio().settings.setNextMinutes(true, 0.0);
+    std::atomic<bool> breaks = false;
+    studio().project.openDemo("labyrinth", [&breaks](std::uint64_t) -> std::unique_ptr<ShowProgram> {
+        return std::make_unique<Breakable>(breaks);
+    });
+    ASSERT_TRUE(eventually([&] { return studio().loop.program() != nullptr; }, 30s));
+    // All others have something to open that is not there.
+    int opened = 0, failures = 0;
+    QObject::connect(&studio().project, &studio::ProjectService::programOpened, &window.window(), [&] { ++opened; });
+    QObject::connect(&studio().project, &studio::ProjectService::demoFailed, &window.window(), [&] { ++failures; });
+    const ResourcesElsewhere nowhere(folder / "nowhere");
+    enterKiosk();
+    EXPECT_EQ(window.findNow<QWidget>("visitors.rest"), nullptr);
+    breaks = true;
+    ASSERT_NE(window.find<QWidget>("visitors.rest"), nullptr);
+    window.screenshot("kiosk-rest");
+    const int tried = failures;
+    EXPECT_GE(tried, 3);
+    pass(5s);
+    EXPECT_EQ(failures, tried) << "none is tried again and again";
+    EXPECT_EQ(opened, 0);
+    EXPECT_NE(window.findNow<QWidget>("visitors.rest"), nullptr);
 }
 
 TEST_F(ApplicationsWindow, AreToldByTheHostWhatToShow) {

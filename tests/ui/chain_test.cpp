@@ -125,10 +125,24 @@ TEST_F(Chain, AllThatIsMissingIsMeasuredOneAfterTheOther) {
     for (const studio::ChainLink& link : studio::chainLinks())
         EXPECT_EQ(badge(link.key), "Measured") << link.key << ": " << story();
     EXPECT_EQ(room().servos.size(), window.state().rig.rig->actuatorCount());
+    EXPECT_EQ(room().projectors.front().responseCurve.size(), 65U);
+    EXPECT_GT(room().projectors.front().black.g, 0.0F);
+    EXPECT_EQ(room().origins.colors.way, Origin::Way::measured);
     window.screenshot("chain-checked");
+    window.click("chain.link.light");
+    pass(300ms);
+    window.screenshot("chain-light-measured");
     window.click("chain.link.servos");
     pass(300ms);
     window.screenshot("chain-servos-measured");
+    window.click("chain.link.delays");
+    pass(300ms);
+    window.screenshot("chain-delays-measured");
+    EXPECT_EQ(room().origins.delays.way, Origin::Way::measured);
+    for (const MeasuredServo& servo : room().servos) {
+        EXPECT_GT(servo.lagSeconds, 0.02) << servo.actuator;
+        EXPECT_FALSE(servo.points.empty()) << "delays leave the curves as they are";
+    }
     window.click("chain.link.eye");
     pass(300ms);
     window.screenshot("chain-eye");
@@ -168,6 +182,7 @@ TEST_F(Chain, RecordingsAreReadInPlaceOfTheLab) {
     // The rest ends where the next recording is missing: nothing of the lab gets into a real room.
     studio::editInstallation(window.studio().document, "Measured before", [](Installation& room) {
         room.projectors.front().lens = {Origin::Way::measured, "structured light", "2026-11-20T10:00:00Z"};
+        room.projectors.front().response = {Origin::Way::measured, "flat light", "2026-11-20T10:10:00Z"};
     });
     window.click("chain.rest");
     EXPECT_TRUE(offers("Choose: Tracked body")) << story();
@@ -193,6 +208,67 @@ void writeBoard(const std::filesystem::path& tracked, const std::filesystem::pat
     second.precision(12);
     writePoses(first, inTracker, 0.0);
     writePoses(second, inRoom, later);
+}
+
+/// A hand on the simulated tracker of the pointer.
+class PointerHand {
+public:
+    PointerHand(StudioWindow& window, const glm::dvec3& tip) : window_(window), tip_(tip) {}
+    /// The tip at a place for a moment, the pointer turned so.
+    void hold(const glm::dvec3& place, const glm::dvec3& turn, std::chrono::milliseconds time = 20ms) {
+        SimulatedSteering& steering = *window_.studio().trackers.trackers().at(0).steering;
+        SimulatedOrders orders = steering.orders();
+        const glm::dquat rotation = rotationOfTurn(turn);
+        orders.held = Pose{place - rotation * tip_, rotation};
+        steering.order(orders);
+        pass(time);
+    }
+    void swing(const glm::dvec3& dimple, const std::function<bool()>& untilDone) {
+        for (double t = 0.0; t < 40.0 && !untilDone(); t += 0.02)
+            hold(dimple, {0.7 * std::sin(2.1 * t), 0.9 * std::sin(0.9 * t), 0.7 * std::cos(1.7 * t)});
+    }
+
+private:
+    StudioWindow& window_;
+    glm::dvec3 tip_;
+};
+
+TEST_F(Chain, PointerIsMeasuredWithTheTrackerThatIsConnected) {
+    ASSERT_TRUE(eventually([&] { return window.state().rig.rig && window.studio().jobs.running().empty(); }, 60s));
+    window.click("chain.link.pointer");
+    window.click("chain.way.live");
+    EXPECT_TRUE(window.text("chain.live.seen").startsWith("No tracker is connected")) << story();
+    ASSERT_TRUE(offers("Begin, with the tracker")) << story();
+    window.screenshot("chain-live-nothing");
+    next();
+    EXPECT_EQ(window.text("chain.card.title"), "It could not be measured");
+    window.studio().trackers.open("sim://pointer?rate=60");
+    ASSERT_TRUE(
+        eventually([&] { return window.text("chain.live.seen") == "The tracker sees all that is needed."; }, 10s));
+    const glm::dvec3 tip(0.01, -0.15, 0.02);
+    PointerHand hand(window, tip);
+    next();
+    ASSERT_TRUE(offers("Cancel")) << story();
+    const auto title = [&] { return window.text("chain.card.title"); };
+    ASSERT_TRUE(title().startsWith("Set the tip into a dimple")) << story();
+    hand.swing({0.1, 0.0, 0.2}, [&] { return title().contains("1 of 3"); });
+    ASSERT_TRUE(title().contains("1 of 3")) << story();
+    window.screenshot("chain-live-step");
+    for (int dimple = 0; dimple < 3; ++dimple)
+        for (int way = 0; way < 2; ++way) {
+            const QString asked = title();
+            for (int tries = 0; tries < 100 && title() == asked; ++tries)
+                hand.hold({0.2, 0.0, 0.1 * dimple}, {0.5 * way, 0.0, -0.4}, 100ms);
+            ASSERT_NE(title(), asked) << story();
+        }
+    ASSERT_TRUE(offers("Use it")) << story();
+    window.screenshot("chain-live-measured");
+    next();
+    ASSERT_TRUE(eventually([&] { return badge("pointer") == "Measured"; })) << story();
+    EXPECT_LT(glm::distance(room().pointerTip, glm::vec3(tip)), 0.0005F);
+    // What it builds on comes first; a body that nobody tracks is named.
+    window.click("chain.link.device");
+    EXPECT_TRUE(window.text("chain.live.seen").contains("device")) << window.text("chain.live.seen").toStdString();
 }
 
 TEST(ChainFiles, TrackerIsPlacedByABoardThatMoves) {

@@ -44,6 +44,7 @@ StudioWindow::StudioWindow(const std::filesystem::path& session, const QString& 
     // A test begins in the virtual lab, whatever room the one before left.
     if (!again || std::filesystem::is_empty(session)) {
         std::filesystem::remove_all(studio::Settings().folder() / "installation");
+        for (const char* lab : {"lab/unpacked", "lab/next"}) studio::Settings().remove(lab);
         for (const char* view : {"camera/field", "camera/rig"}) studio::Settings().setValue(view, {});
     }
     studio_ = std::make_unique<studio::Studio>();

@@ -89,20 +89,31 @@ Labels::Labels(const Map& map) {
     for (const std::size_t place : order) {
         Plate plate;
         plate.place = place;
-        plate.model = "navigation label " + std::to_string(place);
-        plate.picture = written(font, map.places[place].name);
-        plate.width = kPlateHeight * plate.picture->size().x / plate.picture->size().y;
-        plate.material = plateMaterial(plate.model);
-        plate.shape = sheetOf(plate.width);
+        const Words& name = map.places[place].name;
+        const std::string model = "navigation label " + std::to_string(place);
+        plate.writings.fill(write(font, name.english, model));
+        if (name.in(Language::german) != name.english)
+            plate.writings[static_cast<std::size_t>(Language::german)] = write(font, name.german, model + " german");
         plates_.push_back(std::move(plate));
     }
 }
 
+Labels::Writing Labels::write(const Font& font, const std::string& text, const std::string& model) {
+    Writing writing;
+    writing.model = model;
+    writing.picture = written(font, text);
+    writing.width = kPlateHeight * writing.picture->size().x / writing.picture->size().y;
+    writing.material = plateMaterial(model);
+    writing.shape = sheetOf(writing.width);
+    return writing;
+}
+
 void Labels::addTo(SceneAssets& assets) const {
-    for (const Plate& plate : plates_) {
-        assets.models[plate.model] = plate.shape;
-        assets.images[plate.model] = plate.picture;
-    }
+    for (const Plate& plate : plates_)
+        for (const Writing& writing : plate.writings) {
+            assets.models[writing.model] = writing.shape;
+            assets.images[writing.model] = writing.picture;
+        }
 }
 
 /// The least lift by which a plate hides none of those before it from the eye; negative where there is none.
@@ -113,7 +124,7 @@ double Labels::findRoom(const Plate& plate, const std::vector<const Plate*>& bef
         const glm::dvec3 middle = plate.foot + glm::dvec3(0.0, kShortestPole + lift, 0.0);
         const bool free = std::ranges::none_of(before, [&](const Plate* other) {
             const glm::dvec3 off = other->foot + glm::dvec3(0.0, kShortestPole + other->lift, 0.0) - middle;
-            return std::abs(glm::dot(off, axes[0])) < 0.52 * (plate.width + other->width) &&
+            return std::abs(glm::dot(off, axes[0])) < 0.52 * (plate.writing().width + other->writing().width) &&
                    std::abs(glm::dot(off, axes[1])) < 1.05 * kPlateHeight;
         });
         if (free) return lift;
@@ -121,9 +132,11 @@ double Labels::findRoom(const Plate& plate, const std::vector<const Plate*>& bef
     return -1.0;
 }
 
-void Labels::arrange(const Map& map, const ViewGround& ground, const glm::dvec3& eye, double seconds) {
+void Labels::arrange(const Map& map, const ViewGround& ground, const glm::dvec3& eye, Language language,
+                     double seconds) {
     std::vector<const Plate*> shown;
     for (Plate& plate : plates_) {
+        plate.language = language;
         const glm::dvec2 point = ground.view().pointAt(map.places[plate.place].at);
         const glm::dvec2 inside = kHalf - glm::abs(point);
         const Place& place = map.places[plate.place];
@@ -151,10 +164,11 @@ void Labels::show(Scene& scene) const {
     for (const Plate& plate : plates_) {
         if (plate.opacity <= 0.0) continue;
         const int id = kFirstLabel + 2 * static_cast<int>(plate.place);
-        SceneItem sheet = demoItem(id, "Label", MeshItem{.model = plate.model, .animation = -1, .ownMaterials = false});
+        SceneItem sheet =
+            demoItem(id, "Label", MeshItem{.model = plate.writing().model, .animation = -1, .ownMaterials = false});
         sheet.position = plate.middle;
         sheet.rotation = plate.rotation;
-        sheet.material = plate.material;
+        sheet.material = plate.writing().material;
         sheet.opacity = static_cast<float>(plate.opacity);
         scene.items.push_back(std::move(sheet));
         const double height = std::max(1e-4, plate.middle.y - 0.5 * kPlateHeight - plate.foot.y);

@@ -1,6 +1,9 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
+#include <memory>
+#include <string>
 #include <vector>
 
 #include <glm/gtc/quaternion.hpp>
@@ -10,6 +13,10 @@
 #include "app/applications/navigation/view_ground.h"
 #include "core/scene/scene.h"
 #include "core/scene/scene_assets.h"
+
+namespace lumorph {
+class Font;
+}
 
 namespace lumorph::navigation {
 
@@ -22,31 +29,38 @@ public:
     static constexpr std::size_t kMost = 60;       ///< places that have a plate: those of the least rank
     static constexpr std::size_t kMostShown = 9;
 
-    /// Writes the plates. Throws DataError where the font is missing.
+    /// Writes the plates in all languages. Throws DataError where the font is missing.
     explicit Labels(const Map& map);
 
     /// Their models and pictures are added to these assets.
     void addTo(SceneAssets& assets) const;
 
-    /// Chooses whose names there is room for, seen by an eye (device metres), and moves them there.
-    void arrange(const Map& map, const ViewGround& ground, const glm::dvec3& eye, double seconds);
+    /// Chooses whose names in a language there is room for, seen by an eye (device metres), and moves them there.
+    void arrange(const Map& map, const ViewGround& ground, const glm::dvec3& eye, Language language, double seconds);
     /// Adds the items of those that show.
     void show(Scene& scene) const;
 
 private:
-    struct Plate {
-        std::size_t place = 0;
-        double width = 0.0; ///< metres
+    /// What stands on a plate.
+    struct Writing {
+        double width = 0.0; ///< of the plate, metres
         std::string model;
         Material material;
         std::shared_ptr<const SceneModel> shape;
         std::shared_ptr<const Image> picture;
+    };
+    struct Plate {
+        std::size_t place = 0;
+        std::array<Writing, 2> writings; ///< by Language; of a name that is the same in both they share all
+        Language language = Language::english;
+        [[nodiscard]] const Writing& writing() const noexcept { return writings[static_cast<std::size_t>(language)]; }
 
         glm::dvec3 foot{0.0}, middle{0.0};
         glm::quat rotation{1.0F, 0.0F, 0.0F, 0.0F};
         double opacity = 0.0, lift = 0.0; ///< metres over its pole's shortest
         bool wanted = false;
     };
+    [[nodiscard]] static Writing write(const Font& font, const std::string& text, const std::string& model);
     [[nodiscard]] double findRoom(const Plate& plate, const std::vector<const Plate*>& before,
                                   const glm::dvec3& eye) const;
 

@@ -8,12 +8,13 @@
 #include <glm/vec3.hpp>
 
 #include "app/applications/navigation/height_map.h"
+#include "core/base/words.h"
 
 namespace lumorph::navigation {
 
 /// Somewhere to fly to.
 struct Place {
-    std::string name;
+    Words name;
     glm::dvec2 at{0.0};   ///< metres
     double width = 800.0; ///< of the ground that is seen when one is there, metres
     int rank = 1;         ///< 0 is named first when there is no room for all

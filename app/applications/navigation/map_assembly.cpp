@@ -243,10 +243,11 @@ private:
         const std::vector<float>& heights = map_.heights.heights();
         const auto k = static_cast<int>(std::ranges::max_element(heights) - heights.begin());
         const int columns = map_.heights.samples().x;
-        char name[64];
-        (void)std::snprintf(name, sizeof name, "Summit, %.0f m", map_.heights.highest());
-        map_.places.push_back(
-            {name, map_.heights.spacing() * glm::dvec2(k % columns, k / columns), 0.3 * map_.heights.size().x, 1});
+        const std::string metres = std::to_string(std::lround(map_.heights.highest())) + " m";
+        map_.places.push_back({{"Summit, " + metres, "Gipfel, " + metres},
+                               map_.heights.spacing() * glm::dvec2(k % columns, k / columns),
+                               0.3 * map_.heights.size().x,
+                               1});
     }
 
     const MapSources& sources_;

@@ -22,14 +22,14 @@ struct MapSources {
     struct Outline {
         std::vector<glm::dvec2> ring; ///< without its first corner again at the end
         std::optional<double> height; ///< metres
-        std::string name;
+        Words name;
     };
     struct Line {
         std::vector<glm::dvec2> points;
         double width = 4.0; ///< metres
     };
     struct Name {
-        std::string text;
+        Words text;
         glm::dvec2 at{0.0};
         double width = 1000.0;
         int rank = 2;

@@ -65,9 +65,9 @@ int utmAt(const glm::dvec2& lonLat) {
 }
 
 /// Words for GDAL's tools.
-class Words {
+class ToolWords {
 public:
-    Words& add(const std::string& word) {
+    ToolWords& add(const std::string& word) {
         list_.AddString(word.c_str());
         return *this;
     }
@@ -164,7 +164,7 @@ Dataset Reader::thinned(const fs::path& file, Dataset raster) {
     const glm::dvec2 size(raster->GetRasterXSize(), raster->GetRasterYSize());
     if (size.x * size.y <= kHugePixels) return raster;
     const double share = kHugeSide / std::max(size.x, size.y);
-    Words words;
+    ToolWords words;
     words.add("-of")
         .add("MEM")
         .add("-b")
@@ -194,7 +194,7 @@ void Reader::mosaic(std::vector<Dataset> rasters) {
     const OGRSpatialReference* system = first.GetSpatialRef();
     double geo[6];
     (void)first.GetGeoTransform(geo);
-    Words words;
+    ToolWords words;
     words.add("-of").add("MEM").add("-ot").add("Float32").add("-dstnodata").add("nan").add("-wm").add("64");
     if (system != nullptr && !system->IsEmpty() && !system->IsLocal()) {
         double x = geo[0] + 0.5 * geo[1] * first.GetRasterXSize(), y = geo[3] + 0.5 * geo[5] * first.GetRasterYSize();
@@ -212,7 +212,7 @@ void Reader::mosaic(std::vector<Dataset> rasters) {
     std::vector<GDALDatasetH> sources;
     for (const Dataset& raster : rasters) sources.push_back(raster.get());
     // How large it becomes is seen in a first, virtual warp.
-    Words look(words);
+    ToolWords look(words);
     look.add("-of").add("VRT");
     GDALWarpAppOptions* options = GDALWarpAppOptionsNew(look.list(), nullptr);
     const Dataset plan(static_cast<GDALDataset*>(
@@ -279,6 +279,19 @@ std::string tagOf(OGRFeature& feature, const std::string& name) {
     return tags.substr(from, tags.find('"', from) - from);
 }
 
+/// As people there say it, but where the map knows it in the reader's own language.
+Words nameOf(OGRFeature& feature) {
+    const std::string local = tagOf(feature, "name");
+    const auto in = [&](const char* tag) {
+        std::string name = tagOf(feature, tag);
+        return name.empty() ? local : name;
+    };
+    Words name(in("name:en"), in("name:de"));
+    if (name.english.empty()) name.english = name.german;
+    if (name.german == name.english) name.german.clear();
+    return name;
+}
+
 std::optional<double> heightOf(OGRFeature& feature) {
     for (const char* name : {"height", "HEIGHT", "Height", "building:height", "measuredHeight", "hoehe"}) {
         const std::string text = tagOf(feature, name);
@@ -313,14 +326,14 @@ void Reader::takePolygon(OGRFeature& feature, const OGRPolygon& polygon) {
     MapSources::Outline outline;
     for (int k = 0; k + 1 < ring->getNumPoints(); ++k) outline.ring.emplace_back(ring->getX(k), ring->getY(k));
     outline.height = heightOf(feature);
-    outline.name = tagOf(feature, "name");
+    outline.name = nameOf(feature);
     sources_.outlines.push_back(std::move(outline));
 }
 
 void Reader::takeFeature(OGRFeature& feature, OGRGeometry& geometry) {
     const auto kind = wkbFlatten(geometry.getGeometryType());
     if (kind == wkbPoint) {
-        const std::string name = tagOf(feature, "name");
+        Words name = nameOf(feature);
         if (name.empty()) return;
         const std::string place = tagOf(feature, "place");
         const int rank = place == "city" || place == "town"    ? 0
@@ -328,7 +341,7 @@ void Reader::takeFeature(OGRFeature& feature, OGRGeometry& geometry) {
                          : tagOf(feature, "natural") == "peak" ? 1
                                                                : 2;
         const auto& point = static_cast<const OGRPoint&>(geometry);
-        sources_.names.push_back({name, {point.getX(), point.getY()}, rank == 0 ? 2500.0 : 1200.0, rank});
+        sources_.names.push_back({std::move(name), {point.getX(), point.getY()}, rank == 0 ? 2500.0 : 1200.0, rank});
     } else if (kind == wkbLineString) {
         const std::string highway = fieldOf(feature, "highway");
         if (feature.GetFieldIndex("other_tags") >= 0 && highway.empty()) return; // an extract's power lines, walls, ...

@@ -93,6 +93,23 @@ glm::dvec3 eyeOf(const ShowMoment& moment) {
     return glm::dvec3(glm::inverse(glm::dmat4(moment.worldFromDevice)) * glm::dvec4(eye, 1.0));
 }
 
+Bending bendingOf(const DemoTold& told) {
+    const auto bend = told.find("bend");
+    if (bend == told.end() || bend->second == "off") return Bending::off;
+    if (bend->second == "on") return Bending::on;
+    if (bend->second == "beside") return Bending::beside;
+    throw InvalidInput("bend '" + bend->second + "'", "it is no way to bend", "say off, on or beside");
+}
+
+std::shared_ptr<const ShowCaption> comparingCaption() {
+    return std::make_shared<const ShowCaption>(
+        ShowCaption{{"Without and with bending", "Ohne und mit Biegen"},
+                    {"On the left what rises behind the tablet is cut off; on the right its far edge comes up for you, "
+                     "and carries it.",
+                     "Links ist abgeschnitten, was hinter dem Tablet aufragt; rechts kommt dir seine ferne Kante "
+                     "entgegen und trägt es."}});
+}
+
 std::unique_ptr<ShowProgram> begin(const ProgramStart& start, const Progress& progress) {
     const DemoTold& told = start.told;
     const auto map = told.find("map"), place = told.find("goto");
@@ -106,7 +123,7 @@ std::unique_ptr<ShowProgram> begin(const ProgramStart& start, const Progress& pr
         report = importCaption(imported.report, std::filesystem::path(map->second).filename().string());
         shown = std::make_shared<const Map>(std::move(imported.map));
     }
-    auto program = std::make_unique<NavigationProgram>(start.seed, std::move(shown));
+    auto program = std::make_unique<NavigationProgram>(start.seed, std::move(shown), bendingOf(told));
     if (report) program->tell(std::move(*report));
     if (place != told.end()) program->flyTo(place->second);
     return program;
@@ -114,8 +131,9 @@ std::unique_ptr<ShowProgram> begin(const ProgramStart& start, const Progress& pr
 
 } // namespace
 
-NavigationProgram::NavigationProgram(std::uint64_t seed, std::shared_ptr<const Map> map)
-    : map_(std::move(map)), seed_(seed), rain_(seed), labels_(*map_), setting_(settingOf()) {
+NavigationProgram::NavigationProgram(std::uint64_t seed, std::shared_ptr<const Map> map, Bending bending)
+    : map_(std::move(map)), seed_(seed), rain_(seed), labels_(*map_), setting_(settingOf()), usual_(bending),
+      bending_(bending), comparing_(comparingCaption()) {
     if (map_->heights.heights().empty() || map_->cover.size() != map_->heights.heights().size())
         throw InvalidInput("map", "it has no heights, or no cover for each of them", "read it again");
     still_ = stillAssets(labels_);
@@ -137,7 +155,7 @@ void NavigationProgram::flyTo(const std::string& name) {
     const std::optional<std::size_t> place = find(map_->places, name);
     if (place) return fly(viewOf(map_->places[*place], view_.turn));
     std::string names;
-    for (const Place& known : map_->places) names += (names.empty() ? "" : ", ") + known.name;
+    for (const Place& known : map_->places) names += (names.empty() ? "" : ", ") + known.name.english;
     throw InvalidInput("place '" + name + "'", "the map has none of that name", "choose one of " + names);
 }
 
@@ -167,9 +185,11 @@ void NavigationProgram::listen(const ShowMoment& moment) {
         if (input.name == "key.turnLeft") left_ = held;
         if (input.name == "key.turnRight") right_ = held;
         if (input.name == "key.rain") raining_ = held > 0.0;
-        if (input.name == "key.bend" && held > 0.0) bends_ = !bends_;
+        if (input.name == "key.bend" && held > 0.0) bending_ = bending_ == Bending::on ? Bending::off : Bending::on;
+        if (input.name == "key.off" && held > 0.0)
+            bending_ = bending_ == Bending::beside ? Bending::off : Bending::beside;
     }
-    if (visitor_.left()) in_ = out_ = left_ = right_ = 0.0, raining_ = bends_ = false;
+    if (visitor_.left()) in_ = out_ = left_ = right_ = 0.0, raining_ = false, bending_ = usual_;
 }
 
 void NavigationProgram::move(double step) {
@@ -264,9 +284,9 @@ void NavigationProgram::letRain(const ShowMoment& moment) {
 }
 
 std::shared_ptr<const Scene> NavigationProgram::scene(const ShowMoment& moment) {
-    labels_.arrange(*map_, *ground_, eyeOf(moment), moment.step);
+    labels_.arrange(*map_, *ground_, eyeOf(moment), moment.language, moment.step);
     auto scene = std::make_shared<Scene>(setting_);
-    scene->viewDependence.on = bends_;
+    scene->viewDependence.on = bending_ != Bending::off;
     labels_.show(*scene);
     if (cloud_) addCloud(*scene, *cloud_);
     if (rain_.dry()) return scene;
@@ -298,7 +318,9 @@ ShowContent NavigationProgram::frame(const ShowMoment& moment) {
     }
     content.target = ground_->grid();
     content.following = Following::split;
-    if (moment.seconds < kTold) content.caption = told_;
+    content.comparesBend = bending_ == Bending::beside;
+    if (content.comparesBend) content.caption = comparing_;
+    if (told_ && moment.seconds < kTold) content.caption = told_;
     return content;
 }
 
@@ -322,7 +344,13 @@ Demo navigationDemo() {
                     {"goto",
                      "A place to fly to at first, by its name or some of it",
                      {"Begin at", "Beginnen bei"},
-                     {"name of a place", "Name eines Ortes"}}}};
+                     {"name of a place", "Name eines Ortes"}},
+                    {"bend",
+                     "How the device bends for who looks: off, on, or beside (without and with it beside each other)",
+                     {"Bend for who looks", "Für den Betrachter biegen"},
+                     {"off, on, or beside: both beside each other",
+                      "off (nicht), on (ja) oder beside: beides nebeneinander"}}},
+        .compares = true};
 }
 
 } // namespace lumorph::navigation

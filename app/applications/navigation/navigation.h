@@ -19,6 +19,9 @@
 
 namespace lumorph::navigation {
 
+/// How the device bends for who looks; `beside`: it does, and is seen without it, too.
+enum class Bending { off, on, beside };
+
 /// Items of the scene; labels are from kFirstLabel on.
 enum LandItem : int { kSunItem = 1, kLandItem, kRainItem, kFirstCloud, kLastCloud = kFirstCloud + 5 };
 
@@ -26,11 +29,11 @@ enum LandItem : int { kSunItem = 1, kLandItem, kRainItem, kFirstCloud, kLastClou
 /// shape; flights end with the turn at which it can do so best. Leaning pans, `key.in`, `key.out`, `key.turnLeft` and
 /// `key.turnRight` act while held, `key.next` flies to the next place, `key.restart` to where all is seen. A held
 /// pointer body, or `key.rain`, lets it rain; `key.bend` lets the far edge come up for who looks (view-dependent
-/// shape). Without a visitor it flies from place to place.
+/// shape), `key.off` shows that beside the same without it. Without a visitor it flies from place to place.
 class NavigationProgram final : public ShowProgram {
 public:
     /// Throws InvalidInput for a map without heights, or cover for each of them, DataError where the font is missing.
-    NavigationProgram(std::uint64_t seed, std::shared_ptr<const Map> map);
+    NavigationProgram(std::uint64_t seed, std::shared_ptr<const Map> map, Bending bending = Bending::off);
 
     [[nodiscard]] ShowContent frame(const ShowMoment& moment) override;
 
@@ -77,7 +80,8 @@ private:
     double flown_ = 0.0, rested_ = 0.0; ///< seconds
     std::size_t visited_ = 0;           ///< places, by the tour or `key.next`
     double in_ = 0.0, out_ = 0.0, left_ = 0.0, right_ = 0.0;
-    bool raining_ = false, bends_ = false;
+    bool raining_ = false;
+    Bending usual_, bending_;         ///< where nobody chose otherwise, and now
     std::optional<glm::dvec2> cloud_; ///< over the device
 
     std::unique_ptr<GroundPicture> whole_, sharp_, making_;
@@ -85,7 +89,7 @@ private:
     PictureWindow window_; ///< of the land's picture
     std::shared_ptr<const SceneModel> land_;
     std::shared_ptr<const SceneAssets> assets_;
-    std::shared_ptr<const ShowCaption> told_;
+    std::shared_ptr<const ShowCaption> told_, comparing_;
 };
 
 [[nodiscard]] Demo navigationDemo();

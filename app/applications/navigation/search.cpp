@@ -80,7 +80,9 @@ std::optional<std::size_t> find(std::span<const Place> places, std::string_view 
     std::optional<std::size_t> best;
     std::size_t least = std::string::npos;
     for (std::size_t k = 0; k < places.size(); ++k) {
-        const std::size_t strange = strangeness(folded(places[k].name), wish);
+        const Words& own = places[k].name;
+        std::size_t strange = strangeness(folded(own.english), wish);
+        if (!own.german.empty()) strange = std::min(strange, strangeness(folded(own.german), wish));
         if (strange >= least) continue;
         least = strange;
         best = k;

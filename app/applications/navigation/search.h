@@ -9,8 +9,8 @@
 
 namespace lumorph::navigation {
 
-/// The place that is most likely meant by a name: capitals, accents, apostrophes and words left out do not matter, nor
-/// do one or two slips of the fingers. Nothing where none comes near.
+/// The place that is most likely meant by a name in either language: capitals, accents, apostrophes and words left out
+/// do not matter, nor do one or two slips of the fingers. Nothing where none comes near.
 [[nodiscard]] std::optional<std::size_t> find(std::span<const Place> places, std::string_view name);
 
 } // namespace lumorph::navigation

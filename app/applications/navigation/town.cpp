@@ -230,8 +230,8 @@ void Builder::harbour() {
         const glm::dvec2 way(std::cos(angle), std::sin(angle));
         boat(inTown(-260.0 + 640.0 * chance(), -110.0 - 420.0 * chance()), way);
     }
-    map_.places.push_back({"Harbour", inTown(0.0, 8.0), 420.0, 3});
-    map_.places.push_back({"Lighthouse", head, 420.0, 4});
+    map_.places.push_back({{"Harbour", "Hafen"}, inTown(0.0, 8.0), 420.0, 3});
+    map_.places.push_back({{"Lighthouse", "Leuchtturm"}, head, 420.0, 4});
 }
 
 void Builder::town() {
@@ -266,8 +266,8 @@ void Builder::town() {
     const std::vector<Road> town = streets_;
     for (const Road& street : town) housesAlong(street.line, street.width, 480.0);
     map_.places.push_back({"Merinhaven", square, 900.0, 0});
-    map_.places.push_back({"Saint Alba's church", square + 62.0 * plan_.inland, 330.0, 3});
-    map_.places.push_back({"Lake Merin", plan_.lake + glm::dvec2(250.0, 150.0), 3600.0, 0});
+    map_.places.push_back({{"Saint Alba's church", "Sankt-Alba-Kirche"}, square + 62.0 * plan_.inland, 330.0, 3});
+    map_.places.push_back({{"Lake Merin", "Merinsee"}, plan_.lake + glm::dvec2(250.0, 150.0), 3600.0, 0});
 }
 
 /// A dozen houses and a chapel each, and the roads to them.
@@ -297,7 +297,7 @@ void Builder::hamlets() {
     road({inTown(330.0, 150.0), beside(0.8, 75.0), beside(0.72, 75.0), at[0].at}, 7.0);
     road({at[0].at, beside(0.5, 80.0), beside(0.4, 70.0), beside(0.3, 75.0), at[2].at}, 6.0);
     road({beside(0.8, 75.0), beside(0.8, -75.0), ashore(0.9), ashore(1.3), ashore(1.7), ashore(2.1), at[3].at}, 7.0);
-    map_.places.push_back({"River Orra", beside(0.62, 0.0), 1500.0, 2});
+    map_.places.push_back({{"River Orra", "Fluss Orra"}, beside(0.62, 0.0), 1500.0, 2});
 }
 
 /// On a height over the lake.
@@ -331,7 +331,7 @@ void Builder::castle() {
     part(rectangle(best, {0.8, 0.6}, 16.0, 16.0), 34.0, 11.0, Building::Roof::pyramid, Paint::brick);
     part(rectangle(best + glm::dvec2(-14.0, 10.0), {0.8, -0.6}, 22.0, 10.0), 13.0, 6.0, Building::Roof::gable,
          Paint::brick);
-    map_.places.push_back({"Castle Harrow", best, 620.0, 2});
+    map_.places.push_back({{"Castle Harrow", "Burg Harrow"}, best, 620.0, 2});
 }
 
 /// Meadows and crops on flat ground around the settlements.
@@ -372,7 +372,7 @@ std::vector<Place> hamletsOf(const ValleyPlan& plan) {
     };
     const double town = std::atan2(plan.town.y - plan.lake.y, plan.town.x - plan.lake.x);
     return {{"Fennick", beside(0.6, 190.0), 620.0, 2},
-            {"Upper Mill", plan.town + 1150.0 * plan.inland + glm::dvec2(-160.0, 60.0), 620.0, 2},
+            {{"Upper Mill", "Obermühle"}, plan.town + 1150.0 * plan.inland + glm::dvec2(-160.0, 60.0), 620.0, 2},
             {"Stonewater", beside(0.22, 170.0), 620.0, 2},
             {"Lowmoor", ashore(town + 2.6), 620.0, 2}};
 }

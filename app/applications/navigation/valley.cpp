@@ -232,7 +232,8 @@ Map bundledValley(std::uint64_t seed, const Progress& progress) {
     addCover(map, plan, waters, seed);
     progress.report(0.9, "Building the town");
     settle(map, plan, seed);
-    for (const char* name : {"Kestrel Horn", "Grey Tooth", "Long Back", "Widow's Peak"})
+    for (const Words& name : {Words("Kestrel Horn", "Falkenhorn"), Words("Grey Tooth", "Grauzahn"),
+                              Words("Long Back", "Langer Rücken"), Words("Widow's Peak", "Witwenspitze")})
         map.places.push_back({name, peakOf(map, map.places), 2600.0, 1});
     return map;
 }

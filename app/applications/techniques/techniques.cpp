@@ -187,7 +187,8 @@ Demo techniquesDemo() {
             },
         .program = [](const ProgramStart&, const Progress&) -> std::unique_ptr<ShowProgram> {
             return std::make_unique<TechniquesProgram>();
-        }};
+        },
+        .compares = true};
 }
 
 } // namespace lumorph

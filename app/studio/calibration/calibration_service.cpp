@@ -22,6 +22,7 @@
 #include "calibration/report/calibration_file.h"
 #include "core/base/atomic_file.h"
 #include "core/base/error.h"
+#include "core/scene/measured_sigma.h"
 
 namespace lumorph::studio {
 namespace {
@@ -697,6 +698,12 @@ Installation CalibrationService::roomOfResult() const {
         withCalibration(*document_.state().installation, state_.result->solved, state_.result->setup.board, place);
     if (state_.setup.way == CaptureWay::camera && !room.cameras.empty())
         room.cameras.front().address = state_.setup.camera;
+    if (state_.result->plan && projector() < room.projectors.size()) {
+        // The radius that holds 95 of 100, as the root mean square of a distance in a plane.
+        constexpr double kRmsOfMost = 0.5777;
+        Origin& lens = room.projectors[projector()].lens;
+        lens.method = withSigma(lens.method, {1e-3 * kRmsOfMost * state_.result->plan->mean, 0.0, 0.0});
+    }
     return room;
 }
 

@@ -344,6 +344,26 @@ QString causeTitle(Cause cause) {
         return tr("A servo runs the wrong way");
     case Cause::servoJammed:
         return tr("A servo meets a stop");
+    case Cause::cameraSlow:
+        return tr("The camera is too slow");
+    case Cause::flashNotSeen:
+        return tr("The flashes are not seen");
+    case Cause::nothingMoves:
+        return tr("Nothing moves");
+    case Cause::motionPeriodic:
+        return tr("The motion repeats itself");
+    case Cause::cameraSaturates:
+        return tr("The camera is overexposed");
+    case Cause::lightTooDark:
+        return tr("There is too little light");
+    case Cause::ambientChanges:
+        return tr("The light of the room has changed");
+    case Cause::cameraAdjusts:
+        return tr("The camera changes its exposure by itself");
+    case Cause::responseNotRising:
+        return tr("A brighter value makes less light");
+    case Cause::surfaceUnseen:
+        return tr("The camera sees too little of the light");
     default:
         return tr("This capture cannot be trusted");
     }

@@ -32,7 +32,9 @@ LinkStand ownStand(const ChainLink& link, const Installation& room, const std::s
                    ? LinkStand{LinkStand::How::open, {}}
                    : LinkStand{LinkStand::How::measured, QObject::tr("still good, %1").arg(dateText(checked))};
     const Origin* origin = link.origin(room);
-    if (origin == nullptr || origin->way == Origin::Way::assumed) return {};
+    if (origin == nullptr) return {};
+    // What was put in doubt says why.
+    if (origin->way == Origin::Way::assumed) return {LinkStand::How::open, QString::fromStdString(origin->method)};
     if (origin->way == Origin::Way::entered) return {LinkStand::How::entered, QObject::tr("entered by hand")};
     return {LinkStand::How::measured, measuredText(*origin)};
 }

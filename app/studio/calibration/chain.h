@@ -11,6 +11,7 @@
 #include <QString>
 
 #include "app/studio/calibration/calibration_state.h"
+#include "app/studio/calibration/live_capture.h"
 #include "core/base/progress.h"
 #include "core/rig/rig.h"
 #include "core/scene/installation_store.h"
@@ -18,7 +19,7 @@
 /// The whole chain from boxes to a calibrated show: what is measured one after the other, and where it stands.
 namespace lumorph::studio {
 
-enum class LinkId { projector, pointer, tracker, device, eye, servos, check };
+enum class LinkId { projector, light, pointer, tracker, device, eye, servos, delays, check };
 
 /// A figure of a measurement, as it is read.
 struct LinkFigure {
@@ -42,6 +43,9 @@ struct LinkOutcome {
     std::vector<FindingWords> findings;       ///< what stands in the way, or is to be known
     std::optional<Installation> installation; ///< as the room would be; empty: refused, or nothing is to be changed
     bool isUsed = false;                      ///< the room has it
+    /// Refused because the tracker's coordinates are mirrored or in another unit: what was measured by the same tracker
+    /// before is as wrong, though it fits itself.
+    bool doubtsTracker = false;
 };
 
 /// What a measurement in the lab begins with.
@@ -64,6 +68,14 @@ struct FileTask {
     std::vector<std::filesystem::path> files; ///< as many, and in the order of, the link's
 };
 
+/// What a measurement with the connected tracker begins with.
+struct LiveTask {
+    std::shared_ptr<const Rig> rig;
+    Installation believed;
+    LivePlan plan;
+    std::vector<LiveTake> takes; ///< one a step of the plan
+};
+
 /// One thing that is measured. Those before it that it builds on are its needs.
 struct ChainLink {
     LinkId id = LinkId::projector;
@@ -80,6 +92,12 @@ struct ChainLink {
     std::vector<LinkFile> files; ///< all of them are needed
     /// The same from recordings of a real tracker. Empty: it cannot be.
     std::function<LinkOutcome(const FileTask& task, const Progress& progress)> fromFiles;
+    /// Bodies that the connected tracker must see where it is measured with that, the pointer first; empty: it cannot
+    /// be.
+    std::vector<PoseRole> liveRoles;
+    /// The steps of it. Throws InvalidInput for a room in which there is nothing to touch.
+    std::vector<LiveStep> (*liveSteps)(const Rig& rig, const Installation& room) = nullptr;
+    std::function<LinkOutcome(const LiveTask& task, const Progress& progress)> fromLive;
 };
 
 /// In the order in which they are measured.

@@ -6,7 +6,10 @@
 
 #include "app/studio/calibration/chain.h"
 #include "app/studio/calibration/chain_files.h"
+#include "app/studio/calibration/chain_live.h"
+#include "calibration/delays/delays_lab.h"
 #include "calibration/lab/registration_lab.h"
+#include "calibration/light/light_lab.h"
 #include "calibration/servos/servo_lab.h"
 #include "calibration/verify/verify_lab.h"
 
@@ -25,6 +28,8 @@ LinkOutcome outcomeOf(const Registration& measured) {
     if (measured.refusal) {
         outcome.findings.insert(outcome.findings.begin(), wordsOf(*measured.refusal));
         outcome.summary = outcome.findings.front().title + ". " + outcome.findings.front().remedy;
+        outcome.doubtsTracker =
+            measured.refusal->cause == Cause::mirrored || measured.refusal->cause == Cause::wrongUnits;
         return outcome;
     }
     outcome.installation = measured.installation;
@@ -53,7 +58,7 @@ template <auto Measure> LinkOutcome registered(const LinkTask& task, const Progr
 }
 
 /// A recording that is refused before anything is fitted is a refusal as any other.
-template <auto Read> LinkOutcome recorded(const FileTask& task, const Progress& progress) {
+template <auto Read, class Task> LinkOutcome recorded(const Task& task, const Progress& progress) {
     Registration refusal;
     try {
         return outcomeOf(Read(task, progress));
@@ -78,6 +83,77 @@ ChainLink projectorLink() {
     return link;
 }
 
+QString percent(double share) { return QString("%1 %").arg(100.0 * share, 0, 'f', 1); }
+
+LinkOutcome measureLight(const LinkTask& task, const Progress& progress) {
+    const LightCalibration measured = measureLightInLab(*task.rig, task.believed, task.truth, task.seed, progress);
+    LinkOutcome outcome;
+    outcome.isGood = measured.good();
+    for (const Finding& warning : measured.warnings) outcome.findings.push_back(wordsOf(warning));
+    if (measured.refusal) {
+        outcome.findings.insert(outcome.findings.begin(), wordsOf(*measured.refusal));
+        outcome.summary = outcome.findings.front().title + ". " + outcome.findings.front().remedy;
+        return outcome;
+    }
+    outcome.installation = measured.room;
+    outcome.summary =
+        QObject::tr("Greys that the fit never saw are met to %1 (before: %2). %3")
+            .arg(percent(measured.fresh.median), percent(measured.before.median),
+                 measured.hasWhiteSheet ? QObject::tr("White is what the sheet of paper is.")
+                                        : QObject::tr("Without a white sheet the lighter of device and table counts as "
+                                                      "white: its tint is among the projectors'."));
+    outcome.figures = {{QObject::tr("Fresh greys: median"), percent(measured.fresh.median)},
+                       {QObject::tr("In 95 of 100 places at most"), percent(measured.fresh.most)},
+                       {QObject::tr("By what was believed before"), percent(measured.before.median)},
+                       {QObject::tr("Exposures against the camera's curve"), percent(measured.responseRms)}};
+    for (const InstalledProjector& projector : measured.room.projectors) {
+        if (!projector.enabled) continue;
+        const QString name = QString::fromStdString(projector.name);
+        const glm::dvec3 gain(projector.gain);
+        outcome.figures.push_back(
+            {QObject::tr("%1: red, green, blue").arg(name),
+             QString("%1 %2 %3").arg(gain.r, 0, 'f', 3).arg(gain.g, 0, 'f', 3).arg(gain.b, 0, 'f', 3)});
+        outcome.figures.push_back({QObject::tr("%1: black, of white").arg(name),
+                                   QString("%1 %").arg(100.0 * static_cast<double>(projector.black.g), 0, 'f', 2)});
+    }
+    return outcome;
+}
+
+ChainLink lightLink() {
+    ChainLink link;
+    link.id = LinkId::light;
+    link.key = "light";
+    link.title = QObject::tr("Light");
+    link.purpose = QObject::tr("How much light each value makes, and on what it falls: colours come out as they are "
+                               "meant, and where projectors overlap nothing shows.");
+    link.how = {
+        QObject::tr("Lay a sheet of white paper beside the device, into the light, and leave the room's light as it "
+                    "is."),
+        QObject::tr("Flat colours are projected and photographed at several exposures: a few minutes."),
+        QObject::tr("Once for each projector you are asked to cover its lens for a moment.")};
+    link.needs = {LinkId::projector};
+    link.origin = [](const Installation& room) -> const Origin* {
+        const auto on = std::ranges::find_if(room.projectors, &InstalledProjector::enabled);
+        return on == room.projectors.end() ? nullptr : &on->response;
+    };
+    link.apply = [](const Installation& measured, Installation& room) {
+        for (std::size_t p = 0; p < std::min(room.projectors.size(), measured.projectors.size()); ++p) {
+            const InstalledProjector& from = measured.projectors[p];
+            InstalledProjector& to = room.projectors[p];
+            to.gain = from.gain;
+            to.black = from.black;
+            to.gamma = from.gamma;
+            to.responseCurve = from.responseCurve;
+            to.response = from.response;
+        }
+        room.deviceColor = measured.deviceColor;
+        room.tableColor = measured.tableColor;
+        room.origins.colors = measured.origins.colors;
+    };
+    link.inLab = measureLight;
+    return link;
+}
+
 ChainLink pointerLink() {
     ChainLink link;
     link.id = LinkId::pointer;
@@ -98,7 +174,10 @@ ChainLink pointerLink() {
         {"swings", QObject::tr("Swings"), QObject::tr("The pointer swung to all sides, its tip in a dimple.")},
         {"rests", QObject::tr("Other dimples"),
          QObject::tr("Its tip set into three other dimples for a second, each twice and held differently.")}};
-    link.fromFiles = recorded<pointerFromFiles>;
+    link.fromFiles = recorded<pointerFromFiles, FileTask>;
+    link.liveRoles = {PoseRole::pointer};
+    link.liveSteps = pointerSteps;
+    link.fromLive = recorded<pointerFromLive, LiveTask>;
     return link;
 }
 
@@ -123,7 +202,10 @@ ChainLink trackerLink() {
          QObject::tr("A body that is moved and turned about two axes, in the tracker's world.")},
         {"seen", QObject::tr("Seen in the room"),
          QObject::tr("The board or camera that is fixed to it, in the room's world; its clock may be another.")}};
-    link.fromFiles = recorded<trackerFromFiles>;
+    link.fromFiles = recorded<trackerFromFiles, FileTask>;
+    link.liveRoles = {PoseRole::pointer};
+    link.liveSteps = trackerSteps;
+    link.fromLive = recorded<trackerFromLive, LiveTask>;
     return link;
 }
 
@@ -149,7 +231,10 @@ ChainLink deviceLink() {
                   {"body", QObject::tr("Body of the device"), QObject::tr("Tracked at the same time.")},
                   {"model", QObject::tr("Points of the model"),
                    QObject::tr("Rows of name, x, y, z in the device's frame, metres.")}};
-    link.fromFiles = recorded<deviceFromFiles>;
+    link.fromFiles = recorded<deviceFromFiles, FileTask>;
+    link.liveRoles = {PoseRole::pointer, PoseRole::device};
+    link.liveSteps = deviceSteps;
+    link.fromLive = recorded<deviceFromLive, LiveTask>;
     return link;
 }
 
@@ -170,6 +255,9 @@ ChainLink eyeLink() {
         room.origins.eyeOffset = measured.origins.eyeOffset;
     };
     link.inLab = registered<measureEyeInLab>;
+    link.liveRoles = {PoseRole::pointer, PoseRole::head};
+    link.liveSteps = eyeSteps;
+    link.fromLive = recorded<eyeFromLive, LiveTask>;
     return link;
 }
 
@@ -223,6 +311,53 @@ ChainLink servosLink() {
     return link;
 }
 
+QString milliseconds(const MeasuredDelay& delay) {
+    return QString("%1 ± %2 ms").arg(1e3 * delay.seconds, 0, 'f', 1).arg(1e3 * delay.sigma, 0, 'f', 1);
+}
+
+LinkOutcome measureDelays(const LinkTask& task, const Progress& progress) {
+    const MeasuredDelays measured = measureDelaysInLab(*task.rig, task.believed, task.truth, task.seed, progress);
+    LinkOutcome outcome;
+    outcome.isGood = measured.good();
+    for (const Finding& warning : measured.warnings) outcome.findings.push_back(wordsOf(warning));
+    if (measured.refusal) {
+        outcome.findings.insert(outcome.findings.begin(), wordsOf(*measured.refusal));
+        outcome.summary = outcome.findings.front().title + ". " + outcome.findings.front().remedy;
+        return outcome;
+    }
+    outcome.installation = measured.installation;
+    outcome.summary = QObject::tr("Carried at 30 cm/s the device is lit %1 beside instead of %2.")
+                          .arg(millimetres(measured.gain.with.atSpeed), millimetres(measured.gain.without.atSpeed));
+    outcome.figures = {{QObject::tr("From a frame to its light"), milliseconds(measured.light)},
+                       {QObject::tr("Age of poses when they arrive"), milliseconds(measured.tracker)},
+                       {QObject::tr("Both together, by a mark that follows a hand"), milliseconds(measured.mark)},
+                       {QObject::tr("Beside the whole way, looking ahead"), millimetres(measured.gain.with.always)},
+                       {QObject::tr("Beside the whole way, without"), millimetres(measured.gain.without.always)}};
+    for (const MeasuredDelays::Servo& servo : measured.servos)
+        outcome.figures.push_back(
+            {QObject::tr("%1: lag").arg(QString::fromStdString(servo.name)), milliseconds(servo.step.lag)});
+    return outcome;
+}
+
+ChainLink delaysLink() {
+    ChainLink link;
+    link.id = LinkId::delays;
+    link.key = "delays";
+    link.title = QObject::tr("Delays");
+    link.purpose =
+        QObject::tr("How late light, poses and servos are: what moves is lit where it will be, not where it was.");
+    link.warning = QObject::tr("Hands off: the servos move");
+    link.how = {
+        QObject::tr("The projector flashes, and the camera sees when."),
+        QObject::tr("Carry a tracked body that a projected mark follows, then turn a board before tracker and camera."),
+        QObject::tr("At last each servo makes some steps: about three minutes in all. STOP ends it at any time.")};
+    link.needs = {LinkId::tracker};
+    link.origin = [](const Installation& room) { return &room.origins.delays; };
+    link.apply = takeDelays;
+    link.inLab = measureDelays;
+    return link;
+}
+
 LinkOutcome checkTheRoom(const LinkTask& task, const Progress& progress) {
     const VerifiedInLab verified = measureVerifyInLab(*task.rig, task.believed, task.truth, task.seed, progress);
     const RoomCheck& check = verified.check;
@@ -258,8 +393,8 @@ ChainLink checkLink() {
 } // namespace
 
 const std::vector<ChainLink>& chainLinks() {
-    static const std::vector<ChainLink> links{projectorLink(), pointerLink(), trackerLink(), deviceLink(),
-                                              eyeLink(),       servosLink(),  checkLink()};
+    static const std::vector<ChainLink> links{projectorLink(), lightLink(),  pointerLink(), trackerLink(), deviceLink(),
+                                              eyeLink(),       servosLink(), delaysLink(),  checkLink()};
     return links;
 }
 

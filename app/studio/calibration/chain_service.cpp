@@ -4,14 +4,12 @@
 
 #include <QObject>
 
-#include "calibration/lab/true_room.h"
 #include "core/base/error.h"
 
 namespace lumorph::studio {
 namespace {
 
 constexpr auto kChainPlace = "chain"; // of jobs and notices
-constexpr std::uint32_t kRoomSeed = 7;
 
 QString wordsOfError(const std::exception& error) {
     const Notice notice = noticeOf(error);
@@ -26,7 +24,9 @@ ChainStep measuringStep(const ChainState& state, ChainStep::Tone tone, const QSt
     using What = ChainStep::Do;
     const ChainLink& link = chainLinks()[state.chosen];
     if (!link.inLab) return {What::sequence, tone, title, text, QObject::tr("Open it")};
-    if (!usesFiles(state, state.chosen)) return {What::measure, tone, title, text, inLab};
+    const LinkWay way = wayOf(state, state.chosen);
+    if (way == LinkWay::lab) return {What::measure, tone, title, text, inLab};
+    if (way == LinkWay::live) return {What::measure, tone, title, text, QObject::tr("Begin, with the tracker")};
     if (const auto missing = missingFile(state, state.chosen))
         return {What::chooseFile, tone, title, text, QObject::tr("Choose: %1").arg(link.files[*missing].title)};
     return {What::measure, tone, title, text, QObject::tr("Read the recordings")};
@@ -34,8 +34,12 @@ ChainStep measuringStep(const ChainState& state, ChainStep::Tone tone, const QSt
 
 } // namespace
 
-bool usesFiles(const ChainState& state, std::size_t link) {
-    return state.fromFiles && chainLinks()[link].fromFiles != nullptr;
+LinkWay wayOf(const ChainState& state, std::size_t link) {
+    const ChainLink& measured = chainLinks()[link];
+    const bool isPossible = state.way == LinkWay::live    ? measured.fromLive != nullptr
+                            : state.way == LinkWay::files ? measured.fromFiles != nullptr
+                                                          : true;
+    return isPossible ? state.way : LinkWay::lab;
 }
 
 std::optional<std::size_t> missingFile(const ChainState& state, std::size_t link) {
@@ -50,6 +54,13 @@ ChainStep stepOf(const ChainState& state) {
     using Tone = ChainStep::Tone;
     const ChainLink& link = chainLinks()[state.chosen];
     const LinkStand& stand = state.stands[state.chosen];
+    if (state.live && state.running == state.chosen)
+        return {What::cancel, state.live->trouble.isEmpty() ? Tone::live : Tone::warning, state.live->title,
+                state.live->trouble.isEmpty() ? QObject::tr("Step %1 of %2; each is noticed by itself.")
+                                                    .arg(state.live->step + 1)
+                                                    .arg(state.live->steps)
+                                              : state.live->trouble,
+                QObject::tr("Cancel")};
     if (state.running == state.chosen)
         return {What::cancel, Tone::live, QObject::tr("Measuring: %1").arg(link.title), state.stage,
                 QObject::tr("Cancel")};
@@ -86,8 +97,9 @@ ChainStep stepOf(const ChainState& state) {
     }
 }
 
-ChainService::ChainService(StudioDocument& document, StudioLoop& loop, Jobs& jobs, Notices& notices, VersionTaker take)
-    : document_(document), loop_(loop), take_(std::move(take)), jobs_(*this, jobs, notices) {
+ChainService::ChainService(StudioDocument& document, StudioLoop& loop, LabRoom& lab, Jobs& jobs, Notices& notices,
+                           LiveService& live, VersionTaker take)
+    : document_(document), loop_(loop), lab_(lab), live_(live), take_(std::move(take)), jobs_(*this, jobs, notices) {
     state_.stands = standsOf(*document.state().installation, checked_);
     state_.chosen = nextLink(state_.stands).value_or(0);
     connect(&document, &StudioDocument::changed, this, [this](StateParts parts) {
@@ -95,6 +107,21 @@ ChainService::ChainService(StudioDocument& document, StudioLoop& loop, Jobs& job
     });
     connect(&loop, &StudioLoop::stoppedChanged, this, [this] {
         if (loop_.stopped()) cancel();
+    });
+    connect(&live, &LiveService::changed, this, [this] {
+        state_.live = live_.stand();
+        if (state_.live)
+            state_.fraction = (static_cast<double>(state_.live->step) + state_.live->fraction) /
+                              static_cast<double>(state_.live->steps);
+        emit changed();
+    });
+    connect(&live, &LiveService::finished, this, [this](const LivePlan& plan, const std::vector<LiveTake>& takes) {
+        state_.live.reset();
+        const std::shared_ptr<const Rig>& rig = document_.state().rig.rig;
+        if (!state_.running || !rig) return cancel();
+        run(*state_.running, [measure = chainLinks()[*state_.running].fromLive,
+                              task = LiveTask{rig, *document_.state().installation, plan, takes}](
+                                 const Progress& progress) { return measure(task, progress); });
     });
     connect(&jobs, &Jobs::progressed, this, [this, &jobs](int id) {
         for (const Jobs::Status& status : jobs.running()) {
@@ -112,12 +139,13 @@ void ChainService::choose(std::size_t link) {
     emit changed();
 }
 
-void ChainService::setFromFiles(bool fromFiles) {
-    if (fromFiles == state_.fromFiles) return;
+void ChainService::setWay(LinkWay way) {
+    if (way == state_.way) return;
+    if (state_.live) cancel();
     state_.goesOn = false;
-    state_.fromFiles = fromFiles;
+    state_.way = way;
     for (std::size_t link = 0; link < chainLinks().size(); ++link)
-        if (chainLinks()[link].fromFiles) forget(link);
+        if (chainLinks()[link].fromFiles || chainLinks()[link].fromLive) forget(link);
     emit changed();
 }
 
@@ -165,10 +193,11 @@ void ChainService::measureRest() {
 
 void ChainService::goOn() {
     const auto next = nextLink(state_.stands);
-    // With recordings of a real room nothing of the lab slips in between.
+    // In a real room nothing of the lab slips in between.
     const auto waitsForUser = [this](std::size_t link) {
         if (!chainLinks()[link].inLab) return true;
-        return state_.fromFiles && (!usesFiles(state_, link) || missingFile(state_, link));
+        if (state_.way == LinkWay::files) return wayOf(state_, link) == LinkWay::lab || missingFile(state_, link);
+        return state_.way == LinkWay::live;
     };
     if (!next || waitsForUser(*next)) {
         state_.goesOn = false;
@@ -180,20 +209,11 @@ void ChainService::goOn() {
     begin(*next);
 }
 
-/// The lab has one truth, whatever is believed of it meanwhile.
-const Installation& ChainService::truth(const Rig& rig) {
-    if (!truth_ || truthOf_ != document_.state().rig.rig) {
-        truth_ = trueRoom(*document_.state().installation, rig.actuators(), kRoomSeed);
-        truthOf_ = document_.state().rig.rig;
-    }
-    return *truth_;
-}
-
 /// Null where it cannot be measured now.
 std::function<LinkOutcome(const Progress&)> ChainService::workOf(std::size_t link) {
     const ChainLink& measured = chainLinks()[link];
     const Installation& room = *document_.state().installation;
-    if (usesFiles(state_, link)) {
+    if (wayOf(state_, link) == LinkWay::files) {
         if (missingFile(state_, link)) return nullptr;
         return [run = measured.fromFiles, task = FileTask{room, state_.files[link]}](const Progress& progress) {
             return run(task, progress);
@@ -201,16 +221,49 @@ std::function<LinkOutcome(const Progress&)> ChainService::workOf(std::size_t lin
     }
     const std::shared_ptr<const Rig>& rig = document_.state().rig.rig;
     if (!rig || !measured.inLab) return nullptr;
-    return [run = measured.inLab, task = LinkTask{rig, room, truth(*rig), seed_++}](const Progress& progress) {
+    lab_.unpack();
+    return [run = measured.inLab, task = LinkTask{rig, room, lab_.truth(), seed_++}](const Progress& progress) {
         return run(task, progress);
     };
 }
 
 void ChainService::begin(std::size_t link) {
     if (state_.running) return;
+    if (wayOf(state_, link) == LinkWay::live) return beginLive(link);
+    if (auto work = workOf(link)) run(link, std::move(work));
+}
+
+void ChainService::beginLive(std::size_t link) {
     const ChainLink& measured = chainLinks()[link];
-    auto work = workOf(link);
-    if (!work) return;
+    const std::shared_ptr<const Rig>& rig = document_.state().rig.rig;
+    const Installation& room = *document_.state().installation;
+    forget(link);
+    try {
+        if (!rig || room.projectors.empty())
+            throw InvalidInput("the room", "there is no device, or no projector", "open a rig, add a projector");
+        if (const QString obstacle = live_.obstacle(measured.liveRoles); !obstacle.isEmpty()) {
+            state_.troubles[link] = obstacle;
+            emit changed();
+            return;
+        }
+        LivePlan plan{measured.liveRoles, measured.liveSteps(*rig, room)};
+        state_.running = link;
+        state_.fraction = 0.0;
+        state_.outcomes.erase(link);
+        live_.begin(std::move(plan), glm::dvec3(room.pointerTip), room.projectors.front().camera.size);
+    } catch (const Error& error) {
+        fail(link, error);
+    }
+}
+
+void ChainService::fail(std::size_t link, const std::exception& error) {
+    state_.running.reset();
+    state_.goesOn = false;
+    if (dynamic_cast<const Cancelled*>(&error) == nullptr) state_.troubles[link] = wordsOfError(error);
+    emit changed();
+}
+
+void ChainService::run(std::size_t link, std::function<LinkOutcome(const Progress&)> work) {
     state_.running = link;
     state_.fraction = 0.0;
     state_.stage.clear();
@@ -218,25 +271,39 @@ void ChainService::begin(std::size_t link) {
     state_.troubles.erase(link);
     emit changed();
     jobs_.runWith<LinkOutcome>(
-        kChainPlace, kChainPlace, QObject::tr("Measuring: %1").arg(measured.title), std::move(work),
+        kChainPlace, kChainPlace, QObject::tr("Measuring: %1").arg(chainLinks()[link].title), std::move(work),
         [this, link](LinkOutcome outcome) { take(link, std::move(outcome)); },
-        [this, link](const std::exception& error) {
-            state_.running.reset();
-            state_.goesOn = false;
-            if (dynamic_cast<const Cancelled*>(&error) == nullptr) state_.troubles[link] = wordsOfError(error);
-            emit changed();
-        });
+        [this, link](const std::exception& error) { fail(link, error); });
 }
 
 void ChainService::take(std::size_t link, LinkOutcome outcome) {
     state_.running.reset();
     const bool good = outcome.isGood;
+    const bool doubtsPointer = outcome.doubtsTracker && chainLinks()[link].id == LinkId::tracker;
     if (chainLinks()[link].origin == nullptr) checked_ = good ? utcDate() : std::string();
     state_.outcomes[link] = std::move(outcome);
+    if (doubtsPointer) doubtPointer();
     follow();
     if (!state_.goesOn) return;
     state_.goesOn = good && useOf(link);
     if (state_.goesOn) goOn();
+}
+
+/// Swings in a mirrored or wrongly scaled world fit a tip as well as true ones: only the tracker's dots tell. So the
+/// tip that was measured before does not stay as good; its figure stays, as nobody has a better one.
+void ChainService::doubtPointer() {
+    if (document_.state().installation->origins.pointer.way != Origin::Way::measured) return;
+    for (std::size_t link = 0; link < chainLinks().size(); ++link)
+        if (chainLinks()[link].id == LinkId::pointer) state_.outcomes.erase(link);
+    document_.change(QObject::tr("Pointer tip in doubt"), [](StudioState& state) {
+        Installation room = *state.installation;
+        room.origins.pointer = {
+            Origin::Way::assumed,
+            QObject::tr("in doubt: it was measured in coordinates that the tracker link refused; measure it again")
+                .toStdString(),
+            ""};
+        state.installation = std::make_shared<const Installation>(std::move(room));
+    });
 }
 
 void ChainService::use() {
@@ -256,6 +323,8 @@ void ChainService::cancel() {
     state_.goesOn = false;
     if (!state_.running) return;
     state_.running.reset(); // nothing is handed over after a cancel
+    state_.live.reset();
+    live_.cancel();
     jobs_.stop(kChainPlace);
     emit changed();
 }

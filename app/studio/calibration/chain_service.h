@@ -8,11 +8,16 @@
 
 #include "app/studio/base/step_tone.h"
 #include "app/studio/calibration/chain.h"
+#include "app/studio/calibration/lab_room.h"
+#include "app/studio/calibration/live_service.h"
 #include "app/studio/document/job_slots.h"
 #include "app/studio/document/studio_document.h"
 #include "app/studio/document/studio_loop.h"
 
 namespace lumorph::studio {
+
+/// Where a link is measured: in the virtual lab, with the tracker that is connected, or from its recordings.
+enum class LinkWay { lab, live, files };
 
 /// Where the whole chain stands: a plain value.
 struct ChainState {
@@ -23,13 +28,14 @@ struct ChainState {
     QString stage;
     std::map<std::size_t, LinkOutcome> outcomes; ///< measured, by links; one that is used stays to be read
     std::map<std::size_t, QString> troubles;     ///< why a measurement came to nothing
-    bool fromFiles = false; ///< links that can be are measured from recordings, the others in the lab
+    LinkWay way = LinkWay::lab;    ///< of links that can be measured so; the others are measured in the lab
+    std::optional<LiveStand> live; ///< what is done just now with the connected tracker
     std::map<std::size_t, std::vector<std::filesystem::path>> files; ///< by links; empty paths: not chosen yet
     bool goesOn = false;                                             ///< the rest follows by itself
 };
 
-/// Whether a link is measured from recordings now.
-[[nodiscard]] bool usesFiles(const ChainState& state, std::size_t link);
+/// How a link is measured now.
+[[nodiscard]] LinkWay wayOf(const ChainState& state, std::size_t link);
 /// Of its recordings the first that was not chosen yet.
 [[nodiscard]] std::optional<std::size_t> missingFile(const ChainState& state, std::size_t link);
 
@@ -44,26 +50,27 @@ struct ChainStep {
 };
 [[nodiscard]] ChainStep stepOf(const ChainState& state);
 
-/// Measures the links of the chain in the virtual lab or from recordings, one at a time, as jobs. What was measured is
-/// shown first and used when one says so: a step of undo, and a version. Lives in the window's thread.
+/// Measures the links of the chain in the virtual lab, with a tracker or from recordings, one at a time, as jobs. What
+/// was measured is shown first and used when one says so: a step of undo, and a version. Lives in the window's thread.
 class ChainService : public QObject {
     Q_OBJECT
 public:
     /// Puts a measured installation into the document, as a step of undo and a version; false where that failed.
     using VersionTaker = std::function<bool(InstallationVersion version)>;
-    /// STOP of the loop ends what is measured.
-    ChainService(StudioDocument& document, StudioLoop& loop, Jobs& jobs, Notices& notices, VersionTaker take);
+    /// STOP of the loop ends what is measured. The first link that is measured in the lab unpacks it.
+    ChainService(StudioDocument& document, StudioLoop& loop, LabRoom& lab, Jobs& jobs, Notices& notices,
+                 LiveService& live, VersionTaker take);
 
     [[nodiscard]] const ChainState& state() const noexcept { return state_; }
     void choose(std::size_t link);
-    /// Recordings in place of the lab. What was measured and is not used goes.
-    void setFromFiles(bool fromFiles);
+    /// What was measured another way and is not used goes.
+    void setWay(LinkWay way);
     void setFile(std::size_t link, std::size_t file, const std::filesystem::path& path);
     /// Does what `stepOf` says; a sequence of its own and choosing a file are the window's: nothing happens.
     void doNext();
     void measure();
     /// All that is open or stale, in turn, each used when it is good; ends with the first that is not,
-    /// and where recordings are used, with the first of which there are none.
+    /// and with the first that asks something of the user: a recording, or to touch something.
     void measureRest();
     void use();
     void cancel();
@@ -73,23 +80,26 @@ signals:
 
 private:
     void begin(std::size_t link);
+    void beginLive(std::size_t link);
+    void run(std::size_t link, std::function<LinkOutcome(const Progress&)> work);
+    void fail(std::size_t link, const std::exception& error);
     void forget(std::size_t link);
     [[nodiscard]] std::function<LinkOutcome(const Progress&)> workOf(std::size_t link);
     void take(std::size_t link, LinkOutcome outcome);
     bool useOf(std::size_t link);
+    void doubtPointer();
     void goOn();
     void follow();
-    [[nodiscard]] const Installation& truth(const Rig& rig);
 
     StudioDocument& document_;
     StudioLoop& loop_;
+    LabRoom& lab_;
+    LiveService& live_;
     VersionTaker take_;
     JobSlots jobs_;
     ChainState state_;
-    std::string checked_;                ///< date of the last check that found all well
-    std::optional<Installation> truth_;  ///< of the lab, the same for as long as the studio runs
-    std::shared_ptr<const Rig> truthOf_; ///< that it was made for
-    std::uint32_t seed_ = 1;             ///< another for each measurement
+    std::string checked_;    ///< date of the last check that found all well
+    std::uint32_t seed_ = 1; ///< another for each measurement
 };
 
 } // namespace lumorph::studio

@@ -95,6 +95,7 @@ struct TrackerService::Data {
     std::shared_ptr<const Clock> clock = std::make_shared<SteadyClock>();
     std::mutex steeringMutex; ///< trackers are opened in the worker
     std::map<std::string, std::shared_ptr<SimulatedSteering>> steering;
+    std::shared_ptr<const Installation> simulatedRoom; ///< likewise
     TrackerHub hub{board, clock,
                    [this](const std::string& uri, TrackerOptions options) { return openOne(uri, std::move(options)); }};
     std::map<std::string, std::optional<PoseRole>> said; ///< by the user
@@ -169,8 +170,13 @@ void TrackerService::Data::noteEvent(OpenTracker& tracker, std::uint64_t before)
 /// In the worker.
 std::unique_ptr<Tracker> TrackerService::Data::openOne(const std::string& uri, TrackerOptions options) {
     auto made = std::make_shared<SimulatedSteering>();
+    {
+        const std::scoped_lock lock(steeringMutex);
+        made->setRoom(simulatedRoom); // before its first frame
+    }
     std::unique_ptr<Tracker> tracker = openAnyTracker(uri, std::move(options), made);
     const std::scoped_lock lock(steeringMutex);
+    made->setRoom(simulatedRoom);
     steering[uri] = uri.starts_with(kSimulated) ? std::move(made) : nullptr;
     return tracker;
 }
@@ -293,6 +299,14 @@ void TrackerService::setRole(const std::string& body, std::optional<PoseRole> ro
     emit changed();
 }
 
-void TrackerService::setTap(TrackerHub::Tap tap) { data_->hub.setTap(std::move(tap)); }
+void TrackerService::setSimulatedRoom(std::shared_ptr<const Installation> room) {
+    const std::scoped_lock lock(data_->steeringMutex);
+    data_->simulatedRoom = std::move(room);
+    for (const auto& [uri, steering] : data_->steering)
+        if (steering) steering->setRoom(data_->simulatedRoom);
+}
+
+int TrackerService::addTap(TrackerHub::Tap tap) { return data_->hub.addTap(std::move(tap)); }
+void TrackerService::removeTap(int id) { data_->hub.removeTap(id); }
 
 } // namespace lumorph::studio

@@ -66,8 +66,12 @@ public:
     [[nodiscard]] std::optional<PoseRole> role(const std::string& body) const;
     /// Remembered by the body's name.
     void setRole(const std::string& body, std::optional<PoseRole> role);
-    /// As TrackerHub::setTap.
-    void setTap(TrackerHub::Tap tap);
+    /// The room in which simulated bodies truly move (see SimulatedSteering::room); null: trackers see rooms as they
+    /// are.
+    void setSimulatedRoom(std::shared_ptr<const Installation> room);
+    /// Called with all that arrives, as TrackerHub::addTap.
+    int addTap(TrackerHub::Tap tap);
+    void removeTap(int id);
 
 signals:
     void changed(); ///< ten times a second while one is open; and when one was opened, closed, or got a role

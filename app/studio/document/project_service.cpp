@@ -52,6 +52,7 @@ struct Opened {
 struct Kept {
     SessionState session;
     Played played;
+    std::optional<Notice> failure = {}; ///< why its application does not show
 };
 
 /// The same visitor's move shall not meet the same chance in each show.
@@ -105,11 +106,10 @@ std::optional<Kept> readSession(const fs::path& folder, const Progress& progress
         played = playedOf(session->demo, progress.part(0.9, 1.0));
     } catch (const Error& error) { // the session is whole without it
         session->demo.plays = false;
-        played.notices.push_back({Notice::Level::warning,
-                                  QString::fromStdString(error.subject()),
-                                  QString::fromStdString(error.why()),
-                                  QString::fromStdString(error.remedy()),
-                                  {}});
+        Notice failure = noticeOf(error);
+        failure.level = Notice::Level::warning;
+        played.notices.push_back(failure);
+        return Kept{std::move(*session), std::move(played), std::move(failure)};
     }
     return Kept{std::move(*session), std::move(played)};
 }
@@ -237,6 +237,7 @@ void ProjectService::Data::openProject(const fs::path& file) {
 
 void ProjectService::Data::openBundled(Wanted wanted, std::function<void()> onReady) {
     const auto ready = std::make_shared<std::function<void()>>(std::move(onReady));
+    const QString name = QString::fromStdString(wanted.name);
     const QString told = wanted.name.empty() ? tr("Opening the tablet") : tr("Opening the demo");
     jobs.runWith<Opened>(
         "project", "project", told,
@@ -247,9 +248,9 @@ void ProjectService::Data::openBundled(Wanted wanted, std::function<void()> onRe
             replaceAll(opened, {});
             if (*ready) (*ready)();
         },
-        [this, ready](const std::exception& error) {
+        [this, ready, name](const std::exception& error) {
             jobs.fail("project", error);
-            emit service.demoFailed();
+            emit service.demoFailed(name, noticeOf(error));
             if (*ready) (*ready)();
         });
 }
@@ -329,6 +330,7 @@ void ProjectService::Data::restore(std::function<void()> onReady) {
             }
             goOn(*kept);
             if (kept->session.modified) document.undoStack().resetClean();
+            if (kept->failure) emit service.demoFailed(QString::fromStdString(kept->session.demo.name), *kept->failure);
             if (*ready) (*ready)();
         },
         [this, ready](const std::exception& error) {

@@ -87,8 +87,9 @@ signals:
     /// Something else is open now, and with it the application that answers what happens; null: none does.
     /// What it wants kept belongs into `keepsake`; empty: that of none is kept.
     void programOpened(std::shared_ptr<lumorph::ShowProgram> program, const std::filesystem::path& keepsake);
-    /// A demonstration could not be opened; a notice says why, and what was open still is.
-    void demoFailed();
+    /// A demonstration of this name could not be opened, and a notice says why. What was open still is; of a session
+    /// that is all but its application.
+    void demoFailed(const QString& name, const lumorph::studio::Notice& why);
     /// A recording was to be opened, which is no part of the document.
     void recordingChosen(const QString& path);
     /// The remedy of a notice: ask for another file of this place ("target", "rig", "field", "project"; "viewport" for

@@ -156,6 +156,10 @@ void StudioLoop::input(const std::string& name, double value) {
     emit inputGiven(QString::fromStdString(name), value);
 }
 
+void StudioLoop::setLanguage(Language language) {
+    if (std::exchange(language_, language) != language) sendSoon();
+}
+
 void StudioLoop::refresh() { sendSoon(); }
 
 int StudioLoop::addTap(Tap tap) {
@@ -213,6 +217,7 @@ void StudioLoop::send() {
     wish.poses = source_ ? nullptr : poses_;
     wish.source = source_;
     wish.lightDelay = lightDelay_;
+    wish.language = language_;
     wish.scenePlaying = scenePlaying_;
     wish.sceneSeek = sceneSeek_;
     thread_->wish(std::move(wish));

@@ -58,6 +58,8 @@ public:
     /// How long a frame takes to its light, seconds: poses are predicted by it.
     void setLightDelay(double seconds);
     void setRate(double framesPerSecond);
+    /// In which the program that shows writes.
+    void setLanguage(Language language);
     /// Frames of another source instead of the loop's own, until it is set to nothing; the show then goes on from where
     /// the actuators stand, under their limits. Poses of trackers wait meanwhile.
     void setSource(std::shared_ptr<FrameSource> source);
@@ -120,6 +122,7 @@ private:
     std::shared_ptr<ShowInputs> inputs_;     ///< of that program
     Microseconds programSince_{0};           ///< by the loop's clock; frames from before tell of the program before it
     double lightDelay_ = 0.0;
+    Language language_ = Language::english;
     bool sending_ = false;              ///< a wish goes out when the event loop comes round
     std::vector<std::int64_t> shownAt_; ///< when matched frames were handed over, milliseconds
     std::atomic<bool> posted_ = false;  ///< the window has been told of a frame that it did not take yet

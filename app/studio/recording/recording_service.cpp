@@ -173,7 +173,8 @@ struct RecordingService::Data {
     fs::path file;
     std::shared_ptr<Gate> gate; ///< empty before the first
     Jobs::Id starting = 0;
-    int tap = 0;
+    int tap = 0;        ///< of the loop
+    int trackerTap = 0; ///< of the trackers
     std::int64_t bytes = 0;
     double lasted = 0.0; ///< seconds, of the recording that ended
     QTimer looks;
@@ -196,7 +197,8 @@ void RecordingService::Data::begin(std::shared_ptr<Recorder> recorder) {
     bytes = sizeOf(file);
     const auto into = gate;
     tap = loop.addTap([into](const MatchFrame& frame) { addFrame(*into, frame); });
-    trackers.setTap([into](const std::string& source, const TrackerFrame& frame) { addPoses(*into, source, frame); });
+    trackerTap = trackers.addTap(
+        [into](const std::string& source, const TrackerFrame& frame) { addPoses(*into, source, frame); });
     devices.setTrace([into](const ServoTraceRow& row) { into->addServo(row); });
     // A show that stands still makes no frames: what is seen now is the first.
     if (const auto& frame = loop.frame()) {
@@ -267,7 +269,7 @@ void RecordingService::Data::end(bool tell) {
     phase = Phase::idle;
     gate->end();
     loop.removeTap(tap);
-    trackers.setTap({});
+    trackers.removeTap(trackerTap);
     devices.setTrace({});
     std::erase_if(closing,
                   [](const auto& one) { return one.wait_for(std::chrono::seconds(0)) == std::future_status::ready; });

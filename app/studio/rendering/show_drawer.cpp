@@ -10,6 +10,7 @@
 
 #include "app/studio/rendering/frame_reader.h"
 #include "app/studio/rendering/show_frames.h"
+#include "core/loop/bend_comparison.h"
 #include "core/loop/show_stage.h"
 #include "core/render/gl/color_target.h"
 #include "core/render/spatial_renderer.h"
@@ -91,7 +92,8 @@ struct ShowDrawer::Data {
 
     void pose(const ShowPace::Work& work);
     void drawBend(const ShowPace::Work& work, Bend bend);
-    void drawView(const WantedView& wanted, const ShowFrame& frame, double resolution);
+    void drawView(const WantedView& wanted, const ShowFrame& frame, const ShowFrame& framed, double resolution);
+    [[nodiscard]] ShowFrame bent(Bend bend);
     void drawProjector(const WantedView& wanted, FrameReader& reader, const ShowFrame& frame);
     void addTimes(const SpatialTimes& times);
     void dropUnwanted(const ShowRequest& request);
@@ -101,6 +103,7 @@ struct ShowDrawer::Data {
     Deliver deliver;
     ImagePool pool;
     ShowStage stage;
+    BendComparison comparison;
     std::optional<Objects> objects;
     std::optional<ShowPace::Work> under; ///< the work of the frame that is on its way
     DrawnShow drawn;                     ///< that frame, as far as it has come
@@ -154,13 +157,15 @@ void ShowDrawer::Data::drawProjector(const WantedView& wanted, FrameReader& read
     reader.start(toSize(shown));
 }
 
-void ShowDrawer::Data::drawView(const WantedView& wanted, const ShowFrame& frame, double resolution) {
+/// `framed` is what a camera of the lab holds.
+void ShowDrawer::Data::drawView(const WantedView& wanted, const ShowFrame& frame, const ShowFrame& framed,
+                                double resolution) {
     SpatialRenderer& renderer = objects->renderer;
     FrameReader& reader = objects->readers.try_emplace(wanted.id, way, pool).first->second;
     auto from = Clock::now();
     if (wanted.view.kind == ShowView::Kind::lab) {
         const glm::ivec2 size = scaled(toVec(wanted.pixels), resolution);
-        renderer.drawLab(reader.framebuffer(toSize(size)), labCamera(frame, wanted.view.observer, size), kRoomLight);
+        renderer.drawLab(reader.framebuffer(toSize(size)), labCamera(framed, wanted.view.observer, size), kRoomLight);
         drawn.ms.lab += since(from);
         from = Clock::now();
         reader.start(wanted.pixels);
@@ -180,19 +185,27 @@ void ShowDrawer::Data::addTimes(const SpatialTimes& times) {
     drawn.ms.projectors += times.projectors;
 }
 
+ShowFrame ShowDrawer::Data::bent(Bend bend) {
+    if (bend == Bend::asItIs) return *drawn.frame;
+    const auto half = bend == Bend::without ? BendComparison::Half::without : BendComparison::Half::with;
+    return comparison.half(*drawn.match, *drawn.frame, half);
+}
+
 void ShowDrawer::Data::drawBend(const ShowPace::Work& work, Bend bend) {
     const ShowRequest& request = work.request;
     ShowRequest some;
     for (const WantedView& wanted : request.views)
         if (wanted.view.bend == bend) some.views.push_back(wanted);
     if (some.views.empty()) return;
-    const ShowFrame frame = withProjectorPixels(withBend(*drawn.frame, bend), work);
+    const ShowFrame frame = withProjectorPixels(bent(bend), work);
+    // What is cut off is seen only where there would be room for it.
+    const ShowFrame framed = bend == Bend::without ? bent(Bend::forViewer) : frame;
     if (needsProjectors(some))
         objects->renderer.draw(frame);
     else
         objects->renderer.drawEye(frame);
     addTimes(objects->renderer.times());
-    for (const WantedView& wanted : some.views) drawView(wanted, frame, work.resolution);
+    for (const WantedView& wanted : some.views) drawView(wanted, frame, framed, work.resolution);
 }
 
 void ShowDrawer::Data::collect() {
@@ -223,7 +236,7 @@ void ShowDrawer::draw(const ShowPace::Work& work) {
         data.eyePixels = eyeSize(work);
         data.objects->renderer.setMeasuring(work.request.measure);
         data.objects->renderer.setEyeSize(data.eyePixels);
-        for (const Bend bend : {Bend::asItIs, Bend::atRest, Bend::forViewer}) data.drawBend(work, bend);
+        for (const Bend bend : {Bend::asItIs, Bend::without, Bend::forViewer}) data.drawBend(work, bend);
     } catch (...) {
         clear();
         throw;

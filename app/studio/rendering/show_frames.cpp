@@ -3,23 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
-#include <glm/matrix.hpp>
-
-#include "core/motion/view_dependence.h"
-
 namespace lumorph::studio {
 namespace {
 
 glm::ivec2 scaledSize(glm::ivec2 size, double share) {
     const auto side = [share](int pixels) { return std::max(1, static_cast<int>(std::lround(pixels * share))); };
     return {side(size.x), side(size.y)};
-}
-
-std::vector<double> strokesFor(const ShowFrame& frame, ShowView::Bend bend) {
-    if (bend == ShowView::Bend::atRest) return std::vector<double>(frame.rig->actuatorCount(), 0.0);
-    const glm::dmat4 deviceFromWorld = glm::inverse(glm::dmat4(frame.worldFromDevice));
-    const glm::dvec3 eye(deviceFromWorld * glm::dvec4(glm::dvec3(*frame.eye), 1.0));
-    return ViewRule(*frame.rig).strokes(eye, frame.scene->viewDependence.theta);
 }
 
 } // namespace
@@ -55,14 +44,6 @@ ShowFrame withProjectorRoom(ShowFrame frame, glm::ivec2 room) {
         if (fitting.x < projector.camera.size.x) projector.camera = resized(projector.camera, fitting);
     }
     frame.installation = std::move(installation);
-    return frame;
-}
-
-ShowFrame withBend(ShowFrame frame, ShowView::Bend bend) {
-    if (bend == ShowView::Bend::asItIs || !frame.rig || !frame.eye) return frame;
-    auto positions = std::make_shared<std::vector<glm::vec3>>(frame.rig->restMesh().positions.size());
-    frame.rig->deform(strokesFor(frame, bend), *positions);
-    frame.devicePositions = std::move(positions);
     return frame;
 }
 

@@ -17,10 +17,6 @@ namespace lumorph::studio {
 /// The same so that each fits into `room` pixels; none gets larger.
 [[nodiscard]] ShowFrame withProjectorRoom(ShowFrame frame, glm::ivec2 room);
 
-/// The frame with the device as a comparison wants it (R23): flat as at rest, or bent for the viewer as the rule of
-/// view dependence says. Without an eye it stays as it is.
-[[nodiscard]] ShowFrame withBend(ShowFrame frame, ShowView::Bend bend);
-
 /// Where the viewer's eye is: the one that is followed, else the scene's own.
 [[nodiscard]] glm::vec3 viewerOf(const ShowFrame& frame);
 

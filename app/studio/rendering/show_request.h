@@ -23,8 +23,8 @@ struct ShowView {
         projector, ///< what a projector sends out
         lab,       ///< the lit device and table, as somebody sees them
     };
-    /// The device as it is, or, to compare: with all actuators at rest, or bent for the viewer.
-    enum class Bend { asItIs, atRest, forViewer };
+    /// The device as it is, or, to compare: a half of BendComparison, both seen by the same camera.
+    enum class Bend { asItIs, without, forViewer };
 
     Kind kind = Kind::eye;
     std::size_t projector = 0;

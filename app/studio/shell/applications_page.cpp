@@ -127,7 +127,7 @@ private:
 
 } // namespace
 
-ApplicationsPage::ApplicationsPage(Studio& studio, QWidget& window, For whom)
+ApplicationsPage::ApplicationsPage(Studio& studio, QWidget& window, For whom, const Offered& offered)
     : Overlay(window), studio_(studio), whom_(whom) {
     setObjectName("applications");
     EscapeTwice::setCloses(*this, false); // the window does, and Esc Esc stops all the same
@@ -148,7 +148,7 @@ ApplicationsPage::ApplicationsPage(Studio& studio, QWidget& window, For whom)
     area_->setFocusPolicy(Qt::NoFocus);
     area_->setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
     column->addWidget(area_, 1);
-    addCards();
+    addCards(offered);
     foot_ = new QWidget(this);
     column->addWidget(foot_);
     addFoot(whom);
@@ -156,7 +156,7 @@ ApplicationsPage::ApplicationsPage(Studio& studio, QWidget& window, For whom)
     say();
 }
 
-void ApplicationsPage::addCards() {
+void ApplicationsPage::addCards(const Offered& offered) {
     auto* shelf = new QWidget;
     shelf->setProperty("look", "column"); // see through
     auto* middle = new QGridLayout(shelf);
@@ -165,6 +165,7 @@ void ApplicationsPage::addCards() {
     grid_->setSpacing(kGap);
     middle->addLayout(grid_, 0, 0, Qt::AlignCenter);
     for (const Demo& demo : demos()) {
+        if (whom_ == For::visitors && !offered(demo)) continue;
         auto* card = new Card(studio_, demo, shelf);
         connect(card, &QAbstractButton::clicked, this, [this, &demo] { emit chosen(demo); });
         connect(&studio_.settings, &Settings::languageChanged, card, [card] { card->say(); });
@@ -172,7 +173,7 @@ void ApplicationsPage::addCards() {
         cards_.push_back(card);
     }
     area_->setWidget(shelf);
-    setFocusProxy(cards_.front());
+    if (!cards_.empty()) setFocusProxy(cards_.front());
 }
 
 /// On the card's picture: what this application may be told.

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <vector>
 
 #include <QAbstractButton>
@@ -24,8 +25,9 @@ class ApplicationsPage : public Overlay {
     Q_OBJECT
 public:
     enum class For { host, visitors };
-    /// `studio` outlives it.
-    ApplicationsPage(Studio& studio, QWidget& window, For whom);
+    using Offered = std::function<bool(const Demo& demo)>;
+    /// Visitors have cards of those that are offered, a host of all. `studio` outlives it.
+    ApplicationsPage(Studio& studio, QWidget& window, For whom, const Offered& offered);
 
 signals:
     void chosen(const lumorph::Demo& demo);
@@ -39,7 +41,7 @@ protected:
     void mousePressEvent(QMouseEvent* event) override { event->accept(); }
 
 private:
-    void addCards();
+    void addCards(const Offered& offered);
     void addOptions(QAbstractButton& card, const Demo& demo);
     void addFoot(For whom);
     QPushButton* addFootButton(const char* name, const Words& words);

@@ -41,6 +41,9 @@ ParsedArguments parseArguments(int argc, const char* const* argv) {
                "--" + told.name,
                [&arguments, name = told.name](const std::string& text) { arguments.told[name] = text; }, told.help)
             ->needs("--demo");
+    std::string language;
+    app.add_option("--language", language, "what visitors read from now on: en or de")
+        ->check(CLI::IsMember({"en", "de"}));
     app.add_option("--workspace", arguments.workspace, "the workspace to show first, such as field");
     CLI::Option* kiosk = app.add_flag(
         "--kiosk", arguments.kiosk, "full screen for visitors: the view and STOP alone; the operator leaves by a PIN");
@@ -73,6 +76,7 @@ ParsedArguments parseArguments(int argc, const char* const* argv) {
         return wrongUsage("there is no demo '" + arguments.demo + "'; there are: " + demoNames());
     if (!arguments.demo.empty() && !project.empty())
         return wrongUsage("a demo and '" + project + "' cannot both be opened; leave one out");
+    if (!language.empty()) arguments.language = language == "de" ? Language::german : Language::english;
     arguments.project = project;
     arguments.headless = headless;
     arguments.record = record;

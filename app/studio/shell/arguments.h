@@ -9,12 +9,13 @@
 namespace lumorph::studio {
 
 /// What the program was started with: `lumorph-studio [PROJECT] [--demo NAME [--OPTION TEXT]] [--kiosk] [--workspace
-/// ID]`, `lumorph-studio --forget-pin`, which does only that, or `lumorph-studio --headless FOLDER [--seconds S]`,
-/// which opens no window, nor does `--demo NAME --play S [--record OUT.mp4] [--json]`.
+/// ID] [--language en|de]`, `lumorph-studio --forget-pin`, which does only that, or `lumorph-studio --headless FOLDER
+/// [--seconds S]`, which opens no window, nor does `--demo NAME --play S [--record OUT.mp4] [--json]`.
 struct Arguments {
     std::filesystem::path project; ///< or a rig, a field or a target; empty: none
     std::string demo;
-    DemoTold told; ///< to the demo, by the names of its options
+    DemoTold told;                    ///< to the demo, by the names of its options
+    std::optional<Language> language; ///< that visitors read from now on; empty: as chosen before
     std::string workspace;
     bool kiosk = false;
     bool forgetPin = false;         ///< of the kiosk's operator; no window opens

@@ -61,6 +61,7 @@ constexpr OtherWords kOtherWords[] = {
     {"calibrate.chain.tracker", "tracker world registration hand-eye board markers recordings"},
     {"calibrate.chain.device", "device body landmarks touch model registration recordings"},
     {"calibrate.chain.eye", "head glasses viewer alignment eye"},
+    {"calibrate.chain.light", "light response curve gamma black white colour color paper seam camera exposure"},
     {"calibrate.chain.servos", "servos measured backlash play curves camera"},
     {"calibrate.chain.check", "verify check still good drift moved recalibrate"},
     {"field.build", "mdf voxels distance compute calculate"},

@@ -111,14 +111,15 @@ MainWindow::MainWindow(Studio& studio, std::vector<std::unique_ptr<Workspace>> w
     connect(desk, &VisitorDesk::studioWanted, this, &MainWindow::leaveFullView);
     connect(desk, &VisitorDesk::tourWanted, this, &MainWindow::startTour);
     connect(data_->bar, &TopBar::leaveWanted, this, &MainWindow::leaveFullView);
-    // The notice about it is for the host, and stands in the studio.
-    connect(&data_->studio.project, &ProjectService::demoFailed, this, &MainWindow::leaveFullView);
     connect(data_->bar, &TopBar::workspaceChosen, this, &MainWindow::showWorkspace);
     connect(&studio.document, &StudioDocument::titleChanged, this, &MainWindow::showTitle);
     connect(&studio.settings, &Settings::themeChanged, this, &MainWindow::retheme);
     const auto setRate = [&studio] { studio.loop.setRate(studio.settings.loopRate()); };
     connect(&studio.settings, &Settings::loopRateChanged, this, setRate);
     setRate();
+    const auto setLanguage = [&studio] { studio.loop.setLanguage(studio.settings.language()); };
+    connect(&studio.settings, &Settings::languageChanged, this, setLanguage);
+    setLanguage();
     const auto setQuality = [&studio] { studio.renderer.setStillQuality(studio.settings.stillQuality()); };
     connect(&studio.settings, &Settings::qualityChanged, this, setQuality);
     setQuality();

@@ -4,6 +4,7 @@
 #include "app/studio/base/jobs.h"
 #include "app/studio/base/notices.h"
 #include "app/studio/base/settings.h"
+#include "app/studio/calibration/lab_room.h"
 #include "app/studio/devices/device_service.h"
 #include "app/studio/devices/gamepad_service.h"
 #include "app/studio/devices/tracker_service.h"
@@ -33,6 +34,7 @@ struct Studio {
     InstallationKeeper room{settings, document, project, notices};
     DeviceService devices{settings, document, loop, notices};
     TrackerService trackers{settings, loop, notices};
+    LabRoom lab{settings, document, trackers};
     Commands commands;
     RenderThread renderer;
     ShowFeed show{loop, renderer, notices};

@@ -65,7 +65,7 @@ void VisitorBar::follow() {
     const Demo* demo = studio_.project.demo();
     const bool plays = studio_.loop.program() != nullptr;
     for (QToolButton* button : {restart_, next_, help_}) button->setVisible(plays);
-    off_->setVisible(plays && demo != nullptr && !demo->steps().empty());
+    off_->setVisible(plays && demo != nullptr && demo->compares);
     adjustSize();
 }
 

@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <array>
-#include <iterator>
 #include <utility>
 
 #include <QKeyEvent>
+#include <QTimer>
 
 #include "app/applications/registry/demos.h"
 #include "app/studio/shell/kiosk.h"
@@ -15,6 +15,8 @@ namespace lumorph::studio {
 namespace {
 
 constexpr int kBarMargin = 16;
+constexpr auto kPlace = "visitors";           ///< of notices
+constexpr Microseconds kAsksAgain{2'000'000}; ///< for a file that may be back
 
 bool isHelpKey(int key) { return key == Qt::Key_H || key == Qt::Key_Question || key == Qt::Key_F1; }
 
@@ -35,41 +37,47 @@ bool isKey(QEvent::Type type) {
 
 } // namespace
 
-const Demo* applicationAfter(const std::string& name) {
-    std::vector<const Demo*> all;
-    for (const Demo& demo : demos())
-        if (demo.program) all.push_back(&demo);
-    if (all.empty()) return nullptr;
-    const auto found = std::ranges::find(all, name, [](const Demo* demo) { return demo->name; });
-    if (found == all.end() || std::next(found) == all.end()) return all.front();
-    return *std::next(found);
-}
-
 VisitorDesk::VisitorDesk(Studio& studio, QMainWindow& window, QWidget& stage, const Clock& clock)
-    : QObject(&window), studio_(studio), window_(window), stage_(stage), watch_(studio.loop, clock, this),
-      layer_(new VisitorLayer(studio, stage.parentWidget())), bar_(new VisitorBar(studio, stage.parentWidget())) {
+    : QObject(&window), studio_(studio), window_(window), stage_(stage), clock_(clock),
+      turn_(
+          demos(), [&studio](const Demo& demo) { return studio.settings.toldTo(demo.name); }, clock),
+      watch_(studio.loop, clock, this), layer_(new VisitorLayer(studio, stage.parentWidget())),
+      bar_(new VisitorBar(studio, stage.parentWidget())), rest_(new RestPage(studio.settings, stage.parentWidget())) {
     layer_->hide();
     bar_->hide();
+    rest_->hide();
     stage.installEventFilter(this);
     connect(&studio.project, &ProjectService::programOpened, this, &VisitorDesk::takeOpened);
     connect(&studio.loop, &StudioLoop::driverChanged, bar_, &VisitorBar::follow);
     connect(&watch_, &VisitorWatch::thereChanged, this, [this] { layer_->setPlayed(watch_.there()); });
     connect(&watch_, &VisitorWatch::ticked, this, &VisitorDesk::goOnWhereNobodyPlays);
+    connect(&watch_, &VisitorWatch::ticked, this, &VisitorDesk::askAgain);
+    connect(&studio.project, &ProjectService::demoFailed, this, &VisitorDesk::takeFailure);
+    connect(&studio.loop, &StudioLoop::failed, this, &VisitorDesk::takeEnd);
     connect(bar_, &VisitorBar::cardsWanted, this, &VisitorDesk::showCards);
     connect(bar_, &VisitorBar::helpWanted, this, [this] { layer_->setHelp(!layer_->helpShown()); });
 }
 
 void VisitorDesk::setMode(Mode mode) {
     mode_ = mode;
+    rest_->hide();
     hideCards();
     watch_.beginAnew(watch_.there());
     follow();
     if (mode != Mode::studio) giveKeyboard();
+    if (mode == Mode::kiosk && broken_) goOn();
 }
 
 bool VisitorDesk::offers() const { return studio_.project.demo() != nullptr; }
 
 void VisitorDesk::takeOpened() {
+    chosen_ = broken_ = false;
+    played_ = studio_.loop.program() != nullptr;
+    rest_->hide();
+    if (const Demo* demo = studio_.project.demo(); demo != nullptr && played_) {
+        turn_.shown(*demo);
+        studio_.notices.dismiss(kPlace, QString::fromStdString(demo->title.english));
+    }
     watch_.beginAnew(false);
     layer_->begin();
     follow();
@@ -89,7 +97,9 @@ void VisitorDesk::arrange() {
     const QSize size = bar_->sizeHint();
     const QRect room = stage_.geometry().adjusted(kBarMargin, kBarMargin, -kBarMargin, -kBarMargin);
     bar_->setGeometry(QRect(QPoint(room.right() + 1 - size.width(), room.bottom() + 1 - size.height()), size));
+    rest_->setGeometry(stage_.geometry());
     layer_->raise();
+    rest_->raise();
     bar_->raise();
 }
 
@@ -104,9 +114,10 @@ void VisitorDesk::showCards() {
     if (cards_) return hideCards();
     layer_->setHelp(false);
     const auto whom = mode_ == Mode::kiosk ? ApplicationsPage::For::visitors : ApplicationsPage::For::host;
-    cards_ = new ApplicationsPage(studio_, window_, whom);
+    cards_ = new ApplicationsPage(studio_, window_, whom, [this](const Demo& demo) { return !turn_.leavesOut(demo); });
     connect(cards_, &ApplicationsPage::chosen, this, [this](const Demo& demo) {
         hideCards();
+        chosen_ = true;
         emit applicationWanted(demo);
     });
     connect(cards_, &ApplicationsPage::studioWanted, this, [this] {
@@ -169,11 +180,63 @@ void VisitorDesk::goOnWhereNobodyPlays() {
     const bool wanted = mode_ != Mode::studio && minutes > 0.0 && offers() && !otherSheetOpen();
     if (!wanted || watch_.there() || watch_.quiet() < Microseconds(static_cast<std::int64_t>(6e7 * minutes))) return;
     watch_.beginAnew(false);
-    if (studio_.loop.stopped() || studio_.document.modified() || !studio_.jobs.running().empty()) return;
-    const std::string shown = studio_.project.demo()->name;
-    const Demo* next = applicationAfter(shown);
+    if (studio_.jobs.running().empty()) goOn();
+}
+
+/// To the next whose turn it is; what plays goes on where there is none.
+void VisitorDesk::goOn() {
+    const Demo* shown = studio_.project.demo();
+    const Demo* next = turn_.after(shown != nullptr ? shown->name : std::string());
+    const bool plays = studio_.loop.program() != nullptr;
+    rest_->setVisible(mode_ == Mode::kiosk && broken_ && (rest_->isVisible() || next == nullptr));
+    askedLast_ = clock_.now();
+    if (next == nullptr || (plays && next == shown)) return;
+    if (studio_.loop.stopped() || studio_.document.modified()) return; // neither is an application's to end
     hideCards();
-    if (next != nullptr && next->name != shown) emit applicationWanted(*next);
+    chosen_ = false;
+    emit applicationWanted(*next);
+}
+
+/// Where nothing can be shown: a file may be back, or enough time may have passed.
+void VisitorDesk::askAgain() {
+    if (rest_->isVisible() && clock_.now() - askedLast_ > kAsksAgain && studio_.jobs.running().empty()) goOn();
+}
+
+/// Who has chosen it as a host reads the notice in the studio; a visitor chooses another. Else the next is tried.
+void VisitorDesk::takeFailure(const QString& name, const Notice& why) {
+    const bool chosen = std::exchange(chosen_, false);
+    if (mode_ == Mode::studio) return;
+    if (mode_ == Mode::full && chosen) return emit studioWanted();
+    const auto demo = std::ranges::find(demos(), name.toStdString(), &Demo::name);
+    if (demo == demos().end()) return;
+    leaveOut(*demo, why);
+    const Demo* shown = studio_.project.demo();
+    broken_ = broken_ || (!studio_.loop.program() && (shown == nullptr || shown == &*demo));
+    if (!chosen) return QTimer::singleShot(0, this, &VisitorDesk::goOn);
+    if (!cards_) showCards();
+}
+
+/// One that ends by an error would do so again.
+void VisitorDesk::takeEnd(const QString& why) {
+    const Demo* demo = studio_.project.demo();
+    if (!std::exchange(played_, studio_.loop.program() != nullptr) || played_ || demo == nullptr) return;
+    if (mode_ != Mode::kiosk) return;
+    broken_ = true;
+    leaveOut(*demo, {Notice::Level::error, "Show", why, QObject::tr("start it again"), {}});
+    QTimer::singleShot(0, this, &VisitorDesk::goOn);
+}
+
+/// The host finds it when he comes.
+void VisitorDesk::leaveOut(const Demo& demo, const Notice& why) {
+    turn_.failed(demo);
+    constexpr auto kMinutes = ApplicationTurn::kLeftOut.count() / 60'000'000;
+    studio_.notices.post(kPlace, {Notice::Level::warning,
+                                  QString::fromStdString(demo.title.english),
+                                  QObject::tr("visitors do not see it for now: %1: %2").arg(why.subject, why.why),
+                                  QObject::tr("%1; it is tried again after %2 minutes, or once its file is another")
+                                      .arg(why.remedy)
+                                      .arg(kMinutes),
+                                  {}});
 }
 
 bool VisitorDesk::eventFilter(QObject* watched, QEvent* event) {

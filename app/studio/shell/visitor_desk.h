@@ -3,7 +3,9 @@
 #include <QMainWindow>
 #include <QPointer>
 
+#include "app/studio/shell/application_turn.h"
 #include "app/studio/shell/applications_page.h"
+#include "app/studio/shell/rest_page.h"
 #include "app/studio/shell/studio.h"
 #include "app/studio/shell/visitor_bar.h"
 #include "app/studio/shell/visitor_layer.h"
@@ -14,7 +16,8 @@ class QKeyEvent;
 namespace lumorph::studio {
 
 /// What stands between applications and their visitors in the window: the cards to choose from, the keys and buttons
-/// that all share, hints and help over the view, and the next application when nobody comes.
+/// that all share, hints and help over the view, and the next application when nobody comes, or when one cannot be
+/// shown. Where none can, a quiet page lies over the view until one can again.
 class VisitorDesk : public QObject {
     Q_OBJECT
 public:
@@ -36,7 +39,7 @@ public:
     [[nodiscard]] bool mayHave(const QObject& watched, const QEvent& event) const;
 
 signals:
-    /// Of the cards, or because nobody came.
+    /// Of the cards, or because nobody came, or because another could not be shown.
     void applicationWanted(const lumorph::Demo& demo);
     void studioWanted();
     void tourWanted();
@@ -50,21 +53,29 @@ private:
     void arrange();
     void giveKeyboard();
     void goOnWhereNobodyPlays();
+    void takeFailure(const QString& name, const Notice& why);
+    void takeEnd(const QString& why);
+    void leaveOut(const Demo& demo, const Notice& why);
+    void goOn();
+    void askAgain();
     [[nodiscard]] bool offers() const;
     [[nodiscard]] bool otherSheetOpen() const;
 
     Studio& studio_;
     QMainWindow& window_;
     QWidget& stage_;
+    const Clock& clock_;
     Mode mode_ = Mode::studio;
+    ApplicationTurn turn_;
     VisitorWatch watch_;
     VisitorLayer* layer_;
     VisitorBar* bar_;
+    RestPage* rest_;
     QPointer<ApplicationsPage> cards_;
+    bool chosen_ = false;       ///< somebody chose what is being opened; else its turn has come
+    bool broken_ = false;       ///< what should show does not
+    bool played_ = false;       ///< what was opened last answers visitors
+    Microseconds askedLast_{0}; ///< while nothing can be shown
 };
-
-/// The application after that of a name among those that answer visitors, in a circle; the first for any other name.
-/// Null where there is none.
-[[nodiscard]] const Demo* applicationAfter(const std::string& name);
 
 } // namespace lumorph::studio

@@ -42,13 +42,11 @@ struct KeyLine {
     QString keys;
     Words does;
 };
-/// What keys do that all applications share; with the choice of one that has steps.
-std::vector<KeyLine> keyLines(bool steps) {
+/// What keys do that all applications share, with what only some of them answer.
+std::vector<KeyLine> keyLines(bool steps, bool compares) {
     std::vector<KeyLine> lines{{"R", {"Begin again", "Von vorn"}}, {"N", {"Next", "Weiter"}}};
-    if (steps) {
-        lines.push_back({"0-6", {"Choose", "Auswählen"}});
-        lines.push_back({"O", {"With and without", "Mit und ohne"}});
-    }
+    if (steps) lines.push_back({"0-6", {"Choose", "Auswählen"}});
+    if (compares) lines.push_back({"O", {"With and without", "Mit und ohne"}});
     lines.push_back({"A", {"Leave it to itself", "Allein laufen lassen"}});
     lines.push_back({"H", {"This help", "Diese Hilfe"}});
     lines.push_back({"Esc", {"All applications", "Alle Anwendungen"}});
@@ -92,6 +90,7 @@ void VisitorLayer::begin() {
     caption_ = nullptr;
     const Demo* demo = studio_.project.demo();
     hasSteps_ = demo != nullptr && !demo->steps().empty();
+    compares_ = demo != nullptr && demo->compares;
     setHelp(false);
     update();
 }
@@ -170,7 +169,7 @@ QRectF VisitorLayer::handBox() const {
 }
 
 QRectF VisitorLayer::helpBox() const {
-    const auto lines = static_cast<double>(keyLines(hasSteps_).size());
+    const auto lines = static_cast<double>(keyLines(hasSteps_, compares_).size());
     const double wide = std::min(4.0 * (kWayLarge + 32.0) + 2.0 * kMargin, width() - 2.0 * kMargin);
     const double high = std::min(kWayLarge + 44.0 + lines * kKeyRow + 3.0 * kMargin, height() - 2.0 * kMargin);
     return {0.5 * (width() - wide), 0.5 * (height() - high), wide, high};
@@ -239,7 +238,7 @@ void VisitorLayer::paintHelp(QPainter& painter) const {
     }
     double top = box.top() + kWayLarge + 44.0 + 1.5 * kMargin;
     const double middle = box.left() + 0.36 * box.width();
-    for (const KeyLine& line : keyLines(hasSteps_)) {
+    for (const KeyLine& line : keyLines(hasSteps_, compares_)) {
         painter.setFont(key);
         const double wide = std::max(28.0, QFontMetricsF(key).horizontalAdvance(line.keys) + 16.0);
         paintKeycap(painter, {middle - wide, top, wide, 26.0}, line.keys, kInk);

@@ -57,6 +57,7 @@ private:
     QElapsedTimer begun_;   ///< since the application began; invalid: long ago
     QElapsedTimer helped_;  ///< since help was asked for
     bool hasSteps_ = false; ///< of which number keys choose one
+    bool compares_ = false; ///< with and without, by a key
     QTimer animation_;
     bool forVisitors_ = false;
     bool played_ = false;

@@ -90,6 +90,7 @@ void addChainCommands(const CalibrateParts& parts) {
         QAction* action = parts.studio.commands.add(QString("calibrate.chain.") + link.key, "Calibrate: " + link.title,
                                                     options, [parts, k] {
                                                         parts.selection.setWhole(true);
+                                                        parts.selection.setBudget(false);
                                                         parts.chain.choose(k);
                                                     });
         action->setToolTip(link.purpose);
@@ -193,7 +194,15 @@ void addCalibrateCommands(const CalibrateParts& parts) {
     addCalibrateAction(parts, "calibrate.chain", "From boxes to a calibrated show", "target",
                        "Projector, pointer tip, tracker, device, eye, servos, delays, light: measured one after the "
                        "other, and verified",
-                       [parts] { parts.selection.setWhole(true); });
+                       [parts] {
+                           parts.selection.setWhole(true);
+                           parts.selection.setBudget(false);
+                       });
+    addCalibrateAction(parts, "calibrate.budget", "Where the millimetres come from", "target",
+                       "Each part's share of how far pictures slip, and what would help most", [parts] {
+                           parts.selection.setWhole(true);
+                           parts.selection.setBudget(true);
+                       });
     QAction* rest2 = addCalibrateAction(parts, "calibrate.chain.rest", "Measure all that is missing", "play",
                                         "In the lab, one after the other; ends where something needs you",
                                         [parts] { parts.chain.measureRest(); });

@@ -15,6 +15,7 @@ struct CalibrateParts {
     Studio& studio;
     CalibrationService& service;
     CrosshairService& crosshairs;
+    LiveService& live;
     ChainService& chain;
     CalibrateSelection& selection;
 };

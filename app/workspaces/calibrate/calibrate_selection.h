@@ -33,7 +33,14 @@ public:
         if (std::exchange(whole_, whole) != whole) emit wholeChanged();
     }
 
+    /// Of the chain the budget is seen, in place of the chosen link.
+    [[nodiscard]] bool budget() const noexcept { return budget_; }
+    void setBudget(bool budget) {
+        if (std::exchange(budget_, budget) != budget) emit budgetChanged();
+    }
+
 signals:
+    void budgetChanged();
     void wholeChanged();
     void changed();
 
@@ -41,6 +48,7 @@ private:
     Show show_ = Show::live;
     std::string pose_;
     bool whole_ = false;
+    bool budget_ = false;
 };
 
 } // namespace lumorph::studio

@@ -68,7 +68,8 @@ CalibrateWorkspace::CalibrateWorkspace(Studio& studio)
                                 versionTaker(studio)),
       crosshairs_(studio.document, crosshairShower(studio),
                   [&studio](const InstallationVersion& version) { return studio.room.takeVersion(version); }),
-      chain_(studio.document, studio.loop, studio.jobs, studio.notices,
+      live_(studio.trackers, [show = crosshairShower(studio)](const QImage& picture) { show(0, picture); }),
+      chain_(studio.document, studio.loop, studio.lab, studio.jobs, studio.notices, live_,
              [&studio](InstallationVersion version) { return studio.room.takeVersion(std::move(version)); }) {
     addCalibrateCommands(parts());
     addWatchCommand();
@@ -84,6 +85,7 @@ std::unique_ptr<DriftService> CalibrateWorkspace::makeWatch() {
     const auto check = [this] {
         emit studio_.commands.workspaceWanted("calibrate");
         selection_.setWhole(true);
+        selection_.setBudget(false);
         const auto& links = chainLinks();
         const auto found = std::ranges::find(links, LinkId::check, &ChainLink::id);
         chain_.choose(static_cast<std::size_t>(found - links.begin()));
@@ -117,10 +119,16 @@ QWidget* CalibrateWorkspace::makeCentralView() {
     };
     connect(&service_, &CalibrationService::changed, views, follow);
     follow();
-    return makeSwitched(views, makeChainView(parts()));
+    auto* chain = new QStackedWidget;
+    chain->addWidget(makeChainView(parts()));
+    chain->addWidget(makeBudgetView(parts()));
+    const auto turn = [this, chain] { chain->setCurrentIndex(selection_.budget() ? 1 : 0); };
+    connect(&selection_, &CalibrateSelection::budgetChanged, chain, turn);
+    turn();
+    return makeSwitched(views, chain);
 }
 
-CalibrateParts CalibrateWorkspace::parts() { return {studio_, service_, crosshairs_, chain_, selection_}; }
+CalibrateParts CalibrateWorkspace::parts() { return {studio_, service_, crosshairs_, live_, chain_, selection_}; }
 
 /// One or the other, by what is looked at.
 QWidget* CalibrateWorkspace::makeSwitched(QWidget* single, QWidget* whole) {

@@ -41,6 +41,7 @@ private:
     Studio& studio_;
     CalibrationService service_;
     CrosshairService crosshairs_;
+    LiveService live_;
     ChainService chain_;
     std::unique_ptr<DriftService> watch_; ///< of the running show, while it is wanted
     bool active_ = false, looks_ = false; ///< seen; and with the camera's picture

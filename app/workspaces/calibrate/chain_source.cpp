@@ -1,11 +1,14 @@
+#include <QHBoxLayout>
 #include <QLabel>
 #include <QPushButton>
+#include <QStyle>
 #include <QVBoxLayout>
 
 #include "app/studio/calibration/chain_service.h"
 #include "app/studio/widgets/panel.h"
 #include "app/workspaces/calibrate/calibrate_commands.h"
 #include "app/workspaces/calibrate/chain_docks.h"
+#include "app/workspaces/calibrate/touch_picture.h"
 #include "app/workspaces/scene/segments.h"
 
 namespace lumorph::studio {
@@ -17,33 +20,75 @@ class ChainSource : public QWidget {
 public:
     ChainSource(const CalibrateParts& parts, QWidget* parent)
         : QWidget(parent), parts_(parts),
-          way_(new Segments({{"chain.way.lab", "Virtual lab", "Without any hardware; the truth is known"},
-                             {"chain.way.files", "Recordings", "Poses of a real tracker that were recorded before"}},
-                            this)) {
+          way_(
+              new Segments({{"chain.way.lab", "Virtual lab", "Without any hardware; the truth is known"},
+                            {"chain.way.live", "Connected tracker", "By touching, step by step, what the studio shows"},
+                            {"chain.way.files", "Recordings", "Poses of a real tracker that were recorded before"}},
+                           this)) {
         setMaximumWidth(kRecordingWidth);
         auto* column = new QVBoxLayout(this);
         column->setContentsMargins(0, 0, 0, 0);
         column->setSpacing(8);
         column->addWidget(makeHeading("Measured from", this));
         column->addWidget(way_, 0, Qt::AlignLeft);
-        rows_ = new QVBoxLayout;
+        list_ = new QWidget(this);
+        rows_ = new QVBoxLayout(list_);
+        rows_->setContentsMargins(0, 0, 0, 0);
         rows_->setSpacing(8);
-        column->addLayout(rows_);
-        connect(way_, &Segments::chosen, this, [this](int way) { parts_.chain.setFromFiles(way == 1); });
+        lab_ = new QLabel(this);
+        lab_->setObjectName("chain.lab");
+        lab_->setProperty("look", "muted");
+        lab_->setWordWrap(true);
+        column->addWidget(lab_);
+        pack_ = new QPushButton("Pack the lab up", this);
+        pack_->setObjectName("chain.lab.pack");
+        pack_->setToolTip("All in the lab is again as the room is believed to be; what was measured stays in the room");
+        column->addWidget(pack_, 0, Qt::AlignLeft);
+        connect(pack_, &QPushButton::clicked, this, [this] { parts_.studio.lab.packUp(); });
+        connect(&parts.studio.lab, &LabRoom::changed, this, [this] { refresh(); });
+        column->addWidget(list_);
+        seen_ = new QLabel(this);
+        seen_->setObjectName("chain.live.seen");
+        seen_->setWordWrap(true);
+        column->addWidget(seen_);
+        auto* buttons = new QHBoxLayout;
+        devices_ = new QPushButton("Open Devices", this);
+        devices_->setObjectName("chain.live.devices");
+        back_ = new QPushButton("Do the last step again", this);
+        back_->setObjectName("chain.live.back");
+        for (QPushButton* button : {devices_, back_}) buttons->addWidget(button);
+        buttons->addStretch(1);
+        column->addLayout(buttons);
+        corner_ = new TouchPicture(this);
+        column->addWidget(corner_);
+        connect(devices_, &QPushButton::clicked, this,
+                [this] { emit parts_.studio.commands.workspaceWanted("devices"); });
+        connect(back_, &QPushButton::clicked, this, [this] { parts_.live.takeBack(); });
+        connect(way_, &Segments::chosen, this, [this](int way) { parts_.chain.setWay(static_cast<LinkWay>(way)); });
         connect(&parts.chain, &ChainService::changed, this, [this] { refresh(); });
+        connect(&parts.studio.trackers, &TrackerService::changed, this, [this] { refreshLive(); });
         refresh();
     }
 
 private:
     void refresh() {
         const ChainState& state = parts_.chain.state();
-        setVisible(chainLinks()[state.chosen].fromFiles != nullptr);
-        way_->setChosen(state.fromFiles ? 1 : 0);
-        setEnabled(!state.running);
+        const ChainLink& link = chainLinks()[state.chosen];
+        setVisible(link.fromFiles != nullptr || !link.liveRoles.empty());
+        way_->setChosen(static_cast<int>(wayOf(state, state.chosen)));
+        for (QWidget* part : {static_cast<QWidget*>(way_), list_}) part->setEnabled(!state.running);
+        refreshLive();
+        const bool unpacked = parts_.studio.lab.isUnpacked();
+        lab_->setText(unpacked ? "The lab is unpacked: its tracker, pointer, device, eyes and servos are as they came "
+                                 "out of their boxes, for simulated trackers too. Only the chain finds out how."
+                               : "All in the lab is as the room is believed to be. The first measurement unpacks it: "
+                                 "then nobody knows how its things are, until the chain has measured them.");
+        lab_->setVisible(wayOf(state, state.chosen) == LinkWay::lab);
+        pack_->setVisible(wayOf(state, state.chosen) == LinkWay::lab && unpacked);
         const auto chosen = state.files.find(state.chosen);
         const auto files = chosen == state.files.end() ? std::vector<std::filesystem::path>() : chosen->second;
         const std::optional<std::size_t> shown =
-            usesFiles(state, state.chosen) ? std::optional(state.chosen) : std::nullopt;
+            wayOf(state, state.chosen) == LinkWay::files ? std::optional(state.chosen) : std::nullopt;
         if (shown == shown_ && files == files_) return; // a button that is pressed stays
         shown_ = shown;
         files_ = files;
@@ -58,10 +103,26 @@ private:
             for (std::size_t k = 0; k < chainLinks()[*shown].files.size(); ++k) addRow(*shown, k);
     }
 
+    /// Whether the tracker sees what is needed, and the corner that is to be touched.
+    void refreshLive() {
+        const ChainState& state = parts_.chain.state();
+        const ChainLink& link = chainLinks()[state.chosen];
+        const std::shared_ptr<const Rig>& rig = parts_.studio.document.state().rig.rig;
+        const bool isLive = wayOf(state, state.chosen) == LinkWay::live;
+        const QString obstacle = isLive ? parts_.live.obstacle(link.liveRoles) : QString();
+        seen_->setVisible(isLive && !state.live);
+        seen_->setText(obstacle.isEmpty() ? "The tracker sees all that is needed." : obstacle);
+        seen_->setProperty("look", obstacle.isEmpty() ? "muted" : "warning");
+        seen_->style()->polish(seen_);
+        devices_->setVisible(isLive && !obstacle.isEmpty());
+        back_->setVisible(isLive && state.live && state.live->step > 0);
+        corner_->show(rig, state.live ? state.live->corner : std::nullopt);
+    }
+
     void addRow(std::size_t link, std::size_t file) {
         const LinkFile& wanted = chainLinks()[link].files[file];
         const std::filesystem::path path = file < files_.size() ? files_[file] : std::filesystem::path();
-        auto* plate = new QWidget(this);
+        auto* plate = new QWidget(list_);
         auto* column = new QVBoxLayout(plate);
         column->setContentsMargins(0, 0, 0, 0);
         column->setSpacing(2);
@@ -81,6 +142,12 @@ private:
 
     CalibrateParts parts_;
     Segments* way_;
+    QLabel* lab_ = nullptr;
+    QPushButton* pack_ = nullptr;
+    QLabel* seen_ = nullptr;
+    QPushButton *devices_ = nullptr, *back_ = nullptr;
+    TouchPicture* corner_ = nullptr;
+    QWidget* list_ = nullptr;
     QVBoxLayout* rows_ = nullptr;
     std::optional<std::size_t> shown_; ///< link whose recordings are listed
     std::vector<std::filesystem::path> files_;

@@ -86,12 +86,17 @@ public:
         whole->addWidget(column.widget);
         for (std::size_t k = 0; k < chainLinks().size(); ++k) {
             auto* row = new LinkRow(k, this);
-            connect(row, &QPushButton::clicked, this, [this, k] { parts_.chain.choose(k); });
+            connect(row, &QPushButton::clicked, this, [this, k] {
+                parts_.chain.choose(k);
+                parts_.selection.setBudget(false);
+            });
             rows_.push_back(row);
             column.layout->addWidget(row);
         }
         rest_ = makeCommandButton(parts.studio.commands.find("calibrate.chain.rest"), "chain.rest", this);
         column.layout->addWidget(rest_);
+        column.layout->addWidget(
+            makeCommandButton(parts.studio.commands.find("calibrate.budget"), "chain.budget", this));
         column.layout->addStretch(1);
         connect(&parts.chain, &ChainService::changed, this, [this] { refresh(); });
         refresh();
@@ -176,7 +181,8 @@ private:
             text += QString("%1%2.  %3").arg(k == 0 ? "" : "\n").arg(k + 1).arg(link.how[k]);
         how_->setText(text);
         // Recordings say themselves what is in them.
-        for (QWidget* part : {heading_, static_cast<QWidget*>(how_)}) part->setVisible(!usesFiles(state, state.chosen));
+        for (QWidget* part : {heading_, static_cast<QWidget*>(how_)})
+            part->setVisible(wayOf(state, state.chosen) != LinkWay::files && !state.live);
         const auto found = state.outcomes.find(state.chosen);
         const std::vector<LinkPoint> points =
             found == state.outcomes.end() ? std::vector<LinkPoint>() : found->second.points;

@@ -163,12 +163,13 @@ private:
         steerings_ = std::move(steerings);
     }
 
-    /// A person takes a simulated body by the hand.
-    void move(int body, const glm::dvec3& way, double turn) {
+    /// A person takes a simulated body by the hand, as it is seen in the world of its tracker.
+    void move(int body, glm::dvec3 way, double turn) {
         const auto index = static_cast<std::size_t>(body);
         if (index >= steerings_.size() || !steerings_[index]) return;
         SimulatedSteering& steering = *steerings_[index];
         SimulatedOrders orders = steering.orders();
+        if (const auto room = steering.room()) way = glm::dmat3(glm::mat3(room->worldFromTracker)) * way;
         Pose pose = orders.held.value_or(steering.truth());
         pose.position = glm::clamp(pose.position + way, -kRoom, kRoom);
         pose.rotation = glm::normalize(glm::angleAxis(turn, glm::dvec3(0.0, 1.0, 0.0)) * pose.rotation);

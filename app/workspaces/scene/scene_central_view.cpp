@@ -7,6 +7,7 @@
 
 #include <QVBoxLayout>
 
+#include "app/applications/demo.h"
 #include "app/studio/rendering/show_frames.h"
 #include "app/studio/shell/program_inputs.h"
 #include "app/studio/viewport/gl_page.h"
@@ -23,6 +24,7 @@
 #include "app/workspaces/scene/view_bar.h"
 #include "app/workspaces/scene/view_pane.h"
 #include "core/base/error.h"
+#include "core/loop/bend_comparison.h"
 
 namespace lumorph::studio {
 namespace {
@@ -58,6 +60,8 @@ struct SceneCentralView::Data {
     void showScene();    ///< of the device
     void showCaptions(); ///< of all pictures
     void showReason();
+    void compare(bool on);
+    void sayBends();
     void beginDrag(ScenePane part, Qt::MouseButton button, Qt::KeyboardModifiers modifiers);
     void drag(ScenePane part, const QPointF& by);
     void endDrag(bool taken);
@@ -65,7 +69,7 @@ struct SceneCentralView::Data {
     void click(ScenePane part, const QPointF& at);
     void setObserver(std::optional<glm::vec3> eye);
     [[nodiscard]] QWidget* widgetOf(ScenePane part) const;
-    [[nodiscard]] std::optional<CalibratedCamera> cameraOf(ScenePane part, const QSize& size) const;
+    [[nodiscard]] std::optional<CalibratedCamera> cameraOf(ScenePane part, const QSize& size);
     [[nodiscard]] QString eyeState() const;
     [[nodiscard]] QString labState() const;
 
@@ -86,6 +90,8 @@ struct SceneCentralView::Data {
     std::optional<ScenePane> alone;          ///< enlarged by a double click, or for visitors
     std::optional<ScenePane> aloneElsewhere; ///< for the host while visitors have it, and the other way round
     std::optional<glm::vec3> observer;
+    BendComparison bends;   ///< for who points into halves of a comparison
+    bool comparing = false; ///< the program that shows wants the halves seen
     bool observing = false; ///< this drag moves the observer, not the viewer
     bool active = false;
     bool forVisitors = false;
@@ -103,7 +109,7 @@ SceneCentralView::Data::Data(SceneCentralView& stage, Studio& shared)
     addPane(ScenePane::lab, viewOf(ShowView::Kind::lab), tr("Lab"));
     addPane(ScenePane::eye, viewOf(ShowView::Kind::eye), tr("Eye"));
     addPane(ScenePane::projector, viewOf(ShowView::Kind::projector), tr("Projector 1"));
-    addPane(ScenePane::cropped, viewOf(ShowView::Kind::lab, ShowView::Bend::atRest), tr("Cropped"));
+    addPane(ScenePane::cropped, viewOf(ShowView::Kind::lab, ShowView::Bend::without), tr("Cropped"));
     addPane(ScenePane::uncropped, viewOf(ShowView::Kind::lab, ShowView::Bend::forViewer), tr("Uncropped"));
     addDevice();
     addFloating();
@@ -120,7 +126,7 @@ ViewPane* SceneCentralView::Data::addPane(ScenePane part, const ShowView& view, 
     panes[part] = pane;
     connect(pane, &ViewPane::enlarged, &self, [this, part] { enlarge(part); });
     if (part == ScenePane::projector) return pane;
-    if (part == ScenePane::eye || part == ScenePane::lab) inputs.push_back(new ProgramInputs(studio.loop, *pane));
+    inputs.push_back(new ProgramInputs(studio.loop, *pane));
     connect(pane, &ViewPane::dragBegan, &self,
             [this, part](Qt::MouseButton button, Qt::KeyboardModifiers held) { beginDrag(part, button, held); });
     connect(pane, &ViewPane::dragged, &self, [this, part](const QPointF& by) { drag(part, by); });
@@ -146,7 +152,10 @@ void SceneCentralView::Data::addDevice() {
         showScene();
     });
     connect(&studio.loop, &StudioLoop::framed, &self, [this] {
-        if (const auto& frame = studio.loop.frame()) bar->setSeconds(frame->sceneSeconds);
+        if (const auto& frame = studio.loop.frame()) {
+            bar->setSeconds(frame->sceneSeconds);
+            compare(frame->comparesBend);
+        }
         showScene();
     });
 }
@@ -162,10 +171,12 @@ void SceneCentralView::Data::addFloating() {
     column->addWidget(makeNoticeBar(studio.notices, "viewport", notices));
     column->addWidget(makeNoticeBar(studio.notices, "project", notices));
     column->addWidget(makeNoticeBar(studio.notices, "output", notices));
+    column->addWidget(makeNoticeBar(studio.notices, "visitors", notices));
     column->addWidget(makeNoticeBar(studio.notices, "calibrate", notices)); // of the watch
     column->addStretch(1);
     notices->setMaximumWidth(kNoticeWidth);
     connect(&studio.notices, &Notices::changed, &self, [this] { arrange(); });
+    connect(&studio.settings, &Settings::languageChanged, &self, [this] { sayBends(); });
     connect(&studio.renderer, &RenderThread::ready, &self, [this] { showReason(); });
     connect(&studio.project, &ProjectService::programOpened, &self, [this] {
         if (forVisitors) showForVisitors(true);
@@ -204,7 +215,9 @@ QWidget* SceneCentralView::Data::widgetOf(ScenePane part) const {
 void SceneCentralView::Data::arrange() {
     const QSize size = views->size();
     std::map<QWidget*, QRect> boxes;
-    if (alone)
+    if (comparing)
+        for (const StagePlace& place : viewLayout(StageMode::compare, size)) boxes[widgetOf(place.part)] = place.box;
+    else if (alone)
         boxes[widgetOf(*alone)] = QRect(QPoint(0, 0), size);
     else
         for (const StagePlace& place : viewLayout(bar->mode(), size)) boxes[widgetOf(place.part)] = place.box;
@@ -227,6 +240,24 @@ void SceneCentralView::Data::arrange() {
     showCaptions();
 }
 
+/// Whatever is seen gives way to both halves while the program compares; who had the keyboard has it there.
+void SceneCentralView::Data::compare(bool on) {
+    if (std::exchange(comparing, on) == on) return;
+    const bool keys = self.isAncestorOf(self.window()->focusWidget());
+    arrange();
+    sayBends();
+    if (!keys) return;
+    for (const ScenePane part : {ScenePane::uncropped, ScenePane::eye, ScenePane::lab})
+        if (panes.at(part)->isVisible()) return panes.at(part)->setFocus(Qt::MouseFocusReason); // no ring
+}
+
+/// In the visitors' language, large; a host has captions.
+void SceneCentralView::Data::sayBends() {
+    const bool said = comparing && forVisitors;
+    panes.at(ScenePane::cropped)->setLabel(said ? studio.settings.say(bendCaptions()[0]) : QString());
+    panes.at(ScenePane::uncropped)->setLabel(said ? studio.settings.say(bendCaptions()[1]) : QString());
+}
+
 /// A demonstration is seen by one eye, and large; a host's own show as he has arranged it.
 void SceneCentralView::Data::showForVisitors(bool on) {
     if (on != std::exchange(forVisitors, on)) std::swap(alone, aloneElsewhere);
@@ -239,6 +270,7 @@ void SceneCentralView::Data::showForVisitors(bool on) {
     latency->setVisible(!on && bar->latencyShown());
     self.layout()->activate();
     arrange();
+    sayBends();
 }
 
 void SceneCentralView::Data::enlarge(ScenePane part) {
@@ -277,7 +309,9 @@ QString SceneCentralView::Data::labState() const {
 void SceneCentralView::Data::showCaptions() {
     panes.at(ScenePane::eye)->caption().setText(tr("Eye"), eyeState(), viewer.moving());
     panes.at(ScenePane::lab)->caption().setText(tr("Lab"), labState(), observer.has_value());
-    panes.at(ScenePane::cropped)->caption().setText(tr("Cropped"), tr("the device lies flat"));
+    panes.at(ScenePane::cropped)
+        ->caption()
+        .setText(tr("Cropped"), comparing ? tr("the device takes the shape alone") : tr("the device lies flat"));
     panes.at(ScenePane::uncropped)->caption().setText(tr("Uncropped"), tr("its far edges bend up for the viewer"));
     ViewPane* projector = panes.at(ScenePane::projector);
     const auto& all = studio.document.state().installation->projectors;
@@ -349,11 +383,15 @@ void SceneCentralView::Data::click(ScenePane part, const QPointF& at) {
 }
 
 /// Of the newest picture, in pixels of the desktop; empty while there is none or nothing can be seen from there.
-std::optional<CalibratedCamera> SceneCentralView::Data::cameraOf(ScenePane part, const QSize& size) const {
+std::optional<CalibratedCamera> SceneCentralView::Data::cameraOf(ScenePane part, const QSize& size) {
     const auto& frame = studio.show.newest().frame;
     if (!frame || size.isEmpty()) return std::nullopt;
     try {
-        return labCamera(*frame, part == ScenePane::lab ? observer : std::nullopt, {size.width(), size.height()});
+        const glm::ivec2 pixels(size.width(), size.height());
+        if (part == ScenePane::cropped || part == ScenePane::uncropped) // as they are drawn
+            return labCamera(bends.half(*studio.show.newest().match, *frame, BendComparison::Half::with), std::nullopt,
+                             pixels);
+        return labCamera(*frame, part == ScenePane::lab ? observer : std::nullopt, pixels);
     } catch (const InvalidInput&) { // among what is to be seen
         return std::nullopt;
     }

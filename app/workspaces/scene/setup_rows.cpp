@@ -8,6 +8,7 @@
 #include "app/workspaces/scene/material_rows.h"
 #include "app/workspaces/scene/repeated_rows.h"
 #include "app/workspaces/scene/scene_words.h"
+#include "core/loop/prediction_gain.h"
 
 namespace lumorph::studio {
 
@@ -114,6 +115,29 @@ void addDevicePlace(SceneForm& form) {
     });
 }
 
+/// What looking ahead gains with the room's delays, in a sentence.
+class GainWords {
+public:
+    QString of(const Installation& room) {
+        if (!(room.predictionSeconds > 0.0))
+            return QObject::tr("What moves is lit where it was, not where it will be.");
+        // A simulated motion of some milliseconds: not for each refresh.
+        if (light_ != room.predictionSeconds || tracker_ != room.trackerSeconds) {
+            gain_ = predictionGain(room, room);
+            light_ = room.predictionSeconds;
+            tracker_ = room.trackerSeconds;
+        }
+        return QObject::tr("At 30 cm/s: %1 mm beside instead of %2 mm. The delays are %3.")
+            .arg(1e3 * gain_.with.atSpeed, 0, 'f', 0)
+            .arg(1e3 * gain_.without.atSpeed, 0, 'f', 0)
+            .arg(originWords(room.origins.delays));
+    }
+
+private:
+    double light_ = 0.0, tracker_ = 0.0;
+    PredictionGain gain_;
+};
+
 } // namespace
 
 void addDeviceRows(SceneForm& form, Studio& studio) {
@@ -180,6 +204,10 @@ void addViewerRows(SceneForm& form, Studio& studio) {
          QObject::tr("The delay from tracker to light; heads are expected where they will be by then. "
                      "Where drawing takes longer, that counts. 0: they are shown where they are now")},
         {Quantity::seconds, 0.0, 0.15, 0.06, 0.005}, room(), [](auto& all) -> auto& { return all.predictionSeconds; });
+    QLabel* gain = form.sentence("viewer.prediction.gain");
+    form.onRefresh([gain, words = GainWords{}](const StudioState& state) mutable {
+        gain->setText(words.of(*state.installation));
+    });
     form.section("viewer.section.dependence", QObject::tr("View-dependent shape"));
     const auto rule = makePart<ViewDependence>([](auto& all) { return &all.viewDependence; });
     form.check(

@@ -18,6 +18,7 @@ constexpr double kClickReach = 4.0; // pixels that a click may wander
 constexpr int kPanePadding = 8;
 constexpr int kPaneMargin = 12;
 constexpr int kCaptionHeight = 24;
+constexpr int kLabelPixels = 17, kLabelOver = 118; ///< over the lower edge, to its middle
 
 /// Arrow keys go around as the pointer does.
 std::optional<QPointF> stepOf(int key) {
@@ -124,6 +125,28 @@ void ViewPane::setWaiting(const QString& text) {
     if (std::exchange(waiting_, text) != text) update();
 }
 
+void ViewPane::setLabel(const QString& text) {
+    if (std::exchange(label_, text) != text) update();
+}
+
+/// Over buttons and hints that lie at the lower edge; letters on a dark plate, as pictures are of any brightness.
+void ViewPane::paintLabel(QPainter& painter) const {
+    QFont large = font();
+    large.setPixelSize(kLabelPixels);
+    large.setWeight(QFont::DemiBold);
+    const QFontMetrics metrics(large);
+    const QString text = metrics.elidedText(label_, Qt::ElideRight, width() - 4 * kPanePadding);
+    QRect plate(0, 0, metrics.horizontalAdvance(text) + 4 * kPanePadding, metrics.height() + 2 * kPanePadding);
+    plate.moveCenter({width() / 2, height() - kLabelOver});
+    painter.setRenderHint(QPainter::Antialiasing);
+    painter.setPen(Qt::NoPen);
+    painter.setBrush(QColor(14, 18, 22, 168));
+    painter.drawRoundedRect(plate, 12.0, 12.0);
+    painter.setFont(large);
+    painter.setPen(Qt::white);
+    painter.drawText(plate, Qt::AlignCenter, text);
+}
+
 QRect ViewPane::pictureBox(const QSize& picture) const {
     const QSize room = pixels();
     // A projector's picture keeps its shape; all others fill the pane, also while they are of its size from before.
@@ -157,6 +180,7 @@ void ViewPane::paintEvent(QPaintEvent* /*event*/) {
     }
     painter.restore();
     if (overlay_) overlay_->paint(painter, size());
+    if (!label_.isEmpty()) paintLabel(painter);
     if (ringed_) paintFocusRing(painter, size(), colors);
 }
 

@@ -45,6 +45,9 @@ public:
     void setOverlay(PaneOverlay* overlay) { overlay_ = overlay; }
     /// A sentence instead of a picture, while there is none.
     void setWaiting(const QString& text);
+    /// A few large words near the lower edge of the picture, for visitors; empty: none.
+    void setLabel(const QString& text);
+    [[nodiscard]] const QString& label() const noexcept { return label_; }
     [[nodiscard]] QImage picture() const { return feed_.picture(id_); }
     [[nodiscard]] QSize pixels() const; ///< of the screen
     /// A hidden stage asks for nothing.
@@ -77,6 +80,7 @@ private:
     enum class Drag { none, undecided, view, overlay };
     void ask();
     void endDrag(bool taken);
+    void paintLabel(QPainter& painter) const;
     [[nodiscard]] QRect pictureBox(const QSize& picture) const;
 
     ShowFeed& feed_;
@@ -84,7 +88,7 @@ private:
     ShowView view_;
     PaneCaption* caption_;
     PaneOverlay* overlay_ = nullptr;
-    QString waiting_;
+    QString waiting_, label_;
     QSize asked_;
     bool active_ = false;
     bool ringed_ = false; ///< the focus came by key

@@ -1,11 +1,8 @@
 #include <algorithm>
 #include <cmath>
-#include <ctime>
 #include <numeric>
 #include <string>
 #include <vector>
-
-#include <malloc.h>
 
 #include <gtest/gtest.h>
 
@@ -18,7 +15,6 @@
 #include "core/motion/frequency_split.h"
 #include "core/motion/surface_heights.h"
 #include "core/show/show_player.h"
-#include "tests/support/long_tests.h"
 #include "tests/support/program_visit.h"
 
 // R37, R38: the ambient display as visitors meet it: what is seen, heard and felt, what comes first, and what it costs.
@@ -370,60 +366,31 @@ TEST(AmbientProgram, ServosKeepTheSlowEnergyOfTheWavesThatTheTabletReaches) {
     }
 }
 
-double threadSeconds() {
-    timespec now{};
-    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-    return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
-
 TEST(AmbientProgram, AFrameTakesASmallPartOfItsTime) {
     AmbientProgram program(1);
     Visit visit(program);
     std::vector<double> milliseconds;
     for (int k = 0; k < 60 * 60; ++k) {
-        const double begun = threadSeconds();
+        const double begun = test::threadSeconds();
         visit.frame(k % 600 == 300 ? std::vector<ShowInput>{{"key.next", 1.0}} : std::vector<ShowInput>{});
-        milliseconds.push_back(1e3 * (threadSeconds() - begun));
+        milliseconds.push_back(1e3 * (test::threadSeconds() - begun));
     }
-    std::ranges::sort(milliseconds);
-    const double middle = milliseconds[milliseconds.size() / 2], late = milliseconds[milliseconds.size() * 99 / 100];
-    std::printf("a frame takes %.2f ms in the middle, %.2f ms at the 99th percentile\n", middle, late);
-    EXPECT_LE(middle, 2.0);
-    EXPECT_LE(late, 8.0);
+    EXPECT_LE(test::shareOf(milliseconds, 0.5), 2.0);
+    EXPECT_LE(test::shareOf(milliseconds, 0.99), 8.0);
 }
 
-// Half an hour with visitors who come, press and go, by the real loop; k counts tenths of a second.
+// Half an hour with visitors who come, press and go; k counts tenths of a second.
 TEST(AmbientProgram, HalfAnHourKeepsItsMemoryAndTheLimitsOfTheServos) {
-    ManualClock clock;
-    ShowPlayer player(clock, wishFor(std::make_shared<AmbientProgram>(3)));
-    const int tenths = test::longTests() ? 1 : 2;
-    const double step = 0.1 * tenths;
-    std::vector<double> before;
-    double fastest = 0.0;
-    std::size_t afterAMinute = 0;
-    for (int k = 0; k < 30 * 600; k += tenths) {
-        if (k % 700 == 200) player.wish().inputs->push({"key.next", 1.0});
-        if (k % 700 == 300) player.wish().inputs->push({"key.right", 1.0});
-        if (k % 700 == 330) player.wish().inputs->push({"key.right", 0.0});
-        if (k % 1900 == 1000) player.wish().inputs->push({"key.restart", 1.0});
-        if (k % 50 == 0 && k % 1900 < 800) player.wish().inputs->push({"pointer.x", std::sin(0.01 * k)});
-        const MatchFrame& frame = *player.step(step);
-        ASSERT_EQ(frame.programError, "");
-        for (std::size_t i = 0; i < frame.estimatedStrokes.size(); ++i) {
-            ASSERT_GE(frame.estimatedStrokes[i], 0.0);
-            ASSERT_LE(frame.estimatedStrokes[i], 1.0);
-            if (before.empty()) continue;
-            const double speed = std::abs(frame.estimatedStrokes[i] - before[i]) / step;
-            fastest = std::max(fastest, speed / tabletRig()->actuators()[i].maxVelocity);
-        }
-        before = frame.estimatedStrokes;
-        if (k == 600) afterAMinute = mallinfo2().uordblks;
-    }
-    const double grown = (static_cast<double>(mallinfo2().uordblks) - static_cast<double>(afterAMinute)) / (1 << 20);
-    std::printf("memory grew by %.2f MiB, the fastest servo went at %.3f of its limit\n", grown, fastest);
-    EXPECT_LT(grown, 5.0);
-    EXPECT_LE(fastest, 1.0 + 1e-6);
-    EXPECT_GT(fastest, 0.05) << "they did move";
+    AmbientProgram program(3);
+    const test::LongVisit visit = test::visitForLong(program, 1800.0, 0.1, [](int k, double, ShowInputs& inputs) {
+        if (k % 700 == 200) inputs.push({"key.next", 1.0});
+        if (k % 700 == 300) inputs.push({"key.right", 1.0});
+        if (k % 700 == 330) inputs.push({"key.right", 0.0});
+        if (k % 1900 == 1000) inputs.push({"key.restart", 1.0});
+        if (k % 50 == 0 && k % 1900 < 800) inputs.push({"pointer.x", std::sin(0.01 * k)});
+    });
+    test::expectLight(visit);
+    EXPECT_GT(visit.fastest, 0.05) << "they did move";
 }
 
 } // namespace

@@ -1,13 +1,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <ctime>
-#include <fstream>
 #include <numeric>
 #include <set>
 #include <string>
-
-#include <unistd.h>
 
 #include <gtest/gtest.h>
 
@@ -225,53 +221,22 @@ TEST(IceProgram, TheTabletLiftsTheFloes) {
     EXPECT_LE(fastest, 1.0 + 1e-6);
 }
 
-double threadSeconds() {
-    timespec now{};
-    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-    return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
-
-double residentMegabytes() {
-    std::ifstream file("/proc/self/statm");
-    long total = 0, resident = 0;
-    file >> total >> resident;
-    return static_cast<double>(resident) * static_cast<double>(sysconf(_SC_PAGESIZE)) / 1e6;
-}
-
 // Scripted visitors come and go, half an hour among the long tests; frames are longer than in a show, steps are not.
 TEST(IceProgram, VisitorsForLongAreLightAndLeaveTheMemoryAsItIs) {
     const int minutes = test::longTests() ? 30 : 8;
     IceProgram program(1);
-    ShowMoment moment;
-    moment.rig = tabletRig();
-    std::vector<double> milliseconds;
-    double settled = 0.0;
-    constexpr double kStep = 1.0 / 20.0;
-    for (int k = 0; k < 20 * 60 * minutes; ++k) {
-        std::vector<ShowInput> inputs;
-        const bool somebody = k / (20 * 90) % 2 == 1; // a minute and a half each, of which 45 s are silent
-        if (somebody && k % 25 == 0)
-            inputs = {{"pointer.x", 0.9 * std::sin(0.003 * k)}, {"pointer.y", 0.9 * std::cos(0.0047 * k)}};
-        if (somebody && k % 130 == 0) inputs.push_back({"key.next", 1.0});
-        if (k % (20 * 90) == 20 * 89) inputs.push_back({"pointer.over", 0.0});
-        moment.inputs = inputs;
-        const double begun = threadSeconds();
-        (void)program.frame(moment);
-        milliseconds.push_back(1e3 * (threadSeconds() - begun));
-        moment.step = kStep;
-        moment.seconds += kStep;
-        if (k == 20 * 60) settled = residentMegabytes();
-    }
-    const double grown = residentMegabytes() - settled;
-    std::ranges::sort(milliseconds);
-    const double middle = milliseconds[milliseconds.size() / 2], late = milliseconds[milliseconds.size() * 99 / 100];
-    RecordProperty("medianMilliseconds", std::to_string(middle));
-    RecordProperty("percentile99Milliseconds", std::to_string(late));
-    std::printf("a frame of 1/20 s: median %.2f ms, 99 %% within %.2f ms; %.1f MB more after %d minutes, %d winters\n",
-                middle, late, grown, minutes, static_cast<int>(program.ice().winter()));
-    EXPECT_LE(middle, 2.0);
-    EXPECT_LE(late, 8.0);
-    EXPECT_LT(grown, 5.0);
+    const test::LongVisit visit =
+        test::visitForLong(program, 60.0 * minutes, 1.0 / 20.0, [](int k, double, ShowInputs& inputs) {
+            const bool somebody = k / (20 * 90) % 2 == 1; // a minute and a half each, of which 45 s are silent
+            if (somebody && k % 25 == 0) {
+                inputs.push({"pointer.x", 0.9 * std::sin(0.003 * k)});
+                inputs.push({"pointer.y", 0.9 * std::cos(0.0047 * k)});
+            }
+            if (somebody && k % 130 == 0) inputs.push({"key.next", 1.0});
+            if (k % (20 * 90) == 20 * 89) inputs.push({"pointer.over", 0.0});
+        });
+    test::expectLight(visit);
+    EXPECT_LT(visit.grown(&test::LongVisit::Memory::resident, 60.0), 5.0) << "megabytes";
     EXPECT_GE(static_cast<int>(program.ice().winter()), minutes / 2);
 }
 

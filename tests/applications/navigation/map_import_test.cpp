@@ -262,14 +262,14 @@ TEST_F(MapImport, OutlinesStandWhereAndAsHighAsTheySay) {
     double nearest = 1e9;
     for (const glm::dvec2& p : mill->outline) nearest = std::min(nearest, glm::distance(p, corner));
     EXPECT_LT(nearest, 0.05) << "metres";
-    EXPECT_TRUE(std::ranges::any_of(imported.map.places, [](const Place& p) { return p.name == "Square"; }));
+    EXPECT_TRUE(std::ranges::any_of(imported.map.places, [](const Place& p) { return p.name.english == "Square"; }));
 }
 
 TEST_F(MapImport, AnOsmExtractHasHousesRoadsAndNames) {
     const ImportedMap imported = importMap(write("town.osm", R"(<?xml version="1.0"?><osm version="0.6">
  <node id="1" lat="0.0" lon="9.0"/><node id="2" lat="0.0" lon="9.0002"/><node id="3" lat="0.0002" lon="9.0002"/><node id="4" lat="0.0002" lon="9.0"/>
  <node id="5" lat="0.001" lon="8.999"/><node id="6" lat="0.001" lon="9.003"/>
- <node id="7" lat="0.0005" lon="9.001"><tag k="place" v="town"/><tag k="name" v="Nowhere"/></node>
+ <node id="7" lat="0.0005" lon="9.001"><tag k="place" v="town"/><tag k="name" v="Nowhere"/><tag k="name:de" v="Nirgends"/></node>
  <way id="10"><nd ref="1"/><nd ref="2"/><nd ref="3"/><nd ref="4"/><nd ref="1"/><tag k="building" v="yes"/><tag k="building:levels" v="3"/></way>
  <way id="11"><nd ref="5"/><nd ref="6"/><tag k="highway" v="primary"/></way></osm>)"));
     EXPECT_EQ(imported.report.buildings, 1U) << all(imported.report);
@@ -278,7 +278,7 @@ TEST_F(MapImport, AnOsmExtractHasHousesRoadsAndNames) {
     EXPECT_NEAR(imported.map.buildings[0].eaves - imported.map.buildings[0].base, 10.0, 1e-6)
         << "three storeys and a roof";
     ASSERT_FALSE(imported.map.places.empty());
-    EXPECT_EQ(imported.map.places[0].name, "Nowhere");
+    EXPECT_EQ(imported.map.places[0].name, Words("Nowhere", "Nirgends"));
     EXPECT_TRUE(tells(imported.report, "level")) << "no heights";
 }
 
@@ -371,7 +371,7 @@ TEST_F(MapImport, AnOsmExtractInPbfHasTheSame) {
     EXPECT_NEAR(std::max(a, b), 0.0002 * 111320.0, 0.05);
     EXPECT_NEAR(std::min(a, b), 0.0002 * 110574.0, 0.05);
     ASSERT_FALSE(imported.map.places.empty());
-    EXPECT_EQ(imported.map.places[0].name, "Nowhere");
+    EXPECT_EQ(imported.map.places[0].name.english, "Nowhere");
     for (const std::size_t length : {std::size_t{3}, std::size_t{20}, bytes.size() / 2, bytes.size() - 1})
         EXPECT_THROW(importMap(write("cut.osm.pbf", bytes.substr(0, length))), DataError) << length;
 }

@@ -30,7 +30,7 @@ TEST(BundledValley, IsTheSameEachTime) {
 TEST(BundledValley, HasATownOfHousesOnDryGround) {
     const Map& map = valleyMap();
     std::size_t houses = 0;
-    const glm::dvec2 square = std::ranges::find(map.places, "Merinhaven", &Place::name)->at;
+    const glm::dvec2 square = map.places[*find(map.places, "Merinhaven")].at;
     for (const Building& building : map.buildings) {
         ASSERT_GE(doubleArea(building.outline), 0.0);
         if (building.grounded && glm::distance(building.outline.front(), square) < 700.0) ++houses;
@@ -40,8 +40,8 @@ TEST(BundledValley, HasATownOfHousesOnDryGround) {
     EXPECT_GE(houses, 100U);
     EXPECT_LE(houses, 400U);
     for (const Place& place : map.places) {
-        EXPECT_GE(std::min(place.at.x, place.at.y), 0.0) << place.name;
-        EXPECT_LE(std::max(place.at.x, place.at.y), 8192.0) << place.name;
+        EXPECT_GE(std::min(place.at.x, place.at.y), 0.0) << place.name.english;
+        EXPECT_LE(std::max(place.at.x, place.at.y), 8192.0) << place.name.english;
     }
 }
 
@@ -89,14 +89,17 @@ TEST(Rain, DropsGoTheSteepestWay) {
 }
 
 TEST(Find, ForgivesSlipsAccentsAndWordsLeftOut) {
-    const std::vector<Place> places{
-        {"Merinhaven", {}, 1, 0}, {"Saint Alba's church", {}, 1, 0}, {"Castle Harrow", {}, 1, 0}, {"Ölsund", {}, 1, 0}};
+    const std::vector<Place> places{{"Merinhaven", {}, 1, 0},
+                                    {"Saint Alba's church", {}, 1, 0},
+                                    {{"Castle Harrow", "Burg Harrow"}, {}, 1, 0},
+                                    {"Ölsund", {}, 1, 0}};
     const struct {
         const char* name;
         int place;
-    } rows[] = {{"Merinhaven", 0},  {"merinhaven", 0}, {"merin", 0}, {"Merinhafen", 0},    {"church", 1},
-                {"saint albas", 1}, {"castle", 2},     {"harow", 2}, {"HARROW castle", 2}, {"olsund", 3},
-                {"Ölsund", 3},      {"Paris", -1},     {"", -1},     {"   ", -1}};
+    } rows[] = {{"Merinhaven", 0},    {"merinhaven", 0},  {"merin", 0},  {"Merinhafen", 0},
+                {"church", 1},        {"saint albas", 1}, {"castle", 2}, {"harow", 2},
+                {"HARROW castle", 2}, {"olsund", 3},      {"Ölsund", 3}, {"Burg Harrow", 2},
+                {"burg", 2},          {"Paris", -1},      {"", -1},      {"   ", -1}};
     for (const auto& row : rows) {
         const auto found = find(places, row.name);
         EXPECT_EQ(found ? static_cast<int>(*found) : -1, row.place) << row.name;

@@ -488,5 +488,19 @@ TEST_F(ShowProgramTest, SeesPosesStrokesAndTime) {
     EXPECT_FALSE(loop_.settled()) << "somebody is there";
 }
 
+TEST_F(ShowProgramTest, WritesInTheLanguageOfTheNewestWish) {
+    std::vector<Language> asked;
+    const auto program = std::make_shared<Asked>([&](const ShowMoment& moment) {
+        asked.push_back(moment.language);
+        return ShowContent{};
+    });
+    MatchWish wish = wishOf(program);
+    wish.strokes.assign(3, 0.0);
+    (void)step(wish);
+    wish.language = Language::german;
+    (void)step(wish);
+    EXPECT_EQ(asked, (std::vector{Language::english, Language::german}));
+}
+
 } // namespace
 } // namespace lumorph::test

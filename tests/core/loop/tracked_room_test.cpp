@@ -54,6 +54,21 @@ TEST(TrackedRoom, EachRoleIsThatOfItsMatrices) {
     EXPECT_LT(glm::distance(inRoom(room, PoseRole::pointer, kSeen).position, tip), 1e-6);
 }
 
+TEST(TrackedRoom, WhatATrackerSaysLeadsBackToWhatStandsThere) {
+    const Installation room = measuredRoom();
+    for (const PoseRole role : {PoseRole::device, PoseRole::pointer}) {
+        const Pose back = inRoom(room, role, trackedOf(room, role, kSeen));
+        EXPECT_LT(farthest(matrixOf(back), matrixOf(kSeen)), 1e-6);
+    }
+    const Pose head = inRoom(room, PoseRole::head, trackedOf(room, PoseRole::head, kSeen));
+    EXPECT_LT(glm::distance(head.position + head.rotation * glm::dvec3(room.eyeFromHead), kSeen.position), 1e-6);
+    EXPECT_GT(glm::distance(trackedOf(room, PoseRole::device, kSeen).position,
+                            trackedOf(room, PoseRole::pointer, kSeen).position),
+              0.1);
+    for (const PoseRole role : {PoseRole::head, PoseRole::device, PoseRole::pointer})
+        EXPECT_EQ(trackedOf(Installation(), role, kSeen), kSeen);
+}
+
 TEST(TrackedRoom, AHandIsAsNearAsItsTipOrItsBody) {
     const Box box{{-0.1F, 0.0F, -0.08F}, {0.1F, 0.05F, 0.08F}};
     constexpr Microseconds kNow{1'000'000};

@@ -116,11 +116,10 @@ const PartEdit kPartEdits[] = {
      [](Installation& i) -> Origin& { return i.origins.deviceBody; }},
     {"pointer's tip", [](Installation& i) { i.pointerTip.y = -0.15F; },
      [](Installation& i) -> Origin& { return i.origins.pointer; }},
-    {"servos",
-     [](Installation& i) {
-         i.servos = {{"flap 1", {{}, {1.0, 0.9, 0.92}}, 0.08}};
-     },
+    {"servos", [](Installation& i) { i.servos[0].points[1].rising = 0.4; },
      [](Installation& i) -> Origin& { return i.origins.servos; }},
+    {"a servo's lag", [](Installation& i) { i.servos[1].lagSeconds = 0.08; },
+     [](Installation& i) -> Origin& { return i.origins.delays; }},
 };
 
 const Origin kByHand{Origin::Way::entered, {}, "2026-11-24T17:05:00Z"};

@@ -1,0 +1,113 @@
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <string>
+
+#include "app/cli/calibrate_output.h"
+#include "app/cli/commands.h"
+#include "app/cli/project_frame.h"
+#include "calibration/delays/delays_lab.h"
+#include "core/base/error.h"
+#include "core/show/project_contents.h"
+
+namespace lumorph::cli {
+
+namespace {
+
+struct DelaysArguments {
+    std::string project, fault;
+    std::uint32_t seed = 1;
+    bool apply = false, json = false;
+};
+
+nlohmann::json delayJson(const MeasuredDelay& delay) {
+    return {{"ms", 1e3 * delay.seconds},
+            {"sigmaMs", 1e3 * delay.sigma},
+            {"halvesDifferMs", 1e3 * delay.halvesDiffer},
+            {"events", delay.events}};
+}
+
+nlohmann::json slipJson(const LightSlip& slip) {
+    return {{"rmsMm", 1e3 * slip.always}, {"atSpeedMm", 1e3 * slip.atSpeed}};
+}
+
+nlohmann::json delaysJson(const MeasuredDelays& delays, bool applied) {
+    nlohmann::json servos = nlohmann::json::array();
+    for (const MeasuredDelays::Servo& servo : delays.servos) {
+        nlohmann::json json = delayJson(servo.step.lag);
+        json["actuator"] = servo.name;
+        json["strokesPerSecond"] = servo.step.velocity;
+        json["playStrokes"] = servo.step.play;
+        servos.push_back(std::move(json));
+    }
+    return {{"light", delayJson(delays.light)},
+            {"tracker", delayJson(delays.tracker)},
+            {"movedMark", delayJson(delays.mark)},
+            {"servos", servos},
+            {"slip", {{"with", slipJson(delays.gain.with)}, {"without", slipJson(delays.gain.without)}}},
+            {"warnings", jsonOf(delays.warnings)},
+            {"simulatedSeconds", delays.seconds},
+            {"applied", applied}};
+}
+
+void printDelay(const char* name, const MeasuredDelay& delay) {
+    std::printf("  %-22s %6.1f +- %.1f ms\n", name, 1e3 * delay.seconds, 1e3 * delay.sigma);
+}
+
+void printDelays(const MeasuredDelays& delays, bool applied) {
+    std::printf("%s It takes %.0f s.\n", delays.summary.c_str(), delays.seconds);
+    printDelay("frame to light", delays.light);
+    printDelay("age of poses", delays.tracker);
+    printDelay("a moved mark says", delays.mark);
+    for (const MeasuredDelays::Servo& servo : delays.servos) printDelay(servo.name.c_str(), servo.step.lag);
+    printFindings(delays.warnings);
+    std::printf("  carried at 30 cm/s     light lies %.1f mm beside instead of %.1f mm\n",
+                1e3 * delays.gain.with.atSpeed, 1e3 * delays.gain.without.atSpeed);
+    if (applied) std::printf("The project's installation has the measured delays now.\n");
+}
+
+void delays(const DelaysArguments& arguments, const Session& session) {
+    const std::filesystem::path file = projectFile(arguments.project);
+    if (arguments.apply && arguments.project.starts_with("resource:"))
+        throw InvalidInput("--apply", "a bundled project cannot be written", "copy it first");
+    DelaysLabOptions options;
+    if (!arguments.fault.empty()) options.fault = parseDelayFault(arguments.fault);
+    const Progress progress = session.progress();
+    const ProjectContents contents = readContents(file, progress.part(0.0, 0.1));
+    const Rig& rig = *contents.rig;
+    const Installation& believed = contents.project.installation;
+    const Installation truth = trueRoom(believed, rig.actuators(), arguments.seed);
+    const MeasuredDelays measured = orRefused(arguments.json, [&] {
+        MeasuredDelays found =
+            measureDelaysInLab(rig, believed, truth, arguments.seed, progress.part(0.1, 1.0), options);
+        if (found.refusal) throw CaptureRefused(*found.refusal);
+        return found;
+    });
+    Session::endProgress();
+    if (arguments.apply) {
+        Project project = contents.project;
+        project.installation = measured.installation;
+        writeProject(project, file);
+    }
+    if (arguments.json)
+        printJson(delaysJson(measured, arguments.apply));
+    else
+        printDelays(measured, arguments.apply);
+}
+
+} // namespace
+
+void addCalibrateDelays(CLI::App& group, Session& session) {
+    auto arguments = std::make_shared<DelaysArguments>();
+    CLI::App* command = group.add_subcommand(
+        "delays", "How late light, poses and servos are, by flashes, a moved board and steps in the virtual lab");
+    command->add_option("project", arguments->project, "A project, or resource:projects/NAME.lumorph")->required();
+    command->add_option("--seed", arguments->seed, "Other delays of the lab for another number");
+    command->add_option("--fault", arguments->fault,
+                        "What is wrong in the lab: frames, camera, slow, covered, tracker, still, dead or jammed");
+    command->add_flag("--apply", arguments->apply, "Write the measured delays into the project's installation");
+    command->add_flag("--json", arguments->json, "Print one JSON value");
+    command->callback([arguments, &session] { delays(*arguments, session); });
+}
+
+} // namespace lumorph::cli

@@ -1,0 +1,157 @@
+#include "calibration/budget/room_errors.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "core/loop/pose_stream.h"
+#include "core/scene/measured_sigma.h"
+
+namespace lumorph {
+namespace {
+
+constexpr double kDegree = std::numbers::pi / 180.0;
+constexpr double kUsualDegrees = 60.0; // a whole stroke of something that does not turn, as the lab has it
+
+/// How well measurements come out in the lab, for those that did not say it. Along each axis.
+namespace usually {
+constexpr double kLight = 0.0005; // metres
+constexpr PoseError kTracker{0.0005, 0.1 * kDegree}, kDevice{0.0005, 0.15 * kDegree};
+constexpr double kEye = 0.002;           // metres
+constexpr double kServo = 0.3 * kDegree; // of its horn
+constexpr double kDelay = 0.002;         // seconds
+} // namespace usually
+
+/// A projector that was aimed by eye.
+constexpr double kAimedLight = 0.005; // metres
+/// A tracker's world that was typed in, as one measures with a ruler.
+constexpr PoseError kEnteredTracker{0.01, 2.0 * kDegree};
+
+double degreesOfStroke(const Actuator& actuator) { return degreesOf(actuator).value_or(kUsualDegrees); }
+
+PoseError alongAxes(const MeasuredSigma& sigma) {
+    return {sigma.metres / std::numbers::sqrt3, sigma.radians / std::numbers::sqrt3};
+}
+
+/// Writes what is known of one part, and how.
+class Writer {
+public:
+    explicit Writer(RoomErrors& errors) : errors_(errors) {}
+
+    void pose(BudgetPart part, const Origin& origin, PoseError& error, const PoseError& assumed,
+              const PoseError& measured) {
+        const PoseError said = alongAxes(sigmaOf(origin));
+        error = choose(part, origin, said.metres > 0.0 && said.radians > 0.0, said, measured, assumed);
+    }
+    void number(BudgetPart part, const Origin& origin, double& error, double said, double measured, double assumed) {
+        error = choose(part, origin, said > 0.0, said, measured, assumed);
+    }
+
+private:
+    template <typename Value>
+    Value choose(BudgetPart part, const Origin& origin, bool isTold, const Value& said, const Value& measured,
+                 const Value& assumed) {
+        ErrorSource& source = errors_.sources[static_cast<std::size_t>(part)];
+        source = origin.way != Origin::Way::measured ? ErrorSource::assumed
+                 : isTold                            ? ErrorSource::told
+                                                     : ErrorSource::measured;
+        return source == ErrorSource::assumed ? assumed : isTold ? said : measured;
+    }
+
+    RoomErrors& errors_;
+};
+
+/// Root mean square of a servo's curve and half its play beside the straight line, strokes. As `trueRoom` draws them.
+double usualStroke(const Actuator& actuator, double at, const LabErrors& usual) {
+    const double bow = usual.servoBend * std::sin(std::numbers::pi * at);
+    const double wave = 0.5 * usual.servoBend * std::sin(2.0 * std::numbers::pi * at);
+    const double play = 0.5 * usual.backlashDegrees / degreesOfStroke(actuator);
+    return std::sqrt(bow * bow + wave * wave + play * play);
+}
+
+/// Second moment of a delay around what is believed: uniform within `share` of `mean`.
+double usualDelay(const Installation& room, const LabErrors& usual) {
+    const auto variance = [](double mean, double share) { return std::pow(mean * share, 2) / 3.0; };
+    const double off = usual.lightSeconds - room.predictionSeconds + usual.trackerSeconds - room.trackerSeconds;
+    return std::sqrt(off * off + variance(usual.lightSeconds, 0.3) + variance(usual.trackerSeconds, 0.4));
+}
+
+} // namespace
+
+const char* keyOf(BudgetPart part) noexcept {
+    static constexpr std::array<const char*, kBudgetParts> kKeys{"projector", "tracker", "device",    "eye",
+                                                                 "servos",    "delay",   "prediction"};
+    return kKeys[static_cast<std::size_t>(part)];
+}
+
+RoomErrors errorsOf(const Installation& room, const Rig& rig, const std::vector<double>& commanded,
+                    const LabErrors& usual) {
+    RoomErrors errors;
+    Writer write(errors);
+    const Installation::Origins& origins = room.origins;
+    const Origin light = room.projectors.empty() ? Origin{} : room.projectors.front().lens;
+    write.number(BudgetPart::projector, light, errors.light, sigmaOf(light).metres, usually::kLight, kAimedLight);
+    write.pose(BudgetPart::tracker, origins.tracker, errors.tracker, kEnteredTracker, usually::kTracker);
+    errors.isTrackerPlaced = origins.tracker.way != Origin::Way::assumed;
+    write.pose(BudgetPart::device, origins.deviceBody, errors.device,
+               {1e-3 * usual.deviceMillimetres, usual.deviceDegrees * kDegree}, usually::kDevice);
+    write.number(BudgetPart::eye, origins.eyeOffset, errors.eye,
+                 sigmaOf(origins.eyeOffset).metres / std::numbers::sqrt3, usually::kEye, 1e-3 * usual.eyeMillimetres);
+    for (std::size_t i = 0; i < rig.actuatorCount(); ++i) {
+        const Actuator& actuator = rig.actuators()[i];
+        const auto servo = std::ranges::find(room.servos, actuator.name, &MeasuredServo::actuator);
+        const bool isMeasured = servo != room.servos.end() && !servo->points.empty(); // else only its lag was
+        const double whole = degreesOfStroke(actuator) * kDegree;
+        const double at = i < commanded.size() ? commanded[i] : 0.5;
+        // A servo that a measurement left out is as it was before.
+        const Origin origin = isMeasured ? origins.servos : Origin{};
+        write.number(BudgetPart::servos, origin, errors.strokes.emplace_back(), sigmaOf(origin).radians / whole,
+                     usually::kServo / whole, usualStroke(actuator, at, usual));
+    }
+    const bool predicts = room.predictionSeconds > 0.0;
+    // Without prediction the whole delay is an error.
+    const Origin delays = predicts ? origins.delays : Origin{};
+    write.number(BudgetPart::delay, delays, errors.delay, sigmaOf(delays).seconds, usually::kDelay,
+                 usualDelay(room, usual));
+    errors.noise = {1e-3 * usual.trackerNoiseMillimetres, usual.trackerNoiseDegrees * kDegree};
+    errors.ahead = predicts ? std::min(room.predictionSeconds + room.trackerSeconds, PoseStream::kFarthestAhead) : 0.0;
+    errors.sources[static_cast<std::size_t>(BudgetPart::prediction)] = ErrorSource::worked;
+    return errors;
+}
+
+RoomErrors measuredAgain(RoomErrors errors, const Rig& rig, BudgetPart part) {
+    const bool isNew = errors.sourceOf(part) == ErrorSource::assumed;
+    const auto number = [isNew](double& error, double measured) { error = isNew ? measured : 0.5 * error; };
+    const auto pose = [&number](PoseError& error, const PoseError& measured) {
+        number(error.metres, measured.metres);
+        number(error.radians, measured.radians);
+    };
+    switch (part) {
+    case BudgetPart::projector:
+        number(errors.light, usually::kLight);
+        break;
+    case BudgetPart::tracker:
+        pose(errors.tracker, usually::kTracker);
+        errors.isTrackerPlaced = true;
+        break;
+    case BudgetPart::device:
+        pose(errors.device, usually::kDevice);
+        break;
+    case BudgetPart::eye:
+        number(errors.eye, usually::kEye);
+        break;
+    case BudgetPart::servos:
+        for (std::size_t i = 0; i < errors.strokes.size(); ++i)
+            number(errors.strokes[i], usually::kServo / (degreesOfStroke(rig.actuators()[i]) * kDegree));
+        break;
+    case BudgetPart::delay:
+        number(errors.delay, usually::kDelay);
+        break;
+    case BudgetPart::prediction:
+        return errors;
+    }
+    if (isNew) errors.sources[static_cast<std::size_t>(part)] = ErrorSource::measured;
+    return errors;
+}
+
+} // namespace lumorph

@@ -1,0 +1,159 @@
+#include <cmath>
+#include <cstdio>
+#include <functional>
+
+#include <glm/gtc/matrix_transform.hpp>
+#include <gtest/gtest.h>
+
+#include "calibration/lab/board_lab.h"
+#include "calibration/lab/lab_lens.h"
+#include "calibration/lab/registration_lab.h"
+#include "calibration/report/calibrated_room.h"
+#include "calibration/servos/servo_lab.h"
+#include "calibration/solve/error_map.h"
+#include "core/rig/templates/bundled_rigs.h"
+#include "tests/support/chain_judge.h"
+#include "tests/support/long_tests.h"
+#include "tests/support/procam_observations.h"
+#include "tests/support/truth.h"
+
+// R24, R25, R26: from a room of which nothing is known, through every link of the chain, to a show in the room as it
+// truly is, all of the lab's errors on at once.
+
+namespace lumorph::test {
+namespace {
+
+constexpr double kPerMetre = 1000.0; // millimetres, the board's unit
+constexpr int kBoardPoses = 10;
+constexpr double kCornerNoise = 0.1, kLightNoise = 0.15; // pixels, of camera and projector
+
+/// What somebody has put up: near where rooms have their projector, with another zoom and a lens that bends.
+Installation putUp() {
+    Installation room = defaultInstallation();
+    CalibratedCamera& projector = room.projectors.front().camera;
+    const glm::dvec3 position = positionOf(projector) + glm::dvec3(0.03, -0.04, 0.02);
+    glm::dmat4 turned =
+        glm::rotate(glm::dmat4(1.0), 0.007, glm::normalize(glm::dvec3(0.3, 1.0, 0.4))) * projector.cameraFromWorld;
+    turned[3] = glm::dvec4(-(glm::dmat3(turned) * position), 1.0);
+    projector.cameraFromWorld = turned;
+    projector.focal *= 1.01;
+    projector.distortion = {-0.02, 0.0, 0.0, 0.0, 0.0};
+    room.cameras.resize(1);
+    room.cameras.front().camera = defaultLabCamera(projector);
+    return room;
+}
+
+/// Projector and camera as boards under structured light tell them.
+struct Calibrated {
+    Installation room;
+    ProcamCalibration solved;
+    WorldPose world;
+};
+
+Calibrated calibrate(const Installation& believed, const Installation& truth, std::uint32_t seed) {
+    const CalibrationBoard board = parseCalibrationBoard("chess:9x7:25");
+    const BoardLab lab(truth, board, {}, seed);
+    ProcamSetup setup;
+    setup.camera = lab.camera();
+    setup.projector = lab.projector().camera;
+    const glm::dmat4 cameraFromWorld = lab.camera().cameraFromWorld;
+    const auto inMillimetres = [](glm::dmat4 pose) {
+        pose[3] = glm::dvec4(kPerMetre * glm::dvec3(pose[3]), 1.0);
+        return pose;
+    };
+    setup.camera.cameraFromWorld = glm::dmat4(1.0);
+    setup.projector.cameraFromWorld = inMillimetres(setup.projector.cameraFromWorld * glm::inverse(cameraFromWorld));
+    setup.square = 25.0;
+    for (const glm::dmat4& pose : lab.proposePoses(kBoardPoses))
+        setup.cameraFromBoard.push_back(inMillimetres(cameraFromWorld * pose));
+    const std::vector<ViewObservations> views = observe(setup, {kCornerNoise, kLightNoise}, seed);
+    Calibrated result;
+    result.solved = solve(setup, views);
+    result.room = withCalibration(believed, result.solved, board);
+    const glm::dmat4 worldFromCam = worldFromCamera(result.solved, board, believed, {});
+    const PoseVector& flat = result.solved.state.cameraFromBoard.front();
+    const glm::dvec3 axis(flat[0], flat[1], flat[2]);
+    const glm::dmat3 turn(glm::rotate(glm::dmat4(1.0), glm::length(axis), glm::normalize(axis)));
+    BoardPoints seen{{}, views.front().corners.seen};
+    for (const cv::Point3d& point : views.front().corners.board) {
+        const glm::dvec3 inCamera =
+            turn * glm::dvec3(point.x, point.y, point.z) + glm::dvec3(flat[3], flat[4], flat[5]);
+        const glm::dvec3 world(worldFromCam * glm::dvec4(inCamera / kPerMetre, 1.0));
+        seen.board.emplace_back(kPerMetre * world.x, kPerMetre * world.y, kPerMetre * world.z);
+    }
+    result.world = worldPoseFrom(result.solved, seen, kCornerNoise);
+    return result;
+}
+
+/// Of places on the table and as high as the device lifts its skin: how far beside them the light of the calibrated
+/// room truly falls, as a share of the error that the map predicts there.
+std::vector<double> sharesOfMap(const Calibrated& calibrated, const Installation& truth) {
+    const LabLens believed = lensOf(calibrated.room.projectors.front().camera, "calibrated projector");
+    const LabLens lamp = lensOf(truth.projectors.front().camera, "true projector");
+    std::vector<double> shares;
+    for (const double y : {0.0, 0.05})
+        for (int i = -4; i <= 4; ++i)
+            for (int k = -4; k <= 4; ++k) {
+                const glm::dvec3 place(0.04 * i, y, 0.03 * k);
+                const auto pixel = imageOf(believed, place);
+                const auto ray = pixel ? rayThrough(lamp, *pixel) : std::nullopt;
+                if (!ray) continue;
+                const glm::dvec3 fell = lamp.position + (y - lamp.position.y) / ray->y * *ray;
+                const double predicted =
+                    errorMap(calibrated.solved, calibrated.world,
+                             {{{kPerMetre * place.x, kPerMetre * place.y, kPerMetre * place.z}, {0.0, 1.0, 0.0}}})
+                        .front();
+                shares.push_back(kPerMetre * glm::distance(fell, place) / predicted);
+            }
+    return shares;
+}
+
+/// The links after projector and camera, in the order in which the studio's chain has them, each as the studio measures
+/// it in its lab: all from the room as the links before left it.
+Installation measureLinks(const Rig& rig, Installation room, const Installation& truth, std::uint32_t seed) {
+    const auto use = [&](const char* link, const Registration& measured) {
+        EXPECT_TRUE(measured.good()) << link << ": " << measured.summary;
+        room = measured.installation;
+    };
+    use("pointer", measurePointerInLab(rig, room, truth, seed));
+    use("tracker", measureTrackerInLab(rig, room, truth, seed + 1));
+    use("device", measureDeviceInLab(rig, room, truth, seed + 2));
+    use("eye", measureEyeInLab(rig, room, truth, seed + 3));
+    const ServoLabResult servos = measureServosInLab(rig, room, truth, seed + 4);
+    EXPECT_TRUE(servos.measured.usable);
+    room = servos.room;
+    // Light and delays are links of the same kind: they belong here, `room` in and out.
+    return room;
+}
+
+void print(const char* what, const ShownError& error) {
+    std::printf("%-22s | balls %2zu of %2zu: mean %.2f, 95 %% %.2f pixels | skin mean %.2f pixels, %.2f mm, 95 %% %.2f "
+                "mm | eye %.1f mm | device %.2f mm\n",
+                what, error.balls.size(), error.judgedBalls, meanOf(error.balls), quantileOf(error.balls, 0.95),
+                meanOf(error.skinPixels), meanOf(error.skinMillimetres), quantileOf(error.skinMillimetres, 0.95),
+                error.eyeMillimetres, error.deviceMillimetres);
+}
+
+TEST(EndToEnd, TheWholeChainShowsWhatTheEyeShouldSee) {
+    const auto rig = std::make_shared<const Rig>(tabletRig());
+    for (std::uint32_t seed = 1; seed <= (longTests() ? 6U : 1U); ++seed) {
+        const Installation truth = trueRoom(putUp(), rig->actuators(), seed);
+        const Calibrated calibrated = calibrate(defaultInstallation(), truth, seed);
+        const std::vector<double> shares = sharesOfMap(calibrated, truth);
+        std::printf("light beside, as a share of the predicted 95 %%: mean %.2f, most %.2f of %zu places\n",
+                    meanOf(shares), quantileOf(shares, 1.0), shares.size());
+        ASSERT_GT(shares.size(), 100U);
+        EXPECT_LE(quantileOf(shares, 0.95), 1.0) << "inside the predicted map in 95 of 100 places";
+
+        const Installation estimated = measureLinks(*rig, calibrated.room, truth, 10 * seed);
+        const ShownError shown = shownError(rig, estimated, truth);
+        print("whole chain", shown);
+        EXPECT_GE(shown.judgedBalls, 20U);
+        EXPECT_GE(shown.balls.size() + 2, shown.judgedBalls) << "what is not seen at all is no small error";
+        EXPECT_LE(meanOf(shown.balls), 1.5);
+        EXPECT_LE(meanOf(shown.skinPixels), 1.5);
+    }
+}
+
+} // namespace
+} // namespace lumorph::test
