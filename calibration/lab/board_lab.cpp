@@ -38,12 +38,14 @@ struct Gleam {
 
 /// Bends an image as no radial or tangential distortion does; as large as `amplitude` pixels.
 glm::dvec2 waved(const glm::dvec2& pixel, const glm::dvec2& size, double amplitude) {
+    if (amplitude == 0.0) return pixel;              // as nearly always, for each ray
     constexpr double kTurn = 3.0 * std::numbers::pi; // over the image
     return pixel +
            amplitude * glm::dvec2(std::sin(kTurn * pixel.y / size.y + 1.0), std::sin(kTurn * pixel.x / size.x + 0.3));
 }
 
 glm::dvec2 unwaved(const glm::dvec2& pixel, const glm::dvec2& size, double amplitude) {
+    if (amplitude == 0.0) return pixel;
     glm::dvec2 ideal = pixel;
     for (int i = 0; i < 8; ++i) ideal = pixel - (waved(ideal, size, amplitude) - ideal);
     return ideal;

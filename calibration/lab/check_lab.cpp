@@ -1,29 +1,17 @@
 #include "calibration/lab/check_lab.h"
 
 #include <algorithm>
-#include <utility>
+#include <cmath>
 
 #include <opencv2/imgproc.hpp>
 
-#include "calibration/lab/lab_light.h"
+#include "calibration/lab/lab_photograph.h"
 #include "calibration/lab/lab_world.h"
 #include "core/base/error.h"
 
 namespace lumorph {
 
 namespace {
-
-constexpr double kBrightestShare = 0.99; // of the pixels: what shines back more may be overexposed
-
-Image pictureOfGrey(const cv::Mat& grey) {
-    Image picture(glm::ivec2(grey.cols, grey.rows));
-    for (int y = 0; y < grey.rows; ++y)
-        for (int x = 0; x < grey.cols; ++x) {
-            const std::uint8_t value = grey.at<std::uint8_t>(y, x);
-            picture.at(x, y) = {value, value, value, 255};
-        }
-    return picture;
-}
 
 double risenStroke(const MeasuredServo& servo, double commanded) {
     double stroke = commanded;
@@ -37,17 +25,12 @@ double risenStroke(const MeasuredServo& servo, double commanded) {
 
 LabWorld shownWorld(const Installation& truth, const Rig& rig, std::span<const double> strokes,
                     const CheckLabOptions& options) {
-    LabWorld world;
-    TriangleMesh device = deformed(rig, strokes);
-    for (glm::vec3& point : device.positions) point = glm::vec3(truth.worldFromDevice * glm::vec4(point, 1.0F));
-    world.surfaces = {{std::move(device), lightOfSrgb(truth.deviceColor)},
-                      {tableMesh(truth.tableSize), lightOfSrgb(truth.tableColor)}};
+    LabWorld world = roomWorld(truth, rig, strokes);
     world.blockers = options.hands;
     double peak = 0.0;
-    for (InstalledProjector projector : truth.projectors) {
-        if (options.isLinear) projector.gamma = 1.0;
+    for (const InstalledProjector& projector : truth.projectors) {
         if (projector.enabled) peak = std::max(peak, projector.peak);
-        world.projectors.push_back({projector, Image(projector.camera.size)});
+        world.projectors.push_back({options.isLinear ? linearProjector(projector) : projector, {}});
     }
     world.ambient = glm::vec3(static_cast<float>(options.pictures.ambient * peak));
     return world;
@@ -79,28 +62,14 @@ CheckLab::CheckLab(const Installation& truth, const Rig& rig, std::span<const do
     empty.hands.clear();
     lab_ = std::make_unique<Lab>(shownWorld(truth, rig, strokes, empty));
     sight_ = lab_->look(truth.cameras.front().camera, options.pictures.samples);
-    for (std::size_t i = 0; i < dark_.size(); ++i) lab_->show(i, Image(dark_[i].size(), {255, 255, 255, 255}));
-    cv::Mat1f white = light().reshape(1, 1);
-    const auto at = white.begin() + static_cast<std::ptrdiff_t>(kBrightestShare * static_cast<double>(white.total()));
-    std::nth_element(white.begin(), at, white.end());
-    if (!(*at > 0.0F))
-        throw InvalidInput("check in the lab", "its camera sees nothing that the projector lights",
-                           "place camera and projector so that both see the device");
-    exposure_ = options.pictures.whiteLevel / static_cast<double>(*at);
+    exposure_ = exposureOf(*lab_, sight_, options.pictures.whiteLevel, "check in the lab");
     if (options.hands.empty()) return;
     lab_ = std::make_unique<Lab>(shownWorld(truth, rig, strokes, options));
     sight_ = lab_->look(truth.cameras.front().camera, options.pictures.samples);
 }
 
-cv::Mat1f CheckLab::light() const {
-    const std::vector<glm::vec3> radiance = lab_->radiance(sight_);
-    cv::Mat1f light(sight_.size.y, sight_.size.x);
-    std::ranges::transform(radiance, light.begin(),
-                           [](const glm::vec3& one) { return (one.r + one.g + one.b) / 3.0F; });
-    return light;
-}
-
-cv::Mat CheckLab::develop(cv::Mat1f light) {
+cv::Mat CheckLab::develop() {
+    cv::Mat1f light = lightIn(*lab_, sight_);
     light *= options_.exposure * exposure_;
     const double blur = std::hypot(options_.pictures.blur, options_.shake);
     if (blur > 0.0) cv::GaussianBlur(light, light, {}, blur);
@@ -108,15 +77,15 @@ cv::Mat CheckLab::develop(cv::Mat1f light) {
 }
 
 cv::Mat CheckLab::photograph(std::size_t projector, const cv::Mat& grey) {
-    for (std::size_t i = 0; i < dark_.size(); ++i) lab_->show(i, i == projector ? pictureOfGrey(grey) : dark_[i]);
-    return develop(light());
+    for (std::size_t i = 0; i < dark_.size(); ++i) lab_->show(i, i == projector ? pictureOf(grey) : dark_[i]);
+    return develop();
 }
 
 cv::Mat CheckLab::photograph(std::span<const Image> sent) {
     if (sent.size() != dark_.size())
         throw InvalidInput("check in the lab", "there is not one picture for each projector", "give one for each");
     for (std::size_t i = 0; i < dark_.size(); ++i) lab_->show(i, sent[i]);
-    return develop(light());
+    return develop();
 }
 
 } // namespace lumorph

@@ -40,8 +40,7 @@ public:
     [[nodiscard]] cv::Mat photograph(std::span<const Image> sent);
 
 private:
-    [[nodiscard]] cv::Mat1f light() const;
-    [[nodiscard]] cv::Mat develop(cv::Mat1f light);
+    [[nodiscard]] cv::Mat develop();
 
     CheckLabOptions options_;
     std::unique_ptr<Lab> lab_;

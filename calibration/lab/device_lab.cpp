@@ -1,8 +1,7 @@
 #include "calibration/lab/device_lab.h"
 
-#include <algorithm>
 #include <cstdio>
-#include <utility>
+#include <string>
 #include <vector>
 
 #include <opencv2/imgproc.hpp>
@@ -11,7 +10,7 @@
 #include "calibration/lab/board_lab.h"
 #include "calibration/lab/lab.h"
 #include "calibration/lab/lab_folder.h"
-#include "calibration/lab/lab_light.h"
+#include "calibration/lab/lab_photograph.h"
 #include "calibration/lab/lab_truth.h"
 #include "calibration/lab/lab_world.h"
 #include "calibration/patterns/capture_order.h"
@@ -21,8 +20,7 @@ namespace lumorph {
 
 namespace {
 
-constexpr double kRaised = 0.5;     // of a stroke: upright flaps show light only their edge
-constexpr double kBrightest = 0.99; // of the pixels: what shines back more may be overexposed
+constexpr double kRaised = 0.5; // of a stroke: upright flaps show light only their edge
 
 /// A row a shot: the device at rest, then with each actuator raised.
 std::vector<std::vector<double>> statesOf(const Rig& rig) {
@@ -37,51 +35,14 @@ std::string numbered(const char* word, std::size_t number) {
     return text;
 }
 
-/// The installation's world around the device in one state. Patterns are shown as light: a projector's gamma would
-/// bend their phases.
+/// The installation's world around the device in one state.
 LabWorld worldOf(const Installation& room, const Rig& rig, const std::vector<double>& strokes, double ambient) {
-    LabWorld world;
-    TriangleMesh device = deformed(rig, strokes);
-    for (glm::vec3& point : device.positions) point = glm::vec3(room.worldFromDevice * glm::vec4(point, 1.0F));
-    world.surfaces = {{std::move(device), lightOfSrgb(room.deviceColor)},
-                      {tableMesh(room.tableSize), lightOfSrgb(room.tableColor)}};
-    InstalledProjector projector = room.projectors.front();
+    LabWorld world = roomWorld(room, rig, strokes);
+    InstalledProjector projector = linearProjector(room.projectors.front());
     projector.enabled = true;
-    projector.gamma = 1.0;
-    projector.responseCurve.clear();
-    projector.black = glm::vec3(0.0F);
     world.ambient = glm::vec3(static_cast<float>(ambient * projector.peak));
-    world.projectors = {{projector, Image(projector.camera.size)}};
+    world.projectors = {{projector, {}}};
     return world;
-}
-
-Image pictureOf(const cv::Mat& grey) {
-    Image picture(glm::ivec2(grey.cols, grey.rows));
-    for (int y = 0; y < grey.rows; ++y)
-        for (int x = 0; x < grey.cols; ++x) {
-            const std::uint8_t value = grey.at<std::uint8_t>(y, x);
-            picture.at(x, y) = {value, value, value, 255};
-        }
-    return picture;
-}
-
-cv::Mat1f lightIn(const Lab& lab, const LabSight& sight) {
-    const std::vector<glm::vec3> radiance = lab.radiance(sight);
-    cv::Mat1f light(sight.size.y, sight.size.x);
-    std::ranges::transform(radiance, light.begin(), [](const glm::vec3& one) { return one.g; });
-    return light;
-}
-
-/// Grey levels of radiance 1, so that the device and the table under full white come to `white`.
-double exposureOf(Lab& lab, const LabSight& sight, glm::ivec2 panel, double white) {
-    lab.show(0, pictureOf(cv::Mat(panel.y, panel.x, CV_8U, cv::Scalar(255))));
-    cv::Mat1f light = lightIn(lab, sight).reshape(1, 1);
-    const auto at = light.begin() + static_cast<std::ptrdiff_t>(kBrightest * static_cast<double>(light.total()));
-    std::nth_element(light.begin(), at, light.end());
-    if (!(*at > 0.0F))
-        throw InvalidInput("capture in the lab", "its camera sees nothing that the projector lights",
-                           "place camera and projector so that both see the device");
-    return white / static_cast<double>(*at);
 }
 
 nlohmann::json truthOf(const CalibratedCamera& camera, const Installation& room) {
@@ -130,7 +91,7 @@ void writeDeviceLabCapture(const DeviceLabCapture& capture, const Rig& rig, cons
                                             static_cast<double>(s + 1) / static_cast<double>(states.size()));
         Lab lab(worldOf(capture.room, rig, states[s], options.ambient));
         const LabSight sight = lab.look(camera, options.samples);
-        if (s == 0) exposure = exposureOf(lab, sight, panel, options.whiteLevel);
+        if (s == 0) exposure = exposureOf(lab, sight, options.whiteLevel, "capture in the lab");
         std::vector<LabShot> shots;
         for (std::size_t i = 0; i < order.images.size(); ++i) {
             part.throwIfCancelled();

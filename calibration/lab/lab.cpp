@@ -166,7 +166,8 @@ glm::vec3 Lab::Data::pixel(const LabSight& sight, std::size_t index) const {
         glm::vec3 light = world.ambient;
         for (std::size_t lamp = 0; lamp < lamps.size(); ++lamp) {
             const LabSight::Gleam& gleam = sight.gleams[ray * lamps.size() + lamp];
-            if (gleam.share > 0.0F) light += gleam.share * lightAt(lamps[lamp].picture, gleam.pixel);
+            if (gleam.share > 0.0F && !lamps[lamp].picture.light.empty())
+                light += gleam.share * lightAt(lamps[lamp].picture, gleam.pixel);
         }
         sum += world.surfaces[static_cast<std::size_t>(sight.surfaces[ray])].albedo * light;
     }
@@ -219,11 +220,21 @@ Lab::~Lab() = default;
 Lab::Lab(Lab&&) noexcept = default;
 Lab& Lab::operator=(Lab&&) noexcept = default;
 
-void Lab::show(std::size_t projector, const Image& image) {
-    if (projector >= data_->lamps.size())
-        throw InvalidInput("projector " + std::to_string(projector), "the lab has no such projector",
+std::size_t Lab::projectors() const noexcept { return data_->lamps.size(); }
+
+const InstalledProjector& Lab::projector(std::size_t number) const {
+    if (number >= data_->lamps.size())
+        throw InvalidInput("projector " + std::to_string(number), "the lab has no such projector",
                            "count from 0 to the last one");
-    const InstalledProjector& owner = data_->world.projectors[projector].projector;
+    return data_->world.projectors[number].projector;
+}
+
+void Lab::show(std::size_t projector, const Image& image) {
+    const InstalledProjector& owner = this->projector(projector);
+    if (image.pixels().empty()) {
+        data_->lamps[projector].picture = {};
+        return;
+    }
     if (image.size() != owner.camera.size)
         throw InvalidInput("picture of projector " + owner.name,
                            "it is " + std::to_string(image.size().x) + " x " + std::to_string(image.size().y) +

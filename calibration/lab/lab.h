@@ -24,7 +24,7 @@ struct LabSurface {
 /// A projector of the lab with the picture it sends out.
 struct LabProjector {
     InstalledProjector projector; ///< as it truly is, which need not be what calibration believes
-    Image image;                  ///< of the projector's size, sRGB or its own gamma
+    Image image;                  ///< of the projector's size, sRGB or its own gamma; empty: no light leaves it
 };
 
 /// All that is in the lab.
@@ -63,6 +63,9 @@ public:
 
     /// Gives a projector another picture. Throws InvalidInput as the constructor does.
     void show(std::size_t projector, const Image& image);
+    [[nodiscard]] std::size_t projectors() const noexcept;
+    /// Throws InvalidInput where there is none of that number.
+    [[nodiscard]] const InstalledProjector& projector(std::size_t number) const;
 
     /// What an observer sees, linear radiance, row 0 at the top; black where nothing is. `samples` x `samples` rays a
     /// pixel, in [1, 16]; throws InvalidInput otherwise.

@@ -57,6 +57,26 @@ TriangleMesh deviceMesh(const ShowFrame& frame) {
     return mesh;
 }
 
+TriangleMesh deviceMesh(const Installation& room, const Rig& rig, std::span<const double> strokes) {
+    TriangleMesh mesh = deformed(rig, strokes);
+    for (glm::vec3& point : mesh.positions) point = glm::vec3(room.worldFromDevice * glm::vec4(point, 1.0F));
+    return mesh;
+}
+
+LabWorld roomWorld(const Installation& room, const Rig& rig, std::span<const double> strokes) {
+    LabWorld world;
+    world.surfaces = {{deviceMesh(room, rig, strokes), lightOfSrgb(room.deviceColor)},
+                      {tableMesh(room.tableSize), lightOfSrgb(room.tableColor)}};
+    return world;
+}
+
+InstalledProjector linearProjector(InstalledProjector projector) {
+    projector.gamma = 1.0;
+    projector.responseCurve.clear();
+    projector.black = glm::vec3(0.0F);
+    return projector;
+}
+
 TriangleMesh tableMesh(glm::vec2 size) {
     const glm::vec2 half = 0.5F * size;
     return {{{-half.x, 0, -half.y}, {-half.x, 0, half.y}, {half.x, 0, half.y}, {half.x, 0, -half.y}},

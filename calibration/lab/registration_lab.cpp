@@ -98,9 +98,12 @@ std::vector<glm::dvec3> decodedPoints(const Lab& lab, const LabLens& camera, con
 
 /// Servos that came down to rest stop where their play lets them.
 std::vector<double> strokesAtRest(const Rig& rig, const Installation& room) {
-    std::vector<double> strokes(rig.actuatorCount(), 0.0);
-    for (std::size_t i = 0; i < strokes.size() && i < room.servos.size(); ++i)
-        if (!room.servos[i].points.empty()) strokes[i] = std::clamp(room.servos[i].points.front().falling, 0.0, 1.0);
+    std::vector<double> strokes;
+    for (const Actuator& actuator : rig.actuators()) {
+        const auto servo = std::ranges::find(room.servos, actuator.name, &MeasuredServo::actuator);
+        const bool isKnown = servo != room.servos.end() && !servo->points.empty();
+        strokes.push_back(isKnown ? std::clamp(servo->points.front().falling, 0.0, 1.0) : 0.0);
+    }
     return strokes;
 }
 
@@ -169,11 +172,8 @@ SurfaceCapture captureSurfaceInLab(const Rig& rig, const Installation& believed,
     SurfaceCapture capture;
     capture.model = deformed(rig, strokesAtRest(rig, believed));
     capture.seenFrom = positionOf(camera);
-    TriangleMesh placed = deformed(rig, strokesAtRest(rig, truth));
-    for (glm::vec3& point : placed.positions) point = glm::vec3(truth.worldFromDevice * glm::vec4(point, 1.0F));
-    LabWorld world;
-    world.surfaces = {{std::move(placed), glm::vec3(1.0F)}, {tableMesh(truth.tableSize), glm::vec3(1.0F)}};
-    world.projectors = {{projector, Image(projector.camera.size)}};
+    LabWorld world = roomWorld(truth, rig, strokesAtRest(rig, truth));
+    world.projectors = {{projector, {}}};
     capture.points = decodedPoints(Lab(std::move(world)), lensOf(camera, "camera of the lab"),
                                    lensOf(projector.camera, "projector of the lab"), seedOf(seed, Step::surface));
     TrackerLab lab = labOf(truth, seed, Step::surface, options);

@@ -45,7 +45,7 @@ std::size_t wiringSteps(const ServoPlan& plan) {
 
 void requireSeen(const Estimates& estimates) {
     const auto seen = std::ranges::count_if(estimates, [](const auto& one) { return one.has_value(); });
-    if (2 * static_cast<std::size_t>(seen) <= estimates.size()) refuseUnseen();
+    if (!estimates.front() || 2 * static_cast<std::size_t>(seen) <= estimates.size()) refuseUnseen();
 }
 
 void requireStill(const Estimates& estimates) {
@@ -62,24 +62,26 @@ void requireStill(const Estimates& estimates) {
                           "fix it, keep your hands off, and measure again"});
 }
 
-/// Who moved in the pass in which this servo alone was told to.
-Mover moverOf(const StrokeEstimate& rest, const StrokeEstimate& now) {
-    Mover mover;
+/// Who moved in the pass in which this servo alone was told to; itself by nothing where nobody did.
+Mover moverOf(const StrokeEstimate& rest, const StrokeEstimate& now, std::size_t servo) {
+    Mover mover{servo, 0.0, now.sigma[servo] < kSureEnough};
     for (std::size_t i = 0; i < now.strokes.size(); ++i) {
         const double by = now.strokes[i] - rest.strokes[i];
-        if (now.sigma[i] < kSureEnough && std::abs(by) > std::abs(mover.by)) mover = {i, by};
+        if (now.sigma[i] < kSureEnough && std::abs(by) > std::abs(mover.by)) {
+            mover.part = i;
+            mover.by = by;
+        }
     }
     return mover;
 }
 
 std::vector<Mover> moversOf(const ServoPlan& plan, const Estimates& estimates, std::size_t count) {
     std::vector<Mover> movers(count);
-    for (std::size_t i = 0; i < count; ++i) movers[i].part = i;
+    for (std::size_t i = 0; i < count; ++i) movers[i] = {i, 0.0, false};
     for (std::size_t k = 0; k < estimates.size(); ++k) {
         if (plan.steps[k].kind != Kind::find || !estimates[k]) continue;
         const std::size_t servo = plan.steps[k].servos.front();
-        const Mover mover = moverOf(*estimates.front(), *estimates[k]);
-        if (mover.by != 0.0) movers[servo] = mover;
+        movers[servo] = moverOf(*estimates.front(), *estimates[k], servo);
     }
     return movers;
 }
@@ -104,7 +106,7 @@ BothWays levelsOf(const ServoPlan& plan, const Estimates& estimates, std::size_t
     return ways;
 }
 
-/// What curves say of fresh states, against what was seen of them.
+/// What curves say of fresh states, against what was seen of them. Unseen states confirm no curve.
 void judgeFresh(const Rig& rig, const ServoPlan& plan, ServoCalibration& result) {
     std::vector<double> errors;
     const std::size_t count = rig.actuatorCount();
@@ -117,10 +119,23 @@ void judgeFresh(const Rig& rig, const ServoPlan& plan, ServoCalibration& result)
             if (plan.steps[k].kind != Kind::fresh || !seen || seen->sigma[i] > kSureEnough) continue;
             errors.push_back(servo.degrees * std::abs(seen->strokes[i] - real[i]));
         }
-    if (errors.empty()) return;
+    if (errors.empty()) {
+        if (std::ranges::find(plan.steps, Kind::fresh, &ServoStep::kind) == plan.steps.end())
+            return; // none were wanted
+        result.usable = false;
+        result.findings.push_back({Cause::tooFewPoints, "servos", "", "none of the fresh states was seen",
+                                   "keep hands and things out of the light, then measure again"});
+        return;
+    }
     std::ranges::sort(errors);
     result.freshDegrees = errors[errors.size() / 2];
     result.freshWorst = errors.back();
+    if (result.freshDegrees <= kFreshMost) return;
+    result.usable = false;
+    result.findings.push_back(
+        {Cause::modelDoesNotFit, "servos", "",
+         "fresh states are " + registration::number(result.freshDegrees, 1) + " degrees from where the curves put them",
+         "look for loose parts, then measure again"});
 }
 
 double medianRms(const Estimates& estimates) {
@@ -160,7 +175,7 @@ struct ServoSolver::Data {
     DeviceNudge place;
     std::vector<Mover> movers;
     std::vector<Finding> wiring;
-    bool isWiredWrongly = false;
+    bool isWiringClear = true; ///< as far as it was looked at
 
     Data(const Rig& r, const glm::dmat4& worldFromDevice, const ServoPlan& p)
         : rig(r), plan(p), solver(r, worldFromDevice) {}
@@ -196,11 +211,11 @@ void ServoSolver::take(const ServoPass& pass) {
     }
     if (d.estimates.size() != wiringSteps(d.plan)) return;
     d.movers = moversOf(d.plan, d.estimates, d.rig.actuatorCount());
-    d.isWiredWrongly = !servos::judgeWiring(d.rig, d.movers, *d.estimates.front(), d.wiring);
+    d.isWiringClear = servos::judgeWiring(d.rig, d.movers, *d.estimates.front(), d.wiring);
 }
 
 bool ServoSolver::ended() const noexcept {
-    return data_->isWiredWrongly || data_->estimates.size() == data_->plan.steps.size();
+    return !data_->isWiringClear || data_->estimates.size() == data_->plan.steps.size();
 }
 
 ServoCalibration ServoSolver::Data::begun() const {
@@ -228,17 +243,10 @@ ServoCalibration ServoSolver::result() const {
     requireSeen(d.estimates);
     requireStill(d.estimates);
     ServoCalibration result = d.begun();
-    if (d.isWiredWrongly) return result;
+    if (!d.isWiringClear) return result;
     result.usable = true;
     drawCurves(d.rig, d.plan, result);
     judgeFresh(d.rig, d.plan, result);
-    if (result.freshDegrees > kFreshMost) {
-        result.usable = false;
-        result.findings.push_back({Cause::modelDoesNotFit, "servos", "",
-                                   "fresh states are " + registration::number(result.freshDegrees, 1) +
-                                       " degrees from where the curves put them",
-                                   "look for loose parts, then measure again"});
-    }
     return result;
 }
 

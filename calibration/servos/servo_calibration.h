@@ -35,7 +35,7 @@ struct ServoCalibration {
     std::vector<ServoFinding> servos;                     ///< one an actuator
     std::vector<std::optional<StrokeEstimate>> estimates; ///< one a pass; empty where too little was seen
     std::vector<Finding> findings;                        ///< dead, swapped, reversed and jammed servos, and doubts
-    bool usable = false; ///< no servo is dead, swapped or reversed, and the fresh states are met: curves may be applied
+    bool usable = false;       ///< each servo moves its own part, and the fresh states are met: curves may be applied
     double freshDegrees = 0.0; ///< median of what the curves say of states that they were not made of, degrees
     double freshWorst = 0.0;   ///< the largest
     double rms = 0.0;          ///< of points off the surface, metres: the median pass
@@ -55,7 +55,7 @@ public:
     /// What was seen in the plan's next step. Throws CaptureRefused where the first pass shows nothing of the device;
     /// InvalidInput where no step is left.
     void take(const ServoPass& pass);
-    /// Nothing is left to be seen: the plan has no more steps, or a servo is dead, swapped or reversed.
+    /// Nothing is left to be seen: the plan has no more steps, or a servo is hidden, dead, swapped or reversed.
     [[nodiscard]] bool ended() const noexcept;
     /// The curve of each servo on the way up and down, its play, and where it stops. Throws InvalidInput before the
     /// end, CaptureRefused where most passes show nothing of the device or the device moved on the table.

@@ -157,7 +157,12 @@ bool judgeWiring(const Rig& rig, const std::vector<Mover>& movers, const StrokeE
     const std::size_t before = findings.size();
     for (std::size_t i = 0; i < movers.size(); ++i) {
         const std::string name = rig.actuators()[i].name;
-        if (std::abs(movers[i].by) < kMoved) {
+        if (std::abs(movers[i].by) < kMoved && !movers[i].isOwnSeen) {
+            findings.push_back(
+                {Cause::tooFewPoints, name, "",
+                 "too little of the part of servo " + quoted(rig, i) + " is seen to tell whether it moves",
+                 "move camera or projector so that both see it, then measure again"});
+        } else if (std::abs(movers[i].by) < kMoved) {
             findings.push_back({Cause::servoDead, name, "", "servo " + quoted(rig, i) + " does not move",
                                 "look at its plug, its power and its channel, then measure again"});
         } else if (movers[i].part != i) {

@@ -21,13 +21,14 @@ struct BothWays {
 struct Mover {
     std::size_t part = 0;
     double by = 0.0;
+    bool isOwnSeen = true; ///< its own part was seen then: if nothing moved, it does not move
 };
 
 /// The curve through what was seen, with its play.
 void drawCurve(const BothWays& seen, ServoFinding& servo);
 /// The command from which on it moves no more though it should; empty where it gets to its end.
 [[nodiscard]] std::optional<double> stopOf(const BothWays& seen);
-/// Names who is dead, swapped or reversed; true where none is.
+/// Names who is dead, swapped, reversed, or hidden, so that nobody can tell; true where none is.
 [[nodiscard]] bool judgeWiring(const Rig& rig, const std::vector<Mover>& movers, const StrokeEstimate& rest,
                                std::vector<Finding>& findings);
 [[nodiscard]] Finding jammedFinding(const Rig& rig, std::size_t actuator, double commanded, double real,

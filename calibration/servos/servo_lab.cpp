@@ -20,15 +20,11 @@ namespace {
 constexpr std::array<std::string_view, 4> kServoFaults = {"swapped", "reversed", "dead", "jammed"};
 constexpr double kSteepest = 0.12; // cosine: flatter light is too dim to read
 
-/// The device and the table, without pictures.
+/// The device and the table before a projector without a picture.
 LabWorld dimWorld(const Installation& room, const Rig& rig, std::span<const double> strokes) {
-    LabWorld world;
-    TriangleMesh device = deformed(rig, strokes);
-    for (glm::vec3& point : device.positions) point = glm::vec3(room.worldFromDevice * glm::vec4(point, 1.0F));
-    world.surfaces = {{std::move(device), glm::vec3(1.0F)}, {tableMesh(room.tableSize), glm::vec3(1.0F)}};
-    InstalledProjector projector = room.projectors.front();
-    projector.enabled = true;
-    world.projectors = {{projector, Image(projector.camera.size)}};
+    LabWorld world = roomWorld(room, rig, strokes);
+    world.projectors = {{room.projectors.front(), {}}};
+    world.projectors.front().projector.enabled = true;
     return world;
 }
 

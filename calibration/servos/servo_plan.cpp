@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <numeric>
 #include <random>
 #include <utility>
 
@@ -50,11 +51,11 @@ void check(const Rig& rig, const std::vector<std::vector<std::size_t>>& groups, 
     if (!timed || !std::isfinite(options.velocity + options.settleSeconds + options.pictureSeconds) ||
         options.pictures < 1)
         throw InvalidInput("plan of servos", "its times are out of range", "use finite times above zero");
-    std::vector<int> named(count, 0);
-    for (const auto& group : groups)
-        for (const std::size_t i : group)
-            if (i < count) ++named[i];
-    if (std::ranges::any_of(named, [](int times) { return times != 1; }))
+    std::vector<std::size_t> named, each(count);
+    for (const auto& group : groups) named.insert(named.end(), group.begin(), group.end());
+    std::ranges::sort(named);
+    std::iota(each.begin(), each.end(), 0U);
+    if (named != each)
         throw InvalidInput("plan of servos", "its groups do not name each actuator once", "use servoGroups");
 }
 

@@ -49,7 +49,8 @@ struct ServoPlan {
 servoGroups(const Rig& rig, const std::function<std::vector<int>(std::span<const double> strokes)>& seen);
 
 /// At rest; each servo alone at half its range; each group through its levels and back; states that nothing is fitted
-/// to. Throws InvalidInput for options out of range, groups that leave an actuator out, or more actuators than 64.
+/// to. Throws InvalidInput for options out of range, groups that do not name each actuator once, or more actuators
+/// than 64.
 [[nodiscard]] ServoPlan planServos(const Rig& rig, std::vector<std::vector<std::size_t>> groups,
                                    const ServoPlanOptions& options = {});
 

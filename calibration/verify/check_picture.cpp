@@ -10,6 +10,7 @@
 #include <opencv2/imgproc.hpp>
 #include <tbb/parallel_for.h>
 
+#include "calibration/lab/lab_world.h"
 #include "core/base/error.h"
 
 namespace lumorph {
@@ -104,9 +105,10 @@ void drawWords(Plan& plan, const RoomCheck& check) {
     std::vector<std::string> lines;
     constexpr std::size_t kLetters = 96;
     while (first.size() > kLetters) {
-        const std::size_t cut = first.rfind(' ', kLetters);
-        lines.push_back(first.substr(0, cut));
-        first.erase(0, cut + 1);
+        const std::size_t blank = first.rfind(' ', kLetters);
+        const bool isWord = blank == std::string::npos; // longer than a line
+        lines.push_back(first.substr(0, isWord ? kLetters : blank));
+        first.erase(0, isWord ? kLetters : blank + 1);
     }
     lines.push_back(first);
     lines.emplace_back(figures);
@@ -147,8 +149,7 @@ int gridAt(const glm::dvec3& place, bool isOnDevice) {
 
 Image errorPicture(const RoomCheck& check, const Rig& rig, const Installation& believed,
                    std::span<const double> strokes, int width) {
-    TriangleMesh device = deformed(rig, strokes);
-    for (glm::vec3& point : device.positions) point = glm::vec3(believed.worldFromDevice * glm::vec4(point, 1.0F));
+    const TriangleMesh device = deviceMesh(believed, rig, strokes);
     Box box = boundingBox(device.positions);
     const glm::vec3 around = 0.45F * std::max(box.size().x, box.size().z) * glm::vec3(1.6F, 0.0F, 0.6F);
     box.min -= around;

@@ -53,6 +53,9 @@ struct Evidence {
     void add(const LightEquation& equation, const LitPoint& point, double weight) {
         matrix.noalias() += weight * equation.byMotion.transpose() * point.information * equation.byMotion;
         vector.noalias() -= weight * equation.byMotion.transpose() * (point.information * equation.error);
+    }
+    /// How far a motion puts beside what was seen: asked for at the end of a fit alone.
+    void addBeside(const LightEquation& equation, double weight) {
         const Eigen::MatrixXd spread = equation.beside.transpose() * equation.beside;
         beside += weight * spread;
         seen += weight * spread.diagonal().unaryExpr([](double s) { return s > 1e-6 ? 1.0 : 0.0; });
@@ -225,6 +228,7 @@ void DriftWatch::Data::gather(const Glance& glance) {
             const double squared = left.dot(point.information * left);
             const double weight = (kWatchFreedom + 2.0) / (kWatchFreedom + squared);
             sums.add(equation, point, weight);
+            if (step == kWatchSteps) sums.addBeside(equation, weight);
             sums.squares += weight * squared;
             sums.weights += weight;
         }

@@ -35,6 +35,9 @@ struct FitSystem {
     std::vector<double> onSurface; ///< metres
 };
 
+/// What is added up: on the way to a solution its equations are enough, at its end one asks what it is worth.
+enum class Sums { equations, all };
+
 struct Fit {
     Eigen::VectorXd motion;
     FitSystem at;
@@ -47,7 +50,10 @@ public:
         : rig_(rig), believed_(believed), options_(options), progress_(progress), parts_(partsOf(believed, rig)) {
         check(shots);
         keepSome(shots);
-        for (const LitShot& shot : shots_) points_ += shot.points.size();
+        for (const LitShot& shot : shots_) {
+            points_ += shot.points.size();
+            unmoved_.emplace_back(believed, rig, shot.strokes);
+        }
     }
 
     MovedParts search() {
@@ -78,7 +84,8 @@ private:
     void keepSome(std::span<const LitShot> shots) {
         std::size_t count = 0;
         for (const LitShot& shot : shots) count += shot.points.size();
-        const std::size_t step = std::max<std::size_t>(1, count / std::max<std::size_t>(1, options_.mostPoints));
+        const std::size_t most = std::max<std::size_t>(1, options_.mostPoints);
+        const std::size_t step = std::max<std::size_t>(1, (count + most - 1) / most);
         for (const LitShot& shot : shots) {
             LitShot& some = shots_.emplace_back(LitShot{shot.strokes, {}});
             for (std::size_t i = 0; i < shot.points.size(); i += step) some.points.push_back(shot.points[i]);
@@ -100,7 +107,7 @@ private:
     }
 
     /// All equations at a motion, added up with the weights of Student's distribution at this noise.
-    [[nodiscard]] FitSystem systemAt(const Eigen::VectorXd& motion, double noise) const {
+    [[nodiscard]] FitSystem systemAt(const Eigen::VectorXd& motion, double noise, Sums sums = Sums::equations) const {
         const Eigen::Index size = parts_.size();
         FitSystem system{Eigen::MatrixXd::Zero(size, size),
                          Eigen::VectorXd::Zero(size),
@@ -111,11 +118,16 @@ private:
                          {}};
         const Installation room = movedBy(believed_, parts_, motion, options_.camera);
         const LightModel model(room, parts_, options_.camera);
-        for (const LitShot& shot : shots_) {
-            const RoomSurface surface(room, rig_, movedBy(shot.strokes, parts_, motion));
-            for (const LitPoint& point : shot.points) {
+        // Most causes move light and camera alone: then the surface is the one that was believed.
+        const Eigen::Index first = parts_.device().first;
+        const bool isUnmoved = (motion.tail(size - first).array() == 0.0).all();
+        for (std::size_t s = 0; s < shots_.size(); ++s) {
+            std::optional<RoomSurface> moved;
+            if (!isUnmoved) moved.emplace(room, rig_, movedBy(shots_[s].strokes, parts_, motion));
+            const RoomSurface& surface = isUnmoved ? unmoved_[s] : *moved;
+            for (const LitPoint& point : shots_[s].points) {
                 const auto equation = model.equation(surface, point);
-                equation ? add(system, *equation, point, noise) : addMissing(system);
+                equation ? add(system, *equation, point, noise, sums) : addMissing(system);
             }
         }
         return system;
@@ -125,7 +137,7 @@ private:
         system.likelihood += 0.5 * (kFreedom + 2.0) * std::log1p(kFarOff * kFarOff / kFreedom);
     }
 
-    void add(FitSystem& system, const LightEquation& equation, const LitPoint& point, double noise) const {
+    void add(FitSystem& system, const LightEquation& equation, const LitPoint& point, double noise, Sums sums) const {
         const Eigen::Matrix2d information = point.information / (noise * noise);
         const Eigen::Vector2d weighted = information * equation.error;
         const double squared = equation.error.dot(weighted);
@@ -134,6 +146,7 @@ private:
         system.matrix.noalias() += weight * equation.byMotion.transpose() * information * equation.byMotion;
         system.vector.noalias() -= weight * equation.byMotion.transpose() * weighted;
         system.errors.push_back(noise * std::sqrt(squared));
+        if (sums == Sums::equations) return;
         const Eigen::MatrixXd spread = equation.beside.transpose() * equation.beside;
         const double sound = std::min(1.0, weight);
         system.beside += sound * spread;
@@ -184,7 +197,7 @@ private:
             scale = std::max(noise_, std::min(scale, 0.85 * median(system.errors)));
             if (move.norm() < 1e-6 && scale == before) break;
         }
-        fit.at = systemAt(fit.motion, noise_);
+        fit.at = systemAt(fit.motion, noise_, Sums::all);
         return fit;
     }
 
@@ -252,6 +265,7 @@ private:
         moved.motion = best_.motion;
         moved.noise = noise_;
         moved.unexplained = median(best_.at.onSurface);
+        moved.compared = points_;
         const double most = 8.0 * noise_;
         moved.points = static_cast<std::size_t>(
             std::ranges::count_if(best_.at.errors, [&](double error) { return error < most; }));
@@ -264,6 +278,7 @@ private:
     const Progress& progress_;
     RoomParts parts_;
     std::vector<LitShot> shots_;
+    std::vector<RoomSurface> unmoved_; ///< one a shot, as it is believed to stand
     std::size_t points_ = 0;
     double noise_ = 0.15;
     Fit best_;

@@ -33,7 +33,8 @@ struct MovedParts {
     Eigen::VectorXd motion;            ///< of all parts, as RoomParts counts
     double noise = 0.0;                ///< of a coordinate of the light, projector pixels
     double unexplained = 0.0;          ///< median of what is left along the surface, metres
-    std::size_t points = 0;            ///< that lie on what is believed to be there
+    std::size_t compared = 0;          ///< points with which causes were compared
+    std::size_t points = 0;            ///< of them, that lie on what is believed to be there
 };
 
 struct MovedPartOptions {

@@ -182,6 +182,33 @@ Installation correctedBy(const Installation& believed, const Rig& rig, const Mov
     return room;
 }
 
+void takeCorrections(const Installation& corrected, Installation& room) {
+    // Dates of one form are in the order of their texts.
+    const auto isNewer = [](const Origin& found, const Origin& known) {
+        return found.way == Origin::Way::measured && found.method == kMethod && found.date >= known.date;
+    };
+    for (std::size_t i = 0; i < std::min(corrected.projectors.size(), room.projectors.size()); ++i) {
+        const InstalledProjector& found = corrected.projectors[i];
+        if (!isNewer(found.pose, room.projectors[i].pose)) continue;
+        room.projectors[i].camera.cameraFromWorld = found.camera.cameraFromWorld;
+        room.projectors[i].pose = found.pose;
+    }
+    for (std::size_t i = 0; i < std::min(corrected.cameras.size(), room.cameras.size()); ++i) {
+        const InstalledCamera& found = corrected.cameras[i];
+        if (!isNewer(found.pose, room.cameras[i].pose)) continue;
+        room.cameras[i].camera.cameraFromWorld = found.camera.cameraFromWorld;
+        room.cameras[i].pose = found.pose;
+    }
+    if (isNewer(corrected.origins.devicePlace, room.origins.devicePlace)) {
+        room.worldFromDevice = corrected.worldFromDevice;
+        room.origins.devicePlace = corrected.origins.devicePlace;
+    }
+    if (isNewer(corrected.origins.servos, room.origins.servos)) {
+        room.servos = corrected.servos;
+        room.origins.servos = corrected.origins.servos;
+    }
+}
+
 RoomCheck withoutVerdict(const Installation& believed, NoVerdict reason) {
     RoomCheck check;
     check.sentence = "No verdict: " + sentenceOf(reason);
@@ -197,9 +224,8 @@ RoomCheck checkRoom(const Rig& rig, const Installation& believed, std::span<cons
                                          "clear its sight of device and table, and check again"});
     RoomCheck check;
     check.found = movedParts(rig, believed, shots, options, progress.part(0.0, 0.9));
-    const std::size_t compared = std::min(countOf(shots), options.mostPoints);
     if (check.found.unexplained > kMostUnexplained ||
-        static_cast<double>(check.found.points) < kFewestFitting * static_cast<double>(compared))
+        static_cast<double>(check.found.points) < kFewestFitting * static_cast<double>(check.found.compared))
         return withoutVerdict(
             believed, {Obstacle::unexplained, "what the camera sees fits no motion of projector, camera or device",
                        "look whether the device is bent as said and nothing lies on it, else calibrate the "

@@ -69,5 +69,8 @@ struct RoomCheck {
 /// of servos, each measured now.
 [[nodiscard]] Installation correctedBy(const Installation& believed, const Rig& rig, const MovedParts& found,
                                        std::size_t camera = 0);
+/// Takes over what a check corrected, and nothing else: poses, the device's place and servos whose origin is a check
+/// and that the room has not from a later measurement.
+void takeCorrections(const Installation& corrected, Installation& room);
 
 } // namespace lumorph

@@ -18,10 +18,6 @@ namespace {
 
 constexpr double kStrokeStep = 0.01; // by which the surface's motion is found
 
-glm::vec3 inWorld(const Installation& room, const glm::vec3& point) {
-    return glm::vec3(room.worldFromDevice * glm::vec4(point, 1.0F));
-}
-
 /// How all vertices move with one stroke.
 std::vector<glm::vec3> motionOf(const Installation& room, const Rig& rig, std::vector<double> strokes,
                                 std::size_t actuator) {
@@ -79,8 +75,7 @@ RoomSurface::RoomSurface(const Installation& room, const Rig& rig, std::span<con
     if (!sound)
         throw InvalidInput("strokes of the device", "they are not one number from 0 to 1 for each of its actuators",
                            "give " + std::to_string(rig.actuatorCount()) + " of them");
-    device_ = deformed(rig, strokes);
-    for (glm::vec3& point : device_.positions) point = inWorld(room, point);
+    device_ = deviceMesh(room, rig, strokes);
     if (rig.actuatorCount() <= kMostServos)
         for (std::size_t i = 0; i < rig.actuatorCount(); ++i)
             byStroke_.push_back(motionOf(room, rig, {strokes.begin(), strokes.end()}, i));

@@ -78,13 +78,8 @@ const ShowSight& ShowPrediction::sight(std::span<const double> strokes) {
     sight_ = {};
     sight_.strokes.assign(strokes.begin(), strokes.end());
     sight_.rays = std::make_shared<const RoomSurface>(room_, rig_, strokes);
-    LabWorld world;
-    TriangleMesh device = deformed(rig_, strokes);
-    for (glm::vec3& point : device.positions) point = glm::vec3(room_.worldFromDevice * glm::vec4(point, 1.0F));
-    world.surfaces = {{std::move(device), lightOfSrgb(room_.deviceColor)},
-                      {tableMesh(room_.tableSize), lightOfSrgb(room_.tableColor)}};
-    for (const InstalledProjector& projector : room_.projectors)
-        world.projectors.push_back({projector, Image(projector.camera.size)});
+    LabWorld world = roomWorld(room_, rig_, strokes);
+    for (const InstalledProjector& projector : room_.projectors) world.projectors.push_back({projector, {}});
     const auto albedoOf = [&](int surface) {
         const glm::vec3 albedo = world.surfaces[static_cast<std::size_t>(surface)].albedo;
         return (albedo.r + albedo.g + albedo.b) / 3.0F;

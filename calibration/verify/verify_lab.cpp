@@ -67,15 +67,17 @@ private:
     LitShot photograph(const Installation& believed, const std::vector<double>& commanded, const Progress& progress) {
         LitShot shot{standingStrokes(believed, rig_, commanded), {}};
         CheckLab lab(truth_, rig_, commanded, options_.pictures, seed_ + 101U * bend_++);
+        const auto lamps = static_cast<double>(believed.projectors.size());
         for (std::size_t p = 0; p < believed.projectors.size() && !obstacle_; ++p) {
             if (!believed.projectors[p].enabled) continue;
+            const Progress part = progress.part(static_cast<double>(p) / lamps, static_cast<double>(p + 1) / lamps);
             const glm::ivec2 panel = believed.projectors[p].camera.size;
             const CaptureOrder order = parsePattern(options_.pattern, {panel.x, panel.y});
             std::vector<cv::Mat> images;
             for (const PatternImage& pattern : order.images) {
-                progress.throwIfCancelled();
-                progress.report(static_cast<double>(images.size()) / static_cast<double>(order.images.size()),
-                                "photographing");
+                part.throwIfCancelled();
+                part.report(static_cast<double>(images.size()) / static_cast<double>(order.images.size()),
+                            "photographing");
                 images.push_back(lab.photograph(p, drawPattern(pattern, order.projector)));
                 ++result_.photographs;
             }
@@ -91,7 +93,10 @@ private:
         const Installation& room = result_.check.installation;
         const std::vector<double> bend(rig_.actuatorCount(), kFreshBend);
         const std::vector<LitShot> shots{photograph(room, bend, progress_.part(0.85, 1.0))};
-        obstacle_.reset();
+        if (obstacle_) {
+            result_.figures.push_back("what is left was not judged on another bend: " + sentenceOf(*obstacle_));
+            return;
+        }
         const std::vector<std::vector<double>> strokes{shots.front().strokes};
         constexpr double kStray = 0.02; // metres
         result_.fresh = summaryOf(lightErrors(rig_, room, room, shots, strokes, 0, kStray));

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -84,10 +85,12 @@ glm::dmat2 derivativeOf(const std::array<double, 5>& k, const glm::dvec2& at) {
 glm::dvec2 undistort(const CalibratedCamera& camera, const glm::dvec2& distorted) {
     const auto& k = camera.distortion;
     if (k == std::array<double, 5>{}) return distorted;
-    const double limit = std::sqrt(distortionLimit(camera)) * (1.0 - 1e-12);
+    std::optional<double> limit; // dear to find, and only far out it is asked for
     const auto inside = [&](const glm::dvec2& at) {
+        if (surelyMonotonic(k, glm::dot(at, at))) return at;
+        if (!limit) limit = std::sqrt(distortionLimit(camera)) * (1.0 - 1e-12);
         const double radius = glm::length(at);
-        return radius > limit ? at * (limit / radius) : at;
+        return radius > *limit ? at * (*limit / radius) : at;
     };
     glm::dvec2 at = inside(distorted);
     double residual = glm::length(distort(k, at) - distorted);

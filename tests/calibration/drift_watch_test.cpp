@@ -64,14 +64,15 @@ public:
             sum += octaves_[i](cv::Rect(x, y, size_.x, size_.y)) * (0.5 / (1.0 + static_cast<double>(i)));
         }
         const double hue = 0.004 * seconds;
+        const auto share = [hue](double phase) { return 0.7 + 0.3 * std::cos(hue + phase); };
+        const double red = share(0.0), green = share(2.1), blue = share(4.2);
         Image image(size_);
         for (int row = 0; row < size_.y; ++row)
             for (int column = 0; column < size_.x; ++column) {
                 const double light = 255.0 * brightness * std::clamp(static_cast<double>(sum(row, column)), 0.0, 1.0);
-                const auto channel = [&](double phase) {
-                    return static_cast<std::uint8_t>(light * (0.7 + 0.3 * std::cos(hue + phase)));
-                };
-                image.at(column, row) = {channel(0.0), channel(2.1), channel(4.2), 255};
+                image.at(column, row) = {static_cast<std::uint8_t>(light * red),
+                                         static_cast<std::uint8_t>(light * green),
+                                         static_cast<std::uint8_t>(light * blue), 255};
             }
         return image;
     }

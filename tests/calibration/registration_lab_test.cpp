@@ -227,6 +227,17 @@ TEST(RegistrationLab, StructuredLightOnTheDeviceTellsItsBody) {
     EXPECT_LT(off.degrees, 0.2);
 }
 
+TEST(RegistrationLab, TheDeviceAtRestIsAsItsMeasuredServosByTheirNames) {
+    Room room(6);
+    room.truth.cameras.front().camera = withSize(room.truth.cameras.front().camera, {160, 128});
+    const Actuator& last = tablet().actuators().back(); // alone in the list, as after a check
+    room.believed.servos = {{last.name, {{0.0, 0.02, 0.06}, {1.0, 0.96, 1.0}}, 0.0}};
+    const SurfaceCapture capture = captureSurfaceInLab(tablet(), room.believed, room.truth, 6);
+    std::vector<double> strokes(tablet().actuatorCount(), 0.0);
+    strokes.back() = 0.06;
+    EXPECT_EQ(capture.model.positions, deformed(tablet(), strokes).positions);
+}
+
 TEST(RegistrationLab, ABoardOnTheDeviceTellsItsBody) {
     const Room room(7);
     TrackerLab lab(room.truth, 7);

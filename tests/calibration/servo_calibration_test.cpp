@@ -158,10 +158,65 @@ TEST(ServoCalibrationTest, RefusesWhatIsNoMeasurement) {
                                         ServoPass(1000, {glm::dvec3(std::numeric_limits<double>::quiet_NaN()), 1.0}));
     EXPECT_THROW(static_cast<void>(solveServos(servoTablet(), glm::dmat4(1.0), plan, broken)), CaptureRefused);
     EXPECT_THROW(static_cast<void>(planServos(servoTablet(), {{0, 1}})), InvalidInput);
+    EXPECT_THROW(static_cast<void>(planServos(servoTablet(), {{0, 1, 2, 3}, {4, 5, 6}})), InvalidInput);
+    EXPECT_THROW(static_cast<void>(planServos(servoTablet(), {{0, 1, 2, 3}, {3, 4, 5}})), InvalidInput);
     EXPECT_THROW(static_cast<void>(planServos(servoTablet(), {{0, 1, 2, 3, 4, 5}}, {.steps = 1})), InvalidInput);
     Installation dark = defaultInstallation();
     dark.projectors.clear();
     EXPECT_THROW(static_cast<void>(measureServosInLab(servoTablet(), dark, dark, 1)), InvalidInput);
+}
+
+/// What camera and projector see of the device in each step of a plan.
+std::vector<ServoPass> passesOf(const ServoPlan& plan) {
+    const Installation room = defaultInstallation();
+    ServoLabOptions options;
+    options.pixelStep = 12;
+    ServoLab lab(servoTablet(), room, 4, options);
+    std::vector<ServoPass> passes;
+    for (const ServoStep& step : plan.steps) {
+        lab.command(step.commanded);
+        passes.push_back(surfacePoints(lab.look(), lab.camera(), lab.projector()));
+    }
+    return passes;
+}
+
+ServoPlan wiringPlan() {
+    ServoPlan plan = planServos(servoTablet(), {{0, 1, 2, 3}, {4, 5}}, {.fresh = 0});
+    plan.steps.resize(7); // at rest, then each alone
+    return plan;
+}
+
+TEST(ServoCalibrationTest, AHiddenServoIsNotCalledDead) {
+    const ServoPlan plan = wiringPlan();
+    std::vector<ServoPass> passes = passesOf(plan);
+    passes[3].clear(); // a hand in the light while the third moves
+    const ServoCalibration measured = solveServos(servoTablet(), glm::dmat4(1.0), plan, passes);
+    EXPECT_FALSE(measured.usable);
+    ASSERT_EQ(measured.findings.size(), 1U);
+    EXPECT_EQ(keyOf(measured.findings.front().cause), keyOf(Cause::tooFewPoints));
+    EXPECT_EQ(measured.findings.front().view, servoTablet().actuators()[2].name);
+}
+
+TEST(ServoCalibrationTest, WithoutTheDeviceAtRestThereIsNoResultLater) {
+    ServoPlan plan = wiringPlan();
+    plan.steps.resize(3);
+    const std::vector<ServoPass> passes = passesOf(plan);
+    ServoSolver solver(servoTablet(), glm::dmat4(1.0), plan);
+    EXPECT_THROW(solver.take({}), CaptureRefused);
+    EXPECT_THROW(solver.take(passes[1]), CaptureRefused);
+    EXPECT_THROW(solver.take(passes[2]), CaptureRefused);
+    ASSERT_TRUE(solver.ended());
+    EXPECT_THROW(static_cast<void>(solver.result()), CaptureRefused);
+}
+
+TEST(ServoCalibrationTest, CurvesThatNoFreshStateConfirmsAreNotUsed) {
+    const ServoPlan plan = planServos(servoTablet(), {{0, 1, 2, 3}, {4, 5}}, {.steps = 4, .fresh = 1});
+    std::vector<ServoPass> passes = passesOf(plan);
+    EXPECT_TRUE(solveServos(servoTablet(), glm::dmat4(1.0), plan, passes).usable);
+    passes.back().clear();
+    const ServoCalibration measured = solveServos(servoTablet(), glm::dmat4(1.0), plan, passes);
+    EXPECT_FALSE(measured.usable);
+    EXPECT_EQ(measured.findings.size(), 1U);
 }
 
 /// The whole way from photographs: pictures of the lab's camera under phase patterns, decoded, then solved.

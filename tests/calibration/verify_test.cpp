@@ -8,6 +8,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "calibration/lab/check_lab.h"
 #include "calibration/lab/lab_world.h"
 #include "calibration/lab/moved_room.h"
 #include "calibration/lab/true_room.h"
@@ -172,6 +173,72 @@ TEST(VerifyInLab, NamesWhyThereIsNoVerdict) {
     EXPECT_EQ(obstacleOf(bright), "overexposed");
     EXPECT_EQ(obstacleOf(blurred), "blurred");
     EXPECT_EQ(obstacleOf(covered), "covered");
+}
+
+TEST(MovedParts, ComparesNoMorePointsThanItMay) {
+    const Installation room = verifiedRoom();
+    const std::vector<double> rest(verifiedRig().actuatorCount(), 0.0);
+    const ExpectedLight lit = expectedLight(verifiedRig(), room, rest, 0, 0, 16);
+    const RoomSurface surface(room, verifiedRig(), rest);
+    const CalibratedCamera& eye = room.cameras.front().camera;
+    LitShot shot{rest, {}};
+    for (const cv::Point& pixel : lit.pixels) {
+        const auto hit = surface.trace(positionOf(eye), directionOf(eye, {pixel.x, pixel.y}));
+        ASSERT_TRUE(hit);
+        const auto panel = pixelOf(room.projectors.front().camera, hit->point);
+        ASSERT_TRUE(panel);
+        shot.points.push_back({0, {pixel.x, pixel.y}, *panel});
+    }
+    MovedPartOptions options;
+    options.mostPoints = shot.points.size() * 2 / 3; // fewer than there are, and more than half of them
+    const MovedParts moved = movedParts(verifiedRig(), room, std::vector{shot}, options);
+    EXPECT_TRUE(moved.parts.empty());
+    EXPECT_LE(moved.compared, options.mostPoints);
+    EXPECT_EQ(moved.points, moved.compared) << "all of them lie where they are believed to";
+}
+
+TEST(RoomCheck, CorrectionsLeaveWhatWasMeasuredLater) {
+    const Installation believed = verifiedRoom();
+    MovedParts found;
+    const RoomParts parts = partsOf(believed, verifiedRig());
+    found.motion = Eigen::VectorXd::Zero(parts.size());
+    found.motion[parts.device().first + 3] = 0.004;
+    found.parts = {{parts.device(), 0.004, 0.0001}};
+    const Installation corrected = correctedBy(believed, verifiedRig(), found);
+    Installation room = believed;
+    room.pointerTip = {0.0F, -0.2F, 0.0F}; // meanwhile
+    room.projectors.front().camera.focal *= 1.01;
+    Installation expected = room;
+    expected.worldFromDevice = corrected.worldFromDevice;
+    expected.origins.devicePlace = corrected.origins.devicePlace;
+    takeCorrections(corrected, room);
+    EXPECT_EQ(room, expected);
+    takeCorrections(corrected, room);
+    EXPECT_EQ(room, expected) << "twice is once";
+    room.worldFromDevice = believed.worldFromDevice;
+    room.origins.devicePlace = {Origin::Way::measured, "another way", "2999-01-01T00:00:00Z"};
+    expected = room;
+    takeCorrections(corrected, room);
+    EXPECT_EQ(room, expected) << "measured after the check";
+}
+
+TEST(CheckLab, PatternsAreLightWhateverTheProjectorsResponse) {
+    Installation plain = verifiedRoom();
+    plain.cameras.front().camera = withSize(plain.cameras.front().camera, {160, 128});
+    Installation bent = plain;
+    bent.projectors.front().black = glm::vec3(0.02F);
+    bent.projectors.front().responseCurve = {{0.0, glm::vec3(0.0F)}, {0.5, glm::vec3(0.2F)}, {1.0, glm::vec3(1.0F)}};
+    const std::vector<double> rest(verifiedRig().actuatorCount(), 0.0);
+    const cv::Mat grey(540, 960, CV_8U, cv::Scalar(128));
+    CheckLab one(plain, verifiedRig(), rest), other(bent, verifiedRig(), rest);
+    EXPECT_EQ(cv::norm(one.photograph(0, grey), other.photograph(0, grey), cv::NORM_INF), 0.0);
+}
+
+TEST(ErrorPicture, AWordLongerThanALineIsCut) {
+    RoomCheck check;
+    check.sentence = std::string(300, 'x') + " moved";
+    const std::vector<double> rest(verifiedRig().actuatorCount(), 0.0);
+    EXPECT_EQ(errorPicture(check, verifiedRig(), verifiedRoom(), rest, 600).size().x, 600);
 }
 
 } // namespace

@@ -7,8 +7,12 @@
 #include "app/studio/calibration/chain.h"
 #include "app/studio/calibration/chain_files.h"
 #include "app/studio/document/scene_edit.h"
+#include "calibration/lab/board_lab.h"
+#include "calibration/lab/moved_room.h"
 #include "calibration/lab/registration_lab.h"
 #include "calibration/verify/verify_lab.h"
+#include "core/base/resources.h"
+#include "core/rig/rig_file.h"
 #include "tests/ui/file_dialog.h"
 #include "tests/ui/studio_window.h"
 
@@ -316,6 +320,19 @@ TEST_F(Chain, ARealDeviceIsPlacedByRecordings) {
     next();
     EXPECT_TRUE(eventually([&] { return badge("device") == "Measured"; })) << story();
     EXPECT_EQ(room().origins.deviceBody.way, Origin::Way::measured);
+}
+
+TEST(ChainLinks, ACheckThatCannotPutRightOffersNothingToUse) {
+    // The camera has moved, and the room knows of none: what is believed is the lab's, which is not kept.
+    studio::LinkTask task;
+    task.rig = std::make_shared<const Rig>(readRig(resourceFile("models/tablet.glb")));
+    task.believed = defaultInstallation();
+    CalibratedCamera& lamp = task.believed.projectors.front().camera;
+    lamp = withSize(lamp, {480, 270});
+    task.truth = pushed(withLabCamera(task.believed), *task.rig, {"camera", 3e-3, 0.0}, 2);
+    const studio::LinkOutcome outcome = studio::chainLinks().back().inLab(task, {});
+    EXPECT_FALSE(outcome.isGood);
+    EXPECT_FALSE(outcome.installation) << outcome.summary.toStdString();
 }
 
 // The lab's camera sees the room as it was when the watch began.

@@ -103,6 +103,19 @@ TEST_F(DriftServiceTest, TellsABlackOutputWithinTenSecondsAndTakesItBack) {
     EXPECT_TRUE(notices.at("calibrate").empty());
 }
 
+TEST_F(DriftServiceTest, TheLabsCameraSeesTheRigThatIsShown) {
+    RigParts parts = rig->parts();
+    for (glm::vec3& point : parts.restMesh.positions) point.y += 0.02F;
+    const auto higher = std::make_shared<const Rig>(std::move(parts));
+    const ShowCamera lab = labShowCamera(*room);
+    ShowLook look;
+    look.sent = {Image(room->projectors.front().camera.size, {255, 255, 255, 255})};
+    const SentShow show{rig, room, {}, std::vector<double>(rig->actuatorCount(), 0.2)};
+    const cv::Mat before = lab(look, show);
+    const cv::Mat after = lab(look, {higher, show.room, {}, show.strokes});
+    EXPECT_GT(cv::norm(before, after, cv::NORM_INF), 30.0) << "its edges lie elsewhere";
+}
+
 TEST_F(DriftServiceTest, SaysNothingWhereTheCameraIsAway) {
     const auto service = serviceWith(
         [](const ShowLook&, const SentShow&) -> cv::Mat { throw DeviceError("camera", "it is away", "plug it in"); });

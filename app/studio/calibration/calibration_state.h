@@ -7,6 +7,7 @@
 
 #include <QString>
 
+#include "app/studio/base/step_tone.h"
 #include "app/studio/calibration/calibration_setup.h"
 #include "app/studio/calibration/error_plan.h"
 #include "app/studio/calibration/pose_pictures.h"
@@ -109,7 +110,7 @@ struct NextStep {
         exchangeSides,
         leaveOut
     };
-    enum class Tone { quiet, live, good, warning, failure };
+    using Tone = StepTone;
     Do what = Do::nothing;
     Tone tone = Tone::quiet;
     QString title, text;

@@ -364,7 +364,10 @@ LinkOutcome checkTheRoom(const LinkTask& task, const Progress& progress) {
     LinkOutcome outcome;
     outcome.isGood = check.verdict == RoomCheck::Verdict::good;
     outcome.summary = QString::fromStdString(check.sentence);
-    if (check.verdict == RoomCheck::Verdict::moved) outcome.installation = verified.installation;
+    // Where it is not known what has moved there is nothing to be put right.
+    Installation with = task.believed;
+    takeCorrections(verified.installation, with);
+    if (with != task.believed) outcome.installation = verified.installation;
     outcome.figures = {{QObject::tr("Light lies beside: median"), millimetres(check.now.median), outcome.isGood},
                        {QObject::tr("In 95 of 100 places at most"), millimetres(check.now.most), outcome.isGood}};
     if (verified.fresh.places > 0)
@@ -382,7 +385,7 @@ ChainLink checkLink() {
     link.warning = QObject::tr("Hands off: the servos move");
     link.how = {QObject::tr("The device takes two bends; patterns are projected on it and photographed."),
                 QObject::tr("Where the light lies beside, it is told what has moved, and one button puts it right.")};
-    link.apply = [](const Installation& measured, Installation& room) { room = measured; };
+    link.apply = takeCorrections;
     link.inLab = checkTheRoom;
     return link;
 }

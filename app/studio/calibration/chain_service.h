@@ -6,6 +6,7 @@
 
 #include <QObject>
 
+#include "app/studio/base/step_tone.h"
 #include "app/studio/calibration/chain.h"
 #include "app/studio/calibration/lab_room.h"
 #include "app/studio/calibration/live_service.h"
@@ -41,7 +42,7 @@ struct ChainState {
 /// The one thing that is to be done with the chosen link.
 struct ChainStep {
     enum class Do { nothing, sequence, chooseFile, measure, use, cancel, goOn };
-    enum class Tone { quiet, live, good, warning, failure };
+    using Tone = StepTone;
     Do what = Do::nothing;
     Tone tone = Tone::quiet;
     QString title, text, button;

@@ -11,6 +11,7 @@
 #include <QPointF>
 #include <QString>
 
+#include "app/studio/base/step_tone.h"
 #include "app/studio/document/studio_document.h"
 #include "calibration/solve/crosshair_calibration.h"
 #include "core/scene/installation_store.h"
@@ -34,7 +35,7 @@ struct CrosshairState {
 /// What is to be done next: a sentence, why, and the one button.
 struct CrosshairNext {
     enum class Do { nothing, begin, confirm, showSuspicious, use };
-    enum class Tone { quiet, live, good, warning, failure };
+    using Tone = StepTone;
     Do what = Do::nothing;
     Tone tone = Tone::quiet;
     QString title, text;

@@ -83,14 +83,16 @@ ShowCamera labShowCamera(Installation truth) {
     CalibratedCamera& eye = truth.cameras.at(0).camera;
     eye = withSize(eye, {kSmallCamera, kSmallCamera * eye.size.y / std::max(1, eye.size.x)});
     struct Bend {
+        std::shared_ptr<const Rig> rig;
         std::vector<double> strokes;
         std::unique_ptr<CheckLab> lab;
     };
     return [truth = std::move(truth), bend = std::make_shared<Bend>()](const ShowLook& look, const SentShow& show) {
-        if (!bend->lab || bend->strokes != show.strokes) {
+        if (!bend->lab || bend->rig != show.rig || bend->strokes != show.strokes) {
             CheckLabOptions options;
             options.isLinear = false;
             bend->lab = std::make_unique<CheckLab>(truth, *show.rig, show.strokes, options);
+            bend->rig = show.rig;
             bend->strokes = show.strokes;
         }
         return bend->lab->photograph(look.sent);
@@ -171,12 +173,12 @@ private:
     }
 
     void begin(const Task& task) {
-        session_ = task.session;
+        const Installation room = withLabCamera(*task.show.room);
+        drift_ = std::make_unique<DriftWatch>(*task.show.rig, room);
+        output_ = std::make_unique<OutputWatch>(*task.show.rig, room);
+        session_ = task.session; // last: what could not be begun is tried again
         rig_ = task.show.rig;
         room_ = task.show.room;
-        const Installation room = withLabCamera(*room_);
-        drift_ = std::make_unique<DriftWatch>(*rig_, room);
-        output_ = std::make_unique<OutputWatch>(*rig_, room);
     }
 
     DriftService& owner_;

@@ -23,9 +23,7 @@ using Show = CalibrateSelection::Show;
 constexpr double kArrowShare = 0.06; // of the picture's width, for the longest arrow
 
 StepCardText cardOf(const NextStep& next) {
-    StepCardText card{static_cast<StepCardText::Tone>(static_cast<int>(next.tone)), next.title, next.text, next.button,
-                      next.what == NextStep::Do::stop};
-    return card;
+    return {next.tone, next.title, next.text, next.button, next.what == NextStep::Do::stop};
 }
 
 /// Around all points of a board.

@@ -74,6 +74,7 @@ CalibrateWorkspace::CalibrateWorkspace(Studio& studio)
     addCalibrateCommands(parts());
     addWatchCommand();
     connect(&service_, &CalibrationService::changed, this, [this] { setActive(active_); });
+    connect(&selection_, &CalibrateSelection::wholeChanged, this, [this] { setActive(active_); });
 }
 
 /// By the room's camera; without one by the lab's, in a room where nothing moves.
@@ -175,8 +176,10 @@ std::vector<WorkspaceDock> CalibrateWorkspace::makeDocks() {
 }
 
 void CalibrateWorkspace::setActive(bool active) {
-    if (active != active_) service_.setActive(active);
     active_ = active;
+    const bool looks = active && !selection_.whole(); // nobody sees the camera's picture beside the whole chain
+    if (looks != looks_) service_.setActive(looks);
+    looks_ = looks;
     crosshairs_.setProjector(service_.projector());
     crosshairs_.setActive(active && service_.state().setup.way == CaptureWay::crosshairs);
 }

@@ -44,7 +44,7 @@ private:
     LiveService live_;
     ChainService chain_;
     std::unique_ptr<DriftService> watch_; ///< of the running show, while it is wanted
-    bool active_ = false;
+    bool active_ = false, looks_ = false; ///< seen; and with the camera's picture
     CalibrateSelection selection_;
 };
 

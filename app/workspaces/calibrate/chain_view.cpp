@@ -1,3 +1,5 @@
+#include <optional>
+
 #include <QFrame>
 #include <QHBoxLayout>
 #include <QLabel>
@@ -8,11 +10,11 @@
 
 #include "app/studio/calibration/chain_service.h"
 #include "app/studio/widgets/dock_parts.h"
-#include "app/studio/widgets/icon_label.h"
 #include "app/studio/widgets/panel.h"
 #include "app/workspaces/calibrate/chain_docks.h"
 #include "app/workspaces/calibrate/finding_card.h"
 #include "app/workspaces/calibrate/point_bars.h"
+#include "app/workspaces/calibrate/state_row.h"
 #include "app/workspaces/common/step_card.h"
 
 namespace lumorph::studio {
@@ -51,53 +53,28 @@ StandLook lookOf(const ChainState& state, std::size_t link) {
 /// One link as a button: number, title, where it stands, and why.
 class LinkRow : public QPushButton {
 public:
-    LinkRow(std::size_t link, QWidget* parent)
-        : QPushButton(parent), link_(link), icon_(new IconLabel("minus", IconRole::muted, 20, this)),
-          title_(new QLabel(this)), how_(new QLabel(this)), words_(new QLabel(this)) {
-        const ChainLink& shown = chainLinks()[link];
-        setObjectName(QString("chain.link.") + shown.key);
+    LinkRow(std::size_t link, QWidget* parent) : QPushButton(parent), link_(link) {
+        setObjectName(QString("chain.link.") + chainLinks()[link].key);
         setProperty("look", "row");
         setCheckable(true);
         setAutoExclusive(true);
-        title_->setText(QString("%1  %2").arg(link + 1).arg(shown.title));
-        title_->setProperty("look", "heading");
-        how_->setProperty("look", "badge");
-        how_->setObjectName(objectName() + ".how");
-        words_->setProperty("look", "muted");
-        words_->setWordWrap(true);
-        for (QLabel* label : {title_, how_, words_}) label->setAttribute(Qt::WA_TransparentForMouseEvents);
-        auto* top = new QHBoxLayout;
-        top->addWidget(title_);
-        top->addStretch(1);
-        top->addWidget(how_);
-        auto* texts = new QVBoxLayout;
-        texts->setSpacing(2);
-        texts->addLayout(top);
-        texts->addWidget(words_);
-        auto* row = new QHBoxLayout(this);
-        row->setContentsMargins(8, 6, 8, 6);
-        row->setSpacing(8);
-        row->addWidget(icon_, 0, Qt::AlignTop);
-        row->addLayout(texts, 1);
+        row_.emplace(*this, static_cast<int>(link) + 1, QMargins(8, 6, 8, 6));
         setSizePolicy(QSizePolicy::Preferred, QSizePolicy::Minimum);
     }
     void show(const ChainState& state) {
         const StandLook look = lookOf(state, link_);
         const ChainLink& shown = chainLinks()[link_];
-        icon_->setIcon(look.icon, look.role);
-        how_->setText(look.word);
         const QString words = state.stands[link_].words;
-        words_->setText(words.isEmpty() ? shown.purpose : words.left(1).toUpper() + words.mid(1));
+        row_->show({look.icon, look.role, shown.title, look.word,
+                    words.isEmpty() ? shown.purpose : words.left(1).toUpper() + words.mid(1)});
         setChecked(state.chosen == link_);
-        setAccessibleName(QString("Step %1, %2: %3").arg(link_ + 1).arg(shown.title, look.word));
     }
     [[nodiscard]] QSize sizeHint() const override { return layout()->sizeHint(); }
     [[nodiscard]] QSize minimumSizeHint() const override { return layout()->minimumSize(); }
 
 private:
     std::size_t link_;
-    IconLabel* icon_;
-    QLabel *title_, *how_, *words_;
+    std::optional<StateRow> row_; ///< once this has its name
 };
 
 class ChainLinks : public QWidget {
@@ -145,8 +122,7 @@ QLabel* makeText(const QString& name, const char* look, QWidget* parent) {
 }
 
 StepCardText cardOf(const ChainStep& step) {
-    return {static_cast<StepCardText::Tone>(static_cast<int>(step.tone)), step.title, step.text, step.button,
-            step.what == ChainStep::Do::cancel};
+    return {step.tone, step.title, step.text, step.button, step.what == ChainStep::Do::cancel};
 }
 
 /// The chosen link: its next step, what will happen, and what it came to.

@@ -234,8 +234,7 @@ private:
     void refresh() {
         const CrosshairState& state = service_.state();
         const CrosshairNext next = nextOf(state);
-        card_->show(
-            {static_cast<StepCardText::Tone>(static_cast<int>(next.tone)), next.title, next.text, next.button, false});
+        card_->show({next.tone, next.title, next.text, next.button, false});
         const QSignalBlocker quiet(points_);
         const std::size_t count = state.session ? state.session->crosshairs().size() : 0;
         while (points_->count() > static_cast<int>(count)) delete points_->takeItem(points_->count() - 1);

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <map>
+#include <optional>
 
 #include <QCheckBox>
 #include <QComboBox>
@@ -13,10 +14,10 @@
 #include <QVBoxLayout>
 
 #include "app/studio/widgets/dock_parts.h"
-#include "app/studio/widgets/icon_label.h"
 #include "app/studio/widgets/panel.h"
 #include "app/workspaces/calibrate/calibrate_docks.h"
 #include "app/workspaces/calibrate/setup_form.h"
+#include "app/workspaces/calibrate/state_row.h"
 #include "app/workspaces/rig/actuator_item.h"
 
 namespace lumorph::studio {
@@ -45,46 +46,17 @@ std::pair<QString, IconRole> iconOf(How how) {
 /// One step: its number, title, state, and why.
 class StepRow : public QWidget {
 public:
-    StepRow(int number, const QString& id, QWidget* parent)
-        : QWidget(parent), icon_(new IconLabel("minus", IconRole::muted, 20, this)), title_(new QLabel(this)),
-          how_(new QLabel(this)), words_(new QLabel(this)), number_(number) {
+    StepRow(int number, const QString& id, QWidget* parent) : QWidget(parent) {
         setObjectName("calibrate.step." + id);
-        title_->setProperty("look", "heading");
-        how_->setObjectName("calibrate.step." + id + ".how");
-        how_->setProperty("look", "badge");
-        words_->setObjectName("calibrate.step." + id + ".words");
-        words_->setProperty("look", "muted");
-        words_->setWordWrap(true);
-        auto* top = new QHBoxLayout;
-        top->setSpacing(8);
-        top->addWidget(title_);
-        top->addStretch(1);
-        top->addWidget(how_);
-        auto* texts = new QVBoxLayout;
-        texts->setSpacing(2);
-        texts->addLayout(top);
-        texts->addWidget(words_);
-        auto* row = new QHBoxLayout(this);
-        row->setContentsMargins(0, 4, 0, 4);
-        row->setSpacing(8);
-        row->addWidget(icon_, 0, Qt::AlignTop);
-        row->addLayout(texts, 1);
+        row_.emplace(*this, number, QMargins(0, 4, 0, 4));
     }
     void show(const CalibrationStep& step) {
         const auto [name, role] = iconOf(step.how);
-        icon_->setIcon(name, role);
-        title_->setText(QString("%1  %2").arg(number_).arg(step.title));
-        how_->setText(howWords(step.how));
-        words_->setText(step.words);
-        setAccessibleName(QString("Step %1, %2: %3").arg(number_).arg(step.title, howWords(step.how)));
+        row_->show({name, role, step.title, howWords(step.how), step.words});
     }
 
 private:
-    IconLabel* icon_;
-    QLabel* title_;
-    QLabel* how_;
-    QLabel* words_;
-    int number_;
+    std::optional<StateRow> row_; ///< once this has its name
 };
 
 QString poseDetail(const CalibrationPose& pose, const CalibrationState& state) {

@@ -5,13 +5,14 @@
 #include <QLabel>
 #include <QPushButton>
 
+#include "app/studio/base/step_tone.h"
 #include "app/studio/widgets/icon_label.h"
 
 namespace lumorph::studio {
 
 /// How things are, in a sentence, why, and the one sensible next step as an accent button.
 struct StepCardText {
-    enum class Tone { quiet, live, good, warning, failure };
+    using Tone = StepTone;
     Tone tone = Tone::quiet;
     QString title, text;
     QString button;             ///< empty: there is nothing to press
