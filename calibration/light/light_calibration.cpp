@@ -134,11 +134,12 @@ ReferenceShots LightMeasurement::reference() {
     return {series_.take(showing(glm::ivec3(0))), series_.take(showing(glm::ivec3(kReferenceGrey)))};
 }
 
-/// Of some patches, evenly chosen: they only have to differ.
+/// Of some patches, evenly chosen: they only have to differ. The longest exposures cut off the brightest of them, so
+/// that the others tell of the highest bytes as well.
 void LightMeasurement::learnResponses() {
-    const LightShot white = series_.takeAll(showing(glm::ivec3(255)), 1.1, 1.6, 11);
+    const LightShot white = series_.takeAll(showing(glm::ivec3(255)), 2.4, 1.6, 12);
     progress_.throwIfCancelled();
-    const LightShot dim = series_.takeAll(showing(glm::ivec3(kDimGrey)), 9.0, 1.55, 10);
+    const LightShot dim = series_.takeAll(showing(glm::ivec3(kDimGrey)), 20.0, 1.55, 11);
     const std::size_t step = std::max<std::size_t>(1, patches_.size() / kResponsePlaces);
     double squares = 0.0;
     for (int channel = 0; channel < 3; ++channel) {
