@@ -20,18 +20,26 @@ namespace {
 
 QString millimetres(double metres) { return QString("%1 mm").arg(1e3 * metres, 0, 'f', 2); }
 
-LinkOutcome outcomeOf(const Registration& measured) {
+/// What is to be known of a measurement, whatever it is of; of one that was refused there is nothing else.
+template <class Measured> LinkOutcome judged(const Measured& measured) {
     LinkOutcome outcome;
     outcome.isGood = measured.good();
-    outcome.summary = QString::fromStdString(measured.summary);
-    for (const Finding& warning : measured.warnings) outcome.findings.push_back(wordsOf(warning));
     if (measured.refusal) {
-        outcome.findings.insert(outcome.findings.begin(), wordsOf(*measured.refusal));
+        outcome.findings.push_back(wordsOf(*measured.refusal));
         outcome.summary = outcome.findings.front().title + ". " + outcome.findings.front().remedy;
+    }
+    for (const Finding& warning : measured.warnings) outcome.findings.push_back(wordsOf(warning));
+    return outcome;
+}
+
+LinkOutcome outcomeOf(const Registration& measured) {
+    LinkOutcome outcome = judged(measured);
+    if (measured.refusal) {
         outcome.doubtsTracker =
             measured.refusal->cause == Cause::mirrored || measured.refusal->cause == Cause::wrongUnits;
         return outcome;
     }
+    outcome.summary = QString::fromStdString(measured.summary);
     outcome.installation = measured.installation;
     const FreshCheck& fresh = measured.fresh;
     outcome.figures = {{QObject::tr("%1 points that the fit never saw: root mean square").arg(fresh.points.size()),
@@ -87,14 +95,8 @@ QString percent(double share) { return QString("%1 %").arg(100.0 * share, 0, 'f'
 
 LinkOutcome measureLight(const LinkTask& task, const Progress& progress) {
     const LightCalibration measured = measureLightInLab(*task.rig, task.believed, task.truth, task.seed, progress);
-    LinkOutcome outcome;
-    outcome.isGood = measured.good();
-    for (const Finding& warning : measured.warnings) outcome.findings.push_back(wordsOf(warning));
-    if (measured.refusal) {
-        outcome.findings.insert(outcome.findings.begin(), wordsOf(*measured.refusal));
-        outcome.summary = outcome.findings.front().title + ". " + outcome.findings.front().remedy;
-        return outcome;
-    }
+    LinkOutcome outcome = judged(measured);
+    if (measured.refusal) return outcome;
     outcome.installation = measured.room;
     outcome.summary =
         QObject::tr("Greys that the fit never saw are met to %1 (before: %2). %3")
@@ -317,14 +319,8 @@ QString milliseconds(const MeasuredDelay& delay) {
 
 LinkOutcome measureDelays(const LinkTask& task, const Progress& progress) {
     const MeasuredDelays measured = measureDelaysInLab(*task.rig, task.believed, task.truth, task.seed, progress);
-    LinkOutcome outcome;
-    outcome.isGood = measured.good();
-    for (const Finding& warning : measured.warnings) outcome.findings.push_back(wordsOf(warning));
-    if (measured.refusal) {
-        outcome.findings.insert(outcome.findings.begin(), wordsOf(*measured.refusal));
-        outcome.summary = outcome.findings.front().title + ". " + outcome.findings.front().remedy;
-        return outcome;
-    }
+    LinkOutcome outcome = judged(measured);
+    if (measured.refusal) return outcome;
     outcome.installation = measured.installation;
     outcome.summary = QObject::tr("Carried at 30 cm/s the device is lit %1 beside instead of %2.")
                           .arg(millimetres(measured.gain.with.atSpeed), millimetres(measured.gain.without.atSpeed));

@@ -22,18 +22,6 @@ constexpr std::size_t kLeastPoses = 20;                        // of a rest
 
 } // namespace
 
-std::string nameOf(PoseRole role) {
-    switch (role) {
-    case PoseRole::head:
-        return "head";
-    case PoseRole::device:
-        return "device";
-    case PoseRole::pointer:
-        break;
-    }
-    return "pointer";
-}
-
 LiveCapture::LiveCapture(LivePlan plan, const glm::dvec3& tip) : plan_(std::move(plan)), tip_(tip) {}
 
 void LiveCapture::add(PoseRole role, double seconds, const std::optional<Pose>& pose) {
@@ -88,8 +76,10 @@ void LiveCapture::followSwings() {
     try {
         const Pivot pivot = solvePivot(take.begin()->second);
         tip_ = pivot.tip;
-        dimple.tip = pivot.dimple;            // who swings on there touches nothing new
-    } catch (const CaptureRefused& refused) { // better told now than at the end
+        // Who swings on there touches nothing new.
+        dimple.tip = pivot.dimple;
+    } catch (const CaptureRefused& refused) {
+        // Better told now than at the end.
         recent_.clear();
         turned_ = fraction_ = 0.0;
         trouble_ = refused.finding().why;

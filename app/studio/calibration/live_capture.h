@@ -87,7 +87,4 @@ private:
     std::string trouble_;
 };
 
-/// "pointer", "head", "device".
-[[nodiscard]] std::string nameOf(PoseRole role);
-
 } // namespace lumorph::studio

@@ -111,9 +111,12 @@ private:
         const bool isLive = wayOf(state, state.chosen) == LinkWay::live;
         const QString obstacle = isLive ? parts_.live.obstacle(link.liveRoles) : QString();
         seen_->setVisible(isLive && !state.live);
-        seen_->setText(obstacle.isEmpty() ? "The tracker sees all that is needed." : obstacle);
-        seen_->setProperty("look", obstacle.isEmpty() ? "muted" : "warning");
-        seen_->style()->polish(seen_);
+        const QString words = obstacle.isEmpty() ? QString("The tracker sees all that is needed.") : obstacle;
+        if (words != seen_->text()) { // it is asked ten times a second
+            seen_->setText(words);
+            seen_->setProperty("look", obstacle.isEmpty() ? "muted" : "warning");
+            seen_->style()->polish(seen_);
+        }
         devices_->setVisible(isLive && !obstacle.isEmpty());
         back_->setVisible(isLive && state.live && state.live->step > 0);
         corner_->show(rig, state.live ? state.live->corner : std::nullopt);
