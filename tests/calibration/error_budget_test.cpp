@@ -2,7 +2,6 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
-#include <cstdlib>
 #include <limits>
 #include <optional>
 #include <random>
@@ -176,9 +175,10 @@ struct Draws {
     Judge judge = Judge::planes;
 
     [[nodiscard]] Measured measured(const Drawn& drawn) const {
-        const int draws = std::getenv("LUMORPH_LONG_TESTS") != nullptr ? 1000 : 120;
+        // Few servos bend a lot: with 120 draws theirs is 14 % beside, with 1000 it is 6 %.
+        constexpr int kDraws = 1000;
         double squares = 0.0, count = 0.0, lost = 0.0;
-        for (int k = 0; k < draws; ++k)
+        for (int k = 0; k < kDraws; ++k)
             TrueShow(believed, errors, lab, view, drawn, judge, 100U + static_cast<std::uint32_t>(k))
                 .judge(model.points, squares, count, lost);
         return {std::sqrt(squares / count), lost / (count + lost)};
@@ -222,8 +222,7 @@ void expectWhatTheLabMeasures(const Draws& draws) {
     const auto compare = [](const char* name, double told, const Measured& lab) {
         std::printf("  %-10s budget %7.3f mm, lab %7.3f mm, %.1f %% of the places lost\n", name, 1e3 * told,
                     1e3 * lab.metres, 100.0 * lab.lost);
-        // Twenty micrometres are less than its draws agree to.
-        EXPECT_NEAR(told, lab.metres, std::max(0.15 * lab.metres, 20e-6)) << name;
+        EXPECT_NEAR(told, lab.metres, 0.1 * lab.metres) << name;
         EXPECT_LT(lab.lost, 0.05) << name;
     };
     for (const Row& row : rows) {
