@@ -116,8 +116,8 @@ void NoiseJudge::look(const glm::dvec3& way, double seconds) {
 
 double NoiseJudge::sigma() const { return seconds_ <= kSlowestNoise ? std::max(least_, std::sqrt(square_)) : least_; }
 
-void RestJudge::look(double way, double speed, double seconds) {
-    excess_ = std::max({way / way_, speed / speed_, excess_ * std::exp(-seconds / kCalmSeconds)});
+void RestJudge::look(double way, double speed, double seconds, double noise) {
+    excess_ = std::max({way / (noise * way_), speed / (noise * speed_), excess_ * std::exp(-seconds / kCalmSeconds)});
 }
 
 double RestJudge::motion() const {
@@ -160,7 +160,7 @@ void PoseFilter::addPosition(const glm::dvec3& measured, double seconds) {
     moving_.setMeasured(places_.sigma());
     position_ += moving_.correct(off);
     restPosition_ += restShare(seconds) * (measured - restPosition_);
-    moves_.look(glm::distance(position_, restPosition_), glm::length(moving_.velocity()), seconds);
+    moves_.look(glm::distance(position_, restPosition_), glm::length(moving_.velocity()), seconds, places_.excess());
 }
 
 void PoseFilter::addRotation(const glm::dquat& measured, double seconds) {
@@ -178,7 +178,8 @@ void PoseFilter::addRotation(const glm::dquat& measured, double seconds) {
     turning_.setMeasured(rotations_.sigma());
     rotation_ = turned(turning_.correct(off), rotation_);
     restRotation_ = turned(restShare(seconds) * turnBetween(restRotation_, measured), restRotation_);
-    turns_.look(glm::length(turnBetween(restRotation_, rotation_)), glm::length(turning_.velocity()), seconds);
+    turns_.look(glm::length(turnBetween(restRotation_, rotation_)), glm::length(turning_.velocity()), seconds,
+                rotations_.excess());
 }
 
 Pose PoseFilter::at(double seconds) const {

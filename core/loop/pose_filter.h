@@ -56,6 +56,8 @@ public:
     void look(const glm::dvec3& way, double seconds);
     /// Standard deviation per axis.
     [[nodiscard]] double sigma() const;
+    /// How many times noisier samples are than was expected, 1 and more.
+    [[nodiscard]] double excess() const { return sigma() / least_; }
 
 private:
     double least_, square_;
@@ -71,8 +73,9 @@ public:
     /// Ways below `way` and speeds below `speed` are noise; it is wholly in motion at three times as much.
     RestJudge(double way, double speed) : way_(way), speed_(speed) {}
     void restart() { excess_ = 0.0; }
-    /// `way` from where it rested, `speed` as the motion filter has it.
-    void look(double way, double speed, double seconds);
+    /// `way` from where it rested, `speed` as the motion filter has it; samples are `noise` times noisier than
+    /// expected, and so are both.
+    void look(double way, double speed, double seconds, double noise);
     /// 0 at rest, 1 in motion.
     [[nodiscard]] double motion() const;
 

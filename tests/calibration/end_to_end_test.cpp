@@ -172,10 +172,11 @@ TEST(EndToEnd, TheWholeChainShowsWhatTheEyeShouldSee) {
         print("servos not measured", servos);
         print("device not measured", body);
         print("eye not measured", eye);
-        EXPECT_GT(meanOf(servos.skinMillimetres), 3.0 * meanOf(shown.skinMillimetres));
+        // Most of the device stands still, and most of what is shown lies on it: the worst places tell.
+        EXPECT_GT(quantileOf(servos.skinMillimetres, 0.95), 3.0 * quantileOf(shown.skinMillimetres, 0.95));
         EXPECT_LT(body.balls.size() + body.skinPixels.size(), shown.skinPixels.size() / 10)
             << "nearly all is far beside";
-        EXPECT_GT(meanOf(eye.balls), 1.5);
+        EXPECT_GT(quantileOf(eye.balls, 0.95), 3.0 * quantileOf(shown.balls, 0.95));
     }
 }
 

@@ -167,6 +167,32 @@ TEST(PoseStream, WhatRestsIsStill) {
     }
 }
 
+// A tracker four times as noisy as the best: what rests does not swim, and what sets out is followed all the same.
+TEST(PoseStream, WhatRestsBeforeANoisyTrackerIsStillToo) {
+    std::mt19937 random(3);
+    std::normal_distribution<double> noise(0.0, 1e-3);
+    const auto dice = [&] { return glm::dvec3(noise(random), noise(random), noise(random)); };
+    const auto path = [](double t) { return glm::dvec3(0.3 * (t - std::min(t, 5.0 * std::ceil(t / 10.0))), 0.8, 0.0); };
+    PoseStream stream;
+    double squares = 0.0, rested = 0.0;
+    Errors plain, predicted;
+    for (int k = 0; k < 20 * static_cast<int>(kRate); ++k) {
+        const double t = k / kRate;
+        const double setOut = std::fmod(t, 10.0) - 5.0;
+        (void)stream.push(sampleAt(t, path(t) + dice(), aboutUp(3.5 * noise(random))));
+        const Pose told = *stream.at(at(t + kDelay), at(t));
+        if (t > 1.0 && t < 5.0) {
+            squares += std::pow(glm::distance(told.position, path(t)), 2);
+            rested += 1.0;
+        }
+        if (setOut < 0.1 || setOut > 0.5) continue;
+        plain.add(glm::distance(path(t), path(t + kDelay)));
+        predicted.add(glm::distance(told.position, path(t + kDelay)));
+    }
+    EXPECT_LE(std::sqrt(squares / rested), 0.6e-3);
+    EXPECT_LE(predicted.mean(), plain.mean() / 2.0);
+}
+
 TEST(PoseStream, FollowsASlowDriftWithinAMillimetreOrTwo) {
     std::mt19937 random(9);
     std::normal_distribution<double> noise(0.0, 0.2e-3);
