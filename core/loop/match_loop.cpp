@@ -124,7 +124,7 @@ struct MatchLoop::Data {
 void MatchLoop::Data::fill(const MatchWish& wish, double sinceLast, MatchFrame& frame) {
     const StageTimer timer(clock, frame.ms.total);
     motion.follow(wish.rig, wish.rigOrigin);
-    motion.use(wish.installation);
+    motion.use(wish.installation, wish.lightDelay);
     fillShown(program.ask(wish, sinceLast, motion.strokes(), clock, frame), sinceLast, frame);
 }
 
@@ -134,7 +134,7 @@ void MatchLoop::Data::fillShown(const MatchWish& wish, double sinceLast, MatchFr
     const bool newTarget = target.show(wish, clock, frame.ms);
     target.describe(frame);
     program.describe(frame);
-    matching.use(wish.field);
+    matching.use(wish.field, motion.reach());
     const MatchWish servos = driven(wish, sinceLast, frame);
     if (isMatched(servos))
         dance.end();
@@ -201,7 +201,7 @@ bool MatchLoop::Data::restsAfter(const MatchWish& wish, const MatchFrame& frame)
     if (wish.scene && (viewer.moves() || time.moves())) return false;
     if (TargetStage::moves(wish)) return false;
     if (frame.poseSeconds && movesOn(*wish.posePlay, frame.time)) return false;
-    if (!wish.stopped && !motion.arrived(frame.wantedStrokes)) return false;
+    if (!motion.stands() || (!wish.stopped && !motion.arrived(frame.wantedStrokes))) return false;
     if (!itemFit.current()) return false;
     return isMatched(wish) ? matching.converged() : wish.driver != Driver::dance;
 }
@@ -238,7 +238,7 @@ std::shared_ptr<const MatchFrame> MatchLoop::Data::shown(const MatchWish& wish) 
     if (!wish.source) throw InvalidInput("recording", "there is none to show", "open one first");
     std::shared_ptr<const MatchFrame> frame = wish.source->frame(wish, clock.now());
     motion.follow(wish.rig, wish.rigOrigin);
-    motion.use(wish.installation);
+    motion.use(wish.installation, wish.lightDelay);
     motion.standAt(frame->estimatedStrokes);
     settled = !wish.source->moves();
     return frame;

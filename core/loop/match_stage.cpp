@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
+#include <utility>
 
 #include "core/loop/stage_timer.h"
 
@@ -15,13 +17,30 @@ double iouOf(const FitQuality& quality, std::size_t targetVoxels) { return targe
 /// Whether servos follow the voxels; else these are only compared with what the servos do.
 bool followed(const MatchWish& wish) { return wish.driver == Driver::target || wish.driver == Driver::program; }
 
+std::vector<LevelRange> levelsWithin(std::span<const StrokeRange> reach, int levels) {
+    const auto nearest = [levels](double stroke) { return static_cast<int>(std::lround(stroke * (levels - 1))); };
+    std::vector<LevelRange> ranges;
+    for (const StrokeRange& range : reach) ranges.push_back({nearest(range.low), nearest(range.high)});
+    return ranges;
+}
+
 } // namespace
 
-void MatchStage::use(const std::shared_ptr<const MatchField>& field) {
-    if (field == field_) return;
+void MatchStage::use(const std::shared_ptr<const MatchField>& field, std::span<const StrokeRange> reach) {
+    std::vector<LevelRange> levels = field ? levelsWithin(reach, field->field.levels) : std::vector<LevelRange>();
+    if (field == field_ && levels == reach_) return;
+    reach_ = std::move(levels);
+    if (field == field_) {
+        if (matcher_) matcher_->keepWithin(reach_);
+        votes_ = nullptr;
+        return;
+    }
     matcher_.reset();
     field_ = nullptr;
-    if (field) matcher_.emplace(field->coverage, field->voting);
+    if (field) {
+        matcher_.emplace(field->coverage, field->voting);
+        matcher_->keepWithin(reach_);
+    }
     field_ = field;
     target_ = nullptr;
     votes_ = nullptr;

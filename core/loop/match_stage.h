@@ -2,12 +2,14 @@
 
 #include <memory>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "core/loop/match_frame.h"
 #include "core/loop/match_wish.h"
 #include "core/loop/target_voxels.h"
 #include "core/mdf/frame_matcher.h"
+#include "core/scene/measured_servos.h"
 
 namespace lumorph {
 
@@ -15,8 +17,9 @@ namespace lumorph {
 /// changed since the frame before is kept.
 class MatchStage {
 public:
-    /// Gets ready for a field; an empty one lets go of the last.
-    void use(const std::shared_ptr<const MatchField>& field);
+    /// Gets ready for a field; an empty one lets go of the last. `reach`: what its actuators reach, one each; empty:
+    /// all of their strokes. A level counts as reached where the servo comes nearer to it than to the next.
+    void use(const std::shared_ptr<const MatchField>& field, std::span<const StrokeRange> reach);
     /// Matches the voxels of a target and writes votes, wanted state and strokes into the frame. `of` is what they are
     /// voxels of: as long as it is the same, levels do not flicker; `newVoxels`: they are other ones than before. When
     /// neither target nor program drives, the state is left alone.
@@ -36,6 +39,7 @@ private:
     void judgeEstimated(const TargetVoxels& target, MatchFrame& frame);
 
     std::shared_ptr<const MatchField> field_;
+    std::vector<LevelRange> reach_; ///< empty: all levels
     std::optional<FrameMatcher> matcher_;
     std::shared_ptr<const void> target_; ///< what the votes are of
     std::shared_ptr<const Votes> votes_;

@@ -6,6 +6,7 @@
 #include <string>
 #include <utility>
 
+#include "core/loop/viewer_stage.h"
 #include "core/motion/rig_motion.h"
 
 namespace lumorph {
@@ -33,48 +34,95 @@ void MotionStage::follow(const std::shared_ptr<const Rig>& rig, const std::share
     const MotionModel last = std::exchange(motion_, MotionModel(motionLimits(*rig)));
     const std::vector<double> real = std::exchange(real_, std::vector<double>(rig->actuatorCount(), 0.0));
     limits_ = motionLimits(*rig);
-    if (stay) goOn(last, real, *rig_, *rig);
-    if (installation_) curves_ = ServoCurves(rig->actuators(), installation_->servos);
-    curves_.follow(commands(), real_);
+    if (stay)
+        goOn(last, real, *rig_, *rig);
+    else
+        delayed_.standAt(real_);
     rig_ = rig;
     origin_ = origin;
     deformed_ = nullptr;
+    readServos();
 }
 
-void MotionStage::use(const std::shared_ptr<const Installation>& installation) {
-    if (installation == installation_) return;
-    const bool same = installation && installation_ && installation->servos == installation_->servos;
+void MotionStage::use(const std::shared_ptr<const Installation>& installation, double lightDelay) {
+    const double light = installation ? lightAhead(*installation, lightDelay) : 0.0;
+    const bool same = installation == installation_ ||
+                      (installation && installation_ && installation->servos == installation_->servos);
+    const bool sameLight = std::exchange(light_, light) == light;
     installation_ = installation;
-    if (same) return;
-    curves_ = installation && rig_ ? ServoCurves(rig_->actuators(), installation->servos) : ServoCurves();
-    curves_.follow(commands(), real_);
+    if (!same)
+        readServos();
+    else if (!sameLight)
+        readLags();
 }
+
+void MotionStage::readServos() {
+    curves_ = installation_ && rig_ ? ServoCurves(rig_->actuators(), installation_->servos) : ServoCurves();
+    curves_.follow(commands(), real_);
+    readLags();
+    look(real_, commands(), 0.0);
+}
+
+void MotionStage::readLags() {
+    lags_ = installation_ && rig_ ? lagsOf(rig_->actuators(), installation_->servos) : std::vector<double>();
+    if (std::ranges::all_of(lags_, [](double lag) { return lag == 0.0; })) lags_.clear();
+    std::vector<double> delays;
+    for (const double lag : lags_) delays.push_back(std::max(0.0, lag - light_));
+    delayed_.setDelays(std::move(delays));
+}
+
+/// A command that is given now is where the servo is when the next one comes; the one before is where it is now.
+void MotionStage::look(std::span<const double> before, std::span<const double> aims, double seconds) {
+    seen_ = real_;
+    if (lags_.empty()) return delayed_.standAt(real_);
+    delayed_.step(before, seconds);
+    std::vector<double> coming(commands().begin(), commands().end()), later = real_;
+    const auto aheadOf = [&](std::size_t i) { return light_ - lags_[i] - seconds; };
+    for (std::size_t i = 0; i < coming.size(); ++i)
+        if (lags_[i] > 0.0 && aheadOf(i) > 0.0)
+            coming[i] = advance({coming[i], motion_.velocities()[i]}, aims[i], aheadOf(i), limits_[i]).position;
+    curves_.follow(coming, later);
+    for (std::size_t i = 0; i < seen_.size(); ++i) {
+        if (lags_[i] == 0.0) continue;
+        const double reached = light_ - lags_[i];
+        seen_[i] = reached <= 0.0       ? delayed_.strokes()[i]
+                   : reached >= seconds ? later[i]
+                                        : before[i] + reached / seconds * (real_[i] - before[i]);
+    }
+}
+
+bool MotionStage::stands() const { return lags_.empty() || (delayed_.stand() && seen_ == real_); }
 
 void MotionStage::standAt(std::span<const double> strokes) {
     motion_.reset(strokes);
     real_.assign(strokes.begin(), strokes.end());
     if (!curves_.empty()) motion_.reset(curves_.commandsAt(strokes));
+    delayed_.standAt(strokes);
+    seen_ = real_;
 }
 
 void MotionStage::goOn(const MotionModel& last, const std::vector<double>& real, const Rig& from, const Rig& to) {
     const bool sameCount = from.actuatorCount() == to.actuatorCount();
     std::vector<double> positions(to.actuatorCount(), 0.0), velocities(to.actuatorCount(), 0.0);
+    std::vector<std::optional<std::size_t>> places(to.actuatorCount());
     for (std::size_t i = 0; i < to.actuatorCount(); ++i) {
         auto before = placeOf(from, to.actuators()[i].name);
         if (!before && sameCount) before = i;
+        places[i] = before;
         if (!before) continue;
         positions[i] = last.positions()[*before];
         velocities[i] = last.velocities()[*before];
         real_[i] = real[*before];
     }
     motion_.resume(positions, velocities);
+    delayed_.rearrange(places);
 }
 
 void MotionStage::move(std::span<const double> wanted, double seconds, bool stopped) {
     const std::vector<double> before(motion_.positions().begin(), motion_.positions().end());
     if (stopped) {
         motion_.reset(before); // velocities become zero
-        return;
+        return look(real_, before, seconds);
     }
     const std::vector<double> aims = curves_.commandsFor(wanted, real_, before);
     motion_.step(aims, seconds);
@@ -83,7 +131,9 @@ void MotionStage::move(std::span<const double> wanted, double seconds, bool stop
     for (std::size_t i = 0; i < before.size() && ends; ++i)
         ends = std::abs(aims[i] - before[i]) <= limits_[i].maxVelocity * seconds;
     if (ends) motion_.reset(aims);
+    const std::vector<double> stood = real_;
     curves_.follow(commands(), real_);
+    look(stood, aims, seconds);
 }
 
 bool MotionStage::arrived(std::span<const double> wanted) const {

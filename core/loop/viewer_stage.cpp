@@ -50,9 +50,14 @@ private:
 
 } // namespace
 
+double lightAhead(const Installation& installation, double lightDelay) {
+    if (!(installation.predictionSeconds > 0.0)) return 0.0;
+    return std::max(installation.predictionSeconds, lightDelay);
+}
+
 double lookAhead(const Installation& installation, double lightDelay) {
     if (!(installation.predictionSeconds > 0.0)) return 0.0;
-    return std::max(installation.predictionSeconds, lightDelay) + installation.trackerSeconds;
+    return lightAhead(installation, lightDelay) + installation.trackerSeconds;
 }
 
 void ViewerStage::look(const MatchWish& wish, double sinceLast, MatchFrame& frame) {

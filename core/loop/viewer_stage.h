@@ -19,9 +19,12 @@ private:
     bool moves_ = false;
 };
 
-/// How far ahead of what trackers say poses are predicted, seconds: at least by the installation's delay; where drawing
-/// takes longer (as was measured: `lightDelay`), by that; and by how much poses are older than they say
-/// (`trackerSeconds`). 0 where the installation predicts nothing.
+/// From a frame to its light, seconds: as the installation has it, or where drawing takes longer (as was measured:
+/// `lightDelay`), that. 0 where the installation predicts nothing.
+[[nodiscard]] double lightAhead(const Installation& installation, double lightDelay);
+
+/// How far ahead of what trackers say poses are predicted, seconds: by `lightAhead`, and by how much
+/// poses are older than they say (`trackerSeconds`). 0 where the installation predicts nothing.
 [[nodiscard]] double lookAhead(const Installation& installation, double lightDelay);
 
 /// Whether a tracker has seen one of the board's bodies lately.

@@ -1,15 +1,42 @@
 #include "core/mdf/frame_matcher.h"
 
+#include <algorithm>
 #include <utility>
 
 namespace lumorph {
+namespace {
+
+/// Of an actuator that votes for a level that it does not reach: the best of those that it reaches, by the same ratio;
+/// the lower one of two that are as good.
+void voteWithin(ActuatorVote& vote, const LevelRange& range) {
+    if (vote.level.index >= range.low && vote.level.index <= range.high) return;
+    // Of two ratios without dividing: intersections may be zero.
+    const auto isBetter = [&vote](int a, int b) {
+        const auto i = static_cast<std::size_t>(a), k = static_cast<std::size_t>(b);
+        return vote.errors[i] * vote.intersections[k] < vote.errors[k] * vote.intersections[i];
+    };
+    int best = range.low;
+    for (int level = range.low + 1; vote.reached && level <= range.high; ++level)
+        if (isBetter(level, best)) best = level;
+    vote.level = Level{best};
+    vote.stroke = strokeOf(vote.level, static_cast<int>(vote.errors.size()));
+}
+
+} // namespace
 
 FrameMatcher::FrameMatcher(const Coverage& coverage, const Voting& voting) : voting_(voting), refiner_(coverage) {}
+
+void FrameMatcher::keepWithin(std::vector<LevelRange> ranges) {
+    refiner_.keepWithin(ranges);
+    ranges_ = std::move(ranges);
+    forget();
+}
 
 void FrameMatcher::forget() { hasLast_ = hasRefined_ = false; }
 
 void FrameMatcher::vote(const BitColumns& target, Votes& votes) {
     voting_.match(target, votes, workspace_, hasLast_ ? &found_.voted : nullptr);
+    for (std::size_t i = 0; i < ranges_.size(); ++i) voteWithin(votes.actuators[i], ranges_[i]);
     found_.voted = votes.state();
     hasLast_ = true;
 }

@@ -28,6 +28,9 @@ public:
 
     FrameMatcher(const Coverage& coverage, const Voting& voting);
 
+    /// Levels that actuators reach, one range each; empty: all. Neither votes nor refinement choose others, and the
+    /// next frame stands for itself. Throws as Refiner::keepWithin does.
+    void keepWithin(std::vector<LevelRange> ranges);
     /// The next frame stands for itself: another target, or the same one elsewhere.
     void forget();
     /// Votes for a new frame's target, given as voxels of the domain. To be called first for each frame.
@@ -46,6 +49,7 @@ private:
 
     const Voting& voting_;
     Refiner refiner_;
+    std::vector<LevelRange> ranges_;
     Voting::Workspace workspace_;
     FrameMatch found_;
     bool hasLast_ = false;    ///< `found_.voted` is that of a frame before

@@ -25,11 +25,28 @@ public:
         for (std::size_t i = 0; i < coverage.rig().actuatorCount(); ++i)
             windows_.push_back(coverage.window(coverage.columnsMovedBy(i)));
         held_.resize(windows_.size(), false);
+        ranges_.assign(windows_.size(), {0, coverage.levels() - 1});
         for (const auto& [i, j] : coverage.coupledPairs()) {
             ColumnRange range = coverage.columnsMovedBy(i);
             range.include(coverage.columnsMovedBy(j));
             pairs_.push_back({i, j, coverage.window(range)});
         }
+    }
+
+    void check(const BitColumns& target, const State& state) const {
+        if (target.dimensions() != coverage_.frame().dimensions)
+            throw InvalidInput("target", "its voxel grid has another shape than the field's",
+                               "voxelise it into the field's own frame");
+        if (state.size() != windows_.size())
+            throw InvalidInput("state",
+                               "it has " + std::to_string(state.size()) + " levels for " +
+                                   std::to_string(windows_.size()) + " actuators",
+                               "give one level for each actuator");
+        for (const Level level : state)
+            if (level.index < 0 || level.index >= coverage_.levels())
+                throw InvalidInput("level " + std::to_string(level.index),
+                                   "levels run from 0 to " + std::to_string(coverage_.levels() - 1),
+                                   "give levels in that range");
     }
 
     void begin(const BitColumns& target, const State& state) {
@@ -81,28 +98,31 @@ public:
         held_ = std::move(held);
     }
 
+    void keepWithin(const std::vector<LevelRange>& ranges) {
+        const LevelRange all{0, coverage_.levels() - 1};
+        if (!ranges.empty() && ranges.size() != windows_.size())
+            throw InvalidInput("levels that are reached",
+                               std::to_string(ranges.size()) + " ranges for " + std::to_string(windows_.size()) +
+                                   " actuators",
+                               "give one for each actuator");
+        for (const LevelRange& range : ranges)
+            if (range.low < all.low || range.high > all.high || range.low > range.high)
+                throw InvalidInput("levels " + std::to_string(range.low) + " to " + std::to_string(range.high),
+                                   "levels run from 0 to " + std::to_string(all.high), "give a range of them");
+        ranges_ = ranges.empty() ? std::vector<LevelRange>(windows_.size(), all) : ranges;
+    }
+    [[nodiscard]] State within(State state) const {
+        for (std::size_t i = 0; i < state.size(); ++i)
+            state[i].index = std::clamp(state[i].index, ranges_[i].low, ranges_[i].high);
+        return state;
+    }
+
     [[nodiscard]] bool outOfTime() const { return hasDeadline_ && clock_->now() >= deadline_; }
     [[nodiscard]] FitQuality quality() const {
         return {total_.both, wanted_ - total_.both, total_.covered - total_.both};
     }
 
 private:
-    void check(const BitColumns& target, const State& state) const {
-        if (target.dimensions() != coverage_.frame().dimensions)
-            throw InvalidInput("target", "its voxel grid has another shape than the field's",
-                               "voxelise it into the field's own frame");
-        if (state.size() != windows_.size())
-            throw InvalidInput("state",
-                               "it has " + std::to_string(state.size()) + " levels for " +
-                                   std::to_string(windows_.size()) + " actuators",
-                               "give one level for each actuator");
-        for (const Level level : state)
-            if (level.index < 0 || level.index >= coverage_.levels())
-                throw InvalidInput("level " + std::to_string(level.index),
-                                   "levels run from 0 to " + std::to_string(coverage_.levels() - 1),
-                                   "give levels in that range");
-    }
-
     /// Calls row(first word in the window, first word in the grid, count).
     template <typename Row> void eachRow(const ColumnRange& range, Row&& row) const {
         const auto words = static_cast<std::size_t>(current_.wordsPerColumn());
@@ -148,7 +168,8 @@ private:
             State next = state_;
             next[pair.first].index += kPairSteps[cursor_ / kCount % kCount];
             next[pair.second].index += kPairSteps[cursor_ % kCount];
-            if (inRange(next[pair.first]) && inRange(next[pair.second])) note(tryState(next, pair.window));
+            if (inRange(pair.first, next[pair.first]) && inRange(pair.second, next[pair.second]))
+                note(tryState(next, pair.window));
         }
         return true;
     }
@@ -158,12 +179,14 @@ private:
         return moved;
     }
 
-    [[nodiscard]] bool inRange(Level level) const { return level.index >= 0 && level.index < coverage_.levels(); }
+    [[nodiscard]] bool inRange(std::size_t actuator, Level level) const {
+        return level.index >= ranges_[actuator].low && level.index <= ranges_[actuator].high;
+    }
 
     /// Goes to the level if that raises the IoU.
     bool tryLevel(std::size_t actuator, int level) {
         const Level was = state_[actuator];
-        if (held_[actuator] || !inRange(Level{level}) || level == was.index) return false;
+        if (held_[actuator] || !inRange(actuator, Level{level}) || level == was.index) return false;
         State next = state_;
         next[actuator] = Level{level};
         return tryState(next, windows_[actuator]);
@@ -211,7 +234,8 @@ private:
 
     const Coverage& coverage_;
     std::vector<Coverage::Window> windows_;
-    std::vector<bool> held_; ///< one an actuator
+    std::vector<bool> held_;         ///< one an actuator
+    std::vector<LevelRange> ranges_; ///< likewise
     std::vector<Pair> pairs_;
     CoverageScratch scratch_;
     BitColumns target_;
@@ -235,10 +259,12 @@ Refiner::Refiner(Refiner&&) noexcept = default;
 Refiner& Refiner::operator=(Refiner&&) noexcept = default;
 
 void Refiner::hold(const std::vector<std::size_t>& actuators) { search_->hold(actuators); }
+void Refiner::keepWithin(const std::vector<LevelRange>& ranges) { search_->keepWithin(ranges); }
 
 Refinement Refiner::refine(const BitColumns& target, const State& start, Microseconds budget, const Clock& clock) {
     search_->start(budget, clock);
-    search_->begin(target, start);
+    search_->check(target, start);
+    search_->begin(target, search_->within(start));
     return search_->finish();
 }
 

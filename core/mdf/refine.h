@@ -17,6 +17,12 @@ struct Refinement {
     bool converged = false; ///< no change of a single actuator helps any more; else the time ran out
 };
 
+/// Levels that an actuator may take, both ends included.
+struct LevelRange {
+    int low = 0, high = 0;
+    bool operator==(const LevelRange&) const = default;
+};
+
 /// Improves a joint state by the true coverage of the deformed rig: coordinate
 /// moves of 4, 2, 1 levels while they raise the IoU, then every level of every actuator once more, then
 /// moves of two coupled actuators at a time. The result is best with respect to any single actuator.
@@ -33,6 +39,10 @@ public:
     /// Actuators that stay at the level they start with, by index; none unless told. Throws InvalidInput for one that
     /// is not there.
     void hold(const std::vector<std::size_t>& actuators);
+
+    /// Levels that actuators may take, one range each; empty: all. A start beyond them is brought to their ends.
+    /// Throws InvalidInput for another number of ranges, or one that holds no level.
+    void keepWithin(const std::vector<LevelRange>& ranges);
 
     /// `target` has the frame's shape; voxels inside the body are ignored. A budget of zero or less
     /// means no limit; the time is looked at after each state.

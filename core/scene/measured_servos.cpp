@@ -77,6 +77,15 @@ StrokeRange reachOf(const MeasuredServo& servo) noexcept {
     return {boundsAt(servo.points, 0.0).falling, boundsAt(servo.points, 1.0).rising};
 }
 
+std::vector<double> lagsOf(std::span<const Actuator> actuators, std::span<const MeasuredServo> servos) {
+    std::vector<double> lags;
+    for (const Actuator& actuator : actuators) {
+        const auto servo = std::ranges::find(servos, actuator.name, &MeasuredServo::actuator);
+        lags.push_back(servo == servos.end() ? 0.0 : servo->lagSeconds);
+    }
+    return lags;
+}
+
 ServoCurves::ServoCurves(std::span<const Actuator> actuators, std::span<const MeasuredServo> servos) {
     std::vector<MeasuredServo> found;
     bool any = false;
@@ -86,7 +95,12 @@ ServoCurves::ServoCurves(std::span<const Actuator> actuators, std::span<const Me
         found.push_back(measured ? sound(*servo) : MeasuredServo{.actuator = actuator.name, .points = {}});
         any = any || measured;
     }
-    if (any) servos_ = std::move(found);
+    if (!any) return;
+    servos_ = std::move(found);
+    for (const MeasuredServo& servo : servos_) {
+        const StrokeRange reach = reachOf(servo);
+        reach_.push_back({std::min(reach.low, reach.high), reach.high});
+    }
 }
 
 std::vector<double> ServoCurves::commandsFor(std::span<const double> wanted, std::span<const double> real,
@@ -116,11 +130,8 @@ std::vector<double> ServoCurves::commandsAt(std::span<const double> real) const 
 }
 
 void ServoCurves::limit(std::span<double> wanted) const noexcept {
-    for (std::size_t i = 0; i < servos_.size() && i < wanted.size(); ++i) {
-        if (servos_[i].points.empty()) continue;
-        const StrokeRange reach = reachOf(servos_[i]);
-        wanted[i] = std::max(std::min(wanted[i], reach.high), std::min(reach.low, reach.high));
-    }
+    for (std::size_t i = 0; i < servos_.size() && i < wanted.size(); ++i)
+        if (!servos_[i].points.empty()) wanted[i] = std::clamp(wanted[i], reach_[i].low, reach_[i].high);
 }
 
 } // namespace lumorph

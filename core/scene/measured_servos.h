@@ -18,8 +18,12 @@ namespace lumorph {
 /// The strokes that a servo really reaches; 0 to 1 for one without points.
 struct StrokeRange {
     double low = 0.0, high = 1.0;
+    bool operator==(const StrokeRange&) const = default;
 };
 [[nodiscard]] StrokeRange reachOf(const MeasuredServo& servo) noexcept;
+
+/// Seconds from a command to its motion, one an actuator; 0 where that was not measured.
+[[nodiscard]] std::vector<double> lagsOf(std::span<const Actuator> actuators, std::span<const MeasuredServo> servos);
 
 /// The measured servos of a rig, by its actuators. Turns strokes that are really wanted into commands, and commands
 /// into real strokes. A plain value without a state: what was before is given to it.
@@ -47,9 +51,12 @@ public:
     [[nodiscard]] std::vector<double> commandsAt(std::span<const double> real) const;
     /// Strokes that are wanted, within what the actuators reach.
     void limit(std::span<double> wanted) const noexcept;
+    /// What the actuators reach, one each; empty where no servo was measured.
+    [[nodiscard]] std::span<const StrokeRange> reach() const noexcept { return reach_; }
 
 private:
     std::vector<MeasuredServo> servos_; ///< one an actuator, without points where it was not measured
+    std::vector<StrokeRange> reach_;    ///< of them; its ends in order
 };
 
 } // namespace lumorph

@@ -204,4 +204,20 @@ ShownError shownError(const std::shared_ptr<const Rig>& rig, const Installation&
     return all;
 }
 
+ShownError lightBeside(const std::shared_ptr<const Rig>& rig, const Installation& room,
+                       const std::vector<double>& believed, const std::vector<double>& real) {
+    const ShownMoment moment = shownMoments().front();
+    const TruthDevice device = deviceIn(room, rig, moment.device);
+    const TruthState realState{"real", real}, believedState{"believed", believed};
+    const ShowFrame frame = ballsFrame(device, realState, glm::vec3(moment.eye.position), {});
+    TruthSetup setup{truthMesh(device, realState), tableMesh(room.tableSize), room.projectors.front(),
+                     deviceView(frame, glm::vec3(moment.eye.position), kEyePicture)};
+    setup.fine = 1;
+    const TruthBench bench(setup);
+    ShownError error;
+    judgeSkin(bench, truthMesh(device, realState), truthMesh(device, believedState), room.projectors.front().camera,
+              error);
+    return error;
+}
+
 } // namespace lumorph::test

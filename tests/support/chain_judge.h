@@ -43,4 +43,9 @@ struct ShownError {
 [[nodiscard]] ShownError shownError(const std::shared_ptr<const Rig>& rig, const Installation& estimated,
                                     const Installation& truth);
 
+/// Of places of the device's skin as in ShownError, while its servos stand elsewhere than is believed: light that is
+/// meant for them at `believed` strokes falls on the device at `real` ones.
+[[nodiscard]] ShownError lightBeside(const std::shared_ptr<const Rig>& rig, const Installation& room,
+                                     const std::vector<double>& believed, const std::vector<double>& real);
+
 } // namespace lumorph::test

@@ -73,7 +73,7 @@ protected:
 TEST(SoundBoard, HasEverySoundOfTheApplicationsAndEachIsHeardAndDoesNotClip) {
     for (const char* name : {"labyrinth.roll", "labyrinth.bump", "labyrinth.pickup", "labyrinth.fall", "labyrinth.goal",
                              "ambient.rain", "ambient.wind", "ambient.wave", "ambient.thunder", "ice.crack", "ice.bump",
-                             "ice.drip", "ice.splash", "navigation.fly"}) {
+                             "ice.drip", "ice.splash", "navigation.fly", "studio.hands_off"}) {
         const SoundVoice* voice = board()->find(name);
         ASSERT_NE(voice, nullptr) << name;
         double sum = 0.0, loudest = 0.0;
@@ -208,6 +208,26 @@ TEST_F(Mixer, OffIsSilenceAndNothingOfItIsHeardLater) {
     mixer.setOn(true);
     EXPECT_EQ(hear(0.5).peak(), 0.0);
     EXPECT_GT(hear(0.3, {{"labyrinth.roll", 0.2, {}}}).power(), 0.01);
+}
+
+TEST_F(Mixer, ASignalIsHeardOnceBesideWhatFramesLetBeHeard) {
+    const std::vector<ShowSound> rolling{{"labyrinth.roll", 0.1, {}}};
+    const double roll = hear(0.5, rolling).power();
+    mixer.signal({kHandsOffSound, 1.0, {}});
+    EXPECT_GT(hear(0.8, rolling).power(), 1.5 * roll);
+    (void)hear(0.4, rolling);
+    EXPECT_NEAR(hear(0.5, rolling).power(), roll, 0.3 * roll);
+    // An output that is opened late begins with it; one that never comes forgets it.
+    (void)hear(1.0);
+    mixer.play(std::vector<ShowSound>{{"labyrinth.bump", 0.3, {}}});
+    mixer.signal({kHandsOffSound, 1.0, {}});
+    mixer.forgetFrames();
+    EXPECT_FALSE(mixer.silent());
+    mixer.forget();
+    EXPECT_TRUE(mixer.silent());
+    mixer.setOn(false);
+    mixer.signal({kHandsOffSound, 1.0, {}});
+    EXPECT_TRUE(mixer.silent());
 }
 
 TEST_F(Mixer, HalfTheLoudnessIsAQuarterOfTheAmplitude) {

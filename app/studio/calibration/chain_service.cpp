@@ -270,6 +270,7 @@ void ChainService::run(std::size_t link, std::function<LinkOutcome(const Progres
     state_.outcomes.erase(link);
     state_.troubles.erase(link);
     emit changed();
+    if (!chainLinks()[link].warning.isEmpty()) emit handsOff();
     jobs_.runWith<LinkOutcome>(
         kChainPlace, kChainPlace, QObject::tr("Measuring: %1").arg(chainLinks()[link].title), std::move(work),
         [this, link](LinkOutcome outcome) { take(link, std::move(outcome)); },

@@ -77,6 +77,7 @@ public:
 
 signals:
     void changed();
+    void handsOff(); ///< servos are about to move by themselves
 
 private:
     void begin(std::size_t link);

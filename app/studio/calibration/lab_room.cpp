@@ -73,7 +73,7 @@ LabRoom::LabRoom(Settings& settings, StudioDocument& document, TrackerService& t
         if (isNumber) seed_ = seed;
     }
     connect(&document, &StudioDocument::changed, this, [this](StateParts parts) {
-        if (parts & (StatePart::installation | StatePart::rig)) follow();
+        if (parts & (StatePart::installation | StatePart::rig | StatePart::rigEdited)) follow();
     });
     follow();
 }

@@ -174,6 +174,19 @@ Samples flying() {
     return toPower(looped(air, kSeam), 0.12);
 }
 
+/// Three even tones that everybody takes as a call to look up.
+Samples warning() {
+    Samples samples = silence(1.0);
+    for (int k = 0; k < 3; ++k) {
+        Samples tone = silence(0.2);
+        add(tone, Ring{880.0, 1.0, 0.5});
+        add(tone, Ring{1320.0, 0.5, 0.4});
+        shape(tone, 0.01, 0.12);
+        add(samples, toPeak(std::move(tone), 1.0), 0.3 * k, 1.0);
+    }
+    return toPeak(std::move(samples), 0.7);
+}
+
 SoundVoice once(const char* name, Samples samples, double from, double to, double softest) {
     SoundVoice voice;
     voice.name = name;
@@ -228,6 +241,7 @@ SoundBoard SoundBoard::synthesised() {
     voices.push_back(once("ice.drip", dripping(), 0.0, 1.0, 0.3));
     voices.push_back(once("ice.splash", splashing(), 0.0, 1.0, 0.15));
     voices.push_back(loop("navigation.fly", flying(), 0.0, 1.0, 0.7, 1.4));
+    voices.push_back(once(kHandsOffSound, warning(), 0.0, 1.0, 1.0));
     return SoundBoard(std::move(voices));
 }
 

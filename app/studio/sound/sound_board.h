@@ -27,6 +27,9 @@ struct SoundVoice {
     [[nodiscard]] double speed(double strength) const noexcept;    ///< 1: as it was made
 };
 
+/// Of the studio itself: servos are about to move by themselves.
+inline constexpr auto kHandsOffSound = "studio.hands_off";
+
 /// All sounds there are, made by our own formulas: no file, no chance.
 class SoundBoard {
 public:

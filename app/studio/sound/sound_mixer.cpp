@@ -39,6 +39,7 @@ void SoundMixer::setOn(bool on) {
     on_ = on;
     if (on_) return;
     waiting_.clear();
+    signals_.clear();
     going_.clear();
 }
 
@@ -62,14 +63,26 @@ void SoundMixer::play(std::span<const ShowSound> sounds) {
     }
 }
 
+void SoundMixer::signal(const ShowSound& sound) {
+    const std::scoped_lock lock(mutex_);
+    const SoundVoice* voice = on_ && board_ ? board_->find(sound.name) : nullptr;
+    if (voice && !voice->continuous && signals_.size() < kMostWaiting) signals_.push_back(sound);
+}
+
 void SoundMixer::forget() {
+    const std::scoped_lock lock(mutex_);
+    waiting_.clear();
+    signals_.clear();
+}
+
+void SoundMixer::forgetFrames() {
     const std::scoped_lock lock(mutex_);
     waiting_.clear();
 }
 
 bool SoundMixer::silent() const {
     const std::scoped_lock lock(mutex_);
-    return quiet_ && waiting_.empty() && (going_.empty() || !fresh_);
+    return quiet_ && waiting_.empty() && signals_.empty() && (going_.empty() || !fresh_);
 }
 
 void SoundMixer::mix(std::span<std::int16_t> samples) {
@@ -92,6 +105,7 @@ void SoundMixer::takeNews() {
         if (playing_ != board_) heard_.clear(); // they point into it
         playing_ = board_;
         once = std::exchange(waiting_, {});
+        for (const ShowSound& sound : std::exchange(signals_, {})) once.push_back(sound);
         fresh = std::exchange(fresh_, false);
         if (fresh) going = going_;
         pace_ = kSoundRate / rate_;

@@ -35,8 +35,11 @@ public:
 
     /// The sounds of one frame, none too. Costs next to nothing.
     void play(std::span<const ShowSound> sounds);
-    /// What waits is not heard any more: it came long ago.
+    /// One that is heard once, whatever frames let be heard.
+    void signal(const ShowSound& sound);
+    /// What waits is not heard any more: it came long ago. Of frames alone: signals are heard though they had to wait.
     void forget();
+    void forgetFrames();
 
     /// The next samples, left and right by turns; an even number of them.
     void mix(std::span<std::int16_t> samples);
@@ -66,6 +69,7 @@ private:
     mutable std::mutex mutex_; ///< guards what comes from outside
     std::shared_ptr<const SoundBoard> board_;
     std::vector<ShowSound> waiting_; ///< heard once
+    std::vector<ShowSound> signals_; ///< likewise
     std::vector<ShowSound> going_;   ///< of the newest frame
     bool fresh_ = false;             ///< a frame came
     bool on_ = true;

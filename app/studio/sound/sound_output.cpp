@@ -101,7 +101,7 @@ private:
         if (!device_.isFormatSupported(format)) format.setSampleRate(44'100);
         if (!device_.isFormatSupported(format)) return;
         mixer_->setRate(format.sampleRate());
-        mixer_->forget();
+        mixer_->forgetFrames();
         sink_ = std::make_unique<QAudioSink>(device_, format);
         sink_->setBufferSize(format.bytesForDuration(kBufferMilliseconds * 1000));
         stream_ = std::make_unique<MixedStream>(*mixer_);

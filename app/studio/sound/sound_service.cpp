@@ -23,7 +23,16 @@ void SoundService::follow() {
 
 void SoundService::take(const MatchFrame& frame) {
     mixer_->play(frame.sounds);
-    if (frame.sounds.empty() || mixer_->silent()) return;
+    if (!frame.sounds.empty()) wake();
+}
+
+void SoundService::signal(const char* name) {
+    mixer_->signal({name, 1.0, {}});
+    wake();
+}
+
+void SoundService::wake() {
+    if (mixer_->silent()) return;
     const std::scoped_lock lock(opening_);
     if (output_) output_->wake();
 }

@@ -11,8 +11,9 @@
 
 namespace lumorph::studio {
 
-/// What applications let be heard: each frame's sounds go from the loop's own thread into the mixer, also those of
-/// frames that the window leaves out, and each once. How loud, and whether at all, is a setting.
+/// What applications let be heard, and signals of the studio itself: each frame's sounds go from the loop's own thread
+/// into the mixer, also those of frames that the window leaves out, and each once. How loud, and whether at all, is a
+/// setting.
 class SoundService : public QObject {
     Q_OBJECT
 public:
@@ -21,11 +22,14 @@ public:
 
     /// From here on it is heard where there is an output. The program calls it; whoever does not stays silent.
     void open();
+    /// Lets a sound be heard once, by its name. Returns at once; nothing happens where there is no output.
+    void signal(const char* name);
     [[nodiscard]] SoundMixer& mixer() noexcept { return *mixer_; }
 
 private:
     void follow();
     void take(const MatchFrame& frame); ///< in the loop's thread
+    void wake();
 
     Settings& settings_;
     StudioLoop& loop_;

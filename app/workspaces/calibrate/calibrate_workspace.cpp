@@ -71,6 +71,7 @@ CalibrateWorkspace::CalibrateWorkspace(Studio& studio)
       live_(studio.trackers, [show = crosshairShower(studio)](const QImage& picture) { show(0, picture); }),
       chain_(studio.document, studio.loop, studio.lab, studio.jobs, studio.notices, live_,
              [&studio](InstallationVersion version) { return studio.room.takeVersion(std::move(version)); }) {
+    connect(&chain_, &ChainService::handsOff, &studio.sound, [&studio] { studio.sound.signal(kHandsOffSound); });
     addCalibrateCommands(parts());
     addWatchCommand();
     connect(&service_, &CalibrationService::changed, this, [this] { setActive(active_); });

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -149,6 +150,109 @@ TEST_F(MeasuredMotionTest, CommandsNeverJumpAndTheDeviceIsWhereItIsEstimated) {
     std::printf("fastest %.3f of %.3f strokes a second, estimate off by %.1e\n", fastest, limit, apart);
     EXPECT_LE(fastest, limit * (1.0 + 1e-9));
     EXPECT_LT(apart, 1e-12);
+}
+
+/// A horn that starts `lag` after each command and moves at `velocity`, and its part: the lab's servo, in steps of a
+/// tenth of a millisecond.
+class LateServo {
+public:
+    LateServo(MeasuredServo servo, double velocity) : servo_(std::move(servo)), velocity_(velocity) {}
+    void command(double seconds, double stroke) { commands_.push_back({seconds, stroke}); }
+    double at(double seconds) {
+        constexpr double kStep = 1e-4;
+        for (; now_ < seconds; now_ += kStep) {
+            while (next_ < commands_.size() && commands_[next_].first + servo_.lagSeconds <= now_)
+                target_ = commands_[next_++].second;
+            horn_ += std::clamp(target_ - horn_, -velocity_ * kStep, velocity_ * kStep);
+            part_ = realStroke(servo_, horn_, part_);
+        }
+        return part_;
+    }
+
+private:
+    MeasuredServo servo_;
+    double velocity_;
+    std::vector<std::pair<double, double>> commands_;
+    std::size_t next_ = 0;
+    double now_ = 0.0, target_ = 0.0, horn_ = 0.0, part_ = 0.0;
+};
+
+TEST_F(MeasuredMotionTest, StrokesAreThoseThatServosHaveWhenTheLightComes) {
+    const double kFrame = 1.0 / 60.0;
+    const double velocity = motionLimits(*rig)[0].maxVelocity;
+    // Servos that move before the light of the frame comes, at the same time, and after it.
+    for (const double lag : {0.03, 0.06, 0.07, 0.13}) {
+        MeasuredServo servo = bentServo(rig->actuators()[0].name), unknown = servo;
+        servo.lagSeconds = lag;
+        const auto roomOf = [this](const MeasuredServo& known) {
+            auto room = std::make_shared<Installation>(*roomWith({known}));
+            room->predictionSeconds = 0.06;
+            return room;
+        };
+        MotionStage knowing, ignorant;
+        knowing.follow(rig, nullptr);
+        ignorant.follow(rig, nullptr);
+        knowing.use(roomOf(servo));
+        ignorant.use(roomOf(unknown));
+        LateServo truth(servo, velocity);
+        std::vector<double> seen, seenWithout, wishes;
+        double before = 0.0;
+        for (int k = 0; k < 480; ++k) {
+            wishes.push_back((k / 120) % 2 == 0 ? 0.9 : 0.2);
+            const std::vector<double> wanted{wishes.back(), 0.5, 0.0};
+            knowing.move(wanted, kFrame, false);
+            ignorant.move(wanted, kFrame, false);
+            ASSERT_TRUE(std::ranges::equal(knowing.commands(), ignorant.commands())) << "what is told is the same";
+            ASSERT_EQ(knowing.strokes()[1], ignorant.strokes()[1]) << "nothing is known of it";
+            before = realStroke(unknown, ignorant.commands()[0], before);
+            ASSERT_EQ(ignorant.strokes()[0], before) << "without a lag it is at once where it is told";
+            truth.command(k * kFrame, knowing.commands()[0]);
+            seen.push_back(knowing.strokes()[0]);
+            seenWithout.push_back(ignorant.strokes()[0]);
+        }
+        double off = 0.0, offWithout = 0.0;
+        int moving = 0;
+        for (int k = 0; k < 470; ++k) {
+            const auto at = static_cast<std::size_t>(k);
+            const double stands = truth.at(k * kFrame + 0.06);
+            // Nobody foresees that the wish turns.
+            if (k % 120 > 110 || k % 120 < 2 || std::abs(stands - wishes[at]) < 1e-3) continue;
+            ++moving;
+            off += std::abs(seen[at] - stands);
+            offWithout += std::abs(seenWithout[at] - stands);
+        }
+        std::printf("lag %3.0f ms: off by %.4f strokes while it moves, without its lag %.4f (%d frames)\n", 1e3 * lag,
+                    off / moving, offWithout / moving, moving);
+        EXPECT_GT(moving, 100);
+        EXPECT_LT(off / moving, 0.003);
+        EXPECT_LT(off, 0.5 * offWithout);
+        for (int k = 0; k < 60; ++k)
+            for (MotionStage* motion : {&knowing, &ignorant}) motion->move(std::vector{0.2, 0.5, 0.0}, kFrame, false);
+        EXPECT_TRUE(knowing.stands());
+        EXPECT_EQ(knowing.strokes()[0], ignorant.strokes()[0]) << "at rest it changes nothing";
+    }
+}
+
+TEST_F(MeasuredMotionTest, WhatWasToldIsOnItsWayWhenAllIsStopped) {
+    MeasuredServo servo{.actuator = rig->actuators()[0].name, .points = {}, .lagSeconds = 0.1};
+    MotionStage motion;
+    auto room = std::make_shared<Installation>(*roomWith({servo}));
+    room->predictionSeconds = 0.0;
+    motion.use(room);
+    motion.follow(rig, nullptr);
+    const std::vector<double> wanted{1.0, 0.0, 0.0};
+    for (int k = 0; k < 30; ++k) motion.move(wanted, 0.01, false);
+    const double told = motion.commands()[0], stood = motion.strokes()[0];
+    EXPECT_LT(stood, told - 0.02);
+    for (int k = 0; k < 5; ++k) motion.move(wanted, 0.01, true);
+    EXPECT_FALSE(motion.stands());
+    EXPECT_GT(motion.strokes()[0], stood);
+    for (int k = 0; k < 7; ++k) motion.move(wanted, 0.01, true);
+    EXPECT_TRUE(motion.stands());
+    EXPECT_EQ(motion.strokes()[0], told);
+    motion.standAt(std::vector{0.25, 0.0, 0.0});
+    EXPECT_EQ(motion.strokes()[0], 0.25);
+    EXPECT_TRUE(motion.stands());
 }
 
 TEST_F(MeasuredMotionTest, StandsWhereARecordingLeftIt) {
