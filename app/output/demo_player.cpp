@@ -6,6 +6,7 @@
 #include <numbers>
 #include <optional>
 #include <ostream>
+#include <utility>
 
 #include <nlohmann/json.hpp>
 
@@ -31,6 +32,7 @@ constexpr int kStepsAPicture = 2; ///< 30 pictures a second
 constexpr double kMaxSeconds = 600.0;
 constexpr double kWalk = 0.35; ///< radians to either side
 constexpr double kWalkPeriod = 8.0;
+constexpr double kStoop = 0.34; ///< radians by which he goes down to see what the bend is for
 
 double since(Clock::time_point begun) {
     return std::chrono::duration<double, std::milli>(Clock::now() - begun).count();
@@ -41,6 +43,22 @@ glm::vec3 walkedEye(const glm::vec3& eye, double seconds) {
     const double turn = kWalk * std::sin(2.0 * std::numbers::pi * seconds / kWalkPeriod);
     const double c = std::cos(turn), s = std::sin(turn);
     return glm::vec3(glm::dvec3(c * eye.x + s * eye.z, eye.y, c * eye.z - s * eye.x));
+}
+
+/// The eye as far away, but lower.
+glm::vec3 stoopedEye(const glm::vec3& eye) {
+    const double out = std::hypot(double(eye.x), double(eye.z)), far = std::hypot(out, double(eye.y));
+    const double up = std::max(std::atan2(double(eye.y), out) - kStoop, 0.2);
+    const double nearer = out > 0.0 ? far * std::cos(up) / out : 0.0;
+    return glm::vec3(glm::dvec3(nearer * eye.x, far * std::sin(up), nearer * eye.z));
+}
+
+/// The same view in half as large pixels.
+CalibratedCamera finer(CalibratedCamera camera) {
+    camera.size *= 2;
+    camera.focal *= 2.0;
+    camera.principal = 2.0 * camera.principal + 0.5;
+    return camera;
 }
 
 /// A show that nobody watches waits for its field.
@@ -72,7 +90,8 @@ public:
     void step() {
         const double seconds = player_.frame() ? player_.seconds() + ShowPlayer::kStep : 0.0;
         Installation room = room_;
-        room.eye = walkedEye(room_.eye, seconds);
+        const bool compares = player_.frame() && player_.frame()->comparesBend;
+        room.eye = walkedEye(compares ? stoopedEye(room_.eye) : room_.eye, seconds);
         MatchWish wish = player_.wish();
         wish.installation = std::make_shared<const Installation>(std::move(room));
         player_.setWish(std::move(wish));
@@ -84,15 +103,15 @@ public:
         loopTimes_.push_back(since(begun));
     }
 
-    /// What the viewer sees of the lit device.
-    [[nodiscard]] Image lab() {
+    /// What the viewer sees of the lit device; `kept`: for a film or picture, else to be measured alone.
+    [[nodiscard]] Image lab(bool kept) {
         const auto begun = Clock::now();
         const ShowFrame frame = player_.shown();
-        if (player_.frame()->comparesBend) return comparedBends(frame, begun);
+        if (player_.frame()->comparesBend) return comparedBends(frame, begun, kept);
         renderer_.draw(frame);
         passTimes_.push_back(renderer_.times().total);
-        Image picture = renderer_.readLab(viewOf(frame, show_.video));
-        frameTimes_.push_back(since(begun));
+        Image picture = labFrom(viewOf(frame, show_.video), kept);
+        finishFrame(begun);
         return picture;
     }
 
@@ -106,7 +125,7 @@ public:
             const std::string number = i == 0 ? "" : std::to_string(i + 1);
             writePng(renderer_.readProjector(i), folder / (name_ + "-projector" + number + ".png"));
         }
-        writePng(renderer_.readLab(viewOf(frame, show_.picture)), folder / (name_ + "-lab.png"));
+        writePng(halved(renderer_.readLab(finer(viewOf(frame, show_.picture)))), folder / (name_ + "-lab.png"));
         renderer_.setEyeSize(show_.video);
     }
 
@@ -124,8 +143,20 @@ public:
     }
 
 private:
+    /// As it is drawn live, by which it is measured; what is kept has smooth edges, beside that time.
+    Image labFrom(const CalibratedCamera& camera, bool kept) {
+        Image live = renderer_.readLab(camera);
+        if (!kept) return live;
+        const auto begun = Clock::now();
+        Image smooth = halved(renderer_.readLab(finer(camera)));
+        beside_ += since(begun);
+        return smooth;
+    }
+
+    void finishFrame(Clock::time_point begun) { frameTimes_.push_back(since(begun) - std::exchange(beside_, 0.0)); }
+
     /// Both halves through one camera, which holds the device that bends.
-    Image comparedBends(const ShowFrame& frame, Clock::time_point begun) {
+    Image comparedBends(const ShowFrame& frame, Clock::time_point begun, bool kept) {
         const MatchFrame& match = *player_.frame();
         const ShowFrame with = comparison_.half(match, frame, BendComparison::Half::with);
         const ShowFrame without = comparison_.half(match, frame, BendComparison::Half::without);
@@ -134,9 +165,9 @@ private:
         for (const ShowFrame* half : {&without, &with}) {
             renderer_.draw(*half);
             passTimes_.push_back(renderer_.times().total);
-            halves.push_back(renderer_.readLab(camera));
+            halves.push_back(labFrom(camera, kept));
         }
-        frameTimes_.push_back(since(begun));
+        finishFrame(begun);
         return besideEachOther(halves[0], halves[1], bendCaptions(), player_.wish().language);
     }
 
@@ -161,6 +192,7 @@ private:
     HeadlessContext context_;
     SpatialRenderer renderer_;
     std::vector<double> loopTimes_, passTimes_, frameTimes_;
+    double beside_ = 0.0; ///< milliseconds of the frame that are not of the show
 };
 
 } // namespace
@@ -178,9 +210,10 @@ ShowRates playShow(const ProjectContents& contents, const std::string& name, con
         recorder.step();
         if (k == steps / 2 && !pictures.empty()) recorder.savePictures(pictures);
         if (k % kStepsAPicture != 0) continue;
-        const Image picture = recorder.lab();
+        const bool last = !show.last.empty() && k + kStepsAPicture >= steps;
+        const Image picture = recorder.lab(writer || last);
         if (writer) writer->add(picture);
-        if (!show.last.empty() && k + kStepsAPicture >= steps) writePng(picture, show.last);
+        if (last) writePng(picture, show.last);
     }
     if (writer) writer->finish();
     ShowRates rates = recorder.rates();

@@ -38,6 +38,21 @@ Image::Image(glm::ivec2 size, Pixel fill) : size_(size) {
     pixels_.assign(static_cast<std::size_t>(size.x) * static_cast<std::size_t>(size.y), fill);
 }
 
+Image halved(const Image& image) {
+    Image half(glm::max(image.size() / 2, glm::ivec2(1)));
+    for (int y = 0; y < half.size().y; ++y)
+        for (int x = 0; x < half.size().x; ++x)
+            for (std::size_t c = 0; c < 4; ++c) {
+                const int right = std::min(2 * x + 1, image.size().x - 1);
+                const int below = std::min(2 * y + 1, image.size().y - 1);
+                half.at(x, y)[c] =
+                    static_cast<std::uint8_t>((image.at(2 * x, 2 * y)[c] + image.at(right, 2 * y)[c] +
+                                               image.at(2 * x, below)[c] + image.at(right, below)[c] + 2) /
+                                              4);
+            }
+    return half;
+}
+
 std::vector<std::byte> pngBytes(const Image& image, const std::string& name) {
     if (image.pixels().empty()) throw InvalidInput(name, "the image is empty", "draw something first");
     std::vector<std::byte> bytes;

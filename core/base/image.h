@@ -40,6 +40,9 @@ private:
     std::vector<Pixel> pixels_;
 };
 
+/// Half its size, at least one pixel: each is the mean of four.
+[[nodiscard]] Image halved(const Image& image);
+
 /// The image as a PNG file. Written beside the target and renamed, so that a failure leaves no half
 /// file. Throws InvalidInput for an empty image, DeviceError when the disk refuses.
 void writePng(const Image& image, const std::filesystem::path& file);

@@ -1,3 +1,5 @@
+#include <algorithm>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -10,6 +12,7 @@
 #include <opencv2/core.hpp>
 #include <opencv2/videoio.hpp>
 
+#include "core/base/image.h"
 #include "tests/app/process.h"
 #include "tests/app/workspace.h"
 
@@ -85,6 +88,66 @@ TEST(Demo, AnApplicationAnswersRecordedInputs) {
     EXPECT_GT(lastFramesDiffer(itself, play("next", {"--seed", "7", "--input", inputs})), 3.0) << "another level";
 }
 
+/// The last picture of the map after half a second.
+Image mapPicture(const TemporaryFolder& folder, const std::vector<std::string>& more) {
+    const std::string file = (folder / "map.png").string();
+    std::vector<std::string> all{"demo", "navigation", "--seconds", "0.5", "--seed", "2", "--picture", file};
+    all.insert(all.end(), more.begin(), more.end());
+    const Outcome outcome = lumorph(all);
+    EXPECT_EQ(outcome.exitCode, 0) << outcome.err;
+    return readPng(file);
+}
+
+bool differ(const Image::Pixel& one, const Image::Pixel& other) {
+    int most = 0;
+    for (std::size_t c = 0; c < 3; ++c) most = std::max(most, std::abs(int(one[c]) - int(other[c])));
+    return most > 40;
+}
+
+// Both halves are seen by one eye: near it all is the same, and what differs is the far edge, which comes up.
+TEST(Demo, BendsTheFarEdgeInTheRightHalfOfAComparisonAlone) {
+    const TemporaryFolder folder;
+    const Image both = mapPicture(folder, {"--bend", "beside"});
+    const int half = both.size().x / 2, middle = both.size().y / 2, captions = both.size().y * 7 / 8;
+    std::size_t far = 0, near = 0, black[2] = {};
+    for (int y = 0; y < captions; ++y)
+        for (int x = 4; x < half - 4; ++x) { // beside the line between them
+            (y < middle ? far : near) += differ(both.at(x, y), both.at(half + x, y)) ? 1U : 0U;
+            for (const int side : {0, 1})
+                if (y < middle && differ(both.at(side * half + x, y), {0, 0, 0, 255})) ++black[side];
+        }
+    const double part = half * middle;
+    EXPECT_GT(static_cast<double>(far) / part, 0.02);
+    EXPECT_LT(static_cast<double>(near), 0.2 * static_cast<double>(far));
+    EXPECT_GT(black[1], black[0]) << "the right one reaches over the table's end";
+}
+
+/// Whether one of the bright plates that names stand on is near.
+bool isNearPlate(const Image& image, int x, int y) {
+    constexpr int kNear = 10;
+    for (int v = std::max(0, y - kNear); v <= std::min(y + kNear, image.size().y - 1); ++v)
+        for (int u = std::max(0, x - kNear); u <= std::min(x + kNear, image.size().x - 1); ++u) {
+            const auto [least, most] = std::minmax({image.at(u, v)[0], image.at(u, v)[1], image.at(u, v)[2]});
+            if (least > 190 && most - least < 25) return true;
+        }
+    return false;
+}
+
+TEST(Demo, InGermanDiffersWhereNamesAreReadAlone) {
+    const TemporaryFolder folder;
+    const Image english = mapPicture(folder, {"--language", "en"}), german = mapPicture(folder, {"--language", "de"});
+    std::size_t different = 0, elsewhere = 0;
+    for (int y = 0; y < english.size().y; ++y)
+        for (int x = 0; x < english.size().x; ++x) {
+            if (!differ(english.at(x, y), german.at(x, y))) continue;
+            ++different;
+            if (!isNearPlate(english, x, y) && !isNearPlate(german, x, y)) ++elsewhere;
+        }
+    EXPECT_GT(different, 500U) << "pixels";
+    EXPECT_LT(different, english.pixels().size() / 50);
+    EXPECT_EQ(elsewhere, 0U);
+}
+
 TEST(Demo, WrongUseIsNamed) {
     const TemporaryFolder folder;
     const auto refused = [&](const std::vector<std::string>& arguments, int code, const std::string& says) {
@@ -105,6 +168,10 @@ TEST(Demo, WrongUseIsNamed) {
     refused({"labyrinth", "--json", "--input", inputs}, 1, "inputs[0].seconds");
     refused({"labyrinth", "--json", "--input", (folder / "none.json").string()}, 1, "none.json");
     refused({"water", "--json", "--input", inputs}, 2, "goes by time alone");
+    refused({"navigation", "--json", "--bend", "sideways"}, 2,
+            "bend 'sideways': it is no way to bend; say off, on or beside");
+    refused({"water", "--json", "--bend", "on"}, 2, "--bend: the demo 'water' has no such option; leave it out");
+    refused({"navigation", "--json", "--language", "fr"}, 2, "--language: fr not in {en,de}");
 }
 
 /// What `demo new` changes of a source tree.

@@ -13,7 +13,8 @@ namespace lumorph::ambient {
 namespace {
 
 constexpr double kCloudHeight = 0.065;         ///< metres
-constexpr glm::dvec2 kCloudRoom{0.235, 0.165}; ///< metres in x and z; who leaves it comes back on the other side
+constexpr glm::dvec2 kCloudRoom{0.235, 0.120}; ///< metres in x and z; who leaves it comes back on the other side
+constexpr double kCloudsBefore = 0.024;        ///< metres that it lies nearer: no cloud hides the hours to come
 constexpr double kFallRoom = 0.028; ///< metres through which rain and snow fall: below the reach of the tablet's flaps
 constexpr float kRainLean = 0.30F;  ///< tangent by which streaks lean
 constexpr double kRainSpeed = 0.17, kFlakeSpeed = 0.016; ///< metres a second
@@ -62,7 +63,7 @@ void showClouds(Scene& scene, const View& view) {
         const double seen = share * (1.0 - rise(0.36, 0.49, rim));
         item.visible = seen > 0.03;
         const glm::dvec2 place = at * kCloudRoom;
-        item.position = {glm::dvec3(place.x, kCloudHeight + 0.003 * (k % 3), place.y)};
+        item.position = {glm::dvec3(place.x, kCloudHeight + 0.003 * (k % 3), place.y + kCloudsBefore)};
         item.scale = glm::vec3(static_cast<float>(0.42 + 0.26 * share) * (k % 2 == 0 ? 1.0F : 0.80F));
         item.opacity = static_cast<float>(seen * 0.96);
         item.material.color = color;

@@ -92,7 +92,9 @@ void School::swim(std::size_t k, double seconds, const Wish& wish) {
     const double wanted = cruise + hurry * (kFlight - cruise);
     fish.speed += (wanted - fish.speed) * seconds / (wanted > fish.speed ? 0.15 : 0.8);
     fish.place += fish.speed * seconds * glm::dvec2(std::cos(fish.heading), std::sin(fish.heading));
-    if (!holds(shore_, fish.place)) fish.place *= 0.995; // the middle of the pond is home
+    const glm::dvec2 half = 0.5 * fish.length * glm::dvec2(std::cos(fish.heading), std::sin(fish.heading));
+    if (!holds(shore_, fish.place + half) || !holds(shore_, fish.place - half))
+        fish.place *= 0.995; // from head to tail, the middle of the pond is home
     fish.depth = 0.5 + 0.28 * std::sin(0.21 * seconds_ + 5.0 * fish.mood) - 0.2 * hurry;
     const double beat = kBeat * (0.5 + fish.speed / kCruise * 0.5);
     fish.stroke = std::remainder(fish.stroke + std::min(beat, 9.0) * seconds * 2.0, 2.0 * std::numbers::pi);

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 #include <random>
+#include <span>
 #include <utility>
 
 #include <glm/common.hpp>
@@ -22,7 +23,7 @@ constexpr glm::dvec2 kShoreHalf{0.0965, 0.0665};
 constexpr double kRound = 0.58;     ///< exponent of the superellipse: 1 is an ellipse, 0 a rectangle
 constexpr int kColumnsAround = 192; ///< columns of the bank
 constexpr std::uint64_t kSeed = 20;
-enum BedMaterial : std::uint8_t { kGround, kSnow, kPebble, kDarkPebble, kStone, kReed, kCattail, kMaterials };
+enum BedMaterial : std::uint8_t { kGround, kSnow, kPebble, kDarkPebble, kStone, kReed, kCattail, kEarth, kMaterials };
 
 glm::dvec2 shoreAt(double angle) {
     const double c = std::cos(angle), s = std::sin(angle);
@@ -67,8 +68,8 @@ double bumps(const glm::dvec2& place) {
            0.5 * std::sin(330.0 * place.x - 250.0 * place.y);
 }
 
-/// From the ground up the wall, over the drift to the rim.
-void addBanks(Primitive& ground, Primitive& snow) {
+/// From the ground up the wall, over the drift to the rim, and down outside: nothing is seen through the bank.
+void addBanks(Primitive& ground, Primitive& snow, Primitive& earth) {
     struct Knee {
         double outwards; ///< from the bank's line (0) to the rim (1)
         double height;
@@ -82,6 +83,7 @@ void addBanks(Primitive& ground, Primitive& snow) {
                             {0.55, 0.0240, 1.0},
                             {0.8, 0.0230, 0.7},
                             {1.0, 0.0215, 0.3}};
+    constexpr Knee kSide[]{{1.0, 0.0215, 0.3}, {1.0, 0.012, 0.0}, {1.0, 0.0, 0.0}};
     const auto rowOf = [](const Knee& knee) {
         std::vector<glm::dvec3> row;
         for (int k = 0; k < kColumnsAround; ++k) {
@@ -94,11 +96,17 @@ void addBanks(Primitive& ground, Primitive& snow) {
         }
         return row;
     };
-    std::vector<std::vector<glm::dvec3>> wall, drift;
-    for (const Knee& knee : kWall) wall.push_back(rowOf(knee));
-    for (const Knee& knee : kDrift) drift.push_back(rowOf(knee));
+    const auto rowsOf = [&rowOf](std::span<const Knee> knees) {
+        std::vector<std::vector<glm::dvec3>> rows;
+        for (const Knee& knee : knees) rows.push_back(rowOf(knee));
+        return rows;
+    };
+    const std::vector<std::vector<glm::dvec3>> wall = rowsOf(kWall);
     addStrips(ground, wall);
-    addStrips(snow, drift);
+    addStrips(snow, rowsOf(kDrift));
+    addStrips(earth, rowsOf(kSide));
+    for (std::size_t k = 0; k < earth.positions.size(); ++k) // upright, and once around
+        earth.texcoords[k] = {earth.positions[k].x + earth.positions[k].z, earth.positions[k].y};
     std::vector<std::vector<glm::dvec3>> floor{
         std::vector<glm::dvec3>(kColumnsAround, glm::dvec3(0.0, kGroundLevel, 0.0)), wall.front()};
     const auto first = static_cast<std::uint32_t>(ground.positions.size());
@@ -190,6 +198,7 @@ std::vector<Material> bedMaterials() {
         materials[deep].emission = {0.10F, 0.42F, 0.50F};
         materials[deep].emissionStrength = 0.10F;
     }
+    materials[kEarth] = pictured("Stone", "Frozen earth", {0.86F, 0.84F, 0.84F}, 0.05F);
     materials[kReed].name = "Reed";
     materials[kReed].color = {0.80F, 0.66F, 0.36F};
     materials[kCattail].name = "Cattail";
@@ -213,7 +222,7 @@ SceneModel pondBed(const Polygon& shore) {
     bed.name = "Pond";
     bed.primitives.resize(kMaterials);
     for (std::size_t k = 0; k < bed.primitives.size(); ++k) bed.primitives[k].material = static_cast<int>(k);
-    addBanks(bed.primitives[kGround], bed.primitives[kSnow]);
+    addBanks(bed.primitives[kGround], bed.primitives[kSnow], bed.primitives[kEarth]);
     std::mt19937_64 random(kSeed);
     for (const glm::dvec2& site : evenSites(shore, 70, random)) {
         const double radius = 0.0014 + 0.0036 * std::pow(chance(random), 2.0);

@@ -36,10 +36,12 @@ ShowCaption importCaption(const MapReport& report, const std::string& name) {
         told.german += (told.german.empty() ? "" : ", ") + percent + " % der Höhen ergänzt";
     }
     if (told.english.empty()) told = {"land alone", "nur Land"};
-    for (std::string* text : {&told.english, &told.german}) {
-        *text += ".";
-        for (std::size_t k = 0; k < std::min(report.notes.size(), kMostNotes); ++k) *text += " " + report.notes[k];
-        if (report.notes.size() > kMostNotes) *text += " …";
+    for (const Language language : {Language::english, Language::german}) {
+        std::string& text = language == Language::german ? told.german : told.english;
+        text += ".";
+        for (std::size_t k = 0; k < std::min(report.notes.size(), kMostNotes); ++k)
+            text += " " + report.notes[k].in(language);
+        if (report.notes.size() > kMostNotes) text += " …";
     }
     return caption;
 }

@@ -75,7 +75,8 @@ void levelGround(MapSources& sources, MapReport& report) {
     sources.origin = {min.x, max.y};
     sources.heights.assign(static_cast<std::size_t>(sources.samples.x) * static_cast<std::size_t>(sources.samples.y),
                            0.0F);
-    report.notes.emplace_back("No file has heights: the ground is level.");
+    report.notes.emplace_back("No file has heights: the ground is level.",
+                              "Keine Datei enthält Höhen: Der Boden ist eben.");
 }
 
 void addSea(Map& map) {
@@ -180,8 +181,9 @@ public:
         }
         std::ranges::sort(order);
         if (order.size() > kMostBuildings) {
-            report_.notes.push_back("Of " + std::to_string(order.size()) + " buildings the " +
-                                    std::to_string(kMostBuildings) + " largest are shown.");
+            const std::string all = std::to_string(order.size()), shown = std::to_string(kMostBuildings);
+            report_.notes.emplace_back("Of " + all + " buildings the " + shown + " largest are shown.",
+                                       "Von " + all + " Gebäuden sind die " + shown + " größten zu sehen.");
             order.resize(kMostBuildings);
         }
         for (const auto& [area, k] : order) add(sources_.outlines[k], std::move(rings[k]), k);
@@ -256,17 +258,32 @@ private:
 };
 
 void tell(MapReport& report) {
-    const auto note = [&](std::size_t count, const std::string& what) {
-        if (count > 0) report.notes.push_back(std::to_string(count) + " " + what);
+    const auto note = [&](std::size_t count, const Words& one, const Words& many) {
+        if (count == 0) return;
+        const Words& what = count == 1 ? one : many;
+        const std::string number = std::to_string(count) + " ";
+        report.notes.emplace_back(number + what.english, number + what.german);
     };
-    note(report.heightMissing, "buildings have no height in the file: they are drawn 6 m high.");
-    note(report.mended, "outlines crossed themselves and were mended.");
-    note(report.leftOut, "things were left out: beyond the ground, too small, or without a usable outline.");
+    note(report.heightMissing,
+         {"building has no height in the file: it is drawn 6 m high.",
+          "Gebäude hat in der Datei keine Höhe und wird 6 m hoch gezeigt."},
+         {"buildings have no height in the file: they are drawn 6 m high.",
+          "Gebäude haben in der Datei keine Höhe und werden 6 m hoch gezeigt."});
+    note(report.mended, {"outline crossed itself and was mended.", "Umriss kreuzte sich selbst und wurde berichtigt."},
+         {"outlines crossed themselves and were mended.", "Umrisse kreuzten sich selbst und wurden berichtigt."});
+    note(report.leftOut,
+         {"thing was left out: beyond the ground, too small, or without a usable outline.",
+          "Ding fehlt: jenseits des Bodens, zu klein oder ohne brauchbaren Umriss."},
+         {"things were left out: beyond the ground, too small, or without a usable outline.",
+          "Dinge fehlen: jenseits des Bodens, zu klein oder ohne brauchbaren Umriss."});
     if (report.filled > 0.0) {
-        char share[96];
-        (void)std::snprintf(share, sizeof share, "%.2f %% of the heights were missing and are filled from around.",
-                            100.0 * report.filled);
-        report.notes.emplace_back(share);
+        char share[16];
+        (void)std::snprintf(share, sizeof share, "%.2f", 100.0 * report.filled);
+        const std::string percent(share);
+        std::string withComma = percent;
+        std::ranges::replace(withComma, '.', ',');
+        report.notes.emplace_back(percent + " % of the heights were missing and are filled from around.",
+                                  withComma + " % der Höhen fehlten und sind aus ihrer Umgebung ergänzt.");
     }
 }
 

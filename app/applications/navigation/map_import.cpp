@@ -40,9 +40,11 @@ public:
     ~Quiet() { CPLPopErrorHandler(); }
     Quiet(const Quiet&) = delete;
     Quiet& operator=(const Quiet&) = delete;
-    [[nodiscard]] static std::string said() {
+    [[nodiscard]] static std::string said() { return words().english; }
+    [[nodiscard]] static Words words() {
         const std::string text = CPLGetLastErrorMsg();
-        return text.empty() ? std::string("it is damaged or of an unknown kind") : "GDAL says " + inQuotes(text, 160);
+        if (text.empty()) return {"it is damaged or of an unknown kind", "sie ist beschädigt oder von unbekannter Art"};
+        return {"GDAL says " + inQuotes(text, 160), "GDAL sagt " + inQuotes(text, 160)};
     }
 };
 
@@ -95,8 +97,13 @@ public:
     [[nodiscard]] bool readAny() const { return any_; }
 
 private:
-    void note(const fs::path& file, const std::string& text) {
-        report_.notes.push_back(file.filename().string() + ": " + text);
+    void note(const fs::path& file, const Words& text) {
+        const std::string name = file.filename().string() + ": ";
+        report_.notes.emplace_back(name + text.english, name + text.german);
+    }
+    void leaveOut(const fs::path& file) {
+        const Words said = Quiet::words();
+        note(file, {said.english + "; it is left out.", said.german + "; sie ist ausgelassen."});
     }
     Dataset thinned(const fs::path& file, Dataset raster);
     Dataset placed(const fs::path& file, Dataset raster);
@@ -135,7 +142,8 @@ Dataset Reader::placed(const fs::path& file, Dataset raster) {
         return copy;
     };
     if (!located) {
-        note(file, "it does not say where it lies: its samples are taken as 30 m apart, its values as metres.");
+        note(file, {"it does not say where it lies: its samples are taken as 30 m apart, its values as metres.",
+                    "sie sagt nicht, wo sie liegt: angenommen sind 30 m von Wert zu Wert, und Werte in Metern."});
         const double plain[6] = {0.0, kAssumedSpacing, 0.0, 0.0, 0.0, -kAssumedSpacing};
         return copied(plain, nullptr);
     }
@@ -145,15 +153,19 @@ Dataset Reader::placed(const fs::path& file, Dataset raster) {
                                   std::abs(geo[3]) <= 90.5 && std::abs(bottom) <= 90.5;
     if (system == nullptr) {
         if (!looksLikeDegrees) return raster;
-        note(file, "it names no projection; its coordinates look like degrees and are taken as such (WGS 84).");
+        note(file,
+             {"it names no projection; its coordinates look like degrees and are taken as such (WGS 84).",
+              "sie nennt keine Projektion; ihre Koordinaten sehen wie Grade aus und gelten als solche (WGS 84)."});
         return copied(geo, SRS_WKT_WGS84_LAT_LONG);
     }
     if (system->IsGeographic() && !looksLikeDegrees && (std::abs(geo[0]) > 361.0 || std::abs(geo[3]) > 91.0)) {
-        note(file, "it says its coordinates are degrees, but they cannot be: they are taken as metres.");
+        note(file, {"it says its coordinates are degrees, but they cannot be: they are taken as metres.",
+                    "ihre Koordinaten sollen Grade sein, was nicht sein kann: sie gelten als Meter."});
         return copied(geo, "");
     }
     if (system->IsProjected() && looksLikeDegrees) {
-        note(file, "it says its coordinates are metres, but they look like degrees and are taken as such (WGS 84).");
+        note(file, {"it says its coordinates are metres, but they look like degrees and are taken as such (WGS 84).",
+                    "ihre Koordinaten sollen Meter sein, sehen aber wie Grade aus und gelten als solche (WGS 84)."});
         return copied(geo, SRS_WKT_WGS84_LAT_LONG);
     }
     return raster;
@@ -178,8 +190,10 @@ Dataset Reader::thinned(const fs::path& file, Dataset raster) {
     GDALTranslateOptionsFree(options);
     progress_.throwIfCancelled();
     if (!thin) throw DataError(file.string(), Quiet::said(), "check the file, or choose another one");
-    note(file, "it has " + std::to_string(raster->GetRasterXSize()) + " x " + std::to_string(raster->GetRasterYSize()) +
-                   " samples, of which only some are read.");
+    const std::string samples =
+        std::to_string(raster->GetRasterXSize()) + " x " + std::to_string(raster->GetRasterYSize());
+    note(file, {"it has " + samples + " samples, of which only some are read.",
+                "sie hat " + samples + " Werte, von denen nur ein Teil gelesen wird."});
     return thin;
 }
 
@@ -361,10 +375,11 @@ void Reader::takeFeature(OGRFeature& feature, OGRGeometry& geometry) {
 
 void Reader::readOutlines(const fs::path& file) {
     const Dataset data(GDALDataset::Open(file.c_str(), GDAL_OF_VECTOR | GDAL_OF_READONLY));
-    if (!data) return note(file, Quiet::said() + "; it is left out.");
+    if (!data) return leaveOut(file);
     if (metresOnly_ && data->GetLayerCount() > 0 && data->GetLayer(0)->GetSpatialRef() != nullptr)
         return note(file,
-                    "the heights do not say where they lie, so its outlines cannot be put on them and are left out.");
+                    {"the heights do not say where they lie, so its outlines cannot be put on them and are left out.",
+                     "die Höhen sagen nicht, wo sie liegen: ihre Umrisse passen auf nichts und fehlen."});
     std::size_t count = 0;
     OGRLayer* layer = nullptr;
     double share = 0.0;
@@ -377,7 +392,9 @@ void Reader::readOutlines(const fs::path& file) {
             progress_.report(share, "Reading outlines");
         }
         if (count > kMostFeatures) {
-            note(file, "it has more than " + std::to_string(kMostFeatures) + " things; the rest is left out.");
+            const std::string most = std::to_string(kMostFeatures);
+            note(file, {"it has more than " + most + " things; the rest is left out.",
+                        "sie enthält mehr als " + most + " Dinge; der Rest fehlt."});
             break;
         }
         const bool osm = feature->GetFieldIndex("other_tags") >= 0;
@@ -400,7 +417,8 @@ void Reader::readOutlines(const fs::path& file) {
                 there)
                 (void)there->Transform(1, &at.x, &at.y);
             if (std::abs(at.x) > 180.0 || std::abs(at.y) > 90.0)
-                return note(file, "its coordinates are no degrees, as it says they are; it is left out.");
+                return note(file, {"its coordinates are no degrees, as it says they are; it is left out.",
+                                   "ihre Koordinaten sind keine Grade, wie sie sagt; sie ist ausgelassen."});
             chooseSystem(at);
         }
         if (area && !geometry->IsValid()) {
@@ -418,8 +436,11 @@ void Reader::readOutlines(const fs::path& file) {
         takeFeature(*feature, *geometry);
         any_ = true;
     }
-    if (CPLGetLastErrorType() >= CE_Failure) note(file, Quiet::said() + "; what comes after is left out.");
-    if (count == 0) note(file, "it is empty.");
+    if (CPLGetLastErrorType() >= CE_Failure) {
+        const Words said = Quiet::words();
+        note(file, {said.english + "; what comes after is left out.", said.german + "; was danach kommt, fehlt."});
+    }
+    if (count == 0) note(file, {"it is empty.", "sie ist leer."});
 }
 
 void Reader::readCity(const fs::path& file) {
@@ -427,9 +448,10 @@ void Reader::readCity(const fs::path& file) {
     report_.leftOut += city.withoutShape;
     if (metresOnly_)
         return note(file,
-                    "the heights do not say where they lie, so its buildings cannot be put on them and are left out.");
+                    {"the heights do not say where they lie, so its buildings cannot be put on them and are left out.",
+                     "die Höhen sagen nicht, wo sie liegen: ihre Gebäude passen auf nichts und fehlen."});
     OGRSpatialReference system = systemOf(city.epsg > 0 ? city.epsg : 4326);
-    if (city.epsg <= 0) note(file, "it names no reference system.");
+    if (city.epsg <= 0) note(file, {"it names no reference system.", "sie nennt kein Bezugssystem."});
     for (const CityBuilding& building : city.buildings) {
         MapSources::Outline outline;
         std::vector<glm::dvec3> ring = building.footprint;
@@ -472,7 +494,7 @@ void Reader::read(const std::vector<fs::path>& files) {
         CPLErrorReset();
         Dataset raster(GDALDataset::Open(file.c_str(), GDAL_OF_RASTER | GDAL_OF_READONLY));
         if (!raster || raster->GetRasterCount() < 1) {
-            note(file, Quiet::said() + "; it is left out.");
+            leaveOut(file);
             continue;
         }
         rasters.push_back(placed(file, thinned(file, std::move(raster))));
@@ -519,8 +541,8 @@ ImportedMap importMap(const fs::path& fileOrFolder, const Progress& progress) {
     reader.read(files);
     ImportedMap imported;
     if (!reader.readAny()) {
-        const std::vector<std::string>& notes = reader.report().notes;
-        throw DataError(fileOrFolder.string(), notes.empty() ? "nothing in it can be shown" : notes.front(),
+        const std::vector<Words>& notes = reader.report().notes;
+        throw DataError(fileOrFolder.string(), notes.empty() ? "nothing in it can be shown" : notes.front().english,
                         "check the file, or choose another one");
     }
     MapSources sources = reader.takeSources();

@@ -12,7 +12,7 @@ namespace lumorph::navigation {
 
 /// What was read of map files, and what could not be taken as it is.
 struct MapReport {
-    std::vector<std::string> notes; ///< plain sentences: what was left out, mended or guessed, and why
+    std::vector<Words> notes; ///< plain sentences: what was left out, mended or guessed, and why
     std::size_t buildings = 0, roads = 0, places = 0;
     std::size_t heightMissing = 0; ///< buildings whose height the file does not tell; they got one
     std::size_t mended = 0;        ///< outlines that crossed themselves

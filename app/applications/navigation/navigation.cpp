@@ -119,7 +119,7 @@ std::unique_ptr<ShowProgram> begin(const ProgramStart& start, const Progress& pr
         shown = std::make_shared<const Map>(bundledValley(29, progress));
     } else {
         ImportedMap imported = importMap(map->second, progress);
-        for (const std::string& note : imported.report.notes) start.note(note);
+        for (const Words& note : imported.report.notes) start.note(note.english); // a host's language
         report = importCaption(imported.report, std::filesystem::path(map->second).filename().string());
         shown = std::make_shared<const Map>(std::move(imported.map));
     }

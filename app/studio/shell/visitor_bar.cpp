@@ -25,7 +25,7 @@ VisitorBar::VisitorBar(Studio& studio, QWidget* parent) : FloatingCard(parent), 
         studio_.loop.input(key, 1.0);
         studio_.loop.input(key, 0.0);
     };
-    add("visitors.cards", "grid", {"All applications", "Alle Anwendungen"}, [this] { emit cardsWanted(); });
+    cards_ = add("visitors.cards", "grid", {"All applications", "Alle Anwendungen"}, [this] { emit cardsWanted(); });
     restart_ = add("visitors.restart", "reset", {"Begin again", "Von vorn"}, [press] { press("key.restart"); });
     off_ = add("visitors.off", "compare", {"With and without", "Mit und ohne"}, [press] { press("key.off"); });
     next_ = add("visitors.next", "chevron-right", {"Next", "Weiter"}, [press] { press("key.next"); });
@@ -37,7 +37,7 @@ VisitorBar::VisitorBar(Studio& studio, QWidget* parent) : FloatingCard(parent), 
     });
     connect(&studio.settings, &Settings::languageChanged, this, &VisitorBar::say);
     say();
-    follow();
+    follow(false);
 }
 
 QToolButton* VisitorBar::add(const char* name, const char* iconName, const Words& words, std::function<void()> run) {
@@ -61,9 +61,10 @@ void VisitorBar::say() {
     language_->setText(studio_.settings.language() == Language::german ? "EN" : "DE");
 }
 
-void VisitorBar::follow() {
+void VisitorBar::follow(bool rests) {
     const Demo* demo = studio_.project.demo();
     const bool plays = studio_.loop.program() != nullptr;
+    cards_->setVisible(!rests);
     for (QToolButton* button : {restart_, next_, help_}) button->setVisible(plays);
     off_->setVisible(plays && demo != nullptr && demo->compares);
     adjustSize();

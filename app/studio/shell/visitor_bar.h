@@ -17,8 +17,8 @@ public:
     /// `studio` outlives it.
     VisitorBar(Studio& studio, QWidget* parent);
 
-    /// By the demonstration that is open and the program that shows.
-    void follow();
+    /// By the demonstration that is open and the program that shows; `rests`: there is nothing to choose either.
+    void follow(bool rests);
 
 signals:
     void cardsWanted();
@@ -34,7 +34,7 @@ private:
     };
     Studio& studio_;
     std::vector<Button> buttons_;
-    QToolButton *restart_, *next_, *off_, *help_, *language_;
+    QToolButton *cards_, *restart_, *next_, *off_, *help_, *language_;
 };
 
 } // namespace lumorph::studio

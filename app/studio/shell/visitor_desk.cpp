@@ -48,7 +48,7 @@ VisitorDesk::VisitorDesk(Studio& studio, QMainWindow& window, QWidget& stage, co
     rest_->hide();
     stage.installEventFilter(this);
     connect(&studio.project, &ProjectService::programOpened, this, &VisitorDesk::takeOpened);
-    connect(&studio.loop, &StudioLoop::driverChanged, bar_, &VisitorBar::follow);
+    connect(&studio.loop, &StudioLoop::driverChanged, this, &VisitorDesk::followBar);
     connect(&watch_, &VisitorWatch::thereChanged, this, [this] { layer_->setPlayed(watch_.there()); });
     connect(&watch_, &VisitorWatch::ticked, this, &VisitorDesk::goOnWhereNobodyPlays);
     connect(&watch_, &VisitorWatch::ticked, this, &VisitorDesk::askAgain);
@@ -60,7 +60,7 @@ VisitorDesk::VisitorDesk(Studio& studio, QMainWindow& window, QWidget& stage, co
 
 void VisitorDesk::setMode(Mode mode) {
     mode_ = mode;
-    rest_->hide();
+    setResting(false);
     hideCards();
     watch_.beginAnew(watch_.there());
     follow();
@@ -73,7 +73,7 @@ bool VisitorDesk::offers() const { return studio_.project.demo() != nullptr; }
 void VisitorDesk::takeOpened() {
     chosen_ = broken_ = false;
     played_ = studio_.loop.program() != nullptr;
-    rest_->hide();
+    setResting(false);
     if (const Demo* demo = studio_.project.demo(); demo != nullptr && played_) {
         turn_.shown(*demo);
         studio_.notices.dismiss(kPlace, QString::fromStdString(demo->title.english));
@@ -87,9 +87,19 @@ void VisitorDesk::takeOpened() {
 void VisitorDesk::follow() {
     const bool visitors = mode_ != Mode::studio && offers();
     layer_->setForVisitors(visitors);
-    bar_->follow();
     bar_->setVisible(visitors);
+    followBar();
+}
+
+/// With as many buttons as there are, it stays in its corner.
+void VisitorDesk::followBar() {
+    bar_->follow(!rest_->isHidden());
     arrange();
+}
+
+void VisitorDesk::setResting(bool rests) {
+    rest_->setVisible(rests);
+    followBar();
 }
 
 void VisitorDesk::arrange() {
@@ -112,6 +122,7 @@ void VisitorDesk::giveKeyboard() {
 
 void VisitorDesk::showCards() {
     if (cards_) return hideCards();
+    if (rest_->isVisible()) return; // there are none to choose from
     layer_->setHelp(false);
     const auto whom = mode_ == Mode::kiosk ? ApplicationsPage::For::visitors : ApplicationsPage::For::host;
     cards_ = new ApplicationsPage(studio_, window_, whom, [this](const Demo& demo) { return !turn_.leavesOut(demo); });
@@ -188,7 +199,7 @@ void VisitorDesk::goOn() {
     const Demo* shown = studio_.project.demo();
     const Demo* next = turn_.after(shown != nullptr ? shown->name : std::string());
     const bool plays = studio_.loop.program() != nullptr;
-    rest_->setVisible(mode_ == Mode::kiosk && broken_ && (rest_->isVisible() || next == nullptr));
+    setResting(mode_ == Mode::kiosk && broken_ && (rest_->isVisible() || next == nullptr));
     askedLast_ = clock_.now();
     if (next == nullptr || (plays && next == shown)) return;
     if (studio_.loop.stopped() || studio_.document.modified()) return; // neither is an application's to end

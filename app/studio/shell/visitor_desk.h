@@ -50,6 +50,8 @@ protected:
 private:
     void takeOpened();
     void follow();
+    void followBar();
+    void setResting(bool rests);
     void arrange();
     void giveKeyboard();
     void goOnWhereNobodyPlays();

@@ -61,7 +61,7 @@ struct SceneCentralView::Data {
     void showCaptions(); ///< of all pictures
     void showReason();
     void compare(bool on);
-    void sayBends();
+    void say();
     void beginDrag(ScenePane part, Qt::MouseButton button, Qt::KeyboardModifiers modifiers);
     void drag(ScenePane part, const QPointF& by);
     void endDrag(bool taken);
@@ -176,7 +176,7 @@ void SceneCentralView::Data::addFloating() {
     column->addStretch(1);
     notices->setMaximumWidth(kNoticeWidth);
     connect(&studio.notices, &Notices::changed, &self, [this] { arrange(); });
-    connect(&studio.settings, &Settings::languageChanged, &self, [this] { sayBends(); });
+    connect(&studio.settings, &Settings::languageChanged, &self, [this] { say(); });
     connect(&studio.renderer, &RenderThread::ready, &self, [this] { showReason(); });
     connect(&studio.project, &ProjectService::programOpened, &self, [this] {
         if (forVisitors) showForVisitors(true);
@@ -245,17 +245,21 @@ void SceneCentralView::Data::compare(bool on) {
     if (std::exchange(comparing, on) == on) return;
     const bool keys = self.isAncestorOf(self.window()->focusWidget());
     arrange();
-    sayBends();
+    say();
     if (!keys) return;
     for (const ScenePane part : {ScenePane::uncropped, ScenePane::eye, ScenePane::lab})
         if (panes.at(part)->isVisible()) return panes.at(part)->setFocus(Qt::MouseFocusReason); // no ring
 }
 
-/// In the visitors' language, large; a host has captions.
-void SceneCentralView::Data::sayBends() {
+/// In the visitors' language, the halves large; a host has captions.
+void SceneCentralView::Data::say() {
     const bool said = comparing && forVisitors;
     panes.at(ScenePane::cropped)->setLabel(said ? studio.settings.say(bendCaptions()[0]) : QString());
     panes.at(ScenePane::uncropped)->setLabel(said ? studio.settings.say(bendCaptions()[1]) : QString());
+    const QString waiting =
+        forVisitors ? studio.settings.say({"One moment...", "Einen Moment..."}) : tr("Preparing the view...");
+    for (const ScenePane part : {ScenePane::lab, ScenePane::eye, ScenePane::cropped, ScenePane::uncropped})
+        panes.at(part)->setWaiting(waiting);
 }
 
 /// A demonstration is seen by one eye, and large; a host's own show as he has arranged it.
@@ -270,7 +274,7 @@ void SceneCentralView::Data::showForVisitors(bool on) {
     latency->setVisible(!on && bar->latencyShown());
     self.layout()->activate();
     arrange();
-    sayBends();
+    say();
 }
 
 void SceneCentralView::Data::enlarge(ScenePane part) {

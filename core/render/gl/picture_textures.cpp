@@ -26,21 +26,6 @@ Image cutOut(const Image& image, glm::ivec2 grid, int cell) {
     return piece;
 }
 
-Image halved(const Image& image) {
-    Image half(glm::max(image.size() / 2, glm::ivec2(1)));
-    for (int y = 0; y < half.size().y; ++y)
-        for (int x = 0; x < half.size().x; ++x)
-            for (std::size_t c = 0; c < 4; ++c) {
-                const int right = std::min(2 * x + 1, image.size().x - 1);
-                const int below = std::min(2 * y + 1, image.size().y - 1);
-                half.at(x, y)[c] =
-                    static_cast<std::uint8_t>((image.at(2 * x, 2 * y)[c] + image.at(right, 2 * y)[c] +
-                                               image.at(2 * x, below)[c] + image.at(right, below)[c] + 2) /
-                                              4);
-            }
-    return half;
-}
-
 void upload(GLuint texture, const Image& image, PictureTextures::Use use) {
     const GLint format = use == PictureTextures::Use::color ? GL_SRGB8_ALPHA8 : GL_RGBA8;
     glBindTexture(GL_TEXTURE_2D, texture);

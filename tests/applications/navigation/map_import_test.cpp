@@ -166,12 +166,17 @@ template <typename Value> std::string png16(int columns, int rows, const Value& 
 
 bool tells(const MapReport& report, const std::string& words) {
     return std::ranges::any_of(report.notes,
-                               [&](const std::string& note) { return note.find(words) != std::string::npos; });
+                               [&](const Words& note) { return note.english.find(words) != std::string::npos; });
+}
+
+bool isInGermanToo(const MapReport& report) {
+    return std::ranges::none_of(report.notes,
+                                [](const Words& note) { return note.german.empty() || note.german == note.english; });
 }
 
 std::string all(const MapReport& report) {
     std::string text;
-    for (const std::string& note : report.notes) text += note + "\n";
+    for (const Words& note : report.notes) text += note.english + "\n";
     return text;
 }
 
@@ -253,7 +258,8 @@ TEST_F(MapImport, OutlinesStandWhereAndAsHighAsTheySay) {
     EXPECT_EQ(report.mended, 1U);
     EXPECT_GE(report.leftOut, 2U) << "without geometry, and beyond the ground";
     EXPECT_TRUE(tells(report, "no height")) << all(report);
-    EXPECT_TRUE(tells(report, "crossed themselves"));
+    EXPECT_TRUE(tells(report, "1 outline crossed itself"));
+    EXPECT_TRUE(isInGermanToo(report)) << all(report);
     const auto mill = std::ranges::find_if(imported.map.buildings,
                                            [](const Building& b) { return std::abs(b.eaves - b.base - 12.5) < 1e-6; });
     ASSERT_NE(mill, imported.map.buildings.end());
@@ -426,6 +432,7 @@ TEST_F(MapImport, DamagedEmptyAndForeignFilesAreRefusedWithWords) {
     const ImportedMap imported = importMap(folder_);
     EXPECT_TRUE(tells(imported.report, "broken.tif")) << all(imported.report);
     EXPECT_TRUE(tells(imported.report, "cut.geojson")) << all(imported.report);
+    EXPECT_TRUE(isInGermanToo(imported.report)) << all(imported.report);
 }
 
 TEST_F(MapImport, ATruncatedTiffShowsWhatThereIsOrSaysWhy) {

@@ -248,13 +248,13 @@ TEST(NavigationProgram, WhoBringsAMapReadsWhatWasTakenOfIt) {
     report.roads = 2;
     report.leftOut = 1;
     report.filled = 0.25;
-    report.notes = {"It has no heights, so the ground is level."};
+    report.notes = {{"No file has heights: the ground is level.", "Keine Datei enthält Höhen: Der Boden ist eben."}};
     const ShowCaption caption = importCaption(report, "town.osm");
     EXPECT_EQ(caption.title, Words("Read: town.osm", "Gelesen: town.osm"));
     EXPECT_EQ(caption.sentence.english, "1 building, 2 roads, 1 thing left out, 25 % of the heights filled in. "
-                                        "It has no heights, so the ground is level.");
+                                        "No file has heights: the ground is level.");
     EXPECT_EQ(caption.sentence.german, "1 Gebäude, 2 Straßen, 1 Ding weggelassen, 25 % der Höhen ergänzt. "
-                                       "It has no heights, so the ground is level.");
+                                       "Keine Datei enthält Höhen: Der Boden ist eben.");
     EXPECT_EQ(importCaption({}, "a").sentence, Words("land alone.", "nur Land."));
     NavigationProgram program(1, valley());
     program.tell(caption);
