@@ -37,7 +37,7 @@ nlohmann::json summaryJson(const ErrorSummary& summary) {
             {"places", summary.places}};
 }
 
-nlohmann::json checkJson(const VerifiedInLab& found) {
+nlohmann::json checkJson(const VerifiedRoom& found) {
     const RoomCheck& check = found.check;
     nlohmann::json all = {{"verdict", wordOf(check.verdict)}, {"sentence", check.sentence}};
     if (check.obstacle) {
@@ -62,7 +62,7 @@ nlohmann::json checkJson(const VerifiedInLab& found) {
     return all;
 }
 
-void printCheck(const VerifiedInLab& found) {
+void printCheck(const VerifiedRoom& found) {
     std::printf("%s\n", found.check.sentence.c_str());
     if (found.check.obstacle) return;
     const auto print = [](const char* what, const ErrorSummary& light) {
@@ -83,7 +83,7 @@ Installation trueRoomOf(const VerifyArguments& arguments, const Installation& be
     return truth;
 }
 
-void keepCorrection(const VerifyArguments& arguments, const std::filesystem::path& file, const VerifiedInLab& found) {
+void keepCorrection(const VerifyArguments& arguments, const std::filesystem::path& file, const VerifiedRoom& found) {
     if (found.check.verdict != RoomCheck::Verdict::moved || !found.check.couldAlsoBe.empty()) return;
     Project project = readProject(file);
     project.installation = found.installation;
@@ -105,7 +105,7 @@ void verify(const VerifyArguments& arguments, const Session& session) {
     const Installation truth = trueRoomOf(arguments, believed, rig);
     VerifyLabOptions options;
     options.pattern = arguments.pattern;
-    const VerifiedInLab found = measureVerifyInLab(rig, believed, truth, arguments.seed, session.progress(), options);
+    const VerifiedRoom found = measureVerifyInLab(rig, believed, truth, arguments.seed, session.progress(), options);
     Session::endProgress();
     const std::vector<double> bend = checkBends(rig).front();
     if (!arguments.picture.empty()) writePng(errorPicture(found.check, rig, believed, bend), arguments.picture);

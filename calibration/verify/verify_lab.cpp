@@ -1,136 +1,10 @@
 #include "calibration/verify/verify_lab.h"
 
-#include <algorithm>
-#include <cmath>
-#include <cstdio>
-#include <optional>
 #include <utility>
 
 #include "core/base/error.h"
 
 namespace lumorph {
-
-namespace {
-
-constexpr double kHalfRaised = 0.5;
-constexpr double kFreshBend = 0.3; // of all actuators
-
-/// The room as a check photographs it: its camera with fewer pixels.
-Installation photographed(Installation room, int width) {
-    CalibratedCamera& camera = room.cameras.front().camera;
-    if (camera.size.x > width) {
-        const double height = static_cast<double>(width) * camera.size.y / camera.size.x;
-        camera = withSize(camera, {width, static_cast<int>(std::lround(height))});
-    }
-    return room;
-}
-
-/// Lenses as they were before the pictures were made smaller.
-Installation withLensesOf(Installation room, const Installation& original) {
-    for (std::size_t i = 0; i < std::min(room.cameras.size(), original.cameras.size()); ++i) {
-        const glm::dmat4 pose = room.cameras[i].camera.cameraFromWorld;
-        room.cameras[i].camera = original.cameras[i].camera;
-        room.cameras[i].camera.cameraFromWorld = pose;
-    }
-    return room;
-}
-
-class VerifyLab {
-public:
-    VerifyLab(const Rig& rig, const Installation& believed, const Installation& truth, std::uint32_t seed,
-              const Progress& progress, const VerifyLabOptions& options)
-        : rig_(rig), original_(withLabCamera(believed)), believed_(photographed(original_, options.cameraWidth)),
-          truth_(photographed(withLabCamera(truth), options.cameraWidth)), seed_(seed), progress_(progress),
-          options_(options) {
-        if (truth_.projectors.size() != believed_.projectors.size())
-            throw InvalidInput("check in the lab", "the true room has another number of projectors", "give it as many");
-    }
-
-    VerifiedInLab measure() {
-        const std::vector<std::vector<double>> bends = checkBends(rig_);
-        const double share = 0.7 / static_cast<double>(bends.size());
-        std::vector<LitShot> shots;
-        for (std::size_t i = 0; i < bends.size(); ++i) {
-            const auto from = static_cast<double>(i);
-            shots.push_back(photograph(believed_, bends[i], progress_.part(share * from, share * (from + 1.0))));
-            if (!obstacle_) continue;
-            result_.check = withoutVerdict(believed_, *obstacle_);
-            return finished();
-        }
-        result_.check = checkRoom(rig_, believed_, shots, {}, progress_.part(0.7, 0.85));
-        if (options_.isJudged && result_.check.verdict != RoomCheck::Verdict::none) judge();
-        return finished();
-    }
-
-private:
-    /// The light of all projectors on one bend, read as a room believes it to be.
-    LitShot photograph(const Installation& believed, const std::vector<double>& commanded, const Progress& progress) {
-        LitShot shot{standingStrokes(believed, rig_, commanded), {}};
-        CheckLab lab(truth_, rig_, commanded, options_.pictures, seed_ + 101U * bend_++);
-        const auto lamps = static_cast<double>(believed.projectors.size());
-        for (std::size_t p = 0; p < believed.projectors.size() && !obstacle_; ++p) {
-            if (!believed.projectors[p].enabled) continue;
-            const Progress part = progress.part(static_cast<double>(p) / lamps, static_cast<double>(p + 1) / lamps);
-            const glm::ivec2 panel = believed.projectors[p].camera.size;
-            const CaptureOrder order = parsePattern(options_.pattern, {panel.x, panel.y});
-            std::vector<cv::Mat> images;
-            for (const PatternImage& pattern : order.images) {
-                part.throwIfCancelled();
-                part.report(static_cast<double>(images.size()) / static_cast<double>(order.images.size()),
-                            "photographing");
-                images.push_back(lab.photograph(p, drawPattern(pattern, order.projector)));
-                ++result_.photographs;
-            }
-            ReadPass pass = readPass(images, order, expectedLight(rig_, believed, shot.strokes, p), p);
-            obstacle_ = std::move(pass.obstacle);
-            shot.points.insert(shot.points.end(), pass.points.begin(), pass.points.end());
-        }
-        return shot;
-    }
-
-    /// No correction is called good by the light that it was made from.
-    void judge() {
-        const Installation& room = result_.check.installation;
-        const std::vector<double> bend(rig_.actuatorCount(), kFreshBend);
-        const std::vector<LitShot> shots{photograph(room, bend, progress_.part(0.85, 1.0))};
-        if (obstacle_) {
-            result_.figures.push_back("what is left was not judged on another bend: " + sentenceOf(*obstacle_));
-            return;
-        }
-        const std::vector<std::vector<double>> strokes{shots.front().strokes};
-        constexpr double kStray = 0.02; // metres
-        result_.fresh = summaryOf(lightErrors(rig_, room, room, shots, strokes, 0, kStray));
-        char text[160];
-        std::snprintf(text, sizeof text,
-                      "on a bend that the check did not see the light is off by %.2f mm (median), "
-                      "%.2f mm in 95 of 100 places",
-                      1e3 * result_.fresh.median, 1e3 * result_.fresh.most);
-        result_.figures.emplace_back(text);
-    }
-
-    VerifiedInLab finished() {
-        result_.installation = withLensesOf(result_.check.installation, original_);
-        result_.check.installation = result_.installation;
-        return std::move(result_);
-    }
-
-    const Rig& rig_;
-    Installation original_, believed_, truth_;
-    std::uint32_t seed_, bend_ = 0;
-    const Progress& progress_;
-    const VerifyLabOptions& options_;
-    std::optional<NoVerdict> obstacle_;
-    VerifiedInLab result_;
-};
-
-} // namespace
-
-std::vector<std::vector<double>> checkBends(const Rig& rig) {
-    const std::size_t count = rig.actuatorCount();
-    std::vector<std::vector<double>> bends(count > 1 ? 2 : 1, std::vector<double>(count, 0.0));
-    for (std::size_t i = 0; i < count; ++i) bends[i % bends.size()][i] = kHalfRaised;
-    return bends;
-}
 
 Installation withLabCamera(Installation room) {
     if (room.projectors.empty()) throw InvalidInput("installation", "it has no projector", "add one in the studio");
@@ -139,9 +13,33 @@ Installation withLabCamera(Installation room) {
     return room;
 }
 
-VerifiedInLab measureVerifyInLab(const Rig& rig, const Installation& believed, const Installation& truth,
-                                 std::uint32_t seed, const Progress& progress, const VerifyLabOptions& options) {
-    return VerifyLab(rig, believed, truth, seed, progress, options).measure();
+LabDeviceBench::LabDeviceBench(const Rig& rig, Installation truth, std::uint32_t seed, CheckLabOptions pictures)
+    : rig_(rig), truth_(std::move(truth)), seed_(seed), pictures_(std::move(pictures)),
+      commanded_(rig.actuatorCount(), 0.0) {}
+
+void LabDeviceBench::stand(std::span<const double> commanded, const Progress& /*progress*/) {
+    commanded_.assign(commanded.begin(), commanded.end());
+    lab_.reset();
+}
+
+std::vector<cv::Mat> LabDeviceBench::photograph(std::size_t projector, const CaptureOrder& order,
+                                                const Progress& progress) {
+    if (!lab_) lab_.emplace(truth_, rig_, commanded_, pictures_, seed_ + 101U * looks_++);
+    std::vector<cv::Mat> images;
+    for (const PatternImage& pattern : order.images) {
+        progress.throwIfCancelled();
+        progress.report(static_cast<double>(images.size()) / static_cast<double>(order.images.size()), "photographing");
+        images.push_back(lab_->photograph(projector, drawPattern(pattern, order.projector)));
+    }
+    return images;
+}
+
+VerifiedRoom measureVerifyInLab(const Rig& rig, const Installation& believed, const Installation& truth,
+                                std::uint32_t seed, const Progress& progress, const VerifyLabOptions& options) {
+    if (truth.projectors.size() != believed.projectors.size())
+        throw InvalidInput("check in the lab", "the true room has another number of projectors", "give it as many");
+    LabDeviceBench bench(rig, photographedRoom(withLabCamera(truth), options.cameraWidth), seed, options.pictures);
+    return verifyRoom(rig, withLabCamera(believed), bench, progress, options);
 }
 
 } // namespace lumorph

@@ -47,8 +47,8 @@ VerifyLabOptions quickOptions() {
     return options;
 }
 
-VerifiedInLab checkOf(const std::string& moved, std::uint32_t seed = 1,
-                      const VerifyLabOptions& options = quickOptions()) {
+VerifiedRoom checkOf(const std::string& moved, std::uint32_t seed = 1,
+                     const VerifyLabOptions& options = quickOptions()) {
     const Installation room = verifiedRoom();
     const Installation truth =
         moved.empty() ? room : pushed(room, verifiedRig(), parseLabPush(moved, verifiedRig()), seed);
@@ -99,7 +99,7 @@ TEST_P(VerifyMoved, IsNamedAndCorrected) {
     for (std::uint32_t seed = 1; seed <= seeds; ++seed) {
         const Installation room = verifiedRoom();
         const Installation truth = pushed(room, verifiedRig(), parseLabPush(GetParam().moved, verifiedRig()), seed);
-        const VerifiedInLab found = checkOf(GetParam().moved, seed);
+        const VerifiedRoom found = checkOf(GetParam().moved, seed);
         std::string said = found.check.sentence;
         const double before = trueLightError(truth, room), after = trueLightError(truth, found.installation);
         std::printf("%s: %s\n  true light error %.2f mm before, %.3f mm after; fresh %.2f mm\n", GetParam().moved,
@@ -120,7 +120,7 @@ INSTANTIATE_TEST_SUITE_P(Parts, VerifyMoved,
                          [](const auto& one) { return "Case" + std::to_string(one.index); });
 
 TEST(VerifyInLab, SaysStillGoodWhereNothingMoved) {
-    const VerifiedInLab found = checkOf("");
+    const VerifiedRoom found = checkOf("");
     std::printf("%s; %d photographs\n", found.check.sentence.c_str(), found.photographs);
     EXPECT_EQ(found.check.verdict, RoomCheck::Verdict::good);
     EXPECT_LT(found.check.device.median, 0.3e-3);
@@ -133,7 +133,7 @@ TEST(VerifyInLab, SaysStillGoodAtHalfAMillimetre) {
     for (const char* moved : {"projector:0.5mm", "device:0.5mm"}) {
         VerifyLabOptions options = quickOptions();
         options.isJudged = false;
-        const VerifiedInLab found = checkOf(moved, 4, options);
+        const VerifiedRoom found = checkOf(moved, 4, options);
         std::printf("%s: %s\n", moved, found.check.sentence.c_str());
         EXPECT_EQ(found.check.verdict, RoomCheck::Verdict::good);
     }
@@ -144,7 +144,7 @@ TEST(VerifyInLab, FindsAProjectorAmongServosThatNobodyMeasured) {
     const Installation room = verifiedRoom();
     const Installation truth =
         pushed(trueRoom(room, verifiedRig().actuators(), 3), verifiedRig(), {"projector", 3e-3, 0.0}, 3);
-    const VerifiedInLab found = measureVerifyInLab(verifiedRig(), room, truth, 3, {}, quickOptions());
+    const VerifiedRoom found = measureVerifyInLab(verifiedRig(), room, truth, 3, {}, quickOptions());
     const double after = trueLightError(truth, found.installation);
     std::printf("%s\n  true light error %.2f mm before, %.3f mm after\n", found.check.sentence.c_str(),
                 1e3 * trueLightError(truth, room), 1e3 * after);
@@ -157,7 +157,7 @@ TEST(VerifyInLab, FindsAProjectorAmongServosThatNobodyMeasured) {
 
 TEST(VerifyInLab, NamesWhyThereIsNoVerdict) {
     const auto obstacleOf = [](const VerifyLabOptions& options) {
-        const VerifiedInLab found = checkOf("projector:3mm", 1, options);
+        const VerifiedRoom found = checkOf("projector:3mm", 1, options);
         std::printf("%s\n", found.check.sentence.c_str());
         EXPECT_EQ(found.check.verdict, RoomCheck::Verdict::none);
         EXPECT_EQ(found.installation, verifiedRoom());

@@ -184,7 +184,8 @@ protected:
 
     TemporaryFolder folder;
     LiveService live{trackers, [](const QImage&) {}};
-    ChainService chain{document, loop, lab, jobs, notices, live, [](const InstallationVersion&) { return true; }};
+    ChainService chain{document, loop, lab,     jobs,
+                       notices,  live, nullptr, [](const InstallationVersion&) { return true; }};
 };
 
 TEST_F(DoubtedPointer, AMirroredTrackerLeavesThePointerInDoubtWithItsFigure) {

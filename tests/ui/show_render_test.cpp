@@ -25,7 +25,7 @@
 namespace lumorph::studio {
 namespace {
 
-using Kind = ShowView::Kind;
+using ViewKind = ShowView::Kind;
 
 class ShowRender : public testing::Test {
 protected:
@@ -90,7 +90,7 @@ QRectF boxPart(const ShowFrame& frame, const CalibratedCamera& camera) {
 TEST_F(ShowRender, TheEyeSeesTheBoxWhereItsCameraSays) {
     // Off the middle: a picture that is upside down or mirrored would show.
     const auto match = showFrame(0.05F);
-    const DrawnShow shown = still(requestOf(match, {wantedView(1, Kind::eye, {640, 400})}));
+    const DrawnShow shown = still(requestOf(match, {wantedView(1, ViewKind::eye, {640, 400})}));
     const QImage eye = pictureOf(shown, 1);
     ASSERT_EQ(eye.size(), QSize(640, 400));
     ASSERT_TRUE(shown.frame);
@@ -105,13 +105,13 @@ TEST_F(ShowRender, TheEyeSeesTheBoxWhereItsCameraSays) {
 }
 
 TEST_F(ShowRender, EachViewHasItsOwnSizeAndTheProjectorAllItsPixels) {
-    WantedView exact = wantedView(3, Kind::projector, {300, 300});
+    WantedView exact = wantedView(3, ViewKind::projector, {300, 300});
     exact.view.exact = true;
     const auto match = showFrame();
     const glm::ivec2 own = match->installation->projectors.front().camera.size;
-    const DrawnShow shown =
-        still(requestOf(match, {wantedView(1, Kind::eye, {500, 301}), wantedView(2, Kind::projector, {300, 300}), exact,
-                                wantedView(4, Kind::lab, {411, 333})}));
+    const DrawnShow shown = still(
+        requestOf(match, {wantedView(1, ViewKind::eye, {500, 301}), wantedView(2, ViewKind::projector, {300, 300}),
+                          exact, wantedView(4, ViewKind::lab, {411, 333})}));
     EXPECT_EQ(pictureOf(shown, 1).size(), QSize(500, 301));
     EXPECT_EQ(pictureOf(shown, 2).width(), 300);
     EXPECT_NEAR(pictureOf(shown, 2).height(), 300.0 * own.y / own.x, 1.0);
@@ -123,12 +123,12 @@ TEST_F(ShowRender, EachViewHasItsOwnSizeAndTheProjectorAllItsPixels) {
 TEST_F(ShowRender, ViewsOfOneFrameAgree) {
     const auto match = showFrame();
     const DrawnShow shown =
-        still(requestOf(match, {wantedView(1, Kind::eye, {480, 300}), wantedView(2, Kind::eye, {480, 300}),
-                                wantedView(3, Kind::lab, {480, 300})}));
+        still(requestOf(match, {wantedView(1, ViewKind::eye, {480, 300}), wantedView(2, ViewKind::eye, {480, 300}),
+                                wantedView(3, ViewKind::lab, {480, 300})}));
     EXPECT_EQ(pictureOf(shown, 1), pictureOf(shown, 2));
     // What is lit looks like what is to be seen, as far as a projector can make it.
     EXPECT_LT(meanDifference(pictureOf(shown, 1), pictureOf(shown, 3)), 40.0);
-    const DrawnShow alone = still(requestOf(showFrame(), {wantedView(1, Kind::eye, {480, 300})}));
+    const DrawnShow alone = still(requestOf(showFrame(), {wantedView(1, ViewKind::eye, {480, 300})}));
     EXPECT_LT(meanDifference(pictureOf(shown, 1), pictureOf(alone, 1)), 0.5);
 }
 
@@ -136,7 +136,7 @@ TEST_F(ShowRender, OnlyTheNewestFrameCounts) {
     std::shared_ptr<MatchFrame> last;
     for (std::uint64_t i = 1; i <= 60; ++i) {
         last = showFrame(0.001F * static_cast<float>(i), i);
-        thread.requestShow(requestOf(last, {wantedView(1, Kind::eye, {320, 200})}));
+        thread.requestShow(requestOf(last, {wantedView(1, ViewKind::eye, {320, 200})}));
     }
     int frames = 0;
     ASSERT_TRUE(waitFor([&] {
@@ -148,18 +148,18 @@ TEST_F(ShowRender, OnlyTheNewestFrameCounts) {
 }
 
 TEST_F(ShowRender, ZeroSizesAndEmptyRequestsAskForNothing) {
-    thread.requestShow(requestOf(showFrame(), {wantedView(1, Kind::eye, {0, 200})}));
-    thread.requestShow(requestOf(nullptr, {wantedView(1, Kind::eye, {320, 200})}));
+    thread.requestShow(requestOf(showFrame(), {wantedView(1, ViewKind::eye, {0, 200})}));
+    thread.requestShow(requestOf(nullptr, {wantedView(1, ViewKind::eye, {320, 200})}));
     auto noScene = showFrame();
     noScene->scene.reset();
-    thread.requestShow(requestOf(noScene, {wantedView(1, Kind::eye, {320, 200})}));
+    thread.requestShow(requestOf(noScene, {wantedView(1, ViewKind::eye, {320, 200})}));
     EXPECT_FALSE(waitFor([&] { return thread.takeShow().has_value(); }, 300));
     EXPECT_TRUE(broke.isEmpty());
 }
 
 TEST_F(ShowRender, ComparingBendsChangesTheDeviceAlone) {
     auto match = showFrame();
-    WantedView flat = wantedView(1, Kind::lab, {480, 300}), bent = wantedView(2, Kind::lab, {480, 300});
+    WantedView flat = wantedView(1, ViewKind::lab, {480, 300}), bent = wantedView(2, ViewKind::lab, {480, 300});
     flat.view.bend = ShowView::Bend::without;
     bent.view.bend = ShowView::Bend::forViewer;
     match->eye = glm::vec3(0.0F, 0.15F, 0.7F); // low: much is bent
@@ -175,12 +175,12 @@ TEST_F(ShowRender, AFrameThatCannotBeDrawnIsToldOnceAndTheNextIsDrawn) {
     auto installation = std::make_shared<Installation>(*broken->installation);
     installation->projectors.front().camera.size = {0, 0};
     broken->installation = installation;
-    thread.requestShow(requestOf(broken, {wantedView(1, Kind::lab, {320, 200})}));
+    thread.requestShow(requestOf(broken, {wantedView(1, ViewKind::lab, {320, 200})}));
     ASSERT_TRUE(waitFor([&] { return !broke.isEmpty(); }));
     EXPECT_FALSE(broke.front().front().toString().isEmpty());
     const auto good = showFrame();
     ASSERT_TRUE(waitFor([&] {
-        thread.requestShow(requestOf(good, {wantedView(1, Kind::lab, {320, 200})}));
+        thread.requestShow(requestOf(good, {wantedView(1, ViewKind::lab, {320, 200})}));
         const auto shown = thread.takeShow();
         return shown && shown->match == good;
     }));
@@ -213,7 +213,7 @@ TEST(ShowRenderResets, TheShowComesBackByItself) {
     const auto drawn = [&] {
         const auto match = showFrame();
         return waitFor([&] {
-            thread.requestShow(requestOf(match, {wantedView(1, Kind::projector, {320, 200})}));
+            thread.requestShow(requestOf(match, {wantedView(1, ViewKind::projector, {320, 200})}));
             const auto shown = thread.takeShow();
             return shown && shown->match == match && meanDifference(pictureOf(*shown, 1), QImage()) > 0.0;
         });
@@ -227,7 +227,7 @@ TEST(ShowRenderResets, TheShowComesBackByItself) {
             if (thread.failure()) return true;
             const auto shown = thread.takeShow();
             EXPECT_FALSE(shown && shown->match == late) << "what a lost context draws is nothing to show";
-            thread.requestShow(requestOf(late, {wantedView(1, Kind::projector, {320, 200})}));
+            thread.requestShow(requestOf(late, {wantedView(1, ViewKind::projector, {320, 200})}));
             return false;
         });
         ASSERT_TRUE(thread.failure());
@@ -331,8 +331,8 @@ private:
     /// Waits for the picture, and for all its pixels where it is wanted in `full`.
     void draw(const std::shared_ptr<MatchFrame>& match, bool full) {
         ShowRequest request =
-            requestOf(match, {wantedView(1, Kind::eye, {160, 100}), wantedView(2, Kind::lab, {120, 90}),
-                              wantedView(3, Kind::projector, {160, 100})});
+            requestOf(match, {wantedView(1, ViewKind::eye, {160, 100}), wantedView(2, ViewKind::lab, {120, 90}),
+                              wantedView(3, ViewKind::projector, {160, 100})});
         request.refine = full;
         thread.requestShow(request);
         ASSERT_TRUE(waitFor([&] {
@@ -353,7 +353,7 @@ TEST(ShowPaceTest, CoarserWhileItTakesLongAndFullWhenQuiet) {
     const auto start = ShowPace::Time(std::chrono::seconds(10));
     const auto ask = [&](int at) {
         ShowRequest request;
-        request.views.push_back(wantedView(1, Kind::eye, {100, 100}));
+        request.views.push_back(wantedView(1, ViewKind::eye, {100, 100}));
         pace.request(std::move(request), start + std::chrono::milliseconds(at));
     };
     // Three times what there is: a third of the pixels, at once.
@@ -397,7 +397,7 @@ TEST(ShowPaceTest, ResolutionGoesInTwentieths) {
     std::set<double> seen;
     for (int i = 0; i < 400; ++i) {
         ShowRequest request;
-        request.views.push_back(wantedView(1, Kind::eye, {100, 100}));
+        request.views.push_back(wantedView(1, ViewKind::eye, {100, 100}));
         pace.request(std::move(request), ShowPace::Time(std::chrono::milliseconds(i)));
         const auto work = pace.nextMoving();
         ASSERT_TRUE(work);

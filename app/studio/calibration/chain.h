@@ -12,6 +12,7 @@
 
 #include "app/studio/calibration/calibration_state.h"
 #include "app/studio/calibration/live_capture.h"
+#include "calibration/verify/device_bench.h"
 #include "core/base/progress.h"
 #include "core/rig/rig.h"
 #include "core/scene/installation_store.h"
@@ -76,6 +77,13 @@ struct LiveTask {
     std::vector<LiveTake> takes; ///< one a step of the plan
 };
 
+/// What a measurement with the device on the table begins with.
+struct TableTask {
+    std::shared_ptr<const Rig> rig;
+    Installation believed;
+    std::shared_ptr<DeviceBench> bench;
+};
+
 /// One thing that is measured. Those before it that it builds on are its needs.
 struct ChainLink {
     LinkId id = LinkId::projector;
@@ -98,6 +106,8 @@ struct ChainLink {
     /// The steps of it. Throws InvalidInput for a room in which there is nothing to touch.
     std::vector<LiveStep> (*liveSteps)(const Rig& rig, const Installation& room) = nullptr;
     std::function<LinkOutcome(const LiveTask& task, const Progress& progress)> fromLive;
+    /// The same with the camera, projectors and servos that are connected. Empty: it cannot be.
+    std::function<LinkOutcome(const TableTask& task, const Progress& progress)> onTable;
 };
 
 /// In the order in which they are measured.

@@ -354,16 +354,15 @@ ChainLink delaysLink() {
     return link;
 }
 
-LinkOutcome checkTheRoom(const LinkTask& task, const Progress& progress) {
-    const VerifiedInLab verified = measureVerifyInLab(*task.rig, task.believed, task.truth, task.seed, progress);
+LinkOutcome outcomeOf(const VerifiedRoom& verified, const Installation& believed) {
     const RoomCheck& check = verified.check;
     LinkOutcome outcome;
     outcome.isGood = check.verdict == RoomCheck::Verdict::good;
     outcome.summary = QString::fromStdString(check.sentence);
     // Where it is not known what has moved there is nothing to be put right.
-    Installation with = task.believed;
+    Installation with = believed;
     takeCorrections(verified.installation, with);
-    if (with != task.believed) outcome.installation = verified.installation;
+    if (with != believed) outcome.installation = verified.installation;
     outcome.figures = {{QObject::tr("Light lies beside: median"), millimetres(check.now.median), outcome.isGood},
                        {QObject::tr("In 95 of 100 places at most"), millimetres(check.now.most), outcome.isGood}};
     if (verified.fresh.places > 0)
@@ -382,7 +381,12 @@ ChainLink checkLink() {
     link.how = {QObject::tr("The device takes two bends; patterns are projected on it and photographed."),
                 QObject::tr("Where the light lies beside, it is told what has moved, and one button puts it right.")};
     link.apply = takeCorrections;
-    link.inLab = checkTheRoom;
+    link.inLab = [](const LinkTask& task, const Progress& progress) {
+        return outcomeOf(measureVerifyInLab(*task.rig, task.believed, task.truth, task.seed, progress), task.believed);
+    };
+    link.onTable = [](const TableTask& task, const Progress& progress) {
+        return outcomeOf(verifyRoom(*task.rig, task.believed, *task.bench, progress), task.believed);
+    };
     return link;
 }
 

@@ -26,7 +26,9 @@ ChainStep measuringStep(const ChainState& state, ChainStep::Tone tone, const QSt
     if (!link.inLab) return {What::sequence, tone, title, text, QObject::tr("Open it")};
     const LinkWay way = wayOf(state, state.chosen);
     if (way == LinkWay::lab) return {What::measure, tone, title, text, inLab};
-    if (way == LinkWay::live) return {What::measure, tone, title, text, QObject::tr("Begin, with the tracker")};
+    if (way == LinkWay::live)
+        return {What::measure, tone, title, text,
+                link.onTable ? QObject::tr("Begin, hands off") : QObject::tr("Begin, with the tracker")};
     if (const auto missing = missingFile(state, state.chosen))
         return {What::chooseFile, tone, title, text, QObject::tr("Choose: %1").arg(link.files[*missing].title)};
     return {What::measure, tone, title, text, QObject::tr("Read the recordings")};
@@ -36,7 +38,7 @@ ChainStep measuringStep(const ChainState& state, ChainStep::Tone tone, const QSt
 
 LinkWay wayOf(const ChainState& state, std::size_t link) {
     const ChainLink& measured = chainLinks()[link];
-    const bool isPossible = state.way == LinkWay::live    ? measured.fromLive != nullptr
+    const bool isPossible = state.way == LinkWay::live    ? measured.fromLive || measured.onTable
                             : state.way == LinkWay::files ? measured.fromFiles != nullptr
                                                           : true;
     return isPossible ? state.way : LinkWay::lab;
@@ -98,8 +100,9 @@ ChainStep stepOf(const ChainState& state) {
 }
 
 ChainService::ChainService(StudioDocument& document, StudioLoop& loop, LabRoom& lab, Jobs& jobs, Notices& notices,
-                           LiveService& live, VersionTaker take)
-    : document_(document), loop_(loop), lab_(lab), live_(live), take_(std::move(take)), jobs_(*this, jobs, notices) {
+                           LiveService& live, TableOpener table, VersionTaker take)
+    : document_(document), loop_(loop), lab_(lab), live_(live), table_(std::move(table)), take_(std::move(take)),
+      jobs_(*this, jobs, notices) {
     state_.stands = standsOf(*document.state().installation, checked_);
     state_.chosen = nextLink(state_.stands).value_or(0);
     connect(&document, &StudioDocument::changed, this, [this](StateParts parts) {
@@ -145,7 +148,7 @@ void ChainService::setWay(LinkWay way) {
     state_.goesOn = false;
     state_.way = way;
     for (std::size_t link = 0; link < chainLinks().size(); ++link)
-        if (chainLinks()[link].fromFiles || chainLinks()[link].fromLive) forget(link);
+        if (chainLinks()[link].fromFiles || chainLinks()[link].fromLive || chainLinks()[link].onTable) forget(link);
     emit changed();
 }
 
@@ -229,7 +232,7 @@ std::function<LinkOutcome(const Progress&)> ChainService::workOf(std::size_t lin
 
 void ChainService::begin(std::size_t link) {
     if (state_.running) return;
-    if (wayOf(state_, link) == LinkWay::live) return beginLive(link);
+    if (wayOf(state_, link) == LinkWay::live) return chainLinks()[link].onTable ? beginOnTable(link) : beginLive(link);
     if (auto work = workOf(link)) run(link, std::move(work));
 }
 
@@ -252,6 +255,19 @@ void ChainService::beginLive(std::size_t link) {
         state_.outcomes.erase(link);
         live_.begin(std::move(plan), glm::dvec3(room.pointerTip), room.projectors.front().camera.size);
     } catch (const Error& error) {
+        fail(link, error);
+    }
+}
+
+void ChainService::beginOnTable(std::size_t link) {
+    const std::shared_ptr<const Rig>& rig = document_.state().rig.rig;
+    const Installation& room = *document_.state().installation;
+    forget(link);
+    try {
+        if (!rig) throw InvalidInput("the device", "there is none", "open a rig");
+        run(link, [measure = chainLinks()[link].onTable, task = TableTask{rig, room, table_(room)}](
+                      const Progress& progress) { return measure(task, progress); });
+    } catch (const std::exception& error) {
         fail(link, error);
     }
 }

@@ -16,7 +16,8 @@
 
 namespace lumorph::studio {
 
-/// Where a link is measured: in the virtual lab, with the tracker that is connected, or from its recordings.
+/// Where a link is measured: in the virtual lab, with what is connected (tracker, or camera and servos), or from its
+/// recordings.
 enum class LinkWay { lab, live, files };
 
 /// Where the whole chain stands: a plain value.
@@ -57,9 +58,11 @@ class ChainService : public QObject {
 public:
     /// Puts a measured installation into the document, as a step of undo and a version; false where that failed.
     using VersionTaker = std::function<bool(InstallationVersion version)>;
+    /// The device on the table. Throws DeviceError with what to do where not all of it is connected.
+    using TableOpener = std::function<std::shared_ptr<DeviceBench>(const Installation& room)>;
     /// STOP of the loop ends what is measured. The first link that is measured in the lab unpacks it.
     ChainService(StudioDocument& document, StudioLoop& loop, LabRoom& lab, Jobs& jobs, Notices& notices,
-                 LiveService& live, VersionTaker take);
+                 LiveService& live, TableOpener table, VersionTaker take);
 
     [[nodiscard]] const ChainState& state() const noexcept { return state_; }
     void choose(std::size_t link);
@@ -82,6 +85,7 @@ signals:
 private:
     void begin(std::size_t link);
     void beginLive(std::size_t link);
+    void beginOnTable(std::size_t link);
     void run(std::size_t link, std::function<LinkOutcome(const Progress&)> work);
     void fail(std::size_t link, const std::exception& error);
     void forget(std::size_t link);
@@ -96,6 +100,7 @@ private:
     StudioLoop& loop_;
     LabRoom& lab_;
     LiveService& live_;
+    TableOpener table_;
     VersionTaker take_;
     JobSlots jobs_;
     ChainState state_;

@@ -374,6 +374,7 @@ bool DeviceService::slow() const noexcept { return data_->slow; }
 QStringList DeviceService::profileNames() const { return data_->profiles.names(); }
 std::optional<double> DeviceService::tested(std::size_t servo) const { return data_->feed.held(servo); }
 bool DeviceService::testing() const { return data_->feed.testing(); }
+bool DeviceService::movesToTest() const { return data_->feed.moving(); }
 
 // What the user orders at the service.
 

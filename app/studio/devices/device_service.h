@@ -98,6 +98,8 @@ public:
     void endTest();
     [[nodiscard]] std::optional<double> tested(std::size_t servo) const;
     [[nodiscard]] bool testing() const; ///< or on the way back from it
+    /// Some servo is still on its way to where a test wants it, or back.
+    [[nodiscard]] bool movesToTest() const;
 
     [[nodiscard]] const LinkStatus& status() const noexcept;
     /// When servos were last all started.

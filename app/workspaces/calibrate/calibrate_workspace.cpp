@@ -8,6 +8,7 @@
 #include <QStackedWidget>
 #include <QVBoxLayout>
 
+#include "app/studio/calibration/table_bench.h"
 #include "app/studio/output/pattern_screen.h"
 #include "app/workspaces/calibrate/calibrate_commands.h"
 #include "app/workspaces/calibrate/calibrate_docks.h"
@@ -36,6 +37,14 @@ CalibrationService::DisplayOpener displayOpener(Studio& studio) {
     return [&studio](std::size_t projector) -> std::unique_ptr<PatternDisplay> {
         openOutput(studio.outputs, projector);
         return std::make_unique<PatternScreen>(studio.outputs, projector);
+    };
+}
+
+ChainService::TableOpener tableOpener(Studio& studio) {
+    return [&studio](const Installation& room) {
+        return openTable({&studio.devices, displayOpener(studio),
+                          [](const std::string& address) { return openCaptureCamera(address); }},
+                         room);
     };
 }
 
@@ -69,7 +78,7 @@ CalibrateWorkspace::CalibrateWorkspace(Studio& studio)
       crosshairs_(studio.document, crosshairShower(studio),
                   [&studio](const InstallationVersion& version) { return studio.room.takeVersion(version); }),
       live_(studio.trackers, [show = crosshairShower(studio)](const QImage& picture) { show(0, picture); }),
-      chain_(studio.document, studio.loop, studio.lab, studio.jobs, studio.notices, live_,
+      chain_(studio.document, studio.loop, studio.lab, studio.jobs, studio.notices, live_, tableOpener(studio),
              [&studio](InstallationVersion version) { return studio.room.takeVersion(std::move(version)); }) {
     connect(&chain_, &ChainService::handsOff, &studio.sound, [&studio] { studio.sound.signal(kHandsOffSound); });
     addCalibrateCommands(parts());
@@ -90,6 +99,8 @@ std::unique_ptr<DriftService> CalibrateWorkspace::makeWatch() {
         const auto& links = chainLinks();
         const auto found = std::ranges::find(links, LinkId::check, &ChainLink::id);
         chain_.choose(static_cast<std::size_t>(found - links.begin()));
+        const auto& cameras = studio_.document.state().installation->cameras;
+        if (!cameras.empty() && !cameras.front().address.empty()) chain_.setWay(LinkWay::live);
     };
     return std::make_unique<DriftService>(sentShowOf(studio_.show), std::move(camera), studio_.notices, check);
 }

@@ -67,6 +67,10 @@ public:
         connect(way_, &Segments::chosen, this, [this](int way) { parts_.chain.setWay(static_cast<LinkWay>(way)); });
         connect(&parts.chain, &ChainService::changed, this, [this] { refresh(); });
         connect(&parts.studio.trackers, &TrackerService::changed, this, [this] { refreshLive(); });
+        connect(&parts.studio.devices, &DeviceService::changed, this, [this] { refreshLive(); });
+        connect(&parts.studio.document, &StudioDocument::changed, this, [this](StateParts changed) {
+            if (changed & StatePart::installation) refreshLive();
+        });
         refresh();
     }
 
@@ -74,7 +78,14 @@ private:
     void refresh() {
         const ChainState& state = parts_.chain.state();
         const ChainLink& link = chainLinks()[state.chosen];
-        setVisible(link.fromFiles != nullptr || !link.liveRoles.empty());
+        setVisible(link.fromFiles || link.fromLive || link.onTable);
+        if (link.onTable)
+            way_->setSegment(1, "Camera and servos", "The device on the table, as it is connected");
+        else
+            way_->setSegment(1, "Connected tracker", "By touching, step by step, what the studio shows",
+                             link.fromLive != nullptr);
+        way_->setSegment(2, "Recordings", "Poses of a real tracker that were recorded before",
+                         link.fromFiles != nullptr);
         way_->setChosen(static_cast<int>(wayOf(state, state.chosen)));
         for (QWidget* part : {static_cast<QWidget*>(way_), list_}) part->setEnabled(!state.running);
         refreshLive();
@@ -107,11 +118,15 @@ private:
     void refreshLive() {
         const ChainState& state = parts_.chain.state();
         const ChainLink& link = chainLinks()[state.chosen];
-        const std::shared_ptr<const Rig>& rig = parts_.studio.document.state().rig.rig;
         const bool isLive = wayOf(state, state.chosen) == LinkWay::live;
-        const QString obstacle = isLive ? parts_.live.obstacle(link.liveRoles) : QString();
+        const StudioState& document = parts_.studio.document.state();
+        const QString obstacle = !isLive        ? QString()
+                                 : link.onTable ? tableObstacle(*document.installation, parts_.studio.devices)
+                                                : parts_.live.obstacle(link.liveRoles);
         seen_->setVisible(isLive && !state.live);
-        const QString words = obstacle.isEmpty() ? QString("The tracker sees all that is needed.") : obstacle;
+        const QString words = !obstacle.isEmpty() ? obstacle
+                              : link.onTable      ? QString("Camera, projectors and servos are connected.")
+                                                  : QString("The tracker sees all that is needed.");
         if (words != seen_->text()) { // it is asked ten times a second
             seen_->setText(words);
             seen_->setProperty("look", obstacle.isEmpty() ? "muted" : "warning");
@@ -119,7 +134,7 @@ private:
         }
         devices_->setVisible(isLive && !obstacle.isEmpty());
         back_->setVisible(isLive && state.live && state.live->step > 0);
-        corner_->show(rig, state.live ? state.live->corner : std::nullopt);
+        corner_->show(document.rig.rig, state.live ? state.live->corner : std::nullopt);
     }
 
     void addRow(std::size_t link, std::size_t file) {

@@ -22,6 +22,14 @@ Segments::Segments(const std::vector<Segment>& segments, QWidget* parent) : QWid
     connect(&group_, &QButtonGroup::idClicked, this, &Segments::chosen);
 }
 
+void Segments::setSegment(int index, const QString& text, const QString& hint, bool isOffered) {
+    QAbstractButton* button = group_.button(index);
+    if (button == nullptr) return;
+    button->setText(text);
+    button->setToolTip(hint);
+    button->setVisible(isOffered);
+}
+
 void Segments::setChosen(int index) {
     if (QAbstractButton* button = group_.button(index)) button->setChecked(true);
 }

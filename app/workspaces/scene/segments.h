@@ -20,6 +20,8 @@ public:
     Segments(const std::vector<Segment>& segments, QWidget* parent = nullptr);
 
     void setChosen(int index);
+    /// What a segment says, and whether it is there at all.
+    void setSegment(int index, const QString& text, const QString& hint, bool isOffered = true);
 
 signals:
     void chosen(int index); ///< by the user

@@ -1,0 +1,143 @@
+#include "app/studio/calibration/table_bench.h"
+
+#include <atomic>
+#include <chrono>
+#include <map>
+#include <thread>
+#include <utility>
+
+#include <QCoreApplication>
+#include <QPointer>
+#include <QTimer>
+
+#include "calibration/capture/pose_capture.h"
+#include "core/base/error.h"
+
+namespace lumorph::studio {
+namespace {
+
+constexpr int kAskMilliseconds = 30;
+constexpr auto kStands = std::chrono::milliseconds(400); // after the last command nothing trembles any more
+constexpr auto kPause = std::chrono::milliseconds(20);
+
+/// Runs `work` in the window's thread some time soon; never waits for it, as the window may wait for a measurement.
+template <class Work> void inWindow(Work work) {
+    QMetaObject::invokeMethod(qApp, std::move(work), Qt::QueuedConnection);
+}
+
+/// What is connected, as the thread that measures may know of it.
+struct Driven {
+    std::atomic<int> told = 0; ///< tickets of commands that the service has
+    std::atomic<bool> isLive = true, isMoving = false;
+};
+
+/// Lives in the window's thread: hands commands to the service and looks how it goes.
+class Driver : public QObject {
+public:
+    Driver(DeviceService& devices, std::shared_ptr<Driven> driven) : devices_(&devices), driven_(std::move(driven)) {
+        auto* timer = new QTimer(this);
+        connect(timer, &QTimer::timeout, this, [this] { look(); });
+        timer->start(kAskMilliseconds);
+    }
+    ~Driver() override {
+        if (devices_) devices_->endTest();
+    }
+    void tell(int ticket, const std::vector<double>& strokes) {
+        for (std::size_t i = 0; devices_ && i < strokes.size(); ++i) devices_->test(i, strokes[i]);
+        look();
+        driven_->told = ticket;
+    }
+
+private:
+    void look() {
+        driven_->isLive = devices_ && devices_->status().phase == LinkPhase::live;
+        driven_->isMoving = devices_ && devices_->movesToTest();
+    }
+
+    QPointer<DeviceService> devices_;
+    std::shared_ptr<Driven> driven_;
+};
+
+/// Deleted in the window's thread, whoever lets go of it last.
+template <class Owned> std::shared_ptr<Owned> ownedByWindow(std::unique_ptr<Owned> owned) {
+    return std::shared_ptr<Owned>(owned.release(), [](Owned* last) { inWindow([last] { delete last; }); });
+}
+
+class TableBench final : public DeviceBench {
+public:
+    TableBench(const TableParts& parts, const Installation& room)
+        : open_(parts.openCamera), clock_(parts.clock), address_(room.cameras.front().address),
+          driver_(ownedByWindow(std::make_unique<Driver>(*parts.devices, driven_))) {
+        for (std::size_t k = 0; k < room.projectors.size(); ++k)
+            if (room.projectors[k].enabled) displays_[k] = ownedByWindow(parts.openDisplay(k));
+    }
+
+    void stand(std::span<const double> commanded, const Progress& progress) override {
+        progress.report(0.0, "hands off: the servos move");
+        const int ticket = ++tickets_;
+        inWindow([driver = driver_, ticket, strokes = std::vector<double>(commanded.begin(), commanded.end())] {
+            driver->tell(ticket, strokes);
+        });
+        auto still = std::chrono::steady_clock::now();
+        while (driven_->told != ticket || driven_->isMoving || std::chrono::steady_clock::now() - still < kStands) {
+            progress.throwIfCancelled();
+            if (!driven_->isLive)
+                throw DeviceError("servos", "they are not driven any more", "start them in Devices, and measure again");
+            if (driven_->told != ticket || driven_->isMoving) still = std::chrono::steady_clock::now();
+            std::this_thread::sleep_for(kPause);
+        }
+    }
+
+    [[nodiscard]] std::vector<cv::Mat> photograph(std::size_t projector, const CaptureOrder& order,
+                                                  const Progress& progress) override {
+        if (!camera_) camera_ = open_(address_);
+        const auto lit = displays_.find(projector);
+        if (lit == displays_.end())
+            throw InvalidInput("projector " + std::to_string(projector + 1), "it is switched off", "switch it on");
+        for (auto& [k, display] : displays_)
+            if (k != projector) display->show(cv::Mat::zeros(display->size(), CV_8U), progress);
+        auto& [captured, capture] = captures_[projector];
+        if (!capture || !(captured == order)) {
+            PoseCaptureSettings settings;
+            settings.order = captured = order;
+            settings.clock = clock_;
+            capture = std::make_unique<PoseCapture>(*camera_, *lit->second, std::move(settings));
+        }
+        progress.report(0.0, "photographing");
+        CapturedPose pose = capture->capture("check", progress);
+        if (!pose.isSound()) throw CaptureRefused(*pose.findings.refusal);
+        return std::move(pose.images);
+    }
+
+private:
+    std::function<std::unique_ptr<CaptureCamera>(const std::string&)> open_;
+    std::shared_ptr<const Clock> clock_;
+    std::string address_;
+    std::shared_ptr<Driven> driven_ = std::make_shared<Driven>();
+    std::shared_ptr<Driver> driver_;
+    int tickets_ = 0;
+    std::map<std::size_t, std::shared_ptr<PatternDisplay>> displays_;
+    std::unique_ptr<CaptureCamera> camera_; ///< opened by the first photograph
+    std::map<std::size_t, std::pair<CaptureOrder, std::unique_ptr<PoseCapture>>> captures_;
+};
+
+} // namespace
+
+QString tableObstacle(const Installation& room, const DeviceService& devices) {
+    if (room.projectors.empty()) return QObject::tr("The room has no projector: add one in Scene.");
+    if (room.cameras.empty() || room.cameras.front().address.empty())
+        return QObject::tr("The room has no camera of this machine: calibrate projector and camera with it first.");
+    if (devices.status().phase != LinkPhase::live)
+        return QObject::tr("The servos are not driven: connect and start them in Devices.");
+    return {};
+}
+
+std::shared_ptr<DeviceBench> openTable(const TableParts& parts, const Installation& room) {
+    if (const QString obstacle = tableObstacle(room, *parts.devices); !obstacle.isEmpty()) {
+        const QStringList words = obstacle.chopped(1).split(": ");
+        throw DeviceError("the table", words.front().toStdString(), words.back().toStdString());
+    }
+    return std::make_shared<TableBench>(parts, room);
+}
+
+} // namespace lumorph::studio

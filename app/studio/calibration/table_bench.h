@@ -1,0 +1,37 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+
+#include <QString>
+
+#include "app/studio/devices/device_service.h"
+#include "calibration/capture/capture_camera.h"
+#include "calibration/capture/pattern_display.h"
+#include "calibration/verify/device_bench.h"
+#include "core/base/clock.h"
+#include "core/scene/installation.h"
+
+namespace lumorph::studio {
+
+/// The device on the table, the room's first camera and its projectors' windows.
+struct TableParts {
+    DeviceService* devices = nullptr;
+    /// In the window's thread.
+    std::function<std::unique_ptr<PatternDisplay>(std::size_t projector)> openDisplay;
+    /// In the thread that measures; the address is the room's, such as "/dev/video0".
+    std::function<std::unique_ptr<CaptureCamera>(const std::string& address)> openCamera;
+    /// By which pictures take time to be seen.
+    std::shared_ptr<const Clock> clock = std::make_shared<SteadyClock>();
+};
+
+/// Why nothing can be measured with what is connected, in a sentence with what to do; empty: it can.
+[[nodiscard]] QString tableObstacle(const Installation& room, const DeviceService& devices);
+
+/// Made in the window's thread, used and let go of in any. Servos go slowly where they are told, by the service's own
+/// test of servos and so through the guard of their link; they go back to the show when the bench is gone. Throws
+/// DeviceError where a projector's window cannot show patterns, or for what `tableObstacle` says.
+[[nodiscard]] std::shared_ptr<DeviceBench> openTable(const TableParts& parts, const Installation& room);
+
+} // namespace lumorph::studio

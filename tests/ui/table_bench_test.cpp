@@ -1,0 +1,214 @@
+#include <atomic>
+#include <mutex>
+#include <optional>
+#include <thread>
+
+#include "app/studio/calibration/table_bench.h"
+#include "calibration/lab/check_lab.h"
+#include "calibration/lab/moved_room.h"
+#include "calibration/verify/verify_lab.h"
+#include "core/base/error.h"
+#include "tests/ui/devices_window.h"
+
+// A check with the device on the table: a simulated board drives its servos, and what the camera sees is worked out by
+// the lab's rays from where the board's servos stand and from what the projector's screen was told to show.
+
+namespace lumorph::test {
+namespace {
+
+using namespace std::chrono_literals;
+
+/// A room with one projector of few pixels and a camera of this machine.
+Installation tableRoom() {
+    Installation room = defaultInstallation();
+    room.projectors.resize(1);
+    room.projectors.front().camera = withSize(room.projectors.front().camera, {960, 540});
+    room = withLabCamera(room);
+    room.cameras.front().address = "/dev/video9";
+    return room;
+}
+
+/// What screen and camera of a test share.
+struct Table {
+    Table(const Rig& shownRig, Installation really) : rig(shownRig), truth(std::move(really)) {}
+
+    const Rig& rig;
+    Installation truth; ///< as it really is
+    std::function<std::vector<double>()> strokes;
+    std::mutex mutex;
+    cv::Mat shown;
+    std::vector<std::vector<double>> photographed; ///< strokes, one a bend
+    std::optional<CheckLab> lab;
+    std::shared_ptr<ManualClock> clock = std::make_shared<ManualClock>();
+
+    cv::Mat look() {
+        const std::scoped_lock lock(mutex);
+        const std::vector<double> now = strokes();
+        const auto differs = [](double a, double b) { return std::abs(a - b) > 0.01; };
+        if (!lab || !std::ranges::equal(photographed.back(), now, std::not_fn(differs))) {
+            photographed.push_back(now);
+            lab.emplace(truth, rig, now, CheckLabOptions{}, 7);
+        }
+        const glm::ivec2 size = truth.projectors.front().camera.size;
+        return lab->photograph(0, shown.empty() ? cv::Mat::zeros(size.y, size.x, CV_8U) : shown);
+    }
+};
+
+class TableCamera final : public CaptureCamera {
+public:
+    explicit TableCamera(Table& table) : table_(table) {}
+    [[nodiscard]] cv::Mat grab(const Progress& progress) override {
+        progress.throwIfCancelled();
+        cv::Mat picture = table_.look();
+        table_.clock->advance(Microseconds{33'000}); // however long it took to work it out
+        return picture;
+    }
+    [[nodiscard]] std::string name() const override { return "table"; }
+    [[nodiscard]] cv::Size size() const override { return {}; }
+
+private:
+    Table& table_;
+};
+
+class TableScreen final : public PatternDisplay {
+public:
+    explicit TableScreen(Table& table) : table_(table) {}
+    [[nodiscard]] cv::Size size() const override {
+        const glm::ivec2 size = table_.truth.projectors.front().camera.size;
+        return {size.x, size.y};
+    }
+    void show(const cv::Mat& picture, const Progress& progress) override {
+        progress.throwIfCancelled();
+        const std::scoped_lock lock(table_.mutex);
+        table_.shown = picture.clone();
+    }
+    void clear() override {
+        const std::scoped_lock lock(table_.mutex);
+        table_.shown.release();
+    }
+
+private:
+    Table& table_;
+};
+
+class TableBenchTest : public DevicesWindow {
+protected:
+    /// Where the horns of the board's servos are.
+    [[nodiscard]] std::vector<double> standing() {
+        std::vector<double> strokes;
+        const DeviceProfile profile = window.studio().devices.profile();
+        for (std::size_t i = 0; i < profile.servos.size(); ++i) {
+            const ServoSetup& servo = profile.servos[i];
+            const double stroke =
+                (servoOf(i).position - servo.pulseMin - servo.trim) / (servo.pulseMax - servo.pulseMin);
+            strokes.push_back(std::clamp(servo.reversed ? 1.0 - stroke : stroke, 0.0, 1.0));
+        }
+        return strokes;
+    }
+    /// The bench and its check in a thread of their own, as a job has them; the window goes on meanwhile.
+    [[nodiscard]] std::optional<VerifiedRoom> check(
+        Table& table, const Installation& believed, std::string& trouble,
+        const std::function<void()>& meanwhile = [] {}) {
+        // The board's servos are asked in the window's thread, as the profile is the window's.
+        std::mutex mutex;
+        std::vector<double> now = standing();
+        table.strokes = [&] {
+            const std::scoped_lock lock(mutex);
+            return now;
+        };
+        auto bench = studio::openTable({&window.studio().devices,
+                                        [&](std::size_t) { return std::make_unique<TableScreen>(table); },
+                                        [&](const std::string& address) {
+                                            opened = address;
+                                            return std::make_unique<TableCamera>(table);
+                                        },
+                                        table.clock},
+                                       believed);
+        std::optional<VerifiedRoom> found;
+        std::atomic<bool> isDone = false;
+        std::thread job([&, bench = std::move(bench)]() mutable {
+            try {
+                VerifyOptions options;
+                options.pattern = "phase:16x3+1x3";
+                options.cameraWidth = 480;
+                options.isJudged = false;
+                found = verifyRoom(table.rig, believed, *bench, {}, options);
+            } catch (const std::exception& error) {
+                trouble = error.what();
+            }
+            bench.reset();
+            isDone = true;
+        });
+        EXPECT_TRUE(eventually(
+            [&] {
+                const std::scoped_lock lock(mutex);
+                now = standing();
+                meanwhile();
+                return isDone.load();
+            },
+            120s));
+        job.join();
+        return found;
+    }
+
+    std::string opened;
+};
+
+TEST_F(TableBenchTest, ACheckStandsTheServosInBendsAndTellsWhatHasMoved) {
+    goLive();
+    const Installation believed = tableRoom();
+    const Rig& rig = *window.state().rig.rig;
+    Table table(rig, pushed(believed, rig, parseLabPush("projector:3mm", rig), 1));
+    std::string trouble;
+    const auto found = check(table, believed, trouble);
+    ASSERT_TRUE(found) << trouble;
+    EXPECT_EQ(opened, "/dev/video9");
+    EXPECT_EQ(found->check.verdict, RoomCheck::Verdict::moved) << found->check.sentence;
+    ASSERT_EQ(found->check.names.size(), 1U);
+    EXPECT_EQ(found->check.names.front(), "projector");
+    // Where the horns were when the pictures were taken is what the bends say.
+    const auto bends = checkBends(rig);
+    for (const std::vector<double>& bend : bends)
+        EXPECT_TRUE(std::ranges::any_of(table.photographed, [&](const std::vector<double>& seen) {
+            return std::ranges::equal(seen, bend, [](double a, double b) { return std::abs(a - b) < 0.03; });
+        })) << "a bend was not photographed";
+    EXPECT_LE(table.photographed.size(), bends.size() + 1) << "nothing moved while it was photographed";
+    EXPECT_TRUE(eventually([&] { return !window.studio().devices.testing(); }, 20s)) << "back to the show";
+}
+
+TEST_F(TableBenchTest, StopEndsItWithWhatToDo) {
+    goLive();
+    const Installation believed = tableRoom();
+    Table table(*window.state().rig.rig, believed);
+    std::string trouble;
+    bool isStopped = false;
+    const auto found = check(table, believed, trouble, [&] {
+        if (isStopped || !window.studio().devices.testing()) return;
+        isStopped = true;
+        window.studio().devices.stopNow();
+    });
+    EXPECT_FALSE(found);
+    EXPECT_NE(trouble.find("not driven any more"), std::string::npos) << trouble;
+    EXPECT_TRUE(allLimp());
+}
+
+TEST_F(TableBenchTest, WhatIsMissingIsToldInTheChain) {
+    window.window().showWorkspace("calibrate");
+    window.click("calibrate.whole");
+    window.click("chain.link.check");
+    window.click("chain.way.live");
+    EXPECT_TRUE(window.text("chain.live.seen").contains("no camera of this machine"));
+    const auto room = window.state().installation;
+    window.click("chain.card.next");
+    EXPECT_TRUE(eventually([&] { return window.text("chain.card.text").contains("Calibrate projector and camera"); }))
+        << window.text("chain.card.text").toStdString();
+    EXPECT_EQ(window.state().installation, room);
+    window.studio().document.change("A camera", [](studio::StudioState& state) {
+        state.installation = std::make_shared<const Installation>(tableRoom());
+    });
+    EXPECT_TRUE(eventually([&] { return window.text("chain.live.seen").contains("start them in Devices"); }));
+    window.screenshot("check_on_table");
+}
+
+} // namespace
+} // namespace lumorph::test
