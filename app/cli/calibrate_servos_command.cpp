@@ -53,7 +53,7 @@ nlohmann::json servoJson(const ServoFinding& servo, const Rig& rig) {
     return json;
 }
 
-nlohmann::json servosJson(const ServoLabResult& result, const ServoGain& gain, const Rig& rig, bool applied) {
+nlohmann::json servosJson(const ServoMeasurement& result, const ServoGain& gain, const Rig& rig, bool applied) {
     nlohmann::json servos = nlohmann::json::array();
     for (const ServoFinding& servo : result.measured.servos) servos.push_back(servoJson(servo, rig));
     nlohmann::json groups = nlohmann::json::array();
@@ -75,7 +75,7 @@ nlohmann::json servosJson(const ServoLabResult& result, const ServoGain& gain, c
             {"projectionOffMm", {{"before", 1e3 * gain.toldOff}, {"after", 1e3 * gain.measuredOff}}}};
 }
 
-void printServos(const ServoLabResult& result, const ServoGain& gain, bool applied) {
+void printServos(const ServoMeasurement& result, const ServoGain& gain, bool applied) {
     std::printf("%zu states in %.0f simulated seconds, in %zu groups of servos; points lie %.2f mm off the surface\n",
                 result.plan.steps.size(), result.seconds, result.plan.groups.size(), 1e3 * result.measured.rms);
     for (const ServoFinding& servo : result.measured.servos) {
@@ -117,7 +117,7 @@ void servos(const ServosArguments& arguments, const Session& session) {
     Installation believed = contents.project.installation;
     believed.servos.clear(); // they are measured anew
     const Installation truth = trueRoom(believed, rig.actuators(), arguments.seed);
-    const ServoLabResult result = orRefused(arguments.json, [&] {
+    const ServoMeasurement result = orRefused(arguments.json, [&] {
         return measureServosInLab(rig, believed, truth, arguments.seed, progress.part(0.1, 0.8), options);
     });
     LibraryFitOptions fitting;

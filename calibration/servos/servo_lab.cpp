@@ -10,6 +10,7 @@
 #include "calibration/lab/board_lab.h"
 #include "calibration/lab/lab.h"
 #include "calibration/lab/lab_world.h"
+#include "calibration/servos/surface_points.h"
 #include "core/base/error.h"
 #include "core/scene/measured_servos.h"
 
@@ -128,40 +129,15 @@ std::vector<int> ServoLab::seen(std::span<const double> strokes) const {
     return counts;
 }
 
-ServoLabResult measureServosInLab(const Rig& rig, const Installation& believed, const Installation& truth,
-                                  std::uint32_t seed, const Progress& progress, const ServoLabOptions& options) {
-    ServoLabResult result;
-    result.room = believed;
-    // Which servos can move together is planned with the room as it is believed to be.
-    ServoLabOptions coarse = options;
-    coarse.pixelStep = 2 * options.pixelStep;
-    const ServoLab eyes(rig, believed, seed, coarse);
-    const auto groups = servoGroups(rig, [&](std::span<const double> strokes) {
-        progress.throwIfCancelled();
-        return eyes.seen(strokes);
-    });
-    ServoPlanOptions plan = options.plan;
-    plan.seed = seed;
-    result.plan = planServos(rig, groups, plan);
-
+ServoMeasurement measureServosInLab(const Rig& rig, const Installation& believed, const Installation& truth,
+                                    std::uint32_t seed, const Progress& progress, const ServoLabOptions& options) {
     ServoLab lab(rig, truth, seed, options);
-    ServoSolver solver(rig, glm::dmat4(believed.worldFromDevice), result.plan);
-    std::vector<double> at(rig.actuatorCount(), 0.0);
-    for (std::size_t k = 0; !solver.ended(); ++k) {
-        progress.throwIfCancelled();
-        progress.report(static_cast<double>(k) / static_cast<double>(result.plan.steps.size()),
-                        "hands off: the servos move");
-        const std::vector<double>& next = result.plan.steps[k].commanded;
-        lab.command(next);
-        result.seconds += secondsOf(plan, at, next);
-        at = next;
-        solver.take(surfacePoints(lab.look(), eyes.camera(), eyes.projector()));
-    }
-    result.measured = solver.result();
-    result.room =
-        withServos(believed, result.measured,
-                   "structured light, " + std::to_string(result.measured.estimates.size()) + " states of the device");
-    return result;
+    const CalibratedCamera camera = servoCamera(believed);
+    const auto look = [&](const std::vector<double>& commanded, const Progress&) {
+        lab.command(commanded);
+        return surfacePoints(lab.look(), camera, believed.projectors.front().camera);
+    };
+    return measureServos(rig, believed, seed, look, progress, options.plan);
 }
 
 } // namespace lumorph

@@ -4,7 +4,7 @@
 #include <optional>
 #include <string_view>
 
-#include "calibration/servos/servo_calibration.h"
+#include "calibration/servos/servo_measurement.h"
 
 namespace lumorph {
 
@@ -28,14 +28,6 @@ struct ServoLabOptions {
     int pixelStep = 7;         ///< camera pixels between two points
     double decodeSigma = 0.15; ///< projector pixels, of each coordinate of each point
     double strayShare = 0.005; ///< of points: read anyhow
-};
-
-/// Servos measured in the lab.
-struct ServoLabResult {
-    Installation room; ///< believed, with the measured servos where they may be used
-    ServoPlan plan;
-    double seconds = 0.0; ///< simulated
-    ServoCalibration measured;
 };
 
 /// The device of the lab with its true servos: what they are told, where they then really are, and what a camera sees
@@ -76,10 +68,9 @@ private:
 /// The camera that looks at the device: the installation's first, else one as the lab has it.
 [[nodiscard]] CalibratedCamera servoCamera(const Installation& room);
 
-/// Plans, steps, looks and solves, all in the lab, with projector and camera as `believed` says. Reports stages in
-/// words for the user ("hands off: ..."). Throws what solveServos throws; Cancelled leaves nothing behind.
-[[nodiscard]] ServoLabResult measureServosInLab(const Rig& rig, const Installation& believed, const Installation& truth,
-                                                std::uint32_t seed, const Progress& progress = {},
-                                                const ServoLabOptions& options = {});
+/// `measureServos` in the lab, with projector and camera as `believed` says.
+[[nodiscard]] ServoMeasurement measureServosInLab(const Rig& rig, const Installation& believed,
+                                                  const Installation& truth, std::uint32_t seed,
+                                                  const Progress& progress = {}, const ServoLabOptions& options = {});
 
 } // namespace lumorph

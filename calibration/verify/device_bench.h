@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include <glm/vec2.hpp>
 #include <opencv2/core.hpp>
 
 #include "calibration/patterns/capture_order.h"
@@ -24,5 +25,9 @@ public:
     [[nodiscard]] virtual std::vector<cv::Mat> photograph(std::size_t projector, const CaptureOrder& order,
                                                           const Progress& progress) = 0;
 };
+
+/// Makes a camera's picture as large as it is `wanted`. Throws InvalidInput for one of another shape than that of the
+/// pictures with which it was `calibrated`: which part of its view that is nobody knows.
+void fitPicture(cv::Mat& picture, const glm::ivec2& calibrated, const glm::ivec2& wanted);
 
 } // namespace lumorph

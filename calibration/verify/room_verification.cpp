@@ -6,8 +6,6 @@
 #include <optional>
 #include <utility>
 
-#include <opencv2/imgproc.hpp>
-
 #include "calibration/lab/board_lab.h"
 #include "core/base/error.h"
 
@@ -66,29 +64,14 @@ private:
             const glm::ivec2 panel = believed.projectors[p].camera.size;
             const CaptureOrder order = parsePattern(options_.pattern, {panel.x, panel.y});
             std::vector<cv::Mat> images = bench_.photograph(p, order, part);
-            for (cv::Mat& image : images) fit(image);
+            for (cv::Mat& image : images)
+                fitPicture(image, original_.cameras.front().camera.size, believed_.cameras.front().camera.size);
             result_.photographs += static_cast<int>(images.size());
             ReadPass pass = readPass(images, order, expectedLight(rig_, believed, shot.strokes, p), p);
             obstacle_ = std::move(pass.obstacle);
             shot.points.insert(shot.points.end(), pass.points.begin(), pass.points.end());
         }
         return shot;
-    }
-
-    /// As large as the believed camera's pictures.
-    void fit(cv::Mat& image) const {
-        const glm::ivec2 size = believed_.cameras.front().camera.size, own = original_.cameras.front().camera.size;
-        const cv::Size wanted(size.x, size.y);
-        if (image.empty() || image.size() == wanted) return;
-        constexpr double kOblong = 0.01; // of the shape: pixels are whole
-        if (std::abs(static_cast<double>(image.cols) * own.y / (static_cast<double>(image.rows) * own.x) - 1.0) >
-            kOblong)
-            throw InvalidInput("the camera's pictures",
-                               "they are " + std::to_string(image.cols) + " x " + std::to_string(image.rows) +
-                                   " pixels, and it was calibrated with " + std::to_string(own.x) + " x " +
-                                   std::to_string(own.y),
-                               "set it to that size, or calibrate it again");
-        cv::resize(image, image, wanted, 0.0, 0.0, cv::INTER_AREA);
     }
 
     /// No correction is called good by the light that it was made from.

@@ -124,7 +124,7 @@ Installation measureLinks(const Rig& rig, Installation room, const Installation&
     use("tracker", measureTrackerInLab(rig, room, truth, seed + 1));
     use("device", measureDeviceInLab(rig, room, truth, seed + 2));
     use("eye", measureEyeInLab(rig, room, truth, seed + 3));
-    const ServoLabResult servos = measureServosInLab(rig, room, truth, seed + 4);
+    const ServoMeasurement servos = measureServosInLab(rig, room, truth, seed + 4);
     EXPECT_TRUE(servos.measured.usable);
     room = servos.room;
     const MeasuredDelays delays = measureDelaysInLab(rig, room, truth, seed + 5);

@@ -2,14 +2,17 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <optional>
 #include <stop_token>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
 
 #include "calibration/doctor/device_capture.h"
 #include "calibration/lab/board_lab.h"
+#include "calibration/lab/check_lab.h"
 #include "calibration/lab/device_lab.h"
 #include "calibration/lab/true_room.h"
 #include "calibration/servos/servo_gain.h"
@@ -62,7 +65,7 @@ TEST(ServoCalibrationTest, SixBentServosWithTwoDegreesOfBacklash) {
     for (int seed = 1; seed <= seeds; ++seed) {
         const Installation believed = defaultInstallation();
         const Installation truth = trueRoom(believed, servoTablet().actuators(), seed);
-        const ServoLabResult result = measureServosInLab(servoTablet(), believed, truth, seed);
+        const ServoMeasurement result = measureServosInLab(servoTablet(), believed, truth, seed);
         ASSERT_EQ(result.measured.servos.size(), 6U);
         for (const Finding& finding : result.measured.findings) ADD_FAILURE() << sentenceOf(finding);
         ASSERT_TRUE(result.measured.usable);
@@ -91,7 +94,7 @@ TEST_P(ServoFaultTest, IsNamedWithItsServoAndNobodyElse) {
     const Installation truth = trueRoom(believed, servoTablet().actuators(), 3);
     ServoLabOptions options;
     options.fault = GetParam().fault;
-    const ServoLabResult result = measureServosInLab(servoTablet(), believed, truth, 3, {}, options);
+    const ServoMeasurement result = measureServosInLab(servoTablet(), believed, truth, 3, {}, options);
     std::vector<std::string> expected, named;
     for (const std::size_t i : faultyServos(GetParam().fault, 6)) expected.push_back(servoTablet().actuators()[i].name);
     for (const Finding& finding : result.measured.findings) {
@@ -119,7 +122,7 @@ INSTANTIATE_TEST_SUITE_P(Lab, ServoFaultTest,
 TEST(ServoCalibrationTest, MatchedIouOfTheRealDeviceRises) {
     const Installation believed = defaultInstallation();
     const Installation truth = trueRoom(believed, servoTablet().actuators(), 1);
-    const ServoLabResult result = measureServosInLab(servoTablet(), believed, truth, 1);
+    const ServoMeasurement result = measureServosInLab(servoTablet(), believed, truth, 1);
     const auto library = readTargets({resourceFile("targets/bowl.glb"), resourceFile("targets/corners.glb"),
                                       resourceFile("targets/cove.glb"), resourceFile("targets/valley.glb")});
     LibraryFitOptions options;
@@ -248,6 +251,70 @@ TEST(ServoPhotographsTest, StrokesOfPhotographedFlaps) {
     }
     std::printf("worst stroke %.2f degrees off\n", worst);
     EXPECT_LE(worst, 1.0);
+}
+
+/// A device on a table: servos with play, whichever way they come, and photographs of where they then stand.
+class PlayBench : public DeviceBench {
+public:
+    PlayBench(const Rig& rig, const Installation& truth) : rig_(rig), truth_(truth), real_(rig.actuatorCount(), 0.0) {
+        servos_ = std::exchange(truth_.servos, {}); // where they stand is told to the lab
+    }
+    void stand(std::span<const double> commanded, const Progress& /*progress*/) override {
+        for (std::size_t i = 0; i < real_.size(); ++i) real_[i] = realStroke(servos_[i], commanded[i], real_[i]);
+        lab_.emplace(truth_, rig_, real_, CheckLabOptions{}, ++stands_);
+    }
+    [[nodiscard]] std::vector<cv::Mat> photograph(std::size_t projector, const CaptureOrder& order,
+                                                  const Progress& /*progress*/) override {
+        std::vector<cv::Mat> images;
+        for (const PatternImage& pattern : order.images)
+            images.push_back(lab_->photograph(projector, drawPattern(pattern, order.projector)));
+        if (isUnplugged && stands_ > 3) images.resize(images.size() / 2);
+        return images;
+    }
+
+    bool isUnplugged = false;
+
+private:
+    const Rig& rig_;
+    Installation truth_;
+    std::vector<MeasuredServo> servos_;
+    std::vector<double> real_;
+    std::optional<CheckLab> lab_;
+    std::uint32_t stands_ = 0;
+};
+
+TEST(ServoCalibrationTest, OneFlapOnABenchOfPhotographs) {
+    RigParts parts;
+    parts.name = "one flap";
+    parts.restMesh = servoTablet().restMesh();
+    parts.actuators = {servoTablet().actuators().front()};
+    const Rig rig(std::move(parts));
+    Installation believed = defaultInstallation();
+    CalibratedCamera camera = defaultLabCamera(believed.projectors.front().camera);
+    camera.focal *= 1.7; // zoomed in on the device
+    believed.cameras.push_back({"Camera", "", withSize(camera, {640, 512}), {}, {}});
+    const Installation truth = trueRoom(believed, rig.actuators(), 5);
+    ServoPlanOptions plan;
+    plan.steps = takesLong() ? 16 : 5;
+    plan.fresh = 3;
+    PlayBench bench(rig, truth);
+    const ServoMeasurement result = measureServosOnBench(rig, believed, 5, bench, {}, plan);
+    for (const Finding& finding : result.measured.findings) ADD_FAILURE() << sentenceOf(finding);
+    ASSERT_TRUE(result.measured.usable);
+    double worst = 0.0; // at the levels
+    for (const MeasuredServo::Point& point : result.measured.servos.front().curve.points)
+        for (const auto& [seen, rises] : {std::pair(point.rising, true), std::pair(point.falling, false)})
+            worst = std::max(
+                worst, result.measured.servos.front().degrees *
+                           std::abs(std::clamp(seen, 0.0, 1.0) - trueAt(truth.servos.front(), point.commanded, rises)));
+    std::printf("%zu looks: curve %.2f degrees off, play %.2f degrees, points %.2f mm off the surface\n",
+                result.plan.steps.size(), worst, result.measured.servos.front().backlashDegrees,
+                1e3 * result.measured.rms);
+    EXPECT_LE(worst, 1.0);
+    EXPECT_NEAR(result.measured.servos.front().backlashDegrees, LabErrors{}.backlashDegrees, 0.5);
+    PlayBench unplugged(rig, truth);
+    unplugged.isUnplugged = true;
+    EXPECT_THROW((void)measureServosOnBench(rig, believed, 5, unplugged, {}, plan), DeviceError);
 }
 
 TEST(ServoPlanTest, PartsOfTheSameVerticesMoveOneAfterTheOther) {

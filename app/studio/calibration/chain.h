@@ -82,6 +82,7 @@ struct TableTask {
     std::shared_ptr<const Rig> rig;
     Installation believed;
     std::shared_ptr<DeviceBench> bench;
+    std::uint32_t seed = 1;
 };
 
 /// One thing that is measured. Those before it that it builds on are its needs.

@@ -265,8 +265,7 @@ ChainLink eyeLink() {
 
 QString degrees(double value) { return QString("%1°").arg(value, 0, 'f', 2); }
 
-LinkOutcome measureServos(const LinkTask& task, const Progress& progress) {
-    const ServoLabResult measured = measureServosInLab(*task.rig, task.believed, task.truth, task.seed, progress);
+LinkOutcome outcomeOf(const ServoMeasurement& measured, const Rig& rig) {
     LinkOutcome outcome;
     outcome.isGood = measured.measured.usable;
     for (const Finding& finding : measured.measured.findings) outcome.findings.push_back(wordsOf(finding));
@@ -283,7 +282,7 @@ LinkOutcome measureServos(const LinkTask& task, const Progress& progress) {
         const ServoFinding& servo = measured.measured.servos[k];
         if (servo.curve.points.empty()) continue;
         outcome.figures.push_back(
-            {QObject::tr("%1: play").arg(QString::fromStdString(task.rig->actuators()[k].name)),
+            {QObject::tr("%1: play").arg(QString::fromStdString(rig.actuators()[k].name)),
              QString("%1 ± %2").arg(degrees(servo.backlashDegrees), degrees(servo.backlashSigma))});
     }
     return outcome;
@@ -309,7 +308,12 @@ ChainLink servosLink() {
         }
         room.origins.servos = measured.origins.servos;
     };
-    link.inLab = measureServos;
+    link.inLab = [](const LinkTask& task, const Progress& progress) {
+        return outcomeOf(measureServosInLab(*task.rig, task.believed, task.truth, task.seed, progress), *task.rig);
+    };
+    link.onTable = [](const TableTask& task, const Progress& progress) {
+        return outcomeOf(measureServosOnBench(*task.rig, task.believed, task.seed, *task.bench, progress), *task.rig);
+    };
     return link;
 }
 

@@ -265,7 +265,7 @@ void ChainService::beginOnTable(std::size_t link) {
     forget(link);
     try {
         if (!rig) throw InvalidInput("the device", "there is none", "open a rig");
-        run(link, [measure = chainLinks()[link].onTable, task = TableTask{rig, room, table_(room)}](
+        run(link, [measure = chainLinks()[link].onTable, task = TableTask{rig, room, table_(room), seed_++}](
                       const Progress& progress) { return measure(task, progress); });
     } catch (const std::exception& error) {
         fail(link, error);

@@ -135,7 +135,7 @@ QString tableObstacle(const Installation& room, const DeviceService& devices) {
 std::shared_ptr<DeviceBench> openTable(const TableParts& parts, const Installation& room) {
     if (const QString obstacle = tableObstacle(room, *parts.devices); !obstacle.isEmpty()) {
         const QStringList words = obstacle.chopped(1).split(": ");
-        throw DeviceError("the table", words.front().toStdString(), words.back().toStdString());
+        throw DeviceError("device on the table", words.front().toLower().toStdString(), words.back().toStdString());
     }
     return std::make_shared<TableBench>(parts, room);
 }

@@ -1,0 +1,76 @@
+#include "calibration/servos/servo_measurement.h"
+
+#include <string>
+#include <utility>
+
+#include "calibration/decode/pattern_decoder.h"
+#include "calibration/servos/servo_lab.h"
+#include "calibration/servos/surface_points.h"
+#include "calibration/solve/device_calibration.h"
+#include "core/base/error.h"
+
+namespace lumorph {
+namespace {
+
+/// Four steps: a projector's gamma leaves them alone where it bends three.
+constexpr const char* kPattern = "phase:16x4+1x4";
+constexpr int kMostPoints = 20'000; // of one look
+constexpr int kPlannedPixels = 14;  // camera pixels between two rays that say what would be seen
+
+} // namespace
+
+ServoMeasurement measureServos(const Rig& rig, const Installation& believed, std::uint32_t seed, const ServoLook& look,
+                               const Progress& progress, const ServoPlanOptions& options) {
+    ServoMeasurement result;
+    result.room = believed;
+    ServoLabOptions coarse;
+    coarse.pixelStep = kPlannedPixels;
+    const ServoLab eyes(rig, believed, seed, coarse);
+    const auto groups = servoGroups(rig, [&](std::span<const double> strokes) {
+        progress.throwIfCancelled();
+        return eyes.seen(strokes);
+    });
+    ServoPlanOptions plan = options;
+    plan.seed = seed;
+    result.plan = planServos(rig, groups, plan);
+    ServoSolver solver(rig, glm::dmat4(believed.worldFromDevice), result.plan);
+    std::vector<double> at(rig.actuatorCount(), 0.0);
+    for (std::size_t k = 0; !solver.ended(); ++k) {
+        progress.throwIfCancelled();
+        const double from = static_cast<double>(k), share = 1.0 / static_cast<double>(result.plan.steps.size());
+        const Progress part = progress.part(from * share, (from + 1.0) * share);
+        part.report(0.0, "hands off: the servos move");
+        const std::vector<double>& next = result.plan.steps[k].commanded;
+        solver.take(look(next, part));
+        result.seconds += secondsOf(plan, at, next);
+        at = next;
+    }
+    result.measured = solver.result();
+    result.room =
+        withServos(believed, result.measured,
+                   "structured light, " + std::to_string(result.measured.estimates.size()) + " states of the device");
+    return result;
+}
+
+ServoMeasurement measureServosOnBench(const Rig& rig, const Installation& believed, std::uint32_t seed,
+                                      DeviceBench& bench, const Progress& progress, const ServoPlanOptions& options) {
+    if (believed.cameras.empty() || believed.projectors.empty())
+        throw InvalidInput("servos by camera", "the room has no projector or no camera",
+                           "calibrate projector and camera first");
+    const CalibratedCamera &camera = believed.cameras.front().camera, &projector = believed.projectors.front().camera;
+    const CaptureOrder order = parsePattern(kPattern, {projector.size.x, projector.size.y});
+    const auto look = [&](const std::vector<double>& commanded, const Progress& part) {
+        bench.stand(commanded, part);
+        std::vector<cv::Mat> images = bench.photograph(0, order, part);
+        if (images.size() != order.images.size() || images.front().empty())
+            throw DeviceError("the camera", "it stopped in between",
+                              "look whether it is plugged in, and measure again");
+        for (cv::Mat& image : images) fitPicture(image, camera.size, camera.size);
+        return surfacePoints(lightOf(decodeView(images, order), kMostPoints), camera, projector);
+    };
+    ServoPlanOptions plan = options;
+    plan.pictures = static_cast<int>(order.images.size());
+    return measureServos(rig, believed, seed, look, progress, plan);
+}
+
+} // namespace lumorph

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+
+#include "calibration/servos/servo_calibration.h"
+#include "calibration/verify/device_bench.h"
+
+namespace lumorph {
+
+/// Servos as they were measured.
+struct ServoMeasurement {
+    Installation room; ///< believed, with the measured servos where they may be used
+    ServoPlan plan;
+    double seconds = 0.0; ///< that the device moved and was photographed, by the plan's own figures
+    ServoCalibration measured;
+};
+
+/// Moves the servos slowly to a step's commands and looks at the device. Throws what its hardware throws; Cancelled.
+using ServoLook = std::function<ServoPass(const std::vector<double>& commanded, const Progress& progress)>;
+
+/// Plans with the room as it is believed to be, steps, looks and solves. Reports stages in words for the user ("hands
+/// off: ..."). Throws what solveServos and `look` throw; Cancelled leaves nothing behind.
+[[nodiscard]] ServoMeasurement measureServos(const Rig& rig, const Installation& believed, std::uint32_t seed,
+                                             const ServoLook& look, const Progress& progress = {},
+                                             const ServoPlanOptions& options = {});
+
+/// The same by the first projector and camera of a bench, under phase shifts.
+[[nodiscard]] ServoMeasurement measureServosOnBench(const Rig& rig, const Installation& believed, std::uint32_t seed,
+                                                    DeviceBench& bench, const Progress& progress = {},
+                                                    const ServoPlanOptions& options = {});
+
+} // namespace lumorph
