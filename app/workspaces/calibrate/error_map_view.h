@@ -18,6 +18,7 @@ public:
     explicit ErrorMapView(QWidget* parent = nullptr);
     /// `device`: its outline in world metres, x and z.
     void show(std::optional<ErrorPlan> plan, QPolygonF device);
+    [[nodiscard]] const std::optional<ErrorPlan>& plan() const noexcept { return plan_; } ///< that is shown
     [[nodiscard]] QSize minimumSizeHint() const override { return {240, 160}; }
 
 protected:
