@@ -3,8 +3,8 @@
 #include <cstdint>
 #include <functional>
 
+#include "calibration/capture/device_bench.h"
 #include "calibration/servos/servo_calibration.h"
-#include "calibration/verify/device_bench.h"
 
 namespace lumorph {
 

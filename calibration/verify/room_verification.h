@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "calibration/verify/device_bench.h"
+#include "calibration/capture/device_bench.h"
 #include "calibration/verify/room_check.h"
 #include "core/base/progress.h"
 

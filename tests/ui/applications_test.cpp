@@ -274,6 +274,26 @@ TEST_F(ApplicationsWindow, OfWhichNoneCanBeShownLeaveAQuietPageInTheKiosk) {
     EXPECT_NE(window.findNow<QWidget>("visitors.rest"), nullptr);
 }
 
+TEST_F(ApplicationsWindow, CompareTheBendInTwoHalvesInTheVisitorsLanguage) {
+    window.command("Applications");
+    window.click("applications.navigation");
+    ASSERT_TRUE(eventually([&] { return shows("navigation"); }, 60s));
+    QTest::keyClick(&eye(), Qt::Key_O);
+    auto* without = window.find<ViewPane>("scene.cropped");
+    auto* with = window.find<ViewPane>("scene.uncropped");
+    ASSERT_TRUE(without != nullptr && with != nullptr);
+    EXPECT_EQ(without->label(), "Without bending");
+    window.click("visitors.language");
+    EXPECT_EQ(without->label(), "Ohne Biegen");
+    EXPECT_EQ(with->label(), QString::fromStdString(bendCaptions()[1].german));
+    EXPECT_TRUE(eventually([&] { return !without->picture().isNull() && !with->picture().isNull(); }, 60s));
+    pass(1500ms);
+    window.screenshot("navigation-bend");
+    EXPECT_NE(without->picture(), with->picture());
+    QTest::keyClick(with, Qt::Key_O);
+    EXPECT_TRUE(eventually([&] { return eye().isVisible() && !with->isVisible(); }));
+}
+
 TEST_F(ApplicationsWindow, AreToldByTheHostWhatToShow) {
     studio().settings.setToldTo("ambient", {});
     window.click("bar.applications");

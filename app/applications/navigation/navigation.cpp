@@ -102,16 +102,17 @@ Bending bendingOf(const DemoTold& told) {
 }
 
 std::shared_ptr<const ShowCaption> comparingCaption() {
-    return std::make_shared<const ShowCaption>(
-        ShowCaption{{"Without and with bending", "Ohne und mit Biegen"},
-                    {"On the left what rises behind the tablet is cut off; on the right its far edge comes up for you, "
-                     "and carries it.",
-                     "Links ist abgeschnitten, was hinter dem Tablet aufragt; rechts kommt dir seine ferne Kante "
-                     "entgegen und trägt es."}});
+    return std::make_shared<const ShowCaption>(ShowCaption{
+        {"Without and with bending", "Ohne und mit Biegen"},
+        {"On the left what rises behind the tablet lies flat on the table or is missing; on the right the far edge "
+         "comes up for you, and carries it.",
+         "Links liegt flach auf dem Tisch, was hinter dem Tablet aufragt, oder es fehlt; rechts kommt dir "
+         "die ferne Kante entgegen und trägt es."}});
 }
 
 std::unique_ptr<ShowProgram> begin(const ProgramStart& start, const Progress& progress) {
     const DemoTold& told = start.told;
+    const Bending bending = bendingOf(told); // before the map, which takes its time
     const auto map = told.find("map"), place = told.find("goto");
     std::shared_ptr<const Map> shown;
     std::optional<ShowCaption> report;
@@ -123,7 +124,7 @@ std::unique_ptr<ShowProgram> begin(const ProgramStart& start, const Progress& pr
         report = importCaption(imported.report, std::filesystem::path(map->second).filename().string());
         shown = std::make_shared<const Map>(std::move(imported.map));
     }
-    auto program = std::make_unique<NavigationProgram>(start.seed, std::move(shown), bendingOf(told));
+    auto program = std::make_unique<NavigationProgram>(start.seed, std::move(shown), bending);
     if (report) program->tell(std::move(*report));
     if (place != told.end()) program->flyTo(place->second);
     return program;

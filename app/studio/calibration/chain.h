@@ -12,7 +12,7 @@
 
 #include "app/studio/calibration/calibration_state.h"
 #include "app/studio/calibration/live_capture.h"
-#include "calibration/verify/device_bench.h"
+#include "calibration/capture/device_bench.h"
 #include "core/base/progress.h"
 #include "core/rig/rig.h"
 #include "core/scene/installation_store.h"

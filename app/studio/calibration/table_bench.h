@@ -8,8 +8,8 @@
 
 #include "app/studio/devices/device_service.h"
 #include "calibration/capture/capture_camera.h"
+#include "calibration/capture/device_bench.h"
 #include "calibration/capture/pattern_display.h"
-#include "calibration/verify/device_bench.h"
 #include "core/base/clock.h"
 #include "core/scene/installation.h"
 

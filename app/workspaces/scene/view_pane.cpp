@@ -18,7 +18,9 @@ constexpr double kClickReach = 4.0; // pixels that a click may wander
 constexpr int kPanePadding = 8;
 constexpr int kPaneMargin = 12;
 constexpr int kCaptionHeight = 24;
-constexpr int kLabelPixels = 17, kLabelOver = 118; ///< over the lower edge, to its middle
+constexpr int kLabelPixels = 17;
+constexpr int kLabelOver = 44, kLabelOverHints = 118; ///< over the lower edge, to its middle
+constexpr int kRoomBesideHints = 740; ///< from this width on what visitors find at the lower edge lies beside it
 
 /// Arrow keys go around as the pointer does.
 std::optional<QPointF> stepOf(int key) {
@@ -137,7 +139,7 @@ void ViewPane::paintLabel(QPainter& painter) const {
     const QFontMetrics metrics(large);
     const QString text = metrics.elidedText(label_, Qt::ElideRight, width() - 4 * kPanePadding);
     QRect plate(0, 0, metrics.horizontalAdvance(text) + 4 * kPanePadding, metrics.height() + 2 * kPanePadding);
-    plate.moveCenter({width() / 2, height() - kLabelOver});
+    plate.moveCenter({width() / 2, height() - (width() < kRoomBesideHints ? kLabelOverHints : kLabelOver)});
     painter.setRenderHint(QPainter::Antialiasing);
     painter.setPen(Qt::NoPen);
     painter.setBrush(QColor(14, 18, 22, 168));

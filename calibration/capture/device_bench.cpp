@@ -1,4 +1,4 @@
-#include "calibration/verify/device_bench.h"
+#include "calibration/capture/device_bench.h"
 
 #include <cmath>
 #include <string>
