@@ -94,8 +94,9 @@ TEST_F(WindowRate, ThirtyMatchesASecondAreSeenWhileALargeTargetMoves) {
     ASSERT_TRUE(view);
     ASSERT_EQ(studio_.document.state().target.target->solid.mesh.triangles.size(), 70'000U);
     run(std::chrono::seconds(3)); // until the picture has found its resolution
-    // A machine that draws slowly cannot show thirty, yet nothing but its drawing may keep it from them: on the coarsest
-    // picture, and nearly all of the time. Other programs on the machine only take away, so the best of six counts.
+    // A machine that draws slowly cannot show thirty, yet nothing but its drawing may keep it from them: on the
+    // coarsest picture, and nearly all of the time. Other programs on the machine only take away, so the best of six
+    // counts.
     const auto wanted = [](const Rates& rates) {
         constexpr double kCoarsest = 0.36;
         return rates.drawn > kCoarsest ? 30.0 : std::min(30.0, 0.8 * 1000.0 / rates.drawing);
