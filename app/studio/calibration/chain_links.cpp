@@ -346,7 +346,7 @@ ChainLink delaysLink() {
     link.title = QObject::tr("Delays");
     link.purpose =
         QObject::tr("How late light, poses and servos are: what moves is lit where it will be, not where it was.");
-    link.warning = QObject::tr("Hands off: the servos move");
+    link.warning = QObject::tr("Hands off at the end: the servos move");
     link.how = {
         QObject::tr("The projector flashes, and the camera sees when."),
         QObject::tr("Carry a tracked body that a projected mark follows, then turn a board before tracker and camera."),

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <vector>
 
 #include <QString>
@@ -23,12 +24,16 @@ public:
     explicit BudgetBar(QWidget* parent = nullptr);
     void show(std::vector<BudgetSlice> slices);
     [[nodiscard]] QSize sizeHint() const override;
-    [[nodiscard]] QSize minimumSizeHint() const override { return sizeHint(); }
+    [[nodiscard]] QSize minimumSizeHint() const override;
+    [[nodiscard]] int heightForWidth(int width) const override;
 
 protected:
     void paintEvent(QPaintEvent* event) override;
 
 private:
+    [[nodiscard]] int rowHeight(int width) const;
+    void paintRow(QPainter& painter, std::size_t row) const;
+
     std::vector<BudgetSlice> slices_;
 };
 

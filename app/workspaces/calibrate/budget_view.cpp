@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <exception>
 #include <memory>
 #include <optional>
 #include <string_view>
@@ -16,19 +17,20 @@
 #include "app/studio/widgets/value_field.h"
 #include "app/workspaces/calibrate/budget_bar.h"
 #include "app/workspaces/calibrate/chain_docks.h"
+#include "app/workspaces/common/step_card.h"
 #include "calibration/budget/error_budget.h"
 
 namespace lumorph::studio {
 namespace {
 
-constexpr int kPageWidth = 900;                      // pixels; wider rows part a name from its number
+constexpr int kPageWidth = 900, kFieldWidth = 560;   // pixels; wider rows part a name from its number
 constexpr double kUsualSpeed = 0.3, kFastest = 2.0;  // metres a second
 constexpr double kUsualFloat = 0.02, kHighest = 0.2; // metres
 
 QString partName(BudgetPart part) {
     switch (part) {
     case BudgetPart::projector:
-        return QObject::tr("Projector's light");
+        return QObject::tr("Where the light falls");
     case BudgetPart::tracker:
         return QObject::tr("Tracker in the room");
     case BudgetPart::device:
@@ -38,11 +40,11 @@ QString partName(BudgetPart part) {
     case BudgetPart::servos:
         return QObject::tr("Servos");
     case BudgetPart::delay:
-        return QObject::tr("Delay that is not known");
+        return QObject::tr("Unknown delay");
     case BudgetPart::prediction:
         break;
     }
-    return QObject::tr("What prediction leaves");
+    return QObject::tr("Left by prediction");
 }
 
 QString sourceWords(ErrorSource source) {
@@ -50,9 +52,9 @@ QString sourceWords(ErrorSource source) {
     case ErrorSource::told:
         return QObject::tr("measured");
     case ErrorSource::measured:
-        return QObject::tr("measured; as it usually comes out");
+        return QObject::tr("measured; its size is the usual one");
     case ErrorSource::assumed:
-        return QObject::tr("not measured; as it usually is");
+        return QObject::tr("not measured; its size is the usual one");
     case ErrorSource::worked:
         break;
     }
@@ -69,7 +71,9 @@ std::optional<std::size_t> linkOf(BudgetPart part) {
     return static_cast<std::size_t>(found - links.begin());
 }
 
-QString millimetresText(double metres) { return QString("%1 mm").arg(1e3 * metres, 0, 'f', 1); }
+QString wholeText(double metres) { return QString("%1 mm").arg(1e3 * metres, 0, 'f', 1); }
+
+QString sentence(const QString& words) { return words.left(1).toUpper() + words.mid(1) + '.'; }
 
 /// What the room, the device and a floating height make of errors; the hand's speed comes after it.
 struct BudgetBasis {
@@ -78,13 +82,26 @@ struct BudgetBasis {
     RoomErrors errors;
 };
 
+/// The advised link, as the card over the budget says it.
+StepCardText cardOf(const BudgetAdvice& advice, std::size_t link, bool isTrackerPlaced) {
+    const QString title = chainLinks()[link].title.toLower();
+    QString text =
+        QObject::tr("It takes the %1 down to about %2.").arg(wholeText(advice.before), wholeText(advice.after));
+    if (!isTrackerPlaced)
+        text += ' ' + QObject::tr("So far nobody has said where the tracker's world lies: its part counts as if that "
+                                  "were laid in by a ruler.");
+    return {StepTone::live,
+            advice.isFirst ? QObject::tr("Measure %1").arg(title) : QObject::tr("Measure %1 again").arg(title), text,
+            QObject::tr("Show this link")};
+}
+
 /// Where the millimetres come from, and the link that helps most.
 class BudgetView : public QWidget {
 public:
     explicit BudgetView(const CalibrateParts& parts)
-        : parts_(parts), jobs_(*this, parts.studio.jobs, parts.studio.notices), total_(new QLabel(this)),
-          words_(new QLabel(this)), bar_(new BudgetBar(this)), help_(new QPushButton(this)),
-          speed_(new ValueField(Quantity::length, 0.0, kFastest, kUsualSpeed, this)),
+        : parts_(parts), jobs_(*this, parts.studio.jobs, parts.studio.notices),
+          card_(new StepCard("budget.card", "target", this)), page_(new QWidget(this)), total_(new QLabel(this)),
+          bar_(new BudgetBar(this)), speed_(new ValueField(Quantity::length, 0.0, kFastest, kUsualSpeed, this)),
           floats_(new ValueField(Quantity::length, 0.0, kHighest, kUsualFloat, this)) {
         setObjectName("budget.view");
         setProperty("look", "panel");
@@ -92,18 +109,24 @@ public:
         auto* column = new QVBoxLayout(this);
         column->setContentsMargins(16, 8, 16, 8);
         column->setSpacing(12);
-        auto* top = new QHBoxLayout;
-        top->addWidget(makeHeading(tr("Where the millimetres come from"), this), 1);
-        auto* back = new QPushButton(tr("Back to the links"), this);
-        back->setObjectName("budget.back");
-        connect(back, &QPushButton::clicked, this, [this] { parts_.selection.setBudget(false); });
-        top->addWidget(back);
-        column->addLayout(top);
+        column->addWidget(card_);
         column->addWidget(makeJobBar(parts.studio.jobs, "budget", this));
-        column->addWidget(makeNoticeBar(parts.studio.notices, "budget", this));
         const Column page = makeColumn(this);
         column->addWidget(page.widget, 1);
-        fillPage(*page.layout);
+        auto* back = new QPushButton(tr("Back"), this);
+        back->setObjectName("budget.back");
+        back->setToolTip(tr("To the chosen link"));
+        connect(back, &QPushButton::clicked, this, [this] { parts_.selection.setBudget(false); });
+        page.layout->addWidget(makeHeading(tr("Where the millimetres come from"), this));
+        auto* top = new QHBoxLayout;
+        top->addWidget(total_);
+        top->addStretch(1);
+        top->addWidget(back, 0, Qt::AlignTop);
+        page.layout->addLayout(top);
+        page.layout->addWidget(page_);
+        page.layout->addStretch(1);
+        fillPage();
+        connect(card_, &StepCard::nextWanted, this, [this] { doNext(); });
         connect(&parts.studio.document, &StudioDocument::changed, this, [this](StateParts changed) {
             if (changed & (StateParts(StatePart::rig) | StatePart::rigEdited | StatePart::installation)) makeStale();
         });
@@ -118,31 +141,41 @@ protected:
     }
 
 private:
-    void fillPage(QVBoxLayout& page) {
+    QLabel* makeWords(const QString& text, const char* look) {
+        auto* words = new QLabel(text, this);
+        words->setProperty("look", look);
+        words->setWordWrap(true);
+        words->setMaximumWidth(kPageWidth);
+        return words;
+    }
+
+    void fillPage() {
+        auto* page = new QVBoxLayout(page_);
+        page->setContentsMargins(0, 0, 0, 0);
+        page->setSpacing(8);
         total_->setObjectName("budget.total");
         total_->setAccessibleName(tr("All together"));
         makeLarge(total_, 32, {});
-        page.addWidget(total_);
-        words_->setObjectName("budget.words");
-        words_->setProperty("look", "muted");
-        words_->setWordWrap(true);
-        words_->setMaximumWidth(kPageWidth);
-        page.addWidget(words_);
+        page->addWidget(
+            makeWords(tr("is how far beside its place the viewer sees what is shown: root mean square over the "
+                         "device, all parts together."),
+                      ""));
         bar_->setMaximumWidth(kPageWidth);
-        page.addWidget(bar_);
-        help_->setObjectName("budget.help");
-        help_->setProperty("look", "primary");
-        connect(help_, &QPushButton::clicked, this, [this] { goToLink(); });
-        page.addWidget(help_, 0, Qt::AlignLeft);
-        page.addWidget(makeHeading(tr("What is shown, and who carries it"), this));
+        page->addSpacing(8);
+        page->addWidget(bar_);
+        page->addWidget(makeWords(tr("Squares are added, so that the largest part is nearly all that counts. Hatched "
+                                     "is what nobody has measured: it is taken to be as large as it usually is."),
+                                  "muted"));
+        page->addSpacing(8);
+        page->addWidget(makeHeading(tr("What is shown, and who carries it"), this));
         speed_->setObjectName("budget.speed");
         floats_->setObjectName("budget.floats");
         speed_->setValue(kUsualSpeed);
         floats_->setValue(kUsualFloat);
-        for (QWidget* row : {makeRow(tr("The hand goes in a second"), speed_, this),
+        for (QWidget* row : {makeRow(tr("In a second the hand carries it"), speed_, this),
                              makeRow(tr("Things float over the surface by"), floats_, this)}) {
-            row->setMaximumWidth(420);
-            page.addWidget(row);
+            row->setMaximumWidth(kFieldWidth);
+            page->addWidget(row);
         }
         for (ValueField* field : {speed_, floats_}) {
             const auto take = [this, field] {
@@ -155,7 +188,6 @@ private:
             if (field == speed_) connect(field, &ValueField::previewed, this, [this](double) { showBudget(); });
             connect(field, &ValueField::reverted, this, take);
         }
-        page.addStretch(1);
     }
 
     void makeStale() {
@@ -167,13 +199,14 @@ private:
     void follow() {
         if (!isStale_ || !isVisible()) return;
         isStale_ = false;
+        trouble_.reset();
         const StudioState& state = parts_.studio.document.state();
         if (!state.rig.rig) {
+            jobs_.stop("budget");
             basis_.reset();
             return showBudget();
         }
-        parts_.studio.notices.dismissAll("budget");
-        jobs_.run<BudgetBasis>(
+        jobs_.runWith<BudgetBasis>(
             "budget", "budget", tr("Adding up the millimetres"),
             [rig = state.rig.rig, room = *state.installation, floats = floats_->value()](const Progress& progress) {
                 SlipView view;
@@ -184,28 +217,23 @@ private:
             [this](BudgetBasis basis) {
                 basis_ = std::make_unique<BudgetBasis>(std::move(basis));
                 showBudget();
+            },
+            [this](const std::exception& error) {
+                basis_.reset(); // its numbers are of another room
+                trouble_ = noticeOf(error);
+                showBudget();
             });
+        showBudget();
     }
 
     void showBudget() {
         advised_.reset();
-        for (QWidget* part : {static_cast<QWidget*>(total_), static_cast<QWidget*>(bar_)})
-            part->setVisible(basis_ != nullptr);
-        help_->hide();
-        if (!basis_) {
-            words_->setText(tr("Open a device: how far pictures slip on it is added up here, part by part."));
-            return;
-        }
+        for (QWidget* part : {static_cast<QWidget*>(total_), page_}) part->setVisible(basis_ != nullptr);
+        if (!basis_) return card_->show(cardWithout());
         CarryingHand hand;
         hand.speed = speed_->value();
         const ErrorBudget budget = budgetOf(*basis_->rig, basis_->model, basis_->errors, hand);
-        total_->setText(millimetresText(budget.total));
-        QString words = tr("So far what is shown lies beside where the viewer should see it, across the sight: root "
-                           "mean square over the device, all parts together. Squares are added, so that the largest "
-                           "part is nearly all that counts.");
-        if (!budget.isTrackerPlaced)
-            words += ' ' + tr("Nobody has said where the tracker's world lies; it counts as if laid in by a ruler.");
-        words_->setText(words);
+        total_->setText(wholeText(budget.total));
         std::vector<BudgetSlice> slices;
         for (const BudgetItem& item : budget.items)
             slices.push_back({partName(item.part), sourceWords(item.source), 1e3 * item.metres, item.share,
@@ -213,15 +241,30 @@ private:
         bar_->show(std::move(slices));
         const auto best =
             std::ranges::find_if(budget.advice, [](const BudgetAdvice& one) { return linkOf(one.part).has_value(); });
-        if (best == budget.advice.end()) return;
+        if (best == budget.advice.end())
+            return card_->show({StepTone::good,
+                                tr("No part stands out"),
+                                tr("Measuring a single one again would make the whole hardly smaller."),
+                                {}});
         advised_ = linkOf(best->part);
-        const QString title = chainLinks()[*advised_].title.toLower();
-        help_->setText((best->isFirst ? tr("Measure: %1, %2 → %3") : tr("Measure again: %1, %2 → %3"))
-                           .arg(title, millimetresText(best->before), millimetresText(best->after)));
-        help_->show();
+        card_->show(cardOf(*best, *advised_, budget.isTrackerPlaced));
     }
 
-    void goToLink() {
+    /// While there is no budget: why.
+    [[nodiscard]] StepCardText cardWithout() const {
+        if (trouble_)
+            return {StepTone::failure,
+                    tr("The millimetres cannot be added up"),
+                    QString("%1: %2. %3").arg(trouble_->subject, trouble_->why, trouble_->remedy),
+                    {}};
+        if (!parts_.studio.document.state().rig.rig)
+            return {StepTone::quiet, tr("No device is open"),
+                    tr("How far pictures slip on it is added up here, part by part."), tr("Open a device...")};
+        return {StepTone::live, tr("Adding up the millimetres"), {}, {}};
+    }
+
+    void doNext() {
+        if (!basis_) return parts_.studio.commands.find("rig.open")->trigger();
         if (!advised_) return;
         parts_.chain.choose(*advised_);
         parts_.selection.setBudget(false);
@@ -229,11 +272,13 @@ private:
 
     CalibrateParts parts_;
     JobSlots jobs_;
-    QLabel *total_, *words_;
+    StepCard* card_;
+    QWidget* page_; ///< what is below the whole sum
+    QLabel* total_;
     BudgetBar* bar_;
-    QPushButton* help_;
     ValueField *speed_, *floats_;
     std::unique_ptr<BudgetBasis> basis_;
+    std::optional<Notice> trouble_; ///< why there is no basis
     std::optional<std::size_t> advised_;
     bool isStale_ = true;
 };

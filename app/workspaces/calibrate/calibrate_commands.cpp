@@ -198,11 +198,16 @@ void addCalibrateCommands(const CalibrateParts& parts) {
                            parts.selection.setWhole(true);
                            parts.selection.setBudget(false);
                        });
-    addCalibrateAction(parts, "calibrate.budget", "Where the millimetres come from", "target",
-                       "Each part's share of how far pictures slip, and what would help most", [parts] {
-                           parts.selection.setWhole(true);
-                           parts.selection.setBudget(true);
-                       });
+    QAction* budget =
+        addCalibrateAction(parts, "calibrate.budget", "Where the millimetres come from", "target",
+                           "Each part's share of how far pictures slip, and what would help most", [parts] {
+                               parts.selection.setWhole(true);
+                               parts.selection.setBudget(true);
+                           });
+    budget->setCheckable(true);
+    const auto showsBudget = [parts, budget] { budget->setChecked(parts.selection.budget()); };
+    QObject::connect(&parts.selection, &CalibrateSelection::budgetChanged, budget, showsBudget);
+    QObject::connect(budget, &QAction::triggered, budget, showsBudget); // it is not switched off by itself
     QAction* rest2 = addCalibrateAction(parts, "calibrate.chain.rest", "Measure all that is missing", "play",
                                         "In the lab, one after the other; ends where something needs you",
                                         [parts] { parts.chain.measureRest(); });

@@ -50,6 +50,8 @@ StandLook lookOf(const ChainState& state, std::size_t link) {
     return {next ? "hand" : "minus", next ? IconRole::accent : IconRole::muted, next ? "Next" : "Open"};
 }
 
+constexpr int kRowWidth = 300; // pixels, at least; a long title breaks into lines
+
 /// One link as a button: number, title, where it stands, and why.
 class LinkRow : public QPushButton {
 public:
@@ -61,16 +63,19 @@ public:
         row_.emplace(*this, static_cast<int>(link) + 1, QMargins(8, 6, 8, 6));
         setSizePolicy(QSizePolicy::Preferred, QSizePolicy::Minimum);
     }
-    void show(const ChainState& state) {
+    /// `isChosen`: not while none of them is looked at.
+    void show(const ChainState& state, bool isChosen) {
         const StandLook look = lookOf(state, link_);
         const ChainLink& shown = chainLinks()[link_];
         const QString words = state.stands[link_].words;
         row_->show({look.icon, look.role, shown.title, look.word,
                     words.isEmpty() ? shown.purpose : words.left(1).toUpper() + words.mid(1)});
-        setChecked(state.chosen == link_);
+        setAutoExclusive(false); // else the chosen one could not be let go of
+        setChecked(isChosen);
+        setAutoExclusive(true);
     }
     [[nodiscard]] QSize sizeHint() const override { return layout()->sizeHint(); }
-    [[nodiscard]] QSize minimumSizeHint() const override { return layout()->minimumSize(); }
+    [[nodiscard]] QSize minimumSizeHint() const override { return layout()->minimumSize().expandedTo({kRowWidth, 0}); }
 
 private:
     std::size_t link_;
@@ -99,12 +104,15 @@ public:
             makeCommandButton(parts.studio.commands.find("calibrate.budget"), "chain.budget", this));
         column.layout->addStretch(1);
         connect(&parts.chain, &ChainService::changed, this, [this] { refresh(); });
+        connect(&parts.selection, &CalibrateSelection::budgetChanged, this, [this] { refresh(); });
         refresh();
     }
 
 private:
     void refresh() {
-        for (LinkRow* row : rows_) row->show(parts_.chain.state());
+        const ChainState& state = parts_.chain.state();
+        for (std::size_t k = 0; k < rows_.size(); ++k)
+            rows_[k]->show(state, state.chosen == k && !parts_.selection.budget());
     }
 
     CalibrateParts parts_;
@@ -174,8 +182,11 @@ private:
         progress_->setRange(0, state.fraction < 0.0 ? 0 : 1000);
         progress_->setValue(static_cast<int>(1000.0 * state.fraction));
         const bool runs = state.running == state.chosen;
-        warning_->setText(link.warning);
-        warning_->setVisible(!link.warning.isEmpty() && (runs || !state.outcomes.contains(state.chosen)));
+        // Who touches things stands at the table, and reads the step from there.
+        const bool touches = runs && state.live;
+        const QString large = touches ? state.live->title : link.warning;
+        warning_->setText(large);
+        warning_->setVisible(!large.isEmpty() && (runs || !state.outcomes.contains(state.chosen)));
         QString text;
         for (std::size_t k = 0; k < link.how.size(); ++k)
             text += QString("%1%2.  %3").arg(k == 0 ? "" : "\n").arg(k + 1).arg(link.how[k]);

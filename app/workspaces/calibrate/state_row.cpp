@@ -13,16 +13,15 @@ StateRow::StateRow(QWidget& host, int number, const QMargins& margins)
     how_->setProperty("look", "badge");
     words_->setObjectName(host.objectName() + ".words");
     words_->setProperty("look", "muted");
-    words_->setWordWrap(true);
+    for (QLabel* label : {title_, words_}) label->setWordWrap(true);
     for (QLabel* label : {title_, how_, words_}) {
         label->setTextFormat(Qt::PlainText);
         label->setAttribute(Qt::WA_TransparentForMouseEvents); // the host is what is clicked
     }
     auto* top = new QHBoxLayout;
     top->setSpacing(8);
-    top->addWidget(title_);
-    top->addStretch(1);
-    top->addWidget(how_);
+    top->addWidget(title_, 1);
+    top->addWidget(how_, 0, Qt::AlignTop);
     auto* texts = new QVBoxLayout;
     texts->setSpacing(2);
     texts->addLayout(top);

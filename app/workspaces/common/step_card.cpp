@@ -14,6 +14,7 @@ namespace lumorph::studio {
 namespace {
 
 constexpr int kStepCardHeight = 88; // the same whatever it says, so that what is below does not jump
+constexpr int kNarrow = 400;        // pixels; in less the button goes under the texts
 
 QColor toneColor(StepCardText::Tone tone) {
     const Palette& colors = currentPalette();
@@ -57,12 +58,12 @@ StepCard::StepCard(const QString& name, const QString& icon, QWidget* parent)
     texts->addWidget(title_);
     texts->addWidget(text_);
     texts->addStretch(1);
-    auto* row = new QHBoxLayout(this);
-    row->setContentsMargins(20, 12, 16, 12);
-    row->setSpacing(16);
-    row->addWidget(icon_);
-    row->addLayout(texts, 1);
-    row->addWidget(next_);
+    row_ = new QBoxLayout(QBoxLayout::LeftToRight, this);
+    row_->setContentsMargins(20, 12, 16, 12);
+    row_->setSpacing(16);
+    row_->addWidget(icon_);
+    row_->addLayout(texts, 1);
+    row_->addWidget(next_);
     // The second click of a double click is not meant for the step that came up under it.
     connect(next_, &QPushButton::clicked, this, [this] {
         const bool again = sinceClick_.isValid() && sinceClick_.elapsed() < QApplication::doubleClickInterval();
@@ -102,6 +103,14 @@ void StepCard::show(const StepCardText& text) {
     next_->setText(text.button);
     next_->setVisible(!text.button.isEmpty());
     update();
+}
+
+void StepCard::resizeEvent(QResizeEvent* event) {
+    QFrame::resizeEvent(event);
+    const bool isNarrow = width() < kNarrow;
+    row_->setDirection(isNarrow ? QBoxLayout::TopToBottom : QBoxLayout::LeftToRight);
+    row_->setSpacing(isNarrow ? 8 : 16);
+    icon_->setVisible(!isNarrow);
 }
 
 void StepCard::paintEvent(QPaintEvent* event) {

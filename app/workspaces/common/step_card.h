@@ -1,5 +1,6 @@
 #pragma once
 
+#include <QBoxLayout>
 #include <QElapsedTimer>
 #include <QFrame>
 #include <QLabel>
@@ -34,6 +35,7 @@ signals:
 
 protected:
     void paintEvent(QPaintEvent* event) override;
+    void resizeEvent(QResizeEvent* event) override;
 
 private:
     QString quietIcon_;
@@ -43,6 +45,7 @@ private:
     QLabel* title_;
     QLabel* text_;
     QPushButton* next_;
+    QBoxLayout* row_ = nullptr; ///< icon, texts, button; one under the other where there is no room
 };
 
 } // namespace lumorph::studio
