@@ -56,16 +56,14 @@ TEST(Demo, OfAMatchedTargetPlaysWithoutAWindowToo) {
     EXPECT_TRUE(told["warnings"].empty()) << told["warnings"];
 }
 
-/// How far apart the last frames of two videos are, a pixel.
-double lastFramesDiffer(const std::string& one, const std::string& other) {
-    cv::Mat last[2];
-    int k = 0;
-    for (const std::string& file : {one, other}) {
-        cv::VideoCapture video(file, cv::CAP_FFMPEG);
-        for (cv::Mat frame; video.read(frame);) last[k] = frame.clone();
-        ++k;
-    }
-    return cv::norm(last[0], last[1], cv::NORM_L1) / static_cast<double>(last[0].total());
+/// How far apart two pictures are, a pixel.
+double picturesDiffer(const Image& one, const Image& other) {
+    EXPECT_EQ(one.size(), other.size());
+    double sum = 0.0;
+    for (int y = 0; y < one.size().y; ++y)
+        for (int x = 0; x < one.size().x; ++x)
+            for (std::size_t c = 0; c < 3; ++c) sum += std::abs(int(one.at(x, y)[c]) - int(other.at(x, y)[c]));
+    return sum / (static_cast<double>(one.size().x) * one.size().y);
 }
 
 // The same seed and inputs are the same show.
@@ -75,17 +73,20 @@ TEST(Demo, AnApplicationAnswersRecordedInputs) {
     writeFile(inputs, std::string(R"({"inputs": [{"seconds": 0.0, "name": "key.next", "value": 1},
                                                 {"seconds": 0.02, "name": "key.next", "value": 1}]})"));
     const auto play = [&](const std::string& name, const std::vector<std::string>& more) {
+        // The last frame itself: what an encoder makes of a film is not the same twice where threads are late.
+        const std::string picture = (folder / (name + ".png")).string();
         std::vector<std::string> all{
-            "demo", "labyrinth", "--seconds", "0.1", "--json", "--record", (folder / (name + ".mp4")).string()};
+            "demo",      "labyrinth", "--seconds", "0.1", "--json", "--record", (folder / (name + ".mp4")).string(),
+            "--picture", picture};
         all.insert(all.end(), more.begin(), more.end());
         const Outcome outcome = lumorph(all);
         EXPECT_EQ(outcome.exitCode, 0) << outcome.err;
         EXPECT_TRUE(outcome.json()["warnings"].empty()) << outcome.json()["warnings"];
-        return (folder / (name + ".mp4")).string();
+        return readPng(picture);
     };
-    const std::string itself = play("itself", {"--seed", "7"});
-    EXPECT_EQ(lastFramesDiffer(itself, play("again", {"--seed", "7"})), 0.0);
-    EXPECT_GT(lastFramesDiffer(itself, play("next", {"--seed", "7", "--input", inputs})), 3.0) << "another level";
+    const Image itself = play("itself", {"--seed", "7"});
+    EXPECT_EQ(picturesDiffer(itself, play("again", {"--seed", "7"})), 0.0);
+    EXPECT_GT(picturesDiffer(itself, play("next", {"--seed", "7", "--input", inputs})), 3.0) << "another level";
 }
 
 /// The last picture of the map after half a second.
