@@ -75,7 +75,7 @@ protected:
         const auto rows = static_cast<double>(kBudgetParts);
         // The rows fill what is below the bar and its gap.
         const double top = 56.0, high = (bar->height() - top) / rows;
-        const double middle = top + high * (static_cast<double>(part) + 0.5);
+        const double middle = top + high * static_cast<double>(part) + 14.0; // words may be under the name
         std::set<QRgb> colours;
         for (int x = 3; x < 13; ++x)
             for (int y = -5; y < 5; ++y)

@@ -255,7 +255,7 @@ private:
         if (trouble_)
             return {StepTone::failure,
                     tr("The millimetres cannot be added up"),
-                    QString("%1: %2. %3").arg(trouble_->subject, trouble_->why, sentence(trouble_->remedy)),
+                    sentence(trouble_->subject + ": " + trouble_->why) + ' ' + sentence(trouble_->remedy),
                     {}};
         if (!parts_.studio.document.state().rig.rig)
             return {StepTone::quiet, tr("No device is open"),
