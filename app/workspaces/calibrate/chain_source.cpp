@@ -5,6 +5,7 @@
 #include <QVBoxLayout>
 
 #include "app/studio/calibration/chain_service.h"
+#include "app/studio/calibration/table_bench.h"
 #include "app/studio/widgets/panel.h"
 #include "app/workspaces/calibrate/calibrate_commands.h"
 #include "app/workspaces/calibrate/chain_docks.h"
