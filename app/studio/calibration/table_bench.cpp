@@ -3,6 +3,7 @@
 #include <atomic>
 #include <chrono>
 #include <map>
+#include <optional>
 #include <thread>
 #include <utility>
 
@@ -121,22 +122,31 @@ private:
     std::map<std::size_t, std::pair<CaptureOrder, std::unique_ptr<PoseCapture>>> captures_;
 };
 
+/// What stands in the way of a measurement.
+struct Missing {
+    QString why, remedy;
+};
+std::optional<Missing> missingOn(const Installation& room, const DeviceService& devices) {
+    if (room.projectors.empty())
+        return Missing{QObject::tr("The room has no projector"), QObject::tr("add one in Scene")};
+    if (room.cameras.empty() || room.cameras.front().address.empty())
+        return Missing{QObject::tr("The room has no camera of this machine"),
+                       QObject::tr("calibrate projector and camera with it first")};
+    if (devices.status().phase != LinkPhase::live)
+        return Missing{QObject::tr("The servos are not driven"), QObject::tr("connect and start them in Devices")};
+    return std::nullopt;
+}
+
 } // namespace
 
 QString tableObstacle(const Installation& room, const DeviceService& devices) {
-    if (room.projectors.empty()) return QObject::tr("The room has no projector: add one in Scene.");
-    if (room.cameras.empty() || room.cameras.front().address.empty())
-        return QObject::tr("The room has no camera of this machine: calibrate projector and camera with it first.");
-    if (devices.status().phase != LinkPhase::live)
-        return QObject::tr("The servos are not driven: connect and start them in Devices.");
-    return {};
+    const std::optional<Missing> missing = missingOn(room, devices);
+    return missing ? QObject::tr("%1: %2.").arg(missing->why, missing->remedy) : QString();
 }
 
 std::shared_ptr<DeviceBench> openTable(const TableParts& parts, const Installation& room) {
-    if (const QString obstacle = tableObstacle(room, *parts.devices); !obstacle.isEmpty()) {
-        const QStringList words = obstacle.chopped(1).split(": ");
-        throw DeviceError("device on the table", words.front().toLower().toStdString(), words.back().toStdString());
-    }
+    if (const std::optional<Missing> missing = missingOn(room, *parts.devices))
+        throw DeviceError("device on the table", missing->why.toStdString(), missing->remedy.toStdString());
     return std::make_shared<TableBench>(parts, room);
 }
 
