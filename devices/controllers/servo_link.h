@@ -1,6 +1,8 @@
 #pragma once
 
+#include <chrono>
 #include <cstdint>
+#include <filesystem>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -22,6 +24,8 @@ struct LinkOptions {
     std::function<void()> onChange; ///< in the link's thread; must return at once
     std::function<void(std::span<const std::uint8_t>, bool)>
         onWire; ///< every message, true: sent; for monitor and recording
+    /// What is started with each link to let servos go when this program cannot; empty: the one beside this program.
+    std::filesystem::path failsafeProgram;
 };
 
 /// A device with its servos: transport, controller and guard in a thread of their own, and a hand for it. Everything
@@ -48,6 +52,8 @@ public:
     void disarm();
     /// All servos are detached: the message is written within 50 ms, whatever else goes on.
     void stop();
+    /// As stop(), and waits until the board should know: at most so long. False where it may not.
+    bool letGo(std::chrono::milliseconds atMost);
 
     /// Strokes for all servos; the latest wins.
     void command(std::span<const double> strokes);

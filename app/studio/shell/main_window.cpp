@@ -307,7 +307,8 @@ void MainWindow::closeEvent(QCloseEvent* event) {
         data_->kiosk->askOperator("To close Lumorph.", [this] { closeNow(); });
         return;
     }
-    leaveFullView(); // it is no layout to come back to
+    data_->studio.devices.beginLeave(); // a disk that hangs may hold up what follows
+    leaveFullView();                    // it is no layout to come back to
     for (const auto& [id, page] : data_->pages)
         if (id == data_->present) page->keepLayout();
     if (!data_->kiosk->closed()) {
