@@ -1,6 +1,5 @@
 #include "app/cli/device_link.h"
 
-#include <algorithm>
 #include <cstdio>
 #include <string>
 #include <utility>

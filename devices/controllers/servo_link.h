@@ -30,7 +30,9 @@ struct LinkOptions {
 
 /// A device with its servos: transport, controller and guard in a thread of their own, and a hand for it. Everything
 /// here may be called from any thread and returns at once. While the window's thread is stuck, servos go on to the last
-/// command and stop() still works. A QCoreApplication must be there.
+/// command and stop() still works. Where this program ends without leave(), whatever ends it, or its link's thread is
+/// stuck for a second, a process of its own lets the servos go (transport/link_failsafe.h), on links that two processes
+/// can use. A QCoreApplication must be there.
 class ServoLink {
 public:
     /// Throws as checkProfile and parseDeviceAddress.

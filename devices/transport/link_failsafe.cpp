@@ -101,6 +101,7 @@ struct LinkFailsafe::Data {
     Descriptor socket;
     std::size_t report = 0;
     std::vector<std::uint8_t> release; ///< as it was sent, or shall be
+    bool driven = false;               ///< by it, some servo may be under power
     bool sent = true;
     bool letGo = false;
     std::optional<Microseconds> beatAt;
@@ -111,7 +112,7 @@ struct LinkFailsafe::Data {
         return taken || errno == EAGAIN || errno == EINTR || errno == ENOBUFS;
     }
     void passRelease() {
-        if (!sent && !send(release, sent)) end();
+        if (!sent && socket.get() >= 0 && !send(release, sent)) end();
     }
     void listen() {
         std::array<std::uint8_t, 16> message{};
@@ -147,8 +148,7 @@ LinkFailsafe::~LinkFailsafe() {
     ::shutdown(data_->socket.get(), SHUT_WR);
     // Its end of the pair closes with the process, after the device.
     pollfd end{data_->socket.get(), POLLIN, 0};
-    const bool lets = data_->release.size() > 3;
-    if (!lets) (void)::poll(&end, 1, kCloseMilliseconds);
+    if (!data_->driven) (void)::poll(&end, 1, kCloseMilliseconds);
     data_->end();
 }
 
@@ -171,14 +171,17 @@ void LinkFailsafe::setRelease(const std::vector<std::vector<std::uint8_t>>& mess
     }
     if (release == data_->release || !runs() || release.size() > failsafe::kMostBytes) return;
     data_->release = std::move(release);
+    data_->driven = !messages.empty();
     data_->sent = false;
+    data_->beatAt.reset();
     data_->passRelease();
 }
 
 void LinkFailsafe::beat(Microseconds now) {
-    if (!runs() || (data_->beatAt && now >= *data_->beatAt && now - *data_->beatAt < kBeatEvery)) return;
-    data_->beatAt = now;
     data_->passRelease();
+    if (!runs() || !data_->driven || (data_->beatAt && now >= *data_->beatAt && now - *data_->beatAt < kBeatEvery))
+        return;
+    data_->beatAt = now;
     bool taken = false; // one that is not has many before it
     if (runs() && !data_->send(std::span(&failsafe::kBeat, 1), taken)) data_->end();
 }

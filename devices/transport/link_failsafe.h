@@ -30,7 +30,8 @@ public:
     /// Messages that let all servos go, and the pause between two times that they are written. None: no servo is under
     /// power. To be told before the first pulse is written.
     void setRelease(const std::vector<std::vector<std::uint8_t>>& messages, Microseconds gap);
-    /// The thread that drives the servos works, and would obey a STOP. Call it often; one in 0.1 s is passed on.
+    /// The thread that drives the servos works, and would obey a STOP. Call it often; one in 0.1 s is passed on while a
+    /// servo is under power.
     void beat(Microseconds now);
     /// Whether it has let the servos go, because no beat came, since this was asked last.
     [[nodiscard]] bool takeLetGo();

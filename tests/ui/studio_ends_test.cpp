@@ -201,9 +201,9 @@ private:
             const auto atom = [server](const std::string& name) {
                 auto* reply = xcb_intern_atom_reply(
                     server, xcb_intern_atom(server, 0, static_cast<std::uint16_t>(name.size()), name.c_str()), nullptr);
-                const xcb_atom_t atom = reply->atom;
+                const xcb_atom_t found = reply->atom;
                 std::free(reply);
-                return atom;
+                return found;
             };
             xcb_client_message_event_t event{};
             event.response_type = XCB_CLIENT_MESSAGE;
