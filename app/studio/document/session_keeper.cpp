@@ -11,8 +11,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// A drag changes much in that time, and is written once. The rest of the half second is for the disk.
+// A drag changes much in that time, and is written once.
 constexpr std::chrono::milliseconds kAfterChange{100};
+// An edit is on disk after that, as long as one write takes less than half of it.
+constexpr std::chrono::milliseconds kAtLatest{400};
 constexpr std::chrono::seconds kAfterFailure{5};
 constexpr std::chrono::seconds kPatience{1}; // a program that was killed may still be ending
 constexpr std::chrono::milliseconds kLockAgain{250};
@@ -67,7 +69,8 @@ void SessionKeeper::touch() {
 }
 
 std::uint64_t SessionKeeper::offer(SessionState session) {
-    if (!waiting_) due_ = Clock::now() + kAfterChange; // not put off by what comes later
+    // Not put off by what comes later. What takes long to write, such as a large rig, is written less often.
+    if (!waiting_) due_ = Clock::now() + std::max<Clock::duration>(kAfterChange, std::min(took_, kAtLatest - took_));
     waiting_ = std::move(session);
     changed_.notify_all();
     return ++offered_;
@@ -146,6 +149,7 @@ void SessionKeeper::work(std::unique_lock<std::mutex>& lock) {
     sessions_.setRestored(restored_);
     bool listed = !replaced.empty() || failure_;
     lock.unlock();
+    const Clock::time_point begun = Clock::now();
     std::exception_ptr failure;
     try {
         writeAll(replaced, session);
@@ -160,6 +164,7 @@ void SessionKeeper::work(std::unique_lock<std::mutex>& lock) {
     }
     lock.lock();
     tried_ = number;
+    took_ = Clock::now() - begun;
     failure_ = failure;
     if (failure) { // there may be space by then
         std::ranges::move(replaced_, std::back_inserter(replaced));

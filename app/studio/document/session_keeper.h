@@ -98,6 +98,7 @@ private:
     std::deque<Replaced> replaced_;       ///< to be kept before the session
     std::optional<SessionState> waiting_; ///< the newest, not yet written
     Clock::time_point due_;               ///< when it is to be written
+    Clock::duration took_{0};             ///< the last write
     std::uint64_t offered_ = 0;
     std::uint64_t tried_ = 0; ///< the newest that was written, or could not be
     bool hurry_ = false;      ///< somebody waits for it
