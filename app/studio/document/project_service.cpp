@@ -76,7 +76,8 @@ DemoTold withForecast(DemoTold told) {
 /// Where the keepsake of an application lies. A second studio begins with a copy of the first's.
 fs::path keepsakeIn(const fs::path& folder, const std::string& demo) {
     const fs::path name = fs::path("applications") / (demo + ".json");
-    const fs::path first = ProjectService::sessionFolder() / name, own = folder / name;
+    const fs::path first = ProjectService::sessionFolder() / name;
+    fs::path own = folder / name;
     std::error_code ignored;
     if (own != first && !fs::exists(own, ignored) && fs::exists(first, ignored)) {
         fs::create_directories(own.parent_path(), ignored);
@@ -187,7 +188,7 @@ struct ProjectService::Data {
     /// A demo by its name, or a new project.
     void openBundled(Wanted wanted, std::function<void()> onReady);
     void replaceAll(Opened opened, const fs::path& file);
-    void goOn(SessionState session, Played played);
+    void goOn(const SessionState& session, Played played);
     void saveTo(const fs::path& file);
     void restore(std::function<void()> onReady);
     void bringBack(const std::string& id);
@@ -346,7 +347,7 @@ void ProjectService::Data::bringBack(const std::string& id) {
         });
 }
 
-void ProjectService::Data::goOn(SessionState session, Played played) {
+void ProjectService::Data::goOn(const SessionState& session, Played played) {
     const ProjectSource& source = session.source;
     replaceAll({{source.state, {}, source.stamps, source.extras, {}}, session.demo, std::move(played)}, session.file);
 }

@@ -27,7 +27,8 @@ namespace fs = std::filesystem;
 constexpr const char* kProjectName = kSessionFile;
 constexpr const char* kAssets = "session files"; // as takeAsset calls it
 constexpr const char* kPartial = "partial";
-constexpr const char* kKept = "kept"; // files of scenes whose originals have gone
+constexpr const char* kKept = "kept";              // files of scenes whose originals have gone
+constexpr const char* kKeepsakes = "applications"; // what those want kept
 constexpr const char* kBroken = "broken-";
 constexpr const char* kTemporary = ".lumorph-"; // as writeFileAtomically calls it
 constexpr const char* kKey = kSessionKey;
@@ -167,7 +168,7 @@ void renameScene(StudioState& state, const nlohmann::json& memory, const fs::pat
     renameAssets(scene, [&](const std::string& asset) {
         const std::string copies = session.string() + "/";
         const std::size_t at = next++;
-        const std::string original =
+        std::string original =
             at < files->size() && (*files)[at].is_string() ? (*files)[at].get<std::string>() : std::string();
         std::error_code ignored;
         if (!asset.starts_with(copies)) return asset; // bundled
@@ -178,6 +179,21 @@ void renameScene(StudioState& state, const nlohmann::json& memory, const fs::pat
         return (kept.parent_path() / takeAsset(kept, asset)).string();
     });
     state.scene = std::make_shared<const Scene>(std::move(scene));
+}
+
+/// What applications of two studios wanted kept: the newer counts, the other stays beside it.
+void adoptKeepsakes(const fs::path& from, const fs::path& to) {
+    for (const fs::path& name : namesIn(from)) {
+        std::error_code failed, none;
+        const fs::path other = to / name;
+        const bool there = fs::exists(other, failed);
+        if (there && (sameBytes(from / name, other) ||
+                      fs::last_write_time(from / name, failed) < fs::last_write_time(other, failed)))
+            continue;
+        fs::create_directories(to, none);
+        if (there) fs::rename(other, to / (name.stem().string() + ".other-window" + name.extension().string()), none);
+        fs::rename(from / name, other, none);
+    }
 }
 
 std::string textIn(const nlohmann::json& object, const char* key) {
@@ -319,6 +335,7 @@ bool SessionFolder::hasSession(const fs::path& folder) { return !numbersIn(folde
 void SessionFolder::adopt(const fs::path& from, const fs::path& to, Adopted session) {
     for (const KeptWork& work : keptWorkIn(from))
         if (!work.thrown) keepWork(placeOfKeptWork(from, work.id), to, work.id);
+    adoptKeepsakes(from / kKeepsakes, to / kKeepsakes);
     const std::vector<int> numbers = numbersIn(from);
     for (const int number : numbers) {
         const fs::path place = sessionFolder(from, number);
@@ -332,7 +349,7 @@ fs::path SessionFolder::moveAside(const fs::path& folder) {
     const std::vector<int> numbers = numbersIn(folder);
     std::error_code ignored;
     for (int i = 1; !numbers.empty() && i < 10'000; ++i) {
-        const fs::path aside = folder / (kBroken + std::to_string(i));
+        fs::path aside = folder / (kBroken + std::to_string(i));
         if (fs::exists(aside, ignored)) continue;
         fs::rename(sessionFolder(folder, numbers.front()), aside, ignored);
         return aside;

@@ -9,13 +9,13 @@ namespace lumorph::studio {
 
 namespace {
 
-std::string textIn(const nlohmann::json& object, const char* key) {
+std::string memoryText(const nlohmann::json& object, const char* key) {
     const auto found = object.find(key);
     return found != object.end() && found->is_string() ? found->get<std::string>() : std::string();
 }
 
 std::string fileNameIn(const nlohmann::json& object, const char* key) {
-    return std::filesystem::path(textIn(object, key)).filename().string();
+    return std::filesystem::path(memoryText(object, key)).filename().string();
 }
 
 } // namespace
@@ -32,13 +32,13 @@ SessionMemory readSessionMemory(const std::filesystem::path& place) {
         if (name.empty()) name = fileNameIn(*found, "rig");
         if (name.empty()) name = std::filesystem::path(project.rig).filename().string();
         if (!name.empty()) memory.name = name;
-        memory.demo = textIn(*found, "demo");
-        memory.lastEdit = textIn(*found, "lastEdit");
+        memory.demo = memoryText(*found, "demo");
+        memory.lastEdit = memoryText(*found, "lastEdit");
         if (const auto edits = found->find("edits"); edits != found->end() && edits->is_number_integer())
             memory.edits = edits->get<int>();
         if (const auto modified = found->find("modified"); modified != found->end() && modified->is_boolean())
             memory.modified = modified->get<bool>();
-        memory.replacedAs = textIn(*found, "replacedAs");
+        memory.replacedAs = memoryText(*found, "replacedAs");
     } catch (const Error&) {
     }
     return memory;
