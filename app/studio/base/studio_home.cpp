@@ -7,7 +7,7 @@ namespace lumorph::studio {
 namespace {
 
 constexpr std::chrono::seconds kPatience{1}; // for a program that was killed and is still ending
-constexpr std::chrono::milliseconds kAgain{500};
+constexpr std::chrono::milliseconds kAskAgain{500};
 
 } // namespace
 
@@ -20,7 +20,7 @@ StudioHome::StudioHome(Settings& settings) : settings_(settings), lock_(settings
         settings_.setReadOnly(false);
         emit tookOver();
     });
-    again_.start(kAgain);
+    again_.start(kAskAgain);
 }
 
 std::optional<QDateTime> StudioHome::otherSince() const { return first() ? std::nullopt : lock_.since(); }

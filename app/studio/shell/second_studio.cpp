@@ -5,9 +5,9 @@
 namespace lumorph::studio {
 namespace {
 
-constexpr auto kPlace = "home";
+constexpr auto kHomeNotices = "home";
 
-QString subject() { return QObject::tr("Another Lumorph is open"); }
+QString otherStudioSubject() { return QObject::tr("Another Lumorph is open"); }
 
 QString sinceWords(const Studio& studio) {
     const auto since = studio.home.first() ? studio.project.otherSince() : studio.home.otherSince();
@@ -20,13 +20,13 @@ QString sinceWords(const Studio& studio) {
 }
 
 void postTookOver(Studio& studio) {
-    studio.notices.dismiss(kPlace, subject());
-    studio.notices.post(kPlace, {Notice::Level::info,
-                                 QObject::tr("The other Lumorph has ended"),
-                                 QObject::tr("this window has taken over: its session, settings and the room's "
-                                             "calibration are kept as usual"),
-                                 QObject::tr("unsaved work of the other one is in File, Bring back unsaved work"),
-                                 {}});
+    studio.notices.dismiss(kHomeNotices, otherStudioSubject());
+    studio.notices.post(kHomeNotices, {Notice::Level::info,
+                                       QObject::tr("The other Lumorph has ended"),
+                                       QObject::tr("this window has taken over: its session, settings and the room's "
+                                                   "calibration are kept as usual"),
+                                       QObject::tr("unsaved work of the other one is in File, Bring back unsaved work"),
+                                       {}});
 }
 
 } // namespace
@@ -41,11 +41,11 @@ void postOtherStudio(Studio& studio) {
                              ? QString()
                              : QObject::tr("The room's calibration, device profiles and settings are read only here: "
                                            "what is changed counts in this window and is not kept");
-    studio.notices.post(kPlace, {Notice::Level::warning,
-                                 subject(),
-                                 QObject::tr("on this computer%1. %2%3").arg(sinceWords(studio), session, room),
-                                 QObject::tr("work there; or end it, and this window takes over"),
-                                 {}});
+    studio.notices.post(kHomeNotices, {Notice::Level::warning,
+                                       otherStudioSubject(),
+                                       QObject::tr("on this computer%1. %2%3").arg(sinceWords(studio), session, room),
+                                       QObject::tr("work there; or end it, and this window takes over"),
+                                       {}});
 }
 
 void reportOtherStudio(Studio& studio, QObject& owner) {
