@@ -130,10 +130,12 @@ void SessionKeeper::run(const std::stop_token& end) {
     std::unique_lock lock(mutex_);
     const auto asked = [this] { return waiting_ || !replaced_.empty(); };
     while (!end.stop_requested()) {
-        if (lock_.held())
+        if (lock_.held()) {
             changed_.wait(lock, end, asked);
-        else if (!changed_.wait_for(lock, end, kLockAgain, asked))
+        } else {
+            changed_.wait_for(lock, end, kLockAgain, asked);
             takeOver(lock);
+        }
         if (end.stop_requested() || !asked()) continue;
         changed_.wait_until(lock, end, due_, [this] { return hurry_; });
         if (!end.stop_requested()) work(lock);
