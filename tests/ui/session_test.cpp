@@ -4,6 +4,7 @@
 #include <csignal>
 #include <cstdio>
 #include <fstream>
+#include <map>
 #include <memory>
 #include <optional>
 #include <set>
@@ -271,6 +272,38 @@ TEST_F(SessionTest, AnEditIsOnDiskHalfASecondLaterHoweverManyFollow) {
     std::set<std::string> assets;
     static_cast<void>(sessionsIn(folder / std::to_string(numbers.front()) / "session files", &assets));
     EXPECT_EQ(assets.size(), 3U) << "rig, field and the target that is open: " << testing::PrintToString(assets);
+}
+
+/// When each file below a folder was written.
+std::map<std::string, fs::file_time_type> writtenIn(const fs::path& folder) {
+    std::map<std::string, fs::file_time_type> times;
+    for (const auto& entry : fs::recursive_directory_iterator(folder))
+        if (entry.is_regular_file()) times[entry.path().filename().string()] = entry.last_write_time();
+    return times;
+}
+
+TEST_F(SessionTest, ADragIsWrittenAFewTimesASecondAndNothingButWhatItChanges) {
+    ProjectWorld world;
+    edited(world, files);
+    world.service.keepSession();
+    const fs::path folder = ProjectService::sessionFolder() / "1";
+    auto before = writtenIn(folder);
+    ASSERT_EQ(before.size(), 4U) << "the project, rig, field and target";
+    std::set<fs::file_time_type> written;
+    for (int k = 1; k <= 60; ++k) {
+        world.document.preview([&](StudioState& s) { s.placement.yaw = Angle::degrees(k); });
+        test::pass(std::chrono::milliseconds(16));
+        std::error_code replaced;
+        if (const auto time = fs::last_write_time(folder / "session.lumorph", replaced); !replaced)
+            written.insert(time);
+    }
+    world.document.commitPreview("Turn");
+    world.service.keepSession();
+    EXPECT_GE(written.size(), 2U);
+    EXPECT_LE(written.size(), 15U) << "of 60 edits in a second";
+    auto after = writtenIn(folder);
+    EXPECT_GT(after.extract("session.lumorph").mapped(), before.extract("session.lumorph").mapped());
+    EXPECT_EQ(after, before);
 }
 
 /// A studio that cannot have the folder at once is not one that never keeps anything: whoever was killed lets go late.
