@@ -24,6 +24,7 @@
 #include "app/studio/shell/kiosk.h"
 #include "app/studio/shell/menus.h"
 #include "app/studio/shell/replay_bar.h"
+#include "app/studio/shell/second_studio.h"
 #include "app/studio/shell/shell_commands.h"
 #include "app/studio/shell/status_line.h"
 #include "app/studio/shell/stop_key_watch.h"
@@ -144,6 +145,7 @@ MainWindow::MainWindow(Studio& studio, std::vector<std::unique_ptr<Workspace>> w
     if (restoreGeometry(studio.settings.value(kGeometryKey).toByteArray())) keepOnScreen();
     showFirstWorkspace();
     showTitle();
+    reportOtherStudio(studio, *this);
 }
 
 // A window that is kept may come from a larger screen, or from a smaller scale of this one. By its inner geometry:

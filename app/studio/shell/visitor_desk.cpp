@@ -135,6 +135,11 @@ void VisitorDesk::showCards() {
         hideCards();
         emit studioWanted();
     });
+    connect(cards_, &ApplicationsPage::workWanted, this, [this](const std::string& id) {
+        hideCards();
+        emit studioWanted();
+        studio_.project.bringBack(id);
+    });
     connect(cards_, &ApplicationsPage::backWanted, this, &VisitorDesk::hideCards);
     connect(cards_, &ApplicationsPage::tourWanted, this, [this] {
         hideCards();
