@@ -126,7 +126,7 @@ struct RigWorkspace::Data : public QObject {
     std::vector<double> triedStrokes;
     QElapsedTimer rehearsing; ///< valid while the view is on its way
     QTimer tick;
-    bool active = false;
+    bool seen = false;
     bool unframed = true;
     QSize framedSize;
     QElapsedTimer sinceSized;
@@ -481,7 +481,7 @@ MatchFrame RigWorkspace::Data::shownFrame(const MatchFrame& frame) {
 }
 
 void RigWorkspace::Data::refresh() {
-    if (!active || !view) return;
+    if (!seen || !view) return;
     const auto& frame = studio.loop.frame();
     // A frame of the rig before would be marked with the parts of this one.
     if (!frame || frame->rigOrigin != studio.document.state().rig.origin) return;
@@ -541,7 +541,7 @@ QWidget* RigWorkspace::makeCentralView() {
     data_->view->setObjectName("rig.viewport");
     data_->view->setAccessibleName("Device");
     data_->keptCamera = new KeptCamera(data_->studio.settings, "rig", data_->view);
-    data_->view->setActive(data_->active);
+    data_->view->setActive(data_->seen);
     data_->listenToView();
     return data_->view;
 }
@@ -561,10 +561,10 @@ std::vector<WorkspaceDock> RigWorkspace::makeDocks() {
          true}};
 }
 
-void RigWorkspace::setActive(bool active) {
-    data_->active = active;
+void RigWorkspace::setSeen(bool seen) {
+    data_->seen = seen;
     if (!data_->view) return;
-    data_->view->setActive(active);
+    data_->view->setActive(seen);
     data_->refresh();
 }
 
