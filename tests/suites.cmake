@@ -2,6 +2,7 @@
 # share is made once. Where a program crashes, the last "[ RUN ]" of its output names the test. Of the suites in APART,
 # whose tests take long and share nothing, each test is one for ctest; these begin first.
 # PROGRAM, PROCESSORS and APART come from the file that includes this one (tests/CMakeLists.txt).
+cmake_minimum_required(VERSION 3.25)
 if(NOT EXISTS "${PROGRAM}")
     get_filename_component(name "${PROGRAM}" NAME)
     add_test("${name}_NOT_BUILT" "${PROGRAM}")
