@@ -14,7 +14,7 @@
 #include "core/render/viewport/viewport_renderer.h"
 #include "core/rig/actuator_weights.h"
 #include "core/rig/rig_file.h"
-#include "core/rig/templates/reference_rigs.h"
+#include "core/rig/templates/bundled_rigs.h"
 #include "tests/support/long_tests.h"
 #include "tests/ui/stall_watch.h"
 #include "tests/ui/view_pictures.h"
@@ -278,8 +278,8 @@ TEST_F(RigHandles, ThePointerRehearsesInTheViewAlone) {
 }
 
 TEST_F(RigHandles, AWayIsDraggedByItsEndsAndTurned) {
-    take(referenceRigs().at(2)); // 30 x 30 pins
-    choose(465);
+    take(pinDisplayRig({.columns = 10, .rows = 10}));
+    choose(55); // in the middle
     const auto before = bytes();
     int step = steps();
     const ActuatorGuide was = guide();
