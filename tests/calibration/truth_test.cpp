@@ -23,7 +23,7 @@ constexpr double kDeviceSlack = 0.5; // decibels
 /// Of pixels beside edges, against the least squared error that any choice of them reaches for the eye.
 constexpr double kMostBandError = 2.6; // the aim is 2, which 20 of the 24 meet
 
-/// All eyes in the long run (packaging/soak); else two of each state, so that every eye has its turn.
+/// All eyes in the long run (packaging/soak); else one of each state, so that every eye has its turn.
 std::vector<TruthEye> eyesOf(const TruthState& state) {
     const auto eyes = truthEyes();
     if (std::getenv("LUMORPH_SOAK") != nullptr) return {eyes.begin(), eyes.end()};
@@ -31,7 +31,7 @@ std::vector<TruthEye> eyesOf(const TruthState& state) {
     const auto number = static_cast<std::size_t>(
         std::find_if(states.begin(), states.end(), [&](const TruthState& s) { return s.name == state.name; }) -
         states.begin());
-    return {eyes[number % eyes.size()], eyes[(number + 3) % eyes.size()]};
+    return {eyes[number % eyes.size()]};
 }
 
 /// A renderer in a context of its own, and the tablet.

@@ -221,14 +221,11 @@ TEST_F(Chain, AllThatIsMissingIsMeasuredOneAfterTheOther) {
     EXPECT_EQ(room().origins.colors.way, Origin::Way::measured);
     window.screenshot("chain-checked");
     window.click("chain.link.light");
-    pass(300ms);
-    window.screenshot("chain-light-measured");
+    window.screenshot("chain-light-measured", 300ms);
     window.click("chain.link.servos");
-    pass(300ms);
-    window.screenshot("chain-servos-measured");
+    window.screenshot("chain-servos-measured", 300ms);
     window.click("chain.link.delays");
-    pass(300ms);
-    window.screenshot("chain-delays-measured");
+    window.screenshot("chain-delays-measured", 300ms);
     EXPECT_EQ(room().origins.delays.way, Origin::Way::measured);
     // The camera stands where the sequence has it: a part that it does not see in all its range keeps its lag, and that
     // is told.
@@ -245,8 +242,7 @@ TEST_F(Chain, AllThatIsMissingIsMeasuredOneAfterTheOther) {
     }
     EXPECT_GE(figures.size(), 5);
     window.click("chain.link.eye");
-    pass(300ms);
-    window.screenshot("chain-eye");
+    window.screenshot("chain-eye", 300ms);
     // What the window ends with, judged in the room as it truly is by rays that share nothing with the renderer.
     const Installation& truth = window.studio().lab.truth();
     const std::vector<double> shares = sharesOfPlan(map, room(), truth);
@@ -465,8 +461,7 @@ TEST_F(Chain, TheWatchTellsAHostThatTheProjectorHasMoved) {
     studio::editInstallation(window.studio().document, "Believed elsewhere",
                              [](Installation& room) { room.projectors.front().camera.cameraFromWorld[3].x += 0.003; });
     ASSERT_TRUE(eventually([&] { return !window.studio().notices.at("calibrate").empty(); }, 120s));
-    pass(500ms);
-    window.screenshot("watch-moved");
+    window.screenshot("watch-moved", 500ms);
     const studio::Notice notice = window.studio().notices.at("calibrate").front();
     ASSERT_EQ(notice.actions.size(), 1U);
     notice.actions.front().run();

@@ -80,6 +80,7 @@ struct RigWorkspace::Data : public QObject {
     void edited();
     void markPart();
     void wiggle();
+    void toggleWiggle();
     void mirror();
     void copies();
     [[nodiscard]] bool painting() const { return tools.editing() && selection.actuator().has_value(); }
@@ -193,8 +194,9 @@ void RigWorkspace::Data::addCommands() {
     options.icon = "actuator";
     options.workspace = "rig";
     options.shortcut = QKeySequence("Ctrl+Shift+W");
-    wiggleCommand = studio.commands.add("rig.wiggle", "Show what it moves", options, [this] { wiggle(); });
-    wiggleCommand->setToolTip("Move the chosen actuator in this view alone; the device stays where it is");
+    wiggleCommand = studio.commands.add("rig.wiggle", "Show what it moves", options, [this] { toggleWiggle(); });
+    wiggleCommand->setToolTip(
+        "Move the chosen actuator in this view alone; the device stays where it is. Again: end it");
     wiggleCommand->setEnabled(false);
     options.icon = "reset";
     options.shortcut = {};
@@ -311,6 +313,14 @@ void RigWorkspace::Data::wiggle() {
     if (!part) return;
     wiggling.start();
     tick.start();
+}
+
+/// While it wiggles, that ends.
+void RigWorkspace::Data::toggleWiggle() {
+    const bool wiggles = wiggling.isValid() && wiggleStroke(1e-3 * static_cast<double>(wiggling.elapsed())) >= 0.0;
+    if (!wiggles) return wiggle();
+    wiggling.invalidate();
+    refresh();
 }
 
 void RigWorkspace::Data::mirror() {
