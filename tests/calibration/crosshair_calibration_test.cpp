@@ -12,9 +12,8 @@
 #include <opencv2/calib3d.hpp>
 
 #include "calibration/solve/crosshair_points.h"
-#include "core/base/resources.h"
 #include "core/geometry/calibrated_camera.h"
-#include "core/rig/rig_file.h"
+#include "tests/support/cut_tablet.h"
 #include "tests/support/long_tests.h"
 
 namespace lumorph::test {
@@ -23,7 +22,7 @@ namespace {
 using ::testing::HasSubstr;
 
 const Rig& tablet() {
-    static const Rig rig = readRig(resourceFile("models/tablet.glb"));
+    static const Rig rig = test::cutTablet();
     return rig;
 }
 

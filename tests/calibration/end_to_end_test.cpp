@@ -13,8 +13,8 @@
 #include "calibration/report/calibrated_room.h"
 #include "calibration/servos/servo_lab.h"
 #include "calibration/solve/error_map.h"
-#include "core/rig/templates/bundled_rigs.h"
 #include "tests/support/chain_judge.h"
+#include "tests/support/cut_tablet.h"
 #include "tests/support/long_tests.h"
 #include "tests/support/procam_observations.h"
 #include "tests/support/truth.h"
@@ -142,7 +142,7 @@ void print(const char* what, const ShownError& error) {
 }
 
 TEST(EndToEnd, TheWholeChainShowsWhatTheEyeShouldSee) {
-    const auto rig = std::make_shared<const Rig>(tabletRig());
+    const auto rig = std::make_shared<const Rig>(test::cutTablet());
     for (std::uint32_t seed = 1; seed <= (longTests() ? 6U : 1U); ++seed) {
         const Installation truth = trueRoom(putUp(), rig->actuators(), seed);
         const Calibrated calibrated = calibrate(defaultInstallation(), truth, seed);

@@ -1,3 +1,4 @@
+#include "tests/support/cut_tablet.h"
 #include "tests/support/truth_cases.h"
 
 #include <algorithm>
@@ -6,8 +7,6 @@
 #include <numbers>
 #include <stdexcept>
 
-#include "core/base/resources.h"
-#include "core/rig/rig_file.h"
 
 namespace lumorph::test {
 namespace {
@@ -24,7 +23,7 @@ template <typename Row> const Row& find(std::span<const Row> rows, const std::st
 } // namespace
 
 TruthDevice truthDevice() {
-    return {std::make_shared<Rig>(readRig(resourceFile("models/tablet.glb"))), defaultSceneInRoom()};
+    return {std::make_shared<Rig>(test::cutTablet()), defaultSceneInRoom()};
 }
 
 std::span<const TruthState> truthStates() {
