@@ -16,8 +16,7 @@ using ::testing::HasSubstr;
 
 /// A table of exact crosshairs on the points that the program itself proposes.
 std::string exactCrosshairs(const CalibratedCamera& projector, std::size_t most) {
-    const Outcome proposal =
-        lumorph({"calibrate", "points", cutTabletFile(), "--from", "0.1,1.9,0.4", "--json"});
+    const Outcome proposal = lumorph({"calibrate", "points", cutTabletFile(), "--from", "0.1,1.9,0.4", "--json"});
     EXPECT_EQ(proposal.exitCode, 0) << proposal.err;
     std::ostringstream table;
     table.precision(9);

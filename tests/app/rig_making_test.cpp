@@ -97,13 +97,11 @@ TEST(RigInfo, SaysWhatGoesWrongInMotionAndFromWhereOn) {
 TEST(RigReport, SaysWhatADeviceCanBe) {
     const Made made;
     std::filesystem::create_directory(made["targets"]);
-    ASSERT_EQ(lumorph({"rig", "deform", cutTabletFile(), "--state", "9,21,32,14,13,7", "-o",
-                       made["targets/pose.obj"]})
+    ASSERT_EQ(lumorph({"rig", "deform", cutTabletFile(), "--state", "9,21,32,14,13,7", "-o", made["targets/pose.obj"]})
                   .exitCode,
               0);
     std::filesystem::copy(resource("targets/dunes.glb"), made["targets"]);
-    const auto report =
-        lumorph({"rig", "report", cutTabletFile(), "--targets", made["targets"], "--json"}).json();
+    const auto report = lumorph({"rig", "report", cutTabletFile(), "--targets", made["targets"], "--json"}).json();
     EXPECT_EQ(report["metrics"].size(), 10U);
     EXPECT_EQ(report["metrics"][6]["key"], "closure");
     EXPECT_TRUE(report["metrics"][6]["light"].is_null());

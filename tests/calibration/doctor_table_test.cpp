@@ -30,6 +30,12 @@ struct Verdict {
     double beside = 0.0; ///< as `lightBesidePixels`, of one that is accepted
 
     [[nodiscard]] bool names(Cause cause) const { return std::ranges::find(causes, cause) != causes.end(); }
+    /// Of a cause that is not there. The lab holds some boards where the projector's light is too bright for the
+    /// exposure: a warning of that is true.
+    [[nodiscard]] bool namesOther(std::optional<Cause> fault) const {
+        return std::ranges::any_of(causes,
+                                   [&](Cause cause) { return cause != fault && (refused || cause != Cause::clipped); });
+    }
 };
 
 /// Table's trials have seeds from here on; the doctor's limits were chosen on those below 200.
@@ -237,12 +243,12 @@ void expectNamed(Cause fault, int trials, std::span<const Shortfall> missed,
     const std::vector<std::uint32_t> seeds = seedsOf(kFirstSeed, trials);
     for (const std::uint32_t seed : seeds) {
         const Verdict verdict = run(seed);
-        if (verdict.names(fault)) {
+        const bool isOther = verdict.namesOther(fault);
+        if (verdict.names(fault) && !isOther) {
             ++right;
             continue;
         }
-        const bool isSilent = !verdict.refused && verdict.causes.empty();
-        ++(!isSilent ? wrong : verdict.beside <= kHarmless ? harmless : harmed);
+        ++(isOther ? wrong : verdict.beside <= kHarmless ? harmless : harmed);
         char beside[64] = "";
         if (!verdict.refused) std::snprintf(beside, sizeof(beside), " accepted, %.2f pixels beside", verdict.beside);
         others += "  [" + std::to_string(seed) + "]" + beside + " " + verdict.sentence;
@@ -311,8 +317,7 @@ void expectSound(const std::vector<std::uint32_t>& seeds, int mostOverexposed,
         refused += verdict.refused;
         farthest = std::max(farthest, verdict.beside);
         overexposed += !verdict.refused && verdict.names(Cause::clipped);
-        doubted += !verdict.refused &&
-                   !std::ranges::all_of(verdict.causes, [](Cause cause) { return cause == Cause::clipped; });
+        doubted += !verdict.refused && verdict.namesOther({});
         if (!verdict.causes.empty()) std::printf("  [%u] %s\n", seed, verdict.sentence.c_str());
     }
     std::printf("%-22s refused %d of %zu, overexposed in places %d, doubted for anything else %d, %.2f pixels beside\n",
@@ -325,10 +330,9 @@ void expectSound(const std::vector<std::uint32_t>& seeds, int mostOverexposed,
 }
 
 TEST(DoctorTableOfSound, ImagesAreAccepted) {
-    // The second has its board between bright light and its own shadow. The lab holds some of the boards where the
-    // projector's light is too bright for the exposure: that warning is true.
-    expectSound(seedsOf(kFirstSeed, longTests() ? 8 : 2), 3,
-                [](std::uint32_t seed) { return verdictOfImages(smallCapture(seed, {})); });
+    std::vector<std::uint32_t> seeds = seedsOf(kFirstSeed, longTests() ? 8 : 1);
+    if (!loneSeed()) seeds.push_back(101); // its board lies between bright light and its own shadow
+    expectSound(seeds, 3, [](std::uint32_t seed) { return verdictOfImages(smallCapture(seed, {})); });
 }
 
 TEST(DoctorTableOfSound, ObservationsAreAccepted) {

@@ -147,8 +147,8 @@ TEST_F(WindowRate, ThirtyMatchesASecondAreSeenWhileALargeTargetMoves) {
                     rates.drawing, rates.stall, 100.0 * rates.left);
     }
     RecordProperty("painted", static_cast<int>(painted / kSeconds));
-    std::printf("of %d seconds: %d shown as often as wanted, %d matched, %d without a stall\n", kSeconds, shown, matched,
-                smooth);
+    std::printf("of %d seconds: %d shown as often as wanted, %d matched, %d without a stall\n", kSeconds, shown,
+                matched, smooth);
     EXPECT_GE(shown, kShare * kSeconds);
     EXPECT_GE(matched, kShare * kSeconds);
     EXPECT_GE(smooth, kShare * kSeconds);

@@ -195,8 +195,8 @@ double openRim(const IceCover& ice) {
             for (int i = 0; i < count; ++i) {
                 const glm::dvec2 at = cell[k] + (i + 0.5) / count * along;
                 const glm::dvec2 normal = glm::dvec2(along.y, -along.x) / length;
-                const glm::dvec2 beside = holdsPlace(cell, at + kBeside * normal) ? at - kBeside * normal
-                                                                                  : at + kBeside * normal;
+                const glm::dvec2 beside =
+                    holdsPlace(cell, at + kBeside * normal) ? at - kBeside * normal : at + kBeside * normal;
                 if (!holdsPlace(shore, beside)) continue; // the bank
                 if (std::ranges::none_of(cells, [&](const Points& other) { return holdsPlace(other, beside); }))
                     open += length / count;

@@ -40,8 +40,7 @@ private:
 };
 
 MatchWish tideWish() {
-    static const auto field =
-        std::make_shared<const MatchField>(buildField(test::cutTablet(), BuildOptions{}));
+    static const auto field = std::make_shared<const MatchField>(buildField(test::cutTablet(), BuildOptions{}));
     MatchWish wish;
     wish.field = field;
     wish.rig = {field, &field->rig};
