@@ -18,15 +18,14 @@
 #include "calibration/lab/moved_room.h"
 #include "calibration/verify/output_watch.h"
 #include "calibration/verify/verify_lab.h"
-#include "core/base/resources.h"
-#include "core/rig/rig_file.h"
+#include "tests/support/cut_tablet.h"
 #include "tests/support/long_tests.h"
 
 namespace lumorph::test {
 namespace {
 
 const Rig& watchedRig() {
-    static const Rig rig = readRig(resourceFile("models/tablet.glb"));
+    static const Rig rig = test::cutTablet();
     return rig;
 }
 

@@ -15,9 +15,8 @@
 #include "calibration/lab/moved_room.h"
 #include "calibration/lab/registration_lab.h"
 #include "calibration/verify/verify_lab.h"
-#include "core/base/resources.h"
-#include "core/rig/rig_file.h"
 #include "tests/support/chain_judge.h"
+#include "tests/support/cut_tablet.h"
 #include "tests/support/truth.h"
 #include "tests/ui/file_dialog.h"
 #include "tests/ui/studio_window.h"
@@ -439,7 +438,7 @@ TEST_F(Chain, ARealDeviceIsPlacedByRecordings) {
 TEST(ChainLinks, ACheckThatCannotPutRightOffersNothingToUse) {
     // The camera has moved, and the room knows of none: what is believed is the lab's, which is not kept.
     studio::LinkTask task;
-    task.rig = std::make_shared<const Rig>(readRig(resourceFile("models/tablet.glb")));
+    task.rig = std::make_shared<const Rig>(test::cutTablet());
     task.believed = defaultInstallation();
     CalibratedCamera& lamp = task.believed.projectors.front().camera;
     lamp = withSize(lamp, {480, 270});

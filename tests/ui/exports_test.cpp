@@ -21,8 +21,8 @@
 #include "core/geometry/mesh_file.h"
 #include "core/mdf/builder.h"
 #include "core/mdf/field_file.h"
-#include "core/rig/rig_file.h"
 #include "tests/core/temporary_folder.h"
+#include "tests/support/cut_tablet.h"
 #include "tests/support/small_rigs.h"
 
 namespace lumorph::studio {
@@ -216,7 +216,7 @@ TEST_F(Exports, TheTableOfNowHasTheLevelsStrokesAndIoUOfTheFrame) {
 
 TEST_F(Exports, TheTableOfAClipMatchesWhereTheTargetIsPlaced) {
     const auto field = std::make_shared<const MatchField>(
-        buildField(readRig(resourceFile("models/tablet.glb")), {.resolution = 12, .levels = 9, .samples = 8}));
+        buildField(test::cutTablet(), {.resolution = 12, .levels = 9, .samples = 8}));
     MatchFrame frame;
     frame.field = field;
     frame.rig = std::make_shared<const Rig>(field->rig);
