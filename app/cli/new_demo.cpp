@@ -132,13 +132,19 @@ Edit inRegistry(const fs::path& tree, const std::string& name) {
     return {file, text};
 }
 
-Edit inArchitecture(const fs::path& tree, const std::string& name) {
-    const fs::path file = "ARCHITECTURE.md";
+Edit inFolderOrder(const fs::path& tree, const std::string& name) {
+    const fs::path file = "packaging/folder_order.txt";
     std::string text = textOf(tree / file);
-    const std::size_t at = text.find("\n    app/applications/registry");
+    const std::size_t at = text.find("\napp/applications/registry\n");
     if (at == std::string::npos) noPlace(file);
-    text.insert(at, " app/applications/" + name);
+    text.insert(at, "\napp/applications/" + name);
     return {file, text};
+}
+
+std::string folderReadme(const std::string& name) {
+    return "The application \"" + asTitle(name) +
+           "\": what visitors see and feel of it.\n"
+           "May use `app/applications` and `core`; no other application, no Qt.\n";
 }
 
 void write(const fs::path& file, const std::string& text) {
@@ -161,9 +167,10 @@ std::vector<fs::path> writeNewDemo(const fs::path& tree, const std::string& name
     const std::vector<Edit> edits{
         {own / (name + ".h"), exampleAs(name, "example.h")},
         {own / (name + ".cpp"), exampleAs(name, "example.cpp")},
+        {own / "README.md", folderReadme(name)},
         {fs::path("resources/thumbnails") / (name + ".png"), textOf(resourceFile("examples/demo/example.png"))},
         inBuild(tree, name),
-        inArchitecture(tree, name),
+        inFolderOrder(tree, name),
         inRegistry(tree, name)};
     std::vector<fs::path> written;
     for (const Edit& edit : edits) {

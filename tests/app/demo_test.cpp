@@ -213,7 +213,7 @@ TEST(Demo, WrongUseIsNamed) {
 
 /// What `demo new` changes of a source tree.
 std::vector<std::filesystem::path> filesOfATree() {
-    return {"app/applications/CMakeLists.txt", "app/applications/registry/demos.cpp", "ARCHITECTURE.md"};
+    return {"app/applications/CMakeLists.txt", "app/applications/registry/demos.cpp", "packaging/folder_order.txt"};
 }
 
 class OwnDemo : public ::testing::Test {
@@ -254,7 +254,9 @@ TEST_F(OwnDemo, IsWrittenAndNamedWhereItHasToBe) {
     EXPECT_EQ(source.find("xample"), std::string::npos);
     EXPECT_THAT(text("app/applications/CMakeLists.txt"), HasSubstr("    ripple_ring/ripple_ring.cpp\n"));
     EXPECT_THAT(text("app/applications/registry/demos.cpp"), HasSubstr("ripple_ring::rippleRingDemo()"));
-    EXPECT_THAT(text("ARCHITECTURE.md"), HasSubstr(" app/applications/ripple_ring\n    app/applications/registry"));
+    EXPECT_THAT(text("packaging/folder_order.txt"),
+                HasSubstr("\napp/applications/ripple_ring\napp/applications/registry\n"));
+    EXPECT_THAT(text("app/applications/ripple_ring/README.md"), HasSubstr("Ripple ring"));
     EXPECT_TRUE(std::filesystem::exists(tree() / "resources/thumbnails/ripple_ring.png"));
     const Outcome again = make("ripple_ring");
     EXPECT_EQ(again.exitCode, 2);
@@ -273,10 +275,10 @@ TEST_F(OwnDemo, IsRefusedWithAWrongNameAndNothingIsWritten) {
 }
 
 TEST_F(OwnDemo, IsRefusedWhereNoPlaceIsFoundForIt) {
-    std::ofstream(tree() / "ARCHITECTURE.md") << "# Another house\n";
+    std::ofstream(tree() / "packaging/folder_order.txt") << "# Another tree\n";
     const Outcome outcome = make("ripple");
     EXPECT_NE(outcome.exitCode, 0);
-    EXPECT_THAT(outcome.err, HasSubstr("ARCHITECTURE.md"));
+    EXPECT_THAT(outcome.err, HasSubstr("packaging/folder_order.txt"));
     EXPECT_THAT(outcome.err, HasSubstr("by hand"));
     EXPECT_FALSE(std::filesystem::exists(tree() / "app/applications/ripple"));
     std::filesystem::remove(tree() / "app/applications/registry/demos.cpp");
