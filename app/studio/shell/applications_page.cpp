@@ -205,7 +205,7 @@ void ApplicationsPage::showKeptWork() {
                                                                       "gespeichert)"})
                            .arg(whenOf(all.front()), name));
     keptAll_->setVisible(all.size() > 1);
-    keptAll_->setText(studio_.settings.say({"All %1...", "Alle %1..."}).arg(all.size()));
+    keptAll_->setText(studio_.settings.say({"Show all %1...", "Alle %1 zeigen..."}).arg(all.size()));
 }
 
 void ApplicationsPage::addCards(const Offered& offered) {

@@ -93,7 +93,7 @@ private:
         area_->setWidget(content);
         sum_->setText(all.empty()
                           ? QString()
-                          : say({"%1 on the disk, %2", "%1 auf der Platte, %2"})
+                          : say({"%1 kept, %2 on the disk", "%1 aufbewahrt, %2 auf der Platte"})
                                 .arg(QLocale().toString(static_cast<qulonglong>(all.size())), sizeWords(bytesOf(all))));
     }
 

@@ -39,8 +39,8 @@ void postOtherStudio(Studio& studio) {
         studio.project.keepsSession() ? QString() : QObject::tr("This window keeps a session of its own. ");
     const QString room = studio.home.first()
                              ? QString()
-                             : QObject::tr("The room's calibration, device profiles and settings are read only here: "
-                                           "what is changed counts in this window and is not kept");
+                             : QObject::tr("The room's calibration, device profiles and settings are read only here "
+                                           "until it ends: changes count in this window alone");
     studio.notices.post(kHomeNotices, {Notice::Level::warning,
                                        otherStudioSubject(),
                                        QObject::tr("on this computer%1. %2%3").arg(sinceWords(studio), session, room),
