@@ -1,6 +1,6 @@
 #include "app/studio/shell/second_studio.h"
 
-#include <QLocale>
+#include "app/studio/shell/kept_work_list.h"
 
 namespace lumorph::studio {
 namespace {
@@ -11,12 +11,7 @@ QString otherStudioSubject() { return QObject::tr("Another Lumorph is open"); }
 
 QString sinceWords(const Studio& studio) {
     const auto since = studio.home.first() ? studio.project.otherSince() : studio.home.otherSince();
-    if (!since) return {};
-    const QDateTime when = since->toLocalTime();
-    const bool today = when.date() == QDate::currentDate();
-    return QObject::tr(", since %1")
-        .arg(today ? QLocale().toString(when.time(), QLocale::ShortFormat)
-                   : QLocale().toString(when, QLocale::ShortFormat));
+    return since ? QObject::tr(", since %1").arg(timeWords(*since)) : QString();
 }
 
 void postTookOver(Studio& studio) {
