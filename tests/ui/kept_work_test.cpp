@@ -242,7 +242,7 @@ TEST(KeptWorkWindow, WorkComesBackAfterTwoCards) {
     EXPECT_TRUE(window.studio().document.modified());
     EXPECT_TRUE(eventually([&] { return project.keptWork().empty() && !command->isEnabled(); }));
     // By File it is thrown away, which the same list undoes.
-    project.newProject();
+    project.openDemo("water");
     ASSERT_TRUE(eventually([&] { return project.keptWork().size() == 1; }));
     command->trigger();
     window.screenshot("kept-list");

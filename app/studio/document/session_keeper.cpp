@@ -149,7 +149,7 @@ void SessionKeeper::work(std::unique_lock<std::mutex>& lock) {
     std::deque<Replaced> replaced = std::exchange(replaced_, {});
     std::optional<SessionState> session = std::exchange(waiting_, std::nullopt);
     sessions_.setRestored(restored_);
-    bool listed = !replaced.empty() || failure_;
+    bool listed = !replaced.empty() || failure_ || tried_ == 0; // the first may find what others have left
     lock.unlock();
     const Clock::time_point begun = Clock::now();
     std::exception_ptr failure;

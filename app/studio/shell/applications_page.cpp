@@ -203,9 +203,9 @@ void ApplicationsPage::showKeptWork() {
     keptName_->setText(studio_.settings
                            .say({"Your work from %1 (%2, not saved)", "Deine Arbeit von %1 (%2, nicht "
                                                                       "gespeichert)"})
-                           .arg(whenOf(all.front()), name));
+                           .arg(timeWords(all.front().when), name));
     keptAll_->setVisible(all.size() > 1);
-    keptAll_->setText(studio_.settings.say({"All %1...", "Alle %1..."}).arg(all.size()));
+    keptAll_->setText(studio_.settings.say({"Show all %1...", "Alle %1 zeigen..."}).arg(all.size()));
 }
 
 void ApplicationsPage::addCards(const Offered& offered) {

@@ -93,7 +93,7 @@ private:
         area_->setWidget(content);
         sum_->setText(all.empty()
                           ? QString()
-                          : say({"%1 on the disk, %2", "%1 auf der Platte, %2"})
+                          : say({"%1 kept, %2 on the disk", "%1 aufbewahrt, %2 auf der Platte"})
                                 .arg(QLocale().toString(static_cast<qulonglong>(all.size())), sizeWords(bytesOf(all))));
     }
 
@@ -136,7 +136,7 @@ private:
     }
 
     [[nodiscard]] QString detailOf(const KeptWork& work) const {
-        QStringList parts{whenOf(work)};
+        QStringList parts{timeWords(work.when)};
         if (work.thrown)
             parts << say({"thrown away, for good tomorrow", "verworfen, endgültig ab morgen"});
         else if (work.edits > 0 && !work.lastEdit.empty())
@@ -172,11 +172,11 @@ QString nameOf(const KeptWork& work, Language language) {
     return QString::fromStdString(demo != demos().end() ? demo->title.in(language) : work.name);
 }
 
-QString whenOf(const KeptWork& work) {
-    const QDateTime when = work.when.toLocalTime();
-    const bool today = when.date() == QDate::currentDate();
-    return today ? QLocale().toString(when.time(), QLocale::ShortFormat)
-                 : QLocale().toString(when, QLocale::ShortFormat);
+QString timeWords(const QDateTime& time) {
+    const QDateTime when = time.toLocalTime();
+    const QString clock = when.toString("HH:mm");
+    if (when.date() == QDate::currentDate()) return clock;
+    return QLocale().toString(when.date(), QLocale::ShortFormat) + ' ' + clock;
 }
 
 void openKeptWork(Studio& studio, QWidget& window) {

@@ -8,8 +8,8 @@ namespace lumorph::studio {
 
 /// What a piece of kept work is called in a list: the demonstration's title, else the file's name.
 [[nodiscard]] QString nameOf(const KeptWork& work, Language language);
-/// When something else was opened in its place: the time, of another day with its date.
-[[nodiscard]] QString whenOf(const KeptWork& work);
+/// "14:32"; of another day with its date.
+[[nodiscard]] QString timeWords(const QDateTime& time);
 
 /// All kept work: what it is, and buttons that bring it back or throw it away. Opens without blocking (objectName
 /// "dialog.keptWork").

@@ -1,6 +1,6 @@
 #include "app/studio/shell/second_studio.h"
 
-#include <QLocale>
+#include "app/studio/shell/kept_work_list.h"
 
 namespace lumorph::studio {
 namespace {
@@ -11,12 +11,7 @@ QString otherStudioSubject() { return QObject::tr("Another Lumorph is open"); }
 
 QString sinceWords(const Studio& studio) {
     const auto since = studio.home.first() ? studio.project.otherSince() : studio.home.otherSince();
-    if (!since) return {};
-    const QDateTime when = since->toLocalTime();
-    const bool today = when.date() == QDate::currentDate();
-    return QObject::tr(", since %1")
-        .arg(today ? QLocale().toString(when.time(), QLocale::ShortFormat)
-                   : QLocale().toString(when, QLocale::ShortFormat));
+    return since ? QObject::tr(", since %1").arg(timeWords(*since)) : QString();
 }
 
 void postTookOver(Studio& studio) {
@@ -39,8 +34,8 @@ void postOtherStudio(Studio& studio) {
         studio.project.keepsSession() ? QString() : QObject::tr("This window keeps a session of its own. ");
     const QString room = studio.home.first()
                              ? QString()
-                             : QObject::tr("The room's calibration, device profiles and settings are read only here: "
-                                           "what is changed counts in this window and is not kept");
+                             : QObject::tr("The room's calibration, device profiles and settings are read only here "
+                                           "until it ends: changes count in this window alone");
     studio.notices.post(kHomeNotices, {Notice::Level::warning,
                                        otherStudioSubject(),
                                        QObject::tr("on this computer%1. %2%3").arg(sinceWords(studio), session, room),
