@@ -1,9 +1,11 @@
 #include <ctime>
+#include <memory>
 
 #include <QElapsedTimer>
 #include <QEventLoop>
 #include <QTimer>
 
+#include "app/applications/demo.h"
 #include "app/studio/shell/applications_page.h"
 #include "app/workspaces/scene/view_pane.h"
 #include "core/base/clock.h"
@@ -44,17 +46,31 @@ testing::AssertionResult rests() {
     return testing::AssertionFailure() << "it takes " << 100.0 * share << " % of a core";
 }
 
+/// One window for all, which shows a sea that never stands still.
 class Unseen : public testing::Test {
 protected:
+    static void SetUpTestSuite() {
+        folder_ = std::make_unique<TemporaryFolder>();
+        window_ = std::make_unique<StudioWindow>(folder_->path(), "scene");
+        window_->studio().project.openDemo("water");
+    }
+    static void TearDownTestSuite() {
+        window_.reset();
+        folder_.reset();
+    }
     void SetUp() override {
-        studio().project.openDemo("water"); // answers visitors, and never stands still
-        ASSERT_TRUE(eventually([&] { return studio().loop.program() && studio().jobs.running().empty(); }));
+        ASSERT_TRUE(eventually([&] {
+            const Demo* demo = studio().project.demo();
+            return demo != nullptr && demo->name == "water" && studio().jobs.running().empty();
+        }));
+        window().window().showWorkspace("scene");
         ASSERT_TRUE(draws());
     }
 
-    studio::Studio& studio() { return window.studio(); }
+    static StudioWindow& window() { return *window_; }
+    static studio::Studio& studio() { return window_->studio(); }
     /// Frames of the loop come, newer ones than now, and pictures of them.
-    [[nodiscard]] bool draws() {
+    [[nodiscard]] static bool draws() {
         const Microseconds now = SteadyClock().now();
         return eventually([&] {
             const auto& match = studio().show.newest().match;
@@ -62,35 +78,34 @@ protected:
         });
     }
     /// What is on the screen when the window comes back is a picture, and soon one of now.
-    void seenAgain() {
+    static void seenAgain() {
         EXPECT_FALSE(eye().grab().toImage().isNull());
         EXPECT_TRUE(draws());
-        EXPECT_GT(processorShare(1s), 0.05);
     }
-    [[nodiscard]] ViewPane& eye() { return *window.find<ViewPane>("scene.eye"); }
+    [[nodiscard]] static ViewPane& eye() { return *window().find<ViewPane>("scene.eye"); }
 
-    TemporaryFolder folder;
-    StudioWindow window{folder.path(), "scene"};
+private:
+    inline static std::unique_ptr<TemporaryFolder> folder_;
+    inline static std::unique_ptr<StudioWindow> window_;
 };
 
 TEST_F(Unseen, AMinimisedWindowDrawsNothing) {
     EXPECT_GT(processorShare(1s), 0.05) << "seen, it draws";
-    const double before = studio().loop.frame()->programSeconds;
-    window.window().showMinimized();
+    window().window().showMinimized();
     EXPECT_TRUE(rests());
     EXPECT_TRUE(studio().loop.paused());
-    window.window().showNormal();
+    window().window().showNormal();
     seenAgain();
-    EXPECT_LT(studio().loop.frame()->programSeconds, before + 60.0) << "the show has waited";
+    EXPECT_GT(processorShare(1s), 0.05) << "seen again, it draws again";
 }
 
 TEST_F(Unseen, NothingIsDrawnBelowTheCards) {
-    window.click("bar.applications");
-    auto* cards = window.find<studio::ApplicationsPage>("applications");
+    window().click("bar.applications");
+    auto* cards = window().find<studio::ApplicationsPage>("applications");
     ASSERT_NE(cards, nullptr);
     EXPECT_TRUE(rests());
     QTest::keyClick(cards, Qt::Key_Escape);
-    ASSERT_TRUE(eventually([&] { return window.findNow<studio::ApplicationsPage>("applications") == nullptr; }));
+    ASSERT_TRUE(eventually([&] { return window().findNow<studio::ApplicationsPage>("applications") == nullptr; }));
     seenAgain();
 }
 
@@ -109,40 +124,39 @@ TEST_F(Unseen, NothingIsDrawnBehindAWindowThatCoversIt) {
 
 TEST_F(Unseen, NothingIsDrawnInAnotherWorkspaceEither) {
     for (const char* workspace : {"field", "rig"}) {
-        window.window().showWorkspace(workspace);
-        EXPECT_GT(processorShare(1s), 0.0);
-        window.window().showMinimized();
+        window().window().showWorkspace(workspace);
+        window().window().showMinimized();
         EXPECT_TRUE(rests()) << workspace;
-        window.window().showNormal();
-        ASSERT_TRUE(QTest::qWaitForWindowExposed(&window.window()));
+        window().window().showNormal();
+        ASSERT_TRUE(QTest::qWaitForWindowExposed(&window().window()));
     }
-    window.window().showWorkspace("scene");
-    seenAgain();
 }
 
 TEST_F(Unseen, AProjectorsWindowGoesOnWithoutTheStudios) {
     studio().outputs.showInWindow(0);
-    auto* output = window.find<QWidget>("output.projector1");
+    auto* output = window().find<QWidget>("output.projector1");
     ASSERT_NE(output, nullptr);
-    window.window().showMinimized();
-    ASSERT_TRUE(eventually([&] { return eye().visibleRegion().isEmpty() || window.window().isMinimized(); }));
+    window().window().showMinimized();
+    ASSERT_TRUE(eventually([&] { return window().window().isMinimized(); }));
     EXPECT_TRUE(draws());
     EXPECT_FALSE(studio().loop.paused());
     studio().outputs.closeAll();
     EXPECT_TRUE(rests());
+    window().window().showNormal();
 }
 
 TEST_F(Unseen, ServosGoOnFollowingWithoutTheWindow) {
     studio().devices.connectTo("sim://uno");
     ASSERT_TRUE(eventually([&] { return studio().devices.status().phase != LinkPhase::off; }));
-    window.window().showMinimized();
-    const std::uint64_t drawn = studio().show.count();
+    window().window().showMinimized();
     ASSERT_TRUE(eventually([&] { return !studio().show.isWanted(); })) << "but nothing is drawn";
+    const std::uint64_t drawn = studio().show.count();
     const std::uint64_t number = studio().loop.frame()->number;
     EXPECT_TRUE(eventually([&] { return studio().loop.frame()->number > number + 30; }));
     EXPECT_LE(studio().show.count(), drawn + 2);
     studio().devices.disconnect();
     EXPECT_TRUE(rests());
+    window().window().showNormal();
 }
 
 } // namespace
