@@ -1,7 +1,7 @@
 # Read by ctest whenever it starts: each suite of PROGRAM is one test, so that a start is paid once and what its tests
 # share is made once. Where a program crashes, the last "[ RUN ]" of its output names the test. Of the suites in APART,
 # whose tests take long and share nothing, each test is one for ctest; these begin first.
-# PROGRAM, PROCESSORS and APART come from the file that includes this one (tests/CMakeLists.txt).
+# PROGRAM, PROCESSORS, COST and APART come from the file that includes this one (tests/CMakeLists.txt).
 cmake_minimum_required(VERSION 3.25)
 if(NOT EXISTS "${PROGRAM}")
     get_filename_component(name "${PROGRAM}" NAME)
@@ -22,7 +22,7 @@ foreach(line IN LISTS listed)
             continue()
         endif()
         add_test("${suite}" "${PROGRAM}" "--gtest_filter=${suite}.*")
-        set_tests_properties("${suite}" PROPERTIES TIMEOUT 900 PROCESSORS ${PROCESSORS})
+        set_tests_properties("${suite}" PROPERTIES TIMEOUT 900 PROCESSORS ${PROCESSORS} COST ${COST})
     elseif(line MATCHES "^  ([A-Za-z0-9_/]+)$" AND "${plain}" IN_LIST APART)
         set(test "${suite}.${CMAKE_MATCH_1}")
         add_test("${test}" "${PROGRAM}" "--gtest_filter=${test}")

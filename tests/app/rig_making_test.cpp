@@ -241,8 +241,8 @@ TEST(RigSearch, StopsWithAWholeStateAndGoesOn) {
 // As a power cut ends it, again and again.
 TEST(RigSearch, KilledGoesOnToTheSameFront) {
     const SearchInput made;
-    ASSERT_EQ(lumorph(made.command("whole", "60")).exitCode, 0);
-    const std::vector<std::string> killed = made.command("killed", "60");
+    ASSERT_EQ(lumorph(made.command("whole", "30")).exitCode, 0);
+    const std::vector<std::string> killed = made.command("killed", "30");
     for (int k = 0; k < 4; ++k) {
         Process search(lumorphProgram(), killed);
         for (int wait = 0; wait < 300 && !std::filesystem::exists(made["killed/search.json"]); ++wait)
@@ -252,7 +252,7 @@ TEST(RigSearch, KilledGoesOnToTheSameFront) {
         (void)search.wait(std::chrono::seconds(20));
     }
     const auto found = lumorph(killed).json();
-    EXPECT_EQ(found["generations"], 60);
+    EXPECT_EQ(found["generations"], 30);
     EXPECT_EQ(textOfFile(made["killed/front.csv"]), textOfFile(made["whole/front.csv"]));
     EXPECT_EQ(textOfFile(made["killed/search.json"]), textOfFile(made["whole/search.json"]));
 }
