@@ -2,6 +2,8 @@
 include(GNUInstallDirs)
 
 install(TARGETS lumorph RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+# devices/transport/link_failsafe.cpp looks for it beside the program.
+install(TARGETS lumorph-servo-failsafe RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 if(TARGET lumorph_mpi)
     # core/search/shared_batch.cpp looks for ../lib/lumorph beside the program.
     install(TARGETS lumorph_mpi LIBRARY DESTINATION lib/lumorph)

@@ -63,7 +63,7 @@ void printDelays(const MeasuredDelays& delays, bool applied) {
     printFindings(delays.warnings);
     std::printf("  carried at 30 cm/s     light lies %.1f mm beside instead of %.1f mm\n",
                 1e3 * delays.gain.with.atSpeed, 1e3 * delays.gain.without.atSpeed);
-    if (applied) std::printf("The project's installation has the measured delays now.\n");
+    if (applied) std::printf("The project's installation has the delays measured in the virtual lab now.\n");
 }
 
 void delays(const DelaysArguments& arguments, const Session& session) {
@@ -105,7 +105,8 @@ void addCalibrateDelays(CLI::App& group, Session& session) {
     command->add_option("--seed", arguments->seed, "Other delays of the lab for another number");
     command->add_option("--fault", arguments->fault,
                         "What is wrong in the lab: frames, camera, slow, covered, tracker, still, dead or jammed");
-    command->add_flag("--apply", arguments->apply, "Write the measured delays into the project's installation");
+    command->add_flag("--apply", arguments->apply,
+                      "Write what was measured in the virtual lab into the project's installation");
     command->add_flag("--json", arguments->json, "Print one JSON value");
     command->callback([arguments, &session] { delays(*arguments, session); });
 }

@@ -67,7 +67,7 @@ void printLight(const LightCalibration& result, bool applied) {
     printColor("bare device", result.room.deviceColor);
     printColor("bare table", result.room.tableColor);
     std::printf("%s\n", result.assumption.c_str());
-    if (applied) std::printf("The project's installation has the measured light now.\n");
+    if (applied) std::printf("The project's installation has the light measured in the virtual lab now.\n");
 }
 
 /// As nobody has looked: what is measured does not build on what was measured before.
@@ -121,7 +121,8 @@ void addCalibrateLight(CLI::App& group, Session& session) {
     command->add_option("--fault", arguments->fault,
                         "What is wrong in the lab: saturated, dark, automatic, ambient, falling or unseen");
     command->add_flag("--without-sheet", arguments->withoutSheet, "No sheet of white paper lies beside the device");
-    command->add_flag("--apply", arguments->apply, "Write the measured light into the project's installation");
+    command->add_flag("--apply", arguments->apply,
+                      "Write what was measured in the virtual lab into the project's installation");
     command->add_flag("--json", arguments->json, "Print one JSON value");
     command->callback([arguments, &session] { light(*arguments, session); });
 }

@@ -102,7 +102,7 @@ void printServos(const ServoMeasurement& result, const ServoGain& gain, bool app
                 gain.wanted);
     std::printf("  projection lies    %.2f mm beside the surface before, %.2f mm after\n", 1e3 * gain.toldOff,
                 1e3 * gain.measuredOff);
-    if (applied) std::printf("The project's installation has the measured servos now.\n");
+    if (applied) std::printf("The project's installation has the servos measured in the virtual lab now.\n");
 }
 
 void servos(const ServosArguments& arguments, const Session& session) {
@@ -145,7 +145,8 @@ void addCalibrateServos(CLI::App& group, Session& session) {
     command->add_option("project", arguments->project, "A project, or resource:projects/NAME.lumorph")->required();
     command->add_option("--seed", arguments->seed, "Other servos of the lab for another number");
     command->add_option("--fault", arguments->fault, "What is wrong in the lab: swapped, reversed, dead or jammed");
-    command->add_flag("--apply", arguments->apply, "Write the measured servos into the project's installation");
+    command->add_flag("--apply", arguments->apply,
+                      "Write what was measured in the virtual lab into the project's installation");
     command->add_flag("--json", arguments->json, "Print one JSON value");
     command->callback([arguments, &session] { servos(*arguments, session); });
 }

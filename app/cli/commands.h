@@ -18,7 +18,7 @@ void addMatchCommand(CLI::App& app, Session& session);
 void addProjectCommand(CLI::App& app, Session& session);
 void addBenchCommand(CLI::App& app);
 /// Like the benchmarks, demonstrations are another program's, which is executed.
-void addDemoCommand(CLI::App& app);
+void addDemoCommand(CLI::App& app, const Session& session);
 /// Not part of a build of the core alone: recordings need SQLite, and the virtual lab stands on calibration.
 void addRecordingCommands(CLI::App& app);
 void addRenderCommand(CLI::App& app, Session& session);

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <iostream>
 #include <memory>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -77,7 +78,7 @@ CLI::App* addNew(CLI::App& demo) {
 
 } // namespace
 
-void addDemoCommand(CLI::App& app) {
+void addDemoCommand(CLI::App& app, const Session& session) {
     auto options = std::make_shared<DemoOptions>();
     CLI::App* command = app.add_subcommand("demo", "Start a demonstration, or play one without a window");
     command->add_option("NAME", options->name, "Which: " + demoNames())->check([](const std::string& name) {
@@ -110,7 +111,7 @@ void addDemoCommand(CLI::App& app) {
             "--" + told.name, [options, name = told.name](const std::string& text) { options->play.told[name] = text; },
             told.help);
     CLI::App* own = addNew(*command);
-    command->callback([options, seconds, record, picture, inputs, keep, seed, own] {
+    command->callback([options, seconds, record, picture, inputs, keep, seed, own, &session] {
         if (own->parsed()) return;
         if (options->name.empty())
             throw InvalidInput("demo", "which one is not said",
@@ -123,7 +124,10 @@ void addDemoCommand(CLI::App& app) {
         options->play.language = options->language == "de" ? Language::german : Language::english;
         if (*seconds || *record || *picture || *inputs || *keep || *seed || options->play.json) {
             fetchForecast(options->play.told);
-            playDemo(demo, options->play, std::cout);
+            std::ostringstream rates; // printed once the bar has gone
+            playDemo(demo, options->play, rates, session.progress());
+            Session::endProgress();
+            std::cout << rates.str();
         } else {
             showInWindow(demo, options->play.told, options->language);
         }

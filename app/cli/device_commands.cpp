@@ -67,6 +67,20 @@ const char* phaseText(LinkPhase phase) {
     return "";
 }
 
+const char* failsafeText(LinkFailsafeState state) {
+    switch (state) {
+    case LinkFailsafeState::none:
+        break;
+    case LinkFailsafeState::runs:
+        return "a process of its own lets servos go when lumorph ends or hangs";
+    case LinkFailsafeState::notShared:
+        return "! no process lets servos go when lumorph crashes or hangs: this kind of link cannot be shared";
+    case LinkFailsafeState::missing:
+        return "! no process lets servos go when lumorph crashes or hangs: lumorph-servo-failsafe is missing beside it";
+    }
+    return "";
+}
+
 DeviceProfile profileOf(const DeviceArguments& arguments) {
     DeviceProfile profile;
     if (!arguments.profile.empty()) {
@@ -109,6 +123,7 @@ nlohmann::json jsonOf(const LinkStatus& status) {
                            {"readsPosition", controller.traits.readsPosition},
                            {"jumpsOnAttach", controller.traits.jumpsOnAttach},
                            {"failsafe", controller.traits.failsafe},
+                           {"failsafeProcess", status.failsafe == LinkFailsafeState::runs},
                            {"volts", nullptr},
                            {"servos", servos}};
     if (controller.volts) json["volts"] = *controller.volts;
@@ -120,7 +135,8 @@ void printText(const std::string& uri, const LinkStatus& status) {
     std::printf("%s: %s%s%s, %s\n", uri.c_str(), controller.traits.name.c_str(),
                 controller.firmware.empty() ? "" : ", ", controller.firmware.c_str(), phaseText(status.phase));
     if (controller.volts) std::printf("  battery   %.2f V\n", *controller.volts);
-    std::printf("  failsafe  %s\n", controller.traits.failsafeWord.c_str());
+    std::printf("  failsafe  of the board: %s\n", controller.traits.failsafeWord.c_str());
+    if (const char* process = failsafeText(status.failsafe); *process) std::printf("            %s\n", process);
     if (controller.traits.jumpsOnAttach) std::printf("  ! servos jump to their middle when they are started\n");
     for (std::size_t i = 0; i < status.servos.size(); ++i) {
         const ServoStatus& servo = status.servos[i];

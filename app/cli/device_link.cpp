@@ -1,6 +1,5 @@
 #include "app/cli/device_link.h"
 
-#include <algorithm>
 #include <cstdio>
 #include <string>
 #include <utility>
@@ -50,16 +49,7 @@ DeviceLink::~DeviceLink() {
 }
 
 /// Beside the command's own thread, which may wait for whoever reads what it prints.
-void DeviceLink::letGo() {
-    link_.stop();
-    const auto end = Clock::now() + kLetGoWithin;
-    for (LinkStatus status = link_.status(); Clock::now() < end; status = link_.status()) {
-        const bool driven = status.phase == LinkPhase::starting || status.phase == LinkPhase::live ||
-                            std::ranges::any_of(status.servos, &ServoStatus::attached);
-        if (!driven && !status.controller.detaching) return;
-        std::this_thread::sleep_for(kPause);
-    }
-}
+void DeviceLink::letGo() { static_cast<void>(link_.letGo(kLetGoWithin)); }
 
 LinkOptions DeviceLink::options(OnWire onWire) {
     LinkOptions options;

@@ -58,7 +58,7 @@ int main(int argc, char** argv) {
 #ifdef LUMORPH_WITH_DEVICES
     lumorph::cli::addDeviceCommands(app, session);
     lumorph::cli::addTrackCommand(app, session);
-    lumorph::cli::addDemoCommand(app);
+    lumorph::cli::addDemoCommand(app, session);
 #endif
     lumorph::cli::addBenchCommand(app);
     try {

@@ -19,9 +19,9 @@ namespace lumorph::cli {
 /// What all commands share: where output goes, how progress is shown, and how Ctrl-C stops work.
 class Session {
 public:
-    /// Takes over SIGINT, SIGTERM and SIGHUP: the first asks the running work to stop, so that it can tidy up; a
-    /// second ends the program at once, but for `setLastAct`. A reader that goes away (SIGPIPE) ends nothing by itself:
-    /// writing fails, and ReaderGone unwinds the command.
+    /// Takes over SIGINT, SIGTERM, SIGHUP and SIGQUIT: the first asks the running work to stop, so that it can tidy up;
+    /// a second ends the program at once, but for `setLastAct`. A reader that goes away (SIGPIPE) ends nothing by
+    /// itself: writing fails, and ReaderGone unwinds the command.
     Session();
     ~Session();
     Session(const Session&) = delete;

@@ -62,8 +62,8 @@ CalibratedCamera finer(CalibratedCamera camera) {
 }
 
 /// A show that nobody watches waits for its field.
-MatchWish completeWish(const ProjectContents& contents, const std::shared_ptr<ShowProgram>& program,
-                       Language language) {
+MatchWish completeWish(const ProjectContents& contents, const std::shared_ptr<ShowProgram>& program, Language language,
+                       const Progress& progress) {
     MatchWish wish = wishOf(contents);
     wish.language = language;
     wish.showTint = false;
@@ -72,7 +72,8 @@ MatchWish completeWish(const ProjectContents& contents, const std::shared_ptr<Sh
         wish.inputs = std::make_shared<ShowInputs>();
         wish.driver = Driver::program;
     }
-    if (wish.target && !wish.field) wish.field = std::make_shared<const MatchField>(buildField(*wish.rig, {}));
+    if (wish.target && !wish.field)
+        wish.field = std::make_shared<const MatchField>(buildField(*wish.rig, {}, progress));
     return wish;
 }
 
@@ -80,9 +81,9 @@ MatchWish completeWish(const ProjectContents& contents, const std::shared_ptr<Sh
 class Recorder {
 public:
     Recorder(const ProjectContents& contents, const std::string& name, const ShowPictures& show,
-             const ShowScript& script)
+             const ShowScript& script, const Progress& progress)
         : name_(name), show_(show), room_(contents.project.installation), inputs_(script.inputs),
-          player_(clock_, completeWish(contents, script.program, script.language)) {
+          player_(clock_, completeWish(contents, script.program, script.language, progress)) {
         renderer_.setMeasuring(true);
         renderer_.setEyeSize(show.video);
     }
@@ -198,15 +199,19 @@ private:
 } // namespace
 
 ShowRates playShow(const ProjectContents& contents, const std::string& name, const ShowPictures& show,
-                   const fs::path& pictures, const fs::path& video, const ShowScript& script) {
+                   const fs::path& pictures, const fs::path& video, const ShowScript& script,
+                   const Progress& progress) {
     if (!(show.seconds > 0.0 && show.seconds <= kMaxSeconds))
         throw InvalidInput("--seconds", "the show lasts more than 0 and at most 600 seconds",
                            "give a number in that range");
-    Recorder recorder(contents, name, show, script);
+    Recorder recorder(contents, name, show, script, progress.part(0.0, 0.2));
     std::optional<VideoWriter> writer;
     if (!video.empty()) writer.emplace(video, show.video, 1.0 / (ShowPlayer::kStep * kStepsAPicture));
     const int steps = std::max(kStepsAPicture, static_cast<int>(std::lround(show.seconds / ShowPlayer::kStep)));
+    const Progress drawing = progress.part(0.2, 1.0);
     for (int k = 0; k < steps; ++k) {
+        drawing.throwIfCancelled();
+        drawing.report(static_cast<double>(k) / steps, "drawing the show");
         recorder.step();
         if (k == steps / 2 && !pictures.empty()) recorder.savePictures(pictures);
         if (k % kStepsAPicture != 0) continue;
@@ -244,13 +249,14 @@ ShowScript scriptOf(const Demo& demo, const DemoPlay& play, std::vector<std::str
 
 } // namespace
 
-void playDemo(const Demo& demo, const DemoPlay& play, std::ostream& out) {
+void playDemo(const Demo& demo, const DemoPlay& play, std::ostream& out, const Progress& progress) {
     ShowPictures show;
     show.seconds = play.seconds;
     show.last = play.last;
     std::vector<std::string> warnings;
     const ShowScript script = scriptOf(demo, play, warnings);
-    ShowRates rates = playShow(demo.open({}), demo.name, show, {}, play.video, script);
+    ShowRates rates =
+        playShow(demo.open(progress.part(0.0, 0.1)), demo.name, show, {}, play.video, script, progress.part(0.1, 1.0));
     rates.warnings.insert(rates.warnings.begin(), warnings.begin(), warnings.end());
     if (!play.kept.empty() && rates.keepsake) writeKeepsake(play.kept, rates.keepsake());
     if (play.json) {

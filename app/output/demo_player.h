@@ -11,6 +11,7 @@
 #include <glm/vec2.hpp>
 
 #include "app/applications/demo.h"
+#include "core/base/progress.h"
 #include "core/show/input_script.h"
 
 namespace lumorph {
@@ -46,10 +47,10 @@ struct ShowRates {
 /// dependence is seen so, in two halves. `name` begins the names of pictures.
 /// `pictures` may be empty: else the moment in the middle is written there as NAME-eye.png, NAME-projector.png and
 /// NAME-lab.png. `video` may be empty. Throws DeviceError where nothing can be drawn or written, InvalidInput for a
-/// time outside (0, 600]. A program that ends by an error is told among the warnings.
+/// time outside (0, 600], Cancelled; then no video is left. A program that ends by an error is told among the warnings.
 ShowRates playShow(const ProjectContents& contents, const std::string& name, const ShowPictures& show,
                    const std::filesystem::path& pictures, const std::filesystem::path& video,
-                   const ShowScript& script = {});
+                   const ShowScript& script = {}, const Progress& progress = {});
 
 /// How a demonstration is played without a window.
 struct DemoPlay {
@@ -65,8 +66,7 @@ struct DemoPlay {
 };
 
 /// Plays a demonstration and tells its rates on `out`. Throws InvalidInput for inputs or settings of one that takes
-/// none, and as
-/// `Demo::open`, `Demo::program`, `readInputScript` and `playShow` do.
-void playDemo(const Demo& demo, const DemoPlay& play, std::ostream& out);
+/// none, and as `Demo::open`, `Demo::program`, `readInputScript` and `playShow` do.
+void playDemo(const Demo& demo, const DemoPlay& play, std::ostream& out, const Progress& progress = {});
 
 } // namespace lumorph

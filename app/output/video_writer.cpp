@@ -3,9 +3,12 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
+#include <cerrno>
+#include <optional>
 #include <string>
 #include <system_error>
 
+#include <fcntl.h>
 #include <unistd.h>
 
 #include <opencv2/core.hpp>
@@ -21,11 +24,61 @@ namespace fs = std::filesystem;
 constexpr int kMinSide = 16;
 constexpr int kMaxSide = 8192;
 
-/// The encoder tells the kind of file by its ending, so the temporary keeps it.
 fs::path temporaryBeside(const fs::path& file) {
     static std::atomic<unsigned> counter{0};
     return file.parent_path() / (".lumorph-" + std::to_string(::getpid()) + "-" + std::to_string(counter++) + ".mp4");
 }
+
+/// A file without a name, as long as it is open; where the file system has no such files, one with a name for the time
+/// being.
+class Unnamed {
+public:
+    /// Beside `file`.
+    explicit Unnamed(const fs::path& file) : beside_(temporaryBeside(file)) {
+        const fs::path folder = file.has_parent_path() ? file.parent_path() : fs::path(".");
+        constexpr mode_t kMode = 0666; // less the user's mask
+        descriptor_ = ::open(folder.c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, kMode);
+    }
+    ~Unnamed() {
+        removeName();
+        if (descriptor_ >= 0) ::close(descriptor_);
+    }
+    Unnamed(const Unnamed&) = delete;
+    Unnamed& operator=(const Unnamed&) = delete;
+
+    /// A name with the ending by which the encoder knows the kind of file, for it to open; `opened` takes it away.
+    [[nodiscard]] std::string nameForEncoder() const {
+        if (descriptor_ >= 0 && ::symlink(content().c_str(), beside_.c_str()) != 0) return content();
+        return beside_.string();
+    }
+    void opened() const {
+        if (descriptor_ >= 0) removeName();
+    }
+    /// Where it can be read.
+    [[nodiscard]] std::string content() const {
+        return descriptor_ >= 0 ? "/proc/self/fd/" + std::to_string(descriptor_) : beside_.string();
+    }
+    /// The folder it is in, for its disk.
+    [[nodiscard]] const fs::path& beside() const noexcept { return beside_; }
+    /// Takes the place of what may be there.
+    [[nodiscard]] std::error_code moveTo(const fs::path& file) const {
+        if (descriptor_ >= 0 &&
+            ::linkat(AT_FDCWD, content().c_str(), AT_FDCWD, beside_.c_str(), AT_SYMLINK_FOLLOW) != 0)
+            return {errno, std::generic_category()};
+        std::error_code error;
+        fs::rename(beside_, file, error);
+        return error;
+    }
+
+private:
+    void removeName() const {
+        std::error_code ignored;
+        fs::remove(beside_, ignored);
+    }
+
+    fs::path beside_;
+    int descriptor_ = -1;
+};
 
 void checkSize(glm::ivec2 size) {
     const auto wrong = [](int side) { return side < kMinSide || side > kMaxSide || side % 2 != 0; };
@@ -57,8 +110,8 @@ void checkFile(const fs::path& file) {
 }
 
 /// Whether the file opens and holds this many frames of this size.
-bool holds(const fs::path& file, int frames, glm::ivec2 size) {
-    cv::VideoCapture capture(file.string(), cv::CAP_FFMPEG);
+bool holds(const std::string& file, int frames, glm::ivec2 size) {
+    cv::VideoCapture capture(file, cv::CAP_FFMPEG);
     cv::Mat first;
     return capture.isOpened() && static_cast<int>(capture.get(cv::CAP_PROP_FRAME_COUNT)) == frames &&
            capture.read(first) && first.cols == size.x && first.rows == size.y;
@@ -68,7 +121,7 @@ bool holds(const fs::path& file, int frames, glm::ivec2 size) {
 
 struct VideoWriter::Data {
     fs::path file;
-    fs::path temporary;
+    std::optional<Unnamed> written;
     glm::ivec2 size{0};
     cv::VideoWriter writer;
     cv::Mat picture;
@@ -82,25 +135,22 @@ VideoWriter::VideoWriter(fs::path file, glm::ivec2 size, double framesPerSecond)
                            "give a rate in that range");
     checkFile(file);
     data_->file = std::move(file);
-    data_->temporary = temporaryBeside(data_->file);
+    data_->written.emplace(data_->file);
     data_->size = size;
     data_->picture.create(size.y, size.x, CV_8UC3);
-    for (const auto& code : {std::array{'a', 'v', 'c', '1'}, std::array{'m', 'p', '4', 'v'}})
-        if (data_->writer.open(data_->temporary.string(), cv::CAP_FFMPEG,
-                               cv::VideoWriter::fourcc(code[0], code[1], code[2], code[3]), framesPerSecond,
-                               cv::Size(size.x, size.y)))
-            return;
-    std::error_code ignored;
-    fs::remove(data_->temporary, ignored);
+    const std::string name = data_->written->nameForEncoder();
+    const auto opens = [&](const std::array<char, 4>& code) {
+        return data_->writer.open(name, cv::CAP_FFMPEG, cv::VideoWriter::fourcc(code[0], code[1], code[2], code[3]),
+                                  framesPerSecond, cv::Size(size.x, size.y));
+    };
+    const bool isOpen = opens({'a', 'v', 'c', '1'}) || opens({'m', 'p', '4', 'v'});
+    data_->written->opened();
+    if (isOpen) return;
     throw DeviceError(data_->file.string(), "no video encoder for MP4 could be started",
                       "install the packages libopencv-videoio406 and libavcodec59, or choose a smaller size");
 }
 
-VideoWriter::~VideoWriter() {
-    data_->writer.release();
-    std::error_code ignored;
-    fs::remove(data_->temporary, ignored);
-}
+VideoWriter::~VideoWriter() { data_->writer.release(); }
 
 void VideoWriter::add(const Image& frame) {
     if (frame.size() != data_->size)
@@ -123,10 +173,9 @@ void VideoWriter::finish() {
         throw InvalidInput(data_->file.string(), "a video needs at least one frame", "make it longer");
     data_->writer.release();
     // The encoder keeps quiet about a disk that refuses; what counts is what can be read again.
-    if (!holds(data_->temporary, data_->frames, data_->size)) failIncomplete(data_->file, data_->temporary);
-    std::error_code error;
-    fs::rename(data_->temporary, data_->file, error);
-    if (error)
+    if (!holds(data_->written->content(), data_->frames, data_->size))
+        failIncomplete(data_->file, data_->written->beside());
+    if (const std::error_code error = data_->written->moveTo(data_->file))
         throw DeviceError(data_->file.string(), "cannot be written: " + error.message(),
                           "choose another place, or check its permissions");
 }

@@ -11,7 +11,8 @@ namespace lumorph {
 
 /// Writes pictures as an MP4 video: H.264, or MPEG-4 Part 2 where no H.264 encoder is installed. The file appears under
 /// its name only when `finish` has returned; until then, and when something goes wrong, there is none and an older file
-/// of that name stays.
+/// of that name stays. What was written until then has no name on file systems that allow it, so that nothing is left
+/// even of a program that is killed.
 class VideoWriter {
 public:
     /// `size` in pixels, both sides even and in [16, 8192]; `framesPerSecond` in [1, 240]. Throws InvalidInput for

@@ -10,6 +10,7 @@
 #include "app/studio/shell/main_window.h"
 #include "app/studio/shell/studio.h"
 #include "app/studio/shell/studio_application.h"
+#include "app/studio/shell/way_out.h"
 #include "app/workspaces/workspaces.h"
 #include "core/base/error.h"
 
@@ -61,14 +62,13 @@ int run(int argc, char** argv, const Arguments& arguments) {
         return 2;
     }
     MainWindow window(studio, std::move(workspaces));
-    application.closeOnInterrupt([&window] { window.closeNow(); });
+    WayOut wayOut(window, studio);
     window.showWorkspace(firstWorkspace(arguments)); // empty: stays as it is
     studio.sound.open();
     studio.gamepads.open();
     arguments.kiosk ? window.enterKiosk() : window.show();
     openFirst(studio, window, arguments);
-    const int status = QApplication::exec();
-    studio.devices.leave(); // as long as the window's keys can stop it
+    const int status = wayOut.exec(); // servos leave as long as the window's keys can stop them
     application.setOnError({});
     return status;
 }

@@ -68,6 +68,7 @@ struct MatchThread::Data {
     bool resting = true; ///< another frame of the last wish would show nothing new
     bool rested = true;  ///< there was a rest before this turn
     bool failed = false; ///< the last wish could not be fulfilled
+    bool paused = false; ///< nobody follows the frames
     Microseconds started{0};
     std::shared_ptr<const MatchFrame> latest;
     std::optional<std::string> error;
@@ -82,7 +83,7 @@ std::optional<MatchWish> MatchThread::Data::nextTurn(const std::stop_token& stop
     // Trackers do not call: while the loop rests, it looks now and then whether they see somebody again.
     while (!changed.wait_for(lock, stop, kGlance, [&] { return fresh || !resting; })) {
         if (stop.stop_requested()) return std::nullopt;
-        if (newest && !failed && wakes(*newest, clock.now())) break;
+        if (newest && !failed && !paused && wakes(*newest, clock.now())) break;
     }
     while (!stop.stop_requested() && clock.now() < started + period) {
         const Microseconds before = period;
@@ -105,7 +106,7 @@ void MatchThread::Data::run(const std::stop_token& stop) {
         const bool done = frame(loop, *wish, secondsOf(sinceLast));
         const std::scoped_lock lock(mutex);
         failed = !done;
-        resting = failed || loop.settled();
+        resting = failed || paused || loop.settled();
     }
 }
 
@@ -154,6 +155,15 @@ void MatchThread::setRate(double framesPerSecond) {
     {
         const std::scoped_lock lock(data_->mutex);
         data_->period = periodOf(framesPerSecond);
+    }
+    data_->changed.notify_all();
+}
+
+void MatchThread::setPaused(bool paused) {
+    {
+        const std::scoped_lock lock(data_->mutex);
+        if (std::exchange(data_->paused, paused) == paused) return;
+        if (!paused) data_->fresh = data_->newest.has_value();
     }
     data_->changed.notify_all();
 }

@@ -23,6 +23,9 @@ public:
 
     void wish(MatchWish wish);
     void setRate(double framesPerSecond);
+    /// While paused, a new wish gets one frame and nothing else does; the pause is no time in which anything moves.
+    /// Ending it makes a frame at once.
+    void setPaused(bool paused);
     /// The newest frame; empty before the first.
     [[nodiscard]] std::shared_ptr<const MatchFrame> latest() const;
     /// Frames a second over the last second; 0 while idle.

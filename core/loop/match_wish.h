@@ -42,7 +42,7 @@ struct MatchWish {
     bool playing = true;        ///< the target's animation runs
     std::optional<double> seek; ///< animation time to show while not playing, seconds
     double spin = 0.0;          ///< radians a second that the target turns about +Y
-    bool stopped = false;       ///< STOP: servos stay where they are until it is taken back
+    bool stopped = false;       ///< STOP: estimated strokes hold still until it is taken back; a device lets go
     bool showTint = true;       ///< work out which voxels are unmatched and overfilled
 
     std::shared_ptr<const Scene> scene;               ///< what light shows, and what of it servos follow; may be empty

@@ -20,6 +20,8 @@ constexpr double kShareOfLink = 0.47;      // of its bytes, for pulses; the rest
 constexpr double kDetachShare = 0.65;      // of its bytes, for letting servos go: nothing else matters then
 constexpr Microseconds kDetachGap{25'000}; // at least
 constexpr std::size_t kMostQuestions = 64;
+constexpr Microseconds kLongestPause{250'000}; // that counts as listening: ticks come every 50 ms or more often
+constexpr Microseconds kStuck{400'000};        // a board's own watchdog is at 500 ms, and may have begun before
 
 /// The scale with what follows from the traits.
 PulseScale scaleOf(PulseScale scale, const DeviceProfile& profile, const ControllerTraits& traits) {
@@ -39,6 +41,7 @@ ControllerBase::ControllerBase(const DeviceProfile& profile, const PulseScale& s
 void ControllerBase::opened(const std::string& product, Microseconds now) {
     now_ = heard_ = lastWritten_ = now;
     everHeard_ = false;
+    stuckAt_.reset();
     heardVolts_.reset();
     product_ = product;
     questions_.clear();
@@ -53,14 +56,24 @@ void ControllerBase::opened(const std::string& product, Microseconds now) {
     begin(now);
 }
 
-void ControllerBase::received(std::span<const std::uint8_t> bytes, Microseconds now) {
+void ControllerBase::passTo(Microseconds now) {
+    if (now < now_) {
+        heard_ = lastWritten_ = now; // the clock was set back
+        stuckAt_.reset();
+    } else if (const Microseconds pause = now - now_; pause > kLongestPause) {
+        heard_ += pause - kLongestPause;
+        if (pause >= kStuck) stuckAt_ = now;
+    }
     now_ = now;
+}
+
+void ControllerBase::received(std::span<const std::uint8_t> bytes, Microseconds now) {
+    passTo(now);
     take(bytes, now);
 }
 
 void ControllerBase::tick(Microseconds now) {
-    if (now < now_) heard_ = lastWritten_ = now; // the clock was set back
-    now_ = now;
+    passTo(now);
     plan_.tick(now);
     work(now);
     state_.detaching = plan_.detaching();
@@ -156,7 +169,7 @@ std::optional<std::size_t> ControllerBase::servoOn(int channel) const {
 }
 
 void ControllerBase::command(std::span<const GuardedPulse> pulses, Microseconds now) {
-    now_ = now;
+    passTo(now);
     plan_.want(pulses, now, state_.phase == ControllerPhase::ready);
 }
 

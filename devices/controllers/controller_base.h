@@ -39,7 +39,8 @@ private:
 /// and the battery.
 class ControllerBase : public ServoController {
 public:
-    /// A controller that has said nothing for so long is taken for silent.
+    /// A controller that has said nothing for so long is taken for silent. Time in which this program did not run does
+    /// not count: what the board said then was not read.
     static constexpr Microseconds kSilence{1'000'000};
     static constexpr double kLowBattery = 6.0; ///< volts; a pack of two lithium cells is empty there
 
@@ -50,6 +51,7 @@ public:
     void confirm() final;
     void send(const GuardedPulses& pulses, Microseconds now) final { command(pulses.servos(), now); }
     void detachAgain() final { plan_.detachAgain(); }
+    [[nodiscard]] ServoRelease release() const final { return {releases(), plan_.detachGap()}; }
     [[nodiscard]] std::vector<std::vector<std::uint8_t>> takeOutput() final;
     [[nodiscard]] const ControllerState& state() const final { return state_; }
 
@@ -64,6 +66,8 @@ protected:
     virtual void take(std::span<const std::uint8_t> bytes, Microseconds now) = 0;
     virtual void work(Microseconds now) = 0;
     [[nodiscard]] virtual Messages detachments(std::span<const std::size_t> servos) = 0;
+    /// The same for all servos, without any knowledge of what was said.
+    [[nodiscard]] virtual Messages releases() const = 0;
     [[nodiscard]] virtual Messages changes(std::span<const PulsePlan::Change> changes) = 0;
     /// The plan has taken other limits over.
     virtual void limitsChanged(const DeviceProfile&) {}
@@ -75,6 +79,8 @@ protected:
     /// A sound answer came.
     void noteAnswer(Microseconds now);
     [[nodiscard]] bool everHeard() const noexcept { return everHeard_; }
+    /// This program has just been stuck for so long that a board with a watchdog let go of its servos.
+    [[nodiscard]] bool wasStuckLately() const noexcept { return stuckAt_ && now_ - *stuckAt_ < kSilence; }
     void becomeReady();
     void refuse(LinkTrouble why);
     /// It started anew, or let go of its servos by itself.
@@ -98,6 +104,7 @@ protected:
 private:
     friend struct UnguardedAccess; // of tests, which have no guard
     void command(std::span<const GuardedPulse> pulses, Microseconds now);
+    void passTo(Microseconds now);
 
     Messages questions_;
     std::array<std::optional<LinkTrouble>, 4> troubles_;
@@ -105,7 +112,8 @@ private:
     Microseconds heard_{0};
     Microseconds lastWritten_{0};
     bool everHeard_ = false;
-    std::optional<double> heardVolts_; ///< last, true or not
+    std::optional<Microseconds> stuckAt_; ///< when it went on
+    std::optional<double> heardVolts_;    ///< last, true or not
 };
 
 /// Baud rate of a link as far as its address tells it: 9600 over Bluetooth (HC-06), 57600 where nobody says.

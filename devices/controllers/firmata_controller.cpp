@@ -104,6 +104,7 @@ private:
     void take(std::span<const std::uint8_t> bytes, Microseconds now) override;
     void work(Microseconds now) override;
     [[nodiscard]] Messages detachments(std::span<const std::size_t> servos) override;
+    [[nodiscard]] Messages releases() const override;
     [[nodiscard]] Messages changes(std::span<const PulsePlan::Change> changes) override;
     [[nodiscard]] LinkTrouble silence(bool never) const override;
 
@@ -188,7 +189,7 @@ void FirmataController::becomeKind(bool own) {
     state_.traits.jumpsOnAttach = !own;
     state_.traits.failsafeWord =
         own ? "when the studio has been silent for half a second, the board holds its servos and then lets go of them"
-            : "none: when the studio dies, servos stay under power where they are; switch them off by hand";
+            : "none of its own: when it hears nothing more, servos stay under power where they are";
 }
 
 void FirmataController::take(std::span<const std::uint8_t> bytes, Microseconds now) {
@@ -337,6 +338,7 @@ void FirmataController::receive(const firmata::PinState& pin) {
 
 void FirmataController::receive(const firmata::Text& text) {
     if (text.text.empty()) return;
+    if (text.text.starts_with("Silence") && wasStuckLately()) return; // it was ours, and is no trouble of the board
     if (state_.phase != ControllerPhase::handshake) ++state_.errors;
     words_ = heardAt_;
     trouble(Concern::board, LinkTrouble{"the board says '" + readable(text.text) + "'", remedyFor(text.text)});
@@ -403,6 +405,13 @@ ControllerBase::Messages FirmataController::detachments(std::span<const std::siz
             messages.push_back(certain(firmata::detachServo(plan_.servos()[servo].channel)));
     if (resets) messages.push_back(certain(firmata::resetBoard()));
     if (ready) askState(now());
+    return messages;
+}
+
+ControllerBase::Messages FirmataController::releases() const {
+    Messages messages;
+    for (const ServoSetup& servo : plan_.servos()) messages.push_back(certain(firmata::detachServo(servo.channel)));
+    messages.push_back(certain(firmata::resetBoard()));
     return messages;
 }
 

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <numeric>
 #include <vector>
 
 #include "devices/controllers/controller_base.h"
@@ -44,8 +45,8 @@ ControllerTraits lewansoulTraits(const DeviceProfile& profile, const DeviceAddre
     const std::size_t reports = (servos + kServosPerReport - 1) / kServosPerReport;
     traits.commandsPerSecond = hid ? kHidPerSecond / static_cast<double>(reports)
                                    : std::min(kHidPerSecond, setsPerSecond(baudOf(address), 7 + 3 * servos));
-    traits.failsafeWord = "none: when the studio dies or the cable is pulled, servos stay under power where they are; "
-                          "switch the board off to free them";
+    traits.failsafeWord = "none of its own: when it hears nothing more or the cable is pulled, servos stay under power "
+                          "where they are; switch the board off to free them";
     return traits;
 }
 
@@ -89,6 +90,7 @@ private:
     void take(std::span<const std::uint8_t> bytes, Microseconds now) override;
     void work(Microseconds now) override;
     [[nodiscard]] Messages detachments(std::span<const std::size_t> servos) override;
+    [[nodiscard]] Messages releases() const override;
     [[nodiscard]] Messages changes(std::span<const PulsePlan::Change> changes) override;
     void limitsChanged(const DeviceProfile& profile) override {
         const double period = 1000.0 / setsPerSecond(profile, state_.traits);
@@ -96,6 +98,7 @@ private:
     }
     [[nodiscard]] LinkTrouble silence(bool never) const override;
 
+    [[nodiscard]] Messages unloads(std::span<const std::size_t> servos) const;
     [[nodiscard]] int durationOf(std::span<const PulsePlan::Change> changes) const;
     [[nodiscard]] bool draining(Microseconds now) const;
     [[nodiscard]] bool namesItself() const { return product_.find("LOBOT") != std::string::npos; }
@@ -217,8 +220,7 @@ void LewansoulController::forgetStale(Microseconds now) {
         if (now < readAt_[i] || now - readAt_[i] >= kStale) state_.readPulses[i].reset();
 }
 
-/// Nothing tells whether a servo is under power: they are told again as long as they shall be limp.
-ControllerBase::Messages LewansoulController::detachments(std::span<const std::size_t> servos) {
+ControllerBase::Messages LewansoulController::unloads(std::span<const std::size_t> servos) const {
     Messages messages;
     for (std::size_t first = 0; first < servos.size(); first += kServosPerReport) {
         std::vector<int> channels;
@@ -226,6 +228,19 @@ ControllerBase::Messages LewansoulController::detachments(std::span<const std::s
             channels.push_back(plan_.servos()[servo].channel);
         messages.push_back(lewansoul::unload(channels));
     }
+    return messages;
+}
+
+/// A frame that was cut takes its rest from these: the second time they are whole.
+ControllerBase::Messages LewansoulController::releases() const {
+    std::vector<std::size_t> all(plan_.servos().size());
+    std::iota(all.begin(), all.end(), std::size_t{0});
+    return unloads(all);
+}
+
+/// Nothing tells whether a servo is under power: they are told again as long as they shall be limp.
+ControllerBase::Messages LewansoulController::detachments(std::span<const std::size_t> servos) {
+    Messages messages = unloads(servos);
     if (stopped_.take(now())) positions_.reset(); // where did they come to rest?
     return messages;
 }

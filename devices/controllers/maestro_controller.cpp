@@ -35,7 +35,7 @@ ControllerTraits maestroTraits(const DeviceProfile& profile, const DeviceAddress
     traits.commandsPerSecond = setsPerSecond(baudOf(address), bytesOfTarget(profile) * profile.servos.size());
     traits.failsafeWord = "only where a serial timeout is set in the board itself (Maestro Control Center, Serial "
                           "Settings): the studio can neither read nor set it. Without it servos stay under power where "
-                          "they are when the studio dies";
+                          "they are when it hears nothing more";
     return traits;
 }
 
@@ -58,6 +58,7 @@ private:
     void take(std::span<const std::uint8_t> bytes, Microseconds now) override;
     void work(Microseconds now) override;
     [[nodiscard]] Messages detachments(std::span<const std::size_t> servos) override;
+    [[nodiscard]] Messages releases() const override;
     [[nodiscard]] Messages changes(std::span<const PulsePlan::Change> changes) override;
     [[nodiscard]] LinkTrouble silence(bool never) const override;
 
@@ -217,6 +218,12 @@ ControllerBase::Messages MaestroController::detachments(std::span<const std::siz
     Messages messages;
     for (const std::size_t servo : servos)
         messages.push_back(maestro::setTarget(form_, plan_.servos()[servo].channel, 0));
+    return messages;
+}
+
+ControllerBase::Messages MaestroController::releases() const {
+    Messages messages;
+    for (const ServoSetup& servo : plan_.servos()) messages.push_back(maestro::setTarget(form_, servo.channel, 0));
     return messages;
 }
 

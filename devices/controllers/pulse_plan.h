@@ -78,6 +78,8 @@ public:
     /// Some servo is being told to let go again and again.
     [[nodiscard]] bool detaching() const;
 
+    /// Pause between two times that servos are told to let go.
+    [[nodiscard]] Microseconds detachGap() const noexcept { return scale_.detachGap; }
     /// Servos to detach now, before anything else.
     [[nodiscard]] std::vector<std::size_t> takeDetachments();
     /// Empty unless there is room for it.

@@ -49,6 +49,13 @@ struct ControllerState {
     bool batteryTrouble = false; ///< it is the battery's alone
 };
 
+/// What lets go of all servos of a board whatever it was told before, for a failsafe that knows no protocol.
+struct ServoRelease {
+    std::vector<std::vector<std::uint8_t>> messages; ///< whole ones; the first ends what was cut before it
+    Microseconds gap{25'000};                        ///< between two times that they are written
+    bool operator==(const ServoRelease&) const = default;
+};
+
 /// One kind of servo controller, as a machine that takes bytes and time and gives bytes: it does no I/O. What is sent
 /// moves servos only through `send`.
 class ServoController {
@@ -69,6 +76,8 @@ public:
     virtual void send(const GuardedPulses& pulses, Microseconds now) = 0;
     /// Servos that were told to be limp are told so once more, now: nobody knows whether it arrived.
     virtual void detachAgain() = 0;
+    /// For a board that is ready. Nothing is written or remembered by asking.
+    [[nodiscard]] virtual ServoRelease release() const = 0;
     /// Messages to write, in order; emptied by taking them.
     [[nodiscard]] virtual std::vector<std::vector<std::uint8_t>> takeOutput() = 0;
     [[nodiscard]] virtual const ControllerState& state() const = 0;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 
 #include "devices/controllers/controller_base.h"
 #include "devices/controllers/servo_engine_data.h"
@@ -18,8 +19,10 @@ constexpr Microseconds kTrustedRest{2'000'000};
 constexpr Microseconds kReadAnew{400'000}; // after its last pulse, a position that is told was read since
 constexpr Microseconds kSilencePatience{4'000'000};
 constexpr Microseconds kStallTold{200'000};
-constexpr double kMostUnsentSeconds = 0.025; // of a serial link: what a STOP may find before it
-constexpr double kMostUnsent = 128.0;        // bytes, whatever the link
+constexpr Microseconds kHang{1'000'000}; // without any input, where ticks come every 50 ms: as the failsafe process
+constexpr Microseconds kWatchedHang{500'000}; // of a board that watches over its servos itself: it has let them go
+constexpr double kMostUnsentSeconds = 0.025;  // of a serial link: what a STOP may find before it
+constexpr double kMostUnsent = 128.0;         // bytes, whatever the link
 constexpr double kLeastUnsent = 24.0;
 
 // Times of inputs may be anything; differences of these are numbers.
@@ -54,12 +57,34 @@ void ServoEngine::Data::make() {
     mostUnsent = static_cast<std::uint64_t>(std::clamp(taken, kLeastUnsent, kMostUnsent));
 }
 
-void ServoEngine::Data::see(Microseconds time) {
+Microseconds ServoEngine::Data::see(Microseconds time) {
     outside = time;
     const Microseconds bounded = std::clamp(time, -kFarthest, kFarthest);
     if (!origin) origin = bounded;
     const Microseconds before = std::exchange(now, kBegin + (bounded - *origin));
-    if (now > before) passed += std::min(now - before, kLongestGap);
+    const Microseconds pause = std::clamp(now - before, Microseconds{0}, kLongestGap);
+    passed += pause;
+    return pause;
+}
+
+/// This program was stopped, or had no processor: nobody could have pressed STOP, and hands may be anywhere by now.
+void ServoEngine::Data::noticeHang(Microseconds pause) {
+    if (open && pause >= (controller->state().traits.failsafe ? kWatchedHang : kHang)) letGoAfterHang(pause);
+}
+
+void ServoEngine::Data::letGoAfterHang(Microseconds pause) {
+    if (!armed()) return;
+    char text[120];
+    std::snprintf(text, sizeof text, "Lumorph itself was stuck for %.1f s; the servos were let go.",
+                  1e-6 * static_cast<double>(pause.count()));
+    tell(Kind::failure, text,
+         "Start them again when hands are out of the way; where it comes again, see what else this computer does.");
+    guard.disarm();
+    forget(); // limp servos may have been moved
+    if (!open) return;
+    send();
+    controller->detachAgain();
+    flush(true);
 }
 
 void ServoEngine::Data::tell(Kind kind, std::string text, std::string remedy) {
@@ -226,7 +251,7 @@ ServoEngine::~ServoEngine() = default;
 
 void ServoEngine::take(const ServoInput& input, Microseconds now) {
     Data& data = *data_;
-    data.see(now);
+    data.noticeHang(data.see(now));
     std::visit([&data](const auto& one) { data.take(one); }, input);
     data.tellWaiting();
 }
@@ -236,6 +261,13 @@ std::vector<ServoOutput> ServoEngine::takeOutput() { return std::exchange(data_-
 bool ServoEngine::moves() const noexcept { return !data_->guard.settled(); }
 
 bool ServoEngine::live() const noexcept { return data_->guard.phase() == ServoGuard::Phase::live; }
+
+std::optional<ServoRelease> ServoEngine::release() const {
+    const Data& data = *data_;
+    const bool driven = std::ranges::any_of(data.pulses, &GuardedPulse::attached);
+    if (!data.open || (!driven && !data.controller->state().detaching)) return std::nullopt;
+    return data.controller->release();
+}
 
 Microseconds ServoEngine::commandPeriod() const {
     const double link = data_->controller->state().traits.commandsPerSecond;

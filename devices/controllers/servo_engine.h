@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <variant>
 #include <vector>
@@ -43,7 +44,7 @@ using ServoOutput = std::variant<servo_output::Write, servo_output::Reach, servo
 class ServoEngine {
 public:
     /// Another number where the same inputs may give other bytes: a trace is of one version.
-    static constexpr std::uint8_t kVersion = 4;
+    static constexpr std::uint8_t kVersion = 5;
 
     /// Throws as checkProfile, parseDeviceAddress and makeController.
     explicit ServoEngine(const DeviceProfile& profile);
@@ -58,6 +59,8 @@ public:
     /// Servos are on their way, or start.
     [[nodiscard]] bool moves() const noexcept;
     [[nodiscard]] bool live() const noexcept;
+    /// What lets the servos go, while one is under power or may be.
+    [[nodiscard]] std::optional<ServoRelease> release() const;
     /// What the link and the profile allow between two commands.
     [[nodiscard]] Microseconds commandPeriod() const;
     /// A tick is wanted no later than so.

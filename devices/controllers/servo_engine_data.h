@@ -65,7 +65,10 @@ struct ServoEngine::Data {
     std::vector<Microseconds> heldAt; ///< by servo, when it last got a pulse
     std::vector<long> written;        ///< the same in the controller's steps, when pulses were last written
 
-    void see(Microseconds time);
+    /// Returns how much time has passed since the input before.
+    Microseconds see(Microseconds time);
+    void noticeHang(Microseconds pause);
+    void letGoAfterHang(Microseconds pause);
     void make();
     void tell(Kind kind, std::string text, std::string remedy = "");
     [[nodiscard]] bool armed() const {
@@ -91,6 +94,7 @@ struct ServoEngine::Data {
     void take(const servo_input::Opened& opened);
     void take(const servo_input::Received& received);
     void take(const servo_input::Lost& lost);
+    void take(const servo_input::Released&);
     // What is due.
     void take(const servo_input::Tick& tick);
 

@@ -11,6 +11,7 @@ namespace {
 constexpr Microseconds kRestAtMost{2'000'000};
 constexpr Microseconds kCloseAfter{250'000}; // detaching is repeated meanwhile
 constexpr Microseconds kTrustedRestOfOrders{2'000'000};
+constexpr Microseconds kNoBeat{1'000'000}; // that the failsafe process waits for
 
 /// The same board with the same wires: only limits and manners may differ.
 bool sameWires(const DeviceProfile& made, const DeviceProfile& wanted) {
@@ -172,6 +173,8 @@ void ServoEngine::Data::take(const servo_input::Lost& lost) {
              (wasArmed ? (lost.why.remedy.empty() ? "" : "; ") + std::string("start the servos again when it is back")
                        : ""));
 }
+
+void ServoEngine::Data::take(const servo_input::Released&) { letGoAfterHang(kNoBeat); }
 
 void ServoEngine::Data::forget() {
     for (std::size_t i = 0; i < profile.servos.size(); ++i) guard.setKnown(i, std::nullopt);

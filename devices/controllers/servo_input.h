@@ -46,6 +46,7 @@ struct Received {
 struct Lost { ///< also when it could not be opened
     LinkTrouble why;
 };
+struct Released {}; ///< the failsafe process heard no beat of this program, and has let the servos go
 
 /// Time passes.
 struct Tick {
@@ -56,6 +57,6 @@ struct Tick {
 using ServoInput = std::variant<servo_input::Connect, servo_input::Disconnect, servo_input::Confirm, servo_input::Arm,
                                 servo_input::Disarm, servo_input::Stop, servo_input::Command, servo_input::Wiggle,
                                 servo_input::Slow, servo_input::Profile, servo_input::Quit, servo_input::Opened,
-                                servo_input::Received, servo_input::Lost, servo_input::Tick>;
+                                servo_input::Received, servo_input::Lost, servo_input::Released, servo_input::Tick>;
 
 } // namespace lumorph

@@ -233,6 +233,19 @@ void ServoLink::stop() {
     data_->wake();
 }
 
+bool ServoLink::letGo(std::chrono::milliseconds atMost) {
+    stop();
+    const auto end = std::chrono::steady_clock::now() + atMost;
+    for (;;) {
+        const LinkStatus now = status();
+        const bool driven = now.phase == LinkPhase::starting || now.phase == LinkPhase::live ||
+                            std::ranges::any_of(now.servos, &ServoStatus::attached);
+        if (!driven && !now.controller.detaching) return true;
+        if (std::chrono::steady_clock::now() >= end) return false;
+        std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    }
+}
+
 void ServoLink::command(std::span<const double> strokes) {
     const Microseconds now = SteadyClock{}.now();
     const std::uint64_t before = data_->stops;

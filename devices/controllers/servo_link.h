@@ -1,6 +1,8 @@
 #pragma once
 
+#include <chrono>
 #include <cstdint>
+#include <filesystem>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -22,11 +24,15 @@ struct LinkOptions {
     std::function<void()> onChange; ///< in the link's thread; must return at once
     std::function<void(std::span<const std::uint8_t>, bool)>
         onWire; ///< every message, true: sent; for monitor and recording
+    /// What is started with each link to let servos go when this program cannot; empty: the one beside this program.
+    std::filesystem::path failsafeProgram;
 };
 
 /// A device with its servos: transport, controller and guard in a thread of their own, and a hand for it. Everything
 /// here may be called from any thread and returns at once. While the window's thread is stuck, servos go on to the last
-/// command and stop() still works. A QCoreApplication must be there.
+/// command and stop() still works. Where this program ends without leave(), whatever ends it, or its link's thread is
+/// stuck for a second, a process of its own lets the servos go (transport/link_failsafe.h), on links that two processes
+/// can use. A QCoreApplication must be there.
 class ServoLink {
 public:
     /// Throws as checkProfile and parseDeviceAddress.
@@ -48,6 +54,8 @@ public:
     void disarm();
     /// All servos are detached: the message is written within 50 ms, whatever else goes on.
     void stop();
+    /// As stop(), and waits until the board should know: at most so long. False where it may not.
+    bool letGo(std::chrono::milliseconds atMost);
 
     /// Strokes for all servos; the latest wins.
     void command(std::span<const double> strokes);

@@ -33,12 +33,21 @@ enum class LinkPhase {
     lost
 };
 
+/// Whether a process of its own lets the servos go where this program cannot any more.
+enum class LinkFailsafeState {
+    none, ///< no link is open, or the board is a simulated one, which ends with the program
+    runs,
+    notShared, ///< this kind of link cannot be used by two processes
+    missing    ///< it could not be started
+};
+
 struct LinkStatus {
     LinkPhase phase = LinkPhase::off;
     ControllerState controller;
     std::string product;
     std::string identity;
     std::optional<LinkTrouble> trouble;
+    LinkFailsafeState failsafe = LinkFailsafeState::none;
     std::vector<ServoStatus> servos;
     std::vector<std::size_t> waiting; ///< servos that need the user's word before they start
     double commandsPerSecond = 0.0;   ///< of the last second

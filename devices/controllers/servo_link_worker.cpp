@@ -7,12 +7,14 @@
 #include "devices/controllers/servo_engine.h"
 #include "devices/controllers/servo_link_traffic.h"
 #include "devices/simulator/simulated_bench.h"
+#include "devices/transport/link_failsafe.h"
 #include "devices/transport/link_keeper.h"
 
 namespace lumorph {
 namespace {
 
-constexpr std::size_t kRowsAtOnce = 2000;      // of the trace: a long history must not hold up a STOP
+constexpr std::size_t kRowsAtOnce = 2000; // of the trace: a long history must not hold up a STOP
+constexpr Microseconds kFailsafeAgain{2'000'000};
 constexpr Microseconds kQuitAtLast{4'000'000}; // by the steady clock, whatever the engine's may do
 
 Microseconds steadyNow() { return SteadyClock{}.now(); }
@@ -30,6 +32,8 @@ struct LinkWorker::Data {
     Events events;
     DeviceAddress address;
     std::unique_ptr<LinkKeeper> keeper;
+    std::unique_ptr<LinkFailsafe> failsafe; ///< while the link is open; goes before it
+    std::optional<Microseconds> failsafeTried;
     ServoEngine engine;
     ServoTraceLog trace;
     LinkTraffic traffic;
@@ -42,27 +46,82 @@ struct LinkWorker::Data {
     void take(const ServoInput& input);
     void command(std::vector<double> strokes, Microseconds at);
     void passTime();
+    void startFailsafe();
+    void listenToFailsafe();
+    void keepFailsafe();
+    void armFailsafe();
+    void tellFailsafe();
 
     void perform(const servo_output::Write& write);
     void perform(const servo_output::Reach& place) { reach(place.address); }
     void perform(const servo_output::Open& open) { keeper->start(now(), open.identity); }
-    void perform(const servo_output::Close&) { keeper->stop(); }
-    void perform(const servo_output::Drop& drop) { keeper->drop(drop.why, now()); }
+    void perform(const servo_output::Close&) {
+        // All that could be done to let servos go was done.
+        if (failsafe) failsafe->setRelease({}, {});
+        failsafe.reset();
+        keeper->stop();
+    }
+    void perform(const servo_output::Drop& drop) {
+        failsafe.reset();
+        keeper->drop(drop.why, now());
+    }
     void perform(const servo_output::Tell& tell) { events.tell(tell.event); }
 
     [[nodiscard]] LinkStatus status();
 };
 
 void LinkWorker::Data::reach(const std::string& uri) {
+    failsafe.reset();
     address = parseDeviceAddress(uri);
     LinkKeeper::Events told;
-    told.opened = [this] { take(servo_input::Opened{keeper->product(), keeper->identity()}); };
+    told.opened = [this] {
+        startFailsafe();
+        take(servo_input::Opened{keeper->product(), keeper->identity()});
+    };
     told.received = [this](std::span<const std::uint8_t> bytes) {
         if (options.onWire) options.onWire(bytes, false);
         take(servo_input::Received{{bytes.begin(), bytes.end()}});
     };
-    told.lost = [this](const LinkTrouble& why) { take(servo_input::Lost{why}); };
+    told.lost = [this](const LinkTrouble& why) {
+        failsafe.reset();
+        take(servo_input::Lost{why});
+    };
     keeper = std::make_unique<LinkKeeper>(address, std::move(told), options.bench);
+}
+
+void LinkWorker::Data::startFailsafe() {
+    failsafeTried = steadyNow();
+    failsafe.reset();
+    const SharedLink shared = keeper->shared();
+    if (shared.descriptor < 0) return;
+    failsafe = std::make_unique<LinkFailsafe>(shared, options.failsafeProgram.empty() ? failsafeProgram()
+                                                                                      : options.failsafeProgram);
+    tellFailsafe();
+}
+
+/// Before anything else is written: what it let go is not driven on.
+void LinkWorker::Data::listenToFailsafe() {
+    if (failsafe && failsafe->takeLetGo()) take(servo_input::Released{});
+}
+
+/// One that has ended is started again.
+void LinkWorker::Data::keepFailsafe() {
+    if (!failsafe) return;
+    failsafe->beat(steadyNow());
+    if (!failsafe->runs() && steadyNow() - *failsafeTried >= kFailsafeAgain) startFailsafe();
+}
+
+/// Before a servo gets its first pulse.
+void LinkWorker::Data::armFailsafe() {
+    if (!failsafe) return;
+    if (const std::optional<ServoRelease> release = engine.release())
+        failsafe->setRelease(release->messages, release->gap);
+}
+
+/// When all was written: none may have a pulse any more.
+void LinkWorker::Data::tellFailsafe() {
+    armFailsafe();
+    if (failsafe && !engine.release()) failsafe->setRelease({}, {});
 }
 
 /// A simulated board and the link to it live in the same time.
@@ -83,6 +142,7 @@ void LinkWorker::Data::take(const ServoInput& input) {
         todo.push_back(std::move(output));
     }
     if (!sent.empty()) trace.sent(std::move(sent), time);
+    armFailsafe();
     if (std::exchange(doing, true)) return;
     try {
         while (!todo.empty()) {
@@ -96,6 +156,7 @@ void LinkWorker::Data::take(const ServoInput& input) {
         throw;
     }
     doing = false;
+    tellFailsafe();
 }
 
 void LinkWorker::Data::perform(const servo_output::Write& write) {
@@ -122,6 +183,10 @@ LinkStatus LinkWorker::Data::status() {
     LinkStatus status = engine.status();
     status.commandsPerSecond = traffic.perSecond(steadyNow());
     status.latencyMilliseconds = traffic.medianMilliseconds();
+    if (keeper->isOpen() && !std::holds_alternative<SimulatedAddress>(address))
+        status.failsafe = !failsafe          ? LinkFailsafeState::notShared
+                          : failsafe->runs() ? LinkFailsafeState::runs
+                                             : LinkFailsafeState::missing;
     return status;
 }
 
@@ -134,6 +199,7 @@ void LinkWorker::stop() { data_->take(servo_input::Stop{}); }
 
 void LinkWorker::work(LinkOrders orders) {
     Data& data = *data_;
+    data.listenToFailsafe();
     for (ServoTraceLog::Sink& sink : orders.sinks) data.trace.setSink(std::move(sink));
     for (const LinkRequest& request : orders.requests) data.take(request.input);
     if (orders.command) data.command(std::move(*orders.command), orders.commandedAt);
@@ -142,6 +208,7 @@ void LinkWorker::work(LinkOrders orders) {
         data.take(servo_input::Quit{});
     }
     data.passTime();
+    data.keepFailsafe();
     data.trace.hand(done() ? std::numeric_limits<std::size_t>::max() : kRowsAtOnce);
     data.events.publish(data.status());
 }

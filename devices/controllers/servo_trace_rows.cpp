@@ -141,9 +141,9 @@ template <typename Nothing> void write(Writer&, const Nothing&) {}
 
 std::string_view kindOf(const ServoInput& input) {
     // In the order of the variant.
-    static constexpr std::string_view kNames[] = {"connect", "disconnect", "confirm",  "arm",  "disarm",
-                                                  "stop",    "command",    "wiggle",   "slow", "profile",
-                                                  "quit",    "opened",     "received", "lost", "ticks"};
+    static constexpr std::string_view kNames[] = {"connect",  "disconnect", "confirm",  "arm",     "disarm", "stop",
+                                                  "command",  "wiggle",     "slow",     "profile", "quit",   "opened",
+                                                  "received", "lost",       "released", "ticks"};
     static_assert(std::size(kNames) == std::variant_size_v<ServoInput>);
     return kNames[input.index()];
 }
@@ -169,6 +169,7 @@ ServoInput readInput(const std::string& kind, Reader& from) {
     if (kind == "slow") return in::Slow{from.flag()};
     if (kind == "profile") return in::Profile{from.profile()};
     if (kind == "quit") return in::Quit{};
+    if (kind == "released") return in::Released{};
     if (kind == "received") return in::Received{from.rest()};
     if (kind == "opened") {
         in::Opened opened;

@@ -19,9 +19,9 @@ inline constexpr std::string_view kSent = "sent";       ///< messages that came 
 inline constexpr std::string_view kMissing = "missing"; ///< what was before was not kept
 
 /// All kinds of rows. A packed history names them by their place here, which may not change.
-inline constexpr std::array<std::string_view, 18> kKinds = {
-    kMachine,  kSent,    kMissing, "connect", "disconnect", "confirm", "arm",      "disarm", "stop",
-    "command", "wiggle", "slow",   "profile", "quit",       "opened",  "received", "lost",   "ticks"};
+inline constexpr std::array<std::string_view, 19> kKinds = {
+    kMachine, kSent,  kMissing,  "connect", "disconnect", "confirm",  "arm",  "disarm", "stop",    "command",
+    "wiggle", "slow", "profile", "quit",    "opened",     "received", "lost", "ticks",  "released"};
 
 struct TimedInput {
     Microseconds time{0};

@@ -17,7 +17,9 @@
 #include <vector>
 
 #include <QObject>
+#include <fcntl.h>
 #include <hidapi/hidapi.h>
+#include <unistd.h>
 
 #include "core/base/error.h"
 #include "devices/transport/hid_devices.h"
@@ -149,6 +151,7 @@ public:
     [[nodiscard]] std::size_t unsent() const override { return worker_ ? worker_->unsent() : 0; }
     [[nodiscard]] std::string identity() const override { return facts_.serialNumber; }
     [[nodiscard]] std::string product() const override { return facts_.productText; }
+    [[nodiscard]] SharedLink shared() const override { return {node_, kReport}; }
 
 private:
     std::optional<LinkTrouble> tryOpen();
@@ -159,6 +162,7 @@ private:
     HidAddress address_;
     Events events_;
     HidDevice facts_;
+    int node_ = -1;                            ///< the device's node, opened once more: hidapi keeps its own to itself
     std::shared_ptr<const std::string> claim_; ///< while it is open
     std::uint64_t link_ = 0; ///< counts the links, so that words of an old one are not taken for the new one's
     QObject receiver_;
@@ -194,6 +198,7 @@ std::optional<LinkTrouble> HidTransport::tryOpen() {
     const auto died = [this, link] { post([this] { die(); }, link); };
     worker_ = std::make_unique<HidWorker>(std::get<hid_device_*>(opened), HidWorker::Events{received, died});
     claim_ = std::move(claimed);
+    node_ = ::open(found.path.c_str(), O_WRONLY | O_NONBLOCK | O_CLOEXEC);
     return std::nullopt;
 }
 
@@ -211,6 +216,7 @@ void HidTransport::close() {
     worker_->stop();
     ending_.push_back(std::move(worker_));
     claim_.reset();
+    if (const int node = std::exchange(node_, -1); node >= 0) ::close(node);
 }
 
 void HidTransport::die() {

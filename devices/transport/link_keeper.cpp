@@ -198,6 +198,8 @@ std::string LinkKeeper::identity() const { return data_->transport ? data_->tran
 
 std::string LinkKeeper::product() const { return data_->transport ? data_->transport->product() : std::string{}; }
 
+SharedLink LinkKeeper::shared() const { return isOpen() ? data_->transport->shared() : SharedLink{}; }
+
 std::optional<LinkTrouble> LinkKeeper::trouble() const { return isOpen() ? std::nullopt : data_->trouble; }
 
 } // namespace lumorph

@@ -42,6 +42,7 @@ public:
     [[nodiscard]] std::size_t unsent() const;
     [[nodiscard]] std::string identity() const;
     [[nodiscard]] std::string product() const;
+    [[nodiscard]] SharedLink shared() const;                  ///< as Transport::shared
     [[nodiscard]] std::optional<LinkTrouble> trouble() const; ///< empty while open
 
 private:

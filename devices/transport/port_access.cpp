@@ -11,6 +11,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "devices/transport/failsafe_messages.h"
+
 namespace lumorph {
 
 namespace {
@@ -79,6 +81,9 @@ LinkTrouble inUse(const std::string& path) {
     if (!holder)
         return {"another program uses " + path,
                 "close the program that uses it (a serial monitor, the Arduino IDE, ModemManager)"};
+    if (holder->program == failsafe::kShortName)
+        return {"the servos at " + path + " are being let go, after a Lumorph that ended or hangs",
+                "wait a moment; where it lasts, end the other Lumorph"};
     if (holder->process == ::getpid())
         return {"this program uses " + path + " already", "disconnect the device that uses it first"};
     return {"the program " + holder->program + " uses " + path, "close " + holder->program};
@@ -102,8 +107,11 @@ std::optional<PortHolder> holderOf(const std::string& path) {
          process.increment(unreadable)) {
         const std::optional<int> number = processNumber(process->path());
         if (!number || !hasOpen(process->path(), real, links)) continue;
-        found = PortHolder{*number, programOf(process->path())};
-        if (*number != ::getpid()) break;
+        const PortHolder holder{*number, programOf(process->path())};
+        // The failsafe process of a link is there for whoever has the link.
+        const bool isFailsafe = holder.program == failsafe::kShortName;
+        if (!found || !isFailsafe) found = holder;
+        if (*number != ::getpid() && !isFailsafe) break;
     }
     return found;
 }

@@ -30,6 +30,7 @@ public:
     [[nodiscard]] std::size_t unsent() const override;
     [[nodiscard]] std::string identity() const override { return facts_.serialNumber; }
     [[nodiscard]] std::string product() const override { return facts_.description; }
+    [[nodiscard]] SharedLink shared() const override { return {open_ ? static_cast<int>(port_.handle()) : -1, 0}; }
 
 private:
     std::optional<LinkTrouble> tryOpen();

@@ -14,6 +14,12 @@ namespace lumorph {
 
 class SimulatedBench;
 
+/// What another process needs to write to the same device when this program cannot any more.
+struct SharedLink {
+    int descriptor = -1;    ///< of the system; -1: the link cannot be shared
+    std::size_t report = 0; ///< bytes of a HID report, without its number; 0: a stream of bytes
+};
+
 /// A way for bytes to one device and back. It knows no messages. Lives in one thread that runs a Qt event loop; nothing
 /// of it blocks. Only ServoLink may hold one: what reaches a servo has passed the ServoGuard (packaging/check sees to
 /// it).
@@ -42,6 +48,8 @@ public:
     [[nodiscard]] virtual std::string identity() const = 0;
     /// What the device calls itself (USB product text), for the user's eyes and for checks; may be empty.
     [[nodiscard]] virtual std::string product() const = 0;
+    /// While it is open; the descriptor is closed with the link, whoever has a copy.
+    [[nodiscard]] virtual SharedLink shared() const { return {}; }
 };
 
 /// `bench` holds the simulated boards; `sim://` addresses without one are in trouble at open(). Throws InvalidInput for

@@ -7,6 +7,7 @@
 #include "core/scene/project.h"
 #include "tests/app/process.h"
 #include "tests/core/temporary_folder.h"
+#include "tests/support/cut_tablet.h"
 
 namespace lumorph::test {
 namespace {
@@ -23,7 +24,7 @@ TEST(CalibrateBudget, MeasuringAPartLowersItAndIsTold) {
     const TemporaryFolder folder;
     const auto file = folder / "tablet.lumorph";
     Project project;
-    project.rig = "resource:models/tablet.glb";
+    project.rig = writeCutTablet(folder.path()).filename().string();
     writeProject(project, file);
     const nlohmann::json before = budgetOfProject(file);
     ASSERT_EQ(before["parts"].size(), 7U);

@@ -6,6 +6,7 @@
 #include "core/scene/project.h"
 #include "tests/app/process.h"
 #include "tests/core/temporary_folder.h"
+#include "tests/support/cut_tablet.h"
 
 namespace lumorph::test {
 namespace {
@@ -15,7 +16,7 @@ using ::testing::HasSubstr;
 std::filesystem::path tabletProject(const TemporaryFolder& folder) {
     const auto file = folder / "tablet.lumorph";
     Project project;
-    project.rig = "resource:models/tablet.glb";
+    project.rig = writeCutTablet(folder.path()).filename().string();
     writeProject(project, file);
     return file;
 }

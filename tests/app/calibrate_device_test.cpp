@@ -10,11 +10,10 @@
 
 #include "calibration/lab/lab.h"
 #include "calibration/patterns/capture_order.h"
-#include "core/base/resources.h"
-#include "core/rig/rig_file.h"
 #include "tests/app/process.h"
 #include "tests/app/workspace.h"
 #include "tests/core/temporary_folder.h"
+#include "tests/support/cut_tablet.h"
 #include "tests/support/long_tests.h"
 #include "tests/support/procam_capture.h"
 
@@ -24,10 +23,10 @@ namespace {
 namespace fs = std::filesystem;
 using ::testing::HasSubstr;
 
-std::string rigFile() { return resourceFile("models/tablet.glb").string(); }
+std::string rigFile() { return cutTabletFile(); }
 
 const Rig& tablet() {
-    static const Rig rig = readRig(rigFile());
+    static const Rig rig = cutTablet();
     return rig;
 }
 

@@ -6,6 +6,7 @@
 #include "core/scene/project.h"
 #include "tests/app/process.h"
 #include "tests/core/temporary_folder.h"
+#include "tests/support/cut_tablet.h"
 
 namespace lumorph::test {
 namespace {
@@ -16,7 +17,7 @@ TEST(CalibrateServos, AppliesMeasuredServosToAProject) {
     const TemporaryFolder folder;
     const auto file = folder / "tablet.lumorph";
     Project project;
-    project.rig = "resource:models/tablet.glb";
+    project.rig = writeCutTablet(folder.path()).filename().string();
     writeProject(project, file);
     const Outcome outcome = lumorph({"calibrate", "servos", file.string(), "--seed", "4", "--apply", "--json"});
     ASSERT_EQ(outcome.exitCode, 0) << outcome.err;
@@ -35,7 +36,7 @@ TEST(CalibrateServos, NamesAFaultAndKeepsNothing) {
     const TemporaryFolder folder;
     const auto file = folder / "tablet.lumorph";
     Project project;
-    project.rig = "resource:models/tablet.glb";
+    project.rig = writeCutTablet(folder.path()).filename().string();
     writeProject(project, file);
     const Outcome outcome = lumorph({"calibrate", "servos", file.string(), "--fault", "dead", "--apply", "--json"});
     ASSERT_EQ(outcome.exitCode, 0) << outcome.err;

@@ -6,16 +6,17 @@
 #include "core/scene/project.h"
 #include "tests/app/process.h"
 #include "tests/app/workspace.h"
+#include "tests/support/cut_tablet.h"
 
 namespace lumorph::test {
 namespace {
 
 using ::testing::HasSubstr;
 
-/// A project with the bundled tablet, its projector of few pixels.
+/// A project with the cut tablet, its projector of few pixels.
 std::string verifyProject(const TemporaryFolder& folder) {
     Project project;
-    project.rig = "resource:models/tablet.glb";
+    project.rig = writeCutTablet(folder.path()).filename().string();
     CalibratedCamera& lamp = project.installation.projectors.front().camera;
     const double smaller = 0.5;
     lamp.size = {960, 540};

@@ -4,7 +4,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "core/base/resources.h"
 #include "core/geometry/calibrated_camera.h"
 #include "tests/app/process.h"
 #include "tests/app/workspace.h"
@@ -17,8 +16,7 @@ using ::testing::HasSubstr;
 
 /// A table of exact crosshairs on the points that the program itself proposes.
 std::string exactCrosshairs(const CalibratedCamera& projector, std::size_t most) {
-    const Outcome proposal =
-        lumorph({"calibrate", "points", resourceFile("models/tablet.glb").string(), "--from", "0.1,1.9,0.4", "--json"});
+    const Outcome proposal = lumorph({"calibrate", "points", cutTabletFile(), "--from", "0.1,1.9,0.4", "--json"});
     EXPECT_EQ(proposal.exitCode, 0) << proposal.err;
     std::ostringstream table;
     table.precision(9);

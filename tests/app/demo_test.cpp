@@ -1,10 +1,15 @@
 #include <algorithm>
+#include <chrono>
+#include <csignal>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <string>
 #include <vector>
+
+#include <fcntl.h>
+#include <unistd.h>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -21,6 +26,7 @@
 namespace lumorph::test {
 namespace {
 
+using namespace std::chrono_literals;
 using ::testing::HasSubstr;
 
 TEST(Demo, IsPlayedWithoutAWindowIntoAVideo) {
@@ -45,6 +51,36 @@ TEST(Demo, IsPlayedWithoutAWindowIntoAVideo) {
     EXPECT_GT(cv::norm(first, last, cv::NORM_L1) / static_cast<double>(first.total()), 1.0) << "the sea moves";
     const cv::Scalar color = cv::mean(last(cv::Rect(last.cols / 2 - 20, last.rows / 2 - 20, 40, 40))); // BGR
     EXPECT_GT(color[0], color[2]) << "and is blue";
+}
+
+TEST(Demo, EndsAtTheFirstSignalAndLeavesNoFilm) {
+    for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
+        const TemporaryFolder folder;
+        Process demo(lumorphProgram(), {"demo", "water", "--seconds", "600", "--record", folder / "x.mp4"}, {},
+                     Process::ErrorStream::terminal);
+        ASSERT_TRUE(demo.waitForError("drawing", 60s));
+        demo.send(signal);
+        const Outcome outcome = demo.wait(60s);
+        EXPECT_EQ(outcome.exitCode, 1);
+        EXPECT_THAT(outcome.err, HasSubstr("stopped: it was asked to; nothing was written"));
+        EXPECT_EQ(outcome.out, "");
+        EXPECT_TRUE(filesIn(folder.path()).empty()) << ::testing::PrintToString(filesIn(folder.path()));
+    }
+}
+
+TEST(Demo, LeavesNoFilmWhereItIsKilled) {
+    const TemporaryFolder folder;
+    const int unnamed = ::open(folder.path().c_str(), O_TMPFILE | O_RDWR, 0600);
+    if (unnamed < 0) GTEST_SKIP() << "this file system has no files without a name";
+    ::close(unnamed);
+    Process demo(lumorphProgram(), {"demo", "water", "--seconds", "600", "--record", folder / "x.mp4"}, {},
+                 Process::ErrorStream::terminal);
+    ASSERT_TRUE(demo.waitForError("drawing", 60s));
+    // The first picture is in the film when the bar goes on.
+    ASSERT_TRUE(demo.waitForError(" 28 %", 120s));
+    demo.send(SIGKILL);
+    EXPECT_EQ(demo.wait(60s).exitCode, 128 + SIGKILL);
+    EXPECT_TRUE(filesIn(folder.path()).empty()) << ::testing::PrintToString(filesIn(folder.path()));
 }
 
 TEST(Demo, OfAMatchedTargetPlaysWithoutAWindowToo) {

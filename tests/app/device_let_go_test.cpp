@@ -1,5 +1,3 @@
-#include <algorithm>
-#include <atomic>
 #include <chrono>
 #include <csignal>
 #include <functional>
@@ -10,42 +8,13 @@
 
 #include <gtest/gtest.h>
 
-#include "devices/simulator/simulated_bench.h"
 #include "tests/app/process.h"
-#include "tests/devices/pty.h"
+#include "tests/devices/board_at_port.h"
 
 namespace lumorph::test {
 namespace {
 
 using namespace std::chrono_literals;
-
-/// Stock StandardFirmata at a serial port: nothing but what it is told lets go of its servos.
-class StockBoardAtPort {
-public:
-    StockBoardAtPort()
-        : board_(bench_.board("uno")), pump_([this](const std::stop_token& end) {
-              board_->plugged(bench_.now());
-              for (; !end.stop_requested(); std::this_thread::sleep_for(1ms)) pass();
-          }) {}
-
-    [[nodiscard]] std::string address() const { return "serial://" + port_.path() + "?baud=57600"; }
-    /// How many of its servos get a pulse now, by the board itself.
-    [[nodiscard]] std::ptrdiff_t driven() const {
-        const std::vector<SimulatedServo> servos = board_->servos();
-        return std::ranges::count_if(servos, [](const SimulatedServo& servo) { return servo.pulse > 0.0; });
-    }
-
-private:
-    void pass() {
-        if (const auto bytes = port_.receive(); !bytes.empty()) board_->take(bytes, bench_.now());
-        if (const auto bytes = board_->give(bench_.now()); !bytes.empty()) port_.send(bytes);
-    }
-
-    Pty port_;
-    SimulatedBench bench_;
-    std::shared_ptr<SimulatedBoard> board_;
-    std::jthread pump_;
-};
 
 bool comesTrue(const std::function<bool()>& condition, std::chrono::seconds limit) {
     const auto end = std::chrono::steady_clock::now() + limit;
@@ -66,7 +35,7 @@ struct RunningMove {
               return words;
           }()) {}
 
-    StockBoardAtPort board;
+    BoardAtPort board{"uno"}; ///< nothing but what it is told lets go of its servos
     Process process;
 };
 
@@ -96,7 +65,7 @@ TEST(DeviceLetGo, WhateverEndsAMoveServosAreLetGoFirst) {
     for (const Row& row : rows) moves.push_back(std::make_unique<RunningMove>(row.json));
     std::vector<std::jthread> watchers;
     std::vector<Outcome> outcomes(moves.size());
-    std::vector<std::ptrdiff_t> driven(moves.size(), 0);
+    std::vector<std::size_t> driven(moves.size(), 0);
     for (std::size_t i = 0; i < moves.size(); ++i)
         watchers.emplace_back([&, i] {
             RunningMove& move = *moves[i];
@@ -108,7 +77,7 @@ TEST(DeviceLetGo, WhateverEndsAMoveServosAreLetGoFirst) {
     watchers.clear();
     for (std::size_t i = 0; i < moves.size(); ++i) {
         SCOPED_TRACE(rows[i].name);
-        EXPECT_GT(driven[i], 0) << outcomes[i].err;
+        EXPECT_GT(driven[i], 0U) << outcomes[i].err;
         EXPECT_EQ(outcomes[i].exitCode, rows[i].exitCode) << outcomes[i].err;
         EXPECT_TRUE(comesTrue([&] { return moves[i]->board.driven() == 0; }, 1s))
             << moves[i]->board.driven() << " servos are still driven";

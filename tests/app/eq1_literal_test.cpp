@@ -109,8 +109,7 @@ TEST_F(TabletMatch, ThePrintedIouIsThatOfTheDeformedMesh) {
         const LiteralGrid voxels = voxelsOf(target);
         std::string state;
         for (const nlohmann::json& level : printed["state"]) state += (state.empty() ? "" : ",") + level.dump();
-        const Outcome deformed =
-            lumorph({"rig", "deform", resource("models/tablet.glb"), "--state", state, "-o", w["fit.obj"]});
+        const Outcome deformed = lumorph({"rig", "deform", cutTabletFile(), "--state", state, "-o", w["fit.obj"]});
         ASSERT_EQ(deformed.exitCode, 0) << deformed.err;
         const InsideOracle inside(readMesh(w["fit.obj"]));
         std::size_t both = 0;

@@ -40,8 +40,7 @@ MatchTarget hiddenState(const TabletWorkspace& w, int number, std::mt19937& rand
     std::string state;
     for (int i = 0; i < 6; ++i) state += (i == 0 ? "" : ",") + std::to_string(random() % 33U);
     const std::string name = "hidden-" + std::to_string(number);
-    const Outcome outcome =
-        lumorph({"rig", "deform", resource("models/tablet.glb"), "--state", state, "-o", w[name + ".obj"]});
+    const Outcome outcome = lumorph({"rig", "deform", cutTabletFile(), "--state", state, "-o", w[name + ".obj"]});
     if (outcome.exitCode != 0) throw std::runtime_error(outcome.err);
     return {name + " (" + state + ")", w[name + ".obj"], false};
 }

@@ -3,16 +3,15 @@
 #include <nlohmann/json.hpp>
 
 #include "tests/app/process.h"
+#include "tests/app/workspace.h"
 
 namespace lumorph::test {
 namespace {
 
 using ::testing::HasSubstr;
 
-const std::string kTablet = LUMORPH_SOURCE_DIR "/resources/models/tablet.glb";
-
 TEST(LabRegister, TellsEachStageBesideTheTruth) {
-    const Outcome outcome = lumorph({"lab", "register", kTablet, "--seed", "3", "--json"});
+    const Outcome outcome = lumorph({"lab", "register", cutTabletFile(), "--seed", "3", "--json"});
     ASSERT_EQ(outcome.exitCode, 0) << outcome.err;
     const nlohmann::json stages = outcome.json()["stages"];
     ASSERT_EQ(stages.size(), 4U);
@@ -32,11 +31,11 @@ TEST(LabRegister, TellsEachStageBesideTheTruth) {
 }
 
 TEST(LabRegister, AFaultEndsItByName) {
-    const Outcome outcome = lumorph({"lab", "register", kTablet, "--fault", "left_handed", "--json"});
+    const Outcome outcome = lumorph({"lab", "register", cutTabletFile(), "--fault", "left_handed", "--json"});
     EXPECT_EQ(outcome.exitCode, 1);
     EXPECT_EQ(outcome.json()["refused"]["cause"], "mirrored");
     EXPECT_THAT(outcome.err, HasSubstr("left-handed"));
-    const Outcome unknown = lumorph({"lab", "register", kTablet, "--fault", "tired"});
+    const Outcome unknown = lumorph({"lab", "register", cutTabletFile(), "--fault", "tired"});
     EXPECT_NE(unknown.exitCode, 0);
     EXPECT_THAT(unknown.err, HasSubstr("drops_out"));
 }

@@ -72,7 +72,7 @@ TEST(MatchQuality, AnimationKeepsToTheVelocityLimits) {
     constexpr double kFramesPerSecond = 25.0;
     constexpr std::size_t kFirstActuator = 3; // column: after seconds, IoU wanted and reached
     const TabletWorkspace w;
-    const nlohmann::json rig = matchJson({"rig", "info", resource("models/tablet.glb"), "--states", "1", "--json"});
+    const nlohmann::json rig = matchJson({"rig", "info", cutTabletFile(), "--states", "1", "--json"});
     const Outcome outcome = lumorph(
         {"match", w.field(), resource("targets/swell.glb"), "--animation", "first", "--fps", "25", "--csv", "-"});
     ASSERT_EQ(outcome.exitCode, 0) << outcome.err;

@@ -5,10 +5,10 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include "app/recording/recorder.h"
 #include "tests/app/process.h"
+#include "tests/core/temporary_folder.h"
 #include "tests/devices/engine_bench.h"
 
 namespace lumorph::test {
@@ -48,11 +48,10 @@ struct RecordedShow {
 };
 
 struct RecordingCheckTest : ::testing::Test {
-    fs::path folder = fs::temp_directory_path() / ("lumorph-check-" + std::to_string(::getpid()));
+    TemporaryFolder own;
+    fs::path folder = own.path();
     std::string file = folder / "session.lumorphrec";
     RecordedShow show;
-    void SetUp() override { fs::create_directories(folder); }
-    void TearDown() override { fs::remove_all(folder); }
 
     Outcome check(std::vector<std::string> more = {}) {
         {

@@ -4,8 +4,6 @@
 #include <random>
 #include <thread>
 
-#include <unistd.h>
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sqlite3.h>
@@ -13,6 +11,7 @@
 #include "app/recording/recorder.h"
 #include "core/base/error.h"
 #include "tests/app/process.h"
+#include "tests/core/temporary_folder.h"
 #include "tests/support/small_rigs.h"
 
 namespace lumorph {
@@ -55,10 +54,9 @@ PoseRow somePose(std::mt19937& random, int number) {
 }
 
 struct RecordingTest : ::testing::Test {
-    fs::path folder = fs::temp_directory_path() / ("lumorph-recording-" + std::to_string(::getpid()));
+    TemporaryFolder own;
+    fs::path folder = own.path();
     fs::path file = folder / "session.lumorphrec";
-    void SetUp() override { fs::create_directories(folder); }
-    void TearDown() override { fs::remove_all(folder); }
 
     std::string textOf(const char* name) const {
         std::ifstream in(folder / "csv" / name);

@@ -7,6 +7,7 @@
 #include "core/scene/project.h"
 #include "tests/app/process.h"
 #include "tests/app/workspace.h"
+#include "tests/support/cut_tablet.h"
 
 // `lumorph render` as a script uses it.
 
@@ -28,7 +29,7 @@ class Render : public ::testing::Test {
 protected:
     Render() {
         Project project;
-        project.rig = "resource:models/tablet.glb";
+        project.rig = writeCutTablet(w.folder()).filename().string();
         project.scene.device.material.color = {0.9F, 0.3F, 0.2F};
         writeProject(project, w["p.lumorph"]);
     }

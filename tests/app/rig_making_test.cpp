@@ -97,13 +97,11 @@ TEST(RigInfo, SaysWhatGoesWrongInMotionAndFromWhereOn) {
 TEST(RigReport, SaysWhatADeviceCanBe) {
     const Made made;
     std::filesystem::create_directory(made["targets"]);
-    ASSERT_EQ(lumorph({"rig", "deform", resource("models/tablet.glb"), "--state", "9,21,32,14,13,7", "-o",
-                       made["targets/pose.obj"]})
+    ASSERT_EQ(lumorph({"rig", "deform", cutTabletFile(), "--state", "9,21,32,14,13,7", "-o", made["targets/pose.obj"]})
                   .exitCode,
               0);
     std::filesystem::copy(resource("targets/dunes.glb"), made["targets"]);
-    const auto report =
-        lumorph({"rig", "report", resource("models/tablet.glb"), "--targets", made["targets"], "--json"}).json();
+    const auto report = lumorph({"rig", "report", cutTabletFile(), "--targets", made["targets"], "--json"}).json();
     EXPECT_EQ(report["metrics"].size(), 10U);
     EXPECT_EQ(report["metrics"][6]["key"], "closure");
     EXPECT_TRUE(report["metrics"][6]["light"].is_null());
@@ -115,7 +113,7 @@ TEST(RigReport, SaysWhatADeviceCanBe) {
     EXPECT_EQ(report["fit"]["byActuators"].size(), 6U);
     // As `match --fit --method refined` finds it in a field.
     EXPECT_NEAR(report["fit"]["targets"][0]["iou"].get<double>(), 0.650, 0.003);
-    const std::string text = lumorph({"rig", "report", resource("models/tablet.glb"), "--coarse"}).out;
+    const std::string text = lumorph({"rig", "report", cutTabletFile(), "--coarse"}).out;
     for (const char* part : {"Zero-crossing", "with light", "pins", "SG90", "bloom", "without"})
         EXPECT_NE(text.find(part), std::string::npos) << part;
 }
@@ -124,7 +122,7 @@ TEST(RigReport, RefusesByName) {
     const Made made;
     std::filesystem::create_directory(made["empty"]);
     ASSERT_EQ(lumorph({"rig", "new", "sheet", "-o", made["s.glb"]}).exitCode, 0);
-    const std::string tablet = resource("models/tablet.glb");
+    const std::string tablet = cutTabletFile();
     const auto expect = [](const Outcome& outcome, int code, const char* part) {
         EXPECT_EQ(outcome.exitCode, code) << outcome.err;
         EXPECT_NE(outcome.err.find(part), std::string::npos) << outcome.err;
@@ -243,8 +241,8 @@ TEST(RigSearch, StopsWithAWholeStateAndGoesOn) {
 // As a power cut ends it, again and again.
 TEST(RigSearch, KilledGoesOnToTheSameFront) {
     const SearchInput made;
-    ASSERT_EQ(lumorph(made.command("whole", "60")).exitCode, 0);
-    const std::vector<std::string> killed = made.command("killed", "60");
+    ASSERT_EQ(lumorph(made.command("whole", "30")).exitCode, 0);
+    const std::vector<std::string> killed = made.command("killed", "30");
     for (int k = 0; k < 4; ++k) {
         Process search(lumorphProgram(), killed);
         for (int wait = 0; wait < 300 && !std::filesystem::exists(made["killed/search.json"]); ++wait)
@@ -254,7 +252,7 @@ TEST(RigSearch, KilledGoesOnToTheSameFront) {
         (void)search.wait(std::chrono::seconds(20));
     }
     const auto found = lumorph(killed).json();
-    EXPECT_EQ(found["generations"], 60);
+    EXPECT_EQ(found["generations"], 30);
     EXPECT_EQ(textOfFile(made["killed/front.csv"]), textOfFile(made["whole/front.csv"]));
     EXPECT_EQ(textOfFile(made["killed/search.json"]), textOfFile(made["whole/search.json"]));
 }
@@ -386,7 +384,7 @@ TEST(RigParts, LeavesNothingOfWhatFails) {
 }
 
 TEST(LabPlacement, TakesAProjectorByItsName) {
-    const std::string tablet = resource("models/tablet.glb");
+    const std::string tablet = cutTabletFile();
     const auto named = lumorph({"lab", "placement", tablet, "--lens", "optoma gt1080hdr", "--json"}).json();
     const auto typed = lumorph({"lab", "placement", tablet, "--lens", "1920x1080:0.496:0.66", "--json"}).json();
     EXPECT_EQ(named["best"], typed["best"]);

@@ -8,6 +8,7 @@
 #include "core/geometry/mesh_writers.h"
 #include "core/rig/rig_file.h"
 #include "tests/app/process.h"
+#include "tests/support/cut_tablet.h"
 #include "tests/support/small_rigs.h"
 
 namespace lumorph::test {
@@ -60,6 +61,12 @@ SmallWorkspace::SmallWorkspace() {
     buildField({(*this)["rig.glb"], "-o", (*this)["field.mdf"], "--resolution", "17", "--levels", "5"});
 }
 
-TabletWorkspace::TabletWorkspace() { buildField({resource("models/tablet.glb"), "-o", field()}); }
+std::string cutTabletFile() {
+    static const TemporaryFolder folder;
+    static const std::string file = writeCutTablet(folder.path()).string();
+    return file;
+}
+
+TabletWorkspace::TabletWorkspace() { buildField({cutTabletFile(), "-o", field()}); }
 
 } // namespace lumorph::test

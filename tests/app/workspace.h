@@ -33,7 +33,10 @@ private:
     TemporaryFolder folder_;
 };
 
-/// A folder with `tablet.mdf`, the field of the bundled tablet as it is built by default.
+/// A file of the cut tablet, there for as long as the program runs.
+[[nodiscard]] std::string cutTabletFile();
+
+/// A folder with `tablet.mdf`, the field of the cut tablet as it is built by default.
 class TabletWorkspace {
 public:
     TabletWorkspace();

@@ -7,8 +7,7 @@
 
 #include "app/applications/demo_items.h"
 #include "app/applications/ripple/ripple.h" // written by `lumorph demo new ripple` and the guide
-#include "core/base/resources.h"
-#include "core/rig/rig_file.h"
+#include "tests/support/cut_tablet.h"
 
 // The application that the guide's page makes of the example, followed to the letter when the tests are built.
 
@@ -18,7 +17,7 @@ namespace {
 class OwnApplication : public ::testing::Test {
 protected:
     OwnApplication() {
-        moment_.rig = std::make_shared<const Rig>(readRig(resourceFile("models/tablet.glb")));
+        moment_.rig = std::make_shared<const Rig>(test::cutTablet());
         moment_.installation = std::make_shared<const Installation>(defaultInstallation());
     }
     ShowContent frames(double seconds, const std::vector<ShowInput>& inputs = {}) {

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <fstream>
 #include <functional>
+#include <memory>
 #include <mutex>
 #include <thread>
 
@@ -16,6 +17,7 @@
 #include "calibration/tracking/board_watch.h"
 #include "calibration/tracking/camera_source.h"
 #include "tests/calibration/photographer.h"
+#include "tests/core/temporary_folder.h"
 
 namespace lumorph {
 namespace {
@@ -54,8 +56,8 @@ protected:
     static constexpr int kPictures = 36;
 
     static void SetUpTestSuite() {
-        file_ = std::filesystem::temp_directory_path() /
-                ("board-video-" + std::to_string(std::chrono::steady_clock::now().time_since_epoch().count()) + ".avi");
+        folder_ = std::make_unique<TemporaryFolder>();
+        file_ = *folder_ / "board.avi";
         const MarkerBoard board;
         const Photographer photographer(board, camera());
         cv::VideoWriter video(file_.string(), cv::VideoWriter::fourcc('M', 'J', 'P', 'G'), kRate, {kSize.x, kSize.y});
@@ -66,7 +68,7 @@ protected:
             video.write(color);
         }
     }
-    static void TearDownTestSuite() { std::filesystem::remove(file_); }
+    static void TearDownTestSuite() { folder_.reset(); }
 
     /// Waits for what it tells.
     template <typename Condition> static bool comes(const CameraTracker& tracker, Condition condition) {
@@ -92,6 +94,7 @@ protected:
         return pictures_;
     }
 
+    inline static std::unique_ptr<TemporaryFolder> folder_;
     inline static std::filesystem::path file_;
     std::mutex mutex_;
     std::vector<BoardPicture> pictures_;
@@ -173,10 +176,10 @@ TEST(CameraTracker, SaysThatItsCameraOrFileIsNotThereOrNoVideo) {
     };
     EXPECT_THAT(adviceOf("board://camera99"), HasSubstr("There is no camera at /dev/video99"));
     EXPECT_THAT(adviceOf("board:///no/such/video.mp4"), HasSubstr("There is no file /no/such/video.mp4"));
-    const auto file = std::filesystem::temp_directory_path() / "lumorph-no-video.mp4";
+    const TemporaryFolder folder;
+    const auto file = folder / "no-video.mp4";
     std::ofstream(file) << "this is no video";
     EXPECT_THAT(adviceOf("board://" + file.string()), HasSubstr("is no video that can be read"));
-    std::filesystem::remove(file);
 }
 
 // --- Why the board is not seen in a picture
@@ -260,8 +263,8 @@ TEST(BoardWatch, IsStillWhenTheBoardIs) {
 // --- Cameras
 
 TEST(CameraSource, ListsWhatGivesPicturesByNumber) {
-    const auto folder = std::filesystem::temp_directory_path() / "lumorph-video4linux";
-    std::filesystem::remove_all(folder);
+    const TemporaryFolder own;
+    const std::filesystem::path& folder = own.path();
     const auto add = [&](const std::string& node, const std::string& index, const std::string& name) {
         std::filesystem::create_directories(folder / node);
         std::ofstream(folder / node / "index") << index << "\n";
@@ -274,7 +277,6 @@ TEST(CameraSource, ListsWhatGivesPicturesByNumber) {
     const std::vector<CameraInfo> expected{{"/dev/video2", "Integrated Camera"},
                                            {"/dev/video10", "HD Pro Webcam C920"}};
     EXPECT_EQ(listCameras(folder), expected);
-    std::filesystem::remove_all(folder);
     EXPECT_TRUE(listCameras(folder).empty());
 }
 

@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include "calibration/solve/error_map.h"
+#include "tests/core/temporary_folder.h"
 #include "tests/support/procam_observations.h"
 
 namespace lumorph::test {
@@ -19,8 +20,7 @@ constexpr const char* kPython = "/usr/bin/python3"; // Debian's, which sees Debi
 
 /// The lines that the script prints; empty where it fails.
 std::vector<double> mrcalUncertainty(const nlohmann::json& given) {
-    const auto folder = std::filesystem::temp_directory_path() / ("mrcal_" + std::to_string(std::rand()));
-    std::filesystem::create_directories(folder);
+    const TemporaryFolder folder;
     std::ofstream(folder / "in.json") << given;
     const std::string command = std::string(kPython) +
                                 " " LUMORPH_SOURCE_DIR "/tests/calibration/mrcal_uncertainty.py < " +
@@ -30,7 +30,6 @@ std::vector<double> mrcalUncertainty(const nlohmann::json& given) {
         std::ifstream out(folder / "out");
         for (double number = 0.0; out >> number;) numbers.push_back(number);
     }
-    std::filesystem::remove_all(folder);
     return numbers;
 }
 

@@ -5,12 +5,14 @@
 #include <fstream>
 #include <functional>
 #include <map>
+#include <set>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "calibration/decode/capture_folder.h"
 #include "tests/core/temporary_folder.h"
+#include "tests/support/long_tests.h"
 #include "tests/support/procam_capture.h"
 
 namespace lumorph::test {
@@ -85,6 +87,14 @@ struct Fault {
     std::function<void(const CaptureCopy&)> inject;
     cv::Size projector; ///< what is said of it; empty: the truth
 };
+
+/// Faults that are found in the greys of the images, hence in real ones in another way than in simulated ones. All
+/// others are found by names, sizes and bits, and take as long.
+bool isSeenInGreys(const Fault& fault) {
+    static const std::set<std::string> names{"sound", "late frame from image 12", "one pose mirrored",
+                                             "moved by 3 pixels", "overexposed"};
+    return names.contains(fault.what);
+}
 
 std::vector<Fault> faultsOf(const CaptureCopy& capture, cv::Size projector, cv::Size wrongSize) {
     const std::size_t count = capture.imageCount();
@@ -239,8 +249,10 @@ Told toldOf(const fs::path& folder, const CalibrationBoard& board, cv::Size proj
     return told;
 }
 
-void expectTold(const fs::path& original, const CalibrationBoard& board, cv::Size projector, cv::Size wrongSize) {
+void expectTold(const fs::path& original, const CalibrationBoard& board, cv::Size projector, cv::Size wrongSize,
+                bool greysAlone = false) {
     for (const Fault& fault : faultsOf(CaptureCopy(original), projector, wrongSize)) {
+        if (greysAlone && !isSeenInGreys(fault)) continue;
         const CaptureCopy copy(original);
         fault.inject(copy);
         const Told told = toldOf(copy.path(), board, fault.projector.empty() ? projector : fault.projector);
@@ -274,7 +286,7 @@ TEST(CaptureDoctor, NamesEachFaultOfASimulatedCapture) {
 TEST(CaptureDoctor, NamesEachFaultOfARealCapture) {
     const fs::path folder = fs::path(LUMORPH_SHARED_DIR) / "data/procam_chess";
     if (!fs::exists(folder)) GTEST_SKIP() << "without ../shared/data/procam_chess";
-    expectTold(fs::canonical(folder), parseCalibrationBoard("chess:9x7:75"), {1024, 768}, {800, 600});
+    expectTold(fs::canonical(folder), parseCalibrationBoard("chess:9x7:75"), {1024, 768}, {800, 600}, !longTests());
 }
 
 TEST(CaptureDoctor, RefusesWhatIsNoCapture) {

@@ -17,11 +17,10 @@
 #include "calibration/servos/servo_lab.h"
 #include "calibration/verify/verify_lab.h"
 #include "core/base/error.h"
-#include "core/base/resources.h"
 #include "core/loop/viewer_stage.h"
-#include "core/rig/rig_file.h"
 #include "core/scene/measured_servos.h"
 #include "tests/calibration/tracked_motion.h"
+#include "tests/support/cut_tablet.h"
 
 namespace lumorph {
 namespace {
@@ -29,7 +28,7 @@ namespace {
 bool delaysTakeLong() { return std::getenv("LUMORPH_LONG_TESTS") != nullptr; }
 
 const Rig& delayTablet() {
-    static const Rig rig = readRig(resourceFile("models/tablet.glb"));
+    static const Rig rig = test::cutTablet();
     return rig;
 }
 

@@ -11,8 +11,7 @@
 #include <opencv2/calib3d.hpp>
 
 #include "calibration/lab/lab.h"
-#include "core/base/resources.h"
-#include "core/rig/rig_file.h"
+#include "tests/support/cut_tablet.h"
 #include "tests/support/long_tests.h"
 #include "tests/support/procam_capture.h"
 
@@ -20,7 +19,7 @@ namespace lumorph::test {
 namespace {
 
 const Rig& deviceRig() {
-    static const Rig rig = readRig(resourceFile("models/tablet.glb"));
+    static const Rig rig = test::cutTablet();
     return rig;
 }
 

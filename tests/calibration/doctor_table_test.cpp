@@ -6,6 +6,7 @@
 #include <map>
 #include <numeric>
 #include <random>
+#include <span>
 
 #include <gtest/gtest.h>
 
@@ -13,24 +14,35 @@
 #include "calibration/doctor/capture_calibration.h"
 #include "calibration/doctor/sequence_check.h"
 #include "calibration/lab/lab_capture.h"
+#include "calibration/lab/lab_lens.h"
+#include "calibration/report/calibrated_room.h"
+#include "tests/support/long_tests.h"
+#include "tests/support/truth.h"
 
 namespace lumorph::test {
 namespace {
-
-/// A few trials by default; all of them where LUMORPH_LONG_TESTS=1 says so.
-bool isLong() {
-    const char* text = std::getenv("LUMORPH_LONG_TESTS");
-    return text != nullptr && std::string(text) == "1";
-}
 
 /// What the doctor says of a capture.
 struct Verdict {
     bool refused = false;
     std::vector<Cause> causes;
     std::string sentence;
+    double beside = 0.0; ///< as `lightBesidePixels`, of one that is accepted
 
     [[nodiscard]] bool names(Cause cause) const { return std::ranges::find(causes, cause) != causes.end(); }
+    /// Of a cause that is not there. The lab holds some boards where the projector's light is too bright for the
+    /// exposure: a warning of that is true.
+    [[nodiscard]] bool namesOther(std::optional<Cause> fault) const {
+        return std::ranges::any_of(causes,
+                                   [&](Cause cause) { return cause != fault && (refused || cause != Cause::clipped); });
+    }
 };
+
+/// Table's trials have seeds from here on; the doctor's limits were chosen on those below 200.
+constexpr std::uint32_t kFirstSeed = 1001;
+
+/// Beyond so many projector pixels an accepted calibration is not good; 0.5 mm on the lab's table.
+constexpr double kHarmless = 1.0;
 
 /// The table's trials alone where LUMORPH_DOCTOR_SEED=14 names one, for who wants to look at it: then what each cause
 /// that residuals do not tell apart would explain is printed too, here for `keystone`:
@@ -66,7 +78,24 @@ void printAlternatives(const ReadCapture& read) {
     }
 }
 
-Verdict verdictOf(const std::function<ProcamCalibration()>& run) {
+/// How far light that a calibration sends to places on the table, and as high as a device lifts its skin, truly falls
+/// beside them: 95 of 100 are nearer. Projector pixels.
+double lightBesidePixels(const LabCapturer& capturer, const ProcamCalibration& result) {
+    const BoardLab& lab = capturer.lab();
+    const Installation room = withCalibration(capturer.capture().room, result, lab.board());
+    const LabLens lamp = lensOf(room.projectors.front().camera, "calibrated projector");
+    std::vector<double> beside;
+    for (const double y : {0.0, 0.05})
+        for (int i = -4; i <= 4; ++i)
+            for (int k = -4; k <= 4; ++k) {
+                const glm::dvec3 place(0.03 * i, y, 0.02 * k);
+                const auto sent = imageOf(lamp, place), meets = lab.projectorPixel(place);
+                beside.push_back(sent && meets ? glm::distance(*sent, *meets) : HUGE_VAL);
+            }
+    return quantileOf(beside, 0.95);
+}
+
+Verdict verdictOf(const LabCapturer& capturer, const std::function<ProcamCalibration()>& run) {
     Verdict verdict;
     try {
         const ProcamCalibration result = run();
@@ -74,6 +103,7 @@ Verdict verdictOf(const std::function<ProcamCalibration()>& run) {
             verdict.causes.push_back(warning.cause);
             verdict.sentence += sentenceOf(warning) + " ";
         }
+        verdict.beside = lightBesidePixels(capturer, result);
     } catch (const CaptureRefused& refused) {
         verdict = {true, {refused.finding().cause}, sentenceOf(refused.finding())};
     }
@@ -98,7 +128,7 @@ Verdict verdictOfImages(const LabCapture& what) {
     LabCapturer capturer(what);
     const glm::ivec2 size = capturer.lab().projector().camera.size;
     const CaptureOrder order = parsePattern(what.pattern, {size.x, size.y});
-    return verdictOf([&] {
+    return verdictOf(capturer, [&] {
         ReadCapture read;
         read.order = order;
         for (int pose = 0; pose < what.poses; ++pose) {
@@ -185,7 +215,7 @@ Verdict verdictOfObservations(const LabCapture& what) {
     read.camera = {camera.x, camera.y};
     read.order = parsePattern(what.pattern, {projector.x, projector.y});
     if (loneSeed()) printAlternatives(read);
-    return verdictOf([&] { return calibrateCapture(read, read.order.projector); });
+    return verdictOf(capturer, [&] { return calibrateCapture(read, read.order.projector); });
 }
 
 Verdict verdictOfObservations(std::uint32_t seed, std::optional<Cause> fault) {
@@ -197,33 +227,51 @@ Verdict verdictOfObservations(std::uint32_t seed, std::optional<Cause> fault) {
     return verdictOfObservations(capture);
 }
 
-/// One line of the table.
-void expectNamed(Cause fault, int trials, const std::function<Verdict(std::uint32_t)>& run) {
-    int right = 0;
-    int silent = 0;
+/// A line of the table whose aim is missed: how many of 20 have another cause than the right one.
+struct Shortfall {
+    Cause fault = Cause::lateFrame;
+    int wrong = 0;
+};
+
+/// One line of the table. A capture with a fault is refused or warned of by its cause, or accepted without a word where
+/// it is as good as one without it; nothing else is right. Aim: no wrong cause, none that is harmed in silence, and the
+/// cause named in nine of ten.
+void expectNamed(Cause fault, int trials, std::span<const Shortfall> missed,
+                 const std::function<Verdict(std::uint32_t)>& run) {
+    int right = 0, harmless = 0, harmed = 0, wrong = 0;
     std::string others;
-    const std::vector<std::uint32_t> seeds = seedsOf(1, trials);
+    const std::vector<std::uint32_t> seeds = seedsOf(kFirstSeed, trials);
     for (const std::uint32_t seed : seeds) {
         const Verdict verdict = run(seed);
-        if (verdict.names(fault))
+        const bool isOther = verdict.namesOther(fault);
+        if (verdict.names(fault) && !isOther) {
             ++right;
-        else
-            others += "  [" + std::to_string(seed) + "] " + verdict.sentence;
-        silent += !verdict.refused && verdict.causes.empty();
+            continue;
+        }
+        ++(isOther ? wrong : verdict.beside <= kHarmless ? harmless : harmed);
+        char beside[64] = "";
+        if (!verdict.refused) std::snprintf(beside, sizeof(beside), " accepted, %.2f pixels beside", verdict.beside);
+        others += "  [" + std::to_string(seed) + "]" + beside + " " + verdict.sentence;
     }
-    std::printf("%-22s right %2d of %2d, accepted silently %d%s\n", std::string(keyOf(fault)).c_str(), right,
-                static_cast<int>(seeds.size()), silent, others.c_str());
+    std::printf("%-22s right %2d of %2d, silent and harmless %d, silent and harmed %d, another cause %d%s\n",
+                std::string(keyOf(fault)).c_str(), right, static_cast<int>(seeds.size()), harmless, harmed, wrong,
+                others.c_str());
     std::fflush(stdout);
-    EXPECT_GE(right, 0.9 * static_cast<double>(seeds.size())) << keyOf(fault);
-    EXPECT_EQ(silent, 0) << keyOf(fault);
+    const auto known = std::ranges::find(missed, fault, &Shortfall::fault);
+    EXPECT_LE(wrong, known == missed.end() ? 0 : known->wrong) << keyOf(fault) << others;
+    EXPECT_EQ(harmed, 0) << keyOf(fault) << others;
+    EXPECT_GE(right + harmless, 0.9 * static_cast<double>(seeds.size())) << keyOf(fault) << others;
 }
 
 const auto kKeyOfParam = [](const ::testing::TestParamInfo<Cause>& info) { return std::string(keyOf(info.param)); };
 
+/// What falls short of the aim on these seeds.
+const std::vector<Shortfall> kMissedByImages, kMissedByObservations, kMissedByFourPoses;
+
 class DoctorTableOfImages : public ::testing::TestWithParam<Cause> {};
 
 TEST_P(DoctorTableOfImages, NamesTheCause) {
-    expectNamed(GetParam(), isLong() ? 20 : 1,
+    expectNamed(GetParam(), longTests() ? 20 : 1, kMissedByImages,
                 [](std::uint32_t seed) { return verdictOfImages(smallCapture(seed, GetParam())); });
 }
 
@@ -237,7 +285,7 @@ INSTANTIATE_TEST_SUITE_P(All, DoctorTableOfImages,
 class DoctorTableOfObservations : public ::testing::TestWithParam<Cause> {};
 
 TEST_P(DoctorTableOfObservations, NamesTheCause) {
-    expectNamed(GetParam(), isLong() ? 20 : 1,
+    expectNamed(GetParam(), longTests() ? 20 : 1, kMissedByObservations,
                 [](std::uint32_t seed) { return verdictOfObservations(seed, GetParam()); });
 }
 
@@ -245,7 +293,7 @@ class DoctorTableOfFourPoses : public ::testing::TestWithParam<Cause> {};
 
 // As in the table's photographs: fewer poses, smaller pictures.
 TEST_P(DoctorTableOfFourPoses, NamesTheCause) {
-    expectNamed(GetParam(), isLong() ? 20 : 1,
+    expectNamed(GetParam(), longTests() ? 20 : 1, kMissedByFourPoses,
                 [](std::uint32_t seed) { return verdictOfObservations(smallCapture(seed, GetParam())); });
 }
 
@@ -263,31 +311,32 @@ void expectSound(const std::vector<std::uint32_t>& seeds, int mostOverexposed,
     int refused = 0;
     int overexposed = 0;
     int doubted = 0; // for anything else
+    double farthest = 0.0;
     for (const std::uint32_t seed : seeds) {
         const Verdict verdict = run(seed);
         refused += verdict.refused;
+        farthest = std::max(farthest, verdict.beside);
         overexposed += !verdict.refused && verdict.names(Cause::clipped);
-        doubted += !verdict.refused &&
-                   !std::ranges::all_of(verdict.causes, [](Cause cause) { return cause == Cause::clipped; });
+        doubted += !verdict.refused && verdict.namesOther({});
         if (!verdict.causes.empty()) std::printf("  [%u] %s\n", seed, verdict.sentence.c_str());
     }
-    std::printf("%-22s refused %d of %zu, overexposed in places %d, doubted for anything else %d\n", "sound", refused,
-                seeds.size(), overexposed, doubted);
+    std::printf("%-22s refused %d of %zu, overexposed in places %d, doubted for anything else %d, %.2f pixels beside\n",
+                "sound", refused, seeds.size(), overexposed, doubted, farthest);
     std::fflush(stdout);
     EXPECT_EQ(refused, 0);
     EXPECT_EQ(doubted, 0);
     EXPECT_LE(overexposed, mostOverexposed);
+    EXPECT_LE(farthest, kHarmless);
 }
 
 TEST(DoctorTableOfSound, ImagesAreAccepted) {
-    // The second has its board between bright light and its own shadow. The lab holds some of the boards where the
-    // projector's light is too bright for the exposure: that warning is true.
-    expectSound(seedsOf(100, isLong() ? 8 : 2), 3,
-                [](std::uint32_t seed) { return verdictOfImages(smallCapture(seed, {})); });
+    std::vector<std::uint32_t> seeds = seedsOf(kFirstSeed, longTests() ? 8 : 1);
+    if (!loneSeed()) seeds.push_back(101); // its board lies between bright light and its own shadow
+    expectSound(seeds, 3, [](std::uint32_t seed) { return verdictOfImages(smallCapture(seed, {})); });
 }
 
 TEST(DoctorTableOfSound, ObservationsAreAccepted) {
-    expectSound(seedsOf(isLong() ? 108 : 102, isLong() ? 32 : 2), 0,
+    expectSound(seedsOf(kFirstSeed, longTests() ? 32 : 2), 0,
                 [](std::uint32_t seed) { return verdictOfObservations(seed, {}); });
 }
 

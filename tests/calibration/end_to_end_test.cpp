@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <functional>
@@ -13,8 +14,8 @@
 #include "calibration/report/calibrated_room.h"
 #include "calibration/servos/servo_lab.h"
 #include "calibration/solve/error_map.h"
-#include "core/rig/templates/bundled_rigs.h"
 #include "tests/support/chain_judge.h"
+#include "tests/support/cut_tablet.h"
 #include "tests/support/long_tests.h"
 #include "tests/support/procam_observations.h"
 #include "tests/support/truth.h"
@@ -141,8 +142,35 @@ void print(const char* what, const ShownError& error) {
                 error.eyeMillimetres, error.deviceMillimetres);
 }
 
+// A map that is twice too wide or twice too narrow fails: of normal errors within a radius that holds 95 of 100, the
+// mean is 0.41 (along one direction alone) to 0.51 of it (to all sides alike), and places of one room err together.
+TEST(EndToEnd, TheErrorMapIsNeitherTooWideNorTooNarrow) {
+    const std::uint32_t rooms = longTests() ? 100 : 12;
+    const Rig rig = test::cutTablet();
+    std::vector<double> shares, means;
+    for (std::uint32_t seed = 101; seed < 101 + rooms; ++seed) {
+        const Installation truth = trueRoom(putUp(), rig.actuators(), seed);
+        const std::vector<double> room = sharesOfMap(calibrate(defaultInstallation(), truth, seed), truth);
+        ASSERT_GT(room.size(), 100U) << seed;
+        shares.insert(shares.end(), room.begin(), room.end());
+        means.push_back(meanOf(room));
+    }
+    const auto within = static_cast<double>(std::ranges::count_if(shares, [](double share) { return share <= 1.0; })) /
+                        static_cast<double>(shares.size());
+    std::printf(
+        "light beside, of %u rooms: %.1f %% within the predicted 95 %%, mean %.2f of it (%.2f to %.2f a room)\n", rooms,
+        100.0 * within, meanOf(shares), quantileOf(means, 0.0), quantileOf(means, 1.0));
+    const double slack = longTests() ? 0.06 : 0.15; // of the mean of so many rooms, each of which may be 0.05 to 1.2
+    EXPECT_GE(meanOf(shares), 0.41 - slack) << "too wide";
+    EXPECT_LE(meanOf(shares), 0.51 + slack) << "too narrow";
+    EXPECT_GE(within, longTests() ? 0.9 : 0.85);
+    if (longTests()) {
+        EXPECT_LE(within, 0.99);
+    }
+}
+
 TEST(EndToEnd, TheWholeChainShowsWhatTheEyeShouldSee) {
-    const auto rig = std::make_shared<const Rig>(tabletRig());
+    const auto rig = std::make_shared<const Rig>(test::cutTablet());
     for (std::uint32_t seed = 1; seed <= (longTests() ? 6U : 1U); ++seed) {
         const Installation truth = trueRoom(putUp(), rig->actuators(), seed);
         const Calibrated calibrated = calibrate(defaultInstallation(), truth, seed);
@@ -150,7 +178,8 @@ TEST(EndToEnd, TheWholeChainShowsWhatTheEyeShouldSee) {
         std::printf("light beside, as a share of the predicted 95 %%: mean %.2f, most %.2f of %zu places\n",
                     meanOf(shares), quantileOf(shares, 1.0), shares.size());
         ASSERT_GT(shares.size(), 100U);
-        EXPECT_LE(quantileOf(shares, 0.95), 1.0) << "inside the predicted map in 95 of 100 places";
+        // One room of twenty lies beyond its map; how wide the map is, is judged over many rooms above.
+        EXPECT_LE(quantileOf(shares, 0.95), 1.5);
 
         const Installation estimated = measureLinks(*rig, calibrated.room, truth, 10 * seed);
         const ShownError shown = shownError(rig, estimated, truth);

@@ -15,9 +15,8 @@
 #include "calibration/lab/lab.h"
 #include "calibration/lab/true_room.h"
 #include "core/base/error.h"
-#include "core/base/resources.h"
-#include "core/rig/rig_file.h"
 #include "core/scene/measured_sigma.h"
+#include "tests/support/cut_tablet.h"
 
 // The budget against the lab: true rooms are drawn with the same errors, and rays say how far what is shown slips.
 
@@ -28,7 +27,7 @@ constexpr double kDegree = 0.017453292519943295;
 constexpr double kSpeed = 0.3; // of the hand, m/s
 
 const Rig& budgetTablet() {
-    static const Rig rig = readRig(resourceFile("models/tablet.glb"));
+    static const Rig rig = test::cutTablet();
     return rig;
 }
 

@@ -11,7 +11,7 @@
 
 #include "calibration/lab/board_lab.h"
 #include "calibration/registration/surface_fit.h"
-#include "core/rig/templates/bundled_rigs.h"
+#include "tests/support/cut_tablet.h"
 
 // R24, R25, R26: tracker, pointer, device and eye in millimetres, against the lab's truth.
 
@@ -21,7 +21,7 @@ namespace {
 constexpr double kDegree = 0.017453292519943295;
 
 const Rig& tablet() {
-    static const Rig rig = tabletRig();
+    static const Rig rig = test::cutTablet();
     return rig;
 }
 

@@ -10,7 +10,7 @@
 #include "calibration/lab/registration_lab.h"
 #include "calibration/registration/nearest_surface.h"
 #include "calibration/registration/surface_fit.h"
-#include "core/rig/templates/bundled_rigs.h"
+#include "tests/support/cut_tablet.h"
 #include "tests/support/small_rigs.h"
 
 // What cannot be registered is refused by name, with its remedy, and nothing of it is kept.
@@ -19,7 +19,7 @@ namespace lumorph {
 namespace {
 
 const Rig& device() {
-    static const Rig rig = tabletRig();
+    static const Rig rig = test::cutTablet();
     return rig;
 }
 

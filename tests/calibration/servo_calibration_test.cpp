@@ -19,9 +19,9 @@
 #include "calibration/servos/servo_lab.h"
 #include "core/base/error.h"
 #include "core/base/resources.h"
-#include "core/rig/rig_file.h"
 #include "core/scene/measured_servos.h"
 #include "tests/core/temporary_folder.h"
+#include "tests/support/cut_tablet.h"
 
 namespace lumorph {
 namespace {
@@ -29,7 +29,7 @@ namespace {
 bool takesLong() { return std::getenv("LUMORPH_LONG_TESTS") != nullptr; }
 
 const Rig& servoTablet() {
-    static const Rig rig = readRig(resourceFile("models/tablet.glb"));
+    static const Rig rig = test::cutTablet();
     return rig;
 }
 

@@ -7,9 +7,9 @@
 
 #include "calibration/lab/true_room.h"
 #include "core/loop/match_loop.h"
-#include "core/rig/templates/bundled_rigs.h"
 #include "core/scene/measured_servos.h"
 #include "tests/support/chain_judge.h"
+#include "tests/support/cut_tablet.h"
 #include "tests/support/truth.h"
 
 // R26: projected is what fits the device as it stands when the light comes, not as its servos are told to be.
@@ -64,7 +64,7 @@ SteppedRun stepped(const std::shared_ptr<const Rig>& rig, const Installation& ro
 
 TEST(ServoLag, AFlapThatStepsIsLitWhereItIs) {
     constexpr int kFrames = 90, kEach = 9;
-    const auto rig = std::make_shared<const Rig>(tabletRig());
+    const auto rig = std::make_shared<const Rig>(test::cutTablet());
     const Installation truth = trueRoom(defaultInstallation(), rig->actuators(), 3);
     Installation lagless = truth;
     for (MeasuredServo& servo : lagless.servos) servo.lagSeconds = 0.0;

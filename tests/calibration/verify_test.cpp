@@ -15,8 +15,7 @@
 #include "calibration/verify/check_picture.h"
 #include "calibration/verify/verify_lab.h"
 #include "core/base/error.h"
-#include "core/base/resources.h"
-#include "core/rig/rig_file.h"
+#include "tests/support/cut_tablet.h"
 #include "tests/support/long_tests.h"
 
 namespace lumorph::test {
@@ -25,7 +24,7 @@ namespace {
 using ::testing::HasSubstr;
 
 const Rig& verifiedRig() {
-    static const Rig rig = readRig(resourceFile("models/tablet.glb"));
+    static const Rig rig = test::cutTablet();
     return rig;
 }
 

@@ -17,6 +17,7 @@
 
 #include "devices/controllers/servo_link.h"
 #include "devices/simulator/simulated_bench.h"
+#include "tests/core/temporary_folder.h"
 #include "tests/devices/pty.h"
 
 namespace lumorph {
@@ -134,9 +135,8 @@ protected:
 TEST_F(ServoLinkDead, ADeadPseudoTerminalCostsNoTimeAndFewWords) {
     pty_ = std::make_unique<Pty>();
     // By a name of its own: the system gives the number of a dead terminal to whoever asks next.
-    const std::filesystem::path name =
-        std::filesystem::temp_directory_path() / ("lumorph-dead-port-" + std::to_string(::getpid()));
-    std::filesystem::remove(name);
+    const TemporaryFolder folder;
+    const std::filesystem::path name = folder / "port";
     std::filesystem::create_symlink(pty_->path(), name);
     open("serial://" + name.string());
     goLive();

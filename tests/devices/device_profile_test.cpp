@@ -7,27 +7,16 @@
 #include <string>
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include "core/base/error.h"
+#include "tests/core/temporary_folder.h"
 
 namespace lumorph {
 namespace {
 
 namespace fs = std::filesystem;
 
-/// A folder that is gone at the end of the test.
-class ProfileFolder {
-public:
-    ProfileFolder() : path_(fs::temp_directory_path() / ("lumorph_profile_" + std::to_string(::getpid()))) {
-        fs::create_directories(path_);
-    }
-    ~ProfileFolder() { fs::remove_all(path_); }
-    [[nodiscard]] fs::path operator/(const char* name) const { return path_ / name; }
-
-private:
-    fs::path path_;
-};
+using ProfileFolder = TemporaryFolder;
 
 DeviceProfile fullProfile() {
     DeviceProfile profile;

@@ -5,6 +5,7 @@
 
 #include <QEventLoop>
 #include <fcntl.h>
+#include <poll.h>
 #include <pty.h>
 #include <termios.h>
 #include <unistd.h>
@@ -38,6 +39,13 @@ std::vector<std::uint8_t> Pty::receive() const {
     for (ssize_t count = 0; (count = ::read(master_, bytes.data(), bytes.size())) > 0;)
         all.insert(all.end(), bytes.begin(), bytes.begin() + count);
     return all;
+}
+
+void Pty::waitForBytes(std::chrono::milliseconds atMost) const {
+    pollfd bytes{master_, POLLIN, 0};
+    // A terminal that nobody has open is always ready, and has nothing to say.
+    if (::poll(&bytes, 1, static_cast<int>(atMost.count())) > 0 && (bytes.revents & POLLIN) == 0)
+        ::usleep(static_cast<useconds_t>(1000 * atMost.count()));
 }
 
 EventLoop::EventLoop() {

@@ -22,6 +22,7 @@ public:
     void unplug(); ///< the far end is gone
     void send(const std::vector<std::uint8_t>& bytes) const;
     [[nodiscard]] std::vector<std::uint8_t> receive() const; ///< what is there; does not wait
+    void waitForBytes(std::chrono::milliseconds atMost) const;
 
 private:
     int master_ = -1;

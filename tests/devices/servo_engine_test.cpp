@@ -146,6 +146,9 @@ private:
         case 13:
             bench_.clockIsAhead = Microseconds{static_cast<long>(number(-1e15, 1e15))};
             break;
+        case 14:
+            bench_.tell(in::Released{});
+            break;
         default:
             break;
         }

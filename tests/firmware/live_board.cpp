@@ -4,12 +4,9 @@
 #include <chrono>
 #include <filesystem>
 
-#include <unistd.h>
-
 namespace lumorph::firmware_test {
 
-LiveBoard::LiveBoard()
-    : path_(std::filesystem::temp_directory_path() / ("lumorph-board-" + std::to_string(::getpid()))) {
+LiveBoard::LiveBoard() : path_(folder_ / "board") {
     plug();
     thread_ = std::thread([this] { live(); });
 }

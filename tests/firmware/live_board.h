@@ -7,6 +7,7 @@
 #include <thread>
 #include <vector>
 
+#include "tests/core/temporary_folder.h"
 #include "tests/devices/pty.h"
 #include "tests/firmware/board.h"
 
@@ -32,6 +33,7 @@ private:
     void live();
     void plug();
 
+    TemporaryFolder folder_;
     std::string path_;
     std::unique_ptr<Pty> pty_; ///< of the board's thread
     mutable std::mutex mutex_;

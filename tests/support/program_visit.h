@@ -17,10 +17,9 @@
 #include <unistd.h>
 
 #include "app/applications/demo.h"
-#include "core/base/resources.h"
 #include "core/loop/show_program.h"
-#include "core/rig/rig_file.h"
 #include "core/show/show_player.h"
+#include "tests/support/cut_tablet.h"
 
 /// An application asked frame by frame, as the loop asks it, and visited for long, in the loop itself.
 namespace lumorph::test {
@@ -28,7 +27,7 @@ namespace lumorph::test {
 constexpr double kFrame = 1.0 / 60.0;
 
 inline const std::shared_ptr<const Rig>& tabletRig() {
-    static const auto rig = std::make_shared<const Rig>(readRig(resourceFile("models/tablet.glb")));
+    static const auto rig = std::make_shared<const Rig>(test::cutTablet());
     return rig;
 }
 
@@ -158,7 +157,7 @@ inline LongVisit visitForLong(ShowProgram& program, double seconds, double step,
     LongVisit visit;
     visit.milliseconds.reserve(static_cast<std::size_t>(frames)); // so that the notes do not count as growth
     visit.memory.reserve(static_cast<std::size_t>(frames / perSecond + 1));
-    MatchWish wish = wishOf(bundledTablet({}));
+    MatchWish wish = wishOf(shownTablet({}));
     wish.showTint = false;
     wish.program = std::make_shared<TimedProgram>(program, visit.milliseconds);
     wish.inputs = std::make_shared<ShowInputs>();

@@ -1,13 +1,11 @@
 #include "tests/support/truth_cases.h"
+#include "tests/support/cut_tablet.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <numbers>
 #include <stdexcept>
-
-#include "core/base/resources.h"
-#include "core/rig/rig_file.h"
 
 namespace lumorph::test {
 namespace {
@@ -23,9 +21,7 @@ template <typename Row> const Row& find(std::span<const Row> rows, const std::st
 
 } // namespace
 
-TruthDevice truthDevice() {
-    return {std::make_shared<Rig>(readRig(resourceFile("models/tablet.glb"))), defaultSceneInRoom()};
-}
+TruthDevice truthDevice() { return {std::make_shared<Rig>(test::cutTablet()), defaultSceneInRoom()}; }
 
 std::span<const TruthState> truthStates() {
     static const std::array<TruthState, 8> states{{

@@ -93,8 +93,7 @@ protected:
     }
     void picture(const QString& name) {
         (void)eventually([&] { return !eye().picture().isNull(); }, 60s);
-        pass(1500ms);
-        window.screenshot(name);
+        window.screenshot(name, 1500ms);
     }
 
     TemporaryFolder folder;
@@ -112,8 +111,7 @@ TEST_F(ApplicationsWindow, StartByOneClickOnACardAndExplainThemselves) {
         EXPECT_EQ(card->text().toStdString(), demo.title.english);
         EXPECT_GE(card->width(), 260);
     }
-    pass(200ms);
-    window.screenshot("applications");
+    window.screenshot("applications", 200ms);
     window.click("applications.language");
     EXPECT_EQ(window.find<QAbstractButton>("applications.labyrinth")->text().toStdString(),
               demoNamed("labyrinth").title.german);
@@ -287,9 +285,8 @@ TEST_F(ApplicationsWindow, CompareTheBendInTwoHalvesInTheVisitorsLanguage) {
     EXPECT_EQ(without->label(), "Ohne Biegen");
     EXPECT_EQ(with->label(), QString::fromStdString(bendCaptions()[1].german));
     EXPECT_TRUE(eventually([&] { return !without->picture().isNull() && !with->picture().isNull(); }, 60s));
-    pass(1500ms);
-    window.screenshot("navigation-bend");
-    EXPECT_NE(without->picture(), with->picture());
+    window.screenshot("navigation-bend", 1500ms);
+    EXPECT_TRUE(eventually([&] { return without->picture() != with->picture(); }));
     QTest::keyClick(with, Qt::Key_O);
     EXPECT_TRUE(eventually([&] { return eye().isVisible() && !with->isVisible(); }));
 }

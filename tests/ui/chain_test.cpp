@@ -15,9 +15,8 @@
 #include "calibration/lab/moved_room.h"
 #include "calibration/lab/registration_lab.h"
 #include "calibration/verify/verify_lab.h"
-#include "core/base/resources.h"
-#include "core/rig/rig_file.h"
 #include "tests/support/chain_judge.h"
+#include "tests/support/cut_tablet.h"
 #include "tests/support/truth.h"
 #include "tests/ui/file_dialog.h"
 #include "tests/ui/studio_window.h"
@@ -221,14 +220,11 @@ TEST_F(Chain, AllThatIsMissingIsMeasuredOneAfterTheOther) {
     EXPECT_EQ(room().origins.colors.way, Origin::Way::measured);
     window.screenshot("chain-checked");
     window.click("chain.link.light");
-    pass(300ms);
-    window.screenshot("chain-light-measured");
+    window.screenshot("chain-light-measured", 300ms);
     window.click("chain.link.servos");
-    pass(300ms);
-    window.screenshot("chain-servos-measured");
+    window.screenshot("chain-servos-measured", 300ms);
     window.click("chain.link.delays");
-    pass(300ms);
-    window.screenshot("chain-delays-measured");
+    window.screenshot("chain-delays-measured", 300ms);
     EXPECT_EQ(room().origins.delays.way, Origin::Way::measured);
     // The camera stands where the sequence has it: a part that it does not see in all its range keeps its lag, and that
     // is told.
@@ -245,8 +241,7 @@ TEST_F(Chain, AllThatIsMissingIsMeasuredOneAfterTheOther) {
     }
     EXPECT_GE(figures.size(), 5);
     window.click("chain.link.eye");
-    pass(300ms);
-    window.screenshot("chain-eye");
+    window.screenshot("chain-eye", 300ms);
     // What the window ends with, judged in the room as it truly is by rays that share nothing with the renderer.
     const Installation& truth = window.studio().lab.truth();
     const std::vector<double> shares = sharesOfPlan(map, room(), truth);
@@ -443,7 +438,7 @@ TEST_F(Chain, ARealDeviceIsPlacedByRecordings) {
 TEST(ChainLinks, ACheckThatCannotPutRightOffersNothingToUse) {
     // The camera has moved, and the room knows of none: what is believed is the lab's, which is not kept.
     studio::LinkTask task;
-    task.rig = std::make_shared<const Rig>(readRig(resourceFile("models/tablet.glb")));
+    task.rig = std::make_shared<const Rig>(test::cutTablet());
     task.believed = defaultInstallation();
     CalibratedCamera& lamp = task.believed.projectors.front().camera;
     lamp = withSize(lamp, {480, 270});
@@ -465,8 +460,7 @@ TEST_F(Chain, TheWatchTellsAHostThatTheProjectorHasMoved) {
     studio::editInstallation(window.studio().document, "Believed elsewhere",
                              [](Installation& room) { room.projectors.front().camera.cameraFromWorld[3].x += 0.003; });
     ASSERT_TRUE(eventually([&] { return !window.studio().notices.at("calibrate").empty(); }, 120s));
-    pass(500ms);
-    window.screenshot("watch-moved");
+    window.screenshot("watch-moved", 500ms);
     const studio::Notice notice = window.studio().notices.at("calibrate").front();
     ASSERT_EQ(notice.actions.size(), 1U);
     notice.actions.front().run();

@@ -8,8 +8,7 @@
 #include "app/studio/calibration/capture_bench.h"
 #include "app/studio/document/scene_edit.h"
 #include "calibration/lab/board_lab.h"
-#include "core/base/resources.h"
-#include "core/rig/rig_file.h"
+#include "tests/support/cut_tablet.h"
 #include "tests/ui/event_loop.h"
 
 // A projector without a camera: crosshairs laid onto points of the device, without a window.
@@ -18,7 +17,7 @@ namespace lumorph::studio {
 namespace {
 
 struct CrosshairServiceTest : testing::Test {
-    std::shared_ptr<const Rig> rig = std::make_shared<const Rig>(readRig(resourceFile("models/tablet.glb")));
+    std::shared_ptr<const Rig> rig = std::make_shared<const Rig>(test::cutTablet());
     StudioDocument document;
     QImage onProjector;
     std::size_t lit = 0; ///< number of the projector that was asked last

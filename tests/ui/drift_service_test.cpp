@@ -7,8 +7,7 @@
 #include "calibration/lab/moved_room.h"
 #include "calibration/verify/verify_lab.h"
 #include "core/base/error.h"
-#include "core/base/resources.h"
-#include "core/rig/rig_file.h"
+#include "tests/support/cut_tablet.h"
 #include "tests/ui/event_loop.h"
 
 // The watch of a running show, without a window: pictures from a made-up show, photographs from the virtual lab.
@@ -45,7 +44,7 @@ private:
 };
 
 struct DriftServiceTest : testing::Test {
-    std::shared_ptr<const Rig> rig = std::make_shared<const Rig>(readRig(resourceFile("models/tablet.glb")));
+    std::shared_ptr<const Rig> rig = std::make_shared<const Rig>(test::cutTablet());
     std::shared_ptr<const Installation> room = [] {
         Installation small = defaultInstallation();
         small.projectors.front().camera = withSize(small.projectors.front().camera, {480, 270});

@@ -9,7 +9,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/resource.h>
-#include <unistd.h>
 
 #include <opencv2/core.hpp>
 #include <opencv2/videoio.hpp>
@@ -22,7 +21,8 @@
 #include "core/geometry/mesh_file.h"
 #include "core/mdf/builder.h"
 #include "core/mdf/field_file.h"
-#include "core/rig/rig_file.h"
+#include "tests/core/temporary_folder.h"
+#include "tests/support/cut_tablet.h"
 #include "tests/support/small_rigs.h"
 
 namespace lumorph::studio {
@@ -33,23 +33,17 @@ namespace fs = std::filesystem;
 /// A folder of its own, gone after the test.
 class Exports : public testing::Test {
 protected:
-    Exports()
-        : folder_(fs::temp_directory_path() / ("lumorph-exports-" + std::to_string(::getpid()) + "-" +
-                                               testing::UnitTest::GetInstance()->current_test_info()->name())) {
-        fs::create_directories(folder_);
-    }
-    ~Exports() override { fs::remove_all(folder_); }
-
     [[nodiscard]] fs::path file(const std::string& name) const { return folder_ / name; }
     [[nodiscard]] std::vector<std::string> files() const {
         std::vector<std::string> names;
-        for (const auto& entry : fs::directory_iterator(folder_)) names.push_back(entry.path().filename().string());
+        for (const auto& entry : fs::directory_iterator(folder_.path()))
+            names.push_back(entry.path().filename().string());
         std::sort(names.begin(), names.end());
         return names;
     }
 
 private:
-    fs::path folder_;
+    TemporaryFolder folder_;
 };
 
 std::shared_ptr<const MatchField> exportedField() {
@@ -222,7 +216,7 @@ TEST_F(Exports, TheTableOfNowHasTheLevelsStrokesAndIoUOfTheFrame) {
 
 TEST_F(Exports, TheTableOfAClipMatchesWhereTheTargetIsPlaced) {
     const auto field = std::make_shared<const MatchField>(
-        buildField(readRig(resourceFile("models/tablet.glb")), {.resolution = 12, .levels = 9, .samples = 8}));
+        buildField(test::cutTablet(), {.resolution = 12, .levels = 9, .samples = 8}));
     MatchFrame frame;
     frame.field = field;
     frame.rig = std::make_shared<const Rig>(field->rig);

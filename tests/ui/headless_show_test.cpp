@@ -7,7 +7,6 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <opencv2/core.hpp>
 #include <opencv2/videoio.hpp>
@@ -15,6 +14,7 @@
 #include "app/studio/headless_show.h"
 #include "core/base/error.h"
 #include "core/base/image.h"
+#include "tests/core/temporary_folder.h"
 
 namespace lumorph::studio {
 namespace {
@@ -40,7 +40,8 @@ double differentShare(const Image& a, const Image& b) {
 }
 
 TEST(HeadlessShow, DrawsPicturesAVideoAndATableWithoutADisplay) {
-    const fs::path folder = fs::temp_directory_path() / ("lumorph-show-" + std::to_string(::getpid()));
+    const TemporaryFolder own;
+    const fs::path folder = own / "show";
     std::ostringstream out;
     runHeadlessShow(folder, 0.5, out);
     EXPECT_THAT(out.str(), testing::HasSubstr(folder.string()));
@@ -76,7 +77,6 @@ TEST(HeadlessShow, DrawsPicturesAVideoAndATableWithoutADisplay) {
     int lines = 0;
     for (std::string line; std::getline(table, line); ++lines) EXPECT_EQ(std::count(line.begin(), line.end(), ','), 14);
     EXPECT_EQ(lines, 16) << "a line of names and one for each picture";
-    fs::remove_all(folder);
 }
 
 TEST(HeadlessShow, RefusesAPlaceAndATimeThatCannotBe) {

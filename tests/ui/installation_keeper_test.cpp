@@ -184,6 +184,26 @@ TEST_F(InstallationKeeperTest, KeepsAnEditForTheNextStartAndTheOneBefore) {
     EXPECT_EQ(room().tableSize, measuredRoom().tableSize);
 }
 
+TEST_F(InstallationKeeperTest, WhileAnotherStudioHasTheRoomNothingIsWritten) {
+    settings.setReadOnly(true);
+    editInstallation(world.document, "Table", [](Installation& edited) { edited.tableSize = {1.5F, 1.0F}; });
+    const Installation mine = room();
+    keeper.reset(); // the end of the program
+    EXPECT_EQ(*store.load(), measuredRoom());
+    EXPECT_TRUE(world.notice("home").why.contains("in this window alone"));
+    start();
+    world.document.setInstallation(std::make_shared<const Installation>(mine));
+    Installation others = measuredRoom(); // the other studio measures the room meanwhile
+    others.tableSize = {1.25F, 1.0F};
+    store.keep(others);
+    settings.setReadOnly(false);
+    EXPECT_EQ(room(), others);
+    EXPECT_TRUE(world.press("home", "Use this window's"));
+    EXPECT_EQ(room().tableSize, mine.tableSize);
+    keeper.reset();
+    EXPECT_EQ(store.load()->tableSize, mine.tableSize);
+}
+
 TEST_F(InstallationKeeperTest, KeepsTenEarlierOnesWhateverOneLooksAt) {
     for (int i = 0; i < 14; ++i) {
         Installation next = measuredRoom();

@@ -9,8 +9,8 @@
 #include "app/studio/calibration/live_service.h"
 #include "app/studio/document/scene_edit.h"
 #include "calibration/lab/true_room.h"
-#include "core/rig/templates/bundled_rigs.h"
 #include "tests/core/temporary_folder.h"
+#include "tests/support/cut_tablet.h"
 #include "tests/support/small_rigs.h"
 #include "tests/ui/event_loop.h"
 
@@ -49,7 +49,7 @@ protected:
 };
 
 TEST_F(LabRoomTest, PackedItIsAsIsBelievedAndUnpackedAnotherThatStaysTheSame) {
-    open(tabletRig());
+    open(test::cutTablet());
     EXPECT_FALSE(lab.isUnpacked());
     EXPECT_EQ(lab.truth(), believed());
     edit([](Installation& room) { room.pointerTip = {0.0F, -0.1F, 0.0F}; });
@@ -72,7 +72,7 @@ TEST_F(LabRoomTest, PackedItIsAsIsBelievedAndUnpackedAnotherThatStaysTheSame) {
 }
 
 TEST_F(LabRoomTest, WhatIsMeasuredAndTakenBackLeavesTheTruth) {
-    open(tabletRig());
+    open(test::cutTablet());
     lab.unpack();
     const Installation truth = lab.truth();
     edit([&truth](Installation& room) {
@@ -102,7 +102,7 @@ TEST_F(LabRoomTest, WhatIsMeasuredAndTakenBackLeavesTheTruth) {
 }
 
 TEST_F(LabRoomTest, PackedUpItIsAsIsBelievedAndTheNextOneIsAnother) {
-    open(tabletRig());
+    open(test::cutTablet());
     lab.unpack();
     const Installation first = lab.truth();
     lab.packUp();
@@ -116,7 +116,7 @@ TEST_F(LabRoomTest, PackedUpItIsAsIsBelievedAndTheNextOneIsAnother) {
 }
 
 TEST_F(LabRoomTest, AnotherProjectIsInTheSameRoomWithServosOfItsOwn) {
-    open(tabletRig());
+    open(test::cutTablet());
     lab.unpack();
     const Installation truth = lab.truth();
     StudioState other = document.state();
@@ -133,7 +133,7 @@ TEST_F(LabRoomTest, AnotherProjectIsInTheSameRoomWithServosOfItsOwn) {
     document.change("Edited",
                     [](StudioState& state) { state.rig.rig = std::make_shared<const Rig>(test::lifterRig()); });
     EXPECT_EQ(lab.truth(), LabRoom(settings, document, trackers).truth()) << "as after the next start";
-    open(tabletRig());
+    open(test::cutTablet());
     EXPECT_EQ(lab.truth().servos, truth.servos) << "back with the first device its servos are as they were";
 }
 
@@ -189,7 +189,7 @@ protected:
 };
 
 TEST_F(DoubtedPointer, AMirroredTrackerLeavesThePointerInDoubtWithItsFigure) {
-    open(tabletRig());
+    open(test::cutTablet());
     for (const bool mirrored : {true, false}) {
         believePointer(Origin::Way::measured);
         write([mirrored](glm::dvec3& place, glm::dquat& turn) {
@@ -208,7 +208,7 @@ TEST_F(DoubtedPointer, AMirroredTrackerLeavesThePointerInDoubtWithItsFigure) {
 }
 
 TEST_F(DoubtedPointer, AGoodTrackerOrATipByHandIsLeftAlone) {
-    open(tabletRig());
+    open(test::cutTablet());
     believePointer(Origin::Way::measured);
     write([](glm::dvec3&, glm::dquat&) {});
     ASSERT_TRUE(measures());

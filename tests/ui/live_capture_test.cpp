@@ -8,8 +8,7 @@
 
 #include "app/studio/calibration/chain.h"
 #include "calibration/lab/registration_lab.h"
-#include "core/base/resources.h"
-#include "core/rig/rig_file.h"
+#include "tests/support/cut_tablet.h"
 
 // A person with a pointer whom the studio follows step by step, without a window: the lab's hands and tracker.
 
@@ -17,7 +16,7 @@ namespace lumorph::studio {
 namespace {
 
 struct LiveCaptureTest : testing::Test {
-    const std::shared_ptr<const Rig> rig = std::make_shared<const Rig>(readRig(resourceFile("models/tablet.glb")));
+    const std::shared_ptr<const Rig> rig = std::make_shared<const Rig>(test::cutTablet());
     const Installation believed = defaultInstallation();
     const Installation truth = trueRoom(believed, rig->actuators(), 11);
     TrackerLab lab{truth, 3};

@@ -1,6 +1,10 @@
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cstdio>
+#include <fstream>
+#include <numeric>
+#include <string>
 #include <vector>
 
 #include <QApplication>
@@ -10,6 +14,8 @@
 #include <QTest>
 #include <QTimer>
 #include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <unistd.h>
 
 #include "app/studio/document/rig_edit.h"
 #include "app/studio/shell/main_window.h"
@@ -50,13 +56,14 @@ protected:
     MainWindow window_;
 };
 
-/// Of `seconds` in which the target played.
+/// Of a second in which the target played.
 struct Rates {
     double matched = 0.0; ///< matches a second that reached the window
     double painted = 0.0; ///< frames a second, each of a newer match
     double drawn = 0.0;   ///< share of each side that the last frame was drawn with
     double drawing = 0.0; ///< milliseconds that a frame took, the median
     double stall = 0.0;   ///< milliseconds
+    double left = 1.0;    ///< share of the processors that other programs left to this one
 };
 
 /// The event loop as the program runs it: asleep while nothing happens.
@@ -66,54 +73,86 @@ void run(std::chrono::milliseconds time) {
     loop.exec();
 }
 
-Rates measure(Studio& studio, const ViewportWidget& view, std::chrono::milliseconds time) {
+/// Seconds of one processor that others had, by the kernel's own count: other programs and other virtual machines.
+double othersSeconds() {
+    rusage own{};
+    getrusage(RUSAGE_SELF, &own);
+    const auto seconds = [](const timeval& time) {
+        return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
+    };
+    std::ifstream file("/proc/stat"); // proc_stat(5): user, nice, system, idle, iowait, irq, softirq, steal
+    std::string name;
+    std::array<double, 8> ticks{};
+    file >> name;
+    for (double& one : ticks) file >> one;
+    if (!file) return 0.0; // told nowhere: as if the machine were ours
+    const double busy = std::accumulate(ticks.begin(), ticks.end(), 0.0) - ticks[3] - ticks[4];
+    return busy / static_cast<double>(::sysconf(_SC_CLK_TCK)) - seconds(own.ru_utime) - seconds(own.ru_stime);
+}
+
+/// One after the other, without a pause between them.
+std::vector<Rates> measure(Studio& studio, const ViewportWidget& view, int count) {
+    const auto processors = static_cast<double>(::sysconf(_SC_NPROCESSORS_ONLN));
     int matches = 0;
     std::vector<double> took;
-    const auto count = QObject::connect(&studio.loop, &StudioLoop::framed, [&] {
+    const auto counting = QObject::connect(&studio.loop, &StudioLoop::framed, [&] {
         ++matches;
         took.push_back(view.frameMilliseconds());
     });
     test::StallWatch watch;
     run(std::chrono::milliseconds(200));
-    (void)watch.takeLongest();
-    matches = 0;
-    const std::uint64_t before = view.framesPainted();
-    const auto start = SteadyTime::now();
-    run(time);
-    const double seconds = std::chrono::duration<double>(SteadyTime::now() - start).count();
-    QObject::disconnect(count);
-    const auto middle = took.begin() + static_cast<std::ptrdiff_t>(took.size() / 2);
-    std::nth_element(took.begin(), middle, took.end());
-    return {matches / seconds, static_cast<double>(view.framesPainted() - before) / seconds, view.frameResolution(),
-            took.empty() ? 0.0 : *middle, watch.takeLongest()};
+    std::vector<Rates> all;
+    for (int k = 0; k < count; ++k) {
+        (void)watch.takeLongest();
+        matches = 0;
+        took.clear();
+        const std::uint64_t before = view.framesPainted();
+        const double others = othersSeconds();
+        const auto start = SteadyTime::now();
+        run(std::chrono::seconds(1));
+        const double seconds = std::chrono::duration<double>(SteadyTime::now() - start).count();
+        const auto middle = took.begin() + static_cast<std::ptrdiff_t>(took.size() / 2);
+        std::nth_element(took.begin(), middle, took.end());
+        all.push_back({matches / seconds, static_cast<double>(view.framesPainted() - before) / seconds,
+                       view.frameResolution(), took.empty() ? 0.0 : *middle, watch.takeLongest(),
+                       std::clamp(1.0 - (othersSeconds() - others) / (processors * seconds), 0.1, 1.0)});
+    }
+    QObject::disconnect(counting);
+    return all;
 }
 
+// The bar of a second: 30 frames, and no stall beyond 100 ms. A machine that draws slowly cannot show thirty, yet
+// nothing but its drawing may keep it from them: on the coarsest picture, and nearly all of the time. What other
+// programs take away of the processors is taken off the bar. Three seconds of four must meet it.
 TEST_F(WindowRate, ThirtyMatchesASecondAreSeenWhileALargeTargetMoves) {
+    constexpr int kSeconds = 8;
+    constexpr double kShare = 0.75, kWanted = 30.0, kLongestStall = 100.0, kCoarsest = 0.36, kNearly = 0.8;
     ASSERT_TRUE(openTarget());
     auto* view = window_.findChild<ViewportWidget*>("field.viewport");
     ASSERT_TRUE(view);
     ASSERT_EQ(studio_.document.state().target.target->solid.mesh.triangles.size(), 70'000U);
     run(std::chrono::seconds(3)); // until the picture has found its resolution
-    // A machine that draws slowly cannot show thirty, yet nothing but its drawing may keep it from them: on the
-    // coarsest picture, and nearly all of the time. Other programs on the machine only take away, so the best of six
-    // counts.
-    const auto wanted = [](const Rates& rates) {
-        constexpr double kCoarsest = 0.36;
-        return rates.drawn > kCoarsest ? 30.0 : std::min(30.0, 0.8 * 1000.0 / rates.drawing);
-    };
-    Rates rates;
-    for (int attempt = 0; attempt < 6 && (rates.painted < wanted(rates) || rates.stall > 100.0); ++attempt) {
-        rates = measure(studio_, *view, std::chrono::seconds(5));
-        std::printf(
-            "viewport %dx%d: %.1f matches/s to the window, %.1f painted/s, drawn at %.2f in %.1f ms, longest stall "
-            "%.1f ms\n",
-            view->width(), view->height(), rates.matched, rates.painted, rates.drawn, rates.drawing, rates.stall);
+    int shown = 0, matched = 0, smooth = 0;
+    double painted = 0.0, matches = 0.0;
+    for (const Rates& rates : measure(studio_, *view, kSeconds)) {
+        const double drawable = rates.drawn > kCoarsest ? kWanted : std::min(kWanted, kNearly * 1000.0 / rates.drawing);
+        shown += rates.painted >= rates.left * drawable - 0.5; // counted in whole frames
+        matched += rates.matched >= rates.left * kWanted - 0.5;
+        smooth += rates.stall <= kLongestStall / rates.left;
+        painted += rates.painted;
+        matches += rates.matched;
+        std::printf("viewport %dx%d: %.1f matches/s to the window, %.1f painted/s of %.1f, drawn at %.2f in %.1f ms, "
+                    "longest stall %.1f ms, %.0f %% of the processors left\n",
+                    view->width(), view->height(), rates.matched, rates.painted, rates.left * drawable, rates.drawn,
+                    rates.drawing, rates.stall, 100.0 * rates.left);
     }
-    RecordProperty("painted", static_cast<int>(rates.painted));
-    EXPECT_GE(rates.painted, wanted(rates));
-    EXPECT_GE(rates.matched, 30.0);
-    EXPECT_LE(rates.painted, rates.matched + 1.0) << "no match is painted twice";
-    EXPECT_LE(rates.stall, 100.0);
+    RecordProperty("painted", static_cast<int>(painted / kSeconds));
+    std::printf("of %d seconds: %d shown as often as wanted, %d matched, %d without a stall\n", kSeconds, shown,
+                matched, smooth);
+    EXPECT_GE(shown, kShare * kSeconds);
+    EXPECT_GE(matched, kShare * kSeconds);
+    EXPECT_GE(smooth, kShare * kSeconds);
+    EXPECT_LE(painted, matches + 1.0) << "no match is painted twice";
 }
 
 // A rig that is dragged at 60 edits a second, as handles on the model will do.
@@ -133,30 +172,41 @@ TEST_F(WindowRate, TheRigIsEditedWithoutHoldingUpTheWindow) {
     const int steps = document.undoStack().count();
     const double from = before.rig.parts->actuators[1].maxVelocity;
 
-    double stall = 1e9;
-    int compiled = 0, edits = 0;
+    // Seconds of the drag, by the bar of a second above.
+    constexpr int kStretches = 4;
+    const auto processors = static_cast<double>(::sysconf(_SC_NPROCESSORS_ONLN));
+    double longest = 0.0;
+    int compiled = 0, edits = 0, smooth = 0;
     const auto count = QObject::connect(&document, &StudioDocument::changed, [&](StateParts parts) {
         compiled += (parts & StatePart::rigEdited) && document.state().rig.rig != before.rig.rig;
     });
-    for (int attempt = 0; attempt < 4 && stall > 100.0; ++attempt) {
-        test::StallWatch watch;
-        (void)watch.takeLongest();
-        QTimer drag;
-        drag.setTimerType(Qt::PreciseTimer);
-        QObject::connect(&drag, &QTimer::timeout, [&] {
-            previewRig(document, [at = ++edits](RigParts& parts) {
-                std::get<Bend>(parts.actuators[1].deformer).max = Angle::degrees(30.0 + 0.1 * (at % 240));
-            });
+    test::StallWatch watch;
+    QTimer drag;
+    drag.setTimerType(Qt::PreciseTimer);
+    QObject::connect(&drag, &QTimer::timeout, [&] {
+        previewRig(document, [at = ++edits](RigParts& parts) {
+            std::get<Bend>(parts.actuators[1].deformer).max = Angle::degrees(30.0 + 0.1 * (at % 240));
         });
-        drag.start(1000 / 60);
-        (void)test::eventually([&] { return edits >= 60 * (attempt + 1); }); // a second where the machine is free
-        stall = watch.takeLongest();
+    });
+    drag.start(1000 / 60);
+    for (int stretch = 1; stretch <= kStretches; ++stretch) {
+        (void)watch.takeLongest();
+        const double others = othersSeconds();
+        const auto start = SteadyTime::now();
+        (void)test::eventually([&] { return edits >= 30 * stretch; }); // half a second where the machine is free
+        const double seconds = std::chrono::duration<double>(SteadyTime::now() - start).count();
+        const double left = std::clamp(1.0 - (othersSeconds() - others) / (processors * seconds), 0.1, 1.0);
+        const double stall = watch.takeLongest();
+        smooth += stall <= 100.0 / left;
+        longest = std::max(longest, stall);
     }
+    drag.stop();
     QObject::disconnect(count);
-    std::printf("%d edits, told of %d times, longest stall %.1f ms\n", edits, compiled, stall);
-    RecordProperty("stall", static_cast<int>(stall));
-    EXPECT_GE(edits, 60);
-    EXPECT_LE(stall, 100.0);
+    std::printf("%d edits, told of %d times, longest stall %.1f ms, %d of %d stretches without one\n", edits, compiled,
+                longest, smooth, kStretches);
+    RecordProperty("stall", static_cast<int>(longest));
+    EXPECT_GE(edits, 30 * kStretches);
+    EXPECT_GE(smooth, 3);
     document.commitPreview("Drag the range");
     const auto newest = document.state().rig.parts;
     ASSERT_TRUE(test::eventually([&] { return document.state().rig.compiled; }));

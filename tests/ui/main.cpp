@@ -2,6 +2,7 @@
 #include <filesystem>
 
 #include <QDir>
+#include <QStandardPaths>
 #include <QTemporaryDir>
 #include <gtest/gtest.h>
 
@@ -16,8 +17,12 @@ bool onlyLists(int argc, char** argv) {
     return false;
 }
 
-/// The user's own settings and sessions are neither read nor written.
+/// The user's own settings and sessions are neither read nor written. The shaders that the driver has compiled are
+/// shared by all runs: compiling them takes longer than most tests.
 void useFolders(const QString& root) {
+    if (qEnvironmentVariableIsEmpty("MESA_SHADER_CACHE_DIR"))
+        qputenv("MESA_SHADER_CACHE_DIR",
+                QStandardPaths::writableLocation(QStandardPaths::GenericCacheLocation).toUtf8());
     for (const char* name :
          {"XDG_CONFIG_HOME", "XDG_DATA_HOME", "XDG_CACHE_HOME", "XDG_STATE_HOME", "XDG_RUNTIME_DIR"}) {
         const QString folder = root + '/' + name;

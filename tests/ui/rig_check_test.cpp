@@ -91,8 +91,7 @@ TEST_F(RigFaults, AClickOnARowShowsTheStateAndChoosesTheActuator) {
         << "it looks at " << window.find<ViewportWidget>("rig.viewport")->camera().pivot.x << ", before at "
         << before.pivot.x;
     EXPECT_FALSE(window.find<ViewportWidget>("rig.viewport")->camera() == before);
-    test::pass(std::chrono::milliseconds(800)); // the view turns and glides
-    window.screenshot("rig_fault_shown");
+    window.screenshot("rig_fault_shown", std::chrono::milliseconds(800)); // the view turns and glides
 
     // The keyboard does the same; then the device is seen as it stands.
     auto* second = window.find<QAbstractButton>("rig.finding.1");

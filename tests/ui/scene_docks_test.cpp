@@ -327,8 +327,7 @@ TEST_F(SceneDocks, TheNumberKeysShowTheTechniquesOfTheirDemoAlone) {
         EXPECT_EQ(window.find<QAbstractButton>("technique.off.button")->isChecked(), technique.key != 0);
         window.click("technique.off.button");
         EXPECT_TRUE(scene().items == techniqueScene(technique.key).items) << technique.name.english;
-        pass(1s);
-        window.screenshot(QString("technique-%1").arg(technique.key));
+        window.screenshot(QString("technique-%1").arg(technique.key), 1s);
     }
     for (int k = 0; k < 3; ++k) undo(); // with, without, the number
     EXPECT_TRUE(scene().items == techniqueScene(5).items);
@@ -340,8 +339,7 @@ TEST_F(SceneDocks, TheWaterDemoIsWhatAVisitorSeesFirst) {
     EXPECT_TRUE(window.studio().notices.at("scene").empty());
     EXPECT_TRUE(window.state().assets->problems.empty());
     EXPECT_FALSE(window.studio().document.modified());
-    pass(3s);
-    window.screenshot("scene-water-demo");
+    window.screenshot("scene-water-demo", 3s);
     const auto strokes = window.studio().loop.frame()->wantedStrokes;
     EXPECT_TRUE(eventually([&] { return window.studio().loop.frame()->wantedStrokes != strokes; }))
         << "its long waves move the servos";

@@ -4,6 +4,8 @@
 #include <csignal>
 #include <cstdio>
 #include <fstream>
+#include <map>
+#include <memory>
 #include <optional>
 #include <set>
 #include <string>
@@ -22,6 +24,7 @@
 #include "app/studio/document/state_rules.h"
 #include "core/scene/project.h"
 #include "tests/ui/project_world.h"
+#include "tests/ui/studio_window.h"
 
 namespace lumorph::studio {
 namespace {
@@ -216,7 +219,7 @@ struct BusyMachine {
 };
 
 /// Every edit changes numbers, every sixth the target, so that files are written as well.
-TEST_F(SessionTest, AnEditIsOnDiskTwoSecondsLaterHoweverManyFollow) {
+TEST_F(SessionTest, AnEditIsOnDiskHalfASecondLaterHoweverManyFollow) {
     using Clock = std::chrono::steady_clock;
     files.writeMesh(test::boxMesh({0, 0, 0}, {0.01F, 0.05F, 0.01F}, 3), "other.obj");
     const fs::path folder = ProjectService::sessionFolder();
@@ -240,19 +243,22 @@ TEST_F(SessionTest, AnEditIsOnDiskTwoSecondsLaterHoweverManyFollow) {
         const std::optional<Project> kept = keptNow(folder);
         return kept ? static_cast<std::size_t>(std::lround(1000.0 * kept->playback.spin)) : 0;
     };
-    std::chrono::duration<double> oldest{0.0}; // that was not on disk yet
+    std::vector<double> ages; // at each look, of the oldest edit that was not on disk yet, seconds
     std::size_t kept = 0;
     const auto look = [&] {
         const auto now = Clock::now();
         kept = std::max(kept, keptEdit()); // 0 also in the moment in which a folder takes another's place
-        if (kept + 1 < made.size()) oldest = std::max(oldest, std::chrono::duration<double>(now - made[kept + 1]));
+        ages.push_back(kept + 1 < made.size() ? std::chrono::duration<double>(now - made[kept + 1]).count() : 0.0);
     };
-    while (Clock::now() - made.front() < std::chrono::seconds(8)) {
+    while (Clock::now() - made.front() < std::chrono::seconds(4)) {
         edit();
-        test::pass(std::chrono::milliseconds(20));
+        test::pass(std::chrono::milliseconds(15));
         look();
     }
-    EXPECT_LT(oldest.count(), 2.0) << "while edits go on";
+    std::ranges::sort(ages);
+    // Tests beside this one may hold the disk up, so a share counts.
+    EXPECT_LT(ages.at(ages.size() * 9 / 10), 0.5) << "while edits go on";
+    EXPECT_LT(ages.back(), 2.0) << "while edits go on";
     const std::size_t last = made.size() - 1;
     // The window's thread does nothing more: a dialog of the system, a driver that hangs.
     while (kept < last && Clock::now() - made.back() < std::chrono::seconds(10)) {
@@ -268,6 +274,38 @@ TEST_F(SessionTest, AnEditIsOnDiskTwoSecondsLaterHoweverManyFollow) {
     EXPECT_EQ(assets.size(), 3U) << "rig, field and the target that is open: " << testing::PrintToString(assets);
 }
 
+/// When each file below a folder was written.
+std::map<std::string, fs::file_time_type> writtenIn(const fs::path& folder) {
+    std::map<std::string, fs::file_time_type> times;
+    for (const auto& entry : fs::recursive_directory_iterator(folder))
+        if (entry.is_regular_file()) times[entry.path().filename().string()] = entry.last_write_time();
+    return times;
+}
+
+TEST_F(SessionTest, ADragIsWrittenAFewTimesASecondAndNothingButWhatItChanges) {
+    ProjectWorld world;
+    edited(world, files);
+    world.service.keepSession();
+    const fs::path folder = ProjectService::sessionFolder() / "1";
+    auto before = writtenIn(folder);
+    ASSERT_EQ(before.size(), 4U) << "the project, rig, field and target";
+    std::set<fs::file_time_type> written;
+    for (int k = 1; k <= 60; ++k) {
+        world.document.preview([&](StudioState& s) { s.placement.yaw = Angle::degrees(k); });
+        test::pass(std::chrono::milliseconds(16));
+        std::error_code replaced;
+        if (const auto time = fs::last_write_time(folder / "session.lumorph", replaced); !replaced)
+            written.insert(time);
+    }
+    world.document.commitPreview("Turn");
+    world.service.keepSession();
+    EXPECT_GE(written.size(), 2U);
+    EXPECT_LE(written.size(), 15U) << "of 60 edits in a second";
+    auto after = writtenIn(folder);
+    EXPECT_GT(after.extract("session.lumorph").mapped(), before.extract("session.lumorph").mapped());
+    EXPECT_EQ(after, before);
+}
+
 /// A studio that cannot have the folder at once is not one that never keeps anything: whoever was killed lets go late.
 TEST_F(SessionTest, IsKeptAlsoWhereTheOneBeforeTakesItsTimeToDie) {
     const fs::path folder = ProjectService::sessionFolder();
@@ -276,7 +314,7 @@ TEST_F(SessionTest, IsKeptAlsoWhereTheOneBeforeTakesItsTimeToDie) {
     ASSERT_EQ(::flock(dying, LOCK_EX | LOCK_NB), 0);
     ProjectWorld world;
     edited(world, files);
-    test::pass(std::chrono::milliseconds(1000));
+    test::pass(std::chrono::milliseconds(300));
     EXPECT_FALSE(keptNow(folder));
     ::close(dying);
     EXPECT_TRUE(eventually(
@@ -321,19 +359,63 @@ TEST_F(SessionTest, ABrokenOneIsMovedAsideAndTheDemoOpens) {
     EXPECT_TRUE(fs::exists(ProjectService::sessionFolder() / "broken-1" / "session.lumorph"));
 }
 
-TEST_F(SessionTest, ASecondStudioLeavesTheSessionOfTheFirstAlone) {
-    ProjectWorld first;
-    const StudioState was = edited(first, files);
-    first.service.keepSession();
+TEST_F(SessionTest, ASecondStudioKeepsASessionOfItsOwn) {
     {
-        ProjectWorld second;
-        second.openRig(files / "lifter.glb");
-        second.service.keepSession();
-        second.service.openRig(files / "lifter.glb");
+        ProjectWorld first;
+        edited(first, files);
+        first.service.keepSession();
+        const std::optional<Project> firsts = keptNow(ProjectService::sessionFolder());
+        ASSERT_TRUE(firsts && first.service.keepsSession());
+        {
+            ProjectWorld second;
+            EXPECT_FALSE(second.service.keepsSession());
+            EXPECT_TRUE(second.service.otherSince());
+            restore(second);
+            EXPECT_EQ(second.state().rig.path, first.state().rig.path) << "a copy to begin with";
+            EXPECT_FALSE(second.document.modified()) << "that work is the first's to save";
+            second.openRig(files / "lifter.glb");
+            second.service.keepSession();
+        }
+        EXPECT_EQ(keptNow(ProjectService::sessionFolder())->rig, firsts->rig);
+        ProjectWorld third;
+        restore(third);
+        EXPECT_EQ(third.state().rig.path, files / "lifter.glb") << "it goes on where the second ended";
+        EXPECT_TRUE(third.document.modified());
+        third.service.keepSession();
     }
-    ProjectWorld third;
-    restore(third);
-    EXPECT_EQ(third.state().rig.path, was.rig.path);
+    ProjectWorld alone;
+    restore(alone);
+    EXPECT_TRUE(alone.service.keepsSession());
+    EXPECT_EQ(alone.state().rig.path, files / "cushion.glb");
+    EXPECT_TRUE(eventually([&] {
+        const auto kept = alone.service.keptWork();
+        return kept.size() == 1 && kept.front().name == "lifter.glb";
+    })) << "what the second window had and did not save";
+}
+
+TEST_F(SessionTest, TheSecondStudioTakesOverWhenTheFirstHasEnded) {
+    auto first = std::make_unique<ProjectWorld>();
+    edited(*first, files);
+    first->service.keepSession();
+    ProjectWorld second;
+    second.openRig(files / "lifter.glb");
+    second.service.keepSession();
+    bool told = false;
+    QObject::connect(&second.service, &ProjectService::tookOver, [&] { told = true; });
+    first.reset();
+    EXPECT_TRUE(eventually([&] { return told; }));
+    EXPECT_TRUE(second.service.keepsSession());
+    EXPECT_TRUE(eventually([&] {
+        const auto kept = second.service.keptWork();
+        return kept.size() == 1 && kept.front().name == "cushion.glb";
+    })) << "what the first had not saved";
+    const fs::path folder = ProjectService::sessionFolder();
+    EXPECT_TRUE(eventually([&] {
+        const auto now = keptNow(folder);
+        return now && fs::path(now->rig).stem() == "lifter" && !fs::exists(folder / "second-1");
+    }));
+    second.service.bringBack(second.service.keptWork().front().id);
+    EXPECT_TRUE(eventually([&] { return second.state().rig.path == files / "cushion.glb"; }));
 }
 
 /// Keeps sessions in which every part tells the same number, until it is killed. Run by the test below.
@@ -396,6 +478,59 @@ TEST_F(SessionTest, KilledAtAnyTimeItLeavesAWholeSession) {
         EXPECT_EQ(world.state().target.path.filename(), number % 2 == 0 ? "block.obj" : "other.obj");
         ASSERT_TRUE(world.state().field.field);
     }
+}
+
+/// Makes an edit that the test asks for by a line, and says when it is made. Run by the test below.
+TEST(EditingChild, DISABLED_EditsWhenTold) {
+    const fs::path folder = qgetenv("LUMORPH_TEST_FILES").toStdString();
+    test::needApplication();
+    ProjectWorld world;
+    world.openRig(folder / "cushion.glb");
+    world.service.keepSession();
+    std::puts("ready");
+    std::fflush(stdout);
+    int edits = 0;
+    if (std::scanf("%d", &edits) != 1) return;
+    for (int k = 1; k <= edits; ++k) { // as a drag does, the last of them counts
+        world.document.change("Count", [&](StudioState& s) { s.playback.spin = k / 1000.0; });
+        test::pass(std::chrono::milliseconds(16));
+    }
+    std::printf("edited %d\n", edits);
+    std::fflush(stdout);
+    std::this_thread::sleep_for(std::chrono::seconds(60)); // the window's thread does nothing more
+}
+
+TEST_F(SessionTest, AnEditHalfASecondBeforeAKillIsKept) {
+    auto environment = QProcessEnvironment::systemEnvironment();
+    environment.insert("LUMORPH_TEST_FILES", QString::fromStdString((files / ".").string()));
+    const int kills = 3 * test::soakFactor();
+    const BusyMachine busy;
+    int lost = 0;
+    for (int kill = 0; kill < kills; ++kill) {
+        QProcess child;
+        child.setProcessEnvironment(environment);
+        child.start(QCoreApplication::applicationFilePath(),
+                    {"--gtest_also_run_disabled_tests", "--gtest_filter=EditingChild.*"});
+        QByteArray output;
+        const auto says = [&](const QByteArray& word) {
+            return eventually([&] {
+                output += child.readAllStandardOutput();
+                return output.contains(word);
+            });
+        };
+        ASSERT_TRUE(says("ready"));
+        const int edits = 1 + 7 * (kill % 5);
+        child.write(QByteArray::number(edits) + '\n');
+        ASSERT_TRUE(says("edited"));
+        std::this_thread::sleep_for(std::chrono::milliseconds(500));
+        child.kill();
+        ASSERT_TRUE(child.waitForFinished());
+        const std::optional<Project> kept = keptNow(ProjectService::sessionFolder());
+        lost += !kept || std::lround(1000.0 * kept->playback.spin) != edits;
+    }
+    // A machine that is busy with other tests as well may be late once.
+    EXPECT_LE(lost, kills / 3) << "of " << kills;
+    std::printf("lost %d of %d\n", lost, kills);
 }
 
 /// What programs that were killed have left behind, and a session that could not be opened each day.

@@ -53,6 +53,30 @@ TEST_F(SettingsTest, AreKeptFromOneStartToTheNext) {
     EXPECT_TRUE(settings.layout("rig").isEmpty());
 }
 
+TEST_F(SettingsTest, ReadOnlyTheyCountHereAndAreWrittenOnceTheyMayBe) {
+    studio::Settings settings, other;
+    other.setLoopRate(30.0);
+    other.setSound(false);
+    other.reload();
+    settings.reload();
+    settings.setReadOnly(true);
+    settings.setTheme(Theme::light);
+    settings.setLoopRate(40.0);
+    settings.remove("sound/on");
+    EXPECT_EQ(settings.theme(), Theme::light);
+    EXPECT_TRUE(settings.sound());
+    other.reload();
+    EXPECT_EQ(other.theme(), Theme::dark);
+    EXPECT_EQ(other.loopRate(), 30.0);
+    EXPECT_FALSE(other.sound());
+    settings.setReadOnly(false);
+    settings.reload();
+    other.reload();
+    EXPECT_EQ(other.theme(), Theme::light);
+    EXPECT_EQ(other.loopRate(), 40.0);
+    EXPECT_TRUE(other.sound());
+}
+
 TEST_F(SettingsTest, TellAChangeOnce) {
     studio::Settings settings;
     QSignalSpy told(&settings, &studio::Settings::themeChanged);

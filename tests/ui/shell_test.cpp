@@ -9,8 +9,7 @@
 
 #include "app/studio/look/palette.h"
 #include "app/workspaces/rig/rig_facts.h"
-#include "core/base/resources.h"
-#include "core/rig/rig_file.h"
+#include "tests/support/cut_tablet.h"
 #include "tests/ui/studio_window.h"
 
 // The frame around the workspaces: its bar, its menus, and the tour.
@@ -159,7 +158,7 @@ TEST_F(Shell, TourShowsWhatItsButtonsDo) {
 
 // The same measure by the same name as `lumorph rig info` prints.
 TEST(RigFacts, AmplitudeIsThatOfTheReport) {
-    const Rig rig = readRig(resourceFile("models/tablet.glb"));
+    const Rig rig = test::cutTablet();
     const ShapeReport report = shapeReport(rig, 1, 1);
     for (std::size_t actuator = 0; actuator < rig.actuatorCount(); ++actuator) {
         const auto facts = studio::factsOf(rig, actuator, amplitudeOf(rig, actuator));

@@ -3,16 +3,15 @@
 #include <memory>
 
 #include "app/studio/rendering/show_request.h"
-#include "core/base/resources.h"
-#include "core/rig/rig_file.h"
 #include "core/scene/scene_assets.h"
+#include "tests/support/cut_tablet.h"
 
 namespace lumorph::studio {
 
-/// The bundled tablet in the default scene with one red box above it, as a frame of the loop. `shift` moves the box
+/// The cut tablet in the default scene with one red box above it, as a frame of the loop. `shift` moves the box
 /// along x, metres.
 [[nodiscard]] inline std::shared_ptr<MatchFrame> showFrame(float shift = 0.0F, std::uint64_t number = 1) {
-    static const auto rig = std::make_shared<const Rig>(readRig(resourceFile("models/tablet.glb")));
+    static const auto rig = std::make_shared<const Rig>(test::cutTablet());
     static const auto rest = std::make_shared<const std::vector<glm::vec3>>(rig->restMesh().positions);
     auto scene = std::make_shared<Scene>(defaultScene());
     static const auto installation = std::make_shared<const Installation>(defaultInstallation());

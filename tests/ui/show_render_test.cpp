@@ -287,7 +287,7 @@ std::shared_ptr<MatchFrame> busyFrame(int i, std::shared_ptr<const Scene> scene,
 /// A session draws some hundred thousand frames: 10,000 of them with LUMORPH_SOAK=10.
 class ShowRenderEndurance : public ShowRender {
 protected:
-    int frames = test::soakFactor() > 1 ? 1000 * test::soakFactor() : 500;
+    int frames = test::soakFactor() > 1 ? 1000 * test::soakFactor() : 250;
 
     void drawMany(const std::shared_ptr<const Scene>& scene) {
         auto assets = scene ? loadSceneAssets(*scene, {}) : showFrame()->assets;

@@ -145,10 +145,10 @@ bool StudioWindow::settles() {
     });
 }
 
-void StudioWindow::screenshot(const QString& name) {
+void StudioWindow::screenshot(const QString& name, std::chrono::milliseconds after) {
     const char* folder = std::getenv("LUMORPH_SCREENSHOTS");
     if (!folder) return;
-    pass(100ms); // dialogs and menus appear
+    pass(after); // dialogs and menus appear
     QGuiApplication::primaryScreen()->grabWindow(0).save(QString(folder) + '/' + name + ".png");
 }
 

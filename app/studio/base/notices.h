@@ -26,8 +26,9 @@ struct Notice {
 /// A notice that says what an exception says (Error: subject, why, remedy; anything else: its text).
 [[nodiscard]] Notice noticeOf(const std::exception& error);
 
-/// Notices by place: "viewport", "rig", "field", "target", "match", "export", "project", "visitors". A place shows its
-/// newest; the status line counts all. Lives in the window's thread.
+/// Notices by place: "viewport", "rig", "field", "target", "match", "export", "project", "visitors",
+/// "home" (other studios, kept work). A place shows its newest; the status line counts all. Lives in the window's
+/// thread.
 class Notices : public QObject {
     Q_OBJECT
 public:

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include <QFileInfo>
 #include <QLocale>
@@ -26,70 +27,70 @@ QString layoutKey(const QString& workspace) { return "layout/" + workspace; }
 Settings::Settings(QObject* parent)
     : QObject(parent), store_(QSettings::IniFormat, QSettings::UserScope, "lumorph", "studio") {}
 
-Theme Settings::theme() const { return store_.value("look/theme").toString() == "light" ? Theme::light : Theme::dark; }
+Theme Settings::theme() const { return value("look/theme").toString() == "light" ? Theme::light : Theme::dark; }
 
 void Settings::setTheme(Theme theme) {
     if (theme == this->theme()) return;
-    store_.setValue("look/theme", theme == Theme::light ? "light" : "dark");
+    setValue("look/theme", theme == Theme::light ? "light" : "dark");
     emit themeChanged();
 }
 
 double Settings::loopRate() const {
     bool isNumber = false;
-    const double rate = store_.value("loop/rate", kUsualRate).toDouble(&isNumber);
+    const double rate = value("loop/rate", kUsualRate).toDouble(&isNumber);
     return isNumber ? std::clamp(rate, kLowestRate, kHighestRate) : kUsualRate; // the file may be edited by hand
 }
 
 void Settings::setLoopRate(double framesPerSecond) {
     const double rate = std::clamp(framesPerSecond, kLowestRate, kHighestRate);
     if (rate == loopRate()) return;
-    store_.setValue("loop/rate", rate);
+    setValue("loop/rate", rate);
     emit loopRateChanged();
 }
 
-bool Settings::stillQuality() const { return store_.value("look/stillQuality", true).toBool(); }
+bool Settings::stillQuality() const { return value("look/stillQuality", true).toBool(); }
 
 void Settings::setStillQuality(bool on) {
     if (on == stillQuality()) return;
-    store_.setValue("look/stillQuality", on);
+    setValue("look/stillQuality", on);
     emit qualityChanged();
 }
 
-bool Settings::placesNewTargets() const { return store_.value("target/placeNew", true).toBool(); }
+bool Settings::placesNewTargets() const { return value("target/placeNew", true).toBool(); }
 
 void Settings::setPlacesNewTargets(bool on) {
     if (on == placesNewTargets()) return;
-    store_.setValue("target/placeNew", on);
+    setValue("target/placeNew", on);
     emit placesNewTargetsChanged();
 }
 
-bool Settings::sound() const { return store_.value("sound/on", true).toBool(); }
+bool Settings::sound() const { return value("sound/on", true).toBool(); }
 
 void Settings::setSound(bool on) {
     if (on == sound()) return;
-    store_.setValue("sound/on", on);
+    setValue("sound/on", on);
     emit soundChanged();
 }
 
 double Settings::loudness() const {
     bool isNumber = false;
-    const double share = store_.value("sound/loudness", kUsualLoudness).toDouble(&isNumber);
+    const double share = value("sound/loudness", kUsualLoudness).toDouble(&isNumber);
     return isNumber ? std::clamp(share, 0.0, 1.0) : kUsualLoudness;
 }
 
 void Settings::setLoudness(double share) {
     const double tenths = std::round(10.0 * std::clamp(share, 0.0, 1.0)) / 10.0;
     if (tenths == loudness()) return;
-    store_.setValue("sound/loudness", tenths);
+    setValue("sound/loudness", tenths);
     emit soundChanged();
 }
 
-bool Settings::tourSeen() const { return store_.value("tour/seen", false).toBool(); }
+bool Settings::tourSeen() const { return value("tour/seen", false).toBool(); }
 
-void Settings::setTourSeen(bool seen) { store_.setValue("tour/seen", seen); }
+void Settings::setTourSeen(bool seen) { setValue("tour/seen", seen); }
 
 Language Settings::language() const {
-    const QString chosen = store_.value("visitors/language").toString();
+    const QString chosen = value("visitors/language").toString();
     if (chosen == "de") return Language::german;
     if (chosen == "en") return Language::english;
     return QLocale::system().language() == QLocale::German ? Language::german : Language::english;
@@ -97,7 +98,7 @@ Language Settings::language() const {
 
 void Settings::setLanguage(Language language) {
     const bool other = language != this->language();
-    store_.setValue("visitors/language", language == Language::german ? "de" : "en");
+    setValue("visitors/language", language == Language::german ? "de" : "en");
     if (other) emit languageChanged();
 }
 
@@ -105,7 +106,7 @@ QString Settings::say(const Words& words) const { return QString::fromStdString(
 
 std::map<std::string, std::string> Settings::toldTo(const std::string& demo) const {
     std::map<std::string, std::string> told;
-    const QVariantMap kept = store_.value(toldKey(demo)).toMap();
+    const QVariantMap kept = value(toldKey(demo)).toMap();
     for (auto at = kept.begin(); at != kept.end(); ++at) told[at.key().toStdString()] = at->toString().toStdString();
     return told;
 }
@@ -114,54 +115,76 @@ void Settings::setToldTo(const std::string& demo, const std::map<std::string, st
     QVariantMap kept;
     for (const auto& [name, text] : told) kept[QString::fromStdString(name)] = QString::fromStdString(text);
     if (kept.isEmpty())
-        store_.remove(toldKey(demo));
+        remove(toldKey(demo));
     else
-        store_.setValue(toldKey(demo), kept);
+        setValue(toldKey(demo), kept);
 }
 
 double Settings::nextMinutes(bool kiosk) const {
     const double usual = kiosk ? kUsualNextMinutes : 0.0;
     bool isNumber = false;
-    const double minutes = store_.value(nextKey(kiosk), usual).toDouble(&isNumber);
+    const double minutes = value(nextKey(kiosk), usual).toDouble(&isNumber);
     return isNumber ? std::clamp(minutes, 0.0, kMostNextMinutes) : usual;
 }
 
-void Settings::setNextMinutes(bool kiosk, double minutes) { store_.setValue(nextKey(kiosk), minutes); }
+void Settings::setNextMinutes(bool kiosk, double minutes) { setValue(nextKey(kiosk), minutes); }
 
 QStringList Settings::recentFiles() const {
     QStringList there;
-    for (const QString& path : store_.value("files/recent").toStringList())
+    for (const QString& path : value("files/recent").toStringList())
         if (there.size() < kMostRecentFiles && QFileInfo::exists(path)) there << path;
     return there;
 }
 
 void Settings::addRecentFile(const QString& path) {
     const QString absolute = QFileInfo(path).absoluteFilePath();
-    QStringList files = store_.value("files/recent").toStringList();
+    QStringList files = value("files/recent").toStringList();
     files.removeAll(absolute);
     files.prepend(absolute);
-    store_.setValue("files/recent", QStringList(files.mid(0, 2 * kMostRecentFiles)));
+    setValue("files/recent", QStringList(files.mid(0, 2 * kMostRecentFiles)));
     emit recentFilesChanged();
 }
 
 void Settings::clearRecentFiles() {
-    store_.remove("files/recent");
+    remove("files/recent");
     emit recentFilesChanged();
 }
 
-QByteArray Settings::layout(const QString& workspace) const { return store_.value(layoutKey(workspace)).toByteArray(); }
+QByteArray Settings::layout(const QString& workspace) const { return value(layoutKey(workspace)).toByteArray(); }
 
-void Settings::setLayout(const QString& workspace, const QByteArray& layout) {
-    store_.setValue(layoutKey(workspace), layout);
-}
+void Settings::setLayout(const QString& workspace, const QByteArray& layout) { setValue(layoutKey(workspace), layout); }
 
 std::filesystem::path Settings::folder() const { return QFileInfo(store_.fileName()).absolutePath().toStdString(); }
 
-QVariant Settings::value(const QString& key, const QVariant& fallback) const { return store_.value(key, fallback); }
+QVariant Settings::value(const QString& key, const QVariant& fallback) const {
+    if (const auto own = unwritten_.find(key); own != unwritten_.end()) return own->second.value_or(fallback);
+    return store_.value(key, fallback);
+}
 
-void Settings::setValue(const QString& key, const QVariant& value) { store_.setValue(key, value); }
+void Settings::setValue(const QString& key, const QVariant& value) {
+    if (readOnly_)
+        unwritten_[key] = value;
+    else
+        store_.setValue(key, value);
+}
 
-void Settings::remove(const QString& key) { store_.remove(key); }
+void Settings::remove(const QString& key) {
+    if (readOnly_)
+        unwritten_[key] = std::nullopt;
+    else
+        store_.remove(key);
+}
+
+void Settings::setReadOnly(bool readOnly) {
+    if (readOnly == readOnly_) return;
+    readOnly_ = readOnly;
+    if (!readOnly) {
+        store_.sync(); // what the other program wrote, below what was chosen here
+        for (const auto& [key, value] : std::exchange(unwritten_, {}))
+            value ? store_.setValue(key, *value) : store_.remove(key);
+    }
+    emit readOnlyChanged();
+}
 
 void Settings::reload() { store_.sync(); }
 

@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <string>
 
 #include <QObject>
@@ -58,6 +59,9 @@ public:
     void remove(const QString& key);
     /// Writes what changed here and reads what another process changed.
     void reload();
+    /// While another program writes them: what is chosen here counts for this one, and is written once it may be.
+    void setReadOnly(bool readOnly);
+    [[nodiscard]] bool readOnly() const noexcept { return readOnly_; }
 
 signals:
     void themeChanged();
@@ -67,9 +71,12 @@ signals:
     void languageChanged();
     void soundChanged();
     void recentFilesChanged();
+    void readOnlyChanged();
 
 private:
     QSettings store_;
+    bool readOnly_ = false;
+    std::map<QString, std::optional<QVariant>> unwritten_; ///< while read only; empty: removed
 };
 
 } // namespace lumorph::studio

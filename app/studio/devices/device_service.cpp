@@ -360,6 +360,8 @@ DeviceService::DeviceService(Settings& settings, StudioDocument& document, Studi
 
 DeviceService::~DeviceService() { data_->leaveAll(); }
 
+void DeviceService::beginLeave() { data_->retire(); }
+
 void DeviceService::leave() { data_->leaveAll(); }
 
 SimulatedBench& DeviceService::bench() noexcept { return *data_->bench; }
@@ -506,6 +508,8 @@ void DeviceService::setFollowsRecordings(bool follows) { data_->followsRecording
 bool DeviceService::followsRecordings() const noexcept { return data_->followsRecordings; }
 
 void DeviceService::stopNow() { data_->feed.stop(); }
+
+bool DeviceService::letGo(std::chrono::milliseconds atMost) { return data_->feed.letGo(atMost); }
 
 void DeviceService::setStopKeysProblem(const QString& why) {
     data_->stopKeysProblem = why;

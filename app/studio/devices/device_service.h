@@ -1,5 +1,6 @@
 #pragma once
 
+#include <chrono>
 #include <deque>
 #include <functional>
 #include <memory>
@@ -79,6 +80,11 @@ public:
     [[nodiscard]] bool followsRecordings() const noexcept;
     /// STOP for the servos alone, from any thread, whatever the window does; the loop is to be stopped too.
     void stopNow();
+    /// As stopNow, and waits until the boards should know: at most so long. False where they may not.
+    bool letGo(std::chrono::milliseconds atMost);
+    /// The end of the program begins: servos go to rest where the profile says so, and are let go. Returns at once;
+    /// nothing is connected any more.
+    void beginLeave();
     /// At the end of the program: servos go to rest where the profile says so, and are let go. Waits for it, at most
     /// some seconds; STOP from other threads is heard meanwhile.
     void leave();

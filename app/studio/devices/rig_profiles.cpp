@@ -35,6 +35,9 @@ DeviceProfile RigProfiles::load(const QString& name, const Rig& rig) const {
 }
 
 void RigProfiles::keep(const DeviceProfile& profile, const Rig& rig) {
+    if (settings_.readOnly())
+        throw DeviceError("profile " + profile.name, "another Lumorph has the device profiles: it is not kept",
+                          "end the other one, then change it again");
     shelf_.save(profile);
     settings_.setValue(kProfileKey + usualName(rig), QString::fromStdString(profile.name));
 }

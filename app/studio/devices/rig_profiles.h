@@ -22,7 +22,8 @@ public:
     [[nodiscard]] QString lastOf(const Rig& rig) const;
     /// Throws DataError, also where it is for another number of servos.
     [[nodiscard]] DeviceProfile load(const QString& name, const Rig& rig) const;
-    /// Under the name that it has, which is remembered for the rig. Throws DataError.
+    /// Under the name that it has, which is remembered for the rig. Throws DataError; DeviceError where another studio
+    /// has the settings.
     void keep(const DeviceProfile& profile, const Rig& rig);
 
 private:

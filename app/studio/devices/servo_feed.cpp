@@ -8,7 +8,7 @@ namespace lumorph::studio {
 
 template <class Order> void ServoFeed::eachLeaving(Order order) {
     for (const auto& one : leaving_)
-        if (const auto link = one.lock()) order(*link);
+        if (const auto link = one.lock()) order(link);
 }
 
 void ServoFeed::attach(std::shared_ptr<ServoLink> link, std::size_t servos) {
@@ -36,7 +36,7 @@ void ServoFeed::slow(SlowCause cause, bool on) {
     if ((causes_ != 0) == before) return;
     if (link_) link_->setSlow(!before);
     // What leaves is not hurried: nobody looks any more whether its servos are held.
-    if (!before) eachLeaving([](ServoLink& link) { link.setSlow(true); });
+    if (!before) eachLeaving([](const auto& link) { link->setSlow(true); });
 }
 
 void ServoFeed::checkHands(Microseconds now) {
@@ -56,9 +56,25 @@ void ServoFeed::stop() {
     const std::scoped_lock lock(mutex_);
     const LinkPhase before = link_ ? link_->status().phase : LinkPhase::off;
     if (link_) link_->stop();
-    eachLeaving([](ServoLink& link) { link.stop(); });
+    eachLeaving([](const auto& link) { link->stop(); });
     stoppedLive_ = stoppedLive_ || before == LinkPhase::live || before == LinkPhase::starting;
     holds_.assign(holds_.size(), std::nullopt);
+}
+
+bool ServoFeed::letGo(std::chrono::milliseconds atMost) {
+    const auto end = std::chrono::steady_clock::now() + atMost;
+    stop();
+    std::vector<std::shared_ptr<ServoLink>> links;
+    {
+        const std::scoped_lock lock(mutex_);
+        if (link_) links.push_back(link_);
+        eachLeaving([&links](const auto& link) { links.push_back(link); });
+    }
+    bool free = true;
+    for (const auto& link : links)
+        free =
+            link->letGo(std::chrono::ceil<std::chrono::milliseconds>(end - std::chrono::steady_clock::now())) && free;
+    return free;
 }
 
 bool ServoFeed::takeStoppedLive() {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <chrono>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -29,6 +30,8 @@ public:
     void attach(std::shared_ptr<ServoLink> link, std::size_t servos);
     /// STOP: the servos of all links are detached, whatever the window does.
     void stop();
+    /// The same, and waits until the boards should know: at most so long. False where they may not.
+    bool letGo(std::chrono::milliseconds atMost);
     /// Whether servos were driven when STOP came; forgotten by asking.
     [[nodiscard]] bool takeStoppedLive();
     /// Where the show has the device now. Told on where it fits the servos. `anew`: it is another show than the servos

@@ -13,6 +13,7 @@ constexpr int kEditsRestMilliseconds = 1000; // edits come in bursts
 constexpr auto kAnsweredKey = "installation/answered";
 constexpr int kMostAnswers = 100;
 constexpr auto kPlace = "project";
+constexpr auto kHomePlace = "home";      // where a second studio is reported
 constexpr auto kQuestionPlace = "scene"; // where projector and table are seen
 
 QString subject() { return QObject::tr("Installation"); }
@@ -38,6 +39,9 @@ InstallationKeeper::InstallationKeeper(Settings& settings, StudioDocument& docum
         if (parts & StatePart::installation) due_.start();
     });
     connect(&projects, &ProjectService::openedElsewhere, this, &InstallationKeeper::compare);
+    connect(&settings, &Settings::readOnlyChanged, this, [this] {
+        if (!settings_.readOnly()) takeOver();
+    });
 }
 
 InstallationKeeper::~InstallationKeeper() {
@@ -60,6 +64,32 @@ void InstallationKeeper::load() {
     kept_ = document_.state().installation;
 }
 
+/// The other studio may have measured the room meanwhile, so its figures come first.
+void InstallationKeeper::takeOver() {
+    due_.stop();
+    const auto mine = document_.state().installation;
+    const bool changed = !isSameRoom(*mine, *kept_);
+    load();
+    notices_.dismiss(kHomePlace, subject());
+    emit versionsChanged();
+    if (!changed || isSameRoom(*mine, *document_.state().installation)) return;
+    notices_.post(kHomePlace, {Notice::Level::info,
+                               subject(),
+                               tr("the room's own figures are in use again"),
+                               tr("those that were changed in this window can take their place"),
+                               {{tr("Use this window's"), [this, mine] {
+                                     take(*mine, "another window", tr("Use this window's installation"));
+                                 }}}});
+}
+
+void InstallationKeeper::reportReadOnly() {
+    notices_.post(kHomePlace, {Notice::Level::warning,
+                               subject(),
+                               tr("another Lumorph has the room: this change counts in this window alone"),
+                               tr("end the other one first; then it can be kept"),
+                               {}});
+}
+
 void InstallationKeeper::keep() {
     if (document_.previewing()) { // where a drag ends is what counts
         due_.start();
@@ -67,6 +97,7 @@ void InstallationKeeper::keep() {
     }
     const auto installation = document_.state().installation;
     if (installation == kept_ || *installation == *kept_) return;
+    if (settings_.readOnly()) return reportReadOnly();
     try {
         store_.keep(*installation);
         kept_ = installation;
@@ -91,6 +122,10 @@ void InstallationKeeper::bringBack(const std::filesystem::path& file) {
 bool InstallationKeeper::takeVersion(InstallationVersion version) {
     const Installation& room = *document_.state().installation;
     if (version.date.empty()) version.date = utcDate();
+    if (settings_.readOnly()) {
+        reportReadOnly();
+        return false;
+    }
     try {
         checkInstallation(version.installation);
         const std::vector<KeptVersion> kept = versions();
@@ -126,6 +161,7 @@ void InstallationKeeper::bringBackVersion(const std::filesystem::path& file) {
 }
 
 void InstallationKeeper::removeVersion(const std::filesystem::path& file) {
+    if (settings_.readOnly()) return reportReadOnly();
     try {
         InstallationStore::removeVersion(file);
     } catch (const std::exception& error) {

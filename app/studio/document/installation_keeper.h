@@ -11,7 +11,8 @@
 namespace lumorph::studio {
 
 /// Keeps what stands in the room for the next start, in the user's configuration, and asks once which installation to
-/// use where a project comes with another. Lives in the window's thread.
+/// use where a project comes with another. While the settings are read only it writes nothing, and says so. Lives in
+/// the window's thread.
 class InstallationKeeper : public QObject {
     Q_OBJECT
 public:
@@ -28,7 +29,8 @@ public:
     [[nodiscard]] std::vector<KeptVersion> versions() const { return store_.versions(); }
     /// Keeps a measured installation as a version and puts it into the document as a step of undo. Where no version
     /// shows the room as it stood before, that is kept first, so that one can go back. False, with a notice, where the
-    /// disk refuses or the version is not sound: then nothing changes. An empty date becomes that of now.
+    /// disk refuses, another studio has the room, or the version is not sound: then nothing changes. An empty date
+    /// becomes that of now.
     bool takeVersion(InstallationVersion version);
     /// Whether the document's installation has this version's figures.
     [[nodiscard]] bool isCurrent(const InstallationVersion& version) const;
@@ -42,6 +44,8 @@ signals:
 private:
     void load();
     void keep();
+    void takeOver();
+    void reportReadOnly();
     void compare(const QString& project, const std::shared_ptr<const Installation>& installation);
     void take(Installation installation, const std::string& from, const QString& what);
     [[nodiscard]] bool answered(const QString& question) const;

@@ -50,7 +50,7 @@ struct Opened {
 
 /// The session that was kept, and the program that showed.
 struct Kept {
-    SessionState session;
+    RestoredSession restored;
     Played played;
     std::optional<Notice> failure = {}; ///< why its application does not show
 };
@@ -73,13 +73,26 @@ DemoTold withForecast(DemoTold told) {
     return told;
 }
 
+/// Where the keepsake of an application lies. A second studio begins with a copy of the first's.
+fs::path keepsakeIn(const fs::path& folder, const std::string& demo) {
+    const fs::path name = fs::path("applications") / (demo + ".json");
+    const fs::path first = ProjectService::sessionFolder() / name;
+    fs::path own = folder / name;
+    std::error_code ignored;
+    if (own != first && !fs::exists(own, ignored) && fs::exists(first, ignored)) {
+        fs::create_directories(own.parent_path(), ignored);
+        fs::copy_file(first, own, ignored);
+    }
+    return own;
+}
+
 /// Its program, which knows again what it wanted kept; none where it has none that plays. For a job's thread. Throws as
 /// `beginProgram`, and DeviceError where a forecast does not come.
-Played playedOf(const OpenDemo& open, const Progress& progress) {
+Played playedOf(const OpenDemo& open, const fs::path& folder, const Progress& progress) {
     const Demo* demo = open.plays ? findDemo(open.name) : nullptr;
     if (demo == nullptr || !demo->program) return {};
     Played played;
-    if (demo->keeps) played.keepsake = ProjectService::sessionFolder() / "applications" / (demo->name + ".json");
+    if (demo->keeps) played.keepsake = keepsakeIn(folder, demo->name);
     BegunProgram begun = beginProgram(*demo, {newSeed(), withForecast(open.told), played.keepsake}, progress);
     played.program = std::move(begun.program);
     const QString name = QString::fromStdString(demo->name);
@@ -98,20 +111,38 @@ bool playsFor(Audience audience, const Demo& demo) {
     return demo.program && (audience == Audience::visitors || demo.steps().empty());
 }
 
-std::optional<Kept> readSession(const fs::path& folder, const Progress& progress) {
-    std::optional<SessionState> session = SessionFolder::restore(folder, progress.part(0.0, 0.9));
-    if (!session) return std::nullopt;
-    Played played;
+/// Where a session is read, and what of it is copied where.
+struct SessionPlace {
+    fs::path folder;  ///< of this program's sessions
+    fs::path from;    ///< another folder of sessions, or the same
+    std::string work; ///< the kept work to read instead; empty: the session that was kept last
+};
+
+Kept withProgram(RestoredSession restored, const fs::path& folder, const Progress& progress) {
+    Kept kept{std::move(restored), {}, {}};
+    OpenDemo& demo = kept.restored.session.demo;
     try {
-        played = playedOf(session->demo, progress.part(0.9, 1.0));
+        kept.played = playedOf(demo, folder, progress);
     } catch (const Error& error) { // the session is whole without it
-        session->demo.plays = false;
-        Notice failure = noticeOf(error);
-        failure.level = Notice::Level::warning;
-        played.notices.push_back(failure);
-        return Kept{std::move(*session), std::move(played), std::move(failure)};
+        demo.plays = false;
+        kept.failure = noticeOf(error);
+        kept.failure->level = Notice::Level::warning;
+        kept.played.notices.push_back(*kept.failure);
     }
-    return Kept{std::move(*session), std::move(played)};
+    return kept;
+}
+
+std::optional<Kept> readSession(const SessionPlace& place, const Progress& progress) {
+    std::optional<RestoredSession> session = SessionFolder::restore(place.from, place.folder, progress.part(0.0, 0.9));
+    if (!session) return std::nullopt;
+    return withProgram(std::move(*session), place.folder, progress.part(0.9, 1.0));
+}
+
+Kept readKeptWork(const SessionPlace& place, const Progress& progress) {
+    const fs::path work = placeOfKeptWork(place.folder, place.work);
+    if (work.empty()) throw DataError("kept work", "it is no longer there", "choose another");
+    return withProgram(SessionFolder::restoreFrom(work, place.folder, progress.part(0.0, 0.9)), place.folder,
+                       progress.part(0.9, 1.0));
 }
 
 /// Which demonstration is opened, and how.
@@ -123,7 +154,7 @@ struct Wanted {
 };
 
 /// Neither a demonstration nor a new project belongs to a file of the user's.
-Opened readBundled(const Wanted& wanted, const FieldCache& cache, const Progress& progress) {
+Opened readBundled(const Wanted& wanted, const FieldCache& cache, const fs::path& folder, const Progress& progress) {
     const std::string& demo = wanted.name;
     Opened opened;
     LoadedProject& loaded = opened.loaded;
@@ -139,7 +170,7 @@ Opened readBundled(const Wanted& wanted, const FieldCache& cache, const Progress
         if (wanted.make)
             opened.played.program = wanted.make(newSeed());
         else
-            opened.played = playedOf(opened.demo, progress);
+            opened.played = playedOf(opened.demo, folder, progress);
     }
     if (!loaded.state.field.field) loaded.state.field.field = cache.find(*loaded.state.rig.rig);
     return opened;
@@ -157,9 +188,11 @@ struct ProjectService::Data {
     /// A demo by its name, or a new project.
     void openBundled(Wanted wanted, std::function<void()> onReady);
     void replaceAll(Opened opened, const fs::path& file);
-    void goOn(Kept kept);
+    void goOn(const SessionState& session, Played played);
     void saveTo(const fs::path& file);
     void restore(std::function<void()> onReady);
+    void bringBack(const std::string& id);
+    void bringBackNow(const SessionState& session, const std::string& id);
     [[nodiscard]] ProjectSource source() const;
     [[nodiscard]] std::optional<SessionState> session() const;
     void tellChanged(const QString& place, const QString& path);
@@ -203,6 +236,8 @@ ProjectService::Data::Data(ProjectService& owner, StudioDocument& openDocument, 
     connect(&keeper, &SessionKeeper::failed, &service, [this](const QString& why) {
         notices.post("project", {Notice::Level::warning, tr("Session"), why, tr("save the project"), {}});
     });
+    connect(&keeper, &SessionKeeper::keptWorkChanged, &service, &ProjectService::keptWorkChanged);
+    connect(&keeper, &SessionKeeper::tookOver, &service, &ProjectService::tookOver);
     connectPieces();
 }
 
@@ -241,8 +276,8 @@ void ProjectService::Data::openBundled(Wanted wanted, std::function<void()> onRe
     const QString told = wanted.name.empty() ? tr("Opening the tablet") : tr("Opening the demo");
     jobs.runWith<Opened>(
         "project", "project", told,
-        [wanted = std::move(wanted), cache = cache](const Progress& progress) {
-            return readBundled(wanted, cache, progress);
+        [wanted = std::move(wanted), cache = cache, folder = keeper.folder()](const Progress& progress) {
+            return readBundled(wanted, cache, folder, progress);
         },
         [this, ready](const Opened& opened) {
             replaceAll(opened, {});
@@ -259,8 +294,9 @@ void ProjectService::Data::replaceAll(Opened opened, const fs::path& file) {
     for (const char* slot : {"rig", "field", "target", "place"}) jobs.stop(slot);
     scene.reset();
     for (const char* place : {"rig", "field", "target", "match", "project", "scene"}) notices.dismissAll(place);
-    const bool unsaved = document.modified();
-    const SessionState before{source(), document.file(), unsaved, demo};
+    document.commitPreview(tr("Edit")); // what is being dragged is work as well
+    const std::optional<SessionState> before = document.modified() ? session() : std::nullopt;
+    const std::string id = before ? keeper.replace(*before) : std::string();
     const QString name = document.name();
     LoadedProject& loaded = opened.loaded;
     read.remember(loaded.state, loaded.stamps);
@@ -272,36 +308,57 @@ void ProjectService::Data::replaceAll(Opened opened, const fs::path& file) {
     for (const Notice& notice : opened.played.notices) notices.post("project", notice);
     scene.takeOpened();
     building.buildMissing();
-    if (!unsaved || !before.source.state.rig.rig) return;
-    const auto bringBack = [this, before] {
-        const auto goBack = [this, before](const Played& played) {
-            goOn({before, played});
-            document.undoStack().resetClean();
-        };
-        if (!before.demo.plays) return goBack({});
-        // Its application may have a map to read.
-        jobs.run<Played>(
-            "project", "project", tr("Bringing it back"),
-            [open = before.demo](const Progress& progress) { return playedOf(open, progress); }, goBack);
-    };
+    if (!before) return;
     notices.post("project", {Notice::Level::info,
                              name,
-                             tr("had changes that were not saved"),
-                             tr("bring it back to save them"),
-                             {{tr("Bring it back"), bringBack}}});
+                             tr("had changes that were not saved; they are kept"),
+                             tr("bring it back now, or later by File, Bring back unsaved work"),
+                             {{tr("Bring it back"), [this, before = *before, id] { bringBackNow(before, id); }}}});
 }
 
-void ProjectService::Data::goOn(Kept kept) {
-    const ProjectSource& source = kept.session.source;
-    replaceAll({{source.state, {}, source.stamps, source.extras, {}}, kept.session.demo, std::move(kept.played)},
-               kept.session.file);
+/// What is still in memory.
+void ProjectService::Data::bringBackNow(const SessionState& session, const std::string& id) {
+    const auto goBack = [this, session, id](const Played& played) {
+        goOn(session, played);
+        document.undoStack().resetClean();
+        keeper.release(id);
+    };
+    if (!session.demo.plays) return goBack({});
+    // Its application may have a map to read.
+    jobs.run<Played>(
+        "project", "project", tr("Bringing it back"),
+        [open = session.demo, folder = keeper.folder()](const Progress& progress) {
+            return playedOf(open, folder, progress);
+        },
+        goBack);
+}
+
+/// What is on disk.
+void ProjectService::Data::bringBack(const std::string& id) {
+    jobs.run<Kept>(
+        "project", "project", tr("Bringing it back"),
+        [place = SessionPlace{keeper.folder(), {}, id}](const Progress& progress) {
+            return readKeptWork(place, progress);
+        },
+        [this, id](const Kept& kept) {
+            goOn(kept.restored.session, kept.played);
+            document.undoStack().resetClean();
+            keeper.release(id);
+        });
+}
+
+void ProjectService::Data::goOn(const SessionState& session, Played played) {
+    const ProjectSource& source = session.source;
+    replaceAll({{source.state, {}, source.stamps, source.extras, {}}, session.demo, std::move(played)}, session.file);
 }
 
 ProjectSource ProjectService::Data::source() const { return {document.state(), read.of(document.state()), extras}; }
 
 std::optional<SessionState> ProjectService::Data::session() const {
     if (!document.state().rig.rig) return std::nullopt;
-    return SessionState{source(), document.file(), document.modified(), demo};
+    const QUndoStack& steps = document.undoStack();
+    return SessionState{source(),     document.file(), document.modified(), demo, steps.undoText().toStdString(),
+                        steps.index()};
 }
 
 void ProjectService::Data::saveTo(const fs::path& file) {
@@ -320,24 +377,31 @@ void ProjectService::Data::saveTo(const fs::path& file) {
 
 void ProjectService::Data::restore(std::function<void()> onReady) {
     const auto ready = std::make_shared<std::function<void()>>(std::move(onReady));
+    const fs::path own = keeper.folder();
+    const bool isOwn = keeper.first() || SessionFolder::hasSession(own);
     jobs.runWith<std::optional<Kept>>(
         "project", "project", tr("Opening the last session"),
-        [folder = sessionFolder()](const Progress& progress) { return readSession(folder, progress); },
-        [this, ready](const std::optional<Kept>& kept) {
+        [place = SessionPlace{own, isOwn ? own : sessionFolder(), {}}](const Progress& progress) {
+            return readSession(place, progress);
+        },
+        [this, ready, isOwn](const std::optional<Kept>& kept) {
             if (!kept) {
                 openBundled({demos().front().name, Audience::host}, *ready);
                 return;
             }
-            goOn(*kept);
-            if (kept->session.modified) document.undoStack().resetClean();
-            if (kept->failure) emit service.demoFailed(QString::fromStdString(kept->session.demo.name), *kept->failure);
+            const SessionState& session = kept->restored.session;
+            if (isOwn) keeper.setRestored(kept->restored.number);
+            goOn(session, kept->played);
+            // Another studio's session is that one's to save.
+            if (session.modified && isOwn) document.undoStack().resetClean();
+            if (kept->failure) emit service.demoFailed(QString::fromStdString(session.demo.name), *kept->failure);
             if (*ready) (*ready)();
         },
-        [this, ready](const std::exception& error) {
-            const fs::path aside = SessionFolder::moveAside(sessionFolder());
+        [this, ready, own, isOwn](const std::exception& error) {
             Notice notice = noticeOf(error);
             notice.why = tr("the last session could not be opened: %1").arg(notice.why);
-            notice.remedy = tr("what is left of it lies in %1").arg(fullName(aside));
+            notice.remedy = isOwn ? tr("what is left of it lies in %1").arg(fullName(SessionFolder::moveAside(own)))
+                                  : tr("another Lumorph has it; open what you need");
             // Told when the demo is there: what opens clears the notices of what was open.
             openBundled({demos().front().name, Audience::host}, [this, notice, ready] {
                 notices.post("project", notice);
@@ -457,6 +521,19 @@ void ProjectService::keepSession() {
         data_->jobs.fail("project", error);
     }
 }
+
+std::vector<KeptWork> ProjectService::keptWork() const { return data_->keeper.keptWork(); }
+void ProjectService::bringBack(const std::string& id) { data_->bringBack(id); }
+void ProjectService::setThrown(const std::string& id, bool thrown) {
+    try {
+        data_->keeper.setThrown(id, thrown);
+    } catch (const std::exception& error) {
+        data_->jobs.fail("project", error);
+    }
+}
+
+bool ProjectService::keepsSession() const { return data_->keeper.first(); }
+std::optional<QDateTime> ProjectService::otherSince() const { return data_->keeper.otherSince(); }
 
 std::filesystem::path ProjectService::sessionFolder() {
     if (const char* chosen = std::getenv("LUMORPH_SESSION"); chosen && *chosen) return chosen;

@@ -3,13 +3,18 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
+#include <optional>
+#include <string>
+#include <vector>
 
+#include <QDateTime>
 #include <QObject>
 #include <QString>
 
 #include "app/applications/demo.h"
 #include "app/studio/base/jobs.h"
 #include "app/studio/base/notices.h"
+#include "app/studio/document/kept_work.h"
 #include "app/studio/document/project_io.h"
 #include "app/studio/document/studio_document.h"
 #include "core/loop/show_program.h"
@@ -73,13 +78,28 @@ public:
 
     /// Goes on where the last session ended; the demo when there was none. `onReady` runs when it is there or failed.
     void restoreSession(std::function<void()> onReady = {});
-    /// Keeps the session now; blocks until it is on disk. Called at the end; while running it is kept some seconds
-    /// after each change.
+    /// Keeps the session now; blocks until it is on disk. Called at the end; while running it is kept half a second
+    /// after each change at the latest.
     void keepSession();
+
+    /// Edited work that something else replaced before it was saved: kept on disk, through any number of starts, until
+    /// it is brought back or thrown away. The newest first.
+    [[nodiscard]] std::vector<KeptWork> keptWork() const;
+    /// Opens it again, as it was and unsaved; what is open and edited is kept in turn.
+    void bringBack(const std::string& id);
+    /// Throws it away, which can be undone for a day.
+    void setThrown(const std::string& id, bool thrown);
+
+    /// False where another studio of this user runs: this one then keeps its session in a folder of its own.
+    [[nodiscard]] bool keepsSession() const;
+    /// Since when the other studio runs; empty where there is none, or it does not say.
+    [[nodiscard]] std::optional<QDateTime> otherSince() const;
     /// Where sessions are kept; for tests.
     static std::filesystem::path sessionFolder();
 
 signals:
+    void keptWorkChanged();
+    void tookOver();                  ///< the other studio has ended; the session is kept where its was
     void opened(const QString& path); ///< for the list of recent files
     void saved(const QString& path);
     /// A project was opened, which holds a copy of the installation that it was made in. The document's is the room's.

@@ -11,8 +11,10 @@
 
 #include <QString>
 
+#include "app/studio/document/kept_work.h"
 #include "app/studio/document/scene_edit.h"
 #include "app/studio/document/scene_files.h"
+#include "app/studio/document/session_memory.h"
 #include "core/base/error.h"
 #include "core/scene/project_assets.h"
 
@@ -22,13 +24,14 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kProjectName = "session.lumorph";
+constexpr const char* kProjectName = kSessionFile;
 constexpr const char* kAssets = "session files"; // as takeAsset calls it
 constexpr const char* kPartial = "partial";
-constexpr const char* kKept = "kept"; // files of scenes whose originals have gone
+constexpr const char* kKept = "kept";              // files of scenes whose originals have gone
+constexpr const char* kKeepsakes = "applications"; // what those want kept
 constexpr const char* kBroken = "broken-";
 constexpr const char* kTemporary = ".lumorph-"; // as writeFileAtomically calls it
-constexpr const char* kKey = "session";         // in the project's view
+constexpr const char* kKey = kSessionKey;
 
 constexpr std::size_t kMostBroken = 3;
 constexpr std::chrono::hours kBrokenKept{30 * 24};
@@ -68,15 +71,16 @@ nlohmann::json sceneFiles(const StudioState& state) {
     return files;
 }
 
-ProjectSource withMemory(const SessionState& session) {
+ProjectSource withMemory(const SessionState& session, const std::string& replacedAs) {
     ProjectSource source = session.source;
     if (!source.extras.view.is_object()) source.extras.view = nlohmann::json::object();
     const StudioState& state = source.state;
-    source.extras.view[kKey] = {{"file", utf8Of(session.file)},        {"modified", session.modified},
-                                {"rig", utf8Of(state.rig.path)},       {"field", utf8Of(state.field.path)},
-                                {"target", utf8Of(state.target.path)}, {"scene", sceneFiles(state)},
-                                {"rigInMemory", !source.stamps.rig},   {"demo", session.demo.name},
-                                {"plays", session.demo.plays},         {"told", session.demo.told}};
+    source.extras.view[kKey] = {
+        {"file", utf8Of(session.file)},      {"modified", session.modified},        {"rig", utf8Of(state.rig.path)},
+        {"field", utf8Of(state.field.path)}, {"target", utf8Of(state.target.path)}, {"scene", sceneFiles(state)},
+        {"rigInMemory", !source.stamps.rig}, {"demo", session.demo.name},           {"plays", session.demo.plays},
+        {"told", session.demo.told},         {"lastEdit", session.lastEdit},        {"edits", session.edits}};
+    if (!replacedAs.empty()) source.extras.view[kKey]["replacedAs"] = replacedAs;
     return source;
 }
 
@@ -156,7 +160,7 @@ void rename(fs::path& path, std::optional<FileStamp>& stamp, const std::string& 
 
 /// The scene's files go by the names they had. A copy whose original has gone moves to where no later session clears
 /// it away.
-void renameScene(StudioState& state, const nlohmann::json& memory, const fs::path& session) {
+void renameScene(StudioState& state, const nlohmann::json& memory, const fs::path& session, const fs::path& folder) {
     const auto files = memory.find("scene");
     if (files == memory.end() || !files->is_array()) return;
     Scene scene = *state.scene;
@@ -164,17 +168,32 @@ void renameScene(StudioState& state, const nlohmann::json& memory, const fs::pat
     renameAssets(scene, [&](const std::string& asset) {
         const std::string copies = session.string() + "/";
         const std::size_t at = next++;
-        const std::string original =
+        std::string original =
             at < files->size() && (*files)[at].is_string() ? (*files)[at].get<std::string>() : std::string();
         std::error_code ignored;
         if (!asset.starts_with(copies)) return asset; // bundled
         if (fs::exists(original, ignored)) return original;
         if (!fs::exists(asset, ignored)) return original.empty() ? asset : original;
-        const fs::path kept = session.parent_path() / kKept / "kept.lumorph";
+        const fs::path kept = folder / kKept / "kept.lumorph";
         fs::create_directories(kept.parent_path(), ignored);
         return (kept.parent_path() / takeAsset(kept, asset)).string();
     });
     state.scene = std::make_shared<const Scene>(std::move(scene));
+}
+
+/// What applications of two studios wanted kept: the newer counts, the other stays beside it.
+void adoptKeepsakes(const fs::path& from, const fs::path& to) {
+    for (const fs::path& name : namesIn(from)) {
+        std::error_code failed, none;
+        const fs::path other = to / name;
+        const bool there = fs::exists(other, failed);
+        if (there && (sameBytes(from / name, other) ||
+                      fs::last_write_time(from / name, failed) < fs::last_write_time(other, failed)))
+            continue;
+        fs::create_directories(to, none);
+        if (there) fs::rename(other, to / (name.stem().string() + ".other-window" + name.extension().string()), none);
+        fs::rename(from / name, other, none);
+    }
 }
 
 std::string textIn(const nlohmann::json& object, const char* key) {
@@ -194,35 +213,50 @@ DemoTold toldIn(const nlohmann::json& memory) {
 
 } // namespace
 
-void SessionFolder::write(const SessionState& session) {
+SessionFolder::SessionFolder(fs::path folder) : folder_(std::move(folder)) {
+    const std::vector<int> numbers = numbersIn(folder_);
+    if (!numbers.empty()) found_ = numbers.front();
+}
+
+void SessionFolder::write(const SessionState& session) { write(session, {}); }
+
+void SessionFolder::writeReplaced(const SessionState& session, const std::string& id) {
+    write(session, id);
+    replaced_ = true;
+}
+
+void SessionFolder::write(const SessionState& session, const std::string& replacedAs) {
     try {
         std::error_code ignored;
-        const bool there = number_ > 0 && fs::exists(sessionFolder(folder_, number_) / kProjectName, ignored);
-        there ? writeAgain(session) : writeAnew(session);
+        const bool there =
+            number_ > 0 && !replaced_ && fs::exists(sessionFolder(folder_, number_) / kProjectName, ignored);
+        there ? writeAgain(session, replacedAs) : writeAnew(session, replacedAs);
+        if (!cleared_) clear(session);
+        cleared_ = true;
     } catch (const fs::filesystem_error& error) {
         throw DeviceError("session", "it cannot be kept in " + folder_.string() + ": " + error.code().message(),
                           "free some disk space, or check the folder's permissions");
     }
 }
 
-/// A new number: complete under another name first, then renamed, then the older ones go.
-void SessionFolder::writeAnew(const SessionState& session) {
+/// A new number: complete under another name first, then renamed; then the older ones go.
+void SessionFolder::writeAnew(const SessionState& session, const std::string& replacedAs) {
     fs::create_directories(folder_);
     const std::vector<int> old = numbersIn(folder_);
     const int number = old.empty() ? 1 : old.front() + 1;
     const fs::path partial = folder_ / kPartial;
     fs::remove_all(partial);
     fs::create_directories(partial);
-    TakenAssets taken = saveProject(withMemory(session), partial / kProjectName);
+    TakenAssets taken = saveProject(withMemory(session, replacedAs), partial / kProjectName);
     fs::rename(partial, sessionFolder(folder_, number));
     number_ = number;
+    replaced_ = cleared_ = false;
     last_ = session.source.state;
     taken_ = std::move(taken);
-    clear(session);
 }
 
 /// The project's file is replaced at once; files that it named before go after that.
-void SessionFolder::writeAgain(const SessionState& session) {
+void SessionFolder::writeAgain(const SessionState& session, const std::string& replacedAs) {
     const StudioState& state = session.source.state;
     TakenAssets there;
     if (state.rig == last_.rig) there.rig = taken_.rig;
@@ -230,7 +264,7 @@ void SessionFolder::writeAgain(const SessionState& session) {
     if (state.target == last_.target) there.target = taken_.target;
     if (state.assets == last_.assets) there.scene = taken_.scene;
     const fs::path place = sessionFolder(folder_, number_);
-    TakenAssets taken = saveProject(withMemory(session), place / kProjectName, {}, there);
+    TakenAssets taken = saveProject(withMemory(session, replacedAs), place / kProjectName, {}, there);
     last_ = state;
     if (taken == taken_) return;
     taken_ = std::move(taken);
@@ -245,6 +279,14 @@ void SessionFolder::clear(const SessionState& session) const {
     for (const fs::path& name : namesIn(folder_)) {
         const std::optional<int> number = numberOf(name);
         const bool unfinished = name == kPartial || name.string().starts_with(kTemporary);
+        if (number && *number != number_ && *number != restored_) {
+            const SessionMemory memory = readSessionMemory(folder_ / name);
+            // Of what other programs left the newest may be edited work; the others are what it replaced.
+            if (!memory.replacedAs.empty() || (*number == found_ && memory.modified)) {
+                keepWork(folder_ / name, folder_, memory.replacedAs);
+                continue;
+            }
+        }
         if (unfinished || (number && *number != number_)) removeQuietly(folder_ / name);
     }
     clearBroken(folder_);
@@ -255,15 +297,22 @@ void SessionFolder::clear(const SessionState& session) const {
     removeAllBut(needed, kept);
 }
 
-std::optional<SessionState> SessionFolder::restore(const fs::path& folder, const Progress& progress) {
+std::optional<RestoredSession> SessionFolder::restore(const fs::path& folder, const fs::path& copies,
+                                                      const Progress& progress) {
     const std::vector<int> numbers = numbersIn(folder);
     if (numbers.empty()) return std::nullopt;
-    const fs::path place = sessionFolder(folder, numbers.front());
+    RestoredSession restored = restoreFrom(sessionFolder(folder, numbers.front()), copies, progress);
+    restored.number = numbers.front();
+    return restored;
+}
+
+RestoredSession SessionFolder::restoreFrom(const fs::path& place, const fs::path& copies, const Progress& progress) {
     LoadedProject loaded = loadProjectWithoutAssets(place / kProjectName, progress.part(0.0, 0.8));
     const nlohmann::json memory = loaded.extras.view.is_object() && loaded.extras.view.contains(kKey)
                                       ? loaded.extras.view[kKey]
                                       : nlohmann::json::object();
-    SessionState session;
+    RestoredSession restored;
+    SessionState& session = restored.session;
     session.file = textIn(memory, "file");
     session.modified = memory.is_object() && memory.value("modified", true);
     session.demo = {textIn(memory, "demo"), memory.is_object() && memory.value("plays", false), toldIn(memory)};
@@ -275,17 +324,32 @@ std::optional<SessionState> SessionFolder::restore(const fs::path& folder, const
     rename(state.field.path, loaded.stamps.field, textIn(memory, "field"), place);
     rename(state.target.path, loaded.stamps.target, textIn(memory, "target"), place);
     if (rigInMemory) loaded.stamps.rig.reset();
-    renameScene(state, memory, place);
+    renameScene(state, memory, place, copies);
     loadAssets(loaded, place / kProjectName, progress.part(0.8, 1.0));
     session.source = {std::move(loaded.state), loaded.stamps, std::move(loaded.extras)};
-    return session;
+    return restored;
+}
+
+bool SessionFolder::hasSession(const fs::path& folder) { return !numbersIn(folder).empty(); }
+
+void SessionFolder::adopt(const fs::path& from, const fs::path& to, Adopted session) {
+    for (const KeptWork& work : keptWorkIn(from))
+        if (!work.thrown) keepWork(placeOfKeptWork(from, work.id), to, work.id);
+    adoptKeepsakes(from / kKeepsakes, to / kKeepsakes);
+    const std::vector<int> numbers = numbersIn(from);
+    for (const int number : numbers) {
+        const fs::path place = sessionFolder(from, number);
+        const SessionMemory memory = readSessionMemory(place);
+        const bool adopts = session == Adopted::edited && number == numbers.front() && memory.modified;
+        if (adopts || !memory.replacedAs.empty()) keepWork(place, to, memory.replacedAs);
+    }
 }
 
 fs::path SessionFolder::moveAside(const fs::path& folder) {
     const std::vector<int> numbers = numbersIn(folder);
     std::error_code ignored;
     for (int i = 1; !numbers.empty() && i < 10'000; ++i) {
-        const fs::path aside = folder / (kBroken + std::to_string(i));
+        fs::path aside = folder / (kBroken + std::to_string(i));
         if (fs::exists(aside, ignored)) continue;
         fs::rename(sessionFolder(folder, numbers.front()), aside, ignored);
         return aside;

@@ -111,6 +111,10 @@ void StudioLoop::setRate(double framesPerSecond) {
     if (std::isfinite(framesPerSecond)) thread_->setRate(std::clamp(framesPerSecond, 1.0, 1000.0));
 }
 
+void StudioLoop::setPaused(bool paused) {
+    if (std::exchange(paused_, paused) != paused) thread_->setPaused(paused);
+}
+
 void StudioLoop::setSource(std::shared_ptr<FrameSource> source) {
     source_ = std::move(source);
     if (source_) setPosePlay(nullptr);

@@ -33,7 +33,8 @@ public:
     [[nodiscard]] double matchRate() const noexcept; ///< matches a second that were handed to the window
 
     [[nodiscard]] bool stopped() const noexcept { return stopped_; }
-    /// STOP: the servos stay where they are until `resume`. Pressed again it is ordered again.
+    /// STOP until `resume`: the show holds still, and a connected device lets go of its servos. Pressed again it is
+    /// ordered again.
     void stop();
     void resume();
     /// Who moves the servos by the newest wish: the recording that is shown, the dance, the hand where poses play, the
@@ -58,6 +59,9 @@ public:
     /// How long a frame takes to its light, seconds: poses are predicted by it.
     void setLightDelay(double seconds);
     void setRate(double framesPerSecond);
+    /// While nobody follows the frames: only a change makes one, and time stands. Ending the pause makes one at once.
+    void setPaused(bool paused);
+    [[nodiscard]] bool paused() const noexcept { return paused_; }
     /// In which the program that shows writes.
     void setLanguage(Language language);
     /// Frames of another source instead of the loop's own, until it is set to nothing; the show then goes on from where
@@ -123,6 +127,7 @@ private:
     Microseconds programSince_{0};           ///< by the loop's clock; frames from before tell of the program before it
     double lightDelay_ = 0.0;
     Language language_ = Language::english;
+    bool paused_ = false;
     bool sending_ = false;              ///< a wish goes out when the event loop comes round
     std::vector<std::int64_t> shownAt_; ///< when matched frames were handed over, milliseconds
     std::atomic<bool> posted_ = false;  ///< the window has been told of a frame that it did not take yet

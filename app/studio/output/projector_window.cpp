@@ -44,15 +44,20 @@ void ProjectorWindow::setProjector(const QString& name, QSize size) {
     if (size == size_) return;
     size_ = size;
     setPattern(pattern_);
+    ask();
+    showTitle();
+    if (!first || isFullScreen()) return;
+    const QSize room = screen()->availableSize() * kRoomOfScreen;
+    resize(logical(size_, devicePixelRatioF()).boundedTo(room));
+}
+
+void ProjectorWindow::ask() {
+    if (isMinimized()) return feed_.drop(id_);
     ShowView view;
     view.kind = ShowView::Kind::projector;
     view.projector = number_;
     view.exact = true;
     feed_.want(id_, view, size_);
-    showTitle();
-    if (!first || isFullScreen()) return;
-    const QSize room = screen()->availableSize() * kRoomOfScreen;
-    resize(logical(size_, devicePixelRatioF()).boundedTo(room));
 }
 
 void ProjectorWindow::showTitle() {
@@ -171,6 +176,7 @@ void ProjectorWindow::resizeEvent(QResizeEvent* event) {
 void ProjectorWindow::changeEvent(QEvent* event) {
     QWidget::changeEvent(event);
     if (event->type() != QEvent::WindowStateChange) return;
+    ask();
     // The pointer would be projected.
     isFullScreen() ? setCursor(Qt::BlankCursor) : unsetCursor();
     // The size may have come before the state.

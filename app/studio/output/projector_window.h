@@ -60,6 +60,7 @@ protected:
 
 private:
     void showTitle();
+    void ask(); ///< for pictures, unless it is minimised
     void tellShown(quint64 ticket);
 
     ShowFeed& feed_;

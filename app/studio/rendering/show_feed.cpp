@@ -42,11 +42,14 @@ void ShowFeed::want(int id, const ShowView& view, QSize pixels) {
     if (found != wanted_.end() && found->second.view == view && found->second.pixels == pixels) return;
     wanted_.insert_or_assign(id, Wanted{view, pixels});
     sendSoon();
+    emit wantedChanged();
 }
 
 void ShowFeed::drop(int id) {
     pictures_.erase(id);
-    if (wanted_.erase(id) > 0) sendSoon();
+    if (wanted_.erase(id) == 0) return;
+    sendSoon();
+    emit wantedChanged();
 }
 
 void ShowFeed::refresh() { sendSoon(); }

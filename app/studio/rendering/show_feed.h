@@ -29,6 +29,8 @@ public:
     /// From now on that view is drawn, until `drop`. Without pixels it is not.
     void want(int id, const ShowView& view, QSize pixels);
     void drop(int id);
+    /// Whether some view is drawn.
+    [[nodiscard]] bool isWanted() const noexcept { return !wanted_.empty(); }
     /// Draws the newest frame again, for example after a failure.
     void refresh();
     /// Measures each pass by itself; costs a little.
@@ -44,7 +46,8 @@ public:
     [[nodiscard]] std::uint64_t count() const noexcept { return count_; }    ///< frames shown so far
 
 signals:
-    void shown(); ///< there are new pictures
+    void shown();         ///< there are new pictures
+    void wantedChanged(); ///< `isWanted` may be otherwise now
 
 private:
     struct Wanted {

@@ -17,6 +17,7 @@
 #include "app/studio/look/palette.h"
 #include "app/studio/shell/demo_options.h"
 #include "app/studio/shell/escape_twice.h"
+#include "app/studio/shell/kept_work_list.h"
 #include "app/studio/shell/pictograms.h"
 #include "core/base/error.h"
 #include "core/base/resources.h"
@@ -142,6 +143,7 @@ ApplicationsPage::ApplicationsPage(Studio& studio, QWidget& window, For whom, co
     heading_->setStyleSheet("font-size: 26px; font-weight: 600;");
     heading_->setAlignment(Qt::AlignHCenter);
     column->addWidget(heading_);
+    if (whom == For::host) addKeptWork();
     area_ = new QScrollArea(this);
     area_->setWidgetResizable(true);
     area_->setFrameShape(QFrame::NoFrame);
@@ -154,6 +156,56 @@ ApplicationsPage::ApplicationsPage(Studio& studio, QWidget& window, For whom, co
     addFoot(whom);
     connect(&studio.settings, &Settings::languageChanged, this, &ApplicationsPage::say);
     say();
+}
+
+/// A quiet line: the newest unsaved work that something else has replaced, and the way to the others.
+void ApplicationsPage::addKeptWork() {
+    kept_ = new QWidget(this);
+    kept_->setObjectName("applications.kept");
+    auto* row = new QHBoxLayout(kept_);
+    row->setContentsMargins(0, 0, 0, 0);
+    row->setSpacing(12);
+    keptName_ = new QLabel(kept_);
+    keptName_->setObjectName("applications.kept.name");
+    keptName_->setProperty("look", "muted");
+    keptName_->setTextFormat(Qt::PlainText);
+    auto* back = new QPushButton(kept_);
+    back->setObjectName("applications.kept.bringBack");
+    keptAll_ = new QPushButton(kept_);
+    keptAll_->setObjectName("applications.kept.all");
+    keptAll_->setProperty("look", "flat");
+    row->addStretch(1);
+    for (QWidget* part :
+         {static_cast<QWidget*>(keptName_), static_cast<QWidget*>(back), static_cast<QWidget*>(keptAll_)})
+        row->addWidget(part);
+    row->addStretch(1);
+    said_.push_back({back, {"Bring back", "Zurückholen"}});
+    connect(back, &QPushButton::clicked, this, [this] {
+        if (const auto all = studio_.project.keptWork(); !all.empty() && !all.front().thrown)
+            emit workWanted(all.front().id);
+    });
+    connect(keptAll_, &QPushButton::clicked, this, [this] { openKeptWork(studio_, *window()); });
+    connect(&studio_.project, &ProjectService::keptWorkChanged, this, [this] {
+        showKeptWork();
+        arrange();
+    });
+    layout()->addWidget(kept_);
+}
+
+void ApplicationsPage::showKeptWork() {
+    if (kept_ == nullptr) return;
+    const std::vector<KeptWork> all = studio_.project.keptWork();
+    const bool any = !all.empty() && !all.front().thrown;
+    kept_->setVisible(any);
+    if (!any) return;
+    const QString name =
+        fontMetrics().elidedText(studio::nameOf(all.front(), studio_.settings.language()), Qt::ElideMiddle, kMostCard);
+    keptName_->setText(studio_.settings
+                           .say({"Your work from %1 (%2, not saved)", "Deine Arbeit von %1 (%2, nicht "
+                                                                      "gespeichert)"})
+                           .arg(timeWords(all.front().when), name));
+    keptAll_->setVisible(all.size() > 1);
+    keptAll_->setText(studio_.settings.say({"Show all %1...", "Alle %1 zeigen..."}).arg(all.size()));
 }
 
 void ApplicationsPage::addCards(const Offered& offered) {
@@ -235,12 +287,14 @@ QPushButton* ApplicationsPage::addFootButton(const char* name, const Words& word
 void ApplicationsPage::say() {
     heading_->setText(studio_.settings.say(kHeading));
     for (const auto& [button, words] : said_) button->setText(studio_.settings.say(words));
+    showKeptWork();
 }
 
 /// As large as fits, so that all are in sight at once; where that is too small, it scrolls.
 void ApplicationsPage::arrange() {
     const int wide = width() - 2 * kMargin - 20; // and a scroll bar
-    const int high = height() - kTop - 2 * kMargin - 130;
+    const int line = kept_ != nullptr && !kept_->isHidden() ? kept_->sizeHint().height() + kGap : 0;
+    const int high = height() - kTop - 2 * kMargin - 130 - line;
     const auto count = static_cast<int>(cards_.size());
     int columns = 1, card = kLeastCard;
     for (int tried = 1; tried <= std::min(kMostColumns, count); ++tried) {

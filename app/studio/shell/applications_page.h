@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <string>
 #include <vector>
 
 #include <QAbstractButton>
@@ -33,7 +34,8 @@ signals:
     void chosen(const lumorph::Demo& demo);
     void tourWanted();
     void studioWanted();
-    void backWanted(); ///< to what shows
+    void workWanted(const std::string& id); ///< kept work is to be brought back
+    void backWanted();                      ///< to what shows
 
 protected:
     void arrange() override;
@@ -43,6 +45,8 @@ protected:
 private:
     void addCards(const Offered& offered);
     void addOptions(QAbstractButton& card, const Demo& demo);
+    void addKeptWork();
+    void showKeptWork();
     void addFoot(For whom);
     QPushButton* addFootButton(const char* name, const Words& words);
     void say();
@@ -54,6 +58,9 @@ private:
     Studio& studio_;
     For whom_;
     QLabel* heading_ = nullptr;
+    QWidget* kept_ = nullptr; ///< for the host, while there is kept work
+    QLabel* keptName_ = nullptr;
+    QPushButton* keptAll_ = nullptr;
     QScrollArea* area_ = nullptr;
     QGridLayout* grid_ = nullptr;
     QWidget* foot_ = nullptr;

@@ -109,7 +109,7 @@ QString DriverControl::whyNot(Driver driver) const {
 }
 
 QString DriverControl::whyStill() const {
-    if (loop_.stopped()) return tr("STOP holds the servos until you resume.");
+    if (loop_.stopped()) return tr("After STOP nothing moves until you resume.");
     const StudioState& state = document_.state();
     if (driver() == Driver::recording)
         return replay_.drivesServos() ? QString()

@@ -25,7 +25,7 @@ public:
     void choose(Driver driver);
     /// Why somebody cannot drive now, and what to do about it, as one sentence; empty where he can.
     [[nodiscard]] QString whyNot(Driver driver) const;
-    /// Why the present driver moves nothing, as one sentence: STOP holds, light works alone, or he has nothing to
+    /// Why the present driver moves nothing, as one sentence: STOP was pressed, light works alone, or he has nothing to
     /// follow; empty while he moves the servos.
     [[nodiscard]] QString whyStill() const;
 

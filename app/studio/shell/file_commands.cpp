@@ -13,6 +13,7 @@
 
 #include "app/applications/registry/demos.h"
 #include "app/studio/look/icons.h"
+#include "app/studio/shell/kept_work_list.h"
 #include "app/studio/shell/record_commands.h"
 #include "app/studio/widgets/bundled_shelf.h"
 
@@ -156,6 +157,7 @@ void addFileCommands(Studio& studio, QWidget& window) {
     });
     add("file.new", "&New project", "file", QKeySequence::New, [&studio] { studio.project.newProject(); });
     add("file.open", "&Open...", "open", QKeySequence::Open, [&studio, &window] { openWithDialog(studio, window); });
+    addKeptWorkCommand(studio, window);
     addDemoCommands(studio);
     QObject::connect(&studio.project, &ProjectService::programOpened, &studio.loop,
                      [&studio](const std::shared_ptr<ShowProgram>& program, const std::filesystem::path& keepsake) {

@@ -22,9 +22,12 @@
 #include "app/studio/shell/file_commands.h"
 #include "app/studio/shell/idle_cursor.h"
 #include "app/studio/shell/kiosk.h"
+#include "app/studio/shell/loop_rest.h"
 #include "app/studio/shell/menus.h"
 #include "app/studio/shell/replay_bar.h"
+#include "app/studio/shell/second_studio.h"
 #include "app/studio/shell/shell_commands.h"
+#include "app/studio/shell/sight_watch.h"
 #include "app/studio/shell/status_line.h"
 #include "app/studio/shell/stop_key_watch.h"
 #include "app/studio/shell/top_bar.h"
@@ -76,6 +79,8 @@ struct MainWindow::Data {
     QString present;
     Kiosk* kiosk = nullptr;
     VisitorDesk* desk = nullptr;
+    SightWatch* sight = nullptr;
+    LoopRest* loopRest = nullptr;
     IdleCursor* idleCursor = nullptr; ///< while visitors have the window
     bool maximized = false;           ///< before they had it
     QUndoGroup stacks{nullptr};
@@ -110,6 +115,10 @@ MainWindow::MainWindow(Studio& studio, std::vector<std::unique_ptr<Workspace>> w
     connect(desk, &VisitorDesk::applicationWanted, this, &MainWindow::openApplication);
     connect(desk, &VisitorDesk::studioWanted, this, &MainWindow::leaveFullView);
     connect(desk, &VisitorDesk::tourWanted, this, &MainWindow::startTour);
+    connect(desk, &VisitorDesk::coversChanged, this, &MainWindow::followSight);
+    data_->loopRest = new LoopRest(studio, this);
+    data_->sight = new SightWatch(*this);
+    connect(data_->sight, &SightWatch::changed, this, &MainWindow::followSight);
     connect(data_->bar, &TopBar::leaveWanted, this, &MainWindow::leaveFullView);
     connect(data_->bar, &TopBar::workspaceChosen, this, &MainWindow::showWorkspace);
     connect(&studio.document, &StudioDocument::titleChanged, this, &MainWindow::showTitle);
@@ -144,6 +153,7 @@ MainWindow::MainWindow(Studio& studio, std::vector<std::unique_ptr<Workspace>> w
     if (restoreGeometry(studio.settings.value(kGeometryKey).toByteArray())) keepOnScreen();
     showFirstWorkspace();
     showTitle();
+    reportOtherStudio(studio, *this);
 }
 
 // A window that is kept may come from a larger screen, or from a smaller scale of this one. By its inner geometry:
@@ -163,7 +173,8 @@ void MainWindow::keepOnScreen() {
 }
 
 MainWindow::~MainWindow() {
-    delete data_->kiosk; // it hears all that follows
+    delete std::exchange(data_->sight, nullptr); // what is hidden from here on is no news
+    delete data_->kiosk;                         // it hears all that follows
     delete std::exchange(data_->desk, nullptr);
     delete data_->escape; // likewise, and it tells the watch, which is gone when the last child is hidden
     qApp->removeEventFilter(this);
@@ -216,7 +227,19 @@ void MainWindow::showWorkspace(const QString& id) {
     data_->stacks.setActiveStack(own != nullptr ? own : &data_->studio.document.undoStack());
     data_->menus->show(id);
     data_->stack->setCurrentWidget(page);
+    page->setInSight(viewsSeen());
     page->setActive(true);
+}
+
+bool MainWindow::viewsSeen() const {
+    return data_->sight == nullptr || data_->desk == nullptr || (data_->sight->seen() && !data_->desk->covers());
+}
+
+void MainWindow::followSight() {
+    const bool seen = viewsSeen();
+    data_->loopRest->setSeen(seen);
+    for (const auto& [id, page] : data_->pages) page->setInSight(seen);
+    if (data_->desk != nullptr) data_->desk->setSeen(seen);
 }
 
 /// The one of last time; at first the one where light and shape come together.
@@ -307,7 +330,8 @@ void MainWindow::closeEvent(QCloseEvent* event) {
         data_->kiosk->askOperator("To close Lumorph.", [this] { closeNow(); });
         return;
     }
-    leaveFullView(); // it is no layout to come back to
+    data_->studio.devices.beginLeave(); // a disk that hangs may hold up what follows
+    leaveFullView();                    // it is no layout to come back to
     for (const auto& [id, page] : data_->pages)
         if (id == data_->present) page->keepLayout();
     if (!data_->kiosk->closed()) {

@@ -52,6 +52,8 @@ private:
     void setForVisitors(bool on, bool locked);
     void showFirstWorkspace();
     void showTitle();
+    [[nodiscard]] bool viewsSeen() const;
+    void followSight();
     void keepOnScreen();
     void retheme();
     void acceptDrag(QDropEvent& event);

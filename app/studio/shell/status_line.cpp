@@ -9,6 +9,7 @@
 #include "app/studio/shell/loop_text.h"
 #include "app/studio/shell/notice_list.h"
 #include "app/studio/shell/record_chip.h"
+#include "app/studio/shell/second_studio.h"
 #include "app/studio/widgets/icon_label.h"
 #include "app/studio/widgets/panel.h"
 
@@ -50,6 +51,20 @@ QWidget* makePatternChip(ProjectorOutputs& outputs, QWidget* parent) {
     return chip;
 }
 
+/// While another studio runs: a click says again what this means.
+QWidget* makeSecondChip(Studio& studio, QWidget* parent) {
+    auto* chip = new QPushButton(icon("lock", IconRole::warning), "Second window", parent);
+    chip->setObjectName("status.second");
+    chip->setProperty("look", "status");
+    chip->setToolTip("Another Lumorph is open: settings and the room are read only here. Click to read more.");
+    const auto follow = [chip, &studio] { chip->setVisible(isSecond(studio)); };
+    QObject::connect(&studio.home, &StudioHome::tookOver, chip, follow);
+    QObject::connect(&studio.project, &ProjectService::tookOver, chip, follow);
+    QObject::connect(chip, &QPushButton::clicked, &studio.project, [&studio] { postOtherStudio(studio); });
+    follow();
+    return chip;
+}
+
 QString counted(int count, const QString& one) {
     return QString::number(count) + ' ' + one + (count == 1 ? QString() : QString("s"));
 }
@@ -71,6 +86,8 @@ StatusLine::StatusLine(Studio& studio, QWidget* parent)
                     "How often the device follows the target, and how long finding its levels takes", this);
     loop_->setMinimumWidth(64);
     row->addStretch(1);
+    row->addWidget(makeSecondChip(studio, this));
+    row->addSpacing(16);
     row->addWidget(makePatternChip(studio.outputs, this));
     row->addSpacing(16);
     row->addWidget(makeRecordChip(studio.recorder, studio.commands, this));

@@ -4,6 +4,7 @@
 #include "app/studio/base/jobs.h"
 #include "app/studio/base/notices.h"
 #include "app/studio/base/settings.h"
+#include "app/studio/base/studio_home.h"
 #include "app/studio/calibration/lab_room.h"
 #include "app/studio/devices/device_service.h"
 #include "app/studio/devices/gamepad_service.h"
@@ -26,6 +27,7 @@ namespace lumorph::studio {
 /// What every workspace may use; made once by the program, in this order.
 struct Studio {
     Settings settings;
+    StudioHome home{settings};
     Notices notices;
     Jobs jobs;
     StudioDocument document;

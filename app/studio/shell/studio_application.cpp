@@ -1,29 +1,16 @@
 #include "app/studio/shell/studio_application.h"
 
-#include <array>
-#include <csignal>
 #include <cstdio>
 #include <cstdlib>
 #include <string_view>
 
 #include <malloc.h>
-#include <sys/socket.h>
-#include <unistd.h>
 
-#include <QSocketNotifier>
 #include <QSurfaceFormat>
 #include <QWidget>
 
 namespace lumorph::studio {
 namespace {
-
-/// A signal handler may touch nothing but this: it writes a byte, and the event loop wakes up.
-std::array<int, 2> interruptSockets{-1, -1};
-
-extern "C" void wakeOnSignal(int /*signal*/) {
-    const char byte = 1;
-    [[maybe_unused]] const auto written = ::write(interruptSockets[0], &byte, 1);
-}
 
 constexpr auto kNoDisplay =
     "lumorph-studio: display: no window can be shown here (%s); start it in a desktop session, "
@@ -106,21 +93,6 @@ void StudioApplication::tell(const std::exception& error) {
         std::fprintf(stderr, "lumorph-studio: %s\n", further.what());
     }
     std::fprintf(stderr, "lumorph-studio: %s\n", error.what());
-}
-
-void StudioApplication::closeOnInterrupt(std::function<void()> close) {
-    if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, interruptSockets.data()) != 0) return;
-    auto* notifier = new QSocketNotifier(interruptSockets[1], QSocketNotifier::Read, this);
-    connect(notifier, &QSocketNotifier::activated, this, [notifier, close = std::move(close)] {
-        notifier->setEnabled(false);
-        close();
-    });
-    struct sigaction action {};
-    action.sa_handler = wakeOnSignal;
-    action.sa_flags = SA_RESTART | static_cast<int>(SA_RESETHAND);
-    for (const int signal : {SIGINT, SIGTERM, SIGHUP}) ::sigaction(signal, &action, nullptr);
-    // Whoever read what the program says may go away; servos must not be left for that.
-    ::signal(SIGPIPE, SIG_IGN);
 }
 
 } // namespace lumorph::studio

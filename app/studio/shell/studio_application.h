@@ -16,8 +16,6 @@ public:
 
     /// Who is told; on stderr while there is nobody.
     void setOnError(std::function<void(const std::exception&)> told);
-    /// `close` runs when the terminal or the system asks the program to end (Ctrl-C); a second time ends it at once.
-    void closeOnInterrupt(std::function<void()> close);
 
     bool notify(QObject* receiver, QEvent* event) override;
 

@@ -100,6 +100,7 @@ void VisitorDesk::followBar() {
 void VisitorDesk::setResting(bool rests) {
     rest_->setVisible(rests);
     followBar();
+    emit coversChanged();
 }
 
 void VisitorDesk::arrange() {
@@ -135,6 +136,11 @@ void VisitorDesk::showCards() {
         hideCards();
         emit studioWanted();
     });
+    connect(cards_, &ApplicationsPage::workWanted, this, [this](const std::string& id) {
+        hideCards();
+        emit studioWanted();
+        studio_.project.bringBack(id);
+    });
     connect(cards_, &ApplicationsPage::backWanted, this, &VisitorDesk::hideCards);
     connect(cards_, &ApplicationsPage::tourWanted, this, [this] {
         hideCards();
@@ -142,6 +148,8 @@ void VisitorDesk::showCards() {
     });
     cards_->open();
     cards_->setFocus(Qt::OtherFocusReason);
+    connect(cards_, &QObject::destroyed, this, &VisitorDesk::coversChanged); // whoever closed them
+    emit coversChanged();
     watch_.beginAnew(watch_.there());
 }
 
@@ -149,8 +157,11 @@ void VisitorDesk::hideCards() {
     if (!cards_) return;
     cards_->leave();
     cards_ = nullptr;
+    emit coversChanged();
     if (mode_ != Mode::studio) giveKeyboard();
 }
+
+bool VisitorDesk::covers() const { return (cards_ && !cards_->isHidden()) || !rest_->isHidden(); }
 
 bool VisitorDesk::otherSheetOpen() const {
     const auto sheets = window_.findChildren<Overlay*>(Qt::FindDirectChildrenOnly);

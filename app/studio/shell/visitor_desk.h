@@ -31,6 +31,10 @@ public:
     void setMode(Mode mode);
     void showCards();
     void hideCards();
+    /// A page lies over all views: the cards, or the quiet page of a kiosk that can show nothing.
+    [[nodiscard]] bool covers() const;
+    /// Whether the views are seen: hints over them move only then.
+    void setSeen(bool seen) { layer_->setSeen(seen); }
     /// Esc, once: help goes, else the cards come or go.
     void escape();
     /// The keys that ask for help over a view that shows an application. True: taken.
@@ -43,6 +47,7 @@ signals:
     void applicationWanted(const lumorph::Demo& demo);
     void studioWanted();
     void tourWanted();
+    void coversChanged();
 
 protected:
     bool eventFilter(QObject* watched, QEvent* event) override;

@@ -107,6 +107,8 @@ void VisitorLayer::setHelp(bool on) {
     update();
 }
 
+void VisitorLayer::setSeen(bool seen) { seen ? animation_.start(kFrameMilliseconds) : animation_.stop(); }
+
 bool VisitorLayer::waysShown() const {
     return forVisitors_ && !help_ && studio_.loop.program() && begun_.isValid() &&
            static_cast<double>(begun_.elapsed()) < 1e3 * kBeginSeconds;

@@ -26,6 +26,8 @@ public:
     /// Somebody plays, or nobody does.
     void setPlayed(bool played);
     void setHelp(bool on);
+    /// Whether the view below is seen; what moves stands still while not.
+    void setSeen(bool seen);
     [[nodiscard]] bool helpShown() const noexcept { return help_; }
     /// The hand taps: the application shows, and nobody plays.
     [[nodiscard]] bool handShown() const;

@@ -34,8 +34,11 @@ public:
     /// Made once, when the workspace is first shown; the main window takes them over.
     [[nodiscard]] virtual QWidget* makeCentralView() = 0;
     [[nodiscard]] virtual std::vector<WorkspaceDock> makeDocks() = 0;
-    /// Shown, or another one is; a hidden workspace draws nothing.
-    virtual void setActive(bool active) = 0;
+    /// The one that is shown, or another one is.
+    virtual void setActive(bool active) { static_cast<void>(active); }
+    /// Whether its views can be seen: it is the one that is shown, and the window is neither minimised nor covered.
+    /// What is not seen draws nothing.
+    virtual void setSeen(bool seen) = 0;
     /// What undo and redo work on while it is shown, where that is not the document; null: the document.
     [[nodiscard]] virtual QUndoStack* undoStack() { return nullptr; }
     /// Visitors stand before it: its view without tools, handles and notices, or all again. False: it has nothing for

@@ -108,6 +108,12 @@ void WorkspacePage::setActive(bool active) {
             }
     }
     workspace_.setActive(active);
+    workspace_.setSeen(active && inSight_);
+}
+
+void WorkspacePage::setInSight(bool inSight) {
+    if (std::exchange(inSight_, inSight) == inSight) return;
+    workspace_.setSeen(active_ && inSight);
 }
 
 /// While the page is hidden its floating docks are too, and that is not what the user chose.

@@ -22,6 +22,8 @@ public:
     [[nodiscard]] const std::vector<QDockWidget*>& docks() const noexcept { return docks_; }
     /// Shows or hides what belongs to the page beside itself, and tells the workspace.
     void setActive(bool active);
+    /// Whether the window's views can be seen; at first they can.
+    void setInSight(bool inSight);
     void keepLayout();
     void resetLayout();
     /// Only the central view, as visitors may see it; nothing of it is remembered. Or all as it was.
@@ -51,6 +53,7 @@ private:
     QTimer settled_;        ///< the page has it
     bool sized_ = false;    ///< the docks' first widths were given
     bool active_ = false;
+    bool inSight_ = true;
     bool kiosk_ = false;
     bool hasVisitors_ = false;
     QByteArray kioskLayout_; ///< what it was before

@@ -14,6 +14,7 @@
 #include <QThreadPool>
 #include <QTimer>
 #include <QWheelEvent>
+#include <QWindow>
 
 #include "app/studio/viewport/camera_motion.h"
 #include "app/studio/viewport/gl_page.h"
@@ -55,6 +56,7 @@ struct ViewportWidget::Data {
     void tick();
     void startTicking();
     [[nodiscard]] bool wantsFrames() const;
+    [[nodiscard]] bool isExposed() const;
     [[nodiscard]] QSize pixels() const;
     [[nodiscard]] glm::vec2 size() const;
     void paintFrame(QPainter& painter) const;
@@ -171,6 +173,12 @@ bool ViewportWidget::Data::wantsFrames() const {
     return active && scene && self.isVisible() && !pixels().isEmpty() && !page->isVisibleTo(&self);
 }
 
+/// A window that is minimised or on another desktop is painted again when it comes back.
+bool ViewportWidget::Data::isExposed() const {
+    const QWindow* window = self.window()->windowHandle();
+    return window == nullptr || window->isExposed();
+}
+
 void ViewportWidget::Data::prepareScene() {
     if (!gizmo) {
         prepared = scene;
@@ -193,7 +201,8 @@ void ViewportWidget::Data::changed() {
     if (!wantsFrames()) return;
     frameFirstScene();
     prepareScene();
-    asked = pixels();
+    asked = isExposed() ? pixels() : QSize();
+    if (asked.isEmpty()) return;
     renderer.request(number, {prepared, motion.camera(), asked, self.devicePixelRatioF(), true});
 }
 

@@ -189,11 +189,21 @@ std::vector<WorkspaceDock> CalibrateWorkspace::makeDocks() {
 
 void CalibrateWorkspace::setActive(bool active) {
     active_ = active;
-    const bool looks = active && !selection_.whole(); // nobody sees the camera's picture beside the whole chain
-    if (looks != looks_) service_.setActive(looks);
-    looks_ = looks;
+    look();
     crosshairs_.setProjector(service_.projector());
     crosshairs_.setActive(active && service_.state().setup.way == CaptureWay::crosshairs);
+}
+
+/// The crosshairs stay on their projector, whether the window is seen or not.
+void CalibrateWorkspace::setSeen(bool seen) {
+    seen_ = seen;
+    look();
+}
+
+void CalibrateWorkspace::look() {
+    const bool looks = seen_ && !selection_.whole(); // nobody sees the camera's picture beside the whole chain
+    if (looks != looks_) service_.setActive(looks);
+    looks_ = looks;
 }
 
 bool CalibrateWorkspace::takeDrop(const std::vector<std::filesystem::path>& files) {

@@ -25,6 +25,7 @@ public:
     [[nodiscard]] QWidget* makeCentralView() override;
     [[nodiscard]] std::vector<WorkspaceDock> makeDocks() override;
     void setActive(bool active) override;
+    void setSeen(bool seen) override;
     /// A folder of images.
     bool takeDrop(const std::vector<std::filesystem::path>& files) override;
 
@@ -35,6 +36,7 @@ public:
 
 private:
     [[nodiscard]] CalibrateParts parts();
+    void look();
     void addWatchCommand();
     [[nodiscard]] std::unique_ptr<DriftService> makeWatch();
     [[nodiscard]] QWidget* makeSwitched(QWidget* single, QWidget* whole);
@@ -44,7 +46,8 @@ private:
     LiveService live_;
     ChainService chain_;
     std::unique_ptr<DriftService> watch_; ///< of the running show, while it is wanted
-    bool active_ = false, looks_ = false; ///< seen; and with the camera's picture
+    bool active_ = false, seen_ = false;
+    bool looks_ = false; ///< seen with the camera's picture
     CalibrateSelection selection_;
 };
 

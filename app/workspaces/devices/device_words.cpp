@@ -111,6 +111,23 @@ DeviceCard liveCard(const DeviceView& view) {
     return {Tone::live, "Live", "The servos of " + view.name + " follow the show.", Step::none, {}};
 }
 
+/// What Lumorph itself does when it can drive the servos no longer.
+QString processText(const LinkStatus& link) {
+    switch (link.failsafe) {
+    case LinkFailsafeState::runs:
+        return "when Lumorph ends or hangs, a process of its own lets the servos go within a second. ";
+    case LinkFailsafeState::notShared:
+        return "Lumorph's own process, which lets servos go when Lumorph crashes or hangs, cannot use this kind of "
+               "link. Keep the switch of their power at hand. ";
+    case LinkFailsafeState::missing:
+        return "the process that lets servos go when Lumorph crashes or hangs could not be started: "
+               "lumorph-servo-failsafe is missing beside the program. Install Lumorph again. ";
+    case LinkFailsafeState::none:
+        break;
+    }
+    return {};
+}
+
 } // namespace
 
 QString sentence(const std::string& words) {
@@ -176,10 +193,7 @@ QString failsafeText(const LinkStatus& link) {
     const bool answered =
         link.phase != LinkPhase::off && link.phase != LinkPhase::connecting && link.phase != LinkPhase::handshake;
     if (!answered || traits.name.empty()) return "Failsafe: known once a device answers.";
-    if (!traits.failsafeWord.empty()) return "Failsafe: " + QString::fromStdString(traits.failsafeWord) + '.';
-    return traits.failsafe
-               ? "When the studio dies, it stops by itself."
-               : "When the studio dies, its servos stay where they are, under power. Switch it off by hand.";
+    return "Failsafe: " + processText(link) + "The board's: " + QString::fromStdString(traits.failsafeWord) + '.';
 }
 
 QString stopKeysText(const QString& why) {

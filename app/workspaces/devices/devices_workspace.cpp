@@ -40,7 +40,8 @@ void DevicesWorkspace::setActive(bool active) {
         studio_.devices.endTest();
     }
     active_ = active;
-    studio_.devices.setShown(active);
 }
+
+void DevicesWorkspace::setSeen(bool seen) { studio_.devices.setShown(seen); }
 
 } // namespace lumorph::studio

@@ -17,6 +17,7 @@ public:
     [[nodiscard]] QWidget* makeCentralView() override;
     [[nodiscard]] std::vector<WorkspaceDock> makeDocks() override;
     void setActive(bool active) override;
+    void setSeen(bool seen) override;
     [[nodiscard]] QUndoStack* undoStack() override;
 
 private:

@@ -89,7 +89,7 @@ struct FieldWorkspace::Data : public QObject {
     QPointer<FieldCentralView> stage;
     QPointer<KeptCamera> keptCamera;
     QAction* gizmoShown = nullptr;
-    bool active = false;
+    bool seen = false;
     bool targetSelected = false;
     bool unframed = true; ///< another device came: the view has to find it
     QTimer pending;
@@ -133,7 +133,7 @@ void FieldWorkspace::Data::listen() {
 void FieldWorkspace::Data::useTheme() { builder.setColors(fieldSceneColors(studio.settings.theme())); }
 
 void FieldWorkspace::Data::refresh() {
-    if (!active || !stage) return;
+    if (!seen || !stage) return;
     stage->refresh();
     const auto& frame = studio.loop.frame();
     if (!frame) return;
@@ -243,7 +243,7 @@ QWidget* FieldWorkspace::makeCentralView() {
     data_->stage = new FieldCentralView(data_->studio, data_->numbers);
     data_->connectView();
     bindViewShortcuts(data_->studio.commands, data_->view());
-    data_->view()->setActive(data_->active);
+    data_->view()->setActive(data_->seen);
     return data_->stage;
 }
 
@@ -269,10 +269,10 @@ bool FieldWorkspace::setForVisitors(bool on) {
     return true;
 }
 
-void FieldWorkspace::setActive(bool active) {
-    data_->active = active;
+void FieldWorkspace::setSeen(bool seen) {
+    data_->seen = seen;
     if (!data_->view()) return;
-    data_->view()->setActive(active);
+    data_->view()->setActive(seen);
     data_->refresh();
 }
 

@@ -82,7 +82,7 @@ private:
         play_->setEnabled(steps && !studio_.loop.stopped());
         play_->setText(plays ? "Pause the poses" : "Play the poses");
         play_->setIcon(icon(plays ? "pause" : "play"));
-        play_->setToolTip(studio_.loop.stopped() ? "STOP holds the servos until you resume"
+        play_->setToolTip(studio_.loop.stopped() ? "After STOP nothing moves until you resume"
                           : !steps               ? "Add a pose to the sequence first"
                           : plays                ? "The device waits where it is"
                                                  : "The servos go through the sequence, under all their limits");

@@ -80,6 +80,7 @@ struct RigWorkspace::Data : public QObject {
     void edited();
     void markPart();
     void wiggle();
+    void toggleWiggle();
     void mirror();
     void copies();
     [[nodiscard]] bool painting() const { return tools.editing() && selection.actuator().has_value(); }
@@ -126,7 +127,7 @@ struct RigWorkspace::Data : public QObject {
     std::vector<double> triedStrokes;
     QElapsedTimer rehearsing; ///< valid while the view is on its way
     QTimer tick;
-    bool active = false;
+    bool seen = false;
     bool unframed = true;
     QSize framedSize;
     QElapsedTimer sinceSized;
@@ -193,8 +194,9 @@ void RigWorkspace::Data::addCommands() {
     options.icon = "actuator";
     options.workspace = "rig";
     options.shortcut = QKeySequence("Ctrl+Shift+W");
-    wiggleCommand = studio.commands.add("rig.wiggle", "Show what it moves", options, [this] { wiggle(); });
-    wiggleCommand->setToolTip("Move the chosen actuator in this view alone; the device stays where it is");
+    wiggleCommand = studio.commands.add("rig.wiggle", "Show what it moves", options, [this] { toggleWiggle(); });
+    wiggleCommand->setToolTip(
+        "Move the chosen actuator in this view alone; the device stays where it is. Again: end it");
     wiggleCommand->setEnabled(false);
     options.icon = "reset";
     options.shortcut = {};
@@ -311,6 +313,14 @@ void RigWorkspace::Data::wiggle() {
     if (!part) return;
     wiggling.start();
     tick.start();
+}
+
+/// While it wiggles, that ends.
+void RigWorkspace::Data::toggleWiggle() {
+    const bool wiggles = wiggling.isValid() && wiggleStroke(1e-3 * static_cast<double>(wiggling.elapsed())) >= 0.0;
+    if (!wiggles) return wiggle();
+    wiggling.invalidate();
+    refresh();
 }
 
 void RigWorkspace::Data::mirror() {
@@ -481,7 +491,7 @@ MatchFrame RigWorkspace::Data::shownFrame(const MatchFrame& frame) {
 }
 
 void RigWorkspace::Data::refresh() {
-    if (!active || !view) return;
+    if (!seen || !view) return;
     const auto& frame = studio.loop.frame();
     // A frame of the rig before would be marked with the parts of this one.
     if (!frame || frame->rigOrigin != studio.document.state().rig.origin) return;
@@ -541,7 +551,7 @@ QWidget* RigWorkspace::makeCentralView() {
     data_->view->setObjectName("rig.viewport");
     data_->view->setAccessibleName("Device");
     data_->keptCamera = new KeptCamera(data_->studio.settings, "rig", data_->view);
-    data_->view->setActive(data_->active);
+    data_->view->setActive(data_->seen);
     data_->listenToView();
     return data_->view;
 }
@@ -561,10 +571,10 @@ std::vector<WorkspaceDock> RigWorkspace::makeDocks() {
          true}};
 }
 
-void RigWorkspace::setActive(bool active) {
-    data_->active = active;
+void RigWorkspace::setSeen(bool seen) {
+    data_->seen = seen;
     if (!data_->view) return;
-    data_->view->setActive(active);
+    data_->view->setActive(seen);
     data_->refresh();
 }
 

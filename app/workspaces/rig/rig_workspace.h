@@ -18,7 +18,7 @@ public:
     [[nodiscard]] QString title() const override;
     [[nodiscard]] QWidget* makeCentralView() override;
     [[nodiscard]] std::vector<WorkspaceDock> makeDocks() override;
-    void setActive(bool active) override;
+    void setSeen(bool seen) override;
 
 private:
     struct Data;

@@ -39,7 +39,7 @@ struct SceneWorkspace::Data : public QObject {
     Studio& studio;
     SceneSelection selection;
     QPointer<SceneCentralView> stage;
-    bool active = false;
+    bool seen = false;
 };
 
 /// The scene's items, and what is always there.
@@ -126,7 +126,7 @@ QString SceneWorkspace::title() const { return "Scene"; }
 QWidget* SceneWorkspace::makeCentralView() {
     Data& data = *data_;
     data.stage = new SceneCentralView(data.studio);
-    data.stage->setActive(data.active);
+    data.stage->setActive(data.seen);
     data.stage->setAcceptDrops(true);
     data.stage->installEventFilter(&data);
     connect(data.stage, &SceneCentralView::picked, &data.selection, &SceneSelection::chooseItem);
@@ -148,9 +148,9 @@ std::vector<WorkspaceDock> SceneWorkspace::makeDocks() {
              Qt::RightDockWidgetArea, false}};
 }
 
-void SceneWorkspace::setActive(bool active) {
-    data_->active = active;
-    if (data_->stage) data_->stage->setActive(active);
+void SceneWorkspace::setSeen(bool seen) {
+    data_->seen = seen;
+    if (data_->stage) data_->stage->setActive(seen);
 }
 
 bool SceneWorkspace::setForVisitors(bool on) {

@@ -19,7 +19,7 @@ public:
     [[nodiscard]] QString title() const override;
     [[nodiscard]] QWidget* makeCentralView() override;
     [[nodiscard]] std::vector<WorkspaceDock> makeDocks() override;
-    void setActive(bool active) override;
+    void setSeen(bool seen) override;
     bool setForVisitors(bool on) override;
     bool takeDrop(const std::vector<std::filesystem::path>& files) override;
 

@@ -89,12 +89,16 @@ ViewPane::ViewPane(ShowFeed& feed, const ShowView& view, const QString& title, Q
     setFocusPolicy(Qt::StrongFocus);
     setContextMenuPolicy(Qt::PreventContextMenu);
     setAccessibleName(title);
-    connect(&feed_, &ShowFeed::shown, this, [this] {
-        if (isVisible()) update();
-    });
+    connect(&feed_, &ShowFeed::shown, this, &ViewPane::take);
 }
 
 ViewPane::~ViewPane() { feed_.drop(id_); }
+
+void ViewPane::take() {
+    if (!isVisible() || !active_) return;
+    if (!before_.isNull() && !picture().isNull()) before_ = {};
+    update();
+}
 
 QSize ViewPane::pixels() const {
     const double ratio = devicePixelRatioF();
@@ -119,7 +123,10 @@ void ViewPane::setView(const ShowView& view) {
 
 void ViewPane::setActive(bool active) {
     if (std::exchange(active_, active) == active) return;
-    if (!active) endDrag(false);
+    if (!active) {
+        endDrag(false);
+        if (isVisible()) before_ = picture();
+    }
     ask();
 }
 
@@ -160,7 +167,7 @@ void ViewPane::paintEvent(QPaintEvent* /*event*/) {
     // On another screen than the picture was asked for.
     if (active_ && asked_ != pixels()) ask();
     QPainter painter(this);
-    const QImage shown = picture();
+    const QImage shown = picture().isNull() ? before_ : picture();
     const Palette& colors = currentPalette();
     if (shown.isNull()) {
         painter.fillRect(rect(), colors.sunken);

@@ -50,7 +50,7 @@ public:
     [[nodiscard]] const QString& label() const noexcept { return label_; }
     [[nodiscard]] QImage picture() const { return feed_.picture(id_); }
     [[nodiscard]] QSize pixels() const; ///< of the screen
-    /// A hidden stage asks for nothing.
+    /// A stage that is not seen asks for nothing. Seen again, its last picture stays until there is a new one.
     void setActive(bool active);
 
 signals:
@@ -81,6 +81,7 @@ private:
     void ask();
     void endDrag(bool taken);
     void paintLabel(QPainter& painter) const;
+    void take();
     [[nodiscard]] QRect pictureBox(const QSize& picture) const;
 
     ShowFeed& feed_;
@@ -90,6 +91,7 @@ private:
     PaneOverlay* overlay_ = nullptr;
     QString waiting_, label_;
     QSize asked_;
+    QImage before_; ///< while there is none of the feed
     bool active_ = false;
     bool ringed_ = false; ///< the focus came by key
     Drag drag_ = Drag::none;

@@ -11,8 +11,8 @@
 #include "app/applications/ambient/sun.h"
 #include "core/base/error.h"
 
-// The sun of the ambient display against published values, and against the formulas of low precision in Meeus,
-// Astronomical Algorithms, chapters 12, 13 and 25, written out once more.
+// The sun of the ambient display against published values; at places and times for which none are at hand, against the
+// formulas of low precision in Meeus, Astronomical Algorithms, chapters 12, 13 and 25, written out once more.
 
 namespace lumorph::ambient {
 namespace {
@@ -83,7 +83,71 @@ TEST(AmbientSun, HasThePublishedDeclinations) {
         EXPECT_NEAR(sunAt({90.0, 0.0, 0.0}, row.utc).elevation / kRadian, row.declination, 0.005) << row.declination;
 }
 
-TEST(AmbientSun, AgreesWithTheLiteralFormulasInBothHemispheres) {
+// Ten published positions. NOAA's Solar Calculator (gml.noaa.gov/grad/solcalc), to 0.01 degrees and with refraction, of
+// which ours has none: Saemundsson's formula (Meeus, chapter 16) takes it away here. JPL's Horizons (ssd.jpl.nasa.gov,
+// DE431, topocentric and airless), printed on 2019-04-13 for latitude and longitude 0. It knows UT1, which the formulas
+// take UTC for: 0.1 s then, 0.0004 degrees.
+TEST(AmbientSun, IsWherePublishedTablesSayInBothHemispheres) {
+    const double noaa = utcOf(2012, 12, 22, 12.0);
+    const auto equinox = [](double hour) { return utcOf(2019, 3, 20, hour); };
+    const struct {
+        const char* source;
+        double latitude, utc, azimuth, elevation;
+        bool refracted;
+    } rows[] = {
+        {"NOAA, 41 S", -41.0, noaa, 359.09, 72.44, true},
+        {"NOAA, 3 S", -3.0, noaa, 180.79, 69.57, true},
+        {"NOAA, 3 N", 3.0, noaa, 180.62, 63.57, true},
+        {"NOAA, 41 N", 41.0, noaa, 180.30, 25.60, true},
+        {"Horizons, the night before", 0.0, utcOf(2019, 3, 19, 1.0), 93.2877, -76.9790, false},
+        {"Horizons, 06:50", 0.0, equinox(6.0 + 50.0 / 60.0), 90.2534, 10.5897, false},
+        {"Horizons, 08:30", 0.0, equinox(8.5), 90.2726, 35.5951, false},
+        {"Horizons, 10:00", 0.0, equinox(10.0), 90.3727, 58.1001, false},
+        {"Horizons, 13:30", 0.0, equinox(13.5), 269.6043, 69.3859, false},
+        {"Horizons, 15:30", 0.0, equinox(15.5), 269.8624, 39.3790, false},
+    };
+    for (const auto& row : rows) {
+        const SkyPosition sun = sunAt({row.latitude, 0.0, 0.0}, row.utc);
+        const double minutes = 1.02 / std::tan((row.elevation + 10.3 / (row.elevation + 5.11)) * kRadian);
+        const SkyPosition published{row.azimuth * kRadian,
+                                    (row.elevation - (row.refracted ? minutes / 60.0 : 0.0)) * kRadian};
+        EXPECT_LT(degreesBetween(sun, published), 0.015) << row.source;
+    }
+}
+
+// Tables of sunrise and sunset for 2019 of the Astronomical Applications Department of the U.S. Naval Observatory, to
+// the minute: location W150 00, S60 00 and location W081 00, N29 00, Universal Time.
+TEST(AmbientSun, RisesAndSetsInTheMinuteThatTheNavalObservatorySays) {
+    const Place south{-60.0, -150.0, -10.0 * 3600.0}, north{29.0, -81.0, -5.0 * 3600.0};
+    const struct {
+        const Place& place;
+        int month, day;
+        bool rises;
+        int hour, minute; ///< of UT; of the next day where a sunset belongs to the evening before in UT
+        bool nextDay;
+    } rows[] = {
+        {south, 1, 1, true, 12, 43, false},   {south, 1, 1, false, 7, 23, true},
+        {south, 3, 20, true, 16, 0, false},   {south, 3, 20, false, 4, 13, true},
+        {south, 6, 21, true, 19, 6, false},   {south, 6, 21, false, 0, 58, true},
+        {south, 10, 15, true, 14, 38, false}, {south, 10, 15, false, 4, 55, true},
+        {north, 1, 1, true, 12, 18, false},   {north, 1, 1, false, 22, 38, false},
+        {north, 3, 20, true, 11, 28, false},  {north, 3, 20, false, 23, 35, false},
+        {north, 6, 21, true, 10, 26, false},  {north, 6, 21, false, 0, 26, true},
+        {north, 10, 15, true, 11, 25, false}, {north, 10, 15, false, 22, 54, false},
+    };
+    for (const auto& row : rows) {
+        const double published = utcOf(2019, row.month, row.day + (row.nextDay ? 1 : 0), row.hour + row.minute / 60.0);
+        const double midnight = utcOf(2019, row.month, row.day, 0.0) - row.place.utcOffset;
+        const SunTimes times = sunTimes(row.place, midnight);
+        ASSERT_TRUE(times.rise && times.set);
+        const double ours = row.rises ? *times.rise : *times.set;
+        // Rounded to the minute there, and 5 s for what the table's own theory may differ by.
+        EXPECT_NEAR(ours, published, 35.0) << "latitude " << row.place.latitude << ", " << row.month << "/" << row.day
+                                           << (row.rises ? " rise" : " set");
+    }
+}
+
+TEST(AmbientSun, AgreesWithTheLiteralFormulasEverywhere) {
     const struct {
         const char* name;
         double latitude, longitude, utc;

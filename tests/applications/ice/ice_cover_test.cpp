@@ -165,7 +165,70 @@ TEST(IceFracture, SitesOnALineOrAtOnePlaceAreSitesToo) {
     EXPECT_THROW((void)voronoiCells(square, bad), InvalidInput);
 }
 
-TEST(IceCover, KeepsItsAreaAndFloesKeepClearOfOneAnother) {
+/// Whether a convex polygon holds a place.
+bool holdsPlace(const Points& polygon, const glm::dvec2& place) {
+    int left = 0, right = 0;
+    for (std::size_t k = 0; k < polygon.size(); ++k) {
+        const glm::dvec2 &from = polygon[k], &to = polygon[(k + 1) % polygon.size()];
+        const double side = (to.x - from.x) * (place.y - from.y) - (to.y - from.y) * (place.x - from.x);
+        ++(side > 0.0 ? left : right);
+    }
+    return left == 0 || right == 0;
+}
+
+/// Metres of rim in the pond along which no other ice lies, seen from outside: places close beside all edges, in home
+/// coordinates. A crack has two such rims, the bank has none where ice is frozen to it.
+double openRim(const IceCover& ice) {
+    constexpr double kStep = 0.0005, kBeside = 0.00002;
+    std::vector<Points> cells;
+    for (const Floe& floe : ice.floes())
+        for (const int k : floe.cells)
+            if (Points outline = ice.grown(k); !outline.empty()) cells.push_back(std::move(outline));
+    const Points shore = pondShore();
+    double open = 0.0;
+    for (const Points& cell : cells)
+        for (std::size_t k = 0; k < cell.size(); ++k) {
+            const glm::dvec2 along = cell[(k + 1) % cell.size()] - cell[k];
+            const double length = glm::length(along);
+            if (length < 1e-9) continue;
+            const int count = static_cast<int>(std::ceil(length / kStep));
+            for (int i = 0; i < count; ++i) {
+                const glm::dvec2 at = cell[k] + (i + 0.5) / count * along;
+                const glm::dvec2 normal = glm::dvec2(along.y, -along.x) / length;
+                const glm::dvec2 beside =
+                    holdsPlace(cell, at + kBeside * normal) ? at - kBeside * normal : at + kBeside * normal;
+                if (!holdsPlace(shore, beside)) continue; // the bank
+                if (std::ranges::none_of(cells, [&](const Points& other) { return holdsPlace(other, beside); }))
+                    open += length / count;
+            }
+        }
+    return open;
+}
+
+// Without warmth nothing melts: what a crack takes is a hairline, 0.2 mm from either side of it.
+TEST(IceCover, BreakingLosesNoMoreThanHairlines) {
+    for (const std::uint64_t seed : {11U, 12U, 13U}) {
+        IceCover ice(pondShore(), seed);
+        std::mt19937_64 random(seed);
+        for (int k = 0; k < 60 * 5; ++k) ice.advance(1.0 / 60.0, {});
+        const double pond = gaussArea(pondShore());
+        for (int blow = 0; blow < 12; ++blow) {
+            const double x = chance(random), z = chance(random);
+            ice.strike({0.16 * (x - 0.5), 0.10 * (z - 0.5)});
+            for (int k = 0; k < 60; ++k) ice.advance(1.0 / 60.0, {});
+        }
+        double area = 0.0;
+        for (const LyingCell& cell : lyingCells(ice)) area += gaussArea(cell.points);
+        const double rim = openRim(ice), width = (pond - area) / rim;
+        std::printf("seed %d: %.2f %% of the ice lost to %.0f mm of open rim: %.2f mm wide, %zu floes\n",
+                    static_cast<int>(seed), 100.0 * (pond - area) / pond, 1e3 * rim, 1e3 * width, ice.floes().size());
+        ASSERT_GT(rim, 0.2) << "it breaks";
+        EXPECT_LE(width, 0.0003);
+        EXPECT_GE(width, 0.0001) << "a crack is seen";
+    }
+}
+
+TEST(IceCover, CountsWhatItLosesAndFloesKeepClearOfOneAnother) {
     for (const std::uint64_t seed : {1U, 2U, 3U}) {
         IceCover ice(pondShore(), seed);
         Script script(seed);

@@ -10,14 +10,13 @@
 #include <utility>
 #include <vector>
 
-#include <unistd.h>
-
 #include <gtest/gtest.h>
 
 #include <glm/geometric.hpp>
 
 #include "app/applications/navigation/map_import.h"
 #include "core/base/error.h"
+#include "tests/core/temporary_folder.h"
 
 // Maps of one's own. Files are written here byte by byte, so that what is read is held against known places and
 // heights.
@@ -29,17 +28,11 @@ namespace fs = std::filesystem;
 
 class MapImport : public ::testing::Test {
 protected:
-    MapImport() : folder_(fs::temp_directory_path() / ("lumorph-map-" + std::to_string(getpid()))) {
-        fs::remove_all(folder_);
-        fs::create_directories(folder_);
-    }
-    ~MapImport() override { fs::remove_all(folder_); }
-
     fs::path write(const std::string& name, const std::string& bytes) const {
         std::ofstream(folder_ / name, std::ios::binary) << bytes;
         return folder_ / name;
     }
-    fs::path folder_;
+    TemporaryFolder folder_;
 };
 
 template <typename T> void put(std::string& bytes, T value) {
@@ -185,7 +178,7 @@ double slope(int x, int y) { return 100.0 + 2.0 * x + y; }
 
 TEST_F(MapImport, AGeoTiffInMetresIsWhereItSays) {
     write("ground.tif", geoTiff(101, 81, {500000.0, 5200000.0, 10.0}, slope));
-    const ImportedMap imported = importMap(folder_);
+    const ImportedMap imported = importMap(folder_.path());
     const HeightMap& heights = imported.map.heights;
     EXPECT_EQ(imported.projection, "EPSG:32632");
     EXPECT_NEAR(heights.spacing(), 10.0, 1e-6);
@@ -199,7 +192,7 @@ TEST_F(MapImport, AGeoTiffInMetresIsWhereItSays) {
 // A degree of longitude at the equator is 111319.49 m (WGS 84, 6378137 m), and UTM shrinks the zone's middle by 0.9996.
 TEST_F(MapImport, DegreesBecomeMetres) {
     write("ground.tif", geoTiff(101, 101, {8.95, 0.06, 0.001, 4326, true}, slope));
-    const ImportedMap imported = importMap(folder_);
+    const ImportedMap imported = importMap(folder_.path());
     const glm::dvec2 size = imported.map.heights.size();
     EXPECT_EQ(imported.projection, "EPSG:32632");
     EXPECT_NEAR(size.x, 0.101 * 111319.49 * 0.9996, 260.0);
@@ -234,7 +227,7 @@ TEST_F(MapImport, APictureWithoutAPlaceIsTakenAsMetres) {
 
 TEST_F(MapImport, AWrongProjectionIsSeenThrough) {
     write("ground.tif", geoTiff(60, 60, {8.95, 0.05, 0.001, 32632, false}, slope)); // degrees that say they are metres
-    const ImportedMap imported = importMap(folder_);
+    const ImportedMap imported = importMap(folder_.path());
     EXPECT_TRUE(tells(imported.report, "look like degrees")) << all(imported.report);
     EXPECT_NEAR(imported.map.heights.size().x, 0.06 * 111319.49, 300.0);
 }
@@ -252,7 +245,7 @@ constexpr const char* kHouses = R"({"type":"FeatureCollection","features":[
 TEST_F(MapImport, OutlinesStandWhereAndAsHighAsTheySay) {
     write("ground.tif", geoTiff(101, 101, {8.95, 0.06, 0.001, 4326, true}, [](int, int) { return 50.0; }));
     write("houses.geojson", kHouses);
-    const ImportedMap imported = importMap(folder_);
+    const ImportedMap imported = importMap(folder_.path());
     const MapReport& report = imported.report;
     EXPECT_EQ(report.heightMissing, 1U) << all(report);
     EXPECT_EQ(report.mended, 1U);
@@ -424,12 +417,12 @@ TEST_F(MapImport, DamagedEmptyAndForeignFilesAreRefusedWithWords) {
     }
     EXPECT_THROW((void)importMap(folder_ / "nothing.tif"), DataError);
     // What is sound beside it is shown anyway.
-    fs::remove_all(folder_);
-    fs::create_directories(folder_);
+    fs::remove_all(folder_.path());
+    fs::create_directories(folder_.path());
     write("ground.tif", tiff);
     write("broken.tif", "II*_this is no picture at all");
     write("cut.geojson", std::string(kHouses).substr(0, 150));
-    const ImportedMap imported = importMap(folder_);
+    const ImportedMap imported = importMap(folder_.path());
     EXPECT_TRUE(tells(imported.report, "broken.tif")) << all(imported.report);
     EXPECT_TRUE(tells(imported.report, "cut.geojson")) << all(imported.report);
     EXPECT_TRUE(isInGermanToo(imported.report)) << all(imported.report);

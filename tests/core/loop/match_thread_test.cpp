@@ -1,9 +1,11 @@
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <condition_variable>
 #include <functional>
 #include <limits>
 #include <mutex>
+#include <numbers>
 
 #include <gtest/gtest.h>
 
@@ -102,6 +104,33 @@ TEST_F(MatchThreadTest, RestsWhenNothingMovesAndWakesUp) {
     thread.wish(held(0.9));
     ASSERT_TRUE(frames_.waitForRest());
     EXPECT_EQ(thread.latest()->estimatedStrokes[0], 0.9);
+}
+
+TEST_F(MatchThreadTest, PausedItMakesOneFrameForAWishAndThenGoesOnWhereItWas) {
+    constexpr double kPeriod = 1.0 / 250.0;
+    MatchThread thread(frames_.counter(), 1.0 / kPeriod);
+    MatchWish wish = test::wishFor(field_, test::movingTarget());
+    wish.spin = 0.5;
+    thread.wish(wish);
+    ASSERT_TRUE(frames_.wait([&] { return frames_.count() > 10; }));
+    thread.setPaused(true);
+    ASSERT_TRUE(frames_.waitForRest()) << "though the target moves";
+    EXPECT_EQ(thread.rate(), 0.0);
+    const auto paused = thread.latest();
+
+    thread.wish(wish);
+    ASSERT_TRUE(frames_.wait([&] { return thread.latest() != paused; }));
+    ASSERT_TRUE(frames_.waitForRest());
+    EXPECT_EQ(thread.latest()->number, paused->number + 1);
+
+    const Microseconds resumed = SteadyClock().now();
+    thread.setPaused(false);
+    ASSERT_TRUE(frames_.wait([&] { return thread.latest()->number > paused->number + 5; })) << "without a wish";
+    const auto next = thread.latest();
+    const double ran = 1e-6 * static_cast<double>((next->time - resumed).count()) + 3.0 * kPeriod;
+    const double turned = std::remainder(next->turned.inRadians() - paused->turned.inRadians(), 2.0 * std::numbers::pi);
+    EXPECT_GT(turned, 0.0);
+    EXPECT_LE(turned, wish.spin * ran) << "the pause is no time";
 }
 
 TEST_F(MatchThreadTest, KeepsItsRate) {

@@ -9,8 +9,8 @@
 #include <gtest/gtest.h>
 
 #include "core/loop/match_loop.h"
-#include "core/rig/rig_file.h"
 #include "tests/core/loop/loop_fixture.h"
+#include "tests/support/cut_tablet.h"
 #include "tests/support/scene_in_room.h"
 
 namespace lumorph::test {
@@ -18,7 +18,7 @@ namespace lumorph::test {
 inline constexpr double kFrame = 1.0 / 60.0; ///< seconds
 
 inline std::shared_ptr<const Rig> tablet() {
-    static const auto rig = std::make_shared<const Rig>(readRig(LUMORPH_SOURCE_DIR "/resources/models/tablet.glb"));
+    static const auto rig = std::make_shared<const Rig>(test::cutTablet());
     return rig;
 }
 

@@ -7,8 +7,8 @@
 
 #include "core/base/error.h"
 #include "core/geometry/mesh_file.h"
-#include "core/rig/templates/bundled_rigs.h"
 #include "tests/core/temporary_folder.h"
+#include "tests/support/cut_tablet.h"
 #include "tests/support/small_rigs.h"
 
 namespace lumorph {
@@ -113,7 +113,7 @@ TEST(LibraryFit, LeavesOutTheActuatorThatIsMissedLeast) {
 }
 
 TEST(LibraryFit, PosesOfTheDeviceStandWhereTheyAreAndFitWell) {
-    const Rig tablet = tabletRig();
+    const Rig tablet = test::cutTablet();
     std::vector<LibraryTarget> library;
     library.push_back(libraryTarget("pose", deformed(tablet, std::vector<double>{0.5, 0.0, 1.0, 0.25, 0.75, 0.125})));
     library.push_back(libraryTarget("box", test::boxMesh({0, 0, 0}, {1.0F, 0.5F, 1.0F})));

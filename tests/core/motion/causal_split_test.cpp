@@ -11,7 +11,7 @@
 #include "core/base/error.h"
 #include "core/motion/causal_split.h"
 #include "core/motion/frequency_split.h"
-#include "core/rig/rig_file.h"
+#include "tests/support/cut_tablet.h"
 #include "tests/support/small_rigs.h"
 
 namespace lumorph {
@@ -21,7 +21,7 @@ constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kCausalStep = 1.0 / 60.0;
 
 const Rig& causalTablet() {
-    static const Rig rig = readRig(LUMORPH_SOURCE_DIR "/resources/models/tablet.glb");
+    static const Rig rig = test::cutTablet();
     return rig;
 }
 

@@ -11,6 +11,7 @@
 #include "core/base/error.h"
 #include "core/motion/frequency_split.h"
 #include "core/rig/rig_file.h"
+#include "tests/support/cut_tablet.h"
 #include "tests/support/not_a_number.h"
 #include "tests/support/small_rigs.h"
 
@@ -20,7 +21,7 @@ namespace {
 constexpr double kFrame = 1.0 / 60.0;
 
 const Rig& tablet() {
-    static const Rig rig = readRig(LUMORPH_SOURCE_DIR "/resources/models/tablet.glb");
+    static const Rig rig = test::cutTablet();
     return rig;
 }
 

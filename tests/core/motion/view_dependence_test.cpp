@@ -10,7 +10,7 @@
 
 #include "core/base/error.h"
 #include "core/motion/view_dependence.h"
-#include "core/rig/rig_file.h"
+#include "tests/support/cut_tablet.h"
 #include "tests/support/not_a_number.h"
 #include "tests/support/small_rigs.h"
 
@@ -18,7 +18,7 @@ namespace lumorph {
 namespace {
 
 const Rig& tabletRig() {
-    static const Rig rig = readRig(LUMORPH_SOURCE_DIR "/resources/models/tablet.glb");
+    static const Rig rig = test::cutTablet();
     return rig;
 }
 

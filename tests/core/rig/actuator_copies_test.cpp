@@ -9,7 +9,7 @@
 #include <gtest/gtest.h>
 
 #include "core/base/error.h"
-#include "core/rig/templates/bundled_rigs.h"
+#include "tests/support/cut_tablet.h"
 #include "tests/support/small_rigs.h"
 
 namespace lumorph {
@@ -108,7 +108,7 @@ TEST(MirroredActuator, TakesOverWhatStandsThereAlready) {
 }
 
 TEST(MirroredActuator, OfTheTabletsCornerIsTheCornerOppositeIt) {
-    const RigParts tablet = tabletRig().parts();
+    const RigParts tablet = test::cutTablet().parts();
     const MirroredActuator mirrored = mirroredActuator(tablet, 0, mirrorPlaneOf(tablet, 0));
     EXPECT_FALSE(mirrored.added);
     EXPECT_EQ(mirrored.parts.actuators.size(), tablet.actuators.size());

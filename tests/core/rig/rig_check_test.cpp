@@ -11,6 +11,7 @@
 #include "core/geometry/mesh_check.h"
 #include "core/rig/templates/bundled_rigs.h"
 #include "tests/support/cgal_oracle.h"
+#include "tests/support/cut_tablet.h"
 #include "tests/support/small_rigs.h"
 
 namespace lumorph {
@@ -258,7 +259,7 @@ TEST(RigCheck, RefusesLimitsAndCanBeStopped) {
             if (fraction > 0.2) stop.request_stop();
         },
         stop.get_token());
-    EXPECT_THROW((void)checkRig(tabletRig(), {}, progress), Cancelled);
+    EXPECT_THROW((void)checkRig(test::cutTablet(), {}, progress), Cancelled);
 }
 
 TEST(MeshCheck, FindsTheSameCrossingsAmongPartsAsInTheWhole) {

@@ -15,6 +15,7 @@
 #include "core/rig/templates/bundled_rigs.h"
 #include "tests/core/rig/point_rig.h"
 #include "tests/core/temporary_folder.h"
+#include "tests/support/cut_tablet.h"
 #include "tests/support/small_rigs.h"
 
 namespace lumorph {
@@ -89,7 +90,7 @@ TEST_P(RigFileRoundTrips, GiveTheSameRig) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Rigs, RigFileRoundTrips,
-                         testing::Values(Kind{"Tablet", [] { return tabletRig(); }},
+                         testing::Values(Kind{"Tablet", [] { return test::cutTablet(); }},
                                          Kind{"PinDisplay", [] { return pinDisplayRig(); }}, Kind{"Ribbon", ribbonRig},
                                          Kind{"Hills", hillsRig}, Kind{"Cushion", test::cushionRig},
                                          Kind{"Arm", test::armRig}, Kind{"Crowded", crowdedRig}),
@@ -124,7 +125,7 @@ Rig rigOf(const Model& model) { return readRigGlb(writeGlb(model), "model.glb");
 
 TEST(RigFile, KeepsTheKindOfServoAndOneThatTheTableLacks) {
     for (const char* servo : {"MG92B", "a servo of tomorrow", ""}) {
-        RigParts parts = tabletRig().parts();
+        RigParts parts = test::cutTablet().parts();
         parts.actuators[1].drive.servo = servo;
         const auto bytes = writeRigGlb(Rig(parts));
         const Rig read = readRigGlb(bytes, "test");

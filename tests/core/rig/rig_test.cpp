@@ -14,6 +14,7 @@
 #include "core/base/error.h"
 #include "core/rig/templates/bundled_rigs.h"
 #include "tests/core/rig/point_rig.h"
+#include "tests/support/cut_tablet.h"
 #include "tests/support/small_rigs.h"
 
 namespace lumorph {
@@ -43,7 +44,7 @@ std::vector<Rig> allKinds() {
     RigParts weighted = pointParts(points, {slide, hinge, bend, morph});
     for (Actuator& actuator : weighted.actuators)
         for (Influence& influence : actuator.influences) influence.weight = static_cast<float>(random() % 5) / 4.0F;
-    return {tabletRig(),
+    return {test::cutTablet(),
             pinDisplayRig(),
             ribbonRig(),
             hillsRig(),

@@ -89,7 +89,7 @@ TEST_F(RigSearchTest, IsBetterThanAsManyRandomDesigns) {
     const int seeds = test::longTests() ? 10 : 2;
     int won = 0;
     for (int k = 1; k <= seeds; ++k) {
-        const auto seed = static_cast<std::uint64_t>(k);
+        const auto seed = static_cast<std::uint64_t>(1000 + k); // not those that the search was made to win
         SearchState state = begin(seed);
         for (int g = 0; g < 10; ++g) nextGeneration(state, score());
         std::mt19937_64 random(seed);

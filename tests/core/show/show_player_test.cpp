@@ -2,12 +2,11 @@
 
 #include <gtest/gtest.h>
 
-#include "core/base/resources.h"
 #include "core/loop/show_program.h"
 #include "core/mdf/builder.h"
-#include "core/rig/rig_file.h"
 #include "core/show/project_contents.h"
 #include "core/show/show_player.h"
+#include "tests/support/cut_tablet.h"
 
 // A show without a window: a program, a project and a demonstration played by a clock that the test owns.
 
@@ -41,8 +40,7 @@ private:
 };
 
 MatchWish tideWish() {
-    static const auto field =
-        std::make_shared<const MatchField>(buildField(readRig(resourceFile("models/tablet.glb")), BuildOptions{}));
+    static const auto field = std::make_shared<const MatchField>(buildField(test::cutTablet(), BuildOptions{}));
     MatchWish wish;
     wish.field = field;
     wish.rig = {field, &field->rig};

@@ -7,6 +7,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include "core/base/error.h"
 #include "devices/transport/found_devices.h"
@@ -87,6 +88,27 @@ TEST_F(HidTransportTest, WritesReportsOf65BytesAndReads64) {
     EXPECT_EQ(received_[1], second);
     EXPECT_EQ(received_[2], (Bytes{0x55, 0x55})); // a short one stays short
     EXPECT_TRUE(troubles_.empty());
+}
+
+// hidapi keeps its descriptor to itself, so the failsafe process has the node opened once more.
+TEST_F(HidTransportTest, SharesItsNodeWhereThereIsOne) {
+    FakeHidDevice& board = plugIn();
+    make();
+    transport_->open();
+    EXPECT_EQ(transport_->shared().descriptor, -1) << "hidapi's path is no file";
+    transport_->close();
+
+    const Pty node;
+    with(board, [&](FakeHidDevice& device) { device.path = node.path(); });
+    transport_->open();
+    ASSERT_TRUE(transport_->isOpen());
+    EXPECT_EQ(transport_->shared().report, 64U);
+    const Bytes report(65, 7);
+    ASSERT_EQ(::write(transport_->shared().descriptor, report.data(), report.size()), 65);
+    node.waitForBytes(5s);
+    EXPECT_EQ(node.receive(), report);
+    transport_->close();
+    EXPECT_EQ(transport_->shared().descriptor, -1);
 }
 
 TEST_F(HidTransportTest, RefusesWhatDoesNotFitIntoAReport) {

@@ -12,9 +12,9 @@
 #include "core/render/gl/color_target.h"
 #include "core/render/gl/headless_context.h"
 #include "core/render/projector/projector_target.h"
-#include "core/rig/rig_file.h"
 #include "core/scene/posed_scene.h"
 #include "tests/core/render/ray_oracle.h"
+#include "tests/support/cut_tablet.h"
 #include "tests/support/scene_in_room.h"
 
 namespace lumorph {
@@ -35,7 +35,7 @@ public:
 
     HeadlessContext context;
     EyePass pass;
-    std::shared_ptr<Rig> rig = std::make_shared<Rig>(readRig(LUMORPH_SOURCE_DIR "/resources/models/tablet.glb"));
+    std::shared_ptr<Rig> rig = std::make_shared<Rig>(test::cutTablet());
     std::shared_ptr<SceneAssets> assets = std::make_shared<SceneAssets>();
     SceneInRoom scene;
     std::vector<double> strokes = std::vector<double>(6, 0.0);
