@@ -130,8 +130,8 @@ void printErrors(const char* what, const LightCalibration& found, const LightErr
 TEST(LightTest, OfAProjectorIsMeasuredWithTheColoursOfDeviceAndTable) {
     const Installation believed = defaultInstallation();
     for (const std::uint32_t seed : {1U, 2U}) {
-        const Installation truth = trueRoom(believed, shownTablet()->actuators(), seed);
-        const LightCalibration found = measureLightInLab(*shownTablet(), believed, truth, seed);
+        const Installation truth = trueRoom(believed, bundledTablet()->actuators(), seed);
+        const LightCalibration found = measureLightInLab(*bundledTablet(), believed, truth, seed);
         const LightErrors errors = errorsOf(found.room, truth);
         printErrors("with a white sheet", found, errors);
         for (const std::string& figure : found.figures) std::printf("  %s\n", figure.c_str());
@@ -159,10 +159,10 @@ TEST(LightTest, OfAProjectorIsMeasuredWithTheColoursOfDeviceAndTable) {
 
 TEST(LightTest, WithoutASheetWhatIsProjectedIsRightAllTheSame) {
     const Installation believed = defaultInstallation();
-    const Installation truth = trueRoom(believed, shownTablet()->actuators(), 3);
+    const Installation truth = trueRoom(believed, bundledTablet()->actuators(), 3);
     LightLabOptions options;
     options.laysSheet = false;
-    const LightCalibration found = measureLightInLab(*shownTablet(), believed, truth, 3, {}, options);
+    const LightCalibration found = measureLightInLab(*bundledTablet(), believed, truth, 3, {}, options);
     const LightErrors errors = errorsOf(found.room, truth);
     printErrors("without a sheet", found, errors);
     ASSERT_TRUE(found.good()) << sentenceOf(*found.refusal);
@@ -175,11 +175,11 @@ TEST(LightTest, WithoutASheetWhatIsProjectedIsRightAllTheSame) {
 // Ratios of projectors, and of device and table, do not ask for the camera's colours.
 TEST(LightTest, ACameraOfOtherColoursTintsTheGainsAlone) {
     const Installation believed = defaultInstallation();
-    const Installation truth = trueRoom(believed, shownTablet()->actuators(), 4);
+    const Installation truth = trueRoom(believed, bundledTablet()->actuators(), 4);
     LightLabOptions options;
     options.balance = {0.75, 1.0, 0.85};
     options.ambient = 0.0;
-    const LightCalibration found = measureLightInLab(*shownTablet(), believed, truth, 4, {}, options);
+    const LightCalibration found = measureLightInLab(*bundledTablet(), believed, truth, 4, {}, options);
     const LightErrors errors = errorsOf(found.room, truth);
     printErrors("another camera, dark", found, errors);
     ASSERT_TRUE(found.good()) << sentenceOf(*found.refusal);
@@ -199,11 +199,11 @@ class LightFaultTest : public testing::TestWithParam<LightFaultCase> {};
 
 TEST_P(LightFaultTest, IsNamedAndNothingIsKept) {
     const Installation believed = defaultInstallation();
-    const Installation truth = trueRoom(believed, shownTablet()->actuators(), 5);
+    const Installation truth = trueRoom(believed, bundledTablet()->actuators(), 5);
     LightLabOptions options;
     options.fault = parseLightFault(GetParam().name);
     EXPECT_EQ(options.fault, GetParam().fault);
-    const LightCalibration found = measureLightInLab(*shownTablet(), believed, truth, 5, {}, options);
+    const LightCalibration found = measureLightInLab(*bundledTablet(), believed, truth, 5, {}, options);
     ASSERT_TRUE(found.refusal);
     std::printf("%s\n", sentenceOf(*found.refusal).c_str());
     EXPECT_EQ(keyOf(found.refusal->cause), keyOf(GetParam().cause));
@@ -224,11 +224,11 @@ TEST(LightTest, OfWhatACameraDoesNotSeeIsRefused) {
     Installation room = defaultInstallation();
     room.cameras.push_back(
         {"Camera", "", cameraLookingAt({0.0, 1.0, 2.0}, {0.0, 0.8, 4.0}, {640, 512}, 900.0), {}, {}});
-    const LightCalibration found = measureLightInLab(*shownTablet(), room, room, 1);
+    const LightCalibration found = measureLightInLab(*bundledTablet(), room, room, 1);
     ASSERT_TRUE(found.refusal);
     EXPECT_EQ(found.refusal->cause, Cause::surfaceUnseen);
     room.projectors.front().enabled = false;
-    EXPECT_THROW((void)measureLightInLab(*shownTablet(), room, room, 1), InvalidInput);
+    EXPECT_THROW((void)measureLightInLab(*bundledTablet(), room, room, 1), InvalidInput);
     EXPECT_THROW((void)parseLightFault("tired"), InvalidInput);
 }
 
@@ -236,7 +236,7 @@ TEST(LightTest, EndsWhenItIsCancelled) {
     std::stop_source source;
     source.request_stop();
     const Installation believed = defaultInstallation();
-    EXPECT_THROW((void)measureLightInLab(*shownTablet(), believed, believed, 1, Progress({}, source.get_token())),
+    EXPECT_THROW((void)measureLightInLab(*bundledTablet(), believed, believed, 1, Progress({}, source.get_token())),
                  Cancelled);
 }
 
@@ -265,7 +265,7 @@ SeamFigures seamOf(const Installation& believed, const Installation& truth) {
     SceneInRoom shown = unlitScene(glm::vec3(0.7F), glm::vec3(0.7F), believed.projectors);
     shown.deviceColor = believed.deviceColor;
     shown.tableColor = believed.tableColor;
-    const ShowFrame frame = frameOf(shown, std::vector<double>(shownTablet()->actuatorCount(), 0.0));
+    const ShowFrame frame = frameOf(shown, std::vector<double>(bundledTablet()->actuatorCount(), 0.0));
     renderer.draw(frame);
     LabWorld world = labOf(frame, renderer);
     world.surfaces[0].albedo = lightOfSrgb(truth.deviceColor);
@@ -314,8 +314,8 @@ TEST(LightSeamTest, OfTwoProjectorsIsFlatWithinTwoPercentByWhatWasMeasured) {
     const Installation believed = overlappingRoom();
     LabErrors errors;
     errors.gain = 0.2;
-    const Installation truth = trueRoom(believed, shownTablet()->actuators(), 6, errors);
-    const LightCalibration found = measureLightInLab(*shownTablet(), believed, truth, 6);
+    const Installation truth = trueRoom(believed, bundledTablet()->actuators(), 6, errors);
+    const LightCalibration found = measureLightInLab(*bundledTablet(), believed, truth, 6);
     printErrors("two projectors", found, errorsOf(found.room, truth));
     ASSERT_TRUE(found.good()) << sentenceOf(*found.refusal);
     const SeamFigures before = seamOf(believed, truth), after = seamOf(found.room, truth);

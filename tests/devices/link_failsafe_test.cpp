@@ -20,7 +20,7 @@ namespace {
 using namespace std::chrono_literals;
 using Bytes = std::vector<std::uint8_t>;
 using Messages = std::vector<Bytes>;
-using Clock = std::chrono::steady_clock;
+using WallClock = std::chrono::steady_clock;
 
 const Messages kRelease{{0xF7, 0x01}, {0xF7, 0x02, 0x03}};
 const Bytes kWritten{0xF7, 0x01, 0xF7, 0x02, 0x03};
@@ -41,7 +41,7 @@ protected:
     /// What has come at the far end within the time.
     [[nodiscard]] Bytes comesWithin(std::chrono::milliseconds time) const {
         Bytes all;
-        for (const auto end = Clock::now() + time; Clock::now() < end;) {
+        for (const auto end = WallClock::now() + time; WallClock::now() < end;) {
             pty_.waitForBytes(20ms);
             const Bytes some = pty_.receive();
             all.insert(all.end(), some.begin(), some.end());
@@ -51,7 +51,7 @@ protected:
     /// Until it has been written so many times; at most ten seconds, for a busy machine.
     [[nodiscard]] Bytes comes(std::size_t atLeast) const {
         Bytes all;
-        for (const auto end = Clock::now() + 10s; all.size() < atLeast * kWritten.size() && Clock::now() < end;) {
+        for (const auto end = WallClock::now() + 10s; all.size() < atLeast * kWritten.size() && WallClock::now() < end;) {
             const Bytes some = comesWithin(20ms);
             all.insert(all.end(), some.begin(), some.end());
         }
@@ -95,12 +95,12 @@ TEST_F(LinkFailsafeTest, WritesNothingWhileThereAreBeats) {
     failsafe_->setRelease(kRelease, Microseconds{25'000});
     const auto beats = [this] {
         auto longest = 0ms;
-        auto last = Clock::now();
+        auto last = WallClock::now();
         for (const auto end = last + 1500ms; last < end;) {
             failsafe_->beat(now());
             std::this_thread::sleep_for(20ms);
-            longest = std::max(longest, std::chrono::ceil<std::chrono::milliseconds>(Clock::now() - last));
-            last = Clock::now();
+            longest = std::max(longest, std::chrono::ceil<std::chrono::milliseconds>(WallClock::now() - last));
+            last = WallClock::now();
         }
         return longest;
     };
@@ -119,9 +119,9 @@ TEST_F(LinkFailsafeTest, WritesNothingWhileThereAreBeats) {
 TEST_F(LinkFailsafeTest, AfterASecondWithoutABeatItLetsGoAndSaysSoUntilTheNextBeat) {
     failsafe_->setRelease(kRelease, Microseconds{25'000});
     failsafe_->beat(now());
-    const auto begin = Clock::now();
+    const auto begin = WallClock::now();
     Bytes bytes = comes(1);
-    EXPECT_GE(Clock::now() - begin, 950ms);
+    EXPECT_GE(WallClock::now() - begin, 950ms);
     EXPECT_TRUE(failsafe_->takeLetGo());
     EXPECT_FALSE(failsafe_->takeLetGo()) << "once";
     const Bytes more = comesWithin(1500ms);
@@ -150,8 +150,8 @@ TEST_F(LinkFailsafeTest, WhatALineDoesNotTakeIsDroppedBeforeIt) {
 TEST_F(LinkFailsafeTest, EndsWithTheDevice) {
     failsafe_->setRelease(kRelease, Microseconds{25'000});
     pty_.unplug();
-    const auto begin = Clock::now();
-    while (failsafe_->runs() && Clock::now() - begin < 5s) {
+    const auto begin = WallClock::now();
+    while (failsafe_->runs() && WallClock::now() - begin < 5s) {
         std::this_thread::sleep_for(10ms);
         failsafe_->beat(now());
     }
@@ -185,7 +185,7 @@ TEST(LinkFailsafe, FillsUpReports) {
     expected[3] = 0x03;
     Bytes all;
     std::array<std::uint8_t, 4096> some{};
-    for (const auto end = Clock::now() + 5s; Clock::now() < end; std::this_thread::sleep_for(10ms)) {
+    for (const auto end = WallClock::now() + 5s; WallClock::now() < end; std::this_thread::sleep_for(10ms)) {
         const ssize_t count = ::read(ends[0], some.data(), some.size());
         if (count == 0) break; // it has closed its end
         if (count > 0) all.insert(all.end(), some.begin(), some.begin() + count);

@@ -157,7 +157,7 @@ inline LongVisit visitForLong(ShowProgram& program, double seconds, double step,
     LongVisit visit;
     visit.milliseconds.reserve(static_cast<std::size_t>(frames)); // so that the notes do not count as growth
     visit.memory.reserve(static_cast<std::size_t>(frames / perSecond + 1));
-    MatchWish wish = wishOf(shownTablet({}));
+    MatchWish wish = wishOf(bundledTablet({}));
     wish.showTint = false;
     wish.program = std::make_shared<TimedProgram>(program, visit.milliseconds);
     wish.inputs = std::make_shared<ShowInputs>();

@@ -36,14 +36,14 @@ inline SceneInRoom unlitScene(const glm::vec3& device, const glm::vec3& table,
     return scene;
 }
 
-inline std::shared_ptr<const Rig> shownTablet() {
+inline std::shared_ptr<const Rig> bundledTablet() {
     static const auto rig = std::make_shared<const Rig>(test::cutTablet());
     return rig;
 }
 
 /// The tablet with two flaps lifted.
 inline std::vector<double> liftedFlaps() {
-    std::vector<double> strokes(shownTablet()->actuatorCount(), 0.0);
+    std::vector<double> strokes(bundledTablet()->actuatorCount(), 0.0);
     strokes[0] = 0.9;
     strokes[2] = 0.6;
     return strokes;
@@ -54,7 +54,7 @@ inline ShowFrame frameOf(const SceneInRoom& scene, const std::vector<double>& st
     setSceneInRoom(frame, scene);
     static const auto assets = std::make_shared<const SceneAssets>();
     frame.assets = assets;
-    frame.rig = shownTablet();
+    frame.rig = bundledTablet();
     frame.devicePositions = std::make_shared<const std::vector<glm::vec3>>(deformed(*frame.rig, strokes).positions);
     frame.worldFromDevice = scene.worldFromDevice;
     frame.eye = scene.eye;

@@ -15,10 +15,10 @@
 namespace lumorph::studio {
 namespace {
 
-struct Disconnect {
+struct EndConnection {
     void operator()(xcb_connection_t* connection) const { xcb_disconnect(connection); }
 };
-using Connection = std::unique_ptr<xcb_connection_t, Disconnect>;
+using XcbConnection = std::unique_ptr<xcb_connection_t, EndConnection>;
 
 struct Free {
     void operator()(void* memory) const { std::free(memory); }
@@ -46,7 +46,7 @@ struct SightWatch::Data {
     bool obscured = false;        ///< all of it, by other windows
     bool seen = true;
     // Qt does not ask for this event; a connection of its own may, and disturbs nothing.
-    Connection connection;
+    XcbConnection connection;
     std::unique_ptr<QSocketNotifier> notifier;
     xcb_window_t selected = XCB_WINDOW_NONE;
 };

@@ -77,7 +77,7 @@ ShowFrame changingFrame(int step) {
     scene.projectors[0].camera.distortion = {-0.3, 0.05, 0.002, -0.003, 0.0}; // bends edges beyond their ends
     scene.items.push_back(box({0.05F, 0.09F, 0.02F}, Anchor::device, {0.0F, 1.0F, 0.0F}));
     scene.items.back().id = 7;
-    std::vector<double> strokes(shownTablet()->actuatorCount(), 0.0);
+    std::vector<double> strokes(bundledTablet()->actuatorCount(), 0.0);
     if (step >= 1) strokes[0] = 0.9;
     if (step >= 2) scene.eye = {0.3F, 0.4F, 0.4F};
     if (step >= 3) scene.items.back().position = {-0.14F, 0.05F, 0.1F};
@@ -370,7 +370,7 @@ TEST(SpatialFrames, ManyFramesKeepAsManyObjects) {
     std::array<std::size_t, 6> live{};
     auto assets = readAnew();
     for (int i = 0; i < frames; ++i) {
-        std::vector<double> strokes(shownTablet()->actuatorCount());
+        std::vector<double> strokes(bundledTablet()->actuatorCount());
         for (std::size_t k = 0; k < strokes.size(); ++k) strokes[k] = 0.5 + 0.5 * std::sin(0.1 * i + double(k));
         scene.eye.x = 0.3F * std::sin(0.05F * static_cast<float>(i));
         ShowFrame frame = frameOf(scene, strokes);

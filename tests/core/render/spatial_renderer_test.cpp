@@ -210,7 +210,7 @@ TEST(SpatialRenderer, WhatHardlyTurnsToTheEyeIsSeenUpToItsRim) {
     int lost = 0;
     for (const glm::vec3& eye : {glm::vec3(0.0F, 0.45F, 0.55F), {0.45F, 0.5F, 0.1F}, {-0.5F, 0.35F, 0.3F}})
         for (const double lift : {0.3, 0.5, 0.7}) {
-            std::vector<double> strokes(shownTablet()->actuatorCount(), lift);
+            std::vector<double> strokes(bundledTablet()->actuatorCount(), lift);
             const ShowFrame frame = greenForTheEye(eye, strokes);
             const RayOracle device = raysAt(physicalDevice(frame));
             renderer.draw(frame);

@@ -30,7 +30,7 @@ SceneItem floating(float height) {
 }
 
 ShowFrame at(const SceneInRoom& scene, double stroke, double seconds) {
-    ShowFrame frame = frameOf(scene, std::vector<double>(shownTablet()->actuatorCount(), stroke));
+    ShowFrame frame = frameOf(scene, std::vector<double>(bundledTablet()->actuatorCount(), stroke));
     ScenePoser poser;
     PoseInput input;
     input.seconds = seconds;
@@ -55,7 +55,7 @@ TEST(DeviceView, HoldsEveryStateTightly) {
             for (const glm::vec3& point : *frame.devicePositions) ASSERT_TRUE(holds(view, point)) << stroke;
         }
         // Tight: the box of all states fills the frame in one direction.
-        const Box& reach = shownTablet()->reach();
+        const Box& reach = bundledTablet()->reach();
         glm::dvec2 low(1e9);
         glm::dvec2 high(-1e9);
         for (unsigned i = 0; i < 8; ++i) {
