@@ -21,7 +21,7 @@ inline constexpr double kDegreesPerRadian = 57.29577951308232;
 [[nodiscard]] nlohmann::json jsonOf(const std::optional<double>& number);
 /// OpenCV's matrix and k1, k2, p1, p2, k3.
 [[nodiscard]] nlohmann::json jsonOf(const CalibratedDevice& device);
-/// All of it: see the README, "Calibrate projector and camera".
+/// All of it: see resources/guide/formats.md, "What --json prints".
 [[nodiscard]] nlohmann::json jsonOf(const ProcamCalibration& result);
 /// The rows of a pose's rotation matrix.
 [[nodiscard]] nlohmann::json rotationOf(const PoseVector& pose);

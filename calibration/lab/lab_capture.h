@@ -57,7 +57,7 @@ public:
     [[nodiscard]] const std::vector<glm::dmat4>& poses() const noexcept;
     /// What is wrong, as far as it has been photographed.
     [[nodiscard]] const std::vector<LabFault>& faults() const noexcept;
-    /// `truth.json` of what has been taken: see the README, "Photograph boards in the virtual lab".
+    /// `truth.json` of what has been taken: see resources/guide/formats.md, "A capture of the lab".
     [[nodiscard]] std::string truthText() const;
 
 private:

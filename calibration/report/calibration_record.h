@@ -27,7 +27,7 @@ struct CalibrationRecord {
 /// Schema version of our JSON that this program writes; newer ones are refused.
 inline constexpr int kCalibrationSchema = 1;
 
-/// Our JSON; the README says what is in it ("Calibration files"). Throws InvalidInput for numbers that are not finite.
+/// Our JSON, as resources/guide/formats.md describes it. Throws InvalidInput for numbers that are not finite.
 [[nodiscard]] std::string calibrationText(const CalibrationRecord& record);
 /// Reads it back; what other programs leave out (figures of quality, views) stays empty. `name` stands in errors.
 /// Throws DataError naming the key and the remedy.

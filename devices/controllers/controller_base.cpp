@@ -20,7 +20,7 @@ constexpr double kShareOfLink = 0.47;      // of its bytes, for pulses; the rest
 constexpr double kDetachShare = 0.65;      // of its bytes, for letting servos go: nothing else matters then
 constexpr Microseconds kDetachGap{25'000}; // at least
 constexpr std::size_t kMostQuestions = 64;
-constexpr Microseconds kLongestPause{250'000}; // that counts as listening: ticks come every 50 ms or more often
+constexpr Microseconds kLongestTickPause{250'000}; // that counts as listening: ticks come every 50 ms or more often
 constexpr Microseconds kStuck{400'000};        // a board's own watchdog is at 500 ms, and may have begun before
 
 /// The scale with what follows from the traits.
@@ -60,8 +60,8 @@ void ControllerBase::passTo(Microseconds now) {
     if (now < now_) {
         heard_ = lastWritten_ = now; // the clock was set back
         stuckAt_.reset();
-    } else if (const Microseconds pause = now - now_; pause > kLongestPause) {
-        heard_ += pause - kLongestPause;
+    } else if (const Microseconds pause = now - now_; pause > kLongestTickPause) {
+        heard_ += pause - kLongestTickPause;
         if (pause >= kStuck) stuckAt_ = now;
     }
     now_ = now;

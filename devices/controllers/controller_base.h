@@ -102,7 +102,6 @@ protected:
     std::string product_;
 
 private:
-    friend struct UnguardedAccess; // of tests, which have no guard
     void command(std::span<const GuardedPulse> pulses, Microseconds now);
     void passTo(Microseconds now);
 

@@ -14,15 +14,23 @@ struct GuardedPulse {
     bool operator==(const GuardedPulse&) const = default;
 };
 
+/// The right to make servos move: the engine makes its guard with one, and the guard its commands; nothing else of the
+/// programs can make one. Test programs alone define `testGuardKey`.
+class GuardKey {
+    GuardKey() = default;
+    friend class ServoEngine;
+    friend class ServoGuard;
+    friend GuardKey testGuardKey();
+};
+
 /// One command to all servos of a device. Only the ServoGuard makes one: whatever holds it may trust that it breaks no
 /// limit.
 class GuardedPulses {
 public:
+    GuardedPulses(GuardKey /*key*/, std::vector<GuardedPulse> servos) : servos_(std::move(servos)) {}
     [[nodiscard]] std::span<const GuardedPulse> servos() const noexcept { return servos_; }
 
 private:
-    friend class ServoGuard;
-    explicit GuardedPulses(std::vector<GuardedPulse> servos) : servos_(std::move(servos)) {}
     std::vector<GuardedPulse> servos_;
 };
 

@@ -41,7 +41,7 @@ std::string placesOf(const std::vector<std::size_t>& servos) {
 } // namespace
 
 ServoEngine::Data::Data(const DeviceProfile& its)
-    : profile(its), made(its), guard(its), watch([this](Kind kind, std::string text, std::string remedy) {
+    : profile(its), made(its), guard(GuardKey(), its), watch([this](Kind kind, std::string text, std::string remedy) {
           tell(kind, std::move(text), std::move(remedy));
       }),
       now(kBegin) {

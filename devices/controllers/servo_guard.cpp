@@ -214,7 +214,7 @@ struct ServoGuard::Data {
     }
 };
 
-ServoGuard::ServoGuard(const DeviceProfile& profile) : data_(std::make_unique<Data>()) {
+ServoGuard::ServoGuard(GuardKey /*key*/, const DeviceProfile& profile) : data_(std::make_unique<Data>()) {
     checkProfile(profile);
     data_->profile = profile;
     data_->servos = servosOf(profile);
@@ -335,7 +335,7 @@ GuardedPulses ServoGuard::step(Microseconds now) {
         servo.released = !servo.attached;
         pulses.push_back(data.pulseOf(servo));
     }
-    return GuardedPulses(std::move(pulses));
+    return {GuardKey(), std::move(pulses)};
 }
 
 ServoGuard::Phase ServoGuard::phase() const noexcept { return data_->phase; }

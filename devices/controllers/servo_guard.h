@@ -31,7 +31,7 @@ public:
     };
 
     /// Throws as checkProfile.
-    explicit ServoGuard(const DeviceProfile& profile);
+    ServoGuard(GuardKey key, const DeviceProfile& profile);
     ~ServoGuard();
     ServoGuard(ServoGuard&&) noexcept;
     ServoGuard& operator=(ServoGuard&&) noexcept;

@@ -16,15 +16,6 @@ namespace {
 
 using namespace std::chrono_literals;
 
-bool comesTrue(const std::function<bool()>& condition, std::chrono::seconds limit) {
-    const auto end = std::chrono::steady_clock::now() + limit;
-    while (!condition()) {
-        if (std::chrono::steady_clock::now() > end) return false;
-        std::this_thread::sleep_for(2ms);
-    }
-    return true;
-}
-
 /// A move that is on its way, with servos that are driven.
 struct RunningMove {
     explicit RunningMove(bool json)

@@ -56,4 +56,13 @@ void BoardAtPort::takeFrames() {
     }
 }
 
+bool comesTrue(const std::function<bool()>& condition, std::chrono::milliseconds limit) {
+    const auto end = BoardAtPort::Clock::now() + limit;
+    while (!condition()) {
+        if (BoardAtPort::Clock::now() > end) return false;
+        std::this_thread::sleep_for(2ms);
+    }
+    return true;
+}
+
 } // namespace lumorph::test

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <string>
 #include <thread>
@@ -41,5 +42,8 @@ private:
     std::atomic<Clock::time_point> lastDriven_{Clock::time_point{}};
     std::jthread pump_;
 };
+
+/// Waits for it; false where it did not come within the limit.
+[[nodiscard]] bool comesTrue(const std::function<bool()>& condition, std::chrono::milliseconds limit);
 
 } // namespace lumorph::test

@@ -7,15 +7,9 @@
 #include <vector>
 
 #include "devices/controllers/controller_base.h"
+#include "tests/devices/guard_key.h"
 
 namespace lumorph {
-
-/// Gives a controller pulses that no guard has made: tests of controllers alone have none.
-struct UnguardedAccess {
-    static void send(ServoController& controller, const std::vector<GuardedPulse>& pulses, Microseconds now) {
-        dynamic_cast<ControllerBase&>(controller).command(pulses, now);
-    }
-};
 
 namespace test {
 
@@ -41,7 +35,8 @@ public:
 
     void open(const std::string& product = {}) { controller_->opened(product, now_); }
     void receive(const Bytes& bytes) { controller_->received(bytes, now_); }
-    void send(const std::vector<GuardedPulse>& pulses) { UnguardedAccess::send(*controller_, pulses, now_); }
+    /// Pulses that no guard has made: tests of controllers alone have none.
+    void send(const std::vector<GuardedPulse>& pulses) { controller_->send({testGuardKey(), pulses}, now_); }
     /// Ticks every 5 ms; what is written meanwhile is kept.
     void wait(int milliseconds) {
         for (int passed = 0; passed < milliseconds; passed += 5) {

@@ -12,6 +12,7 @@
 #include "devices/controllers/servo_controller.h"
 #include "devices/controllers/servo_guard.h"
 #include "devices/simulator/simulated_bench.h"
+#include "tests/devices/guard_key.h"
 #include "tests/support/simulated_devices.h"
 
 namespace lumorph {
@@ -33,7 +34,7 @@ protected:
         profile_.servos = test::unevenServos(GetParam().first);
         board_ = bench_.board(GetParam().board);
         controller_ = makeController(profile_, parseDeviceAddress(profile_.address));
-        guard_ = std::make_unique<ServoGuard>(profile_);
+        guard_ = std::make_unique<ServoGuard>(testGuardKey(), profile_);
         pass(1'000'000);
         board_->plugged(clock_->now());
         controller_->opened(board_->product(), clock_->now());

@@ -25,7 +25,7 @@ using WallClock = std::chrono::steady_clock;
 const Messages kRelease{{0xF7, 0x01}, {0xF7, 0x02, 0x03}};
 const Bytes kWritten{0xF7, 0x01, 0xF7, 0x02, 0x03};
 
-Microseconds now() { return SteadyClock{}.now(); }
+Microseconds timeNow() { return SteadyClock{}.now(); }
 
 /// A port, open as a link has it, and the failsafe process at it.
 class LinkFailsafeTest : public testing::Test {
@@ -51,7 +51,8 @@ protected:
     /// Until it has been written so many times; at most ten seconds, for a busy machine.
     [[nodiscard]] Bytes comes(std::size_t atLeast) const {
         Bytes all;
-        for (const auto end = WallClock::now() + 10s; all.size() < atLeast * kWritten.size() && WallClock::now() < end;) {
+        for (const auto end = WallClock::now() + 10s;
+             all.size() < atLeast * kWritten.size() && WallClock::now() < end;) {
             const Bytes some = comesWithin(20ms);
             all.insert(all.end(), some.begin(), some.end());
         }
@@ -77,7 +78,7 @@ protected:
 TEST_F(LinkFailsafeTest, WritesAgainAndAgainOnceItsProgramHasEnded) {
     ASSERT_TRUE(failsafe_->runs());
     failsafe_->setRelease(kRelease, Microseconds{25'000});
-    failsafe_->beat(now());
+    failsafe_->beat(timeNow());
     failsafe_.reset(); // as at the program's end
     ::close(std::exchange(port_, -1));
     EXPECT_GE(times(comes(4)), 4U);
@@ -97,7 +98,7 @@ TEST_F(LinkFailsafeTest, WritesNothingWhileThereAreBeats) {
         auto longest = 0ms;
         auto last = WallClock::now();
         for (const auto end = last + 1500ms; last < end;) {
-            failsafe_->beat(now());
+            failsafe_->beat(timeNow());
             std::this_thread::sleep_for(20ms);
             longest = std::max(longest, std::chrono::ceil<std::chrono::milliseconds>(WallClock::now() - last));
             last = WallClock::now();
@@ -118,7 +119,7 @@ TEST_F(LinkFailsafeTest, WritesNothingWhileThereAreBeats) {
 
 TEST_F(LinkFailsafeTest, AfterASecondWithoutABeatItLetsGoAndSaysSoUntilTheNextBeat) {
     failsafe_->setRelease(kRelease, Microseconds{25'000});
-    failsafe_->beat(now());
+    failsafe_->beat(timeNow());
     const auto begin = WallClock::now();
     Bytes bytes = comes(1);
     EXPECT_GE(WallClock::now() - begin, 950ms);
@@ -129,7 +130,7 @@ TEST_F(LinkFailsafeTest, AfterASecondWithoutABeatItLetsGoAndSaysSoUntilTheNextBe
     EXPECT_GE(times(bytes), 4U);
     EXPECT_LT(times(bytes), 40U) << "not for ever";
     waitForQuiet();
-    failsafe_->beat(now());
+    failsafe_->beat(timeNow());
     EXPECT_GE(times(comes(4)), 4U) << "and again";
     EXPECT_TRUE(failsafe_->takeLetGo());
 }
@@ -153,7 +154,7 @@ TEST_F(LinkFailsafeTest, EndsWithTheDevice) {
     const auto begin = WallClock::now();
     while (failsafe_->runs() && WallClock::now() - begin < 5s) {
         std::this_thread::sleep_for(10ms);
-        failsafe_->beat(now());
+        failsafe_->beat(timeNow());
     }
     EXPECT_FALSE(failsafe_->runs());
 }
@@ -162,7 +163,7 @@ TEST_F(LinkFailsafeTest, KnowsThatItsProgramIsMissing) {
     start("/nowhere/lumorph-servo-failsafe");
     EXPECT_FALSE(failsafe_->runs());
     failsafe_->setRelease(kRelease, Microseconds{25'000}); // and does no harm
-    failsafe_->beat(now());
+    failsafe_->beat(timeNow());
     EXPECT_FALSE(failsafe_->takeLetGo());
 }
 

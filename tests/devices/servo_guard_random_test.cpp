@@ -9,6 +9,7 @@
 
 #include "core/base/error.h"
 #include "devices/controllers/servo_guard.h"
+#include "tests/devices/guard_key.h"
 #include "tests/support/not_a_number.h"
 
 namespace lumorph {
@@ -51,7 +52,7 @@ struct Oracle {
 
 class RandomUse {
 public:
-    explicit RandomUse(unsigned seed) : random_(seed), profile_(randomProfile()), guard_(profile_) {
+    explicit RandomUse(unsigned seed) : random_(seed), profile_(randomProfile()), guard_(testGuardKey(), profile_) {
         for (const ServoSetup& setup : profile_.servos) oracles_.push_back({setup, {}});
     }
 

@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "core/base/error.h"
+#include "tests/devices/guard_key.h"
 #include "tests/support/not_a_number.h"
 
 namespace lumorph {
@@ -31,7 +32,7 @@ struct Bench {
     Microseconds now{1'000'000};
     std::vector<GuardedPulse> pulses;
 
-    explicit Bench(const DeviceProfile& profile) : guard(profile) { run(0.0); }
+    explicit Bench(const DeviceProfile& profile) : guard(testGuardKey(), profile) { run(0.0); }
     void step(Microseconds by = kTick) {
         now += by;
         const GuardedPulses all = guard.step(now);

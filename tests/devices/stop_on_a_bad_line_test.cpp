@@ -13,6 +13,7 @@
 #include "devices/controllers/servo_guard.h"
 #include "devices/simulator/faulty_line.h"
 #include "devices/simulator/simulated_bench.h"
+#include "tests/devices/guard_key.h"
 
 namespace lumorph {
 namespace {
@@ -39,7 +40,7 @@ public:
         for (std::size_t i = 0; i < kServos; ++i)
             profile_.servos.push_back({.channel = board.first + static_cast<int>(i)});
         controller_ = makeController(profile_, parseDeviceAddress(profile_.address));
-        guard_ = std::make_unique<ServoGuard>(profile_);
+        guard_ = std::make_unique<ServoGuard>(testGuardKey(), profile_);
         clock_->advance(Microseconds{1'000'000});
         board_->plugged(clock_->now());
         controller_->opened(board_->product(), clock_->now());

@@ -98,7 +98,6 @@ protected:
         window = std::make_unique<Window>();
         studio::editInstallation(window->studio.studio().document, "Set up",
                                  [](Installation& room) { room = smallRoom(); });
-        window->studio.studio().document.complete([](studio::StudioState& state) { state.playback.playing = false; });
         window->studio.window().showWorkspace("calibrate");
     }
     static void TearDownTestSuite() { window.reset(); }

@@ -65,8 +65,6 @@ void writePointer(const PointerCapture& capture, const std::filesystem::path& sw
 class Chain : public ::testing::Test {
 protected:
     Chain() {
-        // The demo's target stands still: a show that plays takes the processor from what is measured.
-        window.studio().document.complete([](studio::StudioState& state) { state.playback.playing = false; });
         window.window().showWorkspace("calibrate");
         window.click("calibrate.whole");
     }

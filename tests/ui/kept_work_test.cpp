@@ -231,8 +231,7 @@ TEST(KeptWorkWindow, WorkComesBackAfterTwoCards) {
     };
     open("water");
     open("labyrinth");
-    ASSERT_TRUE(eventually([&] { return project.keptWork().size() == 1; }));
-    EXPECT_TRUE(command->isEnabled());
+    ASSERT_TRUE(eventually([&] { return project.keptWork().size() == 1 && command->isEnabled(); }));
     window.window().showApplications();
     EXPECT_TRUE(window.text("applications.kept.name").startsWith("Your work from "))
         << window.text("applications.kept.name").toStdString();

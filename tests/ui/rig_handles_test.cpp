@@ -28,7 +28,7 @@ namespace {
 using test::dragMouse;
 using test::eventually;
 
-constexpr double kPi = std::numbers::pi;
+constexpr double kHalfTurn = std::numbers::pi;
 
 glm::dvec3 unit(const glm::vec3& v) { return glm::normalize(glm::dvec3(v)); }
 
@@ -243,7 +243,7 @@ TEST_F(RigHandles, CtrlSnapsToWholeSteps) {
     const QPointF end = seen(RigHandle::lineEnd);
     dragMouse(view, end, {25.0, 30.0}, Qt::ControlModifier);
     const glm::dvec3 axis = lineOf(actuator()).axis;
-    const double turns = std::atan2(axis.z, axis.x) / (kPi / 12.0);
+    const double turns = std::atan2(axis.z, axis.x) / (kHalfTurn / 12.0);
     EXPECT_NEAR(turns, std::round(turns), 1e-4);
 }
 

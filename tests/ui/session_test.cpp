@@ -3,6 +3,7 @@
 #include <cmath>
 #include <csignal>
 #include <cstdio>
+#include <ctime>
 #include <fstream>
 #include <map>
 #include <memory>
@@ -497,15 +498,25 @@ TEST(EditingChild, DISABLED_EditsWhenTold) {
     }
     std::printf("edited %d\n", edits);
     std::fflush(stdout);
-    std::this_thread::sleep_for(std::chrono::seconds(60)); // the window's thread does nothing more
+    std::this_thread::sleep_for(std::chrono::seconds(120)); // the window's thread does nothing more
+}
+
+/// Works for half a second and gives the share of a processor that it got.
+double workHalfASecond() {
+    const auto until = std::chrono::steady_clock::now() + std::chrono::milliseconds(500);
+    timespec begun{}, ended{};
+    ::clock_gettime(CLOCK_THREAD_CPUTIME_ID, &begun);
+    while (std::chrono::steady_clock::now() < until) continue;
+    ::clock_gettime(CLOCK_THREAD_CPUTIME_ID, &ended);
+    return 2.0 * (static_cast<double>(ended.tv_sec - begun.tv_sec) +
+                  1e-9 * static_cast<double>(ended.tv_nsec - begun.tv_nsec));
 }
 
 TEST_F(SessionTest, AnEditHalfASecondBeforeAKillIsKept) {
     auto environment = QProcessEnvironment::systemEnvironment();
     environment.insert("LUMORPH_TEST_FILES", QString::fromStdString((files / ".").string()));
     const int kills = 3 * test::soakFactor();
-    const BusyMachine busy;
-    int lost = 0;
+    int lost = 0, judged = 0;
     for (int kill = 0; kill < kills; ++kill) {
         QProcess child;
         child.setProcessEnvironment(environment);
@@ -520,17 +531,20 @@ TEST_F(SessionTest, AnEditHalfASecondBeforeAKillIsKept) {
         };
         ASSERT_TRUE(says("ready"));
         const int edits = 1 + 7 * (kill % 5);
+        const BusyMachine busy;
         child.write(QByteArray::number(edits) + '\n');
         ASSERT_TRUE(says("edited"));
-        std::this_thread::sleep_for(std::chrono::milliseconds(500));
+        const double share = workHalfASecond();
         child.kill();
         ASSERT_TRUE(child.waitForFinished());
+        if (share < 0.15) continue; // other programs leave nothing for this one: it says nothing about it
+        ++judged;
         const std::optional<Project> kept = keptNow(ProjectService::sessionFolder());
         lost += !kept || std::lround(1000.0 * kept->playback.spin) != edits;
     }
-    // A machine that is busy with other tests as well may be late once.
-    EXPECT_LE(lost, kills / 3) << "of " << kills;
-    std::printf("lost %d of %d\n", lost, kills);
+    std::printf("lost %d of %d\n", lost, judged);
+    // The disk may be late once for who writes beside this test.
+    EXPECT_LE(lost, judged / 3) << "of " << judged;
 }
 
 /// What programs that were killed have left behind, and a session that could not be opened each day.

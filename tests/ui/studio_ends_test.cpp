@@ -43,7 +43,7 @@ namespace lumorph::test {
 namespace {
 
 using namespace std::chrono_literals;
-using Clock = std::chrono::steady_clock;
+using WallClock = std::chrono::steady_clock;
 
 /// A studio whose servos follow the show, until something ends it. Run by the test below, which reads what it prints.
 TEST(StudioEndsChild, DISABLED_DrivesServosUntilItEnds) {
@@ -72,31 +72,31 @@ TEST(StudioEndsChild, DISABLED_DrivesServosUntilItEnds) {
     std::_Exit(wayOut.exec());
 }
 
-enum class How { sent, close, escapeTwice, kill, server };
+enum class EndedBy { sent, close, escapeTwice, kill, server };
 
-struct EndRow {
+struct StudioEnd {
     const char* name;
-    How how;
+    EndedBy how;
     std::vector<int> sent; ///< signals, 20 ms apart
     int exitCode = -1;     ///< -1: it ends by a signal, or does not end
     bool always = false;   ///< also in the short form
     bool diskHangs = false;
 };
-const EndRow kEnds[] = {
-    {"its window is closed", How::close, {}, 0, true},
-    {"SIGTERM", How::sent, {SIGTERM}, 0},
-    {"Esc Esc", How::escapeTwice, {}},
-    {"Ctrl+C twice", How::sent, {SIGINT, SIGINT}},
-    {"SIGTERM twice", How::sent, {SIGTERM, SIGTERM}, -1, true},
-    {"SIGHUP twice", How::sent, {SIGHUP, SIGHUP}, 0, true},
-    {"SIGQUIT", How::sent, {SIGQUIT}, 0},
-    {"xkill", How::kill, {}, 1, true},
-    {"the X server ends", How::server, {}, 1, true},
-    {"a disk hangs, SIGTERM", How::sent, {SIGTERM}, -1, true, true},
-    {"SIGSEGV", How::sent, {SIGSEGV}},
-    {"SIGABRT", How::sent, {SIGABRT}},
-    {"SIGKILL", How::sent, {SIGKILL}},
-    {"hang of 3 s", How::sent, {SIGSTOP}},
+const StudioEnd kStudioEnds[] = {
+    {"its window is closed", EndedBy::close, {}, 0, true},
+    {"SIGTERM", EndedBy::sent, {SIGTERM}, 0},
+    {"Esc Esc", EndedBy::escapeTwice, {}},
+    {"Ctrl+C twice", EndedBy::sent, {SIGINT, SIGINT}},
+    {"SIGTERM twice", EndedBy::sent, {SIGTERM, SIGTERM}, -1, true},
+    {"SIGHUP twice", EndedBy::sent, {SIGHUP, SIGHUP}, 0, true},
+    {"SIGQUIT", EndedBy::sent, {SIGQUIT}, 0},
+    {"xkill", EndedBy::kill, {}, 1, true},
+    {"the X server ends", EndedBy::server, {}, 1, true},
+    {"a disk hangs, SIGTERM", EndedBy::sent, {SIGTERM}, -1, true, true},
+    {"SIGSEGV", EndedBy::sent, {SIGSEGV}},
+    {"SIGABRT", EndedBy::sent, {SIGABRT}},
+    {"SIGKILL", EndedBy::sent, {SIGKILL}},
+    {"hang of 3 s", EndedBy::sent, {SIGSTOP}},
 };
 
 /// A display of its own, which can be ended.
@@ -122,21 +122,21 @@ private:
     QString name_;
 };
 
-class Ending {
+class StudioEnding {
 public:
-    explicit Ending(const EndRow& row) : row_(row) {
+    explicit StudioEnding(const StudioEnd& row) : row_(row) {
         auto environment = QProcessEnvironment::systemEnvironment();
         environment.insert("LUMORPH_TEST_FILES", QString::fromStdString(folder_.path().string()));
         environment.insert("LUMORPH_TEST_PORT", QString::fromStdString(board_.address()));
         environment.insert("TMPDIR", QString::fromStdString(folder_.path().string()));
         if (row.diskHangs) environment.insert("LUMORPH_TEST_DISK_HANGS", "1");
-        if (row.how == How::server) display_ = std::make_unique<OwnDisplay>();
+        if (row.how == EndedBy::server) display_ = std::make_unique<OwnDisplay>();
         if (display_) environment.insert("DISPLAY", display_->name());
         child_.setProcessEnvironment(environment);
         child_.start(QCoreApplication::applicationFilePath(),
                      {"--gtest_also_run_disabled_tests", "--gtest_filter=StudioEndsChild.*"});
     }
-    ~Ending() {
+    ~StudioEnding() {
         child_.kill();
         (void)child_.waitForFinished();
     }
@@ -145,7 +145,7 @@ public:
         SCOPED_TRACE(row_.name);
         ASSERT_TRUE(eventually([this] { return live(); }, 120s)) << output_.toStdString();
         ASSERT_TRUE(eventually([this] { return board_.driven() == 6; }));
-        const Clock::time_point begin = Clock::now();
+        const WallClock::time_point begin = WallClock::now();
         end();
         EXPECT_TRUE(eventually([this] { return board_.driven() == 0; }, 15s));
         const double seconds = std::chrono::duration<double>(board_.lastDriven() - begin).count();
@@ -174,20 +174,20 @@ private:
     }
     void end() {
         switch (row_.how) {
-        case How::sent:
+        case EndedBy::sent:
             for (const int signal : row_.sent) {
                 ::kill(pid(), signal);
                 if (row_.sent.size() > 1) std::this_thread::sleep_for(20ms);
             }
             break;
-        case How::escapeTwice:
+        case EndedBy::escapeTwice:
             child_.write("e");
             break;
-        case How::server:
+        case EndedBy::server:
             display_->end();
             break;
-        case How::close:
-        case How::kill:
+        case EndedBy::close:
+        case EndedBy::kill:
             askServer();
             break;
         }
@@ -195,7 +195,7 @@ private:
     /// What a window manager does to a window.
     void askServer() const {
         xcb_connection_t* server = xcb_connect(nullptr, nullptr);
-        if (row_.how == How::kill) {
+        if (row_.how == EndedBy::kill) {
             xcb_kill_client(server, window_);
         } else {
             const auto atom = [server](const std::string& name) {
@@ -217,7 +217,7 @@ private:
         xcb_disconnect(server);
     }
 
-    const EndRow& row_;
+    const StudioEnd& row_;
     TemporaryFolder folder_;
     BoardAtPort board_{"uno"};
     std::unique_ptr<OwnDisplay> display_;
@@ -231,14 +231,14 @@ TEST(StudioEnds, HoweverTheStudioEndsServosAreLetGoWithinASecond) {
     constexpr rlimit kNoCore{0, 0};
     ::setrlimit(RLIMIT_CORE, &kNoCore);
     constexpr std::size_t kAtOnce = 3;
-    std::vector<std::unique_ptr<Ending>> endings;
+    std::vector<std::unique_ptr<StudioEnding>> endings;
     const auto playAll = [&endings] {
         for (const auto& ending : endings) ending->play();
         endings.clear();
     };
-    for (const EndRow& row : kEnds) {
+    for (const StudioEnd& row : kStudioEnds) {
         if (!row.always && !longTests()) continue;
-        endings.push_back(std::make_unique<Ending>(row));
+        endings.push_back(std::make_unique<StudioEnding>(row));
         if (endings.size() == kAtOnce) playAll();
     }
     playAll();

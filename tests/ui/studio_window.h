@@ -74,8 +74,8 @@ public:
     [[nodiscard]] QString text(const QString& label);
     /// Until no job runs and the view shows the newest frame in full quality.
     [[nodiscard]] bool settles();
-    /// Into the folder that LUMORPH_SCREENSHOTS names, to be looked at, `after` what moves has come to rest; without that
-    /// folder nothing waits for it.
+    /// Into the folder that LUMORPH_SCREENSHOTS names, to be looked at, `after` what moves has come to rest; without
+    /// that folder nothing waits for it.
     void screenshot(const QString& name, std::chrono::milliseconds after = std::chrono::milliseconds(100));
 
 private:

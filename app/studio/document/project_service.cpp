@@ -193,6 +193,7 @@ struct ProjectService::Data {
     void restore(std::function<void()> onReady);
     void bringBack(const std::string& id);
     void bringBackNow(const SessionState& session, const std::string& id);
+    [[nodiscard]] QString shownName() const;
     [[nodiscard]] ProjectSource source() const;
     [[nodiscard]] std::optional<SessionState> session() const;
     void tellChanged(const QString& place, const QString& path);
@@ -297,7 +298,7 @@ void ProjectService::Data::replaceAll(Opened opened, const fs::path& file) {
     document.commitPreview(tr("Edit")); // what is being dragged is work as well
     const std::optional<SessionState> before = document.modified() ? session() : std::nullopt;
     const std::string id = before ? keeper.replace(*before) : std::string();
-    const QString name = document.name();
+    const QString name = shownName();
     LoadedProject& loaded = opened.loaded;
     read.remember(loaded.state, loaded.stamps);
     extras = std::move(loaded.extras);
@@ -350,6 +351,14 @@ void ProjectService::Data::bringBack(const std::string& id) {
 void ProjectService::Data::goOn(const SessionState& session, Played played) {
     const ProjectSource& source = session.source;
     replaceAll({{source.state, {}, source.stamps, source.extras, {}}, session.demo, std::move(played)}, session.file);
+}
+
+/// What is open, for who reads of it later: the project's name, else what it was made of.
+QString ProjectService::Data::shownName() const {
+    const fs::path& rig = document.state().rig.path;
+    if (!document.file().empty() || (demo.name.empty() && rig.empty())) return document.name();
+    const Demo* open = findDemo(demo.name);
+    return open != nullptr ? QString::fromStdString(open->title.english) : fileName(rig);
 }
 
 ProjectSource ProjectService::Data::source() const { return {document.state(), read.of(document.state()), extras}; }

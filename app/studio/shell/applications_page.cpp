@@ -293,8 +293,11 @@ void ApplicationsPage::say() {
 /// As large as fits, so that all are in sight at once; where that is too small, it scrolls.
 void ApplicationsPage::arrange() {
     const int wide = width() - 2 * kMargin - 20; // and a scroll bar
+    // A line of kept work takes its height from the margins, so that the cards stay as large as they are.
     const int line = kept_ != nullptr && !kept_->isHidden() ? kept_->sizeHint().height() + kGap : 0;
-    const int high = height() - kTop - 2 * kMargin - 130 - line;
+    const int margin = std::max(4, kMargin - line / 2);
+    layout()->setContentsMargins(kMargin, kTop + margin, kMargin, margin);
+    const int high = height() - kTop - 2 * margin - 130 - line;
     const auto count = static_cast<int>(cards_.size());
     int columns = 1, card = kLeastCard;
     for (int tried = 1; tried <= std::min(kMostColumns, count); ++tried) {

@@ -20,10 +20,10 @@
 namespace lumorph::studio {
 namespace {
 
-using Clock = std::chrono::steady_clock;
+using WallClock = std::chrono::steady_clock;
 using std::chrono::milliseconds;
 
-constexpr milliseconds kWindowAnswers{500};
+constexpr milliseconds kStuckAfter{500};
 constexpr milliseconds kLetGoWithin{1000};
 constexpr std::array kAskToEnd{SIGINT, SIGTERM, SIGHUP, SIGQUIT};
 
@@ -68,10 +68,10 @@ void leaveAtExit() {
 /// In a thread of its own: a window that is stuck does not keep servos from being let go.
 void WayOut::Data::listen() {
     bool asked = false;
-    std::optional<Clock::time_point> due;
+    std::optional<WallClock::time_point> due;
     for (;;) {
         pollfd socket{sockets[1], POLLIN, 0};
-        const auto left = due ? std::chrono::ceil<milliseconds>(*due - Clock::now()).count() : -1;
+        const auto left = due ? std::chrono::ceil<milliseconds>(*due - WallClock::now()).count() : -1;
         const int ready = ::poll(&socket, 1, due ? static_cast<int>(std::max<milliseconds::rep>(left, 0)) : -1);
         if (ready == 0) {
             due.reset();
@@ -82,7 +82,7 @@ void WayOut::Data::listen() {
         if (::read(sockets[1], &signal, 1) != 1) continue;
         if (signal == 0) return;
         if (!std::exchange(asked, true)) {
-            due = Clock::now() + kWindowAnswers;
+            due = WallClock::now() + kStuckAfter;
             QMetaObject::invokeMethod(
                 &window, [this] { close(); }, Qt::QueuedConnection);
         } else if (signal != SIGHUP) {

@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include "core/base/resources.h"
 #include "tests/support/program_visit.h"
 
 // What every demonstration has for its visitors, whichever there are.
