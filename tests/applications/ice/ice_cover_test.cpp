@@ -256,7 +256,7 @@ TEST(IceCover, CountsWhatItLosesAndFloesKeepClearOfOneAnother) {
         std::printf(
             "seed %d: area off by %.1e at most, deepest overlap %.2f mm, longest deep one %d frames, %zu floes\n",
             static_cast<int>(seed), worst, 1e3 * deepest, longest, most);
-        EXPECT_LT(worst, 0.01);
+        EXPECT_LT(worst, 1e-9);
         EXPECT_LE(longest, 12) << "frames of 1/60 s";
         EXPECT_GE(most, 8U) << "it breaks";
     }
