@@ -90,8 +90,8 @@ const StudioEnd kStudioEnds[] = {
     {"SIGTERM twice", EndedBy::sent, {SIGTERM, SIGTERM}, -1, true},
     {"SIGHUP twice", EndedBy::sent, {SIGHUP, SIGHUP}, 0, true},
     {"SIGQUIT", EndedBy::sent, {SIGQUIT}, 0},
-    {"xkill", EndedBy::kill, {}, 1},
-    {"the X server ends", EndedBy::server, {}, 1},
+    {"xkill", EndedBy::kill, {}, 1, true},
+    {"the X server ends", EndedBy::server, {}, 1, true},
     {"a disk hangs, SIGTERM", EndedBy::sent, {SIGTERM}, -1, true, true},
     {"SIGSEGV", EndedBy::sent, {SIGSEGV}},
     {"SIGABRT", EndedBy::sent, {SIGABRT}},
@@ -213,7 +213,8 @@ private:
             event.data.data32[0] = atom("WM_DELETE_WINDOW");
             xcb_send_event(server, 0, window_, 0, reinterpret_cast<const char*>(&event));
         }
-        xcb_flush(server);
+        // An answer, so that what was asked before it is done when the connection ends.
+        std::free(xcb_get_input_focus_reply(server, xcb_get_input_focus(server), nullptr));
         xcb_disconnect(server);
     }
 
