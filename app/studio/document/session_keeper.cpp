@@ -149,7 +149,10 @@ void SessionKeeper::work(std::unique_lock<std::mutex>& lock) {
     std::deque<Replaced> replaced = std::exchange(replaced_, {});
     std::optional<SessionState> session = std::exchange(waiting_, std::nullopt);
     sessions_.setRestored(restored_);
-    bool listed = !replaced.empty() || failure_ || tried_ == 0; // the first may find what others have left
+    // What was replaced counts as kept when the next session is complete; the first may find what others have left.
+    unlisted_ = unlisted_ || !replaced.empty();
+    bool listed = unlisted_ || failure_ || tried_ == 0;
+    const bool completes = session.has_value();
     lock.unlock();
     const Clock::time_point begun = Clock::now();
     std::exception_ptr failure;
@@ -173,7 +176,8 @@ void SessionKeeper::work(std::unique_lock<std::mutex>& lock) {
         replaced_ = std::move(replaced);
         if (!waiting_) waiting_ = std::move(session);
         due_ = Clock::now() + kAfterFailure;
-    } else if (!released_.empty()) {
+    } else {
+        unlisted_ = unlisted_ && !completes;
         std::erase_if(released_, [&](const auto& one) {
             if (one.second > number) return false;
             removeKeptWork(folder_, one.first);

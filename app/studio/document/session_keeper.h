@@ -87,8 +87,9 @@ private:
 
     const std::filesystem::path home_; ///< the folder that all want
     std::function<std::optional<SessionState>()> snapshot_;
-    SessionFolder sessions_;                          ///< the writer's
-    FolderLock ownLock_;                              ///< of a second program's folder
+    SessionFolder sessions_; ///< the writer's
+    FolderLock ownLock_;     ///< of a second program's folder
+    bool unlisted_ = false;  ///< the writer's: replaced work was written, and no session after it
     std::optional<std::filesystem::path> leftBehind_; ///< the writer's: what it kept its sessions in before
 
     mutable std::mutex mutex_; ///< of what follows; held for moments only
