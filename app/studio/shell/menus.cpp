@@ -11,9 +11,9 @@ namespace lumorph::studio {
 namespace {
 
 /// The order of the File menu, whatever was added first. What begins with a name stands with it.
-const QStringList kFileOrder{"file.new",     "file.open",   "file.bringBack", "rig.open", "file.save", "file.saveAs",
-                             "applications", "demo.",       "labyrinth.",     "rig.new",  "rig.draw",  "rig.save",
-                             "record.",      "replay.open", "export.",        "room.",    "file.quit"};
+const QStringList kFileOrder{"file.new",     "file.open",   "rig.open",   "file.save", "file.saveAs", "file.bringBack",
+                             "applications", "demo.",       "labyrinth.", "rig.new",   "rig.draw",    "rig.save",
+                             "record.",      "replay.open", "export.",    "room.",     "file.quit"};
 
 int rankOf(const QString& id) {
     const auto found = std::find_if(kFileOrder.begin(), kFileOrder.end(), [&id](const QString& one) {
