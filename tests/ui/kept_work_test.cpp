@@ -231,7 +231,7 @@ TEST(KeptWorkWindow, WorkComesBackAfterTwoCards) {
     };
     open("water");
     open("labyrinth");
-    ASSERT_TRUE(eventually([&] { return project.keptWork().size() == 1 && command->isEnabled(); }));
+    ASSERT_TRUE(eventually([&] { return project.keptWork().size() == 1; }));
     window.window().showApplications();
     EXPECT_TRUE(window.text("applications.kept.name").startsWith("Your work from "))
         << window.text("applications.kept.name").toStdString();
@@ -242,7 +242,7 @@ TEST(KeptWorkWindow, WorkComesBackAfterTwoCards) {
     EXPECT_TRUE(eventually([&] { return project.keptWork().empty() && !command->isEnabled(); }));
     // By File it is thrown away, which the same list undoes.
     project.openDemo("water");
-    ASSERT_TRUE(eventually([&] { return project.keptWork().size() == 1; }));
+    ASSERT_TRUE(eventually([&] { return project.keptWork().size() == 1 && command->isEnabled(); }));
     command->trigger();
     window.screenshot("kept-list");
     window.click("keptWork.throw");
