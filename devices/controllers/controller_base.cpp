@@ -21,7 +21,7 @@ constexpr double kDetachShare = 0.65;      // of its bytes, for letting servos g
 constexpr Microseconds kDetachGap{25'000}; // at least
 constexpr std::size_t kMostQuestions = 64;
 constexpr Microseconds kLongestTickPause{250'000}; // that counts as listening: ticks come every 50 ms or more often
-constexpr Microseconds kStuck{400'000};        // a board's own watchdog is at 500 ms, and may have begun before
+constexpr Microseconds kStuck{400'000};            // a board's own watchdog is at 500 ms, and may have begun before
 
 /// The scale with what follows from the traits.
 PulseScale scaleOf(PulseScale scale, const DeviceProfile& profile, const ControllerTraits& traits) {
