@@ -178,8 +178,8 @@ TEST(EndToEnd, TheWholeChainShowsWhatTheEyeShouldSee) {
         std::printf("light beside, as a share of the predicted 95 %%: mean %.2f, most %.2f of %zu places\n",
                     meanOf(shares), quantileOf(shares, 1.0), shares.size());
         ASSERT_GT(shares.size(), 100U);
-        // One room of twenty lies beyond its map; how wide the map is, is judged over many rooms above.
-        EXPECT_LE(quantileOf(shares, 0.95), 1.5);
+        // How wide the map is, is judged over many rooms above.
+        EXPECT_LE(quantileOf(shares, 0.95), 1.0) << "inside the predicted map in 95 of 100 places";
         EXPECT_GE(meanOf(shares), 0.04) << "a map that says nothing";
 
         const Installation estimated = measureLinks(*rig, calibrated.room, truth, 10 * seed);

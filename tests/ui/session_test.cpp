@@ -543,8 +543,8 @@ TEST_F(SessionTest, AnEditHalfASecondBeforeAKillIsKept) {
         lost += !kept || std::lround(1000.0 * kept->playback.spin) != edits;
     }
     std::printf("lost %d of %d\n", lost, judged);
-    // The disk may be late once for who writes beside this test.
-    EXPECT_LE(lost, judged / 3) << "of " << judged;
+    // The disk may be late once in ten times for who writes beside this test.
+    EXPECT_LE(lost, judged / 10) << "of " << judged;
 }
 
 /// What programs that were killed have left behind, and a session that could not be opened each day.
