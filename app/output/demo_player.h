@@ -47,7 +47,7 @@ struct ShowRates {
 /// dependence is seen so, in two halves. `name` begins the names of pictures.
 /// `pictures` may be empty: else the moment in the middle is written there as NAME-eye.png, NAME-projector.png and
 /// NAME-lab.png. `video` may be empty. Throws DeviceError where nothing can be drawn or written, InvalidInput for a
-/// time outside (0, 600], Cancelled; then no video is left. A program that ends by an error is told among the warnings.
+/// time outside (0, 600], Cancelled; then no video is left. The error that ends a program is a warning.
 ShowRates playShow(const ProjectContents& contents, const std::string& name, const ShowPictures& show,
                    const std::filesystem::path& pictures, const std::filesystem::path& video,
                    const ShowScript& script = {}, const Progress& progress = {});

@@ -59,7 +59,7 @@ public:
     /// How long a frame takes to its light, seconds: poses are predicted by it.
     void setLightDelay(double seconds);
     void setRate(double framesPerSecond);
-    /// While nobody follows the frames: only a change makes one, and time stands. Ending the pause makes one at once.
+    /// Paused, only a change makes a frame and time stands still; ending the pause makes one at once.
     void setPaused(bool paused);
     [[nodiscard]] bool paused() const noexcept { return paused_; }
     /// In which the program that shows writes.

@@ -4,7 +4,7 @@
 
 namespace lumorph::studio {
 
-/// Pauses the loop while nobody follows its frames: nothing of the window is seen, no view of the show is wanted (a
+/// Pauses the loop while its frames have no reader: nothing of the window is seen, no view of the show is wanted (a
 /// projector's window, the watch of the running show), no controller is connected, no recording runs, no tracker is
 /// open, and no job runs that may need frames.
 class LoopRest : public QObject {
