@@ -23,6 +23,7 @@ void benchRefine(const Filter& filter, Report& report);
 void benchScaling(const Filter& filter, Report& report);
 void benchFrame(const Filter& filter, Report& report);
 void benchDevices(const Filter& filter, Report& report);
+void benchApplications(const Filter& filter, Report& report);
 void benchCalibration(const Filter& filter, Report& report);
 
 } // namespace lumorph::bench

@@ -122,7 +122,7 @@ Flatness flatnessOf(const Lab& lab, const std::vector<InstalledProjector>& proje
 
 double linear(double value) { return value <= 0.04045 ? value / 12.92 : std::pow((value + 0.055) / 1.055, 2.4); }
 
-TEST(SpatialRenderer, OneProjectorMakesABentDeviceUniform) {
+TEST(SpatialRendererInRoom, OneProjectorMakesABentDeviceUniform) {
     const HeadlessContext context;
     SpatialRenderer renderer;
     const std::vector<InstalledProjector> projectors{pair()[0]};
@@ -136,7 +136,7 @@ TEST(SpatialRenderer, OneProjectorMakesABentDeviceUniform) {
     EXPECT_GT(flat.unreached, 1000);
 }
 
-TEST(SpatialRenderer, WithoutCompensationTheValueIsTheContent) {
+TEST(SpatialRendererInRoom, WithoutCompensationTheValueIsTheContent) {
     const HeadlessContext context;
     SpatialRenderer renderer;
     SceneInRoom scene = unlitScene(glm::vec3(0.7F), glm::vec3(0.7F), {pair()[0]});
@@ -149,7 +149,7 @@ TEST(SpatialRenderer, WithoutCompensationTheValueIsTheContent) {
         EXPECT_NEAR(linear(sent.at(at.x, at.y)[1] / 255.0), value, 0.004);
 }
 
-TEST(SpatialRenderer, TwoProjectorsShareTheWorkWithoutASeam) {
+TEST(SpatialRendererInRoom, TwoProjectorsShareTheWorkWithoutASeam) {
     const HeadlessContext context;
     SpatialRenderer renderer;
     const std::vector<InstalledProjector> projectors = pair();
@@ -201,7 +201,7 @@ bool seesOpenTable(const Lab& lab, const CalibratedCamera& camera, const glm::dv
     return true;
 }
 
-TEST(SpatialRenderer, WeightsFallSmoothlyTowardsShadowsAndBorders) {
+TEST(SpatialRendererInRoom, WeightsFallSmoothlyTowardsShadowsAndBorders) {
     const HeadlessContext context;
     SpatialRenderer renderer;
     const std::vector<InstalledProjector> projectors = pair();
@@ -246,7 +246,7 @@ TEST(SpatialRenderer, WeightsFallSmoothlyTowardsShadowsAndBorders) {
     EXPECT_GT(atBorders, 20);
 }
 
-TEST(SpatialRenderer, GammaOfAProjectorIsAnswered) {
+TEST(SpatialRendererInRoom, GammaOfAProjectorIsAnswered) {
     const HeadlessContext context;
     SpatialRenderer renderer;
     std::vector<InstalledProjector> projectors{pair()[0]};
@@ -277,7 +277,7 @@ Difference between(const Image& first, const Image& second) {
     return difference;
 }
 
-TEST(SpatialRenderer, PreviewOfTheLabShowsWhatTheLabShows) {
+TEST(SpatialRendererInRoom, PreviewOfTheLabShowsWhatTheLabShows) {
     const HeadlessContext context;
     SpatialRenderer renderer;
     std::vector<InstalledProjector> projectors = pair();
@@ -299,7 +299,7 @@ TEST(SpatialRenderer, PreviewOfTheLabShowsWhatTheLabShows) {
 }
 
 // The lab knows the true colours of what the light falls on, and its projectors' colours.
-TEST(SpatialRenderer, MakesUpForColouredSurfacesAndProjectors) {
+TEST(SpatialRendererInRoom, MakesUpForColouredSurfacesAndProjectors) {
     const HeadlessContext context;
     SpatialRenderer renderer;
     SceneInRoom scene = unlitScene({0.5F, 0.3F, 0.2F}, {0.1F, 0.4F, 0.3F}, {pair()[0]});
@@ -323,7 +323,7 @@ TEST(SpatialRenderer, MakesUpForColouredSurfacesAndProjectors) {
     EXPECT_GT(between(wrong, wanted).mean, 8.0);
 }
 
-TEST(SpatialRenderer, MaskIsWhiteWhereEyeAndProjectorMeet) {
+TEST(SpatialRendererInRoom, MaskIsWhiteWhereEyeAndProjectorMeet) {
     const HeadlessContext context;
     SpatialRenderer renderer;
     renderer.setEyeSize({320, 200});

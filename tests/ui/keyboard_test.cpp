@@ -27,6 +27,7 @@
 #include "app/workspaces/workspaces.h"
 #include "tests/ui/event_loop.h"
 #include "tests/ui/project_world.h"
+#include "tests/ui/studio_window.h"
 
 namespace lumorph::studio {
 namespace {
@@ -117,6 +118,7 @@ protected:
     void SetUp() override {
         QSettings(QSettings::IniFormat, QSettings::UserScope, "lumorph", "studio").clear();
         studio = std::make_unique<Studio>();
+        test::drawLittle(*studio);
         window = std::make_unique<MainWindow>(*studio, makeWorkspaces(*studio));
         window->resize(1500, 950);
         window->show();
@@ -126,6 +128,7 @@ protected:
             const auto& frame = studio->loop.frame();
             return frame && frame->matched && studio->jobs.running().empty();
         }));
+        test::setPlaying(*studio, false);
     }
 
     /// Docks behind others are raised one after another, each with what it shows.

@@ -63,6 +63,7 @@ const FrameRow* rowNumbered(const std::vector<FrameRow>& rows, std::uint64_t num
 class RecordingWindow : public ::testing::Test {
 protected:
     RecordingWindow() : window_(std::make_unique<StudioWindow>(folder_ / "session", "devices")) {
+        setPlaying(studio(), true);
         studio().settings.setValue("record/folder", QString::fromStdString((folder_ / "").string()));
         fs::remove_all(studio().settings.folder() / "devices");
     }

@@ -51,10 +51,7 @@ glm::dvec3 meets(const Ray& ray, const glm::dvec3& at, const glm::dvec3& normal)
 
 class RigHandles : public testing::Test {
 protected:
-    RigHandles() {
-        window.studio().document.change("Pause", [](StudioState& state) { state.playback.playing = false; });
-        view = window.find<ViewportWidget>("rig.viewport");
-    }
+    RigHandles() { view = window.find<ViewportWidget>("rig.viewport"); }
 
     /// Another rig than the demo's tablet.
     void take(Rig rig) {

@@ -207,6 +207,7 @@ TEST_F(SceneCentralViewTest, TheCardSaysWhereTheTimeGoesAndPosesArePredictedByIt
 }
 
 TEST_F(SceneCentralViewTest, PlayingAndOrbitingNeverStallTheWindow) {
+    setPlaying(window.studio(), true);
     auto* lab = pane("scene.lab");
     window.studio().commands.find("scene.showAll")->trigger();
     window.studio().outputs.showInWindow(0);

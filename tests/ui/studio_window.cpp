@@ -38,6 +38,14 @@ double allocatedMegabytes() {
     return static_cast<double>(heap.uordblks + heap.hblkhd) / 1e6;
 }
 
+void drawLittle(studio::Studio& studio) {
+    if (const char* share = std::getenv("LUMORPH_TEST_DRAWS")) studio.renderer.setShare(std::atof(share));
+}
+
+void setPlaying(studio::Studio& studio, bool on) {
+    studio.document.complete([on](studio::StudioState& state) { state.playback.playing = on; });
+}
+
 StudioWindow::StudioWindow(const std::filesystem::path& session, const QString& workspace) {
     const bool again = std::filesystem::exists(session);
     ::setenv("LUMORPH_SESSION", session.c_str(), 1);
@@ -48,6 +56,7 @@ StudioWindow::StudioWindow(const std::filesystem::path& session, const QString& 
         for (const char* view : {"camera/field", "camera/rig"}) studio::Settings().setValue(view, {});
     }
     studio_ = std::make_unique<studio::Studio>();
+    drawLittle(*studio_);
     studio_->settings.setTourSeen(true);
     window_ = std::make_unique<studio::MainWindow>(*studio_, studio::makeWorkspaces(*studio_));
     window_->showWorkspace(workspace);
@@ -62,6 +71,7 @@ StudioWindow::StudioWindow(const std::filesystem::path& session, const QString& 
         there = true;
     }
     EXPECT_TRUE(eventually([&] { return there && state().field.field && studio_->loop.frame(); }));
+    if (!again) setPlaying(*studio_, false);
 }
 
 StudioWindow::~StudioWindow() {

@@ -29,11 +29,18 @@ namespace lumorph::test {
 /// What of the heap is in use: without its holes, and without what drivers map by themselves.
 [[nodiscard]] double allocatedMegabytes();
 
+/// Limits the share of time that drawing in software may take to LUMORPH_TEST_DRAWS, where that is set: it would take
+/// most of the time of tests that look at other things.
+void drawLittle(studio::Studio& studio);
+/// Starts or pauses the target's animation, which is matched and drawn all the time; no step of undo.
+void setPlaying(studio::Studio& studio, bool on);
+
 /// The studio as the program makes it, 1600 x 1000, with a session folder that the test names. Widgets are found by
 /// objectName, and what a user would do is done with mouse and keys.
 class StudioWindow {
 public:
-    /// Restores the session in `session`, or opens the field's demo where there is none; waits for the first field.
+    /// Restores the session in `session`, or opens the field's demo, paused, where there is none; waits for the first
+    /// field.
     explicit StudioWindow(const std::filesystem::path& session, const QString& workspace = "field");
     ~StudioWindow();
 

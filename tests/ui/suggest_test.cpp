@@ -65,6 +65,7 @@ void expectSound(const Rig& rig) {
 }
 
 TEST_F(Suggest, FrontGrowsUntilStoppedAndADotBecomesTheRigByOneStep) {
+    test::setPlaying(window.studio(), true);
     const std::vector<std::byte> before = writeRigGlb(*window.state().rig.rig);
     tickOnly({"Dome", "Ridge"});
     window.enter("rig.suggest.most", "4");

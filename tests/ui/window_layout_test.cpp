@@ -20,6 +20,7 @@
 #include "core/base/resources.h"
 #include "tests/core/temporary_folder.h"
 #include "tests/ui/event_loop.h"
+#include "tests/ui/studio_window.h"
 
 namespace lumorph::studio {
 namespace {
@@ -40,6 +41,7 @@ protected:
 
     void start(bool withWorkspaces = false) {
         studio_ = std::make_unique<Studio>();
+        test::drawLittle(*studio_);
         studio_->settings.setTourSeen(true);
         auto workspaces = withWorkspaces ? makeWorkspaces(*studio_) : std::vector<std::unique_ptr<Workspace>>();
         window_ = std::make_unique<MainWindow>(*studio_, std::move(workspaces));

@@ -207,10 +207,8 @@ std::vector<ShowSound> AmbientProgram::sounds() const {
 Demo ambientDemo() {
     return {.name = "ambient",
             .title = {"A coast that tells time and weather", "Eine Küste, die Zeit und Wetter zeigt"},
-            .sentence = {"The lighthouse's shadow tells the hour, the sea the wind, and the next hours come along the "
-                         "horizon.",
-                         "Der Schatten des Leuchtturms zeigt die Stunde, das Meer den Wind, und am Horizont kommen die "
-                         "nächsten Stunden."},
+            .sentence = {"The lighthouse's shadow shows the hour, the sea the wind, the horizon the next hours.",
+                         "Der Schatten des Leuchtturms zeigt die Stunde, das Meer den Wind, der Horizont, was kommt."},
             .thumbnail = "thumbnails/ambient.png",
             .open = bundledTablet,
             .program = [](const ProgramStart& start, const Progress&) -> std::unique_ptr<ShowProgram> {

@@ -1,5 +1,6 @@
 #include "app/studio/rendering/render_thread.h"
 
+#include <algorithm>
 #include <atomic>
 #include <condition_variable>
 #include <deque>
@@ -32,6 +33,9 @@ constexpr std::chrono::seconds kShowPause{1};
 
 /// How long after the driver's reset, and after each attempt that failed, drawing is begun anew.
 constexpr std::chrono::seconds kAnew{1};
+
+/// The longest rest between two frames; the window still follows what its user does.
+constexpr std::chrono::milliseconds kLongestRest{250};
 
 struct ContextLost {};
 
@@ -70,6 +74,8 @@ struct RenderThread::Data {
     void drawPicture(FrameDrawer& drawer, const PictureJob& job);
     void deliver(const FrameSchedule::Work& work, DrawnFrame frame);
     void sleep(std::unique_lock<std::mutex>& lock);
+    /// After a frame that took so long, as `share` demands.
+    void rest(std::unique_lock<std::mutex>& lock, Clock::duration took);
     /// Throws ContextLost; what was drawn until then is worth nothing.
     void checkContext() const;
     void count(const Drawers& drawers);
@@ -98,6 +104,7 @@ struct RenderThread::Data {
     std::optional<DrawnShow> shown;
     Clock::time_point showAgain; ///< after it failed
     bool showsTurn = true;       ///< viewports and the show take turns
+    double share = 1.0;          ///< of its time that may go into drawing
     std::optional<QString> failure;
     bool stop = false;
 
@@ -203,6 +210,15 @@ void RenderThread::Data::step(Drawers& drawers, std::unique_lock<std::mutex>& lo
     }
     count(drawers);
     lock.lock();
+    rest(lock, Clock::now() - now);
+}
+
+void RenderThread::Data::rest(std::unique_lock<std::mutex>& lock, Clock::duration took) {
+    if (share < 1.0)
+        wake.wait_for(lock,
+                      std::min<Clock::duration>(
+                          kLongestRest, std::chrono::duration_cast<Clock::duration>(took * (1.0 / share - 1.0))),
+                      [this] { return stop || !pictures.empty(); });
 }
 
 void RenderThread::Data::sleep(std::unique_lock<std::mutex>& lock) {
@@ -332,6 +348,11 @@ void RenderThread::request(int viewport, FrameRequest request) {
         data_->schedule.request(viewport, std::move(request), Clock::now());
     }
     data_->wake.notify_one();
+}
+
+void RenderThread::setShare(double share) {
+    const std::lock_guard lock(data_->mutex);
+    data_->share = std::clamp(share, 0.01, 1.0);
 }
 
 void RenderThread::forget(int viewport) {

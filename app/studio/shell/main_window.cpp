@@ -34,6 +34,7 @@
 #include "app/studio/shell/tour.h"
 #include "app/studio/shell/visitor_desk.h"
 #include "app/studio/shell/workspace_page.h"
+#include "app/studio/widgets/panel.h"
 
 namespace lumorph::studio {
 namespace {
@@ -73,6 +74,7 @@ struct MainWindow::Data {
     Menus* menus = nullptr;
     StatusLine* status = nullptr;
     QStackedWidget* stack = nullptr;
+    QWidget* homeNotices = nullptr; ///< what concerns the whole program
     QPointer<DropOverlay> drop;
     std::unique_ptr<StopKeyWatch> stopKeys;
     EscapeTwice* escape = nullptr;
@@ -103,6 +105,11 @@ MainWindow::MainWindow(Studio& studio, std::vector<std::unique_ptr<Workspace>> w
     column->setSpacing(0);
     data_->stack = new QStackedWidget(body);
     data_->status = new StatusLine(studio, body);
+    data_->homeNotices = new QWidget(body); // over the cards, too
+    auto* home = new QVBoxLayout(data_->homeNotices);
+    home->setContentsMargins(0, 0, 0, 0);
+    home->addWidget(makeNoticeBar(studio.notices, "home"));
+    column->addWidget(data_->homeNotices);
     column->addWidget(data_->stack, 1);
     column->addWidget(makeReplayBar(studio, body));
     column->addWidget(data_->status);
@@ -303,6 +310,7 @@ void MainWindow::setForVisitors(bool on, bool locked) {
     data_->menus->setShut(on);
     data_->bar->setForVisitors(on, locked);
     data_->status->setVisible(!on);
+    data_->homeNotices->setVisible(!on);
     for (const auto& [id, page] : data_->pages) page->setKiosk(on);
     data_->desk->setMode(!on ? Mode::studio : locked ? Mode::kiosk : Mode::full);
     if (on && !data_->pages.at(data_->present)->hasVisitors()) showWorkspace("scene");

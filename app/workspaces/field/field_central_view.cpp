@@ -128,7 +128,6 @@ QWidget* FieldCentralView::makeNotices() {
     layout->setSpacing(8);
     layout->addWidget(makeNoticeBar(studio_.notices, "viewport", column));
     layout->addWidget(makeNoticeBar(studio_.notices, "project", column));
-    layout->addWidget(makeNoticeBar(studio_.notices, "home", column));
     targetNotices_ = new QWidget(column);
     auto* held = new QVBoxLayout(targetNotices_);
     held->setContentsMargins(0, 0, 0, 0);

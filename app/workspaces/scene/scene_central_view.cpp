@@ -170,7 +170,6 @@ void SceneCentralView::Data::addFloating() {
     column->setSpacing(8);
     column->addWidget(makeNoticeBar(studio.notices, "viewport", notices));
     column->addWidget(makeNoticeBar(studio.notices, "project", notices));
-    column->addWidget(makeNoticeBar(studio.notices, "home", notices));
     column->addWidget(makeNoticeBar(studio.notices, "output", notices));
     column->addWidget(makeNoticeBar(studio.notices, "visitors", notices));
     column->addWidget(makeNoticeBar(studio.notices, "calibrate", notices)); // of the watch
