@@ -237,7 +237,7 @@ TEST_F(DrawSheet, TheDrawingOfADeviceIsTakenUpAgainWithWhatItsActuatorsWereGiven
 // 60 moves a second for two seconds with the solid made beside: the window answers, and the last move counts. Where the
 // machine is busy with other things it is tried again.
 TEST_F(DrawSheet, DraggingAtSixtyMovesASecondStallsNothingAndLosesNothing) {
-    setPlaying(window.studio(), true);
+    test::setPlaying(window.studio(), true);
     petal();
     key(Qt::Key_Escape);
     click("sheet.around");
