@@ -54,7 +54,7 @@ CompiledSheet::CompiledSheet(const SheetMotion& motion, std::span<const Actuator
 std::uint32_t CompiledSheet::axesThatMove(std::uint32_t row) const {
     const SheetModes& modes = motion_.modes;
     std::vector<glm::vec3> places(modes.stateCount());
-    std::array<float, kMaxSheetModes> coefficients{};
+    std::array<float, SheetModes::kMostModes> coefficients{};
     for (std::size_t state = 0; state < places.size(); ++state) {
         std::copy_n(modes.coefficients.data() + state * modes.modeCount, modes.modeCount, coefficients.data());
         places[state] = displacement(row, coefficients.data());
@@ -72,19 +72,20 @@ std::uint32_t CompiledSheet::axesThatMove(std::uint32_t row) const {
     return axes;
 }
 
-void CompiledSheet::pose(std::uint16_t path, std::span<const double> strokes, SheetPose& pose) const noexcept {
+void CompiledSheet::evaluate(std::uint16_t path, std::span<const double> strokes,
+                             PathCoefficients& out) const noexcept {
     const auto [share, axes] = paths_[path];
-    std::array<double, kMaxSheetAxes> along{};
-    pose.still = true;
+    std::array<double, SheetModes::kMostActuators> along{};
+    out.still = true;
     for (std::size_t axis = 0; axis < actuatorOfAxis_.size(); ++axis) {
         if ((axes >> axis & 1U) == 0) continue;
         along[axis] = static_cast<double>(share) * strokes[actuatorOfAxis_[axis]];
-        pose.still = pose.still && along[axis] == 0.0;
+        out.still = out.still && along[axis] == 0.0;
     }
-    if (pose.still) return;
-    modeCoefficients(motion_.modes, {along.data(), actuatorOfAxis_.size()}, pose.coefficients);
-    std::fill(pose.coefficients.begin() + static_cast<std::ptrdiff_t>(motion_.modes.modeCount),
-              pose.coefficients.begin() + static_cast<std::ptrdiff_t>(padded_), 0.0F);
+    if (out.still) return;
+    modeCoefficients(motion_.modes, {along.data(), actuatorOfAxis_.size()}, out.values);
+    std::fill(out.values.begin() + static_cast<std::ptrdiff_t>(motion_.modes.modeCount),
+              out.values.begin() + static_cast<std::ptrdiff_t>(padded_), 0.0F);
 }
 
 glm::vec3 CompiledSheet::displacement(std::uint32_t row, const float* coefficients) const noexcept {

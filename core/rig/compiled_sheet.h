@@ -18,9 +18,9 @@ struct SheetPath {
 };
 
 /// The mode coefficients of a path at a joint state.
-struct SheetPose {
-    bool still = true;                              ///< nothing moves; `coefficients` are unset
-    std::array<float, kMaxSheetModes> coefficients; ///< 0 beyond the last mode up to a whole vector register
+struct PathCoefficients {
+    bool still = true;                                ///< nothing moves; `values` are unset
+    std::array<float, SheetModes::kMostModes> values; ///< 0 beyond the last mode up to a whole vector register
 };
 
 /// A rig's sheet with what deformation needs looked up.
@@ -38,7 +38,7 @@ public:
     [[nodiscard]] std::uint16_t actuatorOf(std::size_t axis) const noexcept { return actuatorOfAxis_[axis]; }
 
     /// `strokes` has one entry an actuator of the rig.
-    void pose(std::uint16_t path, std::span<const double> strokes, SheetPose& pose) const noexcept;
+    void evaluate(std::uint16_t path, std::span<const double> strokes, PathCoefficients& out) const noexcept;
     /// The displacement of a row, metres. Always summed in the same order: equal bit for bit wherever it is called.
     [[nodiscard]] glm::vec3 displacement(std::uint32_t row, const float* coefficients) const noexcept;
 

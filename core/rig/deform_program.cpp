@@ -159,12 +159,12 @@ void DeformProgram::runSkin(std::span<const double> strokes, std::span<glm::vec3
 }
 
 void DeformProgram::runSheet(std::span<const double> strokes, std::span<glm::vec3> out) const noexcept {
-    SheetPose pose;
-    int posed = -1;
+    PathCoefficients coefficients;
+    int evaluated = -1;
     for (const auto [path, slot, row] : sheet_) {
-        if (path != posed) core_->sheet->pose(path, strokes, pose);
-        posed = path;
-        if (!pose.still) out[slot] += core_->sheet->displacement(row, pose.coefficients.data());
+        if (path != evaluated) core_->sheet->evaluate(path, strokes, coefficients);
+        evaluated = path;
+        if (!coefficients.still) out[slot] += core_->sheet->displacement(row, coefficients.values.data());
     }
 }
 
@@ -202,11 +202,11 @@ void deformListed(const RigCore& core, std::span<const double> strokes, std::spa
         MotionSetup setup;
     };
     std::array<Kept, 4> kept;
-    struct KeptPose {
+    struct KeptPath {
         int path = -1;
-        SheetPose pose;
+        PathCoefficients coefficients;
     };
-    std::array<KeptPose, 4> keptPoses;
+    std::array<KeptPath, 4> keptPaths;
     SkinPose pose;
     if (!core.skinMoves.empty())
         poseSkin(*core.parts.skeleton, core.parts.actuators, core.skinActuators, strokes, pose);
@@ -215,12 +215,12 @@ void deformListed(const RigCore& core, std::span<const double> strokes, std::spa
         glm::vec3 point = core.parts.restMesh.positions[vertex];
         if (core.sheet && core.sheet->pathOf(vertex) != CompiledSheet::kNoPath) {
             const std::uint16_t path = core.sheet->pathOf(vertex);
-            KeptPose& entry = keptPoses[path % keptPoses.size()];
-            if (entry.path != path) core.sheet->pose(path, strokes, entry.pose);
+            KeptPath& entry = keptPaths[path % keptPaths.size()];
+            if (entry.path != path) core.sheet->evaluate(path, strokes, entry.coefficients);
             entry.path = path;
-            if (!entry.pose.still)
+            if (!entry.coefficients.still)
                 point +=
-                    core.sheet->displacement(core.parts.sheet->followers[vertex].row, entry.pose.coefficients.data());
+                    core.sheet->displacement(core.parts.sheet->followers[vertex].row, entry.coefficients.values.data());
         }
         bool skinDue = !pose.still && core.skinMoves[vertex];
         const auto applySkin = [&] {

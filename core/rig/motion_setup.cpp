@@ -109,7 +109,7 @@ MotionSetup setUp(const Actuator& actuator, const CompiledActuator& compiled, do
         break;
     case CompiledActuator::Kind::skin:
     case CompiledActuator::Kind::lever:
-        break; // posed as a whole, see poseSkin and CompiledSheet::pose
+        break; // posed as a whole, see poseSkin and CompiledSheet
     }
     return setup;
 }

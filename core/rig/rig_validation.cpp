@@ -179,11 +179,11 @@ void checkSkeleton(const Skeleton& skeleton, std::size_t vertices) {
 }
 
 void checkModes(const SheetModes& modes, const std::string& subject) {
-    require(!modes.strokes.empty() && modes.strokes.size() <= kMaxSheetAxes, subject,
+    require(!modes.strokes.empty() && modes.strokes.size() <= SheetModes::kMostActuators, subject,
             "its grid has no axes, or more than 8", "give it one axis a lever");
     for (const std::vector<float>& nodes : modes.strokes) {
         const char* const remedy = "give each axis 2 to 5 strokes from 0 to 1, for example 0, 0.5, 1";
-        require(nodes.size() >= 2 && nodes.size() <= kMaxSheetNodes, subject,
+        require(nodes.size() >= 2 && nodes.size() <= SheetModes::kMostLevels, subject,
                 "an axis has fewer than 2 strokes or more than 5", remedy);
         require(nodes.front() == 0.0F && nodes.back() == 1.0F, subject, "the strokes of an axis do not go from 0 to 1",
                 remedy);
@@ -191,10 +191,10 @@ void checkModes(const SheetModes& modes, const std::string& subject) {
             require(nodes[i] - nodes[i - 1] >= 0.0099F, subject,
                     "the strokes of an axis are not ascending, or closer than 0.01", remedy);
     }
-    require(modes.modeCount >= 1 && modes.modeCount <= kMaxSheetModes, subject, "it has no modes, or more than 64",
-            "keep the modes with the largest singular values");
+    require(modes.modeCount >= 1 && modes.modeCount <= SheetModes::kMostModes, subject,
+            "it has no modes, or more than 64", "keep the modes with the largest singular values");
     const std::size_t states = modes.stateCount();
-    require(states * modes.modeCount <= kMaxSheetCoefficients, subject, "it has more than 65,536 coefficients",
+    require(states * modes.modeCount <= SheetModes::kMostCoefficients, subject, "it has more than 65,536 coefficients",
             "keep fewer modes, or a coarser grid");
     require(modes.coefficients.size() == states * modes.modeCount, subject,
             "there is not one coefficient a state and mode", "give the coefficients of all states of the grid");
@@ -225,7 +225,7 @@ void checkFollowers(const SheetMotion& motion, std::size_t vertices, const std::
                 "use rows of the modes");
         followed[follower.row] = true;
         shares.insert(follower.share);
-        require(shares.size() <= kMaxSheetShares, subject, "paths have more than 64 different shares",
+        require(shares.size() <= SheetMotion::kMostShares, subject, "paths have more than 64 different shares",
                 "use the same shares all around the rim");
     }
     for (const bool one : followed)

@@ -37,16 +37,17 @@ SheetModes readSheetExtras(const json& extras, const EntryPlace& place) {
     SheetModes sheet;
     const auto count = extras.find("modes");
     if (count == extras.end() || !count->is_number_unsigned() || count->get<std::uint64_t>() < 1 ||
-        count->get<std::uint64_t>() > kMaxSheetModes)
-        place.fail("\"modes\" of the sheet is not a number from 1 to " + std::to_string(kMaxSheetModes),
+        count->get<std::uint64_t>() > SheetModes::kMostModes)
+        place.fail("\"modes\" of the sheet is not a number from 1 to " + std::to_string(SheetModes::kMostModes),
                    "keep fewer modes");
     sheet.modeCount = count->get<std::size_t>();
     // A flat list, which modelling tools keep: each axis begins at 0.
-    for (const float stroke : sheetNumbers(extras, "strokes", kMaxSheetAxes * kMaxSheetNodes, place)) {
+    for (const float stroke :
+         sheetNumbers(extras, "strokes", SheetModes::kMostActuators * SheetModes::kMostLevels, place)) {
         if (stroke == 0.0F || sheet.strokes.empty()) sheet.strokes.emplace_back();
         sheet.strokes.back().push_back(stroke);
     }
-    sheet.coefficients = sheetNumbers(extras, "coefficients", kMaxSheetCoefficients, place);
+    sheet.coefficients = sheetNumbers(extras, "coefficients", SheetModes::kMostCoefficients, place);
     return sheet;
 }
 

@@ -6,7 +6,7 @@
 namespace lumorph {
 namespace {
 
-using Basis = std::array<float, kMaxSheetNodes>;
+using Basis = std::array<float, SheetModes::kMostLevels>;
 
 /// The Lagrange polynomials of an axis' nodes at a stroke. Exactly 0 or 1 at the nodes.
 Basis lagrangeAt(const std::vector<float>& nodes, double stroke) noexcept {
@@ -43,7 +43,7 @@ std::size_t SheetModes::stateCount() const noexcept {
 
 void modeCoefficients(const SheetModes& modes, std::span<const double> strokes, std::span<float> out) noexcept {
     // What is left of the tensor after the first axis is at most half of it.
-    std::array<float, kMaxSheetCoefficients / 2> partial;
+    std::array<float, SheetModes::kMostCoefficients / 2> partial;
     const float* tensor = modes.coefficients.data();
     std::size_t size = modes.coefficients.size();
     for (std::size_t axis = 0; axis < modes.strokes.size(); ++axis) {
@@ -56,7 +56,7 @@ void modeCoefficients(const SheetModes& modes, std::span<const double> strokes, 
 }
 
 glm::vec3 rowDisplacement(const SheetModes& modes, std::size_t row, std::span<const double> strokes) noexcept {
-    std::array<float, kMaxSheetModes> coefficients;
+    std::array<float, SheetModes::kMostModes> coefficients;
     modeCoefficients(modes, strokes, coefficients);
     glm::vec3 sum(0.0F);
     for (std::size_t k = 0; k < modes.modeCount; ++k) sum += coefficients[k] * modes.modes[row * modes.modeCount + k];

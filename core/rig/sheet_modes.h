@@ -9,12 +9,6 @@
 
 namespace lumorph {
 
-inline constexpr std::size_t kMaxSheetAxes = 8;
-inline constexpr std::size_t kMaxSheetNodes = 5; ///< strokes of one axis
-inline constexpr std::size_t kMaxSheetModes = 64;
-inline constexpr std::size_t kMaxSheetCoefficients = 65'536; ///< states x modes
-inline constexpr std::size_t kMaxSheetShares = 64;           ///< different shares of paths
-
 /// Metres by which a lever must move a row in some state of the grid to count as moving it.
 inline constexpr float kSheetStill = 1e-6F;
 
@@ -22,12 +16,17 @@ inline constexpr float kSheetStill = 1e-6F;
 /// displaced from rest by sum_k c_k(s) mode_k(r). The c_k interpolate the grid's states by tensor-product Lagrange
 /// polynomials in the strokes s of the levers, one axis of the grid each.
 struct SheetModes {
-    /// Of each axis the strokes of its nodes: 2 to kMaxSheetNodes, ascending from 0 to 1, at least 0.01 apart.
+    static constexpr std::size_t kMostActuators = 8;
+    static constexpr std::size_t kMostLevels = 5; ///< strokes of an axis
+    static constexpr std::size_t kMostModes = 64;
+    static constexpr std::size_t kMostCoefficients = 65'536;
+
+    /// Of each axis the strokes of its nodes: 2 to kMostLevels, ascending from 0 to 1, at least 0.01 apart.
     std::vector<std::vector<float>> strokes;
     std::size_t modeCount = 0;
     /// [state * modeCount + mode]; of the states the last axis varies fastest. All 0 at state 0, which is rest.
     std::vector<float> coefficients;
-    /// [row * modeCount + mode], metres.
+    /// [row * modeCount + mode]; coefficient x mode is in metres.
     std::vector<glm::vec3> modes;
 
     [[nodiscard]] std::size_t stateCount() const noexcept;
@@ -47,6 +46,7 @@ void modeCoefficients(const SheetModes& modes, std::span<const double> strokes, 
 /// What of a rig's mesh follows its sheet.
 struct SheetMotion {
     static constexpr std::uint32_t kNoRow = ~std::uint32_t{0};
+    static constexpr std::size_t kMostShares = 64; ///< different ones
     /// A vertex is displaced as its row is at strokes share x s. Rows of a skirt below the sheet's rim have shares
     /// below 1, so that the solid holds what the rim passed on its way from rest (RigParts::pathInside).
     struct Follower {

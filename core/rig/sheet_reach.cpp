@@ -17,7 +17,7 @@ constexpr float kLooseness = 0.02F;  ///< of the extent, on either side
 constexpr float kFineEnough = 2e-6F; ///< metres: of rows that hardly move
 constexpr std::size_t kMostPieces = 128;
 
-using Matrix = std::array<std::array<double, kMaxSheetNodes>, kMaxSheetNodes>;
+using Matrix = std::array<std::array<double, SheetModes::kMostLevels>, SheetModes::kMostLevels>;
 
 /// Inverse of a small regular matrix by Gauss-Jordan elimination with row pivots.
 Matrix inverseOf(Matrix m, std::size_t size) {
@@ -44,8 +44,8 @@ Matrix inverseOf(Matrix m, std::size_t size) {
 }
 
 /// Values of the Bernstein polynomials of degree size - 1 at t.
-std::array<double, kMaxSheetNodes> bernsteinAt(double t, std::size_t size) {
-    std::array<double, kMaxSheetNodes> values{1.0};
+std::array<double, SheetModes::kMostLevels> bernsteinAt(double t, std::size_t size) {
+    std::array<double, SheetModes::kMostLevels> values{1.0};
     for (std::size_t degree = 1; degree < size; ++degree)
         for (std::size_t i = degree + 1; i-- > 0;)
             values[i] = (i < degree ? (1.0 - t) * values[i] : 0.0) + (i > 0 ? t * values[i - 1] : 0.0);
@@ -78,7 +78,7 @@ std::vector<double> applied(const Matrix& matrix, const std::vector<double>& ten
 
 /// Some part of the domain with the Bernstein coefficients over it.
 struct Piece {
-    std::array<std::size_t, kMaxSheetAxes> sizes{};
+    std::array<std::size_t, SheetModes::kMostActuators> sizes{};
     std::size_t axes = 0;
     std::vector<float> b;
     float upper = 0.0F;
@@ -266,7 +266,7 @@ Box SheetReach::of(std::uint16_t path, std::uint32_t row) const {
     const Form& form = forms_[path];
     const std::size_t states = form.coefficients.size() / modes.modeCount;
     std::vector<glm::vec3> b(states);
-    std::array<float, kMaxSheetModes> coefficients{};
+    std::array<float, SheetModes::kMostModes> coefficients{};
     for (std::size_t state = 0; state < states; ++state) {
         std::copy_n(form.coefficients.data() + state * modes.modeCount, modes.modeCount, coefficients.data());
         b[state] = sheet_.displacement(row, coefficients.data());

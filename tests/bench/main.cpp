@@ -16,10 +16,17 @@ struct Group {
     void (*run)(const Filter&, Report&);
 };
 
-constexpr Group kGroups[] = {
-    {"voting", benchVoting},   {"voxelize", benchVoxelize},      {"build", benchBuild},     {"loop", benchLoop},
-    {"live", benchLive},       {"refine", benchRefine},          {"scaling", benchScaling}, {"frame", benchFrame},
-    {"devices", benchDevices}, {"calibration", benchCalibration}};
+constexpr Group kGroups[] = {{"voting", benchVoting},
+                             {"voxelize", benchVoxelize},
+                             {"sheet", benchSheet},
+                             {"build", benchBuild},
+                             {"loop", benchLoop},
+                             {"live", benchLive},
+                             {"refine", benchRefine},
+                             {"scaling", benchScaling},
+                             {"frame", benchFrame},
+                             {"devices", benchDevices},
+                             {"calibration", benchCalibration}};
 
 } // namespace
 
