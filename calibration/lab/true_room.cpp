@@ -66,6 +66,8 @@ std::optional<double> degreesOf(const Actuator& actuator) {
     if (const auto* bend = std::get_if<Bend>(&actuator.deformer)) return bend->max.inDegrees() - bend->min.inDegrees();
     if (const auto* joint = std::get_if<SkinJoint>(&actuator.deformer))
         if (joint->motion == SkinJoint::Motion::rotate) return (joint->max - joint->min) / kDegree;
+    if (const auto* lift = std::get_if<SheetLift>(&actuator.deformer))
+        return lift->max.inDegrees() - lift->min.inDegrees();
     return std::nullopt;
 }
 

@@ -74,6 +74,10 @@ struct Image {
         throw InvalidInput(subject, "it turns a joint of the skin, which cannot be copied here",
                            "add the joint in the program that the model was made with");
     }
+    void operator()(SheetLift&) const {
+        throw InvalidInput(subject, "it is a lever of the sheet, whose shape was computed with the levers that it has",
+                           "add the lever where the sheet is drawn");
+    }
 };
 
 /// Influences on the vertices where the copy stands, ascending, with the displacements of a morph target in the same

@@ -52,6 +52,31 @@ void setJointWeight(Skeleton& skeleton, std::size_t vertex, int joint, float wei
     weights[slot] = weight;
 }
 
+/// While a rig is edited its lever may speak of an axis that the sheet lacks.
+bool hasLever(const RigParts& parts, const SheetLift& lift) {
+    return parts.sheet && lift.axis >= 0 && static_cast<std::size_t>(lift.axis) < parts.sheet->modes.strokes.size();
+}
+
+bool followsSheet(const RigParts& parts, std::size_t vertex) {
+    return parts.sheet && parts.sheet->followers[vertex].row != SheetMotion::kNoRow;
+}
+
+/// Shares of the largest displacement, with this lever alone at full stroke.
+std::vector<float> leverWeights(const SheetMotion& sheet, const SheetLift& lift) {
+    std::vector<double> strokes(sheet.modes.strokes.size(), 0.0);
+    std::vector<float> weights;
+    float most = 0.0F;
+    for (const SheetMotion::Follower& follower : sheet.followers) {
+        strokes.at(static_cast<std::size_t>(lift.axis)) = static_cast<double>(follower.share);
+        const bool follows = follower.row != SheetMotion::kNoRow;
+        weights.push_back(follows ? glm::length(rowDisplacement(sheet.modes, follower.row, strokes)) : 0.0F);
+        most = std::max(most, weights.back());
+    }
+    if (most > 0.0F)
+        for (float& weight : weights) weight = rounded(weight / most);
+    return weights;
+}
+
 void setMorphWeights(Actuator& actuator, std::span<const float> weights) {
     // None is taken out: its displacement would be lost for ever.
     for (Influence& influence : actuator.influences) influence.weight = rounded(weights[influence.vertex]);
@@ -63,6 +88,8 @@ std::vector<float> actuatorWeights(const RigParts& parts, std::size_t index) {
     const Actuator& actuator = parts.actuators.at(index);
     std::vector<float> weights(parts.restMesh.positions.size(), 0.0F);
     const auto* joint = std::get_if<SkinJoint>(&actuator.deformer);
+    if (const auto* lift = std::get_if<SheetLift>(&actuator.deformer); lift && hasLever(parts, *lift))
+        return leverWeights(*parts.sheet, *lift);
     if (!joint) {
         for (const Influence& influence : actuator.influences) weights[influence.vertex] = influence.weight;
         return weights;
@@ -77,7 +104,10 @@ std::vector<float> actuatorWeights(const RigParts& parts, std::size_t index) {
 std::vector<bool> canFollow(const RigParts& parts, std::size_t index) {
     const Actuator& actuator = parts.actuators.at(index);
     const bool morphs = std::holds_alternative<MorphTarget>(actuator.deformer);
-    std::vector<bool> follows(parts.restMesh.positions.size(), !morphs);
+    const bool any = !morphs && !std::holds_alternative<SheetLift>(actuator.deformer);
+    std::vector<bool> follows(parts.restMesh.positions.size(), any);
+    if (any)
+        for (std::size_t v = 0; v < follows.size(); ++v) follows[v] = !followsSheet(parts, v);
     if (morphs)
         for (const Influence& influence : actuator.influences) follows[influence.vertex] = true;
     return follows;
@@ -98,9 +128,12 @@ void setActuatorWeights(RigParts& parts, std::size_t index, std::span<const floa
         return;
     }
     if (std::holds_alternative<MorphTarget>(actuator.deformer)) return setMorphWeights(actuator, weights);
+    if (std::holds_alternative<SheetLift>(actuator.deformer))
+        throw InvalidInput(subject, "what follows a lever is computed from the sheet's mechanics",
+                           "choose an actuator of another kind");
     actuator.influences.clear();
     for (std::size_t v = 0; v < weights.size(); ++v)
-        if (const float weight = rounded(weights[v]); weight > 0.0F)
+        if (const float weight = rounded(weights[v]); weight > 0.0F && !followsSheet(parts, v))
             actuator.influences.push_back({static_cast<std::uint32_t>(v), weight});
 }
 

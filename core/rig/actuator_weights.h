@@ -14,17 +14,18 @@
 namespace lumorph {
 
 /// How much of an actuator's motion each vertex of the rest mesh follows, 0 to 1, one a vertex. Of a joint of the skin:
-/// the vertex's own share of that joint, without those of joints that hang on it.
+/// the vertex's own share of that joint, without those of joints that hang on it. Of a lever of the sheet: how far it
+/// moves the vertex, as a share of the farthest.
 [[nodiscard]] std::vector<float> actuatorWeights(const RigParts& parts, std::size_t actuator);
 
-/// Whether a vertex can follow the actuator at all, one a vertex: a morph target moves only what its shape moves, all
-/// else moves any vertex.
+/// Whether a vertex can follow the actuator at all, one a vertex: a morph target moves only what its shape moves, a
+/// lever of the sheet is led by mechanics alone and takes none, all else moves any vertex that follows no sheet.
 [[nodiscard]] std::vector<bool> canFollow(const RigParts& parts, std::size_t actuator);
 
 /// Sets them, in whole thousandths: what follows alike is deformed together. A vertex that cannot follow stays as it
 /// is. Shares of other joints make room for a joint's in proportion, or take what it leaves; where it was the only one,
 /// its parent takes that, and a joint without parent keeps all. Throws InvalidInput when there is not one weight a
-/// vertex, or one is not within 0 and 1.
+/// vertex, or one is not within 0 and 1, and for levers of the sheet.
 void setActuatorWeights(RigParts& parts, std::size_t actuator, std::span<const float> weights);
 
 /// How an influence ends with the distance from where it begins, metres.

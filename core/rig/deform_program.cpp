@@ -20,7 +20,9 @@ RigCore::RigCore(RigParts rigParts) : parts(std::move(rigParts)) {
         for (const bool morphs : {true, false})
             for (std::size_t a = 0; a < actuators.size(); ++a) {
                 if ((actuators[a].kind == CompiledActuator::Kind::morph) != morphs) continue;
-                if (actuators[a].kind == CompiledActuator::Kind::skin) continue;
+                if (actuators[a].kind == CompiledActuator::Kind::skin ||
+                    actuators[a].kind == CompiledActuator::Kind::lever)
+                    continue;
                 const auto& influences = parts.actuators[a].influences;
                 for (std::size_t i = 0; i < influences.size(); ++i)
                     if (influences[i].weight != 0.0F)
@@ -33,6 +35,7 @@ RigCore::RigCore(RigParts rigParts) : parts(std::move(rigParts)) {
     steps.resize(stepStart.back());
     std::vector<std::uint32_t> next(stepStart.begin(), stepStart.end() - 1);
     forEachStep([&](std::uint32_t vertex, const MotionStep& step) { steps[next[vertex]++] = step; });
+    if (parts.sheet) sheet.emplace(*parts.sheet, parts.actuators);
     if (skinActuators.empty()) return;
 
     // A joint moves when it or one of its ancestors is an actuator's.
@@ -65,6 +68,8 @@ DeformProgram::DeformProgram(std::shared_ptr<const RigCore> core, std::span<cons
     for (std::uint32_t slot = 0; slot < vertices.size(); ++slot) {
         const std::uint32_t vertex = vertices[slot];
         rest_.push_back(core_->parts.restMesh.positions[vertex]);
+        if (core_->sheet && core_->sheet->pathOf(vertex) != CompiledSheet::kNoPath)
+            sheet_.push_back({core_->sheet->pathOf(vertex), slot, core_->parts.sheet->followers[vertex].row});
         bool fromRest = true;
         if (!core_->skinMoves.empty() && core_->skinMoves[vertex]) {
             skinned_.push_back({slot, vertex});
@@ -89,6 +94,7 @@ DeformProgram::DeformProgram(std::shared_ptr<const RigCore> core, std::span<cons
             space.push_back(entry);
         }
     }
+    std::ranges::stable_sort(sheet_, {}, &SheetSlot::path);
     addRuns(morphs, morphRuns_);
     addRuns(space, spaceRuns_);
 }
@@ -118,6 +124,7 @@ void DeformProgram::run(std::span<const double> strokes, std::span<glm::vec3> ou
     std::copy(rest_.begin(), rest_.end(), out.begin());
     runMorphs(strokes, out);
     if (!skinned_.empty()) runSkin(strokes, out);
+    if (!sheet_.empty()) runSheet(strokes, out);
     for (const Run& run : spaceRuns_) {
         const double stroke = strokes[run.actuator];
         if (stroke == 0.0) continue;
@@ -149,6 +156,16 @@ void DeformProgram::runSkin(std::span<const double> strokes, std::span<glm::vec3
     if (pose.still) return;
     for (const auto [slot, vertex] : skinned_)
         out[slot] = skinned(pose, skeleton.vertexJoints[vertex], skeleton.vertexWeights[vertex], out[slot]);
+}
+
+void DeformProgram::runSheet(std::span<const double> strokes, std::span<glm::vec3> out) const noexcept {
+    PathCoefficients coefficients;
+    int evaluated = -1;
+    for (const auto [path, slot, row] : sheet_) {
+        if (path != evaluated) core_->sheet->evaluate(path, strokes, coefficients);
+        evaluated = path;
+        if (!coefficients.still) out[slot] += core_->sheet->displacement(row, coefficients.values.data());
+    }
 }
 
 void DeformProgram::runSpace(const Run& run, const MotionSetup& setup, std::span<glm::vec3> out) const noexcept {
@@ -185,12 +202,26 @@ void deformListed(const RigCore& core, std::span<const double> strokes, std::spa
         MotionSetup setup;
     };
     std::array<Kept, 4> kept;
+    struct KeptPath {
+        int path = -1;
+        PathCoefficients coefficients;
+    };
+    std::array<KeptPath, 4> keptPaths;
     SkinPose pose;
     if (!core.skinMoves.empty())
         poseSkin(*core.parts.skeleton, core.parts.actuators, core.skinActuators, strokes, pose);
     for (std::size_t k = 0; k < vertices.size(); ++k) {
         const std::uint32_t vertex = vertices[k];
         glm::vec3 point = core.parts.restMesh.positions[vertex];
+        if (core.sheet && core.sheet->pathOf(vertex) != CompiledSheet::kNoPath) {
+            const std::uint16_t path = core.sheet->pathOf(vertex);
+            KeptPath& entry = keptPaths[path % keptPaths.size()];
+            if (entry.path != path) core.sheet->evaluate(path, strokes, entry.coefficients);
+            entry.path = path;
+            if (!entry.coefficients.still)
+                point +=
+                    core.sheet->displacement(core.parts.sheet->followers[vertex].row, entry.coefficients.values.data());
+        }
         bool skinDue = !pose.still && core.skinMoves[vertex];
         const auto applySkin = [&] {
             const Skeleton& skeleton = *core.parts.skeleton;

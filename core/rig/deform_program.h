@@ -2,9 +2,11 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
+#include "core/rig/compiled_sheet.h"
 #include "core/rig/motion_setup.h"
 #include "core/rig/rig.h"
 
@@ -20,6 +22,8 @@ struct MotionStep {
 /// A rig's parts with what deformation needs looked up: for every vertex its steps in order.
 struct RigCore {
     explicit RigCore(RigParts rigParts);
+    RigCore(const RigCore&) = delete; // `sheet` refers to `parts`
+    RigCore& operator=(const RigCore&) = delete;
 
     RigParts parts;
     std::vector<CompiledActuator> actuators;
@@ -27,6 +31,7 @@ struct RigCore {
     std::vector<std::uint32_t> stepStart; ///< vertices + 1
     std::vector<MotionStep> steps;        ///< morph targets first, then hinges, bends and slides in order
     std::vector<bool> skinMoves;          ///< empty without joint actuators, else one a vertex
+    std::optional<CompiledSheet> sheet;
 
     [[nodiscard]] std::span<const MotionStep> stepsOf(std::uint32_t vertex) const noexcept {
         return {steps.data() + stepStart[vertex], steps.data() + stepStart[vertex + 1]};
@@ -60,6 +65,7 @@ private:
 
     void addRuns(std::vector<Entry>& entries, std::vector<Run>& runs);
     void runMorphs(std::span<const double> strokes, std::span<glm::vec3> out) const noexcept;
+    void runSheet(std::span<const double> strokes, std::span<glm::vec3> out) const noexcept;
     void runSkin(std::span<const double> strokes, std::span<glm::vec3> out) const noexcept;
     void runSpace(const Run& run, const MotionSetup& setup, std::span<glm::vec3> out) const noexcept;
     void runBend(const Run& run, const MotionSetup& setup, std::span<glm::vec3> out) const noexcept;
@@ -78,6 +84,12 @@ private:
         std::uint32_t vertex;
     };
     std::vector<SkinnedSlot> skinned_;
+    struct SheetSlot {
+        std::uint16_t path;
+        std::uint32_t slot;
+        std::uint32_t row;
+    };
+    std::vector<SheetSlot> sheet_; ///< by path
 };
 
 /// The listed vertices without compiling them first; for lists used once.

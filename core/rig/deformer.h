@@ -65,6 +65,15 @@ struct SkinJoint {
     bool operator==(const SkinJoint&) const = default;
 };
 
-using Deformer = std::variant<Hinge, Bend, Slide, MorphTarget, SkinJoint>;
+/// Lifts the rig's sheet by one of the levers under it. What follows, and how, is `SheetMotion`'s; the actuator has no
+/// influences of its own.
+struct SheetLift {
+    int axis = -1; ///< of the sheet's grid, index into SheetModes::strokes
+    Angle min;     ///< of the lever at stroke 0; describes it, moves nothing
+    Angle max;     ///< at stroke 1
+    bool operator==(const SheetLift&) const = default;
+};
+
+using Deformer = std::variant<Hinge, Bend, Slide, MorphTarget, SkinJoint, SheetLift>;
 
 } // namespace lumorph

@@ -73,6 +73,10 @@ struct Compiler {
         out.range = joint.max - joint.min;
         out.axis = glm::normalize(joint.axis);
     }
+    void operator()(const SheetLift&) const {
+        out.kind = CompiledActuator::Kind::lever;
+        out.range = 1.0;
+    }
 };
 
 } // namespace
@@ -104,7 +108,8 @@ MotionSetup setUp(const Actuator& actuator, const CompiledActuator& compiled, do
         setup.keys = placeOf(std::get<MorphTarget>(actuator.deformer), amount);
         break;
     case CompiledActuator::Kind::skin:
-        break; // posed as a whole, see poseSkin
+    case CompiledActuator::Kind::lever:
+        break; // posed as a whole, see poseSkin and CompiledSheet
     }
     return setup;
 }

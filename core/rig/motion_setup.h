@@ -14,9 +14,9 @@ namespace lumorph {
 
 /// An actuator's deformer with everything that does not depend on the stroke worked out.
 struct CompiledActuator {
-    enum class Kind : std::uint8_t { morph, skin, hinge, bend, slide };
+    enum class Kind : std::uint8_t { morph, skin, lever, hinge, bend, slide };
     Kind kind = Kind::slide;
-    double range = 0.0;  ///< max - min: radians, metres; 1 for morph targets
+    double range = 0.0;  ///< max - min: radians, metres; 1 for morph targets and levers of a sheet
     double length = 0.0; ///< metres of arc (bend)
     glm::vec3 origin{0.0F};
     glm::vec3 axis{0.0F};      ///< unit

@@ -39,10 +39,13 @@ bool jointMoves(const RigCore& core, std::uint16_t actuator, std::uint32_t verte
 bool deformAlike(const RigParts& a, const RigParts& b) {
     if (&a == &b) return true;
     const auto alike = [](const Actuator& one, const Actuator& other) {
-        return one.deformer == other.deformer && one.influences == other.influences;
+        const auto *lever = std::get_if<SheetLift>(&one.deformer),
+                   *otherLever = std::get_if<SheetLift>(&other.deformer);
+        const bool same = lever && otherLever ? lever->axis == otherLever->axis : one.deformer == other.deformer;
+        return same && one.influences == other.influences;
     };
     return a.pathInside == b.pathInside && std::ranges::equal(a.actuators, b.actuators, alike) &&
-           a.skeleton == b.skeleton && a.restMesh == b.restMesh;
+           a.skeleton == b.skeleton && a.sheet == b.sheet && a.restMesh == b.restMesh;
 }
 
 struct Rig::Compiled {
@@ -62,10 +65,19 @@ struct Rig::Compiled {
             if (!core->skinMoves.empty() && core->skinMoves[vertex])
                 for (const std::uint16_t a : core->skinActuators)
                     if (jointMoves(*core, a, vertex)) dependencies.push_back(a);
+            if (core->sheet) addLevers(vertex);
             std::sort(dependencies.begin() + static_cast<std::ptrdiff_t>(first), dependencies.end());
             dependencyStart.push_back(static_cast<std::uint32_t>(dependencies.size()));
             for (std::size_t k = first; k < dependencies.size(); ++k) verticesOf[dependencies[k]].push_back(vertex);
         }
+    }
+
+    void addLevers(std::uint32_t vertex) {
+        const std::uint16_t path = core->sheet->pathOf(vertex);
+        if (path == CompiledSheet::kNoPath) return;
+        const std::uint32_t axes = core->sheet->paths()[path].axes;
+        for (std::size_t axis = 0; axis < core->parts.sheet->modes.strokes.size(); ++axis)
+            if ((axes >> axis & 1U) != 0) dependencies.push_back(core->sheet->actuatorOf(axis));
     }
 
     std::shared_ptr<const RigCore> core;

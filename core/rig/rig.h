@@ -15,6 +15,7 @@
 #include "core/base/units.h"
 #include "core/geometry/triangle_mesh.h"
 #include "core/rig/deformer.h"
+#include "core/rig/sheet_modes.h"
 
 namespace lumorph {
 
@@ -38,7 +39,7 @@ struct ActuatorDrive {
 struct Actuator {
     std::string name;
     Deformer deformer;
-    std::vector<Influence> influences; ///< ascending by vertex; unused by SkinJoint
+    std::vector<Influence> influences; ///< ascending by vertex; unused by SkinJoint and SheetLift
     int levels = 33;                   ///< suggested level count m
     double maxVelocity = 1.0;          ///< strokes a second
     double dampingRatio = 1.0;         ///< 1 is critical
@@ -68,6 +69,8 @@ struct RigParts {
     TriangleMesh restMesh; ///< closed solid at stroke 0, device coordinates, metres
     std::vector<Actuator> actuators;
     std::optional<Skeleton> skeleton;
+    /// For SheetLift actuators. Its vertices follow no other actuator, and a rig has a skeleton or a sheet, not both.
+    std::optional<SheetMotion> sheet;
     /// True when the solid at a state holds all it passed on the way from rest (its skirt follows
     /// the path), so that the covered volume needs no sweep. `shapeReport` measures it.
     bool pathInside = false;
@@ -78,7 +81,8 @@ struct RigParts {
 };
 
 /// Whether both are the same solid in every joint state, so that a field of the one is a field of the other: names,
-/// suggested levels, velocity limits, damping, drives and drawing may differ, because V(s) depends on none of them.
+/// suggested levels, velocity limits, damping, drives, angles of levers and drawing may differ, because V(s) depends on
+/// none of them.
 [[nodiscard]] bool deformAlike(const RigParts& a, const RigParts& b);
 
 class DeformProgram;
@@ -88,7 +92,8 @@ class DeformProgram;
 /// The rest mesh is the shape at the lower end of every range; a stroke x weight of 1 has moved a
 /// vertex by max - min. Deformation order: morph targets (added to the rest positions), then the skin,
 /// then hinges, bends and slides in the actuators' order, each acting on what came before as a map of
-/// space. Immutable; safe to share between threads. Copies share their data.
+/// space. Vertices of a sheet follow its levers alone. Immutable; safe to share between threads. Copies share their
+/// data.
 class Rig {
     struct Compiled;
 
@@ -104,7 +109,8 @@ public:
     [[nodiscard]] const std::optional<Skeleton>& skeleton() const noexcept { return parts().skeleton; }
     [[nodiscard]] bool pathInside() const noexcept { return parts().pathInside; }
 
-    /// The actuators that can move this vertex, ascending.
+    /// The actuators that can move this vertex, ascending. Of a sheet's levers those that move it by more than
+    /// kSheetStill in some state of the grid; others are left out of its motion, so that the list is exact.
     [[nodiscard]] std::span<const std::uint16_t> actuatorsOf(std::uint32_t vertex) const noexcept;
     /// The vertices that this actuator can move, ascending.
     [[nodiscard]] std::span<const std::uint32_t> verticesOf(std::size_t actuator) const noexcept;

@@ -36,6 +36,7 @@ struct Standing {
         const double at = std::lerp(d.min, d.max, stroke);
         return d.motion == SkinJoint::Motion::rotate ? degrees(Angle::radians(at)) : millimetres(at);
     }
+    std::string operator()(const SheetLift& d) const { return degrees(between(d.min, d.max)); }
 
 private:
     [[nodiscard]] Angle between(Angle min, Angle max) const {

@@ -81,6 +81,7 @@ private:
     const EntryPlace& place_;
 };
 
+constexpr const char* kDeformers = "use hinge, bend, slide, morph, joint or lever";
 constexpr const char* kDegrees = "give two numbers in degrees, for example [0, 90]";
 constexpr const char* kMetres = "give two numbers in metres, for example [0, 0.05]";
 
@@ -128,8 +129,13 @@ double readDeformer(const std::string& kind, const Members& members, const glm::
                                             members.direction("axis"), inside(range[0]), inside(range[1])};
         return range[1] - range[0];
     }
-    if (kind != "morph")
-        entry.place.fail("the deformer \"" + kind + "\" is not known", "use hinge, bend, slide, morph or joint");
+    if (kind == "lever") {
+        const auto range = members.range(kDegrees);
+        entry.actuator.deformer =
+            SheetLift{members.integer("gridAxis", -1), Angle::degrees(range[0]), Angle::degrees(range[1])};
+        return range[1] - range[0];
+    }
+    if (kind != "morph") entry.place.fail("the deformer \"" + kind + "\" is not known", kDeformers);
     MorphTarget morph;
     morph.keys = {1.0F};
     if (members.has("targets")) {
@@ -226,6 +232,11 @@ struct DeformerWriter {
         out["range"] = {joint.min, joint.max};
         return joint.max - joint.min;
     }
+    double operator()(const SheetLift& lift) const {
+        out["deformer"] = "lever";
+        out["gridAxis"] = lift.axis;
+        return degrees(lift.min.inRadians(), lift.max.inRadians());
+    }
 };
 
 } // namespace
@@ -241,7 +252,7 @@ ActuatorEntry readActuatorEntry(const json& extras, const EntryPlace& place, con
     actuator.name = members.text("actuator", "give the actuator a name");
     entry.place.entry += (place.entry.empty() ? "actuator \"" : ", actuator \"") + actuator.name + "\"";
     const Members named(extras, entry.place);
-    const std::string kind = named.text("deformer", "use hinge, bend, slide, morph or joint");
+    const std::string kind = named.text("deformer", kDeformers);
     const double range = readDeformer(kind, named, worldFromNode, joint, entry);
     entry.order = named.integer("order", -1);
     actuator.levels = named.integer("levels", actuator.levels);

@@ -37,4 +37,16 @@ struct ActuatorEntry {
 /// The `lumorph` object that stands for this actuator. Origins are not part of it.
 [[nodiscard]] nlohmann::json actuatorExtras(const Actuator& actuator, std::size_t order);
 
+/// Where a mesh of a rig file holds its sheet: a member of the extras, and vertex attributes of one float.
+inline constexpr const char* kSheetMember = "lumorphSheet";
+inline constexpr const char* kSheetRow = "_SHEET_ROW"; ///< -1 for none
+inline constexpr const char* kSheetShare = "_SHEET_SHARE";
+
+/// Strokes and coefficients of a sheet.
+[[nodiscard]] nlohmann::json sheetExtras(const SheetModes& modes);
+/// Reads them. The modes themselves are the mesh' morph targets and are not known yet. Throws DataError.
+[[nodiscard]] SheetModes readSheetExtras(const nlohmann::json& extras, const EntryPlace& place);
+/// The name of the morph target that is a mode of the sheet.
+[[nodiscard]] std::string sheetModeName(std::size_t mode);
+
 } // namespace lumorph

@@ -78,8 +78,9 @@ std::vector<ActuatorEntry> statedActuators(const Model& model, const std::string
         for (const json& extras : entriesOf(mesh.extras)) {
             entries.push_back(readActuatorEntry(extras, meshPlace, world[n], -1));
             entries.back().node = n;
-            if (entries.back().targets.empty())
-                entries.back().place.fail("only morph targets can be stated on a mesh", "put the entry on a node");
+            if (entries.back().targets.empty() && !std::holds_alternative<SheetLift>(entries.back().actuator.deformer))
+                entries.back().place.fail("only morph targets and levers of a sheet can be stated on a mesh",
+                                          "put the entry on a node");
             requireTargets(entries.back(), mesh);
         }
     }

@@ -13,11 +13,11 @@ namespace lumorph {
 /// Reads a rig from `.glb`/`.gltf`, or from a folder of one mesh per state.
 ///
 /// In glTF an actuator is an object `lumorph` in the `extras` of a node (hinge, bend, slide, joint)
-/// or, for morph targets, in the list `extras.lumorph` of the mesh. Keys: `actuator` (its name, required),
-/// `deformer` ("hinge" | "bend" | "slide" | "morph" | "joint"), `axis`, `direction` (3 numbers in
-/// the node's frame), `length` (metres), `range` (two numbers: degrees for hinge, bend and a
+/// or, for morph targets and levers, in the list `extras.lumorph` of the mesh. Keys: `actuator` (its name, required),
+/// `deformer` ("hinge" | "bend" | "slide" | "morph" | "joint" | "lever"), `axis`, `direction` (3 numbers in
+/// the node's frame), `length` (metres), `range` (two numbers: degrees for hinge, bend, lever and a
 /// turning joint, metres for slide and a moving joint, weights for morph), `motion` ("rotate" | "translate",
-/// joint), `target` (morph target's name), `levels`, `maxVelocity` (degrees, metres or weight a
+/// joint), `target` (morph target's name), `gridAxis` (lever), `levels`, `maxVelocity` (degrees, metres or weight a
 /// second), `damping` (1 or more), `channel`, `pulse` (two numbers, microseconds), `servo` (its kind), `order`. A node
 /// with several actuators holds a list of such objects. The object or list may also be a text in JSON. A morph actuator
 /// with several keys has the lists `targets` and `keys` (strokes). The model as drawn is the shape at the lower end of
@@ -30,6 +30,12 @@ namespace lumorph {
 /// normals closes again, unless the scene's `extras.lumorph.uniqueVertices` is true. `extras.lumorph.pathInside` there
 /// states that the solid holds its own path; `extras.lumorph.drawing` is a text, what the rig was drawn as
 /// (`RigParts::drawing`), which is carried along and not looked at.
+///
+/// The sheet that levers lift (SheetMotion) is stated by the mesh: `extras.lumorphSheet` has `modes` (their number K),
+/// `strokes` (a flat list; each axis of the grid begins at 0 and ends at 1) and `coefficients` (a flat list: K a state
+/// of the grid, of the states the last axis varies fastest). The modes are the morph targets "sheet mode 1" to "sheet
+/// mode K"; the vertex attributes `_SHEET_ROW` (-1 for none) and `_SHEET_SHARE` (1 where it is missing) say what
+/// follows. A vertex of a row has the row's modes.
 ///
 /// A folder holds `rest.obj` and `ACTUATOR_KEY.obj` (any mesh format; KEY 1, 2, ... evenly spaced
 /// strokes), all with the same triangles.

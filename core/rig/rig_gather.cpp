@@ -21,6 +21,8 @@ struct Vertex {
     glm::vec4 weights{0.0F};
     std::vector<std::pair<std::uint32_t, float>> influences; ///< actuator, weight
     std::vector<glm::vec3> displacements;                    ///< morph actuators' keys, one after the other
+    SheetMotion::Follower follower;
+    std::vector<glm::vec3> modes; ///< of the sheet; empty where it follows no row
 
     [[nodiscard]] std::string key(std::size_t node) const {
         std::string bytes;
@@ -37,6 +39,8 @@ struct Vertex {
             add(&weight, sizeof weight);
         }
         for (const glm::vec3& d : displacements) add(&d, sizeof d);
+        add(&follower.row, sizeof follower.row);
+        add(&follower.share, sizeof follower.share);
         return bytes;
     }
 };
@@ -63,6 +67,12 @@ public:
         for (const Model::Mesh& mesh : model.meshes)
             for (const Model::Primitive& primitive : mesh.primitives)
                 listed_ = listed_ || primitive.custom.contains("_ACTUATORS_0");
+        for (const Model::Mesh& mesh : model.meshes) {
+            if (!holdsSheet(mesh)) continue;
+            const EntryPlace place{file, "mesh \"" + mesh.name + "\""};
+            if (parts_.sheet) place.fail("it is the second mesh with a sheet", "keep one of them");
+            parts_.sheet.emplace().modes = readSheetExtras(mesh.extras[kSheetMember], place);
+        }
     }
 
     RigParts gather() {
@@ -74,10 +84,25 @@ public:
                 morph->displacements.resize(morph->keys.size());
         }
         for (const int root : model_.roots) visit(root);
+        if (parts_.sheet) collectModes();
         return std::move(parts_);
     }
 
 private:
+    void collectModes() {
+        std::uint32_t next = 0;
+        for (const auto& [row, modes] : rowModes_) {
+            if (row != next++)
+                EntryPlace{file_, "sheet"}.fail("no vertex follows row " + std::to_string(next - 1),
+                                                "number the rows from 0 without a gap");
+            parts_.sheet->modes.modes.insert(parts_.sheet->modes.modes.end(), modes.begin(), modes.end());
+        }
+    }
+
+    static bool holdsSheet(const Model::Mesh& mesh) {
+        return mesh.extras.is_object() && mesh.extras.contains(kSheetMember);
+    }
+
     void visit(int start) {
         std::vector<int> stack{start};
         while (!stack.empty()) {
@@ -100,7 +125,9 @@ private:
         std::vector<std::uint32_t> whole; // actuators that move all of this node
         for (std::size_t e = 0; e < entries_.size(); ++e) {
             const auto& deformer = entries_[e].actuator.deformer;
-            if (std::holds_alternative<MorphTarget>(deformer) || std::holds_alternative<SkinJoint>(deformer)) continue;
+            if (std::holds_alternative<MorphTarget>(deformer) || std::holds_alternative<SkinJoint>(deformer) ||
+                std::holds_alternative<SheetLift>(deformer))
+                continue;
             if (!listed_ && below(node, entries_[e].node)) whole.push_back(static_cast<std::uint32_t>(e));
         }
         std::unordered_map<std::string, std::uint32_t> known;
@@ -118,6 +145,7 @@ private:
             for (const std::uint32_t actuator : whole) vertex.influences.push_back({actuator, 1.0F});
             const glm::mat4 deviceFromMesh = skin(node, primitive, v, vertex);
             addMorphs(node, mesh, primitive, v, deviceFromMesh, vertex);
+            if (holdsSheet(mesh)) addSheet(mesh, primitive, v, deviceFromMesh, vertex, place);
             if (deviceFromMesh != glm::mat4(1.0F)) vertex.position = transformed(deviceFromMesh, vertex.position);
             const auto next = static_cast<std::uint32_t>(parts_.restMesh.positions.size());
             const std::uint32_t at =
@@ -224,10 +252,45 @@ private:
             const bool stated = std::ranges::any_of(vertex.influences, [&](auto& i) { return i.first == number; });
             if (moves && !stated) vertex.influences.push_back({number, 1.0F});
         }
+        if (holdsSheet(mesh))
+            for (std::size_t k = 0; k < parts_.sheet->modes.modeCount; ++k)
+                if (const int target = targetNamed(mesh, sheetModeName(k)); target >= 0) driven[target] = true;
         // Targets that no actuator drives stay at the weight the file gives them.
         const auto& weights = model_.nodes[node].weights.empty() ? mesh.weights : model_.nodes[node].weights;
         for (std::size_t t = 0; t < driven.size() && t < weights.size(); ++t)
             if (!driven[t] && weights[t] != 0.0F) vertex.position += weights[t] * primitive.morphTargets[t][v];
+    }
+
+    void addSheet(const Model::Mesh& mesh, const Model::Primitive& primitive, std::size_t v,
+                  const glm::mat4& deviceFromMesh, Vertex& vertex, const EntryPlace& place) const {
+        const float row = sheetValue(primitive, kSheetRow, v, -1.0F, place);
+        vertex.follower.share = sheetValue(primitive, kSheetShare, v, 1.0F, place);
+        if (row == -1.0F) return;
+        if (!(row >= 0.0F && row < static_cast<float>(primitive.positions.size())) || row != std::floor(row))
+            place.fail("vertex " + std::to_string(v) + " follows a row of the sheet that does not exist",
+                       "use whole numbers from 0, or -1 for none");
+        vertex.follower.row = static_cast<std::uint32_t>(row);
+        const glm::mat3 linear(deviceFromMesh);
+        for (std::size_t k = 0; k < parts_.sheet->modes.modeCount; ++k) {
+            const int target = targetNamed(mesh, sheetModeName(k));
+            if (target < 0)
+                place.fail("the sheet has no morph target \"" + sheetModeName(k) + "\"", "keep its shape keys");
+            const glm::vec3 mode = primitive.morphTargets[target][v];
+            vertex.modes.push_back(linear == glm::mat3(1.0F) ? mode : linear * mode);
+        }
+        const auto known = rowModes_.find(vertex.follower.row);
+        if (known != rowModes_.end() && known->second != vertex.modes)
+            place.fail("vertices of row " + std::to_string(vertex.follower.row) + " of the sheet differ in their modes",
+                       "give the vertices of a row the same place in every shape key of the sheet");
+    }
+
+    static float sheetValue(const Model::Primitive& primitive, const char* name, std::size_t v, float otherwise,
+                            const EntryPlace& place) {
+        const auto found = primitive.custom.find(name);
+        if (found == primitive.custom.end()) return otherwise;
+        if (found->second.components != 1)
+            place.fail(std::string("\"") + name + "\" is not one number a vertex", "export it as a float");
+        return found->second.values[v];
     }
 
     static int targetNamed(const Model::Mesh& mesh, const std::string& name) {
@@ -237,6 +300,8 @@ private:
 
     void append(const Vertex& vertex, std::uint32_t number) {
         parts_.restMesh.positions.push_back(vertex.position);
+        if (parts_.sheet) parts_.sheet->followers.push_back(vertex.follower);
+        if (!vertex.modes.empty()) rowModes_.try_emplace(vertex.follower.row, vertex.modes);
         if (parts_.skeleton) {
             parts_.skeleton->vertexJoints.push_back(vertex.joints);
             parts_.skeleton->vertexWeights.push_back(vertex.weights);
@@ -260,6 +325,7 @@ private:
     std::vector<glm::mat4> world_;
     bool listed_ = false; ///< the file lists influences a vertex
     bool unique_ = false; ///< the file says that its vertices are to stay as they are
+    std::map<std::uint32_t, std::vector<glm::vec3>> rowModes_; ///< of the sheet
     RigParts parts_;
 };
 

@@ -8,6 +8,8 @@
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
+#include "core/rig/sheet_reach.h"
+
 namespace lumorph {
 namespace {
 
@@ -59,6 +61,7 @@ private:
             bend(step.actuator, actuator, amount);
             break;
         case CompiledActuator::Kind::skin:
+        case CompiledActuator::Kind::lever:
             break;
         }
     }
@@ -223,6 +226,24 @@ void searchGrid(const std::shared_ptr<const RigCore>& core, const std::vector<st
     }
 }
 
+/// Boxes of the vertices that follow a sheet. Those of one row and path share the work.
+void includeSheet(const RigCore& core, std::vector<Box>& boxes) {
+    const CompiledSheet& sheet = *core.sheet;
+    const SheetReach reach(sheet);
+    std::map<std::pair<std::uint32_t, std::uint16_t>, Box> known;
+    for (std::uint32_t vertex = 0; vertex < boxes.size(); ++vertex) {
+        const std::uint16_t path = sheet.pathOf(vertex);
+        if (path == CompiledSheet::kNoPath) continue;
+        const std::uint32_t row = sheet.motion().followers[vertex].row;
+        const auto [at, isNew] = known.try_emplace({row, path});
+        if (isNew) at->second = reach.of(path, row);
+        const glm::vec3 rest = core.parts.restMesh.positions[vertex];
+        // A millionth covers the rounding of the sum.
+        const glm::vec3 slack = 1e-6F * (glm::abs(rest) + glm::max(glm::abs(at->second.min), glm::abs(at->second.max)));
+        boxes[vertex] = {rest + at->second.min - slack, rest + at->second.max + slack};
+    }
+}
+
 } // namespace
 
 std::vector<Box> reachBoxes(const std::shared_ptr<const RigCore>& core) {
@@ -263,6 +284,7 @@ std::vector<Box> reachBoxes(const std::shared_ptr<const RigCore>& core) {
         group.slack.push_back(slack);
     }
     for (const auto& [actuators, group] : groups) searchGrid(core, actuators, group, boxes);
+    if (core->sheet) includeSheet(*core, boxes);
     return boxes;
 }
 

@@ -106,6 +106,15 @@ struct DeformerCheck {
         else
             requireRange(joint.min, joint.max, subject);
     }
+    void operator()(const SheetLift& lift) const {
+        require(parts.sheet.has_value(), subject, "the rig has no sheet that it could lift",
+                "give the rig the modes of its sheet, or use another deformer");
+        require(lift.axis >= 0 && static_cast<std::size_t>(lift.axis) < parts.sheet->modes.strokes.size(), subject,
+                "the sheet's grid has no such axis", "count the axes from 0");
+        require(actuator.influences.empty(), subject, "a lever of the sheet has influences",
+                "leave them out: what follows it is the sheet's");
+        requireTurn(lift.min.inRadians(), lift.max.inRadians(), subject);
+    }
 };
 
 void checkActuator(const RigParts& parts, const Actuator& actuator, const std::string& subject) {
@@ -169,6 +178,82 @@ void checkSkeleton(const Skeleton& skeleton, std::size_t vertices) {
     }
 }
 
+void checkModes(const SheetModes& modes, const std::string& subject) {
+    require(!modes.strokes.empty() && modes.strokes.size() <= SheetModes::kMostActuators, subject,
+            "its grid has no axes, or more than 8", "give it one axis a lever");
+    for (const std::vector<float>& nodes : modes.strokes) {
+        const char* const remedy = "give each axis 2 to 5 strokes from 0 to 1, for example 0, 0.5, 1";
+        require(nodes.size() >= 2 && nodes.size() <= SheetModes::kMostLevels, subject,
+                "an axis has fewer than 2 strokes or more than 5", remedy);
+        require(nodes.front() == 0.0F && nodes.back() == 1.0F, subject, "the strokes of an axis do not go from 0 to 1",
+                remedy);
+        for (std::size_t i = 1; i < nodes.size(); ++i)
+            require(nodes[i] - nodes[i - 1] >= 0.0099F, subject,
+                    "the strokes of an axis are not ascending, or closer than 0.01", remedy);
+    }
+    require(modes.modeCount >= 1 && modes.modeCount <= SheetModes::kMostModes, subject,
+            "it has no modes, or more than 64", "keep the modes with the largest singular values");
+    const std::size_t states = modes.stateCount();
+    require(states * modes.modeCount <= SheetModes::kMostCoefficients, subject, "it has more than 65,536 coefficients",
+            "keep fewer modes, or a coarser grid");
+    require(modes.coefficients.size() == states * modes.modeCount, subject,
+            "there is not one coefficient a state and mode", "give the coefficients of all states of the grid");
+    for (std::size_t i = 0; i < modes.coefficients.size(); ++i) {
+        require(within(static_cast<double>(modes.coefficients[i])), subject,
+                "a coefficient is not finite, or beyond all measure", "compute the modes again");
+        require(i >= modes.modeCount || modes.coefficients[i] == 0.0F, subject,
+                "a coefficient of the state of rest is not 0",
+                "let the modes displace the sheet from its shape at rest");
+    }
+    require(!modes.modes.empty() && modes.modes.size() % modes.modeCount == 0, subject,
+            "there is not one displacement a row and mode", "give each row its displacement in every mode");
+    for (const glm::vec3& mode : modes.modes)
+        require(within(mode), subject, "a displacement is not finite, or beyond all measure",
+                "compute the modes again");
+}
+
+void checkFollowers(const SheetMotion& motion, std::size_t vertices, const std::string& subject) {
+    require(motion.followers.size() == vertices, subject, "there is not one row and share a vertex",
+            "give every vertex its row, or none");
+    std::vector<bool> followed(motion.modes.rowCount(), false);
+    std::set<float> shares;
+    for (const SheetMotion::Follower& follower : motion.followers) {
+        require(follower.share > 0.0F && follower.share <= 1.0F, subject, "the share of a path is not within 0 and 1",
+                "use shares above 0, up to 1");
+        if (follower.row == SheetMotion::kNoRow) continue;
+        require(follower.row < followed.size(), subject, "a vertex follows a row that does not exist",
+                "use rows of the modes");
+        followed[follower.row] = true;
+        shares.insert(follower.share);
+        require(shares.size() <= SheetMotion::kMostShares, subject, "paths have more than 64 different shares",
+                "use the same shares all around the rim");
+    }
+    for (const bool one : followed)
+        require(one, subject, "no vertex follows one of its rows", "leave the row out, or let a vertex follow it");
+}
+
+/// One lever an axis, and nothing else that moves what follows the sheet.
+void checkLevers(const RigParts& parts, const std::string& rig, const std::string& subject) {
+    std::vector<bool> driven(parts.sheet->modes.strokes.size(), false);
+    for (const Actuator& actuator : parts.actuators) {
+        const std::string name = rig + ", actuator " + inQuotes(actuator.name);
+        if (const auto* lift = std::get_if<SheetLift>(&actuator.deformer)) {
+            const auto axis = static_cast<std::size_t>(lift->axis);
+            require(!driven[axis], name, "another lever drives the same axis of the sheet's grid",
+                    "give each axis one lever");
+            driven[axis] = true;
+        }
+        for (const Influence& influence : actuator.influences)
+            require(influence.weight == 0.0F || parts.sheet->followers[influence.vertex].row == SheetMotion::kNoRow,
+                    name, "it moves vertices that follow the sheet",
+                    "let the sheet's vertices follow its levers alone");
+    }
+    for (std::size_t axis = 0; axis < driven.size(); ++axis)
+        if (!driven[axis])
+            throw InvalidInput(subject, "no lever drives axis " + std::to_string(axis) + " of its grid",
+                               "give each axis one lever");
+}
+
 } // namespace
 
 void validate(const RigParts& parts) {
@@ -185,6 +270,12 @@ void validate(const RigParts& parts) {
     require(parts.actuators.size() <= kMaxActuators, rig, "there are more than 65,000 actuators",
             "join actuators that move together");
     if (parts.skeleton) checkSkeleton(*parts.skeleton, parts.restMesh.positions.size());
+    const std::string sheet = rig + ", sheet";
+    if (parts.sheet) {
+        require(!parts.skeleton, sheet, "the rig has a skeleton too", "use one of the two");
+        checkModes(parts.sheet->modes, sheet);
+        checkFollowers(*parts.sheet, parts.restMesh.positions.size(), sheet);
+    }
     std::set<std::string> names;
     for (const Actuator& actuator : parts.actuators) {
         require(!actuator.name.empty(), rig, "an actuator has no name", "give every actuator a name");
@@ -196,6 +287,7 @@ void validate(const RigParts& parts) {
                 "give every actuator a name of its own");
         checkActuator(parts, actuator, subject);
     }
+    if (parts.sheet) checkLevers(parts, rig, sheet);
 }
 
 } // namespace lumorph

@@ -55,6 +55,7 @@ public:
         meshNode.mesh = 0;
         addNode(std::move(meshNode));
         if (rig_.skeleton()) addSkeleton(*rig_.skeleton());
+        if (rig_.parts().sheet) addSheet(*rig_.parts().sheet);
         for (std::size_t a = 0; a < rig_.actuatorCount(); ++a) addActuator(rig_.actuators()[a], a);
         nameJoints();
         addInfluences();
@@ -95,6 +96,30 @@ private:
         model_.nodes.front().skin = 0;
     }
 
+    /// A morph target a mode, so that any viewer shows them. A skirt's vertices have their row's whole modes.
+    void addSheet(const SheetMotion& sheet) {
+        Model::Mesh& mesh = model_.meshes.front();
+        const std::size_t count = sheet.modes.modeCount;
+        Model::CustomAttribute rows{1, {}};
+        Model::CustomAttribute shares{1, {}};
+        std::vector<std::vector<glm::vec3>> targets(count);
+        for (const auto& [row, share] : sheet.followers) {
+            const bool follows = row != SheetMotion::kNoRow;
+            rows.values.push_back(follows ? static_cast<float>(row) : -1.0F);
+            shares.values.push_back(share);
+            for (std::size_t k = 0; k < count; ++k)
+                targets[k].push_back(follows ? sheet.modes.modes[row * count + k] : glm::vec3(0.0F));
+        }
+        for (std::size_t k = 0; k < count; ++k) {
+            primitive().morphTargets.push_back(std::move(targets[k]));
+            mesh.targetNames.push_back(sheetModeName(k));
+            mesh.weights.push_back(0.0F);
+        }
+        primitive().custom[kSheetRow] = std::move(rows);
+        primitive().custom[kSheetShare] = std::move(shares);
+        mesh.extras[kSheetMember] = sheetExtras(sheet.modes);
+    }
+
     void addActuator(const Actuator& actuator, std::size_t order) {
         json extras = actuatorExtras(actuator, order);
         if (const auto* morph = std::get_if<MorphTarget>(&actuator.deformer)) {
@@ -104,6 +129,10 @@ private:
         if (const auto* joint = std::get_if<SkinJoint>(&actuator.deformer)) {
             json& at = model_.nodes[jointNodes_[joint->joint]].extras["lumorph"];
             at.push_back(std::move(extras));
+            return;
+        }
+        if (std::holds_alternative<SheetLift>(actuator.deformer)) {
+            model_.meshes.front().extras["lumorph"].push_back(std::move(extras));
             return;
         }
         const Box moved = boxOf(actuator);
@@ -189,7 +218,8 @@ private:
         for (const auto& [vertex, list] : influences_) sets = std::max(sets, (list.size() + 3) / 4);
         for (const Actuator& actuator : rig_.actuators())
             spatial = spatial || !(std::holds_alternative<MorphTarget>(actuator.deformer) ||
-                                   std::holds_alternative<SkinJoint>(actuator.deformer));
+                                   std::holds_alternative<SkinJoint>(actuator.deformer) ||
+                                   std::holds_alternative<SheetLift>(actuator.deformer));
         if (spatial) sets = std::max<std::size_t>(sets, 1); // else the reader would take whole nodes
         for (std::size_t set = 0; set < sets; ++set) {
             Model::CustomAttribute actuators{4, std::vector<float>(4 * vertices, -1.0F)};

@@ -66,6 +66,7 @@ struct Description {
     void operator()(const SkinJoint& joint) const {
         set("joint", joint.min, joint.max, joint.motion == SkinJoint::Motion::rotate ? "rad" : "m");
     }
+    void operator()(const SheetLift& lift) const { turn("lever", lift.min.inRadians(), lift.max.inRadians()); }
 
 private:
     void turn(const char* deformer, double min, double max) const { set(deformer, min, max, "rad"); }
@@ -118,7 +119,8 @@ private:
         for (const glm::uvec3& t : rig_.restMesh().triangles)
             out.sweptArea += areaOf(rig_.restMesh(), t) * (moved[t.x] + moved[t.y] + moved[t.z]) / 3.0;
         if (std::holds_alternative<MorphTarget>(actuator.deformer) ||
-            std::holds_alternative<SkinJoint>(actuator.deformer))
+            std::holds_alternative<SkinJoint>(actuator.deformer) ||
+            std::holds_alternative<SheetLift>(actuator.deformer))
             out.maxCurvature = curvatureGained(strokes, moved);
         return out;
     }

@@ -450,6 +450,8 @@ Angle servoAngle(const Actuator& actuator, const ServoType& servo) {
     else if (const auto* joint = std::get_if<SkinJoint>(&actuator.deformer);
              joint != nullptr && joint->motion == SkinJoint::Motion::rotate)
         angle = joint->max - joint->min;
+    else if (const auto* lift = std::get_if<SheetLift>(&actuator.deformer))
+        angle = lift->max.inRadians() - lift->min.inRadians();
     else
         angle = servo.travel.inRadians() * (actuator.drive.pulseMax - actuator.drive.pulseMin) /
                 (servo.pulseMax - servo.pulseMin);

@@ -16,6 +16,7 @@ struct Filter {
 // One function a group of rows; each measures what the filter lets through and adds it to the report.
 void benchVoting(const Filter& filter, Report& report);
 void benchVoxelize(const Filter& filter, Report& report);
+void benchSheet(const Filter& filter, Report& report);
 void benchBuild(const Filter& filter, Report& report);
 void benchLoop(const Filter& filter, Report& report);
 void benchLive(const Filter& filter, Report& report);

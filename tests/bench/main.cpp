@@ -18,6 +18,7 @@ struct Group {
 
 constexpr Group kGroups[] = {{"voting", benchVoting},
                              {"voxelize", benchVoxelize},
+                             {"sheet", benchSheet},
                              {"build", benchBuild},
                              {"loop", benchLoop},
                              {"live", benchLive},

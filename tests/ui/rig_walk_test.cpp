@@ -95,6 +95,7 @@ private:
     void add(const Slide& d) { add(d.direction), add(d.min), add(d.max); }
     void add(const MorphTarget& d) { add(d.target), add(d.keys), add(d.displacements); }
     void add(const SkinJoint& d) { add(d.joint), add(d.motion), add(d.axis), add(d.min), add(d.max); }
+    void add(const SheetLift& d) { add(d.axis), add(d.min), add(d.max); }
     void add(const Influence& influence) { add(influence.vertex), add(influence.weight); }
     void add(const Actuator& a) {
         add(a.name), add(a.deformer.index());
@@ -151,6 +152,7 @@ private:
             return false;
         return way(d.axis) && (d.motion == SkinJoint::Motion::rotate ? turn(d.min, d.max) : range(d.min, d.max));
     }
+    static bool fits(const SheetLift&) { return false; } // the rigs that are walked through have no sheet
     bool fits(const Actuator& a) {
         actuator_ = &a;
         bool good =

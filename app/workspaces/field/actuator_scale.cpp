@@ -21,6 +21,9 @@ struct ScaleOf {
         const bool turns = joint.motion == SkinJoint::Motion::rotate;
         return {turns ? Quantity::angle : Quantity::length, joint.min, joint.max};
     }
+    ActuatorScale operator()(const SheetLift& lift) const {
+        return {Quantity::angle, lift.min.inRadians(), lift.max.inRadians()};
+    }
 };
 
 } // namespace

@@ -115,7 +115,9 @@ void ActuatorForm::show(std::optional<std::size_t> actuator) {
 
 void ActuatorForm::showRange(const Actuator& actuator) {
     const ActuatorRange range = rangeOf(actuator);
-    from_->setEnabled(!std::holds_alternative<Bend>(actuator.deformer)); // a sheet is drawn flat: its bend begins at 0
+    const bool lifts = std::holds_alternative<SheetLift>(actuator.deformer);       // what the sheet was computed for
+    from_->setEnabled(!lifts && !std::holds_alternative<Bend>(actuator.deformer)); // a bend begins flat, at 0
+    to_->setEnabled(!lifts);
     showRow(from_, range.motion == Motion::turning);
     showRow(to_, range.motion == Motion::turning);
     showRow(fromLength_, range.motion == Motion::moving);

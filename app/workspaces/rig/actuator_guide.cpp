@@ -77,6 +77,21 @@ public:
         if (last.empty()) return;
         moveAlong(parts_.restMesh.positions[actuator_.influences[farthest].vertex], last[farthest]);
     }
+    void operator()(const SheetLift& lift) {
+        // Where a lever stands is not the rig's to know: shown, as a stroke, at the vertex that it moves farthest.
+        guide_.range = {};
+        guide_.rest = guide_.range.min;
+        const SheetMotion& sheet = *parts_.sheet;
+        std::vector<double> strokes(sheet.modes.strokes.size(), 0.0);
+        strokes[static_cast<std::size_t>(lift.axis)] = 1.0;
+        glm::vec3 way(0.0F);
+        for (const std::uint32_t v : vertices_) {
+            const auto [row, share] = sheet.followers[v];
+            if (row == SheetMotion::kNoRow || share < 1.0F) continue;
+            const glm::vec3 moved = rowDisplacement(sheet.modes, row, strokes);
+            if (glm::length(moved) > glm::length(way)) moveAlong(parts_.restMesh.positions[v], way = moved);
+        }
+    }
     void operator()(const SkinJoint& joint) {
         const glm::mat4 pose = deviceFromJoint(*parts_.skeleton, joint.joint);
         const glm::vec3 axis = glm::normalize(glm::mat3(pose) * joint.axis);
@@ -157,11 +172,14 @@ void setLineOf(glm::vec3& origin, glm::vec3& axis, const ActuatorGuide& guide, c
     axis = glm::length(axis) * glm::normalize(ends[1] - ends[0]);
 }
 
-/// Whether an actuator has the joint or the displacements of which it speaks; while they are edited it may not.
+/// Whether an actuator has the joint, axis or displacements of which it speaks; while they are edited it may not.
 bool hasParts(const RigParts& parts, const Actuator& actuator) {
     if (const auto* joint = std::get_if<SkinJoint>(&actuator.deformer))
         return parts.skeleton && joint->joint >= 0 &&
                static_cast<std::size_t>(joint->joint) < parts.skeleton->joints.size();
+    if (const auto* lift = std::get_if<SheetLift>(&actuator.deformer))
+        return parts.sheet && lift->axis >= 0 &&
+               static_cast<std::size_t>(lift->axis) < parts.sheet->modes.strokes.size();
     const auto* morph = std::get_if<MorphTarget>(&actuator.deformer);
     return !morph ||
            (!morph->displacements.empty() && morph->displacements.back().size() == actuator.influences.size() &&

@@ -40,6 +40,9 @@ struct WeightMeaning {
         return "A joint shares the skin with the others: what it takes of a place they give, and what it leaves they "
                "take. A joint that hangs on none keeps what is its alone.";
     }
+    QString operator()(const SheetLift&) const {
+        return "What follows a lever is computed from the sheet's mechanics: it cannot be painted.";
+    }
 };
 
 class RigInfluence : public QWidget {
@@ -149,8 +152,9 @@ private:
 
     void refresh() {
         const Actuator* actuator = chosen();
-        edit_->setVisible(actuator != nullptr);
-        form_->setVisible(actuator && tools_.editing());
+        const bool paintable = actuator && !std::holds_alternative<SheetLift>(actuator->deformer);
+        edit_->setVisible(paintable);
+        form_->setVisible(paintable && tools_.editing());
         if (!actuator) return what_->setText("Choose an actuator to say which places of the device follow it.");
         const auto& parts = *studio_.document.state().rig.parts;
         const auto weights = actuatorWeights(parts, *selection_.actuator());

@@ -23,6 +23,9 @@ struct RangeOf {
     ActuatorRange operator()(const SkinJoint& d) const {
         return {d.motion == SkinJoint::Motion::rotate ? Motion::turning : Motion::moving, d.min, d.max};
     }
+    ActuatorRange operator()(const SheetLift& d) const {
+        return {Motion::turning, d.min.inRadians(), d.max.inRadians()};
+    }
 };
 
 struct SetRange {
@@ -32,6 +35,7 @@ struct SetRange {
     void operator()(Slide& d) const { d.min = min, d.max = max; }
     void operator()(MorphTarget&) const {}
     void operator()(SkinJoint& d) const { d.min = min, d.max = max; }
+    void operator()(SheetLift&) const {} // the sheet's shapes were computed for the angles that it has
 };
 
 /// A number with at most one decimal.
@@ -50,7 +54,7 @@ QString statesText(int count, int of) {
 } // namespace
 
 QString deformerText(const Actuator& actuator) {
-    constexpr std::array kNames = {"Hinge", "Bend", "Slide", "Morph target", "Joint"};
+    constexpr std::array kNames = {"Hinge", "Bend", "Slide", "Morph target", "Joint", "Lever of the sheet"};
     return kNames.at(actuator.deformer.index());
 }
 
@@ -58,6 +62,7 @@ ActuatorRange rangeOf(const Actuator& actuator) { return std::visit(RangeOf{}, a
 
 void setRange(Actuator& actuator, double min, double max) {
     const ActuatorRange before = rangeOf(actuator);
+    if (std::holds_alternative<SheetLift>(actuator.deformer)) return;
     std::visit(SetRange{min, max}, actuator.deformer);
     if (before.max > before.min && max > min) actuator.maxVelocity *= (before.max - before.min) / (max - min);
 }

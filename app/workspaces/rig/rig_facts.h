@@ -30,11 +30,11 @@ struct ActuatorRange {
     double min = 0.0, max = 1.0; ///< radians, metres or weight
 };
 [[nodiscard]] ActuatorRange rangeOf(const Actuator& actuator);
-/// Another range for an actuator that turns or moves. Its servo is as fast as before: the velocity limit, which counts
-/// strokes, follows the range.
+/// Another range for an actuator that turns or moves; not for a lever of a sheet, whose shapes were computed for its.
+/// Its servo is as fast as before: the velocity limit, which counts strokes, follows the range.
 void setRange(Actuator& actuator, double min, double max);
 
-/// "Hinge", "Bend", "Slide", "Morph target" or "Joint".
+/// "Hinge", "Bend", "Slide", "Morph target", "Joint" or "Lever of the sheet".
 [[nodiscard]] QString deformerText(const Actuator& actuator);
 /// "0° to 45°", "0 to 20 mm" or "0 to 1".
 [[nodiscard]] QString rangeText(const Actuator& actuator);

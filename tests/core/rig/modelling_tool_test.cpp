@@ -111,6 +111,9 @@ struct SeenActuator {
         const auto index = static_cast<std::size_t>(node - &gltf.at("nodes").at(0));
         EXPECT_THAT(gltf.at("skins").at(0).at("joints"), testing::Contains(index));
     }
+    void operator()(const SheetLift&) const {
+        EXPECT_THAT(gltf.at("meshes").at(0).at("extras").at("targetNames"), testing::Contains("sheet mode 1"));
+    }
 };
 
 struct Device {

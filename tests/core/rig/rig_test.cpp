@@ -14,7 +14,9 @@
 #include "core/base/error.h"
 #include "core/rig/templates/bundled_rigs.h"
 #include "tests/core/rig/point_rig.h"
+#include "tests/core/rig/small_sheet.h"
 #include "tests/support/cut_tablet.h"
+#include "tests/support/lifted_sheet.h"
 #include "tests/support/small_rigs.h"
 
 namespace lumorph {
@@ -54,7 +56,9 @@ std::vector<Rig> allKinds() {
             Rig(pointParts(points, {bend, hinge})),
             Rig(pointParts(points, {slide, bend})),
             Rig(pointParts(points, {morph, hinge, bend, slide})),
-            Rig(std::move(weighted))};
+            Rig(std::move(weighted)),
+            Rig(test::smallSheetParts()),
+            Rig(test::liftedSheetParts())};
 }
 
 TEST(Rig, AtRestIsItsRestMeshBitForBit) {
