@@ -2,7 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
+
+#include <glm/geometric.hpp>
 
 #include "core/base/error.h"
 
@@ -11,8 +14,8 @@ namespace {
 
 /// St. Venant-Kirchhoff's law says nothing useful beyond.
 constexpr double kMostStretch = 0.3;
-constexpr int kMostHalvings = 5;
-constexpr int kMostIterations = 25;
+constexpr int kMostHalvings = 3;
+constexpr int kMostIterations = 20;
 
 /// The pad clamps its nodes and the edges between them; each lever holds the height of its line.
 SheetSupports supportsOf(const SheetMesh& mesh) {
@@ -26,6 +29,14 @@ SheetSupports supportsOf(const SheetMesh& mesh) {
     return supports;
 }
 
+/// The shortest distance on the flat sheet between nodes of two sets.
+double distanceBetween(const SheetMesh& mesh, std::span<const std::uint32_t> a, std::span<const std::uint32_t> b) {
+    double least = std::numeric_limits<double>::infinity();
+    for (const std::uint32_t i : a)
+        for (const std::uint32_t j : b) least = std::min(least, glm::distance(mesh.points[i], mesh.points[j]));
+    return least;
+}
+
 } // namespace
 
 LeveredSheet::LeveredSheet(const ElasticSheet& sheet, const SheetMesh& mesh)
@@ -36,7 +47,6 @@ SheetPose LeveredSheet::rest() const {
     pose.strokes.assign(levers_.size(), 0.0);
     pose.state = flatState(mesh_);
     pose.loads.resize(levers_.size());
-    pose.stable = true;
     return pose;
 }
 
@@ -47,7 +57,8 @@ SheetPose LeveredSheet::moved(const SheetPose& from, std::span<const double> str
         throw InvalidInput("sheet", "no equilibrium was found on the way to the levers' strokes",
                            "let the levers lift less, or choose a thicker sheet");
     if (std::abs(pose->strain.middle) > kMostStretch)
-        throw InvalidInput(strongestLevers(*pose), "they pull against each other: the sheet would stretch by " +
+        throw InvalidInput(strongestLevers(*pose),
+                           "they pull against each other: the sheet would stretch by " +
                                std::to_string(std::lround(100.0 * std::abs(pose->strain.middle))) + " %",
                            "let one lift less, or move their lines apart");
     return *std::move(pose);
@@ -55,7 +66,7 @@ SheetPose LeveredSheet::moved(const SheetPose& from, std::span<const double> str
 
 std::optional<SheetPose> LeveredSheet::polished(const SheetState& guess, std::span<const double> strokes) {
     checkStrokes(strokes);
-    return solved(guess, strokes, kMostIterations);
+    return solved(guess, strokes);
 }
 
 SheetPose LeveredSheet::followed(std::span<const double> strokes, int steps) {
@@ -72,18 +83,20 @@ SheetPose LeveredSheet::followed(std::span<const double> strokes, int steps) {
     return pose;
 }
 
-std::optional<SheetPose> LeveredSheet::solved(const SheetState& start, std::span<const double> strokes,
-                                              int mostIterations) {
+std::vector<glm::dvec3> LeveredSheet::heldAt(std::span<const double> strokes) const {
     std::vector<glm::dvec3> held = flatState(mesh_).positions;
     for (std::size_t l = 0; l < levers_.size(); ++l)
         for (const std::uint32_t node : mesh_.lineNodes[l]) held[node].y = levers_[l].heightAt(strokes[l]);
-    SheetEquilibrium equilibrium = solver_.solve(start, held, mostIterations);
-    if (!equilibrium.converged) return std::nullopt;
+    return held;
+}
+
+std::optional<SheetPose> LeveredSheet::solved(const SheetState& start, std::span<const double> strokes) {
+    SheetEquilibrium equilibrium = solver_.solve(start, heldAt(strokes), {kMostIterations, 0.0});
+    if (!equilibrium.converged || !equilibrium.stable) return std::nullopt;
     SheetPose pose;
     pose.strokes.assign(strokes.begin(), strokes.end());
     pose.energy = equilibrium.energy;
     pose.iterations = equilibrium.iterations;
-    pose.stable = equilibrium.stable;
     for (std::size_t l = 0; l < levers_.size(); ++l) {
         LeverLoad load;
         for (const std::uint32_t node : mesh_.lineNodes[l]) load.force += equilibrium.reactions[node].y;
@@ -95,9 +108,25 @@ std::optional<SheetPose> LeveredSheet::solved(const SheetState& start, std::span
     return pose;
 }
 
+std::optional<SheetPose> LeveredSheet::snapped(SheetState state, std::span<const double> strokes) {
+    constexpr double kStiffest = 100.0; // per node; the sheet as a whole has some newtons per metre and node
+    constexpr double kSoftest = 1e-3;
+    double damping = 1.0;
+    for (int step = 0; step < 60 && damping <= kStiffest; ++step) {
+        const SheetEquilibrium crept = solver_.solve(state, heldAt(strokes), {kMostIterations, damping});
+        damping *= crept.converged ? 0.4 : 4.0;
+        if (!crept.converged) continue;
+        state = crept.state;
+        if (damping < kSoftest)
+            if (auto pose = solved(state, strokes)) return pose;
+        damping = std::max(damping, kSoftest);
+    }
+    return std::nullopt;
+}
+
 std::optional<SheetPose> LeveredSheet::continued(const SheetPose& from, std::span<const double> strokes, int halvings) {
-    if (auto pose = solved(from.state, strokes, kMostIterations)) return pose;
-    if (halvings == 0) return std::nullopt;
+    if (auto pose = solved(from.state, strokes)) return pose;
+    if (halvings == 0) return snapped(from.state, strokes);
     std::vector<double> half(strokes.size());
     for (std::size_t l = 0; l < half.size(); ++l) half[l] = 0.5 * (from.strokes[l] + strokes[l]);
     const auto middle = continued(from, half, halvings - 1);
@@ -110,7 +139,22 @@ std::optional<SheetPose> LeveredSheet::continued(const SheetPose& from, std::spa
 void LeveredSheet::checkStrokes(std::span<const double> strokes) const {
     if (strokes.size() != levers_.size() ||
         !std::ranges::all_of(strokes, [](double stroke) { return stroke >= 0.0 && stroke <= 1.0; }))
-        throw InvalidInput("sheet", "the strokes are not one a lever, each from 0 to 1", "give as many as it has levers");
+        throw InvalidInput("sheet", "the strokes are not one a lever, each from 0 to 1",
+                           "give as many as it has levers");
+    // Lines may slide together, but no nearer than they differ in height.
+    const auto tears = [](double rise, double distance) { return std::abs(rise) > (1.0 + kMostStretch) * distance; };
+    for (std::size_t l = 0; l < levers_.size(); ++l) {
+        const double height = levers_[l].heightAt(strokes[l]);
+        if (tears(height, distanceBetween(mesh_, mesh_.lineNodes[l], mesh_.padNodes)))
+            throw InvalidInput("lever '" + levers_[l].name + "'", "it lifts more than the sheet reaches from the pad",
+                               "let it lift less, or move its line outwards");
+        for (std::size_t m = 0; m < l; ++m)
+            if (tears(height - levers_[m].heightAt(strokes[m]),
+                      distanceBetween(mesh_, mesh_.lineNodes[l], mesh_.lineNodes[m])))
+                throw InvalidInput("levers '" + levers_[m].name + "' and '" + levers_[l].name + "'",
+                                   "they pull against each other: the sheet between them is too short",
+                                   "let one lift less, or move their lines apart");
+    }
 }
 
 std::string LeveredSheet::strongestLevers(const SheetPose& pose) const {

@@ -15,15 +15,14 @@ struct LeverLoad {
     double torque = 0.0; ///< at its servo's shaft, newton metres
 };
 
-/// The sheet at rest with all levers at some strokes.
+/// A stable equilibrium of the sheet with all levers at some strokes.
 struct SheetPose {
     std::vector<double> strokes;
     SheetState state;
     double energy = 0.0; ///< joules
     std::vector<LeverLoad> loads;
     SheetStrain strain;
-    int iterations = 0;  ///< of Newton's method, over all steps from the pose it started from
-    bool stable = false; ///< a local minimum of the energy
+    int iterations = 0; ///< of Newton's method, over all steps from the pose it started from
 };
 
 /// A sheet, its mesh and its levers: equilibria by stroke. Belongs to one thread at a time.
@@ -36,7 +35,8 @@ public:
     /// Flat, all strokes 0.
     [[nodiscard]] SheetPose rest() const;
     /// The equilibrium at these strokes that is reached from a pose by quasi-static continuation along the straight way
-    /// between the strokes: in one step of Newton's method, or in halves where that does not converge. Throws
+    /// between the strokes: in one step of Newton's method, or in halves where that does not converge. Where the way
+    /// ends at a limit point, the sheet snaps to the equilibrium that it reaches by creeping downhill. Throws
     /// InvalidInput when the strokes are not one a lever in [0, 1], when levers pull against each other (the middle
     /// surface would stretch by more than 30 %), and when no equilibrium is found.
     [[nodiscard]] SheetPose moved(const SheetPose& from, std::span<const double> strokes);
@@ -46,9 +46,11 @@ public:
     [[nodiscard]] SheetPose followed(std::span<const double> strokes, int steps = 4);
 
 private:
-    [[nodiscard]] std::optional<SheetPose> solved(const SheetState& start, std::span<const double> strokes,
-                                                  int mostIterations);
-    [[nodiscard]] std::optional<SheetPose> continued(const SheetPose& from, std::span<const double> strokes, int halvings);
+    [[nodiscard]] std::optional<SheetPose> solved(const SheetState& start, std::span<const double> strokes);
+    [[nodiscard]] std::optional<SheetPose> snapped(SheetState state, std::span<const double> strokes);
+    [[nodiscard]] std::vector<glm::dvec3> heldAt(std::span<const double> strokes) const;
+    [[nodiscard]] std::optional<SheetPose> continued(const SheetPose& from, std::span<const double> strokes,
+                                                     int halvings);
     void checkStrokes(std::span<const double> strokes) const;
     [[nodiscard]] std::string strongestLevers(const SheetPose& pose) const;
 

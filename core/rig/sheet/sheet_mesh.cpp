@@ -249,10 +249,16 @@ private:
             return std::pair(std::llround(p.x / kSame), std::llround(p.y / kSame));
         };
         for (std::uint32_t k = 0; k < mesh.points.size(); ++k) numbers[keyOf(mesh.points[k])] = k;
+        std::map<std::array<std::uint32_t, 2>, std::uint32_t> edgeNumbers;
+        for (std::uint32_t k = 0; k < mesh.edges.size(); ++k) edgeNumbers[mesh.edges[k]] = k;
         for (const int axis : axes_) {
-            MeshMirror mirror{axis, {}, images(lines, axis, middle_)};
+            MeshMirror mirror{axis, {}, {}, images(lines, axis, middle_)};
             for (const glm::dvec2& p : mesh.points)
                 mirror.nodes.push_back(numbers.at(keyOf(mirrored(p, axis, middle_))));
+            for (const auto& [a, b] : mesh.edges) {
+                const auto [low, high] = std::minmax({mirror.nodes[a], mirror.nodes[b]});
+                mirror.edges.push_back(edgeNumbers.at({low, high}));
+            }
             mesh.mirrors.push_back(std::move(mirror));
         }
     }

@@ -16,6 +16,7 @@ namespace lumorph {
 struct MeshMirror {
     int axis = 0;                      ///< of `points` that changes its sign about the sheet's middle: 0 for x, 1 for z
     std::vector<std::uint32_t> nodes;  ///< the image of each node
+    std::vector<std::uint32_t> edges;  ///< the image of each edge
     std::vector<std::uint32_t> levers; ///< the image of each line
 };
 
@@ -35,8 +36,8 @@ struct SheetMesh {
 
 /// Meshes a sheet with edges of about this length (metres): an equilateral lattice inside, the outline, the pad's rim
 /// and the levers' lines as edges. Where the drawing is its own mirror image about the middle of its outline, so is the
-/// mesh. The same on every machine. Throws what `checkSheet` throws, and InvalidInput when the mesh would have more than
-/// 100,000 nodes.
+/// mesh. The same on every machine. Throws what `checkSheet` throws, and InvalidInput when the mesh would have more
+/// than 100,000 nodes.
 [[nodiscard]] SheetMesh meshSheet(const ElasticSheet& sheet, double edgeLength);
 
 } // namespace lumorph

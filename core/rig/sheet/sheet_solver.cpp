@@ -25,7 +25,6 @@ constexpr double kMostMove = 10.0;
 Vector3 toEigen(const glm::dvec3& v) { return {v.x, v.y, v.z}; }
 glm::dvec3 toGlm(const Vector3& v) { return {v.x(), v.y(), v.z()}; }
 
-
 double principalStrain(const Vector3& green) {
     const double middle = 0.5 * (green[0] + green[1]);
     const double radius = std::hypot(0.5 * (green[0] - green[1]), 0.5 * green[2]);
@@ -40,6 +39,23 @@ SheetState flatState(const SheetMesh& mesh) {
     for (const glm::dvec2& p : mesh.points) state.positions.emplace_back(p.x, 0.0, p.y);
     state.directors.assign(mesh.edges.size(), glm::dvec3(0.0, 1.0, 0.0));
     return state;
+}
+
+SheetState mirrored(const SheetMesh& mesh, const MeshMirror& mirror, const SheetState& state) {
+    const int axis = mirror.axis == 0 ? 0 : 2;
+    const double twiceMiddle = mesh.points[0][mirror.axis] + mesh.points[mirror.nodes[0]][mirror.axis];
+    SheetState image = state;
+    for (std::size_t k = 0; k < state.positions.size(); ++k) {
+        glm::dvec3& p = image.positions[mirror.nodes[k]];
+        p = state.positions[k];
+        p[axis] = twiceMiddle - p[axis];
+    }
+    for (std::size_t k = 0; k < state.directors.size(); ++k) {
+        glm::dvec3& director = image.directors[mirror.edges[k]];
+        director = state.directors[k];
+        director[axis] = -director[axis];
+    }
+    return image;
 }
 
 SheetSupports noSupports(const SheetMesh& mesh) {
@@ -151,8 +167,13 @@ struct SheetSolver::Impl {
     void assemble(const SheetState& state, const Eigen::VectorXd& moves, bool geometricStiffness) {
         std::fill_n(hessian.valuePtr(), hessian.nonZeros(), 0.0);
         residual.setZero(unknownCount);
-        for (std::size_t k = 0; k < 3 * mesh.points.size(); ++k)
-            if (unknowns[k] >= 0) residual[unknowns[k]] += supports.loads[k / 3][static_cast<int>(k % 3)];
+        for (std::size_t k = 0; k < 3 * mesh.points.size(); ++k) {
+            const int axis = static_cast<int>(k % 3);
+            if (unknowns[k] < 0) continue;
+            residual[unknowns[k]] +=
+                supports.loads[k / 3][axis] + damping * (anchor[k / 3][axis] - state.positions[k / 3][axis]);
+            hessian.valuePtr()[hessian.outerIndexPtr()[unknowns[k]]] += damping; // the diagonal comes first
+        }
         Matrix12 local;
         Vector12 moved;
         const int* place = places.data();
@@ -229,13 +250,15 @@ struct SheetSolver::Impl {
         return step.head(static_cast<Eigen::Index>(3 * mesh.points.size())).cwiseAbs().maxCoeff();
     }
 
-    SheetEquilibrium solve(const SheetState& start, std::span<const glm::dvec3> held, int mostIterations) {
+    SheetEquilibrium solve(const SheetState& start, std::span<const glm::dvec3> held, const NewtonSettings& settings) {
         SheetEquilibrium result;
+        damping = settings.damping;
+        anchor = start.positions;
         result.state = start;
         for (std::size_t t = 0; t < elements.size(); ++t) stress[t] = stressOf(elements[t], cornersOf(t, start));
         Eigen::VectorXd moves = movesTo(held, start);
         const bool moving = moves.cwiseAbs().maxCoeff() > 0.0;
-        for (; result.iterations < mostIterations && !result.converged; ++result.iterations) {
+        for (; result.iterations < settings.mostIterations && !result.converged; ++result.iterations) {
             const bool first = moving && result.iterations == 0;
             const Eigen::VectorXd way = step(result.state, moves, result.stable);
             moves.setZero();
@@ -255,8 +278,7 @@ struct SheetSolver::Impl {
         for (std::size_t k = 0; k < 3 * mesh.points.size(); ++k) {
             const int axis = static_cast<int>(k % 3);
             if (unknowns[k] < 0)
-                result.reactions[k / 3][axis] =
-                    gradient[static_cast<Eigen::Index>(k)] - supports.loads[k / 3][axis];
+                result.reactions[k / 3][axis] = gradient[static_cast<Eigen::Index>(k)] - supports.loads[k / 3][axis];
         }
     }
 
@@ -267,9 +289,11 @@ struct SheetSolver::Impl {
     int unknownCount = 0;
     std::vector<ShellElement> elements;
     std::vector<ShellStress> stress; ///< of each triangle, for the geometric stiffness
-    std::vector<int> places; ///< in the Hessian's values, of the lower half of each triangle's; -1 where held
+    std::vector<int> places;         ///< in the Hessian's values, of the lower half of each triangle's; -1 where held
     Eigen::SparseMatrix<double> hessian;
     Eigen::VectorXd residual;
+    double damping = 0.0;
+    std::vector<glm::dvec3> anchor;
     Cholesky cholesky;
 };
 
@@ -310,8 +334,9 @@ SheetStrain SheetSolver::strain(const SheetState& state) const {
     return result;
 }
 
-SheetEquilibrium SheetSolver::solve(const SheetState& start, std::span<const glm::dvec3> held, int mostIterations) {
-    return impl_->solve(start, held, mostIterations);
+SheetEquilibrium SheetSolver::solve(const SheetState& start, std::span<const glm::dvec3> held,
+                                    const NewtonSettings& settings) {
+    return impl_->solve(start, held, settings);
 }
 
 } // namespace lumorph

@@ -19,6 +19,8 @@ struct SheetState {
 };
 
 [[nodiscard]] SheetState flatState(const SheetMesh& mesh);
+/// The mirror image of a state.
+[[nodiscard]] SheetState mirrored(const SheetMesh& mesh, const MeshMirror& mirror, const SheetState& state);
 
 /// What holds and loads the sheet.
 struct SheetSupports {
@@ -53,18 +55,24 @@ struct SheetStrain {
     std::uint32_t faceTriangle = 0;
 };
 
+struct NewtonSettings {
+    int mostIterations = 40;
+    /// Not 0: each node is also drawn to its place in `start` by a spring so stiff, newtons per metre. Repeated, this
+    /// is the implicit Euler method for a sheet that creeps through a viscous fluid, as one that snaps does.
+    double damping = 0.0;
+};
+
 /// Static equilibrium of an elastic thin shell that is flat at rest.
 ///
-/// Membrane: St. Venant-Kirchhoff on constant strain triangles. Green strain is measured by squared lengths of edges, to
-/// which the arc of a curved edge adds a twelfth of the square of its total turn times its length; without that a mesh
-/// of chords locks. Bending: the mid-edge-normal shape operator with one director an edge (Grinspun, Gingold, Reisman
-/// and Zorin 2006, "Computing discrete shape operators on general meshes"), which for small deflections is the Morley
-/// plate element. Newton's method takes the stress in the geometric stiffness from the last linear step instead of from
-/// the positions (Magisano, Leonetti and Garcea 2017, "How to improve efficiency and robustness of the Newton method in
-/// geometrically non-linear structural problem discretized via displacement-based finite elements"): positions that
-/// rotate by a straight step seem stretched, which makes plain Newton crawl. Where that Hessian is indefinite, the
-/// geometric stiffness is left out.
-/// A solver belongs to one thread at a time.
+/// Membrane: St. Venant-Kirchhoff on constant strain triangles. Green strain is measured by squared lengths of edges,
+/// to which the arc of a curved edge adds a twelfth of the square of its total turn times its length; without that a
+/// mesh of chords locks. Bending: the mid-edge-normal shape operator with one director an edge (Grinspun, Gingold,
+/// Reisman and Zorin 2006, "Computing discrete shape operators on general meshes"), which for small deflections is the
+/// Morley plate element. Newton's method takes the stress in the geometric stiffness from the last linear step instead
+/// of from the positions (Magisano, Leonetti and Garcea 2017, "How to improve efficiency and robustness of the Newton
+/// method in geometrically non-linear structural problem discretized via displacement-based finite elements"):
+/// positions that rotate by a straight step seem stretched, which makes plain Newton crawl. Where that Hessian is
+/// indefinite, the geometric stiffness is left out. A solver belongs to one thread at a time.
 class SheetSolver {
 public:
     /// Throws InvalidInput when the layers fail `checkLayers`, sizes disagree or a triangle has no area.
@@ -83,7 +91,7 @@ public:
     /// so that a small change of `held` is one step of a quasi-static continuation. Throws InvalidInput when the
     /// supports leave a rigid motion.
     [[nodiscard]] SheetEquilibrium solve(const SheetState& start, std::span<const glm::dvec3> held,
-                                         int mostIterations = 40);
+                                         const NewtonSettings& settings = {});
 
 private:
     struct Impl;

@@ -108,8 +108,7 @@ struct Jacobians {
         }
         arcs = arcByHeight * turns;
         for (int k = 0; k < 3; ++k)
-            for (int p = 0; p < 3; ++p)
-                arcs.block<1, 3>(k, 3 * p) += 2.0 * edgeWeight(k, p) * heights[k].e.transpose();
+            for (int p = 0; p < 3; ++p) arcs.block<1, 3>(k, 3 * p) += 2.0 * edgeWeight(k, p) * heights[k].e.transpose();
     }
 
     static Height heightAt(const ShellElement& element, const ShellCorners& corners, int k) {
@@ -140,8 +139,7 @@ ShellElement shellElement(const std::array<Eigen::Vector2d, 3>& corners, const V
         const Eigen::Vector2d& i = g[(k + 1) % 3];
         const Eigen::Vector2d& j = g[(k + 2) % 3];
         element.strainOf.col(k) = -0.5 * Vector3(i.x() * j.x(), i.y() * j.y(), i.x() * j.y() + i.y() * j.x());
-        element.curvatureOf.col(k) =
-            2.0 * Vector3(g[k].x() * g[k].x(), g[k].y() * g[k].y(), 2.0 * g[k].x() * g[k].y());
+        element.curvatureOf.col(k) = 2.0 * Vector3(g[k].x() * g[k].x(), g[k].y() * g[k].y(), 2.0 * g[k].x() * g[k].y());
     }
     Matrix3 membrane = Matrix3::Zero();
     Matrix3 bending = Matrix3::Zero();
@@ -182,7 +180,8 @@ ShellStress stressOf(const ShellElement& element, const ShellCorners& corners) {
 ShellStress stressAfter(const ShellElement& element, const ShellCorners& corners, const Vector12& step) {
     const Jacobians by(element, corners);
     const ShellStress stress = stressOf(element, corners);
-    return {stress.membrane + element.membrane * (by.arcs * step), stress.bending + element.bending * (by.turns * step)};
+    return {stress.membrane + element.membrane * (by.arcs * step),
+            stress.bending + element.bending * (by.turns * step)};
 }
 
 Vector12 shellGradient(const ShellElement& element, const ShellCorners& corners) {

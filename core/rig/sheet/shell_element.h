@@ -25,12 +25,12 @@ using Matrix12 = Eigen::Matrix<double, 12, 12>;
 
 /// Rest shape and stiffness of a triangle.
 struct ShellElement {
-    Matrix3 strainOf;      ///< Green strain (xx, zz, 2 xz) from squared arc lengths less those at rest
-    Matrix3 curvatureOf;   ///< second fundamental form (xx, zz, 2 xz) from heights
-    Matrix3 membrane;      ///< energy = q' membrane q / 2
-    Matrix3 bending;       ///< energy = h' bending h / 2
-    Vector3 restLengths;   ///< squared
-    Vector3 edgeSign;      ///< -1 where the triangle runs an edge from its upper node to the lower
+    Matrix3 strainOf;    ///< Green strain (xx, zz, 2 xz) from squared arc lengths less those at rest
+    Matrix3 curvatureOf; ///< second fundamental form (xx, zz, 2 xz) from heights
+    Matrix3 membrane;    ///< energy = q' membrane q / 2
+    Matrix3 bending;     ///< energy = h' bending h / 2
+    Vector3 restLengths; ///< squared
+    Vector3 edgeSign;    ///< -1 where the triangle runs an edge from its upper node to the lower
 };
 
 /// Unknowns are the corners x, and for each edge an angle by which its director is turned about the edge.
