@@ -14,8 +14,8 @@ namespace {
 
 /// St. Venant-Kirchhoff's law says nothing useful beyond.
 constexpr double kMostStretch = 0.3;
-constexpr int kMostHalvings = 3;
-constexpr int kMostIterations = 20;
+constexpr int kMostHalvings = 5;
+constexpr int kMostIterations = 40;
 
 /// The pad clamps its nodes and the edges between them; each lever holds the height of its line.
 SheetSupports supportsOf(const SheetMesh& mesh) {
@@ -91,7 +91,7 @@ std::vector<glm::dvec3> LeveredSheet::heldAt(std::span<const double> strokes) co
 }
 
 std::optional<SheetPose> LeveredSheet::solved(const SheetState& start, std::span<const double> strokes) {
-    SheetEquilibrium equilibrium = solver_.solve(start, heldAt(strokes), {kMostIterations, 0.0});
+    SheetEquilibrium equilibrium = solver_.solve(start, heldAt(strokes), kMostIterations);
     if (!equilibrium.converged || !equilibrium.stable) return std::nullopt;
     SheetPose pose;
     pose.strokes.assign(strokes.begin(), strokes.end());
@@ -108,25 +108,9 @@ std::optional<SheetPose> LeveredSheet::solved(const SheetState& start, std::span
     return pose;
 }
 
-std::optional<SheetPose> LeveredSheet::snapped(SheetState state, std::span<const double> strokes) {
-    constexpr double kStiffest = 100.0; // per node; the sheet as a whole has some newtons per metre and node
-    constexpr double kSoftest = 1e-3;
-    double damping = 1.0;
-    for (int step = 0; step < 60 && damping <= kStiffest; ++step) {
-        const SheetEquilibrium crept = solver_.solve(state, heldAt(strokes), {kMostIterations, damping});
-        damping *= crept.converged ? 0.4 : 4.0;
-        if (!crept.converged) continue;
-        state = crept.state;
-        if (damping < kSoftest)
-            if (auto pose = solved(state, strokes)) return pose;
-        damping = std::max(damping, kSoftest);
-    }
-    return std::nullopt;
-}
-
 std::optional<SheetPose> LeveredSheet::continued(const SheetPose& from, std::span<const double> strokes, int halvings) {
     if (auto pose = solved(from.state, strokes)) return pose;
-    if (halvings == 0) return snapped(from.state, strokes);
+    if (halvings == 0) return std::nullopt;
     std::vector<double> half(strokes.size());
     for (std::size_t l = 0; l < half.size(); ++l) half[l] = 0.5 * (from.strokes[l] + strokes[l]);
     const auto middle = continued(from, half, halvings - 1);

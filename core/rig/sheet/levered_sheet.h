@@ -36,7 +36,7 @@ public:
     [[nodiscard]] SheetPose rest() const;
     /// The equilibrium at these strokes that is reached from a pose by quasi-static continuation along the straight way
     /// between the strokes: in one step of Newton's method, or in halves where that does not converge. Where the way
-    /// ends at a limit point, the sheet snaps to the equilibrium that it reaches by creeping downhill. Throws
+    /// ends at a limit point or a saddle, the sheet snaps to a minimum that Newton's shifted steps lead to. Throws
     /// InvalidInput when the strokes are not one a lever in [0, 1], when levers pull against each other (the middle
     /// surface would stretch by more than 30 %), and when no equilibrium is found.
     [[nodiscard]] SheetPose moved(const SheetPose& from, std::span<const double> strokes);
@@ -47,7 +47,6 @@ public:
 
 private:
     [[nodiscard]] std::optional<SheetPose> solved(const SheetState& start, std::span<const double> strokes);
-    [[nodiscard]] std::optional<SheetPose> snapped(SheetState state, std::span<const double> strokes);
     [[nodiscard]] std::vector<glm::dvec3> heldAt(std::span<const double> strokes) const;
     [[nodiscard]] std::optional<SheetPose> continued(const SheetPose& from, std::span<const double> strokes,
                                                      int halvings);

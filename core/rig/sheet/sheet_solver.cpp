@@ -19,8 +19,8 @@ using Cholesky = Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>, Eigen::Lower
 
 /// A step so short ends Newton's method: the next error is its square by the radius of curvature.
 constexpr double kConverged = 1e-6;
-/// A longer one, metres, means that the method diverges.
-constexpr double kMostMove = 10.0;
+/// A step is at most so many times as long as the one before: longer ones are of a Hessian that is nearly singular.
+constexpr double kMostGrowth = 2.0;
 
 Vector3 toEigen(const glm::dvec3& v) { return {v.x, v.y, v.z}; }
 glm::dvec3 toGlm(const Vector3& v) { return {v.x(), v.y(), v.z()}; }
@@ -71,6 +71,12 @@ struct SheetSolver::Impl {
             supports.heldDirectors.size() != mesh.edges.size())
             throw InvalidInput("sheet supports", "their sizes are not those of the mesh",
                                "give one a node, and one an edge");
+        double bending = 0.0;
+        for (const auto& [material, thickness, loose] : layers)
+            bending += material.youngsModulus * thickness * thickness * thickness / 12.0;
+        const glm::dvec2 edge = mesh.points[mesh.edges[0][1]] - mesh.points[mesh.edges[0][0]];
+        edgeSquared = glm::dot(edge, edge);
+        leastShift = 1e-3 * bending / edgeSquared;
         for (const SheetLayer& layer : layers)
             if (!layer.loose) faceDistance = std::max(faceDistance, 0.5 * layer.thickness);
         numberUnknowns();
@@ -164,22 +170,19 @@ struct SheetSolver::Impl {
     }
 
     /// Fills `hessian`, and `residual` with the forces on the unknowns once held coordinates have moved by `moves`.
-    void assemble(const SheetState& state, const Eigen::VectorXd& moves, bool geometricStiffness) {
+    void assemble(const SheetState& state, const Eigen::VectorXd& moves) {
         std::fill_n(hessian.valuePtr(), hessian.nonZeros(), 0.0);
         residual.setZero(unknownCount);
         for (std::size_t k = 0; k < 3 * mesh.points.size(); ++k) {
             const int axis = static_cast<int>(k % 3);
             if (unknowns[k] < 0) continue;
-            residual[unknowns[k]] +=
-                supports.loads[k / 3][axis] + damping * (anchor[k / 3][axis] - state.positions[k / 3][axis]);
-            hessian.valuePtr()[hessian.outerIndexPtr()[unknowns[k]]] += damping; // the diagonal comes first
+            residual[unknowns[k]] += supports.loads[k / 3][axis];
         }
         Matrix12 local;
         Vector12 moved;
         const int* place = places.data();
         for (std::size_t t = 0; t < elements.size(); ++t) {
-            Vector12 gradient =
-                shellGradient(elements[t], cornersOf(t, state), geometricStiffness ? &stress[t] : nullptr, local);
+            Vector12 gradient = shellGradient(elements[t], cornersOf(t, state), stress[t], local);
             const auto coordinates = coordinatesOf(t);
             for (int a = 0; a < 12; ++a) moved[a] = moves[static_cast<Eigen::Index>(coordinates[a])];
             gradient += local * moved;
@@ -198,26 +201,43 @@ struct SheetSolver::Impl {
         return cholesky.info() == Eigen::Success && cholesky.vectorD().minCoeff() > 0.0;
     }
 
-    /// The step to the minimum of the quadratic model, over all coordinates.
-    Eigen::VectorXd step(const SheetState& state, const Eigen::VectorXd& moves, bool& definite) {
-        assemble(state, moves, true);
-        definite = factorise();
-        if (!definite) {
-            assemble(state, moves, false);
-            if (!factorise())
+    /// Adds to the Hessian's diagonal: a stiffness of each position, and what that is for directors an edge apart.
+    void stiffen(double stiffness) {
+        for (std::size_t k = 0; k < unknowns.size(); ++k) // the diagonal comes first in a column
+            if (unknowns[k] >= 0)
+                hessian.valuePtr()[hessian.outerIndexPtr()[unknowns[k]]] +=
+                    k < 3 * mesh.points.size() ? stiffness : stiffness * edgeSquared;
+    }
+
+    /// The step to the minimum of the quadratic model, over all coordinates. Where the Hessian is indefinite, `shift`
+    /// is raised until that added to its diagonal makes it definite; elsewhere it falls to 0 again.
+    Eigen::VectorXd step(const SheetState& state, const Eigen::VectorXd& moves, double& shift) {
+        assemble(state, moves);
+        shift = shift > leastShift ? shift / 8.0 : 0.0;
+        stiffen(shift);
+        while (!factorise()) {
+            if (!std::isfinite(residual.norm())) break;
+            const double more = std::max(leastShift, 3.0 * shift);
+            if (more > 1e9 * leastShift)
                 throw InvalidInput("sheet supports", "they leave a rigid motion of the sheet", "clamp a part of it");
+            stiffen(more);
+            shift += more;
         }
         const Eigen::VectorXd solution = cholesky.solve(residual);
         Eigen::VectorXd whole = moves;
         for (std::size_t k = 0; k < unknowns.size(); ++k)
             if (unknowns[k] >= 0) whole[static_cast<Eigen::Index>(k)] = solution[unknowns[k]];
+        return whole;
+    }
+
+    /// Extrapolates the stress of the geometric stiffness.
+    void extrapolateStress(const SheetState& state, const Eigen::VectorXd& way) {
         for (std::size_t t = 0; t < elements.size(); ++t) {
             const auto coordinates = coordinatesOf(t);
             Vector12 local;
-            for (int a = 0; a < 12; ++a) local[a] = whole[static_cast<Eigen::Index>(coordinates[a])];
+            for (int a = 0; a < 12; ++a) local[a] = way[static_cast<Eigen::Index>(coordinates[a])];
             stress[t] = stressAfter(elements[t], cornersOf(t, state), local);
         }
-        return whole;
     }
 
     [[nodiscard]] SheetState moved(const SheetState& state, const Eigen::VectorXd& step) const {
@@ -250,21 +270,26 @@ struct SheetSolver::Impl {
         return step.head(static_cast<Eigen::Index>(3 * mesh.points.size())).cwiseAbs().maxCoeff();
     }
 
-    SheetEquilibrium solve(const SheetState& start, std::span<const glm::dvec3> held, const NewtonSettings& settings) {
+    SheetEquilibrium solve(const SheetState& start, std::span<const glm::dvec3> held, int mostIterations) {
         SheetEquilibrium result;
-        damping = settings.damping;
-        anchor = start.positions;
         result.state = start;
         for (std::size_t t = 0; t < elements.size(); ++t) stress[t] = stressOf(elements[t], cornersOf(t, start));
         Eigen::VectorXd moves = movesTo(held, start);
         const bool moving = moves.cwiseAbs().maxCoeff() > 0.0;
-        for (; result.iterations < settings.mostIterations && !result.converged; ++result.iterations) {
+        double shift = 0.0;
+        double before = 0.0;
+        for (; result.iterations < mostIterations && !result.converged; ++result.iterations) {
             const bool first = moving && result.iterations == 0;
-            const Eigen::VectorXd way = step(result.state, moves, result.stable);
+            Eigen::VectorXd way = step(result.state, moves, shift);
             moves.setZero();
             const double length = longest(way);
-            if (!(length < kMostMove)) break;
+            if (!std::isfinite(length)) break;
+            const double share = result.iterations == 0 ? 1.0 : std::min(1.0, kMostGrowth * before / length);
+            before = share * length;
+            way *= share;
+            extrapolateStress(result.state, way);
             result.state = moved(result.state, way);
+            result.stable = shift == 0.0;
             result.converged = !first && length < kConverged;
         }
         finish(result);
@@ -292,8 +317,8 @@ struct SheetSolver::Impl {
     std::vector<int> places;         ///< in the Hessian's values, of the lower half of each triangle's; -1 where held
     Eigen::SparseMatrix<double> hessian;
     Eigen::VectorXd residual;
-    double damping = 0.0;
-    std::vector<glm::dvec3> anchor;
+    double edgeSquared = 0.0; ///< of an edge at rest
+    double leastShift = 0.0;  ///< a small part of the stiffness with which neighbouring nodes resist bending
     Cholesky cholesky;
 };
 
@@ -334,9 +359,8 @@ SheetStrain SheetSolver::strain(const SheetState& state) const {
     return result;
 }
 
-SheetEquilibrium SheetSolver::solve(const SheetState& start, std::span<const glm::dvec3> held,
-                                    const NewtonSettings& settings) {
-    return impl_->solve(start, held, settings);
+SheetEquilibrium SheetSolver::solve(const SheetState& start, std::span<const glm::dvec3> held, int mostIterations) {
+    return impl_->solve(start, held, mostIterations);
 }
 
 } // namespace lumorph

@@ -55,13 +55,6 @@ struct SheetStrain {
     std::uint32_t faceTriangle = 0;
 };
 
-struct NewtonSettings {
-    int mostIterations = 40;
-    /// Not 0: each node is also drawn to its place in `start` by a spring so stiff, newtons per metre. Repeated, this
-    /// is the implicit Euler method for a sheet that creeps through a viscous fluid, as one that snaps does.
-    double damping = 0.0;
-};
-
 /// Static equilibrium of an elastic thin shell that is flat at rest.
 ///
 /// Membrane: St. Venant-Kirchhoff on constant strain triangles. Green strain is measured by squared lengths of edges,
@@ -72,7 +65,7 @@ struct NewtonSettings {
 /// of from the positions (Magisano, Leonetti and Garcea 2017, "How to improve efficiency and robustness of the Newton
 /// method in geometrically non-linear structural problem discretized via displacement-based finite elements"):
 /// positions that rotate by a straight step seem stretched, which makes plain Newton crawl. Where that Hessian is
-/// indefinite, the geometric stiffness is left out. A solver belongs to one thread at a time.
+/// indefinite, it is shifted along its diagonal. A solver belongs to one thread at a time.
 class SheetSolver {
 public:
     /// Throws InvalidInput when the layers fail `checkLayers`, sizes disagree or a triangle has no area.
@@ -91,7 +84,7 @@ public:
     /// so that a small change of `held` is one step of a quasi-static continuation. Throws InvalidInput when the
     /// supports leave a rigid motion.
     [[nodiscard]] SheetEquilibrium solve(const SheetState& start, std::span<const glm::dvec3> held,
-                                         const NewtonSettings& settings = {});
+                                         int mostIterations = 40);
 
 private:
     struct Impl;

@@ -190,18 +190,16 @@ Vector12 shellGradient(const ShellElement& element, const ShellCorners& corners)
     return by.arcs.transpose() * stress.membrane + by.turns.transpose() * stress.bending;
 }
 
-Vector12 shellGradient(const ShellElement& element, const ShellCorners& corners, const ShellStress* stress,
+Vector12 shellGradient(const ShellElement& element, const ShellCorners& corners, const ShellStress& stress,
                        Matrix12& hessian) {
     const Jacobians by(element, corners);
-    hessian = by.arcs.transpose() * element.membrane * by.arcs + by.turns.transpose() * element.bending * by.turns;
-    if (stress != nullptr) {
-        const Matrix3 arcs = 2.0 / 3.0 * kOthers * stress->membrane.asDiagonal() * kOthers;
-        hessian += by.turns.transpose() * arcs * by.turns;
-        const Vector3 byHeight = stress->bending + by.arcByHeight.transpose() * stress->membrane;
-        for (int k = 0; k < 3; ++k) {
-            addLengthHessian(k, stress->membrane[k], hessian);
-            addHeightHessian(by.heights[k], k, byHeight[k], hessian);
-        }
+    const Matrix3 arcs = 2.0 / 3.0 * kOthers * stress.membrane.asDiagonal() * kOthers;
+    hessian =
+        by.arcs.transpose() * element.membrane * by.arcs + by.turns.transpose() * (element.bending + arcs) * by.turns;
+    const Vector3 byHeight = stress.bending + by.arcByHeight.transpose() * stress.membrane;
+    for (int k = 0; k < 3; ++k) {
+        addLengthHessian(k, stress.membrane[k], hessian);
+        addHeightHessian(by.heights[k], k, byHeight[k], hessian);
     }
     const ShellStress now = stressOf(element, corners);
     return by.arcs.transpose() * now.membrane + by.turns.transpose() * now.bending;

@@ -61,9 +61,8 @@ ShellStress stressAfter(const ShellElement& element, const ShellCorners& corners
 
 /// Derivative of the energy by x_0, x_1, x_2 and the three angles.
 Vector12 shellGradient(const ShellElement& element, const ShellCorners& corners);
-/// The same, and the Hessian with a geometric stiffness of this stress; null leaves the geometric stiffness out
-/// (Gauss-Newton).
-Vector12 shellGradient(const ShellElement& element, const ShellCorners& corners, const ShellStress* stress,
+/// The same, and the Hessian with a geometric stiffness of this stress.
+Vector12 shellGradient(const ShellElement& element, const ShellCorners& corners, const ShellStress& stress,
                        Matrix12& hessian);
 
 } // namespace lumorph
