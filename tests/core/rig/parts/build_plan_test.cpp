@@ -416,14 +416,10 @@ TEST(BuildPlan, RefusesWhatCannotBeBuilt) {
     options = {};
     options.servo = servoBody("MG996R");
     EXPECT_THAT(refusal(templateRig("phone"), options), testing::HasSubstr("no room"));
-    EXPECT_THAT(refusal(Rig({"thing",
-                             tablet.skeleton() ? tablet.restMesh() : templateRig("cushion").restMesh(),
-                             {},
-                             {},
-                             false,
-                             {}}),
-                        {}),
-                testing::HasSubstr("no actuator"));
+    RigParts still;
+    still.name = "thing";
+    still.restMesh = templateRig("cushion").restMesh();
+    EXPECT_THAT(refusal(Rig(std::move(still)), {}), testing::HasSubstr("no actuator"));
 }
 
 TEST(BuildPlan, NamesTheActuatorOfManyThatHasNoRoom) {
