@@ -40,8 +40,4 @@ struct ElasticSheet {
     bool operator==(const ElasticSheet&) const = default;
 };
 
-/// Throws InvalidInput when nothing holds the sheet, a lever's line is too short, leaves the sheet, touches the pad or
-/// the line of another lever, or cannot turn; or when the layers fail `checkLayers`.
-void checkSheet(const ElasticSheet& sheet);
-
 } // namespace lumorph

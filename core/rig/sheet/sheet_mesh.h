@@ -34,6 +34,10 @@ struct SheetMesh {
 /// Numbers the edges of a mesh of which points and triangles are given.
 [[nodiscard]] SheetMesh sheetMesh(std::vector<glm::dvec2> points, std::vector<glm::uvec3> triangles);
 
+/// Throws InvalidInput when nothing holds the sheet, a lever's line is too short, leaves the sheet, touches the pad or
+/// the line of another lever, or cannot turn; or when the layers fail `checkLayers`.
+void checkSheet(const ElasticSheet& sheet);
+
 /// Meshes a sheet with edges of about this length (metres): an equilateral lattice inside, the outline, the pad's rim
 /// and the levers' lines as edges. Where the drawing is its own mirror image about the middle of its outline, so is the
 /// mesh. The same on every machine. Throws what `checkSheet` throws, and InvalidInput when the mesh would have more
