@@ -12,13 +12,13 @@ namespace {
 
 constexpr std::array kMaterials{
     // NinjaTek's data sheet of NinjaFlex 85A: tensile modulus 12 MPa (ASTM D638), Shore 85A. It gives no Poisson ratio:
-    // that of a nearly incompressible elastomer.
+    // assumed, that of a nearly incompressible elastomer.
     SheetMaterial{"NinjaFlex", 12e6, 0.48},
     // Shapeways' page "TPU SLS": tensile modulus 60 MPa (ISO 527), Shore 86A. Poisson ratio as above.
     SheetMaterial{"sintered TPU", 60e6, 0.48},
-    // Printing paper: 2.9 GPa in Sci. Rep. 4, 6275 (2014), table 2, whose columns of modulus and strength are
-    // interchanged; Poisson ratio 1/3 in Schulgasser, "The in-plane Poisson ratio of paper", Fibre Sci. Technol. 19
-    // (1983) 297-309.
+    // Printing paper: 2.9 GPa in Sci. Rep. 4, 6275 (2014), table 2, read as if its columns of modulus and strength were
+    // interchanged: only then both are those of paper. Poisson ratio 1/3 in Schulgasser, "The in-plane Poisson ratio of
+    // paper", Fibre Sci. Technol. 19 (1983) 297-309.
     SheetMaterial{"printing paper", 2.9e9, 1.0 / 3.0},
     // DuPont Teijin Films' bulletin H-37232-3 "Mylar, physical-thermal properties": modulus 490 and 510 kgf/mm^2 along
     // and across the web (their mean), Poisson ratio 0.38 before yield.
