@@ -103,6 +103,7 @@ void StudioWindow::enter(const QString& name, const QString& text, Qt::Key then)
 
 void StudioWindow::command(const QString& words) {
     window_->activateWindow();
+    (void)eventually([this] { return window_->isActiveWindow(); }, 5s); // a shortcut is the active window's alone
     QTest::keyClick(window_.get(), Qt::Key_K, Qt::ControlModifier);
     auto* input = find<QLineEdit>("palette.input");
     if (!input) return;
