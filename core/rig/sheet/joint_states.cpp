@@ -202,9 +202,9 @@ private:
 
     /// Of a lever: 0, 1 and equally spaced ones between.
     static std::vector<float> strokesOf(int levels) {
-        std::vector<float> strokes;
+        std::vector<float> strokes(static_cast<std::size_t>(levels));
         for (int level = 0; level < levels; ++level)
-            strokes.push_back(static_cast<float>(level) / static_cast<float>(levels - 1));
+            strokes[static_cast<std::size_t>(level)] = static_cast<float>(level) / static_cast<float>(levels - 1);
         return strokes;
     }
 
