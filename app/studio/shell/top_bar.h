@@ -3,6 +3,7 @@
 #include <vector>
 
 #include <QMenuBar>
+#include <QPushButton>
 #include <QToolButton>
 #include <QWidget>
 
@@ -11,7 +12,6 @@
 #include "app/studio/shell/workspace.h"
 
 class QHBoxLayout;
-class QPushButton;
 
 namespace lumorph::studio {
 
