@@ -21,7 +21,7 @@ std::vector<ShowInput> visitorDoes(int frame) {
     case 400:
         return {{"pointer.x", 0.4}, {"key.right", 1.0}};
     case 600:
-        return {{"pointer.x", -0.4}, {"key.right", 0.0}, {"key.rain", 1.0}};
+        return {{"pointer.x", 0.0}, {"key.right", 0.0}, {"key.rain", 1.0}};
     case 800:
         return {{"key.rain", 0.0}, {"key.in", 1.0}};
     case 900:

@@ -56,7 +56,7 @@ public:
     /// Whether views at rest are drawn again in full quality; on at first.
     void setStillQuality(bool on);
     /// The share of its time, in (0, 1], that this thread may draw; all of it at first. After each frame it rests for
-    /// the remainder, a quarter of a second at most. For programs that compute beside a renderer in software.
+    /// the remainder, a quarter of a second at most. For tests beside a renderer in software.
     void setShare(double share);
     /// Forgets a viewport and what was asked for it.
     void forget(int viewport);

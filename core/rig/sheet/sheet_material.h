@@ -13,7 +13,7 @@ struct SheetMaterial {
     bool operator==(const SheetMaterial&) const = default;
 };
 
-/// Materials of sheets, the softest first; the source of each number stands beside it.
+/// The table of sheet materials, ordered by stiffness. Its comments give the source of each number.
 [[nodiscard]] std::span<const SheetMaterial> sheetMaterials();
 /// By its name in any case. Throws InvalidInput naming those there are.
 [[nodiscard]] const SheetMaterial& sheetMaterial(std::string_view name);

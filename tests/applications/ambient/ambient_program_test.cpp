@@ -366,6 +366,19 @@ TEST(AmbientProgram, ServosKeepTheSlowEnergyOfTheWavesThatTheTabletReaches) {
     }
 }
 
+TEST(AmbientProgram, AFrameTakesASmallPartOfItsTime) {
+    AmbientProgram program(1);
+    Visit visit(program);
+    std::vector<double> milliseconds;
+    for (int k = 0; k < 60 * 60; ++k) {
+        const double begun = test::threadSeconds();
+        visit.frame(k % 600 == 300 ? std::vector<ShowInput>{{"key.next", 1.0}} : std::vector<ShowInput>{});
+        milliseconds.push_back(1e3 * (test::threadSeconds() - begun));
+    }
+    EXPECT_LE(test::shareOf(milliseconds, 0.5), 2.0);
+    EXPECT_LE(test::shareOf(milliseconds, 0.99), 8.0);
+}
+
 // Half an hour with visitors who come, press and go; k counts tenths of a second.
 TEST(AmbientProgram, HalfAnHourKeepsItsMemoryAndTheLimitsOfTheServos) {
     AmbientProgram program(3);

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <ctime>
 #include <numeric>
 #include <random>
 #include <set>
@@ -16,7 +17,7 @@
 #include "core/motion/surface_heights.h"
 #include "tests/support/program_visit.h"
 
-// R39: the labyrinth as visitors meet it: who plays, what is seen and heard, what is felt.
+// R39: the labyrinth as visitors meet it: who plays, what is seen and heard, what is felt, and what a frame costs.
 
 namespace lumorph::labyrinth {
 namespace {
@@ -252,6 +253,29 @@ TEST(LabyrinthProgram, TheTabletRisesWhereTheBallIs) {
             EXPECT_GT(more, 0.004) << level.name << ", ball at " << ball.x << " " << ball.y;
         }
     }
+}
+
+double threadSeconds() {
+    timespec now{};
+    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+    return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
+TEST(LabyrinthProgram, AFrameTakesASmallPartOfItsTime) {
+    LabyrinthProgram program(1, bundledLevels());
+    Visit visit(program);
+    std::vector<double> milliseconds;
+    for (int k = 0; k < 60 * 90; ++k) {
+        const double begun = threadSeconds();
+        visit.frame();
+        milliseconds.push_back(1e3 * (threadSeconds() - begun));
+    }
+    std::ranges::sort(milliseconds);
+    const double middle = milliseconds[milliseconds.size() / 2], late = milliseconds[milliseconds.size() * 99 / 100];
+    RecordProperty("medianMilliseconds", std::to_string(middle));
+    RecordProperty("percentile99Milliseconds", std::to_string(late));
+    EXPECT_LE(middle, 2.0);
+    EXPECT_LE(late, 8.0);
 }
 
 } // namespace

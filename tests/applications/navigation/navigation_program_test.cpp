@@ -368,6 +368,24 @@ TEST(NavigationProgram, WhatStandsStillKeepsItsIdentity) {
     EXPECT_LE(assets->images.at("navigation ground")->size().x, 1024);
 }
 
+TEST(NavigationProgram, AFrameTakesASmallPartOfItsTime) {
+    NavigationProgram program(1, valley());
+    Visit visit(program);
+    std::vector<double> milliseconds;
+    for (int k = 0; k < 60 * 60; ++k) {
+        std::vector<ShowInput> inputs;
+        if (k == 1800) inputs = {{"pointer.x", 0.4}, {"key.rain", 1.0}};
+        if (k == 2400) inputs = {{"pointer.x", 0.0}, {"key.rain", 0.0}, {"key.in", 1.0}};
+        if (k == 2500) inputs = {{"key.in", 0.0}, {"key.next", 1.0}};
+        const double begun = test::threadSeconds();
+        visit.frame(inputs);
+        milliseconds.push_back(1e3 * (test::threadSeconds() - begun));
+    }
+    // A fifth and a half of a frame. Beside other tests processor time grows, too: half of the frames took 2.1 ms then.
+    EXPECT_LE(test::shareOf(milliseconds, 0.5), 1000.0 / 60.0 / 5.0);
+    EXPECT_LE(test::shareOf(milliseconds, 0.99), 8.0);
+}
+
 double residentMegabytes() {
     std::ifstream statm("/proc/self/statm");
     double size = 0.0, resident = 0.0;
