@@ -7,6 +7,7 @@
 #include "core/geometry/mesh_writers.h"
 #include "core/rig/rig_check.h"
 #include "core/rig/rig_file.h"
+#include "core/rig/servo_types.h"
 #include "core/rig/shape_report.h"
 #include "core/rig/templates/rig_templates.h"
 #include "core/rig/templates/sheet_file.h"
@@ -90,7 +91,9 @@ nlohmann::json reportJson(const Rig& rig, const ShapeReport& report) {
                              {"amplitude", a.amplitude},
                              {"sweptArea", a.sweptArea},
                              {"maxCurvature", a.maxCurvature},
-                             {"fullStrokeSeconds", a.fullStrokeSeconds}});
+                             {"fullStrokeSeconds", a.fullStrokeSeconds},
+                             {"torque", a.torque},
+                             {"servo", a.servo}});
     }
     return {{"name", rig.name()},
             {"actuators", actuators},
@@ -120,6 +123,18 @@ void printRange(const ShapeReport::PerActuator& a) {
         std::printf("%6.2f to %5.2f    ", a.rangeMin, a.rangeMax);
 }
 
+/// What holds the levers of a sheet: "  corner front left: an SG90, at most 43 % of its stall torque".
+void printServos(const ShapeReport& report) {
+    for (const ShapeReport::PerActuator& a : report.actuators) {
+        const ServoType* servo = findServo(a.servo);
+        if (a.torque <= 0.0) continue;
+        std::printf("  %-22s holds at most %.0f mN m", a.name.c_str(), 1e3 * a.torque);
+        if (servo != nullptr)
+            std::printf(", %.0f %% of what stalls its %s", 100.0 * a.torque / servo->stallTorque, a.servo.c_str());
+        std::printf("\n");
+    }
+}
+
 void printShapes(const Rig& rig, const ShapeReport& report) {
     const glm::vec3 size = 1000.0F * report.reach.size();
     std::printf("%s: %zu triangles, %s, %.0f x %.0f x %.0f mm over all states\n\n", rig.name().c_str(),
@@ -134,6 +149,7 @@ void printShapes(const Rig& rig, const ShapeReport& report) {
         std::printf(" %7.1f mm %6.1f cm2 %7.2f s\n", 1000 * a.amplitude, 1e4 * a.sweptArea, a.fullStrokeSeconds);
     }
     if (report.actuators.size() > kMost) std::printf("  ... and %zu more\n", report.actuators.size() - kMost);
+    printServos(report);
     std::printf(
         "\n  In %d random states: %d open, %d crossing themselves, %d turned inside out; the top stretches by at "
         "most %.1f %%.\n",
@@ -212,22 +228,37 @@ const char* unitOf(TemplateParameter::Unit unit) {
     return unit == TemplateParameter::Unit::centimetres ? "cm" : unit == TemplateParameter::Unit::degrees ? "deg" : "";
 }
 
+std::string wordsOf(const TemplateParameter& parameter) {
+    std::string words;
+    for (const std::string_view word : parameter.words) words += (words.empty() ? "" : ", ") + std::string(word);
+    return words;
+}
+
 nlohmann::json parametersJson(const RigTemplate& kind) {
     nlohmann::json parameters = nlohmann::json::array();
-    for (const TemplateParameter& p : kind.parameters)
-        parameters.push_back({{"name", p.name},
-                              {"meaning", p.meaning},
-                              {"unit", unitOf(p.unit)},
-                              {"value", p.value},
-                              {"range", {p.min, p.max}}});
+    for (const TemplateParameter& p : kind.parameters) {
+        nlohmann::json entry{{"name", p.name}, {"meaning", p.meaning}};
+        if (p.words.empty()) {
+            entry.update({{"unit", unitOf(p.unit)}, {"value", p.value}, {"range", {p.min, p.max}}});
+        } else {
+            entry["value"] = p.words[static_cast<std::size_t>(p.value)];
+            entry["words"] = p.words;
+        }
+        parameters.push_back(std::move(entry));
+    }
     return {{"template", kind.name}, {"meaning", kind.meaning}, {"parameters", parameters}};
 }
 
 void printParameters(const RigTemplate& kind) {
     std::printf("%s: %s\n", std::string(kind.name).c_str(), std::string(kind.meaning).c_str());
     for (const TemplateParameter& p : kind.parameters)
-        std::printf("  %-10s %8.2f %-3s  %s (%g to %g)\n", std::string(p.name).c_str(), p.value, unitOf(p.unit),
-                    std::string(p.meaning).c_str(), p.min, p.max);
+        if (p.words.empty())
+            std::printf("  %-10s %8.2f %-3s  %s (%g to %g)\n", std::string(p.name).c_str(), p.value, unitOf(p.unit),
+                        std::string(p.meaning).c_str(), p.min, p.max);
+        else
+            std::printf("  %-10s %12s  %s (%s)\n", std::string(p.name).c_str(),
+                        std::string(p.words[static_cast<std::size_t>(p.value)]).c_str(),
+                        std::string(p.meaning).c_str(), wordsOf(p).c_str());
 }
 
 void newRig(const NewOptions& options, const Session& session) {
@@ -279,8 +310,8 @@ void addMakingCommands(CLI::App* group, Session& session) {
     sheetCommand
         ->add_option("--bends", sheetOptions->bends,
                      "A JSON file: {\"bends\": [{\"name\", \"from\": [x, y], \"to\": [x, y], \"ends\": \"joined\" or "
-                     "\"free\", \"side\": \"smaller\", \"left\" or \"right\", \"angle\"}], \"name\", \"thickness\", "
-                     "\"housing\", \"arc\"}, in cm on the SVG's page and degrees")
+                     "\"free\", \"side\": \"smaller\", \"left\" or \"right\", \"angle\"}], \"name\", \"top\": \"cut\" or "
+                     "\"continuous\", \"material\", \"pad\", \"thickness\", \"housing\", \"arc\"}, in cm on the SVG's page and degrees")
         ->required();
     sheetCommand->add_option("-o,--output", sheetOptions->output, "A .glb file, or - for standard output")->required();
     sheetCommand->callback([sheetOptions, &session] { sheet(*sheetOptions, session); });

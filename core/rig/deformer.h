@@ -71,6 +71,7 @@ struct SheetLift {
     int axis = -1; ///< of the sheet's grid, index into SheetModes::strokes
     Angle min;     ///< of the lever at stroke 0; describes it, moves nothing
     Angle max;     ///< at stroke 1
+    double torque = 0.0; ///< the largest that its servo holds in a state of the grid, newton metres; 0: not known
     bool operator==(const SheetLift&) const = default;
 };
 

@@ -132,7 +132,8 @@ double readDeformer(const std::string& kind, const Members& members, const glm::
     if (kind == "lever") {
         const auto range = members.range(kDegrees);
         entry.actuator.deformer =
-            SheetLift{members.integer("gridAxis", -1), Angle::degrees(range[0]), Angle::degrees(range[1])};
+            SheetLift{members.integer("gridAxis", -1), Angle::degrees(range[0]), Angle::degrees(range[1]),
+                      members.has("torque") ? members.number("torque", "give it in newton metres") : 0.0};
         return range[1] - range[0];
     }
     if (kind != "morph") entry.place.fail("the deformer \"" + kind + "\" is not known", kDeformers);
@@ -235,6 +236,7 @@ struct DeformerWriter {
     double operator()(const SheetLift& lift) const {
         out["deformer"] = "lever";
         out["gridAxis"] = lift.axis;
+        if (lift.torque > 0.0) out["torque"] = lift.torque;
         return degrees(lift.min.inRadians(), lift.max.inRadians());
     }
 };

@@ -114,6 +114,8 @@ struct DeformerCheck {
         require(actuator.influences.empty(), subject, "a lever of the sheet has influences",
                 "leave them out: what follows it is the sheet's");
         requireTurn(lift.min.inRadians(), lift.max.inRadians(), subject);
+        require(lift.torque >= 0.0 && std::isfinite(lift.torque), subject, "its torque is no positive number",
+                "give it in newton metres");
     }
 };
 

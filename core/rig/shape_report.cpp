@@ -8,6 +8,7 @@
 
 #include <glm/geometric.hpp>
 
+#include "core/rig/servo_types.h"
 #include "core/voxels/solid.h"
 #include "core/voxels/voxel_frame.h"
 
@@ -66,7 +67,10 @@ struct Description {
     void operator()(const SkinJoint& joint) const {
         set("joint", joint.min, joint.max, joint.motion == SkinJoint::Motion::rotate ? "rad" : "m");
     }
-    void operator()(const SheetLift& lift) const { turn("lever", lift.min.inRadians(), lift.max.inRadians()); }
+    void operator()(const SheetLift& lift) const {
+        turn("lever", lift.min.inRadians(), lift.max.inRadians());
+        out.torque = lift.torque;
+    }
 
 private:
     void turn(const char* deformer, double min, double max) const { set(deformer, min, max, "rad"); }
@@ -109,6 +113,7 @@ private:
         out.name = actuator.name;
         std::visit(Description{out}, actuator.deformer);
         out.fullStrokeSeconds = 1.0 / actuator.maxVelocity;
+        out.servo = actuator.drive.servo;
         const auto vertices = rig_.verticesOf(index);
         out.vertices = vertices.size();
         std::vector<double> strokes(rig_.actuatorCount(), 0.0);
@@ -230,6 +235,10 @@ private:
         for (const auto& actuator : report_.actuators)
             if (actuator.vertices == 0 || actuator.amplitude == 0.0)
                 report_.warnings.push_back("The actuator \"" + actuator.name + "\" moves nothing.");
+        for (const auto& actuator : report_.actuators)
+            if (const ServoType* servo = findServo(actuator.servo); servo && actuator.torque > servo->usableTorque())
+                report_.warnings.push_back("The actuator \"" + actuator.name + "\" needs more than half of what stalls its " +
+                                           actuator.servo + "; take a stronger servo or a thinner sheet.");
         warnOfStates(report_.openStates, "the mesh is not closed; what lies inside is a guess there.");
         warnOfStates(report_.intersectingStates, "the surface crosses itself; a real device would collide there.");
         warnOfStates(report_.invertedStates, "parts of the mesh are turned inside out or squeezed flat.");

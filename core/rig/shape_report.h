@@ -27,6 +27,8 @@ struct ShapeReport {
         double sweptArea = 0.0;         ///< square metres of rest surface that it moves
         double maxCurvature = 0.0;      ///< 1/metres at full stroke (0 where rigid)
         double fullStrokeSeconds = 0.0; ///< at its velocity limit
+        double torque = 0.0;            ///< newton metres that its servo must hold; 0 where nothing tells it
+        std::string servo;              ///< that it has, of the table
     };
     std::vector<PerActuator> actuators;
     double area = 0.0;        ///< square metres of rest surface that any actuator moves

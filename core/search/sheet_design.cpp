@@ -34,14 +34,14 @@ double areaOfPolygon(const std::vector<glm::dvec2>& polygon) {
 }
 
 /// The top of a sheet device: triangles that look up, at its highest place.
-struct SheetTop {
+struct LevelTop {
     std::vector<glm::dvec2> points;
     double area = 0.0;
     double height = 0.0;
 };
 
-SheetTop topOf(const TriangleMesh& mesh) {
-    SheetTop top;
+LevelTop topOf(const TriangleMesh& mesh) {
+    LevelTop top;
     top.height = static_cast<double>(boundingBox(mesh.positions).max.y);
     for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
         std::vector<glm::dvec2> corners;
@@ -100,7 +100,7 @@ BendLine lineOfBend(const Rig& rig, std::size_t index, const Bend& bend) {
 SheetDevice sheetDeviceOf(const Rig& rig) {
     SheetDevice device;
     device.name = rig.name();
-    const SheetTop top = topOf(rig.restMesh());
+    const LevelTop top = topOf(rig.restMesh());
     device.outline = convexHull(top.points);
     if (device.outline.size() < 3 || top.area < kConvex * areaOfPolygon(device.outline))
         throw InvalidInput(rig.name(), "its top is no sheet with a convex outline",

@@ -13,7 +13,7 @@
 #include "app/workspaces/calibrate/capture_picture.h"
 #include "app/workspaces/calibrate/error_map_view.h"
 #include "app/workspaces/common/step_card.h"
-#include "app/workspaces/scene/segments.h"
+#include "app/studio/widgets/segments.h"
 
 namespace lumorph::studio {
 namespace {

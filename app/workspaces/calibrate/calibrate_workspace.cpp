@@ -13,7 +13,7 @@
 #include "app/workspaces/calibrate/calibrate_commands.h"
 #include "app/workspaces/calibrate/calibrate_docks.h"
 #include "app/workspaces/calibrate/chain_docks.h"
-#include "app/workspaces/scene/segments.h"
+#include "app/studio/widgets/segments.h"
 #include "calibration/verify/verify_lab.h"
 #include "core/base/error.h"
 

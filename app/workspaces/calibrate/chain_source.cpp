@@ -10,7 +10,7 @@
 #include "app/workspaces/calibrate/calibrate_commands.h"
 #include "app/workspaces/calibrate/chain_docks.h"
 #include "app/workspaces/calibrate/touch_picture.h"
-#include "app/workspaces/scene/segments.h"
+#include "app/studio/widgets/segments.h"
 
 namespace lumorph::studio {
 namespace {

@@ -14,7 +14,7 @@
 #include "app/workspaces/calibrate/calibrate_docks.h"
 #include "app/workspaces/calibrate/finding_card.h"
 #include "app/workspaces/calibrate/residual_plots.h"
-#include "app/workspaces/scene/segments.h"
+#include "app/studio/widgets/segments.h"
 
 namespace lumorph::studio {
 namespace {

@@ -9,7 +9,7 @@
 #include "app/studio/widgets/value_field.h"
 #include "app/workspaces/calibrate/board_drawing.h"
 #include "app/workspaces/calibrate/calibrate_docks.h"
-#include "app/workspaces/scene/segments.h"
+#include "app/studio/widgets/segments.h"
 
 class QVBoxLayout;
 

@@ -497,9 +497,25 @@ void DrawSheet::useIt() {
     if (!canBeMade()) return;
     makesSoon_ = planned_ != wished_ || !plan_; // whoever is quicker than the solid need not press again
     if (makesSoon_) return;
-    const std::shared_ptr<const Rig> rig = plan_->rig;
-    accept();
-    studio_.project.takeRig(rig, QString::fromStdString(rig->name()));
+    const auto use = [this](const std::shared_ptr<const Rig>& rig) {
+        accept();
+        studio_.project.takeRig(rig, QString::fromStdString(rig->name()));
+    };
+    if (!plan_->rig->parts().sheet) return use(plan_->rig);
+    // What is seen is solved coarsely.
+    make_->setEnabled(false);
+    jobs_.runWith<std::shared_ptr<const Rig>>(
+        "solve", kDrawPlace, tr("Solving the sheet"),
+        [device = planned_, before = before_](const Progress& progress) {
+            RigParts parts = sheetRig(device, progress).parts();
+            if (before) parts = carriedOver(std::move(parts), *before);
+            return std::make_shared<const Rig>(std::move(parts));
+        },
+        use,
+        [this](const std::exception& error) {
+            tell(error);
+            make_->setEnabled(canBeMade());
+        });
 }
 
 DrawSheet& drawSheetOf(Studio& studio, QWidget* parent) {

@@ -23,6 +23,7 @@
 #include "app/studio/look/icons.h"
 #include "app/studio/widgets/dock_parts.h"
 #include "app/studio/widgets/panel.h"
+#include "app/studio/widgets/segments.h"
 #include "app/studio/widgets/value_field.h"
 #include "app/workspaces/rig/device_preview.h"
 #include "app/workspaces/rig/draw_sheet.h"
@@ -48,6 +49,7 @@ double unitOf(const TemplateParameter& parameter) {
     case Unit::degrees:
         return Angle::degrees(1.0).inRadians();
     case Unit::count:
+    case Unit::word:
         break;
     }
     return 1.0;
@@ -60,6 +62,7 @@ Quantity quantityOf(const TemplateParameter& parameter) {
     case Unit::degrees:
         return Quantity::angle;
     case Unit::count:
+    case Unit::word:
         break;
     }
     return Quantity::level;
@@ -126,7 +129,16 @@ private:
     QWidget* makeSide();
     QWidget* makeButtons();
     void choose(const RigTemplate& kind);
+    struct Measure {
+        const TemplateParameter* parameter;
+        QWidget* row;
+        ValueField* field; ///< none where it is a word
+        int word;          ///< its place
+    };
     void addParameter(const TemplateParameter& parameter);
+    void addWord(const TemplateParameter& parameter);
+    void addMeasure(const Measure& measure);
+    [[nodiscard]] std::vector<TemplateChoice> choices() const; ///< those that mean something
     void askSource(bool folder);
     void chooseSource(const std::filesystem::path& path);
     void forgetMeasures();
@@ -145,7 +157,7 @@ private:
     std::vector<ActuatorOffer> offers_;
     std::optional<std::vector<std::size_t>> taken_; ///< of the offers; none before they are known
     QAbstractButton* chosen_ = nullptr;             ///< the button of what is shown
-    std::vector<std::pair<const TemplateParameter*, ValueField*>> fields_;
+    std::vector<Measure> chosenMeasures_;
     std::shared_ptr<const Rig> rig_; ///< of the last measures that make one
     bool isNewest_ = false;          ///< `rig_` is of the measures that are seen
     QButtonGroup* kinds_ = new QButtonGroup(this);
@@ -297,7 +309,7 @@ void NewDevice::showOffers() {
 }
 
 void NewDevice::forgetMeasures() {
-    fields_.clear();
+    chosenMeasures_.clear();
     while (QLayoutItem* item = measures_->layout()->takeAt(0)) {
         item->widget()->hide();
         item->widget()->deleteLater(); // the field that is left may be telling its number right now
@@ -358,6 +370,7 @@ void NewDevice::choose(const RigTemplate& kind) {
 }
 
 void NewDevice::addParameter(const TemplateParameter& parameter) {
+    if (parameter.unit == Unit::word) return addWord(parameter);
     const double unit = unitOf(parameter);
     auto* field =
         new ValueField(quantityOf(parameter), unit * parameter.min, unit * parameter.max, unit * parameter.value);
@@ -366,10 +379,7 @@ void NewDevice::addParameter(const TemplateParameter& parameter) {
     field->setRefusing(true);
     field->setStep(parameter.unit == Unit::count ? 1.0 : unit * (parameter.max < 5.0 ? 0.1 : 0.5));
     field->setValue(unit * parameter.value);
-    QWidget* row = makeRow(labelOf(parameter.name), field);
-    row->setToolTip(sentence(parameter.meaning));
-    measures_->layout()->addWidget(row);
-    fields_.emplace_back(&parameter, field);
+    addMeasure({&parameter, makeRow(labelOf(parameter.name), field), field, 0});
     connect(field, &ValueField::previewed, this, &NewDevice::make);
     connect(field, &ValueField::reverted, this, &NewDevice::make);
     connect(field, &ValueField::committed, this, [this, field, counts = parameter.unit == Unit::count](double number) {
@@ -379,20 +389,50 @@ void NewDevice::addParameter(const TemplateParameter& parameter) {
     connect(field, &ValueField::refused, wrong_, &QLabel::setText);
 }
 
+void NewDevice::addWord(const TemplateParameter& parameter) {
+    std::vector<Segments::Segment> segments;
+    for (const std::string_view word : parameter.words)
+        segments.push_back({"rig.new." + QString::fromStdString(std::string(word)), labelOf(word), {}});
+    auto* choice = new Segments(segments);
+    choice->setChosen(static_cast<int>(parameter.value));
+    addMeasure({&parameter, makeRow(labelOf(parameter.name), choice), nullptr, static_cast<int>(parameter.value)});
+    connect(choice, &Segments::chosen, this, [this, place = chosenMeasures_.size() - 1](int word) {
+        chosenMeasures_[place].word = word;
+        make();
+    });
+}
+
+void NewDevice::addMeasure(const Measure& measure) {
+    measure.row->setToolTip(sentence(measure.parameter->meaning));
+    measures_->layout()->addWidget(measure.row);
+    chosenMeasures_.push_back(measure);
+}
+
+std::vector<TemplateChoice> NewDevice::choices() const {
+    std::vector<TemplateChoice> all;
+    for (const auto& [parameter, row, field, word] : chosenMeasures_) {
+        const double value = field == nullptr ? word : field->value() / unitOf(*parameter);
+        all.emplace_back(std::string(parameter->name), parameter->unit == Unit::count ? std::round(value) : value);
+    }
+    std::vector<TemplateChoice> meant;
+    for (std::size_t k = 0; k < all.size(); ++k)
+        if (applies(*kind_, *chosenMeasures_[k].parameter, all)) meant.push_back(all[k]);
+    return meant;
+}
+
 void NewDevice::make() {
     isNewest_ = false;
     use_->setEnabled(false);
     draw_->setEnabled(false);
     if (!source_.empty()) return read();
-    std::vector<TemplateChoice> choices;
-    for (const auto& [parameter, field] : fields_) {
-        const double value = field->value() / unitOf(*parameter);
-        choices.emplace_back(std::string(parameter->name), parameter->unit == Unit::count ? std::round(value) : value);
-    }
+    const std::vector<TemplateChoice> chosen = choices();
+    for (const Measure& measure : chosenMeasures_)
+        measure.row->setVisible(std::ranges::find(chosen, measure.parameter->name, &TemplateChoice::first) !=
+                                chosen.end());
     jobs_.runWith<std::shared_ptr<const Rig>>(
         "make", kPlace, tr("Making the device"),
-        [kind = kind_, choices](const Progress& progress) -> std::shared_ptr<const Rig> {
-            return std::make_shared<const Rig>(rigOf(*kind, choices, progress));
+        [kind = kind_, chosen](const Progress& progress) -> std::shared_ptr<const Rig> {
+            return std::make_shared<const Rig>(rigOf(*kind, chosen, progress, SheetQuality::preview));
         },
         [this](const std::shared_ptr<const Rig>& rig) { take(rig); },
         [this](const std::exception& error) { refuse(error); });
@@ -445,8 +485,23 @@ void NewDevice::refuse(const std::exception& why) {
 void NewDevice::useIt() {
     if (!rig_ || !isNewest_) return;
     const QString name = kind_ ? labelOf(kind_->name).toLower() : QString::fromStdString(source_.stem().string());
-    accept();
-    studio_.project.takeRig(rig_, name);
+    const auto use = [this, name](const std::shared_ptr<const Rig>& rig) {
+        accept();
+        studio_.project.takeRig(rig, name);
+    };
+    if (!source_.empty() || !rig_->parts().sheet) return use(rig_);
+    // What is seen is solved coarsely.
+    use_->setEnabled(false);
+    jobs_.runWith<std::shared_ptr<const Rig>>(
+        "make", kPlace, tr("Solving the sheet"),
+        [kind = kind_, chosen = choices()](const Progress& progress) -> std::shared_ptr<const Rig> {
+            return std::make_shared<const Rig>(rigOf(*kind, chosen, progress));
+        },
+        use,
+        [this](const std::exception& error) {
+            refuse(error);
+            use_->setEnabled(true);
+        });
 }
 
 void NewDevice::drawIt() {

@@ -7,6 +7,7 @@
 
 #include "app/studio/look/icons.h"
 #include "app/studio/widgets/panel.h"
+#include "core/rig/sheet/sheet_material.h"
 #include "core/rig/templates/sheet_drawing.h"
 #include "core/rig/templates/sheet_outline.h"
 
@@ -35,6 +36,26 @@ QWidget* SheetForm::makeSheet() {
     QVBoxLayout& column = *makeColumnOf(page);
     column.addWidget(makeHeading(tr("Sheet")));
     name_ = addName(column, "sheet.name", tr("What the device is called"));
+    top_ = new Segments(
+        {{"sheet.top.cut", tr("Cut into flaps"), tr("Slits part each flap from the rest")},
+         {"sheet.top.continuous", tr("Left joined"),
+          tr("One elastic sheet without slits, lifted by a lever for each bend line: its shape follows from mechanics")}});
+    column.addWidget(makeRow(tr("Top"), top_));
+    connect(top_, &Segments::chosen, this, [this](int top) {
+        change(top == 0 ? tr("Cut the top") : tr("Leave the top joined"),
+               [top](SheetDevice& device) { device.top = static_cast<SheetTop>(top); });
+    });
+    material_ = new QComboBox;
+    material_->setObjectName("sheet.material");
+    material_->setToolTip(tr("Of the flexible sheet: stiffer ones need stronger servos"));
+    for (const SheetMaterial& material : sheetMaterials())
+        material_->addItem(QString::fromStdString(std::string(material.name)));
+    materialRow_ = makeRow(tr("&Material"), material_);
+    column.addWidget(materialRow_);
+    connect(material_, &QComboBox::activated, this, [this] {
+        change(tr("Change the material"),
+               [name = material_->currentText().toStdString()](SheetDevice& device) { device.material = name; });
+    });
     const auto sizeOf = [](const SheetDevice& device) { return boxOf(device.outline).size(); };
     width_ = addField(
         column,
@@ -59,6 +80,7 @@ QWidget* SheetForm::makeSheet() {
                  {"sheet.arc", tr("&Arc"), tr("Length of sheet that a bend curves: longer bends more gently"),
                   tr("Change the arc")},
                  {Quantity::length, 0.002, 0.2, 0.02}, [](SheetDevice& device, double value) { device.arc = value; });
+    arcRow_ = arc_->parentWidget();
     for (ValueField* field : {thickness_, housing_, arc_}) field->setStep(0.0005);
     column.addStretch(1);
     return page;
@@ -97,7 +119,8 @@ QWidget* SheetForm::makeLine() {
     }
     connect(joined_, &QPushButton::clicked, this, [this] { setEnds(BendLine::Ends::joined); });
     connect(free_, &QPushButton::clicked, this, [this] { setEnds(BendLine::Ends::free); });
-    column.addWidget(makeRow(tr("Ends"), ends));
+    endsRow_ = makeRow(tr("Ends"), ends);
+    column.addWidget(endsRow_);
     auto* buttons = new QHBoxLayout;
     buttons->setSpacing(4);
     auto* side = new QPushButton(icon("flip-side"), tr("Move the other side"));
@@ -165,6 +188,11 @@ void SheetForm::show(const SheetDevice& device, std::optional<std::size_t> line)
     thickness_->setValue(device.thickness);
     housing_->setValue(device.housing);
     arc_->setValue(device.arc);
+    const bool joined = device.top == SheetTop::continuous;
+    top_->setChosen(static_cast<int>(device.top));
+    material_->setCurrentText(QString::fromStdString(device.material));
+    materialRow_->setVisible(joined);
+    for (QWidget* row : {arcRow_, endsRow_}) row->setVisible(!joined);
     const BendLine* bend = lineOf(device_);
     setCurrentIndex(bend != nullptr ? 1 : 0);
     if (bend == nullptr) return;

@@ -3,11 +3,13 @@
 #include <functional>
 #include <optional>
 
+#include <QComboBox>
 #include <QLineEdit>
 #include <QPushButton>
 #include <QStackedWidget>
 #include <QVBoxLayout>
 
+#include "app/studio/widgets/segments.h"
 #include "app/studio/widgets/value_field.h"
 #include "core/rig/templates/sheet_device.h"
 
@@ -53,6 +55,9 @@ private:
     SheetDevice device_;
     std::optional<std::size_t> line_;
     QLineEdit* name_ = nullptr; ///< of the device
+    Segments* top_ = nullptr;
+    QComboBox* material_ = nullptr;
+    QWidget *materialRow_ = nullptr, *arcRow_ = nullptr, *endsRow_ = nullptr; ///< of one kind of top each
     ValueField *width_ = nullptr, *depth_ = nullptr, *thickness_ = nullptr, *housing_ = nullptr, *arc_ = nullptr;
     QLineEdit* lineName_ = nullptr;
     ValueField* angle_ = nullptr;

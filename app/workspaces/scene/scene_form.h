@@ -15,7 +15,7 @@
 #include "app/studio/widgets/quantity.h"
 #include "app/workspaces/scene/collapsible_section.h"
 #include "app/workspaces/scene/scene_part.h"
-#include "app/workspaces/scene/segments.h"
+#include "app/studio/widgets/segments.h"
 
 namespace lumorph::studio {
 

@@ -10,7 +10,7 @@
 #include "app/applications/registry/demos.h"
 #include "app/studio/document/scene_edit.h"
 #include "app/studio/look/icons.h"
-#include "app/workspaces/scene/segments.h"
+#include "app/studio/widgets/segments.h"
 #include "core/base/error.h"
 
 namespace lumorph::studio {

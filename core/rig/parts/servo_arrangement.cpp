@@ -9,7 +9,7 @@
 
 #include "core/base/error.h"
 #include "core/base/text.h"
-#include "core/rig/templates/plane_mesh.h"
+#include "core/geometry/plane_mesh.h"
 
 namespace lumorph {
 namespace {

@@ -17,7 +17,8 @@ constexpr double kMostStretch = 0.3;
 constexpr int kMostHalvings = 5;
 constexpr int kMostIterations = 40;
 
-/// The pad clamps its nodes and the edges between them; each lever holds the height of its line.
+/// The pad clamps its nodes and the edges between them; each lever holds the height of its line; the housing carries
+/// what would sink below rest.
 SheetSupports supportsOf(const SheetMesh& mesh) {
     SheetSupports supports = noSupports(mesh);
     for (const auto& line : mesh.lineNodes)
@@ -26,6 +27,7 @@ SheetSupports supportsOf(const SheetMesh& mesh) {
     for (std::size_t k = 0; k < mesh.edges.size(); ++k)
         supports.heldDirectors[k] = supports.heldAxes[mesh.edges[k][0]] == SheetSupports::all &&
                                     supports.heldAxes[mesh.edges[k][1]] == SheetSupports::all;
+    supports.ground = 0.0;
     return supports;
 }
 

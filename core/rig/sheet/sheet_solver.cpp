@@ -59,7 +59,8 @@ SheetState mirrored(const SheetMesh& mesh, const MeshMirror& mirror, const Sheet
 
 SheetSupports noSupports(const SheetMesh& mesh) {
     return {std::vector<std::uint8_t>(mesh.points.size(), 0), std::vector<std::uint8_t>(mesh.edges.size(), 0),
-            std::vector<glm::dvec3>(mesh.points.size(), glm::dvec3(0.0))};
+            std::vector<glm::dvec3>(mesh.points.size(), glm::dvec3(0.0)),
+            -std::numeric_limits<double>::infinity()};
 }
 
 struct SheetSolver::Impl {
@@ -176,6 +177,13 @@ struct SheetSolver::Impl {
             const int axis = static_cast<int>(k % 3);
             if (unknowns[k] < 0) continue;
             residual[unknowns[k]] += supports.loads[k / 3][axis];
+        }
+        for (std::size_t node = 0; node < mesh.points.size(); ++node) {
+            const int up = unknowns[3 * node + 1];
+            const double sunk = supports.ground - state.positions[node].y;
+            if (up < 0 || !(sunk > 0.0)) continue;
+            residual[up] += kGroundStiffness * sunk;
+            hessian.valuePtr()[hessian.outerIndexPtr()[up]] += kGroundStiffness;
         }
         Matrix12 local;
         Vector12 moved;

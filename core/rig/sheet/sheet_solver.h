@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <span>
 #include <vector>
@@ -28,9 +29,13 @@ struct SheetSupports {
     std::vector<std::uint8_t> heldAxes;      ///< one a node: a union of Axis
     std::vector<std::uint8_t> heldDirectors; ///< one an edge: not 0 where it is clamped
     std::vector<glm::dvec3> loads;           ///< one a node: forces that keep their direction, newtons
+    /// Height of what the sheet lies on, metres: springs of kGroundStiffness push up what sinks below.
+    double ground = -std::numeric_limits<double>::infinity();
 };
 
-/// Nothing held, no loads.
+inline constexpr double kGroundStiffness = 2e4; ///< of a node, newtons a metre: some tips of a sheet sink by 0.1 mm
+
+/// Nothing held, no loads, no ground.
 [[nodiscard]] SheetSupports noSupports(const SheetMesh& mesh);
 
 struct SheetGradient {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "core/rig/rig.h"
+#include "core/rig/templates/sheet_device.h"
 
 namespace lumorph {
 
@@ -13,10 +14,17 @@ struct TabletSize {
     double cornerAlongDepth = 6.9;
 };
 
-/// The tablet of the paper (R1): 21 x 15 x 2 cm, a flexible sheet on a fixed housing. Six actuators
-/// bend its four corners and the middles of its long edges upwards by up to 90 degrees.
+/// The tablet of the paper (R1): 21 x 15 x 2 cm, one flexible sheet on a fixed housing. Six levers lift its four
+/// corners and the middles of its long edges by 4 cm. To be made by `continuousSheet`; the bundled file has it baked.
+/// In other sizes (metres) its parts keep their shares.
+[[nodiscard]] SheetDevice tabletDrawing(double width = 0.21, double depth = 0.15, double thickness = 0.002);
+
+/// It as the bundled file has it. Throws DataError when that is missing.
+[[nodiscard]] Rig bundledTablet();
+
+/// The same size with a top that is cut into six flaps, which bend upwards by up to 90 degrees.
 /// Throws InvalidInput when with other measures a part would vanish.
-[[nodiscard]] Rig tabletRig(const TabletSize& size = {});
+[[nodiscard]] Rig cutTabletRig(const TabletSize& size = {});
 
 /// Measures in centimetres.
 struct PinDisplaySize {

@@ -7,7 +7,7 @@
 
 #include <glm/vec2.hpp>
 
-#include "core/rig/templates/plane_mesh.h"
+#include "core/geometry/plane_mesh.h"
 
 namespace lumorph {
 

@@ -19,13 +19,34 @@ namespace {
 using Unit = TemplateParameter::Unit;
 using Values = std::map<std::string_view, double>; ///< in the parameters' units, all of them
 
+/// How the top is made: its words in the order of SheetTop.
+TemplateParameter topParameter(SheetTop without) {
+    return {"top",
+            "one elastic sheet, or cut into flaps",
+            Unit::word,
+            static_cast<double>(without),
+            0.0,
+            1.0,
+            {"cut", "continuous"}};
+}
+
+SheetTop topOf(const Values& values) { return static_cast<SheetTop>(static_cast<int>(values.at("top"))); }
+
+/// What means something with one kind of top only.
+TemplateParameter onlyWith(SheetTop top, TemplateParameter parameter) {
+    parameter.onlyWith = static_cast<int>(top);
+    return parameter;
+}
+
 /// What all sheet devices have.
 std::vector<TemplateParameter> withSheet(std::vector<TemplateParameter> parameters, double thickness, double housing,
                                          double arc) {
+    parameters.insert(parameters.begin(), topParameter(SheetTop::cut));
     parameters.push_back({"thickness", "thickness of the sheet", Unit::centimetres, thickness, 0.02, 2.0});
     parameters.push_back({"housing", "height of the housing", Unit::centimetres, housing, 0.1, 50.0});
     if (arc > 0.0) {
-        parameters.push_back({"arc", "length of sheet that a bend curves", Unit::centimetres, arc, 0.2, 20.0});
+        parameters.push_back(onlyWith(
+            SheetTop::cut, {"arc", "length of sheet that a bend curves", Unit::centimetres, arc, 0.2, 20.0}));
         parameters.push_back({"angle", "how far a flap bends up", Unit::degrees, 90.0, 1.0, 90.0});
     }
     return parameters;
@@ -38,13 +59,17 @@ const std::vector<RigTemplate>& templates() {
     static const std::vector<RigTemplate> kinds{
         {"tablet",
          "a sheet with four corners and two long edges that bend up",
-         {{"width", "width", Unit::centimetres, tablet.width, 5.0, 100.0},
+         {topParameter(SheetTop::continuous),
+          {"width", "width", Unit::centimetres, tablet.width, 5.0, 100.0},
           {"depth", "depth", Unit::centimetres, tablet.depth, 5.0, 100.0},
-          {"reach", "height that the edges reach, upright", Unit::centimetres, tablet.reach, 2.0, 100.0},
-          {"cornerX", "where a corner's bend line ends, along the width", Unit::centimetres, tablet.cornerAlongWidth,
-           1.0, 50.0},
-          {"cornerZ", "where a corner's bend line ends, along the depth", Unit::centimetres, tablet.cornerAlongDepth,
-           1.0, 50.0}}},
+          onlyWith(SheetTop::continuous,
+                   {"thickness", "thickness of the sheet", Unit::centimetres, 0.2, 0.02, 0.5}),
+          onlyWith(SheetTop::cut, {"reach", "height that the edges reach, upright", Unit::centimetres, tablet.reach,
+                                   2.0, 100.0}),
+          onlyWith(SheetTop::cut, {"cornerX", "where a corner's bend line ends, along the width", Unit::centimetres,
+                                   tablet.cornerAlongWidth, 1.0, 50.0}),
+          onlyWith(SheetTop::cut, {"cornerZ", "where a corner's bend line ends, along the depth", Unit::centimetres,
+                                   tablet.cornerAlongDepth, 1.0, 50.0})}},
         {"phone", "a small rounded sheet with four corners that bend up",
          withSheet({{"width", "width of the sheet", Unit::centimetres, 7.5, 3.0, 50.0},
                     {"depth", "depth of the sheet", Unit::centimetres, 15.0, 3.0, 50.0},
@@ -89,6 +114,7 @@ const std::vector<RigTemplate>& templates() {
 SheetDevice sheetOf(const RigTemplate& kind, const Values& values) {
     SheetDevice device;
     device.name = kind.name;
+    device.top = topOf(values);
     device.thickness = 0.01 * values.at("thickness");
     device.housing = 0.01 * values.at("housing");
     if (values.contains("arc")) device.arc = 0.01 * values.at("arc");
@@ -199,15 +225,34 @@ Values valuesOf(const RigTemplate& kind, std::span<const TemplateChoice> choices
             if (text.back() == '.') text.pop_back();
             return text;
         };
-        const bool whole = parameter->unit != Unit::count || value == std::floor(value);
+        const bool counts = parameter->unit == Unit::count || parameter->unit == Unit::word;
+        const bool whole = !counts || value == std::floor(value);
         if (!std::isfinite(value) || value < parameter->min || value > parameter->max || !whole)
             throw InvalidInput(std::string(kind.name) + ": " + name,
                                std::isfinite(value) ? tell(value) + " cannot be" : "it is no finite number",
-                               "choose a " + std::string(parameter->unit == Unit::count ? "whole " : "") +
+                               "choose a " + std::string(counts ? "whole " : "") +
                                    "number from " + tell(parameter->min) + " to " + tell(parameter->max));
         values[parameter->name] = value;
     }
+    for (const auto& [name, value] : choices) {
+        const auto parameter = std::ranges::find(kind.parameters, name, &TemplateParameter::name);
+        if (!applies(kind, *parameter, choices))
+            throw InvalidInput(std::string(kind.name) + ": " + name, "a top that is not so has no such measure",
+                               "leave it out, or choose top=" +
+                                   std::string(topParameter(SheetTop::cut).words[parameter->onlyWith]));
+    }
     return values;
+}
+
+Rig tabletOf(const Values& values, const Progress& progress, SheetQuality quality) {
+    const auto at = [&](std::string_view name) { return values.at(name); };
+    if (topOf(values) == SheetTop::cut) {
+        Rig rig = cutTabletRig({at("width"), at("depth"), at("reach"), at("cornerX"), at("cornerZ")});
+        requireSound(rig, progress);
+        return rig;
+    }
+    const SheetDevice drawing = tabletDrawing(0.01 * at("width"), 0.01 * at("depth"), 0.01 * at("thickness"));
+    return drawing == tabletDrawing() ? bundledTablet() : sheetRig(drawing, progress, quality);
 }
 
 } // namespace
@@ -229,12 +274,20 @@ TemplateChoice parseChoice(const RigTemplate& kind, std::string_view text) {
     const std::size_t equals = text.find('=');
     if (equals == std::string_view::npos || equals == 0) wrong("write it as width=21cm");
     const std::string_view number = text.substr(equals + 1);
+    const std::string name(text.substr(0, equals));
+    const auto parameter = std::ranges::find(kind.parameters, name, &TemplateParameter::name);
+    if (parameter != kind.parameters.end() && parameter->unit == Unit::word) {
+        const auto word = std::ranges::find(parameter->words, number);
+        if (word != parameter->words.end()) return {name, static_cast<double>(word - parameter->words.begin())};
+        std::string words;
+        for (const std::string_view one : parameter->words) words += (words.empty() ? "" : " or ") + std::string(one);
+        throw InvalidInput(std::string(kind.name) + ": " + name, inQuotes(number) + " is none of its choices",
+                           "choose " + words);
+    }
     double value = 0.0;
     const auto [end, error] = std::from_chars(number.data(), number.data() + number.size(), value);
     if (error != std::errc()) wrong("write it as width=21cm");
-    const std::string name(text.substr(0, equals));
     const std::string_view unit(end, static_cast<std::size_t>(number.data() + number.size() - end));
-    const auto parameter = std::ranges::find(kind.parameters, name, &TemplateParameter::name);
     const Unit known = parameter == kind.parameters.end() ? Unit::centimetres : parameter->unit;
     if (unit.empty()) return {name, value};
     if (known == Unit::degrees && unit == "deg") return {name, value};
@@ -247,7 +300,20 @@ TemplateChoice parseChoice(const RigTemplate& kind, std::string_view text) {
     return {};
 }
 
-Rig rigOf(const RigTemplate& kind, std::span<const TemplateChoice> choices, const Progress& progress) {
+bool applies(const RigTemplate& kind, const TemplateParameter& parameter, std::span<const TemplateChoice> choices) {
+    if (parameter.onlyWith < 0) return true;
+    double word = 0.0;
+    for (const TemplateParameter& one : kind.parameters) {
+        if (one.unit != Unit::word) continue;
+        word = one.value;
+        for (const auto& [name, value] : choices)
+            if (name == one.name) word = value;
+    }
+    return word == parameter.onlyWith;
+}
+
+Rig rigOf(const RigTemplate& kind, std::span<const TemplateChoice> choices, const Progress& progress,
+          SheetQuality quality) {
     const Values values = valuesOf(kind, choices);
     const auto at = [&](std::string_view name) { return values.at(name); };
     const auto count = [&](std::string_view name) { return static_cast<int>(values.at(name)); };
@@ -255,8 +321,7 @@ Rig rigOf(const RigTemplate& kind, std::span<const TemplateChoice> choices, cons
         requireSound(rig, progress);
         return rig;
     };
-    if (kind.name == "tablet")
-        return looked(tabletRig({at("width"), at("depth"), at("reach"), at("cornerX"), at("cornerZ")}));
+    if (kind.name == "tablet") return tabletOf(values, progress, quality);
     if (kind.name == "pins")
         return looked(
             pinDisplayRig({count("columns"), count("rows"), at("pitch"), at("pin"), at("stroke"), at("plate")}));
@@ -268,7 +333,7 @@ Rig rigOf(const RigTemplate& kind, std::span<const TemplateChoice> choices, cons
                          : kind.name == "book"   ? book(kind, values)
                                                  : blank(kind, values);
     for (BendLine& bend : device.bends) bend.angle = Angle::degrees(at("angle"));
-    return sheetRig(device, progress);
+    return sheetRig(device, progress, quality);
 }
 
 } // namespace lumorph

@@ -11,9 +11,10 @@
 #include "core/base/error.h"
 #include "core/base/text.h"
 #include "core/geometry/disjoint_sets.h"
+#include "core/rig/templates/continuous_sheet.h"
 #include "core/rig/templates/flap_layout.h"
 #include "core/rig/templates/plane_drawing.h"
-#include "core/rig/templates/plane_mesh.h"
+#include "core/geometry/plane_mesh.h"
 #include "core/rig/templates/sheet_file.h"
 #include "core/rig/templates/sheet_outline.h"
 #include "core/rig/templates/sound_rig.h"
@@ -29,29 +30,6 @@ constexpr double kSpacing = 10.0; ///< between points where the sheet stays stra
 constexpr double kIsland = 4.0;   ///< square millimetres: smaller still pieces between slits are left out
 
 using Polygon = std::vector<glm::dvec2>;
-
-/// The housing: the convex hull, `margin` larger on every side.
-Polygon grownHull(const Polygon& points, double margin) {
-    const Polygon hull = convexHull(points);
-    Polygon grown;
-    const std::size_t count = hull.size();
-    for (std::size_t k = 0; k < count; ++k) {
-        const glm::dvec2 in = glm::normalize(hull[k] - hull[(k + count - 1) % count]);
-        const glm::dvec2 out = glm::normalize(hull[(k + 1) % count] - hull[k]);
-        const glm::dvec2 before(in.y, -in.x);
-        const glm::dvec2 after(out.y, -out.x);
-        const glm::dvec2 middle = glm::normalize(before + after);
-        const double half = std::acos(std::clamp(glm::dot(before, middle), -1.0, 1.0));
-        if (half < 0.83) { // up to a right angle and a little more: a corner
-            grown.push_back(hull[k] + middle * (margin / std::cos(half)));
-        } else { // sharper ones are cut off, at the same distance
-            const double side = margin * (1.0 - std::cos(half)) / std::sin(half);
-            grown.push_back(hull[k] + margin * middle - side * glm::dvec2(-middle.y, middle.x));
-            grown.push_back(hull[k] + margin * middle + side * glm::dvec2(-middle.y, middle.x));
-        }
-    }
-    return grown;
-}
 
 /// By how much a skirt leaves its flap's outline while it rises, at most.
 double bulgeOf(double thickness, double arc, double angle) {
@@ -476,7 +454,11 @@ FlapClearance flapClearance(const SheetDevice& device) {
     return {bulgeOf(1e3 * device.thickness, 1e3 * device.arc, std::clamp(widest, 0.1, 0.5 * std::numbers::pi))};
 }
 
-Rig sheetRig(const SheetDevice& device, const Progress& progress) {
+Rig sheetRig(const SheetDevice& device, const Progress& progress, SheetQuality quality) {
+    if (device.top == SheetTop::continuous && !device.bends.empty()) {
+        checkSheet(device);
+        return continuousSheet(device, bakeSettings(device, quality), progress).rig;
+    }
     progress.report(0.0, "laying out the flaps");
     Rig rig(SheetBuilder(device).build());
     requireSound(rig, progress);

@@ -28,10 +28,20 @@ struct BendLine {
     bool operator==(const BendLine&) const = default;
 };
 
+/// How the top of a sheet device becomes movable.
+enum class SheetTop {
+    cut,        ///< into flaps: slits part each from the rest, and it bends along its line
+    continuous, ///< one elastic sheet, clamped on a pad and lifted by a lever for each bend line
+};
+
 /// A flexible sheet on a fixed housing, as it is drawn from above: x to the right, z towards the viewer (down the
 /// page), metres.
 struct SheetDevice {
     std::string name = "sheet";
+    SheetTop top = SheetTop::cut;
+    std::string material = "NinjaFlex"; ///< of a continuous top, by its name in `sheetMaterials`
+    /// Where a continuous top is fixed on the housing; empty: on what lies behind all bend lines.
+    std::vector<glm::dvec2> pad;
     std::vector<glm::dvec2> outline; ///< of the sheet, either way round
     double thickness = 0.002;        ///< of the sheet
     double housing = 0.016;          ///< height of the housing; the sheet lies kSheetAboveHousing above it
@@ -48,16 +58,21 @@ struct FlapClearance;
 /// for its measures.
 [[nodiscard]] FlapClearance flapClearance(const SheetDevice& device);
 
-/// The sheet as a closed solid over a housing that is the convex hull of the outline and a little more. Each flap is
+/// How finely a continuous top is solved: `preview` within about a second, `full` in about half a minute for six bend
+/// lines. Cut tops know no difference.
+enum class SheetQuality { preview, full };
+
+/// A cut sheet as a closed solid over a housing that is the convex hull of the outline and a little more. Each flap is
 /// what can be seen of the sheet from its bend line, straight on, up to the sheet's edge, another bend line or a flap
 /// before it in the list; where that is not the sheet's edge a slit parts it from the rest. So a flap that rises draws
 /// back within its own outline and meets nothing, and skirts under its rim hold the way that it has gone
 /// (`RigParts::pathInside`). The solid is looked over in a few joint states before it is given. An actuator a bend
 /// line, in their order; the rig keeps the drawing (`RigParts::drawing`). Throws InvalidInput naming the measure or the
-/// bend line that stands in the way; Cancelled.
-[[nodiscard]] Rig sheetRig(const SheetDevice& device, const Progress& progress = {});
+/// bend line that stands in the way; Cancelled. A continuous sheet is made by `continuousSheet` (see there).
+[[nodiscard]] Rig sheetRig(const SheetDevice& device, const Progress& progress = {},
+                           SheetQuality quality = SheetQuality::full);
 
-/// What part of the sheet each bend line moves: a polygon of points (x, z), metres, a line. Of the solid above, but
+/// What part of the sheet each bend line moves, or of a continuous one would move alone: a polygon of points (x, z), metres, a line. Of the solid above, but
 /// without it, in a millisecond or so. Throws InvalidInput as `sheetRig` does where a line has no room.
 [[nodiscard]] std::vector<std::vector<glm::dvec2>> sheetFlaps(const SheetDevice& device);
 

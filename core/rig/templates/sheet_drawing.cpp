@@ -325,6 +325,7 @@ SnappedPoint snappedTurn(const SheetDevice& device, const glm::dvec2& from, cons
 
 SheetDevice withOutline(SheetDevice device, Outline outline) {
     device.outline = std::move(outline);
+    device.pad.clear(); // it belonged to the outline before
     return device;
 }
 
@@ -335,6 +336,7 @@ SheetDevice withSize(SheetDevice device, double width, double depth) {
     const glm::dvec2 scale = glm::dvec2(width, depth) / size;
     const auto move = [&](glm::dvec2& p) { p = box.middle() + scale * (p - box.middle()); };
     for (glm::dvec2& p : device.outline) move(p);
+    for (glm::dvec2& p : device.pad) move(p);
     for (BendLine& bend : device.bends) {
         move(bend.from);
         move(bend.to);

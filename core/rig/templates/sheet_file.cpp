@@ -18,7 +18,12 @@ namespace {
 
 constexpr std::size_t kMostBytes = std::size_t{16} << 20;
 constexpr double kCentimetre = 0.01;
+constexpr std::array<std::string_view, 6> kBendKeys{"name", "from", "to", "ends", "side", "angle"};
+constexpr std::array<std::string_view, 9> kDrawingKeys{"bends",     "name",    "top", "material", "pad",
+                                                       "thickness", "housing", "arc", "outline"};
+constexpr std::span<const std::string_view> kBendsKeys = std::span(kDrawingKeys).first<8>();
 constexpr std::array<std::string_view, 2> kEnds{"free", "joined"};
+constexpr std::array<std::string_view, 2> kTops{"cut", "continuous"};
 constexpr std::array<std::string_view, 3> kSides{"smaller", "left", "right"};
 
 std::string contentOf(const std::filesystem::path& file) {
@@ -29,7 +34,7 @@ std::string contentOf(const std::filesystem::path& file) {
 /// An object of the bends file; says where it stands.
 class BendsEntry {
 public:
-    BendsEntry(const nlohmann::json& json, std::string subject, std::initializer_list<std::string_view> known)
+    BendsEntry(const nlohmann::json& json, std::string subject, std::span<const std::string_view> known)
         : json_(json), subject_(std::move(subject)) {
         if (!json.is_object()) fail("it is no object", "write {...}");
         for (const auto& [key, value] : json.items())
@@ -94,8 +99,7 @@ private:
 };
 
 BendLine bendOf(const nlohmann::json& json, const std::string& file, std::size_t number) {
-    const BendsEntry entry(json, file + ", bend " + std::to_string(number),
-                           {"name", "from", "to", "ends", "side", "angle"});
+    const BendsEntry entry(json, file + ", bend " + std::to_string(number), kBendKeys);
     BendLine bend;
     bend.name = entry.text("name", "bend " + std::to_string(number));
     bend.from = entry.point("from");
@@ -118,6 +122,9 @@ nlohmann::json parsed(std::string_view text, const std::string& subject) {
 /// All that such an object says but the outline, over what `device` holds already.
 void readBends(const BendsEntry& entry, const std::string& subject, SheetDevice& device) {
     device.name = entry.text("name", device.name);
+    device.top = static_cast<SheetTop>(entry.choice("top", kTops, 0));
+    device.material = entry.text("material", device.material);
+    if (entry.find("pad") != nullptr) device.pad = entry.points("pad");
     device.thickness = kCentimetre * entry.number("thickness", device.thickness / kCentimetre);
     device.housing = kCentimetre * entry.number("housing", device.housing / kCentimetre);
     device.arc = kCentimetre * entry.number("arc", device.arc / kCentimetre);
@@ -143,10 +150,10 @@ SheetDevice readSheetDevice(const std::filesystem::path& outline, const std::fil
     device.name = outline.stem().string();
     device.outline = svgOutline(contentOf(outline), outline.string());
     const nlohmann::json json = parsed(contentOf(bends), bends.string());
-    readBends(BendsEntry(json, bends.string(), {"bends", "name", "thickness", "housing", "arc"}), bends.string(),
-              device);
+    readBends(BendsEntry(json, bends.string(), kBendsKeys), bends.string(), device);
     const glm::dvec2 middle = boxOf(device.outline).middle();
     for (glm::dvec2& p : device.outline) p -= middle;
+    for (glm::dvec2& p : device.pad) p -= middle;
     for (BendLine& bend : device.bends) {
         bend.from -= middle;
         bend.to -= middle;
@@ -169,6 +176,11 @@ std::string writeSheetDevice(const SheetDevice& device) {
                         {"outline", nlohmann::json::array()},
                         {"bends", nlohmann::json::array()}};
     for (const glm::dvec2& p : device.outline) json["outline"].push_back(pointJson(p));
+    if (device.top == SheetTop::continuous) {
+        json["top"] = kTops[1];
+        json["material"] = device.material;
+        for (const glm::dvec2& p : device.pad) json["pad"].push_back(pointJson(p));
+    }
     for (const BendLine& bend : device.bends)
         json["bends"].push_back({{"name", bend.name},
                                  {"from", pointJson(bend.from)},
@@ -182,7 +194,7 @@ std::string writeSheetDevice(const SheetDevice& device) {
 SheetDevice parseSheetDevice(std::string_view text, const std::string& subject) {
     if (text.size() > kMostBytes) throw DataError(subject, "it is larger than 16 MB", "simplify the drawing");
     const nlohmann::json json = parsed(text, subject);
-    const BendsEntry entry(json, subject, {"outline", "bends", "name", "thickness", "housing", "arc"});
+    const BendsEntry entry(json, subject, kDrawingKeys);
     SheetDevice device;
     device.outline = entry.points("outline");
     readBends(entry, subject, device);

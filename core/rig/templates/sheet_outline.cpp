@@ -8,7 +8,7 @@
 #include <glm/geometric.hpp>
 
 #include "core/base/error.h"
-#include "core/rig/templates/plane_mesh.h"
+#include "core/geometry/plane_mesh.h"
 
 namespace lumorph {
 namespace {
@@ -132,6 +132,28 @@ std::vector<glm::dvec2> convexHull(std::vector<glm::dvec2> points) {
         if (pass == 0) std::ranges::reverse(points);
     }
     return hull;
+}
+
+std::vector<glm::dvec2> grownHull(const std::vector<glm::dvec2>& points, double margin) {
+    const std::vector<glm::dvec2> hull = convexHull(points);
+    std::vector<glm::dvec2> grown;
+    const std::size_t count = hull.size();
+    for (std::size_t k = 0; k < count; ++k) {
+        const glm::dvec2 in = glm::normalize(hull[k] - hull[(k + count - 1) % count]);
+        const glm::dvec2 out = glm::normalize(hull[(k + 1) % count] - hull[k]);
+        const glm::dvec2 before(in.y, -in.x);
+        const glm::dvec2 after(out.y, -out.x);
+        const glm::dvec2 middle = glm::normalize(before + after);
+        const double half = std::acos(std::clamp(glm::dot(before, middle), -1.0, 1.0));
+        if (half < 0.83) { // up to a right angle and a little more: a corner
+            grown.push_back(hull[k] + middle * (margin / std::cos(half)));
+        } else { // sharper ones are cut off, at the same distance
+            const double side = margin * (1.0 - std::cos(half)) / std::sin(half);
+            grown.push_back(hull[k] + margin * middle - side * glm::dvec2(-middle.y, middle.x));
+            grown.push_back(hull[k] + margin * middle + side * glm::dvec2(-middle.y, middle.x));
+        }
+    }
+    return grown;
 }
 
 } // namespace lumorph

@@ -31,6 +31,9 @@ struct OutlineBox {
 /// The smallest convex polygon that holds the points, counter-clockwise where y is up; without points on its sides.
 [[nodiscard]] std::vector<glm::dvec2> convexHull(std::vector<glm::dvec2> points);
 
+/// That polygon with every side `margin` farther out; sharp corners are cut off at the same distance.
+[[nodiscard]] std::vector<glm::dvec2> grownHull(const std::vector<glm::dvec2>& points, double margin);
+
 /// The one closed shape of an SVG drawing: rect, circle, ellipse, polygon, or path (all its commands, implicitly closed
 /// as where it is filled), under the transforms of its groups; x to the right and z down the page in metres from the
 /// page's upper left corner. Lengths without a unit are CSS pixels of 1/96 inch. Lines and what has no area are no

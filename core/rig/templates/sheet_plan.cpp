@@ -28,7 +28,7 @@ SheetPlan planSheet(const SheetDevice& device, const Progress& progress) {
     while (!plan.rig) {
         try {
             const auto flaps = sheetFlaps(made);
-            plan.rig = std::make_shared<const Rig>(sheetRig(made, progress));
+            plan.rig = std::make_shared<const Rig>(sheetRig(made, progress, SheetQuality::preview));
             for (std::size_t k = 0; k < lines.size(); ++k) {
                 plan.flaps[lines[k]] = flaps[k];
                 plan.actuators[lines[k]] = k;

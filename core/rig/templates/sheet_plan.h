@@ -20,7 +20,8 @@ struct SheetRefusal {
 
 /// What a drawing that may be unfinished comes to.
 struct SheetPlan {
-    std::shared_ptr<const Rig> rig; ///< of the lines that are not refused; empty where the sheet itself cannot be
+    /// Of the lines that are not refused, a continuous top solved as a preview; empty where the sheet itself cannot be.
+    std::shared_ptr<const Rig> rig;
     std::vector<std::vector<glm::dvec2>> flaps;        ///< one a bend line, as `sheetFlaps`; empty where refused
     std::vector<std::optional<std::size_t>> actuators; ///< one a bend line: its place in the rig; none where refused
     std::vector<SheetRefusal> refusals;

@@ -7,10 +7,13 @@
 #include <glm/geometric.hpp>
 
 #include "core/base/error.h"
+#include "core/base/resources.h"
+#include "core/geometry/plane_mesh.h"
+#include "core/rig/rig_file.h"
 #include "core/rig/templates/bundled_rigs.h"
-#include "core/rig/templates/plane_mesh.h"
+#include "core/rig/templates/sheet_outline.h"
 
-// The sheet is cut like an opened envelope. Bend lines cut off the four corners; two more, along x,
+// The cut sheet is cut like an opened envelope. Bend lines cut off the four corners; two more, along x,
 // end the wide flaps of the long edges, which slits part from the rest. Seen from above, a flap that
 // bends upwards draws back towards its bend line and stays within its own outline, so that no two
 // flaps ever meet. Under each flap's rim hangs a skirt whose rows follow the rim's path at shares of
@@ -31,6 +34,15 @@ constexpr double kSlit = 1.0;
 constexpr double kRow = 2.0;     ///< between rows in the arc
 constexpr double kColumn = 11.0; ///< between columns where the sheet stays straight
 constexpr int kSkirtRows = 12;
+
+// Of the continuous one, as shares of half its size.
+constexpr double kPadX = 100.0 / 210.0;
+constexpr double kPadZ = 30.0 / 150.0;
+constexpr double kEdgeLine = 86.0 / 210.0; ///< half the length of the long edges' lines
+constexpr double kCornerLine = 0.75;       ///< how far a corner's line is from the corner, along both edges
+
+constexpr std::array kNames{"corner front left", "corner front right", "corner back left",
+                            "corner back right", "edge front",         "edge back"};
 
 /// What can be chosen, and what follows from it.
 struct Measures {
@@ -155,8 +167,6 @@ public:
                   at(1, -1),
                   TabletFlap{"", {0, m_.edgeLine}, {0, 1}},
                   TabletFlap{"", {0, -m_.edgeLine}, {0, -1}}};
-        constexpr std::array kNames{"corner front left", "corner front right", "corner back left",
-                                    "corner back right", "edge front",         "edge back"};
         for (std::size_t f = 0; f < flaps_.size(); ++f) flaps_[f].name = kNames[f];
         influences_.resize(flaps_.size());
     }
@@ -354,7 +364,40 @@ private:
 
 } // namespace
 
-Rig tabletRig(const TabletSize& size) {
+SheetDevice tabletDrawing(double width, double depth, double thickness) {
+    SheetDevice device;
+    device.name = "tablet";
+    device.top = SheetTop::continuous;
+    device.thickness = thickness;
+    const glm::dvec2 half = 0.5 * glm::dvec2(width, depth) - 1e-3 * kInset;
+    device.outline = rectangleOutline(2.0 * half.x, 2.0 * half.y);
+    const auto at = [&](double x, double z) { return glm::dvec2(x, z) * half; };
+    device.pad = {at(-kPadX, -kPadZ), at(kPadX, -kPadZ), at(kPadX, kPadZ), at(-kPadX, kPadZ)};
+    for (std::size_t k = 0; k < 4; ++k) {
+        const double x = k % 2 == 0 ? -1.0 : 1.0;
+        const double z = k < 2 ? 1.0 : -1.0;
+        const double reach = kCornerLine * std::min(half.x, half.y);
+        BendLine line;
+        line.name = kNames[k];
+        line.from = {x * (half.x - reach), z * half.y};
+        line.to = {x * half.x, z * (half.y - reach)};
+        device.bends.push_back(line);
+    }
+    for (const double z : {1.0, -1.0}) {
+        BendLine line;
+        line.name = kNames[z > 0.0 ? 4 : 5];
+        line.from = at(-kEdgeLine, z * kPadZ);
+        line.to = at(kEdgeLine, z * kPadZ);
+        line.ends = BendLine::Ends::free;
+        line.side = z > 0.0 ? BendLine::Side::right : BendLine::Side::left;
+        device.bends.push_back(line);
+    }
+    return device;
+}
+
+Rig bundledTablet() { return readRig(resourceFile("models/tablet.glb")); }
+
+Rig cutTabletRig(const TabletSize& size) {
     const Measures measures(size);
     checkMeasures(measures);
     return TabletBuilder(measures).build();

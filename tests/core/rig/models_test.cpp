@@ -36,8 +36,7 @@ TEST_P(BundledModels, AreClosedSolidsInEveryCorner) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Models, BundledModels,
-                         testing::Values(Bundled{"tablet.glb", [] { return tabletRig(); }},
-                                         Bundled{"pin_display.glb", [] { return pinDisplayRig(); }},
+                         testing::Values(Bundled{"pin_display.glb", [] { return pinDisplayRig(); }},
                                          Bundled{"ribbon.glb", ribbonRig}, Bundled{"hills.glb", hillsRig}),
                          [](const auto& kind) {
                              const std::string file = kind.param.file;

@@ -16,7 +16,7 @@ using testing::HasSubstr;
 using testing::IsEmpty;
 
 TEST(ShapeReport, TheTabletIsSound) {
-    const ShapeReport report = shapeReport(tabletRig(), 8, 1);
+    const ShapeReport report = shapeReport(cutTabletRig(), 8, 1);
     EXPECT_THAT(report.warnings, IsEmpty()) << testing::PrintToString(report.warnings);
     EXPECT_EQ(report.sampledStates, 8);
     EXPECT_EQ(report.openStates + report.intersectingStates + report.invertedStates, 0);

@@ -29,7 +29,7 @@ std::vector<double> randomPoint(const SheetDesigns& designs, std::mt19937& rando
 }
 
 TEST(SheetDesign, IsReadFromTheTablet) {
-    const SheetDevice sheet = sheetDeviceOf(tabletRig());
+    const SheetDevice sheet = sheetDeviceOf(cutTabletRig());
     EXPECT_NEAR(sheet.thickness, 0.002, 1e-6);
     EXPECT_NEAR(sheet.housing, 0.016, 1e-6);
     EXPECT_NEAR(sheet.arc, 0.02, 1e-9);

@@ -8,7 +8,7 @@
 
 #include <glm/geometric.hpp>
 
-#include "core/rig/templates/plane_mesh.h"
+#include "core/geometry/plane_mesh.h"
 #include "core/rig/templates/sheet_device.h"
 #include "core/rig/templates/sheet_outline.h"
 

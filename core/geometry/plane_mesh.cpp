@@ -1,4 +1,4 @@
-#include "core/rig/templates/plane_mesh.h"
+#include "core/geometry/plane_mesh.h"
 
 #include <CGAL/Constrained_Delaunay_triangulation_2.h>
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>

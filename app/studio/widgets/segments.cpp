@@ -1,4 +1,4 @@
-#include "app/workspaces/scene/segments.h"
+#include "app/studio/widgets/segments.h"
 
 #include <QHBoxLayout>
 #include <QPushButton>
