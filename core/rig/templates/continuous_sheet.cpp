@@ -31,8 +31,8 @@ constexpr double kLongestSlot = 0.03;
 constexpr double kGoodSlot = 0.008;
 constexpr double kShortestSlot = 0.004;
 constexpr double kSlotGap = 0.002;       ///< of sheet beside the ends of a slot
-constexpr double kFirstInset = 0.005;    ///< of sheet between a slot and the rim
-constexpr double kMostLift = 0.036;
+constexpr double kFirstInset = 0.006;    ///< of sheet between a slot and the rim
+constexpr double kMostLift = 0.0358;
 constexpr double kLiftOfWay = 0.8;       ///< lift as a share of the way from the pad
 constexpr double kShaftBelow = 0.008;    ///< the shaft under the sheet at rest
 constexpr double kShortestArm = 0.016;
@@ -42,8 +42,8 @@ constexpr int kWallShares = 6;
 constexpr int kWallRows = 4;
 constexpr double kLoadedSpeed = 120.0;   ///< degrees a second of a small servo under load
 
-/// How far below the rim a row of the skirt lies at rest, as a share of the skirt's height.
-double skirtDepth(double share) {
+/// How far below the rim a row of the wall under it lies at rest, as a share of the wall's height.
+double wallDepth(double share) {
     const double left = 1.0 - share;
     return left * (1.1 - 0.1 * left);
 }
@@ -209,7 +209,7 @@ private:
             for (int row = 1; row <= kWallRows; ++row) {
                 const float share = static_cast<float>(row) / kWallShares;
                 column.push_back(
-                    addVertex(place, std::lerp(top_, device_.housing, skirtDepth(share)), node, share));
+                    addVertex(place, std::lerp(top_, device_.housing, wallDepth(share)), node, share));
             }
             column.push_back(node);
             columns_.push_back(std::move(column));

@@ -9,7 +9,7 @@ namespace lumorph {
 
 /// The elastic sheet that a device with a continuous top has. It is clamped on the pad. Under what each bend line would
 /// move alone, near the end that is farthest from the line, a lever holds a slot of at most 3 cm parallel to the line.
-/// It lifts 0.8 of the way to the pad at a bend line's 90 degrees, and 36 mm at most; its shaft lies 8 mm below the
+/// It lifts 0.8 of the way to the pad at a bend line's 90 degrees, and 35.8 mm at most; its shaft lies 8 mm below the
 /// sheet, and its arm is as long as that needs. Throws InvalidInput naming the bend line that has no room for a lever,
 /// or what is wrong with the sheet.
 [[nodiscard]] ElasticSheet elasticSheetOf(const SheetDevice& device);

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "resources/targets/generator/lifted_relief.h"
 #include "resources/targets/generator/relief.h"
 #include "resources/targets/generator/targets.h"
 
@@ -16,57 +17,15 @@ constexpr double kSeconds = 6.0;
 constexpr int kHarmonics = 3; ///< of the loop; what lies above them is too quick to be seen
 constexpr double kCalm = 0.0005;
 
-/// A petal: lies flat, or lifts its free end while its root stays down.
-struct Petal {
-    double x; ///< of its root's middle, metres
-    double z;
-    double heading; ///< degrees, from the root to the free end, from +x towards +z
-    double reach;   ///< metres from the root to the free end
-    double breadth; ///< half of it at the free end, metres
-    double turn;    ///< share of the loop at which it stands highest
-};
-
-/// Corners and long edges in the order in which the wave passes them.
-constexpr double kDiagonal = 43.7; // degrees
-constexpr std::array<Petal, 6> kPetals{{{-0.0715, 0.040, 180.0 - kDiagonal, 0.0485, 0.031, 0.0 / 6.0},
-                                        {0.0, 0.002, 90.0, 0.0745, 0.072, 1.0 / 6.0},
-                                        {0.0715, 0.040, kDiagonal, 0.0485, 0.031, 2.0 / 6.0},
-                                        {0.0715, -0.040, -kDiagonal, 0.0485, 0.031, 3.0 / 6.0},
-                                        {0.0, -0.002, -90.0, 0.0745, 0.072, 4.0 / 6.0},
-                                        {-0.0715, -0.040, 180.0 + kDiagonal, 0.0485, 0.031, 5.0 / 6.0}}};
-
-double radians(double degrees) { return degrees * std::numbers::pi / 180.0; }
-
-/// The value where it is positive and 0 elsewhere, without a corner between.
-double softly(double value, double width) { return width * std::log1p(std::exp(value / width)); }
-
-/// How far a petal's slope has risen at a point of the loop, radians.
-double liftOf(const Petal& petal, double turn) {
-    constexpr double kLow = 6.0, kHigh = 58.0;
-    const double share = 0.5 + 0.5 * std::cos(2.0 * std::numbers::pi * (turn - petal.turn));
-    return radians(kLow + (kHigh - kLow) * share);
-}
-
-/// A slope that begins softly at the root, under the round cap along which its free end came up.
-double heightOf(const Petal& petal, double lift, double x, double z) {
-    constexpr double kRoot = 0.009; // metres of the root that stay down
-    constexpr double kSoft = 0.004;
-    const double cosine = std::cos(radians(petal.heading));
-    const double sine = std::sin(radians(petal.heading));
-    const double along = (x - petal.x) * cosine + (z - petal.z) * sine - kRoot;
-    const double across = ((z - petal.z) * cosine - (x - petal.x) * sine) / petal.breadth;
-    const double reach = petal.reach - kRoot;
-    const double rise = std::tan(lift) * softly(along, kSoft);
-    const double inside = softly(1.0 - std::pow(across, 2) - std::pow(std::max(0.0, along) / reach, 2), 0.06);
-    const double cap = reach * std::pow(inside, 0.55);
-    return std::pow(std::pow(rise, -3.5) + std::pow(cap, -3.5), -1.0 / 3.5);
-}
+/// When the wave lifts each of the tablet's levers most, as a share of the loop: corners and long edges in the order in
+/// which it passes them.
+constexpr std::array<double, 6> kTurns{0.0 / 6.0, 2.0 / 6.0, 5.0 / 6.0, 3.0 / 6.0, 1.0 / 6.0, 4.0 / 6.0};
 
 double bloomAt(double x, double z, double turn) {
-    constexpr double kSharpness = 4.0; // of the valleys where two petals meet
-    double sum = 0.0;
-    for (const Petal& petal : kPetals) sum += std::pow(heightOf(petal, liftOf(petal, turn), x, z), kSharpness);
-    return kCalm + std::pow(sum, 1.0 / kSharpness);
+    std::array<double, 6> lifts{};
+    for (std::size_t k = 0; k < lifts.size(); ++k)
+        lifts[k] = 0.08 + 0.92 * std::pow(0.5 + 0.5 * std::cos(2.0 * std::numbers::pi * (turn - kTurns[k])), 1.2);
+    return kCalm + liftedHeight(lifts, x, z);
 }
 
 /// The share of cos(2 pi harmonic turn), or of the sine, in the height of a place over the loop.

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "resources/targets/generator/lifted_relief.h"
 #include "resources/targets/generator/relief.h"
 
 namespace lumorph {
@@ -14,41 +15,7 @@ namespace {
 constexpr float kWidth = 0.21F; ///< the tablet's sides, metres
 constexpr float kDepth = 0.15F;
 
-/// A dune: a gentle slope that rises from its foot, and a round, steep lee behind the crest.
-struct Dune {
-    double x; ///< of its foot, metres
-    double z;
-    double heading; ///< degrees, the way it rises, from +x towards +z
-    double slope;   ///< degrees
-    double length;  ///< from the foot to where the lee ends, metres
-    double breadth; ///< half of it, metres
-};
-
-double radians(double degrees) { return degrees * std::numbers::pi / 180.0; }
-
-double heightOf(const Dune& dune, double x, double z) {
-    constexpr double kSoft = 0.004; // metres over which the foot rounds off
-    const double cosine = std::cos(radians(dune.heading));
-    const double sine = std::sin(radians(dune.heading));
-    const double along = (x - dune.x) * cosine + (z - dune.z) * sine;
-    const double across = ((z - dune.z) * cosine - (x - dune.x) * sine) / dune.breadth;
-    const double rise = std::tan(radians(dune.slope)) * kSoft * std::log1p(std::exp(along / kSoft));
-    const double lee = std::sqrt(std::max(1e-6, dune.length * dune.length - along * along));
-    return std::exp(-std::pow(across, 4)) / std::pow(std::pow(rise, -4.0) + std::pow(lee, -4.0), 0.25);
-}
-
-double dunesAt(double x, double z) {
-    constexpr std::array<Dune, 6> kDunes{{{-0.070, -0.038, 224.0, 54.0, 0.080, 0.036},
-                                          {0.070, -0.038, 316.0, 20.0, 0.064, 0.036},
-                                          {-0.070, 0.038, 136.0, 12.0, 0.064, 0.036},
-                                          {0.070, 0.038, 44.0, 33.0, 0.064, 0.036},
-                                          {0.0, -0.010, 270.0, 19.0, 0.070, 0.058},
-                                          {0.0, 0.010, 90.0, 34.0, 0.070, 0.058}}};
-    constexpr double kSharpness = 4.0; // of the valleys where two dunes meet
-    double sum = 0.0;
-    for (const Dune& dune : kDunes) sum += std::pow(heightOf(dune, x, z), kSharpness);
-    return 0.001 + std::pow(sum, 1.0 / kSharpness);
-}
+double dunesAt(double x, double z) { return 0.001 + liftedHeight({0.35, 0.6, 1.0, 0.45, 0.55, 0.3}, x, z); }
 
 Model::Material sand() {
     Model::Material material;
@@ -69,9 +36,9 @@ Model::Material water() {
 }
 
 /// The wave: 26 cm long, past every place once in four seconds, and higher towards the long edges, where
-/// its crest is 54 mm above the base.
+/// its crest is 36 mm above the base.
 constexpr double kCalm = 0.001;
-constexpr double kAmplitude = 0.025;
+constexpr double kAmplitude = 0.0175;
 constexpr double kWavelength = 0.26;
 constexpr double kSeconds = 4.0;
 
