@@ -257,8 +257,8 @@ void printParameters(const RigTemplate& kind) {
                         std::string(p.meaning).c_str(), p.min, p.max);
         else
             std::printf("  %-10s %12s  %s (%s)\n", std::string(p.name).c_str(),
-                        std::string(p.words[static_cast<std::size_t>(p.value)]).c_str(),
-                        std::string(p.meaning).c_str(), wordsOf(p).c_str());
+                        std::string(p.words[static_cast<std::size_t>(p.value)]).c_str(), std::string(p.meaning).c_str(),
+                        wordsOf(p).c_str());
 }
 
 void newRig(const NewOptions& options, const Session& session) {
@@ -308,10 +308,12 @@ void addMakingCommands(CLI::App* group, Session& session) {
         group->add_subcommand("sheet", "Make a rig of a sheet with an outline and bend lines across it");
     sheetCommand->add_option("outline", sheetOptions->outline, "An SVG file with one closed shape")->required();
     sheetCommand
-        ->add_option("--bends", sheetOptions->bends,
-                     "A JSON file: {\"bends\": [{\"name\", \"from\": [x, y], \"to\": [x, y], \"ends\": \"joined\" or "
-                     "\"free\", \"side\": \"smaller\", \"left\" or \"right\", \"angle\"}], \"name\", \"top\": \"cut\" or "
-                     "\"continuous\", \"material\", \"pad\", \"thickness\", \"housing\", \"arc\"}, in cm on the SVG's page and degrees")
+        ->add_option(
+            "--bends", sheetOptions->bends,
+            "A JSON file: {\"bends\": [{\"name\", \"from\": [x, y], \"to\": [x, y], \"ends\": \"joined\" or "
+            "\"free\", \"side\": \"smaller\", \"left\" or \"right\", \"angle\"}], \"name\", \"top\": \"cut\" or "
+            "\"continuous\", \"material\", \"pad\", \"thickness\", \"housing\", \"arc\"}, in cm on the SVG's page and "
+            "degrees")
         ->required();
     sheetCommand->add_option("-o,--output", sheetOptions->output, "A .glb file, or - for standard output")->required();
     sheetCommand->callback([sheetOptions, &session] { sheet(*sheetOptions, session); });

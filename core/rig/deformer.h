@@ -68,9 +68,9 @@ struct SkinJoint {
 /// Lifts the rig's sheet by one of the levers under it. What follows, and how, is `SheetMotion`'s; the actuator has no
 /// influences of its own.
 struct SheetLift {
-    int axis = -1; ///< of the sheet's grid, index into SheetModes::strokes
-    Angle min;     ///< of the lever at stroke 0; describes it, moves nothing
-    Angle max;     ///< at stroke 1
+    int axis = -1;       ///< of the sheet's grid, index into SheetModes::strokes
+    Angle min;           ///< of the lever at stroke 0; describes it, moves nothing
+    Angle max;           ///< at stroke 1
     double torque = 0.0; ///< the largest that its servo holds in a state of the grid, newton metres; 0: not known
     bool operator==(const SheetLift&) const = default;
 };

@@ -237,8 +237,9 @@ private:
                 report_.warnings.push_back("The actuator \"" + actuator.name + "\" moves nothing.");
         for (const auto& actuator : report_.actuators)
             if (const ServoType* servo = findServo(actuator.servo); servo && actuator.torque > servo->usableTorque())
-                report_.warnings.push_back("The actuator \"" + actuator.name + "\" needs more than half of what stalls its " +
-                                           actuator.servo + "; take a stronger servo or a thinner sheet.");
+                report_.warnings.push_back("The actuator \"" + actuator.name +
+                                           "\" needs more than half of what stalls its " + actuator.servo +
+                                           "; take a stronger servo or a thinner sheet.");
         warnOfStates(report_.openStates, "the mesh is not closed; what lies inside is a guess there.");
         warnOfStates(report_.intersectingStates, "the surface crosses itself; a real device would collide there.");
         warnOfStates(report_.invertedStates, "parts of the mesh are turned inside out or squeezed flat.");

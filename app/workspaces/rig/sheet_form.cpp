@@ -36,10 +36,10 @@ QWidget* SheetForm::makeSheet() {
     QVBoxLayout& column = *makeColumnOf(page);
     column.addWidget(makeHeading(tr("Sheet")));
     name_ = addName(column, "sheet.name", tr("What the device is called"));
-    top_ = new Segments(
-        {{"sheet.top.cut", tr("Cut into flaps"), tr("Slits part each flap from the rest")},
-         {"sheet.top.continuous", tr("Left joined"),
-          tr("One elastic sheet without slits, lifted by a lever for each bend line: its shape follows from mechanics")}});
+    top_ = new Segments({{"sheet.top.cut", tr("Cut into flaps"), tr("Slits part each flap from the rest")},
+                         {"sheet.top.continuous", tr("Left joined"),
+                          tr("One elastic sheet without slits, lifted by a lever for each bend line: its shape follows "
+                             "from mechanics")}});
     column.addWidget(makeRow(tr("Top"), top_));
     connect(top_, &Segments::chosen, this, [this](int top) {
         change(top == 0 ? tr("Cut the top") : tr("Leave the top joined"),

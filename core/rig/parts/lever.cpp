@@ -88,6 +88,19 @@ std::optional<Lever> leverFor(const SheetFlap& flap, double thickness, double de
     return std::nullopt;
 }
 
+std::optional<Lever> captiveLever(const SheetFlap::Captive& captive, double below) {
+    const double rise = below - Lever::kNose;
+    if (rise < 0.0 || rise + captive.lift >= captive.arm) return std::nullopt;
+    Lever lever;
+    lever.below = below;
+    lever.length = captive.arm;
+    lever.rest = Angle::radians(std::asin(rise / captive.arm));
+    lever.end = Angle::radians(std::asin((rise + captive.lift) / captive.arm));
+    lever.lifted = lever.end;
+    lever.pivot = -captive.arm * std::cos(lever.rest.inRadians());
+    return lever;
+}
+
 double leverPlane(const ServoBody& body) { return body.hornTop + kBase - 0.5 * Lever::kThickness; }
 
 double leverHub(const ServoBody& body, double tolerance) { return 0.5 * body.hornHub + tolerance + kHornWall; }

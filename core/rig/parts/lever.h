@@ -33,6 +33,10 @@ struct Lever {
 [[nodiscard]] std::optional<Lever> leverFor(const SheetFlap& flap, double thickness, double depth, double below,
                                             const ServoBody& body, double tolerance);
 
+/// The lever whose nose is captive in a slot of a continuous sheet: its arm and its lift are given. None where the
+/// shaft lies too deep for that arm.
+[[nodiscard]] std::optional<Lever> captiveLever(const SheetFlap::Captive& captive, double below);
+
 /// What a lever is made of, seen from the side: around shaft and horn, beam, nose. Its shaft lies at the origin, the
 /// arm along x, the flap on the side of +y.
 [[nodiscard]] std::vector<PlanePolygon> leverShapes(const Lever& lever, const ServoBody& body, double tolerance);

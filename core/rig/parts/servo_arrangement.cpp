@@ -95,6 +95,13 @@ private:
     [[nodiscard]] std::vector<Candidate> candidatesOf(std::size_t index) const {
         const SheetFlap& flap = sheet_.flaps[index];
         std::vector<Candidate> candidates;
+        if (flap.captive) {
+            const auto lever = captiveLever(*flap.captive, heights_.below);
+            for (const double side : {1.0, -1.0})
+                for (const double out : {1.0, -1.0})
+                    if (lever) addCandidate(index, 0.0, *lever, side, out, candidates);
+            return candidates;
+        }
         const double middle = 0.5 * (flap.low + flap.high);
         for (double along = middle; along < flap.high - kStep; along += kStep)
             for (const double w : {along, 2.0 * middle - along}) {
@@ -120,7 +127,7 @@ private:
         const SheetFlap& flap = sheet_.flaps[index];
         const double middle = 0.5 * (flap.low + flap.high);
         const glm::dvec2 goal = flap.frame.page({middle, 0.0});
-        const glm::dvec2 hole(middle, 0.5 * flap.depthAt(middle));
+        const glm::dvec2 hole(middle, flap.captive ? 0.0 : 0.5 * flap.depthAt(middle));
         PlanePolygon wire = rectangle(hole - 0.5 * kWireHole, hole + 0.5 * kWireHole);
         for (glm::dvec2& p : wire) p = flap.frame.page(p);
         const auto [low, high] = Region().add(sheet_.housing).bounds();

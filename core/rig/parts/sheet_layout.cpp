@@ -8,6 +8,8 @@
 #include <glm/geometric.hpp>
 
 #include "core/geometry/plane_mesh.h"
+#include "core/rig/templates/continuous_sheet.h"
+#include "core/rig/templates/sheet_file.h"
 #include "core/rig/templates/sheet_outline.h"
 
 namespace lumorph {
@@ -57,6 +59,44 @@ const Bend* upwardBend(const Actuator& actuator) {
     return level && glm::cross(axis, across).y > 0.9 ? bend : nullptr;
 }
 
+constexpr double kSlotHalf = 2.6;   ///< of a captive lever's slot, beside its middle
+constexpr double kSlotBeyond = 2.5; ///< of that slot beyond the nose
+
+/// The continuous sheet that the rig was drawn as, while it still has the drawing's levers.
+std::optional<ElasticSheet> continuousSheetOf(const Rig& rig) {
+    if (!rig.parts().sheet || rig.parts().drawing.empty()) return std::nullopt;
+    const SheetDevice device = parseSheetDevice(rig.parts().drawing, rig.name());
+    if (device.top != SheetTop::continuous || device.bends.size() != rig.actuatorCount()) return std::nullopt;
+    for (const Actuator& actuator : rig.actuators())
+        if (!std::holds_alternative<SheetLift>(actuator.deformer)) return std::nullopt;
+    return elasticSheetOf(device);
+}
+
+/// A lever of it; `across` points away from the pad.
+SheetFlap flapOf(const SheetLever& lever, std::size_t index, const glm::dvec2& pad) {
+    SheetFlap flap;
+    flap.actuator = index;
+    flap.angle = lever.end;
+    const glm::dvec2 from = pageOf(lever.from), to = pageOf(lever.to);
+    flap.frame.origin = 0.5 * (from + to);
+    flap.frame.along = glm::normalize(to - from);
+    flap.frame.across = {-flap.frame.along.y, flap.frame.along.x};
+    if (glm::dot(flap.frame.across, flap.frame.origin - pad) < 0.0) {
+        flap.frame.along = -flap.frame.along;
+        flap.frame.across = -flap.frame.across;
+    }
+    flap.high = 0.5 * glm::distance(from, to);
+    flap.low = -flap.high;
+    flap.captive = {1e3 * lever.arm, 1e3 * lever.heightAt(1.0)};
+    return flap;
+}
+
+PlanePolygon slotOf(const SheetFlap& flap) {
+    PlanePolygon slot = rectangle({-kSlotHalf, -slideOf(*flap.captive)}, {kSlotHalf, kSlotBeyond});
+    for (glm::dvec2& p : slot) p = flap.frame.page(p);
+    return slot;
+}
+
 SheetFlap flapOf(const Rig& rig, std::size_t index, const Bend& bend, const std::vector<bool>& top) {
     SheetFlap flap;
     flap.actuator = index;
@@ -86,6 +126,11 @@ SheetFlap flapOf(const Rig& rig, std::size_t index, const Bend& bend, const std:
 }
 
 } // namespace
+
+double slideOf(const SheetFlap::Captive& captive) {
+    const double end = std::asin(std::min(1.0, captive.lift / captive.arm));
+    return captive.arm * (1.0 - std::cos(end)) + kSlotBeyond;
+}
 
 double SheetFlap::depthAt(double along) const {
     double depth = 0.0;
@@ -130,7 +175,17 @@ std::optional<SheetLayout> sheetPlanOf(const Rig& rig) {
     SheetLayout plan;
     std::vector<bool> still = top;
     double neutral = 0.5 * (*ledge + kUsualGap + box.max.y);
-    for (std::size_t a = 0; a < rig.actuatorCount(); ++a) {
+    const std::optional<ElasticSheet> joined = continuousSheetOf(rig);
+    if (joined) {
+        neutral = box.max.y - 0.5 * joined->layers.front().thickness;
+        PlanePolygon pad;
+        for (const glm::dvec2& corner : joined->pad) pad.push_back(pageOf(corner));
+        const OutlineBox middle = boxOf(pad);
+        for (std::size_t l = 0; l < joined->levers.size(); ++l)
+            plan.flaps.push_back(flapOf(joined->levers[l], l, middle.middle()));
+        plan.still = {std::move(pad)};
+    }
+    for (std::size_t a = 0; !joined && a < rig.actuatorCount(); ++a) {
         const Bend* bend = upwardBend(rig.actuators()[a]);
         if (bend == nullptr) return std::nullopt;
         plan.flaps.push_back(flapOf(rig, a, *bend, top));
@@ -150,7 +205,10 @@ std::optional<SheetLayout> sheetPlanOf(const Rig& rig) {
         for (int k = 0; bottom[t] && k < 3; ++k) corners.push_back(onPage(mesh.positions[mesh.triangles[t][k]]));
     plan.housing = convexHull(std::move(corners));
     plan.sheet = bordersOf(mesh, top);
-    plan.still = bordersOf(mesh, still);
+    if (joined)
+        for (const SheetFlap& flap : plan.flaps) plan.sheet.push_back(slotOf(flap));
+    else
+        plan.still = bordersOf(mesh, still);
     return plan;
 }
 

@@ -19,7 +19,14 @@ struct SheetFlap {
     Angle angle;      ///< at full stroke
     double low = 0.0; ///< along the line, the flap's ends
     double high = 0.0;
-    std::vector<PlanePolygon> triangles; ///< that move, in its frame
+    std::vector<PlanePolygon> triangles; ///< that move, in its frame; none of a continuous sheet
+
+    /// Of a continuous sheet: the lever that lifts the frame's origin, and the slot in which its nose is captive.
+    struct Captive {
+        double arm = 0.0;
+        double lift = 0.0;
+    };
+    std::optional<Captive> captive;
 
     /// How far the flap reaches from its bend line at a place along it; 0 where there is no flap.
     [[nodiscard]] double depthAt(double along) const;
@@ -36,8 +43,11 @@ struct SheetLayout {
     std::vector<SheetFlap> flaps;
 };
 
-/// None where the rig is no sheet on a housing: something moves otherwise than by bending upwards, or there is no
-/// level top, ledge and bottom.
+/// How far a captive nose slides inwards while its lever goes from level to its end, about.
+[[nodiscard]] double slideOf(const SheetFlap::Captive& captive);
+
+/// None where the rig is no sheet on a housing: something moves otherwise than by bending upwards or as the levers of a
+/// drawn continuous sheet do, or there is no level top, ledge and bottom.
 [[nodiscard]] std::optional<SheetLayout> sheetPlanOf(const Rig& rig);
 
 /// The borders of the triangles that `keep` accepts, seen from above, on the page in millimetres; even-odd.

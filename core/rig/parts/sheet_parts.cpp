@@ -212,7 +212,7 @@ private:
         if (!servo.lever)
             plan_.notes.push_back("No lever fits under the flap of " + inQuotes(name) +
                                   "; link it to its servo by a wire, through the hole of the lid.");
-        else if (servo.lever->lifted.inDegrees() < wanted - 1.0)
+        else if (!flap.captive && servo.lever->lifted.inDegrees() < wanted - 1.0)
             plan_.notes.push_back("The flap of " + inQuotes(name) + " is short: its lever lifts it by " +
                                   std::to_string(std::lround(servo.lever->lifted.inDegrees())) + " of its " +
                                   std::to_string(std::lround(wanted)) + " degrees.");
@@ -314,8 +314,15 @@ private:
                  "Screw it to the posts.",
              {}});
         plan_.steps.push_back({"Glue the sheet onto the pads",
-                               "Only where it does not move (the darker part); the flaps stay free of glue.",
+                               "Only where it does not move (the darker part); the rest stays free of glue.",
                                sheetPicture()});
+        if (std::ranges::any_of(sheet_.flaps, [](const SheetFlap& flap) { return flap.captive.has_value(); }))
+            plan_.steps.push_back(
+                {"Hold the sheet by its slots",
+                 "Drill 1 mm through the nose of each lever. Lead a loop of wire from it up through the "
+                 "slot and around a pin across the slot, above the sheet: so the lever holds the sheet "
+                 "down as well as up, and slides in the slot as it turns. Lay the paper on top, loose.",
+                 {}});
         if (servos)
             plan_.steps.push_back(
                 {"Try it in the studio",
@@ -335,7 +342,7 @@ private:
             text += "\n" + plan_.wiring[sheet_.flaps[servo.flap].actuator].actuator + ": " + leverName(servo) +
                     ", rest " + tenths(servo.lever->rest.inDegrees()) + " degrees, end " +
                     tenths(servo.lever->end.inDegrees()) + " degrees";
-            if (picture.empty()) picture = leverPicture(servo);
+            if (picture.empty() && !sheet_.flaps[servo.flap].captive) picture = leverPicture(servo);
         }
         plan_.steps.push_back({"Set the levers", text, picture});
     }

@@ -59,8 +59,7 @@ SheetState mirrored(const SheetMesh& mesh, const MeshMirror& mirror, const Sheet
 
 SheetSupports noSupports(const SheetMesh& mesh) {
     return {std::vector<std::uint8_t>(mesh.points.size(), 0), std::vector<std::uint8_t>(mesh.edges.size(), 0),
-            std::vector<glm::dvec3>(mesh.points.size(), glm::dvec3(0.0)),
-            -std::numeric_limits<double>::infinity()};
+            std::vector<glm::dvec3>(mesh.points.size(), glm::dvec3(0.0)), -std::numeric_limits<double>::infinity()};
 }
 
 struct SheetSolver::Impl {

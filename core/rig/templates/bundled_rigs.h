@@ -20,7 +20,7 @@ struct TabletSize {
 [[nodiscard]] SheetDevice tabletDrawing(double width = 0.21, double depth = 0.15, double thickness = 0.002);
 
 /// It as the bundled file has it. Throws DataError when that is missing.
-[[nodiscard]] Rig bundledTablet();
+[[nodiscard]] Rig bakedTablet();
 
 /// The same size with a top that is cut into six flaps, which bend upwards by up to 90 degrees.
 /// Throws InvalidInput when with other measures a part would vanish.

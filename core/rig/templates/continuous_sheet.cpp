@@ -24,23 +24,23 @@ namespace lumorph {
 namespace {
 
 // Metres.
-constexpr double kPadGap = 0.003;        ///< from the rim and the bend lines to a pad that nobody drew
+constexpr double kPadGap = 0.003; ///< from the rim and the bend lines to a pad that nobody drew
 constexpr double kSamePoint = 1e-5;
 constexpr double kLeastPad = 5e-5; ///< square metres
 constexpr double kLongestSlot = 0.03;
 constexpr double kGoodSlot = 0.008;
 constexpr double kShortestSlot = 0.004;
-constexpr double kSlotGap = 0.002;       ///< of sheet beside the ends of a slot
-constexpr double kFirstInset = 0.006;    ///< of sheet between a slot and the rim
+constexpr double kSlotGap = 0.002;    ///< of sheet beside the ends of a slot
+constexpr double kFirstInset = 0.006; ///< of sheet between a slot and the rim
 constexpr double kMostLift = 0.0358;
-constexpr double kLiftOfWay = 0.8;       ///< lift as a share of the way from the pad
-constexpr double kShaftBelow = 0.008;    ///< the shaft under the sheet at rest
+constexpr double kLiftOfWay = 0.8;    ///< lift as a share of the way from the pad
+constexpr double kShaftBelow = 0.008; ///< the shaft under the sheet at rest
 constexpr double kShortestArm = 0.016;
-constexpr double kSteepest = 69.0;       ///< degrees of an arm at full stroke
+constexpr double kSteepest = 69.0; ///< degrees of an arm at full stroke
 constexpr double kHousingMargin = 0.0005;
 constexpr int kWallShares = 6;
 constexpr int kWallRows = 4;
-constexpr double kLoadedSpeed = 120.0;   ///< degrees a second of a small servo under load
+constexpr double kLoadedSpeed = 120.0; ///< degrees a second of a small servo under load
 
 /// How far below the rim a row of the wall under it lies at rest, as a share of the wall's height.
 double wallDepth(double share) {
@@ -208,8 +208,7 @@ private:
             std::vector<std::uint32_t> column{addVertex(place, device_.housing)};
             for (int row = 1; row <= kWallRows; ++row) {
                 const float share = static_cast<float>(row) / kWallShares;
-                column.push_back(
-                    addVertex(place, std::lerp(top_, device_.housing, wallDepth(share)), node, share));
+                column.push_back(addVertex(place, std::lerp(top_, device_.housing, wallDepth(share)), node, share));
             }
             column.push_back(node);
             columns_.push_back(std::move(column));
@@ -246,8 +245,7 @@ private:
             solid_.triangles.emplace_back(low[k], low[n], high[n]);
             solid_.triangles.emplace_back(low[k], high[n], high[k]);
         }
-        for (std::size_t k = 1; k + 1 < low.size(); ++k)
-            solid_.triangles.emplace_back(low[0], low[k + 1], low[k]);
+        for (std::size_t k = 1; k + 1 < low.size(); ++k) solid_.triangles.emplace_back(low[0], low[k + 1], low[k]);
         const auto onLedge = [&](const glm::dvec2& p) { return !insidePolygon(border, p); };
         for (const glm::uvec3& t : triangulatePlane(points, edges, onLedge))
             solid_.triangles.emplace_back(vertices[t.x], vertices[t.y], vertices[t.z]);

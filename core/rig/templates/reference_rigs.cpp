@@ -6,7 +6,7 @@
 namespace lumorph {
 
 std::vector<Rig> referenceRigs(const Progress& progress) {
-    std::vector<Rig> rigs{rigOf(rigTemplate("phone"), {}, progress), bundledTablet()};
+    std::vector<Rig> rigs{rigOf(rigTemplate("phone"), {}, progress), bakedTablet()};
     RigParts pins = pinDisplayRig().parts();
     pins.name = "pins";
     rigs.emplace_back(std::move(pins));

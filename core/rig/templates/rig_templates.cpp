@@ -45,8 +45,8 @@ std::vector<TemplateParameter> withSheet(std::vector<TemplateParameter> paramete
     parameters.push_back({"thickness", "thickness of the sheet", Unit::centimetres, thickness, 0.02, 2.0});
     parameters.push_back({"housing", "height of the housing", Unit::centimetres, housing, 0.1, 50.0});
     if (arc > 0.0) {
-        parameters.push_back(onlyWith(
-            SheetTop::cut, {"arc", "length of sheet that a bend curves", Unit::centimetres, arc, 0.2, 20.0}));
+        parameters.push_back(
+            onlyWith(SheetTop::cut, {"arc", "length of sheet that a bend curves", Unit::centimetres, arc, 0.2, 20.0}));
         parameters.push_back({"angle", "how far a flap bends up", Unit::degrees, 90.0, 1.0, 90.0});
     }
     return parameters;
@@ -62,10 +62,9 @@ const std::vector<RigTemplate>& templates() {
          {topParameter(SheetTop::continuous),
           {"width", "width", Unit::centimetres, tablet.width, 5.0, 100.0},
           {"depth", "depth", Unit::centimetres, tablet.depth, 5.0, 100.0},
-          onlyWith(SheetTop::continuous,
-                   {"thickness", "thickness of the sheet", Unit::centimetres, 0.2, 0.02, 0.5}),
-          onlyWith(SheetTop::cut, {"reach", "height that the edges reach, upright", Unit::centimetres, tablet.reach,
-                                   2.0, 100.0}),
+          onlyWith(SheetTop::continuous, {"thickness", "thickness of the sheet", Unit::centimetres, 0.2, 0.02, 0.5}),
+          onlyWith(SheetTop::cut,
+                   {"reach", "height that the edges reach, upright", Unit::centimetres, tablet.reach, 2.0, 100.0}),
           onlyWith(SheetTop::cut, {"cornerX", "where a corner's bend line ends, along the width", Unit::centimetres,
                                    tablet.cornerAlongWidth, 1.0, 50.0}),
           onlyWith(SheetTop::cut, {"cornerZ", "where a corner's bend line ends, along the depth", Unit::centimetres,
@@ -230,8 +229,8 @@ Values valuesOf(const RigTemplate& kind, std::span<const TemplateChoice> choices
         if (!std::isfinite(value) || value < parameter->min || value > parameter->max || !whole)
             throw InvalidInput(std::string(kind.name) + ": " + name,
                                std::isfinite(value) ? tell(value) + " cannot be" : "it is no finite number",
-                               "choose a " + std::string(counts ? "whole " : "") +
-                                   "number from " + tell(parameter->min) + " to " + tell(parameter->max));
+                               "choose a " + std::string(counts ? "whole " : "") + "number from " +
+                                   tell(parameter->min) + " to " + tell(parameter->max));
         values[parameter->name] = value;
     }
     for (const auto& [name, value] : choices) {
@@ -252,7 +251,7 @@ Rig tabletOf(const Values& values, const Progress& progress, SheetQuality qualit
         return rig;
     }
     const SheetDevice drawing = tabletDrawing(0.01 * at("width"), 0.01 * at("depth"), 0.01 * at("thickness"));
-    return drawing == tabletDrawing() ? bundledTablet() : sheetRig(drawing, progress, quality);
+    return drawing == tabletDrawing() ? bakedTablet() : sheetRig(drawing, progress, quality);
 }
 
 } // namespace

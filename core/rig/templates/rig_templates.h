@@ -47,10 +47,10 @@ using TemplateChoice = std::pair<std::string, double>;
 [[nodiscard]] bool applies(const RigTemplate& kind, const TemplateParameter& parameter,
                            std::span<const TemplateChoice> choices);
 
-/// A rig of the template, with what has been chosen; the last choice of a parameter counts. A continuous top takes up to
-/// half a minute, but the tablet without choices is read from the bundled file.
-/// Throws InvalidInput naming a parameter that is not there or out of range, or with which a part would vanish.
-[[nodiscard]] Rig rigOf(const RigTemplate& kind, std::span<const TemplateChoice> choices,
-                        const Progress& progress = {}, SheetQuality quality = SheetQuality::full);
+/// A rig of the template, with what has been chosen; the last choice of a parameter counts. A continuous top takes up
+/// to half a minute, but the tablet without choices is read from the bundled file. Throws InvalidInput naming a
+/// parameter that is not there or out of range, or with which a part would vanish.
+[[nodiscard]] Rig rigOf(const RigTemplate& kind, std::span<const TemplateChoice> choices, const Progress& progress = {},
+                        SheetQuality quality = SheetQuality::full);
 
 } // namespace lumorph

@@ -72,8 +72,9 @@ enum class SheetQuality { preview, full };
 [[nodiscard]] Rig sheetRig(const SheetDevice& device, const Progress& progress = {},
                            SheetQuality quality = SheetQuality::full);
 
-/// What part of the sheet each bend line moves, or of a continuous one would move alone: a polygon of points (x, z), metres, a line. Of the solid above, but
-/// without it, in a millisecond or so. Throws InvalidInput as `sheetRig` does where a line has no room.
+/// What part of the sheet each bend line moves, or of a continuous one would move alone: a polygon of points (x, z),
+/// metres, a line. Of the solid above, but without it, in a millisecond or so. Throws InvalidInput as `sheetRig` does
+/// where a line has no room.
 [[nodiscard]] std::vector<std::vector<glm::dvec2>> sheetFlaps(const SheetDevice& device);
 
 } // namespace lumorph

@@ -395,7 +395,7 @@ SheetDevice tabletDrawing(double width, double depth, double thickness) {
     return device;
 }
 
-Rig bundledTablet() { return readRig(resourceFile("models/tablet.glb")); }
+Rig bakedTablet() { return readRig(resourceFile("models/tablet.glb")); }
 
 Rig cutTabletRig(const TabletSize& size) {
     const Measures measures(size);

@@ -18,9 +18,7 @@ double softly(double value) {
 double cornerAt(double x, double z) { return softly((1.44 * x + 0.93 * z - 1.0) / 1.37); }
 
 /// `z` is 1 at the lifted edge.
-double edgeAt(double x, double z) {
-    return softly((z - 0.2) / 0.8) * std::pow(std::max(0.0, 1.0 - x * x), 1.7);
-}
+double edgeAt(double x, double z) { return softly((z - 0.2) / 0.8) * std::pow(std::max(0.0, 1.0 - x * x), 1.7); }
 
 } // namespace
 

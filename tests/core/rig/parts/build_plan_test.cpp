@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 
 #include "core/base/error.h"
+#include "core/geometry/plane_mesh.h"
 #include "core/rig/parts/build_files.h"
 #include "core/rig/parts/build_plan.h"
 #include "core/rig/templates/bundled_rigs.h"
@@ -28,7 +29,7 @@ const Rig& templateRig(const std::string& name) {
     static std::map<std::string, Rig> rigs;
     const auto found = rigs.find(name);
     if (found != rigs.end()) return found->second;
-    return rigs.emplace(name, rigOf(rigTemplate(name), {})).first->second;
+    return rigs.emplace(name, name == "cut_tablet" ? cutTabletRig() : rigOf(rigTemplate(name), {})).first->second;
 }
 
 /// With the options that come without a choice.
@@ -230,13 +231,14 @@ TEST_P(TemplateParts, HoldAnSg90InEverySeat) {
 }
 
 INSTANTIATE_TEST_SUITE_P(BuildPlan, TemplateParts,
-                         testing::Values("tablet", "phone", "pins", "flower", "book", "cushion", "sheet"),
+                         testing::Values("tablet", "cut_tablet", "phone", "pins", "flower", "book", "cushion", "sheet"),
                          [](const auto& name) { return std::string(name.param); });
 
 TEST(BuildPlan, GivesEachKindItsParts) {
     using Counts = std::map<std::string, int>;
     EXPECT_EQ(countsOf(templatePlan("tablet")),
               (Counts{{"housing", 1}, {"lid", 1}, {"sheet", 1}, {"seat", 6}, {"lever", 6}}));
+    EXPECT_EQ(countsOf(templatePlan("cut_tablet")), countsOf(templatePlan("tablet")));
     EXPECT_EQ(countsOf(templatePlan("sheet")), (Counts{{"housing", 1}, {"lid", 1}, {"sheet", 1}}));
     EXPECT_EQ(countsOf(templatePlan("pins")), (Counts{{"pin", 900}, {"guide", 1}, {"base", 1}, {"seat", 36}}));
     EXPECT_EQ(countsOf(templatePlan("cushion")), (Counts{{"seat", 8}})); // four, and their caps
@@ -248,21 +250,34 @@ TEST(BuildPlan, GivesEachKindItsParts) {
 
 /// The tablet's housing is as wide and deep as the tablet (R1), and with lid and sheet as high.
 TEST(BuildPlan, TabletKeepsItsMeasures) {
-    const BuildPlan& plan = templatePlan("tablet");
-    const auto sizeOf = [&](const char* name) { return boundingBox(partOf(plan, name).solid.mesh.positions).size(); };
-    EXPECT_NEAR(sizeOf("housing").x, 210.0, 0.05);
-    EXPECT_NEAR(sizeOf("housing").y, 150.0, 0.05);
-    EXPECT_NEAR(sizeOf("housing").z + sizeOf("lid").z + sizeOf("sheet").z, 20.0, 0.01);
-    // The sheet is the rig's: as much area as its top has.
-    double top = 0.0;
-    const TriangleMesh& mesh = templateRig("tablet").restMesh();
-    for (const glm::uvec3& t : mesh.triangles) {
-        const glm::dvec3 a(mesh.positions[t.x]);
-        const glm::dvec3 n = glm::cross(glm::dvec3(mesh.positions[t.y]) - a, glm::dvec3(mesh.positions[t.z]) - a);
-        const bool high = std::min({mesh.positions[t.x].y, mesh.positions[t.y].y, mesh.positions[t.z].y}) > 0.01999F;
-        if (high && n.y > 0.0) top += 0.5e6 * n.y;
+    for (const char* name : {"tablet", "cut_tablet"}) {
+        const BuildPlan& plan = templatePlan(name);
+        const auto sizeOf = [&](const char* name) {
+            return boundingBox(partOf(plan, name).solid.mesh.positions).size();
+        };
+        EXPECT_NEAR(sizeOf("housing").x, 210.0, 0.05);
+        EXPECT_NEAR(sizeOf("housing").y, 150.0, 0.05);
+        EXPECT_NEAR(sizeOf("housing").z + sizeOf("lid").z + sizeOf("sheet").z, 20.0, 0.01);
+        // The sheet is the rig's: as much area as its top has.
+        double top = 0.0;
+        const TriangleMesh& mesh = templateRig(name).restMesh();
+        for (const glm::uvec3& t : mesh.triangles) {
+            const glm::dvec3 a(mesh.positions[t.x]);
+            const glm::dvec3 n = glm::cross(glm::dvec3(mesh.positions[t.y]) - a, glm::dvec3(mesh.positions[t.z]) - a);
+            const bool high =
+                std::min({mesh.positions[t.x].y, mesh.positions[t.y].y, mesh.positions[t.z].y}) > 0.01999F;
+            if (high && n.y > 0.0) top += 0.5e6 * n.y;
+        }
+        // The continuous one is in one piece, and has a slot for each lever.
+        double slots = 0.0;
+        if (name == std::string("tablet")) {
+            ASSERT_EQ(plan.sheet.size(), 7U);
+            for (std::size_t k = 1; k < plan.sheet.size(); ++k) slots += std::abs(signedArea(plan.sheet[k]));
+            EXPECT_GT(slots, 6 * 5.0 * 10.0);
+            EXPECT_LT(slots, 6 * 6.0 * 40.0);
+        }
+        EXPECT_NEAR(signedVolume(partOf(plan, "sheet").solid.mesh), 2.0 * (top - slots), 2e-3 * top);
     }
-    EXPECT_NEAR(signedVolume(partOf(plan, "sheet").solid.mesh), 2.0 * top, 2e-3 * top);
 }
 
 // Case 22.8 x 12.2 x 22.7, tabs 32.2 x 2.5 whose underside is 15.9 above the bottom.

@@ -49,6 +49,11 @@ TEST(LeveredSheet, MirroredStrokesGiveTheMirrorImage) {
             EXPECT_NEAR(image.positions[k][axis], other.state.positions[k][axis], 1e-6);
 }
 
+TEST(LeveredSheet, NothingSinksBelowWhereItRests) {
+    const SheetPose pose = leveredSheet(smallSheet(), 0.008).followed(std::array{1.0, 0.0});
+    for (const glm::dvec3& p : pose.state.positions) EXPECT_GT(p.y, -2e-4);
+}
+
 TEST(LeveredSheet, AgreesWithAMeshTwiceAsFine) {
     const std::array strokes{1.0, 1.0};
     LeveredSheet coarse = leveredSheet(smallSheet(), 0.005);

@@ -2,7 +2,6 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
-#include <cstdlib>
 #include <map>
 #include <random>
 #include <set>
@@ -10,18 +9,21 @@
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
+#include "core/base/error.h"
 #include "core/geometry/mesh_check.h"
 #include "core/rig/servo_types.h"
 #include "core/rig/templates/bundled_rigs.h"
 #include "core/rig/templates/continuous_sheet.h"
 #include "core/rig/templates/sheet_file.h"
+#include "core/rig/templates/sheet_outline.h"
 #include "tests/support/cgal_oracle.h"
+#include "tests/support/long_tests.h"
 
 namespace lumorph {
 namespace {
 
 const Rig& tablet() {
-    static const Rig rig = bundledTablet();
+    static const Rig rig = bakedTablet();
     return rig;
 }
 
@@ -172,10 +174,9 @@ glm::dvec3 placeIn(const SheetMesh& mesh, const std::vector<glm::dvec3>& positio
     return {};
 }
 
-// Against equilibria on a mesh of half the edge length. LUMORPH_STATES asks for more: the soak has 200.
+// Against equilibria on a mesh of half the edge length.
 TEST(Tablet, UnseenStatesAreThoseOfAFinerSheet) {
-    const char* wanted = std::getenv("LUMORPH_STATES");
-    const int count = wanted != nullptr ? std::atoi(wanted) : 6;
+    const int count = test::longTests() ? 200 : 6;
     const ElasticSheet sheet = elasticSheetOf(tabletDrawing());
     LeveredSheet fine(sheet, meshSheet(sheet, 0.005));
     const std::vector<glm::vec3>& rest = tablet().restMesh().positions;
@@ -195,6 +196,75 @@ TEST(Tablet, UnseenStatesAreThoseOfAFinerSheet) {
                 100.0 * within, errors[errors.size() * 95 / 100], errors.back());
     EXPECT_GE(within, 0.95);
     EXPECT_LE(errors.back(), 5.0);
+}
+
+SheetDevice leaf() {
+    SheetDevice device;
+    device.name = "leaf";
+    device.top = SheetTop::continuous;
+    device.outline = rectangleOutline(0.2, 0.14);
+    device.bends.push_back({"tip", {0.04, -0.08}, {0.04, 0.08}});
+    return device;
+}
+
+TEST(ContinuousSheet, DrawingComesBack) {
+    SheetDevice device = leaf();
+    device.material = "sintered TPU";
+    device.pad = {{-0.09, -0.05}, {0.0, -0.05}, {0.0, 0.05}, {-0.09, 0.05}};
+    EXPECT_EQ(parseSheetDevice(writeSheetDevice(device), "leaf"), device);
+}
+
+// Without a drawn pad the sheet is clamped behind the bend line; one lever lifts what lies beyond.
+TEST(ContinuousSheet, IsClampedBehindItsLines) {
+    const Rig rig = sheetRig(leaf(), {}, SheetQuality::preview);
+    ASSERT_EQ(rig.actuatorCount(), 1U);
+    EXPECT_EQ(rig.actuators()[0].name, "tip");
+    const auto& rest = rig.restMesh().positions;
+    const auto up = deformed(rig, std::vector{1.0}).positions;
+    float highest = 0.0F;
+    for (std::size_t v = 0; v < rest.size(); ++v) {
+        if (rest[v].x < 0.036F && rest[v].x > -0.09F && std::abs(rest[v].z) < 0.066F) EXPECT_EQ(up[v], rest[v]);
+        highest = std::max(highest, up[v].y - rest[v].y);
+    }
+    EXPECT_GT(highest, 0.03F);
+    EXPECT_LT(highest, 0.05F);
+}
+
+// Twice as thick needs about eight times the torque, as the bending of a thin plate does; nothing is painted by hand.
+TEST(ContinuousSheet, ThicknessChangesTorqueAsThatOfAPlate) {
+    const auto torque = [](double thickness) {
+        SheetDevice device = leaf();
+        device.thickness = thickness;
+        const Rig rig = sheetRig(device, {}, SheetQuality::preview);
+        return std::get<SheetLift>(rig.actuators()[0].deformer).torque;
+    };
+    const double ratio = torque(0.001) / torque(0.0005);
+    EXPECT_NEAR(ratio, 8.0, 0.8);
+}
+
+TEST(ContinuousSheet, WrongOnesAreRefusedByName) {
+    const auto refused = [](auto change, const char* subject, const char* why) {
+        SheetDevice device = leaf();
+        change(device);
+        try {
+            (void)sheetRig(device, {}, SheetQuality::preview);
+            ADD_FAILURE() << why;
+        } catch (const InvalidInput& error) {
+            EXPECT_NE(error.subject().find(subject), std::string::npos) << error.what();
+            EXPECT_NE(std::string(error.what()).find(why), std::string::npos) << error.what();
+        }
+    };
+    refused([](auto& d) { d.material = "granite"; }, "granite", "no such material");
+    refused([](auto& d) { d.material = "Mylar"; }, "tip", "no servo of the table");
+    refused([](auto& d) { d.pad = rectangleOutline(0.2, 0.14); }, "pad", "reaches the sheet's rim");
+    refused([](auto& d) { d.pad = rectangleOutline(0.19, 0.13); }, "tip", "touches the clamped pad");
+    refused(
+        [](auto& d) {
+            for (int k = 0; k < 9; ++k)
+                d.bends.push_back({"line " + std::to_string(k), {-0.01 * k, -0.08}, {-0.01 * k, 0.08}});
+        },
+        "", "");
+    refused([](auto& d) { d.bends[0].from.x = d.bends[0].to.x = 0.092; }, "tip", "no room for a lever's slot");
 }
 
 } // namespace

@@ -103,7 +103,8 @@ TEST(CutTablet, ReachIsTightToOnePercent) {
         for (std::size_t v = 0; v < seen.size(); ++v) seen[v].include(positions[v]);
     }
     for (std::uint32_t v = 0; v < seen.size(); ++v) {
-        const glm::vec3 slack = glm::max(seen[v].min - theCutOne().reachOf(v).min, theCutOne().reachOf(v).max - seen[v].max);
+        const glm::vec3 slack =
+            glm::max(seen[v].min - theCutOne().reachOf(v).min, theCutOne().reachOf(v).max - seen[v].max);
         const glm::vec3 size = seen[v].size();
         const float largest = std::max({size.x, size.y, size.z});
         for (int axis = 0; axis < 3; ++axis) EXPECT_LE(slack[axis], 0.01F * largest + 1e-6F) << v;
@@ -204,7 +205,8 @@ TEST(CutTablet, BendsKeepLengthAndThicknessAndReachNinetyDegrees) {
         for (const glm::uvec3& t : theCutOne().restMesh().triangles) {
             bool beyond = true;
             for (int k = 0; k < 3; ++k)
-                beyond = beyond && rest[t[k]].y > 0.0199F && std::ranges::binary_search(theCutOne().verticesOf(a), t[k]) &&
+                beyond = beyond && rest[t[k]].y > 0.0199F &&
+                         std::ranges::binary_search(theCutOne().verticesOf(a), t[k]) &&
                          distanceOf(rest[t[k]]) > bend.length - 1e-6;
             if (!beyond) continue;
             ++straight;

@@ -44,14 +44,29 @@ TEST(RigTemplates, AreSoundAndOpenAgain) {
 }
 
 TEST(RigTemplates, ParametersAreCentimetresOrWithAUnit) {
-    EXPECT_NEAR(sizeOf(rigWith("tablet", {"width=30"})).x, 0.3, 1e-6);
-    EXPECT_NEAR(sizeOf(rigWith("tablet", {"width=300mm", "depth=0.2m"})).z, 0.2, 1e-6);
+    EXPECT_NEAR(sizeOf(rigWith("tablet", {"top=cut", "width=30"})).x, 0.3, 1e-6);
+    EXPECT_NEAR(sizeOf(rigWith("tablet", {"width=300mm", "top=cut", "depth=0.2m"})).z, 0.2, 1e-6);
     EXPECT_NEAR(sizeOf(rigWith("cushion", {"height=7cm"})).y, 0.07, 1e-6);
-    EXPECT_NEAR(rigWith("tablet", {"reach=8cm"}).reach().max.y, 0.08, 1e-4);
+    EXPECT_NEAR(rigWith("tablet", {"top=cut", "reach=8cm"}).reach().max.y, 0.08, 1e-4);
     EXPECT_EQ(rigWith("flower", {"petals=4"}).actuatorCount(), 4U);
     EXPECT_EQ(rigWith("pins", {"columns=7", "rows=3"}).actuatorCount(), 21U);
     EXPECT_NEAR(rigWith("pins", {"columns=2", "rows=2", "stroke=3"}).reach().max.y, 0.08, 1e-6);
     EXPECT_NEAR(std::get<Bend>(rigWith("book", {"angle=60deg"}).actuators()[0].deformer).max.inDegrees(), 60.0, 1e-9);
+}
+
+TEST(RigTemplates, SheetsHaveTheChoiceOfAContinuousTop) {
+    for (const char* name : {"phone", "flower", "book"}) {
+        const RigTemplate& kind = rigTemplate(name);
+        const Rig cut = rigOf(kind, {});
+        const Rig whole = rigOf(kind, std::vector{parseChoice(kind, "top=continuous")}, {}, SheetQuality::preview);
+        ASSERT_EQ(whole.actuatorCount(), cut.actuatorCount()) << name;
+        for (std::size_t a = 0; a < cut.actuatorCount(); ++a) {
+            EXPECT_EQ(whole.actuators()[a].name, cut.actuators()[a].name);
+            EXPECT_TRUE(std::holds_alternative<SheetLift>(whole.actuators()[a].deformer)) << name;
+        }
+        EXPECT_GT(whole.reach().max.y, 1.2F * sizeOf(cut).y) << name;
+        EXPECT_NEAR(sizeOf(whole).x, sizeOf(cut).x, 0.01) << name;
+    }
 }
 
 TEST(RigTemplates, BookHasALeafOnEachSide) {
@@ -76,11 +91,14 @@ TEST(RigTemplates, ErrorsNameTheParameter) {
              Wrong{"tablet", "width=inf", "tablet: width: it is no finite number"},
              Wrong{"tablet", "width=-3", "tablet: width: -3 cannot be"},
              Wrong{"tablet", "girth=3", "'girth': there is no such parameter"},
-             Wrong{"tablet", "reach=2cm", "tablet: reach: the flaps of the long edges would vanish"},
-             Wrong{"tablet", "reach=20cm", "would meet in the middle"},
-             Wrong{"tablet", "cornerX=1", "the corners would vanish"},
-             Wrong{"tablet", "cornerZ=9", "the corners of one side would meet"},
-             Wrong{"tablet", "cornerX=10", "nothing would be left"},
+             Wrong{"cut tablet", "reach=2cm", "tablet: reach: the flaps of the long edges would vanish"},
+             Wrong{"cut tablet", "reach=20cm", "would meet in the middle"},
+             Wrong{"cut tablet", "cornerX=1", "the corners would vanish"},
+             Wrong{"cut tablet", "cornerZ=9", "the corners of one side would meet"},
+             Wrong{"cut tablet", "cornerX=10", "nothing would be left"},
+             Wrong{"tablet", "top=round", "tablet: top: 'round' is none of its choices; choose cut or continuous"},
+             Wrong{"tablet", "reach=8cm", "tablet: reach: a top that is not so has no such measure"},
+             Wrong{"cut tablet", "thickness=0.1", "choose top=continuous"},
              Wrong{"phone", "corner=1", "phone: corner: the corners would vanish"},
              Wrong{"phone", "corner=5", "phone: corner: nothing would be left"},
              Wrong{"pins", "pin=0.5", "pins: pitch: the pins would touch"},
@@ -93,7 +111,10 @@ TEST(RigTemplates, ErrorsNameTheParameter) {
              Wrong{"sheet", "thickness=0", "sheet: thickness: 0 cannot be"},
          }) {
         try {
-            (void)rigWith(wrong.kind, {wrong.text});
+            if (wrong.kind == std::string("cut tablet"))
+                (void)rigWith("tablet", {"top=cut", wrong.text});
+            else
+                (void)rigWith(wrong.kind, {wrong.text});
             ADD_FAILURE() << wrong.kind << ' ' << wrong.text;
         } catch (const InvalidInput& error) {
             EXPECT_NE(std::string(error.what()).find(wrong.says), std::string::npos) << error.what();
@@ -110,7 +131,7 @@ TEST(RigTemplates, EveryParameterAtItsEndsIsARigOrNamed) {
             for (const double value : {parameter.min, parameter.max}) {
                 const std::vector<TemplateChoice> choices{{std::string(parameter.name), value}};
                 try {
-                    const Rig rig = rigOf(kind, choices);
+                    const Rig rig = rigOf(kind, choices, {}, SheetQuality::preview);
                     EXPECT_TRUE(checkMesh(rig.restMesh()).solid())
                         << kind.name << ' ' << parameter.name << ' ' << value;
                 } catch (const InvalidInput& error) {

@@ -9,8 +9,8 @@
 
 #include "core/base/error.h"
 #include "core/geometry/mesh_check.h"
-#include "core/rig/rig_file.h"
 #include "core/geometry/plane_mesh.h"
+#include "core/rig/rig_file.h"
 #include "core/rig/templates/sheet_file.h"
 #include "core/rig/templates/sheet_outline.h"
 #include "core/rig/templates/sheet_plan.h"
