@@ -10,6 +10,7 @@
 #include "core/base/error.h"
 #include "core/base/text.h"
 #include "core/rig/shape_report.h"
+#include "core/rig/templates/sheet_file.h"
 #include "core/rig/templates/sheet_outline.h"
 
 namespace lumorph {
@@ -99,6 +100,12 @@ BendLine lineOfBend(const Rig& rig, std::size_t index, const Bend& bend) {
 
 SheetDevice sheetDeviceOf(const Rig& rig) {
     SheetDevice device;
+    if (rig.parts().sheet && !rig.parts().drawing.empty()) { // its lines, as those of a cut top
+        device = parseSheetDevice(rig.parts().drawing, rig.name());
+        device.top = SheetTop::cut;
+        device.pad.clear();
+        return device;
+    }
     device.name = rig.name();
     const LevelTop top = topOf(rig.restMesh());
     device.outline = convexHull(top.points);

@@ -25,6 +25,7 @@
 #include "app/workspaces/workspaces.h"
 #include "core/base/atomic_file.h"
 #include "core/geometry/model.h"
+#include "tests/support/cut_tablet.h"
 #include "tests/support/animated_target.h"
 #include "tests/ui/project_world.h"
 #include "tests/ui/stall_watch.h"
@@ -161,6 +162,9 @@ TEST_F(WindowRate, ThirtyMatchesASecondAreSeenWhileALargeTargetMoves) {
 TEST_F(WindowRate, TheRigIsEditedWithoutHoldingUpTheWindow) {
     ASSERT_TRUE(openTarget());
     StudioDocument& document = studio_.document;
+    const auto flaps = std::make_shared<const Rig>(test::cutTablet());
+    studio_.project.takeRig(flaps, "flaps");
+    ASSERT_TRUE(test::eventually([&] { return document.state().rig.rig == flaps; }));
     window_.showWorkspace("rig");
     auto* list = window_.findChild<QListWidget*>("rig.list");
     auto* view = window_.findChild<ViewportWidget*>("rig.viewport");

@@ -15,6 +15,7 @@
 #include "core/rig/actuator_weights.h"
 #include "core/rig/rig_file.h"
 #include "core/rig/templates/bundled_rigs.h"
+#include "tests/support/cut_tablet.h"
 #include "tests/support/long_tests.h"
 #include "tests/ui/stall_watch.h"
 #include "tests/ui/view_pictures.h"
@@ -53,7 +54,10 @@ class RigHandles : public testing::Test {
 protected:
     RigHandles() { view = window.find<ViewportWidget>("rig.viewport"); }
 
-    /// Another rig than the demo's tablet.
+    /// Its flaps have handles; the demo's levers have none.
+    void SetUp() override { take(test::cutTablet()); }
+
+    /// Another rig than the cut tablet.
     void take(Rig rig) {
         const auto taken = std::make_shared<const Rig>(std::move(rig));
         window.studio().project.takeRig(taken, "a device");
