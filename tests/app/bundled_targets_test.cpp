@@ -110,8 +110,8 @@ TEST(BundledTargets, TheTabletFollowsTheBloom) {
     const TemporaryFolder folder;
     const std::string field = (folder / "tablet.mdf").string();
     ASSERT_EQ(lumorph({"mdf", "build", resource("models/tablet.glb"), "-o", field}).exitCode, 0);
-    const Outcome outcome = lumorph({"match", field, resource("targets/bloom.glb"), "--animation", "first",
-                                     "--method", "refined", "--budget-ms", "1000", "--fps", "10", "--csv", "-"});
+    const Outcome outcome = lumorph({"match", field, resource("targets/bloom.glb"), "--animation", "first", "--method",
+                                     "refined", "--budget-ms", "1000", "--fps", "10", "--csv", "-"});
     ASSERT_EQ(outcome.exitCode, 0) << outcome.err;
     std::istringstream table(outcome.out);
     std::string line;

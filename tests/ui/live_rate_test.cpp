@@ -25,8 +25,8 @@
 #include "app/workspaces/workspaces.h"
 #include "core/base/atomic_file.h"
 #include "core/geometry/model.h"
-#include "tests/support/cut_tablet.h"
 #include "tests/support/animated_target.h"
+#include "tests/support/cut_tablet.h"
 #include "tests/ui/project_world.h"
 #include "tests/ui/stall_watch.h"
 

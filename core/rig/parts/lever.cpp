@@ -17,6 +17,7 @@ constexpr double kArmTop = 0.3;     ///< of the arm above the line from shaft to
 constexpr double kArmBelow = 2.7;   ///< of the arm below it, near the shaft
 constexpr double kClear = 0.2;      ///< from arm to arc
 constexpr double kBeyond = 1.0;     ///< of straight flap that the nose reaches at least at the end
+constexpr double kInsideSlot = 2.5; ///< from the line that the nose holds at rest to the nose, so that the lid has room
 constexpr double kLeastLift = 20.0; ///< degrees
 constexpr double kMostLean = 25.0;  ///< degrees between flap and arm at the end
 
@@ -97,7 +98,7 @@ std::optional<Lever> captiveLever(const SheetFlap::Captive& captive, double belo
     lever.rest = Angle::radians(std::asin(rise / captive.arm));
     lever.end = Angle::radians(std::asin((rise + captive.lift) / captive.arm));
     lever.lifted = lever.end;
-    lever.pivot = -captive.arm * std::cos(lever.rest.inRadians());
+    lever.pivot = -captive.arm * std::cos(lever.rest.inRadians()) - kInsideSlot;
     return lever;
 }
 

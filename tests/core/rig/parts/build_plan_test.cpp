@@ -252,8 +252,8 @@ TEST(BuildPlan, GivesEachKindItsParts) {
 TEST(BuildPlan, TabletKeepsItsMeasures) {
     for (const char* name : {"tablet", "cut_tablet"}) {
         const BuildPlan& plan = templatePlan(name);
-        const auto sizeOf = [&](const char* name) {
-            return boundingBox(partOf(plan, name).solid.mesh.positions).size();
+        const auto sizeOf = [&](const char* part) {
+            return boundingBox(partOf(plan, part).solid.mesh.positions).size();
         };
         EXPECT_NEAR(sizeOf("housing").x, 210.0, 0.05);
         EXPECT_NEAR(sizeOf("housing").y, 150.0, 0.05);
@@ -353,7 +353,7 @@ double distanceTo(const std::vector<glm::dvec2>& line, const glm::dvec2& p) {
 }
 
 TEST(Levers, TouchTheFlapAtRestAndAtTheEndAndNothingBetween) {
-    for (const char* name : {"tablet", "flower", "book"}) {
+    for (const char* name : {"cut_tablet", "flower", "book"}) {
         const Rig& rig = templateRig(name);
         const BuildPlan& plan = templatePlan(name);
         for (std::size_t k = 0; k < plan.wiring.size(); ++k) {

@@ -167,7 +167,7 @@ glm::dvec3 placeIn(const SheetMesh& mesh, const std::vector<glm::dvec3>& positio
         const double det = b.x * c.y - b.y * c.x;
         const double u = (q.x * c.y - q.y * c.x) / det;
         const double v = (b.x * q.y - b.y * q.x) / det;
-        if (u >= -1e-6 && v >= -1e-6 && u + v <= 1.0 + 2e-6)
+        if (u >= -1e-4 && v >= -1e-4 && u + v <= 1.0 + 1e-4) // the rig has floats
             return (1.0 - u - v) * positions[t.x] + u * positions[t.y] + v * positions[t.z];
     }
     ADD_FAILURE() << p.x << ' ' << p.y << " is in no triangle";
@@ -223,7 +223,8 @@ TEST(ContinuousSheet, IsClampedBehindItsLines) {
     const auto up = deformed(rig, std::vector{1.0}).positions;
     float highest = 0.0F;
     for (std::size_t v = 0; v < rest.size(); ++v) {
-        if (rest[v].x < 0.036F && rest[v].x > -0.09F && std::abs(rest[v].z) < 0.066F) EXPECT_EQ(up[v], rest[v]);
+        const bool clamped = rest[v].x < 0.036F && rest[v].x > -0.09F && std::abs(rest[v].z) < 0.066F;
+        EXPECT_TRUE(up[v] == rest[v] || !clamped);
         highest = std::max(highest, up[v].y - rest[v].y);
     }
     EXPECT_GT(highest, 0.03F);
