@@ -8,12 +8,12 @@
 
 #include "app/studio/widgets/dock_parts.h"
 #include "app/studio/widgets/panel.h"
+#include "app/studio/widgets/segments.h"
 #include "app/workspaces/calibrate/calibrate_commands.h"
 #include "app/workspaces/calibrate/calibrate_docks.h"
 #include "app/workspaces/calibrate/capture_picture.h"
 #include "app/workspaces/calibrate/error_map_view.h"
 #include "app/workspaces/common/step_card.h"
-#include "app/studio/widgets/segments.h"
 
 namespace lumorph::studio {
 namespace {

@@ -10,10 +10,10 @@
 
 #include "app/studio/calibration/table_bench.h"
 #include "app/studio/output/pattern_screen.h"
+#include "app/studio/widgets/segments.h"
 #include "app/workspaces/calibrate/calibrate_commands.h"
 #include "app/workspaces/calibrate/calibrate_docks.h"
 #include "app/workspaces/calibrate/chain_docks.h"
-#include "app/studio/widgets/segments.h"
 #include "calibration/verify/verify_lab.h"
 #include "core/base/error.h"
 

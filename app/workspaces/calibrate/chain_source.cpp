@@ -7,10 +7,10 @@
 #include "app/studio/calibration/chain_service.h"
 #include "app/studio/calibration/table_bench.h"
 #include "app/studio/widgets/panel.h"
+#include "app/studio/widgets/segments.h"
 #include "app/workspaces/calibrate/calibrate_commands.h"
 #include "app/workspaces/calibrate/chain_docks.h"
 #include "app/workspaces/calibrate/touch_picture.h"
-#include "app/studio/widgets/segments.h"
 
 namespace lumorph::studio {
 namespace {

@@ -11,10 +11,10 @@
 
 #include "app/studio/widgets/dock_parts.h"
 #include "app/studio/widgets/panel.h"
+#include "app/studio/widgets/segments.h"
 #include "app/workspaces/calibrate/calibrate_docks.h"
 #include "app/workspaces/calibrate/finding_card.h"
 #include "app/workspaces/calibrate/residual_plots.h"
-#include "app/studio/widgets/segments.h"
 
 namespace lumorph::studio {
 namespace {

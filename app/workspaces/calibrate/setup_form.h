@@ -6,10 +6,10 @@
 #include <QPushButton>
 #include <QWidget>
 
+#include "app/studio/widgets/segments.h"
 #include "app/studio/widgets/value_field.h"
 #include "app/workspaces/calibrate/board_drawing.h"
 #include "app/workspaces/calibrate/calibrate_docks.h"
-#include "app/studio/widgets/segments.h"
 
 class QVBoxLayout;
 

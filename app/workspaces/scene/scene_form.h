@@ -13,9 +13,9 @@
 
 #include "app/studio/document/scene_edit.h"
 #include "app/studio/widgets/quantity.h"
+#include "app/studio/widgets/segments.h"
 #include "app/workspaces/scene/collapsible_section.h"
 #include "app/workspaces/scene/scene_part.h"
-#include "app/studio/widgets/segments.h"
 
 namespace lumorph::studio {
 
