@@ -7,13 +7,10 @@
 
 #include "app/studio/document/rig_edit.h"
 #include "app/studio/widgets/plot.h"
-#include "app/workspaces/rig/rig_facts.h"
 #include "app/workspaces/rig/target_tiles.h"
 #include "core/base/resources.h"
 #include "core/mdf/target_library.h"
-#include "core/rig/templates/bundled_rigs.h"
 #include "core/rig/templates/rig_templates.h"
-#include "tests/support/cut_tablet.h"
 #include "tests/support/small_rigs.h"
 #include "tests/ui/studio_window.h"
 
@@ -89,8 +86,7 @@ struct RigFit : testing::Test {
 };
 
 TEST_F(RigFit, FollowsTheRigAndShowsEachShape) {
-    // The cut tablet: an edit makes what is shown stale, then new; flaps that hardly rise fit worse.
-    takeRig(std::make_shared<const Rig>(test::cutTablet()));
+    // The tablet: an edit makes what is shown stale, then new; a sheet that hardly rises fits worse.
     ASSERT_TRUE(isNew());
     EXPECT_EQ(tiles().size(), readTargetLibrary(resourcesFolder() / "targets").size());
     const QString verdict = window.text("rig.fit.verdict");
@@ -101,8 +97,7 @@ TEST_F(RigFit, FollowsTheRigAndShowsEachShape) {
     QElapsedTimer since;
     since.start();
     editRig(window.studio().document, "Lower all", [](RigParts& parts) {
-        for (Actuator& actuator : parts.actuators)
-            setRange(actuator, rangeOf(actuator).min, 0.1 * rangeOf(actuator).max);
+        for (glm::vec3& mode : parts.sheet->modes.modes) mode *= 0.1F;
     });
     EXPECT_EQ(said(), kStale);
     ASSERT_TRUE(eventually([&] { return said() != kStale; }));
@@ -132,13 +127,11 @@ TEST_F(RigFit, FollowsTheRigAndShowsEachShape) {
     EXPECT_EQ(window.findNow<QLabel>("rig.fit.tried"), nullptr);
 
     // Another device below each of this one's figures.
-    takeRig(std::make_shared<const Rig>(bakedTablet()));
-    ASSERT_TRUE(isNew());
     const QString area = window.text("rig.metric.area.physical");
     auto* reference = window.find<QComboBox>("rig.fit.reference");
     reference->setCurrentIndex(reference->findText("tablet"));
     ASSERT_NE(window.find<QLabel>("rig.metric.area.compared.physical"), nullptr);
-    EXPECT_EQ(window.text("rig.metric.area.compared.physical"), area) << "it is that tablet";
+    EXPECT_EQ(window.text("rig.metric.area.compared.physical"), area) << "the demo's device is that tablet";
     window.screenshot("rig_fit_compared");
     reference->setCurrentIndex(0);
 

@@ -555,7 +555,10 @@ TEST_P(RigWalk, EachUndoGivesBackEveryByteAndTheLoopGetsNothingBroken) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Rigs, RigWalk,
-                         testing::Values(Kind{"Tablet", [] { return templateRig("tablet"); }},
+                         testing::Values(Kind{"Tablet",
+                                              [] {
+                                                  return templateRig("tablet", {{"top", 0.0}});
+                                              }},
                                          Kind{"Phone", [] { return templateRig("phone"); }},
                                          Kind{"Pins",
                                               [] {

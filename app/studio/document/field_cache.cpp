@@ -9,6 +9,7 @@
 #include "core/base/atomic_file.h"
 #include "core/base/error.h"
 #include "core/base/file.h"
+#include "core/base/resources.h"
 #include "core/geometry/mesh_file.h"
 #include "core/mdf/field_file.h"
 #include "core/rig/rig_file.h"
@@ -35,16 +36,31 @@ void dropOldest(const fs::path& folder) {
     for (std::size_t i = kMostFields; i < files.size(); ++i) fs::remove(files[i].second);
 }
 
+std::shared_ptr<const MatchField> read(const fs::path& file, const std::vector<std::byte>& rigGlb) {
+    auto field = std::make_shared<const MatchField>(parseField(readFile(file, kMaxFileBytes), file.string()));
+    return field->field.rigGlb == rigGlb ? field : nullptr;
+}
+
+/// The field that comes with the tablet: nobody waits for it at a first start.
+std::shared_ptr<const MatchField> bundledField(const Rig& rig, const std::vector<std::byte>& rigGlb) {
+    if (!rig.parts().sheet) return nullptr;
+    try {
+        return read(resourceFile("models/tablet.mdf"), rigGlb);
+    } catch (const Error&) {
+        return nullptr;
+    }
+}
+
 } // namespace
 
 std::shared_ptr<const MatchField> FieldCache::find(const Rig& rig) const {
     const std::vector<std::byte> glb = writeRigGlb(rig);
     const fs::path file = fileOf(folder_, glb);
     std::error_code ignored;
-    if (!fs::exists(file, ignored)) return nullptr;
+    if (!fs::exists(file, ignored)) return bundledField(rig, glb);
     try {
-        auto field = std::make_shared<const MatchField>(parseField(readFile(file, kMaxFileBytes), file.string()));
-        if (field->field.rigGlb != glb) return nullptr;
+        auto field = read(file, glb);
+        if (!field) return nullptr;
         fs::last_write_time(file, fs::file_time_type::clock::now(), ignored);
         return field;
     } catch (const Error&) {

@@ -13,7 +13,7 @@ class FieldCache {
 public:
     explicit FieldCache(std::filesystem::path folder) : folder_(std::move(folder)) {}
 
-    /// Empty when there is none, or it cannot be read.
+    /// Also the one that is bundled with the tablet. Empty when there is none, or it cannot be read.
     [[nodiscard]] std::shared_ptr<const MatchField> find(const Rig& rig) const;
     void keep(const Field& field) const;
 
