@@ -48,8 +48,8 @@ TEST(DeviceCommands, MoveLeadsOneServoToItsLevel) {
     const Outcome outcome =
         lumorph({"device", "move", "sim://tablet", "--actuator", "1", "--level", "16", "--may-jump", "--json"});
     ASSERT_EQ(outcome.exitCode, 0) << outcome.err;
-    EXPECT_NEAR((*servoOf(outcome.json(), 1))["microseconds"].get<double>(), 1500.0, 1.0);
-    EXPECT_EQ((*servoOf(outcome.json(), 0))["microseconds"], 1000.0);
+    EXPECT_NEAR((*servoOf(outcome.json(), 1))["microseconds"].get<double>(), 1450.0, 1.0); // the middle of its travel
+    EXPECT_EQ((*servoOf(outcome.json(), 0))["microseconds"], 1138.0);
     // This arm reads where its servos stand, so nobody has to be asked.
     const Outcome arm = lumorph({"device", "move", "sim://xarm", "--actuator", "2", "--level", "8", "--json"});
     ASSERT_EQ(arm.exitCode, 0) << arm.err;

@@ -531,16 +531,21 @@ TEST_F(InfluenceInView, IsSetByDistanceFromAPlaceAndFromTheLine) {
     QTest::mouseClick(view, Qt::LeftButton, {}, at.toPoint());
     ASSERT_TRUE(eventually([&] { return steps() == step + 1; }, std::chrono::seconds(30)));
     const auto now = weights();
-    float farthest = 0.0F;
+    float farthest = 0.0F, nearest = 1.0F;
     for (std::size_t v = 0; v < now.size(); ++v) {
         const float straight = glm::distance(parts().restMesh.positions[v], *place);
+        if (now[v] > 0.0F) nearest = std::min(nearest, straight);
         if (now[v] > 0.0F) farthest = std::max(farthest, straight);
         if (straight > 0.031F) {
             EXPECT_EQ(now[v], 0.0F) << "no way along the surface is shorter than the straight one";
         }
     }
     EXPECT_GT(farthest, 0.015F);
-    EXPECT_EQ(std::ranges::max(now), 1.0F);
+    // In full within 1 cm; the mesh may have no vertex so near.
+    if (nearest < 0.0095F) {
+        EXPECT_EQ(std::ranges::max(now), 1.0F);
+    }
+    EXPECT_GT(std::ranges::max(now), 0.0F);
     ASSERT_TRUE(eventually([&] { return window.state().rig.compiled && view->settled(); }));
     window.screenshot("rig_influence_distance");
     expectOneStep(before, step);

@@ -67,7 +67,7 @@ void expectSound(const Rig& rig) {
 TEST_F(Suggest, FrontGrowsUntilStoppedAndADotBecomesTheRigByOneStep) {
     test::setPlaying(window.studio(), true);
     const std::vector<std::byte> before = writeRigGlb(*window.state().rig.rig);
-    tickOnly({"Dome", "Ridge"});
+    tickOnly({"Bowl", "Ridge"});
     window.enter("rig.suggest.most", "4");
     test::StallWatch stalls;
     (void)stalls.takeLongest();
@@ -115,7 +115,7 @@ TEST_F(Suggest, FrontGrowsUntilStoppedAndADotBecomesTheRigByOneStep) {
 }
 
 TEST_F(Suggest, AnotherRigEndsTheSearchAndOneThatIsNoSheetIsToldSo) {
-    tickOnly({"Dome"});
+    tickOnly({"Bowl"});
     window.click("rig.suggest.search");
     window.studio().project.openRig(std::filesystem::path(LUMORPH_SOURCE_DIR) / "resources/models/pin_display.glb");
     ASSERT_TRUE(eventually([&] { return window.findNow<QWidget>("rig.suggest.noSheet") != nullptr; }));

@@ -118,6 +118,7 @@ std::vector<glm::dvec2> checkedOutline(const std::vector<glm::dvec2>& outline, c
 }
 
 std::vector<glm::dvec2> convexHull(std::vector<glm::dvec2> points) {
+    if (points.size() < 3) return points;
     const auto turnBetween = [](const glm::dvec2& in, const glm::dvec2& out) { return in.x * out.y - in.y * out.x; };
     std::ranges::sort(points, [](const auto& a, const auto& b) { return a.x < b.x || (a.x == b.x && a.y < b.y); });
     std::vector<glm::dvec2> hull;
