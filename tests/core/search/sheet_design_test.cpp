@@ -40,6 +40,13 @@ TEST(SheetDesign, IsReadFromTheTablet) {
     EXPECT_LT(sheet.bends[4].to.x, sheet.bends[4].from.x);
 }
 
+TEST(SheetDesign, OfAContinuousTopHasItsLinesCut) {
+    const SheetDevice sheet = sheetDeviceOf(bakedTablet());
+    EXPECT_EQ(sheet.top, SheetTop::cut);
+    EXPECT_EQ(sheet.bends.size(), 6U);
+    EXPECT_EQ(sheet.outline.size(), 4U);
+}
+
 TEST(SheetDesign, OfABlankSheetHasItsOutline) {
     const SheetDevice sheet = sheetDeviceOf(rigOf(rigTemplate("sheet"), {}));
     ASSERT_EQ(sheet.outline.size(), 4U);
@@ -54,6 +61,11 @@ TEST(SheetDesign, RefusesWhatIsNoSheet) {
     EXPECT_THROW((void)sheetDeviceOf(pinDisplayRig()), InvalidInput);
     EXPECT_THROW((void)sheetDeviceOf(cushionRig()), InvalidInput);
     EXPECT_THROW((void)sheetDeviceOf(rigOf(rigTemplate("flower"), {})), InvalidInput);
+    RigParts peak; // nothing of it is level
+    peak.name = "peak";
+    peak.restMesh.positions = {{0, 0, 0}, {0.1F, 0, 0}, {0, 0, 0.1F}, {0.03F, 0.1F, 0.03F}};
+    peak.restMesh.triangles = {{0, 1, 2}, {0, 3, 1}, {1, 3, 2}, {2, 3, 0}};
+    EXPECT_THROW((void)sheetDeviceOf(Rig(std::move(peak))), InvalidInput);
     EXPECT_THROW(SheetDesigns(page(), 0), InvalidInput);
     EXPECT_THROW(SheetDesigns(page(), 65), InvalidInput);
 }
