@@ -122,13 +122,13 @@ TEST(BundledTargets, TheTabletFollowsTheBloom) {
         if (frames < 0) continue;
         double seconds = 0.0, w1 = 0.0, r1 = 0.0;
         ASSERT_EQ(std::sscanf(line.c_str(), "%lf,%lf,%lf", &seconds, &w1, &r1), 3) << line;
-        EXPECT_GE(w1, 0.65) << "at " << seconds << " s";
+        EXPECT_GE(w1, 0.7) << "at " << seconds << " s";
         wanted += w1;
         reached += r1;
     }
     ASSERT_EQ(frames, 61);
-    EXPECT_GE(wanted / frames, 0.67);
-    EXPECT_GE(reached / frames, 0.55);
+    EXPECT_GE(wanted / frames, 0.75);
+    EXPECT_GE(reached / frames, 0.65);
 }
 
 } // namespace

@@ -521,7 +521,7 @@ TEST_F(InfluenceInView, AStrokeIsOneStepAndEscTakesItBack) {
 TEST_F(InfluenceInView, IsSetByDistanceFromAPlaceAndFromTheLine) {
     choose(4);
     edit("distance");
-    window.enter("rig.influence.full", "1 cm");
+    window.enter("rig.influence.full", "2 cm"); // farther than from any place to a vertex of the flap
     window.enter("rig.influence.range", "2 cm");
     const auto before = bytes();
     const int step = steps();
@@ -531,21 +531,16 @@ TEST_F(InfluenceInView, IsSetByDistanceFromAPlaceAndFromTheLine) {
     QTest::mouseClick(view, Qt::LeftButton, {}, at.toPoint());
     ASSERT_TRUE(eventually([&] { return steps() == step + 1; }, std::chrono::seconds(30)));
     const auto now = weights();
-    float farthest = 0.0F, nearest = 1.0F;
+    float farthest = 0.0F;
     for (std::size_t v = 0; v < now.size(); ++v) {
         const float straight = glm::distance(parts().restMesh.positions[v], *place);
-        if (now[v] > 0.0F) nearest = std::min(nearest, straight);
         if (now[v] > 0.0F) farthest = std::max(farthest, straight);
-        if (straight > 0.031F) {
+        if (straight > 0.041F) {
             EXPECT_EQ(now[v], 0.0F) << "no way along the surface is shorter than the straight one";
         }
     }
-    EXPECT_GT(farthest, 0.015F);
-    // In full within 1 cm; the mesh may have no vertex so near.
-    if (nearest < 0.0095F) {
-        EXPECT_EQ(std::ranges::max(now), 1.0F);
-    }
-    EXPECT_GT(std::ranges::max(now), 0.0F);
+    EXPECT_GT(farthest, 0.025F);
+    EXPECT_EQ(std::ranges::max(now), 1.0F);
     ASSERT_TRUE(eventually([&] { return window.state().rig.compiled && view->settled(); }));
     window.screenshot("rig_influence_distance");
     expectOneStep(before, step);
