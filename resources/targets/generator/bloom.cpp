@@ -11,11 +11,11 @@ namespace lumorph {
 
 namespace {
 
-constexpr float kWidth = 0.21F; ///< the tablet's sides, metres
-constexpr float kDepth = 0.15F;
+constexpr float kWidth = 0.202F; ///< a little inside the tablet, whose sheet draws inwards as it rises; metres
+constexpr float kDepth = 0.142F;
 constexpr double kSeconds = 6.0;
 constexpr int kHarmonics = 3; ///< of the loop; what lies above them is too quick to be seen
-constexpr double kCalm = 0.0005;
+constexpr double kCalm = 0.0002;
 
 /// When the wave lifts each of the tablet's levers most, as a share of the loop: corners and long edges in the order in
 /// which it passes them.
@@ -24,7 +24,7 @@ constexpr std::array<double, 6> kTurns{0.0 / 6.0, 2.0 / 6.0, 5.0 / 6.0, 3.0 / 6.
 double bloomAt(double x, double z, double turn) {
     std::array<double, 6> lifts{};
     for (std::size_t k = 0; k < lifts.size(); ++k)
-        lifts[k] = 0.08 + 0.92 * std::pow(0.5 + 0.5 * std::cos(2.0 * std::numbers::pi * (turn - kTurns[k])), 1.2);
+        lifts[k] = 0.02 + 0.98 * std::pow(0.5 + 0.5 * std::cos(2.0 * std::numbers::pi * (turn - kTurns[k])), 2.0);
     return kCalm + liftedHeight(lifts, x, z);
 }
 

@@ -6,11 +6,11 @@
 namespace lumorph {
 namespace {
 
-constexpr double kHalfWidth = 0.105, kHalfDepth = 0.075, kLift = 0.040; // metres
+constexpr double kHalfWidth = 0.105, kHalfDepth = 0.075, kLift = 0.036; // metres
 
 /// The value where it is positive and 0 elsewhere, without a corner between.
 double softly(double value) {
-    constexpr double kWidth = 0.06;
+    constexpr double kWidth = 0.03;
     return kWidth * std::log1p(std::exp(value / kWidth));
 }
 
@@ -24,11 +24,7 @@ double liftedPart(double lift, double slope, double toRim, double inwards) {
 }
 
 /// `x` and `z` are 1 at the lifted corner: the sheet rises beyond a line across it.
-double cornerAt(double lift, double x, double z) {
-    constexpr double kTip = 1.37; // of the distance from the line
-    const double distance = 1.44 * x + 0.93 * z - 1.0;
-    return liftedPart(lift, softly(distance / kTip), kTip - distance, 0.26);
-}
+double cornerAt(double lift, double x, double z) { return lift * softly((1.44 * x + 0.93 * z - 1.0) / 1.37); }
 
 /// `z` is 1 at the lifted edge.
 double edgeAt(double lift, double x, double z) {

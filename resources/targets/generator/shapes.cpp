@@ -33,7 +33,7 @@ std::vector<std::pair<std::string, Model>> shapeModels() {
     clay.roughness = 0.9F;
     std::vector<std::pair<std::string, Model>> models;
     for (const Form& form : kForms) {
-        const Height height = [&](double x, double z) { return 0.001 + liftedHeight(form.lifts, x, z); };
+        const Height height = [&](double x, double z) { return 0.0002 + liftedHeight(form.lifts, x, z); };
         Model model = modelOf(reliefMesh({0.21F, 0.15F, 28, 20}, height), form.name);
         model.materials.push_back(clay);
         model.meshes.front().primitives.front().material = 0;

@@ -15,7 +15,7 @@ namespace {
 constexpr float kWidth = 0.21F; ///< the tablet's sides, metres
 constexpr float kDepth = 0.15F;
 
-double dunesAt(double x, double z) { return 0.001 + liftedHeight({0.35, 0.6, 1.0, 0.45, 0.55, 0.3}, x, z); }
+double dunesAt(double x, double z) { return 0.0002 + liftedHeight({0.35, 0.6, 1.0, 0.45, 0.55, 0.3}, x, z); }
 
 Model::Material sand() {
     Model::Material material;
