@@ -60,17 +60,20 @@ private:
 /// How far the sampling is; one unit is one state of one slab at one level.
 class SamplingProgress {
 public:
-    SamplingProgress(const Progress& progress, std::size_t units) : progress_(progress), units_(units) {}
+    SamplingProgress(const Progress& progress, std::size_t units) : progress_(progress), units_(units) {
+        progress_.report(0.0, kStage);
+    }
     void done(std::size_t units) {
         constexpr std::size_t kReports = 1000;
         const std::size_t after = done_ += units;
         if (after * kReports / units_ != (after - units) * kReports / units_)
-            progress_.report(static_cast<double>(after) / static_cast<double>(units_), "sampling the field");
+            progress_.report(static_cast<double>(after) / static_cast<double>(units_), kStage);
     }
     [[nodiscard]] bool cancelled() const noexcept { return progress_.cancelled(); }
     void throwIfCancelled() const { progress_.throwIfCancelled(); }
 
 private:
+    static constexpr const char* kStage = "sampling the field";
     const Progress& progress_;
     std::size_t units_;
     std::atomic<std::size_t> done_{0};

@@ -16,10 +16,10 @@ using ::testing::HasSubstr;
 TEST(CommandLineInterrupt, ABuildStopsSoonAndLeavesNothing) {
     const TemporaryFolder folder;
     const std::string output = (folder / "long.mdf").string();
-    Process build(
-        lumorphProgram(),
-        {"mdf", "build", cutTabletFile(), "-o", output, "--resolution", "65", "--levels", "100", "--samples", "60000"},
-        {}, Process::ErrorStream::terminal);
+    Process build(lumorphProgram(),
+                  {"mdf", "build", resource("models/tablet.glb"), "-o", output, "--resolution", "65", "--levels", "100",
+                   "--samples", "60000"},
+                  {}, Process::ErrorStream::terminal);
     ASSERT_TRUE(build.waitForError("%", 60s)) << "no progress bar";
     const auto start = std::chrono::steady_clock::now();
     build.send(SIGINT);

@@ -41,7 +41,7 @@ std::shared_ptr<const MatchField> read(const fs::path& file, const std::vector<s
     return field->field.rigGlb == rigGlb ? field : nullptr;
 }
 
-/// The field that comes with the tablet: nobody waits for it at a first start.
+/// The field that is bundled with the tablet, so that a first start matches at once.
 std::shared_ptr<const MatchField> bundledField(const Rig& rig, const std::vector<std::byte>& rigGlb) {
     if (!rig.parts().sheet) return nullptr;
     try {

@@ -91,8 +91,11 @@ SheetFlap flapOf(const SheetLever& lever, std::size_t index, const glm::dvec2& p
     return flap;
 }
 
+/// As long as the nose slides inwards while its arm goes from level to its end.
 PlanePolygon slotOf(const SheetFlap& flap) {
-    PlanePolygon slot = rectangle({-kSlotHalf, -slideOf(*flap.captive)}, {kSlotHalf, kSlotBeyond});
+    const auto& [arm, lift] = *flap.captive;
+    const double slide = arm - std::sqrt(std::max(0.0, arm * arm - lift * lift));
+    PlanePolygon slot = rectangle({-kSlotHalf, -slide - kSlotBeyond}, {kSlotHalf, kSlotBeyond});
     for (glm::dvec2& p : slot) p = flap.frame.page(p);
     return slot;
 }
@@ -126,11 +129,6 @@ SheetFlap flapOf(const Rig& rig, std::size_t index, const Bend& bend, const std:
 }
 
 } // namespace
-
-double slideOf(const SheetFlap::Captive& captive) {
-    const double end = std::asin(std::min(1.0, captive.lift / captive.arm));
-    return captive.arm * (1.0 - std::cos(end)) + kSlotBeyond;
-}
 
 double SheetFlap::depthAt(double along) const {
     double depth = 0.0;

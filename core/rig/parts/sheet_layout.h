@@ -23,8 +23,8 @@ struct SheetFlap {
 
     /// Of a continuous sheet: the lever that lifts the frame's origin, and the slot in which its nose is captive.
     struct Captive {
-        double arm = 0.0;
-        double lift = 0.0;
+        double arm = 0.0;  ///< from the shaft to the nose
+        double lift = 0.0; ///< of the nose at full stroke
     };
     std::optional<Captive> captive;
 
@@ -42,9 +42,6 @@ struct SheetLayout {
     double top = 0.0;
     std::vector<SheetFlap> flaps;
 };
-
-/// How far a captive nose slides inwards while its lever goes from level to its end, about.
-[[nodiscard]] double slideOf(const SheetFlap::Captive& captive);
 
 /// None where the rig is no sheet on a housing: something moves otherwise than by bending upwards or as the levers of a
 /// drawn continuous sheet do, or there is no level top, ledge and bottom.

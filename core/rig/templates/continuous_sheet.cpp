@@ -7,6 +7,7 @@
 #include <string>
 #include <tuple>
 #include <unordered_map>
+#include <unordered_set>
 #include <utility>
 
 #include <glm/geometric.hpp>
@@ -15,6 +16,7 @@
 #include "core/base/text.h"
 #include "core/geometry/plane_mesh.h"
 #include "core/rig/servo_types.h"
+#include "core/rig/sheet/joint_states.h"
 #include "core/rig/templates/flap_layout.h"
 #include "core/rig/templates/sheet_file.h"
 #include "core/rig/templates/sheet_outline.h"
@@ -24,7 +26,7 @@ namespace lumorph {
 namespace {
 
 // Metres.
-constexpr double kPadGap = 0.003; ///< from the rim and the bend lines to a pad that nobody drew
+constexpr double kPadGap = 0.003; ///< from the rim and the bend lines to a pad that is not drawn
 constexpr double kSamePoint = 1e-5;
 constexpr double kLeastPad = 5e-5; ///< square metres
 constexpr double kLongestSlot = 0.03;
@@ -80,7 +82,7 @@ std::vector<glm::dvec2> inset(const std::vector<glm::dvec2>& polygon, double by)
     return moved;
 }
 
-/// Where nobody drew a pad, it is all that no bend line moves.
+/// The pad that is drawn; without one, what lies behind all bend lines.
 std::vector<glm::dvec2> padOf(const SheetDevice& device, const std::vector<Flap>& flaps) {
     if (!device.pad.empty()) return device.pad;
     std::vector<glm::dvec2> still;
@@ -186,10 +188,10 @@ private:
 
     /// The nodes of the rim, counter-clockwise seen from above.
     [[nodiscard]] std::vector<std::uint32_t> rim() const {
-        std::unordered_map<std::uint64_t, int> edges;
+        std::unordered_set<std::uint64_t> edges;
         const auto key = [](std::uint64_t a, std::uint64_t b) { return a << 32 | b; };
         for (const glm::uvec3& t : mesh_.triangles)
-            for (int k = 0; k < 3; ++k) ++edges[key(t[k], t[(k + 1) % 3])];
+            for (int k = 0; k < 3; ++k) edges.insert(key(t[k], t[(k + 1) % 3]));
         std::unordered_map<std::uint32_t, std::uint32_t> next;
         for (const glm::uvec3& t : mesh_.triangles)
             for (int k = 0; k < 3; ++k)
@@ -278,13 +280,21 @@ Actuator actuatorOf(const SheetLever& lever, const LeverLoad& load, int axis) {
     return actuator;
 }
 
+/// How finely to solve it.
+BakeSettings bakeSettings(const SheetDevice& device, SheetQuality quality) {
+    // Edges as long as give a sheet without holes about 380 nodes; 100 in a preview.
+    const double side = std::sqrt(std::abs(signedArea(device.outline)));
+    if (quality == SheetQuality::preview) return {side / 8.8, 2, 1e-3};
+    return {side / 17.6, device.bends.size() <= 2 ? 5 : device.bends.size() <= 4 ? 4 : 3, 2e-4};
+}
+
 } // namespace
 
 ElasticSheet elasticSheetOf(const SheetDevice& device) {
     const std::vector<glm::dvec2> outline = checkedOutline(device.outline, "sheet");
     std::vector<glm::dvec2> page;
     for (const glm::dvec2& p : outline) page.push_back(pageOf(p));
-    const std::vector<Flap> flaps = layOutFlaps(page, device.bends, {});
+    const std::vector<Flap> flaps = layOutFlaps(page, device.bends, {}); // nothing is cut: no slit needs room
     ElasticSheet sheet;
     sheet.outline = outline;
     sheet.pad = padOf(device, flaps);
@@ -296,16 +306,9 @@ ElasticSheet elasticSheetOf(const SheetDevice& device) {
     return sheet;
 }
 
-BakeSettings bakeSettings(const SheetDevice& device, SheetQuality quality) {
-    // Edges as long as give a sheet without holes about 380 nodes; 100 in a preview.
-    const double side = std::sqrt(std::abs(signedArea(device.outline)));
-    if (quality == SheetQuality::preview) return {side / 8.8, 2, 1e-3};
-    return {side / 17.6, device.bends.size() <= 2 ? 5 : device.bends.size() <= 4 ? 4 : 3, 2e-4};
-}
-
-ContinuousSheet continuousSheet(const SheetDevice& device, const BakeSettings& settings, const Progress& progress) {
+Rig continuousSheet(const SheetDevice& device, SheetQuality quality, const Progress& progress) {
     const ElasticSheet sheet = elasticSheetOf(device);
-    JointStates states = bakeJointStates(sheet, settings, progress.part(0.0, 0.95));
+    const JointStates states = bakeJointStates(sheet, bakeSettings(device, quality), progress.part(0.0, 0.95));
     RigParts parts;
     parts.name = device.name;
     SolidBuilder(device, states).build(parts);
@@ -315,7 +318,7 @@ ContinuousSheet continuousSheet(const SheetDevice& device, const BakeSettings& s
         parts.actuators.push_back(actuatorOf(sheet.levers[l], states.largestLoads[l], static_cast<int>(l)));
     Rig rig(std::move(parts));
     requireSound(rig, progress.part(0.95, 1.0));
-    return {std::move(rig), std::move(states)};
+    return rig;
 }
 
 } // namespace lumorph

@@ -2,7 +2,7 @@
 
 #include "core/base/progress.h"
 #include "core/rig/rig.h"
-#include "core/rig/sheet/joint_states.h"
+#include "core/rig/sheet/elastic_sheet.h"
 #include "core/rig/templates/sheet_device.h"
 
 namespace lumorph {
@@ -14,20 +14,11 @@ namespace lumorph {
 /// or what is wrong with the sheet.
 [[nodiscard]] ElasticSheet elasticSheetOf(const SheetDevice& device);
 
-/// How finely to solve it.
-[[nodiscard]] BakeSettings bakeSettings(const SheetDevice& device, SheetQuality quality);
-
-struct ContinuousSheet {
-    Rig rig;
-    JointStates states;
-};
-
 /// A device with a continuous top as a closed solid: the sheet's mesh over a housing that is the convex hull of the
 /// outline and a little more, with skirts under the rim that hold the way that it has gone. Its levers get the cheapest
 /// servos of the table of which half the stall torque holds them. An actuator a bend line, in their order. The solid is
 /// looked over in a few joint states before it is given. Throws InvalidInput as `elasticSheetOf` and `bakeJointStates`,
 /// and where no servo is strong enough; Cancelled.
-[[nodiscard]] ContinuousSheet continuousSheet(const SheetDevice& device, const BakeSettings& settings,
-                                              const Progress& progress = {});
+[[nodiscard]] Rig continuousSheet(const SheetDevice& device, SheetQuality quality, const Progress& progress = {});
 
 } // namespace lumorph

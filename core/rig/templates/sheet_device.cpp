@@ -457,7 +457,7 @@ FlapClearance flapClearance(const SheetDevice& device) {
 Rig sheetRig(const SheetDevice& device, const Progress& progress, SheetQuality quality) {
     if (device.top == SheetTop::continuous && !device.bends.empty()) {
         checkSheet(device);
-        return continuousSheet(device, bakeSettings(device, quality), progress).rig;
+        return continuousSheet(device, quality, progress);
     }
     progress.report(0.0, "laying out the flaps");
     Rig rig(SheetBuilder(device).build());

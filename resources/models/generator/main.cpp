@@ -6,7 +6,6 @@
 #include "core/base/error.h"
 #include "core/rig/rig_file.h"
 #include "core/rig/templates/bundled_rigs.h"
-#include "core/rig/templates/continuous_sheet.h"
 
 namespace {
 
@@ -27,9 +26,7 @@ int main(int argc, char** argv) {
     }
     try {
         const std::filesystem::path folder = argv[1];
-        const lumorph::SheetDevice tablet = lumorph::tabletDrawing();
-        const auto settings = lumorph::bakeSettings(tablet, lumorph::SheetQuality::full);
-        write(lumorph::continuousSheet(tablet, settings).rig, folder / "tablet.glb");
+        write(lumorph::sheetRig(lumorph::tabletDrawing()), folder / "tablet.glb");
         write(lumorph::pinDisplayRig(), folder / "pin_display.glb");
         write(lumorph::ribbonRig(), folder / "ribbon.glb");
         write(lumorph::hillsRig(), folder / "hills.glb");

@@ -12,6 +12,7 @@
 #include "core/base/error.h"
 #include "core/geometry/mesh_check.h"
 #include "core/rig/servo_types.h"
+#include "core/rig/sheet/levered_sheet.h"
 #include "core/rig/templates/bundled_rigs.h"
 #include "core/rig/templates/continuous_sheet.h"
 #include "core/rig/templates/sheet_file.h"
@@ -172,6 +173,25 @@ glm::dvec3 placeIn(const SheetMesh& mesh, const std::vector<glm::dvec3>& positio
     }
     ADD_FAILURE() << p.x << ' ' << p.y << " is in no triangle";
     return {};
+}
+
+// What the file holds is what the drawing gives today: equilibria of the grid, but for the modes that are left out.
+TEST(Tablet, FileHoldsTheEquilibriaOfItsDrawing) {
+    const ElasticSheet sheet = elasticSheetOf(tabletDrawing());
+    const SheetMesh mesh = meshSheet(sheet, std::sqrt(0.209 * 0.149) / 17.6);
+    LeveredSheet levered(sheet, mesh);
+    const std::vector<glm::vec3>& rest = tablet().restMesh().positions;
+    for (const std::vector<double>& state :
+         {std::vector{1.0, 0.0, 0.5, 0.0, 0.0, 1.0}, {0.0, 0.5, 1.0, 1.0, 0.5, 0.0}, {0.5, 1.0, 0.0, 0.5, 1.0, 0.5}}) {
+        const SheetPose pose = levered.followed(state, 3);
+        const auto moved = deformed(tablet(), state).positions;
+        for (std::size_t v = 0; v < mesh.points.size(); ++v) {
+            ASSERT_NEAR(mesh.points[v].x, rest[v].x, 1e-7);
+            ASSERT_NEAR(mesh.points[v].y, rest[v].z, 1e-7);
+            EXPECT_LT(glm::distance(glm::dvec3(moved[v]) - glm::dvec3(0.0, 0.02, 0.0), pose.state.positions[v]),
+                      2.5e-4);
+        }
+    }
 }
 
 // Against equilibria on a mesh of half the edge length.
