@@ -89,7 +89,8 @@ std::vector<glm::dvec2> padOf(const SheetDevice& device, const std::vector<Flap>
     for (const glm::dvec2& p : device.outline) still.push_back(pageOf(p));
     for (const Flap& flap : flaps) still = behind(still, flap.frame.origin, flap.frame.across);
     const auto same = [](const glm::dvec2& a, const glm::dvec2& b) { return glm::distance(a, b) < 1e3 * kSamePoint; };
-    still.erase(std::ranges::unique(still, same).begin(), still.end());
+    // Not std::ranges::unique: clang 14, which builds the fuzzers, cannot read its result.
+    still.erase(std::unique(still.begin(), still.end(), same), still.end());
     if (still.size() > 1 && same(still.front(), still.back())) still.pop_back();
     std::vector<glm::dvec2> pad;
     if (still.size() >= 3)
