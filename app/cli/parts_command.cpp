@@ -20,6 +20,7 @@ namespace {
 struct PartsFlags {
     std::string rig;
     std::string output;
+    std::string fitted;
     std::string servo;
     std::string tolerance = "0.2mm";
     std::string bed = "220mm";
@@ -52,6 +53,7 @@ nlohmann::json planJson(const BuildPlan& plan) {
                           {"channel", row.channel},
                           {"pin", row.pin},
                           {"pulse", {row.pulseMin, row.pulseMax}},
+                          {"pulseCurve", row.curve},
                           {"reversed", row.reversed}});
     return {{"device", plan.device}, {"parts", parts}, {"wiring", wiring}, {"notes", plan.notes}};
 }
@@ -82,6 +84,7 @@ void exportParts(const PartsFlags& flags, const Session& session) {
 #endif
     };
     writeBuildFolder(buildFiles(plan), flags.output, addMore, session.progress());
+    if (!flags.fitted.empty()) writeOutput(flags.fitted, writeRigGlb(Rig(withLevers(rig, plan))));
     Session::endProgress();
     flags.json ? printJson(planJson(plan)) : printPlan(plan, flags.output);
 }
@@ -101,6 +104,8 @@ void addPartsCommand(CLI::App& group, Session& session) {
         ->capture_default_str();
     command->add_option("--bed", flags->bed, "Sides of the printer's bed; larger parts come in pieces")
         ->capture_default_str();
+    command->add_option("--fitted", flags->fitted,
+                        "Also write the rig as its levers move it: ranges, pulses and their curves");
     command->add_flag("--json", flags->json, "Print parts, wiring and notes as one JSON value");
     command->add_option("-o,--output", flags->output, "A new or an empty folder")->required();
     command->callback([flags, &session] { exportParts(*flags, session); });

@@ -87,6 +87,7 @@ nlohmann::json reportJson(const Rig& rig, const ShapeReport& report) {
                              {"maxVelocity", actuator.maxVelocity},
                              {"channel", actuator.drive.channel},
                              {"pulse", {actuator.drive.pulseMin, actuator.drive.pulseMax}},
+                             {"pulseCurve", actuator.drive.curve},
                              {"vertices", a.vertices},
                              {"amplitude", a.amplitude},
                              {"sweptArea", a.sweptArea},
@@ -103,6 +104,7 @@ nlohmann::json reportJson(const Rig& rig, const ShapeReport& report) {
              {{"area", report.area},
               {"granularity", report.granularity},
               {"maxStretch", report.maxStretch},
+              {"secondEquilibria", report.seconds ? nlohmann::json(report.seconds->states) : nlohmann::json()},
               {"volume", {report.volumeMin, report.volumeMax}},
               {"sampledStates", report.sampledStates},
               {"openStates", report.openStates},
@@ -155,6 +157,12 @@ void printShapes(const Rig& rig, const ShapeReport& report) {
         "most %.1f %%.\n",
         report.sampledStates, report.openStates, report.intersectingStates, report.invertedStates,
         100 * report.maxStretch);
+    if (report.seconds && report.seconds->states > 0)
+        std::printf("  In %zu of the %zu joint states that were solved the sheet can also rest in another shape, up to "
+                    "%.1f mm away.\n",
+                    report.seconds->states, report.seconds->of, 1e3 * report.seconds->distance);
+    else if (report.seconds)
+        std::printf("  None of the %zu joint states that were solved has a second equilibrium.\n", report.seconds->of);
     for (const std::string& finding : report.rest.findings()) std::printf("  ! %s\n", finding.c_str());
     for (const std::string& warning : report.warnings) std::printf("  ! %s\n", warning.c_str());
 }

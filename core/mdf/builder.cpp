@@ -27,7 +27,7 @@ struct Slab {
 /// A part's result: its share of the actuator's field.
 struct SlabResult {
     ActuatorField field;
-    double errorSum = 0.0;
+    std::vector<double> errorSums; ///< one a column, so that the sum of all does not depend on the parts
     double errorMax = 0.0;
     std::uint64_t changed = 0;
     std::uint64_t violations = 0;
@@ -79,18 +79,34 @@ private:
     std::atomic<std::size_t> done_{0};
 };
 
-/// Parts small enough that the level counts of one take at most this much memory.
-constexpr std::size_t kSlabBytes = std::size_t{8} << 20U;
+/// Parts as large as keeps all threads at work, for each deforms what it meets anew, and small enough that the level
+/// counts of one take at most this much memory.
+constexpr std::size_t kSlabBytes = std::size_t{32} << 20U;
+constexpr int kSlabsPerThread = 3;
+
+/// Into how many parts work is best divided.
+int partsForAllThreads() {
+    return kSlabsPerThread *
+           static_cast<int>(tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism));
+}
+int divideUp(int count, int by) { return (count + by - 1) / by; }
 
 std::vector<Slab> slabsOf(const Coverage& coverage) {
     std::vector<Slab> slabs;
+    int allRows = 0;
+    for (std::size_t i = 0; i < coverage.rig().actuatorCount(); ++i) {
+        const ColumnRange& range = coverage.columnsMovedBy(i);
+        if (!range.empty()) allRows += range.z1 - range.z0 + 1;
+    }
     for (std::size_t i = 0; i < coverage.rig().actuatorCount(); ++i) {
         const ColumnRange& all = coverage.columnsMovedBy(i);
         if (all.empty()) continue;
         const std::size_t rowBytes = static_cast<std::size_t>(all.width()) *
                                      static_cast<std::size_t>(coverage.frame().dimensions.y) *
                                      static_cast<std::size_t>(coverage.levels()) * sizeof(std::uint16_t);
-        const int rows = static_cast<int>(std::clamp<std::size_t>(kSlabBytes / rowBytes, 1, 1U << 20U));
+        const int most = static_cast<int>(std::clamp<std::size_t>(kSlabBytes / rowBytes, 1, 1U << 20U));
+        const int depth = all.z1 - all.z0 + 1;
+        const int rows = divideUp(depth, divideUp(depth, std::min(most, divideUp(allRows, partsForAllThreads()))));
         for (int z = all.z0; z <= all.z1; z += rows)
             slabs.push_back({i, {all.x0, all.x1, z, std::min(all.z1, z + rows - 1)}});
     }
@@ -139,7 +155,7 @@ std::uint32_t frameColumn(const Coverage& coverage, const ColumnRange& range, st
 void addError(SlabResult& result, const Ramp& ramp, const std::vector<double>& expectation) {
     for (std::size_t j = 0; j < expectation.size(); ++j) {
         const double error = std::abs(expectationAt(ramp, static_cast<int>(j)) - expectation[j]);
-        result.errorSum += error;
+        result.errorSums.back() += error;
         result.errorMax = std::max(result.errorMax, error);
     }
     ++result.changed;
@@ -153,6 +169,7 @@ SlabResult fitSlab(const Coverage& coverage, const Slab& slab, const FirstLevels
     for (std::size_t c = 0; c < slab.range.size(); ++c) {
         std::size_t lowest = height;
         std::size_t highest = 0;
+        result.errorSums.push_back(0.0);
         for (std::size_t y = 0; y < height; ++y) {
             column[y] = Ramp{};
             if (!first.expectation(c * height + y, samples, expectation)) continue;
@@ -180,20 +197,22 @@ std::vector<std::uint8_t> meanCoverage(const Coverage& coverage, const std::vect
     const auto wordsPerColumn = static_cast<std::size_t>((size.y + 63) / 64);
     std::vector<std::uint8_t> background(coverage.frame().voxelCount());
     tbb::enumerable_thread_specific<CoverageScratch> scratches;
-    tbb::parallel_for(0, size.z, [&](int z) {
-        const Coverage::Window row = coverage.window({0, size.x - 1, z, z});
-        std::vector<std::uint64_t> words(row.range.size() * wordsPerColumn);
-        std::vector<std::uint32_t> counts(static_cast<std::size_t>(size.x) * height);
+    const int rows = divideUp(size.z, partsForAllThreads());
+    tbb::parallel_for(0, divideUp(size.z, rows), [&](int part) {
+        const int z0 = part * rows;
+        const Coverage::Window window = coverage.window({0, size.x - 1, z0, std::min(z0 + rows, size.z) - 1});
+        std::vector<std::uint64_t> words(window.range.size() * wordsPerColumn);
+        std::vector<std::uint32_t> counts(window.range.size() * height);
         for (const State& state : states) {
             if (progress.cancelled()) return;
-            coverage.covered(state, row, words, scratches.local());
+            coverage.covered(state, window, words, scratches.local());
             for (std::size_t w = 0; w < words.size(); ++w)
                 for (std::uint64_t bits = words[w]; bits != 0; bits &= bits - 1)
                     ++counts[(w / wordsPerColumn) * height + (w % wordsPerColumn) * 64 +
                              static_cast<std::size_t>(std::countr_zero(bits))];
-            progress.done(1);
+            progress.done(static_cast<std::size_t>(std::min(rows, size.z - z0)));
         }
-        const std::size_t start = coverage.body().columnIndex(0, z) * height;
+        const std::size_t start = coverage.body().columnIndex(0, z0) * height;
         for (std::size_t i = 0; i < counts.size(); ++i)
             background[start + i] = static_cast<std::uint8_t>(
                 std::lround(255.0 * static_cast<double>(counts[i]) / static_cast<double>(states.size())));
@@ -231,7 +250,7 @@ void assemble(Field& field, const Rig& rig, const std::vector<Slab>& slabs, std:
             to.runs.push_back(run);
         }
         to.ramps.insert(to.ramps.end(), results[s].field.ramps.begin(), results[s].field.ramps.end());
-        errorSum += results[s].errorSum;
+        for (const double sum : results[s].errorSums) errorSum += sum;
         field.report.rampErrorMax = std::max(field.report.rampErrorMax, results[s].errorMax);
         field.report.changedVoxels += results[s].changed;
         field.report.monotonicityViolations += results[s].violations;

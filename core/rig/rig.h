@@ -15,6 +15,7 @@
 #include "core/base/units.h"
 #include "core/geometry/triangle_mesh.h"
 #include "core/rig/deformer.h"
+#include "core/rig/pulse_curve.h"
 #include "core/rig/sheet_modes.h"
 
 namespace lumorph {
@@ -32,6 +33,7 @@ struct ActuatorDrive {
     double pulseMin = 1000.0; ///< microseconds at rest
     double pulseMax = 2000.0; ///< microseconds at full stroke
     std::string servo{};      ///< its kind, by the name in the table of `servo_types`; empty: not said
+    PulseCurve curve{};       ///< how the pulse goes from rest to full stroke
     bool operator==(const ActuatorDrive&) const = default;
 };
 

@@ -54,6 +54,17 @@ public:
         for (std::size_t k = 0; k < N; ++k) values[k] = finite(list[k], key, remedy);
         return values;
     }
+    [[nodiscard]] PulseCurve curve(const char* key) const {
+        constexpr const char* kRemedy = "give 2 to 65 numbers that rise from 0 to 1";
+        PulseCurve curve;
+        for (const json& value : object_[key]) {
+            curve.push_back(finite(value, key, kRemedy));
+            if (curve.size() > kMostCurvePoints) break;
+        }
+        if (curve.empty() || !isPulseCurve(curve))
+            place_.fail(std::string("\"") + key + "\" does not rise from 0 to 1", kRemedy);
+        return curve;
+    }
     [[nodiscard]] glm::vec3 direction(const char* key) const {
         const auto v = numbers<3>(key, "give three numbers in the node's frame, for example [1, 0, 0]");
         const glm::vec3 vector(v[0], v[1], v[2]);
@@ -271,6 +282,7 @@ ActuatorEntry readActuatorEntry(const json& extras, const EntryPlace& place, con
         actuator.drive.pulseMin = pulse[0];
         actuator.drive.pulseMax = pulse[1];
     }
+    if (named.has("pulseCurve")) actuator.drive.curve = named.curve("pulseCurve");
     // One that this version's table lacks is kept all the same.
     if (named.has("servo")) actuator.drive.servo = named.text("servo", "name the kind of servo, for example SG90");
     return entry;
@@ -283,6 +295,7 @@ json actuatorExtras(const Actuator& actuator, std::size_t order) {
     out["maxVelocity"] = tidyVelocity(actuator.maxVelocity, range);
     out["channel"] = actuator.drive.channel;
     out["pulse"] = {actuator.drive.pulseMin, actuator.drive.pulseMax};
+    if (!actuator.drive.curve.empty()) out["pulseCurve"] = actuator.drive.curve;
     if (!actuator.drive.servo.empty()) out["servo"] = actuator.drive.servo;
     return out;
 }

@@ -18,7 +18,8 @@ namespace lumorph {
 /// the node's frame), `length` (metres), `range` (two numbers: degrees for hinge, bend, lever and a
 /// turning joint, metres for slide and a moving joint, weights for morph), `motion` ("rotate" | "translate",
 /// joint), `target` (morph target's name), `gridAxis` (lever), `levels`, `maxVelocity` (degrees, metres or weight a
-/// second), `damping` (1 or more), `channel`, `pulse` (two numbers, microseconds), `servo` (its kind), `order`. A node
+/// second), `damping` (1 or more), `channel`, `pulse` (two numbers, microseconds), `pulseCurve` (PulseCurve),
+/// `servo` (its kind), `order`. A node
 /// with several actuators holds a list of such objects. The object or list may also be a text in JSON. A morph actuator
 /// with several keys has the lists `targets` and `keys` (strokes). The model as drawn is the shape at the lower end of
 /// every range; only of morph targets is the lower end worked out from the weights. Actuators stand in the order of
@@ -33,9 +34,10 @@ namespace lumorph {
 ///
 /// The sheet that levers lift (SheetMotion) is stated by the mesh: `extras.lumorphSheet` has `modes` (their number K),
 /// `strokes` (a flat list; each axis of the grid begins at 0 and ends at 1) and `coefficients` (a flat list: K a state
-/// of the grid, of the states the last axis varies fastest). The modes are the morph targets "sheet mode 1" to "sheet
-/// mode K"; the vertex attributes `_SHEET_ROW` (-1 for none) and `_SHEET_SHARE` (1 where it is missing) say what
-/// follows. A vertex of a row has the row's modes.
+/// of the grid, of the states the last axis varies fastest), and where there are any `seconds` (two numbers: states
+/// that have another equilibrium, too, and how far apart the two are, metres). The modes are the morph targets "sheet
+/// mode 1" to "sheet mode K"; the vertex attributes `_SHEET_ROW` (-1 for none) and `_SHEET_SHARE` (1 where it is
+/// missing) say what follows. A vertex of a row has the row's modes.
 ///
 /// A folder holds `rest.obj` and `ACTUATOR_KEY.obj` (any mesh format; KEY 1, 2, ... evenly spaced
 /// strokes), all with the same triangles.

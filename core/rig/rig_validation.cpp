@@ -144,6 +144,8 @@ void checkActuator(const RigParts& parts, const Actuator& actuator, const std::s
             "use 1 (critical) to 1000");
     require(std::isfinite(actuator.drive.pulseMin) && std::isfinite(actuator.drive.pulseMax), subject,
             "a pulse width is not finite", "give microseconds, for example 1000 and 2000");
+    require(isPulseCurve(actuator.drive.curve), subject, "its pulse curve does not rise from 0 to 1",
+            "give 2 to 65 numbers, each greater than the one before");
     requireText(actuator.drive.servo, subject, "the name of its servo is no text");
 }
 

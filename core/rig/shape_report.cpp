@@ -185,6 +185,9 @@ private:
             if (frame_.voxelCount() > 0) followPath(strokes, mesh);
         }
         report_.sampledStates = states;
+        if (const auto& sheet = rig_.parts().sheet)
+            report_.seconds = {sheet->modes.secondStates, sheet->modes.stateCount(),
+                               static_cast<double>(sheet->modes.secondDistance)};
         if (passed_ > 0) report_.pathOutsideShare = static_cast<double>(lost_) / static_cast<double>(passed_);
     }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -35,6 +36,14 @@ struct ShapeReport {
     double granularity = 0.0; ///< actuators a square metre of that
     double maxStretch =
         0.0; ///< largest relative change of an edge of the surface that looks up at rest, over the sampled states
+    /// Of a sheet: states of its grid that have another equilibrium, too, how many there are in all, and the metres
+    /// between the two shapes.
+    struct Seconds {
+        std::size_t states = 0;
+        std::size_t of = 0;
+        double distance = 0.0;
+    };
+    std::optional<Seconds> seconds;
     double volumeMin = 0.0; ///< cubic metres over the sampled states
     double volumeMax = 0.0;
     int sampledStates = 0;

@@ -442,8 +442,12 @@ void requirePositive(double value, bool orZero, const char* what) {
 } // namespace
 
 Angle servoAngle(const Actuator& actuator, const ServoType& servo) {
-    double angle = 0.0;
-    if (const auto* hinge = std::get_if<Hinge>(&actuator.deformer))
+    const double ofPulses = servo.travel.inRadians() * (actuator.drive.pulseMax - actuator.drive.pulseMin) /
+                            (servo.pulseMax - servo.pulseMin);
+    double angle = ofPulses;
+    if (!actuator.drive.curve.empty()) // a lever is between the two
+        angle = ofPulses;
+    else if (const auto* hinge = std::get_if<Hinge>(&actuator.deformer))
         angle = hinge->max.inRadians() - hinge->min.inRadians();
     else if (const auto* bend = std::get_if<Bend>(&actuator.deformer))
         angle = bend->max.inRadians() - bend->min.inRadians();
@@ -452,9 +456,6 @@ Angle servoAngle(const Actuator& actuator, const ServoType& servo) {
         angle = joint->max - joint->min;
     else if (const auto* lift = std::get_if<SheetLift>(&actuator.deformer))
         angle = lift->max.inRadians() - lift->min.inRadians();
-    else
-        angle = servo.travel.inRadians() * (actuator.drive.pulseMax - actuator.drive.pulseMin) /
-                (servo.pulseMax - servo.pulseMin);
     return Angle::radians(std::max(std::abs(angle), 1e-3));
 }
 

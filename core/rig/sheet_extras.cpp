@@ -29,7 +29,9 @@ std::vector<float> sheetNumbers(const json& sheet, const char* key, std::size_t 
 json sheetExtras(const SheetModes& modes) {
     std::vector<float> strokes;
     for (const std::vector<float>& nodes : modes.strokes) strokes.insert(strokes.end(), nodes.begin(), nodes.end());
-    return {{"modes", modes.modeCount}, {"strokes", strokes}, {"coefficients", modes.coefficients}};
+    json extras{{"modes", modes.modeCount}, {"strokes", strokes}, {"coefficients", modes.coefficients}};
+    if (modes.secondStates > 0) extras["seconds"] = {modes.secondStates, modes.secondDistance};
+    return extras;
 }
 
 SheetModes readSheetExtras(const json& extras, const EntryPlace& place) {
@@ -48,6 +50,13 @@ SheetModes readSheetExtras(const json& extras, const EntryPlace& place) {
         sheet.strokes.back().push_back(stroke);
     }
     sheet.coefficients = sheetNumbers(extras, "coefficients", SheetModes::kMostCoefficients, place);
+    if (extras.contains("seconds")) {
+        const std::vector<float> seconds = sheetNumbers(extras, "seconds", 2, place);
+        if (seconds.size() != 2 || seconds[0] < 0.0F || seconds[0] > 1e6F || seconds[1] < 0.0F)
+            place.fail("\"seconds\" of the sheet are not a number of states and a distance", "save the rig again");
+        sheet.secondStates = static_cast<std::uint32_t>(seconds[0]);
+        sheet.secondDistance = seconds[1];
+    }
     return sheet;
 }
 

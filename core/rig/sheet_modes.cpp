@@ -22,14 +22,26 @@ Basis lagrangeAt(const std::vector<float>& nodes, double stroke) noexcept {
     return basis;
 }
 
-/// out[i] = sum over the nodes of basis x tensor[node * size + i]. `out` may be the tensor's own beginning.
-void contract(const Basis& basis, std::size_t nodes, const float* tensor, std::size_t size, float* out) noexcept {
-    for (std::size_t i = 0; i < size; ++i) out[i] = basis[0] * tensor[i];
-    for (std::size_t node = 1; node < nodes; ++node) {
-        const float weight = basis[node];
-        if (weight == 0.0F) continue; // a stroke at rest or another node takes one slice
-        const float* const slice = tensor + node * size;
-        for (std::size_t i = 0; i < size; ++i) out[i] += weight * slice[i];
+/// out[i] = sum over the nodes of basis x tensor[node * size + i], nodes of no weight left out: a stroke at rest or at
+/// another node takes one slice.
+void contract(const Basis& basis, std::size_t nodes, const float* tensor, std::size_t size,
+              float* __restrict out) noexcept {
+    std::array<std::size_t, SheetModes::kMostLevels> used;
+    std::size_t count = 0;
+    for (std::size_t node = 0; node < nodes; ++node)
+        if (basis[node] != 0.0F) used[count++] = node;
+    const auto slice = [&](std::size_t k) { return tensor + used[k] * size; };
+    if (count == 3) { // the usual grid, and half of the time that a field takes to build
+        const float *const a = slice(0), *const b = slice(1), *const c = slice(2);
+        const float u = basis[used[0]], v = basis[used[1]], w = basis[used[2]];
+        for (std::size_t i = 0; i < size; ++i) out[i] = u * a[i] + v * b[i] + w * c[i];
+        return;
+    }
+    std::fill_n(out, size, 0.0F);
+    for (std::size_t k = 0; k < count; ++k) {
+        const float weight = basis[used[k]];
+        const float* const from = slice(k);
+        for (std::size_t i = 0; i < size; ++i) out[i] += weight * from[i];
     }
 }
 
@@ -42,17 +54,19 @@ std::size_t SheetModes::stateCount() const noexcept {
 }
 
 void modeCoefficients(const SheetModes& modes, std::span<const double> strokes, std::span<float> out) noexcept {
-    // What is left of the tensor after the first axis is at most half of it.
-    std::array<float, SheetModes::kMostCoefficients / 2> partial;
+    // What is left of the tensor is at most half of it after the first axis, a quarter after the second.
+    std::array<float, SheetModes::kMostCoefficients / 2> odd;
+    std::array<float, SheetModes::kMostCoefficients / 4> even;
     const float* tensor = modes.coefficients.data();
     std::size_t size = modes.coefficients.size();
     for (std::size_t axis = 0; axis < modes.strokes.size(); ++axis) {
         const std::vector<float>& nodes = modes.strokes[axis];
+        float* const left = axis % 2 == 0 ? odd.data() : even.data();
         size /= nodes.size();
-        contract(lagrangeAt(nodes, strokes[axis]), nodes.size(), tensor, size, partial.data());
-        tensor = partial.data();
+        contract(lagrangeAt(nodes, strokes[axis]), nodes.size(), tensor, size, left);
+        tensor = left;
     }
-    std::copy_n(partial.data(), modes.modeCount, out.data());
+    std::copy_n(tensor, modes.modeCount, out.data());
 }
 
 glm::vec3 rowDisplacement(const SheetModes& modes, std::size_t row, std::span<const double> strokes) noexcept {

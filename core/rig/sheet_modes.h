@@ -28,6 +28,10 @@ struct SheetModes {
     std::vector<float> coefficients;
     /// [row * modeCount + mode]; coefficient x mode is in metres.
     std::vector<glm::vec3> modes;
+    /// Of so many states of the grid an equilibrium besides the one that is kept is known, and so far apart are the two
+    /// at most, metres. It only describes the sheet.
+    std::uint32_t secondStates = 0;
+    float secondDistance = 0.0F;
 
     [[nodiscard]] std::size_t stateCount() const noexcept;
     [[nodiscard]] std::size_t rowCount() const noexcept { return modeCount == 0 ? 0 : modes.size() / modeCount; }

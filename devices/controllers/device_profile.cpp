@@ -50,6 +50,9 @@ void checkServo(const ServoSetup& servo, const std::string& subject, ControllerK
         throw InvalidInput(
             subject, "its pulses run from " + numberText(servo.pulseMin) + " to " + numberText(servo.pulseMax),
             "let the greatest be greater than the least, and reverse the servo if it turns the wrong way");
+    if (!isPulseCurve(servo.curve))
+        throw InvalidInput(subject, "its curve does not rise from 0 to 1",
+                           "give 2 to 65 numbers, each greater than the one before, or none");
     requireWithin(subject, "the trim", servo.trim, {-0.5 * span, 0.5 * span});
     requireWithin(subject, "the velocity", servo.maxVelocity, limits::kVelocity);
     requireWithin(subject, "the acceleration", servo.maxAcceleration, limits::kAcceleration);
@@ -62,14 +65,16 @@ void requireShort(const char* what, const std::string& text) {
 }
 
 json documentOf(const ServoSetup& servo) {
-    return {{"channel", servo.channel},
-            {"pulseMin", servo.pulseMin},
-            {"pulseMax", servo.pulseMax},
-            {"reversed", servo.reversed},
-            {"trim", servo.trim},
-            {"maxVelocity", servo.maxVelocity},
-            {"maxAcceleration", servo.maxAcceleration},
-            {"exitStroke", servo.exitStroke}};
+    json document{{"channel", servo.channel},
+                  {"pulseMin", servo.pulseMin},
+                  {"pulseMax", servo.pulseMax},
+                  {"reversed", servo.reversed},
+                  {"trim", servo.trim},
+                  {"maxVelocity", servo.maxVelocity},
+                  {"maxAcceleration", servo.maxAcceleration},
+                  {"exitStroke", servo.exitStroke}};
+    if (!servo.curve.empty()) document["curve"] = servo.curve;
+    return document;
 }
 
 /// All options of all kinds: one who tries another board and comes back finds them as they were.
@@ -119,6 +124,7 @@ ServoSetup readServo(json& object, JsonSection section, ControllerKind kind) {
     section.wholeNumber("channel", servo.channel, 0, knownController(kind).lastChannel);
     readWithin(section, "pulseMin", servo.pulseMin, limits::kPulse);
     readWithin(section, "pulseMax", servo.pulseMax, limits::kPulse);
+    section.numbers("curve", servo.curve, 0.0, 1.0, kMostCurvePoints);
     section.flag("reversed", servo.reversed);
     section.number("trim", servo.trim, -limits::kPulse.most, limits::kPulse.most);
     readWithin(section, "maxVelocity", servo.maxVelocity, limits::kVelocity);
@@ -213,21 +219,30 @@ DeviceProfile profileFor(const Rig& rig, int first) {
         const auto [least, greatest] = std::minmax(actuator.drive.pulseMin, actuator.drive.pulseMax);
         servo.pulseMin = std::clamp(least, limits::kPulse.least, limits::kPulse.most - 1.0);
         servo.pulseMax = std::clamp(greatest, servo.pulseMin + 1.0, limits::kPulse.most);
+        servo.curve = actuator.drive.curve;
         servo.maxVelocity = std::clamp(actuator.maxVelocity, limits::kVelocity.least, limits::kVelocity.most);
         profile.servos.push_back(servo);
     }
     return profile;
 }
 
-double pulseOf(const ServoSetup& servo, double stroke) {
-    const double share = std::clamp(servo.reversed ? 1.0 - stroke : stroke, 0.0, 1.0);
-    const double pulse = servo.pulseMin + share * (servo.pulseMax - servo.pulseMin) + servo.trim;
-    return std::clamp(pulse, servo.pulseMin, servo.pulseMax);
+double freePulseOf(const ServoSetup& servo, double stroke) noexcept {
+    const double turned = turnedAt(servo.curve, stroke);
+    const double share = servo.reversed ? 1.0 - turned : turned;
+    return servo.pulseMin + share * (servo.pulseMax - servo.pulseMin) + servo.trim;
 }
 
-double strokeOf(const ServoSetup& servo, double pulse) {
+double strokeOf(const ServoSetup& servo, double pulse) noexcept {
     const double share = (pulse - servo.trim - servo.pulseMin) / (servo.pulseMax - servo.pulseMin);
-    return servo.reversed ? 1.0 - share : share;
+    return strokeWhereTurned(servo.curve, servo.reversed ? 1.0 - share : share);
+}
+
+double pulseOf(const ServoSetup& servo, double stroke) noexcept {
+    return std::clamp(freePulseOf(servo, std::clamp(stroke, 0.0, 1.0)), servo.pulseMin, servo.pulseMax);
+}
+
+double fastestPulse(const ServoSetup& servo) noexcept {
+    return servo.maxVelocity * steepest(servo.curve) * (servo.pulseMax - servo.pulseMin);
 }
 
 void checkProfile(const DeviceProfile& profile) {

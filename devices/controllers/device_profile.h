@@ -19,6 +19,7 @@ struct ServoSetup {
     double maxVelocity = 1.0;     ///< strokes a second
     double maxAcceleration = 8.0; ///< strokes a second, a second
     double exitStroke = 0.0;      ///< where it goes at the end, in [0, 1]
+    PulseCurve curve{};           ///< how the pulse goes from rest to full stroke
     bool operator==(const ServoSetup&) const = default;
 };
 
@@ -61,9 +62,13 @@ inline constexpr ProfileLimits kHandDistance{0.0, 1.0};
 
 /// A profile for a rig as its file describes its drives, on a board whose channels begin at `first` (`boardChannels`).
 [[nodiscard]] DeviceProfile profileFor(const Rig& rig, int first = 0);
-/// Width of the pulse for a stroke in [0, 1], within pulseMin and pulseMax whatever the trim; and back.
-[[nodiscard]] double pulseOf(const ServoSetup& servo, double stroke);
-[[nodiscard]] double strokeOf(const ServoSetup& servo, double pulse);
+/// Width of the pulse for a stroke, whatever the limits; straight on beyond [0, 1]. And back.
+[[nodiscard]] double freePulseOf(const ServoSetup& servo, double stroke) noexcept;
+[[nodiscard]] double strokeOf(const ServoSetup& servo, double pulse) noexcept;
+/// Width of the pulse for a stroke in [0, 1], within pulseMin and pulseMax whatever the trim.
+[[nodiscard]] double pulseOf(const ServoSetup& servo, double stroke) noexcept;
+/// Microseconds a second of a servo that moves as fast as it may, where its curve is steepest.
+[[nodiscard]] double fastestPulse(const ServoSetup& servo) noexcept;
 /// Throws InvalidInput that names the servo and the value: out of range, not finite, two servos on one channel.
 void checkProfile(const DeviceProfile& profile);
 

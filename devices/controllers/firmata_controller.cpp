@@ -69,7 +69,7 @@ PulseScale firmataScale(const DeviceProfile& profile, const DeviceAddress& addre
 
 /// By how many microseconds a servo may move in a frame of the board, rounded up so that it never lags behind.
 int stepOf(const ServoSetup& servo) {
-    const double step = servo.maxVelocity * (servo.pulseMax - servo.pulseMin) * kFrameSeconds;
+    const double step = fastestPulse(servo) * kFrameSeconds;
     return static_cast<int>(std::clamp(std::ceil(step), 1.0, kGreatestStep));
 }
 

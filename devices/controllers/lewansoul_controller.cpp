@@ -251,7 +251,7 @@ int LewansoulController::durationOf(std::span<const PulsePlan::Change> changes) 
     double seconds = 1e-3 * moveTime_;
     for (const PulsePlan::Change& change : changes) {
         const ServoSetup& setup = plan_.servos()[change.servo];
-        const double velocity = setup.maxVelocity * (setup.pulseMax - setup.pulseMin) / state_.traits.pulseStep;
+        const double velocity = fastestPulse(setup) / state_.traits.pulseStep;
         const double way = static_cast<double>(change.value) - moves_[change.servo].at(workedAt_);
         // It may have come to rest a little beside where it was told to be last.
         if (change.attach)

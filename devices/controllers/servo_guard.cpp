@@ -45,12 +45,8 @@ struct Servo {
     double hold = 0.0;    ///< seconds before it may move, once attached
     double sent = 0.0;    ///< microseconds, while attached
 
-    [[nodiscard]] double span() const noexcept { return setup.pulseMax - setup.pulseMin; }
-    /// Without clamping: what moves evenly in strokes moves evenly in microseconds.
-    [[nodiscard]] double pulse() const noexcept {
-        const double share = setup.reversed ? 1.0 - motion.position : motion.position;
-        return setup.pulseMin + share * span() + setup.trim;
-    }
+    /// Without clamping: what moves steadily in strokes does so in microseconds.
+    [[nodiscard]] double pulse() const noexcept { return freePulseOf(setup, motion.position); }
     /// Strokes whose pulses lie within the limits; the trim moves them out of [0, 1].
     [[nodiscard]] std::pair<double, double> range() const noexcept {
         const double ends[] = {strokeOf(setup, setup.pulseMin), strokeOf(setup, setup.pulseMax)};

@@ -79,7 +79,7 @@ std::string pulsesRow(const DeviceProfile& profile, const std::vector<double>& s
 std::string fastestRow(const DeviceProfile& profile) {
     std::string row;
     for (const ServoSetup& servo : profile.servos) {
-        const double step = servo.maxVelocity * (servo.pulseMax - servo.pulseMin) * kFrameSeconds;
+        const double step = fastestPulse(servo) * kFrameSeconds;
         row += (row.empty() ? "" : ", ") + std::to_string(std::clamp(std::lround(std::ceil(step)), 1L, 2000L));
     }
     return row;

@@ -11,6 +11,7 @@ void wireAs(const BuildPlan& plan, DeviceProfile& profile) {
         servo.channel = row.pin;
         servo.pulseMin = row.pulseMin;
         servo.pulseMax = row.pulseMax;
+        servo.curve = row.curve;
         servo.reversed = row.reversed;
     }
 }

@@ -366,6 +366,22 @@ TEST(RigParts, WritesSketchAndProfileWithTheWiringsPins) {
         EXPECT_TRUE(std::filesystem::exists(made["out/" + part["name"].get<std::string>() + ".stl"])) << part;
 }
 
+TEST(RigParts, WritesTheRigAsItsLeversMoveIt) {
+    const Made made;
+    ASSERT_EQ(lumorph({"rig", "new", "tablet", "--set", "top=cut", "-o", made["t.glb"]}).exitCode, 0);
+    const auto plan =
+        lumorph({"rig", "parts", made["t.glb"], "-o", made["out"], "--fitted", made["fit.glb"], "--json"}).json();
+    const auto info = lumorph({"rig", "info", made["fit.glb"], "--json"}).json();
+    const auto profile = nlohmann::json::parse(textOfFile(made["out/profile.json"]));
+    for (std::size_t k = 0; k < 6; ++k) {
+        const auto& actuator = info["actuators"][k];
+        EXPECT_LT(actuator["range"][1].get<double>(), 1.5) << "radians; as drawn it is a right angle";
+        EXPECT_EQ(actuator["pulseCurve"], plan["wiring"][k]["pulseCurve"]);
+        EXPECT_EQ(profile["servos"][k]["curve"], plan["wiring"][k]["pulseCurve"]);
+        EXPECT_EQ(actuator["pulse"][plan["wiring"][k]["reversed"] ? 1 : 0], plan["wiring"][k]["pulse"][0]);
+    }
+}
+
 TEST(RigParts, LeavesNothingOfWhatFails) {
     const Made made;
     ASSERT_EQ(lumorph({"rig", "new", "cushion", "-o", made["c.glb"]}).exitCode, 0);

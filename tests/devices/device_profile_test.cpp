@@ -32,7 +32,8 @@ DeviceProfile fullProfile() {
     profile.slowShare = 0.1;
     profile.restOnExit = false;
     profile.handDistance = 0.25;
-    profile.servos = {{3, 600.5, 2400.25, true, -12.5, 0.75, 4.0, 0.5}, {7, 1000.0, 2000.0, false, 0.0, 1.0, 8.0, 0.0}};
+    profile.servos = {{3, 600.5, 2400.25, true, -12.5, 0.75, 4.0, 0.5, {0.0, 0.1, 1.0 / 3.0, 1.0}},
+                      {7, 1000.0, 2000.0, false, 0.0, 1.0, 8.0, 0.0}};
     return profile;
 }
 
@@ -80,6 +81,19 @@ TEST(DeviceProfile, TurnsStrokesIntoPulsesWithinTheLimits) {
     EXPECT_DOUBLE_EQ(strokeOf(trimmed, 1600.0), 0.5);
 }
 
+TEST(DeviceProfile, ALeversCurveBendsTheWayBetweenTheLimits) {
+    ServoSetup servo{.pulseMin = 1000.0, .pulseMax = 2000.0, .maxVelocity = 2.0, .curve = {0.0, 0.7, 1.0}};
+    for (const auto& [stroke, pulse] : {std::pair{0.0, 1000.0}, {0.25, 1350.0}, {0.5, 1700.0}, {1.0, 2000.0}}) {
+        servo.reversed = false;
+        EXPECT_DOUBLE_EQ(pulseOf(servo, stroke), pulse);
+        EXPECT_DOUBLE_EQ(strokeOf(servo, pulse), stroke);
+        servo.reversed = true;
+        EXPECT_DOUBLE_EQ(pulseOf(servo, stroke), 3000.0 - pulse);
+        EXPECT_DOUBLE_EQ(strokeOf(servo, 3000.0 - pulse), stroke);
+    }
+    EXPECT_DOUBLE_EQ(fastestPulse(servo), 2.0 * 1.4 * 1000.0);
+}
+
 TEST(DeviceProfile, RefusesWhatWouldBreakAServo) {
     struct Row {
         void (*spoil)(DeviceProfile&);
@@ -88,6 +102,10 @@ TEST(DeviceProfile, RefusesWhatWouldBreakAServo) {
     const Row rows[] = {
         {[](DeviceProfile& p) { p.servos[1].pulseMin = 499.0; }, "servo 2: the least pulse is 499.0"},
         {[](DeviceProfile& p) { p.servos[0].pulseMax = 2501.0; }, "servo 1: the greatest pulse is 2501.0"},
+        {[](DeviceProfile& p) {
+             p.servos[1].curve = {0.0, 0.6, 0.5, 1.0};
+         },
+         "servo 2: its curve does not rise"},
         {[](DeviceProfile& p) { p.servos[0].pulseMax = NAN; }, "servo 1: the greatest pulse is nan"},
         {[](DeviceProfile& p) { p.servos[0].pulseMin = 2400.25; }, "servo 1: its pulses run from"},
         {[](DeviceProfile& p) { p.servos[0].trim = 1e4; }, "servo 1: the trim is 10000.0"},

@@ -22,10 +22,20 @@ struct NoProfiles {
     NoProfiles() { std::filesystem::remove_all(studio::Settings().folder() / "devices"); }
 };
 
-/// The Devices workspace as its user has it, against one simulated board.
+/// The Devices workspace as its user has it, against one simulated board; servos from 1000 to 2000 us.
 class DevicesWindow : public ::testing::Test {
 protected:
-    explicit DevicesWindow(const std::string& name = "tablet") : window(folder_ / "session", "devices") { use(name); }
+    explicit DevicesWindow(const std::string& name = "tablet") : window(folder_ / "session", "devices") {
+        // Round numbers, whatever servos the bundled tablet asks for.
+        DeviceProfile profile = window.studio().devices.profile();
+        for (ServoSetup& servo : profile.servos) {
+            servo.pulseMin = 1000.0;
+            servo.pulseMax = 2000.0;
+        }
+        window.studio().devices.setProfile(profile, {});
+        none_ = NoProfiles();
+        use(name);
+    }
 
     /// The board that the test is about.
     void use(const std::string& name) { board = window.studio().devices.bench().board(name); }

@@ -169,6 +169,53 @@ TEST_F(PartsExport, WritesWhatTheCommandLineWritesAndDevicesTakesItsWiring) {
     window->click("tab.rig");
 }
 
+/// Where a flap's range ends, radians.
+double endOf(const RigParts& parts, std::size_t actuator) {
+    return std::get<Bend>(parts.actuators.at(actuator).deformer).max.inRadians();
+}
+
+TEST_F(PartsExport, TheRigIsFittedToItsLeversAndDevicesFollowsOrAsks) {
+    take(cutTabletRig());
+    const RigParts drawn = *window->state().rig.parts;
+    const DeviceProfile before = window->studio().devices.profile();
+    open();
+    ASSERT_TRUE(planned());
+    EXPECT_TRUE(window->text("export.parts.notes").contains("degrees"));
+    window->screenshot("parts_fit");
+    window->click("export.parts.fit");
+    ASSERT_TRUE(planned());
+    EXPECT_FALSE(window->find<QPushButton>("export.parts.fit")->isVisible()) << "nothing is left to fit";
+    window->click("export.parts.cancel");
+    ASSERT_TRUE(eventually([] { return window->state().rig.compiled; }, std::chrono::seconds(30)));
+    const RigParts fitted = *window->state().rig.parts;
+    for (std::size_t k = 0; k < drawn.actuators.size(); ++k) {
+        EXPECT_LT(endOf(fitted, k), endOf(drawn, k));
+        const ServoSetup& servo = window->studio().devices.profile().servos.at(k);
+        EXPECT_EQ(servo.curve, fitted.actuators[k].drive.curve);
+        EXPECT_FALSE(servo.curve.empty());
+        EXPECT_EQ(servo.pulseMax, std::max(fitted.actuators[k].drive.pulseMin, fitted.actuators[k].drive.pulseMax));
+    }
+    window->studio().document.undoStack().undo();
+    ASSERT_TRUE(eventually([&] { return window->state().rig.compiled; }, std::chrono::seconds(30)));
+    EXPECT_EQ(*window->state().rig.parts, drawn);
+    EXPECT_EQ(window->studio().devices.profile().servos, before.servos);
+
+    // What was set up by hand stays, and it is said.
+    DeviceProfile own = before;
+    own.servos[1].pulseMax = 1900.0;
+    ASSERT_TRUE(window->studio().devices.setProfile(own, "Own"));
+    window->studio().document.undoStack().redo();
+    ASSERT_TRUE(eventually([] { return !window->studio().notices.at("servo").empty(); }, std::chrono::seconds(30)));
+    EXPECT_EQ(window->studio().devices.profile().servos[1].pulseMax, 1900.0);
+    EXPECT_FALSE(window->studio().devices.profile().servos[0].curve.empty());
+    const Notice notice = window->studio().notices.at("servo").front();
+    ASSERT_EQ(notice.actions.size(), 1U);
+    notice.actions[0].run();
+    EXPECT_EQ(window->studio().devices.profile().servos[1].curve, fitted.actuators[1].drive.curve);
+    window->studio().document.undoStack().undo();
+    window->studio().notices.dismissAll("servo");
+}
+
 TEST_F(PartsExport, OfARigThatIsNoSheetAreSeatsAndTheReasonIsSaid) {
     take(test::armRig());
     open();

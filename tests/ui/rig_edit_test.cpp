@@ -3,6 +3,7 @@
 #include "app/studio/document/match_wish.h"
 #include "app/studio/document/rig_edit.h"
 #include "app/studio/document/state_rules.h"
+#include "app/workspaces/rig/rig_facts.h"
 #include "core/rig/rig_file.h"
 #include "tests/ui/project_world.h"
 
@@ -70,6 +71,28 @@ TEST_F(RigEditTest, AnEditIsToldAsOneAndCompiledBesideTheWindow) {
     world.openRig(files / "cushion.glb");
     EXPECT_TRUE(told & StatePart::rig);
     EXPECT_NE(world.state().rig.origin, before.rig.origin);
+}
+
+TEST(RigFacts, AnotherRangeHasOtherPulsesForTheSameTurnOfTheServo) {
+    Actuator flap{.name = "flap", .deformer = Bend{.max = Angle::degrees(90.0)}, .maxVelocity = 2.0};
+    flap.drive = {.pulseMin = 2000.0, .pulseMax = 1000.0, .curve = {0.0, 0.6, 0.9, 1.0}};
+    const auto pulseAt = [](const Actuator& a, double degrees) {
+        const double stroke = degrees / Angle::radians(rangeOf(a).max).inDegrees();
+        return std::lerp(a.drive.pulseMin, a.drive.pulseMax, turnedAt(a.drive.curve, stroke));
+    };
+    Actuator shorter = flap;
+    setRange(shorter, 0.0, Angle::degrees(60.0).inRadians());
+    for (const double degrees : {0.0, 20.0, 40.0, 60.0})
+        EXPECT_NEAR(pulseAt(shorter, degrees), pulseAt(flap, degrees), 1e-9);
+    EXPECT_NEAR(shorter.maxVelocity, 3.0, 1e-12);
+    Actuator longer = flap;
+    setRange(longer, 0.0, Angle::degrees(120.0).inRadians());
+    EXPECT_NEAR(longer.drive.pulseMax, 900.0, 1e-9) << "straight on from where it ended";
+    Actuator tooLong = flap;
+    tooLong.drive.pulseMax = 600.0;
+    const ActuatorDrive before = tooLong.drive;
+    setRange(tooLong, 0.0, Angle::degrees(270.0).inRadians());
+    EXPECT_EQ(tooLong.drive, before) << "no servo can be told that";
 }
 
 TEST_F(RigEditTest, AnEditThatChangesNothingIsNoStep) {

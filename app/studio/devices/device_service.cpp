@@ -56,6 +56,7 @@ struct DeviceService::Data {
     void listen();
     void follow(const MatchFrame& frame); ///< in the loop's thread
     void takeRig();
+    void followEdits();
     void use(DeviceProfile next);
     bool force(const DeviceProfile& next);
     void keep();
@@ -81,7 +82,8 @@ struct DeviceService::Data {
     RigProfiles profiles;
     std::unique_ptr<SimulatedBench> bench = std::make_unique<SimulatedBench>();
     std::shared_ptr<const Rig> rig;
-    std::shared_ptr<const Rig> origin; ///< of the rig, the same for its edits
+    std::shared_ptr<const Rig> origin;   ///< of the rig, the same for its edits
+    std::shared_ptr<const Rig> followed; ///< whose pulses the profile was last set beside
     DeviceProfile profile;
     HandWatch handWatch;
     HandSense hands;
@@ -144,6 +146,7 @@ void DeviceService::Data::listen() {
     connect(&document, &StudioDocument::changed, &service, [this](StateParts parts) {
         if (parts & (StatePart::rig | StatePart::rigEdited)) takeRig();
     });
+    connect(&document.undoStack(), &QUndoStack::indexChanged, &service, [this] { takeRig(); }); // a drag has ended
     // STOP is for the servos before it is for anything else.
     connect(&loop, &StudioLoop::stopOrdered, &service, [this] {
         feed.stop();
@@ -157,13 +160,14 @@ void DeviceService::Data::listen() {
 /// Another rig has other servos; the same one, edited, keeps its link.
 void DeviceService::Data::takeRig() {
     const auto& now = document.state().rig.rig;
-    if (now == rig) return;
+    if (now == rig) return followEdits();
     const bool edited = origin && origin == document.state().rig.origin;
     const bool same =
         now && rig && (edited || now->name() == rig->name()) && now->actuatorCount() == profile.servos.size();
     rig = now;
     origin = document.state().rig.origin;
-    if (same) return;
+    if (same) return followEdits();
+    followed = rig;
     retire();
     undo.clear();
     beforePreview.reset();
@@ -172,6 +176,23 @@ void DeviceService::Data::takeRig() {
         if (const QString last = profiles.lastOf(*rig); !last.isEmpty()) service.loadProfile(last);
     emit service.profileChanged();
     take();
+}
+
+/// What a drag passes on its way is not followed: wider pulses begin a link anew.
+void DeviceService::Data::followEdits() {
+    if (!rig || followed == rig || document.previewing()) return;
+    const auto before = std::exchange(followed, rig);
+    if (!before || before->actuatorCount() != rig->actuatorCount()) return;
+    DeviceProfile next = profile;
+    const bool all = followEdit(next, *before, *rig);
+    if (next != profile && force(next) && profiles.lastOf(*rig) == QString::fromStdString(profile.name)) keep();
+    if (all) return;
+    notices.post("servo", {Notice::Level::warning,
+                           "Pulses of the servos",
+                           "the rig moves by other pulses now, and servos that were set up in Devices keep theirs: "
+                           "light may miss the device",
+                           "Set them up as the rig says, or measure anew where each servo stands",
+                           {{"Set up as the rig says", [this] { service.resetProfile(); }}}});
 }
 
 /// A hand that comes near makes servos slow before they are told where to go.

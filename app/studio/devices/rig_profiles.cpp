@@ -1,6 +1,7 @@
 #include "app/studio/devices/rig_profiles.h"
 
 #include <algorithm>
+#include <tuple>
 
 #include "core/base/error.h"
 #include "devices/controllers/controller_kinds.h"
@@ -11,6 +12,9 @@ namespace {
 constexpr auto kProfileKey = "device/profile/"; ///< and the rig's name
 
 QString usualName(const Rig& rig) { return fileNameOf(QString::fromStdString(rig.name())); }
+
+/// What a rig's file says of a servo's pulses.
+auto drivenBy(const ServoSetup& servo) { return std::tie(servo.pulseMin, servo.pulseMax, servo.curve, servo.reversed); }
 
 bool sameChannels(const DeviceProfile& a, const DeviceProfile& b) {
     return std::ranges::equal(a.servos, b.servos, {}, &ServoSetup::channel, &ServoSetup::channel);
@@ -47,6 +51,27 @@ DeviceProfile freshProfile(const Rig& rig, ControllerKind kind) {
     profile.controller = kind;
     profile.name = usualName(rig).toStdString();
     return profile;
+}
+
+bool followEdit(DeviceProfile& profile, const Rig& before, const Rig& now) {
+    bool all = true;
+    const std::vector<ServoSetup> told = profileFor(before).servos, tells = profileFor(now).servos;
+    for (std::size_t k = 0; k < profile.servos.size() && k < told.size() && k < tells.size(); ++k) {
+        ServoSetup& servo = profile.servos[k];
+        if (servo.maxVelocity == told[k].maxVelocity) servo.maxVelocity = tells[k].maxVelocity;
+        if (drivenBy(told[k]) == drivenBy(tells[k]) || drivenBy(servo) == drivenBy(tells[k])) continue;
+        if (drivenBy(servo) != drivenBy(told[k])) {
+            all = false;
+            continue;
+        }
+        servo.pulseMin = tells[k].pulseMin;
+        servo.pulseMax = tells[k].pulseMax;
+        servo.curve = tells[k].curve;
+        servo.reversed = tells[k].reversed;
+        const double most = 0.5 * (servo.pulseMax - servo.pulseMin);
+        servo.trim = std::clamp(servo.trim, -most, most);
+    }
+    return all;
 }
 
 DeviceProfile readdressed(const DeviceProfile& profile, const Rig& rig, const std::string& address,

@@ -33,6 +33,9 @@ private:
 
 /// A fresh profile, named after the rig, as its file describes its drives.
 [[nodiscard]] DeviceProfile freshProfile(const Rig& rig, ControllerKind kind);
+/// After an edit of the rig: servos that are set up as it said before are set up as it says now (pulses, curve,
+/// direction, velocity). False where it says something else now of a servo that was set up otherwise; that one stays.
+[[nodiscard]] bool followEdit(DeviceProfile& profile, const Rig& before, const Rig& now);
 /// The same set-up on another device. Who has not chosen channels has them counted as this kind of controller counts;
 /// what was known of the very board is forgotten where the address is another.
 [[nodiscard]] DeviceProfile readdressed(const DeviceProfile& profile, const Rig& rig, const std::string& address,

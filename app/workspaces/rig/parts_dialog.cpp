@@ -19,6 +19,7 @@
 
 #include "app/studio/devices/device_shelf.h"
 #include "app/studio/document/job_slots.h"
+#include "app/studio/document/rig_edit.h"
 #include "app/studio/widgets/panel.h"
 #include "app/studio/widgets/value_field.h"
 #include "app/workspaces/common/export_dialogs.h"
@@ -162,6 +163,7 @@ private:
                           ProfileLimits limits, double usual, const QString& key);
     QLabel* makeText(const QString& name, const char* look);
     void plan(); ///< anew, beside the window; the newest choice wins
+    void fitRig();
     void take(const std::shared_ptr<const BuildPlan>& plan);
     void refuse(const std::exception& why);
 
@@ -177,6 +179,7 @@ private:
     QScrollArea* noteArea_ = new QScrollArea;
     QLabel* wrong_ = nullptr;
     QTableWidget* table_ = new QTableWidget;
+    QPushButton* fit_ = nullptr;
     QPushButton* write_ = nullptr;
 };
 
@@ -298,6 +301,12 @@ QWidget* PartsDialog::makeButtons() {
     write_->setProperty("look", "primary");
     write_->setDefault(true);
     buttons->addButton(QDialogButtonBox::Cancel)->setObjectName("export.parts.cancel");
+    fit_ = buttons->addButton(tr("&Fit the rig to its levers"), QDialogButtonBox::ActionRole);
+    fit_->setObjectName("export.parts.fit");
+    fit_->setToolTip(tr("Ranges end where these levers end, and half of a pulse is what half of it lifts: field, light "
+                        "and servos then agree with what is built. One step of undo"));
+    fit_->hide();
+    connect(fit_, &QPushButton::clicked, this, &PartsDialog::fitRig);
     connect(buttons, &QDialogButtonBox::accepted, this, [this] {
         if (!planned_.plan) return;
         accept();
@@ -310,6 +319,7 @@ QWidget* PartsDialog::makeButtons() {
 void PartsDialog::plan() {
     planned_.plan.reset();
     write_->setEnabled(false);
+    fit_->hide();
     PartOptions options;
     options.servo = servoBodies()[static_cast<std::size_t>(servo_->currentIndex())];
     options.bed = bed_->value();
@@ -326,6 +336,7 @@ void PartsDialog::plan() {
 void PartsDialog::take(const std::shared_ptr<const BuildPlan>& plan) {
     planned_.plan = plan;
     write_->setEnabled(true);
+    fit_->setVisible(withLevers(*planned_.rig, *plan) != planned_.rig->parts());
     wrong_->hide();
     board_->setText(boardText(*plan));
     summary_->setText(contentText(*plan) + tr(". Besides: parts list, wiring table, assembly page."));
@@ -345,6 +356,14 @@ void PartsDialog::take(const std::shared_ptr<const BuildPlan>& plan) {
         table_->setItem(row, 2, new QTableWidgetItem(partSizeText(part)));
         ++row;
     }
+}
+
+void PartsDialog::fitRig() {
+    if (!planned_.plan) return;
+    const RigParts fitted = withLevers(*planned_.rig, *planned_.plan);
+    planned_.rig = std::make_shared<const Rig>(fitted);
+    editRig(studio_.document, tr("Fit the rig to its levers"), [&fitted](RigParts& parts) { parts = fitted; });
+    plan();
 }
 
 /// Without parts there is nothing to choose a folder for.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 #include <QGridLayout>
 #include <QLabel>
@@ -47,6 +48,10 @@ QString shortNumber(double value) {
 
 QString percentText(double share) { return shortNumber(100.0 * share) + " %"; }
 
+double halfWay(const ActuatorDrive& drive) {
+    return std::lerp(drive.pulseMin, drive.pulseMax, turnedAt(drive.curve, 0.5));
+}
+
 QString statesText(int count, int of) {
     return count == 0 ? QString("none of %1").arg(of) : QString("%1 of %2").arg(count).arg(of);
 }
@@ -64,7 +69,14 @@ void setRange(Actuator& actuator, double min, double max) {
     const ActuatorRange before = rangeOf(actuator);
     if (std::holds_alternative<SheetLift>(actuator.deformer)) return;
     std::visit(SetRange{min, max}, actuator.deformer);
-    if (before.max > before.min && max > min) actuator.maxVelocity *= (before.max - before.min) / (max - min);
+    if (!(before.max > before.min && max > min)) return;
+    const double longer = (max - min) / (before.max - before.min);
+    actuator.maxVelocity /= longer;
+    ActuatorDrive& drive = actuator.drive;
+    const double full = std::lerp(drive.pulseMin, drive.pulseMax, turnedAt(drive.curve, longer));
+    if (full < profile_limits::kPulse.least || full > profile_limits::kPulse.most) return;
+    drive.curve = upTo(drive.curve, longer);
+    drive.pulseMax = full;
 }
 
 QString lengthText(double metres) { return shortNumber(1000.0 * metres) + " mm"; }
@@ -116,6 +128,7 @@ std::vector<RigFact> factsOf(const Rig& rig, std::size_t index, double amplitude
     if (setup) {
         drive.pulseMin = setup->reversed ? setup->pulseMax : setup->pulseMin;
         drive.pulseMax = setup->reversed ? setup->pulseMin : setup->pulseMax;
+        drive.curve = setup->curve;
     }
     std::vector<RigFact> facts{
         {"Moves by", deformerText(actuator), "How its part changes shape"},
@@ -124,8 +137,10 @@ std::vector<RigFact> factsOf(const Rig& rig, std::size_t index, double amplitude
         {"Moves", countText(rig.verticesOf(index).size()) + " vertices", "How much of the mesh follows it"},
         {"Channel", drive.channel < 0 ? QString("none") : QString::number(drive.channel),
          "The number of its servo in the rig's file and in the wiring table of its parts; the first is 0"},
-        {"Pulse", shortNumber(drive.pulseMin) + " to " + shortNumber(drive.pulseMax) + " µs",
-         "What the servo is sent at rest and at full stroke"},
+        {"Pulse",
+         shortNumber(drive.pulseMin) + " to " + shortNumber(drive.pulseMax) + " µs" +
+             (drive.curve.empty() ? "" : QString(", half-way %1 µs").arg(shortNumber(halfWay(drive)))),
+         "What the servo is sent at rest and at full stroke; where a lever is between the two, half-way, too"},
     };
     if (setup)
         facts.push_back({"At the board", QString::number(setup->channel),
@@ -151,7 +166,7 @@ std::vector<RigFact> meshFacts(const ShapeReport& report) {
 std::vector<RigFact> shapeFacts(const ShapeReport& report) {
     const glm::vec3 size = report.reach.size();
     const int states = report.sampledStates;
-    return {
+    std::vector<RigFact> facts{
         {"Size", sizeText(size.x, size.y, size.z), "Over all states"},
         {"Moving surface", shortNumber(1e4 * report.area) + " cm²", "Surface at rest that any actuator moves"},
         {"Granularity", shortNumber(1e-2 * report.granularity) + " per dm²",
@@ -167,6 +182,16 @@ std::vector<RigFact> shapeFacts(const ShapeReport& report) {
          report.pathInside ? QString("yes") : QString("no, %1 outside").arg(percentText(report.pathOutsideShare)),
          "Whether the solid at a state holds all that it passed on its way"},
     };
+    if (report.seconds)
+        facts.push_back({"Second shapes",
+                         report.seconds->states == 0 ? QString("none of %1").arg(report.seconds->of)
+                                                     : QString("%1 of %2, up to %3 away")
+                                                           .arg(report.seconds->states)
+                                                           .arg(report.seconds->of)
+                                                           .arg(lengthText(report.seconds->distance)),
+                         "Joint states in which the sheet can also rest otherwise than it is shown. A second shape is "
+                         "reached by a push, or by another way there"});
+    return facts;
 }
 
 QWidget* makeFacts(const std::vector<RigFact>& facts, const QString& prefix, QWidget* parent) {

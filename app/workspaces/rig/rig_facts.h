@@ -31,7 +31,8 @@ struct ActuatorRange {
 };
 [[nodiscard]] ActuatorRange rangeOf(const Actuator& actuator);
 /// Another range for an actuator that turns or moves; not for a lever of a sheet, whose shapes were computed for its.
-/// Its servo is as fast as before: the velocity limit, which counts strokes, follows the range.
+/// Its servo is as fast as before, and turns as far for an angle or a way: velocity limit and pulses, which count
+/// strokes, follow the range. Pulses stay where 500 to 2500 microseconds would not reach.
 void setRange(Actuator& actuator, double min, double max);
 
 /// "Hinge", "Bend", "Slide", "Morph target", "Joint" or "Lever of the sheet".

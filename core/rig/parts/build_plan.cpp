@@ -10,6 +10,7 @@
 #include "core/rig/drive_channels.h"
 #include "core/rig/parts/plan_making.h"
 #include "core/rig/parts/servo_seat.h"
+#include "core/rig/servo_types.h"
 
 namespace lumorph {
 namespace {
@@ -48,6 +49,7 @@ void addWiring(BuildPlan& plan, const Rig& rig) {
         const auto [least, greatest] = std::minmax(actuator.drive.pulseMin, actuator.drive.pulseMax);
         row.pulseMin = std::clamp(least, kLeastPulse, kGreatestPulse - 1.0);
         row.pulseMax = std::clamp(greatest, row.pulseMin + 1.0, kGreatestPulse);
+        row.curve = actuator.drive.curve;
         row.reversed = actuator.drive.pulseMin > actuator.drive.pulseMax;
         plan.wiring.push_back(std::move(row));
     }
@@ -106,6 +108,7 @@ BuildPlan buildPlanOf(const Rig& rig, const PartOptions& options, const Progress
     progress.report(0.0, "reading the rig");
     BuildPlan plan;
     plan.device = rig.name();
+    plan.servo = options.servo.name;
     addWiring(plan, rig);
     if (const auto sheet = sheetPlanOf(rig)) {
         addSheetParts(plan, *sheet, options, progress);
@@ -125,6 +128,29 @@ BuildPlan buildPlanOf(const Rig& rig, const PartOptions& options, const Progress
     addBoard(plan);
     progress.report(1.0, "parts");
     return plan;
+}
+
+RigParts withLevers(const Rig& rig, const BuildPlan& plan) {
+    RigParts parts = rig.parts();
+    for (std::size_t k = 0; k < parts.actuators.size() && k < plan.wiring.size(); ++k) {
+        const WiringRow& row = plan.wiring[k];
+        if (!row.lever) continue;
+        Actuator& actuator = parts.actuators[k];
+        if (auto* bend = std::get_if<Bend>(&actuator.deformer)) {
+            const double before = bend->max.inRadians() - bend->min.inRadians();
+            const double lifted = std::min(before, row.lever->lifted.inRadians());
+            bend->max = Angle::radians(bend->min.inRadians() + lifted);
+            actuator.maxVelocity *= before / lifted;
+            if (const ServoType* servo = findServo(plan.servo))
+                actuator.maxVelocity = std::min(actuator.maxVelocity,
+                                                servo->speed / (row.lever->turn().inRadians() * steepest(row.curve)));
+        }
+        actuator.drive.pulseMin = row.reversed ? row.pulseMax : row.pulseMin;
+        actuator.drive.pulseMax = row.reversed ? row.pulseMin : row.pulseMax;
+        actuator.drive.curve = row.curve;
+        actuator.drive.servo = plan.servo;
+    }
+    return parts;
 }
 
 } // namespace lumorph

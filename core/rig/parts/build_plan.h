@@ -42,6 +42,7 @@ struct WiringRow {
     int pin = -1;             ///< of the board; -1 where one board does not have enough
     double pulseMin = 1000.0; ///< microseconds, least and greatest that may be sent
     double pulseMax = 2000.0;
+    PulseCurve curve{};    ///< of its lever, from rest to where the lever has lifted the flap
     bool reversed = false; ///< rest at pulseMax
     std::string seat;      ///< what holds its servo
     std::optional<Lever> lever;
@@ -57,6 +58,7 @@ struct BuildStep {
 /// All that a maker needs to build a device.
 struct BuildPlan {
     std::string device;
+    std::string servo; ///< its kind, as in PartOptions
     std::vector<PrintPart> parts;
     std::vector<BoughtPart> bought;
     std::vector<WiringRow> wiring;
@@ -73,5 +75,10 @@ inline constexpr std::size_t kBoardServos = 12;
 /// has no housing. Every part is closed and manifold and lies within the bed, in pieces with dovetails where it must.
 /// Throws InvalidInput naming the option, the part or the actuator that stands in the way; Cancelled.
 [[nodiscard]] BuildPlan buildPlanOf(const Rig& rig, const PartOptions& options = {}, const Progress& progress = {});
+
+/// The rig as the levers of its plan move it: a bend ends where its lever has lifted the flap, pulses are those of the
+/// wiring with the lever's curve. No stroke is faster than before or than the servo can turn. Actuators without a lever
+/// stay as they are.
+[[nodiscard]] RigParts withLevers(const Rig& rig, const BuildPlan& plan);
 
 } // namespace lumorph

@@ -20,6 +20,7 @@ constexpr double kBeyond = 1.0;     ///< of straight flap that the nose reaches 
 constexpr double kInsideSlot = 2.5; ///< from the line that the nose holds at rest to the nose, so that the lid has room
 constexpr double kLeastLift = 20.0; ///< degrees
 constexpr double kMostLean = 25.0;  ///< degrees between flap and arm at the end
+constexpr int kCurveSteps = 16;
 
 /// From the shaft to the middle of the horn's round end; a horn that is too long for the lever is cut off.
 double hornEnd(double length, const ServoBody& body) {
@@ -33,6 +34,17 @@ double distanceToSegment(const glm::dvec2& p, const glm::dvec2& a, const glm::dv
     return glm::distance(p, a + share * (b - a));
 }
 
+/// The underside of a flap beyond its arc, in a lever's plane: where it begins, and the ways along it and out of it.
+struct Underside {
+    glm::dvec2 begin, along, out;
+
+    Underside(double arc, double angle, double thickness)
+        : along(std::cos(angle), std::sin(angle)), out(along.y, -along.x) {
+        const double radius = arc / angle;
+        begin = glm::dvec2(0.0, 0.5 * thickness) + radius * glm::dvec2(along.y, 1.0 - along.x) + 0.5 * thickness * out;
+    }
+};
+
 /// The lever of a given length that holds the flap at an angle, itself leaning back from it by `lean`. `horn`: how far
 /// along the lever the horn ends, and the radius there.
 std::optional<Lever> leverAlong(const SheetFlap& flap, double thickness, double below, double angle, double lean,
@@ -41,17 +53,11 @@ std::optional<Lever> leverAlong(const SheetFlap& flap, double thickness, double 
     if (rise >= length || rise < 0.0) return std::nullopt;
     const double rest = std::asin(rise / length);
     if (rest >= angle - lean) return std::nullopt;
-    // Underside of the flap where its arc ends, and the way straight on from there.
-    const double radius = flap.arc / angle;
-    const glm::dvec2 end = glm::dvec2(0.0, 0.5 * thickness) +
-                           radius * glm::dvec2(std::sin(angle), 1.0 - std::cos(angle)) +
-                           0.5 * thickness * glm::dvec2(std::sin(angle), -std::cos(angle));
-    const glm::dvec2 way(std::cos(angle), std::sin(angle));
-    const glm::dvec2 out(way.y, -way.x);
+    const Underside under(flap.arc, angle, thickness);
     const glm::dvec2 arm(std::cos(angle - lean), std::sin(angle - lean));
-    // (nose - end) . out = kNose, where nose = (pivot, -below) + length * arm.
+    // (nose - begin) . out = kNose, where nose = (pivot, -below) + length * arm.
     Lever lever;
-    lever.pivot = (Lever::kNose + glm::dot(end - length * arm, out) + below * out.y) / out.x;
+    lever.pivot = (Lever::kNose + glm::dot(under.begin - length * arm, under.out) + below * under.out.y) / under.out.x;
     lever.below = below;
     lever.length = length;
     lever.rest = Angle::radians(rest);
@@ -59,11 +65,12 @@ std::optional<Lever> leverAlong(const SheetFlap& flap, double thickness, double 
     lever.lifted = Angle::radians(angle);
     const glm::dvec2 shaft(lever.pivot, -below);
     const glm::dvec2 nose = shaft + length * arm;
+    const double radius = flap.arc / angle;
     const glm::dvec2 centre(0.0, 0.5 * thickness + radius);
     const double outside = radius + 0.5 * thickness + kClear;
     if (distanceToSegment(centre, shaft, nose) < outside + kArmTop) return std::nullopt;
     if (glm::distance(centre, shaft + horn.x * arm) < outside + horn.y) return std::nullopt;
-    return glm::dot(nose - end, way) >= kBeyond ? std::optional(lever) : std::nullopt;
+    return glm::dot(nose - under.begin, under.along) >= kBeyond ? std::optional(lever) : std::nullopt;
 }
 
 } // namespace
@@ -100,6 +107,21 @@ std::optional<Lever> captiveLever(const SheetFlap::Captive& captive, double belo
     lever.lifted = lever.end;
     lever.pivot = -captive.arm * std::cos(lever.rest.inRadians()) - kInsideSlot;
     return lever;
+}
+
+PulseCurve pulseCurveOf(const Lever& lever, const SheetFlap& flap, double thickness) {
+    PulseCurve curve{0.0};
+    const glm::dvec2 shaft(lever.pivot, -lever.below);
+    for (int step = 1; step < kCurveSteps; ++step) {
+        const double angle = lever.lifted.inRadians() * step / kCurveSteps;
+        const Underside under(flap.arc, angle, thickness);
+        // (shaft + length x arm - begin) . out = kNose, where arm . out = sin(angle - the lever's).
+        const double off = (Lever::kNose + glm::dot(under.begin - shaft, under.out)) / lever.length;
+        const double turned = angle - std::asin(std::clamp(off, -1.0, 1.0)) - lever.rest.inRadians();
+        curve.push_back(turned / lever.turn().inRadians());
+    }
+    curve.push_back(1.0);
+    return curve;
 }
 
 double leverPlane(const ServoBody& body) { return body.hornTop + kBase - 0.5 * Lever::kThickness; }

@@ -33,6 +33,10 @@ struct Lever {
 [[nodiscard]] std::optional<Lever> leverFor(const SheetFlap& flap, double thickness, double depth, double below,
                                             const ServoBody& body, double tolerance);
 
+/// How its servo turns while the flap goes evenly from rest to where it is lifted, the nose always on the flap's
+/// underside. `thickness` is the sheet's.
+[[nodiscard]] PulseCurve pulseCurveOf(const Lever& lever, const SheetFlap& flap, double thickness);
+
 /// The lever whose nose is captive in a slot of a continuous sheet: its arm and its lift are given. None where the
 /// shaft lies too deep for that arm.
 [[nodiscard]] std::optional<Lever> captiveLever(const SheetFlap::Captive& captive, double below);

@@ -175,6 +175,7 @@ private:
             const double span =
                 std::min(row.pulseMax - row.pulseMin, servo.lever->turn().inDegrees() / options_.servo.degreesPerPulse);
             row.reversed ? row.pulseMin = row.pulseMax - span : row.pulseMax = row.pulseMin + span;
+            if (!flap.captive) row.curve = pulseCurveOf(*servo.lever, flap, sheet_.top - sheet_.underside);
         }
     }
 

@@ -93,7 +93,8 @@ public:
         solve();
         findSeconds();
         progress_.report(kModesBegin, "modes");
-        JointStates result{mesh_, modes(), std::move(seconds_), {}};
+        JointStates result{mesh_, modes(), {}, {}};
+        result.seconds = std::move(seconds_);
         summarise(result);
         return result;
     }
@@ -117,6 +118,7 @@ private:
             if (source.state == state) chosen_.push_back(state);
         }
         poses_.resize(grid_.size());
+        hasSecond_.resize(grid_.size());
     }
 
     /// Calls `work` with a solver for each chosen state, in parallel.
@@ -149,7 +151,9 @@ private:
             const std::lock_guard lock(adding);
             iterations_ += second->iterations;
             const double distance = farthestNode(second->state, first.state);
-            if (distance > kSameShape) seconds_.push_back({first.strokes, distance, second->energy - first.energy});
+            if (distance <= kSameShape) return;
+            seconds_.push_back({first.strokes, distance, second->energy - first.energy});
+            hasSecond_[state] = true;
         });
         std::ranges::sort(seconds_, {}, &SecondEquilibrium::strokes);
     }
@@ -197,6 +201,9 @@ private:
                 modes.coefficients.push_back(static_cast<float>(values[state]));
         for (Eigen::Index v = 0; v < all.rows(); v += 3)
             for (const Eigen::VectorXd& shape : shapes) modes.modes.emplace_back(shape[v], shape[v + 1], shape[v + 2]);
+        for (const Source& source : source_) modes.secondStates += hasSecond_[source.state] ? 1 : 0;
+        for (const SecondEquilibrium& second : seconds_)
+            modes.secondDistance = std::max(modes.secondDistance, static_cast<float>(second.distance));
         return modes;
     }
 
@@ -257,6 +264,7 @@ private:
     std::vector<std::size_t> chosen_;
     std::vector<std::optional<SheetPose>> poses_; ///< of chosen states
     std::vector<SecondEquilibrium> seconds_;
+    std::vector<bool> hasSecond_; ///< of chosen states
     int iterations_ = 0;
     tbb::enumerable_thread_specific<LeveredSheet> solvers_;
 };

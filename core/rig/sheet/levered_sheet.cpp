@@ -56,8 +56,8 @@ SheetPose LeveredSheet::moved(const SheetPose& from, std::span<const double> str
     checkStrokes(strokes);
     auto pose = continued(from, strokes, kMostHalvings);
     if (!pose)
-        throw InvalidInput("sheet", "no equilibrium was found on the way to the levers' strokes",
-                           "let the levers lift less, or choose a thicker sheet");
+        throw InvalidInput("sheet", "no equilibrium was found on the way to " + namesAndStrokes(strokes),
+                           "let these lift less, or choose a thicker sheet");
     if (std::abs(pose->strain.middle) > kMostStretch)
         throw InvalidInput(strongestLevers(*pose),
                            "they pull against each other: the sheet would stretch by " +
@@ -141,6 +141,15 @@ void LeveredSheet::checkStrokes(std::span<const double> strokes) const {
                                    "they pull against each other: the sheet between them is too short",
                                    "let one lift less, or move their lines apart");
     }
+}
+
+std::string LeveredSheet::namesAndStrokes(std::span<const double> strokes) const {
+    std::string text;
+    for (std::size_t l = 0; l < levers_.size(); ++l)
+        if (strokes[l] > 0.0)
+            text += (text.empty() ? "'" : ", '") + levers_[l].name + "' at " +
+                    std::to_string(std::lround(100.0 * strokes[l])) + " %";
+    return text.empty() ? "rest" : text;
 }
 
 std::string LeveredSheet::strongestLevers(const SheetPose& pose) const {

@@ -51,6 +51,8 @@ private:
     [[nodiscard]] std::optional<SheetPose> continued(const SheetPose& from, std::span<const double> strokes,
                                                      int halvings);
     void checkStrokes(std::span<const double> strokes) const;
+    /// "'a' at 50 %, 'b' at 100 %".
+    [[nodiscard]] std::string namesAndStrokes(std::span<const double> strokes) const;
     [[nodiscard]] std::string strongestLevers(const SheetPose& pose) const;
 
     std::vector<SheetLever> levers_;

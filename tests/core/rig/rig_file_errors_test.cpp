@@ -56,6 +56,15 @@ TEST_P(RigFileBrokenEntries, NameFileNodeAndRemedy) {
 INSTANTIATE_TEST_SUITE_P(
     RigFile, RigFileBrokenEntries,
     testing::Values(Broken{"NotAnObject", "not an object", [](json& e) { e = "hinge"; }},
+                    Broken{"CurveNoList", "\"pulseCurve\"", [](json& e) { e["pulseCurve"] = 3; }},
+                    Broken{"CurveFalls", "\"pulseCurve\" does not rise",
+                           [](json& e) {
+                               e["pulseCurve"] = {0, 0.6, 0.5, 1};
+                           }},
+                    Broken{"CurveText", "\"pulseCurve\" is not a finite number",
+                           [](json& e) {
+                               e["pulseCurve"] = {0, "half", 1};
+                           }},
                     Broken{"NoName", "\"actuator\" is missing", [](json& e) { e.erase("actuator"); }},
                     Broken{"NameNotText", "not a text", [](json& e) { e["actuator"] = 5; }},
                     Broken{"NoDeformer", "\"deformer\" is missing", [](json& e) { e.erase("deformer"); }},

@@ -18,6 +18,8 @@ TEST(SheetFile, GivesBackEveryBit) {
     for (RigParts parts : {test::smallSheetParts(), test::liftedSheetParts()}) {
         parts.actuators[1].maxVelocity = 0.77;
         parts.sheet->followers.back().share = 0.3F; // of a vertex that follows nothing
+        parts.sheet->modes.secondStates = 7;
+        parts.sheet->modes.secondDistance = 0.0137F;
         const Rig rig(std::move(parts));
         const auto bytes = writeRigGlb(rig);
         const Rig read = readRigGlb(bytes, "sheet.glb");

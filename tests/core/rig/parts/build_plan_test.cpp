@@ -12,6 +12,8 @@
 #include "core/geometry/plane_mesh.h"
 #include "core/rig/parts/build_files.h"
 #include "core/rig/parts/build_plan.h"
+#include "core/rig/rig_file.h"
+#include "core/rig/servo_types.h"
 #include "core/rig/templates/bundled_rigs.h"
 #include "core/rig/templates/rig_templates.h"
 #include "core/rig/templates/sheet_device.h"
@@ -383,6 +385,77 @@ TEST(Levers, TouchTheFlapAtRestAndAtTheEndAndNothingBetween) {
             EXPECT_NEAR(0.09 * (plan.wiring[k].pulseMax - plan.wiring[k].pulseMin), lever.turn().inDegrees(), 0.1);
         }
     }
+}
+
+/// The angle of a flap that lies on a nose at this place: the least at which it is clear of it.
+Angle liftedBy(const Bend& bend, const glm::dvec2& nose, double thickness) {
+    double low = 1e-4, high = bend.max.inRadians();
+    for (int step = 0; step < 24; ++step) {
+        const double angle = 0.5 * (low + high);
+        const std::vector<glm::dvec2> line = bentUnderside(bend, angle, thickness);
+        // The nose is above the line's nearest part, or cuts it.
+        double least = std::numeric_limits<double>::max(), side = 0.0;
+        for (std::size_t k = 0; k + 1 < line.size(); ++k) {
+            const glm::dvec2 way = line[k + 1] - line[k], to = nose - line[k];
+            const double share = std::clamp(glm::dot(to, way) / glm::dot(way, way), 0.0, 1.0);
+            const double distance = glm::length(to - share * way);
+            if (distance >= least) continue;
+            least = distance;
+            side = way.x * to.y - way.y * to.x;
+        }
+        (side < 0.0 && least >= Lever::kNose ? high : low) = angle;
+    }
+    return Angle::radians(high);
+}
+
+TEST(Levers, HalfAPulseIsNotHalfAnAngleAndTheirCurveSaysWhatItIs) {
+    double worst = 0.0, straight = 0.0;
+    for (const char* name : {"cut_tablet", "flower", "book"}) {
+        const Rig& rig = templateRig(name);
+        const BuildPlan& plan = templatePlan(name);
+        const Rig fitted(withLevers(rig, plan));
+        for (std::size_t k = 0; k < plan.wiring.size(); ++k) {
+            SCOPED_TRACE(plan.wiring[k].actuator);
+            const Lever& lever = *plan.wiring[k].lever;
+            const auto& bend = std::get<Bend>(fitted.actuators()[k].deformer);
+            EXPECT_NEAR(bend.max.inDegrees(), lever.lifted.inDegrees(), 1e-6);
+            const ActuatorDrive& drive = fitted.actuators()[k].drive;
+            for (const double stroke : {0.13, 0.29, 0.5, 0.61, 0.83, 1.0}) {
+                // 0.09 degrees a microsecond: what the servo's table says of an SG90.
+                const double turned = 0.09 * std::abs(drive.pulseMax - drive.pulseMin) * turnedAt(drive.curve, stroke);
+                const auto nose = [&](double degrees) {
+                    const double at = lever.rest.inRadians() + Angle::degrees(degrees).inRadians();
+                    return glm::dvec2(lever.pivot, -lever.below) +
+                           lever.length * glm::dvec2(std::cos(at), std::sin(at));
+                };
+                const double wanted = stroke * bend.max.inDegrees();
+                worst = std::max(worst, std::abs(liftedBy(bend, nose(turned), 2.0).inDegrees() - wanted));
+                const double evenly = stroke * lever.turn().inDegrees();
+                straight = std::max(straight, std::abs(liftedBy(bend, nose(evenly), 2.0).inDegrees() - wanted));
+            }
+        }
+    }
+    EXPECT_LT(worst, 1.0) << "degrees";
+    EXPECT_GT(straight, 5.0) << "degrees; what it was without the curve";
+    std::printf("flaps on their levers: at most %.2f degrees off, %.1f without the curve\n", worst, straight);
+}
+
+TEST(Levers, FittedTheRigPlansTheSameLeversAgain) {
+    const Rig& rig = templateRig("cut_tablet");
+    const BuildPlan& plan = templatePlan("cut_tablet");
+    const Rig fitted(withLevers(rig, plan));
+    const BuildPlan again = buildPlanOf(fitted);
+    for (std::size_t k = 0; k < plan.wiring.size(); ++k) {
+        EXPECT_NEAR(again.wiring[k].lever->length, plan.wiring[k].lever->length, 1e-6);
+        EXPECT_NEAR(again.wiring[k].pulseMax - again.wiring[k].pulseMin,
+                    plan.wiring[k].pulseMax - plan.wiring[k].pulseMin, 1e-6);
+        // No stroke asks more of the servo than its speed without load.
+        const double turn = plan.wiring[k].lever->turn().inRadians();
+        EXPECT_LE(fitted.actuators()[k].maxVelocity * turn * steepest(fitted.actuators()[k].drive.curve),
+                  servoType("SG90").speed * (1.0 + 1e-9));
+    }
+    EXPECT_EQ(withLevers(fitted, again), fitted.parts());
+    EXPECT_TRUE(readRigGlb(writeRigGlb(fitted), "fitted.glb").parts().actuators == fitted.parts().actuators);
 }
 
 TEST(BuildPlan, CutsPartsToASmallBed) {

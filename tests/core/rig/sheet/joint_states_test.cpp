@@ -35,6 +35,7 @@ TEST(JointStates, ModesGiveTheGridsStatesAndThoseBetween) {
         EXPECT_LT(farthest(baked, levered.followed(strokes)), 5e-4);
     EXPECT_EQ(baked.solved, 6); // of 9: the others are mirror images
     EXPECT_TRUE(baked.seconds.empty());
+    EXPECT_EQ(baked.modes.secondStates, 0U);
 }
 
 TEST(JointStates, LoadsAreTheLargestOfTheGrid) {
