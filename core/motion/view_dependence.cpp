@@ -12,12 +12,14 @@ namespace lumorph {
 
 namespace {
 
-constexpr double kQuarterTurn = 0.5 * std::numbers::pi;
+constexpr double kDegree = std::numbers::pi / 180.0;
+constexpr double kQuarterTurn = 90.0 * kDegree;
 
-// An edge bends wholly while it lies within kFull of straight away from the user, and not at all beyond kNone. Between
-// them its weight falls by at most 1.5 / (kNone - kFull) = 0.03 a degree: less than one of 33 levels.
-constexpr double kFull = 50.0 / 180.0 * std::numbers::pi;
-constexpr double kNone = 100.0 / 180.0 * std::numbers::pi;
+constexpr double kFull = 50.0 * kDegree; ///< within it of straight away from the user an edge bends wholly
+/// From there to nothing: at least this, and so much a level that the steepest place of the fall takes 1 degree a
+/// level.
+constexpr double kFall = 50.0 * kDegree;
+constexpr double kFallOfLevel = 1.52 * kDegree;
 
 // What stays well inside the outline is no edge; shares of the way from the centre to the outline.
 constexpr double kInner = 0.5;
@@ -28,12 +30,13 @@ double smoothShare(double from, double to, double value) {
     return share * share * (3.0 - 2.0 * share);
 }
 
-double turnOf(const Deformer& deformer) {
-    if (const auto* hinge = std::get_if<Hinge>(&deformer)) return hinge->max.inRadians() - hinge->min.inRadians();
-    if (const auto* bend = std::get_if<Bend>(&deformer)) return bend->max.inRadians() - bend->min.inRadians();
+/// From where to where it turns, radians.
+std::pair<double, double> turnOf(const Deformer& deformer) {
+    if (const auto* hinge = std::get_if<Hinge>(&deformer)) return {hinge->min.inRadians(), hinge->max.inRadians()};
+    if (const auto* bend = std::get_if<Bend>(&deformer)) return {bend->min.inRadians(), bend->max.inRadians()};
     const auto* joint = std::get_if<SkinJoint>(&deformer);
-    if (joint && joint->motion == SkinJoint::Motion::rotate) return joint->max - joint->min;
-    return kQuarterTurn;
+    if (joint && joint->motion == SkinJoint::Motion::rotate) return {joint->min, joint->max};
+    return {0.0, kQuarterTurn};
 }
 
 /// What one actuator alone does at full stroke.
@@ -95,11 +98,18 @@ ViewRule::ViewRule(const Rig& rig) {
     for (std::size_t i = 0; i < rig.actuatorCount(); ++i) {
         const Lift lift = liftOf(rig, i, box);
         Edge edge;
-        edge.range = turnOf(rig.actuators()[i].deformer);
+        const auto [min, max] = turnOf(rig.actuators()[i].deformer);
+        const bool bothWays = min < 0.0 && max > 0.0;
+        edge.flat = bothWays ? -min / (max - min) : 0.0;
+        edge.range = bothWays ? max : max - min;
+        const double fall = std::max(kFall, kFallOfLevel * (rig.actuators()[i].levels - 1) * (1.0 - edge.flat));
+        edge.full = std::clamp(std::numbers::pi - fall, 0.0, kFull);
+        edge.none = edge.full + std::min(fall, std::numbers::pi);
         const double distance = glm::length(lift.centre);
         if (lift.rise > 0.0 && distance > small && edge.range > 0.0) {
             edge.direction = lift.centre / distance;
-            edge.share = smoothShare(kInner, kOuter, lift.outermost);
+            // Where half a turn is too short for so many levels it bends less.
+            edge.share = smoothShare(kInner, kOuter, lift.outermost) * std::min(1.0, std::numbers::pi / fall);
         }
         edges_.push_back(edge);
     }
@@ -111,7 +121,8 @@ std::vector<double> ViewRule::strokes(const glm::dvec3& eyeInDevice, Angle theta
     if (!std::isfinite(across) || !std::isfinite(seen.y))
         throw InvalidInput("eye", "its position is not finite", "give finite coordinates");
     requireTheta(theta);
-    std::vector<double> strokes(edges_.size(), 0.0);
+    std::vector<double> strokes;
+    for (const Edge& edge : edges_) strokes.push_back(edge.flat);
     if (!(across > 0.0)) return strokes;
     const Angle most = std::min(theta, Angle::radians(kQuarterTurn)); // so that nothing bends for a user overhead
     const double bend = viewBend(Angle::radians(std::atan2(seen.y, across)), most).inRadians();
@@ -120,8 +131,8 @@ std::vector<double> ViewRule::strokes(const glm::dvec3& eyeInDevice, Angle theta
         const Edge& edge = edges_[i];
         if (edge.share == 0.0) continue;
         const double off = std::acos(std::clamp(glm::dot(edge.direction, away), -1.0, 1.0));
-        const double weight = edge.share * (1.0 - smoothShare(kFull, kNone, off));
-        strokes[i] = std::clamp(weight * bend / edge.range, 0.0, 1.0);
+        const double weight = edge.share * (1.0 - smoothShare(edge.full, edge.none, off));
+        strokes[i] = edge.flat + (1.0 - edge.flat) * weight * std::min(1.0, bend / edge.range);
     }
     return strokes;
 }

@@ -347,7 +347,9 @@ TEST_F(SceneDocks, TheWaterDemoIsWhatAVisitorSeesFirst) {
 
 TEST_F(SceneDocks, WarnsWhereAProjectorHasTooLittleLight) {
     choose(SceneChoice::Kind::projector);
-    auto* warning = window.find<QLabel>("projector.warning");
+    ASSERT_NE(window.find<QWidget>("projector.section.light"), nullptr);
+    auto* warning = window.window().findChild<QLabel*>("projector.warning"); // hidden while there is none
+    ASSERT_NE(warning, nullptr);
     pass(700ms); // the rig stands as it is looked at
     EXPECT_FALSE(warning->text().contains("cannot become white")) << warning->text().toStdString();
     window.click("projector.section.light");

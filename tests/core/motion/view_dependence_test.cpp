@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <limits>
 #include <map>
 #include <numbers>
@@ -9,7 +10,9 @@
 #include <gtest/gtest.h>
 
 #include "core/base/error.h"
+#include "core/base/resources.h"
 #include "core/motion/view_dependence.h"
+#include "core/rig/templates/rig_templates.h"
 #include "tests/support/cut_tablet.h"
 #include "tests/support/not_a_number.h"
 #include "tests/support/small_rigs.h"
@@ -125,6 +128,65 @@ TEST(ViewRule, NobodyWhoWalksAroundMakesAnActuatorJump) {
             before = now;
         }
     }
+}
+
+/// Every bundled rig and every template as it comes.
+std::vector<std::pair<std::string, Rig>> rigsToWalkAround() {
+    std::vector<std::pair<std::string, Rig>> rigs{{"tablet", bakedTablet()}, {"cut tablet", test::cutTablet()}};
+    for (const auto& entry : std::filesystem::directory_iterator(resourceFile("models")))
+        if (entry.path().extension() == ".glb") rigs.emplace_back(entry.path().filename(), readRig(entry.path()));
+    for (const RigTemplate& kind : rigTemplates())
+        if (kind.name != "tablet") rigs.emplace_back(kind.name, rigOf(kind, {}, {}, SheetQuality::preview));
+    // Half of the angle, three times the levels, and both ways.
+    RigParts narrow = test::cutTablet().parts();
+    for (std::size_t k = 0; k < narrow.actuators.size(); ++k) {
+        auto& bend = std::get<Bend>(narrow.actuators[k].deformer);
+        bend.max = Angle::degrees(45.0);
+        if (k % 2 == 1) narrow.actuators[k].levels = 101;
+        if (k % 3 == 2) bend.min = Angle::degrees(-45.0);
+    }
+    rigs.emplace_back("narrow", Rig(narrow));
+    return rigs;
+}
+
+// R22
+TEST(ViewRule, NobodyWhoWalksAroundAnyDeviceMakesItJump) {
+    int bending = 0;
+    for (const auto& [name, rig] : rigsToWalkAround()) {
+        const ViewRule rule(rig);
+        double most = 0.0, fullest = 0.0;
+        for (const double elevation : {0.0, 20.0, 45.0, 70.0}) {
+            std::vector<double> before = rule.strokes(eyeAt(359.0, elevation, 1.0));
+            for (int azimuth = 0; azimuth < 360; ++azimuth) {
+                const std::vector<double> now = rule.strokes(eyeAt(azimuth, elevation, 1.0));
+                for (std::size_t k = 0; k < now.size(); ++k) {
+                    most = std::max(most, (rig.actuators()[k].levels - 1) * std::abs(now[k] - before[k]));
+                    fullest = std::max(fullest, now[k]);
+                }
+                before = now;
+            }
+        }
+        EXPECT_LE(most, 1.0) << name << ": levels a degree";
+        bending += fullest > 0.5 ? 1 : 0;
+    }
+    EXPECT_GE(bending, 5);
+}
+
+TEST(ViewRule, WhatBendsBothWaysRestsFlat) {
+    RigParts parts = test::cutTablet().parts();
+    auto& bend = std::get<Bend>(parts.actuators[0].deformer);
+    bend.min = Angle::degrees(-30.0);
+    bend.max = Angle::degrees(60.0);
+    const ViewRule rule{Rig(parts)};
+    double least = 1.0, most = 0.0;
+    for (int azimuth = 0; azimuth < 360; azimuth += 5) {
+        const double stroke = rule.strokes(eyeAt(azimuth, 10.0))[0];
+        least = std::min(least, stroke);
+        most = std::max(most, stroke);
+    }
+    EXPECT_NEAR(least, 1.0 / 3.0, 1e-9) << "0 degrees";
+    EXPECT_NEAR(most, 1.0, 1e-6);
+    EXPECT_NEAR(rule.strokes({0.0, 0.7, 0.0})[0], 1.0 / 3.0, 1e-9);
 }
 
 TEST(ViewRule, SlidesUseTheirStrokeAsNinetyDegreesAndInnerPartsStay) {
