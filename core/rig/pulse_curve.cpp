@@ -1,13 +1,13 @@
 #include "core/rig/pulse_curve.h"
 
 #include <algorithm>
-#include <functional>
 
 namespace lumorph {
 
 bool isPulseCurve(std::span<const double> curve) noexcept {
+    const auto notRising = [](double a, double b) { return !(a < b); };
     return curve.empty() || (curve.size() >= 2 && curve.size() <= kMostCurvePoints && curve.front() == 0.0 &&
-                             curve.back() == 1.0 && std::ranges::is_sorted(curve, std::less_equal<>()));
+                             curve.back() == 1.0 && std::ranges::adjacent_find(curve, notRising) == curve.end());
 }
 
 double turnedAt(std::span<const double> curve, double stroke) noexcept {

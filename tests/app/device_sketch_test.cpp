@@ -19,8 +19,10 @@ std::string projectWithPoses(const std::string& steps) {
 TEST(DeviceSketch, IsWrittenWithThePosesOfAProject) {
     const TemporaryFolder folder;
     const std::string project = (folder / "a.lumorph").string();
-    writeFile(project,
-              projectWithPoses(R"([{"pose": "up", "travelSeconds": 3}, {"pose": "down", "easing": "linear"}])"));
+    writeFile(
+        project,
+        projectWithPoses(
+            R"([{"pose": "up", "travelSeconds": 3}, {"pose": "down", "travelSeconds": 0.1, "easing": "linear"}])"));
     const nlohmann::json checked = lumorph({"project", "check", project, "--json"}).json()["poses"];
     EXPECT_EQ(checked["count"], 2);
     EXPECT_EQ(checked["steps"], 2);

@@ -7,6 +7,7 @@
 #include <QTableWidget>
 #include <gtest/gtest.h>
 
+#include "app/studio/document/rig_edit.h"
 #include "core/rig/rig_file.h"
 #include "core/rig/templates/bundled_rigs.h"
 #include "core/rig/templates/rig_templates.h"
@@ -77,7 +78,7 @@ struct PartsExport : testing::Test {
         ASSERT_TRUE(eventually(
             [&] {
                 const auto& now = window->state().rig.rig;
-                return now && now->name() == rig.name() && now->actuatorCount() == rig.actuatorCount();
+                return now && now->parts() == rig.parts();
             },
             std::chrono::seconds(30)));
     }
@@ -184,27 +185,31 @@ TEST_F(PartsExport, TheRigIsFittedToItsLeversAndDevicesFollowsOrAsks) {
     window->screenshot("parts_fit");
     window->click("export.parts.fit");
     ASSERT_TRUE(planned());
-    EXPECT_FALSE(window->find<QPushButton>("export.parts.fit")->isVisible()) << "nothing is left to fit";
+    EXPECT_EQ(window->findNow<QPushButton>("export.parts.fit"), nullptr) << "nothing is left to fit";
     window->click("export.parts.cancel");
     ASSERT_TRUE(eventually([] { return window->state().rig.compiled; }, std::chrono::seconds(30)));
     const RigParts fitted = *window->state().rig.parts;
     for (std::size_t k = 0; k < drawn.actuators.size(); ++k) {
-        EXPECT_LT(endOf(fitted, k), endOf(drawn, k));
+        EXPECT_LE(endOf(fitted, k), endOf(drawn, k));
         const ServoSetup& servo = window->studio().devices.profile().servos.at(k);
         EXPECT_EQ(servo.curve, fitted.actuators[k].drive.curve);
         EXPECT_FALSE(servo.curve.empty());
         EXPECT_EQ(servo.pulseMax, std::max(fitted.actuators[k].drive.pulseMin, fitted.actuators[k].drive.pulseMax));
     }
-    window->studio().document.undoStack().undo();
-    ASSERT_TRUE(eventually([&] { return window->state().rig.compiled; }, std::chrono::seconds(30)));
-    EXPECT_EQ(*window->state().rig.parts, drawn);
+    EXPECT_LT(endOf(fitted, 0), endOf(drawn, 0)) << "a corner";
+    // As undo does; the field, which is built meanwhile, has steps of its own.
+    const auto becomes = [](const RigParts& wanted) {
+        editRig(window->studio().document, "Another", [&](RigParts& parts) { parts = wanted; });
+        ASSERT_TRUE(eventually([&] { return window->state().rig.rig->parts() == wanted; }, std::chrono::seconds(30)));
+    };
+    becomes(drawn);
     EXPECT_EQ(window->studio().devices.profile().servos, before.servos);
 
     // What was set up by hand stays, and it is said.
     DeviceProfile own = before;
     own.servos[1].pulseMax = 1900.0;
     ASSERT_TRUE(window->studio().devices.setProfile(own, "Own"));
-    window->studio().document.undoStack().redo();
+    becomes(fitted);
     ASSERT_TRUE(eventually([] { return !window->studio().notices.at("servo").empty(); }, std::chrono::seconds(30)));
     EXPECT_EQ(window->studio().devices.profile().servos[1].pulseMax, 1900.0);
     EXPECT_FALSE(window->studio().devices.profile().servos[0].curve.empty());
@@ -212,7 +217,6 @@ TEST_F(PartsExport, TheRigIsFittedToItsLeversAndDevicesFollowsOrAsks) {
     ASSERT_EQ(notice.actions.size(), 1U);
     notice.actions[0].run();
     EXPECT_EQ(window->studio().devices.profile().servos[1].curve, fitted.actuators[1].drive.curve);
-    window->studio().document.undoStack().undo();
     window->studio().notices.dismissAll("servo");
 }
 

@@ -74,8 +74,14 @@ TEST_F(RigEditTest, AnEditIsToldAsOneAndCompiledBesideTheWindow) {
 }
 
 TEST(RigFacts, AnotherRangeHasOtherPulsesForTheSameTurnOfTheServo) {
-    Actuator flap{.name = "flap", .deformer = Bend{.max = Angle::degrees(90.0)}, .maxVelocity = 2.0};
-    flap.drive = {.pulseMin = 2000.0, .pulseMax = 1000.0, .curve = {0.0, 0.6, 0.9, 1.0}};
+    Bend bend;
+    bend.max = Angle::degrees(90.0);
+    Actuator flap;
+    flap.deformer = bend;
+    flap.maxVelocity = 2.0;
+    flap.drive.pulseMin = 2000.0;
+    flap.drive.pulseMax = 1000.0;
+    flap.drive.curve = {0.0, 0.6, 0.9, 1.0};
     const auto pulseAt = [](const Actuator& a, double degrees) {
         const double stroke = degrees / Angle::radians(rangeOf(a).max).inDegrees();
         return std::lerp(a.drive.pulseMin, a.drive.pulseMax, turnedAt(a.drive.curve, stroke));

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "core/base/atomic_file.h"
+#include "core/base/file.h"
 #include "core/base/resources.h"
 #include "core/mdf/builder.h"
 #include "core/mdf/field_file.h"
@@ -24,7 +24,7 @@ protected:
         return tablet;
     }
     static const Field& field() {
-        static const Field bundled = parseField(readFile(resourceFile("models/tablet.mdf")), "tablet.mdf");
+        static const Field bundled = parseField(readFile(resourceFile("models/tablet.mdf"), 64U << 20U), "tablet.mdf");
         return bundled;
     }
     static const Coverage& coverage() {
