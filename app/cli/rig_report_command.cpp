@@ -206,15 +206,14 @@ void printMetrics(const Report& report) {
 }
 
 void printLoads(const Report& report, const ReportOptions& options) {
-    const ServoType& servo = servoType(options.servo);
-    std::printf("\nServos: %s, %.3f N m stalled, of which half is to be held; a finger pushes with %.1f N\n\n",
-                std::string(servo.name).c_str(), servo.stallTorque, options.push);
-    std::printf("  %-22s %9s %12s %10s\n", "actuator", "lever", "needs", "force");
+    std::printf("\nServos: of what stalls one half is to be held; a finger pushes with %.1f N\n\n", options.push);
+    std::printf("  %-22s %9s %12s %10s   servo, and what it holds\n", "actuator", "lever", "needs", "force");
     constexpr std::size_t kMost = 24;
     for (std::size_t a = 0; a < std::min(kMost, report.device.loads.size()); ++a) {
         const ServoLoad& load = report.device.loads[a];
-        std::printf("  %-22s %6.1f mm %8.3f N m %8.2f N%s\n", load.actuator.c_str(), 1e3 * load.lever, load.torque,
-                    load.force, load.weak ? "  too weak" : "");
+        std::printf("  %-22s %6.1f mm %8.3f N m %8.2f N   %s, %.3f N m%s\n", load.actuator.c_str(), 1e3 * load.lever,
+                    load.torque, load.force, std::string(load.servo->name).c_str(), load.servo->usableTorque(),
+                    load.weak ? ": too weak" : "");
     }
     if (report.device.loads.size() > kMost) std::printf("  ... and %zu more\n", report.device.loads.size() - kMost);
 }

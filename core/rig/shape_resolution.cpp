@@ -179,6 +179,7 @@ ServoLoad loadOf(const Actuator& actuator, const StrokeWork& work, const ServoTy
     load.servo = &servo;
     load.lever = work.way / angle;
     load.torque = work.lift / angle + device.push * load.lever;
+    if (const auto* lift = std::get_if<SheetLift>(&actuator.deformer)) load.torque += lift->torque; // the sheet's
     load.force = load.lever > 0.0 ? servo.stallTorque / load.lever : 0.0;
     load.weak = load.torque > servo.usableTorque();
     if (const ServoType* stronger = cheapestServo(load.torque)) load.stronger = stronger->name;

@@ -160,7 +160,9 @@ TEST_F(DevicesWindow, ServosFollowAndStopWhileTheWindowIsStuck) {
     goLive();
     setByHand(1, 1.0);
     window.studio().loop.stop(); // hands the wish over, so that the loop has nothing left to be told
+    ASSERT_TRUE(eventually([&] { return allLimp() && phase() != LinkPhase::live; })) << "STOP has arrived";
     window.studio().loop.resume();
+    ASSERT_TRUE(offersStart());
     startServos();
     setByHand(1, 0.0);
     ASSERT_TRUE(eventually([&] { return servoOf(1).pulse < 1010.0 && servoOf(1).pulse > 0.0; }));
