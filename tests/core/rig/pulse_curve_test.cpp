@@ -57,9 +57,9 @@ TEST(PulseCurve, CutShorterItIsItsBeginning) {
 TEST(PulseCurve, RisesFromZeroToOneOrIsNone) {
     EXPECT_TRUE(isPulseCurve(PulseCurve{}));
     EXPECT_TRUE(isPulseCurve(PulseCurve{0.0, 1.0}));
-    for (const PulseCurve& wrong : {PulseCurve{0.0}, PulseCurve{1.0}, PulseCurve{0.0, 0.5}, PulseCurve{0.1, 1.0},
-                                    PulseCurve{0.0, 0.5, 0.5, 1.0}, PulseCurve{0.0, 0.7, 0.6, 1.0},
-                                    PulseCurve{0.0, std::nan(""), 1.0}})
+    for (const PulseCurve& wrong :
+         {PulseCurve{0.0}, PulseCurve{1.0}, PulseCurve{0.0, 0.5}, PulseCurve{0.1, 1.0}, PulseCurve{0.0, 0.5, 0.5, 1.0},
+          PulseCurve{0.0, 0.7, 0.6, 1.0}, PulseCurve{0.0, std::nan(""), 1.0}})
         EXPECT_FALSE(isPulseCurve(wrong));
     PulseCurve long_;
     for (std::size_t k = 0; k <= kMostCurvePoints; ++k) long_.push_back(static_cast<double>(k) / kMostCurvePoints);
