@@ -71,10 +71,9 @@ TEST(MatchQuality, AutoPlaceIsAtLeastAsGoodAsFit) {
 TEST(MatchQuality, AnimationKeepsToTheVelocityLimits) {
     constexpr double kFramesPerSecond = 25.0;
     constexpr std::size_t kFirstActuator = 3; // column: after seconds, IoU wanted and reached
-    const TabletWorkspace w;
-    const nlohmann::json rig = matchJson({"rig", "info", cutTabletFile(), "--states", "1", "--json"});
-    const Outcome outcome = lumorph(
-        {"match", w.field(), resource("targets/swell.glb"), "--animation", "first", "--fps", "25", "--csv", "-"});
+    const nlohmann::json rig = matchJson({"rig", "info", resource("models/tablet.glb"), "--states", "1", "--json"});
+    const Outcome outcome = lumorph({"match", resource("models/tablet.mdf"), resource("targets/swell.glb"),
+                                     "--animation", "first", "--fps", "25", "--csv", "-"});
     ASSERT_EQ(outcome.exitCode, 0) << outcome.err;
     const auto rows = tableOf(outcome.out);
     ASSERT_EQ(rows.size(), 1U + 101U); // a title and the frames 0 to 100 of four seconds

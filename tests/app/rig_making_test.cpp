@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <chrono>
 #include <csignal>
 #include <filesystem>
@@ -41,9 +42,12 @@ TEST(RigNew, TabletIsTheBundledOne) {
 
 TEST(RigNew, ListsParameters) {
     const auto list = lumorph({"rig", "new", "phone", "--list", "--json"}).json();
-    EXPECT_EQ(list["parameters"][0]["name"], "width");
-    EXPECT_EQ(list["parameters"][0]["unit"], "cm");
-    EXPECT_EQ(list["parameters"][0]["value"], 7.5);
+    EXPECT_EQ(list["parameters"][0]["name"], "top");
+    EXPECT_EQ(list["parameters"][0]["value"], "cut");
+    const auto width = std::ranges::find(list["parameters"], "width", [](const auto& one) { return one["name"]; });
+    ASSERT_NE(width, list["parameters"].end());
+    EXPECT_EQ((*width)["unit"], "cm");
+    EXPECT_EQ((*width)["value"], 7.5);
 }
 
 TEST(RigNew, BlankSheetOpens) {

@@ -136,7 +136,7 @@ TEST(RigTemplates, EveryParameterAtItsEndsIsARigOrNamed) {
                         << kind.name << ' ' << parameter.name << ' ' << value;
                 } catch (const InvalidInput& error) {
                     EXPECT_TRUE(error.subject().starts_with(kind.name) || error.subject().starts_with("sheet") ||
-                                error.subject().starts_with("bend line"))
+                                error.subject().starts_with("bend line") || error.subject().starts_with("lever"))
                         << error.what();
                 }
             }
