@@ -33,11 +33,22 @@ public:
         layout->addWidget(column_.widget, 1);
         layout->addWidget(makeHint());
         connect(&studio.loop, &StudioLoop::framed, refresh_, &Throttle::request);
-        connect(refresh_, &Throttle::due, this, [this] { refresh(); });
+        connect(refresh_, &Throttle::due, this, [this] {
+            if (isVisible()) refresh();
+        });
+        // Rows are dear to make, and the rig is dragged where they are hidden.
         connect(&studio.document, &StudioDocument::changed, this, [this](StateParts parts) {
+            if (!isVisible()) return;
             if (parts & (StatePart::rig | StatePart::rigEdited | StatePart::field)) rebuild();
             refresh();
         });
+        rebuild();
+        refresh();
+    }
+
+protected:
+    void showEvent(QShowEvent* event) override {
+        QWidget::showEvent(event);
         rebuild();
         refresh();
     }

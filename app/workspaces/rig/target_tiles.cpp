@@ -4,8 +4,10 @@
 #include <cmath>
 #include <utility>
 
+#include <QElapsedTimer>
 #include <QGridLayout>
 #include <QPainter>
+#include <QTimer>
 
 #include "app/studio/widgets/dock_parts.h"
 
@@ -58,6 +60,18 @@ void TargetTile::leaveEvent(QEvent* event) {
     QAbstractButton::leaveEvent(event);
 }
 
+/// All of a library at once would hold the window up for a tenth of a second.
+void TargetTile::makePicture(const QSize& pixels) {
+    constexpr int kApart = 8; // milliseconds
+    static QElapsedTimer last;
+    if (last.isValid() && last.elapsed() < kApart) {
+        QTimer::singleShot(2 * kApart, this, qOverload<>(&QWidget::update));
+        return;
+    }
+    picture_ = pictureOf(relief_, pixels, currentPalette());
+    last.start();
+}
+
 void TargetTile::paintEvent(QPaintEvent* /*event*/) {
     const Palette& colors = currentPalette();
     QPainter painter(this);
@@ -72,8 +86,8 @@ void TargetTile::paintEvent(QPaintEvent* /*event*/) {
     const QRect words(inner.left(), bar.top() - kWordsHeight, inner.width(), kWordsHeight);
     const QSize room(inner.width(), words.top() - inner.top());
     const QSize pixels = room * devicePixelRatioF();
-    if (picture_.size() != pixels) picture_ = pictureOf(relief_, pixels, colors);
-    painter.drawImage(QRect(inner.topLeft(), room), picture_);
+    if (picture_.size() != pixels) makePicture(pixels);
+    if (!picture_.isNull()) painter.drawImage(QRect(inner.topLeft(), room), picture_);
     const QString percent = QString("%1 %").arg(percent_);
     const int wide = painter.fontMetrics().horizontalAdvance("100 %") + 4;
     painter.setPen(colors.text);

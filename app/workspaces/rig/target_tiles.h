@@ -29,6 +29,8 @@ protected:
     void leaveEvent(QEvent* event) override;
 
 private:
+    void makePicture(const QSize& pixels);
+
     FitRelief relief_;
     QImage picture_; ///< of `relief_`, in the size and the theme of the last painting
     int percent_ = 0;
