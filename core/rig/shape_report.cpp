@@ -17,7 +17,7 @@ namespace {
 
 constexpr int kPathSteps = 16; ///< states looked at between rest and a joint state
 constexpr std::size_t kPathVoxels = 200'000;
-constexpr double kPathTolerance = 0.01; ///< facets and voxels leave up to half of this open on a sound rig
+constexpr double kPathTolerance = 0.005; ///< facets and voxels leave this much open on a sound rig
 
 double areaOf(const TriangleMesh& mesh, const glm::uvec3& t) {
     const glm::dvec3 a(mesh.positions[t.x]);

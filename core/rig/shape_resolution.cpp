@@ -443,12 +443,10 @@ void requirePositive(double value, bool orZero, const char* what) {
 } // namespace
 
 Angle servoAngle(const Actuator& actuator, const ServoType& servo) {
-    const double ofPulses = servo.travel.inRadians() * (actuator.drive.pulseMax - actuator.drive.pulseMin) /
-                            (servo.pulseMax - servo.pulseMin);
-    double angle = ofPulses;
-    if (!actuator.drive.curve.empty()) // a lever is between the two
-        angle = ofPulses;
-    else if (const auto* hinge = std::get_if<Hinge>(&actuator.deformer))
+    double angle = servo.travel.inRadians() * (actuator.drive.pulseMax - actuator.drive.pulseMin) /
+                   (servo.pulseMax - servo.pulseMin);
+    if (!actuator.drive.curve.empty()) return Angle::radians(std::max(std::abs(angle), 1e-3)); // by way of a lever
+    if (const auto* hinge = std::get_if<Hinge>(&actuator.deformer))
         angle = hinge->max.inRadians() - hinge->min.inRadians();
     else if (const auto* bend = std::get_if<Bend>(&actuator.deformer))
         angle = bend->max.inRadians() - bend->min.inRadians();

@@ -36,7 +36,7 @@ public:
         connect(refresh_, &Throttle::due, this, [this] {
             if (isVisible()) refresh();
         });
-        // Rows are dear to make, and the rig is dragged where they are hidden.
+        // Building rows takes long, and a rig is dragged in another workspace, where this dock is hidden.
         connect(&studio.document, &StudioDocument::changed, this, [this](StateParts parts) {
             if (!isVisible()) return;
             if (parts & (StatePart::rig | StatePart::rigEdited | StatePart::field)) rebuild();

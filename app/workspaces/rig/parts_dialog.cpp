@@ -162,9 +162,9 @@ private:
     ValueField* addNumber(QVBoxLayout& rows, const QString& label, const QString& name, const QString& tip,
                           ProfileLimits limits, double usual, const QString& key);
     QLabel* makeText(const QString& name, const char* look);
-    void plan(); ///< anew, beside the window; the newest choice wins
+    void plan(); ///< anew, of the document's rig, beside the window; the newest choice wins
     void fitRig();
-    void take(const std::shared_ptr<const BuildPlan>& plan);
+    void take(const Planned& planned);
     void refuse(const std::exception& why);
 
     Studio& studio_;
@@ -324,17 +324,19 @@ void PartsDialog::plan() {
     options.servo = servoBodies()[static_cast<std::size_t>(servo_->currentIndex())];
     options.bed = bed_->value();
     options.tolerance = tolerance_->value();
-    jobs_.runWith<std::shared_ptr<const BuildPlan>>(
+    jobs_.runWith<Planned>(
         "plan", kPartsPlace, tr("Planning the parts"),
-        [rig = planned_.rig, options](const Progress& progress) -> std::shared_ptr<const BuildPlan> {
-            return std::make_shared<const BuildPlan>(buildPlanOf(*rig, options, progress));
+        [planned = planned_, parts = studio_.document.state().rig.parts, options](const Progress& progress) mutable {
+            if (parts && *parts != planned.rig->parts()) planned.rig = std::make_shared<const Rig>(*parts);
+            planned.plan = std::make_shared<const BuildPlan>(buildPlanOf(*planned.rig, options, progress));
+            return planned;
         },
-        [this](const std::shared_ptr<const BuildPlan>& plan) { take(plan); },
-        [this](const std::exception& error) { refuse(error); });
+        [this](const Planned& planned) { take(planned); }, [this](const std::exception& error) { refuse(error); });
 }
 
-void PartsDialog::take(const std::shared_ptr<const BuildPlan>& plan) {
-    planned_.plan = plan;
+void PartsDialog::take(const Planned& planned) {
+    planned_ = planned;
+    const std::shared_ptr<const BuildPlan>& plan = planned_.plan;
     write_->setEnabled(true);
     fit_->setVisible(withLevers(*planned_.rig, *plan) != planned_.rig->parts());
     wrong_->hide();
@@ -360,9 +362,8 @@ void PartsDialog::take(const std::shared_ptr<const BuildPlan>& plan) {
 
 void PartsDialog::fitRig() {
     if (!planned_.plan) return;
-    const RigParts fitted = withLevers(*planned_.rig, *planned_.plan);
-    planned_.rig = std::make_shared<const Rig>(fitted);
-    editRig(studio_.document, tr("Fit the rig to its levers"), [&fitted](RigParts& parts) { parts = fitted; });
+    editRig(studio_.document, tr("Fit the rig to its levers"),
+            [this](RigParts& parts) { parts = withLevers(*planned_.rig, *planned_.plan); });
     plan();
 }
 

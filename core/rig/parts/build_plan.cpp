@@ -148,7 +148,7 @@ RigParts withLevers(const Rig& rig, const BuildPlan& plan) {
         actuator.drive.pulseMin = row.reversed ? row.pulseMax : row.pulseMin;
         actuator.drive.pulseMax = row.reversed ? row.pulseMin : row.pulseMax;
         actuator.drive.curve = row.curve;
-        actuator.drive.servo = plan.servo;
+        if (actuator.drive.servo.empty()) actuator.drive.servo = plan.servo;
     }
     return parts;
 }

@@ -8,6 +8,7 @@
 #include <glm/geometric.hpp>
 
 #include "core/base/error.h"
+#include "core/base/text.h"
 
 namespace lumorph {
 namespace {
@@ -132,12 +133,13 @@ void LeveredSheet::checkStrokes(std::span<const double> strokes) const {
     for (std::size_t l = 0; l < levers_.size(); ++l) {
         const double height = levers_[l].heightAt(strokes[l]);
         if (tears(height, distanceBetween(mesh_, mesh_.lineNodes[l], mesh_.padNodes)))
-            throw InvalidInput("lever '" + levers_[l].name + "'", "it lifts more than the sheet reaches from the pad",
+            throw InvalidInput("lever " + inQuotes(levers_[l].name),
+                               "it lifts more than the sheet reaches from the pad",
                                "let it lift less, or move its line outwards");
         for (std::size_t m = 0; m < l; ++m)
             if (tears(height - levers_[m].heightAt(strokes[m]),
                       distanceBetween(mesh_, mesh_.lineNodes[l], mesh_.lineNodes[m])))
-                throw InvalidInput("levers '" + levers_[m].name + "' and '" + levers_[l].name + "'",
+                throw InvalidInput("levers " + inQuotes(levers_[m].name) + " and " + inQuotes(levers_[l].name),
                                    "they pull against each other: the sheet between them is too short",
                                    "let one lift less, or move their lines apart");
     }
@@ -147,7 +149,7 @@ std::string LeveredSheet::namesAndStrokes(std::span<const double> strokes) const
     std::string text;
     for (std::size_t l = 0; l < levers_.size(); ++l)
         if (strokes[l] > 0.0)
-            text += (text.empty() ? "'" : ", '") + levers_[l].name + "' at " +
+            text += (text.empty() ? "" : ", ") + inQuotes(levers_[l].name) + " at " +
                     std::to_string(std::lround(100.0 * strokes[l])) + " %";
     return text.empty() ? "rest" : text;
 }
@@ -159,7 +161,7 @@ std::string LeveredSheet::strongestLevers(const SheetPose& pose) const {
         if (pose.loads[l].force > pose.loads[up].force) up = l;
         if (pose.loads[l].force < pose.loads[down].force) down = l;
     }
-    return "levers '" + levers_[up].name + "' and '" + levers_[down].name + "'";
+    return "levers " + inQuotes(levers_[up].name) + " and " + inQuotes(levers_[down].name);
 }
 
 } // namespace lumorph

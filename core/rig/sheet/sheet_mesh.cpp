@@ -9,6 +9,7 @@
 #include <glm/geometric.hpp>
 
 #include "core/base/error.h"
+#include "core/base/text.h"
 #include "core/geometry/plane_mesh.h"
 
 namespace lumorph {
@@ -281,7 +282,7 @@ void requireSheet(bool good, const std::string& subject, const char* why, const 
 void checkLever(const ElasticSheet& sheet, std::size_t l) {
     constexpr double kGap = 1e-3; // material around a slot
     const SheetLever& lever = sheet.levers[l];
-    const std::string subject = "lever '" + lever.name + "'";
+    const std::string subject = "lever " + inQuotes(lever.name);
     const Segment line{lever.from, lever.to};
     requireSheet(glm::distance(line.a, line.b) >= 2.0 * kGap, subject, "its line is shorter than 2 mm",
                  "draw it longer");
@@ -296,7 +297,7 @@ void checkLever(const ElasticSheet& sheet, std::size_t l) {
                      "its line touches the clamped pad", "move it outwards, or make the pad smaller");
     for (std::size_t m = 0; m < l; ++m)
         requireSheet(!near(line, {sheet.levers[m].from, sheet.levers[m].to}, kGap), subject,
-                     ("its line meets that of '" + sheet.levers[m].name + "'").c_str(),
+                     ("its line meets that of " + inQuotes(sheet.levers[m].name)).c_str(),
                      "give each actuator a line of its own");
 }
 
