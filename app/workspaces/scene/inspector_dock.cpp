@@ -1,6 +1,7 @@
 #include <QLabel>
 #include <QLineEdit>
 #include <QStackedWidget>
+#include <QTimer>
 
 #include "app/studio/look/icons.h"
 #include "app/studio/widgets/icon_label.h"
@@ -171,6 +172,7 @@ private:
         }
     }
 
+    /// In three turns of the event loop: these are the most controls of all pages.
     void fillItem(SceneForm& form) {
         const auto item = makePart<SceneItem>([this](auto& scene) -> decltype(scene.items.data()) {
             for (auto& one : scene.items)
@@ -178,7 +180,17 @@ private:
             return nullptr;
         });
         addItemRows(form, studio_, item);
-        addKindRows(form, studio_, item);
+        QTimer::singleShot(0, &form, [this, &form, item] {
+            addKindRows(form, studio_, item);
+            refresh();
+            QTimer::singleShot(0, &form, [this, &form, item] {
+                addItemMaterial(form, item);
+                refresh();
+            });
+        });
+    }
+
+    void addItemMaterial(SceneForm& form, const Part<SceneItem>& item) {
         const auto mesh = [item](const StudioState& state) -> const MeshItem* {
             const SceneItem* found = item.read(state);
             return found ? std::get_if<MeshItem>(&found->kind) : nullptr;
