@@ -71,7 +71,7 @@ Stall longestStallOfBusyUse(StudioWindow& window) {
     dragInView(window, Qt::MiddleButton, 60);
     done("drag");
     window.command("build the field");
-    window.enter("field.build.resolution", "70", Qt::Key_Tab);
+    window.enter("field.build.resolution", "48", Qt::Key_Tab);
     window.click("field.build.accept");
     done("order of a build");
     dragInView(window, Qt::MiddleButton, 60);

@@ -92,7 +92,7 @@ TEST_F(Suggest, FrontGrowsUntilStoppedAndADotBecomesTheRigByOneStep) {
         EXPECT_GT(dots[k].cost, dots[k - 1].cost);
         EXPECT_GT(dots[k].fit, dots[k - 1].fit);
     }
-    EXPECT_FALSE(plot->openDevice()) << "the tablet's flaps overlap: no design is like it";
+    EXPECT_FALSE(plot->openDevice()) << "the tablet has one sheet: no design is like it";
 
     // What is pointed at is shown; what is clicked is used.
     const auto wanted = static_cast<std::size_t>(std::lround(dots[1].cost));

@@ -24,19 +24,22 @@ std::int64_t keyOf(double cost) { return std::llround(100.0 * cost); }
 
 /// What stays the same from the first generation to the last.
 struct SuggestSearch::Bench {
-    Bench(const SheetDevice& sheet, SearchTargets placed, const SuggestChoice& choice, const Progress& progress)
-        : start(sheet), targets(std::move(placed)), cost(choice.cost), designs(sheet, choice.most),
-          fit(designs.sheet(), designs.angle(), targets.targets, {}, progress), scorer(designs, fit, choice.cost) {}
+    Bench(const Rig& rig, const SheetDevice& sheet, SearchTargets placed, const SuggestChoice& choice,
+          const Progress& progress)
+        : start(sheet), oneSheet(rig.parts().sheet.has_value()), targets(std::move(placed)), cost(choice.cost),
+          designs(sheet, choice.most), fit(designs.sheet(), designs.angle(), targets.targets, {}, progress),
+          scorer(designs, fit, choice.cost) {}
     Bench(const Bench&) = delete;
     Bench& operator=(const Bench&) = delete;
 
     static std::shared_ptr<const Bench> of(const Rig& rig, const SuggestChoice& choice, const Progress& progress);
     /// How the rig itself would be judged; it may have more lines than a design may. None where the search would see
-    /// less than the rig has, as of a tablet whose edges bend together with their corners: designs do not overlap.
+    /// another device: flaps of a design do not overlap, and are cut where a rig may have one continuous sheet.
     [[nodiscard]] std::optional<DesignScore> startScore() const;
     [[nodiscard]] Candidate candidateOf(const ScoredDesign& design) const;
 
     SheetDevice start;
+    bool oneSheet;
     SearchTargets targets;
     SearchCost cost;
     SheetDesigns designs;
@@ -51,11 +54,11 @@ std::shared_ptr<const SuggestSearch::Bench> SuggestSearch::Bench::of(const Rig& 
     progress.report(0.6, "placing the shapes");
     SearchTargets placed = placeForSearch(rig, sheet, std::move(library), TargetPlacing::automatic, progress);
     progress.report(0.8, "turning the shapes into voxels");
-    return std::make_shared<const Bench>(sheet, std::move(placed), choice, progress.part(0.8, 1.0));
+    return std::make_shared<const Bench>(rig, sheet, std::move(placed), choice, progress.part(0.8, 1.0));
 }
 
 std::optional<DesignScore> SuggestSearch::Bench::startScore() const {
-    if (start.bends.empty()) return std::nullopt;
+    if (start.bends.empty() || oneSheet) return std::nullopt;
     const SheetDesigns roomy(start, start.bends.size());
     const DesignPoint point = roomy.pointOf(start);
     if (roomy.flapsOf(point).size() < start.bends.size()) return std::nullopt;
