@@ -179,6 +179,7 @@ CalibrationSource sourceOf(const CalibrateArguments& arguments, bool hasPatterns
     source.board = arguments.board;
     if (hasPatterns) source.pattern = arguments.patterns.name();
     source.inputs = {arguments.folder};
+    source.isSimulated = isLabCapture(arguments.folder);
     return source;
 }
 
