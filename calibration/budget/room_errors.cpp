@@ -52,7 +52,7 @@ private:
     Value choose(BudgetPart part, const Origin& origin, bool isTold, const Value& said, const Value& measured,
                  const Value& assumed) {
         ErrorSource& source = errors_.sources[static_cast<std::size_t>(part)];
-        source = !origin.isCalibrated()                    ? ErrorSource::assumed
+        source = !origin.isCalibrated()                 ? ErrorSource::assumed
                  : origin.way == Origin::Way::simulated ? ErrorSource::simulated
                  : isTold                               ? ErrorSource::told
                                                         : ErrorSource::measured;

@@ -12,7 +12,7 @@ namespace lumorph::studio {
 struct BudgetSlice {
     QString name, words; ///< what it is, and how it is known
     double millimetres = 0.0;
-    double share = 0.0; ///< of the whole bar, in [0, 1]
+    double share = 0.0;      ///< of the whole bar, in [0, 1]
     bool isMeasured = false; ///< in the room
 };
 

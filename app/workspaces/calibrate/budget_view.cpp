@@ -165,10 +165,11 @@ private:
         bar_->setMaximumWidth(kPageWidth);
         page->addSpacing(8);
         page->addWidget(bar_);
-        page->addWidget(makeWords(tr("Squares are added, so that the largest part is nearly all that counts. Hatched "
-                                     "is what nobody has measured in this room: it is taken to be as large as it usually "
-                                     "is, or what is simulated as large as in the virtual lab."),
-                                  "muted"));
+        page->addWidget(
+            makeWords(tr("Squares are added, so that the largest part is nearly all that counts. Hatched "
+                         "is what nobody has measured in this room: it is taken to be as large as it usually "
+                         "is, or what is simulated as large as in the virtual lab."),
+                      "muted"));
         page->addSpacing(8);
         page->addWidget(makeHeading(tr("What is shown, and who carries it"), this));
         speed_->setObjectName("budget.speed");
