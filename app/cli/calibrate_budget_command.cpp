@@ -46,6 +46,8 @@ const char* wordOf(ErrorSource source) {
         return "measured";
     case ErrorSource::measured:
         return "measured, usual size";
+    case ErrorSource::simulated:
+        return "simulated in the virtual lab";
     case ErrorSource::assumed:
         return "not measured, usual size";
     case ErrorSource::worked:
@@ -60,6 +62,8 @@ const char* keyOf(ErrorSource source) {
         return "measured";
     case ErrorSource::measured:
         return "measuredUsual";
+    case ErrorSource::simulated:
+        return "simulated";
     case ErrorSource::assumed:
         return "assumed";
     case ErrorSource::worked:
@@ -85,6 +89,7 @@ nlohmann::json budgetJson(const ErrorBudget& budget, const BudgetArguments& argu
             {"parts", parts},
             {"totalMm", 1e3 * budget.total},
             {"trackerPlaced", budget.isTrackerPlaced},
+            {"simulated", budget.isSimulated},
             {"places", budget.places},
             {"advice", advice}};
 }
@@ -98,6 +103,8 @@ void printBudget(const ErrorBudget& budget, const BudgetArguments& arguments) {
     if (!budget.isTrackerPlaced)
         std::printf("Nobody has said where the tracker's world lies; this counts as if it had been laid in by a "
                     "ruler.\n");
+    if (budget.isSimulated)
+        std::printf("What is simulated is as large as in the virtual lab, which says nothing of this room.\n");
     if (budget.advice.empty()) std::printf("No single part stands out.\n");
     for (const BudgetAdvice& one : budget.advice)
         std::printf("%s %s: %.2f -> %.2f mm\n", one.isFirst ? "Measure" : "Twice as good a measurement of",

@@ -179,6 +179,7 @@ CalibrationSource sourceOf(const CalibrateArguments& arguments, bool hasPatterns
     source.board = arguments.board;
     if (hasPatterns) source.pattern = arguments.patterns.name();
     source.inputs = {arguments.folder};
+    source.isSimulated = isLabCapture(arguments.folder);
     return source;
 }
 
@@ -223,10 +224,14 @@ void procam(const CalibrateArguments& arguments, const Session& session) {
     }
     Session::endProgress();
     writeOutputs(arguments, report);
-    if (arguments.json)
-        printJson(jsonOf(report.record.result));
-    else
+    if (arguments.json) {
+        nlohmann::json all = jsonOf(report.record.result);
+        if (report.record.source.isSimulated) all["simulated"] = true;
+        printJson(all);
+    } else {
         printProcam(report.record.result);
+        if (report.record.source.isSimulated) std::printf("simulated: the pictures are the virtual lab's\n");
+    }
 }
 
 void intrinsics(const CalibrateArguments& arguments, const Session& session) {

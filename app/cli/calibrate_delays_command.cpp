@@ -17,7 +17,8 @@ namespace {
 struct DelaysArguments {
     std::string project, fault;
     std::uint32_t seed = 1;
-    bool apply = false, json = false;
+    bool json = false;
+    LabApply lab;
 };
 
 nlohmann::json delayJson(const MeasuredDelay& delay) {
@@ -47,7 +48,8 @@ nlohmann::json delaysJson(const MeasuredDelays& delays, bool applied) {
             {"slip", {{"with", slipJson(delays.gain.with)}, {"without", slipJson(delays.gain.without)}}},
             {"warnings", jsonOf(delays.warnings)},
             {"simulatedSeconds", delays.seconds},
-            {"applied", applied}};
+            {"applied", applied},
+            {"way", "simulated"}};
 }
 
 void printDelay(const char* name, const MeasuredDelay& delay) {
@@ -63,17 +65,17 @@ void printDelays(const MeasuredDelays& delays, bool applied) {
     printFindings(delays.warnings);
     std::printf("  carried at 30 cm/s     light lies %.1f mm beside instead of %.1f mm\n",
                 1e3 * delays.gain.with.atSpeed, 1e3 * delays.gain.without.atSpeed);
-    if (applied) std::printf("The project's installation has the delays measured in the virtual lab now.\n");
+    if (applied) std::printf("The project's installation has the delays simulated in the virtual lab now.\n");
 }
 
 void delays(const DelaysArguments& arguments, const Session& session) {
     const std::filesystem::path file = projectFile(arguments.project);
-    if (arguments.apply && arguments.project.starts_with("resource:"))
-        throw InvalidInput("--apply", "a bundled project cannot be written", "copy it first");
+    arguments.lab.checkProject(arguments.project);
     DelaysLabOptions options;
     if (!arguments.fault.empty()) options.fault = parseDelayFault(arguments.fault);
     const Progress progress = session.progress();
     const ProjectContents contents = readContents(file, progress.part(0.0, 0.1));
+    arguments.lab.checkRoom(arguments.project, contents.project.installation);
     const Rig& rig = *contents.rig;
     const Installation& believed = contents.project.installation;
     const Installation truth = trueRoom(believed, rig.actuators(), arguments.seed);
@@ -84,15 +86,15 @@ void delays(const DelaysArguments& arguments, const Session& session) {
         return found;
     });
     Session::endProgress();
-    if (arguments.apply) {
+    if (arguments.lab.apply) {
         Project project = contents.project;
         project.installation = measured.installation;
         writeProject(project, file);
     }
     if (arguments.json)
-        printJson(delaysJson(measured, arguments.apply));
+        printJson(delaysJson(measured, arguments.lab.apply));
     else
-        printDelays(measured, arguments.apply);
+        printDelays(measured, arguments.lab.apply);
 }
 
 } // namespace
@@ -105,8 +107,7 @@ void addCalibrateDelays(CLI::App& group, Session& session) {
     command->add_option("--seed", arguments->seed, "Other delays of the lab for another number");
     command->add_option("--fault", arguments->fault,
                         "What is wrong in the lab: frames, camera, slow, covered, tracker, still, dead or jammed");
-    command->add_flag("--apply", arguments->apply,
-                      "Write what was measured in the virtual lab into the project's installation");
+    arguments->lab.addTo(*command, "Write what the virtual lab made into the project's installation, as simulated");
     command->add_flag("--json", arguments->json, "Print one JSON value");
     command->callback([arguments, &session] { delays(*arguments, session); });
 }

@@ -19,7 +19,8 @@ namespace {
 struct LightArguments {
     std::string project, fault;
     std::uint32_t seed = 1;
-    bool apply = false, json = false, withoutSheet = false;
+    bool json = false, withoutSheet = false;
+    LabApply lab;
 };
 
 nlohmann::json colorJson(const glm::vec3& color) { return {color.r, color.g, color.b}; }
@@ -50,7 +51,8 @@ nlohmann::json lightJson(const LightCalibration& result, bool applied) {
                            {"photographs", result.photographs},
                            {"findings", jsonOf(result.warnings)},
                            {"usable", result.good()},
-                           {"applied", applied}};
+                           {"applied", applied},
+                           {"way", "simulated"}};
     json["refused"] = result.refusal ? jsonOf(*result.refusal) : nlohmann::json();
     json["deviceColor"] = result.good() ? colorJson(result.room.deviceColor) : nlohmann::json();
     json["tableColor"] = result.good() ? colorJson(result.room.tableColor) : nlohmann::json();
@@ -67,7 +69,7 @@ void printLight(const LightCalibration& result, bool applied) {
     printColor("bare device", result.room.deviceColor);
     printColor("bare table", result.room.tableColor);
     std::printf("%s\n", result.assumption.c_str());
-    if (applied) std::printf("The project's installation has the light measured in the virtual lab now.\n");
+    if (applied) std::printf("The project's installation has the light simulated in the virtual lab now.\n");
 }
 
 /// As nobody has looked: what is measured does not build on what was measured before.
@@ -85,20 +87,20 @@ Installation withoutLight(Installation room) {
 
 void light(const LightArguments& arguments, const Session& session) {
     const std::filesystem::path file = projectFile(arguments.project);
-    if (arguments.apply && arguments.project.starts_with("resource:"))
-        throw InvalidInput("--apply", "a bundled project cannot be written", "copy it first");
+    arguments.lab.checkProject(arguments.project);
     LightLabOptions options;
     options.laysSheet = !arguments.withoutSheet;
     if (!arguments.fault.empty()) options.fault = parseLightFault(arguments.fault);
     const Progress progress = session.progress();
     const ProjectContents contents = readContents(file, progress.part(0.0, 0.1));
+    arguments.lab.checkRoom(arguments.project, contents.project.installation);
     const Rig& rig = *contents.rig;
     const Installation believed = withoutLight(contents.project.installation);
     const Installation truth = trueRoom(believed, rig.actuators(), arguments.seed);
     const LightCalibration result =
         measureLightInLab(rig, believed, truth, arguments.seed, progress.part(0.1, 1.0), options);
     Session::endProgress();
-    const bool applies = arguments.apply && result.good();
+    const bool applies = arguments.lab.apply && result.good();
     if (applies) {
         Project project = contents.project;
         project.installation = result.room;
@@ -121,8 +123,7 @@ void addCalibrateLight(CLI::App& group, Session& session) {
     command->add_option("--fault", arguments->fault,
                         "What is wrong in the lab: saturated, dark, automatic, ambient, falling or unseen");
     command->add_flag("--without-sheet", arguments->withoutSheet, "No sheet of white paper lies beside the device");
-    command->add_flag("--apply", arguments->apply,
-                      "Write what was measured in the virtual lab into the project's installation");
+    arguments->lab.addTo(*command, "Write what the virtual lab made into the project's installation, as simulated");
     command->add_flag("--json", arguments->json, "Print one JSON value");
     command->callback([arguments, &session] { light(*arguments, session); });
 }

@@ -1,10 +1,13 @@
 #include "app/cli/calibrate_output.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <string>
 
 #include <opencv2/calib3d.hpp>
+
+#include "core/base/error.h"
 
 namespace lumorph::cli {
 
@@ -84,6 +87,31 @@ nlohmann::json jsonOf(const ProcamCalibration& result) {
             {"model", "camera: " + result.camera.model + "; projector: " + result.projector.model},
             {"warnings", jsonOf(result.warnings)},
             {"degenerate", result.degenerate}};
+}
+
+void LabApply::addTo(CLI::App& command, const char* what) {
+    command.add_flag("--apply", apply, what);
+    command.add_flag("--simulated", simulated,
+                     "Apply it also where the room holds something measured or entered; it stays marked as simulated");
+}
+
+void LabApply::checkProject(const std::string& project) const {
+    if (apply && project.starts_with("resource:"))
+        throw InvalidInput("--apply", "a bundled project cannot be written", "copy it first");
+}
+
+void LabApply::checkRoom(const std::string& project, const Installation& room) const {
+    if (!apply || simulated) return;
+    const std::vector<std::string> real = realParts(room);
+    if (real.empty()) return;
+    constexpr std::size_t kNamed = 3;
+    std::string names;
+    for (std::size_t i = 0; i < std::min(real.size(), kNamed); ++i) names += (i > 0 ? ", " : "") + real[i];
+    if (real.size() > kNamed) names += ", ...";
+    throw InvalidInput("--apply " + project,
+                       "its room holds what was measured or entered (" + names +
+                           "), and what the virtual lab makes is simulated",
+                       "add --simulated to apply it all the same, marked as simulated");
 }
 
 void printDevice(const char* name, const CalibratedDevice& device) {

@@ -1,13 +1,16 @@
 #pragma once
 
 #include <optional>
+#include <string>
 #include <vector>
 
+#include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
 #include "app/cli/session.h"
 #include "calibration/decode/refusal.h"
 #include "calibration/solve/procam_calibration.h"
+#include "core/scene/installation.h"
 
 namespace lumorph::cli {
 
@@ -27,6 +30,16 @@ inline constexpr double kDegreesPerRadian = 57.29577951308232;
 [[nodiscard]] nlohmann::json rotationOf(const PoseVector& pose);
 /// Standard deviations of a pose: of the rotation in degrees, of T in the unit of T.
 [[nodiscard]] nlohmann::json poseSigmaOf(const PoseVector& sigma);
+
+/// How what the virtual lab made gets into a project.
+struct LabApply {
+    bool apply = false;     ///< --apply
+    bool simulated = false; ///< --simulated: also into a room that holds something measured or entered
+    void addTo(CLI::App& command, const char* what);
+    /// Before anything takes long. Throws InvalidInput where it may not be applied.
+    void checkProject(const std::string& project) const;
+    void checkRoom(const std::string& project, const Installation& room) const;
+};
 
 void printDevice(const char* name, const CalibratedDevice& device);
 void printProcam(const ProcamCalibration& result);

@@ -22,7 +22,8 @@ namespace {
 struct ServosArguments {
     std::string project, fault;
     std::uint32_t seed = 1;
-    bool apply = false, json = false;
+    bool json = false;
+    LabApply lab;
 };
 
 /// Shapes that the real device is judged by: the project's own target, or a few of the bundled ones.
@@ -71,6 +72,7 @@ nlohmann::json servosJson(const ServoMeasurement& result, const ServoGain& gain,
             {"findings", jsonOf(result.measured.findings)},
             {"usable", result.measured.usable},
             {"applied", applied},
+            {"way", "simulated"},
             {"iou", {{"wanted", gain.wanted}, {"before", gain.told}, {"after", gain.measured}}},
             {"projectionOffMm", {{"before", 1e3 * gain.toldOff}, {"after", 1e3 * gain.measuredOff}}}};
 }
@@ -102,17 +104,17 @@ void printServos(const ServoMeasurement& result, const ServoGain& gain, bool app
                 gain.wanted);
     std::printf("  projection lies    %.2f mm beside the surface before, %.2f mm after\n", 1e3 * gain.toldOff,
                 1e3 * gain.measuredOff);
-    if (applied) std::printf("The project's installation has the servos measured in the virtual lab now.\n");
+    if (applied) std::printf("The project's installation has the servos simulated in the virtual lab now.\n");
 }
 
 void servos(const ServosArguments& arguments, const Session& session) {
     const std::filesystem::path file = projectFile(arguments.project);
-    if (arguments.apply && arguments.project.starts_with("resource:"))
-        throw InvalidInput("--apply", "a bundled project cannot be written", "copy it first");
+    arguments.lab.checkProject(arguments.project);
     ServoLabOptions options;
     if (!arguments.fault.empty()) options.fault = parseServoFault(arguments.fault);
     const Progress progress = session.progress();
     const ProjectContents contents = readContents(file, progress.part(0.0, 0.1));
+    arguments.lab.checkRoom(arguments.project, contents.project.installation);
     const Rig& rig = *contents.rig;
     Installation believed = contents.project.installation;
     believed.servos.clear(); // they are measured anew
@@ -124,7 +126,7 @@ void servos(const ServosArguments& arguments, const Session& session) {
     fitting.resolution = 25;
     const ServoGain gain = servoGain(rig, shapesFor(contents), result.room, truth, fitting, progress.part(0.8, 1.0));
     Session::endProgress();
-    const bool applies = arguments.apply && result.measured.usable;
+    const bool applies = arguments.lab.apply && result.measured.usable;
     if (applies) {
         Project project = contents.project;
         project.installation = result.room;
@@ -145,8 +147,7 @@ void addCalibrateServos(CLI::App& group, Session& session) {
     command->add_option("project", arguments->project, "A project, or resource:projects/NAME.lumorph")->required();
     command->add_option("--seed", arguments->seed, "Other servos of the lab for another number");
     command->add_option("--fault", arguments->fault, "What is wrong in the lab: swapped, reversed, dead or jammed");
-    command->add_flag("--apply", arguments->apply,
-                      "Write what was measured in the virtual lab into the project's installation");
+    arguments->lab.addTo(*command, "Write what the virtual lab made into the project's installation, as simulated");
     command->add_flag("--json", arguments->json, "Print one JSON value");
     command->callback([arguments, &session] { servos(*arguments, session); });
 }

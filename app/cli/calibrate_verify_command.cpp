@@ -26,8 +26,8 @@ struct VerifyArguments {
     std::string pattern = "graycode";
     std::string picture, grid;
     std::uint32_t seed = 1;
-    bool apply = false;
     bool json = false;
+    LabApply lab;
 };
 
 nlohmann::json summaryJson(const ErrorSummary& summary) {
@@ -39,7 +39,7 @@ nlohmann::json summaryJson(const ErrorSummary& summary) {
 
 nlohmann::json checkJson(const VerifiedRoom& found) {
     const RoomCheck& check = found.check;
-    nlohmann::json all = {{"verdict", wordOf(check.verdict)}, {"sentence", check.sentence}};
+    nlohmann::json all = {{"verdict", wordOf(check.verdict)}, {"sentence", check.sentence}, {"way", "simulated"}};
     if (check.obstacle) {
         all["obstacle"] = keyOf(check.obstacle->obstacle);
         return all;
@@ -90,16 +90,16 @@ void keepCorrection(const VerifyArguments& arguments, const std::filesystem::pat
     // A camera that the project does not have is the lab's own.
     if (readProject(file).installation.cameras.empty()) project.installation.cameras.clear();
     writeProject(project, file);
-    if (!arguments.json) std::printf("The correction is in %s.\n", file.c_str());
+    if (!arguments.json) std::printf("The correction, simulated in the virtual lab, is in %s.\n", file.c_str());
 }
 
 void verify(const VerifyArguments& arguments, const Session& session) {
     const std::filesystem::path file = projectFile(arguments.project);
-    if (arguments.apply && arguments.project.starts_with("resource:"))
-        throw InvalidInput("--apply", "a bundled project is not changed", "copy it, and name the copy");
+    arguments.lab.checkProject(arguments.project);
     for (const std::string& output : {arguments.picture, arguments.grid})
         if (!output.empty()) checkOutput(output, file.string());
     const Project project = readProject(file);
+    arguments.lab.checkRoom(arguments.project, project.installation);
     const Rig rig = readRig(assetPath(file, project.rig));
     const Installation believed = withLabCamera(project.installation);
     const Installation truth = trueRoomOf(arguments, believed, rig);
@@ -110,7 +110,7 @@ void verify(const VerifyArguments& arguments, const Session& session) {
     const std::vector<double> bend = checkBends(rig).front();
     if (!arguments.picture.empty()) writePng(errorPicture(found.check, rig, believed, bend), arguments.picture);
     if (!arguments.grid.empty()) writePng(gridPicture(rig, believed, bend), arguments.grid);
-    if (arguments.apply) keepCorrection(arguments, file, found);
+    if (arguments.lab.apply) keepCorrection(arguments, file, found);
     arguments.json ? printJson(checkJson(found)) : printCheck(found);
     if (found.check.verdict == RoomCheck::Verdict::none)
         throw DataError("check of the room", found.check.obstacle->why, found.check.obstacle->remedy);
@@ -135,7 +135,7 @@ void addCalibrateVerify(CLI::App& group, Session& session) {
     command->add_option("--grid", arguments->grid,
                         "Draw what the projector shows to check by eye into a PNG file: crosshairs and lines");
     command->add_option("--seed", arguments->seed, "Another number gives other noise, and pushes elsewhere");
-    command->add_flag("--apply", arguments->apply, "Write the corrected installation into the project");
+    arguments->lab.addTo(*command, "Write the corrected installation into the project, as simulated");
     command->add_flag("--json", arguments->json, "Print one JSON value");
     command->callback([arguments, &session] { verify(*arguments, session); });
 }

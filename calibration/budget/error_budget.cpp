@@ -54,13 +54,15 @@ ErrorBudget budgetOf(const Rig& rig, const SlipModel& model, const RoomErrors& e
     budget.total = std::sqrt(sum);
     budget.isTrackerPlaced = errors.isTrackerPlaced;
     budget.places = model.points.size();
+    budget.isSimulated = std::ranges::find(errors.sources, ErrorSource::simulated) != errors.sources.end();
     for (const BudgetPart part : kAllBudgetParts) {
         const double own = squares[static_cast<std::size_t>(part)];
         budget.items[static_cast<std::size_t>(part)] = {part, errors.sourceOf(part), std::sqrt(own),
                                                         sum > 0.0 ? own / sum : 0.0};
         if (part == BudgetPart::prediction) continue;
         const double after = std::sqrt(sumOf(all(measuredAgain(errors, rig, part))));
-        const bool isFirst = errors.sourceOf(part) == ErrorSource::assumed;
+        const ErrorSource source = errors.sourceOf(part);
+        const bool isFirst = source == ErrorSource::assumed || source == ErrorSource::simulated;
         const bool isUrgent = part == BudgetPart::tracker && !errors.isTrackerPlaced;
         if (isUrgent || after < (1.0 - kWorthIt) * budget.total)
             budget.advice.push_back({part, isFirst, budget.total, after});

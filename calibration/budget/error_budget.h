@@ -23,7 +23,7 @@ struct BudgetItem {
 /// What measuring a part again would do.
 struct BudgetAdvice {
     BudgetPart part = BudgetPart::projector;
-    bool isFirst = false;             ///< it was not measured yet; else it is taken to come out half as large
+    bool isFirst = false; ///< it was not measured in the room yet; else, and where simulated, taken as half as large
     double before = 0.0, after = 0.0; ///< metres, of all together
 };
 
@@ -33,6 +33,7 @@ struct ErrorBudget {
     double total = 0.0;                         ///< metres: of all together, the squares added
     /// False: the tracker was never placed in the room; its part is what is left when it is laid in by a ruler.
     bool isTrackerPlaced = true;
+    bool isSimulated = false;         ///< a part is the virtual lab's: the sum says nothing of this room
     std::vector<BudgetAdvice> advice; ///< a tracker that was never placed, then what helps most; less than a
                                       ///< twentieth is left out
     std::size_t places = 0;           ///< of the device that count

@@ -52,14 +52,23 @@ private:
     Value choose(BudgetPart part, const Origin& origin, bool isTold, const Value& said, const Value& measured,
                  const Value& assumed) {
         ErrorSource& source = errors_.sources[static_cast<std::size_t>(part)];
-        source = origin.way != Origin::Way::measured ? ErrorSource::assumed
-                 : isTold                            ? ErrorSource::told
-                                                     : ErrorSource::measured;
+        source = !origin.isCalibrated()                 ? ErrorSource::assumed
+                 : origin.way == Origin::Way::simulated ? ErrorSource::simulated
+                 : isTold                               ? ErrorSource::told
+                                                        : ErrorSource::measured;
         return source == ErrorSource::assumed ? assumed : isTold ? said : measured;
     }
 
     RoomErrors& errors_;
 };
+
+/// Of where its light falls: a place that the lab made is not measured, whatever its lens is.
+Origin lightOrigin(const InstalledProjector& projector) {
+    Origin origin = projector.lens;
+    if (origin.way == Origin::Way::measured && projector.pose.way == Origin::Way::simulated)
+        origin.way = Origin::Way::simulated;
+    return origin;
+}
 
 /// Root mean square of a servo's curve and half its play beside the straight line, strokes. As `trueRoom` draws them.
 double usualStroke(const Actuator& actuator, double at, const LabErrors& usual) {
@@ -89,7 +98,7 @@ RoomErrors errorsOf(const Installation& room, const Rig& rig, const std::vector<
     RoomErrors errors;
     Writer write(errors);
     const Installation::Origins& origins = room.origins;
-    const Origin light = room.projectors.empty() ? Origin{} : room.projectors.front().lens;
+    const Origin light = room.projectors.empty() ? Origin{} : lightOrigin(room.projectors.front());
     write.number(BudgetPart::projector, light, errors.light, sigmaOf(light).metres, usually::kLight, kAimedLight);
     write.pose(BudgetPart::tracker, origins.tracker, errors.tracker, kEnteredTracker, usually::kTracker);
     errors.isTrackerPlaced = origins.tracker.way != Origin::Way::assumed;
@@ -150,7 +159,8 @@ RoomErrors measuredAgain(RoomErrors errors, const Rig& rig, BudgetPart part) {
     case BudgetPart::prediction:
         return errors;
     }
-    if (isNew) errors.sources[static_cast<std::size_t>(part)] = ErrorSource::measured;
+    if (isNew || errors.sourceOf(part) == ErrorSource::simulated)
+        errors.sources[static_cast<std::size_t>(part)] = ErrorSource::measured;
     return errors;
 }
 

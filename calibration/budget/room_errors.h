@@ -22,10 +22,11 @@ inline constexpr std::array<BudgetPart, kBudgetParts> kAllBudgetParts{
 
 /// How the error of a part is known.
 enum class ErrorSource {
-    told,     ///< its measurement said so
-    measured, ///< it was measured, but not said how well: as such measurements come out
-    assumed,  ///< nobody has measured it: as large as it usually is
-    worked    ///< worked out from the others: the prediction
+    told,      ///< its measurement said so
+    measured,  ///< it was measured, but not said how well: as such measurements come out
+    simulated, ///< the virtual lab measured it: as large as it is there, which says nothing of this room
+    assumed,   ///< nobody has measured it: as large as it usually is
+    worked     ///< worked out from the others: the prediction
 };
 
 /// Standard deviations of a pose along each of three axes.

@@ -93,6 +93,12 @@ std::vector<CapturedView> viewsIn(const std::filesystem::path& folder) {
     return views;
 }
 
+bool isLabCapture(const std::filesystem::path& folder) {
+    std::error_code none;
+    return std::filesystem::exists(folder / kLabCaptureMark, none) ||
+           std::filesystem::exists(folder / "truth.json", none);
+}
+
 cv::Mat readGrey(const std::filesystem::path& file, const std::string& view) {
     const auto refuse = [&](Cause cause, const std::string& why) {
         throw CaptureRefused({cause, view, file.filename().string(), why, "capture this pose again"});

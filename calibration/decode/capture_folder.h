@@ -28,6 +28,11 @@ struct CapturedView {
 /// The folders in `folder` that hold images, one a pose, by name. Throws DataError where there is none.
 [[nodiscard]] std::vector<CapturedView> viewsIn(const std::filesystem::path& folder);
 
+/// Lies in a capture of the virtual lab that has no truth.json.
+inline constexpr const char* kLabCaptureMark = "simulated.txt";
+/// Whether the pictures in a folder are the virtual lab's.
+[[nodiscard]] bool isLabCapture(const std::filesystem::path& folder);
+
 /// One image as 8-bit grey. Throws CaptureRefused when it cannot be read or is too large to unpack.
 [[nodiscard]] cv::Mat readGrey(const std::filesystem::path& file, const std::string& view);
 

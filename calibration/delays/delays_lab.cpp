@@ -466,6 +466,7 @@ MeasuredDelays measureDelaysInLab(const Rig& rig, const Installation& believed, 
         return delays;
     }
     delays.installation = withDelays(believed, delays);
+    markSimulated(believed, delays.installation);
     delays.summary = summaryOf(delays);
     delays.gain = slipInLab(delays.installation, truth, seed, options.errors);
     return delays;

@@ -123,6 +123,11 @@ Registration betterOf(Registration touched, const Registration& lit) {
     return touched;
 }
 
+Registration madeInLab(const Installation& believed, Registration made) {
+    markSimulated(believed, made.installation);
+    return made;
+}
+
 } // namespace
 
 PointerCapture capturePointerInLab(const Installation& truth, std::uint32_t seed,
@@ -203,7 +208,7 @@ Registration measurePointerInLab(const Rig&, const Installation& believed, const
     progress.throwIfCancelled();
     progress.report(0.0, "swinging the pointer");
     const PointerCapture capture = capturePointerInLab(truth, seed, options);
-    return registerPointer(capture, believed, progress.part(0.7, 1.0));
+    return madeInLab(believed, registerPointer(capture, believed, progress.part(0.7, 1.0)));
 }
 
 Registration measureTrackerInLab(const Rig& rig, const Installation& believed, const Installation& truth,
@@ -211,7 +216,7 @@ Registration measureTrackerInLab(const Rig& rig, const Installation& believed, c
     progress.throwIfCancelled();
     progress.report(0.0, "touching projected dots");
     const DotCapture capture = captureDotsInLab(rig, believed, truth, seed, options);
-    return registerTracker(capture, believed, progress.part(0.7, 1.0));
+    return madeInLab(believed, registerTracker(capture, believed, progress.part(0.7, 1.0)));
 }
 
 Registration measureDeviceInLab(const Rig& rig, const Installation& believed, const Installation& truth,
@@ -220,11 +225,11 @@ Registration measureDeviceInLab(const Rig& rig, const Installation& believed, co
     progress.report(0.0, "touching points of the device");
     const LandmarkCapture capture = captureLandmarksInLab(rig, truth, seed, options);
     const Registration touched = registerDevice(capture, believed, progress.part(0.3, 0.5));
-    if (!touched.good() || believed.cameras.empty()) return touched;
+    if (!touched.good() || believed.cameras.empty()) return madeInLab(believed, touched);
     progress.throwIfCancelled();
     progress.report(0.5, "structured light on the device");
     const SurfaceCapture lit = captureSurfaceInLab(rig, believed, truth, seed, options);
-    return betterOf(touched, registerDevice(lit, touched.installation, progress.part(0.7, 1.0)));
+    return madeInLab(believed, betterOf(touched, registerDevice(lit, touched.installation, progress.part(0.7, 1.0))));
 }
 
 Registration measureEyeInLab(const Rig& rig, const Installation& believed, const Installation& truth,
@@ -232,7 +237,7 @@ Registration measureEyeInLab(const Rig& rig, const Installation& believed, const
     progress.throwIfCancelled();
     progress.report(0.0, "covering marks with the tip");
     const EyeCapture capture = captureEyeInLab(rig, believed, truth, seed, options);
-    return registerEye(capture, believed, progress.part(0.7, 1.0));
+    return madeInLab(believed, registerEye(capture, believed, progress.part(0.7, 1.0)));
 }
 
 Registration measureAllInLab(const Rig& rig, const Installation& believed, const Installation& truth,
@@ -259,12 +264,12 @@ Registration measureAllInLab(const Rig& rig, const Installation& believed, const
     if (!eye.good()) return refusedAs(eye);
     Registration all = registerJointly(capture, eye.installation, progress.part(0.6, 0.8));
     if (!all.good()) return refusedAs(all);
-    if (believed.cameras.empty()) return all;
+    if (believed.cameras.empty()) return madeInLab(believed, all);
     const SurfaceCapture lit = captureSurfaceInLab(rig, believed, truth, seed, options);
     const Registration seen = betterOf(all, registerDevice(lit, all.installation, progress.part(0.8, 1.0)));
     all.installation = seen.installation;
     all.warnings = seen.warnings;
-    return all;
+    return madeInLab(believed, all);
 }
 
 } // namespace lumorph

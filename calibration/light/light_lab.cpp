@@ -185,6 +185,7 @@ LightCalibration measureLightInLab(const Rig& rig, const Installation& believed,
     if (options.fault == LightFault::unseen) eye = lookingAside(eye);
     LightLab lab(truth, rig, eye, sheet, options, seed);
     LightCalibration result = measureLight(believed, patches, lab, progress.part(0.1, 1.0));
+    markSimulated(believed, result.room);
     if (options.laysSheet && !sheet)
         result.warnings.push_back({Cause::surfaceUnseen,
                                    "white sheet",

@@ -210,8 +210,7 @@ void solveLandmarks(const LandmarkCapture& capture, const CaptureFault* undo, co
 
 /// Where the device lies as far as is known.
 Pose startOf(const SurfaceCapture& capture, const Installation& room, const Figures& figures) {
-    if (room.origins.deviceBody.way != Origin::Way::measured || capture.body.poses.empty())
-        return poseOf(room.worldFromDevice);
+    if (!room.origins.deviceBody.isCalibrated() || capture.body.poses.empty()) return poseOf(room.worldFromDevice);
     return figures.worldFromTracker * capture.body.poses.front().pose * figures.bodyFromDevice;
 }
 

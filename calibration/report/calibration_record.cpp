@@ -178,6 +178,7 @@ void readSource(json& document, JsonSection& root, CalibrationSource& source) {
     root.text("board", source.board);
     root.text("pattern", source.pattern);
     root.number("metresPerUnit", source.metresPerUnit, 1e-9, 1e6);
+    root.flag("simulated", source.isSimulated);
     const auto inputs = document.find("inputs");
     if (inputs == document.end()) return;
     if (!inputs->is_array() || inputs->size() > kMostTexts ||
@@ -276,6 +277,7 @@ std::string calibrationText(const CalibrationRecord& record) {
                      {"halvesAllowed", orNull(result.halvesAllowed)},
                      {"warnings", warnings},
                      {"degenerate", result.degenerate}};
+    if (source.isSimulated) document["simulated"] = true;
     if (!result.projector.size.empty()) {
         const PoseVector& rig = result.projectorFromCamera;
         const PoseVector& sigma = result.projectorFromCameraSigma;

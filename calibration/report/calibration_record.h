@@ -15,6 +15,7 @@ struct CalibrationSource {
     std::string pattern;             ///< as `parsePattern` reads it, or the name of an order file
     std::vector<std::string> inputs; ///< folders and files
     double metresPerUnit = 0.001;    ///< of the board's lengths
+    bool isSimulated = false;        ///< its pictures are the virtual lab's
     bool operator==(const CalibrationSource&) const = default;
 };
 

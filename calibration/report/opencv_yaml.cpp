@@ -43,6 +43,7 @@ enum class Role {
     metresPerUnit,
     date,
     board,
+    simulated,
 };
 
 /// How each is spelled: as it stands, or without case, underscores and blanks.
@@ -78,6 +79,7 @@ constexpr std::array kSpellings{
     Spelling{Role::metresPerUnit, "", "metresperunit"},
     Spelling{Role::date, "", "calibrationtime calibrationdate date"},
     Spelling{Role::board, "", "board"},
+    Spelling{Role::simulated, "", "simulated"},
 };
 
 bool isAmong(std::string_view words, std::string_view word) {
@@ -268,6 +270,7 @@ public:
         record.source.metresPerUnit = numberOr(Role::metresPerUnit, 0.001, 1e-9);
         record.source.date = entries_[Role::date].word;
         record.source.board = entries_[Role::board].word;
+        record.source.isSimulated = numberOr(Role::simulated, 0.0, 0.0) != 0.0;
         result.state.camera = result.camera.lens;
         result.state.projector = result.projector.lens;
         result.state.projectorFromCamera = result.projectorFromCamera;
@@ -403,6 +406,7 @@ std::string calibrationYaml(const CalibrationRecord& record) {
     if (!record.source.date.empty()) text += "calibration_time: " + quotedWord(record.source.date) + "\n";
     if (!record.source.board.empty()) text += "board: " + quotedWord(record.source.board) + "\n";
     number("metres_per_unit", record.source.metresPerUnit);
+    if (record.source.isSimulated) number("simulated", 1.0);
     size("image", result.camera.size);
     addDevice(text, result.camera, "cameraMatrix1", "distCoeffs1");
     number("camera_rms", result.camera.rms);

@@ -279,6 +279,7 @@ std::string sourceText(const CalibrationSource& source) {
     add("Board", source.board);
     add("Patterns", source.pattern);
     for (const std::string& input : source.inputs) add("Input", input);
+    if (source.isSimulated) add("Way", "simulated");
     return text + "</table>\n";
 }
 
@@ -298,11 +299,14 @@ std::string figuresText(const CalibrationReport& report) {
 } // namespace
 
 std::string reportPage(const CalibrationReport& report) {
-    std::string page = "<!DOCTYPE html>\n<html>\n<head>\n<meta charset=\"utf-8\">\n<title>Calibration</title>\n"
-                       "<style>\nbody { font-family: sans-serif; color: #1a202c; margin: 24px; }\n"
-                       "table { border-collapse: collapse; }\nth, td { text-align: left; }\n</style>\n</head>\n<body>\n"
-                       "<h1>Calibration by Lumorph</h1>\n" +
-                       sourceText(report.record.source);
+    std::string page =
+        "<!DOCTYPE html>\n<html>\n<head>\n<meta charset=\"utf-8\">\n<title>Calibration</title>\n"
+        "<style>\nbody { font-family: sans-serif; color: #1a202c; margin: 24px; }\n"
+        "table { border-collapse: collapse; }\nth, td { text-align: left; }\n</style>\n</head>\n<body>\n"
+        "<h1>Calibration by Lumorph</h1>\n" +
+        (report.record.source.isSimulated ? "<p><b>Simulated</b>: made in the virtual lab, and true of no room.</p>\n"
+                                          : std::string()) +
+        sourceText(report.record.source);
     if (report.refusal)
         page += "<h2>Refused</h2>\n<p>This capture cannot be trusted, so there are no figures.</p>\n<p>" +
                 findingText(*report.refusal) + "</p>\n";

@@ -137,7 +137,9 @@ ServoMeasurement measureServosInLab(const Rig& rig, const Installation& believed
         lab.command(commanded);
         return surfacePoints(lab.look(), camera, believed.projectors.front().camera);
     };
-    return measureServos(rig, believed, seed, look, progress, options.plan);
+    ServoMeasurement result = measureServos(rig, believed, seed, look, progress, options.plan);
+    markSimulated(believed, result.room);
+    return result;
 }
 
 } // namespace lumorph

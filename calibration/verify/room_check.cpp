@@ -185,7 +185,7 @@ Installation correctedBy(const Installation& believed, const Rig& rig, const Mov
 void takeCorrections(const Installation& corrected, Installation& room) {
     // Dates of one form are in the order of their texts.
     const auto isNewer = [](const Origin& found, const Origin& known) {
-        return found.way == Origin::Way::measured && found.method == kMethod && found.date >= known.date;
+        return found.isCalibrated() && found.method == kMethod && found.date >= known.date;
     };
     for (std::size_t i = 0; i < std::min(corrected.projectors.size(), room.projectors.size()); ++i) {
         const InstalledProjector& found = corrected.projectors[i];

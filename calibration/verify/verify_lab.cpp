@@ -39,7 +39,11 @@ VerifiedRoom measureVerifyInLab(const Rig& rig, const Installation& believed, co
     if (truth.projectors.size() != believed.projectors.size())
         throw InvalidInput("check in the lab", "the true room has another number of projectors", "give it as many");
     LabDeviceBench bench(rig, photographedRoom(withLabCamera(truth), options.cameraWidth), seed, options.pictures);
-    return verifyRoom(rig, withLabCamera(believed), bench, progress, options);
+    const Installation before = withLabCamera(believed);
+    VerifiedRoom result = verifyRoom(rig, before, bench, progress, options);
+    markSimulated(before, result.installation);
+    result.check.installation = result.installation;
+    return result;
 }
 
 } // namespace lumorph

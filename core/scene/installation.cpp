@@ -1,5 +1,6 @@
 #include "core/scene/installation.h"
 
+#include <algorithm>
 #include <chrono>
 #include <ctime>
 
@@ -89,6 +90,50 @@ void markOrigins(const Installation& before, Installation& edited, const Origin&
     mark(before.bodyFromDevice == edited.bodyFromDevice, then.deviceBody, now.deviceBody, origin);
     mark(before.pointerTip == edited.pointerTip, then.pointer, now.pointer, origin);
     mark(curvesOf(before.servos) == curvesOf(edited.servos), then.servos, now.servos, origin);
+}
+
+namespace {
+
+/// Each origin that an installation has, with the part it is of.
+template <class Room, class Use> void eachOrigin(Room& room, const Use& use) {
+    for (auto& projector : room.projectors) {
+        use("lens of " + projector.name, projector.lens);
+        use("place of " + projector.name, projector.pose);
+        use("light of " + projector.name, projector.response);
+    }
+    for (auto& camera : room.cameras) {
+        use("lens of " + camera.name, camera.lens);
+        use("place of " + camera.name, camera.pose);
+    }
+    auto& origins = room.origins;
+    use("table", origins.table);
+    use("place of the device", origins.devicePlace);
+    use("colours", origins.colors);
+    use("eye", origins.eyeOffset);
+    use("delays", origins.delays);
+    use("tracker", origins.tracker);
+    use("device on its body", origins.deviceBody);
+    use("pointer", origins.pointer);
+    use("servos", origins.servos);
+}
+
+} // namespace
+
+void markSimulated(const Installation& before, Installation& made) {
+    std::vector<Origin> known;
+    eachOrigin(before, [&known](const std::string&, const Origin& origin) { known.push_back(origin); });
+    eachOrigin(made, [&known](const std::string&, Origin& origin) {
+        if (origin.way == Origin::Way::measured && std::ranges::find(known, origin) == known.end())
+            origin.way = Origin::Way::simulated;
+    });
+}
+
+std::vector<std::string> realParts(const Installation& room) {
+    std::vector<std::string> parts;
+    eachOrigin(room, [&parts](const std::string& part, const Origin& origin) {
+        if (origin.way == Origin::Way::measured || origin.way == Origin::Way::entered) parts.push_back(part);
+    });
+    return parts;
 }
 
 std::string utcDate() {

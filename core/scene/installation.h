@@ -14,14 +14,17 @@ namespace lumorph {
 /// Where a figure of an installation came from, and when.
 struct Origin {
     enum class Way {
-        assumed, ///< nobody has looked: that of the virtual lab
-        entered, ///< typed or dragged by hand
-        measured ///< by a calibration
+        assumed,  ///< nobody has looked: that of the virtual lab
+        entered,  ///< typed or dragged by hand
+        measured, ///< by a calibration in the room
+        simulated ///< by a calibration in the virtual lab, or of simulated devices
     };
     Way way = Way::assumed;
     std::string method; ///< of a measurement, in a few words: "structured light, 12 boards"
     std::string date;   ///< ISO 8601 in UTC, such as "2026-11-24T17:05:00Z"; empty for what is assumed
     bool operator==(const Origin&) const = default;
+    /// By a calibration, wherever it was made.
+    [[nodiscard]] bool isCalibrated() const noexcept { return way == Way::measured || way == Way::simulated; }
 };
 
 /// A projector and what is known of its light. Full white on a white diffuse surface that it meets head on at
@@ -117,6 +120,12 @@ void checkInstallation(const Installation& installation);
 
 /// Gives each part of `edited` whose figures differ from those of `before` this origin, unless the edit brought one.
 void markOrigins(const Installation& before, Installation& edited, const Origin& origin);
+
+/// What the virtual lab made of `before`: of all that it measured, the origin becomes `simulated`.
+void markSimulated(const Installation& before, Installation& made);
+
+/// The parts of a room that were measured or entered, in words: "lens of Projector", "delays".
+[[nodiscard]] std::vector<std::string> realParts(const Installation& room);
 
 /// Now, as an Origin's date.
 [[nodiscard]] std::string utcDate();

@@ -180,14 +180,16 @@ fs::path InstallationStore::keepVersion(const InstallationVersion& version) {
         figures.push_back({{"name", figure.name}, {"value", figure.value}, {"unit", figure.unit}});
     if (figures.size() > kMostFigures || version.inputs.size() > kMostInputs)
         throw InvalidInput("version of the installation", "has too many figures or inputs", "leave some out");
-    const std::string text = textOf({{"lumorph", "installation version"},
-                                     {"schemaVersion", kInstallationSchema},
-                                     {"date", version.date},
-                                     {"title", version.title},
-                                     {"figures", figures},
-                                     {"inputs", version.inputs},
-                                     {"result", version.result},
-                                     {"installation", documentOf(version.installation)}});
+    json document = {{"lumorph", "installation version"},
+                     {"schemaVersion", kInstallationSchema},
+                     {"date", version.date},
+                     {"title", version.title},
+                     {"figures", figures},
+                     {"inputs", version.inputs},
+                     {"result", version.result},
+                     {"installation", documentOf(version.installation)}};
+    if (version.isSimulated) document["simulated"] = true;
+    const std::string text = textOf(document);
     const fs::path folder = folder_ / "versions";
     std::error_code failed;
     fs::create_directories(folder, failed);
@@ -208,6 +210,7 @@ InstallationVersion InstallationStore::readVersion(const fs::path& file) {
     root.text("date", version.date);
     root.text("title", version.title);
     root.text("result", version.result);
+    root.flag("simulated", version.isSimulated);
     root.sections("figures", kMostFigures, [&](JsonSection section) {
         VersionFigure& figure = version.figures.emplace_back();
         section.text("name", figure.name);

@@ -38,6 +38,7 @@ struct InstallationVersion {
     std::vector<std::string> inputs; ///< what it was made of, a line each: folder, board, patterns
     std::string result;              ///< the whole result as the text of its own file, for reports; may be empty
     Installation installation;
+    bool isSimulated = false; ///< what it adds was made in the virtual lab
     bool operator==(const InstallationVersion&) const = default;
 };
 

@@ -35,7 +35,7 @@ TEST(CalibrateDelays, AppliesMeasuredDelaysToAProject) {
     EXPECT_NEAR(json["movedMark"]["ms"].get<double>(),
                 json["light"]["ms"].get<double>() + json["tracker"]["ms"].get<double>(), 3.0);
     const Installation room = readProject(file).installation;
-    EXPECT_EQ(room.origins.delays.way, Origin::Way::measured);
+    EXPECT_EQ(room.origins.delays.way, Origin::Way::simulated);
     EXPECT_NEAR(room.predictionSeconds, 1e-3 * json["light"]["ms"].get<double>(), 1e-9);
     EXPECT_NEAR(room.trackerSeconds, 1e-3 * json["tracker"]["ms"].get<double>(), 1e-9);
     ASSERT_EQ(room.servos.size(), 6U);

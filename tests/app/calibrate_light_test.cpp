@@ -35,8 +35,8 @@ TEST(CalibrateLight, AppliesMeasuredLightToAProject) {
     const Installation room = readProject(file).installation;
     EXPECT_EQ(room.projectors.front().responseCurve.size(), 65U);
     EXPECT_GT(room.projectors.front().black.g, 0.0F);
-    EXPECT_EQ(room.projectors.front().response.way, Origin::Way::measured);
-    EXPECT_EQ(room.origins.colors.way, Origin::Way::measured);
+    EXPECT_EQ(room.projectors.front().response.way, Origin::Way::simulated);
+    EXPECT_EQ(room.origins.colors.way, Origin::Way::simulated);
     EXPECT_NE(room.deviceColor, glm::vec3(1.0F));
     const Outcome again = lumorph({"calibrate", "light", file.string(), "--seed", "4", "--without-sheet"});
     ASSERT_EQ(again.exitCode, 0) << again.err;

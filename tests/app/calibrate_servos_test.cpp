@@ -29,7 +29,7 @@ TEST(CalibrateServos, AppliesMeasuredServosToAProject) {
     for (const auto& servo : json["servos"]) EXPECT_NEAR(servo["backlashDegrees"].get<double>(), 2.0, 0.3);
     const Installation room = readProject(file).installation;
     EXPECT_EQ(room.servos.size(), 6U);
-    EXPECT_EQ(room.origins.servos.way, Origin::Way::measured);
+    EXPECT_EQ(room.origins.servos.way, Origin::Way::simulated);
 }
 
 TEST(CalibrateServos, NamesAFaultAndKeepsNothing) {

@@ -51,7 +51,7 @@ TEST(CalibrateVerify, SaysWhatMovedAndKeepsTheCorrectionInTheProject) {
 
     const Installation after = readProject(file).installation;
     EXPECT_NE(after.projectors.front().camera.cameraFromWorld, before.projectors.front().camera.cameraFromWorld);
-    EXPECT_EQ(after.projectors.front().pose.way, Origin::Way::measured);
+    EXPECT_EQ(after.projectors.front().pose.way, Origin::Way::simulated);
     EXPECT_FALSE(after.projectors.front().pose.date.empty());
     Installation rest = after;
     rest.projectors = before.projectors;

@@ -61,6 +61,14 @@ void expectSameFigures(const ProcamCalibration& one, const ProcamCalibration& ot
         EXPECT_NEAR(one.projectorFromCamera[i], other.projectorFromCamera[i], 1e-9) << i;
 }
 
+TEST(CalibrationFile, WhatTheLabMadeStaysSimulated) {
+    CalibrationRecord record = exampleRecord();
+    EXPECT_EQ(calibrationText(record).find("simulated"), std::string::npos);
+    record.source.isSimulated = true;
+    EXPECT_TRUE(parseCalibration(calibrationText(record), "a.json").source.isSimulated);
+    EXPECT_TRUE(parseCalibrationYaml(calibrationYaml(record), "a.yaml").source.isSimulated);
+}
+
 TEST(CalibrationFile, OurJsonComesBackAsItWas) {
     const CalibrationRecord record = exampleRecord();
     const std::string text = calibrationText(record);

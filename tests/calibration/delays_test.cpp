@@ -264,7 +264,7 @@ TEST(DelaysLab, AllDelaysComeOutAsTheLabHasThem) {
         const Installation& room = delays.installation;
         EXPECT_NEAR(room.predictionSeconds, truth.predictionSeconds, 0.002);
         EXPECT_NEAR(room.trackerSeconds, truth.trackerSeconds, 0.002);
-        EXPECT_EQ(room.origins.delays.way, Origin::Way::measured);
+        EXPECT_EQ(room.origins.delays.way, Origin::Way::simulated);
         ASSERT_EQ(delays.servos.size(), delayTablet().actuatorCount());
         ASSERT_EQ(room.servos.size(), delayTablet().actuatorCount());
         for (std::size_t i = 0; i < room.servos.size(); ++i) {

@@ -283,6 +283,29 @@ TEST(ErrorBudget, TakesWhatMeasurementsSayOfThemselves) {
     EXPECT_NEAR(again.eye, 0.5 * after.eye, 1e-12);
 }
 
+TEST(ErrorBudget, WhatTheLabMadeIsSimulatedAndMeasuringItIsNew) {
+    const Rig& rig = budgetTablet();
+    Installation room = defaultInstallation();
+    const std::vector<double> half(rig.actuatorCount(), 0.5);
+    room.origins.delays = {Origin::Way::simulated, withSigma("20 flashes", {0.0, 0.0, 0.004}), ""};
+    room.projectors.front().lens = {Origin::Way::measured, "structured light, 6 boards", ""};
+    EXPECT_EQ(errorsOf(room, rig, half).sourceOf(BudgetPart::projector), ErrorSource::measured);
+    room.projectors.front().pose = {Origin::Way::simulated, "check by structured light", ""};
+    const RoomErrors errors = errorsOf(room, rig, half);
+    EXPECT_EQ(errors.sourceOf(BudgetPart::delay), ErrorSource::simulated);
+    EXPECT_NEAR(errors.delay, 0.004, 1e-6) << "as large as in the lab";
+    EXPECT_EQ(errors.sourceOf(BudgetPart::projector), ErrorSource::simulated) << "the lab moved it";
+    EXPECT_EQ(measuredAgain(errors, rig, BudgetPart::delay).sourceOf(BudgetPart::delay), ErrorSource::measured);
+    EXPECT_TRUE(budgetOf(rig, slipModelOf(rig, room), errors).isSimulated);
+    EXPECT_FALSE(budgetOf(rig, slipModelOf(rig, room), errorsOf(defaultInstallation(), rig, half)).isSimulated);
+    RoomErrors large = errors;
+    large.delay = 0.2;
+    const ErrorBudget budget = budgetOf(rig, slipModelOf(rig, room), large);
+    const auto delay = std::ranges::find(budget.advice, BudgetPart::delay, &BudgetAdvice::part);
+    ASSERT_NE(delay, budget.advice.end());
+    EXPECT_TRUE(delay->isFirst) << "nobody measured it in the room";
+}
+
 TEST(ErrorBudget, AdvisesThePartThatCountsMost) {
     const Draws draws = drawsOf(1.0, Judge::planes);
     RoomErrors errors = draws.errors;

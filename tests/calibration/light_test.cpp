@@ -144,8 +144,8 @@ TEST(LightTest, OfAProjectorIsMeasuredWithTheColoursOfDeviceAndTable) {
         EXPECT_LT(errors.colors, 0.006);
         EXPECT_LT(found.fresh.median, 0.01);
         EXPECT_GT(found.before.median, 3.0 * found.fresh.median) << "sRGB was believed";
-        EXPECT_EQ(found.room.projectors.front().response.way, Origin::Way::measured);
-        EXPECT_EQ(found.room.origins.colors.way, Origin::Way::measured);
+        EXPECT_EQ(found.room.projectors.front().response.way, Origin::Way::simulated);
+        EXPECT_EQ(found.room.origins.colors.way, Origin::Way::simulated);
         EXPECT_NO_THROW(checkInstallation(found.room));
         Installation others = found.room; // nothing but light was changed
         others.deviceColor = believed.deviceColor;

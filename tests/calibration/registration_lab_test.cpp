@@ -93,7 +93,7 @@ TEST(RegistrationLab, SetUpsAreRegisteredToAMillimetreAndTheEyeToFive) {
         EXPECT_LE(onBody.millimetres, 1.0);
         EXPECT_LE(onBody.degrees, 0.2);
         EXPECT_LE(eyes, 5.0) << "from 8 alignments with 2 px aiming noise";
-        EXPECT_EQ(eye.installation.origins.eyeOffset.way, Origin::Way::measured);
+        EXPECT_EQ(eye.installation.origins.eyeOffset.way, Origin::Way::simulated);
         EXPECT_EQ(tracker.fresh.points.size(), 4U);
     }
 }

@@ -99,6 +99,16 @@ TEST(ReportPage, HoldsFiguresViewsWarningsAndInputs) {
     EXPECT_TRUE(isBalanced(page));
 }
 
+TEST(ReportPage, SaysThatItIsSimulated) {
+    CalibrationReport report = exampleReport("pose_1");
+    EXPECT_THAT(reportPage(report), Not(HasSubstr("imulated")));
+    report.record.source.isSimulated = true;
+    const std::string page = reportPage(report);
+    EXPECT_THAT(page, HasSubstr("<b>Simulated</b>"));
+    EXPECT_THAT(page, Not(HasSubstr("measured")));
+    EXPECT_TRUE(isBalanced(page));
+}
+
 TEST(ReportPage, PlotsShowTheErrors) {
     const auto pictures = picturesIn(reportPage(exampleReport("pose_1")));
     ASSERT_EQ(pictures.size(), 4U) << "bars, dots of the camera, two sights";

@@ -77,7 +77,7 @@ TEST(ServoCalibrationTest, SixBentServosWithTwoDegreesOfBacklash) {
         EXPECT_LE(errors.backlash, 0.3);
         EXPECT_LE(result.seconds, 180.0);
         EXPECT_EQ(result.room.servos.size(), 6U);
-        EXPECT_EQ(result.room.origins.servos.way, Origin::Way::measured);
+        EXPECT_EQ(result.room.origins.servos.way, Origin::Way::simulated);
     }
 }
 

@@ -133,6 +133,17 @@ TEST_F(Budget, TellsWhereTheMillimetresComeFromAndWhatHelps) {
     EXPECT_EQ(coloursBefore(BudgetPart::device), 1U);
     EXPECT_GT(coloursBefore(BudgetPart::eye), 3U);
 
+    // What the lab made is hatched, and said to be simulated.
+    studio::editInstallation(window.studio().document, "Simulated",
+                             [](Installation& room) { room.origins.deviceBody.way = Origin::Way::simulated; });
+    settle();
+    expectShown(expected());
+    EXPECT_EQ(parts()[static_cast<std::size_t>(BudgetPart::device)].words, "simulated in the virtual lab");
+    EXPECT_GT(coloursBefore(BudgetPart::device), 3U);
+    window.screenshot("budget-simulated");
+    window.studio().document.undoStack().undo();
+    settle();
+
     // What is advised is the link that the button leads to.
     studio::editInstallation(window.studio().document, "Placed", [](Installation& room) {
         room.origins.tracker = {Origin::Way::measured, withSigma("touched dots, 12", {0.0003, 0.0008, 0.0}),

@@ -2,6 +2,7 @@
 #include <fstream>
 
 #include <QAbstractButton>
+#include <QAction>
 #include <QLabel>
 #include <QRegularExpression>
 #include <glm/gtc/quaternion.hpp>
@@ -155,7 +156,7 @@ void Chain::measureProjector() {
     window.click("calibrate.rest");
     ASSERT_TRUE(calibrateOffers("Use this calibration")) << window.text("calibrate.card.text").toStdString();
     press();
-    ASSERT_TRUE(eventually([&] { return room().projectors.front().lens.way == Origin::Way::measured; }));
+    ASSERT_TRUE(eventually([&] { return room().projectors.front().lens.way == Origin::Way::simulated; }));
     window.click("calibrate.show.map");
     const auto* view = window.find<studio::ErrorMapView>("calibrate.map");
     ASSERT_TRUE(view && eventually([&] { return view->plan().has_value(); }));
@@ -163,7 +164,7 @@ void Chain::measureProjector() {
     map = *view->plan();
     ASSERT_TRUE(calibrateOffers("Go on with the chain"));
     press();
-    ASSERT_TRUE(eventually([&] { return badge("projector") == "Measured"; })) << story();
+    ASSERT_TRUE(eventually([&] { return badge("projector") == "Simulated"; })) << story();
 }
 
 TEST_F(Chain, EachLinkIsMeasuredShownAndUsed) {
@@ -178,14 +179,14 @@ TEST_F(Chain, EachLinkIsMeasuredShownAndUsed) {
     window.screenshot("chain-pointer");
     EXPECT_EQ(room().origins.pointer.way, Origin::Way::assumed) << "nothing is used before one says so";
     next();
-    ASSERT_TRUE(eventually([&] { return badge("pointer") == "Measured"; })) << story();
-    EXPECT_EQ(room().origins.pointer.way, Origin::Way::measured);
+    ASSERT_TRUE(eventually([&] { return badge("pointer") == "Simulated"; })) << story();
+    EXPECT_EQ(room().origins.pointer.way, Origin::Way::simulated);
     EXPECT_GT(glm::length(room().pointerTip), 0.1F) << "the lab's pointer is long";
     window.studio().document.undoStack().undo();
     EXPECT_EQ(room().origins.pointer.way, Origin::Way::assumed);
     EXPECT_EQ(badge("pointer"), "To be used") << "undo gives it back to be used";
     window.studio().document.undoStack().redo();
-    EXPECT_EQ(badge("pointer"), "Measured");
+    EXPECT_EQ(badge("pointer"), "Simulated");
 }
 
 // R24, R25, R26: from nothing to a show that is right in the lab as it truly is, all of its errors on at once.
@@ -211,13 +212,13 @@ TEST_F(Chain, AllThatIsMissingIsMeasuredOneAfterTheOther) {
     EXPECT_TRUE(room().servos.empty());
     window.studio().loop.resume();
     window.click("chain.rest");
-    ASSERT_TRUE(eventually([&] { return badge("check") == "Measured"; }, 300s)) << story();
+    ASSERT_TRUE(eventually([&] { return badge("check") == "Simulated"; }, 300s)) << story();
     for (const studio::ChainLink& link : studio::chainLinks())
-        EXPECT_EQ(badge(link.key), "Measured") << link.key << ": " << story();
+        EXPECT_EQ(badge(link.key), "Simulated") << link.key << ": " << story();
     EXPECT_EQ(room().servos.size(), window.state().rig.rig->actuatorCount());
     EXPECT_EQ(room().projectors.front().responseCurve.size(), 65U);
     EXPECT_GT(room().projectors.front().black.g, 0.0F);
-    EXPECT_EQ(room().origins.colors.way, Origin::Way::measured);
+    EXPECT_EQ(room().origins.colors.way, Origin::Way::simulated);
     window.screenshot("chain-checked");
     window.click("chain.link.light");
     window.screenshot("chain-light-measured", 300ms);
@@ -225,7 +226,7 @@ TEST_F(Chain, AllThatIsMissingIsMeasuredOneAfterTheOther) {
     window.screenshot("chain-servos-measured", 300ms);
     window.click("chain.link.delays");
     window.screenshot("chain-delays-measured", 300ms);
-    EXPECT_EQ(room().origins.delays.way, Origin::Way::measured);
+    EXPECT_EQ(room().origins.delays.way, Origin::Way::simulated);
     // The camera stands where the sequence has it: a part that it does not see in all its range keeps its lag, and that
     // is told.
     const QStringList figures = lagFigures();
@@ -259,6 +260,35 @@ TEST_F(Chain, AllThatIsMissingIsMeasuredOneAfterTheOther) {
     EXPECT_GE(shown.balls.size() + 2, shown.judgedBalls) << "what is not seen at all is no small error";
     EXPECT_LE(meanOf(shown.balls), 1.5);
     EXPECT_LE(meanOf(shown.skinPixels), 1.5);
+}
+
+TEST_F(Chain, ALabsResultAsksBeforeItJoinsWhatWasMeasured) {
+    ASSERT_TRUE(eventually([&] { return window.state().rig.rig && window.studio().jobs.running().empty(); }, 60s));
+    studio::editInstallation(window.studio().document, "Measured before", [](Installation& room) {
+        room.origins.tracker = {Origin::Way::measured, "touched dots, 12", "2026-11-20T10:00:00Z"};
+    });
+    window.click("chain.link.pointer");
+    ASSERT_TRUE(offers("Measure in the lab")) << story();
+    next();
+    ASSERT_TRUE(offers("Use it")) << story();
+    EXPECT_EQ(window.text("chain.card.title"), "Simulated");
+    next();
+    ASSERT_TRUE(offers("Use it as simulated")) << story();
+    EXPECT_EQ(window.text("chain.card.title"), "This room holds what was measured or entered");
+    EXPECT_TRUE(window.text("chain.card.text").contains("tracker")) << story();
+    EXPECT_EQ(room().origins.pointer.way, Origin::Way::assumed) << "it only asked";
+    window.screenshot("chain-asks");
+    window.click("chain.link.eye");
+    window.click("chain.link.pointer");
+    ASSERT_TRUE(offers("Use it")) << "the question is withdrawn: " << story();
+    EXPECT_EQ(window.text("chain.card.title"), "Simulated");
+    next();
+    ASSERT_TRUE(offers("Use it as simulated")) << story();
+    next();
+    ASSERT_TRUE(eventually([&] { return badge("pointer") == "Simulated"; })) << story();
+    EXPECT_EQ(room().origins.pointer.way, Origin::Way::simulated);
+    EXPECT_EQ(room().origins.tracker.way, Origin::Way::measured);
+    EXPECT_TRUE(window.studio().room.versions().front().version.isSimulated);
 }
 
 TEST_F(Chain, RecordingsAreReadInPlaceOfTheLab) {
@@ -377,7 +407,7 @@ TEST_F(Chain, PointerIsMeasuredWithTheTrackerThatIsConnected) {
     ASSERT_TRUE(offers("Use it")) << story();
     window.screenshot("chain-live-measured");
     next();
-    ASSERT_TRUE(eventually([&] { return badge("pointer") == "Measured"; })) << story();
+    ASSERT_TRUE(eventually([&] { return badge("pointer") == "Simulated"; })) << story() << ": by no real tracker";
     EXPECT_LT(glm::distance(room().pointerTip, glm::vec3(tip)), 0.0005F);
     // What it builds on comes first; a body that nobody tracks is named.
     window.click("chain.link.device");
@@ -448,13 +478,37 @@ TEST(ChainLinks, ACheckThatCannotPutRightOffersNothingToUse) {
     EXPECT_FALSE(outcome.installation) << outcome.summary.toStdString();
 }
 
-// The lab's camera sees the room as it was when the watch began.
+TEST_F(Chain, TheWatchIsGreyWhereItWouldSeeItsOwnBelief) {
+    window.studio().lab.packUp();
+    QAction* watch = window.studio().commands.find("calibrate.watch");
+    EXPECT_FALSE(watch->isEnabled());
+    EXPECT_TRUE(watch->toolTip().contains("the room has no camera of this machine")) << watch->toolTip().toStdString();
+    studio::editInstallation(window.studio().document, "A camera", [](Installation& room) {
+        room = withLabCamera(room);
+        room.cameras.front().address = "camera9";
+    });
+    EXPECT_TRUE(watch->isEnabled()) << "by the room's camera";
+    window.studio().document.undoStack().undo();
+    EXPECT_FALSE(watch->isEnabled());
+    window.studio().lab.unpack();
+    EXPECT_TRUE(watch->isEnabled()) << "by what truly stands in the lab";
+    watch->setChecked(true);
+    window.studio().lab.packUp();
+    EXPECT_FALSE(watch->isEnabled());
+    EXPECT_FALSE(watch->isChecked()) << "it ends with the lab";
+}
+
+// The lab's camera sees the room as it truly was when the watch began.
 TEST_F(Chain, TheWatchTellsAHostThatTheProjectorHasMoved) {
     window.window().showWorkspace("scene");
     ASSERT_TRUE(eventually([&] { return window.state().rig.rig && window.studio().jobs.running().empty(); }, 60s));
-    studio::editInstallation(window.studio().document, "A camera",
-                             [](Installation& room) { room = withLabCamera(room); });
-    window.studio().commands.find("calibrate.watch")->setChecked(true);
+    window.studio().lab.unpack();
+    studio::editInstallation(
+        window.studio().document, "As it truly is",
+        [truth = window.studio().lab.truth()](Installation& room) { room = withLabCamera(truth); });
+    QAction* watch = window.studio().commands.find("calibrate.watch");
+    ASSERT_TRUE(watch->isEnabled());
+    watch->setChecked(true);
     pass(12s);
     EXPECT_TRUE(window.studio().notices.at("calibrate").empty());
     studio::editInstallation(window.studio().document, "Believed elsewhere",
@@ -466,7 +520,7 @@ TEST_F(Chain, TheWatchTellsAHostThatTheProjectorHasMoved) {
     notice.actions.front().run();
     EXPECT_EQ(window.window().workspace(), "calibrate");
     EXPECT_EQ(window.text("chain.card.title"), "Check");
-    window.studio().commands.find("calibrate.watch")->setChecked(false);
+    watch->setChecked(false);
     EXPECT_TRUE(window.studio().notices.at("calibrate").empty()) << "nobody watches any more";
 }
 

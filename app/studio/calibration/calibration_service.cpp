@@ -97,9 +97,10 @@ private:
 CalibrationService::CalibrationService(Settings& settings, StudioDocument& document, Jobs& jobs, Notices& notices,
                                        DisplayOpener openDisplay, VersionTaker take, QObject* parent)
     : QObject(parent), settings_(settings), document_(document), notices_(notices),
-      openDisplay_(std::move(openDisplay)), take_(std::move(take)), store_(std::make_shared<PoseStore>()),
-      jobs_(*this, jobs, notices), liveTimer_(new QTimer(this)), looker_(std::make_unique<Looker>()) {
+      openDisplay_(std::move(openDisplay)), take_(std::move(take)), jobs_(*this, jobs, notices),
+      liveTimer_(new QTimer(this)), looker_(std::make_unique<Looker>()) {
     state_.setup = keptSetup(settings, keptWay(settings));
+    forgetPoses();
     liveTimer_->setSingleShot(true);
     liveTimer_->setInterval(kLiveMilliseconds);
     connect(liveTimer_, &QTimer::timeout, this, [this] { look(); });
@@ -175,7 +176,7 @@ void CalibrationService::beginAnew() {
 /// Those that come now get a folder of their own.
 void CalibrationService::forgetPoses() {
     jobs_.stop("save");
-    store_ = std::make_shared<PoseStore>();
+    store_ = std::make_shared<PoseStore>(state_.setup.way == CaptureWay::lab);
     state_.poses.clear();
     state_.savedIn.clear();
     state_.unsaved = 0;
@@ -184,6 +185,8 @@ void CalibrationService::forgetPoses() {
 void CalibrationService::clearResults() {
     state_.result = nullptr;
     state_.isImported = false;
+    question_.withdraw();
+    state_.askedBeside.clear();
     state_.refusal.reset();
     state_.trouble.clear();
 }
@@ -585,6 +588,8 @@ void CalibrationService::solve() {
             result->heldOutMillimetres = heldOutMillimetresOf(result->solved);
             result->date = utcDate();
             result->setup = setup;
+            result->isSimulated =
+                setup.way == CaptureWay::lab || (setup.way == CaptureWay::folder && isLabCapture(setup.folder));
             result->plan = planOf(result->solved, flat, setup.board, *room, placement, progress.part(0.8, 0.9));
             result->next = suggestNextPose(result->solved, setup.board, {}, progress.part(0.9, 1.0));
             return Result(std::move(result));
@@ -691,7 +696,8 @@ Installation CalibrationService::roomOfResult() const {
         const glm::dmat4 pose = lens.cameraFromWorld;
         lens = cameraOf(state_.result->solved.projector);
         lens.cameraFromWorld = pose;
-        room.projectors[projector()].lens = {Origin::Way::measured, "read from a file", state_.result->date};
+        const Origin::Way way = state_.result->isSimulated ? Origin::Way::simulated : Origin::Way::measured;
+        room.projectors[projector()].lens = {way, "read from a file", state_.result->date};
         return room;
     }
     Installation room =
@@ -704,6 +710,7 @@ Installation CalibrationService::roomOfResult() const {
         Origin& lens = room.projectors[projector()].lens;
         lens.method = withSigma(lens.method, {1e-3 * kRmsOfMost * state_.result->plan->mean, 0.0, 0.0});
     }
+    if (state_.result->isSimulated) markSimulated(*document_.state().installation, room);
     return room;
 }
 
@@ -763,6 +770,7 @@ void CalibrationService::importFrom(const std::filesystem::path& file) {
             }
             result.setup.way = CaptureWay::folder;
             result.setup.folder = file;
+            result.isSimulated = record.source.isSimulated;
             result.solved = std::move(record.result);
             result.heldOutMillimetres = heldOutMillimetresOf(result.solved);
             result.date = record.source.date.empty() ? utcDate() : record.source.date;
@@ -776,6 +784,12 @@ void CalibrationService::importFrom(const std::filesystem::path& file) {
 
 void CalibrationService::use() {
     if (!state_.isSolved()) return;
+    const bool asks = state_.result->isSimulated && question_.asks(*document_.state().installation);
+    state_.askedBeside = question_.asked();
+    if (asks) {
+        emit changed();
+        return;
+    }
     try {
         if (take_(state_, roomOfResult())) {
             state_.trouble.clear();
@@ -791,14 +805,16 @@ void CalibrationService::use() {
 void CalibrationService::followDocument() {
     const auto& projectors = document_.state().installation->projectors;
     std::string used, room;
-    if (projector() < projectors.size() && projectors[projector()].lens.way == Origin::Way::measured)
+    if (projector() < projectors.size() && projectors[projector()].lens.isCalibrated())
         room = projectors[projector()].lens.date;
+    const bool isSimulated = !room.empty() && projectors[projector()].lens.way == Origin::Way::simulated;
     if (projector() < projectors.size() && state_.result && projectors[projector()].lens.date == state_.result->date &&
         projectors[projector()].pose.date == state_.result->date)
         used = state_.result->date;
-    if (used == state_.usedDate && room == state_.roomDate) return;
+    if (used == state_.usedDate && room == state_.roomDate && isSimulated == state_.isRoomSimulated) return;
     state_.usedDate = used;
     state_.roomDate = room;
+    state_.isRoomSimulated = isSimulated;
     emit changed();
 }
 

@@ -14,6 +14,7 @@
 #include "app/studio/base/notices.h"
 #include "app/studio/base/settings.h"
 #include "app/studio/calibration/calibration_state.h"
+#include "app/studio/calibration/simulated_question.h"
 #include "app/studio/document/job_slots.h"
 #include "app/studio/document/studio_document.h"
 #include "calibration/capture/pattern_display.h"
@@ -119,6 +120,7 @@ private:
     DisplayOpener openDisplay_;
     VersionTaker take_;
     CalibrationState state_;
+    SimulatedQuestion question_; ///< of the result
     LiveSight live_;
     std::shared_ptr<CaptureBench> bench_;
     std::shared_ptr<PoseStore> store_; ///< of the poses of this calibration

@@ -7,6 +7,8 @@
 #include <QLocale>
 #include <QObject>
 
+#include "app/studio/calibration/simulated_question.h"
+
 namespace lumorph::studio {
 namespace {
 
@@ -132,7 +134,8 @@ CalibrationStep roomStep(const CalibrationState& state) {
     CalibrationStep step{"room", tr("In the room"), How::notBegun, tr("The scene uses an assumed projector")};
     if (!state.roomDate.empty()) {
         step.how = How::good;
-        step.words = tr("In use: measured %1").arg(dayWords(state.roomDate));
+        step.words = (state.isRoomSimulated ? tr("In use: simulated %1") : tr("In use: measured %1"))
+                         .arg(dayWords(state.roomDate));
     }
     if (!state.isSolved()) return step;
     step.how = state.isUsed() ? How::good : How::needsYou;
@@ -230,6 +233,14 @@ NextStep solvedNext(const CalibrationState& state) {
     }
     next.what = Do::use;
     next.button = tr("Use this calibration");
+    if (!state.askedBeside.empty()) {
+        const SimulatedQuestionWords words = wordsOfQuestion(state.askedBeside);
+        next.tone = Tone::warning;
+        next.title = words.title;
+        next.text = words.text;
+        next.button = words.button;
+        return next;
+    }
     if (state.isImported) {
         next.tone = Tone::quiet;
         next.title = tr("A calibration from a file");
@@ -479,6 +490,7 @@ CalibrationRecord recordOf(const CalibrationResult& result) {
     record.source.date = result.date;
     record.source.board = boardText(result.setup.board);
     record.source.pattern = patternOf(result.setup);
+    record.source.isSimulated = result.isSimulated;
     record.source.inputs = {result.setup.way == CaptureWay::folder ? result.setup.folder.string()
                                                                    : wayWords(result.setup).toStdString()};
     return record;
@@ -508,6 +520,7 @@ InstallationVersion versionOf(const CalibrationState& state, const Installation&
     if (!state.savedIn.empty()) version.inputs.push_back("poses in " + state.savedIn.string());
     version.result = calibrationText(recordOf(result));
     version.installation = installation;
+    version.isSimulated = result.isSimulated;
     return version;
 }
 

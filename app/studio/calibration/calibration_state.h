@@ -51,6 +51,7 @@ struct CalibrationResult {
     std::vector<PoseResiduals> residuals; ///< by view of the solution
     std::string date;                     ///< ISO 8601 in UTC
     CalibrationSetup setup;               ///< it was made with
+    bool isSimulated = false;             ///< of the virtual lab's images
     /// 95 % of light lands within this on the boards, millimetres, by views that were held out; empty with too few.
     std::optional<double> heldOutMillimetres;
     std::optional<ErrorPlan> plan; ///< on table and device; empty while nobody knows where the table is
@@ -75,10 +76,12 @@ struct CalibrationState {
     QString trouble;         ///< what failed apart from the capture: a camera that is gone, a folder that is empty
     std::string flatPose;    ///< name of the pose in which the board lay flat on the table
     bool isImported = false; ///< the result came from a file, without poses to look at
-    std::filesystem::path savedIn; ///< folder of the images of the poses; empty while there are none
-    int unsaved = 0;               ///< poses whose images are only in memory
-    std::string usedDate;          ///< of the result that the room uses, as far as it came from here
-    std::string roomDate;          ///< of the measurement that the room's projector has now; empty: none
+    std::filesystem::path savedIn;        ///< folder of the images of the poses; empty while there are none
+    int unsaved = 0;                      ///< poses whose images are only in memory
+    std::vector<std::string> askedBeside; ///< what the room holds, while it asks (SimulatedQuestion); else empty
+    std::string usedDate;                 ///< of the result that the room uses, as far as it came from here
+    std::string roomDate;                 ///< of the measurement that the room's projector has now; empty: none
+    bool isRoomSimulated = false;         ///< that was the virtual lab's
     [[nodiscard]] int counting() const;
     [[nodiscard]] bool isSolved() const noexcept { return result != nullptr && !refusal; }
     [[nodiscard]] bool isUsed() const { return result && usedDate == result->date; }

@@ -26,28 +26,30 @@ QString measuredText(const Origin& origin) {
 }
 
 /// Alone, whatever those before it are.
-LinkStand ownStand(const ChainLink& link, const Installation& room, const std::string& checked) {
+LinkStand ownStand(const ChainLink& link, const Installation& room, const LastCheck& checked) {
     if (link.origin == nullptr)
-        return checked.empty()
+        return checked.date.empty()
                    ? LinkStand{LinkStand::How::open, {}}
-                   : LinkStand{LinkStand::How::measured, QObject::tr("still good, %1").arg(dateText(checked))};
+                   : LinkStand{checked.isSimulated ? LinkStand::How::simulated : LinkStand::How::measured,
+                               QObject::tr("still good, %1").arg(dateText(checked.date))};
     const Origin* origin = link.origin(room);
     if (origin == nullptr) return {};
     // What was put in doubt says why.
     if (origin->way == Origin::Way::assumed) return {LinkStand::How::open, QString::fromStdString(origin->method)};
     if (origin->way == Origin::Way::entered) return {LinkStand::How::entered, QObject::tr("entered by hand")};
-    return {LinkStand::How::measured, measuredText(*origin)};
+    return {origin->way == Origin::Way::simulated ? LinkStand::How::simulated : LinkStand::How::measured,
+            measuredText(*origin)};
 }
 
-std::string dateOf(const ChainLink& link, const Installation& room, const std::string& checked) {
-    if (link.origin == nullptr) return checked;
+std::string dateOf(const ChainLink& link, const Installation& room, const LastCheck& checked) {
+    if (link.origin == nullptr) return checked.date;
     const Origin* origin = link.origin(room);
-    return origin && origin->way == Origin::Way::measured ? origin->date : std::string();
+    return origin && origin->isCalibrated() ? origin->date : std::string();
 }
 
 } // namespace
 
-std::vector<LinkStand> standsOf(const Installation& room, const std::string& checked) {
+std::vector<LinkStand> standsOf(const Installation& room, const LastCheck& checked) {
     const auto& links = chainLinks();
     std::vector<LinkStand> stands;
     for (const ChainLink& link : links) {
@@ -61,7 +63,7 @@ std::vector<LinkStand> standsOf(const Installation& room, const std::string& che
                 break;
             }
             // Dates of one form are in the order of their texts.
-            if (stand.how == LinkStand::How::measured &&
+            if ((stand.how == LinkStand::How::measured || stand.how == LinkStand::How::simulated) &&
                 dateOf(links[place], room, checked) > dateOf(link, room, checked)) {
                 stand = {LinkStand::How::stale, QObject::tr("%1 was measured after it").arg(links[place].title)};
                 break;
@@ -90,6 +92,7 @@ InstallationVersion versionOf(const ChainLink& link, const LinkOutcome& outcome,
     for (const LinkPoint& point : outcome.points)
         if (point.isFresh) worst = std::max(worst, point.millimetres);
     if (worst >= 0.0) version.figures.push_back({"worst fresh point", worst, "mm"});
+    version.isSimulated = outcome.isSimulated;
     version.installation = room;
     link.apply(*outcome.installation, version.installation);
     const Origin* origin = link.origin ? link.origin(version.installation) : nullptr;

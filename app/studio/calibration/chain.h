@@ -44,6 +44,7 @@ struct LinkOutcome {
     std::vector<FindingWords> findings;       ///< what stands in the way, or is to be known
     std::optional<Installation> installation; ///< as the room would be; empty: refused, or nothing is to be changed
     bool isUsed = false;                      ///< the room has it
+    bool isSimulated = false;                 ///< made in the virtual lab, or with simulated devices
     /// Refused because the tracker's coordinates are mirrored or in another unit: what was measured by the same tracker
     /// before is as wrong, though it fits itself.
     bool doubtsTracker = false;
@@ -121,15 +122,22 @@ struct LinkStand {
         waits,   ///< what it needs was not measured yet
         entered, ///< by hand
         measured,
-        stale ///< something that it builds on was measured later
+        simulated, ///< by the virtual lab
+        stale      ///< something that it builds on was measured later
     };
     How how = How::open;
     QString words; ///< such as "measured on 26 November at 14:05, 8 alignments"
     bool operator==(const LinkStand&) const = default;
 };
 
-/// By links. `checked` is the date of the last check that found all well, ISO 8601 in UTC; empty: there was none.
-[[nodiscard]] std::vector<LinkStand> standsOf(const Installation& room, const std::string& checked);
+/// The last check that found all well.
+struct LastCheck {
+    std::string date; ///< ISO 8601 in UTC; empty: there was none
+    bool isSimulated = false;
+};
+
+/// By links.
+[[nodiscard]] std::vector<LinkStand> standsOf(const Installation& room, const LastCheck& checked);
 /// The first that can be measured and should be; empty: all are.
 [[nodiscard]] std::optional<std::size_t> nextLink(const std::vector<LinkStand>& stands);
 

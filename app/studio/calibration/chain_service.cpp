@@ -78,10 +78,16 @@ ChainStep stepOf(const ChainState& state) {
         if (!outcome.isGood && !outcome.installation)
             return {What::measure, Tone::failure, QObject::tr("This is not to be trusted"), summary,
                     QObject::tr("Measure again")};
+        if (!outcome.isUsed && !state.askedBeside.empty()) {
+            const SimulatedQuestionWords words = wordsOfQuestion(state.askedBeside);
+            return {What::use, Tone::warning, words.title, words.text, words.button};
+        }
         if (!outcome.isUsed)
             return {What::use, outcome.isGood ? Tone::good : Tone::warning,
-                    outcome.isGood ? QObject::tr("Measured") : QObject::tr("Something has changed"), summary,
-                    QObject::tr("Use it")};
+                    !outcome.isGood       ? QObject::tr("Something has changed")
+                    : outcome.isSimulated ? QObject::tr("Simulated")
+                                          : QObject::tr("Measured"),
+                    summary, QObject::tr("Use it")};
         return {What::goOn, Tone::good, QObject::tr("In use"), summary,
                 nextLink(state.stands) ? QObject::tr("Go on") : QString()};
     }
@@ -92,6 +98,8 @@ ChainStep stepOf(const ChainState& state) {
                 QObject::tr("%1 What it builds on is measured first.").arg(link.purpose), QObject::tr("What is next?")};
     case LinkStand::How::measured:
         return measuringStep(state, Tone::good, QObject::tr("Measured"), stand.words, again);
+    case LinkStand::How::simulated:
+        return measuringStep(state, Tone::good, QObject::tr("Simulated"), stand.words, again);
     case LinkStand::How::stale:
         return measuringStep(state, Tone::warning, QObject::tr("To be measured again"), stand.words + ".", again);
     default:
@@ -118,14 +126,19 @@ ChainService::ChainService(StudioDocument& document, StudioLoop& loop, LabRoom& 
                               static_cast<double>(state_.live->steps);
         emit changed();
     });
-    connect(&live, &LiveService::finished, this, [this](const LivePlan& plan, const std::vector<LiveTake>& takes) {
+    const auto solve = [this](const LivePlan& plan, const std::vector<LiveTake>& takes, bool isSimulated) {
         state_.live.reset();
         const std::shared_ptr<const Rig>& rig = document_.state().rig.rig;
         if (!state_.running || !rig) return cancel();
-        run(*state_.running, [measure = chainLinks()[*state_.running].fromLive,
-                              task = LiveTask{rig, *document_.state().installation, plan, takes}](
-                                 const Progress& progress) { return measure(task, progress); });
-    });
+        run(
+            *state_.running,
+            [measure = chainLinks()[*state_.running].fromLive,
+             task = LiveTask{rig, *document_.state().installation, plan, takes}](const Progress& progress) {
+                return measure(task, progress);
+            },
+            isSimulated);
+    };
+    connect(&live, &LiveService::finished, this, solve);
     connect(&jobs, &Jobs::progressed, this, [this, &jobs](int id) {
         for (const Jobs::Status& status : jobs.running()) {
             if (status.id != id || status.place != kChainPlace || !state_.running) continue;
@@ -139,7 +152,13 @@ ChainService::ChainService(StudioDocument& document, StudioLoop& loop, LabRoom& 
 void ChainService::choose(std::size_t link) {
     if (link >= chainLinks().size() || link == state_.chosen) return;
     state_.chosen = link;
+    withdrawQuestion();
     emit changed();
+}
+
+void ChainService::withdrawQuestion() {
+    question_.withdraw();
+    state_.askedBeside.clear();
 }
 
 void ChainService::setWay(LinkWay way) {
@@ -163,6 +182,7 @@ void ChainService::setFile(std::size_t link, std::size_t file, const std::filesy
 
 /// What came of it before, unless the room has it.
 void ChainService::forget(std::size_t link) {
+    withdrawQuestion();
     state_.troubles.erase(link);
     if (const auto found = state_.outcomes.find(link); found != state_.outcomes.end() && !found->second.isUsed)
         state_.outcomes.erase(found);
@@ -233,7 +253,7 @@ std::function<LinkOutcome(const Progress&)> ChainService::workOf(std::size_t lin
 void ChainService::begin(std::size_t link) {
     if (state_.running) return;
     if (wayOf(state_, link) == LinkWay::live) return chainLinks()[link].onTable ? beginOnTable(link) : beginLive(link);
-    if (auto work = workOf(link)) run(link, std::move(work));
+    if (auto work = workOf(link)) run(link, std::move(work), wayOf(state_, link) == LinkWay::lab);
 }
 
 void ChainService::beginLive(std::size_t link) {
@@ -265,8 +285,11 @@ void ChainService::beginOnTable(std::size_t link) {
     forget(link);
     try {
         if (!rig) throw InvalidInput("the device", "there is none", "open a rig");
-        run(link, [measure = chainLinks()[link].onTable, task = TableTask{rig, room, table_(room), seed_++}](
-                      const Progress& progress) { return measure(task, progress); });
+        run(
+            link,
+            [measure = chainLinks()[link].onTable, task = TableTask{rig, room, table_(room), seed_++}](
+                const Progress& progress) { return measure(task, progress); },
+            false);
     } catch (const std::exception& error) {
         fail(link, error);
     }
@@ -279,7 +302,8 @@ void ChainService::fail(std::size_t link, const std::exception& error) {
     emit changed();
 }
 
-void ChainService::run(std::size_t link, std::function<LinkOutcome(const Progress&)> work) {
+void ChainService::run(std::size_t link, std::function<LinkOutcome(const Progress&)> work, bool isSimulated) {
+    withdrawQuestion();
     state_.running = link;
     state_.fraction = 0.0;
     state_.stage.clear();
@@ -288,7 +312,13 @@ void ChainService::run(std::size_t link, std::function<LinkOutcome(const Progres
     emit changed();
     if (!chainLinks()[link].warning.isEmpty()) emit handsOff();
     jobs_.runWith<LinkOutcome>(
-        kChainPlace, kChainPlace, QObject::tr("Measuring: %1").arg(chainLinks()[link].title), std::move(work),
+        kChainPlace, kChainPlace, QObject::tr("Measuring: %1").arg(chainLinks()[link].title),
+        [work = std::move(work), isSimulated, before = document_.state().installation](const Progress& progress) {
+            LinkOutcome outcome = work(progress);
+            outcome.isSimulated = isSimulated;
+            if (isSimulated && outcome.installation) markSimulated(*before, *outcome.installation);
+            return outcome;
+        },
         [this, link](LinkOutcome outcome) { take(link, std::move(outcome)); },
         [this, link](const std::exception& error) { fail(link, error); });
 }
@@ -297,7 +327,7 @@ void ChainService::take(std::size_t link, LinkOutcome outcome) {
     state_.running.reset();
     const bool good = outcome.isGood;
     const bool doubtsPointer = outcome.doubtsTracker && chainLinks()[link].id == LinkId::tracker;
-    if (chainLinks()[link].origin == nullptr) checked_ = good ? utcDate() : std::string();
+    if (chainLinks()[link].origin == nullptr) checked_ = {good ? utcDate() : std::string(), outcome.isSimulated};
     state_.outcomes[link] = std::move(outcome);
     if (doubtsPointer) doubtPointer();
     follow();
@@ -309,7 +339,7 @@ void ChainService::take(std::size_t link, LinkOutcome outcome) {
 /// Swings in a mirrored or wrongly scaled world fit a tip as well as true ones: only the tracker's dots tell. So the
 /// tip that was measured before does not stay as good; its figure stays, as nobody has a better one.
 void ChainService::doubtPointer() {
-    if (document_.state().installation->origins.pointer.way != Origin::Way::measured) return;
+    if (!document_.state().installation->origins.pointer.isCalibrated()) return;
     for (std::size_t link = 0; link < chainLinks().size(); ++link)
         if (chainLinks()[link].id == LinkId::pointer) state_.outcomes.erase(link);
     document_.change(QObject::tr("Pointer tip in doubt"), [](StudioState& state) {
@@ -333,6 +363,13 @@ bool ChainService::useOf(std::size_t link) {
     const auto found = state_.outcomes.find(link);
     if (found == state_.outcomes.end()) return false;
     if (!found->second.installation) return found->second.isGood;
+    const bool asks = found->second.isSimulated && question_.asks(*document_.state().installation);
+    state_.askedBeside = question_.asked();
+    if (asks) {
+        state_.chosen = link;
+        emit changed();
+        return false;
+    }
     return take_(versionOf(chainLinks()[link], found->second, *document_.state().installation));
 }
 

@@ -10,6 +10,7 @@
 #include "app/studio/calibration/chain.h"
 #include "app/studio/calibration/lab_room.h"
 #include "app/studio/calibration/live_service.h"
+#include "app/studio/calibration/simulated_question.h"
 #include "app/studio/document/job_slots.h"
 #include "app/studio/document/studio_document.h"
 #include "app/studio/document/studio_loop.h"
@@ -33,6 +34,7 @@ struct ChainState {
     std::optional<LiveStand> live; ///< what is done just now with the connected tracker
     std::map<std::size_t, std::vector<std::filesystem::path>> files; ///< by links; empty paths: not chosen yet
     bool goesOn = false;                                             ///< the rest follows by itself
+    std::vector<std::string> askedBeside; ///< what the room holds, while the chosen link asks (SimulatedQuestion)
 };
 
 /// How a link is measured now.
@@ -86,7 +88,8 @@ private:
     void begin(std::size_t link);
     void beginLive(std::size_t link);
     void beginOnTable(std::size_t link);
-    void run(std::size_t link, std::function<LinkOutcome(const Progress&)> work);
+    void run(std::size_t link, std::function<LinkOutcome(const Progress&)> work, bool isSimulated);
+    void withdrawQuestion();
     void fail(std::size_t link, const std::exception& error);
     void forget(std::size_t link);
     [[nodiscard]] std::function<LinkOutcome(const Progress&)> workOf(std::size_t link);
@@ -104,8 +107,9 @@ private:
     VersionTaker take_;
     JobSlots jobs_;
     ChainState state_;
-    std::string checked_;    ///< date of the last check that found all well
-    std::uint32_t seed_ = 1; ///< another for each measurement
+    LastCheck checked_;
+    SimulatedQuestion question_; ///< of the chosen link
+    std::uint32_t seed_ = 1;     ///< another for each measurement
 };
 
 } // namespace lumorph::studio

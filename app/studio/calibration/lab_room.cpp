@@ -24,7 +24,7 @@ Installation packed(const Installation& believed) {
     room.servos.clear();
     room.trackerSeconds = fresh.trackerSeconds;
     room.predictionSeconds = fresh.predictionSeconds;
-    if (room.origins.colors.way == Origin::Way::measured) {
+    if (room.origins.colors.isCalibrated()) {
         room.deviceColor = fresh.deviceColor;
         room.tableColor = fresh.tableColor;
     }
@@ -42,7 +42,7 @@ Installation packed(const Installation& believed) {
 void putWhereTheLabHasThem(Installation& room) {
     for (std::size_t k = 0; k < room.projectors.size(); ++k) {
         InstalledProjector& projector = room.projectors[k];
-        if (projector.lens.way != Origin::Way::measured) continue;
+        if (!projector.lens.isCalibrated()) continue;
         const Installation lab = labTruth(room, k);
         const CalibratedCamera& truly = lab.projectors.front().camera;
         const auto beside = lightError(projector.camera, truly, kLitSide);

@@ -165,8 +165,10 @@ void LiveService::follow() {
     if (capture_->isComplete()) {
         const LivePlan plan = capture_->plan();
         const std::vector<LiveTake> takes = capture_->takes();
+        const bool isSimulated =
+            std::ranges::any_of(sources_, [](const auto& followed) { return followed.second.starts_with("sim://"); });
         end();
-        emit finished(plan, takes);
+        emit finished(plan, takes, isSimulated);
         return;
     }
     LiveStand now = standOf(*capture_);

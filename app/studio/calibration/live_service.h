@@ -50,8 +50,8 @@ public:
 
 signals:
     void changed();
-    /// All steps were done; `stand` is empty then.
-    void finished(const LivePlan& plan, const std::vector<LiveTake>& takes);
+    /// All steps were done; `stand` is empty then. `isSimulated`: a tracker that was followed is no real one.
+    void finished(const LivePlan& plan, const std::vector<LiveTake>& takes, bool isSimulated);
 
 private:
     struct Arrivals;

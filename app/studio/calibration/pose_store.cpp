@@ -2,10 +2,13 @@
 
 #include <algorithm>
 #include <ctime>
+#include <span>
 #include <string>
+#include <string_view>
 #include <system_error>
 #include <utility>
 
+#include "calibration/decode/capture_folder.h"
 #include "core/base/atomic_file.h"
 
 namespace lumorph::studio {
@@ -61,6 +64,14 @@ void copyTree(const fs::path& from, const fs::path& to, const Progress& progress
     }
 }
 
+/// So that who reads the images later knows whose they are.
+void mark(const fs::path& folder) {
+    constexpr std::string_view kWords = "Made in the virtual lab.\n";
+    std::error_code failed;
+    if (!fs::exists(folder / kLabCaptureMark, failed))
+        writeFileAtomically(folder / kLabCaptureMark, std::as_bytes(std::span(kWords)));
+}
+
 } // namespace
 
 void PoseStore::moveTo(const fs::path& parent, const Progress& progress) {
@@ -94,6 +105,7 @@ void PoseStore::save(const fs::path& parent, Pose pose, const Progress& progress
     const std::scoped_lock one(saving_);
     if (pose) wait(std::move(pose));
     moveTo(parent, progress.part(0.0, 0.5));
+    if (isSimulated_) mark(folder());
     while (true) {
         Pose next;
         {

@@ -16,6 +16,9 @@ class PoseStore {
 public:
     using Pose = std::shared_ptr<const CapturedPose>;
 
+    /// `isSimulated`: the images are the virtual lab's, and the folder says so.
+    explicit PoseStore(bool isSimulated = false) : isSimulated_(isSimulated) {}
+
     /// Saves a pose (null: none) below `parent`, after those that could not be saved before. Where the poses so far lie
     /// below another parent they are copied there first, so that all are together. Throws DeviceError where the disk
     /// refuses, and Cancelled: then the pose waits in memory, up to a gigabyte of them, and is saved with the next.
@@ -30,6 +33,7 @@ private:
     void moveTo(const std::filesystem::path& parent, const Progress& progress);
     void wait(Pose pose);
 
+    bool isSimulated_;
     std::mutex saving_;        ///< one save at a time
     mutable std::mutex mutex_; ///< of the rest, for moments
     std::filesystem::path folder_;

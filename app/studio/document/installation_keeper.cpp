@@ -130,7 +130,7 @@ bool InstallationKeeper::takeVersion(InstallationVersion version) {
         checkInstallation(version.installation);
         const std::vector<KeptVersion> kept = versions();
         if (std::ranges::none_of(kept, [&](const KeptVersion& one) { return isCurrent(one.version); }))
-            store_.keepVersion({version.date, tr("As it stood before").toStdString(), {}, {}, {}, room});
+            store_.keepVersion({version.date, tr("As it stood before").toStdString(), {}, {}, {}, room, false});
         store_.keepVersion(version);
     } catch (const std::exception& error) {
         Notice notice = noticeOf(error);

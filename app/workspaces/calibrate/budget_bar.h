@@ -12,8 +12,8 @@ namespace lumorph::studio {
 struct BudgetSlice {
     QString name, words; ///< what it is, and how it is known
     double millimetres = 0.0;
-    double share = 0.0; ///< of the whole bar, in [0, 1]
-    bool isMeasured = false;
+    double share = 0.0;      ///< of the whole bar, in [0, 1]
+    bool isMeasured = false; ///< in the room
 };
 
 /// A bar of parts, each as wide as its share, and under it a row for each: colour, name, millimetres, how it is known.

@@ -53,6 +53,8 @@ QString sourceWords(ErrorSource source) {
         return QObject::tr("measured");
     case ErrorSource::measured:
         return QObject::tr("measured; its size is the usual one");
+    case ErrorSource::simulated:
+        return QObject::tr("simulated in the virtual lab");
     case ErrorSource::assumed:
         return QObject::tr("not measured; its size is the usual one");
     case ErrorSource::worked:
@@ -163,9 +165,11 @@ private:
         bar_->setMaximumWidth(kPageWidth);
         page->addSpacing(8);
         page->addWidget(bar_);
-        page->addWidget(makeWords(tr("Squares are added, so that the largest part is nearly all that counts. Hatched "
-                                     "is what nobody has measured: it is taken to be as large as it usually is."),
-                                  "muted"));
+        page->addWidget(
+            makeWords(tr("Squares are added, so that the largest part is nearly all that counts. Hatched "
+                         "is what nobody has measured in this room: it is taken to be as large as it usually "
+                         "is, or what is simulated as large as in the virtual lab."),
+                      "muted"));
         page->addSpacing(8);
         page->addWidget(makeHeading(tr("What is shown, and who carries it"), this));
         speed_->setObjectName("budget.speed");
@@ -237,7 +241,7 @@ private:
         std::vector<BudgetSlice> slices;
         for (const BudgetItem& item : budget.items)
             slices.push_back({partName(item.part), sourceWords(item.source), 1e3 * item.metres, item.share,
-                              item.source != ErrorSource::assumed});
+                              item.source != ErrorSource::assumed && item.source != ErrorSource::simulated});
         bar_->show(std::move(slices));
         const auto best =
             std::ranges::find_if(budget.advice, [](const BudgetAdvice& one) { return linkOf(one.part).has_value(); });

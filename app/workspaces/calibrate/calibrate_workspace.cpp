@@ -87,11 +87,12 @@ CalibrateWorkspace::CalibrateWorkspace(Studio& studio)
     connect(&selection_, &CalibrateSelection::wholeChanged, this, [this] { setActive(active_); });
 }
 
-/// By the room's camera; without one by the lab's, in a room where nothing moves.
+/// By the room's camera; without one by the lab's, which sees what truly stands there as the watch begins.
 std::unique_ptr<DriftService> CalibrateWorkspace::makeWatch() {
     const Installation& room = *studio_.document.state().installation;
     const std::string address = room.cameras.empty() ? std::string() : room.cameras.front().address;
-    ShowCamera camera = address.empty() ? labShowCamera(withLabCamera(room)) : machineShowCamera(address);
+    ShowCamera camera =
+        address.empty() ? labShowCamera(withLabCamera(studio_.lab.truth())) : machineShowCamera(address);
     const auto check = [this] {
         emit studio_.commands.workspaceWanted("calibrate");
         selection_.setWhole(true);
@@ -110,13 +111,37 @@ void CalibrateWorkspace::addWatchCommand() {
     options.icon = "eye";
     options.menu = "Hardware";
     options.checkable = true;
-    QAction* watch = studio_.commands.add("calibrate.watch", "Watch the running show", options, {});
-    watch->setToolTip("By the room's camera: tells when something has moved, or a projector is black or frozen");
-    connect(watch, &QAction::toggled, this, [this](bool on) {
+    watchAction_ = studio_.commands.add("calibrate.watch", "Watch the running show", options, {});
+    connect(&studio_.lab, &LabRoom::changed, this, [this] { followWatch(); });
+    connect(&studio_.document, &StudioDocument::changed, this, [this](StateParts parts) {
+        if (parts & StatePart::installation) followWatch();
+    });
+    followWatch();
+    connect(watchAction_, &QAction::toggled, this, [this](bool on) {
         if (watch_) watch_->setWatching(false); // takes back what it said
         watch_ = on ? makeWatch() : nullptr;
         if (watch_) watch_->setWatching(true);
     });
+}
+
+/// Why the running show cannot be watched; empty: it can. As long as the lab is packed its truth is what is believed,
+/// and a watch would see its own belief.
+QString CalibrateWorkspace::watchObstacle() const {
+    const Installation& room = *studio_.document.state().installation;
+    if (room.projectors.empty()) return "the room has no projector: add one in Scene";
+    if (!room.cameras.empty() && !room.cameras.front().address.empty()) return {};
+    if (studio_.lab.isUnpacked()) return {};
+    return "the room has no camera of this machine: calibrate projector and camera with one first";
+}
+
+void CalibrateWorkspace::followWatch() {
+    const QString obstacle = watchObstacle();
+    if (!obstacle.isEmpty()) watchAction_->setChecked(false);
+    watchAction_->setEnabled(obstacle.isEmpty());
+    watchAction_->setToolTip(obstacle.isEmpty()
+                                 ? "By the room's camera, in the virtual lab by the lab's: tells when something has "
+                                   "moved, or a projector is black or frozen"
+                                 : "It cannot watch: " + obstacle);
 }
 
 QString CalibrateWorkspace::id() const { return "calibrate"; }

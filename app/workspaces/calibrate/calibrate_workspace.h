@@ -39,12 +39,15 @@ private:
     void look();
     void addWatchCommand();
     [[nodiscard]] std::unique_ptr<DriftService> makeWatch();
+    [[nodiscard]] QString watchObstacle() const;
+    void followWatch();
     [[nodiscard]] QWidget* makeSwitched(QWidget* single, QWidget* whole);
     Studio& studio_;
     CalibrationService service_;
     CrosshairService crosshairs_;
     LiveService live_;
     ChainService chain_;
+    QAction* watchAction_ = nullptr;
     std::unique_ptr<DriftService> watch_; ///< of the running show, while it is wanted
     bool active_ = false, seen_ = false;
     bool looks_ = false; ///< seen with the camera's picture

@@ -37,6 +37,8 @@ StandLook lookOf(const ChainState& state, std::size_t link) {
     switch (state.stands[link].how) {
     case How::measured:
         return {"check", IconRole::accent, "Measured"};
+    case How::simulated:
+        return {"check", IconRole::muted, "Simulated"};
     case How::entered:
         return {"check", IconRole::muted, "By hand"};
     case How::stale:

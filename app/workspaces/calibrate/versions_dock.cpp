@@ -110,6 +110,7 @@ private:
                 const VersionFigure& figure = version.version.figures.front();
                 detail += ", " + figureWords(figure.value, figure.unit);
             }
+            if (version.version.isSimulated) detail += ", simulated";
             const bool isCurrent = parts_.studio.room.isCurrent(version.version);
             if (isCurrent) detail += ", in use";
             item->setData(kActuatorDetail, detail);
@@ -140,7 +141,8 @@ private:
         const bool same = current != versions_.end() && &*current == version;
         QStringList inputs;
         for (const std::string& input : version->version.inputs) inputs << QString::fromStdString(input);
-        compared_->setText((inputs.isEmpty() ? QString() : "Made of " + inputs.join(", ") + ". ") +
+        compared_->setText((version->version.isSimulated ? "Simulated in the virtual lab. " : QString()) +
+                           (inputs.isEmpty() ? QString() : "Made of " + inputs.join(", ") + ". ") +
                            (same ? "It is in use." : "Beside what is in use:"));
         int row = 0;
         const auto add = [&](const QString& name, const QString& here, const QString& inUse) {

@@ -425,9 +425,10 @@ void RigLight::showAll() {
                        .arg(placeText(positionOf(proposed_->camera)), proposed_->turned ? ", on its side" : "")
                        .arg(proposed_->throwRatio, 0, 'f', 2)
                        .arg(lightText(proposed_->light)));
-    const bool measured = hanging() && hanging()->pose.way == Origin::Way::measured;
+    const bool measured = hanging() && hanging()->pose.isCalibrated();
     hang_->setEnabled(hanging() && !measured);
-    hang_->setToolTip(measured ? "Where the projector stands was measured; a plan does not take the place of that"
+    hang_->setToolTip(measured ? QString("Where the projector stands was %1; a plan does not take the place of that")
+                                     .arg(hanging()->pose.way == Origin::Way::measured ? "measured" : "simulated")
                                : "The room's first projector gets this lens and place, by one step of undo");
 }
 

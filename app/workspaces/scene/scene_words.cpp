@@ -99,6 +99,10 @@ QString originWords(const Origin& origin) {
         return (method.isEmpty() ? QObject::tr("entered by hand") : QObject::tr("taken from %1").arg(method)) + on;
     case Origin::Way::measured:
         return (method.isEmpty() ? QObject::tr("measured") : QObject::tr("measured (%1)").arg(method)) + on;
+    case Origin::Way::simulated:
+        return (method.isEmpty() ? QObject::tr("simulated in the virtual lab")
+                                 : QObject::tr("simulated in the virtual lab (%1)").arg(method)) +
+               on;
     case Origin::Way::assumed:
         break;
     }

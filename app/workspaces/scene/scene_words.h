@@ -18,7 +18,8 @@ namespace lumorph::studio {
 /// Whether it has a surface, and so a material.
 [[nodiscard]] bool hasMaterial(const SceneItem& item);
 
-/// "assumed", "entered by hand on 24 Nov 2026", "measured (structured light) on 24 Nov 2026".
+/// "assumed", "entered by hand on 24 Nov 2026", "measured (structured light) on 24 Nov 2026",
+/// "simulated in the virtual lab (flat light) on 24 Nov 2026".
 [[nodiscard]] QString originWords(const Origin& origin);
 
 } // namespace lumorph::studio

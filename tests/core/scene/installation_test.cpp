@@ -57,6 +57,43 @@ TEST(Installation, IsReadableForOthers) {
     EXPECT_FALSE(json::parse(projectText(projectIn(defaultInstallation())))["installation"].contains("tableOrigin"));
 }
 
+TEST(Installation, SimulatedOriginsComeBackFromAProjectsText) {
+    Installation room = defaultInstallation();
+    room.origins.delays = {Origin::Way::simulated, "20 flashes", "2026-11-28T10:00:00Z"};
+    const std::string text = projectText(projectIn(room));
+    EXPECT_EQ(json::parse(text)["installation"]["delaysOrigin"]["way"], "simulated");
+    EXPECT_EQ(parseProject(text, "a.lumorph").installation, room);
+}
+
+TEST(MarkSimulated, MarksWhatWasMeasuredSinceAndNothingElse) {
+    Installation before = defaultInstallation();
+    before.origins.tracker = {Origin::Way::measured, "touched dots, 12", "2026-11-20T10:00:00Z"};
+    before.origins.table = {Origin::Way::entered, {}, "2026-11-20T10:00:00Z"};
+    Installation made = before;
+    made.origins.delays = {Origin::Way::measured, "20 flashes", "2026-11-28T10:00:00Z"};
+    made.projectors.front().response = made.origins.delays;
+    markSimulated(before, made);
+    EXPECT_EQ(made.origins.delays.way, Origin::Way::simulated);
+    EXPECT_EQ(made.origins.delays.method, "20 flashes");
+    EXPECT_EQ(made.projectors.front().response.way, Origin::Way::simulated);
+    EXPECT_EQ(made.origins.tracker, before.origins.tracker) << "measured before, in the room";
+    EXPECT_EQ(made.origins.table, before.origins.table);
+    EXPECT_EQ(made.origins.servos.way, Origin::Way::assumed);
+    const Installation once = made;
+    markSimulated(before, made);
+    EXPECT_EQ(made, once);
+}
+
+TEST(RealParts, NamesWhatWasMeasuredOrEntered) {
+    Installation room = defaultInstallation();
+    room.origins.delays.way = room.projectors.front().pose.way = Origin::Way::simulated;
+    EXPECT_THAT(realParts(room), testing::IsEmpty()) << "what is assumed or simulated is of no room";
+    room.projectors.front().name = "Beamer";
+    room.projectors.front().lens.way = Origin::Way::measured;
+    room.origins.table.way = Origin::Way::entered;
+    EXPECT_THAT(realParts(room), testing::ElementsAre("lens of Beamer", "table"));
+}
+
 /// An edit of one part, and where that part's origin stands.
 struct PartEdit {
     const char* what;

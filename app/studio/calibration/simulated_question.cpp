@@ -1,0 +1,35 @@
+#include "app/studio/calibration/simulated_question.h"
+
+#include <algorithm>
+
+#include <QObject>
+#include <QStringList>
+
+namespace lumorph::studio {
+
+bool SimulatedQuestion::asks(const Installation& room) {
+    const std::vector<std::string> parts = realParts(room);
+    const auto isAnswered = [this](const std::string& part) {
+        return std::ranges::find(answered_, part) != answered_.end();
+    };
+    if (!asked_.empty() && asked_ == parts) answered_.insert(answered_.end(), parts.begin(), parts.end());
+    if (std::ranges::all_of(parts, isAnswered)) {
+        asked_.clear();
+        return false;
+    }
+    asked_ = parts;
+    return true;
+}
+
+SimulatedQuestionWords wordsOfQuestion(const std::vector<std::string>& asked) {
+    constexpr std::size_t kNamed = 4;
+    QStringList names;
+    for (std::size_t i = 0; i < std::min(asked.size(), kNamed); ++i) names << QString::fromStdString(asked[i]);
+    if (asked.size() > kNamed) names << QObject::tr("and more");
+    return {QObject::tr("This room holds what was measured or entered"),
+            QObject::tr("It has %1. What the virtual lab made says nothing of this room; it stays marked as simulated.")
+                .arg(names.join(", ")),
+            QObject::tr("Use it as simulated")};
+}
+
+} // namespace lumorph::studio
