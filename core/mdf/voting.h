@@ -30,8 +30,8 @@ struct Votes {
 /// Matching by voting (paper, Eq. 1; R16-R18): s_i = argmin_j |V~(i,j) - V_T| / (V~(i,j) . V_T).
 ///
 /// All sums run over the domain (frame without the zero-state body). For a binary target
-/// sum |V~ - V_T| = sum V~ + |V_T| - 2 V~.V_T, so a match only needs V~.V_T: one pass over the target
-/// voxels that an actuator can change, counting how many there are of each distinct ramp.
+/// sum |V~ - V_T| = sum V~ + |V_T| - 2 V~.V_T, so a match only needs V~.V_T: one pass over the voxels that an
+/// actuator can change, in the order of the two levels between which they rise.
 /// A level counts only where V~.V_T >= max(1 voxel, 1 % of the target voxels the actuator can change).
 /// Ties within 1e-9 relative go to the lower level.
 /// Immutable after construction; a Workspace for each thread.
@@ -47,13 +47,10 @@ public:
     struct Workspace {
         /// What the target voxels of one actuator add up to, in 1/255.
         struct Sums {
-            std::vector<double> values;   ///< of V~(i,j), one a level
-            double background = 0.0;      ///< of P
-            double ownedBackground = 0.0; ///< the part of it that no other actuator sums
+            std::vector<double> values; ///< of V~(i,j) - P, one a level
             std::uint64_t voxels = 0;
         } sums;
-        std::vector<std::uint32_t> counts;
-        std::vector<std::uint64_t> reachable;
+        std::vector<std::int8_t> bytes; ///< of the target's voxels, -1 where it has one
     };
 
     /// `target` has the frame's shape; voxels inside the body are ignored. Reuses the memory of `votes`.
