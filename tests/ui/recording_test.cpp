@@ -275,6 +275,8 @@ TEST_F(RecordingWindow, ATrackedHeadIsRecordedAndALiveOneDoesNotDisturbTheReplay
     }));
     FrameTap tap(studio().loop);
     ASSERT_TRUE(replays(studio().recorder.file()));
+    // A live frame that was under way when the file was open is still shown.
+    ASSERT_TRUE(eventually([&] { return rowNumbered(recording.frames, studio().loop.frame()->number) != nullptr; }));
     (void)tap.take();
     EXPECT_TRUE(eventually([&] { return studio().replay.position() > 1.0; }));
     for (const FrameRow& row : tap.take()) {

@@ -95,6 +95,8 @@ void StudioWindow::hold(const QString& name, std::chrono::milliseconds time) {
 void StudioWindow::enter(const QString& name, const QString& text, Qt::Key then) {
     auto* field = find<QLineEdit>(name);
     if (!field) return;
+    // Tab takes the focus on, and so commits, in the active window alone; a busy machine makes a dialog that late.
+    (void)eventually([field] { return field->isActiveWindow(); }, 5s);
     field->setFocus();
     QTest::keyClick(field, Qt::Key_A, Qt::ControlModifier);
     QTest::keyClicks(field, text);
