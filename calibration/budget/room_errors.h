@@ -25,7 +25,7 @@ enum class ErrorSource {
     told,      ///< its measurement said so
     measured,  ///< it was measured, but not said how well: as such measurements come out
     simulated, ///< the virtual lab measured it: as large as it is there, which says nothing of this room
-    assumed,   ///< nobody has measured it: as large as it usually is
+    assumed,   ///< it was not measured: as large as it usually is
     worked     ///< worked out from the others: the prediction
 };
 

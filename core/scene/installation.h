@@ -14,7 +14,7 @@ namespace lumorph {
 /// Where a figure of an installation came from, and when.
 struct Origin {
     enum class Way {
-        assumed,  ///< nobody has looked: that of the virtual lab
+        assumed,  ///< not known yet: that of the virtual lab
         entered,  ///< typed or dragged by hand
         measured, ///< by a calibration in the room
         simulated ///< by a calibration in the virtual lab, or of simulated devices

@@ -79,7 +79,7 @@ TEST(ClockOffset, CorrelatesAsALoopOverTheTrueSpeedsDoes) {
             all.push_back(std::abs(of.angle(t + 0.5 * kWindow) - of.angle(t - 0.5 * kWindow)) / kWindow);
         return all;
     };
-    // Unlike motions: the best of all shifts is a chance, which both have to find alike.
+    // Unlike motions, so that the correlation is far from 1, where a wrong sum would not show.
     const std::vector<double> a = speeds(body, 0.0, 30.0), b = speeds(other, 0.0, 24.0);
     const ClockOffset found = clockOffset(body.track(0.0, 30.0, 200.0, 0.0), other.track(0.0, 24.0, 200.0, 0.0));
     const auto shift = static_cast<std::ptrdiff_t>(std::lround(found.seconds / kSpeedStep));

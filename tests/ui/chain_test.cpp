@@ -514,7 +514,7 @@ TEST_F(Chain, TheWatchTellsAHostThatTheProjectorHasMoved) {
     studio::editInstallation(window.studio().document, "Believed elsewhere",
                              [](Installation& room) { room.projectors.front().camera.cameraFromWorld[3].x += 0.0025; });
     // Looks six seconds apart have to agree for ten.
-    ASSERT_TRUE(eventually([&] { return !window.studio().notices.at("calibrate").empty(); }, 180s));
+    ASSERT_TRUE(eventually([&] { return !window.studio().notices.at("calibrate").empty(); }, 120s));
     window.screenshot("watch-moved", 500ms);
     const studio::Notice notice = window.studio().notices.at("calibrate").front();
     ASSERT_EQ(notice.actions.size(), 1U);
