@@ -307,11 +307,8 @@ void addCalibrateCommands(CLI::App& app, Session& session) {
     addCalibrateRoomCommands(*group, session);
     addCalibrateBudget(*group, session);
     addCalibrateDevice(*group, session);
-    addCalibrateLight(*group, session);
-    addCalibrateServos(*group, session);
-    addCalibrateDelays(*group, session);
+    addCalibrateStages(*group, session);
     addCalibrateTracking(*group, session);
-    addCalibrateVerify(*group, session);
 }
 
 } // namespace lumorph::cli

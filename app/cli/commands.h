@@ -28,11 +28,8 @@ void addCalibrateRoomCommands(CLI::App& group, Session& session);
 /// Into the group of the calibrate commands.
 void addCalibrateBudget(CLI::App& group, Session& session);
 void addCalibrateDevice(CLI::App& group, Session& session);
-void addCalibrateLight(CLI::App& group, Session& session);
-void addCalibrateServos(CLI::App& group, Session& session);
-void addCalibrateDelays(CLI::App& group, Session& session);
+void addCalibrateStages(CLI::App& group, Session& session);
 void addCalibrateTracking(CLI::App& group, Session& session);
-void addCalibrateVerify(CLI::App& group, Session& session);
 void addLabCommands(CLI::App& app, Session& session);
 /// Into the group of the lab.
 void addPlacementCommand(CLI::App& group, Session& session);

@@ -11,6 +11,7 @@
 #include "app/cli/calibrate_output.h"
 #include "app/cli/checks.h"
 #include "app/cli/commands.h"
+#include "app/cli/stage_output.h"
 #include "calibration/lab/board_lab.h"
 #include "calibration/lab/registration_lab.h"
 #include "calibration/lab/true_room.h"
@@ -24,36 +25,12 @@ namespace lumorph::cli {
 
 namespace {
 
-constexpr std::pair<const char*, TrackerFault> kTrackerFaults[] = {
-    {"drops_out", TrackerFault::dropsOut},
-    {"swaps_bodies", TrackerFault::swapsBodies},
-    {"clock_jumps_back", TrackerFault::clockJumpsBack},
-    {"clock_jumps_ahead", TrackerFault::clockJumpsAhead},
-    {"left_handed", TrackerFault::leftHanded},
-    {"centimetres", TrackerFault::centimetres},
-    {"doubled_rows", TrackerFault::doubledRows},
-    {"not_a_number", TrackerFault::notANumber},
-};
-
 struct RegisterArguments {
     std::string rig;
     std::string fault;
     std::uint32_t seed = 1;
     bool json = false;
 };
-
-std::string trackerFaultKeys() {
-    std::string keys;
-    for (const auto& [key, fault] : kTrackerFaults) keys += (keys.empty() ? "" : ", ") + std::string(key);
-    return keys;
-}
-
-TrackerFault trackerFaultOf(const std::string& key) {
-    if (key.empty()) return TrackerFault::none;
-    for (const auto& [name, fault] : kTrackerFaults)
-        if (key == name) return fault;
-    throw InvalidInput("fault '" + key + "'", "a tracker has no such fault", "choose one of: " + trackerFaultKeys());
-}
 
 /// How far a figure is from the lab's truth.
 struct FromTruth {
@@ -79,19 +56,9 @@ struct Stage {
 };
 
 nlohmann::json jsonOf(const Stage& stage) {
-    const Registration& result = stage.result;
-    nlohmann::json points = nlohmann::json::array();
-    for (const PointError& at : result.fresh.points)
-        points.push_back({{"name", at.name}, {"errorMm", 1000.0 * at.metres}});
-    nlohmann::json one = {
-        {"stage", stage.name},
-        {"good", result.good()},
-        {"summary", result.summary},
-        {"rmsMm", 1000.0 * result.rms},
-        {"sigma", {{"mm", 1000.0 * result.shiftSigma}, {"degrees", kDegreesPerRadian * result.turnSigma}}},
-        {"fresh", {{"rmsMm", 1000.0 * result.fresh.rms}, {"worstMm", 1000.0 * result.fresh.worst}, {"points", points}}},
-        {"warnings", cli::jsonOf(result.warnings)}};
-    if (!result.refusal)
+    nlohmann::json one = cli::jsonOf(stage.result);
+    one["stage"] = stage.name;
+    if (!stage.result.refusal)
         one["fromTruth"] = {{"mm", stage.off.millimetres}, {"degrees", cli::jsonOf(stage.off.degrees)}};
     return one;
 }
@@ -102,7 +69,7 @@ std::vector<Stage> stagesOf(const Rig& rig, const RegisterArguments& arguments, 
     room.cameras.push_back({"Camera", "", defaultLabCamera(room.projectors.front().camera), {}, {}});
     const Installation truth = trueRoom(room, rig.actuators(), arguments.seed);
     RegistrationLabOptions options;
-    options.fault = trackerFaultOf(arguments.fault);
+    if (!arguments.fault.empty()) options.fault = parseTrackerFault(arguments.fault);
     std::vector<Stage> stages;
     const auto run = [&](const char* name, const auto& measure, const auto& off) {
         if (!stages.empty() && !stages.back().result.good()) return;

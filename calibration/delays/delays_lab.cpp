@@ -16,7 +16,6 @@
 #include "calibration/servos/servo_lab.h"
 #include "core/base/error.h"
 #include "core/scene/measured_servos.h"
-#include "core/scene/measured_sigma.h"
 
 namespace lumorph {
 
@@ -24,9 +23,8 @@ namespace {
 
 constexpr std::array<std::string_view, 9> kDelayFaults = {"none",    "frames", "camera", "slow",  "covered",
                                                           "tracker", "still",  "dead",   "jammed"};
-constexpr double kLoopRate = 60.0;      ///< frames a second
-constexpr std::size_t kFaultyServo = 1; ///< the one that is dead or jammed
-constexpr std::size_t kMostServos = 64;
+constexpr double kLoopRate = 60.0;                     ///< frames a second
+constexpr std::size_t kFaultyServo = 1;                ///< the one that is dead or jammed
 constexpr double kFlashTop = 0.4, kFlashBottom = 0.55; ///< of the picture's height: the region of the flashes
 constexpr int kPathPoints = 65;                        ///< of a part's way through the camera's picture
 constexpr double kHidden = 0.003;                      ///< metres by which something else is seen nearer
@@ -35,8 +33,6 @@ constexpr float kMarksApart = 0.008F;                  ///< metres
 constexpr double kBeyond = 0.08;                       ///< strokes
 constexpr double kFastPath = 30.0;                     ///< camera pixels a stroke that are enough
 constexpr double kLeastPath = 10.0;                    ///< camera pixels a stroke
-constexpr double kContradicts = 0.004; ///< seconds by which the moved mark may differ, if it is no noise
-constexpr double kMaxDelay = 0.3;      ///< seconds: no show can be had with a longer one
 
 /// The times of a camera's pictures from 0 on: the middle of the exposure of its first row.
 std::vector<double> pictureTimes(double seconds, std::uint32_t seed, const DelaysLabOptions& options) {
@@ -249,105 +245,6 @@ StepRecording stepInLab(const Actuator& actuator, const MeasuredServo& truth, co
     return recording;
 }
 
-std::string milliseconds(double seconds, int digits = 1) {
-    char text[32];
-    std::snprintf(text, sizeof text, "%.*f ms", digits, 1e3 * seconds);
-    return text;
-}
-
-/// The mark that followed a hand was measured by itself: what light and tracker come to has to be what it says.
-void checkAgainstMark(MeasuredDelays& delays) {
-    const double together = delays.light.seconds + delays.tracker.seconds;
-    const double differs = delays.mark.seconds - together;
-    const double sigma = std::hypot(delays.mark.sigma, std::hypot(delays.light.sigma, delays.tracker.sigma));
-    if (std::abs(differs) <= std::max(kContradicts, 3.0 * sigma)) return;
-    delays::refuse(Cause::freshPointsFar, "delays",
-                   "a mark that follows a hand is " + milliseconds(delays.mark.seconds) +
-                       " late, but flashes and tracker say " + milliseconds(together),
-                   "close other programs that make the show uneven, then measure again");
-}
-
-std::string summaryOf(const MeasuredDelays& delays) {
-    std::string text = "Light comes " + milliseconds(delays.light.seconds) + " after its frame, poses are " +
-                       milliseconds(delays.tracker.seconds) + " old when they arrive";
-    if (delays.servos.empty()) return text + ".";
-    double low = HUGE_VAL, high = 0.0;
-    for (const MeasuredDelays::Servo& servo : delays.servos) {
-        low = std::min(low, servo.step.lag.seconds);
-        high = std::max(high, servo.step.lag.seconds);
-    }
-    return text + ", servos move " + milliseconds(low, 0) + " to " + milliseconds(high, 0) + " after their commands.";
-}
-
-Installation withDelays(const Installation& believed, const MeasuredDelays& delays) {
-    Installation room = believed;
-    room.predictionSeconds = std::max(0.001, delays.light.seconds); // 0 would switch prediction off
-    room.trackerSeconds = std::max(0.0, delays.tracker.seconds);
-    for (const MeasuredDelays::Servo& measured : delays.servos) {
-        const auto known = std::ranges::find(room.servos, measured.name, &MeasuredServo::actuator);
-        if (known != room.servos.end())
-            known->lagSeconds = measured.step.lag.seconds;
-        else
-            room.servos.push_back({measured.name, {}, measured.step.lag.seconds});
-    }
-    const MeasuredSigma sigma{0.0, 0.0, std::hypot(delays.light.sigma, delays.tracker.sigma)};
-    room.origins.delays = {Origin::Way::measured,
-                           withSigma(std::to_string(delays.light.events) + " flashes, " +
-                                         std::to_string(delays.tracker.events) + " poses of a board",
-                                     sigma),
-                           utcDate()};
-    return room;
-}
-
-/// Parts of a measurement as they are reported.
-void measureAll(const Rig& rig, const Installation& believed, const Installation& truth, std::uint32_t seed,
-                const Progress& progress, const DelaysLabOptions& options, MeasuredDelays& delays) {
-    const auto begin = [&](double share, const char* stage) {
-        progress.throwIfCancelled();
-        progress.report(share, stage);
-    };
-    begin(0.0, "flashing");
-    const FlashRecording flashes = recordFlashesInLab(truth, seed, options);
-    delays.seconds += flashes.flashes.back().off;
-    delays.light = solveFlashDelay(flashes, progress.part(0.0, 0.15));
-    if (delays.light.seconds > kMaxDelay || delays.light.seconds < 0.0)
-        delays::refuse(Cause::flashNotSeen, "flashes",
-                       "light seems to come " + milliseconds(delays.light.seconds) + " after its frame",
-                       "look whether the camera's times are those of this machine");
-    begin(0.15, "moving a body that a mark follows");
-    delays.mark = solveMarkDelay(recordMarkInLab(truth, seed, options), progress.part(0.15, 0.35));
-    delays.seconds += options.markSeconds;
-    begin(0.35, "moving a board before tracker and camera");
-    const TrackerFault fault =
-        options.fault == DelayFault::trackerDropsOut ? TrackerFault::dropsOut : TrackerFault::none;
-    TrackerLab lab(truth, seed + 11U, options.errors, {}, fault);
-    const CalibrationBoard board = parseCalibrationBoard("chess:9x7:20");
-    // Both by this machine's clock: a pose of the tracker is older than it says, one of the camera is not.
-    const BoardCapture capture =
-        lab.moveBoard(servoCamera(truth), board, 0.001, glm::dvec3(0.5), options.boardSeconds, -truth.trackerSeconds);
-    delays.tracker = solveTrackerDelay(capture.body, capture.board, progress.part(0.4, 0.6));
-    delays.seconds += options.boardSeconds;
-    checkAgainstMark(delays);
-    begin(0.6, "hands off: the servos move");
-    if (rig.actuatorCount() > kMostServos) {
-        delays.warnings.push_back(
-            {Cause::undetermined, "servos", "", "the device has more than 64 of them", "their lag stays as it was"});
-        return;
-    }
-    const std::vector<StepRecording> steps =
-        recordStepsInLab(rig, believed, truth, seed, progress.part(0.6, 0.75), options);
-    for (std::size_t k = 0; k < steps.size(); ++k) {
-        begin(0.75 + 0.25 * double(k) / double(steps.size()), "working out the servos' lag");
-        delays.servos.push_back({steps[k].servo, solveStepLag(steps[k], progress.part(1.0, 1.0))});
-        delays.seconds += steps[k].steps.back().seconds;
-    }
-    for (const Actuator& actuator : rig.actuators())
-        if (std::ranges::find(delays.servos, actuator.name, &MeasuredDelays::Servo::name) == delays.servos.end())
-            delays.warnings.push_back({Cause::undetermined, actuator.name, "",
-                                       "the camera does not see its part in all its range",
-                                       "its lag stays as it was; another place of the camera may show it"});
-}
-
 } // namespace
 
 DelayFault parseDelayFault(std::string_view text) {
@@ -426,7 +323,7 @@ MarkRecording recordMarkInLab(const Installation& truth, std::uint32_t seed, con
 std::vector<StepRecording> recordStepsInLab(const Rig& rig, const Installation& believed, const Installation& truth,
                                             std::uint32_t seed, const Progress& progress,
                                             const DelaysLabOptions& options) {
-    if (rig.actuatorCount() > kMostServos)
+    if (rig.actuatorCount() > kMostSteppedServos)
         throw InvalidInput("servos' lag", "the device has more than 64 actuators", "measure light and tracker alone");
     std::vector<StepRecording> recordings;
     const CalibratedCamera camera = servoCamera(believed);
@@ -453,36 +350,44 @@ std::vector<StepRecording> recordStepsInLab(const Rig& rig, const Installation& 
     return recordings;
 }
 
-MeasuredDelays measureDelaysInLab(const Rig& rig, const Installation& believed, const Installation& truth,
-                                  std::uint32_t seed, const Progress& progress, const DelaysLabOptions& options) {
-    MeasuredDelays delays;
-    delays.installation = believed;
+DelaysCapture captureDelaysInLab(const Rig& rig, const Installation& believed, const Installation& truth,
+                                 std::uint32_t seed, const Progress& progress, const DelaysLabOptions& options) {
+    const auto begin = [&](double share, const char* stage) {
+        progress.throwIfCancelled();
+        progress.report(share, stage);
+    };
     (void)servoCamera(believed); // throws without a projector
-    try {
-        measureAll(rig, believed, truth, seed, progress, options, delays);
-    } catch (const CaptureRefused& refused) {
-        delays.refusal = refused.finding();
-        delays.summary = sentenceOf(refused.finding());
-        return delays;
-    }
-    delays.installation = withDelays(believed, delays);
-    markSimulated(believed, delays.installation);
-    delays.summary = summaryOf(delays);
-    delays.gain = slipInLab(delays.installation, truth, seed, options.errors);
-    return delays;
+    DelaysCapture capture;
+    begin(0.0, "flashing");
+    capture.flashes = recordFlashesInLab(truth, seed, options);
+    begin(0.1, "moving a body that a mark follows");
+    capture.mark = recordMarkInLab(truth, seed, options);
+    begin(0.2, "moving a board before tracker and camera");
+    const TrackerFault fault =
+        options.fault == DelayFault::trackerDropsOut ? TrackerFault::dropsOut : TrackerFault::none;
+    TrackerLab lab(truth, seed + 11U, options.errors, {}, fault);
+    const CalibrationBoard board = parseCalibrationBoard("chess:9x7:20");
+    // Both by this machine's clock: a pose of the tracker is older than it says, one of the camera is not.
+    BoardCapture turned =
+        lab.moveBoard(servoCamera(truth), board, 0.001, glm::dvec3(0.5), options.boardSeconds, -truth.trackerSeconds);
+    capture.tracked = std::move(turned.body);
+    capture.seen = std::move(turned.board);
+    capture.seconds = capture.flashes.flashes.back().off + options.markSeconds + options.boardSeconds;
+    begin(0.4, "hands off: the servos move");
+    if (rig.actuatorCount() > kMostSteppedServos) return capture;
+    capture.steps = recordStepsInLab(rig, believed, truth, seed, progress.part(0.4, 1.0), options);
+    for (const StepRecording& steps : capture.steps) capture.seconds += steps.steps.back().seconds;
+    return capture;
 }
 
-void takeDelays(const Installation& measured, Installation& room) {
-    room.predictionSeconds = measured.predictionSeconds;
-    room.trackerSeconds = measured.trackerSeconds;
-    for (const MeasuredServo& servo : measured.servos) {
-        const auto known = std::ranges::find(room.servos, servo.actuator, &MeasuredServo::actuator);
-        if (known != room.servos.end())
-            known->lagSeconds = servo.lagSeconds;
-        else
-            room.servos.push_back({servo.actuator, {}, servo.lagSeconds});
-    }
-    room.origins.delays = measured.origins.delays;
+MeasuredDelays measureDelaysInLab(const Rig& rig, const Installation& believed, const Installation& truth,
+                                  std::uint32_t seed, const Progress& progress, const DelaysLabOptions& options) {
+    const DelaysCapture capture = captureDelaysInLab(rig, believed, truth, seed, progress.part(0.0, 0.3), options);
+    MeasuredDelays delays = solveDelays(rig, believed, capture, progress.part(0.3, 1.0));
+    if (delays.refusal) return delays;
+    markSimulated(believed, delays.installation);
+    delays.gain = slipInLab(delays.installation, truth, seed, options.errors);
+    return delays;
 }
 
 PredictionGain slipInLab(const Installation& believed, const Installation& truth, std::uint32_t seed,

@@ -1,17 +1,11 @@
 #pragma once
 
 #include <cstdint>
-#include <optional>
-#include <string>
 #include <string_view>
 #include <vector>
 
-#include "calibration/delays/flash_delay.h"
-#include "calibration/delays/mark_delay.h"
-#include "calibration/delays/step_lag.h"
-#include "calibration/delays/tracker_delay.h"
+#include "calibration/delays/delays_calibration.h"
 #include "calibration/lab/true_room.h"
-#include "core/loop/prediction_gain.h"
 
 /// All delays measured in the virtual lab from beginning to end: what hardware would be asked to do is done in the true
 /// room, with the noise of its tracker and camera, and solved as that of hardware is.
@@ -58,34 +52,16 @@ struct DelaysLabOptions {
                                                           const Progress& progress = {},
                                                           const DelaysLabOptions& options = {});
 
-/// Delays as they were measured.
-struct MeasuredDelays {
-    /// As it was believed to be, with delays and lags replaced and their origin said; unchanged where it was refused.
-    /// A servo whose curve was not measured gets a lag alone, and goes on doing what it is told.
-    Installation installation;
-    std::optional<Finding> refusal;
-    std::vector<Finding> warnings;
-    MeasuredDelay light;   ///< from a frame to its light, by flashes
-    MeasuredDelay tracker; ///< by which poses are older than they say
-    MeasuredDelay mark; ///< from a motion to its light, by a mark that follows: what both come to, never fitted to them
-    struct Servo {
-        std::string name;
-        StepLag step;
-    };
-    std::vector<Servo> servos;
-    std::string summary;  ///< one sentence
-    double seconds = 0.0; ///< that it takes
-    PredictionGain gain;  ///< slip on a device that a hand carries through the true room, with and without prediction
-    [[nodiscard]] bool good() const { return !refusal; }
-};
+/// All that is recorded of them. Throws Cancelled; InvalidInput without a projector.
+[[nodiscard]] DelaysCapture captureDelaysInLab(const Rig& rig, const Installation& believed, const Installation& truth,
+                                               std::uint32_t seed, const Progress& progress = {},
+                                               const DelaysLabOptions& options = {});
 
-/// Throws Cancelled, which leaves nothing behind; InvalidInput without a projector.
+/// Recorded and solved, with what it gains in the true room. Throws Cancelled, which leaves nothing behind;
+/// InvalidInput without a projector.
 [[nodiscard]] MeasuredDelays measureDelaysInLab(const Rig& rig, const Installation& believed, const Installation& truth,
                                                 std::uint32_t seed, const Progress& progress = {},
                                                 const DelaysLabOptions& options = {});
-
-/// The room with delays and lags of another, and nothing else of it.
-void takeDelays(const Installation& measured, Installation& room);
 
 /// How far light lies beside on a device that a hand carries at 0.3 m/s at most through `truth`, with the delays that
 /// are believed and without prediction. All else is taken to be right, since this is what delays are worth.

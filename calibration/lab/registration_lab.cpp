@@ -72,13 +72,16 @@ std::optional<glm::dvec3> meeting(const glm::dvec3& a, const glm::dvec3& alongA,
     return 0.5 * (a + s * alongA + b + t * alongB);
 }
 
-/// Points where the camera sees the projector's light, off by the noise of both.
-std::vector<glm::dvec3> decodedPoints(const Lab& lab, const LabLens& camera, const LabLens& projector,
-                                      std::uint32_t seed) {
+/// Where the camera sees the projector's light, and what it reads there, off by the noise of both.
+std::vector<ProjectorPoint> decodedLight(const Lab& lab, const LabLens& camera, const LabLens& projector,
+                                         std::uint32_t seed) {
     std::mt19937 engine(seed);
     std::normal_distribution<double> noise(0.0, kDecodeNoise);
-    const auto off = [&](const glm::dvec2& pixel) { return pixel + glm::dvec2(noise(engine), noise(engine)); };
-    std::vector<glm::dvec3> points;
+    const auto off = [&](const glm::dvec2& pixel) {
+        const glm::dvec2 by(noise(engine), noise(engine));
+        return cv::Point2d(pixel.x + by.x, pixel.y + by.y);
+    };
+    std::vector<ProjectorPoint> light;
     for (int y = 0; y < camera.size.y; y += kPixelStep)
         for (int x = 0; x < camera.size.x; x += kPixelStep) {
             const glm::dvec2 pixel(x, y);
@@ -88,12 +91,10 @@ std::vector<glm::dvec3> decodedPoints(const Lab& lab, const LabLens& camera, con
             if (!hit || !lab.lit(0, hit->point, hit->normal)) continue;
             const auto lit = imageOf(projector, hit->point);
             if (!lit) continue;
-            const auto seen = rayThrough(camera, off(pixel)), light = rayThrough(projector, off(*lit));
-            if (!seen || !light) continue;
-            if (const auto point = meeting(camera.position, *seen, projector.position, *light))
-                points.push_back(*point);
+            const cv::Point2d seen = off(pixel);
+            light.push_back({seen, off(*lit)});
         }
-    return points;
+    return light;
 }
 
 /// Servos that came down to rest stop where their play lets them.
@@ -170,20 +171,41 @@ LandmarkCapture captureLandmarksInLab(const Rig& rig, const Installation& truth,
     return capture;
 }
 
-SurfaceCapture captureSurfaceInLab(const Rig& rig, const Installation& believed, const Installation& truth,
-                                   std::uint32_t seed, const RegistrationLabOptions& options) {
+LitDeviceCapture captureLitDeviceInLab(const Rig& rig, const Installation& truth, std::uint32_t seed,
+                                       const RegistrationLabOptions& options) {
     const InstalledProjector& projector = firstProjector(truth);
-    const CalibratedCamera camera = cameraIn(truth);
-    SurfaceCapture capture;
-    capture.model = deformed(rig, strokesAtRest(rig, believed));
-    capture.seenFrom = positionOf(camera);
     LabWorld world = roomWorld(truth, rig, strokesAtRest(rig, truth));
     world.projectors = {{projector, {}}};
-    capture.points = decodedPoints(Lab(std::move(world)), lensOf(camera, "camera of the lab"),
-                                   lensOf(projector.camera, "projector of the lab"), seedOf(seed, Step::surface));
+    LitDeviceCapture capture;
+    capture.light = decodedLight(Lab(std::move(world)), lensOf(cameraIn(truth), "camera of the lab"),
+                                 lensOf(projector.camera, "projector of the lab"), seedOf(seed, Step::surface));
     TrackerLab lab = labOf(truth, seed, Step::surface, options);
     capture.body = lab.recordDevice(3.0);
     capture.fresh = touchAll(lab, planLandmarks(rig, options.fresh), 0, options.fresh, "fresh point");
+    return capture;
+}
+
+TriangleMesh shapeAtRest(const Rig& rig, const Installation& believed) {
+    return deformed(rig, strokesAtRest(rig, believed));
+}
+
+SurfaceCapture captureSurfaceInLab(const Rig& rig, const Installation& believed, const Installation& truth,
+                                   std::uint32_t seed, const RegistrationLabOptions& options) {
+    LitDeviceCapture lit = captureLitDeviceInLab(rig, truth, seed, options);
+    const CalibratedCamera camera = cameraIn(truth);
+    const LabLens eye = lensOf(camera, "camera of the lab"),
+                  lamp = lensOf(firstProjector(truth).camera, "projector of the lab");
+    SurfaceCapture capture;
+    capture.model = shapeAtRest(rig, believed);
+    capture.seenFrom = positionOf(camera);
+    for (const ProjectorPoint& point : lit.light) {
+        const auto seen = rayThrough(eye, {point.camera.x, point.camera.y}),
+                   light = rayThrough(lamp, {point.projector.x, point.projector.y});
+        if (!seen || !light) continue;
+        if (const auto place = meeting(eye.position, *seen, lamp.position, *light)) capture.points.push_back(*place);
+    }
+    capture.body = std::move(lit.body);
+    capture.fresh = std::move(lit.fresh);
     return capture;
 }
 

@@ -4,6 +4,7 @@
 
 #include "calibration/lab/tracker_lab.h"
 #include "calibration/registration/registration.h"
+#include "calibration/solve/observations.h"
 #include "core/base/progress.h"
 #include "core/rig/rig.h"
 
@@ -27,11 +28,22 @@ struct RegistrationLabOptions {
                                           std::uint32_t seed, const RegistrationLabOptions& options = {});
 [[nodiscard]] LandmarkCapture captureLandmarksInLab(const Rig& rig, const Installation& truth, std::uint32_t seed,
                                                     const RegistrationLabOptions& options = {});
-/// Structured light on the device at rest, its flaps as high as the play of the true servos leaves them, as the first
-/// camera (or the lab's) and projector would decode it: rays, with a tenth of a pixel of noise at both ends.
+/// Structured light on the device at rest as it is decoded, while its body is tracked; and landmarks as fresh points.
+struct LitDeviceCapture {
+    std::vector<ProjectorPoint> light;
+    PoseTrack body; ///< in the tracker's world
+    std::vector<TouchedLandmark> fresh;
+};
+/// Its flaps are as high as the play of the true servos leaves them; by the first camera (or the lab's) and projector,
+/// with a tenth of a pixel of noise at both ends.
+[[nodiscard]] LitDeviceCapture captureLitDeviceInLab(const Rig& rig, const Installation& truth, std::uint32_t seed,
+                                                     const RegistrationLabOptions& options = {});
+/// The same as places in the room.
 [[nodiscard]] SurfaceCapture captureSurfaceInLab(const Rig& rig, const Installation& believed,
                                                  const Installation& truth, std::uint32_t seed,
                                                  const RegistrationLabOptions& options = {});
+/// The device's shape at rest as a room believes its servos to leave it, device frame.
+[[nodiscard]] TriangleMesh shapeAtRest(const Rig& rig, const Installation& believed);
 [[nodiscard]] EyeCapture captureEyeInLab(const Rig& rig, const Installation& believed, const Installation& truth,
                                          std::uint32_t seed, const RegistrationLabOptions& options = {});
 

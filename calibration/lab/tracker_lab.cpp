@@ -45,7 +45,31 @@ glm::dquat looking(const glm::dvec3& way) {
     return glm::quat_cast(glm::dmat3(right, glm::cross(back, right), back));
 }
 
+constexpr std::pair<const char*, TrackerFault> kTrackerFaults[] = {
+    {"drops_out", TrackerFault::dropsOut},
+    {"swaps_bodies", TrackerFault::swapsBodies},
+    {"clock_jumps_back", TrackerFault::clockJumpsBack},
+    {"clock_jumps_ahead", TrackerFault::clockJumpsAhead},
+    {"left_handed", TrackerFault::leftHanded},
+    {"centimetres", TrackerFault::centimetres},
+    {"doubled_rows", TrackerFault::doubledRows},
+    {"not_a_number", TrackerFault::notANumber},
+};
+
 } // namespace
+
+std::string trackerFaultKeys() {
+    std::string keys;
+    for (const auto& [key, fault] : kTrackerFaults) keys += (keys.empty() ? "" : ", ") + std::string(key);
+    return keys;
+}
+
+TrackerFault parseTrackerFault(std::string_view key) {
+    for (const auto& [name, fault] : kTrackerFaults)
+        if (key == name) return fault;
+    throw InvalidInput("fault '" + std::string(key) + "'", "a tracker has no such fault",
+                       "choose one of: " + trackerFaultKeys());
+}
 
 PoseTrack withFault(PoseTrack track, TrackerFault fault) {
     const std::size_t n = track.poses.size();

@@ -4,6 +4,7 @@
 #include <functional>
 #include <random>
 #include <string>
+#include <string_view>
 
 #include "calibration/decode/calibration_board.h"
 #include "calibration/lab/true_room.h"
@@ -33,6 +34,10 @@ enum class TrackerFault {
     doubledRows,
     notANumber
 };
+/// By its key: "drops_out", "left_handed" and so on. Throws InvalidInput.
+[[nodiscard]] TrackerFault parseTrackerFault(std::string_view key);
+/// All keys, for help and messages.
+[[nodiscard]] std::string trackerFaultKeys();
 [[nodiscard]] PoseTrack withFault(PoseTrack track, TrackerFault fault);
 
 /// The virtual lab's tracker: records true bodies in its own world, with the noise of LabErrors, 60 times a second. The

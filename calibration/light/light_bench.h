@@ -20,6 +20,15 @@ public:
     [[nodiscard]] virtual cv::Mat photograph(const LightShow& show, double seconds) = 0;
     [[nodiscard]] virtual double shortestExposure() const = 0; ///< seconds
     [[nodiscard]] virtual double longestExposure() const = 0;
+    /// Of a series that was photographed before: the exposure that was found for full white, and after how many
+    /// photographs; it is not looked for again.
+    struct FoundExposure {
+        double seconds = 0.0;
+        int photographs = 0;
+    };
+    [[nodiscard]] virtual std::optional<FoundExposure> foundExposure() const { return std::nullopt; }
+    /// Told once it was found.
+    virtual void exposureFound(const FoundExposure& /*found*/) {}
 };
 
 } // namespace lumorph

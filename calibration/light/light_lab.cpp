@@ -34,14 +34,11 @@ double developed(double light, const LightLabOptions& options) {
     return options.pedestal + (255.0 - options.pedestal) * value;
 }
 
-CalibratedCamera lightCamera(const Installation& room, int width) {
+CalibratedCamera cameraOf(const Installation& room, int width) {
     if (room.projectors.empty())
         throw InvalidInput("light by camera", "the room has no projector", "add and calibrate one first");
-    const CalibratedCamera camera =
-        room.cameras.empty() ? defaultLabCamera(room.projectors.front().camera) : room.cameras.front().camera;
-    if (camera.size.x <= width) return camera;
-    const double height = static_cast<double>(width) * camera.size.y / camera.size.x;
-    return withSize(camera, {width, static_cast<int>(std::lround(height))});
+    return lightCamera(
+        room.cameras.empty() ? defaultLabCamera(room.projectors.front().camera) : room.cameras.front().camera, width);
 }
 
 /// Turned away by a third of a turn about the vertical axis through itself.
@@ -173,25 +170,23 @@ cv::Mat LightLab::photograph(const LightShow& show, double seconds) {
     return withNoise(levels, noise, seed_ * 65537U + pictures_++).reshape(3);
 }
 
+CalibratedCamera lightLabCamera(const Installation& truth, const LightLabOptions& options) {
+    const CalibratedCamera camera = cameraOf(truth, options.cameraWidth);
+    return options.fault == LightFault::unseen ? lookingAside(camera) : camera;
+}
+
 LightCalibration measureLightInLab(const Rig& rig, const Installation& believed, const Installation& truth,
                                    std::uint32_t seed, const Progress& progress, const LightLabOptions& options) {
     progress.report(0.0, "looking for what the camera sees in the light");
-    const CalibratedCamera camera = lightCamera(believed, options.cameraWidth);
+    const CalibratedCamera camera = cameraOf(believed, options.cameraWidth);
     std::optional<WhiteSheet> sheet;
     if (options.laysSheet) sheet = placeForSheet(believed, rig, camera);
     const std::vector<LightPatch> patches = lightPatches(believed, rig, camera, sheet);
     progress.throwIfCancelled();
-    CalibratedCamera eye = lightCamera(truth, options.cameraWidth);
-    if (options.fault == LightFault::unseen) eye = lookingAside(eye);
-    LightLab lab(truth, rig, eye, sheet, options, seed);
+    LightLab lab(truth, rig, lightLabCamera(truth, options), sheet, options, seed);
     LightCalibration result = measureLight(believed, patches, lab, progress.part(0.1, 1.0));
     markSimulated(believed, result.room);
-    if (options.laysSheet && !sheet)
-        result.warnings.push_back({Cause::surfaceUnseen,
-                                   "white sheet",
-                                   {},
-                                   "there is no room for it on the table where camera and projector both reach",
-                                   "make room beside the device, or go on without it"});
+    if (options.laysSheet && !sheet) result.warnings.push_back(noRoomForSheet());
     return result;
 }
 

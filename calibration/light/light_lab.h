@@ -66,6 +66,10 @@ private:
     std::uint32_t seed_, pictures_ = 0;
 };
 
+/// The lab's camera for light in a room as it truly is: its first, or one as the lab has it, with pictures of the
+/// options' width. Throws InvalidInput for a room without a projector.
+[[nodiscard]] CalibratedCamera lightLabCamera(const Installation& truth, const LightLabOptions& options = {});
+
 /// Lays the sheet, photographs and measures, all in the lab: the room as it truly is, seen as it is believed to be. By
 /// the first camera of the room, or one as the lab has it. Throws as `measureLight`.
 [[nodiscard]] LightCalibration measureLightInLab(const Rig& rig, const Installation& believed,

@@ -84,6 +84,20 @@ std::optional<LightPatch> patchAt(const LabSight& sight, std::size_t lamps, int 
 
 } // namespace
 
+Finding noRoomForSheet() {
+    return {Cause::surfaceUnseen,
+            "white sheet",
+            {},
+            "there is no room for it on the table where camera and projector both reach",
+            "make room beside the device, or go on without it"};
+}
+
+CalibratedCamera lightCamera(const CalibratedCamera& camera, int width) {
+    if (camera.size.x <= width) return camera;
+    const double height = static_cast<double>(width) * camera.size.y / camera.size.x;
+    return withSize(camera, {width, static_cast<int>(std::lround(height))});
+}
+
 LabWorld lightWorld(const Installation& room, const Rig& rig, const std::optional<WhiteSheet>& sheet) {
     LabWorld world;
     TriangleMesh device = rig.restMesh();

@@ -8,6 +8,7 @@
 #include <glm/vec3.hpp>
 #include <opencv2/core.hpp>
 
+#include "calibration/decode/refusal.h"
 #include "calibration/lab/lab.h"
 #include "core/rig/rig.h"
 #include "core/scene/installation.h"
@@ -25,6 +26,12 @@ using WhiteSheet = std::array<glm::vec3, 4>;
 /// clear of the device; empty where there is no room for it.
 [[nodiscard]] std::optional<WhiteSheet> placeForSheet(const Installation& room, const Rig& rig,
                                                       const CalibratedCamera& camera);
+
+/// What is to be known where there is none.
+[[nodiscard]] Finding noRoomForSheet();
+
+/// The camera of a room with pictures of at most so many columns: flat light needs no more.
+[[nodiscard]] CalibratedCamera lightCamera(const CalibratedCamera& camera, int width = 320);
 
 /// Device at rest (surface 0), table (1) and sheet (2) in a room, with its projectors, which show black.
 [[nodiscard]] LabWorld lightWorld(const Installation& room, const Rig& rig, const std::optional<WhiteSheet>& sheet);

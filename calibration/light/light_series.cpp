@@ -27,6 +27,16 @@ LightShot::Exposed LightSeries::expose(const LightShow& show, double seconds) {
 }
 
 void LightSeries::setExposure(const LightShow& white) {
+    if (const auto found = bench_.foundExposure()) {
+        seconds_ = found->seconds;
+        photographs_ = found->photographs;
+        return;
+    }
+    lookForExposure(white);
+    bench_.exposureFound({seconds_, photographs_});
+}
+
+void LightSeries::lookForExposure(const LightShow& white) {
     seconds_ = bench_.shortestExposure();
     double brightest = brightestOf(expose(white, seconds_));
     if (brightest > kBrightestWanted)

@@ -39,6 +39,7 @@ public:
     [[nodiscard]] int photographs() const noexcept { return photographs_; }
 
 private:
+    void lookForExposure(const LightShow& white);
     [[nodiscard]] LightShot::Exposed expose(const LightShow& show, double seconds);
 
     LightBench& bench_;

@@ -46,10 +46,30 @@ ServoMeasurement measureServos(const Rig& rig, const Installation& believed, std
         at = next;
     }
     result.measured = solver.result();
-    result.room =
-        withServos(believed, result.measured,
-                   "structured light, " + std::to_string(result.measured.estimates.size()) + " states of the device");
+    result.room = withMeasuredServos(believed, result.measured);
     return result;
+}
+
+Installation withMeasuredServos(const Installation& room, const ServoCalibration& measured) {
+    return withServos(room, measured,
+                      "structured light, " + std::to_string(measured.estimates.size()) + " states of the device");
+}
+
+std::vector<ProjectorPoint> lookBy(DeviceBench& bench, const Installation& room, const std::vector<double>& commanded,
+                                   const Progress& progress) {
+    const CalibratedCamera &camera = room.cameras.front().camera, &projector = room.projectors.front().camera;
+    const CaptureOrder order = parsePattern(kPattern, {projector.size.x, projector.size.y});
+    bench.stand(commanded, progress);
+    std::vector<cv::Mat> images = bench.photograph(0, order, progress);
+    if (images.size() != order.images.size() || images.front().empty())
+        throw DeviceError("the camera", "it stopped in between", "look whether it is plugged in, and measure again");
+    for (cv::Mat& image : images) fitPicture(image, camera.size, camera.size);
+    return lightOf(decodeView(images, order), kMostPoints);
+}
+
+int picturesOfLook(const Installation& room) {
+    const glm::ivec2 panel = room.projectors.front().camera.size;
+    return static_cast<int>(parsePattern(kPattern, {panel.x, panel.y}).images.size());
 }
 
 ServoMeasurement measureServosOnBench(const Rig& rig, const Installation& believed, std::uint32_t seed,
@@ -57,19 +77,12 @@ ServoMeasurement measureServosOnBench(const Rig& rig, const Installation& believ
     if (believed.cameras.empty() || believed.projectors.empty())
         throw InvalidInput("servos by camera", "the room has no projector or no camera",
                            "calibrate projector and camera first");
-    const CalibratedCamera &camera = believed.cameras.front().camera, &projector = believed.projectors.front().camera;
-    const CaptureOrder order = parsePattern(kPattern, {projector.size.x, projector.size.y});
     const auto look = [&](const std::vector<double>& commanded, const Progress& part) {
-        bench.stand(commanded, part);
-        std::vector<cv::Mat> images = bench.photograph(0, order, part);
-        if (images.size() != order.images.size() || images.front().empty())
-            throw DeviceError("the camera", "it stopped in between",
-                              "look whether it is plugged in, and measure again");
-        for (cv::Mat& image : images) fitPicture(image, camera.size, camera.size);
-        return surfacePoints(lightOf(decodeView(images, order), kMostPoints), camera, projector);
+        return surfacePoints(lookBy(bench, believed, commanded, part), believed.cameras.front().camera,
+                             believed.projectors.front().camera);
     };
     ServoPlanOptions plan = options;
-    plan.pictures = static_cast<int>(order.images.size());
+    plan.pictures = picturesOfLook(believed);
     return measureServos(rig, believed, seed, look, progress, plan);
 }
 

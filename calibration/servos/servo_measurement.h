@@ -25,6 +25,16 @@ using ServoLook = std::function<ServoPass(const std::vector<double>& commanded, 
                                              const ServoLook& look, const Progress& progress = {},
                                              const ServoPlanOptions& options = {});
 
+/// The room with what was measured, where it is usable.
+[[nodiscard]] Installation withMeasuredServos(const Installation& room, const ServoCalibration& measured);
+
+/// Has a device stand as it is told, and decodes the first projector's phase shifts as the first camera sees them.
+/// Throws what the bench throws; DeviceError for a camera that stops.
+[[nodiscard]] std::vector<ProjectorPoint> lookBy(DeviceBench& bench, const Installation& room,
+                                                 const std::vector<double>& commanded, const Progress& progress);
+/// Pictures that it takes.
+[[nodiscard]] int picturesOfLook(const Installation& room);
+
 /// The same by the first projector and camera of a bench, under phase shifts.
 [[nodiscard]] ServoMeasurement measureServosOnBench(const Rig& rig, const Installation& believed, std::uint32_t seed,
                                                     DeviceBench& bench, const Progress& progress = {},

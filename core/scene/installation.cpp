@@ -119,19 +119,35 @@ template <class Room, class Use> void eachOrigin(Room& room, const Use& use) {
 
 } // namespace
 
-void markSimulated(const Installation& before, Installation& made) {
+namespace {
+
+/// Calls `use` with each origin of `made` that says measured and was not in `before`.
+template <class Use> void eachMeasured(const Installation& before, Installation& made, const Use& use) {
     std::vector<Origin> known;
     eachOrigin(before, [&known](const std::string&, const Origin& origin) { known.push_back(origin); });
-    eachOrigin(made, [&known](const std::string&, Origin& origin) {
-        if (origin.way == Origin::Way::measured && std::ranges::find(known, origin) == known.end())
-            origin.way = Origin::Way::simulated;
+    eachOrigin(made, [&](const std::string&, Origin& origin) {
+        if (origin.way == Origin::Way::measured && std::ranges::find(known, origin) == known.end()) use(origin);
+    });
+}
+
+} // namespace
+
+void markSimulated(const Installation& before, Installation& made) {
+    eachMeasured(before, made, [](Origin& origin) { origin.way = Origin::Way::simulated; });
+}
+
+void markRecorded(const Installation& before, Installation& made, const std::string& who, const std::string& date) {
+    eachMeasured(before, made, [&](Origin& origin) {
+        origin.way = Origin::Way::recorded;
+        if (!who.empty()) origin.method = "recorded by " + who + ": " + origin.method; // sigmas stay at the end
+        origin.date = date;
     });
 }
 
 std::vector<std::string> realParts(const Installation& room) {
     std::vector<std::string> parts;
     eachOrigin(room, [&parts](const std::string& part, const Origin& origin) {
-        if (origin.way == Origin::Way::measured || origin.way == Origin::Way::entered) parts.push_back(part);
+        if (origin.way != Origin::Way::assumed && origin.way != Origin::Way::simulated) parts.push_back(part);
     });
     return parts;
 }

@@ -14,17 +14,20 @@ namespace lumorph {
 /// Where a figure of an installation came from, and when.
 struct Origin {
     enum class Way {
-        assumed,  ///< not known yet: that of the virtual lab
-        entered,  ///< typed or dragged by hand
-        measured, ///< by a calibration in the room
-        simulated ///< by a calibration in the virtual lab, or of simulated devices
+        assumed,   ///< not known yet: that of the virtual lab
+        entered,   ///< typed or dragged by hand
+        measured,  ///< by a calibration in the room
+        simulated, ///< by a calibration in the virtual lab, or of simulated devices
+        recorded   ///< by a calibration from what was recorded in the room before
     };
     Way way = Way::assumed;
     std::string method; ///< of a measurement, in a few words: "structured light, 12 boards"
     std::string date;   ///< ISO 8601 in UTC, such as "2026-11-24T17:05:00Z"; empty for what is assumed
     bool operator==(const Origin&) const = default;
     /// By a calibration, wherever it was made.
-    [[nodiscard]] bool isCalibrated() const noexcept { return way == Way::measured || way == Way::simulated; }
+    [[nodiscard]] bool isCalibrated() const noexcept {
+        return way == Way::measured || way == Way::simulated || way == Way::recorded;
+    }
 };
 
 /// A projector and what is known of its light. Full white on a white diffuse surface that it meets head on at
@@ -123,6 +126,10 @@ void markOrigins(const Installation& before, Installation& edited, const Origin&
 
 /// What the virtual lab made of `before`: of all that it measured, the origin becomes `simulated`.
 void markSimulated(const Installation& before, Installation& made);
+
+/// What was solved of a recording that somebody made before: of all that it measured, the origin becomes `recorded`,
+/// with the recording's date and who made it.
+void markRecorded(const Installation& before, Installation& made, const std::string& who, const std::string& date);
 
 /// The parts of a room that were measured or entered, in words: "lens of Projector", "delays".
 [[nodiscard]] std::vector<std::string> realParts(const Installation& room);

@@ -32,7 +32,7 @@ inline constexpr Words<4> kForms = {"box", "sphere", "cylinder", "plane"};
 inline constexpr Words<2> kLightKinds = {"sun", "lamp"};
 inline constexpr Words<2> kSkinShows = {"material", "content"};
 inline constexpr Words<3> kShowings = {"both", "physical", "virtual"};
-inline constexpr Words<4> kOriginWays = {"assumed", "entered", "measured", "simulated"};
+inline constexpr Words<5> kOriginWays = {"assumed", "entered", "measured", "simulated", "recorded"};
 inline constexpr Words<4> kViewers = {"automatic", "first", "nearest", "none"};
 /// In the order of ItemKind; also the keys under which the kinds' own values stand.
 inline constexpr Words<std::variant_size_v<ItemKind>> kKinds = {"mesh", "target", "shape", "heights",

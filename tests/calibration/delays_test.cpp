@@ -277,9 +277,9 @@ TEST(DelaysLab, AllDelaysComeOutAsTheLabHasThem) {
             EXPECT_TRUE(room.servos[i].points.empty()) << "a lag makes no curve";
         }
         std::printf("  slip %.1f mm, without prediction %.1f mm; at speed %.1f and %.1f mm\n",
-                    1e3 * delays.gain.with.always, 1e3 * delays.gain.without.always, 1e3 * delays.gain.with.atSpeed,
-                    1e3 * delays.gain.without.atSpeed);
-        EXPECT_LE(delays.gain.with.always, 0.5 * delays.gain.without.always);
+                    1e3 * delays.gain->with.always, 1e3 * delays.gain->without.always, 1e3 * delays.gain->with.atSpeed,
+                    1e3 * delays.gain->without.atSpeed);
+        EXPECT_LE(delays.gain->with.always, 0.5 * delays.gain->without.always);
         EXPECT_NO_THROW(checkInstallation(room));
         // All else stays as it was.
         Installation back = room;

@@ -327,12 +327,12 @@ LinkOutcome measureDelays(const LinkTask& task, const Progress& progress) {
     if (measured.refusal) return outcome;
     outcome.installation = measured.installation;
     outcome.summary = QObject::tr("Carried at 30 cm/s the device is lit %1 beside instead of %2.")
-                          .arg(millimetres(measured.gain.with.atSpeed), millimetres(measured.gain.without.atSpeed));
+                          .arg(millimetres(measured.gain->with.atSpeed), millimetres(measured.gain->without.atSpeed));
     outcome.figures = {{QObject::tr("From a frame to its light"), milliseconds(measured.light)},
                        {QObject::tr("Age of poses when they arrive"), milliseconds(measured.tracker)},
                        {QObject::tr("Both together, by a mark that follows a hand"), milliseconds(measured.mark)},
-                       {QObject::tr("Beside the whole way, looking ahead"), millimetres(measured.gain.with.always)},
-                       {QObject::tr("Beside the whole way, without"), millimetres(measured.gain.without.always)}};
+                       {QObject::tr("Beside the whole way, looking ahead"), millimetres(measured.gain->with.always)},
+                       {QObject::tr("Beside the whole way, without"), millimetres(measured.gain->without.always)}};
     for (const MeasuredDelays::Servo& servo : measured.servos)
         outcome.figures.push_back(
             {QObject::tr("%1: lag").arg(QString::fromStdString(servo.name)), milliseconds(servo.step.lag)});

@@ -428,7 +428,7 @@ void RigLight::showAll() {
     const bool measured = hanging() && hanging()->pose.isCalibrated();
     hang_->setEnabled(hanging() && !measured);
     hang_->setToolTip(measured ? QString("Where the projector stands was %1; a plan does not take the place of that")
-                                     .arg(hanging()->pose.way == Origin::Way::measured ? "measured" : "simulated")
+                                     .arg(hanging()->pose.way == Origin::Way::simulated ? "simulated" : "measured")
                                : "The room's first projector gets this lens and place, by one step of undo");
 }
 

@@ -103,6 +103,9 @@ QString originWords(const Origin& origin) {
         return (method.isEmpty() ? QObject::tr("simulated in the virtual lab")
                                  : QObject::tr("simulated in the virtual lab (%1)").arg(method)) +
                on;
+    case Origin::Way::recorded:
+        return (method.isEmpty() ? QObject::tr("measured by a recording") : QObject::tr("measured, %1").arg(method)) +
+               on;
     case Origin::Way::assumed:
         break;
     }

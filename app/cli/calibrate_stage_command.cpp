@@ -1,0 +1,251 @@
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "app/cli/commands.h"
+#include "app/cli/project_frame.h"
+#include "app/cli/stage_output.h"
+#include "calibration/lab/moved_room.h"
+#include "calibration/lab/true_room.h"
+#include "calibration/stages/lab_bench.h"
+#include "calibration/verify/check_picture.h"
+#include "core/base/error.h"
+#include "core/base/image.h"
+#include "core/base/resources.h"
+#include "core/show/project_contents.h"
+
+// The stages of a calibration that follow projector and camera, one command each: recorded in the virtual lab or at the
+// table, or solved from a recording.
+
+namespace lumorph::cli {
+
+namespace {
+
+struct StageArguments {
+    std::string project, from, record, fault;
+    bool inLab = false, atTable = false, json = false;
+    std::uint32_t seed = 1;
+    LabApply apply;
+    // Of single stages:
+    bool withoutSheet = false;
+    std::vector<std::string> moved;
+    std::string pattern = "graycode", picture, grid;
+};
+
+/// What a stage has beside what all have.
+struct StageHelp {
+    const char *key, *help, *faults;
+};
+constexpr StageHelp kHelp[] = {
+    {"light", "How much light values make, black, and bare colours, by photographs of flat light",
+     "saturated, dark, automatic, ambient, falling or unseen"},
+    {"pointer", "Where the tip of the tracked pointer is, by swings about it", nullptr},
+    {"tracker", "Where the tracker's world lies in the room, by projected dots that the tip touches", nullptr},
+    {"body", "Where the device lies on its tracked body, by points that the tip touches", nullptr},
+    {"eye", "Where the eye is on a tracked head, by marks that the tip covers", nullptr},
+    {"servos", "Where servos really go, their play and what is wrong with them, by camera",
+     "swapped, reversed, dead or jammed"},
+    {"delays", "How late light, poses and servos are, by flashes, a moved board and steps",
+     "frames, camera, slow, covered, tracker, still, dead or jammed"},
+    {"verify", "Whether the room is still as it was calibrated, or what has moved", nullptr},
+};
+
+/// As nobody has looked: what is measured does not build on what was measured before.
+Installation withoutLight(Installation room) {
+    const InstalledProjector plain;
+    for (InstalledProjector& projector : room.projectors) {
+        projector.gain = plain.gain;
+        projector.black = plain.black;
+        projector.gamma = plain.gamma;
+        projector.responseCurve.clear();
+    }
+    room.deviceColor = room.tableColor = glm::vec3(1.0F);
+    return room;
+}
+
+/// A command line has no window to show patterns in, and nobody before it who touches: it says what it lacks.
+class Terminal final : public Bench {
+public:
+    [[nodiscard]] RecordingSource source() const override { return {RecordingSource::Kind::table, "", utcDate(), 0}; }
+    [[nodiscard]] std::vector<ProjectorPoint> look(const StageSite& site, const std::vector<double>&,
+                                                   const Progress&) override {
+        lacks(site);
+    }
+    [[nodiscard]] DeviceBench& device(const StageSite& site) override { lacks(site); }
+    [[nodiscard]] LightBench& light(const StageSite& site, const std::optional<WhiteSheet>&) override { lacks(site); }
+    [[nodiscard]] DelaysCapture recordDelays(const StageSite& site, const Progress&) override { lacks(site); }
+
+    [[noreturn]] static void lacks(const StageSite& site) {
+        if (site.room.cameras.empty() || site.room.cameras.front().address.empty())
+            throw DeviceError("camera", "the room has none that is connected to this machine",
+                              "calibrate projector and camera with it first, in the studio");
+        throw DeviceError("projector of camera " + site.room.cameras.front().address,
+                          "a command line has no window to show pictures in",
+                          "measure at the table in the studio, keep the recording, and solve it with --from");
+    }
+};
+
+Installation trueRoomOf(const StageArguments& arguments, const CalibrationStage& stage, const StageSite& site) {
+    if (stage.key != std::string_view("verify")) return trueRoom(site.room, site.rig->actuators(), arguments.seed);
+    // A check asks what has moved since: else all is as it was.
+    Installation truth = withLabCamera(site.room);
+    std::uint32_t seed = arguments.seed;
+    for (const std::string& text : arguments.moved)
+        truth = pushed(truth, *site.rig, parseLabPush(text, *site.rig), seed++);
+    return truth;
+}
+
+MeasuredStage measured(const StageArguments& arguments, const CalibrationStage& stage, const StageSite& site,
+                       const Progress& progress) {
+    if (!arguments.from.empty()) {
+        StageRecording recording = readStageRecording(arguments.from, progress.part(0.0, 0.1));
+        StageResult result = solveStage(stage, recording, site, progress.part(0.1, 1.0));
+        return {std::move(recording), std::move(result)};
+    }
+    if (arguments.atTable) {
+        // Before anything is planned: what a table lacks has nothing to do with the room's figures.
+        if (std::ranges::find(stage.needs, "pointer") == stage.needs.end() && stage.key != std::string_view("pointer"))
+            Terminal::lacks(site);
+        Terminal table;
+        return measureStage(stage, site, table, progress);
+    }
+    LabBenchOptions options = labWithFault(stage.key, arguments.fault);
+    options.light.laysSheet = !arguments.withoutSheet;
+    options.checkPattern = arguments.pattern;
+    LabBench lab(*site.rig, trueRoomOf(arguments, stage, site), arguments.seed, options);
+    return measureStage(stage, site, lab, progress);
+}
+
+/// Shapes that the real device is judged by: the project's own target, or a few of the bundled ones.
+std::vector<LibraryTarget> shapesFor(const ProjectContents& contents) {
+    if (contents.target) {
+        LibraryTarget own{contents.target->name, contents.target->solid, contents.target->box};
+        return {std::move(own)};
+    }
+    return readTargets(
+        {resourceFile("targets/bowl.glb"), resourceFile("targets/cove.glb"), resourceFile("targets/valley.glb")});
+}
+
+StageView viewOf(const ProjectContents& contents, const MeasuredStage& done, const Progress& progress) {
+    StageView view{*contents.rig, std::nullopt};
+    const auto* servos = std::get_if<ServoMeasurement>(&done.result);
+    if (!servos || !done.recording.truth) return view;
+    LibraryFitOptions fitting;
+    fitting.resolution = 25;
+    view.servoGain =
+        servoGain(*contents.rig, shapesFor(contents), servos->room, *done.recording.truth, fitting, progress);
+    return view;
+}
+
+const char* wayOf(const StageArguments& arguments, const RecordingSource& source) {
+    return source.isSimulated() ? "simulated" : arguments.from.empty() ? "measured" : "recorded";
+}
+
+/// Whether the room is another now. A check that cannot tell what has moved changes nothing.
+bool applyTo(const CalibrationStage& stage, const StageResult& result, Installation& room) {
+    if (const auto* check = std::get_if<VerifiedRoom>(&result)) {
+        if (check->check.verdict != RoomCheck::Verdict::moved || !check->check.couldAlsoBe.empty()) return false;
+    } else if (!isGood(result)) {
+        return false;
+    }
+    stage.apply(roomOf(result), room);
+    return true;
+}
+
+void run(const StageArguments& arguments, const CalibrationStage& stage, const Session& session) {
+    const std::filesystem::path file = projectFile(arguments.project);
+    arguments.apply.checkProject(arguments.project);
+    for (const std::string& output : {arguments.picture, arguments.grid})
+        if (!output.empty()) checkOutput(output, file.string());
+    (void)labWithFault(stage.key, arguments.fault);
+    const Progress progress = session.progress();
+    const ProjectContents contents = readContents(file, progress.part(0.0, 0.1));
+    StageSite site{contents.rig, contents.project.installation};
+    if (stage.key == std::string_view("light")) site.room = withoutLight(site.room);
+    if (arguments.from.empty() && !arguments.atTable)
+        arguments.apply.checkRoom(arguments.project, contents.project.installation);
+    const MeasuredStage done =
+        orRefused(arguments.json, [&] { return measured(arguments, stage, site, progress.part(0.1, 0.9)); });
+    if (done.recording.source.isSimulated())
+        arguments.apply.checkRoom(arguments.project, contents.project.installation);
+    if (!arguments.record.empty()) writeStageRecording(done.recording, arguments.record, progress.part(0.9, 0.92));
+    const StageView view = viewOf(contents, done, progress.part(0.92, 1.0));
+    Session::endProgress();
+    const auto* check = std::get_if<VerifiedRoom>(&done.result);
+    if (check) {
+        const Installation seen = withLabCamera(site.room);
+        const std::vector<double> bend = checkBends(*site.rig).front();
+        if (!arguments.picture.empty()) writePng(errorPicture(check->check, *site.rig, seen, bend), arguments.picture);
+        if (!arguments.grid.empty()) writePng(gridPicture(*site.rig, seen, bend), arguments.grid);
+    }
+    Project project = contents.project;
+    const bool isApplied = arguments.apply.apply && applyTo(stage, done.result, project.installation);
+    if (isApplied) writeProject(project, file);
+    const std::optional<Finding> refusal = refusalOf(done.result);
+    if (arguments.json) {
+        nlohmann::json json = jsonOf(done.result, view);
+        json["applied"] = isApplied;
+        json["way"] = wayOf(arguments, done.recording.source);
+        if (refusal) json["refused"] = jsonOf(*refusal);
+        printJson(json);
+    } else if (!refusal) {
+        printResult(done.result, view);
+        if (isApplied)
+            std::printf("The project's installation has it now, as %s.\n", wayOf(arguments, done.recording.source));
+    }
+    if (refusal) throw CaptureRefused(*refusal);
+    if (check && check->check.verdict == RoomCheck::Verdict::none)
+        throw DataError("check of the room", check->check.obstacle->why, check->check.obstacle->remedy);
+}
+
+void addStage(CLI::App& group, const StageHelp& help, Session& session) {
+    auto arguments = std::make_shared<StageArguments>();
+    const std::string_view key = help.key;
+    CLI::App* command = group.add_subcommand(help.key, help.help);
+    command->add_option("project", arguments->project, "A project, or resource:projects/NAME.lumorph")->required();
+    CLI::Option* lab = command->add_flag("--lab", arguments->inLab, "Record in the virtual lab; as without a way");
+    CLI::Option* table =
+        command->add_flag("--table", arguments->atTable, "Record with what is connected to this machine");
+    CLI::Option* from =
+        command->add_option("--from", arguments->from, "Solve a recording: a folder that --record or the studio wrote");
+    lab->excludes(table)->excludes(from);
+    table->excludes(from);
+    command->add_option("--seed", arguments->seed, "Another lab and other noise for another number")
+        ->excludes(table)
+        ->excludes(from);
+    command
+        ->add_option("--fault", arguments->fault,
+                     "What is wrong in the lab: " + (help.faults ? std::string(help.faults) : trackerFaultKeys()))
+        ->excludes(table)
+        ->excludes(from);
+    command->add_option("--record", arguments->record, "Keep what devices said in a new folder, to solve it again");
+    if (key == "light")
+        command->add_flag("--without-sheet", arguments->withoutSheet, "No sheet of white paper lies beside the device");
+    if (key == "verify") {
+        command
+            ->add_option("--moved", arguments->moved,
+                         "What was pushed in the lab since: projector:3mm, camera:2mm, device:4mm, or an actuator's "
+                         "name and degrees, 'edge front:5deg'; may be given again")
+            ->expected(1)
+            ->take_all()
+            ->excludes(table)
+            ->excludes(from);
+        command->add_option("--pattern", arguments->pattern, "graycode, or phase:16x3+1x3");
+        command->add_option("--picture", arguments->picture, "Draw the error map over the device into a PNG file");
+        command->add_option("--grid", arguments->grid,
+                            "Draw what the projector shows to check by eye into a PNG file: crosshairs and lines");
+    }
+    arguments->apply.addTo(*command, "Write what it came to into the project's installation");
+    command->add_flag("--json", arguments->json, "Print one JSON value");
+    command->callback([arguments, key, &session] { run(*arguments, calibrationStage(key), session); });
+}
+
+} // namespace
+
+void addCalibrateStages(CLI::App& group, Session& session) {
+    for (const StageHelp& help : kHelp) addStage(group, help, session);
+}
+
+} // namespace lumorph::cli

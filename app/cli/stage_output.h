@@ -1,0 +1,22 @@
+#pragma once
+
+#include <optional>
+
+#include "app/cli/calibrate_output.h"
+#include "calibration/servos/servo_gain.h"
+#include "calibration/stages/stage.h"
+
+namespace lumorph::cli {
+
+/// What the result of a stage is told with.
+struct StageView {
+    const Rig& rig;
+    std::optional<ServoGain> servoGain; ///< what servos gain in the lab's true room; empty where nobody knows it
+};
+
+/// All figures of a result: see resources/guide/formats.md, "What --json prints".
+[[nodiscard]] nlohmann::json jsonOf(const Registration& result);
+[[nodiscard]] nlohmann::json jsonOf(const StageResult& result, const StageView& view);
+void printResult(const StageResult& result, const StageView& view);
+
+} // namespace lumorph::cli
